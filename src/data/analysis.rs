@@ -1,0 +1,213 @@
+//! The result of `analyze`, as the contract's JSON has it, and what the report needs beside it.
+
+use super::cask::CaskFile;
+use super::channel::Span;
+use super::curves::Curves;
+use super::estimate::Estimate;
+use super::flight::FlightFit;
+use super::issue::Issue;
+use super::prediction::{BodyModel, Prediction};
+use super::recording::RecordingFormat;
+use serde::Serialize;
+
+/// The overall word on a result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Nothing speaks against it.
+    Pass,
+    /// A warning asks for a person's look.
+    Review,
+    /// A quantity could not be had.
+    Fail,
+}
+
+/// Which files went in.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Input {
+    /// The recording, as given.
+    pub recording: String,
+    /// Its SHA-256.
+    pub recording_sha256: String,
+    /// Its format.
+    pub format: RecordingFormat,
+    /// The cask file, as given.
+    pub cask: String,
+    /// Its SHA-256.
+    pub cask_sha256: String,
+}
+
+/// The first impact.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct FirstImpact {
+    /// First contact of L, s from the recording's first sample.
+    pub time: Option<Estimate>,
+    /// Speed at first contact, m/s.
+    pub impact_velocity: Option<Estimate>,
+    /// From first contact to separation, s.
+    pub duration: Option<Estimate>,
+    /// Vertical velocity of L as it leaves the target, positive up, m/s.
+    pub rebound_velocity: Option<Estimate>,
+    /// ω after the impact, rad/s.
+    pub angular_velocity: Option<Estimate>,
+}
+
+/// The slap-down of R.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct SlapDown {
+    /// First contact of R, s from the recording's first sample.
+    pub time: Option<Estimate>,
+    /// From separation of L to slap-down, s.
+    pub flight_time: Option<Estimate>,
+    /// Magnitude of R's velocity just before it strikes, m/s.
+    pub speed: Option<Estimate>,
+    /// Its vertical part, negative down, m/s.
+    pub vertical_velocity: Option<Estimate>,
+    /// Its horizontal part, m/s.
+    pub horizontal_velocity: Option<Estimate>,
+    /// Inclination of the axis at slap-down, degrees.
+    pub angle: Option<Estimate>,
+}
+
+/// How one analytical model stands against the measurement.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelCandidate {
+    /// Which body.
+    pub model: BodyModel,
+    /// Predicted slap-down speed with the measured k, m/s.
+    pub predicted: Option<f64>,
+    /// 95 % half-width of the prediction, from k, angle and pulse length, m/s.
+    pub u95: Option<f64>,
+    /// Predicted over measured, less one, percent.
+    pub difference_percent: Option<f64>,
+    /// Whether it lies within both intervals.
+    pub consistent: bool,
+}
+
+/// Which analytical model explains the measurement with the least.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelChoice {
+    /// The model taken.
+    pub name: BodyModel,
+    /// One sentence: why, and what the next one would have changed.
+    pub reason: String,
+    /// All that were held against the measurement, simplest first.
+    pub candidates: Vec<ModelCandidate>,
+}
+
+/// Measured beside predicted slap-down speed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Predicted by the chosen model with the measured k, m/s.
+    pub predicted: f64,
+    /// 95 % half-width of it, m/s.
+    pub predicted_u95: f64,
+    /// Measured, m/s.
+    pub measured: f64,
+    /// 95 % half-width of it, m/s.
+    pub measured_u95: f64,
+    /// (measured − predicted) / predicted, percent.
+    pub difference_percent: f64,
+    /// Whether the difference lies within both intervals.
+    pub agrees: bool,
+}
+
+/// The times that the report marks, s from the recording's first sample.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Events {
+    /// Release, where the record has the rest before it.
+    pub release_s: Option<f64>,
+    /// First contact of L.
+    pub first_contact_s: Option<f64>,
+    /// L leaves the target.
+    pub separation_s: Option<f64>,
+    /// First contact of R.
+    pub slap_down_s: Option<f64>,
+}
+
+/// What one channel is worth.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ChannelSummary {
+    /// The channel's name.
+    pub name: String,
+    /// "first" or "second".
+    pub end: super::cask::End,
+    /// "transverse" or "axial".
+    pub axis: super::cask::Axis,
+    /// Where the samples were found.
+    pub source: String,
+    /// Samples read.
+    pub samples: usize,
+    /// Rate, Hz.
+    pub sample_rate_hz: f64,
+    /// The unit they are in and who says so, such as "g (cask file)".
+    pub unit: String,
+    /// Offset removed, m/s².
+    pub offset_m_s2: Option<f64>,
+    /// RMS of the noise about it, m/s².
+    pub noise_m_s2: Option<f64>,
+    /// Largest magnitude, filtered, m/s².
+    pub peak_filtered_m_s2: Option<f64>,
+    /// Largest magnitude, unfiltered, m/s².
+    pub peak_raw_m_s2: Option<f64>,
+    /// Samples at a limit, as index spans.
+    #[serde(skip)]
+    pub clipped: Vec<Span>,
+}
+
+/// One setting, its value and where it came from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Setting {
+    /// What it is, as a person says it: "low-pass for the curves".
+    pub name: String,
+    /// Its value with its unit: "CFC 180 (−3 dB at 298 Hz)".
+    pub value: String,
+    /// "cask file", "recording", "default", "from the data: …".
+    pub origin: String,
+}
+
+/// The result as `result.json` has it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DropResult {
+    /// "dropcheck.result/1".
+    pub schema: &'static str,
+    /// The program's version.
+    pub version: &'static str,
+    /// Which files went in.
+    pub input: Input,
+    /// The first impact.
+    pub first_impact: FirstImpact,
+    /// The slap-down.
+    pub slap_down: SlapDown,
+    /// Effective coefficient of restitution.
+    pub k: Option<Estimate>,
+    /// Which analytical model explains the measurement.
+    pub model: Option<ModelChoice>,
+    /// What the analytical models say.
+    pub predictions: Vec<Prediction>,
+    /// Measured beside predicted.
+    pub comparison: Option<Comparison>,
+    /// Every finding, errors first.
+    pub quality: Vec<Issue>,
+    /// The overall word.
+    pub verdict: Verdict,
+    /// Times of the events.
+    pub events: Events,
+    /// What each channel is worth.
+    pub channels: Vec<ChannelSummary>,
+    /// The fit of the free-flight window.
+    pub flight: Option<FlightFit>,
+    /// Every setting and where it came from.
+    pub settings: Vec<Setting>,
+}
+
+/// Everything one analysis found: the result, the cask file it was made with and the curves.
+#[derive(Debug, Clone)]
+pub struct Analysis {
+    /// The result.
+    pub result: DropResult,
+    /// The cask file.
+    pub cask_file: CaskFile,
+    /// The curves.
+    pub curves: Curves,
+}

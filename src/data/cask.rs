@@ -1,0 +1,204 @@
+//! The cask file, checked: the cask, the drop, the contact, the filter and the channels.
+
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// An end of the cask.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum End {
+    /// L: low, touches first.
+    First,
+    /// R: high, slaps down.
+    Second,
+}
+
+/// A body axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Axis {
+    /// η, away from the target.
+    Transverse,
+    /// ξ, from L to R.
+    Axial,
+}
+
+/// How the first end meets the target tangentially.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Contact {
+    /// The contact point does not slide.
+    Rough,
+    /// No tangential force.
+    Smooth,
+    /// Coulomb friction with this coefficient.
+    Coulomb(f64),
+}
+
+impl std::fmt::Display for Contact {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Rough => f.write_str("rough"),
+            Self::Smooth => f.write_str("smooth"),
+            Self::Coulomb(coefficient) => write!(f, "{coefficient}"),
+        }
+    }
+}
+
+impl Serialize for Contact {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// How a sensor is coupled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Coupling {
+    /// Down to 0 Hz.
+    Dc,
+    /// A first-order high-pass with this time constant, s.
+    Ac {
+        /// T of the high-pass T s / (1 + T s), s.
+        time_constant_s: f64,
+    },
+}
+
+/// The unit a channel's samples are in, as the cask file declares it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Unit {
+    /// Standard gravity, 9.80665 m/s².
+    G,
+    /// m/s².
+    MetrePerSecondSquared,
+    /// Volt, with the sensor's sensitivity, mV per g.
+    Volt {
+        /// mV per g.
+        sensitivity_mv_per_g: f64,
+    },
+    /// Millivolt, with the sensor's sensitivity, mV per g.
+    Millivolt {
+        /// mV per g.
+        sensitivity_mv_per_g: f64,
+    },
+}
+
+/// Where a channel's samples are: as written, and for MCAP the topic and field apart where the file gave them so.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Source {
+    /// `"/topic.field.field"`, `"/group/dataset[2]"` or a CSV header.
+    Path(String),
+    /// `{ topic = "/a.b", field = "x.y" }`.
+    TopicField {
+        /// The topic.
+        topic: String,
+        /// The dotted field path.
+        field: String,
+    },
+}
+
+impl std::fmt::Display for Source {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Path(path) => f.write_str(path),
+            Self::TopicField { topic, field } => write!(f, "{topic} · {field}"),
+        }
+    }
+}
+
+/// The `[filter]` table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FilterChoice {
+    /// Chosen from the mass and the data.
+    Auto,
+    /// A channel frequency class of SAE J211 / ISO 6487.
+    Cfc(f64),
+    /// A −3 dB cut-off, Hz.
+    CutoffHz(f64),
+}
+
+/// The `[cask]` table with its defaults filled in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cask {
+    /// The cask's name.
+    pub name: String,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Length along the axis between the two ends that strike, m.
+    pub length_m: f64,
+    /// Section in the plane of the drop, m; 0 is a thin rod.
+    pub height_m: f64,
+    /// Section across the plane, m.
+    pub width_m: Option<f64>,
+    /// Centre of gravity from the first end, m; l/2 where the file is silent.
+    pub cog_m: f64,
+    /// Inertia about the centre of gravity, kg m²; m (l² + h²)/12 where the file is silent.
+    pub inertia_kg_m2: f64,
+    /// Whether the file gives any of `height_m` (above 0), `cog_m`, `inertia_kg_m2`: then the body is predicted beside the rod.
+    pub is_body: bool,
+}
+
+/// The `[drop]` table with its defaults filled in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drop {
+    /// Free-fall height of the lowest point, m.
+    pub height_m: f64,
+    /// φ0, rad.
+    pub angle_rad: f64,
+    /// Speed at first contact, m/s: √(2 g h), or as the file says.
+    pub impact_velocity_m_s: f64,
+    /// Whether the file states that speed itself.
+    pub impact_velocity_given: bool,
+    /// g, m/s².
+    pub gravity_m_s2: f64,
+}
+
+/// One `[[channel]]` table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChannelSpec {
+    /// Name, unique in the file.
+    pub name: String,
+    /// Which end it sits on.
+    pub end: End,
+    /// Along which axis it reads.
+    pub axis: Axis,
+    /// Where the samples are.
+    pub source: Source,
+    /// Declared unit; `None`: what the recording says.
+    pub unit: Option<Unit>,
+    /// Position along the axis from the first end, m.
+    pub position_m: f64,
+    /// Position across the axis, positive away from the target, m.
+    pub offset_m: f64,
+    /// 1.0 or −1.0.
+    pub polarity: f64,
+    /// Where the channel clips, in its unit.
+    pub full_scale: Option<f64>,
+    /// Overrides what the recording says, Hz.
+    pub sample_rate_hz: Option<f64>,
+    /// This channel's own times: a CSV column or an HDF5 dataset.
+    pub time: Option<String>,
+    /// How the sensor is coupled.
+    pub coupling: Coupling,
+}
+
+/// A cask file, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaskFile {
+    /// The file.
+    pub path: PathBuf,
+    /// Its SHA-256, lower-case hexadecimal.
+    pub sha256: String,
+    /// `[cask]`.
+    pub cask: Cask,
+    /// `[drop]`.
+    pub drop: Drop,
+    /// `[contact] friction`.
+    pub contact: Contact,
+    /// `[filter]`.
+    pub filter: FilterChoice,
+    /// `[recording] time`.
+    pub time: Option<String>,
+    /// `[[channel]]`, in the file's order.
+    pub channels: Vec<ChannelSpec>,
+    /// Keys whose value is a default, as "table.key", so that the report can say so.
+    pub defaults: Vec<String>,
+}

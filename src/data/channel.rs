@@ -1,0 +1,119 @@
+//! One accelerometer channel on a uniform time base.
+
+use super::cask::{Axis, Coupling, End};
+
+/// Samples as the recording stores them: f32 stays f32 until it is worked on.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Samples {
+    /// Single precision, or integers of up to 16 bits.
+    F32(Vec<f32>),
+    /// Double precision, or wider integers.
+    F64(Vec<f64>),
+}
+
+impl Samples {
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::F32(v) => v.len(),
+            Self::F64(v) => v.len(),
+        }
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Sample `index` as f64; panics beyond the end, as a slice does.
+    #[must_use]
+    pub fn get(&self, index: usize) -> f64 {
+        match self {
+            Self::F32(v) => f64::from(v[index]),
+            Self::F64(v) => v[index],
+        }
+    }
+}
+
+/// A half-open range of sample indices `from..to`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Span {
+    /// First index.
+    pub from: usize,
+    /// One past the last index.
+    pub to: usize,
+}
+
+/// One channel as read: uniform in time, samples in the recording's own unit, polarity not yet applied.
+///
+/// Sample i was taken at `start_s + i / sample_rate_hz`; its specific force along the sensor's axis, positive on the body
+/// axis, is `samples[i] · scale_m_s2`. Missing samples are NaN and listed in `gaps`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Channel {
+    /// The cask file's name of it.
+    pub name: String,
+    /// Which end it sits on.
+    pub end: End,
+    /// Along which body axis it reads.
+    pub axis: Axis,
+    /// Where the samples were found, as the cask file says.
+    pub source: String,
+    /// Position along the axis from the first end, m.
+    pub position_m: f64,
+    /// Position across the axis, positive away from the target, m.
+    pub offset_m: f64,
+    /// Time of sample 0, s from the recording's first sample (over all channels read).
+    pub start_s: f64,
+    /// Sample rate of the uniform base, Hz.
+    pub sample_rate_hz: f64,
+    /// The samples, in `unit`, times `scale_m_s2` gives m/s².
+    pub samples: Samples,
+    /// m/s² per unit of `samples`, polarity included.
+    pub scale_m_s2: f64,
+    /// The unit the samples are in, as a person would write it ("g", "m/s^2", "mV").
+    pub unit: String,
+    /// Where that unit comes from: "cask file" or "recording".
+    pub unit_origin: &'static str,
+    /// The cask file's clipping limit, in `unit` (of either sign).
+    pub full_scale: Option<f64>,
+    /// Stretches without samples; there `samples` is NaN.
+    pub gaps: Vec<Span>,
+    /// RMS distance of the recorded times from the uniform base, s; 0 where the base is the recording's own.
+    pub time_jitter_s: f64,
+    /// How the sensor is coupled.
+    pub coupling: Coupling,
+}
+
+impl Channel {
+    /// Time of sample `index`, s from the recording's first sample.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+    pub fn time_s(&self, index: usize) -> f64 {
+        self.start_s + index as f64 / self.sample_rate_hz
+    }
+
+    /// The samples `from..to` as specific force on the body axis, m/s²; the range is cut to what there is.
+    #[must_use]
+    pub fn force_m_s2(&self, from: usize, to: usize) -> Vec<f64> {
+        let to = to.min(self.samples.len());
+        let from = from.min(to);
+        match &self.samples {
+            Samples::F32(v) => v[from..to].iter().map(|&x| f64::from(x) * self.scale_m_s2).collect(),
+            Samples::F64(v) => v[from..to].iter().map(|&x| x * self.scale_m_s2).collect(),
+        }
+    }
+
+    /// Index of the sample nearest to `time_s`, cut to what there is.
+    #[must_use]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "cut to 0..len before the cast"
+    )]
+    pub fn index_at(&self, time_s: f64) -> usize {
+        let index = ((time_s - self.start_s) * self.sample_rate_hz).round();
+        if index <= 0.0 { 0 } else { (index as usize).min(self.samples.len()) }
+    }
+}

@@ -1,0 +1,59 @@
+//! Curves a person looks at: accelerations, velocities, the motion of the cask, spectra.
+
+/// Curves of one channel over the event window.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChannelCurve {
+    /// The channel's name.
+    pub channel: String,
+    /// Times, s from the recording's first sample; uniform.
+    pub time_s: Vec<f64>,
+    /// Specific force, offset removed, unfiltered, m/s².
+    pub raw_m_s2: Vec<f64>,
+    /// The same, filtered without phase, m/s².
+    pub filtered_m_s2: Vec<f64>,
+    /// Velocity along the sensor's axis, integrated from the unfiltered force with gravity left out between contacts (Fig. 13), m/s.
+    pub velocity_m_s: Vec<f64>,
+}
+
+/// The planar rigid-body motion over the event window; all vectors are of one length.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MotionCurve {
+    /// Times, s from the recording's first sample; uniform.
+    pub time_s: Vec<f64>,
+    /// Inclination of the axis, rad.
+    pub angle_rad: Vec<f64>,
+    /// ω = −dφ/dt, rad/s.
+    pub angular_velocity_rad_s: Vec<f64>,
+    /// Vertical velocity of L's contact corner, positive up, m/s.
+    pub first_end_vertical_m_s: Vec<f64>,
+    /// Vertical velocity of R's contact corner, positive up, m/s.
+    pub second_end_vertical_m_s: Vec<f64>,
+    /// Horizontal velocity of R's contact corner, m/s.
+    pub second_end_horizontal_m_s: Vec<f64>,
+    /// Height of L's contact corner above the target, m.
+    pub first_end_height_m: Vec<f64>,
+    /// Height of R's contact corner above the target, m.
+    pub second_end_height_m: Vec<f64>,
+}
+
+/// One-sided amplitude spectrum of one channel over the event window.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spectrum {
+    /// The channel's name.
+    pub channel: String,
+    /// Frequencies, Hz.
+    pub frequency_hz: Vec<f64>,
+    /// Spectral magnitude |∫ f e^{−iωt} dt|, m/s.
+    pub magnitude_m_s: Vec<f64>,
+}
+
+/// All curves of one analysis.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Curves {
+    /// One a channel, in the cask file's order.
+    pub channels: Vec<ChannelCurve>,
+    /// The rigid-body motion from just before first contact to the slap-down, where it could be had.
+    pub motion: Option<MotionCurve>,
+    /// One a channel, in the cask file's order.
+    pub spectra: Vec<Spectrum>,
+}

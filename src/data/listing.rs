@@ -1,0 +1,57 @@
+//! What a recording holds, before any cask file is known: the answer of `inspect`.
+
+use super::issue::Issue;
+use super::recording::RecordingFormat;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// One source of samples in a recording: a message path, a dataset (or its column), a CSV column.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ListedChannel {
+    /// What to write as `source` in a cask file.
+    pub source: String,
+    /// What it is: "number", "array", "dataset", "column", "topic" (nothing numeric could be decoded).
+    pub kind: String,
+    /// Number of samples (numbers), where it is known.
+    pub samples: Option<u64>,
+    /// Number of messages, for MCAP.
+    pub messages: Option<u64>,
+    /// Sample rate, Hz, where the recording tells it or its times do.
+    pub sample_rate_hz: Option<f64>,
+    /// Unit, where the recording tells it.
+    pub unit: Option<String>,
+    /// Time of the first sample, s after the recording's first.
+    pub start_s: Option<f64>,
+    /// From first to last sample, s.
+    pub duration_s: Option<f64>,
+    /// Number of gaps longer than 1.5 sample intervals.
+    pub gaps: Option<u64>,
+    /// Smallest and largest sample, in `unit`.
+    pub range: Option<(f64, f64)>,
+    /// How it is stored: message encoding and schema, or data type, shape and filters.
+    pub encoding: String,
+    /// Why nothing can be read from it, where nothing can.
+    pub unreadable: Option<String>,
+}
+
+/// What a recording holds.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Listing {
+    /// "dropcheck.inspect/1".
+    pub schema: &'static str,
+    /// The file, as given.
+    pub recording: String,
+    /// Its size, bytes.
+    pub bytes: u64,
+    /// Its format.
+    pub format: RecordingFormat,
+    /// Counts of what the container holds: for MCAP "messages", "schemas", "channels", "chunks", "attachments",
+    /// "metadata"; for HDF5 "groups", "datasets"; for CSV "rows", "columns", "preamble_lines".
+    pub counts: BTreeMap<String, u64>,
+    /// Facts that the container states: library and profile, delimiter, decimal mark, encoding, compression …
+    pub facts: BTreeMap<String, String>,
+    /// Every source of samples.
+    pub channels: Vec<ListedChannel>,
+    /// What is wrong with the file.
+    pub issues: Vec<Issue>,
+}

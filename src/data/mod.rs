@@ -1,0 +1,26 @@
+//! The plain structs that pass between stages; they hold no algorithm.
+
+mod analysis;
+mod cask;
+mod channel;
+mod curves;
+mod estimate;
+mod flight;
+mod issue;
+mod listing;
+mod prediction;
+mod recording;
+
+pub use analysis::{
+    Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
+    ModelChoice, Setting, SlapDown, Verdict,
+};
+pub use cask::{Axis, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice, Source, Unit};
+pub use channel::{Channel, Samples, Span};
+pub use curves::{ChannelCurve, Curves, MotionCurve, Spectrum};
+pub use estimate::Estimate;
+pub use flight::{FlightFit, FlightModelScore, Mode, Plateau};
+pub use issue::{Issue, IssueCode, Severity};
+pub use listing::{ListedChannel, Listing};
+pub use prediction::{Body, BodyModel, Prediction};
+pub use recording::{Recording, RecordingFormat};

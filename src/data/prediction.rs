@@ -1,0 +1,71 @@
+//! The analytical prediction: the body it is made for, and what it says.
+
+use super::cask::Contact;
+use serde::Serialize;
+
+/// Which body a prediction is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BodyModel {
+    /// The thin uniform rod of the paper.
+    Rod,
+    /// The rigid body with section, centre of gravity and inertia.
+    Body,
+}
+
+impl BodyModel {
+    /// "rod" or "body".
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Rod => "rod",
+            Self::Body => "body",
+        }
+    }
+}
+
+/// A rigid body in the plane of the drop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    /// Rod or body.
+    pub model: BodyModel,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Length l, m.
+    pub length_m: f64,
+    /// Section h in the plane, m; 0 for the rod.
+    pub height_m: f64,
+    /// Centre of gravity c from the first end, m.
+    pub cog_m: f64,
+    /// Inertia Θ about the centre of gravity, kg m².
+    pub inertia_kg_m2: f64,
+}
+
+/// What one model predicts for one contact law and one k. What does not exist (no slap-down) is `None`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Prediction {
+    /// Which body.
+    pub model: BodyModel,
+    /// The contact law: "rough", "smooth" or the Coulomb coefficient.
+    pub contact: Contact,
+    /// Coefficient of restitution.
+    pub k: f64,
+    /// Magnitude of R's velocity just before it strikes, m/s.
+    pub slap_down_speed_m_s: Option<f64>,
+    /// Its vertical part, negative down, m/s.
+    pub vertical_velocity_m_s: Option<f64>,
+    /// Its horizontal part, m/s.
+    pub horizontal_velocity_m_s: Option<f64>,
+    /// ω between the impacts, positive brings R down, rad/s.
+    pub angular_velocity_rad_s: f64,
+    /// From first impact to slap-down, s.
+    pub flight_time_s: Option<f64>,
+    /// Kinetic energy just before slap-down over that before first impact.
+    pub energy_ratio: Option<f64>,
+    /// Inclination at slap-down, degrees.
+    pub slap_down_angle_deg: Option<f64>,
+    /// Impacts of L before R strikes, the first included.
+    pub first_end_impacts: u32,
+    /// I_x / I_z of the first impact: the friction that sticking needs where it sticks, μ where it slides.
+    pub impulse_ratio: f64,
+}

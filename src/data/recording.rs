@@ -1,0 +1,37 @@
+//! A recording, read: its channels and what was wrong with the file.
+
+use super::channel::Channel;
+use super::issue::Issue;
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// A container format, told by content.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum RecordingFormat {
+    /// MCAP, version 0.
+    #[serde(rename = "MCAP")]
+    Mcap,
+    /// HDF5.
+    #[serde(rename = "HDF5")]
+    Hdf5,
+    /// Delimited text.
+    #[serde(rename = "CSV")]
+    Csv,
+}
+
+/// The channels that a cask file names, read from a recording.
+#[derive(Debug, Clone)]
+pub struct Recording {
+    /// The file.
+    pub path: PathBuf,
+    /// Its SHA-256, lower-case hexadecimal.
+    pub sha256: String,
+    /// Its format.
+    pub format: RecordingFormat,
+    /// The channels, in the order of the cask file.
+    pub channels: Vec<Channel>,
+    /// Absolute time of the recording's first sample, ns since 1970, where the recording knows it.
+    pub start_unix_ns: Option<i64>,
+    /// What reading it found wrong: truncation, gaps, doubled blocks, jitter.
+    pub issues: Vec<Issue>,
+}
