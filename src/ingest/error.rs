@@ -105,16 +105,14 @@ pub(super) fn near_names(path: &Path, wanted: &str, what: &str, there: &[String]
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
     let near: Vec<&str> =
         ranked.iter().filter(|(score, _)| *score >= ALIKE).take(3).map(|(_, name)| name.as_str()).collect();
-    let mut text =
-        if near.is_empty() { String::new() } else { format!("did you mean {}? ", near.join(" or ")) };
+    let hint = if near.is_empty() { String::new() } else { format!("did you mean {}? ", near.join(" or ")) };
     let listed: Vec<&str> = there.iter().take(HANDFUL).map(String::as_str).collect();
-    let more = there.len().saturating_sub(HANDFUL);
-    text.push_str(&format!("the recording holds: {}", listed.join(", ")));
-    if more > 0 {
-        text.push_str(&format!(" and {more} more"));
-    }
-    text.push_str(&format!("; `dropcheck inspect {}` lists all", path.display()));
-    text
+    let more = match there.len().saturating_sub(HANDFUL) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let listed = listed.join(", ");
+    format!("{hint}the recording holds: {listed}{more}; `dropcheck inspect {}` lists all", path.display())
 }
 
 #[cfg(test)]

@@ -229,7 +229,7 @@ impl<'de> DeserializeSeed<'de> for Number {
     }
 }
 
-impl<'de> Visitor<'de> for Number {
+impl Visitor<'_> for Number {
     type Value = f64;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -270,7 +270,7 @@ impl<'de> DeserializeSeed<'de> for WholeNumber {
     }
 }
 
-impl<'de> Visitor<'de> for WholeNumber {
+impl Visitor<'_> for WholeNumber {
     type Value = Option<i64>;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {

@@ -55,7 +55,7 @@ fn facts(scanned: &Scanned) -> BTreeMap<String, String> {
 
 /// What is seen of one topic.
 struct Topic {
-    topic: String,
+    name: String,
     encoding: String,
     schema_name: String,
     message_type: Result<MessageType, String>,
@@ -92,10 +92,10 @@ impl Sink for ListWalk {
             Some(schema) if !schema.name.is_empty() => format!("{} ({})", info.message_encoding, schema.name),
             _ => info.message_encoding.to_owned(),
         };
-        let same = |topic: &Topic| topic.topic == info.topic && topic.encoding == encoding;
+        let same = |topic: &Topic| topic.name == info.topic && topic.encoding == encoding;
         let index = self.topics.iter().position(same).unwrap_or_else(|| {
             let mut topic = Topic {
-                topic: info.topic.to_owned(),
+                name: info.topic.to_owned(),
                 encoding: encoding.clone(),
                 schema_name: schema_name.to_owned(),
                 message_type: MessageType::new(info),
@@ -204,7 +204,7 @@ impl Topic {
             Severity::Warning,
             format!(
                 "{} of {} messages of {} do not decode; the first: {problem}",
-                self.malformed, self.messages, self.topic
+                self.malformed, self.messages, self.name
             ),
         ))
     }
@@ -217,7 +217,7 @@ impl Topic {
                 Ok(_) => Some("its messages hold no numbers".to_owned()),
             };
             return vec![ListedChannel {
-                source: self.topic.clone(),
+                source: self.name.clone(),
                 kind: "topic".into(),
                 samples: None,
                 messages: Some(self.messages),
@@ -241,7 +241,7 @@ impl Field {
         let start_s =
             self.running.first_ns().zip(zero_ns).map(|(first_ns, zero_ns)| seconds_from(first_ns, zero_ns));
         ListedChannel {
-            source: source_text(&topic.topic, &self.leaf.path),
+            source: source_text(&topic.name, &self.leaf.path),
             kind: if self.leaf.is_array { "array" } else { "number" }.into(),
             samples: Some(self.running.samples),
             messages: Some(topic.messages),

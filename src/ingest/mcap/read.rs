@@ -193,9 +193,9 @@ impl<'a> Reading<'a> {
             spans.fold((i64::MAX, i64::MIN), |(low, high), (from, to)| (low.min(from), high.max(to)));
         let mut issues = scanned.issues();
         for issue in issues.iter_mut().filter(|issue| issue.code == IssueCode::Truncated) {
-            let last_s = seconds_from(last_ns, zero_ns);
-            issue.message.push_str(&format!("; the last message kept is of {last_s:.6} s"));
-            issue.from_s = Some(last_s);
+            let kept_s = seconds_from(last_ns, zero_ns);
+            issue.message = format!("{}; the last message kept begins at {kept_s:.6} s", issue.message);
+            issue.from_s = Some(kept_s);
         }
         let mut channels = Vec::with_capacity(chosen.len());
         for (position, (spec, &index)) in self.specs.iter().zip(&chosen).enumerate() {

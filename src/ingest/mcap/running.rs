@@ -163,17 +163,17 @@ fn block_timing(segments: &[Segment]) -> Timing {
     let mut order = segments.to_vec();
     order.sort_by_key(|segment| segment.start_ns);
     order.dedup_by_key(|segment| segment.start_ns);
-    let mut rates_hz: Vec<f64> = order
+    let mut derived_hz: Vec<f64> = order
         .windows(2)
         .filter_map(|pair| match pair {
             [a, b] => Some(a.count as f64 / seconds_from(b.start_ns, a.start_ns)),
             _ => None,
         })
         .collect();
-    rates_hz.sort_unstable_by(f64::total_cmp);
+    derived_hz.sort_unstable_by(f64::total_cmp);
     let stated_hz =
         order.iter().find_map(|segment| segment.rate_hz).filter(|rate| rate.is_finite() && *rate > 0.0);
-    let Some(rate_hz) = stated_hz.or_else(|| rates_hz.get(rates_hz.len() / 2).copied()) else {
+    let Some(rate_hz) = stated_hz.or_else(|| derived_hz.get(derived_hz.len() / 2).copied()) else {
         return Timing::default();
     };
     let end_s =
