@@ -1,6 +1,7 @@
 //! Recording files and cask files to channels and settings: SI units, one time base a channel, what was missing.
 
 mod assemble;
+pub mod cask_file;
 mod detect;
 mod error;
 pub mod time_base;
