@@ -44,8 +44,7 @@ struct RawRecording {
 /// # Errors
 /// One diagnostic that shows the line.
 pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
-    let _ = path;
-    todo!()
+    Ok(cask_file::parse(path)?)
 }
 
 /// Reads the channels that `cask_file` names from the recording at `path`, its format told by its content.
