@@ -2,6 +2,7 @@
 
 mod assemble;
 pub mod cask_file;
+mod csv;
 mod detect;
 mod error;
 pub mod time_base;
