@@ -5,6 +5,7 @@ pub mod cask_file;
 mod csv;
 mod detect;
 mod error;
+mod mcap;
 pub mod time_base;
 
 pub use error::IngestError;
@@ -58,11 +59,10 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
     let (raw, sha256) = std::thread::scope(|scope| {
         let hashing = scope.spawn(|| sha256(path));
         let raw = match format {
-            RecordingFormat::Mcap => Err(error::not_built(path)),
+            RecordingFormat::Mcap => mcap::read(path, cask_file, progress),
             RecordingFormat::Hdf5 => Err(error::not_built(path)),
             RecordingFormat::Csv => Err(error::not_built(path)),
         };
-        let _ = progress;
         (raw, hashing.join())
     });
     let sha256 = sha256.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
@@ -74,9 +74,9 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
 /// # Errors
 /// [`IngestError`] where the file is none that can be read.
 pub fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
-    let _ = progress;
     match detect::format(path)? {
-        RecordingFormat::Mcap | RecordingFormat::Hdf5 | RecordingFormat::Csv => Err(error::not_built(path)),
+        RecordingFormat::Mcap => mcap::list(path, progress),
+        RecordingFormat::Hdf5 | RecordingFormat::Csv => Err(error::not_built(path)),
     }
 }
 

@@ -68,7 +68,7 @@ impl Chunks {
         file: &mut impl Read,
         claimed: u64,
         available: u64,
-        take: &mut dyn FnMut(u8, &[u8]) -> bool,
+        take: &mut dyn FnMut(u8, &[u8]),
     ) -> std::io::Result<ChunkEnd> {
         let body = claimed.min(available);
         let is_cut = claimed > available;
@@ -108,17 +108,17 @@ impl Chunks {
         header: &Header,
         data: u64,
         is_cut: bool,
-        take: &mut dyn FnMut(u8, &[u8]) -> bool,
+        take: &mut dyn FnMut(u8, &[u8]),
     ) -> std::io::Result<Fed> {
         let mut prefix: &[u8] = &header.with_lengths(data, is_cut);
-        let (mut left, mut yielded, mut parsed) = (data, 0_u64, true);
+        let (mut left, mut yielded) = (data, 0_u64);
         let problem = loop {
             let wanted = match self.reader.next_event() {
                 None => break None,
                 Some(Ok(LinearReadEvent::ReadRequest(wanted))) => wanted as u64,
                 Some(Ok(LinearReadEvent::Record { opcode, data })) => {
                     yielded += RECORD_HEADER_BYTES + data.len() as u64;
-                    parsed &= take(opcode, data);
+                    take(opcode, data);
                     continue;
                 }
                 Some(Err(error)) => break Some(in_words(&error)),
@@ -126,13 +126,16 @@ impl Chunks {
             if prefix.is_empty() && left == 0 {
                 let is_complete = !is_cut && yielded == header.uncompressed;
                 if is_complete {
-                    let problem = (!parsed).then(|| "a record in it does not parse".to_owned());
-                    return Ok(Fed { left, unused: 0, is_clean: true, problem });
+                    return Ok(Fed { left, unused: 0, is_clean: true, problem: None });
                 }
                 self.reader.notify_read(0);
                 continue;
             }
-            let step = if prefix.is_empty() { wanted.min(left).min(STEP_BYTES) } else { wanted.min(prefix.len() as u64) };
+            let step = if prefix.is_empty() {
+                wanted.min(left).min(STEP_BYTES)
+            } else {
+                wanted.min(prefix.len() as u64)
+            };
             let buffer = self.reader.insert(usize::try_from(step).unwrap_or(0));
             if prefix.is_empty() {
                 file.read_exact(buffer)?;
@@ -193,9 +196,8 @@ fn header(file: &mut impl Read, body: u64) -> std::io::Result<Option<Header>> {
         return Ok(None);
     }
     file.take(name_bytes).read_to_end(&mut bytes)?;
-    let word = |at: usize| {
-        bytes.get(at..at + 8).and_then(|word| word.try_into().ok()).map_or(0, u64::from_le_bytes)
-    };
+    let word =
+        |at: usize| bytes.get(at..at + 8).and_then(|word| word.try_into().ok()).map_or(0, u64::from_le_bytes);
     let name_end = 32 + name_bytes as usize;
     let compression = String::from_utf8_lossy(bytes.get(32..name_end).unwrap_or_default()).into_owned();
     let (span_ns, uncompressed, compressed) = ((word(0), word(8)), word(16), word(name_end));

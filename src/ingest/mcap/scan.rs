@@ -3,8 +3,8 @@
 use super::chunk::{ChunkEnd, Chunks};
 use super::scanned::{Catalog, Counts, Loss, Scanned, Sink};
 use super::summary::{self, Summary};
-use crate::ingest::error::{self, IngestError};
 use crate::ingest::Progress;
+use crate::ingest::error::{self, IngestError};
 use mcap::records::{Record, op};
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -60,7 +60,8 @@ enum Next {
 
 impl Walk {
     fn register_summary(&mut self, sink: &mut dyn Sink) {
-        let records = self.summary.as_mut().map(|summary| std::mem::take(&mut summary.records)).unwrap_or_default();
+        let records =
+            self.summary.as_mut().map(|summary| std::mem::take(&mut summary.records)).unwrap_or_default();
         for (opcode, body) in &records {
             self.catalog.take(*opcode, body, sink, &mut self.scanned);
         }
@@ -141,7 +142,9 @@ impl Walk {
         let end = self.chunks.read(&mut self.file, claimed, available, &mut |opcode, body| {
             scanned.counts.add(opcode);
             messages += u64::from(opcode == op::MESSAGE);
-            catalog.take(opcode, body, sink, scanned)
+            if !catalog.take(opcode, body, sink, scanned) {
+                scanned.losses.push(Loss::BadRecord { at: start, opcode });
+            }
         })?;
         if let Some(compression) = end.compression() {
             scanned.compressions.insert(compression.to_owned());

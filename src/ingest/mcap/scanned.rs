@@ -95,7 +95,13 @@ pub(super) struct Catalog {
 
 impl Catalog {
     /// Takes a record and hands it on; `false` where its body does not parse.
-    pub(super) fn take(&mut self, opcode: u8, body: &[u8], sink: &mut dyn Sink, scanned: &mut Scanned) -> bool {
+    pub(super) fn take(
+        &mut self,
+        opcode: u8,
+        body: &[u8],
+        sink: &mut dyn Sink,
+        scanned: &mut Scanned,
+    ) -> bool {
         if !matches!(opcode, op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE | op::STATISTICS) {
             return true;
         }
@@ -177,7 +183,10 @@ impl Scanned {
             issues.push(Issue::new(
                 IssueCode::Damaged,
                 Severity::Warning,
-                format!("{bad_records} records do not parse and were skipped, the first a {} at byte {at}", record_name(*opcode)),
+                format!(
+                    "{bad_records} records do not parse and were skipped, the first a {} at byte {at}",
+                    record_name(*opcode)
+                ),
             ));
         }
         if let (Some(claimed), true) = (self.claimed_messages, self.losses.is_empty())
@@ -186,7 +195,10 @@ impl Scanned {
             issues.push(Issue::new(
                 IssueCode::Damaged,
                 Severity::Warning,
-                format!("the file's statistics count {claimed} messages, {} were found", self.counts.messages),
+                format!(
+                    "the file's statistics count {claimed} messages, {} were found",
+                    self.counts.messages
+                ),
             ));
         }
         issues
@@ -199,7 +211,9 @@ impl Loss {
             Self::EndsEarly { at, bytes: 0, .. } => (
                 IssueCode::Truncated,
                 Severity::Warning,
-                format!("the file was never closed: it ends at byte {at} without its footer; every whole message before was read, what was not yet written is lost"),
+                format!(
+                    "the file was never closed: it ends at byte {at} without its footer; every whole message before was read, what was not yet written is lost"
+                ),
             ),
             Self::EndsEarly { at, bytes, inside } => (
                 IssueCode::Truncated,
@@ -214,7 +228,11 @@ impl Loss {
                 Severity::Warning,
                 format!(
                     "{} the chunk at byte {at}: {messages} whole messages in it were kept without a check sum, {unread_bytes} bytes could not be used, and what followed is lost",
-                    if *never_closed { "the file's writer was stopped before it closed" } else { "the file ends in the middle of" }
+                    if *never_closed {
+                        "the file's writer was stopped before it closed"
+                    } else {
+                        "the file ends in the middle of"
+                    }
                 ),
             ),
             Self::BadChunk { at, reason, messages, span_ns: (from, to) } => (
@@ -230,13 +248,19 @@ impl Loss {
                 Severity::Warning,
                 format!(
                     "at byte {at} stands no MCAP record: {bytes} bytes were skipped, {}",
-                    if *resumed { "reading went on at the next chunk of the file's index" } else { "up to the end of the file" }
+                    if *resumed {
+                        "reading went on at the next chunk of the file's index"
+                    } else {
+                        "up to the end of the file"
+                    }
                 ),
             ),
             Self::NoEndMagic { at } => (
                 IssueCode::Truncated,
                 Severity::Warning,
-                format!("the file ends at byte {at} within its closing mark; all records before it were read"),
+                format!(
+                    "the file ends at byte {at} within its closing mark; all records before it were read"
+                ),
             ),
             Self::BadRecord { .. } => return None,
         };

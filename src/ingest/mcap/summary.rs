@@ -32,9 +32,9 @@ pub(super) fn read(file: &mut File, length: u64) -> std::io::Result<Option<Summa
         file.seek(SeekFrom::Start(length - FOOTER_BYTES))?;
         let mut footer = Vec::new();
         file.read_to_end(&mut footer)?;
-        summary = summary_start(&footer).map(|start| (start, length - FOOTER_BYTES)).map(|(start, end)| {
-            if start < magic_bytes || start >= end { None } else { Some((start, end)) }
-        });
+        summary = summary_start(&footer)
+            .map(|start| (start, length - FOOTER_BYTES))
+            .map(|(start, end)| if start < magic_bytes || start >= end { None } else { Some((start, end)) });
     }
     let found = match summary {
         None => None,

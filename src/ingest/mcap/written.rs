@@ -1,0 +1,1 @@
+//! Test files: small MCAP files made in memory, of every encoding and compression.
