@@ -169,7 +169,9 @@ fn columns(
         // Stamps are in s already.
         #[allow(clippy::float_cmp, reason = "1.0 is the literal for seconds")]
         if wanted.is_time[slot] && scale_s != 1.0 && !stamps.any() {
-            values.iter_mut().for_each(|t| *t *= scale_s);
+            for t in values.iter_mut() {
+                *t *= scale_s;
+            }
         }
     }
     Ok((columns, stamps, ending))

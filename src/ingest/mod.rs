@@ -61,7 +61,7 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
         let raw = match format {
             RecordingFormat::Mcap => mcap::read(path, cask_file, progress),
             RecordingFormat::Hdf5 => Err(error::not_built(path)),
-            RecordingFormat::Csv => Err(error::not_built(path)),
+            RecordingFormat::Csv => csv::read(path, cask_file, progress),
         };
         (raw, hashing.join())
     });
@@ -76,7 +76,8 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
 pub fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
     match detect::format(path)? {
         RecordingFormat::Mcap => mcap::list(path, progress),
-        RecordingFormat::Hdf5 | RecordingFormat::Csv => Err(error::not_built(path)),
+        RecordingFormat::Hdf5 => Err(error::not_built(path)),
+        RecordingFormat::Csv => csv::list(path, progress),
     }
 }
 

@@ -203,8 +203,8 @@ fn lines(input: &Input) -> Vec<Line<'_>> {
     let mut lines = Vec::new();
     let mut offset = 0;
     for line in input.head.split_inclusive(|&b| b == b'\n') {
-        let is_cut = !line.ends_with(b"\n") && !(input.is_whole && !line.is_empty());
-        if !is_cut {
+        // Past the head's end the line goes on.
+        if line.ends_with(b"\n") || input.is_whole {
             let bare = line.strip_suffix(b"\n").unwrap_or(line);
             let bare = bare.strip_suffix(b"\r").unwrap_or(bare);
             lines.push(Line { offset, text: input::text(bare) });
@@ -385,7 +385,7 @@ fn name_and_unit(header: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// "time_ms" to "time" and "ms".
+/// `time_ms` to `time` and `ms`.
 fn without_unit_suffix(name: &str) -> (&str, Option<&str>) {
     match name.rsplit_once('_') {
         Some((bare, unit @ ("s" | "sec" | "ms" | "us" | "ns"))) => (bare, Some(unit)),

@@ -74,7 +74,9 @@ pub(in super::super) fn list(path: &Path, progress: Progress) -> Result<Listing,
         .map_err(|error| row_error(path, &layout, &wanted, error))?;
     let scale_s = time_column.and_then(|column| layout.time_scale_s(column)).unwrap_or(1.0);
     if !survey.stamps.any() {
-        survey.times.iter_mut().for_each(|t| *t *= scale_s);
+        for t in &mut survey.times {
+            *t *= scale_s;
+        }
     }
     let clock = Clock::of(&survey.times);
     let channels = layout
