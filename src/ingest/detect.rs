@@ -49,7 +49,8 @@ pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
     if has_hdf5_signature(&mut file, metadata.len()).map_err(|source| error::io(path, source))? {
         return Ok(RecordingFormat::Hdf5);
     }
-    if looks_like_rows(&head) {
+    // A text with a UTF-16 mark: only its reader decodes it and can say whether it holds rows.
+    if head.starts_with(b"\xFF\xFE") || head.starts_with(b"\xFE\xFF") || looks_like_rows(&head) {
         return Ok(RecordingFormat::Csv);
     }
     Err(stranger(path, &head))

@@ -5,6 +5,10 @@ use std::path::Path;
 /// Why a file could not be read.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum IngestError {
+    /// The cask file is at fault.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    CaskFile(#[from] super::cask_file::CaskFileError),
     /// The operating system refused.
     #[error("{path}: {source}")]
     #[diagnostic(help("check the name, and that you may read it"))]

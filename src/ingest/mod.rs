@@ -1,6 +1,8 @@
 //! Recording files and cask files to channels and settings: SI units, one time base a channel, what was missing.
 
 mod assemble;
+pub mod cask_file;
+mod csv;
 mod detect;
 mod error;
 mod mcap;
@@ -44,8 +46,7 @@ struct RawRecording {
 /// # Errors
 /// One diagnostic that shows the line.
 pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
-    let _ = path;
-    todo!()
+    Ok(cask_file::parse(path)?)
 }
 
 /// Reads the channels that `cask_file` names from the recording at `path`, its format told by its content.
@@ -60,7 +61,7 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
         let raw = match format {
             RecordingFormat::Mcap => mcap::read(path, cask_file, progress),
             RecordingFormat::Hdf5 => Err(error::not_built(path)),
-            RecordingFormat::Csv => Err(error::not_built(path)),
+            RecordingFormat::Csv => csv::read(path, cask_file, progress),
         };
         (raw, hashing.join())
     });
@@ -75,7 +76,8 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
 pub fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
     match detect::format(path)? {
         RecordingFormat::Mcap => mcap::list(path, progress),
-        RecordingFormat::Hdf5 | RecordingFormat::Csv => Err(error::not_built(path)),
+        RecordingFormat::Hdf5 => Err(error::not_built(path)),
+        RecordingFormat::Csv => csv::list(path, progress),
     }
 }
 
