@@ -4,7 +4,7 @@ use super::ReportError;
 use super::columns::columns;
 use super::curves_csv::text_cell;
 use super::rounding::{MISSING, interval, percent};
-use super::text::{Style, WIDTH, printable, styled, tail, verdict_word, wrap};
+use super::text::{Style, WIDTH, line, printable, styled, tail, verdict_word, wrap};
 use crate::data::{Comparison, DropResult, Estimate, Verdict};
 use serde::Serialize;
 
@@ -108,7 +108,10 @@ impl Campaign {
         out.push_str(&columns(&header, &rows, &[4, 5]));
         for row in &self.recordings {
             if let Some(error) = &row.error {
-                out.push_str(&format!("\n  {}  {}\n", styled(Style::Red, "error"), tail(&row.recording, 60)));
+                line(
+                    &mut out,
+                    format_args!("\n  {}  {}", styled(Style::Red, "error"), tail(&row.recording, 60)),
+                );
                 out.push_str(&wrap(error, WIDTH, 6));
             }
         }

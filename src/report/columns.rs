@@ -1,6 +1,6 @@
 //! Rows of text to aligned columns of at most the table's width.
 
-use super::text::{WIDTH, printable};
+use super::text::{WIDTH, lines, printable};
 use comfy_table::{CellAlignment, ContentArrangement, Table, TableStyle};
 
 /// A heading, a rule and the rows; the columns in `right` are set to the right, cells too wide are wrapped.
@@ -19,7 +19,7 @@ pub(super) fn columns(header: &[&str], rows: &[Vec<String>], right: &[usize]) ->
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
-    table.lines().map(|line| format!("  {}\n", line.trim_end())).collect()
+    lines(table.lines().map(|line| format!("  {}", line.trim_end())))
 }
 
 #[cfg(test)]
@@ -31,6 +31,6 @@ mod tests {
         let rows = vec![vec!["A1".to_owned(), "word ".repeat(40), "1.0".to_owned()]];
         let text = columns(&["name", "words", "number"], &rows, &[2]);
         assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
-        assert_eq!(text.matches("word ").count() + text.matches("word\n").count() >= 35, true);
+        assert_eq!(text.matches("word").count(), 41);
     }
 }

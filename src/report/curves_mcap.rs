@@ -136,22 +136,22 @@ impl Curves {
     }
 
     fn begin(&mut self, time_s: f64) {
-        let time_ns = self.time_ns(time_s);
+        let stamp_ns = self.stamp_ns(time_s);
         self.buffer.clear();
-        let (sec, nsec) = (time_ns / 1_000_000_000, time_ns % 1_000_000_000);
+        let (sec, nsec) = (stamp_ns / 1_000_000_000, stamp_ns % 1_000_000_000);
         let _ = write!(self.buffer, r#"{{"timestamp":{{"sec":{sec},"nsec":{nsec}}}"#);
     }
 
     fn send(&mut self, channel_id: u16, sequence: u32, time_s: f64) -> Result<(), ReportError> {
-        let time_ns = self.time_ns(time_s);
-        let header = MessageHeader { channel_id, sequence, log_time: time_ns, publish_time: time_ns };
+        let stamp_ns = self.stamp_ns(time_s);
+        let header = MessageHeader { channel_id, sequence, log_time: stamp_ns, publish_time: stamp_ns };
         self.writer.write_to_known_channel(&header, self.buffer.as_bytes())?;
         Ok(())
     }
 
     /// Time of a sample, ns; what lies before 1970, or before 0 in a recording without a start, is put at 0.
     #[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates, and so does the sum")]
-    fn time_ns(&self, time_s: f64) -> u64 {
+    fn stamp_ns(&self, time_s: f64) -> u64 {
         u64::try_from(self.start_ns.saturating_add((time_s * 1e9).round() as i64)).unwrap_or(0)
     }
 }
@@ -174,8 +174,9 @@ mod tests {
             assert!(message.log_time >= 1_700_000_000_000_000_000);
             if message.channel.topic == "/dropcheck/A1" && message.sequence == 700 {
                 let truth = analysis.curves.channels[0].velocity_m_s[700];
-                // Single precision: half a unit in the last place of 24 bits.
-                assert!((json["velocity_m_s"].as_f64().unwrap() - truth).abs() <= truth.abs() * 6.0e-8);
+                // Single precision, printed so that it reads back to the same bits.
+                let read = single(json["velocity_m_s"].as_f64().unwrap());
+                assert_eq!(read.to_bits(), single(truth).to_bits());
             }
             *counts.entry(message.channel.topic.clone()).or_default() += 1;
         }

@@ -105,8 +105,8 @@ mod tests {
     use super::*;
     use crate::data::ChannelCurve;
 
-    fn curve(start_s: f64, step_s: f64, n: usize) -> ChannelCurve {
-        let time_s: Vec<f64> = (0..n).map(|i| start_s + i as f64 * step_s).collect();
+    fn curve(start_s: f64, step_s: f64, n: i32) -> ChannelCurve {
+        let time_s: Vec<f64> = (0..n).map(|i| start_s + f64::from(i) * step_s).collect();
         let values: Vec<f64> = time_s.iter().map(|t| 2.0 * t).collect();
         ChannelCurve {
             channel: "A".into(),

@@ -95,7 +95,7 @@ fn figures(result: &DropResult) -> Markup {
 fn picture(pictures: &[Picture], name: &str) -> Markup {
     html! {
         @for picture in pictures.iter().filter(|p| p.name == name) {
-            figure aria-label=(picture.alt) {
+            figure aria-label=(printable(&picture.alt)) {
                 (PreEscaped(&picture.svg))
                 figcaption { strong { (picture.title) ". " } (printable(&picture.caption)) }
             }

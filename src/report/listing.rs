@@ -3,7 +3,7 @@
 use super::columns::columns;
 use super::rounding::{MISSING, plain, significant};
 use super::table::quality;
-use super::text::{Style, WIDTH, format_word, printable, styled, tail, wrap};
+use super::text::{Style, WIDTH, format_word, line, printable, styled, tail, wrap};
 use crate::data::{ListedChannel, Listing};
 
 /// The table, with SGR colours that the caller strips where no terminal shows it.
@@ -24,7 +24,7 @@ pub fn table(listing: &Listing) -> String {
     for (name, value) in &listing.facts {
         out.push_str(&wrap(&format!("{}: {value}", name.replace('_', " ")), WIDTH, 0));
     }
-    out.push_str(&format!("\n{}\n", styled(Style::Bold, "Sources")));
+    line(&mut out, format_args!("\n{}", styled(Style::Bold, "Sources")));
     if listing.channels.is_empty() {
         out.push_str("  none\n");
     } else {

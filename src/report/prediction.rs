@@ -3,7 +3,7 @@
 use super::ReportError;
 use super::columns::columns;
 use super::rounding::{optional_fixed, plain};
-use super::text::{Style, WIDTH, styled, wrap};
+use super::text::{Style, WIDTH, styled_lines, wrap};
 use crate::data::{CaskFile, Contact, Prediction};
 use serde::Serialize;
 
@@ -68,8 +68,7 @@ pub fn table(rows: &[PredictionRow], file: &CaskFile) -> String {
             line
         })
         .collect();
-    let title: String =
-        wrap(&what, WIDTH, 0).lines().map(|line| format!("{}\n", styled(Style::Bold, line))).collect();
+    let title = styled_lines(Style::Bold, &wrap(&what, WIDTH, 0));
     let mut out = format!("{title}\n{}", columns(&header, &cells, &right));
     if rows.iter().any(|row| row.prediction.slap_down_speed_m_s.is_none()) {
         out.push_str(&wrap("– the second end never strikes by this impact alone.", WIDTH, 2));

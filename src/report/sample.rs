@@ -47,6 +47,7 @@ pub(super) fn without_anything() -> Analysis {
     analysis
 }
 
+#[allow(clippy::unnecessary_wraps, reason = "every field that takes it is optional")]
 fn estimate(value: f64, u95: f64, unit: &'static str) -> Option<Estimate> {
     Some(Estimate::new(value, u95, unit))
 }
@@ -307,12 +308,13 @@ fn channel(name: &str, time_s: &[f64], filtered_m_s2: &[f64]) -> ChannelCurve {
             velocity
         })
         .collect();
-    let raw =
-        |(i, a): (usize, &f64)| a * (1.0 + 0.2 * (i as f64 * 2.3).sin()) + 40.0 * (i as f64 * 1.7).sin();
+    let raw = |(i, a): (i32, &f64)| {
+        a * (1.0 + 0.2 * (f64::from(i) * 2.3).sin()) + 40.0 * (f64::from(i) * 1.7).sin()
+    };
     ChannelCurve {
         channel: name.into(),
         time_s: time_s.to_vec(),
-        raw_m_s2: filtered_m_s2.iter().enumerate().map(raw).collect(),
+        raw_m_s2: (0..).zip(filtered_m_s2).map(raw).collect(),
         filtered_m_s2: filtered_m_s2.to_vec(),
         velocity_m_s,
     }

@@ -5,8 +5,8 @@ use super::grid::STANDARD_GRAVITY_M_S2;
 use super::prediction::contact_words;
 use super::rounding::{self, MISSING, interval, optional, percent, plain};
 use super::text::{
-    self, Style, WIDTH, code_word, format_word, printable, severity_word, span_text, styled, tail,
-    verdict_sentence, verdict_word, wrap,
+    self, Style, WIDTH, code_word, format_word, line, printable, severity_word, span_text, styled,
+    styled_lines, tail, verdict_sentence, verdict_word, wrap,
 };
 use crate::data::{Analysis, CaskFile, DropResult, End, Estimate, Issue, IssueCode, Severity, Verdict};
 
@@ -56,7 +56,9 @@ fn tested(result: &DropResult, file: &CaskFile) -> String {
     let (cask, drop) = (&file.cask, &file.drop);
     let mut sizes = format!("{} kg, l {} m", plain(cask.mass_kg, 6), plain(cask.length_m, 5));
     if cask.height_m > 0.0 {
-        sizes.push_str(&format!(", h {} m", plain(cask.height_m, 5)));
+        sizes += ", h ";
+        sizes += &plain(cask.height_m, 5);
+        sizes += " m";
     }
     let what = format!(
         "{} · drop {} m at {}° · {sizes} · {} contact",
@@ -72,10 +74,6 @@ fn tested(result: &DropResult, file: &CaskFile) -> String {
         tail(&result.input.cask, 24)
     );
     format!("{}{}", styled_lines(Style::Bold, &wrap(&what, WIDTH, 0)), wrap(&files, WIDTH, 0))
-}
-
-fn styled_lines(style: Style, text: &str) -> String {
-    text.lines().map(|line| format!("{}\n", styled(style, line))).collect()
 }
 
 fn verdict(result: &DropResult) -> String {
@@ -101,7 +99,7 @@ fn quantities(result: &DropResult) -> String {
     out.push_str(&block(result, &rows, &FIRST_IMPACT_CODES));
     out.push_str(&heading("Slap-down"));
     let rows = [
-        ("speed", &second.speed, "of the second end before it strikes"),
+        ("speed", &second.speed, "just before the second end strikes"),
         ("vertical velocity", &second.vertical_velocity, "up positive"),
         ("horizontal velocity", &second.horizontal_velocity, ""),
         ("angle", &second.angle, "of the axis above the horizontal"),
@@ -137,32 +135,27 @@ fn styled_note(note: &str) -> String {
 
 fn comparison(result: &DropResult) -> String {
     let mut out = heading("Measured beside predicted");
-    match &result.comparison {
-        Some(c) => {
-            let measured = rounding::pair(c.measured, c.measured_u95, "m/s");
-            let predicted = rounding::pair(c.predicted, c.predicted_u95, "m/s");
-            let agrees = if c.agrees {
-                styled(Style::Green, "within both intervals")
-            } else {
-                styled(Style::Yellow, "beyond both intervals")
-            };
-            let by = result
-                .model
-                .as_ref()
-                .map_or(String::new(), |m| format!("{} with the measured k", m.name.as_str()));
-            for (name, value, note) in [
-                ("measured", measured, String::new()),
-                ("predicted", predicted, styled_note(&by)),
-                ("difference", percent(c.difference_percent), agrees),
-            ] {
-                out.push_str(format!("  {name:<NAME_WIDTH$}{value:<22}{note}").trim_end());
-                out.push('\n');
-            }
+    if let Some(c) = &result.comparison {
+        let agrees = if c.agrees {
+            styled(Style::Green, "within both intervals")
+        } else {
+            styled(Style::Yellow, "beyond both intervals")
+        };
+        let by = result
+            .model
+            .as_ref()
+            .map_or(String::new(), |m| format!("{} with the measured k", m.name.as_str()));
+        for (name, value, note) in [
+            ("measured", rounding::pair(c.measured, c.measured_u95, "m/s"), String::new()),
+            ("predicted", rounding::pair(c.predicted, c.predicted_u95, "m/s"), styled_note(&by)),
+            ("difference", percent(c.difference_percent), agrees),
+        ] {
+            out.push_str(format!("  {name:<NAME_WIDTH$}{value:<22}{note}").trim_end());
+            out.push('\n');
         }
-        None => {
-            let reason = text::reason(result, &SLAP_DOWN_CODES);
-            out.push_str(&wrap(&format!("{MISSING} could not be compared: {reason}"), WIDTH, 2));
-        }
+    } else {
+        let reason = text::reason(result, &SLAP_DOWN_CODES);
+        out.push_str(&wrap(&format!("{MISSING} could not be compared: {reason}"), WIDTH, 2));
     }
     if let Some(model) = &result.model {
         out.push_str(&wrap(
@@ -205,7 +198,7 @@ fn channels(result: &DropResult) -> String {
             ]
         })
         .collect();
-    let header = ["channel", "end, axis", "rate", "unit", "offset g", "noise g", "peak g", "raw peak g"];
+    let header = ["channel", "end, axis", "rate", "unit", "offset g", "noise g", "peak g", "raw g"];
     format!("{}{}", heading("Channels"), columns(&header, &rows, &[2, 4, 5, 6, 7]))
 }
 
@@ -239,7 +232,10 @@ pub(super) fn quality(issues: &[Issue]) -> String {
                 .into_iter()
                 .flatten()
                 .collect();
-        out.push_str(&format!("  {}  {}\n", styled(style, severity_word(issue.severity)), place.join(" · ")));
+        line(
+            &mut out,
+            format_args!("  {}  {}", styled(style, severity_word(issue.severity)), place.join(" · ")),
+        );
         out.push_str(&wrap(&issue.message, WIDTH, 6));
     }
     out

@@ -1,6 +1,28 @@
 //! Words from files to words that are safe and fit the page: no control characters, wrapped, coloured by SGR codes.
 
 use crate::data::{DropResult, Issue, IssueCode, RecordingFormat, Severity, Verdict};
+use std::fmt::Write;
+
+/// Adds one line; writing to a string does not fail.
+pub(super) fn line(out: &mut String, text: std::fmt::Arguments) {
+    let _ = out.write_fmt(text);
+    out.push('\n');
+}
+
+/// The lines, each with its end.
+pub(super) fn lines(lines: impl IntoIterator<Item = String>) -> String {
+    let mut out = String::new();
+    for text in lines {
+        out.push_str(&text);
+        out.push('\n');
+    }
+    out
+}
+
+/// Every line of `text` in `style`.
+pub(super) fn styled_lines(style: Style, text: &str) -> String {
+    lines(text.lines().map(|line| styled(style, line)))
+}
 
 /// Width of every table, columns: the smallest terminal in use.
 pub(super) const WIDTH: usize = 80;
@@ -48,13 +70,13 @@ pub fn printable(text: &str) -> String {
 /// `text` broken between words to `width` columns, each line behind `indent` spaces; a longer word stays whole.
 pub(super) fn wrap(text: &str, width: usize, indent: usize) -> String {
     let room = width.saturating_sub(indent).max(10);
-    let mut lines: Vec<String> = Vec::new();
+    let mut broken: Vec<String> = Vec::new();
     let mut line = String::new();
     let mut used = 0;
     for word in printable(text).split_whitespace() {
         let length = word.chars().count();
         if used > 0 && used + 1 + length > room {
-            lines.push(std::mem::take(&mut line));
+            broken.push(std::mem::take(&mut line));
             used = 0;
         }
         if used > 0 {
@@ -64,9 +86,9 @@ pub(super) fn wrap(text: &str, width: usize, indent: usize) -> String {
         line.push_str(word);
         used += length;
     }
-    lines.push(line);
+    broken.push(line);
     let pad = " ".repeat(indent);
-    lines.iter().map(|line| format!("{pad}{line}\n")).collect()
+    lines(broken.into_iter().map(|line| format!("{pad}{line}")))
 }
 
 /// The last `width` characters of `text`, behind an ellipsis where some are left out: the end of a path tells most.

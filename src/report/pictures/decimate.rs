@@ -13,7 +13,7 @@ pub(super) fn runs(points: &[(f64, f64)], from: f64, to: f64, columns: usize) ->
     let mut column: Option<Column> = None;
     for &(x, y) in points {
         if !(x.is_finite() && y.is_finite()) {
-            flush(&mut run, column.take());
+            flush(&mut run, column.take().as_ref());
             if !run.is_empty() {
                 runs.push(std::mem::take(&mut run));
             }
@@ -25,10 +25,10 @@ pub(super) fn runs(points: &[(f64, f64)], from: f64, to: f64, columns: usize) ->
         let index = (((x - from) / (to - from)) * columns as f64) as usize;
         match &mut column {
             Some(open) if open.index == index => open.take(x, y),
-            _ => flush(&mut run, column.replace(Column { index, low: (x, y), high: (x, y) })),
+            _ => flush(&mut run, column.replace(Column { index, low: (x, y), high: (x, y) }).as_ref()),
         }
     }
-    flush(&mut run, column);
+    flush(&mut run, column.as_ref());
     if !run.is_empty() {
         runs.push(run);
     }
@@ -52,8 +52,8 @@ impl Column {
     }
 }
 
-fn flush(run: &mut Vec<(f64, f64)>, column: Option<Column>) {
-    let Some(Column { low, high, .. }) = column else { return };
+fn flush(run: &mut Vec<(f64, f64)>, column: Option<&Column>) {
+    let Some(&Column { low, high, .. }) = column else { return };
     let (first, second) = if low.0 <= high.0 { (low, high) } else { (high, low) };
     run.push(first);
     if second != first {
