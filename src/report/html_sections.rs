@@ -124,7 +124,7 @@ fn finding(issue: &Issue) -> Markup {
     html! {
         tr {
             td class=(format!("tag {word}")) { (word) }
-            td { code { (code_word(issue.code)) } }
+            td class="code" { code { (code_word(issue.code)) } }
             td { (printable(issue.channel.as_deref().unwrap_or(MISSING))) }
             td class="u" { (span_text(issue).unwrap_or_else(|| MISSING.into())) }
             td { (printable(&issue.message)) }
@@ -139,7 +139,7 @@ pub(super) fn models(result: &DropResult) -> Markup {
         @match &result.model {
             None => p { "No model was taken: " (printable(reason(result, &SLAP_DOWN_CODES))) },
             Some(model) => {
-                p { "Taken: " strong { (model.name.as_str()) } ". " (sentence(&model.reason)) }
+                p class="lead" { "Taken: " strong { (model.name.as_str()) } ". " (sentence(&model.reason)) }
                 table class="whole" {
                     caption { "Analytical models with the measured k, the simplest first" }
                     thead { tr { th { "Model" } th class="n" { "Predicted, m/s" } th class="n" { "± 95 %, m/s" }
@@ -205,7 +205,7 @@ pub(super) fn flight(result: &DropResult) -> Markup {
     let taken = |modes: usize, drift: bool| modes == fit.modes.len() && drift == fit.drift;
     html! {
         h2 { "Fit of the flight" }
-        p { "From " (fixed(fit.from_s * 1e3, 2)) " to " (fixed(fit.to_s * 1e3, 2)) " ms after the first sample: one plateau a channel"
+        p class="lead" { "From " (fixed(fit.from_s * 1e3, 2)) " to " (fixed(fit.to_s * 1e3, 2)) " ms after the first sample: one plateau a channel"
             @if fit.drift { ", with a drift (zero shift)" } @else { ", without drift" } "; the number of bending modes is the one with the \
             lowest information criterion." }
         div class="pair" {

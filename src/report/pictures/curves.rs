@@ -187,10 +187,11 @@ impl Clock {
         .into_iter()
         .filter_map(|(label, at)| {
             let at = (at.filter(|t| t.is_finite())? - self.zero_s) * 1e3;
-            let shown = lines.iter().any(|line| {
-                line.points.first().is_some_and(|p| p.0 <= at)
-                    && line.points.last().is_some_and(|p| p.0 >= at)
-            });
+            // An event a hair beyond the curve, as the slap-down that ends the motion, is marked at its end.
+            let (from, to) = ends(&lines)?;
+            let slack = 0.01 * (to - from);
+            let shown = (from - slack..=to + slack).contains(&at);
+            let at = at.clamp(from, to);
             shown.then(|| Mark { at, label: label.into() })
         })
         .collect();
@@ -199,11 +200,21 @@ impl Clock {
             x_label: self.label,
             y_label,
             logarithmic: false,
-            height: 400,
+            height: 350,
             lines,
             marks,
         }
     }
+}
+
+/// First and last time over all lines.
+fn ends(lines: &[Line]) -> Option<(f64, f64)> {
+    let times = || {
+        lines.iter().flat_map(|line| line.points.first().into_iter().chain(line.points.last())).map(|p| p.0)
+    };
+    let from = times().min_by(f64::total_cmp)?;
+    let to = times().max_by(f64::total_cmp)?;
+    (from <= to).then_some((from, to))
 }
 
 /// The curves of one end with the colour of their channel, which is the same in every picture.

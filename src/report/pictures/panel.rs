@@ -13,6 +13,8 @@ const HEAD: i32 = 62;
 const MARK_ROW: i32 = 34;
 const LEFT: u32 = 130;
 const BOTTOM: u32 = 88;
+/// Air below a panel.
+const GAP: i32 = 26;
 const RIGHT: i32 = 28;
 const INK: RGBColor = RGBColor(38, 42, 48);
 const GREY: RGBColor = RGBColor(110, 116, 124);
@@ -125,7 +127,7 @@ pub(super) fn draw(panels: &[&Panel]) -> Result<String, String> {
     let heights: Vec<i32> = panels
         .iter()
         .zip(&heads)
-        .map(|(panel, head)| head + i32::try_from(panel.height + BOTTOM).unwrap_or(0))
+        .map(|(panel, head)| head + GAP + i32::try_from(panel.height + BOTTOM).unwrap_or(0))
         .collect();
     let total = u32::try_from(heights.iter().sum::<i32>()).map_err(|e| e.to_string())?;
     let mut svg = String::new();
@@ -161,6 +163,7 @@ where
     let mut chart = ChartBuilder::on(area)
         .margin_top(head)
         .margin_right(RIGHT)
+        .margin_bottom(GAP)
         .x_label_area_size(BOTTOM)
         .y_label_area_size(LEFT)
         .build_cartesian_2d(axes.0, axes.1)
