@@ -10,6 +10,7 @@ mod issue;
 mod listing;
 mod prediction;
 mod recording;
+mod signal;
 
 pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
@@ -22,5 +23,6 @@ pub use estimate::Estimate;
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau};
 pub use issue::{Issue, IssueCode, Severity};
 pub use listing::{ListedChannel, Listing};
-pub use prediction::{Body, BodyModel, Prediction};
+pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use recording::{Recording, RecordingFormat};
+pub use signal::{CoarseEvent, Signal};
