@@ -212,4 +212,6 @@ pub struct Analysis {
     pub cask_file: CaskFile,
     /// The curves.
     pub curves: Curves,
+    /// Absolute time of the recording's first sample, ns since 1970, where the recording knows it.
+    pub start_unix_ns: Option<i64>,
 }
