@@ -2,6 +2,7 @@
 
 pub mod data;
 pub mod ingest;
+pub mod numerics;
 pub mod predict;
 pub mod report;
 

@@ -22,5 +22,5 @@ pub use estimate::Estimate;
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau};
 pub use issue::{Issue, IssueCode, Severity};
 pub use listing::{ListedChannel, Listing};
-pub use prediction::{Body, BodyModel, Prediction};
+pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use recording::{Recording, RecordingFormat};

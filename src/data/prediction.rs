@@ -41,6 +41,25 @@ pub struct Body {
     pub inertia_kg_m2: f64,
 }
 
+/// What L does between the first impact and the slap-down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FlightRegime {
+    /// L leaves the target.
+    Free,
+    /// k = 0 and the contact force stays a push: L pivots or slides on the target.
+    Contact,
+}
+
+impl std::fmt::Display for FlightRegime {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Free => "free flight",
+            Self::Contact => "contact kept",
+        })
+    }
+}
+
 /// What one model predicts for one contact law and one k. What does not exist (no slap-down) is `None`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Prediction {
@@ -68,4 +87,6 @@ pub struct Prediction {
     pub first_end_impacts: u32,
     /// I_x / I_z of the first impact: the friction that sticking needs where it sticks, μ where it slides.
     pub impulse_ratio: f64,
+    /// What L does between the impacts.
+    pub regime: FlightRegime,
 }

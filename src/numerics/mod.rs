@@ -1,0 +1,4 @@
+//! Pure mathematics on slices and functions; it knows nothing of drops.
+
+pub mod quadrature;
+pub mod root;

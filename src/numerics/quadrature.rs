@@ -1,0 +1,63 @@
+//! Samples or a function to integrals.
+
+/// Running integral of uniform samples by the trapezoid with end correction; entry 0 is 0, same length as `samples`.
+///
+/// V_n = h (f_0/2 + f_1 + … + f_n/2) − h²/12 (f′_n − f′_0)   (27), the slopes by central differences, one-sided at the ends.
+#[must_use]
+pub fn running_integral(samples: &[f64], step: f64) -> Vec<f64> {
+    let n = samples.len();
+    let mut integral = Vec::with_capacity(n);
+    let slope = |i: usize| match (i, n) {
+        (_, 0..=2) => 0.0,
+        (0, _) => (-3.0 * samples[0] + 4.0 * samples[1] - samples[2]) / 2.0,
+        (i, n) if i == n - 1 => (3.0 * samples[i] - 4.0 * samples[i - 1] + samples[i - 2]) / 2.0,
+        (i, _) => (samples[i + 1] - samples[i - 1]) / 2.0,
+    };
+    let first_slope = slope(0);
+    let mut sum = 0.0;
+    for i in 0..n {
+        if i > 0 {
+            sum += f64::midpoint(samples[i - 1], samples[i]);
+        }
+        integral.push(step * (sum - (slope(i) - first_slope) / 12.0));
+    }
+    integral
+}
+
+/// Integral of `f` over `low..high` by Simpson's rule with `panels` pairs of intervals.
+pub fn simpson(f: impl Fn(f64) -> f64, low: f64, high: f64, panels: u32) -> f64 {
+    let step = (high - low) / f64::from(2 * panels);
+    let inner: f64 =
+        (1..2 * panels).map(|i| f(low + f64::from(i) * step) * if i % 2 == 1 { 4.0 } else { 2.0 }).sum();
+    step / 3.0 * (f(low) + inner + f(high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn a_half_sine_integrates_to_its_area_along_the_way() {
+        // 10 ms half sine at 10 kHz: the plain trapezoid is off by 1e-4 of the area on the way, the corrected by h⁴.
+        let (n, step) = (101, 1e-4);
+        let pulse: Vec<f64> = (0..n).map(|i| (PI * f64::from(i) / 100.0).sin()).collect();
+        let running = running_integral(&pulse, step);
+        for (i, value) in (0..n).zip(&running) {
+            let exact = 0.01 / PI * (1.0 - (PI * f64::from(i) / 100.0).cos());
+            assert!((value - exact).abs() < 1e-6 * 0.02 / PI, "{i}: {value} {exact}");
+        }
+    }
+
+    #[test]
+    fn short_inputs_are_safe() {
+        assert!(running_integral(&[], 1.0).is_empty());
+        assert_eq!(running_integral(&[5.0], 1.0), [0.0]);
+        assert_eq!(running_integral(&[1.0, 3.0], 1.0), [0.0, 2.0]);
+    }
+
+    #[test]
+    fn simpson_is_exact_for_cubics() {
+        assert!((simpson(|x| x * x * x, 0.0, 2.0, 1) - 4.0).abs() < 1e-14);
+    }
+}

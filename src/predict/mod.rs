@@ -1,0 +1,241 @@
+//! A body, a drop, a contact law and k to rebound, flight and slap-down: the analytical prediction.
+
+mod flight;
+mod impact;
+
+use crate::data::{Body, BodyModel, Cask, Contact, Drop, FlightRegime, Prediction};
+use flight::{Outcome, fly_until_second_end};
+use impact::{State, strike_first_end};
+
+/// The rod or body of a cask: the rod is thin and uniform whatever else the cask file says.
+#[must_use]
+pub fn body(cask: &Cask, model: BodyModel) -> Body {
+    match model {
+        BodyModel::Rod => Body {
+            model,
+            mass_kg: cask.mass_kg,
+            length_m: cask.length_m,
+            height_m: 0.0,
+            cog_m: cask.length_m / 2.0,
+            inertia_kg_m2: cask.mass_kg * cask.length_m.powi(2) / 12.0,
+        },
+        BodyModel::Body => Body {
+            model,
+            mass_kg: cask.mass_kg,
+            length_m: cask.length_m,
+            height_m: cask.height_m,
+            cog_m: cask.cog_m,
+            inertia_kg_m2: cask.inertia_kg_m2,
+        },
+    }
+}
+
+/// The bodies that a cask file asks to be predicted: the rod, and the body where the file describes one.
+#[must_use]
+pub fn bodies(cask: &Cask) -> Vec<Body> {
+    let mut bodies = vec![body(cask, BodyModel::Rod)];
+    if cask.is_body {
+        bodies.push(body(cask, BodyModel::Body));
+    }
+    bodies
+}
+
+/// First impact, flight and slap-down of `body` with restitution `k` (0 to 1), equations (1)–(13) of `docs/physics.md`.
+///
+/// Further impacts of L before R strikes are followed with the same `k`. Where R never strikes, or L keeps bouncing
+/// without end, the slap-down's quantities are `None`.
+#[must_use]
+pub fn predict(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction {
+    let start = State::falling(body, drop);
+    let (after, impulse_ratio) = strike_first_end(body, &start, contact, k);
+    let Outcome { at_second_end, flight_time_s, impacts, regime } =
+        fly_until_second_end(body, drop.gravity_m_s2, contact, k, after);
+    let corner = at_second_end.map(|state| state.second_end_velocity_m_s(body));
+    Prediction {
+        model: body.model,
+        contact,
+        k,
+        slap_down_speed_m_s: corner.map(|(x, z)| x.hypot(z)),
+        vertical_velocity_m_s: corner.map(|(_, z)| z),
+        horizontal_velocity_m_s: corner.map(|(x, _)| x),
+        angular_velocity_rad_s: after.angular_velocity_rad_s,
+        flight_time_s,
+        energy_ratio: at_second_end.map(|s| s.kinetic_energy_j(body) / start.kinetic_energy_j(body)),
+        slap_down_angle_deg: at_second_end.map(|s| s.angle_rad.to_degrees()),
+        first_end_impacts: impacts,
+        impulse_ratio,
+        regime,
+    }
+}
+
+/// The four borderline cases of the paper: rough and smooth, k = 0 and k = 1.
+#[must_use]
+pub fn borderline_cases(body: &Body, drop: &Drop) -> Vec<Prediction> {
+    [Contact::Rough, Contact::Smooth]
+        .into_iter()
+        .flat_map(|contact| [0.0, 1.0].map(|k| predict(body, drop, contact, k)))
+        .collect()
+}
+
+/// The closed form of Table 2 for k = 0, L staying on the target whatever the contact force: R's speed, m/s, (11) and (12).
+///
+/// It holds only where [`FlightRegime::Contact`] does; elsewhere L lifts off and [`predict`] says so. `None` for Coulomb
+/// friction, for which the paper has no closed form.
+#[must_use]
+pub fn closed_form_speed_m_s(body: &Body, drop: &Drop, contact: Contact) -> Option<f64> {
+    let start = State::falling(body, drop);
+    let (after, _) = strike_first_end(body, &start, contact, 0.0);
+    flight::contact_kept(body, drop.gravity_m_s2, contact, &after)
+        .map(|(state, _)| state.second_end_velocity_m_s(body))
+        .map(|(x, z)| x.hypot(z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const V0_M_S: f64 = 13.288_340_754_210_061; // √(2 · 9.81 · 9)
+
+    fn drop(angle_deg: f64) -> Drop {
+        Drop {
+            height_m: 9.0,
+            angle_rad: angle_deg.to_radians(),
+            impact_velocity_m_s: V0_M_S,
+            impact_velocity_given: false,
+            gravity_m_s2: 9.81,
+        }
+    }
+
+    fn rod(length_m: f64) -> Body {
+        Body {
+            model: BodyModel::Rod,
+            mass_kg: 1000.0,
+            length_m,
+            height_m: 0.0,
+            cog_m: length_m / 2.0,
+            inertia_kg_m2: 1000.0 * length_m.powi(2) / 12.0,
+        }
+    }
+
+    fn anf18() -> Body {
+        let (m, l, h) = (4466.0, 5.512, 0.792);
+        Body {
+            model: BodyModel::Body,
+            mass_kg: m,
+            length_m: l,
+            height_m: h,
+            cog_m: l / 2.0,
+            inertia_kg_m2: m * (l * l + h * h) / 12.0,
+        }
+    }
+
+    fn speed(body: &Body, angle_deg: f64, contact: Contact, k: f64) -> f64 {
+        predict(body, &drop(angle_deg), contact, k).slap_down_speed_m_s.expect("R strikes")
+    }
+
+    #[test]
+    fn table_1_is_met_by_the_general_impact() {
+        for (angle_deg, k) in [(5.0_f64, 0.0), (15.0, 0.5), (40.0, 1.0)] {
+            let (l, cos) = (4.75, angle_deg.to_radians().cos());
+            let rough = predict(&rod(l), &drop(angle_deg), Contact::Rough, k);
+            let smooth = predict(&rod(l), &drop(angle_deg), Contact::Smooth, k);
+            let expected_rough = 3.0 * (1.0 + k) / (2.0 * l) * V0_M_S * cos;
+            let expected_smooth = 6.0 * (1.0 + k) / (l * (3.0 * cos * cos + 1.0)) * V0_M_S * cos;
+            // Two roundings of each factor: 1e-13 relative.
+            assert!((rough.angular_velocity_rad_s / expected_rough - 1.0).abs() < 1e-13);
+            assert!((smooth.angular_velocity_rad_s / expected_smooth - 1.0).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn table_3_is_met_with_the_sine_of_equation_6() {
+        // Root and speed by an independent program (scipy brentq) to four digits; the paper prints 25 for each.
+        for (length_m, expected) in [(4.538, 24.9351), (4.725, 24.9548), (5.512, 25.0376)] {
+            let found = speed(&rod(length_m), 15.0, Contact::Rough, 1.0);
+            assert!((found - expected).abs() < 5e-5, "{found} {expected}");
+            assert!((found - 25.0).abs() < 0.5);
+        }
+        let castor = closed_form_speed_m_s(&rod(4.486), &drop(15.0), Contact::Rough).expect("rough");
+        assert!((castor - 20.12).abs() < 0.005);
+    }
+
+    #[test]
+    fn table_3_is_missed_with_the_cosine_as_printed() {
+        // Equation (6) as printed starts S at (l/2) cos φ0; the speed at its root is 22.5 m/s, not 25.
+        let (l, g) = (5.512, 9.81);
+        let d = drop(15.0);
+        let (after, _) = strike_first_end(&rod(l), &State::falling(&rod(l), &d), Contact::Rough, 1.0);
+        let (vz, w) = (after.vertical_velocity_m_s, after.angular_velocity_rad_s);
+        let printed = |t: f64| {
+            l / 2.0 * d.angle_rad.cos() + vz * t - g * t * t / 2.0 + l / 2.0 * (d.angle_rad - w * t).sin()
+        };
+        let t = crate::numerics::root::bisect(printed, 0.0, 0.3).expect("a root");
+        let phi = d.angle_rad - w * t;
+        let x = after.horizontal_velocity_m_s + w * l / 2.0 * phi.sin();
+        let z = vz - g * t - w * l / 2.0 * phi.cos();
+        assert!((x.hypot(z) - 22.5).abs() < 0.05, "{}", x.hypot(z));
+        assert!((x.hypot(z) - speed(&rod(l), 15.0, Contact::Rough, 1.0)).abs() > 2.0);
+    }
+
+    #[test]
+    fn the_section_matters() {
+        // physics: rod 22.49, body 20.18 / 22.31 / 23.67 m/s at k = 0.5, 15°.
+        assert!((speed(&rod(5.512), 15.0, Contact::Rough, 0.5) - 22.49).abs() < 0.005);
+        assert!((speed(&anf18(), 15.0, Contact::Rough, 0.5) - 20.18).abs() < 0.005);
+        assert!((speed(&anf18(), 15.0, Contact::Coulomb(0.3), 0.5) - 22.31).abs() < 0.005);
+        assert!((speed(&anf18(), 15.0, Contact::Smooth, 0.5) - 23.67).abs() < 0.005);
+    }
+
+    #[test]
+    fn a_thin_rod_at_15_degrees_needs_friction_of_0_624_to_stick() {
+        for k in [0.1, 0.5, 0.9] {
+            let ratio = predict(&rod(4.75), &drop(15.0), Contact::Rough, k).impulse_ratio;
+            assert!((ratio - 0.624).abs() < 5e-4);
+        }
+    }
+
+    #[test]
+    fn figure_8_energy_ratios() {
+        let d = Drop { impact_velocity_m_s: 13.3, ..drop(15.0) };
+        for (contact, k, expected) in [
+            (Contact::Rough, 1.0, 1.031),
+            (Contact::Smooth, 1.0, 1.033),
+            (Contact::Rough, 1e-9, 0.768),
+            (Contact::Smooth, 1e-9, 0.805),
+        ] {
+            let ratio = predict(&rod(4.75), &d, contact, k).energy_ratio.expect("R strikes");
+            assert!((ratio - expected).abs() < 5e-4, "{contact} k={k}: {ratio}");
+        }
+    }
+
+    #[test]
+    fn flying_and_closed_form_differ_where_the_pivot_would_need_tension() {
+        let p = predict(&rod(5.512), &drop(15.0), Contact::Rough, 0.0);
+        assert_eq!(p.regime, FlightRegime::Free);
+        assert!((p.slap_down_speed_m_s.expect("R strikes") - 19.81).abs() < 0.005);
+        let kept = closed_form_speed_m_s(&rod(5.512), &drop(15.0), Contact::Rough).expect("rough");
+        assert!((kept - 20.31).abs() < 0.005);
+    }
+
+    #[test]
+    fn l_comes_down_again_before_r_on_a_steep_elastic_drop() {
+        assert!(predict(&rod(4.75), &drop(60.0), Contact::Rough, 0.8).first_end_impacts > 1);
+        assert_eq!(predict(&rod(4.75), &drop(15.0), Contact::Rough, 0.8).first_end_impacts, 1);
+    }
+
+    #[test]
+    fn nothing_is_not_a_number_anywhere() {
+        for angle_deg in 0..=90 {
+            for tenth in 0..=10 {
+                for contact in [Contact::Rough, Contact::Smooth, Contact::Coulomb(0.3)] {
+                    for body in [rod(4.75), anf18()] {
+                        let p = predict(&body, &drop(f64::from(angle_deg)), contact, f64::from(tenth) / 10.0);
+                        assert!(p.angular_velocity_rad_s.is_finite() && p.impulse_ratio.is_finite());
+                        assert!(p.slap_down_speed_m_s.is_none_or(f64::is_finite));
+                        assert!(p.flight_time_s.is_none_or(|t| t.is_finite() && t >= 0.0));
+                    }
+                }
+            }
+        }
+    }
+}
