@@ -1,6 +1,8 @@
 //! dropcheck: what accelerometers on both ends of a dropped cask say about its slap-down, and whether to believe it.
 
+pub mod condition;
 pub mod data;
+pub mod events;
 pub mod ingest;
 pub mod numerics;
 pub mod predict;

@@ -28,6 +28,8 @@ pub struct Plateau {
     pub u_zero_shift_m_s2: f64,
     /// RMS of what the fit leaves, m/s.
     pub residual_m_s: f64,
+    /// Cosine and sine amplitude of each mode at the window's start, m/s.
+    pub ringing_m_s: Vec<(f64, f64)>,
 }
 
 /// How one candidate of the flight fit scored.
@@ -58,4 +60,31 @@ pub struct FlightFit {
     pub drift: bool,
     /// Every candidate that was tried, the one taken among them.
     pub candidates: Vec<FlightModelScore>,
+}
+
+impl FlightFit {
+    /// The plateau of a channel.
+    #[must_use]
+    pub fn plateau(&self, channel: &str) -> Option<&Plateau> {
+        self.plateaus.iter().find(|p| p.channel == channel)
+    }
+
+    /// Velocity of a plateau's ringing, m/s, and the specific force of it, m/s², at `time_s` from the recording's first sample.
+    ///
+    /// v = Σ e^(−ζωτ) (A cos ωτ + B sin ωτ), f = v̇, τ from the window's start   (20)
+    #[must_use]
+    pub fn ringing(&self, plateau: &Plateau, time_s: f64) -> (f64, f64) {
+        let tau = time_s - self.from_s;
+        let mut sum = (0.0, 0.0);
+        for (mode, &(a, b)) in self.modes.iter().zip(&plateau.ringing_m_s) {
+            let omega = std::f64::consts::TAU * mode.frequency_hz;
+            let decay = mode.damping * omega;
+            let (sin, cos) = (omega * tau).sin_cos();
+            let envelope = (-decay * tau).exp();
+            let velocity = envelope * (a * cos + b * sin);
+            sum.0 += velocity;
+            sum.1 += envelope * omega * (b * cos - a * sin) - decay * velocity;
+        }
+        sum
+    }
 }

@@ -10,6 +10,7 @@ mod issue;
 mod listing;
 mod prediction;
 mod recording;
+mod signal;
 
 pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
@@ -24,3 +25,4 @@ pub use issue::{Issue, IssueCode, Severity};
 pub use listing::{ListedChannel, Listing};
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use recording::{Recording, RecordingFormat};
+pub use signal::{CoarseEvent, Signal};

@@ -1,4 +1,8 @@
 //! Pure mathematics on slices and functions; it knows nothing of drops.
 
+pub mod damped_modes;
+pub mod filter;
 pub mod quadrature;
+pub mod robust;
 pub mod root;
+pub mod spectrum;

@@ -1,0 +1,132 @@
+//! Channels as read to signals fit to integrate: offset, gaps, clipping, what each channel is worth.
+
+mod clipping;
+mod offset;
+
+use crate::data::{Channel, CoarseEvent, Coupling, Issue, IssueCode, Recording, Severity, Signal};
+
+/// Free fall used for the offset, s: long against noise and hum, short against any free fall from above 0.4 m.
+const BEFORE_S: f64 = 0.25;
+
+/// How far after the coarse event signals reach, s: the longest flight to slap-down (steep drops) and its pulse.
+const AFTER_S: f64 = 0.8;
+
+/// Cuts every channel to the window of the event, removes its offset and marks what is clipped or missing.
+///
+/// `fall_s` is the time of free fall before first contact: the offset is taken within it. Returns the signals in the order of
+/// the channels and what was found about them.
+#[must_use]
+pub fn condition(recording: &Recording, event: &CoarseEvent, fall_s: f64) -> (Vec<Signal>, Vec<Issue>) {
+    let mut issues = Vec::new();
+    let signals = recording
+        .channels
+        .iter()
+        .map(|channel| {
+            let (signal, mut found) = signal(channel, event, fall_s);
+            issues.append(&mut found);
+            signal
+        })
+        .collect();
+    (signals, issues)
+}
+
+fn signal(channel: &Channel, event: &CoarseEvent, fall_s: f64) -> (Signal, Vec<Issue>) {
+    let from = channel.index_at(event.near_s - BEFORE_S.min(0.8 * fall_s));
+    let to = channel.index_at(event.near_s + event.spread_s + AFTER_S);
+    let mut issues = Vec::new();
+    let mut force = match channel.coupling {
+        Coupling::Dc => channel.force_m_s2(from, to),
+        Coupling::Ac { time_constant_s } => {
+            issues.push(
+                Issue::new(
+                    IssueCode::AcCoupled,
+                    Severity::Note,
+                    format!(
+                        "{} is AC-coupled; its droop was put back with the stated time constant of {time_constant_s} s",
+                        channel.name
+                    ),
+                )
+                .on(&channel.name),
+            );
+            let mut whole = channel.force_m_s2(0, to);
+            restore_low_frequencies(&mut whole, channel.sample_rate_hz, time_constant_s);
+            whole.split_off(from.min(whole.len()))
+        }
+    };
+    let clipped = clipping::clipped(channel, &force, from);
+    let gaps = missing(&force);
+    for f in &mut force {
+        if !f.is_finite() {
+            *f = 0.0;
+        }
+    }
+    let mut signal = Signal {
+        name: channel.name.clone(),
+        end: channel.end,
+        axis: channel.axis,
+        position_m: channel.position_m,
+        offset_m: channel.offset_m,
+        start_s: channel.time_s(from),
+        sample_rate_hz: channel.sample_rate_hz,
+        force_m_s2: force,
+        removed_offset_m_s2: 0.0,
+        u_offset_m_s2: 0.0,
+        noise_m_s2: 0.0,
+        clipped,
+        gaps,
+    };
+    issues.extend(offset::remove(&mut signal, event.near_s));
+    (signal, issues)
+}
+
+/// Undoes a first-order high-pass: x = y + ∫ y dt / T   (19), from the channel's first sample on.
+fn restore_low_frequencies(force: &mut [f64], sample_rate_hz: f64, time_constant_s: f64) {
+    let mut integral = 0.0;
+    let mut previous = 0.0;
+    for f in force {
+        let y = if f.is_finite() { *f } else { 0.0 };
+        integral += f64::midpoint(previous, y) / sample_rate_hz;
+        previous = y;
+        *f += integral / time_constant_s;
+    }
+}
+
+/// Runs of samples that are no numbers.
+fn missing(force: &[f64]) -> Vec<crate::data::Span> {
+    let mut spans = Vec::new();
+    let mut from = None;
+    for (i, f) in force.iter().chain([&0.0]).enumerate() {
+        match (f.is_finite(), from) {
+            (false, None) => from = Some(i),
+            (true, Some(start)) => {
+                spans.push(crate::data::Span { from: start, to: i });
+                from = None;
+            }
+            _ => {}
+        }
+    }
+    spans
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Span;
+
+    #[test]
+    fn an_ac_coupled_step_is_put_back() {
+        // y = e^(−t/T) is what a high-pass makes of a step; the inverse gives 1 back to the trapezoid's h²/12 T².
+        let (rate, constant) = (10_000.0, 0.3);
+        let mut y: Vec<f64> = (0..5000).map(|i| (-f64::from(i) / rate / constant).exp()).collect();
+        y[0] = 1.0;
+        restore_low_frequencies(&mut y, rate, constant);
+        // The first half step is lost: h / 2T.
+        assert!(y.iter().all(|v| (v - 1.0).abs() < 1e-4 / (2.0 * constant) + 1e-8));
+    }
+
+    #[test]
+    fn missing_samples_are_spans() {
+        let force = [0.0, f64::NAN, f64::NAN, 1.0, f64::NAN];
+        assert_eq!(missing(&force), [Span { from: 1, to: 3 }, Span { from: 4, to: 5 }]);
+    }
+}

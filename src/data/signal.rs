@@ -1,0 +1,87 @@
+//! One channel over the event window, conditioned: what the analysis integrates.
+
+use super::cask::{Axis, End};
+use super::channel::Span;
+
+/// A channel around the event: specific force on the body axis with its offset removed, unfiltered.
+///
+/// Sample i was taken at `start_s + i / sample_rate_hz`. Missing samples are 0 and listed in `gaps`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Signal {
+    /// The channel's name.
+    pub name: String,
+    /// Which end it sits on.
+    pub end: End,
+    /// Along which axis it reads.
+    pub axis: Axis,
+    /// Position along the axis from the first end, m.
+    pub position_m: f64,
+    /// Position across the axis, positive away from the target, m.
+    pub offset_m: f64,
+    /// Time of sample 0, s from the recording's first sample.
+    pub start_s: f64,
+    /// Sample rate, Hz.
+    pub sample_rate_hz: f64,
+    /// Specific force, m/s².
+    pub force_m_s2: Vec<f64>,
+    /// Offset that was removed, m/s².
+    pub removed_offset_m_s2: f64,
+    /// Standard uncertainty of that offset, m/s².
+    pub u_offset_m_s2: f64,
+    /// RMS of the noise before first contact, m/s².
+    pub noise_m_s2: f64,
+    /// Samples that stand at a limit.
+    pub clipped: Vec<Span>,
+    /// Stretches without samples.
+    pub gaps: Vec<Span>,
+}
+
+impl Signal {
+    /// Time of sample `index`, s from the recording's first sample.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+    pub fn time_s(&self, index: usize) -> f64 {
+        self.start_s + index as f64 / self.sample_rate_hz
+    }
+
+    /// Position of `time_s` in samples, fractional, negative before the first.
+    #[must_use]
+    pub fn position_at(&self, time_s: f64) -> f64 {
+        (time_s - self.start_s) * self.sample_rate_hz
+    }
+
+    /// Index of the first sample at or after `time_s`, cut to what there is.
+    #[must_use]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a negative or NaN position casts to 0, a large one is cut"
+    )]
+    pub fn index_from(&self, time_s: f64) -> usize {
+        // A hair below the next sample counts as that sample.
+        ((self.position_at(time_s) - 1e-6).ceil() as usize).min(self.force_m_s2.len())
+    }
+
+    /// Time of the last sample, s.
+    #[must_use]
+    pub fn end_s(&self) -> f64 {
+        self.time_s(self.force_m_s2.len().saturating_sub(1))
+    }
+
+    /// Whether any of `spans` lies in `from_s..to_s`.
+    #[must_use]
+    pub fn touches(&self, spans: &[Span], from_s: f64, to_s: f64) -> bool {
+        spans.iter().any(|s| self.time_s(s.from) < to_s && self.time_s(s.to) > from_s)
+    }
+}
+
+/// Where the event lies, found on a coarse pass: enough to cut the window that the fine work needs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoarseEvent {
+    /// Start of the steepest velocity change of L, s; first contact lies at most `spread_s` before.
+    pub near_s: f64,
+    /// How coarse that is, s.
+    pub spread_s: f64,
+    /// Largest velocity change of L within the sliding window, m/s, signed.
+    pub velocity_step_m_s: f64,
+}

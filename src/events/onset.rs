@@ -1,0 +1,193 @@
+//! A pulse to its beginning and end, finer than a sample.
+
+use super::transverse;
+use crate::data::{CoarseEvent, End, Signal};
+use crate::numerics::quadrature::running_integral;
+
+/// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
+const FOOT: f64 = 0.02;
+/// The rise is followed up to this share of the peak to extrapolate it to zero.
+const SHOULDER: f64 = 0.3;
+/// A pulse has ended where the force stays below this share of its peak.
+const TAIL: f64 = 0.05;
+/// Noise is passed by this many of its standard deviations.
+const NOISE_FACTOR: f64 = 6.0;
+/// Width over which R's velocity change at slap-down is looked for, s, as in `locate`.
+const WIDTH_S: f64 = 0.02;
+/// R strikes where its velocity change over the width reaches this share of the largest in the record.
+const SHARE: f64 = 0.5;
+/// Longest first contact looked for, s: pulses of shock-absorbed casks reach 20 ms.
+const LONGEST_CONTACT_S: f64 = 0.05;
+
+/// First contact of L and its standard uncertainty, s.
+#[must_use]
+pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<(f64, f64)> {
+    let signal = transverse(signals, End::First).or_else(|| signals.first())?;
+    let sign = coarse.velocity_step_m_s.signum();
+    let from = signal.index_from(coarse.near_s - 0.2 * coarse.spread_s);
+    let to = signal.index_from(coarse.near_s + 1.2 * coarse.spread_s);
+    onset(signal, from, to, sign)
+}
+
+/// First contact of R after `after_s` and its standard uncertainty, s; `None` where the record holds none.
+///
+/// `least_change_m_s` is the velocity change below which a pulse is not R striking the target.
+#[must_use]
+pub fn slap_down(signals: &[Signal], after_s: f64, least_change_m_s: f64) -> Option<(f64, f64)> {
+    let signal = transverse(signals, End::Second)?;
+    let start = signal.index_from(after_s);
+    let step_s = 1.0 / signal.sample_rate_hz;
+    let velocity = running_integral(signal.force_m_s2.get(start..)?, step_s);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
+    let width = ((WIDTH_S * signal.sample_rate_hz) as usize).max(1);
+    let change = |i: usize| velocity[i] - velocity[i.saturating_sub(width)];
+    let largest = (0..velocity.len()).map(change).fold(0.0, f64::max);
+    if largest < least_change_m_s {
+        return None;
+    }
+    let crossing = start + (0..velocity.len()).find(|&i| change(i) >= SHARE * largest)?;
+    let from = crossing.saturating_sub(width).max(start);
+    onset(signal, from, (crossing + width / 4).min(signal.force_m_s2.len()), 1.0)
+}
+
+/// Where the pulse between two indices leaves zero: a line through its rise from foot to shoulder, cut with zero.
+fn onset(signal: &Signal, from: usize, to: usize, sign: f64) -> Option<(f64, f64)> {
+    let force = signal.force_m_s2.get(from..to)?;
+    let peak = force.iter().fold(0.0_f64, |m, f| m.max(sign * f));
+    let foot = (FOOT * peak).max(NOISE_FACTOR * signal.noise_m_s2);
+    if peak <= 2.0 * foot {
+        return None;
+    }
+    let at_peak = force.iter().position(|f| sign * f >= peak)?;
+    let shoulder = (SHOULDER * peak).max(2.0 * foot);
+    // Backwards from the peak to the last time the force stood below the shoulder, then below the foot.
+    let high = (0..=at_peak).rev().find(|&i| sign * force[i] < shoulder).map_or(0, |i| i + 1);
+    let low = (0..high).rev().find(|&i| sign * force[i] < foot).map_or(0, |i| i + 1);
+    let crossing = interpolated(force, low, sign * foot);
+    let rise: Vec<(f64, f64)> = (low..=high).map(|i| (count(i), sign * force[i])).collect();
+    let extrapolated = zero_of_line(&rise).unwrap_or(crossing);
+    // A rise that is steeper than the sampling, or one that bends, puts the line's zero past the crossing or far before it.
+    let reach = (count(high) - crossing).max(1.0);
+    let position = extrapolated.clamp(crossing - reach, crossing);
+    let u_s = ((crossing - position).max(0.5) / 3.0_f64.sqrt()) / signal.sample_rate_hz;
+    Some((signal.time_s(from) + position / signal.sample_rate_hz, u_s))
+}
+
+/// When L leaves the target, s: the force on it, free of ringing, has dropped to the foot for good.
+///
+/// `before_s` bounds the search; the standard uncertainty is a twentieth of the contact or a sample.
+#[must_use]
+pub fn separation(signals: &[Signal], contact_s: f64, before_s: f64) -> Option<(f64, f64)> {
+    let signal = transverse(signals, End::First)?;
+    let from = signal.index_from(contact_s);
+    let to = signal.index_from(before_s.min(contact_s + LONGEST_CONTACT_S));
+    let smooth = smoothed(signal.force_m_s2.get(from..to)?, signal.sample_rate_hz);
+    let peak = smooth.iter().fold(0.0_f64, |m, &f| m.max(f));
+    let at_peak = smooth.iter().position(|&f| f >= peak)?;
+    let tail = (TAIL * peak).max(NOISE_FACTOR * signal.noise_m_s2);
+    let end = (at_peak..smooth.len()).find(|&i| smooth[i] < tail)?;
+    let time_s = signal.time_s(from + end);
+    Some((time_s, ((time_s - contact_s) / 20.0).max(1.0 / signal.sample_rate_hz)))
+}
+
+/// Moving mean over 0.2 ms, so that the high modes of the sensor's mount do not end a pulse.
+fn smoothed(force: &[f64], sample_rate_hz: f64) -> Vec<f64> {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
+    let half = (1e-4 * sample_rate_hz) as usize;
+    let mut sums = Vec::with_capacity(force.len() + 1);
+    sums.push(0.0);
+    for f in force {
+        sums.push(sums[sums.len() - 1] + f);
+    }
+    (0..force.len())
+        .map(|i| {
+            let (a, b) = (i.saturating_sub(half), (i + half + 1).min(force.len()));
+            (sums[b] - sums[a]) / count(b - a)
+        })
+        .collect()
+}
+
+/// Where the force crosses `level` between sample `index − 1` and `index`, in samples.
+fn interpolated(force: &[f64], index: usize, level: f64) -> f64 {
+    if index == 0 {
+        return 0.0;
+    }
+    let (a, b) = (force[index - 1], force[index]);
+    let share = if (b - a).abs() > 0.0 { ((level - a) / (b - a)).clamp(0.0, 1.0) } else { 1.0 };
+    count(index) - 1.0 + share
+}
+
+/// Zero of the least-squares line through points; `None` for fewer than two or a line that does not rise.
+fn zero_of_line(points: &[(f64, f64)]) -> Option<f64> {
+    let n = count(points.len());
+    let (mx, my) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
+    let (sxx, sxy) =
+        points.iter().fold((0.0, 0.0), |(xx, xy), p| (xx + (p.0 - mx).powi(2), xy + (p.0 - mx) * (p.1 - my)));
+    (points.len() > 1 && sxy > 0.0).then(|| mx - my * sxx / sxy)
+}
+
+#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+fn count(n: usize) -> f64 {
+    n as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Axis;
+    use std::f64::consts::PI;
+
+    /// A half sine of 6 ms from 20.03 ms on, at L positive, at R later.
+    fn signal(end: End, rate: f64, start_s: f64, peak: f64) -> Signal {
+        let force_m_s2 = (0..)
+            .map(|i| f64::from(i) / rate)
+            .take_while(|t| *t < 0.2)
+            .map(|t| {
+                let x = (t - start_s) / 0.006;
+                if (0.0..1.0).contains(&x) { peak * (PI * x).sin() } else { 0.0 }
+            })
+            .collect();
+        Signal {
+            name: "A".into(),
+            end,
+            axis: Axis::Transverse,
+            position_m: 0.1,
+            offset_m: 0.0,
+            start_s: 0.0,
+            sample_rate_hz: rate,
+            force_m_s2,
+            removed_offset_m_s2: 0.0,
+            u_offset_m_s2: 0.0,
+            noise_m_s2: 0.1,
+            clipped: vec![],
+            gaps: vec![],
+        }
+    }
+
+    #[test]
+    fn onsets_are_finer_than_the_shoulder() {
+        // The chord of a half sine from 2 % to 30 % of its peak meets zero within 1 % of its length.
+        for rate in [5e3, 2e4, 1e5] {
+            let coarse = CoarseEvent { near_s: 0.01, spread_s: 0.025, velocity_step_m_s: 20.0 };
+            let first =
+                first_contact(&[signal(End::First, rate, 0.020_03, 3000.0)], &coarse).expect("an onset");
+            assert!((first.0 - 0.020_03).abs() < 6e-5, "{rate}: {first:?}");
+            let second =
+                slap_down(&[signal(End::Second, rate, 0.080_03, 3000.0)], 0.03, 2.0).expect("an onset");
+            assert!((second.0 - 0.080_03).abs() < 6e-5, "{rate}: {second:?}");
+        }
+    }
+
+    #[test]
+    fn separation_is_the_end_of_the_pulse() {
+        let s = [signal(End::First, 1e5, 0.020_03, 3000.0)];
+        let (time_s, u_s) = separation(&s, 0.020_03, 0.1).expect("a separation");
+        assert!((time_s - 0.026_03).abs() < 2.0 * u_s, "{time_s}");
+    }
+
+    #[test]
+    fn a_quiet_record_has_no_slap_down() {
+        assert!(slap_down(&[signal(End::Second, 1e5, 0.08, 1.0)], 0.03, 2.0).is_none());
+        assert!(slap_down(&[], 0.03, 2.0).is_none());
+    }
+}

@@ -1,0 +1,56 @@
+//! Samples to centre and spread that a few wild values do not move.
+
+/// Median; NaN of an empty slice. Reorders `values`.
+pub fn median(values: &mut [f64]) -> f64 {
+    let n = values.len();
+    if n == 0 {
+        return f64::NAN;
+    }
+    let (below, &mut middle, _) = values.select_nth_unstable_by(n / 2, f64::total_cmp);
+    if n % 2 == 1 {
+        middle
+    } else {
+        let lower = below.iter().copied().max_by(f64::total_cmp).unwrap_or(middle);
+        f64::midpoint(lower, middle)
+    }
+}
+
+/// Standard deviation of Gaussian noise from the median distance to the median (factor 1.4826; Hampel 1974).
+#[must_use]
+pub fn spread(values: &[f64]) -> f64 {
+    let mut work = values.to_vec();
+    let centre = median(&mut work);
+    for (w, v) in work.iter_mut().zip(values) {
+        *w = (v - centre).abs();
+    }
+    1.482_602_218_505_602 * median(&mut work)
+}
+
+/// Mean and root mean square about it; NaN of an empty slice.
+#[must_use]
+#[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
+pub fn mean_and_rms(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians() {
+        assert!((median(&mut [3.0, 1.0, 2.0]) - 2.0).abs() < 1e-15);
+        assert!((median(&mut [4.0, 1.0, 2.0, 3.0]) - 2.5).abs() < 1e-15);
+        assert!(median(&mut []).is_nan());
+    }
+
+    #[test]
+    fn a_wild_value_does_not_move_the_spread() {
+        let mut values: Vec<f64> = (-50..=50).map(f64::from).collect();
+        let calm = spread(&values);
+        values[0] = 1e9;
+        assert!((spread(&values) - calm).abs() <= 1.5);
+    }
+}
