@@ -202,8 +202,8 @@ mod tests {
     #[test]
     fn numbers_with_one_gap_keep_their_rate() {
         let mut running = Running::default();
-        for i in (0..100).chain(120..300) {
-            running.number(1_700_000_000_000_000_000 + i * 1_000_000, i as f64);
+        for i in (0..100).chain(120..300_i32) {
+            running.number(1_700_000_000_000_000_000 + i64::from(i) * 1_000_000, f64::from(i));
         }
         let timing = running.timing(&[]);
         // Intervals of exactly 1 ms: rounding alone is left.
