@@ -5,7 +5,7 @@ use super::json;
 use super::message_type::{MessageType, implied_unit};
 use super::path::{FieldPath, source_text};
 use super::plan::{Decode, Leaf, Plan, Slots, Value};
-use super::running::{Running, Segment};
+use super::running::{MOST_SEGMENTS, Running, Segment};
 use super::scan::scan;
 use super::scanned::{ChannelInfo, Scanned, Sink};
 use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Severity};
@@ -241,7 +241,13 @@ impl Topic {
                 Value::Number { value, .. } => field.running.number(time_ns, value),
                 Value::Array(samples) if !samples.is_empty() => {
                     field.running.block(time_ns, &samples);
-                    field.segments.push(Segment { start_ns: time_ns, count: samples.len() as u64, rate_hz });
+                    if field.segments.len() < MOST_SEGMENTS {
+                        field.segments.push(Segment {
+                            start_ns: time_ns,
+                            count: samples.len() as u64,
+                            rate_hz,
+                        });
+                    }
                 }
                 _ => {}
             }

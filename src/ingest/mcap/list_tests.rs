@@ -50,6 +50,7 @@ fn every_signal_of_an_imu_and_of_a_protobuf_block_is_listed() {
     assert_eq!((z.kind.as_str(), z.samples, z.unit.as_deref()), ("number", Some(20), Some("m/s^2")));
     assert_eq!((z.range, z.start_s), (Some((0.0, 19.0)), Some(0.0)));
     assert!((z.sample_rate_hz.unwrap() - 1000.0).abs() < 1e-6);
+    assert!(listing.channels.iter().all(|channel| !channel.source.ends_with("covariance")));
     let samples = of("/daq.samples");
     assert_eq!((samples.samples, samples.start_s), (Some(2), Some(0.001)));
     assert!(of("/log").unreadable.as_deref().is_some_and(|reason| reason.contains("ros1")));
