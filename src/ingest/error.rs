@@ -116,7 +116,7 @@ pub(super) fn near_names(path: &Path, wanted: &str, what: &str, there: &[String]
         more => format!(" and {more} more"),
     };
     let listed = listed.join(", ");
-    format!("{hint}the recording holds: {listed}{more}; `dropcheck inspect {}` lists all", path.display())
+    format!("{hint}there is: {listed}{more}; `dropcheck inspect {}` lists all", path.display())
 }
 
 #[cfg(test)]
