@@ -3,8 +3,8 @@
 use crate::data::{
     Analysis, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelSpec, ChannelSummary, Comparison,
     Contact, Coupling, Curves, Drop, DropResult, End, Estimate, Events, FilterChoice, FirstImpact, FlightFit,
-    FlightModelScore, Input, Issue, IssueCode, Mode, ModelCandidate, ModelChoice, MotionCurve, Plateau,
-    Prediction, RecordingFormat, Setting, Severity, SlapDown, Source, Spectrum, Unit, Verdict,
+    FlightModelScore, FlightRegime, Input, Issue, IssueCode, Mode, ModelCandidate, ModelChoice, MotionCurve,
+    Plateau, Prediction, RecordingFormat, Setting, Severity, SlapDown, Source, Spectrum, Unit, Verdict,
 };
 use std::f64::consts::PI;
 
@@ -150,6 +150,7 @@ fn predictions() -> Vec<Prediction> {
         slap_down_angle_deg: Some(-4.0 - 1.9 * k),
         first_end_impacts: 1,
         impulse_ratio: 0.41,
+        regime: FlightRegime::Free,
     })
     .to_vec()
 }
@@ -192,6 +193,7 @@ fn flight() -> FlightFit {
         u_m_s: 0.021,
         zero_shift_m_s2: 0.0,
         u_zero_shift_m_s2: 0.0,
+        ringing_m_s: vec![(0.1, 0.9)],
         residual_m_s: 0.032,
     };
     let score = |modes, drift, bic, residual_m_s| FlightModelScore { modes, drift, bic, residual_m_s };
