@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 const LONGEST_FILE: usize = 400;
 
 /// Modules that turn one thing into the next and know only structs and mathematics.
-const STAGES: [&str; 9] = ["ingest", "condition", "events", "motion", "fit", "predict", "compare", "judge", "report"];
+const STAGES: [&str; 9] =
+    ["ingest", "condition", "events", "motion", "fit", "predict", "compare", "judge", "report"];
 
 /// What a top-level module may use besides itself; `None` for a module that has no place in the layers yet.
 fn allowed(module: &str) -> Option<Vec<&'static str>> {
