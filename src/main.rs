@@ -1,2 +1,17 @@
 //! The command line of dropcheck.
-fn main() {}
+
+mod cli;
+
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let command_line = cli::CommandLine::parse();
+    match cli::run(&command_line.command) {
+        Ok(outcome) => outcome.into(),
+        Err(complaint) => {
+            cli::complain(&complaint);
+            ExitCode::from(2)
+        }
+    }
+}

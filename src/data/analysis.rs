@@ -197,6 +197,8 @@ pub struct DropResult {
     pub channels: Vec<ChannelSummary>,
     /// The fit of the free-flight window.
     pub flight: Option<FlightFit>,
+    /// What each input contributes to the uncertainty, largest first.
+    pub budget: Vec<super::quantities::Contribution>,
     /// Every setting and where it came from.
     pub settings: Vec<Setting>,
 }
@@ -210,4 +212,6 @@ pub struct Analysis {
     pub cask_file: CaskFile,
     /// The curves.
     pub curves: Curves,
+    /// Absolute time of the recording's first sample, ns since 1970, where the recording knows it.
+    pub start_unix_ns: Option<i64>,
 }

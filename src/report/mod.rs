@@ -1,1 +1,125 @@
-//! An analysis to bytes: table, JSON, HTML, pictures, curves. Nothing here writes a file.
+//! An analysis to bytes: table, JSON, HTML, pictures, curves. Nothing here writes a report's file.
+
+mod campaign;
+mod columns;
+mod curves_csv;
+mod curves_h5;
+mod curves_mcap;
+mod grid;
+mod html;
+mod html_sections;
+mod json;
+mod listing;
+mod pictures;
+mod prediction;
+mod rounding;
+#[cfg(test)]
+mod sample;
+mod table;
+mod template;
+mod text;
+
+pub use campaign::{Campaign, CampaignRow};
+pub use json::{listing as listing_json, result as result_json};
+pub use listing::table as listing_table;
+pub use prediction::{
+    PredictionRow, csv as prediction_csv, json as prediction_json, table as prediction_table,
+};
+pub use table::table;
+pub use template::cask_file as cask_file_template;
+pub use text::printable;
+
+use crate::data::Analysis;
+
+/// Why a part of the report could not be made.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum ReportError {
+    /// The JSON writer failed.
+    #[error("the JSON of the result could not be written: {0}")]
+    Json(#[from] serde_json::Error),
+    /// The CSV writer failed.
+    #[error("the CSV table could not be written: {0}")]
+    Csv(#[from] csv::Error),
+    /// The MCAP writer failed.
+    #[error("curves.mcap could not be written: {0}")]
+    Mcap(#[from] mcap::McapError),
+    /// The HDF5 library failed.
+    #[error("curves.h5 could not be written: {0}")]
+    Hdf5(#[from] hdf5_metno::Error),
+    /// The scratch file of the HDF5 library failed.
+    #[error("curves.h5 needs a scratch file in {folder}, and that failed: {source}")]
+    #[diagnostic(help("make room there, or set TMPDIR to a folder with room"))]
+    Scratch {
+        /// The folder for temporary files.
+        folder: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A picture could not be drawn.
+    #[error("the picture {picture} could not be drawn: {reason}")]
+    Picture {
+        /// Its name.
+        picture: &'static str,
+        /// What the plotter said.
+        reason: String,
+    },
+}
+
+/// The names of the files of a report, in the order of [`files`].
+pub const FILE_NAMES: [&str; 10] = [
+    "report.html",
+    "result.json",
+    "curves.csv",
+    "curves.h5",
+    "curves.mcap",
+    "accelerations.svg",
+    "velocities.svg",
+    "motion.svg",
+    "spectra.svg",
+    "comparison.svg",
+];
+
+/// Every file of a report by name, in the order in which a reader meets them.
+///
+/// # Errors
+/// [`ReportError`] where one of them cannot be made; then none is returned.
+pub fn files(analysis: &Analysis) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
+    let pictures = pictures::draw(analysis)?;
+    let mut files = vec![
+        ("report.html".to_owned(), html::page(analysis, &pictures).into_bytes()),
+        ("result.json".to_owned(), json::result(&analysis.result)?),
+        ("curves.csv".to_owned(), curves_csv::bytes(&analysis.curves)?),
+        ("curves.h5".to_owned(), curves_h5::bytes(analysis)?),
+        ("curves.mcap".to_owned(), curves_mcap::bytes(analysis)?),
+    ];
+    files.extend(
+        pictures.into_iter().map(|picture| (format!("{}.svg", picture.name), picture.svg.into_bytes())),
+    );
+    Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_report_holds_every_file_of_the_contract() {
+        let files = files(&sample::analysis()).unwrap();
+        assert!(files.iter().map(|(name, _)| name.as_str()).eq(FILE_NAMES));
+        assert!(files.iter().all(|(_, bytes)| !bytes.is_empty()));
+    }
+
+    #[test]
+    fn an_analysis_without_a_single_curve_still_makes_a_report() {
+        let files = files(&sample::without_anything()).unwrap();
+        assert_eq!(files.len(), 10);
+    }
+
+    #[test]
+    fn the_same_analysis_gives_the_same_bytes() {
+        let analysis = sample::analysis();
+        for (first, second) in files(&analysis).unwrap().iter().zip(&files(&analysis).unwrap()) {
+            assert!(first.0 == "curves.h5" || first == second, "{} differs", first.0);
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! `batch`: a campaign of recordings with one cask file to one table; a recording that fails does not stop the others.
+
+use super::complaint::sentence;
+use super::output::{Folder, print};
+use super::progress::with_progress;
+use super::{Outcome, output::CannotWrite};
+use clap::Args;
+use dropcheck::data::CaskFile;
+use dropcheck::report::{Campaign, CampaignRow};
+use dropcheck::{ingest, report};
+use std::path::{Path, PathBuf};
+
+/// What a file of a folder is named where it is taken for a recording.
+const RECORDING_ENDINGS: [&str; 5] = ["mcap", "h5", "hdf5", "hdf", "csv"];
+
+#[derive(Args)]
+#[command(after_help = "Example:\n  dropcheck batch tests/*.mcap --cask cask.toml --out campaign")]
+pub struct Arguments {
+    /// Recordings; of a folder every .mcap, .h5, .hdf5, .hdf and .csv file in it
+    #[arg(required = true, value_name = "PATHS")]
+    paths: Vec<PathBuf>,
+    /// The cask file (TOML) of all of them
+    #[arg(long)]
+    cask: PathBuf,
+    /// Folder for campaign.csv, campaign.json and one report a recording
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
+    let recordings = recordings(&arguments.paths)?;
+    let mut inputs: Vec<&Path> = recordings.iter().map(PathBuf::as_path).collect();
+    inputs.push(&arguments.cask);
+    let folders = match &arguments.out {
+        Some(out) => {
+            let names = ["campaign.json", "campaign.csv"];
+            let summary = Folder::checked(out, &names, &inputs)?;
+            Some((summary, report_folders(out, &recordings, &inputs)?))
+        }
+        None => None,
+    };
+    let cask_file = ingest::cask_file(&arguments.cask)?;
+    let mut rows = Vec::with_capacity(recordings.len());
+    for (i, path) in recordings.iter().enumerate() {
+        let folder = folders.as_ref().and_then(|(_, folders)| folders.get(i));
+        rows.push(row(path, &cask_file, folder));
+    }
+    let campaign = Campaign::new(arguments.cask.display().to_string(), rows);
+    if let Some((summary, _)) = &folders {
+        summary.write(&[
+            ("campaign.json".to_owned(), campaign.json()?),
+            ("campaign.csv".to_owned(), campaign.csv()?),
+        ])?;
+    }
+    print(&campaign.table())?;
+    let outcome = |row: &CampaignRow| row.verdict.map_or(Outcome::NotDone, Outcome::from);
+    Ok(campaign.recordings.iter().map(outcome).max().unwrap_or(Outcome::Clear))
+}
+
+fn row(path: &Path, cask_file: &CaskFile, folder: Option<&(String, Folder)>) -> CampaignRow {
+    match analysed(path, cask_file, folder) {
+        Ok(row) => row,
+        Err(complaint) => CampaignRow::failed(path.display().to_string(), sentence(&complaint)),
+    }
+}
+
+fn analysed(
+    path: &Path,
+    cask_file: &CaskFile,
+    folder: Option<&(String, Folder)>,
+) -> miette::Result<CampaignRow> {
+    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let recording = with_progress(&name, |progress| ingest::read(path, cask_file, progress))?;
+    let analysis = dropcheck::analyze(&recording, cask_file)?;
+    let mut row = CampaignRow::of(&analysis.result);
+    if let Some((name, folder)) = folder {
+        folder.write(&report::files(&analysis)?)?;
+        row.report = Some(format!("{name}/report.html"));
+    }
+    Ok(row)
+}
+
+/// The recordings, folders replaced by the files in them, by name.
+fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
+    let mut recordings = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            recordings.push(path.clone());
+            continue;
+        }
+        let entries = std::fs::read_dir(path)
+            .map_err(|source| miette::miette!("the folder {} cannot be read: {source}", path.display()))?;
+        let mut found: Vec<PathBuf> = entries
+            .filter_map(|entry| entry.ok().map(|e| e.path()))
+            .filter(|p| {
+                let ending = p.extension().map(|e| e.to_string_lossy().to_lowercase());
+                p.is_file() && ending.is_some_and(|e| RECORDING_ENDINGS.contains(&e.as_str()))
+            })
+            .collect();
+        found.sort();
+        if found.is_empty() {
+            return Err(miette::miette!(
+                help = "name the recordings themselves: their content, not their name, tells the format",
+                "the folder {} holds no .mcap, .h5, .hdf5, .hdf or .csv file",
+                path.display()
+            ));
+        }
+        recordings.extend(found);
+    }
+    Ok(recordings)
+}
+
+/// A folder a recording, named by its stem; a second one of the same stem gets a number.
+fn report_folders(
+    out: &Path,
+    recordings: &[PathBuf],
+    inputs: &[&Path],
+) -> Result<Vec<(String, Folder)>, CannotWrite> {
+    let mut folders: Vec<(String, Folder)> = Vec::new();
+    for path in recordings {
+        let stem = path.file_stem().map_or_else(|| "recording".into(), |s| s.to_string_lossy().into_owned());
+        let mut name = stem.clone();
+        let mut number = 2;
+        while folders.iter().any(|(taken, _)| *taken == name) {
+            name = format!("{stem}-{number}");
+            number += 1;
+        }
+        let folder = Folder::checked(&out.join(&name), &report::FILE_NAMES, inputs)?;
+        folders.push((name, folder));
+    }
+    Ok(folders)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_stems_get_folders_of_their_own() {
+        let out = tempfile::tempdir().unwrap();
+        let recordings = ["a/t1.mcap", "b/t1.h5", "b/t2.csv"].map(PathBuf::from);
+        let folders = report_folders(out.path(), &recordings, &[]).unwrap();
+        let names: Vec<&str> = folders.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["t1", "t1-2", "t2"]);
+    }
+
+    #[test]
+    fn a_folder_stands_for_the_recordings_in_it() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["b.mcap", "a.CSV", "notes.txt"] {
+            std::fs::write(folder.path().join(name), "x").unwrap();
+        }
+        let found = recordings(&[folder.path().to_path_buf()]).unwrap();
+        let names: Vec<_> = found.iter().map(|p| p.file_name().unwrap().to_str().unwrap()).collect();
+        assert_eq!(names, ["a.CSV", "b.mcap"]);
+        let empty = tempfile::tempdir().unwrap();
+        assert!(recordings(&[empty.path().to_path_buf()]).is_err());
+    }
+}

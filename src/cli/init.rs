@@ -1,0 +1,21 @@
+//! `init`: what a recording holds to a cask file to fill in, on standard output.
+
+use super::Outcome;
+use super::output::print_plain;
+use super::progress::with_progress;
+use clap::Args;
+use dropcheck::{ingest, report};
+use std::path::PathBuf;
+
+#[derive(Args)]
+#[command(after_help = "Example:\n  dropcheck init drop.mcap > cask.toml")]
+pub struct Arguments {
+    /// The recording: MCAP, HDF5 or CSV, told by its content
+    recording: PathBuf,
+}
+
+pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
+    let listing = with_progress("reading", |progress| ingest::list(&arguments.recording, progress))?;
+    print_plain(report::cask_file_template(&listing).as_bytes())?;
+    Ok(Outcome::Clear)
+}

@@ -1,0 +1,28 @@
+//! `inspect`: what a recording holds, as a table or JSON.
+
+use super::Outcome;
+use super::output::{JsonTarget, print};
+use super::progress::with_progress;
+use clap::Args;
+use dropcheck::{ingest, report};
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// The recording: MCAP, HDF5 or CSV, told by its content
+    recording: PathBuf,
+    /// Write the listing as JSON to a file; with - to standard output, and nothing else there
+    #[arg(long, value_name = "FILE|-")]
+    json: Option<PathBuf>,
+}
+
+pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
+    let json = JsonTarget::checked(arguments.json.as_deref(), &[&arguments.recording])?;
+    let listing = with_progress("reading", |progress| ingest::list(&arguments.recording, progress))?;
+    json.write(|| report::listing_json(&listing))?;
+    if !json.is_standard_output() {
+        print(&report::listing_table(&listing))?;
+    }
+    let sound = listing.issues.iter().all(|issue| issue.severity == dropcheck::data::Severity::Note);
+    Ok(if sound { Outcome::Clear } else { Outcome::NeedsALook })
+}

@@ -1,0 +1,105 @@
+//! Words on the command line to one command each, and its outcome to an exit status.
+
+mod analyze;
+mod batch;
+mod complaint;
+mod init;
+mod inspect;
+mod output;
+mod predict;
+mod progress;
+
+pub use complaint::complain;
+
+use clap::{Parser, Subcommand};
+use dropcheck::data::Verdict;
+use std::process::ExitCode;
+
+const AFTER_HELP: &str = "\
+Examples:
+  dropcheck inspect drop.mcap
+  dropcheck init drop.mcap > cask.toml
+  dropcheck analyze drop.mcap --cask cask.toml --out report
+  dropcheck predict --cask cask.toml --sweep 5:45:5
+
+Exit status: 0 done, nothing speaks against the result; 1 done, a person should
+look at the data's quality or the comparison; 2 not done, one message says why.";
+
+/// What accelerometers on both ends of a dropped cask say about its slap-down.
+#[derive(Parser)]
+#[command(name = "dropcheck", version, after_help = AFTER_HELP, max_term_width = 100)]
+pub struct CommandLine {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// Analyse one recording: table, and with --out a report
+    Analyze(analyze::Arguments),
+    /// Analyse a campaign of recordings into one table
+    Batch(batch::Arguments),
+    /// Predict the slap-down by the analytical model, without a recording
+    Predict(predict::Arguments),
+    /// List what a recording holds: sources, rates, units, gaps
+    Inspect(inspect::Arguments),
+    /// Write a commented cask file to fill in, from what a recording holds
+    Init(init::Arguments),
+}
+
+/// How a command that ran to its end ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Outcome {
+    /// Nothing speaks against the result.
+    Clear,
+    /// A person should look.
+    NeedsALook,
+    /// A recording of several could not be analysed.
+    NotDone,
+}
+
+impl From<Verdict> for Outcome {
+    fn from(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Pass => Self::Clear,
+            Verdict::Review | Verdict::Fail => Self::NeedsALook,
+        }
+    }
+}
+
+impl From<Outcome> for ExitCode {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Clear => Self::SUCCESS,
+            Outcome::NeedsALook => Self::from(1),
+            Outcome::NotDone => Self::from(2),
+        }
+    }
+}
+
+/// Runs one command.
+pub fn run(command: &Command) -> miette::Result<Outcome> {
+    match command {
+        Command::Analyze(arguments) => analyze::run(arguments),
+        Command::Batch(arguments) => batch::run(arguments),
+        Command::Predict(arguments) => predict::run(arguments),
+        Command::Inspect(arguments) => inspect::run(arguments),
+        Command::Init(arguments) => init::run(arguments),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        CommandLine::command().debug_assert();
+    }
+
+    #[test]
+    fn the_worst_outcome_is_the_greatest() {
+        assert!(Outcome::Clear < Outcome::NeedsALook && Outcome::NeedsALook < Outcome::NotDone);
+    }
+}

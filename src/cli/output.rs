@@ -1,0 +1,367 @@
+//! Finished bytes to files, whole or not at all, and to standard output; checked before the work begins.
+
+use dropcheck::report::ReportError;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+
+/// How every JSON document of this program begins, within its first bytes.
+const SCHEMA_MARK: &str = "\"schema\": \"dropcheck.";
+const SCHEMA_MARK_WITHIN: u64 = 64;
+
+/// Why something could not be written.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum CannotWrite {
+    #[error("{path} is a file, and --out needs a folder")]
+    #[diagnostic(help("name a folder that does not exist yet, or an older report's"))]
+    NotAFolder { path: String },
+    #[error("nothing can be written in {path}: {source}")]
+    #[diagnostic(help("choose another place, or change its permissions"))]
+    NotWritable { path: String, source: io::Error },
+    #[error("the folder {path} does not exist")]
+    #[diagnostic(help("create it, or choose another place"))]
+    NoFolder { path: String },
+    #[error("{path} would overwrite the recording or the cask file")]
+    #[diagnostic(help("choose another place: no command alters its input"))]
+    Input { path: String },
+    #[error("{path} exists and was not written by dropcheck")]
+    #[diagnostic(help("choose another place, or remove it yourself"))]
+    Foreign { path: String },
+    #[error("{path} is a symbolic link")]
+    #[diagnostic(help("name the file that it points to"))]
+    Link { path: String },
+    #[error("{path} is a folder, and a file of that name must be written")]
+    #[diagnostic(help("choose another place, or remove it yourself"))]
+    IsAFolder { path: String },
+    #[error("{path} could not be written: {source}")]
+    #[diagnostic(help("see whether the disk is full; what was there before is unchanged"))]
+    Failed { path: String, source: io::Error },
+    #[error("standard output could not be written: {source}")]
+    StandardOutput { source: io::Error },
+}
+
+fn shown(path: &Path) -> String {
+    path.display().to_string()
+}
+
+/// A folder for files, found fit before the work.
+#[derive(Debug)]
+pub struct Folder {
+    path: PathBuf,
+}
+
+impl Folder {
+    /// Checks that files of these `names` can be written in `path`: that it is a folder or can become one, writable, and
+    /// that none of them is an input or another program's. The first of `names` that ends in ".json" tells whose they are.
+    pub fn checked(path: &Path, names: &[&str], inputs: &[&Path]) -> Result<Self, CannotWrite> {
+        if path.as_os_str().is_empty() {
+            return Err(CannotWrite::NoFolder { path: "\"\"".into() });
+        }
+        let mut standing = path;
+        while fs::symlink_metadata(standing).is_err() {
+            standing = match standing.parent() {
+                Some(parent) if !parent.as_os_str().is_empty() => parent,
+                _ => Path::new("."),
+            };
+        }
+        if !standing.is_dir() {
+            return Err(CannotWrite::NotAFolder { path: shown(standing) });
+        }
+        writable(standing)?;
+        let present: Vec<PathBuf> =
+            names.iter().map(|name| path.join(name)).filter(|p| fs::symlink_metadata(p).is_ok()).collect();
+        for target in &present {
+            if is_input(target, inputs) {
+                return Err(CannotWrite::Input { path: shown(target) });
+            }
+            if fs::symlink_metadata(target).is_ok_and(|m| m.is_dir()) {
+                return Err(CannotWrite::IsAFolder { path: shown(target) });
+            }
+        }
+        let own = names
+            .iter()
+            .find(|name| name.ends_with(".json"))
+            .is_none_or(|name| is_own_json(&path.join(name)));
+        match present.first() {
+            Some(first) if !own => Err(CannotWrite::Foreign { path: shown(first) }),
+            _ => Ok(Self { path: path.to_path_buf() }),
+        }
+    }
+
+    /// The path of one of its files, as a person reads it.
+    pub fn file(&self, name: &str) -> String {
+        shown(&self.path.join(name))
+    }
+
+    /// Writes every file beside its place and moves them there only when all are complete.
+    pub fn write(&self, files: &[(String, Vec<u8>)]) -> Result<(), CannotWrite> {
+        let failed = |path: &Path| {
+            let path = shown(path);
+            move |source| CannotWrite::Failed { path, source }
+        };
+        if self.path.is_dir() {
+            let staging = staging_in(&self.path).map_err(failed(&self.path))?;
+            for (name, bytes) in files {
+                write_whole(&staging.path().join(name), bytes).map_err(failed(&self.path.join(name)))?;
+            }
+            // The JSON goes first: it marks the folder as this program's, should a later move fail.
+            let (first, rest): (Vec<_>, Vec<_>) = files.iter().partition(|(name, _)| name.ends_with(".json"));
+            for (name, _) in first.into_iter().chain(rest) {
+                let target = self.path.join(name);
+                fs::rename(staging.path().join(name), &target).map_err(failed(&target))?;
+            }
+            return sync_folder(&self.path).map_err(failed(&self.path));
+        }
+        let parent = match self.path.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        };
+        fs::create_dir_all(parent).map_err(failed(parent))?;
+        let staging = staging_in(parent).map_err(failed(parent))?;
+        for (name, bytes) in files {
+            write_whole(&staging.path().join(name), bytes).map_err(failed(&self.path.join(name)))?;
+        }
+        fs::rename(staging.path(), &self.path).map_err(failed(&self.path))?;
+        // The folder has its name now; nothing is left to clear away.
+        let _ = staging.keep();
+        sync_folder(parent).map_err(failed(parent))
+    }
+}
+
+/// Where `--json` goes.
+#[derive(Debug)]
+pub enum JsonTarget {
+    /// Nowhere.
+    None,
+    /// Standard output.
+    StandardOutput,
+    /// A file, found fit before the work.
+    File(PathBuf),
+}
+
+impl JsonTarget {
+    /// Checks that `path` can be written, is no input and no other program's; "-" is standard output.
+    pub fn checked(path: Option<&Path>, inputs: &[&Path]) -> Result<Self, CannotWrite> {
+        let Some(path) = path else { return Ok(Self::None) };
+        if path == Path::new("-") {
+            return Ok(Self::StandardOutput);
+        }
+        if is_input(path, inputs) {
+            return Err(CannotWrite::Input { path: shown(path) });
+        }
+        match fs::metadata(path) {
+            Ok(there) if there.is_dir() => return Err(CannotWrite::IsAFolder { path: shown(path) }),
+            Ok(there) if there.is_file() => {
+                if fs::symlink_metadata(path).is_ok_and(|m| m.is_symlink()) {
+                    return Err(CannotWrite::Link { path: shown(path) });
+                }
+                if there.len() > 0 && !is_own_json(path) {
+                    return Err(CannotWrite::Foreign { path: shown(path) });
+                }
+            }
+            // A pipe or a device takes the bytes as they come.
+            Ok(_) => return Ok(Self::File(path.to_path_buf())),
+            Err(_) if fs::symlink_metadata(path).is_ok() => {
+                return Err(CannotWrite::Link { path: shown(path) });
+            }
+            Err(_) => {}
+        }
+        let parent = folder_of(path);
+        if !parent.is_dir() {
+            return Err(CannotWrite::NoFolder { path: shown(parent) });
+        }
+        writable(parent)?;
+        Ok(Self::File(path.to_path_buf()))
+    }
+
+    /// Whether nothing but JSON may stand on standard output.
+    pub fn is_standard_output(&self) -> bool {
+        matches!(self, Self::StandardOutput)
+    }
+
+    /// Makes the JSON and writes it, where it is wanted at all.
+    pub fn write(&self, make: impl FnOnce() -> Result<Vec<u8>, ReportError>) -> miette::Result<()> {
+        match self {
+            Self::None => {}
+            Self::StandardOutput => print_plain(&make()?)?,
+            Self::File(path) => {
+                let bytes = make()?;
+                write_file(path, &bytes)
+                    .map_err(|source| CannotWrite::Failed { path: shown(path), source })?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if fs::metadata(path).is_ok_and(|m| !m.is_file()) {
+        return fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
+    }
+    let parent = folder_of(path);
+    let staging = staging_in(parent)?;
+    let staged = staging.path().join("json");
+    write_whole(&staged, bytes)?;
+    fs::rename(&staged, path)?;
+    sync_folder(parent)
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// Writes to standard output with colours where a terminal shows them; a reader that left early is no error.
+pub fn print(text: &str) -> Result<(), CannotWrite> {
+    let mut out = anstream::stdout().lock();
+    settled(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// Writes bytes to standard output as they are.
+pub fn print_plain(bytes: &[u8]) -> Result<(), CannotWrite> {
+    let mut out = io::stdout().lock();
+    settled(out.write_all(bytes).and_then(|()| out.flush()))
+}
+
+fn settled(written: io::Result<()>) -> Result<(), CannotWrite> {
+    match written {
+        Err(source) if source.kind() != ErrorKind::BrokenPipe => Err(CannotWrite::StandardOutput { source }),
+        _ => Ok(()),
+    }
+}
+
+/// A folder that vanishes unless it is moved, beside the place its content goes to.
+fn staging_in(folder: &Path) -> io::Result<tempfile::TempDir> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".dropcheck-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As any folder the user makes: the process's mask takes away what it must.
+        builder.permissions(fs::Permissions::from_mode(0o777));
+    }
+    builder.tempdir_in(folder)
+}
+
+fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = File::create_new(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+/// Makes the new names durable; a system that cannot open a folder has its own way.
+fn sync_folder(folder: &Path) -> io::Result<()> {
+    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
+}
+
+fn writable(folder: &Path) -> Result<(), CannotWrite> {
+    tempfile::Builder::new()
+        .prefix(".dropcheck-")
+        .tempfile_in(folder)
+        .map(drop)
+        .map_err(|source| CannotWrite::NotWritable { path: shown(folder), source })
+}
+
+fn is_input(path: &Path, inputs: &[&Path]) -> bool {
+    let Ok(path) = fs::canonicalize(path) else { return false };
+    inputs.iter().any(|input| fs::canonicalize(input).is_ok_and(|input| input == path))
+}
+
+fn is_own_json(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(SCHEMA_MARK_WITHIN).read_to_end(&mut head));
+    read.is_ok() && String::from_utf8_lossy(&head).contains(SCHEMA_MARK)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OWN: &[u8] = b"{\n  \"schema\": \"dropcheck.result/1\"\n}\n";
+
+    fn files() -> Vec<(String, Vec<u8>)> {
+        vec![("report.html".into(), b"new".to_vec()), ("result.json".into(), OWN.to_vec())]
+    }
+
+    const NAMES: [&str; 2] = ["report.html", "result.json"];
+
+    #[test]
+    fn a_new_folder_appears_whole_and_an_old_report_is_replaced() {
+        let place = tempfile::tempdir().unwrap();
+        let dir = place.path().join("a/b");
+        for _ in 0..2 {
+            Folder::checked(&dir, &NAMES, &[]).unwrap().write(&files()).unwrap();
+            assert_eq!(fs::read(dir.join("report.html")).unwrap(), b"new");
+            assert_eq!(fs::read_dir(&dir).unwrap().count(), 2);
+            fs::write(dir.join("report.html"), "old").unwrap();
+        }
+        assert_eq!(fs::read_dir(place.path().join("a")).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_is_not_ours_is_left_alone() {
+        let place = tempfile::tempdir().unwrap();
+        fs::write(place.path().join("report.html"), "theirs").unwrap();
+        let refused = Folder::checked(place.path(), &NAMES, &[]).unwrap_err();
+        assert!(matches!(refused, CannotWrite::Foreign { .. }));
+        let file = place.path().join("theirs.json");
+        fs::write(&file, "{}").unwrap();
+        let refused = JsonTarget::checked(Some(&file), &[]).unwrap_err();
+        assert!(matches!(refused, CannotWrite::Foreign { .. }));
+    }
+
+    #[test]
+    fn an_input_is_never_a_target() {
+        let place = tempfile::tempdir().unwrap();
+        let recording = place.path().join("result.json");
+        fs::write(&recording, OWN).unwrap();
+        let other_words = place.path().join(".").join("result.json");
+        assert!(matches!(
+            Folder::checked(place.path(), &NAMES, &[&other_words]),
+            Err(CannotWrite::Input { .. })
+        ));
+        assert!(matches!(
+            JsonTarget::checked(Some(&recording), &[&other_words]),
+            Err(CannotWrite::Input { .. })
+        ));
+    }
+
+    #[test]
+    fn a_file_in_the_place_of_a_folder_is_refused_before_the_work() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("file");
+        fs::write(&file, "x").unwrap();
+        for out in [file.clone(), file.join("below")] {
+            assert!(matches!(Folder::checked(&out, &NAMES, &[]), Err(CannotWrite::NotAFolder { .. })));
+        }
+        assert!(matches!(JsonTarget::checked(Some(place.path()), &[]), Err(CannotWrite::IsAFolder { .. })));
+        let far = place.path().join("none/result.json");
+        assert!(matches!(JsonTarget::checked(Some(&far), &[]), Err(CannotWrite::NoFolder { .. })));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_in_the_folder_is_replaced_and_what_it_points_to_stays() {
+        let place = tempfile::tempdir().unwrap();
+        let theirs = place.path().join("theirs");
+        fs::write(&theirs, "theirs").unwrap();
+        let dir = place.path().join("dir");
+        fs::create_dir(&dir).unwrap();
+        fs::write(dir.join("result.json"), OWN).unwrap();
+        std::os::unix::fs::symlink(&theirs, dir.join("report.html")).unwrap();
+        Folder::checked(&dir, &NAMES, &[]).unwrap().write(&files()).unwrap();
+        assert_eq!(fs::read(&theirs).unwrap(), b"theirs");
+        assert_eq!(fs::read(dir.join("report.html")).unwrap(), b"new");
+        let link = place.path().join("link.json");
+        std::os::unix::fs::symlink(&theirs, &link).unwrap();
+        assert!(matches!(JsonTarget::checked(Some(&link), &[]), Err(CannotWrite::Link { .. })));
+    }
+
+    #[test]
+    fn a_reader_that_left_is_no_error() {
+        assert!(settled(Err(io::Error::from(ErrorKind::BrokenPipe))).is_ok());
+        assert!(settled(Err(io::Error::from(ErrorKind::StorageFull))).is_err());
+    }
+}

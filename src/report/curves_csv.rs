@@ -1,0 +1,127 @@
+//! Curves to `curves.csv`: one table on the finest channel's times, units in the header.
+
+use super::ReportError;
+use super::grid::{Reader, STANDARD_GRAVITY_M_S2, common_time_s, motion_columns};
+use super::text::printable;
+use crate::data::Curves;
+use std::fmt::Write;
+
+/// The table; a cell outside its curve is empty.
+///
+/// # Errors
+/// [`ReportError::Csv`] where the writer fails.
+pub(super) fn bytes(curves: &Curves) -> Result<Vec<u8>, ReportError> {
+    let columns = columns(curves);
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_field("time_s")?;
+    for column in &columns {
+        writer.write_field(&column.header)?;
+    }
+    writer.write_record(None::<&[u8]>)?;
+    let mut cell = String::new();
+    for time_s in common_time_s(curves) {
+        put(&mut cell, format_args!("{time_s:.9}"));
+        writer.write_field(&cell)?;
+        for column in &columns {
+            match column.reader.at(time_s) {
+                Some(value) => put(&mut cell, format_args!("{}", single(value * column.factor))),
+                None => cell.clear(),
+            }
+            writer.write_field(&cell)?;
+        }
+        writer.write_record(None::<&[u8]>)?;
+    }
+    writer.into_inner().map_err(|error| ReportError::Csv(csv::Error::from(error.into_error())))
+}
+
+/// One column beside the time.
+struct Column<'a> {
+    header: String,
+    reader: Reader<'a>,
+    factor: f64,
+}
+
+fn columns(curves: &Curves) -> Vec<Column<'_>> {
+    let mut columns = Vec::new();
+    let mut add = |header: String, time_s, values, factor| {
+        if let Some(reader) = Reader::new(time_s, values) {
+            columns.push(Column { header: text_cell(&header), reader, factor });
+        }
+    };
+    for curve in &curves.channels {
+        let name = &curve.channel;
+        add(format!("{name}_raw_g"), &curve.time_s, &curve.raw_m_s2, 1.0 / STANDARD_GRAVITY_M_S2);
+        add(format!("{name}_filtered_g"), &curve.time_s, &curve.filtered_m_s2, 1.0 / STANDARD_GRAVITY_M_S2);
+        add(format!("{name}_velocity_m_s"), &curve.time_s, &curve.velocity_m_s, 1.0);
+    }
+    if let Some(motion) = &curves.motion {
+        for (name, values) in motion_columns(motion) {
+            add(name.to_owned(), &motion.time_s, values, 1.0);
+        }
+    }
+    columns
+}
+
+/// A text cell that no spreadsheet takes for a formula.
+pub(super) fn text_cell(text: &str) -> String {
+    let text = printable(text);
+    if text.starts_with(['=', '+', '-', '@']) { format!("'{text}") } else { text }
+}
+
+/// Seven digits, more than any recorder resolves, in half the bytes of seventeen.
+#[allow(clippy::cast_possible_truncation, reason = "the loss of digits is meant")]
+pub(super) fn single(value: f64) -> f32 {
+    value as f32
+}
+
+fn put(cell: &mut String, value: std::fmt::Arguments) {
+    cell.clear();
+    // Writing to a string does not fail.
+    let _ = cell.write_fmt(value);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+
+    fn rows(curves: &Curves) -> Vec<csv::StringRecord> {
+        let bytes = bytes(curves).unwrap();
+        let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(bytes.as_slice());
+        reader.records().map(Result::unwrap).collect()
+    }
+
+    #[test]
+    fn the_header_carries_names_and_units() {
+        let rows = rows(&sample::analysis().curves);
+        let header: Vec<&str> = rows[0].iter().take(5).collect();
+        assert_eq!(header, ["time_s", "A1_raw_g", "A1_filtered_g", "A1_velocity_m_s", "A2_raw_g"]);
+        assert!(rows[0].iter().any(|name| name == "vertical_velocity_first_m_s"));
+        assert_eq!(rows.len(), 2001);
+    }
+
+    #[test]
+    fn values_return_as_they_were() {
+        let curves = sample::analysis().curves;
+        let rows = rows(&curves);
+        for (i, row) in rows[1..].iter().enumerate().step_by(97) {
+            // Single precision, printed so that it reads back to the same bits.
+            let velocity: f32 = row[3].parse().unwrap();
+            assert_eq!(velocity.to_bits(), single(curves.channels[0].velocity_m_s[i]).to_bits(), "row {i}");
+        }
+    }
+
+    #[test]
+    fn cells_outside_the_motion_are_empty() {
+        let rows = rows(&sample::analysis().curves);
+        assert_eq!(&rows[1][7], "");
+        assert_ne!(&rows[300][7], "");
+    }
+
+    #[test]
+    fn a_name_cannot_be_a_formula() {
+        let mut curves = sample::analysis().curves;
+        curves.channels[0].channel = "=HYPERLINK(\"x\")".into();
+        assert!(rows(&curves)[0][1].starts_with("'="));
+    }
+}

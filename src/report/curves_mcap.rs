@@ -1,0 +1,206 @@
+//! Curves to `curves.mcap`: JSON messages with schemas, one a sample, as Foxglove opens them.
+
+use super::ReportError;
+use super::curves_csv::single;
+use super::grid::{STANDARD_GRAVITY_M_S2, motion_columns};
+use super::text::printable;
+use crate::data::{Analysis, ChannelCurve, MotionCurve};
+use mcap::records::MessageHeader;
+use mcap::{Compression, WriteOptions, Writer};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::io::Cursor;
+
+/// The file as bytes; `log_time` is absolute where the recording's start is known, else from 0.
+///
+/// # Errors
+/// [`ReportError::Mcap`] where the writer fails.
+pub(super) fn bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
+    let options = WriteOptions::new()
+        .compression(Some(Compression::Zstd))
+        .library(concat!("dropcheck ", env!("CARGO_PKG_VERSION")));
+    let mut file = Curves {
+        writer: options.create(Cursor::new(Vec::new()))?,
+        start_ns: analysis.start_unix_ns.unwrap_or(0),
+        buffer: String::new(),
+    };
+    let schema = file.schema("dropcheck.ChannelCurve", &["raw_g", "filtered_g", "velocity_m_s"])?;
+    let mut topics = Vec::new();
+    for curve in &analysis.curves.channels {
+        let topic = topic(&curve.channel, &topics);
+        file.channel(schema, &topic, curve)?;
+        topics.push(topic);
+    }
+    if let Some(motion) = &analysis.curves.motion {
+        file.motion(motion)?;
+    }
+    file.events(analysis)?;
+    file.writer.finish()?;
+    Ok(file.writer.into_inner().into_inner())
+}
+
+/// `/dropcheck/NAME` that no earlier channel has; letters that a message path cannot hold become `_`.
+fn topic(name: &str, taken: &[String]) -> String {
+    let name: String = printable(name)
+        .chars()
+        .map(|c| if c.is_alphanumeric() || c == '_' || c == '-' { c } else { '_' })
+        .collect();
+    let mut topic = format!("/dropcheck/{name}");
+    while topic == "/dropcheck/motion" || topic == "/dropcheck/events" || taken.contains(&topic) {
+        topic.push('_');
+    }
+    topic
+}
+
+/// The file under way.
+struct Curves {
+    writer: Writer<Cursor<Vec<u8>>>,
+    start_ns: i64,
+    buffer: String,
+}
+
+impl Curves {
+    /// Registers a JSON schema with a time stamp and numbers.
+    fn schema(&mut self, name: &str, fields: &[&str]) -> Result<u16, ReportError> {
+        let mut properties = serde_json::Map::new();
+        properties.insert(
+            "timestamp".into(),
+            serde_json::json!({
+                "type": "object", "title": "time",
+                "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}}
+            }),
+        );
+        for field in fields {
+            let kind = if *field == "name" { "string" } else { "number" };
+            properties.insert((*field).into(), serde_json::json!({"type": kind}));
+        }
+        let schema = serde_json::json!({"title": name, "type": "object", "properties": properties});
+        Ok(self.writer.add_schema(name, "jsonschema", &serde_json::to_vec(&schema)?)?)
+    }
+
+    fn channel(&mut self, schema: u16, topic: &str, curve: &ChannelCurve) -> Result<(), ReportError> {
+        let id = self.writer.add_channel(schema, topic, "json", &BTreeMap::new())?;
+        let columns: [(&str, &[f64], f64); 3] = [
+            ("raw_g", &curve.raw_m_s2, 1.0 / STANDARD_GRAVITY_M_S2),
+            ("filtered_g", &curve.filtered_m_s2, 1.0 / STANDARD_GRAVITY_M_S2),
+            ("velocity_m_s", &curve.velocity_m_s, 1.0),
+        ];
+        self.samples(id, &curve.time_s, &columns)
+    }
+
+    fn motion(&mut self, motion: &MotionCurve) -> Result<(), ReportError> {
+        let columns = motion_columns(motion);
+        let schema = self.schema("dropcheck.Motion", &columns.map(|(name, _)| name))?;
+        let id = self.writer.add_channel(schema, "/dropcheck/motion", "json", &BTreeMap::new())?;
+        self.samples(id, &motion.time_s, &columns.map(|(name, values)| (name, values, 1.0)))
+    }
+
+    fn events(&mut self, analysis: &Analysis) -> Result<(), ReportError> {
+        let schema = self.schema("dropcheck.Event", &["name", "time_s"])?;
+        let id = self.writer.add_channel(schema, "/dropcheck/events", "json", &BTreeMap::new())?;
+        let events = &analysis.result.events;
+        for (name, time_s) in [
+            ("release", events.release_s),
+            ("first contact", events.first_contact_s),
+            ("separation", events.separation_s),
+            ("slap-down", events.slap_down_s),
+        ] {
+            if let Some(time_s) = time_s.filter(|t| t.is_finite()) {
+                self.begin(time_s);
+                // Writing to a string does not fail.
+                let _ = write!(self.buffer, r#","name":"{name}","time_s":{time_s}}}"#);
+                self.send(id, 0, time_s)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn samples(
+        &mut self,
+        id: u16,
+        time_s: &[f64],
+        columns: &[(&str, &[f64], f64)],
+    ) -> Result<(), ReportError> {
+        for (i, &time_s) in time_s.iter().enumerate() {
+            self.begin(time_s);
+            for (name, values, factor) in columns {
+                // A value that is missing is left out: JSON has no number for it.
+                if let Some(value) = values.get(i).filter(|v| v.is_finite()) {
+                    let _ = write!(self.buffer, r#","{name}":{}"#, single(value * factor));
+                }
+            }
+            self.buffer.push('}');
+            self.send(id, u32::try_from(i).unwrap_or(u32::MAX), time_s)?;
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self, time_s: f64) {
+        let stamp_ns = self.stamp_ns(time_s);
+        self.buffer.clear();
+        let (sec, nsec) = (stamp_ns / 1_000_000_000, stamp_ns % 1_000_000_000);
+        let _ = write!(self.buffer, r#"{{"timestamp":{{"sec":{sec},"nsec":{nsec}}}"#);
+    }
+
+    fn send(&mut self, channel_id: u16, sequence: u32, time_s: f64) -> Result<(), ReportError> {
+        let stamp_ns = self.stamp_ns(time_s);
+        let header = MessageHeader { channel_id, sequence, log_time: stamp_ns, publish_time: stamp_ns };
+        self.writer.write_to_known_channel(&header, self.buffer.as_bytes())?;
+        Ok(())
+    }
+
+    /// Time of a sample, ns; what lies before 1970, or before 0 in a recording without a start, is put at 0.
+    #[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates, and so does the sum")]
+    fn stamp_ns(&self, time_s: f64) -> u64 {
+        u64::try_from(self.start_ns.saturating_add((time_s * 1e9).round() as i64)).unwrap_or(0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+    use serde_json::Value;
+
+    #[test]
+    fn messages_return_with_absolute_times() {
+        let analysis = sample::analysis();
+        let bytes = bytes(&analysis).unwrap();
+        let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+        for message in mcap::MessageStream::new(&bytes).unwrap() {
+            let message = message.unwrap();
+            let json: Value = serde_json::from_slice(&message.data).unwrap();
+            assert_eq!(json["timestamp"]["sec"], 1_700_000_000);
+            assert!(message.log_time >= 1_700_000_000_000_000_000);
+            if message.channel.topic == "/dropcheck/A1" && message.sequence == 700 {
+                let truth = analysis.curves.channels[0].velocity_m_s[700];
+                // Single precision, printed so that it reads back to the same bits.
+                let read = single(json["velocity_m_s"].as_f64().unwrap());
+                assert_eq!(read.to_bits(), single(truth).to_bits());
+            }
+            *counts.entry(message.channel.topic.clone()).or_default() += 1;
+        }
+        assert_eq!(counts["/dropcheck/A1"], 2000);
+        assert_eq!(counts["/dropcheck/A2"], 2000);
+        assert_eq!(counts["/dropcheck/motion"], 1400);
+        assert_eq!(counts["/dropcheck/events"], 3);
+    }
+
+    #[test]
+    fn topics_never_collide() {
+        let taken = vec!["/dropcheck/A_1".to_owned()];
+        assert_eq!(topic("A 1", &taken), "/dropcheck/A_1_");
+        assert_eq!(topic("motion", &[]), "/dropcheck/motion_");
+    }
+
+    #[test]
+    fn what_is_not_a_number_is_left_out() {
+        let mut analysis = sample::analysis();
+        analysis.curves.channels[0].raw_m_s2[0] = f64::NAN;
+        let bytes = bytes(&analysis).unwrap();
+        let first = mcap::MessageStream::new(&bytes).unwrap().next().unwrap().unwrap();
+        let json: Value = serde_json::from_slice(&first.data).unwrap();
+        assert!(json.get("raw_g").is_none());
+        assert!(json.get("filtered_g").is_some());
+    }
+}

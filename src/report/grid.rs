@@ -1,0 +1,146 @@
+//! Curves on grids of their own to values at any time.
+
+use crate::data::{Curves, MotionCurve};
+
+/// Standard gravity, m/s² (3rd CGPM, 1901).
+pub(super) const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
+
+/// The columns of a motion curve: name with unit, values.
+pub(super) fn motion_columns(motion: &MotionCurve) -> [(&'static str, &[f64]); 7] {
+    [
+        ("angle_rad", &motion.angle_rad),
+        ("angular_velocity_rad_s", &motion.angular_velocity_rad_s),
+        ("vertical_velocity_first_m_s", &motion.first_end_vertical_m_s),
+        ("vertical_velocity_second_m_s", &motion.second_end_vertical_m_s),
+        ("horizontal_velocity_second_m_s", &motion.second_end_horizontal_m_s),
+        ("height_first_m", &motion.first_end_height_m),
+        ("height_second_m", &motion.second_end_height_m),
+    ]
+}
+
+/// Step of a uniform time vector, s; `None` where it has fewer than two points or does not rise.
+#[allow(clippy::cast_precision_loss, reason = "lengths stay below 2^52")]
+pub(super) fn step_s(time_s: &[f64]) -> Option<f64> {
+    let (first, last) = (time_s.first()?, time_s.last()?);
+    let step = (last - first) / (time_s.len().checked_sub(1)? as f64);
+    (step.is_finite() && step > 0.0).then_some(step)
+}
+
+/// The times of the finest channel, carried on over the span of every curve.
+#[allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "counts are checked to be finite and bounded before the cast"
+)]
+pub(super) fn common_time_s(curves: &Curves) -> Vec<f64> {
+    let times = || {
+        curves
+            .channels
+            .iter()
+            .map(|c| c.time_s.as_slice())
+            .chain(curves.motion.iter().map(|m| m.time_s.as_slice()))
+    };
+    let Some((finest, step)) =
+        times().filter_map(|t| step_s(t).map(|step| (t, step))).min_by(|a, b| a.1.total_cmp(&b.1))
+    else {
+        return Vec::new();
+    };
+    let from = times().filter_map(|t| t.first().copied()).fold(f64::INFINITY, f64::min);
+    let to = times().filter_map(|t| t.last().copied()).fold(f64::NEG_INFINITY, f64::max);
+    let before = ((finest[0] - from) / step).round();
+    let rows = before + 1.0 + ((to - finest[0]) / step).round();
+    let held: usize = times().map(<[f64]>::len).sum();
+    // Curves that lie far apart would ask for rows that hold nothing: then the finest channel's own times serve.
+    if !(rows.is_finite() && rows <= 4.0 * held as f64 + 4.0) {
+        return finest.to_vec();
+    }
+    (0..rows as usize).map(|i| finest[0] + (i as f64 - before) * step).collect()
+}
+
+/// A curve on a uniform grid, read between its points on a line.
+pub(super) struct Reader<'a> {
+    start_s: f64,
+    step_s: f64,
+    values: &'a [f64],
+}
+
+impl<'a> Reader<'a> {
+    /// A reader of `values` at `time_s`; `None` where there is no grid.
+    pub(super) fn new(time_s: &'a [f64], values: &'a [f64]) -> Option<Self> {
+        Some(Self { start_s: *time_s.first()?, step_s: step_s(time_s)?, values })
+    }
+
+    /// The value at `time_s`; `None` outside the curve or where it is not finite.
+    #[allow(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the place is checked against the length before the cast"
+    )]
+    pub(super) fn at(&self, time_s: f64) -> Option<f64> {
+        /// Places that differ from a grid point by less are on it: the rounding of times, in steps.
+        const ON_GRID: f64 = 1e-3;
+        let place = (time_s - self.start_s) / self.step_s;
+        let last = self.values.len().checked_sub(1)? as f64;
+        if !(place > -ON_GRID && place < last + ON_GRID) {
+            return None;
+        }
+        let place = place.clamp(0.0, last);
+        let below = place.floor();
+        let weight = place - below;
+        let value = if weight < ON_GRID {
+            *self.values.get(below as usize)?
+        } else if weight > 1.0 - ON_GRID {
+            *self.values.get(below as usize + 1)?
+        } else {
+            self.values.get(below as usize)? * (1.0 - weight) + self.values.get(below as usize + 1)? * weight
+        };
+        value.is_finite().then_some(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::ChannelCurve;
+
+    fn curve(start_s: f64, step_s: f64, n: i32) -> ChannelCurve {
+        let time_s: Vec<f64> = (0..n).map(|i| start_s + f64::from(i) * step_s).collect();
+        let values: Vec<f64> = time_s.iter().map(|t| 2.0 * t).collect();
+        ChannelCurve {
+            channel: "A".into(),
+            raw_m_s2: values.clone(),
+            filtered_m_s2: values.clone(),
+            velocity_m_s: values,
+            time_s,
+        }
+    }
+
+    #[test]
+    fn the_finest_grid_covers_every_curve() {
+        let curves =
+            Curves { channels: vec![curve(0.0, 0.01, 11), curve(0.05, 0.001, 31)], ..Curves::default() };
+        let time_s = common_time_s(&curves);
+        assert_eq!(time_s.len(), 101);
+        assert!(time_s[0].abs() < 1e-12 && (time_s[100] - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn curves_far_apart_do_not_ask_for_endless_rows() {
+        let curves =
+            Curves { channels: vec![curve(0.0, 1e-6, 100), curve(1e6, 1e-6, 50)], ..Curves::default() };
+        assert_eq!(common_time_s(&curves).len(), 100);
+        assert!(common_time_s(&Curves::default()).is_empty());
+    }
+
+    #[test]
+    fn a_reader_is_silent_outside_its_curve() {
+        let curve = curve(1.0, 0.1, 11);
+        let reader = Reader::new(&curve.time_s, &curve.velocity_m_s).unwrap();
+        assert_eq!(reader.at(0.99), None);
+        assert_eq!(reader.at(2.01), None);
+        // A line is read exactly but for round-off.
+        assert!((reader.at(1.234).unwrap() - 2.468).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,82 @@
+//! Results and listings to JSON: pretty, keys in the contract's order, never a number that is not one.
+
+use super::ReportError;
+use crate::data::{DropResult, Estimate, Listing};
+
+/// `result.json`: an estimate that is not finite becomes null as a whole, for half a quantity is none.
+///
+/// # Errors
+/// [`ReportError::Json`] where the writer fails.
+pub fn result(result: &DropResult) -> Result<Vec<u8>, ReportError> {
+    let mut result = result.clone();
+    let first = &mut result.first_impact;
+    let second = &mut result.slap_down;
+    for estimate in [
+        &mut first.time,
+        &mut first.impact_velocity,
+        &mut first.duration,
+        &mut first.rebound_velocity,
+        &mut first.angular_velocity,
+        &mut second.time,
+        &mut second.flight_time,
+        &mut second.speed,
+        &mut second.vertical_velocity,
+        &mut second.horizontal_velocity,
+        &mut second.angle,
+        &mut result.k,
+    ] {
+        *estimate = estimate.filter(|e: &Estimate| e.value.is_finite() && e.u95.is_finite());
+    }
+    result.comparison = result.comparison.filter(|c| {
+        [c.predicted, c.predicted_u95, c.measured, c.measured_u95, c.difference_percent]
+            .iter()
+            .all(|x| x.is_finite())
+    });
+    pretty(&result)
+}
+
+/// The JSON of `inspect`.
+///
+/// # Errors
+/// [`ReportError::Json`] where the writer fails.
+pub fn listing(listing: &Listing) -> Result<Vec<u8>, ReportError> {
+    pretty(listing)
+}
+
+/// Two spaces of indentation and a line feed at the end.
+pub(super) fn pretty<T: serde::Serialize>(value: &T) -> Result<Vec<u8>, ReportError> {
+    let mut bytes = serde_json::to_vec_pretty(value)?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+    use serde_json::Value;
+
+    #[test]
+    fn the_result_has_the_keys_of_the_contract() {
+        let json: Value = serde_json::from_slice(&result(&sample::analysis().result).unwrap()).unwrap();
+        assert_eq!(json["schema"], "dropcheck.result/1");
+        assert_eq!(json["k"]["unit"], "1");
+        assert_eq!(json["verdict"], "review");
+        assert_eq!(json["model"]["name"], "body");
+        assert_eq!(json["predictions"][0]["contact"], "rough");
+        assert_eq!(json["quality"][0]["code"], "clipped");
+        for key in ["time", "flight_time", "speed", "vertical_velocity", "horizontal_velocity", "angle"] {
+            assert!(json["slap_down"][key]["u95"].is_f64(), "{key}");
+        }
+    }
+
+    #[test]
+    fn half_a_quantity_is_null() {
+        let mut analysis = sample::analysis();
+        analysis.result.k = Some(Estimate::new(f64::NAN, 0.1, "1"));
+        analysis.result.slap_down.speed = Some(Estimate::new(20.0, f64::INFINITY, "m/s"));
+        let json: Value = serde_json::from_slice(&result(&analysis.result).unwrap()).unwrap();
+        assert!(json["k"].is_null());
+        assert!(json["slap_down"]["speed"].is_null());
+    }
+}

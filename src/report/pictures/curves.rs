@@ -1,0 +1,240 @@
+//! Accelerations (Fig. 12), velocities (Fig. 13), motion and spectra to panels.
+
+use super::super::ReportError;
+use super::super::grid::STANDARD_GRAVITY_M_S2;
+use super::panel::{COLOURS, Line, Mark, Panel};
+use super::{Picture, assemble};
+use crate::data::{Analysis, Axis, ChannelCurve, End};
+use plotters::style::RGBColor;
+
+const TIME_LABEL: &str = "time from first contact, ms";
+const RECORD_TIME_LABEL: &str = "time from the recording's first sample, ms";
+
+/// The deceleration of both ends, unfiltered and filtered.
+pub(super) fn accelerations(analysis: &Analysis) -> Result<Picture, ReportError> {
+    let clock = Clock::of(analysis);
+    let panels: Vec<Panel> = [(End::First, "First end"), (End::Second, "Second end")]
+        .into_iter()
+        .map(|(end, title)| {
+            let mut lines = Vec::new();
+            for (curve, colour, axis) in curves_of(analysis, end) {
+                lines.push(Line {
+                    label: Some(format!("{} unfiltered", curve.channel)),
+                    colour,
+                    opacity: 0.32,
+                    stroke: 2,
+                    dashed: false,
+                    points: clock.points(&curve.time_s, &curve.raw_m_s2, 1.0 / STANDARD_GRAVITY_M_S2),
+                });
+                lines.push(Line {
+                    label: Some(format!("{} filtered{}", curve.channel, axis_note(axis))),
+                    colour,
+                    opacity: 1.0,
+                    stroke: 4,
+                    dashed: axis == Axis::Axial,
+                    points: clock.points(&curve.time_s, &curve.filtered_m_s2, 1.0 / STANDARD_GRAVITY_M_S2),
+                });
+            }
+            clock.panel(analysis, title, "deceleration, g", lines)
+        })
+        .collect();
+    let filter = analysis
+        .result
+        .settings
+        .iter()
+        .find(|setting| setting.name.contains("low-pass"))
+        .map_or_else(String::new, |setting| format!(" Filter: {}, without phase.", setting.value));
+    let caption = format!(
+        "Specific force at both ends over time, offset removed: unfiltered (faint) and filtered (bold), 1 g = 9.80665 m/s². \
+         A decelerating end reads positive on its transverse axis.{filter}"
+    );
+    assemble("accelerations", "Deceleration of both ends", caption, &panels)
+}
+
+/// The velocity of both ends, from the sensors and as the rigid body moves.
+pub(super) fn velocities(analysis: &Analysis) -> Result<Picture, ReportError> {
+    let clock = Clock::of(analysis);
+    let mut sensors = Vec::new();
+    for end in [End::First, End::Second] {
+        for (curve, colour, axis) in curves_of(analysis, end) {
+            sensors.push(Line {
+                label: Some(format!("{} ({} end{})", curve.channel, end_word(end), axis_note(axis))),
+                colour,
+                opacity: 1.0,
+                stroke: 4,
+                dashed: axis == Axis::Axial,
+                points: clock.points(&curve.time_s, &curve.velocity_m_s, 1.0),
+            });
+        }
+    }
+    let mut panels = vec![clock.panel(analysis, "Along the sensors", "velocity, m/s", sensors)];
+    if let Some(motion) = &analysis.curves.motion {
+        let line = |label: &str, colour: usize, dashed, values: &[f64]| Line {
+            label: Some(label.to_owned()),
+            colour: COLOURS[colour],
+            opacity: 1.0,
+            stroke: 4,
+            dashed,
+            points: clock.points(&motion.time_s, values, 1.0),
+        };
+        let lines = vec![
+            line("first end, vertical", 0, false, &motion.first_end_vertical_m_s),
+            line("second end, vertical", 1, false, &motion.second_end_vertical_m_s),
+            line("second end, horizontal", 1, true, &motion.second_end_horizontal_m_s),
+        ];
+        panels.push(clock.panel(analysis, "Of the rigid body", "velocity, m/s", lines));
+    }
+    let caption = "Velocity over time. Above: each sensor's unfiltered signal integrated along its axis, gravity left out between \
+                   the contacts. Below: the ends of the rigid body that all channels share, up positive."
+        .to_owned();
+    assemble("velocities", "Velocity of both ends", caption, &panels)
+}
+
+/// Heights of both ends and the inclination.
+pub(super) fn motion(analysis: &Analysis) -> Result<Picture, ReportError> {
+    let clock = Clock::of(analysis);
+    let mut panels = Vec::new();
+    if let Some(motion) = &analysis.curves.motion {
+        let line = |label: Option<&str>, colour: usize, values: &[f64], factor: f64| Line {
+            label: label.map(str::to_owned),
+            colour: COLOURS[colour],
+            opacity: 1.0,
+            stroke: 4,
+            dashed: false,
+            points: clock.points(&motion.time_s, values, factor),
+        };
+        let heights = vec![
+            line(Some("first end"), 0, &motion.first_end_height_m, 1.0),
+            line(Some("second end"), 1, &motion.second_end_height_m, 1.0),
+        ];
+        panels.push(clock.panel(analysis, "Height above the target", "height, m", heights));
+        let angle = vec![line(None, 2, &motion.angle_rad, 180.0 / std::f64::consts::PI)];
+        panels.push(clock.panel(analysis, "Inclination of the axis", "angle, °", angle));
+    }
+    let caption = "The rigid body's motion from just before first contact to the slap-down: height of the corner of each end that \
+                   touches the target, and inclination of the axis above the horizontal."
+        .to_owned();
+    assemble("motion", "Motion of the cask", caption, &panels)
+}
+
+/// The amplitude spectra of all channels up to half the sample rate.
+pub(super) fn spectra(analysis: &Analysis) -> Result<Picture, ReportError> {
+    let lines = analysis
+        .curves
+        .spectra
+        .iter()
+        .enumerate()
+        .map(|(i, spectrum)| Line {
+            label: Some(spectrum.channel.clone()),
+            colour: COLOURS[i % COLOURS.len()],
+            opacity: 0.9,
+            stroke: 3,
+            dashed: false,
+            points: spectrum
+                .frequency_hz
+                .iter()
+                .copied()
+                .zip(spectrum.magnitude_m_s.iter().copied())
+                .collect(),
+        })
+        .collect();
+    let modes = analysis.result.flight.as_ref().map_or(&[][..], |flight| &flight.modes[..]);
+    let panel = Panel {
+        title: "Amplitude spectrum".into(),
+        x_label: "frequency, Hz",
+        y_label: "magnitude, m/s",
+        logarithmic: true,
+        height: 560,
+        lines,
+        marks: modes
+            .iter()
+            .filter(|mode| mode.frequency_hz.is_finite() && mode.frequency_hz > 0.0)
+            .map(|mode| Mark { at: mode.frequency_hz, label: format!("mode {:.0} Hz", mode.frequency_hz) })
+            .collect(),
+    };
+    let caption = "One-sided amplitude spectrum of the unfiltered specific force over the event window, up to half the sample rate; \
+                   both axes logarithmic. Marked: the bending modes that the fit of the flight took."
+        .to_owned();
+    assemble("spectra", "Spectra", caption, &[panel])
+}
+
+/// The time axis: from first contact where it is known.
+struct Clock {
+    zero_s: f64,
+    label: &'static str,
+}
+
+impl Clock {
+    fn of(analysis: &Analysis) -> Self {
+        match analysis.result.events.first_contact_s.filter(|t| t.is_finite()) {
+            Some(zero_s) => Self { zero_s, label: TIME_LABEL },
+            None => Self { zero_s: 0.0, label: RECORD_TIME_LABEL },
+        }
+    }
+
+    fn points(&self, time_s: &[f64], values: &[f64], factor: f64) -> Vec<(f64, f64)> {
+        time_s.iter().zip(values).map(|(t, v)| ((t - self.zero_s) * 1e3, v * factor)).collect()
+    }
+
+    fn panel(&self, analysis: &Analysis, title: &str, y_label: &'static str, lines: Vec<Line>) -> Panel {
+        let events = &analysis.result.events;
+        let marks = [
+            ("release", events.release_s),
+            ("first contact", events.first_contact_s),
+            ("separation", events.separation_s),
+            ("slap-down", events.slap_down_s),
+        ]
+        .into_iter()
+        .filter_map(|(label, at)| {
+            let at = (at.filter(|t| t.is_finite())? - self.zero_s) * 1e3;
+            // An event a hair beyond the curve, as the slap-down that ends the motion, is marked at its end.
+            let (from, to) = ends(&lines)?;
+            let slack = 0.01 * (to - from);
+            let shown = (from - slack..=to + slack).contains(&at);
+            let at = at.clamp(from, to);
+            shown.then(|| Mark { at, label: label.into() })
+        })
+        .collect();
+        Panel {
+            title: title.to_owned(),
+            x_label: self.label,
+            y_label,
+            logarithmic: false,
+            height: 350,
+            lines,
+            marks,
+        }
+    }
+}
+
+/// First and last time over all lines.
+fn ends(lines: &[Line]) -> Option<(f64, f64)> {
+    let times = || {
+        lines.iter().flat_map(|line| line.points.first().into_iter().chain(line.points.last())).map(|p| p.0)
+    };
+    let from = times().min_by(f64::total_cmp)?;
+    let to = times().max_by(f64::total_cmp)?;
+    (from <= to).then_some((from, to))
+}
+
+/// The curves of one end with the colour of their channel, which is the same in every picture.
+fn curves_of(analysis: &Analysis, end: End) -> impl Iterator<Item = (&ChannelCurve, RGBColor, Axis)> {
+    analysis.curves.channels.iter().enumerate().filter_map(move |(i, curve)| {
+        let summary = analysis.result.channels.iter().find(|c| c.name == curve.channel)?;
+        (summary.end == end).then_some((curve, COLOURS[i % COLOURS.len()], summary.axis))
+    })
+}
+
+fn axis_note(axis: Axis) -> &'static str {
+    match axis {
+        Axis::Transverse => "",
+        Axis::Axial => ", axial",
+    }
+}
+
+fn end_word(end: End) -> &'static str {
+    match end {
+        End::First => "first",
+        End::Second => "second",
+    }
+}

@@ -1,0 +1,107 @@
+//! An analysis to its five pictures, as SVG text.
+
+mod comparison;
+mod curves;
+mod decimate;
+mod panel;
+
+use super::ReportError;
+use crate::data::Analysis;
+use panel::Panel;
+
+/// One picture.
+pub(super) struct Picture {
+    /// The name of its file, without ".svg".
+    pub(super) name: &'static str,
+    /// Its heading.
+    pub(super) title: &'static str,
+    /// What it shows, for a reader who cannot see it.
+    pub(super) alt: String,
+    /// What the reader should know beside it.
+    pub(super) caption: String,
+    /// The drawing.
+    pub(super) svg: String,
+}
+
+/// Accelerations, velocities, motion, spectra and comparison; one that has nothing to show says so.
+///
+/// # Errors
+/// [`ReportError::Picture`] where the plotter fails.
+pub(super) fn draw(analysis: &Analysis) -> Result<Vec<Picture>, ReportError> {
+    Ok(vec![
+        curves::accelerations(analysis)?,
+        curves::velocities(analysis)?,
+        curves::motion(analysis)?,
+        curves::spectra(analysis)?,
+        comparison::picture(analysis)?,
+    ])
+}
+
+/// Draws `panels` one below the other, or a sentence where there is none.
+fn assemble(
+    name: &'static str,
+    title: &'static str,
+    caption: String,
+    panels: &[Panel],
+) -> Result<Picture, ReportError> {
+    let panels: Vec<&Panel> = panels.iter().filter(|panel| panel.has_points()).collect();
+    let failed = |reason| ReportError::Picture { picture: name, reason };
+    if panels.is_empty() {
+        let svg = panel::nothing("There is nothing to show: see the findings.").map_err(failed)?;
+        let alt = format!("{title}: nothing to show.");
+        return Ok(Picture {
+            name,
+            title,
+            alt,
+            caption: "The recording did not yield this picture.".into(),
+            svg,
+        });
+    }
+    let svg = panel::draw(&panels).map_err(failed)?;
+    let alt = format!("{title}. {caption}");
+    Ok(Picture { name, title, alt, caption, svg: panel::described(&svg, title) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+
+    #[test]
+    fn pictures_are_small_and_self_contained() {
+        for picture in draw(&sample::analysis()).unwrap() {
+            assert!(picture.svg.starts_with("<svg ") && picture.svg.trim_end().ends_with("</svg>"));
+            assert!(picture.svg.len() < 600_000, "{}: {} bytes", picture.name, picture.svg.len());
+            assert!(!picture.svg.contains("href"), "{} points elsewhere", picture.name);
+            assert!(!picture.svg.contains("NaN"), "{}", picture.name);
+        }
+    }
+
+    #[test]
+    fn a_name_cannot_leave_its_text() {
+        let mut analysis = sample::analysis();
+        let name = "<script>alert(1)</script>\u{1}";
+        analysis.curves.channels[0].channel = name.into();
+        analysis.result.channels[0].name = name.into();
+        let svg: String = draw(&analysis).unwrap().into_iter().map(|p| p.svg).collect();
+        assert!(!svg.contains("<script") && !svg.contains('\u{1}'));
+        assert!(svg.contains("&lt;script&gt;"));
+    }
+
+    #[test]
+    fn holes_in_a_curve_are_left_open() {
+        let mut analysis = sample::analysis();
+        for i in 500..600 {
+            analysis.curves.channels[0].raw_m_s2[i] = f64::NAN;
+        }
+        analysis.curves.channels[1].velocity_m_s.fill(f64::NAN);
+        let pictures = draw(&analysis).unwrap();
+        assert!(!pictures[0].svg.contains("-2147483648") && !pictures[1].svg.contains("-2147483648"));
+    }
+
+    #[test]
+    fn nothing_is_said_to_be_nothing() {
+        let pictures = draw(&sample::without_anything()).unwrap();
+        assert!(pictures.iter().all(|p| p.svg.contains("nothing to show")));
+    }
+}

@@ -1,0 +1,145 @@
+//! Numbers to text with the digits that their uncertainty carries.
+
+use crate::data::Estimate;
+
+/// Shown where a quantity could not be had.
+pub(super) const MISSING: &str = "–";
+
+/// Significant digits of a half-width, and so of the value beside it: two (JCGM 100:2008, 7.2.6).
+const INTERVAL_DIGITS: usize = 2;
+
+/// Digits of a value whose interval is unknown or nil.
+const BARE_DIGITS: usize = 4;
+
+/// Value, half-width and unit of an estimate as text; `None` where it is missing or not finite. Seconds are told in ms.
+pub(super) fn parts(estimate: Option<&Estimate>) -> Option<(String, String, &str)> {
+    let estimate = estimate.filter(|e| e.value.is_finite())?;
+    let (factor, unit) = match estimate.unit {
+        "s" => (1e3, "ms"),
+        "deg" => (1.0, "°"),
+        "1" => (1.0, ""),
+        unit => (1.0, unit),
+    };
+    let (value, u95) = (estimate.value * factor, estimate.u95 * factor);
+    if !u95.is_finite() {
+        return Some((significant(value, BARE_DIGITS), "unknown".into(), unit));
+    }
+    if u95 <= 0.0 {
+        return Some((significant(value, BARE_DIGITS), "0".into(), unit));
+    }
+    let decimals = decimals_of(u95, INTERVAL_DIGITS);
+    Some((fixed(value, decimals), fixed(u95, decimals), unit))
+}
+
+/// "23.90 ± 0.31 m/s", or the dash of a missing quantity.
+pub(super) fn interval(estimate: Option<&Estimate>) -> String {
+    parts(estimate).map_or_else(
+        || MISSING.to_owned(),
+        |(value, u95, unit)| format!("{value} ± {u95} {unit}").trim_end().to_owned(),
+    )
+}
+
+/// `value ± u95 unit` for a pair that is no [`Estimate`].
+pub(super) fn pair(value: f64, u95: f64, unit: &'static str) -> String {
+    interval(Some(&Estimate::new(value, u95, unit)))
+}
+
+/// `value` with `digits` significant digits, no exponent within 1e-4 to 1e7.
+pub(super) fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return MISSING.to_owned();
+    }
+    if value != 0.0 && !(1e-4..1e7).contains(&value.abs()) {
+        return format!("{value:.*e}", digits.saturating_sub(1)).replace('-', "−");
+    }
+    fixed(value, decimals_of(value, digits))
+}
+
+/// `value` with `digits` significant digits and without the zeros at its end: for settings and sizes.
+pub(super) fn plain(value: f64, digits: usize) -> String {
+    let text = significant(value, digits);
+    if text.contains('.') && !text.contains('e') {
+        return text.trim_end_matches('0').trim_end_matches('.').to_owned();
+    }
+    text
+}
+
+/// An optional number with `digits` significant digits, or the dash.
+pub(super) fn optional(value: Option<f64>, digits: usize) -> String {
+    value.map_or_else(|| MISSING.to_owned(), |value| significant(value, digits))
+}
+
+/// An optional number with fixed decimals, or the dash.
+pub(super) fn optional_fixed(value: Option<f64>, decimals: usize) -> String {
+    value.filter(|v| v.is_finite()).map_or_else(|| MISSING.to_owned(), |value| fixed(value, decimals))
+}
+
+/// "+1.7 %", with the sign always.
+pub(super) fn percent(value: f64) -> String {
+    if !value.is_finite() {
+        return MISSING.to_owned();
+    }
+    let text = fixed(value, 1);
+    if text.starts_with('−') || text == "0.0" { format!("{text} %") } else { format!("+{text} %") }
+}
+
+/// `value` with `decimals`, a true minus sign, and no minus before a zero.
+pub(super) fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.bytes().all(|b| b == b'0' || b == b'.') => digits.to_owned(),
+        Some(digits) => format!("−{digits}"),
+        None => text,
+    }
+}
+
+/// Decimals that show `digits` significant digits of `value` after it is rounded to them.
+fn decimals_of(value: f64, digits: usize) -> usize {
+    // The exponent is read from the rounded text, so that 0.0996 counts as 0.10.
+    let text = format!("{:.*e}", digits.saturating_sub(1), value.abs());
+    let exponent: i32 = text.split('e').nth(1).and_then(|e| e.parse().ok()).unwrap_or(0);
+    let wanted = i32::try_from(digits).unwrap_or(i32::MAX) - 1 - exponent;
+    usize::try_from(wanted.clamp(0, 12)).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_interval_sets_the_digits() {
+        let cases = [
+            (23.904, 0.312, "m/s", "23.90 ± 0.31 m/s"),
+            (23.904, 0.0996, "m/s", "23.90 ± 0.10 m/s"),
+            (0.5588, 0.012, "1", "0.559 ± 0.012"),
+            (0.071_055, 0.000_012, "s", "71.055 ± 0.012 ms"),
+            (-5.04, 1.4, "deg", "−5.0 ± 1.4 °"),
+            (1234.5, 150.0, "m/s", "1234 ± 150 m/s"),
+            (-0.001, 0.3, "m/s", "0.00 ± 0.30 m/s"),
+            (13.288_34, 0.0, "m/s", "13.29 ± 0 m/s"),
+            (13.288_34, f64::NAN, "m/s", "13.29 ± unknown m/s"),
+            (f64::NAN, 0.1, "m/s", "–"),
+        ];
+        for (value, u95, unit, text) in cases {
+            assert_eq!(pair(value, u95, unit), text);
+        }
+        assert_eq!(interval(None), "–");
+    }
+
+    #[test]
+    fn bare_numbers_keep_their_significant_digits() {
+        assert_eq!(significant(0.0, 4), "0.000");
+        assert_eq!(significant(298.65, 3), "299");
+        assert_eq!(significant(1.0e-7, 2), "1.0e−7");
+        assert_eq!(plain(9.0, 4), "9");
+        assert_eq!(plain(100_000.0, 6), "100000");
+        assert_eq!(plain(0.792, 6), "0.792");
+    }
+
+    #[test]
+    fn a_percentage_carries_its_sign() {
+        assert_eq!(percent(1.71), "+1.7 %");
+        assert_eq!(percent(-3.0), "−3.0 %");
+        assert_eq!(percent(-0.01), "0.0 %");
+    }
+}

@@ -1,0 +1,359 @@
+//! A plausible analysis of an ANF-18 drop, made by hand, for the tests of this module only.
+
+use crate::data::{
+    Analysis, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelSpec, ChannelSummary, Comparison,
+    Contact, Coupling, Curves, Drop, DropResult, End, Estimate, Events, FilterChoice, FirstImpact, FlightFit,
+    FlightModelScore, Input, Issue, IssueCode, Mode, ModelCandidate, ModelChoice, MotionCurve, Plateau,
+    Prediction, RecordingFormat, Setting, Severity, SlapDown, Source, Spectrum, Unit, Verdict,
+};
+use std::f64::consts::PI;
+
+const CONTACT_S: f64 = 0.150_827;
+const SEPARATION_S: f64 = 0.157_3;
+const SLAP_DOWN_S: f64 = 0.216_055;
+const IMPACT_VELOCITY_M_S: f64 = 13.288;
+const RATE_HZ: f64 = 20_000.0;
+
+/// An analysis with every part filled in; the verdict is "review" because of a clipped channel.
+pub(super) fn analysis() -> Analysis {
+    Analysis {
+        result: result(),
+        cask_file: cask_file(),
+        curves: curves(),
+        start_unix_ns: Some(1_700_000_000_000_000_000),
+    }
+}
+
+/// An analysis that found nothing: no quantity, no curve, one error.
+pub(super) fn without_anything() -> Analysis {
+    let mut analysis = analysis();
+    let result = &mut analysis.result;
+    result.first_impact = FirstImpact::default();
+    result.slap_down = SlapDown::default();
+    result.k = None;
+    result.model = None;
+    result.comparison = None;
+    result.events = Events::default();
+    result.flight = None;
+    result.predictions.clear();
+    result.verdict = Verdict::Fail;
+    result.quality = vec![Issue::new(
+        IssueCode::NoImpact,
+        Severity::Error,
+        "no impact was found: no channel exceeds 5 g; check units and sources in the cask file",
+    )];
+    analysis.curves = Curves::default();
+    analysis.start_unix_ns = None;
+    analysis
+}
+
+#[allow(clippy::unnecessary_wraps, reason = "every field that takes it is optional")]
+fn estimate(value: f64, u95: f64, unit: &'static str) -> Option<Estimate> {
+    Some(Estimate::new(value, u95, unit))
+}
+
+fn result() -> DropResult {
+    DropResult {
+        schema: "dropcheck.result/1",
+        version: "0.1.0",
+        input: Input {
+            recording: "drop-2024-06-11/anf18-test-3.mcap".into(),
+            recording_sha256: "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".into(),
+            format: RecordingFormat::Mcap,
+            cask: "anf18.toml".into(),
+            cask_sha256: "60303ae22b998861bce3b28f33eec1be758a213c86c93c076dbe9f558c11c752".into(),
+        },
+        first_impact: FirstImpact {
+            time: estimate(CONTACT_S, 0.000_012, "s"),
+            impact_velocity: estimate(IMPACT_VELOCITY_M_S, 0.054, "m/s"),
+            duration: estimate(SEPARATION_S - CONTACT_S, 0.000_35, "s"),
+            rebound_velocity: estimate(7.425, 0.13, "m/s"),
+            angular_velocity: estimate(5.152, 0.031, "rad/s"),
+        },
+        slap_down: SlapDown {
+            time: estimate(SLAP_DOWN_S, 0.000_02, "s"),
+            flight_time: estimate(SLAP_DOWN_S - SEPARATION_S, 0.000_36, "s"),
+            speed: estimate(20.56, 0.11, "m/s"),
+            vertical_velocity: estimate(-20.44, 0.11, "m/s"),
+            horizontal_velocity: estimate(2.18, 0.14, "m/s"),
+            angle: estimate(-5.04, 0.22, "deg"),
+        },
+        k: estimate(0.5588, 0.0102, "1"),
+        model: Some(model()),
+        predictions: predictions(),
+        comparison: Some(Comparison {
+            predicted: 20.49,
+            predicted_u95: 0.19,
+            measured: 20.56,
+            measured_u95: 0.11,
+            difference_percent: 0.34,
+            agrees: true,
+        }),
+        quality: quality(),
+        verdict: Verdict::Review,
+        events: Events {
+            release_s: None,
+            first_contact_s: Some(CONTACT_S),
+            separation_s: Some(SEPARATION_S),
+            slap_down_s: Some(SLAP_DOWN_S),
+        },
+        channels: vec![
+            summary("A1", End::First, "/daq/a1.samples"),
+            summary("A2", End::Second, "/daq/a2.samples"),
+        ],
+        flight: Some(flight()),
+        settings: settings(),
+    }
+}
+
+fn model() -> ModelChoice {
+    let candidate = |model, predicted, u95, difference, consistent| ModelCandidate {
+        model,
+        predicted: Some(predicted),
+        u95: Some(u95),
+        difference_percent: Some(difference),
+        consistent,
+    };
+    ModelChoice {
+        name: BodyModel::Body,
+        reason: "the rod predicts 22.76 m/s, 10.7 % above the measurement and beyond both intervals; the \
+                 body with its section of 0.792 m lies within them"
+            .into(),
+        candidates: vec![
+            candidate(BodyModel::Rod, 22.76, 0.20, 10.7, false),
+            candidate(BodyModel::Body, 20.49, 0.19, -0.34, true),
+        ],
+    }
+}
+
+fn predictions() -> Vec<Prediction> {
+    let rows = [
+        (BodyModel::Rod, Contact::Rough, 0.0, 19.81, 1.80),
+        (BodyModel::Rod, Contact::Rough, 1.0, 25.04, 2.26),
+        (BodyModel::Rod, Contact::Smooth, 0.0, 20.32, 0.9),
+        (BodyModel::Rod, Contact::Smooth, 1.0, 25.06, 1.2),
+        (BodyModel::Body, Contact::Rough, 0.0, 18.02, 1.9),
+        (BodyModel::Body, Contact::Rough, 1.0, 22.31, 2.4),
+        (BodyModel::Body, Contact::Rough, 0.5588, 20.49, 2.17),
+        (BodyModel::Body, Contact::Coulomb(0.4), 0.5588, 20.77, 1.8),
+    ];
+    rows.map(|(model, contact, k, speed, horizontal): (BodyModel, Contact, f64, f64, f64)| Prediction {
+        model,
+        contact,
+        k,
+        slap_down_speed_m_s: Some(speed),
+        vertical_velocity_m_s: Some(-(speed * speed - horizontal * horizontal).sqrt()),
+        horizontal_velocity_m_s: Some(horizontal),
+        angular_velocity_rad_s: 4.0 + 1.8 * k,
+        flight_time_s: Some(0.078 - 0.02 * k),
+        energy_ratio: Some(0.72 + 0.25 * k),
+        slap_down_angle_deg: Some(-4.0 - 1.9 * k),
+        first_end_impacts: 1,
+        impulse_ratio: 0.41,
+    })
+    .to_vec()
+}
+
+fn quality() -> Vec<Issue> {
+    vec![
+        Issue::new(
+            IssueCode::Clipped,
+            Severity::Warning,
+            "A1 stands at ±500 g in 42 samples of the first impact; the rebound velocity may read low by up to \
+             0.2 m/s. Repeat with a range of at least 1000 g, or leave the channel out",
+        )
+        .on("A1")
+        .between(0.152_1, 0.152_4),
+        Issue::new(IssueCode::Offset, Severity::Note, "an offset of 0.31 m/s² was removed from A2").on("A2"),
+    ]
+}
+
+fn summary(name: &str, end: End, source: &str) -> ChannelSummary {
+    ChannelSummary {
+        name: name.into(),
+        end,
+        axis: Axis::Transverse,
+        source: source.into(),
+        samples: 30_000,
+        sample_rate_hz: 100_000.0,
+        unit: "g (cask file)".into(),
+        offset_m_s2: Some(0.31),
+        noise_m_s2: Some(4.2),
+        peak_filtered_m_s2: Some(4_930.0),
+        peak_raw_m_s2: Some(6_210.0),
+        clipped: Vec::new(),
+    }
+}
+
+fn flight() -> FlightFit {
+    let plateau = |channel: &str, step| Plateau {
+        channel: channel.into(),
+        velocity_step_m_s: step,
+        u_m_s: 0.021,
+        zero_shift_m_s2: 0.0,
+        u_zero_shift_m_s2: 0.0,
+        residual_m_s: 0.032,
+    };
+    let score = |modes, drift, bic, residual_m_s| FlightModelScore { modes, drift, bic, residual_m_s };
+    FlightFit {
+        from_s: SEPARATION_S + 0.0005,
+        to_s: SLAP_DOWN_S - 0.0005,
+        plateaus: vec![plateau("A1", 20.1), plateau("A2", -6.3)],
+        modes: vec![Mode { frequency_hz: 95.0, damping: 0.02, amplitude_m_s: 0.9 }],
+        drift: false,
+        candidates: vec![
+            score(0, false, 8123.0, 0.61),
+            score(1, false, -3120.0, 0.032),
+            score(1, true, -3107.0, 0.032),
+            score(2, false, -3098.0, 0.032),
+        ],
+    }
+}
+
+fn settings() -> Vec<Setting> {
+    let setting = |name: &str, value: &str, origin: &str| Setting {
+        name: name.into(),
+        value: value.into(),
+        origin: origin.into(),
+    };
+    vec![
+        setting("low-pass for the curves", "CFC 180 (−3 dB at 298 Hz)", "default"),
+        setting("gravity", "9.81 m/s²", "default"),
+        setting("flight window", "157.8 to 215.6 ms", "from the data: 0.5 ms inside the contacts"),
+        setting("contact law", "rough", "cask file"),
+    ]
+}
+
+fn cask_file() -> CaskFile {
+    let channel = |name: &str, end, source: &str, position_m| ChannelSpec {
+        name: name.into(),
+        end,
+        axis: Axis::Transverse,
+        source: Source::Path(source.into()),
+        unit: Some(Unit::G),
+        position_m,
+        offset_m: 0.0,
+        polarity: 1.0,
+        full_scale: Some(500.0),
+        sample_rate_hz: None,
+        time: None,
+        coupling: Coupling::Dc,
+    };
+    CaskFile {
+        path: "anf18.toml".into(),
+        sha256: "60303ae22b998861bce3b28f33eec1be758a213c86c93c076dbe9f558c11c752".into(),
+        cask: Cask {
+            name: "ANF-18".into(),
+            mass_kg: 4466.0,
+            length_m: 5.512,
+            height_m: 0.792,
+            width_m: Some(0.96),
+            cog_m: 2.756,
+            inertia_kg_m2: 11_540.0,
+            is_body: true,
+        },
+        drop: Drop {
+            height_m: 9.0,
+            angle_rad: 15.0 * PI / 180.0,
+            impact_velocity_m_s: IMPACT_VELOCITY_M_S,
+            impact_velocity_given: false,
+            gravity_m_s2: 9.81,
+        },
+        contact: Contact::Rough,
+        filter: FilterChoice::Auto,
+        time: None,
+        channels: vec![
+            channel("A1", End::First, "/daq/a1.samples", 0.15),
+            channel("A2", End::Second, "/daq/a2.samples", 5.362),
+        ],
+        defaults: ["cask.cog_m", "drop.gravity_m_s2", "contact.friction"].map(String::from).to_vec(),
+    }
+}
+
+fn curves() -> Curves {
+    let time_s: Vec<f64> = (0..2000).map(|i| 0.14 + f64::from(i) / RATE_HZ).collect();
+    let pulse = |t: f64, from: f64, length: f64, peak: f64| {
+        let x = (t - from) / length;
+        if (0.0..1.0).contains(&x) { peak * (PI * x).sin() } else { 0.0 }
+    };
+    let ringing = |t: f64, from: f64, amplitude: f64| {
+        let tau = t - from;
+        if tau < 0.0 { 0.0 } else { amplitude * (-12.0 * tau).exp() * (2.0 * PI * 95.0 * tau).sin() }
+    };
+    let first: Vec<f64> = time_s
+        .iter()
+        .map(|&t| pulse(t, CONTACT_S, SEPARATION_S - CONTACT_S, 5000.0) + ringing(t, CONTACT_S, 500.0))
+        .collect();
+    let second: Vec<f64> = time_s
+        .iter()
+        .map(|&t| {
+            pulse(t, CONTACT_S, SEPARATION_S - CONTACT_S, -1600.0)
+                + ringing(t, CONTACT_S, -450.0)
+                + pulse(t, SLAP_DOWN_S, 0.009, 5600.0)
+        })
+        .collect();
+    Curves {
+        channels: vec![channel("A1", &time_s, &first), channel("A2", &time_s, &second)],
+        motion: Some(motion()),
+        spectra: vec![spectrum("A1", 1.0), spectrum("A2", 1.6)],
+    }
+}
+
+fn channel(name: &str, time_s: &[f64], filtered_m_s2: &[f64]) -> ChannelCurve {
+    let mut velocity = -IMPACT_VELOCITY_M_S;
+    let velocity_m_s = filtered_m_s2
+        .iter()
+        .map(|a| {
+            velocity += a / RATE_HZ;
+            velocity
+        })
+        .collect();
+    let raw = |(i, a): (i32, &f64)| {
+        a * (1.0 + 0.2 * (f64::from(i) * 2.3).sin()) + 40.0 * (f64::from(i) * 1.7).sin()
+    };
+    ChannelCurve {
+        channel: name.into(),
+        time_s: time_s.to_vec(),
+        raw_m_s2: (0..).zip(filtered_m_s2).map(raw).collect(),
+        filtered_m_s2: filtered_m_s2.to_vec(),
+        velocity_m_s,
+    }
+}
+
+fn motion() -> MotionCurve {
+    let mut motion = MotionCurve::default();
+    let (mut angle, mut first_height, mut second_height) = (15.0 * PI / 180.0, 0.06, 1.486);
+    for i in 0..1400 {
+        let t = 0.146 + f64::from(i) / RATE_HZ;
+        let done = ((t - CONTACT_S) / (SEPARATION_S - CONTACT_S)).clamp(0.0, 1.0);
+        let omega = 5.15 * done;
+        let first = -13.29 + 20.7 * done - 9.81 * (t - SEPARATION_S).max(0.0);
+        let second = -13.29 - 6.3 * done - 9.81 * (t - SEPARATION_S).max(0.0);
+        angle -= omega / RATE_HZ;
+        first_height += first / RATE_HZ;
+        second_height += second / RATE_HZ;
+        motion.time_s.push(t);
+        motion.angle_rad.push(angle);
+        motion.angular_velocity_rad_s.push(omega);
+        motion.first_end_vertical_m_s.push(first);
+        motion.second_end_vertical_m_s.push(second);
+        motion.second_end_horizontal_m_s.push(2.18 * done);
+        motion.first_end_height_m.push(first_height);
+        motion.second_end_height_m.push(second_height);
+    }
+    motion
+}
+
+fn spectrum(name: &str, factor: f64) -> Spectrum {
+    let frequency_hz: Vec<f64> = (0..2000).map(|i| f64::from(i) * 25.0).collect();
+    let magnitude = |f: &f64| {
+        let pulse = 20.0 / (1.0 + (f / 120.0).powi(2));
+        let mode = 8.0 / (1.0 + ((f - 95.0) / 6.0).powi(2));
+        factor * (pulse + mode + 0.002 * (1.0 + (f * 0.7).sin().abs()))
+    };
+    Spectrum {
+        channel: name.into(),
+        magnitude_m_s: frequency_hz.iter().map(magnitude).collect(),
+        frequency_hz,
+    }
+}

@@ -1,0 +1,342 @@
+//! What a recording holds to a commented cask file to fill in.
+
+use super::text::{line, printable};
+use crate::data::{ListedChannel, Listing};
+use std::fmt::Write;
+
+/// The mark behind every value that only the user knows.
+const FILL_IN: &str = "FILL IN";
+
+/// Units of acceleration, or of a sensor's output, that the cask file knows.
+const UNITS: [&str; 4] = ["g", "m/s^2", "V", "mV"];
+
+/// Words in a source that make it no acceleration.
+const OTHER_WORDS: [&str; 14] = [
+    "time",
+    "stamp",
+    "sec",
+    "nsec",
+    "nanosec",
+    "seq",
+    "covariance",
+    "orientation",
+    "angular",
+    "gyro",
+    "temp",
+    "sample_rate",
+    "frame_id",
+    "index",
+];
+
+/// The cask file, valid TOML as it stands; what only the user knows is marked "FILL IN".
+#[must_use]
+pub fn cask_file(listing: &Listing) -> String {
+    let mut out = head(listing);
+    let taken = accelerations(listing);
+    if taken.is_empty() {
+        out.push_str("# No source in this recording looks like an acceleration. Name yours here:\n");
+        channel(&mut out, 0, None);
+        channel(&mut out, 1, None);
+    }
+    for (i, listed) in taken.iter().enumerate() {
+        channel(&mut out, i, Some(listed));
+    }
+    let left: Vec<&ListedChannel> =
+        listing.channels.iter().filter(|c| !taken.iter().any(|t| t.source == c.source)).collect();
+    if !left.is_empty() {
+        out.push_str("\n# Also in the recording, but it does not look like an acceleration:\n");
+        for listed in left {
+            line(&mut out, format_args!("#   {}", printable(&listed.source)));
+        }
+    }
+    out
+}
+
+fn head(listing: &Listing) -> String {
+    let mut out = String::new();
+    line(&mut out, format_args!("# Cask file for {}", printable(&listing.recording)));
+    line(
+        &mut out,
+        format_args!("# Lines marked \"{FILL_IN}\" hold a placeholder that only you can replace."),
+    );
+    line(
+        &mut out,
+        format_args!("# Lengths in m, mass in kg, angles in degrees. A line behind # is optional.\n"),
+    );
+    line(
+        &mut out,
+        format_args!(
+            r#"[cask]
+name = "CASK"               # {FILL_IN}: the cask's name
+mass_kg = 1000.0            # {FILL_IN}
+length_m = 5.0              # {FILL_IN}: along the axis, between the two ends that strike
+# height_m = 0.8            # cross-section in the plane of the drop; left out: a thin rod
+# width_m = 0.8             # across that plane, reported only
+# cog_m = 2.5               # centre of gravity from the first end; left out: length_m / 2
+# inertia_kg_m2 = 2100.0    # about the centre of gravity; left out: m (l² + h²) / 12
+
+[drop]
+height_m = 9.0              # {FILL_IN}: free-fall height of the lowest point
+angle_deg = 15.0            # {FILL_IN}: inclination of the axis above the horizontal
+# impact_velocity_m_s = 13.3  # overrides √(2 g h)
+# gravity_m_s2 = 9.81       # this is the default
+
+# [contact]
+# friction = "rough"        # "rough" (default), "smooth" or a Coulomb coefficient such as 0.4
+
+# [filter]                  # left out: chosen from the mass and the data; give one of the two
+# cfc = 180                 # a channel frequency class of SAE J211 / ISO 6487
+# cutoff_hz = 400.0         # a −3 dB cut-off
+"#
+        ),
+    );
+    match listing.channels.iter().find(|c| is_time(&c.source) && c.kind != "number" && c.kind != "array") {
+        Some(time) => {
+            line(&mut out, format_args!("# [recording]"));
+            line(&mut out, format_args!("# time = {}   # where the times are not found by themselves\n", quoted(&time.source)));
+        }
+        None => out.push_str(
+            "# [recording]\n# time = \"time_s\"           # CSV column or HDF5 dataset with the times, where they are not found by themselves\n\n",
+        ),
+    }
+    out.push_str(
+        "# At least one transverse channel on each end. The first end is low and touches first.\n\
+         # Ends, axes and signs below are guesses: check each against the test plan.\n",
+    );
+    out
+}
+
+fn channel(out: &mut String, index: usize, listed: Option<&&ListedChannel>) {
+    let source = listed.map_or("/topic.field", |c| c.source.as_str());
+    let first = names_end(source).unwrap_or(index.is_multiple_of(2));
+    let (end, position) = if first { ("first", "0.0") } else { ("second", "5.0") };
+    let axial = source.rsplit('.').next() == Some("x") && source.contains("acceleration");
+    let axis = if axial { "axial" } else { "transverse" };
+    out.push_str("\n[[channel]]\n");
+    if let Some(listed) = listed {
+        line(out, format_args!("# {}", facts(listed)));
+    }
+    line(out, format_args!("name = \"A{}\"", index + 1));
+    line(out, format_args!("end = \"{end}\"{}# check: \"first\" or \"second\"", pad(end.len() + 8)));
+    line(out, format_args!("axis = \"{axis}\"{}# check: \"transverse\" or \"axial\"", pad(axis.len() + 9)));
+    let fill =
+        if listed.is_none() { format!("   # {FILL_IN}: see dropcheck inspect") } else { String::new() };
+    line(out, format_args!("source = {}{fill}", source_value(source)));
+    unit(out, listed.and_then(|c| c.unit.as_deref()));
+    line(
+        out,
+        format_args!("position_m = {position}            # {FILL_IN}: along the axis, from the first end"),
+    );
+    out.push_str(
+        "# offset_m = 0.0            # across the axis, positive away from the target\n\
+         # polarity = 1              # -1: mounted the other way round\n\
+         # full_scale = 2000.0       # in `unit`: where the channel clips\n",
+    );
+    match listed.and_then(|c| c.sample_rate_hz) {
+        Some(_) => out.push_str("# sample_rate_hz = 100000.0  # overrides what the recording says\n"),
+        None => out.push_str(
+            "# sample_rate_hz = 100000.0  # needed where the recording has neither rate nor times\n",
+        ),
+    }
+    out.push_str(
+        "# time = \"/daq/time_s\"      # this channel's own times (CSV column, HDF5 dataset)\n\
+         # coupling = \"dc\"           # or \"ac\", then also time_constant_s = 0.3\n",
+    );
+}
+
+fn unit(out: &mut String, told: Option<&str>) {
+    match told {
+        Some(unit) if UNITS[..2].contains(&unit) => {
+            line(
+                out,
+                format_args!(
+                    "# unit = {}{}# the recording says so itself",
+                    quoted(unit),
+                    pad(unit.len() + 11)
+                ),
+            );
+        }
+        Some(unit) if UNITS.contains(&unit) => {
+            line(out, format_args!("unit = {}{}# as the recording says", quoted(unit), pad(unit.len() + 9)));
+            line(out, format_args!("sensitivity = 10.0          # {FILL_IN}: mV per g"));
+        }
+        told => {
+            let says = told.map_or_else(
+                || "the recording does not say".to_owned(),
+                |u| format!("the recording says {:?}", printable(u)),
+            );
+            line(
+                out,
+                format_args!(
+                    "unit = \"g\"                  # {FILL_IN}: \"g\", \"m/s^2\", \"V\" or \"mV\"; {says}"
+                ),
+            );
+            line(out, format_args!("# sensitivity = 10.0        # mV per g, with \"V\" and \"mV\""));
+        }
+    }
+}
+
+fn pad(used: usize) -> String {
+    " ".repeat(28usize.saturating_sub(used).max(1))
+}
+
+fn facts(listed: &ListedChannel) -> String {
+    let mut facts = Vec::new();
+    if let Some(n) = listed.samples {
+        facts.push(format!("{n} samples"));
+    }
+    if let Some(rate) = listed.sample_rate_hz {
+        facts.push(format!("{} Hz", super::rounding::plain(rate, 7)));
+    }
+    if let Some((low, high)) = listed.range {
+        let three = |v| super::rounding::significant(v, 3);
+        facts.push(format!("{} to {} {}", three(low), three(high), listed.unit.as_deref().unwrap_or("")));
+    }
+    facts.push(listed.encoding.clone());
+    printable(&facts.join(", "))
+}
+
+/// The sources that look like accelerations: by unit or name where any does, else all that are numbers.
+fn accelerations(listing: &Listing) -> Vec<&ListedChannel> {
+    let numeric: Vec<&ListedChannel> = listing
+        .channels
+        .iter()
+        .filter(|c| c.unreadable.is_none() && c.kind != "topic" && c.samples != Some(0))
+        .filter(|c| !OTHER_WORDS.iter().any(|word| has_word(&c.source, word)) && !is_time(&c.source))
+        .collect();
+    let likely: Vec<&ListedChannel> = numeric
+        .iter()
+        .filter(|c| {
+            let unit = c.unit.as_deref().is_some_and(|u| UNITS.contains(&u));
+            unit || c.source.to_lowercase().contains("acc")
+        })
+        // The y axis of an IMU lies across the plane of the drop.
+        .filter(|c| !c.source.ends_with("linear_acceleration.y"))
+        .copied()
+        .collect();
+    if likely.is_empty() { numeric } else { likely }
+}
+
+/// Whether `word` stands in `source` between letters of another kind.
+fn has_word(source: &str, word: &str) -> bool {
+    let source = source.to_lowercase();
+    let letter = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphabetic());
+    source.match_indices(word).any(|(at, _)| {
+        !letter(source[..at].chars().next_back()) && !letter(source[at + word.len()..].chars().next())
+    })
+}
+
+fn is_time(source: &str) -> bool {
+    let last = source.rsplit(['/', '.']).next().unwrap_or(source).to_lowercase();
+    last == "t"
+        || last.starts_with("t_")
+        || last.starts_with("t [")
+        || last.contains("time")
+        || last.starts_with("zeit")
+}
+
+/// Whether a source names its end: first or second.
+fn names_end(source: &str) -> Option<bool> {
+    if has_word(source, "first") {
+        Some(true)
+    } else if has_word(source, "second") {
+        Some(false)
+    } else {
+        None
+    }
+}
+
+/// A source as TOML: a listing may tell it as the table of topic and field, else it is a string.
+fn source_value(source: &str) -> String {
+    let table = format!("source = {source}").parse::<toml::Table>().ok().and_then(|t| {
+        let table = t.get("source")?.as_table()?;
+        let (topic, field) = (table.get("topic")?.as_str()?, table.get("field")?.as_str()?);
+        (t.len() == 1 && table.len() == 2)
+            .then(|| format!("{{ topic = {}, field = {} }}", quoted(topic), quoted(field)))
+    });
+    table.unwrap_or_else(|| quoted(source))
+}
+
+/// A TOML basic string.
+fn quoted(text: &str) -> String {
+    let mut out = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' => out.push_str("\\\""),
+            '\\' => out.push_str("\\\\"),
+            c if c.is_control() => {
+                let _ = write!(out, "\\u{:04X}", u32::from(c));
+            }
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::listing::tests::{listed, listing};
+    use super::*;
+
+    fn parsed(text: &str) -> toml::Table {
+        text.parse().unwrap_or_else(|e| panic!("{e}\n{text}"))
+    }
+
+    #[test]
+    fn it_is_toml_with_a_channel_a_source() {
+        let listing = listing(vec![
+            listed("/daq/a1", "dataset", Some("g")),
+            listed("/daq/a2", "dataset", Some("mV")),
+            listed("/daq/time_s", "dataset", Some("s")),
+        ]);
+        let table = parsed(&cask_file(&listing));
+        let channels = table["channel"].as_array().unwrap();
+        assert_eq!(channels.len(), 2);
+        assert_eq!(channels[0]["end"].as_str(), Some("first"));
+        assert_eq!(channels[1]["end"].as_str(), Some("second"));
+        assert_eq!(channels[1]["unit"].as_str(), Some("mV"));
+        assert_eq!(table["drop"]["angle_deg"].as_float(), Some(15.0));
+    }
+
+    #[test]
+    fn an_imu_gives_its_axes_in_the_plane_and_its_ends_by_name() {
+        let sources = ["x", "y", "z"]
+            .iter()
+            .flat_map(|axis| ["first", "second"].map(|end| format!("/imu_{end}.linear_acceleration.{axis}")))
+            .chain(["/imu_first.orientation.x".into(), "/imu_first.header.stamp.sec".into()]);
+        let listing = listing(sources.map(|s| listed(&s, "number", None)).collect());
+        let table = parsed(&cask_file(&listing));
+        let channels = table["channel"].as_array().unwrap();
+        assert_eq!(channels.len(), 4);
+        for channel in channels {
+            let source = channel["source"].as_str().unwrap();
+            assert_eq!(channel["end"].as_str().unwrap() == "first", source.contains("first"));
+            assert_eq!(channel["axis"].as_str().unwrap() == "axial", source.contains("acceleration.x"));
+        }
+    }
+
+    #[test]
+    fn no_name_can_break_the_file() {
+        let awkward = "a\"]\n[cask]\nname = \\\u{1b}";
+        let mut listing =
+            listing(vec![listed(awkward, "column", Some("x\"\ny")), listed("other\n]", "topic", None)]);
+        listing.recording = "r\n[evil]".into();
+        let table = parsed(&cask_file(&listing));
+        assert_eq!(table["channel"][0]["source"].as_str(), Some(awkward));
+        assert!(!table.contains_key("evil"));
+    }
+
+    #[test]
+    fn a_topic_with_a_dot_keeps_its_table() {
+        let listing = listing(vec![listed("{ topic = \"/a.b\", field = \"acc.z\" }", "number", None)]);
+        let table = parsed(&cask_file(&listing));
+        assert_eq!(table["channel"][0]["source"]["field"].as_str(), Some("acc.z"));
+    }
+
+    #[test]
+    fn an_empty_recording_still_gives_a_form() {
+        let table = parsed(&cask_file(&listing(Vec::new())));
+        assert_eq!(table["channel"].as_array().unwrap().len(), 2);
+    }
+}

@@ -1,0 +1,204 @@
+//! Words from files to words that are safe and fit the page: no control characters, wrapped, coloured by SGR codes.
+
+use crate::data::{DropResult, Issue, IssueCode, RecordingFormat, Severity, Verdict};
+use std::fmt::Write;
+
+/// Adds one line; writing to a string does not fail.
+pub(super) fn line(out: &mut String, text: std::fmt::Arguments) {
+    let _ = out.write_fmt(text);
+    out.push('\n');
+}
+
+/// The lines, each with its end.
+pub(super) fn lines(lines: impl IntoIterator<Item = String>) -> String {
+    let mut out = String::new();
+    for text in lines {
+        out.push_str(&text);
+        out.push('\n');
+    }
+    out
+}
+
+/// Every line of `text` in `style`.
+pub(super) fn styled_lines(style: Style, text: &str) -> String {
+    lines(text.lines().map(|line| styled(style, line)))
+}
+
+/// Width of every table, columns: the smallest terminal in use.
+pub(super) const WIDTH: usize = 80;
+
+/// An SGR colour (ECMA-48, 8.3.117); whoever prints strips it where no terminal reads it.
+#[derive(Clone, Copy)]
+pub(super) enum Style {
+    /// A heading.
+    Bold,
+    /// What matters less.
+    Dim,
+    /// Good.
+    Green,
+    /// Needs a look.
+    Yellow,
+    /// Bad.
+    Red,
+}
+
+/// `text` between the codes of `style`.
+pub(super) fn styled(style: Style, text: &str) -> String {
+    let code = match style {
+        Style::Bold => "1",
+        Style::Dim => "2",
+        Style::Green => "1;32",
+        Style::Yellow => "1;33",
+        Style::Red => "1;31",
+    };
+    format!("\u{1b}[{code}m{text}\u{1b}[0m")
+}
+
+/// `text` without control and direction characters, which a file could use to write elsewhere on a terminal.
+#[must_use]
+pub fn printable(text: &str) -> String {
+    text.chars()
+        .filter_map(|c| match c {
+            '\t' | '\n' | '\r' => Some(' '),
+            '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => None,
+            c if c.is_control() => None,
+            c => Some(c),
+        })
+        .collect()
+}
+
+/// `text` broken between words to `width` columns, each line behind `indent` spaces; a longer word stays whole.
+pub(super) fn wrap(text: &str, width: usize, indent: usize) -> String {
+    let room = width.saturating_sub(indent).max(10);
+    let mut broken: Vec<String> = Vec::new();
+    let mut line = String::new();
+    let mut used = 0;
+    for word in printable(text).split_whitespace() {
+        let length = word.chars().count();
+        if used > 0 && used + 1 + length > room {
+            broken.push(std::mem::take(&mut line));
+            used = 0;
+        }
+        if used > 0 {
+            line.push(' ');
+            used += 1;
+        }
+        line.push_str(word);
+        used += length;
+    }
+    broken.push(line);
+    let pad = " ".repeat(indent);
+    lines(broken.into_iter().map(|line| format!("{pad}{line}")))
+}
+
+/// The last `width` characters of `text`, behind an ellipsis where some are left out: the end of a path tells most.
+pub(super) fn tail(text: &str, width: usize) -> String {
+    let text = printable(text);
+    let length = text.chars().count();
+    if length <= width {
+        return text;
+    }
+    let kept: String = text.chars().skip(length + 1 - width).collect();
+    format!("…{kept}")
+}
+
+/// The verdict as one capital word.
+pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Pass => "PASS",
+        Verdict::Review => "REVIEW",
+        Verdict::Fail => "FAIL",
+    }
+}
+
+/// What the verdict means for the reader.
+pub(super) fn verdict_sentence(result: &DropResult) -> String {
+    let count = |severity| result.quality.iter().filter(|i| i.severity == severity).count();
+    let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
+    match result.verdict {
+        Verdict::Pass => "Nothing speaks against the result.".into(),
+        Verdict::Review if warnings == 0 => "The result needs a person's look.".into(),
+        Verdict::Review if warnings == 1 => "One warning needs a person's look.".into(),
+        Verdict::Review => format!("{warnings} warnings need a person's look."),
+        Verdict::Fail if errors == 0 => "A quantity could not be had from this recording.".into(),
+        Verdict::Fail if errors == 1 => {
+            "A quantity could not be had from this recording: one error says why.".into()
+        }
+        Verdict::Fail => {
+            format!("Quantities could not be had from this recording: {errors} errors say why.")
+        }
+    }
+}
+
+/// "note", "warning" or "error".
+pub(super) fn severity_word(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Note => "note",
+        Severity::Warning => "warning",
+        Severity::Error => "error",
+    }
+}
+
+/// The code as the result's JSON writes it.
+pub(super) fn code_word(code: IssueCode) -> String {
+    json_word(&code)
+}
+
+/// The format as the result's JSON writes it.
+pub(super) fn format_word(format: RecordingFormat) -> String {
+    json_word(&format)
+}
+
+fn json_word<T: serde::Serialize + std::fmt::Debug>(value: &T) -> String {
+    match serde_json::to_value(value) {
+        Ok(serde_json::Value::String(word)) => word,
+        _ => format!("{value:?}"),
+    }
+}
+
+/// The span of an issue in ms, or nothing.
+pub(super) fn span_text(issue: &Issue) -> Option<String> {
+    let from = issue.from_s.filter(|t| t.is_finite())? * 1e3;
+    match issue.to_s.map(|t| t * 1e3).filter(|t| t.is_finite() && *t > from) {
+        Some(to) => Some(format!("{from:.2}–{to:.2} ms")),
+        None => Some(format!("{from:.2} ms")),
+    }
+}
+
+/// The message of the worst issue among `codes`, else of the first error: why a quantity is missing.
+pub(super) fn reason<'a>(result: &'a DropResult, codes: &[IssueCode]) -> &'a str {
+    let worst = |wanted: &dyn Fn(&Issue) -> bool| {
+        result.quality.iter().filter(|issue| wanted(issue)).max_by_key(|issue| issue.severity)
+    };
+    worst(&|issue| codes.contains(&issue.code) && issue.severity > Severity::Note)
+        .or_else(|| worst(&|issue| issue.severity == Severity::Error))
+        .map_or("no finding names the reason", |issue| issue.message.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_cannot_move_the_cursor() {
+        assert_eq!(printable("A1\u{1b}[2J\u{7}\nB\u{202e}"), "A1[2J B");
+    }
+
+    #[test]
+    fn lines_keep_within_the_width() {
+        let text = wrap(&"word ".repeat(40), 30, 4);
+        assert!(text.lines().all(|line| line.chars().count() <= 30 && line.starts_with("    ")));
+        assert_eq!(text.split_whitespace().count(), 40);
+    }
+
+    #[test]
+    fn a_long_path_keeps_its_end() {
+        assert_eq!(tail("/a/long/way/to/test.mcap", 12), "…o/test.mcap");
+        assert_eq!(tail("test.mcap", 12), "test.mcap");
+    }
+
+    #[test]
+    fn codes_are_written_as_in_the_json() {
+        assert_eq!(code_word(IssueCode::DuplicateBlocks), "duplicate_blocks");
+    }
+}
