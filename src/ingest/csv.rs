@@ -254,4 +254,4 @@ fn row_error(path: &Path, layout: &Layout, wanted: &Wanted, error: RowError) -> 
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -5,6 +5,7 @@ pub mod cask_file;
 mod csv;
 mod detect;
 mod error;
+mod hdf5;
 mod mcap;
 pub mod time_base;
 
@@ -60,7 +61,7 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
         let hashing = scope.spawn(|| sha256(path));
         let raw = match format {
             RecordingFormat::Mcap => mcap::read(path, cask_file, progress),
-            RecordingFormat::Hdf5 => Err(error::not_built(path)),
+            RecordingFormat::Hdf5 => hdf5::read(path, cask_file, progress),
             RecordingFormat::Csv => csv::read(path, cask_file, progress),
         };
         (raw, hashing.join())
@@ -76,7 +77,7 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
 pub fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
     match detect::format(path)? {
         RecordingFormat::Mcap => mcap::list(path, progress),
-        RecordingFormat::Hdf5 => Err(error::not_built(path)),
+        RecordingFormat::Hdf5 => hdf5::list(path, progress),
         RecordingFormat::Csv => csv::list(path, progress),
     }
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::data::{Axis, Cask, Contact, Coupling, Drop, End, FilterChoice};
 
-pub(super) fn cask_file(sources: &[&str]) -> CaskFile {
+pub(in super::super) fn cask_file(sources: &[&str]) -> CaskFile {
     let channels = sources.iter().map(|source| ChannelSpec {
         name: (*source).into(),
         end: End::First,
