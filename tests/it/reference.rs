@@ -2,6 +2,8 @@
 
 use crate::run::{number, read_json};
 use dropcheck::data::{Body, BodyModel, Contact, Drop};
+use dropcheck::numerics::filter::ZeroPhaseLowPass;
+use dropcheck::numerics::spectrum::magnitude;
 use dropcheck::predict::predict;
 use serde_json::Value;
 use std::path::Path;
@@ -148,5 +150,65 @@ fn figure_8_is_met() {
             (ratio - number(row, "/energy_ratio").expect("a ratio")).abs() <= 0.0005 + 1e-9,
             "{ratio} for {row}"
         );
+    }
+}
+
+/// Samples at `rate_hz` of a function of time.
+fn sampled(seconds: f64, rate_hz: f64, shape: impl Fn(f64) -> f64) -> Vec<f64> {
+    let times = (0_u32..).map(|i| f64::from(i) / rate_hz);
+    times.take_while(|t| *t < seconds - 0.5 / rate_hz).map(shape).collect()
+}
+
+/// The reference (sections in direct form) rounds at 1e-8 of the peak at the lowest cut-off over the rate; ends lie 70 ms away,
+/// 39 time constants of the slowest filter.
+#[test]
+fn filters_agree_with_scipy() {
+    use std::f64::consts::TAU;
+    for case in list(&reference("filters.json"), "cases") {
+        let of = |key: &str| number(case, &format!("/{key}")).expect(key);
+        let (cfc, rate_hz) = (of("cfc"), of("rate_hz"));
+        let low_pass = ZeroPhaseLowPass::with_cfc(cfc, rate_hz).expect("a filter");
+        let signal = sampled(0.2, rate_hz, |t| {
+            let pulse = 1000.0 * (-((t - 0.1) / 0.002).powi(2)).exp();
+            pulse + 50.0 * (TAU * 20.0 * t).sin() + 30.0 * (TAU * 900.0 * t).sin()
+        });
+        let filtered = low_pass.apply(&signal);
+        for (index, expected) in list(case, "index").iter().zip(list(case, "filtered")) {
+            let index = usize::try_from(index.as_u64().expect("an index")).expect("an index");
+            let expected = expected.as_f64().expect("a value");
+            assert!(
+                (filtered[index] - expected).abs() < 1e-5,
+                "CFC {cfc} at {index}: {} for {expected}",
+                filtered[index]
+            );
+        }
+        for (frequency, expected) in list(case, "frequency_hz").iter().zip(list(case, "gain")) {
+            let frequency_hz = frequency.as_f64().expect("a frequency");
+            let gain = low_pass.magnitude(frequency_hz, rate_hz);
+            let expected = expected.as_f64().expect("a gain");
+            assert!((gain - expected).abs() < 1e-10, "CFC {cfc} at {frequency_hz} Hz: {gain} for {expected}");
+        }
+    }
+}
+
+/// 32768 samples at 40960 Hz put every reference frequency on a bin (1.25 Hz apart). A kink between two samples costs at
+/// most dt²/8 of its change of slope; the shapes change slope by 1.3e6 and 1.9e5 m/s³ in all.
+#[test]
+fn spectra_agree_with_the_integral() {
+    use std::f64::consts::{PI, TAU};
+    let rate_hz = 40_960.0;
+    let bound = 1.3e6 / (8.0 * rate_hz * rate_hz);
+    for case in list(&reference("spectra.json"), "cases") {
+        let text = case["signal"].as_str().expect("a signal");
+        let signal = sampled(0.8, rate_hz, |t| match text.starts_with("1000 sin") {
+            true if t <= 0.005 => 1000.0 * (PI * t / 0.005).sin(),
+            false if t <= 0.5 => 500.0 * (-40.0 * t).exp() * (TAU * 60.0 * t).sin(),
+            _ => 0.0,
+        });
+        let (frequencies_hz, magnitudes) = magnitude(&signal, rate_hz);
+        let frequency_hz = number(case, "/frequency_hz").expect("a frequency");
+        let expected = number(case, "/magnitude").expect("a magnitude");
+        let bin = frequencies_hz.iter().position(|f| (f - frequency_hz).abs() < 1e-6).expect("a bin");
+        assert!((magnitudes[bin] - expected).abs() <= bound, "{} for {case}", magnitudes[bin]);
     }
 }
