@@ -109,6 +109,9 @@ fn stranger(path: &Path, head: &[u8]) -> IngestError {
     if let Some((_, what, mend)) = STRANGERS.iter().find(|(magic, ..)| head.starts_with(magic)) {
         return unknown(path, &format!("it is {what}"), mend);
     }
+    if head.windows(11).any(|window| window == b"[[channel]]") {
+        return unknown(path, "it is a cask file", "name the recording first, and this file after `--cask`");
+    }
     if head.starts_with(b"\x89MCAP") {
         let what = if head.len() < MCAP_MAGIC.len() {
             format!("it begins as MCAP and ends after {} bytes", head.len())
@@ -188,11 +191,12 @@ mod tests {
                 "text without rows",
             ),
             (b"#ROSBAG V2.0\n", "ROS 1"),
+            (b"[cask]\nname = \"x\"\n\n[[channel]]\n", "cask file"),
             (b"\x89MCA", "89 4d 43 41"),
             (b"\x89MCAP", "ends after 5 bytes"),
             (b"\x00\x01\x02\x03", "00 01 02 03"),
         ] {
-            let message = of(content).unwrap_err();
+            let message = of(content).expect_err(part);
             assert!(message.contains(part), "{message}");
         }
     }

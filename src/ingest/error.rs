@@ -84,15 +84,6 @@ pub(super) fn source(
     }
 }
 
-/// A format whose reader is not there yet.
-pub(super) fn not_built(path: &Path) -> IngestError {
-    IngestError::UnknownFormat {
-        path: path.display().to_string(),
-        found: "its reader is not built yet".into(),
-        mend: String::new(),
-    }
-}
-
 /// "did you mean …" with the names in `there` that are nearest to `wanted`, or what there is, cut to a handful.
 pub(super) fn near_names(path: &Path, wanted: &str, what: &str, there: &[String]) -> String {
     /// More than this many names no longer fit a terminal's few lines.
@@ -109,16 +100,14 @@ pub(super) fn near_names(path: &Path, wanted: &str, what: &str, there: &[String]
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
     let near: Vec<&str> =
         ranked.iter().filter(|(score, _)| *score >= ALIKE).take(3).map(|(_, name)| name.as_str()).collect();
-    let mut text =
-        if near.is_empty() { String::new() } else { format!("did you mean {}? ", near.join(" or ")) };
+    let hint = if near.is_empty() { String::new() } else { format!("did you mean {}? ", near.join(" or ")) };
     let listed: Vec<&str> = there.iter().take(HANDFUL).map(String::as_str).collect();
-    let more = there.len().saturating_sub(HANDFUL);
-    text.push_str(&format!("the recording holds: {}", listed.join(", ")));
-    if more > 0 {
-        text.push_str(&format!(" and {more} more"));
-    }
-    text.push_str(&format!("; `dropcheck inspect {}` lists all", path.display()));
-    text
+    let more = match there.len().saturating_sub(HANDFUL) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let listed = listed.join(", ");
+    format!("{hint}there is: {listed}{more}; `dropcheck inspect {}` lists all", path.display())
 }
 
 #[cfg(test)]

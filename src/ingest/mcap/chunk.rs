@@ -1,6 +1,6 @@
 //! One chunk to the records in it: decompressed as it is read, its check sum tested, cut ones as far as they go.
 
-use super::scan::RECORD_HEADER_BYTES;
+use super::scan::{RECORD_HEADER_BYTES, RECORD_HEADER_LENGTH};
 use mcap::McapError;
 use mcap::records::op;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
@@ -8,6 +8,8 @@ use std::io::Read;
 
 /// Chunk header without its compression's name: times, uncompressed size, check sum, name length, compressed size.
 const FIXED_HEADER_BYTES: u64 = 8 + 8 + 8 + 4 + 4 + 8;
+/// The same, as the length of a buffer.
+const FIXED_HEADER_LENGTH: usize = 40;
 /// Longer than any name of a compression ("zstd", "lz4"); a longer one is damage.
 const LONGEST_COMPRESSION_NAME_BYTES: u64 = 64;
 /// A message may be a whole test in one block; zstd shrinks even constant text less than 4096-fold.
@@ -85,10 +87,10 @@ impl Chunks {
             skip(file, data)?;
             return Ok(bad(Some(header.compression), "its sizes contradict each other", header.span_ns));
         }
-        let fed = self.feed(file, &header, data, is_cut, take)?;
-        if fed.left > 0 {
-            skip(file, fed.left)?;
-        }
+        // Bytes behind the compressed ones are padding: the reader never sees them, so no record can reach into them.
+        let fed_bytes = data.min(header.compressed);
+        let fed = self.feed(file, &header, fed_bytes, is_cut, take)?;
+        skip(file, fed.left + (data - fed_bytes))?;
         if !fed.is_clean {
             self.reader = fresh(self.record_limit);
         }
@@ -101,17 +103,17 @@ impl Chunks {
         })
     }
 
-    /// Feeds the chunk, its lengths set to what is there, to the reader.
+    /// Feeds the chunk's `bytes`, its lengths set to what is there, to the reader.
     fn feed(
         &mut self,
         file: &mut impl Read,
         header: &Header,
-        data: u64,
+        bytes: u64,
         is_cut: bool,
         take: &mut dyn FnMut(u8, &[u8]),
     ) -> std::io::Result<Fed> {
-        let mut prefix: &[u8] = &header.with_lengths(data, is_cut);
-        let (mut left, mut yielded) = (data, 0_u64);
+        let mut prefix: &[u8] = &header.with_lengths(bytes, is_cut);
+        let (mut left, mut yielded) = (bytes, 0_u64);
         let problem = loop {
             let wanted = match self.reader.next_event() {
                 None => break None,
@@ -149,7 +151,7 @@ impl Chunks {
         };
         let problem = problem.or_else(|| is_cut.then(|| "it is cut".to_owned()));
         // Of a compressed chunk nobody can say how many bytes the kept messages took.
-        let unused = if header.compression.is_empty() { data.saturating_sub(yielded) } else { data };
+        let unused = if header.compression.is_empty() { bytes.saturating_sub(yielded) } else { bytes };
         Ok(Fed { left, unused, is_clean: false, problem })
     }
 }
@@ -173,9 +175,9 @@ impl Header {
         bytes.extend_from_slice(&self.bytes);
         if is_cut {
             let at = bytes.len() - 8;
-            bytes.splice(at.., data.min(self.compressed).to_le_bytes());
+            bytes.splice(at.., data.to_le_bytes());
             // No check sum holds for a part; the uncompressed size is unknown.
-            let sizes = RECORD_HEADER_BYTES as usize + 16;
+            let sizes = RECORD_HEADER_LENGTH + 16;
             bytes.splice(sizes..sizes + 8, u64::MAX.to_le_bytes());
             bytes.splice(sizes + 8..sizes + 12, [0; 4]);
         }
@@ -189,7 +191,7 @@ fn header(file: &mut impl Read, body: u64) -> std::io::Result<Option<Header>> {
         skip(file, body)?;
         return Ok(None);
     }
-    let mut bytes = vec![0; FIXED_HEADER_BYTES as usize];
+    let mut bytes = vec![0; FIXED_HEADER_LENGTH];
     file.read_exact(&mut bytes)?;
     let name_bytes = u64::from(u32::from_le_bytes(bytes[28..32].try_into().unwrap_or_default()));
     if name_bytes > LONGEST_COMPRESSION_NAME_BYTES || FIXED_HEADER_BYTES + name_bytes > body {
@@ -198,10 +200,10 @@ fn header(file: &mut impl Read, body: u64) -> std::io::Result<Option<Header>> {
     file.take(name_bytes).read_to_end(&mut bytes)?;
     let word =
         |at: usize| bytes.get(at..at + 8).and_then(|word| word.try_into().ok()).map_or(0, u64::from_le_bytes);
-    let name_end = 32 + name_bytes as usize;
+    let name_end = bytes.len() - 8;
     let compression = String::from_utf8_lossy(bytes.get(32..name_end).unwrap_or_default()).into_owned();
     let (span_ns, uncompressed, compressed) = ((word(0), word(8)), word(16), word(name_end));
-    Ok(Some(Header { compression, span_ns, uncompressed, compressed, bytes }))
+    Ok(Some(Header { bytes, compression, span_ns, uncompressed, compressed }))
 }
 
 fn fresh(record_limit: usize) -> LinearReader {

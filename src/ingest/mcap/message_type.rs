@@ -8,6 +8,9 @@ use super::ros_type;
 use super::scanned::ChannelInfo;
 use prost_reflect::MessageDescriptor;
 
+/// Message encodings that are read.
+const READ: &str = "those that can be read are json, protobuf, and cdr with ros2msg";
+
 /// What is known of a channel's messages.
 #[derive(Debug)]
 pub(super) enum MessageType {
@@ -36,10 +39,13 @@ impl MessageType {
             (encoding @ ("protobuf" | "cdr"), None) => {
                 Err(format!("its messages are encoded as {encoding:?} and their schema is missing"))
             }
-            (encoding, schema) => Err(format!(
-                "its messages are encoded as {encoding:?} with a schema in {:?}; read are json, protobuf, and cdr with ros2msg",
-                schema.map_or("", |schema| &schema.encoding)
+            (encoding, Some(schema)) => Err(format!(
+                "its messages are encoded as {encoding:?} with a schema in {:?}; {READ}",
+                schema.encoding
             )),
+            (encoding, None) => {
+                Err(format!("its messages are encoded as {encoding:?} without a schema; {READ}"))
+            }
         }
     }
 

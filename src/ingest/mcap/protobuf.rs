@@ -36,10 +36,10 @@ fn descend(message: &MessageDescriptor, path: &str, depth: usize, found: &mut Ve
             if path.is_empty() { field.name().to_owned() } else { format!("{path}.{}", field.name()) };
         match field.kind() {
             Kind::Message(inner) if !field.is_list() && !field.is_map() => {
-                descend(&inner, &below, depth - 1, found)
+                descend(&inner, &below, depth - 1, found);
             }
             kind if is_number(&kind) && !field.is_map() => {
-                found.push(Leaf { path: below, is_array: field.is_list() })
+                found.push(Leaf { path: below, is_array: field.is_list() });
             }
             _ => {}
         }

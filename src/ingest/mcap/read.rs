@@ -1,6 +1,6 @@
 //! An MCAP file and a cask file to raw channels: only the topics that are named are decoded.
 
-use super::column::{Column, message_time, seconds_from};
+use super::column::{CLOCK_IS_SET_NS, Column, message_time, seconds_from};
 use super::message_type::{MessageType, implied_unit};
 use super::path::{self, FieldPath};
 use super::plan::{Decode, Leaf, Plan, Slots};
@@ -177,6 +177,7 @@ impl<'a> Reading<'a> {
     }
 
     fn finish(mut self, path: &Path, scanned: &Scanned) -> Result<RawRecording, IngestError> {
+        self.wanted.iter_mut().for_each(|wanted| wanted.column.settle_clock());
         let mut chosen = Vec::with_capacity(self.specs.len());
         for spec in self.specs {
             let Some(index) = self.entry_of(spec) else {
@@ -193,9 +194,9 @@ impl<'a> Reading<'a> {
             spans.fold((i64::MAX, i64::MIN), |(low, high), (from, to)| (low.min(from), high.max(to)));
         let mut issues = scanned.issues();
         for issue in issues.iter_mut().filter(|issue| issue.code == IssueCode::Truncated) {
-            let last_s = seconds_from(last_ns, zero_ns);
-            issue.message.push_str(&format!("; the last message kept is of {last_s:.6} s"));
-            issue.from_s = Some(last_s);
+            let kept_s = seconds_from(last_ns, zero_ns);
+            issue.message = format!("{}; the last message kept begins at {kept_s:.6} s", issue.message);
+            issue.from_s = Some(kept_s);
         }
         let mut channels = Vec::with_capacity(chosen.len());
         for (position, (spec, &index)) in self.specs.iter().zip(&chosen).enumerate() {
@@ -211,7 +212,7 @@ impl<'a> Reading<'a> {
                 .map_err(|problem| complaint::no_base(path, spec, &problem))?;
             channels.push(RawChannel { spec: position, uniform, unit });
         }
-        Ok(RawRecording { channels, zero_unix_ns: Some(zero_ns), issues })
+        Ok(RawRecording { channels, zero_unix_ns: (zero_ns >= CLOCK_IS_SET_NS).then_some(zero_ns), issues })
     }
 }
 

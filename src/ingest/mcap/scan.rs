@@ -12,6 +12,8 @@ use std::path::Path;
 
 /// A record begins with its opcode (1 byte) and its length (8 bytes).
 pub(super) const RECORD_HEADER_BYTES: u64 = 9;
+/// The same, as the length of a buffer.
+pub(super) const RECORD_HEADER_LENGTH: usize = 9;
 /// Larger than most chunks' share between two looks at the progress; smaller than any cache.
 const READ_BUFFER_BYTES: usize = 1 << 18;
 
@@ -63,7 +65,7 @@ impl Walk {
         let records =
             self.summary.as_mut().map(|summary| std::mem::take(&mut summary.records)).unwrap_or_default();
         for (opcode, body) in &records {
-            self.catalog.take(*opcode, body, sink, &mut self.scanned);
+            self.catalog.take_ahead(*opcode, body, sink, &mut self.scanned);
         }
     }
 
@@ -89,7 +91,7 @@ impl Walk {
             self.scanned.losses.push(Loss::EndsEarly { at: self.at, bytes: left, inside: None });
             return Ok(Next::Stop);
         }
-        let mut header = [0; RECORD_HEADER_BYTES as usize];
+        let mut header = [0; RECORD_HEADER_LENGTH];
         self.file.read_exact(&mut header)?;
         let [opcode, length @ ..] = header;
         let claimed = u64::from_le_bytes(length);

@@ -106,14 +106,10 @@ impl Catalog {
             return true;
         }
         match parse(opcode, body) {
-            Some(Record::Message { header, data }) => {
-                if self.channels.contains(&header.channel_id) {
-                    let log_time_ns = i64::try_from(header.log_time).unwrap_or(i64::MAX);
-                    sink.message(header.channel_id, log_time_ns, &data);
-                    true
-                } else {
-                    false
-                }
+            Some(Record::Message { header, data }) if self.channels.contains(&header.channel_id) => {
+                let log_time_ns = i64::try_from(header.log_time).unwrap_or(i64::MAX);
+                sink.message(header.channel_id, log_time_ns, &data);
+                true
             }
             Some(Record::Schema { header, data }) => {
                 self.schemas.entry(header.id).or_insert_with(|| SchemaInfo {
@@ -143,6 +139,19 @@ impl Catalog {
                 true
             }
             _ => false,
+        }
+    }
+
+    /// Takes a record of the summary section, except a channel whose schema is not repeated there.
+    pub(super) fn take_ahead(&mut self, opcode: u8, body: &[u8], sink: &mut dyn Sink, scanned: &mut Scanned) {
+        let is_complete = match parse(opcode, body) {
+            Some(Record::Channel(channel)) => {
+                channel.schema_id == 0 || self.schemas.contains_key(&channel.schema_id)
+            }
+            _ => true,
+        };
+        if is_complete {
+            self.take(opcode, body, sink, scanned);
         }
     }
 

@@ -1,6 +1,6 @@
 //! A closed MCAP file's summary section to its schemas, channels and chunk positions, before the walk begins.
 
-use super::scan::RECORD_HEADER_BYTES;
+use super::scan::{RECORD_HEADER_BYTES, RECORD_HEADER_LENGTH};
 use mcap::records::{Record, op};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -57,7 +57,7 @@ fn section(file: &mut File, start: u64, end: u64) -> std::io::Result<Summary> {
     let mut reader = std::io::BufReader::new(&*file).take(end - start);
     let mut summary = Summary::default();
     loop {
-        let mut header = [0; RECORD_HEADER_BYTES as usize];
+        let mut header = [0; RECORD_HEADER_LENGTH];
         if reader.limit() < RECORD_HEADER_BYTES || reader.read_exact(&mut header).is_err() {
             break;
         }
