@@ -1,36 +1,197 @@
 //! dropcheck: what accelerometers on both ends of a dropped cask say about its slap-down, and whether to believe it.
+//!
+//! A recording and a cask file pass through the stages in the order of [`analyze`]; every stage imports only [`data`] and
+//! [`numerics`], so that this file alone knows the order.
 
+mod assemble;
+pub mod compare;
 pub mod condition;
 pub mod data;
 pub mod events;
+pub mod fit;
 pub mod ingest;
+pub mod judge;
+pub mod motion;
 pub mod numerics;
 pub mod predict;
 pub mod report;
 
-use data::{Analysis, CaskFile, Recording};
+use assemble::Draft;
+use data::{
+    Analysis, AxialClosure, Axis, CaskFile, Contact, Events, FlightFit, Issue, IssueCode, Motion, Quantities,
+    Recording, Setup, Severity, Signal,
+};
 
-/// Why a recording could not be analysed at all.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum AnalyzeError {
-    /// The recording holds no channel that the analysis can use.
-    #[error("{recording}: {reason}")]
-    Unusable {
-        /// The file.
-        recording: String,
-        /// What is wrong and how to mend it.
-        reason: String,
-    },
-}
+/// Separation and slap-down are found again on signals free of ringing this often; the second round moves them by less than a sample.
+const ROUNDS: usize = 3;
 
 /// From a recording and a cask file to everything that can be said of the drop.
 ///
-/// # Errors
-/// [`AnalyzeError`] where no channel can be used; what merely weakens the result is an issue in it.
-pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Result<Analysis, AnalyzeError> {
-    let _ = cask_file;
-    Err(AnalyzeError::Unusable {
-        recording: recording.path.display().to_string(),
-        reason: "not built yet".into(),
-    })
+/// What cannot be had is null in the result, with an issue that says why; the verdict says whether to believe the rest.
+#[must_use]
+pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
+    let mut draft = Draft::new(recording, cask_file);
+    let fall_s = cask_file.drop.impact_velocity_m_s / cask_file.drop.gravity_m_s2;
+    let Some(event) = events::locate(recording).filter(|e| is_impact(e.velocity_step_m_s, cask_file)) else {
+        return draft.without_impact();
+    };
+    let (signals, mut found) = condition::condition(recording, &event, fall_s);
+    draft.issues.append(&mut found);
+    let Some(contact) = events::first_contact(&signals, &event) else {
+        return draft.without_impact();
+    };
+    draft.events.first_contact_s = Some(contact.0);
+    draft.events.release_s = release_s(recording, cask_file, contact.0);
+    let reconstructed = flight_and_motion(&mut draft, &signals, contact);
+    judge::weigh_by_distance(&mut draft.issues, &draft.events);
+    draft.issues.extend(judge::judge_channels(&signals, &draft.events));
+    if let Some((flight, setup, motion, quantities)) = reconstructed {
+        draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
+        draft.flight = Some(flight);
+        if draft.issues.iter().any(judge::invalidates) {
+            // What an error speaks against is not stated at all: the times and curves remain.
+            draft.draw(&signals);
+            return draft.finish();
+        }
+        let compared =
+            compare::compare(&predict::bodies(&cask_file.cask), cask_file, &quantities, &predict::predict);
+        if let Some(comparison) = compared.as_ref().and_then(|c| c.1) {
+            draft.issues.extend(judge::judge_comparison(&comparison));
+        }
+        draft.measured(quantities, compared);
+        draft.curves.motion = Some(motion.curve);
+        draft.filter_effect(&signals, &setup);
+    }
+    draft.draw(&signals);
+    draft.finish()
+}
+
+/// A velocity change of L below a tenth of the fall's is no first impact.
+fn is_impact(velocity_step_m_s: f64, cask_file: &CaskFile) -> bool {
+    velocity_step_m_s.abs() > 0.1 * cask_file.drop.impact_velocity_m_s
+}
+
+/// Release as the first transverse channel shows it.
+fn release_s(recording: &Recording, cask_file: &CaskFile, contact_s: f64) -> Option<f64> {
+    recording
+        .channels
+        .iter()
+        .filter(|c| c.axis == Axis::Transverse)
+        .find_map(|c| events::release(c, &cask_file.drop, contact_s))
+        .map(|(time_s, _)| time_s)
+}
+
+/// The flight fit, the motion and what is read off it; what prevents them goes to the draft's issues.
+fn flight_and_motion(
+    draft: &mut Draft,
+    signals: &[Signal],
+    contact: (f64, f64),
+) -> Option<(FlightFit, Setup, Motion, Quantities)> {
+    let cask_file = draft.cask_file;
+    for end in [data::End::First, data::End::Second] {
+        if events::transverse(signals, end).is_none() {
+            draft.issues.push(Issue::new(
+                IssueCode::MissingChannel,
+                Severity::Error,
+                format!(
+                    "no transverse channel on the {end} end: rotation, k and slap-down need one on each end"
+                ),
+            ));
+            return None;
+        }
+    }
+    let flight = find_flight(draft, signals, contact)?;
+    let setup = setup(cask_file, signals, &draft.events, &flight);
+    let motion = motion::reconstruct(signals, &flight, &draft.events, &setup)?;
+    let measured = fit::Measured {
+        signals,
+        flight: &flight,
+        events: &draft.events,
+        u_events_s: draft.u_events_s,
+        setup: &setup,
+        other_law: other_law(setup.axial),
+    };
+    let quantities = fit::quantities(&measured, &motion::reconstruct)?;
+    Some((flight, setup, motion, quantities))
+}
+
+/// Separation, slap-down and the flight between them, each found again with the other's help.
+fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Option<FlightFit> {
+    let cog_m = draft.cask_file.cask.cog_m;
+    let least_m_s = 0.3 * draft.cask_file.drop.impact_velocity_m_s;
+    let Some(mut left) = events::separation(signals, contact.0, f64::INFINITY) else {
+        draft.issues.push(Issue::new(
+            IssueCode::EndsEarly,
+            Severity::Error,
+            "the recording ends, or the first end's force never subsides, before the first impact is over",
+        ));
+        return None;
+    };
+    let record_end_s = signals.iter().map(Signal::end_s).fold(f64::INFINITY, f64::min);
+    let mut struck = events::slap_down(signals, left.0, least_m_s);
+    let mut flight: Option<FlightFit> = None;
+    for _ in 0..ROUNDS {
+        let end_s = struck.map_or(record_end_s.min(left.0 + 0.1), |s| s.0);
+        let margin_s = 0.1 * (left.0 - contact.0) + 3e-4;
+        let window = motion::Window {
+            contact_s: contact.0,
+            from_s: left.0 + margin_s,
+            to_s: end_s - 5e-4,
+            angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| motion::rotation_rad_s(signals, f)),
+        };
+        let Some(fitted) = motion::fit_flight(signals, &window, cog_m) else { break };
+        let calm = motion::without_ringing(signals, &fitted, contact.0, end_s + 0.02);
+        struck = struck.and_then(|_| events::slap_down(&calm, window.from_s, least_m_s)).or(struck);
+        left = events::separation(&calm, contact.0, end_s).unwrap_or(left);
+        flight = Some(fitted);
+    }
+    draft.take_times(contact, left, struck, record_end_s);
+    if flight.is_none() {
+        draft.issues.push(Issue::new(
+            IssueCode::FlightFit,
+            Severity::Error,
+            "the free flight between the impacts is too short to be told from them",
+        ));
+    }
+    flight
+}
+
+/// Geometry and initial motion of the cask file, and how the axial velocity is had.
+fn setup(cask_file: &CaskFile, signals: &[Signal], events: &Events, flight: &FlightFit) -> Setup {
+    let base = Setup {
+        length_m: cask_file.cask.length_m,
+        height_m: cask_file.cask.height_m,
+        cog_m: cask_file.cask.cog_m,
+        angle_rad: cask_file.drop.angle_rad,
+        impact_velocity_m_s: cask_file.drop.impact_velocity_m_s,
+        gravity_m_s2: cask_file.drop.gravity_m_s2,
+        axial: AxialClosure::Sticking,
+    };
+    if signals.iter().any(|s| s.axis == Axis::Axial) {
+        return Setup { axial: AxialClosure::Measured, ..base };
+    }
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "cut to 0..=1000 before the cast"
+    )]
+    let sliding = |mu: f64| AxialClosure::Sliding { friction_ppm: (mu.clamp(0.0, 1e3) * 1e6) as u32 };
+    let axial = match cask_file.contact {
+        Contact::Rough => AxialClosure::Sticking,
+        Contact::Smooth => sliding(0.0),
+        Contact::Coulomb(mu) => {
+            let needed = motion::reconstruct(signals, flight, events, &base).map_or(0.0, |m| m.impulse_ratio);
+            if needed.abs() <= mu { AxialClosure::Sticking } else { sliding(mu) }
+        }
+    };
+    Setup { axial, ..base }
+}
+
+/// The law that the cask file does not name: smooth beside sticking, sticking beside sliding.
+fn other_law(axial: AxialClosure) -> Option<AxialClosure> {
+    match axial {
+        AxialClosure::Sticking => Some(AxialClosure::Sliding { friction_ppm: 0 }),
+        AxialClosure::Sliding { .. } => Some(AxialClosure::Sticking),
+        AxialClosure::Measured => None,
+    }
 }

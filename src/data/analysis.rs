@@ -197,6 +197,8 @@ pub struct DropResult {
     pub channels: Vec<ChannelSummary>,
     /// The fit of the free-flight window.
     pub flight: Option<FlightFit>,
+    /// What each input contributes to the uncertainty, largest first.
+    pub budget: Vec<super::quantities::Contribution>,
     /// Every setting and where it came from.
     pub settings: Vec<Setting>,
 }

@@ -8,7 +8,9 @@ mod estimate;
 mod flight;
 mod issue;
 mod listing;
+mod motion;
 mod prediction;
+mod quantities;
 mod recording;
 mod signal;
 
@@ -23,6 +25,8 @@ pub use estimate::Estimate;
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau};
 pub use issue::{Issue, IssueCode, Severity};
 pub use listing::{ListedChannel, Listing};
+pub use motion::{AxialClosure, Motion, MotionState, Setup};
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
+pub use quantities::{Contribution, Quantities};
 pub use recording::{Recording, RecordingFormat};
 pub use signal::{CoarseEvent, Signal};

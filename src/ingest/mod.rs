@@ -1,24 +1,53 @@
 //! Recording files and cask files to channels and settings: SI units, one time base a channel, what was missing.
 
+mod assemble;
+pub mod cask_file;
+mod csv;
+mod detect;
+mod error;
+mod hdf5;
+mod mcap;
 pub mod time_base;
 
-use crate::data::{CaskFile, Listing, Recording};
-use std::path::Path;
+pub use error::IngestError;
 
-/// Why a file could not be read.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum IngestError {}
+use crate::data::{CaskFile, Issue, Listing, Recording, RecordingFormat};
+use sha2::{Digest, Sha256};
+use std::fmt::Write as _;
+use std::io::Read;
+use std::path::Path;
 
 /// Called with the fraction done, 0 to 1, now and then.
 pub type Progress<'a> = &'a dyn Fn(f64);
+
+/// What a format's reader hands over for one `[[channel]]`: uniform samples, still in the recording's unit and clock.
+#[derive(Debug)]
+struct RawChannel {
+    /// Index into `CaskFile::channels`.
+    spec: usize,
+    /// The samples; its times and those of its issues count from [`RawRecording::zero_unix_ns`].
+    uniform: time_base::Uniform,
+    /// The unit that the recording states or that its message type fixes, as written there.
+    unit: Option<String>,
+}
+
+/// What a format's reader hands over for a whole file.
+#[derive(Debug)]
+struct RawRecording {
+    /// One for each `[[channel]]` of the cask file.
+    channels: Vec<RawChannel>,
+    /// Time zero of the channels' clock, ns since 1970, where the recording knows it.
+    zero_unix_ns: Option<i64>,
+    /// What is wrong with the file; times as in `channels`.
+    issues: Vec<Issue>,
+}
 
 /// Reads and checks a cask file.
 ///
 /// # Errors
 /// One diagnostic that shows the line.
 pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
-    let _ = path;
-    todo!()
+    Ok(cask_file::parse(path)?)
 }
 
 /// Reads the channels that `cask_file` names from the recording at `path`, its format told by its content.
@@ -26,8 +55,19 @@ pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
 /// # Errors
 /// [`IngestError`] where a file, a source or its content is at fault.
 pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Recording, IngestError> {
-    let _ = (path, cask_file, progress);
-    todo!()
+    let format = detect::format(path)?;
+    // The hash takes as long as the reading: it runs beside it.
+    let (raw, sha256) = std::thread::scope(|scope| {
+        let hashing = scope.spawn(|| sha256(path));
+        let raw = match format {
+            RecordingFormat::Mcap => mcap::read(path, cask_file, progress),
+            RecordingFormat::Hdf5 => hdf5::read(path, cask_file, progress),
+            RecordingFormat::Csv => csv::read(path, cask_file, progress),
+        };
+        (raw, hashing.join())
+    });
+    let sha256 = sha256.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+    assemble::recording(path, format, sha256, raw?, cask_file)
 }
 
 /// Lists what the recording at `path` holds.
@@ -35,6 +75,47 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
 /// # Errors
 /// [`IngestError`] where the file is none that can be read.
 pub fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
-    let _ = (path, progress);
-    todo!()
+    match detect::format(path)? {
+        RecordingFormat::Mcap => mcap::list(path, progress),
+        RecordingFormat::Hdf5 => hdf5::list(path, progress),
+        RecordingFormat::Csv => csv::list(path, progress),
+    }
+}
+
+/// SHA-256 of the file at `path`, lower-case hexadecimal.
+///
+/// # Errors
+/// [`IngestError::Io`] where it cannot be read.
+fn sha256(path: &Path) -> Result<String, IngestError> {
+    let mut file = std::fs::File::open(path).map_err(|source| error::io(path, source))?;
+    let mut hasher = Sha256::new();
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        let read = file.read(&mut buffer).map_err(|source| error::io(path, source))?;
+        if read == 0 {
+            break;
+        }
+        hasher.update(&buffer[..read]);
+    }
+    Ok(hasher.finalize().iter().fold(String::with_capacity(64), |mut hex, byte| {
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sha256_is_the_published_one_of_abc() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("abc");
+        std::fs::write(&path, "abc").unwrap();
+        // FIPS 180-4, example B.1.
+        assert_eq!(
+            sha256(&path).unwrap(),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+        );
+    }
 }

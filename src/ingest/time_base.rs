@@ -1,6 +1,16 @@
 //! Recorded times and samples to one uniform base, with the error of doing so known.
 
-use crate::data::{Issue, Samples, Span};
+mod blocks;
+mod fit;
+mod missing;
+mod order;
+mod resample;
+
+pub use blocks::from_blocks;
+
+use crate::data::{Issue, IssueCode, Samples, Severity, Span};
+use fit::Fit;
+use order::Ordered;
 
 /// Samples on a uniform base.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,3 +39,302 @@ pub struct Block {
     /// Its samples.
     pub samples: Samples,
 }
+
+/// Why times give no uniform base.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TimeBaseError {
+    /// There are fewer than two samples.
+    #[error("{count} sample(s) make no record: at least two are needed")]
+    TooFew {
+        /// How many there are.
+        count: usize,
+    },
+    /// Times and samples differ in number.
+    #[error("there are {times} times but {samples} samples: each sample needs one time of its own")]
+    Lengths {
+        /// Number of times.
+        times: usize,
+        /// Number of samples.
+        samples: usize,
+    },
+    /// A time is NaN or infinite.
+    #[error(
+        "time number {number} is {time_s}, which is no time: remove that row or name another time source"
+    )]
+    NotFinite {
+        /// Which, counted from 1.
+        number: usize,
+        /// Its value, s.
+        time_s: f64,
+    },
+    /// All times are the same.
+    #[error("all times are {time_s} s: these are no times; give sample_rate_hz instead")]
+    AllEqual {
+        /// The value, s.
+        time_s: f64,
+    },
+    /// Times repeat so often that they do not tell when a sample was taken.
+    #[error(
+        "times repeat ({repeated} of {count}) and do not advance evenly: their resolution is too coarse; \
+         give sample_rate_hz for this channel"
+    )]
+    TooCoarse {
+        /// How many times equal the one before.
+        repeated: usize,
+        /// Number of times.
+        count: usize,
+    },
+    /// Times jump so far that filling the gap would not fit in memory.
+    #[error(
+        "times jump from {from_s} s to {to_s} s, {lost:.0} samples at {sample_rate_hz:.6} Hz: no gap of one record; \
+         check the clock, or cut the recording there"
+    )]
+    Jump {
+        /// Last time before the jump, s.
+        from_s: f64,
+        /// First time after it, s.
+        to_s: f64,
+        /// Samples that would have to be filled in.
+        lost: f64,
+        /// The rate of the rest, Hz.
+        sample_rate_hz: f64,
+    },
+    /// A rate is zero, negative or no number.
+    #[error(
+        "the sample rate is {sample_rate_hz} Hz: it must be above zero; set sample_rate_hz in the cask file"
+    )]
+    Rate {
+        /// The rate, Hz.
+        sample_rate_hz: f64,
+    },
+    /// Blocks of one channel differ in rate.
+    #[error(
+        "blocks differ in sample rate: {first_hz} Hz at first, {other_hz} Hz from {at_s} s on; \
+         cut the recording there, or set sample_rate_hz if one of them is wrong"
+    )]
+    RateChanges {
+        /// Rate of the first block, Hz.
+        first_hz: f64,
+        /// The other rate, Hz.
+        other_hz: f64,
+        /// Where it starts, s.
+        at_s: f64,
+    },
+}
+
+/// Times that lie nearer to the base than this part of the sample interval (RMS) leave their samples where they are: at
+/// 2 % a sine of a tenth of the sample rate is off by 1 % of itself at most, a tenth of what its sampling costs.
+const STEADY_PART: f64 = 0.02;
+
+/// A declared rate further than this from the times' own is worth a warning: oscillators keep 1e-4.
+const RATE_TOLERANCE: f64 = 1e-3;
+
+/// A sample type that a base can hold.
+pub(super) trait Number: Copy {
+    /// What stands where a sample is missing.
+    const MISSING: Self;
+    /// As f64.
+    fn to_f64(self) -> f64;
+    /// From f64, rounded.
+    fn from_f64(value: f64) -> Self;
+}
+
+impl Number for f32 {
+    const MISSING: Self = f32::NAN;
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+    #[allow(clippy::cast_possible_truncation, reason = "interpolated between f32 samples")]
+    fn from_f64(value: f64) -> Self {
+        value as f32
+    }
+}
+
+impl Number for f64 {
+    const MISSING: Self = f64::NAN;
+    fn to_f64(self) -> f64 {
+        self
+    }
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+}
+
+/// Samples placed on a base, before their type is forgotten again.
+struct Placed<S> {
+    start_s: f64,
+    sample_rate_hz: f64,
+    samples: Vec<S>,
+    gaps: Vec<Span>,
+    time_jitter_s: f64,
+    issues: Vec<Issue>,
+}
+
+impl<S> Placed<S> {
+    fn into_uniform(self, wrap: impl FnOnce(Vec<S>) -> Samples) -> Uniform {
+        Uniform {
+            start_s: self.start_s,
+            sample_rate_hz: self.sample_rate_hz,
+            samples: wrap(self.samples),
+            gaps: self.gaps,
+            time_jitter_s: self.time_jitter_s,
+            issues: self.issues,
+        }
+    }
+}
+
+/// Samples with a time each on a uniform base: sorted, doubles dropped, gaps NaN, real jitter interpolated.
+///
+/// A declared rate wins over the one that the times give; gaps are counted at the times' own rate.
+///
+/// # Errors
+/// [`TimeBaseError`] where the times make no record.
+pub fn from_times(
+    times_s: &[f64],
+    samples: Samples,
+    declared_rate_hz: Option<f64>,
+) -> Result<Uniform, TimeBaseError> {
+    if times_s.len() != samples.len() {
+        return Err(TimeBaseError::Lengths { times: times_s.len(), samples: samples.len() });
+    }
+    if let Some(rate_hz) = declared_rate_hz {
+        check_rate(rate_hz)?;
+    }
+    match samples {
+        Samples::F32(v) => Ok(place(times_s, v, declared_rate_hz)?.into_uniform(Samples::F32)),
+        Samples::F64(v) => Ok(place(times_s, v, declared_rate_hz)?.into_uniform(Samples::F64)),
+    }
+}
+
+/// Samples without times, at a known rate: only non-finite ones are looked for.
+///
+/// # Errors
+/// [`TimeBaseError`] where there are fewer than two samples or the rate is none.
+pub fn from_rate(start_s: f64, sample_rate_hz: f64, samples: Samples) -> Result<Uniform, TimeBaseError> {
+    check_rate(sample_rate_hz)?;
+    if samples.len() < 2 {
+        return Err(TimeBaseError::TooFew { count: samples.len() });
+    }
+    if !start_s.is_finite() {
+        return Err(TimeBaseError::NotFinite { number: 1, time_s: start_s });
+    }
+    let mut uniform = Uniform {
+        start_s,
+        sample_rate_hz,
+        samples,
+        gaps: Vec::new(),
+        time_jitter_s: 0.0,
+        issues: Vec::new(),
+    };
+    let clock = (start_s, sample_rate_hz);
+    let (count, gaps) = match &mut uniform.samples {
+        Samples::F32(v) => missing::mark_non_finite(v, clock, &mut uniform.issues),
+        Samples::F64(v) => missing::mark_non_finite(v, clock, &mut uniform.issues),
+    };
+    debug_assert_eq!(count == 0, gaps.is_empty());
+    uniform.gaps = gaps;
+    Ok(uniform)
+}
+
+fn check_rate(sample_rate_hz: f64) -> Result<(), TimeBaseError> {
+    if sample_rate_hz.is_finite() && sample_rate_hz > 0.0 {
+        Ok(())
+    } else {
+        Err(TimeBaseError::Rate { sample_rate_hz })
+    }
+}
+
+fn place<S: Number>(
+    times_s: &[f64],
+    samples: Vec<S>,
+    declared_rate_hz: Option<f64>,
+) -> Result<Placed<S>, TimeBaseError> {
+    let mut issues = Vec::new();
+    let (times_s, mut samples) = match order::ordered(times_s, samples, &mut issues)? {
+        Ordered::Strict(times_s, samples) => (times_s, samples),
+        Ordered::Coarse(times_s, samples) => {
+            return place_coarse(&times_s, samples, declared_rate_hz, issues);
+        }
+    };
+    let fit = Fit::new(&times_s)?;
+    let sample_rate_hz = declared_rate_hz.unwrap_or(1.0 / fit.period_s);
+    if (sample_rate_hz * fit.period_s - 1.0).abs() > RATE_TOLERANCE {
+        issues.push(rate_contradiction(sample_rate_hz, 1.0 / fit.period_s));
+    }
+    let non_finite = missing::mark_non_finite_timed(&mut samples, &times_s, &mut issues);
+    missing::report_gaps(&fit, &times_s, &mut issues);
+    if fit.rms_s > STEADY_PART * fit.period_s && fit.max_s > 0.75 * fit.resolution_s {
+        let moved = resample::resample(&times_s, &samples, &fit);
+        issues.push(jitter_note(&fit, &moved.error));
+        let gaps = missing::spans(&moved.samples);
+        return Ok(Placed {
+            start_s: moved.start_s,
+            sample_rate_hz,
+            samples: moved.samples,
+            gaps,
+            time_jitter_s: fit.rms_s,
+            issues,
+        });
+    }
+    let samples = if fit.runs.len() == 1 { samples } else { missing::spread(&samples, &fit) };
+    let gaps = if fit.runs.len() == 1 && non_finite == 0 { Vec::new() } else { missing::spans(&samples) };
+    Ok(Placed { start_s: fit.start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
+}
+
+/// Times coarser than the sample interval, such as stamps of whole milliseconds at 10 kHz: a line through them.
+fn place_coarse<S: Number>(
+    times_s: &[f64],
+    mut samples: Vec<S>,
+    declared_rate_hz: Option<f64>,
+    mut issues: Vec<Issue>,
+) -> Result<Placed<S>, TimeBaseError> {
+    let line = fit::line(times_s);
+    let repeated = times_s.windows(2).filter(|w| w[0] >= w[1]).count();
+    let step_s = times_s.windows(2).map(|w| w[1] - w[0]).filter(|&d| d > 0.0).fold(f64::MAX, f64::min);
+    if line.max_s > 1.5 * step_s {
+        return Err(TimeBaseError::TooCoarse { repeated, count: times_s.len() });
+    }
+    let sample_rate_hz = declared_rate_hz.unwrap_or(1.0 / line.period_s);
+    issues.push(Issue::new(
+        IssueCode::TimeJitter,
+        Severity::Note,
+        format!(
+            "times are only given to {step_s:.3e} s and repeat; the samples were taken as evenly spaced at \
+             {sample_rate_hz:.6} Hz, so that the channel's start is known to {step_s:.3e} s only"
+        ),
+    ));
+    let (_, gaps) = missing::mark_non_finite(&mut samples, (line.start_s, sample_rate_hz), &mut issues);
+    Ok(Placed { start_s: line.start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
+}
+
+fn rate_contradiction(declared_hz: f64, own_hz: f64) -> Issue {
+    Issue::new(
+        IssueCode::TimeJitter,
+        Severity::Warning,
+        format!(
+            "the recorded times say {own_hz:.6} Hz, {declared_hz:.6} Hz is declared and was taken; \
+             remove sample_rate_hz if the times are right"
+        ),
+    )
+}
+
+fn jitter_note(fit: &Fit, error: &resample::Difference) -> Issue {
+    Issue::new(
+        IssueCode::TimeJitter,
+        Severity::Note,
+        format!(
+            "times lie {:.3e} s (RMS, {:.1} % of the sample interval) off a uniform base at {:.6} Hz, {:.3e} s at most; \
+             the samples were interpolated onto it. Cubic and linear interpolation differ by {:.2} % of the largest \
+             sample RMS, {:.2} % at most: the error of doing so is below that",
+            fit.rms_s,
+            100.0 * fit.rms_s / fit.period_s,
+            1.0 / fit.period_s,
+            fit.max_s,
+            error.rms_percent,
+            error.max_percent
+        ),
+    )
+}
+
+#[cfg(test)]
+mod tests;

@@ -3,7 +3,7 @@
 mod flight;
 mod impact;
 
-use crate::data::{Body, BodyModel, Cask, Contact, Drop, FlightRegime, Prediction};
+use crate::data::{Body, BodyModel, Cask, Contact, Drop, Prediction};
 use flight::{Outcome, fly_until_second_end};
 use impact::{State, strike_first_end};
 
@@ -93,6 +93,7 @@ pub fn closed_form_speed_m_s(body: &Body, drop: &Drop, contact: Contact) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::FlightRegime;
 
     const V0_M_S: f64 = 13.288_340_754_210_061; // √(2 · 9.81 · 9)
 

@@ -102,6 +102,7 @@ fn result() -> DropResult {
             summary("A2", End::Second, "/daq/a2.samples"),
         ],
         flight: Some(flight()),
+        budget: Vec::new(),
         settings: settings(),
     }
 }
@@ -195,6 +196,7 @@ fn flight() -> FlightFit {
         u_zero_shift_m_s2: 0.0,
         ringing_m_s: vec![(0.1, 0.9)],
         residual_m_s: 0.032,
+        ringing_m_s: vec![(0.7, -0.4)],
     };
     let score = |modes, drift, bic, residual_m_s| FlightModelScore { modes, drift, bic, residual_m_s };
     FlightFit {

@@ -1,0 +1,293 @@
+//! What the stages found, gathered on the way, to one [`Analysis`].
+
+use crate::data::{
+    Analysis, CaskFile, ChannelSummary, Comparison, Curves, DropResult, Estimate, Events, FirstImpact,
+    FlightFit, Input, Issue, IssueCode, ModelChoice, Quantities, Recording, Setting, Setup, Severity, Signal,
+    SlapDown,
+};
+use crate::{fit, judge, motion, predict};
+
+/// The analysis while it is made.
+pub(crate) struct Draft<'a> {
+    recording: &'a Recording,
+    pub cask_file: &'a CaskFile,
+    pub issues: Vec<Issue>,
+    pub events: Events,
+    pub u_events_s: [f64; 3],
+    pub curves: Curves,
+    pub flight: Option<FlightFit>,
+    channels: Vec<ChannelSummary>,
+    settings: Vec<Setting>,
+    quantities: Option<Quantities>,
+    model: Option<ModelChoice>,
+    comparison: Option<Comparison>,
+}
+
+impl<'a> Draft<'a> {
+    pub fn new(recording: &'a Recording, cask_file: &'a CaskFile) -> Self {
+        Self {
+            recording,
+            cask_file,
+            issues: recording.issues.clone(),
+            events: Events::default(),
+            u_events_s: [0.0; 3],
+            curves: Curves::default(),
+            flight: None,
+            channels: recording.channels.iter().map(summary).collect(),
+            settings: Vec::new(),
+            quantities: None,
+            model: None,
+            comparison: None,
+        }
+    }
+
+    /// The result where no impact was found.
+    pub fn without_impact(mut self) -> Analysis {
+        self.issues.push(Issue::new(
+            IssueCode::NoImpact,
+            Severity::Error,
+            format!(
+                "no impact was found: no transverse channel changes its velocity by {:.1} m/s within 25 ms; check source, unit and that the recording covers the drop",
+                0.1 * self.cask_file.drop.impact_velocity_m_s
+            ),
+        ));
+        self.finish()
+    }
+
+    /// Takes over the times of the events with their standard uncertainties; a missing slap-down becomes an issue.
+    pub fn take_times(
+        &mut self,
+        contact: (f64, f64),
+        left: (f64, f64),
+        struck: Option<(f64, f64)>,
+        end_s: f64,
+    ) {
+        self.events.separation_s = Some(left.0);
+        self.events.slap_down_s = struck.map(|s| s.0);
+        self.u_events_s = [contact.1, left.1, struck.map_or(0.0, |s| s.1)];
+        if struck.is_none() {
+            let after_s = end_s - left.0;
+            let (code, why) = if after_s < 0.3 {
+                (IssueCode::EndsEarly, "the recording ends before it")
+            } else {
+                (IssueCode::NoSlapDown, "the second end shows no impact")
+            };
+            self.issues.push(Issue::new(
+                code,
+                Severity::Error,
+                format!(
+                    "no slap-down within {:.0} ms after the first end left the target: {why}",
+                    1e3 * after_s
+                ),
+            ));
+        }
+    }
+
+    /// Takes over what was measured and how it compares.
+    pub fn measured(&mut self, quantities: Quantities, compared: Option<(ModelChoice, Option<Comparison>)>) {
+        self.quantities = Some(quantities);
+        if let Some((model, comparison)) = compared {
+            self.model = Some(model);
+            self.comparison = comparison;
+        }
+    }
+
+    /// States what the curves' low-pass would have changed had it been used for the numbers.
+    pub fn filter_effect(&mut self, signals: &[Signal], setup: &Setup) {
+        let (Some(quantities), Some(contact_s)) = (&self.quantities, self.events.first_contact_s) else {
+            return;
+        };
+        let smooth = motion::filtered(signals, self.cutoff().0);
+        let window =
+            self.events.separation_s.zip(self.events.slap_down_s).map(|(left_s, struck_s)| motion::Window {
+                contact_s,
+                from_s: left_s + 0.1 * (left_s - contact_s) + 3e-4,
+                to_s: struck_s - 5e-4,
+                angular_velocity_rad_s: quantities.angular_velocity.value,
+            });
+        let filtered = window
+            .and_then(|w| motion::fit_flight(&smooth, &w, setup.cog_m))
+            .and_then(|flight| motion::reconstruct(&smooth, &flight, &self.events, setup));
+        if let (Some(m), Some(speed)) =
+            (filtered.and_then(|m| m.second_end_m_s.map(|v| (m.rebound_m_s, v))), quantities.speed)
+        {
+            let filtered_speed_m_s = m.1.0.hypot(m.1.1);
+            self.say(
+                "effect of that low-pass, had it been applied before integrating",
+                format!(
+                    "slap-down speed {:+.2} m/s, k {:+.3}",
+                    filtered_speed_m_s - speed.value,
+                    m.0 / setup.impact_velocity_m_s - quantities.k.value
+                ),
+                "from the data",
+            );
+        }
+    }
+
+    fn cutoff(&self) -> (f64, &'static str) {
+        let pulse_s = self.events.separation_s.zip(self.events.first_contact_s).map(|(l, c)| l - c);
+        motion::cutoff_hz(self.cask_file.filter, self.cask_file.cask.mass_kg, pulse_s)
+    }
+
+    /// Draws the curves and takes each channel's peaks, offset and noise.
+    pub fn draw(&mut self, signals: &[Signal]) {
+        let (cutoff_hz, origin) = self.cutoff();
+        let smooth = motion::filtered(signals, cutoff_hz);
+        let setup = Setup {
+            length_m: self.cask_file.cask.length_m,
+            height_m: self.cask_file.cask.height_m,
+            cog_m: self.cask_file.cask.cog_m,
+            angle_rad: self.cask_file.drop.angle_rad,
+            impact_velocity_m_s: self.cask_file.drop.impact_velocity_m_s,
+            gravity_m_s2: self.cask_file.drop.gravity_m_s2,
+            axial: crate::data::AxialClosure::Sticking,
+        };
+        self.curves.channels = motion::channel_curves(signals, &smooth, &self.events, &setup);
+        self.curves.spectra = motion::spectra(signals, &self.events);
+        for ((summary, signal), curve) in self.channels.iter_mut().zip(signals).zip(&self.curves.channels) {
+            let peak = |values: &[f64]| values.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+            summary.offset_m_s2 = Some(signal.removed_offset_m_s2);
+            summary.noise_m_s2 = Some(signal.noise_m_s2);
+            summary.peak_raw_m_s2 = Some(peak(&curve.raw_m_s2));
+            summary.peak_filtered_m_s2 = Some(peak(&curve.filtered_m_s2));
+            summary.clipped.clone_from(&signal.clipped);
+        }
+        self.say(
+            "low-pass of the curves shown",
+            format!("−3 dB at {cutoff_hz:.0} Hz, zero phase (two passes, second order)"),
+            origin,
+        );
+        self.say("samples that are integrated", "unfiltered, offset removed", "default");
+    }
+
+    fn say(&mut self, name: &str, value: impl Into<String>, origin: &str) {
+        self.settings.push(Setting { name: name.into(), value: value.into(), origin: origin.into() });
+    }
+
+    fn say_settings(&mut self) {
+        let file = self.cask_file;
+        let origin = |key: &str| if file.defaults.iter().any(|d| d == key) { "default" } else { "cask file" };
+        let (cask, drop) = (&file.cask, &file.drop);
+        self.say("mass", format!("{} kg", cask.mass_kg), "cask file");
+        self.say("length", format!("{} m", cask.length_m), "cask file");
+        self.say("section in the plane of the drop", format!("{} m", cask.height_m), origin("cask.height_m"));
+        self.say(
+            "centre of gravity from the first end",
+            format!("{:.3} m", cask.cog_m),
+            origin("cask.cog_m"),
+        );
+        self.say("inertia", format!("{:.0} kg m²", cask.inertia_kg_m2), origin("cask.inertia_kg_m2"));
+        self.say("drop angle", format!("{:.1}°", drop.angle_rad.to_degrees()), "cask file");
+        let velocity_origin = if drop.impact_velocity_given { "cask file" } else { "√(2 g h)" };
+        self.say("impact velocity", format!("{:.3} m/s", drop.impact_velocity_m_s), velocity_origin);
+        self.say("gravity", format!("{} m/s²", drop.gravity_m_s2), origin("drop.gravity_m_s2"));
+        self.say("contact law of the first end", file.contact.to_string(), origin("contact.friction"));
+        if let (Some(release_s), Some(contact_s)) = (self.events.release_s, self.events.first_contact_s) {
+            self.say(
+                "free fall seen",
+                format!(
+                    "{:.4} s, √(2 h / g) is {:.4} s",
+                    contact_s - release_s,
+                    drop.impact_velocity_m_s / drop.gravity_m_s2
+                ),
+                "from the data",
+            );
+        }
+    }
+
+    /// Puts everything together.
+    pub fn finish(mut self) -> Analysis {
+        self.say_settings();
+        let verdict = judge::verdict(&mut self.issues);
+        let first_impact = self.first_impact();
+        let slap_down = self.slap_down();
+        let predictions = self.predictions();
+        let input = Input {
+            recording: self.recording.path.display().to_string(),
+            recording_sha256: self.recording.sha256.clone(),
+            format: self.recording.format,
+            cask: self.cask_file.path.display().to_string(),
+            cask_sha256: self.cask_file.sha256.clone(),
+        };
+        let result = DropResult {
+            schema: "dropcheck.result/1",
+            version: env!("CARGO_PKG_VERSION"),
+            input,
+            first_impact,
+            slap_down,
+            k: self.quantities.as_ref().map(|q| q.k),
+            model: self.model,
+            predictions,
+            comparison: self.comparison,
+            quality: self.issues,
+            verdict,
+            events: self.events,
+            channels: self.channels,
+            flight: self.flight,
+            budget: self.quantities.map_or_else(Vec::new, |q| q.budget),
+            settings: self.settings,
+        };
+        Analysis {
+            result,
+            cask_file: self.cask_file.clone(),
+            curves: self.curves,
+            start_unix_ns: self.recording.start_unix_ns,
+        }
+    }
+
+    fn first_impact(&self) -> FirstImpact {
+        let time =
+            self.events.first_contact_s.map(|t| Estimate::new(t, fit::COVERAGE * self.u_events_s[0], "s"));
+        let q = self.quantities.as_ref();
+        FirstImpact {
+            time,
+            impact_velocity: q.map(|q| q.impact_velocity),
+            duration: q.map(|q| q.duration),
+            rebound_velocity: q.map(|q| q.rebound_velocity),
+            angular_velocity: q.map(|q| q.angular_velocity),
+        }
+    }
+
+    fn slap_down(&self) -> SlapDown {
+        let time = self.events.slap_down_s.map(|t| Estimate::new(t, fit::COVERAGE * self.u_events_s[2], "s"));
+        let q = self.quantities.as_ref();
+        SlapDown {
+            time,
+            flight_time: q.and_then(|q| q.flight_time),
+            speed: q.and_then(|q| q.speed),
+            vertical_velocity: q.and_then(|q| q.vertical_velocity),
+            horizontal_velocity: q.and_then(|q| q.horizontal_velocity),
+            angle: q.and_then(|q| q.angle),
+        }
+    }
+
+    /// Rod and body: the four borderline cases, and the cask file's contact law with the measured k.
+    fn predictions(&self) -> Vec<crate::data::Prediction> {
+        let drop = &self.cask_file.drop;
+        let mut all = Vec::new();
+        for body in predict::bodies(&self.cask_file.cask) {
+            all.extend(predict::borderline_cases(&body, drop));
+            if let Some(k) = self.quantities.as_ref().map(|q| q.k.value.clamp(0.0, 1.0)) {
+                all.push(predict::predict(&body, drop, self.cask_file.contact, k));
+            }
+        }
+        all
+    }
+}
+
+fn summary(channel: &crate::data::Channel) -> ChannelSummary {
+    ChannelSummary {
+        name: channel.name.clone(),
+        end: channel.end,
+        axis: channel.axis,
+        source: channel.source.clone(),
+        samples: channel.samples.len(),
+        sample_rate_hz: channel.sample_rate_hz,
+        unit: format!("{} ({})", channel.unit, channel.unit_origin),
+        offset_m_s2: None,
+        noise_m_s2: None,
+        peak_filtered_m_s2: None,
+        peak_raw_m_s2: None,
+        clipped: Vec::new(),
+    }
+}

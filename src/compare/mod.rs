@@ -1,0 +1,122 @@
+//! Measured beside predicted: the models tried, the one taken and whether it agrees.
+
+use crate::data::{
+    Body, BodyModel, CaskFile, Comparison, Contact, Drop, ModelCandidate, ModelChoice, Prediction, Quantities,
+};
+
+/// Standard uncertainty of an inertia that is only the uniform body's: casks carry their mass off the even spread (5 %).
+const U_INERTIA_DEFAULT: f64 = 0.05;
+/// Standard uncertainty of an inertia that the cask file states.
+const U_INERTIA_STATED: f64 = 0.01;
+/// Standard uncertainty of the drop angle, rad, as in the reconstruction.
+const U_ANGLE_RAD: f64 = 0.5 * std::f64::consts::PI / 180.0;
+
+/// The analytical model as a function, such as `predict::predict`.
+pub type Predict<'a> = &'a dyn Fn(&Body, &Drop, Contact, f64) -> Prediction;
+
+/// Holds every body's prediction with the measured k against the measured slap-down speed, simplest first.
+///
+/// Returns the choice and, where both speeds exist, the comparison with the model taken. The simplest consistent model wins.
+#[must_use]
+pub fn compare(
+    bodies: &[Body],
+    cask_file: &CaskFile,
+    measured: &Quantities,
+    predict: Predict,
+) -> Option<(ModelChoice, Option<Comparison>)> {
+    let k = measured.k.value.clamp(0.0, 1.0);
+    let candidates: Vec<ModelCandidate> = bodies
+        .iter()
+        .map(|body| {
+            let predicted = predict(body, &cask_file.drop, cask_file.contact, k).slap_down_speed_m_s;
+            let u95 = predicted.and_then(|_| uncertainty(body, cask_file, measured, predict));
+            let difference = match (measured.speed, predicted) {
+                (Some(m), Some(p)) => Some((m.value - p, p, m.u95)),
+                _ => None,
+            };
+            ModelCandidate {
+                model: body.model,
+                predicted,
+                u95,
+                difference_percent: difference.map(|(d, p, _)| 100.0 * d / p),
+                consistent: difference.zip(u95).is_some_and(|((d, _, m), u)| d.abs() <= m.hypot(u)),
+            }
+        })
+        .collect();
+    let taken = candidates
+        .iter()
+        .find(|c| c.consistent)
+        .or_else(|| candidates.iter().min_by(|a, b| apart(a).total_cmp(&apart(b))))?
+        .clone();
+    let comparison = match (measured.speed, taken.predicted, taken.u95) {
+        (Some(m), Some(predicted), Some(u95)) => Some(Comparison {
+            predicted,
+            predicted_u95: u95,
+            measured: m.value,
+            measured_u95: m.u95,
+            difference_percent: 100.0 * (m.value - predicted) / predicted,
+            agrees: taken.consistent,
+        }),
+        _ => None,
+    };
+    let reason = reason(&taken, &candidates);
+    Some((ModelChoice { name: taken.model, reason, candidates }, comparison))
+}
+
+fn apart(candidate: &ModelCandidate) -> f64 {
+    candidate.difference_percent.map_or(f64::INFINITY, f64::abs)
+}
+
+/// 95 % half-width of a prediction, m/s: k, angle, inertia, and the finite pulse that the impact formula leaves out.
+fn uncertainty(body: &Body, file: &CaskFile, measured: &Quantities, predict: Predict) -> Option<f64> {
+    let k = measured.k.value.clamp(0.0, 1.0);
+    let speed = |body: &Body, drop: &Drop, k: f64| {
+        predict(body, drop, file.contact, k.clamp(0.0, 1.0)).slap_down_speed_m_s
+    };
+    let base = speed(body, &file.drop, k)?;
+    let by_k = speed(body, &file.drop, k + measured.k.u95 / 2.0).map_or(0.0, |s| s - base);
+    let turned = |by_rad: f64| Drop { angle_rad: (file.drop.angle_rad + by_rad).max(0.0), ..file.drop };
+    let by_angle = speed(body, &turned(U_ANGLE_RAD), k).map_or(0.0, |s| s - base);
+    let stated = !file.defaults.iter().any(|d| d == "cask.inertia_kg_m2");
+    let share = if stated { U_INERTIA_STATED } else { U_INERTIA_DEFAULT };
+    let heavier = Body { inertia_kg_m2: body.inertia_kg_m2 * (1.0 + share), ..*body };
+    let by_inertia = speed(&heavier, &file.drop, k).map_or(0.0, |s| s - base);
+    // While the pulse of duration T lasts the cask turns by about ω T / 2 and gravity adds g T.
+    let duration_s = measured.duration.value.max(0.0);
+    let turn_rad = -measured.angular_velocity.value * duration_s / 2.0;
+    let by_pulse = speed(body, &turned(turn_rad), k).map_or(0.0, |s| s - base).abs()
+        + file.drop.gravity_m_s2 * duration_s;
+    Some(2.0 * by_k.hypot(by_angle).hypot(by_inertia).hypot(by_pulse / 3.0_f64.sqrt()))
+}
+
+fn reason(taken: &ModelCandidate, candidates: &[ModelCandidate]) -> String {
+    let name = |m: BodyModel| match m {
+        BodyModel::Rod => "thin rod",
+        BodyModel::Body => "body with section, centre of gravity and inertia",
+    };
+    let Some(percent) = taken.difference_percent else {
+        return format!("No slap-down speed was measured to choose by; the {} is shown.", name(taken.model));
+    };
+    let others: Vec<String> = candidates
+        .iter()
+        .filter(|c| c.model != taken.model)
+        .filter_map(|c| {
+            c.predicted.map(|p| {
+                format!(
+                    "the {} would say {p:.2} m/s ({:+.1} %)",
+                    name(c.model),
+                    c.difference_percent.unwrap_or(0.0)
+                )
+            })
+        })
+        .collect();
+    let lead = if taken.consistent {
+        format!("The {} is the simplest model within both intervals ({percent:+.1} %)", name(taken.model))
+    } else {
+        format!(
+            "No model agrees within both intervals; the {} comes nearest ({percent:+.1} %)",
+            name(taken.model)
+        )
+    };
+    if others.is_empty() { format!("{lead}.") } else { format!("{lead}; {}.", others.join(", ")) }
+}

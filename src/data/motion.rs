@@ -1,0 +1,76 @@
+//! The rigid-body motion that the channels and a contact law give.
+
+use super::curves::MotionCurve;
+
+/// Plane motion at one time; velocities of the centre of gravity S.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotionState {
+    /// Time, s from the recording's first sample.
+    pub time_s: f64,
+    /// Inclination φ, rad.
+    pub angle_rad: f64,
+    /// ω = −φ̇, rad/s.
+    pub angular_velocity_rad_s: f64,
+    /// ẋ of S, m/s.
+    pub horizontal_velocity_m_s: f64,
+    /// ż of S, m/s.
+    pub vertical_velocity_m_s: f64,
+    /// z of S above the target, m.
+    pub height_m: f64,
+}
+
+/// What the reconstruction needs beside the signals: geometry, initial motion and how the axial velocity is had.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setup {
+    /// Length l, m.
+    pub length_m: f64,
+    /// Section h, m.
+    pub height_m: f64,
+    /// Centre of gravity c from the first end, m.
+    pub cog_m: f64,
+    /// φ at first contact, rad.
+    pub angle_rad: f64,
+    /// Speed at first contact, m/s.
+    pub impact_velocity_m_s: f64,
+    /// g, m/s².
+    pub gravity_m_s2: f64,
+    /// How the axial velocity during contact is had.
+    pub axial: AxialClosure,
+}
+
+/// Where the axial velocity during contact comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AxialClosure {
+    /// ẋ_C = 0.
+    Sticking,
+    /// A tangential force of this many millionths of the normal force.
+    Sliding {
+        /// μ · 10⁶; an integer so that the choice compares exactly.
+        friction_ppm: u32,
+    },
+    /// From the axial channels.
+    Measured,
+}
+
+/// The motion between first contact and slap-down.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// As L leaves the target.
+    pub separation: MotionState,
+    /// Vertical velocity of L's corner then, m/s.
+    pub rebound_m_s: f64,
+    /// Horizontal velocity of L's corner then, m/s: 0 where it sticks.
+    pub slip_m_s: f64,
+    /// I_x / I_z of the contact: the friction that the motion needed.
+    pub impulse_ratio: f64,
+    /// Just before R strikes, where it does.
+    pub slap_down: Option<MotionState>,
+    /// Horizontal and vertical velocity of R's corner then, m/s.
+    pub second_end_m_s: Option<(f64, f64)>,
+    /// Height of R's corner then, m: 0 but for errors of angle, velocity and time.
+    pub second_end_height_m: Option<f64>,
+    /// Lowest height of L's corner between separation and slap-down, m.
+    pub lowest_first_end_m: f64,
+    /// The motion over time.
+    pub curve: MotionCurve,
+}

@@ -1,0 +1,286 @@
+//! What a format's reader hands over, and the cask file, to channels: one clock, one unit, polarity.
+
+use super::error::{self, IngestError};
+use super::{RawChannel, RawRecording};
+use crate::data::{
+    CaskFile, Channel, ChannelSpec, Issue, IssueCode, Recording, RecordingFormat, Severity, Unit,
+};
+use std::path::Path;
+
+/// Standard gravity, m/s²: what "g" means in a data sheet (3rd CGPM, 1901); not the site's gravity.
+const STANDARD_GRAVITY_M_S2: f64 = 9.80665;
+
+/// The recording: times from the earliest first sample, every channel with its unit and scale.
+///
+/// # Errors
+/// A channel without a unit, or with one that is no acceleration.
+pub(super) fn recording(
+    path: &Path,
+    format: RecordingFormat,
+    sha256: String,
+    raw: RawRecording,
+    cask_file: &CaskFile,
+) -> Result<Recording, IngestError> {
+    let first_s = raw.channels.iter().map(|channel| channel.uniform.start_s).fold(f64::INFINITY, f64::min);
+    let first_s = if first_s.is_finite() { first_s } else { 0.0 };
+    let mut issues: Vec<Issue> = raw.issues.into_iter().map(|issue| shifted(issue, first_s)).collect();
+    let mut channels = Vec::with_capacity(raw.channels.len());
+    for raw_channel in raw.channels {
+        let Some(spec) = cask_file.channels.get(raw_channel.spec) else { continue };
+        channels.push(channel(path, spec, raw_channel, first_s, &mut issues)?);
+    }
+    Ok(Recording {
+        path: path.to_owned(),
+        sha256,
+        format,
+        channels,
+        start_unix_ns: raw.zero_unix_ns.map(|zero_ns| zero_ns.saturating_add(nanoseconds(first_s))),
+        issues,
+    })
+}
+
+fn channel(
+    path: &Path,
+    spec: &ChannelSpec,
+    raw: RawChannel,
+    first_s: f64,
+    issues: &mut Vec<Issue>,
+) -> Result<Channel, IngestError> {
+    let scale = scale(path, spec, raw.unit.as_deref())?;
+    if let Some(message) = scale.contradiction {
+        issues.push(Issue::new(IssueCode::Scale, Severity::Note, message).on(&spec.name));
+    }
+    issues.extend(raw.uniform.issues.into_iter().map(|issue| shifted(issue, first_s).on(&spec.name)));
+    Ok(Channel {
+        name: spec.name.clone(),
+        end: spec.end,
+        axis: spec.axis,
+        source: spec.source.to_string(),
+        position_m: spec.position_m,
+        offset_m: spec.offset_m,
+        start_s: raw.uniform.start_s - first_s,
+        sample_rate_hz: raw.uniform.sample_rate_hz,
+        samples: raw.uniform.samples,
+        scale_m_s2: scale.m_s2 * spec.polarity,
+        unit: scale.unit,
+        unit_origin: scale.origin,
+        full_scale: spec.full_scale,
+        gaps: raw.uniform.gaps,
+        time_jitter_s: raw.uniform.time_jitter_s,
+        coupling: spec.coupling,
+    })
+}
+
+/// The same issue, its times counted from `first_s`.
+fn shifted(mut issue: Issue, first_s: f64) -> Issue {
+    issue.from_s = issue.from_s.map(|time_s| time_s - first_s);
+    issue.to_s = issue.to_s.map(|time_s| time_s - first_s);
+    issue
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "a float-to-integer cast saturates; times of a recording fit"
+)]
+fn nanoseconds(time_s: f64) -> i64 {
+    (time_s * 1e9).round() as i64
+}
+
+/// What one unit of the samples is worth.
+#[derive(Debug, PartialEq)]
+struct Scale {
+    m_s2: f64,
+    unit: String,
+    origin: &'static str,
+    /// The cask file's unit and the recording's differ: a sentence.
+    contradiction: Option<String>,
+}
+
+fn scale(path: &Path, spec: &ChannelSpec, recorded: Option<&str>) -> Result<Scale, IngestError> {
+    let recorded = recorded.map(str::trim).filter(|text| !text.is_empty());
+    if let Some(unit) = spec.unit {
+        let (m_s2, name) = declared(unit);
+        let contradiction = recorded.filter(|text| !same_unit(text, name, m_s2)).map(|text| {
+            format!(
+                "the cask file gives the unit {name:?}, the recording {text:?}; the cask file is followed"
+            )
+        });
+        return Ok(Scale { m_s2, unit: name.to_owned(), origin: "cask file", contradiction });
+    }
+    let Some(text) = recorded else {
+        return Err(error::source(
+            path,
+            &spec.name,
+            format!("neither the recording nor the cask file says the unit of {}", spec.source),
+            "write `unit = \"g\"` (or \"m/s^2\", or \"V\" or \"mV\" with `sensitivity`) in this channel of the cask file",
+        ));
+    };
+    match acceleration_unit(text) {
+        Some(m_s2) => Ok(Scale { m_s2, unit: text.to_owned(), origin: "recording", contradiction: None }),
+        None if is_voltage(text) => Err(error::source(
+            path,
+            &spec.name,
+            format!("the recording gives {} in {text:?}, a voltage", spec.source),
+            format!(
+                "write `unit = \"{text}\"` and `sensitivity` (mV per g, from the calibration sheet) in this channel of the cask file"
+            ),
+        )),
+        None => Err(error::source(
+            path,
+            &spec.name,
+            format!(
+                "the recording gives {} in {text:?}, which is no unit of acceleration known here",
+                spec.source
+            ),
+            "check that this is the accelerometer; if so, write `unit = \"g\"` or \"m/s^2\" in this channel of the cask file",
+        )),
+    }
+}
+
+/// m/s² per unit, and the unit's name, as a cask file declares it: one volt is 1000 mV / (mV per g) · g.
+fn declared(unit: Unit) -> (f64, &'static str) {
+    match unit {
+        Unit::G => (STANDARD_GRAVITY_M_S2, "g"),
+        Unit::MetrePerSecondSquared => (1.0, "m/s^2"),
+        Unit::Volt { sensitivity_mv_per_g } => (1000.0 / sensitivity_mv_per_g * STANDARD_GRAVITY_M_S2, "V"),
+        Unit::Millivolt { sensitivity_mv_per_g } => (STANDARD_GRAVITY_M_S2 / sensitivity_mv_per_g, "mV"),
+    }
+}
+
+/// Whether the recording's word means the unit `name`, worth `m_s2`.
+#[allow(clippy::float_cmp, reason = "both come from the same constants")]
+fn same_unit(text: &str, name: &str, m_s2: f64) -> bool {
+    text == name || (!is_voltage(name) && acceleration_unit(text) == Some(m_s2))
+}
+
+fn is_voltage(text: &str) -> bool {
+    matches!(text.trim(), "V" | "v" | "mV" | "mv" | "volt" | "Volt" | "volts" | "Volts")
+}
+
+/// m/s² per unit, for the ways in which an acceleration's unit is written; `None` where it is none of them.
+///
+/// Case matters only where it could mislead: "Mg" would be a megagram.
+fn acceleration_unit(text: &str) -> Option<f64> {
+    let plain: String = text
+        .trim()
+        .trim_matches(|c| matches!(c, '[' | ']' | '(' | ')'))
+        .chars()
+        .filter(|c| !c.is_whitespace() && !matches!(c, '^' | '*' | '·' | '{' | '}'))
+        .map(|c| {
+            if c == '²' {
+                '2'
+            } else if matches!(c, '⁻' | '−') {
+                '-'
+            } else {
+                c
+            }
+        })
+        .collect();
+    match plain.as_str() {
+        "mg" | "mgn" | "milli-g" | "millig" => return Some(STANDARD_GRAVITY_M_S2 / 1000.0),
+        "Mg" | "MG" => return None,
+        _ => {}
+    }
+    match plain.to_lowercase().replace('¹', "1").as_str() {
+        "g" | "gn" | "g0" | "gee" | "gs" | "g's" | "g_n" | "g_0" | "gunits" | "gravity"
+        | "standardgravity" => Some(STANDARD_GRAVITY_M_S2),
+        "m/s2"
+        | "m/s/s"
+        | "ms-2"
+        | "m.s-2"
+        | "m/sec2"
+        | "m/sec/sec"
+        | "m/ss"
+        | "m/(s2)"
+        | "meterspersecondsquared"
+        | "metrespersecondsquared"
+        | "meterpersecondsquared"
+        | "metrepersecondsquared"
+        | "mps2"
+        | "m_s2"
+        | "m/s**2" => Some(1.0),
+        "mm/s2" | "mms-2" | "mm/s/s" => Some(1e-3),
+        "cm/s2" | "cms-2" | "gal" => Some(1e-2),
+        "km/s2" => Some(1e3),
+        "ft/s2" => Some(0.3048),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Axis, Coupling, End, Source};
+
+    pub(super) fn spec(unit: Option<Unit>) -> ChannelSpec {
+        ChannelSpec {
+            name: "A1".into(),
+            end: End::First,
+            axis: Axis::Transverse,
+            source: Source::Path("/daq/a1".into()),
+            unit,
+            position_m: 0.0,
+            offset_m: 0.0,
+            polarity: 1.0,
+            full_scale: None,
+            sample_rate_hz: None,
+            time: None,
+            coupling: Coupling::Dc,
+        }
+    }
+
+    fn of(unit: Option<Unit>, recorded: Option<&str>) -> Result<Scale, IngestError> {
+        scale(Path::new("r"), &spec(unit), recorded)
+    }
+
+    #[test]
+    fn units_are_recognised_however_they_are_written() {
+        for (text, m_s2) in [
+            ("g", 9.80665),
+            ("G", 9.80665),
+            ("gn", 9.80665),
+            ("[g]", 9.80665),
+            ("mg", 0.009_806_65),
+            ("m/s^2", 1.0),
+            ("m/s²", 1.0),
+            ("M/S2", 1.0),
+            ("m s-2", 1.0),
+            ("m·s⁻²", 1.0),
+            ("m/s**2", 1.0),
+            ("mm/s^2", 1e-3),
+        ] {
+            let read_m_s2 = of(None, Some(text)).unwrap().m_s2;
+            // One rounding of a product apart at most.
+            assert!((read_m_s2 - m_s2).abs() <= f64::EPSILON * m_s2, "{text}");
+        }
+        for text in ["Mg", "m/s", "rad/s", "N", "furlong"] {
+            assert!(of(None, Some(text)).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_volt_at_ten_millivolt_a_g_is_a_hundred_g() {
+        let scale = of(Some(Unit::Volt { sensitivity_mv_per_g: 10.0 }), Some("V")).unwrap();
+        assert!((scale.m_s2 - 980.665).abs() < 1e-9);
+        assert_eq!(scale.contradiction, None);
+        let scale = of(Some(Unit::Millivolt { sensitivity_mv_per_g: 10.0 }), None).unwrap();
+        assert!((scale.m_s2 - 0.980_665).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_cask_file_overrides_and_the_contradiction_is_said() {
+        let scale = of(Some(Unit::G), Some("m/s^2")).unwrap();
+        assert_eq!((scale.m_s2, scale.origin), (9.80665, "cask file"));
+        assert!(scale.contradiction.is_some());
+        assert_eq!(of(Some(Unit::G), Some("G")).unwrap().contradiction, None);
+    }
+
+    #[test]
+    fn no_unit_anywhere_says_what_to_write() {
+        let error = of(None, Some(" ")).unwrap_err();
+        let help = miette::Diagnostic::help(&error).unwrap().to_string();
+        assert!(help.contains("unit = \"g\""), "{help}");
+        let error = of(None, Some("mV")).unwrap_err();
+        assert!(miette::Diagnostic::help(&error).unwrap().to_string().contains("sensitivity"));
+    }
+}

@@ -1,0 +1,322 @@
+//! A cask file (TOML) to a checked [`CaskFile`], or to one diagnostic that shows the line.
+
+mod channel;
+mod section;
+
+use crate::data::{Cask, CaskFile, Contact, Drop, FilterChoice};
+use miette::{Diagnostic, NamedSource, SourceSpan};
+use section::{Document, Section};
+use sha2::{Digest, Sha256};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Why a cask file cannot be used.
+#[derive(Debug, thiserror::Error, Diagnostic)]
+pub enum CaskFileError {
+    /// The operating system refused.
+    #[error("{path}: the cask file cannot be read: {source}")]
+    #[diagnostic(help("check the name after --cask, and that you may read it"))]
+    Io {
+        /// The file.
+        path: String,
+        /// Its reason.
+        source: std::io::Error,
+    },
+    /// It is no text file that a cask file could be.
+    #[error("{path}: {problem}")]
+    #[diagnostic(help("{mend}"))]
+    NoCaskFile {
+        /// The file.
+        path: String,
+        /// What it is instead.
+        problem: String,
+        /// What to do.
+        mend: String,
+    },
+    /// A line of it is wrong.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Line(#[from] Box<WrongLine>),
+}
+
+/// A line of a cask file that is wrong, with its place.
+#[derive(Debug, thiserror::Error, Diagnostic)]
+#[error("{path}, line {line}: {message}")]
+pub struct WrongLine {
+    /// The file.
+    pub path: String,
+    /// The line, from 1.
+    pub line: usize,
+    /// What is wrong.
+    pub message: String,
+    /// What was expected there.
+    pub expected: String,
+    /// The file's text.
+    #[source_code]
+    pub text: NamedSource<String>,
+    /// Where in it.
+    #[label("{expected}")]
+    pub span: SourceSpan,
+    /// How to mend it.
+    #[help]
+    pub mend: String,
+}
+
+/// A larger file is no cask file: a thousand channels take 300 kB.
+const LARGEST_BYTES: u64 = 16 << 20;
+
+/// Standard value where the file gives no gravity: the contract's default.
+const DEFAULT_GRAVITY_M_S2: f64 = 9.81;
+
+/// Reads and checks the cask file at `path`; channels may be missing altogether, as `predict` needs none.
+///
+/// # Errors
+/// [`CaskFileError`], one message that shows the line.
+pub fn parse(path: &Path) -> Result<CaskFile, CaskFileError> {
+    let bytes = read(path)?;
+    let sha256 = Sha256::digest(&bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    });
+    let text = text(path, &bytes)?;
+    let mut cask_file = checked(path, text)?;
+    cask_file.sha256 = sha256;
+    Ok(cask_file)
+}
+
+/// Whether the file has any channel, as `analyze` needs.
+///
+/// # Errors
+/// [`CaskFileError`] that says how to get channels.
+pub fn require_channels(cask_file: &CaskFile, recording: &Path) -> Result<(), CaskFileError> {
+    if !cask_file.channels.is_empty() {
+        return Ok(());
+    }
+    let problem = "the cask file has no [[channel]], so that no sensor can be found in the recording";
+    let mend = format!(
+        "`dropcheck init {}` writes one [[channel]] table for each source in the recording: copy those of the accelerometers",
+        recording.display()
+    );
+    Err(no_cask_file(path_of(cask_file), problem, &mend))
+}
+
+fn path_of(cask_file: &CaskFile) -> &Path {
+    &cask_file.path
+}
+
+fn no_cask_file(path: &Path, problem: &str, mend: &str) -> CaskFileError {
+    CaskFileError::NoCaskFile {
+        path: path.display().to_string(),
+        problem: problem.to_owned(),
+        mend: mend.to_owned(),
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, CaskFileError> {
+    let io = |source| CaskFileError::Io { path: path.display().to_string(), source };
+    let metadata = std::fs::metadata(path).map_err(io)?;
+    if metadata.is_dir() {
+        return Err(no_cask_file(path, "this is a directory, not a cask file", "name the TOML file in it"));
+    }
+    if metadata.len() > LARGEST_BYTES {
+        return Err(no_cask_file(
+            path,
+            &format!("{} bytes are too many for a cask file", metadata.len()),
+            "perhaps the recording was given after --cask; the recording comes first, the TOML file after --cask",
+        ));
+    }
+    std::fs::read(path).map_err(io)
+}
+
+/// The text, without a byte-order mark.
+fn text<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, CaskFileError> {
+    if bytes.starts_with(b"\x89HDF") || bytes.starts_with(b"\x89MCAP") {
+        return Err(no_cask_file(
+            path,
+            "this is a recording, not a cask file",
+            "the recording comes first, the TOML file after --cask",
+        ));
+    }
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let line = section::line_of(bytes, error.valid_up_to());
+        no_cask_file(
+            path,
+            &format!("line {line} is not UTF-8 text"),
+            "save the cask file as UTF-8 (in most editors: \"Save with encoding\"), or write the letter without its accent",
+        )
+    })?;
+    if text.trim().is_empty() {
+        return Err(no_cask_file(
+            path,
+            "the cask file is empty",
+            "`dropcheck init RECORDING` writes one to fill in",
+        ));
+    }
+    Ok(text)
+}
+
+fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
+    let document = Document::new(path, text);
+    let root = document.root()?;
+    let mut defaults = Vec::new();
+    let cask = cask(&root.required_table("cask")?, path, &mut defaults)?;
+    let drop = drop(&root.required_table("drop")?, &mut defaults)?;
+    let contact = contact(root.table("contact")?.as_ref(), &mut defaults)?;
+    let filter = filter(root.table("filter")?.as_ref(), &mut defaults)?;
+    let time = match root.table("recording")? {
+        Some(table) => table.text("time")?.map(|time| time.value),
+        None => None,
+    };
+    let channels = channel::channels(&root, &cask)?;
+    Ok(CaskFile {
+        path: path.to_owned(),
+        sha256: String::new(),
+        cask,
+        drop,
+        contact,
+        filter,
+        time,
+        channels,
+        defaults,
+    })
+}
+
+fn cask(table: &Section, path: &Path, defaults: &mut Vec<String>) -> Result<Cask, CaskFileError> {
+    let mass_kg = table.required_positive("mass_kg", "4466.0")?;
+    let length_m = table.required_positive("length_m", "5.512")?;
+    let height = table.not_negative("height_m")?;
+    if let Some(height) = &height
+        && height.value > length_m
+    {
+        return Err(table.wrong(
+            height.span.clone(),
+            format!("the section is longer than the cask: height_m {} exceeds length_m {length_m}", height.value),
+            format!("0 to {length_m} m"),
+            "length_m runs along the axis between the two ends that strike, height_m across it; perhaps they are exchanged",
+        ));
+    }
+    let cog = table.positive("cog_m")?;
+    if let Some(cog) = &cog
+        && cog.value >= length_m
+    {
+        return Err(table.wrong(
+            cog.span.clone(),
+            format!(
+                "the centre of gravity lies outside the cask: cog_m {} with length_m {length_m}",
+                cog.value
+            ),
+            format!("between 0 and {length_m} m"),
+            "cog_m counts along the axis from the first end (the one that touches first), in metres",
+        ));
+    }
+    let inertia = table.positive("inertia_kg_m2")?;
+    let width_m = table.positive("width_m")?.map(|width| width.value);
+    let name = match table.text("name")? {
+        Some(name) => name.value,
+        None => {
+            path.file_stem().map_or_else(|| "cask".to_owned(), |stem| stem.to_string_lossy().into_owned())
+        }
+    };
+    for (key, is_given) in
+        [("height_m", height.is_some()), ("cog_m", cog.is_some()), ("inertia_kg_m2", inertia.is_some())]
+    {
+        if !is_given {
+            defaults.push(format!("cask.{key}"));
+        }
+    }
+    let height_m = height.map_or(0.0, |height| height.value);
+    Ok(Cask {
+        name,
+        mass_kg,
+        length_m,
+        height_m,
+        width_m,
+        cog_m: cog.as_ref().map_or(length_m / 2.0, |cog| cog.value),
+        // Θ = m (l² + h²) / 12, a homogeneous block.
+        inertia_kg_m2: inertia
+            .as_ref()
+            .map_or(mass_kg * (length_m * length_m + height_m * height_m) / 12.0, |inertia| inertia.value),
+        is_body: height_m > 0.0 || cog.is_some() || inertia.is_some(),
+    })
+}
+
+fn drop(table: &Section, defaults: &mut Vec<String>) -> Result<Drop, CaskFileError> {
+    let gravity = table.positive("gravity_m_s2")?;
+    if gravity.is_none() {
+        defaults.push("drop.gravity_m_s2".into());
+    }
+    let gravity_m_s2 = gravity.map_or(DEFAULT_GRAVITY_M_S2, |gravity| gravity.value);
+    let height_m = table.required_positive("height_m", "9.0")?;
+    let angle = table.required_number("angle_deg", "15.0")?;
+    if !(0.0..=90.0).contains(&angle.value) {
+        return Err(table.wrong(
+            angle.span,
+            format!("angle_deg is {}, outside 0 to 90", angle.value),
+            "0 to 90 degrees".into(),
+            "the inclination of the cask's axis above the horizontal before the drop, in degrees; the first end is the low one",
+        ));
+    }
+    let velocity = table.positive("impact_velocity_m_s")?;
+    if velocity.is_none() {
+        defaults.push("drop.impact_velocity_m_s".into());
+    }
+    Ok(Drop {
+        height_m,
+        angle_rad: angle.value.to_radians(),
+        impact_velocity_given: velocity.is_some(),
+        // v0 = √(2 g h).
+        impact_velocity_m_s: velocity
+            .map_or((2.0 * gravity_m_s2 * height_m).sqrt(), |velocity| velocity.value),
+        gravity_m_s2,
+    })
+}
+
+fn contact(table: Option<&Section>, defaults: &mut Vec<String>) -> Result<Contact, CaskFileError> {
+    const MEND: &str =
+        "friction = \"rough\" (no sliding), \"smooth\" (no friction), or a coefficient such as 0.4";
+    let value = table.and_then(|table| table.value("friction").map(|value| (table, value)));
+    let Some((table, value)) = value else {
+        defaults.push("contact.friction".into());
+        return Ok(Contact::Rough);
+    };
+    if value.get_ref().is_str() {
+        return table
+            .word("friction", &[("rough", Contact::Rough), ("smooth", Contact::Smooth)], MEND)?
+            .ok_or_else(|| table.missing("friction", MEND));
+    }
+    let coefficient = table.required_number("friction", "0.4")?;
+    if coefficient.value < 0.0 {
+        return Err(table.wrong(
+            coefficient.span,
+            format!("a coefficient of friction of {} cannot be", coefficient.value),
+            "0 or more".into(),
+            MEND,
+        ));
+    }
+    Ok(Contact::Coulomb(coefficient.value))
+}
+
+fn filter(table: Option<&Section>, defaults: &mut Vec<String>) -> Result<FilterChoice, CaskFileError> {
+    let Some(table) = table else {
+        defaults.push("filter".into());
+        return Ok(FilterChoice::Auto);
+    };
+    match (table.positive("cfc")?, table.positive("cutoff_hz")?) {
+        (Some(_), Some(cutoff)) => Err(table.wrong(
+            cutoff.span,
+            "[filter] gives both cfc and cutoff_hz".into(),
+            "one of the two".into(),
+            "keep cfc (a class of SAE J211 / ISO 6487) or cutoff_hz (a −3 dB cut-off) and delete the other line",
+        )),
+        (Some(class), None) => Ok(FilterChoice::Cfc(class.value)),
+        (None, Some(cutoff)) => Ok(FilterChoice::CutoffHz(cutoff.value)),
+        (None, None) => {
+            defaults.push("filter".into());
+            Ok(FilterChoice::Auto)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

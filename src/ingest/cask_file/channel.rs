@@ -1,0 +1,162 @@
+//! `[[channel]]` tables to checked channel specifications.
+
+use super::CaskFileError;
+use super::section::Section;
+use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, Source, Unit};
+use std::ops::Range;
+
+/// A unit's word in a cask file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum UnitWord {
+    G,
+    MetrePerSecondSquared,
+    Volt,
+    Millivolt,
+}
+
+const UNITS: &str = "unit = \"g\", \"m/s^2\", or \"V\" or \"mV\" with sensitivity in mV per g; left out: what the recording says";
+
+/// All channels, in the file's order, with names of their own.
+pub(super) fn channels(root: &Section, cask: &Cask) -> Result<Vec<ChannelSpec>, CaskFileError> {
+    let mut channels: Vec<ChannelSpec> = Vec::new();
+    let mut lines: Vec<usize> = Vec::new();
+    for table in root.tables("channel")? {
+        let (channel, name_span) = channel(&table, cask)?;
+        if let Some(first) = channels.iter().position(|other| other.name == channel.name) {
+            return Err(table.wrong(
+                name_span,
+                format!("two channels are named \"{}\", the first on line {}", channel.name, lines[first]),
+                "a name of its own".into(),
+                "name each channel as the test's documents do, each name once",
+            ));
+        }
+        lines.push(table.line(name_span.start));
+        channels.push(channel);
+    }
+    Ok(channels)
+}
+
+fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), CaskFileError> {
+    const END: &str =
+        "end = \"first\" (the low end, which touches first) or \"second\" (the one that slaps down)";
+    const AXIS: &str =
+        "axis = \"transverse\" (across the cask, in the plane of the drop) or \"axial\" (along it)";
+    let name = table.required_text("name", "A1")?;
+    let end = table
+        .word("end", &[("first", End::First), ("second", End::Second)], END)?
+        .ok_or_else(|| table.missing("end", END))?;
+    let axis = table
+        .word("axis", &[("transverse", Axis::Transverse), ("axial", Axis::Axial)], AXIS)?
+        .ok_or_else(|| table.missing("axis", AXIS))?;
+    let source = source(table)?;
+    let unit = unit(table)?;
+    let position_m = position_m(table, cask)?;
+    let spec = ChannelSpec {
+        name: name.value,
+        end,
+        axis,
+        source,
+        unit,
+        position_m,
+        offset_m: table.number("offset_m")?.map_or(0.0, |offset| offset.value),
+        polarity: polarity(table)?,
+        full_scale: table.positive("full_scale")?.map(|limit| limit.value),
+        sample_rate_hz: table.positive("sample_rate_hz")?.map(|rate| rate.value),
+        time: table.text("time")?.map(|time| time.value),
+        coupling: coupling(table)?,
+    };
+    Ok((spec, name.span))
+}
+
+fn source(table: &Section) -> Result<Source, CaskFileError> {
+    const MEND: &str = "`dropcheck inspect RECORDING` lists what to write: source = \"/topic.field\" (MCAP), \"/group/dataset\" or \"/dataset[2]\" (HDF5), a column's header (CSV)";
+    let Some(value) = table.value("source") else { return Err(table.missing("source", MEND)) };
+    if !value.get_ref().is_table() {
+        let text = table.text("source")?.ok_or_else(|| table.missing("source", MEND))?;
+        return Ok(Source::Path(text.value));
+    }
+    let parts = table.table("source")?.ok_or_else(|| table.missing("source", MEND))?;
+    Ok(Source::TopicField {
+        topic: parts.required_text("topic", "/imu")?.value,
+        field: parts.required_text("field", "linear_acceleration.z")?.value,
+    })
+}
+
+fn unit(table: &Section) -> Result<Option<Unit>, CaskFileError> {
+    let words = [
+        ("g", UnitWord::G),
+        ("m/s^2", UnitWord::MetrePerSecondSquared),
+        ("V", UnitWord::Volt),
+        ("mV", UnitWord::Millivolt),
+    ];
+    let word = table.word("unit", &words, UNITS)?;
+    let sensitivity = table.positive("sensitivity")?;
+    let is_voltage = matches!(word, Some(UnitWord::Volt | UnitWord::Millivolt));
+    match (word, sensitivity) {
+        (Some(_), None) if is_voltage => Err(table.wrong(
+            table.value("unit").map_or_else(|| table.span(), toml::Spanned::span),
+            "a unit of voltage needs sensitivity".into(),
+            "needs sensitivity beside it".into(),
+            "add sensitivity = 10.0, in mV per g, from the sensor's calibration sheet (with the amplifier's gain)",
+        )),
+        (Some(UnitWord::Volt), Some(s)) => Ok(Some(Unit::Volt { sensitivity_mv_per_g: s.value })),
+        (Some(UnitWord::Millivolt), Some(s)) => Ok(Some(Unit::Millivolt { sensitivity_mv_per_g: s.value })),
+        (_, Some(sensitivity)) => Err(table.wrong(
+            sensitivity.span,
+            "sensitivity has no meaning without unit = \"V\" or \"mV\"".into(),
+            "only with \"V\" or \"mV\"".into(),
+            "write unit = \"V\" or \"mV\" if the recording holds voltages; delete sensitivity if it holds g or m/s²",
+        )),
+        (Some(UnitWord::G), None) => Ok(Some(Unit::G)),
+        (Some(_), None) => Ok(Some(Unit::MetrePerSecondSquared)),
+        (None, None) => Ok(None),
+    }
+}
+
+fn position_m(table: &Section, cask: &Cask) -> Result<f64, CaskFileError> {
+    let position = table.required_number("position_m", "0.15")?;
+    if (0.0..=cask.length_m).contains(&position.value) {
+        return Ok(position.value);
+    }
+    Err(table.wrong(
+        position.span,
+        format!("position_m {} lies outside the cask, which is {} m long", position.value, cask.length_m),
+        format!("0 to {} m", cask.length_m),
+        "position_m counts along the axis from the first end, in metres, for sensors on the second end too",
+    ))
+}
+
+fn polarity(table: &Section) -> Result<f64, CaskFileError> {
+    match table.number("polarity")? {
+        None => Ok(1.0),
+        Some(polarity) if (polarity.value.abs() - 1.0).abs() < f64::EPSILON => Ok(polarity.value.signum()),
+        Some(polarity) => Err(table.wrong(
+            polarity.span,
+            format!("polarity is {}", polarity.value),
+            "1 or -1".into(),
+            "-1 is for a sensor mounted the other way round; a scale belongs into sensitivity",
+        )),
+    }
+}
+
+fn coupling(table: &Section) -> Result<Coupling, CaskFileError> {
+    const MEND: &str =
+        "coupling = \"dc\" (the default: reads constant acceleration) or \"ac\" with time_constant_s";
+    let is_ac = table.word("coupling", &[("dc", false), ("ac", true)], MEND)?.unwrap_or(false);
+    match (is_ac, table.positive("time_constant_s")?) {
+        (true, Some(constant)) => Ok(Coupling::Ac { time_constant_s: constant.value }),
+        (true, None) => Err(table.wrong(
+            table.value("coupling").map_or_else(|| table.span(), toml::Spanned::span),
+            "coupling = \"ac\" needs time_constant_s".into(),
+            "needs time_constant_s beside it".into(),
+            "add time_constant_s, in s: 1/(2π f) with f the lower −3 dB corner in Hz from the data sheet (0.5 Hz: 0.318)",
+        )),
+        (false, Some(constant)) => Err(table.wrong(
+            constant.span,
+            "time_constant_s has no meaning without coupling = \"ac\"".into(),
+            "only with \"ac\"".into(),
+            "write coupling = \"ac\" if the channel is AC-coupled; else delete time_constant_s",
+        )),
+        (false, None) => Ok(Coupling::Dc),
+    }
+}

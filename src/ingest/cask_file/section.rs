@@ -1,0 +1,422 @@
+//! A TOML table to values that know their place, each wrong one to a diagnostic under its line.
+
+use super::{CaskFileError, WrongLine};
+use miette::NamedSource;
+use std::ops::Range;
+use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Every table of a cask file with its keys; "" is the file itself.
+const KEYS: [(&str, &[&str]); 8] = [
+    ("", &["cask", "drop", "contact", "filter", "recording", "channel"]),
+    ("cask", &["name", "mass_kg", "length_m", "height_m", "width_m", "cog_m", "inertia_kg_m2"]),
+    ("drop", &["height_m", "angle_deg", "impact_velocity_m_s", "gravity_m_s2"]),
+    ("contact", &["friction"]),
+    ("filter", &["cfc", "cutoff_hz"]),
+    ("recording", &["time"]),
+    (
+        "channel",
+        &[
+            "name",
+            "end",
+            "axis",
+            "source",
+            "unit",
+            "position_m",
+            "offset_m",
+            "polarity",
+            "sensitivity",
+            "full_scale",
+            "sample_rate_hz",
+            "time",
+            "coupling",
+            "time_constant_s",
+        ],
+    ),
+    ("source", &["topic", "field"]),
+];
+
+/// Below this similarity (Jaro–Winkler, 0 to 1) a word is another word rather than a misspelling.
+const ALIKE: f64 = 0.75;
+
+/// A cask file's text with its name.
+pub(super) struct Document<'a> {
+    path: &'a Path,
+    text: &'a str,
+}
+
+/// A value with its place in the text.
+#[derive(Debug, Clone)]
+pub(super) struct Placed<T> {
+    pub value: T,
+    pub span: Range<usize>,
+}
+
+/// A table of the file whose keys are all known.
+pub(super) struct Section<'a> {
+    document: &'a Document<'a>,
+    name: &'static str,
+    table: DeTable<'a>,
+    span: Range<usize>,
+}
+
+impl<'a> Document<'a> {
+    pub(super) fn new(path: &'a Path, text: &'a str) -> Self {
+        Self { path, text }
+    }
+
+    /// The file's top level.
+    pub(super) fn root(&'a self) -> Result<Section<'a>, CaskFileError> {
+        match DeTable::parse(self.text) {
+            Ok(table) => self.section("", table.into_inner(), 0..0),
+            Err(error) => Err(self.syntax(&error)),
+        }
+    }
+
+    fn section(
+        &'a self,
+        name: &'static str,
+        table: DeTable<'a>,
+        span: Range<usize>,
+    ) -> Result<Section<'a>, CaskFileError> {
+        let section = Section { document: self, name, table, span };
+        match section.table.keys().find(|key| !section.keys().contains(&key.get_ref().as_ref())) {
+            Some(key) => Err(section.unknown_key(key)),
+            None => Ok(section),
+        }
+    }
+
+    fn wrong(&self, span: Range<usize>, message: String, expected: String, mend: String) -> CaskFileError {
+        let start = span.start.min(self.text.len());
+        let end = span.end.clamp(start, self.text.len());
+        let line = line_of(self.text.as_bytes(), start);
+        let path = self.path.display().to_string();
+        Box::new(WrongLine {
+            text: NamedSource::new(&path, self.text.to_owned()),
+            path,
+            line,
+            message,
+            expected,
+            span: (start..end).into(),
+            mend,
+        })
+        .into()
+    }
+
+    /// What the parser of TOML objects to, with the slips that are usual in files written by hand.
+    fn syntax(&self, error: &toml::de::Error) -> CaskFileError {
+        let span = error.span().unwrap_or(0..0);
+        let start = span.start.min(self.text.len());
+        let from = self.text.as_bytes()[..start].iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
+        let line = self.text.get(from..).unwrap_or("").lines().next().unwrap_or("");
+        let value = line.split_once('=').map_or("", |(_, value)| value);
+        let value = value.split('#').next().unwrap_or("").trim();
+        let point = value.replace(',', ".");
+        let (message, mend) = if value.contains(',') && point.parse::<f64>().is_ok() {
+            (format!("{value} has a decimal comma"), format!("write a decimal point: {point}"))
+        } else if line.matches('"').count() % 2 == 1 {
+            ("a quote is missing".to_owned(), "words stand between two quotes: name = \"A1\"".to_owned())
+        } else if error.message().contains("duplicate") {
+            (
+                format!("{} stands here a second time", line.split('=').next().unwrap_or(line).trim()),
+                "delete one of the two; further channels each begin with a line [[channel]]".to_owned(),
+            )
+        } else if value.starts_with(|c: char| c.is_alphabetic() || c == '/') {
+            (format!("{value} stands without quotes"), format!("write words in quotes: \"{value}\""))
+        } else if let Some((number, unit)) = number_with_unit(value) {
+            (format!("{value} has a unit behind the number"), unit_mend(number, unit))
+        } else {
+            let said = error.message().lines().next().unwrap_or("this is no TOML").to_owned();
+            (said, "each line is `key = value` or a table's name in brackets such as [cask]; words stand in quotes, numbers have a decimal point".to_owned())
+        };
+        self.wrong(span, message, "this is not TOML".into(), mend)
+    }
+}
+
+impl<'a> Section<'a> {
+    fn keys(&self) -> &'static [&'static str] {
+        KEYS.iter().find(|(name, _)| *name == self.name).map_or(&[], |(_, keys)| keys)
+    }
+
+    /// The table as a person finds it in the file.
+    fn title(&self) -> String {
+        match self.name {
+            "" => "the file".into(),
+            "channel" => "[[channel]]".into(),
+            "source" => "source = { … }".into(),
+            name => format!("[{name}]"),
+        }
+    }
+
+    /// Where the section stands.
+    pub(super) fn span(&self) -> Range<usize> {
+        self.span.clone()
+    }
+
+    pub(super) fn value(&self, key: &str) -> Option<&Spanned<DeValue<'a>>> {
+        self.table.get(key)
+    }
+
+    /// A diagnostic at `span`.
+    pub(super) fn wrong(
+        &self,
+        span: Range<usize>,
+        message: String,
+        expected: String,
+        mend: &str,
+    ) -> CaskFileError {
+        self.document.wrong(span, message, expected, mend.to_owned())
+    }
+
+    /// The line number of a place.
+    pub(super) fn line(&self, at: usize) -> usize {
+        line_of(self.document.text.as_bytes(), at)
+    }
+
+    pub(super) fn missing(&self, key: &str, mend: &str) -> CaskFileError {
+        let message = format!("{} has no {key}", self.title());
+        self.wrong(self.span(), message, format!("{key} is missing here"), mend)
+    }
+
+    fn unknown_key(&self, key: &Spanned<toml::de::DeString<'a>>) -> CaskFileError {
+        let word: &str = key.get_ref();
+        let what = if self.name.is_empty() { "table" } else { "key" };
+        let known = self.keys();
+        let others: Vec<String> = KEYS
+            .iter()
+            .filter(|(name, keys)| *name != self.name && *name != "source" && keys.contains(&word))
+            .map(|(name, _)| if *name == "channel" { "[[channel]]".into() } else { format!("[{name}]") })
+            .collect();
+        let all = known.join(", ");
+        let mend = if others.is_empty() {
+            match nearest(word, known) {
+                Some(near) => format!("did you mean {near}? {} takes: {all}", self.title()),
+                None => format!("{} takes: {all}", self.title()),
+            }
+        } else {
+            format!("{word} belongs in {}; {} takes: {all}", others.join(" or "), self.title())
+        };
+        let message = format!("{} knows no {what} {word}", self.title());
+        self.wrong(key.span(), message, format!("unknown {what}"), &mend)
+    }
+
+    /// The table `key`, where there is one.
+    pub(super) fn table(&self, key: &'static str) -> Result<Option<Section<'a>>, CaskFileError> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        match value.get_ref() {
+            DeValue::Table(table) => self.document.section(key, table.clone(), value.span()).map(Some),
+            _ => Err(self.wrong(
+                value.span(),
+                format!("{key} is {}, not a table", described(value.get_ref())),
+                format!("the table [{key}]"),
+                &format!("write [{key}] once, on a line of its own, and its keys on the lines below"),
+            )),
+        }
+    }
+
+    pub(super) fn required_table(&self, key: &'static str) -> Result<Section<'a>, CaskFileError> {
+        self.table(key)?.ok_or_else(|| {
+            let keys =
+                KEYS.iter().find(|(name, _)| *name == key).map_or(String::new(), |(_, k)| k.join(", "));
+            self.wrong(
+                self.span(),
+                format!("the cask file has no [{key}]"),
+                format!("[{key}] is missing"),
+                &format!("add a line [{key}] and below it its keys: {keys}"),
+            )
+        })
+    }
+
+    /// The tables `[[key]]`.
+    pub(super) fn tables(&self, key: &'static str) -> Result<Vec<Section<'a>>, CaskFileError> {
+        let Some(value) = self.value(key) else { return Ok(Vec::new()) };
+        let wrong = |span| {
+            self.wrong(
+                span,
+                format!("{key} is not a list of tables"),
+                format!("[[{key}]]"),
+                &format!("each {key} begins with a line [[{key}]], with two brackets"),
+            )
+        };
+        let DeValue::Array(items) = value.get_ref() else { return Err(wrong(value.span())) };
+        items
+            .iter()
+            .map(|item| match item.get_ref() {
+                DeValue::Table(table) => self.document.section(key, table.clone(), item.span()),
+                _ => Err(wrong(item.span())),
+            })
+            .collect()
+    }
+
+    /// A finite number.
+    pub(super) fn number(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        let number = match value.get_ref() {
+            DeValue::Integer(integer) if integer.radix() == 10 => {
+                integer.as_str().replace('_', "").parse().ok()
+            }
+            DeValue::Float(float) => float.as_str().replace('_', "").parse::<f64>().ok(),
+            _ => None,
+        };
+        if let Some(number) = number.filter(|number| number.is_finite()) {
+            return Ok(Some(Placed { value: number, span: value.span() }));
+        }
+        let mend = match value.get_ref() {
+            DeValue::String(text) => {
+                let plain = text.trim().replace(',', ".");
+                match number_with_unit(&plain) {
+                    Some((number, unit)) => unit_mend(number, unit),
+                    None if plain.parse::<f64>().is_ok() => {
+                        format!("write it without quotes: {key} = {plain}")
+                    }
+                    None => format!("write the number only, without quotes: {key} = 1.0"),
+                }
+            }
+            DeValue::Float(_) => "write a finite number".to_owned(),
+            _ => format!("write the number only: {key} = 1.0"),
+        };
+        let message = format!("{key} is {}, not a number", described(value.get_ref()));
+        Err(self.wrong(value.span(), message, "a number".into(), &mend))
+    }
+
+    pub(super) fn required_number(&self, key: &str, example: &str) -> Result<Placed<f64>, CaskFileError> {
+        self.number(key)?.ok_or_else(|| self.missing(key, &format!("add a line such as {key} = {example}")))
+    }
+
+    /// A number above 0.
+    pub(super) fn positive(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
+        match self.number(key)? {
+            Some(number) if number.value <= 0.0 => Err(self.wrong(
+                number.span,
+                format!("{key} is {}: it must be above 0", number.value),
+                "a number above 0".into(),
+                &format!("check the value{}", unit_of(key)),
+            )),
+            number => Ok(number),
+        }
+    }
+
+    pub(super) fn required_positive(&self, key: &str, example: &str) -> Result<f64, CaskFileError> {
+        match self.positive(key)? {
+            Some(number) => Ok(number.value),
+            None => Err(self.missing(key, &format!("add a line such as {key} = {example}"))),
+        }
+    }
+
+    /// A number of 0 or above.
+    pub(super) fn not_negative(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
+        match self.number(key)? {
+            Some(number) if number.value < 0.0 => Err(self.wrong(
+                number.span,
+                format!("{key} is {}: it must not be below 0", number.value),
+                "0 or more".into(),
+                &format!("check the value{}", unit_of(key)),
+            )),
+            number => Ok(number),
+        }
+    }
+
+    /// A word or name, not empty.
+    pub(super) fn text(&self, key: &str) -> Result<Option<Placed<String>>, CaskFileError> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        match value.get_ref() {
+            DeValue::String(text) if !text.trim().is_empty() => {
+                Ok(Some(Placed { value: text.to_string(), span: value.span() }))
+            }
+            DeValue::String(_) => Err(self.wrong(
+                value.span(),
+                format!("{key} is empty"),
+                "a name".into(),
+                &format!("write a name between the quotes, or delete {key}"),
+            )),
+            other => Err(self.wrong(
+                value.span(),
+                format!("{key} is {}, not a text", described(other)),
+                "a text in quotes".into(),
+                &format!("put it in quotes: {key} = \"…\""),
+            )),
+        }
+    }
+
+    pub(super) fn required_text(&self, key: &str, example: &str) -> Result<Placed<String>, CaskFileError> {
+        self.text(key)?.ok_or_else(|| self.missing(key, &format!("add a line such as {key} = \"{example}\"")))
+    }
+
+    /// One of a few words.
+    pub(super) fn word<T: Copy>(
+        &self,
+        key: &str,
+        words: &[(&str, T)],
+        mend: &str,
+    ) -> Result<Option<T>, CaskFileError> {
+        let Some(text) = self.text(key)? else { return Ok(None) };
+        if let Some((_, value)) = words.iter().find(|(word, _)| *word == text.value) {
+            return Ok(Some(*value));
+        }
+        let known: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
+        let quoted: Vec<String> = known.iter().map(|word| format!("\"{word}\"")).collect();
+        let mend = match nearest(&text.value.to_lowercase(), &known) {
+            Some(near) => format!("did you mean \"{near}\"? {mend}"),
+            None => mend.to_owned(),
+        };
+        let message = format!("{key} cannot be \"{}\"", text.value);
+        Err(self.wrong(text.span, message, quoted.join(" or "), &mend))
+    }
+}
+
+/// The line, from 1, of byte `at`.
+pub(super) fn line_of(text: &[u8], at: usize) -> usize {
+    text[..at.min(text.len())].split(|&b| b == b'\n').count()
+}
+
+/// The known word that is most like `word`, where one is.
+fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
+    known
+        .iter()
+        .map(|&candidate| (strsim::jaro_winkler(word, candidate), candidate))
+        .filter(|(alike, _)| *alike >= ALIKE)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}
+
+fn described(value: &DeValue) -> String {
+    match value {
+        DeValue::String(text) => format!("the text \"{text}\""),
+        DeValue::Integer(number) => format!("the number {}", number.as_str()),
+        DeValue::Float(number) => number.as_str().to_owned(),
+        DeValue::Boolean(value) => format!("{value}"),
+        DeValue::Datetime(_) => "a date".into(),
+        DeValue::Array(_) => "a list".into(),
+        DeValue::Table(_) => "a table".into(),
+    }
+}
+
+/// "4466 kg" to the number and its unit.
+fn number_with_unit(text: &str) -> Option<(&str, &str)> {
+    let digits = text.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | '_')))?;
+    let (number, unit) = text.split_at(digits);
+    let is_unit = unit.trim_start().starts_with(|c: char| c.is_alphabetic() || matches!(c, '°' | '%' | 'µ'));
+    (number.parse::<f64>().is_ok() && is_unit).then_some((number, unit.trim()))
+}
+
+fn unit_mend(number: &str, unit: &str) -> String {
+    format!(
+        "write the number only, {number}: the unit is in the key's name (convert it if {unit} is another)"
+    )
+}
+
+/// ", in kg", from the key's ending.
+fn unit_of(key: &str) -> &'static str {
+    const ENDINGS: [(&str, &str); 8] = [
+        ("inertia_kg_m2", ", in kg m²"),
+        ("_m_s2", ", in m/s²"),
+        ("_m_s", ", in m/s"),
+        ("_kg", ", in kg"),
+        ("_m", ", in m"),
+        ("_hz", ", in Hz"),
+        ("_s", ", in s"),
+        ("sensitivity", ", in mV per g; a sensor mounted the other way round has polarity = -1"),
+    ];
+    ENDINGS.iter().find(|(ending, _)| key.ends_with(ending)).map_or("", |(_, unit)| unit)
+}

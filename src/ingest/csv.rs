@@ -1,0 +1,257 @@
+//! Delimited text to the channels that a cask file names, whatever its delimiter, decimal mark, encoding and preamble.
+
+mod input;
+mod layout;
+mod list;
+mod number;
+mod rows;
+mod stamp;
+
+pub(super) use list::list;
+
+use super::error::{self, IngestError};
+use super::time_base::{self, TimeBaseError, Uniform};
+use super::{Progress, RawChannel, RawRecording};
+use crate::data::{CaskFile, ChannelSpec, Issue, IssueCode, Samples, Severity, Source};
+use input::Input;
+use layout::Layout;
+use rows::{Ending, RowError, Sink, Wanted};
+use stamp::Stamps;
+use std::path::Path;
+
+/// The channels of `cask_file` from the text at `path`.
+///
+/// # Errors
+/// A column that is not there or holds words, rows that are no table, times that are none.
+pub(super) fn read(
+    path: &Path,
+    cask_file: &CaskFile,
+    progress: Progress,
+) -> Result<RawRecording, IngestError> {
+    let input = Input::open(path)?;
+    let layout = Layout::of(&input).ok_or_else(|| no_table(path))?;
+    let plans: Vec<Plan> = cask_file
+        .channels
+        .iter()
+        .map(|spec| Plan::of(path, spec, cask_file.time.as_deref(), &layout))
+        .collect::<Result<_, _>>()?;
+    let wanted = Wanted::new(
+        plans.iter().map(|plan| plan.column),
+        &plans.iter().filter_map(|plan| plan.time_column).collect::<Vec<_>>(),
+    );
+    let (mut held, stamps, ending) = columns(path, input, &layout, &wanted, progress)?;
+    let mut uses = vec![0_usize; wanted.columns.len()];
+    for plan in &plans {
+        uses[wanted.slot(plan.column)] += 1;
+        plan.time_column.into_iter().for_each(|column| uses[wanted.slot(column)] += 1);
+    }
+    let mut channels = Vec::with_capacity(plans.len());
+    for (spec, plan) in plans.iter().enumerate() {
+        let at = wanted.slot(plan.column);
+        uses[at] -= 1;
+        // The last channel to use a column takes it instead of copying it.
+        let samples = if uses[at] == 0 { std::mem::take(&mut held[at]) } else { held[at].clone() };
+        let times_s = plan.time_column.map(|column| held[wanted.slot(column)].as_slice());
+        let name = &cask_file.channels[spec].name;
+        let uniform = on_base(samples, times_s, plan).map_err(|error| time_error(path, name, &error))?;
+        channels.push(RawChannel { spec, uniform, unit: layout.columns[plan.column].unit.clone() });
+    }
+    Ok(RawRecording { channels, zero_unix_ns: stamps.zero_unix_ns(), issues: ending_issues(&ending) })
+}
+
+/// What one channel takes from the table.
+struct Plan {
+    column: usize,
+    time_column: Option<usize>,
+    declared_rate_hz: Option<f64>,
+}
+
+impl Plan {
+    fn of(path: &Path, spec: &ChannelSpec, time: Option<&str>, layout: &Layout) -> Result<Self, IngestError> {
+        let Source::Path(source) = &spec.source else {
+            return Err(error::source(
+                path,
+                &spec.name,
+                "source gives a topic and a field, but this recording is a table",
+                "write the column's header: source = \"A1\"",
+            ));
+        };
+        let column = find(path, spec, source, layout)?;
+        let time_column = match spec.time.as_deref().or(time) {
+            Some(name) => Some(find(path, spec, name, layout)?),
+            None => layout.time_column().filter(|&found| found != column),
+        };
+        if let Some(found) = time_column
+            && layout.time_scale_s(found).is_none()
+        {
+            return Err(error::source(
+                path,
+                &spec.name,
+                format!(
+                    "the times in column {:?} are in {:?}, which is no unit of time known here",
+                    layout.columns[found].header,
+                    layout.columns[found].unit.as_deref().unwrap_or("")
+                ),
+                "head the column with [s], [ms], [µs] or [ns], or give sample_rate_hz and another time column",
+            ));
+        }
+        if time_column.is_none() && spec.sample_rate_hz.is_none() {
+            return Err(error::source(
+                path,
+                &spec.name,
+                format!("no column of times was found among {}", layout.names().join(", ")),
+                "name it under [recording]: time = \"…\", or give this channel sample_rate_hz",
+            ));
+        }
+        Ok(Self { column, time_column, declared_rate_hz: spec.sample_rate_hz })
+    }
+}
+
+/// The column with that header, with or without its unit, or with that number where there are no headers.
+fn find(path: &Path, spec: &ChannelSpec, wanted: &str, layout: &Layout) -> Result<usize, IngestError> {
+    let found = layout.find(wanted);
+    match found.as_slice() {
+        [one] => Ok(*one),
+        [] => Err(error::source(
+            path,
+            &spec.name,
+            if layout.has_header {
+                format!("no column is headed {wanted:?} (the header is line {})", layout.header_line)
+            } else {
+                format!("there is no column {wanted:?}: the table has no header, its columns count 1, 2, …")
+            },
+            error::near_names(path, wanted, "column", &layout.names()),
+        )),
+        several => Err(error::source(
+            path,
+            &spec.name,
+            format!("{} columns are headed {wanted:?}", several.len()),
+            "rename all but one of them in a copy of the recording",
+        )),
+    }
+}
+
+/// Keeps the wanted columns whole.
+struct Keep<'a> {
+    wanted: &'a Wanted,
+    columns: Vec<Vec<f64>>,
+    stamps: Stamps,
+}
+
+impl Sink for Keep<'_> {
+    fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
+        if self.wanted.is_time[slot] { self.stamps.seconds(cell) } else { None }
+    }
+
+    fn row(&mut self, values: &[f64]) {
+        for (column, &value) in self.columns.iter_mut().zip(values) {
+            column.push(value);
+        }
+    }
+}
+
+/// The wanted columns, times in s; their stamps; and how the file ended.
+fn columns(
+    path: &Path,
+    input: Input,
+    layout: &Layout,
+    wanted: &Wanted,
+    progress: Progress,
+) -> Result<(Vec<Vec<f64>>, Stamps, Ending), IngestError> {
+    let rows_expected = layout.rows_expected(input.bytes);
+    let columns = wanted.columns.iter().map(|_| Vec::with_capacity(rows_expected)).collect();
+    let mut keep = Keep { wanted, columns, stamps: Stamps::default() };
+    let ending = rows::read(input, layout, wanted, &mut keep, progress)
+        .map_err(|error| row_error(path, layout, wanted, error))?;
+    let Keep { mut columns, stamps, .. } = keep;
+    for (slot, values) in columns.iter_mut().enumerate() {
+        let scale_s = layout.time_scale_s(wanted.columns[slot]).unwrap_or(1.0);
+        // Stamps are in s already.
+        #[allow(clippy::float_cmp, reason = "1.0 is the literal for seconds")]
+        if wanted.is_time[slot] && scale_s != 1.0 && !stamps.any() {
+            for t in values.iter_mut() {
+                *t *= scale_s;
+            }
+        }
+    }
+    Ok((columns, stamps, ending))
+}
+
+fn on_base(samples: Vec<f64>, times_s: Option<&[f64]>, plan: &Plan) -> Result<Uniform, TimeBaseError> {
+    match (times_s, plan.declared_rate_hz) {
+        (Some(times_s), declared_rate_hz) => {
+            time_base::from_times(times_s, Samples::F64(samples), declared_rate_hz)
+        }
+        (None, Some(rate_hz)) => time_base::from_rate(0.0, rate_hz, Samples::F64(samples)),
+        (None, None) => Err(TimeBaseError::Rate { sample_rate_hz: 0.0 }),
+    }
+}
+
+fn ending_issues(ending: &Ending) -> Vec<Issue> {
+    ending
+        .cut_line
+        .map(|line| {
+            Issue::new(
+                IssueCode::Truncated,
+                Severity::Warning,
+                format!(
+                    "line {line}, the last, ends in the middle and was dropped: the file was cut off while it was written or copied"
+                ),
+            )
+        })
+        .into_iter()
+        .collect()
+}
+
+fn no_table(path: &Path) -> IngestError {
+    IngestError::Content {
+        path: path.display().to_string(),
+        place: "the first 64 KiB".into(),
+        problem: "no rows of numbers were found".into(),
+        mend: "export one row a sample with comma, semicolon or tab between the columns".into(),
+    }
+}
+
+fn time_error(path: &Path, channel: &str, error: &TimeBaseError) -> IngestError {
+    error::source(
+        path,
+        channel,
+        error.to_string(),
+        "check the column of times ([recording] time, or time of the channel), or give sample_rate_hz",
+    )
+}
+
+fn row_error(path: &Path, layout: &Layout, wanted: &Wanted, error: RowError) -> IngestError {
+    let headed = |slot: usize| {
+        wanted
+            .columns
+            .get(slot)
+            .and_then(|&c| layout.columns.get(c))
+            .map_or("", |column| column.header.as_str())
+    };
+    let (line, problem, mend) = match error {
+        RowError::Io(source) => return error::io(path, source),
+        RowError::Word { line, slot, cell } => (
+            line,
+            format!("column {:?} holds {cell:?}, which is no number", headed(slot)),
+            format!(
+                "the decimal mark of this file is taken as {:?}; correct the cell in a copy, or empty it: an empty cell counts as missing",
+                char::from(layout.decimal)
+            ),
+        ),
+        RowError::NoTime { line, slot } => (
+            line,
+            format!("column {:?} holds no time for this row", headed(slot)),
+            "delete the row in a copy, or name another column of times".to_owned(),
+        ),
+        RowError::TooLong { line } => (
+            line,
+            "the line is longer than 1 MiB".to_owned(),
+            "this is no table of one row a sample; export it again".to_owned(),
+        ),
+    };
+    IngestError::Content { path: path.display().to_string(), place: format!("line {line}"), problem, mend }
+}
+
+#[cfg(test)]
+pub(super) mod tests;

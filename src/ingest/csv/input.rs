@@ -1,0 +1,93 @@
+//! A text file to bytes in which digits and delimiters are ASCII, whatever its encoding.
+
+use super::super::error::{self, IngestError};
+use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{Cursor, Read};
+use std::path::Path;
+
+/// How much of a file is looked at for its layout.
+const HEAD_BYTES: u64 = 1 << 16;
+
+/// UTF-16 is turned into UTF-8 in memory as a whole; a file beyond this is refused.
+const LARGEST_UTF16_BYTES: u64 = 1 << 30;
+
+/// A text file, opened.
+pub(super) struct Input {
+    /// Its beginning, without a byte-order mark.
+    pub head: Vec<u8>,
+    /// Whether `head` is all there is.
+    pub is_whole: bool,
+    /// What follows `head`.
+    pub rest: Box<dyn Read>,
+    /// Its size on disk.
+    pub bytes: u64,
+    /// How it is encoded, for people.
+    pub encoding: &'static str,
+}
+
+impl Input {
+    pub(super) fn open(path: &Path) -> Result<Self, IngestError> {
+        let io = |source| error::io(path, source);
+        let mut file = File::open(path).map_err(io)?;
+        let bytes = file.metadata().map_err(io)?.len();
+        let mut head = Vec::new();
+        (&mut file).take(HEAD_BYTES).read_to_end(&mut head).map_err(io)?;
+        let wide = match head.as_slice() {
+            [0xFF, 0xFE, ..] => Some((UTF_16LE, "UTF-16 (little-endian)")),
+            [0xFE, 0xFF, ..] => Some((UTF_16BE, "UTF-16 (big-endian)")),
+            _ => None,
+        };
+        if let Some((coding, name)) = wide {
+            return Self::decoded(path, file, head, bytes, (coding, name));
+        }
+        let has_mark = head.starts_with(b"\xEF\xBB\xBF");
+        if has_mark {
+            head.drain(..3);
+        }
+        // A letter cut in two at the head's end is no reason to call it Latin-1.
+        let is_utf8 = match std::str::from_utf8(&head) {
+            Ok(_) => true,
+            Err(error) => error.error_len().is_none(),
+        };
+        let encoding = match (is_utf8, has_mark) {
+            (true, true) => "UTF-8 with byte-order mark",
+            (true, false) => "UTF-8",
+            (false, _) => "Latin-1 (Windows-1252)",
+        };
+        let is_whole = bytes <= HEAD_BYTES;
+        Ok(Self { head, is_whole, rest: Box::new(file), bytes, encoding })
+    }
+
+    fn decoded(
+        path: &Path,
+        mut file: File,
+        mut head: Vec<u8>,
+        bytes: u64,
+        coding: (&'static Encoding, &'static str),
+    ) -> Result<Self, IngestError> {
+        if bytes > LARGEST_UTF16_BYTES {
+            return Err(IngestError::Content {
+                path: path.display().to_string(),
+                place: "the byte-order mark".into(),
+                problem: format!("the file is {} of {bytes} bytes, too large to convert here", coding.1),
+                mend: "save it as UTF-8".into(),
+            });
+        }
+        file.read_to_end(&mut head).map_err(|source| error::io(path, source))?;
+        let (text, _, _) = coding.0.decode(&head);
+        let mut text = text.into_owned().into_bytes();
+        let rest = text.split_off(text.len().min(1 << 16));
+        let is_whole = rest.is_empty();
+        Ok(Self { head: text, is_whole, rest: Box::new(Cursor::new(rest)), bytes, encoding: coding.1 })
+    }
+}
+
+/// A line as text: UTF-8, else Latin-1.
+pub(super) fn text(line: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(line) {
+        Ok(text) => Cow::Borrowed(text),
+        Err(_) => WINDOWS_1252.decode_without_bom_handling(line).0,
+    }
+}

@@ -1,0 +1,197 @@
+//! Delimited text to the list of its columns.
+
+use super::super::error::IngestError;
+use super::input::Input;
+use super::layout::{Column, Layout};
+use super::rows::{self, Sink, Wanted};
+use super::stamp::Stamps;
+use super::{Progress, ending_issues, no_table, row_error, time_base};
+use crate::data::{IssueCode, ListedChannel, Listing, RecordingFormat, Samples};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// What is known of a column after one pass.
+#[derive(Debug, Clone, Copy)]
+struct Range {
+    values: u64,
+    words: u64,
+    smallest: f64,
+    largest: f64,
+}
+
+/// Keeps the times, and of the other columns their ranges.
+struct Survey {
+    time_slot: Option<usize>,
+    times: Vec<f64>,
+    ranges: Vec<Range>,
+    stamps: Stamps,
+    rows: u64,
+}
+
+impl Sink for Survey {
+    fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
+        if self.time_slot == Some(slot) {
+            return self.stamps.seconds(cell);
+        }
+        self.ranges[slot].words += 1;
+        Some(f64::NAN)
+    }
+
+    fn row(&mut self, values: &[f64]) {
+        self.rows += 1;
+        for (range, &value) in self.ranges.iter_mut().zip(values) {
+            if value.is_finite() {
+                range.values += 1;
+                range.smallest = range.smallest.min(value);
+                range.largest = range.largest.max(value);
+            }
+        }
+        if let Some(slot) = self.time_slot {
+            self.times.push(values[slot]);
+        }
+    }
+}
+
+/// Lists the columns of the text at `path`.
+///
+/// # Errors
+/// A file that cannot be read or holds no rows of numbers.
+pub(in super::super) fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
+    let input = Input::open(path)?;
+    let (bytes, encoding) = (input.bytes, input.encoding);
+    let layout = Layout::of(&input).ok_or_else(|| no_table(path))?;
+    let time_column = layout.time_column();
+    let wanted = Wanted::new(0..layout.columns.len(), time_column.as_slice());
+    let nothing = Range { values: 0, words: 0, smallest: f64::INFINITY, largest: f64::NEG_INFINITY };
+    let mut survey = Survey {
+        time_slot: time_column,
+        times: Vec::new(),
+        ranges: vec![nothing; layout.columns.len()],
+        stamps: Stamps::default(),
+        rows: 0,
+    };
+    let ending = rows::read(input, &layout, &wanted, &mut survey, progress)
+        .map_err(|error| row_error(path, &layout, &wanted, error))?;
+    let scale_s = time_column.and_then(|column| layout.time_scale_s(column)).unwrap_or(1.0);
+    if !survey.stamps.any() {
+        for t in &mut survey.times {
+            *t *= scale_s;
+        }
+    }
+    let clock = Clock::of(&survey.times);
+    let channels = layout
+        .columns
+        .iter()
+        .enumerate()
+        .filter(|(index, _)| Some(*index) != time_column)
+        .map(|(index, column)| listed(column, &survey.ranges[index], &clock, survey.rows))
+        .collect();
+    let mut issues = ending_issues(&ending);
+    issues.extend(clock.issues);
+    Ok(Listing {
+        schema: "dropcheck.inspect/1",
+        recording: path.display().to_string(),
+        bytes,
+        format: RecordingFormat::Csv,
+        counts: BTreeMap::from([
+            ("rows".into(), survey.rows),
+            ("columns".into(), layout.columns.len() as u64),
+            ("preamble_lines".into(), layout.preamble_lines),
+        ]),
+        facts: facts(&layout, encoding),
+        channels,
+        issues,
+    })
+}
+
+/// What the times say of every column.
+#[derive(Default)]
+struct Clock {
+    sample_rate_hz: Option<f64>,
+    start_s: Option<f64>,
+    duration_s: Option<f64>,
+    gaps: Option<u64>,
+    issues: Vec<crate::data::Issue>,
+}
+
+impl Clock {
+    fn of(times_s: &[f64]) -> Self {
+        let Ok(uniform) = time_base::from_times(times_s, Samples::F32(vec![0.0; times_s.len()]), None) else {
+            return Self::default();
+        };
+        let is_gap = |issue: &&crate::data::Issue| issue.code == IssueCode::Gap;
+        let gaps = if uniform.issues.iter().any(|issue| is_gap(&issue)) { uniform.gaps.len() } else { 0 };
+        let (first_s, last_s) =
+            times_s.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &t| (a.min(t), b.max(t)));
+        Self {
+            sample_rate_hz: Some(uniform.sample_rate_hz),
+            start_s: Some(0.0),
+            duration_s: Some(last_s - first_s),
+            gaps: Some(gaps as u64),
+            issues: uniform
+                .issues
+                .into_iter()
+                .map(|mut issue| {
+                    issue.from_s = issue.from_s.map(|t| t - first_s);
+                    issue.to_s = issue.to_s.map(|t| t - first_s);
+                    issue
+                })
+                .collect(),
+        }
+    }
+}
+
+fn listed(column: &Column, range: &Range, clock: &Clock, rows: u64) -> ListedChannel {
+    let is_empty = range.values == 0;
+    let unreadable = if column.is_stamped {
+        Some("date-time stamps".to_owned())
+    } else if is_empty && range.words > 0 {
+        Some("words, no numbers".to_owned())
+    } else if is_empty {
+        Some("empty".to_owned())
+    } else if range.words > 0 {
+        Some(format!("{} of {rows} cells are words", range.words))
+    } else {
+        None
+    };
+    ListedChannel {
+        source: column.header.clone(),
+        kind: "column".into(),
+        samples: Some(rows),
+        messages: None,
+        sample_rate_hz: clock.sample_rate_hz,
+        unit: column.unit.clone(),
+        start_s: clock.start_s,
+        duration_s: clock.duration_s,
+        gaps: clock.gaps,
+        range: (!is_empty).then_some((range.smallest, range.largest)),
+        encoding: "text".into(),
+        unreadable,
+    }
+}
+
+fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
+    let delimiter = match layout.delimiter {
+        b';' => "semicolon",
+        b'\t' => "tab",
+        b',' => "comma",
+        _ => "blanks",
+    };
+    let decimal = if layout.decimal == b',' { "comma" } else { "point" };
+    let header = if layout.has_header {
+        format!("line {}", layout.header_line)
+    } else {
+        "none: columns count 1, 2, …".to_owned()
+    };
+    let time = layout
+        .time_column()
+        .and_then(|index| layout.columns.get(index))
+        .map_or_else(|| "none found".to_owned(), |column| column.header.clone());
+    BTreeMap::from([
+        ("delimiter".into(), delimiter.into()),
+        ("decimal mark".into(), decimal.into()),
+        ("encoding".into(), encoding.into()),
+        ("header".into(), header),
+        ("time column".into(), time),
+    ])
+}

@@ -1,0 +1,153 @@
+//! ASCII digits with either decimal mark to the nearest f64.
+
+/// Powers of ten that f64 holds exactly.
+const POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
+    1e19, 1e20, 1e21, 1e22,
+];
+
+/// The number at the start of `text` and how many bytes it takes; `None` where none starts there.
+///
+/// Exact: up to 2⁵³ and 10²² one division or product rounds correctly (Clinger 1990); longer numbers go to the library.
+pub(super) fn leading(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
+    let mut at = 0;
+    let is_negative = text.first() == Some(&b'-');
+    if is_negative || text.first() == Some(&b'+') {
+        at = 1;
+    }
+    let mut mantissa = 0_u64;
+    let whole_from = at;
+    at = digits(text, at, &mut mantissa);
+    let mut count = at - whole_from;
+    let mut fraction = 0;
+    if text.get(at) == Some(&decimal) {
+        let from = at + 1;
+        at = digits(text, from, &mut mantissa);
+        fraction = at - from;
+        count += fraction;
+    }
+    if count == 0 {
+        return None;
+    }
+    let mut exponent = 0_i64;
+    if matches!(text.get(at), Some(b'e' | b'E')) {
+        (exponent, at) = exponent_at(text, at);
+    }
+    let power = exponent - i64::try_from(fraction).ok()?;
+    let magnitude = usize::try_from(power.unsigned_abs()).ok().and_then(|index| POWERS.get(index));
+    match magnitude {
+        Some(&scale) if count <= 19 && mantissa <= 1 << 53 => {
+            #[allow(clippy::cast_precision_loss, reason = "at most 2^53")]
+            let digits = mantissa as f64;
+            let value = if power < 0 { digits / scale } else { digits * scale };
+            Some((if is_negative { -value } else { value }, at))
+        }
+        _ => Some((by_library(text.get(..at)?, decimal)?, at)),
+    }
+}
+
+fn digits(text: &[u8], mut at: usize, mantissa: &mut u64) -> usize {
+    while let Some(&byte) = text.get(at) {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            break;
+        }
+        *mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+        at += 1;
+    }
+    at
+}
+
+/// The exponent whose "e" stands at `at`, and where it ends; 0 and `at` where no digits follow.
+fn exponent_at(text: &[u8], at: usize) -> (i64, usize) {
+    let sign = text.get(at + 1);
+    let from = at + 1 + usize::from(matches!(sign, Some(b'+' | b'-')));
+    let mut magnitude = 0;
+    let to = digits(text, from, &mut magnitude);
+    if to == from {
+        return (0, at);
+    }
+    // 10^99999 is infinite and 10^-99999 zero, as the library has it.
+    let magnitude = if to - from > 5 { 99_999 } else { i64::try_from(magnitude).unwrap_or(99_999) };
+    (if sign == Some(&b'-') { -magnitude } else { magnitude }, to)
+}
+
+fn by_library(text: &[u8], decimal: u8) -> Option<f64> {
+    let text = std::str::from_utf8(text).ok()?;
+    if decimal == b'.' { text.parse().ok() } else { text.replace(char::from(decimal), ".").parse().ok() }
+}
+
+/// A whole cell as a number.
+pub(super) fn of_cell(cell: &[u8], decimal: u8) -> Option<f64> {
+    let cell = cell.trim_ascii();
+    leading(cell, decimal).filter(|&(_, used)| used == cell.len()).map(|(value, _)| value)
+}
+
+/// Whether a cell says that there is no value.
+pub(super) fn is_missing(cell: &[u8]) -> bool {
+    const WORDS: [&[u8]; 13] = [
+        b"nan",
+        b"-nan",
+        b"inf",
+        b"-inf",
+        b"+inf",
+        b"infinity",
+        b"-infinity",
+        b"null",
+        b"none",
+        b"na",
+        b"n/a",
+        b"#n/a",
+        b"1.#qnan",
+    ];
+    cell.is_empty()
+        || matches!(cell, b"-" | b"--")
+        || WORDS.iter().any(|word| cell.eq_ignore_ascii_case(word))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_those_of_the_standard_library_to_the_bit() {
+        for text in [
+            "0",
+            "-0.0",
+            "1",
+            "-12.5",
+            "+3.25",
+            "0.1",
+            ".5",
+            "5.",
+            "1e3",
+            "-2.5E-7",
+            "123456789012345678",
+            "9007199254740993",
+            "1.7976931348623157e308",
+            "4.9e-324",
+            "1e400",
+            "1e-400",
+            "0.30000000000000004",
+            "12345678901234567890.123456789",
+            "1e22",
+            "1e23",
+            "8.41e+05",
+            "1e9999999",
+        ] {
+            let expected: f64 = text.parse().unwrap();
+            let got = of_cell(text.as_bytes(), b'.').unwrap();
+            assert_eq!(got.to_bits(), expected.to_bits(), "{text}");
+            let comma = text.replace('.', ",");
+            assert_eq!(of_cell(comma.as_bytes(), b',').unwrap().to_bits(), expected.to_bits(), "{comma}");
+        }
+    }
+
+    #[test]
+    fn words_are_no_numbers() {
+        for text in ["", "-", "e5", ".", "1.2.3", "1,5", "12a", "0x10", "1e", "--1", "20.11.2026"] {
+            assert_eq!(of_cell(text.as_bytes(), b'.'), None, "{text}");
+        }
+        assert!(is_missing(b"") && is_missing(b"NaN") && !is_missing(b"ok"));
+    }
+}

@@ -1,0 +1,252 @@
+//! Lines of a table to rows of numbers, only the wanted columns, in one pass with bounded memory.
+
+use super::super::Progress;
+use super::input::Input;
+use super::layout::Layout;
+use super::number;
+use std::io::Read;
+
+/// Bytes read at a time, and the longest line: a row of a hundred thousand channels still fits.
+const CHUNK_BYTES: usize = 1 << 20;
+
+/// Which columns to read.
+pub(super) struct Wanted {
+    /// Their indices, rising; a slot is a place in this list.
+    pub columns: Vec<usize>,
+    /// For each slot, whether it holds times.
+    pub is_time: Vec<bool>,
+}
+
+impl Wanted {
+    /// The columns of values and of times, each once.
+    pub(super) fn new(values: impl Iterator<Item = usize>, times: &[usize]) -> Self {
+        let mut columns: Vec<usize> = values.chain(times.iter().copied()).collect();
+        columns.sort_unstable();
+        columns.dedup();
+        let is_time = columns.iter().map(|column| times.contains(column)).collect();
+        Self { columns, is_time }
+    }
+
+    /// The slot of a wanted column.
+    pub(super) fn slot(&self, column: usize) -> usize {
+        self.columns.binary_search(&column).unwrap_or(0)
+    }
+}
+
+/// Where rows go.
+pub(super) trait Sink {
+    /// The value of a cell that is no number; `None`: there is none.
+    fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64>;
+    /// One row, a value a slot, NaN where missing.
+    fn row(&mut self, values: &[f64]);
+}
+
+/// How the table ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Ending {
+    /// Lines read.
+    pub lines: u64,
+    /// The line that was cut off and dropped.
+    pub cut_line: Option<u64>,
+}
+
+/// Why rows could not be read.
+#[derive(Debug)]
+pub(super) enum RowError {
+    Io(std::io::Error),
+    Word { line: u64, slot: usize, cell: String },
+    NoTime { line: u64, slot: usize },
+    TooLong { line: u64 },
+}
+
+/// Reads every row into `sink`.
+pub(super) fn read(
+    mut input: Input,
+    layout: &Layout,
+    wanted: &Wanted,
+    sink: &mut impl Sink,
+    progress: Progress,
+) -> Result<Ending, RowError> {
+    let mut table = Table {
+        delimiter: layout.delimiter,
+        decimal: layout.decimal,
+        other_decimal: layout.other_decimal(),
+        is_runs: layout.delimiter == b' ',
+        wanted,
+        values: vec![f64::NAN; wanted.columns.len()],
+        line: layout.data_line - 1,
+    };
+    let mut buffer = input.head.split_off(layout.data_offset.min(input.head.len()));
+    let mut done = 0_u64;
+    loop {
+        let held = buffer.len();
+        let room = CHUNK_BYTES.saturating_sub(held) as u64;
+        (&mut input.rest).take(room).read_to_end(&mut buffer).map_err(RowError::Io)?;
+        let is_last = buffer.len() == held && room > 0;
+        let end = buffer.iter().rposition(|&b| b == b'\n').map_or(0, |at| at + 1);
+        let mut at = 0;
+        while at < end {
+            match table.line(&buffer[..end], at, sink)? {
+                Some(next) => at = next,
+                None => return Ok(Ending { lines: table.line, cut_line: Some(table.line) }),
+            }
+        }
+        done += end as u64;
+        buffer.drain(..end);
+        if is_last {
+            let cut_line = table.last_line(&buffer, layout, sink)?;
+            return Ok(Ending { lines: table.line, cut_line });
+        }
+        if buffer.len() >= CHUNK_BYTES {
+            return Err(RowError::TooLong { line: table.line + 1 });
+        }
+        #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
+        progress((done as f64 / input.bytes.max(1) as f64).min(1.0));
+    }
+}
+
+struct Table<'a> {
+    delimiter: u8,
+    decimal: u8,
+    /// The other mark, where the head of the file does not tell which it is.
+    other_decimal: Option<u8>,
+    is_runs: bool,
+    wanted: &'a Wanted,
+    values: Vec<f64>,
+    line: u64,
+}
+
+impl Table<'_> {
+    /// The line at `at` into `sink`; where the next begins, `None` where a block of zero bytes ends the table.
+    fn line(&mut self, text: &[u8], mut at: usize, sink: &mut impl Sink) -> Result<Option<usize>, RowError> {
+        self.line += 1;
+        if self.is_runs {
+            at = skip(text, at, |b| b == b' ' || b == b'\t');
+        }
+        match text.get(at) {
+            Some(0) => return Ok(None),
+            Some(b'\n') => return Ok(Some(at + 1)),
+            _ => {}
+        }
+        self.values.fill(f64::NAN);
+        let mut column = 0;
+        'row: for slot in 0..self.wanted.columns.len() {
+            while column < self.wanted.columns[slot] {
+                at = self.end_of_cell(text, at);
+                if !self.is_delimiter(text.get(at)) {
+                    break 'row;
+                }
+                at = self.after_delimiter(text, at);
+                column += 1;
+            }
+            at = self.cell(text, at, slot, sink)?;
+        }
+        self.finish(sink)?;
+        Ok(Some(skip(text, at, |b| b != b'\n') + 1))
+    }
+
+    /// Hands the row on; a row without any value is none.
+    fn finish(&self, sink: &mut impl Sink) -> Result<(), RowError> {
+        if self.values.iter().all(|value| value.is_nan()) {
+            return Ok(());
+        }
+        let no_time = |slot: &usize| self.wanted.is_time[*slot] && self.values[*slot].is_nan();
+        if let Some(slot) = (0..self.values.len()).find(no_time) {
+            return Err(RowError::NoTime { line: self.line, slot });
+        }
+        sink.row(&self.values);
+        Ok(())
+    }
+
+    /// The number at `at` into its slot; where the cell ends.
+    fn cell(&mut self, text: &[u8], at: usize, slot: usize, sink: &mut impl Sink) -> Result<usize, RowError> {
+        let from = if text.get(at) == Some(&b' ') { skip(text, at, |b| b == b' ') } else { at };
+        if let Some((value, used)) = number::leading(&text[from..], self.decimal) {
+            let end = from + used;
+            if self.ends_cell(text.get(end)) {
+                self.values[slot] = value;
+                return Ok(end);
+            }
+        }
+        let end = self.end_of_cell(text, at);
+        let cell = text[at..end].trim_ascii();
+        let cell = cell.strip_prefix(b"\"").and_then(|c| c.strip_suffix(b"\"")).unwrap_or(cell).trim_ascii();
+        let value = if number::is_missing(cell) {
+            Some(f64::NAN)
+        } else {
+            number::of_cell(cell, self.decimal)
+                .or_else(|| self.other_decimal.and_then(|mark| number::of_cell(cell, mark)))
+                .or_else(|| sink.word(slot, cell))
+        };
+        let Some(value) = value else {
+            let cell = super::input::text(&cell[..cell.len().min(40)]).into_owned();
+            return Err(RowError::Word { line: self.line, slot, cell });
+        };
+        self.values[slot] = value;
+        Ok(end)
+    }
+
+    /// What stands after the last line break: a row, or one that was cut off.
+    fn last_line(
+        &mut self,
+        text: &[u8],
+        layout: &Layout,
+        sink: &mut impl Sink,
+    ) -> Result<Option<u64>, RowError> {
+        if text.trim_ascii().is_empty() {
+            return Ok(None);
+        }
+        let mut cells = 1;
+        let mut at = self.end_of_cell(text, 0);
+        while self.is_delimiter(text.get(at)) {
+            at = self.end_of_cell(text, self.after_delimiter(text, at));
+            cells += 1;
+        }
+        if cells < layout.columns.len() {
+            self.line += 1;
+            return Ok(Some(self.line));
+        }
+        match self.line(text, 0, sink) {
+            Ok(Some(_)) => Ok(None),
+            // A number that breaks off ("1.2e", "-") is the sign of a cut.
+            Ok(None) | Err(RowError::Word { .. }) => Ok(Some(self.line)),
+            Err(error) => Err(error),
+        }
+    }
+
+    fn is_delimiter(&self, byte: Option<&u8>) -> bool {
+        byte.is_some_and(|&b| b == self.delimiter || (self.is_runs && b == b'\t'))
+    }
+
+    fn ends_cell(&self, byte: Option<&u8>) -> bool {
+        self.is_delimiter(byte) || matches!(byte, None | Some(b'\n' | b'\r'))
+    }
+
+    fn after_delimiter(&self, text: &[u8], at: usize) -> usize {
+        if self.is_runs { skip(text, at, |b| b == b' ' || b == b'\t') } else { at + 1 }
+    }
+
+    /// The delimiter or line break after the cell at `at`; delimiters in quotes are text.
+    fn end_of_cell(&self, text: &[u8], mut at: usize) -> usize {
+        if text.get(at) == Some(&b'"') {
+            at = skip(text, at + 1, |b| b != b'"' && b != b'\n');
+            // A doubled quote inside, and what may follow the closing one.
+            while text.get(at) == Some(&b'"') && text.get(at + 1) == Some(&b'"') {
+                at = skip(text, at + 2, |b| b != b'"' && b != b'\n');
+            }
+        }
+        while let Some(&byte) = text.get(at) {
+            if byte == b'\n' || self.is_delimiter(Some(&byte)) {
+                break;
+            }
+            at += 1;
+        }
+        at
+    }
+}
+
+/// The first place from `at` on where `passes` fails.
+fn skip(text: &[u8], at: usize, passes: impl Fn(u8) -> bool) -> usize {
+    let rest = text.get(at..).unwrap_or_default();
+    at + rest.iter().position(|&b| !passes(b)).unwrap_or(rest.len())
+}

@@ -1,0 +1,213 @@
+//! A file's first bytes to its format, whatever its name.
+
+use super::error::{self, IngestError};
+use crate::data::RecordingFormat;
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+const MCAP_MAGIC: &[u8] = b"\x89MCAP0\r\n";
+const HDF5_SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
+/// How much of a text is looked at for rows of numbers: beyond any preamble seen in loggers' exports.
+const HEAD_BYTES: u64 = 1 << 16;
+const FORMATS: &str = "dropcheck reads MCAP, HDF5 and delimited text (CSV)";
+
+/// Formats that are met at test sites and are not read, by their first bytes, with what to do.
+const STRANGERS: [(&[u8], &str, &str); 10] = [
+    (b"#ROSBAG", "a ROS 1 bag", "convert it to MCAP: `mcap convert in.bag out.mcap`"),
+    (
+        b"SQLite format 3",
+        "a SQLite file, perhaps a ROS 2 bag",
+        "convert it to MCAP: `ros2 bag convert` or `mcap convert`",
+    ),
+    (b"\xff\xfe", "text in UTF-16", "save it as UTF-8"),
+    (b"\xfe\xff", "text in UTF-16", "save it as UTF-8"),
+    (b"TDSm", "a TDMS file", "export it from the data acquisition as HDF5 or CSV"),
+    (b"MDF ", "an ASAM MDF file", "export it as HDF5 or CSV"),
+    (b"UnFinMF", "an unfinalised ASAM MDF file", "finalise it and export it as HDF5 or CSV"),
+    (b"MATLAB 5.0", "a MATLAB file before version 7.3", "save it with -v7.3, which is HDF5, or export CSV"),
+    (b"PK\x03\x04", "a ZIP archive or an office document", "unpack it, or save the sheet as CSV"),
+    (b"\x1f\x8b", "a gzip archive", "unpack it first: `gunzip FILE`"),
+];
+
+/// The format of the file at `path`.
+///
+/// # Errors
+/// A directory, an unreadable, empty or unknown file, each by its own message.
+pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
+    let mut file = File::open(path).map_err(|source| error::io(path, source))?;
+    let metadata = file.metadata().map_err(|source| error::io(path, source))?;
+    if metadata.is_dir() {
+        return Err(IngestError::Directory { path: path.display().to_string() });
+    }
+    let mut head = Vec::new();
+    (&mut file).take(HEAD_BYTES).read_to_end(&mut head).map_err(|source| error::io(path, source))?;
+    if head.is_empty() {
+        return Err(unknown(path, "the file is empty", "take the original from the logger again"));
+    }
+    if head.starts_with(MCAP_MAGIC) {
+        return Ok(RecordingFormat::Mcap);
+    }
+    if has_hdf5_signature(&mut file, metadata.len()).map_err(|source| error::io(path, source))? {
+        return Ok(RecordingFormat::Hdf5);
+    }
+    // A text with a UTF-16 mark: only its reader decodes it and can say whether it holds rows.
+    if head.starts_with(b"\xFF\xFE") || head.starts_with(b"\xFE\xFF") || looks_like_rows(&head) {
+        return Ok(RecordingFormat::Csv);
+    }
+    Err(stranger(path, &head))
+}
+
+/// Whether the HDF5 signature stands at 0, 512, 1024, 2048 …: a user block may come first (HDF5 format specification, II.A).
+fn has_hdf5_signature(file: &mut File, length: u64) -> std::io::Result<bool> {
+    let mut at = 0;
+    while at + 8 <= length {
+        let mut signature = [0; 8];
+        file.seek(SeekFrom::Start(at))?;
+        file.read_exact(&mut signature)?;
+        if signature == HDF5_SIGNATURE {
+            return Ok(true);
+        }
+        at = if at == 0 { 512 } else { at.saturating_mul(2) };
+    }
+    Ok(false)
+}
+
+/// Whether two lines one after the other have as many cells each and numbers in them.
+fn looks_like_rows(head: &[u8]) -> bool {
+    if head.contains(&0) {
+        return false;
+    }
+    let text = String::from_utf8_lossy(head);
+    let lines: Vec<&str> = text.lines().map(str::trim_end).filter(|line| !line.trim().is_empty()).collect();
+    [';', '\t', ',', ' '].into_iter().any(|delimiter| {
+        let rows: Vec<Option<usize>> = lines.iter().map(|line| numeric_row(line, delimiter)).collect();
+        // The last line may be cut off, a single one may be all there is after a header.
+        rows.windows(2).any(|pair| pair[0].is_some() && pair[0] == pair[1])
+            || (lines.len() <= 3 && rows.last().is_some_and(Option::is_some) && lines.len() >= 2)
+    })
+}
+
+/// Number of cells of a line that holds numbers, `None` where it holds none, or words alone.
+fn numeric_row(line: &str, delimiter: char) -> Option<usize> {
+    let cells: Vec<&str> = if delimiter == ' ' {
+        line.split_whitespace().collect()
+    } else {
+        line.split(delimiter).map(|cell| cell.trim().trim_matches('"')).collect()
+    };
+    let numbers = cells.iter().filter(|cell| cell.replace(',', ".").parse::<f64>().is_ok()).count();
+    let all_numbers = numbers > 0
+        && cells.iter().all(|cell| cell.is_empty() || cell.replace(',', ".").parse::<f64>().is_ok());
+    // Prose has blanks and commas too: there a row must be numbers throughout, or else numbers and words in clear columns.
+    if all_numbers || (numbers > 0 && cells.len() >= 2 && delimiter != ' ') {
+        Some(cells.len())
+    } else {
+        None
+    }
+}
+
+/// The error for content of no format that is read: its name where it is known, else its first bytes.
+fn stranger(path: &Path, head: &[u8]) -> IngestError {
+    if let Some((_, what, mend)) = STRANGERS.iter().find(|(magic, ..)| head.starts_with(magic)) {
+        return unknown(path, &format!("it is {what}"), mend);
+    }
+    if head.windows(11).any(|window| window == b"[[channel]]") {
+        return unknown(path, "it is a cask file", "name the recording first, and this file after `--cask`");
+    }
+    if head.starts_with(b"\x89MCAP") {
+        let what = if head.len() < MCAP_MAGIC.len() {
+            format!("it begins as MCAP and ends after {} bytes", head.len())
+        } else {
+            "it begins as MCAP of an unknown version".to_owned()
+        };
+        return unknown(path, &what, "take the original from the logger again; MCAP version 0 is read");
+    }
+    let shown = &head[..head.len().min(24)];
+    let is_text = !head.contains(&0)
+        && std::str::from_utf8(shown)
+            .is_ok_and(|text| !text.contains(|c: char| c.is_control() && !c.is_whitespace()));
+    if is_text {
+        let text = String::from_utf8_lossy(shown);
+        return unknown(
+            path,
+            &format!("it is text without rows of numbers and begins {text:?}"),
+            &format!("{FORMATS}, whatever the name; text needs one row a sample, in columns"),
+        );
+    }
+    let hex: Vec<String> = shown.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
+    unknown(
+        path,
+        &format!("its first bytes are {}", hex.join(" ")),
+        &format!("{FORMATS}, told by content, not by name; export the recording as one of these"),
+    )
+}
+
+fn unknown(path: &Path, found: &str, mend: &str) -> IngestError {
+    IngestError::UnknownFormat {
+        path: path.display().to_string(),
+        found: found.to_owned(),
+        mend: mend.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(content: &[u8]) -> Result<RecordingFormat, String> {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("recording.mcap");
+        std::fs::write(&path, content).unwrap();
+        format(&path).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn content_decides_not_the_name() {
+        assert_eq!(of(b"\x89MCAP0\r\n"), Ok(RecordingFormat::Mcap));
+        assert_eq!(of(b"\x89HDF\r\n\x1a\nrest"), Ok(RecordingFormat::Hdf5));
+        let mut user_block = vec![b' '; 1024];
+        user_block.extend_from_slice(HDF5_SIGNATURE);
+        assert_eq!(of(&user_block), Ok(RecordingFormat::Hdf5));
+    }
+
+    #[test]
+    fn rows_of_numbers_are_csv_with_any_delimiter_header_or_preamble() {
+        for text in [
+            "time_s,a1\n0,1.5\n1,2\n",
+            "Logger 7\nDate;1.2.2026\n\nt;a\n0,1;2,5\n0,2;2,6\n",
+            "0.1\t-3\n0.2\t-4\n",
+            "a\n1\n",
+            "when,a\n2026-01-01T00:00:00,1\n2026-01-01T00:00:01,2\n",
+            "time_s,word\n0,ok\n1,bad\n",
+        ] {
+            assert_eq!(of(text.as_bytes()), Ok(RecordingFormat::Csv), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_recording_is_said_to_be_what_it_is() {
+        for (content, part) in [
+            (&b""[..], "empty"),
+            (
+                b"Dear colleague,\nthe test is done.\nAll went well, we think, and so on.\n",
+                "text without rows",
+            ),
+            (b"#ROSBAG V2.0\n", "ROS 1"),
+            (b"[cask]\nname = \"x\"\n\n[[channel]]\n", "cask file"),
+            (b"\xff\xfet\0", "UTF-16"),
+            (b"\x89MCA", "89 4d 43 41"),
+            (b"\x89MCAP", "ends after 5 bytes"),
+            (b"\x00\x01\x02\x03", "00 01 02 03"),
+        ] {
+            let message = of(content).unwrap_err();
+            assert!(message.contains(part), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_directory_and_a_missing_file_are_told_apart() {
+        let dir = tempfile::tempdir().unwrap();
+        assert!(matches!(format(dir.path()), Err(IngestError::Directory { .. })));
+        assert!(matches!(format(&dir.path().join("none")), Err(IngestError::Io { .. })));
+    }
+}

@@ -1,0 +1,131 @@
+//! Why a recording or a cask file could not be read: which file, where in it, what is wrong, how to mend it.
+
+use std::path::Path;
+
+/// Why a file could not be read.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum IngestError {
+    /// The cask file is at fault.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    CaskFile(#[from] super::cask_file::CaskFileError),
+    /// The operating system refused.
+    #[error("{path}: {source}")]
+    #[diagnostic(help("check the name, and that you may read it"))]
+    Io {
+        /// The file.
+        path: String,
+        /// Its reason.
+        source: std::io::Error,
+    },
+    /// A directory stands where a file should.
+    #[error("{path}: this is a directory, not a recording")]
+    #[diagnostic(help("name one recording file; `dropcheck batch` takes several"))]
+    Directory {
+        /// The directory.
+        path: String,
+    },
+    /// The file's content is of no format that is read.
+    #[error("{path}: not a recording that dropcheck can read: {found}")]
+    #[diagnostic(help("{mend}"))]
+    UnknownFormat {
+        /// The file.
+        path: String,
+        /// What it looks like.
+        found: String,
+        /// What to do.
+        mend: String,
+    },
+    /// A channel's source is not in the recording.
+    #[error("{path}: channel {channel:?}: {problem}")]
+    #[diagnostic(help("{mend}"))]
+    Source {
+        /// The recording.
+        path: String,
+        /// The channel's name in the cask file.
+        channel: String,
+        /// What is not there, or what is there instead.
+        problem: String,
+        /// Near names, what there is, what to write.
+        mend: String,
+    },
+    /// The file's content contradicts its format.
+    #[error("{path}: {place}: {problem}")]
+    #[diagnostic(help("{mend}"))]
+    Content {
+        /// The file.
+        path: String,
+        /// Where in it: a byte, a line, a data set.
+        place: String,
+        /// What is wrong there.
+        problem: String,
+        /// What to do.
+        mend: String,
+    },
+}
+
+/// The operating system's refusal, with the file's name.
+pub(super) fn io(path: &Path, source: std::io::Error) -> IngestError {
+    IngestError::Io { path: path.display().to_string(), source }
+}
+
+/// A channel whose source is at fault.
+pub(super) fn source(
+    path: &Path,
+    channel: &str,
+    problem: impl Into<String>,
+    mend: impl Into<String>,
+) -> IngestError {
+    IngestError::Source {
+        path: path.display().to_string(),
+        channel: channel.to_owned(),
+        problem: problem.into(),
+        mend: mend.into(),
+    }
+}
+
+/// "did you mean …" with the names in `there` that are nearest to `wanted`, or what there is, cut to a handful.
+pub(super) fn near_names(path: &Path, wanted: &str, what: &str, there: &[String]) -> String {
+    /// More than this many names no longer fit a terminal's few lines.
+    const HANDFUL: usize = 6;
+    /// Below this similarity (0 to 1) a name is no misspelling but another word; `strsim`'s own examples of typing slips lie above 0.8.
+    const ALIKE: f64 = 0.75;
+    if there.is_empty() {
+        return format!("the recording holds no {what}");
+    }
+    let mut ranked: Vec<(f64, &String)> = there
+        .iter()
+        .map(|name| (strsim::jaro_winkler(&wanted.to_lowercase(), &name.to_lowercase()), name))
+        .collect();
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let near: Vec<&str> =
+        ranked.iter().filter(|(score, _)| *score >= ALIKE).take(3).map(|(_, name)| name.as_str()).collect();
+    let hint = if near.is_empty() { String::new() } else { format!("did you mean {}? ", near.join(" or ")) };
+    let listed: Vec<&str> = there.iter().take(HANDFUL).map(String::as_str).collect();
+    let more = match there.len().saturating_sub(HANDFUL) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let listed = listed.join(", ");
+    format!("{hint}there is: {listed}{more}; `dropcheck inspect {}` lists all", path.display())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_of_one_letter_is_named_first_and_the_list_is_cut() {
+        let there: Vec<String> = (0..9).map(|i| format!("/daq/a{i}")).collect();
+        let text = near_names(Path::new("r.mcap"), "/dag/a3", "topic", &there);
+        assert!(text.starts_with("did you mean /daq/a3"), "{text}");
+        assert!(text.contains("and 3 more"), "{text}");
+        assert!(text.contains("dropcheck inspect r.mcap"), "{text}");
+    }
+
+    #[test]
+    fn nothing_alike_is_not_suggested() {
+        let text = near_names(Path::new("r"), "zzz", "column", &["time".into()]);
+        assert!(!text.contains("did you mean"), "{text}");
+    }
+}

@@ -1,0 +1,150 @@
+//! HDF5 datasets and columns to the channels that a cask file names, with their attributes and their own times.
+
+mod attributes;
+mod dataset;
+mod fault;
+mod list;
+
+pub(super) use list::list;
+
+use super::error::{self, IngestError};
+use super::time_base::{self, Uniform};
+use super::{Progress, RawChannel, RawRecording};
+use crate::data::{CaskFile, ChannelSpec, Samples, Source};
+use attributes::Attributes;
+use dataset::Column;
+use hdf5_metno::{Dataset, File};
+use std::path::Path;
+
+/// Names under which a sibling dataset holds the times.
+const TIME_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "Time"];
+
+/// The channels of `cask_file` from the HDF5 file at `path`.
+///
+/// # Errors
+/// A damaged file, a source that is not there or holds no numbers, times that are none.
+pub(super) fn read(
+    path: &Path,
+    cask_file: &CaskFile,
+    progress: Progress,
+) -> Result<RawRecording, IngestError> {
+    let file = open(path)?;
+    let count = cask_file.channels.len().max(1);
+    let mut channels = Vec::with_capacity(count);
+    for spec in 0..cask_file.channels.len() {
+        channels.push(read_channel(path, &file, spec, cask_file)?);
+        #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
+        progress((spec + 1) as f64 / count as f64);
+    }
+    Ok(RawRecording { channels, zero_unix_ns: None, issues: Vec::new() })
+}
+
+fn read_channel(
+    path: &Path,
+    file: &File,
+    index: usize,
+    cask_file: &CaskFile,
+) -> Result<RawChannel, IngestError> {
+    let spec = &cask_file.channels[index];
+    let wrong = |problem: String, mend: String| error::source(path, &spec.name, problem, mend);
+    let Source::Path(source) = &spec.source else {
+        return Err(wrong(
+            "source gives a topic and a field, but this recording is HDF5".into(),
+            "write the dataset's path: source = \"/daq/a1\", or \"/daq/accel[2]\" for a column".into(),
+        ));
+    };
+    let column = locate(path, file, spec, source)?;
+    let attributes = Attributes::of(file, &column);
+    let samples = column.samples().map_err(|fault| wrong(fault.problem, fault.mend))?;
+    let samples = attributes.scaled(samples);
+    let time = time_column(path, file, spec, cask_file.time.as_deref(), &column)?;
+    let uniform = on_base(samples, time.as_ref(), spec, &attributes)
+        .map_err(|fault| wrong(format!("{}: {}", column.source(), fault.problem), fault.mend))?;
+    Ok(RawChannel { spec: index, uniform, unit: attributes.unit })
+}
+
+/// The file, with the C library's own printing of errors switched off.
+fn open(path: &Path) -> Result<File, IngestError> {
+    hdf5_metno::silence_errors(true);
+    File::open(path).map_err(|source| fault::of_file(path, &source))
+}
+
+/// The dataset or column that a cask file names.
+fn locate(path: &Path, file: &File, spec: &ChannelSpec, source: &str) -> Result<Column, IngestError> {
+    dataset::find(file, source).map_err(|missing| match missing {
+        dataset::Missing::Nowhere => error::source(
+            path,
+            &spec.name,
+            format!("there is no dataset {source}"),
+            error::near_names(path, source, "dataset", &list::sources(file)),
+        ),
+        dataset::Missing::Because(fault) => error::source(path, &spec.name, fault.problem, fault.mend),
+    })
+}
+
+/// The times: as the cask file names them, else a sibling with a usual name and as many values.
+fn time_column(
+    path: &Path,
+    file: &File,
+    spec: &ChannelSpec,
+    time: Option<&str>,
+    column: &Column,
+) -> Result<Option<Column>, IngestError> {
+    let Some(name) = spec.time.as_deref().or(time) else {
+        return Ok(sibling_times(file, column));
+    };
+    // A bare name is looked for beside the samples first.
+    if !name.starts_with('/')
+        && let Ok(found) = dataset::find(file, &format!("{}/{name}", column.group()))
+    {
+        return Ok(Some(found));
+    }
+    locate(path, file, spec, name).map(Some)
+}
+
+fn sibling_times(file: &File, column: &Column) -> Option<Column> {
+    TIME_NAMES.iter().find_map(|name| {
+        let found = dataset::find(file, &format!("{}/{name}", column.group())).ok()?;
+        (found.len() == column.len() && found.source() != column.source()).then_some(found)
+    })
+}
+
+fn on_base(
+    samples: Samples,
+    time: Option<&Column>,
+    spec: &ChannelSpec,
+    attributes: &Attributes,
+) -> Result<Uniform, fault::Fault> {
+    let in_time = |error: time_base::TimeBaseError| fault::Fault {
+        problem: error.to_string(),
+        mend: "check the dataset of times (`time` in the cask file), or give sample_rate_hz".into(),
+    };
+    if let Some(time) = time {
+        let times_s = time.times_s()?;
+        return time_base::from_times(&times_s, samples, spec.sample_rate_hz).map_err(in_time);
+    }
+    let Some(rate_hz) = spec.sample_rate_hz.or(attributes.sample_rate_hz) else {
+        return Err(fault::Fault {
+            problem: "nothing says when its samples were taken: no attribute sample_rate_hz, no dataset of times beside it"
+                .into(),
+            mend: "give sample_rate_hz in this channel of the cask file, or time = \"/path/of/times\"".into(),
+        });
+    };
+    time_base::from_rate(attributes.start_s.unwrap_or(0.0), rate_hz, samples).map_err(in_time)
+}
+
+/// How a dataset is stored, for people: type, shape, filters.
+fn storage(dataset: &Dataset) -> String {
+    let kind = dataset.dtype().map_or_else(|_| "unknown type".to_owned(), |dtype| dataset::type_name(&dtype));
+    let shape: Vec<String> = dataset.shape().iter().map(ToString::to_string).collect();
+    let filters: Vec<String> = dataset.filters().iter().map(|f| format!("{f:?}").to_lowercase()).collect();
+    let mut text = format!("{kind}, {}", if shape.is_empty() { "scalar".into() } else { shape.join(" × ") });
+    if !filters.is_empty() {
+        text.push_str(", ");
+        text.push_str(&filters.join(" + "));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests;

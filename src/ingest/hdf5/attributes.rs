@@ -1,0 +1,152 @@
+//! A column's attributes, or those of the groups above it, to rate, unit, start, scale and offset.
+
+use super::dataset::Column;
+use super::fault::Fault;
+use crate::data::Samples;
+use hdf5_metno::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenUnicode};
+use hdf5_metno::{Attribute, File, Location};
+
+/// What the recording says of a column.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Attributes {
+    pub sample_rate_hz: Option<f64>,
+    pub unit: Option<String>,
+    pub start_s: Option<f64>,
+    pub scale: Option<f64>,
+    pub offset: Option<f64>,
+}
+
+const RATE_NAMES: [&str; 5] = ["sample_rate_hz", "sample_rate", "fs", "sampling_rate_hz", "sampling_rate"];
+const UNIT_NAMES: [&str; 2] = ["unit", "units"];
+
+/// An attribute with more values than this is none of these.
+const MOST_VALUES: usize = 4096;
+
+/// Longest text of an attribute of fixed length.
+const TEXT_BYTES: usize = 256;
+
+impl Attributes {
+    /// The nearest of each, from the dataset up to the root.
+    pub(super) fn of(file: &File, column: &Column) -> Self {
+        let mut attributes = Self::own(&column.dataset, column);
+        let mut group = column.group();
+        loop {
+            let path = if group.is_empty() { "/" } else { group };
+            if let Ok(found) = file.group(path) {
+                attributes.fill(Self::own(&found, column));
+            }
+            if group.is_empty() {
+                return attributes;
+            }
+            group = group.rsplit_once('/').map_or("", |(parent, _)| parent);
+        }
+    }
+
+    fn own(place: &Location, column: &Column) -> Self {
+        let number = |name: &str| number(place, name, column);
+        Self {
+            sample_rate_hz: RATE_NAMES.iter().find_map(|name| number(name)),
+            unit: UNIT_NAMES.iter().find_map(|name| text(place, name, column)),
+            start_s: number("start_time_s"),
+            scale: number("scale"),
+            offset: number("offset"),
+        }
+    }
+
+    fn fill(&mut self, other: Self) {
+        self.sample_rate_hz = self.sample_rate_hz.or(other.sample_rate_hz);
+        self.unit = self.unit.take().or(other.unit);
+        self.start_s = self.start_s.or(other.start_s);
+        self.scale = self.scale.or(other.scale);
+        self.offset = self.offset.or(other.offset);
+    }
+
+    /// value = raw · scale + offset.
+    #[allow(clippy::cast_possible_truncation, reason = "f32 samples stay f32")]
+    pub(super) fn scaled(&self, samples: Samples) -> Samples {
+        if self.scale.is_none() && self.offset.is_none() {
+            return samples;
+        }
+        let (scale, offset) = (self.scale.unwrap_or(1.0), self.offset.unwrap_or(0.0));
+        match samples {
+            Samples::F32(mut v) => {
+                for x in &mut v {
+                    *x = (f64::from(*x) * scale + offset) as f32;
+                }
+                Samples::F32(v)
+            }
+            Samples::F64(mut v) => {
+                for x in &mut v {
+                    *x = *x * scale + offset;
+                }
+                Samples::F64(v)
+            }
+        }
+    }
+}
+
+/// Seconds per unit of a column of times, and its offset in s, from its own attributes alone.
+pub(super) fn time_scale(column: &Column) -> Result<(f64, f64), Fault> {
+    let own = Attributes::own(&column.dataset, column);
+    let unit_s = match own.unit.as_deref().map(str::trim) {
+        None | Some("" | "s" | "sec" | "second" | "seconds") => 1.0,
+        Some("ms" | "milliseconds") => 1e-3,
+        Some("us" | "µs" | "μs" | "microseconds") => 1e-6,
+        Some("ns" | "nanoseconds") => 1e-9,
+        Some(other) => {
+            return Err(Fault {
+                problem: format!("{} is in {other:?}, which is no unit of time known here", column.source()),
+                mend: "name a dataset of times in s, ms, us or ns, or give sample_rate_hz".into(),
+            });
+        }
+    };
+    Ok((unit_s * own.scale.unwrap_or(1.0), unit_s * own.offset.unwrap_or(0.0)))
+}
+
+/// The value for the column: the only one, or that of its index where there is one a column.
+fn pick<T>(mut values: Vec<T>, column: &Column) -> Option<T> {
+    match (values.len(), column.index) {
+        (1, _) => values.pop(),
+        (count, Some(index)) if count == column.columns && index < count => Some(values.swap_remove(index)),
+        _ => None,
+    }
+}
+
+fn attribute(place: &Location, name: &str) -> Option<Attribute> {
+    // Asking for one that is not there fills the library's error stack; the names do not.
+    place.attr(name).ok().filter(|attribute| attribute.size() <= MOST_VALUES)
+}
+
+fn number(place: &Location, name: &str, column: &Column) -> Option<f64> {
+    let attribute = attribute(place, name)?;
+    match attribute.read_raw::<f64>() {
+        Ok(values) => pick(values, column),
+        Err(_) => texts(&attribute).and_then(|values| pick(values, column))?.trim().parse().ok(),
+    }
+    .filter(|value: &f64| value.is_finite())
+}
+
+fn text(place: &Location, name: &str, column: &Column) -> Option<String> {
+    let values = texts(&attribute(place, name)?)?;
+    pick(values, column)
+        .map(|text| text.trim().trim_end_matches('\0').to_owned())
+        .filter(|text| !text.is_empty())
+}
+
+fn texts(attribute: &Attribute) -> Option<Vec<String>> {
+    match attribute.dtype().ok()?.to_descriptor().ok()? {
+        TypeDescriptor::VarLenUnicode => {
+            Some(attribute.read_raw::<VarLenUnicode>().ok()?.iter().map(ToString::to_string).collect())
+        }
+        TypeDescriptor::VarLenAscii => {
+            Some(attribute.read_raw::<VarLenAscii>().ok()?.iter().map(ToString::to_string).collect())
+        }
+        TypeDescriptor::FixedAscii(_) => Some(
+            attribute.read_raw::<FixedAscii<TEXT_BYTES>>().ok()?.iter().map(ToString::to_string).collect(),
+        ),
+        TypeDescriptor::FixedUnicode(_) => Some(
+            attribute.read_raw::<FixedUnicode<TEXT_BYTES>>().ok()?.iter().map(ToString::to_string).collect(),
+        ),
+        _ => None,
+    }
+}

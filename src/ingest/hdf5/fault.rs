@@ -1,0 +1,102 @@
+//! The HDF5 library's error stacks to one sentence each that a person can act on.
+
+use super::super::error::IngestError;
+use std::path::Path;
+
+/// What is wrong with a dataset, and what to do.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Fault {
+    pub problem: String,
+    pub mend: String,
+}
+
+/// Part of the library's words, what they mean, and what to do.
+const MEANINGS: [(&str, &str, &str); 9] = [
+    (
+        "truncated file",
+        "the file was not closed or is cut off",
+        "copy it from the logger again; what is missing cannot be had back",
+    ),
+    (
+        "already open for write",
+        "the program that wrote the file never closed it",
+        "in a copy of the file, run `h5clear -s FILE` and try again; what was written last may be missing",
+    ),
+    (
+        "file signature not found",
+        "the file is not HDF5, or its beginning is damaged",
+        "copy it from the logger again",
+    ),
+    (
+        "unable to lock file",
+        "another program has the file open for writing",
+        "close that program, or read a copy",
+    ),
+    (
+        "required filter",
+        "the data are compressed by a filter that is not built in",
+        "repack them with gzip: `h5repack -f GZIP=1 IN OUT`",
+    ),
+    ("checksum", "a check sum does not fit: the data are damaged", "copy the file from the logger again"),
+    (
+        "data error detected by fletcher32",
+        "a check sum does not fit: the data are damaged",
+        "copy the file from the logger again",
+    ),
+    (
+        "filter returned failure",
+        "a block of it cannot be unpacked: the data are damaged or their filter is not built in",
+        "copy the file from the logger again, or repack it with gzip: `h5repack -f GZIP=1 IN OUT`",
+    ),
+    (
+        "unable to open external",
+        "the data are in another file that is not there",
+        "put the other file beside this one",
+    ),
+];
+
+/// A failure to read a dataset.
+pub(super) fn of_dataset(name: &str, error: &hdf5_metno::Error) -> Fault {
+    let (problem, mend) = meaning(error);
+    Fault { problem: format!("{name}: {problem}"), mend }
+}
+
+/// A failure to open a file.
+pub(super) fn of_file(path: &Path, error: &hdf5_metno::Error) -> IngestError {
+    let (problem, mend) = meaning(error);
+    let size = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
+    IngestError::Content {
+        path: path.display().to_string(),
+        place: format!("HDF5 file of {size} bytes"),
+        problem,
+        mend,
+    }
+}
+
+fn meaning(error: &hdf5_metno::Error) -> (String, String) {
+    let words = words(error);
+    let all = words.join(": ").to_lowercase();
+    if let Some((part, problem, mend)) = MEANINGS.iter().find(|(part, ..)| all.contains(part)) {
+        // The library gives the sizes for a file that is cut off.
+        let detail = words.iter().find(|word| word.to_lowercase().contains(part));
+        let sizes =
+            detail.and_then(|d| d.split_once("file: ")).map_or(String::new(), |(_, s)| format!(" ({s})"));
+        return (format!("{problem}{sizes}"), (*mend).to_owned());
+    }
+    let last = words.last().map_or("the library gives no reason", String::as_str);
+    (
+        format!("it cannot be read: {last}"),
+        "the file may be damaged: try `h5dump -H FILE`, or copy it from the logger again".into(),
+    )
+}
+
+/// The library's descriptions, outermost first.
+fn words(error: &hdf5_metno::Error) -> Vec<String> {
+    match error {
+        hdf5_metno::Error::Internal(text) => vec![text.clone()],
+        hdf5_metno::Error::HDF5(stack) => match stack.clone().expand() {
+            Ok(frames) => frames.iter().map(|frame| frame.desc().to_owned()).collect(),
+            Err(_) => vec![error.to_string()],
+        },
+    }
+}

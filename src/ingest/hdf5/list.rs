@@ -1,0 +1,218 @@
+//! An HDF5 file to the list of its datasets and columns.
+
+use super::super::error::IngestError;
+use super::attributes::Attributes;
+use super::dataset::{self, Column, Missing};
+use super::fault::Fault;
+use super::{Progress, open, sibling_times, storage, time_base};
+use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Samples};
+use hdf5_metno::{File, Group};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Groups deeper than this are not followed: links may form circles.
+const DEEPEST: usize = 32;
+/// At most so many objects are listed, for the same reason.
+const MOST_OBJECTS: usize = 10_000;
+/// A dataset with more columns than this is listed in one line: it is no table of channels.
+const MOST_COLUMNS: usize = 256;
+/// The range of a longer column is not looked for: `inspect` should answer at once.
+const RANGED_SAMPLES: usize = 20_000_000;
+
+/// Everything in the file, by path.
+#[derive(Default)]
+struct Objects {
+    groups: u64,
+    datasets: Vec<String>,
+    broken: Vec<String>,
+}
+
+/// What can be written as `source`.
+pub(super) fn sources(file: &File) -> Vec<String> {
+    let mut objects = Objects::default();
+    walk(file, "", 0, &mut objects);
+    objects.datasets.iter().flat_map(|path| columns_of(file, path).unwrap_or_default()).collect()
+}
+
+fn walk(group: &Group, path: &str, depth: usize, objects: &mut Objects) {
+    for name in group.member_names().unwrap_or_default() {
+        if objects.datasets.len() + objects.broken.len() >= MOST_OBJECTS {
+            return;
+        }
+        let full = format!("{path}/{name}");
+        if let Ok(inner) = group.group(&name) {
+            objects.groups += 1;
+            if depth < DEEPEST {
+                walk(&inner, &full, depth + 1, objects);
+            }
+        } else if group.dataset(&name).is_ok() {
+            objects.datasets.push(full);
+        } else if !group
+            .loc_type_by_name(&name)
+            .is_ok_and(|kind| kind == hdf5_metno::LocationType::NamedDatatype)
+        {
+            objects.broken.push(full);
+        }
+    }
+}
+
+/// The sources of one dataset: itself, or its columns; `None` where it holds no numbers in one or two dimensions.
+fn columns_of(file: &File, path: &str) -> Option<Vec<String>> {
+    let dataset = file.dataset(path).ok()?;
+    match dataset::shape_of(&dataset, path).ok()?.as_slice() {
+        [_] | [_, 1] => Some(vec![path.to_owned()]),
+        [_, columns] if *columns <= MOST_COLUMNS => {
+            Some((0..*columns).map(|i| format!("{path}[{i}]")).collect())
+        }
+        _ => None,
+    }
+}
+
+/// Lists what the HDF5 file at `path` holds.
+///
+/// # Errors
+/// A file that the library cannot open.
+pub(in super::super) fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
+    let file = open(path)?;
+    let mut objects = Objects::default();
+    walk(&file, "", 0, &mut objects);
+    let mut channels = Vec::new();
+    let mut issues: Vec<Issue> = Vec::new();
+    let count = objects.datasets.len().max(1);
+    for (number, dataset) in objects.datasets.iter().enumerate() {
+        match columns_of(&file, dataset) {
+            Some(sources) => {
+                for source in &sources {
+                    channels.push(listed(&file, source, &mut issues));
+                }
+            }
+            None => channels.push(unreadable(&file, dataset)),
+        }
+        #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
+        progress((number + 1) as f64 / count as f64);
+    }
+    channels.extend(objects.broken.iter().map(|link| ListedChannel {
+        unreadable: Some("a link to what is not there".into()),
+        ..blank(link, "link")
+    }));
+    count_from_first(&mut channels, &mut issues);
+    let version = hdf5_metno::library_version();
+    Ok(Listing {
+        schema: "dropcheck.inspect/1",
+        recording: path.display().to_string(),
+        bytes: std::fs::metadata(path).map_or(0, |metadata| metadata.len()),
+        format: RecordingFormat::Hdf5,
+        counts: BTreeMap::from([
+            ("groups".into(), objects.groups),
+            ("datasets".into(), objects.datasets.len() as u64),
+        ]),
+        facts: BTreeMap::from([(
+            "read with".into(),
+            format!("HDF5 library {}.{}.{}", version.0, version.1, version.2),
+        )]),
+        channels,
+        issues,
+    })
+}
+
+/// Times from the earliest first sample on.
+fn count_from_first(channels: &mut [ListedChannel], issues: &mut [Issue]) {
+    let first_s = channels.iter().filter_map(|channel| channel.start_s).fold(f64::INFINITY, f64::min);
+    for time_s in channels.iter_mut().filter_map(|channel| channel.start_s.as_mut()) {
+        *time_s -= first_s;
+    }
+    for issue in issues {
+        issue.from_s = issue.from_s.map(|time_s| time_s - first_s);
+        issue.to_s = issue.to_s.map(|time_s| time_s - first_s);
+    }
+}
+
+fn blank(source: &str, kind: &str) -> ListedChannel {
+    ListedChannel {
+        source: source.to_owned(),
+        kind: kind.to_owned(),
+        samples: None,
+        messages: None,
+        sample_rate_hz: None,
+        unit: None,
+        start_s: None,
+        duration_s: None,
+        gaps: None,
+        range: None,
+        encoding: String::new(),
+        unreadable: None,
+    }
+}
+
+/// A dataset that holds no channel, with the reason.
+fn unreadable(file: &File, path: &str) -> ListedChannel {
+    let fault = match dataset::find(file, path) {
+        Err(Missing::Because(fault)) => fault.problem,
+        Err(Missing::Nowhere) | Ok(_) => "it cannot be opened".to_owned(),
+    };
+    let reason = fault.strip_prefix(path).unwrap_or(&fault).trim_start_matches([':', ' ']).to_owned();
+    let encoding = file.dataset(path).map(|dataset| storage(&dataset)).unwrap_or_default();
+    ListedChannel { encoding, unreadable: Some(reason), ..blank(path, "dataset") }
+}
+
+fn listed(file: &File, source: &str, issues: &mut Vec<Issue>) -> ListedChannel {
+    let Ok(column) = dataset::find(file, source) else { return unreadable(file, source) };
+    let attributes = Attributes::of(file, &column);
+    let kind = if column.index.is_some() { "column" } else { "dataset" };
+    let mut channel = ListedChannel {
+        samples: Some(column.len() as u64),
+        encoding: storage(&column.dataset),
+        ..blank(source, kind)
+    };
+    match survey(file, &column, &attributes, &mut channel) {
+        Ok(found) => issues.extend(found.into_iter().map(|issue| issue.on(source))),
+        Err(fault) => channel.unreadable = Some(fault.problem),
+    }
+    channel
+}
+
+/// Range, rate, start and gaps of a column into `channel`.
+fn survey(
+    file: &File,
+    column: &Column,
+    attributes: &Attributes,
+    channel: &mut ListedChannel,
+) -> Result<Vec<Issue>, Fault> {
+    channel.sample_rate_hz = attributes.sample_rate_hz;
+    channel.unit.clone_from(&attributes.unit);
+    channel.start_s = attributes.start_s;
+    let mut samples = Samples::F32(vec![0.0; column.len().min(RANGED_SAMPLES)]);
+    if column.len() <= RANGED_SAMPLES {
+        samples = attributes.scaled(column.samples()?);
+        channel.range = range(&samples);
+    }
+    let Some(time) = sibling_times(file, column) else {
+        let intervals = column.len().saturating_sub(1);
+        #[allow(clippy::cast_precision_loss, reason = "below 2^31")]
+        let duration_s = attributes.sample_rate_hz.map(|rate_hz| intervals as f64 / rate_hz);
+        channel.duration_s = duration_s;
+        return Ok(Vec::new());
+    };
+    let times_s = time.times_s()?;
+    if times_s.len() != samples.len() {
+        return Ok(Vec::new());
+    }
+    let Ok(uniform) = time_base::from_times(&times_s, samples, None) else { return Ok(Vec::new()) };
+    let (first_s, last_s) =
+        times_s.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &t| (a.min(t), b.max(t)));
+    channel.sample_rate_hz = Some(uniform.sample_rate_hz);
+    channel.start_s = Some(first_s);
+    channel.duration_s = Some(last_s - first_s);
+    let has_gap = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
+    channel.gaps = Some(if has_gap { uniform.gaps.len() as u64 } else { 0 });
+    Ok(uniform.issues)
+}
+
+fn range(samples: &Samples) -> Option<(f64, f64)> {
+    let (mut smallest, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for value in (0..samples.len()).map(|i| samples.get(i)).filter(|value| value.is_finite()) {
+        smallest = smallest.min(value);
+        largest = largest.max(value);
+    }
+    (smallest <= largest).then_some((smallest, largest))
+}

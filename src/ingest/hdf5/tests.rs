@@ -1,0 +1,192 @@
+//! HDF5 files of every kind of number, with the attributes and times that recordings have.
+
+use super::super::csv::tests::cask_file;
+use super::*;
+use crate::data::IssueCode;
+use hdf5_metno::types::VarLenUnicode;
+use std::path::PathBuf;
+
+struct Made {
+    _dir: tempfile::TempDir,
+    path: PathBuf,
+}
+
+/// A file that `fill` fills.
+fn made(fill: impl FnOnce(&File) -> hdf5_metno::Result<()>) -> Made {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("r.h5");
+    let created = File::create(&path).unwrap();
+    fill(&created).unwrap();
+    created.close().unwrap();
+    Made { _dir: dir, path }
+}
+
+fn number(place: &hdf5_metno::Location, name: &str, value: f64) -> hdf5_metno::Result<()> {
+    place.new_attr::<f64>().create(name)?.write_scalar(&value)
+}
+
+fn text(place: &hdf5_metno::Location, name: &str, value: &str) -> hdf5_metno::Result<()> {
+    place.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&value.parse::<VarLenUnicode>().unwrap())
+}
+
+fn values(raw: &RawChannel) -> Vec<f64> {
+    (0..raw.uniform.samples.len()).map(|i| raw.uniform.samples.get(i)).collect()
+}
+
+fn told(made: &Made, source: &str) -> String {
+    let error = read(&made.path, &cask_file(&[source]), &|_| {}).unwrap_err();
+    let help = miette::Diagnostic::help(&error).map(|help| help.to_string()).unwrap_or_default();
+    format!("{error} | {help}")
+}
+
+#[test]
+fn every_number_type_filter_and_attribute_is_read() {
+    let made = made(|file| {
+        let group = file.create_group("daq")?;
+        number(&group, "fs", 1000.0)?;
+        text(&group, "units", "m/s^2")?;
+        let short = group.new_dataset_builder().with_data(&[-2_i16, 0, 300]).create("i16")?;
+        number(&short, "scale", 0.5)?;
+        number(&short, "offset", 1.0)?;
+        number(&short, "sample_rate_hz", 500.0)?;
+        text(&short, "unit", "g")?;
+        number(&short, "start_time_s", 0.25)?;
+        group.new_dataset_builder().with_data(&[1_u8, 2, 3]).create("u8")?;
+        group.new_dataset_builder().with_data(&[1_i32 << 30, 2, 3]).create("i32")?;
+        group.new_dataset_builder().with_data(&[1_i64 << 40, 2, 3]).create("i64")?;
+        group.new_dataset_builder().with_data(&[1.5_f64, 2.5, 3.5]).create("f64")?;
+        let packed: Vec<f32> = (0..5000_u16).map(f32::from).collect();
+        let builder = group.new_dataset_builder().chunk(1000).shuffle().deflate(4).fletcher32();
+        builder.with_data(&packed).create("gz")?;
+        group.new_dataset_builder().chunk(1000).lzf().with_data(&packed).create("lzf").map(|_| ())
+    });
+    let names = ["/daq/i16", "/daq/u8", "daq/i32", "/daq/i64", "/daq/f64", "/daq/gz", "/daq/lzf"];
+    let channels = read(&made.path, &cask_file(&names), &|_| {}).unwrap().channels;
+    assert_eq!(values(&channels[0]), [0.0, 1.0, 151.0]);
+    assert_eq!((channels[0].unit.as_deref(), channels[1].unit.as_deref()), (Some("g"), Some("m/s^2")));
+    let base = &channels[0].uniform;
+    assert!((base.sample_rate_hz - 500.0).abs() < 1e-12 && (base.start_s - 0.25).abs() < 1e-12);
+    assert!((channels[1].uniform.sample_rate_hz - 1000.0).abs() < 1e-12);
+    assert_eq!(values(&channels[1]), [1.0, 2.0, 3.0]);
+    assert_eq!(values(&channels[2])[..1], [f64::from(1_i32 << 30)]);
+    assert!(matches!(channels[3].uniform.samples, Samples::F64(_)));
+    assert_eq!(values(&channels[4]), [1.5, 2.5, 3.5]);
+    for packed in &channels[5..] {
+        assert!(matches!(packed.uniform.samples, Samples::F32(_)));
+        assert_eq!((packed.uniform.samples.len(), packed.uniform.samples.get(4999)), (5000, 4999.0));
+    }
+}
+
+/// Two sensors in groups of their own, columns in g, the times of one drifting by 30 % of an interval.
+fn two_sensors() -> Made {
+    made(|file| {
+        for (name, rate_hz, count) in [("fast", 1000.0, 2000_u16), ("slow", 250.0, 500)] {
+            let group = file.create_group(name)?;
+            let times: Vec<f64> =
+                (0..count).map(f64::from).map(|i| 7.0 + (i + 0.3 * (i / 50.0).sin()) / rate_hz).collect();
+            let rows: Vec<[f32; 3]> = (0..count).map(|i| [f32::from(i), -f32::from(i), 0.5]).collect();
+            let flat: Vec<f32> = rows.into_iter().flatten().collect();
+            let shape = (usize::from(count), 3);
+            let data = group.new_dataset::<f32>().shape(shape).create("acc")?;
+            data.write_raw(&flat)?;
+            text(&data, "units", "g")?;
+            group.new_dataset_builder().with_data(&times).create("time_s")?;
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn each_sensor_keeps_its_own_jittering_times() {
+    let made = two_sensors();
+    let channels = read(&made.path, &cask_file(&["/fast/acc[1]", "/slow/acc[0]"]), &|_| {}).unwrap().channels;
+    for (channel, rate_hz, slope) in [(&channels[0], 1000.0, -1.0), (&channels[1], 250.0, 1.0)] {
+        // The sine leaves the fitted slope off by less than its amplitude over the record.
+        assert!((channel.uniform.sample_rate_hz / rate_hz - 1.0).abs() < 2e-3);
+        assert!(channel.uniform.time_jitter_s * rate_hz > 0.15);
+        assert_eq!(channel.uniform.issues[0].code, IssueCode::TimeJitter);
+        assert_eq!(channel.unit.as_deref(), Some("g"));
+        let middle = channel.uniform.samples.get(100);
+        assert!((middle - slope * 100.0).abs() < 1.0, "{middle}");
+    }
+}
+
+#[test]
+fn named_times_and_a_declared_rate_are_followed() {
+    let made = made(|file| {
+        let clock = file.new_dataset_builder().with_data(&[0_i32, 20, 40]).create("clock")?;
+        text(&clock, "unit", "ms")?;
+        file.new_dataset_builder().with_data(&[1.0_f32, 2.0, 3.0]).create("a").map(|_| ())
+    });
+    let mut cask = cask_file(&["/a"]);
+    assert!(told(&made, "/a").contains("nothing says when"), "{}", told(&made, "/a"));
+    cask.time = Some("clock".into());
+    let channel = &read(&made.path, &cask, &|_| {}).unwrap().channels[0];
+    assert!((channel.uniform.sample_rate_hz - 50.0).abs() < 1e-9);
+    cask.time = None;
+    cask.channels[0].sample_rate_hz = Some(80.0);
+    let channel = &read(&made.path, &cask, &|_| {}).unwrap().channels[0];
+    assert!((channel.uniform.sample_rate_hz - 80.0).abs() < 1e-9);
+}
+
+#[test]
+fn what_is_no_column_says_what_it_is() {
+    let made = made(|file| {
+        let group = file.create_group("daq")?;
+        group.new_dataset_builder().with_data(&[1.0_f32, 2.0]).create("a1")?;
+        group.new_dataset::<f32>().shape((4, 3)).create("never")?;
+        let table = group.new_dataset::<f32>().shape((4, 3)).create("table")?;
+        table.write_raw(&[0.0_f32; 12])?;
+        let cube = group.new_dataset::<f32>().shape((2, 2, 2)).create("cube")?;
+        cube.write_raw(&[0.0_f32; 8])?;
+        group.new_dataset::<f64>().create("scalar")?.write_scalar(&1.0)?;
+        group.new_dataset::<f32>().shape(0).create("none")?;
+        let words: Vec<VarLenUnicode> = vec!["a".parse().unwrap(), "b".parse().unwrap()];
+        group.new_dataset_builder().with_data(&words).create("words").map(|_| ())
+    });
+    let cases: [(&str, &[&str]); 11] = [
+        ("/daq/A1", &["no dataset /daq/A1", "did you mean /daq/a1"]),
+        ("/daq", &["is a group"]),
+        ("/daq/words", &["no numbers but text"]),
+        ("/daq/scalar", &["single value"]),
+        ("/daq/none", &["empty"]),
+        ("/daq/cube", &["3 dimensions"]),
+        ("/daq/table", &["4 rows and 3 columns", "/daq/table[2]"]),
+        ("/daq/table[3]", &["no [3]"]),
+        ("/daq/a1[1]", &["one dimension"]),
+        ("/daq/never[0]", &["never written"]),
+        ("/daq/table[x]", &["no dataset"]),
+    ];
+    for (source, expected) in cases {
+        let message = told(&made, source);
+        for part in expected {
+            assert!(message.contains(part), "{source}: {message} without {part:?}");
+        }
+    }
+}
+
+#[test]
+fn a_cut_file_is_told_as_such() {
+    let made = two_sensors();
+    let bytes = std::fs::read(&made.path).unwrap();
+    std::fs::write(&made.path, &bytes[..bytes.len() / 2]).unwrap();
+    let message = told(&made, "/fast/acc[0]");
+    assert!(message.contains("not closed or is cut off"), "{message}");
+    std::fs::write(&made.path, b"\x89HDF\r\n\x1a\n").unwrap();
+    let message = told(&made, "/fast/acc[0]");
+    assert!(message.contains("r.h5") && message.contains("copy"), "{message}");
+}
+
+#[test]
+fn everything_is_listed() {
+    let made = two_sensors();
+    let listing = list(&made.path, &|_| {}).unwrap();
+    assert_eq!((listing.counts["groups"], listing.counts["datasets"]), (2, 4));
+    let sources: Vec<&str> = listing.channels.iter().map(|channel| channel.source.as_str()).collect();
+    assert_eq!(sources[..4], ["/fast/acc[0]", "/fast/acc[1]", "/fast/acc[2]", "/fast/time_s"]);
+    let fast = &listing.channels[1];
+    assert_eq!((fast.kind.as_str(), fast.samples, fast.unit.as_deref()), ("column", Some(2000), Some("g")));
+    assert_eq!((fast.range, fast.gaps, fast.start_s), (Some((-1999.0, 0.0)), Some(0), Some(0.0)));
+    assert!((fast.sample_rate_hz.unwrap() / 1000.0 - 1.0).abs() < 2e-3);
+    assert!(fast.encoding.starts_with("float32, 2000 × 3"), "{}", fast.encoding);
+}

@@ -1,0 +1,238 @@
+//! ROS 2 messages in CDR to the wanted fields, by the schema's `ros2msg` text.
+
+use super::plan::{Decode, Leaf, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns};
+use super::ros_type::{Field, Length, Type};
+use crate::data::Samples;
+use re_cdr::{BigEndian, CdrReader, LittleEndian, numeric::CdrEndian};
+
+/// A serialised message begins with two bytes of representation and two of options.
+const ENCAPSULATION_BYTES: usize = 4;
+
+/// Decodes CDR messages by a plan.
+#[derive(Debug)]
+pub(super) struct Cdr {
+    plan: Plan,
+    fields: Vec<Field>,
+}
+
+impl Cdr {
+    /// For the fields of `plan` in messages of `fields`; fields that they lack stay missing.
+    pub(super) fn new(plan: &Plan, fields: &[Field]) -> Self {
+        // What lies behind the last wanted field need not be walked through.
+        let needed =
+            fields.iter().rposition(|field| plan.root.field(&field.name).is_some()).map_or(0, |at| at + 1);
+        Self { plan: plan.clone(), fields: fields.iter().take(needed).cloned().collect() }
+    }
+}
+
+impl Decode for Cdr {
+    fn decode(&self, data: &[u8], slots: &mut Slots) -> Result<(), String> {
+        let (header, body) = data
+            .split_at_checked(ENCAPSULATION_BYTES)
+            .ok_or_else(|| "the message is shorter than its CDR header".to_owned())?;
+        match header {
+            [0, 0, ..] => Walk::<BigEndian>::new(body, &self.plan.wants, slots)
+                .fields(&self.fields, Some(&self.plan.root)),
+            [0, 1, ..] => Walk::<LittleEndian>::new(body, &self.plan.wants, slots)
+                .fields(&self.fields, Some(&self.plan.root)),
+            _ => Err(format!(
+                "the message is in the representation {header:02x?}; plain CDR of either byte order is read"
+            )),
+        }
+    }
+}
+
+/// A walk through one message, in the order of its fields.
+struct Walk<'a, Order: CdrEndian> {
+    reader: CdrReader<'a, Order>,
+    wants: &'a [Want],
+    slots: &'a mut Slots,
+}
+
+impl<'a, Order: CdrEndian> Walk<'a, Order> {
+    fn new(body: &'a [u8], wants: &'a [Want], slots: &'a mut Slots) -> Self {
+        Self { reader: CdrReader::new(body), wants, slots }
+    }
+
+    fn fields(&mut self, fields: &[Field], node: Option<&Node>) -> Result<(), String> {
+        for field in fields {
+            let child = node.and_then(|node| node.field(&field.name));
+            self.value(&field.kind, child).map_err(|problem| match problem.strip_prefix("at ") {
+                Some(deeper) => format!("at {}.{deeper}", field.name),
+                None => format!("at {}: {problem}", field.name),
+            })?;
+        }
+        Ok(())
+    }
+
+    fn value(&mut self, kind: &Type, node: Option<&Node>) -> Result<(), String> {
+        match kind {
+            Type::Text => {
+                let text = self.text()?;
+                if let Some(slot) = node.and_then(|node| node.slot(self.wants, Want::Text)) {
+                    self.slots.set(slot, Value::Text(String::from_utf8_lossy(text).into_owned()));
+                }
+                Ok(())
+            }
+            Type::WideText => {
+                let units = self.reader.read_u32().map_err(in_words)? as usize;
+                self.reader.read_bytes(units.saturating_mul(2)).map(|_| ()).map_err(in_words)
+            }
+            Type::Message(fields) => self.message(fields, node),
+            Type::Array(element, length) => self.array(element, *length, node),
+            number => {
+                let value = self.number(number)?;
+                if let Some(slot) = node.and_then(|node| node.slot(self.wants, Want::Numbers)) {
+                    self.slots.set(slot, Value::Number { value, is_narrow: number.is_narrow() });
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn message(&mut self, fields: &[Field], node: Option<&Node>) -> Result<(), String> {
+        if let (Some(slot), [seconds, nanoseconds]) =
+            (node.and_then(|node| node.slot(self.wants, Want::Stamp)), fields)
+            && SECONDS_NAMES.contains(&seconds.name.as_str())
+            && NANOSECONDS_NAMES.contains(&nanoseconds.name.as_str())
+        {
+            let (whole, part) = (self.number(&seconds.kind)?, self.number(&nanoseconds.kind)?);
+            #[allow(clippy::cast_possible_truncation, reason = "both were 32-bit integers")]
+            self.slots.set(slot, Value::Stamp(unix_ns(whole as i64, part as i64)));
+            return Ok(());
+        }
+        self.fields(fields, node)
+    }
+
+    fn array(&mut self, element: &Type, length: Length, node: Option<&Node>) -> Result<(), String> {
+        let count = match length {
+            Length::Fixed(count) => count,
+            Length::Counted => self.reader.read_u32().map_err(in_words)? as usize,
+        };
+        let Some(bytes) = element.bytes() else {
+            for index in 0..count {
+                let before = self.reader.position();
+                self.value(element, node.and_then(|node| node.element(index)))?;
+                if self.reader.position() == before {
+                    // Elements without content, however many are announced.
+                    break;
+                }
+            }
+            return Ok(());
+        };
+        if count == 0 {
+            if let Some(slot) = node.and_then(|node| node.slot(self.wants, Want::Numbers)) {
+                self.slots.set(slot, Value::Array(Samples::F64(Vec::new())));
+            }
+            return Ok(());
+        }
+        self.reader.align(bytes).map_err(in_words)?;
+        if count.saturating_mul(bytes) > self.reader.remaining() {
+            return Err(format!("{count} numbers are announced, and the message ends before them"));
+        }
+        let slot = node.and_then(|node| node.slot(self.wants, Want::Numbers));
+        let (Some(slot), Some(node)) = (slot, node) else {
+            return self.reader.read_bytes(count * bytes).map(|_| ()).map_err(in_words);
+        };
+        let samples = self.numbers(element, count)?;
+        self.slots.set(slot, Value::Array(samples));
+        self.slots.pick(slot, &node.elements(self.wants));
+        Ok(())
+    }
+
+    fn numbers(&mut self, element: &Type, count: usize) -> Result<Samples, String> {
+        Ok(match element {
+            Type::F32 => Samples::F32(self.reader.read_numeric_vec(count).map_err(in_words)?),
+            Type::F64 => Samples::F64(self.reader.read_numeric_vec(count).map_err(in_words)?),
+            Type::I16 => Samples::F32(self.converted::<i16, f32>(count)?),
+            other if other.is_narrow() => {
+                let mut samples = Vec::with_capacity(count);
+                for _ in 0..count {
+                    #[allow(
+                        clippy::cast_possible_truncation,
+                        reason = "f32 holds every value of a narrow type"
+                    )]
+                    samples.push(self.number(other)? as f32);
+                }
+                Samples::F32(samples)
+            }
+            Type::I32 => Samples::F64(self.converted::<i32, f64>(count)?),
+            other => {
+                let mut samples = Vec::with_capacity(count);
+                for _ in 0..count {
+                    samples.push(self.number(other)?);
+                }
+                Samples::F64(samples)
+            }
+        })
+    }
+
+    fn converted<From: re_cdr::CdrPod + Into<To>, To>(&mut self, count: usize) -> Result<Vec<To>, String> {
+        let numbers: Vec<From> = self.reader.read_numeric_vec(count).map_err(in_words)?;
+        Ok(numbers.into_iter().map(Into::into).collect())
+    }
+
+    #[allow(clippy::cast_precision_loss, reason = "samples beyond 2^53 do not occur")]
+    fn number(&mut self, kind: &Type) -> Result<f64, String> {
+        let reader = &mut self.reader;
+        match kind {
+            Type::U8 => reader.read_u8().map(f64::from),
+            Type::I8 => reader.read_i8().map(f64::from),
+            Type::U16 => reader.read_u16().map(f64::from),
+            Type::I16 => reader.read_i16().map(f64::from),
+            Type::U32 => reader.read_u32().map(f64::from),
+            Type::I32 => reader.read_i32().map(f64::from),
+            Type::U64 => reader.read_u64().map(|value| value as f64),
+            Type::I64 => reader.read_i64().map(|value| value as f64),
+            Type::F32 => reader.read_f32().map(f64::from),
+            Type::F64 => reader.read_f64(),
+            _ => return Err("a number is expected".into()),
+        }
+        .map_err(in_words)
+    }
+
+    /// A string's bytes without the closing zero.
+    fn text(&mut self) -> Result<&'a [u8], String> {
+        let length = self.reader.read_u32().map_err(in_words)? as usize;
+        let bytes = self.reader.read_bytes(length).map_err(in_words)?;
+        Ok(bytes.strip_suffix(&[0]).unwrap_or(bytes))
+    }
+}
+
+#[allow(clippy::needless_pass_by_value, reason = "the shape that map_err takes")]
+fn in_words(error: re_cdr::Error) -> String {
+    match error {
+        re_cdr::Error::UnexpectedEof => "the message ends before it".into(),
+        other => other.to_string(),
+    }
+}
+
+/// The numeric fields of a message type; single bytes are images and flags, no signals.
+pub(super) fn leaves(fields: &[Field]) -> Vec<Leaf> {
+    let mut found = Vec::new();
+    descend(fields, "", &mut found);
+    found
+}
+
+fn descend(fields: &[Field], path: &str, found: &mut Vec<Leaf>) {
+    for field in fields {
+        let below = if path.is_empty() { field.name.clone() } else { format!("{path}.{}", field.name) };
+        match &field.kind {
+            Type::Message(inner) if !is_time(inner) => descend(inner, &below, found),
+            Type::Array(element, _) if element.bytes().is_some_and(|bytes| bytes > 1) => {
+                found.push(Leaf { path: below, is_array: true });
+            }
+            Type::Message(_) | Type::Array(..) | Type::Text | Type::WideText | Type::U8 => {}
+            _ => found.push(Leaf { path: below, is_array: false }),
+        }
+    }
+}
+
+fn is_time(fields: &[Field]) -> bool {
+    matches!(fields, [seconds, nanoseconds]
+        if SECONDS_NAMES.contains(&seconds.name.as_str()) && NANOSECONDS_NAMES.contains(&nanoseconds.name.as_str()))
+}
+
+#[cfg(test)]
+#[path = "cdr_tests.rs"]
+mod tests;

@@ -1,0 +1,235 @@
+//! One chunk to the records in it: decompressed as it is read, its check sum tested, cut ones as far as they go.
+
+use super::scan::{RECORD_HEADER_BYTES, RECORD_HEADER_LENGTH};
+use mcap::McapError;
+use mcap::records::op;
+use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use std::io::Read;
+
+/// Chunk header without its compression's name: times, uncompressed size, check sum, name length, compressed size.
+const FIXED_HEADER_BYTES: u64 = 8 + 8 + 8 + 4 + 4 + 8;
+/// The same, as the length of a buffer.
+const FIXED_HEADER_LENGTH: usize = 40;
+/// Longer than any name of a compression ("zstd", "lz4"); a longer one is damage.
+const LONGEST_COMPRESSION_NAME_BYTES: u64 = 64;
+/// A message may be a whole test in one block; zstd shrinks even constant text less than 4096-fold.
+const LARGEST_RECORD_BYTES: u64 = 1 << 30;
+const LARGEST_EXPANSION: u64 = 4096;
+/// A small file may hold a record of this size; it keeps a nonsense length from taking memory.
+const ALWAYS_ALLOWED_BYTES: u64 = 1 << 24;
+/// So much is asked of the file at a time, whatever the record claims.
+const STEP_BYTES: u64 = 1 << 20;
+
+/// How a chunk ended.
+#[derive(Debug)]
+pub(super) enum ChunkEnd {
+    /// All of it was read and its check sum holds, or it has none.
+    Whole { compression: String },
+    /// The file ends in it.
+    Cut { compression: Option<String>, unread_bytes: u64 },
+    /// It does not decompress, or its check sum does not hold.
+    Bad { compression: Option<String>, reason: String, span_ns: (u64, u64) },
+}
+
+impl ChunkEnd {
+    /// The compression that the chunk names.
+    pub(super) fn compression(&self) -> Option<&str> {
+        match self {
+            Self::Whole { compression } => Some(compression),
+            Self::Cut { compression, .. } | Self::Bad { compression, .. } => compression.as_deref(),
+        }
+    }
+}
+
+/// Reads chunks one after the other, with the decompressors' memory kept.
+pub(super) struct Chunks {
+    reader: LinearReader,
+    record_limit: usize,
+}
+
+/// A chunk's header, as far as it is needed.
+struct Header {
+    bytes: Vec<u8>,
+    compression: String,
+    span_ns: (u64, u64),
+    uncompressed: u64,
+    compressed: u64,
+}
+
+impl Chunks {
+    /// For a file of `file_bytes`.
+    pub(super) fn new(file_bytes: u64) -> Self {
+        let limit = file_bytes.saturating_mul(LARGEST_EXPANSION).saturating_add(ALWAYS_ALLOWED_BYTES);
+        let record_limit = usize::try_from(limit.min(LARGEST_RECORD_BYTES)).unwrap_or(usize::MAX);
+        Self { reader: fresh(record_limit), record_limit }
+    }
+
+    /// Reads the chunk whose body begins at `file`, claims `claimed` bytes and has `available`; `take` gets each record.
+    pub(super) fn read(
+        &mut self,
+        file: &mut impl Read,
+        claimed: u64,
+        available: u64,
+        take: &mut dyn FnMut(u8, &[u8]),
+    ) -> std::io::Result<ChunkEnd> {
+        let body = claimed.min(available);
+        let is_cut = claimed > available;
+        let Some(header) = header(file, body)? else {
+            return Ok(if is_cut {
+                ChunkEnd::Cut { compression: None, unread_bytes: body }
+            } else {
+                skip(file, body.saturating_sub(FIXED_HEADER_BYTES))?;
+                bad(None, "its header makes no sense", (0, 0))
+            });
+        };
+        let data = body - header.bytes.len() as u64;
+        if !is_cut && header.compressed > data {
+            skip(file, data)?;
+            return Ok(bad(Some(header.compression), "its sizes contradict each other", header.span_ns));
+        }
+        // Bytes behind the compressed ones are padding: the reader never sees them, so no record can reach into them.
+        let fed_bytes = data.min(header.compressed);
+        let fed = self.feed(file, &header, fed_bytes, is_cut, take)?;
+        skip(file, fed.left + (data - fed_bytes))?;
+        if !fed.is_clean {
+            self.reader = fresh(self.record_limit);
+        }
+        Ok(match fed.problem {
+            None => ChunkEnd::Whole { compression: header.compression },
+            Some(_) if is_cut => {
+                ChunkEnd::Cut { compression: Some(header.compression), unread_bytes: fed.unused }
+            }
+            Some(reason) => bad(Some(header.compression), &reason, header.span_ns),
+        })
+    }
+
+    /// Feeds the chunk's `bytes`, its lengths set to what is there, to the reader.
+    fn feed(
+        &mut self,
+        file: &mut impl Read,
+        header: &Header,
+        bytes: u64,
+        is_cut: bool,
+        take: &mut dyn FnMut(u8, &[u8]),
+    ) -> std::io::Result<Fed> {
+        let mut prefix: &[u8] = &header.with_lengths(bytes, is_cut);
+        let (mut left, mut yielded) = (bytes, 0_u64);
+        let problem = loop {
+            let wanted = match self.reader.next_event() {
+                None => break None,
+                Some(Ok(LinearReadEvent::ReadRequest(wanted))) => wanted as u64,
+                Some(Ok(LinearReadEvent::Record { opcode, data })) => {
+                    yielded += RECORD_HEADER_BYTES + data.len() as u64;
+                    take(opcode, data);
+                    continue;
+                }
+                Some(Err(error)) => break Some(in_words(&error)),
+            };
+            if prefix.is_empty() && left == 0 {
+                let is_complete = !is_cut && yielded == header.uncompressed;
+                if is_complete {
+                    return Ok(Fed { left, unused: 0, is_clean: true, problem: None });
+                }
+                self.reader.notify_read(0);
+                continue;
+            }
+            let step = if prefix.is_empty() {
+                wanted.min(left).min(STEP_BYTES)
+            } else {
+                wanted.min(prefix.len() as u64)
+            };
+            let buffer = self.reader.insert(usize::try_from(step).unwrap_or(0));
+            if prefix.is_empty() {
+                file.read_exact(buffer)?;
+                left -= step;
+            } else {
+                let (now, later) = prefix.split_at(buffer.len());
+                buffer.copy_from_slice(now);
+                prefix = later;
+            }
+            self.reader.notify_read(usize::try_from(step).unwrap_or(0));
+        };
+        let problem = problem.or_else(|| is_cut.then(|| "it is cut".to_owned()));
+        // Of a compressed chunk nobody can say how many bytes the kept messages took.
+        let unused = if header.compression.is_empty() { bytes.saturating_sub(yielded) } else { bytes };
+        Ok(Fed { left, unused, is_clean: false, problem })
+    }
+}
+
+/// What became of a chunk's bytes.
+struct Fed {
+    /// Bytes of the chunk that the reader did not ask for.
+    left: u64,
+    /// Bytes that gave no message, at most.
+    unused: u64,
+    /// Whether the reader stands at a record's boundary again.
+    is_clean: bool,
+    problem: Option<String>,
+}
+
+impl Header {
+    /// A chunk record's beginning with its lengths set to the `data` bytes that are there.
+    fn with_lengths(&self, data: u64, is_cut: bool) -> Vec<u8> {
+        let mut bytes = vec![op::CHUNK];
+        bytes.extend_from_slice(&(self.bytes.len() as u64 + data).to_le_bytes());
+        bytes.extend_from_slice(&self.bytes);
+        if is_cut {
+            let at = bytes.len() - 8;
+            bytes.splice(at.., data.to_le_bytes());
+            // No check sum holds for a part; the uncompressed size is unknown.
+            let sizes = RECORD_HEADER_LENGTH + 16;
+            bytes.splice(sizes..sizes + 8, u64::MAX.to_le_bytes());
+            bytes.splice(sizes + 8..sizes + 12, [0; 4]);
+        }
+        bytes
+    }
+}
+
+/// The header at `file`, `None` where `body` bytes cannot hold it.
+fn header(file: &mut impl Read, body: u64) -> std::io::Result<Option<Header>> {
+    if body < FIXED_HEADER_BYTES {
+        skip(file, body)?;
+        return Ok(None);
+    }
+    let mut bytes = vec![0; FIXED_HEADER_LENGTH];
+    file.read_exact(&mut bytes)?;
+    let name_bytes = u64::from(u32::from_le_bytes(bytes[28..32].try_into().unwrap_or_default()));
+    if name_bytes > LONGEST_COMPRESSION_NAME_BYTES || FIXED_HEADER_BYTES + name_bytes > body {
+        return Ok(None);
+    }
+    file.take(name_bytes).read_to_end(&mut bytes)?;
+    let word =
+        |at: usize| bytes.get(at..at + 8).and_then(|word| word.try_into().ok()).map_or(0, u64::from_le_bytes);
+    let name_end = bytes.len() - 8;
+    let compression = String::from_utf8_lossy(bytes.get(32..name_end).unwrap_or_default()).into_owned();
+    let (span_ns, uncompressed, compressed) = ((word(0), word(8)), word(16), word(name_end));
+    Ok(Some(Header { bytes, compression, span_ns, uncompressed, compressed }))
+}
+
+fn fresh(record_limit: usize) -> LinearReader {
+    let options = LinearReaderOptions::default()
+        .with_skip_start_magic(true)
+        .with_skip_end_magic(true)
+        .with_validate_chunk_crcs(true)
+        .with_record_length_limit(record_limit);
+    LinearReader::new_with_options(options)
+}
+
+fn bad(compression: Option<String>, reason: &str, span_ns: (u64, u64)) -> ChunkEnd {
+    ChunkEnd::Bad { compression, reason: reason.to_owned(), span_ns }
+}
+
+fn skip(file: &mut impl Read, bytes: u64) -> std::io::Result<()> {
+    std::io::copy(&mut file.take(bytes), &mut std::io::sink()).map(|_| ())
+}
+
+fn in_words(error: &McapError) -> String {
+    match error {
+        McapError::BadChunkCrc { .. } => "its check sum does not hold".into(),
+        McapError::UnsupportedCompression(name) => {
+            format!("it is compressed with {name:?}, and only zstd, lz4 and none are read")
+        }
+        McapError::UnexpectedEof | McapError::UnexpectedEoc => "a record in it is longer than it".into(),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,336 @@
+//! What the messages of one topic gave for one field, to uniform samples.
+
+use super::plan::Value;
+use crate::data::Samples;
+use crate::ingest::time_base::{self, Block, TimeBaseError, Uniform};
+
+/// Where a message's time comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum TimeOrigin {
+    /// Its own stamp.
+    Stamp,
+    /// The log time: it has no stamp.
+    LogTime,
+    /// The log time: its stamp is zero or not understood.
+    LogTimeForBadStamp,
+}
+
+/// The time of a message, ns since 1970, from its stamp or else from its log time.
+pub(super) fn message_time(stamp: &Value, log_time_ns: i64) -> (i64, TimeOrigin) {
+    match stamp {
+        Value::Stamp(0) | Value::BadStamp => (log_time_ns, TimeOrigin::LogTimeForBadStamp),
+        Value::Stamp(ns) => (*ns, TimeOrigin::Stamp),
+        _ => (log_time_ns, TimeOrigin::LogTime),
+    }
+}
+
+/// 6 January 1980, ns since 1970: the origin of GPS time. A clock that shows less counts from its own start.
+pub(super) const CLOCK_IS_SET_NS: i64 = 315_964_800_000_000_000;
+
+/// The samples of one message with an array.
+#[derive(Debug, Clone)]
+struct RawBlock {
+    time_ns: i64,
+    /// As stated; `None` where the message has no such field.
+    rate_hz: Option<f64>,
+    samples: Samples,
+}
+
+/// How much a column held when a chunk began.
+#[derive(Debug, Clone, Copy, Default)]
+struct Mark {
+    numbers: usize,
+    blocks: usize,
+    tally: Tally,
+}
+
+/// Counts of messages.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Tally {
+    /// All of the topic.
+    pub(super) messages: u64,
+    /// Those that do not decode.
+    pub(super) malformed: u64,
+    /// Those whose stamp is zero or not understood.
+    pub(super) bad_stamps: u64,
+    /// Those with a stamp that was used.
+    pub(super) stamps: u64,
+}
+
+/// The samples of one field, message by message, in the order of the file.
+#[derive(Debug, Clone)]
+pub(super) struct Column {
+    times_ns: Vec<i64>,
+    numbers: Samples,
+    blocks: Vec<RawBlock>,
+    pub(super) tally: Tally,
+    pub(super) unit: Option<String>,
+    /// Why the first malformed message is so.
+    pub(super) first_problem: Option<String>,
+    mark: Mark,
+    /// Which sample or block came first with a stamp of exactly zero.
+    zero_stamp: Option<usize>,
+}
+
+impl Default for Column {
+    fn default() -> Self {
+        Self {
+            times_ns: Vec::new(),
+            numbers: Samples::F32(Vec::new()),
+            blocks: Vec::new(),
+            tally: Tally::default(),
+            unit: None,
+            first_problem: None,
+            mark: Mark::default(),
+            zero_stamp: None,
+        }
+    }
+}
+
+/// Why a column gives no uniform samples.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum ColumnError {
+    #[error("its messages state a sample rate of {0} Hz")]
+    StatedRate(f64),
+    #[error("it is one block of samples without a sample rate")]
+    NoRate,
+    #[error(transparent)]
+    TimeBase(#[from] TimeBaseError),
+}
+
+impl Column {
+    /// Takes what one message gave.
+    pub(super) fn take(&mut self, value: Value, time: (i64, TimeOrigin), rate_hz: Option<f64>) {
+        self.tally.messages += 1;
+        match (value, self.is_blocks()) {
+            (Value::Number { value, is_narrow }, None | Some(false)) => {
+                self.times_ns.push(time.0);
+                push(&mut self.numbers, value, is_narrow);
+            }
+            (Value::Number { value, .. }, Some(true)) => {
+                self.blocks.push(RawBlock { time_ns: time.0, rate_hz, samples: Samples::F64(vec![value]) });
+            }
+            (Value::Array(samples), None | Some(true)) => {
+                if samples.is_empty() {
+                    return;
+                }
+                self.blocks.push(RawBlock { time_ns: time.0, rate_hz, samples });
+            }
+            (Value::Array(_), Some(false)) => {
+                self.malformed("the field is a number in some messages and an array in others");
+                self.tally.messages -= 1;
+                return;
+            }
+            _ => return,
+        }
+        match time.1 {
+            TimeOrigin::Stamp => self.tally.stamps += 1,
+            TimeOrigin::LogTimeForBadStamp => {
+                self.tally.bad_stamps += 1;
+                self.zero_stamp = Some(self.times_ns.len().max(self.blocks.len()) - 1);
+            }
+            TimeOrigin::LogTime => {}
+        }
+    }
+
+    /// Counts a message that does not decode.
+    pub(super) fn malformed(&mut self, problem: &str) {
+        self.tally.messages += 1;
+        self.tally.malformed += 1;
+        self.first_problem.get_or_insert_with(|| problem.to_owned());
+    }
+
+    /// What follows may be taken back.
+    pub(super) fn mark(&mut self) {
+        self.mark = Mark { numbers: self.times_ns.len(), blocks: self.blocks.len(), tally: self.tally };
+    }
+
+    /// Takes back everything since the last mark.
+    pub(super) fn roll_back(&mut self) {
+        self.times_ns.truncate(self.mark.numbers);
+        match &mut self.numbers {
+            Samples::F32(samples) => samples.truncate(self.mark.numbers),
+            Samples::F64(samples) => samples.truncate(self.mark.numbers),
+        }
+        self.blocks.truncate(self.mark.blocks);
+        self.tally = self.mark.tally;
+    }
+
+    /// Takes a single stamp of zero for a time where the other stamps show a clock that counts from its own start.
+    pub(super) fn settle_clock(&mut self) {
+        let (1, Some(position)) = (self.tally.bad_stamps, self.zero_stamp) else { return };
+        let is_own_clock = |time_ns: i64| time_ns.abs() < CLOCK_IS_SET_NS;
+        let others = self.times_ns.iter().copied().chain(self.blocks.iter().map(|block| block.time_ns));
+        if self.tally.stamps == 0
+            || !others.enumerate().all(|(index, time_ns)| index == position || is_own_clock(time_ns))
+        {
+            return;
+        }
+        let place = match self.blocks.get_mut(position) {
+            Some(block) => Some(&mut block.time_ns),
+            None => self.times_ns.get_mut(position),
+        };
+        if let Some(time_ns) = place {
+            *time_ns = 0;
+            self.tally.bad_stamps = 0;
+            self.tally.stamps += 1;
+        }
+    }
+
+    /// Whether there are no samples.
+    pub(super) fn is_empty(&self) -> bool {
+        self.times_ns.is_empty() && self.blocks.is_empty()
+    }
+
+    /// The earliest and the latest time of a message, ns since 1970.
+    pub(super) fn span_ns(&self) -> Option<(i64, i64)> {
+        let times = || self.times_ns.iter().copied().chain(self.blocks.iter().map(|block| block.time_ns));
+        Some((times().min()?, times().max()?))
+    }
+
+    /// The samples on a uniform base, times counted from `zero_ns`; `declared_rate_hz` overrides what the messages say.
+    ///
+    /// # Errors
+    /// Rate or times that give no base.
+    pub(super) fn uniform(self, zero_ns: i64, declared_rate_hz: Option<f64>) -> Result<Uniform, ColumnError> {
+        if self.blocks.is_empty() {
+            let times_s: Vec<f64> =
+                self.times_ns.iter().map(|&time_ns| seconds_from(time_ns, zero_ns)).collect();
+            return Ok(time_base::from_times(&times_s, self.numbers, declared_rate_hz)?);
+        }
+        let derived_hz = match declared_rate_hz {
+            Some(rate_hz) => Some(rate_hz),
+            None => derived_rate_hz(&self.blocks),
+        };
+        let mut blocks = Vec::with_capacity(self.blocks.len());
+        for block in self.blocks {
+            let sample_rate_hz = match (declared_rate_hz, block.rate_hz) {
+                (Some(rate_hz), _) => rate_hz,
+                (None, Some(rate_hz)) if rate_hz.is_finite() && rate_hz > 0.0 => rate_hz,
+                (None, Some(rate_hz)) => return Err(ColumnError::StatedRate(rate_hz)),
+                (None, None) => derived_hz.ok_or(ColumnError::NoRate)?,
+            };
+            let start_s = seconds_from(block.time_ns, zero_ns);
+            blocks.push(Block { start_s, sample_rate_hz, samples: block.samples });
+        }
+        Ok(time_base::from_blocks(blocks)?)
+    }
+
+    fn is_blocks(&self) -> Option<bool> {
+        if self.is_empty() { None } else { Some(!self.blocks.is_empty()) }
+    }
+}
+
+/// Median over neighbouring blocks of length over time to the next, Hz: missing and doubled blocks are few.
+fn derived_rate_hz(blocks: &[RawBlock]) -> Option<f64> {
+    let mut order: Vec<(i64, usize)> =
+        blocks.iter().map(|block| (block.time_ns, block.samples.len())).collect();
+    order.sort_unstable();
+    order.dedup_by_key(|(time_ns, _)| *time_ns);
+    #[allow(clippy::cast_precision_loss, reason = "block lengths are far below 2^53")]
+    let mut rates_hz: Vec<f64> = order
+        .windows(2)
+        .filter_map(|pair| match pair {
+            [(from, length), (to, _)] => Some(*length as f64 / seconds_from(*to, *from)),
+            _ => None,
+        })
+        .collect();
+    let middle = rates_hz.len() / 2;
+    rates_hz.sort_unstable_by(f64::total_cmp);
+    rates_hz.get(middle).copied()
+}
+
+/// Seconds from `zero_ns` to `time_ns`, subtracted as integers: absolute times lose a microsecond as f64.
+#[allow(clippy::cast_precision_loss, reason = "spans of a recording are far below 2^53 ns")]
+pub(super) fn seconds_from(time_ns: i64, zero_ns: i64) -> f64 {
+    time_ns.saturating_sub(zero_ns) as f64 / 1e9
+}
+
+/// One more number; single precision as long as all are narrow.
+fn push(samples: &mut Samples, value: f64, is_narrow: bool) {
+    match samples {
+        #[allow(clippy::cast_possible_truncation, reason = "f32 holds every narrow value")]
+        Samples::F32(narrow) if is_narrow => narrow.push(value as f32),
+        Samples::F32(narrow) => {
+            let mut wide: Vec<f64> = narrow.iter().map(|&x| f64::from(x)).collect();
+            wide.push(value);
+            *samples = Samples::F64(wide);
+        }
+        Samples::F64(wide) => wide.push(value),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn block(samples: &[f64]) -> Value {
+        Value::Array(Samples::F64(samples.to_vec()))
+    }
+
+    #[test]
+    fn a_rate_comes_from_the_cask_file_else_the_message_else_the_stamps() {
+        let column = |stated: Option<f64>| {
+            let mut column = Column::default();
+            for i in 0..4 {
+                let time = (1_700_000_000_000_000_000 + i * 2_000_000, TimeOrigin::Stamp);
+                column.take(block(&[1.0, 2.0]), time, stated);
+            }
+            column
+        };
+        let rate = |stated, declared| {
+            column(stated).uniform(1_700_000_000_000_000_000, declared).unwrap().sample_rate_hz
+        };
+        assert!((rate(None, None) - 1000.0).abs() < 1e-6);
+        assert!((rate(Some(1000.0), None) - 1000.0).abs() < 1e-9);
+        assert!((rate(Some(500.0), Some(1000.0)) - 1000.0).abs() < 1e-9);
+        assert!(matches!(column(Some(0.0)).uniform(0, None), Err(ColumnError::StatedRate(_))));
+    }
+
+    #[test]
+    fn one_block_without_a_rate_is_an_error() {
+        let mut column = Column::default();
+        column.take(block(&[1.0, 2.0]), (5, TimeOrigin::LogTime), None);
+        assert!(matches!(column.uniform(0, None), Err(ColumnError::NoRate)));
+    }
+
+    #[test]
+    fn a_rejected_chunk_leaves_no_trace() {
+        let mut column = Column::default();
+        let number = |value| Value::Number { value, is_narrow: true };
+        column.take(number(1.0), (1, TimeOrigin::Stamp), None);
+        column.mark();
+        column.take(number(2.0), (2, TimeOrigin::LogTimeForBadStamp), None);
+        column.malformed("x");
+        column.roll_back();
+        assert_eq!(column.span_ns(), Some((1, 1)));
+        assert_eq!(column.tally, Tally { messages: 1, stamps: 1, ..Tally::default() });
+        assert_eq!(column.numbers, Samples::F32(vec![1.0]));
+    }
+
+    #[test]
+    fn a_clock_that_starts_at_zero_is_no_missing_stamp() {
+        let column = |step_ns: i64| {
+            let mut column = Column::default();
+            column.take(block(&[1.0, 2.0]), message_time(&Value::Stamp(0), 1_700_000_000_000_000_000), None);
+            column.take(
+                block(&[3.0, 4.0]),
+                message_time(&Value::Stamp(step_ns), 1_700_000_000_002_000_000),
+                None,
+            );
+            column.settle_clock();
+            column
+        };
+        assert_eq!(column(2_000_000).span_ns(), Some((0, 2_000_000)));
+        assert_eq!(column(2_000_000).tally.bad_stamps, 0);
+        // A clock that is set: there zero is no time.
+        assert_eq!(column(1_700_000_000_002_000_000).span_ns().unwrap().0, 1_700_000_000_000_000_000);
+    }
+
+    #[test]
+    fn a_zero_stamp_falls_back_to_the_log_time() {
+        assert_eq!(message_time(&Value::Stamp(0), 7), (7, TimeOrigin::LogTimeForBadStamp));
+        assert_eq!(message_time(&Value::Stamp(3), 7), (3, TimeOrigin::Stamp));
+        assert_eq!(message_time(&Value::Missing, 7), (7, TimeOrigin::LogTime));
+    }
+}

@@ -1,0 +1,116 @@
+//! Why a channel of the cask file cannot be had from an MCAP file, with what to do about it.
+
+use super::column::ColumnError;
+use super::read::Wanted;
+use super::scanned::Scanned;
+use crate::data::{ChannelSpec, Source};
+use crate::ingest::error::{self, IngestError};
+use std::path::Path;
+
+/// No topic of the file fits the source.
+pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scanned: &Scanned) -> IngestError {
+    let wanted = match &spec.source {
+        Source::Path(text) => text.clone(),
+        Source::TopicField { topic, .. } => topic.clone(),
+    };
+    if topics.is_empty() {
+        let problem = format!("the recording holds no topics, so none for {}", spec.source);
+        return error::source(
+            path,
+            &spec.name,
+            problem,
+            lost(scanned, "take the original from the logger again"),
+        );
+    }
+    if topics.iter().any(|topic| topic.trim_start_matches('/') == wanted.trim_start_matches('/')) {
+        return error::source(
+            path,
+            &spec.name,
+            format!("the source {wanted} names a topic but no field of its messages"),
+            format!(
+                "write `source = \"{wanted}.FIELD\"`; `dropcheck inspect {}` lists the fields",
+                path.display()
+            ),
+        );
+    }
+    // The part before the first dot of a path is most likely the topic that was meant.
+    let meant = match &spec.source {
+        Source::Path(text) => text.split('.').next().unwrap_or(text).to_owned(),
+        Source::TopicField { topic, .. } => topic.clone(),
+    };
+    error::source(
+        path,
+        &spec.name,
+        format!("the recording has no topic for the source {}", spec.source),
+        lost(scanned, &error::near_names(path, &meant, "topic", topics)),
+    )
+}
+
+/// The topic is there, and gave no samples.
+pub(super) fn no_samples(path: &Path, spec: &ChannelSpec, entry: &Wanted, scanned: &Scanned) -> IngestError {
+    let field = entry.field.to_string();
+    if let Some(reason) = &entry.unreadable {
+        return error::source(
+            path,
+            &spec.name,
+            format!("the topic {} cannot be read: {reason}", entry.topic),
+            "convert the recording, or record it again, with one of these encodings",
+        );
+    }
+    let tally = entry.column.tally;
+    if tally.messages == 0 {
+        let problem = format!("the topic {} has no messages", entry.topic);
+        return error::source(path, &spec.name, problem, lost(scanned, "check that the sensor was recorded"));
+    }
+    if let (true, Some(problem)) = (tally.malformed == tally.messages, &entry.column.first_problem) {
+        return error::source(
+            path,
+            &spec.name,
+            format!(
+                "none of the {} messages of {} decodes; the first: {problem}",
+                tally.messages, entry.topic
+            ),
+            "check that the source names the samples, and that the topic's schema is the one its messages were written with",
+        );
+    }
+    if entry.leaves.iter().any(|leaf| leaf.path == field) {
+        return error::source(
+            path,
+            &spec.name,
+            format!(
+                "the field {field} holds no samples in any of the {} messages of {}",
+                tally.messages, entry.topic
+            ),
+            "check that the sensor was recorded",
+        );
+    }
+    let there: Vec<String> = entry.leaves.iter().map(|leaf| leaf.path.clone()).collect();
+    error::source(
+        path,
+        &spec.name,
+        format!("the messages of {} have no numeric field {field}", entry.topic),
+        error::near_names(path, &field, "numeric field in this topic", &there),
+    )
+}
+
+/// The samples are there, and find no time base.
+pub(super) fn no_base(path: &Path, spec: &ChannelSpec, problem: &ColumnError) -> IngestError {
+    let mend = match problem {
+        ColumnError::StatedRate(_) => {
+            "write the true `sample_rate_hz` in this channel of the cask file: it overrides the recording"
+        }
+        ColumnError::NoRate => "write `sample_rate_hz` in this channel of the cask file",
+        ColumnError::TimeBase(_) => {
+            "check the stamps of this topic; `sample_rate_hz` in this channel of the cask file overrides the recording's rate"
+        }
+    };
+    error::source(path, &spec.name, format!("{}: {problem}", spec.source), mend)
+}
+
+/// `mend`, and before it what the file has lost, where that may be why.
+fn lost(scanned: &Scanned, mend: &str) -> String {
+    match scanned.issues().first() {
+        Some(issue) => format!("{}; {mend}", issue.message),
+        None => mend.to_owned(),
+    }
+}

@@ -1,0 +1,25 @@
+//! MCAP files to raw channels and listings: JSON, protobuf and ROS 2 messages, whole files and what is left of others.
+
+mod cdr;
+mod chunk;
+mod column;
+mod complaint;
+mod json;
+mod list;
+mod message_type;
+mod path;
+mod plan;
+mod protobuf;
+mod read;
+mod ros_type;
+mod running;
+mod scan;
+mod scanned;
+mod summary;
+mod wire;
+
+pub(super) use list::list;
+pub(super) use read::read;
+
+#[cfg(test)]
+mod written;

@@ -1,0 +1,329 @@
+//! Protobuf messages to the wanted fields, by the schema's own descriptor set and straight from the wire.
+
+use super::plan::{Decode, Leaf, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns};
+use super::wire::{Item, Wire};
+use crate::data::Samples;
+use prost_reflect::{DescriptorPool, FieldDescriptor, Kind, MessageDescriptor};
+
+/// Messages nested deeper than this (or in themselves) hold no signal that a person would name by a path.
+const DEEPEST: usize = 8;
+
+/// The message type that `schema_name` names in a serialised descriptor set.
+///
+/// # Errors
+/// Why there is none.
+pub(super) fn message_type(schema_name: &str, descriptor_set: &[u8]) -> Result<MessageDescriptor, String> {
+    let pool = DescriptorPool::decode(descriptor_set).map_err(|error| {
+        format!("its schema {schema_name:?} holds no descriptor set that can be used: {error}")
+    })?;
+    pool.get_message_by_name(schema_name.trim_start_matches('.'))
+        .ok_or_else(|| format!("its schema's descriptor set holds no message {schema_name:?}"))
+}
+
+/// The numeric fields of a message type.
+pub(super) fn leaves(message: &MessageDescriptor) -> Vec<Leaf> {
+    let mut found = Vec::new();
+    descend(message, "", DEEPEST, &mut found);
+    found
+}
+
+fn descend(message: &MessageDescriptor, path: &str, depth: usize, found: &mut Vec<Leaf>) {
+    if depth == 0 || is_time(message) {
+        return;
+    }
+    for field in message.fields() {
+        let below =
+            if path.is_empty() { field.name().to_owned() } else { format!("{path}.{}", field.name()) };
+        match field.kind() {
+            Kind::Message(inner) if !field.is_list() && !field.is_map() => {
+                descend(&inner, &below, depth - 1, found);
+            }
+            kind if is_number(&kind) && !field.is_map() => {
+                found.push(Leaf { path: below, is_array: field.is_list() });
+            }
+            _ => {}
+        }
+    }
+}
+
+fn is_time(message: &MessageDescriptor) -> bool {
+    seconds_and_nanoseconds(message).is_some_and(|_| message.fields().len() == 2)
+}
+
+fn is_number(kind: &Kind) -> bool {
+    !matches!(kind, Kind::Message(_) | Kind::Enum(_) | Kind::String | Kind::Bytes | Kind::Bool)
+}
+
+/// The field numbers of a time's two parts.
+fn seconds_and_nanoseconds(message: &MessageDescriptor) -> Option<(u32, u32)> {
+    let number = |names: &[&str]| {
+        message
+            .fields()
+            .find(|field| names.contains(&field.name()) && is_number(&field.kind()) && !field.is_list())
+            .map(|field| field.number())
+    };
+    Some((number(&SECONDS_NAMES)?, number(&NANOSECONDS_NAMES)?))
+}
+
+/// Decodes protobuf messages by a plan.
+#[derive(Debug)]
+pub(super) struct Protobuf {
+    root: Message,
+}
+
+/// What to do with the fields of a message.
+#[derive(Debug, Default)]
+struct Message {
+    fields: Vec<Field>,
+    /// What a field without presence is worth when it is not on the wire.
+    defaults: Vec<(usize, Value)>,
+}
+
+/// What to do with one field.
+#[derive(Debug)]
+struct Field {
+    number: u32,
+    kind: Kind,
+    is_list: bool,
+    action: Action,
+}
+
+#[derive(Debug)]
+enum Action {
+    Numbers {
+        slot: usize,
+        elements: Vec<(usize, usize)>,
+    },
+    Text {
+        slot: usize,
+    },
+    Stamp {
+        slot: usize,
+        seconds: u32,
+        nanoseconds: u32,
+    },
+    Descend(Message),
+    /// One message of a repeated one.
+    Elements(Vec<(usize, Message)>),
+}
+
+impl Protobuf {
+    /// For the fields of `plan` in messages of type `message`; fields that it lacks stay missing.
+    pub(super) fn new(plan: &Plan, message: &MessageDescriptor) -> Self {
+        Self { root: compile(&plan.root, &plan.wants, message) }
+    }
+}
+
+fn compile(node: &Node, wants: &[Want], message: &MessageDescriptor) -> Message {
+    let mut compiled = Message::default();
+    for field in message.fields().filter(|field| !field.is_map()) {
+        let Some(child) = node.field(field.name()).or_else(|| node.field(field.json_name())) else {
+            continue;
+        };
+        if let Some(action) = action(child, wants, &field) {
+            match &action {
+                Action::Numbers { slot, .. } if !field.is_list() && !field.supports_presence() => {
+                    compiled.defaults.push((*slot, number(0.0, &field.kind())));
+                }
+                Action::Stamp { slot, .. } => compiled.defaults.push((*slot, Value::Stamp(0))),
+                _ => {}
+            }
+            let (number, kind, is_list) = (field.number(), field.kind(), field.is_list());
+            compiled.fields.push(Field { number, kind, is_list, action });
+        }
+    }
+    compiled
+}
+
+fn action(child: &Node, wants: &[Want], field: &FieldDescriptor) -> Option<Action> {
+    match field.kind() {
+        Kind::Message(inner) if field.is_list() => {
+            let elements = child.children.iter().filter_map(|(step, node)| match step {
+                super::path::Step::Index(index) => Some((*index, compile(node, wants, &inner))),
+                super::path::Step::Name(_) => None,
+            });
+            Some(Action::Elements(elements.collect()))
+        }
+        Kind::Message(inner) => match (child.slot(wants, Want::Stamp), seconds_and_nanoseconds(&inner)) {
+            (Some(slot), Some((seconds, nanoseconds))) => Some(Action::Stamp { slot, seconds, nanoseconds }),
+            _ => Some(Action::Descend(compile(child, wants, &inner))),
+        },
+        Kind::String => child.slot(wants, Want::Text).map(|slot| Action::Text { slot }),
+        kind if is_number(&kind) => child
+            .slot(wants, Want::Numbers)
+            .map(|slot| Action::Numbers { slot, elements: child.elements(wants) }),
+        _ => None,
+    }
+}
+
+impl Decode for Protobuf {
+    fn decode(&self, data: &[u8], slots: &mut Slots) -> Result<(), String> {
+        self.root.decode(data, slots)
+    }
+}
+
+impl Message {
+    fn decode(&self, data: &[u8], slots: &mut Slots) -> Result<(), String> {
+        for (slot, value) in &self.defaults {
+            slots.set(*slot, value.clone());
+        }
+        let mut wire = Wire::new(data);
+        let mut seen: Vec<(u32, usize)> = Vec::new();
+        while let Some((number, item)) = wire.item()? {
+            let Some(field) = self.fields.iter().find(|field| field.number == number) else { continue };
+            match (&field.action, item) {
+                (Action::Numbers { slot, .. }, item) => field.numbers(*slot, &item, slots)?,
+                (Action::Text { slot }, Item::Bytes(bytes)) => {
+                    slots.set(*slot, Value::Text(String::from_utf8_lossy(bytes).into_owned()));
+                }
+                (Action::Stamp { slot, seconds, nanoseconds }, Item::Bytes(bytes)) => {
+                    slots.set(*slot, Value::Stamp(stamp_ns(bytes, *seconds, *nanoseconds)?));
+                }
+                (Action::Descend(message), Item::Bytes(bytes)) => message.decode(bytes, slots)?,
+                (Action::Elements(elements), Item::Bytes(bytes)) => {
+                    let index = counted(&mut seen, number);
+                    if let Some((_, message)) = elements.iter().find(|(wanted, _)| *wanted == index) {
+                        message.decode(bytes, slots)?;
+                    }
+                }
+                _ => return Err(format!("field {number} is not of its schema's type")),
+            }
+        }
+        for field in &self.fields {
+            if let Action::Numbers { slot, elements } = &field.action {
+                slots.pick(*slot, elements);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// How often field `number` came before.
+fn counted(seen: &mut Vec<(u32, usize)>, number: u32) -> usize {
+    if let Some((_, count)) = seen.iter_mut().find(|(own, _)| *own == number) {
+        *count += 1;
+        return *count;
+    }
+    seen.push((number, 0));
+    0
+}
+
+impl Field {
+    fn numbers(&self, slot: usize, item: &Item, slots: &mut Slots) -> Result<(), String> {
+        if !self.is_list {
+            let value = scalar(&self.kind, item).ok_or_else(|| self.wrong_type())?;
+            slots.set(slot, number(value, &self.kind));
+            return Ok(());
+        }
+        let Some(place) = slots.values.get_mut(slot) else { return Ok(()) };
+        if !matches!(place, Value::Array(_)) {
+            *place = Value::Array(if matches!(self.kind, Kind::Float) {
+                Samples::F32(Vec::new())
+            } else {
+                Samples::F64(Vec::new())
+            });
+        }
+        let Value::Array(samples) = place else { return Ok(()) };
+        match (item, samples) {
+            (Item::Bytes(packed), samples) => {
+                unpack(&self.kind, packed, samples).ok_or_else(|| self.wrong_type())
+            }
+            (one, Samples::F32(samples)) => {
+                let Item::Fixed32(bytes) = one else { return Err(self.wrong_type()) };
+                samples.push(f32::from_le_bytes(*bytes));
+                Ok(())
+            }
+            (one, Samples::F64(samples)) => {
+                samples.push(scalar(&self.kind, one).ok_or_else(|| self.wrong_type())?);
+                Ok(())
+            }
+        }
+    }
+
+    fn wrong_type(&self) -> String {
+        format!("field {} is not of its schema's type", self.number)
+    }
+}
+
+fn number(value: f64, kind: &Kind) -> Value {
+    Value::Number { value, is_narrow: matches!(kind, Kind::Float) }
+}
+
+fn stamp_ns(bytes: &[u8], seconds: u32, nanoseconds: u32) -> Result<i64, String> {
+    let (mut whole, mut part) = (0, 0);
+    let mut wire = Wire::new(bytes);
+    while let Some((number, item)) = wire.item()? {
+        let value = match item {
+            Item::Varint(value) => value.cast_signed(),
+            Item::Fixed32(bytes) => i64::from(i32::from_le_bytes(bytes)),
+            Item::Fixed64(bytes) => i64::from_le_bytes(bytes),
+            Item::Bytes(_) => continue,
+        };
+        if number == seconds {
+            whole = value;
+        } else if number == nanoseconds {
+            part = value;
+        }
+    }
+    Ok(unix_ns(whole, part))
+}
+
+/// A number from the wire, `None` where the wire type is not the schema's.
+#[allow(clippy::cast_precision_loss, reason = "samples beyond 2^53 do not occur")]
+#[allow(clippy::cast_possible_truncation, reason = "protobuf cuts 32-bit integers from 64-bit varints so")]
+fn scalar(kind: &Kind, item: &Item) -> Option<f64> {
+    Some(match (kind, *item) {
+        (Kind::Double, Item::Fixed64(bytes)) => f64::from_le_bytes(bytes),
+        (Kind::Float, Item::Fixed32(bytes)) => f64::from(f32::from_le_bytes(bytes)),
+        (Kind::Fixed32, Item::Fixed32(bytes)) => f64::from(u32::from_le_bytes(bytes)),
+        (Kind::Sfixed32, Item::Fixed32(bytes)) => f64::from(i32::from_le_bytes(bytes)),
+        (Kind::Fixed64, Item::Fixed64(bytes)) => u64::from_le_bytes(bytes) as f64,
+        (Kind::Sfixed64, Item::Fixed64(bytes)) => i64::from_le_bytes(bytes) as f64,
+        (Kind::Int32, Item::Varint(value)) => f64::from(value as i32),
+        (Kind::Uint32, Item::Varint(value)) => f64::from(value as u32),
+        (Kind::Int64, Item::Varint(value)) => value.cast_signed() as f64,
+        (Kind::Uint64, Item::Varint(value)) => value as f64,
+        (Kind::Sint32 | Kind::Sint64, Item::Varint(value)) => {
+            ((value >> 1).cast_signed() ^ -((value & 1).cast_signed())) as f64
+        }
+        _ => return None,
+    })
+}
+
+/// Packed numbers behind those in `samples`; `None` where their bytes do not come out even.
+fn unpack(kind: &Kind, packed: &[u8], samples: &mut Samples) -> Option<()> {
+    match (kind, samples) {
+        (Kind::Float, Samples::F32(samples)) => {
+            let (words, rest) = packed.as_chunks::<4>();
+            samples.extend(words.iter().map(|&word| f32::from_le_bytes(word)));
+            rest.is_empty().then_some(())
+        }
+        (Kind::Double | Kind::Fixed64 | Kind::Sfixed64, Samples::F64(samples)) => {
+            let (words, rest) = packed.as_chunks::<8>();
+            samples.reserve(words.len());
+            for &word in words {
+                samples.push(scalar(kind, &Item::Fixed64(word))?);
+            }
+            rest.is_empty().then_some(())
+        }
+        (Kind::Fixed32 | Kind::Sfixed32, Samples::F64(samples)) => {
+            let (words, rest) = packed.as_chunks::<4>();
+            for &word in words {
+                samples.push(scalar(kind, &Item::Fixed32(word))?);
+            }
+            rest.is_empty().then_some(())
+        }
+        (_, Samples::F64(samples)) => {
+            let mut wire = Wire::new(packed);
+            while !wire.is_empty() {
+                samples.push(scalar(kind, &Item::Varint(wire.varint().ok()?))?);
+            }
+            Some(())
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+#[path = "protobuf_tests.rs"]
+mod tests;

@@ -1,0 +1,249 @@
+//! An MCAP file and a cask file to raw channels: only the topics that are named are decoded.
+
+use super::column::{CLOCK_IS_SET_NS, Column, message_time, seconds_from};
+use super::message_type::{MessageType, implied_unit};
+use super::path::{self, FieldPath};
+use super::plan::{Decode, Leaf, Plan, Slots};
+use super::scan::scan;
+use super::scanned::{ChannelInfo, Scanned, Sink};
+use super::{complaint, json};
+use crate::data::{CaskFile, ChannelSpec, Issue, IssueCode, Severity};
+use crate::ingest::error::IngestError;
+use crate::ingest::{Progress, RawChannel, RawRecording};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// Reads the channels that `cask_file` names.
+///
+/// # Errors
+/// A topic or field that is not there, or gives no samples on a time base.
+pub(in crate::ingest) fn read(
+    path: &Path,
+    cask_file: &CaskFile,
+    progress: Progress,
+) -> Result<RawRecording, IngestError> {
+    let mut reading = Reading::new(&cask_file.channels);
+    let scanned = scan(path, &mut reading, progress)?;
+    reading.finish(path, &scanned)
+}
+
+/// One field of one topic, and what its messages gave.
+pub(super) struct Wanted {
+    pub(super) topic: String,
+    pub(super) field: FieldPath,
+    pub(super) column: Column,
+    /// The numeric fields of its messages, for whoever misspelt one.
+    pub(super) leaves: Vec<Leaf>,
+    /// Why its messages cannot be read.
+    pub(super) unreadable: Option<String>,
+}
+
+/// How to decode the messages of one MCAP channel.
+struct Decoding {
+    plan: Plan,
+    decoder: Box<dyn Decode>,
+    /// Indices into `Reading::wanted`, one for each target of the plan.
+    wanted: Vec<usize>,
+    is_json: bool,
+}
+
+/// What a walk through the file collects.
+pub(super) struct Reading<'a> {
+    specs: &'a [ChannelSpec],
+    /// All topics of the file.
+    pub(super) topics: Vec<String>,
+    pub(super) wanted: Vec<Wanted>,
+    decodings: HashMap<u16, Decoding>,
+    slots: Slots,
+}
+
+impl Sink for Reading<'_> {
+    fn channel(&mut self, id: u16, info: &ChannelInfo) {
+        if !self.topics.iter().any(|topic| topic == info.topic) {
+            self.topics.push(info.topic.to_owned());
+        }
+        let mut fields: Vec<FieldPath> =
+            self.specs.iter().filter_map(|spec| path::field_in(&spec.source, info.topic)).collect();
+        fields.dedup();
+        let mut wanted: Vec<usize> = Vec::new();
+        for field in &fields {
+            let index = self.wanted_index(info.topic, field);
+            if !wanted.contains(&index) {
+                wanted.push(index);
+            }
+        }
+        if wanted.is_empty() {
+            return;
+        }
+        match MessageType::new(info) {
+            Ok(message_type) => {
+                let leaves = message_type.leaves();
+                let mut paths = Vec::new();
+                for &index in &wanted {
+                    let Some(entry) = self.wanted.get_mut(index) else { continue };
+                    if let Some(leaves) = &leaves {
+                        entry.leaves.clone_from(leaves);
+                    }
+                    let implied =
+                        info.schema.and_then(|schema| implied_unit(&schema.name, &entry.field.to_string()));
+                    entry.column.unit = entry.column.unit.take().or_else(|| implied.map(str::to_owned));
+                    paths.push(entry.field.clone());
+                }
+                let plan = Plan::new(&paths);
+                let decoder = message_type.decoder(&plan);
+                let is_json = leaves.is_none();
+                self.decodings.insert(id, Decoding { plan, decoder, wanted, is_json });
+            }
+            Err(reason) => {
+                for &index in &wanted {
+                    if let Some(entry) = self.wanted.get_mut(index) {
+                        entry.unreadable = Some(reason.clone());
+                    }
+                }
+            }
+        }
+    }
+
+    fn message(&mut self, id: u16, log_time_ns: i64, data: &[u8]) {
+        let Some(decoding) = self.decodings.get(&id) else { return };
+        self.slots.clear(decoding.plan.wants.len());
+        let outcome = decoding.decoder.decode(data, &mut self.slots);
+        for (target, &index) in decoding.plan.targets.iter().zip(&decoding.wanted) {
+            let Some(entry) = self.wanted.get_mut(index) else { continue };
+            if let Err(problem) = &outcome {
+                entry.column.malformed(problem);
+                continue;
+            }
+            let time = message_time(&self.slots.stamp(target), log_time_ns);
+            if let Some(unit) = self.slots.unit(target)
+                && entry.column.unit.as_deref() != Some(unit)
+            {
+                entry.column.unit = Some(unit.to_owned());
+            }
+            let rate_hz = self.slots.rate_hz(target);
+            let value = self.slots.samples(target);
+            if decoding.is_json && entry.leaves.is_empty() && value == super::plan::Value::Missing {
+                entry.leaves = json::leaves(data);
+            }
+            entry.column.take(value, time, rate_hz);
+        }
+    }
+
+    fn chunk_begins(&mut self) {
+        self.wanted.iter_mut().for_each(|wanted| wanted.column.mark());
+    }
+
+    fn chunk_rejected(&mut self) {
+        self.wanted.iter_mut().for_each(|wanted| wanted.column.roll_back());
+    }
+}
+
+impl<'a> Reading<'a> {
+    fn new(specs: &'a [ChannelSpec]) -> Self {
+        Self {
+            specs,
+            topics: Vec::new(),
+            wanted: Vec::new(),
+            decodings: HashMap::new(),
+            slots: Slots::default(),
+        }
+    }
+
+    fn wanted_index(&mut self, topic: &str, field: &FieldPath) -> usize {
+        let known = self.wanted.iter().position(|entry| entry.topic == topic && entry.field == *field);
+        known.unwrap_or_else(|| {
+            self.wanted.push(Wanted {
+                topic: topic.to_owned(),
+                field: field.clone(),
+                column: Column::default(),
+                leaves: Vec::new(),
+                unreadable: None,
+            });
+            self.wanted.len() - 1
+        })
+    }
+
+    /// The entry that `spec` means: of the longest topic that gave samples, else of the longest.
+    fn entry_of(&self, spec: &ChannelSpec) -> Option<usize> {
+        (0..self.wanted.len())
+            .filter(|&index| {
+                self.wanted.get(index).is_some_and(|entry| {
+                    path::field_in(&spec.source, &entry.topic).as_ref() == Some(&entry.field)
+                })
+            })
+            .max_by_key(|&index| {
+                self.wanted.get(index).map(|entry| (!entry.column.is_empty(), entry.topic.len()))
+            })
+    }
+
+    fn finish(mut self, path: &Path, scanned: &Scanned) -> Result<RawRecording, IngestError> {
+        self.wanted.iter_mut().for_each(|wanted| wanted.column.settle_clock());
+        let mut chosen = Vec::with_capacity(self.specs.len());
+        for spec in self.specs {
+            let Some(index) = self.entry_of(spec) else {
+                return Err(complaint::no_topic(path, spec, &self.topics, scanned));
+            };
+            match self.wanted.get(index) {
+                Some(entry) if !entry.column.is_empty() => chosen.push(index),
+                Some(entry) => return Err(complaint::no_samples(path, spec, entry, scanned)),
+                None => {}
+            }
+        }
+        let spans = chosen.iter().filter_map(|&index| self.wanted.get(index)?.column.span_ns());
+        let (zero_ns, last_ns) =
+            spans.fold((i64::MAX, i64::MIN), |(low, high), (from, to)| (low.min(from), high.max(to)));
+        let mut issues = scanned.issues();
+        for issue in issues.iter_mut().filter(|issue| issue.code == IssueCode::Truncated) {
+            let kept_s = seconds_from(last_ns, zero_ns);
+            issue.message = format!("{}; the last message kept begins at {kept_s:.6} s", issue.message);
+            issue.from_s = Some(kept_s);
+        }
+        let mut channels = Vec::with_capacity(chosen.len());
+        for (position, (spec, &index)) in self.specs.iter().zip(&chosen).enumerate() {
+            // A second channel on the same field gets its own copy.
+            let is_needed_later = chosen.get(position + 1..).is_some_and(|later| later.contains(&index));
+            let Some(entry) = self.wanted.get_mut(index) else { continue };
+            let column =
+                if is_needed_later { entry.column.clone() } else { std::mem::take(&mut entry.column) };
+            issues.extend(message_issues(spec, &column));
+            let unit = column.unit.clone();
+            let uniform = column
+                .uniform(zero_ns, spec.sample_rate_hz)
+                .map_err(|problem| complaint::no_base(path, spec, &problem))?;
+            channels.push(RawChannel { spec: position, uniform, unit });
+        }
+        Ok(RawRecording { channels, zero_unix_ns: (zero_ns >= CLOCK_IS_SET_NS).then_some(zero_ns), issues })
+    }
+}
+
+/// What was wrong with single messages of a channel.
+fn message_issues(spec: &ChannelSpec, column: &Column) -> Vec<Issue> {
+    let mut issues = Vec::new();
+    let tally = column.tally;
+    if tally.bad_stamps > 0 {
+        let (severity, mixed) = if tally.stamps > 0 {
+            (Severity::Warning, "; the others carry a stamp, and the two clocks may differ")
+        } else {
+            (Severity::Note, "")
+        };
+        let message = format!(
+            "{} of {} messages carry a stamp of zero or none that can be understood: their log time was taken{mixed}",
+            tally.bad_stamps, tally.messages
+        );
+        issues.push(Issue::new(IssueCode::LogTimeUsed, severity, message).on(&spec.name));
+    }
+    if tally.malformed > 0 {
+        let message = format!(
+            "{} of {} messages do not decode and were skipped; the first: {}",
+            tally.malformed,
+            tally.messages,
+            column.first_problem.as_deref().unwrap_or("unknown")
+        );
+        issues.push(Issue::new(IssueCode::Damaged, Severity::Warning, message).on(&spec.name));
+    }
+    issues
+}
+
+#[cfg(test)]
+#[path = "read_tests.rs"]
+mod tests;

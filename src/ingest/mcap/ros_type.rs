@@ -1,0 +1,194 @@
+//! A schema's `ros2msg` text to a tree of types, every named type put in its place.
+
+use re_ros_msg::MessageSchema;
+use re_ros_msg::message_spec::{
+    ArraySize, BuiltInType, ComplexType, MessageSpecification, Type as Parsed, message_package,
+};
+
+/// ROS messages are not nested deeper; a type within itself is damage.
+const DEEPEST: usize = 16;
+/// More fields than any message has: types that double at each level would fill the memory.
+const MOST_FIELDS: usize = 20_000;
+
+/// A field of a message.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Field {
+    pub(super) name: String,
+    pub(super) kind: Type,
+}
+
+/// What stands in a field.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Type {
+    /// Also bool, byte and char.
+    U8,
+    I8,
+    U16,
+    I16,
+    U32,
+    I32,
+    U64,
+    I64,
+    F32,
+    F64,
+    Text,
+    WideText,
+    Message(Vec<Field>),
+    Array(Box<Type>, Length),
+}
+
+/// How many elements an array has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Length {
+    /// Always so many.
+    Fixed(usize),
+    /// As many as the message says.
+    Counted,
+}
+
+impl Type {
+    /// Bytes of a number, which are its alignment too; `None` for what is no number.
+    pub(super) fn bytes(&self) -> Option<usize> {
+        match self {
+            Self::U8 | Self::I8 => Some(1),
+            Self::U16 | Self::I16 => Some(2),
+            Self::U32 | Self::I32 | Self::F32 => Some(4),
+            Self::U64 | Self::I64 | Self::F64 => Some(8),
+            _ => None,
+        }
+    }
+
+    /// Whether f32 holds every value of it.
+    pub(super) fn is_narrow(&self) -> bool {
+        matches!(self, Self::U8 | Self::I8 | Self::U16 | Self::I16 | Self::F32)
+    }
+}
+
+/// The fields of the message `name` from its schema's text.
+///
+/// # Errors
+/// Why the text gives no type.
+pub(super) fn parse(name: &str, text: &str) -> Result<Vec<Field>, String> {
+    let schema =
+        MessageSchema::parse(name, text).map_err(|error| format!("its schema does not parse: {error:#}"))?;
+    let mut left = MOST_FIELDS;
+    Resolver { schema: &schema }.message(&schema.spec, DEEPEST, &mut left)
+}
+
+struct Resolver<'a> {
+    schema: &'a MessageSchema,
+}
+
+impl Resolver<'_> {
+    fn message(
+        &self,
+        spec: &MessageSpecification,
+        depth: usize,
+        left: &mut usize,
+    ) -> Result<Vec<Field>, String> {
+        if depth == 0 {
+            return Err(format!("its schema nests {} in itself", spec.name));
+        }
+        let mut fields = Vec::with_capacity(spec.fields.len());
+        for field in &spec.fields {
+            *left = left.checked_sub(1).ok_or_else(|| "its schema has too many fields".to_owned())?;
+            let kind = self.kind(&field.ty, message_package(&spec.name), depth, left)?;
+            fields.push(Field { name: field.name.clone(), kind });
+        }
+        if fields.is_empty() {
+            // A message of constants alone takes one byte on the wire.
+            fields.push(Field { name: "structure_needs_at_least_one_member".into(), kind: Type::U8 });
+        }
+        Ok(fields)
+    }
+
+    fn kind(
+        &self,
+        ty: &Parsed,
+        package: Option<&str>,
+        depth: usize,
+        left: &mut usize,
+    ) -> Result<Type, String> {
+        match ty {
+            Parsed::BuiltIn(built_in) => Ok(primitive(built_in)),
+            Parsed::Array { ty, size } => {
+                let length = match size {
+                    ArraySize::Fixed(count) => Length::Fixed(*count),
+                    ArraySize::Bounded(_) | ArraySize::Unbounded => Length::Counted,
+                };
+                Ok(Type::Array(Box::new(self.kind(ty, package, depth, left)?), length))
+            }
+            Parsed::Complex(complex) => self.named(complex, package, depth, left),
+        }
+    }
+
+    fn named(
+        &self,
+        complex: &ComplexType,
+        package: Option<&str>,
+        depth: usize,
+        left: &mut usize,
+    ) -> Result<Type, String> {
+        let (package, name) = match complex {
+            ComplexType::Absolute { package, name } => (Some(package.trim_end_matches("/msg")), name),
+            ComplexType::Relative { name } => (package, name),
+        };
+        let of_package = |spec: &&MessageSpecification| {
+            spec.name.rsplit('/').next() == Some(name) && message_package(&spec.name) == package
+        };
+        let of_any = |spec: &&MessageSpecification| spec.name.rsplit('/').next() == Some(name);
+        let specs = &self.schema.dependencies;
+        let is_relative = matches!(complex, ComplexType::Relative { .. });
+        let found =
+            specs.iter().find(of_package).or_else(|| specs.iter().find(of_any).filter(|_| is_relative));
+        match found {
+            Some(spec) => Ok(Type::Message(self.message(spec, depth - 1, left)?)),
+            // Some writers leave out what every ROS 2 installation has.
+            None if name == "Time" || name == "Duration" => Ok(Type::Message(vec![
+                Field { name: "sec".into(), kind: Type::I32 },
+                Field { name: "nanosec".into(), kind: Type::U32 },
+            ])),
+            None => Err(format!("its schema uses the type {name} and does not define it")),
+        }
+    }
+}
+
+fn primitive(built_in: &BuiltInType) -> Type {
+    match built_in {
+        BuiltInType::Bool | BuiltInType::Byte | BuiltInType::Char | BuiltInType::UInt8 => Type::U8,
+        BuiltInType::Int8 => Type::I8,
+        BuiltInType::UInt16 => Type::U16,
+        BuiltInType::Int16 => Type::I16,
+        BuiltInType::UInt32 => Type::U32,
+        BuiltInType::Int32 => Type::I32,
+        BuiltInType::UInt64 => Type::U64,
+        BuiltInType::Int64 => Type::I64,
+        BuiltInType::Float32 => Type::F32,
+        BuiltInType::Float64 => Type::F64,
+        BuiltInType::String(_) => Type::Text,
+        BuiltInType::WString(_) => Type::WideText,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn named_types_are_put_in_place_and_a_missing_time_is_known() {
+        let text = "std_msgs/Header header\nVec v\nfloat64[9] c\nint16[<=4] d\n================\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n================\nMSG: my/Vec\nfloat32 x # comment\nuint8 OFF=0\n";
+        let fields = parse("my/msg/Top", text).unwrap();
+        let Type::Message(header) = &fields[0].kind else { panic!() };
+        assert!(matches!(&header[0].kind, Type::Message(time) if time.len() == 2));
+        assert_eq!(fields[1].kind, Type::Message(vec![Field { name: "x".into(), kind: Type::F32 }]));
+        assert_eq!(fields[2].kind, Type::Array(Box::new(Type::F64), Length::Fixed(9)));
+        assert_eq!(fields[3].kind, Type::Array(Box::new(Type::I16), Length::Counted));
+    }
+
+    #[test]
+    fn a_type_in_itself_and_an_unknown_one_are_errors() {
+        let itself = "Node next\n===\nMSG: my/Node\nNode next\n";
+        assert!(parse("my/msg/Top", itself).unwrap_err().contains("in itself"));
+        assert!(parse("my/msg/Top", "other/Thing t\n").unwrap_err().contains("Thing"));
+    }
+}

@@ -1,0 +1,209 @@
+//! An MCAP file to its schemas, channels and messages, in the order of the file, whole or not.
+
+use super::chunk::{ChunkEnd, Chunks};
+use super::scanned::{Catalog, Counts, Loss, Scanned, Sink};
+use super::summary::{self, Summary};
+use crate::ingest::Progress;
+use crate::ingest::error::{self, IngestError};
+use mcap::records::{Record, op};
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+/// A record begins with its opcode (1 byte) and its length (8 bytes).
+pub(super) const RECORD_HEADER_BYTES: u64 = 9;
+/// The same, as the length of a buffer.
+pub(super) const RECORD_HEADER_LENGTH: usize = 9;
+/// Larger than most chunks' share between two looks at the progress; smaller than any cache.
+const READ_BUFFER_BYTES: usize = 1 << 18;
+
+/// Reads the file at `path` from start to end and hands over what stands in it; memory stays at one record or chunk.
+///
+/// # Errors
+/// Only where the file cannot be read at all; damage and truncation are in the answer.
+pub(super) fn scan(path: &Path, sink: &mut dyn Sink, progress: Progress) -> Result<Scanned, IngestError> {
+    let mut file = File::open(path).map_err(|source| error::io(path, source))?;
+    let length = file.metadata().map_err(|source| error::io(path, source))?.len();
+    let summary = summary::read(&mut file, length).map_err(|source| error::io(path, source))?;
+    let mut walk = Walk {
+        file: BufReader::with_capacity(READ_BUFFER_BYTES, file),
+        at: mcap::MAGIC.len() as u64,
+        length,
+        chunks: Chunks::new(length),
+        catalog: Catalog::default(),
+        scanned: Scanned::default(),
+        summary,
+        body: Vec::new(),
+    };
+    walk.register_summary(sink);
+    walk.run(sink, progress).map_err(|source| error::io(path, source))?;
+    Ok(walk.finish())
+}
+
+/// Where the walk through the file stands.
+struct Walk {
+    file: BufReader<File>,
+    at: u64,
+    length: u64,
+    chunks: Chunks,
+    catalog: Catalog,
+    scanned: Scanned,
+    summary: Option<Summary>,
+    /// Re-used for the record at hand.
+    body: Vec<u8>,
+}
+
+/// Whether the walk goes on after a record.
+#[derive(PartialEq)]
+enum Next {
+    Go,
+    Stop,
+}
+
+impl Walk {
+    fn register_summary(&mut self, sink: &mut dyn Sink) {
+        let records =
+            self.summary.as_mut().map(|summary| std::mem::take(&mut summary.records)).unwrap_or_default();
+        for (opcode, body) in &records {
+            self.catalog.take_ahead(*opcode, body, sink, &mut self.scanned);
+        }
+    }
+
+    fn run(&mut self, sink: &mut dyn Sink, progress: Progress) -> std::io::Result<()> {
+        self.file.seek_relative(self.at.cast_signed())?;
+        let mut said_at = 0;
+        loop {
+            if self.record(sink)? == Next::Stop {
+                return Ok(());
+            }
+            if self.at - said_at >= READ_BUFFER_BYTES as u64 {
+                said_at = self.at;
+                #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
+                progress(self.at as f64 / self.length as f64);
+            }
+        }
+    }
+
+    /// One record at the file's level.
+    fn record(&mut self, sink: &mut dyn Sink) -> std::io::Result<Next> {
+        let left = self.length.saturating_sub(self.at);
+        if left < RECORD_HEADER_BYTES {
+            self.scanned.losses.push(Loss::EndsEarly { at: self.at, bytes: left, inside: None });
+            return Ok(Next::Stop);
+        }
+        let mut header = [0; RECORD_HEADER_LENGTH];
+        self.file.read_exact(&mut header)?;
+        let [opcode, length @ ..] = header;
+        let claimed = u64::from_le_bytes(length);
+        let available = left - RECORD_HEADER_BYTES;
+        let is_known = (op::HEADER..=op::DATA_END).contains(&opcode);
+        if opcode == 0 || (claimed > available && (!is_known || self.summary.is_some())) {
+            return self.resume_after_garbage();
+        }
+        if opcode == op::CHUNK {
+            return self.chunk(claimed, available, sink);
+        }
+        if claimed > available {
+            self.scanned.losses.push(Loss::EndsEarly { at: self.at, bytes: left, inside: Some(opcode) });
+            return Ok(Next::Stop);
+        }
+        self.whole_record(opcode, claimed, sink)
+    }
+
+    /// A record other than a chunk that lies wholly in the file.
+    fn whole_record(&mut self, opcode: u8, length: u64, sink: &mut dyn Sink) -> std::io::Result<Next> {
+        let start = self.at;
+        self.at += RECORD_HEADER_BYTES + length;
+        let is_read = matches!(
+            opcode,
+            op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE | op::STATISTICS | op::FOOTER
+        );
+        self.scanned.counts.add(opcode);
+        if !is_read {
+            self.file.seek_relative(length.cast_signed())?;
+            return Ok(Next::Go);
+        }
+        self.body.clear();
+        (&mut self.file).take(length).read_to_end(&mut self.body)?;
+        if opcode == op::FOOTER {
+            return self.end_magic();
+        }
+        if !self.catalog.take(opcode, &self.body, sink, &mut self.scanned) {
+            self.scanned.losses.push(Loss::BadRecord { at: start, opcode });
+        }
+        Ok(Next::Go)
+    }
+
+    fn chunk(&mut self, claimed: u64, available: u64, sink: &mut dyn Sink) -> std::io::Result<Next> {
+        let start = self.at;
+        let before = self.scanned.counts;
+        sink.chunk_begins();
+        let mut messages = 0;
+        let (catalog, scanned) = (&mut self.catalog, &mut self.scanned);
+        scanned.counts.add(op::CHUNK);
+        let end = self.chunks.read(&mut self.file, claimed, available, &mut |opcode, body| {
+            scanned.counts.add(opcode);
+            messages += u64::from(opcode == op::MESSAGE);
+            if !catalog.take(opcode, body, sink, scanned) {
+                scanned.losses.push(Loss::BadRecord { at: start, opcode });
+            }
+        })?;
+        if let Some(compression) = end.compression() {
+            scanned.compressions.insert(compression.to_owned());
+        }
+        self.at = start + RECORD_HEADER_BYTES + claimed.min(available);
+        match end {
+            ChunkEnd::Whole { .. } => Ok(Next::Go),
+            ChunkEnd::Cut { unread_bytes, .. } => {
+                self.scanned.losses.push(Loss::CutChunk {
+                    at: start,
+                    never_closed: claimed == u64::MAX,
+                    unread_bytes,
+                    messages,
+                });
+                Ok(Next::Stop)
+            }
+            ChunkEnd::Bad { reason, span_ns, .. } => {
+                sink.chunk_rejected();
+                self.scanned.counts = Counts { chunks: before.chunks + 1, ..before };
+                self.scanned.losses.push(Loss::BadChunk { at: start, reason, messages, span_ns });
+                Ok(Next::Go)
+            }
+        }
+    }
+
+    /// After bytes that are no record: the next chunk that the summary's index names, else the end.
+    fn resume_after_garbage(&mut self) -> std::io::Result<Next> {
+        let at = self.at;
+        let next = self.summary.as_ref().and_then(|summary| summary.next_chunk(at));
+        let to = next.unwrap_or(self.length);
+        self.scanned.losses.push(Loss::Garbage { at, bytes: to - at, resumed: next.is_some() });
+        if next.is_none() {
+            return Ok(Next::Stop);
+        }
+        self.file.seek_relative((to - at).cast_signed() - RECORD_HEADER_BYTES.cast_signed())?;
+        self.at = to;
+        Ok(Next::Go)
+    }
+
+    fn end_magic(&mut self) -> std::io::Result<Next> {
+        let mut magic = Vec::new();
+        (&mut self.file).take(mcap::MAGIC.len() as u64).read_to_end(&mut magic)?;
+        if magic != mcap::MAGIC {
+            self.scanned.losses.push(Loss::NoEndMagic { at: self.at });
+        }
+        self.scanned.is_closed = true;
+        Ok(Next::Stop)
+    }
+
+    fn finish(mut self) -> Scanned {
+        self.scanned.counts.schemas = self.catalog.schema_count();
+        self.scanned.counts.channels = self.catalog.channel_count();
+        self.scanned
+    }
+}
+
+/// A record's parsed form, `None` where its body does not parse.
+pub(super) fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
+    mcap::parse_record(opcode, body).ok()
+}

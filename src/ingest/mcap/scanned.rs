@@ -1,0 +1,298 @@
+//! What a walk through an MCAP file found: schemas and channels, counts, and what was lost, in words.
+
+use super::scan::parse;
+use crate::data::{Issue, IssueCode, Severity};
+use mcap::records::{Record, op};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+
+/// A schema record.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct SchemaInfo {
+    pub(super) name: String,
+    pub(super) encoding: String,
+    pub(super) data: Vec<u8>,
+}
+
+/// A channel record with its schema.
+#[derive(Debug)]
+pub(super) struct ChannelInfo<'a> {
+    pub(super) topic: &'a str,
+    pub(super) message_encoding: &'a str,
+    pub(super) schema: Option<&'a SchemaInfo>,
+}
+
+/// Takes what a walk finds.
+pub(super) trait Sink {
+    /// A channel, before its first message; once for each id.
+    fn channel(&mut self, id: u16, info: &ChannelInfo);
+    /// A message on a channel that was announced.
+    fn message(&mut self, id: u16, log_time_ns: i64, data: &[u8]);
+    /// What follows may be taken back.
+    fn chunk_begins(&mut self);
+    /// Everything since [`Sink::chunk_begins`] is taken back: the chunk is damaged.
+    fn chunk_rejected(&mut self);
+}
+
+/// How many of what the container holds.
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Counts {
+    pub(super) messages: u64,
+    pub(super) schemas: u64,
+    pub(super) channels: u64,
+    pub(super) chunks: u64,
+    pub(super) attachments: u64,
+    pub(super) metadata: u64,
+}
+
+impl Counts {
+    /// Counts one record.
+    pub(super) fn add(&mut self, opcode: u8) {
+        match opcode {
+            op::MESSAGE => self.messages += 1,
+            op::CHUNK => self.chunks += 1,
+            op::ATTACHMENT => self.attachments += 1,
+            op::METADATA => self.metadata += 1,
+            _ => {}
+        }
+    }
+
+    /// By name, as a listing shows them.
+    pub(super) fn named(&self) -> BTreeMap<String, u64> {
+        [
+            ("messages", self.messages),
+            ("schemas", self.schemas),
+            ("channels", self.channels),
+            ("chunks", self.chunks),
+            ("attachments", self.attachments),
+            ("metadata", self.metadata),
+        ]
+        .into_iter()
+        .map(|(name, count)| (name.to_owned(), count))
+        .collect()
+    }
+}
+
+/// What a walk found besides messages.
+#[derive(Debug, Default)]
+pub(super) struct Scanned {
+    pub(super) counts: Counts,
+    pub(super) profile: String,
+    pub(super) library: String,
+    pub(super) compressions: BTreeSet<String>,
+    /// Whether the footer was reached.
+    pub(super) is_closed: bool,
+    /// Number of messages that the file's own statistics claim.
+    pub(super) claimed_messages: Option<u64>,
+    pub(super) losses: Vec<Loss>,
+}
+
+/// The schemas and channels met so far; the first of an id stands.
+#[derive(Debug, Default)]
+pub(super) struct Catalog {
+    schemas: HashMap<u16, SchemaInfo>,
+    channels: HashSet<u16>,
+}
+
+impl Catalog {
+    /// Takes a record and hands it on; `false` where its body does not parse.
+    pub(super) fn take(
+        &mut self,
+        opcode: u8,
+        body: &[u8],
+        sink: &mut dyn Sink,
+        scanned: &mut Scanned,
+    ) -> bool {
+        if !matches!(opcode, op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE | op::STATISTICS) {
+            return true;
+        }
+        match parse(opcode, body) {
+            Some(Record::Message { header, data }) if self.channels.contains(&header.channel_id) => {
+                let log_time_ns = i64::try_from(header.log_time).unwrap_or(i64::MAX);
+                sink.message(header.channel_id, log_time_ns, &data);
+                true
+            }
+            Some(Record::Schema { header, data }) => {
+                self.schemas.entry(header.id).or_insert_with(|| SchemaInfo {
+                    name: header.name,
+                    encoding: header.encoding,
+                    data: data.into_owned(),
+                });
+                true
+            }
+            Some(Record::Channel(channel)) => {
+                if self.channels.insert(channel.id) {
+                    let info = ChannelInfo {
+                        topic: &channel.topic,
+                        message_encoding: &channel.message_encoding,
+                        schema: self.schemas.get(&channel.schema_id),
+                    };
+                    sink.channel(channel.id, &info);
+                }
+                true
+            }
+            Some(Record::Header(header)) => {
+                (scanned.profile, scanned.library) = (header.profile, header.library);
+                true
+            }
+            Some(Record::Statistics(statistics)) => {
+                scanned.claimed_messages = Some(statistics.message_count);
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Takes a record of the summary section, except a channel whose schema is not repeated there.
+    pub(super) fn take_ahead(&mut self, opcode: u8, body: &[u8], sink: &mut dyn Sink, scanned: &mut Scanned) {
+        let is_complete = match parse(opcode, body) {
+            Some(Record::Channel(channel)) => {
+                channel.schema_id == 0 || self.schemas.contains_key(&channel.schema_id)
+            }
+            _ => true,
+        };
+        if is_complete {
+            self.take(opcode, body, sink, scanned);
+        }
+    }
+
+    pub(super) fn schema_count(&self) -> u64 {
+        self.schemas.len() as u64
+    }
+
+    pub(super) fn channel_count(&self) -> u64 {
+        self.channels.len() as u64
+    }
+}
+
+/// Something that could not be read.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Loss {
+    /// The file ends at a record's boundary or within a record, before its footer.
+    EndsEarly { at: u64, bytes: u64, inside: Option<u8> },
+    /// The file ends within a chunk.
+    CutChunk { at: u64, never_closed: bool, unread_bytes: u64, messages: u64 },
+    /// A chunk fails its check sum or does not decompress.
+    BadChunk { at: u64, reason: String, messages: u64, span_ns: (u64, u64) },
+    /// A record's body does not parse, or a message belongs to no channel.
+    BadRecord { at: u64, opcode: u8 },
+    /// Bytes that are no record.
+    Garbage { at: u64, bytes: u64, resumed: bool },
+    /// The footer is there, the closing magic is not.
+    NoEndMagic { at: u64 },
+}
+
+impl Scanned {
+    /// The losses as issues, the bad records and bad chunks summed up; without times.
+    pub(super) fn issues(&self) -> Vec<Issue> {
+        let mut issues: Vec<Issue> = self.losses.iter().filter_map(Loss::issue).collect();
+        let bad_records = self.losses.iter().filter(|loss| matches!(loss, Loss::BadRecord { .. })).count();
+        if let (1.., Some(Loss::BadRecord { at, opcode })) =
+            (bad_records, self.losses.iter().find(|loss| matches!(loss, Loss::BadRecord { .. })))
+        {
+            issues.push(Issue::new(
+                IssueCode::Damaged,
+                Severity::Warning,
+                format!(
+                    "{bad_records} records do not parse and were skipped, the first a {} at byte {at}",
+                    record_name(*opcode)
+                ),
+            ));
+        }
+        if let (Some(claimed), true) = (self.claimed_messages, self.losses.is_empty())
+            && claimed != self.counts.messages
+        {
+            issues.push(Issue::new(
+                IssueCode::Damaged,
+                Severity::Warning,
+                format!(
+                    "the file's statistics count {claimed} messages, {} were found",
+                    self.counts.messages
+                ),
+            ));
+        }
+        issues
+    }
+}
+
+impl Loss {
+    fn issue(&self) -> Option<Issue> {
+        let (code, severity, message) = match self {
+            Self::EndsEarly { at, bytes: 0, .. } => (
+                IssueCode::Truncated,
+                Severity::Warning,
+                format!(
+                    "the file was never closed: it ends at byte {at} without its footer; every whole message before was read, what was not yet written is lost"
+                ),
+            ),
+            Self::EndsEarly { at, bytes, inside } => (
+                IssueCode::Truncated,
+                Severity::Warning,
+                format!(
+                    "the file ends in the middle of a {} at byte {at}: its last {bytes} bytes could not be used, and what followed is lost",
+                    inside.map_or("record", record_name)
+                ),
+            ),
+            Self::CutChunk { at, never_closed, unread_bytes, messages } => (
+                IssueCode::Truncated,
+                Severity::Warning,
+                format!(
+                    "{} the chunk at byte {at}: {messages} whole messages in it were kept without a check sum, {unread_bytes} bytes could not be used, and what followed is lost",
+                    if *never_closed {
+                        "the file's writer was stopped before it closed"
+                    } else {
+                        "the file ends in the middle of"
+                    }
+                ),
+            ),
+            Self::BadChunk { at, reason, messages, span_ns: (from, to) } => (
+                IssueCode::Damaged,
+                Severity::Warning,
+                format!(
+                    "the chunk at byte {at} is damaged ({reason}) and was left out: at least {messages} messages over {:.6} s",
+                    seconds(to.saturating_sub(*from))
+                ),
+            ),
+            Self::Garbage { at, bytes, resumed } => (
+                IssueCode::Damaged,
+                Severity::Warning,
+                format!(
+                    "at byte {at} stands no MCAP record: {bytes} bytes were skipped, {}",
+                    if *resumed {
+                        "reading went on at the next chunk of the file's index"
+                    } else {
+                        "up to the end of the file"
+                    }
+                ),
+            ),
+            Self::NoEndMagic { at } => (
+                IssueCode::Truncated,
+                Severity::Warning,
+                format!(
+                    "the file ends at byte {at} within its closing mark; all records before it were read"
+                ),
+            ),
+            Self::BadRecord { .. } => return None,
+        };
+        Some(Issue::new(code, severity, message))
+    }
+}
+
+#[allow(clippy::cast_precision_loss, reason = "a duration for a sentence")]
+fn seconds(ns: u64) -> f64 {
+    ns as f64 * 1e-9
+}
+
+fn record_name(opcode: u8) -> &'static str {
+    match opcode {
+        op::HEADER => "header",
+        op::FOOTER => "footer",
+        op::SCHEMA => "schema",
+        op::CHANNEL => "channel record",
+        op::MESSAGE => "message",
+        op::CHUNK => "chunk",
+        op::ATTACHMENT => "attachment",
+        op::METADATA => "metadata record",
+        op::DATA_END => "data-end record",
+        _ => "record",
+    }
+}

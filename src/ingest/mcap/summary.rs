@@ -1,0 +1,83 @@
+//! A closed MCAP file's summary section to its schemas, channels and chunk positions, before the walk begins.
+
+use super::scan::{RECORD_HEADER_BYTES, RECORD_HEADER_LENGTH};
+use mcap::records::{Record, op};
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+
+/// Footer: opcode and length, two offsets and a check sum, then the magic.
+const FOOTER_BYTES: u64 = RECORD_HEADER_BYTES + 8 + 8 + 4 + 8;
+
+/// What the summary section tells.
+#[derive(Debug, Default)]
+pub(super) struct Summary {
+    /// Schema and channel records: opcode and body.
+    pub(super) records: Vec<(u8, Vec<u8>)>,
+    /// Where chunks begin, ascending.
+    chunk_starts: Vec<u64>,
+}
+
+impl Summary {
+    /// The first chunk that begins after byte `at`.
+    pub(super) fn next_chunk(&self, at: u64) -> Option<u64> {
+        self.chunk_starts.iter().copied().find(|&start| start > at)
+    }
+}
+
+/// The summary of `file`, empty where it is closed without one, `None` where it is not closed; the file is left at its start.
+pub(super) fn read(file: &mut File, length: u64) -> std::io::Result<Option<Summary>> {
+    let magic_bytes = mcap::MAGIC.len() as u64;
+    let mut summary = None;
+    if length >= magic_bytes + FOOTER_BYTES {
+        file.seek(SeekFrom::Start(length - FOOTER_BYTES))?;
+        let mut footer = Vec::new();
+        file.read_to_end(&mut footer)?;
+        summary = summary_start(&footer)
+            .map(|start| (start, length - FOOTER_BYTES))
+            .map(|(start, end)| if start < magic_bytes || start >= end { None } else { Some((start, end)) });
+    }
+    let found = match summary {
+        None => None,
+        Some(None) => Some(Summary::default()),
+        Some(Some((start, end))) => Some(section(file, start, end)?),
+    };
+    file.seek(SeekFrom::Start(0))?;
+    Ok(found)
+}
+
+/// Where the summary section starts (0: there is none), `None` where `footer` is no footer.
+fn summary_start(footer: &[u8]) -> Option<u64> {
+    let body = footer.strip_prefix(&[op::FOOTER, 20, 0, 0, 0, 0, 0, 0, 0])?.strip_suffix(mcap::MAGIC)?;
+    body.first_chunk().map(|bytes| u64::from_le_bytes(*bytes))
+}
+
+/// The records of the section `start..end`; what does not parse ends it.
+fn section(file: &mut File, start: u64, end: u64) -> std::io::Result<Summary> {
+    file.seek(SeekFrom::Start(start))?;
+    let mut reader = std::io::BufReader::new(&*file).take(end - start);
+    let mut summary = Summary::default();
+    loop {
+        let mut header = [0; RECORD_HEADER_LENGTH];
+        if reader.limit() < RECORD_HEADER_BYTES || reader.read_exact(&mut header).is_err() {
+            break;
+        }
+        let [opcode, length @ ..] = header;
+        let length = u64::from_le_bytes(length);
+        if length > reader.limit() {
+            break;
+        }
+        let mut body = Vec::new();
+        (&mut reader).take(length).read_to_end(&mut body)?;
+        match opcode {
+            op::SCHEMA | op::CHANNEL => summary.records.push((opcode, body)),
+            op::CHUNK_INDEX => {
+                if let Some(Record::ChunkIndex(index)) = super::scan::parse(opcode, &body) {
+                    summary.chunk_starts.push(index.chunk_start_offset);
+                }
+            }
+            _ => {}
+        }
+    }
+    summary.chunk_starts.sort_unstable();
+    Ok(summary)
+}

@@ -1,0 +1,110 @@
+//! A protobuf message's bytes to its fields: numbers and what stands in them, no schema.
+
+/// What stands in a field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Item<'a> {
+    /// Wire type 0.
+    Varint(u64),
+    /// Wire type 1.
+    Fixed64([u8; 8]),
+    /// Wire type 2: a string, a message, packed numbers.
+    Bytes(&'a [u8]),
+    /// Wire type 5.
+    Fixed32([u8; 4]),
+}
+
+/// The bytes not yet read.
+#[derive(Debug)]
+pub(super) struct Wire<'a> {
+    rest: &'a [u8],
+}
+
+impl<'a> Wire<'a> {
+    pub(super) fn new(data: &'a [u8]) -> Self {
+        Self { rest: data }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.rest.is_empty()
+    }
+
+    /// The next field, `None` at the end.
+    ///
+    /// # Errors
+    /// The bytes end within it, or are none.
+    pub(super) fn item(&mut self) -> Result<Option<(u32, Item<'a>)>, String> {
+        if self.rest.is_empty() {
+            return Ok(None);
+        }
+        let tag = self.varint()?;
+        let number = u32::try_from(tag >> 3).map_err(|_| "a field number is too large".to_owned())?;
+        let item = match tag & 7 {
+            0 => Item::Varint(self.varint()?),
+            1 => Item::Fixed64(self.fixed()?),
+            2 => {
+                let length = usize::try_from(self.varint()?).unwrap_or(usize::MAX);
+                let (bytes, rest) = self.rest.split_at_checked(length).ok_or_else(ends)?;
+                self.rest = rest;
+                Item::Bytes(bytes)
+            }
+            5 => Item::Fixed32(self.fixed()?),
+            other => return Err(format!("field {number} has the wire type {other}, which is not read")),
+        };
+        Ok(Some((number, item)))
+    }
+
+    /// A number in base 128, the lowest digit first.
+    ///
+    /// # Errors
+    /// The bytes end within it, or it has more than 64 bits.
+    pub(super) fn varint(&mut self) -> Result<u64, String> {
+        let mut value = 0;
+        for position in 0..10 {
+            let (&byte, rest) = self.rest.split_first().ok_or_else(ends)?;
+            self.rest = rest;
+            value |= u64::from(byte & 0x7f) << (7 * position);
+            if byte < 0x80 {
+                return Ok(value);
+            }
+        }
+        Err("a number has more than 64 bits".into())
+    }
+
+    fn fixed<const N: usize>(&mut self) -> Result<[u8; N], String> {
+        let (bytes, rest) = self.rest.split_first_chunk().ok_or_else(ends)?;
+        self.rest = rest;
+        Ok(*bytes)
+    }
+}
+
+fn ends() -> String {
+    "the message ends within a field".into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_wire_type_is_read_and_a_cut_message_is_an_error() {
+        let bytes = [0x08, 0x96, 0x01, 0x15, 1, 0, 0, 0, 0x1a, 2, 7, 8, 0x21, 1, 2, 3, 4, 5, 6, 7, 8];
+        let mut wire = Wire::new(&bytes);
+        assert_eq!(wire.item(), Ok(Some((1, Item::Varint(150)))));
+        assert_eq!(wire.item(), Ok(Some((2, Item::Fixed32([1, 0, 0, 0])))));
+        assert_eq!(wire.item(), Ok(Some((3, Item::Bytes(&[7, 8])))));
+        assert_eq!(wire.item(), Ok(Some((4, Item::Fixed64([1, 2, 3, 4, 5, 6, 7, 8])))));
+        assert_eq!(wire.item(), Ok(None));
+        let whole = [0, 3, 8, 12, 21];
+        for end in 0..bytes.len() {
+            let mut wire = Wire::new(&bytes[..end]);
+            let outcome = std::iter::from_fn(|| wire.item().transpose()).collect::<Result<Vec<_>, _>>();
+            assert_eq!(outcome.is_ok(), whole.contains(&end), "{end}");
+        }
+    }
+
+    #[test]
+    fn a_length_beyond_the_message_takes_no_memory() {
+        assert!(Wire::new(&[0x0a, 0xff, 0xff, 0xff, 0xff, 0x0f, 1]).item().is_err());
+        assert!(Wire::new(&[0xff; 11]).item().is_err());
+    }
+}

@@ -1,0 +1,279 @@
+//! Blocks of samples with a stamp each to one run: sorted, doubles dropped, overlaps trimmed, gaps NaN.
+
+use super::order::{as_f64, is_same};
+use super::{Block, Number, Placed, RATE_TOLERANCE, TimeBaseError, Uniform, check_rate, fit, missing};
+use crate::data::{Issue, IssueCode, Samples, Severity};
+
+/// A block whose samples have the type of the channel.
+struct Piece<S> {
+    start_s: f64,
+    samples: Vec<S>,
+}
+
+/// What sorting and doubles came to.
+#[derive(Default)]
+struct Doubles {
+    same: usize,
+    different: usize,
+    span_s: Option<(f64, f64)>,
+}
+
+impl Doubles {
+    fn add(&mut self, is_equal: bool, from_s: f64, to_s: f64) {
+        self.same += usize::from(is_equal);
+        self.different += usize::from(!is_equal);
+        self.span_s = Some(self.span_s.map_or((from_s, to_s), |s| (s.0.min(from_s), s.1.max(to_s))));
+    }
+}
+
+/// Limits of [`from_blocks`]: filled samples against those present, as in the single-time case.
+const FILL_FACTOR: f64 = 4.0;
+/// See [`FILL_FACTOR`].
+const FILL_FLOOR: f64 = 1e6;
+
+/// Blocks on a uniform base. Stamps decide where a block lies, to the nearest sample; samples are not moved between.
+///
+/// # Errors
+/// [`TimeBaseError`] where stamps or rates make no record.
+pub fn from_blocks(blocks: Vec<Block>) -> Result<Uniform, TimeBaseError> {
+    let rate_hz = common_rate(&blocks)?;
+    let is_single = blocks.iter().all(|b| matches!(b.samples, Samples::F32(_)));
+    if is_single {
+        let pieces = blocks.into_iter().filter_map(|b| match b.samples {
+            Samples::F32(samples) => Some(Piece { start_s: b.start_s, samples }),
+            Samples::F64(_) => None,
+        });
+        return Ok(join(pieces.collect(), rate_hz)?.into_uniform(Samples::F32));
+    }
+    let pieces = blocks.into_iter().map(|b| match b.samples {
+        Samples::F32(v) => Piece { start_s: b.start_s, samples: v.into_iter().map(f64::from).collect() },
+        Samples::F64(samples) => Piece { start_s: b.start_s, samples },
+    });
+    Ok(join(pieces.collect(), rate_hz)?.into_uniform(Samples::F64))
+}
+
+fn common_rate(blocks: &[Block]) -> Result<f64, TimeBaseError> {
+    let Some(first) = blocks.first() else { return Err(TimeBaseError::TooFew { count: 0 }) };
+    for (index, block) in blocks.iter().enumerate() {
+        check_rate(block.sample_rate_hz)?;
+        if !block.start_s.is_finite() {
+            return Err(TimeBaseError::NotFinite { number: index + 1, time_s: block.start_s });
+        }
+        if (block.sample_rate_hz / first.sample_rate_hz - 1.0).abs() > RATE_TOLERANCE {
+            return Err(TimeBaseError::RateChanges {
+                first_hz: first.sample_rate_hz,
+                other_hz: block.sample_rate_hz,
+                at_s: block.start_s,
+            });
+        }
+    }
+    Ok(first.sample_rate_hz)
+}
+
+fn join<S: Number>(mut pieces: Vec<Piece<S>>, rate_hz: f64) -> Result<Placed<S>, TimeBaseError> {
+    let mut issues = Vec::new();
+    pieces.retain(|piece| !piece.samples.is_empty());
+    sort(&mut pieces, &mut issues);
+    let mut doubles = Doubles::default();
+    drop_doubles(&mut pieces, rate_hz, &mut doubles);
+    let present: usize = pieces.iter().map(|piece| piece.samples.len()).sum();
+    if present < 2 {
+        return Err(TimeBaseError::TooFew { count: present });
+    }
+    let tolerance = stamp_tolerance(&pieces, rate_hz);
+    let places = places(&pieces, rate_hz, tolerance, present)?;
+    let clock = clock(&pieces, &places, rate_hz, &mut issues);
+    let mut samples = Vec::new();
+    let mut gaps = Vec::new();
+    for (piece, &place) in pieces.into_iter().zip(&places) {
+        let held = samples.len();
+        if place > held && held > 0 {
+            let time_s = |index: usize| clock.0 + as_f64(index) / clock.1;
+            gaps.push((place - held, time_s(held - 1), time_s(place)));
+            samples.resize(place, S::MISSING);
+        }
+        append(&mut samples, piece, (place, clock.1), &mut doubles);
+    }
+    report_doubles(&doubles, &mut issues);
+    missing::push_gaps(&gaps, &mut issues);
+    let lost: usize = gaps.iter().map(|gap| gap.0).sum();
+    let gaps = settle_missing(&mut samples, lost, clock, &mut issues);
+    Ok(Placed { start_s: clock.0, sample_rate_hz: clock.1, samples, gaps, time_jitter_s: 0.0, issues })
+}
+
+fn sort<S>(pieces: &mut [Piece<S>], issues: &mut Vec<Issue>) {
+    let Some(first) = (1..pieces.len()).find(|&i| pieces[i].start_s < pieces[i - 1].start_s) else { return };
+    let count = pieces.windows(2).filter(|w| w[1].start_s < w[0].start_s).count();
+    let (from_s, to_s) = (pieces[first].start_s, pieces[first - 1].start_s);
+    issues.push(
+        Issue::new(
+            IssueCode::DisorderedBlocks,
+            Severity::Note,
+            format!("{count} block(s) came after a later one; they were put in order by their stamps"),
+        )
+        .between(from_s, to_s),
+    );
+    pieces.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
+}
+
+/// Drops blocks that start where the one before does.
+fn drop_doubles<S: Number>(pieces: &mut Vec<Piece<S>>, rate_hz: f64, doubles: &mut Doubles) {
+    pieces.dedup_by(|later, kept| {
+        let is_double = (later.start_s - kept.start_s) * rate_hz < 0.5 && later.samples.len() > 1;
+        if is_double {
+            let is_equal =
+                later.samples.len() == kept.samples.len() && are_same(&later.samples, &kept.samples);
+            doubles.add(is_equal, kept.start_s, later.start_s + as_f64(later.samples.len()) / rate_hz);
+            if later.samples.len() > kept.samples.len() {
+                std::mem::swap(later, kept);
+            }
+        }
+        is_double
+    });
+}
+
+fn are_same<S: Number>(a: &[S], b: &[S]) -> bool {
+    a.iter().zip(b).all(|(x, y)| is_same(x.to_f64(), y.to_f64()))
+}
+
+/// Fewer stamps than this say nothing about how they jitter.
+const JUDGED_STAMPS: usize = 8;
+
+/// By how many samples a stamp may miss the end of the block before and still follow it without a gap.
+///
+/// Half a sample for stamps of the sampling clock. Stamps of a computer's clock jitter by many samples; then six times the median
+/// miss (four standard deviations of a normal law are 5.9 medians), but less than half a block, since whole blocks get lost.
+fn stamp_tolerance<S>(pieces: &[Piece<S>], rate_hz: f64) -> f64 {
+    let shortest = pieces.iter().rev().skip(1).map(|p| p.samples.len()).min().unwrap_or(1);
+    let half_block = as_f64(shortest) / 2.0;
+    let mut misses: Vec<f64> = pieces
+        .windows(2)
+        .map(|w| ((w[1].start_s - w[0].start_s) * rate_hz - as_f64(w[0].samples.len())).abs())
+        .filter(|&miss| miss < half_block)
+        .collect();
+    if misses.len() < JUDGED_STAMPS {
+        return 0.5;
+    }
+    let middle = misses.len() / 2;
+    let (_, &mut median, _) = misses.select_nth_unstable_by(middle, f64::total_cmp);
+    if median <= 0.5 { 0.5 } else { (6.0 * median).min(half_block) }
+}
+
+/// The place of each block's first sample on the base.
+fn places<S>(
+    pieces: &[Piece<S>],
+    rate_hz: f64,
+    tolerance: f64,
+    present: usize,
+) -> Result<Vec<usize>, TimeBaseError> {
+    let limit = FILL_FACTOR.mul_add(as_f64(present), FILL_FLOOR);
+    let mut places = vec![0];
+    for pair in pieces.windows(2) {
+        let place = places[places.len() - 1];
+        let end = place + pair[0].samples.len();
+        let steps = (pair[1].start_s - pair[0].start_s) * rate_hz;
+        let miss = steps - as_f64(pair[0].samples.len());
+        if miss.abs() <= tolerance {
+            places.push(end);
+        } else if as_f64(end) + miss > limit {
+            return Err(TimeBaseError::Jump {
+                from_s: pair[0].start_s,
+                to_s: pair[1].start_s,
+                lost: miss,
+                sample_rate_hz: rate_hz,
+            });
+        } else {
+            places.push(place + fit::whole(steps.round()));
+        }
+    }
+    Ok(places)
+}
+
+/// Start and rate of the base: the nominal rate while the stamps keep to it, else the one they run at.
+fn clock<S>(pieces: &[Piece<S>], places: &[usize], rate_hz: f64, issues: &mut Vec<Issue>) -> (f64, f64) {
+    let off = |piece: &Piece<S>, place: usize| piece.start_s - pieces[0].start_s - as_f64(place) / rate_hz;
+    let offs: Vec<f64> = pieces.iter().zip(places).map(|(piece, &place)| off(piece, place)).collect();
+    let worst_s = offs.iter().fold(0.0_f64, |m, o| m.max(o.abs()));
+    if worst_s * rate_hz <= 1.0 {
+        return (pieces[0].start_s, rate_hz);
+    }
+    let n = as_f64(offs.len());
+    let mean_place = places.iter().map(|&p| as_f64(p)).sum::<f64>() / n;
+    let mean_s = offs.iter().sum::<f64>() / n;
+    let (mut square, mut cross) = (0.0, 0.0);
+    for (&place, &o) in places.iter().zip(&offs) {
+        square += (as_f64(place) - mean_place).powi(2);
+        cross += (as_f64(place) - mean_place) * (o - mean_s);
+    }
+    let slope_s = if square > 0.0 { cross / square } else { 0.0 };
+    let fitted_hz = 1.0 / (1.0 / rate_hz + slope_s);
+    let left = places.iter().zip(&offs).map(|(&p, &o)| o - mean_s - slope_s * (as_f64(p) - mean_place));
+    let rms_s = (left.map(|r| r * r).sum::<f64>() / n).sqrt();
+    let is_far = (fitted_hz / rate_hz - 1.0).abs() > RATE_TOLERANCE;
+    issues.push(Issue::new(
+        IssueCode::TimeJitter,
+        if is_far { Severity::Warning } else { Severity::Note },
+        format!(
+            "the blocks' stamps run at {fitted_hz:.6} Hz, {:.1} ppm off the stated {rate_hz:.6} Hz, and scatter by \
+             {rms_s:.3e} s RMS about that; blocks that follow one another were joined, and the stamps' rate was taken",
+            1e6 * (fitted_hz / rate_hz - 1.0)
+        ),
+    ));
+    (pieces[0].start_s + mean_s - slope_s * mean_place, fitted_hz)
+}
+
+/// Appends a block, less what of it is already there.
+fn append<S: Number>(samples: &mut Vec<S>, piece: Piece<S>, at: (usize, f64), doubles: &mut Doubles) {
+    let (place, rate_hz) = at;
+    if samples.is_empty() {
+        *samples = piece.samples;
+        return;
+    }
+    let overlap = samples.len().saturating_sub(place).min(piece.samples.len());
+    if overlap > 0 {
+        let is_equal = are_same(&samples[place..place + overlap], &piece.samples[..overlap]);
+        doubles.add(is_equal, piece.start_s, piece.start_s + as_f64(overlap) / rate_hz);
+    }
+    samples.extend_from_slice(&piece.samples[overlap..]);
+}
+
+fn report_doubles(doubles: &Doubles, issues: &mut Vec<Issue>) {
+    let Some((from_s, to_s)) = doubles.span_s else { return };
+    let count = doubles.same + doubles.different;
+    let issue = if doubles.different == 0 {
+        let message =
+            format!("{count} block(s) repeat samples that are there already; the copies were dropped");
+        Issue::new(IssueCode::DuplicateBlocks, Severity::Note, message)
+    } else {
+        let message = format!(
+            "{count} block(s) cover times that are there already, {} of them with different samples; \
+             the first to start was kept",
+            doubles.different
+        );
+        Issue::new(IssueCode::DuplicateBlocks, Severity::Warning, message)
+    };
+    issues.push(issue.between(from_s, to_s));
+}
+
+/// Non-finite samples that the blocks themselves hold are told apart from the `lost` ones between blocks.
+fn settle_missing<S: Number>(
+    samples: &mut [S],
+    lost: usize,
+    clock: (f64, f64),
+    issues: &mut Vec<Issue>,
+) -> Vec<crate::data::Span> {
+    let count = samples.iter().filter(|s| !s.to_f64().is_finite()).count();
+    if count == 0 {
+        return Vec::new();
+    }
+    if count == lost {
+        return missing::spans(samples);
+    }
+    let mut found = Vec::new();
+    let (_, gaps) = missing::mark_non_finite(samples, clock, &mut found);
+    for mut issue in found {
+        issue.message = format!("{} sample(s) are empty, NaN or infinite and count as missing", count - lost);
+        issues.push(issue);
+    }
+    gaps
+}

@@ -1,0 +1,223 @@
+//! Rising times to the uniform base nearest to them: start, period, and which sample belongs where.
+
+use super::TimeBaseError;
+use super::order::as_f64;
+
+/// A stretch of samples without a gap.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Run {
+    /// Its first sample among those recorded.
+    pub first: usize,
+    /// The place of that sample on the base.
+    pub place: usize,
+}
+
+/// The base nearest to the times, t ≈ start + period · place.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Fit {
+    pub start_s: f64,
+    pub period_s: f64,
+    /// Runs, the first at place 0; a new one after each gap.
+    pub runs: Vec<Run>,
+    /// RMS distance of the times from the base, s.
+    pub rms_s: f64,
+    /// Largest distance, s.
+    pub max_s: f64,
+    /// What the times are rounded to, s; 0 where no rounding shows.
+    pub resolution_s: f64,
+}
+
+/// A straight line through times, one step a sample.
+#[allow(clippy::struct_field_names, reason = "every name ends in its unit")]
+pub(super) struct Line {
+    pub start_s: f64,
+    pub period_s: f64,
+    pub max_s: f64,
+}
+
+/// Interval beyond which samples are missing, in periods.
+const GAP_PERIODS: f64 = 1.5;
+
+/// How many intervals the first guess of the period looks at; its median only has to be good to a third.
+const GUESS_INTERVALS: usize = 4096;
+
+/// Filling gaps may cost this many times the samples present, and `FILL_FLOOR` samples more.
+const FILL_FACTOR: f64 = 4.0;
+/// See [`FILL_FACTOR`]: 8 MB, so that a short record with a long pause still reads.
+const FILL_FLOOR: f64 = 1e6;
+
+impl Fit {
+    /// The base nearest to strictly rising, finite times (at least two).
+    pub(super) fn new(times_s: &[f64]) -> Result<Self, TimeBaseError> {
+        let guess_s = median_interval(times_s);
+        let mut period_s = mean_interval(times_s, 1.75 * guess_s).unwrap_or(guess_s);
+        period_s = mean_interval(times_s, GAP_PERIODS * period_s).unwrap_or(period_s);
+        let mut runs = runs(times_s, period_s)?;
+        let mut line = line_of_runs(times_s, &runs);
+        if runs.len() > 1 {
+            runs = self::runs(times_s, line.period_s)?;
+            line = line_of_runs(times_s, &runs);
+        }
+        let (rms_s, max_s) = residual(times_s, &runs, &line);
+        let first_s = times_s[0];
+        let start_s =
+            if (line.start_s - first_s).abs() < 1e-6 * line.period_s { first_s } else { line.start_s };
+        let resolution_s = resolution_s(times_s);
+        Ok(Self { start_s, period_s: line.period_s, runs, rms_s, max_s, resolution_s })
+    }
+
+    /// Number of places up to the last of `count` recorded samples.
+    pub(super) fn places(&self, count: usize) -> usize {
+        self.runs.last().map_or(count, |run| run.place + (count - run.first))
+    }
+}
+
+/// Median of intervals taken evenly over the record.
+fn median_interval(times_s: &[f64]) -> f64 {
+    let count = times_s.len() - 1;
+    let stride = count.div_ceil(GUESS_INTERVALS).max(1);
+    let mut intervals: Vec<f64> = (0..count).step_by(stride).map(|i| times_s[i + 1] - times_s[i]).collect();
+    let middle = intervals.len() / 2;
+    let (_, median, _) = intervals.select_nth_unstable_by(middle, f64::total_cmp);
+    *median
+}
+
+/// Mean of the intervals no longer than `limit_s`.
+fn mean_interval(times_s: &[f64], limit_s: f64) -> Option<f64> {
+    let (mut sum_s, mut count) = (0.0, 0_usize);
+    for pair in times_s.windows(2) {
+        let interval_s = pair[1] - pair[0];
+        let taken = interval_s <= limit_s;
+        sum_s += if taken { interval_s } else { 0.0 };
+        count += usize::from(taken);
+    }
+    (count > 0 && sum_s > 0.0).then(|| sum_s / as_f64(count))
+}
+
+/// Cuts the times at their gaps and gives each run its place on the base.
+fn runs(times_s: &[f64], period_s: f64) -> Result<Vec<Run>, TimeBaseError> {
+    let limit = FILL_FACTOR.mul_add(as_f64(times_s.len()), FILL_FLOOR);
+    let mut runs = vec![Run { first: 0, place: 0 }];
+    let mut lost_total = 0.0;
+    let mut widest = (0.0, 0);
+    for (i, pair) in times_s.windows(2).enumerate() {
+        let interval_s = pair[1] - pair[0];
+        if interval_s <= GAP_PERIODS * period_s || is_jitter(times_s, i, period_s) {
+            continue;
+        }
+        let steps = (interval_s / period_s).round().max(1.0);
+        lost_total += steps - 1.0;
+        if steps > widest.0 {
+            widest = (steps, i);
+        }
+        if lost_total > limit {
+            return Err(jump(times_s, widest, period_s));
+        }
+        let last = runs[runs.len() - 1];
+        runs.push(Run { first: i + 1, place: last.place + (i - last.first) + whole(steps) });
+    }
+    Ok(runs)
+}
+
+fn jump(times_s: &[f64], widest: (f64, usize), period_s: f64) -> TimeBaseError {
+    let (steps, at) = widest;
+    TimeBaseError::Jump {
+        from_s: times_s[at],
+        to_s: times_s[at + 1],
+        lost: steps - 1.0,
+        sample_rate_hz: 1.0 / period_s,
+    }
+}
+
+/// Whether a slightly long interval is made good by its neighbours: then a stamp came late, and nothing is missing.
+fn is_jitter(times_s: &[f64], at: usize, period_s: f64) -> bool {
+    let interval_s = times_s[at + 1] - times_s[at];
+    let (from, to) = (at.saturating_sub(2), (at + 3).min(times_s.len() - 1));
+    let expected = as_f64(to - from) + 0.5;
+    interval_s < 2.5 * period_s && to - from > 1 && times_s[to] - times_s[from] < expected * period_s
+}
+
+/// Least squares of t over place, on what is left after a first line, so that round-off stays below 1e-9 of a sample.
+fn line_of_runs(times_s: &[f64], runs: &[Run]) -> Line {
+    let last = times_s.len() - 1;
+    let last_place = runs.last().map_or(last, |run| run.place + (last - run.first));
+    let first_s = times_s[0];
+    let period_s = (times_s[last] - first_s) / as_f64(last_place);
+    let middle = as_f64(last_place) / 2.0;
+    let (mut sum, mut sum_k, mut square, mut cross) = (0.0, 0.0, 0.0, 0.0);
+    each_place(times_s, runs, |t, place| {
+        let k = place - middle;
+        let r = t - first_s - period_s * place;
+        sum += r;
+        sum_k += k;
+        square += k * k;
+        cross += k * r;
+    });
+    let n = as_f64(times_s.len());
+    let variance = square - sum_k * sum_k / n;
+    let slope = if variance > 0.0 { (cross - sum_k * sum / n) / variance } else { 0.0 };
+    let intercept = sum / n - slope * (sum_k / n + middle);
+    Line { start_s: first_s + intercept, period_s: period_s + slope, max_s: 0.0 }
+}
+
+/// A straight line through times taken as gapless.
+pub(super) fn line(times_s: &[f64]) -> Line {
+    let runs = [Run { first: 0, place: 0 }];
+    let line = line_of_runs(times_s, &runs);
+    let (_, max_s) = residual(times_s, &runs, &line);
+    Line { max_s, ..line }
+}
+
+fn residual(times_s: &[f64], runs: &[Run], line: &Line) -> (f64, f64) {
+    let (mut sum, mut max_s) = (0.0, 0.0_f64);
+    each_place(times_s, runs, |t, place| {
+        let r = t - line.start_s - line.period_s * place;
+        sum += r * r;
+        max_s = max_s.max(r.abs());
+    });
+    ((sum / as_f64(times_s.len())).sqrt(), max_s)
+}
+
+/// Calls `visit` with each time and its place on the base.
+fn each_place(times_s: &[f64], runs: &[Run], mut visit: impl FnMut(f64, f64)) {
+    for (number, run) in runs.iter().enumerate() {
+        let to = runs.get(number + 1).map_or(times_s.len(), |next| next.first);
+        let mut place = as_f64(run.place);
+        for &t in &times_s[run.first..to] {
+            visit(t, place);
+            place += 1.0;
+        }
+    }
+}
+
+/// What the times are rounded to: a power of ten (printed times), single precision, or the f64 they are held in.
+fn resolution_s(times_s: &[f64]) -> f64 {
+    let stride = times_s.len().div_ceil(1000);
+    let looked_at: Vec<f64> = times_s.iter().step_by(stride).copied().collect();
+    let largest_s = looked_at.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
+    let held_s = 2.0 * largest_s * f64::EPSILON;
+    #[allow(clippy::cast_possible_truncation, reason = "the loss is what is tested")]
+    if looked_at.iter().all(|&t| f64::from(t as f32).total_cmp(&t).is_eq()) {
+        return largest_s * f64::from(f32::EPSILON);
+    }
+    for digits in 0..=9 {
+        let unit_s = 10_f64.powi(-digits);
+        let is_multiple = |t: f64| {
+            let steps = t / unit_s;
+            (steps - steps.round()).abs() < 1e-3_f64.max(4.0 * steps.abs() * f64::EPSILON)
+        };
+        if unit_s > held_s && looked_at.iter().all(|&t| is_multiple(t)) {
+            return unit_s;
+        }
+    }
+    held_s
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "bounded by the fill limit, not negative"
+)]
+pub(super) fn whole(steps: f64) -> usize {
+    steps as usize
+}

@@ -1,0 +1,119 @@
+//! Times as recorded to times that rise: sorted, without doubles.
+
+use super::{Number, TimeBaseError};
+use crate::data::{Issue, IssueCode, Severity};
+use std::borrow::Cow;
+
+/// Times that rise with their samples.
+pub(super) enum Ordered<'a, S> {
+    /// Each later than the one before.
+    Strict(Cow<'a, [f64]>, Vec<S>),
+    /// Many equal to the one before although the samples differ: the times are coarser than the interval.
+    Coarse(Cow<'a, [f64]>, Vec<S>),
+}
+
+/// From this part of repeated times with different samples on, the times are too coarse rather than rows doubled.
+const COARSE_PART: f64 = 0.1;
+
+/// Sorts by time where needed and drops rows that came twice.
+pub(super) fn ordered<'a, S: Number>(
+    times_s: &'a [f64],
+    samples: Vec<S>,
+    issues: &mut Vec<Issue>,
+) -> Result<Ordered<'a, S>, TimeBaseError> {
+    let (Some(&first_s), true) = (times_s.first(), times_s.len() > 1) else {
+        return Err(TimeBaseError::TooFew { count: times_s.len() });
+    };
+    // A NaN fails this comparison as well, so that the plain case takes one pass.
+    if first_s.is_finite() && times_s.windows(2).all(|w| w[0] < w[1]) && times_s[times_s.len() - 1] < f64::MAX
+    {
+        return Ok(Ordered::Strict(Cow::Borrowed(times_s), samples));
+    }
+    if let Some(index) = times_s.iter().position(|t| !t.is_finite()) {
+        return Err(TimeBaseError::NotFinite { number: index + 1, time_s: times_s[index] });
+    }
+    if times_s.iter().all(|&t| t.total_cmp(&first_s).is_eq()) {
+        return Err(TimeBaseError::AllEqual { time_s: first_s });
+    }
+    let (times_s, samples) = sorted(times_s, samples, issues);
+    Ok(without_doubles(times_s, samples, issues))
+}
+
+fn sorted<'a, S: Number>(
+    times_s: &'a [f64],
+    samples: Vec<S>,
+    issues: &mut Vec<Issue>,
+) -> (Cow<'a, [f64]>, Vec<S>) {
+    let backward: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] < times_s[i - 1]).collect();
+    let Some(&first) = backward.first() else {
+        return (Cow::Borrowed(times_s), samples);
+    };
+    issues.push(
+        Issue::new(
+            IssueCode::DisorderedBlocks,
+            Severity::Note,
+            format!(
+                "times run backward {} time(s), first from {} s to {} s; the samples were sorted by time",
+                backward.len(),
+                times_s[first - 1],
+                times_s[first]
+            ),
+        )
+        .between(times_s[first], times_s[first - 1]),
+    );
+    let mut order: Vec<usize> = (0..times_s.len()).collect();
+    order.sort_by(|&a, &b| times_s[a].total_cmp(&times_s[b]));
+    let sorted_times: Vec<f64> = order.iter().map(|&i| times_s[i]).collect();
+    (Cow::Owned(sorted_times), order.iter().map(|&i| samples[i]).collect())
+}
+
+/// Drops rows whose time equals the one before.
+fn without_doubles<'a, S: Number>(
+    times_s: Cow<'a, [f64]>,
+    samples: Vec<S>,
+    issues: &mut Vec<Issue>,
+) -> Ordered<'a, S> {
+    let mut kept: Vec<usize> = vec![0];
+    let (mut same, mut different) = (0_usize, 0_usize);
+    let mut span_s: Option<(f64, f64)> = None;
+    let mut last = 0;
+    for i in 1..times_s.len() {
+        if times_s[i] > times_s[last] {
+            last = i;
+            kept.push(i);
+            continue;
+        }
+        if is_same(samples[i].to_f64(), samples[last].to_f64()) {
+            same += 1;
+        } else {
+            different += 1;
+        }
+        span_s = Some((span_s.map_or(times_s[i], |s| s.0), times_s[i]));
+    }
+    let Some((from_s, to_s)) = span_s else {
+        return Ordered::Strict(times_s, samples);
+    };
+    if as_f64(different) > COARSE_PART * as_f64(times_s.len()) {
+        return Ordered::Coarse(times_s, samples);
+    }
+    let (severity, tail) = if different == 0 {
+        (Severity::Note, "the copies were dropped".to_owned())
+    } else {
+        (Severity::Warning, format!("{different} of them with different values, of which the first was kept"))
+    };
+    let message = format!("{} sample(s) came twice with the same time: {tail}", same + different);
+    issues.push(Issue::new(IssueCode::DuplicateBlocks, severity, message).between(from_s, to_s));
+    let times: Vec<f64> = kept.iter().map(|&i| times_s[i]).collect();
+    let values: Vec<S> = kept.iter().map(|&i| samples[i]).collect();
+    Ordered::Strict(Cow::Owned(times), values)
+}
+
+/// Equal, or both no number.
+pub(super) fn is_same(a: f64, b: f64) -> bool {
+    a.total_cmp(&b).is_eq() || (a.is_nan() && b.is_nan())
+}
+
+#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+pub(super) fn as_f64(count: usize) -> f64 {
+    count as f64
+}

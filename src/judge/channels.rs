@@ -1,0 +1,161 @@
+//! Signals and events to what speaks against single channels.
+
+use crate::data::{Axis, End, Events, Issue, IssueCode, Severity, Signal};
+
+/// Fewest samples over a first pulse for its onset and area to be right within 1 % (measured: half sine, trapezoid).
+const LEAST_PULSE_SAMPLES: f64 = 10.0;
+
+/// Velocity that clipping may cut off before the slap-down and leave something to measure, m/s: 2 % of a 9 m fall's.
+const MOST_LOST_M_S: f64 = 0.27;
+
+/// A dead channel's noise is at most this share of the other channels' median peak.
+const DEAD_SHARE: f64 = 1e-3;
+
+/// Signals of one rigid body begin to move together: bending waves (about 1000 m/s) need some milliseconds along a cask.
+const MOST_SKEW_S: f64 = 2e-3;
+
+/// Checks each channel over the event: clipped, lost, dead, sampled too slowly, late.
+#[must_use]
+pub fn judge_channels(signals: &[Signal], events: &Events) -> Vec<Issue> {
+    let mut issues = Vec::new();
+    let contact_s = events.first_contact_s;
+    let separation_s = events.separation_s;
+    for signal in signals {
+        issues.extend(clipped(signal, events));
+        if let (Some(from), Some(to)) = (contact_s, separation_s) {
+            issues.extend(lost(signal, from, to, events.slap_down_s));
+            let samples = (to - from) * signal.sample_rate_hz;
+            if samples < LEAST_PULSE_SAMPLES {
+                issues.push(
+                    Issue::new(
+                        IssueCode::LowRate,
+                        Severity::Warning,
+                        format!(
+                            "{} has {samples:.0} samples over the first impact of {:.1} ms; its velocity step may be off by more than 1 %. Sample at {:.0} Hz or faster",
+                            signal.name, 1e3 * (to - from), 2.0 * LEAST_PULSE_SAMPLES / (to - from)
+                        ),
+                    )
+                    .on(&signal.name),
+                );
+            }
+        }
+    }
+    issues.extend(dead(signals));
+    if let Some(contact_s) = contact_s {
+        issues.extend(skewed(signals, contact_s));
+    }
+    issues
+}
+
+/// One issue a channel and phase: what stands at a limit before, between and after the impacts.
+fn clipped(signal: &Signal, events: &Events) -> Vec<Issue> {
+    let separation_s = events.separation_s.unwrap_or(f64::INFINITY);
+    let slap_down_s = events.slap_down_s.unwrap_or(f64::INFINITY);
+    let phases = [
+        (f64::NEG_INFINITY, separation_s, "in the first impact"),
+        (separation_s, slap_down_s, "in the flight"),
+        (
+            slap_down_s,
+            f64::INFINITY,
+            "from the slap-down on, which leaves the speed before it as it is but not the peak",
+        ),
+    ];
+    let mut issues = Vec::new();
+    for (from_s, to_s, when) in phases {
+        let spans: Vec<_> =
+            signal.clipped.iter().filter(|s| (from_s..to_s).contains(&signal.time_s(s.from))).collect();
+        let (Some(first), Some(last)) = (spans.first(), spans.last()) else { continue };
+        let lost_m_s = signal.lost_to_clipping_m_s(from_s, to_s);
+        let counts = from_s < slap_down_s && lost_m_s > MOST_LOST_M_S;
+        let effect = if from_s < slap_down_s {
+            format!("; about {lost_m_s:.2} m/s of velocity is cut off")
+        } else {
+            String::new()
+        };
+        let number: usize = spans.iter().map(|s| s.to - s.from).sum();
+        issues.push(
+            Issue::new(
+                IssueCode::Clipped,
+                if counts { Severity::Error } else { Severity::Warning },
+                format!(
+                    "{} stands at its limit of {:.0} g for {number} samples {when}{effect}. Use a sensor or range with more head-room",
+                    signal.name,
+                    (signal.force_m_s2[first.from] + signal.removed_offset_m_s2).abs() / 9.806_65,
+                ),
+            )
+            .on(&signal.name)
+            .between(signal.time_s(first.from), signal.time_s(last.to)),
+        );
+    }
+    issues
+}
+
+fn lost(signal: &Signal, contact_s: f64, separation_s: f64, slap_down_s: Option<f64>) -> Option<Issue> {
+    let inside = signal.touches(&signal.gaps, contact_s, separation_s);
+    inside.then(|| {
+        Issue::new(
+            IssueCode::Gap,
+            Severity::Error,
+            format!(
+                "{} lost samples during the first impact: its velocity step cannot be had{}",
+                signal.name,
+                if slap_down_s.is_some() { ", and with it neither k nor the slap-down velocity" } else { "" }
+            ),
+        )
+        .on(&signal.name)
+        .between(contact_s, separation_s)
+    })
+}
+
+fn peak(signal: &Signal) -> f64 {
+    signal.force_m_s2.iter().fold(0.0, |m, f| m.max(f.abs()))
+}
+
+fn dead(signals: &[Signal]) -> Vec<Issue> {
+    let largest = signals.iter().map(peak).fold(0.0, f64::max);
+    signals
+        .iter()
+        .filter(|s| s.axis == Axis::Transverse && peak(s) < DEAD_SHARE * largest.max(1.0))
+        .map(|s| {
+            Issue::new(
+                IssueCode::DeadChannel,
+                Severity::Error,
+                format!("{} does not move while others do: unplugged, or the wrong source", s.name),
+            )
+            .on(&s.name)
+        })
+        .collect()
+}
+
+/// First time after `from_s` at which a signal leaves its noise and a twentieth of its peak over 20 ms.
+fn begins(signal: &Signal, contact_s: f64) -> Option<f64> {
+    let (from, to) = (signal.index_from(contact_s - 0.01), signal.index_from(contact_s + 0.02));
+    let force = signal.force_m_s2.get(from..to)?;
+    let peak = force.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+    let foot = (0.05 * peak).max(6.0 * signal.noise_m_s2);
+    force.iter().position(|f| f.abs() > foot).map(|i| signal.time_s(from + i))
+}
+
+fn skewed(signals: &[Signal], contact_s: f64) -> Option<Issue> {
+    let ends = |end: End| {
+        signals
+            .iter()
+            .filter(move |s| s.end == end && s.axis == Axis::Transverse)
+            .find_map(|s| begins(s, contact_s).map(|t| (s, t)))
+    };
+    let ((_, first_s), (second, second_s)) = (ends(End::First)?, ends(End::Second)?);
+    let skew_s = second_s - first_s;
+    (skew_s.abs() > MOST_SKEW_S).then(|| {
+        Issue::new(
+            IssueCode::Skew,
+            Severity::Warning,
+            format!(
+                "{} begins to move {:.1} ms {} the first end: one body cannot; check the clocks of the two recorders",
+                second.name,
+                1e3 * skew_s.abs(),
+                if skew_s > 0.0 { "after" } else { "before" }
+            ),
+        )
+        .on(&second.name)
+    })
+}

@@ -1,0 +1,142 @@
+//! A reconstructed motion to what speaks against it.
+
+use crate::data::{
+    CaskFile, Comparison, End, FlightFit, Issue, IssueCode, Motion, Quantities, Severity, Signal,
+};
+
+/// R's height at slap-down may be off by this many of its own 95 % intervals, angle included.
+const MOST_CLOSURE: f64 = 1.5;
+/// A rebound of L below the target by this share of the length is another impact, not a graze.
+const GRAZE_SHARE: f64 = 0.01;
+/// Zero shifts whose effect on the velocity over the contact is below this are a note, m/s: 0.2 % of a slap-down.
+const SMALL_SHIFT_M_S: f64 = 0.05;
+/// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1 % of a slap-down.
+const LARGE_RESIDUAL_M_S: f64 = 0.2;
+
+/// Checks the motion against what a dropped cask can do.
+#[must_use]
+pub fn judge_motion(
+    cask_file: &CaskFile,
+    signals: &[Signal],
+    flight: &FlightFit,
+    motion: &Motion,
+    quantities: &Quantities,
+) -> Vec<Issue> {
+    let mut issues = Vec::new();
+    issues.extend(signs(signals, flight));
+    issues.extend(flight_issues(flight, quantities));
+    let k = quantities.k;
+    if k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0 {
+        issues.push(Issue::new(
+            IssueCode::RestitutionRange,
+            Severity::Error,
+            format!("k = {:.2} ± {:.2} lies outside 0 to 1: a scale, a unit, a polarity or the drop height is wrong", k.value, k.u95),
+        ));
+    }
+    if quantities.angular_velocity.value <= 0.0 {
+        issues.push(Issue::new(
+            IssueCode::EndsExchanged,
+            Severity::Error,
+            "the cask turns the wrong way (the second end rises): the ends are exchanged or a polarity is wrong in the cask file",
+        ));
+    }
+    if let Some(height) = quantities.second_end_height
+        && height.value.abs() > MOST_CLOSURE * height.u95
+    {
+        issues.push(Issue::new(
+            IssueCode::Geometry,
+            Severity::Warning,
+            format!(
+                "the second end would be {:+.0} ± {:.0} mm above the target when it strikes: angle ({:.1}°), drop height, a scale or a sensor's position does not fit the recording",
+                1e3 * height.value,
+                1e3 * height.u95,
+                cask_file.drop.angle_rad.to_degrees()
+            ),
+        ));
+    }
+    if motion.lowest_first_end_m < -GRAZE_SHARE * cask_file.cask.length_m {
+        issues.push(Issue::new(
+            IssueCode::SecondContact,
+            Severity::Warning,
+            format!(
+                "the first end would sink {:.0} mm below where it left the target before the second end strikes: it touched again, and the flight was not free",
+                -1e3 * motion.lowest_first_end_m
+            ),
+        ));
+    }
+    issues
+}
+
+/// Each end's own impact pushes it away from the target.
+fn signs(signals: &[Signal], flight: &FlightFit) -> Vec<Issue> {
+    signals
+        .iter()
+        .filter(|s| s.end == End::First && s.axis == crate::data::Axis::Transverse)
+        .filter(|s| flight.plateau(&s.name).is_some_and(|p| p.velocity_step_m_s < 0.0))
+        .map(|s| {
+            Issue::new(
+                IssueCode::Polarity,
+                Severity::Error,
+                format!("{} reads the first impact as pulling towards the target: set `polarity = -1` for it, or its end is the other one", s.name),
+            )
+            .on(&s.name)
+        })
+        .collect()
+}
+
+fn flight_issues(flight: &FlightFit, quantities: &Quantities) -> Vec<Issue> {
+    let mut issues = Vec::new();
+    for plateau in &flight.plateaus {
+        let effect_m_s = plateau.zero_shift_m_s2.abs() * quantities.duration.value;
+        if flight.drift && plateau.zero_shift_m_s2.abs() > 3.0 * plateau.u_zero_shift_m_s2 {
+            let severity = if effect_m_s > SMALL_SHIFT_M_S { Severity::Warning } else { Severity::Note };
+            issues.push(
+                Issue::new(
+                    IssueCode::ZeroShift,
+                    severity,
+                    format!(
+                        "{} reads {:+.2} ± {:.2} g more in the flight than before the impact (zero shift or droop); it was taken off, which moves the velocity by up to {effect_m_s:.2} m/s",
+                        plateau.channel,
+                        plateau.zero_shift_m_s2 / 9.806_65,
+                        2.0 * plateau.u_zero_shift_m_s2 / 9.806_65
+                    ),
+                )
+                .on(&plateau.channel)
+                .between(flight.from_s, flight.to_s),
+            );
+        }
+        if plateau.residual_m_s > LARGE_RESIDUAL_M_S || plateau.u_m_s > LARGE_RESIDUAL_M_S {
+            issues.push(
+                Issue::new(
+                    IssueCode::FlightFit,
+                    Severity::Warning,
+                    format!(
+                        "the flight of {} is not explained by a plateau and {} modes: {:.2} m/s are left, and its velocity step is known to ± {:.2} m/s",
+                        plateau.channel,
+                        flight.modes.len(),
+                        plateau.residual_m_s,
+                        2.0 * plateau.u_m_s
+                    ),
+                )
+                .on(&plateau.channel)
+                .between(flight.from_s, flight.to_s),
+            );
+        }
+    }
+    issues
+}
+
+/// What a comparison that does not agree amounts to.
+#[must_use]
+pub fn judge_comparison(comparison: &Comparison) -> Option<Issue> {
+    (!comparison.agrees).then(|| {
+        Issue::new(
+            IssueCode::Disagreement,
+            Severity::Warning,
+            format!(
+                "measured {:.2} ± {:.2} m/s and predicted {:.2} ± {:.2} m/s lie apart beyond both intervals: check contact law, angle, mass properties and scales",
+                comparison.measured, comparison.measured_u95, comparison.predicted, comparison.predicted_u95
+            ),
+        )
+    })
+}

@@ -1,0 +1,209 @@
+//! The free-flight window to plateaus, drift and as many damped modes as the data call for.
+
+use super::Velocity;
+use crate::data::{Axis, FlightFit, FlightModelScore, Mode, Plateau, Signal};
+use crate::numerics::damped_modes::{Fit, Oscillation, Series, fit};
+use crate::numerics::robust;
+
+/// Most modes tried: the bending modes of a cask below 400 Hz.
+const MOST_MODES: usize = 3;
+/// Points a window: 240 over 60 ms resolve 400 Hz tenfold.
+const POINTS: usize = 240;
+/// Least noise of a velocity, as a share of its range in the window: linearity of the best sensors.
+const LEAST_FLOOR: f64 = 2e-4;
+/// Lowest frequency sought: this many periods in the window, and never below 15 Hz.
+const LEAST_PERIODS: f64 = 0.6;
+/// A candidate this close in BIC to the best cannot be told from it (Kass & Raftery 1995: above 10 is very strong).
+const INDISTINCT: f64 = 10.0;
+
+/// The times a flight fit needs, s from the recording's first sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// First contact: the velocities count from there.
+    pub contact_s: f64,
+    /// Start of free flight.
+    pub from_s: f64,
+    /// End of it.
+    pub to_s: f64,
+    /// ω of the flight where it is known already, rad/s: its centrifugal force is taken off; else 0.
+    pub angular_velocity_rad_s: f64,
+}
+
+/// Fits all signals over the window; `None` where it is too short or nothing can be fitted.
+///
+/// Velocity v_j(t) = p_j + d_j t + Σ_m e^(−ζωt)(A cos ωt + B sin ωt)   (20), modes common to all channels; their number and
+/// whether there is a drift are decided by the Bayesian information criterion (21).
+#[must_use]
+pub fn fit_flight(signals: &[Signal], window: &Window, cog_m: f64) -> Option<FlightFit> {
+    let series: Vec<Series> = signals.iter().map(|s| series(s, window, cog_m)).collect();
+    let length_s = window.to_s - window.from_s;
+    let fewest = series.iter().map(|s| s.value.len()).min()?;
+    if length_s <= 0.0 || fewest < 8 {
+        return None;
+    }
+    #[allow(clippy::cast_precision_loss, reason = "at most POINTS")]
+    let highest_hz = (0.2 * fewest as f64 / length_s).min(1500.0);
+    let band = ((LEAST_PERIODS / length_s).max(15.0), highest_hz);
+    let mut fits = Vec::new();
+    for drift in [false, true] {
+        fits.extend(chain(&series, band, drift));
+    }
+    let richest = fits.iter().max_by_key(|f| f.parameters)?.correlation;
+    let score = |f: &Fit| f.bic(&series, richest);
+    fits.sort_by(|a, b| score(a).total_cmp(&score(b)));
+    let best = fits.first()?;
+    let plateaus = plateaus(signals, &fits, &|f: &Fit| score(f) - score(best) < INDISTINCT);
+    let mut order: Vec<usize> = (0..best.modes.len()).collect();
+    order.sort_by(|&a, &b| best.modes[a].frequency_hz.total_cmp(&best.modes[b].frequency_hz));
+    Some(FlightFit {
+        from_s: window.from_s,
+        to_s: window.to_s,
+        modes: order.iter().map(|&i| mode(best, i)).collect(),
+        plateaus: plateaus
+            .into_iter()
+            .map(|mut p| {
+                p.ringing_m_s = order.iter().map(|&i| p.ringing_m_s[i]).collect();
+                p
+            })
+            .collect(),
+        drift: best.drift,
+        candidates: fits
+            .iter()
+            .map(|f| FlightModelScore {
+                modes: f.modes.len(),
+                drift: f.drift,
+                bic: score(f),
+                residual_m_s: f.series.iter().map(|s| s.residual).fold(0.0, f64::max),
+            })
+            .collect(),
+    })
+}
+
+/// Fits with none, one, two … modes, each started from the last, until nothing is left to explain.
+fn chain(series: &[Series], band_hz: (f64, f64), drift: bool) -> Vec<Fit> {
+    let Some(first) = fit(series, &[], None, drift) else { return Vec::new() };
+    let mut fits = vec![first];
+    while fits.len() <= MOST_MODES && band_hz.1 > band_hz.0 {
+        let last = &fits[fits.len() - 1];
+        if series.iter().zip(&last.series).all(|(s, f)| f.residual < 1.1 * s.floor) {
+            break;
+        }
+        let start: Vec<Oscillation> = last.modes.clone();
+        match fit(series, &start, Some(band_hz), drift) {
+            Some(next) if is_sound(series, &next) => fits.push(next),
+            _ => break,
+        }
+    }
+    fits
+}
+
+/// A mode larger than what the series themselves do, or a plateau no better known than their range, is a singular fit.
+fn is_sound(series: &[Series], fit: &Fit) -> bool {
+    series.iter().zip(&fit.series).all(|(s, f)| {
+        let range = range(&s.value);
+        f.u_plateau < 0.5 * range.max(s.floor) && f.amplitudes.iter().all(|(a, b)| a.hypot(*b) < 3.0 * range)
+    })
+}
+
+fn range(values: &[f64]) -> f64 {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    high - low
+}
+
+/// Velocity of one signal over the window in [`POINTS`] means, centrifugal force taken off, lost samples left out.
+fn series(signal: &Signal, window: &Window, cog_m: f64) -> Series {
+    let velocity = Velocity::of(signal, window.contact_s - 2e-3, window.to_s);
+    // f_η holds −Ω² η, f_ξ holds −Ω² ξ   (14), (15)
+    let arm_m = match signal.axis {
+        Axis::Transverse => signal.offset_m,
+        Axis::Axial => signal.position_m - cog_m,
+    };
+    let centrifugal_m_s2 = -window.angular_velocity_rad_s.powi(2) * arm_m;
+    let length_s = (window.to_s.min(signal.end_s()) - window.from_s).max(0.0);
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "a positive count of samples, cut to POINTS"
+    )]
+    let (points, bin_s) = {
+        let points = ((length_s * signal.sample_rate_hz) as usize).min(POINTS);
+        (points, length_s / points.max(1) as f64)
+    };
+    let (mut time_s, mut value) = (Vec::with_capacity(points), Vec::with_capacity(points));
+    for i in 0..points {
+        #[allow(clippy::cast_precision_loss, reason = "at most POINTS")]
+        let from_s = i as f64 * bin_s;
+        let (a, b) = (window.from_s + from_s, window.from_s + from_s + bin_s);
+        if signal.touches(&signal.gaps, a, b) {
+            continue;
+        }
+        let t = from_s + bin_s / 2.0;
+        time_s.push(t);
+        value.push(velocity.mean(a, b) - centrifugal_m_s2 * t);
+    }
+    let steps_s = signal
+        .gaps
+        .iter()
+        .map(|g| signal.time_s(g.from) - window.from_s)
+        .filter(|t| *t > time_s.first().copied().unwrap_or(0.0) && *t < time_s.last().copied().unwrap_or(0.0))
+        .collect();
+    let floor = noise_floor(signal, window, length_s).max(LEAST_FLOOR * range(&value).max(0.0));
+    Series { time_s, value, steps_s, floor: floor.max(1e-9) }
+}
+
+/// RMS of the velocity about a line over as long a stretch of free fall before contact, m/s.
+fn noise_floor(signal: &Signal, window: &Window, length_s: f64) -> f64 {
+    let to_s = window.contact_s - 5e-3;
+    let from_s = (to_s - length_s).max(signal.start_s);
+    let guessed = signal.noise_m_s2 * (length_s / signal.sample_rate_hz).sqrt() / 4.0;
+    let points: u32 = 60;
+    if to_s - from_s < 0.5 * length_s {
+        return guessed;
+    }
+    let velocity = Velocity::of(signal, from_s, to_s);
+    let bin_s = (to_s - from_s) / f64::from(points);
+    let (mut time_s, mut value) = (Vec::new(), Vec::new());
+    for i in 0..points {
+        let a = f64::from(i) * bin_s;
+        time_s.push(a);
+        value.push(velocity.mean(from_s + a, from_s + a + bin_s));
+    }
+    let line = Series { time_s, value, steps_s: vec![], floor: 1e-12 };
+    fit(&[line], &[], None, true).map_or(guessed, |f| f.series[0].residual.max(0.5 * guessed))
+}
+
+fn mode(fit: &Fit, index: usize) -> Mode {
+    let amplitude =
+        fit.series.iter().map(|s| s.amplitudes[index].0.hypot(s.amplitudes[index].1)).fold(0.0, f64::max);
+    Mode {
+        frequency_hz: fit.modes[index].frequency_hz,
+        damping: fit.modes[index].damping,
+        amplitude_m_s: amplitude,
+    }
+}
+
+/// Plateaus of the best fit; what candidates that cannot be told from it say otherwise adds to their uncertainty.
+fn plateaus(signals: &[Signal], fits: &[Fit], is_rival: &dyn Fn(&Fit) -> bool) -> Vec<Plateau> {
+    let Some(best) = fits.first() else { return Vec::new() };
+    signals
+        .iter()
+        .enumerate()
+        .map(|(i, signal)| {
+            let own = &best.series[i];
+            let apart: Vec<f64> =
+                fits.iter().filter(|f| is_rival(f)).map(|f| f.series[i].plateau - own.plateau).collect();
+            let spread = robust::mean_and_rms(&apart);
+            Plateau {
+                channel: signal.name.clone(),
+                velocity_step_m_s: own.plateau,
+                u_m_s: own.u_plateau.hypot(spread.0).hypot(spread.1),
+                zero_shift_m_s2: own.drift,
+                u_zero_shift_m_s2: own.u_drift,
+                residual_m_s: own.residual,
+                ringing_m_s: own.amplitudes.clone(),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,271 @@
+//! Velocity steps of the channels, a contact law and the initial motion to the planar motion of the cask.
+
+use super::Velocity;
+use crate::data::{AxialClosure, Axis, Events, FlightFit, Motion, MotionCurve, MotionState, Setup, Signal};
+
+/// Steps over the contact: 400 over 20 ms leave the trapezoid's error below 1e-5 of the velocities.
+const CONTACT_STEPS: u32 = 400;
+/// Steps over the flight, for the curves.
+const FLIGHT_STEPS: u32 = 200;
+
+/// Reconstructs the motion from first contact to slap-down; `None` without two transverse channels apart or without their plateaus.
+///
+/// During contact the channels give ∫f_η of S and Ω by a line over their positions (16); v̇_η = f_η − g cos φ − Ω v_ξ (17);
+/// v_ξ comes from the contact law or the axial channels (18). Afterwards S flies freely (8).
+#[must_use]
+pub fn reconstruct(signals: &[Signal], fit: &FlightFit, events: &Events, setup: &Setup) -> Option<Motion> {
+    let contact_s = events.first_contact_s?;
+    let separation_s = events.separation_s?;
+    let line = Line::through(signals, setup.cog_m)?;
+    let histories = Histories::new(signals, fit, contact_s, separation_s)?;
+    let mut body = Contact::start(setup, contact_s);
+    let mut curve = MotionCurve::default();
+    let step_s = (separation_s - contact_s) / f64::from(CONTACT_STEPS);
+    body.record(&mut curve, setup);
+    for i in 1..=CONTACT_STEPS {
+        let time_s = contact_s + f64::from(i) * step_s;
+        let (transverse_m_s, rotation_rad_s) = line.at(&histories, time_s);
+        let axial_m_s = histories.axial_mean(time_s);
+        body.advance(setup, step_s, transverse_m_s, rotation_rad_s, axial_m_s);
+        body.record(&mut curve, setup);
+    }
+    let separation = body.state;
+    let (slip_m_s, rebound_m_s) = corner(setup, &separation, -setup.cog_m);
+    let impulse_ratio = separation.horizontal_velocity_m_s
+        / (separation.vertical_velocity_m_s
+            + setup.impact_velocity_m_s
+            + setup.gravity_m_s2 * (separation_s - contact_s));
+    let end_s = events.slap_down_s.unwrap_or(fit.to_s);
+    let mut lowest_first_end_m = f64::INFINITY;
+    for i in 1..=FLIGHT_STEPS {
+        let time_s = separation_s + (end_s - separation_s) * f64::from(i) / f64::from(FLIGHT_STEPS);
+        body.state = fly(setup, &separation, time_s);
+        body.record(&mut curve, setup);
+        lowest_first_end_m =
+            lowest_first_end_m.min(curve.first_end_height_m.last().copied().unwrap_or(0.0) - crush_m(&curve));
+    }
+    let slap_down = events.slap_down_s.map(|t| fly(setup, &separation, t));
+    let ahead_m = setup.length_m - setup.cog_m;
+    Some(Motion {
+        separation,
+        rebound_m_s,
+        slip_m_s,
+        impulse_ratio,
+        slap_down,
+        second_end_m_s: slap_down.map(|s| corner(setup, &s, ahead_m)),
+        second_end_height_m: slap_down.map(|s| corner_height_m(setup, &s, ahead_m)),
+        lowest_first_end_m,
+        curve,
+    })
+}
+
+/// Height of L's corner at separation (negative: crushed), the level from which it counts as touching again, m.
+fn crush_m(curve: &MotionCurve) -> f64 {
+    curve.first_end_height_m.get(CONTACT_STEPS as usize).copied().unwrap_or(0.0).min(0.0)
+}
+
+/// Ballistic motion of S from `state` to `time_s`   (8)
+fn fly(setup: &Setup, state: &MotionState, time_s: f64) -> MotionState {
+    let t = time_s - state.time_s;
+    MotionState {
+        time_s,
+        angle_rad: state.angle_rad - state.angular_velocity_rad_s * t,
+        height_m: state.height_m + state.vertical_velocity_m_s * t - setup.gravity_m_s2 * t * t / 2.0,
+        vertical_velocity_m_s: state.vertical_velocity_m_s - setup.gravity_m_s2 * t,
+        ..*state
+    }
+}
+
+/// Distance of the lower corner at axial distance `ahead_m` before S from S, m: horizontal and vertical.
+fn arm_m(setup: &Setup, angle_rad: f64, ahead_m: f64) -> (f64, f64) {
+    let (sin, cos) = angle_rad.sin_cos();
+    let half = setup.height_m / 2.0;
+    (ahead_m * cos + half * sin, ahead_m * sin - half * cos)
+}
+
+/// Horizontal and vertical velocity of that corner, m/s: v = v_S + φ̇ × r   (3)
+fn corner(setup: &Setup, state: &MotionState, ahead_m: f64) -> (f64, f64) {
+    let (x, z) = arm_m(setup, state.angle_rad, ahead_m);
+    let w = state.angular_velocity_rad_s;
+    (state.horizontal_velocity_m_s + w * z, state.vertical_velocity_m_s - w * x)
+}
+
+fn corner_height_m(setup: &Setup, state: &MotionState, ahead_m: f64) -> f64 {
+    state.height_m + arm_m(setup, state.angle_rad, ahead_m).1
+}
+
+/// Least-squares line over the transverse channels: value at S and slope along the axis.
+struct Line {
+    positions_m: Vec<f64>,
+    channels: Vec<usize>,
+    mean_m: f64,
+    square_m2: f64,
+}
+
+impl Line {
+    fn through(signals: &[Signal], cog_m: f64) -> Option<Self> {
+        let channels: Vec<usize> =
+            (0..signals.len()).filter(|&i| signals[i].axis == Axis::Transverse).collect();
+        let positions_m: Vec<f64> = channels.iter().map(|&i| signals[i].position_m - cog_m).collect();
+        #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
+        let mean_m = positions_m.iter().sum::<f64>() / positions_m.len().max(1) as f64;
+        let square_m2: f64 = positions_m.iter().map(|x| (x - mean_m).powi(2)).sum();
+        (square_m2 > 1e-6).then_some(Self { positions_m, channels, mean_m, square_m2 })
+    }
+
+    /// ∫f_η of S, m/s, and Ω = φ̇, rad/s, at a time   (16)
+    fn at(&self, histories: &Histories, time_s: f64) -> (f64, f64) {
+        let values: Vec<f64> = self.channels.iter().map(|&i| histories.at(i, time_s)).collect();
+        #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let slope = values.iter().zip(&self.positions_m).map(|(v, x)| (x - self.mean_m) * v).sum::<f64>()
+            / self.square_m2;
+        (mean - slope * self.mean_m, slope)
+    }
+}
+
+/// The integrated channels over the contact, led to the plateaus of the flight.
+struct Histories {
+    velocities: Vec<Velocity>,
+    corrections_m_s: Vec<f64>,
+    axial: Vec<(usize, f64)>,
+    contact_s: f64,
+    length_s: f64,
+}
+
+impl Histories {
+    fn new(signals: &[Signal], fit: &FlightFit, contact_s: f64, separation_s: f64) -> Option<Self> {
+        let length_s = separation_s - contact_s;
+        if length_s <= 0.0 {
+            return None;
+        }
+        let mut velocities = Vec::new();
+        let mut corrections_m_s = Vec::new();
+        for signal in signals {
+            let plateau = fit.plateau(&signal.name)?;
+            // The same start as the flight fit's, so that both count from one zero.
+            let velocity = Velocity::of(signal, contact_s - 2e-3, fit.to_s);
+            // A zero shift sets in somewhere in the contact: half of it is taken to have acted.
+            let before_s = fit.from_s - separation_s + length_s / 2.0;
+            let plateau_m_s = plateau.velocity_step_m_s - plateau.zero_shift_m_s2 * before_s;
+            corrections_m_s.push(plateau_m_s - velocity.at(separation_s));
+            velocities.push(velocity);
+        }
+        let axial = (0..signals.len())
+            .filter(|&i| signals[i].axis == Axis::Axial)
+            .map(|i| (i, signals[i].position_m))
+            .collect();
+        Some(Self { velocities, corrections_m_s, axial, contact_s, length_s })
+    }
+
+    /// ∫f of a channel since before contact, ringing led out in proportion to time, m/s.
+    fn at(&self, index: usize, time_s: f64) -> f64 {
+        let share = ((time_s - self.contact_s) / self.length_s).clamp(0.0, 1.0);
+        self.velocities[index].at(time_s) + share * self.corrections_m_s[index]
+    }
+
+    /// Mean over the axial channels of ∫f_ξ, m/s, and their mean position, m; `None` without any.
+    fn axial_mean(&self, time_s: f64) -> Option<(f64, f64)> {
+        #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
+        let n = self.axial.len() as f64;
+        let sums = self
+            .axial
+            .iter()
+            .fold((0.0, 0.0), |(v, x), &(i, position_m)| (v + self.at(i, time_s), x + position_m));
+        (n > 0.0).then_some((sums.0 / n, sums.1 / n))
+    }
+}
+
+/// The body while L is on the target.
+struct Contact {
+    state: MotionState,
+    transverse_m_s: f64,
+    axial_m_s: f64,
+    last_transverse_m_s: f64,
+    last_axial_m_s: f64,
+}
+
+impl Contact {
+    fn start(setup: &Setup, time_s: f64) -> Self {
+        let (sin, cos) = setup.angle_rad.sin_cos();
+        let state = MotionState {
+            time_s,
+            angle_rad: setup.angle_rad,
+            angular_velocity_rad_s: 0.0,
+            horizontal_velocity_m_s: 0.0,
+            vertical_velocity_m_s: -setup.impact_velocity_m_s,
+            height_m: -arm_m(setup, setup.angle_rad, -setup.cog_m).1,
+        };
+        Self {
+            state,
+            transverse_m_s: -setup.impact_velocity_m_s * cos,
+            axial_m_s: -setup.impact_velocity_m_s * sin,
+            last_transverse_m_s: 0.0,
+            last_axial_m_s: 0.0,
+        }
+    }
+
+    /// One step, given ∫f_η of S and Ω at its end, and for a measured axial velocity ∫f_ξ and where it was measured.
+    fn advance(
+        &mut self,
+        setup: &Setup,
+        step_s: f64,
+        integral_m_s: f64,
+        rotation_rad_s: f64,
+        axial: Option<(f64, f64)>,
+    ) {
+        let spin = -self.state.angular_velocity_rad_s;
+        let mean_spin = f64::midpoint(spin, rotation_rad_s);
+        let middle_rad = self.state.angle_rad + spin * step_s / 2.0;
+        let (sin_m, cos_m) = middle_rad.sin_cos();
+        let gained_m_s = integral_m_s - self.last_transverse_m_s;
+        self.last_transverse_m_s = integral_m_s;
+        let g = setup.gravity_m_s2;
+        self.transverse_m_s += gained_m_s - (g * cos_m + mean_spin * self.axial_m_s) * step_s;
+        let angle_rad = self.state.angle_rad + mean_spin * step_s;
+        let (sin, cos) = angle_rad.sin_cos();
+        self.axial_m_s = match (setup.axial, axial) {
+            (AxialClosure::Measured, Some((axial_m_s, position_m))) => {
+                let gained = axial_m_s - self.last_axial_m_s
+                    + mean_spin * mean_spin * (position_m - setup.cog_m) * step_s;
+                self.last_axial_m_s = axial_m_s;
+                self.axial_m_s + gained + (mean_spin * self.transverse_m_s - g * sin_m) * step_s
+            }
+            (AxialClosure::Sliding { friction_ppm }, _) => {
+                let friction = f64::from(friction_ppm) * 1e-6;
+                // f_x = μ f_z: f_ξ = f_η tan(φ + atan μ)   (18)
+                let gained = gained_m_s * (middle_rad + friction.atan()).tan();
+                self.axial_m_s + gained + (mean_spin * self.transverse_m_s - g * sin_m) * step_s
+            }
+            // ẋ_C = 0: v_ξ cos φ = v_η sin φ − Ω (c sin φ + (h/2) cos φ)   (18)
+            _ => {
+                let arm = setup.cog_m * sin + setup.height_m / 2.0 * cos;
+                (self.transverse_m_s * sin - rotation_rad_s * arm) / cos
+            }
+        };
+        let vertical_m_s = self.axial_m_s * sin + self.transverse_m_s * cos;
+        self.state = MotionState {
+            time_s: self.state.time_s + step_s,
+            angle_rad,
+            angular_velocity_rad_s: -rotation_rad_s,
+            horizontal_velocity_m_s: self.axial_m_s * cos - self.transverse_m_s * sin,
+            vertical_velocity_m_s: vertical_m_s,
+            height_m: self.state.height_m
+                + f64::midpoint(self.state.vertical_velocity_m_s, vertical_m_s) * step_s,
+        };
+    }
+
+    fn record(&self, curve: &mut MotionCurve, setup: &Setup) {
+        let s = &self.state;
+        let ahead_m = setup.length_m - setup.cog_m;
+        let second = corner(setup, s, ahead_m);
+        curve.time_s.push(s.time_s);
+        curve.angle_rad.push(s.angle_rad);
+        curve.angular_velocity_rad_s.push(s.angular_velocity_rad_s);
+        curve.first_end_vertical_m_s.push(corner(setup, s, -setup.cog_m).1);
+        curve.second_end_vertical_m_s.push(second.1);
+        curve.second_end_horizontal_m_s.push(second.0);
+        curve.first_end_height_m.push(corner_height_m(setup, s, -setup.cog_m));
+        curve.second_end_height_m.push(corner_height_m(setup, s, ahead_m));
+    }
+}

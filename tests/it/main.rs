@@ -1,0 +1,7 @@
+//! From the built program, the sources and the fixtures to the promises that hold across modules.
+
+mod command_line;
+mod fixtures;
+mod reference;
+mod run;
+mod tidy;

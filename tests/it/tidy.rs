@@ -1,0 +1,225 @@
+//! From the source text to who uses whom: holds the layers of `docs/architecture.md`, the length and the first line of files.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Longest file, lines: one sitting's reading.
+const LONGEST_FILE: usize = 400;
+
+/// Modules that turn one thing into the next and know only structs and mathematics.
+const STAGES: [&str; 9] =
+    ["ingest", "condition", "events", "motion", "fit", "predict", "compare", "judge", "report"];
+
+/// What a top-level module may use besides itself; `None` for a module that has no place in the layers yet.
+fn allowed(module: &str) -> Option<Vec<&'static str>> {
+    match module {
+        "data" | "numerics" => Some(vec![]),
+        "synth" => Some(vec!["data", "numerics"]),
+        "validate" => Some([&STAGES[..], &["data", "numerics", "synth", "analyze"]].concat()),
+        stage if STAGES.contains(&stage) => Some(vec!["data", "numerics"]),
+        _ => None,
+    }
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Every Rust file below `directory`, sorted.
+fn rust_files(directory: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            found.extend(rust_files(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The module path of a file below `src`: `src/a/b.rs` and `src/a/b/mod.rs` are both `[a, b]`.
+fn module_path(file: &Path) -> Vec<String> {
+    let relative = file.strip_prefix(root().join("src")).expect("below src").with_extension("");
+    let mut parts: Vec<String> = relative.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+    if parts.last().is_some_and(|last| last == "mod") {
+        parts.pop();
+    }
+    parts
+}
+
+/// The text without comments and strings, so that neither is taken for a path.
+fn code_of(text: &str) -> String {
+    let mut code = String::with_capacity(text.len());
+    for line in text.lines() {
+        let mut rest = line.split("//").next().unwrap_or_default();
+        while let Some((before, after)) = rest.split_once('"') {
+            code.push_str(before);
+            rest = after.split_once('"').map_or("", |(_, behind)| behind);
+        }
+        code.push_str(rest);
+        code.push('\n');
+    }
+    code
+}
+
+/// The first names of what follows `crate::` or the like: `a::b` gives a, `{a::b, c}` gives a and c.
+fn first_names(after: &str) -> Vec<String> {
+    let name = |text: &str| -> String {
+        text.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
+    };
+    let Some(group) = after.strip_prefix('{') else { return vec![name(after)] };
+    let (mut depth, mut item, mut names) = (0_i32, String::new(), Vec::new());
+    for c in group.chars() {
+        match c {
+            '{' => depth += 1,
+            '}' if depth == 0 => break,
+            '}' => depth -= 1,
+            ',' if depth == 0 => names.push(name(&std::mem::take(&mut item))),
+            _ => {}
+        }
+        item.push(c);
+    }
+    names.push(name(item.trim_start_matches(',')));
+    names.retain(|found| !found.is_empty());
+    names
+}
+
+/// Top-level modules that `code` in module `path` names, by `crate::` or by climbing out with `super::`.
+fn uses(code: &str, path: &[String]) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for (at, _) in code.match_indices("crate::") {
+        if !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '$') {
+            found.extend(first_names(&code[at + "crate::".len()..]));
+        }
+    }
+    let tests_begin = code.find("mod tests {").unwrap_or(code.len());
+    for (at, _) in code.match_indices("super::") {
+        if code[..at].ends_with("::") {
+            continue;
+        }
+        let mut after = &code[at..];
+        let mut climbed = 0;
+        while let Some(behind) = after.strip_prefix("super::") {
+            after = behind;
+            climbed += 1;
+        }
+        if climbed == path.len() + usize::from(at > tests_begin) {
+            found.extend(first_names(after));
+        }
+    }
+    found
+}
+
+/// Names that a file in `module` uses and may not.
+fn trespasses(code: &str, path: &[String]) -> Vec<String> {
+    let module = &path[0];
+    let allowed = allowed(module).unwrap_or_default();
+    uses(code, path).into_iter().filter(|used| used != module && !allowed.contains(&used.as_str())).collect()
+}
+
+#[test]
+fn stages_use_only_data_and_numerics() {
+    let mut wrong = Vec::new();
+    for file in rust_files(&root().join("src")) {
+        let path = module_path(&file);
+        match path.first().map(String::as_str) {
+            None | Some("lib" | "main" | "cli") => {}
+            Some(module) if allowed(module).is_none() => {
+                wrong.push(format!(
+                    "{}: `{module}` has no place in the layers; give it one in `allowed`",
+                    file.display()
+                ));
+            }
+            Some(_) => {
+                let code = code_of(&fs::read_to_string(&file).expect("UTF-8"));
+                wrong.extend(
+                    trespasses(&code, &path).iter().map(|used| format!("{} uses {used}", file.display())),
+                );
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "the star has become a chain:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_command_line_uses_the_public_api_only() {
+    for file in rust_files(&root().join("src")) {
+        let path = module_path(&file);
+        if !matches!(path.first().map(String::as_str), Some("main" | "cli")) {
+            continue;
+        }
+        let text = fs::read_to_string(&file).expect("UTF-8");
+        let private: Vec<String> =
+            uses(&code_of(&text), &path).into_iter().filter(|used| used != "cli").collect();
+        assert!(
+            private.is_empty(),
+            "{} uses {private:?} by `crate::`; take it from `dropcheck::`",
+            file.display()
+        );
+        assert!(!text.contains("#[path"), "{} includes another module's file", file.display());
+    }
+}
+
+#[test]
+fn recordings_are_opened_in_one_place() {
+    let owners = ["ingest", "cli", "main", "validate"];
+    for file in rust_files(&root().join("src")) {
+        let path = module_path(&file);
+        if path.first().is_some_and(|module| owners.contains(&module.as_str())) {
+            continue;
+        }
+        let code = code_of(&fs::read_to_string(&file).expect("UTF-8"));
+        let before_tests = code.split("#[cfg(test)]").next().unwrap_or_default();
+        for opening in ["File::open(", "fs::read(", "fs::read_to_string(", "fs::write(", "fs::rename("] {
+            assert!(!before_tests.contains(opening), "{} calls {opening}…)", file.display());
+        }
+    }
+}
+
+#[test]
+fn files_are_short_and_say_what_they_do() {
+    let mut wrong = Vec::new();
+    for directory in ["src", "tests", "benches"] {
+        for file in rust_files(&root().join(directory)) {
+            let text = fs::read_to_string(&file).expect("UTF-8");
+            let lines = text.lines().count();
+            if lines > LONGEST_FILE {
+                wrong.push(format!("{}: {lines} lines, at most {LONGEST_FILE}", file.display()));
+            }
+            if !text.starts_with("//! ") {
+                wrong.push(format!(
+                    "{}: the first line does not say what it turns into what (`//! …`)",
+                    file.display()
+                ));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn modules_are_named_for_what_they_are() {
+    for file in rust_files(&root().join("src")) {
+        for part in module_path(&file) {
+            let vague =
+                ["util", "utils", "helper", "helpers", "common", "manager", "misc"].contains(&part.as_str());
+            assert!(!vague, "{}: `{part}` says nothing", file.display());
+        }
+    }
+}
+
+#[test]
+fn the_reader_of_use_lines_sees_a_trespass() {
+    let path = ["fit".to_owned(), "modes".to_owned()];
+    let named = |text: &str| trespasses(&code_of(text), &path);
+    assert_eq!(named("use crate::ingest::read;"), ["ingest"]);
+    assert_eq!(named("use crate::{data::{A, B}, numerics, report::html};"), ["report"]);
+    assert_eq!(named("let x = super::super::compare::agree();"), ["compare"]);
+    assert_eq!(named("mod tests {\n use super::super::super::events::find;\n}"), ["events"]);
+    assert_eq!(named("mod tests {\n use super::*;\n use super::super::plateau;\n}"), [""; 0]);
+    assert_eq!(named("// crate::ingest\nlet s = \"crate::ingest\"; use crate::data::Cask;"), [""; 0]);
+}
