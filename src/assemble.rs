@@ -227,7 +227,12 @@ impl<'a> Draft<'a> {
             budget: self.quantities.map_or_else(Vec::new, |q| q.budget),
             settings: self.settings,
         };
-        Analysis { result, cask_file: self.cask_file.clone(), curves: self.curves }
+        Analysis {
+            result,
+            cask_file: self.cask_file.clone(),
+            curves: self.curves,
+            start_unix_ns: self.recording.start_unix_ns,
+        }
     }
 
     fn first_impact(&self) -> FirstImpact {

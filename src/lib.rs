@@ -43,9 +43,16 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     draft.events.first_contact_s = Some(contact.0);
     draft.events.release_s = release_s(recording, cask_file, contact.0);
     let reconstructed = flight_and_motion(&mut draft, &signals, contact);
+    judge::weigh_by_distance(&mut draft.issues, &draft.events);
     draft.issues.extend(judge::judge_channels(&signals, &draft.events));
     if let Some((flight, setup, motion, quantities)) = reconstructed {
         draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
+        draft.flight = Some(flight);
+        if draft.issues.iter().any(judge::invalidates) {
+            // What an error speaks against is not stated at all: the times and curves remain.
+            draft.draw(&signals);
+            return draft.finish();
+        }
         let compared =
             compare::compare(&predict::bodies(&cask_file.cask), cask_file, &quantities, &predict::predict);
         if let Some(comparison) = compared.as_ref().and_then(|c| c.1) {
@@ -54,7 +61,6 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         draft.measured(quantities, compared);
         draft.curves.motion = Some(motion.curve);
         draft.filter_effect(&signals, &setup);
-        draft.flight = Some(flight);
     }
     draft.draw(&signals);
     draft.finish()

@@ -38,7 +38,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     let cask_file = ingest::cask_file(&arguments.cask)?;
     let recording =
         with_progress("reading", |progress| ingest::read(&arguments.recording, &cask_file, progress))?;
-    let analysis = dropcheck::analyze(&recording, &cask_file)?;
+    let analysis = dropcheck::analyze(&recording, &cask_file);
 
     if let Some(folder) = &folder {
         folder.write(&report::files(&analysis)?)?;

@@ -71,7 +71,7 @@ fn analysed(
 ) -> miette::Result<CampaignRow> {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let recording = with_progress(&name, |progress| ingest::read(path, cask_file, progress))?;
-    let analysis = dropcheck::analyze(&recording, cask_file)?;
+    let analysis = dropcheck::analyze(&recording, cask_file);
     let mut row = CampaignRow::of(&analysis.result);
     if let Some((name, folder)) = folder {
         folder.write(&report::files(&analysis)?)?;

@@ -15,7 +15,7 @@ pub enum CannotWrite {
     #[error("{path} is a file, and --out needs a folder")]
     #[diagnostic(help("name a folder that does not exist yet, or an older report's"))]
     NotAFolder { path: String },
-    #[error("nothing can be written in {path}: {source}")]
+    #[error("nothing can be written in {path}")]
     #[diagnostic(help("choose another place, or change its permissions"))]
     NotWritable { path: String, source: io::Error },
     #[error("the folder {path} does not exist")]
@@ -33,10 +33,10 @@ pub enum CannotWrite {
     #[error("{path} is a folder, and a file of that name must be written")]
     #[diagnostic(help("choose another place, or remove it yourself"))]
     IsAFolder { path: String },
-    #[error("{path} could not be written: {source}")]
+    #[error("{path} could not be written")]
     #[diagnostic(help("see whether the disk is full; what was there before is unchanged"))]
     Failed { path: String, source: io::Error },
-    #[error("standard output could not be written: {source}")]
+    #[error("standard output could not be written")]
     StandardOutput { source: io::Error },
 }
 
@@ -78,10 +78,7 @@ impl Folder {
                 return Err(CannotWrite::IsAFolder { path: shown(target) });
             }
         }
-        let own = names
-            .iter()
-            .find(|name| name.ends_with(".json"))
-            .is_none_or(|name| is_own_json(&path.join(name)));
+        let own = names.iter().find(|name| is_json(name)).is_none_or(|name| is_own_json(&path.join(name)));
         match present.first() {
             Some(first) if !own => Err(CannotWrite::Foreign { path: shown(first) }),
             _ => Ok(Self { path: path.to_path_buf() }),
@@ -105,7 +102,7 @@ impl Folder {
                 write_whole(&staging.path().join(name), bytes).map_err(failed(&self.path.join(name)))?;
             }
             // The JSON goes first: it marks the folder as this program's, should a later move fail.
-            let (first, rest): (Vec<_>, Vec<_>) = files.iter().partition(|(name, _)| name.ends_with(".json"));
+            let (first, rest): (Vec<_>, Vec<_>) = files.iter().partition(|(name, _)| is_json(name));
             for (name, _) in first.into_iter().chain(rest) {
                 let target = self.path.join(name);
                 fs::rename(staging.path().join(name), &target).map_err(failed(&target))?;
@@ -267,6 +264,10 @@ fn writable(folder: &Path) -> Result<(), CannotWrite> {
 fn is_input(path: &Path, inputs: &[&Path]) -> bool {
     let Ok(path) = fs::canonicalize(path) else { return false };
     inputs.iter().any(|input| fs::canonicalize(input).is_ok_and(|input| input == path))
+}
+
+fn is_json(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|ending| ending == "json")
 }
 
 fn is_own_json(path: &Path) -> bool {

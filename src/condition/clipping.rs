@@ -9,14 +9,13 @@ const LEAST_RUN: usize = 3;
 /// converter enters its flat top with a slope of about one step a sample.
 const STEEPNESS: f64 = 8.0;
 
-/// Runs of `force` (samples `first..` of `channel`, m/s²) at the stated full scale or flat at an extreme, as indices into `force`.
-pub(super) fn clipped(channel: &Channel, force: &[f64], first: usize) -> Vec<Span> {
+/// Runs of `force` (m/s², of `channel`) at the stated full scale or flat at an extreme, as indices into `force`.
+pub(super) fn clipped(channel: &Channel, force: &[f64]) -> Vec<Span> {
     let mut spans = Vec::new();
     if let Some(limit) = channel.full_scale {
         let limit_m_s2 = (limit * channel.scale_m_s2).abs();
         spans.extend(runs(force, |f| f.abs() >= 0.999 * limit_m_s2));
     }
-    let _ = first;
     let (low, high) = force
         .iter()
         .filter(|f| f.is_finite())
@@ -97,7 +96,7 @@ mod tests {
 
     #[test]
     fn a_flat_top_is_found() {
-        let spans = clipped(&channel(None), &pulse(3000.0), 0);
+        let spans = clipped(&channel(None), &pulse(3000.0));
         assert_eq!(spans.len(), 1);
         assert!(spans[0].from > 40 && spans[0].to < 160);
     }
@@ -105,14 +104,14 @@ mod tests {
     #[test]
     fn a_rounded_top_of_a_coarse_converter_is_not() {
         let coarse: Vec<f64> = pulse(1e9).iter().map(|f| (f / 10.0).round() * 10.0).collect();
-        assert!(clipped(&channel(None), &coarse, 0).is_empty());
-        assert!(clipped(&channel(None), &pulse(1e9), 0).is_empty());
+        assert!(clipped(&channel(None), &coarse).is_empty());
+        assert!(clipped(&channel(None), &pulse(1e9)).is_empty());
     }
 
     #[test]
     fn the_stated_full_scale_counts() {
         // 300 g is 2942 m/s².
-        assert_eq!(clipped(&channel(Some(300.0)), &pulse(1e9), 0).len(), 1);
-        assert!(clipped(&channel(Some(500.0)), &pulse(1e9), 0).is_empty());
+        assert_eq!(clipped(&channel(Some(300.0)), &pulse(1e9)).len(), 1);
+        assert!(clipped(&channel(Some(500.0)), &pulse(1e9)).is_empty());
     }
 }

@@ -53,7 +53,7 @@ fn signal(channel: &Channel, event: &CoarseEvent, fall_s: f64) -> (Signal, Vec<I
             whole.split_off(from.min(whole.len()))
         }
     };
-    let clipped = clipping::clipped(channel, &force, from);
+    let clipped = clipping::clipped(channel, &force);
     let gaps = missing(&force);
     for f in &mut force {
         if !f.is_finite() {

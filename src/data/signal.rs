@@ -68,6 +68,25 @@ impl Signal {
         self.time_s(self.force_m_s2.len().saturating_sub(1))
     }
 
+    /// Velocity that clipping between two times has cut off, m/s, estimated by a cubic over each flat top: (ṡ_in + ṡ_out) T² / 12.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+    pub fn lost_to_clipping_m_s(&self, from_s: f64, to_s: f64) -> f64 {
+        let force = |i: usize| self.force_m_s2.get(i).copied();
+        self.clipped
+            .iter()
+            .filter(|span| self.time_s(span.from) < to_s && self.time_s(span.to) > from_s)
+            .map(|span| {
+                let length_s = (span.to - span.from) as f64 / self.sample_rate_hz;
+                let level = force(span.from).unwrap_or(0.0);
+                let slope = |i: Option<usize>| {
+                    i.and_then(force).map_or(0.0, |f| (level - f).abs() * self.sample_rate_hz)
+                };
+                (slope(span.from.checked_sub(1)) + slope(Some(span.to))) * length_s * length_s / 12.0
+            })
+            .sum()
+    }
+
     /// Whether any of `spans` lies in `from_s..to_s`.
     #[must_use]
     pub fn touches(&self, spans: &[Span], from_s: f64, to_s: f64) -> bool {

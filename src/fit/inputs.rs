@@ -13,7 +13,7 @@ const U_IMPACT_VELOCITY: f64 = 0.0015;
 const U_POSITION_M: f64 = 0.005;
 /// Share of the difference to the other contact law that counts as standard uncertainty: the law is the cask file's word, and
 /// between rough and smooth real contacts lie near the rough end (Quercetti et al.: no sliding was seen).
-const LAW_SHARE: f64 = 0.1;
+const LAW_SHARE: f64 = 0.05;
 
 /// One set of inputs.
 #[derive(Debug, Clone)]
@@ -107,7 +107,8 @@ pub(super) fn variations(measured: &Measured) -> Vec<Variation> {
         } else {
             signal.u_offset_m_s2 * (pulse_s + (measured.flight.to_s - measured.flight.from_s) / 2.0)
         };
-        let u = plateau.u_m_s.hypot(shift_m_s).hypot(drift_m_s);
+        let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
+        let u = plateau.u_m_s.hypot(shift_m_s).hypot(drift_m_s).hypot(clipped_m_s);
         add(
             format!("velocity step of {}", signal.name),
             format!("{u:.3} m/s"),

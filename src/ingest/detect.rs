@@ -13,13 +13,15 @@ const HEAD_BYTES: u64 = 1 << 16;
 const FORMATS: &str = "dropcheck reads MCAP, HDF5 and delimited text (CSV)";
 
 /// Formats that are met at test sites and are not read, by their first bytes, with what to do.
-const STRANGERS: [(&[u8], &str, &str); 8] = [
+const STRANGERS: [(&[u8], &str, &str); 10] = [
     (b"#ROSBAG", "a ROS 1 bag", "convert it to MCAP: `mcap convert in.bag out.mcap`"),
     (
         b"SQLite format 3",
         "a SQLite file, perhaps a ROS 2 bag",
         "convert it to MCAP: `ros2 bag convert` or `mcap convert`",
     ),
+    (b"\xff\xfe", "text in UTF-16", "save it as UTF-8"),
+    (b"\xfe\xff", "text in UTF-16", "save it as UTF-8"),
     (b"TDSm", "a TDMS file", "export it from the data acquisition as HDF5 or CSV"),
     (b"MDF ", "an ASAM MDF file", "export it as HDF5 or CSV"),
     (b"UnFinMF", "an unfinalised ASAM MDF file", "finalise it and export it as HDF5 or CSV"),
@@ -109,6 +111,9 @@ fn stranger(path: &Path, head: &[u8]) -> IngestError {
     if let Some((_, what, mend)) = STRANGERS.iter().find(|(magic, ..)| head.starts_with(magic)) {
         return unknown(path, &format!("it is {what}"), mend);
     }
+    if head.windows(11).any(|window| window == b"[[channel]]") {
+        return unknown(path, "it is a cask file", "name the recording first, and this file after `--cask`");
+    }
     if head.starts_with(b"\x89MCAP") {
         let what = if head.len() < MCAP_MAGIC.len() {
             format!("it begins as MCAP and ends after {} bytes", head.len())
@@ -188,6 +193,8 @@ mod tests {
                 "text without rows",
             ),
             (b"#ROSBAG V2.0\n", "ROS 1"),
+            (b"[cask]\nname = \"x\"\n\n[[channel]]\n", "cask file"),
+            (b"\xff\xfet\0", "UTF-16"),
             (b"\x89MCA", "89 4d 43 41"),
             (b"\x89MCAP", "ends after 5 bytes"),
             (b"\x00\x01\x02\x03", "00 01 02 03"),

@@ -84,15 +84,6 @@ pub(super) fn source(
     }
 }
 
-/// A format whose reader is not there yet.
-pub(super) fn not_built(path: &Path) -> IngestError {
-    IngestError::UnknownFormat {
-        path: path.display().to_string(),
-        found: "its reader is not built yet".into(),
-        mend: String::new(),
-    }
-}
-
 /// "did you mean …" with the names in `there` that are nearest to `wanted`, or what there is, cut to a handful.
 pub(super) fn near_names(path: &Path, wanted: &str, what: &str, there: &[String]) -> String {
     /// More than this many names no longer fit a terminal's few lines.
@@ -116,7 +107,7 @@ pub(super) fn near_names(path: &Path, wanted: &str, what: &str, there: &[String]
         more => format!(" and {more} more"),
     };
     let listed = listed.join(", ");
-    format!("{hint}the recording holds: {listed}{more}; `dropcheck inspect {}` lists all", path.display())
+    format!("{hint}there is: {listed}{more}; `dropcheck inspect {}` lists all", path.display())
 }
 
 #[cfg(test)]

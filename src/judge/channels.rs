@@ -5,6 +5,9 @@ use crate::data::{Axis, End, Events, Issue, IssueCode, Severity, Signal};
 /// Fewest samples over a first pulse for its onset and area to be right within 1 % (measured: half sine, trapezoid).
 const LEAST_PULSE_SAMPLES: f64 = 10.0;
 
+/// Velocity that clipping may cut off before the slap-down and leave something to measure, m/s: 2 % of a 9 m fall's.
+const MOST_LOST_M_S: f64 = 0.27;
+
 /// A dead channel's noise is at most this share of the other channels' median peak.
 const DEAD_SHARE: f64 = 1e-3;
 
@@ -44,35 +47,47 @@ pub fn judge_channels(signals: &[Signal], events: &Events) -> Vec<Issue> {
     issues
 }
 
+/// One issue a channel and phase: what stands at a limit before, between and after the impacts.
 fn clipped(signal: &Signal, events: &Events) -> Vec<Issue> {
     let separation_s = events.separation_s.unwrap_or(f64::INFINITY);
     let slap_down_s = events.slap_down_s.unwrap_or(f64::INFINITY);
-    signal
-        .clipped
-        .iter()
-        .map(|span| {
-            let (from_s, to_s) = (signal.time_s(span.from), signal.time_s(span.to));
-            let where_ = if from_s <= separation_s {
-                "in the first impact: its velocity step, the rebound and the slap-down speed are too small"
-            } else if from_s >= slap_down_s {
-                "after the slap-down began: the speed before it is not affected, the peak is"
-            } else {
-                "in the flight"
-            };
+    let phases = [
+        (f64::NEG_INFINITY, separation_s, "in the first impact"),
+        (separation_s, slap_down_s, "in the flight"),
+        (
+            slap_down_s,
+            f64::INFINITY,
+            "from the slap-down on, which leaves the speed before it as it is but not the peak",
+        ),
+    ];
+    let mut issues = Vec::new();
+    for (from_s, to_s, when) in phases {
+        let spans: Vec<_> =
+            signal.clipped.iter().filter(|s| (from_s..to_s).contains(&signal.time_s(s.from))).collect();
+        let (Some(first), Some(last)) = (spans.first(), spans.last()) else { continue };
+        let lost_m_s = signal.lost_to_clipping_m_s(from_s, to_s);
+        let counts = from_s < slap_down_s && lost_m_s > MOST_LOST_M_S;
+        let effect = if from_s < slap_down_s {
+            format!("; about {lost_m_s:.2} m/s of velocity is cut off")
+        } else {
+            String::new()
+        };
+        let number: usize = spans.iter().map(|s| s.to - s.from).sum();
+        issues.push(
             Issue::new(
                 IssueCode::Clipped,
-                Severity::Warning,
+                if counts { Severity::Error } else { Severity::Warning },
                 format!(
-                    "{} stands at {:.0} g for {} samples, {where_}. Use a sensor or range with more head-room",
+                    "{} stands at its limit of {:.0} g for {number} samples {when}{effect}. Use a sensor or range with more head-room",
                     signal.name,
-                    (signal.force_m_s2[span.from] + signal.removed_offset_m_s2) / 9.806_65,
-                    span.to - span.from
+                    (signal.force_m_s2[first.from] + signal.removed_offset_m_s2).abs() / 9.806_65,
                 ),
             )
             .on(&signal.name)
-            .between(from_s, to_s)
-        })
-        .collect()
+            .between(signal.time_s(first.from), signal.time_s(last.to)),
+        );
+    }
+    issues
 }
 
 fn lost(signal: &Signal, contact_s: f64, separation_s: f64, slap_down_s: Option<f64>) -> Option<Issue> {

@@ -6,7 +6,34 @@ mod result;
 pub use channels::judge_channels;
 pub use result::{judge_comparison, judge_motion};
 
-use crate::data::{Issue, Severity, Verdict};
+use crate::data::{Events, Issue, IssueCode, Severity, Verdict};
+
+/// Free fall before first contact that the offset may come from, s.
+const OFFSET_WINDOW_S: f64 = 0.25;
+/// Into the slap-down, s: its onset.
+const ONSET_S: f64 = 2e-3;
+
+/// What was lost or jitters far from the event does not weigh on the result: such warnings become notes.
+pub fn weigh_by_distance(issues: &mut [Issue], events: &Events) {
+    let Some(contact_s) = events.first_contact_s else { return };
+    let from_s = contact_s - OFFSET_WINDOW_S;
+    let to_s = events.slap_down_s.map_or(f64::INFINITY, |t| t + ONSET_S);
+    for issue in issues {
+        let local = matches!(issue.code, IssueCode::Gap | IssueCode::NonFinite | IssueCode::DuplicateBlocks);
+        if let (true, Severity::Warning, Some(from), Some(to)) =
+            (local, issue.severity, issue.from_s, issue.to_s)
+            && (to < from_s || from > to_s)
+        {
+            issue.severity = Severity::Note;
+        }
+    }
+}
+
+/// Whether an issue takes away what was read off the motion; a missing slap-down leaves the first impact as it is.
+#[must_use]
+pub fn invalidates(issue: &Issue) -> bool {
+    issue.severity == Severity::Error && !matches!(issue.code, IssueCode::EndsEarly | IssueCode::NoSlapDown)
+}
 
 /// Sorts the findings, errors first, and says what they amount to: any error fails, any warning asks for a review.
 #[must_use]

@@ -1,13 +1,13 @@
 //! The sections of `report.html`: tables of what was tested, found, predicted, and where it came from.
 
 use super::grid::STANDARD_GRAVITY_M_S2;
-use super::prediction::contact_words;
+use super::prediction::{KEPT_SENTENCE, contact_words, kept_mark};
 use super::rounding::{
     MISSING, fixed, interval, optional, optional_fixed, parts, percent, plain, significant,
 };
 use super::table::{FIRST_IMPACT_CODES, SLAP_DOWN_CODES, end_axis};
 use super::text::{code_word, format_word, printable, reason, severity_word, span_text};
-use crate::data::{Analysis, DropResult, Estimate, Issue, IssueCode, ModelCandidate};
+use crate::data::{Analysis, DropResult, Estimate, FlightRegime, Issue, IssueCode, ModelCandidate};
 use maud::{Markup, html};
 
 /// The cask, the drop and the contact; what is a default is marked.
@@ -184,7 +184,7 @@ pub(super) fn predictions(result: &DropResult) -> Markup {
                     th class="n" { "Angle, °" } th class="n" { "Energy" } th class="n" { "Impacts of the first end" }
                 } }
                 tbody { @for p in &result.predictions { tr {
-                    td { (p.model.as_str()) } td { (contact_words(p.contact)) } td class="n" { (plain(p.k, 3)) }
+                    td { (p.model.as_str()) } td { (contact_words(p.contact)) (kept_mark(p.regime)) } td class="n" { (plain(p.k, 3)) }
                     td class="n" { (optional_fixed(p.slap_down_speed_m_s, 2)) }
                     td class="n" { (optional_fixed(p.vertical_velocity_m_s, 2)) }
                     td class="n" { (optional_fixed(p.horizontal_velocity_m_s, 2)) }
@@ -195,6 +195,7 @@ pub(super) fn predictions(result: &DropResult) -> Markup {
                     td class="n" { (p.first_end_impacts) }
                 } } }
             }
+            @if result.predictions.iter().any(|p| p.regime == FlightRegime::Contact) { p class="note" { (KEPT_SENTENCE) } }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What a recording holds to the table of `inspect`, 80 columns wide.
 
 use super::columns::columns;
-use super::rounding::{MISSING, plain, significant};
+use super::rounding::{MISSING, plain};
 use super::table::quality;
 use super::text::{Style, WIDTH, format_word, line, printable, styled, tail, wrap};
 use crate::data::{ListedChannel, Listing};
@@ -28,9 +28,7 @@ pub fn table(listing: &Listing) -> String {
     if listing.channels.is_empty() {
         out.push_str("  none\n");
     } else {
-        let rows: Vec<Vec<String>> = listing.channels.iter().map(cells).collect();
-        let header = ["source", "samples", "rate", "unit", "start", "length", "gaps", "range"];
-        out.push_str(&columns(&header, &rows, &[1, 2, 4, 5, 6]));
+        out.push_str(&sources(&listing.channels));
     }
     for channel in &listing.channels {
         if let Some(reason) = &channel.unreadable {
@@ -45,9 +43,41 @@ pub fn table(listing: &Listing) -> String {
     out
 }
 
+/// Heads of the columns of [`cells`], and which of them are said in one sentence where all sources share them.
+const HEADER: [(&str, bool); 8] = [
+    ("source", false),
+    ("samples", false),
+    ("rate", false),
+    ("unit", false),
+    ("start", true),
+    ("length", true),
+    ("gaps", true),
+    ("range", false),
+];
+
+fn sources(channels: &[ListedChannel]) -> String {
+    let rows: Vec<Vec<String>> = channels.iter().map(cells).collect();
+    let shared = |i: usize| rows.len() > 1 && HEADER[i].1 && rows.iter().all(|row| row[i] == rows[0][i]);
+    let shown: Vec<usize> = (0..HEADER.len()).filter(|i| !shared(*i)).collect();
+    let header: Vec<&str> = shown.iter().map(|i| HEADER[*i].0).collect();
+    let right: Vec<usize> =
+        (0..shown.len()).filter(|i| (1..7).contains(&shown[*i]) && shown[*i] != 3).collect();
+    let cut: Vec<Vec<String>> =
+        rows.iter().map(|row| shown.iter().map(|i| row[*i].clone()).collect()).collect();
+    let mut out = columns(&header, &cut, &right);
+    let common: Vec<String> = (0..HEADER.len())
+        .filter(|i| shared(*i) && rows[0][*i] != MISSING)
+        .map(|i| format!("{} {}", HEADER[i].0, rows[0][i]))
+        .collect();
+    if !common.is_empty() {
+        out.push_str(&wrap(&format!("Every source: {}.", common.join(", ")), WIDTH, 2));
+    }
+    out
+}
+
 fn cells(channel: &ListedChannel) -> Vec<String> {
     let samples = channel.samples.or(channel.messages);
-    let seconds = |t: Option<f64>| t.map_or_else(|| MISSING.to_owned(), |t| format!("{} s", plain(t, 4)));
+    let seconds = |t: Option<f64>| t.map_or_else(|| MISSING.to_owned(), |t| format!("{} s", plain(t, 3)));
     vec![
         channel.source.clone(),
         samples.map_or_else(|| MISSING.to_owned(), |n| n.to_string()),
@@ -58,7 +88,7 @@ fn cells(channel: &ListedChannel) -> Vec<String> {
         channel.gaps.map_or_else(|| MISSING.to_owned(), |n| n.to_string()),
         channel.range.map_or_else(
             || MISSING.to_owned(),
-            |(low, high)| format!("{} … {}", significant(low, 3), significant(high, 3)),
+            |(low, high)| format!("{} … {}", plain(low, 3), plain(high, 3)),
         ),
     ]
 }

@@ -35,19 +35,19 @@ use crate::data::Analysis;
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ReportError {
     /// The JSON writer failed.
-    #[error("the JSON of the result could not be written: {0}")]
+    #[error("the JSON of the result could not be written")]
     Json(#[from] serde_json::Error),
     /// The CSV writer failed.
-    #[error("the CSV table could not be written: {0}")]
+    #[error("the CSV table could not be written")]
     Csv(#[from] csv::Error),
     /// The MCAP writer failed.
-    #[error("curves.mcap could not be written: {0}")]
+    #[error("curves.mcap could not be written")]
     Mcap(#[from] mcap::McapError),
     /// The HDF5 library failed.
-    #[error("curves.h5 could not be written: {0}")]
+    #[error("curves.h5 could not be written")]
     Hdf5(#[from] hdf5_metno::Error),
     /// The scratch file of the HDF5 library failed.
-    #[error("curves.h5 needs a scratch file in {folder}, and that failed: {source}")]
+    #[error("curves.h5 needs a scratch file in {folder}, and that failed")]
     #[diagnostic(help("make room there, or set TMPDIR to a folder with room"))]
     Scratch {
         /// The folder for temporary files.

@@ -4,7 +4,7 @@ use super::ReportError;
 use super::columns::columns;
 use super::rounding::{optional_fixed, plain};
 use super::text::{Style, WIDTH, styled_lines, wrap};
-use crate::data::{CaskFile, Contact, Prediction};
+use crate::data::{CaskFile, Contact, FlightRegime, Prediction};
 use serde::Serialize;
 
 /// A prediction at its angle.
@@ -28,7 +28,7 @@ pub(super) const RIGHT: [usize; 7] = [2, 3, 4, 5, 6, 7, 8];
 pub(super) fn cells(p: &Prediction) -> Vec<String> {
     vec![
         p.model.as_str().to_owned(),
-        contact_words(p.contact),
+        format!("{}{}", contact_words(p.contact), kept_mark(p.regime)),
         plain(p.k, 3),
         optional_fixed(p.slap_down_speed_m_s, 2),
         optional_fixed(p.vertical_velocity_m_s, 2),
@@ -37,6 +37,21 @@ pub(super) fn cells(p: &Prediction) -> Vec<String> {
         optional_fixed(p.flight_time_s.map(|t| t * 1e3), 1),
         optional_fixed(p.energy_ratio, 3),
     ]
+}
+
+/// What marks a prediction whose first end stays on the target.
+const KEPT_MARK: &str = "†";
+
+/// What the mark means.
+pub(super) const KEPT_SENTENCE: &str =
+    "† the first end stays on the target until the second strikes; in all other cases it flies.";
+
+/// The mark, where it applies.
+pub(super) fn kept_mark(regime: FlightRegime) -> &'static str {
+    match regime {
+        FlightRegime::Free => "",
+        FlightRegime::Contact => KEPT_MARK,
+    }
 }
 
 /// "rough", "smooth" or "μ 0.4".
@@ -72,6 +87,9 @@ pub fn table(rows: &[PredictionRow], file: &CaskFile) -> String {
     let mut out = format!("{title}\n{}", columns(&header, &cells, &right));
     if rows.iter().any(|row| row.prediction.slap_down_speed_m_s.is_none()) {
         out.push_str(&wrap("– the second end never strikes by this impact alone.", WIDTH, 2));
+    }
+    if rows.iter().any(|row| row.prediction.regime == FlightRegime::Contact) {
+        out.push_str(&wrap(KEPT_SENTENCE, WIDTH, 2));
     }
     if rows.iter().any(|row| row.prediction.first_end_impacts > 1) {
         let text = "The first end touches the target again before the second strikes in some of these cases.";
@@ -118,6 +136,7 @@ pub fn csv(rows: &[PredictionRow]) -> Result<Vec<u8>, ReportError> {
         "slap_down_angle_deg",
         "first_end_impacts",
         "impulse_ratio",
+        "regime",
     ])?;
     let cell =
         |value: Option<f64>| value.filter(|v| v.is_finite()).map_or_else(String::new, |v| v.to_string());
@@ -136,6 +155,7 @@ pub fn csv(rows: &[PredictionRow]) -> Result<Vec<u8>, ReportError> {
             cell(p.slap_down_angle_deg),
             p.first_end_impacts.to_string(),
             cell(Some(p.impulse_ratio)),
+            p.regime.to_string(),
         ])?;
     }
     writer.into_inner().map_err(|error| ReportError::Csv(csv::Error::from(error.into_error())))

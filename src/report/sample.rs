@@ -3,8 +3,8 @@
 use crate::data::{
     Analysis, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelSpec, ChannelSummary, Comparison,
     Contact, Coupling, Curves, Drop, DropResult, End, Estimate, Events, FilterChoice, FirstImpact, FlightFit,
-    FlightModelScore, Input, Issue, IssueCode, Mode, ModelCandidate, ModelChoice, MotionCurve, Plateau,
-    Prediction, RecordingFormat, Setting, Severity, SlapDown, Source, Spectrum, Unit, Verdict,
+    FlightModelScore, FlightRegime, Input, Issue, IssueCode, Mode, ModelCandidate, ModelChoice, MotionCurve,
+    Plateau, Prediction, RecordingFormat, Setting, Severity, SlapDown, Source, Spectrum, Unit, Verdict,
 };
 use std::f64::consts::PI;
 
@@ -102,6 +102,7 @@ fn result() -> DropResult {
             summary("A2", End::Second, "/daq/a2.samples"),
         ],
         flight: Some(flight()),
+        budget: Vec::new(),
         settings: settings(),
     }
 }
@@ -150,6 +151,7 @@ fn predictions() -> Vec<Prediction> {
         slap_down_angle_deg: Some(-4.0 - 1.9 * k),
         first_end_impacts: 1,
         impulse_ratio: 0.41,
+        regime: FlightRegime::Free,
     })
     .to_vec()
 }
@@ -192,7 +194,9 @@ fn flight() -> FlightFit {
         u_m_s: 0.021,
         zero_shift_m_s2: 0.0,
         u_zero_shift_m_s2: 0.0,
+        ringing_m_s: vec![(0.1, 0.9)],
         residual_m_s: 0.032,
+        ringing_m_s: vec![(0.7, -0.4)],
     };
     let score = |modes, drift, bic, residual_m_s| FlightModelScore { modes, drift, bic, residual_m_s };
     FlightFit {

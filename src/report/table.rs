@@ -8,7 +8,9 @@ use super::text::{
     self, Style, WIDTH, code_word, format_word, line, printable, severity_word, span_text, styled,
     styled_lines, tail, verdict_sentence, verdict_word, wrap,
 };
-use crate::data::{Analysis, CaskFile, DropResult, End, Estimate, Issue, IssueCode, Severity, Verdict};
+use crate::data::{
+    Analysis, CaskFile, DropResult, End, Estimate, FlightRegime, Issue, IssueCode, Severity, Verdict,
+};
 
 /// Columns that the name of a quantity takes.
 const NAME_WIDTH: usize = 22;
@@ -172,11 +174,12 @@ fn predictions(result: &DropResult) -> String {
         return String::new();
     }
     let rows: Vec<Vec<String>> = result.predictions.iter().map(super::prediction::cells).collect();
-    format!(
-        "{}{}",
-        heading("Predictions"),
-        columns(&super::prediction::HEADER, &rows, &super::prediction::RIGHT)
-    )
+    let mut out = heading("Predictions");
+    out.push_str(&columns(&super::prediction::HEADER, &rows, &super::prediction::RIGHT));
+    if result.predictions.iter().any(|p| p.regime == FlightRegime::Contact) {
+        out.push_str(&wrap(super::prediction::KEPT_SENTENCE, WIDTH, 2));
+    }
+    out
 }
 
 fn channels(result: &DropResult) -> String {

@@ -35,16 +35,22 @@ pub fn cask_file(listing: &Listing) -> String {
     let taken = accelerations(listing);
     if taken.is_empty() {
         out.push_str("# No source in this recording looks like an acceleration. Name yours here:\n");
-        channel(&mut out, 0, None);
-        channel(&mut out, 1, None);
+        channel(&mut out, 0, true, None);
+        channel(&mut out, 1, false, None);
     }
+    let mut devices: Vec<&str> = Vec::new();
     for (i, listed) in taken.iter().enumerate() {
-        channel(&mut out, i, Some(listed));
+        let device = device(&listed.source);
+        let place = devices.iter().position(|known| *known == device).unwrap_or_else(|| {
+            devices.push(device);
+            devices.len() - 1
+        });
+        channel(&mut out, i, place.is_multiple_of(2), Some(listed));
     }
     let left: Vec<&ListedChannel> =
         listing.channels.iter().filter(|c| !taken.iter().any(|t| t.source == c.source)).collect();
     if !left.is_empty() {
-        out.push_str("\n# Also in the recording, but it does not look like an acceleration:\n");
+        out.push_str("\n# Also in the recording, but it does not move or does not look like an acceleration in the plane of the drop:\n");
         for listed in left {
             line(&mut out, format_args!("#   {}", printable(&listed.source)));
         }
@@ -106,9 +112,9 @@ angle_deg = 15.0            # {FILL_IN}: inclination of the axis above the horiz
     out
 }
 
-fn channel(out: &mut String, index: usize, listed: Option<&&ListedChannel>) {
+fn channel(out: &mut String, index: usize, guessed_first: bool, listed: Option<&&ListedChannel>) {
     let source = listed.map_or("/topic.field", |c| c.source.as_str());
-    let first = names_end(source).unwrap_or(index.is_multiple_of(2));
+    let first = names_end(source).unwrap_or(guessed_first);
     let (end, position) = if first { ("first", "0.0") } else { ("second", "5.0") };
     let axial = source.rsplit('.').next() == Some("x") && source.contains("acceleration");
     let axis = if axial { "axial" } else { "transverse" };
@@ -133,15 +139,23 @@ fn channel(out: &mut String, index: usize, listed: Option<&&ListedChannel>) {
          # full_scale = 2000.0       # in `unit`: where the channel clips\n",
     );
     match listed.and_then(|c| c.sample_rate_hz) {
-        Some(_) => out.push_str("# sample_rate_hz = 100000.0  # overrides what the recording says\n"),
+        Some(_) => out.push_str("# sample_rate_hz = 100000.0 # overrides what the recording says\n"),
         None => out.push_str(
-            "# sample_rate_hz = 100000.0  # needed where the recording has neither rate nor times\n",
+            "# sample_rate_hz = 100000.0 # needed where the recording has neither rate nor times\n",
         ),
     }
     out.push_str(
         "# time = \"/daq/time_s\"      # this channel's own times (CSV column, HDF5 dataset)\n\
          # coupling = \"dc\"           # or \"ac\", then also time_constant_s = 0.3\n",
     );
+}
+
+/// What the axes of one sensor share: the topic of a message path with a vector, else the source itself.
+fn device(source: &str) -> &str {
+    match source.split_once('.') {
+        Some((topic, field)) if source.starts_with('/') && field.contains('.') => topic,
+        _ => source,
+    }
 }
 
 fn unit(out: &mut String, told: Option<&str>) {
@@ -214,7 +228,10 @@ fn accelerations(listing: &Listing) -> Vec<&ListedChannel> {
         .filter(|c| !c.source.ends_with("linear_acceleration.y"))
         .copied()
         .collect();
-    if likely.is_empty() { numeric } else { likely }
+    let taken = if likely.is_empty() { numeric } else { likely };
+    // A source that never changes is an axis that nobody connected, unless nothing else is there.
+    let moves = |c: &&ListedChannel| c.range.is_none_or(|(low, high)| low < high);
+    if taken.iter().any(moves) { taken.into_iter().filter(moves).collect() } else { taken }
 }
 
 /// Whether `word` stands in `source` between letters of another kind.

@@ -41,9 +41,13 @@ fn sequences_strings_and_narrow_integers_are_walked_through() {
         writer.write_u8(y);
     }
     writer.write_sequence_length(3);
-    [-1, 2, -300].into_iter().for_each(|value| writer.write_i16(value));
+    for value in [-1, 2, -300] {
+        writer.write_i16(value);
+    }
     writer.write_sequence_length(2);
-    [0.5, 0.25].into_iter().for_each(|value| writer.write_f32(value));
+    for value in [0.5, 0.25] {
+        writer.write_f32(value);
+    }
     writer.write_u8(1);
     writer.write_f64(8.25);
     let mut data = vec![0, 1, 0, 0];

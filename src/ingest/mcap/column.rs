@@ -24,6 +24,9 @@ pub(super) fn message_time(stamp: &Value, log_time_ns: i64) -> (i64, TimeOrigin)
     }
 }
 
+/// 6 January 1980, ns since 1970: the origin of GPS time. A clock that shows less counts from its own start.
+pub(super) const CLOCK_IS_SET_NS: i64 = 315_964_800_000_000_000;
+
 /// The samples of one message with an array.
 #[derive(Debug, Clone)]
 struct RawBlock {
@@ -65,6 +68,8 @@ pub(super) struct Column {
     /// Why the first malformed message is so.
     pub(super) first_problem: Option<String>,
     mark: Mark,
+    /// Which sample or block came first with a stamp of exactly zero.
+    zero_stamp: Option<usize>,
 }
 
 impl Default for Column {
@@ -77,6 +82,7 @@ impl Default for Column {
             unit: None,
             first_problem: None,
             mark: Mark::default(),
+            zero_stamp: None,
         }
     }
 }
@@ -119,7 +125,10 @@ impl Column {
         }
         match time.1 {
             TimeOrigin::Stamp => self.tally.stamps += 1,
-            TimeOrigin::LogTimeForBadStamp => self.tally.bad_stamps += 1,
+            TimeOrigin::LogTimeForBadStamp => {
+                self.tally.bad_stamps += 1;
+                self.zero_stamp = Some(self.times_ns.len().max(self.blocks.len()) - 1);
+            }
             TimeOrigin::LogTime => {}
         }
     }
@@ -145,6 +154,27 @@ impl Column {
         }
         self.blocks.truncate(self.mark.blocks);
         self.tally = self.mark.tally;
+    }
+
+    /// Takes a single stamp of zero for a time where the other stamps show a clock that counts from its own start.
+    pub(super) fn settle_clock(&mut self) {
+        let (1, Some(position)) = (self.tally.bad_stamps, self.zero_stamp) else { return };
+        let is_own_clock = |time_ns: i64| time_ns.abs() < CLOCK_IS_SET_NS;
+        let others = self.times_ns.iter().copied().chain(self.blocks.iter().map(|block| block.time_ns));
+        if self.tally.stamps == 0
+            || !others.enumerate().all(|(index, time_ns)| index == position || is_own_clock(time_ns))
+        {
+            return;
+        }
+        let place = match self.blocks.get_mut(position) {
+            Some(block) => Some(&mut block.time_ns),
+            None => self.times_ns.get_mut(position),
+        };
+        if let Some(time_ns) = place {
+            *time_ns = 0;
+            self.tally.bad_stamps = 0;
+            self.tally.stamps += 1;
+        }
     }
 
     /// Whether there are no samples.
@@ -276,6 +306,25 @@ mod tests {
         assert_eq!(column.span_ns(), Some((1, 1)));
         assert_eq!(column.tally, Tally { messages: 1, stamps: 1, ..Tally::default() });
         assert_eq!(column.numbers, Samples::F32(vec![1.0]));
+    }
+
+    #[test]
+    fn a_clock_that_starts_at_zero_is_no_missing_stamp() {
+        let column = |step_ns: i64| {
+            let mut column = Column::default();
+            column.take(block(&[1.0, 2.0]), message_time(&Value::Stamp(0), 1_700_000_000_000_000_000), None);
+            column.take(
+                block(&[3.0, 4.0]),
+                message_time(&Value::Stamp(step_ns), 1_700_000_000_002_000_000),
+                None,
+            );
+            column.settle_clock();
+            column
+        };
+        assert_eq!(column(2_000_000).span_ns(), Some((0, 2_000_000)));
+        assert_eq!(column(2_000_000).tally.bad_stamps, 0);
+        // A clock that is set: there zero is no time.
+        assert_eq!(column(1_700_000_000_002_000_000).span_ns().unwrap().0, 1_700_000_000_000_000_000);
     }
 
     #[test]

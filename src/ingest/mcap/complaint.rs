@@ -110,7 +110,7 @@ pub(super) fn no_base(path: &Path, spec: &ChannelSpec, problem: &ColumnError) ->
 /// `mend`, and before it what the file has lost, where that may be why.
 fn lost(scanned: &Scanned, mend: &str) -> String {
     match scanned.issues().first() {
-        Some(issue) => format!("{}. {mend}", issue.message),
+        Some(issue) => format!("{}; {mend}", issue.message),
         None => mend.to_owned(),
     }
 }

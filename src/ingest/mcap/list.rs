@@ -1,11 +1,11 @@
 //! An MCAP file to its listing: every numeric field of every topic, read once and kept nowhere.
 
-use super::column::{message_time, seconds_from};
+use super::column::{CLOCK_IS_SET_NS, TimeOrigin, message_time, seconds_from};
 use super::json;
 use super::message_type::{MessageType, implied_unit};
 use super::path::{FieldPath, source_text};
 use super::plan::{Decode, Leaf, Plan, Slots, Value};
-use super::running::{Running, Segment};
+use super::running::{MOST_SEGMENTS, Running, Segment};
 use super::scan::scan;
 use super::scanned::{ChannelInfo, Scanned, Sink};
 use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Severity};
@@ -22,6 +22,10 @@ pub(in crate::ingest) fn list(path: &Path, progress: Progress) -> Result<Listing
     let bytes = std::fs::metadata(path).map_err(|source| error::io(path, source))?.len();
     let mut walk = ListWalk::default();
     let scanned = scan(path, &mut walk, progress)?;
+    let ListWalk { topics, slots, .. } = &mut walk;
+    for topic in topics {
+        topic.release(slots);
+    }
     let mut issues = scanned.issues();
     issues.extend(walk.topics.iter().filter_map(Topic::issue));
     Ok(Listing {
@@ -30,13 +34,15 @@ pub(in crate::ingest) fn list(path: &Path, progress: Progress) -> Result<Listing
         bytes,
         format: RecordingFormat::Mcap,
         counts: scanned.counts.named(),
-        facts: facts(&scanned),
+        facts: facts(&scanned, walk.zero_ns()),
         channels: walk.finish(),
         issues,
     })
 }
 
-fn facts(scanned: &Scanned) -> BTreeMap<String, String> {
+fn facts(scanned: &Scanned, zero_ns: Option<i64>) -> BTreeMap<String, String> {
+    let is_set = |ns: &i64| *ns >= CLOCK_IS_SET_NS;
+    let start = zero_ns.filter(is_set).and_then(|ns| jiff::Timestamp::from_nanosecond(ns.into()).ok());
     let compressions: Vec<&str> = scanned
         .compressions
         .iter()
@@ -46,6 +52,7 @@ fn facts(scanned: &Scanned) -> BTreeMap<String, String> {
         ("profile", scanned.profile.clone()),
         ("library", scanned.library.clone()),
         ("compression", compressions.join(", ")),
+        ("start", start.map(|start| start.to_string()).unwrap_or_default()),
     ]
     .into_iter()
     .filter(|(_, value)| !value.is_empty())
@@ -67,6 +74,10 @@ struct Topic {
     first_problem: Option<String>,
     /// Messages and malformed ones when a chunk began.
     mark: (u64, u64),
+    /// Whether its stamps count from their own start, so that zero is a time; unknown before the second message.
+    is_own_clock: Option<bool>,
+    /// The first message and its log time, where its stamp is zero, until the second tells what that means.
+    held: Option<(i64, Vec<u8>)>,
 }
 
 /// What is seen of one field.
@@ -106,6 +117,8 @@ impl Sink for ListWalk {
                 malformed: 0,
                 first_problem: None,
                 mark: (0, 0),
+                is_own_clock: None,
+                held: None,
             };
             if let Some(leaves) = topic.message_type.as_ref().ok().and_then(MessageType::leaves) {
                 topic.prepare(leaves);
@@ -135,6 +148,9 @@ impl Sink for ListWalk {
     fn chunk_rejected(&mut self) {
         for topic in &mut self.topics {
             (topic.messages, topic.malformed) = topic.mark;
+            if topic.messages == 0 {
+                (topic.is_own_clock, topic.held) = (None, None);
+            }
             for field in &mut topic.fields {
                 field.running = field.mark.0;
                 field.segments.truncate(field.mark.1);
@@ -173,6 +189,10 @@ impl Topic {
                 self.prepare(leaves);
             }
         }
+        self.decode(log_time_ns, data, slots);
+    }
+
+    fn decode(&mut self, log_time_ns: i64, data: &[u8], slots: &mut Slots) {
         let Some(decoder) = &self.decoder else { return };
         slots.clear(self.plan.wants.len());
         if let Err(problem) = decoder.decode(data, slots) {
@@ -180,8 +200,39 @@ impl Topic {
             self.first_problem.get_or_insert(problem);
             return;
         }
+        if self.is_own_clock.is_none() {
+            let stamp = self.plan.targets.first().map(|target| slots.stamp(target)).unwrap_or_default();
+            if stamp == Value::Stamp(0) && self.held.is_none() {
+                self.held = Some((log_time_ns, data.to_vec()));
+                return;
+            }
+            let counts_from_start =
+                matches!(stamp, Value::Stamp(ns) if ns != 0 && ns.abs() < CLOCK_IS_SET_NS);
+            self.is_own_clock = Some(counts_from_start && self.held.is_some());
+            if self.held.is_some() {
+                self.release(slots);
+                return self.decode(log_time_ns, data, slots);
+            }
+        }
+        self.see(log_time_ns, slots);
+    }
+
+    /// Takes the message that was held back.
+    fn release(&mut self, slots: &mut Slots) {
+        if let Some((log_time_ns, data)) = self.held.take() {
+            self.is_own_clock.get_or_insert(false);
+            self.decode(log_time_ns, &data, slots);
+        }
+    }
+
+    /// Takes what one message gave.
+    fn see(&mut self, log_time_ns: i64, slots: &mut Slots) {
         for (target, field) in self.plan.targets.iter().zip(&mut self.fields) {
-            let (time_ns, _) = message_time(&slots.stamp(target), log_time_ns);
+            let stamp = slots.stamp(target);
+            let (time_ns, _) = match (&stamp, self.is_own_clock) {
+                (Value::Stamp(0), Some(true)) => (0, TimeOrigin::Stamp),
+                _ => message_time(&stamp, log_time_ns),
+            };
             if let Some(unit) = slots.unit(target).filter(|unit| field.unit.as_deref() != Some(*unit)) {
                 field.unit = Some(unit.to_owned());
             }
@@ -190,7 +241,13 @@ impl Topic {
                 Value::Number { value, .. } => field.running.number(time_ns, value),
                 Value::Array(samples) if !samples.is_empty() => {
                     field.running.block(time_ns, &samples);
-                    field.segments.push(Segment { start_ns: time_ns, count: samples.len() as u64, rate_hz });
+                    if field.segments.len() < MOST_SEGMENTS {
+                        field.segments.push(Segment {
+                            start_ns: time_ns,
+                            count: samples.len() as u64,
+                            rate_hz,
+                        });
+                    }
                 }
                 _ => {}
             }
@@ -258,10 +315,14 @@ impl Field {
 }
 
 impl ListWalk {
+    /// The earliest sample of all, ns since 1970.
+    fn zero_ns(&self) -> Option<i64> {
+        self.topics.iter().flat_map(|topic| &topic.fields).filter_map(|field| field.running.first_ns()).min()
+    }
+
     /// Every source, times counted from the earliest sample of all.
     fn finish(&self) -> Vec<ListedChannel> {
-        let fields = self.topics.iter().flat_map(|topic| &topic.fields);
-        let zero_ns = fields.filter_map(|field| field.running.first_ns()).min();
+        let zero_ns = self.zero_ns();
         self.topics.iter().flat_map(|topic| topic.listed(zero_ns)).collect()
     }
 }

@@ -19,6 +19,7 @@ fn json_blocks_are_listed_with_rate_unit_and_range() {
     let listing = listing(&json_file(WriteOptions::new().compression(Some(Compression::Lz4)).profile("p")));
     assert_eq!((listing.counts["messages"], listing.counts["schemas"], listing.counts["chunks"]), (10, 1, 1));
     assert_eq!((listing.facts["compression"].as_str(), listing.facts["profile"].as_str()), ("lz4", "p"));
+    assert_eq!(listing.facts["start"], "2023-11-14T22:13:20Z");
     assert_eq!(listing.channels.len(), 1);
     let samples = &listing.channels[0];
     assert_eq!((samples.source.as_str(), samples.kind.as_str()), ("/daq/a1.samples", "array"));
@@ -49,9 +50,28 @@ fn every_signal_of_an_imu_and_of_a_protobuf_block_is_listed() {
     assert_eq!((z.kind.as_str(), z.samples, z.unit.as_deref()), ("number", Some(20), Some("m/s^2")));
     assert_eq!((z.range, z.start_s), (Some((0.0, 19.0)), Some(0.0)));
     assert!((z.sample_rate_hz.unwrap() - 1000.0).abs() < 1e-6);
+    assert!(listing.channels.iter().all(|channel| !channel.source.ends_with("covariance")));
     let samples = of("/daq.samples");
     assert_eq!((samples.samples, samples.start_s), (Some(2), Some(0.001)));
     assert!(of("/log").unreadable.as_deref().is_some_and(|reason| reason.contains("ros1")));
+}
+
+#[test]
+fn a_clock_that_starts_at_zero_is_kept_and_one_lone_zero_falls_back() {
+    let of = |stamps_ns: &[i64]| {
+        let bytes = closed(WriteOptions::new(), |writer| {
+            let id = channel(writer, "/imu", "cdr", ("sensor_msgs/msg/Imu", "ros2msg", IMU_TEXT.as_bytes()));
+            for (log_ns, stamp_ns) in (ZERO_NS..).step_by(1_000_000).zip(stamps_ns) {
+                message(writer, id, log_ns, &imu::<LittleEndian>(*stamp_ns, 1.0));
+            }
+        });
+        let listing = listing(&bytes);
+        (listing.channels[0].samples, listing.channels[0].duration_s, listing.facts.contains_key("start"))
+    };
+    assert_eq!(of(&[0, 2_000_000, 4_000_000]), (Some(3), Some(0.004), false));
+    assert_eq!(of(&[0, 0, 0]), (Some(3), Some(0.002), true));
+    assert_eq!(of(&[0]), (Some(1), None, true));
+    assert_eq!(of(&[ZERO_NS, ZERO_NS + 5_000_000]), (Some(2), Some(0.005), true));
 }
 
 #[test]

@@ -239,10 +239,10 @@ pub(super) struct Leaf {
 }
 
 impl Leaf {
-    /// Whether it is the rate or a part of the stamp of other fields rather than a signal.
+    /// Whether it is the rate or the covariance of other fields rather than a signal.
     pub(super) fn is_about_others(&self) -> bool {
         let last = self.path.rsplit('.').next().unwrap_or_default();
-        RATE_NAMES.contains(&last)
+        RATE_NAMES.contains(&last) || last.ends_with("covariance")
     }
 }
 

@@ -1,6 +1,6 @@
 //! An MCAP file and a cask file to raw channels: only the topics that are named are decoded.
 
-use super::column::{Column, message_time, seconds_from};
+use super::column::{CLOCK_IS_SET_NS, Column, message_time, seconds_from};
 use super::message_type::{MessageType, implied_unit};
 use super::path::{self, FieldPath};
 use super::plan::{Decode, Leaf, Plan, Slots};
@@ -177,6 +177,7 @@ impl<'a> Reading<'a> {
     }
 
     fn finish(mut self, path: &Path, scanned: &Scanned) -> Result<RawRecording, IngestError> {
+        self.wanted.iter_mut().for_each(|wanted| wanted.column.settle_clock());
         let mut chosen = Vec::with_capacity(self.specs.len());
         for spec in self.specs {
             let Some(index) = self.entry_of(spec) else {
@@ -211,7 +212,7 @@ impl<'a> Reading<'a> {
                 .map_err(|problem| complaint::no_base(path, spec, &problem))?;
             channels.push(RawChannel { spec: position, uniform, unit });
         }
-        Ok(RawRecording { channels, zero_unix_ns: Some(zero_ns), issues })
+        Ok(RawRecording { channels, zero_unix_ns: (zero_ns >= CLOCK_IS_SET_NS).then_some(zero_ns), issues })
     }
 }
 

@@ -5,6 +5,8 @@ use crate::data::Samples;
 
 /// So many intervals settle what an interval is; enough to outvote a gap among them.
 const FIRST_INTERVALS: usize = 64;
+/// So many blocks are remembered with their times; beyond, gaps are no longer counted and memory stays small.
+pub(super) const MOST_SEGMENTS: usize = 100_000;
 /// An interval longer than this many usual ones is a gap.
 const GAP_INTERVALS: f64 = 1.5;
 
@@ -21,8 +23,7 @@ pub(super) struct Running {
     regular_s: f64,
     regular_count: u64,
     gaps: u64,
-    /// Blocks that count, when a chunk began.
-    pub(super) is_blocks: bool,
+    blocks: usize,
 }
 
 /// A block's time, length and stated rate.
@@ -54,7 +55,7 @@ impl Default for Running {
             regular_s: 0.0,
             regular_count: 0,
             gaps: 0,
-            is_blocks: false,
+            blocks: 0,
         }
     }
 }
@@ -72,7 +73,7 @@ impl Running {
 
     /// A block that begins at `time_ns`.
     pub(super) fn block(&mut self, time_ns: i64, samples: &Samples) {
-        self.is_blocks = true;
+        self.blocks += 1;
         self.samples += samples.len() as u64;
         self.see_time(time_ns);
         match samples {
@@ -93,7 +94,11 @@ impl Running {
 
     /// Rate, duration and gaps; `segments` are the blocks, where the samples came in blocks.
     pub(super) fn timing(mut self, segments: &[Segment]) -> Timing {
-        if self.is_blocks {
+        if self.blocks > segments.len() {
+            let duration_s = Some(seconds_from(self.last_ns, self.first_ns));
+            return Timing { duration_s, gaps: None, ..block_timing(segments) };
+        }
+        if self.blocks > 0 {
             return block_timing(segments);
         }
         if self.samples < 2 {
@@ -202,8 +207,8 @@ mod tests {
     #[test]
     fn numbers_with_one_gap_keep_their_rate() {
         let mut running = Running::default();
-        for i in (0..100).chain(120..300) {
-            running.number(1_700_000_000_000_000_000 + i * 1_000_000, i as f64);
+        for i in (0..100).chain(120..300_i32) {
+            running.number(1_700_000_000_000_000_000 + i64::from(i) * 1_000_000, f64::from(i));
         }
         let timing = running.timing(&[]);
         // Intervals of exactly 1 ms: rounding alone is left.

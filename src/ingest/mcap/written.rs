@@ -176,9 +176,13 @@ pub(super) fn imu<Order: CdrEndian>(stamp_ns: i64, z: f64) -> Vec<u8> {
         writer.write_f64(value);
     }
     (0..9).for_each(|_| writer.write_f64(-1.0));
-    [4.0, 5.0, 6.0].into_iter().for_each(|value| writer.write_f64(value));
+    for value in [4.0, 5.0, 6.0] {
+        writer.write_f64(value);
+    }
     (0..9).for_each(|i| writer.write_f64(f64::from(i)));
-    [7.0, 8.0, z].into_iter().for_each(|value| writer.write_f64(value));
+    for value in [7.0, 8.0, z] {
+        writer.write_f64(value);
+    }
     (0..9).for_each(|_| writer.write_f64(0.0));
     let mut message = vec![0, u8::from(Order::IS_LITTLE), 0, 0];
     message.extend(body);

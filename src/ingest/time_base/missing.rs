@@ -105,7 +105,7 @@ pub(super) fn report_gaps(fit: &Fit, times_s: &[f64], issues: &mut Vec<Issue>) {
 pub(super) fn push_gaps(gaps: &[(usize, f64, f64)], issues: &mut Vec<Issue>) {
     if gaps.len() <= GAPS_TOLD_SINGLY {
         issues.extend(gaps.iter().map(|&(lost, from_s, to_s)| {
-            let message = format!("{lost} sample(s) are missing over {:.3e} s", to_s - from_s);
+            let message = format!("{lost} sample(s) are missing over {:.2} ms", 1e3 * (to_s - from_s));
             Issue::new(IssueCode::Gap, Severity::Warning, message).between(from_s, to_s)
         }));
         return;
