@@ -210,7 +210,9 @@ fn acceleration_unit(text: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, Coupling, End, Source};
+    use crate::data::{Axis, Coupling, End, Samples, Source};
+    use crate::ingest::mcap::written::cask_file;
+    use crate::ingest::time_base::Uniform;
 
     pub(super) fn spec(unit: Option<Unit>) -> ChannelSpec {
         ChannelSpec {
@@ -282,5 +284,37 @@ mod tests {
         assert!(help.contains("unit = \"g\""), "{help}");
         let error = of(None, Some("mV")).unwrap_err();
         assert!(miette::Diagnostic::help(&error).unwrap().to_string().contains("sensitivity"));
+    }
+
+    #[test]
+    fn times_count_from_the_earliest_first_sample_and_polarity_turns_the_scale() {
+        let raw = |spec, start_s| RawChannel {
+            spec,
+            uniform: Uniform {
+                start_s,
+                sample_rate_hz: 1000.0,
+                samples: Samples::F64(vec![1.0, 2.0]),
+                gaps: Vec::new(),
+                time_jitter_s: 0.0,
+                issues: vec![
+                    Issue::new(IssueCode::Gap, Severity::Warning, "x").between(start_s, start_s + 0.25),
+                ],
+            },
+            unit: Some("g".into()),
+        };
+        let mut cask_file = cask_file(&["/a.x", "/b.x"]);
+        cask_file.channels[1].polarity = -1.0;
+        let channels = vec![raw(0, 2.5), raw(1, 2.0)];
+        let raw =
+            RawRecording { channels, zero_unix_ns: Some(1_700_000_000_000_000_000), issues: Vec::new() };
+        let path = Path::new("r");
+        let recording = recording(path, RecordingFormat::Mcap, "ab".into(), raw, &cask_file).unwrap();
+        let [first, second] = &recording.channels[..] else { panic!() };
+        assert_eq!((first.start_s, second.start_s), (0.5, 0.0));
+        assert_eq!(recording.start_unix_ns, Some(1_700_000_002_000_000_000));
+        assert_eq!((first.scale_m_s2, second.scale_m_s2), (9.80665, -9.80665));
+        let spans: Vec<_> =
+            recording.issues.iter().map(|issue| (issue.channel.as_deref(), issue.from_s)).collect();
+        assert_eq!(spans, [(Some("/a.x"), Some(0.5)), (Some("/b.x"), Some(0.0))]);
     }
 }

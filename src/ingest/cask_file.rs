@@ -2,6 +2,7 @@
 
 mod channel;
 mod section;
+mod wording;
 
 use crate::data::{Cask, CaskFile, Contact, Drop, FilterChoice};
 use miette::{Diagnostic, NamedSource, SourceSpan};
@@ -139,7 +140,7 @@ fn text<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, CaskFileError> {
     }
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let text = std::str::from_utf8(bytes).map_err(|error| {
-        let line = section::line_of(bytes, error.valid_up_to());
+        let line = wording::line_of(bytes, error.valid_up_to());
         no_cask_file(
             path,
             &format!("line {line} is not UTF-8 text"),

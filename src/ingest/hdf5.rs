@@ -136,6 +136,9 @@ fn on_base(
 /// How a dataset is stored, for people: type, shape, filters.
 fn storage(dataset: &Dataset) -> String {
     let kind = dataset.dtype().map_or_else(|_| "unknown type".to_owned(), |dtype| dataset::type_name(&dtype));
+    if dataset.space().is_ok_and(|space| space.is_null()) {
+        return format!("{kind}, no data");
+    }
     let shape: Vec<String> = dataset.shape().iter().map(ToString::to_string).collect();
     let filters: Vec<String> = dataset.filters().iter().map(|f| format!("{f:?}").to_lowercase()).collect();
     let mut text = format!("{kind}, {}", if shape.is_empty() { "scalar".into() } else { shape.join(" × ") });

@@ -325,7 +325,7 @@ fn jitter_note(fit: &Fit, error: &resample::Difference) -> Issue {
         format!(
             "times lie {:.3e} s (RMS, {:.1} % of the sample interval) off a uniform base at {:.6} Hz, {:.3e} s at most; \
              the samples were interpolated onto it. Cubic and linear interpolation differ by {:.2} % of the largest \
-             sample RMS, {:.2} % at most: the error of doing so is below that",
+             sample RMS, {:.2} % at most, which bounds the error of doing so",
             fit.rms_s,
             100.0 * fit.rms_s / fit.period_s,
             1.0 / fit.period_s,

@@ -73,11 +73,13 @@ fn figures(result: &DropResult) -> Markup {
     let model = result.model.as_ref().map_or("no model taken", |m| m.name.as_str());
     html! {
         dl class="figures" {
-            div { dt { "Slap-down speed, measured" } dd { (interval(result.slap_down.speed.as_ref())) } }
+            div { dt { "Slap-down speed, measured" }
+                dd { (interval(result.slap_down.speed.as_ref()))
+                    @if result.slap_down.speed.is_none() { small { (printable(reason(result, &SLAP_DOWN_CODES))) } } } }
             div { dt { "Slap-down speed, predicted" }
                 @match &result.comparison {
                     Some(c) => dd { (super::rounding::pair(c.predicted, c.predicted_u95, "m/s")) small { (model) ", measured k" } },
-                    None => dd { "–" small { (printable(reason(result, &SLAP_DOWN_CODES))) } },
+                    None => dd { "–" },
                 }
             }
             div { dt { "Measured against predicted" }

@@ -16,8 +16,7 @@ pub fn table(listing: &Listing) -> String {
         size(listing.bytes)
     );
     let mut out = format!("{}\n", styled(Style::Bold, &title));
-    let counts: Vec<String> =
-        listing.counts.iter().map(|(name, count)| format!("{count} {}", name.replace('_', " "))).collect();
+    let counts: Vec<String> = listing.counts.iter().map(|(name, count)| counted(name, *count)).collect();
     if !counts.is_empty() {
         out.push_str(&wrap(&counts.join(", "), WIDTH, 0));
     }
@@ -41,6 +40,13 @@ pub fn table(listing: &Listing) -> String {
         out.push_str(&quality(&listing.issues));
     }
     out
+}
+
+/// "3 chunks", "1 chunk".
+fn counted(name: &str, count: u64) -> String {
+    let name = name.replace('_', " ");
+    let name = if count == 1 { name.strip_suffix('s').unwrap_or(&name) } else { &name };
+    format!("{count} {name}")
 }
 
 /// Heads of the columns of [`cells`], and which of them are said in one sentence where all sources share them.
@@ -67,7 +73,10 @@ fn sources(channels: &[ListedChannel]) -> String {
     let mut out = columns(&header, &cut, &right);
     let common: Vec<String> = (0..HEADER.len())
         .filter(|i| shared(*i) && rows[0][*i] != MISSING)
-        .map(|i| format!("{} {}", HEADER[i].0, rows[0][i]))
+        .map(|i| match (HEADER[i].0, rows[0][i].as_str()) {
+            ("gaps", "0") => "no gaps".to_owned(),
+            (name, value) => format!("{name} {value}"),
+        })
         .collect();
     if !common.is_empty() {
         out.push_str(&wrap(&format!("Every source: {}.", common.join(", ")), WIDTH, 2));

@@ -84,18 +84,31 @@ pub const FILE_NAMES: [&str; 10] = [
 /// # Errors
 /// [`ReportError`] where one of them cannot be made; then none is returned.
 pub fn files(analysis: &Analysis) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
-    let pictures = pictures::draw(analysis)?;
-    let mut files = vec![
-        ("report.html".to_owned(), html::page(analysis, &pictures).into_bytes()),
-        ("result.json".to_owned(), json::result(&analysis.result)?),
-        ("curves.csv".to_owned(), curves_csv::bytes(&analysis.curves)?),
-        ("curves.h5".to_owned(), curves_h5::bytes(analysis)?),
-        ("curves.mcap".to_owned(), curves_mcap::bytes(analysis)?),
-    ];
+    // curves.mcap takes as long as all the others together.
+    let (others, curves_mcap) = std::thread::scope(|scope| {
+        let curves_mcap = scope.spawn(|| curves_mcap::bytes(analysis));
+        (all_but_mcap(analysis), curves_mcap.join())
+    });
+    let (mut files, pictures) = others?;
+    let curves_mcap = curves_mcap.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+    files.push(("curves.mcap".to_owned(), curves_mcap));
     files.extend(
         pictures.into_iter().map(|picture| (format!("{}.svg", picture.name), picture.svg.into_bytes())),
     );
     Ok(files)
+}
+
+type Files = Vec<(String, Vec<u8>)>;
+
+fn all_but_mcap(analysis: &Analysis) -> Result<(Files, Vec<pictures::Picture>), ReportError> {
+    let pictures = pictures::draw(analysis)?;
+    let files = vec![
+        ("report.html".to_owned(), html::page(analysis, &pictures).into_bytes()),
+        ("result.json".to_owned(), json::result(&analysis.result)?),
+        ("curves.csv".to_owned(), curves_csv::bytes(&analysis.curves)?),
+        ("curves.h5".to_owned(), curves_h5::bytes(analysis)?),
+    ];
+    Ok((files, pictures))
 }
 
 #[cfg(test)]

@@ -194,7 +194,6 @@ fn flight() -> FlightFit {
         u_m_s: 0.021,
         zero_shift_m_s2: 0.0,
         u_zero_shift_m_s2: 0.0,
-        ringing_m_s: vec![(0.1, 0.9)],
         residual_m_s: 0.032,
         ringing_m_s: vec![(0.7, -0.4)],
     };

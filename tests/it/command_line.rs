@@ -229,7 +229,7 @@ fn standard_output_holds_json_alone() {
 
 #[test]
 fn the_result_has_the_keys_of_the_contract() {
-    let (recording, cask) = plain();
+    let (recording, cask) = (fixture("anf18-german.csv"), fixture("anf18-german.toml"));
     let result = analyze(&recording, &cask).json();
     let keys = [
         "/version",

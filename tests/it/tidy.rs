@@ -16,6 +16,7 @@ fn allowed(module: &str) -> Option<Vec<&'static str>> {
     match module {
         "data" | "numerics" => Some(vec![]),
         "synth" => Some(vec!["data", "numerics"]),
+        "assemble" => Some([&STAGES[..], &["data", "numerics"]].concat()), // lib.rs's own hands
         "validate" => Some([&STAGES[..], &["data", "numerics", "synth", "analyze"]].concat()),
         stage if STAGES.contains(&stage) => Some(vec!["data", "numerics"]),
         _ => None,
@@ -167,9 +168,11 @@ fn the_command_line_uses_the_public_api_only() {
 #[test]
 fn recordings_are_opened_in_one_place() {
     let owners = ["ingest", "cli", "main", "validate"];
+    let through_a_file = "curves_h5"; // the HDF5 library writes to files only
     for file in rust_files(&root().join("src")) {
         let path = module_path(&file);
-        if path.first().is_some_and(|module| owners.contains(&module.as_str())) {
+        let owner = path.first().is_some_and(|module| owners.contains(&module.as_str()));
+        if owner || path.last().is_some_and(|file| file == through_a_file) {
             continue;
         }
         let code = code_of(&fs::read_to_string(&file).expect("UTF-8"));

@@ -1,5 +1,6 @@
 //! A TOML table to values that know their place, each wrong one to a diagnostic under its line.
 
+use super::wording::{described, line_of, nearest, number_with_unit, unit_mend, unit_of};
 use super::{CaskFileError, WrongLine};
 use miette::NamedSource;
 use std::ops::Range;
@@ -36,9 +37,6 @@ const KEYS: [(&str, &[&str]); 8] = [
     ),
     ("source", &["topic", "field"]),
 ];
-
-/// Below this similarity (Jaro–Winkler, 0 to 1) a word is another word rather than a misspelling.
-const ALIKE: f64 = 0.75;
 
 /// A cask file's text with its name.
 pub(super) struct Document<'a> {
@@ -363,60 +361,4 @@ impl<'a> Section<'a> {
         let message = format!("{key} cannot be \"{}\"", text.value);
         Err(self.wrong(text.span, message, quoted.join(" or "), &mend))
     }
-}
-
-/// The line, from 1, of byte `at`.
-pub(super) fn line_of(text: &[u8], at: usize) -> usize {
-    text[..at.min(text.len())].split(|&b| b == b'\n').count()
-}
-
-/// The known word that is most like `word`, where one is.
-fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
-    known
-        .iter()
-        .map(|&candidate| (strsim::jaro_winkler(word, candidate), candidate))
-        .filter(|(alike, _)| *alike >= ALIKE)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| candidate)
-}
-
-fn described(value: &DeValue) -> String {
-    match value {
-        DeValue::String(text) => format!("the text \"{text}\""),
-        DeValue::Integer(number) => format!("the number {}", number.as_str()),
-        DeValue::Float(number) => number.as_str().to_owned(),
-        DeValue::Boolean(value) => format!("{value}"),
-        DeValue::Datetime(_) => "a date".into(),
-        DeValue::Array(_) => "a list".into(),
-        DeValue::Table(_) => "a table".into(),
-    }
-}
-
-/// "4466 kg" to the number and its unit.
-fn number_with_unit(text: &str) -> Option<(&str, &str)> {
-    let digits = text.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | '_')))?;
-    let (number, unit) = text.split_at(digits);
-    let is_unit = unit.trim_start().starts_with(|c: char| c.is_alphabetic() || matches!(c, '°' | '%' | 'µ'));
-    (number.parse::<f64>().is_ok() && is_unit).then_some((number, unit.trim()))
-}
-
-fn unit_mend(number: &str, unit: &str) -> String {
-    format!(
-        "write the number only, {number}: the unit is in the key's name (convert it if {unit} is another)"
-    )
-}
-
-/// ", in kg", from the key's ending.
-fn unit_of(key: &str) -> &'static str {
-    const ENDINGS: [(&str, &str); 8] = [
-        ("inertia_kg_m2", ", in kg m²"),
-        ("_m_s2", ", in m/s²"),
-        ("_m_s", ", in m/s"),
-        ("_kg", ", in kg"),
-        ("_m", ", in m"),
-        ("_hz", ", in Hz"),
-        ("_s", ", in s"),
-        ("sensitivity", ", in mV per g; a sensor mounted the other way round has polarity = -1"),
-    ];
-    ENDINGS.iter().find(|(ending, _)| key.ends_with(ending)).map_or("", |(_, unit)| unit)
 }

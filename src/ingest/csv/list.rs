@@ -132,6 +132,10 @@ impl Clock {
                 .issues
                 .into_iter()
                 .map(|mut issue| {
+                    // The times alone were looked at: what interpolation does to the samples is not known here.
+                    if let Some(at) = issue.message.find("; the samples were interpolated") {
+                        issue.message.truncate(at);
+                    }
                     issue.from_s = issue.from_s.map(|t| t - first_s);
                     issue.to_s = issue.to_s.map(|t| t - first_s);
                     issue

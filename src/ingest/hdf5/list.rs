@@ -191,6 +191,7 @@ fn survey(
         #[allow(clippy::cast_precision_loss, reason = "below 2^31")]
         let duration_s = attributes.sample_rate_hz.map(|rate_hz| intervals as f64 / rate_hz);
         channel.duration_s = duration_s;
+        channel.start_s = attributes.start_s.or(duration_s.map(|_| 0.0));
         return Ok(Vec::new());
     };
     let times_s = time.times_s()?;

@@ -112,6 +112,19 @@ fn each_sensor_keeps_its_own_jittering_times() {
 }
 
 #[test]
+fn a_column_of_chunks_is_read_whole() {
+    let flat: Vec<i16> = (0..9000).collect();
+    let made = made(|file| {
+        let data = file.new_dataset::<i16>().chunk((700, 2)).deflate(1).shape((3000, 3)).create("table")?;
+        number(&data, "sample_rate", 100.0)?;
+        data.write_raw(&flat)
+    });
+    let channels = read(&made.path, &cask_file(&["/table[2]"]), &|_| {}).unwrap().channels;
+    let expected: Vec<f64> = flat.iter().skip(2).step_by(3).map(|&x| f64::from(x)).collect();
+    assert_eq!(values(&channels[0]), expected);
+}
+
+#[test]
 fn named_times_and_a_declared_rate_are_followed() {
     let made = made(|file| {
         let clock = file.new_dataset_builder().with_data(&[0_i32, 20, 40]).create("clock")?;

@@ -26,7 +26,7 @@ pub(super) enum ChunkEnd {
     /// All of it was read and its check sum holds, or it has none.
     Whole { compression: String },
     /// The file ends in it.
-    Cut { compression: Option<String>, unread_bytes: u64 },
+    Cut { compression: Option<String>, bytes: u64 },
     /// It does not decompress, or its check sum does not hold.
     Bad { compression: Option<String>, reason: String, span_ns: (u64, u64) },
 }
@@ -76,7 +76,7 @@ impl Chunks {
         let is_cut = claimed > available;
         let Some(header) = header(file, body)? else {
             return Ok(if is_cut {
-                ChunkEnd::Cut { compression: None, unread_bytes: body }
+                ChunkEnd::Cut { compression: None, bytes: body }
             } else {
                 skip(file, body.saturating_sub(FIXED_HEADER_BYTES))?;
                 bad(None, "its header makes no sense", (0, 0))
@@ -96,9 +96,7 @@ impl Chunks {
         }
         Ok(match fed.problem {
             None => ChunkEnd::Whole { compression: header.compression },
-            Some(_) if is_cut => {
-                ChunkEnd::Cut { compression: Some(header.compression), unread_bytes: fed.unused }
-            }
+            Some(_) if is_cut => ChunkEnd::Cut { compression: Some(header.compression), bytes: fed_bytes },
             Some(reason) => bad(Some(header.compression), &reason, header.span_ns),
         })
     }
@@ -128,7 +126,7 @@ impl Chunks {
             if prefix.is_empty() && left == 0 {
                 let is_complete = !is_cut && yielded == header.uncompressed;
                 if is_complete {
-                    return Ok(Fed { left, unused: 0, is_clean: true, problem: None });
+                    return Ok(Fed { left, is_clean: true, problem: None });
                 }
                 self.reader.notify_read(0);
                 continue;
@@ -150,9 +148,7 @@ impl Chunks {
             self.reader.notify_read(usize::try_from(step).unwrap_or(0));
         };
         let problem = problem.or_else(|| is_cut.then(|| "it is cut".to_owned()));
-        // Of a compressed chunk nobody can say how many bytes the kept messages took.
-        let unused = if header.compression.is_empty() { bytes.saturating_sub(yielded) } else { bytes };
-        Ok(Fed { left, unused, is_clean: false, problem })
+        Ok(Fed { left, is_clean: false, problem })
     }
 }
 
@@ -160,8 +156,6 @@ impl Chunks {
 struct Fed {
     /// Bytes of the chunk that the reader did not ask for.
     left: u64,
-    /// Bytes that gave no message, at most.
-    unused: u64,
     /// Whether the reader stands at a record's boundary again.
     is_clean: bool,
     problem: Option<String>,

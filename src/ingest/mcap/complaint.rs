@@ -42,7 +42,7 @@ pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scann
         path,
         &spec.name,
         format!("the recording has no topic for the source {}", spec.source),
-        lost(scanned, &error::near_names(path, &meant, "topic", topics)),
+        with_loss(scanned, error::near_names(path, &meant, "topic", topics)),
     )
 }
 
@@ -107,10 +107,20 @@ pub(super) fn no_base(path: &Path, spec: &ChannelSpec, problem: &ColumnError) ->
     error::source(path, &spec.name, format!("{}: {problem}", spec.source), mend)
 }
 
-/// `mend`, and before it what the file has lost, where that may be why.
+/// What the file has lost, where that may be why, else `mend`.
 fn lost(scanned: &Scanned, mend: &str) -> String {
     match scanned.issues().first() {
-        Some(issue) => format!("{}; {mend}", issue.message),
+        Some(issue) => {
+            format!("{}; take the original from the logger again, or try `mcap recover`", issue.message)
+        }
         None => mend.to_owned(),
+    }
+}
+
+/// `mend`, and what the file has lost: the topic may have begun behind it.
+fn with_loss(scanned: &Scanned, mend: String) -> String {
+    match scanned.issues().first() {
+        Some(issue) => format!("{mend}; mind that {}", issue.message),
+        None => mend,
     }
 }

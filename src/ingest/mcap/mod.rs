@@ -22,4 +22,4 @@ pub(super) use list::list;
 pub(super) use read::read;
 
 #[cfg(test)]
-mod written;
+pub(super) mod written;

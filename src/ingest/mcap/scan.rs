@@ -154,11 +154,11 @@ impl Walk {
         self.at = start + RECORD_HEADER_BYTES + claimed.min(available);
         match end {
             ChunkEnd::Whole { .. } => Ok(Next::Go),
-            ChunkEnd::Cut { unread_bytes, .. } => {
+            ChunkEnd::Cut { bytes, .. } => {
                 self.scanned.losses.push(Loss::CutChunk {
                     at: start,
                     never_closed: claimed == u64::MAX,
-                    unread_bytes,
+                    bytes,
                     messages,
                 });
                 Ok(Next::Stop)

@@ -170,7 +170,7 @@ pub(super) enum Loss {
     /// The file ends at a record's boundary or within a record, before its footer.
     EndsEarly { at: u64, bytes: u64, inside: Option<u8> },
     /// The file ends within a chunk.
-    CutChunk { at: u64, never_closed: bool, unread_bytes: u64, messages: u64 },
+    CutChunk { at: u64, never_closed: bool, bytes: u64, messages: u64 },
     /// A chunk fails its check sum or does not decompress.
     BadChunk { at: u64, reason: String, messages: u64, span_ns: (u64, u64) },
     /// A record's body does not parse, or a message belongs to no channel.
@@ -232,11 +232,11 @@ impl Loss {
                     inside.map_or("record", record_name)
                 ),
             ),
-            Self::CutChunk { at, never_closed, unread_bytes, messages } => (
+            Self::CutChunk { at, never_closed, bytes, messages } => (
                 IssueCode::Truncated,
                 Severity::Warning,
                 format!(
-                    "{} the chunk at byte {at}: {messages} whole messages in it were kept without a check sum, {unread_bytes} bytes could not be used, and what followed is lost",
+                    "{} the chunk at byte {at}: {messages} whole messages in it were kept without a check sum, the rest of its {bytes} bytes could not be used, and what followed is lost",
                     if *never_closed {
                         "the file's writer was stopped before it closed"
                     } else {

@@ -190,7 +190,7 @@ pub(super) fn imu<Order: CdrEndian>(stamp_ns: i64, z: f64) -> Vec<u8> {
 }
 
 /// A cask file whose channels have these sources.
-pub(super) fn cask_file(sources: &[&str]) -> CaskFile {
+pub(in crate::ingest) fn cask_file(sources: &[&str]) -> CaskFile {
     let channels = sources.iter().map(|source| ChannelSpec {
         name: (*source).to_owned(),
         end: End::First,

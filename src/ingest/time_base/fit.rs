@@ -62,7 +62,7 @@ impl Fit {
         let first_s = times_s[0];
         let start_s =
             if (line.start_s - first_s).abs() < 1e-6 * line.period_s { first_s } else { line.start_s };
-        let resolution_s = resolution_s(times_s);
+        let resolution_s = resolution_s(times_s, line.period_s);
         Ok(Self { start_s, period_s: line.period_s, runs, rms_s, max_s, resolution_s })
     }
 
@@ -191,9 +191,16 @@ fn each_place(times_s: &[f64], runs: &[Run], mut visit: impl FnMut(f64, f64)) {
 }
 
 /// What the times are rounded to: a power of ten (printed times), single precision, or the f64 they are held in.
-fn resolution_s(times_s: &[f64]) -> f64 {
-    let stride = times_s.len().div_ceil(1000);
-    let looked_at: Vec<f64> = times_s.iter().step_by(stride).copied().collect();
+///
+/// Stretches of neighbours are looked at: times taken at a stride may all be round although those between are not.
+fn resolution_s(times_s: &[f64], period_s: f64) -> f64 {
+    const STRETCH: usize = 300;
+    let last = times_s.len().saturating_sub(STRETCH);
+    let looked_at: Vec<f64> = [0, last / 2, last]
+        .into_iter()
+        .flat_map(|from| times_s.iter().skip(from).take(STRETCH))
+        .copied()
+        .collect();
     let largest_s = looked_at.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
     let held_s = 2.0 * largest_s * f64::EPSILON;
     #[allow(clippy::cast_possible_truncation, reason = "the loss is what is tested")]
@@ -206,7 +213,7 @@ fn resolution_s(times_s: &[f64]) -> f64 {
             let steps = t / unit_s;
             (steps - steps.round()).abs() < 1e-3_f64.max(4.0 * steps.abs() * f64::EPSILON)
         };
-        if unit_s > held_s && looked_at.iter().all(|&t| is_multiple(t)) {
+        if unit_s > held_s && unit_s <= period_s && looked_at.iter().all(|&t| is_multiple(t)) {
             return unit_s;
         }
     }

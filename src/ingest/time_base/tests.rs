@@ -228,3 +228,13 @@ fn blocks_that_make_no_record_say_why() {
         assert!(error.to_string().contains(expected), "{error}");
     }
 }
+
+#[test]
+fn even_stretches_do_not_hide_jitter() {
+    // Every thousandth time is a multiple of 2 ms to 1e-3 of it; the ones between jitter by 21 % of the interval RMS.
+    let times: Vec<f64> =
+        (0..100_000).map(|i| (as_f64(i) + 0.3 * (TAU * as_f64(i) / 500.0).sin()) * 2e-6).collect();
+    let uniform = from_times(&times, f64s(&vec![0.0; 100_000]), None).unwrap();
+    assert_eq!(codes(&uniform), [IssueCode::TimeJitter]);
+    assert!((uniform.time_jitter_s / 2e-6 - 0.3 / 2_f64.sqrt()).abs() < 0.01, "{}", uniform.time_jitter_s);
+}

@@ -11,6 +11,9 @@ pub(super) const WIDTH: u32 = 1800;
 const FONT: &str = "Helvetica, Arial, sans-serif";
 const HEAD: i32 = 62;
 const MARK_ROW: i32 = 34;
+const LEGEND_ROW: i32 = 40;
+/// Width of the sample of a line before its words.
+const SAMPLE: i32 = 58;
 const LEFT: u32 = 130;
 const BOTTOM: u32 = 88;
 /// Air below a panel.
@@ -115,13 +118,60 @@ impl Panel {
     }
 }
 
+/// One entry of a legend: its line, its words, its row and where it begins.
+struct Entry<'a> {
+    line: &'a Line,
+    label: String,
+    row: usize,
+    left: i32,
+}
+
+impl Panel {
+    /// The legend in reading order, each row set to the right; the first leaves room for the title.
+    fn legend(&self) -> Vec<Entry<'_>> {
+        // The width of a letter is about 0.52 em: 13 at 25 units, 19 for the bold title.
+        let width = |label: &str, letter: i32| i32::try_from(label.chars().count()).unwrap_or(0) * letter;
+        let limit = WIDTH.cast_signed() - RIGHT;
+        let room = limit - LEFT.cast_signed();
+        let mut left_over = room - width(&self.title, 19) - 40;
+        let mut rows: Vec<Vec<(&Line, String, i32)>> = vec![Vec::new()];
+        for line in &self.lines {
+            let Some(label) = line.label.as_deref().map(printable) else { continue };
+            let takes = SAMPLE + width(&label, 13) + 26;
+            if takes > left_over && !(rows.len() > 1 && rows.last().is_some_and(Vec::is_empty)) {
+                rows.push(Vec::new());
+                left_over = room;
+            }
+            left_over -= takes;
+            if let Some(row) = rows.last_mut() {
+                row.push((line, label, takes));
+            }
+        }
+        let mut entries = Vec::new();
+        for (row, members) in rows.into_iter().enumerate() {
+            let mut left = limit + 26 - members.iter().map(|(_, _, takes)| takes).sum::<i32>();
+            for (line, label, takes) in members {
+                entries.push(Entry { line, label, row, left });
+                left += takes;
+            }
+        }
+        entries
+    }
+
+    /// Height of title and legend.
+    fn head(&self) -> i32 {
+        let last = self.legend().last().map_or(0, |entry| entry.row);
+        HEAD + LEGEND_ROW * i32::try_from(last).unwrap_or(0)
+    }
+}
+
 /// Panels one below the other.
 pub(super) fn draw(panels: &[&Panel]) -> Result<String, String> {
     let heads: Vec<i32> = panels
         .iter()
         .map(|panel| {
             let rows = panel.mark_rows(&panel.range(|p| p.0, 0.0)).iter().max().map_or(0, |row| row + 1);
-            HEAD + MARK_ROW * i32::try_from(rows).unwrap_or(0)
+            panel.head() + MARK_ROW * i32::try_from(rows).unwrap_or(0)
         })
         .collect();
     let heights: Vec<i32> = panels
@@ -184,7 +234,9 @@ where
         .draw()
         .map_err(fail)?;
     let bounds = (chart.x_range(), chart.y_range());
-    for line in &panel.lines {
+    // What is faint lies under what is bold.
+    let (faint, bold): (Vec<_>, Vec<_>) = panel.lines.iter().partition(|line| line.opacity < 0.5);
+    for line in faint.into_iter().chain(bold) {
         draw_line(&mut chart, panel, line, &bounds.0)?;
     }
     heading(area, panel)?;
@@ -236,18 +288,15 @@ fn heading(area: &Area, panel: &Panel) -> Result<(), String> {
     let title = TextStyle::from((FONT, 36).into_font().style(FontStyle::Bold)).color(&INK);
     area.draw(&Text::new(printable(&panel.title), (LEFT.cast_signed(), 14), title)).map_err(fail)?;
     let entry = TextStyle::from((FONT, 31).into_font()).color(&INK);
-    // From the right: the width of a letter is about 0.52 em at 25 units.
-    let mut right = WIDTH.cast_signed() - RIGHT;
-    for line in panel.lines.iter().rev() {
-        let Some(label) = line.label.as_deref().map(printable) else { continue };
-        let left = right - i32::try_from(label.chars().count()).unwrap_or(0) * 13;
-        area.draw(&Text::new(label, (left, 17), entry.clone())).map_err(fail)?;
+    for Entry { line, label, row, left } in panel.legend() {
+        let drop = LEGEND_ROW * i32::try_from(row).unwrap_or(0);
+        area.draw(&Text::new(label, (left + SAMPLE, 17 + drop), entry.clone())).map_err(fail)?;
         let style = line.colour.mix(line.opacity).stroke_width(line.stroke.max(3));
-        let pieces: &[(i32, i32)] = if line.dashed { &[(58, 44), (36, 22)] } else { &[(58, 10)] };
+        let pieces: &[(i32, i32)] = if line.dashed { &[(0, 20), (28, 48)] } else { &[(0, 48)] };
         for (from, to) in pieces {
-            area.draw(&PathElement::new(vec![(left - from, 29), (left - to, 29)], style)).map_err(fail)?;
+            let stroke = vec![(left + from, 29 + drop), (left + to, 29 + drop)];
+            area.draw(&PathElement::new(stroke, style)).map_err(fail)?;
         }
-        right = left - 84;
     }
     Ok(())
 }
@@ -338,5 +387,65 @@ impl Ranged for Rows {
 
     fn range(&self) -> std::ops::Range<f64> {
         self.0.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn panel(channels: usize) -> Panel {
+        let line = |i: usize| Line {
+            label: Some(format!("channel number {i} unfiltered")),
+            colour: COLOURS[i % COLOURS.len()],
+            opacity: 1.0,
+            stroke: 3,
+            dashed: false,
+            points: vec![(0.0, 0.0), (100.0, 1.0)],
+        };
+        Panel {
+            title: "First end".into(),
+            x_label: "time, ms",
+            y_label: "deceleration, g",
+            logarithmic: false,
+            height: 350,
+            lines: (0..channels).map(line).collect(),
+            marks: [("first contact", 0.0), ("separation", 6.0), ("slap-down", 60.0)]
+                .map(|(label, at)| Mark { at, label: label.into() })
+                .into(),
+        }
+    }
+
+    #[test]
+    fn a_long_legend_takes_more_rows_within_the_width() {
+        let panel = panel(16);
+        let entries = panel.legend();
+        assert_eq!(entries.len(), 16);
+        assert!(entries.iter().all(|e| e.left >= LEFT.cast_signed() && e.left < WIDTH.cast_signed()));
+        assert!(entries.iter().any(|e| e.row > 0));
+        assert!(entries.windows(2).all(|w| w[0].row < w[1].row || w[0].left < w[1].left));
+    }
+
+    #[test]
+    fn near_marks_are_set_in_rows_of_their_own() {
+        assert_eq!(panel(1).mark_rows(&(-10.0..100.0)), [0, 1, 0]);
+    }
+
+    #[test]
+    fn a_logarithmic_axis_drops_what_it_cannot_show() {
+        let mut panel = panel(1);
+        panel.logarithmic = true;
+        panel.marks.clear();
+        panel.lines[0].points = vec![(0.0, 1.0), (10.0, 0.0), (10.0, 1.0), (1000.0, 0.1)];
+        let svg = draw(&[&panel]).unwrap();
+        assert!(svg.contains("polyline") && !svg.contains("2147483"));
+    }
+
+    #[test]
+    fn ticks_read_well() {
+        assert_eq!(tick(-0.000_000_01, false), "0");
+        assert_eq!(tick(-12.5, false), "−12.5");
+        assert_eq!(tick(1e-5, true), "1e−5");
+        assert_eq!(tick(100.0, true), "100");
     }
 }
