@@ -25,6 +25,13 @@ use data::{
 /// Separation and slap-down are found again on signals free of ringing this often; the second round moves them by less than a sample.
 const ROUNDS: usize = 3;
 
+/// R cannot strike before its height over this share of v0: rod ends come down with less than 2 v0, angles are known to 40 %.
+const EARLIEST_SLAP_DOWN: f64 = 0.3;
+
+/// Share of the time from contact to slap-down that the first flight fit leaves to the contact, and the longest, s.
+const FIRST_CLEARANCE: f64 = 0.4;
+const LONGEST_CLEARANCE_S: f64 = 0.022;
+
 /// From a recording and a cask file to everything that can be said of the drop.
 ///
 /// What cannot be had is null in the result, with an issue that says why; the verdict says whether to believe the rest.
@@ -32,7 +39,9 @@ const ROUNDS: usize = 3;
 pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let mut draft = Draft::new(recording, cask_file);
     let fall_s = cask_file.drop.impact_velocity_m_s / cask_file.drop.gravity_m_s2;
-    let Some(event) = events::locate(recording).filter(|e| is_impact(e.velocity_step_m_s, cask_file)) else {
+    let Some(event) =
+        events::locate(recording, &cask_file.drop).filter(|e| is_impact(e.velocity_step_m_s, cask_file))
+    else {
         return draft.without_impact();
     };
     let (signals, mut found) = condition::condition(recording, &event, fall_s);
@@ -117,9 +126,15 @@ fn flight_and_motion(
 
 /// Separation, slap-down and the flight between them, each found again with the other's help.
 fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Option<FlightFit> {
-    let cog_m = draft.cask_file.cask.cog_m;
-    let least_m_s = 0.3 * draft.cask_file.drop.impact_velocity_m_s;
-    let Some(mut left) = events::separation(signals, contact.0, f64::INFINITY) else {
+    let file = draft.cask_file;
+    let v0_m_s = file.drop.impact_velocity_m_s;
+    let least_m_s = 0.3 * v0_m_s;
+    let record_end_s = signals.iter().map(Signal::end_s).fold(f64::INFINITY, f64::min);
+    let drop_m = file.cask.length_m * file.drop.angle_rad.sin();
+    let between_s = contact.0 + EARLIEST_SLAP_DOWN * drop_m / v0_m_s..record_end_s;
+    let mut struck = events::slap_down(signals, between_s.clone(), least_m_s, false);
+    let end_s = struck.map_or(record_end_s, |s| s.0);
+    let Some(rough_s) = events::first_separation(signals, contact.0, end_s) else {
         draft.issues.push(Issue::new(
             IssueCode::EndsEarly,
             Severity::Error,
@@ -127,22 +142,27 @@ fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Op
         ));
         return None;
     };
-    let record_end_s = signals.iter().map(Signal::end_s).fold(f64::INFINITY, f64::min);
-    let mut struck = events::slap_down(signals, left.0, least_m_s);
+    // The first fit keeps well clear of the contact, which ringing may have seemed to end too soon.
+    let mut free_s =
+        rough_s.max(contact.0 + (FIRST_CLEARANCE * (end_s - contact.0)).min(LONGEST_CLEARANCE_S));
+    let mut left = (rough_s, 0.1 * (rough_s - contact.0));
     let mut flight: Option<FlightFit> = None;
     for _ in 0..ROUNDS {
-        let end_s = struck.map_or(record_end_s.min(left.0 + 0.1), |s| s.0);
-        let margin_s = 0.1 * (left.0 - contact.0) + 3e-4;
+        let end_s = struck.map_or(record_end_s, |s| s.0);
         let window = motion::Window {
             contact_s: contact.0,
-            from_s: left.0 + margin_s,
+            from_s: free_s,
             to_s: end_s - 5e-4,
             angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| motion::rotation_rad_s(signals, f)),
         };
-        let Some(fitted) = motion::fit_flight(signals, &window, cog_m) else { break };
+        let Some(fitted) = motion::fit_flight(signals, &window, file.cask.cog_m) else { break };
         let calm = motion::without_ringing(signals, &fitted, contact.0, end_s + 0.02);
-        struck = struck.and_then(|_| events::slap_down(&calm, window.from_s, least_m_s)).or(struck);
-        left = events::separation(&calm, contact.0, end_s).unwrap_or(left);
+        if struck.is_some() {
+            struck = events::slap_down(&calm, between_s.start.max(free_s)..record_end_s, least_m_s, true)
+                .or(struck);
+        }
+        left = events::separation(&calm, contact.0, free_s).unwrap_or(left);
+        free_s = left.0 + 0.1 * (left.0 - contact.0) + 3e-4;
         flight = Some(fitted);
     }
     draft.take_times(contact, left, struck, record_end_s);

@@ -1,6 +1,6 @@
 //! A whole channel to the stretch in which the first impact lies, in one pass.
 
-use crate::data::{Axis, Channel, CoarseEvent, End, Recording};
+use crate::data::{Axis, Channel, CoarseEvent, Drop, End, Recording};
 use crate::numerics::robust;
 
 /// Width over which a velocity change is looked for, s: longer than any first pulse (1–20 ms), shorter than a flight.
@@ -14,11 +14,14 @@ const BLOCKS: usize = 40;
 /// At the first impact L changes by (1 + k) v0 cos φ, later by less; spikes and the release change it by far less.
 const SHARE: f64 = 0.4;
 
+/// A change of this share of v0 cos φ is the first impact too, whatever comes later: L loses all of it.
+const SHARE_OF_FALL: f64 = 0.5;
+
 /// Finds the first impact on the transverse channel of the first end (or, without one, on any transverse channel).
 ///
 /// `None` where no channel moves at all.
 #[must_use]
-pub fn locate(recording: &Recording) -> Option<CoarseEvent> {
+pub fn locate(recording: &Recording, drop: &Drop) -> Option<CoarseEvent> {
     let transverse = || recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
     let channel = transverse().find(|c| c.end == End::First).or_else(|| transverse().next())?;
     let (block_s, means) = block_means(channel)?;
@@ -33,7 +36,9 @@ pub fn locate(recording: &Recording) -> Option<CoarseEvent> {
         changes.push(sum);
     }
     let largest = changes.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
-    let crossing = changes.iter().position(|c| c.abs() >= SHARE * largest && largest > 0.0)?;
+    let lost_m_s = SHARE_OF_FALL * drop.impact_velocity_m_s * drop.angle_rad.cos().max(0.1);
+    let least_m_s = (SHARE * largest).min(lost_m_s);
+    let crossing = changes.iter().position(|c| c.abs() >= least_m_s && largest > 0.0)?;
     #[allow(clippy::cast_precision_loss, reason = "block counts stay below 2^52")]
     let near_s = channel.start_s + (crossing as f64 + 1.0) * block_s - WIDTH_S;
     let end = (crossing + BLOCKS).min(changes.len());

@@ -5,7 +5,7 @@ mod onset;
 mod release;
 
 pub use locate::locate;
-pub use onset::{first_contact, separation, slap_down};
+pub use onset::{first_contact, first_separation, separation, slap_down};
 pub use release::release;
 
 use crate::data::{Axis, End, Signal};

@@ -12,8 +12,8 @@ const SHOULDER: f64 = 0.3;
 const TAIL: f64 = 0.05;
 /// Noise is passed by this many of its standard deviations.
 const NOISE_FACTOR: f64 = 6.0;
-/// Width over which R's velocity change at slap-down is looked for, s, as in `locate`.
-const WIDTH_S: f64 = 0.02;
+/// Width of the means that R's velocity is compared by, s: two periods of an 80 Hz mode, less than a flight from 5°.
+const WIDTH_S: f64 = 0.025;
 /// R strikes where its velocity change over the width reaches this share of the largest in the record.
 const SHARE: f64 = 0.5;
 /// Longest first contact looked for, s: pulses of shock-absorbed casks reach 20 ms.
@@ -26,46 +26,77 @@ pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<(f64, f
     let sign = coarse.velocity_step_m_s.signum();
     let from = signal.index_from(coarse.near_s - 0.2 * coarse.spread_s);
     let to = signal.index_from(coarse.near_s + 1.2 * coarse.spread_s);
-    onset(signal, from, to, sign)
+    // Before first contact nothing rings: the first rise is the one.
+    onset(signal, from..to, sign, Rise::First)
 }
 
-/// First contact of R after `after_s` and its standard uncertainty, s; `None` where the record holds none.
+/// First contact of R between two times and its standard uncertainty, s; `None` where the record holds none.
 ///
-/// `least_change_m_s` is the velocity change below which a pulse is not R striking the target.
+/// Ringing has no mean over [`WIDTH_S`], R striking the target has: the means before and after each time are compared, and the
+/// largest difference, if above `least_change_m_s`, is the slap-down. On signals that still ring the rise is sought backwards
+/// from the pulse's peak; free of ringing the first rise is taken.
 #[must_use]
-pub fn slap_down(signals: &[Signal], after_s: f64, least_change_m_s: f64) -> Option<(f64, f64)> {
+pub fn slap_down(
+    signals: &[Signal],
+    between_s: std::ops::Range<f64>,
+    least_change_m_s: f64,
+    is_calm: bool,
+) -> Option<(f64, f64)> {
     let signal = transverse(signals, End::Second)?;
-    let start = signal.index_from(after_s);
-    let step_s = 1.0 / signal.sample_rate_hz;
-    let velocity = running_integral(signal.force_m_s2.get(start..)?, step_s);
+    let start = signal.index_from(between_s.start - WIDTH_S);
+    let end = signal.index_from(between_s.end + WIDTH_S);
+    let velocity = running_integral(signal.force_m_s2.get(start..end)?, 1.0 / signal.sample_rate_hz);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
     let width = ((WIDTH_S * signal.sample_rate_hz) as usize).max(1);
-    let change = |i: usize| velocity[i] - velocity[i.saturating_sub(width)];
-    let largest = (0..velocity.len()).map(change).fold(0.0, f64::max);
+    let sums = cumulative(&velocity);
+    let mean = |a: usize, b: usize| (sums[b] - sums[a]) / count((b - a).max(1));
+    let change = |i: usize| mean(i, (i + width).min(velocity.len())) - mean(i.saturating_sub(width), i);
+    let first = signal.index_from(between_s.start).saturating_sub(start).max(1);
+    let last = signal.index_from(between_s.end).saturating_sub(start).min(velocity.len());
+    let largest = (first..last).map(change).fold(0.0, f64::max);
     if largest < least_change_m_s {
         return None;
     }
-    let crossing = start + (0..velocity.len()).find(|&i| change(i) >= SHARE * largest)?;
-    let from = crossing.saturating_sub(width).max(start);
-    onset(signal, from, (crossing + width / 4).min(signal.force_m_s2.len()), 1.0)
+    // The first hump that reaches the share, followed to its top: the middle of the pulse.
+    let crossing = (first..last).find(|&i| change(i) >= SHARE * largest)?;
+    let hump = crossing..(crossing + width).min(last);
+    let middle = start + hump.max_by(|&a, &b| change(a).total_cmp(&change(b)))?;
+    let from = middle.saturating_sub(width * 3 / 5).max(start + first);
+    let to = (middle + width / 2).min(signal.force_m_s2.len());
+    onset(signal, from..to, 1.0, if is_calm { Rise::First } else { Rise::BeforePeak })
 }
 
-/// Where the pulse between two indices leaves zero: a line through its rise from foot to shoulder, cut with zero.
-fn onset(signal: &Signal, from: usize, to: usize, sign: f64) -> Option<(f64, f64)> {
-    let force = signal.force_m_s2.get(from..to)?;
+/// Which rise of a stretch begins the pulse.
+#[derive(Clone, Copy, PartialEq)]
+enum Rise {
+    /// The first one past the shoulder.
+    First,
+    /// The one that leads to the highest peak.
+    BeforePeak,
+}
+
+/// Where the pulse in a stretch of samples leaves zero: a line through its rise from foot to shoulder, cut with zero.
+fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise) -> Option<(f64, f64)> {
+    let from = stretch.start;
+    let force = signal.force_m_s2.get(stretch)?;
     let peak = force.iter().fold(0.0_f64, |m, f| m.max(sign * f));
     let foot = (FOOT * peak).max(NOISE_FACTOR * signal.noise_m_s2);
     if peak <= 2.0 * foot {
         return None;
     }
-    let at_peak = force.iter().position(|f| sign * f >= peak)?;
     let shoulder = (SHOULDER * peak).max(2.0 * foot);
-    // Backwards from the peak to the last time the force stood below the shoulder, then below the foot.
-    let high = (0..=at_peak).rev().find(|&i| sign * force[i] < shoulder).map_or(0, |i| i + 1);
+    // To the first sample past the shoulder, then backwards to the last below the foot.
+    let high = match rise {
+        Rise::First => force.iter().position(|f| sign * f >= shoulder)?,
+        Rise::BeforePeak => {
+            let at_peak = force.iter().position(|f| sign * f >= peak)?;
+            (0..=at_peak).rev().find(|&i| sign * force[i] < shoulder).map_or(0, |i| i + 1)
+        }
+    };
     let low = (0..high).rev().find(|&i| sign * force[i] < foot).map_or(0, |i| i + 1);
     let crossing = interpolated(force, low, sign * foot);
-    let rise: Vec<(f64, f64)> = (low..=high).map(|i| (count(i), sign * force[i])).collect();
-    let extrapolated = zero_of_line(&rise).unwrap_or(crossing);
+    let points: Vec<(f64, f64)> = (low..=high).map(|i| (count(i), sign * force[i])).collect();
+    let extrapolated = zero_of_line(&points).unwrap_or(crossing);
     // A rise that is steeper than the sampling, or one that bends, puts the line's zero past the crossing or far before it.
     let reach = (count(high) - crossing).max(1.0);
     let position = extrapolated.clamp(crossing - reach, crossing);
@@ -73,11 +104,9 @@ fn onset(signal: &Signal, from: usize, to: usize, sign: f64) -> Option<(f64, f64
     Some((signal.time_s(from) + position / signal.sample_rate_hz, u_s))
 }
 
-/// When L leaves the target, s: the force on it, free of ringing, has dropped to the foot for good.
-///
-/// `before_s` bounds the search; the standard uncertainty is a twentieth of the contact or a sample.
+/// When L leaves the target on signals that still ring, s: the force on it first drops to the foot.
 #[must_use]
-pub fn separation(signals: &[Signal], contact_s: f64, before_s: f64) -> Option<(f64, f64)> {
+pub fn first_separation(signals: &[Signal], contact_s: f64, before_s: f64) -> Option<f64> {
     let signal = transverse(signals, End::First)?;
     let from = signal.index_from(contact_s);
     let to = signal.index_from(before_s.min(contact_s + LONGEST_CONTACT_S));
@@ -86,19 +115,45 @@ pub fn separation(signals: &[Signal], contact_s: f64, before_s: f64) -> Option<(
     let at_peak = smooth.iter().position(|&f| f >= peak)?;
     let tail = (TAIL * peak).max(NOISE_FACTOR * signal.noise_m_s2);
     let end = (at_peak..smooth.len()).find(|&i| smooth[i] < tail)?;
+    Some(signal.time_s(from + end))
+}
+
+/// When L leaves the target on signals free of ringing, s: going back from `free_s`, where it flies, the force leaves zero.
+///
+/// The standard uncertainty is what the force's fall from the foot to zero may hide, a fortieth of the contact, or a sample.
+#[must_use]
+pub fn separation(calm: &[Signal], contact_s: f64, free_s: f64) -> Option<(f64, f64)> {
+    let signal = transverse(calm, End::First)?;
+    let from = signal.index_from(contact_s);
+    let to = signal.index_from(free_s);
+    let beyond = signal.index_from(free_s + 0.5 * (free_s - contact_s));
+    let smooth = smoothed(signal.force_m_s2.get(from..beyond.max(to))?, signal.sample_rate_hz);
+    let (contact, flight) = smooth.split_at(to - from);
+    let peak = contact.iter().fold(0.0_f64, |m, &f| m.max(f));
+    let left = flight.iter().fold(0.0_f64, |m, &f| m.max(f.abs()));
+    let tail = (TAIL * peak).max(NOISE_FACTOR * signal.noise_m_s2).max(1.5 * left).min(0.5 * peak);
+    let end = contact.iter().rposition(|f| f.abs() > tail)? + 1;
     let time_s = signal.time_s(from + end);
-    Some((time_s, ((time_s - contact_s) / 20.0).max(1.0 / signal.sample_rate_hz)))
+    Some((time_s, ((time_s - contact_s) / 40.0).max(1.0 / signal.sample_rate_hz)))
+}
+
+/// Sums of all samples before each index; one longer than `values`.
+fn cumulative(values: &[f64]) -> Vec<f64> {
+    let mut sums = Vec::with_capacity(values.len() + 1);
+    let mut sum = 0.0;
+    sums.push(sum);
+    for v in values {
+        sum += v;
+        sums.push(sum);
+    }
+    sums
 }
 
 /// Moving mean over 0.2 ms, so that the high modes of the sensor's mount do not end a pulse.
 fn smoothed(force: &[f64], sample_rate_hz: f64) -> Vec<f64> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
     let half = (1e-4 * sample_rate_hz) as usize;
-    let mut sums = Vec::with_capacity(force.len() + 1);
-    sums.push(0.0);
-    for f in force {
-        sums.push(sums[sums.len() - 1] + f);
-    }
+    let sums = cumulative(force);
     (0..force.len())
         .map(|i| {
             let (a, b) = (i.saturating_sub(half), (i + half + 1).min(force.len()));
@@ -172,8 +227,8 @@ mod tests {
             let first =
                 first_contact(&[signal(End::First, rate, 0.020_03, 3000.0)], &coarse).expect("an onset");
             assert!((first.0 - 0.020_03).abs() < 6e-5, "{rate}: {first:?}");
-            let second =
-                slap_down(&[signal(End::Second, rate, 0.080_03, 3000.0)], 0.03, 2.0).expect("an onset");
+            let second = slap_down(&[signal(End::Second, rate, 0.080_03, 3000.0)], 0.03..0.19, 2.0, true)
+                .expect("an onset");
             assert!((second.0 - 0.080_03).abs() < 6e-5, "{rate}: {second:?}");
         }
     }
@@ -181,13 +236,15 @@ mod tests {
     #[test]
     fn separation_is_the_end_of_the_pulse() {
         let s = [signal(End::First, 1e5, 0.020_03, 3000.0)];
-        let (time_s, u_s) = separation(&s, 0.020_03, 0.1).expect("a separation");
+        let (time_s, u_s) = separation(&s, 0.020_03, 0.04).expect("a separation");
         assert!((time_s - 0.026_03).abs() < 2.0 * u_s, "{time_s}");
+        let rough_s = first_separation(&s, 0.020_03, 0.04).expect("a separation");
+        assert!((rough_s - 0.026_03).abs() < 2.0 * u_s, "{rough_s}");
     }
 
     #[test]
     fn a_quiet_record_has_no_slap_down() {
-        assert!(slap_down(&[signal(End::Second, 1e5, 0.08, 1.0)], 0.03, 2.0).is_none());
-        assert!(slap_down(&[], 0.03, 2.0).is_none());
+        assert!(slap_down(&[signal(End::Second, 1e5, 0.08, 1.0)], 0.03..0.19, 2.0, true).is_none());
+        assert!(slap_down(&[], 0.03..0.19, 2.0, true).is_none());
     }
 }

@@ -11,8 +11,8 @@ const MOST_LOST_M_S: f64 = 0.27;
 /// A dead channel's noise is at most this share of the other channels' median peak.
 const DEAD_SHARE: f64 = 1e-3;
 
-/// Signals of one rigid body begin to move together: bending waves (about 1000 m/s) need some milliseconds along a cask.
-const MOST_SKEW_S: f64 = 2e-3;
+/// Signals of one body begin to move together but for the bending wave, which takes a few milliseconds along a cask.
+const MOST_SKEW_S: f64 = 5e-3;
 
 /// Checks each channel over the event: clipped, lost, dead, sampled too slowly, late.
 #[must_use]
@@ -127,12 +127,12 @@ fn dead(signals: &[Signal]) -> Vec<Issue> {
         .collect()
 }
 
-/// First time after `from_s` at which a signal leaves its noise and a twentieth of its peak over 20 ms.
+/// First time after `from_s` at which a signal leaves its noise and a hundredth of its peak over 20 ms.
 fn begins(signal: &Signal, contact_s: f64) -> Option<f64> {
     let (from, to) = (signal.index_from(contact_s - 0.01), signal.index_from(contact_s + 0.02));
     let force = signal.force_m_s2.get(from..to)?;
     let peak = force.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-    let foot = (0.05 * peak).max(6.0 * signal.noise_m_s2);
+    let foot = (0.01 * peak).max(6.0 * signal.noise_m_s2);
     force.iter().position(|f| f.abs() > foot).map(|i| signal.time_s(from + i))
 }
 

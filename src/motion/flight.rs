@@ -9,6 +9,8 @@ use crate::numerics::robust;
 const MOST_MODES: usize = 3;
 /// Points a window: 240 over 60 ms resolve 400 Hz tenfold.
 const POINTS: usize = 240;
+/// Longest window fitted, s: eight periods of 80 Hz; a longer one would only coarsen the points.
+const LONGEST_S: f64 = 0.1;
 /// Least noise of a velocity, as a share of its range in the window: linearity of the best sensors.
 const LEAST_FLOOR: f64 = 2e-4;
 /// Lowest frequency sought: this many periods in the window, and never below 15 Hz.
@@ -35,6 +37,7 @@ pub struct Window {
 /// whether there is a drift are decided by the Bayesian information criterion (21).
 #[must_use]
 pub fn fit_flight(signals: &[Signal], window: &Window, cog_m: f64) -> Option<FlightFit> {
+    let window = &Window { to_s: window.to_s.min(window.from_s + LONGEST_S), ..*window };
     let series: Vec<Series> = signals.iter().map(|s| series(s, window, cog_m)).collect();
     let length_s = window.to_s - window.from_s;
     let fewest = series.iter().map(|s| s.value.len()).min()?;

@@ -96,14 +96,14 @@ impl Campaign {
                 vec![
                     tail(&row.recording, 24),
                     row.verdict.map_or("ERROR", verdict_word).to_owned(),
-                    interval(row.slap_down_speed.as_ref()),
+                    interval(row.slap_down_speed.as_ref()).replace(" m/s", ""),
                     interval(row.k.as_ref()),
                     row.comparison.map_or_else(|| MISSING.to_owned(), |c| percent(c.difference_percent)),
                     row.findings.to_string(),
                 ]
             })
             .collect();
-        let header = ["recording", "verdict", "slap-down speed", "k", "meas/pred", "findings"];
+        let header = ["recording", "verdict", "speed m/s", "k", "meas/pred", "findings"];
         let mut out = format!("{}\n", styled(Style::Bold, &printable(&self.cask)));
         out.push_str(&columns(&header, &rows, &[4, 5]));
         for row in &self.recordings {

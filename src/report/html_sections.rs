@@ -6,7 +6,7 @@ use super::rounding::{
     MISSING, fixed, interval, optional, optional_fixed, parts, percent, plain, significant,
 };
 use super::table::{FIRST_IMPACT_CODES, SLAP_DOWN_CODES, end_axis};
-use super::text::{code_word, format_word, printable, reason, severity_word, span_text};
+use super::text::{code_word, format_word, printable, reason, sentence, severity_word, span_text};
 use crate::data::{Analysis, DropResult, Estimate, FlightRegime, Issue, IssueCode, ModelCandidate};
 use maud::{Markup, html};
 
@@ -149,14 +149,6 @@ pub(super) fn models(result: &DropResult) -> Markup {
             }
         }
     }
-}
-
-/// A reason as a sentence: a capital and a full stop.
-fn sentence(reason: &str) -> String {
-    let reason = printable(reason);
-    let reason = reason.trim().trim_end_matches('.');
-    let mut letters = reason.chars();
-    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 
 fn candidate(c: &ModelCandidate, chosen: bool) -> Markup {

@@ -161,7 +161,7 @@ fn comparison(result: &DropResult) -> String {
     }
     if let Some(model) = &result.model {
         out.push_str(&wrap(
-            &format!("Model {}: {}.", model.name.as_str(), model.reason.trim_end_matches('.')),
+            &format!("Model: {}. {}", model.name.as_str(), text::sentence(&model.reason)),
             WIDTH,
             2,
         ));

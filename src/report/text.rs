@@ -165,6 +165,14 @@ pub(super) fn span_text(issue: &Issue) -> Option<String> {
     }
 }
 
+/// A reason as a sentence: a capital and a full stop.
+pub(super) fn sentence(reason: &str) -> String {
+    let reason = printable(reason);
+    let reason = reason.trim().trim_end_matches('.');
+    let mut letters = reason.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
 /// The message of the worst issue among `codes`, else of the first error: why a quantity is missing.
 pub(super) fn reason<'a>(result: &'a DropResult, codes: &[IssueCode]) -> &'a str {
     let worst = |wanted: &dyn Fn(&Issue) -> bool| {

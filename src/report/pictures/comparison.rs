@@ -3,14 +3,13 @@
 use super::super::ReportError;
 use super::super::rounding;
 use super::super::text::printable;
-use super::panel::{self, COLOURS, Rows, WIDTH};
+use super::panel::{self, COLOURS, FONT, INK, WIDTH};
 use super::{Picture, assemble};
 use crate::data::{Analysis, Contact, Estimate, Prediction};
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-const FONT: &str = "Helvetica, Arial, sans-serif";
-const INK: RGBColor = RGBColor(38, 42, 48);
 const LEFT: u32 = 560;
 const RIGHT: u32 = 230;
 const ROW: u32 = 52;
@@ -173,4 +172,26 @@ fn speed_range(rows: &[Row], measured: Option<&Estimate>) -> std::ops::Range<f64
     }
     let span = (high - low).max(1.0);
     low - 0.08 * span..high + 0.08 * span
+}
+
+/// Whole numbers only, for axes whose rows are named by hand.
+struct Rows(std::ops::Range<f64>);
+
+impl Ranged for Rows {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    #[allow(clippy::cast_possible_truncation, reason = "a pixel place lies within the limits given")]
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        let share = (value - self.0.start) / (self.0.end - self.0.start);
+        limit.0 + (share * f64::from(limit.1 - limit.0)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, _hint: Hint) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn range(&self) -> std::ops::Range<f64> {
+        self.0.clone()
+    }
 }

@@ -42,8 +42,8 @@ pub(super) fn accelerations(analysis: &Analysis) -> Result<Picture, ReportError>
         .result
         .settings
         .iter()
-        .find(|setting| setting.name.contains("low-pass"))
-        .map_or_else(String::new, |setting| format!(" Filter: {}, without phase.", setting.value));
+        .find(|setting| setting.name.starts_with("low-pass"))
+        .map_or_else(String::new, |setting| format!(" Filter: {}.", setting.value));
     let caption = format!(
         "Specific force at both ends over time, offset removed: unfiltered (faint) and filtered (bold), 1 g = 9.80665 m/s². \
          A decelerating end reads positive on its transverse axis.{filter}"

@@ -3,6 +3,7 @@
 mod comparison;
 mod curves;
 mod decimate;
+mod legend;
 mod panel;
 
 use super::ReportError;

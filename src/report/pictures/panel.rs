@@ -2,24 +2,21 @@
 
 use super::super::text::printable;
 use super::decimate::runs;
-use plotters::coord::ranged1d::{AsRangedCoord, DefaultFormatting, KeyPointHint, Ranged, ValueFormatter};
+use super::legend::heading;
+use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// Width of a picture in drawing units.
 pub(super) const WIDTH: u32 = 1800;
-const FONT: &str = "Helvetica, Arial, sans-serif";
-const HEAD: i32 = 62;
+pub(super) const FONT: &str = "Helvetica, Arial, sans-serif";
 const MARK_ROW: i32 = 34;
-const LEGEND_ROW: i32 = 40;
-/// Width of the sample of a line before its words.
-const SAMPLE: i32 = 58;
-const LEFT: u32 = 130;
+pub(super) const LEFT: u32 = 130;
 const BOTTOM: u32 = 88;
 /// Air below a panel.
 const GAP: i32 = 26;
-const RIGHT: i32 = 28;
-const INK: RGBColor = RGBColor(38, 42, 48);
+pub(super) const RIGHT: i32 = 28;
+pub(super) const INK: RGBColor = RGBColor(38, 42, 48);
 const GREY: RGBColor = RGBColor(110, 116, 124);
 
 /// Colours that also readers with a colour vision deficiency tell apart (Okabe & Ito 2008), darkest first.
@@ -118,53 +115,6 @@ impl Panel {
     }
 }
 
-/// One entry of a legend: its line, its words, its row and where it begins.
-struct Entry<'a> {
-    line: &'a Line,
-    label: String,
-    row: usize,
-    left: i32,
-}
-
-impl Panel {
-    /// The legend in reading order, each row set to the right; the first leaves room for the title.
-    fn legend(&self) -> Vec<Entry<'_>> {
-        // The width of a letter is about 0.52 em: 13 at 25 units, 19 for the bold title.
-        let width = |label: &str, letter: i32| i32::try_from(label.chars().count()).unwrap_or(0) * letter;
-        let limit = WIDTH.cast_signed() - RIGHT;
-        let room = limit - LEFT.cast_signed();
-        let mut left_over = room - width(&self.title, 19) - 40;
-        let mut rows: Vec<Vec<(&Line, String, i32)>> = vec![Vec::new()];
-        for line in &self.lines {
-            let Some(label) = line.label.as_deref().map(printable) else { continue };
-            let takes = SAMPLE + width(&label, 13) + 26;
-            if takes > left_over && !(rows.len() > 1 && rows.last().is_some_and(Vec::is_empty)) {
-                rows.push(Vec::new());
-                left_over = room;
-            }
-            left_over -= takes;
-            if let Some(row) = rows.last_mut() {
-                row.push((line, label, takes));
-            }
-        }
-        let mut entries = Vec::new();
-        for (row, members) in rows.into_iter().enumerate() {
-            let mut left = limit + 26 - members.iter().map(|(_, _, takes)| takes).sum::<i32>();
-            for (line, label, takes) in members {
-                entries.push(Entry { line, label, row, left });
-                left += takes;
-            }
-        }
-        entries
-    }
-
-    /// Height of title and legend.
-    fn head(&self) -> i32 {
-        let last = self.legend().last().map_or(0, |entry| entry.row);
-        HEAD + LEGEND_ROW * i32::try_from(last).unwrap_or(0)
-    }
-}
-
 /// Panels one below the other.
 pub(super) fn draw(panels: &[&Panel]) -> Result<String, String> {
     let heads: Vec<i32> = panels
@@ -200,7 +150,7 @@ pub(super) fn draw(panels: &[&Panel]) -> Result<String, String> {
     Ok(sized(&svg, total))
 }
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
 fn one<X, Y>(area: &Area, panel: &Panel, head: i32, axes: (X, Y)) -> Result<(), String>
 where
@@ -282,25 +232,6 @@ where
     Ok(())
 }
 
-/// The panel's title at the left, its legend at the right of one line.
-fn heading(area: &Area, panel: &Panel) -> Result<(), String> {
-    let fail = |e: DrawingAreaErrorKind<_>| e.to_string();
-    let title = TextStyle::from((FONT, 36).into_font().style(FontStyle::Bold)).color(&INK);
-    area.draw(&Text::new(printable(&panel.title), (LEFT.cast_signed(), 14), title)).map_err(fail)?;
-    let entry = TextStyle::from((FONT, 31).into_font()).color(&INK);
-    for Entry { line, label, row, left } in panel.legend() {
-        let drop = LEGEND_ROW * i32::try_from(row).unwrap_or(0);
-        area.draw(&Text::new(label, (left + SAMPLE, 17 + drop), entry.clone())).map_err(fail)?;
-        let style = line.colour.mix(line.opacity).stroke_width(line.stroke.max(3));
-        let pieces: &[(i32, i32)] = if line.dashed { &[(0, 20), (28, 48)] } else { &[(0, 48)] };
-        for (from, to) in pieces {
-            let stroke = vec![(left + from, 29 + drop), (left + to, 29 + drop)];
-            area.draw(&PathElement::new(stroke, style)).map_err(fail)?;
-        }
-    }
-    Ok(())
-}
-
 fn draw_mark(
     area: &Area,
     mark: &Mark,
@@ -368,33 +299,11 @@ fn escaped(text: &str) -> String {
     printable(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Whole numbers only, for axes whose rows are named by hand.
-pub(super) struct Rows(pub(super) std::ops::Range<f64>);
-
-impl Ranged for Rows {
-    type FormatOption = DefaultFormatting;
-    type ValueType = f64;
-
-    #[allow(clippy::cast_possible_truncation, reason = "a pixel place lies within the limits given")]
-    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
-        let share = (value - self.0.start) / (self.0.end - self.0.start);
-        limit.0 + (share * f64::from(limit.1 - limit.0)).round() as i32
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, _hint: Hint) -> Vec<f64> {
-        Vec::new()
-    }
-
-    fn range(&self) -> std::ops::Range<f64> {
-        self.0.clone()
-    }
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn panel(channels: usize) -> Panel {
+    pub(in super::super) fn panel(channels: usize) -> Panel {
         let line = |i: usize| Line {
             label: Some(format!("channel number {i} unfiltered")),
             colour: COLOURS[i % COLOURS.len()],
@@ -414,16 +323,6 @@ mod tests {
                 .map(|(label, at)| Mark { at, label: label.into() })
                 .into(),
         }
-    }
-
-    #[test]
-    fn a_long_legend_takes_more_rows_within_the_width() {
-        let panel = panel(16);
-        let entries = panel.legend();
-        assert_eq!(entries.len(), 16);
-        assert!(entries.iter().all(|e| e.left >= LEFT.cast_signed() && e.left < WIDTH.cast_signed()));
-        assert!(entries.iter().any(|e| e.row > 0));
-        assert!(entries.windows(2).all(|w| w[0].row < w[1].row || w[0].left < w[1].left));
     }
 
     #[test]
