@@ -258,6 +258,7 @@ impl<'a> Draft<'a> {
             vertical_velocity: q.and_then(|q| q.vertical_velocity),
             horizontal_velocity: q.and_then(|q| q.horizontal_velocity),
             angle: q.and_then(|q| q.angle),
+            second_end_height: q.and_then(|q| q.second_end_height),
         }
     }
 

@@ -32,6 +32,9 @@ const EARLIEST_SLAP_DOWN: f64 = 0.3;
 const FIRST_CLEARANCE: f64 = 0.4;
 const LONGEST_CLEARANCE_S: f64 = 0.022;
 
+/// A flight fit that leaves less than this RMS has explained its channel, m/s: 1.5 % of a 9 m fall.
+const EXPLAINED_M_S: f64 = 0.2;
+
 /// From a recording and a cask file to everything that can be said of the drop.
 ///
 /// What cannot be had is null in the result, with an issue that says why; the verdict says whether to believe the rest.
@@ -157,9 +160,10 @@ fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Op
         };
         let Some(fitted) = motion::fit_flight(signals, &window, file.cask.cog_m) else { break };
         let calm = motion::without_ringing(signals, &fitted, contact.0, end_s + 0.02);
-        if struck.is_some() {
-            struck = events::slap_down(&calm, between_s.start.max(free_s)..record_end_s, least_m_s, true)
-                .or(struck);
+        let seen = events::slap_down(&calm, between_s.start.max(free_s)..record_end_s, least_m_s, true);
+        // A flight that is explained well has no slap-down hidden in its ringing.
+        if seen.is_some() || fitted.plateaus.iter().all(|p| p.residual_m_s < EXPLAINED_M_S) {
+            struck = seen;
         }
         left = events::separation(&calm, contact.0, free_s).unwrap_or(left);
         free_s = left.0 + 0.1 * (left.0 - contact.0) + 3e-4;

@@ -9,14 +9,15 @@ const U_INERTIA_DEFAULT: f64 = 0.05;
 /// Standard uncertainty of an inertia that the cask file states.
 const U_INERTIA_STATED: f64 = 0.01;
 /// Standard uncertainty of the drop angle, rad, as in the reconstruction.
-const U_ANGLE_RAD: f64 = 0.5 * std::f64::consts::PI / 180.0;
+const U_ANGLE_RAD: f64 = 0.25 * std::f64::consts::PI / 180.0;
 
 /// The analytical model as a function, such as `predict::predict`.
 pub type Predict<'a> = &'a dyn Fn(&Body, &Drop, Contact, f64) -> Prediction;
 
 /// Holds every body's prediction with the measured k against the measured slap-down speed, simplest first.
 ///
-/// Returns the choice and, where both speeds exist, the comparison with the model taken. The simplest consistent model wins.
+/// Returns the choice and, where both speeds exist, the comparison with the model taken. The simplest model wins whose own and all richer
+/// predictions agree.
 #[must_use]
 pub fn compare(
     bodies: &[Body],
@@ -43,10 +44,11 @@ pub fn compare(
             }
         })
         .collect();
-    let taken = candidates
-        .iter()
-        .find(|c| c.consistent)
-        .or_else(|| candidates.iter().min_by(|a, b| apart(a).total_cmp(&apart(b))))?
+    // A simple model that agrees where a richer one does not agrees by luck: the richer ones must agree as well.
+    let taken = (0..candidates.len())
+        .find(|&i| candidates[i..].iter().all(|c| c.consistent))
+        .map(|i| &candidates[i])
+        .or_else(|| candidates.last())?
         .clone();
     let comparison = match (measured.speed, taken.predicted, taken.u95) {
         (Some(m), Some(predicted), Some(u95)) => Some(Comparison {
@@ -63,10 +65,6 @@ pub fn compare(
     Some((ModelChoice { name: taken.model, reason, candidates }, comparison))
 }
 
-fn apart(candidate: &ModelCandidate) -> f64 {
-    candidate.difference_percent.map_or(f64::INFINITY, f64::abs)
-}
-
 /// 95 % half-width of a prediction, m/s: k, angle, inertia, and the finite pulse that the impact formula leaves out.
 fn uncertainty(body: &Body, file: &CaskFile, measured: &Quantities, predict: Predict) -> Option<f64> {
     let k = measured.k.value.clamp(0.0, 1.0);
@@ -77,7 +75,7 @@ fn uncertainty(body: &Body, file: &CaskFile, measured: &Quantities, predict: Pre
     let by_k = speed(body, &file.drop, k + measured.k.u95 / 2.0).map_or(0.0, |s| s - base);
     let turned = |by_rad: f64| Drop { angle_rad: (file.drop.angle_rad + by_rad).max(0.0), ..file.drop };
     let by_angle = speed(body, &turned(U_ANGLE_RAD), k).map_or(0.0, |s| s - base);
-    let stated = !file.defaults.iter().any(|d| d == "cask.inertia_kg_m2");
+    let stated = body.model == BodyModel::Body && !file.defaults.iter().any(|d| d == "cask.inertia_kg_m2");
     let share = if stated { U_INERTIA_STATED } else { U_INERTIA_DEFAULT };
     let heavier = Body { inertia_kg_m2: body.inertia_kg_m2 * (1.0 + share), ..*body };
     let by_inertia = speed(&heavier, &file.drop, k).map_or(0.0, |s| s - base);
@@ -114,7 +112,7 @@ fn reason(taken: &ModelCandidate, candidates: &[ModelCandidate]) -> String {
         format!("The {} is the simplest model within both intervals ({percent:+.1} %)", name(taken.model))
     } else {
         format!(
-            "No model agrees within both intervals; the {} comes nearest ({percent:+.1} %)",
+            "The measurement does not agree within both intervals; the {} comes nearest ({percent:+.1} %)",
             name(taken.model)
         )
     };

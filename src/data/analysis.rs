@@ -67,6 +67,8 @@ pub struct SlapDown {
     pub horizontal_velocity: Option<Estimate>,
     /// Inclination of the axis at slap-down, degrees.
     pub angle: Option<Estimate>,
+    /// Height of R's corner above the target then, m: 0 within its interval where angle, height and scales fit the recording.
+    pub second_end_height: Option<Estimate>,
 }
 
 /// How one analytical model stands against the measurement.
@@ -78,7 +80,7 @@ pub struct ModelCandidate {
     pub predicted: Option<f64>,
     /// 95 % half-width of the prediction, from k, angle and pulse length, m/s.
     pub u95: Option<f64>,
-    /// Predicted over measured, less one, percent.
+    /// (measured − predicted) / predicted, percent.
     pub difference_percent: Option<f64>,
     /// Whether it lies within both intervals.
     pub consistent: bool,

@@ -52,7 +52,9 @@ pub fn slap_down(
     let mean = |a: usize, b: usize| (sums[b] - sums[a]) / count((b - a).max(1));
     let change = |i: usize| mean(i, (i + width).min(velocity.len())) - mean(i.saturating_sub(width), i);
     let first = signal.index_from(between_s.start).saturating_sub(start).max(1);
-    let last = signal.index_from(between_s.end).saturating_sub(start).min(velocity.len());
+    // A mean over less than a third of the width says nothing: R's pulse must be in the record.
+    let last =
+        signal.index_from(between_s.end).saturating_sub(start).min(velocity.len().saturating_sub(width / 3));
     let largest = (first..last).map(change).fold(0.0, f64::max);
     if largest < least_change_m_s {
         return None;

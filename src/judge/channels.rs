@@ -8,7 +8,7 @@ const LEAST_PULSE_SAMPLES: f64 = 10.0;
 /// Velocity that clipping may cut off before the slap-down and leave something to measure, m/s: 2 % of a 9 m fall's.
 const MOST_LOST_M_S: f64 = 0.27;
 
-/// A dead channel's noise is at most this share of the other channels' median peak.
+/// A dead channel's peak is at most this share of the largest channel's.
 const DEAD_SHARE: f64 = 1e-3;
 
 /// Signals of one body begin to move together but for the bending wave, which takes a few milliseconds along a cask.

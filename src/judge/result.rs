@@ -4,8 +4,12 @@ use crate::data::{
     CaskFile, Comparison, End, FlightFit, Issue, IssueCode, Motion, Quantities, Severity, Signal,
 };
 
+/// k this far outside 0 to 1 is an error whatever its interval.
+const FAR_OUTSIDE: f64 = 0.25;
+/// R's height at slap-down beyond this many of its 95 % intervals means that something is wrong with the events or the geometry.
+const GROSS_CLOSURE: f64 = 6.0;
 /// R's height at slap-down may be off by this many of its own 95 % intervals, angle included.
-const MOST_CLOSURE: f64 = 1.5;
+const MOST_CLOSURE: f64 = 1.0;
 /// A rebound of L below the target by this share of the length is another impact, not a graze.
 const GRAZE_SHARE: f64 = 0.01;
 /// Zero shifts whose effect on the velocity over the contact is below this are a note, m/s: 0.2 % of a slap-down.
@@ -26,7 +30,8 @@ pub fn judge_motion(
     issues.extend(signs(signals, flight));
     issues.extend(flight_issues(flight, quantities));
     let k = quantities.k;
-    if k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0 {
+    let beyond = k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0;
+    if beyond || !(-FAR_OUTSIDE..=1.0 + FAR_OUTSIDE).contains(&k.value) {
         issues.push(Issue::new(
             IssueCode::RestitutionRange,
             Severity::Error,
@@ -45,11 +50,12 @@ pub fn judge_motion(
     {
         issues.push(Issue::new(
             IssueCode::Geometry,
-            Severity::Warning,
+            if height.value.abs() > GROSS_CLOSURE * height.u95 { Severity::Error } else { Severity::Warning },
             format!(
-                "the second end would be {:+.0} ± {:.0} mm above the target when it strikes: angle ({:.1}°), drop height, a scale or a sensor's position does not fit the recording",
+                "the second end would be {:+.0} ± {:.0} mm above the target when it strikes; an angle of {:.1}° instead of {:.1}° would mend it, as would another drop height, scale, clock or sensor position: check them",
                 1e3 * height.value,
                 1e3 * height.u95,
+                (cask_file.drop.angle_rad - height.value / (cask_file.cask.length_m * cask_file.drop.angle_rad.cos())).to_degrees(),
                 cask_file.drop.angle_rad.to_degrees()
             ),
         ));

@@ -7,6 +7,8 @@ use crate::data::{AxialClosure, Axis, Events, FlightFit, Motion, MotionCurve, Mo
 const CONTACT_STEPS: u32 = 400;
 /// Steps over the flight, for the curves.
 const FLIGHT_STEPS: u32 = 200;
+/// Points of the curves, uniform over contact and flight: 0.1 ms over 60 ms.
+const CURVE_POINTS: u32 = 600;
 
 /// Reconstructs the motion from first contact to slap-down; `None` without two transverse channels apart or without their plateaus.
 ///
@@ -55,8 +57,39 @@ pub fn reconstruct(signals: &[Signal], fit: &FlightFit, events: &Events, setup: 
         second_end_m_s: slap_down.map(|s| corner(setup, &s, ahead_m)),
         second_end_height_m: slap_down.map(|s| corner_height_m(setup, &s, ahead_m)),
         lowest_first_end_m,
-        curve,
+        curve: uniform(&curve),
     })
+}
+
+/// The curve on uniform times, linear between the steps it was made with.
+fn uniform(curve: &MotionCurve) -> MotionCurve {
+    let (Some(&first_s), Some(&last_s)) = (curve.time_s.first(), curve.time_s.last()) else {
+        return MotionCurve::default();
+    };
+    let time_s: Vec<f64> = (0..=CURVE_POINTS)
+        .map(|i| first_s + (last_s - first_s) * f64::from(i) / f64::from(CURVE_POINTS))
+        .collect();
+    let on = |values: &[f64]| {
+        time_s
+            .iter()
+            .map(|&t| {
+                let next = curve.time_s.partition_point(|&u| u < t).clamp(1, values.len() - 1);
+                let (a, b) = (curve.time_s[next - 1], curve.time_s[next]);
+                let share = if b > a { ((t - a) / (b - a)).clamp(0.0, 1.0) } else { 1.0 };
+                values[next - 1] + share * (values[next] - values[next - 1])
+            })
+            .collect()
+    };
+    MotionCurve {
+        angle_rad: on(&curve.angle_rad),
+        angular_velocity_rad_s: on(&curve.angular_velocity_rad_s),
+        first_end_vertical_m_s: on(&curve.first_end_vertical_m_s),
+        second_end_vertical_m_s: on(&curve.second_end_vertical_m_s),
+        second_end_horizontal_m_s: on(&curve.second_end_horizontal_m_s),
+        first_end_height_m: on(&curve.first_end_height_m),
+        second_end_height_m: on(&curve.second_end_height_m),
+        time_s,
+    }
 }
 
 /// Height of L's corner at separation (negative: crushed), the level from which it counts as touching again, m.

@@ -35,13 +35,7 @@ pub(super) fn fly_until_second_end(
     let mut elapsed_s = 0.0;
     let mut impacts = 1;
     if k <= 0.0 && !lifts_off(body, gravity_m_s2, contact, &state) {
-        let kept = contact_kept(body, gravity_m_s2, contact, &state);
-        return Outcome {
-            at_second_end: kept.map(|(s, _)| s),
-            flight_time_s: kept.map(|(_, t)| t),
-            impacts,
-            regime: FlightRegime::Contact,
-        };
+        return stays(body, gravity_m_s2, contact, &state, (elapsed_s, impacts));
     }
     loop {
         let second = next_touch(body, gravity_m_s2, &state, body.cog_m - body.length_m);
@@ -60,10 +54,13 @@ pub(super) fn fly_until_second_end(
                     regime: FlightRegime::Free,
                 };
             }
-            (_, Some(u)) if impacts < MOST_IMPACTS && k > 0.0 => {
+            (_, Some(u)) => {
                 state = strike_first_end(body, &state.after(u, gravity_m_s2), contact, k).0;
                 elapsed_s += u;
                 impacts += 1;
+                if impacts >= MOST_IMPACTS || k <= 0.0 {
+                    return stays(body, gravity_m_s2, contact, &state, (elapsed_s, impacts));
+                }
             }
             _ => {
                 return Outcome {
@@ -74,6 +71,33 @@ pub(super) fn fly_until_second_end(
                 };
             }
         }
+    }
+}
+
+/// L has come to rest on the target: it pivots or slides until R strikes. With Coulomb friction it is taken to stick where the
+/// last impact did, else to slide freely: between the two closed forms there is none.
+fn stays(
+    body: &Body,
+    gravity_m_s2: f64,
+    contact: Contact,
+    state: &State,
+    (elapsed_s, impacts): (f64, u32),
+) -> Outcome {
+    let law = match contact {
+        Contact::Coulomb(mu) => {
+            let (a, b) = arms_m(body, state.angle_rad, body.cog_m);
+            // Friction that the pivot of a body at rest needs: a b / (r² + b²) of the normal force   (6)
+            let needed = a * b / (body.inertia_kg_m2 / body.mass_kg + b * b);
+            if needed <= mu { Contact::Rough } else { Contact::Smooth }
+        }
+        law => law,
+    };
+    let kept = contact_kept(body, gravity_m_s2, law, state);
+    Outcome {
+        at_second_end: kept.map(|(s, _)| s),
+        flight_time_s: kept.map(|(_, t)| elapsed_s + t),
+        impacts,
+        regime: FlightRegime::Contact,
     }
 }
 

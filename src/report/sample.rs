@@ -77,6 +77,7 @@ fn result() -> DropResult {
             vertical_velocity: estimate(-20.44, 0.11, "m/s"),
             horizontal_velocity: estimate(2.18, 0.14, "m/s"),
             angle: estimate(-5.04, 0.22, "deg"),
+            second_end_height: estimate(0.012, 0.09, "m"),
         },
         k: estimate(0.5588, 0.0102, "1"),
         model: Some(model()),
