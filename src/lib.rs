@@ -137,14 +137,9 @@ fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Op
     let between_s = contact.0 + EARLIEST_SLAP_DOWN * drop_m / v0_m_s..record_end_s;
     let mut struck = events::slap_down(signals, between_s.clone(), least_m_s, false);
     let end_s = struck.map_or(record_end_s, |s| s.0);
-    let Some(rough_s) = events::first_separation(signals, contact.0, end_s) else {
-        draft.issues.push(Issue::new(
-            IssueCode::EndsEarly,
-            Severity::Error,
-            "the recording ends, or the first end's force never subsides, before the first impact is over",
-        ));
-        return None;
-    };
+    // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit goes by.
+    let clearance_s = (FIRST_CLEARANCE * (end_s - contact.0)).min(LONGEST_CLEARANCE_S);
+    let rough_s = events::first_separation(signals, contact.0, end_s).unwrap_or(contact.0 + clearance_s);
     // The first fit keeps well clear of the contact, which ringing may have seemed to end too soon.
     let mut free_s =
         rough_s.max(contact.0 + (FIRST_CLEARANCE * (end_s - contact.0)).min(LONGEST_CLEARANCE_S));

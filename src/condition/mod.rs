@@ -1,6 +1,7 @@
 //! Channels as read to signals fit to integrate: offset, gaps, clipping, what each channel is worth.
 
 mod clipping;
+mod disturbed;
 mod offset;
 
 use crate::data::{Channel, CoarseEvent, Coupling, Issue, IssueCode, Recording, Severity, Signal};
@@ -76,6 +77,7 @@ fn signal(channel: &Channel, event: &CoarseEvent, fall_s: f64) -> (Signal, Vec<I
         gaps,
     };
     issues.extend(offset::remove(&mut signal, event.near_s));
+    issues.extend(disturbed::find(&signal));
     (signal, issues)
 }
 

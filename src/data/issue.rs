@@ -36,6 +36,10 @@ pub enum IssueCode {
     TimeJitter,
     /// A message carried no stamp, and its log time was taken.
     LogTimeUsed,
+    /// Single samples far off their neighbours.
+    Spikes,
+    /// Runs of equal samples entered by a jump.
+    Dropout,
     /// A channel that does not move.
     DeadChannel,
     /// A constant offset before the impact.

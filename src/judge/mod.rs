@@ -19,7 +19,14 @@ pub fn weigh_by_distance(issues: &mut [Issue], events: &Events) {
     let from_s = contact_s - OFFSET_WINDOW_S;
     let to_s = events.slap_down_s.map_or(f64::INFINITY, |t| t + ONSET_S);
     for issue in issues {
-        let local = matches!(issue.code, IssueCode::Gap | IssueCode::NonFinite | IssueCode::DuplicateBlocks);
+        let local = matches!(
+            issue.code,
+            IssueCode::Gap
+                | IssueCode::NonFinite
+                | IssueCode::DuplicateBlocks
+                | IssueCode::Spikes
+                | IssueCode::Dropout
+        );
         if let (true, Severity::Warning, Some(from), Some(to)) =
             (local, issue.severity, issue.from_s, issue.to_s)
             && (to < from_s || from > to_s)

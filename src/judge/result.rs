@@ -1,7 +1,8 @@
 //! A reconstructed motion to what speaks against it.
 
 use crate::data::{
-    CaskFile, Comparison, End, FlightFit, Issue, IssueCode, Motion, Quantities, Severity, Signal,
+    Axis, CaskFile, Comparison, Contact, End, FlightFit, Issue, IssueCode, Motion, Quantities, Severity,
+    Signal,
 };
 
 /// k this far outside 0 to 1 is an error whatever its interval.
@@ -14,6 +15,10 @@ const MOST_CLOSURE: f64 = 1.0;
 const GRAZE_SHARE: f64 = 0.01;
 /// Zero shifts whose effect on the velocity over the contact is below this are a note, m/s: 0.2 % of a slap-down.
 const SMALL_SHIFT_M_S: f64 = 0.05;
+/// Velocity gained late in a flight beyond this share of v0 is another contact.
+const LATE_SHARE: f64 = 0.02;
+/// Sliding below this is sticking, m/s: 5 % cross-axis sensitivity of a 13 m/s step.
+const SMALL_SLIP_M_S: f64 = 0.65;
 /// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1 % of a slap-down.
 const LARGE_RESIDUAL_M_S: f64 = 0.2;
 
@@ -60,6 +65,21 @@ pub fn judge_motion(
             ),
         ));
     }
+    let slip = quantities.slip_velocity;
+    let is_measured = signals.iter().any(|s| s.axis == Axis::Axial);
+    if is_measured
+        && cask_file.contact == Contact::Rough
+        && slip.value.abs() > 2.0 * slip.u95 + SMALL_SLIP_M_S
+    {
+        issues.push(Issue::new(
+            IssueCode::Friction,
+            Severity::Warning,
+            format!(
+                "the axial channel has the first end slide at {:+.1} ± {:.1} m/s as it leaves, the cask file calls the contact rough: check the axial channel's polarity and cross-axis sensitivity, or set `friction`",
+                slip.value, slip.u95
+            ),
+        ));
+    }
     if motion.lowest_first_end_m < -GRAZE_SHARE * cask_file.cask.length_m {
         issues.push(Issue::new(
             IssueCode::SecondContact,
@@ -77,7 +97,7 @@ pub fn judge_motion(
 fn signs(signals: &[Signal], flight: &FlightFit) -> Vec<Issue> {
     signals
         .iter()
-        .filter(|s| s.end == End::First && s.axis == crate::data::Axis::Transverse)
+        .filter(|s| s.end == End::First && s.axis == Axis::Transverse)
         .filter(|s| flight.plateau(&s.name).is_some_and(|p| p.velocity_step_m_s < 0.0))
         .map(|s| {
             Issue::new(
@@ -109,6 +129,21 @@ fn flight_issues(flight: &FlightFit, quantities: &Quantities) -> Vec<Issue> {
                 )
                 .on(&plateau.channel)
                 .between(flight.from_s, flight.to_s),
+            );
+        }
+        if let Some(mismatch_m_s) = plateau.late_mismatch_m_s
+            && mismatch_m_s.abs() > LARGE_RESIDUAL_M_S.min(LATE_SHARE * quantities.impact_velocity.value)
+        {
+            issues.push(
+                Issue::new(
+                    IssueCode::SecondContact,
+                    Severity::Warning,
+                    format!(
+                        "{} is {mismatch_m_s:+.2} m/s off its flight by the time the second end strikes: the first end touched again, or the sensor drifts",
+                        plateau.channel
+                    ),
+                )
+                .on(&plateau.channel),
             );
         }
         if plateau.residual_m_s > LARGE_RESIDUAL_M_S || plateau.u_m_s > LARGE_RESIDUAL_M_S {

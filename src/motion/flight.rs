@@ -13,6 +13,10 @@ const POINTS: usize = 240;
 const LONGEST_S: f64 = 0.1;
 /// Least noise of a velocity, as a share of its range in the window: linearity of the best sensors.
 const LEAST_FLOOR: f64 = 2e-4;
+/// Stretch before the end of a long flight that is compared with the fit, s: two periods of 100 Hz.
+const LATE_S: f64 = 0.02;
+/// Largest zero shift as a share of the channel's peak: data sheets of shock accelerometers give up to a few percent of full scale.
+const MOST_ZERO_SHIFT: f64 = 0.1;
 /// Lowest frequency sought: this many periods in the window, and never below 15 Hz.
 const LEAST_PERIODS: f64 = 0.6;
 /// A candidate this close in BIC to the best cannot be told from it (Kass & Raftery 1995: above 10 is very strong).
@@ -37,7 +41,8 @@ pub struct Window {
 /// whether there is a drift are decided by the Bayesian information criterion (21).
 #[must_use]
 pub fn fit_flight(signals: &[Signal], window: &Window, cog_m: f64) -> Option<FlightFit> {
-    let window = &Window { to_s: window.to_s.min(window.from_s + LONGEST_S), ..*window };
+    let whole = window;
+    let window = &Window { to_s: whole.to_s.min(whole.from_s + LONGEST_S), ..*whole };
     let series: Vec<Series> = signals.iter().map(|s| series(s, window, cog_m)).collect();
     let length_s = window.to_s - window.from_s;
     let fewest = series.iter().map(|s| s.value.len()).min()?;
@@ -51,6 +56,7 @@ pub fn fit_flight(signals: &[Signal], window: &Window, cog_m: f64) -> Option<Fli
     for drift in [false, true] {
         fits.extend(chain(&series, band, drift));
     }
+    fits.retain(|f| has_plausible_drift(signals, f));
     let richest = fits.iter().max_by_key(|f| f.parameters)?.correlation;
     let score = |f: &Fit| f.bic(&series, richest);
     fits.sort_by(|a, b| score(a).total_cmp(&score(b)));
@@ -58,7 +64,7 @@ pub fn fit_flight(signals: &[Signal], window: &Window, cog_m: f64) -> Option<Fli
     let plateaus = plateaus(signals, &fits, &|f: &Fit| score(f) - score(best) < INDISTINCT);
     let mut order: Vec<usize> = (0..best.modes.len()).collect();
     order.sort_by(|&a, &b| best.modes[a].frequency_hz.total_cmp(&best.modes[b].frequency_hz));
-    Some(FlightFit {
+    let mut flight = FlightFit {
         from_s: window.from_s,
         to_s: window.to_s,
         modes: order.iter().map(|&i| mode(best, i)).collect(),
@@ -79,6 +85,43 @@ pub fn fit_flight(signals: &[Signal], window: &Window, cog_m: f64) -> Option<Fli
                 residual_m_s: f.series.iter().map(|s| s.residual).fold(0.0, f64::max),
             })
             .collect(),
+    };
+    let mismatches: Vec<Option<f64>> =
+        signals.iter().map(|s| late_mismatch_m_s(s, &flight, whole, cog_m)).collect();
+    for (plateau, mismatch) in flight.plateaus.iter_mut().zip(mismatches) {
+        plateau.late_mismatch_m_s = mismatch;
+    }
+    Some(flight)
+}
+
+/// What the velocity has come to do by the end of a flight longer than the window: another contact leaves a step.
+fn late_mismatch_m_s(signal: &Signal, flight: &FlightFit, whole: &Window, cog_m: f64) -> Option<f64> {
+    let to_s = whole.to_s.min(signal.end_s());
+    let from_s = to_s - LATE_S;
+    if from_s < flight.to_s || signal.touches(&signal.gaps, flight.to_s, to_s) {
+        return None;
+    }
+    let plateau = flight.plateau(&signal.name)?;
+    let velocity = Velocity::of(signal, whole.contact_s - 2e-3, to_s);
+    let middle_s = f64::midpoint(from_s, to_s) - flight.from_s;
+    let centrifugal_m_s2 = -whole.angular_velocity_rad_s.powi(2) * centrifugal_arm_m(signal, cog_m);
+    let expected_m_s = plateau.velocity_step_m_s + (plateau.zero_shift_m_s2 + centrifugal_m_s2) * middle_s;
+    Some(velocity.mean(from_s, to_s) - expected_m_s)
+}
+
+/// Distance along the axis that the centrifugal force of a channel goes with, m: f_η holds −Ω² η, f_ξ holds −Ω² ξ   (14), (15)
+fn centrifugal_arm_m(signal: &Signal, cog_m: f64) -> f64 {
+    match signal.axis {
+        Axis::Transverse => signal.offset_m,
+        Axis::Axial => signal.position_m - cog_m,
+    }
+}
+
+/// A zero shift beyond this share of the peak is none: it is a contact that the window holds, or a mode slower than it.
+fn has_plausible_drift(signals: &[Signal], fit: &Fit) -> bool {
+    signals.iter().zip(&fit.series).all(|(signal, series)| {
+        let peak = signal.force_m_s2.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        series.drift.abs() < MOST_ZERO_SHIFT * peak
     })
 }
 
@@ -117,11 +160,7 @@ fn range(values: &[f64]) -> f64 {
 /// Velocity of one signal over the window in [`POINTS`] means, centrifugal force taken off, lost samples left out.
 fn series(signal: &Signal, window: &Window, cog_m: f64) -> Series {
     let velocity = Velocity::of(signal, window.contact_s - 2e-3, window.to_s);
-    // f_η holds −Ω² η, f_ξ holds −Ω² ξ   (14), (15)
-    let arm_m = match signal.axis {
-        Axis::Transverse => signal.offset_m,
-        Axis::Axial => signal.position_m - cog_m,
-    };
+    let arm_m = centrifugal_arm_m(signal, cog_m);
     let centrifugal_m_s2 = -window.angular_velocity_rad_s.powi(2) * arm_m;
     let length_s = (window.to_s.min(signal.end_s()) - window.from_s).max(0.0);
     #[allow(
@@ -206,6 +245,7 @@ fn plateaus(signals: &[Signal], fits: &[Fit], is_rival: &dyn Fn(&Fit) -> bool) -
                 u_zero_shift_m_s2: own.u_drift,
                 residual_m_s: own.residual,
                 ringing_m_s: own.amplitudes.clone(),
+                late_mismatch_m_s: None,
             }
         })
         .collect()

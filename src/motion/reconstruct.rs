@@ -24,10 +24,12 @@ pub fn reconstruct(signals: &[Signal], fit: &FlightFit, events: &Events, setup: 
     let mut curve = MotionCurve::default();
     let step_s = (separation_s - contact_s) / f64::from(CONTACT_STEPS);
     body.record(&mut curve, setup);
+    let mut turned_rad2_s = 0.0;
     for i in 1..=CONTACT_STEPS {
         let time_s = contact_s + f64::from(i) * step_s;
-        let (transverse_m_s, rotation_rad_s) = line.at(&histories, time_s);
-        let axial_m_s = histories.axial_mean(time_s);
+        turned_rad2_s += body.state.angular_velocity_rad_s.powi(2) * step_s;
+        let (transverse_m_s, rotation_rad_s) = line.at(&histories, time_s, turned_rad2_s);
+        let axial_m_s = histories.axial_mean(time_s, rotation_rad_s);
         body.advance(setup, step_s, transverse_m_s, rotation_rad_s, axial_m_s);
         body.record(&mut curve, setup);
     }
@@ -130,6 +132,7 @@ fn corner_height_m(setup: &Setup, state: &MotionState, ahead_m: f64) -> f64 {
 /// Least-squares line over the transverse channels: value at S and slope along the axis.
 struct Line {
     positions_m: Vec<f64>,
+    offsets_m: Vec<f64>,
     channels: Vec<usize>,
     mean_m: f64,
     square_m2: f64,
@@ -140,15 +143,21 @@ impl Line {
         let channels: Vec<usize> =
             (0..signals.len()).filter(|&i| signals[i].axis == Axis::Transverse).collect();
         let positions_m: Vec<f64> = channels.iter().map(|&i| signals[i].position_m - cog_m).collect();
+        let offsets_m = channels.iter().map(|&i| signals[i].offset_m).collect();
         #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
         let mean_m = positions_m.iter().sum::<f64>() / positions_m.len().max(1) as f64;
         let square_m2: f64 = positions_m.iter().map(|x| (x - mean_m).powi(2)).sum();
-        (square_m2 > 1e-6).then_some(Self { positions_m, channels, mean_m, square_m2 })
+        (square_m2 > 1e-6).then_some(Self { positions_m, offsets_m, channels, mean_m, square_m2 })
     }
 
-    /// ∫f_η of S, m/s, and Ω = φ̇, rad/s, at a time   (16)
-    fn at(&self, histories: &Histories, time_s: f64) -> (f64, f64) {
-        let values: Vec<f64> = self.channels.iter().map(|&i| histories.at(i, time_s)).collect();
+    /// ∫f_η of S, m/s, and Ω = φ̇, rad/s, at a time, given ∫Ω² dt since contact: f_η holds −Ω² η   (16)
+    fn at(&self, histories: &Histories, time_s: f64, turned_rad2_s: f64) -> (f64, f64) {
+        let values: Vec<f64> = self
+            .channels
+            .iter()
+            .zip(&self.offsets_m)
+            .map(|(&i, offset_m)| histories.at(i, time_s) + turned_rad2_s * offset_m)
+            .collect();
         #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let slope = values.iter().zip(&self.positions_m).map(|(v, x)| (x - self.mean_m) * v).sum::<f64>()
@@ -161,7 +170,7 @@ impl Line {
 struct Histories {
     velocities: Vec<Velocity>,
     corrections_m_s: Vec<f64>,
-    axial: Vec<(usize, f64)>,
+    axial: Vec<(usize, f64, f64)>,
     contact_s: f64,
     length_s: f64,
 }
@@ -186,7 +195,7 @@ impl Histories {
         }
         let axial = (0..signals.len())
             .filter(|&i| signals[i].axis == Axis::Axial)
-            .map(|i| (i, signals[i].position_m))
+            .map(|i| (i, signals[i].position_m, signals[i].offset_m))
             .collect();
         Some(Self { velocities, corrections_m_s, axial, contact_s, length_s })
     }
@@ -197,14 +206,15 @@ impl Histories {
         self.velocities[index].at(time_s) + share * self.corrections_m_s[index]
     }
 
-    /// Mean over the axial channels of ∫f_ξ, m/s, and their mean position, m; `None` without any.
-    fn axial_mean(&self, time_s: f64) -> Option<(f64, f64)> {
+    /// Mean over the axial channels of ∫f_ξ of their place on the axis, m/s, and their mean position, m; `None` without any.
+    ///
+    /// f_ξ holds −Ω̇ η (15), so ∫f_ξ + Ω η is what a sensor on the axis would give.
+    fn axial_mean(&self, time_s: f64, rotation_rad_s: f64) -> Option<(f64, f64)> {
         #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
         let n = self.axial.len() as f64;
-        let sums = self
-            .axial
-            .iter()
-            .fold((0.0, 0.0), |(v, x), &(i, position_m)| (v + self.at(i, time_s), x + position_m));
+        let sums = self.axial.iter().fold((0.0, 0.0), |(v, x), &(i, position_m, offset_m)| {
+            (v + self.at(i, time_s) + rotation_rad_s * offset_m, x + position_m)
+        });
         (n > 0.0).then_some((sums.0 / n, sums.1 / n))
     }
 }

@@ -197,6 +197,7 @@ fn flight() -> FlightFit {
         u_zero_shift_m_s2: 0.0,
         residual_m_s: 0.032,
         ringing_m_s: vec![(0.7, -0.4)],
+        late_mismatch_m_s: None,
     };
     let score = |modes, drift, bic, residual_m_s| FlightModelScore { modes, drift, bic, residual_m_s };
     FlightFit {
