@@ -2,9 +2,13 @@
 
 mod covariance;
 mod projection;
+mod ringing;
 
 use covariance::describe;
 use projection::{best_seed, refine};
+use ringing::Ringing;
+
+pub use ringing::uniform_ringing;
 
 /// A mode damped more than this is none: bolted and welded structures have 0.5 to 8 %, and an oscillation that dies within a
 /// period can stand for anything.

@@ -1,9 +1,8 @@
 //! Frequencies and dampings to the best linear coefficients, and to better frequencies and dampings (Golub & Pereyra 1973).
 
-use super::{Oscillation, Series};
+use super::{Oscillation, Ringing, Series};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
-use nalgebra::{Complex, DMatrix, DVector, Dyn, Owned};
-use std::f64::consts::TAU;
+use nalgebra::{DMatrix, DVector, Dyn, Owned};
 
 /// Damping ratios stay below this: above, a "mode" is a bend of the plateau.
 const MAX_DAMPING: f64 = 0.3;
@@ -32,40 +31,6 @@ pub(super) fn columns(series: &Series, modes: &[Oscillation], drift: bool) -> DM
 
 fn fixed_columns(series: &Series, drift: bool) -> usize {
     1 + usize::from(drift) + series.steps_s.len()
-}
-
-/// e^((−ζ + i) ω t) over increasing times, turned on by one factor as long as they are evenly spaced.
-///
-/// A few hundred turns lose 1e-13; the functions themselves cost ten times as much.
-struct Ringing<'a> {
-    time_s: &'a [f64],
-    index: usize,
-    rate: Complex<f64>,
-    step_s: f64,
-    turn: Complex<f64>,
-    value: Complex<f64>,
-}
-
-impl<'a> Ringing<'a> {
-    fn new(mode: Oscillation, time_s: &'a [f64]) -> Self {
-        let omega = TAU * mode.frequency_hz;
-        let rate = Complex::new(-mode.damping * omega, omega);
-        let step_s = time_s.get(1).map_or(0.0, |t| t - time_s[0]);
-        Self { time_s, index: 0, rate, step_s, turn: (rate * step_s).exp(), value: Complex::new(0.0, 0.0) }
-    }
-}
-
-impl Iterator for Ringing<'_> {
-    type Item = Complex<f64>;
-
-    fn next(&mut self) -> Option<Complex<f64>> {
-        let t = *self.time_s.get(self.index)?;
-        let before = self.index.checked_sub(1).map(|i| self.time_s[i]);
-        let is_even = before.is_some_and(|b| (t - b - self.step_s).abs() < 1e-9 * self.step_s);
-        self.value = if is_even { self.value * self.turn } else { (self.rate * t).exp() };
-        self.index += 1;
-        Some(self.value)
-    }
 }
 
 /// Best linear coefficients and what they leave.
