@@ -97,7 +97,7 @@ impl<'a> Draft<'a> {
         let (Some(quantities), Some(contact_s)) = (&self.quantities, self.events.first_contact_s) else {
             return;
         };
-        let smooth = motion::filtered(signals, self.cutoff().0);
+        let smooth = motion::filtered(signals, &self.events, self.cutoff().0);
         let window =
             self.events.separation_s.zip(self.events.slap_down_s).map(|(left_s, struck_s)| motion::Window {
                 contact_s,
@@ -132,7 +132,7 @@ impl<'a> Draft<'a> {
     /// Draws the curves and takes each channel's peaks, offset and noise.
     pub fn draw(&mut self, signals: &[Signal]) {
         let (cutoff_hz, origin) = self.cutoff();
-        let smooth = motion::filtered(signals, cutoff_hz);
+        let smooth = motion::filtered(signals, &self.events, cutoff_hz);
         let setup = Setup {
             length_m: self.cask_file.cask.length_m,
             height_m: self.cask_file.cask.height_m,

@@ -64,36 +64,10 @@ pub struct FlightFit {
     pub candidates: Vec<FlightModelScore>,
 }
 
-/// A mode that would have been this much larger at the time asked for (e^1.6, fivefold) is not followed back to it: the fit knows
-/// nothing of it there, and an error of its damping would be blown up likewise.
-const MOST_GROWTH: f64 = 1.6;
-
 impl FlightFit {
     /// The plateau of a channel.
     #[must_use]
     pub fn plateau(&self, channel: &str) -> Option<&Plateau> {
         self.plateaus.iter().find(|p| p.channel == channel)
-    }
-
-    /// Velocity of a plateau's ringing, m/s, and the specific force of it, m/s², at `time_s` from the recording's first sample.
-    ///
-    /// v = Σ e^(−ζωτ) (A cos ωτ + B sin ωτ), f = v̇, τ from the window's start   (20)
-    #[must_use]
-    pub fn ringing(&self, plateau: &Plateau, time_s: f64) -> (f64, f64) {
-        let tau = time_s - self.from_s;
-        let mut sum = (0.0, 0.0);
-        for (mode, &(a, b)) in self.modes.iter().zip(&plateau.ringing_m_s) {
-            let omega = std::f64::consts::TAU * mode.frequency_hz;
-            let decay = mode.damping * omega;
-            if -decay * tau > MOST_GROWTH {
-                continue;
-            }
-            let (sin, cos) = (omega * tau).sin_cos();
-            let envelope = (-decay * tau).exp();
-            let velocity = envelope * (a * cos + b * sin);
-            sum.0 += velocity;
-            sum.1 += envelope * omega * (b * cos - a * sin) - decay * velocity;
-        }
-        sum
     }
 }

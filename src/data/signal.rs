@@ -68,6 +68,25 @@ impl Signal {
         self.time_s(self.force_m_s2.len().saturating_sub(1))
     }
 
+    /// The samples `from..to` alone, the range cut to what there is.
+    #[must_use]
+    pub fn cut(&self, from: usize, to: usize) -> Self {
+        let to = to.min(self.force_m_s2.len());
+        let from = from.min(to);
+        let shifted = |spans: &[Span]| {
+            let inside = spans.iter().filter(|s| s.from < to && s.to > from);
+            inside.map(|s| Span { from: s.from.max(from) - from, to: s.to.min(to) - from }).collect()
+        };
+        Self {
+            name: self.name.clone(),
+            start_s: self.time_s(from),
+            force_m_s2: self.force_m_s2[from..to].to_vec(),
+            clipped: shifted(&self.clipped),
+            gaps: shifted(&self.gaps),
+            ..*self
+        }
+    }
+
     /// Velocity that clipping between two times has cut off, m/s, estimated by a cubic over each flat top: (ṡ_in + ṡ_out) T² / 12.
     #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]

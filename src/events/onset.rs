@@ -48,13 +48,13 @@ pub fn slap_down(
     let velocity = running_integral(signal.force_m_s2.get(start..end)?, 1.0 / signal.sample_rate_hz);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
     let width = ((WIDTH_S * signal.sample_rate_hz) as usize).max(1);
-    let sums = cumulative(&velocity);
+    let samples = velocity.len();
+    let sums = cumulative(velocity);
     let mean = |a: usize, b: usize| (sums[b] - sums[a]) / count((b - a).max(1));
-    let change = |i: usize| mean(i, (i + width).min(velocity.len())) - mean(i.saturating_sub(width), i);
+    let change = |i: usize| mean(i, (i + width).min(samples)) - mean(i.saturating_sub(width), i);
     let first = signal.index_from(between_s.start).saturating_sub(start).max(1);
     // A mean over less than a third of the width says nothing: R's pulse must be in the record.
-    let last =
-        signal.index_from(between_s.end).saturating_sub(start).min(velocity.len().saturating_sub(width / 3));
+    let last = signal.index_from(between_s.end).saturating_sub(start).min(samples.saturating_sub(width / 3));
     let largest = (first..last).map(change).fold(0.0, f64::max);
     if largest < least_change_m_s {
         return None;
@@ -139,23 +139,23 @@ pub fn separation(calm: &[Signal], contact_s: f64, free_s: f64) -> Option<(f64, 
     Some((time_s, ((time_s - contact_s) / 40.0).max(1.0 / signal.sample_rate_hz)))
 }
 
-/// Sums of all samples before each index; one longer than `values`.
-fn cumulative(values: &[f64]) -> Vec<f64> {
-    let mut sums = Vec::with_capacity(values.len() + 1);
+/// Sums of all samples before each index, in place of them; one longer than `values`.
+fn cumulative(mut values: Vec<f64>) -> Vec<f64> {
     let mut sum = 0.0;
-    sums.push(sum);
-    for v in values {
-        sum += v;
-        sums.push(sum);
+    values.push(0.0);
+    for v in &mut values {
+        let before = sum;
+        sum += *v;
+        *v = before;
     }
-    sums
+    values
 }
 
 /// Moving mean over 0.2 ms, so that the high modes of the sensor's mount do not end a pulse.
 fn smoothed(force: &[f64], sample_rate_hz: f64) -> Vec<f64> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
     let half = (1e-4 * sample_rate_hz) as usize;
-    let sums = cumulative(force);
+    let sums = cumulative(force.to_vec());
     (0..force.len())
         .map(|i| {
             let (a, b) = (i.saturating_sub(half), (i + half + 1).min(force.len()));

@@ -9,6 +9,8 @@ use crate::numerics::spectrum;
 const BEFORE_S: f64 = 0.01;
 /// Shown after the last event, s: the slap-down pulse and some ringing.
 const AFTER_S: f64 = 0.04;
+/// Filtered before what is shown, s: the noise of a flight fit is taken from as long a stretch of free fall, at most 0.1 s.
+const QUIET_S: f64 = 0.11;
 /// IAEA advice as quoted in the field: 100–200 Hz for 100 t, scaled with (100 t / m)^(1/3); the upper end (28).
 const CUTOFF_100_T_HZ: f64 = 200.0;
 /// A cut-off of this over the pulse's length keeps its peak within 1 % (half sine, two-pass Butterworth).
@@ -32,14 +34,21 @@ pub fn cutoff_hz(choice: FilterChoice, mass_kg: f64, pulse_s: Option<f64>) -> (f
     }
 }
 
-/// The signals low-passed without phase; a cut-off that the rate cannot carry leaves them as they are.
+/// The signals around the event, low-passed without phase; a cut-off that the rate cannot carry leaves them as they are.
 #[must_use]
-pub fn filtered(signals: &[Signal], cutoff_hz: f64) -> Vec<Signal> {
+pub fn filtered(signals: &[Signal], events: &Events, cutoff_hz: f64) -> Vec<Signal> {
     signals
         .iter()
-        .map(|s| match ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, s.sample_rate_hz) {
-            Some(filter) => Signal { force_m_s2: filter.apply(&s.force_m_s2), ..s.clone() },
-            None => s.clone(),
+        .map(|signal| {
+            let (first_s, last_s) = shown_s(signal, events);
+            // What lies beyond the margin reaches past it with 1e-12 of its size.
+            let margin_s = 6.2 / cutoff_hz;
+            let mut cut = signal
+                .cut(signal.index_from(first_s - QUIET_S - margin_s), signal.index_from(last_s + margin_s));
+            if let Some(filter) = ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, cut.sample_rate_hz) {
+                cut.force_m_s2 = filter.apply(&cut.force_m_s2);
+            }
+            cut
         })
         .collect()
 }
@@ -72,7 +81,7 @@ pub fn channel_curves(
                 channel: signal.name.clone(),
                 time_s: (from..to).map(|i| signal.time_s(i)).collect(),
                 raw_m_s2: raw,
-                filtered_m_s2: smooth.force_m_s2[from..to].to_vec(),
+                filtered_m_s2: overlap(smooth, signal.time_s(from), to - from),
                 velocity_m_s,
             }
         })
@@ -93,10 +102,23 @@ pub fn spectra(signals: &[Signal], events: &Events) -> Vec<Spectrum> {
         .collect()
 }
 
+/// `count` samples from `time_s` on, 0 where there are none.
+fn overlap(signal: &Signal, time_s: f64, count: usize) -> Vec<f64> {
+    let from = signal.index_from(time_s);
+    let inside = signal.force_m_s2[from..].iter().copied();
+    inside.chain(std::iter::repeat(0.0)).take(count).collect()
+}
+
 /// Index range that is shown.
 fn shown(signal: &Signal, events: &Events) -> (usize, usize) {
+    let (first_s, last_s) = shown_s(signal, events);
+    let from = signal.index_from(first_s);
+    (from, signal.index_from(last_s).max(from))
+}
+
+/// Time range that is shown, s.
+fn shown_s(signal: &Signal, events: &Events) -> (f64, f64) {
     let first_s = events.first_contact_s.unwrap_or(signal.start_s);
     let last_s = events.slap_down_s.or(events.separation_s.map(|t| t + 0.05)).unwrap_or(first_s + 0.1);
-    let from = signal.index_from(first_s - BEFORE_S);
-    (from, signal.index_from(last_s + AFTER_S).max(from))
+    (first_s - BEFORE_S, last_s + AFTER_S)
 }

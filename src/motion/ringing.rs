@@ -1,6 +1,11 @@
 //! Signals and their flight fit to the same signals without ringing and zero shift.
 
-use crate::data::{Axis, FlightFit, Signal};
+use crate::data::{Axis, FlightFit, Plateau, Signal};
+use crate::numerics::damped_modes::{Oscillation, uniform_ringing};
+
+/// A mode that would have been this much larger at the time asked for (e^1.6, fivefold) is not followed back to it: the fit knows
+/// nothing of it there, and an error of its damping would be blown up likewise.
+const MOST_GROWTH: f64 = 1.6;
 
 /// The signals with the fitted modes and zero shifts taken off between two times, s; outside they are as they were.
 #[must_use]
@@ -9,14 +14,32 @@ pub fn without_ringing(signals: &[Signal], fit: &FlightFit, from_s: f64, to_s: f
         .iter()
         .map(|signal| {
             let mut calm = signal.clone();
-            let Some(plateau) = fit.plateau(&signal.name) else { return calm };
-            for i in signal.index_from(from_s)..signal.index_from(to_s) {
-                let (_, force) = fit.ringing(plateau, signal.time_s(i));
-                calm.force_m_s2[i] -= force + plateau.zero_shift_m_s2;
+            if let Some(plateau) = fit.plateau(&signal.name) {
+                let (from, to) = (signal.index_from(from_s), signal.index_from(to_s));
+                for force in calm.force_m_s2.iter_mut().take(to).skip(from) {
+                    *force -= plateau.zero_shift_m_s2;
+                }
+                take_off_modes(&mut calm, (from, to), fit, plateau);
             }
             calm
         })
         .collect()
+}
+
+/// Takes off f = v̇ of v = Σ e^(−ζωτ) (A cos ωτ + B sin ωτ), τ from the flight window's start   (20)
+fn take_off_modes(calm: &mut Signal, (from, to): (usize, usize), fit: &FlightFit, plateau: &Plateau) {
+    for (mode, &(a, b)) in fit.modes.iter().zip(&plateau.ringing_m_s) {
+        let omega = std::f64::consts::TAU * mode.frequency_hz;
+        let decay = mode.damping * omega;
+        let known_from = calm.index_from(fit.from_s - MOST_GROWTH / decay.max(f64::MIN_POSITIVE)).max(from);
+        let tau_s = calm.time_s(known_from) - fit.from_s;
+        let (cosine, sine) = (omega * b - decay * a, -omega * a - decay * b);
+        let mode = Oscillation { frequency_hz: mode.frequency_hz, damping: mode.damping };
+        let ringing = uniform_ringing(mode, tau_s, 1.0 / calm.sample_rate_hz);
+        for (force, z) in calm.force_m_s2.iter_mut().take(to).skip(known_from).zip(ringing) {
+            *force -= cosine * z.re + sine * z.im;
+        }
+    }
 }
 
 /// ω from the plateaus of the transverse channels, rad/s: minus the slope of the velocity steps over position (16); 0 where there is none.

@@ -7,20 +7,23 @@
 pub fn running_integral(samples: &[f64], step: f64) -> Vec<f64> {
     let n = samples.len();
     let mut integral = Vec::with_capacity(n);
-    let slope = |i: usize| match (i, n) {
-        (_, 0..=2) => 0.0,
-        (0, _) => (-3.0 * samples[0] + 4.0 * samples[1] - samples[2]) / 2.0,
-        (i, n) if i == n - 1 => (3.0 * samples[i] - 4.0 * samples[i - 1] + samples[i - 2]) / 2.0,
-        (i, _) => (samples[i + 1] - samples[i - 1]) / 2.0,
-    };
-    let first_slope = slope(0);
-    let mut sum = 0.0;
-    for i in 0..n {
-        if i > 0 {
-            sum += f64::midpoint(samples[i - 1], samples[i]);
-        }
-        integral.push(step * (sum - (slope(i) - first_slope) / 12.0));
+    if n < 3 {
+        integral
+            .extend([0.0, step * (samples.first().unwrap_or(&0.0) + samples.last().unwrap_or(&0.0)) / 2.0]);
+        integral.truncate(n);
+        return integral;
     }
+    // Slopes are in units of value per step, doubled.
+    let first_slope = -3.0 * samples[0] + 4.0 * samples[1] - samples[2];
+    let last_slope = 3.0 * samples[n - 1] - 4.0 * samples[n - 2] + samples[n - 3];
+    let mut doubled_sum = 0.0;
+    integral.push(0.0);
+    integral.extend(samples.windows(3).map(|w| {
+        doubled_sum += w[0] + w[1];
+        0.5 * step * (doubled_sum - (w[2] - w[0] - first_slope) / 12.0)
+    }));
+    doubled_sum += samples[n - 2] + samples[n - 1];
+    integral.push(0.5 * step * (doubled_sum - (last_slope - first_slope) / 12.0));
     integral
 }
 

@@ -1,0 +1,73 @@
+//! Modes found to coefficients with their standard uncertainties.
+
+use super::projection::{Projection, columns, project, rms, to_parameters};
+use super::{Fit, Oscillation, Series, SeriesFit};
+use nalgebra::{DMatrix, DVector};
+
+/// Coefficients, uncertainties and residuals at given modes.
+pub(super) fn describe(series: &[Series], modes: Vec<Oscillation>, drift: bool) -> Option<Fit> {
+    let mut fits = Vec::new();
+    let mut lag_sum = 0.0;
+    let mut parameters = 2 * modes.len();
+    for s in series {
+        let (solution, residual) = project(s, &modes, drift)?;
+        let fixed = 1 + usize::from(drift);
+        let jumps = s.steps_s.len();
+        lag_sum += lag_one(&residual);
+        parameters += solution.len();
+        fits.push(SeriesFit {
+            plateau: solution[0],
+            u_plateau: 0.0,
+            drift: if drift { solution[1] } else { 0.0 },
+            u_drift: 0.0,
+            amplitudes: solution.as_slice()[fixed + jumps..].chunks_exact(2).map(|c| (c[0], c[1])).collect(),
+            residual: rms(&residual),
+            jumps: solution.as_slice()[fixed..fixed + jumps].to_vec(),
+        });
+    }
+    #[allow(clippy::cast_precision_loss, reason = "a handful of series")]
+    let lag = (lag_sum / series.len() as f64).clamp(0.0, 0.95);
+    let mut fit = Fit { modes, drift, series: fits, correlation: (1.0 + lag) / (1.0 - lag), parameters };
+    uncertainties(series, &mut fit)?;
+    Some(fit)
+}
+
+/// Lag-one autocorrelation.
+fn lag_one(residual: &DVector<f64>) -> f64 {
+    let r = residual.as_slice();
+    let power: f64 = r.iter().map(|x| x * x).sum();
+    if power > 0.0 { r.windows(2).map(|w| w[0] * w[1]).sum::<f64>() / power } else { 0.0 }
+}
+
+/// Covariance of all parameters together, s² κ (JᵀJ)⁻¹, J = [Φ_1 … | ∂Φc/∂θ].
+fn uncertainties(series: &[Series], fit: &mut Fit) -> Option<()> {
+    let rows: usize = series.iter().map(|s| s.value.len()).sum();
+    let mut jacobian = DMatrix::zeros(rows, fit.parameters);
+    let weights: Vec<f64> =
+        series.iter().zip(&fit.series).map(|(s, f)| 1.0 / f.residual.hypot(s.floor).max(1e-300)).collect();
+    let (mut row, mut column) = (0, 2 * fit.modes.len());
+    let mut places = Vec::new();
+    for (s, weight) in series.iter().zip(&weights) {
+        let block = columns(s, &fit.modes, fit.drift) * *weight;
+        jacobian.view_mut((row, column), block.shape()).copy_from(&block);
+        places.push(column);
+        row += block.nrows();
+        column += block.ncols();
+    }
+    if !fit.modes.is_empty() {
+        let problem = Projection { series, weights, drift: fit.drift, parameters: to_parameters(&fit.modes) };
+        let nonlinear = problem.jacobian_at(&problem.parameters)?;
+        jacobian.view_mut((0, 0), nonlinear.shape()).copy_from(&nonlinear);
+    }
+    let scales: Vec<f64> = jacobian.column_iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();
+    for (mut c, scale) in jacobian.column_iter_mut().zip(&scales) {
+        c /= *scale;
+    }
+    let covariance = jacobian.tr_mul(&jacobian).cholesky()?.inverse();
+    let u = |i: usize| (covariance[(i, i)] * fit.correlation).max(0.0).sqrt() / scales[i];
+    for (series_fit, &place) in fit.series.iter_mut().zip(&places) {
+        series_fit.u_plateau = u(place);
+        series_fit.u_drift = if fit.drift { u(place + 1) } else { 0.0 };
+    }
+    Some(())
+}
