@@ -182,12 +182,13 @@ impl<'a> Draft<'a> {
         self.say("impact velocity", format!("{:.3} m/s", drop.impact_velocity_m_s), velocity_origin);
         self.say("gravity", format!("{} m/s²", drop.gravity_m_s2), origin("drop.gravity_m_s2"));
         self.say("contact law of the first end", file.contact.to_string(), origin("contact.friction"));
-        if let (Some(release_s), Some(contact_s)) = (self.events.release_s, self.events.first_contact_s) {
+        if let (Some(release_s), Some(end_s)) = (self.events.release_s, self.events.fall_end_s) {
             self.say(
                 "free fall seen",
                 format!(
-                    "{:.4} s, √(2 h / g) is {:.4} s",
-                    contact_s - release_s,
+                    "{:.4} s, {} is {:.4} s",
+                    end_s - release_s,
+                    if drop.impact_velocity_given { "impact velocity over g" } else { "√(2 h / g)" },
                     drop.impact_velocity_m_s / drop.gravity_m_s2
                 ),
                 "from the data",

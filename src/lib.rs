@@ -53,7 +53,11 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         return draft.without_impact();
     };
     draft.events.first_contact_s = Some(contact.0);
-    draft.events.release_s = release_s(recording, cask_file, contact.0);
+    if let Some(fall) = free_fall(recording, cask_file, contact.0) {
+        draft.events.release_s = Some(fall.release_s);
+        draft.events.fall_end_s = Some(fall.end_s);
+        draft.issues.extend(judge::judge_fall(&cask_file.drop, &draft.events));
+    }
     let reconstructed = flight_and_motion(&mut draft, &signals, contact);
     judge::weigh_by_distance(&mut draft.issues, &draft.events);
     draft.issues.extend(judge::judge_channels(&signals, &draft.events));
@@ -83,14 +87,10 @@ fn is_impact(velocity_step_m_s: f64, cask_file: &CaskFile) -> bool {
     velocity_step_m_s.abs() > 0.1 * cask_file.drop.impact_velocity_m_s
 }
 
-/// Release as the first transverse channel shows it.
-fn release_s(recording: &Recording, cask_file: &CaskFile, contact_s: f64) -> Option<f64> {
-    recording
-        .channels
-        .iter()
-        .filter(|c| c.axis == Axis::Transverse)
-        .find_map(|c| events::release(c, &cask_file.drop, contact_s))
-        .map(|(time_s, _)| time_s)
+/// The free fall as the first transverse channel shows it.
+fn free_fall(recording: &Recording, cask_file: &CaskFile, contact_s: f64) -> Option<events::FreeFall> {
+    let mut transverse = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
+    transverse.find_map(|c| events::free_fall(c, &cask_file.drop, contact_s))
 }
 
 /// The flight fit, the motion and what is read off it; what prevents them goes to the draft's issues.

@@ -119,6 +119,8 @@ pub struct Comparison {
 pub struct Events {
     /// Release, where the record has the rest before it.
     pub release_s: Option<f64>,
+    /// First touch that ends the free fall, where its release was seen; first contact, or before it.
+    pub fall_end_s: Option<f64>,
     /// First contact of L.
     pub first_contact_s: Option<f64>,
     /// L leaves the target.

@@ -6,7 +6,7 @@ mod release;
 
 pub use locate::locate;
 pub use onset::{first_contact, first_separation, separation, slap_down};
-pub use release::release;
+pub use release::{FreeFall, free_fall};
 
 use crate::data::{Axis, End, Signal};
 

@@ -1,51 +1,259 @@
-//! The record before first contact to the moment of release.
+//! The record before the first impact to the free fall: the moment of release and the first touch that ends it.
 
 use crate::data::{Axis, Channel, Drop};
 use crate::numerics::robust;
 
-/// A step from rest to free fall counts where it is at least this share of g cos φ, and at most 1.5 of it.
-const LEAST_STEP: f64 = 0.5;
+/// A step from rest to free fall is this share of g cos φ at least and at most: sensors on a tilted cask, a hook that gives way.
+const STEP: std::ops::Range<f64> = 0.5..1.5;
+/// Length of a block, s: short against a fall, long against noise and spikes.
+const BLOCK_S: f64 = 0.005;
+/// Blocks on either side that a level is taken from, 40 ms: as long as a crane's hook rings.
+const LEVEL: usize = 8;
+/// Blocks that a departure from the free-fall level is averaged over, 20 ms: ringing above 50 Hz has no mean over them.
+const SUSTAINED: usize = 4;
+/// Departure that ends a fall, as a share of g cos φ: far above the drag of a cask, below any touch that carries its weight.
+const TOUCH: f64 = 0.25;
+/// Noise is passed by this many of its standard deviations.
+const NOISE_FACTOR: f64 = 6.0;
+/// The record is searched this many of the cask file's fall times back, so that a wrong height is seen as such.
+const REACH: f64 = 3.0;
+/// A shorter stretch than this share of the cask file's fall time is no fall: it would mean a hundredth of its height.
+const SHORTEST: f64 = 0.1;
 
-/// Release, s from the recording's first sample, and the rest level before it (less the free-fall level), m/s².
+/// A free fall with rest before it, as one channel shows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FreeFall {
+    /// Half-way down the step from rest to free fall, s from the recording's first sample.
+    pub release_s: f64,
+    /// First touch: the first sustained departure from the free-fall level, or first contact, s from the recording's first sample.
+    pub end_s: f64,
+    /// Rest level less free-fall level, m/s².
+    pub rest_m_s2: f64,
+}
+
+/// The longest free fall before `contact_s` that begins with a step from rest, +g cos φ, to a level that then stays.
 ///
-/// Looked for as the step from +g cos φ to 0 on a transverse channel between 0.5 and 1.5 of the fall time √(2 h / g) before
-/// `contact_s`; `None` where the record does not reach back that far or shows no such step.
+/// It may end before `contact_s`, where water, a guide or a soft layer is touched ahead of the impact. `None` where the record
+/// does not reach back to the rest, or shows no such step (an AC-coupled sensor).
 #[must_use]
-pub fn release(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<(f64, f64)> {
+pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeFall> {
     let lean = match channel.axis {
         Axis::Transverse => drop.angle_rad.cos(),
         Axis::Axial => drop.angle_rad.sin(),
     };
-    let expected_m_s2 = drop.gravity_m_s2 * lean;
+    let weight_m_s2 = drop.gravity_m_s2 * lean;
     let fall_s = drop.impact_velocity_m_s / drop.gravity_m_s2;
-    let from = channel.index_at(contact_s - 1.5 * fall_s);
-    let to = channel.index_at(contact_s - 0.5 * fall_s);
-    let end = channel.index_at(contact_s - 0.02 * fall_s);
-    // 5 ms a block: short against a fall, long against noise.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
-    let size = ((0.005 * channel.sample_rate_hz) as usize).max(1);
-    if to < from + 4 * size || end <= to {
-        return None;
+    let reach_s = REACH * fall_s + 0.5;
+    let from = channel.index_at(contact_s - reach_s);
+    let force = channel.force_m_s2(from, channel.index_at(contact_s));
+    let record = Record::new(&force, channel.sample_rate_hz, weight_m_s2)?;
+    let contact = (contact_s - channel.time_s(from)) * channel.sample_rate_hz;
+    record
+        .steps()
+        .into_iter()
+        .filter_map(|block| record.fall_from(block, contact))
+        .filter(|(start, end, _)| end - start > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
+        .max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)))
+        .map(|(start, end, rest_m_s2)| FreeFall {
+            release_s: channel.time_s(from) + start / channel.sample_rate_hz,
+            end_s: channel.time_s(from) + end / channel.sample_rate_hz,
+            rest_m_s2,
+        })
+}
+
+/// The samples before first contact and the medians of their blocks.
+struct Record<'a> {
+    force: &'a [f64],
+    size: usize,
+    blocks: Vec<f64>,
+    weight_m_s2: f64,
+}
+
+impl<'a> Record<'a> {
+    /// `None` where the record is shorter than two levels, or the axis lies too flat to feel the weight.
+    fn new(force: &'a [f64], sample_rate_hz: f64, weight_m_s2: f64) -> Option<Self> {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
+        let size = ((BLOCK_S * sample_rate_hz) as usize).max(1);
+        let blocks: Vec<f64> = force
+            .chunks_exact(size)
+            .map(|c| robust::median(&mut c.iter().copied().filter(|x| x.is_finite()).collect::<Vec<_>>()))
+            .collect();
+        (blocks.len() > 2 * LEVEL + 2 && weight_m_s2 > 0.5).then_some(Self {
+            force,
+            size,
+            blocks,
+            weight_m_s2,
+        })
     }
-    let blocks: Vec<f64> = channel
-        .force_m_s2(from, end)
-        .chunks(size)
-        .map(|c| robust::median(&mut c.iter().copied().filter(|x| x.is_finite()).collect::<Vec<_>>()))
-        .collect();
-    let falling = robust::median(&mut blocks[(to - from) / size..].to_vec());
-    let half_m_s2 = falling + 0.5 * expected_m_s2;
-    // The last block above half of g cos φ is the end of the rest.
-    let last = blocks[..(to - from) / size].iter().rposition(|b| *b > half_m_s2)?;
-    let before = &blocks[last.saturating_sub(20)..=last.saturating_sub(1)];
-    let rest = robust::median(&mut before.to_vec()) - falling;
-    if !(LEAST_STEP * expected_m_s2..1.5 * expected_m_s2).contains(&rest) || expected_m_s2 <= 0.0 {
-        return None;
+
+    /// Median of the blocks `from..to` that hold samples; NaN where none does.
+    fn level(&self, from: usize, to: usize) -> f64 {
+        let blocks = self.blocks.get(from..to.min(self.blocks.len())).unwrap_or_default();
+        robust::median(&mut blocks.iter().copied().filter(|b| b.is_finite()).collect::<Vec<_>>())
     }
-    let start = from + last.saturating_sub(1) * size;
-    let force = channel.force_m_s2(start, start + 4 * size);
-    let level = falling + rest / 2.0;
-    // The last sample above half the step; noise about it is averaged by counting those above in the two blocks.
-    let above = force.iter().filter(|f| **f > level).count();
-    #[allow(clippy::cast_precision_loss, reason = "a few hundred samples")]
-    Some((channel.time_s(start) + above as f64 / channel.sample_rate_hz, rest))
+
+    /// The blocks in which a level gives way to one lower by about the weight, each step once.
+    fn steps(&self) -> Vec<usize> {
+        let height = |i: usize| self.level(i - LEVEL, i) - self.level(i + 1, i + 1 + LEVEL);
+        let heights: Vec<(usize, f64)> =
+            (LEVEL..self.blocks.len() - LEVEL).map(|i| (i, height(i) / self.weight_m_s2)).collect();
+        heights
+            .chunk_by(|a, b| STEP.contains(&a.1) == STEP.contains(&b.1))
+            .filter(|run| STEP.contains(&run[0].1))
+            .filter_map(|run| run.get(run.len() / 2).map(|step| step.0))
+            .collect()
+    }
+
+    /// Release and end in samples, fractional, and the rest level above the free-fall level, m/s², of the fall from a step.
+    fn fall_from(&self, step: usize, contact: f64) -> Option<(f64, f64, f64)> {
+        let near = self.level(step + 1, step + 1 + LEVEL);
+        let end = self.departure(step, near);
+        // The level of the whole fall is better known than that of its beginning.
+        let falling = self.level(step + 1, end.unwrap_or(self.blocks.len()));
+        let rest = self.level(step - LEVEL, step) - falling;
+        if !STEP.contains(&(rest / self.weight_m_s2)) {
+            return None;
+        }
+        let end = self.departure(step, falling).map_or(contact, |block| self.touch(step, block, falling));
+        Some((self.crossing(step, falling + 0.5 * rest), end, rest))
+    }
+
+    /// The block from which on the mean over [`SUSTAINED`] blocks lies off the free-fall level; `None` where it holds to the end.
+    fn departure(&self, step: usize, falling: f64) -> Option<usize> {
+        let after = self.blocks.get(step + SUSTAINED..)?;
+        let off = |b: &f64| if b.is_finite() { b - falling } else { 0.0 };
+        #[allow(clippy::cast_precision_loss, reason = "a handful")]
+        let mean = |w: &[f64]| w.iter().map(off).sum::<f64>() / SUSTAINED as f64;
+        let window = after.windows(SUSTAINED).position(|w| mean(w).abs() > TOUCH * self.weight_m_s2)?;
+        let block = after[window..].iter().position(|b| off(b).abs() > TOUCH * self.weight_m_s2)?;
+        Some(step + SUSTAINED + window + block)
+    }
+
+    /// The sample in or just before `block` from which most of a block's length lies off the free-fall level.
+    fn touch(&self, step: usize, block: usize, falling: f64) -> f64 {
+        let calm = self.force.get((step + 2) * self.size..(block - 1) * self.size).unwrap_or_default();
+        let finite: Vec<f64> = calm.iter().copied().filter(|f| f.is_finite()).collect();
+        let noise = if finite.is_empty() { 0.0 } else { robust::spread(&finite) };
+        let level = (TOUCH * self.weight_m_s2).max(NOISE_FACTOR * noise);
+        let start = (block - 1) * self.size;
+        let is_off = |f: &f64| (f - falling).abs() > level;
+        let found = (start..start + 2 * self.size).find(|&i| {
+            let ahead = self.force.get(i..(i + self.size).min(self.force.len())).unwrap_or_default();
+            ahead.first().is_some_and(is_off)
+                && ahead.iter().filter(|f| is_off(f)).count() * 3 >= 2 * ahead.len()
+        });
+        count(found.unwrap_or(block * self.size))
+    }
+
+    /// Where the samples about a step fall below `level`: those above it are counted, so that noise averages.
+    fn crossing(&self, step: usize, level: f64) -> f64 {
+        let start = step.saturating_sub(LEVEL / 2) * self.size;
+        let about = self.force.get(start..(step + LEVEL / 2) * self.size).unwrap_or_default();
+        count(start + about.iter().filter(|f| **f > level).count())
+    }
+}
+
+#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+fn count(n: usize) -> f64 {
+    n as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Coupling, End, Samples};
+
+    const RATE_HZ: f64 = 10_000.0;
+
+    fn drop() -> Drop {
+        // 4 m/s: a fall of 0.4077 s.
+        Drop {
+            height_m: 0.8155,
+            angle_rad: 0.0,
+            impact_velocity_m_s: 4.0,
+            impact_velocity_given: false,
+            gravity_m_s2: 9.81,
+        }
+    }
+
+    /// Noise of ±0.5 m/s² about what `force` says at each time, for 3 s.
+    fn channel(force: impl Fn(f64) -> f64) -> Channel {
+        let mut state = 1_u32;
+        let samples = (0..30_000)
+            .map(|i| {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                force(f64::from(i) / RATE_HZ) + f64::from(state) / f64::from(u32::MAX) - 0.5
+            })
+            .collect();
+        Channel {
+            name: "A".into(),
+            end: End::First,
+            axis: Axis::Transverse,
+            source: "a".into(),
+            position_m: 0.0,
+            offset_m: 0.0,
+            start_s: 0.0,
+            sample_rate_hz: RATE_HZ,
+            samples: Samples::F64(samples),
+            scale_m_s2: 1.0,
+            unit: "m/s^2".into(),
+            unit_origin: "recording",
+            full_scale: None,
+            gaps: vec![],
+            time_jitter_s: 0.0,
+            coupling: Coupling::Dc,
+        }
+    }
+
+    /// Rest to 1.5 s, fall to 1.9 s, then 2 g that decay until a hard stop at 2.1 s; all on an offset of 6 m/s².
+    fn soft_entry(t: f64) -> f64 {
+        6.0 + match t {
+            t if t < 1.5 => 9.81,
+            t if t < 1.9 => 0.0,
+            t if t < 2.1 => 20.0 - 40.0 * (t - 1.9),
+            _ => 400.0,
+        }
+    }
+
+    #[test]
+    fn the_fall_ends_at_the_first_touch_not_at_the_larger_stop() {
+        let fall = free_fall(&channel(soft_entry), &drop(), 2.1).expect("a fall");
+        // Steps between two samples are found to a sample.
+        assert!((fall.release_s - 1.5).abs() < 2.0 / RATE_HZ, "{fall:?}");
+        assert!((fall.end_s - 1.9).abs() < 2.0 / RATE_HZ, "{fall:?}");
+        // The medians of blocks of 50 samples of uniform noise lie within 0.2 of the truth.
+        assert!((fall.rest_m_s2 - 9.81).abs() < 0.2, "{fall:?}");
+    }
+
+    #[test]
+    fn a_fall_straight_into_the_impact_ends_with_first_contact() {
+        let fall = free_fall(&channel(|t| if t < 1.5 { 9.81 } else { 0.0 }), &drop(), 1.912_34);
+        assert!((fall.expect("a fall").end_s - 1.912_34).abs() < 1e-9);
+    }
+
+    #[test]
+    fn ringing_after_the_release_does_not_end_the_fall() {
+        let ringing = |t: f64| {
+            let ring = if t > 1.5 { 8.0 * (-10.0 * (t - 1.5)).exp() * (500.0 * t).sin() } else { 0.0 };
+            soft_entry(t) + ring
+        };
+        let fall = free_fall(&channel(ringing), &drop(), 2.1).expect("a fall");
+        assert!((fall.end_s - 1.9).abs() < 1e-3, "{fall:?}");
+        // The ring crosses the middle of the step within its period of 12.6 ms.
+        assert!((fall.release_s - 1.5).abs() < 0.0126, "{fall:?}");
+    }
+
+    #[test]
+    fn a_height_that_is_wrong_does_not_hide_the_fall() {
+        let wrong = Drop { height_m: 0.2, impact_velocity_m_s: 1.981, ..drop() };
+        let fall = free_fall(&channel(soft_entry), &wrong, 2.1).expect("a fall");
+        assert!((fall.end_s - fall.release_s - 0.4).abs() < 4.0 / RATE_HZ, "{fall:?}");
+    }
+
+    #[test]
+    fn without_rest_before_it_there_is_no_release() {
+        assert_eq!(free_fall(&channel(|_| 0.0), &drop(), 2.1), None);
+        assert_eq!(free_fall(&channel(soft_entry), &drop(), 0.05), None);
+        assert_eq!(free_fall(&channel(|t| 0.3 * soft_entry(t)), &drop(), 2.1), None);
+    }
 }

@@ -94,6 +94,7 @@ fn result() -> DropResult {
         verdict: Verdict::Review,
         events: Events {
             release_s: None,
+            fall_end_s: None,
             first_contact_s: Some(CONTACT_S),
             separation_s: Some(SEPARATION_S),
             slap_down_s: Some(SLAP_DOWN_S),
