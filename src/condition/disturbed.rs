@@ -6,7 +6,7 @@ use crate::data::{Issue, IssueCode, Severity, Signal};
 const SHARE_OF_PEAK: f64 = 0.05;
 /// … and by this many standard deviations of the noise.
 const NOISE_FACTOR: f64 = 20.0;
-/// The neighbours of a spike agree within this share of its height.
+/// The two neighbours on either side of a spike agree within this share of its height: those of a pulse's peak do not.
 const AGREEMENT: f64 = 0.3;
 /// Fewest equal samples in a row that are a dropout.
 const LEAST_RUN: usize = 5;
@@ -17,13 +17,15 @@ pub(super) fn find(signal: &Signal) -> Vec<Issue> {
     let peak = force.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
     let height = (SHARE_OF_PEAK * peak).max(NOISE_FACTOR * signal.noise_m_s2);
     let is_lost = |i: usize| signal.gaps.iter().chain(&signal.clipped).any(|g| g.from <= i + 1 && i <= g.to);
-    let spikes: Vec<usize> = (1..force.len().saturating_sub(1))
+    let spikes: Vec<usize> = (2..force.len().saturating_sub(2))
         .filter(|&i| {
             let (before, after) = (force[i] - force[i - 1], force[i] - force[i + 1]);
             let least = before.abs().min(after.abs());
             before * after > 0.0
                 && least > height
-                && (force[i + 1] - force[i - 1]).abs() < AGREEMENT * least
+                && [(i - 2, i - 1), (i - 1, i + 1), (i + 1, i + 2)]
+                    .iter()
+                    .all(|&(a, b)| (force[b] - force[a]).abs() < AGREEMENT * least)
                 && !is_lost(i)
         })
         .collect();

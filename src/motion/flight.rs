@@ -2,7 +2,7 @@
 
 use super::Velocity;
 use crate::data::{Axis, FlightFit, FlightModelScore, Mode, Plateau, Signal};
-use crate::numerics::damped_modes::{Fit, Oscillation, Series, fit};
+use crate::numerics::damped_modes::{Fit, Oscillation, Series, fit, uniform_ringing};
 use crate::numerics::robust;
 
 /// Most modes tried: the bending modes of a cask below 400 Hz.
@@ -106,7 +106,21 @@ fn late_mismatch_m_s(signal: &Signal, flight: &FlightFit, whole: &Window, cog_m:
     let middle_s = f64::midpoint(from_s, to_s) - flight.from_s;
     let centrifugal_m_s2 = -whole.angular_velocity_rad_s.powi(2) * centrifugal_arm_m(signal, cog_m);
     let expected_m_s = plateau.velocity_step_m_s + (plateau.zero_shift_m_s2 + centrifugal_m_s2) * middle_s;
-    Some(velocity.mean(from_s, to_s) - expected_m_s)
+    const RINGING_POINTS: usize = 40;
+    let step_s = LATE_S / 40.0;
+    let ringing_m_s: f64 = flight
+        .modes
+        .iter()
+        .zip(&plateau.ringing_m_s)
+        .map(|(m, &(a, b))| {
+            let mode = Oscillation { frequency_hz: m.frequency_hz, damping: m.damping };
+            uniform_ringing(mode, from_s - flight.from_s + step_s / 2.0, step_s)
+                .take(RINGING_POINTS)
+                .map(|z| (a * z.re + b * z.im) / 40.0)
+                .sum::<f64>()
+        })
+        .sum();
+    Some(velocity.mean(from_s, to_s) - expected_m_s - ringing_m_s)
 }
 
 /// Distance along the axis that the centrifugal force of a channel goes with, m: f_η holds −Ω² η, f_ξ holds −Ω² ξ   (14), (15)

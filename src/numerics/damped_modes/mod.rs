@@ -101,13 +101,13 @@ pub fn fit(
         modes.push(best_seed(series, start, band, drift)?);
     }
     if !modes.is_empty() {
-        modes = refine(series, modes, drift)?;
-        if let Some((low, high)) = band_hz
-            && modes.iter().any(|m| {
-                m.damping > MOST_DAMPING || m.frequency_hz < 0.8 * low || m.frequency_hz > 1.25 * high
-            })
-        {
-            return None;
+        let refined = refine(series, modes.clone(), drift);
+        let (low, high) = band_hz.unwrap_or((0.0, f64::INFINITY));
+        let is_mode =
+            |m: &Oscillation| m.damping < MOST_DAMPING && (0.8 * low..1.25 * high).contains(&m.frequency_hz);
+        // A refinement that runs out of bounds misses another mode: the seeds stand until that one is found too.
+        if let Some(refined) = refined.filter(|r| r.iter().all(is_mode)) {
+            modes = refined;
         }
     }
     describe(series, modes, drift)
