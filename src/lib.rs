@@ -145,6 +145,7 @@ fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Op
         rough_s.max(contact.0 + (FIRST_CLEARANCE * (end_s - contact.0)).min(LONGEST_CLEARANCE_S));
     let mut left = (rough_s, 0.1 * (rough_s - contact.0));
     let mut flight: Option<FlightFit> = None;
+    let mut calm = signals.to_vec();
     for _ in 0..ROUNDS {
         let end_s = struck.map_or(record_end_s, |s| s.0);
         let window = motion::Window {
@@ -154,7 +155,7 @@ fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Op
             angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| motion::rotation_rad_s(signals, f)),
         };
         let Some(fitted) = motion::fit_flight(signals, &window, file.cask.cog_m) else { break };
-        let calm = motion::without_ringing(signals, &fitted, contact.0, end_s + 0.02);
+        motion::take_off_ringing(&mut calm, signals, &fitted, contact.0..end_s + 0.02);
         let seen = events::slap_down(&calm, between_s.start.max(free_s)..record_end_s, least_m_s, true);
         // A flight that is explained well has no slap-down hidden in its ringing.
         if seen.is_some() || fitted.plateaus.iter().all(|p| p.residual_m_s < EXPLAINED_M_S) {

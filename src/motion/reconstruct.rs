@@ -186,7 +186,7 @@ impl Histories {
         for signal in signals {
             let plateau = fit.plateau(&signal.name)?;
             // The same start as the flight fit's, so that both count from one zero.
-            let velocity = Velocity::of(signal, contact_s - 2e-3, fit.to_s);
+            let velocity = Velocity::of(signal, contact_s - 2e-3, separation_s);
             // A zero shift sets in somewhere in the contact: half of it is taken to have acted.
             let before_s = fit.from_s - separation_s + length_s / 2.0;
             let plateau_m_s = plateau.velocity_step_m_s - plateau.zero_shift_m_s2 * before_s;
