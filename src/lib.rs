@@ -61,12 +61,13 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let reconstructed = flight_and_motion(&mut draft, &signals, contact);
     judge::weigh_by_distance(&mut draft.issues, &draft.events);
     draft.issues.extend(judge::judge_channels(&signals, &draft.events));
+    let smooth = draft.smooth(&signals);
     if let Some((flight, setup, motion, quantities)) = reconstructed {
         draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
         draft.flight = Some(flight);
         if draft.issues.iter().any(judge::invalidates) {
             // What an error speaks against is not stated at all: the times and curves remain.
-            draft.draw(&signals);
+            draft.draw(&signals, &smooth);
             return draft.finish();
         }
         let compared =
@@ -76,9 +77,9 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         }
         draft.measured(quantities, compared);
         draft.curves.motion = Some(motion.curve);
-        draft.filter_effect(&signals, &setup);
+        draft.filter_effect(&smooth, &setup);
     }
-    draft.draw(&signals);
+    draft.draw(&signals, &smooth);
     draft.finish()
 }
 

@@ -59,7 +59,7 @@ impl Middle {
             axial: AxialClosure::Sticking,
         };
         let flight = analysis.result.flight.clone().expect("a flight");
-        let events = analysis.result.events.clone();
+        let events = analysis.result.events;
         Self { cask_file, recording, event, signals, flight, events, setup, analysis }
     }
 

@@ -36,7 +36,7 @@ impl Display for Kind {
 pub struct Folder {
     pub recording: PathBuf,
     pub cask_file: CaskFile,
-    _folder: tempfile::TempDir,
+    _scratch: tempfile::TempDir,
 }
 
 impl Folder {
@@ -44,7 +44,7 @@ impl Folder {
         let folder = tempfile::tempdir().expect("a scratch folder");
         let recording = folder.path().join("recording");
         write(&recording, kind, &drop_g(samples));
-        Self { recording, cask_file: cask_file(kind), _folder: folder }
+        Self { recording, cask_file: cask_file(kind), _scratch: folder }
     }
 }
 
