@@ -17,7 +17,7 @@ const SIZES: [usize; 2] = [100_000, 1_000_000];
 const KINDS: [Kind; 5] = [Kind::Hdf5, Kind::Hdf5Gzip, Kind::Csv, Kind::McapJson, Kind::McapProtobuf];
 
 fn main() {
-    divan::main();
+    divan::Divan::from_args().sample_count(20).main();
 }
 
 /// Samples of both channels.
@@ -80,7 +80,7 @@ impl Middle {
 /// Fall from 9 m.
 const FALL_S: f64 = 1.354;
 
-#[divan::bench(args = KINDS, consts = SIZES, sample_count = 20)]
+#[divan::bench(args = KINDS, consts = SIZES]
 fn read_format<const N: usize>(bencher: Bencher, kind: Kind) {
     let folder = Folder::with(kind, N);
     bencher.counter(items(N)).bench(|| read(&folder));
@@ -153,7 +153,7 @@ fn analyze_after_reading(bencher: Bencher, samples: usize) {
     bencher.counter(items(samples)).bench(|| dropcheck::analyze(&m.recording, &m.cask_file));
 }
 
-#[divan::bench(args = SIZES, sample_count = 10)]
+#[divan::bench(args = SIZES, sample_count = 5)]
 fn report_files(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
     bencher.counter(items(samples)).bench(|| report::files(&m.analysis).expect("a report"));
@@ -167,7 +167,7 @@ fn report_table_and_json(bencher: Bencher, samples: usize) {
         .bench(|| (report::table(&m.analysis), report::result_json(&m.analysis.result).expect("a result")));
 }
 
-#[divan::bench(args = KINDS, consts = SIZES, sample_count = 10)]
+#[divan::bench(args = KINDS, consts = SIZES, sample_count = 5)]
 fn whole<const N: usize>(bencher: Bencher, kind: Kind) {
     let folder = Folder::with(kind, N);
     bencher.counter(items(N)).bench(|| {
