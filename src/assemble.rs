@@ -92,12 +92,16 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// The signals as the curves' low-pass leaves them.
+    pub fn smooth(&self, signals: &[Signal]) -> Vec<Signal> {
+        motion::filtered(signals, &self.events, self.cutoff().0)
+    }
+
     /// States what the curves' low-pass would have changed had it been used for the numbers.
-    pub fn filter_effect(&mut self, signals: &[Signal], setup: &Setup) {
+    pub fn filter_effect(&mut self, smooth: &[Signal], setup: &Setup) {
         let (Some(quantities), Some(contact_s)) = (&self.quantities, self.events.first_contact_s) else {
             return;
         };
-        let smooth = motion::filtered(signals, &self.events, self.cutoff().0);
         let window =
             self.events.separation_s.zip(self.events.slap_down_s).map(|(left_s, struck_s)| motion::Window {
                 contact_s,
@@ -106,8 +110,8 @@ impl<'a> Draft<'a> {
                 angular_velocity_rad_s: quantities.angular_velocity.value,
             });
         let filtered = window
-            .and_then(|w| motion::fit_flight(&smooth, &w, setup.cog_m))
-            .and_then(|flight| motion::reconstruct(&smooth, &flight, &self.events, setup));
+            .and_then(|w| motion::fit_flight(smooth, &w, setup.cog_m))
+            .and_then(|flight| motion::reconstruct(smooth, &flight, &self.events, setup));
         if let (Some(m), Some(speed)) =
             (filtered.and_then(|m| m.second_end_m_s.map(|v| (m.rebound_m_s, v))), quantities.speed)
         {
@@ -130,9 +134,8 @@ impl<'a> Draft<'a> {
     }
 
     /// Draws the curves and takes each channel's peaks, offset and noise.
-    pub fn draw(&mut self, signals: &[Signal]) {
+    pub fn draw(&mut self, signals: &[Signal], smooth: &[Signal]) {
         let (cutoff_hz, origin) = self.cutoff();
-        let smooth = motion::filtered(signals, &self.events, cutoff_hz);
         let setup = Setup {
             length_m: self.cask_file.cask.length_m,
             height_m: self.cask_file.cask.height_m,
@@ -142,7 +145,7 @@ impl<'a> Draft<'a> {
             gravity_m_s2: self.cask_file.drop.gravity_m_s2,
             axial: crate::data::AxialClosure::Sticking,
         };
-        self.curves.channels = motion::channel_curves(signals, &smooth, &self.events, &setup);
+        self.curves.channels = motion::channel_curves(signals, smooth, &self.events, &setup);
         self.curves.spectra = motion::spectra(signals, &self.events);
         for ((summary, signal), curve) in self.channels.iter_mut().zip(signals).zip(&self.curves.channels) {
             let peak = |values: &[f64]| values.iter().fold(0.0_f64, |m, f| m.max(f.abs()));

@@ -62,12 +62,13 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let reconstructed = flight_and_motion(&mut draft, &signals, contact);
     judge::weigh_by_distance(&mut draft.issues, &draft.events);
     draft.issues.extend(judge::judge_channels(&signals, &draft.events));
+    let smooth = draft.smooth(&signals);
     if let Some((flight, setup, motion, quantities)) = reconstructed {
         draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
         draft.flight = Some(flight);
         if draft.issues.iter().any(judge::invalidates) {
             // What an error speaks against is not stated at all: the times and curves remain.
-            draft.draw(&signals);
+            draft.draw(&signals, &smooth);
             return draft.finish();
         }
         let compared =
@@ -77,9 +78,9 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         }
         draft.measured(quantities, compared);
         draft.curves.motion = Some(motion.curve);
-        draft.filter_effect(&signals, &setup);
+        draft.filter_effect(&smooth, &setup);
     }
-    draft.draw(&signals);
+    draft.draw(&signals, &smooth);
     draft.finish()
 }
 
@@ -151,6 +152,7 @@ fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Op
         rough_s.max(contact.0 + (FIRST_CLEARANCE * (end_s - contact.0)).min(LONGEST_CLEARANCE_S));
     let mut left = (rough_s, 0.1 * (rough_s - contact.0));
     let mut flight: Option<FlightFit> = None;
+    let mut calm = signals.to_vec();
     for _ in 0..ROUNDS {
         let end_s = struck.map_or(record_end_s, |s| s.0);
         let window = motion::Window {
@@ -160,7 +162,7 @@ fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Op
             angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| motion::rotation_rad_s(signals, f)),
         };
         let Some(fitted) = motion::fit_flight(signals, &window, file.cask.cog_m) else { break };
-        let calm = motion::without_ringing(signals, &fitted, contact.0, end_s + 0.02);
+        motion::take_off_ringing(&mut calm, signals, &fitted, contact.0..end_s + 0.02);
         let seen = events::slap_down(&calm, between_s.start.max(free_s)..record_end_s, least_m_s, true);
         // A flight that is explained well has no slap-down hidden in its ringing.
         if seen.is_some() || fitted.plateaus.iter().all(|p| p.residual_m_s < EXPLAINED_M_S) {

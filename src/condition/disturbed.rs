@@ -17,17 +17,18 @@ pub(super) fn find(signal: &Signal) -> Vec<Issue> {
     let peak = force.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
     let height = (SHARE_OF_PEAK * peak).max(NOISE_FACTOR * signal.noise_m_s2);
     let is_lost = |i: usize| signal.gaps.iter().chain(&signal.clipped).any(|g| g.from <= i + 1 && i <= g.to);
-    let spikes: Vec<usize> = (2..force.len().saturating_sub(2))
-        .filter(|&i| {
-            let (before, after) = (force[i] - force[i - 1], force[i] - force[i + 1]);
+    let spikes: Vec<usize> = (2..)
+        .zip(force.windows(5))
+        .filter(|(i, w)| {
+            let (before, after) = (w[2] - w[1], w[2] - w[3]);
             let least = before.abs().min(after.abs());
-            before * after > 0.0
-                && least > height
-                && [(i - 2, i - 1), (i - 1, i + 1), (i + 1, i + 2)]
-                    .iter()
-                    .all(|&(a, b)| (force[b] - force[a]).abs() < AGREEMENT * least)
-                && !is_lost(i)
+            // Few samples stand out of both neighbours: what costs more is asked after that.
+            least > height
+                && before * after > 0.0
+                && [w[1] - w[0], w[3] - w[1], w[4] - w[3]].iter().all(|d| d.abs() < AGREEMENT * least)
+                && !is_lost(*i)
         })
+        .map(|(i, _)| i)
         .collect();
     let mut issues = Vec::new();
     issues.extend(issue(signal, IssueCode::Spikes, &spikes, "spikes of one sample"));

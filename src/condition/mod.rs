@@ -18,17 +18,16 @@ const AFTER_S: f64 = 0.8;
 /// the channels and what was found about them.
 #[must_use]
 pub fn condition(recording: &Recording, event: &CoarseEvent, fall_s: f64) -> (Vec<Signal>, Vec<Issue>) {
-    let mut issues = Vec::new();
-    let signals = recording
-        .channels
-        .iter()
-        .map(|channel| {
-            let (signal, mut found) = signal(channel, event, fall_s);
-            issues.append(&mut found);
-            signal
-        })
-        .collect();
-    (signals, issues)
+    let parts: Vec<_> = std::thread::scope(|scope| {
+        let each = |channel| scope.spawn(move || signal(channel, event, fall_s));
+        let running: Vec<_> = recording.channels.iter().map(each).collect();
+        running
+            .into_iter()
+            .map(|r| r.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            .collect()
+    });
+    let (signals, issues): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+    (signals, issues.into_iter().flatten().collect())
 }
 
 fn signal(channel: &Channel, event: &CoarseEvent, fall_s: f64) -> (Signal, Vec<Issue>) {

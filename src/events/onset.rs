@@ -2,7 +2,6 @@
 
 use super::transverse;
 use crate::data::{CoarseEvent, End, Signal};
-use crate::numerics::quadrature::running_integral;
 
 /// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
 const FOOT: f64 = 0.02;
@@ -14,6 +13,8 @@ const TAIL: f64 = 0.05;
 const NOISE_FACTOR: f64 = 6.0;
 /// Width of the means that R's velocity is compared by, s: two periods of an 80 Hz mode, less than a flight from 5°.
 const WIDTH_S: f64 = 0.025;
+/// The means are compared this often, s: a hundredth of the stretch in which the onset is then sought.
+const BLOCK_S: f64 = 1e-4;
 /// R strikes where its velocity change over the width reaches this share of the largest in the record.
 const SHARE: f64 = 0.5;
 /// Longest first contact looked for, s: pulses of shock-absorbed casks reach 20 ms.
@@ -45,25 +46,27 @@ pub fn slap_down(
     let signal = transverse(signals, End::Second)?;
     let start = signal.index_from(between_s.start - WIDTH_S);
     let end = signal.index_from(between_s.end + WIDTH_S);
-    let velocity = running_integral(signal.force_m_s2.get(start..end)?, 1.0 / signal.sample_rate_hz);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
-    let width = ((WIDTH_S * signal.sample_rate_hz) as usize).max(1);
-    let samples = velocity.len();
-    let sums = cumulative(velocity);
-    let mean = |a: usize, b: usize| (sums[b] - sums[a]) / count((b - a).max(1));
-    let change = |i: usize| mean(i, (i + width).min(samples)) - mean(i.saturating_sub(width), i);
-    let first = signal.index_from(between_s.start).saturating_sub(start).max(1);
+    let force = signal.force_m_s2.get(start..end)?;
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive sample counts")]
+    let [block, width] = [BLOCK_S, WIDTH_S].map(|s| ((s * signal.sample_rate_hz) as usize).max(1));
+    let blocks = (width / block).max(1);
+    let sums = velocity_sums(force, block, 1.0 / signal.sample_rate_hz);
+    let last_sum = sums.len() - 1;
+    let mean = |a: usize, b: usize| (sums[b] - sums[a]) / count((b - a).max(1) * block);
+    let change = |i: usize| mean(i, (i + blocks).min(last_sum)) - mean(i.saturating_sub(blocks), i);
+    let first = (signal.index_from(between_s.start).saturating_sub(start) / block).max(1);
     // A mean over less than a third of the width says nothing: R's pulse must be in the record.
-    let last = signal.index_from(between_s.end).saturating_sub(start).min(samples.saturating_sub(width / 3));
+    let last = (signal.index_from(between_s.end).saturating_sub(start) / block)
+        .min(last_sum.saturating_sub(blocks / 3));
     let largest = (first..last).map(change).fold(0.0, f64::max);
     if largest < least_change_m_s {
         return None;
     }
     // The first hump that reaches the share, followed to its top: the middle of the pulse.
     let crossing = (first..last).find(|&i| change(i) >= SHARE * largest)?;
-    let hump = crossing..(crossing + width).min(last);
-    let middle = start + hump.max_by(|&a, &b| change(a).total_cmp(&change(b)))?;
-    let from = middle.saturating_sub(width * 3 / 5).max(start + first);
+    let hump = crossing..(crossing + blocks).min(last);
+    let middle = start + block * hump.max_by(|&a, &b| change(a).total_cmp(&change(b)))?;
+    let from = middle.saturating_sub(width * 3 / 5).max(start + first * block);
     let to = (middle + width / 2).min(signal.force_m_s2.len());
     onset(signal, from..to, 1.0, if is_calm { Rise::First } else { Rise::BeforePeak })
 }
@@ -139,23 +142,41 @@ pub fn separation(calm: &[Signal], contact_s: f64, free_s: f64) -> Option<(f64, 
     Some((time_s, ((time_s - contact_s) / 40.0).max(1.0 / signal.sample_rate_hz)))
 }
 
-/// Sums of all samples before each index, in place of them; one longer than `values`.
-fn cumulative(mut values: Vec<f64>) -> Vec<f64> {
+/// Sums of the velocity's samples before each whole block; one longer than there are whole blocks.
+fn velocity_sums(force: &[f64], block: usize, step_s: f64) -> Vec<f64> {
+    let (mut velocity_m_s, mut sum) = (0.0, 0.0);
+    let mut sums = vec![0.0];
+    sums.extend(force.chunks_exact(block).map(|chunk| {
+        // Σ over the block of v + f_0 h + … + f_i h, without following v from sample to sample.
+        let (mut gained, mut total) = (0.0, 0.0);
+        for (f, weight) in chunk.iter().zip((1..=block).rev()) {
+            gained += f;
+            total += f * count(weight);
+        }
+        sum += velocity_m_s * count(block) + total * step_s;
+        velocity_m_s += gained * step_s;
+        sum
+    }));
+    sums
+}
+
+/// Sums of all samples before each index; one longer than `values`.
+fn cumulative(values: &[f64]) -> Vec<f64> {
+    let mut sums = Vec::with_capacity(values.len() + 1);
     let mut sum = 0.0;
-    values.push(0.0);
-    for v in &mut values {
-        let before = sum;
-        sum += *v;
-        *v = before;
+    sums.push(sum);
+    for v in values {
+        sum += v;
+        sums.push(sum);
     }
-    values
+    sums
 }
 
 /// Moving mean over 0.2 ms, so that the high modes of the sensor's mount do not end a pulse.
 fn smoothed(force: &[f64], sample_rate_hz: f64) -> Vec<f64> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
     let half = (1e-4 * sample_rate_hz) as usize;
-    let sums = cumulative(force.to_vec());
+    let sums = cumulative(force);
     (0..force.len())
         .map(|i| {
             let (a, b) = (i.saturating_sub(half), (i + half + 1).min(force.len()));

@@ -56,7 +56,9 @@ pub fn fit_flight(signals: &[Signal], window: &Window, cog_m: f64) -> Option<Fli
     for drift in [false, true] {
         fits.extend(chain(&series, band, drift));
     }
-    fits.retain(|f| has_plausible_drift(signals, f));
+    let peaks_m_s2: Vec<f64> =
+        signals.iter().map(|s| s.force_m_s2.iter().fold(0.0_f64, |m, f| m.max(f.abs()))).collect();
+    fits.retain(|f| has_plausible_drift(&peaks_m_s2, f));
     let richest = fits.iter().max_by_key(|f| f.parameters)?.correlation;
     let score = |f: &Fit| f.bic(&series, richest);
     fits.sort_by(|a, b| score(a).total_cmp(&score(b)));
@@ -132,11 +134,8 @@ fn centrifugal_arm_m(signal: &Signal, cog_m: f64) -> f64 {
 }
 
 /// A zero shift beyond this share of the peak is none: it is a contact that the window holds, or a mode slower than it.
-fn has_plausible_drift(signals: &[Signal], fit: &Fit) -> bool {
-    signals.iter().zip(&fit.series).all(|(signal, series)| {
-        let peak = signal.force_m_s2.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-        series.drift.abs() < MOST_ZERO_SHIFT * peak
-    })
+fn has_plausible_drift(peaks_m_s2: &[f64], fit: &Fit) -> bool {
+    peaks_m_s2.iter().zip(&fit.series).all(|(peak, series)| series.drift.abs() < MOST_ZERO_SHIFT * peak)
 }
 
 /// Fits with none, one, two … modes, each started from the last, until nothing is left to explain.

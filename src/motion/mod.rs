@@ -8,7 +8,7 @@ mod ringing;
 pub use curves::{channel_curves, cutoff_hz, filtered, spectra};
 pub use flight::{Window, fit_flight};
 pub use reconstruct::reconstruct;
-pub use ringing::{rotation_rad_s, without_ringing};
+pub use ringing::{rotation_rad_s, take_off_ringing};
 
 use crate::data::Signal;
 use crate::numerics::quadrature::running_integral;

@@ -71,16 +71,18 @@ fn uniform(curve: &MotionCurve) -> MotionCurve {
     let time_s: Vec<f64> = (0..=CURVE_POINTS)
         .map(|i| first_s + (last_s - first_s) * f64::from(i) / f64::from(CURVE_POINTS))
         .collect();
+    let places: Vec<(usize, f64)> = time_s
+        .iter()
+        .map(|&t| {
+            let next = curve.time_s.partition_point(|&u| u < t).clamp(1, curve.time_s.len() - 1);
+            let (a, b) = (curve.time_s[next - 1], curve.time_s[next]);
+            (next, if b > a { ((t - a) / (b - a)).clamp(0.0, 1.0) } else { 1.0 })
+        })
+        .collect();
     let on = |values: &[f64]| {
-        time_s
-            .iter()
-            .map(|&t| {
-                let next = curve.time_s.partition_point(|&u| u < t).clamp(1, values.len() - 1);
-                let (a, b) = (curve.time_s[next - 1], curve.time_s[next]);
-                let share = if b > a { ((t - a) / (b - a)).clamp(0.0, 1.0) } else { 1.0 };
-                values[next - 1] + share * (values[next] - values[next - 1])
-            })
-            .collect()
+        let between =
+            |&(next, share): &(usize, f64)| values[next - 1] + share * (values[next] - values[next - 1]);
+        places.iter().map(between).collect()
     };
     MotionCurve {
         angle_rad: on(&curve.angle_rad),
@@ -186,7 +188,7 @@ impl Histories {
         for signal in signals {
             let plateau = fit.plateau(&signal.name)?;
             // The same start as the flight fit's, so that both count from one zero.
-            let velocity = Velocity::of(signal, contact_s - 2e-3, fit.to_s);
+            let velocity = Velocity::of(signal, contact_s - 2e-3, separation_s);
             // A zero shift sets in somewhere in the contact: half of it is taken to have acted.
             let before_s = fit.from_s - separation_s + length_s / 2.0;
             let plateau_m_s = plateau.velocity_step_m_s - plateau.zero_shift_m_s2 * before_s;

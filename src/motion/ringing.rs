@@ -2,28 +2,25 @@
 
 use crate::data::{Axis, FlightFit, Plateau, Signal};
 use crate::numerics::damped_modes::{Oscillation, uniform_ringing};
+use std::ops::Range;
 
 /// A mode that would have been this much larger at the time asked for (e^1.6, fivefold) is not followed back to it: the fit knows
 /// nothing of it there, and an error of its damping would be blown up likewise.
 const MOST_GROWTH: f64 = 1.6;
 
-/// The signals with the fitted modes and zero shifts taken off between two times, s; outside they are as they were.
-#[must_use]
-pub fn without_ringing(signals: &[Signal], fit: &FlightFit, from_s: f64, to_s: f64) -> Vec<Signal> {
-    signals
-        .iter()
-        .map(|signal| {
-            let mut calm = signal.clone();
-            if let Some(plateau) = fit.plateau(&signal.name) {
-                let (from, to) = (signal.index_from(from_s), signal.index_from(to_s));
-                for force in calm.force_m_s2.iter_mut().take(to).skip(from) {
-                    *force -= plateau.zero_shift_m_s2;
-                }
-                take_off_modes(&mut calm, (from, to), fit, plateau);
-            }
-            calm
-        })
-        .collect()
+/// Sets `calm`, copies of `signals`, to the signals with the fitted modes and zero shifts taken off between two times, s.
+///
+/// The copies are made by the caller so that rounds of a search share their memory.
+pub fn take_off_ringing(calm: &mut [Signal], signals: &[Signal], fit: &FlightFit, between_s: Range<f64>) {
+    for (calm, signal) in calm.iter_mut().zip(signals) {
+        calm.force_m_s2.clone_from(&signal.force_m_s2);
+        let Some(plateau) = fit.plateau(&signal.name) else { continue };
+        let (from, to) = (signal.index_from(between_s.start), signal.index_from(between_s.end));
+        for force in calm.force_m_s2.iter_mut().take(to).skip(from) {
+            *force -= plateau.zero_shift_m_s2;
+        }
+        take_off_modes(calm, (from, to), fit, plateau);
+    }
 }
 
 /// Takes off f = v̇ of v = Σ e^(−ζωτ) (A cos ωτ + B sin ωτ), τ from the flight window's start   (20)

@@ -1,0 +1,177 @@
+//! A drop made by the bench itself to the throughput of every stage, in samples a second, and of the whole.
+//!
+//! `cargo bench` runs all; `cargo bench -- read` those with that word in their name.
+
+mod recordings;
+
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+use dropcheck::data::{
+    Analysis, AxialClosure, CaskFile, CoarseEvent, Contact, Events, FlightFit, Recording, Setup, Signal,
+};
+use dropcheck::{condition, events, fit, ingest, motion, predict, report};
+use recordings::{Folder, Kind};
+
+/// Samples a channel.
+const SIZES: [usize; 2] = [100_000, 1_000_000];
+const KINDS: [Kind; 5] = [Kind::Hdf5, Kind::Hdf5Gzip, Kind::Csv, Kind::McapJson, Kind::McapProtobuf];
+
+fn main() {
+    divan::main();
+}
+
+/// Samples of both channels.
+fn items(samples: usize) -> ItemsCount {
+    ItemsCount::new(2 * samples)
+}
+
+fn read(folder: &Folder) -> Recording {
+    ingest::read(&folder.recording, &folder.cask_file, &|_| ()).expect("the bench's own file")
+}
+
+/// What the stages hand on, for those that start in the middle.
+struct Middle {
+    cask_file: CaskFile,
+    recording: Recording,
+    event: CoarseEvent,
+    signals: Vec<Signal>,
+    flight: FlightFit,
+    events: Events,
+    setup: Setup,
+    analysis: Analysis,
+}
+
+impl Middle {
+    fn new(samples: usize) -> Self {
+        let folder = Folder::with(Kind::Hdf5, samples);
+        let recording = read(&folder);
+        let cask_file = folder.cask_file.clone();
+        let analysis = dropcheck::analyze(&recording, &cask_file);
+        let event = events::locate(&recording, &cask_file.drop).expect("an impact");
+        let (signals, _) = condition::condition(&recording, &event, FALL_S);
+        let setup = Setup {
+            length_m: cask_file.cask.length_m,
+            height_m: cask_file.cask.height_m,
+            cog_m: cask_file.cask.cog_m,
+            angle_rad: cask_file.drop.angle_rad,
+            impact_velocity_m_s: cask_file.drop.impact_velocity_m_s,
+            gravity_m_s2: cask_file.drop.gravity_m_s2,
+            axial: AxialClosure::Sticking,
+        };
+        let flight = analysis.result.flight.clone().expect("a flight");
+        let events = analysis.result.events;
+        Self { cask_file, recording, event, signals, flight, events, setup, analysis }
+    }
+
+    fn window(&self) -> motion::Window {
+        motion::Window {
+            contact_s: self.events.first_contact_s.expect("a contact"),
+            from_s: self.flight.from_s,
+            to_s: self.flight.to_s,
+            angular_velocity_rad_s: 5.0,
+        }
+    }
+
+    fn conditioned(&self) -> ItemsCount {
+        ItemsCount::new(self.signals.iter().map(|s| s.force_m_s2.len()).sum::<usize>())
+    }
+}
+
+/// Fall from 9 m.
+const FALL_S: f64 = 1.354;
+
+#[divan::bench(args = KINDS, consts = SIZES, sample_count = 20)]
+fn read_format<const N: usize>(bencher: Bencher, kind: Kind) {
+    let folder = Folder::with(kind, N);
+    bencher.counter(items(N)).bench(|| read(&folder));
+}
+
+#[divan::bench(args = SIZES)]
+fn locate(bencher: Bencher, samples: usize) {
+    let m = Middle::new(samples);
+    bencher.counter(items(samples)).bench(|| events::locate(&m.recording, &m.cask_file.drop));
+}
+
+#[divan::bench(args = SIZES)]
+fn condition_channels(bencher: Bencher, samples: usize) {
+    let m = Middle::new(samples);
+    bencher.counter(items(samples)).bench(|| condition::condition(&m.recording, &m.event, FALL_S));
+}
+
+#[divan::bench(args = SIZES)]
+fn low_pass(bencher: Bencher, samples: usize) {
+    let m = Middle::new(samples);
+    bencher.counter(m.conditioned()).bench(|| motion::filtered(&m.signals, &m.events, 299.0));
+}
+
+#[divan::bench(args = SIZES)]
+fn flight_fit(bencher: Bencher, samples: usize) {
+    let m = Middle::new(samples);
+    bencher
+        .counter(m.conditioned())
+        .bench(|| motion::fit_flight(&m.signals, &m.window(), m.cask_file.cask.cog_m));
+}
+
+#[divan::bench(args = SIZES)]
+fn reconstruct(bencher: Bencher, samples: usize) {
+    let m = Middle::new(samples);
+    bencher
+        .counter(m.conditioned())
+        .bench(|| motion::reconstruct(&m.signals, &m.flight, &m.events, &m.setup).expect("a motion"));
+}
+
+#[divan::bench(args = SIZES)]
+fn quantities(bencher: Bencher, samples: usize) {
+    let m = Middle::new(samples);
+    let measured = fit::Measured {
+        signals: &m.signals,
+        flight: &m.flight,
+        events: &m.events,
+        u_events_s: [2e-5, 1e-4, 2e-5],
+        setup: &m.setup,
+        other_law: None,
+    };
+    bencher
+        .counter(m.conditioned())
+        .bench(|| fit::quantities(&measured, &motion::reconstruct).expect("quantities"));
+}
+
+#[divan::bench(args = [0.0, 0.5, 1.0])]
+fn prediction(bencher: Bencher, k: f64) {
+    let cask_file = recordings::cask_file(Kind::Hdf5);
+    let bodies = predict::bodies(&cask_file.cask);
+    bencher.counter(ItemsCount::new(bodies.len())).bench(|| {
+        for body in &bodies {
+            black_box(predict::predict(body, &cask_file.drop, Contact::Rough, black_box(k)));
+        }
+    });
+}
+
+#[divan::bench(args = SIZES)]
+fn analyze_after_reading(bencher: Bencher, samples: usize) {
+    let m = Middle::new(samples);
+    bencher.counter(items(samples)).bench(|| dropcheck::analyze(&m.recording, &m.cask_file));
+}
+
+#[divan::bench(args = SIZES, sample_count = 10)]
+fn report_files(bencher: Bencher, samples: usize) {
+    let m = Middle::new(samples);
+    bencher.counter(items(samples)).bench(|| report::files(&m.analysis).expect("a report"));
+}
+
+#[divan::bench(args = SIZES)]
+fn report_table_and_json(bencher: Bencher, samples: usize) {
+    let m = Middle::new(samples);
+    bencher
+        .counter(items(samples))
+        .bench(|| (report::table(&m.analysis), report::result_json(&m.analysis.result).expect("a result")));
+}
+
+#[divan::bench(args = KINDS, consts = SIZES, sample_count = 10)]
+fn whole<const N: usize>(bencher: Bencher, kind: Kind) {
+    let folder = Folder::with(kind, N);
+    bencher.counter(items(N)).bench(|| {
+        let analysis = dropcheck::analyze(&read(&folder), &folder.cask_file);
+        report::files(&analysis).expect("a report")
+    });
+}
