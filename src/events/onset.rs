@@ -196,7 +196,7 @@ mod tests {
 
     /// A half sine of 6 ms from 20.03 ms on, at L positive, at R later.
     fn signal(end: End, rate: f64, start_s: f64, peak: f64) -> Signal {
-        let force_m_s2 = (0..)
+        let force_m_s2 = (0..100_000)
             .map(|i| f64::from(i) / rate)
             .take_while(|t| *t < 0.2)
             .map(|t| {

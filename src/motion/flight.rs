@@ -106,8 +106,8 @@ fn late_mismatch_m_s(signal: &Signal, flight: &FlightFit, whole: &Window, cog_m:
     let middle_s = f64::midpoint(from_s, to_s) - flight.from_s;
     let centrifugal_m_s2 = -whole.angular_velocity_rad_s.powi(2) * centrifugal_arm_m(signal, cog_m);
     let expected_m_s = plateau.velocity_step_m_s + (plateau.zero_shift_m_s2 + centrifugal_m_s2) * middle_s;
-    const RINGING_POINTS: usize = 40;
-    let step_s = LATE_S / 40.0;
+    let points: u16 = 40;
+    let step_s = LATE_S / f64::from(points);
     let ringing_m_s: f64 = flight
         .modes
         .iter()
@@ -115,8 +115,8 @@ fn late_mismatch_m_s(signal: &Signal, flight: &FlightFit, whole: &Window, cog_m:
         .map(|(m, &(a, b))| {
             let mode = Oscillation { frequency_hz: m.frequency_hz, damping: m.damping };
             uniform_ringing(mode, from_s - flight.from_s + step_s / 2.0, step_s)
-                .take(RINGING_POINTS)
-                .map(|z| (a * z.re + b * z.im) / 40.0)
+                .take(usize::from(points))
+                .map(|z| (a * z.re + b * z.im) / f64::from(points))
                 .sum::<f64>()
         })
         .sum();

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, SQRT_2};
 pub const CFC_DESIGN: f64 = 2.0775;
 
 /// −3 dB frequency of two passes of a second-order Butterworth over its design frequency: (√2 − 1)^(1/4).
-pub const TWO_PASS_CUTOFF: f64 = 0.8022432629231502;
+pub const TWO_PASS_CUTOFF: f64 = 0.802_243_262_923_150_2;
 
 /// Two passes of a second-order Butterworth low-pass in trapezoidal state-variable form.
 ///

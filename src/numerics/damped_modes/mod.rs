@@ -101,7 +101,7 @@ pub fn fit(
         modes.push(best_seed(series, start, band, drift)?);
     }
     if !modes.is_empty() {
-        let refined = refine(series, modes.clone(), drift);
+        let refined = refine(series, &modes, drift);
         let (low, high) = band_hz.unwrap_or((0.0, f64::INFINITY));
         let is_mode =
             |m: &Oscillation| m.damping < MOST_DAMPING && (0.8 * low..1.25 * high).contains(&m.frequency_hz);

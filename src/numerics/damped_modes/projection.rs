@@ -202,12 +202,12 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Projection<'_> {
     }
 }
 
-pub(super) fn refine(series: &[Series], modes: Vec<Oscillation>, drift: bool) -> Option<Vec<Oscillation>> {
+pub(super) fn refine(series: &[Series], modes: &[Oscillation], drift: bool) -> Option<Vec<Oscillation>> {
     let weights = series
         .iter()
-        .map(|s| project(s, &modes, drift).map(|(_, r)| 1.0 / rms(&r).hypot(s.floor).max(1e-300)))
+        .map(|s| project(s, modes, drift).map(|(_, r)| 1.0 / rms(&r).hypot(s.floor).max(1e-300)))
         .collect::<Option<Vec<f64>>>()?;
-    let problem = Projection { series, weights, drift, parameters: to_parameters(&modes) };
+    let problem = Projection { series, weights, drift, parameters: to_parameters(modes) };
     let (solved, report) = LevenbergMarquardt::new()
         .with_patience(20)
         .with_ftol(1e-9)
