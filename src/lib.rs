@@ -18,8 +18,8 @@ pub mod report;
 
 use assemble::Draft;
 use data::{
-    Analysis, AxialClosure, Axis, CaskFile, Contact, Events, FlightFit, Issue, IssueCode, Motion, Quantities,
-    Recording, Setup, Severity, Signal,
+    Analysis, AxialClosure, Axis, CaskFile, Channel, Contact, Events, FlightFit, Issue, IssueCode, Motion,
+    Quantities, Recording, Setup, Severity, Signal,
 };
 
 /// Separation and slap-down are found again on signals free of ringing this often; the second round moves them by less than a sample.
@@ -53,11 +53,12 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         return draft.without_impact();
     };
     draft.events.first_contact_s = Some(contact.0);
-    if let Some(fall) = free_fall(recording, cask_file, contact.0) {
-        draft.events.release_s = Some(fall.release_s);
-        draft.events.fall_end_s = Some(fall.end_s);
-        draft.issues.extend(judge::judge_fall(&cask_file.drop, &draft.events));
+    for (channel, fall) in free_falls(recording, cask_file, contact.0) {
+        draft.issues.extend(judge::judge_rest(&channel.name, fall.rest_m_s2, &cask_file.drop));
+        draft.events.release_s = draft.events.release_s.or(Some(fall.release_s));
+        draft.events.fall_end_s = draft.events.fall_end_s.or(Some(fall.end_s));
     }
+    draft.issues.extend(judge::judge_fall(&cask_file.drop, &draft.events));
     let reconstructed = flight_and_motion(&mut draft, &signals, contact);
     judge::weigh_by_distance(&mut draft.issues, &draft.events);
     draft.issues.extend(judge::judge_channels(&signals, &draft.events));
@@ -88,10 +89,15 @@ fn is_impact(velocity_step_m_s: f64, cask_file: &CaskFile) -> bool {
     velocity_step_m_s.abs() > 0.1 * cask_file.drop.impact_velocity_m_s
 }
 
-/// The free fall as the first transverse channel shows it.
-fn free_fall(recording: &Recording, cask_file: &CaskFile, contact_s: f64) -> Option<events::FreeFall> {
-    let mut transverse = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
-    transverse.find_map(|c| events::free_fall(c, &cask_file.drop, contact_s))
+/// The free fall as each transverse channel shows it.
+fn free_falls<'a>(
+    recording: &'a Recording,
+    cask_file: &CaskFile,
+    contact_s: f64,
+) -> impl Iterator<Item = (&'a Channel, events::FreeFall)> {
+    let drop = cask_file.drop;
+    let transverse = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
+    transverse.filter_map(move |c| events::free_fall(c, &drop, contact_s).map(|fall| (c, fall)))
 }
 
 /// The flight fit, the motion and what is read off it; what prevents them goes to the draft's issues.

@@ -16,7 +16,7 @@ const RECORDING_ENDINGS: [&str; 5] = ["mcap", "h5", "hdf5", "hdf", "csv"];
 #[derive(Args)]
 #[command(after_help = "Example:\n  dropcheck batch tests/*.mcap --cask cask.toml --out campaign")]
 pub struct Arguments {
-    /// Recordings; of a folder every .mcap, .h5, .hdf5, .hdf and .csv file in it
+    /// Recordings, each counted once; of a folder every .mcap, .h5, .hdf5, .hdf and .csv file in it
     #[arg(required = true, value_name = "PATHS")]
     paths: Vec<PathBuf>,
     /// The cask file (TOML) of all of them
@@ -40,6 +40,9 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
         None => None,
     };
     let cask_file = ingest::cask_file(&arguments.cask)?;
+    if let Some(first) = recordings.first() {
+        ingest::cask_file::require_channels(&cask_file, first)?;
+    }
     let mut rows = Vec::with_capacity(recordings.len());
     for (i, path) in recordings.iter().enumerate() {
         let folder = folders.as_ref().and_then(|(_, folders)| folders.get(i));
@@ -107,6 +110,9 @@ fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
         }
         recordings.extend(found);
     }
+    // One named twice, or once by itself and once by its folder, is one test all the same.
+    let mut seen = std::collections::HashSet::new();
+    recordings.retain(|path| std::fs::canonicalize(path).map_or(true, |real| seen.insert(real)));
     Ok(recordings)
 }
 
@@ -153,6 +159,8 @@ mod tests {
         let found = recordings(&[folder.path().to_path_buf()]).unwrap();
         let names: Vec<_> = found.iter().map(|p| p.file_name().unwrap().to_str().unwrap()).collect();
         assert_eq!(names, ["a.CSV", "b.mcap"]);
+        let twice = [folder.path().join("b.mcap"), folder.path().to_path_buf(), folder.path().join("none")];
+        assert_eq!(recordings(&twice).unwrap().len(), 3);
         let empty = tempfile::tempdir().unwrap();
         assert!(recordings(&[empty.path().to_path_buf()]).is_err());
     }

@@ -37,11 +37,19 @@ pub enum CannotWrite {
     #[diagnostic(help("see whether the disk is full; what was there before is unchanged"))]
     Failed { path: String, source: io::Error },
     #[error("standard output could not be written")]
+    #[diagnostic(help("see whether the disk behind it is full"))]
     StandardOutput { source: io::Error },
 }
 
 fn shown(path: &Path) -> String {
     path.display().to_string()
+}
+
+/// The operating system's words without its error number and without names of files on the way.
+fn bare(source: &io::Error) -> io::Error {
+    let text = source.to_string();
+    let words = text.split(" (os error").next().unwrap_or_default();
+    io::Error::new(source.kind(), words.to_owned())
 }
 
 /// A folder for files, found fit before the work.
@@ -94,7 +102,7 @@ impl Folder {
     pub fn write(&self, files: &[(String, Vec<u8>)]) -> Result<(), CannotWrite> {
         let failed = |path: &Path| {
             let path = shown(path);
-            move |source| CannotWrite::Failed { path, source }
+            move |source: io::Error| CannotWrite::Failed { path, source: bare(&source) }
         };
         if self.path.is_dir() {
             let staging = staging_in(&self.path).map_err(failed(&self.path))?;
@@ -184,7 +192,7 @@ impl JsonTarget {
             Self::File(path) => {
                 let bytes = make()?;
                 write_file(path, &bytes)
-                    .map_err(|source| CannotWrite::Failed { path: shown(path), source })?;
+                    .map_err(|source| CannotWrite::Failed { path: shown(path), source: bare(&source) })?;
             }
         }
         Ok(())
@@ -224,7 +232,9 @@ pub fn print_plain(bytes: &[u8]) -> Result<(), CannotWrite> {
 
 fn settled(written: io::Result<()>) -> Result<(), CannotWrite> {
     match written {
-        Err(source) if source.kind() != ErrorKind::BrokenPipe => Err(CannotWrite::StandardOutput { source }),
+        Err(source) if source.kind() != ErrorKind::BrokenPipe => {
+            Err(CannotWrite::StandardOutput { source: bare(&source) })
+        }
         _ => Ok(()),
     }
 }
@@ -258,7 +268,7 @@ fn writable(folder: &Path) -> Result<(), CannotWrite> {
         .prefix(".dropcheck-")
         .tempfile_in(folder)
         .map(drop)
-        .map_err(|source| CannotWrite::NotWritable { path: shown(folder), source })
+        .map_err(|source| CannotWrite::NotWritable { path: shown(folder), source: bare(&source) })
 }
 
 fn is_input(path: &Path, inputs: &[&Path]) -> bool {

@@ -61,7 +61,7 @@ pub(super) fn remove(signal: &mut Signal, before_s: f64) -> Vec<Issue> {
                 IssueCode::Offset,
                 severity,
                 format!(
-                    "{} reads {:+.2} g in free fall; that offset was taken off",
+                    "{} reads {:+.2} g before the first impact, where free fall reads 0; that offset was taken off",
                     signal.name,
                     mean / 9.806_65
                 ),

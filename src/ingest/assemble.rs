@@ -46,6 +46,15 @@ fn channel(
     first_s: f64,
     issues: &mut Vec<Issue>,
 ) -> Result<Channel, IngestError> {
+    let samples = &raw.uniform.samples;
+    if (0..samples.len()).all(|i| !samples.get(i).is_finite()) {
+        return Err(error::source(
+            path,
+            &spec.name,
+            format!("{} holds no number: all its samples are NaN, infinite or empty", spec.source),
+            "name the source that holds this sensor's samples, or take this [[channel]] out of the cask file",
+        ));
+    }
     let scale = scale(path, spec, raw.unit.as_deref())?;
     if let Some(message) = scale.contradiction {
         issues.push(Issue::new(IssueCode::Scale, Severity::Note, message).on(&spec.name));
@@ -284,6 +293,21 @@ mod tests {
         assert!(help.contains("unit = \"g\""), "{help}");
         let error = of(None, Some("mV")).unwrap_err();
         assert!(miette::Diagnostic::help(&error).unwrap().to_string().contains("sensitivity"));
+    }
+
+    #[test]
+    fn a_channel_without_any_number_is_named() {
+        let uniform = Uniform {
+            start_s: 0.0,
+            sample_rate_hz: 1000.0,
+            samples: Samples::F32(vec![f32::NAN; 3]),
+            gaps: Vec::new(),
+            time_jitter_s: 0.0,
+            issues: Vec::new(),
+        };
+        let raw = RawChannel { spec: 0, uniform, unit: None };
+        let error = channel(Path::new("r"), &spec(Some(Unit::G)), raw, 0.0, &mut Vec::new()).unwrap_err();
+        assert!(error.to_string().contains("channel \"A1\": /daq/a1 holds no number"), "{error}");
     }
 
     #[test]

@@ -9,19 +9,20 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 use section::{Document, Section};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
+use std::io::Read;
 use std::path::Path;
 
 /// Why a cask file cannot be used.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum CaskFileError {
     /// The operating system refused.
-    #[error("{path}: the cask file cannot be read: {source}")]
+    #[error("{path}: the cask file cannot be read: {}", super::error::bare(.refusal))]
     #[diagnostic(help("check the name after --cask, and that you may read it"))]
     Io {
         /// The file.
         path: String,
         /// Its reason.
-        source: std::io::Error,
+        refusal: std::io::Error,
     },
     /// It is no text file that a cask file could be.
     #[error("{path}: {problem}")]
@@ -114,19 +115,22 @@ fn no_cask_file(path: &Path, problem: &str, mend: &str) -> CaskFileError {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, CaskFileError> {
-    let io = |source| CaskFileError::Io { path: path.display().to_string(), source };
+    let io = |refusal| CaskFileError::Io { path: path.display().to_string(), refusal };
     let metadata = std::fs::metadata(path).map_err(io)?;
     if metadata.is_dir() {
         return Err(no_cask_file(path, "this is a directory, not a cask file", "name the TOML file in it"));
     }
-    if metadata.len() > LARGEST_BYTES {
+    // A pipe states no length: what it delivers is bounded, too.
+    let mut bytes = Vec::new();
+    let mut file = std::fs::File::open(path).map_err(io)?.take(LARGEST_BYTES + 1);
+    if metadata.len() > LARGEST_BYTES || file.read_to_end(&mut bytes).map_err(io)? as u64 > LARGEST_BYTES {
         return Err(no_cask_file(
             path,
-            &format!("{} bytes are too many for a cask file", metadata.len()),
+            &format!("more than {} MiB are too many for a cask file", LARGEST_BYTES >> 20),
             "perhaps the recording was given after --cask; the recording comes first, the TOML file after --cask",
         ));
     }
-    std::fs::read(path).map_err(io)
+    Ok(bytes)
 }
 
 /// The text, without a byte-order mark.

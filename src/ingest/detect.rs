@@ -33,11 +33,15 @@ const STRANGERS: [(&[u8], &str, &str); 8] = [
 /// # Errors
 /// A directory, an unreadable, empty or unknown file, each by its own message.
 pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
-    let mut file = File::open(path).map_err(|source| error::io(path, source))?;
-    let metadata = file.metadata().map_err(|source| error::io(path, source))?;
+    // Asked before opening, which would wait for a pipe's writer.
+    let metadata = std::fs::metadata(path).map_err(|source| error::io(path, source))?;
     if metadata.is_dir() {
         return Err(IngestError::Directory { path: path.display().to_string() });
     }
+    if !metadata.is_file() {
+        return Err(IngestError::NotAFile { path: path.display().to_string() });
+    }
+    let mut file = File::open(path).map_err(|source| error::io(path, source))?;
     let mut head = Vec::new();
     (&mut file).take(HEAD_BYTES).read_to_end(&mut head).map_err(|source| error::io(path, source))?;
     if head.is_empty() {
@@ -110,7 +114,11 @@ fn stranger(path: &Path, head: &[u8]) -> IngestError {
         return unknown(path, &format!("it is {what}"), mend);
     }
     if head.windows(11).any(|window| window == b"[[channel]]") {
-        return unknown(path, "it is a cask file", "name the recording first, and this file after `--cask`");
+        return unknown(
+            path,
+            "it is a cask file",
+            "name the recording here; the cask file stands after `--cask`",
+        );
     }
     if head.starts_with(b"\x89MCAP") {
         let what = if head.len() < MCAP_MAGIC.len() {
@@ -199,6 +207,12 @@ mod tests {
             let message = of(content).expect_err(part);
             assert!(message.contains(part), "{message}");
         }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_is_no_file() {
+        assert!(matches!(format(Path::new("/dev/null")), Err(IngestError::NotAFile { .. })));
     }
 
     #[test]

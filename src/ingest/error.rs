@@ -10,13 +10,20 @@ pub enum IngestError {
     #[diagnostic(transparent)]
     CaskFile(#[from] super::cask_file::CaskFileError),
     /// The operating system refused.
-    #[error("{path}: {source}")]
+    #[error("{path}: {}", bare(.refusal))]
     #[diagnostic(help("check the name, and that you may read it"))]
     Io {
         /// The file.
         path: String,
         /// Its reason.
-        source: std::io::Error,
+        refusal: std::io::Error,
+    },
+    /// A pipe or a device stands where a file should.
+    #[error("{path}: this is a pipe or a device, not a file: a recording is read in more than one pass")]
+    #[diagnostic(help("save it to a file first, and name that"))]
+    NotAFile {
+        /// The path.
+        path: String,
     },
     /// A directory stands where a file should.
     #[error("{path}: this is a directory, not a recording")]
@@ -64,9 +71,15 @@ pub enum IngestError {
     },
 }
 
+/// The operating system's words without its error number.
+pub(super) fn bare(refusal: &std::io::Error) -> String {
+    let text = refusal.to_string();
+    text.split(" (os error").next().unwrap_or_default().to_owned()
+}
+
 /// The operating system's refusal, with the file's name.
-pub(super) fn io(path: &Path, source: std::io::Error) -> IngestError {
-    IngestError::Io { path: path.display().to_string(), source }
+pub(super) fn io(path: &Path, refusal: std::io::Error) -> IngestError {
+    IngestError::Io { path: path.display().to_string(), refusal }
 }
 
 /// A channel whose source is at fault.
@@ -121,6 +134,13 @@ mod tests {
         assert!(text.starts_with("did you mean /daq/a3"), "{text}");
         assert!(text.contains("and 3 more"), "{text}");
         assert!(text.contains("dropcheck inspect r.mcap"), "{text}");
+    }
+
+    #[test]
+    fn a_refusal_carries_no_error_number() {
+        let refusal = std::fs::File::open("none/at all").unwrap_err();
+        assert!(refusal.to_string().contains("os error"), "{refusal}");
+        assert!(!bare(&refusal).is_empty() && !bare(&refusal).contains("os error"));
     }
 
     #[test]

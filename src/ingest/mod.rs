@@ -55,6 +55,7 @@ pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
 /// # Errors
 /// [`IngestError`] where a file, a source or its content is at fault.
 pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Recording, IngestError> {
+    cask_file::require_channels(cask_file, path)?;
     let format = detect::format(path)?;
     // The hash takes as long as the reading: it runs beside it.
     let (raw, sha256) = std::thread::scope(|scope| {

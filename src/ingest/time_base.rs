@@ -40,6 +40,15 @@ pub struct Block {
     pub samples: Samples,
 }
 
+/// A number of a damaged file may have hundreds of digits: those stand with an exponent.
+fn short(number: f64) -> String {
+    if number == 0.0 || (1e-6..1e12).contains(&number.abs()) {
+        format!("{number}")
+    } else {
+        format!("{number:e}")
+    }
+}
+
 /// Why times give no uniform base.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TimeBaseError {
@@ -86,8 +95,9 @@ pub enum TimeBaseError {
     },
     /// Times jump so far that filling the gap would not fit in memory.
     #[error(
-        "times jump from {from_s} s to {to_s} s, {lost:.0} samples at {sample_rate_hz:.6} Hz: no gap of one record; \
-         check the clock, or cut the recording there"
+        "times jump from {} s to {} s, which would be {lost:.3e} samples at {} Hz: no gap of one record; check the clock, \
+         or cut the recording there",
+        short(*from_s), short(*to_s), short(*sample_rate_hz)
     )]
     Jump {
         /// Last time before the jump, s.

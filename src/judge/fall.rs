@@ -2,6 +2,8 @@
 
 use crate::data::{Drop, Events, Issue, IssueCode, Severity};
 
+/// A rest level this far off g cos φ is a scale error: medians of rest and fall are known to a percent of g.
+const MOST_SCALE: f64 = 0.04;
 /// Fall times that differ by more contradict each other: 3 % are 6 % of the height, beyond any tape measure or air drag.
 const MOST_DIFFERENCE: f64 = 0.03;
 /// A first touch this share of the fall time before first contact is another event, not a late onset.
@@ -40,6 +42,26 @@ pub fn judge_fall(drop: &Drop, events: &Events) -> Vec<Issue> {
         );
     }
     issues
+}
+
+/// Holds a channel's step from rest to free fall, m/s², against g cos φ: a scale that is off shows there.
+#[must_use]
+pub fn judge_rest(channel: &str, rest_m_s2: f64, drop: &Drop) -> Option<Issue> {
+    let expected_m_s2 = drop.gravity_m_s2 * drop.angle_rad.cos();
+    let share = rest_m_s2 / expected_m_s2;
+    ((share - 1.0).abs() > MOST_SCALE).then(|| {
+        Issue::new(
+            IssueCode::Scale,
+            Severity::Warning,
+            format!(
+                "{channel} reads {:.3} g at rest where gravity gives {:.3} g: its scale seems {:+.0} % off; check sensitivity, unit and angle",
+                rest_m_s2 / 9.806_65,
+                expected_m_s2 / 9.806_65,
+                100.0 * (share - 1.0)
+            ),
+        )
+        .on(channel)
+    })
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ mod fall;
 mod result;
 
 pub use channels::judge_channels;
-pub use fall::judge_fall;
+pub use fall::{judge_fall, judge_rest};
 pub use result::{judge_comparison, judge_motion};
 
 use crate::data::{Events, Issue, IssueCode, Severity, Verdict};

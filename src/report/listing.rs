@@ -68,9 +68,14 @@ fn sources(channels: &[ListedChannel]) -> String {
     let header: Vec<&str> = shown.iter().map(|i| HEADER[*i].0).collect();
     let right: Vec<usize> =
         (0..shown.len()).filter(|i| (1..7).contains(&shown[*i]) && shown[*i] != 3).collect();
-    let cut: Vec<Vec<String>> =
+    let mut cut: Vec<Vec<String>> =
         rows.iter().map(|row| shown.iter().map(|i| row[*i].clone()).collect()).collect();
-    let mut out = columns(&header, &cut, &right);
+    let longest = channels.iter().map(|c| c.source.chars().count()).max().unwrap_or(0);
+    let mut out = if longest > WIDEST_SOURCE {
+        under_topics(&header, &mut cut, &right)
+    } else {
+        columns(&header, &cut, &right)
+    };
     let common: Vec<String> = (0..HEADER.len())
         .filter(|i| shared(*i) && rows[0][*i] != MISSING)
         .map(|i| match (HEADER[i].0, rows[0][i].as_str()) {
@@ -80,6 +85,42 @@ fn sources(channels: &[ListedChannel]) -> String {
         .collect();
     if !common.is_empty() {
         out.push_str(&wrap(&format!("Every source: {}.", common.join(", ")), WIDTH, 2));
+    }
+    out
+}
+
+/// Sources up to this many columns leave room for the rest of the table; longer ones stand under their topic or group.
+const WIDEST_SOURCE: usize = 32;
+
+/// A source as the topic or group that others share, and the rest of its path with the mark that joins them.
+fn split(source: &str) -> (&str, &str) {
+    let name = source.rfind('/').map_or(0, |slash| slash + 1);
+    match source[name..].find('.') {
+        Some(dot) => source.split_at(name + dot),
+        None => source.split_at(name.saturating_sub(1)),
+    }
+}
+
+/// The table with each topic or group on a line of its own above its sources.
+fn under_topics(header: &[&str], rows: &mut [Vec<String>], right: &[usize]) -> String {
+    let mut topics: Vec<String> = Vec::with_capacity(rows.len());
+    for row in rows.iter_mut() {
+        let (topic, rest) = split(&row[0]);
+        topics.push(topic.to_owned());
+        row[0] = format!("  {rest}");
+    }
+    let table = columns(header, rows, right);
+    let head = table.lines().count().saturating_sub(rows.len());
+    // A cell that is wrapped all the same has more lines than rows: then only the first topic can be placed.
+    let is_aligned = head == columns(header, &[], right).lines().count();
+    let mut out = String::new();
+    for (i, text) in table.lines().enumerate() {
+        if let Some(row) = i.checked_sub(head).filter(|_| is_aligned)
+            && (row == 0 || topics.get(row) != topics.get(row - 1))
+        {
+            line(&mut out, format_args!("  {}", printable(&topics[row])));
+        }
+        line(&mut out, format_args!("{text}"));
     }
     out
 }
@@ -178,6 +219,29 @@ pub(super) mod tests {
             channels,
             issues: Vec::new(),
         }
+    }
+
+    #[test]
+    fn long_paths_stand_under_their_topic() {
+        let sources = ["upper", "lower"].map(|sensor| {
+            ["x", "y"].map(|axis| {
+                listed(&format!("/cask/second_end/imu_{sensor}.linear_acceleration.{axis}"), "number", None)
+            })
+        });
+        let text = anstream::adapter::strip_str(&table(&listing(sources.concat()))).to_string();
+        assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
+        let at = |part: &str| text.lines().position(|line| line.trim_start().starts_with(part)).unwrap();
+        let topic = at("/cask/second_end/imu_upper");
+        assert!(text.lines().nth(topic + 1).unwrap().contains("    .linear_acceleration.x  "), "{text}");
+        assert_eq!(at("/cask/second_end/imu_lower"), topic + 3, "{text}");
+    }
+
+    #[test]
+    fn a_source_is_split_where_others_share_it() {
+        assert_eq!(split("/a.b/imu.x.y"), ("/a.b/imu", ".x.y"));
+        assert_eq!(split("/daq/slow/acc[2]"), ("/daq/slow", "/acc[2]"));
+        assert_eq!(split("Acceleration of the first end"), ("", "Acceleration of the first end"));
+        assert_eq!(split("/topic"), ("", "/topic"));
     }
 
     #[test]

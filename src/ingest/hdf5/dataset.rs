@@ -161,6 +161,8 @@ pub(super) fn type_name(dtype: &Datatype) -> String {
         Ok(TypeDescriptor::Enum(_) | TypeDescriptor::Boolean) => return "named values".into(),
         Ok(TypeDescriptor::Reference(_)) => return "references".into(),
         Ok(number) => number.to_string(),
+        // IEEE 754 binary16 is the only one that loggers write and Rust has no type for.
+        Err(_) if dtype.conv_to::<f64>().is_some() && dtype.size() == 2 => "float16".into(),
         Err(_) if dtype.conv_to::<f64>().is_some() => format!("{}-byte number", dtype.size()),
         Err(_) => return "another type".into(),
     };

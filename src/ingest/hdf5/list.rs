@@ -189,7 +189,10 @@ fn survey(
     let Some(time) = sibling_times(file, column) else {
         let intervals = column.len().saturating_sub(1);
         #[allow(clippy::cast_precision_loss, reason = "below 2^31")]
-        let duration_s = attributes.sample_rate_hz.map(|rate_hz| intervals as f64 / rate_hz);
+        let duration_s = attributes
+            .sample_rate_hz
+            .filter(|rate_hz| *rate_hz > 0.0)
+            .map(|rate_hz| intervals as f64 / rate_hz);
         channel.duration_s = duration_s;
         channel.start_s = attributes.start_s.or(duration_s.map(|_| 0.0));
         return Ok(Vec::new());

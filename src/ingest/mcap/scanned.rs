@@ -236,11 +236,18 @@ impl Loss {
                 IssueCode::Truncated,
                 Severity::Warning,
                 format!(
-                    "{} the chunk at byte {at}: {messages} whole messages in it were kept without a check sum, the rest of its {bytes} bytes could not be used, and what followed is lost",
+                    "{} the chunk at byte {at}: {}, and what followed is lost",
                     if *never_closed {
                         "the file's writer was stopped before it closed"
                     } else {
                         "the file ends in the middle of"
+                    },
+                    if *messages == 0 {
+                        "no whole message is in it".to_owned()
+                    } else {
+                        format!(
+                            "{messages} whole messages in it were kept without a check sum, the rest of its {bytes} bytes could not be used"
+                        )
                     }
                 ),
             ),
