@@ -2,15 +2,21 @@
 
 use crate::data::{Channel, Span};
 
-/// Fewest equal samples at an extreme that make a flat top.
+/// Fewest samples at an extreme that make a flat top.
 const LEAST_RUN: usize = 3;
 
-/// A run counts where the slope into it, times its length, exceeds this many smallest steps: a rounded peak read by a coarse
-/// converter enters its flat top with a slope of about one step a sample.
-const STEEPNESS: f64 = 8.0;
+/// Standard deviations of the noise within which samples count as standing at an extreme: noise may come after the limit.
+const NOISE_FACTOR: f64 = 6.0;
 
-/// Runs of `force` (m/s², of `channel`) at the stated full scale or flat at an extreme, as indices into `force`.
-pub(super) fn clipped(channel: &Channel, force: &[f64]) -> Vec<Span> {
+/// A run counts where the slope into and out of it, times its length, exceeds this many widths of its band. Over the rounded top
+/// of any smooth pulse that product is 4 to 5: the top lies within b of its peak for 2 √(2 b / P) of phase.
+const STEEPNESS: f64 = 16.0;
+
+/// The smallest step between samples widens the band up to this share of the level: an 8-bit converter's.
+const STEP_OF_BAND: f64 = 4e-3;
+
+/// Runs of `force` (m/s², of `channel`, with `noise_m_s2` on it) at the stated full scale or flat at an extreme, as indices.
+pub(super) fn clipped(channel: &Channel, force: &[f64], noise_m_s2: f64) -> Vec<Span> {
     let mut spans = Vec::new();
     if let Some(limit) = channel.full_scale {
         let limit_m_s2 = (limit * channel.scale_m_s2).abs();
@@ -21,8 +27,13 @@ pub(super) fn clipped(channel: &Channel, force: &[f64]) -> Vec<Span> {
         .filter(|f| f.is_finite())
         .fold((0.0_f64, 0.0_f64), |(low, high), &f| (low.min(f), high.max(f)));
     for extreme in [low, high] {
-        for span in runs(force, |f| (f - extreme).abs() <= 1e-9 * extreme.abs() && extreme.abs() > 0.0) {
-            if span.to - span.from >= LEAST_RUN && is_flat_top(force, span) && !spans.contains(&span) {
+        let band = (NOISE_FACTOR * noise_m_s2).max(1e-9 * extreme.abs());
+        if extreme.abs() < 4.0 * band {
+            continue;
+        }
+        for span in runs(force, |f| (f - extreme).abs() <= band) {
+            let is_known = spans.iter().any(|s: &Span| s.from < span.to && span.from < s.to);
+            if span.to - span.from >= LEAST_RUN && is_flat_top(force, span, band) && !is_known {
                 spans.push(span);
             }
         }
@@ -48,9 +59,9 @@ fn runs(force: &[f64], inside: impl Fn(f64) -> bool) -> Vec<Span> {
     spans
 }
 
-/// Whether the signal runs into the flat steeply, as into a stop, and not as over a rounded top.
+/// Whether the signal runs into the flat and out of it steeply as into a stop, and not as over a rounded top.
 #[allow(clippy::cast_precision_loss, reason = "a run of samples")]
-fn is_flat_top(force: &[f64], span: Span) -> bool {
+fn is_flat_top(force: &[f64], span: Span, band: f64) -> bool {
     let level = force[span.from];
     let near = &force[span.from.saturating_sub(50)..(span.to + 50).min(force.len())];
     let smallest = near
@@ -58,10 +69,15 @@ fn is_flat_top(force: &[f64], span: Span) -> bool {
         .map(|w| (w[1] - w[0]).abs())
         .filter(|d| *d > 1e-9 * level.abs())
         .fold(f64::INFINITY, f64::min);
-    let into = span.from.checked_sub(1).map_or(0.0, |i| (level - force[i]).abs());
-    let out = force.get(span.to).map_or(0.0, |f| (level - f).abs());
-    let run = (span.to - span.from) as f64;
-    into.max(out) * run > STEEPNESS * smallest
+    let run = span.to - span.from;
+    // A quarter of the run beyond it: far enough for the slope to stand out of the noise.
+    let reach = (run / 4).max(1);
+    let slope = |beyond: Option<&f64>| beyond.map_or(0.0, |f| (level - f).abs() / reach as f64);
+    let into = slope(span.from.checked_sub(reach).and_then(|i| force.get(i)));
+    let out = slope(force.get(span.to - 1 + reach));
+    let width = if smallest.is_finite() { band.max(smallest.min(STEP_OF_BAND * level.abs())) } else { band };
+    // The less steep side counts: a peak that is a kink has one steep side and still a product of 2 at most.
+    into.min(out) * run as f64 > STEEPNESS * width
 }
 
 #[cfg(test)]
@@ -96,7 +112,7 @@ mod tests {
 
     #[test]
     fn a_flat_top_is_found() {
-        let spans = clipped(&channel(None), &pulse(3000.0));
+        let spans = clipped(&channel(None), &pulse(3000.0), 0.0);
         assert_eq!(spans.len(), 1);
         assert!(spans[0].from > 40 && spans[0].to < 160);
     }
@@ -104,14 +120,25 @@ mod tests {
     #[test]
     fn a_rounded_top_of_a_coarse_converter_is_not() {
         let coarse: Vec<f64> = pulse(1e9).iter().map(|f| (f / 10.0).round() * 10.0).collect();
-        assert!(clipped(&channel(None), &coarse).is_empty());
-        assert!(clipped(&channel(None), &pulse(1e9)).is_empty());
+        assert!(clipped(&channel(None), &coarse, 0.0).is_empty());
+        assert!(clipped(&channel(None), &pulse(1e9), 0.0).is_empty());
+    }
+
+    #[test]
+    fn a_flat_top_with_noise_on_it_is_found_and_a_rounded_one_is_not() {
+        let noisy = |limit: f64| -> Vec<f64> {
+            let hash = |i: usize| f64::from(u16::try_from(i * 40_503 % 65_536).unwrap_or(0)) / 65_536.0 - 0.5;
+            pulse(limit).iter().enumerate().map(|(i, f)| f + 3.4 * hash(i)).collect()
+        };
+        // Uniform noise of ±1.7 has a standard deviation of 1.
+        assert_eq!(clipped(&channel(None), &noisy(3800.0), 1.0).len(), 1);
+        assert!(clipped(&channel(None), &noisy(1e9), 1.0).is_empty());
     }
 
     #[test]
     fn the_stated_full_scale_counts() {
         // 300 g is 2942 m/s².
-        assert_eq!(clipped(&channel(Some(300.0)), &pulse(1e9)).len(), 1);
-        assert!(clipped(&channel(Some(500.0)), &pulse(1e9)).is_empty());
+        assert_eq!(clipped(&channel(Some(300.0)), &pulse(1e9), 0.0).len(), 1);
+        assert!(clipped(&channel(Some(500.0)), &pulse(1e9), 0.0).is_empty());
     }
 }

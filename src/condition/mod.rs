@@ -5,6 +5,7 @@ mod disturbed;
 mod offset;
 
 use crate::data::{Channel, CoarseEvent, Coupling, Issue, IssueCode, Recording, Severity, Signal};
+use crate::numerics::robust;
 
 /// Free fall used for the offset, s: long against noise and hum, short against any free fall from above 0.4 m.
 const BEFORE_S: f64 = 0.25;
@@ -53,7 +54,10 @@ fn signal(channel: &Channel, event: &CoarseEvent, fall_s: f64) -> (Signal, Vec<I
             whole.split_off(from.min(whole.len()))
         }
     };
-    let clipped = clipping::clipped(channel, &force);
+    let before = channel.index_at(event.near_s).saturating_sub(from).min(force.len());
+    let quiet: Vec<f64> = force[..before].iter().copied().filter(|f| f.is_finite()).collect();
+    let noise_m_s2 = if quiet.is_empty() { 0.0 } else { robust::spread(&quiet) };
+    let clipped = clipping::clipped(channel, &force, noise_m_s2);
     let gaps = missing(&force);
     for f in &mut force {
         if !f.is_finite() {
