@@ -136,16 +136,8 @@ impl<'a> Draft<'a> {
     /// Draws the curves and takes each channel's peaks, offset and noise.
     pub fn draw(&mut self, signals: &[Signal], smooth: &[Signal]) {
         let (cutoff_hz, origin) = self.cutoff();
-        let setup = Setup {
-            length_m: self.cask_file.cask.length_m,
-            height_m: self.cask_file.cask.height_m,
-            cog_m: self.cask_file.cask.cog_m,
-            angle_rad: self.cask_file.drop.angle_rad,
-            impact_velocity_m_s: self.cask_file.drop.impact_velocity_m_s,
-            gravity_m_s2: self.cask_file.drop.gravity_m_s2,
-            axial: crate::data::AxialClosure::Sticking,
-        };
-        self.curves.channels = motion::channel_curves(signals, smooth, &self.events, &setup);
+        self.curves.channels =
+            motion::channel_curves(signals, smooth, &self.events, &sticking(self.cask_file));
         self.curves.spectra = motion::spectra(signals, &self.events);
         for ((summary, signal), curve) in self.channels.iter_mut().zip(signals).zip(&self.curves.channels) {
             let peak = |values: &[f64]| values.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
@@ -277,6 +269,19 @@ impl<'a> Draft<'a> {
             }
         }
         all
+    }
+}
+
+/// Geometry and initial motion of a cask file, L sticking to the target.
+pub(crate) fn sticking(cask_file: &CaskFile) -> Setup {
+    Setup {
+        length_m: cask_file.cask.length_m,
+        height_m: cask_file.cask.height_m,
+        cog_m: cask_file.cask.cog_m,
+        angle_rad: cask_file.drop.angle_rad,
+        impact_velocity_m_s: cask_file.drop.impact_velocity_m_s,
+        gravity_m_s2: cask_file.drop.gravity_m_s2,
+        axial: crate::data::AxialClosure::Sticking,
     }
 }
 

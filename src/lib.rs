@@ -183,17 +183,9 @@ fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Op
     flight
 }
 
-/// Geometry and initial motion of the cask file, and how the axial velocity is had.
+/// How the axial velocity is had: measured, or by the contact law of the cask file.
 fn setup(cask_file: &CaskFile, signals: &[Signal], events: &Events, flight: &FlightFit) -> Setup {
-    let base = Setup {
-        length_m: cask_file.cask.length_m,
-        height_m: cask_file.cask.height_m,
-        cog_m: cask_file.cask.cog_m,
-        angle_rad: cask_file.drop.angle_rad,
-        impact_velocity_m_s: cask_file.drop.impact_velocity_m_s,
-        gravity_m_s2: cask_file.drop.gravity_m_s2,
-        axial: AxialClosure::Sticking,
-    };
+    let base = assemble::sticking(cask_file);
     if signals.iter().any(|s| s.axis == Axis::Axial) {
         return Setup { axial: AxialClosure::Measured, ..base };
     }

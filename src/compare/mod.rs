@@ -118,3 +118,100 @@ fn reason(taken: &ModelCandidate, candidates: &[ModelCandidate]) -> String {
     };
     if others.is_empty() { format!("{lead}.") } else { format!("{lead}; {}.", others.join(", ")) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Cask, Estimate, FilterChoice, FlightRegime};
+
+    fn quantities(speed_m_s: f64) -> Quantities {
+        let e = |value, unit| Estimate::new(value, 0.0, unit);
+        Quantities {
+            impact_velocity: e(13.3, "m/s"),
+            duration: e(0.005, "s"),
+            rebound_velocity: e(6.65, "m/s"),
+            angular_velocity: e(5.0, "rad/s"),
+            k: e(0.5, "1"),
+            slap_down_time: None,
+            flight_time: None,
+            speed: Some(Estimate::new(speed_m_s, 0.2, "m/s")),
+            vertical_velocity: None,
+            horizontal_velocity: None,
+            angle: None,
+            second_end_height: None,
+            slip_velocity: e(0.0, "m/s"),
+            budget: vec![],
+        }
+    }
+
+    fn file() -> CaskFile {
+        CaskFile {
+            path: "c.toml".into(),
+            sha256: String::new(),
+            cask: Cask {
+                name: "C".into(),
+                mass_kg: 1000.0,
+                length_m: 5.0,
+                height_m: 0.6,
+                width_m: None,
+                cog_m: 2.5,
+                inertia_kg_m2: 2100.0,
+                is_body: true,
+            },
+            drop: Drop {
+                height_m: 9.0,
+                angle_rad: 0.26,
+                impact_velocity_m_s: 13.3,
+                impact_velocity_given: false,
+                gravity_m_s2: 9.81,
+            },
+            contact: Contact::Rough,
+            filter: FilterChoice::Auto,
+            time: None,
+            channels: vec![],
+            defaults: vec![],
+        }
+    }
+
+    /// The rod always says `rod_m_s`, the body 20 m/s, whatever angle and k.
+    fn choice(measured_m_s: f64, rod_m_s: f64) -> (BodyModel, bool) {
+        let predict = |body: &Body, _: &Drop, contact: Contact, k: f64| Prediction {
+            model: body.model,
+            contact,
+            k,
+            slap_down_speed_m_s: Some(if body.model == BodyModel::Rod { rod_m_s } else { 20.0 }),
+            vertical_velocity_m_s: None,
+            horizontal_velocity_m_s: None,
+            angular_velocity_rad_s: 5.0,
+            flight_time_s: None,
+            energy_ratio: None,
+            slap_down_angle_deg: None,
+            first_end_impacts: 1,
+            impulse_ratio: 0.4,
+            regime: FlightRegime::Free,
+        };
+        let body = |model| Body {
+            model,
+            mass_kg: 1.0,
+            length_m: 5.0,
+            height_m: 0.0,
+            cog_m: 2.5,
+            inertia_kg_m2: 1.0,
+        };
+        let bodies = [body(BodyModel::Rod), body(BodyModel::Body)];
+        let (choice, comparison) =
+            compare(&bodies, &file(), &quantities(measured_m_s), &predict).expect("two bodies");
+        (choice.name, comparison.expect("both speeds").agrees)
+    }
+
+    #[test]
+    fn the_simplest_model_that_agrees_is_taken() {
+        assert_eq!(choice(20.1, 20.1), (BodyModel::Rod, true));
+        assert_eq!(choice(20.1, 23.0), (BodyModel::Body, true));
+    }
+
+    #[test]
+    fn a_rod_that_agrees_where_the_body_does_not_agrees_by_luck() {
+        assert_eq!(choice(22.0, 22.0), (BodyModel::Body, false));
+    }
+}

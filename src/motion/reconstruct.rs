@@ -314,3 +314,104 @@ impl Contact {
         curve.second_end_height_m.push(corner_height_m(setup, s, ahead_m));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{End, Mode, Plateau};
+
+    /// A half sine of 6 ms from 10 ms on whose area is `step_m_s`, at 100 kHz over 80 ms.
+    fn signal(name: &str, end: End, position_m: f64, step_m_s: f64) -> Signal {
+        let peak = step_m_s * std::f64::consts::PI / (2.0 * 0.006);
+        let force = |t: f64| {
+            if (0.0..0.006).contains(&t) { peak * (std::f64::consts::PI * t / 0.006).sin() } else { 0.0 }
+        };
+        Signal {
+            name: name.into(),
+            end,
+            axis: Axis::Transverse,
+            position_m,
+            offset_m: 0.0,
+            start_s: 0.0,
+            sample_rate_hz: 1e5,
+            force_m_s2: (0..8000).map(|i| force(f64::from(i) * 1e-5 - 0.01)).collect(),
+            removed_offset_m_s2: 0.0,
+            u_offset_m_s2: 0.0,
+            noise_m_s2: 0.1,
+            clipped: vec![],
+            gaps: vec![],
+        }
+    }
+
+    fn motion(first_m_s: f64, second_m_s: f64, axial: AxialClosure) -> Motion {
+        let signals = [signal("A1", End::First, 0.5, first_m_s), signal("A2", End::Second, 4.5, second_m_s)];
+        let plateau = |channel: &str, velocity_step_m_s| Plateau {
+            channel: channel.into(),
+            velocity_step_m_s,
+            u_m_s: 0.0,
+            zero_shift_m_s2: 0.0,
+            u_zero_shift_m_s2: 0.0,
+            residual_m_s: 0.0,
+            ringing_m_s: vec![],
+            late_mismatch_m_s: None,
+        };
+        let fit = FlightFit {
+            from_s: 0.017,
+            to_s: 0.07,
+            plateaus: vec![plateau("A1", first_m_s), plateau("A2", second_m_s)],
+            modes: Vec::<Mode>::new(),
+            drift: false,
+            candidates: vec![],
+        };
+        let events = Events {
+            first_contact_s: Some(0.01),
+            separation_s: Some(0.016),
+            slap_down_s: Some(0.07),
+            ..Events::default()
+        };
+        let setup = Setup {
+            length_m: 5.0,
+            height_m: 0.6,
+            cog_m: 2.5,
+            angle_rad: 0.25,
+            impact_velocity_m_s: 13.0,
+            gravity_m_s2: 9.81,
+            axial,
+        };
+        reconstruct(&signals, &fit, &events, &setup).expect("two channels apart")
+    }
+
+    #[test]
+    fn without_force_the_cask_falls_on() {
+        let m = motion(0.0, 0.0, AxialClosure::Sliding { friction_ppm: 0 });
+        let fallen_m_s = 13.0 + 9.81 * 0.006;
+        assert!((m.separation.vertical_velocity_m_s + fallen_m_s).abs() < 1e-9);
+        assert!(m.separation.horizontal_velocity_m_s.abs() < 1e-9);
+        assert!(m.separation.angular_velocity_rad_s.abs() < 1e-12);
+    }
+
+    #[test]
+    fn rotation_is_the_slope_of_the_steps_over_position() {
+        let m = motion(19.0, -7.0, AxialClosure::Sticking);
+        assert!((m.separation.angular_velocity_rad_s - 26.0 / 4.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_contact_laws_hold_to_the_end_of_the_contact() {
+        // The trapezoid over 400 steps of 15 µs leaves 1e-4 of the velocities.
+        assert!(motion(19.0, -7.0, AxialClosure::Sticking).slip_m_s.abs() < 1e-9);
+        let smooth = motion(19.0, -7.0, AxialClosure::Sliding { friction_ppm: 0 });
+        assert!(smooth.separation.horizontal_velocity_m_s.abs() < 2e-3, "{smooth:?}");
+    }
+
+    #[test]
+    fn the_flight_is_ballistic_and_the_curve_uniform() {
+        let m = motion(19.0, -7.0, AxialClosure::Sticking);
+        let struck = m.slap_down.expect("a time is given");
+        let flown_s = struck.time_s - m.separation.time_s;
+        let expected = m.separation.vertical_velocity_m_s - 9.81 * flown_s;
+        assert!((struck.vertical_velocity_m_s - expected).abs() < 1e-12);
+        let steps: Vec<f64> = m.curve.time_s.windows(2).map(|w| w[1] - w[0]).collect();
+        assert!(steps.iter().all(|s| (s - steps[0]).abs() < 1e-12));
+    }
+}
