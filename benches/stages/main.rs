@@ -80,7 +80,7 @@ impl Middle {
 /// Fall from 9 m.
 const FALL_S: f64 = 1.354;
 
-#[divan::bench(args = KINDS, consts = SIZES]
+#[divan::bench(args = KINDS, consts = SIZES)]
 fn read_format<const N: usize>(bencher: Bencher, kind: Kind) {
     let folder = Folder::with(kind, N);
     bencher.counter(items(N)).bench(|| read(&folder));

@@ -30,7 +30,7 @@ pub struct Plateau {
     pub residual_m_s: f64,
     /// Cosine and sine amplitude of each mode at the window's start, m/s.
     pub ringing_m_s: Vec<(f64, f64)>,
-    /// Mean velocity just before the flight ends less what the fit says of it, m/s, where the flight goes on beyond the window.
+    /// Mean velocity just before the flight ends less what the fit says of it, m/s, where the flight is long enough to tell.
     pub late_mismatch_m_s: Option<f64>,
 }
 

@@ -33,7 +33,7 @@ pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<(f64, f
 
 /// First contact of R between two times and its standard uncertainty, s; `None` where the record holds none.
 ///
-/// Ringing has no mean over [`WIDTH_S`], R striking the target has: the means before and after each time are compared, and the
+/// Ringing has no mean over 25 ms, R striking the target has: the means before and after each time are compared, and the
 /// largest difference, if above `least_change_m_s`, is the slap-down. On signals that still ring the rise is sought backwards
 /// from the pulse's peak; free of ringing the first rise is taken.
 #[must_use]

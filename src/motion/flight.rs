@@ -96,11 +96,11 @@ pub fn fit_flight(signals: &[Signal], window: &Window, cog_m: f64) -> Option<Fli
     Some(flight)
 }
 
-/// What the velocity has come to do by the end of a flight longer than the window: another contact leaves a step.
+/// What the velocity has come to do by the end of the flight: another contact leaves a step.
 fn late_mismatch_m_s(signal: &Signal, flight: &FlightFit, whole: &Window, cog_m: f64) -> Option<f64> {
     let to_s = whole.to_s.min(signal.end_s());
     let from_s = to_s - LATE_S;
-    if from_s < flight.to_s || signal.touches(&signal.gaps, flight.to_s, to_s) {
+    if from_s < flight.from_s + LATE_S || signal.touches(&signal.gaps, flight.from_s, to_s) {
         return None;
     }
     let plateau = flight.plateau(&signal.name)?;

@@ -79,7 +79,7 @@ pub fn borderline_cases(body: &Body, drop: &Drop) -> Vec<Prediction> {
 
 /// The closed form of Table 2 for k = 0, L staying on the target whatever the contact force: R's speed, m/s, (11) and (12).
 ///
-/// It holds only where [`FlightRegime::Contact`] does; elsewhere L lifts off and [`predict`] says so. `None` for Coulomb
+/// It holds only where [`crate::data::FlightRegime::Contact`] does; elsewhere L lifts off and [`predict`] says so. `None` for Coulomb
 /// friction, for which the paper has no closed form.
 #[must_use]
 pub fn closed_form_speed_m_s(body: &Body, drop: &Drop, contact: Contact) -> Option<f64> {
