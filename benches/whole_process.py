@@ -164,7 +164,7 @@ def main():
             row = compare(arguments.program, path, cask_file(folder, kind), arguments.rounds, arguments.out)
             s, cpu_s, mib, script_s, script_cpu_s, script_mib, work_s = row
             print(
-                f"| {count:.0e} | {kind} | {1e3 * s:.0f} | {1e3 * cpu_s:.0f} | {mib:.0f} "
+                f"| 1e{len(str(count)) - 1} | {kind} | {1e3 * s:.0f} | {1e3 * cpu_s:.0f} | {mib:.0f} "
                 f"| {1e3 * script_s:.0f} | {1e3 * script_cpu_s:.0f} | {script_mib:.0f} "
                 f"| {script_s / s:.0f} | {work_s / s:.1f} | {mib / script_mib:.2f} |",
                 flush=True,
