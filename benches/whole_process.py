@@ -113,7 +113,7 @@ def cask_file(folder, kind):
 
 
 def measure(command):
-    """Wall seconds, peak MiB and output of one process."""
+    """Wall seconds, processor seconds, peak MiB and output of one process."""
     with tempfile.TemporaryFile() as output:
         begun = time.perf_counter()
         process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT)
@@ -124,19 +124,19 @@ def measure(command):
         text = output.read().decode()
     if process.returncode not in (0, 1):
         sys.exit(f"{command} ended with {process.returncode}:\n{text}")
-    return wall_s, usage.ru_maxrss / 1024, text
+    return wall_s, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, text
 
 
 def compare(program, path, cask, rounds, report):
-    """Medians over `rounds` runs in turn: ours (s, MiB), the script (s, MiB), the script without its imports (s)."""
+    """Medians over `rounds` runs in turn: wall s, processor s, MiB of ours and of the script, and its wall s without imports."""
     with tempfile.TemporaryDirectory() as out:
         ours = [program, "analyze", str(path), "--cask", str(cask), "--json", os.devnull]
         ours += ["--out", f"{out}/report"] if report else []
         theirs = [sys.executable, __file__, "--peer", str(path)]
         runs = [(measure(ours), measure(theirs)) for _ in range(rounds + 1)][1:]  # the first warms the page cache
     middle = lambda pick: statistics.median(map(pick, runs))
-    work_s = middle(lambda r: json.loads(r[1][2].splitlines()[-1])["work_s"])
-    return [middle(lambda r, a=a, b=b: r[a][b]) for a in (0, 1) for b in (0, 1)] + [work_s]
+    work_s = middle(lambda r: json.loads(r[1][3].splitlines()[-1])["work_s"])
+    return [middle(lambda r, a=a, b=b: r[a][b]) for a in (0, 1) for b in (0, 1, 2)] + [work_s]
 
 
 def main():
@@ -154,17 +154,18 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     if arguments.make:
         return make(folder, arguments.make)
-    print("| samples a channel | input | dropcheck ms | MiB | script ms | MiB | ratio | without imports | memory |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    print("| samples a channel | input | dropcheck ms | cpu ms | MiB | script ms | cpu ms | MiB | ratio | without imports | memory |")
+    print("|---" * 11 + "|")
     for count in arguments.sizes:
         # In a process of its own: a child's peak counts from what its parent holds when it is started.
         subprocess.run([sys.executable, __file__, "--make", str(count)], check=True)
         for kind in KINDS:
             path = folder / f"{count}.{SUFFIX[kind]}"
             row = compare(arguments.program, path, cask_file(folder, kind), arguments.rounds, arguments.out)
-            s, mib, script_s, script_mib, work_s = row
+            s, cpu_s, mib, script_s, script_cpu_s, script_mib, work_s = row
             print(
-                f"| {count:.0e} | {kind} | {1e3 * s:.0f} | {mib:.0f} | {1e3 * script_s:.0f} | {script_mib:.0f} "
+                f"| 1e{len(str(count)) - 1} | {kind} | {1e3 * s:.0f} | {1e3 * cpu_s:.0f} | {mib:.0f} "
+                f"| {1e3 * script_s:.0f} | {1e3 * script_cpu_s:.0f} | {script_mib:.0f} "
                 f"| {script_s / s:.0f} | {work_s / s:.1f} | {mib / script_mib:.2f} |",
                 flush=True,
             )

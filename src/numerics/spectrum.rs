@@ -17,7 +17,7 @@ pub fn magnitude(samples: &[f64], sample_rate_hz: f64) -> (Vec<f64>, Vec<f64>) {
     FftPlanner::new().plan_fft_forward(n).process(&mut work);
     let bins = n / 2 + 1;
     let frequency_hz = (0..bins).map(|i| i as f64 * sample_rate_hz / n as f64).collect();
-    let magnitude = work[..bins].iter().map(|c| c.norm() / sample_rate_hz).collect();
+    let magnitude = work[..bins].iter().map(|c| c.norm_sqr().sqrt() / sample_rate_hz).collect();
     (frequency_hz, magnitude)
 }
 
