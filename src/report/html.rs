@@ -45,6 +45,7 @@ pub(super) fn page(analysis: &Analysis, pictures: &[Picture]) -> String {
                     }
                     (sections::models(result))
                     (sections::predictions(result))
+                    (sections::budget(result))
                     (sections::flight(result))
                     (sections::channels(result))
                     (sections::provenance(result))
@@ -130,9 +131,16 @@ mod tests {
     #[test]
     fn it_says_what_the_result_says() {
         let page = made(&sample::analysis());
-        for words in
-            ["REVIEW", "20.56 ± 0.11 m/s", "0.559 ± 0.010", "clipped", "9f86d081884c7d65", "CFC 180", "95.0"]
-        {
+        for words in [
+            "REVIEW",
+            "20.56 ± 0.11 m/s",
+            "0.559 ± 0.010",
+            "clipped",
+            "9f86d081884c7d65",
+            "CFC 180",
+            "95.0",
+            "calibration of A2",
+        ] {
             assert!(page.contains(words), "{words}");
         }
     }

@@ -232,6 +232,24 @@ pub(super) fn flight(result: &DropResult) -> Markup {
     }
 }
 
+/// What each input contributes to the intervals, largest first.
+pub(super) fn budget(result: &DropResult) -> Markup {
+    if result.budget.is_empty() {
+        return html! {};
+    }
+    html! {
+        h2 { "Uncertainty" }
+        p class="lead" { "Each input was moved by its standard uncertainty through the reconstruction. The changes add in squares; an interval is twice their root." }
+        table class="whole" {
+            thead { tr { th { "Input" } th class="n" { "Standard uncertainty" } th class="n" { "Slap-down speed, m/s" } th class="n" { "k" } } }
+            tbody { @for c in &result.budget { tr {
+                th scope="row" { (printable(&c.input)) } td class="n" { (printable(&c.standard_uncertainty)) }
+                td class="n" { (optional_fixed(c.speed_m_s, 3)) } td class="n" { (optional_fixed(c.k, 4)) }
+            } } }
+        }
+    }
+}
+
 /// What each channel is worth.
 pub(super) fn channels(result: &DropResult) -> Markup {
     let g = |value: Option<f64>| optional(value.map(|v| v / STANDARD_GRAVITY_M_S2), 3);

@@ -2,9 +2,10 @@
 
 use crate::data::{
     Analysis, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelSpec, ChannelSummary, Comparison,
-    Contact, Coupling, Curves, Drop, DropResult, End, Estimate, Events, FilterChoice, FirstImpact, FlightFit,
-    FlightModelScore, FlightRegime, Input, Issue, IssueCode, Mode, ModelCandidate, ModelChoice, MotionCurve,
-    Plateau, Prediction, RecordingFormat, Setting, Severity, SlapDown, Source, Spectrum, Unit, Verdict,
+    Contact, Contribution, Coupling, Curves, Drop, DropResult, End, Estimate, Events, FilterChoice,
+    FirstImpact, FlightFit, FlightModelScore, FlightRegime, Input, Issue, IssueCode, Mode, ModelCandidate,
+    ModelChoice, MotionCurve, Plateau, Prediction, RecordingFormat, Setting, Severity, SlapDown, Source,
+    Spectrum, Unit, Verdict,
 };
 use std::f64::consts::PI;
 
@@ -104,7 +105,12 @@ fn result() -> DropResult {
             summary("A2", End::Second, "/daq/a2.samples"),
         ],
         flight: Some(flight()),
-        budget: Vec::new(),
+        budget: vec![Contribution {
+            input: "calibration of A2".into(),
+            standard_uncertainty: "0.5 %".into(),
+            speed_m_s: Some(0.035),
+            k: Some(0.0001),
+        }],
         settings: settings(),
     }
 }
