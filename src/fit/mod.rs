@@ -100,7 +100,7 @@ const ANGLE: usize = 9;
 const HEIGHT: usize = 10;
 const SLIP: usize = 11;
 
-/// k = −ż_L after over ż_L before (23), speed = |v_R| (24), and the rest.
+/// Rebound ż_L as L leaves (22), k = −ż_L after over ż_L before (23), speed = |v_R| (24), and the rest.
 fn observables(motion: &Motion, inputs: &Inputs) -> [f64; COUNT] {
     let contact_s = inputs.events.first_contact_s.unwrap_or(f64::NAN);
     let (horizontal, vertical) = motion.second_end_m_s.unwrap_or((f64::NAN, f64::NAN));

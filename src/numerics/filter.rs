@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-/// Design frequency of a channel frequency class over its number: 2.0775 (ISO 6487, SAE J211-1).
+/// Design frequency of a channel frequency class over its number: 2.0775 (ISO 6487, SAE J211-1)   (25)
 pub const CFC_DESIGN: f64 = 2.0775;
 
 /// −3 dB frequency of two passes of a second-order Butterworth over its design frequency: (√2 − 1)^(1/4).

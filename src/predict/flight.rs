@@ -7,7 +7,7 @@ use crate::numerics::root::first_root;
 /// More impacts of L than this before R strikes count as bouncing without end: with k ≤ 0.9 the 40th rebound is below 2 %.
 const MOST_IMPACTS: u32 = 40;
 
-/// L may sink this share of the length below the target plane before it counts as another impact.
+/// L may sink this share of the length below the target plane before it counts as another impact   (9)
 ///
 /// After k → 0 the free corner of a thin rod sinks by some millimetres while R comes down (11 mm for 5.5 m at 15°, 42 mm
 /// at 45°, 0.5 m at 60°): less than the first impact has crushed off it, so there is nothing left to strike.

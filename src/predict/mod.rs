@@ -40,7 +40,8 @@ pub fn bodies(cask: &Cask) -> Vec<Body> {
     bodies
 }
 
-/// First impact, flight and slap-down of `body` with restitution `k` (0 to 1), equations (1)–(13) of `docs/physics.md`.
+/// First impact, flight and slap-down of `body` with restitution `k` (0 to 1), equations (1)–(13) of `docs/physics.md`; the thin
+/// rod gives the paper's Table 1 (7).
 ///
 /// Further impacts of L before R strikes are followed with the same `k`. Where R never strikes, or L keeps bouncing
 /// without end, the slap-down's quantities are `None`.

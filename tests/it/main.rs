@@ -2,6 +2,7 @@
 
 mod command_line;
 mod fixtures;
+mod golden;
 mod reference;
 mod run;
 mod tidy;

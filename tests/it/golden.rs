@@ -1,0 +1,70 @@
+//! What a person reads, held to the letter: terminal tables and the report's text of three fixtures.
+//!
+//! `BLESS=1 cargo test --test it golden` writes the files anew; read the difference before committing it.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Runs `analyze` in the repository's folder, so that paths read as a user would type them.
+fn analyze(stem: &str, extension: &str, more: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_dropcheck"))
+        .current_dir(root())
+        .env("NO_COLOR", "1")
+        .env("COLUMNS", "80")
+        .args(["analyze", &format!("fixtures/{stem}.{extension}"), "--cask", &format!("fixtures/{stem}.toml")])
+        .args(more)
+        .output()
+        .expect("the program runs");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+fn hold(name: &str, found: &str) {
+    let path: PathBuf = root().join("tests/golden").join(name);
+    if std::env::var_os("BLESS").is_some() {
+        std::fs::write(&path, found).expect("tests/golden can be written");
+    }
+    let expected = std::fs::read_to_string(&path).expect("a golden file");
+    let differs = expected.lines().zip(found.lines()).position(|(a, b)| a != b);
+    assert!(
+        expected == found,
+        "{name} differs from line {} on:\n{found}",
+        differs.map_or(expected.lines().count().min(found.lines().count()), |i| i) + 1
+    );
+}
+
+#[test]
+fn the_table_of_a_sound_drop() {
+    hold("anf18-json.txt", &analyze("anf18-json", "mcap", &[]));
+}
+
+#[test]
+fn the_table_of_a_drop_with_rest_and_an_axial_channel() {
+    hold("vhlw-rest.txt", &analyze("vhlw-rest", "h5", &[]));
+}
+
+#[test]
+fn the_table_of_a_clipped_drop() {
+    hold("damaged-clipped.txt", &analyze("damaged-clipped", "h5", &[]));
+}
+
+#[test]
+fn the_report_without_its_pictures() {
+    let out = tempfile::tempdir().expect("a folder");
+    let folder = out.path().join("report");
+    analyze("anf18-json", "mcap", &["--out", &folder.display().to_string()]);
+    let page = std::fs::read_to_string(folder.join("report.html")).expect("a report");
+    let body = page.split("</style>").nth(1).expect("a style sheet");
+    // Pictures are drawn from a thousand points each: their text is what is held elsewhere.
+    let mut text = String::new();
+    let mut rest = body;
+    while let Some(start) = rest.find("<svg") {
+        text.push_str(&rest[..start]);
+        rest = rest[start..].split_once("</svg>").map_or("", |(_, after)| after);
+    }
+    text.push_str(rest);
+    hold("anf18-json.html", &text.replace("</tr>", "</tr>\n").replace("</h2>", "</h2>\n"));
+}
