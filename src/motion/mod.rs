@@ -2,6 +2,7 @@
 
 mod curves;
 mod flight;
+mod histories;
 mod reconstruct;
 mod ringing;
 
