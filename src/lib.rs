@@ -64,7 +64,9 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     draft.issues.extend(judge::judge_channels(&signals, &draft.events));
     let smooth = draft.smooth(&signals);
     if let Some((flight, setup, motion, quantities)) = reconstructed {
-        draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
+        if !draft.issues.iter().any(judge::invalidates) {
+            draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
+        }
         draft.flight = Some(flight);
         if draft.issues.iter().any(judge::invalidates) {
             // What an error speaks against is not stated at all: the times and curves remain.

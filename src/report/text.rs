@@ -173,13 +173,12 @@ pub(super) fn sentence(reason: &str) -> String {
     letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 
-/// The message of the worst issue among `codes`, else of the first error: why a quantity is missing.
+/// The message of the first error among `codes`, else of any error, else of a warning among `codes`: why a quantity is missing.
 pub(super) fn reason<'a>(result: &'a DropResult, codes: &[IssueCode]) -> &'a str {
-    let worst = |wanted: &dyn Fn(&Issue) -> bool| {
-        result.quality.iter().filter(|issue| wanted(issue)).max_by_key(|issue| issue.severity)
-    };
-    worst(&|issue| codes.contains(&issue.code) && issue.severity > Severity::Note)
-        .or_else(|| worst(&|issue| issue.severity == Severity::Error))
+    let first = |wanted: &dyn Fn(&Issue) -> bool| result.quality.iter().find(|issue| wanted(issue));
+    first(&|issue| codes.contains(&issue.code) && issue.severity == Severity::Error)
+        .or_else(|| first(&|issue| issue.severity == Severity::Error))
+        .or_else(|| first(&|issue| codes.contains(&issue.code) && issue.severity == Severity::Warning))
         .map_or("no finding names the reason", |issue| issue.message.as_str())
 }
 

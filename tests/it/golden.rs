@@ -15,7 +15,12 @@ fn analyze(stem: &str, extension: &str, more: &[&str]) -> String {
         .current_dir(root())
         .env("NO_COLOR", "1")
         .env("COLUMNS", "80")
-        .args(["analyze", &format!("fixtures/{stem}.{extension}"), "--cask", &format!("fixtures/{stem}.toml")])
+        .args([
+            "analyze",
+            &format!("fixtures/{stem}.{extension}"),
+            "--cask",
+            &format!("fixtures/{stem}.toml"),
+        ])
         .args(more)
         .output()
         .expect("the program runs");
