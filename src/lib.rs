@@ -41,13 +41,13 @@ const EXPLAINED_M_S: f64 = 0.2;
 #[must_use]
 pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let mut draft = Draft::new(recording, cask_file);
-    let fall_s = cask_file.drop.impact_velocity_m_s / cask_file.drop.gravity_m_s2;
     let Some(event) =
         events::locate(recording, &cask_file.drop).filter(|e| is_impact(e.velocity_step_m_s, cask_file))
     else {
         return draft.without_impact();
     };
-    let (signals, mut found) = condition::condition(recording, &event, fall_s);
+    let (signals, mut found) =
+        condition::condition(recording, &event, &condition::Reach::of(&cask_file.cask, &cask_file.drop));
     draft.issues.append(&mut found);
     let Some(contact) = events::first_contact(&signals, &event) else {
         return draft.without_impact();

@@ -6,6 +6,7 @@ mod recordings;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
+use dropcheck::condition::Reach;
 use dropcheck::data::{
     Analysis, AxialClosure, CaskFile, CoarseEvent, Contact, Events, FlightFit, Recording, Setup, Signal,
 };
@@ -48,7 +49,8 @@ impl Middle {
         let cask_file = folder.cask_file.clone();
         let analysis = dropcheck::analyze(&recording, &cask_file);
         let event = events::locate(&recording, &cask_file.drop).expect("an impact");
-        let (signals, _) = condition::condition(&recording, &event, FALL_S);
+        let (signals, _) =
+            condition::condition(&recording, &event, &Reach::of(&cask_file.cask, &cask_file.drop));
         let setup = Setup {
             length_m: cask_file.cask.length_m,
             height_m: cask_file.cask.height_m,
@@ -77,9 +79,6 @@ impl Middle {
     }
 }
 
-/// Fall from 9 m.
-const FALL_S: f64 = 1.354;
-
 #[divan::bench(args = KINDS, consts = SIZES)]
 fn read_format<const N: usize>(bencher: Bencher, kind: Kind) {
     let folder = Folder::with(kind, N);
@@ -95,7 +94,8 @@ fn locate(bencher: Bencher, samples: usize) {
 #[divan::bench(args = SIZES)]
 fn condition_channels(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
-    bencher.counter(items(samples)).bench(|| condition::condition(&m.recording, &m.event, FALL_S));
+    let reach = Reach::of(&m.analysis.cask_file.cask, &m.analysis.cask_file.drop);
+    bencher.counter(items(samples)).bench(|| condition::condition(&m.recording, &m.event, &reach));
 }
 
 #[divan::bench(args = SIZES)]

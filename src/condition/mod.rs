@@ -4,23 +4,52 @@ mod clipping;
 mod disturbed;
 mod offset;
 
-use crate::data::{Channel, CoarseEvent, Coupling, Issue, IssueCode, Recording, Severity, Signal};
+use crate::data::{
+    Cask, Channel, CoarseEvent, Coupling, Drop, Issue, IssueCode, Recording, Severity, Signal,
+};
 use crate::numerics::robust;
 
 /// Free fall used for the offset, s: long against noise and hum, short against any free fall from above 0.4 m.
 const BEFORE_S: f64 = 0.25;
 
-/// How far after the coarse event signals reach, s: the longest flight to slap-down (steep drops) and its pulse.
-const AFTER_S: f64 = 0.8;
+/// The farthest that signals reach after the coarse event, s: the longest flight to slap-down (steep drops) and its pulse.
+const LONGEST_AFTER_S: f64 = 0.8;
+
+/// The least that they reach, s: a flat drop's slap-down and what rings after it.
+const LEAST_AFTER_S: f64 = 0.15;
+
+/// R comes down at this share of v0 at the least, from the height that an angle 10° steeper would give it.
+const SLOWEST_DESCENT: f64 = 0.5;
+
+/// How far the signals reach around the coarse event.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// Before it, s.
+    pub before_s: f64,
+    /// After it, s.
+    pub after_s: f64,
+}
+
+impl Reach {
+    /// From the free fall that must lie before first contact and the slap-down that must lie after it.
+    #[must_use]
+    pub fn of(cask: &Cask, drop: &Drop) -> Self {
+        let steeper_rad = (drop.angle_rad + 10.0_f64.to_radians()).min(std::f64::consts::FRAC_PI_2);
+        let descent_s = cask.length_m * steeper_rad.sin() / (SLOWEST_DESCENT * drop.impact_velocity_m_s);
+        Self {
+            before_s: BEFORE_S.min(0.8 * drop.impact_velocity_m_s / drop.gravity_m_s2),
+            after_s: (descent_s + LEAST_AFTER_S / 2.0).clamp(LEAST_AFTER_S, LONGEST_AFTER_S),
+        }
+    }
+}
 
 /// Cuts every channel to the window of the event, removes its offset and marks what is clipped or missing.
 ///
-/// `fall_s` is the time of free fall before first contact: the offset is taken within it. Returns the signals in the order of
-/// the channels and what was found about them.
+/// Returns the signals in the order of the channels and what was found about them.
 #[must_use]
-pub fn condition(recording: &Recording, event: &CoarseEvent, fall_s: f64) -> (Vec<Signal>, Vec<Issue>) {
+pub fn condition(recording: &Recording, event: &CoarseEvent, reach: &Reach) -> (Vec<Signal>, Vec<Issue>) {
     let parts: Vec<_> = std::thread::scope(|scope| {
-        let each = |channel| scope.spawn(move || signal(channel, event, fall_s));
+        let each = |channel| scope.spawn(move || signal(channel, event, reach));
         let running: Vec<_> = recording.channels.iter().map(each).collect();
         running
             .into_iter()
@@ -31,9 +60,9 @@ pub fn condition(recording: &Recording, event: &CoarseEvent, fall_s: f64) -> (Ve
     (signals, issues.into_iter().flatten().collect())
 }
 
-fn signal(channel: &Channel, event: &CoarseEvent, fall_s: f64) -> (Signal, Vec<Issue>) {
-    let from = channel.index_at(event.near_s - BEFORE_S.min(0.8 * fall_s));
-    let to = channel.index_at(event.near_s + event.spread_s + AFTER_S);
+fn signal(channel: &Channel, event: &CoarseEvent, reach: &Reach) -> (Signal, Vec<Issue>) {
+    let from = channel.index_at(event.near_s - reach.before_s);
+    let to = channel.index_at(event.near_s + event.spread_s + reach.after_s);
     let mut issues = Vec::new();
     let mut force = match channel.coupling {
         Coupling::Dc => channel.force_m_s2(from, to),
