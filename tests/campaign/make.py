@@ -113,7 +113,7 @@ def main():
     words = parser.parse_args()
     folder = words.folder.resolve()
     if folder.is_relative_to(REPOSITORY):
-        sys.exit(f"{folder} lies in the repository; name a folder outside it, 300 recordings take about 150 MB")
+        sys.exit(f"{folder} lies in the repository; name a folder outside it, 300 recordings take about 100 MB")
     folder.mkdir(parents=True, exist_ok=True)
     for number in range(words.scenes):
         rng = np.random.default_rng([words.seed, number])
