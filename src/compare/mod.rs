@@ -1,15 +1,14 @@
 //! Measured beside predicted: the models tried, the one taken and whether it agrees.
 
 use crate::data::{
-    Body, BodyModel, CaskFile, Comparison, Contact, Drop, ModelCandidate, ModelChoice, Prediction, Quantities,
+    Body, BodyModel, CaskFile, Comparison, Contact, Drop, ModelCandidate, ModelChoice, Prediction,
+    Quantities, U_ANGLE_RAD,
 };
 
 /// Standard uncertainty of an inertia that is only the uniform body's: casks carry their mass off the even spread (5 %).
 const U_INERTIA_DEFAULT: f64 = 0.05;
 /// Standard uncertainty of an inertia that the cask file states.
 const U_INERTIA_STATED: f64 = 0.01;
-/// Standard uncertainty of the drop angle, rad, as in the reconstruction.
-const U_ANGLE_RAD: f64 = 0.25 * std::f64::consts::PI / 180.0;
 
 /// The analytical model as a function, such as `predict::predict`.
 pub type Predict<'a> = &'a dyn Fn(&Body, &Drop, Contact, f64) -> Prediction;
@@ -132,7 +131,6 @@ mod tests {
             rebound_velocity: e(6.65, "m/s"),
             angular_velocity: e(5.0, "rad/s"),
             k: e(0.5, "1"),
-            slap_down_time: None,
             flight_time: None,
             speed: Some(Estimate::new(speed_m_s, 0.2, "m/s")),
             vertical_velocity: None,

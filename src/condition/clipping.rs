@@ -42,7 +42,8 @@ pub(super) fn clipped(channel: &Channel, force: &[f64], noise_m_s2: f64) -> Vec<
     spans
 }
 
-fn runs(force: &[f64], inside: impl Fn(f64) -> bool) -> Vec<Span> {
+/// Stretches in which every sample is `inside`.
+pub(super) fn runs(force: &[f64], inside: impl Fn(f64) -> bool) -> Vec<Span> {
     let mut spans = Vec::new();
     let mut from = None;
     for i in 0..=force.len() {

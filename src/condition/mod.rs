@@ -5,7 +5,7 @@ mod disturbed;
 mod offset;
 
 use crate::data::{
-    Cask, Channel, CoarseEvent, Coupling, Drop, Issue, IssueCode, Recording, Severity, Signal,
+    Cask, Channel, CoarseEvent, Coupling, Drop, Issue, IssueCode, Recording, Severity, Signal, Span,
 };
 use crate::numerics::robust;
 
@@ -126,26 +126,13 @@ fn restore_low_frequencies(force: &mut [f64], sample_rate_hz: f64, time_constant
 }
 
 /// Runs of samples that are no numbers.
-fn missing(force: &[f64]) -> Vec<crate::data::Span> {
-    let mut spans = Vec::new();
-    let mut from = None;
-    for (i, f) in force.iter().chain([&0.0]).enumerate() {
-        match (f.is_finite(), from) {
-            (false, None) => from = Some(i),
-            (true, Some(start)) => {
-                spans.push(crate::data::Span { from: start, to: i });
-                from = None;
-            }
-            _ => {}
-        }
-    }
-    spans
+fn missing(force: &[f64]) -> Vec<Span> {
+    clipping::runs(force, |f| !f.is_finite())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::Span;
 
     #[test]
     fn an_ac_coupled_step_is_put_back() {

@@ -3,6 +3,17 @@
 use serde::Serialize;
 use std::path::PathBuf;
 
+/// Standard uncertainty of the drop angle, rad: an inclinometer on the rigged cask reads within half a degree (k = 2).
+///
+/// Both the reconstruction and the prediction carry it; a larger one widens both and lets a wrong angle pass.
+pub const U_ANGLE_RAD: f64 = 0.25 * std::f64::consts::PI / 180.0;
+
+/// L may sink this share of the length below where it left before that counts as another impact   (9)
+///
+/// After k → 0 the free corner of a thin rod sinks by some millimetres while R comes down (11 mm for 5.5 m at 15°, 42 mm
+/// at 45°, 0.5 m at 60°): less than the first impact has crushed off it, so there is nothing left to strike.
+pub const GRAZE_SHARE: f64 = 0.01;
+
 /// An end of the cask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]

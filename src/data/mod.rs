@@ -18,7 +18,10 @@ pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
     ModelChoice, Setting, SlapDown, Verdict,
 };
-pub use cask::{Axis, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice, Source, Unit};
+pub use cask::{
+    Axis, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice, GRAZE_SHARE, Source,
+    U_ANGLE_RAD, Unit,
+};
 pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, MotionCurve, Spectrum};
 pub use estimate::Estimate;

@@ -29,8 +29,6 @@ pub struct Quantities {
     pub angular_velocity: Estimate,
     /// −ż_L after over ż_L before.
     pub k: Estimate,
-    /// Slap-down, s.
-    pub slap_down_time: Option<Estimate>,
     /// Separation to slap-down, s.
     pub flight_time: Option<Estimate>,
     /// Speed of R just before it strikes, m/s.

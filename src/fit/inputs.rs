@@ -1,12 +1,10 @@
 //! The uncertain inputs of the reconstruction and by how much each may be off.
 
 use super::Measured;
-use crate::data::{AxialClosure, Axis, Events, FlightFit, Setup};
+use crate::data::{AxialClosure, Axis, Events, FlightFit, Setup, U_ANGLE_RAD};
 
 /// Standard uncertainty of a sensor's calibration: 1 % at k = 2, as ISO 16063-21 comparison calibrations state.
 const U_CALIBRATION: f64 = 0.005;
-/// Standard uncertainty of the drop angle, rad: an inclinometer on the rigged cask reads within half a degree (k = 2).
-const U_ANGLE_RAD: f64 = 0.25 * std::f64::consts::PI / 180.0;
 /// Standard uncertainty of the impact velocity: 2.5 cm of 9 m of height is 0.14 % of √(2 g h).
 const U_IMPACT_VELOCITY: f64 = 0.0015;
 /// Standard uncertainty of a sensor's position, m: its seat is measured to a centimetre (k = 2).

@@ -72,10 +72,6 @@ pub fn quantities(measured: &Measured, reconstruct: Reconstruct) -> Option<Quant
         rebound_velocity: estimate(REBOUND, "m/s"),
         angular_velocity: estimate(ROTATION, "rad/s"),
         k: estimate(K, "1"),
-        slap_down_time: measured
-            .events
-            .slap_down_s
-            .map(|t| Estimate::new(t, COVERAGE * measured.u_events_s[2], "s")),
         flight_time: at_slap_down(FLIGHT, "s"),
         speed: at_slap_down(SPEED, "m/s"),
         vertical_velocity: at_slap_down(VERTICAL, "m/s"),

@@ -1,8 +1,8 @@
 //! A reconstructed motion to what speaks against it.
 
 use crate::data::{
-    Axis, CaskFile, Comparison, Contact, End, FlightFit, Issue, IssueCode, Motion, Quantities, Severity,
-    Signal,
+    Axis, CaskFile, Comparison, Contact, End, FlightFit, GRAZE_SHARE, Issue, IssueCode, Motion, Quantities,
+    Severity, Signal,
 };
 
 /// k this far outside 0 to 1 is an error whatever its interval.
@@ -11,8 +11,6 @@ const FAR_OUTSIDE: f64 = 0.25;
 const GROSS_CLOSURE: f64 = 6.0;
 /// R's height at slap-down may be off by this many of its own 95 % intervals, angle included.
 const MOST_CLOSURE: f64 = 1.0;
-/// A rebound of L below the target by this share of the length is another impact, not a graze.
-const GRAZE_SHARE: f64 = 0.01;
 /// Zero shifts whose effect on the velocity over the contact is below this are a note, m/s: 0.2 % of a slap-down.
 const SMALL_SHIFT_M_S: f64 = 0.05;
 /// Velocity gained late in a flight beyond this share of v0 is another contact.

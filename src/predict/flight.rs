@@ -1,17 +1,11 @@
 //! The motion just after L's impact to the motion just before R strikes.
 
 use super::impact::{State, arms_m, strike_first_end};
-use crate::data::{Body, Contact, FlightRegime};
+use crate::data::{Body, Contact, FlightRegime, GRAZE_SHARE};
 use crate::numerics::root::first_root;
 
 /// More impacts of L than this before R strikes count as bouncing without end: with k ≤ 0.9 the 40th rebound is below 2 %.
 const MOST_IMPACTS: u32 = 40;
-
-/// L may sink this share of the length below the target plane before it counts as another impact   (9)
-///
-/// After k → 0 the free corner of a thin rod sinks by some millimetres while R comes down (11 mm for 5.5 m at 15°, 42 mm
-/// at 45°, 0.5 m at 60°): less than the first impact has crushed off it, so there is nothing left to strike.
-const GRAZING_SHARE: f64 = 0.01;
 
 /// Heights below this at the start of a flight are the contact itself, m.
 const TOUCH_M: f64 = 1e-9;
@@ -128,7 +122,7 @@ fn strikes_again(body: &Body, gravity_m_s2: f64, state: &State, span_s: std::ops
     const POINTS: u32 = 32;
     (1..=POINTS).any(|i| {
         let t = span_s.start + (span_s.end - span_s.start) * f64::from(i) / f64::from(POINTS);
-        state.after(t, gravity_m_s2).corner(body, body.cog_m).0 < -GRAZING_SHARE * body.length_m
+        state.after(t, gravity_m_s2).corner(body, body.cog_m).0 < -GRAZE_SHARE * body.length_m
     })
 }
 
