@@ -128,7 +128,7 @@ pub(super) fn variations(measured: &Measured) -> Vec<Variation> {
             );
         }
     }
-    add("drop angle".into(), format!("{:.1}°", U_ANGLE_RAD.to_degrees()), 1.0, Change::Angle);
+    add("drop angle".into(), format!("{:.2}°", U_ANGLE_RAD.to_degrees()), 1.0, Change::Angle);
     add("impact velocity".into(), format!("{:.2} %", 100.0 * U_IMPACT_VELOCITY), 1.0, Change::ImpactVelocity);
     for (which, name) in
         ["time of first contact", "time of separation", "time of slap-down"].into_iter().enumerate()
