@@ -186,7 +186,10 @@ mod tests {
             slap_down_angle_deg: None,
             first_end_impacts: 1,
             impulse_ratio: 0.4,
+            friction_to_stick: 0.4,
+            sticks: true,
             regime: FlightRegime::Free,
+            closed_form_speed_m_s: None,
         };
         let body = |model| Body {
             model,

@@ -7,12 +7,14 @@ mod curves;
 mod estimate;
 mod flight;
 mod issue;
+mod ladder;
 mod listing;
 mod motion;
 mod prediction;
 mod quantities;
 mod recording;
 mod signal;
+mod study;
 
 pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
@@ -27,9 +29,14 @@ pub use curves::{ChannelCurve, Curves, MotionCurve, Spectrum};
 pub use estimate::Estimate;
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau};
 pub use issue::{Issue, IssueCode, Severity};
+pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};
 pub use motion::{AxialClosure, Motion, MotionState, Setup};
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, Quantities};
 pub use recording::{Recording, RecordingFormat};
 pub use signal::{CoarseEvent, Signal};
+pub use study::{
+    AngleCurve, Criterion, CriticalAngle, CriticalRange, MonteCarlo, PredictionRow, QuantileCurves, Regime,
+    RegimeMap, Request, Sensitivity, Study, Sweep, SweepVariable, Uncertain,
+};

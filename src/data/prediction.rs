@@ -45,10 +45,12 @@ pub struct Body {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FlightRegime {
-    /// L leaves the target.
+    /// L leaves the target with the first impact and does not come to rest on it.
     Free,
-    /// k = 0 and the contact force stays a push: L pivots or slides on the target.
+    /// k = 0 and the contact force stays a push: L pivots or slides on the target until R strikes.
     Contact,
+    /// L stays on the target for a part of the way.
+    Mixed,
 }
 
 impl std::fmt::Display for FlightRegime {
@@ -56,6 +58,7 @@ impl std::fmt::Display for FlightRegime {
         f.write_str(match self {
             Self::Free => "free flight",
             Self::Contact => "contact kept",
+            Self::Mixed => "contact kept in part",
         })
     }
 }
@@ -87,6 +90,12 @@ pub struct Prediction {
     pub first_end_impacts: u32,
     /// I_x / I_z of the first impact: the friction that sticking needs where it sticks, μ where it slides.
     pub impulse_ratio: f64,
+    /// The friction μ* that L needs to stick in the first impact   (6)
+    pub friction_to_stick: f64,
+    /// Whether L sticks in the first impact.
+    pub sticks: bool,
     /// What L does between the impacts.
     pub regime: FlightRegime,
+    /// For k = 0 the speed with L held on the target whatever the force, [P] Table 2, m/s   (11) (12); `None` for k > 0.
+    pub closed_form_speed_m_s: Option<f64>,
 }

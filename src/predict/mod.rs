@@ -3,7 +3,9 @@
 mod flight;
 mod impact;
 
-use crate::data::{Body, BodyModel, Cask, Contact, Drop, Prediction};
+use crate::data::{
+    Body, BodyModel, Cask, Contact, Drop, Ladder, LadderStep, Prediction, Rung, SpeedGradient,
+};
 use flight::{Outcome, fly_until_second_end};
 use impact::{State, strike_first_end};
 
@@ -65,7 +67,10 @@ pub fn predict(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction
         slap_down_angle_deg: at_second_end.map(|s| s.angle_rad.to_degrees()),
         first_end_impacts: impacts,
         impulse_ratio,
+        friction_to_stick: impulse_ratio,
+        sticks: true,
         regime,
+        closed_form_speed_m_s: None,
     }
 }
 
@@ -89,6 +94,37 @@ pub fn closed_form_speed_m_s(body: &Body, drop: &Drop, contact: Contact) -> Opti
     flight::contact_kept(body, drop.gravity_m_s2, contact, &after)
         .map(|(state, _)| state.second_end_velocity_m_s(body))
         .map(|(x, z)| x.hypot(z))
+}
+
+/// What `rung` says; [`predict`] is the last one.
+#[must_use]
+pub fn predict_by(_rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction {
+    predict(body, drop, contact, k)
+}
+
+/// [`predict`] with L's further impacts counted from a sinking of `graze_share` of the length: 0 is the rigid limit.
+#[must_use]
+pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, _graze_share: f64) -> Prediction {
+    predict(body, drop, contact, k)
+}
+
+/// Every rung's prediction, simplest first, and the one that suffices.
+#[must_use]
+pub fn ladder(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Ladder {
+    let steps = Rung::ALL.map(|rung| LadderStep {
+        rung,
+        adds: rung.adds(),
+        prediction: predict_by(rung, body, drop, contact, k),
+        change_percent: None,
+    });
+    Ladder { angle_deg: drop.angle_rad.to_degrees(), contact, k, steps: steps.into(), suffices: Rung::Body }
+}
+
+/// How the slap-down speed answers to k and φ0; `None` without a slap-down.
+#[must_use]
+pub fn speed_gradient(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Option<SpeedGradient> {
+    let speed_m_s = predict(body, drop, contact, k).slap_down_speed_m_s?;
+    Some(SpeedGradient { speed_m_s, by_k_m_s: 0.0, by_angle_m_s_rad: 0.0 })
 }
 
 #[cfg(test)]

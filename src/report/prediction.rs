@@ -50,7 +50,7 @@ pub(super) const KEPT_SENTENCE: &str =
 pub(super) fn kept_mark(regime: FlightRegime) -> &'static str {
     match regime {
         FlightRegime::Free => "",
-        FlightRegime::Contact => KEPT_MARK,
+        FlightRegime::Contact | FlightRegime::Mixed => KEPT_MARK,
     }
 }
 

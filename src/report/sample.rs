@@ -159,7 +159,10 @@ fn predictions() -> Vec<Prediction> {
         slap_down_angle_deg: Some(-4.0 - 1.9 * k),
         first_end_impacts: 1,
         impulse_ratio: 0.41,
+        friction_to_stick: 0.4,
+        sticks: true,
         regime: FlightRegime::Free,
+        closed_form_speed_m_s: None,
     })
     .to_vec()
 }

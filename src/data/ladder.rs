@@ -1,0 +1,94 @@
+//! The ladder of analytical models: its rungs, what each says, and how the speed answers to k and angle.
+
+use super::cask::Contact;
+use super::prediction::Prediction;
+use serde::Serialize;
+
+/// The models, simplest first; each adds one thing to the one below and agrees with it where that thing is absent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rung {
+    /// The thin uniform rod of the paper: Table 1, one flight for k > 0, the closed form of Table 2 for k = 0.
+    Rod,
+    /// Section, centre of gravity and inertia of the body.
+    Body,
+    /// Coulomb friction between smooth and rough: L sticks or slides.
+    Friction,
+    /// The target only pushes: for k = 0 L lifts off where the contact would need a pull.
+    Unilateral,
+    /// L's further impacts before R strikes.
+    FurtherImpacts,
+}
+
+impl Rung {
+    /// All, simplest first.
+    pub const ALL: [Self; 5] =
+        [Self::Rod, Self::Body, Self::Friction, Self::Unilateral, Self::FurtherImpacts];
+
+    /// Its name for a person.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Rod => "rod",
+            Self::Body => "body",
+            Self::Friction => "friction",
+            Self::Unilateral => "unilateral contact",
+            Self::FurtherImpacts => "further impacts",
+        }
+    }
+
+    /// What it adds to the rung below, for a person.
+    #[must_use]
+    pub fn adds(self) -> &'static str {
+        match self {
+            Self::Rod => "thin uniform rod, rough or smooth",
+            Self::Body => "section, centre of gravity, inertia",
+            Self::Friction => "Coulomb friction: L sticks or slides",
+            Self::Unilateral => "the target only pushes: L may lift off",
+            Self::FurtherImpacts => "L may strike again before R",
+        }
+    }
+}
+
+/// One rung's prediction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LadderStep {
+    /// Which rung.
+    pub rung: Rung,
+    /// What it adds to the one below.
+    pub adds: &'static str,
+    /// What it predicts.
+    #[serde(flatten)]
+    pub prediction: Prediction,
+    /// Change of the slap-down speed against the rung below, percent; `None` for the first and where either has no slap-down.
+    pub change_percent: Option<f64>,
+}
+
+/// All rungs for one contact law and one k, and the simplest that the richer ones do not change.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Ladder {
+    /// Inclination at first contact, degrees.
+    pub angle_deg: f64,
+    /// The contact law asked for.
+    pub contact: Contact,
+    /// Coefficient of restitution.
+    pub k: f64,
+    /// Simplest first.
+    pub steps: Vec<LadderStep>,
+    /// The simplest rung that no richer one moves by more than [`LADDER_TOLERANCE_PERCENT`].
+    pub suffices: Rung,
+}
+
+/// A rung suffices where no richer one moves the slap-down speed by more than this, percent: a tenth of the 1 % that a test resolves.
+pub const LADDER_TOLERANCE_PERCENT: f64 = 0.1;
+
+/// How the slap-down speed answers to k and to the angle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SpeedGradient {
+    /// Slap-down speed, m/s.
+    pub speed_m_s: f64,
+    /// ∂(speed)/∂k, m/s.
+    pub by_k_m_s: f64,
+    /// ∂(speed)/∂φ0, m/s per radian.
+    pub by_angle_m_s_rad: f64,
+}

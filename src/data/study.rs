@@ -1,0 +1,293 @@
+//! A study of the drop angle: sweeps, curves, critical angles, Monte Carlo, sensitivities and the map of the regimes.
+
+use super::cask::{CaskFile, Contact};
+use super::ladder::Ladder;
+use super::prediction::{BodyModel, Prediction};
+use serde::Serialize;
+
+/// What a sweep varies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SweepVariable {
+    /// Inclination at first contact, degrees.
+    Angle,
+    /// Coefficient of restitution.
+    K,
+    /// Coulomb coefficient.
+    Friction,
+    /// Length of the cask, m; the centre of gravity keeps its share of it, the inertia scales with l² + h².
+    Length,
+    /// Height of the drop, m.
+    DropHeight,
+}
+
+/// The values that a sweep takes, in the unit of its variable.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Sweep {
+    /// What varies.
+    pub variable: SweepVariable,
+    /// Its values, ascending.
+    pub values: Vec<f64>,
+}
+
+/// A prediction and where it was made.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PredictionRow {
+    /// Inclination at first contact, degrees.
+    pub angle_deg: f64,
+    /// Length of the cask, m.
+    pub length_m: f64,
+    /// Height of the drop, m.
+    pub drop_height_m: f64,
+    /// What the model says.
+    #[serde(flatten)]
+    pub prediction: Prediction,
+}
+
+/// What is asked of a study besides the rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Request {
+    /// Contact laws, one or several.
+    pub contacts: Vec<Contact>,
+    /// Coefficients of restitution, one or several.
+    pub ks: Vec<f64>,
+    /// Inclination for what is stated at one angle, degrees.
+    pub angle_deg: f64,
+    /// Sweeps; the rows are their product.
+    pub sweeps: Vec<Sweep>,
+    /// Inclinations of the curves and critical angles, degrees, ascending.
+    pub angles_deg: Vec<f64>,
+    /// Width of the critical bands, percent of the largest value.
+    pub band_percent: f64,
+    /// What Monte Carlo draws from.
+    pub uncertain: Uncertain,
+}
+
+/// What is not known before a test. Half-widths hold 95 % of a normal distribution, ranges are uniform.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Uncertain {
+    /// Range of k.
+    pub k: (f64, f64),
+    /// Range of the Coulomb coefficient; `None`: the contact law is known.
+    pub friction: Option<(f64, f64)>,
+    /// Half-width of the angle, degrees.
+    pub angle_deg: f64,
+    /// Half-width of the drop height, share of it.
+    pub drop_height: f64,
+    /// Half-width of length and section, share of each.
+    pub size: f64,
+    /// Half-width of the centre of gravity, share of the length.
+    pub cog: f64,
+    /// Half-width of the inertia, share of it.
+    pub inertia: f64,
+    /// Draws.
+    pub draws: u32,
+    /// Seed: the same seed gives the same draws on every machine.
+    pub seed: u64,
+}
+
+/// The slap-down over the angle for one body, contact law and k; NaN where R never strikes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AngleCurve {
+    /// Rod or body.
+    pub model: BodyModel,
+    /// Section in the plane of the drop, m.
+    pub height_m: f64,
+    /// The contact law.
+    pub contact: Contact,
+    /// Coefficient of restitution.
+    pub k: f64,
+    /// Inclinations, degrees, ascending.
+    pub angle_deg: Vec<f64>,
+    /// Magnitude of R's velocity, m/s.
+    pub speed_m_s: Vec<f64>,
+    /// Its vertical part, negative down, m/s.
+    pub vertical_velocity_m_s: Vec<f64>,
+    /// Its horizontal part, m/s.
+    pub horizontal_velocity_m_s: Vec<f64>,
+    /// Kinetic energy before slap-down over that before the first impact.
+    pub energy_ratio: Vec<f64>,
+    /// For k = 0 the speed by the closed form of [P] Table 2, m/s; NaN for k > 0.
+    pub closed_form_speed_m_s: Vec<f64>,
+}
+
+/// What is largest at a critical angle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Criterion {
+    /// Slap-down speed, m/s.
+    Speed,
+    /// Its vertical part, m/s, positive down.
+    VerticalSpeed,
+    /// Kinetic energy left for the second impact, over that before the first.
+    EnergyRatio,
+}
+
+impl Criterion {
+    /// All.
+    pub const ALL: [Self; 3] = [Self::Speed, Self::VerticalSpeed, Self::EnergyRatio];
+}
+
+/// Where a criterion is largest for one body, contact law and k.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CriticalAngle {
+    /// Rod or body.
+    pub model: BodyModel,
+    /// The contact law.
+    pub contact: Contact,
+    /// Coefficient of restitution.
+    pub k: f64,
+    /// What is largest.
+    pub criterion: Criterion,
+    /// Where, degrees.
+    pub angle_deg: f64,
+    /// How large, in the criterion's unit.
+    pub largest: f64,
+    /// Angles at which it is within the chosen percentage of that, degrees; more than one where the curve has several humps.
+    pub bands_deg: Vec<(f64, f64)>,
+}
+
+/// Where a criterion is largest while k and friction go through their ranges, all else as stated.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CriticalRange {
+    /// Rod or body.
+    pub model: BodyModel,
+    /// What is largest.
+    pub criterion: Criterion,
+    /// Lowest and highest critical angle over the ranges, degrees.
+    pub angle_deg: (f64, f64),
+    /// The largest value over angle, k and friction: the worst case.
+    pub largest: f64,
+    /// Angle, contact law and k of the worst case.
+    pub worst: (f64, Contact, f64),
+    /// Angles that lie in the band of every k and friction in the ranges, degrees.
+    pub common_bands_deg: Vec<(f64, f64)>,
+}
+
+/// Quantiles over the draws, one entry an angle; NaN where fewer than half of the draws have a slap-down.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct QuantileCurves {
+    /// What.
+    pub criterion: Criterion,
+    /// 2.5 %.
+    pub q025: Vec<f64>,
+    /// 25 %.
+    pub q25: Vec<f64>,
+    /// 50 %.
+    pub q50: Vec<f64>,
+    /// 75 %.
+    pub q75: Vec<f64>,
+    /// 97.5 %.
+    pub q975: Vec<f64>,
+    /// Share of the draws whose value at this nominal angle lies within the band of that draw's own largest.
+    pub in_band: Vec<f64>,
+    /// 2.5, 25, 50, 75 and 97.5 % quantile of the critical angle over the draws, degrees.
+    pub critical_angle_deg: [f64; 5],
+    /// The same of the largest value.
+    pub largest: [f64; 5],
+    /// How many draws have their critical angle nearest to each of the angles.
+    pub critical_counts: Vec<u32>,
+    /// Angles at which at least 95 % of the draws lie within their band, degrees.
+    pub robust_bands_deg: Vec<(f64, f64)>,
+}
+
+/// What the uncertain inputs make of the critical angles.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MonteCarlo {
+    /// Rod or body: the richest that the cask file describes.
+    pub model: BodyModel,
+    /// The contact law where it is known.
+    pub contact: Contact,
+    /// What was drawn from.
+    pub uncertain: Uncertain,
+    /// Width of the bands, percent of the largest value.
+    pub band_percent: f64,
+    /// Nominal inclinations, degrees.
+    pub angle_deg: Vec<f64>,
+    /// Share of the draws without a slap-down at each angle.
+    pub no_slap_down: Vec<f64>,
+    /// One entry a criterion.
+    pub quantiles: Vec<QuantileCurves>,
+}
+
+/// The gradient of the slap-down speed over the angle for one body, contact law and k; NaN where R never strikes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Sensitivity {
+    /// Rod or body.
+    pub model: BodyModel,
+    /// The contact law.
+    pub contact: Contact,
+    /// Coefficient of restitution.
+    pub k: f64,
+    /// Inclinations, degrees.
+    pub angle_deg: Vec<f64>,
+    /// ∂(speed)/∂k, m/s.
+    pub by_k_m_s: Vec<f64>,
+    /// ∂(speed)/∂φ0, m/s per degree.
+    pub by_angle_m_s_deg: Vec<f64>,
+    /// Angles at which ∂(speed)/∂k changes sign: there k cannot be told from the slap-down speed, degrees.
+    pub blind_angles_deg: Vec<f64>,
+    /// Around them, where 1 % of slap-down speed is more than 0.1 in k, degrees.
+    pub blind_bands_deg: Vec<(f64, f64)>,
+}
+
+/// What happens at one angle and k.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Regime {
+    /// One flight until R strikes; for k = 0 contact kept all the way: [P] Tables 1 and 2 hold.
+    ClosedForm,
+    /// k = 0 and the contact would need a pull: L lifts off, Table 2's closed form for k = 0 does not hold.
+    LiftOff,
+    /// L strikes again before R.
+    FurtherImpacts,
+    /// R never strikes.
+    NoSlapDown,
+}
+
+impl Regime {
+    /// All, in the order of a legend.
+    pub const ALL: [Self; 4] = [Self::ClosedForm, Self::LiftOff, Self::FurtherImpacts, Self::NoSlapDown];
+}
+
+/// The regimes over angle and k for one body and contact law.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RegimeMap {
+    /// Rod or body.
+    pub model: BodyModel,
+    /// The contact law.
+    pub contact: Contact,
+    /// Inclinations, degrees.
+    pub angle_deg: Vec<f64>,
+    /// Coefficients of restitution, ascending from 0.
+    pub k: Vec<f64>,
+    /// `regimes[i][j]` at `k[i]`, `angle_deg[j]`.
+    pub regimes: Vec<Vec<Regime>>,
+}
+
+/// Everything that a study found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// The cask.
+    pub cask_file: CaskFile,
+    /// What was asked.
+    pub request: Request,
+    /// The predictions asked for.
+    pub rows: Vec<PredictionRow>,
+    /// The ladder for every contact law and k, at the angle of the request.
+    pub ladders: Vec<Ladder>,
+    /// Over the angle: every body, contact law and k of the request.
+    pub curves: Vec<AngleCurve>,
+    /// Over the angle, smooth and k = 1: the cask's length with a section of 0, 10, 500 and 600 mm and its own ([P] Fig. 9).
+    pub sections: Vec<AngleCurve>,
+    /// For every curve and criterion.
+    pub critical: Vec<CriticalAngle>,
+    /// For every body and criterion, over the ranges of k and friction.
+    pub ranges: Vec<CriticalRange>,
+    /// What the uncertain inputs make of it.
+    pub monte_carlo: MonteCarlo,
+    /// For the richest body: every contact law, and k = 0.1, 0.5 and 0.9 or those of the request.
+    pub sensitivities: Vec<Sensitivity>,
+    /// For the richest body and every contact law.
+    pub maps: Vec<RegimeMap>,
+}
