@@ -2,12 +2,15 @@
 
 mod flight;
 mod impact;
+mod study;
 
 use crate::data::{
     Body, BodyModel, Cask, Contact, Drop, Ladder, LadderStep, Prediction, Rung, SpeedGradient,
 };
 use flight::{Outcome, fly_until_second_end};
 use impact::{State, strike_first_end};
+
+pub use study::{default_uncertain, study};
 
 /// The rod or body of a cask: the rod is thin and uniform whatever else the cask file says.
 #[must_use]
