@@ -147,7 +147,7 @@ pub struct CriticalAngle {
     pub largest: f64,
     /// Angles at which it is within the chosen percentage of that, degrees; more than one where the curve has several humps.
     pub bands_deg: Vec<(f64, f64)>,
-    /// Angle, degrees, and size of a still larger value among the request's angles at which L strikes again before R.
+    /// Angle, degrees, and size of a still larger value among the angles tried at which L strikes again before R.
     pub further_impacts: Option<(f64, f64)>,
 }
 
@@ -166,7 +166,7 @@ pub struct CriticalRange {
     pub worst: (f64, Contact, f64),
     /// Angles that lie in the band of every k and friction in the ranges, degrees.
     pub common_bands_deg: Vec<(f64, f64)>,
-    /// Angle, degrees, and size of a still larger value among the request's angles at which L strikes again before R.
+    /// Angle, degrees, and size of a still larger value among the angles tried at which L strikes again before R.
     pub further_impacts: Option<(f64, f64)>,
 }
 
