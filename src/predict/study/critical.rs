@@ -127,6 +127,7 @@ fn spread((low, high): (f64, f64), count: u32) -> Vec<f64> {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "values that are handed through, not computed")]
 mod tests {
     use super::super::tests::{V0_M_S, cask_file, request, rough_rod, steps, uncertain};
     use super::*;
@@ -141,23 +142,32 @@ mod tests {
     const VALUES: [fn(&Prediction) -> Option<f64>; 3] =
         [|p| p.slap_down_speed_m_s, |p| p.vertical_velocity_m_s.map(|v| -v), |p| p.energy_ratio];
 
-    /// Angle and size of the largest of 90 001 predictions in which L strikes once.
-    fn scanned(fall: &Fall, value: fn(&Prediction) -> Option<f64>) -> (f64, f64) {
-        let once = |p: &Prediction| value(p).filter(|_| p.first_end_impacts == 1);
-        let at = |i: u32| once(&fall.at(f64::from(i) / 1000.0)).map(|v| (f64::from(i) / 1000.0, v));
-        (0..=90_000).filter_map(at).fold((0.0, 0.0), |top, next| if next.1 > top.1 { next } else { top })
+    /// Angle and size of the largest of 18 001 predictions in which L strikes once, of each criterion.
+    fn scanned(fall: &Fall) -> [(f64, f64); 3] {
+        let mut tops = [(0.0, 0.0); 3];
+        for i in 0..=18_000 {
+            let angle_deg = f64::from(i) / 200.0;
+            let prediction = fall.at(angle_deg);
+            for (top, value) in tops.iter_mut().zip(VALUES) {
+                let found = value(&prediction).filter(|_| prediction.first_end_impacts == 1);
+                if let Some(found) = found.filter(|found| *found > top.1) {
+                    *top = (angle_deg, found);
+                }
+            }
+        }
+        tops
     }
 
     #[test]
     fn a_fine_scan_finds_nothing_larger() {
         for k in [0.3, 1.0] {
-            for (found, value) in critical(0.0, Contact::Rough, k, 5.0).iter().zip(VALUES) {
-                let (angle_deg, largest) = scanned(&rough_rod(k), value);
+            let tops = scanned(&rough_rod(k));
+            for (found, (angle_deg, largest)) in critical(0.0, Contact::Rough, k, 5.0).iter().zip(tops) {
                 assert!(found.largest >= largest * (1.0 - 1e-12), "{found:?} {largest}");
-                // A smooth maximum moves by less than the scan's step, and so does a jump.
-                assert!((found.angle_deg - angle_deg).abs() <= 1e-3, "{found:?} {angle_deg}");
-                // What a step of 0.001° can add: slopes stay below 100 m/s per radian, and per cent of the energy ratio.
-                assert!(found.largest <= largest + 100.0 * 1e-3_f64.to_radians(), "{found:?} {largest}");
+                // A smooth maximum lies within a step of the scan's, and so does a jump.
+                assert!((found.angle_deg - angle_deg).abs() <= 5e-3, "{found:?} {angle_deg}");
+                // What a step can add: slopes stay below 100 m/s per radian, and those of the energy ratio below that number.
+                assert!(found.largest <= largest + 100.0 * 5e-3_f64.to_radians(), "{found:?} {largest}");
             }
         }
     }

@@ -72,6 +72,7 @@ pub(super) fn draw(base: &Fall, uncertain: &Uncertain, index: u32) -> Draw {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "values that are handed through, not computed")]
 mod tests {
     use super::super::tests::{cask_file, rough_rod, uncertain};
     use super::*;
