@@ -1,0 +1,383 @@
+//! From a body, a drop and a contact law to its motion by time steps: a rigid body on a stiff contact that crushes and springs back.
+//!
+//! A touch is a pulse: the normal force grows with stiffness K and falls with K/k², so that k² of the work put in comes back; the
+//! tangential impulse of each step is the one that stops the slip, at most μ times the normal one. Where L rests, or k = 0 holds it,
+//! the steps are Moreau's: velocities that obey the constraint and the friction cone at the end of each step. Nothing here knows an impact law.
+
+use super::rigid::{Answer, Motion, Point, Vector};
+use dropcheck::data::{Body, Contact, Drop};
+use std::f64::consts::FRAC_PI_2;
+
+/// Steps of a loading, and of an unloading: the leapfrog's frequency is then off by (π/2/300)²/24, 1e-6.
+const PULSE_STEPS: f64 = 300.0;
+
+/// A pulse that takes more steps does not end by springing back.
+const MOST_PULSE_STEPS: u32 = 100_000;
+
+/// Shortest and longest step of a flight, s. What dips and rises within the shortest sinks by 1e-12 m.
+const FLIGHT_STEPS_S: (f64, f64) = (1e-7, 2e-3);
+
+/// The drop is over or never will be, s: a cask that tips over from 75° takes two seconds.
+const LONGEST_S: f64 = 10.0;
+
+/// More touches than that are chatter.
+const MOST_TOUCHES: u32 = 3000;
+
+/// What the target does to L.
+#[derive(Clone, Copy, Debug)]
+pub struct Law {
+    /// Share of the normal speed that a touch gives back.
+    pub k: f64,
+    /// Largest ratio of tangential to normal impulse; infinite for rough.
+    pub friction: f64,
+    /// With k = 0 L is held on the target whatever the sign of the force.
+    pub holds: bool,
+    /// L is touched again; else the target is gone once L has left it.
+    pub again: bool,
+}
+
+/// The limit that is taken: how short a pulse, how slow a touch that is rest, how short a step at rest.
+#[derive(Clone, Copy, Debug)]
+pub struct Pace {
+    /// Time to the deepest crush, s.
+    pub loading_s: f64,
+    /// A slower touch is rest, m/s.
+    pub rest_m_s: f64,
+    /// Step while L rests, s.
+    pub rest_step_s: f64,
+}
+
+impl Pace {
+    /// The pace with everything at `share`.
+    pub fn times(self, share: f64) -> Self {
+        Self {
+            loading_s: share * self.loading_s,
+            rest_m_s: share * self.rest_m_s,
+            rest_step_s: share * self.rest_step_s,
+        }
+    }
+}
+
+/// How a simulated drop ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// R strikes.
+    SlapDown,
+    /// R comes down past the vertical.
+    Never,
+    /// Neither within the time or the number of touches allowed.
+    Open,
+}
+
+/// What a simulated drop leads to.
+#[derive(Clone, Copy, Debug)]
+pub struct Outcome {
+    /// How it ends.
+    pub end: End,
+    /// R's velocity at the end, m/s.
+    pub second_end_m_s: Vector,
+    /// Inclination at the end, rad.
+    pub angle_rad: f64,
+    /// Time from first contact to the end, s.
+    pub time_s: f64,
+    /// Pulses at L, the first included.
+    pub touches: u32,
+    /// Whether L rested on the target at any time.
+    pub rested: bool,
+    /// Largest rise of the energy over what it was before, as a share of that at first contact.
+    pub energy_rise: f64,
+}
+
+enum Phase {
+    Flight,
+    Pulse,
+    Rest,
+    Over(End),
+}
+
+struct Simulation<'a> {
+    body: &'a Body,
+    law: Law,
+    pace: Pace,
+    gravity_m_s2: f64,
+    first_end: Point,
+    second_end: Point,
+    motion: Motion,
+    time_s: f64,
+    /// What has been crushed off L: the height below the target at which it touches next, m.
+    crushed_m: f64,
+    /// L can touch the target.
+    touchable: bool,
+    touches: u32,
+    rested: bool,
+}
+
+/// The coefficient that a contact law puts on the tangential impulse.
+pub fn friction(contact: Contact) -> f64 {
+    match contact {
+        Contact::Rough => f64::INFINITY,
+        Contact::Smooth => 0.0,
+        Contact::Coulomb(coefficient) => coefficient,
+    }
+}
+
+/// Follows a body from first contact until R strikes or never will.
+pub fn simulate(body: &Body, drop: &Drop, law: Law, pace: Pace) -> Outcome {
+    let mut simulation = Simulation::at_first_contact(body, drop, law, pace);
+    let energy_j = |s: &Simulation| s.motion.energy_j(s.body, s.gravity_m_s2);
+    let first_j = energy_j(&simulation);
+    let (mut least_j, mut energy_rise) = (first_j, 0.0_f64);
+    let mut phase = Phase::Pulse;
+    let end = loop {
+        phase = match phase {
+            Phase::Over(end) => break end,
+            Phase::Flight => simulation.fly(),
+            Phase::Pulse => simulation.pulse(),
+            Phase::Rest => simulation.rest(),
+        };
+        energy_rise = energy_rise.max((energy_j(&simulation) - least_j) / first_j);
+        least_j = least_j.min(energy_j(&simulation));
+        if simulation.time_s > LONGEST_S || simulation.touches > MOST_TOUCHES {
+            phase = Phase::Over(End::Open);
+        }
+    };
+    Outcome {
+        end,
+        second_end_m_s: simulation.motion.velocity_at_m_s(simulation.second_end),
+        angle_rad: simulation.motion.angle_rad,
+        time_s: simulation.time_s,
+        touches: simulation.touches,
+        rested: simulation.rested,
+        energy_rise,
+    }
+}
+
+impl<'a> Simulation<'a> {
+    /// L on the target, the body falling without rotation.
+    fn at_first_contact(body: &'a Body, drop: &Drop, law: Law, pace: Pace) -> Self {
+        let mut simulation = Self {
+            body,
+            law,
+            pace,
+            gravity_m_s2: drop.gravity_m_s2,
+            first_end: Point::first_end(body),
+            second_end: Point::second_end(body),
+            motion: Motion {
+                position_m: Vector { x: 0.0, z: 0.0 },
+                angle_rad: drop.angle_rad,
+                velocity_m_s: Vector { x: 0.0, z: -drop.impact_velocity_m_s },
+                turn_rad_s: 0.0,
+            },
+            time_s: 0.0,
+            crushed_m: 0.0,
+            touchable: true,
+            touches: 0,
+            rested: false,
+        };
+        simulation.motion.position_m.z = -simulation.motion.height_m(simulation.first_end);
+        simulation
+    }
+
+    fn second_end_strikes(&self, motion: &Motion) -> bool {
+        motion.height_m(self.second_end) < 0.0 && motion.velocity_at_m_s(self.second_end).z < 0.0
+    }
+
+    fn first_end_touches(&self, motion: &Motion) -> bool {
+        self.touchable
+            && motion.height_m(self.first_end) < -self.crushed_m
+            && motion.velocity_at_m_s(self.first_end).z < 0.0
+    }
+
+    fn over(&self) -> Phase {
+        Phase::Over(if self.motion.angle_rad.cos() > 0.0 { End::SlapDown } else { End::Never })
+    }
+
+    /// Exact steps so short that no corner can pass the target, then a bisection of the one in which it does.
+    fn fly(&mut self) -> Phase {
+        let lands = |s: &Self, motion: &Motion| s.second_end_strikes(motion) || s.first_end_touches(motion);
+        while !lands(self, &self.motion) {
+            let step_s = self.safe_step_s();
+            let next = self.motion.flown(self.gravity_m_s2, step_s);
+            if !lands(self, &next) {
+                self.motion = next;
+                self.time_s += step_s;
+                if self.time_s > LONGEST_S {
+                    return Phase::Over(End::Open);
+                }
+                continue;
+            }
+            let (mut before_s, mut after_s) = (0.0, step_s);
+            for _ in 0..60 {
+                let middle_s = f64::midpoint(before_s, after_s);
+                let landed = lands(self, &self.motion.flown(self.gravity_m_s2, middle_s));
+                *(if landed { &mut after_s } else { &mut before_s }) = middle_s;
+            }
+            self.motion = self.motion.flown(self.gravity_m_s2, after_s);
+            self.time_s += after_s;
+        }
+        if self.second_end_strikes(&self.motion) {
+            return self.over();
+        }
+        let corner = self.motion.velocity_at_m_s(self.first_end);
+        // Where nothing limits the friction a slow touch may still stop a fast slip: then it is no rest.
+        let slips = self.law.friction.is_infinite() && corner.x.abs() > 10.0 * self.pace.rest_m_s;
+        if -corner.z < self.pace.rest_m_s && !slips { Phase::Rest } else { Phase::Pulse }
+    }
+
+    /// The time that no corner needs less of to reach the target, s: its distance over the largest speed it can have.
+    fn safe_step_s(&self) -> f64 {
+        let motion = &self.motion;
+        let speed_m_s = motion.velocity_m_s.x.hypot(motion.velocity_m_s.z)
+            + motion.turn_rad_s.abs() * self.second_end.distance_m().max(self.first_end.distance_m())
+            + self.gravity_m_s2 * FLIGHT_STEPS_S.1;
+        let mut gap_m = motion.height_m(self.second_end);
+        if self.touchable {
+            gap_m = gap_m.min(motion.height_m(self.first_end) + self.crushed_m);
+        }
+        (gap_m / speed_m_s).clamp(FLIGHT_STEPS_S.0, FLIGHT_STEPS_S.1)
+    }
+
+    /// One touch: L is crushed with stiffness K and springs back with K/k².
+    fn pulse(&mut self) -> Phase {
+        self.touches += 1;
+        let compliance_per_kg = Answer::of(self.body, &self.motion, self.first_end).by_z.z;
+        let loading_n_m = (FRAC_PI_2 / self.pace.loading_s).powi(2) / compliance_per_kg;
+        let loading_step_s = self.pace.loading_s / PULSE_STEPS;
+        let free_m = -self.crushed_m;
+        for _ in 0..MOST_PULSE_STEPS {
+            let next = self.pulse_step(loading_step_s, |middle| {
+                loading_n_m * (free_m - middle.height_m(self.first_end)).max(0.0)
+            });
+            let (before, after) = (self.sinking_m_s(&self.motion), self.sinking_m_s(&next));
+            if after > 0.0 {
+                self.motion = next;
+                self.time_s += loading_step_s;
+                continue;
+            }
+            // The deepest crush lies within this step: end the step there.
+            let last_s = loading_step_s * (before / (before - after)).clamp(0.0, 1.0);
+            self.motion = self.pulse_step(last_s, |middle| {
+                loading_n_m * (free_m - middle.height_m(self.first_end)).max(0.0)
+            });
+            self.time_s += last_s;
+            return self.spring_back(loading_n_m, free_m);
+        }
+        Phase::Over(End::Open)
+    }
+
+    /// The unloading, along a line that gives back k² of the work.
+    fn spring_back(&mut self, loading_n_m: f64, free_m: f64) -> Phase {
+        let deepest_m = (free_m - self.motion.height_m(self.first_end)).max(0.0);
+        let k = self.law.k;
+        let left_m = free_m - deepest_m * (1.0 - k * k);
+        self.crushed_m = -left_m;
+        if k == 0.0 {
+            return Phase::Rest;
+        }
+        let step_s = k * self.pace.loading_s / PULSE_STEPS;
+        let mut separated = false;
+        for _ in 0..MOST_PULSE_STEPS {
+            let mut force_n = 0.0;
+            let next = self.pulse_step(step_s, |middle| {
+                let spring_m = left_m - middle.height_m(self.first_end);
+                // Pressed deeper than before, it is crushed on.
+                let crushing_n = loading_n_m * (free_m - middle.height_m(self.first_end));
+                force_n = (loading_n_m / (k * k) * spring_m).min(crushing_n).max(0.0);
+                separated = force_n == 0.0;
+                force_n
+            });
+            if separated {
+                self.touchable = self.law.again;
+                return Phase::Flight;
+            }
+            self.motion = next;
+            self.time_s += step_s;
+        }
+        Phase::Over(End::Open)
+    }
+
+    /// Drift, kick, drift; the tangential impulse stops the slip or is as large as friction allows.
+    fn pulse_step(&self, step_s: f64, force_n: impl FnOnce(&Motion) -> f64) -> Motion {
+        let middle = self.motion.drifted(step_s / 2.0).pulled(self.gravity_m_s2, step_s);
+        let normal_n_s = force_n(&middle) * step_s;
+        let answer = Answer::of(self.body, &middle, self.first_end);
+        let mut impulse = Vector { x: answer.stopping_n_s(normal_n_s), z: normal_n_s };
+        if self.law.friction.is_finite() {
+            let most_n_s = self.law.friction * normal_n_s;
+            impulse.x = impulse.x.clamp(-most_n_s, most_n_s);
+        }
+        middle.pushed(self.body, answer.arm_m, impulse).drifted(step_s / 2.0)
+    }
+
+    fn sinking_m_s(&self, motion: &Motion) -> f64 {
+        -motion.velocity_at_m_s(self.first_end).z
+    }
+
+    /// L on the target until it lifts off or R strikes.
+    fn rest(&mut self) -> Phase {
+        self.rested = true;
+        let step_s = self.pace.rest_step_s;
+        while self.time_s < LONGEST_S {
+            let middle = self.motion.drifted(step_s / 2.0).pulled(self.gravity_m_s2, step_s);
+            let answer = Answer::of(self.body, &middle, self.first_end);
+            let impulse = self.resting_n_s(&answer);
+            let pushed = impulse.map_or(middle, |i| middle.pushed(self.body, answer.arm_m, i));
+            let next = pushed.drifted(step_s / 2.0);
+            if self.second_end_strikes(&next) {
+                self.end_between(&next, step_s);
+                return self.over();
+            }
+            self.motion = next;
+            self.time_s += step_s;
+            self.crushed_m = -self.motion.height_m(self.first_end);
+            if impulse.is_none() {
+                self.touchable = self.law.again;
+                return Phase::Flight;
+            }
+        }
+        Phase::Over(End::Open)
+    }
+
+    /// The impulse of a step at rest, N s; `None` where L lifts off.
+    fn resting_n_s(&self, answer: &Answer) -> Option<Vector> {
+        let holds = self.law.holds && self.law.k == 0.0;
+        if !holds && answer.velocity_m_s.z >= 0.0 && self.law.friction.is_finite() {
+            return None;
+        }
+        let friction = self.law.friction;
+        let stuck = answer.holding_n_s();
+        let pushes = |normal_n_s: f64| holds || normal_n_s > 0.0;
+        if friction.is_infinite() || stuck.x.abs() <= friction * stuck.z.abs() {
+            return pushes(stuck.z).then_some(stuck);
+        }
+        // Sliding: friction against the slip that is left, which is why both ways are tried; a held end may also be pulled.
+        for (slip, normal) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
+            let (impulse, left_m_s) = answer.sliding_n_s(-slip * normal * friction);
+            if left_m_s * slip >= 0.0 && impulse.z * normal >= 0.0 && pushes(impulse.z) {
+                return Some(impulse);
+            }
+        }
+        None
+    }
+
+    /// The motion where R reaches the target within a step, on the line between its ends.
+    fn end_between(&mut self, next: &Motion, step_s: f64) {
+        let (before_m, after_m) = (self.motion.height_m(self.second_end), next.height_m(self.second_end));
+        let share = (before_m / (before_m - after_m)).clamp(0.0, 1.0);
+        let mix = |from: f64, to: f64| from + share * (to - from);
+        let now = self.motion;
+        self.motion = Motion {
+            position_m: Vector {
+                x: mix(now.position_m.x, next.position_m.x),
+                z: mix(now.position_m.z, next.position_m.z),
+            },
+            angle_rad: mix(now.angle_rad, next.angle_rad),
+            velocity_m_s: Vector {
+                x: mix(now.velocity_m_s.x, next.velocity_m_s.x),
+                z: mix(now.velocity_m_s.z, next.velocity_m_s.z),
+            },
+            turn_rad_s: mix(now.turn_rad_s, next.turn_rad_s),
+        };
+        self.time_s += share * step_s;
+    }
+}
