@@ -5,15 +5,17 @@
 //! first is the limit, and their difference says whether it has been reached.
 
 pub mod rigid;
+mod setting;
 mod simulation;
 
 use dropcheck::data::{Body, BodyModel, Contact, Drop, Prediction, Rung};
 use dropcheck::predict::{predict_by, predict_grazing};
 use rayon::prelude::*;
-use simulation::{End, Law, Outcome, Pace, friction, simulate};
+use setting::{End, Law, Outcome, Pace, friction};
+use simulation::simulate;
 
-/// g T of the pulse is 2e-5 m/s, ω T 1e-5, the crush 0.02 mm: all far below 0.1 %. Richardson's step takes off most of that.
-const PACE: Pace = Pace { loading_s: 2e-6, rest_m_s: 2e-3, rest_step_s: 2e-5 };
+/// g T of the pulse is 5e-6 m/s, ω T 3e-6, the crush 4 µm: so little that several touches do not make 0.1 % of it.
+const PACE: Pace = Pace { loading_s: 5e-7, rest_m_s: 2e-3, rest_step_s: 2e-5 };
 
 /// A case is decided where the two paces agree this well, as a share of the speed.
 const CONVERGED: f64 = 5e-4;
@@ -127,34 +129,38 @@ fn speed_m_s(outcome: &Outcome) -> f64 {
     outcome.second_end_m_s.x.hypot(outcome.second_end_m_s.z)
 }
 
+/// What is compared: name, the prediction's value, the simulation's, and the scale of the tolerance.
+type Quantity = (&'static str, fn(&Prediction) -> Option<f64>, fn(&Outcome) -> f64, fn(&Outcome) -> f64);
+
+const QUANTITIES: [Quantity; 5] = [
+    ("speed", |p| p.slap_down_speed_m_s, speed_m_s, speed_m_s),
+    ("horizontal", |p| p.horizontal_velocity_m_s, |o| o.second_end_m_s.x, speed_m_s),
+    ("vertical", |p| p.vertical_velocity_m_s, |o| o.second_end_m_s.z, speed_m_s),
+    ("time", |p| p.flight_time_s, |o| o.time_s, |o| o.time_s),
+    ("angle", |p| p.slap_down_angle_deg.map(f64::to_radians), |o| o.angle_rad, |_| 1.0),
+];
+
 /// Whether two paces say the same, so that their limit can be told.
 fn decided(coarse: &Outcome, fine: &Outcome) -> bool {
     let sure = |o: &Outcome| o.end != End::Open && o.angle_rad.cos().abs() > NEAR_VERTICAL;
-    let close = (speed_m_s(coarse) - speed_m_s(fine)).abs() <= CONVERGED * speed_m_s(fine);
+    let close = QUANTITIES.iter().all(|(_, _, simulated, scale)| {
+        (simulated(coarse) - simulated(fine)).abs() <= CONVERGED * scale(fine)
+    });
     let counted = coarse.touches == fine.touches || fine.rested;
     sure(coarse) && sure(fine) && coarse.end == fine.end && counted && (close || fine.end == End::Never)
 }
 
 /// Quantities of the limit that the prediction misses.
 fn missed(prediction: &Prediction, coarse: &Outcome, fine: &Outcome) -> Vec<&'static str> {
-    let limit = |of: fn(&Outcome) -> f64| 2.0 * of(fine) - of(coarse);
-    let scale_m_s = speed_m_s(fine);
-    let compared = [
-        ("speed", prediction.slap_down_speed_m_s, limit(speed_m_s), scale_m_s),
-        ("horizontal", prediction.horizontal_velocity_m_s, limit(|o| o.second_end_m_s.x), scale_m_s),
-        ("vertical", prediction.vertical_velocity_m_s, limit(|o| o.second_end_m_s.z), scale_m_s),
-        ("time", prediction.flight_time_s, limit(|o| o.time_s), fine.time_s),
-        ("angle", prediction.slap_down_angle_deg, limit(|o| o.angle_rad).to_degrees(), 180.0),
-    ];
     let strikes = fine.end == End::SlapDown;
-    let mut missed: Vec<&str> = compared
-        .into_iter()
-        .filter(|(_, value, limit, scale)| match value {
-            Some(value) => !strikes || (value - limit).abs() > AGREES * scale,
+    let differs = |(_, predicted, simulated, scale): &&Quantity| {
+        let limit = 2.0 * simulated(fine) - simulated(coarse);
+        match predicted(prediction) {
+            Some(value) => !strikes || (value - limit).abs() > AGREES * scale(fine),
             None => strikes,
-        })
-        .map(|(name, ..)| name)
-        .collect();
+        }
+    };
+    let mut missed: Vec<&str> = QUANTITIES.iter().filter(differs).map(|(name, ..)| *name).collect();
     if !fine.rested && prediction.first_end_impacts != fine.touches {
         missed.push("impacts");
     }
@@ -233,4 +239,19 @@ fn lift_off_is_the_limit_of_a_simulated_contact() {
 #[test]
 fn further_impacts_are_the_limit_of_a_simulated_contact() {
     agrees_over_the_grid(Rung::FurtherImpacts, 0.97);
+}
+
+#[test]
+fn wide() {
+    let mut cs = vec![];
+    for (name, body) in bodies() { for a in 0..23 { for k in [0.0, 0.02, 0.1, 0.3, 0.4, 0.6, 0.7, 0.9, 1.0] { for mu in [0.05, 0.2, 0.45, 0.8, 1.0, 1.5, 2.0, f64::INFINITY] { for height_m in [9.0, 0.5] {
+        let contact = if mu.is_finite() { Contact::Coulomb(mu) } else { Contact::Rough };
+        cs.push(Case { name, body, height_m, angle_deg: 1.0 + 4.0 * f64::from(a), contact, k });
+    } } } } }
+    for rung in [Rung::Unilateral, Rung::FurtherImpacts] {
+        let out: Vec<Compared> = cs.par_iter().map(|c| compare(rung, c)).collect();
+        let (mut o, mut d) = (0, 0);
+        for c in out { match c { Compared::Agrees => {}, Compared::Open(w) => { o += 1; println!("OPEN {rung:?} {w}"); }, Compared::Differs(w) => { d += 1; println!("DIFF {rung:?} {w}"); } } }
+        println!("SUM {rung:?} {} open {o} differ {d}", cs.len());
+    }
 }

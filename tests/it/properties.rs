@@ -234,7 +234,8 @@ proptest! {
     /// With k = 0 the held end passes through N = 0, where even this friction slips: for 1e-6 of the way.
     #[test]
     fn large_friction_is_rough_and_none_is_smooth(body in bodies(), drop in drops(), k in restitutions()) {
-        let by = |rung, contact| predict_by(rung, &body, &drop, contact, k);
+        // The closed form is told for rough and smooth only.
+        let by = |rung, contact| Prediction { closed_form_speed_m_s: None, ..predict_by(rung, &body, &drop, contact, k) };
         let share = if k > 0.0 { ROUND_OFF } else { 1e-5 };
         prop_assert_eq!(difference(&by(Rung::Body, Contact::Rough), &by(Rung::Friction, Contact::Coulomb(1e6)), share), None);
         prop_assert_eq!(difference(&by(Rung::Body, Contact::Rough), &by(Rung::Friction, Contact::Rough), ROUND_OFF), None);
@@ -247,7 +248,9 @@ proptest! {
         let below = predict_by(Rung::Friction, &body, &drop, contact, k);
         let above = predict_by(Rung::Unilateral, &body, &drop, contact, k);
         if k > 0.0 || above.regime == FlightRegime::Contact {
-            prop_assert_eq!(difference(&below, &above, ROUND_OFF), None);
+            // With k = 0 one may be integrated and the other closed.
+            let share = if k > 0.0 { ROUND_OFF } else { ROOT };
+            prop_assert_eq!(difference(&below, &above, share), None);
         }
         let closed_m_s = above.closed_form_speed_m_s.zip(above.slap_down_speed_m_s);
         if let (FlightRegime::Contact, Some((closed, followed))) = (above.regime, closed_m_s) {

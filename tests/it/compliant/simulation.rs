@@ -5,7 +5,8 @@
 //! the steps are Moreau's: velocities that obey the constraint and the friction cone at the end of each step. Nothing here knows an impact law.
 
 use super::rigid::{Answer, Motion, Point, Vector};
-use dropcheck::data::{Body, Contact, Drop};
+use super::setting::{End, Law, Outcome, Pace};
+use dropcheck::data::{Body, Drop};
 use std::f64::consts::FRAC_PI_2;
 
 /// Steps of a loading, and of an unloading: the leapfrog's frequency is then off by (π/2/300)²/24, 1e-6.
@@ -23,69 +24,24 @@ const LONGEST_S: f64 = 10.0;
 /// More touches than that are chatter.
 const MOST_TOUCHES: u32 = 3000;
 
-/// What the target does to L.
-#[derive(Clone, Copy, Debug)]
-pub struct Law {
-    /// Share of the normal speed that a touch gives back.
-    pub k: f64,
-    /// Largest ratio of tangential to normal impulse; infinite for rough.
-    pub friction: f64,
-    /// With k = 0 L is held on the target whatever the sign of the force.
-    pub holds: bool,
-    /// L is touched again; else the target is gone once L has left it.
-    pub again: bool,
+/// How L's corner is pressed: the force along the loading line, and along the line back once it has been pressed deepest.
+#[derive(Clone, Copy)]
+struct Crush {
+    loading_n_m: f64,
+    /// Height of the corner at which the loading began, m.
+    free_m: f64,
+    /// Stiffness of the line back, N/m, and the height at which it ends, m.
+    back: Option<(f64, f64)>,
 }
 
-/// The limit that is taken: how short a pulse, how slow a touch that is rest, how short a step at rest.
-#[derive(Clone, Copy, Debug)]
-pub struct Pace {
-    /// Time to the deepest crush, s.
-    pub loading_s: f64,
-    /// A slower touch is rest, m/s.
-    pub rest_m_s: f64,
-    /// Step while L rests, s.
-    pub rest_step_s: f64,
-}
-
-impl Pace {
-    /// The pace with everything at `share`.
-    pub fn times(self, share: f64) -> Self {
-        Self {
-            loading_s: share * self.loading_s,
-            rest_m_s: share * self.rest_m_s,
-            rest_step_s: share * self.rest_step_s,
-        }
+impl Crush {
+    fn force_n(&self, height_m: f64) -> f64 {
+        let loading_n = self.loading_n_m * (self.free_m - height_m);
+        // Pressed deeper than before, it is crushed on.
+        let back_n =
+            self.back.map_or(f64::INFINITY, |(unloading_n_m, left_m)| unloading_n_m * (left_m - height_m));
+        loading_n.min(back_n).max(0.0)
     }
-}
-
-/// How a simulated drop ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// R strikes.
-    SlapDown,
-    /// R comes down past the vertical.
-    Never,
-    /// Neither within the time or the number of touches allowed.
-    Open,
-}
-
-/// What a simulated drop leads to.
-#[derive(Clone, Copy, Debug)]
-pub struct Outcome {
-    /// How it ends.
-    pub end: End,
-    /// R's velocity at the end, m/s.
-    pub second_end_m_s: Vector,
-    /// Inclination at the end, rad.
-    pub angle_rad: f64,
-    /// Time from first contact to the end, s.
-    pub time_s: f64,
-    /// Pulses at L, the first included.
-    pub touches: u32,
-    /// Whether L rested on the target at any time.
-    pub rested: bool,
-    /// Largest rise of the energy over what it was before, as a share of that at first contact.
-    pub energy_rise: f64,
 }
 
 enum Phase {
@@ -110,15 +66,6 @@ struct Simulation<'a> {
     touchable: bool,
     touches: u32,
     rested: bool,
-}
-
-/// The coefficient that a contact law puts on the tangential impulse.
-pub fn friction(contact: Contact) -> f64 {
-    match contact {
-        Contact::Rough => f64::INFINITY,
-        Contact::Smooth => 0.0,
-        Contact::Coulomb(coefficient) => coefficient,
-    }
 }
 
 /// Follows a body from first contact until R strikes or never will.
@@ -241,72 +188,81 @@ impl<'a> Simulation<'a> {
     fn pulse(&mut self) -> Phase {
         self.touches += 1;
         let compliance_per_kg = Answer::of(self.body, &self.motion, self.first_end).by_z.z;
-        let loading_n_m = (FRAC_PI_2 / self.pace.loading_s).powi(2) / compliance_per_kg;
-        let loading_step_s = self.pace.loading_s / PULSE_STEPS;
         let free_m = -self.crushed_m;
+        let crush = Crush {
+            loading_n_m: (FRAC_PI_2 / self.pace.loading_s).powi(2) / compliance_per_kg,
+            free_m,
+            back: None,
+        };
+        let step_s = self.pace.loading_s / PULSE_STEPS;
         for _ in 0..MOST_PULSE_STEPS {
-            let next = self.pulse_step(loading_step_s, |middle| {
-                loading_n_m * (free_m - middle.height_m(self.first_end)).max(0.0)
-            });
+            let (next, taken_s) = self.pulse_step(step_s, crush);
             let (before, after) = (self.sinking_m_s(&self.motion), self.sinking_m_s(&next));
             if after > 0.0 {
                 self.motion = next;
-                self.time_s += loading_step_s;
+                self.time_s += taken_s;
                 continue;
             }
             // The deepest crush lies within this step: end the step there.
-            let last_s = loading_step_s * (before / (before - after)).clamp(0.0, 1.0);
-            self.motion = self.pulse_step(last_s, |middle| {
-                loading_n_m * (free_m - middle.height_m(self.first_end)).max(0.0)
-            });
+            let last_s = taken_s * (before / (before - after)).clamp(0.0, 1.0);
+            let (last, last_s) = self.pulse_step(last_s, crush);
+            self.motion = last;
             self.time_s += last_s;
-            return self.spring_back(loading_n_m, free_m);
+            return self.spring_back(crush);
         }
         Phase::Over(End::Open)
     }
 
     /// The unloading, along a line that gives back k² of the work.
-    fn spring_back(&mut self, loading_n_m: f64, free_m: f64) -> Phase {
-        let deepest_m = (free_m - self.motion.height_m(self.first_end)).max(0.0);
+    fn spring_back(&mut self, crush: Crush) -> Phase {
         let k = self.law.k;
-        let left_m = free_m - deepest_m * (1.0 - k * k);
+        let deepest_m = (crush.free_m - self.motion.height_m(self.first_end)).max(0.0);
+        let left_m = crush.free_m - deepest_m * (1.0 - k * k);
         self.crushed_m = -left_m;
         if k == 0.0 {
             return Phase::Rest;
         }
+        let crush = Crush { back: Some((crush.loading_n_m / (k * k), left_m)), ..crush };
         let step_s = k * self.pace.loading_s / PULSE_STEPS;
-        let mut separated = false;
         for _ in 0..MOST_PULSE_STEPS {
-            let mut force_n = 0.0;
-            let next = self.pulse_step(step_s, |middle| {
-                let spring_m = left_m - middle.height_m(self.first_end);
-                // Pressed deeper than before, it is crushed on.
-                let crushing_n = loading_n_m * (free_m - middle.height_m(self.first_end));
-                force_n = (loading_n_m / (k * k) * spring_m).min(crushing_n).max(0.0);
-                separated = force_n == 0.0;
-                force_n
-            });
-            if separated {
+            if self.motion.drifted(step_s / 2.0).height_m(self.first_end) >= left_m {
                 self.touchable = self.law.again;
                 return Phase::Flight;
             }
+            let (next, taken_s) = self.pulse_step(step_s, crush);
             self.motion = next;
-            self.time_s += step_s;
+            self.time_s += taken_s;
         }
         Phase::Over(End::Open)
     }
 
-    /// Drift, kick, drift; the tangential impulse stops the slip or is as large as friction allows.
-    fn pulse_step(&self, step_s: f64, force_n: impl FnOnce(&Motion) -> f64) -> Motion {
-        let middle = self.motion.drifted(step_s / 2.0).pulled(self.gravity_m_s2, step_s);
-        let normal_n_s = force_n(&middle) * step_s;
-        let answer = Answer::of(self.body, &middle, self.first_end);
-        let mut impulse = Vector { x: answer.stopping_n_s(normal_n_s), z: normal_n_s };
-        if self.law.friction.is_finite() {
-            let most_n_s = self.law.friction * normal_n_s;
-            impulse.x = impulse.x.clamp(-most_n_s, most_n_s);
+    /// Drift, kick, drift. The step ends where the slip does, so that what follows, sticking or the slip the other way, begins
+    /// with a step of its own.
+    fn pulse_step(&self, step_s: f64, crush: Crush) -> (Motion, f64) {
+        let slip_m_s = self.motion.velocity_at_m_s(self.first_end).x;
+        let (next, braked_m_s) = self.kicked(step_s, crush, slip_m_s);
+        let share = slip_m_s / (slip_m_s - braked_m_s);
+        if share > 1e-3 && share < 1.0 {
+            return (self.kicked(share * step_s, crush, slip_m_s).0, share * step_s);
         }
-        middle.pushed(self.body, answer.arm_m, impulse).drifted(step_s / 2.0)
+        (next, step_s)
+    }
+
+    /// The motion after a step whose tangential impulse stops the slip or is as large as friction allows, and the slip that is left
+    /// where friction brakes the slip at first to the end, past zero too.
+    fn kicked(&self, step_s: f64, crush: Crush, slip_m_s: f64) -> (Motion, f64) {
+        let middle = self.motion.drifted(step_s / 2.0).pulled(self.gravity_m_s2, step_s);
+        let normal_n_s = crush.force_n(middle.height_m(self.first_end)) * step_s;
+        let answer = Answer::of(self.body, &middle, self.first_end);
+        let stopping_n_s = answer.stopping_n_s(normal_n_s);
+        if self.law.friction.is_infinite() {
+            let impulse = Vector { x: stopping_n_s, z: normal_n_s };
+            return (middle.pushed(self.body, answer.arm_m, impulse).drifted(step_s / 2.0), slip_m_s);
+        }
+        let most_n_s = self.law.friction * normal_n_s;
+        let impulse = Vector { x: stopping_n_s.clamp(-most_n_s, most_n_s), z: normal_n_s };
+        let next = middle.pushed(self.body, answer.arm_m, impulse).drifted(step_s / 2.0);
+        (next, answer.by_x.x * (-slip_m_s.signum() * most_n_s - stopping_n_s))
     }
 
     fn sinking_m_s(&self, motion: &Motion) -> f64 {
