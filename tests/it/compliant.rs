@@ -26,7 +26,7 @@ const AGREES: f64 = 1e-3;
 /// R comes down on this side of the vertical or on that: nearer to it than this cosine the simulation does not decide.
 const NEAR_VERTICAL: f64 = 0.02;
 
-/// Energy may rise by the leapfrog's own error, (ω dt)²/8 = 3.4e-6 of what the contact stores, and by as much at rest.
+/// Energy may rise by the leapfrog's own error, (ω dt)²/8 = 3e-7 of what the contact stores, and by as much at rest.
 const ENERGY_RISE: f64 = 1e-5;
 
 const ANGLES_DEG: [f64; 9] = [2.0, 5.0, 10.0, 15.0, 25.0, 35.0, 45.0, 60.0, 75.0];
@@ -239,19 +239,4 @@ fn lift_off_is_the_limit_of_a_simulated_contact() {
 #[test]
 fn further_impacts_are_the_limit_of_a_simulated_contact() {
     agrees_over_the_grid(Rung::FurtherImpacts, 0.97);
-}
-
-#[test]
-fn wide() {
-    let mut cs = vec![];
-    for (name, body) in bodies() { for a in 0..23 { for k in [0.0, 0.02, 0.1, 0.3, 0.4, 0.6, 0.7, 0.9, 1.0] { for mu in [0.05, 0.2, 0.45, 0.8, 1.0, 1.5, 2.0, f64::INFINITY] { for height_m in [9.0, 0.5] {
-        let contact = if mu.is_finite() { Contact::Coulomb(mu) } else { Contact::Rough };
-        cs.push(Case { name, body, height_m, angle_deg: 1.0 + 4.0 * f64::from(a), contact, k });
-    } } } } }
-    for rung in [Rung::Unilateral, Rung::FurtherImpacts] {
-        let out: Vec<Compared> = cs.par_iter().map(|c| compare(rung, c)).collect();
-        let (mut o, mut d) = (0, 0);
-        for c in out { match c { Compared::Agrees => {}, Compared::Open(w) => { o += 1; println!("OPEN {rung:?} {w}"); }, Compared::Differs(w) => { d += 1; println!("DIFF {rung:?} {w}"); } } }
-        println!("SUM {rung:?} {} open {o} differ {d}", cs.len());
-    }
 }

@@ -9,8 +9,8 @@ use super::setting::{End, Law, Outcome, Pace};
 use dropcheck::data::{Body, Drop};
 use std::f64::consts::FRAC_PI_2;
 
-/// Steps of a loading, and of an unloading: the leapfrog's frequency is then off by (π/2/300)²/24, 1e-6.
-const PULSE_STEPS: f64 = 300.0;
+/// Steps of a loading, and of an unloading: the leapfrog's frequency is then off by (π/2/1000)²/24, 1e-7.
+const PULSE_STEPS: f64 = 1000.0;
 
 /// A pulse that takes more steps does not end by springing back.
 const MOST_PULSE_STEPS: u32 = 100_000;
@@ -286,6 +286,10 @@ impl<'a> Simulation<'a> {
             self.motion = next;
             self.time_s += step_s;
             self.crushed_m = -self.motion.height_m(self.first_end);
+            if impulse.is_none() && answer.velocity_m_s.z < 0.0 && self.law.friction.is_finite() {
+                // It sinks, and no force of the friction cone holds it: only a pulse stops it (Painlevé).
+                return Phase::Pulse;
+            }
             if impulse.is_none() {
                 self.touchable = self.law.again;
                 return Phase::Flight;
@@ -303,7 +307,8 @@ impl<'a> Simulation<'a> {
         let friction = self.law.friction;
         let stuck = answer.holding_n_s();
         let pushes = |normal_n_s: f64| holds || normal_n_s > 0.0;
-        if friction.is_infinite() || stuck.x.abs() <= friction * stuck.z.abs() {
+        let sticks = friction.is_infinite() || stuck.x.abs() <= friction * stuck.z.abs();
+        if friction.is_infinite() || (sticks && pushes(stuck.z)) {
             return pushes(stuck.z).then_some(stuck);
         }
         // Sliding: friction against the slip that is left, which is why both ways are tried; a held end may also be pulled.
