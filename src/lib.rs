@@ -73,9 +73,8 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
             draft.draw(&signals, &smooth);
             return draft.finish();
         }
-        let compared = predict::bodies(&cask_file.cask)
-            .last()
-            .and_then(|body| compare::compare(body, cask_file, &quantities, &predict::predict_by));
+        let compared =
+            compare::compare(&predict::bodies(&cask_file.cask), cask_file, &quantities, &predict::predict_by);
         if let Some(comparison) = compared.as_ref().and_then(|c| c.1) {
             draft.issues.extend(judge::judge_comparison(&comparison));
         }

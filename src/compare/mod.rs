@@ -13,8 +13,9 @@ const U_INERTIA_STATED: f64 = 0.01;
 /// A rung of the analytical models as a function, such as `predict::predict_by`.
 pub type PredictBy<'a> = &'a dyn Fn(Rung, &Body, &Drop, Contact, f64) -> Prediction;
 
-/// What a rung is asked: the richest body, the cask file and what was measured.
+/// What a rung is asked: the rod and the richest body, the cask file and what was measured.
 struct Scene<'a> {
+    rod: &'a Body,
     body: &'a Body,
     file: &'a CaskFile,
     measured: &'a Quantities,
@@ -23,17 +24,18 @@ struct Scene<'a> {
 
 /// Holds every rung's prediction with the measured k against the measured slap-down speed, simplest first.
 ///
-/// `body` is the richest that the cask file describes. Rod and body are always held against it, a higher rung where it changes the
+/// `bodies` are the rod and, where the cask file describes one, the body. Rod and body are always held against it, a higher rung where it changes the
 /// speed. Returns the choice and, where both speeds exist, the comparison with the model taken. The simplest model wins whose own and
 /// all richer predictions agree.
 #[must_use]
 pub fn compare(
-    body: &Body,
+    bodies: &[Body],
     cask_file: &CaskFile,
     measured: &Quantities,
     predict: PredictBy,
 ) -> Option<(ModelChoice, Option<Comparison>)> {
-    let scene = Scene { body, file: cask_file, measured, predict };
+    let (rod, body) = (bodies.first()?, bodies.last()?);
+    let scene = Scene { rod, body, file: cask_file, measured, predict };
     let candidates = scene.candidates();
     // A simple model that agrees where a richer one does not agrees by luck: the richer ones must agree as well.
     let taken = (0..candidates.len())
@@ -104,16 +106,26 @@ impl Scene<'_> {
         let by_k = change(body, &file.drop, k + measured.k.u95 / 2.0);
         let turned = |by_rad: f64| Drop { angle_rad: (file.drop.angle_rad + by_rad).max(0.0), ..file.drop };
         let by_angle = change(body, &turned(U_ANGLE_RAD), k);
-        let stated =
-            body.model == BodyModel::Body && !file.defaults.iter().any(|d| d == "cask.inertia_kg_m2");
-        let share = if stated { U_INERTIA_STATED } else { U_INERTIA_DEFAULT };
-        let heavier = Body { inertia_kg_m2: body.inertia_kg_m2 * (1.0 + share), ..**body };
-        let by_inertia = change(&heavier, &file.drop, k);
+        let by_inertia = self.by_inertia_m_s(rung, k);
         // While the pulse of duration T lasts the cask turns by about ω T / 2 and gravity adds g T.
         let duration_s = measured.duration.value.max(0.0);
         let turn_rad = -measured.angular_velocity.value * duration_s / 2.0;
         let by_pulse = change(body, &turned(turn_rad), k).abs() + file.drop.gravity_m_s2 * duration_s;
         Some(2.0 * by_k.hypot(by_angle).hypot(by_inertia).hypot(by_pulse / 3.0_f64.sqrt()))
+    }
+
+    /// How a heavier inertia changes the speed, m/s. The rod's own has none to change: it is asked as a body.
+    fn by_inertia_m_s(&self, rung: Rung, k: f64) -> f64 {
+        let stated = self.body.model == BodyModel::Body
+            && !self.file.defaults.iter().any(|default| default == "cask.inertia_kg_m2");
+        let (rung, body, share) = match rung {
+            Rung::Rod => (Rung::Body, self.rod, U_INERTIA_DEFAULT),
+            rung if stated => (rung, self.body, U_INERTIA_STATED),
+            rung => (rung, self.body, U_INERTIA_DEFAULT),
+        };
+        let heavier = Body { inertia_kg_m2: body.inertia_kg_m2 * (1.0 + share), ..*body };
+        let speed = |body: &Body| self.speed_m_s(rung, body, &self.file.drop, k);
+        speed(&heavier).zip(speed(body)).map_or(0.0, |(heavier, as_it_is)| heavier - as_it_is)
     }
 }
 
@@ -244,7 +256,7 @@ mod tests {
             inertia_kg_m2: 1.0,
         };
         let (choice, comparison) =
-            compare(&body, &file(), &quantities(measured_m_s), &predict).expect("two models");
+            compare(&[body, body], &file(), &quantities(measured_m_s), &predict).expect("two models");
         (choice.name, comparison.expect("both speeds").agrees)
     }
 
