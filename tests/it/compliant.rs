@@ -112,6 +112,8 @@ fn as_seen_by(rung: Rung, case: &Case) -> (Body, Law) {
         k: case.k,
         friction: if rung < Rung::Friction { ideal } else { coefficient },
         holds: rung < Rung::Unilateral,
+        // That rung flies from where a stuck end would need a pull, the limit k → 0 of one flight.
+        lets_go: rung == Rung::Unilateral,
         again: rung == Rung::FurtherImpacts,
     };
     (body, law)

@@ -152,10 +152,15 @@ impl Answer {
         }
     }
 
+    /// The point's slip after an impulse, m/s.
+    pub fn slip_after_m_s(&self, impulse_n_s: Vector) -> f64 {
+        self.velocity_m_s.x + self.by_x.x * impulse_n_s.x + self.by_z.x * impulse_n_s.z
+    }
+
     /// The impulse along (`slope`, 1) that leaves no normal velocity, N s, and the slip after it, m/s.
     pub fn sliding_n_s(&self, slope: f64) -> (Vector, f64) {
         let z = -self.velocity_m_s.z / (self.by_z.z + slope * self.by_x.z);
         let impulse = Vector { x: slope * z, z };
-        (impulse, self.velocity_m_s.x + self.by_x.x * impulse.x + self.by_z.x * impulse.z)
+        (impulse, self.slip_after_m_s(impulse))
     }
 }

@@ -12,6 +12,8 @@ pub struct Law {
     pub friction: f64,
     /// With k = 0 L is held on the target whatever the sign of the force.
     pub holds: bool,
+    /// L is let go for good where it does not slide and would have to be pulled to go on so, even if it could slide on.
+    pub lets_go: bool,
     /// L is touched again; else the target is gone once L has left it.
     pub again: bool,
 }

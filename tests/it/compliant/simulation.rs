@@ -273,10 +273,16 @@ impl<'a> Simulation<'a> {
     fn rest(&mut self) -> Phase {
         self.rested = true;
         let step_s = self.pace.rest_step_s;
+        let mut slip_m_s = self.motion.velocity_at_m_s(self.first_end).x;
+        // The constraint holds at the middle of each step: up to the first middle gravity has half a step.
+        let mut pull_s = step_s / 2.0;
         while self.time_s < LONGEST_S {
-            let middle = self.motion.drifted(step_s / 2.0).pulled(self.gravity_m_s2, step_s);
+            let middle = self.motion.drifted(step_s / 2.0).pulled(self.gravity_m_s2, pull_s);
+            pull_s = step_s;
             let answer = Answer::of(self.body, &middle, self.first_end);
-            let impulse = self.resting_n_s(&answer);
+            let let_go = self.law.lets_go && self.needs_pull(&answer, slip_m_s);
+            let impulse = if let_go { None } else { self.resting_n_s(&answer) };
+            slip_m_s = answer.slip_after_m_s(impulse.unwrap_or(Vector { x: 0.0, z: 0.0 }));
             let pushed = impulse.map_or(middle, |i| middle.pushed(self.body, answer.arm_m, i));
             let next = pushed.drifted(step_s / 2.0);
             if self.second_end_strikes(&next) {
@@ -286,14 +292,17 @@ impl<'a> Simulation<'a> {
             self.motion = next;
             self.time_s += step_s;
             self.crushed_m = -self.motion.height_m(self.first_end);
-            if impulse.is_none() && answer.velocity_m_s.z < 0.0 && self.law.friction.is_finite() {
+            if impulse.is_some() {
+                continue;
+            }
+            // Free from the middle on: gravity's half step of the beginning is made up for.
+            self.motion = self.motion.pulled(self.gravity_m_s2, step_s / 2.0);
+            if answer.velocity_m_s.z < 0.0 && self.law.friction.is_finite() && !self.law.lets_go {
                 // It sinks, and no force of the friction cone holds it: only a pulse stops it (Painlevé).
                 return Phase::Pulse;
             }
-            if impulse.is_none() {
-                self.touchable = self.law.again;
-                return Phase::Flight;
-            }
+            self.touchable = self.law.again;
+            return Phase::Flight;
         }
         Phase::Over(End::Open)
     }
@@ -319,6 +328,13 @@ impl<'a> Simulation<'a> {
             }
         }
         None
+    }
+
+    /// Whether L, which slid like this a step ago, does not slide and would have to be pulled to go on so.
+    fn needs_pull(&self, answer: &Answer, slip_m_s: f64) -> bool {
+        let from_rest = Vector { x: answer.velocity_m_s.x - slip_m_s, ..answer.velocity_m_s };
+        let slides = slip_m_s.abs() > self.pace.rest_m_s || self.law.friction == 0.0;
+        !slides && Answer { velocity_m_s: from_rest, ..*answer }.holding_n_s().z <= 0.0
     }
 
     /// The motion where R reaches the target within a step, on the line between its ends.
