@@ -1,13 +1,20 @@
 //! From any body, angle, k and friction to what every prediction must obey: finite numbers, momentum, energy, and the rung below.
 
 use crate::compliant::rigid::{Motion, Point, Vector};
-use dropcheck::data::{Body, BodyModel, Contact, Drop, FlightRegime, Prediction, Rung};
+use dropcheck::data::{Body, BodyModel, Contact, Drop, FlightRegime, GRAZE_SHARE, Prediction, Rung};
 use dropcheck::predict::{predict, predict_by, predict_grazing};
 use proptest::prelude::*;
-use proptest::test_runner::Config;
+use proptest::test_runner::{Config, RngSeed};
 
 /// Round-off of a chain of a hundred operations, as a share of the quantity's scale.
 const ROUND_OFF: f64 = 1e-12;
+
+/// A rest on the target is integrated in steps of 0.01 rad by a method of fourth order: 1e-8, and a hundred times that for a body that
+/// turns slowly at first or about an end far from its centre.
+const INTEGRATED: f64 = 1e-6;
+
+/// Friction this large is rough but where a held end passes through N = 0: it slips there for as long as |N| < |T| / μ.
+const LARGE: f64 = 1e6;
 
 /// The slap-down time is a root found to 1e-12 of its scale or so, and velocities change by g and ω² l times that.
 const ROOT: f64 = 1e-9;
@@ -52,8 +59,9 @@ fn drops() -> impl Strategy<Value = Drop> {
     })
 }
 
+/// k with its ends. A rebound below 0.3 mm/s counts as rest, whatever the rung: k below that of the slowest drop is left out.
 fn restitutions() -> impl Strategy<Value = f64> {
-    prop_oneof![6 => 0.0..1.0_f64, 2 => Just(0.0), 1 => Just(1.0), 1 => 0.0..1e-3_f64]
+    prop_oneof![6 => 1e-3..1.0_f64, 2 => Just(0.0), 1 => Just(1.0), 1 => 1e-3..1e-2_f64]
 }
 
 fn contacts() -> impl Strategy<Value = Contact> {
@@ -141,16 +149,16 @@ fn coefficient(rung: Rung, contact: Contact) -> f64 {
     }
 }
 
-/// A thousand predictions a rung: the whole file takes a second.
+/// Some thousands of predictions a rung, the same in every run: a failure stays until it is mended.
 fn config() -> Config {
-    Config { cases: 1000, failure_persistence: None, ..Config::default() }
+    Config { cases: 4000, failure_persistence: None, rng_seed: RngSeed::Fixed(3), ..Config::default() }
 }
 
 proptest! {
     #![proptest_config(config())]
 
     #[test]
-    fn every_number_is_finite(body in bodies(), drop in drops(), contact in contacts(), k in restitutions()) {
+    fn every_number_is_finite(body in bodies(), drop in drops(), contact in contacts(), k in prop_oneof![restitutions(), 0.0..1e-3_f64]) {
         let grazing = predict_grazing(&body, &drop, contact, k, 0.0);
         let by_rung = Rung::ALL.map(|rung| predict_by(rung, &body, &drop, contact, k));
         for p in by_rung.iter().chain([&grazing]) {
@@ -175,6 +183,16 @@ proptest! {
             prop_assert!(z <= ROUND_OFF * speed, "R strikes upwards: {p:?}");
             let angle_deg = p.slap_down_angle_deg.unwrap_or(f64::NAN);
             prop_assert!(angle_deg.to_radians().cos() > -ROUND_OFF, "past the vertical: {p:?}");
+        }
+    }
+
+    /// L may lie below the target by a graze; where every touch counts it may not.
+    #[test]
+    fn r_strikes_with_l_on_or_above_the_target(body in bodies(), drop in drops(), contact in contacts(), k in restitutions()) {
+        for (graze_share, least) in [(GRAZE_SHARE, GRAZE_SHARE), (0.0, 1e-6)] {
+            let p = predict_grazing(&body, &drop, contact, k, graze_share);
+            let Some(angle_deg) = p.slap_down_angle_deg else { continue };
+            prop_assert!(angle_deg.to_radians().sin() <= least, "{graze_share} {p:?}");
         }
     }
 
@@ -216,9 +234,10 @@ proptest! {
             let turned = before.pushed(&seen, before.arm_m(Point::first_end(&seen)), impulse);
             prop_assert!(near(turned.turn_rad_s * seen.length_m, up.turn_rad_s * seen.length_m), "moment: {rung:?} {p:?}");
             prop_assert!(impulse.z > 0.0, "a pull: {rung:?} {p:?}");
-            prop_assert!(near(impulse.x, p.impulse_ratio * impulse.z) || (impulse.x - p.impulse_ratio * impulse.z).abs() <= ROOT * impulse.z, "{rung:?} {p:?}");
+            let of_impulse = (impulse.x - p.impulse_ratio * impulse.z).abs() / impulse.z;
+            prop_assert!(of_impulse <= ROOT * scale_m_s / drop.impact_velocity_m_s, "{rung:?} {p:?}");
             let most = coefficient(rung, contact);
-            prop_assert!(most.is_infinite() || impulse.x.abs() <= most * impulse.z + ROOT * impulse.z, "friction: {rung:?} {p:?}");
+            prop_assert!(most.is_infinite() || impulse.x.abs() <= most * impulse.z * (1.0 + ROOT) + ROOT * impulse.z, "friction: {rung:?} {p:?}");
             prop_assert!(!p.sticks || near(corner.x, 0.0), "slips: {rung:?} {p:?}");
             prop_assert!(p.sticks || corner.x * impulse.x <= ROOT * scale_m_s * impulse.z, "friction pushes: {rung:?} {p:?}");
         }
@@ -231,16 +250,16 @@ proptest! {
         prop_assert_eq!(difference(&below, &above, ROUND_OFF), None);
     }
 
-    /// With k = 0 the held end passes through N = 0, where even this friction slips: for 1e-6 of the way.
     #[test]
     fn large_friction_is_rough_and_none_is_smooth(body in bodies(), drop in drops(), k in restitutions()) {
         // The closed form is told for rough and smooth only.
         let by = |rung, contact| Prediction { closed_form_speed_m_s: None, ..predict_by(rung, &body, &drop, contact, k) };
-        let share = if k > 0.0 { ROUND_OFF } else { 1e-5 };
-        prop_assert_eq!(difference(&by(Rung::Body, Contact::Rough), &by(Rung::Friction, Contact::Coulomb(1e6)), share), None);
+        let share = if k > 0.0 { ROUND_OFF } else { 10.0 / LARGE };
+        let exact = if k > 0.0 { ROUND_OFF } else { INTEGRATED };
+        prop_assert_eq!(difference(&by(Rung::Body, Contact::Rough), &by(Rung::Friction, Contact::Coulomb(LARGE)), share), None);
         prop_assert_eq!(difference(&by(Rung::Body, Contact::Rough), &by(Rung::Friction, Contact::Rough), ROUND_OFF), None);
-        prop_assert_eq!(difference(&by(Rung::Body, Contact::Smooth), &by(Rung::Friction, Contact::Coulomb(0.0)), ROUND_OFF), None);
-        prop_assert_eq!(difference(&by(Rung::Body, Contact::Smooth), &by(Rung::Friction, Contact::Smooth), ROUND_OFF), None);
+        prop_assert_eq!(difference(&by(Rung::Body, Contact::Smooth), &by(Rung::Friction, Contact::Coulomb(0.0)), exact), None);
+        prop_assert_eq!(difference(&by(Rung::Body, Contact::Smooth), &by(Rung::Friction, Contact::Smooth), exact), None);
     }
 
     #[test]
@@ -249,12 +268,12 @@ proptest! {
         let above = predict_by(Rung::Unilateral, &body, &drop, contact, k);
         if k > 0.0 || above.regime == FlightRegime::Contact {
             // With k = 0 one may be integrated and the other closed.
-            let share = if k > 0.0 { ROUND_OFF } else { ROOT };
+            let share = if k > 0.0 { ROUND_OFF } else { INTEGRATED };
             prop_assert_eq!(difference(&below, &above, share), None);
         }
         let closed_m_s = above.closed_form_speed_m_s.zip(above.slap_down_speed_m_s);
         if let (FlightRegime::Contact, Some((closed, followed))) = (above.regime, closed_m_s) {
-            prop_assert!((closed - followed).abs() <= ROOT * followed, "{above:?}");
+            prop_assert!((closed - followed).abs() <= INTEGRATED * followed, "{above:?}");
         }
     }
 
@@ -263,7 +282,9 @@ proptest! {
         let below = predict_by(Rung::Unilateral, &body, &drop, contact, k);
         for above in [predict(&body, &drop, contact, k), predict_by(Rung::FurtherImpacts, &body, &drop, contact, k),
             predict_grazing(&body, &drop, contact, k, 0.0)] {
-            if above.first_end_impacts == 1 && above.regime != FlightRegime::Mixed {
+            // With k > 0 the bouncing may have died out on the target.
+            let one_flight = above.regime == FlightRegime::Free || (above.regime == FlightRegime::Contact && k == 0.0);
+            if above.first_end_impacts == 1 && one_flight {
                 prop_assert_eq!(difference(&below, &above, ROUND_OFF), None);
             }
         }

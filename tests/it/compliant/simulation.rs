@@ -9,8 +9,8 @@ use super::setting::{End, Law, Outcome, Pace};
 use dropcheck::data::{Body, Drop};
 use std::f64::consts::FRAC_PI_2;
 
-/// Steps of a loading, and of an unloading: the leapfrog's frequency is then off by (π/2/1000)²/24, 1e-7.
-const PULSE_STEPS: f64 = 1000.0;
+/// Steps of a loading, and of an unloading: the leapfrog's frequency is then off by (π/2/500)²/24, 4e-7.
+const PULSE_STEPS: f64 = 500.0;
 
 /// A pulse that takes more steps does not end by springing back.
 const MOST_PULSE_STEPS: u32 = 100_000;
