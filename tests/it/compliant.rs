@@ -87,7 +87,27 @@ fn cases() -> Vec<Case> {
             }
         }
     }
+    cases.extend(turned_over());
     cases
+}
+
+/// Bodies that turn over and come to rest on L beyond the vertical: R strikes after a whole turn, or on the other side.
+fn turned_over() -> [Case; 4] {
+    let case = |[length_m, height_m, cog_m, inertia_kg_m2]: [f64; 4],
+                [height, angle_deg, friction, k]: [f64; 4]| Case {
+        name: "turned over",
+        body: Body { model: BodyModel::Body, mass_kg: 100.0, length_m, height_m, cog_m, inertia_kg_m2 },
+        height_m: height,
+        angle_deg,
+        contact: Contact::Coulomb(friction),
+        k,
+    };
+    [
+        case([3.2707, 0.36289, 1.72251, 128.895], [16.8648, 62.1794, 0.46554, 0.48575]),
+        case([4.4362, 0.37019, 2.64054, 162.679], [17.8947, 69.3842, 0.83456, 0.64766]),
+        case([1.20803, 0.01847, 0.84266, 17.739], [14.1752, 74.3277, 1.99489, 0.35126]),
+        case([2.66184, 0.59409, 0.82071, 65.8717], [8.32372, 49.8097, 0.68318, 0.57932]),
+    ]
 }
 
 fn drop_of(case: &Case) -> Drop {

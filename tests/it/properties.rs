@@ -151,7 +151,7 @@ fn coefficient(rung: Rung, contact: Contact) -> f64 {
 
 /// Some thousands of predictions a rung, the same in every run: a failure stays until it is mended.
 fn config() -> Config {
-    Config { cases: 4000, failure_persistence: None, rng_seed: RngSeed::Fixed(3), ..Config::default() }
+    Config { cases: 4000, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..Config::default() }
 }
 
 proptest! {
