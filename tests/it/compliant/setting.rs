@@ -20,6 +20,7 @@ pub struct Law {
 
 /// The limit that is taken: how short a pulse, how slow a touch that is rest, how short a step at rest.
 #[derive(Clone, Copy, Debug)]
+#[allow(clippy::struct_field_names, reason = "the end of each name is its unit")]
 pub struct Pace {
     /// Time to the deepest crush, s.
     pub loading_s: f64,
