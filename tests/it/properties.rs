@@ -13,7 +13,7 @@ const ROUND_OFF: f64 = 1e-12;
 /// turns slowly at first or about an end far from its centre.
 const INTEGRATED: f64 = 1e-6;
 
-/// Friction this large is rough but where a held end passes through N = 0: it slips there for as long as |N| < |T| / μ.
+/// Friction this large is rough, but where a held end passes through N = 0: there it slips, and may go on with T alone.
 const LARGE: f64 = 1e6;
 
 /// The slap-down time is a root found to 1e-12 of its scale or so, and velocities change by g and ω² l times that.
@@ -93,8 +93,9 @@ fn numbers(prediction: &Prediction) -> Vec<(&'static str, f64)> {
     .collect()
 }
 
-/// Share of the flight time that the quadrature for a held end may miss where it starts near its balance and so at a crawl.
-const CRAWL: f64 = 1e-3;
+/// A held body that starts near its balance crawls at first, rad/s, and its time is a quadrature over almost a pole: it is taken to
+/// this share, and from slower starts not at all.
+const CRAWL: (f64, f64) = (1e-2, 1e-3);
 
 /// Where two predictions for the same drop differ by more than `share` of each quantity's size (at least 1 in its unit).
 fn difference(a: &Prediction, b: &Prediction, share: f64) -> Option<String> {
@@ -102,7 +103,11 @@ fn difference(a: &Prediction, b: &Prediction, share: f64) -> Option<String> {
     let same = a_numbers.len() == b_numbers.len()
         && a_numbers.iter().zip(&b_numbers).all(|((name, x), (other, y))| {
             let crawls = *name == "flight_time_s" && share > ROUND_OFF;
-            let share = if crawls { CRAWL } else { share };
+            let share = match (crawls, a.angular_velocity_rad_s.abs() < CRAWL.0) {
+                (true, true) => f64::INFINITY,
+                (true, false) => CRAWL.1,
+                (false, _) => share,
+            };
             name == other && (x - y).abs() <= share * x.abs().max(y.abs()).max(1.0)
         });
     let alike = same && a.first_end_impacts == b.first_end_impacts && a.regime == b.regime;
@@ -156,7 +161,7 @@ fn coefficient(rung: Rung, contact: Contact) -> f64 {
 
 /// Some thousands of predictions a rung, the same in every run: a failure stays until it is mended.
 fn config() -> Config {
-    Config { cases: 4000, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..Config::default() }
+    Config { cases: 8000, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..Config::default() }
 }
 
 proptest! {
@@ -259,9 +264,10 @@ proptest! {
     fn large_friction_is_rough_and_none_is_smooth(body in bodies(), drop in drops(), k in restitutions()) {
         // The closed form is told for rough and smooth only.
         let by = |rung, contact| Prediction { closed_form_speed_m_s: None, ..predict_by(rung, &body, &drop, contact, k) };
-        let share = if k > 0.0 { ROUND_OFF } else { 10.0 / LARGE };
         let exact = if k > 0.0 { ROUND_OFF } else { INTEGRATED };
-        prop_assert_eq!(difference(&by(Rung::Body, Contact::Rough), &by(Rung::Friction, Contact::Coulomb(LARGE)), share), None);
+        if k > 0.0 || by(Rung::Unilateral, Contact::Rough).regime == FlightRegime::Contact {
+            prop_assert_eq!(difference(&by(Rung::Body, Contact::Rough), &by(Rung::Friction, Contact::Coulomb(LARGE)), exact), None);
+        }
         prop_assert_eq!(difference(&by(Rung::Body, Contact::Rough), &by(Rung::Friction, Contact::Rough), ROUND_OFF), None);
         prop_assert_eq!(difference(&by(Rung::Body, Contact::Smooth), &by(Rung::Friction, Contact::Coulomb(0.0)), exact), None);
         prop_assert_eq!(difference(&by(Rung::Body, Contact::Smooth), &by(Rung::Friction, Contact::Smooth), exact), None);
