@@ -1,8 +1,10 @@
 //! From the built program, the sources and the fixtures to the promises that hold across modules.
 
 mod command_line;
+mod compliant;
 mod fixtures;
 mod golden;
+mod properties;
 mod reference;
 mod run;
 mod tidy;
