@@ -2,8 +2,8 @@
 
 use super::impact::strike_first_end;
 use super::path::Way;
-use super::resting::{Hold, Support};
 use super::state::{Number, State, second_end_m};
+use super::support::{Hold, Support};
 use crate::data::{Body, Contact, Drop, GRAZE_SHARE, SpeedGradient};
 use num_dual::Dual64;
 

@@ -4,7 +4,7 @@ use super::state::{State, arms_m};
 use crate::data::Body;
 use crate::numerics::quadrature::simpson;
 
-/// Where the time integral begins, share of the way: at rest its integrand is 0/0.
+/// Where the time integral begins, share of the way: at rest its integrand is 0/0. Also the ω, rad/s, below which it never ends.
 const STILL: f64 = 1e-9;
 
 /// Motion just before R strikes and the time it takes, s; `None` where the axis never lies flat.
@@ -27,7 +27,8 @@ pub(super) fn to_second_end(
         let gained = 2.0 * m * gravity_m_s2 * (height_m(state.angle_rad) - height_m(angle_rad));
         ((start + gained) / moment(angle_rad)).max(0.0).sqrt()
     };
-    if state.angular_velocity_rad_s < 0.0 {
+    let stands = state.angular_velocity_rad_s < STILL && state.angle_rad > 0.0;
+    if state.angular_velocity_rad_s < 0.0 || stands {
         return None;
     }
     let w = spin_rad_s(0.0);

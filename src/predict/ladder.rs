@@ -2,8 +2,9 @@
 
 use super::impact::{Struck, strike_first_end};
 use super::path::{Outcome, Way};
-use super::resting::{End, Hold, Support};
+use super::resting::End;
 use super::state::{State, second_end_m};
+use super::support::{Hold, Support};
 use super::{held, predict, rod, thin_rod};
 use crate::data::{
     Body, Contact, Drop, FlightRegime, LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Prediction, Rung,
@@ -84,7 +85,7 @@ impl Case<'_> {
         let start = self.start();
         let struck = impact(self.body, &start, self.contact, self.k);
         let outcome = if self.k <= 0.0 { self.held(&struck.after) } else { self.one_flight(&struck) };
-        self.prediction(&start, &struck, outcome)
+        self.prediction(&start, &struck, &outcome)
     }
 
     /// k = 0: L on the target while it pushes, then one flight; else one flight.
@@ -92,7 +93,7 @@ impl Case<'_> {
         let start = self.start();
         let struck = strike_first_end(self.body, &start, self.contact, self.k);
         let outcome = self.one_flight(&struck);
-        self.prediction(&start, &struck, outcome)
+        self.prediction(&start, &struck, &outcome)
     }
 
     fn one_flight(&self, struck: &Struck<f64>) -> Outcome<f64> {
@@ -103,7 +104,7 @@ impl Case<'_> {
     fn held(&self, after: &State<f64>) -> Outcome<f64> {
         let second_end = match self.contact {
             Contact::Coulomb(_) => match self.support(Hold::Pulls).rest(after) {
-                End::SecondEnd(at, time_s) => Some((at, time_s)),
+                End::Strikes(at, time_s) => Some((at, time_s)),
                 End::LiftsOff(..) | End::Never => None,
             },
             _ => self.closed_form(after),
@@ -127,7 +128,7 @@ impl Case<'_> {
     }
 
     /// What is told of a way that began with `start` and its first impact.
-    pub fn prediction(&self, start: &State<f64>, struck: &Struck<f64>, outcome: Outcome<f64>) -> Prediction {
+    pub fn prediction(&self, start: &State<f64>, struck: &Struck<f64>, outcome: &Outcome<f64>) -> Prediction {
         let at = outcome.second_end.as_ref().map(|(state, _)| state);
         let corner = at.map(|state| state.corner(self.body, second_end_m(self.body)));
         Prediction {

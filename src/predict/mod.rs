@@ -10,6 +10,7 @@ mod resting;
 mod rod;
 mod state;
 mod study;
+mod support;
 
 pub use gradient::speed_gradient;
 pub use ladder::{ladder, predict_by};
@@ -18,8 +19,8 @@ pub use study::{default_uncertain, study};
 use crate::data::{Body, BodyModel, Cask, Contact, Drop, GRAZE_SHARE, Prediction, Rung};
 use impact::strike_first_end;
 use path::Way;
-use resting::{Hold, Support};
 use state::State;
+use support::{Hold, Support};
 
 /// The rod or body of a cask: the rod is thin and uniform whatever else the cask file says.
 #[must_use]
@@ -78,7 +79,7 @@ pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, graze
     let support = Support { body, gravity_m_s2: drop.gravity_m_s2, contact, hold: Hold::Pushes };
     let way = Way { support, graze_m: Some(graze_share * body.length_m) };
     let outcome = way.follow(struck.after, k);
-    ladder::Case { body, drop, contact, k }.prediction(&start, &struck, outcome)
+    ladder::Case { body, drop, contact, k }.prediction(&start, &struck, &outcome)
 }
 
 /// The four borderline cases of the paper: rough and smooth, k = 0 and k = 1.

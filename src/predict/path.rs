@@ -2,8 +2,9 @@
 
 use super::flight::{first_end_touches, second_end_touches, sinks};
 use super::impact::strike_first_end;
-use super::resting::{End, Hold, Support};
+use super::resting::End;
 use super::state::{Number, State, second_end_m};
+use super::support::{Hold, Support};
 use crate::data::FlightRegime;
 
 /// More impacts of L than this before R strikes count as bouncing without end: with k ≤ 0.96 the last rebound is below [`REST_M_S`].
@@ -42,7 +43,7 @@ impl Way<'_> {
             if self.rests(&state) {
                 let (end, held) = self.rest(&state);
                 match end {
-                    End::SecondEnd(at, time_s) => {
+                    End::Strikes(at, time_s) => {
                         let whole = held && outcome.impacts == 1 && elapsed_s.re() == 0.0;
                         outcome.regime = if whole { FlightRegime::Contact } else { FlightRegime::Mixed };
                         outcome.second_end = Some((at, elapsed_s + time_s));
@@ -94,7 +95,7 @@ impl Way<'_> {
             return (End::LiftsOff(at, time_s), true);
         }
         let end = match (Support { hold: Hold::Yields, ..self.support }).rest(&at) {
-            End::SecondEnd(at, more_s) => End::SecondEnd(at, time_s + more_s),
+            End::Strikes(at, more_s) => End::Strikes(at, time_s + more_s),
             End::LiftsOff(at, more_s) => End::LiftsOff(at, time_s + more_s),
             End::Never => End::Never,
         };

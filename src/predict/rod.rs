@@ -9,7 +9,9 @@ use crate::data::{Body, Contact};
 /// `body` is a thin uniform rod; any friction counts as rough.
 pub(super) fn table_1(body: &Body, before: &State<f64>, contact: Contact, k: f64) -> Struck<f64> {
     let (l, v0) = (body.length_m, -before.vertical_velocity_m_s);
-    let (sin, cos) = before.angle_rad.sin_cos();
+    let (a, b) = arms_m(body, before.angle_rad, body.cog_m);
+    // a = (l/2) cos φ0, b = (l/2) sin φ0
+    let (sin, cos) = (2.0 * b / l, 2.0 * a / l);
     let smooth = contact == Contact::Smooth;
     // rough ω2 = 3 (1 + k) v0 cos φ0 / (2 l), smooth ω2 = 6 (1 + k) v0 cos φ0 / (l (3 cos² φ0 + 1))
     let w = if smooth {
@@ -24,7 +26,6 @@ pub(super) fn table_1(body: &Body, before: &State<f64>, contact: Contact, k: f64
         angular_velocity_rad_s: w,
         ..*before
     };
-    let (a, b) = arms_m(body, before.angle_rad, body.cog_m);
     Struck {
         after,
         horizontal_impulse_n_s: body.mass_kg * after.horizontal_velocity_m_s,

@@ -53,6 +53,11 @@ impl<T: Number> State<T> {
         }
     }
 
+    /// The same motion after a turn about S by `angle_rad`.
+    pub fn turned(&self, angle_rad: f64) -> Self {
+        Self { angle_rad: self.angle_rad + angle_rad, ..*self }
+    }
+
     /// The motion without its derivatives.
     pub fn real(&self) -> State<f64> {
         State {

@@ -1,0 +1,206 @@
+//! L on the target to the force that holds it, and to how it turns and slides: one step of its motion.
+
+use super::impact::coefficient;
+use super::state::{Number, State, arms_m};
+use crate::data::{Body, Contact};
+
+/// A corner that slides slower than this, m/s, was stopped by the impact but for round-off.
+const STOPPED_M_S: f64 = 1e-9;
+
+/// Rough contact while L rests: with more friction the normal force of a sliding corner falls below a millionth of the weight.
+const ROUGH: f64 = 1e6;
+
+/// The target L rests on, and what holds it there.
+#[derive(Clone, Copy)]
+pub(super) struct Support<'a> {
+    pub body: &'a Body,
+    pub gravity_m_s2: f64,
+    pub contact: Contact,
+    pub hold: Hold,
+}
+
+/// When the target lets go of L.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Hold {
+    /// Never: it pulls as well as it pushes, as in [P] Table 2.
+    Pulls,
+    /// Where holding L as it moves, stuck or sliding, would need a pull   (10)
+    Pushes,
+    /// Where L would rise by itself, g < b ω². A stuck corner that only a pull would hold slides before that.
+    Yields,
+}
+
+/// Inclination, ω and the sliding velocity of L's corner.
+#[derive(Clone, Copy)]
+pub(super) struct Turning<T> {
+    pub angle_rad: T,
+    pub angular_velocity_rad_s: T,
+    pub slip_m_s: T,
+}
+
+/// How the corner meets the target.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Grip {
+    Sticks,
+    /// Slides one way, ±1, with this T/N.
+    Slides {
+        way: f64,
+        ratio: f64,
+    },
+    /// The friction presses the corner on without bound (Painlevé): it stops at once.
+    Jams,
+}
+
+/// What the target does and what follows.
+#[allow(clippy::struct_field_names, reason = "the fields end in their units")]
+pub(super) struct Forces<T> {
+    /// N/m, m/s².
+    pub normal_m_s2: T,
+    /// ω̇, rad/s².
+    pub angular_acceleration_rad_s2: T,
+    /// ẍ_C, m/s².
+    pub slip_rate_m_s2: T,
+}
+
+impl Support<'_> {
+    /// With z̈_C = 0: N/m = g − a ω̇ − b ω²   (10); stuck, ẍ_C = 0: ω̇ = a g/(r² + a² + b²); sliding, T = r_T N:
+    /// ω̇ = (a − r_T b)(g − b ω²)/(r² + a (a − r_T b)), ẍ_C = r_T N/m − b ω̇ + a ω².
+    pub fn forces<T: Number>(&self, at: &Turning<T>, grip: Grip) -> Forces<T> {
+        let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
+        let r2 = self.body.inertia_kg_m2 / self.body.mass_kg;
+        let w2 = at.angular_velocity_rad_s.powi(2);
+        let spin = match grip {
+            Grip::Slides { ratio, .. } => {
+                let arm = a - b * ratio;
+                -arm * (b * w2 - self.gravity_m_s2) / (a * arm + r2)
+            }
+            Grip::Sticks | Grip::Jams => a * self.gravity_m_s2 / (a * a + b * b + r2),
+        };
+        let normal_m_s2 = -(a * spin + b * w2) + self.gravity_m_s2;
+        let slip_rate_m_s2 = match grip {
+            Grip::Slides { ratio, .. } => normal_m_s2 * ratio - b * spin + a * w2,
+            Grip::Sticks | Grip::Jams => T::from(0.0),
+        };
+        Forces { normal_m_s2, angular_acceleration_rad_s2: spin, slip_rate_m_s2 }
+    }
+
+    fn friction(&self) -> f64 {
+        coefficient(self.contact).min(ROUGH)
+    }
+
+    /// The friction that holds a stuck corner, T/m = b ω̇ − a ω², and how much of it N leaves over, m/s².
+    fn held_m_s2(&self, at: &Turning<f64>) -> (f64, f64) {
+        let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
+        let stuck = self.forces(at, Grip::Sticks);
+        let held = b * stuck.angular_acceleration_rad_s2 - a * at.angular_velocity_rad_s.powi(2);
+        let normal = match self.hold {
+            Hold::Pulls => stuck.normal_m_s2.abs(),
+            Hold::Pushes | Hold::Yields => stuck.normal_m_s2,
+        };
+        // Rough sticks as long as it is held at all.
+        let left = match (self.contact, self.hold) {
+            (Contact::Rough, Hold::Pulls | Hold::Pushes) => f64::INFINITY,
+            (Contact::Rough, Hold::Yields) => normal,
+            _ => self.friction() * normal - held.abs(),
+        };
+        (held, left)
+    }
+
+    /// Whether the corner sticks, and against what it slides if not.
+    pub fn grip<T: Number>(&self, at: &Turning<T>) -> Grip {
+        let (a, b) = arms_m(self.body, at.angle_rad.re(), self.body.cog_m);
+        let real = at.real();
+        if real.slip_m_s == 0.0 {
+            let (held_m_s2, left_m_s2) = self.held_m_s2(&real);
+            let lets_go = self.hold == Hold::Pushes && self.forces(&real, Grip::Sticks).normal_m_s2 <= 0.0;
+            if left_m_s2 >= 0.0 || lets_go {
+                return Grip::Sticks;
+            }
+            let way = -held_m_s2.signum();
+            return Grip::Slides { way, ratio: self.ratio(&real, way) };
+        }
+        let way = real.slip_m_s.signum();
+        let ratio = self.ratio(&real, way);
+        let r2 = self.body.inertia_kg_m2 / self.body.mass_kg;
+        if r2 + a * (a - ratio * b) <= 1e-9 * r2 { Grip::Jams } else { Grip::Slides { way, ratio } }
+    }
+
+    /// T/N of a corner that slides `way`; a target that pulls turns its sign. N has the sign of g − b ω².
+    fn ratio(&self, at: &Turning<f64>, way: f64) -> f64 {
+        let (_, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
+        let pushes = self.gravity_m_s2 - b * at.angular_velocity_rad_s.powi(2);
+        -self.friction() * way * if self.hold == Hold::Pulls { pushes.signum() } else { 1.0 }
+    }
+
+    /// The motion of the body with L's corner on the target   (3)
+    pub fn state<T: Number>(&self, at: &Turning<T>) -> State<T> {
+        let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
+        State {
+            height_m: b,
+            angle_rad: at.angle_rad,
+            horizontal_velocity_m_s: at.slip_m_s + b * at.angular_velocity_rad_s,
+            vertical_velocity_m_s: -a * at.angular_velocity_rad_s,
+            angular_velocity_rad_s: at.angular_velocity_rad_s,
+        }
+    }
+
+    /// A step of Runge's and Kutta's fourth order.
+    pub fn step<T: Number>(&self, at: &Turning<T>, grip: Grip, step_s: T) -> Turning<T> {
+        let slope = |at: &Turning<T>| {
+            let forces = self.forces(at, grip);
+            Turning {
+                angle_rad: -at.angular_velocity_rad_s,
+                angular_velocity_rad_s: forces.angular_acceleration_rad_s2,
+                slip_m_s: forces.slip_rate_m_s2,
+            }
+        };
+        let one = slope(at);
+        let two = slope(&at.plus(&one, step_s * 0.5));
+        let three = slope(&at.plus(&two, step_s * 0.5));
+        let four = slope(&at.plus(&three, step_s));
+        at.plus(&one, step_s / 6.0)
+            .plus(&two, step_s / 3.0)
+            .plus(&three, step_s / 3.0)
+            .plus(&four, step_s / 6.0)
+    }
+
+    /// What ends a stretch with one `grip`: each is positive until then.
+    pub fn margins(&self, at: &Turning<f64>, grip: Grip) -> [f64; 3] {
+        let forces = self.forces(at, grip);
+        let lift = if self.hold == Hold::Pulls { 1.0 } else { forces.normal_m_s2 };
+        let hold = match grip {
+            // A corner that slides from rest has used up nothing yet.
+            Grip::Slides { way, ratio } if ratio != 0.0 => way * at.slip_m_s,
+            Grip::Slides { .. } => 1.0,
+            Grip::Sticks | Grip::Jams => self.held_m_s2(at).1,
+        };
+        [at.angle_rad, lift, hold]
+    }
+}
+
+impl<T: Number> Turning<T> {
+    pub fn of(body: &Body, state: &State<T>) -> Self {
+        let slip_m_s = state.corner(body, body.cog_m).horizontal_velocity_m_s;
+        Self {
+            angle_rad: state.angle_rad,
+            angular_velocity_rad_s: state.angular_velocity_rad_s,
+            slip_m_s: if slip_m_s.re().abs() < STOPPED_M_S { T::from(0.0) } else { slip_m_s },
+        }
+    }
+
+    pub fn real(&self) -> Turning<f64> {
+        Turning {
+            angle_rad: self.angle_rad.re(),
+            angular_velocity_rad_s: self.angular_velocity_rad_s.re(),
+            slip_m_s: self.slip_m_s.re(),
+        }
+    }
+
+    fn plus(&self, slope: &Self, step_s: T) -> Self {
+        Self {
+            angle_rad: self.angle_rad + slope.angle_rad * step_s,
+            angular_velocity_rad_s: self.angular_velocity_rad_s + slope.angular_velocity_rad_s * step_s,
+            slip_m_s: self.slip_m_s + slope.slip_m_s * step_s,
+        }
+    }
+}
