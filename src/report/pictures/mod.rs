@@ -1,12 +1,22 @@
 //! An analysis to its five pictures, a study to its charts, as SVG text.
 
+mod angle_curves;
 mod axes;
 mod comparison;
+mod critical;
 mod curves;
 mod decimate;
 mod legend;
+mod look;
+mod monte_carlo;
 mod panel;
+mod regimes;
 mod rows;
+mod sensitivity;
+mod study;
+mod sweep;
+
+pub(super) use study::{draw_study, names as study_names};
 
 use super::ReportError;
 use crate::data::Analysis;
