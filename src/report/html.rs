@@ -76,7 +76,7 @@ fn banner(result: &DropResult) -> Markup {
 }
 
 fn figures(result: &DropResult) -> Markup {
-    let model = result.model.as_ref().map_or("no model taken", |m| m.name.as_str());
+    let model = result.model.as_ref().map_or("no model taken", |m| m.rung.words());
     html! {
         dl class="figures" {
             div { dt { "Slap-down speed, measured" }

@@ -138,12 +138,12 @@ pub(super) fn models(result: &DropResult) -> Markup {
         @match &result.model {
             None => p { "No model was taken: " (printable(reason(result, &SLAP_DOWN_CODES))) },
             Some(model) => {
-                p class="lead" { "Taken: " strong { (model.name.as_str()) } ". " (sentence(&model.reason)) }
+                p class="lead" { "Taken: " strong { (model.rung.words()) } ". " (sentence(&model.reason)) }
                 table class="whole" {
-                    caption { "Analytical models with the measured k, the simplest first" }
+                    caption { "The ladder of analytical models with the measured k, the simplest first; rungs that change nothing are left out" }
                     thead { tr { th { "Model" } th class="n" { "Predicted, m/s" } th class="n" { "± 95 %, m/s" }
                         th class="n" { "Predicted against measured" } th { "Within both intervals" } } }
-                    tbody { @for c in &model.candidates { (candidate(c, c.model == model.name)) } }
+                    tbody { @for c in &model.candidates { (candidate(c, c.rung == model.rung)) } }
                 }
             }
         }
@@ -153,7 +153,7 @@ pub(super) fn models(result: &DropResult) -> Markup {
 fn candidate(c: &ModelCandidate, chosen: bool) -> Markup {
     html! {
         tr class=[chosen.then_some("chosen")] {
-            th scope="row" { (c.model.as_str()) @if chosen { " (taken)" } }
+            th scope="row" { (c.rung.words()) @if chosen { " (taken)" } }
             td class="n" { (optional_fixed(c.predicted, 2)) }
             td class="n" { (optional(c.u95, 2)) }
             td class="n" { (c.difference_percent.map_or_else(|| MISSING.into(), percent)) }

@@ -144,7 +144,7 @@ fn comparison(result: &DropResult) -> String {
         let by = result
             .model
             .as_ref()
-            .map_or(String::new(), |m| format!("{} with the measured k", m.name.as_str()));
+            .map_or(String::new(), |m| format!("{} with the measured k", m.rung.words()));
         for (name, value, note) in [
             ("measured", rounding::pair(c.measured, c.measured_u95, "m/s"), String::new()),
             ("predicted", rounding::pair(c.predicted, c.predicted_u95, "m/s"), styled_note(&by)),
@@ -159,7 +159,7 @@ fn comparison(result: &DropResult) -> String {
     }
     if let Some(model) = &result.model {
         out.push_str(&wrap(
-            &format!("Model: {}. {}", model.name.as_str(), text::sentence(&model.reason)),
+            &format!("Model: {}. {}", model.rung.words(), text::sentence(&model.reason)),
             WIDTH,
             2,
         ));

@@ -59,7 +59,7 @@ fn rows(analysis: &Analysis) -> Vec<Row> {
         let u95_m_s = result
             .model
             .iter()
-            .flat_map(|m| &m.candidates)
+            .flat_map(|m| m.candidates.iter().rev())
             .find(|c| with_contact && c.model == p.model)
             .and_then(|c| c.u95)
             .filter(|u| u.is_finite());

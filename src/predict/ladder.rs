@@ -1,0 +1,229 @@
+//! A rung of the ladder of models to its prediction, and all rungs to the one that suffices.
+
+use super::impact::{Struck, strike_first_end};
+use super::path::{Outcome, Way};
+use super::resting::{End, Hold, Support};
+use super::state::{State, second_end_m};
+use super::{held, predict, rod, thin_rod};
+use crate::data::{
+    Body, Contact, Drop, FlightRegime, LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Prediction, Rung,
+};
+
+/// What is predicted: a body, its drop, the contact law and k.
+#[derive(Clone, Copy)]
+pub(super) struct Case<'a> {
+    pub body: &'a Body,
+    pub drop: &'a Drop,
+    pub contact: Contact,
+    pub k: f64,
+}
+
+/// What `rung` says; [`predict`] is the highest one.
+///
+/// The rungs below Coulomb friction take any friction for rough. For k = 0 those below the unilateral contact hold L on the target.
+#[must_use]
+pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction {
+    let ideal = match contact {
+        Contact::Coulomb(coefficient) if coefficient > 0.0 => Contact::Rough,
+        Contact::Coulomb(_) => Contact::Smooth,
+        contact => contact,
+    };
+    match rung {
+        Rung::Rod => {
+            let rod = thin_rod(body.mass_kg, body.length_m);
+            Case { body: &rod, drop, contact: ideal, k }.held_or_one_flight(rod::table_1)
+        }
+        Rung::Body => Case { body, drop, contact: ideal, k }.held_or_one_flight(strike_first_end),
+        Rung::Friction => Case { body, drop, contact, k }.held_or_one_flight(strike_first_end),
+        Rung::Unilateral => Case { body, drop, contact, k }.unilateral(),
+        Rung::FurtherImpacts => predict(body, drop, contact, k),
+    }
+}
+
+/// Every rung's prediction, simplest first, and the simplest that no richer one moves by more than [`LADDER_TOLERANCE_PERCENT`].
+#[must_use]
+pub fn ladder(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Ladder {
+    let mut steps: Vec<LadderStep> = Vec::with_capacity(Rung::ALL.len());
+    for rung in Rung::ALL {
+        let prediction = predict_by(rung, body, drop, contact, k);
+        let below = steps.last().and_then(|step| step.prediction.slap_down_speed_m_s);
+        let change_percent =
+            below.zip(prediction.slap_down_speed_m_s).map(|(below, speed)| 100.0 * (speed - below) / below);
+        steps.push(LadderStep { rung, adds: rung.adds(), prediction, change_percent });
+    }
+    let speeds: Vec<Option<f64>> = steps.iter().map(|step| step.prediction.slap_down_speed_m_s).collect();
+    let suffices = (0..steps.len())
+        .find(|&i| speeds[i..].iter().all(|richer| alike(speeds[i], *richer)))
+        .map_or(Rung::FurtherImpacts, |i| steps[i].rung);
+    Ladder { angle_deg: drop.angle_rad.to_degrees(), contact, k, steps, suffices }
+}
+
+/// Whether two rungs say the same, within the tolerance of the ladder.
+fn alike(one: Option<f64>, other: Option<f64>) -> bool {
+    match (one, other) {
+        (Some(one), Some(other)) => (other - one).abs() <= LADDER_TOLERANCE_PERCENT / 100.0 * one,
+        (None, None) => true,
+        _ => false,
+    }
+}
+
+/// An impact law: body, motion before, contact law and k to the motion after.
+type Impact = fn(&Body, &State<f64>, Contact, f64) -> Struck<f64>;
+
+impl Case<'_> {
+    fn start(&self) -> State<f64> {
+        State::falling(self.body, self.drop.angle_rad, self.drop.impact_velocity_m_s)
+    }
+
+    fn support(&self, hold: Hold) -> Support<'_> {
+        Support { body: self.body, gravity_m_s2: self.drop.gravity_m_s2, contact: self.contact, hold }
+    }
+
+    /// k = 0: L held on the target until R strikes; else one flight.
+    fn held_or_one_flight(&self, impact: Impact) -> Prediction {
+        let start = self.start();
+        let struck = impact(self.body, &start, self.contact, self.k);
+        let outcome = if self.k <= 0.0 { self.held(&struck.after) } else { self.one_flight(&struck) };
+        self.prediction(&start, &struck, outcome)
+    }
+
+    /// k = 0: L on the target while it pushes, then one flight; else one flight.
+    fn unilateral(&self) -> Prediction {
+        let start = self.start();
+        let struck = strike_first_end(self.body, &start, self.contact, self.k);
+        let outcome = self.one_flight(&struck);
+        self.prediction(&start, &struck, outcome)
+    }
+
+    fn one_flight(&self, struck: &Struck<f64>) -> Outcome<f64> {
+        Way { support: self.support(Hold::Pushes), graze_m: None }.follow(struck.after, self.k)
+    }
+
+    /// L held on the target: [P] Table 2 for rough and smooth, step by step for the friction between them.
+    fn held(&self, after: &State<f64>) -> Outcome<f64> {
+        let second_end = match self.contact {
+            Contact::Coulomb(_) => match self.support(Hold::Pulls).rest(after) {
+                End::SecondEnd(at, time_s) => Some((at, time_s)),
+                End::LiftsOff(..) | End::Never => None,
+            },
+            _ => self.closed_form(after),
+        };
+        Outcome { second_end, impacts: 1, regime: FlightRegime::Contact }
+    }
+
+    /// [P] Table 2 for k = 0, rough or smooth   (11) (12)
+    fn closed_form(&self, after: &State<f64>) -> Option<(State<f64>, f64)> {
+        let slides = match self.contact {
+            Contact::Rough => false,
+            Contact::Smooth => true,
+            Contact::Coulomb(_) => return None,
+        };
+        held::to_second_end(self.body, self.drop.gravity_m_s2, slides, after)
+    }
+
+    fn second_end_speed_m_s(&self, state: &State<f64>) -> f64 {
+        let corner = state.corner(self.body, second_end_m(self.body));
+        corner.horizontal_velocity_m_s.hypot(corner.vertical_velocity_m_s)
+    }
+
+    /// What is told of a way that began with `start` and its first impact.
+    pub fn prediction(&self, start: &State<f64>, struck: &Struck<f64>, outcome: Outcome<f64>) -> Prediction {
+        let at = outcome.second_end.as_ref().map(|(state, _)| state);
+        let corner = at.map(|state| state.corner(self.body, second_end_m(self.body)));
+        Prediction {
+            model: self.body.model,
+            contact: self.contact,
+            k: self.k,
+            slap_down_speed_m_s: at.map(|state| self.second_end_speed_m_s(state)),
+            vertical_velocity_m_s: corner.as_ref().map(|c| c.vertical_velocity_m_s),
+            horizontal_velocity_m_s: corner.as_ref().map(|c| c.horizontal_velocity_m_s),
+            angular_velocity_rad_s: struck.after.angular_velocity_rad_s,
+            flight_time_s: outcome.second_end.as_ref().map(|(_, time_s)| *time_s),
+            energy_ratio: at.map(|s| s.kinetic_energy_j(self.body) / start.kinetic_energy_j(self.body)),
+            slap_down_angle_deg: at.map(|s| s.angle_rad.to_degrees()),
+            first_end_impacts: outcome.impacts,
+            impulse_ratio: struck.horizontal_impulse_n_s / struck.vertical_impulse_n_s,
+            friction_to_stick: struck.friction_to_stick,
+            sticks: struck.sticks,
+            regime: outcome.regime,
+            closed_form_speed_m_s: (self.k <= 0.0)
+                .then(|| self.closed_form(&struck.after))
+                .flatten()
+                .map(|(state, _)| self.second_end_speed_m_s(&state)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::BodyModel;
+
+    fn anf18() -> Body {
+        let (m, l, h) = (4466.0, 5.512, 0.792);
+        Body {
+            model: BodyModel::Body,
+            height_m: h,
+            inertia_kg_m2: m * (l * l + h * h) / 12.0,
+            ..thin_rod(m, l)
+        }
+    }
+
+    fn drop(angle_deg: f64) -> Drop {
+        Drop {
+            height_m: 9.0,
+            angle_rad: angle_deg.to_radians(),
+            impact_velocity_m_s: (2.0_f64 * 9.81 * 9.0).sqrt(),
+            impact_velocity_given: false,
+            gravity_m_s2: 9.81,
+        }
+    }
+
+    #[test]
+    fn the_first_rung_that_the_others_leave_alone_suffices() {
+        let suffices =
+            |body: &Body, angle_deg, contact, k| ladder(body, &drop(angle_deg), contact, k).suffices;
+        let rod = thin_rod(4466.0, 5.512);
+        assert_eq!(suffices(&rod, 15.0, Contact::Rough, 0.5), Rung::Rod);
+        assert_eq!(suffices(&anf18(), 15.0, Contact::Rough, 0.5), Rung::Body);
+        assert_eq!(suffices(&anf18(), 15.0, Contact::Coulomb(0.3), 0.5), Rung::Friction);
+        assert_eq!(suffices(&anf18(), 15.0, Contact::Rough, 0.0), Rung::Unilateral);
+        assert_eq!(suffices(&anf18(), 45.0, Contact::Rough, 0.9), Rung::FurtherImpacts);
+    }
+
+    #[test]
+    fn each_step_says_what_it_changes() {
+        let told = ladder(&anf18(), &drop(15.0), Contact::Coulomb(0.3), 0.5);
+        let speeds: Vec<f64> =
+            told.steps.iter().map(|s| s.prediction.slap_down_speed_m_s.expect("R strikes")).collect();
+        // physics: rod 22.49, body rough 20.18, with friction 22.31 m/s.
+        for (speed, expected) in speeds.iter().zip([22.49, 20.18, 22.31, 22.31, 22.31]) {
+            assert!((speed - expected).abs() < 0.005, "{speeds:?}");
+        }
+        assert!(told.steps[0].change_percent.is_none());
+        let change = told.steps[1].change_percent.expect("both strike");
+        assert!((change - 100.0 * (speeds[1] / speeds[0] - 1.0)).abs() < 1e-12);
+        assert!(!told.steps[2].prediction.sticks && told.steps[1].prediction.sticks);
+    }
+
+    #[test]
+    fn the_closed_form_stands_beside_the_flight() {
+        let castor = thin_rod(20950.0, 4.486);
+        let told = predict_by(Rung::Unilateral, &castor, &drop(15.0), Contact::Rough, 0.0);
+        assert!((told.closed_form_speed_m_s.expect("k = 0") - 20.12).abs() < 0.005);
+        assert_eq!(told.regime, FlightRegime::Free);
+        let held = predict_by(Rung::Rod, &castor, &drop(15.0), Contact::Rough, 0.0);
+        assert_eq!(held.slap_down_speed_m_s, told.closed_form_speed_m_s);
+        assert_eq!(held.regime, FlightRegime::Contact);
+        assert!(predict(&castor, &drop(15.0), Contact::Rough, 0.5).closed_form_speed_m_s.is_none());
+    }
+
+    #[test]
+    fn steep_drops_with_little_rebound_come_down_after_all() {
+        // L comes to rest on the target; the body topples over it unless it stands beyond its balance (81.8°).
+        for angle_deg in [60.0, 70.0, 80.0] {
+            assert!(predict(&anf18(), &drop(angle_deg), Contact::Rough, 0.0).slap_down_speed_m_s.is_some());
+        }
+        assert!(predict(&anf18(), &drop(85.0), Contact::Rough, 0.0).slap_down_speed_m_s.is_none());
+    }
+}
