@@ -179,13 +179,11 @@ pub(super) fn rung_short(rung: Rung) -> &'static str {
 /// The k and friction that the ranges of the critical angles go through.
 pub(super) fn through_words(request: &Request) -> String {
     let k = range_words(request.uncertain.k);
-    match request.uncertain.friction {
-        Some(friction) => format!("k {k} and μ {}", range_words(friction)),
-        None => {
-            let contacts: Vec<String> = request.contacts.iter().map(|c| contact_words(*c)).collect();
-            format!("k {k}, {}", contacts.join(", "))
-        }
+    if let Some(friction) = request.uncertain.friction {
+        return format!("k {k} and μ {}", range_words(friction));
     }
+    let contacts: Vec<String> = request.contacts.iter().map(|c| contact_words(*c)).collect();
+    format!("k {k}, {}", contacts.join(", "))
 }
 
 #[cfg(test)]
