@@ -1,7 +1,9 @@
 //! Critical angles to one picture: a row a case, a bar for its band and a dot for where it is largest.
 
 use super::super::ReportError;
-use super::super::prediction::{bands_words, case_words, criterion_value, criterion_words, degrees};
+use super::super::prediction::{
+    bands_words, case_words, criterion_value, criterion_words, degrees, has_ranges,
+};
 use super::super::rounding::{MISSING, plain};
 use super::super::text::printable;
 use super::look::Look;
@@ -52,20 +54,34 @@ pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError>
     };
     let failed = |reason| ReportError::Picture { picture: name.to_owned(), reason };
     let svg = draw(&rows, from..to, study.request.angle_deg).map_err(failed)?;
-    let look = Look::of(&study.request.contacts, &study.request.ks);
-    let caption = format!(
-        "Dots: the drop angle at which each quantity is largest while the first end strikes once, with the value at the right. Bars: the angles within {} % of it. \
-         Grey: over the ranges of k and friction; the line joins the lowest and the highest critical angle, the bar is what lies in \
-         every band. Rings: angles at which the first end strikes again and the value is larger still; it jumps there from angle to angle. \
-         Dashed: {}°.{}{}",
-        plain(study.request.band_percent, 3),
-        plain(study.request.angle_deg, 4),
-        look.left_out(),
-        if crowded(study, &look) { " Single cases of the body only." } else { "" }
-    );
+    let caption = caption(study, &rows);
     let alt = format!("{TITLE}. {}", spoken(&rows));
     let svg = panel::described(&svg, TITLE);
     Ok(Picture { name: name.to_owned(), title: TITLE.to_owned(), alt, caption, svg })
+}
+
+fn caption(study: &Study, rows: &[Row]) -> String {
+    let look = Look::of(&study.request.contacts, &study.request.ks);
+    let rings = rows.iter().any(|row| matches!(row, Row::Case(case) if case.larger_deg.is_some()));
+    let mut caption = vec![format!(
+        "Dots: the drop angle at which each quantity is largest while the first end strikes once, with the value at the right. \
+         Bars: the angles within {} % of it.",
+        plain(study.request.band_percent, 3)
+    )];
+    if has_ranges(&study.request) {
+        let text = " Grey: over the ranges of k and friction; the line joins the lowest and the highest critical angle, the bar is what \
+                    lies in every band.";
+        caption.push(text.to_owned());
+    }
+    if rings {
+        let text = " Rings: angles at which the first end strikes again and the value is larger still; it jumps there from angle to angle.";
+        caption.push(text.to_owned());
+    }
+    caption.push(format!(" Dashed: {}°.{}", plain(study.request.angle_deg, 4), look.left_out()));
+    if crowded(study, &look) {
+        caption.push(" Single cases of the body only.".to_owned());
+    }
+    caption.concat()
 }
 
 fn spoken(rows: &[Row]) -> String {
@@ -90,7 +106,8 @@ fn rows(study: &Study) -> Vec<Row> {
         let cases =
             study.critical.iter().filter(drawn).filter(|c| !crowded || c.model == study.monte_carlo.model);
         let mut group: Vec<Row> = cases.map(|c| Row::Case(case(c, &look))).collect();
-        let ranges = study.ranges.iter().filter(|range| range.criterion == criterion);
+        let wide = has_ranges(&study.request);
+        let ranges = study.ranges.iter().filter(|range| wide && range.criterion == criterion);
         group.extend(ranges.map(|range| Row::Case(range_case(range))));
         if !group.is_empty() {
             rows.push(Row::Heading(format!("Largest {}", criterion_words(criterion))));

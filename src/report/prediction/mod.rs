@@ -14,7 +14,7 @@ pub(super) use table::at_one_angle;
 pub use table::{study_table, table};
 pub(super) use words::{
     KEPT_SENTENCE, bands_words, case_words, contact_words, criterion_value, criterion_words, degrees,
-    kept_mark, variable_words,
+    has_ranges, kept_mark, variable_words,
 };
 
 use super::ReportError;

@@ -4,8 +4,8 @@ use super::super::rounding::{MISSING, fixed, optional, optional_fixed, percent, 
 use super::super::text::{printable, sentence};
 use super::summary::{has_quantiles, larger_sentence, nearest, verdict};
 use super::words::{
-    KEPT_SENTENCE, bands_words, contact_words, criterion_value, criterion_words, degrees, kept_mark,
-    range_words, rung_short, through_words, uncertain_words, variable_words,
+    KEPT_SENTENCE, bands_words, contact_words, criterion_value, criterion_words, degrees, has_ranges,
+    kept_mark, range_words, rung_short, through_words, uncertain_words, variable_words,
 };
 use crate::data::{
     Criterion, CriticalAngle, LADDER_TOLERANCE_PERCENT, Ladder, PredictionRow, Request, Rung, Study, Sweep,
@@ -52,18 +52,19 @@ pub(super) fn predictions(study: &Study) -> Markup {
         study.rows.iter().any(|row| value(row).to_bits() != value(&study.rows[0]).to_bits())
     };
     let (lengths, heights) = (varies(|r| r.length_m), varies(|r| r.drop_height_m));
+    let held = any(|row| row.prediction.closed_form_speed_m_s.is_some());
     html! {
         h2 { "Predictions" }
         table class="many" {
-            caption { "Velocity of the second end just before it strikes. Energy: kinetic, before the slap-down over before the first impact. \
-                       Closed form: [P] Table 2 for k = 0, the first end held on the target whatever the force." }
+            caption { "Velocity of the second end just before it strikes. Energy: kinetic, before the slap-down over before the first impact."
+                @if held { " Closed form: [P] Table 2 for k = 0, the first end held on the target whatever the force." } }
             thead { tr {
                 th class="n" { "φ0, °" } @if lengths { th class="n" { "Length, m" } } @if heights { th class="n" { "Drop, m" } }
                 th { "Model" } th { "Contact" } th class="n" { "k" } th class="n" { "Speed, m/s" } th class="n" { "Vertical, m/s" }
                 th class="n" { "Horizontal, m/s" } th class="n" { "ω, rad/s" } th class="n" { "Flight, ms" } th class="n" { "Energy" }
-                th class="n" { "Friction to stick" } th class="n" { "Impacts of first end" } th class="n" { "Closed form, m/s" }
+                th class="n" { "Friction to stick" } th class="n" { "Impacts of first end" } @if held { th class="n" { "Closed form, m/s" } }
             } }
-            tbody { @for row in rows { (prediction(row, (lengths, heights))) } }
+            tbody { @for row in rows { (prediction(row, [lengths, heights, held])) } }
         }
         @if left_out > 0 { p class="note" { "… and " (left_out) " more: prediction.csv and prediction.json hold them all." } }
         @if any(|row| row.prediction.slap_down_speed_m_s.is_none()) { p class="note" { "– the second end never strikes by this impact alone." } }
@@ -71,7 +72,7 @@ pub(super) fn predictions(study: &Study) -> Markup {
     }
 }
 
-fn prediction(row: &PredictionRow, (lengths, heights): (bool, bool)) -> Markup {
+fn prediction(row: &PredictionRow, [lengths, heights, held]: [bool; 3]) -> Markup {
     let p = &row.prediction;
     html! { tr {
         td class="n" { (plain(row.angle_deg, 6)) }
@@ -81,7 +82,7 @@ fn prediction(row: &PredictionRow, (lengths, heights): (bool, bool)) -> Markup {
         td class="n" { (optional_fixed(p.horizontal_velocity_m_s, 2)) } td class="n" { (fixed(p.angular_velocity_rad_s, 2)) }
         td class="n" { (optional_fixed(p.flight_time_s.map(|t| t * 1e3), 1)) } td class="n" { (optional_fixed(p.energy_ratio, 3)) }
         td class="n" { (optional(Some(p.friction_to_stick), 3)) } td class="n" { (p.first_end_impacts) }
-        td class="n" { @if let Some(v) = p.closed_form_speed_m_s { (optional_fixed(Some(v), 2)) } }
+        @if held { td class="n" { @if let Some(v) = p.closed_form_speed_m_s { (optional_fixed(Some(v), 2)) } } }
     } }
 }
 
@@ -164,7 +165,7 @@ pub(super) fn critical(study: &Study) -> Markup {
 
 /// Critical angles over the ranges of k and friction.
 pub(super) fn ranges(study: &Study) -> Markup {
-    html! { @if !study.ranges.is_empty() {
+    html! { @if !study.ranges.is_empty() && has_ranges(&study.request) {
         table class="whole" {
             caption { "Over " (through_words(&study.request)) ", all else as stated. Common band: the angles that lie in the band of every one of them." }
             thead { tr { th { "Model" } th { "Largest" } th class="n" { "Critical angle, °" } th class="n" { "Worst case" } th { "Where" } th { "Common band, °" } } }

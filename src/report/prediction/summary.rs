@@ -5,7 +5,7 @@ use super::super::rounding::{MISSING, fixed, optional_fixed, percent, plain};
 use super::super::text::{Style, WIDTH, styled, wrap};
 use super::words::{
     angles_words, band_around_words, bands_words, contact_words, criterion_short, criterion_value, degrees,
-    rung_short, through_words, uncertain_short, widest_bands_words,
+    has_ranges, rung_short, through_words, uncertain_short, widest_bands_words,
 };
 use crate::data::{
     BodyModel, Criterion, CriticalAngle, LADDER_TOLERANCE_PERCENT, Ladder, MonteCarlo, Rung, Study,
@@ -93,7 +93,7 @@ pub(super) fn larger_sentence(study: &Study) -> Option<String> {
 }
 
 fn ranges(study: &Study) -> String {
-    if study.ranges.is_empty() {
+    if study.ranges.is_empty() || !has_ranges(&study.request) {
         return String::new();
     }
     let rows = study
@@ -348,6 +348,25 @@ mod tests {
             assert!(text.contains(rung_short(rung)) && text.contains(rung.adds()), "{text}");
         }
         assert!(text.contains("−8.0 %") && text.contains("The model \"body\" suffices"), "{text}");
+    }
+
+    #[test]
+    fn ranges_that_are_points_are_not_repeated() {
+        let mut study = single();
+        assert!(bare(&study).contains("every band"));
+        study.request.uncertain.k = (0.5, 0.5);
+        study.request.uncertain.friction = None;
+        assert!(!bare(&study).contains("every band"));
+    }
+
+    #[test]
+    fn without_draws_there_is_no_block_of_them() {
+        let mut study = sample_study::study();
+        study.monte_carlo.uncertain.draws = 0;
+        for q in &mut study.monte_carlo.quantiles {
+            q.critical_angle_deg = [f64::NAN; 5];
+        }
+        assert!(!bare(&study).contains("Monte Carlo"));
     }
 
     #[test]

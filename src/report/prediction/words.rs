@@ -176,6 +176,12 @@ pub(super) fn rung_short(rung: Rung) -> &'static str {
     }
 }
 
+/// Whether anything goes through a range: else the critical ranges only repeat the one critical angle.
+pub(in super::super) fn has_ranges(request: &Request) -> bool {
+    let wide = |(from, to): (f64, f64)| from < to;
+    wide(request.uncertain.k) || request.uncertain.friction.map_or(request.contacts.len() > 1, wide)
+}
+
 /// The k and friction that the ranges of the critical angles go through.
 pub(super) fn through_words(request: &Request) -> String {
     let k = range_words(request.uncertain.k);
