@@ -2,6 +2,7 @@
 
 mod csv;
 mod json;
+mod models;
 mod page;
 mod page_tables;
 mod summary;

@@ -2,7 +2,8 @@
 
 use super::super::rounding::{MISSING, fixed, optional, optional_fixed, percent, plain};
 use super::super::text::{printable, sentence};
-use super::summary::{has_quantiles, larger_sentence, nearest, verdict};
+use super::models::verdict;
+use super::summary::{has_quantiles, larger_sentence, nearest};
 use super::words::{
     KEPT_SENTENCE, bands_words, contact_words, criterion_value, criterion_words, degrees, has_ranges,
     kept_mark, range_words, rung_short, through_words, uncertain_words, variable_words,

@@ -125,17 +125,19 @@ pub(super) fn range_words((from, to): (f64, f64)) -> String {
     if from == to { from } else { format!("{from} to {to}") }
 }
 
+/// A range that is drawn from evenly, or its one value.
+fn spread_words(range: (f64, f64)) -> String {
+    if range.0 < range.1 { format!("{} (uniform)", range_words(range)) } else { range_words(range) }
+}
+
 /// Every uncertain input and how it is spread, in the order of the draws.
 pub(super) fn uncertain_words(u: &Uncertain, contact: Contact) -> Vec<(&'static str, String)> {
     let share = |value: f64, of: &str| {
         format!("± {} % of {of}, 95 % of a normal distribution", plain(value * 100.0, 3))
     };
-    let friction = u.friction.map_or_else(
-        || format!("known: {}", contact_words(contact)),
-        |range| format!("{}, uniform", range_words(range)),
-    );
+    let friction = u.friction.map_or_else(|| format!("known: {}", contact_words(contact)), spread_words);
     vec![
-        ("coefficient of restitution k", format!("{}, uniform", range_words(u.k))),
+        ("coefficient of restitution k", spread_words(u.k)),
         ("friction coefficient μ", friction),
         ("drop angle", format!("± {}°, 95 % of a normal distribution", plain(u.angle_deg, 3))),
         ("height of the drop", share(u.drop_height, "it")),
@@ -150,12 +152,12 @@ pub(super) fn uncertain_short(u: &Uncertain, contact: Contact) -> String {
     let share = |value: f64| format!("± {} %", plain(value * 100.0, 3));
     let friction = u.friction.map_or_else(
         || format!("contact {}", contact_words(contact)),
-        |range| format!("μ {} (uniform)", range_words(range)),
+        |range| format!("μ {}", spread_words(range)),
     );
     format!(
-        "Drawn: k {} (uniform), {friction}; drop angle ± {}°, drop height {}, length and section {}, centre of gravity {} of \
+        "Drawn: k {}, {friction}; drop angle ± {}°, drop height {}, length and section {}, centre of gravity {} of \
          the length, inertia {} (95 % of normal distributions); seed {}.",
-        range_words(u.k),
+        spread_words(u.k),
         plain(u.angle_deg, 3),
         share(u.drop_height),
         share(u.size),
