@@ -3,9 +3,9 @@
 use super::Outcome;
 use super::output::{Folder, JsonTarget, print};
 use clap::Args;
-use dropcheck::data::{BodyModel, CaskFile, Contact, Drop};
+use dropcheck::data::{BodyModel, CaskFile, Contact, Drop, PredictionRow};
 use dropcheck::predict::{body, predict};
-use dropcheck::report::{self, PredictionRow};
+use dropcheck::report;
 use std::path::PathBuf;
 
 const AFTER_HELP: &str = "\
@@ -90,7 +90,12 @@ fn rows(arguments: &Arguments, file: &CaskFile) -> Vec<PredictionRow> {
             let body = body(&file.cask, model);
             for &contact in &contacts {
                 for &k in &ks {
-                    rows.push(PredictionRow { angle_deg, prediction: predict(&body, &drop, contact, k) });
+                    rows.push(PredictionRow {
+                        angle_deg,
+                        length_m: file.cask.length_m,
+                        drop_height_m: file.drop.height_m,
+                        prediction: predict(&body, &drop, contact, k),
+                    });
                 }
             }
         }

@@ -7,12 +7,11 @@ use super::rounding::{
 };
 use super::table::{FIRST_IMPACT_CODES, SLAP_DOWN_CODES, end_axis};
 use super::text::{code_word, format_word, printable, reason, sentence, severity_word, span_text};
-use crate::data::{Analysis, DropResult, Estimate, FlightRegime, Issue, IssueCode, ModelCandidate};
+use crate::data::{CaskFile, DropResult, Estimate, FlightRegime, Issue, IssueCode, ModelCandidate};
 use maud::{Markup, html};
 
 /// The cask, the drop and the contact; what is a default is marked.
-pub(super) fn tested(analysis: &Analysis) -> Markup {
-    let file = &analysis.cask_file;
+pub(super) fn tested(file: &CaskFile, heading: &str) -> Markup {
     let (cask, drop) = (&file.cask, &file.drop);
     let row = |name: &str, key: &str, value: String, unit: &str| {
         html! {
@@ -22,7 +21,7 @@ pub(super) fn tested(analysis: &Analysis) -> Markup {
     };
     let section = if cask.height_m > 0.0 { plain(cask.height_m, 5) } else { "thin rod".into() };
     html! {
-        h2 { "What was tested" }
+        h2 { (heading) }
         div class="pair" {
             table class="whole" {
                 caption { "Cask " (printable(&cask.name)) }

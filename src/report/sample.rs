@@ -241,7 +241,7 @@ fn settings() -> Vec<Setting> {
     ]
 }
 
-fn cask_file() -> CaskFile {
+pub(super) fn cask_file() -> CaskFile {
     let channel = |name: &str, end, source: &str, position_m| ChannelSpec {
         name: name.into(),
         end,
