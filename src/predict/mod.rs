@@ -2,6 +2,8 @@
 
 mod flight;
 mod impact;
+mod stand_in;
+pub use stand_in::{default_uncertain, study};
 
 use crate::data::{
     Body, BodyModel, Cask, Contact, Drop, Ladder, LadderStep, Prediction, Rung, SpeedGradient,
