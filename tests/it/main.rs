@@ -3,6 +3,7 @@
 mod command_line;
 mod fixtures;
 mod golden;
+mod predict_command;
 mod reference;
 mod run;
 mod tidy;
