@@ -5,14 +5,14 @@ use super::sweep::{MOST_PREDICTIONS, name, rounded};
 use dropcheck::data::{CaskFile, Contact, Request, Sweep, SweepVariable, Uncertain};
 use dropcheck::predict;
 
-/// Angles of the curves where no sweep gives them: half a degree is finer than a drop can be rigged.
+/// Curves are drawn at least this finely: half a degree is finer than a drop can be rigged.
 const CURVE_STEP_DEG: f64 = 0.5;
 
-/// A sweep of fewer angles draws no curve.
+/// A sweep of fewer angles asks for a few points, not for another range of the curves.
 const LEAST_CURVE_ANGLES: usize = 10;
 
 /// More angles than this are closer than a picture's dots.
-const MOST_CURVE_ANGLES: usize = 1801;
+const MOST_CURVE_STEPS: f64 = 1800.0;
 
 /// What is asked, with the cask file's values where no option says otherwise.
 pub fn request(arguments: &Arguments, file: &CaskFile) -> miette::Result<Request> {
@@ -105,23 +105,20 @@ fn cases(arguments: &Arguments, file: &CaskFile) -> (Vec<Contact>, Vec<f64>) {
     }
 }
 
-/// The angles of a sweep fine enough to draw, thinned where they are closer than dots; else 0 to 90°.
+/// The angles of a sweep that is more than a few points, those between filled in to half a degree; else 0 to 90°.
 fn curve_angles_deg(swept: Option<&[f64]>) -> Vec<f64> {
-    let evenly = |from: f64, to: f64, steps: u32| {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to 1800 before the cast")]
+    let evenly = |from: f64, to: f64, steps: f64| -> Vec<f64> {
+        let steps = steps.min(MOST_CURVE_STEPS).ceil() as u32;
         (0..=steps).map(|i| rounded(from + (to - from) * f64::from(i) / f64::from(steps))).collect()
     };
-    match swept {
-        Some(values) if values.len() >= LEAST_CURVE_ANGLES => match ends(values) {
-            Some((from, to)) if values.len() > MOST_CURVE_ANGLES =>
-            {
-                #[allow(clippy::cast_possible_truncation, reason = "1800")]
-                evenly(from, to, MOST_CURVE_ANGLES as u32 - 1)
-            }
-            _ => values.to_vec(),
-        },
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "180")]
-        _ => evenly(0.0, 90.0, (90.0 / CURVE_STEP_DEG) as u32),
-    }
+    let values = swept.filter(|values| values.len() >= LEAST_CURVE_ANGLES).unwrap_or_default();
+    let (Some((from, to)), [first, second, ..]) = (ends(values), values) else {
+        return evenly(0.0, 90.0, 90.0 / CURVE_STEP_DEG);
+    };
+    let step = second - first;
+    // Every step of the sweep in equal parts, so that its own angles stay among the curve's.
+    evenly(from, to, ((to - from) / step).round() * (step / CURVE_STEP_DEG).ceil())
 }
 
 /// What Monte Carlo draws from: the cask's usual tolerances, each replaced by what the options say of it.
@@ -132,11 +129,15 @@ fn uncertain(arguments: &Arguments, file: &CaskFile) -> Uncertain {
     let swept = |variable| swept(&arguments.sweep, variable).and_then(ends);
     Uncertain {
         k: arguments.k_range.or(arguments.k.map(|k| (k, k))).or(swept(SweepVariable::K)).unwrap_or(usual.k),
-        friction: match (arguments.friction_range.or(swept(SweepVariable::Friction)), arguments.contact) {
-            (Some(range), _) => Some(range),
-            (None, Some(_)) => None,
-            (None, None) => usual.friction,
-        },
+        friction: arguments.friction_range.or(swept(SweepVariable::Friction)).or_else(|| {
+            // Rough and smooth bound the table; what is drawn has the contact of the cask file.
+            match file.contact {
+                _ if arguments.contact.is_some() => None,
+                Contact::Coulomb(coefficient) => Some((coefficient, coefficient)),
+                Contact::Smooth => Some((0.0, 0.0)),
+                Contact::Rough => usual.friction,
+            }
+        }),
         angle_deg: arguments.angle_tolerance.unwrap_or(usual.angle_deg),
         size: geometry.unwrap_or(usual.size),
         cog: geometry.unwrap_or(usual.cog),
@@ -231,12 +232,12 @@ mod tests {
     fn monte_carlo_draws_from_ranges_sweeps_and_options_in_this_order() {
         let usual = predict::default_uncertain(&file());
         for (options, k, friction) in [
-            ("", usual.k, usual.friction),
-            ("--k 0.5", (0.5, 0.5), usual.friction),
+            ("", usual.k, Some((0.3, 0.3))),
+            ("--k 0.5", (0.5, 0.5), Some((0.3, 0.3))),
             ("--contact 0.4", usual.k, None),
             ("--k 0.5 --k-range 0.3:0.7 --contact 0.4 --friction-range 0:1", (0.3, 0.7), Some((0.0, 1.0))),
             ("--sweep k=0.2:0.8:0.1 --sweep friction=0:1:0.1", (0.2, 0.8), Some((0.0, 1.0))),
-            ("--sweep k=0.2:0.8:0.1 --k-range 0.3:0.7", (0.3, 0.7), usual.friction),
+            ("--sweep k=0.2:0.8:0.1 --k-range 0.3:0.7", (0.3, 0.7), Some((0.3, 0.3))),
         ] {
             let uncertain = asked(options).unwrap().uncertain;
             assert_eq!((uncertain.k, uncertain.friction), (k, friction), "{options}");
@@ -260,7 +261,9 @@ mod tests {
             (181, 0.5_f64.to_bits(), 90_f64.to_bits())
         );
         assert_eq!(angles("--sweep 5:45:5"), all);
-        assert_eq!(angles("--sweep 5:45:1"), (5..=45).map(f64::from).collect::<Vec<_>>());
+        assert_eq!(angles("--sweep 5:45:0.25").len(), 161);
+        let filled = angles("--sweep 5:45:4");
+        assert_eq!((filled.len(), filled[8].to_bits()), (81, 9_f64.to_bits()));
         let thinned = angles("--sweep 0:90:0.01");
         assert_eq!((thinned.len(), thinned[1].to_bits()), (1801, 0.05_f64.to_bits()));
     }
