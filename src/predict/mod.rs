@@ -2,8 +2,6 @@
 
 mod flight;
 mod impact;
-mod stand_in;
-pub use stand_in::{default_uncertain, study};
 
 use crate::data::{
     Body, BodyModel, Cask, Contact, Drop, Ladder, LadderStep, Prediction, Rung, SpeedGradient,
