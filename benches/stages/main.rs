@@ -2,15 +2,16 @@
 //!
 //! `cargo bench` runs all; `cargo bench -- read` those with that word in their name.
 
+mod predictions;
 mod recordings;
 
+use divan::Bencher;
 use divan::counter::ItemsCount;
-use divan::{Bencher, black_box};
 use dropcheck::condition::Reach;
 use dropcheck::data::{
-    Analysis, AxialClosure, CaskFile, CoarseEvent, Contact, Events, FlightFit, Recording, Setup, Signal,
+    Analysis, AxialClosure, CaskFile, CoarseEvent, Events, FlightFit, Recording, Setup, Signal,
 };
-use dropcheck::{condition, events, fit, ingest, motion, predict, report};
+use dropcheck::{condition, events, fit, ingest, motion, report};
 use recordings::{Folder, Kind};
 
 /// Samples a channel.
@@ -134,17 +135,6 @@ fn quantities(bencher: Bencher, samples: usize) {
     bencher
         .counter(m.conditioned())
         .bench(|| fit::quantities(&measured, &motion::reconstruct).expect("quantities"));
-}
-
-#[divan::bench(args = [0.0, 0.5, 1.0])]
-fn prediction(bencher: Bencher, k: f64) {
-    let cask_file = recordings::cask_file(Kind::Hdf5);
-    let bodies = predict::bodies(&cask_file.cask);
-    bencher.counter(ItemsCount::new(bodies.len())).bench(|| {
-        for body in &bodies {
-            black_box(predict::predict(body, &cask_file.drop, Contact::Rough, black_box(k)));
-        }
-    });
 }
 
 #[divan::bench(args = SIZES)]

@@ -128,7 +128,9 @@ impl Criterion {
     pub const ALL: [Self; 3] = [Self::Speed, Self::VerticalSpeed, Self::EnergyRatio];
 }
 
-/// Where a criterion is largest for one body, contact law and k.
+/// Where a criterion is largest for one body, contact law and k among the drops in which L strikes once before R; NaN if there is none.
+///
+/// Where L strikes again the outcome hangs on every bounce and jumps from angle to angle: no angle can be called critical there.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CriticalAngle {
     /// Rod or body.
@@ -145,9 +147,11 @@ pub struct CriticalAngle {
     pub largest: f64,
     /// Angles at which it is within the chosen percentage of that, degrees; more than one where the curve has several humps.
     pub bands_deg: Vec<(f64, f64)>,
+    /// Angle, degrees, and size of a still larger value among the request's angles at which L strikes again before R.
+    pub further_impacts: Option<(f64, f64)>,
 }
 
-/// Where a criterion is largest while k and friction go through their ranges, all else as stated.
+/// Where a criterion is largest while k and friction go through their ranges, all else as stated; L strikes once before R.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CriticalRange {
     /// Rod or body.
@@ -162,6 +166,8 @@ pub struct CriticalRange {
     pub worst: (f64, Contact, f64),
     /// Angles that lie in the band of every k and friction in the ranges, degrees.
     pub common_bands_deg: Vec<(f64, f64)>,
+    /// Angle, degrees, and size of a still larger value among the request's angles at which L strikes again before R.
+    pub further_impacts: Option<(f64, f64)>,
 }
 
 /// Quantiles over the draws, one entry an angle; NaN where fewer than half of the draws have a slap-down.
@@ -179,7 +185,7 @@ pub struct QuantileCurves {
     pub q75: Vec<f64>,
     /// 97.5 %.
     pub q975: Vec<f64>,
-    /// Share of the draws whose value at this nominal angle lies within the band of that draw's own largest.
+    /// Share of the draws whose value at this nominal angle lies, with one impact of L, within the band of that draw's own largest.
     pub in_band: Vec<f64>,
     /// 2.5, 25, 50, 75 and 97.5 % quantile of the critical angle over the draws, degrees.
     pub critical_angle_deg: [f64; 5],
@@ -227,7 +233,7 @@ pub struct Sensitivity {
     pub by_angle_m_s_deg: Vec<f64>,
     /// Angles at which ∂(speed)/∂k changes sign: there k cannot be told from the slap-down speed, degrees.
     pub blind_angles_deg: Vec<f64>,
-    /// Around them, where 1 % of slap-down speed is more than 0.1 in k, degrees.
+    /// Where 1 % of slap-down speed is more than 0.1 in k, degrees.
     pub blind_bands_deg: Vec<(f64, f64)>,
 }
 

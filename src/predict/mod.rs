@@ -1,26 +1,31 @@
 //! A body, a drop, a contact law and k to rebound, flight and slap-down: the analytical prediction.
 
 mod flight;
+mod gradient;
+mod held;
 mod impact;
+mod ladder;
+mod path;
+mod resting;
+mod rod;
+mod state;
+mod study;
 
-use crate::data::{
-    Body, BodyModel, Cask, Contact, Drop, Ladder, LadderStep, Prediction, Rung, SpeedGradient,
-};
-use flight::{Outcome, fly_until_second_end};
-use impact::{State, strike_first_end};
+pub use gradient::speed_gradient;
+pub use ladder::{ladder, predict_by};
+pub use study::{default_uncertain, study};
+
+use crate::data::{Body, BodyModel, Cask, Contact, Drop, GRAZE_SHARE, Prediction, Rung};
+use impact::strike_first_end;
+use path::Way;
+use resting::Support;
+use state::State;
 
 /// The rod or body of a cask: the rod is thin and uniform whatever else the cask file says.
 #[must_use]
 pub fn body(cask: &Cask, model: BodyModel) -> Body {
     match model {
-        BodyModel::Rod => Body {
-            model,
-            mass_kg: cask.mass_kg,
-            length_m: cask.length_m,
-            height_m: 0.0,
-            cog_m: cask.length_m / 2.0,
-            inertia_kg_m2: cask.mass_kg * cask.length_m.powi(2) / 12.0,
-        },
+        BodyModel::Rod => thin_rod(cask.mass_kg, cask.length_m),
         BodyModel::Body => Body {
             model,
             mass_kg: cask.mass_kg,
@@ -29,6 +34,18 @@ pub fn body(cask: &Cask, model: BodyModel) -> Body {
             cog_m: cask.cog_m,
             inertia_kg_m2: cask.inertia_kg_m2,
         },
+    }
+}
+
+/// The thin uniform rod: h = 0, c = l/2, Θ = m l²/12.
+fn thin_rod(mass_kg: f64, length_m: f64) -> Body {
+    Body {
+        model: BodyModel::Rod,
+        mass_kg,
+        length_m,
+        height_m: 0.0,
+        cog_m: length_m / 2.0,
+        inertia_kg_m2: mass_kg * length_m.powi(2) / 12.0,
     }
 }
 
@@ -42,36 +59,26 @@ pub fn bodies(cask: &Cask) -> Vec<Body> {
     bodies
 }
 
-/// First impact, flight and slap-down of `body` with restitution `k` (0 to 1), equations (1)–(13) of `docs/physics.md`; the thin
-/// rod gives the paper's Table 1 (7).
+/// First impact, flight, further impacts of L and slap-down of `body` with restitution `k` (0 to 1), equations (1)–(13) of
+/// `docs/physics.md`: the highest rung of the ladder.
 ///
-/// Further impacts of L before R strikes are followed with the same `k`. Where R never strikes, or L keeps bouncing
-/// without end, the slap-down's quantities are `None`.
+/// L strikes again where it sinks deeper than [`GRAZE_SHARE`] of the length before R strikes. Where R never strikes the slap-down's
+/// quantities are `None`.
 #[must_use]
 pub fn predict(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction {
-    let start = State::falling(body, drop);
-    let (after, impulse_ratio) = strike_first_end(body, &start, contact, k);
-    let Outcome { at_second_end, flight_time_s, impacts, regime } =
-        fly_until_second_end(body, drop.gravity_m_s2, contact, k, after);
-    let corner = at_second_end.map(|state| state.second_end_velocity_m_s(body));
-    Prediction {
-        model: body.model,
-        contact,
-        k,
-        slap_down_speed_m_s: corner.map(|(x, z)| x.hypot(z)),
-        vertical_velocity_m_s: corner.map(|(_, z)| z),
-        horizontal_velocity_m_s: corner.map(|(x, _)| x),
-        angular_velocity_rad_s: after.angular_velocity_rad_s,
-        flight_time_s,
-        energy_ratio: at_second_end.map(|s| s.kinetic_energy_j(body) / start.kinetic_energy_j(body)),
-        slap_down_angle_deg: at_second_end.map(|s| s.angle_rad.to_degrees()),
-        first_end_impacts: impacts,
-        impulse_ratio,
-        friction_to_stick: impulse_ratio,
-        sticks: true,
-        regime,
-        closed_form_speed_m_s: None,
-    }
+    predict_grazing(body, drop, contact, k, GRAZE_SHARE)
+}
+
+/// [`predict`] with L's further impacts counted from a sinking of `graze_share` of the length: 0 is the rigid limit, in which every
+/// touch is an impact.
+#[must_use]
+pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, graze_share: f64) -> Prediction {
+    let start = State::falling(body, drop.angle_rad, drop.impact_velocity_m_s);
+    let struck = strike_first_end(body, &start, contact, k);
+    let support = Support { body, gravity_m_s2: drop.gravity_m_s2, contact, two_sided: false };
+    let way = Way { support, graze_m: Some(graze_share * body.length_m) };
+    let outcome = way.follow(struck.after, k);
+    ladder::Case { body, drop, contact, k }.prediction(&start, &struck, outcome)
 }
 
 /// The four borderline cases of the paper: rough and smooth, k = 0 and k = 1.
@@ -83,48 +90,16 @@ pub fn borderline_cases(body: &Body, drop: &Drop) -> Vec<Prediction> {
         .collect()
 }
 
-/// The closed form of Table 2 for k = 0, L staying on the target whatever the contact force: R's speed, m/s, (11) and (12).
+/// The closed form of Table 2 for k = 0, L held on the target whatever the contact force: R's speed, m/s, (11) and (12).
 ///
-/// It holds only where [`crate::data::FlightRegime::Contact`] does; elsewhere L lifts off and [`predict`] says so. `None` for Coulomb
-/// friction, for which the paper has no closed form.
+/// It holds only where [`crate::data::FlightRegime::Contact`] does; elsewhere L lifts off and [`predict`] says so. Any friction
+/// short of rough and smooth has no closed form: `None`.
 #[must_use]
 pub fn closed_form_speed_m_s(body: &Body, drop: &Drop, contact: Contact) -> Option<f64> {
-    let start = State::falling(body, drop);
-    let (after, _) = strike_first_end(body, &start, contact, 0.0);
-    flight::contact_kept(body, drop.gravity_m_s2, contact, &after)
-        .map(|(state, _)| state.second_end_velocity_m_s(body))
-        .map(|(x, z)| x.hypot(z))
-}
-
-/// What `rung` says; [`predict`] is the last one.
-#[must_use]
-pub fn predict_by(_rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction {
-    predict(body, drop, contact, k)
-}
-
-/// [`predict`] with L's further impacts counted from a sinking of `graze_share` of the length: 0 is the rigid limit.
-#[must_use]
-pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, _graze_share: f64) -> Prediction {
-    predict(body, drop, contact, k)
-}
-
-/// Every rung's prediction, simplest first, and the one that suffices.
-#[must_use]
-pub fn ladder(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Ladder {
-    let steps = Rung::ALL.map(|rung| LadderStep {
-        rung,
-        adds: rung.adds(),
-        prediction: predict_by(rung, body, drop, contact, k),
-        change_percent: None,
-    });
-    Ladder { angle_deg: drop.angle_rad.to_degrees(), contact, k, steps: steps.into(), suffices: Rung::Body }
-}
-
-/// How the slap-down speed answers to k and φ0; `None` without a slap-down.
-#[must_use]
-pub fn speed_gradient(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Option<SpeedGradient> {
-    let speed_m_s = predict(body, drop, contact, k).slap_down_speed_m_s?;
-    Some(SpeedGradient { speed_m_s, by_k_m_s: 0.0, by_angle_m_s_rad: 0.0 })
+    match contact {
+        Contact::Coulomb(_) => None,
+        contact => predict_by(Rung::Body, body, drop, contact, 0.0).slap_down_speed_m_s,
+    }
 }
 
 #[cfg(test)]
@@ -202,7 +177,8 @@ mod tests {
         // Equation (6) as printed starts S at (l/2) cos φ0; the speed at its root is 22.5 m/s, not 25.
         let (l, g) = (5.512, 9.81);
         let d = drop(15.0);
-        let (after, _) = strike_first_end(&rod(l), &State::falling(&rod(l), &d), Contact::Rough, 1.0);
+        let start = State::falling(&rod(l), d.angle_rad, d.impact_velocity_m_s);
+        let after = strike_first_end(&rod(l), &start, Contact::Rough, 1.0).after;
         let (vz, w) = (after.vertical_velocity_m_s, after.angular_velocity_rad_s);
         let printed = |t: f64| {
             l / 2.0 * d.angle_rad.cos() + vz * t - g * t * t / 2.0 + l / 2.0 * (d.angle_rad - w * t).sin()

@@ -1,0 +1,99 @@
+//! The motion just after L's first impact to the motion just before R strikes.
+
+use super::flight::{first_end_touches, second_end_touches, sinks};
+use super::impact::strike_first_end;
+use super::resting::{End, Support};
+use super::state::{Number, State, second_end_m};
+use crate::data::FlightRegime;
+
+/// More impacts of L than this before R strikes count as bouncing without end: with k ≤ 0.96 the last rebound is below [`REST_M_S`].
+const MOST_IMPACTS: u32 = 300;
+
+/// A rebound slower than this, m/s, is a rest: it lifts L by 5 nm.
+const REST_M_S: f64 = 3e-4;
+
+/// What L meets, and how far its motion is followed.
+#[derive(Clone, Copy)]
+pub(super) struct Way<'a> {
+    pub support: Support<'a>,
+    /// How deep L must sink to strike again, m; `None`: further impacts are left out.
+    pub graze_m: Option<f64>,
+}
+
+/// How the way ends.
+pub(super) struct Outcome<T> {
+    /// The motion just before R strikes, and the time since the first impact, s.
+    pub second_end: Option<(State<T>, T)>,
+    pub impacts: u32,
+    pub regime: FlightRegime,
+}
+
+impl Way<'_> {
+    /// Follows flights, rests and further impacts of L until R strikes, or says that it does not.
+    pub fn follow<T: Number>(&self, after_impact: State<T>, k: T) -> Outcome<T> {
+        let (body, gravity_m_s2) = (self.support.body, self.support.gravity_m_s2);
+        let mut state = after_impact;
+        let mut elapsed_s = T::from(0.0);
+        let mut outcome = Outcome { second_end: None, impacts: 1, regime: FlightRegime::Free };
+        loop {
+            if self.rests(&state, k) {
+                match self.support.rest(&state) {
+                    End::SecondEnd(at, time_s) => {
+                        let whole = outcome.impacts == 1 && elapsed_s.re() == 0.0;
+                        outcome.regime = if whole { FlightRegime::Contact } else { FlightRegime::Mixed };
+                        outcome.second_end = Some((at, elapsed_s + time_s));
+                        return outcome;
+                    }
+                    End::LiftsOff(at, time_s) => {
+                        if time_s.re() > 0.0 {
+                            outcome.regime = FlightRegime::Mixed;
+                        }
+                        state = at;
+                        elapsed_s += time_s;
+                    }
+                    End::Never => return outcome,
+                }
+            }
+            let second_s = second_end_touches(body, gravity_m_s2, &state);
+            match self.strikes_again(&state, second_s) {
+                Some(time_s) if outcome.impacts < MOST_IMPACTS => {
+                    let at = state.after(time_s, gravity_m_s2);
+                    state = strike_first_end(body, &at, self.support.contact, k).after;
+                    elapsed_s += time_s;
+                    outcome.impacts += 1;
+                }
+                Some(_) => return outcome,
+                None => {
+                    outcome.second_end = second_s
+                        .map(|time_s| (state.after(time_s, gravity_m_s2), elapsed_s + time_s))
+                        .filter(|(at, _)| self.is_slap_down(at));
+                    return outcome;
+                }
+            }
+        }
+    }
+
+    /// Whether the last impact left L on the target.
+    fn rests<T: Number>(&self, state: &State<T>, k: T) -> bool {
+        let rebound_m_s = state.corner(self.support.body, self.support.body.cog_m).vertical_velocity_m_s.re();
+        k.re() <= 0.0 || rebound_m_s < REST_M_S
+    }
+
+    /// When L strikes again before R does, deeper than a graze   (9)
+    fn strikes_again<T: Number>(&self, state: &State<T>, second_s: Option<T>) -> Option<T> {
+        let graze_m = self.graze_m?;
+        let (body, gravity_m_s2) = (self.support.body, self.support.gravity_m_s2);
+        let first_s = first_end_touches(body, gravity_m_s2, state, second_s)?;
+        let Some(second_s) = second_s else { return Some(first_s) };
+        let strikes = first_s.re() < second_s.re()
+            && sinks(body, gravity_m_s2, state, first_s.re()..second_s.re(), graze_m);
+        strikes.then_some(first_s)
+    }
+
+    /// R at the target but with the axis past the vertical is the other side of the cask.
+    fn is_slap_down<T: Number>(&self, at: &State<T>) -> bool {
+        let body = self.support.body;
+        let corner = at.corner(body, second_end_m(body));
+        at.angle_rad.re().cos() > 0.0 && corner.vertical_velocity_m_s.re() < 0.0
+    }
+}

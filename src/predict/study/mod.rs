@@ -1,0 +1,272 @@
+//! A cask file and a request to rows, curves, critical angles, Monte Carlo, sensitivities and the map of the regimes.
+
+mod critical;
+mod curves;
+mod monte_carlo;
+mod peak;
+mod regimes;
+mod rows;
+mod sensitivity;
+mod uncertain;
+
+pub use uncertain::default_uncertain;
+
+use super::{bodies, ladder, predict, speed_gradient};
+use crate::data::{
+    Body, BodyModel, CaskFile, Contact, Drop, Ladder, Prediction, Request, SpeedGradient, Study,
+};
+use rayon::prelude::*;
+
+/// Angles of Monte Carlo and of the maps: half a degree over the quarter circle; a finer grid is thinned to it.
+const MOST_ANGLES: usize = 181;
+
+/// All that a study of the drop angle holds, on all cores; the same for any number of them.
+///
+/// The seed fixes the draws bit by bit; the predictions made of them differ between machines in the last bits of the sine only.
+#[must_use]
+pub fn study(cask_file: &CaskFile, request: &Request) -> Study {
+    let falls = falls(cask_file, &request.contacts, &request.ks);
+    let traced: Vec<Vec<Prediction>> = falls.par_iter().map(|fall| fall.over(&request.angles_deg)).collect();
+    let (curves, critical): (Vec<_>, Vec<_>) = falls
+        .par_iter()
+        .zip(&traced)
+        .map(|(fall, predictions)| {
+            let curve = curves::curve(fall, &request.angles_deg, predictions);
+            (curve, critical::critical_angles(fall, request, predictions))
+        })
+        .unzip();
+    let thinned_deg = thinned(&request.angles_deg);
+    Study {
+        rows: rows::rows(cask_file, request),
+        ladders: ladders(cask_file, request),
+        curves,
+        sections: curves::sections(cask_file, &request.angles_deg),
+        critical: critical.into_iter().flatten().collect(),
+        ranges: critical::ranges(cask_file, request),
+        monte_carlo: monte_carlo::monte_carlo(cask_file, request, &thinned_deg),
+        sensitivities: sensitivity::sensitivities(cask_file, request),
+        maps: regimes::maps(cask_file, &request.contacts, &thinned_deg),
+        cask_file: cask_file.clone(),
+        request: request.clone(),
+    }
+}
+
+/// A fall of which only the angle is open.
+#[derive(Debug, Clone, Copy)]
+struct Fall {
+    body: Body,
+    drop: Drop,
+    contact: Contact,
+    k: f64,
+}
+
+impl Fall {
+    fn drop_at(&self, angle_deg: f64) -> Drop {
+        Drop { angle_rad: angle_deg.to_radians(), ..self.drop }
+    }
+
+    fn at(&self, angle_deg: f64) -> Prediction {
+        predict(&self.body, &self.drop_at(angle_deg), self.contact, self.k)
+    }
+
+    fn over(&self, angles_deg: &[f64]) -> Vec<Prediction> {
+        angles_deg.par_iter().map(|&angle_deg| self.at(angle_deg)).collect()
+    }
+
+    fn gradient_at(&self, angle_deg: f64) -> Option<SpeedGradient> {
+        speed_gradient(&self.body, &self.drop_at(angle_deg), self.contact, self.k)
+    }
+}
+
+/// Every body with every contact law and k, in this order.
+fn falls(cask_file: &CaskFile, contacts: &[Contact], ks: &[f64]) -> Vec<Fall> {
+    let mut falls = Vec::new();
+    for body in bodies(&cask_file.cask) {
+        for &contact in contacts {
+            falls.extend(ks.iter().map(|&k| Fall { body, drop: cask_file.drop, contact, k }));
+        }
+    }
+    falls
+}
+
+/// The body where the cask file describes one, else the rod.
+fn richest(cask_file: &CaskFile) -> Body {
+    let model = if cask_file.cask.is_body { BodyModel::Body } else { BodyModel::Rod };
+    super::body(&cask_file.cask, model)
+}
+
+fn ladders(cask_file: &CaskFile, request: &Request) -> Vec<Ladder> {
+    let body = richest(cask_file);
+    let drop = Drop { angle_rad: request.angle_deg.to_radians(), ..cask_file.drop };
+    let of = |&contact: &Contact| request.ks.iter().map(move |&k| ladder(&body, &drop, contact, k));
+    request.contacts.iter().flat_map(of).collect()
+}
+
+/// The body with another length and section: the centre of gravity keeps its share of the length, Θ ∝ l² + h².
+fn resized(body: &Body, length_m: f64, height_m: f64) -> Body {
+    let size_m2 = |l: f64, h: f64| l * l + h * h;
+    Body {
+        length_m,
+        height_m,
+        cog_m: body.cog_m * (length_m / body.length_m),
+        inertia_kg_m2: body.inertia_kg_m2
+            * (size_m2(length_m, height_m) / size_m2(body.length_m, body.height_m)),
+        ..*body
+    }
+}
+
+/// The drop from another height: v0 = √(2 g h); a stated v0 scales with √h.
+fn raised(drop: &Drop, height_m: f64) -> Drop {
+    let impact_velocity_m_s = if drop.impact_velocity_given {
+        drop.impact_velocity_m_s * (height_m / drop.height_m).sqrt()
+    } else {
+        (2.0 * drop.gravity_m_s2 * height_m).sqrt()
+    };
+    Drop { height_m, impact_velocity_m_s, ..*drop }
+}
+
+/// At most [`MOST_ANGLES`] of the angles, evenly picked, the first and last among them.
+fn thinned(angles_deg: &[f64]) -> Vec<f64> {
+    if angles_deg.len() <= MOST_ANGLES {
+        return angles_deg.to_vec();
+    }
+    let last = angles_deg.len() - 1;
+    (0..MOST_ANGLES).map(|i| angles_deg[i * last / (MOST_ANGLES - 1)]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Cask, FilterChoice, Uncertain};
+
+    pub(super) const V0_M_S: f64 = 13.288_340_754_210_061; // √(2 · 9.81 · 9)
+
+    /// A uniform cask as long and heavy as ANF-18; a section of 0 makes it the thin rod.
+    pub(super) fn cask_file(height_m: f64) -> CaskFile {
+        let (mass_kg, length_m) = (4466.0, 5.512);
+        CaskFile {
+            path: "c.toml".into(),
+            sha256: String::new(),
+            cask: Cask {
+                name: "C".into(),
+                mass_kg,
+                length_m,
+                height_m,
+                width_m: None,
+                cog_m: length_m / 2.0,
+                inertia_kg_m2: mass_kg * (length_m * length_m + height_m * height_m) / 12.0,
+                is_body: height_m > 0.0,
+            },
+            drop: Drop {
+                height_m: 9.0,
+                angle_rad: 15_f64.to_radians(),
+                impact_velocity_m_s: V0_M_S,
+                impact_velocity_given: false,
+                gravity_m_s2: 9.81,
+            },
+            contact: Contact::Rough,
+            filter: FilterChoice::Auto,
+            time: None,
+            channels: vec![],
+            defaults: vec![],
+        }
+    }
+
+    pub(super) fn steps(count: u32, last: f64) -> Vec<f64> {
+        (0..=count).map(|i| last * f64::from(i) / f64::from(count)).collect()
+    }
+
+    /// Nothing is uncertain but k.
+    pub(super) fn uncertain(k: (f64, f64), draws: u32) -> Uncertain {
+        Uncertain {
+            k,
+            friction: None,
+            angle_deg: 0.0,
+            drop_height: 0.0,
+            size: 0.0,
+            cog: 0.0,
+            inertia: 0.0,
+            draws,
+            seed: 1,
+        }
+    }
+
+    pub(super) fn request(contacts: Vec<Contact>, ks: Vec<f64>, angles_deg: Vec<f64>) -> Request {
+        Request {
+            contacts,
+            ks,
+            angle_deg: 15.0,
+            sweeps: vec![],
+            angles_deg,
+            band_percent: 5.0,
+            uncertain: uncertain((0.0, 1.0), 20),
+        }
+    }
+
+    pub(super) fn rough_rod(k: f64) -> Fall {
+        let file = cask_file(0.0);
+        Fall { body: richest(&file), drop: file.drop, contact: Contact::Rough, k }
+    }
+
+    #[test]
+    fn the_number_of_cores_changes_no_bit() {
+        let file = cask_file(0.792);
+        let mut asked = request(vec![Contact::Rough, Contact::Smooth], vec![0.0, 1.0], steps(30, 90.0));
+        asked.uncertain = Uncertain { draws: 20, friction: Some((0.1, 0.6)), ..default_uncertain(&file) };
+        let on = |cores: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(cores).build().expect("a pool");
+            // Debug prints every bit of a double, and NaN as equal to itself.
+            format!("{:?}", pool.install(|| study(&file, &asked)))
+        };
+        assert_eq!(on(1), on(3));
+    }
+
+    #[test]
+    fn a_study_holds_one_of_each() {
+        let asked = request(vec![Contact::Rough, Contact::Smooth], vec![0.0, 0.5, 1.0], steps(30, 90.0));
+        for (height_m, bodies, sections) in [(0.0, 1, 4), (0.792, 2, 5)] {
+            let found = study(&cask_file(height_m), &asked);
+            assert_eq!(found.rows.len(), bodies * 2 * 3);
+            assert_eq!(found.ladders.len(), 2 * 3);
+            assert_eq!(found.curves.len(), bodies * 2 * 3);
+            assert_eq!(found.sections.len(), sections);
+            assert_eq!(found.critical.len(), bodies * 2 * 3 * 3);
+            assert_eq!(found.ranges.len(), bodies * 3);
+            assert_eq!(found.sensitivities.len(), 2 * 3);
+            assert_eq!(found.maps.len(), 2);
+        }
+    }
+
+    #[test]
+    fn a_study_of_no_angle_is_empty_and_no_fault() {
+        let found = study(&cask_file(0.0), &request(vec![Contact::Rough], vec![0.5], vec![]));
+        assert!(found.critical.iter().all(|c| c.angle_deg.is_nan() && c.bands_deg.is_empty()));
+        assert!(found.ranges.is_empty());
+        assert!(found.monte_carlo.quantiles[0].q50.is_empty());
+    }
+
+    #[test]
+    fn thinning_keeps_both_ends() {
+        assert_eq!(thinned(&steps(180, 90.0)), steps(180, 90.0));
+        let fine = thinned(&steps(1000, 90.0));
+        assert_eq!((fine.len(), fine[0], fine[MOST_ANGLES - 1]), (MOST_ANGLES, 0.0, 90.0));
+        assert!(fine.windows(2).all(|w| w[0] < w[1]));
+    }
+
+    #[test]
+    fn a_uniform_body_stays_uniform_when_resized() {
+        let body = richest(&cask_file(0.792));
+        let other = resized(&body, 4.0, 1.0);
+        // Three roundings of a product: 1e-15 each.
+        assert!((other.inertia_kg_m2 / (body.mass_kg * 17.0 / 12.0) - 1.0).abs() < 3e-15);
+        assert!((other.cog_m - 2.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_stated_speed_scales_with_the_root_of_the_height() {
+        let drop = cask_file(0.0).drop;
+        assert!((raised(&drop, 36.0).impact_velocity_m_s / (2.0 * V0_M_S) - 1.0).abs() < 1e-15);
+        let stated = Drop { impact_velocity_m_s: 13.0, impact_velocity_given: true, ..drop };
+        assert!((raised(&stated, 36.0).impact_velocity_m_s / 26.0 - 1.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,303 @@
+//! Values over the angle to their largest one, where it is, and the bands of angles near it.
+
+use crate::data::{FlightRegime, Prediction};
+
+/// Width to which a jump is bracketed, degrees: the value moves by less than 1e-6 m/s over it.
+const JUMP_DEG: f64 = 1e-7;
+
+/// Width to which a maximum is bracketed, degrees: far below any drop rig's; flat as it is, the value is exact to rounding.
+const PEAK_DEG: f64 = 1e-5;
+
+/// Width to which the end of a band is bracketed, degrees.
+const EDGE_DEG: f64 = 1e-6;
+
+/// Jumps looked for between two neighbouring angles; further ones lie within the cell's last stretch.
+const MOST_JUMPS: usize = 8;
+
+/// A value must exceed another by this share to count as larger: predictions of a plateau differ by rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// The criteria at one angle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sample {
+    pub angle_deg: f64,
+    /// In the order of [`crate::data::Criterion::ALL`]; minus infinity without a slap-down.
+    pub values: [f64; 3],
+    /// What L does on the way if it strikes once before R: while that stays the same the values are continuous in the angle.
+    ///
+    /// `None` without a slap-down and where L strikes again: there the values jump from angle to angle, hundreds of times
+    /// between 47° and 90° for a rough rod with k = 1, and none of them is critical.
+    pub course: Option<FlightRegime>,
+}
+
+impl Sample {
+    pub fn new(angle_deg: f64, prediction: &Prediction) -> Self {
+        let value = |found: Option<f64>| found.unwrap_or(f64::NEG_INFINITY);
+        let strikes_once = prediction.slap_down_speed_m_s.is_some() && prediction.first_end_impacts == 1;
+        Self {
+            angle_deg,
+            values: [
+                value(prediction.slap_down_speed_m_s),
+                value(prediction.vertical_velocity_m_s.map(|v| -v)),
+                value(prediction.energy_ratio),
+            ],
+            course: strikes_once.then_some(prediction.regime),
+        }
+    }
+
+    /// A criterion where an angle can be critical; minus infinity where none can.
+    pub fn critical(&self, criterion: usize) -> f64 {
+        if self.course.is_some() { self.values[criterion] } else { f64::NEG_INFINITY }
+    }
+}
+
+/// Where a criterion is largest, and the angles at which it is near that.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Peak {
+    pub angle_deg: f64,
+    pub largest: f64,
+    pub bands_deg: Vec<(f64, f64)>,
+}
+
+/// The samples, and between neighbours of different course both sides of each jump.
+pub(super) fn with_jumps(samples: &[Sample], at: &impl Fn(f64) -> Sample) -> Vec<Sample> {
+    let mut all: Vec<Sample> = Vec::with_capacity(samples.len() + MOST_JUMPS);
+    for &right in samples {
+        for _ in 0..MOST_JUMPS {
+            let Some(&left) = all.last() else { break };
+            if left.course == right.course || right.angle_deg - left.angle_deg <= JUMP_DEG {
+                break;
+            }
+            let (mut before, mut behind) = (left, right);
+            while behind.angle_deg - before.angle_deg > JUMP_DEG {
+                let middle = at(f64::midpoint(before.angle_deg, behind.angle_deg));
+                if middle.course == left.course { before = middle } else { behind = middle }
+            }
+            all.extend(
+                [before, behind]
+                    .into_iter()
+                    .filter(|s| s.angle_deg > left.angle_deg && s.angle_deg < right.angle_deg),
+            );
+        }
+        all.push(right);
+    }
+    all
+}
+
+/// The largest value of one criterion over samples that hold both sides of each jump, and the bands within `band_percent` of it.
+///
+/// Every hump of the samples that may reach the highest is followed between its neighbours by golden section. At a jump the
+/// value on the higher side counts: it is the supremum. At the border it is the border's; of a plateau its lowest sampled angle.
+/// A hump that lies between two samples without lifting either above its neighbours is not seen. `None` where L strikes
+/// once at no angle.
+pub(super) fn peak(
+    samples: &[Sample],
+    criterion: usize,
+    at: &impl Fn(f64) -> Sample,
+    band_percent: f64,
+) -> Option<Peak> {
+    let value = |i: usize| samples[i].critical(criterion);
+    let highest = (0..samples.len()).map(value).fold(f64::NEG_INFINITY, f64::max);
+    let mut top = (f64::NAN, f64::NEG_INFINITY);
+    for i in 0..samples.len() {
+        let same = |j: usize| samples.get(j).filter(|s| s.course.is_some() && s.course == samples[i].course);
+        let (left, right) = (i.checked_sub(1).and_then(same), same(i + 1));
+        let rise = |s: Option<&Sample>| s.map_or(0.0, |s| value(i) - s.critical(criterion));
+        let (from_left, from_right) = (rise(left), rise(right));
+        if from_left < 0.0 || from_right < 0.0 {
+            continue;
+        }
+        take_if_larger(&mut top, (samples[i].angle_deg, value(i)));
+        // A hump rises between its samples by no more than it falls to the next ones.
+        if from_left.max(from_right) > 0.0 && value(i) + from_left.max(from_right) >= highest {
+            let end = |s: Option<&Sample>| s.map_or(samples[i].angle_deg, |s| s.angle_deg);
+            take_if_larger(&mut top, golden(end(left), end(right), |a| at(a).critical(criterion)));
+        }
+    }
+    let (angle_deg, largest) = top;
+    if largest == f64::NEG_INFINITY {
+        return None;
+    }
+    let least = largest - band_percent / 100.0 * largest.abs();
+    let mut marks: Vec<(f64, bool)> =
+        samples.iter().map(|s| (s.angle_deg, s.critical(criterion) >= least)).collect();
+    let place = marks.partition_point(|m| m.0 < angle_deg);
+    marks.insert(place, (angle_deg, true));
+    let bands_deg = bands(&marks, |a| at(a).critical(criterion) >= least);
+    Some(Peak { angle_deg, largest, bands_deg })
+}
+
+fn take_if_larger(top: &mut (f64, f64), other: (f64, f64)) {
+    if other.1 > f64::NEG_INFINITY && (top.1 == f64::NEG_INFINITY || other.1 > top.1 + ROUNDING * top.1.abs())
+    {
+        *top = other;
+    }
+}
+
+/// The highest point met by golden section (Kiefer 1953) between two angles: the maximum where there is one hump.
+fn golden(mut low_deg: f64, mut high_deg: f64, value: impl Fn(f64) -> f64) -> (f64, f64) {
+    let share = (5.0_f64.sqrt() - 1.0) / 2.0;
+    let inner = |from: f64, to: f64| {
+        let angle_deg = to - share * (to - from);
+        (angle_deg, value(angle_deg))
+    };
+    let (mut a, mut b) = (inner(low_deg, high_deg), inner(high_deg, low_deg));
+    while high_deg - low_deg > PEAK_DEG {
+        if a.1 >= b.1 {
+            high_deg = b.0;
+            b = a;
+            a = inner(low_deg, high_deg);
+        } else {
+            low_deg = a.0;
+            a = b;
+            b = inner(high_deg, low_deg);
+        }
+    }
+    if a.1 >= b.1 { a } else { b }
+}
+
+/// Stretches in which `holds`, from marks at ascending angles; ends between two marks by bisection, on the side that holds.
+pub(super) fn bands(marks: &[(f64, bool)], holds: impl Fn(f64) -> bool) -> Vec<(f64, f64)> {
+    let edge = |inside: f64, outside: f64| {
+        let (mut inside, mut outside) = (inside, outside);
+        while (outside - inside).abs() > EDGE_DEG {
+            let middle = f64::midpoint(inside, outside);
+            if holds(middle) { inside = middle } else { outside = middle }
+        }
+        inside
+    };
+    let mut found: Vec<(f64, f64)> = Vec::new();
+    let mut before: Option<(f64, bool)> = None;
+    for &(angle_deg, is_inside) in marks {
+        let was_inside = before.is_some_and(|b| b.1);
+        match (before, found.last_mut()) {
+            (_, Some(band)) if is_inside && was_inside => band.1 = angle_deg,
+            (Some(outside), _) if is_inside => found.push((edge(angle_deg, outside.0), angle_deg)),
+            (None, _) if is_inside => found.push((angle_deg, angle_deg)),
+            (Some(inside), Some(band)) if was_inside => band.1 = edge(inside.0, angle_deg),
+            _ => {}
+        }
+        before = Some((angle_deg, is_inside));
+    }
+    found
+}
+
+/// What lies in a stretch of both lists.
+pub(super) fn common(first: &[(f64, f64)], second: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let overlap = |a: &(f64, f64), b: &(f64, f64)| (a.0.max(b.0), a.1.min(b.1));
+    let with_all = |a: &(f64, f64)| {
+        let a = *a;
+        second.iter().map(move |b| overlap(&a, b))
+    };
+    first.iter().flat_map(with_all).filter(|band| band.0 <= band.1).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FREE: Option<FlightRegime> = Some(FlightRegime::Free);
+    const KEPT: Option<FlightRegime> = Some(FlightRegime::Contact);
+
+    /// The peak of a function over 0, 0.5 … 90° within 1 %.
+    fn peak_of(function: impl Fn(f64) -> (f64, Option<FlightRegime>)) -> Option<Peak> {
+        let at = |angle_deg: f64| {
+            let (value, course) = function(angle_deg);
+            Sample { angle_deg, values: [value; 3], course }
+        };
+        let samples: Vec<Sample> = (0..=180).map(|i| at(f64::from(i) / 2.0)).collect();
+        peak(&with_jumps(&samples, &at), 0, &at, 1.0)
+    }
+
+    fn near(found: f64, expected: f64, bound: f64) {
+        assert!((found - expected).abs() <= bound, "{found} {expected}");
+    }
+
+    fn one_band(peak: &Peak, low_deg: f64, high_deg: f64) {
+        assert_eq!(peak.bands_deg.len(), 1, "{:?}", peak.bands_deg);
+        near(peak.bands_deg[0].0, low_deg, 2.0 * EDGE_DEG);
+        near(peak.bands_deg[0].1, high_deg, 2.0 * EDGE_DEG);
+    }
+
+    #[test]
+    fn a_smooth_hump_is_found_between_the_samples() {
+        let found = peak_of(|a| (3.0 - 0.01 * (a - 12.3).powi(2), FREE)).expect("a peak");
+        near(found.angle_deg, 12.3, PEAK_DEG);
+        // The band ends where 0.01 (a − 12.3)² = 0.03.
+        one_band(&found, 12.3 - 3.0_f64.sqrt(), 12.3 + 3.0_f64.sqrt());
+    }
+
+    #[test]
+    fn a_band_narrower_than_the_spacing_is_found() {
+        let found = peak_of(|a| (3.0 - (a - 12.3).powi(2), FREE)).expect("a peak");
+        one_band(&found, 12.3 - 0.03_f64.sqrt(), 12.3 + 0.03_f64.sqrt());
+    }
+
+    #[test]
+    fn the_higher_of_two_humps_is_taken_though_a_sample_of_the_lower_is_higher() {
+        // The samples at 60.0 and 20.0, 20.5 read 2.99 and 2.95.
+        let hump = |a: f64, at: f64, top: f64| top - 0.8 * (a - at).abs();
+        let found = peak_of(|a| (hump(a, 60.0, 2.99).max(hump(a, 20.25, 3.0)), FREE)).expect("a peak");
+        near(found.angle_deg, 20.25, PEAK_DEG);
+        near(found.largest, 3.0, PEAK_DEG);
+        assert_eq!(found.bands_deg.len(), 2);
+        near(found.bands_deg[1].0, 60.0 - 0.02 / 0.8, 2.0 * EDGE_DEG + PEAK_DEG);
+    }
+
+    #[test]
+    fn at_a_jump_the_higher_side_counts() {
+        let found = peak_of(|a| if a < 20.2 { (a, FREE) } else { (a - 15.0, KEPT) });
+        let found = found.expect("a peak");
+        // At 90° the second stretch has reached 75.
+        near(found.largest, 75.0, 0.0);
+        let found = peak_of(|a| if a < 80.2 { (a, FREE) } else { (a - 15.0, KEPT) }).expect("a peak");
+        assert!(found.angle_deg < 80.2 && found.angle_deg > 80.2 - 2.0 * JUMP_DEG);
+        one_band(&found, 0.99 * 80.2, 80.2);
+    }
+
+    #[test]
+    fn a_stretch_between_two_jumps_within_one_spacing_is_seen() {
+        let found = peak_of(|a| match a {
+            a if a < 33.1 => (1.0, FREE),
+            a if a < 33.2 => (2.0, KEPT),
+            _ => (1.5, FREE),
+        });
+        let found = found.expect("a peak");
+        near(found.largest, 2.0, 0.0);
+        one_band(&found, 33.1, 33.2);
+    }
+
+    #[test]
+    fn where_l_does_not_strike_once_there_is_no_band() {
+        let found = peak_of(|a| if a < 40.3 { (a, FREE) } else { (100.0, None) }).expect("a peak");
+        near(found.angle_deg, 40.3, 2.0 * JUMP_DEG);
+        one_band(&found, 0.99 * 40.3, 40.3);
+        assert_eq!(peak_of(|_| (1.0, None)), None);
+    }
+
+    #[test]
+    fn the_border_counts() {
+        let rising = peak_of(|a| (1.0 + a, FREE)).expect("a peak");
+        assert_eq!((rising.angle_deg, rising.largest), (90.0, 91.0));
+        one_band(&rising, 0.99 * 91.0 - 1.0, 90.0);
+        let falling = peak_of(|a| (100.0 - a, FREE)).expect("a peak");
+        assert_eq!((falling.angle_deg, falling.largest), (0.0, 100.0));
+        one_band(&falling, 0.0, 1.0);
+    }
+
+    #[test]
+    fn a_plateau_gives_its_lowest_angle_and_all_of_it_as_band() {
+        let found = peak_of(|a| (a.clamp(10.0, 30.0), FREE)).expect("a peak");
+        assert_eq!((found.angle_deg, found.largest), (30.0, 30.0));
+        let found = peak_of(|a| ((a - 20.0).abs().max(10.0).min(10.0), FREE)).expect("a peak");
+        assert_eq!((found.angle_deg, found.bands_deg.as_slice()), (0.0, &[(0.0, 90.0)][..]));
+    }
+
+    #[test]
+    fn common_bands_are_what_lies_in_both() {
+        let first = [(0.0, 10.0), (20.0, 30.0), (40.0, 50.0)];
+        let second = [(5.0, 25.0), (45.0, 46.0)];
+        assert_eq!(common(&first, &second), [(5.0, 10.0), (20.0, 25.0), (45.0, 46.0)]);
+        assert!(common(&first, &[]).is_empty());
+    }
+}
