@@ -15,7 +15,6 @@ mod prediction;
 mod rounding;
 #[cfg(test)]
 mod sample;
-mod stand_in;
 mod table;
 mod template;
 mod text;
@@ -26,7 +25,6 @@ pub use listing::table as listing_table;
 pub use prediction::{
     PredictionRow, csv as prediction_csv, json as prediction_json, table as prediction_table,
 };
-pub use stand_in::{study_file_names, study_files, study_json, study_table};
 pub use table::table;
 pub use template::cask_file as cask_file_template;
 pub use text::printable;
