@@ -74,7 +74,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
             return draft.finish();
         }
         let compared =
-            compare::compare(&predict::bodies(&cask_file.cask), cask_file, &quantities, &predict::predict);
+            compare::compare(&predict::bodies(&cask_file.cask), cask_file, &quantities, &predict::predict_by);
         if let Some(comparison) = compared.as_ref().and_then(|c| c.1) {
             draft.issues.extend(judge::judge_comparison(&comparison));
         }

@@ -1,8 +1,8 @@
 //! Measured beside predicted: the models tried, the one taken and whether it agrees.
 
 use crate::data::{
-    Body, BodyModel, CaskFile, Comparison, Contact, Drop, ModelCandidate, ModelChoice, Prediction,
-    Quantities, U_ANGLE_RAD,
+    Body, BodyModel, CaskFile, Comparison, Contact, Drop, LADDER_TOLERANCE_PERCENT, ModelCandidate,
+    ModelChoice, Prediction, Quantities, Rung, U_ANGLE_RAD,
 };
 
 /// Standard uncertainty of an inertia that is only the uniform body's: casks carry their mass off the even spread (5 %).
@@ -10,39 +10,33 @@ const U_INERTIA_DEFAULT: f64 = 0.05;
 /// Standard uncertainty of an inertia that the cask file states.
 const U_INERTIA_STATED: f64 = 0.01;
 
-/// The analytical model as a function, such as `predict::predict`.
-pub type Predict<'a> = &'a dyn Fn(&Body, &Drop, Contact, f64) -> Prediction;
+/// A rung of the analytical models as a function, such as `predict::predict_by`.
+pub type PredictBy<'a> = &'a dyn Fn(Rung, &Body, &Drop, Contact, f64) -> Prediction;
 
-/// Holds every body's prediction with the measured k against the measured slap-down speed, simplest first.
+/// What a rung is asked: the rod and the richest body, the cask file and what was measured.
+struct Scene<'a> {
+    rod: &'a Body,
+    body: &'a Body,
+    file: &'a CaskFile,
+    measured: &'a Quantities,
+    predict: PredictBy<'a>,
+}
+
+/// Holds every rung's prediction with the measured k against the measured slap-down speed, simplest first.
 ///
-/// Returns the choice and, where both speeds exist, the comparison with the model taken. The simplest model wins whose own and all richer
-/// predictions agree.
+/// `bodies` are the rod and, where the cask file describes one, the body. Rod and body are always held against it, a higher rung where it changes the
+/// speed. Returns the choice and, where both speeds exist, the comparison with the model taken. The simplest model wins whose own and
+/// all richer predictions agree.
 #[must_use]
 pub fn compare(
     bodies: &[Body],
     cask_file: &CaskFile,
     measured: &Quantities,
-    predict: Predict,
+    predict: PredictBy,
 ) -> Option<(ModelChoice, Option<Comparison>)> {
-    let k = measured.k.value.clamp(0.0, 1.0);
-    let candidates: Vec<ModelCandidate> = bodies
-        .iter()
-        .map(|body| {
-            let predicted = predict(body, &cask_file.drop, cask_file.contact, k).slap_down_speed_m_s;
-            let u95 = predicted.and_then(|_| uncertainty(body, cask_file, measured, predict));
-            let difference = match (measured.speed, predicted) {
-                (Some(m), Some(p)) => Some((m.value - p, p, m.u95)),
-                _ => None,
-            };
-            ModelCandidate {
-                model: body.model,
-                predicted,
-                u95,
-                difference_percent: difference.map(|(d, p, _)| 100.0 * d / p),
-                consistent: difference.zip(u95).is_some_and(|((d, _, m), u)| d.abs() <= m.hypot(u)),
-            }
-        })
-        .collect();
+    let (rod, body) = (bodies.first()?, bodies.last()?);
+    let scene = Scene { rod, body, file: cask_file, measured, predict };
+    let candidates = scene.candidates();
     // A simple model that agrees where a richer one does not agrees by luck: the richer ones must agree as well.
     let taken = (0..candidates.len())
         .find(|&i| candidates[i..].iter().all(|c| c.consistent))
@@ -61,58 +55,120 @@ pub fn compare(
         _ => None,
     };
     let reason = reason(&taken, &candidates);
-    Some((ModelChoice { name: taken.model, reason, candidates }, comparison))
+    Some((ModelChoice { name: taken.model, rung: taken.rung, reason, candidates }, comparison))
 }
 
-/// 95 % half-width of a prediction, m/s: k, angle, inertia, and the finite pulse that the impact formula leaves out.
-fn uncertainty(body: &Body, file: &CaskFile, measured: &Quantities, predict: Predict) -> Option<f64> {
-    let k = measured.k.value.clamp(0.0, 1.0);
-    let speed = |body: &Body, drop: &Drop, k: f64| {
-        predict(body, drop, file.contact, k.clamp(0.0, 1.0)).slap_down_speed_m_s
-    };
-    let base = speed(body, &file.drop, k)?;
-    let by_k = speed(body, &file.drop, k + measured.k.u95 / 2.0).map_or(0.0, |s| s - base);
-    let turned = |by_rad: f64| Drop { angle_rad: (file.drop.angle_rad + by_rad).max(0.0), ..file.drop };
-    let by_angle = speed(body, &turned(U_ANGLE_RAD), k).map_or(0.0, |s| s - base);
-    let stated = body.model == BodyModel::Body && !file.defaults.iter().any(|d| d == "cask.inertia_kg_m2");
-    let share = if stated { U_INERTIA_STATED } else { U_INERTIA_DEFAULT };
-    let heavier = Body { inertia_kg_m2: body.inertia_kg_m2 * (1.0 + share), ..*body };
-    let by_inertia = speed(&heavier, &file.drop, k).map_or(0.0, |s| s - base);
-    // While the pulse of duration T lasts the cask turns by about ω T / 2 and gravity adds g T.
-    let duration_s = measured.duration.value.max(0.0);
-    let turn_rad = -measured.angular_velocity.value * duration_s / 2.0;
-    let by_pulse = speed(body, &turned(turn_rad), k).map_or(0.0, |s| s - base).abs()
-        + file.drop.gravity_m_s2 * duration_s;
-    Some(2.0 * by_k.hypot(by_angle).hypot(by_inertia).hypot(by_pulse / 3.0_f64.sqrt()))
+impl Scene<'_> {
+    /// The rungs that say something of their own.
+    fn candidates(&self) -> Vec<ModelCandidate> {
+        let mut candidates: Vec<ModelCandidate> = Vec::new();
+        for rung in Rung::ALL {
+            let candidate = self.candidate(rung);
+            let always = rung == Rung::Rod || (rung == Rung::Body && self.body.model == BodyModel::Body);
+            let below = candidates.last().and_then(|c| c.predicted);
+            if always || differ(below, candidate.predicted) {
+                candidates.push(candidate);
+            }
+        }
+        candidates
+    }
+
+    fn candidate(&self, rung: Rung) -> ModelCandidate {
+        let measured = self.measured;
+        let predicted = self.speed_m_s(rung, self.body, &self.file.drop, measured.k.value);
+        let u95 = predicted.and_then(|_| self.uncertainty_m_s(rung));
+        let difference = match (measured.speed, predicted) {
+            (Some(m), Some(p)) => Some((m.value - p, p, m.u95)),
+            _ => None,
+        };
+        ModelCandidate {
+            rung,
+            model: if rung == Rung::Rod { BodyModel::Rod } else { self.body.model },
+            predicted,
+            u95,
+            difference_percent: difference.map(|(d, p, _)| 100.0 * d / p),
+            consistent: difference.zip(u95).is_some_and(|((d, _, m), u)| d.abs() <= m.hypot(u)),
+        }
+    }
+
+    fn speed_m_s(&self, rung: Rung, body: &Body, drop: &Drop, k: f64) -> Option<f64> {
+        (self.predict)(rung, body, drop, self.file.contact, k.clamp(0.0, 1.0)).slap_down_speed_m_s
+    }
+
+    /// 95 % half-width of a prediction, m/s: k, angle, inertia, and the finite pulse that the impact formula leaves out.
+    fn uncertainty_m_s(&self, rung: Rung) -> Option<f64> {
+        let Self { body, file, measured, .. } = self;
+        let k = measured.k.value.clamp(0.0, 1.0);
+        let base = self.speed_m_s(rung, body, &file.drop, k)?;
+        let change = |body: &Body, drop: &Drop, k: f64| {
+            self.speed_m_s(rung, body, drop, k).map_or(0.0, |speed| speed - base)
+        };
+        let by_k = change(body, &file.drop, k + measured.k.u95 / 2.0);
+        let turned = |by_rad: f64| Drop { angle_rad: (file.drop.angle_rad + by_rad).max(0.0), ..file.drop };
+        let by_angle = change(body, &turned(U_ANGLE_RAD), k);
+        let by_inertia = self.by_inertia_m_s(rung, k);
+        // While the pulse of duration T lasts the cask turns by about ω T / 2 and gravity adds g T.
+        let duration_s = measured.duration.value.max(0.0);
+        let turn_rad = -measured.angular_velocity.value * duration_s / 2.0;
+        let by_pulse = change(body, &turned(turn_rad), k).abs() + file.drop.gravity_m_s2 * duration_s;
+        Some(2.0 * by_k.hypot(by_angle).hypot(by_inertia).hypot(by_pulse / 3.0_f64.sqrt()))
+    }
+
+    /// How a heavier inertia changes the speed, m/s. The rod's own has none to change: it is asked as a body.
+    fn by_inertia_m_s(&self, rung: Rung, k: f64) -> f64 {
+        let stated = self.body.model == BodyModel::Body
+            && !self.file.defaults.iter().any(|default| default == "cask.inertia_kg_m2");
+        let (rung, body, share) = match rung {
+            Rung::Rod => (Rung::Body, self.rod, U_INERTIA_DEFAULT),
+            rung if stated => (rung, self.body, U_INERTIA_STATED),
+            rung => (rung, self.body, U_INERTIA_DEFAULT),
+        };
+        let heavier = Body { inertia_kg_m2: body.inertia_kg_m2 * (1.0 + share), ..*body };
+        let speed = |body: &Body| self.speed_m_s(rung, body, &self.file.drop, k);
+        speed(&heavier).zip(speed(body)).map_or(0.0, |(heavier, as_it_is)| heavier - as_it_is)
+    }
+}
+
+/// Whether a rung changes what the one below says.
+fn differ(below: Option<f64>, richer: Option<f64>) -> bool {
+    match (below, richer) {
+        (Some(below), Some(richer)) => (richer - below).abs() > LADDER_TOLERANCE_PERCENT / 100.0 * below,
+        (None, None) => false,
+        _ => true,
+    }
+}
+
+/// A rung as the subject of a sentence.
+fn name(rung: Rung) -> &'static str {
+    match rung {
+        Rung::Rod => "thin rod",
+        Rung::Body => "body with section, centre of gravity and inertia",
+        Rung::Friction => "body with Coulomb friction",
+        Rung::Unilateral => "body that the target only pushes",
+        Rung::FurtherImpacts => "body with further impacts of the first end",
+    }
 }
 
 fn reason(taken: &ModelCandidate, candidates: &[ModelCandidate]) -> String {
-    let name = |m: BodyModel| match m {
-        BodyModel::Rod => "thin rod",
-        BodyModel::Body => "body with section, centre of gravity and inertia",
-    };
     let Some(percent) = taken.difference_percent else {
-        return format!("No slap-down speed was measured to choose by; the {} is shown.", name(taken.model));
+        return format!("No slap-down speed was measured to choose by; the {} is shown.", name(taken.rung));
     };
     let others: Vec<String> = candidates
         .iter()
-        .filter(|c| c.model != taken.model)
-        .filter_map(|c| {
-            c.predicted.map(|p| {
-                format!(
-                    "the {} would say {p:.2} m/s ({:+.1} %)",
-                    name(c.model),
-                    c.difference_percent.unwrap_or(0.0)
-                )
-            })
+        .filter(|c| c.rung != taken.rung)
+        .map(|c| match (c.predicted, c.difference_percent) {
+            (Some(p), Some(percent)) => {
+                format!("the {} would say {p:.2} m/s ({percent:+.1} %)", name(c.rung))
+            }
+            _ => format!("by the {} the second end would not strike", name(c.rung)),
         })
         .collect();
     let lead = if taken.consistent {
-        format!("The {} is the simplest model within both intervals ({percent:+.1} %)", name(taken.model))
+        format!("The {} is the simplest model within both intervals ({percent:+.1} %)", name(taken.rung))
     } else {
         format!(
-            "The measurement does not agree within both intervals; the {} comes nearest ({percent:+.1} %)",
-            name(taken.model)
+            "The measurement does not agree within both intervals; the {} is the richest model ({percent:+.1} %)",
+            name(taken.rung)
         )
     };
     if others.is_empty() { format!("{lead}.") } else { format!("{lead}; {}.", others.join(", ")) }
@@ -173,11 +229,11 @@ mod tests {
 
     /// The rod always says `rod_m_s`, the body 20 m/s, whatever angle and k.
     fn choice(measured_m_s: f64, rod_m_s: f64) -> (BodyModel, bool) {
-        let predict = |body: &Body, _: &Drop, contact: Contact, k: f64| Prediction {
+        let predict = |rung: Rung, body: &Body, _: &Drop, contact: Contact, k: f64| Prediction {
             model: body.model,
             contact,
             k,
-            slap_down_speed_m_s: Some(if body.model == BodyModel::Rod { rod_m_s } else { 20.0 }),
+            slap_down_speed_m_s: Some(if rung == Rung::Rod { rod_m_s } else { 20.0 }),
             vertical_velocity_m_s: None,
             horizontal_velocity_m_s: None,
             angular_velocity_rad_s: 5.0,
@@ -191,17 +247,16 @@ mod tests {
             regime: FlightRegime::Free,
             closed_form_speed_m_s: None,
         };
-        let body = |model| Body {
-            model,
+        let body = Body {
+            model: BodyModel::Body,
             mass_kg: 1.0,
             length_m: 5.0,
-            height_m: 0.0,
+            height_m: 0.5,
             cog_m: 2.5,
             inertia_kg_m2: 1.0,
         };
-        let bodies = [body(BodyModel::Rod), body(BodyModel::Body)];
         let (choice, comparison) =
-            compare(&bodies, &file(), &quantities(measured_m_s), &predict).expect("two bodies");
+            compare(&[body, body], &file(), &quantities(measured_m_s), &predict).expect("two models");
         (choice.name, comparison.expect("both speeds").agrees)
     }
 

@@ -6,6 +6,7 @@ use super::curves::Curves;
 use super::estimate::Estimate;
 use super::flight::FlightFit;
 use super::issue::Issue;
+use super::ladder::Rung;
 use super::prediction::{BodyModel, Prediction};
 use super::recording::RecordingFormat;
 use serde::Serialize;
@@ -74,6 +75,8 @@ pub struct SlapDown {
 /// How one analytical model stands against the measurement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelCandidate {
+    /// Which rung of the ladder of models.
+    pub rung: Rung,
     /// Which body.
     pub model: BodyModel,
     /// Predicted slap-down speed with the measured k, m/s.
@@ -89,11 +92,13 @@ pub struct ModelCandidate {
 /// Which analytical model explains the measurement with the least.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelChoice {
-    /// The model taken.
+    /// The body of the model taken.
     pub name: BodyModel,
+    /// Its rung of the ladder of models.
+    pub rung: Rung,
     /// One sentence: why, and what the next one would have changed.
     pub reason: String,
-    /// All that were held against the measurement, simplest first.
+    /// The rungs that say something of their own at this k and angle, simplest first.
     pub candidates: Vec<ModelCandidate>,
 }
 

@@ -31,9 +31,9 @@ impl Rung {
         match self {
             Self::Rod => "rod",
             Self::Body => "body",
-            Self::Friction => "friction",
-            Self::Unilateral => "unilateral contact",
-            Self::FurtherImpacts => "further impacts",
+            Self::Friction => "body with friction",
+            Self::Unilateral => "body, unilateral contact",
+            Self::FurtherImpacts => "body, further impacts",
         }
     }
 

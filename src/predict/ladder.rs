@@ -2,7 +2,7 @@
 
 use super::impact::{Struck, strike_first_end};
 use super::path::{Outcome, Way};
-use super::resting::{End, Support};
+use super::resting::{End, Hold, Support};
 use super::state::{State, second_end_m};
 use super::{held, predict, rod, thin_rod};
 use crate::data::{
@@ -75,8 +75,8 @@ impl Case<'_> {
         State::falling(self.body, self.drop.angle_rad, self.drop.impact_velocity_m_s)
     }
 
-    fn support(&self, two_sided: bool) -> Support<'_> {
-        Support { body: self.body, gravity_m_s2: self.drop.gravity_m_s2, contact: self.contact, two_sided }
+    fn support(&self, hold: Hold) -> Support<'_> {
+        Support { body: self.body, gravity_m_s2: self.drop.gravity_m_s2, contact: self.contact, hold }
     }
 
     /// k = 0: L held on the target until R strikes; else one flight.
@@ -96,13 +96,13 @@ impl Case<'_> {
     }
 
     fn one_flight(&self, struck: &Struck<f64>) -> Outcome<f64> {
-        Way { support: self.support(false), graze_m: None }.follow(struck.after, self.k)
+        Way { support: self.support(Hold::Pushes), graze_m: None }.follow(struck.after, self.k)
     }
 
     /// L held on the target: [P] Table 2 for rough and smooth, step by step for the friction between them.
     fn held(&self, after: &State<f64>) -> Outcome<f64> {
         let second_end = match self.contact {
-            Contact::Coulomb(_) => match self.support(true).rest(after) {
+            Contact::Coulomb(_) => match self.support(Hold::Pulls).rest(after) {
                 End::SecondEnd(at, time_s) => Some((at, time_s)),
                 End::LiftsOff(..) | End::Never => None,
             },
@@ -151,5 +151,79 @@ impl Case<'_> {
                 .flatten()
                 .map(|(state, _)| self.second_end_speed_m_s(&state)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::BodyModel;
+
+    fn anf18() -> Body {
+        let (m, l, h) = (4466.0, 5.512, 0.792);
+        Body {
+            model: BodyModel::Body,
+            height_m: h,
+            inertia_kg_m2: m * (l * l + h * h) / 12.0,
+            ..thin_rod(m, l)
+        }
+    }
+
+    fn drop(angle_deg: f64) -> Drop {
+        Drop {
+            height_m: 9.0,
+            angle_rad: angle_deg.to_radians(),
+            impact_velocity_m_s: (2.0_f64 * 9.81 * 9.0).sqrt(),
+            impact_velocity_given: false,
+            gravity_m_s2: 9.81,
+        }
+    }
+
+    #[test]
+    fn the_first_rung_that_the_others_leave_alone_suffices() {
+        let suffices =
+            |body: &Body, angle_deg, contact, k| ladder(body, &drop(angle_deg), contact, k).suffices;
+        let rod = thin_rod(4466.0, 5.512);
+        assert_eq!(suffices(&rod, 15.0, Contact::Rough, 0.5), Rung::Rod);
+        assert_eq!(suffices(&anf18(), 15.0, Contact::Rough, 0.5), Rung::Body);
+        assert_eq!(suffices(&anf18(), 15.0, Contact::Coulomb(0.3), 0.5), Rung::Friction);
+        assert_eq!(suffices(&anf18(), 15.0, Contact::Rough, 0.0), Rung::Unilateral);
+        assert_eq!(suffices(&anf18(), 45.0, Contact::Rough, 0.9), Rung::FurtherImpacts);
+    }
+
+    #[test]
+    fn each_step_says_what_it_changes() {
+        let told = ladder(&anf18(), &drop(15.0), Contact::Coulomb(0.3), 0.5);
+        let speeds: Vec<f64> =
+            told.steps.iter().map(|s| s.prediction.slap_down_speed_m_s.expect("R strikes")).collect();
+        // physics: rod 22.49, body rough 20.18, with friction 22.31 m/s.
+        for (speed, expected) in speeds.iter().zip([22.49, 20.18, 22.31, 22.31, 22.31]) {
+            assert!((speed - expected).abs() < 0.005, "{speeds:?}");
+        }
+        assert!(told.steps[0].change_percent.is_none());
+        let change = told.steps[1].change_percent.expect("both strike");
+        assert!((change - 100.0 * (speeds[1] / speeds[0] - 1.0)).abs() < 1e-12);
+        assert!(!told.steps[2].prediction.sticks && told.steps[1].prediction.sticks);
+    }
+
+    #[test]
+    fn the_closed_form_stands_beside_the_flight() {
+        let castor = thin_rod(20950.0, 4.486);
+        let told = predict_by(Rung::Unilateral, &castor, &drop(15.0), Contact::Rough, 0.0);
+        assert!((told.closed_form_speed_m_s.expect("k = 0") - 20.12).abs() < 0.005);
+        assert_eq!(told.regime, FlightRegime::Free);
+        let held = predict_by(Rung::Rod, &castor, &drop(15.0), Contact::Rough, 0.0);
+        assert_eq!(held.slap_down_speed_m_s, told.closed_form_speed_m_s);
+        assert_eq!(held.regime, FlightRegime::Contact);
+        assert!(predict(&castor, &drop(15.0), Contact::Rough, 0.5).closed_form_speed_m_s.is_none());
+    }
+
+    #[test]
+    fn steep_drops_with_little_rebound_come_down_after_all() {
+        // L comes to rest on the target; the body topples over it unless it stands beyond its balance (81.8°).
+        for angle_deg in [60.0, 70.0, 80.0] {
+            assert!(predict(&anf18(), &drop(angle_deg), Contact::Rough, 0.0).slap_down_speed_m_s.is_some());
+        }
+        assert!(predict(&anf18(), &drop(85.0), Contact::Rough, 0.0).slap_down_speed_m_s.is_none());
     }
 }

@@ -18,7 +18,7 @@ pub use study::{default_uncertain, study};
 use crate::data::{Body, BodyModel, Cask, Contact, Drop, GRAZE_SHARE, Prediction, Rung};
 use impact::strike_first_end;
 use path::Way;
-use resting::Support;
+use resting::{Hold, Support};
 use state::State;
 
 /// The rod or body of a cask: the rod is thin and uniform whatever else the cask file says.
@@ -75,7 +75,7 @@ pub fn predict(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction
 pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, graze_share: f64) -> Prediction {
     let start = State::falling(body, drop.angle_rad, drop.impact_velocity_m_s);
     let struck = strike_first_end(body, &start, contact, k);
-    let support = Support { body, gravity_m_s2: drop.gravity_m_s2, contact, two_sided: false };
+    let support = Support { body, gravity_m_s2: drop.gravity_m_s2, contact, hold: Hold::Pushes };
     let way = Way { support, graze_m: Some(graze_share * body.length_m) };
     let outcome = way.follow(struck.after, k);
     ladder::Case { body, drop, contact, k }.prediction(&start, &struck, outcome)

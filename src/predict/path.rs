@@ -2,7 +2,7 @@
 
 use super::flight::{first_end_touches, second_end_touches, sinks};
 use super::impact::strike_first_end;
-use super::resting::{End, Support};
+use super::resting::{End, Hold, Support};
 use super::state::{Number, State, second_end_m};
 use crate::data::FlightRegime;
 
@@ -11,6 +11,9 @@ const MOST_IMPACTS: u32 = 300;
 
 /// A rebound slower than this, m/s, is a rest: it lifts L by 5 nm.
 const REST_M_S: f64 = 3e-4;
+
+/// L that touches the target again sooner than this, s, has not left it: gravity moves a free corner by 5 nm.
+const LET_GO_S: f64 = 3e-5;
 
 /// What L meets, and how far its motion is followed.
 #[derive(Clone, Copy)]
@@ -37,9 +40,10 @@ impl Way<'_> {
         let mut outcome = Outcome { second_end: None, impacts: 1, regime: FlightRegime::Free };
         loop {
             if self.rests(&state, k) {
-                match self.support.rest(&state) {
+                let (end, held) = self.rest(&state);
+                match end {
                     End::SecondEnd(at, time_s) => {
-                        let whole = outcome.impacts == 1 && elapsed_s.re() == 0.0;
+                        let whole = held && outcome.impacts == 1 && elapsed_s.re() == 0.0;
                         outcome.regime = if whole { FlightRegime::Contact } else { FlightRegime::Mixed };
                         outcome.second_end = Some((at, elapsed_s + time_s));
                         return outcome;
@@ -77,6 +81,24 @@ impl Way<'_> {
     fn rests<T: Number>(&self, state: &State<T>, k: T) -> bool {
         let rebound_m_s = state.corner(self.support.body, self.support.body.cog_m).vertical_velocity_m_s.re();
         k.re() <= 0.0 || rebound_m_s < REST_M_S
+    }
+
+    /// L on the target until R strikes or the target would have to pull. L then flies, the limit k → 0, unless it sinks deeper than
+    /// a graze: then it has not left the target at all and slides on until it rises by itself.
+    /// The flag says whether the contact law held L all the time.
+    fn rest<T: Number>(&self, from: &State<T>) -> (End<T>, bool) {
+        let end = self.support.rest(from);
+        let End::LiftsOff(at, time_s) = end else { return (end, true) };
+        let second_s = second_end_touches(self.support.body, self.support.gravity_m_s2, &at);
+        if self.strikes_again(&at, second_s).is_none_or(|again_s| again_s.re() > LET_GO_S) {
+            return (End::LiftsOff(at, time_s), true);
+        }
+        let end = match (Support { hold: Hold::Yields, ..self.support }).rest(&at) {
+            End::SecondEnd(at, more_s) => End::SecondEnd(at, time_s + more_s),
+            End::LiftsOff(at, more_s) => End::LiftsOff(at, time_s + more_s),
+            End::Never => End::Never,
+        };
+        (end, false)
     }
 
     /// When L strikes again before R does, deeper than a graze   (9)

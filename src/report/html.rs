@@ -14,6 +14,39 @@ const STYLE: &str = include_str!("report.css");
 pub(super) fn page(analysis: &Analysis, pictures: &[Picture]) -> String {
     let result = &analysis.result;
     let name = printable(&analysis.cask_file.cask.name);
+    let title = format!("Drop test of {name} – {}", verdict_word(result.verdict));
+    let content = html! {
+        header {
+            div class="product" { "Drop test report · dropcheck " (result.version) }
+            h1 { (name) ": slap-down drop test" }
+            p class="soft" { (printable(&result.input.recording)) }
+            (banner(result))
+            (figures(result))
+        }
+        (sections::tested(&analysis.cask_file, "What was tested"))
+        (sections::quantities(result))
+        (picture(pictures, "comparison"))
+        (sections::findings(result))
+        h2 { "Curves" }
+        @for name in ["accelerations", "velocities", "motion", "spectra"] {
+            (picture(pictures, name))
+        }
+        (sections::models(result))
+        (sections::predictions(result))
+        (sections::budget(result))
+        (sections::flight(result))
+        (sections::channels(result))
+        (sections::provenance(result))
+        footer {
+            "An interval holds the value with 95 % probability. Times count from the recording's first sample unless an \
+             axis says otherwise. Body axes: axial from the first end to the second, transverse away from the target."
+        }
+    };
+    document(&title, result.version, "", &content)
+}
+
+/// A page of its own around `content`, whose words are escaped already; `style` is added to what all pages share.
+pub(super) fn document(title: &str, version: &str, style: &str, content: &Markup) -> String {
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -22,39 +55,11 @@ pub(super) fn page(analysis: &Analysis, pictures: &[Picture]) -> String {
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 // Whatever a file smuggled in could neither run nor call out.
                 meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'";
-                meta name="generator" content=(format!("dropcheck {}", result.version));
-                title { "Drop test of " (name) " – " (verdict_word(result.verdict)) }
-                style { (PreEscaped(STYLE)) }
+                meta name="generator" content=(format!("dropcheck {version}"));
+                title { (title) }
+                style { (PreEscaped(STYLE)) (PreEscaped(style)) }
             }
-            body {
-                main {
-                    header {
-                        div class="product" { "Drop test report · dropcheck " (result.version) }
-                        h1 { (name) ": slap-down drop test" }
-                        p class="soft" { (printable(&result.input.recording)) }
-                        (banner(result))
-                        (figures(result))
-                    }
-                    (sections::tested(analysis))
-                    (sections::quantities(result))
-                    (picture(pictures, "comparison"))
-                    (sections::findings(result))
-                    h2 { "Curves" }
-                    @for name in ["accelerations", "velocities", "motion", "spectra"] {
-                        (picture(pictures, name))
-                    }
-                    (sections::models(result))
-                    (sections::predictions(result))
-                    (sections::budget(result))
-                    (sections::flight(result))
-                    (sections::channels(result))
-                    (sections::provenance(result))
-                    footer {
-                        "An interval holds the value with 95 % probability. Times count from the recording's first sample unless an \
-                         axis says otherwise. Body axes: axial from the first end to the second, transverse away from the target."
-                    }
-                }
-            }
+            body { main { (content) } }
         }
     }
     .into_string()
@@ -71,7 +76,7 @@ fn banner(result: &DropResult) -> Markup {
 }
 
 fn figures(result: &DropResult) -> Markup {
-    let model = result.model.as_ref().map_or("no model taken", |m| m.name.as_str());
+    let model = result.model.as_ref().map_or("no model taken", |m| m.rung.words());
     html! {
         dl class="figures" {
             div { dt { "Slap-down speed, measured" }
@@ -95,7 +100,8 @@ fn figures(result: &DropResult) -> Markup {
     }
 }
 
-fn picture(pictures: &[Picture], name: &str) -> Markup {
+/// The picture of this name with its caption.
+pub(super) fn picture(pictures: &[Picture], name: &str) -> Markup {
     html! {
         @for picture in pictures.iter().filter(|p| p.name == name) {
             figure aria-label=(printable(&picture.alt)) {

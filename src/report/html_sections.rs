@@ -7,12 +7,11 @@ use super::rounding::{
 };
 use super::table::{FIRST_IMPACT_CODES, SLAP_DOWN_CODES, end_axis};
 use super::text::{code_word, format_word, printable, reason, sentence, severity_word, span_text};
-use crate::data::{Analysis, DropResult, Estimate, FlightRegime, Issue, IssueCode, ModelCandidate};
+use crate::data::{CaskFile, DropResult, Estimate, FlightRegime, Issue, IssueCode, ModelCandidate};
 use maud::{Markup, html};
 
 /// The cask, the drop and the contact; what is a default is marked.
-pub(super) fn tested(analysis: &Analysis) -> Markup {
-    let file = &analysis.cask_file;
+pub(super) fn tested(file: &CaskFile, heading: &str) -> Markup {
     let (cask, drop) = (&file.cask, &file.drop);
     let row = |name: &str, key: &str, value: String, unit: &str| {
         html! {
@@ -22,7 +21,7 @@ pub(super) fn tested(analysis: &Analysis) -> Markup {
     };
     let section = if cask.height_m > 0.0 { plain(cask.height_m, 5) } else { "thin rod".into() };
     html! {
-        h2 { "What was tested" }
+        h2 { (heading) }
         div class="pair" {
             table class="whole" {
                 caption { "Cask " (printable(&cask.name)) }
@@ -139,12 +138,12 @@ pub(super) fn models(result: &DropResult) -> Markup {
         @match &result.model {
             None => p { "No model was taken: " (printable(reason(result, &SLAP_DOWN_CODES))) },
             Some(model) => {
-                p class="lead" { "Taken: " strong { (model.name.as_str()) } ". " (sentence(&model.reason)) }
+                p class="lead" { "Taken: " strong { (model.rung.words()) } ". " (sentence(&model.reason)) }
                 table class="whole" {
-                    caption { "Analytical models with the measured k, the simplest first" }
+                    caption { "The ladder of analytical models with the measured k, the simplest first; rungs that change nothing are left out" }
                     thead { tr { th { "Model" } th class="n" { "Predicted, m/s" } th class="n" { "± 95 %, m/s" }
                         th class="n" { "Predicted against measured" } th { "Within both intervals" } } }
-                    tbody { @for c in &model.candidates { (candidate(c, c.model == model.name)) } }
+                    tbody { @for c in &model.candidates { (candidate(c, c.rung == model.rung)) } }
                 }
             }
         }
@@ -154,7 +153,7 @@ pub(super) fn models(result: &DropResult) -> Markup {
 fn candidate(c: &ModelCandidate, chosen: bool) -> Markup {
     html! {
         tr class=[chosen.then_some("chosen")] {
-            th scope="row" { (c.model.as_str()) @if chosen { " (taken)" } }
+            th scope="row" { (c.rung.words()) @if chosen { " (taken)" } }
             td class="n" { (optional_fixed(c.predicted, 2)) }
             td class="n" { (optional(c.u95, 2)) }
             td class="n" { (c.difference_percent.map_or_else(|| MISSING.into(), percent)) }

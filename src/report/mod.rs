@@ -15,6 +15,8 @@ mod prediction;
 mod rounding;
 #[cfg(test)]
 mod sample;
+#[cfg(test)]
+mod sample_study;
 mod table;
 mod template;
 mod text;
@@ -23,7 +25,8 @@ pub use campaign::{Campaign, CampaignRow};
 pub use json::{listing as listing_json, result as result_json};
 pub use listing::table as listing_table;
 pub use prediction::{
-    PredictionRow, csv as prediction_csv, json as prediction_json, table as prediction_table,
+    csv as prediction_csv, json as prediction_json, study_file_names, study_files, study_json, study_table,
+    table as prediction_table,
 };
 pub use table::table;
 pub use template::cask_file as cask_file_template;
@@ -59,7 +62,7 @@ pub enum ReportError {
     #[error("the picture {picture} could not be drawn: {reason}")]
     Picture {
         /// Its name.
-        picture: &'static str,
+        picture: String,
         /// What the plotter said.
         reason: String,
     },

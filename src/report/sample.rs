@@ -4,8 +4,8 @@ use crate::data::{
     Analysis, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelSpec, ChannelSummary, Comparison,
     Contact, Contribution, Coupling, Curves, Drop, DropResult, End, Estimate, Events, FilterChoice,
     FirstImpact, FlightFit, FlightModelScore, FlightRegime, Input, Issue, IssueCode, Mode, ModelCandidate,
-    ModelChoice, MotionCurve, Plateau, Prediction, RecordingFormat, Setting, Severity, SlapDown, Source,
-    Spectrum, Unit, Verdict,
+    ModelChoice, MotionCurve, Plateau, Prediction, RecordingFormat, Rung, Setting, Severity, SlapDown,
+    Source, Spectrum, Unit, Verdict,
 };
 use std::f64::consts::PI;
 
@@ -116,7 +116,8 @@ fn result() -> DropResult {
 }
 
 fn model() -> ModelChoice {
-    let candidate = |model, predicted, u95, difference, consistent| ModelCandidate {
+    let candidate = |rung, model, predicted, u95, difference, consistent| ModelCandidate {
+        rung,
         model,
         predicted: Some(predicted),
         u95: Some(u95),
@@ -125,12 +126,13 @@ fn model() -> ModelChoice {
     };
     ModelChoice {
         name: BodyModel::Body,
+        rung: Rung::Body,
         reason: "the rod predicts 22.76 m/s, 10.7 % above the measurement and beyond both intervals; the \
                  body with its section of 0.792 m lies within them"
             .into(),
         candidates: vec![
-            candidate(BodyModel::Rod, 22.76, 0.20, 10.7, false),
-            candidate(BodyModel::Body, 20.49, 0.19, -0.34, true),
+            candidate(Rung::Rod, BodyModel::Rod, 22.76, 0.20, 10.7, false),
+            candidate(Rung::Body, BodyModel::Body, 20.49, 0.19, -0.34, true),
         ],
     }
 }
@@ -239,7 +241,7 @@ fn settings() -> Vec<Setting> {
     ]
 }
 
-fn cask_file() -> CaskFile {
+pub(super) fn cask_file() -> CaskFile {
     let channel = |name: &str, end, source: &str, position_m| ChannelSpec {
         name: name.into(),
         end,

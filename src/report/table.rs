@@ -8,9 +8,7 @@ use super::text::{
     self, Style, WIDTH, code_word, format_word, line, printable, severity_word, span_text, styled,
     styled_lines, tail, verdict_sentence, verdict_word, wrap,
 };
-use crate::data::{
-    Analysis, CaskFile, DropResult, End, Estimate, FlightRegime, Issue, IssueCode, Severity, Verdict,
-};
+use crate::data::{Analysis, CaskFile, DropResult, End, Estimate, Issue, IssueCode, Severity, Verdict};
 
 /// Columns that the name of a quantity takes.
 const NAME_WIDTH: usize = 22;
@@ -146,7 +144,7 @@ fn comparison(result: &DropResult) -> String {
         let by = result
             .model
             .as_ref()
-            .map_or(String::new(), |m| format!("{} with the measured k", m.name.as_str()));
+            .map_or(String::new(), |m| format!("{} with the measured k", m.rung.words()));
         for (name, value, note) in [
             ("measured", rounding::pair(c.measured, c.measured_u95, "m/s"), String::new()),
             ("predicted", rounding::pair(c.predicted, c.predicted_u95, "m/s"), styled_note(&by)),
@@ -161,7 +159,7 @@ fn comparison(result: &DropResult) -> String {
     }
     if let Some(model) = &result.model {
         out.push_str(&wrap(
-            &format!("Model: {}. {}", model.name.as_str(), text::sentence(&model.reason)),
+            &format!("Model: {}. {}", model.rung.words(), text::sentence(&model.reason)),
             WIDTH,
             2,
         ));
@@ -173,13 +171,7 @@ fn predictions(result: &DropResult) -> String {
     if result.predictions.is_empty() {
         return String::new();
     }
-    let rows: Vec<Vec<String>> = result.predictions.iter().map(super::prediction::cells).collect();
-    let mut out = heading("Predictions");
-    out.push_str(&columns(&super::prediction::HEADER, &rows, &super::prediction::RIGHT));
-    if result.predictions.iter().any(|p| p.regime == FlightRegime::Contact) {
-        out.push_str(&wrap(super::prediction::KEPT_SENTENCE, WIDTH, 2));
-    }
-    out
+    heading("Predictions") + &super::prediction::at_one_angle(&result.predictions)
 }
 
 fn channels(result: &DropResult) -> String {

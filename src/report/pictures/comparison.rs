@@ -4,9 +4,9 @@ use super::super::ReportError;
 use super::super::rounding;
 use super::super::text::printable;
 use super::panel::{self, COLOURS, FONT, INK, WIDTH};
+use super::rows::Rows;
 use super::{Picture, assemble};
 use crate::data::{Analysis, Contact, Estimate, Prediction};
-use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -28,7 +28,7 @@ struct Row {
 pub(super) fn picture(analysis: &Analysis) -> Result<Picture, ReportError> {
     let rows = rows(analysis);
     let measured = analysis.result.slap_down.speed.filter(|e| e.value.is_finite());
-    let failed = |reason| ReportError::Picture { picture: NAME, reason };
+    let failed = |reason| ReportError::Picture { picture: NAME.to_owned(), reason };
     if rows.is_empty() && measured.is_none() {
         return assemble(NAME, TITLE, String::new(), &[]);
     }
@@ -40,7 +40,7 @@ pub(super) fn picture(analysis: &Analysis) -> Result<Picture, ReportError> {
         Some(speed) => format!("{TITLE}. Measured {}. {}", rounding::interval(Some(speed)), spoken(&rows)),
         None => format!("{TITLE}. No measured speed. {}", spoken(&rows)),
     };
-    Ok(Picture { name: NAME, title: TITLE, alt, caption, svg: panel::described(&svg, TITLE) })
+    Ok(Picture { name: NAME.into(), title: TITLE.into(), alt, caption, svg: panel::described(&svg, TITLE) })
 }
 
 fn spoken(rows: &[Row]) -> String {
@@ -59,7 +59,7 @@ fn rows(analysis: &Analysis) -> Vec<Row> {
         let u95_m_s = result
             .model
             .iter()
-            .flat_map(|m| &m.candidates)
+            .flat_map(|m| m.candidates.iter().rev())
             .find(|c| with_contact && c.model == p.model)
             .and_then(|c| c.u95)
             .filter(|u| u.is_finite());
@@ -172,26 +172,4 @@ fn speed_range(rows: &[Row], measured: Option<&Estimate>) -> std::ops::Range<f64
     }
     let span = (high - low).max(1.0);
     low - 0.08 * span..high + 0.08 * span
-}
-
-/// Whole numbers only, for axes whose rows are named by hand.
-struct Rows(std::ops::Range<f64>);
-
-impl Ranged for Rows {
-    type FormatOption = DefaultFormatting;
-    type ValueType = f64;
-
-    #[allow(clippy::cast_possible_truncation, reason = "a pixel place lies within the limits given")]
-    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
-        let share = (value - self.0.start) / (self.0.end - self.0.start);
-        limit.0 + (share * f64::from(limit.1 - limit.0)).round() as i32
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, _hint: Hint) -> Vec<f64> {
-        Vec::new()
-    }
-
-    fn range(&self) -> std::ops::Range<f64> {
-        self.0.clone()
-    }
 }

@@ -2,7 +2,7 @@
 
 use super::super::ReportError;
 use super::super::grid::STANDARD_GRAVITY_M_S2;
-use super::panel::{COLOURS, Line, Mark, Panel};
+use super::panel::{COLOURS, Dash, Line, Mark, Panel};
 use super::{Picture, assemble};
 use crate::data::{Analysis, Axis, ChannelCurve, End};
 use plotters::style::RGBColor;
@@ -23,7 +23,7 @@ pub(super) fn accelerations(analysis: &Analysis) -> Result<Picture, ReportError>
                     colour,
                     opacity: 0.32,
                     stroke: 2,
-                    dashed: false,
+                    dash: Dash::Solid,
                     points: clock.points(&curve.time_s, &curve.raw_m_s2, 1.0 / STANDARD_GRAVITY_M_S2),
                 });
                 lines.push(Line {
@@ -31,7 +31,7 @@ pub(super) fn accelerations(analysis: &Analysis) -> Result<Picture, ReportError>
                     colour,
                     opacity: 1.0,
                     stroke: 4,
-                    dashed: axis == Axis::Axial,
+                    dash: dash_of(axis),
                     points: clock.points(&curve.time_s, &curve.filtered_m_s2, 1.0 / STANDARD_GRAVITY_M_S2),
                 });
             }
@@ -62,25 +62,25 @@ pub(super) fn velocities(analysis: &Analysis) -> Result<Picture, ReportError> {
                 colour,
                 opacity: 1.0,
                 stroke: 4,
-                dashed: axis == Axis::Axial,
+                dash: dash_of(axis),
                 points: clock.points(&curve.time_s, &curve.velocity_m_s, 1.0),
             });
         }
     }
     let mut panels = vec![clock.panel(analysis, "Along the sensors", "velocity, m/s", sensors)];
     if let Some(motion) = &analysis.curves.motion {
-        let line = |label: &str, colour: usize, dashed, values: &[f64]| Line {
+        let line = |label: &str, colour: usize, dash, values: &[f64]| Line {
             label: Some(label.to_owned()),
             colour: COLOURS[colour],
             opacity: 1.0,
             stroke: 4,
-            dashed,
+            dash,
             points: clock.points(&motion.time_s, values, 1.0),
         };
         let lines = vec![
-            line("first end, vertical", 0, false, &motion.first_end_vertical_m_s),
-            line("second end, vertical", 1, false, &motion.second_end_vertical_m_s),
-            line("second end, horizontal", 1, true, &motion.second_end_horizontal_m_s),
+            line("first end, vertical", 0, Dash::Solid, &motion.first_end_vertical_m_s),
+            line("second end, vertical", 1, Dash::Solid, &motion.second_end_vertical_m_s),
+            line("second end, horizontal", 1, Dash::Dashed, &motion.second_end_horizontal_m_s),
         ];
         panels.push(clock.panel(analysis, "Of the rigid body", "velocity, m/s", lines));
     }
@@ -100,7 +100,7 @@ pub(super) fn motion(analysis: &Analysis) -> Result<Picture, ReportError> {
             colour: COLOURS[colour],
             opacity: 1.0,
             stroke: 4,
-            dashed: false,
+            dash: Dash::Solid,
             points: clock.points(&motion.time_s, values, factor),
         };
         let heights = vec![
@@ -129,7 +129,7 @@ pub(super) fn spectra(analysis: &Analysis) -> Result<Picture, ReportError> {
             colour: COLOURS[i % COLOURS.len()],
             opacity: 0.9,
             stroke: 3,
-            dashed: false,
+            dash: Dash::Solid,
             points: spectrum
                 .frequency_hz
                 .iter()
@@ -151,6 +151,7 @@ pub(super) fn spectra(analysis: &Analysis) -> Result<Picture, ReportError> {
             .filter(|mode| mode.frequency_hz.is_finite() && mode.frequency_hz > 0.0)
             .map(|mode| Mark { at: mode.frequency_hz, label: format!("mode {:.0} Hz", mode.frequency_hz) })
             .collect(),
+        ..Panel::default()
     };
     let caption = "One-sided amplitude spectrum of the unfiltered specific force over the event window, up to half the sample rate; \
                    both axes logarithmic. Marked: the bending modes that the fit of the flight took."
@@ -203,6 +204,7 @@ impl Clock {
             height: 350,
             lines,
             marks,
+            ..Panel::default()
         }
     }
 }
@@ -223,6 +225,14 @@ fn curves_of(analysis: &Analysis, end: End) -> impl Iterator<Item = (&ChannelCur
         let summary = analysis.result.channels.iter().find(|c| c.name == curve.channel)?;
         (summary.end == end).then_some((curve, COLOURS[i % COLOURS.len()], summary.axis))
     })
+}
+
+/// An axial channel is dashed.
+fn dash_of(axis: Axis) -> Dash {
+    match axis {
+        Axis::Transverse => Dash::Solid,
+        Axis::Axial => Dash::Dashed,
+    }
 }
 
 fn axis_note(axis: Axis) -> &'static str {

@@ -1,7 +1,7 @@
 //! The title of a panel and the names of its lines, above the axes.
 
 use super::super::text::printable;
-use super::panel::{Area, FONT, INK, LEFT, Line, Panel, RIGHT, WIDTH};
+use super::panel::{Area, Dash, FONT, Fill, INK, LEFT, Line, Panel, RIGHT, WIDTH};
 use plotters::prelude::*;
 
 /// Height of the title's row.
@@ -11,9 +11,16 @@ const LEGEND_ROW: i32 = 40;
 /// Width of the sample of a line before its words.
 const SAMPLE: i32 = 58;
 
-/// One entry of a legend: its line, its words, its row and where it begins.
+/// What an entry of a legend stands for.
+#[derive(Clone, Copy)]
+enum Key<'a> {
+    Line(&'a Line),
+    Fill(&'a Fill),
+}
+
+/// One entry of a legend: what it stands for, its words, its row and where it begins.
 struct Entry<'a> {
-    line: &'a Line,
+    key: Key<'a>,
     label: String,
     row: usize,
     left: i32,
@@ -27,9 +34,11 @@ impl Panel {
         let limit = WIDTH.cast_signed() - RIGHT;
         let room = limit - LEFT.cast_signed();
         let mut left_over = room - width(&self.title, 19) - 40;
-        let mut rows: Vec<Vec<(&Line, String, i32)>> = vec![Vec::new()];
-        for line in &self.lines {
-            let Some(label) = line.label.as_deref().map(printable) else { continue };
+        let mut rows: Vec<Vec<(Key, String, i32)>> = vec![Vec::new()];
+        let lines = self.lines.iter().map(|line| (Key::Line(line), line.label.as_deref()));
+        let fills = self.fills.iter().map(|fill| (Key::Fill(fill), fill.label.as_deref()));
+        for (key, label) in lines.chain(fills) {
+            let Some(label) = label.map(printable) else { continue };
             let takes = SAMPLE + width(&label, 13) + 26;
             if takes > left_over && !(rows.len() > 1 && rows.last().is_some_and(Vec::is_empty)) {
                 rows.push(Vec::new());
@@ -37,14 +46,14 @@ impl Panel {
             }
             left_over -= takes;
             if let Some(row) = rows.last_mut() {
-                row.push((line, label, takes));
+                row.push((key, label, takes));
             }
         }
         let mut entries = Vec::new();
         for (row, members) in rows.into_iter().enumerate() {
             let mut left = limit + 26 - members.iter().map(|(_, _, takes)| takes).sum::<i32>();
-            for (line, label, takes) in members {
-                entries.push(Entry { line, label, row, left });
+            for (key, label, takes) in members {
+                entries.push(Entry { key, label, row, left });
                 left += takes;
             }
         }
@@ -64,17 +73,34 @@ pub(super) fn heading(area: &Area, panel: &Panel) -> Result<(), String> {
     let title = TextStyle::from((FONT, 36).into_font().style(FontStyle::Bold)).color(&INK);
     area.draw(&Text::new(printable(&panel.title), (LEFT.cast_signed(), 14), title)).map_err(fail)?;
     let entry = TextStyle::from((FONT, 31).into_font()).color(&INK);
-    for Entry { line, label, row, left } in panel.legend() {
+    for Entry { key, label, row, left } in panel.legend() {
         let drop = LEGEND_ROW * i32::try_from(row).unwrap_or(0);
         area.draw(&Text::new(label, (left + SAMPLE, 17 + drop), entry.clone())).map_err(fail)?;
-        let style = line.colour.mix(line.opacity).stroke_width(line.stroke.max(3));
-        let pieces: &[(i32, i32)] = if line.dashed { &[(0, 20), (28, 48)] } else { &[(0, 48)] };
-        for (from, to) in pieces {
-            let stroke = vec![(left + from, 29 + drop), (left + to, 29 + drop)];
-            area.draw(&PathElement::new(stroke, style)).map_err(fail)?;
+        match key {
+            Key::Fill(fill) => {
+                let corners = [(left, 18 + drop), (left + 48, 40 + drop)];
+                let style = fill.colour.mix(fill.opacity).filled();
+                area.draw(&Rectangle::new(corners, style)).map_err(fail)?;
+            }
+            Key::Line(line) => {
+                let style = line.colour.mix(line.opacity).stroke_width(line.stroke.max(3));
+                for &(from, to) in sample(line.dash) {
+                    let stroke = vec![(left + from, 29 + drop), (left + to, 29 + drop)];
+                    area.draw(&PathElement::new(stroke, style)).map_err(fail)?;
+                }
+            }
         }
     }
     Ok(())
+}
+
+/// From where to where the pieces of a line's sample reach.
+fn sample(dash: Dash) -> &'static [(i32, i32)] {
+    match dash {
+        Dash::Solid => &[(0, 48)],
+        Dash::Dashed => &[(0, 20), (28, 48)],
+        Dash::Dotted => &[(0, 6), (14, 20), (28, 34), (42, 48)],
+    }
 }
 
 #[cfg(test)]

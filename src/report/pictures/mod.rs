@@ -1,10 +1,22 @@
-//! An analysis to its five pictures, as SVG text.
+//! An analysis to its five pictures, a study to its charts, as SVG text.
 
+mod angle_curves;
+mod axes;
 mod comparison;
+mod critical;
 mod curves;
 mod decimate;
 mod legend;
+mod look;
+mod monte_carlo;
 mod panel;
+mod regimes;
+mod rows;
+mod sensitivity;
+mod study;
+mod sweep;
+
+pub(super) use study::{draw_study, names as study_names};
 
 use super::ReportError;
 use crate::data::Analysis;
@@ -13,9 +25,9 @@ use panel::Panel;
 /// One picture.
 pub(super) struct Picture {
     /// The name of its file, without ".svg".
-    pub(super) name: &'static str,
+    pub(super) name: String,
     /// Its heading.
-    pub(super) title: &'static str,
+    pub(super) title: String,
     /// What it shows, for a reader who cannot see it.
     pub(super) alt: String,
     /// What the reader should know beside it.
@@ -39,28 +51,32 @@ pub(super) fn draw(analysis: &Analysis) -> Result<Vec<Picture>, ReportError> {
 }
 
 /// Draws `panels` one below the other, or a sentence where there is none.
-fn assemble(
-    name: &'static str,
-    title: &'static str,
+fn assemble(name: &str, title: &str, caption: String, panels: &[Panel]) -> Result<Picture, ReportError> {
+    let nothing =
+        ("There is nothing to show: see the findings.", "The recording did not yield this picture.");
+    assemble_or(name, title, caption, panels, nothing)
+}
+
+/// [`assemble`] with the sentence of the empty picture and its caption.
+fn assemble_or(
+    name: &str,
+    title: &str,
     caption: String,
     panels: &[Panel],
+    nothing: (&str, &str),
 ) -> Result<Picture, ReportError> {
     let panels: Vec<&Panel> = panels.iter().filter(|panel| panel.has_points()).collect();
-    let failed = |reason| ReportError::Picture { picture: name, reason };
+    let failed = |reason| ReportError::Picture { picture: name.to_owned(), reason };
+    let (name, title) = (name.to_owned(), title.to_owned());
     if panels.is_empty() {
-        let svg = panel::nothing("There is nothing to show: see the findings.").map_err(failed)?;
+        let svg = panel::nothing(nothing.0).map_err(failed)?;
         let alt = format!("{title}: nothing to show.");
-        return Ok(Picture {
-            name,
-            title,
-            alt,
-            caption: "The recording did not yield this picture.".into(),
-            svg,
-        });
+        return Ok(Picture { name, title, alt, caption: nothing.1.to_owned(), svg });
     }
     let svg = panel::draw(&panels).map_err(failed)?;
     let alt = format!("{title}. {caption}");
-    Ok(Picture { name, title, alt, caption, svg: panel::described(&svg, title) })
+    let svg = panel::described(&svg, &title);
+    Ok(Picture { name, title, alt, caption, svg })
 }
 
 #[cfg(test)]

@@ -1,23 +1,21 @@
 //! Lines with axes, legend and marked events to SVG; drawn at twice the size so that its whole-pixel coordinates stay fine.
 
 use super::super::text::printable;
-use super::decimate::runs;
-use super::legend::heading;
-use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
+use super::axes;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// Width of a picture in drawing units.
 pub(super) const WIDTH: u32 = 1800;
 pub(super) const FONT: &str = "Helvetica, Arial, sans-serif";
-const MARK_ROW: i32 = 34;
+pub(super) const MARK_ROW: i32 = 34;
 pub(super) const LEFT: u32 = 130;
-const BOTTOM: u32 = 88;
+pub(super) const BOTTOM: u32 = 88;
 /// Air below a panel.
-const GAP: i32 = 26;
+pub(super) const GAP: i32 = 26;
 pub(super) const RIGHT: i32 = 28;
 pub(super) const INK: RGBColor = RGBColor(38, 42, 48);
-const GREY: RGBColor = RGBColor(110, 116, 124);
+pub(super) const GREY: RGBColor = RGBColor(110, 116, 124);
 
 /// Colours that also readers with a colour vision deficiency tell apart (Okabe & Ito 2008), darkest first.
 pub(super) const COLOURS: [RGBColor; 7] = [
@@ -30,6 +28,29 @@ pub(super) const COLOURS: [RGBColor; 7] = [
     RGBColor(90, 90, 90),
 ];
 
+/// How a line is broken.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum Dash {
+    /// Not at all.
+    #[default]
+    Solid,
+    /// Into long pieces.
+    Dashed,
+    /// Into short ones.
+    Dotted,
+}
+
+impl Dash {
+    /// Lengths of piece and gap in drawing units; `None` where it is not broken.
+    pub(super) fn pieces(self) -> Option<(u32, u32)> {
+        match self {
+            Self::Solid => None,
+            Self::Dashed => Some((16, 9)),
+            Self::Dotted => Some((5, 8)),
+        }
+    }
+}
+
 /// One line.
 pub(super) struct Line {
     /// Its name in the legend; `None` keeps it out.
@@ -39,8 +60,49 @@ pub(super) struct Line {
     pub(super) opacity: f64,
     /// Stroke in drawing units.
     pub(super) stroke: u32,
-    pub(super) dashed: bool,
+    pub(super) dash: Dash,
     pub(super) points: Vec<(f64, f64)>,
+}
+
+/// Areas of one colour, under the lines.
+pub(super) struct Fill {
+    /// Its name in the legend; `None` keeps it out.
+    pub(super) label: Option<String>,
+    pub(super) colour: RGBColor,
+    /// 0 to 1.
+    pub(super) opacity: f64,
+    /// The corners of each area.
+    pub(super) areas: Vec<Vec<(f64, f64)>>,
+}
+
+impl Fill {
+    /// The area between `low` and `high` over `x`, open where either is missing.
+    pub(super) fn between(x: &[f64], low: &[f64], high: &[f64]) -> Vec<Vec<(f64, f64)>> {
+        let mut areas = Vec::new();
+        let mut run: Vec<(f64, f64, f64)> = Vec::new();
+        let mut close = |run: &mut Vec<(f64, f64, f64)>| {
+            if run.len() > 1 {
+                let below = run.iter().map(|p| (p.0, p.1));
+                areas.push(below.chain(run.iter().rev().map(|p| (p.0, p.2))).collect());
+            }
+            run.clear();
+        };
+        for ((x, low), high) in x.iter().zip(low).zip(high) {
+            if low.is_finite() && high.is_finite() {
+                run.push((*x, *low, *high));
+            } else {
+                close(&mut run);
+            }
+        }
+        close(&mut run);
+        areas
+    }
+}
+
+/// A point.
+pub(super) struct Dot {
+    pub(super) at: (f64, f64),
+    pub(super) colour: RGBColor,
 }
 
 /// A vertical line with a word at its head.
@@ -50,6 +112,7 @@ pub(super) struct Mark {
 }
 
 /// One set of axes.
+#[derive(Default)]
 pub(super) struct Panel {
     pub(super) title: String,
     pub(super) x_label: &'static str,
@@ -57,24 +120,44 @@ pub(super) struct Panel {
     pub(super) logarithmic: bool,
     /// Height in drawing units, without head and axis.
     pub(super) height: u32,
+    /// Ends of the axes; `None`: as far as the lines reach.
+    pub(super) x_range: Option<(f64, f64)>,
+    pub(super) y_range: Option<(f64, f64)>,
+    pub(super) fills: Vec<Fill>,
     pub(super) lines: Vec<Line>,
+    pub(super) dots: Vec<Dot>,
     pub(super) marks: Vec<Mark>,
 }
 
 impl Panel {
     /// Whether any line has a point to draw.
     pub(super) fn has_points(&self) -> bool {
-        self.lines.iter().any(|line| line.points.iter().any(|p| self.drawable(*p)))
+        self.points().next().is_some()
     }
 
-    fn drawable(&self, (x, y): (f64, f64)) -> bool {
+    /// Every point that can be drawn.
+    fn points(&self) -> impl Iterator<Item = &(f64, f64)> {
+        let lines = self.lines.iter().flat_map(|line| &line.points);
+        let areas = self.fills.iter().flat_map(|fill| fill.areas.iter().flatten());
+        lines.chain(areas).filter(|p| self.drawable(**p))
+    }
+
+    fn x_axis(&self) -> std::ops::Range<f64> {
+        self.x_range.map_or_else(|| self.range(|p| p.0, 0.0), |(from, to)| from..to)
+    }
+
+    fn y_axis(&self) -> std::ops::Range<f64> {
+        self.y_range.map_or_else(|| self.range(|p| p.1, 0.06), |(from, to)| from..to)
+    }
+
+    pub(super) fn drawable(&self, (x, y): (f64, f64)) -> bool {
         x.is_finite() && y.is_finite() && (!self.logarithmic || (x > 0.0 && y > 0.0))
     }
 
     /// Smallest and largest of one coordinate over what can be drawn, with some air around it.
     fn range(&self, coordinate: impl Fn(&(f64, f64)) -> f64, air: f64) -> std::ops::Range<f64> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for point in self.lines.iter().flat_map(|line| &line.points).filter(|p| self.drawable(**p)) {
+        for point in self.points() {
             low = low.min(coordinate(point));
             high = high.max(coordinate(point));
         }
@@ -87,7 +170,7 @@ impl Panel {
     }
 
     /// Rows that the words of the marks take, so that none writes over its neighbour.
-    fn mark_rows(&self, x: &std::ops::Range<f64>) -> Vec<usize> {
+    pub(super) fn mark_rows(&self, x: &std::ops::Range<f64>) -> Vec<usize> {
         let mut ends: Vec<f64> = Vec::new();
         let place = |at: f64| {
             let (at, from, to) = if self.logarithmic {
@@ -120,7 +203,7 @@ pub(super) fn draw(panels: &[&Panel]) -> Result<String, String> {
     let heads: Vec<i32> = panels
         .iter()
         .map(|panel| {
-            let rows = panel.mark_rows(&panel.range(|p| p.0, 0.0)).iter().max().map_or(0, |row| row + 1);
+            let rows = panel.mark_rows(&panel.x_axis()).iter().max().map_or(0, |row| row + 1);
             panel.head() + MARK_ROW * i32::try_from(rows).unwrap_or(0)
         })
         .collect();
@@ -138,11 +221,11 @@ pub(super) fn draw(panels: &[&Panel]) -> Result<String, String> {
         for ((panel, head), height) in panels.iter().zip(&heads).zip(&heights) {
             let (area, below) = rest.split_vertically(*height);
             rest = below;
-            let (x, y) = (panel.range(|p| p.0, 0.0), panel.range(|p| p.1, 0.06));
+            let (x, y) = (panel.x_axis(), panel.y_axis());
             if panel.logarithmic {
-                one(&area, panel, *head, (x.log_scale(), y.log_scale()))?;
+                axes::one(&area, panel, *head, (x.log_scale(), y.log_scale()))?;
             } else {
-                one(&area, panel, *head, (x, y))?;
+                axes::one(&area, panel, *head, (x, y))?;
             }
         }
         root.present().map_err(|e| e.to_string())?;
@@ -151,119 +234,6 @@ pub(super) fn draw(panels: &[&Panel]) -> Result<String, String> {
 }
 
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
-
-fn one<X, Y>(area: &Area, panel: &Panel, head: i32, axes: (X, Y)) -> Result<(), String>
-where
-    X: AsRangedCoord<Value = f64>,
-    Y: AsRangedCoord<Value = f64>,
-    X::CoordDescType: ValueFormatter<f64>,
-    Y::CoordDescType: ValueFormatter<f64>,
-{
-    let fail = |e: DrawingAreaErrorKind<_>| e.to_string();
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(head)
-        .margin_right(RIGHT)
-        .margin_bottom(GAP)
-        .x_label_area_size(BOTTOM)
-        .y_label_area_size(LEFT)
-        .build_cartesian_2d(axes.0, axes.1)
-        .map_err(fail)?;
-    chart
-        .configure_mesh()
-        .x_desc(panel.x_label)
-        .y_desc(panel.y_label)
-        .axis_desc_style((FONT, 32, &INK))
-        .label_style((FONT, 30, &INK))
-        .axis_style(GREY)
-        .bold_line_style(GREY.mix(0.28))
-        .light_line_style(GREY.mix(if panel.logarithmic { 0.10 } else { 0.0 }))
-        .x_labels(12)
-        .y_labels(8)
-        .x_label_formatter(&|x| tick(*x, panel.logarithmic))
-        .y_label_formatter(&|y| tick(*y, panel.logarithmic))
-        .draw()
-        .map_err(fail)?;
-    let bounds = (chart.x_range(), chart.y_range());
-    // What is faint lies under what is bold.
-    let (faint, bold): (Vec<_>, Vec<_>) = panel.lines.iter().partition(|line| line.opacity < 0.5);
-    for line in faint.into_iter().chain(bold) {
-        draw_line(&mut chart, panel, line, &bounds.0)?;
-    }
-    heading(area, panel)?;
-    let rows = panel.mark_rows(&bounds.0);
-    for (mark, row) in panel.marks.iter().zip(rows) {
-        if !(bounds.0.start..=bounds.0.end).contains(&mark.at) {
-            continue;
-        }
-        let top = chart.backend_coord(&(mark.at, bounds.1.end));
-        let bottom = chart.backend_coord(&(mark.at, bounds.1.start));
-        draw_mark(area, mark, row, top, bottom)?;
-    }
-    Ok(())
-}
-
-fn draw_line<X, Y>(
-    chart: &mut ChartContext<SVGBackend, Cartesian2d<X, Y>>,
-    panel: &Panel,
-    line: &Line,
-    x: &std::ops::Range<f64>,
-) -> Result<(), String>
-where
-    X: Ranged<ValueType = f64>,
-    Y: Ranged<ValueType = f64>,
-{
-    let style = line.colour.mix(line.opacity).stroke_width(line.stroke);
-    let place = |v: f64| if panel.logarithmic { v.log10() } else { v };
-    let missing = (f64::NAN, f64::NAN);
-    let points: Vec<(f64, f64)> = line
-        .points
-        .iter()
-        .map(|&(x, y)| if panel.drawable((x, y)) { (place(x), y) } else { missing })
-        .collect();
-    for run in runs(&points, place(x.start), place(x.end), WIDTH as usize) {
-        let run: Vec<(f64, f64)> =
-            run.into_iter().map(|(x, y)| (if panel.logarithmic { 10f64.powf(x) } else { x }, y)).collect();
-        if line.dashed {
-            chart.draw_series(DashedLineSeries::new(run, 16, 9, style)).map_err(|e| e.to_string())?;
-        } else {
-            chart.draw_series(LineSeries::new(run, style)).map_err(|e| e.to_string())?;
-        }
-    }
-    Ok(())
-}
-
-fn draw_mark(
-    area: &Area,
-    mark: &Mark,
-    row: usize,
-    top: (i32, i32),
-    bottom: (i32, i32),
-) -> Result<(), String> {
-    let fail = |e: DrawingAreaErrorKind<_>| e.to_string();
-    let base = area.get_base_pixel();
-    let (top, bottom) = ((top.0 - base.0, top.1 - base.1), (bottom.0 - base.0, bottom.1 - base.1));
-    let lift = MARK_ROW * i32::try_from(row).unwrap_or(0);
-    let mut y = top.1 - lift;
-    while y < bottom.1 {
-        let end = (y + 10).min(bottom.1);
-        area.draw(&PathElement::new(vec![(top.0, y), (top.0, end)], INK.mix(0.55).stroke_width(2)))
-            .map_err(fail)?;
-        y += 18;
-    }
-    let half = i32::try_from(mark.label.chars().count()).unwrap_or(0) * 7;
-    let x = top.0.clamp(LEFT.cast_signed() + half - 20, WIDTH.cast_signed() - half - 8);
-    let style = TextStyle::from((FONT, 30).into_font()).color(&INK).pos(Pos::new(HPos::Center, VPos::Bottom));
-    area.draw(&Text::new(printable(&mark.label), (x, top.1 - lift - 4), style)).map_err(fail)
-}
-
-/// A tick's number: as short as it reads well, powers of ten where the axis is logarithmic.
-fn tick(value: f64, logarithmic: bool) -> String {
-    if logarithmic && !(1e-2..1e5).contains(&value) {
-        return format!("{value:.0e}").replace('-', "−");
-    }
-    let rounded = (value * 1e6).round() / 1e6;
-    format!("{}", if rounded == 0.0 { 0.0 } else { rounded }).replace('-', "−")
-}
 
 /// A picture that only says a sentence.
 pub(super) fn nothing(sentence: &str) -> Result<String, String> {
@@ -309,7 +279,7 @@ pub(super) mod tests {
             colour: COLOURS[i % COLOURS.len()],
             opacity: 1.0,
             stroke: 3,
-            dashed: false,
+            dash: Dash::Solid,
             points: vec![(0.0, 0.0), (100.0, 1.0)],
         };
         Panel {
@@ -322,6 +292,7 @@ pub(super) mod tests {
             marks: [("first contact", 0.0), ("separation", 6.0), ("slap-down", 60.0)]
                 .map(|(label, at)| Mark { at, label: label.into() })
                 .into(),
+            ..Panel::default()
         }
     }
 
@@ -338,13 +309,5 @@ pub(super) mod tests {
         panel.lines[0].points = vec![(0.0, 1.0), (10.0, 0.0), (10.0, 1.0), (1000.0, 0.1)];
         let svg = draw(&[&panel]).unwrap();
         assert!(svg.contains("polyline") && !svg.contains("2147483"));
-    }
-
-    #[test]
-    fn ticks_read_well() {
-        assert_eq!(tick(-0.000_000_01, false), "0");
-        assert_eq!(tick(-12.5, false), "−12.5");
-        assert_eq!(tick(1e-5, true), "1e−5");
-        assert_eq!(tick(100.0, true), "100");
     }
 }

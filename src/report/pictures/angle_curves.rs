@@ -1,0 +1,178 @@
+//! Curves over the drop angle to pictures: components (Figs. 4 and 5), magnitudes (Fig. 7), energy (Fig. 8), sections (Fig. 9).
+
+use super::super::ReportError;
+use super::super::prediction::{case_words, contact_words};
+use super::super::rounding::plain;
+use super::look::{Look, angle_panel, body_words, from_zero};
+use super::panel::{COLOURS, Dash, Line, Panel};
+use super::{Picture, assemble_or};
+use crate::data::{AngleCurve, BodyModel, Contact, Study};
+use plotters::style::RGBColor;
+
+const SPEED_LABEL: &str = "slap-down speed, m/s";
+const NOTHING: (&str, &str) =
+    ("There is nothing to show: the second end never strikes.", "No case of this study has a slap-down.");
+const OPEN: &str = "Where a line is broken off the second end never strikes; where the first end strikes again before it, the line may jump.";
+
+/// Stroke of the closed forms: they alone are that fine.
+const HELD_STROKE: u32 = 3;
+/// How the closed form for k = 0 is named in every legend.
+const HELD: &str = "held on the target";
+const HELD_SENTENCE: &str =
+    "Dotted: the closed form for k = 0 ([P] Table 2), the first end held on the target whatever the force.";
+
+/// |vx|, |vz| and the magnitude over the angle for one contact law, lowest and highest k.
+pub(super) fn components(study: &Study, contact: Contact, name: &str) -> Result<Picture, ReportError> {
+    let ks = ends(&Look::of(&[contact], &study.request.ks).ks);
+    let panels = panels(study, "speed, m/s", |curve| {
+        let Some(place) = ks.iter().position(|k| k.to_bits() == curve.k.to_bits()) else { return Vec::new() };
+        if curve.contact != contact {
+            return Vec::new();
+        }
+        let dash = if place == 0 { Dash::Solid } else { Dash::Dashed };
+        let parts: [(&str, &[f64]); 3] = [
+            ("magnitude", &curve.speed_m_s),
+            ("|vertical|", &curve.vertical_velocity_m_s),
+            ("|horizontal|", &curve.horizontal_velocity_m_s),
+        ];
+        let line = |(i, (words, values)): (usize, (&str, &[f64]))| {
+            let label = format!("{words}, k = {}", plain(curve.k, 3));
+            // Broad under the others: at small angles the magnitude all but coincides with the vertical part.
+            let stroke = if i == 0 { 8 } else { 4 };
+            Line { stroke, ..line_of(curve, label, COLOURS[i], dash, values) }
+        };
+        let mut lines: Vec<Line> = parts.into_iter().enumerate().map(line).collect();
+        lines.extend(held_line(curve, COLOURS[0], format!("magnitude, {HELD}")));
+        lines
+    });
+    let contact = contact_words(contact);
+    let many =
+        if ks.len() < study.request.ks.len() { " Only the lowest and the highest k are drawn." } else { "" };
+    let caption = format!(
+        "Velocity of the second end just before it strikes, {contact} contact: absolute values of its components and its magnitude over \
+         the drop angle ([P] Figs. 4 and 5). {OPEN}{}{many}",
+        held_sentence(&panels)
+    );
+    assemble_or(name, &format!("Components of the slap-down velocity, {contact}"), caption, &panels, NOTHING)
+}
+
+/// Magnitudes of every case.
+pub(super) fn speeds(study: &Study, name: &str) -> Result<Picture, ReportError> {
+    let look = Look::of(&study.request.contacts, &study.request.ks);
+    let panels = panels(study, SPEED_LABEL, |curve| {
+        let Some(line) = case_line(&look, curve, &curve.speed_m_s) else { return Vec::new() };
+        if look.ks.len() > 2 {
+            return vec![line]; // the third k is dotted itself
+        }
+        let held = held_line(curve, line.colour, format!("{}, {HELD}", contact_words(curve.contact)));
+        std::iter::once(line).chain(held).collect()
+    });
+    let caption = format!(
+        "Magnitude of the velocity of the second end just before it strikes, over the drop angle ([P] Fig. 7). {OPEN}{}{}",
+        held_sentence(&panels),
+        look.left_out()
+    );
+    let smooth_and_rough = name == "smooth-rough";
+    let title = if smooth_and_rough { "Slap-down speed, smooth against rough" } else { "Slap-down speed" };
+    assemble_or(name, title, caption, &panels, NOTHING)
+}
+
+/// Ratio of kinetic energies of every case.
+pub(super) fn energies(study: &Study, name: &str) -> Result<Picture, ReportError> {
+    let look = Look::of(&study.request.contacts, &study.request.ks);
+    let panels = panels(study, "kinetic energy ratio", |curve| {
+        case_line(&look, curve, &curve.energy_ratio).into_iter().collect()
+    });
+    let caption = format!(
+        "Kinetic energy just before the slap-down over that just before the first impact ([P] Fig. 8). Above 1 the fall of the mass \
+         centre between the impacts adds more than the first impact took. {OPEN}{}",
+        look.left_out()
+    );
+    assemble_or(name, "Energy left for the second impact", caption, &panels, NOTHING)
+}
+
+/// The cask's length with different sections, smooth and elastic.
+pub(super) fn sections(study: &Study, name: &str) -> Result<Picture, ReportError> {
+    let title = "Smooth, k = 1".to_owned();
+    let own_m = study.cask_file.cask.height_m;
+    let mut panel = angle_panel(&study.request, title, SPEED_LABEL);
+    for (i, curve) in study.sections.iter().enumerate() {
+        let section = format!("{} mm", plain(curve.height_m * 1e3, 4));
+        // The last one is the cask's own, with its centre of gravity and inertia.
+        let own = i > 0 && i + 1 == study.sections.len() && (curve.height_m - own_m).abs() < 1e-9;
+        let label = match (curve.height_m > 0.0, own) {
+            (_, true) => format!("the cask's own {section}"),
+            (false, false) => "thin rod".to_owned(),
+            (true, false) => section,
+        };
+        // The thin rod and 10 mm all but coincide: the one is wide and pale under the other.
+        let (stroke, opacity) = if i == 0 { (14, 0.35) } else { (4, 1.0) };
+        let dash = if i == 1 { Dash::Dashed } else { Dash::Solid };
+        let colour = COLOURS[if i < 2 { i } else { i % COLOURS.len() }];
+        panel.lines.push(Line { opacity, stroke, ..line_of(curve, label, colour, dash, &curve.speed_m_s) });
+    }
+    panel.height = 520;
+    let caption = format!(
+        "Slap-down speed over the drop angle for {} m of length and different sections in the plane of the drop, perfectly elastic smooth \
+         impact ([P] Fig. 9). {OPEN}",
+        plain(study.cask_file.cask.length_m, 4)
+    );
+    assemble_or(name, "The section of the cask against the thin rod", caption, &[panel], NOTHING)
+}
+
+/// One panel a body with the lines that `lines` makes of its curves.
+fn panels(study: &Study, y_label: &'static str, lines: impl Fn(&AngleCurve) -> Vec<Line>) -> Vec<Panel> {
+    [BodyModel::Rod, BodyModel::Body]
+        .into_iter()
+        .filter(|model| study.curves.iter().any(|curve| curve.model == *model))
+        .map(|model| {
+            let mut panel =
+                angle_panel(&study.request, body_words(model, &study.cask_file.cask, true), y_label);
+            panel.lines = ordered(study, model).into_iter().flat_map(&lines).collect();
+            // Closed forms last, so that the legend names the cases first.
+            panel.lines.sort_by_key(|line| line.stroke == HELD_STROKE);
+            panel.y_range = from_zero(&panel);
+            panel
+        })
+        .collect()
+}
+
+/// The curves of a body: by contact law as asked for, the highest k first.
+fn ordered(study: &Study, model: BodyModel) -> Vec<&AngleCurve> {
+    let mut curves: Vec<&AngleCurve> = study.curves.iter().filter(|c| c.model == model).collect();
+    let place = |curve: &AngleCurve| study.request.contacts.iter().position(|c| *c == curve.contact);
+    curves.sort_by(|a, b| place(a).cmp(&place(b)).then(b.k.total_cmp(&a.k)));
+    curves
+}
+
+fn case_line(look: &Look, curve: &AngleCurve, values: &[f64]) -> Option<Line> {
+    let (contact, k) = (curve.contact, curve.k);
+    look.shows(contact, k)
+        .then(|| line_of(curve, case_words(contact, k), look.colour(contact, k), look.dash(k), values))
+}
+
+fn line_of(curve: &AngleCurve, label: String, colour: RGBColor, dash: Dash, values: &[f64]) -> Line {
+    let points = curve.angle_deg.iter().copied().zip(values.iter().map(|v| v.abs())).collect();
+    Line { label: Some(label), colour, opacity: 1.0, stroke: 4, dash, points }
+}
+
+/// The closed form, where the curve has one.
+fn held_line(curve: &AngleCurve, colour: RGBColor, label: String) -> Option<Line> {
+    let any = curve.closed_form_speed_m_s.iter().any(|v| v.is_finite());
+    any.then(|| Line {
+        stroke: HELD_STROKE,
+        ..line_of(curve, label, colour, Dash::Dotted, &curve.closed_form_speed_m_s)
+    })
+}
+
+fn held_sentence(panels: &[Panel]) -> String {
+    let any = panels.iter().flat_map(|panel| &panel.lines).any(|line| line.stroke == HELD_STROKE);
+    if any { format!(" {HELD_SENTENCE}") } else { String::new() }
+}
+
+/// The highest and the lowest, in this order.
+fn ends(ascending: &[f64]) -> Vec<f64> {
+    let mut ends: Vec<f64> = ascending.last().into_iter().chain(ascending.first()).copied().collect();
+    ends.dedup();
+    ends
+}

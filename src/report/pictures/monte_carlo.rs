@@ -1,0 +1,170 @@
+//! Monte Carlo to one picture: quantiles of the speed, share of the draws in their band, histogram of the critical angle.
+
+use super::super::ReportError;
+use super::super::prediction::{bands_words, criterion_words, degrees};
+use super::super::rounding::plain;
+use super::look::angle_panel;
+use super::panel::{COLOURS, Dash, Fill, Line, Panel};
+use super::{Picture, assemble_or};
+use crate::data::{Criterion, QuantileCurves, Study};
+
+const NOTHING: (&str, &str) = (
+    "There is nothing to show: fewer than half of the draws have a slap-down.",
+    "No quantiles could be had.",
+);
+
+/// The picture.
+pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError> {
+    let found = &study.monte_carlo;
+    let title = format!("Slap-down speed under uncertain inputs, {}", found.model.as_str());
+    let mut panels = Vec::new();
+    if let Some(speed) = found.quantiles.iter().find(|q| q.criterion == Criterion::Speed) {
+        panels = vec![quantiles(study, speed), shares(study), histogram(study, speed)];
+    }
+    let caption = format!(
+        "{} draws, seed {}. Above: median and quantiles of the slap-down speed over the nominal drop angle. Middle: share of the draws \
+         whose value at that angle is within {} % of their own largest; shaded where it is at least 95 % for the speed. \
+         Below: at which angle each draw's speed is largest; shaded 95 % of the draws.",
+        found.uncertain.draws,
+        found.uncertain.seed,
+        plain(found.band_percent, 3)
+    );
+    assemble_or(name, &title, caption, &panels, NOTHING)
+}
+
+fn quantiles(study: &Study, speed: &QuantileCurves) -> Panel {
+    let x = &study.monte_carlo.angle_deg;
+    let mut panel = angle_panel(&study.request, "Slap-down speed".into(), "slap-down speed, m/s");
+    let fill = |label: &str, opacity, low: &[f64], high: &[f64]| Fill {
+        label: Some(label.to_owned()),
+        colour: COLOURS[0],
+        opacity,
+        areas: Fill::between(x, low, high),
+    };
+    panel.fills = vec![
+        fill("95 % of the draws", 0.22, &speed.q025, &speed.q975),
+        fill("50 %", 0.40, &speed.q25, &speed.q75),
+    ];
+    panel.lines = vec![line("median", 0, Dash::Solid, pairs(x, &speed.q50, 1.0))];
+    panel
+}
+
+fn shares(study: &Study) -> Panel {
+    let found = &study.monte_carlo;
+    let title = format!("Share of the draws within {} % of their largest", plain(found.band_percent, 3));
+    let mut panel = angle_panel(&study.request, title, "share of the draws, %");
+    panel.y_range = Some((0.0, 104.0));
+    panel.height = 300;
+    for q in &found.quantiles {
+        let (colour, dash) = match q.criterion {
+            Criterion::Speed => (0, Dash::Solid),
+            Criterion::VerticalSpeed => (1, Dash::Dashed),
+            Criterion::EnergyRatio => (2, Dash::Dotted),
+        };
+        let points = pairs(&found.angle_deg, &q.in_band, 100.0);
+        panel.lines.push(line(criterion_words(q.criterion), colour, dash, points));
+        if q.criterion == Criterion::Speed {
+            panel.fills.push(Fill {
+                label: None,
+                colour: COLOURS[0],
+                opacity: 0.14,
+                areas: q.robust_bands_deg.iter().map(|band| zone(*band, 104.0)).collect(),
+            });
+        }
+    }
+    if found.no_slap_down.iter().any(|share| *share > 0.0) {
+        let points = pairs(&found.angle_deg, &found.no_slap_down, 100.0);
+        panel.lines.push(Line { opacity: 0.9, ..line("no slap-down", 6, Dash::Dashed, points) });
+    }
+    panel
+}
+
+fn histogram(study: &Study, speed: &QuantileCurves) -> Panel {
+    let found = &study.monte_carlo;
+    let bars = Bars::of(&found.angle_deg, &speed.critical_counts);
+    let [low, _, median, _, high] = speed.critical_angle_deg;
+    let title =
+        format!("Critical angle: median {}°, 95 % within {}°", degrees(median), bands_words(&[(low, high)]));
+    let mut panel = angle_panel(&study.request, title, "share of the draws, %");
+    panel.height = 260;
+    let top = bars.largest() * 1.1;
+    panel.y_range = Some((0.0, top));
+    let fill = |opacity, areas| Fill { label: None, colour: COLOURS[0], opacity, areas };
+    panel.fills = vec![fill(0.14, vec![zone((low, high), top)]), fill(0.75, bars.areas(panel.x_range))];
+    panel
+}
+
+/// From the foot of a panel to its top.
+fn zone((from, to): (f64, f64), top: f64) -> Vec<(f64, f64)> {
+    vec![(from, 0.0), (from, top), (to, top), (to, 0.0)]
+}
+
+/// Most bars of a histogram: finer ones cannot be told apart on paper.
+const MOST_BARS: usize = 100;
+
+/// Bars of a histogram: from, to and share, %.
+struct Bars(Vec<(f64, f64, f64)>);
+
+impl Bars {
+    /// The counts at the angles, drawn together so that there are at most [`MOST_BARS`].
+    fn of(angle_deg: &[f64], counts: &[u32]) -> Self {
+        let together = angle_deg.len().div_ceil(MOST_BARS).max(1);
+        let all: f64 = counts.iter().map(|c| f64::from(*c)).sum();
+        let middle = |i: usize| match (angle_deg.get(i.wrapping_sub(1)), angle_deg.get(i)) {
+            (Some(before), Some(after)) => f64::midpoint(*before, *after),
+            (None, Some(end)) | (Some(end), None) => *end,
+            (None, None) => f64::NAN,
+        };
+        let bar = |(i, counts): (usize, &[u32])| {
+            let from = i * together;
+            let share = 100.0 * counts.iter().map(|c| f64::from(*c)).sum::<f64>() / all.max(1.0);
+            (middle(from), middle(from + counts.len()), share)
+        };
+        let shown = counts.len().min(angle_deg.len());
+        Self(counts[..shown].chunks(together).enumerate().map(bar).collect())
+    }
+
+    fn largest(&self) -> f64 {
+        self.0.iter().map(|bar| bar.2).fold(f64::MIN_POSITIVE, f64::max)
+    }
+
+    fn areas(&self, within: Option<(f64, f64)>) -> Vec<Vec<(f64, f64)>> {
+        let (low, high) = within.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        self.0
+            .iter()
+            .filter(|bar| bar.2 > 0.0 && bar.0.is_finite() && bar.1.is_finite())
+            .map(|&(from, to, share)| {
+                let (from, to) = (from.clamp(low, high), to.clamp(low, high));
+                vec![(from, 0.0), (from, share), (to, share), (to, 0.0)]
+            })
+            .collect()
+    }
+}
+
+fn line(label: &str, colour: usize, dash: Dash, points: Vec<(f64, f64)>) -> Line {
+    Line { label: Some(label.to_owned()), colour: COLOURS[colour], opacity: 1.0, stroke: 4, dash, points }
+}
+
+fn pairs(x: &[f64], y: &[f64], factor: f64) -> Vec<(f64, f64)> {
+    x.iter().copied().zip(y.iter().map(|y| y * factor)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_hold_every_draw() {
+        let angle_deg: Vec<f64> = (0..181).map(|i| f64::from(i) * 0.5).collect();
+        let mut counts = vec![0; 181];
+        counts[0] = 100;
+        counts[30] = 600;
+        counts[31] = 200;
+        counts[180] = 100;
+        let bars = Bars::of(&angle_deg, &counts);
+        // Shares of 1000 draws are whole tenths of a percent: their sum is exact but for round-off.
+        assert!((bars.0.iter().map(|b| b.2).sum::<f64>() - 100.0).abs() < 1e-9);
+        assert!(bars.0.len() <= MOST_BARS && bars.0.windows(2).all(|w| w[0].1.to_bits() == w[1].0.to_bits()));
+        assert_eq!(bars.areas(Some((0.0, 90.0))).len(), 3);
+    }
+}

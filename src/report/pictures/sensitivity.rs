@@ -1,0 +1,200 @@
+//! The gradient of the speed over the drop angle to one picture, with the angles at which the speed does not tell k.
+
+use super::super::ReportError;
+use super::super::prediction::{bands_words, case_words};
+use super::look::{Look, angle_panel};
+use super::panel::{Dash, Dot, Fill, GREY, Line, Panel};
+use super::{Picture, assemble_or};
+use crate::data::{Contact, Sensitivity, Study};
+
+const NOTHING: (&str, &str) =
+    ("There is nothing to show: the second end never strikes.", "No case of this study has a slap-down.");
+
+/// The picture.
+pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError> {
+    let mut contacts: Vec<Contact> = Vec::new();
+    for s in &study.sensitivities {
+        if !contacts.contains(&s.contact) {
+            contacts.push(s.contact);
+        }
+    }
+    let ks: Vec<f64> = study.sensitivities.iter().map(|s| s.k).collect();
+    let look = Look::of(&contacts, &ks);
+    let shown: Vec<&Sensitivity> =
+        study.sensitivities.iter().filter(|s| look.shows(s.contact, s.k)).collect();
+    let mut panels = [by_k(study, &shown, &look), by_angle(study, &shown, &look)];
+    let cut = panels.each_mut().map(clip).contains(&true);
+    let cut = if cut {
+        " Where the first end strikes again the gradient is steep and runs off the picture."
+    } else {
+        ""
+    };
+    let blind: Vec<String> = shown
+        .iter()
+        .filter(|s| !s.blind_angles_deg.is_empty())
+        .map(|s| {
+            let angles: Vec<(f64, f64)> = s.blind_angles_deg.iter().map(|a| (*a, *a)).collect();
+            format!("{} at {}°", case_words(s.contact, s.k), bands_words(&angles))
+        })
+        .collect();
+    let blind = if blind.is_empty() { String::new() } else { format!(" Blind: {}.", blind.join("; ")) };
+    let model = shown.first().map_or("", |s| s.model.as_str());
+    let caption = format!(
+        "How the slap-down speed of the {model} answers to the coefficient of restitution and to the drop angle. Dots: ∂v/∂k is nil and k \
+         cannot be told from the speed. Wide and pale: 1 % of the speed is more than 0.1 in k; there k must come from the rebound, the \
+         rotation or the flight time.{cut}{blind}{}",
+        look.left_out()
+    );
+    assemble_or(name, "Sensitivity of the slap-down speed", caption, &panels, NOTHING)
+}
+
+fn by_k(study: &Study, shown: &[&Sensitivity], look: &Look) -> Panel {
+    let mut panel = angle_panel(&study.request, "To the restitution".into(), "∂v/∂k, m/s");
+    panel.height = 440;
+    panel.lines.extend(zero(study, shown));
+    for s in shown {
+        let line = line(s, &s.by_k_m_s, look);
+        let inside = |angle: f64| s.blind_bands_deg.iter().any(|&(from, to)| (from..=to).contains(&angle));
+        let poorly = line.points.iter().map(|&(x, y)| if inside(x) { (x, y) } else { (x, f64::NAN) });
+        panel.lines.push(Line {
+            label: None,
+            stroke: 20,
+            opacity: 0.25,
+            dash: Dash::Solid,
+            points: poorly.collect(),
+            ..line
+        });
+        panel
+            .dots
+            .extend(s.blind_angles_deg.iter().map(|angle| Dot { at: (*angle, 0.0), colour: line.colour }));
+        panel.lines.push(line);
+    }
+    if shown.iter().any(|s| !s.blind_bands_deg.is_empty()) {
+        panel.fills.push(Fill {
+            label: Some("k poorly told".into()),
+            colour: GREY,
+            opacity: 0.35,
+            areas: Vec::new(),
+        });
+    }
+    panel
+}
+
+fn by_angle(study: &Study, shown: &[&Sensitivity], look: &Look) -> Panel {
+    let mut panel = angle_panel(&study.request, "To the drop angle".into(), "∂v/∂φ, m/s per °");
+    panel.lines.extend(zero(study, shown));
+    panel.lines.extend(shown.iter().map(|s| line(s, &s.by_angle_m_s_deg, look)));
+    panel
+}
+
+/// The line on which nothing changes, where there is anything to hold against it.
+fn zero(study: &Study, shown: &[&Sensitivity]) -> Option<Line> {
+    let angles = &study.request.angles_deg;
+    let any = shown.iter().any(|s| s.by_k_m_s.iter().any(|v| v.is_finite()));
+    any.then(|| Line {
+        label: None,
+        colour: GREY,
+        opacity: 0.8,
+        stroke: 2,
+        dash: Dash::Solid,
+        points: angles.first().into_iter().chain(angles.last()).map(|x| (*x, 0.0)).collect(),
+    })
+}
+
+/// Share of the values that the axis leaves out at either end: the few steep places would flatten all others.
+const OFF_THE_AXIS: f64 = 0.06;
+
+/// Cuts the lines to an axis that most of the values need; whether anything was cut.
+fn clip(panel: &mut Panel) -> bool {
+    let labelled = panel.lines.iter().filter(|line| line.label.is_some());
+    let mut values: Vec<f64> =
+        labelled.flat_map(|line| &line.points).map(|p| p.1).filter(|y| y.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    let (Some(&least), Some(&most)) = (values.first(), values.last()) else { return false };
+    #[allow(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a share of a short list's length"
+    )]
+    let off = (values.len() as f64 * OFF_THE_AXIS) as usize;
+    let (low, high) = (values[off].min(0.0), values[values.len() - 1 - off].max(0.0));
+    let span = (high - low).max(f64::MIN_POSITIVE);
+    let (low, high) = ((low - 0.5 * span).max(least.min(0.0)), (high + 0.5 * span).min(most.max(0.0)));
+    let air = 0.06 * (high - low).max(f64::MIN_POSITIVE);
+    let (low, high) = (low - air, high + air);
+    panel.y_range = Some((low, high));
+    for line in &mut panel.lines {
+        line.points = clipped(&line.points, low, high);
+    }
+    least < low || most > high
+}
+
+/// The points between `low` and `high`, with those where a line leaves and enters; open outside.
+fn clipped(points: &[(f64, f64)], low: f64, high: f64) -> Vec<(f64, f64)> {
+    let inside = |y: f64| (low..=high).contains(&y);
+    let mut out: Vec<(f64, f64)> = Vec::with_capacity(points.len());
+    for (i, &(x, y)) in points.iter().enumerate() {
+        if let Some(&(x0, y0)) = i.checked_sub(1).and_then(|before| points.get(before)) {
+            let border = |y_border: f64| (x0 + (x - x0) * (y_border - y0) / (y - y0), y_border);
+            let mut crossed: Vec<(f64, f64)> = [low, high]
+                .into_iter()
+                .filter(|b| (y0 < *b && *b < y) || (y < *b && *b < y0))
+                .map(border)
+                .collect();
+            crossed.sort_by(|a, b| a.0.total_cmp(&b.0));
+            out.extend(crossed);
+        }
+        out.push((x, if inside(y) { y } else { f64::NAN }));
+    }
+    out
+}
+
+fn line(s: &Sensitivity, values: &[f64], look: &Look) -> Line {
+    Line {
+        label: Some(case_words(s.contact, s.k)),
+        colour: look.colour(s.contact, s.k),
+        opacity: 1.0,
+        stroke: 4,
+        dash: look.dash(s.k),
+        points: s.angle_deg.iter().copied().zip(values.iter().copied()).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_cut_where_it_leaves_the_axis() {
+        let cut = clipped(&[(0.0, 0.0), (1.0, 4.0), (2.0, 0.0), (3.0, f64::NAN), (4.0, -4.0)], -1.0, 2.0);
+        let open = |p: &(f64, f64)| p.1.is_nan();
+        assert_eq!(cut[..2], [(0.0, 0.0), (0.5, 2.0)]);
+        assert!(open(&cut[2]));
+        assert_eq!(cut[3..5], [(1.5, 2.0), (2.0, 0.0)]);
+        assert!(open(&cut[5]) && open(&cut[6]) && cut.len() == 7);
+    }
+
+    #[test]
+    fn a_line_that_jumps_across_the_axis_crosses_both_borders() {
+        let cut = clipped(&[(0.0, -3.0), (4.0, 5.0)], -1.0, 3.0);
+        assert_eq!(cut[1..3], [(1.0, -1.0), (3.0, 3.0)]);
+    }
+
+    #[test]
+    fn a_spike_does_not_flatten_the_rest() {
+        let points: Vec<(f64, f64)> =
+            (0..100_i32).map(|i| (f64::from(i), if i == 50 { 1e4 } else { f64::from(i % 7) })).collect();
+        let line = Line {
+            label: Some("case".into()),
+            colour: GREY,
+            opacity: 1.0,
+            stroke: 4,
+            dash: Dash::Solid,
+            points,
+        };
+        let mut panel = Panel { lines: vec![line], ..Panel::default() };
+        assert!(clip(&mut panel));
+        assert!(panel.y_range.is_some_and(|(low, high)| low <= 0.0 && (6.0..20.0).contains(&high)));
+    }
+}

@@ -1,0 +1,158 @@
+//! A study to its charts, and a request to their names.
+
+use super::super::ReportError;
+use super::look::MOST_CONTACTS;
+use super::{Picture, angle_curves, critical, monte_carlo, regimes, sensitivity, sweep};
+use crate::data::{Contact, Request, Study};
+use rayon::prelude::*;
+
+/// One chart by its name, and how it is drawn.
+enum Chart {
+    Speeds,
+    Components(Contact),
+    Energies,
+    Sections,
+    Critical,
+    MonteCarlo,
+    Sensitivity,
+    Regimes,
+    Sweep,
+}
+
+/// The charts of a request, in the order in which a reader meets them.
+fn charts(request: &Request) -> Vec<(String, Chart)> {
+    let mut shown: Vec<Contact> = Vec::new();
+    for contact in &request.contacts {
+        if !shown.contains(contact) {
+            shown.push(*contact);
+        }
+    }
+    let both = shown.len() == 2 && shown.contains(&Contact::Smooth) && shown.contains(&Contact::Rough);
+    let mut charts = vec![(if both { "smooth-rough" } else { "speeds" }.to_owned(), Chart::Speeds)];
+    shown.truncate(MOST_CONTACTS);
+    charts.extend(shown.into_iter().map(|contact| (components_name(contact), Chart::Components(contact))));
+    for (name, chart) in [
+        ("energy-ratio", Chart::Energies),
+        ("section", Chart::Sections),
+        ("critical-angles", Chart::Critical),
+        ("monte-carlo", Chart::MonteCarlo),
+        ("sensitivity", Chart::Sensitivity),
+        ("regimes", Chart::Regimes),
+    ] {
+        charts.push((name.to_owned(), chart));
+    }
+    if !request.sweeps.is_empty() {
+        charts.push(("sweep".to_owned(), Chart::Sweep));
+    }
+    charts
+}
+
+/// "components-rough", "components-smooth" or "components-friction-0.3".
+fn components_name(contact: Contact) -> String {
+    match contact {
+        Contact::Coulomb(coefficient) => format!("components-friction-{coefficient}"),
+        contact => format!("components-{contact}"),
+    }
+}
+
+/// The names of the pictures, in their order.
+pub(in super::super) fn names(request: &Request) -> Vec<String> {
+    charts(request).into_iter().map(|(name, _)| name).collect()
+}
+
+/// Every picture of a study; one that has nothing to show says so.
+///
+/// # Errors
+/// [`ReportError::Picture`] where the plotter fails.
+pub(in super::super) fn draw_study(study: &Study) -> Result<Vec<Picture>, ReportError> {
+    charts(&study.request)
+        .into_par_iter()
+        .map(|(name, chart)| match chart {
+            Chart::Speeds => angle_curves::speeds(study, &name),
+            Chart::Components(contact) => angle_curves::components(study, contact, &name),
+            Chart::Energies => angle_curves::energies(study, &name),
+            Chart::Sections => angle_curves::sections(study, &name),
+            Chart::Critical => critical::picture(study, &name),
+            Chart::MonteCarlo => monte_carlo::picture(study, &name),
+            Chart::Sensitivity => sensitivity::picture(study, &name),
+            Chart::Regimes => regimes::picture(study, &name),
+            Chart::Sweep => sweep::picture(study, &name),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::sample_study;
+    use super::*;
+
+    #[test]
+    fn the_names_tell_the_contact_laws() {
+        let mut request = sample_study::study().request;
+        assert_eq!(
+            names(&request),
+            [
+                "smooth-rough",
+                "components-rough",
+                "components-smooth",
+                "energy-ratio",
+                "section",
+                "critical-angles",
+                "monte-carlo",
+                "sensitivity",
+                "regimes"
+            ]
+        );
+        request.contacts = vec![Contact::Coulomb(0.3), Contact::Coulomb(0.3), Contact::Rough];
+        request.sweeps = sample_study::swept().request.sweeps;
+        let names = names(&request);
+        assert_eq!(names[..3], ["speeds", "components-friction-0.3", "components-rough"]);
+        assert_eq!(names.last().map(String::as_str), Some("sweep"));
+    }
+
+    #[test]
+    fn pictures_are_small_and_self_contained() {
+        for study in [sample_study::study(), sample_study::swept()] {
+            for picture in draw_study(&study).unwrap() {
+                let Picture { name, svg, .. } = &picture;
+                assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"), "{name}");
+                assert!(svg.len() < 200_000, "{name}: {} bytes", svg.len());
+                assert!(!svg.contains("href") && !svg.contains("NaN") && !svg.contains("2147483"), "{name}");
+                assert!(svg.contains("</text>") && !svg.contains("nothing to show"), "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn gaps_stay_gaps() {
+        let mut study = sample_study::study();
+        // Only whole lines are drawn as one element with many points; dashes have a few each.
+        let solid = |study: &Study| {
+            let svg = draw_study(study).unwrap().swap_remove(0).svg;
+            svg.split("<polyline").filter(|line| line.matches(',').count() > 40).count()
+        };
+        let whole = solid(&study);
+        // Rough, k = 1, of the rod: a solid line.
+        study.curves[1].speed_m_s[80..90].fill(f64::NAN);
+        assert_eq!(solid(&study), whole + 1);
+    }
+
+    #[test]
+    fn without_a_slap_down_pictures_say_so() {
+        let pictures = draw_study(&sample_study::without_slap_down()).unwrap();
+        let silent = |name: &str| name != "regimes";
+        for picture in pictures.iter().filter(|p| silent(&p.name)) {
+            assert!(picture.svg.contains("nothing to show"), "{}", picture.name);
+        }
+    }
+
+    #[test]
+    fn other_cases_name_themselves() {
+        let pictures = draw_study(&sample_study::swept()).unwrap();
+        for picture in pictures.iter().filter(|p| !["section", "monte-carlo"].contains(&p.name.as_str())) {
+            let words = format!("{}{}{}", picture.title, picture.svg, picture.caption);
+            assert!(words.contains("μ 0.3"), "{}", picture.name);
+            assert!(!words.contains("rough") && !words.contains("k = 1"), "{}", picture.name);
+        }
+    }
+}

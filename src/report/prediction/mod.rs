@@ -1,0 +1,72 @@
+//! A study of predictions to its files: page, JSON, CSV and pictures; and to the table of the terminal.
+
+mod csv;
+mod json;
+mod page;
+mod page_tables;
+mod summary;
+mod table;
+mod words;
+
+pub use csv::csv;
+pub use json::{json, study_json};
+pub(super) use table::at_one_angle;
+pub use table::{study_table, table};
+pub(super) use words::{
+    KEPT_SENTENCE, bands_words, case_words, contact_words, criterion_value, criterion_words, degrees,
+    kept_mark, variable_words,
+};
+
+use super::ReportError;
+use super::pictures;
+use crate::data::{Request, Study};
+
+/// The names of the files that [`study_files`] makes for a study of this request, in its order.
+#[must_use]
+pub fn study_file_names(request: &Request) -> Vec<String> {
+    let own = ["prediction.html", "prediction.json", "prediction.csv"].map(str::to_owned);
+    own.into_iter()
+        .chain(pictures::study_names(request).into_iter().map(|name| format!("{name}.svg")))
+        .collect()
+}
+
+/// Every file of a study by name, in the order in which a reader meets them.
+///
+/// # Errors
+/// [`ReportError`] where one of them cannot be made; then none is returned.
+pub fn study_files(study: &Study) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
+    let (pictures, (json, csv)) = rayon::join(
+        || pictures::draw_study(study),
+        || rayon::join(|| json::study_json(study), || csv::csv(&study.rows)),
+    );
+    let pictures = pictures?;
+    let mut files = vec![
+        ("prediction.html".to_owned(), page::page(study, &pictures).into_bytes()),
+        ("prediction.json".to_owned(), json?),
+        ("prediction.csv".to_owned(), csv?),
+    ];
+    files.extend(pictures.into_iter().map(|p| (format!("{}.svg", p.name), p.svg.into_bytes())));
+    Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample_study;
+    use super::*;
+
+    #[test]
+    fn the_files_are_those_that_the_request_names() {
+        for study in [sample_study::study(), sample_study::swept(), sample_study::without_slap_down()] {
+            let files = study_files(&study).unwrap();
+            let names = study_file_names(&study.request);
+            assert!(files.iter().map(|(name, _)| name).eq(&names), "{names:?}");
+            assert!(files.iter().all(|(_, bytes)| !bytes.is_empty()));
+        }
+    }
+
+    #[test]
+    fn the_same_study_gives_the_same_bytes() {
+        let study = sample_study::swept();
+        assert_eq!(study_files(&study).unwrap(), study_files(&study).unwrap());
+    }
+}

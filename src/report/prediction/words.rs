@@ -1,0 +1,188 @@
+//! Contact laws, criteria, bands and inputs of a study to the words that table, page and pictures share.
+
+use super::super::rounding::{MISSING, fixed, plain};
+use crate::data::{Contact, Criterion, FlightRegime, Request, SweepVariable, Uncertain};
+
+/// What marks a prediction whose first end stays on the target.
+const KEPT_MARK: &str = "†";
+
+/// What the mark means.
+pub(in super::super) const KEPT_SENTENCE: &str =
+    "† the first end stays on the target until the second strikes; in all other cases it flies.";
+
+/// The mark, where it applies.
+pub(in super::super) fn kept_mark(regime: FlightRegime) -> &'static str {
+    match regime {
+        FlightRegime::Free => "",
+        FlightRegime::Contact | FlightRegime::Mixed => KEPT_MARK,
+    }
+}
+
+/// "rough", "smooth" or "μ 0.4".
+pub(in super::super) fn contact_words(contact: Contact) -> String {
+    match contact {
+        Contact::Coulomb(coefficient) => format!("μ {}", plain(coefficient, 3)),
+        contact => contact.to_string(),
+    }
+}
+
+/// "rough, k = 0.5".
+pub(in super::super) fn case_words(contact: Contact, k: f64) -> String {
+    format!("{}, k = {}", contact_words(contact), plain(k, 3))
+}
+
+/// What is largest, for a person.
+pub(in super::super) fn criterion_words(criterion: Criterion) -> &'static str {
+    match criterion {
+        Criterion::Speed => "slap-down speed",
+        Criterion::VerticalSpeed => "vertical speed",
+        Criterion::EnergyRatio => "energy ratio",
+    }
+}
+
+/// The same in a narrow column.
+pub(super) fn criterion_short(criterion: Criterion) -> &'static str {
+    match criterion {
+        Criterion::Speed => "speed",
+        Criterion::VerticalSpeed => "vertical",
+        Criterion::EnergyRatio => "energy",
+    }
+}
+
+/// A value of the criterion with its unit.
+pub(in super::super) fn criterion_value(criterion: Criterion, value: f64) -> String {
+    if !value.is_finite() {
+        return MISSING.to_owned();
+    }
+    match criterion {
+        Criterion::Speed | Criterion::VerticalSpeed => format!("{} m/s", fixed(value, 2)),
+        Criterion::EnergyRatio => fixed(value, 3),
+    }
+}
+
+/// An angle to a tenth of a degree, without the sign for degrees.
+pub(in super::super) fn degrees(angle_deg: f64) -> String {
+    if !angle_deg.is_finite() {
+        return MISSING.to_owned();
+    }
+    let text = fixed(angle_deg, 1);
+    text.strip_suffix(".0").map_or_else(|| text.clone(), str::to_owned)
+}
+
+/// "3.5–28, 61–70", or the dash where there is none.
+pub(in super::super) fn bands_words(bands_deg: &[(f64, f64)]) -> String {
+    let band = |(from, to): &(f64, f64)| {
+        let (from, to) = (degrees(*from), degrees(*to));
+        if from == to { from } else { format!("{from}–{to}") }
+    };
+    let bands: Vec<String> = bands_deg.iter().map(band).collect();
+    if bands.is_empty() { MISSING.to_owned() } else { bands.join(", ") }
+}
+
+/// The widest of many bands, in order, for a narrow column; the rest as an ellipsis.
+pub(super) fn widest_bands_words(bands_deg: &[(f64, f64)], most: usize) -> String {
+    if bands_deg.len() <= most {
+        return bands_words(bands_deg);
+    }
+    let mut widest = bands_deg.to_vec();
+    widest.sort_by(|a, b| (b.1 - b.0).total_cmp(&(a.1 - a.0)));
+    widest.truncate(most);
+    widest.sort_by(|a, b| a.0.total_cmp(&b.0));
+    format!("{}, …", bands_words(&widest))
+}
+
+/// Angles in a row, the first of many and an ellipsis.
+pub(super) fn angles_words(angles_deg: &[f64], most: usize) -> String {
+    let shown: Vec<(f64, f64)> = angles_deg.iter().take(most).map(|a| (*a, *a)).collect();
+    let dots = if angles_deg.len() > most { ", …" } else { "" };
+    format!("{}{dots}", bands_words(&shown))
+}
+
+/// What a sweep varies, with its unit.
+pub(in super::super) fn variable_words(variable: SweepVariable) -> &'static str {
+    match variable {
+        SweepVariable::Angle => "drop angle, °",
+        SweepVariable::K => "coefficient of restitution k",
+        SweepVariable::Friction => "friction coefficient μ",
+        SweepVariable::Length => "length of the cask, m",
+        SweepVariable::DropHeight => "height of the drop, m",
+    }
+}
+
+/// A range, or its one value where both ends are the same.
+pub(super) fn range_words((from, to): (f64, f64)) -> String {
+    let (from, to) = (plain(from, 3), plain(to, 3));
+    if from == to { from } else { format!("{from} to {to}") }
+}
+
+/// Every uncertain input and how it is spread, in the order of the draws.
+pub(super) fn uncertain_words(u: &Uncertain, contact: Contact) -> Vec<(&'static str, String)> {
+    let share = |value: f64, of: &str| {
+        format!("± {} % of {of}, 95 % of a normal distribution", plain(value * 100.0, 3))
+    };
+    let friction = u.friction.map_or_else(
+        || format!("known: {}", contact_words(contact)),
+        |range| format!("{}, uniform", range_words(range)),
+    );
+    vec![
+        ("coefficient of restitution k", format!("{}, uniform", range_words(u.k))),
+        ("friction coefficient μ", friction),
+        ("drop angle", format!("± {}°, 95 % of a normal distribution", plain(u.angle_deg, 3))),
+        ("height of the drop", share(u.drop_height, "it")),
+        ("length and section", share(u.size, "each")),
+        ("centre of gravity", share(u.cog, "the length")),
+        ("inertia", share(u.inertia, "it")),
+    ]
+}
+
+/// The uncertain inputs in one sentence.
+pub(super) fn uncertain_short(u: &Uncertain, contact: Contact) -> String {
+    let share = |value: f64| format!("± {} %", plain(value * 100.0, 3));
+    let friction = u.friction.map_or_else(
+        || format!("contact {}", contact_words(contact)),
+        |range| format!("μ {} (uniform)", range_words(range)),
+    );
+    format!(
+        "Drawn: k {} (uniform), {friction}; drop angle ± {}°, drop height {}, length and section {}, centre of gravity {} of \
+         the length, inertia {} (95 % of normal distributions); seed {}.",
+        range_words(u.k),
+        plain(u.angle_deg, 3),
+        share(u.drop_height),
+        share(u.size),
+        share(u.cog),
+        share(u.inertia),
+        u.seed
+    )
+}
+
+/// The k and friction that the ranges of the critical angles go through.
+pub(super) fn through_words(request: &Request) -> String {
+    let k = range_words(request.uncertain.k);
+    match request.uncertain.friction {
+        Some(friction) => format!("k {k} and μ {}", range_words(friction)),
+        None => format!("k {k}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_read_well() {
+        assert_eq!(bands_words(&[(3.5, 28.0), (61.04, 70.26)]), "3.5–28, 61–70.3");
+        assert_eq!(bands_words(&[]), "–");
+        assert_eq!(bands_words(&[(15.01, 15.04)]), "15");
+        assert_eq!(degrees(f64::NAN), "–");
+        let bands = [(1.0, 2.0), (5.0, 9.0), (20.0, 20.0), (30.0, 40.0)];
+        assert_eq!(widest_bands_words(&bands, 2), "5–9, 30–40, …");
+        assert_eq!(widest_bands_words(&bands, 4), "1–2, 5–9, 20, 30–40");
+        assert_eq!(angles_words(&[1.0, 2.0, 3.0], 2), "1, 2, …");
+    }
+
+    #[test]
+    fn a_range_of_one_value_is_that_value() {
+        assert_eq!(range_words((0.4, 0.4)), "0.4");
+        assert_eq!(range_words((0.0, 1.0)), "0 to 1");
+    }
+}
