@@ -16,7 +16,7 @@ pub(super) fn fitting_columns(header: &[&str], rows: &[Vec<String>], right: &[us
         cells.chain(header.get(i).map(|head| width(head))).max().unwrap_or(0)
     };
     let needed: usize = (0..header.len()).map(|i| widest(i) + 2).sum();
-    spaced_columns(header, rows, right, if needed > WIDTH { 1 } else { 2 })
+    spaced_columns(header, rows, right, if needed > WIDTH - 2 { 1 } else { 2 })
 }
 
 fn spaced_columns(header: &[&str], rows: &[Vec<String>], right: &[usize], gap: u16) -> String {

@@ -210,7 +210,8 @@ fn curve(request: &Request, case: (BodyModel, Contact, f64)) -> AngleCurve {
 fn critical((model, contact, k): (BodyModel, Contact, f64), criterion: Criterion) -> CriticalAngle {
     let largest = if criterion == Criterion::EnergyRatio { 1.031 } else { 20.0 + 5.0 * k };
     let bands_deg = if k > 0.0 { vec![(3.5, 28.0)] } else { vec![(0.0, 24.2), (61.0, 70.0)] };
-    CriticalAngle { model, contact, k, criterion, angle_deg: 12.0, largest, bands_deg }
+    let further_impacts = (k > 0.0 && criterion == Criterion::Speed).then_some((86.0, 30.1));
+    CriticalAngle { model, contact, k, criterion, angle_deg: 12.0, largest, bands_deg, further_impacts }
 }
 
 fn range(model: BodyModel, criterion: Criterion) -> CriticalRange {
@@ -221,6 +222,7 @@ fn range(model: BodyModel, criterion: Criterion) -> CriticalRange {
         largest: if criterion == Criterion::EnergyRatio { 1.031 } else { 25.0 },
         worst: (12.0, Contact::Rough, 1.0),
         common_bands_deg: vec![(3.5, 24.2)],
+        further_impacts: (criterion == Criterion::Speed).then_some((89.0, 30.2)),
     }
 }
 

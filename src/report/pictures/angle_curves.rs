@@ -45,12 +45,17 @@ pub(super) fn components(study: &Study, contact: Contact, name: &str) -> Result<
         lines.extend(held_line(curve, COLOURS[0], format!("magnitude, {HELD}")));
         lines
     });
+    let figure = match contact {
+        Contact::Smooth => " ([P] Fig. 4)",
+        Contact::Rough => " ([P] Fig. 5)",
+        Contact::Coulomb(_) => "",
+    };
     let contact = contact_words(contact);
     let many =
         if ks.len() < study.request.ks.len() { " Only the lowest and the highest k are drawn." } else { "" };
     let caption = format!(
-        "Velocity of the second end just before it strikes, {contact} contact: absolute values of its components and its magnitude over \
-         the drop angle ([P] Figs. 4 and 5). {OPEN}{}{many}",
+        "Velocity of the second end just before it strikes, {contact}: absolute values of its components and its magnitude over \
+         the drop angle{figure}. {OPEN}{}{many}",
         held_sentence(&panels)
     );
     assemble_or(name, &format!("Components of the slap-down velocity, {contact}"), caption, &panels, NOTHING)
@@ -67,13 +72,16 @@ pub(super) fn speeds(study: &Study, name: &str) -> Result<Picture, ReportError> 
         let held = held_line(curve, line.colour, format!("{}, {HELD}", contact_words(curve.contact)));
         std::iter::once(line).chain(held).collect()
     });
+    let (title, figure) = if name == "smooth-rough" {
+        ("Slap-down speed, smooth against rough", " ([P] Fig. 7)")
+    } else {
+        ("Slap-down speed", "")
+    };
     let caption = format!(
-        "Magnitude of the velocity of the second end just before it strikes, over the drop angle ([P] Fig. 7). {OPEN}{}{}",
+        "Magnitude of the velocity of the second end just before it strikes, over the drop angle{figure}. {OPEN}{}{}",
         held_sentence(&panels),
         look.left_out()
     );
-    let smooth_and_rough = name == "smooth-rough";
-    let title = if smooth_and_rough { "Slap-down speed, smooth against rough" } else { "Slap-down speed" };
     assemble_or(name, title, caption, &panels, NOTHING)
 }
 

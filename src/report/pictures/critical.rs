@@ -2,7 +2,7 @@
 
 use super::super::ReportError;
 use super::super::prediction::{bands_words, case_words, criterion_value, criterion_words, degrees};
-use super::super::rounding::plain;
+use super::super::rounding::{MISSING, plain};
 use super::super::text::printable;
 use super::look::Look;
 use super::panel::{self, Area, COLOURS, FONT, INK, WIDTH};
@@ -33,6 +33,8 @@ struct Case {
     /// Lowest and highest critical angle, degrees; the same for one case.
     angle_deg: (f64, f64),
     bands_deg: Vec<(f64, f64)>,
+    /// Where it is larger still, as the first end strikes again.
+    larger_deg: Option<f64>,
     words: String,
 }
 
@@ -52,9 +54,10 @@ pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError>
     let svg = draw(&rows, from..to, study.request.angle_deg).map_err(failed)?;
     let look = Look::of(&study.request.contacts, &study.request.ks);
     let caption = format!(
-        "Dots: the drop angle at which each quantity is largest, with the largest value at the right. Bars: the angles within {} % of it. \
+        "Dots: the drop angle at which each quantity is largest while the first end strikes once, with the value at the right. Bars: the angles within {} % of it. \
          Grey: over the ranges of k and friction; the line joins the lowest and the highest critical angle, the bar is what lies in \
-         every band. Dashed: {}°.{}{}",
+         every band. Rings: angles at which the first end strikes again and the value is larger still; it jumps there from angle to angle. \
+         Dashed: {}°.{}{}",
         plain(study.request.band_percent, 3),
         plain(study.request.angle_deg, 4),
         look.left_out(),
@@ -111,8 +114,17 @@ fn case(c: &CriticalAngle, look: &Look) -> Case {
         colour: look.colour(c.contact, c.k),
         angle_deg: (c.angle_deg, c.angle_deg),
         bands_deg: c.bands_deg.clone(),
-        words: format!("{} at {}°", criterion_value(c.criterion, c.largest), degrees(c.angle_deg)),
+        larger_deg: c.further_impacts.map(|at| at.0),
+        words: value_words(c.criterion, c.largest, c.angle_deg),
     }
+}
+
+/// "25.04 m/s at 12.5°", or the dash where there is none.
+fn value_words(criterion: Criterion, largest: f64, angle_deg: f64) -> String {
+    if !(largest.is_finite() && angle_deg.is_finite()) {
+        return MISSING.to_owned();
+    }
+    format!("{} at {}°", criterion_value(criterion, largest), degrees(angle_deg))
 }
 
 fn range_case(r: &CriticalRange) -> Case {
@@ -121,7 +133,8 @@ fn range_case(r: &CriticalRange) -> Case {
         colour: COLOURS[6],
         angle_deg: r.angle_deg,
         bands_deg: r.common_bands_deg.clone(),
-        words: format!("{} at {}°", criterion_value(r.criterion, r.largest), degrees(r.worst.0)),
+        larger_deg: r.further_impacts.map(|at| at.0),
+        words: value_words(r.criterion, r.largest, r.worst.0),
     }
 }
 
@@ -187,7 +200,7 @@ fn paint(root: &Area, rows: &[Row], x: std::ops::Range<f64>, asked_deg: f64) -> 
 }
 
 fn paint_case(root: &Area, case: &Case, place: impl Fn(f64) -> (i32, i32)) -> Result<(), Failure> {
-    let y = place(case.angle_deg.0).1;
+    let y = place(0.0).1;
     let words = |text: String, x: i32, side: HPos| {
         let style = TextStyle::from((FONT, 29).into_font()).color(&INK).pos(Pos::new(side, VPos::Center));
         root.draw(&Text::new(printable(&text), (x, y), style))
@@ -201,6 +214,10 @@ fn paint_case(root: &Area, case: &Case, place: impl Fn(f64) -> (i32, i32)) -> Re
         for x in [from, to] {
             root.draw(&PathElement::new(vec![(x, y - 11), (x, y + 11)], case.colour.stroke_width(3)))?;
         }
+    }
+    if let Some(larger_deg) = case.larger_deg {
+        root.draw(&Circle::new(place(larger_deg), 8, WHITE.filled()))?;
+        root.draw(&Circle::new(place(larger_deg), 8, case.colour.stroke_width(3)))?;
     }
     let (low, high) = case.angle_deg;
     if !(low.is_finite() && high.is_finite()) {

@@ -13,12 +13,17 @@ const NOTHING: (&str, &str) = (
     "No quantiles could be had.",
 );
 
+const NO_DRAWS: (&str, &str) =
+    ("There is nothing to show: no draws were asked for.", "No draws were asked for.");
+
 /// The picture.
 pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError> {
     let found = &study.monte_carlo;
     let title = format!("Slap-down speed under uncertain inputs, {}", found.model.as_str());
     let mut panels = Vec::new();
-    if let Some(speed) = found.quantiles.iter().find(|q| q.criterion == Criterion::Speed) {
+    let has_draws =
+        |q: &&QuantileCurves| q.criterion == Criterion::Speed && q.critical_angle_deg[2].is_finite();
+    if let Some(speed) = found.quantiles.iter().find(has_draws) {
         panels = vec![quantiles(study, speed), shares(study), histogram(study, speed)];
     }
     let caption = format!(
@@ -29,7 +34,8 @@ pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError>
         found.uncertain.seed,
         plain(found.band_percent, 3)
     );
-    assemble_or(name, &title, caption, &panels, NOTHING)
+    let nothing = if found.uncertain.draws == 0 { NO_DRAWS } else { NOTHING };
+    assemble_or(name, &title, caption, &panels, nothing)
 }
 
 fn quantiles(study: &Study, speed: &QuantileCurves) -> Panel {

@@ -43,6 +43,7 @@ struct Range<'a> {
     largest: f64,
     worst: Worst,
     common_bands_deg: &'a [(f64, f64)],
+    further_impacts: Option<(f64, f64)>,
 }
 
 #[derive(Serialize)]
@@ -79,6 +80,7 @@ pub fn study_json(study: &Study) -> Result<Vec<u8>, ReportError> {
                 largest: r.largest,
                 worst: range(r),
                 common_bands_deg: &r.common_bands_deg,
+                further_impacts: r.further_impacts,
             })
             .collect(),
         monte_carlo: &study.monte_carlo,

@@ -6,7 +6,7 @@ use super::super::pictures::{Picture, study_names};
 use super::super::rounding::{fixed, plain};
 use super::super::text::printable;
 use super::page_tables as tables;
-use super::summary::nearest;
+use super::summary::{has_quantiles, nearest};
 use super::words::{bands_words, case_words, criterion_value, degrees};
 use crate::data::{Criterion, Study};
 use maud::{Markup, html};
@@ -31,12 +31,12 @@ pub(super) fn page(study: &Study, pictures: &[Picture]) -> String {
         (tables::ladders(study))
         h2 { "Critical angles" }
         (tables::critical(study))
-        (picture(pictures, "critical-angles"))
+        div class="tall" { (picture(pictures, "critical-angles")) }
         (tables::ranges(study))
         h2 { "Over the drop angle" }
         @for name in over_the_angle(study) { div class="short" { (picture(pictures, &name)) } }
         (tables::monte_carlo(study))
-        (picture(pictures, "monte-carlo"))
+        div class="tall" { (picture(pictures, "monte-carlo")) }
         (tables::sensitivities(study))
         (picture(pictures, "sensitivity"))
         h2 { "Regimes" }
@@ -68,7 +68,7 @@ fn figures(study: &Study) -> Markup {
         .iter()
         .filter(|c| c.model == drawn.model && c.criterion == Criterion::Speed && c.largest.is_finite())
         .max_by(|a, b| a.largest.total_cmp(&b.largest));
-    let speed = drawn.quantiles.iter().find(|q| q.criterion == Criterion::Speed);
+    let speed = drawn.quantiles.iter().find(|q| q.criterion == Criterion::Speed && has_quantiles(drawn));
     let at = study.request.angle_deg;
     let here = |values: &[f64]| nearest(&drawn.angle_deg, values, at);
     let at_angle = speed.and_then(|q| Some((here(&q.q50)?, here(&q.q025)?, here(&q.q975)?)));

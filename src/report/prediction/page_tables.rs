@@ -2,10 +2,10 @@
 
 use super::super::rounding::{MISSING, fixed, optional, optional_fixed, percent, plain};
 use super::super::text::{printable, sentence};
-use super::summary::{nearest, verdict};
+use super::summary::{has_quantiles, larger_sentence, nearest, verdict};
 use super::words::{
     KEPT_SENTENCE, bands_words, contact_words, criterion_value, criterion_words, degrees, kept_mark,
-    range_words, through_words, uncertain_words, variable_words,
+    range_words, rung_short, through_words, uncertain_words, variable_words,
 };
 use crate::data::{
     Criterion, CriticalAngle, LADDER_TOLERANCE_PERCENT, Ladder, PredictionRow, Request, Rung, Study, Sweep,
@@ -58,7 +58,7 @@ pub(super) fn predictions(study: &Study) -> Markup {
             caption { "Velocity of the second end just before it strikes. Energy: kinetic, before the slap-down over before the first impact. \
                        Closed form: [P] Table 2 for k = 0, the first end held on the target whatever the force." }
             thead { tr {
-                th class="n" { "Angle, °" } @if lengths { th class="n" { "Length, m" } } @if heights { th class="n" { "Drop, m" } }
+                th class="n" { "φ0, °" } @if lengths { th class="n" { "Length, m" } } @if heights { th class="n" { "Drop, m" } }
                 th { "Model" } th { "Contact" } th class="n" { "k" } th class="n" { "Speed, m/s" } th class="n" { "Vertical, m/s" }
                 th class="n" { "Horizontal, m/s" } th class="n" { "ω, rad/s" } th class="n" { "Flight, ms" } th class="n" { "Energy" }
                 th class="n" { "Friction to stick" } th class="n" { "Impacts of first end" } th class="n" { "Closed form, m/s" }
@@ -91,12 +91,12 @@ pub(super) fn ladders(study: &Study) -> Markup {
     let left_out = study.ladders.len().saturating_sub(MOST_CASES);
     html! {
         h2 { "Models" }
-        p class="lead" { "Slap-down speed at " (degrees(first.angle_deg)) "° by each model, the simplest first; each adds one thing to the one \
+        p class="lead" { "Slap-down speed, m/s, at " (degrees(first.angle_deg)) "° by each model, the simplest first; each adds one thing to the one \
             before it. One suffices where no richer one moves the speed by more than " (plain(LADDER_TOLERANCE_PERCENT, 3)) " %." }
         @if let [one] = &study.ladders[..] { (one_ladder(one)) } @else {
             table class="whole" {
                 thead { tr { th { "Contact" } th class="n" { "k" }
-                    @for rung in Rung::ALL { th class="n" { (sentence(rung.words()).trim_end_matches('.')) ", m/s" } }
+                    @for rung in Rung::ALL { th class="n" { (sentence(rung_short(rung)).trim_end_matches('.')) } }
                     th { "Suffices" } } }
                 tbody { @for ladder in study.ladders.iter().take(MOST_CASES) { tr {
                     td class="u" { (contact_words(ladder.contact)) } td class="n" { (plain(ladder.k, 3)) }
@@ -106,7 +106,7 @@ pub(super) fn ladders(study: &Study) -> Markup {
             }
             @if left_out > 0 { p class="note" { "… and " (left_out) " more: see prediction.json." } }
             p class="note" { @for (i, rung) in Rung::ALL.into_iter().enumerate() {
-                @if i > 0 { "; " } (rung.words()) ": " (rung.adds()) } ". L is the first end, R the second." }
+                @if i > 0 { "; " } (rung_short(rung)) " – " (rung.adds()) } ". L is the first end, R the second." }
         }
     }
 }
@@ -133,7 +133,7 @@ pub(super) fn critical(study: &Study) -> Markup {
         study.critical.iter().filter(|c| c.criterion == Criterion::Speed).collect();
     let found = |of: &CriticalAngle, criterion| {
         let same = |c: &&CriticalAngle| (c.model, c.contact, c.k) == (of.model, of.contact, of.k);
-        study.critical.iter().filter(same).find(move |c| c.criterion == criterion)
+        study.critical.iter().filter(same).find(move |c| c.criterion == criterion && c.angle_deg.is_finite())
     };
     let left_out = speeds.len().saturating_sub(MOST_CASES);
     html! {
@@ -157,6 +157,7 @@ pub(super) fn critical(study: &Study) -> Markup {
                 } } }
             }
             @if left_out > 0 { p class="note" { "… and " (left_out) " more: see prediction.json." } }
+            @if let Some(text) = larger_sentence(study) { p class="note" { (text) } }
         }
     }
 }
@@ -165,7 +166,7 @@ pub(super) fn critical(study: &Study) -> Markup {
 pub(super) fn ranges(study: &Study) -> Markup {
     html! { @if !study.ranges.is_empty() {
         table class="whole" {
-            caption { "While " (through_words(&study.request)) " go through their ranges, all else as stated. Common band: the angles that lie in the band of every one of them." }
+            caption { "Over " (through_words(&study.request)) ", all else as stated. Common band: the angles that lie in the band of every one of them." }
             thead { tr { th { "Model" } th { "Largest" } th class="n" { "Critical angle, °" } th class="n" { "Worst case" } th { "Where" } th { "Common band, °" } } }
             tbody { @for r in &study.ranges { tr {
                 td { (r.model.as_str()) } td { (criterion_words(r.criterion)) } td class="n" { (bands_words(&[r.angle_deg])) }
@@ -180,6 +181,9 @@ pub(super) fn ranges(study: &Study) -> Markup {
 /// What was drawn from, and what came of it.
 pub(super) fn monte_carlo(study: &Study) -> Markup {
     let found = &study.monte_carlo;
+    if found.uncertain.draws == 0 {
+        return html! { h2 { "Monte Carlo" } p { "No draws were asked for." } };
+    }
     html! {
         h2 { "Monte Carlo" }
         p class="lead" { (found.uncertain.draws) " draws of the " (found.model.as_str()) ", seed " (found.uncertain.seed)
@@ -194,13 +198,14 @@ pub(super) fn monte_carlo(study: &Study) -> Markup {
                     (plain(found.band_percent, 3)) " % of their own largest." }
                 thead { tr { th { "Largest" } th class="n" { "Critical angle, °" } th class="n" { "How large" } th { "Robust band, °" } } }
                 tbody {
-                    @for q in &found.quantiles { tr {
-                        th scope="row" { (criterion_words(q.criterion)) }
-                        td class="n" { (degrees(q.critical_angle_deg[2])) " (" (bands_words(&[(q.critical_angle_deg[0], q.critical_angle_deg[4])])) ")" }
-                        td class="n" { (criterion_value(q.criterion, q.largest[2])) br; span class="soft" { (between(q.criterion, &q.largest)) } }
-                        td { (bands_words(&q.robust_bands_deg)) }
-                    } }
-                    @if found.quantiles.is_empty() { tr { td colspan="4" { "none: the second end never strikes" } } }
+                    @if has_quantiles(found) {
+                        @for q in &found.quantiles { tr {
+                            th scope="row" { (criterion_words(q.criterion)) }
+                            td class="n" { (degrees(q.critical_angle_deg[2])) " (" (bands_words(&[(q.critical_angle_deg[0], q.critical_angle_deg[4])])) ")" }
+                            td class="n" { (criterion_value(q.criterion, q.largest[2])) br; span class="soft" { (between(q.criterion, &q.largest)) } }
+                            td { (bands_words(&q.robust_bands_deg)) }
+                        } }
+                    } @else { tr { td colspan="4" { "none: too few draws have a slap-down" } } }
                 }
             }
         }
@@ -227,8 +232,8 @@ pub(super) fn sensitivities(study: &Study) -> Markup {
                     th { "Blind angle, °" } th { "k poorly told, °" } } }
                 tbody { @for s in study.sensitivities.iter().take(MOST_CASES) { tr {
                     td { (s.model.as_str()) } td class="u" { (contact_words(s.contact)) } td class="n" { (plain(s.k, 3)) }
-                    td class="n" { (optional(nearest(&s.angle_deg, &s.by_k_m_s, at), 3)) }
-                    td class="n" { (optional(nearest(&s.angle_deg, &s.by_angle_m_s_deg, at), 3)) }
+                    td class="n" { (optional_fixed(nearest(&s.angle_deg, &s.by_k_m_s, at), 2)) }
+                    td class="n" { (optional_fixed(nearest(&s.angle_deg, &s.by_angle_m_s_deg, at), 3)) }
                     td { (bands_words(&single(&s.blind_angles_deg))) } td { (bands_words(&s.blind_bands_deg)) }
                 } } }
             }

@@ -1,13 +1,15 @@
 //! What a study found besides its predictions to blocks for the terminal, 80 columns wide.
 
-use super::super::columns::columns;
-use super::super::rounding::{MISSING, fixed, optional, optional_fixed, percent, plain};
+use super::super::columns::{columns, fitting_columns};
+use super::super::rounding::{MISSING, fixed, optional_fixed, percent, plain};
 use super::super::text::{Style, WIDTH, styled, wrap};
 use super::words::{
-    angles_words, bands_words, contact_words, criterion_short, criterion_value, degrees, through_words,
-    uncertain_short, widest_bands_words,
+    angles_words, band_around_words, bands_words, contact_words, criterion_short, criterion_value, degrees,
+    rung_short, through_words, uncertain_short, widest_bands_words,
 };
-use crate::data::{Criterion, CriticalAngle, LADDER_TOLERANCE_PERCENT, Ladder, Rung, Study};
+use crate::data::{
+    BodyModel, Criterion, CriticalAngle, LADDER_TOLERANCE_PERCENT, Ladder, MonteCarlo, Rung, Study,
+};
 
 /// Rows of a block: more are in the JSON.
 const MOST_ROWS: usize = 16;
@@ -25,7 +27,7 @@ fn heading(words: &str) -> String {
 fn block(header: &[&str], mut rows: Vec<Vec<String>>, right: &[usize]) -> String {
     let left_out = rows.len().saturating_sub(MOST_ROWS);
     rows.truncate(MOST_ROWS);
-    let mut out = columns(header, &rows, right);
+    let mut out = fitting_columns(header, &rows, right);
     if left_out > 0 {
         out.push_str(&wrap(&format!("… and {left_out} more: see prediction.json."), WIDTH, 2));
     }
@@ -48,9 +50,9 @@ fn critical(study: &Study) -> String {
         let same = |c: &&CriticalAngle| (c.model, c.contact, c.k) == (speed.model, speed.contact, speed.k);
         let place = |criterion| {
             let found = study.critical.iter().filter(same).find(|c| c.criterion == criterion);
-            found.map_or_else(
+            found.filter(|c| c.angle_deg.is_finite()).map_or_else(
                 || MISSING.to_owned(),
-                |c| format!("{} ({})", degrees(c.angle_deg), widest_bands_words(&c.bands_deg, 2)),
+                |c| format!("{} ({})", degrees(c.angle_deg), band_around_words(&c.bands_deg, c.angle_deg)),
             )
         };
         rows.push(vec![
@@ -63,9 +65,31 @@ fn critical(study: &Study) -> String {
             place(Criterion::EnergyRatio),
         ]);
     }
-    let header = ["model", "contact", "k", "v m/s", "speed", "vertical speed", "energy"];
+    let header = ["model", "contact", "k", "v m/s", "speed", "vertical", "energy"];
     out.push_str(&block(&header, rows, &[2, 3]));
+    out.push_str(&larger_sentence(study).map_or_else(String::new, |text| wrap(&text, WIDTH, 2)));
     out
+}
+
+/// Where the speed is larger still, as the first end strikes again before the second.
+pub(super) fn larger_sentence(study: &Study) -> Option<String> {
+    let larger = study.ranges.iter().filter(|r| r.criterion == Criterion::Speed);
+    let larger = larger.filter_map(|r| r.further_impacts.map(|at| (r.model, at)));
+    let of_cases = study.critical.iter().filter(|c| c.criterion == Criterion::Speed);
+    let of_cases = of_cases.filter_map(|c| c.further_impacts.map(|at| (c.model, at)));
+    let all: Vec<(BodyModel, (f64, f64))> = larger.chain(of_cases).collect();
+    let most = |model: BodyModel| {
+        let of_model = all.iter().filter(|found| found.0 == model).map(|found| found.1);
+        let (angle_deg, speed) = of_model.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(format!("{} {} m/s at {}°", model.as_str(), fixed(speed, 2), degrees(angle_deg)))
+    };
+    let words: Vec<String> = [BodyModel::Rod, BodyModel::Body].into_iter().filter_map(most).collect();
+    (!words.is_empty()).then(|| {
+        format!(
+            "While the first end strikes once. Where it strikes again the speed jumps from angle to angle and can be larger: {}.",
+            words.join(", ")
+        )
+    })
 }
 
 fn ranges(study: &Study) -> String {
@@ -91,9 +115,14 @@ fn ranges(study: &Study) -> String {
     heading(&format!("Over {}", through_words(&study.request))) + &block(&header, rows, &[])
 }
 
+/// Whether any draw had a slap-down; where none was asked for there is none.
+pub(super) fn has_quantiles(found: &MonteCarlo) -> bool {
+    found.quantiles.iter().any(|q| q.critical_angle_deg[2].is_finite())
+}
+
 fn monte_carlo(study: &Study) -> String {
     let found = &study.monte_carlo;
-    if found.quantiles.is_empty() {
+    if !has_quantiles(found) {
         return String::new();
     }
     let u = &found.uncertain;
@@ -154,7 +183,7 @@ fn ladders(study: &Study) -> String {
                     row.extend(
                         ladder.steps.iter().map(|s| optional_fixed(s.prediction.slap_down_speed_m_s, 2)),
                     );
-                    row.push(ladder.suffices.words().to_owned());
+                    row.push(rung_short(ladder.suffices).to_owned());
                     row
                 })
                 .collect();
@@ -188,7 +217,7 @@ fn one_ladder(ladder: &Ladder) -> String {
         .iter()
         .map(|step| {
             vec![
-                step.rung.words().to_owned(),
+                rung_short(step.rung).to_owned(),
                 step.adds.to_owned(),
                 optional_fixed(step.prediction.slap_down_speed_m_s, 2),
                 step.change_percent.map_or_else(|| MISSING.to_owned(), percent),
@@ -222,9 +251,9 @@ fn blind(study: &Study) -> String {
                 s.model.as_str().to_owned(),
                 contact_words(s.contact),
                 plain(s.k, 3),
-                optional(nearest(&s.by_k_m_s), 3),
-                optional(nearest(&s.by_angle_m_s_deg), 3),
-                angles_words(&s.blind_angles_deg, 3),
+                optional_fixed(nearest(&s.by_k_m_s), 2),
+                optional_fixed(nearest(&s.by_angle_m_s_deg), 3),
+                angles_words(&s.blind_angles_deg, 2),
                 widest_bands_words(&s.blind_bands_deg, 2),
             ]
         })
@@ -254,7 +283,7 @@ mod tests {
     use super::super::super::sample_study;
     use super::super::table::study_table;
     use super::*;
-    use crate::data::{BodyModel, Sweep, SweepVariable};
+    use crate::data::{Sweep, SweepVariable};
 
     fn bare(study: &Study) -> String {
         anstream::adapter::strip_str(&study_table(study)).to_string()
@@ -297,7 +326,7 @@ mod tests {
             "held: closed form for k = 0",
             "Critical angles",
             "12 (3.5–28)",
-            "12 (0–24.2, 61–70)",
+            "12 (0–24.2, …)",
             "Over k 0 to 1 and μ 0.2 to 0.6",
             "12°, rough, k = 1",
             "Monte Carlo, 2000 draws of the body",
@@ -306,6 +335,7 @@ mod tests {
             "At 15°: ",
             "suffices: the simplest that no richer one moves by more than 0.1 %",
             "35.3",
+            "rod 30.20 m/s at 89°",
         ] {
             assert!(text.contains(words), "{words} is missing in\n{text}");
         }
@@ -315,7 +345,7 @@ mod tests {
     fn one_case_shows_every_rung() {
         let text = bare(&single());
         for rung in Rung::ALL {
-            assert!(text.contains(rung.words()) && text.contains(rung.adds()), "{text}");
+            assert!(text.contains(rung_short(rung)) && text.contains(rung.adds()), "{text}");
         }
         assert!(text.contains("−8.0 %") && text.contains("The model \"body\" suffices"), "{text}");
     }

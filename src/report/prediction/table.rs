@@ -51,11 +51,11 @@ pub fn study_table(study: &Study) -> String {
 /// The table of predictions alone.
 #[must_use]
 pub fn table(rows: &[PredictionRow], file: &CaskFile) -> String {
-    let mut out = title(file);
     let varies = |value: fn(&PredictionRow) -> f64| {
         rows.iter().any(|row| value(row).to_bits() != value(&rows[0]).to_bits())
     };
     let (lengths, heights) = (varies(|row| row.length_m), varies(|row| row.drop_height_m));
+    let mut out = title(file, heights);
     // With two more columns the closed form has no room left; the CSV has it.
     let held = !(lengths && heights) && rows.iter().any(|row| row.prediction.closed_form_speed_m_s.is_some());
     let mut header = vec!["φ0\n°"];
@@ -89,14 +89,14 @@ pub fn table(rows: &[PredictionRow], file: &CaskFile) -> String {
     out
 }
 
-fn title(file: &CaskFile) -> String {
-    let what = format!(
-        "{} · drop {} m, impact velocity {} m/s · g {} m/s²",
-        file.cask.name,
-        plain(file.drop.height_m, 5),
-        plain(file.drop.impact_velocity_m_s, 5),
-        plain(file.drop.gravity_m_s2, 6)
-    );
+fn title(file: &CaskFile, heights: bool) -> String {
+    let drop = if heights {
+        String::new() // each row has its own
+    } else {
+        let (height, velocity) = (plain(file.drop.height_m, 5), plain(file.drop.impact_velocity_m_s, 5));
+        format!("drop {height} m, impact velocity {velocity} m/s · ")
+    };
+    let what = format!("{} · {drop}g {} m/s²", file.cask.name, plain(file.drop.gravity_m_s2, 6));
     styled_lines(Style::Bold, &wrap(&what, WIDTH, 0))
 }
 

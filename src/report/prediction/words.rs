@@ -1,7 +1,7 @@
 //! Contact laws, criteria, bands and inputs of a study to the words that table, page and pictures share.
 
 use super::super::rounding::{MISSING, fixed, plain};
-use crate::data::{Contact, Criterion, FlightRegime, Request, SweepVariable, Uncertain};
+use crate::data::{Contact, Criterion, FlightRegime, Request, Rung, SweepVariable, Uncertain};
 
 /// What marks a prediction whose first end stays on the target.
 const KEPT_MARK: &str = "†";
@@ -91,6 +91,16 @@ pub(super) fn widest_bands_words(bands_deg: &[(f64, f64)], most: usize) -> Strin
     format!("{}, …", bands_words(&widest))
 }
 
+/// The band that holds `angle_deg`, with an ellipsis where there are others.
+pub(super) fn band_around_words(bands_deg: &[(f64, f64)], angle_deg: f64) -> String {
+    let off = |band: &(f64, f64)| (band.0 - angle_deg).max(angle_deg - band.1);
+    let Some(nearest) = bands_deg.iter().min_by(|a, b| off(a).total_cmp(&off(b))) else {
+        return MISSING.to_owned();
+    };
+    let dots = if bands_deg.len() > 1 { ", …" } else { "" };
+    format!("{}{dots}", bands_words(&[*nearest]))
+}
+
 /// Angles in a row, the first of many and an ellipsis.
 pub(super) fn angles_words(angles_deg: &[f64], most: usize) -> String {
     let shown: Vec<(f64, f64)> = angles_deg.iter().take(most).map(|a| (*a, *a)).collect();
@@ -155,13 +165,25 @@ pub(super) fn uncertain_short(u: &Uncertain, contact: Contact) -> String {
     )
 }
 
+/// A rung of the ladder in a narrow column.
+pub(super) fn rung_short(rung: Rung) -> &'static str {
+    match rung {
+        Rung::Rod => "rod",
+        Rung::Body => "body",
+        Rung::Friction => "friction",
+        Rung::Unilateral => "unilateral",
+        Rung::FurtherImpacts => "further impacts",
+    }
+}
+
 /// The k and friction that the ranges of the critical angles go through.
 pub(super) fn through_words(request: &Request) -> String {
     let k = range_words(request.uncertain.k);
-    match request.uncertain.friction {
-        Some(friction) => format!("k {k} and μ {}", range_words(friction)),
-        None => format!("k {k}"),
+    if let Some(friction) = request.uncertain.friction {
+        return format!("k {k} and μ {}", range_words(friction));
     }
+    let contacts: Vec<String> = request.contacts.iter().map(|c| contact_words(*c)).collect();
+    format!("k {k}, {}", contacts.join(", "))
 }
 
 #[cfg(test)]
@@ -177,6 +199,8 @@ mod tests {
         let bands = [(1.0, 2.0), (5.0, 9.0), (20.0, 20.0), (30.0, 40.0)];
         assert_eq!(widest_bands_words(&bands, 2), "5–9, 30–40, …");
         assert_eq!(widest_bands_words(&bands, 4), "1–2, 5–9, 20, 30–40");
+        assert_eq!(band_around_words(&bands, 6.0), "5–9, …");
+        assert_eq!(band_around_words(&bands[..1], 6.0), "1–2");
         assert_eq!(angles_words(&[1.0, 2.0, 3.0], 2), "1, 2, …");
     }
 
