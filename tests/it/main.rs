@@ -1,9 +1,11 @@
 //! From the built program, the sources and the fixtures to the promises that hold across modules.
 
 mod command_line;
+mod compliant;
 mod fixtures;
 mod golden;
 mod predict_command;
+mod properties;
 mod reference;
 mod run;
 mod tidy;
