@@ -111,8 +111,7 @@ fn a_cask_that_cannot_be_is_told_its_key() {
 #[test]
 fn limits_of_angle_restitution_and_friction_are_predicted() {
     // Flat: both ends are at the target, R strikes at once; upright: nothing turns a thin rod.
-    for (words, strikes) in [("--angle 0", true), ("--angle 90", false)]
-    {
+    for (words, strikes) in [("--angle 0", true), ("--angle 90", false)] {
         for row in bodies(rows(words), "rod") {
             assert_eq!(row["slap_down_speed_m_s"].is_number(), strikes, "{words}: {row}");
         }
