@@ -6,7 +6,7 @@ mod wording;
 
 use crate::data::{Cask, CaskFile, Contact, Drop, FilterChoice};
 use miette::{Diagnostic, NamedSource, SourceSpan};
-use section::{Document, Section};
+use section::{Document, Placed, Section};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::io::Read;
@@ -215,7 +215,12 @@ fn cask(table: &Section, path: &Path, defaults: &mut Vec<String>) -> Result<Cask
             "cog_m counts along the axis from the first end (the one that touches first), in metres",
         ));
     }
+    let cog_m = cog.as_ref().map_or(length_m / 2.0, |cog| cog.value);
+    let height_m = height.as_ref().map_or(0.0, |height| height.value);
     let inertia = table.positive("inertia_kg_m2")?;
+    if let Some(inertia) = &inertia {
+        inertia_is_possible(table, inertia, mass_kg, [length_m, height_m, cog_m])?;
+    }
     let width_m = table.positive("width_m")?.map(|width| width.value);
     let name = match table.text("name")? {
         Some(name) => name.value,
@@ -230,20 +235,47 @@ fn cask(table: &Section, path: &Path, defaults: &mut Vec<String>) -> Result<Cask
             defaults.push(format!("cask.{key}"));
         }
     }
-    let height_m = height.map_or(0.0, |height| height.value);
     Ok(Cask {
         name,
         mass_kg,
         length_m,
         height_m,
         width_m,
-        cog_m: cog.as_ref().map_or(length_m / 2.0, |cog| cog.value),
-        // Θ = m (l² + h²) / 12, a homogeneous block.
+        cog_m,
         inertia_kg_m2: inertia
             .as_ref()
-            .map_or(mass_kg * (length_m * length_m + height_m * height_m) / 12.0, |inertia| inertia.value),
+            .map_or(homogeneous_inertia_kg_m2(mass_kg, length_m, height_m), |inertia| inertia.value),
         is_body: height_m > 0.0 || cog.is_some() || inertia.is_some(),
     })
+}
+
+/// Θ = m (l² + h²) / 12, a homogeneous block.
+fn homogeneous_inertia_kg_m2(mass_kg: f64, length_m: f64, height_m: f64) -> f64 {
+    mass_kg * (length_m * length_m + height_m * height_m) / 12.0
+}
+
+/// Whether mass within length and section can have this inertia: at most with all of it in the corners, the centre of gravity kept.
+fn inertia_is_possible(
+    table: &Section,
+    inertia: &Placed<f64>,
+    mass_kg: f64,
+    [length_m, height_m, cog_m]: [f64; 3],
+) -> Result<(), CaskFileError> {
+    // Θ ≤ m (c (l − c) + h²/4).
+    let most = mass_kg * (cog_m * (length_m - cog_m) + height_m * height_m / 4.0);
+    if inertia.value <= most {
+        return Ok(());
+    }
+    let four_digits = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
+    let homogeneous = four_digits(homogeneous_inertia_kg_m2(mass_kg, length_m, height_m));
+    Err(table.wrong(
+        inertia.span.clone(),
+        format!("no cask of this mass and size has an inertia_kg_m2 of {}", inertia.value),
+        format!("at most {}", four_digits(most)),
+        &format!(
+            "it counts about the centre of gravity, not about an end, in kg m²; a homogeneous cask of this mass, length and section has {homogeneous}"
+        ),
+    ))
 }
 
 fn drop(table: &Section, defaults: &mut Vec<String>) -> Result<Drop, CaskFileError> {

@@ -5,14 +5,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A folder of files at fault, gone when it is dropped.
-struct Bench(tempfile::TempDir);
+pub struct Bench(pub tempfile::TempDir);
 
 impl Bench {
-    fn new() -> Self {
+    /// An empty one.
+    pub fn new() -> Self {
         Self(tempfile::tempdir().expect("a temporary folder"))
     }
 
-    fn put(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+    /// Puts a file in it.
+    pub fn put(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
         let path = self.0.path().join(name);
         fs::write(&path, content).expect("a temporary file");
         path
@@ -28,7 +30,7 @@ fn cask_with(bench: &Bench, stem: &str, from: &str, to: &str) -> PathBuf {
 
 /// One message on standard error that holds every one of `words`; exit 2, nothing on standard output, nobody panicked.
 #[track_caller]
-fn at_fault(answer: &Answer, words: &[&str]) {
+pub fn at_fault(answer: &Answer, words: &[&str]) {
     let Answer { status, stdout, stderr } = answer;
     assert_eq!(*status, 2, "stdout: {stdout}\nstderr: {stderr}");
     assert!(stdout.is_empty(), "standard output is not empty: {stdout}");

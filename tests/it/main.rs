@@ -4,6 +4,7 @@ mod command_line;
 mod compliant;
 mod fixtures;
 mod golden;
+mod predict_command;
 mod properties;
 mod reference;
 mod run;

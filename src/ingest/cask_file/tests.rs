@@ -144,6 +144,23 @@ fn slips_in_tables_and_numbers_are_told_with_line_and_remedy() {
 }
 
 #[test]
+fn an_inertia_about_an_end_is_refused_and_the_largest_possible_is_not() {
+    // l = 2 m, c = 1 m, no section: all mass at the two ends has m c (l − c) = 120 kg m², about an end m l²/3 = 160.
+    let with = |value: &str| of(&SHORT.replace("[drop]", &format!("inertia_kg_m2 = {value}\n[drop]")));
+    assert!((with("120").unwrap().cask.inertia_kg_m2 - 120.0).abs() < 1e-12);
+    let message = told(&with("160").unwrap_err());
+    for part in ["line 4", "no cask of this mass and size", "at most 120", "not about an end", "has 40"] {
+        assert!(message.contains(part), "{message} without {part}");
+    }
+    // A centre of gravity near an end leaves less: 120 · 0.2 · 1.8 = 43.2; a section adds m h²/4 = 7.5.
+    let near = |rest: &str| {
+        of(&SHORT.replace("[drop]", &format!("cog_m = 0.2\ninertia_kg_m2 = 48\n{rest}\n[drop]")))
+    };
+    assert!(told(&near("").unwrap_err()).contains("at most 43.2"));
+    assert!(near("height_m = 0.5").is_ok());
+}
+
+#[test]
 fn slips_in_channels_are_told_with_line_and_remedy() {
     let cases: [(&str, &str, &[&str]); 22] = [
         ("end = \"first\"", "end = \"frist\"", &["end cannot be \"frist\"", "did you mean \"first\"?"]),

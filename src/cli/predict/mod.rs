@@ -1,0 +1,103 @@
+//! `predict`: the analytical prediction at one angle or over sweeps, and the critical angles, to a table and a report.
+
+mod request;
+mod sweep;
+mod words;
+
+use super::Outcome;
+use super::output::{Folder, JsonTarget, print};
+use clap::Args;
+use dropcheck::data::{Contact, Sweep};
+use dropcheck::report;
+use std::path::PathBuf;
+
+const AFTER_HELP: &str = "\
+Which cases: without --k and --contact the four borderline cases, rough and smooth with k = 0 and k = 1. \
+With --k alone the contact is the cask file's; with --contact alone k is 0 and 1. \
+A sweep of k or friction takes the place of the option: curves and critical angles are then of its two ends.
+
+Monte Carlo draws k and friction evenly from their ranges: those of the options, else those of the sweeps, \
+else what --k and --contact say and no other. A tolerance is a half-width that holds 95 of 100 drops.
+
+Examples:
+  dropcheck predict --cask cask.toml
+  dropcheck predict --cask cask.toml --k 0.5 --contact 0.4
+  dropcheck predict --cask cask.toml --sweep 5:45:5 --out prediction
+  dropcheck predict --cask cask.toml --k-range 0.3:0.7 --out prediction
+  dropcheck predict --cask cask.toml --sweep 0:90:1 --sweep k=0:1:0.1";
+
+const CASES: &str = "What to predict";
+const CRITICAL: &str = "Critical angles and what uncertainty makes of them";
+const OUTPUT: &str = "Output";
+
+#[derive(Args)]
+#[command(after_help = AFTER_HELP)]
+pub struct Arguments {
+    /// The cask file (TOML); it needs no [[channel]]
+    #[arg(long)]
+    cask: PathBuf,
+    /// Inclination at first contact, 0 to 90 degrees [default: the cask file's]
+    #[arg(long, value_name = "DEG", help_heading = CASES, allow_hyphen_values = true, value_parser = words::angle)]
+    angle: Option<f64>,
+    /// Coefficient of restitution, 0 to 1
+    #[arg(long, value_name = "K", help_heading = CASES, allow_hyphen_values = true, value_parser = words::restitution)]
+    k: Option<f64>,
+    /// Contact of the first end: rough, smooth or a Coulomb coefficient
+    #[arg(long, value_name = "C", help_heading = CASES, allow_hyphen_values = true, value_parser = words::contact)]
+    contact: Option<Contact>,
+    /// Sweep angle (degrees; where no VARIABLE stands), k, friction, length (m) or height (of the drop, m); several
+    /// times for every combination
+    #[arg(long, value_name = "[VARIABLE=]FROM:TO:STEP", help_heading = CASES, allow_hyphen_values = true, value_parser = sweep::sweep)]
+    sweep: Vec<Sweep>,
+    /// An angle is critical where the slap-down comes within this of its largest, percent
+    #[arg(long, value_name = "PERCENT", help_heading = CRITICAL, default_value = "5", allow_hyphen_values = true, value_parser = words::band)]
+    band: f64,
+    /// Range of k, such as 0.3:0.7
+    #[arg(long, value_name = "FROM:TO", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::restitution_range)]
+    k_range: Option<(f64, f64)>,
+    /// Range of the Coulomb coefficient, such as 0.2:0.6
+    #[arg(long, value_name = "FROM:TO", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::friction_range)]
+    friction_range: Option<(f64, f64)>,
+    /// Tolerance of the angle, degrees
+    #[arg(long, value_name = "DEG", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::angle_tolerance)]
+    angle_tolerance: Option<f64>,
+    /// Tolerance of length, section and centre of gravity, percent (the last of the length)
+    #[arg(long, value_name = "PERCENT", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::geometry_tolerance)]
+    geometry_tolerance: Option<f64>,
+    /// Casks and drops that Monte Carlo draws; 0 for none
+    #[arg(long, value_name = "N", help_heading = CRITICAL, default_value = "1000", allow_hyphen_values = true, value_parser = words::draws)]
+    draws: u32,
+    /// Seed of the draws: the same seed gives the same draws everywhere
+    #[arg(long, value_name = "N", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::seed)]
+    seed: Option<u64>,
+    /// Folder for prediction.html, prediction.json, prediction.csv and the pictures
+    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
+    out: Option<PathBuf>,
+    /// Write the predictions as JSON to a file; with - to standard output, and nothing else there
+    #[arg(long, value_name = "FILE|-", help_heading = OUTPUT)]
+    json: Option<PathBuf>,
+}
+
+pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
+    let inputs = [arguments.cask.as_path()];
+    let file = dropcheck::ingest::cask_file(&arguments.cask)?;
+    let request = request::request(arguments, &file)?;
+    let names = report::study_file_names(&request);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, &names, &inputs)).transpose()?;
+    let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
+
+    let study = dropcheck::predict::study(&file, &request);
+
+    if let Some(folder) = &folder {
+        folder.write(&report::study_files(&study)?)?;
+    }
+    json.write(|| report::study_json(&study))?;
+    if !json.is_standard_output() {
+        print(&report::study_table(&study))?;
+        if let Some(folder) = &folder {
+            print(&format!("\nReport: {}\n", report::printable(&folder.file("prediction.html"))))?;
+        }
+    }
+    Ok(Outcome::Clear)
+}

@@ -1,0 +1,296 @@
+//! The options of `predict` and a cask file to what a study is asked.
+
+use super::Arguments;
+use super::sweep::{MOST_PREDICTIONS, name, rounded};
+use dropcheck::data::{CaskFile, Contact, Request, Sweep, SweepVariable, Uncertain};
+use dropcheck::predict;
+
+/// Curves are drawn at least this finely: half a degree is finer than a drop can be rigged.
+const CURVE_STEP_DEG: f64 = 0.5;
+
+/// A sweep of fewer angles asks for a few points, not for another range of the curves.
+const LEAST_CURVE_ANGLES: usize = 10;
+
+/// More angles than this are closer than a picture's dots.
+const MOST_CURVE_STEPS: f64 = 1800.0;
+
+/// What is asked, with the cask file's values where no option says otherwise.
+pub fn request(arguments: &Arguments, file: &CaskFile) -> miette::Result<Request> {
+    let sweeps = &arguments.sweep;
+    each_once(arguments)?;
+    lengths_hold_the_section(sweeps, file)?;
+    let (contacts, ks) = cases(arguments, file);
+    let request = Request {
+        contacts,
+        ks,
+        angle_deg: arguments.angle.unwrap_or_else(|| rounded(file.drop.angle_rad.to_degrees())),
+        sweeps: sweeps.clone(),
+        angles_deg: curve_angles_deg(swept(sweeps, SweepVariable::Angle)),
+        band_percent: arguments.band,
+        uncertain: uncertain(arguments, file),
+    };
+    few_enough(&request, file)?;
+    Ok(request)
+}
+
+fn swept(sweeps: &[Sweep], variable: SweepVariable) -> Option<&[f64]> {
+    sweeps.iter().find(|sweep| sweep.variable == variable).map(|sweep| sweep.values.as_slice())
+}
+
+/// Lowest and highest value of a sweep.
+fn ends(values: &[f64]) -> Option<(f64, f64)> {
+    Some((*values.first()?, *values.last()?))
+}
+
+/// A variable is swept once, or set by its option, not both.
+fn each_once(arguments: &Arguments) -> miette::Result<()> {
+    let sweeps = &arguments.sweep;
+    for (i, sweep) in sweeps.iter().enumerate() {
+        let called = name(sweep.variable);
+        if sweeps[..i].iter().any(|other| other.variable == sweep.variable) {
+            return Err(miette::miette!(
+                help = "one --sweep for each variable; for two ranges of one variable run predict twice",
+                "--sweep {called} is given twice"
+            ));
+        }
+        let option = match sweep.variable {
+            SweepVariable::Angle => arguments.angle.map(|_| "--angle"),
+            SweepVariable::K => arguments.k.map(|_| "--k"),
+            SweepVariable::Friction => arguments.contact.map(|_| "--contact"),
+            SweepVariable::Length | SweepVariable::DropHeight => None,
+        };
+        if let Some(option) = option {
+            return Err(miette::miette!(
+                help = format!("leave out {option} to sweep, or --sweep {called} to have the one value"),
+                "{option} and --sweep {called} both say what {called} is"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// A section longer than the cask is refused here as in the cask file.
+fn lengths_hold_the_section(sweeps: &[Sweep], file: &CaskFile) -> miette::Result<()> {
+    let section_m = file.cask.height_m;
+    match swept(sweeps, SweepVariable::Length).and_then(ends) {
+        Some((shortest_m, _)) if shortest_m < section_m => Err(miette::miette!(
+            help = format!(
+                "let --sweep length begin at {section_m} or above, or correct height_m under [cask] in {}",
+                file.path.display()
+            ),
+            "the section of the cask is {section_m} m, and --sweep length begins at {shortest_m} m: a cask is longer than its section"
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Contact laws and ks: as swept (both ends), as given, else the four borderline cases.
+fn cases(arguments: &Arguments, file: &CaskFile) -> (Vec<Contact>, Vec<f64>) {
+    let both = |(from, to): (f64, f64)| if from < to { vec![from, to] } else { vec![from] };
+    let swept_k = swept(&arguments.sweep, SweepVariable::K).and_then(ends);
+    let swept_friction = swept(&arguments.sweep, SweepVariable::Friction).and_then(ends);
+    let ks = match (arguments.k, swept_k) {
+        (Some(k), _) => Some(vec![k]),
+        (None, swept) => swept.map(both),
+    };
+    let contacts = match (arguments.contact, swept_friction) {
+        (Some(contact), _) => Some(vec![contact]),
+        (None, swept) => swept.map(|ends| both(ends).into_iter().map(Contact::Coulomb).collect()),
+    };
+    match (contacts, ks) {
+        (Some(contacts), Some(ks)) => (contacts, ks),
+        (Some(contacts), None) => (contacts, vec![0.0, 1.0]),
+        (None, Some(ks)) => (vec![file.contact], ks),
+        (None, None) => (vec![Contact::Rough, Contact::Smooth], vec![0.0, 1.0]),
+    }
+}
+
+/// The angles of a sweep that is more than a few points, those between filled in to half a degree; else 0 to 90°.
+fn curve_angles_deg(swept: Option<&[f64]>) -> Vec<f64> {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to 1800 before the cast")]
+    let evenly = |from: f64, to: f64, steps: f64| -> Vec<f64> {
+        let steps = steps.min(MOST_CURVE_STEPS).ceil() as u32;
+        (0..=steps).map(|i| rounded(from + (to - from) * f64::from(i) / f64::from(steps))).collect()
+    };
+    let values = swept.filter(|values| values.len() >= LEAST_CURVE_ANGLES).unwrap_or_default();
+    let (Some((from, to)), [first, second, ..]) = (ends(values), values) else {
+        return evenly(0.0, 90.0, 90.0 / CURVE_STEP_DEG);
+    };
+    let step = second - first;
+    // Every step of the sweep in equal parts, so that its own angles stay among the curve's.
+    evenly(from, to, ((to - from) / step).round() * (step / CURVE_STEP_DEG).ceil())
+}
+
+/// What Monte Carlo draws from: the cask's usual tolerances, each replaced by what the options say of it.
+fn uncertain(arguments: &Arguments, file: &CaskFile) -> Uncertain {
+    let usual = predict::default_uncertain(file);
+    let percent = |percent: f64| percent / 100.0;
+    let geometry = arguments.geometry_tolerance.map(percent);
+    let swept = |variable| swept(&arguments.sweep, variable).and_then(ends);
+    Uncertain {
+        k: arguments.k_range.or(arguments.k.map(|k| (k, k))).or(swept(SweepVariable::K)).unwrap_or(usual.k),
+        friction: arguments.friction_range.or(swept(SweepVariable::Friction)).or_else(|| {
+            // Rough and smooth bound the table; what is drawn has the contact of the cask file.
+            match file.contact {
+                _ if arguments.contact.is_some() => None,
+                Contact::Coulomb(coefficient) => Some((coefficient, coefficient)),
+                Contact::Smooth => Some((0.0, 0.0)),
+                Contact::Rough => usual.friction,
+            }
+        }),
+        angle_deg: arguments.angle_tolerance.unwrap_or(usual.angle_deg),
+        size: geometry.unwrap_or(usual.size),
+        cog: geometry.unwrap_or(usual.cog),
+        draws: arguments.draws,
+        seed: arguments.seed.unwrap_or(usual.seed),
+        ..usual
+    }
+}
+
+/// Whether the table stays one that can be written and read.
+fn few_enough(request: &Request, file: &CaskFile) -> miette::Result<()> {
+    let is_swept = |variable| swept(&request.sweeps, variable).is_some();
+    let mut factors: Vec<(usize, String)> =
+        request.sweeps.iter().map(|s| (s.values.len(), name(s.variable).to_owned())).collect();
+    if !is_swept(SweepVariable::Friction) {
+        factors.push((request.contacts.len(), "contact".to_owned()));
+    }
+    if !is_swept(SweepVariable::K) {
+        factors.push((request.ks.len(), "k".to_owned()));
+    }
+    factors.push((predict::bodies(&file.cask).len(), "rod, body".to_owned()));
+    let predictions = factors.iter().fold(1_usize, |product, (count, _)| product.saturating_mul(*count));
+    if predictions <= MOST_PREDICTIONS {
+        return Ok(());
+    }
+    let product: Vec<String> = factors
+        .iter()
+        .filter(|(count, _)| *count > 1)
+        .map(|(count, what)| format!("{count} ({what})"))
+        .collect();
+    let longest = request.sweeps.iter().max_by_key(|sweep| sweep.values.len());
+    let longest = longest.map_or("", |sweep| name(sweep.variable));
+    let options = match (is_swept(SweepVariable::K), is_swept(SweepVariable::Friction)) {
+        (false, false) if request.ks.len() * request.contacts.len() > 1 => ", or give --k and --contact",
+        (false, true) if request.ks.len() > 1 => ", or give --k",
+        (true, false) if request.contacts.len() > 1 => ", or give --contact",
+        _ => "",
+    };
+    Err(miette::miette!(
+        help = format!("take a larger STEP or a shorter range for {longest}{options}"),
+        "{} = {predictions} predictions are too many; at most {MOST_PREDICTIONS}",
+        product.join(" × ")
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Words {
+        #[command(flatten)]
+        arguments: Arguments,
+    }
+
+    const CASK: &str = "[cask]\nmass_kg = 4466\nlength_m = 5.512\nheight_m = 0.792\n\
+                        [drop]\nheight_m = 9\nangle_deg = 15\n[contact]\nfriction = 0.3\n";
+
+    fn file() -> CaskFile {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("cask.toml");
+        std::fs::write(&path, CASK).unwrap();
+        dropcheck::ingest::cask_file(&path).unwrap()
+    }
+
+    fn asked(options: &str) -> miette::Result<Request> {
+        let words = ["predict", "--cask", "cask.toml"].into_iter().chain(options.split_whitespace());
+        request(&Words::try_parse_from(words).unwrap().arguments, &file())
+    }
+
+    #[test]
+    fn options_choose_the_cases_and_sweeps_stand_for_them() {
+        use Contact::{Coulomb, Rough, Smooth};
+        for (options, contacts, ks) in [
+            ("", vec![Rough, Smooth], vec![0.0, 1.0]),
+            ("--k 0.5", vec![Coulomb(0.3)], vec![0.5]),
+            ("--contact smooth", vec![Smooth], vec![0.0, 1.0]),
+            ("--contact 0,4 --k 0", vec![Coulomb(0.4)], vec![0.0]),
+            ("--sweep k=0.2:0.8:0.1", vec![Coulomb(0.3)], vec![0.2, 0.8]),
+            ("--sweep friction=0:1:0.1", vec![Coulomb(0.0), Coulomb(1.0)], vec![0.0, 1.0]),
+            ("--sweep k=0.5:0.5:1 --contact rough", vec![Rough], vec![0.5]),
+            ("--sweep length=4:6:1", vec![Rough, Smooth], vec![0.0, 1.0]),
+        ] {
+            let asked = asked(options).unwrap();
+            assert_eq!((asked.contacts, asked.ks), (contacts, ks), "{options}");
+            assert!((asked.angle_deg - 15.0).abs() < f64::EPSILON);
+        }
+    }
+
+    #[test]
+    fn monte_carlo_draws_from_ranges_sweeps_and_options_in_this_order() {
+        let usual = predict::default_uncertain(&file());
+        for (options, k, friction) in [
+            ("", usual.k, Some((0.3, 0.3))),
+            ("--k 0.5", (0.5, 0.5), Some((0.3, 0.3))),
+            ("--contact 0.4", usual.k, None),
+            ("--k 0.5 --k-range 0.3:0.7 --contact 0.4 --friction-range 0:1", (0.3, 0.7), Some((0.0, 1.0))),
+            ("--sweep k=0.2:0.8:0.1 --sweep friction=0:1:0.1", (0.2, 0.8), Some((0.0, 1.0))),
+            ("--sweep k=0.2:0.8:0.1 --k-range 0.3:0.7", (0.3, 0.7), Some((0.3, 0.3))),
+        ] {
+            let uncertain = asked(options).unwrap().uncertain;
+            assert_eq!((uncertain.k, uncertain.friction), (k, friction), "{options}");
+        }
+        let asked = asked("--angle-tolerance 2 --geometry-tolerance 3 --draws 7 --seed 9 --band 10").unwrap();
+        let Uncertain { angle_deg, size, cog, draws, seed, .. } = asked.uncertain;
+        assert_eq!((angle_deg, size, cog, draws, seed), (2.0, 0.03, 0.03, 7, 9));
+        assert_eq!(
+            (asked.uncertain.drop_height, asked.uncertain.inertia),
+            (usual.drop_height, usual.inertia)
+        );
+        assert!((asked.band_percent - 10.0).abs() < f64::EPSILON);
+    }
+
+    #[test]
+    fn curves_go_over_a_fine_sweep_of_the_angle_and_else_over_all_angles() {
+        let angles = |options: &str| asked(options).unwrap().angles_deg;
+        let all = angles("");
+        assert_eq!(
+            (all.len(), all[1].to_bits(), all[180].to_bits()),
+            (181, 0.5_f64.to_bits(), 90_f64.to_bits())
+        );
+        assert_eq!(angles("--sweep 5:45:5"), all);
+        assert_eq!(angles("--sweep 5:45:0.25").len(), 161);
+        let filled = angles("--sweep 5:45:4");
+        assert_eq!((filled.len(), filled[8].to_bits()), (81, 9_f64.to_bits()));
+        let thinned = angles("--sweep 0:90:0.01");
+        assert_eq!((thinned.len(), thinned[1].to_bits()), (1801, 0.05_f64.to_bits()));
+    }
+
+    #[test]
+    fn what_contradicts_itself_or_is_too_much_is_told_with_its_remedy() {
+        for (options, message, help) in [
+            ("--angle 5 --sweep 0:9:1", "--angle and --sweep angle both", "leave out --angle"),
+            ("--k 0 --sweep k=0:1:1", "--k and --sweep k both", "leave out --k"),
+            (
+                "--contact rough --sweep mu=0:1:1",
+                "--contact and --sweep friction both",
+                "leave out --contact",
+            ),
+            ("--sweep 0:9:1 --sweep angle=9:20:1", "--sweep angle is given twice", "run predict twice"),
+            ("--sweep length=0.5:6:0.1", "the section of the cask is 0.792 m", "at 0.792 or above"),
+            (
+                "--sweep 0:90:0.01 --sweep k=0:1:0.05",
+                "9001 (angle) × 21 (k) × 2 (rod, body) = 378042 predictions",
+                "larger STEP or a shorter range for angle",
+            ),
+            ("--sweep 0:90:0.002", "2 (contact) × 2 (k)", "or give --k and --contact"),
+        ] {
+            let complaint = asked(options).unwrap_err();
+            assert!(complaint.to_string().contains(message), "{options}: {complaint}");
+            let remedy = complaint.help().map(|help| help.to_string()).unwrap_or_default();
+            assert!(remedy.contains(help), "{options}: {remedy}");
+        }
+    }
+}

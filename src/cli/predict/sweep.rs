@@ -1,0 +1,210 @@
+//! `[VARIABLE=]FROM:TO:STEP` to the values of a sweep.
+
+use super::words::{ascending, number};
+use dropcheck::data::{Sweep, SweepVariable};
+
+/// Predictions of one run, and so values of one sweep: a table of more is read by no one and fills hundreds of megabytes.
+pub const MOST_PREDICTIONS: usize = 200_000;
+
+/// Below this similarity (Jaro–Winkler, 0 to 1) a word is another word rather than a misspelling.
+const ALIKE: f64 = 0.75;
+
+/// Digits kept of a value, so that 3 · 0.1 is shown as 0.3; a double holds two to four more.
+const DIGITS_AFTER_THE_FIRST: usize = 12;
+
+/// What can be swept, and what a person may call it.
+struct Known {
+    variable: SweepVariable,
+    names: &'static [&'static str],
+    /// Least and largest value; where the least is 0 and `above` is set it is not in the range itself.
+    range: (f64, f64),
+    above: bool,
+    range_words: &'static str,
+    example: &'static str,
+}
+
+const KNOWN: [Known; 5] = [
+    Known {
+        variable: SweepVariable::Angle,
+        names: &["angle", "angle_deg", "phi", "φ"],
+        range: (0.0, 90.0),
+        above: false,
+        range_words: "lies between 0 (flat) and 90 (upright) degrees",
+        example: "5:45:5",
+    },
+    Known {
+        variable: SweepVariable::K,
+        names: &["k", "restitution"],
+        range: (0.0, 1.0),
+        above: false,
+        range_words: "lies between 0 and 1",
+        example: "k=0:1:0.1",
+    },
+    Known {
+        variable: SweepVariable::Friction,
+        names: &["friction", "contact", "mu", "μ", "µ"],
+        range: (0.0, f64::INFINITY),
+        above: false,
+        range_words: "is 0 or more",
+        example: "friction=0:1:0.1",
+    },
+    Known {
+        variable: SweepVariable::Length,
+        names: &["length", "length_m"],
+        range: (0.0, 100.0),
+        above: true,
+        range_words: "lies above 0 and up to 100 m: it is the length of the cask, in metres",
+        example: "length=4:6:0.1",
+    },
+    Known {
+        variable: SweepVariable::DropHeight,
+        names: &["height", "drop_height", "drop_height_m"],
+        range: (0.0, 1000.0),
+        above: true,
+        range_words: "lies above 0 and up to 1000 m: it is the height of the drop, in metres",
+        example: "height=1:9:0.5",
+    },
+];
+
+/// What the variable is called on the command line.
+pub fn name(variable: SweepVariable) -> &'static str {
+    KNOWN.iter().find(|known| known.variable == variable).map_or("", |known| known.names[0])
+}
+
+pub fn sweep(text: &str) -> Result<Sweep, String> {
+    let (known, values) = match text.split_once('=') {
+        Some((word, values)) if word.contains(':') || values.contains('=') => {
+            return Err("give --sweep once for each variable".into());
+        }
+        Some((word, values)) => (find(word)?, values),
+        None => (called(text).unwrap_or(&KNOWN[0]), text),
+    };
+    let parts: Vec<&str> = values.split(':').collect();
+    let [from, to, step] = parts[..] else {
+        let unit = if known.variable == SweepVariable::Angle { ", in degrees" } else { "" };
+        return Err(format!("give FROM:TO:STEP{unit}, such as --sweep {}", known.example));
+    };
+    let (from, to, step) = (number(from)?, number(to)?, number(step)?);
+    for (word, value) in [("FROM", from), ("TO", to)] {
+        let inside = (known.range.0..=known.range.1).contains(&value) && !(known.above && value <= 0.0);
+        if !inside {
+            return Err(format!("{word} is {value}: {} {}", known.names[0], known.range_words));
+        }
+    }
+    ascending(from, to)?;
+    if step <= 0.0 {
+        return Err(format!("STEP is {step}: it must be above 0"));
+    }
+    Ok(Sweep { variable: known.variable, values: values_of(from, to, step)? })
+}
+
+fn values_of(from: f64, to: f64, step: f64) -> Result<Vec<f64>, String> {
+    // A step that ends a rounding short of TO still includes it.
+    let count = ((to - from) / step + 1e-9).floor() + 1.0;
+    #[allow(clippy::cast_precision_loss, reason = "200 000 is exact")]
+    if count > MOST_PREDICTIONS as f64 {
+        return Err(format!("these are more than {MOST_PREDICTIONS} values: take a larger STEP"));
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 200 000")]
+    let count = count as u32;
+    Ok((0..count).map(|i| rounded(from + f64::from(i) * step).min(to)).collect())
+}
+
+/// Free of the last digits of a sum or a conversion.
+pub fn rounded(value: f64) -> f64 {
+    format!("{value:.DIGITS_AFTER_THE_FIRST$e}").parse().unwrap_or(value)
+}
+
+fn called(word: &str) -> Option<&'static Known> {
+    let word = word.trim().to_lowercase();
+    KNOWN.iter().find(|known| known.names.contains(&word.as_str()))
+}
+
+fn find(word: &str) -> Result<&'static Known, String> {
+    if let Some(known) = called(word) {
+        return Ok(known);
+    }
+    let near = KNOWN
+        .iter()
+        .flat_map(|known| known.names.iter().map(|name| (strsim::jaro_winkler(word, name), known.names[0])))
+        .filter(|(alike, _)| *alike >= ALIKE)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    let near = near.map_or_else(String::new, |(_, name)| format!("did you mean {name}? "));
+    let all: Vec<&str> = KNOWN.iter().map(|known| known.names[0]).collect();
+    Err(format!("no variable {word}: {near}known are {} (of the drop)", all.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(text: &str) -> Vec<f64> {
+        sweep(text).unwrap().values
+    }
+
+    #[test]
+    fn a_sweep_includes_both_ends_and_shows_round_values() {
+        let tenths = values("0:1:0.1");
+        assert_eq!(tenths.len(), 11);
+        assert_eq!((tenths[3].to_bits(), tenths[10].to_bits()), (0.3_f64.to_bits(), 1.0_f64.to_bits()));
+        assert_eq!(values("5:45:5").len(), 9);
+        assert_eq!(values("0:90:7").last(), Some(&84.0));
+        assert_eq!(values("30:30:1"), [30.0]);
+        assert_eq!(values("k=1e-9:5e-9:1e-9").len(), 5);
+    }
+
+    #[test]
+    fn a_rounding_never_leads_out_of_the_range() {
+        assert!(values("k=0:1:0.333333333334").iter().all(|k| *k <= 1.0));
+    }
+
+    #[test]
+    fn every_variable_has_its_name_and_a_german_one_its_comma() {
+        for (text, variable) in [
+            ("0:90:1", SweepVariable::Angle),
+            ("angle=0:90:1", SweepVariable::Angle),
+            ("K=0,1:0,9:0,1", SweepVariable::K),
+            ("friction=0:1:0.1", SweepVariable::Friction),
+            ("μ=0:1:0.1", SweepVariable::Friction),
+            ("length=4:6:0.5", SweepVariable::Length),
+            ("height=1:9:1", SweepVariable::DropHeight),
+        ] {
+            let swept = sweep(text).unwrap();
+            assert_eq!(swept.variable, variable, "{text}");
+            assert!(sweep(&format!("{}=0.5:0.6:0.1", name(variable))).is_ok(), "{text}");
+        }
+        assert_eq!(values("k=0,1:0,9:0,1").len(), 9);
+    }
+
+    #[test]
+    fn a_slip_is_told_with_its_remedy() {
+        for (text, words) in [
+            ("5:45", "FROM:TO:STEP, in degrees, such as --sweep 5:45:5"),
+            ("5", "FROM:TO:STEP, in degrees"),
+            ("length", "--sweep length=4:6:0.1"),
+            ("k=0:1", "such as --sweep k=0:1:0.1"),
+            ("height=9", "height=1:9:0.5"),
+            ("45:5:5", "exchange"),
+            ("5:45:0", "above 0"),
+            ("5:45:-5", "above 0"),
+            ("5:100:5", "TO is 100: angle lies between 0 (flat) and 90"),
+            ("-5:45:5", "FROM is -5: angle"),
+            ("k=0:1.2:0.1", "k lies between 0 and 1"),
+            ("friction=-1:1:0.1", "friction is 0 or more"),
+            ("length=0:6:1", "length lies above 0"),
+            ("length=4000:6000:100", "in metres"),
+            ("height=0:9:1", "height lies above 0"),
+            ("0:90:nan", "no finite number"),
+            ("0:inf:1", "no finite number"),
+            ("0:90:1e-9", "larger STEP"),
+            ("angel=0:90:1", "did you mean angle?"),
+            ("frict=0:1:1", "did you mean friction?"),
+            ("mass=1:2:1", "known are angle, k, friction, length, height (of the drop)"),
+            ("0:90:5,k=0:1:0.1", "once for each variable"),
+            ("k=0:1:0.1,angle=0:90:1", "once for each variable"),
+        ] {
+            let told = sweep(text).unwrap_err();
+            assert!(told.contains(words), "{text}: {told}");
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Words behind an option to a number, a range or a contact law, each slip to a sentence that says how to mend it.
+
+use dropcheck::data::Contact;
+
+/// Largest half-width of angle and geometry: beyond it a draw would soon be another cask, degrees and percent.
+const LARGEST_TOLERANCE: f64 = 20.0;
+
+/// A million draws take minutes and move no quantile that a person reads.
+const MOST_DRAWS: u32 = 1_000_000;
+
+/// A finite number, with a decimal point or a decimal comma: no list is written with commas here.
+pub fn number(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    if text.is_empty() {
+        return Err("a number is missing".into());
+    }
+    if text.matches(',').count() + usize::from(text.contains('.')) > 1 {
+        return Err(format!("{text} has more than one decimal mark: write one decimal point"));
+    }
+    let plain = text.replace(',', ".");
+    match plain.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err(format!("{text} is no finite number")),
+        Err(_) => Err(match without_unit(&plain) {
+            Some(number) => format!("write the number only, without its unit: {number}"),
+            None => format!("{text} is no number"),
+        }),
+    }
+}
+
+/// "15°" to "15".
+fn without_unit(text: &str) -> Option<&str> {
+    let number = text.trim_end_matches(|c: char| !c.is_ascii_digit() && c != '.').trim_end();
+    (number.len() < text.len() && number.parse::<f64>().is_ok()).then_some(number)
+}
+
+pub fn angle(text: &str) -> Result<f64, String> {
+    within(text, 0.0, 90.0, "the angle lies between 0 (flat) and 90 (upright) degrees")
+}
+
+pub fn restitution(text: &str) -> Result<f64, String> {
+    let range = "k lies between 0 (the first end does not rebound) and 1 (it rebounds at full speed)";
+    within(text, 0.0, 1.0, range)
+}
+
+fn within(text: &str, least: f64, most: f64, range: &str) -> Result<f64, String> {
+    let value = number(text).map_err(|why| format!("{why}; {range}"))?;
+    if (least..=most).contains(&value) { Ok(value) } else { Err(range.into()) }
+}
+
+pub fn contact(text: &str) -> Result<Contact, String> {
+    match text.trim().to_lowercase().as_str() {
+        "rough" => return Ok(Contact::Rough),
+        "smooth" => return Ok(Contact::Smooth),
+        _ => {}
+    }
+    let value =
+        number(text).map_err(|_| "give rough, smooth or a friction coefficient such as 0.4".to_owned())?;
+    friction(value).map(Contact::Coulomb)
+}
+
+fn friction(value: f64) -> Result<f64, String> {
+    if value >= 0.0 {
+        Ok(value)
+    } else {
+        Err("a friction coefficient is not negative: 0 is smooth, 0.4 is common for steel".into())
+    }
+}
+
+/// FROM:TO within 0 to 1.
+pub fn restitution_range(text: &str) -> Result<(f64, f64), String> {
+    range(text, "0.3:0.7", restitution)
+}
+
+/// FROM:TO of friction coefficients.
+pub fn friction_range(text: &str) -> Result<(f64, f64), String> {
+    range(text, "0.2:0.6", |end| friction(number(end)?))
+}
+
+fn range(text: &str, example: &str, end: impl Fn(&str) -> Result<f64, String>) -> Result<(f64, f64), String> {
+    let Some((from, to)) = text.split_once(':').filter(|(_, to)| !to.contains(':')) else {
+        return Err(format!("give FROM:TO, such as {example}"));
+    };
+    let (from, to) = (end(from)?, end(to)?);
+    ascending(from, to)?;
+    Ok((from, to))
+}
+
+/// Whether TO does not lie below FROM.
+pub fn ascending(from: f64, to: f64) -> Result<(), String> {
+    if to < from {
+        return Err(format!("TO ({to}) lies below FROM ({from}): exchange them"));
+    }
+    Ok(())
+}
+
+/// The width of a band, percent.
+pub fn band(text: &str) -> Result<f64, String> {
+    let percent = number(text)?;
+    if percent > 0.0 && percent <= 50.0 {
+        Ok(percent)
+    } else {
+        Err("the band is above 0 and at most 50 percent wide; 5 is usual".into())
+    }
+}
+
+/// The half-width of the angle, degrees.
+pub fn angle_tolerance(text: &str) -> Result<f64, String> {
+    within(text, 0.0, LARGEST_TOLERANCE, "the tolerance of the angle lies between 0 and 20 degrees")
+}
+
+/// The half-width of the geometry, percent.
+pub fn geometry_tolerance(text: &str) -> Result<f64, String> {
+    within(text, 0.0, LARGEST_TOLERANCE, "the tolerance of the geometry lies between 0 and 20 percent")
+}
+
+pub fn draws(text: &str) -> Result<u32, String> {
+    let whole = text.trim().parse::<u32>().ok().filter(|draws| *draws <= MOST_DRAWS);
+    whole.ok_or_else(|| {
+        "give a whole number from 0 (no draws) to 1000000, without separators, such as 10000".into()
+    })
+}
+
+pub fn seed(text: &str) -> Result<u64, String> {
+    text.trim().parse().map_err(|_| "give a whole number of 0 or more, such as 7".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_decimal_comma_is_a_decimal_point() {
+        assert_eq!(number("0,5"), Ok(0.5));
+        assert_eq!(number(" 12.5 "), Ok(12.5));
+        assert_eq!(contact("0,4"), Ok(Contact::Coulomb(0.4)));
+        assert_eq!(restitution_range("0,3:0,7"), Ok((0.3, 0.7)));
+        for text in ["1.000,5", "1,000,000", "0,5,"] {
+            assert!(number(text).unwrap_err().contains("one decimal point"), "{text}");
+        }
+    }
+
+    #[test]
+    fn the_limits_of_each_range_are_in_it() {
+        assert_eq!((angle("0"), angle("90")), (Ok(0.0), Ok(90.0)));
+        assert_eq!((restitution("0"), restitution("1")), (Ok(0.0), Ok(1.0)));
+        assert_eq!(contact("0"), Ok(Contact::Coulomb(0.0)));
+        assert_eq!(contact("Rough"), Ok(Contact::Rough));
+        assert_eq!((band("50"), draws("0"), draws("1000000")), (Ok(50.0), Ok(0), Ok(1_000_000)));
+        assert_eq!(friction_range("0:0"), Ok((0.0, 0.0)));
+        assert_eq!((angle_tolerance("0"), geometry_tolerance("20")), (Ok(0.0), Ok(20.0)));
+    }
+
+    #[test]
+    fn a_slip_is_told_with_its_remedy() {
+        for (told, part) in [
+            (angle("120"), "between 0 (flat) and 90"),
+            (angle("15°"), "without its unit: 15"),
+            (angle("15 deg"), "without its unit: 15"),
+            (angle("steep"), "steep is no number"),
+            (angle(""), "missing"),
+            (restitution("NaN"), "no finite number"),
+            (restitution("-0.1"), "between 0"),
+            (band("0"), "above 0"),
+            (band("5%"), "without its unit: 5"),
+            (geometry_tolerance("21"), "between 0 and 20 percent"),
+        ] {
+            assert!(told.as_ref().unwrap_err().contains(part), "{told:?} {part}");
+        }
+        assert!(contact("sticky").unwrap_err().contains("rough, smooth"));
+        assert!(contact("-0.1").unwrap_err().contains("not negative"));
+        assert!(restitution_range("0.5").unwrap_err().contains("FROM:TO"));
+        assert!(restitution_range("0.1:0.2:0.3").unwrap_err().contains("FROM:TO"));
+        assert!(friction_range("0.6:0.2").unwrap_err().contains("exchange"));
+        for text in ["1e4", "10,000", "-1", "1000001"] {
+            assert!(draws(text).unwrap_err().contains("whole number"), "{text}");
+        }
+    }
+}

@@ -1,0 +1,295 @@
+//! From what a person asks of `predict` to rows, files, limits and messages.
+
+use crate::command_line::{Bench, at_fault};
+use crate::run::{Answer, dropcheck, number};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+/// ANF-18 of the paper: 15°, 9 m, a section of 0.792 m.
+const ANF18: &str = "[cask]\nname = \"ANF-18\"\nmass_kg = 4466\nlength_m = 5.512\nheight_m = 0.792\n\
+                     [drop]\nheight_m = 9.0\nangle_deg = 15\n";
+
+/// Enough draws to have every file, few enough for a test.
+const FEW: &str = "--draws 20";
+
+/// `predict --cask CASK` with further words.
+fn predict(cask: &str, words: &str) -> Answer {
+    let bench = Bench::new();
+    let path = bench.put("cask.toml", cask);
+    let words = words.split_whitespace().map(std::ffi::OsStr::new);
+    dropcheck(["predict".as_ref(), "--cask".as_ref(), path.as_os_str()].into_iter().chain(words))
+}
+
+/// The rows of `--json -`.
+#[track_caller]
+fn rows(words: &str) -> Vec<Value> {
+    let answer = predict(ANF18, &format!("{words} {FEW} --json -"));
+    assert_eq!(answer.status, 0, "{words}: {}", answer.stderr);
+    answer.json()["predictions"].as_array().cloned().expect("predictions")
+}
+
+fn of(row: &Value, key: &str) -> f64 {
+    number(row, &format!("/{key}")).unwrap_or_else(|| panic!("no number {key} in {row}"))
+}
+
+fn bodies(rows: Vec<Value>, model: &str) -> Vec<Value> {
+    rows.into_iter().filter(|row| row["model"] == model).collect()
+}
+
+#[test]
+fn words_that_make_no_sense_are_told_what_would() {
+    let cases: [(&str, &[&str]); 34] = [
+        ("--k 2", &["--k", "between 0", "and 1"]),
+        ("--k -0.1", &["--k", "between 0"]),
+        ("--k nan", &["--k", "no finite number"]),
+        ("--k half", &["--k", "half is no number"]),
+        ("--angle 120", &["--angle", "between 0 (flat) and 90 (upright) degrees"]),
+        ("--angle -5", &["--angle", "between 0"]),
+        ("--angle inf", &["--angle", "no finite number"]),
+        ("--angle 15°", &["--angle", "number only, without its unit: 15"]),
+        ("--angle 1.000,5", &["--angle", "decimal point"]),
+        ("--contact -0.2", &["--contact", "not negative"]),
+        ("--contact glatt", &["--contact", "rough, smooth"]),
+        ("--contact nan", &["--contact"]),
+        ("--sweep 5:45", &["--sweep", "FROM:TO:STEP"]),
+        ("--sweep 0:90:0", &["STEP is 0", "above 0"]),
+        ("--sweep 90:0:1", &["TO (0) lies below FROM (90)", "exchange"]),
+        ("--sweep 0:120:1", &["TO is 120", "angle", "between 0 (flat) and 90"]),
+        ("--sweep k=0:2:0.1", &["TO is 2", "k lies between 0 and 1"]),
+        ("--sweep friction=-1:1:0.1", &["FROM is -1", "friction is 0 or more"]),
+        ("--sweep length=0:6:1", &["FROM is 0", "length lies above 0", "metres"]),
+        ("--sweep height=0:9:1", &["FROM is 0", "height lies above 0", "metres"]),
+        ("--sweep lenght=4:6:1", &["did you mean length?", "angle, k, friction, length, height"]),
+        ("--sweep mass=1:2:1", &["no variable mass", "angle, k, friction, length, height"]),
+        ("--sweep 0:9:1 --sweep angle=0:9:1", &["twice", "one --sweep for each variable"]),
+        ("--sweep 0:9:1 --angle 5", &["--angle and --sweep angle", "leave out"]),
+        ("--sweep k=0:1:1 --k 0", &["--k and --sweep k", "leave out"]),
+        ("--sweep friction=0:1:1 --contact rough", &["--contact and --sweep friction", "leave out"]),
+        ("--sweep length=0.5:6:0.5", &["section of the cask is 0.792 m", "height_m", "cask.toml"]),
+        ("--sweep 0:90:0.01 --sweep k=0:1:0.01", &["at most 200000", "larger STEP"]),
+        ("--band 0", &["--band", "above 0 and at most 50"]),
+        ("--band 51", &["--band", "at most 50"]),
+        ("--k-range 0.7:0.3", &["--k-range", "below FROM"]),
+        ("--friction-range 0.4", &["--friction-range", "FROM:TO"]),
+        ("--angle-tolerance 45", &["--angle-tolerance", "between 0 and 20 degrees"]),
+        ("--draws 2000000", &["--draws", "0 (no draws) to 1000000"]),
+    ];
+    for (words, parts) in cases {
+        at_fault(&predict(ANF18, words), parts);
+    }
+}
+
+#[test]
+fn a_cask_that_cannot_be_is_told_its_key() {
+    let cases: [(&str, &str, &[&str]); 12] = [
+        ("mass_kg = 4466", "mass_kg = -4466", &["line 3", "mass_kg is -4466", "above 0"]),
+        ("mass_kg = 4466", "mass_kg = nan", &["line 3", "mass_kg", "finite"]),
+        ("length_m = 5.512", "length_m = 0", &["line 4", "length_m is 0"]),
+        ("height_m = 0.792", "height_m = 7.92", &["line 5", "section is longer than the cask", "exchanged"]),
+        ("height_m = 0.792", "height_m = -0.8", &["line 5", "height_m is -0.8"]),
+        ("height_m = 0.792", "cog_m = 5.6", &["line 5", "outside the cask", "from the first end"]),
+        ("height_m = 0.792", "inertia_kg_m2 = -1", &["line 5", "inertia_kg_m2 is -1"]),
+        // About an end instead of the centre of gravity: m l²/3.
+        ("height_m = 0.792", "inertia_kg_m2 = 45229", &["line 5", "about the centre of gravity", "at most"]),
+        ("height_m = 9.0", "height_m = -9", &["line 7", "height_m is -9"]),
+        ("angle_deg = 15", "angle_deg = 120", &["line 8", "outside 0 to 90"]),
+        (
+            "angle_deg = 15",
+            "angle_deg = 15\n[contact]\nfriction = -0.4",
+            &["line 10", "coefficient of friction"],
+        ),
+        ("angle_deg = 15", "angle_deg = 15\ngravity_m_s2 = inf", &["line 9", "gravity_m_s2", "finite"]),
+    ];
+    for (right, wrong, parts) in cases {
+        assert!(ANF18.contains(right));
+        at_fault(&predict(&ANF18.replacen(right, wrong, 1), ""), parts);
+    }
+}
+
+#[test]
+fn limits_of_angle_restitution_and_friction_are_predicted() {
+    // Flat: both ends are at the target, R strikes at once; upright: nothing turns a thin rod.
+    for (words, strikes) in [("--angle 0", true), ("--angle 90", false)] {
+        for row in bodies(rows(words), "rod") {
+            assert_eq!(row["slap_down_speed_m_s"].is_number(), strikes, "{words}: {row}");
+        }
+    }
+    let speed = |words: &str| of(&bodies(rows(words), "rod")[0], "slap_down_speed_m_s");
+    // [P] Table 3, by an independent program to four digits.
+    assert!((speed("--k 1 --contact rough") - 25.0376).abs() < 5e-5);
+    assert!(speed("--k 0 --contact rough") < speed("--k 1 --contact rough"));
+    // μ = 0 is smooth, μ above what sticking needs (0.624 for the rod at 15°) is rough: the same numbers, bit for bit.
+    for (coefficient, law) in [("0", "smooth"), ("0.7", "rough")] {
+        let by = |contact: &str| speed(&format!("--k 0.5 --contact {contact}")).to_bits();
+        assert_eq!(by(coefficient), by(law), "{coefficient} {law}");
+    }
+}
+
+#[test]
+fn without_options_the_four_borderline_cases_of_rod_and_body() {
+    let rows = rows("");
+    let case = |r: &Value| format!("{} {} {}", r["model"], r["contact"], r["k"]).replace('"', "");
+    let found: BTreeSet<String> = rows.iter().map(case).collect();
+    let expected = ["rod", "body"].into_iter().flat_map(|model| {
+        ["rough", "smooth"].into_iter().flat_map(move |c| ["0.0", "1.0"].map(|k| format!("{model} {c} {k}")))
+    });
+    assert_eq!(rows.len(), 8);
+    assert_eq!(found, expected.collect());
+    let keys = [
+        "slap_down_speed_m_s",
+        "vertical_velocity_m_s",
+        "horizontal_velocity_m_s",
+        "angular_velocity_rad_s",
+        "flight_time_s",
+        "energy_ratio",
+        "angle_deg",
+        "length_m",
+        "drop_height_m",
+        "friction_to_stick",
+    ];
+    for row in &rows {
+        for key in keys {
+            assert!(row[key].is_number(), "{key} in {row}");
+        }
+    }
+}
+
+#[test]
+fn each_variable_is_swept() {
+    let sorted = |rows: &[Value], key: &str| -> Vec<f64> { rows.iter().map(|row| of(row, key)).collect() };
+    for (words, key, values) in [
+        ("--sweep 10:20:5", "angle_deg", [10.0, 15.0, 20.0]),
+        ("--sweep angle=10:20:5", "angle_deg", [10.0, 15.0, 20.0]),
+        ("--sweep k=0,2:0,6:0,2", "k", [0.2, 0.4, 0.6]),
+        ("--sweep length=4:6:1", "length_m", [4.0, 5.0, 6.0]),
+        ("--sweep height=1:9:4", "drop_height_m", [1.0, 5.0, 9.0]),
+    ] {
+        let fixed = if key == "k" { "--contact rough" } else { "--contact rough --k 0.5" };
+        let rows = bodies(rows(&format!("{words} {fixed}")), "body");
+        assert_eq!(sorted(&rows, key), values, "{words}");
+        let speeds = sorted(&rows, "slap_down_speed_m_s");
+        assert!(speeds[0] != speeds[1] && speeds[1] != speeds[2], "{words} changes nothing: {speeds:?}");
+    }
+    // Section of ANF-18, 15°, k = 0.5, by an independent program to four digits.
+    let rows = bodies(rows("--sweep friction=0:0.9:0.3 --k 0.5"), "body");
+    let contacts: Vec<&str> = rows.iter().filter_map(|row| row["contact"].as_str()).collect();
+    assert_eq!(contacts, ["0", "0.3", "0.6", "0.9"]);
+    for (row, expected) in rows.iter().zip([23.67, 22.31]) {
+        assert!((of(row, "slap_down_speed_m_s") - expected).abs() < 5e-3, "{row}");
+    }
+    assert!((of(&rows[3], "slap_down_speed_m_s") - 20.18).abs() < 5e-3, "0.9 sticks: {}", rows[3]);
+}
+
+#[test]
+fn a_height_swept_overrides_an_impact_velocity_of_the_cask_file() {
+    let cask = ANF18.replace("angle_deg = 15", "angle_deg = 15\nimpact_velocity_m_s = 13.3");
+    let answer = predict(&cask, &format!("--sweep height=1:9:8 --k 0.5 {FEW} --json -"));
+    let rows = answer.json()["predictions"].as_array().cloned().expect("predictions");
+    let rows = bodies(rows, "rod");
+    let ratio = of(&rows[1], "angular_velocity_rad_s") / of(&rows[0], "angular_velocity_rad_s");
+    // ω goes with v0 = √(2 g h): √9 between 1 and 9 m, but for rounding.
+    assert!((ratio - 3.0).abs() < 1e-12, "{ratio}");
+}
+
+#[test]
+fn several_sweeps_make_every_combination_once() {
+    let rows = rows("--sweep 10:40:10 --sweep k=0:1:0.5 --sweep height=3:9:3 --contact smooth");
+    let point = |r: &Value| format!("{} {} {} {}", r["model"], r["angle_deg"], r["k"], r["drop_height_m"]);
+    let points: BTreeSet<String> = rows.iter().map(point).collect();
+    assert_eq!((rows.len(), points.len()), (4 * 3 * 3 * 2, 4 * 3 * 3 * 2));
+}
+
+#[test]
+fn a_point_is_a_sweep_of_one() {
+    assert_eq!(rows("--sweep 15:15:1 --k 0.5"), rows("--angle 15 --k 0.5"));
+}
+
+#[test]
+fn every_file_is_written_and_standard_output_stays_clean() {
+    let bench = Bench::new();
+    let out = bench.0.path().join("prediction");
+    let words = format!("--sweep 0:90:5 {FEW} --json - --out {}", out.display());
+    let answer = predict(ANF18, &words);
+    assert_eq!((answer.status, answer.stderr.as_str()), (0, ""));
+    let document = answer.json();
+    assert_eq!(document["schema"], "dropcheck.prediction/1");
+    let files = names_in(&out);
+    for name in ["prediction.html", "prediction.json", "prediction.csv"] {
+        assert!(files.contains(name), "{files:?}");
+    }
+    assert!(files.iter().any(|name| is_picture(name)), "{files:?}");
+    for name in &files {
+        let text = fs::read_to_string(out.join(name)).expect("a text file");
+        assert!(!text.is_empty(), "{name} is empty");
+        assert!(!text.contains("NaN") && !text.contains(">inf"), "{name} holds what is no number");
+        if is_picture(name) {
+            assert!(text.trim_end().ends_with("</svg>"), "{name} is no whole picture");
+        }
+    }
+    let page = fs::read_to_string(out.join("prediction.html")).expect("a page");
+    for outside in ["src=\"http", "href=\"http", "url(http", "@import"] {
+        assert!(!page.contains(outside), "the page reaches for the network: {outside}");
+    }
+    let csv = fs::read_to_string(out.join("prediction.csv")).expect("a table");
+    let predictions = document["predictions"].as_array().map_or(0, Vec::len);
+    assert_eq!((csv.lines().count(), predictions), (1 + predictions, 19 * 8));
+
+    // A second run replaces the first; another program's file is left alone.
+    assert_eq!(predict(ANF18, &words).status, 0);
+    assert_eq!(names_in(&out), files);
+    fs::write(out.join("prediction.json"), "{}").expect("a file");
+    at_fault(&predict(ANF18, &words), &["was not written by dropcheck"]);
+}
+
+fn names_in(folder: &Path) -> BTreeSet<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
+}
+
+fn is_picture(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|ending| ending == "svg")
+}
+
+#[test]
+fn a_fine_grid_of_angle_and_restitution_finishes_with_its_charts() {
+    let bench = Bench::new();
+    let out = bench.0.path().join("grid");
+    let words = format!("--sweep 0:90:0.5 --sweep k=0:1:0.01 {FEW} --out {}", out.display());
+    let answer = predict(ANF18, &words);
+    assert_eq!(answer.status, 0, "{}", answer.stderr);
+    let csv = fs::read_to_string(out.join("prediction.csv")).expect("a table");
+    assert_eq!(csv.lines().count(), 1 + 181 * 101 * 2);
+    assert!(answer.stdout.lines().count() < 200, "a table of {} lines", answer.stdout.lines().count());
+}
+
+#[test]
+fn the_seed_alone_decides_what_is_drawn() {
+    let drawn = |words: &str| predict(ANF18, &format!("{words} --json -")).json()["monte_carlo"].clone();
+    let first = drawn("--draws 50 --seed 1");
+    assert!(first["quantiles"][0]["largest"][2].is_number(), "{first}");
+    assert!(first == drawn("--draws 50 --seed 1"), "the same seed gives other draws");
+    assert!(first["quantiles"] != drawn("--draws 50 --seed 2")["quantiles"], "the seed changes nothing");
+}
+
+#[test]
+fn no_draws_are_no_monte_carlo() {
+    let answer = predict(ANF18, "--draws 0");
+    assert_eq!((answer.status, answer.stderr.as_str()), (0, ""));
+    assert!(!answer.stdout.contains("NaN"), "{}", answer.stdout);
+}
+
+#[test]
+fn tables_and_help_fit_the_terminal() {
+    for words in ["", "--k 0.5 --contact 0.3", "--sweep 5:45:5", "--sweep k=0:1:0.25 --sweep 0:90:10"] {
+        let table = predict(ANF18, &format!("{words} {FEW}"));
+        let widest = table.stdout.lines().map(|line| line.chars().count()).max();
+        assert!(widest <= Some(80), "{words}: {}", table.stdout);
+    }
+    let help = dropcheck(["predict", "--help"]);
+    assert!(help.stdout.lines().all(|line| line.chars().count() <= 100), "{}", help.stdout);
+    for word in ["--band", "--k-range", "--draws", "length", "height", "Examples:"] {
+        assert!(help.stdout.contains(word), "--help does not name {word}");
+    }
+}
