@@ -225,6 +225,10 @@ mod tests {
         for angle_deg in [60.0, 70.0, 80.0] {
             assert!(predict(&anf18(), &drop(angle_deg), Contact::Rough, 0.0).slap_down_speed_m_s.is_some());
         }
+        for tenth in 400..600 {
+            let told = predict(&anf18(), &drop(f64::from(tenth) / 10.0), Contact::Rough, 0.0);
+            assert!(told.slap_down_speed_m_s.is_some() && told.first_end_impacts < 60, "{tenth}: {told:?}");
+        }
         assert!(predict(&anf18(), &drop(85.0), Contact::Rough, 0.0).slap_down_speed_m_s.is_none());
         let upright = |k| predict(&thin_rod(1000.0, 5.0), &drop(90.0), Contact::Coulomb(0.3), k);
         assert!([0.0, 0.3, 0.86, 1.0].iter().all(|k| upright(*k).slap_down_speed_m_s.is_none()));

@@ -62,7 +62,7 @@ impl Way<'_> {
             let second_s = second_end_touches(body, gravity_m_s2, &state);
             match self.strikes_again(&state, second_s) {
                 Some(time_s) if outcome.impacts < MOST_IMPACTS => {
-                    let at = state.after(time_s, gravity_m_s2);
+                    let at = state.after(time_s, gravity_m_s2).with_first_end_down(body);
                     state = strike_first_end(body, &at, self.support.contact, k).after;
                     elapsed_s += time_s;
                     outcome.impacts += 1;

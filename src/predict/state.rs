@@ -92,6 +92,11 @@ impl<T: Number> State<T> {
         }
     }
 
+    /// The same motion with L's corner on the target to the last digit: a nanometre below it would strike again at once.
+    pub fn with_first_end_down(&self, body: &Body) -> Self {
+        Self { height_m: arms_m(body, self.angle_rad, body.cog_m).1, ..*self }
+    }
+
     /// Kinetic energy, J: m (ẋ² + ż²)/2 + Θ ω²/2   (13)
     pub fn kinetic_energy_j(&self, body: &Body) -> T {
         let v2 = self.horizontal_velocity_m_s.powi(2) + self.vertical_velocity_m_s.powi(2);
