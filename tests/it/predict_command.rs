@@ -170,10 +170,9 @@ fn each_variable_is_swept() {
         let rows = bodies(rows(&format!("{words} {fixed}")), "body");
         assert_eq!(sorted(&rows, key), values, "{words}");
         let speeds = sorted(&rows, "slap_down_speed_m_s");
-        assert!(
-            speeds.windows(2).all(|pair| (pair[1] - pair[0]).abs() > 1e-6),
-            "{words} changes nothing: {speeds:?}"
-        );
+        // Rounding moves a speed by 1e-14 m/s, each of these steps by centimetres a second.
+        let moves = speeds.windows(2).all(|pair| (pair[1] - pair[0]).abs() > 1e-3);
+        assert!(moves, "{words} changes nothing: {speeds:?}");
     }
     // Section of ANF-18, 15°, k = 0.5, by an independent program to four digits.
     let rows = bodies(rows("--sweep friction=0:0.9:0.3 --k 0.5"), "body");

@@ -16,8 +16,8 @@ Which cases: without --k and --contact the four borderline cases, rough and smoo
 With --k alone the contact is the cask file's; with --contact alone k is 0 and 1. \
 A sweep of k or friction takes the place of the option: curves and critical angles are then of its two ends.
 
-Monte Carlo draws k and friction evenly from their ranges: those of the options, else those of the sweeps, \
-else what --k and --contact say and no other. A tolerance is a half-width that holds 95 of 100 drops.
+Monte Carlo draws k and friction evenly from their ranges; a --k or --contact alone is taken as known. \
+A tolerance is a half-width that holds 95 of 100 drops.
 
 Examples:
   dropcheck predict --cask cask.toml
@@ -52,22 +52,23 @@ pub struct Arguments {
     /// An angle is critical where the slap-down comes within this of its largest, percent
     #[arg(long, value_name = "PERCENT", help_heading = CRITICAL, default_value = "5", allow_hyphen_values = true, value_parser = words::band)]
     band: f64,
-    /// Range of k, such as 0.3:0.7
+    /// Range of k, such as 0.3:0.7 [default: --k or its sweep, else 0:1]
     #[arg(long, value_name = "FROM:TO", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::restitution_range)]
     k_range: Option<(f64, f64)>,
-    /// Range of the Coulomb coefficient, such as 0.2:0.6
+    /// Range of the Coulomb coefficient, such as 0.2:0.6 [default: --contact or its sweep, else the cask file's]
     #[arg(long, value_name = "FROM:TO", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::friction_range)]
     friction_range: Option<(f64, f64)>,
-    /// Tolerance of the angle, degrees
+    /// Tolerance of the angle, degrees [default: 1]
     #[arg(long, value_name = "DEG", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::angle_tolerance)]
     angle_tolerance: Option<f64>,
-    /// Tolerance of length, section and centre of gravity, percent (the last of the length)
+    /// Tolerance of length, section and centre of gravity, percent (the last of the length) [default: 0.5, and 1 for
+    /// the centre of gravity]
     #[arg(long, value_name = "PERCENT", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::geometry_tolerance)]
     geometry_tolerance: Option<f64>,
     /// Casks and drops that Monte Carlo draws; 0 for none
     #[arg(long, value_name = "N", help_heading = CRITICAL, default_value = "1000", allow_hyphen_values = true, value_parser = words::draws)]
     draws: u32,
-    /// Seed of the draws: the same seed gives the same draws everywhere
+    /// Seed of the draws: the same seed gives the same draws everywhere [default: 1]
     #[arg(long, value_name = "N", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::seed)]
     seed: Option<u64>,
     /// Folder for prediction.html, prediction.json, prediction.csv and the pictures

@@ -231,6 +231,8 @@ mod tests {
     #[test]
     fn monte_carlo_draws_from_ranges_sweeps_and_options_in_this_order() {
         let usual = predict::default_uncertain(&file());
+        let stated = (usual.k, usual.angle_deg, usual.size, usual.cog, usual.seed);
+        assert_eq!(stated, ((0.0, 1.0), 1.0, 0.005, 0.01, 1), "--help states other defaults");
         for (options, k, friction) in [
             ("", usual.k, Some((0.3, 0.3))),
             ("--k 0.5", (0.5, 0.5), Some((0.3, 0.3))),

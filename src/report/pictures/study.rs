@@ -1,6 +1,7 @@
 //! A study to its charts, and a request to their names.
 
 use super::super::ReportError;
+use super::super::rounding::plain;
 use super::look::MOST_CONTACTS;
 use super::{Picture, angle_curves, critical, monte_carlo, regimes, sensitivity, sweep};
 use crate::data::{Contact, Request, Study};
@@ -39,7 +40,9 @@ fn charts(request: &Request) -> Vec<(String, Chart)> {
         ("sensitivity", Chart::Sensitivity),
         ("regimes", Chart::Regimes),
     ] {
-        charts.push((name.to_owned(), chart));
+        if request.uncertain.draws > 0 || name != "monte-carlo" {
+            charts.push((name.to_owned(), chart));
+        }
     }
     if !request.sweeps.is_empty() {
         charts.push(("sweep".to_owned(), Chart::Sweep));
@@ -50,7 +53,11 @@ fn charts(request: &Request) -> Vec<(String, Chart)> {
 /// "components-rough", "components-smooth" or "components-friction-0.3".
 fn components_name(contact: Contact) -> String {
     match contact {
-        Contact::Coulomb(coefficient) => format!("components-friction-{coefficient}"),
+        Contact::Coulomb(coefficient) if coefficient == 0.0 || (1e-4..1e4).contains(&coefficient) => {
+            format!("components-friction-{}", plain(coefficient, 4))
+        }
+        // The decimals of an extreme coefficient are longer than a file name may be.
+        Contact::Coulomb(coefficient) => format!("components-friction-{coefficient:.3e}"),
         contact => format!("components-{contact}"),
     }
 }

@@ -14,9 +14,13 @@ use maud::{Markup, html};
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 const STYLE: &str = include_str!("../prediction.css");
 
+/// A longer table of predictions stands at the end of the page, not between the reader and what was found.
+const MOST_ROWS_AHEAD: usize = 40;
+
 /// The page; every word that comes from a file is escaped.
 pub(super) fn page(study: &Study, pictures: &[Picture]) -> String {
     let name = printable(&study.cask_file.cask.name);
+    let long = study.rows.len() > MOST_ROWS_AHEAD;
     let content = html! {
         header {
             div class="product" { "Prediction report · dropcheck " (VERSION) }
@@ -26,7 +30,8 @@ pub(super) fn page(study: &Study, pictures: &[Picture]) -> String {
         }
         (tested(&study.cask_file, "What was asked"))
         (tables::asked(study))
-        (tables::predictions(study))
+        h2 { "Predictions" }
+        @if long { p { "The " (study.rows.len()) " predictions stand at the end of this page." } } @else { (tables::predictions(study)) }
         (picture(pictures, "sweep"))
         (tables::ladders(study))
         h2 { "Critical angles" }
@@ -42,6 +47,7 @@ pub(super) fn page(study: &Study, pictures: &[Picture]) -> String {
         h2 { "Regimes" }
         (picture(pictures, "regimes"))
         (limits())
+        @if long { h2 { "All predictions" } (tables::predictions(study)) }
         (tables::provenance(study))
         footer {
             "The drop angle is the inclination of the cask's axis above the horizontal at first contact. The first end is the low one, the \
@@ -168,6 +174,7 @@ mod tests {
         assert!(study.rows.len() > tables::MOST_ROWS);
         assert!(page.contains(&format!("{} more", study.rows.len() - tables::MOST_ROWS)));
         assert!(page.contains("prediction.csv"));
+        assert!(page.find("All predictions") > page.find("Sensitivity"));
     }
 
     #[test]

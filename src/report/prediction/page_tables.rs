@@ -55,7 +55,6 @@ pub(super) fn predictions(study: &Study) -> Markup {
     let (lengths, heights) = (varies(|r| r.length_m), varies(|r| r.drop_height_m));
     let held = any(|row| row.prediction.closed_form_speed_m_s.is_some());
     html! {
-        h2 { "Predictions" }
         table class="many" {
             caption { "Velocity of the second end just before it strikes. Energy: kinetic, before the slap-down over before the first impact."
                 @if held { " Closed form: [P] Table 2 for k = 0, the first end held on the target whatever the force." } }

@@ -135,7 +135,7 @@ pub(super) fn uncertain_words(u: &Uncertain, contact: Contact) -> Vec<(&'static 
     let share = |value: f64, of: &str| {
         format!("± {} % of {of}, 95 % of a normal distribution", plain(value * 100.0, 3))
     };
-    let friction = u.friction.map_or_else(|| format!("known: {}", contact_words(contact)), spread_words);
+    let friction = u.friction.map_or_else(|| format!("taken as {}", contact_words(contact)), spread_words);
     vec![
         ("coefficient of restitution k", spread_words(u.k)),
         ("friction coefficient μ", friction),
