@@ -246,10 +246,10 @@ mod tests {
             prop_assume!(before.corner(&body, 2.3).vertical_velocity_m_s < -0.1);
             let struck = strike_first_end(&body, &before, Contact::Rough, k);
             // Where stopping the sliding lifts the corner off, friction proportional to the normal force cannot stop it.
-            prop_assume!(struck.vertical_impulse_n_s > 1e-3 * body.mass_kg);
+            prop_assume!(struck.vertical_impulse_n_s > 0.1 * body.mass_kg);
             let rough = struck.after;
-            let much = strike_first_end(&body, &before, Contact::Coulomb(1e9), k).after;
-            // The sliding stops after 1e-9 of the impulse.
+            let much = strike_first_end(&body, &before, Contact::Coulomb(1e12), k).after;
+            // The sliding stops after 1e-12 of what it takes; that moves the work of the rest by 1e-9.
             prop_assert!((rough.vertical_velocity_m_s - much.vertical_velocity_m_s).abs() < 1e-6);
             prop_assert!((rough.angular_velocity_rad_s - much.angular_velocity_rad_s).abs() < 1e-6);
         }
