@@ -107,7 +107,7 @@ pub struct AngleCurve {
     pub horizontal_velocity_m_s: Vec<f64>,
     /// Kinetic energy before slap-down over that before the first impact.
     pub energy_ratio: Vec<f64>,
-    /// For k = 0 the speed by the closed form of [P] Table 2, m/s; NaN for k > 0.
+    /// For k = 0 the speed by the closed form of \[P\] Table 2, m/s; NaN for k > 0.
     pub closed_form_speed_m_s: Vec<f64>,
 }
 
@@ -241,7 +241,7 @@ pub struct Sensitivity {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Regime {
-    /// One flight until R strikes; for k = 0 contact kept all the way: [P] Tables 1 and 2 hold.
+    /// One flight until R strikes; for k = 0 contact kept all the way: \[P\] Tables 1 and 2 hold.
     ClosedForm,
     /// k = 0 and the contact would need a pull: L lifts off, Table 2's closed form for k = 0 does not hold.
     LiftOff,
@@ -284,7 +284,7 @@ pub struct Study {
     pub ladders: Vec<Ladder>,
     /// Over the angle: every body, contact law and k of the request.
     pub curves: Vec<AngleCurve>,
-    /// Over the angle, smooth and k = 1: the cask's length with a section of 0, 10, 500 and 600 mm and its own ([P] Fig. 9).
+    /// Over the angle, smooth and k = 1: the cask's length with a section of 0, 10, 500 and 600 mm and its own (\[P\] Fig. 9).
     pub sections: Vec<AngleCurve>,
     /// For every curve and criterion.
     pub critical: Vec<CriticalAngle>,

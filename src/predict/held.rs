@@ -1,4 +1,4 @@
-//! L held on the target whatever the force to the motion just before R strikes: the closed forms of [P] Table 2 for k = 0.
+//! L held on the target whatever the force to the motion just before R strikes: the closed forms of \[P\] Table 2 for k = 0.
 
 use super::state::{State, arms_m};
 use crate::data::Body;

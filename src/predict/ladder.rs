@@ -102,7 +102,7 @@ impl Case<'_> {
         Way { support: self.support(Hold::Pushes), graze_m: None }.follow(struck.after, self.k)
     }
 
-    /// L held on the target: [P] Table 2 for rough and smooth, step by step for the friction between them.
+    /// L held on the target: \[P\] Table 2 for rough and smooth, step by step for the friction between them.
     fn held(&self, after: &State<f64>) -> Outcome<f64> {
         let second_end = match self.contact {
             Contact::Coulomb(_) => match self.support(Hold::Pulls).rest(after) {
@@ -114,7 +114,7 @@ impl Case<'_> {
         Outcome { second_end, impacts: 1, regime: FlightRegime::Contact }
     }
 
-    /// [P] Table 2 for k = 0, rough or smooth   (11) (12)
+    /// \[P\] Table 2 for k = 0, rough or smooth   (11) (12)
     fn closed_form(&self, after: &State<f64>) -> Option<(State<f64>, f64)> {
         let slides = match self.contact {
             Contact::Rough => false,

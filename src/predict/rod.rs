@@ -1,10 +1,10 @@
-//! The thin uniform rod of [P]: Table 1 to the motion just after L's impact.
+//! The thin uniform rod of \[P\]: Table 1 to the motion just after L's impact.
 
 use super::impact::Struck;
 use super::state::{State, arms_m};
 use crate::data::{Body, Contact};
 
-/// [P] Table 1, with ż_S2 of the smooth impact put right: a rod that falls at v0 without rotation, rough or smooth   (7)
+/// \[P\] Table 1, with ż_S2 of the smooth impact put right: a rod that falls at v0 without rotation, rough or smooth   (7)
 ///
 /// `body` is a thin uniform rod; any friction counts as rough.
 pub(super) fn table_1(body: &Body, before: &State<f64>, contact: Contact, k: f64) -> Struck<f64> {

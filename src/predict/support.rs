@@ -22,7 +22,7 @@ pub(super) struct Support<'a> {
 /// When the target lets go of L.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Hold {
-    /// Never: it pulls as well as it pushes, as in [P] Table 2.
+    /// Never: it pulls as well as it pushes, as in \[P\] Table 2.
     Pulls,
     /// Where holding L as it moves, stuck or sliding, would need a pull   (10)
     Pushes,

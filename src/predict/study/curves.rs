@@ -3,7 +3,7 @@
 use super::Fall;
 use crate::data::{AngleCurve, Body, BodyModel, CaskFile, Contact, Prediction};
 
-/// Sections of [P] Fig. 9 beside the rod, m: 10 × 10 mm and 500 × 600 mm, either way up.
+/// Sections of \[P\] Fig. 9 beside the rod, m: 10 × 10 mm and 500 × 600 mm, either way up.
 const SECTIONS_M: [f64; 3] = [0.01, 0.5, 0.6];
 
 /// The curve of predictions made at `angles_deg`; what a prediction does not have is NaN.
@@ -25,7 +25,7 @@ pub(super) fn curve(fall: &Fall, angles_deg: &[f64], predictions: &[Prediction])
     }
 }
 
-/// Smooth and k = 1: uniform bodies of the cask's length as a rod and with the sections of [P] Fig. 9, then the cask's own body.
+/// Smooth and k = 1: uniform bodies of the cask's length as a rod and with the sections of \[P\] Fig. 9, then the cask's own body.
 pub(super) fn sections(cask_file: &CaskFile, angles_deg: &[f64]) -> Vec<AngleCurve> {
     let rod = super::super::body(&cask_file.cask, BodyModel::Rod);
     let uniform =
