@@ -13,6 +13,7 @@ mod motion;
 mod prediction;
 mod quantities;
 mod recording;
+mod scene;
 mod signal;
 mod study;
 
@@ -35,6 +36,7 @@ pub use motion::{AxialClosure, Motion, MotionState, Setup};
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, Quantities};
 pub use recording::{Recording, RecordingFormat};
+pub use scene::{BendingMode, Chain, CrushableEnd, Scene, SceneChannel, SimulatedMotion, Truth};
 pub use signal::{CoarseEvent, Signal};
 pub use study::{
     AngleCurve, Criterion, CriticalAngle, CriticalRange, MonteCarlo, PredictionRow, QuantileCurves, Regime,
