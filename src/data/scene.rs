@@ -142,6 +142,10 @@ pub struct SimulatedMotion {
     pub first_end_n: Vec<(f64, f64)>,
     /// Force on R's corner, N: tangential, normal.
     pub second_end_n: Vec<(f64, f64)>,
+    /// Velocity of each bending mode's coordinate, m/s: a list over the times for each mode, before its strength.
+    pub bending_m_s: Vec<Vec<f64>>,
+    /// Acceleration of each bending mode's coordinate, m/s², in the same way.
+    pub bending_m_s2: Vec<Vec<f64>>,
     /// What a perfect measurement would say.
     pub truth: Truth,
 }
