@@ -15,6 +15,7 @@ pub mod motion;
 pub mod numerics;
 pub mod predict;
 pub mod report;
+pub mod synth;
 
 use assemble::Draft;
 use data::{
