@@ -16,6 +16,7 @@ mod recording;
 mod scene;
 mod signal;
 mod study;
+mod synthetic;
 
 pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
@@ -42,3 +43,4 @@ pub use study::{
     AngleCurve, Criterion, CriticalAngle, CriticalRange, MonteCarlo, PredictionRow, QuantileCurves, Regime,
     RegimeMap, Request, Sensitivity, Study, Sweep, SweepVariable, Uncertain,
 };
+pub use synthetic::{SceneFile, SyntheticChannel, SyntheticRecording, WantedImpact};
