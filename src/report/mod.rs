@@ -15,6 +15,7 @@ mod prediction;
 mod rounding;
 #[cfg(test)]
 mod sample;
+mod synthetic;
 mod table;
 mod template;
 mod text;
@@ -25,6 +26,7 @@ pub use listing::table as listing_table;
 pub use prediction::{
     PredictionRow, csv as prediction_csv, json as prediction_json, table as prediction_table,
 };
+pub use synthetic::{SyntheticError, SyntheticFormat, synthetic_files, synthetic_names};
 pub use table::table;
 pub use template::cask_file as cask_file_template;
 pub use text::printable;
@@ -41,13 +43,13 @@ pub enum ReportError {
     #[error("the CSV table could not be written")]
     Csv(#[from] csv::Error),
     /// The MCAP writer failed.
-    #[error("curves.mcap could not be written")]
+    #[error("the MCAP file could not be written")]
     Mcap(#[from] mcap::McapError),
     /// The HDF5 library failed.
-    #[error("curves.h5 could not be written")]
+    #[error("the HDF5 file could not be written")]
     Hdf5(#[from] hdf5_metno::Error),
     /// The scratch file of the HDF5 library failed.
-    #[error("curves.h5 needs a scratch file in {folder}, and that failed")]
+    #[error("the HDF5 file needs a scratch file in {folder}, and that failed")]
     #[diagnostic(help("make room there, or set TMPDIR to a folder with room"))]
     Scratch {
         /// The folder for temporary files.

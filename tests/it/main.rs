@@ -7,4 +7,5 @@ mod golden;
 mod properties;
 mod reference;
 mod run;
+mod synth;
 mod tidy;
