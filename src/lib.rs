@@ -15,12 +15,15 @@ pub mod motion;
 pub mod numerics;
 pub mod predict;
 pub mod report;
+pub mod synth;
 
 use assemble::Draft;
 use data::{
-    Analysis, AxialClosure, Axis, CaskFile, Channel, Contact, Events, FlightFit, Issue, IssueCode, Motion,
-    Quantities, Recording, Setup, Severity, Signal,
+    Analysis, AxialClosure, Axis, Cask, CaskFile, Channel, Contact, Drop, Events, FlightFit, Issue,
+    IssueCode, Motion, Quantities, Recording, Scene, SceneFile, Setup, Severity, Signal, SyntheticRecording,
+    WantedImpact,
 };
+use std::path::Path;
 
 /// Separation and slap-down are found again on signals free of ringing this often; the second round moves them by less than a sample.
 const ROUNDS: usize = 3;
@@ -84,6 +87,25 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     }
     draft.draw(&signals, &smooth);
     draft.finish()
+}
+
+/// Reads and checks a scene file for [`synthesise`].
+///
+/// # Errors
+/// One diagnostic that shows the line.
+pub fn scene_file(path: &Path) -> Result<SceneFile, ingest::IngestError> {
+    let crush = |cask: &Cask, drop: &Drop, contact, end, wanted: WantedImpact| {
+        let WantedImpact { duration_s, restitution, yield_share } = wanted;
+        let pulse = synth::Pulse { duration_s, restitution, yield_share };
+        synth::crushable_end(cask, drop, contact, end, pulse)
+    };
+    Ok(ingest::scene_file::parse(path, &crush)?)
+}
+
+/// The recording of a scene by its sensors and recorder, and its truth. The same scene gives the same bits.
+#[must_use]
+pub fn synthesise(scene: &Scene) -> SyntheticRecording {
+    synth::record(scene, &synth::simulate(scene))
 }
 
 /// A velocity change of L below a tenth of the fall's is no first impact.

@@ -8,6 +8,7 @@ mod inspect;
 mod output;
 mod predict;
 mod progress;
+mod synth;
 
 pub use complaint::complain;
 
@@ -21,6 +22,7 @@ Examples:
   dropcheck init drop.mcap > cask.toml
   dropcheck analyze drop.mcap --cask cask.toml --out report
   dropcheck predict --cask cask.toml --sweep 5:45:5
+  dropcheck synth scene.toml --out drop.mcap
 
 Exit status: 0 done, nothing speaks against the result; 1 done, a person should
 look at the data's quality or the comparison; 2 not done, one message says why.";
@@ -45,6 +47,8 @@ pub enum Command {
     Inspect(inspect::Arguments),
     /// Write a commented cask file to fill in, from what a recording holds
     Init(init::Arguments),
+    /// Make a synthetic recording of a scene, with its cask file and its truth
+    Synth(synth::Arguments),
 }
 
 /// How a command that ran to its end ended.
@@ -85,6 +89,7 @@ pub fn run(command: &Command) -> miette::Result<Outcome> {
         Command::Predict(arguments) => predict::run(arguments),
         Command::Inspect(arguments) => inspect::run(arguments),
         Command::Init(arguments) => init::run(arguments),
+        Command::Synth(arguments) => synth::run(arguments),
     }
 }
 

@@ -13,8 +13,10 @@ mod motion;
 mod prediction;
 mod quantities;
 mod recording;
+mod scene;
 mod signal;
 mod study;
+mod synthetic;
 
 pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
@@ -35,8 +37,10 @@ pub use motion::{AxialClosure, Motion, MotionState, Setup};
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, Quantities};
 pub use recording::{Recording, RecordingFormat};
+pub use scene::{BendingMode, Chain, CrushableEnd, Scene, SceneChannel, SimulatedMotion, Truth};
 pub use signal::{CoarseEvent, Signal};
 pub use study::{
     AngleCurve, Criterion, CriticalAngle, CriticalRange, MonteCarlo, PredictionRow, QuantileCurves, Regime,
     RegimeMap, Request, Sensitivity, Study, Sweep, SweepVariable, Uncertain,
 };
+pub use synthetic::{SceneFile, SyntheticChannel, SyntheticRecording, WantedImpact};

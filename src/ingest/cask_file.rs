@@ -1,12 +1,12 @@
 //! A cask file (TOML) to a checked [`CaskFile`], or to one diagnostic that shows the line.
 
-mod channel;
-mod section;
+pub(super) mod channel;
+pub(super) mod section;
 mod wording;
 
 use crate::data::{Cask, CaskFile, Contact, Drop, FilterChoice};
 use miette::{Diagnostic, NamedSource, SourceSpan};
-use section::{Document, Placed, Section};
+use section::{CASK_FILE, Document, Kind, Placed, Section};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::io::Read;
@@ -16,11 +16,13 @@ use std::path::Path;
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum CaskFileError {
     /// The operating system refused.
-    #[error("{path}: the cask file cannot be read: {}", super::error::bare(.refusal))]
-    #[diagnostic(help("check the name after --cask, and that you may read it"))]
+    #[error("{path}: {kind} cannot be read: {}", super::error::bare(.refusal))]
+    #[diagnostic(help("check the name{}, and that you may read it", if *.kind == CASK_FILE.name { " after --cask" } else { "" }))]
     Io {
         /// The file.
         path: String,
+        /// "the cask file", or what else was expected.
+        kind: &'static str,
         /// Its reason.
         refusal: std::io::Error,
     },
@@ -75,12 +77,12 @@ const DEFAULT_GRAVITY_M_S2: f64 = 9.81;
 /// # Errors
 /// [`CaskFileError`], one message that shows the line.
 pub fn parse(path: &Path) -> Result<CaskFile, CaskFileError> {
-    let bytes = read(path)?;
+    let bytes = read(path, &CASK_FILE)?;
     let sha256 = Sha256::digest(&bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
         let _ = write!(hex, "{byte:02x}");
         hex
     });
-    let text = text(path, &bytes)?;
+    let text = text(path, &bytes, &CASK_FILE)?;
     let mut cask_file = checked(path, text)?;
     cask_file.sha256 = sha256;
     Ok(cask_file)
@@ -114,11 +116,13 @@ fn no_cask_file(path: &Path, problem: &str, mend: &str) -> CaskFileError {
     }
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, CaskFileError> {
-    let io = |refusal| CaskFileError::Io { path: path.display().to_string(), refusal };
+/// The bytes of a file of this kind.
+pub(super) fn read(path: &Path, kind: &Kind) -> Result<Vec<u8>, CaskFileError> {
+    let io = |refusal| CaskFileError::Io { path: path.display().to_string(), kind: kind.name, refusal };
     let metadata = std::fs::metadata(path).map_err(io)?;
     if metadata.is_dir() {
-        return Err(no_cask_file(path, "this is a directory, not a cask file", "name the TOML file in it"));
+        let problem = format!("this is a directory, not {}", kind.name);
+        return Err(no_cask_file(path, &problem, "name the TOML file in it"));
     }
     // A pipe states no length: what it delivers is bounded, too.
     let mut bytes = Vec::new();
@@ -126,21 +130,27 @@ fn read(path: &Path) -> Result<Vec<u8>, CaskFileError> {
     if metadata.len() > LARGEST_BYTES || file.read_to_end(&mut bytes).map_err(io)? as u64 > LARGEST_BYTES {
         return Err(no_cask_file(
             path,
-            &format!("more than {} MiB are too many for a cask file", LARGEST_BYTES >> 20),
-            "perhaps the recording was given after --cask; the recording comes first, the TOML file after --cask",
+            &format!("more than {} MiB are too many for {}", LARGEST_BYTES >> 20, kind.name),
+            order(kind),
         ));
     }
     Ok(bytes)
 }
 
+/// Where the TOML file stands on the command line.
+fn order(kind: &Kind) -> &'static str {
+    if kind.name == CASK_FILE.name {
+        "the recording comes first, the TOML file after --cask"
+    } else {
+        "name the TOML file of the scene"
+    }
+}
+
 /// The text, without a byte-order mark.
-fn text<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, CaskFileError> {
+pub(super) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a str, CaskFileError> {
     if bytes.starts_with(b"\x89HDF") || bytes.starts_with(b"\x89MCAP") {
-        return Err(no_cask_file(
-            path,
-            "this is a recording, not a cask file",
-            "the recording comes first, the TOML file after --cask",
-        ));
+        let problem = format!("this is a recording, not {}", kind.name);
+        return Err(no_cask_file(path, &problem, order(kind)));
     }
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let text = std::str::from_utf8(bytes).map_err(|error| {
@@ -148,21 +158,22 @@ fn text<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, CaskFileError> {
         no_cask_file(
             path,
             &format!("line {line} is not UTF-8 text"),
-            "save the cask file as UTF-8 (in most editors: \"Save with encoding\"), or write the letter without its accent",
+            "save it as UTF-8 (in most editors: \"Save with encoding\"), or write the letter without its accent",
         )
     })?;
     if text.trim().is_empty() {
-        return Err(no_cask_file(
-            path,
-            "the cask file is empty",
-            "`dropcheck init RECORDING` writes one to fill in",
-        ));
+        let mend = if kind.name == CASK_FILE.name {
+            "`dropcheck init RECORDING` writes one to fill in"
+        } else {
+            "write [cask] with mass_kg and length_m, and [drop] with height_m and angle_deg"
+        };
+        return Err(no_cask_file(path, &format!("{} is empty", kind.name), mend));
     }
     Ok(text)
 }
 
 fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
-    let document = Document::new(path, text);
+    let document = Document::new(&CASK_FILE, path, text);
     let root = document.root()?;
     let mut defaults = Vec::new();
     let cask = cask(&root.required_table("cask")?, path, &mut defaults)?;
@@ -187,7 +198,8 @@ fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
     })
 }
 
-fn cask(table: &Section, path: &Path, defaults: &mut Vec<String>) -> Result<Cask, CaskFileError> {
+/// `[cask]`, with its defaults named in `defaults`.
+pub(super) fn cask(table: &Section, path: &Path, defaults: &mut Vec<String>) -> Result<Cask, CaskFileError> {
     let mass_kg = table.required_positive("mass_kg", "4466.0")?;
     let length_m = table.required_positive("length_m", "5.512")?;
     let height = table.not_negative("height_m")?;
@@ -278,7 +290,8 @@ fn inertia_is_possible(
     ))
 }
 
-fn drop(table: &Section, defaults: &mut Vec<String>) -> Result<Drop, CaskFileError> {
+/// `[drop]`, with its defaults named in `defaults`.
+pub(super) fn drop(table: &Section, defaults: &mut Vec<String>) -> Result<Drop, CaskFileError> {
     let gravity = table.positive("gravity_m_s2")?;
     if gravity.is_none() {
         defaults.push("drop.gravity_m_s2".into());
@@ -309,7 +322,8 @@ fn drop(table: &Section, defaults: &mut Vec<String>) -> Result<Drop, CaskFileErr
     })
 }
 
-fn contact(table: Option<&Section>, defaults: &mut Vec<String>) -> Result<Contact, CaskFileError> {
+/// `[contact]`, with its defaults named in `defaults`.
+pub(super) fn contact(table: Option<&Section>, defaults: &mut Vec<String>) -> Result<Contact, CaskFileError> {
     const MEND: &str =
         "friction = \"rough\" (no sliding), \"smooth\" (no friction), or a coefficient such as 0.4";
     let value = table.and_then(|table| table.value("friction").map(|value| (table, value)));

@@ -7,6 +7,7 @@ mod detect;
 mod error;
 mod hdf5;
 mod mcap;
+pub mod scene_file;
 pub mod time_base;
 
 pub use error::IngestError;

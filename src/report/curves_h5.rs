@@ -4,22 +4,32 @@ use super::ReportError;
 use super::grid::{motion_columns, step_s};
 use crate::data::Analysis;
 use hdf5_metno::types::VarLenUnicode;
-use hdf5_metno::{Dataset, File, Group, Location};
+use hdf5_metno::{Dataset, File, Group, H5Type, Location};
 
 /// Level of gzip: beyond 4 float curves shrink no further, and writing slows.
 const GZIP_LEVEL: u8 = 4;
 
-/// The file as bytes. The library writes only to files, so a scratch file in the system's temporary folder carries them.
+/// The file as bytes.
 ///
 /// # Errors
 /// [`ReportError::Hdf5`] where the library fails, [`ReportError::Scratch`] where the temporary folder does.
 pub(super) fn bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
+    through_a_file(|file| write(file, analysis))
+}
+
+/// What `fill` writes, as bytes. The library writes only to files, so a scratch file in the system's temporary folder carries them.
+///
+/// # Errors
+/// [`ReportError::Hdf5`] where the library fails, [`ReportError::Scratch`] where the temporary folder does.
+pub(super) fn through_a_file(
+    fill: impl FnOnce(&File) -> Result<(), ReportError>,
+) -> Result<Vec<u8>, ReportError> {
     let scratch =
         |source| ReportError::Scratch { folder: std::env::temp_dir().display().to_string(), source };
     let folder = tempfile::Builder::new().prefix("dropcheck-").tempdir().map_err(scratch)?;
     let path = folder.path().join("curves.h5");
     let file = File::create(&path)?;
-    write(&file, analysis)?;
+    fill(&file)?;
     file.close()?;
     std::fs::read(&path).map_err(scratch)
 }
@@ -87,14 +97,16 @@ fn dataset(group: &Group, name: &str, values: &[f64], unit: &str, time_s: &[f64]
     Ok(())
 }
 
-fn filled(group: &Group, name: &str, values: &[f64]) -> Result<Dataset, ReportError> {
+/// A dataset of these values, compressed.
+pub(super) fn filled<T: H5Type>(group: &Group, name: &str, values: &[T]) -> Result<Dataset, ReportError> {
     let builder = group.new_dataset_builder();
     // A chunked dataset cannot be of length zero.
     let builder = if values.is_empty() { builder } else { builder.shuffle().deflate(GZIP_LEVEL) };
     Ok(builder.with_data(values).create(name)?)
 }
 
-fn text(place: &Location, name: &str, value: &str) -> Result<(), ReportError> {
+/// A text attribute.
+pub(super) fn text(place: &Location, name: &str, value: &str) -> Result<(), ReportError> {
     // Strings in HDF5 end at the first NUL.
     let value: VarLenUnicode = value.replace('\0', "").parse().unwrap_or_default();
     place.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&value)?;

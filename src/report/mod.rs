@@ -17,6 +17,7 @@ mod rounding;
 mod sample;
 #[cfg(test)]
 mod sample_study;
+mod synthetic;
 mod table;
 mod template;
 mod text;
@@ -28,6 +29,7 @@ pub use prediction::{
     csv as prediction_csv, json as prediction_json, study_file_names, study_files, study_json, study_table,
     table as prediction_table,
 };
+pub use synthetic::{SyntheticError, SyntheticFormat, synthetic_files, synthetic_names};
 pub use table::table;
 pub use template::cask_file as cask_file_template;
 pub use text::printable;
@@ -44,13 +46,13 @@ pub enum ReportError {
     #[error("the CSV table could not be written")]
     Csv(#[from] csv::Error),
     /// The MCAP writer failed.
-    #[error("curves.mcap could not be written")]
+    #[error("the MCAP file could not be written")]
     Mcap(#[from] mcap::McapError),
     /// The HDF5 library failed.
-    #[error("curves.h5 could not be written")]
+    #[error("the HDF5 file could not be written")]
     Hdf5(#[from] hdf5_metno::Error),
     /// The scratch file of the HDF5 library failed.
-    #[error("curves.h5 needs a scratch file in {folder}, and that failed")]
+    #[error("the HDF5 file needs a scratch file in {folder}, and that failed")]
     #[diagnostic(help("make room there, or set TMPDIR to a folder with room"))]
     Scratch {
         /// The folder for temporary files.

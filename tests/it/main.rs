@@ -8,4 +8,5 @@ mod predict_command;
 mod properties;
 mod reference;
 mod run;
+mod synth;
 mod tidy;

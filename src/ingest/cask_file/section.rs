@@ -8,6 +8,17 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+/// A kind of file: what a person calls it, and its tables with their keys.
+pub(in crate::ingest) struct Kind {
+    /// "the cask file".
+    pub name: &'static str,
+    /// Every table with its keys; "" is the file itself.
+    pub tables: &'static [(&'static str, &'static [&'static str])],
+}
+
+/// The cask file.
+pub(in crate::ingest) const CASK_FILE: Kind = Kind { name: "the cask file", tables: &KEYS };
+
 /// Every table of a cask file with its keys; "" is the file itself.
 const KEYS: [(&str, &[&str]); 8] = [
     ("", &["cask", "drop", "contact", "filter", "recording", "channel"]),
@@ -38,21 +49,25 @@ const KEYS: [(&str, &[&str]); 8] = [
     ("source", &["topic", "field"]),
 ];
 
-/// A cask file's text with its name.
-pub(super) struct Document<'a> {
+/// The tables of which a file may have any number.
+const LISTS: [&str; 2] = ["channel", "mode"];
+
+/// A file's text with its name and its kind.
+pub(in crate::ingest) struct Document<'a> {
+    kind: &'static Kind,
     path: &'a Path,
     text: &'a str,
 }
 
 /// A value with its place in the text.
 #[derive(Debug, Clone)]
-pub(super) struct Placed<T> {
+pub(in crate::ingest) struct Placed<T> {
     pub value: T,
     pub span: Range<usize>,
 }
 
 /// A table of the file whose keys are all known.
-pub(super) struct Section<'a> {
+pub(in crate::ingest) struct Section<'a> {
     document: &'a Document<'a>,
     name: &'static str,
     table: DeTable<'a>,
@@ -60,12 +75,12 @@ pub(super) struct Section<'a> {
 }
 
 impl<'a> Document<'a> {
-    pub(super) fn new(path: &'a Path, text: &'a str) -> Self {
-        Self { path, text }
+    pub(in crate::ingest) fn new(kind: &'static Kind, path: &'a Path, text: &'a str) -> Self {
+        Self { kind, path, text }
     }
 
     /// The file's top level.
-    pub(super) fn root(&'a self) -> Result<Section<'a>, CaskFileError> {
+    pub(in crate::ingest) fn root(&'a self) -> Result<Section<'a>, CaskFileError> {
         match DeTable::parse(self.text) {
             Ok(table) => self.section("", table.into_inner(), 0..0),
             Err(error) => Err(self.syntax(&error)),
@@ -134,30 +149,31 @@ impl<'a> Document<'a> {
 
 impl<'a> Section<'a> {
     fn keys(&self) -> &'static [&'static str] {
-        KEYS.iter().find(|(name, _)| *name == self.name).map_or(&[], |(_, keys)| keys)
+        let tables = self.document.kind.tables;
+        tables.iter().find(|(name, _)| *name == self.name).map_or(&[], |(_, keys)| keys)
     }
 
     /// The table as a person finds it in the file.
     fn title(&self) -> String {
         match self.name {
             "" => "the file".into(),
-            "channel" => "[[channel]]".into(),
+            name if LISTS.contains(&name) => format!("[[{name}]]"),
             "source" => "source = { … }".into(),
             name => format!("[{name}]"),
         }
     }
 
     /// Where the section stands.
-    pub(super) fn span(&self) -> Range<usize> {
+    pub(in crate::ingest) fn span(&self) -> Range<usize> {
         self.span.clone()
     }
 
-    pub(super) fn value(&self, key: &str) -> Option<&Spanned<DeValue<'a>>> {
+    pub(in crate::ingest) fn value(&self, key: &str) -> Option<&Spanned<DeValue<'a>>> {
         self.table.get(key)
     }
 
     /// A diagnostic at `span`.
-    pub(super) fn wrong(
+    pub(in crate::ingest) fn wrong(
         &self,
         span: Range<usize>,
         message: String,
@@ -168,11 +184,11 @@ impl<'a> Section<'a> {
     }
 
     /// The line number of a place.
-    pub(super) fn line(&self, at: usize) -> usize {
+    pub(in crate::ingest) fn line(&self, at: usize) -> usize {
         line_of(self.document.text.as_bytes(), at)
     }
 
-    pub(super) fn missing(&self, key: &str, mend: &str) -> CaskFileError {
+    pub(in crate::ingest) fn missing(&self, key: &str, mend: &str) -> CaskFileError {
         let message = format!("{} has no {key}", self.title());
         self.wrong(self.span(), message, format!("{key} is missing here"), mend)
     }
@@ -181,10 +197,11 @@ impl<'a> Section<'a> {
         let word: &str = key.get_ref();
         let what = if self.name.is_empty() { "table" } else { "key" };
         let known = self.keys();
-        let others: Vec<String> = KEYS
+        let tables = self.document.kind.tables;
+        let others: Vec<String> = tables
             .iter()
             .filter(|(name, keys)| *name != self.name && *name != "source" && keys.contains(&word))
-            .map(|(name, _)| if *name == "channel" { "[[channel]]".into() } else { format!("[{name}]") })
+            .map(|(name, _)| if LISTS.contains(name) { format!("[[{name}]]") } else { format!("[{name}]") })
             .collect();
         let all = known.join(", ");
         let mend = if others.is_empty() {
@@ -200,7 +217,7 @@ impl<'a> Section<'a> {
     }
 
     /// The table `key`, where there is one.
-    pub(super) fn table(&self, key: &'static str) -> Result<Option<Section<'a>>, CaskFileError> {
+    pub(in crate::ingest) fn table(&self, key: &'static str) -> Result<Option<Section<'a>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         match value.get_ref() {
             DeValue::Table(table) => self.document.section(key, table.clone(), value.span()).map(Some),
@@ -213,13 +230,14 @@ impl<'a> Section<'a> {
         }
     }
 
-    pub(super) fn required_table(&self, key: &'static str) -> Result<Section<'a>, CaskFileError> {
+    pub(in crate::ingest) fn required_table(&self, key: &'static str) -> Result<Section<'a>, CaskFileError> {
         self.table(key)?.ok_or_else(|| {
+            let Kind { name: file, tables } = self.document.kind;
             let keys =
-                KEYS.iter().find(|(name, _)| *name == key).map_or(String::new(), |(_, k)| k.join(", "));
+                tables.iter().find(|(name, _)| *name == key).map_or(String::new(), |(_, k)| k.join(", "));
             self.wrong(
                 self.span(),
-                format!("the cask file has no [{key}]"),
+                format!("{file} has no [{key}]"),
                 format!("[{key}] is missing"),
                 &format!("add a line [{key}] and below it its keys: {keys}"),
             )
@@ -227,7 +245,7 @@ impl<'a> Section<'a> {
     }
 
     /// The tables `[[key]]`.
-    pub(super) fn tables(&self, key: &'static str) -> Result<Vec<Section<'a>>, CaskFileError> {
+    pub(in crate::ingest) fn tables(&self, key: &'static str) -> Result<Vec<Section<'a>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(Vec::new()) };
         let wrong = |span| {
             self.wrong(
@@ -248,7 +266,7 @@ impl<'a> Section<'a> {
     }
 
     /// A finite number.
-    pub(super) fn number(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
+    pub(in crate::ingest) fn number(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         let number = match value.get_ref() {
             DeValue::Integer(integer) if integer.radix() == 10 => {
@@ -278,12 +296,16 @@ impl<'a> Section<'a> {
         Err(self.wrong(value.span(), message, "a number".into(), &mend))
     }
 
-    pub(super) fn required_number(&self, key: &str, example: &str) -> Result<Placed<f64>, CaskFileError> {
+    pub(in crate::ingest) fn required_number(
+        &self,
+        key: &str,
+        example: &str,
+    ) -> Result<Placed<f64>, CaskFileError> {
         self.number(key)?.ok_or_else(|| self.missing(key, &format!("add a line such as {key} = {example}")))
     }
 
     /// A number above 0.
-    pub(super) fn positive(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
+    pub(in crate::ingest) fn positive(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
         match self.number(key)? {
             Some(number) if number.value <= 0.0 => Err(self.wrong(
                 number.span,
@@ -295,7 +317,11 @@ impl<'a> Section<'a> {
         }
     }
 
-    pub(super) fn required_positive(&self, key: &str, example: &str) -> Result<f64, CaskFileError> {
+    pub(in crate::ingest) fn required_positive(
+        &self,
+        key: &str,
+        example: &str,
+    ) -> Result<f64, CaskFileError> {
         match self.positive(key)? {
             Some(number) => Ok(number.value),
             None => Err(self.missing(key, &format!("add a line such as {key} = {example}"))),
@@ -303,7 +329,7 @@ impl<'a> Section<'a> {
     }
 
     /// A number of 0 or above.
-    pub(super) fn not_negative(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
+    pub(in crate::ingest) fn not_negative(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
         match self.number(key)? {
             Some(number) if number.value < 0.0 => Err(self.wrong(
                 number.span,
@@ -316,7 +342,7 @@ impl<'a> Section<'a> {
     }
 
     /// A word or name, not empty.
-    pub(super) fn text(&self, key: &str) -> Result<Option<Placed<String>>, CaskFileError> {
+    pub(in crate::ingest) fn text(&self, key: &str) -> Result<Option<Placed<String>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         match value.get_ref() {
             DeValue::String(text) if !text.trim().is_empty() => {
@@ -337,12 +363,16 @@ impl<'a> Section<'a> {
         }
     }
 
-    pub(super) fn required_text(&self, key: &str, example: &str) -> Result<Placed<String>, CaskFileError> {
+    pub(in crate::ingest) fn required_text(
+        &self,
+        key: &str,
+        example: &str,
+    ) -> Result<Placed<String>, CaskFileError> {
         self.text(key)?.ok_or_else(|| self.missing(key, &format!("add a line such as {key} = \"{example}\"")))
     }
 
     /// One of a few words.
-    pub(super) fn word<T: Copy>(
+    pub(in crate::ingest) fn word<T: Copy>(
         &self,
         key: &str,
         words: &[(&str, T)],

@@ -48,14 +48,20 @@ pub(super) fn unit_mend(number: &str, unit: &str) -> String {
 
 /// ", in kg", from the key's ending.
 pub(super) fn unit_of(key: &str) -> &'static str {
-    const ENDINGS: [(&str, &str); 8] = [
+    const ENDINGS: [(&str, &str); 14] = [
         ("inertia_kg_m2", ", in kg m²"),
         ("_m_s2", ", in m/s²"),
         ("_m_s", ", in m/s"),
         ("_kg", ", in kg"),
+        ("_n_m", ", in N/m"),
         ("_m", ", in m"),
         ("_hz", ", in Hz"),
         ("_s", ", in s"),
+        ("_ms", ", in ms"),
+        ("_g", ", in g"),
+        ("_n", ", in N"),
+        ("_percent", ", in percent"),
+        ("_deg", ", in degrees"),
         ("sensitivity", ", in mV per g; a sensor mounted the other way round has polarity = -1"),
     ];
     ENDINGS.iter().find(|(ending, _)| key.ends_with(ending)).map_or("", |(_, unit)| unit)

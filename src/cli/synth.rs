@@ -1,0 +1,149 @@
+//! `synth`: a scene file to a synthetic recording, the cask file to analyse it with, and its truth.
+
+use super::Outcome;
+use super::output::{Folder, print};
+use clap::{Args, ValueEnum};
+use dropcheck::data::{SyntheticRecording, Truth};
+use dropcheck::report::{self, SyntheticFormat};
+use std::path::{Path, PathBuf};
+
+const AFTER_HELP: &str = "\
+Beside FILE come the cask file (.toml) and the truth (.truth.json). The same scene and seed give the same samples.
+The scene's keys: docs/formats.md; an example: fixtures/scene-anf18.toml.
+
+Examples:
+  dropcheck synth scene.toml
+  dropcheck synth scene.toml --out drop.h5 --seed 7
+  dropcheck analyze drop.h5 --cask drop.toml";
+
+/// Behind the stem of the scene's name, so that its cask file is not taken for the scene.
+const SUFFIX: &str = "-synth.mcap";
+
+#[derive(Args)]
+#[command(after_help = AFTER_HELP)]
+pub struct Arguments {
+    /// The scene file (TOML)
+    scene: PathBuf,
+    /// The recording: .mcap, .h5, .hdf5 or .csv [default: the scene's name with -synth.mcap, beside it]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Seed of everything random [default: the scene's]
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Encoding of the blocks in MCAP [default: json]
+    #[arg(long)]
+    encoding: Option<Encoding>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Encoding {
+    Json,
+    Protobuf,
+}
+
+/// Why FILE cannot be written as asked.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+enum Unwritable {
+    #[error("{path}: its ending names no format that synth writes")]
+    #[diagnostic(help("end the name of --out in .mcap, .h5, .hdf5 or .csv"))]
+    Ending { path: String },
+    #[error("--encoding is for MCAP, and {path} is none")]
+    #[diagnostic(help("leave --encoding out, or end the name of --out in .mcap"))]
+    Encoding { path: String },
+}
+
+pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
+    let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.scene));
+    let format = format(&out, arguments.encoding)?;
+    let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let names = report::synthetic_names(&name);
+    let place = match out.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let folder = Folder::checked(place, &names.each_ref().map(String::as_str), &[&arguments.scene])?;
+
+    let mut scene_file = dropcheck::scene_file(&arguments.scene)?;
+    if let Some(seed) = arguments.seed {
+        scene_file.scene.seed = seed;
+    }
+    let recording = dropcheck::synthesise(&scene_file.scene);
+    folder.write(&report::synthetic_files(&scene_file, &recording, &name, format)?)?;
+
+    let files =
+        names.each_ref().map(|name| report::printable(&out.with_file_name(name).display().to_string()));
+    print(&format!("Written: {}\n{}", files.join(", "), summary(&recording)))?;
+    Ok(Outcome::Clear)
+}
+
+fn default_out(scene: &Path) -> PathBuf {
+    let mut name = scene.file_stem().unwrap_or_default().to_os_string();
+    name.push(SUFFIX);
+    scene.with_file_name(name)
+}
+
+fn format(out: &Path, encoding: Option<Encoding>) -> Result<SyntheticFormat, Unwritable> {
+    let path = out.display().to_string();
+    let ending = out.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let format = match (ending.as_str(), encoding) {
+        ("mcap", Some(Encoding::Protobuf)) => return Ok(SyntheticFormat::McapProtobuf),
+        ("mcap", _) => return Ok(SyntheticFormat::McapJson),
+        ("h5" | "hdf5", _) => SyntheticFormat::Hdf5,
+        ("csv", _) => SyntheticFormat::Csv,
+        _ => return Err(Unwritable::Ending { path }),
+    };
+    if encoding.is_some() { Err(Unwritable::Encoding { path }) } else { Ok(format) }
+}
+
+/// The truth in five lines.
+fn summary(recording: &SyntheticRecording) -> String {
+    let Truth { v0, angle_deg, k, rebound_velocity, contact_s, .. } = recording.truth;
+    let Truth { slap_t, speed, vx, vz, angle_hit_deg, flight_s, relands, .. } = recording.truth;
+    let in_ms = |time_s: Option<f64>| shown(time_s.map(|t| t * 1e3), 3);
+    let again = if relands > 0 { format!(", {relands} further impacts of L") } else { String::new() };
+    format!(
+        "  seed              {}\n\
+         \x20 first contact     {:.3} ms after the first sample, at {v0:.3} m/s and {angle_deg:.2}°\n\
+         \x20 first impact      k {}, rebound {} m/s, contact {} ms\n\
+         \x20 slap-down         {} m/s (horizontal {}, vertical {}) at {}°\n\
+         \x20 times             slap-down {} ms after first contact, flight {} ms{again}\n",
+        recording.seed,
+        recording.first_contact_s * 1e3,
+        shown(k, 4),
+        shown(rebound_velocity, 3),
+        in_ms(contact_s),
+        shown(speed, 3),
+        shown(vx, 3),
+        shown(vz, 3),
+        shown(angle_hit_deg, 2),
+        in_ms(slap_t),
+        in_ms(flight_s),
+    )
+}
+
+fn shown(value: Option<f64>, digits: usize) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ending_tells_the_format_and_mcap_alone_has_encodings() {
+        let of = |name: &str, encoding| format(Path::new(name), encoding);
+        assert!(matches!(of("a.MCAP", None), Ok(SyntheticFormat::McapJson)));
+        assert!(matches!(of("a.mcap", Some(Encoding::Protobuf)), Ok(SyntheticFormat::McapProtobuf)));
+        assert!(matches!(of("a.hdf5", None), Ok(SyntheticFormat::Hdf5)));
+        assert!(matches!(of("a.csv", Some(Encoding::Json)), Err(Unwritable::Encoding { .. })));
+        assert!(matches!(of("a.toml", None), Err(Unwritable::Ending { .. })));
+        assert!(matches!(of("", None), Err(Unwritable::Ending { .. })));
+    }
+
+    #[test]
+    fn the_default_is_beside_the_scene_and_its_cask_file_is_not_the_scene() {
+        let out = default_out(Path::new("scenes/drop.toml"));
+        assert_eq!(out, Path::new("scenes/drop-synth.mcap"));
+        assert_eq!(report::synthetic_names("drop-synth.mcap")[1], "drop-synth.toml");
+    }
+}

@@ -1,0 +1,192 @@
+//! A scene for `synth`: the cask, how it is dropped and struck, what rings in it, and the measuring chain.
+
+use super::cask::{Axis, Cask, Contact, Drop, End};
+
+/// A corner that crushes: bilinear force over depth, so that k < 1 comes out of the two stiffnesses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CrushableEnd {
+    /// Loading stiffness, N/m.
+    pub loading_n_m: f64,
+    /// Unloading stiffness, N/m; not below the loading stiffness.
+    pub unloading_n_m: f64,
+    /// Force at which the end yields, N: the force stays there while it is crushed on.
+    pub yield_n: Option<f64>,
+}
+
+/// A bending mode of the free uniform beam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BendingMode {
+    /// 1, 2 or 3: which shape.
+    pub order: u8,
+    /// Natural frequency, Hz.
+    pub frequency_hz: f64,
+    /// Share of critical damping.
+    pub damping: f64,
+    /// How strongly the contact force drives it; 1 is the uniform beam.
+    pub strength: f64,
+}
+
+/// What a sensor and its chain do to the specific force at its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chain {
+    /// Inclination of the sensitive axis towards the other body axis, rad.
+    pub tilt_rad: f64,
+    /// Share of the cross axis that is read as well.
+    pub cross_axis: f64,
+    /// Resonance of the mounted sensor: frequency, Hz, and share of critical damping.
+    pub resonance: Option<(f64, f64)>,
+    /// AC coupling: time constant, s.
+    pub ac_time_constant_s: Option<f64>,
+    /// Fourth-order Butterworth before the sampling: cut-off, Hz.
+    pub anti_alias_hz: Option<f64>,
+    /// True scale over stated scale.
+    pub scale: f64,
+    /// Constant offset, m/s².
+    pub offset_m_s2: f64,
+    /// Offset that grows over the first contact and stays, m/s².
+    pub zero_shift_m_s2: f64,
+    /// Standard deviation of the white noise, m/s².
+    pub white_noise_m_s2: f64,
+    /// Standard deviation of the 1/f noise from 1 Hz to half the sample rate, m/s².
+    pub pink_noise_m_s2: f64,
+    /// Mains hum: amplitude, m/s², and frequency, Hz.
+    pub hum: Option<(f64, f64)>,
+    /// Bursts of a shaken cable during each contact: amplitude, m/s².
+    pub cable_noise_m_s2: f64,
+    /// The converter cuts off beyond ± this, m/s².
+    pub full_scale_m_s2: Option<f64>,
+    /// Bits of the converter over ± full scale.
+    pub bits: Option<u8>,
+    /// Spans after the first sample in which the channel holds its last value, s.
+    pub dropouts_s: Vec<(f64, f64)>,
+    /// Spans after the first sample that the recorder lost, s.
+    pub gaps_s: Vec<(f64, f64)>,
+    /// How much later than the others this channel is stamped, s.
+    pub skew_s: f64,
+    /// Whether the polarity in the cask file is wrong.
+    pub swapped_polarity: bool,
+}
+
+/// A channel of the scene: where it sits, how it is written, and its chain.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneChannel {
+    /// Name.
+    pub name: String,
+    /// The end in the cask file; `swapped_ends` of the scene exchanges the recordings.
+    pub end: End,
+    /// Body axis.
+    pub axis: Axis,
+    /// True position along the axis from the first end, m.
+    pub position_m: f64,
+    /// True position across the axis, m.
+    pub offset_m: f64,
+    /// Unit in the recording, "g" or "m/s^2".
+    pub unit: String,
+    /// Samples a second.
+    pub sample_rate_hz: f64,
+    /// The chain.
+    pub chain: Chain,
+}
+
+/// A scene, checked, with its defaults filled in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Name, for the files and the cask file.
+    pub name: String,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// The cask.
+    pub cask: Cask,
+    /// The drop.
+    pub drop: Drop,
+    /// The contact of L.
+    pub contact: Contact,
+    /// L.
+    pub first_end: CrushableEnd,
+    /// R.
+    pub second_end: CrushableEnd,
+    /// Bending modes.
+    pub modes: Vec<BendingMode>,
+    /// Record before first contact, s.
+    pub before_s: f64,
+    /// Record after the slap-down, s.
+    pub after_s: f64,
+    /// Whether the record shows the cask hanging at rest before its release, where `before_s` reaches that far.
+    pub rest: bool,
+    /// The recorder's clock: true rate over stated rate, minus one.
+    pub clock_error: f64,
+    /// Whether the recordings of the ends are exchanged.
+    pub swapped_ends: bool,
+    /// The channels.
+    pub channels: Vec<SceneChannel>,
+}
+
+/// The simulated motion at the integrator's own times, 0 at first contact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulatedMotion {
+    /// Times, s, ascending.
+    pub time_s: Vec<f64>,
+    /// Position of S, m: x, z.
+    pub position_m: Vec<(f64, f64)>,
+    /// Inclination, rad.
+    pub angle_rad: Vec<f64>,
+    /// Velocity of S, m/s: ẋ, ż.
+    pub velocity_m_s: Vec<(f64, f64)>,
+    /// φ̇, rad/s.
+    pub turning_rad_s: Vec<f64>,
+    /// Acceleration of S, m/s²: ẍ, z̈.
+    pub acceleration_m_s2: Vec<(f64, f64)>,
+    /// φ̈, rad/s².
+    pub angular_acceleration_rad_s2: Vec<f64>,
+    /// Force on L's corner, N: tangential, normal.
+    pub first_end_n: Vec<(f64, f64)>,
+    /// Force on R's corner, N: tangential, normal.
+    pub second_end_n: Vec<(f64, f64)>,
+    /// Velocity of each bending mode's coordinate, m/s: a list over the times for each mode, before its strength.
+    pub bending_m_s: Vec<Vec<f64>>,
+    /// Acceleration of each bending mode's coordinate, m/s², in the same way.
+    pub bending_m_s2: Vec<Vec<f64>>,
+    /// What a perfect measurement would say.
+    pub truth: Truth,
+}
+
+/// What a perfect measurement would say. Times count from first contact.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Truth {
+    /// Speed at first contact, m/s.
+    pub v0: f64,
+    /// Inclination at first contact, degrees.
+    pub angle_deg: f64,
+    /// −ż_L after over ż_L before; `None` where L never leaves.
+    pub k: Option<f64>,
+    /// Vertical velocity of L as it leaves, m/s.
+    pub rebound_velocity: Option<f64>,
+    /// Length of the first contact, s.
+    pub contact_s: Option<f64>,
+    /// ω as L leaves, rad/s.
+    pub omega_rebound: Option<f64>,
+    /// Inclination as L leaves, degrees.
+    pub angle_sep_deg: Option<f64>,
+    /// Horizontal velocity of L's corner as it leaves, m/s.
+    pub vx_corner_after: Option<f64>,
+    /// Slap-down, s.
+    pub slap_t: Option<f64>,
+    /// From separation to slap-down, s.
+    pub flight_s: Option<f64>,
+    /// Horizontal and vertical velocity of R just before it strikes, m/s.
+    pub vx: Option<f64>,
+    /// See `vx`.
+    pub vz: Option<f64>,
+    /// Magnitude of R's velocity, m/s.
+    pub speed: Option<f64>,
+    /// ω just before slap-down, rad/s.
+    pub omega: Option<f64>,
+    /// Inclination at slap-down, degrees.
+    pub angle_hit_deg: Option<f64>,
+    /// Kinetic energy before slap-down over that before first impact.
+    pub energy_ratio: Option<f64>,
+    /// Times that L touched again before R struck.
+    pub relands: u32,
+    /// Whether L was on the target when R struck.
+    pub first_down_at_slap: bool,
+}

@@ -1,0 +1,52 @@
+//! What `synth` makes of a scene: the channels as their recorder wrote them, and the truth.
+
+use super::cask::CaskFile;
+use super::scene::{Scene, Truth};
+
+/// An end's impact, as a scene file may ask for it instead of stiffnesses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WantedImpact {
+    /// How long the contact lasts, s.
+    pub duration_s: f64,
+    /// k, above 0 and not above 1.
+    pub restitution: f64,
+    /// Yield force over the peak that the elastic end would have; `None`: no yield.
+    pub yield_share: Option<f64>,
+}
+
+/// A scene file, checked: the scene, and what the cask file beside the recording is to say of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneFile {
+    /// The scene as it is.
+    pub scene: Scene,
+    /// The scene as stated: its channels in the order of the scene's, their sources still to be named.
+    pub stated: CaskFile,
+}
+
+/// One channel as its recorder wrote it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SyntheticChannel {
+    /// Name.
+    pub name: String,
+    /// Unit of the samples, "g" or "m/s^2".
+    pub unit: String,
+    /// Stamp of the first sample, s from the earliest of all channels.
+    pub start_s: f64,
+    /// Samples a second, as the recorder believes.
+    pub sample_rate_hz: f64,
+    /// The samples; NaN where the recorder lost them.
+    pub samples: Vec<f32>,
+}
+
+/// A synthetic recording with its truth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SyntheticRecording {
+    /// The channels, in the scene's order.
+    pub channels: Vec<SyntheticChannel>,
+    /// First contact by the recorder's clock, s from the earliest sample, for a channel without skew.
+    pub first_contact_s: f64,
+    /// What a perfect measurement would say.
+    pub truth: Truth,
+    /// The seed that it was made with.
+    pub seed: u64,
+}

@@ -1,0 +1,94 @@
+//! A synthetic recording to the bytes of its three files: the recording, the cask file, the truth.
+
+mod cask;
+mod csv;
+mod hdf5;
+mod mcap;
+mod place;
+mod truth;
+
+use super::ReportError;
+use crate::data::{SceneFile, SyntheticRecording};
+
+/// How a synthetic recording is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SyntheticFormat {
+    /// MCAP with blocks in JSON.
+    McapJson,
+    /// MCAP with blocks in protobuf.
+    McapProtobuf,
+    /// HDF5, a dataset a channel.
+    Hdf5,
+    /// CSV, a column a channel.
+    Csv,
+}
+
+/// Why a synthetic recording could not be written.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum SyntheticError {
+    /// One table has one rate.
+    #[error("CSV holds channels of one sample rate, and this scene has {first_hz} and {other_hz} Hz")]
+    #[diagnostic(help("write .mcap or .h5, or give every [[channel]] the same sample_rate_hz"))]
+    OneRate {
+        /// The first channel's rate, Hz.
+        first_hz: f64,
+        /// Another channel's rate, Hz.
+        other_hz: f64,
+    },
+    /// A writer failed.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Writer(#[from] ReportError),
+}
+
+/// The files by name: `recording_name`, then the cask file and the truth beside it.
+///
+/// # Errors
+/// [`SyntheticError`] where the format cannot hold the channels or a writer fails.
+pub fn synthetic_files(
+    scene_file: &SceneFile,
+    recording: &SyntheticRecording,
+    recording_name: &str,
+    format: SyntheticFormat,
+) -> Result<Vec<(String, Vec<u8>)>, SyntheticError> {
+    let recording = &mounted(scene_file, recording);
+    let places = place::places(recording, format);
+    let bytes = match format {
+        SyntheticFormat::McapJson => mcap::bytes(recording, &places, mcap::Encoding::Json)?,
+        SyntheticFormat::McapProtobuf => mcap::bytes(recording, &places, mcap::Encoding::Protobuf)?,
+        SyntheticFormat::Hdf5 => hdf5::bytes(recording, &places)?,
+        SyntheticFormat::Csv => csv::bytes(recording, &places)?,
+    };
+    let [_, cask_name, truth_name] = synthetic_names(recording_name);
+    let cask_file = cask::text(&scene_file.stated, &places, recording_name).into_bytes();
+    let truth = truth::bytes(recording, recording_name)?;
+    Ok(vec![(recording_name.to_owned(), bytes), (cask_name, cask_file), (truth_name, truth)])
+}
+
+/// The recording as sensors write it that are mounted as the cask file states.
+fn mounted(scene_file: &SceneFile, recording: &SyntheticRecording) -> SyntheticRecording {
+    let mut mounted = recording.clone();
+    for (channel, stated) in mounted.channels.iter_mut().zip(&scene_file.stated.channels) {
+        if stated.polarity < 0.0 {
+            channel.samples.iter_mut().for_each(|x| *x = -*x);
+        }
+    }
+    mounted
+}
+
+/// The names of the files of a recording: its own, the cask file's, the truth's.
+#[must_use]
+pub fn synthetic_names(recording_name: &str) -> [String; 3] {
+    let stem = recording_name.rsplit_once('.').map_or(recording_name, |(stem, _)| stem);
+    [recording_name.to_owned(), format!("{stem}.toml"), format!("{stem}.truth.json")]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_three_files_share_a_stem() {
+        assert_eq!(synthetic_names("a.b.mcap"), ["a.b.mcap", "a.b.toml", "a.b.truth.json"]);
+    }
+}

@@ -1,0 +1,211 @@
+//! A synthetic recording to MCAP: blocks `dropcheck.AccelerationBlock` in JSON or protobuf, stamped, with their schema.
+
+use super::place::Place;
+use crate::data::{SyntheticChannel, SyntheticRecording};
+use crate::report::ReportError;
+use mcap::records::MessageHeader;
+use mcap::{Compression, WriteOptions};
+use prost_reflect::prost::Message as _;
+use prost_reflect::prost::encoding::{double, float, message, string};
+use prost_reflect::prost_types::field_descriptor_proto::{Label, Type};
+use prost_reflect::prost_types::{
+    DescriptorProto, FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet, Timestamp,
+};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::io::Cursor;
+
+/// The first sample of every synthetic recording: 9 October 2025, 08:53:20 UTC, so that the same scene gives the same bytes.
+const START_NS: i64 = 1_760_000_000_000_000_000;
+
+/// Length of a block, s: what a recorder hands on at a time.
+const BLOCK_S: f64 = 0.02;
+
+const TIMESTAMP: &str = "google/protobuf/timestamp.proto";
+
+const SCHEMA: &str = "dropcheck.AccelerationBlock";
+
+/// How the blocks are encoded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Json,
+    Protobuf,
+}
+
+/// The file as bytes.
+///
+/// # Errors
+/// [`ReportError::Mcap`] where the writer fails.
+pub(super) fn bytes(
+    recording: &SyntheticRecording,
+    places: &[Place],
+    encoding: Encoding,
+) -> Result<Vec<u8>, ReportError> {
+    let options = WriteOptions::new()
+        .compression(Some(Compression::Zstd))
+        .library(concat!("dropcheck ", env!("CARGO_PKG_VERSION")));
+    let mut writer = options.create(Cursor::new(Vec::new()))?;
+    let (schema, name) = match encoding {
+        Encoding::Json => (writer.add_schema(SCHEMA, "jsonschema", &json_schema()?)?, "json"),
+        Encoding::Protobuf => (writer.add_schema(SCHEMA, "protobuf", &descriptors())?, "protobuf"),
+    };
+    let mut messages = Vec::new();
+    for (channel, place) in recording.channels.iter().zip(places) {
+        let id = writer.add_channel(schema, &format!("/daq/{}", place.name), name, &BTreeMap::new())?;
+        messages.extend(blocks(channel).into_iter().map(|block| (block.end_ns(), id, block)));
+    }
+    messages.sort_by_key(|(log_ns, id, _)| (*log_ns, *id));
+    for (sequence, (log_ns, channel_id, block)) in messages.iter().enumerate() {
+        let header = MessageHeader {
+            channel_id: *channel_id,
+            sequence: u32::try_from(sequence).unwrap_or(u32::MAX),
+            log_time: u64::try_from(*log_ns).unwrap_or(0),
+            publish_time: u64::try_from(block.stamp_ns).unwrap_or(0),
+        };
+        let data = match encoding {
+            Encoding::Json => block.json()?,
+            Encoding::Protobuf => block.protobuf(),
+        };
+        writer.write_to_known_channel(&header, &data)?;
+    }
+    writer.finish()?;
+    Ok(writer.into_inner().into_inner())
+}
+
+/// Samples that follow one another.
+struct Block<'a> {
+    stamp_ns: i64,
+    sample_rate_hz: f64,
+    unit: &'a str,
+    samples: &'a [f32],
+}
+
+/// The channel in blocks; none reaches over a loss.
+fn blocks(channel: &SyntheticChannel) -> Vec<Block<'_>> {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast from float saturates")]
+    let longest = ((BLOCK_S * channel.sample_rate_hz) as usize).max(2);
+    let mut blocks = Vec::new();
+    let mut at = 0;
+    for run in channel.samples.split(|x| x.is_nan()) {
+        for (i, samples) in run.chunks(longest).enumerate() {
+            #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
+            let start_s = channel.start_s + (at + i * longest) as f64 / channel.sample_rate_hz;
+            blocks.push(Block {
+                stamp_ns: START_NS + nanoseconds(start_s),
+                sample_rate_hz: channel.sample_rate_hz,
+                unit: &channel.unit,
+                samples,
+            });
+        }
+        // The lost sample that ends the run counts too.
+        at += run.len() + 1;
+    }
+    blocks
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates")]
+fn nanoseconds(time_s: f64) -> i64 {
+    (time_s * 1e9).round() as i64
+}
+
+#[derive(Serialize)]
+struct JsonBlock<'a> {
+    timestamp: Stamp,
+    sample_rate_hz: f64,
+    unit: &'a str,
+    samples: &'a [f32],
+}
+
+#[derive(Serialize)]
+struct Stamp {
+    sec: i64,
+    nsec: i64,
+}
+
+impl Block<'_> {
+    /// When the block is whole.
+    fn end_ns(&self) -> i64 {
+        #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
+        let long_s = self.samples.len() as f64 / self.sample_rate_hz;
+        self.stamp_ns + nanoseconds(long_s)
+    }
+
+    fn stamp(&self) -> (i64, i64) {
+        (self.stamp_ns.div_euclid(1_000_000_000), self.stamp_ns.rem_euclid(1_000_000_000))
+    }
+
+    fn json(&self) -> Result<Vec<u8>, ReportError> {
+        let (sec, nsec) = self.stamp();
+        let block = JsonBlock {
+            timestamp: Stamp { sec, nsec },
+            sample_rate_hz: self.sample_rate_hz,
+            unit: self.unit,
+            samples: self.samples,
+        };
+        Ok(serde_json::to_vec(&block)?)
+    }
+
+    /// The block message on the wire, its fields numbered as in docs/formats.md.
+    fn protobuf(&self) -> Vec<u8> {
+        let (seconds, nanos) = self.stamp();
+        let stamp = Timestamp { seconds, nanos: i32::try_from(nanos).unwrap_or(0) };
+        let mut data = Vec::with_capacity(4 * self.samples.len() + 64);
+        message::encode(1, &stamp, &mut data);
+        double::encode(2, &self.sample_rate_hz, &mut data);
+        string::encode(3, &self.unit.to_owned(), &mut data);
+        float::encode_packed(4, self.samples, &mut data);
+        data
+    }
+}
+
+fn json_schema() -> Result<Vec<u8>, ReportError> {
+    Ok(serde_json::to_vec(&serde_json::json!({
+        "title": SCHEMA, "type": "object",
+        "properties": {
+            "timestamp": {
+                "type": "object", "title": "time",
+                "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}}
+            },
+            "sample_rate_hz": {"type": "number"},
+            "unit": {"type": "string"},
+            "samples": {"type": "array", "items": {"type": "number"}}
+        }
+    }))?)
+}
+
+/// The descriptor set of the block message, with the well-known Timestamp that it uses.
+fn descriptors() -> Vec<u8> {
+    let field = |name: &str, number, kind: Type, label: Label| FieldDescriptorProto {
+        name: Some(name.into()),
+        number: Some(number),
+        r#type: Some(kind.into()),
+        type_name: (kind == Type::Message).then(|| ".google.protobuf.Timestamp".into()),
+        label: Some(label.into()),
+        ..FieldDescriptorProto::default()
+    };
+    let file = |name: &str, package: &str, message: &str, field| FileDescriptorProto {
+        name: Some(name.into()),
+        package: Some(package.into()),
+        syntax: Some("proto3".into()),
+        message_type: vec![DescriptorProto {
+            name: Some(message.into()),
+            field,
+            ..DescriptorProto::default()
+        }],
+        ..FileDescriptorProto::default()
+    };
+    let timestamp = vec![
+        field("seconds", 1, Type::Int64, Label::Optional),
+        field("nanos", 2, Type::Int32, Label::Optional),
+    ];
+    let block = vec![
+        field("timestamp", 1, Type::Message, Label::Optional),
+        field("sample_rate_hz", 2, Type::Double, Label::Optional),
+        field("unit", 3, Type::String, Label::Optional),
+        field("samples", 4, Type::Float, Label::Repeated),
+    ];
+    let mut of_block = file("dropcheck/acceleration_block.proto", "dropcheck", "AccelerationBlock", block);
+    of_block.dependency = vec![TIMESTAMP.into()];
+    FileDescriptorSet { file: vec![file(TIMESTAMP, "google.protobuf", "Timestamp", timestamp), of_block] }
+        .encode_to_vec()
+}

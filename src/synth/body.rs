@@ -1,0 +1,183 @@
+//! State of the cask to its rates: a rigid body in the plane with two corners, and the bending modes that ride on it.
+
+use super::beam::{self, MOST_MODES};
+use super::contact::Corner;
+use crate::data::{Contact, Scene};
+use ode_solvers::SVector;
+
+/// x, z, φ, their rates, then q and q̇ of each bending mode; x along the target, z up, φ the inclination.
+pub(super) type State = SVector<f64, { 6 + 2 * MOST_MODES }>;
+
+/// Share of the loading's √(m/K) in which a corner that sticks loses a rest of sliding: short against any pulse.
+const HOLD_SHARE: f64 = 0.02;
+
+/// Friction of a rough corner: far above the 1 or so that sticking needs, yet nothing holds it where nothing presses.
+///
+/// Held without a bound, a corner that comes back would be thrown off by the hold itself, again and again.
+const ROUGH: f64 = 100.0;
+
+/// Greatest friction at R: there, both ends may be down, and two corners that stick would fight over one body.
+const SECOND_END_FRICTION: f64 = 0.5;
+
+/// Sliding speed over which the friction of R turns its sign, m/s: small against the metres a second of a slap-down.
+const REVERSAL_M_S: f64 = 0.2;
+
+/// A corner's place relative to S and its motion.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CornerMotion {
+    /// From S, along the target, m.
+    pub(super) x_m: f64,
+    /// From S, up, m.
+    pub(super) z_m: f64,
+    /// Above the target, m.
+    pub(super) height_m: f64,
+    /// Along the target, m/s.
+    pub(super) sliding_m_s: f64,
+    /// Up, m/s.
+    pub(super) rising_m_s: f64,
+}
+
+/// The forces on both corners, N: tangential, normal.
+pub(super) type Loads = [(f64, f64); 2];
+
+/// The cask of a scene, with the memory of its dents.
+#[derive(Debug, Clone)]
+pub(super) struct Body<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) corners: [Corner; 2],
+    friction: f64,
+    hold_s: f64,
+    /// Shape of each mode at either end, over the mass, 1/kg.
+    driven_per_kg: [[f64; 2]; MOST_MODES],
+}
+
+impl<'a> Body<'a> {
+    /// The body as L touches.
+    pub(super) fn new(scene: &'a Scene) -> Self {
+        let mass_kg = scene.cask.mass_kg;
+        let mut driven_per_kg = [[0.0; 2]; MOST_MODES];
+        for (driven, mode) in driven_per_kg.iter_mut().zip(&scene.modes) {
+            *driven = [0.0, 1.0].map(|end| beam::shape(mode.order, end) / mass_kg);
+        }
+        Self {
+            scene,
+            corners: [
+                Corner::new(scene.first_end, mass_kg, true),
+                Corner::new(scene.second_end, mass_kg, false),
+            ],
+            friction: match scene.contact {
+                Contact::Rough => ROUGH,
+                Contact::Smooth => 0.0,
+                Contact::Coulomb(coefficient) => coefficient,
+            },
+            hold_s: HOLD_SHARE * (mass_kg / scene.first_end.loading_n_m).sqrt(),
+            driven_per_kg,
+        }
+    }
+
+    /// The state at first contact: L at the target, all of the body at the impact velocity.
+    pub(super) fn at_first_contact(&self) -> State {
+        let mut y = State::zeros();
+        y[2] = self.scene.drop.angle_rad;
+        y[4] = -self.scene.drop.impact_velocity_m_s;
+        y[1] = -self.corner(0, &y).z_m;
+        y
+    }
+
+    /// Place and motion of L (0) or R (1).
+    pub(super) fn corner(&self, end: usize, y: &State) -> CornerMotion {
+        let cask = &self.scene.cask;
+        let xi_m = if end == 0 { -cask.cog_m } else { cask.length_m - cask.cog_m };
+        let eta_m = -cask.height_m / 2.0;
+        let (sin, cos) = y[2].sin_cos();
+        let (x_m, z_m) = (xi_m * cos - eta_m * sin, xi_m * sin + eta_m * cos);
+        CornerMotion {
+            x_m,
+            z_m,
+            height_m: y[1] + z_m,
+            sliding_m_s: y[3] - y[5] * z_m,
+            rising_m_s: y[4] + y[5] * x_m,
+        }
+    }
+
+    /// What must stay above zero for the phases of both corners to last.
+    pub(super) fn watches(&self, y: &State) -> [f64; 4] {
+        let [first, second] = [0, 1].map(|end| {
+            let at = self.corner(end, y);
+            self.corners[end].watches(at.height_m, at.rising_m_s)
+        });
+        [first[0], first[1], second[0], second[1]]
+    }
+
+    /// The forces on both corners, N.
+    pub(super) fn loads(&self, y: &State) -> Loads {
+        if !self.corners.iter().any(Corner::touches) {
+            return [(0.0, 0.0); 2];
+        }
+        let at = [0, 1].map(|end| self.corner(end, y));
+        let normal_n = [0, 1].map(|end| self.corners[end].normal_n(at[end].height_m, at[end].rising_m_s));
+        let reversal = (at[1].sliding_m_s / REVERSAL_M_S).tanh();
+        let second_n = -self.friction.min(SECOND_END_FRICTION) * normal_n[1] * reversal;
+        let mut loads = [(0.0, normal_n[0]), (second_n, normal_n[1])];
+        if self.corners[0].touches() && self.friction > 0.0 {
+            let hold_n = self.hold_n(y, &at[0], &self.accelerations(y, &loads));
+            // As far as Coulomb's bound lets it.
+            let bound_n = self.friction * normal_n[0];
+            loads[0].0 = hold_n.clamp(-bound_n, bound_n);
+        }
+        loads
+    }
+
+    /// The tangential force on L that stops its sliding within the hold time and keeps it stopped, N.
+    fn hold_n(&self, y: &State, at: &CornerMotion, free: &[f64; 3]) -> f64 {
+        let cask = &self.scene.cask;
+        // ẍ_C = ẍ_S − φ̈ z − φ̇² x without the force, and what one newton adds to it.
+        let without_m_s2 = free[0] - free[2] * at.z_m - y[5] * y[5] * at.x_m;
+        let per_newton = 1.0 / cask.mass_kg + at.z_m * at.z_m / cask.inertia_kg_m2;
+        (-at.sliding_m_s / self.hold_s - without_m_s2) / per_newton
+    }
+
+    /// ẍ and z̈ of S, m/s², and φ̈, rad/s².
+    pub(super) fn accelerations(&self, y: &State, loads: &Loads) -> [f64; 3] {
+        let (mut tangential_n, mut normal_n, mut moment_n_m) = (0.0, 0.0, 0.0);
+        for (end, &(t, n)) in loads.iter().enumerate().filter(|(_, load)| **load != (0.0, 0.0)) {
+            let at = self.corner(end, y);
+            tangential_n += t;
+            normal_n += n;
+            moment_n_m += at.x_m * n - at.z_m * t;
+        }
+        let cask = &self.scene.cask;
+        [
+            tangential_n / cask.mass_kg,
+            normal_n / cask.mass_kg - self.scene.drop.gravity_m_s2,
+            moment_n_m / cask.inertia_kg_m2,
+        ]
+    }
+
+    /// Rates of the state under `loads`.
+    pub(super) fn rates(&self, y: &State, loads: &Loads) -> State {
+        let mut rates = State::zeros();
+        for (i, acceleration) in self.accelerations(y, loads).into_iter().enumerate() {
+            rates[i] = y[3 + i];
+            rates[3 + i] = acceleration;
+        }
+        let (sin, cos) = y[2].sin_cos();
+        // Only the part of the force across the axis bends.
+        let across_n = loads.map(|(t, n)| n * cos - t * sin);
+        for (i, mode) in self.scene.modes.iter().take(MOST_MODES).enumerate() {
+            let [first, second] = self.driven_per_kg[i];
+            let drive_m_s2 = across_n[0] * first + across_n[1] * second;
+            let (q_m, velocity_m_s) = (y[6 + 2 * i], y[7 + 2 * i]);
+            rates[6 + 2 * i] = velocity_m_s;
+            rates[7 + 2 * i] = beam::acceleration_m_s2(mode, drive_m_s2, q_m, velocity_m_s);
+        }
+        rates
+    }
+
+    /// Greatest angular frequency of what is going on, rad/s: of a corner in contact or of a mode.
+    pub(super) fn fastest_rad_s(&self) -> f64 {
+        let modes = self.scene.modes.iter().map(|mode| std::f64::consts::TAU * mode.frequency_hz);
+        let corners = self.corners.iter().map(|c| (c.stiffness_n_m() / self.scene.cask.mass_kg).sqrt());
+        modes.chain(corners).fold(0.0, f64::max)
+    }
+}

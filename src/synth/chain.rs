@@ -1,0 +1,116 @@
+//! The specific force at each sensor to what its recorder writes: the measuring chain, element by element.
+//!
+//! In order: tilt and cross axis, resonance, AC coupling, anti-alias filter, sampling by the recorder's clock, offset, zero
+//! shift, noise, hum, cable, scale and polarity, converter, dropouts, gaps, stamps.
+
+mod analog;
+mod disturbance;
+mod recorder;
+
+use crate::data::{Axis, End, Scene, SceneChannel, SimulatedMotion, SyntheticChannel, SyntheticRecording};
+
+/// 1 g, m/s²: the standard value (3rd CGPM 1901).
+const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
+
+/// What a perfect sensor at a channel's place and axis reads at given times, m/s².
+type Force<'a> = &'a dyn Fn(&SceneChannel, &[f64]) -> Vec<f64>;
+
+/// The drop as the chain sees it.
+struct Drive<'a> {
+    force_m_s2: Force<'a>,
+    /// When an end is on the target, s.
+    contacts_s: Vec<(f64, f64)>,
+    /// End of the record, s after first contact.
+    end_s: f64,
+}
+
+/// What the recorder of `scene` writes of `motion`. The same scene gives the same bits.
+#[must_use]
+pub fn record(scene: &Scene, motion: &SimulatedMotion) -> SyntheticRecording {
+    let force =
+        |channel: &SceneChannel, times_s: &[f64]| super::specific_force_m_s2(scene, motion, channel, times_s);
+    let last_s = motion.time_s.last().copied().unwrap_or(0.0);
+    let drive = Drive {
+        force_m_s2: &force,
+        contacts_s: contacts_s(motion),
+        end_s: motion.truth.slap_t.map_or(last_s, |slap_s| slap_s + scene.after_s),
+    };
+    let mut channels: Vec<SyntheticChannel> =
+        seated(scene).iter().enumerate().map(|(i, seat)| channel(scene, seat, i, &drive)).collect();
+    let earliest_s = channels.iter().map(|c| c.start_s).fold(f64::INFINITY, f64::min);
+    for channel in &mut channels {
+        channel.start_s -= earliest_s;
+    }
+    let earliest_s = if earliest_s.is_finite() { earliest_s } else { 0.0 };
+    SyntheticRecording {
+        channels,
+        // The recorder counts samples and takes its stated rate for the true one.
+        first_contact_s: scene.before_s * (1.0 + scene.clock_error) - earliest_s,
+        truth: motion.truth,
+        seed: scene.seed,
+    }
+}
+
+/// The channels where they truly sit: with exchanged ends each hangs on the cable of its partner on the other end.
+fn seated(scene: &Scene) -> Vec<SceneChannel> {
+    let mut seats = scene.channels.clone();
+    if !scene.swapped_ends {
+        return seats;
+    }
+    for axis in [Axis::Transverse, Axis::Axial] {
+        let of = |end| {
+            let all = scene.channels.iter().enumerate();
+            all.filter(move |(_, c)| c.end == end && c.axis == axis).map(|(i, _)| i)
+        };
+        for (first, second) in of(End::First).zip(of(End::Second)) {
+            for (to, from) in [(first, second), (second, first)] {
+                let from = &scene.channels[from];
+                (seats[to].position_m, seats[to].offset_m) = (from.position_m, from.offset_m);
+            }
+        }
+    }
+    seats
+}
+
+/// Spans in which either end is pressed against the target, s.
+fn contacts_s(motion: &SimulatedMotion) -> Vec<(f64, f64)> {
+    let mut spans: Vec<(f64, f64)> = Vec::new();
+    let mut was_pressed = false;
+    for (i, &time_s) in motion.time_s.iter().enumerate() {
+        let is_pressed = motion.first_end_n[i].1 > 0.0 || motion.second_end_n[i].1 > 0.0;
+        match spans.last_mut() {
+            Some(span) if is_pressed && was_pressed => span.1 = time_s,
+            _ if is_pressed => spans.push((time_s, time_s)),
+            _ => {}
+        }
+        was_pressed = is_pressed;
+    }
+    spans
+}
+
+fn channel(scene: &Scene, seat: &SceneChannel, index: usize, drive: &Drive) -> SyntheticChannel {
+    let rate_hz = seat.sample_rate_hz * (1.0 + scene.clock_error);
+    let count = recorder::count((scene.before_s + drive.end_s) * rate_hz);
+    let mut samples_m_s2 = analog::sampled(scene, seat, drive, rate_hz, count);
+    let times = disturbance::Times { from_s: -scene.before_s, rate_hz };
+    disturbance::add(&mut samples_m_s2, (scene.seed, index), &seat.chain, &times, &drive.contacts_s);
+    let sign = if seat.chain.swapped_polarity { -1.0 } else { 1.0 };
+    for sample in &mut samples_m_s2 {
+        *sample = recorder::converted(*sample * seat.chain.scale * sign, &seat.chain);
+    }
+    recorder::hold(&mut samples_m_s2, &seat.chain.dropouts_s, seat.sample_rate_hz);
+    recorder::lose(&mut samples_m_s2, &seat.chain.gaps_s, seat.sample_rate_hz);
+    let unit_m_s2 = if seat.unit == "g" { STANDARD_GRAVITY_M_S2 } else { 1.0 };
+    #[allow(clippy::cast_possible_truncation, reason = "recorders store 24 bits at most")]
+    let samples = samples_m_s2.iter().map(|x| (x / unit_m_s2) as f32).collect();
+    SyntheticChannel {
+        name: seat.name.clone(),
+        unit: seat.unit.clone(),
+        start_s: seat.chain.skew_s,
+        sample_rate_hz: seat.sample_rate_hz,
+        samples,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,121 @@
+//! A channel's seed and chain to what is added to its samples: offset, zero shift, noise, hum, a shaken cable.
+
+use crate::data::Chain;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use rand_distr::{Distribution, StandardNormal};
+use std::f64::consts::{PI, TAU};
+
+/// Sources of chance in a channel: each draws from a stream of its own, so that none moves another.
+const STREAMS_A_CHANNEL: u64 = 8;
+
+/// The 1/f noise reaches down to here, Hz; its corners lie an octave apart, which ripples by less than 0.1 dB.
+const LOWEST_HZ: f64 = 1.0;
+
+/// A shaken cable swings between these frequencies, Hz: those of the cask's bending.
+const CABLE_HZ: (f64, f64) = (50.0, 500.0);
+
+/// The zero shift grows over this time where there is no contact to grow over, s.
+const NO_CONTACT_S: f64 = 5e-3;
+
+/// True times of the samples, 0 at first contact.
+pub(super) struct Times {
+    /// The first, s.
+    pub from_s: f64,
+    /// True samples a second.
+    pub rate_hz: f64,
+}
+
+impl Times {
+    #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
+    fn at_s(&self, index: usize) -> f64 {
+        self.from_s + index as f64 / self.rate_hz
+    }
+}
+
+/// Adds everything of channel `index` to its samples.
+pub(super) fn add(
+    samples_m_s2: &mut [f64],
+    (seed, index): (u64, usize),
+    chain: &Chain,
+    times: &Times,
+    contacts_s: &[(f64, f64)],
+) {
+    let stream = |source: u64| {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        generator.set_stream(index as u64 * STREAMS_A_CHANNEL + source);
+        generator
+    };
+    let grown_s = contacts_s.first().map_or(NO_CONTACT_S, |c| (c.1 - c.0).max(f64::MIN_POSITIVE));
+    for (i, sample) in samples_m_s2.iter_mut().enumerate() {
+        *sample += chain.offset_m_s2 + chain.zero_shift_m_s2 * (times.at_s(i) / grown_s).clamp(0.0, 1.0);
+    }
+    white(samples_m_s2, chain.white_noise_m_s2, &mut stream(0));
+    pink(samples_m_s2, chain.pink_noise_m_s2, times.rate_hz, &mut stream(1));
+    if let Some((amplitude_m_s2, frequency_hz)) = chain.hum {
+        let phase = TAU * stream(2).random::<f64>();
+        for (i, sample) in samples_m_s2.iter_mut().enumerate() {
+            *sample += amplitude_m_s2 * (TAU * frequency_hz * times.at_s(i) + phase).sin();
+        }
+    }
+    if chain.cable_noise_m_s2 > 0.0 {
+        cable(samples_m_s2, chain.cable_noise_m_s2, times, contacts_s, &mut stream(3));
+    }
+}
+
+fn white(samples_m_s2: &mut [f64], sigma_m_s2: f64, generator: &mut ChaCha8Rng) {
+    if sigma_m_s2 > 0.0 {
+        for sample in samples_m_s2 {
+            let drawn: f64 = StandardNormal.sample(generator);
+            *sample += sigma_m_s2 * drawn;
+        }
+    }
+}
+
+/// Noise of spectral density 1/f: equal parts of noise that first-order low-passes an octave apart have shaped.
+fn pink(samples_m_s2: &mut [f64], sigma_m_s2: f64, rate_hz: f64, generator: &mut ChaCha8Rng) {
+    if sigma_m_s2 <= 0.0 {
+        return;
+    }
+    let corners_hz: Vec<f64> = std::iter::successors(Some(LOWEST_HZ), |corner_hz| Some(2.0 * corner_hz))
+        .take_while(|corner_hz| *corner_hz <= 0.5 * rate_hz)
+        .collect();
+    #[allow(clippy::cast_precision_loss, reason = "a few octaves")]
+    let part = sigma_m_s2 / (corners_hz.len() as f64).sqrt();
+    for corner_hz in corners_hz {
+        // x' = a x + √(1 − a²) w keeps the variance of w; a = e^(−2π f_c/f_s).
+        let kept = (-TAU * corner_hz / rate_hz).exp();
+        let fresh = (1.0 - kept * kept).sqrt();
+        let mut state: f64 = StandardNormal.sample(generator);
+        for sample in samples_m_s2.iter_mut() {
+            *sample += part * state;
+            let drawn: f64 = StandardNormal.sample(generator);
+            state = kept * state + fresh * drawn;
+        }
+    }
+}
+
+/// A swing of random frequency and phase under half a sine, over each contact.
+fn cable(
+    samples_m_s2: &mut [f64],
+    amplitude_m_s2: f64,
+    times: &Times,
+    contacts_s: &[(f64, f64)],
+    generator: &mut ChaCha8Rng,
+) {
+    for &(from_s, to_s) in contacts_s.iter().filter(|(from_s, to_s)| to_s > from_s) {
+        let frequency_hz = CABLE_HZ.0 * (CABLE_HZ.1 / CABLE_HZ.0).powf(generator.random::<f64>());
+        let phase = TAU * generator.random::<f64>();
+        let [first, last] =
+            [from_s, to_s].map(|t| super::recorder::ceiling((t - times.from_s) * times.rate_hz));
+        let last = last.min(samples_m_s2.len());
+        for (i, sample) in samples_m_s2.iter_mut().enumerate().take(last).skip(first) {
+            let since_s = times.at_s(i) - from_s;
+            let envelope = (PI * since_s / (to_s - from_s)).sin();
+            *sample += amplitude_m_s2 * envelope * (TAU * frequency_hz * since_s + phase).cos();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,51 @@
+//! A signal to what the converter and the store make of it: clipped, in steps, held, lost.
+
+use crate::data::Chain;
+
+/// A count from a product of time and rate; at least 1.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast from float saturates")]
+pub(super) fn count(number: f64) -> usize {
+    (number.round() as usize).max(1)
+}
+
+/// The first index that is not before `number`.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast from float saturates")]
+pub(super) fn ceiling(number: f64) -> usize {
+    // A time that was meant to fall on a sample does so in spite of rounding.
+    (number - 1e-6).ceil() as usize
+}
+
+/// Clipped at ± full scale; with bits, in steps of full scale over 2^(bits − 1), the uppermost code a step below it.
+pub(super) fn converted(signal_m_s2: f64, chain: &Chain) -> f64 {
+    let Some(full_scale_m_s2) = chain.full_scale_m_s2 else { return signal_m_s2 };
+    let Some(bits) = chain.bits else { return signal_m_s2.clamp(-full_scale_m_s2, full_scale_m_s2) };
+    let codes = 2_f64.powi(i32::from(bits) - 1);
+    let step_m_s2 = full_scale_m_s2 / codes;
+    (signal_m_s2 / step_m_s2).round().clamp(-codes, codes - 1.0) * step_m_s2
+}
+
+/// Within each span, s after the first sample, the last value before it stays.
+pub(super) fn hold(samples: &mut [f64], spans_s: &[(f64, f64)], rate_hz: f64) {
+    for range in ranges(samples.len(), spans_s, rate_hz) {
+        let held = range.start.checked_sub(1).map_or(0.0, |before| samples[before]);
+        samples[range].fill(held);
+    }
+}
+
+/// What lies within a span, s after the first sample, is lost.
+pub(super) fn lose(samples: &mut [f64], spans_s: &[(f64, f64)], rate_hz: f64) {
+    for range in ranges(samples.len(), spans_s, rate_hz) {
+        samples[range].fill(f64::NAN);
+    }
+}
+
+fn ranges(
+    len: usize,
+    spans_s: &[(f64, f64)],
+    rate_hz: f64,
+) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+    spans_s.iter().map(move |span| {
+        let to = ceiling(span.1 * rate_hz).min(len);
+        ceiling(span.0 * rate_hz).min(to)..to
+    })
+}

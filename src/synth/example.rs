@@ -1,0 +1,86 @@
+//! Scenes that the tests of the simulation start from.
+
+use crate::data::{
+    Axis, Cask, Chain, Contact, CrushableEnd, Drop, End, Scene, SceneChannel, SimulatedMotion,
+};
+
+/// The scene of `fixtures/anf18-json`: ANF-18, 9 m, 15°, rough; its stiffnesses follow `crush_for` of `fixtures/simulate.py`.
+pub(super) fn anf18() -> Scene {
+    let (mass_kg, length_m, height_m, angle_rad) = (4466.0_f64, 5.512_f64, 0.792_f64, 15.0_f64.to_radians());
+    let inertia_kg_m2 = mass_kg * (length_m * length_m + height_m * height_m) / 12.0;
+    let arm_m = length_m / 2.0 * angle_rad.cos();
+    let effective_kg = 1.0 / (1.0 / mass_kg + arm_m * arm_m / inertia_kg_m2);
+    let crush = |pulse_s: f64, k: f64| {
+        let loading_n_m = effective_kg * (std::f64::consts::FRAC_PI_2 * (1.0 + k) / pulse_s).powi(2);
+        CrushableEnd { loading_n_m, unloading_n_m: loading_n_m / (k * k), yield_n: None }
+    };
+    Scene {
+        name: "ANF-18".to_owned(),
+        seed: 1,
+        cask: Cask {
+            name: "ANF-18".to_owned(),
+            mass_kg,
+            length_m,
+            height_m,
+            width_m: None,
+            cog_m: length_m / 2.0,
+            inertia_kg_m2,
+            is_body: true,
+        },
+        drop: Drop {
+            height_m: 9.0,
+            angle_rad,
+            impact_velocity_m_s: (2.0 * 9.81 * 9.0_f64).sqrt(),
+            impact_velocity_given: false,
+            gravity_m_s2: 9.81,
+        },
+        contact: Contact::Rough,
+        first_end: crush(5e-3, 0.55),
+        second_end: crush(4e-3, 0.3),
+        modes: vec![],
+        before_s: 0.1,
+        after_s: 0.04,
+        rest: false,
+        clock_error: 0.0,
+        swapped_ends: false,
+        channels: vec![],
+    }
+}
+
+/// A channel with a perfect chain.
+pub(super) fn channel(axis: Axis, position_m: f64, offset_m: f64) -> SceneChannel {
+    SceneChannel {
+        name: "A1".to_owned(),
+        end: End::First,
+        axis,
+        position_m,
+        offset_m,
+        unit: "m/s^2".to_owned(),
+        sample_rate_hz: 1e5,
+        chain: Chain {
+            tilt_rad: 0.0,
+            cross_axis: 0.0,
+            resonance: None,
+            ac_time_constant_s: None,
+            anti_alias_hz: None,
+            scale: 1.0,
+            offset_m_s2: 0.0,
+            zero_shift_m_s2: 0.0,
+            white_noise_m_s2: 0.0,
+            pink_noise_m_s2: 0.0,
+            hum: None,
+            cable_noise_m_s2: 0.0,
+            full_scale_m_s2: None,
+            bits: None,
+            dropouts_s: vec![],
+            gaps_s: vec![],
+            skew_s: 0.0,
+            swapped_polarity: false,
+        },
+    }
+}
+
+/// Place in the motion of the last state before `at_s`.
+pub(super) fn just_before(motion: &SimulatedMotion, at_s: f64) -> usize {
+    motion.time_s.partition_point(|t| *t < at_s).saturating_sub(1)
+}

@@ -1,0 +1,22 @@
+//! A scene to the motion of its cask, that motion to what a sensor on the cask reads, and that to what its recorder writes.
+//!
+//! The motion comes from forces alone: a rigid body in the plane on two corners that crush. Nothing here is taken from
+//! the impact formulas of the analysis, so that either can be held against the other.
+
+mod beam;
+mod body;
+mod chain;
+mod contact;
+mod crush;
+mod motion;
+mod sensor;
+mod truth;
+
+pub use beam::MOST_MODES;
+pub use chain::record;
+pub use crush::{Pulse, crushable_end};
+pub use motion::simulate;
+pub use sensor::specific_force_m_s2;
+
+#[cfg(test)]
+mod example;

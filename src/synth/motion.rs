@@ -1,0 +1,211 @@
+//! A scene to the motion of its cask, from first contact to past the slap-down.
+
+use super::beam::MOST_MODES;
+use super::body::{Body, State};
+use super::contact::Passage;
+use super::truth::{self, Event};
+use crate::data::{Scene, SimulatedMotion};
+use ode_solvers::{Dopri5, OutputType, System};
+use std::f64::consts::FRAC_PI_2;
+
+/// Error of one step, relative and absolute in m, rad and their rates.
+///
+/// A stiff end unloads within micrometres; a tenth of this is the rounding of the force of one that rests.
+const TOLERANCE: f64 = 1e-11;
+
+/// Longest step in the flight, s: a graze that it could overlook is g step²/8 = 0.3 µm deep.
+const LONGEST_STEP_S: f64 = 5e-4;
+
+/// Longest step times the greatest angular frequency: acceleration interpolated between steps is then within 1e-5.
+const LONGEST_STEP_RAD: f64 = 0.1;
+
+/// The motion is followed no longer than this when R does not strike, s.
+const LONGEST_S: f64 = 3.0;
+
+/// Bounds on the work for a scene that rattles without end: steps, and changes of a contact.
+const MOST_STEPS: usize = 400_000;
+const MOST_SWITCHES: usize = 20_000;
+
+/// Halvings of a step in the search of an event: 2^-60 of a step is below the rounding of its times.
+const HALVINGS: u32 = 60;
+
+/// The body between two changes of its contacts, for the integrator.
+struct Segment<'a> {
+    body: &'a Body<'a>,
+    /// Whether to stop where a contact changes or the cask stands upright.
+    watched: bool,
+}
+
+impl System<f64, State> for Segment<'_> {
+    fn system(&self, _time_s: f64, y: &State, rates: &mut State) {
+        *rates = self.body.rates(y, &self.body.loads(y));
+    }
+
+    fn solout(&mut self, _time_s: f64, y: &State, _rates: &State) -> bool {
+        self.watched && (is_upright(y) || self.body.watches(y).iter().any(|value| *value < 0.0))
+    }
+}
+
+/// Past upright the upper corners would strike, which are not part of the scene.
+fn is_upright(y: &State) -> bool {
+    y[2].abs() >= FRAC_PI_2
+}
+
+/// Follows the drop from first contact to `after_s` past the slap-down.
+///
+/// Where R does not strike, the motion ends with the cask upright or after 3 s. Bending modes beyond [`super::MOST_MODES`]
+/// are left out. The result is the same to the bit at every run.
+#[must_use]
+pub fn simulate(scene: &Scene) -> SimulatedMotion {
+    follow(scene, TOLERANCE)
+}
+
+/// [`simulate`] at a tolerance, so that its convergence can be tested.
+fn follow(scene: &Scene, tolerance: f64) -> SimulatedMotion {
+    let mut body = Body::new(scene);
+    let mut motion = empty(scene);
+    let mut events: Vec<Event> = Vec::new();
+    let (mut time_s, mut end_s) = (0.0, LONGEST_S);
+    let mut y = body.at_first_contact();
+    keep(&mut motion, &body, time_s, &y);
+    while time_s < end_s && !is_upright(&y) && events.len() < MOST_SWITCHES {
+        let march = March { body: &body, tolerance };
+        let (mut steps, whole) = march.over(&y, end_s - time_s, true, MOST_STEPS - motion.time_s.len());
+        let Some(last) = steps.pop() else { break };
+        let before = steps.last().copied().unwrap_or((0.0, y));
+        let change = march.first_change(&before, &last);
+        let (offset_s, state) = change.map_or(last, |c| (before.0 + c.0, c.2));
+        for (offset_s, state) in &steps {
+            keep(&mut motion, &body, time_s + offset_s, state);
+        }
+        (time_s, y) = (time_s + offset_s, state);
+        keep(&mut motion, &body, time_s, &y);
+        if let Some((_, watch, _)) = change {
+            let end = watch / 2;
+            let passage = body.corners[end].switch(watch % 2, body.corner(end, &y).height_m);
+            // Once more, under the forces of what follows: acceleration may step.
+            keep(&mut motion, &body, time_s, &y);
+            let struck = events.iter().any(|e| e.end == 1);
+            if end == 1 && passage == Some(Passage::Touch) && !struck {
+                end_s = time_s + scene.after_s;
+            }
+            events.push(Event { passage, end, time_s, state: y, corner: body.corner(end, &y) });
+        }
+        if !whole || motion.time_s.len() >= MOST_STEPS {
+            break;
+        }
+    }
+    motion.truth = truth::truth(scene, &events);
+    motion
+}
+
+/// The integrator on a body whose contacts do not change.
+struct March<'a> {
+    body: &'a Body<'a>,
+    tolerance: f64,
+}
+
+impl March<'_> {
+    /// The steps after `from`, times from there, and whether the integrator came to its end or a stop.
+    fn over(&self, from: &State, span_s: f64, watched: bool, most: usize) -> (Vec<(f64, State)>, bool) {
+        let longest_s = LONGEST_STEP_S.min(LONGEST_STEP_RAD / self.body.fastest_rad_s());
+        let mut solver = Dopri5::from_param(
+            Segment { body: self.body, watched },
+            0.0,
+            span_s,
+            0.0,
+            *from,
+            self.tolerance,
+            self.tolerance,
+            // Safety factor, β and the bounds on the change of step: the method's own defaults.
+            0.9,
+            0.04,
+            0.2,
+            10.0,
+            longest_s,
+            0.0,
+            u32::try_from(most).unwrap_or(u32::MAX),
+            // No test of stiffness: the error control alone decides the step.
+            u32::MAX,
+            OutputType::Sparse,
+        );
+        let whole = solver.integrate().is_ok();
+        let steps = solver.x_out().iter().copied().zip(solver.y_out().iter().copied()).skip(1).collect();
+        (steps, whole)
+    }
+
+    /// The state `offset_s` after `from`.
+    fn state_at(&self, from: &State, offset_s: f64) -> State {
+        if offset_s <= 0.0 {
+            return *from;
+        }
+        self.over(from, offset_s, false, MOST_STEPS).0.last().map_or(*from, |step| step.1)
+    }
+
+    /// The first watch to fall below zero between two steps: how long after the first of them, which, and the state there.
+    fn first_change(&self, before: &(f64, State), after: &(f64, State)) -> Option<(f64, usize, State)> {
+        let mut first: Option<(f64, usize, State)> = None;
+        let fallen = self.body.watches(&after.1);
+        for watch in (0..fallen.len()).filter(|watch| fallen[*watch] < 0.0) {
+            // The end of the bracket at which the watch has fallen is the change: the next phase begins in its own range.
+            let (mut low_s, mut high_s, mut state) = (0.0, after.0 - before.0, after.1);
+            for _ in 0..HALVINGS {
+                let middle_s = f64::midpoint(low_s, high_s);
+                let there = self.state_at(&before.1, middle_s);
+                if self.body.watches(&there)[watch] < 0.0 {
+                    (high_s, state) = (middle_s, there);
+                } else {
+                    low_s = middle_s;
+                }
+            }
+            if first.is_none_or(|f| high_s < f.0) {
+                first = Some((high_s, watch, state));
+            }
+        }
+        first
+    }
+}
+
+/// A motion without a time yet.
+fn empty(scene: &Scene) -> SimulatedMotion {
+    let modes = scene.modes.len().min(MOST_MODES);
+    SimulatedMotion {
+        time_s: vec![],
+        position_m: vec![],
+        angle_rad: vec![],
+        velocity_m_s: vec![],
+        turning_rad_s: vec![],
+        acceleration_m_s2: vec![],
+        angular_acceleration_rad_s2: vec![],
+        first_end_n: vec![],
+        second_end_n: vec![],
+        bending_m_s: vec![vec![]; modes],
+        bending_m_s2: vec![vec![]; modes],
+        truth: truth::truth(scene, &[]),
+    }
+}
+
+/// Writes one time down.
+fn keep(motion: &mut SimulatedMotion, body: &Body, time_s: f64, y: &State) {
+    let loads = body.loads(y);
+    let rates = body.rates(y, &loads);
+    motion.time_s.push(time_s);
+    motion.position_m.push((y[0], y[1]));
+    motion.angle_rad.push(y[2]);
+    motion.velocity_m_s.push((y[3], y[4]));
+    motion.turning_rad_s.push(y[5]);
+    motion.acceleration_m_s2.push((rates[3], rates[4]));
+    motion.angular_acceleration_rad_s2.push(rates[5]);
+    motion.first_end_n.push(loads[0]);
+    motion.second_end_n.push(loads[1]);
+    for (i, velocity_m_s) in motion.bending_m_s.iter_mut().enumerate() {
+        velocity_m_s.push(y[7 + 2 * i]);
+    }
+    for (i, acceleration_m_s2) in motion.bending_m_s2.iter_mut().enumerate() {
+        acceleration_m_s2.push(rates[7 + 2 * i]);
+    }
+}
+
+#[cfg(test)]
+#[path = "motion_tests.rs"]
+mod tests;

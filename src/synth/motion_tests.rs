@@ -1,0 +1,165 @@
+//! Simulated drops to balances, limits and independent numbers that they must meet.
+
+use super::*;
+use crate::data::{BendingMode, Contact, CrushableEnd};
+use crate::synth::example::{anf18, just_before};
+
+/// Kinetic and potential energy, J, of a kept time.
+fn energy_j(scene: &Scene, motion: &SimulatedMotion, i: usize) -> f64 {
+    let (vx, vz) = motion.velocity_m_s[i];
+    let w = motion.turning_rad_s[i];
+    let cask = &scene.cask;
+    0.5 * (cask.mass_kg * (vx * vx + vz * vz) + cask.inertia_kg_m2 * w * w)
+        + cask.mass_kg * scene.drop.gravity_m_s2 * motion.position_m[i].1
+}
+
+#[test]
+fn the_fixture_simulated_in_another_language_is_met() {
+    // fixtures/anf18-json.truth.json, by fixed steps in Python.
+    let truth = simulate(&anf18()).truth;
+    let near = |name: &str, value: Option<f64>, wanted: f64| {
+        let value = value.expect(name);
+        assert!((value / wanted - 1.0).abs() < 1e-3, "{name}: {value}, not {wanted}");
+    };
+    near("speed", truth.speed, 20.559_910);
+    near("k", truth.k, 0.559_507_1);
+    near("contact", truth.contact_s, 5.826_257e-3);
+    near("slap-down", truth.slap_t, 71.054_116e-3);
+    near("omega", truth.omega, 5.154_103);
+    near("angle at separation", truth.angle_sep_deg, 14.214_712);
+    near("angle at slap-down", truth.angle_hit_deg, -5.047_620);
+    near("energy ratio", truth.energy_ratio, 0.795_318);
+    assert!(truth.relands == 0 && !truth.first_down_at_slap);
+    // Rough: sliding begins only where N is below a hundredth of the holding force, for microseconds.
+    assert!(truth.vx_corner_after.expect("left").abs() < 1e-3);
+}
+
+#[test]
+fn an_elastic_frictionless_impact_keeps_its_energy() {
+    let mut scene = anf18();
+    scene.contact = Contact::Smooth;
+    scene.first_end.unloading_n_m = scene.first_end.loading_n_m;
+    let motion = simulate(&scene);
+    let slap_s = motion.truth.slap_t.expect("R strikes");
+    let (first, last) =
+        (energy_j(&scene, &motion, 0), energy_j(&scene, &motion, just_before(&motion, slap_s)));
+    assert!((last / first - 1.0).abs() < 1e-6, "{first} J, {last} J");
+    assert!(motion.first_end_n.iter().all(|f| f.0 == 0.0 && f.1 >= 0.0));
+}
+
+#[test]
+fn the_impulses_are_the_change_of_momentum() {
+    let scene = anf18();
+    let motion = simulate(&scene);
+    let left_s = motion.truth.contact_s.expect("L leaves");
+    let last = just_before(&motion, left_s);
+    // Trapezoids on steps of ω h ≤ 0.1: h² ω²/12 = 8e-4 of the impulse.
+    let impulse = |of: fn(&(f64, f64)) -> f64| -> f64 {
+        let steps = motion.time_s[..=last].windows(2).zip(motion.first_end_n[..=last].windows(2));
+        steps.map(|(t, f)| (t[1] - t[0]) * f64::midpoint(of(&f[0]), of(&f[1]))).sum()
+    };
+    let mass_kg = scene.cask.mass_kg;
+    let along = mass_kg * motion.velocity_m_s[last].0;
+    let upwards = mass_kg
+        * (motion.velocity_m_s[last].1 - motion.velocity_m_s[0].1
+            + scene.drop.gravity_m_s2 * motion.time_s[last]);
+    assert!((impulse(|f| f.0) / along - 1.0).abs() < 8e-4);
+    assert!((impulse(|f| f.1) / upwards - 1.0).abs() < 8e-4);
+}
+
+#[test]
+fn the_flight_is_ballistic() {
+    let scene = anf18();
+    let motion = simulate(&scene);
+    let (left_s, slap_s) = (motion.truth.contact_s.expect("left"), motion.truth.slap_t.expect("struck"));
+    let from = motion.time_s.partition_point(|t| *t <= left_s) - 1;
+    let to = just_before(&motion, slap_s);
+    let tau = motion.time_s[to] - motion.time_s[from];
+    let (p, v) = (motion.position_m[from], motion.velocity_m_s[from]);
+    // Tolerance: 1e-11 of 10 m/s in each of some hundred steps, most of which are far better.
+    assert!((motion.position_m[to].0 - (p.0 + v.0 * tau)).abs() < 1e-8);
+    assert!((motion.position_m[to].1 - (p.1 + v.1 * tau - 0.5 * 9.81 * tau * tau)).abs() < 1e-8);
+    assert!(
+        (motion.angle_rad[to] - (motion.angle_rad[from] + motion.turning_rad_s[from] * tau)).abs() < 1e-8
+    );
+}
+
+#[test]
+fn a_central_impact_shows_the_ends_own_restitution() {
+    for k in [0.05, 0.3, 0.9] {
+        // A square body, 2 m by 2 m, on its corner at 45°: S is above L.
+        let mut scene = anf18();
+        scene.cask.length_m = 2.0;
+        scene.cask.height_m = 2.0;
+        scene.cask.cog_m = 1.0;
+        scene.cask.inertia_kg_m2 = scene.cask.mass_kg * 8.0 / 12.0;
+        scene.drop.angle_rad = 45.0_f64.to_radians();
+        scene.contact = Contact::Smooth;
+        let loading_n_m = scene.cask.mass_kg * (std::f64::consts::FRAC_PI_2 * (1.0 + k) / 1e-4).powi(2);
+        scene.first_end = CrushableEnd { loading_n_m, unloading_n_m: loading_n_m / (k * k), yield_n: None };
+        let truth = simulate(&scene).truth;
+        // Gravity during the pulse: g T of 13.3 m/s is 7.4e-5.
+        assert!((truth.k.expect("L leaves") - k).abs() < 7.4e-5, "{k}: {:?}", truth.k);
+        assert!((truth.contact_s.expect("L leaves") / 1e-4 - 1.0).abs() < 2e-4);
+    }
+}
+
+#[test]
+fn friction_lies_between_smooth_and_rough_and_keeps_to_its_bound() {
+    let with = |contact| {
+        let mut scene = anf18();
+        scene.contact = contact;
+        simulate(&scene)
+    };
+    let sliding = with(Contact::Coulomb(0.2));
+    let left = just_before(&sliding, sliding.truth.contact_s.expect("L leaves"));
+    assert!(sliding.first_end_n[..left].iter().all(|f| f.0.abs() <= 0.2 * f.1 * (1.0 + 1e-12)));
+    let omega = |motion: &SimulatedMotion| motion.truth.omega_rebound.expect("L leaves");
+    let (smooth, rough) = (omega(&with(Contact::Smooth)), omega(&with(Contact::Rough)));
+    assert!(rough < omega(&sliding) && omega(&sliding) < smooth);
+    // Far more friction than the 0.6 that sticking needs: rough but for the last instant, when N vanishes.
+    assert!((omega(&with(Contact::Coulomb(5.0))) / rough - 1.0).abs() < 5e-3);
+}
+
+#[test]
+fn a_finer_tolerance_changes_nothing() {
+    let mode = BendingMode { order: 1, frequency_hz: 62.0, damping: 0.03, strength: 1.0 };
+    for (k, degrees, contact) in
+        [(0.55, 15.0, Contact::Rough), (0.02, 30.0, Contact::Coulomb(0.3)), (0.98, 20.0, Contact::Rough)]
+    {
+        let mut scene = anf18();
+        scene.modes = vec![mode];
+        scene.contact = contact;
+        scene.drop.angle_rad = f64::to_radians(degrees);
+        scene.first_end.unloading_n_m = scene.first_end.loading_n_m / (k * k);
+        let (coarse, fine) = (follow(&scene, TOLERANCE).truth, follow(&scene, TOLERANCE / 2.0).truth);
+        for (a, b) in [(coarse.k, fine.k), (coarse.speed, fine.speed), (coarse.slap_t, fine.slap_t)] {
+            let (a, b) = (a.expect("an event"), b.expect("an event"));
+            assert!((a / b - 1.0).abs() < 1e-6, "k {k} at {degrees}°: {a}, {b}");
+        }
+    }
+}
+
+#[test]
+fn the_same_scene_gives_the_same_bits() {
+    let scene = anf18();
+    assert_eq!(simulate(&scene), simulate(&scene));
+}
+
+#[test]
+fn a_steep_drop_has_no_slap_down_and_says_so() {
+    let mut scene = anf18();
+    scene.drop.angle_rad = 88.0_f64.to_radians();
+    let motion = simulate(&scene);
+    assert!(motion.truth.k.is_some());
+    assert!(motion.truth.slap_t.is_none() && motion.truth.speed.is_none() && motion.truth.flight_s.is_none());
+    assert!(motion.time_s.last().is_some_and(|t| *t <= LONGEST_S));
+}
+
+#[test]
+fn the_motion_ends_as_long_after_the_slap_down_as_asked() {
+    let motion = simulate(&anf18());
+    let last_s = motion.time_s.last().expect("times");
+    assert!((last_s - motion.truth.slap_t.expect("R strikes") - 0.04).abs() < 1e-12);
+    assert!(motion.time_s.is_sorted());
+}

@@ -1,0 +1,245 @@
+//! A simulated motion to the specific force at a point of the cask.
+
+use super::beam;
+use crate::data::{Axis, Scene, SceneChannel, SimulatedMotion};
+
+/// The hook lets go within this time, s: that of a quick-release hook, long against a sample.
+const RELEASE_S: f64 = 2e-3;
+
+/// What a perfect sensor at the channel's true position reads along its axis, m/s², at `times_s` (0 at first contact).
+///
+/// Before first contact the cask falls freely; before its release, where the scene shows it, it hangs at rest. Bending is
+/// in the transverse axis. After the motion's end the last value stays.
+#[must_use]
+pub fn specific_force_m_s2(
+    scene: &Scene,
+    motion: &SimulatedMotion,
+    channel: &SceneChannel,
+    times_s: &[f64],
+) -> Vec<f64> {
+    let drop = &scene.drop;
+    let release_s = -(2.0 * drop.height_m / drop.gravity_m_s2).sqrt();
+    let (sin, cos) = drop.angle_rad.sin_cos();
+    let hanging_m_s2 = drop.gravity_m_s2 * if channel.axis == Axis::Transverse { cos } else { sin };
+    let shapes: Vec<f64> = scene
+        .modes
+        .iter()
+        .map(|mode| mode.strength * beam::shape(mode.order, channel.position_m / scene.cask.length_m))
+        .collect();
+    let before = |time_s: f64| {
+        let hanging = if scene.rest { (0.5 - (time_s - release_s) / RELEASE_S).clamp(0.0, 1.0) } else { 0.0 };
+        hanging * hanging_m_s2
+    };
+    let during = |time_s: f64| {
+        let at = Between::new(&motion.time_s, time_s);
+        let bending_m_s2: f64 = match channel.axis {
+            Axis::Axial => 0.0,
+            Axis::Transverse => {
+                shapes.iter().enumerate().map(|(i, shape)| shape * at.bending_m_s2(motion, i)).sum()
+            }
+        };
+        at.rigid_m_s2(scene, motion, channel) + bending_m_s2
+    };
+    times_s.iter().map(|&t| if t < 0.0 || motion.time_s.is_empty() { before(t) } else { during(t) }).collect()
+}
+
+/// A time between two of the motion's.
+///
+/// Velocities are interpolated by the cubic through their values and slopes at both: its slope is an acceleration whose
+/// integral is exactly the change of velocity, whatever the step.
+struct Between {
+    /// The later of the two.
+    next: usize,
+    /// Share of the step that has passed.
+    share: f64,
+    step_s: f64,
+}
+
+impl Between {
+    fn new(time_s: &[f64], at_s: f64) -> Self {
+        let next = time_s.partition_point(|t| *t <= at_s).clamp(1, time_s.len().max(2) - 1);
+        let (from_s, to_s) = (time_s[next - 1], time_s[next.min(time_s.len() - 1)]);
+        let step_s = to_s - from_s;
+        let share = if step_s > 0.0 { ((at_s - from_s) / step_s).clamp(0.0, 1.0) } else { 1.0 };
+        Self { next: next.min(time_s.len() - 1), share, step_s }
+    }
+
+    /// Value of the cubic with `values` and `slopes` at both ends.
+    fn value(&self, values: [f64; 2], slopes: [f64; 2]) -> f64 {
+        let (s, h) = (self.share, self.step_s);
+        let r = 1.0 - s;
+        r * r * ((1.0 + 2.0 * s) * values[0] + s * h * slopes[0])
+            + s * s * ((1.0 + 2.0 * r) * values[1] - r * h * slopes[1])
+    }
+
+    /// Slope of the cubic with `values` and `slopes` at both ends.
+    fn slope(&self, values: [f64; 2], slopes: [f64; 2]) -> f64 {
+        let (s, r) = (self.share, 1.0 - self.share);
+        if self.step_s <= 0.0 {
+            return slopes[1];
+        }
+        let mean = (values[1] - values[0]) / self.step_s;
+        6.0 * s * r * mean + r * (1.0 - 3.0 * s) * slopes[0] + s * (1.0 - 3.0 * r) * slopes[1]
+    }
+
+    fn pair(&self, values: &[f64]) -> [f64; 2] {
+        [values[self.next.saturating_sub(1)], values[self.next]]
+    }
+
+    /// Acceleration of the coordinate of mode `mode`, m/s².
+    fn bending_m_s2(&self, motion: &SimulatedMotion, mode: usize) -> f64 {
+        match (motion.bending_m_s.get(mode), motion.bending_m_s2.get(mode)) {
+            (Some(velocity), Some(acceleration)) => self.slope(self.pair(velocity), self.pair(acceleration)),
+            _ => 0.0,
+        }
+    }
+
+    /// Specific force of the rigid body at the channel's place along its axis, m/s².
+    fn rigid_m_s2(&self, scene: &Scene, motion: &SimulatedMotion, channel: &SceneChannel) -> f64 {
+        let turning = self.pair(&motion.turning_rad_s);
+        let turning_up = self.pair(&motion.angular_acceleration_rad_s2);
+        let angle_rad = self.value(self.pair(&motion.angle_rad), turning);
+        let omega = self.value(turning, turning_up);
+        let alpha = self.slope(turning, turning_up);
+        let two = [self.next.saturating_sub(1), self.next];
+        let (velocity, acceleration) =
+            (two.map(|i| motion.velocity_m_s[i]), two.map(|i| motion.acceleration_m_s2[i]));
+        let along = self.slope(velocity.map(|v| v.0), acceleration.map(|a| a.0));
+        let up = self.slope(velocity.map(|v| v.1), acceleration.map(|a| a.1));
+        let (sin, cos) = angle_rad.sin_cos();
+        let (xi_m, eta_m) = (channel.position_m - scene.cask.cog_m, channel.offset_m);
+        let (x_m, z_m) = (xi_m * cos - eta_m * sin, xi_m * sin + eta_m * cos);
+        // Acceleration of the point less that of free fall, in the fixed frame, then turned into the body's.
+        let point_x = along - alpha * z_m - omega * omega * x_m;
+        let point_z = up + alpha * x_m - omega * omega * z_m + scene.drop.gravity_m_s2;
+        match channel.axis {
+            Axis::Transverse => point_z * cos - point_x * sin,
+            Axis::Axial => point_x * cos + point_z * sin,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::example::{anf18, channel, just_before};
+    use super::super::simulate;
+    use super::*;
+    use crate::data::{BendingMode, Contact};
+    use crate::numerics::quadrature::running_integral;
+
+    #[test]
+    fn at_rest_falling_and_flying_it_reads_what_it_must() {
+        let mut scene = anf18();
+        scene.rest = true;
+        let motion = simulate(&scene);
+        let (sin, cos) = scene.drop.angle_rad.sin_cos();
+        let centre = |axis| channel(axis, scene.cask.cog_m, 0.0);
+        let read = |at: &SceneChannel, t: f64| specific_force_m_s2(&scene, &motion, at, &[t])[0];
+        // 9 m take 1.3546 s.
+        for (axis, rest) in [(Axis::Transverse, 9.81 * cos), (Axis::Axial, 9.81 * sin)] {
+            assert!((read(&centre(axis), -1.4) - rest).abs() < 1e-12);
+            assert!((read(&centre(axis), -(18.0_f64 / 9.81).sqrt()) - rest / 2.0).abs() < 1e-9);
+            assert!(read(&centre(axis), -1.3).abs() < 1e-12);
+            // In the flight after the impact S reads nothing; 1e-9 is the rounding of velocity over a step.
+            assert!(read(&centre(axis), 0.04).abs() < 1e-9);
+        }
+        let omega = motion.truth.omega_rebound.expect("L leaves");
+        let off = read(&channel(Axis::Transverse, 0.15, 0.3), 0.04);
+        assert!((off + omega * omega * 0.3).abs() < 1e-9, "{off}");
+        let along = read(&channel(Axis::Axial, 0.15, 0.3), 0.04);
+        assert!((along + omega * omega * (0.15 - scene.cask.cog_m)).abs() < 1e-8, "{along}");
+        scene.rest = false;
+        assert!(specific_force_m_s2(&scene, &motion, &centre(Axis::Transverse), &[-1.4])[0].abs() < 1e-12);
+    }
+
+    #[test]
+    fn its_integral_is_the_change_of_velocity() {
+        // Smooth and elastic: acceleration does not step. In body axes v̇_η = f_η − g cos φ − φ̇ v_ξ.
+        let mut scene = anf18();
+        scene.contact = Contact::Smooth;
+        let motion = simulate(&scene);
+        let last = just_before(&motion, motion.truth.contact_s.expect("L leaves"));
+        let end_s = motion.time_s[last];
+        let steps = 20_000_u32;
+        let times_s: Vec<f64> = (0..=steps).map(|i| end_s * f64::from(i) / f64::from(steps)).collect();
+        let read =
+            |axis| specific_force_m_s2(&scene, &motion, &channel(axis, scene.cask.cog_m, 0.0), &times_s);
+        let (across, along) = (read(Axis::Transverse), read(Axis::Axial));
+        let angle: Vec<f64> = times_s
+            .iter()
+            .map(|t| {
+                let at = Between::new(&motion.time_s, *t);
+                at.value(at.pair(&motion.angle_rad), at.pair(&motion.turning_rad_s))
+            })
+            .collect();
+        let upwards: Vec<f64> =
+            (0..angle.len()).map(|i| across[i] * angle[i].cos() + along[i] * angle[i].sin() - 9.81).collect();
+        let gained = running_integral(&upwards, end_s / f64::from(steps)).last().copied().expect("samples");
+        let wanted = motion.velocity_m_s[last].1 - motion.velocity_m_s[0].1;
+        // The force has kinks, at which the trapezoid of 0.3 µs is off by less than a sample's share of it.
+        assert!((gained / wanted - 1.0).abs() < 1e-6, "{gained}, not {wanted}");
+    }
+
+    #[test]
+    fn between_steps_it_follows_the_force() {
+        // Smooth, without bending: what a sensor on S reads, times the mass, is the normal force, which has no kink
+        // within a phase.
+        let mut scene = anf18();
+        scene.contact = Contact::Smooth;
+        let motion = simulate(&scene);
+        let peak_n = motion.first_end_n.iter().map(|f| f.1).fold(0.0, f64::max);
+        let sensor = [Axis::Transverse, Axis::Axial].map(|axis| channel(axis, scene.cask.cog_m, 0.0));
+        let last = just_before(&motion, motion.truth.contact_s.expect("L leaves"));
+        for i in (1..last).filter(|i| motion.time_s[i + 1] > motion.time_s[*i]) {
+            let t = f64::midpoint(motion.time_s[i], motion.time_s[i + 1]);
+            let [across, along] = [0, 1].map(|n| specific_force_m_s2(&scene, &motion, &sensor[n], &[t])[0]);
+            let force = across.hypot(along) * scene.cask.mass_kg;
+            let [low, high] = [i, i + 1].map(|n| motion.first_end_n[n].1);
+            // A sine stands at most (ω h)²/8 of its peak above its chord; ω² h² is up to 0.1² times m/m_eff, below 4.
+            assert!((force - f64::midpoint(low, high)).abs() < 5e-3 * peak_n, "at {t} s");
+        }
+    }
+
+    #[test]
+    fn a_mode_rings_at_its_frequency_with_its_damping() {
+        let mut scene = anf18();
+        scene.modes = vec![BendingMode { order: 2, frequency_hz: 150.0, damping: 0.02, strength: 0.5 }];
+        let motion = simulate(&scene);
+        let mut still = scene.clone();
+        still.modes.clear();
+        let calm = simulate(&still);
+        let at = channel(Axis::Transverse, 0.15, 0.0);
+        let omega = std::f64::consts::TAU * 150.0;
+        let damped = omega * (1.0 - 0.02_f64 * 0.02).sqrt();
+        let period_s = std::f64::consts::TAU / damped;
+        let ringing = |t: f64| {
+            specific_force_m_s2(&scene, &motion, &at, &[t])[0]
+                - specific_force_m_s2(&still, &calm, &at, &[t])[0]
+        };
+        let peak =
+            (0..100).map(|i| ringing(0.02 + period_s * f64::from(i) / 100.0).abs()).fold(0.0, f64::max);
+        assert!(peak > 1.0, "{peak}");
+        for i in 0..20 {
+            let t = 0.02 + period_s * f64::from(i) / 20.0;
+            let wanted = ringing(t) * (-0.02 * omega * period_s).exp();
+            // The cubic between steps of ω h ≤ 0.1 is within 1e-5 of the peak.
+            assert!((ringing(t + period_s) - wanted).abs() < 2e-5 * peak, "{i}");
+        }
+    }
+
+    #[test]
+    fn bending_is_of_the_size_that_the_impulse_gives() {
+        // A pulse short against the period starts q̇ at impulse · shape / mass.
+        let mut scene = anf18();
+        scene.first_end.loading_n_m *= 400.0;
+        scene.first_end.unloading_n_m *= 400.0;
+        scene.contact = Contact::Smooth;
+        scene.modes = vec![BendingMode { order: 1, frequency_hz: 30.0, damping: 0.0, strength: 1.0 }];
+        let motion = simulate(&scene);
+        let left = just_before(&motion, motion.truth.contact_s.expect("L leaves"));
+        let impulse_m_s = motion.velocity_m_s[left].1 - motion.velocity_m_s[0].1;
+        let wanted = 2.0 * impulse_m_s * scene.drop.angle_rad.cos();
+        // 0.25 ms: ω T = 0.05, of which cos takes 1e-3; gravity and the turn are below that.
+        assert!((motion.bending_m_s[0][left] / wanted - 1.0).abs() < 2e-3);
+    }
+}

@@ -1,0 +1,59 @@
+//! The changes of contact of a simulated drop to what a perfect measurement would say of it.
+
+use super::body::{CornerMotion, State};
+use super::contact::Passage;
+use crate::data::{Scene, Truth};
+
+/// A change of a contact.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Event {
+    /// Touch or leave; `None` within a contact.
+    pub(super) passage: Option<Passage>,
+    /// 0 is L, 1 is R.
+    pub(super) end: usize,
+    /// After first contact, s.
+    pub(super) time_s: f64,
+    /// The state there.
+    pub(super) state: State,
+    /// The motion of that end's corner.
+    pub(super) corner: CornerMotion,
+}
+
+/// Reads the truth off the events, which are in order; without any, only what the scene itself says.
+pub(super) fn truth(scene: &Scene, events: &[Event]) -> Truth {
+    let is = |e: &&Event, end: usize, passage: Passage| e.end == end && e.passage == Some(passage);
+    let leave = events.iter().find(|e| is(e, 0, Passage::Leave));
+    let strike = events.iter().find(|e| is(e, 1, Passage::Touch));
+    let before = |e: &&Event| strike.is_some_and(|s| e.time_s < s.time_s);
+    let left_before = leave.filter(before).zip(strike);
+    let touches = events.iter().filter(|e| before(e) && is(e, 0, Passage::Touch)).count();
+    let leaves = events.iter().filter(|e| before(e) && is(e, 0, Passage::Leave)).count();
+    let v0 = scene.drop.impact_velocity_m_s;
+    Truth {
+        v0,
+        angle_deg: scene.drop.angle_rad.to_degrees(),
+        k: leave.map(|e| e.corner.rising_m_s / v0),
+        rebound_velocity: leave.map(|e| e.corner.rising_m_s),
+        contact_s: leave.map(|e| e.time_s),
+        omega_rebound: leave.map(|e| -e.state[5]),
+        angle_sep_deg: leave.map(|e| e.state[2].to_degrees()),
+        vx_corner_after: leave.map(|e| e.corner.sliding_m_s),
+        slap_t: strike.map(|e| e.time_s),
+        flight_s: left_before.map(|(left, struck)| struck.time_s - left.time_s),
+        vx: strike.map(|e| e.corner.sliding_m_s),
+        vz: strike.map(|e| e.corner.rising_m_s),
+        speed: strike.map(|e| e.corner.sliding_m_s.hypot(e.corner.rising_m_s)),
+        omega: strike.map(|e| -e.state[5]),
+        angle_hit_deg: strike.map(|e| e.state[2].to_degrees()),
+        energy_ratio: strike.map(|e| kinetic_j(scene, &e.state) / (0.5 * scene.cask.mass_kg * v0 * v0)),
+        relands: u32::try_from(touches).unwrap_or(u32::MAX),
+        // L begins on the target and leaves once more than it has come back, or not.
+        first_down_at_slap: strike.is_some() && touches == leaves,
+    }
+}
+
+/// Kinetic energy of the rigid body, J.
+pub(super) fn kinetic_j(scene: &Scene, y: &State) -> f64 {
+    let cask = &scene.cask;
+    0.5 * (cask.mass_kg * (y[3] * y[3] + y[4] * y[4]) + cask.inertia_kg_m2 * y[5] * y[5])
+}
