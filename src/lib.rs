@@ -19,7 +19,7 @@ pub mod synth;
 
 use assemble::Draft;
 use data::{
-    Analysis, AxialClosure, Axis, Cask, CaskFile, Channel, Contact, Drop, Events, FlightFit, Issue,
+    Analysis, AxialClosure, Axis, Cask, CaskFile, Channel, Contact, Coupling, Drop, Events, FlightFit, Issue,
     IssueCode, Motion, Quantities, Recording, Scene, SceneFile, Setup, Severity, Signal, SyntheticRecording,
     WantedImpact,
 };
@@ -113,15 +113,16 @@ fn is_impact(velocity_step_m_s: f64, cask_file: &CaskFile) -> bool {
     velocity_step_m_s.abs() > 0.1 * cask_file.drop.impact_velocity_m_s
 }
 
-/// The free fall as each transverse channel shows it.
+/// The free fall as each transverse channel shows it; an AC-coupled one knows neither rest nor fall.
 fn free_falls<'a>(
     recording: &'a Recording,
     cask_file: &CaskFile,
     contact_s: f64,
 ) -> impl Iterator<Item = (&'a Channel, events::FreeFall)> {
     let drop = cask_file.drop;
-    let transverse = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
-    transverse.filter_map(move |c| events::free_fall(c, &drop, contact_s).map(|fall| (c, fall)))
+    let steady =
+        recording.channels.iter().filter(|c| c.axis == Axis::Transverse && c.coupling == Coupling::Dc);
+    steady.filter_map(move |c| events::free_fall(c, &drop, contact_s).map(|fall| (c, fall)))
 }
 
 /// The flight fit, the motion and what is read off it; what prevents them goes to the draft's issues.

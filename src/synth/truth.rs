@@ -31,7 +31,8 @@ pub(super) fn truth(scene: &Scene, events: &[Event]) -> Truth {
     let v0 = scene.drop.impact_velocity_m_s;
     Truth {
         v0,
-        angle_deg: scene.drop.angle_rad.to_degrees(),
+        // Free of the last digits of the conversion.
+        angle_deg: (scene.drop.angle_rad.to_degrees() * 1e9).round() / 1e9,
         k: leave.map(|e| e.corner.rising_m_s / v0),
         rebound_velocity: leave.map(|e| e.corner.rising_m_s),
         contact_s: leave.map(|e| e.time_s),

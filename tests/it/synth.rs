@@ -68,6 +68,25 @@ fn the_example_comes_back_from_every_format() {
 }
 
 #[test]
+fn an_ac_coupled_channel_is_not_asked_for_rest_and_fall() {
+    let folder = folder();
+    let scene = example_with(folder.path(), "before_s = 0.1", "before_s = 2.0\nrest = true");
+    let text = fs::read_to_string(&scene).expect("the scene");
+    let coupled = "name = \"A1\"\ncoupling = \"ac\"\ntime_constant_s = 0.318";
+    fs::write(&scene, text.replacen("name = \"A1\"", coupled, 1)).expect("a temporary file");
+    let out = folder.path().join("ac.mcap");
+    made(&scene, &out, &[]);
+    let result = holds(&out);
+    let codes: Vec<&str> = result["quality"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|issue| issue["code"].as_str())
+        .collect();
+    assert!(!codes.contains(&"scale") && !codes.contains(&"geometry"), "{}", result["quality"]);
+}
+
+#[test]
 fn six_lines_are_a_scene_that_comes_back() {
     let folder = folder();
     let scene = folder.path().join("short.toml");
