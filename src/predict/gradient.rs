@@ -3,7 +3,6 @@
 use super::impact::strike_first_end;
 use super::path::Way;
 use super::state::{Number, State, second_end_m};
-use super::support::{Hold, Support};
 use crate::data::{Body, Contact, Drop, GRAZE_SHARE, SpeedGradient};
 use num_dual::Dual64;
 
@@ -21,8 +20,7 @@ pub fn speed_gradient(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Opt
 
 fn speed_m_s<T: Number>(body: &Body, drop: &Drop, contact: Contact, angle_rad: T, k: T) -> Option<T> {
     let start = State::falling(body, angle_rad, drop.impact_velocity_m_s);
-    let support = Support { body, gravity_m_s2: drop.gravity_m_s2, contact, hold: Hold::Pushes };
-    let way = Way { support, graze_m: Some(GRAZE_SHARE * body.length_m) };
+    let way = Way::of(body, drop, contact, Some(GRAZE_SHARE));
     let (at, _) = way.follow(strike_first_end(body, &start, contact, k).after, k).second_end?;
     let corner = at.corner(body, second_end_m(body));
     Some((corner.horizontal_velocity_m_s.powi(2) + corner.vertical_velocity_m_s.powi(2)).sqrt())

@@ -7,41 +7,48 @@ use crate::numerics::quadrature::simpson;
 /// Where the time integral begins, share of the way: at rest its integrand is 0/0. Also the ω, rad/s, below which it never ends.
 const STILL: f64 = 1e-9;
 
-/// Motion just before R strikes and the time it takes, s; `None` where the axis never lies flat.
-///
-/// Pivoting: (Θ + m (a² + b²)) ω² grows by 2 m g Δz_S (11); sliding without friction: (Θ + m a²) ω² does (12); time ∫ dφ / ω.
-pub(super) fn to_second_end(
-    body: &Body,
-    gravity_m_s2: f64,
-    slides: bool,
-    state: &State<f64>,
-) -> Option<(State<f64>, f64)> {
-    let (m, theta) = (body.mass_kg, body.inertia_kg_m2);
-    let moment = |angle_rad: f64| {
-        let (a, b) = arms_m(body, angle_rad, body.cog_m);
-        theta + m * (a * a + if slides { 0.0 } else { b * b })
-    };
-    let height_m = |angle_rad: f64| arms_m(body, angle_rad, body.cog_m).1;
-    let start = moment(state.angle_rad) * state.angular_velocity_rad_s.powi(2);
-    let spin_rad_s = |angle_rad: f64| {
-        let gained = 2.0 * m * gravity_m_s2 * (height_m(state.angle_rad) - height_m(angle_rad));
-        ((start + gained) / moment(angle_rad)).max(0.0).sqrt()
-    };
-    let stands = state.angular_velocity_rad_s < STILL && state.angle_rad > 0.0;
-    if state.angular_velocity_rad_s < 0.0 || stands {
-        return None;
+/// A body that turns about L's corner, stuck or sliding without friction, from the motion just after L's impact.
+pub(super) struct Held<'a> {
+    pub body: &'a Body,
+    pub gravity_m_s2: f64,
+    pub slides: bool,
+    pub start: State<f64>,
+}
+
+impl Held<'_> {
+    /// Pivoting: (Θ + m (a² + b²)) ω² grows by 2 m g Δz_S   (11); sliding without friction: (Θ + m a²) ω² does   (12)
+    fn spin_rad_s(&self, angle_rad: f64) -> f64 {
+        let (m, theta) = (self.body.mass_kg, self.body.inertia_kg_m2);
+        let arms = |angle_rad: f64| arms_m(self.body, angle_rad, self.body.cog_m);
+        let moment = |(a, b): (f64, f64)| theta + m * (a * a + if self.slides { 0.0 } else { b * b });
+        let (before, now) = (arms(self.start.angle_rad), arms(angle_rad));
+        let gained = 2.0 * m * self.gravity_m_s2 * (before.1 - now.1);
+        let energy = moment(before) * self.start.angular_velocity_rad_s.powi(2) + gained;
+        (energy / moment(now)).max(0.0).sqrt()
     }
-    let w = spin_rad_s(0.0);
-    let (a, b) = arms_m(body, 0.0, body.cog_m);
-    let flat = State {
-        height_m: height_m(0.0),
-        angle_rad: 0.0,
-        horizontal_velocity_m_s: if slides { state.horizontal_velocity_m_s } else { b * w },
-        vertical_velocity_m_s: -a * w,
-        angular_velocity_rad_s: w,
-    };
-    // ∫ dφ/ω with φ = φ0 (1 − u²), so that a start from rest is no pole.
-    let rate_s = |u: f64| 2.0 * state.angle_rad * u / spin_rad_s(state.angle_rad * (1.0 - u * u));
-    let time_s = simpson(rate_s, STILL, 1.0, 64);
-    time_s.is_finite().then_some((flat, time_s))
+
+    /// Motion just before R strikes, the axis flat; `None` where it stands or turns the other way.
+    pub fn at_second_end(&self) -> Option<State<f64>> {
+        let start = &self.start;
+        let stands = start.angular_velocity_rad_s < STILL && start.angle_rad > 0.0;
+        if start.angular_velocity_rad_s < 0.0 || stands {
+            return None;
+        }
+        let w = self.spin_rad_s(0.0);
+        let (a, b) = arms_m(self.body, 0.0, self.body.cog_m);
+        Some(State {
+            height_m: b,
+            angle_rad: 0.0,
+            horizontal_velocity_m_s: if self.slides { start.horizontal_velocity_m_s } else { b * w },
+            vertical_velocity_m_s: -a * w,
+            angular_velocity_rad_s: w,
+        })
+    }
+
+    /// How long that takes, s: ∫ dφ/ω, with φ = φ0 (1 − u²) so that a start from rest is no pole. Not finite where it never comes.
+    pub fn time_s(&self) -> f64 {
+        let angle_rad = self.start.angle_rad;
+        let rate_s = |u: f64| 2.0 * angle_rad * u / self.spin_rad_s(angle_rad * (1.0 - u * u));
+        simpson(rate_s, STILL, 1.0, 64)
+    }
 }

@@ -1,11 +1,12 @@
 //! A rung of the ladder of models to its prediction, and all rungs to the one that suffices.
 
+use super::held::Held;
 use super::impact::{Struck, strike_first_end};
 use super::path::{Outcome, Way};
 use super::resting::End;
 use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
-use super::{held, predict, rod, thin_rod};
+use super::{predict, rod, thin_rod};
 use crate::data::{
     Body, Contact, Drop, FlightRegime, LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Prediction, Rung,
 };
@@ -78,10 +79,6 @@ impl Case<'_> {
         State::falling(self.body, self.drop.angle_rad, self.drop.impact_velocity_m_s)
     }
 
-    fn support(&self, hold: Hold) -> Support<'_> {
-        Support { body: self.body, gravity_m_s2: self.drop.gravity_m_s2, contact: self.contact, hold }
-    }
-
     /// k = 0: L held on the target until R strikes; else one flight.
     fn held_or_one_flight(&self, impact: Impact) -> Prediction {
         let start = self.start();
@@ -99,29 +96,34 @@ impl Case<'_> {
     }
 
     fn one_flight(&self, struck: &Struck<f64>) -> Outcome<f64> {
-        Way { support: self.support(Hold::Pushes), graze_m: None }.follow(struck.after, self.k)
+        Way::of(self.body, self.drop, self.contact, None).follow(struck.after, self.k)
     }
 
     /// L held on the target: \[P\] Table 2 for rough and smooth, step by step for the friction between them.
     fn held(&self, after: &State<f64>) -> Outcome<f64> {
         let second_end = match self.contact {
-            Contact::Coulomb(_) => match self.support(Hold::Pulls).rest(after) {
-                End::Strikes(at, time_s) => Some((at, time_s)),
-                End::LiftsOff(..) | End::Never => None,
-            },
-            _ => self.closed_form(after),
+            Contact::Coulomb(_) => {
+                match Support::of(self.body, self.drop, self.contact, Hold::Pulls).rest(after) {
+                    End::Strikes(at, time_s) => Some((at, time_s)),
+                    End::LiftsOff(..) | End::Never => None,
+                }
+            }
+            _ => self.closed_form(after).and_then(|held| {
+                let time_s = Some(held.time_s()).filter(|time_s| time_s.is_finite())?;
+                Some((held.at_second_end()?, time_s))
+            }),
         };
         Outcome { second_end, impacts: 1, regime: FlightRegime::Contact }
     }
 
     /// \[P\] Table 2 for k = 0, rough or smooth   (11) (12)
-    fn closed_form(&self, after: &State<f64>) -> Option<(State<f64>, f64)> {
+    fn closed_form(&self, after: &State<f64>) -> Option<Held<'_>> {
         let slides = match self.contact {
             Contact::Rough => false,
             Contact::Smooth => true,
             Contact::Coulomb(_) => return None,
         };
-        held::to_second_end(self.body, self.drop.gravity_m_s2, slides, after)
+        Some(Held { body: self.body, gravity_m_s2: self.drop.gravity_m_s2, slides, start: *after })
     }
 
     fn second_end_speed_m_s(&self, state: &State<f64>) -> f64 {
@@ -152,7 +154,8 @@ impl Case<'_> {
             closed_form_speed_m_s: (self.k <= 0.0)
                 .then(|| self.closed_form(&struck.after))
                 .flatten()
-                .map(|(state, _)| self.second_end_speed_m_s(&state)),
+                .and_then(|held| held.at_second_end())
+                .map(|state| self.second_end_speed_m_s(&state)),
         }
     }
 }

@@ -16,11 +16,10 @@ pub use gradient::speed_gradient;
 pub use ladder::{ladder, predict_by};
 pub use study::{default_uncertain, study};
 
-use crate::data::{Body, BodyModel, Cask, Contact, Drop, GRAZE_SHARE, Prediction, Rung};
+use crate::data::{Body, BodyModel, Cask, Contact, Drop, GRAZE_SHARE, Prediction};
 use impact::strike_first_end;
 use path::Way;
 use state::State;
-use support::{Hold, Support};
 
 /// The rod or body of a cask: the rod is thin and uniform whatever else the cask file says.
 #[must_use]
@@ -76,9 +75,7 @@ pub fn predict(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction
 pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, graze_share: f64) -> Prediction {
     let start = State::falling(body, drop.angle_rad, drop.impact_velocity_m_s);
     let struck = strike_first_end(body, &start, contact, k);
-    let support = Support { body, gravity_m_s2: drop.gravity_m_s2, contact, hold: Hold::Pushes };
-    let way = Way { support, graze_m: Some(graze_share * body.length_m) };
-    let outcome = way.follow(struck.after, k);
+    let outcome = Way::of(body, drop, contact, Some(graze_share)).follow(struck.after, k);
     ladder::Case { body, drop, contact, k }.prediction(&start, &struck, &outcome)
 }
 
@@ -89,18 +86,6 @@ pub fn borderline_cases(body: &Body, drop: &Drop) -> Vec<Prediction> {
         .into_iter()
         .flat_map(|contact| [0.0, 1.0].map(|k| predict(body, drop, contact, k)))
         .collect()
-}
-
-/// The closed form of Table 2 for k = 0, L held on the target whatever the contact force: R's speed, m/s, (11) and (12).
-///
-/// It holds only where [`crate::data::FlightRegime::Contact`] does; elsewhere L lifts off and [`predict`] says so. Any friction
-/// short of rough and smooth has no closed form: `None`.
-#[must_use]
-pub fn closed_form_speed_m_s(body: &Body, drop: &Drop, contact: Contact) -> Option<f64> {
-    match contact {
-        Contact::Coulomb(_) => None,
-        contact => predict_by(Rung::Body, body, drop, contact, 0.0).slap_down_speed_m_s,
-    }
 }
 
 #[cfg(test)]
@@ -169,7 +154,8 @@ mod tests {
             assert!((found - expected).abs() < 5e-5, "{found} {expected}");
             assert!((found - 25.0).abs() < 0.5);
         }
-        let castor = closed_form_speed_m_s(&rod(4.486), &drop(15.0), Contact::Rough).expect("rough");
+        let castor =
+            predict(&rod(4.486), &drop(15.0), Contact::Rough, 0.0).closed_form_speed_m_s.expect("rough");
         assert!((castor - 20.12).abs() < 0.005);
     }
 
@@ -243,7 +229,7 @@ mod tests {
         let p = predict(&rod(5.512), &drop(15.0), Contact::Rough, 0.0);
         assert_eq!(p.regime, FlightRegime::Free);
         assert!((p.slap_down_speed_m_s.expect("R strikes") - 19.81).abs() < 0.005);
-        let kept = closed_form_speed_m_s(&rod(5.512), &drop(15.0), Contact::Rough).expect("rough");
+        let kept = p.closed_form_speed_m_s.expect("rough");
         assert!((kept - 20.31).abs() < 0.005);
     }
 

@@ -5,7 +5,7 @@ use super::impact::strike_first_end;
 use super::resting::End;
 use super::state::{Number, State, second_end_m};
 use super::support::{Hold, Support};
-use crate::data::FlightRegime;
+use crate::data::{Body, Contact, Drop, FlightRegime};
 
 /// More impacts of L than this before R strikes count as bouncing without end: with k ≤ 0.96 the last rebound is below [`REST_M_S`].
 const MOST_IMPACTS: u32 = 300;
@@ -30,6 +30,16 @@ pub(super) struct Outcome<T> {
     pub second_end: Option<(State<T>, T)>,
     pub impacts: u32,
     pub regime: FlightRegime,
+}
+
+impl<'a> Way<'a> {
+    /// `graze_share` is the share of the length that L must sink to strike again; `None`: further impacts are left out.
+    pub fn of(body: &'a Body, drop: &Drop, contact: Contact, graze_share: Option<f64>) -> Self {
+        Self {
+            support: Support::of(body, drop, contact, Hold::Pushes),
+            graze_m: graze_share.map(|share| share * body.length_m),
+        }
+    }
 }
 
 impl Way<'_> {

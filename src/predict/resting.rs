@@ -123,7 +123,8 @@ impl Support<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{held, thin_rod};
+    use super::super::held::Held;
+    use super::super::thin_rod;
     use super::*;
     use crate::data::{Body, BodyModel, Contact};
 
@@ -155,7 +156,8 @@ mod tests {
                 let start = turning(&body, angle_rad, w);
                 let support = support(&body, contact, Hold::Pulls);
                 let (state, time_s) = second_end(&support.rest(&start));
-                let (closed, closed_s) = held::to_second_end(&body, 9.81, slides, &start).expect("R strikes");
+                let held = Held { body: &body, gravity_m_s2: 9.81, slides, start };
+                let (closed, closed_s) = (held.at_second_end().expect("R strikes"), held.time_s());
                 // Fourth order with 0.02 rad a step: 1e-9; Simpson with 64 steps: 1e-7 of the time.
                 let ratio = state.angular_velocity_rad_s / closed.angular_velocity_rad_s;
                 assert!((ratio - 1.0).abs() < 1e-9, "{contact} {angle_rad}: {ratio}");

@@ -2,7 +2,7 @@
 
 use super::impact::coefficient;
 use super::state::{Number, State, arms_m};
-use crate::data::{Body, Contact};
+use crate::data::{Body, Contact, Drop};
 
 /// A corner that slides slower than this, m/s, was stopped by the impact but for round-off.
 const STOPPED_M_S: f64 = 1e-9;
@@ -60,6 +60,12 @@ pub(super) struct Forces<T> {
     pub angular_acceleration_rad_s2: T,
     /// ẍ_C, m/s².
     pub slip_rate_m_s2: T,
+}
+
+impl<'a> Support<'a> {
+    pub fn of(body: &'a Body, drop: &Drop, contact: Contact, hold: Hold) -> Self {
+        Self { body, gravity_m_s2: drop.gravity_m_s2, contact, hold }
+    }
 }
 
 impl Support<'_> {
