@@ -67,6 +67,33 @@ pub struct Chain {
     pub swapped_polarity: bool,
 }
 
+impl Chain {
+    /// A chain that alters nothing.
+    #[must_use]
+    pub fn perfect() -> Self {
+        Self {
+            tilt_rad: 0.0,
+            cross_axis: 0.0,
+            resonance: None,
+            ac_time_constant_s: None,
+            anti_alias_hz: None,
+            scale: 1.0,
+            offset_m_s2: 0.0,
+            zero_shift_m_s2: 0.0,
+            white_noise_m_s2: 0.0,
+            pink_noise_m_s2: 0.0,
+            hum: None,
+            cable_noise_m_s2: 0.0,
+            full_scale_m_s2: None,
+            bits: None,
+            dropouts_s: Vec::new(),
+            gaps_s: Vec::new(),
+            skew_s: 0.0,
+            swapped_polarity: false,
+        }
+    }
+}
+
 /// A channel of the scene: where it sits, how it is written, and its chain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneChannel {

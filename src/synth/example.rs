@@ -57,26 +57,7 @@ pub(super) fn channel(axis: Axis, position_m: f64, offset_m: f64) -> SceneChanne
         offset_m,
         unit: "m/s^2".to_owned(),
         sample_rate_hz: 1e5,
-        chain: Chain {
-            tilt_rad: 0.0,
-            cross_axis: 0.0,
-            resonance: None,
-            ac_time_constant_s: None,
-            anti_alias_hz: None,
-            scale: 1.0,
-            offset_m_s2: 0.0,
-            zero_shift_m_s2: 0.0,
-            white_noise_m_s2: 0.0,
-            pink_noise_m_s2: 0.0,
-            hum: None,
-            cable_noise_m_s2: 0.0,
-            full_scale_m_s2: None,
-            bits: None,
-            dropouts_s: vec![],
-            gaps_s: vec![],
-            skew_s: 0.0,
-            swapped_polarity: false,
-        },
+        chain: Chain::perfect(),
     }
 }
 

@@ -54,26 +54,7 @@ fn usual_position_m(cask: &Cask, end: End) -> f64 {
 }
 
 fn usual_chain() -> Chain {
-    Chain {
-        tilt_rad: 0.0,
-        cross_axis: 0.0,
-        resonance: None,
-        ac_time_constant_s: None,
-        anti_alias_hz: None,
-        scale: 1.0,
-        offset_m_s2: 0.0,
-        zero_shift_m_s2: 0.0,
-        white_noise_m_s2: WHITE_NOISE_G * STANDARD_GRAVITY_M_S2,
-        pink_noise_m_s2: 0.0,
-        hum: None,
-        cable_noise_m_s2: 0.0,
-        full_scale_m_s2: None,
-        bits: None,
-        dropouts_s: Vec::new(),
-        gaps_s: Vec::new(),
-        skew_s: 0.0,
-        swapped_polarity: false,
-    }
+    Chain { white_noise_m_s2: WHITE_NOISE_G * STANDARD_GRAVITY_M_S2, ..Chain::perfect() }
 }
 
 fn stated(channel: &SceneChannel, unit: Unit) -> ChannelSpec {
