@@ -154,6 +154,7 @@ fn flight_and_motion(
         u_events_s: draft.u_events_s,
         setup: &setup,
         other_law: other_law(setup.axial),
+        tolerances: cask_file.tolerances,
     };
     let quantities = fit::quantities(&measured, &motion::reconstruct)?;
     Some((flight, setup, motion, quantities))

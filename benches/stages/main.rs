@@ -131,6 +131,7 @@ fn quantities(bencher: Bencher, samples: usize) {
         u_events_s: [2e-5, 1e-4, 2e-5],
         setup: &m.setup,
         other_law: None,
+        tolerances: dropcheck::data::Tolerances::default(),
     };
     bencher
         .counter(m.conditioned())

@@ -2,7 +2,7 @@
 
 use crate::data::{
     Body, BodyModel, CaskFile, Comparison, Contact, Drop, LADDER_TOLERANCE_PERCENT, ModelCandidate,
-    ModelChoice, Prediction, Quantities, Rung, U_ANGLE_RAD,
+    ModelChoice, Prediction, Quantities, Rung,
 };
 
 /// Standard uncertainty of an inertia that is only the uniform body's: casks carry their mass off the even spread (5 %).
@@ -105,7 +105,7 @@ impl Scene<'_> {
         };
         let by_k = change(body, &file.drop, k + measured.k.u95 / 2.0);
         let turned = |by_rad: f64| Drop { angle_rad: (file.drop.angle_rad + by_rad).max(0.0), ..file.drop };
-        let by_angle = change(body, &turned(U_ANGLE_RAD), k);
+        let by_angle = change(body, &turned(file.tolerances.angle_rad / 2.0), k);
         let by_inertia = self.by_inertia_m_s(rung, k);
         // While the pulse of duration T lasts the cask turns by about ω T / 2 and gravity adds g T.
         let duration_s = measured.duration.value.max(0.0);
@@ -221,6 +221,8 @@ mod tests {
             },
             contact: Contact::Rough,
             filter: FilterChoice::Auto,
+            tolerances: crate::data::Tolerances::default(),
+            corrections: crate::data::Corrections::default(),
             time: None,
             channels: vec![],
             defaults: vec![],

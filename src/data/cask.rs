@@ -1,12 +1,8 @@
 //! The cask file, checked: the cask, the drop, the contact, the filter and the channels.
 
+use super::tolerances::{Corrections, Tolerances};
 use serde::Serialize;
 use std::path::PathBuf;
-
-/// Standard uncertainty of the drop angle, rad: an inclinometer on the rigged cask reads within half a degree (k = 2).
-///
-/// Both the reconstruction and the prediction carry it; a larger one widens both and lets a wrong angle pass.
-pub const U_ANGLE_RAD: f64 = 0.25 * std::f64::consts::PI / 180.0;
 
 /// L may sink this share of the length below where it left before that counts as another impact   (9)
 ///
@@ -215,6 +211,10 @@ pub struct CaskFile {
     pub contact: Contact,
     /// `[filter]`.
     pub filter: FilterChoice,
+    /// `[tolerance]`.
+    pub tolerances: Tolerances,
+    /// `[corrections]`.
+    pub corrections: Corrections,
     /// `[recording] time`.
     pub time: Option<String>,
     /// `[[channel]]`, in the file's order.

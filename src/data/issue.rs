@@ -48,8 +48,12 @@ pub enum IssueCode {
     ZeroShift,
     /// Noise that limits the result.
     Noise,
+    /// Mains hum, and taken off.
+    Hum,
     /// Too few samples over the pulse.
     LowRate,
+    /// Content up to half the sample rate: what lies above folds down.
+    Aliasing,
     /// A channel coupled AC, and corrected for it.
     AcCoupled,
     /// A first end that reads as if mounted the other way round.
@@ -60,6 +64,8 @@ pub enum IssueCode {
     Scale,
     /// Channels that cannot belong to one rigid body.
     NotRigid,
+    /// A sensor that the cask file puts where none can be.
+    SensorPosition,
     /// Channels whose events lie apart in time.
     Skew,
     /// The recording begins too late for an offset or the first contact.

@@ -12,19 +12,20 @@ mod listing;
 mod motion;
 mod prediction;
 mod quantities;
+mod reconstruction;
 mod recording;
 mod scene;
 mod signal;
 mod study;
 mod synthetic;
+mod tolerances;
 
 pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
     ModelChoice, Setting, SlapDown, Verdict,
 };
 pub use cask::{
-    Axis, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice, GRAZE_SHARE, Source,
-    U_ANGLE_RAD, Unit,
+    Axis, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice, GRAZE_SHARE, Source, Unit,
 };
 pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, MotionCurve, Spectrum};
@@ -36,6 +37,9 @@ pub use listing::{ListedChannel, Listing};
 pub use motion::{AxialClosure, Motion, MotionState, Setup};
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, Quantities};
+pub use reconstruction::{
+    Adjustment, Closure, ReconstructionCandidate, ReconstructionChoice, ReconstructionRung,
+};
 pub use recording::{Recording, RecordingFormat};
 pub use scene::{BendingMode, Chain, CrushableEnd, Scene, SceneChannel, SimulatedMotion, Truth};
 pub use signal::{CoarseEvent, Signal};
@@ -44,3 +48,4 @@ pub use study::{
     RegimeMap, Request, Sensitivity, Study, Sweep, SweepVariable, Uncertain,
 };
 pub use synthetic::{SceneFile, SyntheticChannel, SyntheticRecording, WantedImpact};
+pub use tolerances::{Corrections, Tolerances};

@@ -1,17 +1,7 @@
 //! The uncertain inputs of the reconstruction and by how much each may be off.
 
 use super::Measured;
-use crate::data::{AxialClosure, Axis, Events, FlightFit, Setup, U_ANGLE_RAD};
-
-/// Standard uncertainty of a sensor's calibration: 1 % at k = 2, as ISO 16063-21 comparison calibrations state.
-const U_CALIBRATION: f64 = 0.005;
-/// Standard uncertainty of the impact velocity: 2.5 cm of 9 m of height is 0.14 % of √(2 g h).
-const U_IMPACT_VELOCITY: f64 = 0.0015;
-/// Standard uncertainty of a sensor's position, m: its seat is measured to a centimetre (k = 2).
-const U_POSITION_M: f64 = 0.005;
-/// Share of the difference to the other contact law that counts as standard uncertainty: the law is the cask file's word, and
-/// between rough and smooth real contacts lie near the rough end (Quercetti et al.: no sliding was seen).
-const LAW_SHARE: f64 = 0.05;
+use crate::data::{AxialClosure, Axis, Events, FlightFit, Setup};
 
 /// One set of inputs.
 #[derive(Debug, Clone)]
@@ -38,10 +28,10 @@ pub(super) struct Variation {
 
 enum Change {
     Step { channel: usize, add_m_s: f64 },
-    Scale { channel: usize },
-    Tilt { lever_m: f64, channel: usize },
-    Angle,
-    ImpactVelocity,
+    Scale { channel: usize, share: f64 },
+    Position { by_m: f64, lever_m: f64, channel: usize },
+    Angle { by_rad: f64 },
+    ImpactVelocity { share: f64 },
     Event { which: usize, by_s: f64 },
     Law(AxialClosure),
 }
@@ -57,18 +47,18 @@ impl Variation {
         };
         match self.change {
             Change::Step { channel, add_m_s } => step(&mut moved.flight, channel, sign * add_m_s),
-            Change::Scale { channel } => {
+            Change::Scale { channel, share } => {
                 let value = inputs.flight.plateaus.get(channel).map_or(0.0, |p| p.velocity_step_m_s);
-                step(&mut moved.flight, channel, sign * U_CALIBRATION * value);
+                step(&mut moved.flight, channel, sign * share * value);
             }
-            Change::Tilt { lever_m, channel } => {
+            Change::Position { by_m, lever_m, channel } => {
                 // A sensor nearer to the middle by δ reads f + Ω̇ δ: its step changes by Ω δ.
                 let values: Vec<f64> = inputs.flight.plateaus.iter().map(|p| p.velocity_step_m_s).collect();
                 let range = values.iter().fold(0.0_f64, |m, v| m.max((v - values[channel]).abs()));
-                step(&mut moved.flight, channel, sign * U_POSITION_M * range / lever_m);
+                step(&mut moved.flight, channel, sign * by_m * range / lever_m);
             }
-            Change::Angle => moved.setup.angle_rad += sign * U_ANGLE_RAD,
-            Change::ImpactVelocity => moved.setup.impact_velocity_m_s *= 1.0 + sign * U_IMPACT_VELOCITY,
+            Change::Angle { by_rad } => moved.setup.angle_rad += sign * by_rad,
+            Change::ImpactVelocity { share } => moved.setup.impact_velocity_m_s *= 1.0 + sign * share,
             Change::Event { which, by_s } => {
                 let events = &mut moved.events;
                 let slot = match which {
@@ -89,6 +79,11 @@ impl Variation {
 /// Every input that is uncertain, with its size.
 pub(super) fn variations(measured: &Measured) -> Vec<Variation> {
     let mut all = Vec::new();
+    // Half of a 95 % half-width is a standard uncertainty.
+    let known = &measured.tolerances;
+    let (calibration, position_m) = (known.calibration / 2.0, known.position_m / 2.0);
+    let (angle_rad, velocity) = (known.angle_rad / 2.0, known.impact_velocity / 2.0);
+    let law_share = known.friction / 2.0;
     let mut add = |name: String, size: String, share: f64, change: Change| {
         all.push(Variation { name, size, share, change });
     };
@@ -115,21 +110,31 @@ pub(super) fn variations(measured: &Measured) -> Vec<Variation> {
         );
         add(
             format!("calibration of {}", signal.name),
-            format!("{:.1} %", 100.0 * U_CALIBRATION),
+            format!("{:.1} %", 100.0 * calibration),
             1.0,
-            Change::Scale { channel },
+            Change::Scale { channel, share: calibration },
         );
         if signal.axis == Axis::Transverse {
             add(
                 format!("position of {}", signal.name),
-                format!("{:.0} mm", 1e3 * U_POSITION_M),
+                format!("{:.0} mm", 1e3 * position_m),
                 1.0,
-                Change::Tilt { lever_m: measured.setup.length_m, channel },
+                Change::Position { by_m: position_m, lever_m: measured.setup.length_m, channel },
             );
         }
     }
-    add("drop angle".into(), format!("{:.2}°", U_ANGLE_RAD.to_degrees()), 1.0, Change::Angle);
-    add("impact velocity".into(), format!("{:.2} %", 100.0 * U_IMPACT_VELOCITY), 1.0, Change::ImpactVelocity);
+    add(
+        "drop angle".into(),
+        format!("{:.2}°", angle_rad.to_degrees()),
+        1.0,
+        Change::Angle { by_rad: angle_rad },
+    );
+    add(
+        "impact velocity".into(),
+        format!("{:.2} %", 100.0 * velocity),
+        1.0,
+        Change::ImpactVelocity { share: velocity },
+    );
     for (which, name) in
         ["time of first contact", "time of separation", "time of slap-down"].into_iter().enumerate()
     {
@@ -139,8 +144,8 @@ pub(super) fn variations(measured: &Measured) -> Vec<Variation> {
     if let Some(law) = measured.other_law {
         add(
             "contact law".into(),
-            format!("{:.0} % of rough to smooth", 100.0 * LAW_SHARE),
-            LAW_SHARE,
+            format!("{:.0} % of rough to smooth", 100.0 * law_share),
+            law_share,
             Change::Law(law),
         );
     }

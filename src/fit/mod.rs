@@ -3,7 +3,7 @@
 mod inputs;
 
 use crate::data::{
-    AxialClosure, Contribution, Estimate, Events, FlightFit, Motion, Quantities, Setup, Signal,
+    AxialClosure, Contribution, Estimate, Events, FlightFit, Motion, Quantities, Setup, Signal, Tolerances,
 };
 use inputs::{Inputs, variations};
 
@@ -31,6 +31,8 @@ pub struct Measured<'a> {
     pub setup: &'a Setup,
     /// The contact law that the recording does not exclude either, where no axial channel tests it.
     pub other_law: Option<AxialClosure>,
+    /// How well the stated things are known.
+    pub tolerances: Tolerances,
 }
 
 /// Reads the quantities off the motion and propagates the inputs' standard uncertainties to them (GUM, 5.1.2), each input moved

@@ -2,6 +2,7 @@
 
 pub(super) mod channel;
 pub(super) mod section;
+pub(super) mod tolerance;
 mod wording;
 
 use crate::data::{Cask, CaskFile, Contact, Drop, FilterChoice};
@@ -180,6 +181,8 @@ fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
     let drop = drop(&root.required_table("drop")?, &mut defaults)?;
     let contact = contact(root.table("contact")?.as_ref(), &mut defaults)?;
     let filter = filter(root.table("filter")?.as_ref(), &mut defaults)?;
+    let tolerances = tolerance::tolerances(root.table("tolerance")?.as_ref(), &mut defaults)?;
+    let corrections = tolerance::corrections(root.table("corrections")?.as_ref())?;
     let time = match root.table("recording")? {
         Some(table) => table.text("time")?.map(|time| time.value),
         None => None,
@@ -192,6 +195,8 @@ fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
         drop,
         contact,
         filter,
+        tolerances,
+        corrections,
         time,
         channels,
         defaults,

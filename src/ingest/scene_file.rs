@@ -167,6 +167,8 @@ fn checked(path: &Path, text: &str, crush: Crush) -> Result<SceneFile, CaskFileE
         drop: stated_drop(&drop_table, drop)?,
         contact,
         filter: FilterChoice::Auto,
+        tolerances: crate::data::Tolerances::default(),
+        corrections: crate::data::Corrections::default(),
         time: None,
         channels: specs,
         defaults,

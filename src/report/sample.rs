@@ -278,6 +278,8 @@ pub(super) fn cask_file() -> CaskFile {
         },
         contact: Contact::Rough,
         filter: FilterChoice::Auto,
+        tolerances: crate::data::Tolerances::default(),
+        corrections: crate::data::Corrections::default(),
         time: None,
         channels: vec![
             channel("A1", End::First, "/daq/a1.samples", 0.15),

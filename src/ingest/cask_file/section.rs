@@ -20,11 +20,13 @@ pub(in crate::ingest) struct Kind {
 pub(in crate::ingest) const CASK_FILE: Kind = Kind { name: "the cask file", tables: &KEYS };
 
 /// Every table of a cask file with its keys; "" is the file itself.
-const KEYS: [(&str, &[&str]); 8] = [
-    ("", &["cask", "drop", "contact", "filter", "recording", "channel"]),
+const KEYS: [(&str, &[&str]); 10] = [
+    ("", &["cask", "drop", "contact", "tolerance", "corrections", "filter", "recording", "channel"]),
     ("cask", &["name", "mass_kg", "length_m", "height_m", "width_m", "cog_m", "inertia_kg_m2"]),
     ("drop", &["height_m", "angle_deg", "impact_velocity_m_s", "gravity_m_s2"]),
     ("contact", &["friction"]),
+    ("tolerance", &super::tolerance::TOLERANCE_KEYS),
+    ("corrections", &super::tolerance::CORRECTION_KEYS),
     ("filter", &["cfc", "cutoff_hz"]),
     ("recording", &["time"]),
     (

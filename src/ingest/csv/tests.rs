@@ -40,6 +40,8 @@ pub(in super::super) fn cask_file(sources: &[&str]) -> CaskFile {
         },
         contact: Contact::Rough,
         filter: FilterChoice::Auto,
+        tolerances: crate::data::Tolerances::default(),
+        corrections: crate::data::Corrections::default(),
         time: None,
         channels: channels.collect(),
         defaults: Vec::new(),

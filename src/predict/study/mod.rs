@@ -170,6 +170,8 @@ mod tests {
             },
             contact: Contact::Rough,
             filter: FilterChoice::Auto,
+            tolerances: crate::data::Tolerances::default(),
+            corrections: crate::data::Corrections::default(),
             time: None,
             channels: vec![],
             defaults: vec![],

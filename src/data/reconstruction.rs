@@ -1,0 +1,81 @@
+//! How the motion was had: the rungs of the reconstruction, the one taken, and what the others say.
+
+use super::estimate::Estimate;
+use serde::Serialize;
+
+/// A rung of the reconstruction, simplest first   (29)
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ReconstructionRung {
+    /// Each channel integrated by itself and read off at the events, gravity left out between the impacts: \[P\] Fig. 13.
+    Channels,
+    /// Planar motion with gravity, each velocity step the mean over the flight.
+    Planar,
+    /// Planar motion, the flight fitted with bending modes and drift.
+    Flight,
+    /// Planar motion, all inputs fitted to all observables within their tolerances.
+    Joint,
+}
+
+impl ReconstructionRung {
+    /// All, simplest first.
+    pub const ALL: [Self; 4] = [Self::Channels, Self::Planar, Self::Flight, Self::Joint];
+}
+
+/// What one rung says.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReconstructionCandidate {
+    /// Which.
+    pub rung: ReconstructionRung,
+    /// Slap-down speed by it.
+    pub speed: Option<Estimate>,
+    /// k by it.
+    pub k: Option<Estimate>,
+    /// Whether its residuals are within what noise and tolerances explain.
+    pub consistent: bool,
+    /// What is left, in one phrase.
+    pub residual: String,
+}
+
+/// One observable that the motion must meet beside the velocity steps, and how far it is off.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Closure {
+    /// What it is, as a person says it: "height of the second end at slap-down".
+    pub name: String,
+    /// By how much the stated inputs miss it, with unit.
+    pub miss: String,
+    /// That, over its standard uncertainty from all inputs.
+    pub miss_in_u: f64,
+    /// What the joint fit leaves of it, over the observable's own standard uncertainty.
+    pub left_in_u: f64,
+}
+
+/// One input as the joint fit moved it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Adjustment {
+    /// The input, as the budget calls it.
+    pub input: String,
+    /// Its tolerance as a standard uncertainty, with unit.
+    pub standard_uncertainty: String,
+    /// By how many of those it was moved.
+    pub moved_in_u: f64,
+    /// Its standard uncertainty after the fit, as a share of the one before.
+    pub left_share: f64,
+}
+
+/// The rung taken and the others.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReconstructionChoice {
+    /// The rung taken.
+    pub rung: ReconstructionRung,
+    /// Why, and what the next rung would have changed.
+    pub reason: String,
+    /// Every rung that could be had, simplest first.
+    pub candidates: Vec<ReconstructionCandidate>,
+    /// What the motion must meet beside the velocity steps.
+    pub closures: Vec<Closure>,
+    /// χ² of the joint fit and its degrees of freedom.
+    pub chi_square: Option<(f64, usize)>,
+    /// What the joint fit moved, largest first.
+    pub adjustments: Vec<Adjustment>,
+}

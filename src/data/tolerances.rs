@@ -1,0 +1,57 @@
+//! How well the stated things are known, and which corrections may be made.
+
+/// 95 % half-widths of what the cask file states and the sensors' certificates promise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerances {
+    /// Drop angle, rad.
+    pub angle_rad: f64,
+    /// Impact velocity, as a share of it.
+    pub impact_velocity: f64,
+    /// Scale of a channel, as a share of it.
+    pub calibration: f64,
+    /// What a sensor reads of the other body axis, as a share: cross-axis sensitivity and tilt.
+    pub cross_axis: f64,
+    /// Place of a sensor along the axis, m.
+    pub position_m: f64,
+    /// Centre of gravity, m.
+    pub cog_m: f64,
+    /// Inertia, as a share of it.
+    pub inertia: f64,
+    /// Contact law, as a share of the way from the stated law to the other one.
+    pub friction: f64,
+}
+
+impl Default for Tolerances {
+    /// Sources and sizes: docs/uncertainty.md.
+    fn default() -> Self {
+        Self {
+            angle_rad: 0.5 * std::f64::consts::PI / 180.0,
+            impact_velocity: 0.003,
+            calibration: 0.015,
+            cross_axis: 0.03,
+            position_m: 0.01,
+            cog_m: 0.01,
+            inertia: 0.02,
+            friction: 0.1,
+        }
+    }
+}
+
+/// Which corrections of the samples may be made; what is made is reported with its size.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Corrections {
+    /// The mean of the free fall is taken off.
+    pub offset: bool,
+    /// A change of the offset at the first impact is fitted and taken off.
+    pub zero_shift: bool,
+    /// A channel that is stamped late or early is shifted.
+    pub skew: bool,
+    /// Mains hum seen in the free fall is taken off.
+    pub hum: bool,
+}
+
+impl Default for Corrections {
+    fn default() -> Self {
+        Self { offset: true, zero_shift: true, skew: true, hum: true }
+    }
+}

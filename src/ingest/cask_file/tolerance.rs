@@ -1,0 +1,120 @@
+//! `[tolerance]` and `[corrections]` to how well the stated things are known and what may be corrected.
+
+use super::CaskFileError;
+use super::section::Section;
+use crate::data::{Corrections, Tolerances};
+
+/// Keys of `[tolerance]`, each a 95 % half-width in the unit of its ending.
+pub(super) const TOLERANCE_KEYS: [&str; 8] = [
+    "angle_deg",
+    "impact_velocity_percent",
+    "calibration_percent",
+    "cross_axis_percent",
+    "position_m",
+    "cog_m",
+    "inertia_percent",
+    "friction_percent",
+];
+
+/// Keys of `[corrections]`, each true or false.
+pub(super) const CORRECTION_KEYS: [&str; 4] = ["offset", "zero_shift", "skew", "hum"];
+
+/// A tolerance above this share says that nothing is known, percent.
+const LARGEST_PERCENT: f64 = 100.0;
+
+/// `[tolerance]`; what it leaves out is a default, named in `defaults`.
+pub(super) fn tolerances(
+    table: Option<&Section>,
+    defaults: &mut Vec<String>,
+) -> Result<Tolerances, CaskFileError> {
+    let mut stated = Tolerances::default();
+    for key in TOLERANCE_KEYS {
+        let given = match table {
+            Some(table) => table.not_negative(key)?.map(|value| (table, value)),
+            None => None,
+        };
+        let Some((table, given)) = given else {
+            defaults.push(format!("tolerance.{key}"));
+            continue;
+        };
+        if key.ends_with("_percent") && given.value > LARGEST_PERCENT {
+            return Err(table.wrong(
+                given.span,
+                format!("{key} is {}, more than the thing itself", given.value),
+                "0 to 100 percent".into(),
+                "the half-width of the 95 % interval, in percent: 1.5 means ± 1.5 %",
+            ));
+        }
+        let share = given.value / 100.0;
+        match key {
+            "angle_deg" => stated.angle_rad = given.value.to_radians(),
+            "impact_velocity_percent" => stated.impact_velocity = share,
+            "calibration_percent" => stated.calibration = share,
+            "cross_axis_percent" => stated.cross_axis = share,
+            "position_m" => stated.position_m = given.value,
+            "cog_m" => stated.cog_m = given.value,
+            "inertia_percent" => stated.inertia = share,
+            _ => stated.friction = share,
+        }
+    }
+    Ok(stated)
+}
+
+/// `[corrections]`; what it leaves out is made.
+pub(super) fn corrections(table: Option<&Section>) -> Result<Corrections, CaskFileError> {
+    let mut made = Corrections::default();
+    let Some(table) = table else { return Ok(made) };
+    for (key, made) in CORRECTION_KEYS.into_iter().zip([
+        &mut made.offset,
+        &mut made.zero_shift,
+        &mut made.skew,
+        &mut made.hum,
+    ]) {
+        let Some(value) = table.value(key) else { continue };
+        *made = value.get_ref().as_bool().ok_or_else(|| {
+            table.wrong(
+                value.span(),
+                format!("{key} is neither true nor false"),
+                "true or false".into(),
+                "without quotes; false leaves the samples as they are in this respect, and the report says so",
+            )
+        })?;
+    }
+    Ok(made)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::checked;
+    use std::path::Path;
+
+    const CASK: &str = "[cask]\nmass_kg = 1000\nlength_m = 5\n[drop]\nheight_m = 9\nangle_deg = 15\n";
+
+    fn parsed(more: &str) -> Result<crate::data::CaskFile, String> {
+        checked(Path::new("c.toml"), &format!("{CASK}{more}")).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn what_is_left_out_is_a_default_and_said_to_be_one() {
+        let file = parsed("[tolerance]\nangle_deg = 1\ncalibration_percent = 5\n").expect("a sound file");
+        assert!((file.tolerances.angle_rad.to_degrees() - 1.0).abs() < 1e-12);
+        assert!((file.tolerances.calibration - 0.05).abs() < 1e-12);
+        assert!(file.defaults.iter().any(|d| d == "tolerance.position_m"));
+        assert!(!file.defaults.iter().any(|d| d == "tolerance.angle_deg"));
+    }
+
+    #[test]
+    fn a_correction_can_be_switched_off() {
+        let file = parsed("[corrections]\nzero_shift = false\n").expect("a sound file");
+        assert!(!file.corrections.zero_shift && file.corrections.offset);
+    }
+
+    #[test]
+    fn nonsense_is_named_with_its_line() {
+        let said = |more: &str| parsed(more).expect_err("nonsense");
+        assert!(said("[tolerance]\nangle_deg = -1\n").contains("line 8"));
+        assert!(said("[tolerance]\ninertia_percent = 120\n").contains("more than the thing itself"));
+        assert!(said("[tolerance]\nangle = 1\n").contains("angle"));
+        assert!(said("[corrections]\noffset = \"no\"\n").contains("neither true nor false"));
+    }
+}
