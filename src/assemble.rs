@@ -2,8 +2,8 @@
 
 use crate::data::{
     Analysis, CaskFile, ChannelSummary, Comparison, Curves, DropResult, Estimate, Events, FirstImpact,
-    FlightFit, Input, Issue, IssueCode, ModelChoice, Quantities, ReconstructionChoice, Recording, RestLevel, Setting, Setup, Severity, Signal,
-    SlapDown,
+    FlightFit, Input, Issue, IssueCode, ModelChoice, Quantities, ReconstructionChoice, Recording, RestLevel,
+    Setting, Setup, Severity, Signal, SlapDown,
 };
 use crate::{fit, judge, motion, predict};
 

@@ -20,8 +20,8 @@ pub mod synth;
 use assemble::Draft;
 use data::{
     Analysis, AxialClosure, Axis, Cask, CaskFile, Channel, Contact, Coupling, Drop, Events, FlightFit, Issue,
-    IssueCode, Motion, Quantities, ReconstructionChoice, Recording, RestLevel, Scene, SceneFile, Setup, Severity, Signal, SyntheticRecording,
-    WantedImpact,
+    IssueCode, Motion, Quantities, ReconstructionChoice, Recording, RestLevel, Scene, SceneFile, Setup,
+    Severity, Signal, SyntheticRecording, WantedImpact,
 };
 use std::path::Path;
 
@@ -141,11 +141,7 @@ struct Reconstructed {
 }
 
 /// The flight fit, the motion and what is read off it; what prevents them goes to the draft's issues.
-fn flight_and_motion(
-    draft: &mut Draft,
-    signals: &[Signal],
-    contact: (f64, f64),
-) -> Option<Reconstructed> {
+fn flight_and_motion(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Option<Reconstructed> {
     let cask_file = draft.cask_file;
     for end in [data::End::First, data::End::Second] {
         if events::transverse(signals, end).is_none() {
@@ -180,7 +176,11 @@ fn flight_and_motion(
         tolerances: cask_file.tolerances,
         inertia_m2: cask.is_body.then_some(cask.inertia_kg_m2 / cask.mass_kg),
         rests: &draft.rests,
-        fall_s: draft.events.release_s.zip(draft.events.fall_end_s).map(|(release_s, end_s)| end_s - release_s),
+        fall_s: draft
+            .events
+            .release_s
+            .zip(draft.events.fall_end_s)
+            .map(|(release_s, end_s)| end_s - release_s),
     };
     let reading = motion::read_channels(signals, &draft.events, &setup);
     let (quantities, choice) = fit::ladder(&measured, plain.as_ref(), reading, &motion::outcome)?;

@@ -3,8 +3,8 @@
 use super::propagate::Model;
 use super::{COVERAGE, Measured, Reconstruct};
 use crate::data::{
-    Axis, ChannelReading, Closure, End, Estimate, FlightFit, Quantities, ReconstructionCandidate, ReconstructionChoice,
-    ReconstructionRung,
+    Axis, ChannelReading, Closure, End, Estimate, FlightFit, Quantities, ReconstructionCandidate,
+    ReconstructionChoice, ReconstructionRung,
 };
 
 /// A closure missed by more standard uncertainties than this is not explained by noise and tolerances (95 %).
@@ -96,7 +96,8 @@ fn by_channels(
         let by_scale = measured.tolerances.calibration / 2.0 * (value_m_s + v0_m_s);
         left_m_s.hypot(by_scale).hypot(measured.tolerances.impact_velocity / 2.0 * v0_m_s)
     };
-    let speed = reading.second_m_s.map(|v| Estimate::new(v.abs(), COVERAGE * u_m_s(v, second_left_m_s), "m/s"));
+    let speed =
+        reading.second_m_s.map(|v| Estimate::new(v.abs(), COVERAGE * u_m_s(v, second_left_m_s), "m/s"));
     let u95_m_s = COVERAGE * u_m_s(reading.first_m_s, first_left_m_s);
     let quantities = Quantities {
         speed,
@@ -125,7 +126,9 @@ fn by_flight(measured: &Measured, quantities: Quantities, closures: &[Closure]) 
     let left_m_s = measured.flight.plateaus.iter().map(|p| p.residual_m_s).fold(0.0, f64::max);
     let what = match (measured.flight.modes.len(), measured.flight.drift) {
         (0, false) => "no mode, no drift".to_owned(),
-        (n, drift) => format!("{n} mode{}{}", if n == 1 { "" } else { "s" }, if drift { " and drift" } else { "" }),
+        (n, drift) => {
+            format!("{n} mode{}{}", if n == 1 { "" } else { "s" }, if drift { " and drift" } else { "" })
+        }
     };
     let residual = format!("{left_m_s:.3} m/s about {what}; {}", worst(closures));
     step(ReconstructionRung::Flight, quantities, meets(closures), residual)
@@ -196,7 +199,8 @@ fn reason(steps: &[Step], taken: usize) -> String {
     }
     if let Some(next) = steps.get(taken + 1).map(|s| &s.candidate) {
         let change = |a: Option<Estimate>, b: Option<Estimate>| a.zip(b).map(|(a, b)| b.value - a.value);
-        let speed = change(own.speed, next.speed).map_or(String::new(), |d| format!("the speed by {d:+.2} m/s and "));
+        let speed =
+            change(own.speed, next.speed).map_or(String::new(), |d| format!("the speed by {d:+.2} m/s and "));
         let k = change(own.k, next.k).map_or(String::new(), |d| format!("k by {d:+.3}"));
         said = format!("{said}; the {} would change {speed}{k}, within the interval", words(next.rung));
     }

@@ -98,7 +98,12 @@ pub fn fit_flight(signals: &[Signal], window: &Window, cog_m: f64) -> Option<Fli
 
 /// The same window with each velocity step the mean over it: no mode, no drift. The candidates stay those of the best fit.
 #[must_use]
-pub fn mean_of_flight(signals: &[Signal], best: &FlightFit, window: &Window, cog_m: f64) -> Option<FlightFit> {
+pub fn mean_of_flight(
+    signals: &[Signal],
+    best: &FlightFit,
+    window: &Window,
+    cog_m: f64,
+) -> Option<FlightFit> {
     let window = Window { from_s: best.from_s, to_s: best.to_s, ..*window };
     let series: Vec<Series> = signals.iter().map(|s| series(s, &window, cog_m)).collect();
     let mean = fit(&series, &[], None, false)?;

@@ -47,7 +47,7 @@ fn follow(
     let contact_s = events.first_contact_s?;
     let separation_s = events.separation_s?;
     let line = Line::through(signals, setup.cog_m)?;
-    let histories = Histories::new(signals, fit, contact_s, separation_s)?;
+    let histories = Histories::new(signals, fit, &line, (contact_s, separation_s))?;
     let mut body = Contact::start(setup, contact_s);
     let step_s = (separation_s - contact_s) / f64::from(CONTACT_STEPS);
     record(&body.state);

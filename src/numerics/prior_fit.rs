@@ -47,7 +47,8 @@ pub fn fit(count: usize, residuals: Residuals) -> Option<PriorFit> {
     let start = DVector::zeros(count);
     residuals(start.as_slice())?;
     let problem = Problem { residuals, unknowns: start };
-    let (solved, _) = LevenbergMarquardt::new().with_ftol(1e-6).with_xtol(1e-4).with_patience(4).minimize(problem);
+    let (solved, _) =
+        LevenbergMarquardt::new().with_ftol(1e-6).with_xtol(1e-4).with_patience(4).minimize(problem);
     let left = residuals(solved.unknowns.as_slice())?;
     let jacobian = derivatives(residuals, solved.unknowns.as_slice())?;
     // q̂ = (1 + JᵀJ)⁻¹ (prior + Jᵀ observation)   (31)
@@ -57,7 +58,12 @@ pub fn fit(count: usize, residuals: Residuals) -> Option<PriorFit> {
     response.columns_mut(0, count).copy_from(&covariance);
     response.columns_mut(count, left.len()).copy_from(&(&covariance * jacobian.transpose()));
     let chi_square = solved.unknowns.norm_squared() + left.iter().map(|r| r * r).sum::<f64>();
-    chi_square.is_finite().then(|| PriorFit { unknowns: solved.unknowns.as_slice().to_vec(), left, chi_square, response })
+    chi_square.is_finite().then(|| PriorFit {
+        unknowns: solved.unknowns.as_slice().to_vec(),
+        left,
+        chi_square,
+        response,
+    })
 }
 
 /// ∂r/∂q by central differences; a column an unknown.
