@@ -16,12 +16,14 @@ pub mod numerics;
 pub mod predict;
 pub mod report;
 pub mod synth;
+pub mod validate;
 
 use assemble::Draft;
 use data::{
-    Analysis, AxialClosure, Axis, Cask, CaskFile, Channel, Contact, Coupling, Drop, Events, FlightFit, Issue,
-    IssueCode, Motion, Quantities, ReconstructionChoice, Recording, RestLevel, Scene, SceneFile, Setup,
-    Severity, Signal, SyntheticRecording, WantedImpact,
+    Analysis, AxialClosure, Axis, Campaign, CampaignRequest, Cask, CaskFile, Channel, Contact, Coupling,
+    CrushableEnd, Drop, Events, FlightFit, Issue, IssueCode, Motion, Quantities, ReconstructionChoice,
+    Recording, RestLevel, Scene, SceneFile, SceneNumber, Setup, Severity, Signal, SyntheticRecording,
+    WantedImpact,
 };
 use std::path::Path;
 
@@ -100,13 +102,37 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
 /// # Errors
 /// One diagnostic that shows the line.
 pub fn scene_file(path: &Path) -> Result<SceneFile, ingest::IngestError> {
-    let crush = |cask: &Cask, drop: &Drop, contact, end, wanted: WantedImpact| {
-        let WantedImpact { duration_s, restitution, yield_share } = wanted;
-        let pulse = synth::Pulse { duration_s, restitution, yield_share };
-        synth::crushable_end(cask, drop, contact, end, pulse)
-    };
     Ok(ingest::scene_file::parse(path, &crush)?)
 }
+
+/// The stiffnesses of an end that give a wanted impact.
+fn crush(cask: &Cask, drop: &Drop, contact: Contact, end: data::End, wanted: WantedImpact) -> CrushableEnd {
+    let WantedImpact { duration_s, restitution, yield_share } = wanted;
+    let pulse = synth::Pulse { duration_s, restitution, yield_share };
+    synth::crushable_end(cask, drop, contact, end, pulse)
+}
+
+/// Random scenes with known truth through simulation, recorder and analysis; `progress` is told the share that is done.
+#[must_use]
+pub fn campaign(request: &CampaignRequest, progress: ingest::Progress) -> Campaign {
+    validate::run(request, &MEANS, progress)
+}
+
+/// One scene of a campaign, for [`report::synthetic_files`].
+#[must_use]
+pub fn campaign_scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, SyntheticRecording) {
+    validate::scene(seed, number, exact, &MEANS)
+}
+
+/// What a campaign's scenes pass through.
+const MEANS: validate::Means<'static> = validate::Means {
+    crush: &crush,
+    simulate: &synth::simulate,
+    force: &synth::specific_force_m_s2,
+    record: &synth::record,
+    read: &|recording, cask_file| ingest::synthetic(recording, cask_file).ok(),
+    analyze: &analyze,
+};
 
 /// The recording of a scene by its sensors and recorder, and its truth. The same scene gives the same bits.
 #[must_use]

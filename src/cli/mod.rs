@@ -9,6 +9,7 @@ mod output;
 mod predict;
 mod progress;
 mod synth;
+mod validate;
 
 pub use complaint::complain;
 
@@ -49,6 +50,8 @@ pub enum Command {
     Init(init::Arguments),
     /// Make a synthetic recording of a scene, with its cask file and its truth
     Synth(synth::Arguments),
+    /// Measure how far off the analysis is, on random scenes whose truth is known
+    Validate(validate::Arguments),
 }
 
 /// How a command that ran to its end ended.
@@ -90,6 +93,7 @@ pub fn run(command: &Command) -> miette::Result<Outcome> {
         Command::Inspect(arguments) => inspect::run(arguments),
         Command::Init(arguments) => init::run(arguments),
         Command::Synth(arguments) => synth::run(arguments),
+        Command::Validate(arguments) => validate::run(arguments),
     }
 }
 

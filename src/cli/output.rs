@@ -199,6 +199,11 @@ impl JsonTarget {
     }
 }
 
+/// Replaces a document that was read before, whole or not at all.
+pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), CannotWrite> {
+    write_file(path, bytes).map_err(|source| CannotWrite::Failed { path: shown(path), source: bare(&source) })
+}
+
 fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if fs::metadata(path).is_ok_and(|m| !m.is_file()) {
         return fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);

@@ -1,6 +1,7 @@
 //! The plain structs that pass between stages; they hold no algorithm.
 
 mod analysis;
+mod campaign;
 mod cask;
 mod channel;
 mod curves;
@@ -24,6 +25,7 @@ pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
     ModelChoice, Setting, SlapDown, Verdict,
 };
+pub use campaign::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber, Scored};
 pub use cask::{
     Axis, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice, GRAZE_SHARE, Source, Unit,
 };

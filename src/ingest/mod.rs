@@ -6,11 +6,13 @@ mod csv;
 mod detect;
 mod error;
 mod hdf5;
+mod in_memory;
 mod mcap;
 pub mod scene_file;
 pub mod time_base;
 
 pub use error::IngestError;
+pub use in_memory::synthetic;
 
 use crate::data::{CaskFile, Issue, Listing, Recording, RecordingFormat};
 use sha2::{Digest, Sha256};

@@ -1,0 +1,50 @@
+//! A synthetic recording to the channels that reading its file would give, without the file.
+
+use super::error::{self, IngestError};
+use super::time_base::{self, Block};
+use super::{RawChannel, RawRecording, assemble};
+use crate::data::{CaskFile, Recording, RecordingFormat, Samples, SyntheticChannel, SyntheticRecording};
+use std::path::Path;
+
+/// What stands for the name of the file.
+const NAME: &str = "synthetic";
+
+/// The channels of `recording`, in the order of the cask file's, as from its MCAP file: runs of NaN were never written.
+///
+/// # Errors
+/// A channel without a number, as for a file.
+pub fn synthetic(recording: &SyntheticRecording, cask_file: &CaskFile) -> Result<Recording, IngestError> {
+    let path = Path::new(NAME);
+    let mut channels = Vec::with_capacity(recording.channels.len());
+    for (spec, channel) in recording.channels.iter().enumerate() {
+        let Some(stated) = cask_file.channels.get(spec) else { break };
+        let uniform = time_base::from_blocks(blocks(channel, stated.polarity)).map_err(|problem| {
+            let mend = "record the channel over the whole drop";
+            error::source(path, &channel.name, problem.to_string(), mend)
+        })?;
+        channels.push(RawChannel { spec, uniform, unit: Some(channel.unit.clone()) });
+    }
+    let raw = RawRecording { channels, zero_unix_ns: None, issues: Vec::new() };
+    assemble::recording(path, RecordingFormat::Mcap, String::new(), raw, cask_file)
+}
+
+/// The runs of samples between losses, as a sensor writes them that is mounted with `polarity`.
+fn blocks(channel: &SyntheticChannel, polarity: f64) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    let mut at = 0;
+    for run in channel.samples.split(|x| x.is_nan()) {
+        if !run.is_empty() {
+            #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
+            let start_s = channel.start_s + at as f64 / channel.sample_rate_hz;
+            let samples = run.iter().map(|&x| if polarity < 0.0 { -x } else { x }).collect();
+            blocks.push(Block {
+                start_s,
+                sample_rate_hz: channel.sample_rate_hz,
+                samples: Samples::F32(samples),
+            });
+        }
+        // The lost sample that ends the run counts too.
+        at += run.len() + 1;
+    }
+    blocks
+}

@@ -1,0 +1,77 @@
+//! A seed and a scene's number to its random numbers.
+
+use crate::data::SceneNumber;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use rand_distr::{Distribution, StandardNormal};
+
+/// Standard deviations in the half-width that holds 95 % of a normal distribution, as the analysis takes them.
+const SIGMAS_OF_95: f64 = 2.0;
+
+/// The random numbers of one scene.
+pub(super) struct Chance(ChaCha8Rng);
+
+impl Chance {
+    /// A stream of its own for every scene, so that none moves another.
+    pub(super) fn new(seed: u64, number: SceneNumber) -> Self {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        generator.set_stream(match number {
+            SceneNumber::Undamaged(number) => 2 * u64::from(number),
+            SceneNumber::Damaged(number) => 2 * u64::from(number) + 1,
+        });
+        Self(generator)
+    }
+
+    /// Evenly between two values.
+    pub(super) fn even(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.0.random::<f64>()
+    }
+
+    /// Evenly between the logarithms of two values.
+    pub(super) fn log_even(&mut self, low: f64, high: f64) -> f64 {
+        self.even(low.ln(), high.ln()).exp()
+    }
+
+    /// True with this probability.
+    pub(super) fn is(&mut self, probability: f64) -> bool {
+        self.0.random::<f64>() < probability
+    }
+
+    /// 1 or −1.
+    pub(super) fn sign(&mut self) -> f64 {
+        if self.is(0.5) { 1.0 } else { -1.0 }
+    }
+
+    /// A normal deviate of a quantity whose 95 % half-width is given.
+    pub(super) fn within(&mut self, half_width: f64) -> f64 {
+        half_width / SIGMAS_OF_95 * self.normal()
+    }
+
+    /// A standard normal deviate.
+    pub(super) fn normal(&mut self) -> f64 {
+        StandardNormal.sample(&mut self.0)
+    }
+
+    /// An index below `count`, 0 where there is none.
+    pub(super) fn index(&mut self, count: usize) -> usize {
+        if count == 0 { 0 } else { self.0.random_range(0..count) }
+    }
+
+    /// One of `all`, which must not be empty.
+    pub(super) fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
+        all[self.index(all.len())]
+    }
+
+    /// A seed for the noise of a recording.
+    pub(super) fn seed(&mut self) -> u64 {
+        // TOML and JSON readers hold whole numbers of 53 bits for certain.
+        self.0.random::<u64>() >> 11
+    }
+}
+
+/// Rounded to this many decimal places, as a person states it.
+pub(super) fn round(value: f64, places: i32) -> f64 {
+    // Dividing by a power of ten gives the nearest number to the decimal one; multiplying by its inverse does not.
+    let scale = 10_f64.powi(places);
+    (value * scale).round() / scale
+}

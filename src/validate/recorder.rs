@@ -1,0 +1,198 @@
+//! A drop to its sensors and recorder, sound and of the kind that drop tests use, as they are and as they are stated.
+
+use super::chance::{Chance, round};
+use super::draw::Wish;
+use super::{Case, Means};
+use crate::data::{Axis, Chain, ChannelSpec, Coupling, End, SceneChannel, Source, Tolerances, Unit};
+
+/// 1 g, m/s²: the standard value (3rd CGPM 1901).
+pub(super) const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
+
+/// Sample rates of the recorders, Hz.
+const RATES_HZ: [f64; 8] = [2e3, 5e3, 10e3, 20e3, 50e3, 100e3, 200e3, 500e3];
+
+/// Least samples in the first contact and in a period of the highest mode.
+const CONTACT_SAMPLES: f64 = 25.0;
+const PERIOD_SAMPLES: f64 = 15.0;
+
+/// Most samples of a channel, where a slower recorder would do.
+const MOST_SAMPLES: f64 = 2e5;
+
+/// A resonance is simulated up to this rate; faster recorders look at sensors that resonate beyond their band.
+const RESONANT_HZ: f64 = 50e3;
+
+/// Where a sensor sits, before its chain.
+struct Seat {
+    name: &'static str,
+    end: End,
+    axis: Axis,
+    position_m: f64,
+    offset_m: f64,
+}
+
+/// Puts sensors on the cask and a recorder behind them.
+pub(super) fn equip(case: &mut Case, wish: &Wish, exact: bool, means: &Means) {
+    let rate_hz = timed(case, wish);
+    let seats = seats(case, wish);
+    let chain = chain(&mut case.chance, rate_hz);
+    let unit_is_g = case.chance.is(0.8);
+    for seat in seats {
+        let (channel, spec) = mounted(case, &seat, (&chain, unit_is_g), rate_hz, exact);
+        case.scene.channels.push(channel);
+        case.stated.channels.push(spec);
+    }
+    converters(case, means);
+}
+
+/// Sets how long the record is; returns the sample rate, Hz.
+fn timed(case: &mut Case, wish: &Wish) -> f64 {
+    let truth = case.motion.truth;
+    let chance = &mut case.chance;
+    let fall_s = (2.0 * case.scene.drop.height_m / case.scene.drop.gravity_m_s2).sqrt();
+    case.scene.rest = chance.is(0.2);
+    let is_short = chance.is(0.8);
+    case.scene.before_s = if case.scene.rest {
+        fall_s + chance.even(0.1, 0.4)
+    } else {
+        chance.even(0.05, if is_short { 0.3_f64.min(0.95 * fall_s) } else { 0.95 * fall_s })
+    };
+    let after_contact_s = truth.slap_t.unwrap_or(0.0) + case.scene.after_s;
+    let highest_hz = case.scene.modes.iter().map(|mode| mode.frequency_hz).fold(0.0, f64::max);
+    let contact_s = truth.contact_s.unwrap_or(1e-3);
+    let needed_hz = (CONTACT_SAMPLES / contact_s).max(PERIOD_SAMPLES * highest_hz);
+    let fast: Vec<f64> = RATES_HZ.iter().copied().filter(|hz| *hz >= needed_hz).collect();
+    let total_s = |hz: f64, before_s: f64| if hz >= 1e5 && !case.scene.rest { before_s.min(0.08) } else { before_s } + after_contact_s;
+    let most = if wish.slow_recorder { MOST_SAMPLES / 5.0 } else { MOST_SAMPLES };
+    let affordable: Vec<f64> =
+        fast.iter().copied().filter(|hz| hz * total_s(*hz, case.scene.before_s) <= most).collect();
+    let slowest_hz = fast.first().copied().unwrap_or(500e3);
+    let rate_hz = if affordable.is_empty() { slowest_hz } else { chance.one_of(&affordable) };
+    if rate_hz >= 1e5 && !case.scene.rest {
+        case.scene.before_s = case.scene.before_s.min(0.08);
+    }
+    rate_hz
+}
+
+/// One transverse sensor near each end, sometimes more, sometimes an axial one.
+fn seats(case: &mut Case, wish: &Wish) -> Vec<Seat> {
+    let cask = &case.stated.cask;
+    let chance = &mut case.chance;
+    let is_off_axis = chance.is(0.2);
+    let mut place = |name, end, axis, (nearest_m, farthest_m): (f64, f64)| {
+        let from_end_m = chance.even(nearest_m, farthest_m);
+        let aside_m = round(chance.even(-0.4, 0.4) * cask.height_m, 3);
+        let position_m = if end == End::First { from_end_m } else { cask.length_m - from_end_m };
+        let offset_m = if is_off_axis { aside_m } else { 0.0 };
+        Seat { name, end, axis, position_m: round(position_m, 3), offset_m }
+    };
+    let near = (0.05, 0.4);
+    let inner = (0.4, 0.3 * cask.length_m);
+    let mut seats = vec![
+        place("A1", End::First, Axis::Transverse, near),
+        place("A2", End::Second, Axis::Transverse, near),
+    ];
+    let third = place("A3", End::First, Axis::Transverse, inner);
+    let fourth = place("A4", End::Second, Axis::Transverse, inner);
+    let axial = place("A5", End::First, Axis::Axial, near);
+    let (more, most, has_axial) = (chance.is(0.1), chance.is(0.5), chance.is(0.15));
+    if more || wish.third_channel {
+        seats.push(third);
+        if most {
+            seats.push(fourth);
+        }
+    }
+    if wish.axial.unwrap_or(has_axial) {
+        seats.push(axial);
+    }
+    seats
+}
+
+/// What all channels have in common: filter, sensor type, level of the noise.
+fn chain(chance: &mut Chance, rate_hz: f64) -> Chain {
+    let noise_m_s2 = chance.log_even(0.02, 0.5) * STANDARD_GRAVITY_M_S2;
+    // Power of the 1/f part.
+    let pink = chance.even(0.0, 0.5);
+    let resonance_hz = rate_hz * chance.log_even(0.8, 2.0);
+    let damping = chance.log_even(0.02, 0.7);
+    Chain {
+        resonance: (chance.is(0.5) && rate_hz <= RESONANT_HZ).then_some((resonance_hz, damping)),
+        anti_alias_hz: Some(rate_hz / chance.even(2.5, 4.0)),
+        white_noise_m_s2: noise_m_s2 * (1.0 - pink).sqrt(),
+        pink_noise_m_s2: noise_m_s2 * pink.sqrt(),
+        ..Chain::perfect()
+    }
+}
+
+/// A channel as it is and as the cask file states it.
+fn mounted(
+    case: &mut Case,
+    seat: &Seat,
+    (common, unit_is_g): (&Chain, bool),
+    rate_hz: f64,
+    exact: bool,
+) -> (SceneChannel, ChannelSpec) {
+    let Tolerances { calibration, cross_axis, position_m, .. } = case.stated.tolerances;
+    let off = if exact { 0.0 } else { 1.0 };
+    let chance = &mut case.chance;
+    let channel = SceneChannel {
+        name: seat.name.to_owned(),
+        end: seat.end,
+        axis: seat.axis,
+        position_m: (seat.position_m + off * chance.within(position_m)).clamp(0.0, case.stated.cask.length_m),
+        offset_m: seat.offset_m,
+        unit: if unit_is_g { "g" } else { "m/s^2" }.to_owned(),
+        sample_rate_hz: rate_hz,
+        chain: Chain {
+            scale: 1.0 + off * chance.within(calibration),
+            cross_axis: off * chance.within(cross_axis),
+            offset_m_s2: chance.even(-0.5, 0.5) * STANDARD_GRAVITY_M_S2,
+            ..common.clone()
+        },
+    };
+    let spec = ChannelSpec {
+        name: channel.name.clone(),
+        end: seat.end,
+        axis: seat.axis,
+        source: Source::Path(channel.name.clone()),
+        unit: Some(if unit_is_g { Unit::G } else { Unit::MetrePerSecondSquared }),
+        position_m: seat.position_m,
+        offset_m: seat.offset_m,
+        polarity: 1.0,
+        full_scale: None,
+        sample_rate_hz: None,
+        time: None,
+        coupling: Coupling::Dc,
+    };
+    (channel, spec)
+}
+
+/// Gives every channel a converter that its peak fills to a share; half of the cask files state the full scale.
+fn converters(case: &mut Case, means: &Means) {
+    let bits = case.chance.one_of(&[16_u8, 18, 20, 24]);
+    let is_stated = case.chance.is(0.5);
+    for i in 0..case.scene.channels.len() {
+        let room = case.chance.log_even(1.2, 10.0);
+        let limit_m_s2 = room * peak_m_s2(case, i, means);
+        case.scene.channels[i].chain.full_scale_m_s2 = Some(limit_m_s2);
+        case.scene.channels[i].chain.bits = Some(bits);
+        case.stated.channels[i].full_scale =
+            is_stated.then(|| limit_m_s2 / unit_m_s2(&case.scene.channels[i]));
+    }
+}
+
+/// m/s² per unit of the recording.
+pub(super) fn unit_m_s2(channel: &SceneChannel) -> f64 {
+    if channel.unit == "g" { STANDARD_GRAVITY_M_S2 } else { 1.0 }
+}
+
+/// The largest that channel `i` has to show, m/s²: the drop's peak there, its offset, and what its filters overshoot.
+pub(super) fn peak_m_s2(case: &Case, i: usize, means: &Means) -> f64 {
+    /// A Butterworth of fourth order overshoots a step by 11 %; pulses of 25 samples by far less.
+    const OVERSHOOT: f64 = 1.05;
+    let channel = &case.scene.channels[i];
+    let force = (means.force)(&case.scene, &case.motion, channel, &case.motion.time_s);
+    let largest = force.iter().fold(0.0_f64, |peak, f| peak.max(f.abs()));
+    let chain = &channel.chain;
+    let noise = 5.0 * (chain.white_noise_m_s2 + chain.pink_noise_m_s2);
+    OVERSHOOT * chain.scale * (largest + chain.offset_m_s2.abs() + noise)
+}

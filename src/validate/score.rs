@@ -1,0 +1,221 @@
+//! An analysis beside its truth to a row, and rows to CSV.
+
+use super::Case;
+use super::statistics;
+use crate::data::{
+    Analysis, Campaign, CampaignRow, Contact, Damage, Estimate, ReconstructionCandidate, ReconstructionRung,
+    SceneNumber, Scored, Severity, Truth, Verdict,
+};
+
+/// The row of a scene; no analysis: the recording was refused.
+pub(super) fn row(
+    (number, damage): (SceneNumber, Option<Damage>),
+    case: Case,
+    analysis: Option<&Analysis>,
+    analysis_s: f64,
+) -> CampaignRow {
+    let truth = case.motion.truth;
+    CampaignRow {
+        number,
+        damage,
+        verdict: analysis.map(|a| a.result.verdict),
+        findings: analysis.map_or_else(Vec::new, |a| {
+            a.result.quality.iter().map(|issue| (issue.code, issue.severity)).collect()
+        }),
+        quantities: quantities(&truth, analysis),
+        rung: analysis.and_then(rung),
+        candidates: analysis.map_or_else(Vec::new, rungs),
+        truth,
+        scene: case.scene,
+        stated: case.stated,
+        analysis_s,
+        redraws: case.redraws,
+    }
+}
+
+/// What is scored, in this order.
+fn quantities(truth: &Truth, analysis: Option<&Analysis>) -> Vec<Scored> {
+    let result = analysis.map(|a| &a.result);
+    let slap_down = result.map(|r| &r.slap_down);
+    let scored = |name, stated: Option<Estimate>, truth| Scored { name, stated, truth };
+    vec![
+        scored("speed", slap_down.and_then(|s| s.speed), truth.speed),
+        scored("k", result.and_then(|r| r.k), truth.k),
+        scored("vertical", slap_down.and_then(|s| s.vertical_velocity), truth.vz),
+        scored("horizontal", slap_down.and_then(|s| s.horizontal_velocity), truth.vx),
+        scored("omega", result.and_then(|r| r.first_impact.angular_velocity), truth.omega_rebound),
+        scored("flight", slap_down.and_then(|s| s.flight_time), truth.flight_s),
+        scored("angle", slap_down.and_then(|s| s.angle), truth.angle_hit_deg),
+    ]
+}
+
+/// The rung of the reconstruction that was taken.
+fn rung(_analysis: &Analysis) -> Option<ReconstructionRung> {
+    None
+}
+
+/// What every rung of the reconstruction says.
+fn rungs(_analysis: &Analysis) -> Vec<ReconstructionCandidate> {
+    Vec::new()
+}
+
+/// The rows as CSV, one a scene; times of the analysis are left out, so that the same campaign gives the same bytes.
+///
+/// # Errors
+/// Where the writer fails.
+pub fn csv(campaign: &Campaign) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for (i, row) in campaign.rows.iter().enumerate() {
+        let cells = cells(campaign.request.seed, row);
+        if i == 0 {
+            writer.write_record(cells.iter().map(|cell| cell.0.as_str()))?;
+        }
+        writer.write_record(cells.iter().map(|cell| cell.1.as_str()))?;
+    }
+    writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))
+}
+
+/// A cell under its header.
+type Cell = (String, String);
+
+fn cell(header: &str, value: impl ToString) -> Cell {
+    (header.to_owned(), value.to_string())
+}
+
+fn maybe(header: &str, value: Option<f64>) -> Cell {
+    (header.to_owned(), value.map(|value| value.to_string()).unwrap_or_default())
+}
+
+fn cells(seed: u64, row: &CampaignRow) -> Vec<Cell> {
+    let mut cells = vec![
+        cell("scene", row.number),
+        cell("seed", seed),
+        cell("kind", row.damage.map_or("none", |damage| damage.kind)),
+        maybe("size", row.damage.map(|damage| damage.size)),
+        cell("size_unit", row.damage.map_or("", |damage| damage.unit)),
+        cell("verdict", verdict(row.verdict)),
+        cell("outcome", format!("{:?}", statistics::outcome(row)).to_lowercase()),
+        cell("errors", codes(row, Severity::Error)),
+        cell("warnings", codes(row, Severity::Warning)),
+    ];
+    for scored in &row.quantities {
+        cells.push(maybe(scored.name, scored.stated.map(|e| e.value)));
+        cells.push(maybe(&format!("{}_u95", scored.name), scored.stated.map(|e| e.u95)));
+        cells.push(maybe(&format!("{}_true", scored.name), scored.truth));
+        cells.push(maybe(&format!("{}_off", scored.name), statistics::half_widths_off(scored)));
+    }
+    cells.push(cell("rung", row.rung.map_or("", rung_name)));
+    for rung in ReconstructionRung::ALL {
+        let candidate = row.candidates.iter().find(|candidate| candidate.rung == rung);
+        let name = rung_name(rung);
+        cells.push(cell(&format!("{name}_consistent"), candidate.map_or("", |c| yes(c.consistent))));
+        let (speed, k) = (candidate.and_then(|c| c.speed), candidate.and_then(|c| c.k));
+        cells.push(maybe(&format!("{name}_speed"), speed.map(|e| e.value)));
+        cells.push(maybe(&format!("{name}_speed_u95"), speed.map(|e| e.u95)));
+        cells.push(maybe(&format!("{name}_k"), k.map(|e| e.value)));
+        cells.push(maybe(&format!("{name}_k_u95"), k.map(|e| e.u95)));
+    }
+    cells.extend(scene_cells(row));
+    cells
+}
+
+/// The parameters of the scene, as they are and as they are stated.
+fn scene_cells(row: &CampaignRow) -> Vec<Cell> {
+    let (scene, stated, truth) = (&row.scene, &row.stated, &row.truth);
+    let mut cells = vec![
+        cell("cask", &scene.cask.name),
+        cell("mass_kg", scene.cask.mass_kg),
+        cell("length_m", scene.cask.length_m),
+        cell("height_m", scene.cask.height_m),
+        cell("cog_m", scene.cask.cog_m),
+        cell("stated_cog_m", stated.cask.cog_m),
+        cell("inertia_kg_m2", scene.cask.inertia_kg_m2),
+        cell("stated_inertia_kg_m2", stated.cask.inertia_kg_m2),
+        cell("drop_height_m", scene.drop.height_m),
+        cell("stated_drop_height_m", stated.drop.height_m),
+        cell("angle_deg", scene.drop.angle_rad.to_degrees()),
+        cell("stated_angle_deg", stated.drop.angle_rad.to_degrees()),
+        cell("contact", friction(scene.contact)),
+        cell("stated_contact", friction(stated.contact)),
+        maybe("contact_s", truth.contact_s),
+        cell("yields", yes(scene.first_end.yield_n.is_some())),
+        cell("modes", scene.modes.len()),
+    ];
+    for order in 0..3 {
+        let mode = scene.modes.get(order);
+        cells.push(maybe(&format!("mode_{}_hz", order + 1), mode.map(|m| m.frequency_hz)));
+        cells.push(maybe(&format!("mode_{}_damping", order + 1), mode.map(|m| m.damping)));
+        cells.push(maybe(&format!("mode_{}_strength", order + 1), mode.map(|m| m.strength)));
+    }
+    cells.extend([
+        cell("relands", truth.relands),
+        cell("rest", yes(scene.rest)),
+        cell("before_s", scene.before_s),
+        cell("after_s", scene.after_s),
+        cell("clock_error_ppm", scene.clock_error * 1e6),
+        cell("channels", scene.channels.len()),
+    ]);
+    for i in 0..2 {
+        let (channel, spec) = (scene.channels.get(i), stated.channels.get(i));
+        let of = |name: &str| format!("a{}_{name}", i + 1);
+        cells.push(maybe(&of("rate_hz"), channel.map(|c| c.sample_rate_hz)));
+        cells.push(maybe(&of("position_m"), channel.map(|c| c.position_m)));
+        cells.push(maybe(&of("stated_position_m"), spec.map(|s| s.position_m)));
+        cells.push(maybe(&of("offset_m"), channel.map(|c| c.offset_m)));
+        cells.push(maybe(&of("scale"), channel.map(|c| c.chain.scale)));
+        cells.push(maybe(&of("cross_axis"), channel.map(|c| c.chain.cross_axis)));
+        cells.push(maybe(&of("anti_alias_hz"), channel.and_then(|c| c.chain.anti_alias_hz)));
+        cells.push(maybe(&of("resonance_hz"), channel.and_then(|c| c.chain.resonance).map(|r| r.0)));
+        cells.push(maybe(&of("white_noise_m_s2"), channel.map(|c| c.chain.white_noise_m_s2)));
+        cells.push(maybe(&of("pink_noise_m_s2"), channel.map(|c| c.chain.pink_noise_m_s2)));
+        cells.push(maybe(&of("full_scale_m_s2"), channel.and_then(|c| c.chain.full_scale_m_s2)));
+        cells.push(maybe(&of("stated_full_scale"), spec.and_then(|s| s.full_scale)));
+        cells.push(maybe(&of("bits"), channel.and_then(|c| c.chain.bits).map(f64::from)));
+    }
+    let axial = scene.channels.iter().any(|c| c.axis == crate::data::Axis::Axial);
+    cells.push(cell("axial_channel", yes(axial)));
+    cells
+}
+
+/// Codes of this severity, each once.
+fn codes(row: &CampaignRow, severity: Severity) -> String {
+    let mut names: Vec<String> =
+        row.findings.iter().filter(|f| f.1 == severity).map(|f| code_name(f.0)).collect();
+    names.sort();
+    names.dedup();
+    names.join(" ")
+}
+
+/// A code as the result writes it.
+pub(super) fn code_name(code: crate::data::IssueCode) -> String {
+    // An enum without data is a JSON string.
+    serde_json::to_string(&code).unwrap_or_default().trim_matches('"').to_owned()
+}
+
+/// A rung as the result writes it.
+pub(super) fn rung_name(rung: ReconstructionRung) -> &'static str {
+    match rung {
+        ReconstructionRung::Channels => "channels",
+        ReconstructionRung::Planar => "planar",
+        ReconstructionRung::Flight => "flight",
+        ReconstructionRung::Joint => "joint",
+    }
+}
+
+/// A verdict as the result writes it.
+pub(super) fn verdict(verdict: Option<Verdict>) -> &'static str {
+    match verdict {
+        None => "refused",
+        Some(Verdict::Pass) => "pass",
+        Some(Verdict::Review) => "review",
+        Some(Verdict::Fail) => "fail",
+    }
+}
+
+fn friction(contact: Contact) -> String {
+    contact.to_string()
+}
+
+fn yes(is: bool) -> &'static str {
+    if is { "yes" } else { "no" }
+}
