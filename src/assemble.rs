@@ -120,7 +120,7 @@ impl<'a> Draft<'a> {
                 angular_velocity_rad_s: quantities.angular_velocity.value,
             });
         let filtered = window
-            .and_then(|w| motion::fit_flight(smooth, &w, setup.cog_m))
+            .and_then(|w| motion::fit_flight(smooth, &w, None, setup.cog_m))
             .and_then(|flight| motion::reconstruct(smooth, &flight, &self.events, setup));
         if let (Some(m), Some(speed)) =
             (filtered.and_then(|m| m.second_end_m_s.map(|v| (m.rebound_m_s, v))), quantities.speed)

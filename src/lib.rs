@@ -224,11 +224,17 @@ fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Op
     let record_end_s = signals.iter().map(Signal::end_s).fold(f64::INFINITY, f64::min);
     let drop_m = file.cask.length_m * file.drop.angle_rad.sin();
     let between_s = contact.0 + EARLIEST_SLAP_DOWN * drop_m / v0_m_s..record_end_s;
-    let mut struck = events::slap_down(signals, between_s.clone(), least_m_s, false);
+    let length_m = file.cask.length_m;
+    let ends = |signals: &[Signal]| {
+        let on = |end| events::without_first_mode(signals, end, length_m);
+        Some((on(data::End::First)?, on(data::End::Second)?))
+    };
+    let (first, second) = ends(signals)?;
+    let mut struck = events::slap_down(&second, between_s.clone(), least_m_s, false);
     let end_s = struck.map_or(record_end_s, |s| s.0);
     // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit goes by.
     let clearance_s = (FIRST_CLEARANCE * (end_s - contact.0)).min(LONGEST_CLEARANCE_S);
-    let rough_s = events::first_separation(signals, contact.0, end_s).unwrap_or(contact.0 + clearance_s);
+    let rough_s = events::first_separation(&first, contact.0, end_s).unwrap_or(contact.0 + clearance_s);
     // The first fit keeps well clear of the contact, which ringing may have seemed to end too soon.
     let mut free_s =
         rough_s.max(contact.0 + (FIRST_CLEARANCE * (end_s - contact.0)).min(LONGEST_CLEARANCE_S));
@@ -243,14 +249,19 @@ fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Op
             to_s: end_s - 5e-4,
             angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| motion::rotation_rad_s(signals, f)),
         };
-        let Some(fitted) = motion::fit_flight(signals, &window, file.cask.cog_m) else { break };
+        let drive =
+            motion::drive(signals, flight.as_ref(), (contact.0, left.0), window.from_s, file.cask.cog_m);
+        let Some(fitted) = motion::fit_flight(signals, &window, drive.as_ref(), file.cask.cog_m) else {
+            break;
+        };
         motion::take_off_ringing(&mut calm, signals, &fitted, contact.0..end_s + 0.02);
-        let seen = events::slap_down(&calm, between_s.start.max(free_s)..record_end_s, least_m_s, true);
+        let (first, second) = ends(&calm)?;
+        let seen = events::slap_down(&second, between_s.start.max(free_s)..record_end_s, least_m_s, true);
         // A flight that is explained well has no slap-down hidden in its ringing.
         if seen.is_some() || fitted.plateaus.iter().all(|p| p.residual_m_s < EXPLAINED_M_S) {
             struck = seen;
         }
-        left = events::separation(&calm, contact.0, free_s).unwrap_or(left);
+        left = events::separation(&first, contact.0, free_s).unwrap_or(left);
         free_s = left.0 + 0.1 * (left.0 - contact.0) + 3e-4;
         flight = Some(fitted);
     }

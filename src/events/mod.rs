@@ -10,6 +10,36 @@ pub use release::{FreeFall, free_fall};
 
 use crate::data::{Axis, End, Signal};
 
+/// Slope of the first bending mode of a free uniform beam at its end over its value there, times the length (Blevins 1979).
+const END_SLOPE: f64 = 4.65;
+/// A sensor so far in that the mode reads less than this share of its end's is near a node: it cancels nothing.
+const LEAST_SHAPE: f64 = 0.2;
+
+/// The transverse signal nearest to an end without the first bending mode, which both ends of a beam ring with alike: the other end's
+/// signal taken off it in the ratio of the mode's shape at both. Impacts stay, and those of the other end turn their sign.
+///
+/// The signal as it is where the other end has none of the same times, or where one of both sits near a node.
+#[must_use]
+pub fn without_first_mode(signals: &[Signal], end: End, length_m: f64) -> Option<Signal> {
+    let own = transverse(signals, end)?;
+    let other = transverse(signals, if end == End::First { End::Second } else { End::First });
+    let shape = |s: &Signal| 1.0 - END_SLOPE * s.position_m.min(length_m - s.position_m).max(0.0) / length_m;
+    let mut free = own.clone();
+    let of_same_times = other.filter(|o| {
+        (o.sample_rate_hz / own.sample_rate_hz - 1.0).abs() < 1e-9
+            && (o.start_s - own.start_s).abs() * own.sample_rate_hz < 1.0
+            && shape(o).min(shape(own)) > LEAST_SHAPE
+    });
+    if let Some(other) = of_same_times {
+        let ratio = shape(own) / shape(other);
+        for (force, other_m_s2) in free.force_m_s2.iter_mut().zip(&other.force_m_s2) {
+            *force -= ratio * other_m_s2;
+        }
+        free.noise_m_s2 = own.noise_m_s2.hypot(ratio * other.noise_m_s2);
+    }
+    Some(free)
+}
+
 /// The transverse signal nearest to an end: what happens there shows on it first.
 #[must_use]
 pub fn transverse(signals: &[Signal], end: End) -> Option<&Signal> {

@@ -31,19 +31,18 @@ pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<(f64, f
     onset(signal, from..to, sign, Rise::First)
 }
 
-/// First contact of R between two times and its standard uncertainty, s; `None` where the record holds none.
+/// First contact of R on its signal between two times and its standard uncertainty, s; `None` where the record holds none.
 ///
 /// Ringing has no mean over 25 ms, R striking the target has: the means before and after each time are compared, and the
 /// largest difference, if above `least_change_m_s`, is the slap-down. On signals that still ring the rise is sought backwards
 /// from the pulse's peak; free of ringing the first rise is taken.
 #[must_use]
 pub fn slap_down(
-    signals: &[Signal],
+    signal: &Signal,
     between_s: std::ops::Range<f64>,
     least_change_m_s: f64,
     is_calm: bool,
 ) -> Option<(f64, f64)> {
-    let signal = transverse(signals, End::Second)?;
     let start = signal.index_from(between_s.start - WIDTH_S);
     let end = signal.index_from(between_s.end + WIDTH_S);
     let force = signal.force_m_s2.get(start..end)?;
@@ -109,10 +108,9 @@ fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise
     Some((signal.time_s(from) + position / signal.sample_rate_hz, u_s))
 }
 
-/// When L leaves the target on signals that still ring, s: the force on it first drops to the foot.
+/// When L leaves the target on a signal of it that still rings, s: the force on it first drops to the foot.
 #[must_use]
-pub fn first_separation(signals: &[Signal], contact_s: f64, before_s: f64) -> Option<f64> {
-    let signal = transverse(signals, End::First)?;
+pub fn first_separation(signal: &Signal, contact_s: f64, before_s: f64) -> Option<f64> {
     let from = signal.index_from(contact_s);
     let to = signal.index_from(before_s.min(contact_s + LONGEST_CONTACT_S));
     let smooth = smoothed(signal.force_m_s2.get(from..to)?, signal.sample_rate_hz);
@@ -123,12 +121,11 @@ pub fn first_separation(signals: &[Signal], contact_s: f64, before_s: f64) -> Op
     Some(signal.time_s(from + end))
 }
 
-/// When L leaves the target on signals free of ringing, s: going back from `free_s`, where it flies, the force leaves zero.
+/// When L leaves the target on a signal of it free of ringing, s: going back from `free_s`, where it flies, the force leaves zero.
 ///
 /// The standard uncertainty is what the force's fall from the foot to zero may hide, a fortieth of the contact, or a sample.
 #[must_use]
-pub fn separation(calm: &[Signal], contact_s: f64, free_s: f64) -> Option<(f64, f64)> {
-    let signal = transverse(calm, End::First)?;
+pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<(f64, f64)> {
     let from = signal.index_from(contact_s);
     let to = signal.index_from(free_s);
     let beyond = signal.index_from(free_s + 0.5 * (free_s - contact_s));

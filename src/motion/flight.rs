@@ -2,7 +2,7 @@
 
 use super::Velocity;
 use crate::data::{Axis, FlightFit, FlightModelScore, Mode, Plateau, Signal};
-use crate::numerics::damped_modes::{Fit, Oscillation, Series, fit, uniform_ringing};
+use crate::numerics::damped_modes::{Drive, Fit, Form, Oscillation, Series, SeriesFit, fit, uniform_ringing};
 use crate::numerics::robust;
 
 /// Most modes tried: the bending modes of a cask below 400 Hz.
@@ -12,15 +12,23 @@ const POINTS: usize = 240;
 /// Longest window fitted, s: eight periods of 80 Hz; a longer one would only coarsen the points.
 const LONGEST_S: f64 = 0.1;
 /// Least noise of a velocity, as a share of its range in the window: linearity of the best sensors.
-const LEAST_FLOOR: f64 = 2e-4;
+const LEAST_FLOOR: f64 = 1e-3;
 /// Stretch before the end of a long flight that is compared with the fit, s: two periods of 100 Hz.
 const LATE_S: f64 = 0.02;
 /// An offset from a quarter of a second knows that of the next half to so many of its standard uncertainties (noise of 1/f).
 const DRIFT_FACTOR: f64 = 4.0;
 /// Largest zero shift as a share of the channel's peak: data sheets of shock accelerometers give up to a few percent of full scale.
 const MOST_ZERO_SHIFT: f64 = 0.1;
-/// Lowest frequency sought: this many periods in the window, and never below 15 Hz.
+/// Lowest frequency sought: this many periods in the window.
 const LEAST_PERIODS: f64 = 0.6;
+/// The same for modes whose phase the contact force tells.
+const LEAST_DRIVEN_PERIODS: f64 = 0.2;
+/// A mode seen for so many periods has its phase from the flight …
+const CLEAR_PERIODS: f64 = 1.5;
+/// … where the fit leaves no more than this many times the noise.
+const CLEAR_RESIDUAL: f64 = 3.0;
+/// No cask bends more slowly, Hz.
+const LOWEST_HZ: f64 = 15.0;
 /// A candidate this close in BIC to the best cannot be told from it (Kass & Raftery 1995: above 10 is very strong).
 const INDISTINCT: f64 = 10.0;
 
@@ -42,7 +50,12 @@ pub struct Window {
 /// Velocity v_j(t) = p_j + d_j t + Σ_m e^(−ζωt)(A cos ωt + B sin ωt)   (20), modes common to all channels; their number and
 /// whether there is a drift are decided by the Bayesian information criterion (21).
 #[must_use]
-pub fn fit_flight(signals: &[Signal], window: &Window, cog_m: f64) -> Option<FlightFit> {
+pub fn fit_flight(
+    signals: &[Signal],
+    window: &Window,
+    drive: Option<&Drive>,
+    cog_m: f64,
+) -> Option<FlightFit> {
     let whole = window;
     let window = &Window { to_s: whole.to_s.min(whole.from_s + LONGEST_S), ..*whole };
     let series: Vec<Series> = signals.iter().map(|s| series(s, window, cog_m)).collect();
@@ -53,10 +66,16 @@ pub fn fit_flight(signals: &[Signal], window: &Window, cog_m: f64) -> Option<Fli
     }
     #[allow(clippy::cast_precision_loss, reason = "at most POINTS")]
     let highest_hz = (0.2 * fewest as f64 / length_s).min(1500.0);
-    let band = ((LEAST_PERIODS / length_s).max(15.0), highest_hz);
+    let free_hz = ((LEAST_PERIODS / length_s).max(LOWEST_HZ), highest_hz);
     let mut fits = Vec::new();
     for drift in [false, true] {
-        fits.extend(chain(&series, band, drift));
+        fits.extend(chain(&series, free_hz, Form { drift, drive: None }));
+    }
+    if drive.is_some() && fits.iter().all(|f| !is_clear(&series, f, length_s)) {
+        let driven_hz = ((LEAST_DRIVEN_PERIODS / length_s).max(LOWEST_HZ), highest_hz);
+        for drift in [false, true] {
+            fits.extend(chain(&series, driven_hz, Form { drift, drive }).into_iter().skip(1));
+        }
     }
     let peaks_m_s2: Vec<f64> =
         signals.iter().map(|s| s.force_m_s2.iter().fold(0.0_f64, |m, f| m.max(f.abs()))).collect();
@@ -108,7 +127,7 @@ pub fn mean_of_flight(
 ) -> Option<FlightFit> {
     let window = Window { from_s: best.from_s, to_s: best.to_s, ..*window };
     let series: Vec<Series> = signals.iter().map(|s| series(s, &window, cog_m)).collect();
-    let mean = fit(&series, &[], None, false)?;
+    let mean = fit(&series, &[], None, Form::FREE)?;
     Some(FlightFit {
         plateaus: plateaus(signals, &[mean], &|_| true),
         modes: Vec::new(),
@@ -162,9 +181,16 @@ fn has_plausible_drift(peaks_m_s2: &[f64], fit: &Fit) -> bool {
     peaks_m_s2.iter().zip(&fit.series).all(|(peak, series)| series.drift.abs() < MOST_ZERO_SHIFT * peak)
 }
 
+/// Whether a fit leaves the noise only and saw each of its modes for long enough to know its phase from the flight alone.
+fn is_clear(series: &[Series], fit: &Fit, length_s: f64) -> bool {
+    let lowest_hz = fit.modes.iter().map(|m| m.frequency_hz).fold(f64::INFINITY, f64::min);
+    let is_noise = |(s, f): (&Series, &SeriesFit)| f.residual < CLEAR_RESIDUAL * s.floor;
+    lowest_hz * length_s > CLEAR_PERIODS && series.iter().zip(&fit.series).all(is_noise)
+}
+
 /// Fits with none, one, two … modes, each started from the last, until nothing is left to explain.
-fn chain(series: &[Series], band_hz: (f64, f64), drift: bool) -> Vec<Fit> {
-    let Some(first) = fit(series, &[], None, drift) else { return Vec::new() };
+fn chain(series: &[Series], band_hz: (f64, f64), form: Form) -> Vec<Fit> {
+    let Some(first) = fit(series, &[], None, form) else { return Vec::new() };
     let mut fits = vec![first];
     while fits.len() <= MOST_MODES && band_hz.1 > band_hz.0 {
         let last = &fits[fits.len() - 1];
@@ -172,7 +198,7 @@ fn chain(series: &[Series], band_hz: (f64, f64), drift: bool) -> Vec<Fit> {
             break;
         }
         let start: Vec<Oscillation> = last.modes.clone();
-        match fit(series, &start, Some(band_hz), drift) {
+        match fit(series, &start, Some(band_hz), form) {
             Some(next) if is_sound(series, &next) => fits.push(next),
             _ => break,
         }
@@ -250,7 +276,8 @@ fn noise_floor(signal: &Signal, window: &Window, length_s: f64) -> f64 {
         value.push(velocity.mean(from_s + a, from_s + a + bin_s));
     }
     let line = Series { time_s, value, steps_s: vec![], floor: 1e-12 };
-    fit(&[line], &[], None, true).map_or(guessed, |f| f.series[0].residual.max(0.5 * guessed))
+    fit(&[line], &[], None, Form { drift: true, drive: None })
+        .map_or(guessed, |f| f.series[0].residual.max(0.5 * guessed))
 }
 
 fn mode(fit: &Fit, index: usize) -> Mode {

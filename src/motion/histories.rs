@@ -2,6 +2,7 @@
 
 use super::Velocity;
 use crate::data::{Axis, FlightFit, Mode, Signal};
+use crate::numerics::damped_modes::Drive;
 use nalgebra::Complex;
 
 /// Steps over the contact in which the ringing is followed: a fortieth of a period of 400 Hz in 20 ms.
@@ -90,6 +91,16 @@ impl Histories {
             Self { velocities, corrections_m_s, axial, contact_s, length_s, bending: Vec::new() };
         histories.take_off_bending(fit, line);
         Some(histories)
+    }
+
+    /// The channels as they are, led to nothing.
+    fn as_recorded(signals: &[Signal], (contact_s, left_s): (f64, f64)) -> Option<Self> {
+        let length_s = left_s - contact_s;
+        let velocities = signals.iter().map(|s| Velocity::of(s, contact_s - 2e-3, left_s)).collect();
+        let corrections_m_s = vec![0.0; signals.len()];
+        let recorded =
+            Self { velocities, corrections_m_s, axial: Vec::new(), contact_s, length_s, bending: Vec::new() };
+        (length_s > 0.0).then_some(recorded)
     }
 
     /// Finds what rings in each channel during the contact, and leaves the corrections what that does not explain.
@@ -187,4 +198,27 @@ fn bending(
         }
     }
     sum
+}
+
+/// The shape of the contact force from the rotation between first contact and separation, for modes that ring from `from_s` on; freed of
+/// the ringing of an earlier fit where there is one. `None` without two transverse channels apart.
+#[must_use]
+pub fn drive(
+    signals: &[Signal],
+    fit: Option<&FlightFit>,
+    (contact_s, left_s): (f64, f64),
+    from_s: f64,
+    cog_m: f64,
+) -> Option<Drive> {
+    let line = Line::through(signals, cog_m)?;
+    let histories = match fit {
+        Some(fit) => Histories::new(signals, fit, &line, (contact_s, left_s))?,
+        None => Histories::as_recorded(signals, (contact_s, left_s))?,
+    };
+    let turning: Vec<f64> = (0..=STEPS).map(|i| line.at(&histories, histories.grid_s(i), 0.0).1).collect();
+    Some(Drive {
+        age_s: from_s - contact_s,
+        step_s: histories.length_s / STEPS as f64,
+        impulses: turning.windows(2).map(|pair| pair[0] - pair[1]).collect(),
+    })
 }

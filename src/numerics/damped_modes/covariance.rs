@@ -1,16 +1,17 @@
 //! Modes found to coefficients with their standard uncertainties.
 
 use super::projection::{Projection, columns, project, rms, to_parameters};
-use super::{Fit, Oscillation, Series, SeriesFit};
+use super::{Fit, Form, Oscillation, Series, SeriesFit};
 use nalgebra::{DMatrix, DVector};
 
 /// Coefficients, uncertainties and residuals at given modes.
-pub(super) fn describe(series: &[Series], modes: Vec<Oscillation>, drift: bool) -> Option<Fit> {
+pub(super) fn describe(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
+    let drift = form.drift;
     let mut fits = Vec::new();
     let mut lag_sum = 0.0;
     let mut parameters = 2 * modes.len();
     for s in series {
-        let (solution, residual) = project(s, &modes, drift)?;
+        let (solution, residual) = project(s, &modes, form)?;
         let fixed = 1 + usize::from(drift);
         let jumps = s.steps_s.len();
         lag_sum += lag_one(&residual);
@@ -20,15 +21,22 @@ pub(super) fn describe(series: &[Series], modes: Vec<Oscillation>, drift: bool) 
             u_plateau: 0.0,
             drift: if drift { solution[1] } else { 0.0 },
             u_drift: 0.0,
-            amplitudes: solution.as_slice()[fixed + jumps..].chunks_exact(2).map(|c| (c[0], c[1])).collect(),
+            amplitudes: form.amplitudes(&modes, &solution.as_slice()[fixed + jumps..]),
             residual: rms(&residual),
             jumps: solution.as_slice()[fixed..fixed + jumps].to_vec(),
         });
     }
     #[allow(clippy::cast_precision_loss, reason = "a handful of series")]
     let lag = (lag_sum / series.len() as f64).clamp(0.0, 0.95);
-    let mut fit = Fit { modes, drift, series: fits, correlation: (1.0 + lag) / (1.0 - lag), parameters };
-    uncertainties(series, &mut fit)?;
+    let mut fit = Fit {
+        modes,
+        drift,
+        driven: form.drive.is_some(),
+        series: fits,
+        correlation: (1.0 + lag) / (1.0 - lag),
+        parameters,
+    };
+    uncertainties(series, &mut fit, form)?;
     Some(fit)
 }
 
@@ -40,7 +48,7 @@ fn lag_one(residual: &DVector<f64>) -> f64 {
 }
 
 /// Covariance of all parameters together, s² κ (JᵀJ)⁻¹, J = [Φ_1 … | ∂Φc/∂θ].
-fn uncertainties(series: &[Series], fit: &mut Fit) -> Option<()> {
+fn uncertainties(series: &[Series], fit: &mut Fit, form: Form) -> Option<()> {
     let rows: usize = series.iter().map(|s| s.value.len()).sum();
     let mut jacobian = DMatrix::zeros(rows, fit.parameters);
     let weights: Vec<f64> =
@@ -48,14 +56,14 @@ fn uncertainties(series: &[Series], fit: &mut Fit) -> Option<()> {
     let (mut row, mut column) = (0, 2 * fit.modes.len());
     let mut places = Vec::new();
     for (s, weight) in series.iter().zip(&weights) {
-        let block = columns(s, &fit.modes, fit.drift) * *weight;
+        let block = columns(s, &fit.modes, form) * *weight;
         jacobian.view_mut((row, column), block.shape()).copy_from(&block);
         places.push(column);
         row += block.nrows();
         column += block.ncols();
     }
     if !fit.modes.is_empty() {
-        let problem = Projection { series, weights, drift: fit.drift, parameters: to_parameters(&fit.modes) };
+        let problem = Projection { series, weights, form, parameters: to_parameters(&fit.modes) };
         let nonlinear = problem.jacobian_at(&problem.parameters)?;
         jacobian.view_mut((0, 0), nonlinear.shape()).copy_from(&nonlinear);
     }

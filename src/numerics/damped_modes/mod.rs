@@ -1,6 +1,7 @@
 //! Noisy series to plateau, drift and damped modes that ring on them, by variable projection.
 
 mod covariance;
+mod drive;
 mod projection;
 mod ringing;
 
@@ -8,6 +9,7 @@ use covariance::describe;
 use projection::{best_seed, refine};
 use ringing::Ringing;
 
+pub use drive::{Drive, Form};
 pub use ringing::uniform_ringing;
 
 /// A mode damped more than this is none: bolted and welded structures have 0.5 to 8 %, and an oscillation that dies within a
@@ -62,6 +64,8 @@ pub struct Fit {
     pub modes: Vec<Oscillation>,
     /// Whether a drift was fitted.
     pub drift: bool,
+    /// Whether the phases of the modes are those of their drive.
+    pub driven: bool,
     /// One a series.
     pub series: Vec<SeriesFit>,
     /// By how much serial correlation shrinks the number of independent residuals.
@@ -90,18 +94,13 @@ impl Fit {
 ///
 /// `None` where a series has fewer points than unknowns or the fit is singular.
 #[must_use]
-pub fn fit(
-    series: &[Series],
-    start: &[Oscillation],
-    band_hz: Option<(f64, f64)>,
-    drift: bool,
-) -> Option<Fit> {
+pub fn fit(series: &[Series], start: &[Oscillation], band_hz: Option<(f64, f64)>, form: Form) -> Option<Fit> {
     let mut modes = start.to_vec();
     if let Some(band) = band_hz {
-        modes.push(best_seed(series, start, band, drift)?);
+        modes.push(best_seed(series, start, band, form)?);
     }
     if !modes.is_empty() {
-        let refined = refine(series, &modes, drift);
+        let refined = refine(series, &modes, form);
         let (low, high) = band_hz.unwrap_or((0.0, f64::INFINITY));
         let is_mode =
             |m: &Oscillation| m.damping < MOST_DAMPING && (0.8 * low..1.25 * high).contains(&m.frequency_hz);
@@ -110,7 +109,7 @@ pub fn fit(
             modes = refined;
         }
     }
-    describe(series, modes, drift)
+    describe(series, modes, form)
 }
 
 #[cfg(test)]
@@ -153,7 +152,7 @@ mod tests {
     fn one_mode_is_found_and_taken_off() {
         let truth = [Oscillation { frequency_hz: 62.0, damping: 0.02 }];
         let series = ringing(&truth, 0.0);
-        let fit = fit(&series, &[], Some((20.0, 600.0)), false).expect("a fit");
+        let fit = fit(&series, &[], Some((20.0, 600.0)), Form::FREE).expect("a fit");
         assert!((fit.modes[0].frequency_hz - 62.0).abs() < 0.05, "{fit:?}");
         // The disturbance has 6e-4 RMS over 240 points: 1e-4 is three of its standard errors.
         assert!((fit.series[0].plateau - 20.0).abs() < 2e-4, "{}", fit.series[0].plateau);
@@ -169,10 +168,10 @@ mod tests {
         ];
         for (truth, expected) in [(&two[..0], 0), (&two[..1], 1), (&two[..2], 2)] {
             let series = ringing(truth, 0.0);
-            let mut fits = vec![fit(&series, &[], None, false).expect("a line")];
+            let mut fits = vec![fit(&series, &[], None, Form::FREE).expect("a line")];
             while fits.len() < 4 {
                 let start = fits[fits.len() - 1].modes.clone();
-                let Some(next) = fit(&series, &start, Some((20.0, 600.0)), false) else { break };
+                let Some(next) = fit(&series, &start, Some((20.0, 600.0)), Form::FREE) else { break };
                 fits.push(next);
             }
             let richest = fits[fits.len() - 1].correlation;
@@ -192,7 +191,7 @@ mod tests {
             *v += if *t > 0.03 { 1.5 } else { 0.0 };
         }
         series[0].steps_s = vec![0.03];
-        let fit = fit(&series, &[], Some((20.0, 600.0)), false).expect("a fit");
+        let fit = fit(&series, &[], Some((20.0, 600.0)), Form::FREE).expect("a fit");
         assert!((fit.series[0].jumps[0] - 1.5).abs() < 1e-3);
         assert!((fit.series[0].plateau - 20.0).abs() < 1e-3);
     }
@@ -201,6 +200,6 @@ mod tests {
     fn too_few_points_are_no_fit() {
         let series =
             vec![Series { time_s: vec![0.0, 1.0], value: vec![1.0, 1.0], steps_s: vec![], floor: 1.0 }];
-        assert!(fit(&series, &[], None, false).is_none());
+        assert!(fit(&series, &[], None, Form::FREE).is_none());
     }
 }

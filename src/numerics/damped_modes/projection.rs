@@ -1,32 +1,45 @@
 //! Frequencies and dampings to the best linear coefficients, and to better frequencies and dampings (Golub & Pereyra 1973).
 
-use super::{Oscillation, Ringing, Series};
+use super::{Form, Oscillation, Ringing, Series};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 
 /// Damping ratios stay below this: above, a "mode" is a bend of the plateau.
 const MAX_DAMPING: f64 = 0.3;
 
-/// Columns of one series' linear problem: 1, t, the jumps, then e^(−ζωt) cos ωt and sin ωt of each mode.
-pub(super) fn columns(series: &Series, modes: &[Oscillation], drift: bool) -> DMatrix<f64> {
-    let fixed = fixed_columns(series, drift);
-    let mut matrix = DMatrix::zeros(series.time_s.len(), fixed + 2 * modes.len());
+/// Columns of one series' linear problem: 1, t, the jumps, then e^(−ζωt) cos ωt and sin ωt of each mode, or their driven sum.
+pub(super) fn columns(series: &Series, modes: &[Oscillation], form: Form) -> DMatrix<f64> {
+    let (fixed, width) = (fixed_columns(series, form.drift), form.width());
+    let mut matrix = DMatrix::zeros(series.time_s.len(), fixed + width * modes.len());
     for (row, &t) in series.time_s.iter().enumerate() {
         matrix[(row, 0)] = 1.0;
-        if drift {
+        if form.drift {
             matrix[(row, 1)] = t;
         }
         for (i, &step_s) in series.steps_s.iter().enumerate() {
-            matrix[(row, 1 + usize::from(drift) + i)] = f64::from(t > step_s);
+            matrix[(row, 1 + usize::from(form.drift) + i)] = f64::from(t > step_s);
         }
     }
     for (i, mode) in modes.iter().enumerate() {
-        for (row, value) in Ringing::new(*mode, &series.time_s).enumerate() {
-            matrix[(row, fixed + 2 * i)] = value.re;
-            matrix[(row, fixed + 2 * i + 1)] = value.im;
-        }
+        matrix.columns_mut(fixed + width * i, width).copy_from(&mode_columns(series, *mode, form));
     }
     matrix
+}
+
+/// Cosine and sine of one mode, or the one sum of both that its drive gives it.
+fn mode_columns(series: &Series, mode: Oscillation, form: Form) -> DMatrix<f64> {
+    let mut columns = DMatrix::zeros(series.time_s.len(), form.width());
+    let phase = form.drive.map(|drive| drive.phase(mode));
+    for (row, value) in Ringing::new(mode, &series.time_s).enumerate() {
+        match phase {
+            Some(phase) => columns[(row, 0)] = (phase * value).re,
+            None => {
+                columns[(row, 0)] = value.re;
+                columns[(row, 1)] = value.im;
+            }
+        }
+    }
+    columns
 }
 
 fn fixed_columns(series: &Series, drift: bool) -> usize {
@@ -37,9 +50,9 @@ fn fixed_columns(series: &Series, drift: bool) -> usize {
 pub(super) fn project(
     series: &Series,
     modes: &[Oscillation],
-    drift: bool,
+    form: Form,
 ) -> Option<(DVector<f64>, DVector<f64>)> {
-    let mut matrix = columns(series, modes, drift);
+    let mut matrix = columns(series, modes, form);
     if matrix.nrows() < matrix.ncols() + 2 {
         return None;
     }
@@ -67,10 +80,10 @@ pub(super) fn best_seed(
     series: &[Series],
     start: &[Oscillation],
     (low_hz, high_hz): (f64, f64),
-    drift: bool,
+    form: Form,
 ) -> Option<Oscillation> {
     let backgrounds =
-        series.iter().map(|s| Background::new(s, start, drift)).collect::<Option<Vec<Background>>>()?;
+        series.iter().map(|s| Background::new(s, start, form)).collect::<Option<Vec<Background>>>()?;
     let mut best: Option<(f64, Oscillation)> = None;
     let mut frequency_hz = low_hz;
     while frequency_hz <= high_hz {
@@ -96,31 +109,28 @@ pub(super) fn best_seed(
 /// One series with what the modes known so far explain taken off, so that a further mode costs two columns.
 struct Background<'a> {
     series: &'a Series,
+    form: Form<'a>,
     basis: DMatrix<f64>,
     rest: DVector<f64>,
 }
 
 impl<'a> Background<'a> {
-    /// `None` where two columns more would leave fewer than two points over.
-    fn new(series: &'a Series, start: &[Oscillation], drift: bool) -> Option<Self> {
-        let matrix = columns(series, start, drift);
-        if matrix.nrows() < matrix.ncols() + 4 {
+    /// `None` where one mode more would leave fewer than two points over.
+    fn new(series: &'a Series, start: &[Oscillation], form: Form<'a>) -> Option<Self> {
+        let matrix = columns(series, start, form);
+        if matrix.nrows() < matrix.ncols() + form.width() + 2 {
             return None;
         }
         let basis = matrix.qr().q();
         let value = DVector::from_column_slice(&series.value);
         let rest = &value - &basis * basis.tr_mul(&value);
-        Some(Self { series, basis, rest })
+        Some(Self { series, form, basis, rest })
     }
 
     /// Mean square of what is left with the best amplitudes of one more mode; `None` where it adds nothing of its own.
     #[allow(clippy::cast_precision_loss, reason = "a few thousand points")]
     fn mean_square_with(&self, mode: Oscillation) -> Option<f64> {
-        let mut pair = DMatrix::zeros(self.rest.len(), 2);
-        for (row, value) in Ringing::new(mode, &self.series.time_s).enumerate() {
-            pair[(row, 0)] = value.re;
-            pair[(row, 1)] = value.im;
-        }
+        let pair = mode_columns(self.series, mode, self.form);
         let known = self.basis.tr_mul(&pair);
         let along = pair.tr_mul(&self.rest);
         let normal = pair.tr_mul(&pair) - known.tr_mul(&known);
@@ -133,7 +143,7 @@ impl<'a> Background<'a> {
 pub(super) struct Projection<'a> {
     pub series: &'a [Series],
     pub weights: Vec<f64>,
-    pub drift: bool,
+    pub form: Form<'a>,
     pub parameters: DVector<f64>,
 }
 
@@ -160,7 +170,7 @@ impl Projection<'_> {
         let modes = to_modes(parameters);
         let mut all = Vec::new();
         for (series, weight) in self.series.iter().zip(&self.weights) {
-            let (_, residual) = project(series, &modes, self.drift)?;
+            let (_, residual) = project(series, &modes, self.form)?;
             all.extend(residual.iter().map(|r| r * weight));
         }
         all.iter().all(|r| r.is_finite()).then(|| DVector::from_vec(all))
@@ -202,12 +212,12 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Projection<'_> {
     }
 }
 
-pub(super) fn refine(series: &[Series], modes: &[Oscillation], drift: bool) -> Option<Vec<Oscillation>> {
+pub(super) fn refine(series: &[Series], modes: &[Oscillation], form: Form) -> Option<Vec<Oscillation>> {
     let weights = series
         .iter()
-        .map(|s| project(s, modes, drift).map(|(_, r)| 1.0 / rms(&r).hypot(s.floor).max(1e-300)))
+        .map(|s| project(s, modes, form).map(|(_, r)| 1.0 / rms(&r).hypot(s.floor).max(1e-300)))
         .collect::<Option<Vec<f64>>>()?;
-    let problem = Projection { series, weights, drift, parameters: to_parameters(modes) };
+    let problem = Projection { series, weights, form, parameters: to_parameters(modes) };
     let (solved, report) = LevenbergMarquardt::new()
         .with_patience(20)
         .with_ftol(1e-9)

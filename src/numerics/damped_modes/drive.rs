@@ -1,0 +1,113 @@
+//! What drove a series' modes before it begins, to the phase that they begin with.
+
+use super::Oscillation;
+use nalgebra::Complex;
+
+/// A force of known shape and unknown size that ended before a series begins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drive {
+    /// How long before t = 0 it began, s.
+    pub age_s: f64,
+    /// Length of a step, s.
+    pub step_s: f64,
+    /// Its integral over each step, in any unit.
+    pub impulses: Vec<f64>,
+}
+
+impl Drive {
+    /// Z / |Z| at t = 0, Z = Σ impulse e^((−ζ + i) ω age): a mode at rest before, so driven, rings on as Re(Z e^((−ζ + i) ω t))   (36)
+    #[must_use]
+    pub fn phase(&self, mode: Oscillation) -> Complex<f64> {
+        let omega = std::f64::consts::TAU * mode.frequency_hz;
+        let rate = Complex::new(-mode.damping * omega, omega);
+        let (turn, half_turn) = ((rate * self.step_s).exp(), (rate * (self.step_s / 2.0)).exp());
+        let driven =
+            self.impulses.iter().fold(Complex::new(0.0, 0.0), |z, impulse| z * turn + half_turn * *impulse);
+        #[allow(clippy::cast_precision_loss, reason = "some hundred steps")]
+        let since_s = self.age_s - self.impulses.len() as f64 * self.step_s;
+        let value = driven * (rate * since_s).exp();
+        if value.norm() > 0.0 { value / value.norm() } else { Complex::new(1.0, 0.0) }
+    }
+}
+
+/// What a series is made of beside its plateau.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Form<'a> {
+    /// Whether it drifts.
+    pub drift: bool,
+    /// What drove its modes; `None`: each series has each mode in a phase of its own.
+    pub drive: Option<&'a Drive>,
+}
+
+impl Form<'_> {
+    /// No drift, free phases.
+    pub const FREE: Form<'static> = Form { drift: false, drive: None };
+
+    /// Unknowns that a mode adds to a series.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        if self.drive.is_some() { 1 } else { 2 }
+    }
+
+    /// Coefficients of the modes to amplitudes of cosine and sine.
+    pub(super) fn amplitudes(&self, modes: &[Oscillation], coefficients: &[f64]) -> Vec<(f64, f64)> {
+        match self.drive {
+            Some(drive) => {
+                let of = |(mode, size): (&Oscillation, &f64)| {
+                    let phase = drive.phase(*mode);
+                    (size * phase.re, -size * phase.im)
+                };
+                modes.iter().zip(coefficients).map(of).collect()
+            }
+            None => coefficients.chunks_exact(2).map(|c| (c[0], c[1])).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Series, fit};
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// A mode struck by a half sine of 5 ms that ended 1 ms before the series: ∫ F(τ) e^(−ζω(t−τ)) cos ω(t−τ) dτ, summed finely.
+    fn struck(mode: Oscillation, t_s: f64) -> f64 {
+        let (omega, steps) = (TAU * mode.frequency_hz, 2000);
+        (0..steps)
+            .map(|i| {
+                let tau_s = 5e-3 * (f64::from(i) + 0.5) / f64::from(steps);
+                let since_s = t_s + 6e-3 - tau_s;
+                let force = (std::f64::consts::PI * tau_s / 5e-3).sin() / f64::from(steps);
+                force * (-mode.damping * omega * since_s).exp() * (omega * since_s).cos()
+            })
+            .sum()
+    }
+
+    #[test]
+    fn a_flight_shorter_than_half_a_period_is_resolved_by_the_drive() {
+        // 12 ms of a 31 Hz mode with 3 % damping on plateaus of 20 and −7.
+        let truth = Oscillation { frequency_hz: 31.0, damping: 0.03 };
+        let series: Vec<Series> = [(20.0, 9.0), (-7.0, 6.0)]
+            .into_iter()
+            .map(|(plateau, size)| {
+                let time_s: Vec<f64> = (0..120).map(|i| f64::from(i) * 1e-4).collect();
+                let value = time_s.iter().map(|&t| plateau + size * struck(truth, t)).collect();
+                Series { time_s, value, steps_s: vec![], floor: 1e-4 }
+            })
+            .collect();
+        let half_sine = |i: i32| (std::f64::consts::PI * (f64::from(i) + 0.5) / 100.0).sin();
+        let drive = Drive { age_s: 6e-3, step_s: 5e-5, impulses: (0..100).map(half_sine).collect() };
+        let form = Form { drift: false, drive: Some(&drive) };
+        let fit = fit(&series, &[], Some((20.0, 600.0)), form).expect("a fit");
+        assert!((fit.modes[0].frequency_hz - 31.0).abs() < 0.1, "{fit:?}");
+        // The grids of drive and truth differ by (ωh)²/24 = 1e-6 of the amplitude, which a window this short blows up a hundredfold.
+        assert!((fit.series[0].plateau - 20.0).abs() < 2e-3, "{fit:?}");
+        assert!((fit.series[1].plateau + 7.0).abs() < 2e-3);
+    }
+
+    #[test]
+    fn nothing_that_drives_is_no_phase_of_its_own() {
+        let drive = Drive { age_s: 1.0, step_s: 0.1, impulses: vec![0.0; 5] };
+        assert_eq!(drive.phase(Oscillation { frequency_hz: 1.0, damping: 0.0 }), Complex::new(1.0, 0.0));
+    }
+}
