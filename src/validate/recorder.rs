@@ -16,7 +16,7 @@ const CONTACT_SAMPLES: f64 = 25.0;
 const PERIOD_SAMPLES: f64 = 15.0;
 
 /// Most samples of a channel, where a slower recorder would do.
-const MOST_SAMPLES: f64 = 2e5;
+const MOST_SAMPLES: f64 = 1.2e5;
 
 /// A resonance is simulated up to this rate; faster recorders look at sensors that resonate beyond their band.
 const RESONANT_HZ: f64 = 50e3;
@@ -62,7 +62,7 @@ fn timed(case: &mut Case, wish: &Wish) -> f64 {
     let needed_hz = (CONTACT_SAMPLES / contact_s).max(PERIOD_SAMPLES * highest_hz);
     let fast: Vec<f64> = RATES_HZ.iter().copied().filter(|hz| *hz >= needed_hz).collect();
     let total_s = |hz: f64, before_s: f64| if hz >= 1e5 && !case.scene.rest { before_s.min(0.08) } else { before_s } + after_contact_s;
-    let most = if wish.slow_recorder { MOST_SAMPLES / 5.0 } else { MOST_SAMPLES };
+    let most = if wish.slow_recorder { MOST_SAMPLES / 3.0 } else { MOST_SAMPLES };
     let affordable: Vec<f64> =
         fast.iter().copied().filter(|hz| hz * total_s(*hz, case.scene.before_s) <= most).collect();
     let slowest_hz = fast.first().copied().unwrap_or(500e3);
