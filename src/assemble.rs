@@ -2,8 +2,8 @@
 
 use crate::data::{
     Analysis, CaskFile, ChannelSummary, Comparison, Curves, DropResult, Estimate, Events, FirstImpact,
-    FlightFit, Input, Issue, IssueCode, ModelChoice, Quantities, Recording, Setting, Setup, Severity, Signal,
-    SlapDown,
+    FlightFit, Input, Issue, IssueCode, ModelChoice, Quantities, ReconstructionChoice, Recording, RestLevel,
+    Setting, Setup, Severity, Signal, SlapDown,
 };
 use crate::{fit, judge, motion, predict};
 
@@ -18,7 +18,9 @@ pub(crate) struct Draft<'a> {
     pub flight: Option<FlightFit>,
     channels: Vec<ChannelSummary>,
     settings: Vec<Setting>,
+    pub rests: Vec<RestLevel>,
     quantities: Option<Quantities>,
+    reconstruction: Option<ReconstructionChoice>,
     model: Option<ModelChoice>,
     comparison: Option<Comparison>,
 }
@@ -35,7 +37,9 @@ impl<'a> Draft<'a> {
             flight: None,
             channels: recording.channels.iter().map(summary).collect(),
             settings: Vec::new(),
+            rests: Vec::new(),
             quantities: None,
+            reconstruction: None,
             model: None,
             comparison: None,
         }
@@ -84,8 +88,14 @@ impl<'a> Draft<'a> {
     }
 
     /// Takes over what was measured and how it compares.
-    pub fn measured(&mut self, quantities: Quantities, compared: Option<(ModelChoice, Option<Comparison>)>) {
+    pub fn measured(
+        &mut self,
+        quantities: Quantities,
+        reconstruction: ReconstructionChoice,
+        compared: Option<(ModelChoice, Option<Comparison>)>,
+    ) {
         self.quantities = Some(quantities);
+        self.reconstruction = Some(reconstruction);
         if let Some((model, comparison)) = compared {
             self.model = Some(model);
             self.comparison = comparison;
@@ -212,6 +222,7 @@ impl<'a> Draft<'a> {
             first_impact,
             slap_down,
             k: self.quantities.as_ref().map(|q| q.k),
+            reconstruction: self.reconstruction,
             model: self.model,
             predictions,
             comparison: self.comparison,

@@ -21,8 +21,9 @@ pub mod validate;
 use assemble::Draft;
 use data::{
     Analysis, AxialClosure, Axis, Campaign, CampaignRequest, Cask, CaskFile, Channel, Contact, Coupling,
-    CrushableEnd, Drop, Events, FlightFit, Issue, IssueCode, Motion, Quantities, Recording, Scene, SceneFile,
-    SceneNumber, Setup, Severity, Signal, SyntheticRecording, WantedImpact,
+    CrushableEnd, Drop, Events, FlightFit, Issue, IssueCode, Motion, Quantities, ReconstructionChoice,
+    Recording, RestLevel, Scene, SceneFile, SceneNumber, Setup, Severity, Signal, SyntheticRecording,
+    WantedImpact,
 };
 use std::path::Path;
 
@@ -58,6 +59,11 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     };
     draft.events.first_contact_s = Some(contact.0);
     for (channel, fall) in free_falls(recording, cask_file, contact.0) {
+        draft.rests.push(RestLevel {
+            channel: channel.name.clone(),
+            rest_m_s2: fall.rest_m_s2,
+            u_m_s2: fall.u_rest_m_s2,
+        });
         draft.issues.extend(judge::judge_rest(&channel.name, fall.rest_m_s2, &cask_file.drop));
         draft.events.release_s = draft.events.release_s.or(Some(fall.release_s));
         draft.events.fall_end_s = draft.events.fall_end_s.or(Some(fall.end_s));
@@ -67,9 +73,10 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     judge::weigh_by_distance(&mut draft.issues, &draft.events);
     draft.issues.extend(judge::judge_channels(&signals, &draft.events));
     let smooth = draft.smooth(&signals);
-    if let Some((flight, setup, motion, quantities)) = reconstructed {
+    if let Some(Reconstructed { flight, setup, motion, quantities, choice: reconstruction }) = reconstructed {
         if !draft.issues.iter().any(judge::invalidates) {
             draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
+            draft.issues.extend(judge::judge_closures(&reconstruction));
         }
         draft.flight = Some(flight);
         if draft.issues.iter().any(judge::invalidates) {
@@ -82,7 +89,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         if let Some(comparison) = compared.as_ref().and_then(|c| c.1) {
             draft.issues.extend(judge::judge_comparison(&comparison));
         }
-        draft.measured(quantities, compared);
+        draft.measured(quantities, reconstruction, compared);
         draft.curves.motion = Some(motion.curve);
         draft.filter_effect(&smooth, &setup);
     }
@@ -150,12 +157,17 @@ fn free_falls<'a>(
     steady.filter_map(move |c| events::free_fall(c, &drop, contact_s).map(|fall| (c, fall)))
 }
 
+/// What the motion was had from and what it says.
+struct Reconstructed {
+    flight: FlightFit,
+    setup: Setup,
+    motion: Motion,
+    quantities: Quantities,
+    choice: ReconstructionChoice,
+}
+
 /// The flight fit, the motion and what is read off it; what prevents them goes to the draft's issues.
-fn flight_and_motion(
-    draft: &mut Draft,
-    signals: &[Signal],
-    contact: (f64, f64),
-) -> Option<(FlightFit, Setup, Motion, Quantities)> {
+fn flight_and_motion(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Option<Reconstructed> {
     let cask_file = draft.cask_file;
     for end in [data::End::First, data::End::Second] {
         if events::transverse(signals, end).is_none() {
@@ -172,6 +184,14 @@ fn flight_and_motion(
     let flight = find_flight(draft, signals, contact)?;
     let setup = setup(cask_file, signals, &draft.events, &flight);
     let motion = motion::reconstruct(signals, &flight, &draft.events, &setup)?;
+    let window = motion::Window {
+        contact_s: contact.0,
+        from_s: flight.from_s,
+        to_s: flight.to_s,
+        angular_velocity_rad_s: motion::rotation_rad_s(signals, &flight),
+    };
+    let plain = motion::mean_of_flight(signals, &flight, &window, setup.cog_m);
+    let cask = &cask_file.cask;
     let measured = fit::Measured {
         signals,
         flight: &flight,
@@ -180,9 +200,17 @@ fn flight_and_motion(
         setup: &setup,
         other_law: other_law(setup.axial),
         tolerances: cask_file.tolerances,
+        inertia_m2: cask.is_body.then_some(cask.inertia_kg_m2 / cask.mass_kg),
+        rests: &draft.rests,
+        fall_s: draft
+            .events
+            .release_s
+            .zip(draft.events.fall_end_s)
+            .map(|(release_s, end_s)| end_s - release_s),
     };
-    let quantities = fit::quantities(&measured, &motion::reconstruct)?;
-    Some((flight, setup, motion, quantities))
+    let reading = motion::read_channels(signals, &draft.events, &setup);
+    let (quantities, choice) = fit::ladder(&measured, plain.as_ref(), reading, &motion::outcome)?;
+    Some(Reconstructed { flight, setup, motion, quantities, choice })
 }
 
 /// Separation, slap-down and the flight between them, each found again with the other's help.

@@ -132,10 +132,13 @@ fn quantities(bencher: Bencher, samples: usize) {
         setup: &m.setup,
         other_law: None,
         tolerances: dropcheck::data::Tolerances::default(),
+        inertia_m2: Some(2.58),
+        rests: &[],
+        fall_s: None,
     };
     bencher
         .counter(m.conditioned())
-        .bench(|| fit::quantities(&measured, &motion::reconstruct).expect("quantities"));
+        .bench(|| fit::ladder(&measured, None, None, &motion::outcome).expect("quantities"));
 }
 
 #[divan::bench(args = SIZES)]

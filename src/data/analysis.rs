@@ -8,6 +8,7 @@ use super::flight::FlightFit;
 use super::issue::Issue;
 use super::ladder::Rung;
 use super::prediction::{BodyModel, Prediction};
+use super::reconstruction::ReconstructionChoice;
 use super::recording::RecordingFormat;
 use serde::Serialize;
 
@@ -190,6 +191,8 @@ pub struct DropResult {
     pub slap_down: SlapDown,
     /// Effective coefficient of restitution.
     pub k: Option<Estimate>,
+    /// How the motion was had.
+    pub reconstruction: Option<ReconstructionChoice>,
     /// Which analytical model explains the measurement.
     pub model: Option<ModelChoice>,
     /// What the analytical models say.

@@ -36,11 +36,12 @@ pub use flight::{FlightFit, FlightModelScore, Mode, Plateau};
 pub use issue::{Issue, IssueCode, Severity};
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};
-pub use motion::{AxialClosure, Motion, MotionState, Setup};
+pub use motion::{AxialClosure, ChannelReading, Motion, MotionState, Setup};
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, Quantities};
 pub use reconstruction::{
-    Adjustment, Closure, ReconstructionCandidate, ReconstructionChoice, ReconstructionRung,
+    Adjustment, Closure, ClosureKind, ReconstructionCandidate, ReconstructionChoice, ReconstructionRung,
+    RestLevel,
 };
 pub use recording::{Recording, RecordingFormat};
 pub use scene::{BendingMode, Chain, CrushableEnd, Scene, SceneChannel, SimulatedMotion, Truth};

@@ -63,6 +63,8 @@ pub struct Motion {
     pub slip_m_s: f64,
     /// I_x / I_z of the contact: the friction that the motion needed.
     pub impulse_ratio: f64,
+    /// Angular impulse about S during the contact over mass, m²/s: Θ ω / m of a rigid body   (32)
+    pub angular_impulse_m2_s: f64,
     /// Just before R strikes, where it does.
     pub slap_down: Option<MotionState>,
     /// Horizontal and vertical velocity of R's corner then, m/s.
@@ -73,4 +75,13 @@ pub struct Motion {
     pub lowest_first_end_m: f64,
     /// The motion over time.
     pub curve: MotionCurve,
+}
+
+/// What the channels say by themselves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChannelReading {
+    /// Velocity of the channel nearest to L as L leaves, m/s, up positive.
+    pub first_m_s: f64,
+    /// Velocity of the channel nearest to R as it strikes, m/s, up positive.
+    pub second_m_s: Option<f64>,
 }

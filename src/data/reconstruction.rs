@@ -37,11 +37,40 @@ pub struct ReconstructionCandidate {
     pub residual: String,
 }
 
+/// What a closure tests.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ClosureKind {
+    /// R's corner is on the target when it strikes: angle, velocities, times.
+    Height,
+    /// The impulse of the first impact turns the cask: the channels against each other and against the mass properties.
+    Turning,
+    /// A channel at rest reads gravity: its scale.
+    Rest,
+    /// The fall lasts as long as the impact velocity needs: height and clock.
+    Fall,
+}
+
+/// Rest before the release, as one DC-coupled transverse channel shows it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RestLevel {
+    /// The channel.
+    pub channel: String,
+    /// Rest level less free-fall level, m/s²: g cos φ of a sound channel.
+    pub rest_m_s2: f64,
+    /// Standard uncertainty of it, from the levels' own scatter, m/s².
+    pub u_m_s2: f64,
+}
+
 /// One observable that the motion must meet beside the velocity steps, and how far it is off.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Closure {
     /// What it is, as a person says it: "height of the second end at slap-down".
     pub name: String,
+    /// Which one.
+    pub kind: ClosureKind,
+    /// The channel, where it is one channel's.
+    pub channel: Option<String>,
     /// By how much the stated inputs miss it, with unit.
     pub miss: String,
     /// That, over its standard uncertainty from all inputs.

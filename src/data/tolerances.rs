@@ -25,7 +25,7 @@ impl Default for Tolerances {
     /// Sources and sizes: docs/uncertainty.md.
     fn default() -> Self {
         Self {
-            angle_rad: 0.5 * std::f64::consts::PI / 180.0,
+            angle_rad: 0.4 * std::f64::consts::PI / 180.0,
             impact_velocity: 0.003,
             calibration: 0.015,
             cross_axis: 0.03,

@@ -29,6 +29,8 @@ pub struct FreeFall {
     pub end_s: f64,
     /// Rest level less free-fall level, m/s².
     pub rest_m_s2: f64,
+    /// Standard uncertainty of it, from the scatter of the blocks it is taken from, m/s².
+    pub u_rest_m_s2: f64,
 }
 
 /// The longest free fall before `contact_s` that begins with a step from rest, +g cos φ, to a level that then stays.
@@ -54,10 +56,11 @@ pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeF
         .filter_map(|block| record.fall_from(block, contact))
         .filter(|(start, end, _)| end - start > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
         .max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)))
-        .map(|(start, end, rest_m_s2)| FreeFall {
+        .map(|(start, end, (rest_m_s2, u_rest_m_s2))| FreeFall {
             release_s: channel.time_s(from) + start / channel.sample_rate_hz,
             end_s: channel.time_s(from) + end / channel.sample_rate_hz,
             rest_m_s2,
+            u_rest_m_s2,
         })
 }
 
@@ -104,8 +107,9 @@ impl<'a> Record<'a> {
             .collect()
     }
 
-    /// Release and end in samples, fractional, and the rest level above the free-fall level, m/s², of the fall from a step.
-    fn fall_from(&self, step: usize, contact: f64) -> Option<(f64, f64, f64)> {
+    /// Release and end in samples, fractional, and the rest level above the free-fall level with its standard uncertainty, m/s², of the fall
+    /// from a step.
+    fn fall_from(&self, step: usize, contact: f64) -> Option<(f64, f64, (f64, f64))> {
         let near = self.level(step + 1, step + 1 + LEVEL);
         let end = self.departure(step, near);
         // The level of the whole fall is better known than that of its beginning.
@@ -115,7 +119,14 @@ impl<'a> Record<'a> {
             return None;
         }
         let end = self.departure(step, falling).map_or(contact, |block| self.touch(step, block, falling));
-        Some((self.crossing(step, falling + 0.5 * rest), end, rest))
+        Some((self.crossing(step, falling + 0.5 * rest), end, (rest, self.u_level(step))))
+    }
+
+    /// Standard uncertainty of the median of [`LEVEL`] blocks beside a step, m/s²: √(π/2) σ/√n (Kenney & Keeping 1962).
+    fn u_level(&self, step: usize) -> f64 {
+        let before = self.blocks.get(step.saturating_sub(LEVEL)..step).unwrap_or_default();
+        let finite: Vec<f64> = before.iter().copied().filter(|b| b.is_finite()).collect();
+        (std::f64::consts::FRAC_PI_2 / count(LEVEL)).sqrt() * robust::mean_and_rms(&finite).1
     }
 
     /// The block from which on the mean over [`SUSTAINED`] blocks lies off the free-fall level; `None` where it holds to the end.

@@ -1,7 +1,7 @@
-//! The uncertain inputs of the reconstruction and by how much each may be off.
+//! The uncertain inputs of the reconstruction, each with its standard uncertainty, and the reconstruction's inputs with them moved.
 
 use super::Measured;
-use crate::data::{AxialClosure, Axis, Events, FlightFit, Setup};
+use crate::data::{AxialClosure, Axis, Events, FlightFit, Motion, Setup};
 
 /// One set of inputs.
 #[derive(Debug, Clone)]
@@ -9,145 +9,194 @@ pub(super) struct Inputs {
     pub flight: FlightFit,
     pub events: Events,
     pub setup: Setup,
+    /// By which share each channel's reading is corrected.
+    pub scales: Vec<f64>,
+    /// What share of the other body axis is taken off each channel.
+    pub crosses: Vec<f64>,
+    /// Θ / m, m².
+    pub inertia_m2: Option<f64>,
+    /// Part of the way from the stated contact law to the other one.
+    pub law_share: f64,
+}
+
+/// One input that is uncertain.
+#[derive(Debug, Clone)]
+pub(super) struct Input {
+    pub name: String,
+    /// Its standard uncertainty, as a person reads it.
+    pub size: String,
+    change: Change,
+}
+
+/// What a positive standard uncertainty does.
+#[derive(Debug, Clone, Copy)]
+enum Change {
+    Step { channel: usize, add_m_s: f64 },
+    Scale { channel: usize, share: f64 },
+    Cross { channel: usize, share: f64, other_m_s: f64 },
+    Angle { by_rad: f64 },
+    ImpactVelocity { share: f64 },
+    Event { which: usize, by_s: f64 },
+    CentreOfGravity { by_m: f64 },
+    Inertia { share: f64 },
+    Law { share: f64 },
 }
 
 impl Inputs {
     pub fn new(measured: &Measured) -> Self {
-        Self { flight: measured.flight.clone(), events: *measured.events, setup: *measured.setup }
+        let channels = measured.flight.plateaus.len();
+        Self {
+            flight: measured.flight.clone(),
+            events: *measured.events,
+            setup: *measured.setup,
+            scales: vec![0.0; channels],
+            crosses: vec![0.0; channels],
+            inertia_m2: measured.inertia_m2,
+            law_share: 0.0,
+        }
     }
-}
 
-/// One input and its standard uncertainty.
-pub(super) struct Variation {
-    pub name: String,
-    pub size: String,
-    /// What part of the change counts; 1 but for the contact law.
-    pub share: f64,
-    change: Change,
-}
+    /// These inputs with each of `inputs` moved by so many of its standard uncertainties.
+    pub fn moved(&self, inputs: &[Input], by_u: &[f64]) -> Self {
+        let mut moved = self.clone();
+        for (input, &by) in inputs.iter().zip(by_u) {
+            if by != 0.0 {
+                moved.apply(self, input.change, by);
+            }
+        }
+        moved
+    }
 
-enum Change {
-    Step { channel: usize, add_m_s: f64 },
-    Scale { channel: usize, share: f64 },
-    Position { by_m: f64, lever_m: f64, channel: usize },
-    Angle { by_rad: f64 },
-    ImpactVelocity { share: f64 },
-    Event { which: usize, by_s: f64 },
-    Law(AxialClosure),
-}
-
-impl Variation {
-    /// The inputs with this one moved by `sign` standard uncertainties.
-    pub fn moved(&self, inputs: &Inputs, sign: f64) -> Inputs {
-        let mut moved = inputs.clone();
-        let step = |flight: &mut FlightFit, channel: usize, add: f64| {
-            if let Some(p) = flight.plateaus.get_mut(channel) {
-                p.velocity_step_m_s += add;
+    fn apply(&mut self, base: &Self, change: Change, by: f64) {
+        let mut step = |channel: usize, add_m_s: f64| {
+            if let Some(plateau) = self.flight.plateaus.get_mut(channel) {
+                plateau.velocity_step_m_s += add_m_s;
             }
         };
-        match self.change {
-            Change::Step { channel, add_m_s } => step(&mut moved.flight, channel, sign * add_m_s),
+        match change {
+            Change::Step { channel, add_m_s } => step(channel, by * add_m_s),
             Change::Scale { channel, share } => {
-                let value = inputs.flight.plateaus.get(channel).map_or(0.0, |p| p.velocity_step_m_s);
-                step(&mut moved.flight, channel, sign * share * value);
+                let value = base.flight.plateaus.get(channel).map_or(0.0, |p| p.velocity_step_m_s);
+                step(channel, by * share * value);
+                self.scales[channel] += by * share;
             }
-            Change::Position { by_m, lever_m, channel } => {
-                // A sensor nearer to the middle by δ reads f + Ω̇ δ: its step changes by Ω δ.
-                let values: Vec<f64> = inputs.flight.plateaus.iter().map(|p| p.velocity_step_m_s).collect();
-                let range = values.iter().fold(0.0_f64, |m, v| m.max((v - values[channel]).abs()));
-                step(&mut moved.flight, channel, sign * by_m * range / lever_m);
+            Change::Cross { channel, share, other_m_s } => {
+                step(channel, -by * share * other_m_s);
+                self.crosses[channel] += by * share;
             }
-            Change::Angle { by_rad } => moved.setup.angle_rad += sign * by_rad,
-            Change::ImpactVelocity { share } => moved.setup.impact_velocity_m_s *= 1.0 + sign * share,
+            Change::Angle { by_rad } => self.setup.angle_rad += by * by_rad,
+            Change::ImpactVelocity { share } => self.setup.impact_velocity_m_s *= 1.0 + by * share,
             Change::Event { which, by_s } => {
-                let events = &mut moved.events;
+                let events = &mut self.events;
                 let slot = match which {
                     0 => &mut events.first_contact_s,
                     1 => &mut events.separation_s,
                     _ => &mut events.slap_down_s,
                 };
                 if let Some(t) = slot {
-                    *t += sign * by_s;
+                    *t += by * by_s;
                 }
             }
-            Change::Law(law) => moved.setup.axial = law,
+            Change::CentreOfGravity { by_m } => self.setup.cog_m += by * by_m,
+            Change::Inertia { share } => self.inertia_m2 = self.inertia_m2.map(|i| i * (1.0 + by * share)),
+            Change::Law { share } => self.law_share += by * share,
         }
-        moved
     }
 }
 
-/// Every input that is uncertain, with its size.
-pub(super) fn variations(measured: &Measured) -> Vec<Variation> {
+/// Every input that is uncertain, with its size; `motion` is the one that the stated inputs give.
+pub(super) fn inputs(measured: &Measured, motion: &Motion) -> Vec<Input> {
     let mut all = Vec::new();
-    // Half of a 95 % half-width is a standard uncertainty.
-    let known = &measured.tolerances;
-    let (calibration, position_m) = (known.calibration / 2.0, known.position_m / 2.0);
-    let (angle_rad, velocity) = (known.angle_rad / 2.0, known.impact_velocity / 2.0);
-    let law_share = known.friction / 2.0;
-    let mut add = |name: String, size: String, share: f64, change: Change| {
-        all.push(Variation { name, size, share, change });
-    };
-    let contact_s = measured.events.first_contact_s.unwrap_or(0.0);
-    let pulse_s = measured.events.separation_s.map_or(0.0, |t| t - contact_s);
-    for (channel, (signal, plateau)) in measured.signals.iter().zip(&measured.flight.plateaus).enumerate() {
-        if signal.axis == Axis::Axial && measured.setup.axial != AxialClosure::Measured {
-            continue;
-        }
-        // What the fit leaves open; where a zero shift set in during the contact; what the offset may be off since.
-        let shift_m_s = plateau.zero_shift_m_s2.abs() * pulse_s / 12.0_f64.sqrt();
-        let drift_m_s = if measured.flight.drift {
-            0.0
-        } else {
-            signal.u_offset_m_s2 * (pulse_s + (measured.flight.to_s - measured.flight.from_s) / 2.0)
-        };
-        let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
-        let u = plateau.u_m_s.hypot(shift_m_s).hypot(drift_m_s).hypot(clipped_m_s);
-        add(
-            format!("velocity step of {}", signal.name),
-            format!("{u:.3} m/s"),
-            1.0,
-            Change::Step { channel, add_m_s: u },
-        );
-        add(
-            format!("calibration of {}", signal.name),
-            format!("{:.1} %", 100.0 * calibration),
-            1.0,
-            Change::Scale { channel, share: calibration },
-        );
-        if signal.axis == Axis::Transverse {
-            add(
-                format!("position of {}", signal.name),
-                format!("{:.0} mm", 1e3 * position_m),
-                1.0,
-                Change::Position { by_m: position_m, lever_m: measured.setup.length_m, channel },
-            );
+    for (channel, signal) in measured.signals.iter().enumerate() {
+        if signal.axis == Axis::Transverse || measured.setup.axial == AxialClosure::Measured {
+            of_channel(&mut all, measured, motion, channel);
         }
     }
-    add(
-        "drop angle".into(),
-        format!("{:.2}°", angle_rad.to_degrees()),
-        1.0,
-        Change::Angle { by_rad: angle_rad },
-    );
-    add(
-        "impact velocity".into(),
-        format!("{:.2} %", 100.0 * velocity),
-        1.0,
-        Change::ImpactVelocity { share: velocity },
-    );
+    // Half of a 95 % half-width is a standard uncertainty.
+    let known = &measured.tolerances;
+    let mut add = |name: &str, size: String, change: Change| {
+        all.push(Input { name: name.into(), size, change });
+    };
+    let by_rad = known.angle_rad / 2.0;
+    add("drop angle", format!("{:.2}°", by_rad.to_degrees()), Change::Angle { by_rad });
+    let share = known.impact_velocity / 2.0;
+    add("impact velocity", percent(share), Change::ImpactVelocity { share });
     for (which, name) in
         ["time of first contact", "time of separation", "time of slap-down"].into_iter().enumerate()
     {
         let by_s = measured.u_events_s[which];
-        add(name.into(), format!("{:.3} ms", 1e3 * by_s), 1.0, Change::Event { which, by_s });
+        add(name, format!("{:.3} ms", 1e3 * by_s), Change::Event { which, by_s });
     }
-    if let Some(law) = measured.other_law {
-        add(
-            "contact law".into(),
-            format!("{:.0} % of rough to smooth", 100.0 * law_share),
-            law_share,
-            Change::Law(law),
-        );
+    let by_m = known.cog_m / 2.0;
+    add("centre of gravity", format!("{:.0} mm", 1e3 * by_m), Change::CentreOfGravity { by_m });
+    if measured.inertia_m2.is_some() {
+        let share = known.inertia / 2.0;
+        add("inertia", percent(share), Change::Inertia { share });
+    }
+    if measured.other_law.is_some() {
+        let share = known.friction / 2.0;
+        let size = format!("{:.0} % of rough to smooth", 100.0 * share);
+        add("contact law", size, Change::Law { share });
     }
     all
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.2} %", 100.0 * share)
+}
+
+/// Step, calibration, cross axis and position of one channel.
+fn of_channel(all: &mut Vec<Input>, measured: &Measured, motion: &Motion, channel: usize) {
+    let (signal, known) = (&measured.signals[channel], &measured.tolerances);
+    if channel >= measured.flight.plateaus.len() {
+        return;
+    }
+    let mut add = |name: &str, size: String, change: Change| {
+        all.push(Input { name: format!("{name} of {}", signal.name), size, change });
+    };
+    let u_m_s = u_step_m_s(measured, channel);
+    add("velocity step", format!("{u_m_s:.3} m/s"), Change::Step { channel, add_m_s: u_m_s });
+    let share = known.calibration / 2.0;
+    add("calibration", percent(share), Change::Scale { channel, share });
+    let (transverse_m_s, axial_m_s) = steps_of_body_m_s(measured.setup, motion);
+    let omega = motion.separation.angular_velocity_rad_s;
+    let is_transverse = signal.axis == Axis::Transverse;
+    let other_m_s = if is_transverse {
+        axial_m_s
+    } else {
+        transverse_m_s - omega * (signal.position_m - measured.setup.cog_m)
+    };
+    let share = known.cross_axis / 2.0;
+    add("cross axis", percent(share), Change::Cross { channel, share, other_m_s });
+    if is_transverse {
+        // A sensor farther from L by δ reads Ω δ = −ω δ more.
+        let by_m = known.position_m / 2.0;
+        add("position", format!("{:.0} mm", 1e3 * by_m), Change::Step { channel, add_m_s: omega * by_m });
+    }
+}
+
+/// What the fit leaves open; where a zero shift set in during the contact; what the offset may be off since; what clipping cut off.
+fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
+    let (signal, plateau) = (&measured.signals[channel], &measured.flight.plateaus[channel]);
+    let contact_s = measured.events.first_contact_s.unwrap_or(0.0);
+    let pulse_s = measured.events.separation_s.map_or(0.0, |t| t - contact_s);
+    let shift_m_s = plateau.zero_shift_m_s2.abs() * pulse_s / 12.0_f64.sqrt();
+    let drift_m_s = if measured.flight.drift {
+        0.0
+    } else {
+        signal.u_offset_m_s2 * (pulse_s + (measured.flight.to_s - measured.flight.from_s) / 2.0)
+    };
+    let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
+    plateau.u_m_s.hypot(shift_m_s).hypot(drift_m_s).hypot(clipped_m_s)
+}
+
+/// Change of the body-axis velocities of S over the contact, m/s: transverse, axial.
+fn steps_of_body_m_s(setup: &Setup, motion: &Motion) -> (f64, f64) {
+    let (sin_0, cos_0) = setup.angle_rad.sin_cos();
+    let after = &motion.separation;
+    let (sin, cos) = after.angle_rad.sin_cos();
+    let transverse_m_s = after.vertical_velocity_m_s * cos - after.horizontal_velocity_m_s * sin;
+    let axial_m_s = after.horizontal_velocity_m_s * cos + after.vertical_velocity_m_s * sin;
+    let before_m_s = setup.impact_velocity_m_s;
+    (transverse_m_s + before_m_s * cos_0, axial_m_s + before_m_s * sin_0)
 }

@@ -1,10 +1,12 @@
 //! Everything found on the way to issues and a verdict: what speaks against the result.
 
 mod channels;
+mod closures;
 mod fall;
 mod result;
 
 pub use channels::judge_channels;
+pub use closures::judge_closures;
 pub use fall::{judge_fall, judge_rest};
 pub use result::{judge_comparison, judge_motion};
 

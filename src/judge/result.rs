@@ -7,10 +7,6 @@ use crate::data::{
 
 /// k this far outside 0 to 1 is an error whatever its interval.
 const FAR_OUTSIDE: f64 = 0.25;
-/// R's height at slap-down beyond this many of its 95 % intervals means that something is wrong with the events or the geometry.
-const GROSS_CLOSURE: f64 = 6.0;
-/// R's height at slap-down may be off by this many of its own 95 % intervals, angle included.
-const MOST_CLOSURE: f64 = 1.0;
 /// Zero shifts whose effect on the velocity over the contact is below this are a note, m/s: 0.2 % of a slap-down.
 const SMALL_SHIFT_M_S: f64 = 0.05;
 /// Velocity gained late in a flight beyond this share of v0 is another contact.
@@ -46,21 +42,6 @@ pub fn judge_motion(
             IssueCode::EndsExchanged,
             Severity::Error,
             "the cask turns the wrong way (the second end rises): the ends are exchanged or a polarity is wrong in the cask file",
-        ));
-    }
-    if let Some(height) = quantities.second_end_height
-        && height.value.abs() > MOST_CLOSURE * height.u95
-    {
-        issues.push(Issue::new(
-            IssueCode::Geometry,
-            if height.value.abs() > GROSS_CLOSURE * height.u95 { Severity::Error } else { Severity::Warning },
-            format!(
-                "the second end would be {:+.0} ± {:.0} mm above the target when it strikes; an angle of {:.1}° instead of {:.1}° would mend it, as would another drop height, scale, clock or sensor position: check them",
-                1e3 * height.value,
-                1e3 * height.u95,
-                (cask_file.drop.angle_rad - height.value / (cask_file.cask.length_m * cask_file.drop.angle_rad.cos())).to_degrees(),
-                cask_file.drop.angle_rad.to_degrees()
-            ),
         ));
     }
     let slip = quantities.slip_velocity;

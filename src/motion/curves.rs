@@ -1,6 +1,7 @@
 //! Signals to the curves a person looks at: filtered force, velocity, spectrum.
 
-use crate::data::{Axis, ChannelCurve, Events, FilterChoice, Setup, Signal, Spectrum};
+use super::Velocity;
+use crate::data::{Axis, ChannelCurve, ChannelReading, End, Events, FilterChoice, Setup, Signal, Spectrum};
 use crate::numerics::filter::{CFC_DESIGN, TWO_PASS_CUTOFF, ZeroPhaseLowPass};
 use crate::numerics::quadrature::running_integral;
 use crate::numerics::spectrum;
@@ -86,6 +87,22 @@ pub fn channel_curves(
             }
         })
         .collect()
+}
+
+/// The channels by themselves, as \[P\] Fig. 13 has them: −v0 + ∫f dt from first contact, gravity left out between the impacts, read off
+/// as L leaves and as R strikes. `None` without a transverse channel on each end or without first contact and separation.
+#[must_use]
+pub fn read_channels(signals: &[Signal], events: &Events, setup: &Setup) -> Option<ChannelReading> {
+    let (contact_s, left_s) = (events.first_contact_s?, events.separation_s?);
+    let on = |end: End| signals.iter().find(|s| s.axis == Axis::Transverse && s.end == end);
+    let at = |signal: &Signal, time_s: f64| {
+        Velocity::of(signal, contact_s - 2e-3, time_s).at(time_s) - setup.impact_velocity_m_s
+    };
+    let (first, second) = (on(End::First)?, on(End::Second)?);
+    Some(ChannelReading {
+        first_m_s: at(first, left_s),
+        second_m_s: events.slap_down_s.map(|struck_s| at(second, struck_s)),
+    })
 }
 
 /// Spectra of all channels from just before first contact to the end of what is shown.

@@ -96,6 +96,25 @@ pub fn fit_flight(signals: &[Signal], window: &Window, cog_m: f64) -> Option<Fli
     Some(flight)
 }
 
+/// The same window with each velocity step the mean over it: no mode, no drift. The candidates stay those of the best fit.
+#[must_use]
+pub fn mean_of_flight(
+    signals: &[Signal],
+    best: &FlightFit,
+    window: &Window,
+    cog_m: f64,
+) -> Option<FlightFit> {
+    let window = Window { from_s: best.from_s, to_s: best.to_s, ..*window };
+    let series: Vec<Series> = signals.iter().map(|s| series(s, &window, cog_m)).collect();
+    let mean = fit(&series, &[], None, false)?;
+    Some(FlightFit {
+        plateaus: plateaus(signals, &[mean], &|_| true),
+        modes: Vec::new(),
+        drift: false,
+        ..best.clone()
+    })
+}
+
 /// What the velocity has come to do by the end of the flight: another contact leaves a step.
 fn late_mismatch_m_s(signal: &Signal, flight: &FlightFit, whole: &Window, cog_m: f64) -> Option<f64> {
     let to_s = whole.to_s.min(signal.end_s());

@@ -1,7 +1,15 @@
 //! Signals and the plateaus of the flight to the integrated channels during contact, and the line over their positions.
 
 use super::Velocity;
-use crate::data::{Axis, FlightFit, Signal};
+use crate::data::{Axis, FlightFit, Mode, Signal};
+use nalgebra::Complex;
+
+/// Steps over the contact in which the ringing is followed: a fortieth of a period of 400 Hz in 20 ms.
+const STEPS: usize = 320;
+/// Rounds in which the shape of the force is freed of ringing: the second moves the ringing by a percent of itself.
+const ROUNDS: usize = 2;
+/// A mode that answered more strongly by this factor while it was driven than as L left is not known well enough to follow back.
+const MOST_DECLINE: f64 = 5.0;
 
 /// Least-squares line over the transverse channels: value at S and slope along the axis.
 pub(super) struct Line {
@@ -47,10 +55,17 @@ pub(super) struct Histories {
     axial: Vec<(usize, f64, f64)>,
     contact_s: f64,
     length_s: f64,
+    /// Ringing of each channel over the contact on a grid of [`STEPS`], m/s.
+    bending: Vec<Vec<f64>>,
 }
 
 impl Histories {
-    pub fn new(signals: &[Signal], fit: &FlightFit, contact_s: f64, separation_s: f64) -> Option<Self> {
+    pub fn new(
+        signals: &[Signal],
+        fit: &FlightFit,
+        line: &Line,
+        (contact_s, separation_s): (f64, f64),
+    ) -> Option<Self> {
         let length_s = separation_s - contact_s;
         if length_s <= 0.0 {
             return None;
@@ -71,13 +86,55 @@ impl Histories {
             .filter(|&i| signals[i].axis == Axis::Axial)
             .map(|i| (i, signals[i].position_m, signals[i].offset_m))
             .collect();
-        Some(Self { velocities, corrections_m_s, axial, contact_s, length_s })
+        let mut histories =
+            Self { velocities, corrections_m_s, axial, contact_s, length_s, bending: Vec::new() };
+        histories.take_off_bending(fit, line);
+        Some(histories)
+    }
+
+    /// Finds what rings in each channel during the contact, and leaves the corrections what that does not explain.
+    ///
+    /// The modes start from rest and are driven by the contact force, whose shape the rotation tells: first as it was recorded, then as it
+    /// is without the ringing.
+    fn take_off_bending(&mut self, fit: &FlightFit, line: &Line) {
+        if fit.modes.is_empty() {
+            return;
+        }
+        for _ in 0..ROUNDS {
+            let turning: Vec<f64> = (0..=STEPS).map(|i| line.at(self, self.grid_s(i), 0.0).1).collect();
+            let driven: Vec<Vec<Complex<f64>>> =
+                fit.modes.iter().map(|mode| driven(mode, &turning, self.length_s / STEPS as f64)).collect();
+            let before: Vec<f64> = (0..self.velocities.len()).map(|i| self.bending_m_s(i, STEPS)).collect();
+            let left_s = self.contact_s + self.length_s - fit.from_s;
+            self.bending = fit
+                .plateaus
+                .iter()
+                .map(|plateau| bending(&fit.modes, &plateau.ringing_m_s, &driven, left_s))
+                .collect();
+            for (i, before) in before.into_iter().enumerate() {
+                self.corrections_m_s[i] += self.bending_m_s(i, STEPS) - before;
+            }
+        }
+    }
+
+    fn grid_s(&self, step: usize) -> f64 {
+        self.contact_s + self.length_s * step as f64 / STEPS as f64
+    }
+
+    /// Ringing of a channel at a step of the grid, m/s.
+    fn bending_m_s(&self, index: usize, step: usize) -> f64 {
+        self.bending.get(index).and_then(|b| b.get(step)).copied().unwrap_or(0.0)
     }
 
     /// ∫f of a channel since before contact, ringing led out in proportion to time, m/s.
     pub fn at(&self, index: usize, time_s: f64) -> f64 {
         let share = ((time_s - self.contact_s) / self.length_s).clamp(0.0, 1.0);
-        self.velocities[index].at(time_s) + share * self.corrections_m_s[index]
+        let position = share * STEPS as f64;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and STEPS")]
+        let step = position as usize;
+        let (a, b) = (self.bending_m_s(index, step), self.bending_m_s(index, (step + 1).min(STEPS)));
+        let bending_m_s = a + (position - step as f64) * (b - a);
+        self.velocities[index].at(time_s) - bending_m_s + share * self.corrections_m_s[index]
     }
 
     /// Mean over the axial channels of ∫f_ξ of their place on the axis, m/s, and their mean position, m; `None` without any.
@@ -91,4 +148,43 @@ impl Histories {
         });
         (n > 0.0).then_some((sums.0 / n, sums.1 / n))
     }
+}
+
+/// Z(t) = ∫ f(τ) e^((−ζ + i) ω (t − τ)) dτ from rest: a mode driven by the shape of the contact force, −dΩ/dt   (36)
+fn driven(mode: &Mode, turning_rad_s: &[f64], step_s: f64) -> Vec<Complex<f64>> {
+    let omega = std::f64::consts::TAU * mode.frequency_hz;
+    let rate = Complex::new(-mode.damping * omega, omega);
+    let (turn, half_turn) = ((rate * step_s).exp(), (rate * (step_s / 2.0)).exp());
+    let mut value = Complex::new(0.0, 0.0);
+    let mut values = vec![value];
+    for pair in turning_rad_s.windows(2) {
+        value = value * turn + half_turn * (pair[0] - pair[1]);
+        values.push(value);
+    }
+    values
+}
+
+/// Velocity of one channel's ringing over the contact, m/s: each mode as it is driven, in the size that it has as L leaves.
+fn bending(
+    modes: &[Mode],
+    amplitudes_m_s: &[(f64, f64)],
+    driven: &[Vec<Complex<f64>>],
+    left_s: f64,
+) -> Vec<f64> {
+    let mut sum = vec![0.0; STEPS + 1];
+    for ((mode, &(a, b)), driven) in modes.iter().zip(amplitudes_m_s).zip(driven) {
+        let omega = std::f64::consts::TAU * mode.frequency_hz;
+        let as_left = Complex::new(a, -b) * (Complex::new(-mode.damping * omega, omega) * left_s).exp();
+        let largest = driven.iter().map(|z| z.norm()).fold(0.0, f64::max);
+        let last = driven[STEPS];
+        if last.norm() * MOST_DECLINE < largest || largest <= 0.0 {
+            continue;
+        }
+        // A mode's shape is real: what does not fit the phase is left to the correction.
+        let size = (as_left * last.conj()).re / last.norm_sqr();
+        for (sum, z) in sum.iter_mut().zip(driven) {
+            *sum += size * z.re;
+        }
+    }
+    sum
 }

@@ -6,9 +6,9 @@ mod histories;
 mod reconstruct;
 mod ringing;
 
-pub use curves::{channel_curves, cutoff_hz, filtered, spectra};
-pub use flight::{Window, fit_flight};
-pub use reconstruct::reconstruct;
+pub use curves::{channel_curves, cutoff_hz, filtered, read_channels, spectra};
+pub use flight::{Window, fit_flight, mean_of_flight};
+pub use reconstruct::{outcome, reconstruct};
 pub use ringing::{rotation_rad_s, take_off_ringing};
 
 use crate::data::Signal;

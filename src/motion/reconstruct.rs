@@ -10,28 +10,57 @@ const FLIGHT_STEPS: u32 = 200;
 /// Points of the curves, uniform over contact and flight: 0.1 ms over 60 ms.
 const CURVE_POINTS: u32 = 600;
 
-/// Reconstructs the motion from first contact to slap-down; `None` without two transverse channels apart or without their plateaus.
+/// Reconstructs the motion from first contact to slap-down with its curve; `None` without two transverse channels apart or without
+/// their plateaus.
 ///
 /// During contact the channels give ∫f_η of S and Ω by a line over their positions (16); v̇_η = f_η − g cos φ − Ω v_ξ (17);
 /// v_ξ comes from the contact law or the axial channels (18). Afterwards S flies freely (8).
 #[must_use]
 pub fn reconstruct(signals: &[Signal], fit: &FlightFit, events: &Events, setup: &Setup) -> Option<Motion> {
+    let mut curve = MotionCurve::default();
+    let mut record = |state: &MotionState| push(&mut curve, setup, state);
+    let mut motion = follow(signals, fit, events, setup, &mut record)?;
+    let separation = motion.separation;
+    let end_s = events.slap_down_s.unwrap_or(fit.to_s);
+    for i in 1..=FLIGHT_STEPS {
+        let share = f64::from(i) / f64::from(FLIGHT_STEPS);
+        record(&fly(setup, &separation, separation.time_s + (end_s - separation.time_s) * share));
+    }
+    motion.curve = uniform(&curve);
+    Some(motion)
+}
+
+/// The same motion without its curve: what a fit asks for often.
+#[must_use]
+pub fn outcome(signals: &[Signal], fit: &FlightFit, events: &Events, setup: &Setup) -> Option<Motion> {
+    follow(signals, fit, events, setup, &mut |_| ())
+}
+
+/// The motion over the contact, each state told to `record`, and its flight.
+fn follow(
+    signals: &[Signal],
+    fit: &FlightFit,
+    events: &Events,
+    setup: &Setup,
+    record: &mut dyn FnMut(&MotionState),
+) -> Option<Motion> {
     let contact_s = events.first_contact_s?;
     let separation_s = events.separation_s?;
     let line = Line::through(signals, setup.cog_m)?;
-    let histories = Histories::new(signals, fit, contact_s, separation_s)?;
+    let histories = Histories::new(signals, fit, &line, (contact_s, separation_s))?;
     let mut body = Contact::start(setup, contact_s);
-    let mut curve = MotionCurve::default();
     let step_s = (separation_s - contact_s) / f64::from(CONTACT_STEPS);
-    body.record(&mut curve, setup);
-    let mut turned_rad2_s = 0.0;
+    record(&body.state);
+    let (mut turned_rad2_s, mut angular_impulse_m2_s) = (0.0, 0.0);
     for i in 1..=CONTACT_STEPS {
         let time_s = contact_s + f64::from(i) * step_s;
-        turned_rad2_s += body.state.angular_velocity_rad_s.powi(2) * step_s;
+        let before = body.state;
+        turned_rad2_s += before.angular_velocity_rad_s.powi(2) * step_s;
         let (transverse_m_s, rotation_rad_s) = line.at(&histories, time_s, turned_rad2_s);
         let axial_m_s = histories.axial_mean(time_s, rotation_rad_s);
         body.advance(setup, step_s, transverse_m_s, rotation_rad_s, axial_m_s);
-        body.record(&mut curve, setup);
+        angular_impulse_m2_s += turning_m2_s(setup, &before, &body.state);
+        record(&body.state);
     }
     let separation = body.state;
     let (slip_m_s, rebound_m_s) = corner(setup, &separation, -setup.cog_m);
@@ -40,14 +69,6 @@ pub fn reconstruct(signals: &[Signal], fit: &FlightFit, events: &Events, setup: 
             + setup.impact_velocity_m_s
             + setup.gravity_m_s2 * (separation_s - contact_s));
     let end_s = events.slap_down_s.unwrap_or(fit.to_s);
-    let mut lowest_first_end_m = f64::INFINITY;
-    for i in 1..=FLIGHT_STEPS {
-        let time_s = separation_s + (end_s - separation_s) * f64::from(i) / f64::from(FLIGHT_STEPS);
-        body.state = fly(setup, &separation, time_s);
-        body.record(&mut curve, setup);
-        lowest_first_end_m =
-            lowest_first_end_m.min(curve.first_end_height_m.last().copied().unwrap_or(0.0) - crush_m(&curve));
-    }
     let slap_down = events.slap_down_s.map(|t| fly(setup, &separation, t));
     let ahead_m = setup.length_m - setup.cog_m;
     Some(Motion {
@@ -55,12 +76,32 @@ pub fn reconstruct(signals: &[Signal], fit: &FlightFit, events: &Events, setup: 
         rebound_m_s,
         slip_m_s,
         impulse_ratio,
+        angular_impulse_m2_s,
         slap_down,
         second_end_m_s: slap_down.map(|s| corner(setup, &s, ahead_m)),
         second_end_height_m: slap_down.map(|s| corner_height_m(setup, &s, ahead_m)),
-        lowest_first_end_m,
-        curve: uniform(&curve),
+        lowest_first_end_m: lowest_first_end_m(setup, &separation, end_s),
+        curve: MotionCurve::default(),
     })
+}
+
+/// Angular impulse about S over mass in one step of the contact, m²/s: ∫(a f_z − b f_x) dt with the arms of (3)   (32)
+fn turning_m2_s(setup: &Setup, before: &MotionState, after: &MotionState) -> f64 {
+    let (arm_x_m, arm_z_m) = arm_m(setup, f64::midpoint(before.angle_rad, after.angle_rad), -setup.cog_m);
+    let up_m_s = after.vertical_velocity_m_s - before.vertical_velocity_m_s
+        + setup.gravity_m_s2 * (after.time_s - before.time_s);
+    let along_m_s = after.horizontal_velocity_m_s - before.horizontal_velocity_m_s;
+    // The arm of (3) runs from S to the corner: C lies at −arm seen from it.
+    -arm_x_m * up_m_s + arm_z_m * along_m_s
+}
+
+/// Lowest height of L's corner in the flight over where it left, or over the target where it left above it, m.
+fn lowest_first_end_m(setup: &Setup, separation: &MotionState, end_s: f64) -> f64 {
+    let left_m = corner_height_m(setup, separation, -setup.cog_m).min(0.0);
+    (1..=FLIGHT_STEPS)
+        .map(|i| separation.time_s + (end_s - separation.time_s) * f64::from(i) / f64::from(FLIGHT_STEPS))
+        .map(|time_s| corner_height_m(setup, &fly(setup, separation, time_s), -setup.cog_m) - left_m)
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// The curve on uniform times, linear between the steps it was made with.
@@ -94,11 +135,6 @@ fn uniform(curve: &MotionCurve) -> MotionCurve {
         second_end_height_m: on(&curve.second_end_height_m),
         time_s,
     }
-}
-
-/// Height of L's corner at separation (negative: crushed), the level from which it counts as touching again, m.
-fn crush_m(curve: &MotionCurve) -> f64 {
-    curve.first_end_height_m.get(CONTACT_STEPS as usize).copied().unwrap_or(0.0).min(0.0)
 }
 
 /// Ballistic motion of S from `state` to `time_s`   (8)
@@ -209,20 +245,20 @@ impl Contact {
                 + f64::midpoint(self.state.vertical_velocity_m_s, vertical_m_s) * step_s,
         };
     }
+}
 
-    fn record(&self, curve: &mut MotionCurve, setup: &Setup) {
-        let s = &self.state;
-        let ahead_m = setup.length_m - setup.cog_m;
-        let second = corner(setup, s, ahead_m);
-        curve.time_s.push(s.time_s);
-        curve.angle_rad.push(s.angle_rad);
-        curve.angular_velocity_rad_s.push(s.angular_velocity_rad_s);
-        curve.first_end_vertical_m_s.push(corner(setup, s, -setup.cog_m).1);
-        curve.second_end_vertical_m_s.push(second.1);
-        curve.second_end_horizontal_m_s.push(second.0);
-        curve.first_end_height_m.push(corner_height_m(setup, s, -setup.cog_m));
-        curve.second_end_height_m.push(corner_height_m(setup, s, ahead_m));
-    }
+/// Adds a state to the curve.
+fn push(curve: &mut MotionCurve, setup: &Setup, state: &MotionState) {
+    let ahead_m = setup.length_m - setup.cog_m;
+    let second = corner(setup, state, ahead_m);
+    curve.time_s.push(state.time_s);
+    curve.angle_rad.push(state.angle_rad);
+    curve.angular_velocity_rad_s.push(state.angular_velocity_rad_s);
+    curve.first_end_vertical_m_s.push(corner(setup, state, -setup.cog_m).1);
+    curve.second_end_vertical_m_s.push(second.1);
+    curve.second_end_horizontal_m_s.push(second.0);
+    curve.first_end_height_m.push(corner_height_m(setup, state, -setup.cog_m));
+    curve.second_end_height_m.push(corner_height_m(setup, state, ahead_m));
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 pub mod damped_modes;
 pub mod filter;
+pub mod prior_fit;
 pub mod quadrature;
 pub mod robust;
 pub mod root;

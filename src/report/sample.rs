@@ -81,6 +81,7 @@ fn result() -> DropResult {
             second_end_height: estimate(0.012, 0.09, "m"),
         },
         k: estimate(0.5588, 0.0102, "1"),
+        reconstruction: None,
         model: Some(model()),
         predictions: predictions(),
         comparison: Some(Comparison {

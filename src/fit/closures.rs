@@ -1,0 +1,127 @@
+//! What the motion must meet beside the velocity steps, and by how much given inputs miss it.
+
+use super::Measured;
+use super::inputs::Inputs;
+use crate::data::{ClosureKind, Motion};
+
+/// Height of R's corner above the target as it strikes: corner and target are even to some millimetres, m.
+const U_HEIGHT_M: f64 = 0.003;
+/// Angular impulse against Θ ω: what a reconstruction of a finite pulse that rings leaves on simulated drops, as a share of ω.
+const U_TURNING: f64 = 0.005;
+/// A hook lets go within some milliseconds, s.
+const U_RELEASE_S: f64 = 0.005;
+
+/// An observable with its standard uncertainty.
+#[derive(Debug, Clone)]
+pub(super) enum Observable {
+    /// R's corner is on the target when it strikes.
+    Height,
+    /// The angular impulse about S is Θ ω.
+    Turning { u_rad_s: f64 },
+    /// A channel at rest reads g cos φ.
+    Rest { channel: usize, name: String, rest_m_s2: f64, u_m_s2: f64 },
+    /// The fall lasts v0 / g.
+    Fall { fall_s: f64 },
+}
+
+impl Observable {
+    pub fn kind(&self) -> ClosureKind {
+        match self {
+            Self::Height => ClosureKind::Height,
+            Self::Turning { .. } => ClosureKind::Turning,
+            Self::Rest { .. } => ClosureKind::Rest,
+            Self::Fall { .. } => ClosureKind::Fall,
+        }
+    }
+
+    pub fn channel(&self) -> Option<&str> {
+        match self {
+            Self::Rest { name, .. } => Some(name),
+            _ => None,
+        }
+    }
+
+    /// As a person says it.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Height => "height of the second end at slap-down".into(),
+            Self::Turning { .. } => "rotation against the impulse of the first impact".into(),
+            Self::Rest { name, .. } => format!("rest level of {name}"),
+            Self::Fall { .. } => "time of the free fall".into(),
+        }
+    }
+
+    /// By how much the motion misses it, in the unit of [`Self::u`]; `None` where the motion does not show it.
+    fn miss(&self, inputs: &Inputs, motion: &Motion) -> Option<f64> {
+        let setup = &inputs.setup;
+        let g = setup.gravity_m_s2;
+        match self {
+            // z_R = 0   (33)
+            Self::Height => motion.second_end_height_m,
+            // ω − ∫(a f_z − b f_x) dt m / Θ = 0   (32)
+            Self::Turning { .. } => Some(
+                motion.separation.angular_velocity_rad_s - motion.angular_impulse_m2_s / inputs.inertia_m2?,
+            ),
+            // (1 + e) f_rest − χ g sin φ = g cos φ   (34)
+            Self::Rest { channel, rest_m_s2, .. } => {
+                let (sin, cos) = setup.angle_rad.sin_cos();
+                let (scale, cross) = (inputs.scales.get(*channel)?, inputs.crosses.get(*channel)?);
+                Some((1.0 + scale) * rest_m_s2 - cross * g * sin - g * cos)
+            }
+            // g t = v0   (35)
+            Self::Fall { fall_s } => Some(g * fall_s - setup.impact_velocity_m_s),
+        }
+    }
+
+    /// Its own standard uncertainty.
+    fn u(&self, measured: &Measured) -> f64 {
+        match self {
+            Self::Height => U_HEIGHT_M,
+            Self::Turning { u_rad_s } => *u_rad_s,
+            Self::Rest { u_m_s2, .. } => *u_m_s2,
+            Self::Fall { .. } => measured.setup.gravity_m_s2 * U_RELEASE_S,
+        }
+    }
+
+    /// The miss over its own standard uncertainty.
+    pub fn residual(&self, measured: &Measured, inputs: &Inputs, motion: &Motion) -> Option<f64> {
+        self.miss(inputs, motion).map(|miss| miss / self.u(measured))
+    }
+
+    /// A miss of `residual` own standard uncertainties as a person reads it.
+    pub fn words(&self, measured: &Measured, motion: &Motion, residual: f64) -> String {
+        let miss = residual * self.u(measured);
+        match self {
+            Self::Height => format!("{:+.0} mm", 1e3 * miss),
+            Self::Turning { .. } => {
+                format!("{:+.1} % of ω", 100.0 * miss / motion.separation.angular_velocity_rad_s.abs())
+            }
+            Self::Rest { rest_m_s2, .. } => format!("{:+.1} % of g cos φ", 100.0 * miss / (rest_m_s2 - miss)),
+            Self::Fall { fall_s } => {
+                format!("{:+.1} % of v0", 100.0 * miss / (measured.setup.gravity_m_s2 * fall_s - miss))
+            }
+        }
+    }
+}
+
+/// The observables that this recording has.
+pub(super) fn observables(measured: &Measured, motion: &Motion) -> Vec<Observable> {
+    let mut all = Vec::new();
+    if motion.second_end_height_m.is_some() {
+        all.push(Observable::Height);
+    }
+    let u_rad_s = U_TURNING * motion.separation.angular_velocity_rad_s.abs();
+    if u_rad_s > 0.0 && measured.inertia_m2.is_some() {
+        all.push(Observable::Turning { u_rad_s });
+    }
+    for rest in measured.rests {
+        if let Some(channel) = measured.signals.iter().position(|s| s.name == rest.channel) {
+            let name = rest.channel.clone();
+            all.push(Observable::Rest { channel, name, rest_m_s2: rest.rest_m_s2, u_m_s2: rest.u_m_s2 });
+        }
+    }
+    if let Some(fall_s) = measured.fall_s {
+        all.push(Observable::Fall { fall_s });
+    }
+    all
+}

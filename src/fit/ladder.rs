@@ -1,0 +1,208 @@
+//! What each rung of the reconstruction says, to the simplest one that explains the recording.
+
+use super::propagate::Model;
+use super::{COVERAGE, Measured, Reconstruct};
+use crate::data::{
+    Axis, ChannelReading, Closure, End, Estimate, FlightFit, Quantities, ReconstructionCandidate,
+    ReconstructionChoice, ReconstructionRung,
+};
+
+/// A closure missed by more standard uncertainties than this is not explained by noise and tolerances (95 %).
+const MOST_MISS: f64 = 2.0;
+
+/// A rung with everything that it says.
+struct Step {
+    candidate: ReconstructionCandidate,
+    quantities: Option<Quantities>,
+}
+
+/// Every rung and the one taken: the simplest whose residuals are within what noise and tolerances explain, and whose answer the next one
+/// would not change by more than its interval.
+///
+/// `plain` is the flight fit without modes and drift. `None` where the motion cannot be had.
+#[must_use]
+pub fn ladder(
+    measured: &Measured,
+    plain: Option<&FlightFit>,
+    reading: Option<ChannelReading>,
+    reconstruct: Reconstruct,
+) -> Option<(Quantities, ReconstructionChoice)> {
+    let model = Model::new(measured, reconstruct)?;
+    let flight = quantities_of(&model, None)?;
+    let joint = model.joint();
+    let closures = model.closures(joint.as_ref());
+    let mut steps = Vec::new();
+    if let (Some(reading), Some(plain)) = (reading, plain) {
+        steps.extend(by_channels(measured, plain, reading, &flight));
+    }
+    if let Some(plain) = plain {
+        let measured = Measured { flight: plain, ..*measured };
+        steps.extend(planar(&measured, reconstruct));
+    }
+    steps.push(by_flight(measured, flight, &closures));
+    if let Some(fit) = &joint
+        && let Some(quantities) = quantities_of(&model, Some(fit))
+    {
+        steps.push(by_joint(quantities, fit.chi_square, closures.len()));
+    }
+    let taken = taken(&steps);
+    let reason = reason(&steps, taken);
+    let quantities = steps[taken].quantities.clone()?;
+    Some((
+        quantities,
+        ReconstructionChoice {
+            rung: steps[taken].candidate.rung,
+            reason,
+            chi_square: joint.as_ref().map(|fit| (fit.chi_square, closures.len())),
+            adjustments: joint.as_ref().map_or_else(Vec::new, |fit| model.adjustments(fit)),
+            closures,
+            candidates: steps.into_iter().map(|s| s.candidate).collect(),
+        },
+    ))
+}
+
+fn quantities_of(model: &Model, fit: Option<&crate::numerics::prior_fit::PriorFit>) -> Option<Quantities> {
+    match fit {
+        Some(fit) => model.propagate(fit),
+        None => model.propagate(&crate::numerics::prior_fit::PriorFit::of_priors(model.inputs.len())),
+    }
+}
+
+fn step(rung: ReconstructionRung, quantities: Quantities, consistent: bool, residual: String) -> Step {
+    let candidate = ReconstructionCandidate {
+        rung,
+        speed: quantities.speed,
+        k: Some(quantities.k),
+        consistent,
+        residual,
+    };
+    Step { candidate, quantities: Some(quantities) }
+}
+
+/// (a) Speed and k as [P] reads them off the velocity curves of single channels; the other quantities are the planar motion's.
+fn by_channels(
+    measured: &Measured,
+    plain: &FlightFit,
+    reading: ChannelReading,
+    motion: &Quantities,
+) -> Option<Step> {
+    let left_m_s = |end: End| {
+        let signals = measured.signals.iter().filter(|s| s.axis == Axis::Transverse && s.end == end);
+        signals.filter_map(|s| plain.plateau(&s.name)).map(|p| p.residual_m_s).fold(0.0, f64::max)
+    };
+    let v0_m_s = measured.setup.impact_velocity_m_s;
+    let (first_left_m_s, second_left_m_s) = (left_m_s(End::First), left_m_s(End::Second));
+    let u_m_s = |value_m_s: f64, left_m_s: f64| {
+        let by_scale = measured.tolerances.calibration / 2.0 * (value_m_s + v0_m_s);
+        left_m_s.hypot(by_scale).hypot(measured.tolerances.impact_velocity / 2.0 * v0_m_s)
+    };
+    let speed =
+        reading.second_m_s.map(|v| Estimate::new(v.abs(), COVERAGE * u_m_s(v, second_left_m_s), "m/s"));
+    let u95_m_s = COVERAGE * u_m_s(reading.first_m_s, first_left_m_s);
+    let quantities = Quantities {
+        speed,
+        vertical_velocity: reading.second_m_s.and(speed).map(|s| Estimate { value: -s.value, ..s }),
+        rebound_velocity: Estimate::new(reading.first_m_s, u95_m_s, "m/s"),
+        k: Estimate::new(reading.first_m_s / v0_m_s, u95_m_s / v0_m_s, "1"),
+        ..motion.clone()
+    };
+    let residual = format!("{:.2} m/s of ringing in the flight", first_left_m_s.max(second_left_m_s));
+    Some(step(ReconstructionRung::Channels, quantities, explains(plain), residual))
+}
+
+/// (b) Planar motion, each velocity step the mean over the flight.
+fn planar(measured: &Measured, reconstruct: Reconstruct) -> Option<Step> {
+    let model = Model::new(measured, reconstruct)?;
+    let quantities = quantities_of(&model, None)?;
+    let closures = model.closures(None);
+    let left_m_s = measured.flight.plateaus.iter().map(|p| p.residual_m_s).fold(0.0, f64::max);
+    let consistent = explains(measured.flight) && meets(&closures);
+    let residual = format!("{left_m_s:.2} m/s about the mean of the flight; {}", worst(&closures));
+    Some(step(ReconstructionRung::Planar, quantities, consistent, residual))
+}
+
+/// (c) The flight fitted with modes and drift.
+fn by_flight(measured: &Measured, quantities: Quantities, closures: &[Closure]) -> Step {
+    let left_m_s = measured.flight.plateaus.iter().map(|p| p.residual_m_s).fold(0.0, f64::max);
+    let what = match (measured.flight.modes.len(), measured.flight.drift) {
+        (0, false) => "no mode, no drift".to_owned(),
+        (n, drift) => {
+            format!("{n} mode{}{}", if n == 1 { "" } else { "s" }, if drift { " and drift" } else { "" })
+        }
+    };
+    let residual = format!("{left_m_s:.3} m/s about {what}; {}", worst(closures));
+    step(ReconstructionRung::Flight, quantities, meets(closures), residual)
+}
+
+/// (d) Everything fitted within its tolerance.
+fn by_joint(quantities: Quantities, chi_square: f64, degrees: usize) -> Step {
+    let residual = format!("χ² = {chi_square:.1} for {degrees} observables");
+    step(ReconstructionRung::Joint, quantities, true, residual)
+}
+
+/// Whether the best fit of the flight is the one without modes and drift.
+fn explains(plain: &FlightFit) -> bool {
+    plain.candidates.first().is_some_and(|best| best.modes == 0 && !best.drift)
+}
+
+fn meets(closures: &[Closure]) -> bool {
+    closures.iter().all(|c| c.miss_in_u.abs() <= MOST_MISS)
+}
+
+/// The closure that is missed most.
+fn worst(closures: &[Closure]) -> String {
+    closures.iter().max_by(|a, b| a.miss_in_u.abs().total_cmp(&b.miss_in_u.abs())).map_or_else(
+        || "nothing to close on".to_owned(),
+        |c| format!("{} off by {} ({:.1} u)", c.name, c.miss, c.miss_in_u.abs()),
+    )
+}
+
+/// The first rung that is consistent and that the next one would not move out of the narrower of both intervals; else the last.
+fn taken(steps: &[Step]) -> usize {
+    (0..steps.len())
+        .find(|&i| {
+            let own = &steps[i].candidate;
+            own.consistent && steps.get(i + 1).is_none_or(|next| stays(own, &next.candidate))
+        })
+        .unwrap_or(steps.len() - 1)
+}
+
+fn stays(own: &ReconstructionCandidate, next: &ReconstructionCandidate) -> bool {
+    let within = |a: Option<Estimate>, b: Option<Estimate>| match (a, b) {
+        (Some(a), Some(b)) => (a.value - b.value).abs() <= a.u95.min(b.u95),
+        (None, None) => true,
+        _ => false,
+    };
+    within(own.speed, next.speed) && within(own.k, next.k)
+}
+
+fn words(rung: ReconstructionRung) -> &'static str {
+    match rung {
+        ReconstructionRung::Channels => "each channel by itself",
+        ReconstructionRung::Planar => "planar motion with the mean of the flight",
+        ReconstructionRung::Flight => "planar motion with modes and drift fitted to the flight",
+        ReconstructionRung::Joint => "joint fit of all inputs within their tolerances",
+    }
+}
+
+/// Why this rung, and what the next one would have changed.
+fn reason(steps: &[Step], taken: usize) -> String {
+    let own = &steps[taken].candidate;
+    let mut said = format!("Taken: {}", words(own.rung));
+    if let Some(below) = taken.checked_sub(1).map(|i| &steps[i].candidate) {
+        let why = if below.consistent {
+            format!("{} would change by more than its interval", words(below.rung))
+        } else {
+            format!("{} leaves {}", words(below.rung), below.residual)
+        };
+        said = format!("{said}, because {why}");
+    }
+    if let Some(next) = steps.get(taken + 1).map(|s| &s.candidate) {
+        let change = |a: Option<Estimate>, b: Option<Estimate>| a.zip(b).map(|(a, b)| b.value - a.value);
+        let speed =
+            change(own.speed, next.speed).map_or(String::new(), |d| format!("the speed by {d:+.2} m/s and "));
+        let k = change(own.k, next.k).map_or(String::new(), |d| format!("k by {d:+.3}"));
+        said = format!("{said}; the {} would change {speed}{k}, within the interval", words(next.rung));
+    }
+    said + "."
+}

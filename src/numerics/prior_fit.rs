@@ -1,0 +1,160 @@
+//! Unknowns with unit normal priors and observations of unit uncertainty to the most probable unknowns and what each datum tells of them.
+
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use nalgebra::{DMatrix, DVector, Dyn, storage::Owned};
+
+/// Step of the derivatives, in prior standard deviations: the models are smooth over that, and 1e-3 is far above their round-off.
+const STEP: f64 = 0.05;
+
+/// Residuals of the observations at given unknowns, each over its standard uncertainty; `None` where the model fails there.
+pub type Residuals<'a> = &'a dyn Fn(&[f64]) -> Option<Vec<f64>>;
+
+/// Where the fit ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PriorFit {
+    /// The unknowns, in prior standard deviations.
+    pub unknowns: Vec<f64>,
+    /// What is left of each observation, over its standard uncertainty.
+    pub left: Vec<f64>,
+    /// Σ q² + Σ r², with as many degrees of freedom as there are observations.
+    pub chi_square: f64,
+    /// How each datum, first the priors and then the observations, moves each unknown: a row an unknown, unit steps.
+    pub response: DMatrix<f64>,
+}
+
+impl PriorFit {
+    /// The fit without any observation: the priors as they are.
+    #[must_use]
+    pub fn of_priors(count: usize) -> Self {
+        Self {
+            unknowns: vec![0.0; count],
+            left: Vec::new(),
+            chi_square: 0.0,
+            response: DMatrix::identity(count, count),
+        }
+    }
+
+    /// Standard deviation of unknown `index` after the fit, as a share of the one before.
+    #[must_use]
+    pub fn left_share(&self, index: usize) -> f64 {
+        self.response.row(index).norm()
+    }
+}
+
+/// Minimises Σ q_i² + Σ r_j(q)²   (30) by Levenberg and Marquardt; `None` where the model fails at the start or the normal matrix is singular.
+#[must_use]
+pub fn fit(count: usize, residuals: Residuals) -> Option<PriorFit> {
+    let start = DVector::zeros(count);
+    residuals(start.as_slice())?;
+    let problem = Problem { residuals, unknowns: start };
+    let (solved, _) =
+        LevenbergMarquardt::new().with_ftol(1e-6).with_xtol(1e-4).with_patience(4).minimize(problem);
+    let left = residuals(solved.unknowns.as_slice())?;
+    let jacobian = derivatives(residuals, solved.unknowns.as_slice())?;
+    // q̂ = (1 + JᵀJ)⁻¹ (prior + Jᵀ observation)   (31)
+    let normal = DMatrix::identity(count, count) + jacobian.tr_mul(&jacobian);
+    let covariance = normal.cholesky()?.inverse();
+    let mut response = DMatrix::zeros(count, count + left.len());
+    response.columns_mut(0, count).copy_from(&covariance);
+    response.columns_mut(count, left.len()).copy_from(&(&covariance * jacobian.transpose()));
+    let chi_square = solved.unknowns.norm_squared() + left.iter().map(|r| r * r).sum::<f64>();
+    chi_square.is_finite().then(|| PriorFit {
+        unknowns: solved.unknowns.as_slice().to_vec(),
+        left,
+        chi_square,
+        response,
+    })
+}
+
+/// ∂r/∂q by central differences; a column an unknown.
+#[must_use]
+pub fn derivatives(model: Residuals, at: &[f64]) -> Option<DMatrix<f64>> {
+    let mut columns = Vec::with_capacity(at.len());
+    let mut moved = at.to_vec();
+    for i in 0..at.len() {
+        let mut side = |step: f64| {
+            moved[i] = at[i] + step;
+            let values = model(&moved);
+            moved[i] = at[i];
+            values.map(DVector::from_vec)
+        };
+        let (up, down) = (side(STEP)?, side(-STEP)?);
+        columns.push((up - down) / (2.0 * STEP));
+    }
+    let rows = columns.first().map_or(0, DVector::len);
+    Some(if rows == 0 { DMatrix::zeros(0, at.len()) } else { DMatrix::from_columns(&columns) })
+}
+
+struct Problem<'a> {
+    residuals: Residuals<'a>,
+    unknowns: DVector<f64>,
+}
+
+impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
+    type ParameterStorage = Owned<f64, Dyn>;
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+
+    fn set_params(&mut self, unknowns: &DVector<f64>) {
+        self.unknowns.copy_from(unknowns);
+    }
+
+    fn params(&self) -> DVector<f64> {
+        self.unknowns.clone()
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        let observed = (self.residuals)(self.unknowns.as_slice())?;
+        Some(DVector::from_iterator(
+            self.unknowns.len() + observed.len(),
+            self.unknowns.iter().copied().chain(observed),
+        ))
+    }
+
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        let observed = derivatives(self.residuals, self.unknowns.as_slice())?;
+        let count = self.unknowns.len();
+        let mut all = DMatrix::zeros(count + observed.nrows(), count);
+        all.view_mut((0, 0), (count, count)).fill_with_identity();
+        all.view_mut((count, 0), (observed.nrows(), count)).copy_from(&observed);
+        Some(all)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_measurements_of_one_thing_meet_by_their_weights() {
+        // Prior 0 ± 1, observation 3 ± 0.5 of it: (0/1 + 3/0.25) / (1/1 + 1/0.25) = 2.4, u = √(1/5).
+        let fit = fit(1, &|q| Some(vec![(q[0] - 3.0) / 0.5])).expect("a fit");
+        assert!((fit.unknowns[0] - 2.4).abs() < 1e-6, "{fit:?}");
+        assert!((fit.left_share(0) - 0.2_f64.sqrt()).abs() < 1e-6);
+        // χ² = 2.4² + (0.6/0.5)².
+        assert!((fit.chi_square - 7.2).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_bent_model_is_solved_where_it_bends() {
+        // (q + 0.1 q²) = 2 ± 0.01 holds almost alone: q = (√1.8 − 1)/0.2.
+        let fit = fit(1, &|q| Some(vec![(q[0] + 0.1 * q[0] * q[0] - 2.0) / 0.01])).expect("a fit");
+        let exact = (1.8_f64.sqrt() - 1.0) / 0.2;
+        // The prior pulls by q / (slope/0.01)², below 2e-4.
+        assert!((fit.unknowns[0] - exact).abs() < 3e-4, "{fit:?}");
+    }
+
+    #[test]
+    fn the_contributions_add_up_to_the_variance() {
+        let fit = fit(2, &|q| Some(vec![(q[0] + q[1]) / 0.3])).expect("a fit");
+        // Covariance of (1 + JᵀJ)⁻¹ with J = (1, 1)/0.3: diagonal 1 − 1/(2 + 0.09).
+        let variance = 1.0 - 1.0 / 2.09;
+        assert!((fit.left_share(0).powi(2) - variance).abs() < 1e-6);
+        assert_eq!(PriorFit::of_priors(3).left_share(1).to_bits(), 1.0_f64.to_bits());
+    }
+
+    #[test]
+    fn a_model_that_fails_is_no_fit() {
+        assert!(fit(2, &|_| None).is_none());
+    }
+}
