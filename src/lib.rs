@@ -58,15 +58,18 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         return draft.without_impact();
     };
     draft.events.first_contact_s = Some(contact.0);
-    for (channel, fall) in free_falls(recording, cask_file, contact.0) {
+    let falls: Vec<_> = free_falls(recording, cask_file, contact.0).collect();
+    for (channel, fall) in &falls {
         draft.rests.push(RestLevel {
             channel: channel.name.clone(),
             rest_m_s2: fall.rest_m_s2,
             u_m_s2: fall.u_rest_m_s2,
         });
-        draft.issues.extend(judge::judge_rest(&channel.name, fall.rest_m_s2, &cask_file.drop));
-        draft.events.release_s = draft.events.release_s.or(Some(fall.release_s));
-        draft.events.fall_end_s = draft.events.fall_end_s.or(Some(fall.end_s));
+    }
+    // The channel that knows its levels best knows the release best.
+    if let Some((_, fall)) = falls.iter().min_by(|a, b| a.1.u_rest_m_s2.total_cmp(&b.1.u_rest_m_s2)) {
+        draft.events.release_s = Some(fall.release_s);
+        draft.events.fall_end_s = Some(fall.end_s);
     }
     draft.issues.extend(judge::judge_fall(&cask_file.drop, &draft.events));
     let reconstructed = flight_and_motion(&mut draft, &signals, contact);
@@ -76,7 +79,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     if let Some(Reconstructed { flight, setup, motion, quantities, choice: reconstruction }) = reconstructed {
         if !draft.issues.iter().any(judge::invalidates) {
             draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
-            draft.issues.extend(judge::judge_closures(&reconstruction));
+            draft.issues.extend(judge::judge_closures(&reconstruction, &cask_file.drop, &draft.events));
         }
         draft.flight = Some(flight);
         if draft.issues.iter().any(judge::invalidates) {

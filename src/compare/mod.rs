@@ -7,8 +7,6 @@ use crate::data::{
 
 /// Standard uncertainty of an inertia that is only the uniform body's: casks carry their mass off the even spread (5 %).
 const U_INERTIA_DEFAULT: f64 = 0.05;
-/// Standard uncertainty of an inertia that the cask file states.
-const U_INERTIA_STATED: f64 = 0.01;
 
 /// A rung of the analytical models as a function, such as `predict::predict_by`.
 pub type PredictBy<'a> = &'a dyn Fn(Rung, &Body, &Drop, Contact, f64) -> Prediction;
@@ -87,7 +85,7 @@ impl Scene<'_> {
             predicted,
             u95,
             difference_percent: difference.map(|(d, p, _)| 100.0 * d / p),
-            consistent: difference.zip(u95).is_some_and(|((d, _, m), u)| d.abs() <= m.hypot(u)),
+            consistent: difference.zip(u95).is_some_and(|((d, _, m), u)| d.abs() <= m + u),
         }
     }
 
@@ -95,7 +93,7 @@ impl Scene<'_> {
         (self.predict)(rung, body, drop, self.file.contact, k.clamp(0.0, 1.0)).slap_down_speed_m_s
     }
 
-    /// 95 % half-width of a prediction, m/s: k, angle, inertia, and the finite pulse that the impact formula leaves out.
+    /// 95 % half-width of a prediction, m/s: k, what the cask file states, and the finite pulse that the impact formula leaves out.
     fn uncertainty_m_s(&self, rung: Rung) -> Option<f64> {
         let Self { body, file, measured, .. } = self;
         let k = measured.k.value.clamp(0.0, 1.0);
@@ -107,11 +105,16 @@ impl Scene<'_> {
         let turned = |by_rad: f64| Drop { angle_rad: (file.drop.angle_rad + by_rad).max(0.0), ..file.drop };
         let by_angle = change(body, &turned(file.tolerances.angle_rad / 2.0), k);
         let by_inertia = self.by_inertia_m_s(rung, k);
+        let known = &file.tolerances;
+        let faster_m_s = file.drop.impact_velocity_m_s * (1.0 + known.impact_velocity / 2.0);
+        let by_velocity = change(body, &Drop { impact_velocity_m_s: faster_m_s, ..file.drop }, k);
+        let by_cog = change(&Body { cog_m: body.cog_m + known.cog_m / 2.0, ..**body }, &file.drop, k);
         // While the pulse of duration T lasts the cask turns by about ω T / 2 and gravity adds g T.
         let duration_s = measured.duration.value.max(0.0);
         let turn_rad = -measured.angular_velocity.value * duration_s / 2.0;
         let by_pulse = change(body, &turned(turn_rad), k).abs() + file.drop.gravity_m_s2 * duration_s;
-        Some(2.0 * by_k.hypot(by_angle).hypot(by_inertia).hypot(by_pulse / 3.0_f64.sqrt()))
+        let stated = by_angle.hypot(by_inertia).hypot(by_velocity).hypot(by_cog);
+        Some(2.0 * by_k.hypot(stated).hypot(by_pulse / 3.0_f64.sqrt()))
     }
 
     /// How a heavier inertia changes the speed, m/s. The rod's own has none to change: it is asked as a body.
@@ -120,7 +123,7 @@ impl Scene<'_> {
             && !self.file.defaults.iter().any(|default| default == "cask.inertia_kg_m2");
         let (rung, body, share) = match rung {
             Rung::Rod => (Rung::Body, self.rod, U_INERTIA_DEFAULT),
-            rung if stated => (rung, self.body, U_INERTIA_STATED),
+            rung if stated => (rung, self.body, self.file.tolerances.inertia / 2.0),
             rung => (rung, self.body, U_INERTIA_DEFAULT),
         };
         let heavier = Body { inertia_kg_m2: body.inertia_kg_m2 * (1.0 + share), ..*body };

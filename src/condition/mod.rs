@@ -13,7 +13,7 @@ use crate::numerics::robust;
 const BEFORE_S: f64 = 0.25;
 
 /// The farthest that signals reach after the coarse event, s: the longest flight to slap-down (steep drops) and its pulse.
-const LONGEST_AFTER_S: f64 = 0.8;
+const LONGEST_AFTER_S: f64 = 1.6;
 
 /// The least that they reach, s: a flat drop's slap-down and what rings after it.
 const LEAST_AFTER_S: f64 = 0.15;

@@ -27,8 +27,8 @@ impl Default for Tolerances {
         Self {
             angle_rad: 0.4 * std::f64::consts::PI / 180.0,
             impact_velocity: 0.003,
-            calibration: 0.015,
-            cross_axis: 0.03,
+            calibration: 0.01,
+            cross_axis: 0.02,
             position_m: 0.01,
             cog_m: 0.01,
             inertia: 0.02,

@@ -11,6 +11,8 @@ const BLOCK_S: f64 = 0.005;
 const LEVEL: usize = 8;
 /// Blocks that a departure from the free-fall level is averaged over, 20 ms: ringing above 50 Hz has no mean over them.
 const SUSTAINED: usize = 4;
+/// A step is one where it is this many of its standard uncertainties: noise of 1/f makes steps by itself.
+const CLEAR: f64 = 6.0;
 /// Departure that ends a fall, as a share of g cos φ: far above the drag of a cask, below any touch that carries its weight.
 const TOUCH: f64 = 0.25;
 /// Noise is passed by this many of its standard deviations.
@@ -64,7 +66,7 @@ pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeF
         })
 }
 
-/// The samples before first contact and the medians of their blocks.
+/// The samples before first contact and the means of their blocks: a median would stand on a coarse converter's steps.
 struct Record<'a> {
     force: &'a [f64],
     size: usize,
@@ -79,7 +81,7 @@ impl<'a> Record<'a> {
         let size = ((BLOCK_S * sample_rate_hz) as usize).max(1);
         let blocks: Vec<f64> = force
             .chunks_exact(size)
-            .map(|c| robust::median(&mut c.iter().copied().filter(|x| x.is_finite()).collect::<Vec<_>>()))
+            .map(|c| robust::mean_and_rms(&c.iter().copied().filter(|x| x.is_finite()).collect::<Vec<_>>()).0)
             .collect();
         (blocks.len() > 2 * LEVEL + 2 && weight_m_s2 > 0.5).then_some(Self {
             force,
@@ -115,18 +117,25 @@ impl<'a> Record<'a> {
         // The level of the whole fall is better known than that of its beginning.
         let falling = self.level(step + 1, end.unwrap_or(self.blocks.len()));
         let rest = self.level(step - LEVEL, step) - falling;
-        if !STEP.contains(&(rest / self.weight_m_s2)) {
+        let departure = self.departure(step, falling);
+        let end = departure.map_or(contact, |block| self.touch(step, block, falling));
+        let u_rest = self.u_level(step + 2, departure.unwrap_or(self.blocks.len()).saturating_sub(1));
+        if !STEP.contains(&(rest / self.weight_m_s2)) || rest < CLEAR * u_rest {
             return None;
         }
-        let end = self.departure(step, falling).map_or(contact, |block| self.touch(step, block, falling));
-        Some((self.crossing(step, falling + 0.5 * rest), end, (rest, self.u_level(step))))
+        Some((self.crossing(step, falling + 0.5 * rest), end, (rest, u_rest)))
     }
 
-    /// Standard uncertainty of the median of [`LEVEL`] blocks beside a step, m/s²: √(π/2) σ/√n (Kenney & Keeping 1962).
-    fn u_level(&self, step: usize) -> f64 {
-        let before = self.blocks.get(step.saturating_sub(LEVEL)..step).unwrap_or_default();
-        let finite: Vec<f64> = before.iter().copied().filter(|b| b.is_finite()).collect();
-        (std::f64::consts::FRAC_PI_2 / count(LEVEL)).sqrt() * robust::mean_and_rms(&finite).1
+    /// Standard uncertainty of a level, m/s²: the scatter of such levels over the fall `from..to`, which holds noise of every colour.
+    fn u_level(&self, from: usize, to: usize) -> f64 {
+        let levels: Vec<f64> = (from..to.saturating_sub(LEVEL))
+            .step_by(LEVEL)
+            .map(|i| self.level(i, i + LEVEL))
+            .filter(|level| level.is_finite())
+            .collect();
+        // A scatter over n levels is known to 1/√(2n) of itself: the few of a short fall are given that margin twice.
+        let margin = 1.0 + (2.0 / count(levels.len().max(1))).sqrt();
+        if levels.len() > 1 { margin * robust::mean_and_rms(&levels).1 } else { TOUCH * self.weight_m_s2 }
     }
 
     /// The block from which on the mean over [`SUSTAINED`] blocks lies off the free-fall level; `None` where it holds to the end.

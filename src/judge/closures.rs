@@ -1,6 +1,6 @@
 //! What the motion must meet and misses, to what speaks against scales, positions, angle and height.
 
-use crate::data::{Closure, ClosureKind, Issue, IssueCode, ReconstructionChoice, Severity};
+use crate::data::{Closure, ClosureKind, Drop, Events, Issue, IssueCode, ReconstructionChoice, Severity};
 
 /// A closure missed by this many standard uncertainties is not chance: one sound drop in 370 a closure.
 const MISSED_U: f64 = 3.0;
@@ -9,11 +9,31 @@ const GROSS_U: f64 = 12.0;
 
 /// One issue a closure that is missed by more than noise and tolerances explain.
 #[must_use]
-pub fn judge_closures(choice: &ReconstructionChoice) -> Vec<Issue> {
-    choice.closures.iter().filter(|c| c.miss_in_u.abs() > MISSED_U).map(issue).collect()
+pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Events) -> Vec<Issue> {
+    choice
+        .closures
+        .iter()
+        .filter(|c| c.miss_in_u.abs() > MISSED_U)
+        .map(|closure| issue(closure, drop, events))
+        .collect()
 }
 
-fn issue(closure: &Closure) -> Issue {
+/// The fall that the recording shows beside the one that the cask file states.
+fn fall(drop: &Drop, events: &Events) -> String {
+    let fall_s = events.release_s.zip(events.fall_end_s).map_or(0.0, |(release_s, end_s)| end_s - release_s);
+    let (height_m, velocity_m_s) = (0.5 * drop.gravity_m_s2 * fall_s * fall_s, drop.gravity_m_s2 * fall_s);
+    let expected_s = drop.impact_velocity_m_s / drop.gravity_m_s2;
+    let stated = if drop.impact_velocity_given {
+        format!("the impact velocity of {:.2} m/s", drop.impact_velocity_m_s)
+    } else {
+        format!("the drop height of {} m", drop.height_m)
+    };
+    format!(
+        "the recording shows a free fall of {fall_s:.3} s, which is {height_m:.2} m and {velocity_m_s:.2} m/s; {stated} in the cask file needs {expected_s:.3} s: check it, and the recording's sample rate"
+    )
+}
+
+fn issue(closure: &Closure, drop: &Drop, events: &Events) -> Issue {
     let gross = closure.miss_in_u.abs() > GROSS_U;
     let severity = if gross { Severity::Error } else { Severity::Warning };
     let how_far = format!("{} ({:.1} standard uncertainties)", closure.miss, closure.miss_in_u.abs());
@@ -37,12 +57,7 @@ fn issue(closure: &Closure) -> Issue {
                 closure.channel.as_deref().unwrap_or("a channel")
             ),
         ),
-        ClosureKind::Fall => (
-            IssueCode::Geometry,
-            format!(
-                "the free fall in the recording is off by {how_far} from the stated impact velocity: check the drop height and the recording's sample rate"
-            ),
-        ),
+        ClosureKind::Fall => (IssueCode::Geometry, fall(drop, events)),
     };
     let issue = Issue::new(code, severity, message);
     match &closure.channel {
@@ -75,24 +90,38 @@ mod tests {
         }
     }
 
+    fn judged(choice: &ReconstructionChoice) -> Vec<Issue> {
+        let drop = Drop {
+            height_m: 9.0,
+            angle_rad: 0.2,
+            impact_velocity_m_s: 13.288,
+            impact_velocity_given: false,
+            gravity_m_s2: 9.81,
+        };
+        let events = Events { release_s: Some(0.5), fall_end_s: Some(1.0), ..Events::default() };
+        judge_closures(choice, &drop, &events)
+    }
+
     #[test]
     fn chance_is_not_mentioned_and_more_is_named_by_its_kind() {
-        assert!(judge_closures(&choice(ClosureKind::Height, -2.9)).is_empty());
+        assert!(judged(&choice(ClosureKind::Height, -2.9)).is_empty());
         for (kind, code) in [
             (ClosureKind::Height, IssueCode::Geometry),
             (ClosureKind::Turning, IssueCode::NotRigid),
             (ClosureKind::Rest, IssueCode::Scale),
             (ClosureKind::Fall, IssueCode::Geometry),
         ] {
-            let issues = judge_closures(&choice(kind, -4.0));
+            let issues = judged(&choice(kind, -4.0));
             assert_eq!((issues[0].code, issues[0].severity), (code, Severity::Warning));
-            assert!(issues[0].message.contains("+30 mm (4.0 standard uncertainties)"));
+            let said = &issues[0].message;
+            assert_eq!(said.contains("+30 mm (4.0 standard uncertainties)"), kind != ClosureKind::Fall);
+            assert_eq!(said.contains("0.500 s, which is 1.23 m"), kind == ClosureKind::Fall);
         }
-        assert_eq!(judge_closures(&choice(ClosureKind::Rest, 4.0))[0].channel.as_deref(), Some("A1"));
+        assert_eq!(judged(&choice(ClosureKind::Rest, 4.0))[0].channel.as_deref(), Some("A1"));
     }
 
     #[test]
     fn a_gross_miss_takes_the_numbers_away() {
-        assert_eq!(judge_closures(&choice(ClosureKind::Turning, 20.0))[0].severity, Severity::Error);
+        assert_eq!(judged(&choice(ClosureKind::Turning, 20.0))[0].severity, Severity::Error);
     }
 }

@@ -7,7 +7,7 @@ mod result;
 
 pub use channels::judge_channels;
 pub use closures::judge_closures;
-pub use fall::{judge_fall, judge_rest};
+pub use fall::judge_fall;
 pub use result::{judge_comparison, judge_motion};
 
 use crate::data::{Events, Issue, IssueCode, Severity, Verdict};

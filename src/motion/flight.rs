@@ -15,6 +15,8 @@ const LONGEST_S: f64 = 0.1;
 const LEAST_FLOOR: f64 = 2e-4;
 /// Stretch before the end of a long flight that is compared with the fit, s: two periods of 100 Hz.
 const LATE_S: f64 = 0.02;
+/// An offset from a quarter of a second knows that of the next half to so many of its standard uncertainties (noise of 1/f).
+const DRIFT_FACTOR: f64 = 4.0;
 /// Largest zero shift as a share of the channel's peak: data sheets of shock accelerometers give up to a few percent of full scale.
 const MOST_ZERO_SHIFT: f64 = 0.1;
 /// Lowest frequency sought: this many periods in the window, and never below 15 Hz.
@@ -141,7 +143,10 @@ fn late_mismatch_m_s(signal: &Signal, flight: &FlightFit, whole: &Window, cog_m:
                 .sum::<f64>()
         })
         .sum();
-    Some(velocity.mean(from_s, to_s) - expected_m_s - ringing_m_s)
+    let mismatch_m_s = velocity.mean(from_s, to_s) - expected_m_s - ringing_m_s;
+    // What the offset may have gathered since is no contact.
+    let drifted_m_s = DRIFT_FACTOR * signal.u_offset_m_s2 * (to_s - flight.from_s);
+    Some(mismatch_m_s.signum() * (mismatch_m_s.abs() - drifted_m_s).max(0.0))
 }
 
 /// Distance along the axis that the centrifugal force of a channel goes with, m: f_η holds −Ω² η, f_ξ holds −Ω² ξ   (14), (15)

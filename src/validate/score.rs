@@ -51,13 +51,13 @@ fn quantities(truth: &Truth, analysis: Option<&Analysis>) -> Vec<Scored> {
 }
 
 /// The rung of the reconstruction that was taken.
-fn rung(_analysis: &Analysis) -> Option<ReconstructionRung> {
-    None
+fn rung(analysis: &Analysis) -> Option<ReconstructionRung> {
+    analysis.result.reconstruction.as_ref().map(|choice| choice.rung)
 }
 
 /// What every rung of the reconstruction says.
-fn rungs(_analysis: &Analysis) -> Vec<ReconstructionCandidate> {
-    Vec::new()
+fn rungs(analysis: &Analysis) -> Vec<ReconstructionCandidate> {
+    analysis.result.reconstruction.as_ref().map_or_else(Vec::new, |choice| choice.candidates.clone())
 }
 
 /// The rows as CSV, one a scene; times of the analysis are left out, so that the same campaign gives the same bytes.
