@@ -2,13 +2,14 @@
 
 use crate::run::{analyze, dropcheck, number};
 use dropcheck::data::{
-    Campaign, CampaignRequest, CampaignRow, Damage, Estimate, IssueCode, SceneNumber, Severity, Verdict,
+    Campaign, CampaignRequest, CampaignRow, Damage, Estimate, IssueCode, ReconstructionCandidate,
+    ReconstructionRung, SceneNumber, Severity, Verdict,
 };
 use dropcheck::validate;
 use std::collections::BTreeMap;
 
 /// Cheap kinds: they make no longer records.
-const KINDS: [&str; 3] = ["hum", "polarity_first", "stated_angle"];
+const KINDS: [&str; 3] = ["gap_flight", "polarity_first", "stated_angle"];
 
 fn run(scenes: u32, seed: u64, exact: bool) -> Campaign {
     let request = CampaignRequest { scenes, seed, undamaged: true, kinds: KINDS.to_vec(), exact };
@@ -59,7 +60,8 @@ fn what_is_stated_differs_from_what_is_by_the_tolerances_and_with_exact_not_at_a
 fn a_scene_in_files_gives_what_the_campaign_has_of_it() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let campaign = run(2, 5, false);
-    for row in [&campaign.rows[1], &campaign.rows[2]] {
+    assert_eq!(campaign.rows[2].damage.map(|damage| damage.kind), Some("gap_flight"));
+    for row in &campaign.rows {
         let out = folder.path().join(row.number.to_string());
         let words = ["validate", "--seed", "5", "--scene", &row.number.to_string(), "--out"];
         let answer = dropcheck(words.iter().map(Into::into).chain([out.as_os_str().to_owned()]));
@@ -109,6 +111,10 @@ fn a_pass_that_is_off_by_more_than_one_and_a_half_half_widths_is_missed() {
     }
 }
 
+fn candidate(rung: ReconstructionRung, k: Option<Estimate>) -> ReconstructionCandidate {
+    ReconstructionCandidate { rung, speed: None, k, consistent: true, residual: String::new() }
+}
+
 #[test]
 fn the_tables_have_every_kind_and_size_and_count_what_is_missed() {
     let mut campaign = run(1, 2, true);
@@ -123,6 +129,11 @@ fn the_tables_have_every_kind_and_size_and_count_what_is_missed() {
     }
     let mut reviewed = judged(&sound, Verdict::Review, Some((0.0, 0.0)));
     reviewed.findings = vec![(IssueCode::Geometry, Severity::Warning)];
+    let says = |u95| Some(Estimate::new(sound.truth.k.expect("a truth") + 0.02, u95, "1"));
+    reviewed.candidates = vec![candidate(ReconstructionRung::Planar, says(0.01))];
+    campaign.rows.push(reviewed.clone());
+    reviewed.candidates = vec![candidate(ReconstructionRung::Planar, says(0.03))];
+    reviewed.rung = Some(ReconstructionRung::Planar);
     campaign.rows.push(reviewed);
     let tables = validate::markdown(&campaign);
     for (kind, sizes, unit) in validate::kinds() {
@@ -133,7 +144,9 @@ fn the_tables_have_every_kind_and_size_and_count_what_is_missed() {
             assert!(tables.contains(&line), "no {line:?} in\n{tables}");
         }
     }
-    assert!(tables.contains("| `geometry` | warning | 1 | 1 | 1 |"), "{tables}");
+    assert!(tables.contains("| `geometry` | warning | 2 | 2 | 2 |"), "{tables}");
+    // Both are off by 0.02; one interval of two holds that.
+    assert!(tables.contains("| planar | 1 | 2 | – | – | – | 0.0200 | 0.0200 | 50.0 % |"), "{tables}");
 }
 
 #[test]
