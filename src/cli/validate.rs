@@ -30,7 +30,7 @@ const NAMES: [&str; 2] = ["campaign.csv", "campaign.md"];
 #[command(group = clap::ArgGroup::new("what").required(true).args(["campaign", "scene"]))]
 pub struct Arguments {
     /// Analyse N random undamaged scenes and N with one damage each
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     campaign: Option<u32>,
     /// Write one scene of the campaign as recording, cask file and truth into --out
     #[arg(long, value_name = "NUMBER", value_parser = number, requires = "out")]

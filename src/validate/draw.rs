@@ -48,18 +48,32 @@ impl Wish {
     }
 }
 
+/// The angle is drawn again only after so many attempts with it: else the flat drops would be the ones left out.
+const ATTEMPTS: u32 = 300;
+
 /// Draws until there is a drop as wished, and counts the others by what they lack.
 pub(super) fn case((seed, number): (u64, SceneNumber), wish: &Wish, exact: bool, means: &Means) -> Case {
     let mut chance = Chance::new(seed, number);
     let mut redraws = BTreeMap::new();
+    let mut angle_deg = stated_angle_deg(&mut chance);
+    let mut attempt = 0_u32;
     loop {
-        let (scene, stated) = drop(&mut chance, wish, exact, means);
+        attempt += 1;
+        let (scene, stated) = drop(&mut chance, angle_deg, wish, (exact, means));
         let motion = (means.simulate)(&scene);
-        match lacks(&motion.truth, wish) {
-            None => return Case { scene, stated, motion, chance, redraws },
-            Some(lack) => *redraws.entry(lack).or_insert(0) += 1,
+        let Some(lack) = lacks(&motion.truth, wish) else {
+            return Case { scene, stated, motion, chance, redraws };
+        };
+        *redraws.entry(lack).or_insert(0) += 1;
+        if wish.lands_again || attempt.is_multiple_of(ATTEMPTS) {
+            angle_deg = stated_angle_deg(&mut chance);
         }
     }
+}
+
+/// 5 to 30° mostly.
+fn stated_angle_deg(chance: &mut Chance) -> f64 {
+    round(if chance.is(0.8) { chance.even(5.0, 30.0) } else { chance.even(2.0, 60.0) }, 1)
 }
 
 /// What keeps a drop out of the campaign.
@@ -81,11 +95,16 @@ fn lacks(truth: &Truth, wish: &Wish) -> Option<&'static str> {
 }
 
 /// One attempt: the scene as it is and the cask file, both still without channels.
-fn drop(chance: &mut Chance, wish: &Wish, exact: bool, means: &Means) -> (Scene, CaskFile) {
+fn drop(
+    chance: &mut Chance,
+    angle_deg: f64,
+    wish: &Wish,
+    (exact, means): (bool, &Means),
+) -> (Scene, CaskFile) {
     let tolerances = Tolerances::default();
     let mut defaults: Vec<String> = ["gravity_m_s2"].map(|key| format!("drop.{key}")).into();
     let stated = cask(chance, &mut defaults);
-    let stated_drop = falls(chance, wish);
+    let stated_drop = falls(chance, angle_deg, wish);
     let (drawn, is_said) = contact(chance);
     let contact = wish.contact.unwrap_or(drawn);
     if contact == Contact::Rough && !is_said {
@@ -165,12 +184,11 @@ fn cask(chance: &mut Chance, defaults: &mut Vec<String>) -> Cask {
     Cask { name, mass_kg, length_m, height_m, width_m: None, cog_m, inertia_kg_m2, is_body: true }
 }
 
-/// Height and angle as stated: 9 m and 5 to 30° mostly.
-fn falls(chance: &mut Chance, wish: &Wish) -> Drop {
+/// The fall as stated: from 9 m mostly.
+fn falls(chance: &mut Chance, angle_deg: f64, wish: &Wish) -> Drop {
     // L lands again where it is thrown up little and R has a long way.
     let usual = if wish.lands_again { 0.2 } else { 0.7 };
     let height_m = if chance.is(usual) { 9.0 } else { round(chance.log_even(0.3, 12.0), 2) };
-    let angle_deg = round(if chance.is(0.8) { chance.even(5.0, 30.0) } else { chance.even(2.0, 60.0) }, 1);
     Drop {
         height_m,
         angle_rad: angle_deg.to_radians(),

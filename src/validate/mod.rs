@@ -26,6 +26,9 @@ use std::collections::BTreeMap;
 use std::sync::mpsc;
 use std::time::Instant;
 
+/// What a perfect sensor reads at its place in a moving scene, m/s², at times in s from first contact.
+pub type Force = dyn Fn(&Scene, &SimulatedMotion, &SceneChannel, &[f64]) -> Vec<f64> + Sync;
+
 /// Everything that a scene passes through.
 #[derive(Clone, Copy)]
 pub struct Means<'a> {
@@ -33,8 +36,8 @@ pub struct Means<'a> {
     pub crush: &'a (dyn Fn(&Cask, &Drop, Contact, End, WantedImpact) -> CrushableEnd + Sync),
     /// The motion of a scene.
     pub simulate: &'a (dyn Fn(&Scene) -> SimulatedMotion + Sync),
-    /// What a perfect sensor reads at its place, m/s², at times in s from first contact.
-    pub force: &'a (dyn Fn(&Scene, &SimulatedMotion, &SceneChannel, &[f64]) -> Vec<f64> + Sync),
+    /// What a perfect sensor reads.
+    pub force: &'a Force,
     /// What the recorder writes.
     pub record: &'a (dyn Fn(&Scene, &SimulatedMotion) -> SyntheticRecording + Sync),
     /// The recording as read; none where it is refused.
@@ -87,7 +90,8 @@ pub fn scene(seed: u64, number: SceneNumber, exact: bool, means: &Means) -> (Sce
 /// The numbers of the scenes: damaged ones are counted through all kinds, those not asked for left out.
 fn numbers(request: &CampaignRequest) -> Vec<SceneNumber> {
     let undamaged = if request.undamaged { request.scenes } else { 0 };
-    let damaged = if request.kinds.is_empty() { 0 } else { request.scenes };
+    let is_any = damage::kinds().any(|kind| request.kinds.contains(&kind.0));
+    let damaged = if is_any { request.scenes } else { 0 };
     let wanted = |number: &u32| request.kinds.contains(&damage::of(*number).0.name);
     let damaged = (0..u32::MAX).filter(wanted).take(usize::try_from(damaged).unwrap_or(0));
     (0..undamaged).map(SceneNumber::Undamaged).chain(damaged.map(SceneNumber::Damaged)).collect()

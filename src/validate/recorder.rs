@@ -16,7 +16,7 @@ const CONTACT_SAMPLES: f64 = 25.0;
 const PERIOD_SAMPLES: f64 = 15.0;
 
 /// Most samples of a channel, where a slower recorder would do.
-const MOST_SAMPLES: f64 = 2e5;
+const MOST_SAMPLES: f64 = 1.2e5;
 
 /// A resonance is simulated up to this rate; faster recorders look at sensors that resonate beyond their band.
 const RESONANT_HZ: f64 = 50e3;
@@ -62,7 +62,7 @@ fn timed(case: &mut Case, wish: &Wish) -> f64 {
     let needed_hz = (CONTACT_SAMPLES / contact_s).max(PERIOD_SAMPLES * highest_hz);
     let fast: Vec<f64> = RATES_HZ.iter().copied().filter(|hz| *hz >= needed_hz).collect();
     let total_s = |hz: f64, before_s: f64| if hz >= 1e5 && !case.scene.rest { before_s.min(0.08) } else { before_s } + after_contact_s;
-    let most = if wish.slow_recorder { MOST_SAMPLES / 5.0 } else { MOST_SAMPLES };
+    let most = if wish.slow_recorder { MOST_SAMPLES / 3.0 } else { MOST_SAMPLES };
     let affordable: Vec<f64> =
         fast.iter().copied().filter(|hz| hz * total_s(*hz, case.scene.before_s) <= most).collect();
     let slowest_hz = fast.first().copied().unwrap_or(500e3);
@@ -172,7 +172,8 @@ fn converters(case: &mut Case, means: &Means) {
     let is_stated = case.chance.is(0.5);
     for i in 0..case.scene.channels.len() {
         let room = case.chance.log_even(1.2, 10.0);
-        let limit_m_s2 = room * peak_m_s2(case, i, means);
+        let peak_m_s2 = peak_m_s2(case, i, means);
+        let limit_m_s2 = room * (peak_m_s2 + beyond_m_s2(case, i, peak_m_s2));
         case.scene.channels[i].chain.full_scale_m_s2 = Some(limit_m_s2);
         case.scene.channels[i].chain.bits = Some(bits);
         case.stated.channels[i].full_scale =
@@ -185,14 +186,18 @@ pub(super) fn unit_m_s2(channel: &SceneChannel) -> f64 {
     if channel.unit == "g" { STANDARD_GRAVITY_M_S2 } else { 1.0 }
 }
 
-/// The largest that channel `i` has to show, m/s²: the drop's peak there, its offset, and what its filters overshoot.
+/// The largest force of the drop at channel `i`, as the channel scales it, m/s².
 pub(super) fn peak_m_s2(case: &Case, i: usize, means: &Means) -> f64 {
-    /// A Butterworth of fourth order overshoots a step by 11 %; pulses of 25 samples by far less.
-    const OVERSHOOT: f64 = 1.05;
     let channel = &case.scene.channels[i];
     let force = (means.force)(&case.scene, &case.motion, channel, &case.motion.time_s);
-    let largest = force.iter().fold(0.0_f64, |peak, f| peak.max(f.abs()));
-    let chain = &channel.chain;
-    let noise = 5.0 * (chain.white_noise_m_s2 + chain.pink_noise_m_s2);
-    OVERSHOOT * chain.scale * (largest + chain.offset_m_s2.abs() + noise)
+    channel.chain.scale * force.iter().fold(0.0_f64, |peak, f| peak.max(f.abs()))
+}
+
+/// What channel `i` adds to that: offset, noise, and what its filters overshoot, m/s².
+fn beyond_m_s2(case: &Case, i: usize, peak_m_s2: f64) -> f64 {
+    /// A Butterworth of fourth order overshoots a step by 11 %; pulses of 25 samples by far less.
+    const OVERSHOOT: f64 = 0.05;
+    let chain = &case.scene.channels[i].chain;
+    let noise_m_s2 = 5.0 * (chain.white_noise_m_s2 + chain.pink_noise_m_s2);
+    OVERSHOOT * peak_m_s2 + chain.offset_m_s2.abs() + noise_m_s2
 }

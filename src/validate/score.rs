@@ -1,6 +1,7 @@
 //! An analysis beside its truth to a row, and rows to CSV.
 
 use super::Case;
+use super::chance::round;
 use super::statistics;
 use crate::data::{
     Analysis, Campaign, CampaignRow, Contact, Damage, Estimate, ReconstructionCandidate, ReconstructionRung,
@@ -78,7 +79,7 @@ pub fn csv(campaign: &Campaign) -> Result<Vec<u8>, csv::Error> {
 /// A cell under its header.
 type Cell = (String, String);
 
-fn cell(header: &str, value: impl ToString) -> Cell {
+fn cell(header: &str, value: impl std::fmt::Display) -> Cell {
     (header.to_owned(), value.to_string())
 }
 
@@ -133,8 +134,8 @@ fn scene_cells(row: &CampaignRow) -> Vec<Cell> {
         cell("stated_inertia_kg_m2", stated.cask.inertia_kg_m2),
         cell("drop_height_m", scene.drop.height_m),
         cell("stated_drop_height_m", stated.drop.height_m),
-        cell("angle_deg", scene.drop.angle_rad.to_degrees()),
-        cell("stated_angle_deg", stated.drop.angle_rad.to_degrees()),
+        cell("angle_deg", truth.angle_deg),
+        cell("stated_angle_deg", round(stated.drop.angle_rad.to_degrees(), 9)),
         cell("contact", friction(scene.contact)),
         cell("stated_contact", friction(stated.contact)),
         maybe("contact_s", truth.contact_s),

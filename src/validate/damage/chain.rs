@@ -61,7 +61,7 @@ pub(super) const KINDS: &[Kind] = &[
         sizes: &[0.1, 0.3, 1.0, 3.0, 10.0],
         unit: "Hz",
         before: |case, size, _| {
-            one(case, |chain, _| chain.ac_time_constant_s = Some(1.0 / (std::f64::consts::TAU * size)))
+            one(case, |chain, _| chain.ac_time_constant_s = Some(1.0 / (std::f64::consts::TAU * size)));
         },
         ..SOUND
     },
@@ -127,7 +127,7 @@ pub(super) const KINDS: &[Kind] = &[
     Kind {
         name: "polarity_all",
         before: |case, _, _| {
-            case.scene.channels.iter_mut().for_each(|channel| channel.chain.swapped_polarity = true)
+            case.scene.channels.iter_mut().for_each(|channel| channel.chain.swapped_polarity = true);
         },
         ..SOUND
     },

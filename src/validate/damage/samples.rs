@@ -47,7 +47,7 @@ pub(super) const KINDS: &[Kind] = &[
         sizes: &[3.0, 10.0, 30.0, 100.0, 300.0],
         unit: "% of the peak",
         before: |case, _, _| {
-            case.scene.channels.iter_mut().for_each(|channel| channel.chain.anti_alias_hz = None)
+            case.scene.channels.iter_mut().for_each(|channel| channel.chain.anti_alias_hz = None);
         },
         after: |case, recording, size| aliasing(case, recording, size),
         ..SOUND
@@ -193,7 +193,7 @@ fn unit(case: &mut Case, recording: &mut SyntheticRecording, size: f64, unit: Un
         };
         if all || i == only {
             channel.samples.iter_mut().for_each(|x| *x = stored(f64::from(*x) * factor));
-            channel.unit = if unit == Unit::G { "g" } else { "m/s^2" }.to_owned();
+            if unit == Unit::G { "g" } else { "m/s^2" }.clone_into(&mut channel.unit);
             case.stated.channels[i].unit = Some(unit);
         }
         case.stated.channels[i].full_scale = None;
