@@ -65,6 +65,8 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let reconstructed = flight_and_motion(&mut draft, &signals, contact);
     judge::weigh_by_distance(&mut draft.issues, &draft.events);
     draft.issues.extend(judge::judge_channels(&signals, &draft.events));
+    let onsets = events::answers(&signals, contact.0);
+    draft.issues.extend(judge::judge_skew(&onsets, &signals, &cask_file.cask));
     let smooth = draft.smooth(&signals);
     if let Some((flight, setup, motion, quantities)) = reconstructed {
         if !draft.issues.iter().any(judge::invalidates) {

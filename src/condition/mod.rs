@@ -105,6 +105,8 @@ fn signal(channel: &Channel, event: &CoarseEvent, reach: &Reach) -> (Signal, Vec
         removed_offset_m_s2: 0.0,
         u_offset_m_s2: 0.0,
         noise_m_s2: 0.0,
+        noise_spectrum: vec![],
+        free_fall_s: 0.0,
         clipped,
         gaps,
     };

@@ -1,7 +1,7 @@
 //! The free fall before first contact to a channel's offset and noise.
 
 use crate::data::{Issue, IssueCode, Severity, Signal};
-use crate::numerics::robust;
+use crate::numerics::{noise, robust};
 
 /// Least free fall an offset is taken from, s: a period of 50 Hz hum is 20 ms, and half of it still bounds an offset.
 const LEAST_S: f64 = 0.01;
@@ -43,6 +43,8 @@ pub(super) fn remove(signal: &mut Signal, before_s: f64) -> Vec<Issue> {
     let wander = (robust::mean_and_rms(first).0 - robust::mean_and_rms(second).0).abs();
     signal.removed_offset_m_s2 = mean;
     signal.noise_m_s2 = robust::spread(&quiet).max(1e-3 * rms);
+    signal.noise_spectrum = noise::spectrum(&quiet, signal.sample_rate_hz);
+    signal.free_fall_s = length_s;
     #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
     {
         // White noise averages out; what differs between the two halves does not.

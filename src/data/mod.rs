@@ -10,6 +10,7 @@ mod issue;
 mod ladder;
 mod listing;
 mod motion;
+mod onset;
 mod prediction;
 mod quantities;
 mod reconstruction;
@@ -35,6 +36,7 @@ pub use issue::{Issue, IssueCode, Severity};
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};
 pub use motion::{AxialClosure, Motion, MotionState, Setup};
+pub use onset::Onset;
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, Quantities};
 pub use reconstruction::{

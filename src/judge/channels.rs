@@ -1,6 +1,6 @@
 //! Signals and events to what speaks against single channels.
 
-use crate::data::{Axis, End, Events, Issue, IssueCode, Severity, Signal};
+use crate::data::{Axis, Events, Issue, IssueCode, Severity, Signal};
 
 /// Fewest samples over a first pulse for its onset and area to be right within 1 % (measured: half sine, trapezoid).
 const LEAST_PULSE_SAMPLES: f64 = 10.0;
@@ -11,10 +11,7 @@ const MOST_LOST_M_S: f64 = 0.27;
 /// A dead channel's peak is at most this share of the largest channel's.
 const DEAD_SHARE: f64 = 1e-3;
 
-/// Signals of one body begin to move together but for the bending wave, which takes a few milliseconds along a cask.
-const MOST_SKEW_S: f64 = 5e-3;
-
-/// Checks each channel over the event: clipped, lost, dead, sampled too slowly, late.
+/// Checks each channel over the event: clipped, lost, dead, sampled too slowly.
 #[must_use]
 pub fn judge_channels(signals: &[Signal], events: &Events) -> Vec<Issue> {
     let mut issues = Vec::new();
@@ -41,9 +38,6 @@ pub fn judge_channels(signals: &[Signal], events: &Events) -> Vec<Issue> {
         }
     }
     issues.extend(dead(signals));
-    if let Some(contact_s) = contact_s {
-        issues.extend(skewed(signals, contact_s));
-    }
     issues
 }
 
@@ -125,37 +119,4 @@ fn dead(signals: &[Signal]) -> Vec<Issue> {
             .on(&s.name)
         })
         .collect()
-}
-
-/// First time after `from_s` at which a signal leaves its noise and a hundredth of its peak over 20 ms.
-fn begins(signal: &Signal, contact_s: f64) -> Option<f64> {
-    let (from, to) = (signal.index_from(contact_s - 0.01), signal.index_from(contact_s + 0.02));
-    let force = signal.force_m_s2.get(from..to)?;
-    let peak = force.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-    let foot = (0.01 * peak).max(6.0 * signal.noise_m_s2);
-    force.iter().position(|f| f.abs() > foot).map(|i| signal.time_s(from + i))
-}
-
-fn skewed(signals: &[Signal], contact_s: f64) -> Option<Issue> {
-    let ends = |end: End| {
-        signals
-            .iter()
-            .filter(move |s| s.end == end && s.axis == Axis::Transverse)
-            .find_map(|s| begins(s, contact_s).map(|t| (s, t)))
-    };
-    let ((_, first_s), (second, second_s)) = (ends(End::First)?, ends(End::Second)?);
-    let skew_s = second_s - first_s;
-    (skew_s.abs() > MOST_SKEW_S).then(|| {
-        Issue::new(
-            IssueCode::Skew,
-            Severity::Warning,
-            format!(
-                "{} begins to move {:.1} ms {} the first end: one body cannot; check the clocks of the two recorders",
-                second.name,
-                1e3 * skew_s.abs(),
-                if skew_s > 0.0 { "after" } else { "before" }
-            ),
-        )
-        .on(&second.name)
-    })
 }

@@ -3,10 +3,12 @@
 mod channels;
 mod fall;
 mod result;
+mod skew;
 
 pub use channels::judge_channels;
 pub use fall::{judge_fall, judge_rest};
 pub use result::{judge_comparison, judge_motion};
+pub use skew::judge_skew;
 
 use crate::data::{Events, Issue, IssueCode, Severity, Verdict};
 

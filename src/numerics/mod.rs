@@ -2,6 +2,8 @@
 
 pub mod damped_modes;
 pub mod filter;
+pub mod noise;
+pub mod projection;
 pub mod quadrature;
 pub mod robust;
 pub mod root;
