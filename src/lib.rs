@@ -64,11 +64,13 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     draft.issues.extend(judge::judge_fall(&cask_file.drop, &draft.events));
     let reconstructed = flight_and_motion(&mut draft, &signals, contact);
     judge::weigh_by_distance(&mut draft.issues, &draft.events);
-    draft.issues.extend(judge::judge_channels(&signals, &draft.events));
+    let on_channels = judge::judge_channels(&signals, &draft.events, &draft.issues);
+    draft.issues.extend(on_channels);
     let onsets = events::answers(&signals, contact.0);
     draft.issues.extend(judge::judge_skew(&onsets, &signals, &cask_file.cask));
     let smooth = draft.smooth(&signals);
     if let Some((flight, setup, motion, quantities)) = reconstructed {
+        draft.issues.extend(judge::judge_coupling(&signals, &flight, cask_file));
         if !draft.issues.iter().any(judge::invalidates) {
             draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
         }

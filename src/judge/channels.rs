@@ -1,9 +1,7 @@
 //! Signals and events to what speaks against single channels.
 
+use super::sampling;
 use crate::data::{Axis, Events, Issue, IssueCode, Severity, Signal};
-
-/// Fewest samples over a first pulse for its onset and area to be right within 1 % (measured: half sine, trapezoid).
-const LEAST_PULSE_SAMPLES: f64 = 10.0;
 
 /// Velocity that clipping may cut off before the slap-down and leave something to measure, m/s: 2 % of a 9 m fall's.
 const MOST_LOST_M_S: f64 = 0.27;
@@ -11,9 +9,9 @@ const MOST_LOST_M_S: f64 = 0.27;
 /// A dead channel's peak is at most this share of the largest channel's.
 const DEAD_SHARE: f64 = 1e-3;
 
-/// Checks each channel over the event: clipped, lost, dead, sampled too slowly.
+/// Checks each channel over the event: clipped, lost, dead, sampled too slowly. `found` is what is known of them already.
 #[must_use]
-pub fn judge_channels(signals: &[Signal], events: &Events) -> Vec<Issue> {
+pub fn judge_channels(signals: &[Signal], events: &Events, found: &[Issue]) -> Vec<Issue> {
     let mut issues = Vec::new();
     let contact_s = events.first_contact_s;
     let separation_s = events.separation_s;
@@ -21,22 +19,12 @@ pub fn judge_channels(signals: &[Signal], events: &Events) -> Vec<Issue> {
         issues.extend(clipped(signal, events));
         if let (Some(from), Some(to)) = (contact_s, separation_s) {
             issues.extend(lost(signal, from, to, events.slap_down_s));
-            let samples = (to - from) * signal.sample_rate_hz;
-            if samples < LEAST_PULSE_SAMPLES {
-                issues.push(
-                    Issue::new(
-                        IssueCode::LowRate,
-                        Severity::Warning,
-                        format!(
-                            "{} has {samples:.0} samples over the first impact of {:.1} ms; its velocity step may be off by more than 1 %. Sample at {:.0} Hz or faster",
-                            signal.name, 1e3 * (to - from), 2.0 * LEAST_PULSE_SAMPLES / (to - from)
-                        ),
-                    )
-                    .on(&signal.name),
-                );
-            }
         }
     }
+    let is_disturbance = |code| matches!(code, IssueCode::Spikes | IssueCode::Dropout);
+    let disturbed: Vec<&str> =
+        found.iter().filter(|i| is_disturbance(i.code)).filter_map(|i| i.channel.as_deref()).collect();
+    issues.extend(sampling::judge_sampling(signals, events, &disturbed));
     issues.extend(dead(signals));
     issues
 }

@@ -1,11 +1,14 @@
 //! Everything found on the way to issues and a verdict: what speaks against the result.
 
 mod channels;
+mod coupling;
 mod fall;
 mod result;
+mod sampling;
 mod skew;
 
 pub use channels::judge_channels;
+pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_rest};
 pub use result::{judge_comparison, judge_motion};
 pub use skew::judge_skew;
