@@ -49,8 +49,12 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     else {
         return draft.without_impact();
     };
-    let (signals, mut found) =
-        condition::condition(recording, &event, &condition::Reach::of(&cask_file.cask, &cask_file.drop));
+    let (signals, mut found) = condition::condition(
+        recording,
+        &event,
+        &condition::Reach::of(&cask_file.cask, &cask_file.drop),
+        &cask_file.corrections,
+    );
     draft.issues.append(&mut found);
     let Some(contact) = events::first_contact(&signals, &event) else {
         return draft.without_impact();

@@ -7,4 +7,5 @@ pub mod projection;
 pub mod quadrature;
 pub mod robust;
 pub mod root;
+pub mod sinusoid;
 pub mod spectrum;
