@@ -44,6 +44,7 @@ const EXPLAINED_M_S: f64 = 0.2;
 #[must_use]
 pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let mut draft = Draft::new(recording, cask_file);
+    draft.issues.extend(judge::judge_silent(&recording.channels));
     let Some(event) =
         events::locate(recording, &cask_file.drop).filter(|e| is_impact(e.velocity_step_m_s, cask_file))
     else {
@@ -53,7 +54,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         recording,
         &event,
         &condition::Reach::of(&cask_file.cask, &cask_file.drop),
-        &cask_file.corrections,
+        cask_file.corrections,
     );
     draft.issues.append(&mut found);
     let Some(contact) = events::first_contact(&signals, &event) else {
@@ -61,14 +62,18 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     };
     draft.events.first_contact_s = Some(contact.0);
     for (channel, fall) in free_falls(recording, cask_file, contact.0) {
-        draft.issues.extend(judge::judge_rest(&channel.name, fall.rest_m_s2, &cask_file.drop));
+        draft.issues.extend(judge::judge_rest(
+            &channel.name,
+            (fall.rest_m_s2, fall.u_rest_m_s2),
+            &cask_file.drop,
+        ));
         draft.events.release_s = draft.events.release_s.or(Some(fall.release_s));
         draft.events.fall_end_s = draft.events.fall_end_s.or(Some(fall.end_s));
     }
     draft.issues.extend(judge::judge_fall(&cask_file.drop, &draft.events));
     let reconstructed = flight_and_motion(&mut draft, &signals, contact);
     judge::weigh_by_distance(&mut draft.issues, &draft.events);
-    let on_channels = judge::judge_channels(&signals, &draft.events, &draft.issues);
+    let on_channels = judge::judge_channels(&signals, &draft.events, cask_file, &draft.issues);
     draft.issues.extend(on_channels);
     let onsets = events::answers(&signals, contact.0);
     draft.issues.extend(judge::judge_skew(&onsets, &signals, &cask_file.cask));

@@ -54,7 +54,7 @@ impl Middle {
             &recording,
             &event,
             &Reach::of(&cask_file.cask, &cask_file.drop),
-            &cask_file.corrections,
+            cask_file.corrections,
         );
         let setup = Setup {
             length_m: cask_file.cask.length_m,
@@ -102,7 +102,7 @@ fn condition_channels(bencher: Bencher, samples: usize) {
     let reach = Reach::of(&m.analysis.cask_file.cask, &m.analysis.cask_file.drop);
     bencher
         .counter(items(samples))
-        .bench(|| condition::condition(&m.recording, &m.event, &reach, &Corrections::default()));
+        .bench(|| condition::condition(&m.recording, &m.event, &reach, Corrections::default()));
 }
 
 #[divan::bench(args = SIZES)]

@@ -53,7 +53,7 @@ pub fn condition(
     recording: &Recording,
     event: &CoarseEvent,
     reach: &Reach,
-    corrections: &Corrections,
+    corrections: Corrections,
 ) -> (Vec<Signal>, Vec<Issue>) {
     let parts: Vec<_> = std::thread::scope(|scope| {
         let each = |channel| scope.spawn(move || signal(channel, event, reach, corrections));
@@ -71,7 +71,7 @@ fn signal(
     channel: &Channel,
     event: &CoarseEvent,
     reach: &Reach,
-    corrections: &Corrections,
+    corrections: Corrections,
 ) -> (Signal, Vec<Issue>) {
     let from = channel.index_at(event.near_s - reach.before_s);
     let to = channel.index_at(event.near_s + event.spread_s + reach.after_s);
@@ -98,7 +98,7 @@ fn signal(
     let before = channel.index_at(event.near_s).saturating_sub(from).min(force.len());
     let quiet: Vec<f64> = force[..before].iter().copied().filter(|f| f.is_finite()).collect();
     let noise_m_s2 = if quiet.is_empty() { 0.0 } else { robust::spread(&quiet) };
-    let clipped = clipping::clipped(channel, &force, noise_m_s2);
+    let clipped = clipping::clipped(channel, &force, noise_m_s2, before);
     let gaps = missing(&force);
     for f in &mut force {
         if !f.is_finite() {
@@ -122,9 +122,10 @@ fn signal(
         clipped,
         gaps,
     };
+    issues.extend(disturbed::mark_dropouts(&mut signal, noise_m_s2, event.near_s));
     issues.extend(hum::treat(&mut signal, event.near_s, corrections.hum));
     issues.extend(offset::treat(&mut signal, event.near_s, corrections.offset));
-    issues.extend(disturbed::find(&signal));
+    issues.extend(disturbed::spikes(&signal, event.velocity_step_m_s));
     (signal, issues)
 }
 

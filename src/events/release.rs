@@ -29,6 +29,8 @@ pub struct FreeFall {
     pub end_s: f64,
     /// Rest level less free-fall level, m/s².
     pub rest_m_s2: f64,
+    /// Standard uncertainty of that difference, by how far the means it is taken from scatter, m/s².
+    pub u_rest_m_s2: f64,
 }
 
 /// The longest free fall before `contact_s` that begins with a step from rest, +g cos φ, to a level that then stays.
@@ -52,12 +54,13 @@ pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeF
         .steps()
         .into_iter()
         .filter_map(|block| record.fall_from(block, contact))
-        .filter(|(start, end, _)| end - start > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
+        .filter(|(start, end, ..)| end - start > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
         .max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)))
-        .map(|(start, end, rest_m_s2)| FreeFall {
+        .map(|(start, end, (rest_m_s2, u_rest_m_s2))| FreeFall {
             release_s: channel.time_s(from) + start / channel.sample_rate_hz,
             end_s: channel.time_s(from) + end / channel.sample_rate_hz,
             rest_m_s2,
+            u_rest_m_s2,
         })
 }
 
@@ -92,6 +95,17 @@ impl<'a> Record<'a> {
         robust::median(&mut blocks.iter().copied().filter(|b| b.is_finite()).collect::<Vec<_>>())
     }
 
+    /// Standard uncertainty of a level: the blocks' scatter over √n, times √(π/2) for the median.
+    fn u_level(&self, from: usize, to: usize) -> f64 {
+        let blocks = self.blocks.get(from..to.min(self.blocks.len())).unwrap_or_default();
+        let finite: Vec<f64> = blocks.iter().copied().filter(|b| b.is_finite()).collect();
+        if finite.len() < 2 {
+            return f64::INFINITY;
+        }
+        let n = count(finite.len());
+        robust::mean_and_rms(&finite).1 * (std::f64::consts::FRAC_PI_2 / (n - 1.0)).sqrt()
+    }
+
     /// The blocks in which a level gives way to one lower by about the weight, each step once.
     fn steps(&self) -> Vec<usize> {
         let height = |i: usize| self.level(i - LEVEL, i) - self.level(i + 1, i + 1 + LEVEL);
@@ -104,8 +118,9 @@ impl<'a> Record<'a> {
             .collect()
     }
 
-    /// Release and end in samples, fractional, and the rest level above the free-fall level, m/s², of the fall from a step.
-    fn fall_from(&self, step: usize, contact: f64) -> Option<(f64, f64, f64)> {
+    /// Release and end in samples, fractional, and the rest level above the free-fall level with its standard uncertainty,
+    /// m/s², of the fall from a step.
+    fn fall_from(&self, step: usize, contact: f64) -> Option<(f64, f64, (f64, f64))> {
         let near = self.level(step + 1, step + 1 + LEVEL);
         let end = self.departure(step, near);
         // The level of the whole fall is better known than that of its beginning.
@@ -115,7 +130,8 @@ impl<'a> Record<'a> {
             return None;
         }
         let end = self.departure(step, falling).map_or(contact, |block| self.touch(step, block, falling));
-        Some((self.crossing(step, falling + 0.5 * rest), end, rest))
+        let u_rest = self.u_level(step - LEVEL, step).hypot(self.u_level(step + 1, step + 1 + LEVEL));
+        Some((self.crossing(step, falling + 0.5 * rest), end, (rest, u_rest)))
     }
 
     /// The block from which on the mean over [`SUSTAINED`] blocks lies off the free-fall level; `None` where it holds to the end.
@@ -223,6 +239,8 @@ mod tests {
         assert!((fall.end_s - 1.9).abs() < 2.0 / RATE_HZ, "{fall:?}");
         // The medians of blocks of 50 samples of uniform noise lie within 0.2 of the truth.
         assert!((fall.rest_m_s2 - 9.81).abs() < 0.2, "{fall:?}");
+        // A median of 50 uniform samples scatters by 1/(2 √50) = 0.07; two levels of eight of them, known to a third.
+        assert!((0.02..0.08).contains(&fall.u_rest_m_s2), "{fall:?}");
     }
 
     #[test]

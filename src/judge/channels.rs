@@ -1,17 +1,19 @@
 //! Signals and events to what speaks against single channels.
 
-use super::sampling;
-use crate::data::{Axis, Events, Issue, IssueCode, Severity, Signal};
+use super::{sampling, worth};
+use crate::data::{CaskFile, Events, Issue, IssueCode, Severity, Signal};
 
 /// Velocity that clipping may cut off before the slap-down and leave something to measure, m/s: 2 % of a 9 m fall's.
 const MOST_LOST_M_S: f64 = 0.27;
 
-/// A dead channel's peak is at most this share of the largest channel's.
-const DEAD_SHARE: f64 = 1e-3;
-
-/// Checks each channel over the event: clipped, lost, dead, sampled too slowly. `found` is what is known of them already.
+/// Checks each channel over the event: clipped, lost, sampled too slowly, noisy, in the wrong place. `found` is what is known of them already.
 #[must_use]
-pub fn judge_channels(signals: &[Signal], events: &Events, found: &[Issue]) -> Vec<Issue> {
+pub fn judge_channels(
+    signals: &[Signal],
+    events: &Events,
+    cask_file: &CaskFile,
+    found: &[Issue],
+) -> Vec<Issue> {
     let mut issues = Vec::new();
     let contact_s = events.first_contact_s;
     let separation_s = events.separation_s;
@@ -25,7 +27,7 @@ pub fn judge_channels(signals: &[Signal], events: &Events, found: &[Issue]) -> V
     let disturbed: Vec<&str> =
         found.iter().filter(|i| is_disturbance(i.code)).filter_map(|i| i.channel.as_deref()).collect();
     issues.extend(sampling::judge_sampling(signals, events, &disturbed));
-    issues.extend(dead(signals));
+    issues.extend(worth::judge_worth(signals, events, cask_file));
     issues
 }
 
@@ -87,24 +89,4 @@ fn lost(signal: &Signal, contact_s: f64, separation_s: f64, slap_down_s: Option<
         .on(&signal.name)
         .between(contact_s, separation_s)
     })
-}
-
-fn peak(signal: &Signal) -> f64 {
-    signal.force_m_s2.iter().fold(0.0, |m, f| m.max(f.abs()))
-}
-
-fn dead(signals: &[Signal]) -> Vec<Issue> {
-    let largest = signals.iter().map(peak).fold(0.0, f64::max);
-    signals
-        .iter()
-        .filter(|s| s.axis == Axis::Transverse && peak(s) < DEAD_SHARE * largest.max(1.0))
-        .map(|s| {
-            Issue::new(
-                IssueCode::DeadChannel,
-                Severity::Error,
-                format!("{} does not move while others do: unplugged, or the wrong source", s.name),
-            )
-            .on(&s.name)
-        })
-        .collect()
 }

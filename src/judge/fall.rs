@@ -2,8 +2,9 @@
 
 use crate::data::{Drop, Events, Issue, IssueCode, Severity};
 
-/// A rest level this far off g cos φ is a scale error: 40 ms of rest with 0.3 g of noise at 5 kHz are known to 2 % of g.
+/// A rest level this far off g cos φ, beside three of its standard uncertainties, is a scale error: an angle 5° off moves it by 4 %.
 const MOST_SCALE: f64 = 0.06;
+const SURE: f64 = 3.0;
 /// Fall times that differ by more contradict each other: 3 % are 6 % of the height, beyond any tape measure or air drag.
 const MOST_DIFFERENCE: f64 = 0.03;
 /// A first touch this share of the fall time before first contact is another event, not a late onset.
@@ -44,12 +45,13 @@ pub fn judge_fall(drop: &Drop, events: &Events) -> Vec<Issue> {
     issues
 }
 
-/// Holds a channel's step from rest to free fall, m/s², against g cos φ: a scale that is off shows there.
+/// Holds a channel's step from rest to free fall and its standard uncertainty, m/s², against g cos φ: a scale that is off
+/// shows there.
 #[must_use]
-pub fn judge_rest(channel: &str, rest_m_s2: f64, drop: &Drop) -> Option<Issue> {
+pub fn judge_rest(channel: &str, (rest_m_s2, u_m_s2): (f64, f64), drop: &Drop) -> Option<Issue> {
     let expected_m_s2 = drop.gravity_m_s2 * drop.angle_rad.cos();
     let share = rest_m_s2 / expected_m_s2;
-    ((share - 1.0).abs() > MOST_SCALE).then(|| {
+    ((share - 1.0).abs() > MOST_SCALE + SURE * u_m_s2 / expected_m_s2).then(|| {
         Issue::new(
             IssueCode::Scale,
             Severity::Warning,
@@ -93,6 +95,15 @@ mod tests {
         assert!(judge_fall(&drop(false), &events(Some(0.5), 1.86, 1.86)).is_empty());
         assert!(judge_fall(&drop(false), &events(Some(0.5), 1.89, 1.89)).is_empty());
         assert!(judge_fall(&drop(false), &events(None, 0.9, 0.9)).is_empty());
+    }
+
+    #[test]
+    fn a_rest_level_is_held_against_gravity_within_what_it_is_known_to() {
+        let expected_m_s2 = 9.81 * 0.2_f64.cos();
+        assert!(judge_rest("A1", (1.05 * expected_m_s2, 0.01), &drop(false)).is_none());
+        assert!(judge_rest("A1", (0.83 * expected_m_s2, 0.4), &drop(false)).is_none());
+        let off = judge_rest("A1", (0.83 * expected_m_s2, 0.05), &drop(false)).expect("17 % off");
+        assert!(off.message.contains("-17 %"), "{}", off.message);
     }
 
     #[test]

@@ -5,12 +5,15 @@ mod coupling;
 mod fall;
 mod result;
 mod sampling;
+mod silent;
 mod skew;
+mod worth;
 
 pub use channels::judge_channels;
 pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_rest};
 pub use result::{judge_comparison, judge_motion};
+pub use silent::judge_silent;
 pub use skew::judge_skew;
 
 use crate::data::{Events, Issue, IssueCode, Severity, Verdict};
