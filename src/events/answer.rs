@@ -27,7 +27,7 @@ const REFINED: u32 = 20;
 
 /// The delay of every transverse channel's answer against the struck end's channel.
 ///
-/// Rigid body and bending answer a force F as a F + b ∫∫F + c ∫∫∫∫F + … from the same moment on   (33). The struck end's
+/// Rigid body and bending answer a force F as a F + b ∫∫F + c ∫∫∫∫F + … from the same moment on   (Q1). The struck end's
 /// channel stands for F; the delay is the one at which its integrals explain the other channel best. Channels that hardly
 /// answer are left out.
 #[must_use]

@@ -37,7 +37,7 @@ pub fn spectrum(quiet: &[f64], sample_rate_hz: f64) -> Vec<(f64, f64)> {
             quiet.iter().enumerate().map(|(i, x)| Complex::new(weight(i) * (x - mean), 0.0)).collect();
         fft.process(&mut work);
         for (line, value) in lines.iter_mut().zip(&work) {
-            // S = 2 |Σ w x e^(−iωt)|² / f_s with Σ w² = 1   (34)
+            // S = 2 |Σ w x e^(−iωt)|² / f_s with Σ w² = 1   (Q2)
             *line += 2.0 * value.norm_sqr() / (sample_rate_hz * f64::from(TAPERS));
         }
     }
@@ -60,7 +60,7 @@ pub fn spectrum(quiet: &[f64], sample_rate_hz: f64) -> Vec<(f64, f64)> {
 
 /// Standard uncertainty of ∫ noise dt over `integrate_s`, less that time × the noise's mean over the `mean_s` just before it.
 ///
-/// u² = ∫ S(f) |H(f)|² df, H = (e^(iωT) − 1)/(iω) − T (1 − e^(−iωT0))/(iωT0)   (35). `spectrum` as [`spectrum`] gives it;
+/// u² = ∫ S(f) |H(f)|² df, H = (e^(iωT) − 1)/(iω) − T (1 − e^(−iωT0))/(iωT0)   (Q3). `spectrum` as [`spectrum`] gives it;
 /// between its bins the density is a power of the frequency, below them it is flat, or 1/f where it rises. 0 for an empty one.
 #[must_use]
 pub fn integral_uncertainty_by(spectrum: &[(f64, f64)], mean_s: f64, integrate_s: f64) -> f64 {
@@ -112,7 +112,7 @@ pub fn integral_uncertainty(quiet: &[f64], sample_rate_hz: f64, integrate_s: f64
     )
 }
 
-/// |H(f)|² of (35), s².
+/// |H(f)|² of (Q3), s².
 fn weight_square(frequency_hz: f64, mean_s: f64, integrate_s: f64) -> f64 {
     let omega = TAU * frequency_hz;
     let i_omega = Complex::new(0.0, omega);
