@@ -80,6 +80,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let smooth = draft.smooth(&signals);
     if let Some((flight, setup, motion, quantities)) = reconstructed {
         draft.issues.extend(judge::judge_coupling(&signals, &flight, cask_file));
+        draft.issues.extend(judge::judge_rigid(&signals, &flight, &cask_file.tolerances));
         if !draft.issues.iter().any(judge::invalidates) {
             draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
         }

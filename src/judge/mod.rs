@@ -4,6 +4,7 @@ mod channels;
 mod coupling;
 mod fall;
 mod result;
+mod rigid;
 mod sampling;
 mod silent;
 mod skew;
@@ -13,6 +14,7 @@ pub use channels::judge_channels;
 pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_rest};
 pub use result::{judge_comparison, judge_motion};
+pub use rigid::judge_rigid;
 pub use silent::judge_silent;
 pub use skew::judge_skew;
 
