@@ -46,13 +46,18 @@ const EXPLAINED_M_S: f64 = 0.2;
 #[must_use]
 pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let mut draft = Draft::new(recording, cask_file);
+    draft.issues.extend(judge::judge_silent(&recording.channels));
     let Some(event) =
         events::locate(recording, &cask_file.drop).filter(|e| is_impact(e.velocity_step_m_s, cask_file))
     else {
         return draft.without_impact();
     };
-    let (signals, mut found) =
-        condition::condition(recording, &event, &condition::Reach::of(&cask_file.cask, &cask_file.drop));
+    let (signals, mut found) = condition::condition(
+        recording,
+        &event,
+        &condition::Reach::of(&cask_file.cask, &cask_file.drop),
+        cask_file.corrections,
+    );
     draft.issues.append(&mut found);
     let Some(contact) = events::first_contact(&signals, &event) else {
         return draft.without_impact();
@@ -74,9 +79,14 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     draft.issues.extend(judge::judge_fall(&cask_file.drop, &draft.events));
     let reconstructed = flight_and_motion(&mut draft, &signals, contact);
     judge::weigh_by_distance(&mut draft.issues, &draft.events);
-    draft.issues.extend(judge::judge_channels(&signals, &draft.events));
+    let on_channels = judge::judge_channels(&signals, &draft.events, cask_file, &draft.issues);
+    draft.issues.extend(on_channels);
+    let onsets = events::answers(&signals, contact.0);
+    draft.issues.extend(judge::judge_skew(&onsets, &signals, &cask_file.cask));
     let smooth = draft.smooth(&signals);
     if let Some(Reconstructed { flight, setup, motion, quantities, choice: reconstruction }) = reconstructed {
+        draft.issues.extend(judge::judge_coupling(&signals, &flight, cask_file));
+        draft.issues.extend(judge::judge_rigid(&signals, &flight, &cask_file.tolerances));
         if !draft.issues.iter().any(judge::invalidates) {
             draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
             draft.issues.extend(judge::judge_closures(&reconstruction, &cask_file.drop, &draft.events));

@@ -9,7 +9,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use dropcheck::condition::Reach;
 use dropcheck::data::{
-    Analysis, AxialClosure, CaskFile, CoarseEvent, Events, FlightFit, Recording, Setup, Signal,
+    Analysis, AxialClosure, CaskFile, CoarseEvent, Corrections, Events, FlightFit, Recording, Setup, Signal,
 };
 use dropcheck::{condition, events, fit, ingest, motion, report};
 use recordings::{Folder, Kind};
@@ -50,8 +50,12 @@ impl Middle {
         let cask_file = folder.cask_file.clone();
         let analysis = dropcheck::analyze(&recording, &cask_file);
         let event = events::locate(&recording, &cask_file.drop).expect("an impact");
-        let (signals, _) =
-            condition::condition(&recording, &event, &Reach::of(&cask_file.cask, &cask_file.drop));
+        let (signals, _) = condition::condition(
+            &recording,
+            &event,
+            &Reach::of(&cask_file.cask, &cask_file.drop),
+            cask_file.corrections,
+        );
         let setup = Setup {
             length_m: cask_file.cask.length_m,
             height_m: cask_file.cask.height_m,
@@ -96,7 +100,9 @@ fn locate(bencher: Bencher, samples: usize) {
 fn condition_channels(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
     let reach = Reach::of(&m.analysis.cask_file.cask, &m.analysis.cask_file.drop);
-    bencher.counter(items(samples)).bench(|| condition::condition(&m.recording, &m.event, &reach));
+    bencher
+        .counter(items(samples))
+        .bench(|| condition::condition(&m.recording, &m.event, &reach, Corrections::default()));
 }
 
 #[divan::bench(args = SIZES)]

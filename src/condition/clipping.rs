@@ -1,6 +1,7 @@
 //! Samples to the runs that stand at a limit of the measuring chain.
 
 use crate::data::{Channel, Span};
+use crate::numerics::robust;
 
 /// Fewest samples at an extreme that make a flat top.
 const LEAST_RUN: usize = 3;
@@ -12,11 +13,18 @@ const NOISE_FACTOR: f64 = 6.0;
 /// of any smooth pulse that product is 4 to 5: the top lies within b of its peak for 2 √(2 b / P) of phase.
 const STEEPNESS: f64 = 16.0;
 
+/// A limit comes after the sensor's noise and takes it off: what still has this share of it from sample to sample is a force
+/// that stays level, as of a cask that is crushed. Noise that comes after the limit is taken to be less.
+const NOISE_LEFT: f64 = 0.6;
+
 /// The smallest step between samples widens the band up to this share of the level: an 8-bit converter's.
 const STEP_OF_BAND: f64 = 4e-3;
 
 /// Runs of `force` (m/s², of `channel`, with `noise_m_s2` on it) at the stated full scale or flat at an extreme, as indices.
-pub(super) fn clipped(channel: &Channel, force: &[f64], noise_m_s2: f64) -> Vec<Span> {
+///
+/// The first `quiet` samples lie before the impact.
+pub(super) fn clipped(channel: &Channel, force: &[f64], noise_m_s2: f64, quiet: usize) -> Vec<Span> {
+    let roughness = roughness(force.get(..quiet).unwrap_or_default());
     let mut spans = Vec::new();
     if let Some(limit) = channel.full_scale {
         let limit_m_s2 = (limit * channel.scale_m_s2).abs();
@@ -33,7 +41,8 @@ pub(super) fn clipped(channel: &Channel, force: &[f64], noise_m_s2: f64) -> Vec<
         }
         for span in runs(force, |f| (f - extreme).abs() <= band) {
             let is_known = spans.iter().any(|s: &Span| s.from < span.to && span.from < s.to);
-            if span.to - span.from >= LEAST_RUN && is_flat_top(force, span, band) && !is_known {
+            let is_rail = is_flat_top(force, span, band) && !carries_noise(force, span, roughness);
+            if span.to - span.from >= LEAST_RUN && is_rail && !is_known {
                 spans.push(span);
             }
         }
@@ -58,6 +67,21 @@ pub(super) fn runs(force: &[f64], inside: impl Fn(f64) -> bool) -> Vec<Span> {
         }
     }
     spans
+}
+
+/// Standard deviation of the noise by the steps from sample to sample, which no slow swing adds to.
+fn roughness(quiet: &[f64]) -> f64 {
+    let steps: Vec<f64> = quiet.windows(2).map(|w| w[1] - w[0]).filter(|d| d.is_finite()).collect();
+    if steps.len() < 8 { 0.0 } else { robust::spread(&steps) / std::f64::consts::SQRT_2 }
+}
+
+/// Whether the inside of a flat run still has the sensor's noise.
+#[allow(clippy::cast_precision_loss, reason = "a run of samples")]
+fn carries_noise(force: &[f64], span: Span, roughness: f64) -> bool {
+    let inside = &force[span.from + 1..(span.to - 1).max(span.from + 1)];
+    let steps: f64 = inside.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
+    let count = inside.len().saturating_sub(1);
+    count > 0 && roughness > 0.0 && (steps / count as f64 / 2.0).sqrt() > NOISE_LEFT * roughness
 }
 
 /// Whether the signal runs into the flat and out of it steeply as into a stop, and not as over a rounded top.
@@ -113,7 +137,7 @@ mod tests {
 
     #[test]
     fn a_flat_top_is_found() {
-        let spans = clipped(&channel(None), &pulse(3000.0), 0.0);
+        let spans = clipped(&channel(None), &pulse(3000.0), 0.0, 0);
         assert_eq!(spans.len(), 1);
         assert!(spans[0].from > 40 && spans[0].to < 160);
     }
@@ -121,8 +145,8 @@ mod tests {
     #[test]
     fn a_rounded_top_of_a_coarse_converter_is_not() {
         let coarse: Vec<f64> = pulse(1e9).iter().map(|f| (f / 10.0).round() * 10.0).collect();
-        assert!(clipped(&channel(None), &coarse, 0.0).is_empty());
-        assert!(clipped(&channel(None), &pulse(1e9), 0.0).is_empty());
+        assert!(clipped(&channel(None), &coarse, 0.0, 0).is_empty());
+        assert!(clipped(&channel(None), &pulse(1e9), 0.0, 0).is_empty());
     }
 
     #[test]
@@ -132,14 +156,35 @@ mod tests {
             pulse(limit).iter().enumerate().map(|(i, f)| f + 3.4 * hash(i)).collect()
         };
         // Uniform noise of ±1.7 has a standard deviation of 1.
-        assert_eq!(clipped(&channel(None), &noisy(3800.0), 1.0).len(), 1);
-        assert!(clipped(&channel(None), &noisy(1e9), 1.0).is_empty());
+        assert_eq!(clipped(&channel(None), &noisy(3800.0), 1.0, 0).len(), 1);
+        assert!(clipped(&channel(None), &noisy(1e9), 1.0, 0).is_empty());
     }
 
     #[test]
     fn the_stated_full_scale_counts() {
         // 300 g is 2942 m/s².
-        assert_eq!(clipped(&channel(Some(300.0)), &pulse(1e9), 0.0).len(), 1);
-        assert!(clipped(&channel(Some(500.0)), &pulse(1e9), 0.0).is_empty());
+        assert_eq!(clipped(&channel(Some(300.0)), &pulse(1e9), 0.0, 0).len(), 1);
+        assert!(clipped(&channel(Some(500.0)), &pulse(1e9), 0.0, 0).is_empty());
+    }
+
+    /// 100 samples of free fall and a pulse cut at 3000 m/s², with noise before the limit and after it.
+    fn limited(before: f64, after: f64) -> Vec<f64> {
+        use super::super::tests::noise;
+        let shape = |i: u32| {
+            if i < 100 { 0.0 } else { 4000.0 * (f64::from(i - 100) / 200.0 * std::f64::consts::PI).sin() }
+        };
+        (0..300).map(|i| (shape(i) + before * noise(i, 1)).min(3000.0) + after * noise(i, 2)).collect()
+    }
+
+    #[test]
+    fn a_force_that_stays_level_keeps_its_noise_and_a_limit_does_not() {
+        use super::super::tests::noise;
+        let crushing: Vec<f64> =
+            limited(0.0, 0.0).iter().zip(0..).map(|(f, i)| f + 5.0 * noise(i, 3)).collect();
+        assert!(clipped(&channel(None), &crushing, 5.0, 100).is_empty());
+        assert_eq!(clipped(&channel(None), &limited(5.0, 0.0), 5.0, 100).len(), 1);
+        assert_eq!(clipped(&channel(None), &limited(5.0, 1.5), 5.2, 100).len(), 1);
+        // The stated limit of 300 g is 2942 m/s²: then noise does not matter.
+        assert!(!clipped(&channel(Some(300.0)), &crushing, 5.0, 100).is_empty());
     }
 }

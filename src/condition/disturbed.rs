@@ -1,6 +1,6 @@
 //! Samples to the spikes and dropouts of cables and connectors, which no pulse of a cask looks like.
 
-use crate::data::{Issue, IssueCode, Severity, Signal};
+use crate::data::{Issue, IssueCode, Severity, Signal, Span};
 
 /// A disturbance stands out of its neighbours by this share of the channel's peak …
 const SHARE_OF_PEAK: f64 = 0.05;
@@ -8,47 +8,118 @@ const SHARE_OF_PEAK: f64 = 0.05;
 const NOISE_FACTOR: f64 = 20.0;
 /// The two neighbours on either side of a spike agree within this share of its height: those of a pulse's peak do not.
 const AGREEMENT: f64 = 0.3;
-/// Fewest equal samples in a row that are a dropout.
+/// Longest spike, in samples: a contact that breaks for longer is a dropout or a burst.
+const LONGEST_SPIKE: usize = 5;
+/// A spike holds at most this share of the impact's velocity change: what holds more is a pulse sampled too slowly.
+const SHARE_OF_STEP: f64 = 0.1;
+/// Spikes that together add less are a note, m/s: 0.1 % of a slap-down.
+const SMALL_M_S: f64 = 0.02;
+/// Fewest equal samples in a row after a jump that are a dropout.
 const LEAST_RUN: usize = 5;
+/// Fewest without a jump, where noise keeps samples from repeating: with 9 % of them equal to the last, 5 in 10⁸ runs are as long.
+const LEAST_QUIET_RUN: usize = 8;
+const MOST_REPEATED: f64 = 0.09;
 
-/// Spikes of one sample and runs of equal samples entered by a jump, each kind as one issue; nothing is repaired.
-pub(super) fn find(signal: &Signal) -> Vec<Issue> {
+/// The height above which something is a disturbance, m/s².
+fn height(signal: &Signal, noise_m_s2: f64) -> f64 {
+    let peak = signal.force_m_s2.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+    (SHARE_OF_PEAK * peak).max(NOISE_FACTOR * noise_m_s2)
+}
+
+fn is_lost(signal: &Signal, index: usize) -> bool {
+    signal.gaps.iter().chain(&signal.clipped).any(|g| g.from <= index + 1 && index <= g.to)
+}
+
+/// Spikes of one to five samples with what they hold together; nothing is repaired.
+pub(super) fn spikes(signal: &Signal, velocity_step_m_s: f64) -> Option<Issue> {
     let force = &signal.force_m_s2;
-    let peak = force.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-    let height = (SHARE_OF_PEAK * peak).max(NOISE_FACTOR * signal.noise_m_s2);
-    let is_lost = |i: usize| signal.gaps.iter().chain(&signal.clipped).any(|g| g.from <= i + 1 && i <= g.to);
-    let spikes: Vec<usize> = (2..)
-        .zip(force.windows(5))
-        .filter(|(i, w)| {
-            let (before, after) = (w[2] - w[1], w[2] - w[3]);
-            let least = before.abs().min(after.abs());
-            // Few samples stand out of both neighbours: what costs more is asked after that.
-            least > height
-                && before * after > 0.0
-                && [w[1] - w[0], w[3] - w[1], w[4] - w[3]].iter().all(|d| d.abs() < AGREEMENT * least)
-                && !is_lost(*i)
-        })
-        .map(|(i, _)| i)
-        .collect();
-    let mut issues = Vec::new();
-    issues.extend(issue(signal, IssueCode::Spikes, &spikes, "spikes of one sample"));
-    let dropouts: Vec<usize> = runs(force)
+    let height = height(signal, signal.noise_m_s2);
+    let most_m_s = SHARE_OF_STEP * velocity_step_m_s.abs();
+    let (mut found, mut held_m_s) = (Vec::new(), 0.0);
+    let mut i = 2;
+    while i + 2 < force.len() {
+        // Few samples stand out of the one before: what costs more is asked after that.
+        let spike = ((force[i] - force[i - 1]).abs() > height)
+            .then(|| (1..=LONGEST_SPIKE).find_map(|width| area(force, i, width, height).map(|a| (width, a))))
+            .flatten()
+            .map(|(width, area)| (width, area / signal.sample_rate_hz))
+            .filter(|(_, area_m_s)| *area_m_s < most_m_s && !is_lost(signal, i));
+        if let Some((width, area_m_s)) = spike {
+            found.push(i);
+            held_m_s += area_m_s;
+            i += width;
+        }
+        i += 1;
+    }
+    let (first, last) = (found.first()?, found.last()?);
+    let severity = if held_m_s > SMALL_M_S { Severity::Warning } else { Severity::Note };
+    let message = format!(
+        "{} has {} spikes of one to five samples that no cask makes; left in, they move the velocity by up to {held_m_s:.3} m/s: fasten or change the cable and its connectors",
+        signal.name,
+        found.len(),
+    );
+    let issue = Issue::new(IssueCode::Spikes, severity, message);
+    Some(issue.on(&signal.name).between(signal.time_s(*first), signal.time_s(*last)))
+}
+
+/// What the `width` samples from `i` on hold above their neighbours, m/s² × samples, if they are a spike.
+fn area(force: &[f64], i: usize, width: usize, height: f64) -> Option<f64> {
+    let (before, run, after) =
+        (force.get(i - 2..i)?, force.get(i..i + width)?, force.get(i + width..i + width + 2)?);
+    let base = f64::midpoint(before[1], after[0]);
+    let sign = (run[0] - base).signum();
+    let least = run.iter().map(|f| sign * (f - base)).fold(f64::INFINITY, f64::min);
+    let is_flat = [before[1] - before[0], after[0] - before[1], after[1] - after[0]]
+        .iter()
+        .all(|step| step.abs() < AGREEMENT * least);
+    (least > height && is_flat).then(|| run.iter().map(|f| sign * (f - base)).sum())
+}
+
+/// Runs of equal samples that no converter gives, marked as gaps and set to 0, and said so.
+pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64) -> Option<Issue> {
+    let height = height(signal, noise_m_s2);
+    let end = signal.index_from(before_s);
+    let force = &signal.force_m_s2;
+    let (low, high) = force.iter().fold((0.0_f64, 0.0_f64), |(l, h), &f| (l.min(f), h.max(f)));
+    let quiet = force.get(..end).unwrap_or_default();
+    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+    let repeated = 1.0 - runs(quiet).count() as f64 / quiet.len().max(1) as f64;
+    let is_noisy = quiet.len() > 50 && repeated < MOST_REPEATED;
+    let jump = |a: usize, b: usize| force.get(a).zip(force.get(b)).map_or(0.0, |(x, y)| (x - y).abs());
+    let dropouts: Vec<Span> = runs(force)
         .filter(|&(from, to)| {
-            let jump =
-                |a: usize, b: usize| force.get(a).zip(force.get(b)).map_or(0.0, |(x, y)| (x - y).abs());
-            to - from >= LEAST_RUN
-                && !is_lost(from)
-                && (from.checked_sub(1).is_some_and(|i| jump(i, from) > height) || jump(to - 1, to) > height)
+            let jumps =
+                from.checked_sub(1).is_some_and(|i| jump(i, from) > height) || jump(to - 1, to) > height;
+            let least = if is_noisy { LEAST_QUIET_RUN } else { usize::MAX };
+            #[allow(clippy::float_cmp, reason = "a limit repeats to the bit")]
+            let at_limit = (force[from] == low || force[from] == high) && force[from] != 0.0;
+            (to - from >= least || to - from >= LEAST_RUN && jumps) && !at_limit && !is_lost(signal, from)
         })
-        .map(|(from, _)| from)
+        .map(|(from, to)| Span { from, to })
         .collect();
-    issues.extend(issue(
-        signal,
-        IssueCode::Dropout,
-        &dropouts,
-        "dropouts (equal samples in a row after a jump)",
-    ));
-    issues
+    let (first, last) = (*dropouts.first()?, *dropouts.last()?);
+    let samples: usize = dropouts.iter().map(|d| d.to - d.from).sum();
+    let most_m_s = dropouts.iter().map(|d| bridged_m_s(signal, *d)).fold(0.0, f64::max);
+    for span in &dropouts {
+        signal.force_m_s2[span.from..span.to].fill(0.0);
+    }
+    let message = format!(
+        "{} repeats itself to the bit in {} stretches of {samples} samples together: a connector or the recorder dropped out; they are taken for lost (the longest would hold about {most_m_s:.2} m/s): fasten cable and connectors",
+        signal.name,
+        dropouts.len()
+    );
+    signal.gaps.extend(dropouts);
+    signal.gaps.sort_by_key(|gap| gap.from);
+    let issue = Issue::new(IssueCode::Dropout, Severity::Warning, message);
+    Some(issue.on(&signal.name).between(signal.time_s(first.from), signal.time_s(last.to)))
+}
+
+/// What a straight bridge over a span holds, against 0, m/s.
+#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+fn bridged_m_s(signal: &Signal, span: Span) -> f64 {
+    let at = |i: Option<usize>| i.and_then(|i| signal.force_m_s2.get(i)).copied().unwrap_or(0.0);
+    let middle = f64::midpoint(at(span.from.checked_sub(1)), at(Some(span.to)));
+    middle.abs() * (span.to - span.from) as f64 / signal.sample_rate_hz
 }
 
 /// Runs of equal samples, as `from..to`.
@@ -61,61 +132,74 @@ fn runs(force: &[f64]) -> impl Iterator<Item = (usize, usize)> + '_ {
     })
 }
 
-fn issue(signal: &Signal, code: IssueCode, places: &[usize], what: &str) -> Option<Issue> {
-    let (first, last) = (places.first()?, places.last()?);
-    Some(
-        Issue::new(
-            code,
-            Severity::Warning,
-            format!(
-                "{} has {} {what}: a cable or connector; what they add to or take from the velocity is in the result",
-                signal.name,
-                places.len()
-            ),
-        )
-        .on(&signal.name)
-        .between(signal.time_s(*first), signal.time_s(*last)),
-    )
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::tests::{noise, signal};
     use super::*;
-    use crate::data::{Axis, End};
 
-    fn signal(force_m_s2: Vec<f64>) -> Signal {
-        Signal {
-            name: "A1".into(),
-            end: End::First,
-            axis: Axis::Transverse,
-            position_m: 0.0,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: 1e4,
-            force_m_s2,
-            removed_offset_m_s2: 0.0,
-            u_offset_m_s2: 0.0,
-            noise_m_s2: 1.0,
-            clipped: vec![],
-            gaps: vec![],
-        }
-    }
-
-    fn pulse() -> Vec<f64> {
-        (0..400).map(|i| 4000.0 * (f64::from(i) / 400.0 * std::f64::consts::PI).sin()).collect()
+    /// 50 ms of free fall and a half sine of 40 ms at 10 kHz, noise of 1 m/s².
+    fn pulse() -> Signal {
+        let shape = |i: u32| {
+            if i < 500 { 0.0 } else { 4000.0 * (f64::from(i - 500) / 400.0 * std::f64::consts::PI).sin() }
+        };
+        signal((0..900).map(|i| shape(i) + noise(i, 1)).collect())
     }
 
     #[test]
     fn a_pulse_has_neither() {
-        assert!(find(&signal(pulse())).is_empty());
+        assert!(spikes(&pulse(), 20.0).is_none());
+        assert!(mark_dropouts(&mut pulse(), 1.0, 0.04).is_none());
+        // Nor a pulse of five samples, and ringing of fifteen samples a period.
+        let mut short = pulse();
+        short.force_m_s2[300..305].copy_from_slice(&[2000.0, 3600.0, 4000.0, 3500.0, 1900.0]);
+        assert!(spikes(&short, 1.5).is_none());
+        let ringing = |i: u32| 3000.0 * (f64::from(i) * std::f64::consts::TAU / 15.0).sin() + noise(i, 2);
+        assert!(spikes(&signal((0..900).map(ringing).collect()), 20.0).is_none());
     }
 
     #[test]
-    fn a_spike_and_a_dropout_are_named() {
-        let mut force = pulse();
-        force[100] += 900.0;
-        force[200..220].fill(0.0);
-        let codes: Vec<IssueCode> = find(&signal(force)).iter().map(|i| i.code).collect();
-        assert_eq!(codes, [IssueCode::Spikes, IssueCode::Dropout]);
+    fn spikes_of_one_to_five_samples_are_named_with_what_they_hold() {
+        for width in 1..=5 {
+            let mut spiky = pulse();
+            for f in &mut spiky.force_m_s2[200..200 + width] {
+                *f += 900.0;
+            }
+            let issue = spikes(&spiky, 20.0).expect("a spike");
+            // 900 m/s² for 0.1 ms a sample, noise of 1 m/s² on it.
+            let held: f64 = issue
+                .message
+                .split("up to ")
+                .nth(1)
+                .and_then(|m| m.split(' ').next())
+                .and_then(|m| m.parse().ok())
+                .expect("a size");
+            #[allow(clippy::cast_precision_loss, reason = "at most 5")]
+            let expected = 0.09 * width as f64;
+            assert!((held - expected).abs() < 0.01 * expected + 6e-4, "{held} {expected}");
+        }
+        let mut small = pulse();
+        small.force_m_s2[100] += 205.0;
+        small.sample_rate_hz = 2e4;
+        assert_eq!(spikes(&small, 20.0).map(|i| i.severity), Some(Severity::Note));
+    }
+
+    #[test]
+    fn a_dropout_is_a_gap() {
+        for from in [100, 700] {
+            let mut dropped = pulse();
+            let held = if from == 100 { dropped.force_m_s2[from] } else { 0.0 };
+            dropped.force_m_s2[from..from + 20].fill(held);
+            assert!(mark_dropouts(&mut dropped, 1.0, 0.04).is_some(), "{from}");
+            assert_eq!(dropped.gaps, [Span { from, to: from + 20 }]);
+        }
+    }
+
+    #[test]
+    fn a_coarse_converter_repeats_itself_without_dropping_out() {
+        let mut coarse = pulse();
+        for f in &mut coarse.force_m_s2 {
+            *f = (*f / 10.0).round() * 10.0;
+        }
+        assert!(mark_dropouts(&mut coarse, 1.0, 0.04).is_none());
     }
 }

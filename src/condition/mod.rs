@@ -2,10 +2,12 @@
 
 mod clipping;
 mod disturbed;
+mod hum;
 mod offset;
 
 use crate::data::{
-    Cask, Channel, CoarseEvent, Coupling, Drop, Issue, IssueCode, Recording, Severity, Signal, Span,
+    Cask, Channel, CoarseEvent, Corrections, Coupling, Drop, Issue, IssueCode, Recording, Severity, Signal,
+    Span,
 };
 use crate::numerics::robust;
 
@@ -19,7 +21,7 @@ const LONGEST_AFTER_S: f64 = 1.6;
 const LEAST_AFTER_S: f64 = 0.15;
 
 /// R comes down at this share of v0 at the least, from the height that an angle 10° steeper would give it.
-const SLOWEST_DESCENT: f64 = 0.5;
+const SLOWEST_DESCENT: f64 = 0.25;
 
 /// How far the signals reach around the coarse event.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,13 +45,18 @@ impl Reach {
     }
 }
 
-/// Cuts every channel to the window of the event, removes its offset and marks what is clipped or missing.
+/// Cuts every channel to the window of the event, removes offset and hum as `corrections` allow, marks what is clipped or missing.
 ///
 /// Returns the signals in the order of the channels and what was found about them.
 #[must_use]
-pub fn condition(recording: &Recording, event: &CoarseEvent, reach: &Reach) -> (Vec<Signal>, Vec<Issue>) {
+pub fn condition(
+    recording: &Recording,
+    event: &CoarseEvent,
+    reach: &Reach,
+    corrections: Corrections,
+) -> (Vec<Signal>, Vec<Issue>) {
     let parts: Vec<_> = std::thread::scope(|scope| {
-        let each = |channel| scope.spawn(move || signal(channel, event, reach));
+        let each = |channel| scope.spawn(move || signal(channel, event, reach, corrections));
         let running: Vec<_> = recording.channels.iter().map(each).collect();
         running
             .into_iter()
@@ -60,7 +67,12 @@ pub fn condition(recording: &Recording, event: &CoarseEvent, reach: &Reach) -> (
     (signals, issues.into_iter().flatten().collect())
 }
 
-fn signal(channel: &Channel, event: &CoarseEvent, reach: &Reach) -> (Signal, Vec<Issue>) {
+fn signal(
+    channel: &Channel,
+    event: &CoarseEvent,
+    reach: &Reach,
+    corrections: Corrections,
+) -> (Signal, Vec<Issue>) {
     let from = channel.index_at(event.near_s - reach.before_s);
     let to = channel.index_at(event.near_s + event.spread_s + reach.after_s);
     let mut issues = Vec::new();
@@ -86,7 +98,7 @@ fn signal(channel: &Channel, event: &CoarseEvent, reach: &Reach) -> (Signal, Vec
     let before = channel.index_at(event.near_s).saturating_sub(from).min(force.len());
     let quiet: Vec<f64> = force[..before].iter().copied().filter(|f| f.is_finite()).collect();
     let noise_m_s2 = if quiet.is_empty() { 0.0 } else { robust::spread(&quiet) };
-    let clipped = clipping::clipped(channel, &force, noise_m_s2);
+    let clipped = clipping::clipped(channel, &force, noise_m_s2, before);
     let gaps = missing(&force);
     for f in &mut force {
         if !f.is_finite() {
@@ -105,11 +117,15 @@ fn signal(channel: &Channel, event: &CoarseEvent, reach: &Reach) -> (Signal, Vec
         removed_offset_m_s2: 0.0,
         u_offset_m_s2: 0.0,
         noise_m_s2: 0.0,
+        noise_spectrum: vec![],
+        free_fall_s: 0.0,
         clipped,
         gaps,
     };
-    issues.extend(offset::remove(&mut signal, event.near_s));
-    issues.extend(disturbed::find(&signal));
+    issues.extend(disturbed::mark_dropouts(&mut signal, noise_m_s2, event.near_s));
+    issues.extend(hum::treat(&mut signal, event.near_s, corrections.hum));
+    issues.extend(offset::treat(&mut signal, event.near_s, corrections.offset));
+    issues.extend(disturbed::spikes(&signal, event.velocity_step_m_s));
     (signal, issues)
 }
 
@@ -133,6 +149,41 @@ fn missing(force: &[f64]) -> Vec<Span> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::{Axis, End};
+
+    /// Nearly normal noise of standard deviation 1: a sum of hashes.
+    pub(super) fn noise(i: u32, seed: u64) -> f64 {
+        let hash = |n: u64| {
+            let mut x = (u64::from(i) + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+                ^ (4 * seed + n + 1).wrapping_mul(0xD1B5_4A32_D192_ED03);
+            x ^= x >> 32;
+            x = x.wrapping_mul(0xD6E8_FEB8_6659_FD93);
+            x ^= x >> 32;
+            f64::from(u32::try_from(x >> 32).unwrap_or(0)) / f64::from(u32::MAX) - 0.5
+        };
+        (0..4).map(hash).sum::<f64>() * 3.0_f64.sqrt()
+    }
+
+    /// A transverse channel of the first end at 10 kHz.
+    pub(super) fn signal(force_m_s2: Vec<f64>) -> Signal {
+        Signal {
+            name: "A1".into(),
+            end: End::First,
+            axis: Axis::Transverse,
+            position_m: 0.0,
+            offset_m: 0.0,
+            start_s: 0.0,
+            sample_rate_hz: 1e4,
+            force_m_s2,
+            removed_offset_m_s2: 0.0,
+            u_offset_m_s2: 0.0,
+            noise_m_s2: 1.0,
+            noise_spectrum: vec![],
+            free_fall_s: 0.0,
+            clipped: vec![],
+            gaps: vec![],
+        }
+    }
 
     #[test]
     fn an_ac_coupled_step_is_put_back() {

@@ -1,7 +1,7 @@
 //! The free fall before first contact to a channel's offset and noise.
 
 use crate::data::{Issue, IssueCode, Severity, Signal};
-use crate::numerics::robust;
+use crate::numerics::{noise, robust};
 
 /// Least free fall an offset is taken from, s: a period of 50 Hz hum is 20 ms, and half of it still bounds an offset.
 const LEAST_S: f64 = 0.01;
@@ -12,9 +12,21 @@ const LARGE_M_S2: f64 = 50.0;
 /// Offsets above this are worth a note, m/s².
 const NOTABLE_M_S2: f64 = 0.98;
 
-/// Takes the mean before `before_s` off the signal and notes noise and uncertainty in it.
-pub(super) fn remove(signal: &mut Signal, before_s: f64) -> Vec<Issue> {
-    let mut issues = Vec::new();
+/// Samples this many spreads off the median are disturbances, not offset: none of a million of normal noise is.
+const WILD: f64 = 8.0;
+
+/// A slope counts beyond this many of its standard uncertainties from eight means: one in 10⁴ of white noise is that steep.
+const SURE: f64 = 10.0;
+const BLOCKS: usize = 8;
+
+/// Contact and flight that an offset is carried over, s: a 9 m drop from 15°.
+const AHEAD_S: f64 = 0.06;
+
+/// Velocity that a drift or an offset left may add before it is worth a warning, m/s: 0.2 % of a slap-down.
+const SMALL_M_S: f64 = 0.05;
+
+/// Notes the mean before `before_s`, its uncertainty and the noise in the signal, and takes the mean off if `take_off`.
+pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<Issue> {
     let end = signal.index_from(before_s);
     let length_s = before_s - signal.start_s;
     let quiet: Vec<f64> = (0..end)
@@ -22,52 +34,179 @@ pub(super) fn remove(signal: &mut Signal, before_s: f64) -> Vec<Issue> {
         .map(|i| signal.force_m_s2[i])
         .collect();
     if length_s < LEAST_S || quiet.len() < 8 {
-        issues.push(
-            Issue::new(
-                IssueCode::BeginsLate,
-                Severity::Warning,
-                format!(
-                    "{} has {:.1} ms of free fall before the first impact: no offset could be taken from it. Record from before the release",
-                    signal.name,
-                    1e3 * length_s.max(0.0)
-                ),
-            )
-            .on(&signal.name),
-        );
         // Without free fall the offset may be as large as a usual one.
         signal.u_offset_m_s2 = NOTABLE_M_S2;
-        return issues;
+        return vec![too_short(signal, length_s)];
     }
+    let quiet = tame(quiet);
     let (mean, rms) = robust::mean_and_rms(&quiet);
     let (first, second) = quiet.split_at(quiet.len() / 2);
     let wander = (robust::mean_and_rms(first).0 - robust::mean_and_rms(second).0).abs();
-    signal.removed_offset_m_s2 = mean;
     signal.noise_m_s2 = robust::spread(&quiet).max(1e-3 * rms);
-    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-    {
-        // White noise averages out; what differs between the two halves does not.
-        signal.u_offset_m_s2 = (rms / (quiet.len() as f64).sqrt()).max(wander / 2.0);
-    }
-    let gaps = signal.gaps.clone();
-    for (i, f) in signal.force_m_s2.iter_mut().enumerate() {
-        if !gaps.iter().any(|g| g.from <= i && i < g.to) {
-            *f -= mean;
+    signal.noise_spectrum = noise::spectrum(&quiet, signal.sample_rate_hz);
+    signal.free_fall_s = length_s;
+    // White noise averages out; what differs between the two halves does not.
+    signal.u_offset_m_s2 = (rms / number(quiet.len()).sqrt()).max(wander / 2.0);
+    if take_off {
+        signal.removed_offset_m_s2 = mean;
+        let gaps = signal.gaps.clone();
+        for (i, f) in signal.force_m_s2.iter_mut().enumerate() {
+            if !gaps.iter().any(|g| g.from <= i && i < g.to) {
+                *f -= mean;
+            }
         }
     }
-    if mean.abs() > NOTABLE_M_S2 {
-        let severity = if mean.abs() > LARGE_M_S2 { Severity::Warning } else { Severity::Note };
-        issues.push(
-            Issue::new(
-                IssueCode::Offset,
-                severity,
-                format!(
-                    "{} reads {:+.2} g before the first impact, where free fall reads 0; that offset was taken off",
-                    signal.name,
-                    mean / 9.806_65
-                ),
-            )
-            .on(&signal.name),
-        );
-    }
+    let mut issues = Vec::new();
+    issues.extend(offset(&signal.name, mean, take_off));
+    issues.extend(drift(signal, &quiet, before_s));
     issues
+}
+
+fn too_short(signal: &Signal, length_s: f64) -> Issue {
+    Issue::new(
+        IssueCode::BeginsLate,
+        Severity::Warning,
+        format!(
+            "{} has {:.1} ms of free fall before the first impact: no offset could be taken from it. Record from before the release",
+            signal.name,
+            1e3 * length_s.max(0.0)
+        ),
+    )
+    .on(&signal.name)
+}
+
+/// The samples with wild ones set to the median: a spike is no offset.
+fn tame(mut quiet: Vec<f64>) -> Vec<f64> {
+    let median = robust::median(&mut quiet.clone());
+    let most = WILD * robust::spread(&quiet);
+    if most > 0.0 {
+        for x in quiet.iter_mut().filter(|x| (**x - median).abs() > most) {
+            *x = median;
+        }
+    }
+    quiet
+}
+
+fn offset(name: &str, mean_m_s2: f64, taken_off: bool) -> Option<Issue> {
+    let in_g = mean_m_s2 / 9.806_65;
+    let adds_m_s = mean_m_s2.abs() * AHEAD_S;
+    let (severity, done) = if taken_off {
+        let severity = if mean_m_s2.abs() > LARGE_M_S2 { Severity::Warning } else { Severity::Note };
+        (
+            severity,
+            "that offset was taken off; check the sensor's bias if it is larger than its data sheet says"
+                .into(),
+        )
+    } else {
+        let severity = if adds_m_s > SMALL_M_S { Severity::Warning } else { Severity::Note };
+        (
+            severity,
+            format!(
+                "the cask file leaves that offset in, which adds {adds_m_s:.2} m/s over {:.0} ms; set `offset = true` under `[corrections]` to have it taken off",
+                1e3 * AHEAD_S
+            ),
+        )
+    };
+    let notable = if taken_off { mean_m_s2.abs() > NOTABLE_M_S2 } else { adds_m_s > 0.1 * SMALL_M_S };
+    notable.then(|| {
+        Issue::new(
+            IssueCode::Offset,
+            severity,
+            format!("{name} reads {in_g:+.2} g before the first impact, where free fall reads 0; {done}"),
+        )
+        .on(name)
+    })
+}
+
+/// A slope of the free fall beyond its noise whose continuation into the flight would matter.
+fn drift(signal: &Signal, quiet: &[f64], before_s: f64) -> Option<Issue> {
+    let size = quiet.len() / BLOCKS;
+    if size == 0 {
+        return None;
+    }
+    let means: Vec<f64> = quiet.chunks_exact(size).take(BLOCKS).map(|c| robust::mean_and_rms(c).0).collect();
+    let step_s = signal.free_fall_s / number(BLOCKS);
+    let middle = (number(BLOCKS) - 1.0) / 2.0;
+    let place = |i: usize| (number(i) - middle) * step_s;
+    let square: f64 = (0..BLOCKS).map(|i| place(i).powi(2)).sum();
+    let slope = means.iter().enumerate().map(|(i, m)| place(i) * m).sum::<f64>() / square;
+    let mean = robust::mean_and_rms(&means).0;
+    let left: f64 = means.iter().enumerate().map(|(i, m)| (m - mean - slope * place(i)).powi(2)).sum();
+    let u_slope = (left / number(BLOCKS - 2) / square).sqrt();
+    // From the middle of the free fall, whose mean was taken off, through contact and flight.
+    let adds_m_s = slope.abs() * AHEAD_S * (signal.free_fall_s / 2.0 + AHEAD_S / 2.0);
+    (slope.abs() > SURE * u_slope && adds_m_s > SMALL_M_S).then(|| {
+        Issue::new(
+            IssueCode::Offset,
+            Severity::Warning,
+            format!(
+                "{} drifts by {:+.1} ± {:.1} g/s before the first impact; going on like that it adds {adds_m_s:.2} m/s by the slap-down: let the amplifier warm up, check the cable and its insulation, or use another channel",
+                signal.name,
+                slope / 9.806_65,
+                2.0 * u_slope / 9.806_65
+            ),
+        )
+        .on(&signal.name)
+        .between(before_s - signal.free_fall_s, before_s)
+    })
+}
+
+#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+fn number(n: usize) -> f64 {
+    n as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{noise, signal};
+    use super::*;
+
+    /// 0.2 s of free fall and 0.1 s after it at 10 kHz: an offset of 3 m/s², noise of 2 m/s², and a slope.
+    fn channel(slope: f64, seed: u64) -> Signal {
+        signal((0..3000).map(|i| 3.0 + 2.0 * noise(i, seed) + slope * f64::from(i) * 1e-4).collect())
+    }
+
+    #[test]
+    fn the_mean_is_taken_off_whatever_spikes_there_are() {
+        let mut spiky = channel(0.0, 1);
+        for i in [100, 700, 701, 1500] {
+            spiky.force_m_s2[i] += 2e4;
+        }
+        assert!(treat(&mut spiky, 0.2, true).iter().all(|i| i.severity == Severity::Note));
+        // 2/√2000 = 0.045 is the standard deviation of the mean; the spikes alone would have moved it by 40.
+        assert!((spiky.removed_offset_m_s2 - 3.0).abs() < 0.18, "{}", spiky.removed_offset_m_s2);
+        assert!(spiky.noise_m_s2 < 2.2 && (spiky.free_fall_s - 0.2).abs() < 1e-9);
+        assert!(!spiky.noise_spectrum.is_empty());
+    }
+
+    #[test]
+    fn an_offset_that_stays_is_said_with_what_it_adds() {
+        let mut left = channel(0.0, 1);
+        let before = left.force_m_s2.clone();
+        let issues = treat(&mut left, 0.2, false);
+        assert_eq!(left.force_m_s2, before);
+        assert!(left.removed_offset_m_s2.abs() < 1e-300);
+        // 3 m/s² over 60 ms.
+        assert!(issues[0].message.contains("0.18 m/s") && issues[0].severity == Severity::Warning);
+    }
+
+    #[test]
+    fn a_drift_is_named_and_noise_is_none() {
+        // 49 m/s³, known to 2/√2000 · √12/0.2 = 0.8, adds 49 · 0.06 · 0.13 = 0.38 m/s.
+        let drifting = treat(&mut channel(49.0, 2), 0.2, true);
+        assert!(
+            drifting.iter().any(|i| i.message.contains("drifts by +") && i.severity == Severity::Warning),
+            "{drifting:?}"
+        );
+        for seed in 0..50 {
+            let issues = treat(&mut channel(0.0, seed), 0.2, true);
+            assert!(issues.iter().all(|i| i.severity == Severity::Note), "{seed}: {issues:?}");
+        }
+    }
+
+    #[test]
+    fn a_record_without_free_fall_begins_late() {
+        let issues = treat(&mut channel(0.0, 1), 0.005, true);
+        assert_eq!(issues[0].code, IssueCode::BeginsLate);
+    }
 }

@@ -11,6 +11,7 @@ mod issue;
 mod ladder;
 mod listing;
 mod motion;
+mod onset;
 mod prediction;
 mod quantities;
 mod reconstruction;
@@ -37,6 +38,7 @@ pub use issue::{Issue, IssueCode, Severity};
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};
 pub use motion::{AxialClosure, ChannelReading, Motion, MotionState, Setup};
+pub use onset::Onset;
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, Quantities};
 pub use reconstruction::{

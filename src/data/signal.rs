@@ -30,6 +30,10 @@ pub struct Signal {
     pub u_offset_m_s2: f64,
     /// RMS of the noise before first contact, m/s².
     pub noise_m_s2: f64,
+    /// One-sided spectral density of that noise: bins of frequency, Hz, and (m/s²)²/Hz; empty where too little was recorded.
+    pub noise_spectrum: Vec<(f64, f64)>,
+    /// Length of the free fall that offset and noise were taken from, s; 0 where there was too little.
+    pub free_fall_s: f64,
     /// Samples that stand at a limit.
     pub clipped: Vec<Span>,
     /// Stretches without samples.
@@ -81,6 +85,7 @@ impl Signal {
             name: self.name.clone(),
             start_s: self.time_s(from),
             force_m_s2: self.force_m_s2[from..to].to_vec(),
+            noise_spectrum: self.noise_spectrum.clone(),
             clipped: shifted(&self.clipped),
             gaps: shifted(&self.gaps),
             ..*self

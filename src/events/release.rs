@@ -56,7 +56,7 @@ pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeF
         .steps()
         .into_iter()
         .filter_map(|block| record.fall_from(block, contact))
-        .filter(|(start, end, _)| end - start > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
+        .filter(|(start, end, ..)| end - start > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
         .max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)))
         .map(|(start, end, (rest_m_s2, u_rest_m_s2))| FreeFall {
             release_s: channel.time_s(from) + start / channel.sample_rate_hz,
@@ -126,6 +126,13 @@ impl<'a> Record<'a> {
         Some((self.crossing(step, falling + 0.5 * rest), end, (rest, u_rest)))
     }
 
+    /// Smallest difference of neighbouring samples, m/s²: both levels may lie half of it off where the noise is less.
+    fn converter_step(&self) -> f64 {
+        let steps = self.force.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| *d > 1e-9);
+        let least = steps.fold(f64::INFINITY, f64::min);
+        if least.is_finite() { least } else { 0.0 }
+    }
+
     /// Standard uncertainty of a level, m/s²: the scatter of such levels over the fall `from..to`, which holds noise of every colour.
     fn u_level(&self, from: usize, to: usize) -> f64 {
         let levels: Vec<f64> = (from..to.saturating_sub(LEVEL))
@@ -135,7 +142,9 @@ impl<'a> Record<'a> {
             .collect();
         // A scatter over n levels is known to 1/√(2n) of itself: the few of a short fall are given that margin twice.
         let margin = 1.0 + (2.0 / count(levels.len().max(1))).sqrt();
-        if levels.len() > 1 { margin * robust::mean_and_rms(&levels).1 } else { TOUCH * self.weight_m_s2 }
+        let scatter_m_s2 =
+            if levels.len() > 1 { robust::mean_and_rms(&levels).1 } else { TOUCH * self.weight_m_s2 };
+        margin * scatter_m_s2.hypot(self.converter_step() / 12.0_f64.sqrt())
     }
 
     /// The block from which on the mean over [`SUSTAINED`] blocks lies off the free-fall level; `None` where it holds to the end.
@@ -144,7 +153,10 @@ impl<'a> Record<'a> {
         let off = |b: &f64| if b.is_finite() { b - falling } else { 0.0 };
         #[allow(clippy::cast_precision_loss, reason = "a handful")]
         let mean = |w: &[f64]| w.iter().map(off).sum::<f64>() / SUSTAINED as f64;
-        let window = after.windows(SUSTAINED).position(|w| mean(w).abs() > TOUCH * self.weight_m_s2)?;
+        let means: Vec<f64> = after.windows(SUSTAINED).map(mean).collect();
+        // The scatter of the fall's own means: noise of 1/f departs by itself.
+        let level = (TOUCH * self.weight_m_s2).max(NOISE_FACTOR * robust::spread(&means));
+        let window = means.iter().position(|m| m.abs() > level)?;
         let block = after[window..].iter().position(|b| off(b).abs() > TOUCH * self.weight_m_s2)?;
         Some(step + SUSTAINED + window + block)
     }
@@ -243,6 +255,8 @@ mod tests {
         assert!((fall.end_s - 1.9).abs() < 2.0 / RATE_HZ, "{fall:?}");
         // The medians of blocks of 50 samples of uniform noise lie within 0.2 of the truth.
         assert!((fall.rest_m_s2 - 9.81).abs() < 0.2, "{fall:?}");
+        // A median of 50 uniform samples scatters by 1/(2 √50) = 0.07; two levels of eight of them, known to a third.
+        assert!((0.02..0.08).contains(&fall.u_rest_m_s2), "{fall:?}");
     }
 
     #[test]

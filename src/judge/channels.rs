@@ -1,22 +1,19 @@
 //! Signals and events to what speaks against single channels.
 
-use crate::data::{Axis, End, Events, Issue, IssueCode, Severity, Signal};
-
-/// Fewest samples over a first pulse for its onset and area to be right within 1 % (measured: half sine, trapezoid).
-const LEAST_PULSE_SAMPLES: f64 = 10.0;
+use super::{sampling, worth};
+use crate::data::{CaskFile, Events, Issue, IssueCode, Severity, Signal};
 
 /// Velocity that clipping may cut off before the slap-down and leave something to measure, m/s: 2 % of a 9 m fall's.
 const MOST_LOST_M_S: f64 = 0.27;
 
-/// A dead channel's peak is at most this share of the largest channel's.
-const DEAD_SHARE: f64 = 1e-3;
-
-/// Signals of one body begin to move together but for the bending wave, which takes a few milliseconds along a cask.
-const MOST_SKEW_S: f64 = 5e-3;
-
-/// Checks each channel over the event: clipped, lost, dead, sampled too slowly, late.
+/// Checks each channel over the event: clipped, lost, sampled too slowly, noisy, in the wrong place. `found` is what is known of them already.
 #[must_use]
-pub fn judge_channels(signals: &[Signal], events: &Events) -> Vec<Issue> {
+pub fn judge_channels(
+    signals: &[Signal],
+    events: &Events,
+    cask_file: &CaskFile,
+    found: &[Issue],
+) -> Vec<Issue> {
     let mut issues = Vec::new();
     let contact_s = events.first_contact_s;
     let separation_s = events.separation_s;
@@ -24,26 +21,13 @@ pub fn judge_channels(signals: &[Signal], events: &Events) -> Vec<Issue> {
         issues.extend(clipped(signal, events));
         if let (Some(from), Some(to)) = (contact_s, separation_s) {
             issues.extend(lost(signal, from, to, events.slap_down_s));
-            let samples = (to - from) * signal.sample_rate_hz;
-            if samples < LEAST_PULSE_SAMPLES {
-                issues.push(
-                    Issue::new(
-                        IssueCode::LowRate,
-                        Severity::Warning,
-                        format!(
-                            "{} has {samples:.0} samples over the first impact of {:.1} ms; its velocity step may be off by more than 1 %. Sample at {:.0} Hz or faster",
-                            signal.name, 1e3 * (to - from), 2.0 * LEAST_PULSE_SAMPLES / (to - from)
-                        ),
-                    )
-                    .on(&signal.name),
-                );
-            }
         }
     }
-    issues.extend(dead(signals));
-    if let Some(contact_s) = contact_s {
-        issues.extend(skewed(signals, contact_s));
-    }
+    let is_disturbance = |code| matches!(code, IssueCode::Spikes | IssueCode::Dropout);
+    let disturbed: Vec<&str> =
+        found.iter().filter(|i| is_disturbance(i.code)).filter_map(|i| i.channel.as_deref()).collect();
+    issues.extend(sampling::judge_sampling(signals, events, &disturbed));
+    issues.extend(worth::judge_worth(signals, events, cask_file));
     issues
 }
 
@@ -104,58 +88,5 @@ fn lost(signal: &Signal, contact_s: f64, separation_s: f64, slap_down_s: Option<
         )
         .on(&signal.name)
         .between(contact_s, separation_s)
-    })
-}
-
-fn peak(signal: &Signal) -> f64 {
-    signal.force_m_s2.iter().fold(0.0, |m, f| m.max(f.abs()))
-}
-
-fn dead(signals: &[Signal]) -> Vec<Issue> {
-    let largest = signals.iter().map(peak).fold(0.0, f64::max);
-    signals
-        .iter()
-        .filter(|s| s.axis == Axis::Transverse && peak(s) < DEAD_SHARE * largest.max(1.0))
-        .map(|s| {
-            Issue::new(
-                IssueCode::DeadChannel,
-                Severity::Error,
-                format!("{} does not move while others do: unplugged, or the wrong source", s.name),
-            )
-            .on(&s.name)
-        })
-        .collect()
-}
-
-/// First time after `from_s` at which a signal leaves its noise and a hundredth of its peak over 20 ms.
-fn begins(signal: &Signal, contact_s: f64) -> Option<f64> {
-    let (from, to) = (signal.index_from(contact_s - 0.01), signal.index_from(contact_s + 0.02));
-    let force = signal.force_m_s2.get(from..to)?;
-    let peak = force.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-    let foot = (0.01 * peak).max(6.0 * signal.noise_m_s2);
-    force.iter().position(|f| f.abs() > foot).map(|i| signal.time_s(from + i))
-}
-
-fn skewed(signals: &[Signal], contact_s: f64) -> Option<Issue> {
-    let ends = |end: End| {
-        signals
-            .iter()
-            .filter(move |s| s.end == end && s.axis == Axis::Transverse)
-            .find_map(|s| begins(s, contact_s).map(|t| (s, t)))
-    };
-    let ((_, first_s), (second, second_s)) = (ends(End::First)?, ends(End::Second)?);
-    let skew_s = second_s - first_s;
-    (skew_s.abs() > MOST_SKEW_S).then(|| {
-        Issue::new(
-            IssueCode::Skew,
-            Severity::Warning,
-            format!(
-                "{} begins to move {:.1} ms {} the first end: one body cannot; check the clocks of the two recorders",
-                second.name,
-                1e3 * skew_s.abs(),
-                if skew_s > 0.0 { "after" } else { "before" }
-            ),
-        )
-        .on(&second.name)
     })
 }

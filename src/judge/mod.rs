@@ -2,13 +2,23 @@
 
 mod channels;
 mod closures;
+mod coupling;
 mod fall;
 mod result;
+mod rigid;
+mod sampling;
+mod silent;
+mod skew;
+mod worth;
 
 pub use channels::judge_channels;
 pub use closures::judge_closures;
+pub use coupling::judge_coupling;
 pub use fall::judge_fall;
 pub use result::{judge_comparison, judge_motion};
+pub use rigid::judge_rigid;
+pub use silent::judge_silent;
+pub use skew::judge_skew;
 
 use crate::data::{Events, Issue, IssueCode, Severity, Verdict};
 

@@ -15,6 +15,8 @@ const LATE_SHARE: f64 = 0.02;
 const SMALL_SLIP_M_S: f64 = 0.65;
 /// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1 % of a slap-down.
 const LARGE_RESIDUAL_M_S: f64 = 0.2;
+/// A velocity step that is known no better than to this share of v0 (k = 1) says little, however well it is known how little.
+const LARGE_U_SHARE: f64 = 0.05;
 
 /// Checks the motion against what a dropped cask can do.
 #[must_use]
@@ -125,7 +127,9 @@ fn flight_issues(flight: &FlightFit, quantities: &Quantities) -> Vec<Issue> {
                 .on(&plateau.channel),
             );
         }
-        if plateau.residual_m_s > LARGE_RESIDUAL_M_S || plateau.u_m_s > LARGE_RESIDUAL_M_S {
+        if plateau.residual_m_s > LARGE_RESIDUAL_M_S
+            || plateau.u_m_s > LARGE_U_SHARE * quantities.impact_velocity.value
+        {
             issues.push(
                 Issue::new(
                     IssueCode::FlightFit,

@@ -23,6 +23,10 @@ const MOST_ZERO_SHIFT: f64 = 0.1;
 const LEAST_PERIODS: f64 = 0.6;
 /// The same for modes whose phase the contact force tells.
 const LEAST_DRIVEN_PERIODS: f64 = 0.2;
+/// Usual zero shift as a share of the channel's peak (data sheets of shock accelerometers).
+const USUAL_ZERO_SHIFT: f64 = 0.005;
+/// −2 ln of the odds that a sound channel shifts at all, one in e^10: a shift must show beyond doubt before it is taken off.
+const DRIFT_ODDS: f64 = 20.0;
 /// A mode seen for so many periods has its phase from the flight …
 const CLEAR_PERIODS: f64 = 1.5;
 /// … where the fit leaves no more than this many times the noise.
@@ -81,7 +85,7 @@ pub fn fit_flight(
         signals.iter().map(|s| s.force_m_s2.iter().fold(0.0_f64, |m, f| m.max(f.abs()))).collect();
     fits.retain(|f| has_plausible_drift(&peaks_m_s2, f));
     let richest = fits.iter().max_by_key(|f| f.parameters)?.correlation;
-    let score = |f: &Fit| f.bic(&series, richest);
+    let score = |f: &Fit| f.bic(&series, richest) + improbability(&peaks_m_s2, f);
     fits.sort_by(|a, b| score(a).total_cmp(&score(b)));
     let best = fits.first()?;
     let plateaus = plateaus(signals, &fits, &|f: &Fit| score(f) - score(best) < INDISTINCT);
@@ -186,6 +190,13 @@ fn is_clear(series: &[Series], fit: &Fit, length_s: f64) -> bool {
     let lowest_hz = fit.modes.iter().map(|m| m.frequency_hz).fold(f64::INFINITY, f64::min);
     let is_noise = |(s, f): (&Series, &SeriesFit)| f.residual < CLEAR_RESIDUAL * s.floor;
     lowest_hz * length_s > CLEAR_PERIODS && series.iter().zip(&fit.series).all(is_noise)
+}
+
+/// −2 ln of how probable a fit's zero shifts are: each normal with [`USUAL_ZERO_SHIFT`] of its channel's peak, and none where none is called for.
+fn improbability(peaks_m_s2: &[f64], fit: &Fit) -> f64 {
+    let share = |(peak, series): (&f64, &SeriesFit)| (series.drift / (USUAL_ZERO_SHIFT * peak)).powi(2);
+    let shifts: f64 = peaks_m_s2.iter().zip(&fit.series).map(share).sum();
+    if fit.drift { DRIFT_ODDS + shifts } else { 0.0 }
 }
 
 /// Fits with none, one, two … modes, each started from the last, until nothing is left to explain.

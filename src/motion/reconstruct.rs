@@ -284,6 +284,8 @@ mod tests {
             removed_offset_m_s2: 0.0,
             u_offset_m_s2: 0.0,
             noise_m_s2: 0.1,
+            noise_spectrum: vec![],
+            free_fall_s: 0.25,
             clipped: vec![],
             gaps: vec![],
         }

@@ -2,8 +2,11 @@
 
 pub mod damped_modes;
 pub mod filter;
+pub mod noise;
 pub mod prior_fit;
+pub mod projection;
 pub mod quadrature;
 pub mod robust;
 pub mod root;
+pub mod sinusoid;
 pub mod spectrum;

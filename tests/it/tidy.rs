@@ -225,3 +225,23 @@ fn the_reader_of_use_lines_sees_a_trespass() {
     assert_eq!(named("mod tests {\n use super::*;\n use super::super::plateau;\n}"), [""; 0]);
     assert_eq!(named("// crate::ingest\nlet s = \"crate::ingest\"; use crate::data::Cask;"), [""; 0]);
 }
+
+#[test]
+fn every_quality_check_has_its_section() {
+    let code = fs::read_to_string(root().join("src/data/issue.rs")).expect("UTF-8");
+    let list = code.split("pub enum IssueCode {").nth(1).and_then(|rest| rest.split("\n}").next());
+    let names = list.expect("the list of codes").lines().filter_map(|line| line.trim().strip_suffix(','));
+    let snake = |name: &str| {
+        let lower = |(i, c): (usize, char)| {
+            let gap = if c.is_uppercase() && i > 0 { "_" } else { "" };
+            format!("{gap}{}", c.to_lowercase())
+        };
+        name.chars().enumerate().map(lower).collect::<String>()
+    };
+    let wanted: BTreeSet<String> = names.map(snake).collect();
+    let page = fs::read_to_string(root().join("docs/quality.md")).expect("UTF-8");
+    let found: BTreeSet<String> =
+        page.lines().filter_map(|line| line.strip_prefix("## ")).map(str::to_owned).collect();
+    assert!(wanted.len() > 30, "the codes were not read: {wanted:?}");
+    assert_eq!(wanted, found, "docs/quality.md has a section for each code and no other");
+}

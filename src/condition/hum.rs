@@ -1,0 +1,234 @@
+//! The free fall before first contact to the mains hum in it, which is then taken off the whole signal.
+
+use crate::data::{Issue, IssueCode, Severity, Signal};
+use crate::numerics::robust;
+use crate::numerics::sinusoid::{self, Sinusoid};
+use std::f64::consts::{PI, TAU};
+
+/// Frequencies of power grids, Hz: Europe, America, railways.
+const MAINS_HZ: [f64; 3] = [50.0, 60.0, 50.0 / 3.0];
+/// Grids keep their frequency within this, and recorders their clock, as a share: 0.5 Hz of 50.
+const WITHIN: f64 = 0.01;
+/// Harmonics looked for beside the fundamental: rectifiers make odd ones up to the seventh.
+const HARMONICS: u32 = 7;
+/// Fewest periods of free fall that tell hum from a slope and from another grid.
+const LEAST_PERIODS: f64 = 2.5;
+/// A line stands out by this many of its standard uncertainties …
+const SURE: f64 = 6.0;
+/// … and by this factor over what is found as far beside it as the stretch resolves: noise that is not white has such lines too.
+const OVER_NEIGHBOURS: f64 = 4.0;
+/// Velocity that hum may leave before a person should look, m/s: 0.2 % of a slap-down.
+const MOST_LEFT_M_S: f64 = 0.05;
+/// A line whose whole swing of velocity is below this is not worth a word, m/s.
+const LEAST_M_S: f64 = 0.002;
+/// Samples are averaged down to about this rate for the search, Hz: ten times the highest harmonic.
+const SEARCH_RATE_HZ: f64 = 4000.0;
+/// How far the hum is extrapolated into the event, s: contact and flight.
+const AHEAD_S: f64 = 0.1;
+
+/// Finds hum before `before_s`; takes it off all samples if `take_off`, and says so.
+pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Option<Issue> {
+    let end = signal.index_from(before_s);
+    if signal.gaps.iter().any(|gap| gap.from < end) {
+        return None;
+    }
+    let block = coarse(SEARCH_RATE_HZ, signal.sample_rate_hz);
+    let means = block_means(signal.force_m_s2.get(..end)?, block);
+    let block_rate_hz = signal.sample_rate_hz / number(block);
+    let lines: Vec<Sinusoid> = lines(&means, block_rate_hz)
+        .iter()
+        .map(|line| unblocked(line, block, signal.sample_rate_hz))
+        .collect();
+    let fundamental = *lines.first()?;
+    let swing = |line: &Sinusoid, size: f64| 2.0 * size / (TAU * line.frequency_hz);
+    let whole_m_s: f64 = lines.iter().map(|line| swing(line, line.amplitude())).sum();
+    if whole_m_s < LEAST_M_S {
+        return None;
+    }
+    let used = means.len() * block;
+    let middle = (number(used) - 1.0) / 2.0;
+    if take_off {
+        for (i, f) in signal.force_m_s2.iter_mut().enumerate() {
+            let since_s = (number(i) - middle) / signal.sample_rate_hz;
+            *f -= lines.iter().map(|line| line.at(since_s)).sum::<f64>();
+        }
+        for gap in signal.gaps.clone() {
+            signal.force_m_s2[gap.from..gap.to].fill(0.0);
+        }
+    }
+    let left_m_s =
+        if take_off { left_m_s(&lines, number(used) / signal.sample_rate_hz, &swing) } else { whole_m_s };
+    let severity = if left_m_s > MOST_LEFT_M_S { Severity::Warning } else { Severity::Note };
+    let done = if take_off {
+        format!("it was taken off, and up to {left_m_s:.3} m/s of it may be left in the velocity")
+    } else {
+        format!("left as it is it swings the velocity by {left_m_s:.3} m/s")
+    };
+    let harmonics =
+        if lines.len() > 1 { format!(" and {} harmonics", lines.len() - 1) } else { String::new() };
+    Some(
+        Issue::new(
+            IssueCode::Hum,
+            severity,
+            format!(
+                "{} hums with {:.2} g at {:.1} Hz{harmonics} before the impact: {done}; check shields and earth loops",
+                signal.name,
+                fundamental.amplitude() / 9.806_65,
+                fundamental.frequency_hz
+            ),
+        )
+        .on(&signal.name),
+    )
+}
+
+/// Samples that are averaged into one.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive ratio of rates")]
+fn coarse(rate_hz: f64, sample_rate_hz: f64) -> usize {
+    ((sample_rate_hz / rate_hz) as usize).max(1)
+}
+
+fn block_means(samples: &[f64], block: usize) -> Vec<f64> {
+    samples.chunks_exact(block).map(|chunk| chunk.iter().sum::<f64>() / number(block)).collect()
+}
+
+/// The line with what the mean over `block` samples takes from it put back: sin(n x)/(n sin x), x = π f/f_s.
+fn unblocked(line: &Sinusoid, block: usize, sample_rate_hz: f64) -> Sinusoid {
+    let x = PI * line.frequency_hz / sample_rate_hz;
+    let share = (number(block) * x).sin() / (number(block) * x.sin());
+    Sinusoid { cosine: line.cosine / share, sine: line.sine / share, ..*line }
+}
+
+/// The fundamental and the harmonics that stand out, strongest grid only; empty where none does.
+fn lines(quiet: &[f64], sample_rate_hz: f64) -> Vec<Sinusoid> {
+    let length_s = number(quiet.len()) / sample_rate_hz;
+    let mut left = quiet.to_vec();
+    let band = |f: f64| (f * (1.0 - WITHIN), f * (1.0 + WITHIN));
+    let fundamental = MAINS_HZ
+        .iter()
+        .filter(|f| length_s * **f >= LEAST_PERIODS)
+        .filter_map(|f| sinusoid::strongest(&left, sample_rate_hz, band(*f)))
+        .max_by(|a, b| a.amplitude().total_cmp(&b.amplitude()));
+    let mut found = Vec::new();
+    let Some(fundamental) = fundamental.filter(|line| stands_out(line, &left, sample_rate_hz)) else {
+        return found;
+    };
+    take(&mut left, &fundamental, sample_rate_hz);
+    found.push(fundamental);
+    for harmonic in 2..=HARMONICS {
+        let Some(line) = sinusoid::fit(&left, sample_rate_hz, fundamental.frequency_hz * f64::from(harmonic))
+        else {
+            break;
+        };
+        if stands_out(&line, &left, sample_rate_hz) {
+            take(&mut left, &line, sample_rate_hz);
+            found.push(line);
+        }
+    }
+    found
+}
+
+/// Whether a line is sure of itself and of its neighbours in the samples it was found in.
+fn stands_out(line: &Sinusoid, samples: &[f64], sample_rate_hz: f64) -> bool {
+    let mut rest = samples.to_vec();
+    take(&mut rest, line, sample_rate_hz);
+    let apart_hz = sample_rate_hz / number(samples.len());
+    let mut beside: Vec<f64> = [-3.0, -2.0, -1.5, 1.5, 2.0, 3.0]
+        .iter()
+        .filter_map(|n| sinusoid::fit(&rest, sample_rate_hz, line.frequency_hz + n * apart_hz))
+        .map(|s| s.amplitude())
+        .collect();
+    let amplitude = line.amplitude();
+    amplitude > SURE * line_uncertainty(line, &rest)
+        && (beside.is_empty() || amplitude > OVER_NEIGHBOURS * robust::median(&mut beside))
+}
+
+/// Standard uncertainty of the amplitude by what is left beside the line, white: σ √(2/n).
+fn line_uncertainty(line: &Sinusoid, rest: &[f64]) -> f64 {
+    line.u_amplitude.max(robust::spread(rest) * (2.0 / number(rest.len())).sqrt())
+}
+
+fn take(samples: &mut [f64], line: &Sinusoid, sample_rate_hz: f64) {
+    let middle = (number(samples.len()) - 1.0) / 2.0;
+    for (i, x) in samples.iter_mut().enumerate() {
+        *x -= line.at((number(i) - middle) / sample_rate_hz);
+    }
+}
+
+/// Swing of velocity that the lines' uncertainties leave at the end of the event, m/s, twice the standard uncertainty.
+fn left_m_s(lines: &[Sinusoid], length_s: f64, swing: &impl Fn(&Sinusoid, f64) -> f64) -> f64 {
+    let ahead_s = length_s / 2.0 + AHEAD_S;
+    lines
+        .iter()
+        .map(|line| {
+            let u = line.u_amplitude;
+            // The frequency of a sinusoid in white noise is known to √6/π of u_A/(A T) (Rife & Boorstyn 1974).
+            let u_frequency_hz = 6.0_f64.sqrt() / PI * u / (line.amplitude() * length_s);
+            let drifted = line.amplitude() * (TAU * u_frequency_hz * ahead_s).min(2.0);
+            2.0 * swing(line, u.hypot(drifted))
+        })
+        .sum()
+}
+
+#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+fn number(n: usize) -> f64 {
+    n as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{noise, signal};
+    use super::*;
+
+    /// 0.2 s of free fall and 0.1 s after it at 10 kHz, noise of 2 m/s², with this beside it.
+    fn channel(beside: impl Fn(f64) -> f64, seed: u64) -> Signal {
+        signal((0..3000).map(|i| 2.0 * noise(i, seed) + beside(f64::from(i) * 1e-4)).collect())
+    }
+
+    fn mains(frequency_hz: f64, size: f64) -> impl Fn(f64) -> f64 {
+        move |t| size * (TAU * frequency_hz * t + 1.0).sin()
+    }
+
+    #[test]
+    fn hum_is_taken_off_as_far_as_the_event() {
+        for frequency_hz in [49.8, 50.0, 60.1] {
+            let mut humming = channel(mains(frequency_hz, 10.0), 3);
+            let clean = channel(|_| 0.0, 3);
+            let issue = treat(&mut humming, 0.2, true).expect("10 m/s² of hum");
+            assert_eq!((issue.code, issue.severity), (IssueCode::Hum, Severity::Note), "{}", issue.message);
+            // u_A = 2 √(2/2000) = 0.063; u_f = 0.78 · 0.063/(10 · 0.2) = 25 mHz: 0.31 m/s² at 0.2 s from the middle.
+            let off = humming.force_m_s2.iter().zip(&clean.force_m_s2).map(|(a, b)| (a - b).abs());
+            assert!(off.fold(0.0, f64::max) < 3.0 * (0.063 + 0.31), "{frequency_hz}");
+        }
+    }
+
+    #[test]
+    fn harmonics_are_found_and_left_alone_where_that_is_wanted() {
+        let both = |t: f64| mains(50.0, 10.0)(t) + mains(150.0, 5.0)(t);
+        let mut humming = channel(both, 4);
+        let before = humming.clone();
+        let issue = treat(&mut humming, 0.2, false).expect("hum");
+        assert!(
+            issue.message.contains("1 harmonics") && issue.message.contains("left as it is"),
+            "{}",
+            issue.message
+        );
+        // 2 · 10/(2π 50) + 2 · 5/(2π 150) = 0.074 m/s.
+        assert_eq!(issue.severity, Severity::Warning);
+        assert_eq!(humming, before);
+    }
+
+    #[test]
+    fn noise_has_no_hum() {
+        for seed in 0..20 {
+            assert!(treat(&mut channel(|_| 0.0, seed), 0.2, true).is_none(), "{seed}");
+            // A slow swing of the hook and a drift are no mains.
+            let slow = |t: f64| 8.0 * (TAU * 4.0 * t).sin() + 30.0 * t;
+            assert!(treat(&mut channel(slow, seed), 0.2, true).is_none(), "{seed}");
+        }
+    }
+
+    #[test]
+    fn too_short_a_fall_tells_no_hum() {
+        assert!(treat(&mut channel(mains(50.0, 10.0), 1), 0.03, true).is_none());
+    }
+}

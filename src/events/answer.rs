@@ -1,0 +1,252 @@
+//! The first impact on two channels to the delay between their answers.
+
+use super::transverse;
+use crate::data::{Axis, End, Onset, Signal};
+use crate::numerics::projection::residual_square;
+use crate::numerics::quadrature::running_integral;
+use std::ops::Range;
+
+/// An answer below this share of the struck end's peak is none: the sensor sits near the centre of percussion.
+const LEAST_SHARE: f64 = 0.02;
+/// … and below this many standard deviations of its noise.
+const LEAST_NOISE: f64 = 10.0;
+/// The answer is seen where it first passes this many standard deviations.
+const SEEN_NOISE: f64 = 6.0;
+/// Answers are sought this long before first contact and after the contact, s: clocks and bending waves.
+const BEFORE_S: f64 = 8e-3;
+const AFTER_S: f64 = 6e-3;
+/// What the expansion in integrals leaves of an answer, as a share of its RMS: modes up to 450 Hz over a millisecond.
+const MODEL_SHARE: f64 = 0.005;
+/// Lengths after the answer is seen that are fitted, s: short ones hold few modes, long ones stand out of the noise.
+const LENGTHS_S: [f64; 7] = [0.4e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3, 3e-3, 4e-3];
+/// Longest first contact whose peak is looked at, s.
+const CONTACT_S: f64 = 0.02;
+/// Delays tried in a fit, and between the best two of them.
+const TRIED: u32 = 120;
+const REFINED: u32 = 20;
+
+/// The delay of every transverse channel's answer against the struck end's channel.
+///
+/// Rigid body and bending answer a force F as a F + b ∫∫F + c ∫∫∫∫F + … from the same moment on   (Q1). The struck end's
+/// channel stands for F; the delay is the one at which its integrals explain the other channel best. Channels that hardly
+/// answer are left out.
+#[must_use]
+pub fn answers(signals: &[Signal], contact_s: f64) -> Vec<Onset> {
+    let Some(struck) = transverse(signals, End::First) else { return Vec::new() };
+    let Some(cause) = Cause::new(struck, contact_s) else { return Vec::new() };
+    signals
+        .iter()
+        .filter(|s| s.axis == Axis::Transverse && s.name != struck.name)
+        .filter_map(|signal| {
+            let (delay_s, u_s) = Answer::new(signal, &cause)?.delay()?;
+            Some(Onset { channel: signal.name.clone(), delay_s, u_s })
+        })
+        .collect()
+}
+
+/// The struck end's channel from first contact on, and its repeated integrals.
+struct Cause {
+    contact_s: f64,
+    start_s: f64,
+    sample_rate_hz: f64,
+    integrals: Vec<Vec<f64>>,
+    peak: f64,
+    noise: f64,
+}
+
+impl Cause {
+    fn new(signal: &Signal, contact_s: f64) -> Option<Self> {
+        let rate_hz = signal.sample_rate_hz;
+        let from = signal.index_from(contact_s - BEFORE_S);
+        let to = signal.index_from(contact_s + CONTACT_S + AFTER_S);
+        let struck = signal.index_from(contact_s - 1.0 / rate_hz).saturating_sub(from);
+        let mut force = signal.force_m_s2.get(from..to)?.to_vec();
+        force.get_mut(..struck)?.fill(0.0);
+        let mut integrals = vec![force];
+        for _ in 0..4 {
+            // In milliseconds the integrals stay of the size of the force.
+            let next = running_integral(integrals.last()?, 1e3 / rate_hz);
+            integrals.push(next);
+        }
+        let peak = largest(&integrals[0]);
+        (peak > 0.0).then_some(Self {
+            contact_s,
+            start_s: signal.time_s(from),
+            sample_rate_hz: rate_hz,
+            integrals,
+            peak,
+            noise: signal.noise_m_s2,
+        })
+    }
+
+    /// The integrals of these orders at `count` times from `from_s` on, `step_s` apart, linear between samples.
+    fn regressors(&self, orders: &[usize], from_s: f64, step_s: f64, count: usize) -> Vec<Vec<f64>> {
+        let at = |values: &[f64], position: f64| {
+            if position <= 0.0 {
+                return 0.0;
+            }
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "positive, cut to the samples"
+            )]
+            let index = (position as usize).min(values.len().saturating_sub(2));
+            let share = (position - number(index)).min(1.0);
+            values[index] + share * (values[index + 1] - values[index])
+        };
+        orders
+            .iter()
+            .filter_map(|&order| self.integrals.get(order))
+            .map(|values| {
+                (0..count)
+                    .map(|i| at(values, (from_s + number(i) * step_s - self.start_s) * self.sample_rate_hz))
+                    .collect()
+            })
+            .collect()
+    }
+}
+
+/// A channel around its answer.
+struct Answer<'a> {
+    signal: &'a Signal,
+    cause: &'a Cause,
+    /// First sample that stands out of the noise.
+    seen: usize,
+    /// Noise of the channel and, through its share of the cause, of the cause, m/s².
+    noise: f64,
+}
+
+/// What one fit says: delay and standard uncertainty, s.
+#[derive(Clone, Copy)]
+struct Delay {
+    delay_s: f64,
+    u_s: f64,
+}
+
+impl<'a> Answer<'a> {
+    fn new(signal: &'a Signal, cause: &'a Cause) -> Option<Self> {
+        let from = signal.index_from(cause.contact_s - BEFORE_S);
+        let to = signal.index_from(cause.contact_s + CONTACT_S);
+        let force = signal.force_m_s2.get(from..to)?;
+        let peak = largest(force);
+        if peak < (LEAST_NOISE * signal.noise_m_s2).max(LEAST_SHARE * cause.peak) {
+            return None;
+        }
+        let foot = (SEEN_NOISE * signal.noise_m_s2).max(LEAST_SHARE * peak);
+        let seen = from + force.iter().position(|f| f.abs() > foot)?;
+        let is_whole = !signal.touches(&signal.gaps, cause.contact_s - BEFORE_S, cause.contact_s + AFTER_S);
+        let noise = signal.noise_m_s2.hypot(cause.noise * peak / cause.peak);
+        (is_whole && seen > from).then_some(Self { signal, cause, seen, noise })
+    }
+
+    /// The delay by the shortest stretch that tells it well, what longer ones say otherwise in its uncertainty.
+    fn delay(&self) -> Option<(f64, f64)> {
+        let fits: Vec<Delay> = LENGTHS_S.iter().filter_map(|&length_s| self.fit(length_s)).collect();
+        let fine_s = 5e-5_f64.max(0.5 / self.signal.sample_rate_hz);
+        let taken = fits
+            .iter()
+            .find(|fit| fit.u_s <= fine_s)
+            .or_else(|| fits.iter().min_by(|a, b| a.u_s.total_cmp(&b.u_s)))?;
+        let comparable = fits.iter().filter(|fit| fit.u_s < 4.0 * taken.u_s + fine_s);
+        let apart_s = comparable.map(|fit| (fit.delay_s - taken.delay_s).abs()).fold(0.0, f64::max);
+        let mut u_s = taken.u_s.max(apart_s / 2.0);
+        // An answer that begins below the noise looks late: where none does as well, the delay is not told from it.
+        if self.needs_no_delay(taken.delay_s) {
+            u_s = u_s.max(taken.delay_s.abs() / 2.0);
+        }
+        Some((taken.delay_s, u_s))
+    }
+
+    /// The best delay over a stretch that ends `length_s` after the answer is seen; `None` where nothing fits it.
+    fn fit(&self, length_s: f64) -> Option<Delay> {
+        const ORDERS: [usize; 3] = [0, 2, 4];
+        let rate_hz = self.signal.sample_rate_hz;
+        let back_s = (2.0 * length_s).clamp(5e-4, 3e-3);
+        let (from, to) = (
+            self.seen.saturating_sub(samples(back_s * rate_hz) + 4),
+            self.seen + samples(length_s * rate_hz),
+        );
+        if to - self.seen < ORDERS.len() + 4 {
+            return None;
+        }
+        let values = self.signal.force_m_s2.get(from..to)?;
+        let left = |delay_s: f64| self.left(values, from, &ORDERS, delay_s);
+        let seen_s = self.signal.time_s(self.seen) - self.cause.contact_s;
+        let (low_s, high_s) = (seen_s - back_s - 3.0 / rate_hz, seen_s + length_s / 2.0);
+        let (step_s, coarse) = scan(low_s..high_s, TRIED, &left);
+        let best = (0..coarse.len()).min_by(|&a, &b| coarse[a].1.total_cmp(&coarse[b].1))?;
+        if best == 0 || best + 1 == coarse.len() {
+            return None;
+        }
+        let (_, fine) = scan(coarse[best - 1].0..coarse[best + 1].0, REFINED, &left);
+        let &(delay_s, least) = fine.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let freedom = number(values.len() - ORDERS.len() - 1);
+        let model = MODEL_SHARE * self.size(values, to);
+        if (least / freedom).sqrt() > (2.0 * self.noise).hypot(model) {
+            return None;
+        }
+        // Twice the standard uncertainty where the sum of squares has grown by four variances, or what the model may leave.
+        let variance = (least / freedom).max(self.noise.powi(2));
+        let limit = least + 4.0 * variance + model.powi(2) * number(to - self.seen) / 4.0;
+        let mut as_good = coarse.iter().filter(|c| c.1 <= limit).map(|c| c.0);
+        let first_s = as_good.next().unwrap_or(delay_s);
+        let last_s = as_good.next_back().unwrap_or(first_s);
+        Some(Delay { delay_s, u_s: ((last_s - first_s) / 4.0).max(step_s / 4.0) })
+    }
+
+    /// Whether rigid body, bending and its damping explain some stretch from first contact on without any delay.
+    fn needs_no_delay(&self, delay_s: f64) -> bool {
+        const ORDERS: [usize; 5] = [0, 1, 2, 3, 4];
+        let signal = self.signal;
+        LENGTHS_S[..6].iter().any(|&length_s| {
+            let contact_s = self.cause.contact_s;
+            let from = signal.index_from(contact_s - 1e-3).min(self.seen.saturating_sub(4));
+            let begins = self.seen.max(signal.index_from(contact_s + delay_s));
+            let to = begins + samples(length_s * signal.sample_rate_hz);
+            let Some(values) = signal.force_m_s2.get(from..to) else { return false };
+            let square: f64 = values.iter().map(|v| v * v).sum();
+            let stands_out = square > 9.0 * number(values.len()) * self.noise.powi(2);
+            if values.len() < ORDERS.len() + 6 || !stands_out {
+                return false;
+            }
+            let rms = (self.left(values, from, &ORDERS, 0.0) / number(values.len() - 6)).sqrt();
+            rms < (1.5 * self.noise).hypot(MODEL_SHARE * self.size(values, to))
+        })
+    }
+
+    /// Sum of squares that the cause leaves of `values`, which begin with sample `from`.
+    fn left(&self, values: &[f64], from: usize, orders: &[usize], delay_s: f64) -> f64 {
+        let from_s = self.signal.time_s(from) - delay_s;
+        let step_s = 1.0 / self.signal.sample_rate_hz;
+        residual_square(values, &self.cause.regressors(orders, from_s, step_s, values.len()))
+    }
+
+    /// RMS of the answer from where it is seen to sample `to`.
+    fn size(&self, values: &[f64], to: usize) -> f64 {
+        (values.iter().map(|v| v * v).sum::<f64>() / number((to - self.seen).max(1))).sqrt()
+    }
+}
+
+/// `steps` + 1 places over a range with what `function` is there, and how far apart they lie.
+fn scan(over: Range<f64>, steps: u32, function: &impl Fn(f64) -> f64) -> (f64, Vec<(f64, f64)>) {
+    let step = (over.end - over.start) / f64::from(steps);
+    let places = (0..=steps).map(|i| over.start + f64::from(i) * step);
+    (step, places.map(|x| (x, function(x))).collect())
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, f| m.max(f.abs()))
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
+fn samples(position: f64) -> usize {
+    position as usize
+}
+
+#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+fn number(n: usize) -> f64 {
+    n as f64
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,97 @@
+//! Made-up answers of known delay to the delay that is found.
+
+use super::*;
+use std::f64::consts::{PI, TAU};
+
+fn noise(i: usize, seed: u64) -> f64 {
+    // Sum of hashes: nearly normal, standard deviation 1.
+    let hash = |n: u64| {
+        let mut x =
+            (i as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (seed + n).wrapping_mul(0xD1B5_4A32_D192_ED03);
+        x ^= x >> 32;
+        x = x.wrapping_mul(0xD6E8_FEB8_6659_FD93);
+        x ^= x >> 32;
+        f64::from(u32::try_from(x >> 32).unwrap_or(0)) / f64::from(u32::MAX) - 0.5
+    };
+    (0..4).map(hash).sum::<f64>() * 3.0_f64.sqrt()
+}
+
+/// What the rest of a body answers to a half sine of 5 ms from 20 ms on: its rigid share and one mode driven by the force.
+fn answer(rate_hz: f64, contact_s: f64, rigid: f64, bending: f64, seed: u64) -> Vec<f64> {
+    let (omega, damping, fine) = (TAU * 70.0, 0.03, 20_u32);
+    let step_s = 1.0 / (rate_hz * f64::from(fine));
+    let (mut q, mut v, mut out) = (0.0, 0.0, Vec::new());
+    for i in 0..8000_u32 {
+        let t = f64::from(i) / rate_hz - contact_s;
+        let force = |t: f64| if (0.0..0.005).contains(&t) { 3000.0 * (PI * t / 0.005).sin() } else { 0.0 };
+        let pull = |t: f64, q: f64, v: f64| force(t) - 2.0 * damping * omega * v - omega * omega * q;
+        if t > 0.06 {
+            break;
+        }
+        out.push(rigid * force(t) + bending * pull(t, q, v) + 0.5 * noise(i as usize, seed));
+        for n in 0..fine {
+            let a = pull(t + f64::from(n) * step_s, q, v);
+            v += a * step_s;
+            q += v * step_s;
+        }
+    }
+    out
+}
+
+fn signal(name: &str, end: End, force_m_s2: Vec<f64>) -> Signal {
+    Signal {
+        name: name.into(),
+        end,
+        axis: Axis::Transverse,
+        position_m: if end == End::First { 0.2 } else { 5.3 },
+        offset_m: 0.0,
+        start_s: 0.0,
+        sample_rate_hz: 1e4,
+        force_m_s2,
+        removed_offset_m_s2: 0.0,
+        u_offset_m_s2: 0.0,
+        noise_m_s2: 0.5,
+        noise_spectrum: vec![],
+        free_fall_s: 0.02,
+        clipped: vec![],
+        gaps: vec![],
+    }
+}
+
+fn found(rigid: f64, bending: f64, late_s: f64) -> Option<Onset> {
+    let first = signal("A1", End::First, answer(1e4, 0.020_03, 1.0, 0.5, 1));
+    let second = signal("A2", End::Second, answer(1e4, 0.020_03 + late_s, rigid, bending, 2));
+    answers(&[first, second], 0.020_03).pop()
+}
+
+#[test]
+fn a_body_answers_at_once() {
+    for (rigid, bending) in [(-0.5, 0.0), (-0.5, 0.9), (-0.5, 0.3), (0.2, 0.2)] {
+        let onset = found(rigid, bending, 0.0).expect("an answer");
+        // A tenth of a sample beside twice what is claimed.
+        assert!(onset.delay_s.abs() < 2.0 * onset.u_s + 1e-5, "{rigid} {bending}: {onset:?}");
+        assert!(onset.u_s < 1.5e-4, "{onset:?}");
+    }
+}
+
+#[test]
+fn a_late_or_early_clock_is_measured_finer_than_a_third_of_a_millisecond() {
+    for late_s in [-3.2e-3, -4.5e-4, 3.7e-4, 2e-3] {
+        let onset = found(-0.5, 0.9, late_s).expect("an answer");
+        assert!((onset.delay_s - late_s).abs() < 1e-4, "{late_s}: {onset:?}");
+        assert!(onset.u_s < 1.5e-4, "{onset:?}");
+    }
+}
+
+#[test]
+fn an_answer_that_begins_below_the_noise_claims_no_delay() {
+    // Rigid body and bending cancel at first: the answer starts as the square of time.
+    let onset = found(-0.05, 0.05, 0.0);
+    assert!(onset.as_ref().is_none_or(|o| o.delay_s.abs() < 2.0 * o.u_s + 1e-5), "{onset:?}");
+}
+
+#[test]
+fn a_sensor_at_the_centre_of_percussion_says_nothing() {
+    assert_eq!(found(0.001, 0.0, 0.0), None);
+    assert_eq!(answers(&[], 0.02), vec![]);
+}

@@ -1,0 +1,141 @@
+//! The drift of the channels in the flight to the time constant of an AC coupling that nobody stated.
+
+use crate::data::{CaskFile, Coupling, FlightFit, Issue, IssueCode, Plateau, Severity, Signal};
+
+/// Time constants looked for, s: shorter ones leave no step to measure, longer ones lose less than 2 % of it in 50 ms.
+const TIME_CONSTANTS_S: std::ops::RangeInclusive<f64> = 0.03..=5.0;
+/// A step smaller than this share of the largest has no droop of its own to tell.
+const LEAST_STEP: f64 = 0.1;
+/// A droop counts beyond this many of its standard uncertainties.
+const SURE: f64 = 4.0;
+/// Droops over steps agree within this share of their mean beside their uncertainties: ringing that the fit leaves.
+const AGREEMENT: f64 = 0.2;
+
+/// Holds the drifts of the channels called DC against what one high-pass makes of their steps.
+///
+/// After a step s a first-order high-pass reads −s/T, s being what is left of the step: drift over step is −1/T on every
+/// channel   (Q4). A zero shift of one channel knows nothing of the step of another, so one channel alone tells nothing.
+#[must_use]
+pub fn judge_coupling(signals: &[Signal], flight: &FlightFit, cask_file: &CaskFile) -> Vec<Issue> {
+    let stated = cask_file.channels.iter().filter(|c| c.coupling != Coupling::Dc);
+    undeclared(signals, flight, &stated.map(|c| c.name.as_str()).collect::<Vec<_>>())
+}
+
+fn undeclared(signals: &[Signal], flight: &FlightFit, declared_ac: &[&str]) -> Vec<Issue> {
+    let is_stated = |name: &str| declared_ac.contains(&name);
+    let all: Vec<&Plateau> = flight.plateaus.iter().filter(|p| !is_stated(&p.channel)).collect();
+    let largest_m_s = all.iter().map(|p| p.velocity_step_m_s.abs()).fold(0.0, f64::max);
+    let droops: Vec<(&Plateau, f64, f64)> = all
+        .into_iter()
+        .filter(|p| signals.iter().any(|s| s.name == p.channel))
+        .filter(|p| p.velocity_step_m_s.abs() > LEAST_STEP * largest_m_s)
+        .map(|p| {
+            let step = p.velocity_step_m_s;
+            (p, -p.zero_shift_m_s2 / step, p.u_zero_shift_m_s2 / step.abs())
+        })
+        .collect();
+    let Some(rate) = common_rate(&droops) else { return Vec::new() };
+    let time_constant_s = 1.0 / rate;
+    if !flight.drift || !TIME_CONSTANTS_S.contains(&time_constant_s) {
+        return Vec::new();
+    }
+    droops
+        .iter()
+        .map(|(plateau, ..)| {
+            Issue::new(
+                IssueCode::AcCoupled,
+                Severity::Warning,
+                format!(
+                    "{} droops after its step in the proportion of the other channels, {:+.2} g after {:+.1} m/s, as behind a high-pass of {time_constant_s:.2} s: it is AC-coupled; set `coupling = \"ac\"` and `time_constant_s` from the amplifier's data sheet, or record DC-coupled",
+                    plateau.channel,
+                    plateau.zero_shift_m_s2 / 9.806_65,
+                    plateau.velocity_step_m_s,
+                ),
+            )
+            .on(&plateau.channel)
+            .between(flight.from_s, flight.to_s)
+        })
+        .collect()
+}
+
+/// 1/T where two droops and more tell the same, each by itself beyond doubt; Hz.
+fn common_rate(droops: &[(&Plateau, f64, f64)]) -> Option<f64> {
+    let is_sure = droops.iter().all(|(_, rate, u)| *rate > SURE * u);
+    if droops.len() < 2 || !is_sure {
+        return None;
+    }
+    let weight = |u: f64| 1.0 / (u * u).max(f64::MIN_POSITIVE);
+    let total: f64 = droops.iter().map(|(.., u)| weight(*u)).sum();
+    let mean = droops.iter().map(|(_, rate, u)| rate * weight(*u)).sum::<f64>() / total;
+    let agree = droops.iter().all(|(_, rate, u)| (rate - mean).abs() < AGREEMENT * mean + 2.0 * u);
+    (agree && mean > 0.0).then_some(mean)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Axis, End};
+
+    fn signal(name: &str) -> Signal {
+        Signal {
+            name: name.into(),
+            end: End::First,
+            axis: Axis::Transverse,
+            position_m: 0.0,
+            offset_m: 0.0,
+            start_s: 0.0,
+            sample_rate_hz: 1e4,
+            force_m_s2: vec![],
+            removed_offset_m_s2: 0.0,
+            u_offset_m_s2: 0.0,
+            noise_m_s2: 0.0,
+            noise_spectrum: vec![],
+            free_fall_s: 0.25,
+            clipped: vec![],
+            gaps: vec![],
+        }
+    }
+
+    /// Steps (m/s) and drifts (m/s²) of two channels, each drift known to 0.5 m/s².
+    fn codes(first: (f64, f64), second: (f64, f64), stated: &[&str]) -> Vec<String> {
+        let plateau = |channel: &str, (velocity_step_m_s, zero_shift_m_s2): (f64, f64)| Plateau {
+            channel: channel.into(),
+            velocity_step_m_s,
+            u_m_s: 0.01,
+            zero_shift_m_s2,
+            u_zero_shift_m_s2: 0.5,
+            residual_m_s: 0.0,
+            ringing_m_s: vec![],
+            late_mismatch_m_s: None,
+        };
+        let flight = FlightFit {
+            from_s: 0.0,
+            to_s: 0.06,
+            plateaus: vec![plateau("A1", first), plateau("A2", second)],
+            modes: vec![],
+            drift: true,
+            candidates: vec![],
+        };
+        let issues = undeclared(&[signal("A1"), signal("A2")], &flight, stated);
+        issues.into_iter().map(|i| i.message).collect()
+    }
+
+    #[test]
+    fn droops_in_proportion_are_a_coupling() {
+        // T = 0.3 s: 19/0.3 and −7/0.3, less what has drooped already.
+        let found = codes((19.0, -61.0), (-7.0, 23.0), &[]);
+        assert_eq!(found.len(), 2);
+        assert!(found[0].contains("high-pass of 0.31 s"), "{}", found[0]);
+        assert!(codes((19.0, -61.0), (-7.0, 23.0), &["A1", "A2"]).is_empty());
+    }
+
+    #[test]
+    fn a_zero_shift_is_none() {
+        // One channel alone; both with the same sign; both out of proportion; none.
+        assert!(codes((19.0, -61.0), (-7.0, 0.4), &[]).is_empty());
+        assert!(codes((19.0, -61.0), (-7.0, -23.0), &[]).is_empty());
+        assert!(codes((19.0, -61.0), (-7.0, 60.0), &[]).is_empty());
+        assert!(codes((19.0, -0.3), (-7.0, 0.2), &[]).is_empty());
+        assert!(codes((19.0, -61.0), (-0.5, 1.7), &[]).is_empty());
+    }
+}

@@ -1,0 +1,138 @@
+//! The velocity steps of three and more transverse channels to whether one rigid body can have them.
+
+use crate::data::{Axis, FlightFit, Issue, IssueCode, Severity, Signal, Tolerances};
+
+/// Distances from the line beyond this many standard uncertainties speak against one body.
+const SURE: f64 = 3.0;
+/// … and beyond this, m/s: 0.5 % of a slap-down, what a mode that was not fitted leaves.
+const LEAST_M_S: f64 = 0.1;
+
+/// One channel's step: position, m, step and its standard uncertainty, m/s.
+struct Step<'a> {
+    name: &'a str,
+    position_m: f64,
+    step_m_s: f64,
+    u_m_s: f64,
+}
+
+/// Holds the velocity steps against the line over positions that a rigid body gives   (16)
+///
+/// Each channel is held against the line through the others; the one farthest off, in its uncertainties, is named.
+#[must_use]
+pub fn judge_rigid(signals: &[Signal], flight: &FlightFit, tolerances: &Tolerances) -> Option<Issue> {
+    let steps: Vec<Step> = signals
+        .iter()
+        .filter(|s| s.axis == Axis::Transverse)
+        .filter_map(|s| {
+            let plateau = flight.plateau(&s.name)?;
+            let step_m_s = plateau.velocity_step_m_s;
+            // Half of a 95 % half-width is a standard uncertainty.
+            let u_scale_m_s = tolerances.calibration.hypot(tolerances.cross_axis) / 2.0 * step_m_s;
+            let u_m_s = plateau.u_m_s.hypot(u_scale_m_s);
+            Some(Step { name: &s.name, position_m: s.position_m, step_m_s, u_m_s })
+        })
+        .collect();
+    let (worst, off_m_s, u_m_s) = steps
+        .iter()
+        .enumerate()
+        .filter_map(|(i, step)| {
+            let others: Vec<&Step> = steps.iter().enumerate().filter(|(j, _)| *j != i).map(|s| s.1).collect();
+            let (expected_m_s, u_m_s) = line(&others, step.position_m)?;
+            Some((step, step.step_m_s - expected_m_s, u_m_s.hypot(step.u_m_s)))
+        })
+        .max_by(|a, b| (a.1.abs() / a.2).total_cmp(&(b.1.abs() / b.2)))?;
+    (off_m_s.abs() > SURE * u_m_s && off_m_s.abs() > LEAST_M_S).then(|| {
+        Issue::new(
+            IssueCode::NotRigid,
+            Severity::Warning,
+            format!(
+                "{} gains {off_m_s:+.2} ± {:.2} m/s more in the first impact than the other channels have a rigid body gain there: check its scale, polarity, position and mount, or leave it out of the cask file",
+                worst.name,
+                2.0 * u_m_s
+            ),
+        )
+        .on(worst.name)
+        .between(flight.from_s, flight.to_s)
+    })
+}
+
+/// Least-squares line through steps at a position and its standard uncertainty; `None` without two places a millimetre apart.
+fn line(steps: &[&Step], position_m: f64) -> Option<(f64, f64)> {
+    let weight = |s: &Step| 1.0 / (s.u_m_s * s.u_m_s).max(1e-12);
+    let total: f64 = steps.iter().map(|s| weight(s)).sum();
+    let middle_m = steps.iter().map(|s| weight(s) * s.position_m).sum::<f64>() / total;
+    let mean_m_s = steps.iter().map(|s| weight(s) * s.step_m_s).sum::<f64>() / total;
+    let square: f64 = steps.iter().map(|s| weight(s) * (s.position_m - middle_m).powi(2)).sum();
+    let apart_m = (square / total).sqrt();
+    let slope =
+        steps.iter().map(|s| weight(s) * (s.position_m - middle_m) * s.step_m_s).sum::<f64>() / square;
+    let ahead_m = position_m - middle_m;
+    (apart_m > 5e-4).then(|| (mean_m_s + slope * ahead_m, (1.0 / total + ahead_m * ahead_m / square).sqrt()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{End, Plateau};
+
+    /// Steps of 20 − 6 x m/s at four places, each known to 0.02 m/s, the second one off.
+    fn named(off_m_s: f64, places_m: &[f64]) -> Option<String> {
+        let names = ["A1", "A2", "A3", "A4"];
+        let signals: Vec<Signal> = names
+            .iter()
+            .zip(places_m)
+            .map(|(name, position_m)| Signal {
+                name: (*name).into(),
+                end: End::First,
+                axis: Axis::Transverse,
+                position_m: *position_m,
+                offset_m: 0.0,
+                start_s: 0.0,
+                sample_rate_hz: 1e4,
+                force_m_s2: vec![],
+                removed_offset_m_s2: 0.0,
+                u_offset_m_s2: 0.0,
+                noise_m_s2: 0.0,
+                noise_spectrum: vec![],
+                free_fall_s: 0.2,
+                clipped: vec![],
+                gaps: vec![],
+            })
+            .collect();
+        let plateau = |s: &Signal| Plateau {
+            channel: s.name.clone(),
+            velocity_step_m_s: 20.0 - 6.0 * s.position_m + if s.name == "A2" { off_m_s } else { 0.0 },
+            u_m_s: 0.02,
+            zero_shift_m_s2: 0.0,
+            u_zero_shift_m_s2: 0.0,
+            residual_m_s: 0.0,
+            ringing_m_s: vec![],
+            late_mismatch_m_s: None,
+        };
+        let flight = FlightFit {
+            from_s: 0.0,
+            to_s: 0.06,
+            plateaus: signals.iter().map(plateau).collect(),
+            modes: vec![],
+            drift: false,
+            candidates: vec![],
+        };
+        judge_rigid(&signals, &flight, &Tolerances::default()).and_then(|i| i.channel)
+    }
+
+    #[test]
+    fn a_channel_off_the_line_is_named_and_one_on_it_is_not() {
+        let places_m = [0.2, 1.0, 4.0, 4.8];
+        assert_eq!(named(0.0, &places_m), None);
+        assert_eq!(named(0.3, &places_m), None);
+        assert_eq!(named(3.0, &places_m), Some("A2".into()));
+        assert_eq!(named(-3.0, &places_m), Some("A2".into()));
+    }
+
+    #[test]
+    fn two_channels_are_always_a_line() {
+        assert_eq!(named(3.0, &[0.2, 4.8]), None);
+        // Three at one place say nothing of a line either.
+        assert_eq!(named(0.0, &[0.2, 0.2, 0.2]), None);
+    }
+}

@@ -1,0 +1,221 @@
+//! The first pulse as it was sampled to whether the sample rate and the filter before it were fit for it.
+
+use crate::data::{Axis, End, Events, Issue, IssueCode, Severity, Signal};
+use crate::numerics::spectrum::magnitude;
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// Fewest samples over a first pulse for its area to be right within 1 %: the trapezoid over a half sine of N is off by π²/12 N².
+const LEAST_SAMPLES: f64 = 10.0;
+/// Shares of its peak at which the pulse's width is taken, and of a half sine's length that lies above each: 1 − 2 asin(share)/π.
+/// A force plateau is as wide at half its height as at its foot, a pulse that goes over into ringing is not: the less counts.
+const FLANKS: [(f64, f64); 2] = [(0.15, 0.904), (0.5, 2.0 / 3.0)];
+/// The pulse is the first run past the flank that reaches this share of the stretch's peak: ringing after it may be higher.
+const REACHED: f64 = 0.5;
+/// The flank stands this many standard deviations of the noise above zero.
+const NOISE_FACTOR: f64 = 6.0;
+/// Frequencies from this share of the sample rate up to half of it hold nothing if a filter stood before the sampling.
+const BAND: f64 = 0.4;
+/// Content there over the largest of the spectrum: 0.05 folds to 2.5 % of the velocity step. Drawn pulses of 25 samples and more
+/// that end in a jump (k = 0.02) reach 0.026, pulses of 5 samples begin at 0.14.
+const MOST_CONTENT: f64 = 0.05;
+/// The content must be this many times what the noise has there.
+const OVER_NOISE: f64 = 3.0;
+/// Longest contact whose pulse is sought, s.
+const LONGEST_S: f64 = 0.05;
+
+/// Checks how each channel samples the first impact: enough samples, and nothing up to half the sample rate.
+///
+/// `disturbed` names the channels whose single samples are off: their spectra say nothing about a filter.
+#[must_use]
+pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&str]) -> Vec<Issue> {
+    let struck = signals
+        .iter()
+        .filter(|s| s.axis == Axis::Transverse && s.end == End::First)
+        .min_by(|a, b| a.position_m.total_cmp(&b.position_m));
+    let (Some(struck), Some(contact_s)) = (struck, events.first_contact_s) else { return Vec::new() };
+    let to_s = events.separation_s.unwrap_or(contact_s + LONGEST_S).min(contact_s + LONGEST_S);
+    let Some((pulse_s, length_s)) = pulse(struck, contact_s..to_s) else { return Vec::new() };
+    let largest = content(struck, pulse_s).map_or(0.0, |c| c.largest);
+    let mut issues = Vec::new();
+    for signal in signals {
+        issues.extend(low_rate(signal, pulse_s, length_s));
+        if !disturbed.contains(&signal.name.as_str()) {
+            issues.extend(aliasing(signal, pulse_s, largest));
+        }
+    }
+    issues
+}
+
+/// Where the force of the first pulse passes the lower flank and falls below it, and the length of a half sine as wide, s.
+fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), f64)> {
+    let from = signal.index_from(contact_s.start).saturating_sub(1);
+    let force = signal.force_m_s2.get(from..)?;
+    let within = force.get(..signal.index_from(contact_s.end).saturating_sub(from) + 2).unwrap_or(force);
+    let peak = within.iter().fold(0.0_f64, |m, f| m.max(*f));
+    let reached = within.iter().position(|f| *f > REACHED * peak)?;
+    let [foot, shoulder] = FLANKS.map(|(share, _)| (share * peak).max(NOISE_FACTOR * signal.noise_m_s2));
+    let low = (0..reached).rev().find(|&i| force[i] <= foot)?;
+    let high = (reached..force.len()).find(|&i| force[i] <= foot)?;
+    // Dips of ringing on the pulse do not end its upper half.
+    let high_half = (reached..high).rev().find(|&i| force[i] > shoulder)? + 1;
+    let rise = |i: usize, level: f64| number(i) + (level - force[i]) / (force[i + 1] - force[i]);
+    let fall = |i: usize, level: f64| number(i) - (level - force[i]) / (force[i - 1] - force[i]);
+    let whole = (rise(low, foot), fall(high, foot));
+    let half = fall(high_half, shoulder) - rise(reached - 1, shoulder);
+    let samples = ((whole.1 - whole.0) / FLANKS[0].1).min(half / FLANKS[1].1);
+    let at_s = |position: f64| signal.time_s(from) + position / signal.sample_rate_hz;
+    (foot < 0.5 * peak).then(|| ((at_s(whole.0), at_s(whole.1)), samples / signal.sample_rate_hz))
+}
+
+fn low_rate(signal: &Signal, pulse_s: (f64, f64), length_s: f64) -> Option<Issue> {
+    let samples = length_s * signal.sample_rate_hz;
+    (samples < LEAST_SAMPLES).then(|| {
+        // π²/12 N² of the area of a half sine: its two kinks against the trapezoid.
+        let off_percent = 100.0 * PI * PI / 12.0 / (samples * samples);
+        Issue::new(
+            IssueCode::LowRate,
+            Severity::Warning,
+            format!(
+                "{} has {samples:.1} samples over the first pulse of {:.1} ms: its velocity step may be off by {off_percent:.0} % and more; sample at {:.0} Hz or faster",
+                signal.name,
+                1e3 * length_s,
+                2.0 * LEAST_SAMPLES / length_s
+            ),
+        )
+        .on(&signal.name)
+        .between(pulse_s.0, pulse_s.1)
+    })
+}
+
+/// Fourier integral of the stretch about the pulse, m/s.
+struct Content {
+    /// RMS of its magnitude in the band below half the sample rate.
+    in_band: f64,
+    /// Largest magnitude.
+    largest: f64,
+    /// What the noise has in the band.
+    noise: f64,
+}
+
+/// The stretch reaches a pulse's length beyond it on both sides, where it is led to zero as half a cosine.
+fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<Content> {
+    let margin_s = (pulse_s.1 - pulse_s.0).max(4.0 / signal.sample_rate_hz);
+    let (from, to) = (signal.index_from(pulse_s.0 - margin_s), signal.index_from(pulse_s.1 + margin_s));
+    let mut force = signal.force_m_s2.get(from..to)?.to_vec();
+    let count = force.len();
+    let margin = signal.index_from(pulse_s.0).saturating_sub(from).max(1);
+    for i in 0..margin.min(count / 2) {
+        let weight = 0.5 - 0.5 * (PI * (number(i) + 0.5) / number(margin)).cos();
+        force[i] *= weight;
+        force[count - 1 - i] *= weight;
+    }
+    // Zeros behind it only make the spectrum's lines denser.
+    force.resize(count.max(256) * 2, 0.0);
+    let (frequency_hz, size) = magnitude(&force, signal.sample_rate_hz);
+    let band = &size[frequency_hz.partition_point(|f| *f < BAND * signal.sample_rate_hz)..];
+    Some(Content {
+        in_band: (band.iter().map(|m| m * m).sum::<f64>() / number(band.len().max(1))).sqrt(),
+        largest: size.iter().fold(0.0, |m, s| s.max(m)),
+        noise: signal.noise_m_s2 * number(count).sqrt() / signal.sample_rate_hz,
+    })
+}
+
+fn aliasing(signal: &Signal, pulse_s: (f64, f64), largest: f64) -> Option<Issue> {
+    if signal.touches(&signal.gaps, pulse_s.0, pulse_s.1) {
+        return None;
+    }
+    let found = content(signal, pulse_s)?;
+    let share = found.in_band / largest;
+    (share > MOST_CONTENT && found.in_band > OVER_NOISE * found.noise).then(|| {
+        Issue::new(
+            IssueCode::Aliasing,
+            Severity::Warning,
+            format!(
+                "{} has {:.0} % of the pulse's spectrum left just below half its sample rate of {:.0} Hz: what lies above it has folded down, by about {:.0} % of the velocity step; put an anti-alias filter before the sampling, or sample faster",
+                signal.name,
+                100.0 * share,
+                signal.sample_rate_hz,
+                50.0 * share
+            ),
+        )
+        .on(&signal.name)
+        .between(pulse_s.0, pulse_s.1)
+    })
+}
+
+#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+fn number(n: usize) -> f64 {
+    n as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What `force` says from 20 ms on, sampled at a rate, with the two events.
+    fn codes(rate_hz: f64, found_end_s: f64, force: impl Fn(f64) -> f64) -> Vec<IssueCode> {
+        let count = 100_000;
+        let force_m_s2 = (0..count).map(|i| f64::from(i) / rate_hz - 0.020_04).take_while(|t| *t < 0.2);
+        let signal = Signal {
+            name: "A1".into(),
+            end: End::First,
+            axis: Axis::Transverse,
+            position_m: 0.1,
+            offset_m: 0.0,
+            start_s: 0.0,
+            sample_rate_hz: rate_hz,
+            force_m_s2: force_m_s2.map(|t| if t > 0.0 { force(t) } else { 0.0 }).collect(),
+            removed_offset_m_s2: 0.0,
+            u_offset_m_s2: 0.0,
+            noise_m_s2: 0.1,
+            noise_spectrum: vec![],
+            free_fall_s: 0.02,
+            clipped: vec![],
+            gaps: vec![],
+        };
+        let events = Events {
+            first_contact_s: Some(0.02),
+            separation_s: Some(0.02 + found_end_s),
+            ..Events::default()
+        };
+        judge_sampling(&[signal], &events, &[]).iter().map(|i| i.code).collect()
+    }
+
+    fn half_sine(t: f64, length_s: f64) -> f64 {
+        if t < length_s { 5000.0 * (PI * t / length_s).sin() } else { 0.0 }
+    }
+
+    /// A mode as strong as the pulse that goes on ringing after it.
+    fn ringing(t: f64, length_s: f64, frequency_hz: f64) -> f64 {
+        half_sine(t, length_s) + 2500.0 * (-40.0 * t).exp() * (2.0 * PI * frequency_hz * t).sin()
+    }
+
+    #[test]
+    fn a_pulse_of_four_samples_is_named_however_long_the_contact_was_found() {
+        for end_s in [0.0029, 0.0116] {
+            let found = codes(1400.0, end_s, |t| half_sine(t, 0.0029));
+            assert!(found.contains(&IssueCode::LowRate), "{end_s}: {found:?}");
+        }
+        let rung = codes(1400.0, 0.0116, |t| ringing(t, 0.0029, 60.0));
+        assert!(rung.contains(&IssueCode::LowRate), "{rung:?}");
+    }
+
+    #[test]
+    fn twenty_samples_are_enough_with_and_without_ringing() {
+        assert!(codes(7000.0, 0.0029, |t| half_sine(t, 0.0029)).is_empty());
+        assert!(codes(7000.0, 0.0029, |t| ringing(t, 0.0029, 60.0)).is_empty());
+        // 450 Hz over 10 ms at 15 samples a period.
+        assert!(codes(6750.0, 0.01, |t| ringing(t, 0.01, 450.0)).is_empty());
+    }
+
+    #[test]
+    fn what_rings_up_to_half_the_rate_is_aliasing_and_below_a_filter_it_is_not() {
+        let resonance = |f: f64, height: f64| {
+            move |t: f64| half_sine(t, 0.005) + height * (-300.0 * t).exp() * (2.0 * PI * f * t).sin()
+        };
+        assert_eq!(codes(1e4, 0.005, resonance(4600.0, 2000.0)), [IssueCode::Aliasing]);
+        // A third of the rate, within what a filter at a quarter to 40 % of the rate lets through.
+        assert!(codes(1e4, 0.005, resonance(2800.0, 800.0)).is_empty());
+    }
+}

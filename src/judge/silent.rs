@@ -1,0 +1,131 @@
+//! The channels as recorded to those that say nothing: unplugged, stuck, or with nothing but noise and hum.
+
+use crate::data::{Channel, Issue, IssueCode, Samples, Severity};
+use crate::numerics::robust;
+
+/// A channel that never leaves its own spread by more than this says nothing: 10⁷ samples of normal noise stay within 5.5,
+/// a sine within 1.4.
+const SILENT: f64 = 8.0;
+/// Another channel that leaves its spread by this shows that there was something to say.
+const LOUD: f64 = 50.0;
+/// A channel this far below the loudest says nothing either: even at the centre of percussion more arrives.
+const SHARE: f64 = 1e-3;
+/// Samples that the spread is taken from: known to 1 %.
+const SAMPLED: usize = 10_000;
+
+/// How far a channel goes from its median, m/s², and how far its samples spread, m/s².
+struct Reach {
+    farthest: f64,
+    spread: f64,
+}
+
+/// Names each channel that stays within its noise over the whole recording while another does not.
+#[must_use]
+pub fn judge_silent(channels: &[Channel]) -> Vec<Issue> {
+    let reaches: Vec<Reach> = channels.iter().map(reach).collect();
+    let is_loud = |r: &Reach| r.farthest > LOUD * r.spread && r.farthest > 0.0;
+    let loudest = reaches.iter().filter(|r| is_loud(r)).map(|r| r.farthest).fold(0.0, f64::max);
+    let is_silent = |r: &Reach| r.farthest <= SILENT * r.spread || r.farthest < SHARE * loudest;
+    channels
+        .iter()
+        .zip(&reaches)
+        .filter(|(_, r)| loudest > 0.0 && is_silent(r))
+        .map(|(channel, r)| {
+            let found = if r.farthest > 0.0 {
+                format!("stays within {:.2} g of its mean, all of it noise or hum,", r.farthest / 9.806_65)
+            } else {
+                "holds one value".into()
+            };
+            Issue::new(
+                IssueCode::DeadChannel,
+                Severity::Error,
+                format!(
+                    "{} {found} while others show the impacts: unplugged, broken, or the wrong `source`; name the right one or take the channel out of the cask file",
+                    channel.name
+                ),
+            )
+            .on(&channel.name)
+        })
+        .collect()
+}
+
+fn reach(channel: &Channel) -> Reach {
+    let scale = channel.scale_m_s2.abs();
+    match &channel.samples {
+        Samples::F32(v) => reach_of(v, scale),
+        Samples::F64(v) => reach_of(v, scale),
+    }
+}
+
+fn reach_of<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Reach {
+    let value = |x: &T| -> f64 { (*x).into() };
+    let every = (samples.len() / SAMPLED).max(1);
+    let some: Vec<f64> = samples.iter().step_by(every).map(value).filter(|x| x.is_finite()).collect();
+    let middle = robust::median(&mut some.clone());
+    // Two running extremes instead of distances: comparisons alone keep up with the reading.
+    let (low, high) =
+        samples.iter().map(value).filter(|x| x.is_finite()).fold((middle, middle), |(low, high), x| {
+            (if x < low { x } else { low }, if x > high { x } else { high })
+        });
+    if some.is_empty() {
+        return Reach { farthest: 0.0, spread: 0.0 };
+    }
+    Reach { farthest: scale * (high - middle).max(middle - low), spread: scale * robust::spread(&some) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Axis, Coupling, End};
+
+    fn channel(name: &str, sample: impl Fn(u32) -> f64) -> Channel {
+        Channel {
+            name: name.into(),
+            end: End::First,
+            axis: Axis::Axial,
+            source: "a".into(),
+            position_m: 0.0,
+            offset_m: 0.0,
+            start_s: 0.0,
+            sample_rate_hz: 1e4,
+            samples: Samples::F64((0..20_000).map(sample).collect()),
+            scale_m_s2: 9.806_65,
+            unit: "g".into(),
+            unit_origin: "cask file",
+            full_scale: None,
+            gaps: vec![],
+            time_jitter_s: 0.0,
+            coupling: Coupling::Dc,
+        }
+    }
+
+    /// Uniform noise of ± 0.5.
+    fn noise(i: u32) -> f64 {
+        f64::from(i.wrapping_mul(1_664_525).wrapping_add(1_013_904_223) >> 8) / f64::from(1_u32 << 24) - 0.5
+    }
+
+    fn pulse(size: f64) -> impl Fn(u32) -> f64 {
+        move |i| noise(i) + if (5000..5050).contains(&i) { size } else { 0.0 }
+    }
+
+    fn silent(beside: Channel) -> Vec<Option<String>> {
+        judge_silent(&[channel("A1", pulse(300.0)), beside]).into_iter().map(|i| i.channel).collect()
+    }
+
+    #[test]
+    fn noise_hum_and_a_rail_are_dead_on_any_axis() {
+        let dead = [Some("A2".to_owned())];
+        assert_eq!(silent(channel("A2", noise)), dead);
+        assert_eq!(silent(channel("A2", |_| 500.0)), dead);
+        assert_eq!(silent(channel("A2", |_| 0.0)), dead);
+        assert_eq!(silent(channel("A2", |_| f64::NAN)), dead);
+        assert_eq!(silent(channel("A2", |i| 4.0 * (f64::from(i) * 0.0314).sin() + noise(i))), dead);
+    }
+
+    #[test]
+    fn a_weak_answer_is_not_dead_and_a_quiet_record_names_nobody() {
+        assert!(silent(channel("A2", pulse(6.0))).is_empty());
+        assert!(judge_silent(&[channel("A1", noise), channel("A2", noise)]).is_empty());
+        assert!(judge_silent(&[]).is_empty());
+    }
+}

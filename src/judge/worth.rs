@@ -1,0 +1,140 @@
+//! Noise, place, start and size of each channel to whether it can carry the result.
+
+use crate::data::{Axis, CaskFile, End, Events, Issue, IssueCode, Severity, Signal};
+use crate::numerics::noise::integral_uncertainty_by;
+
+/// Standard uncertainty of the velocity from noise alone that limits a result, as a share of v0: ± 2 % is twice what else it carries.
+const MOST_NOISE: f64 = 0.01;
+/// Longest integration that noise is held against, s: contact and the window of the flight's fit.
+const LONGEST_S: f64 = 0.1;
+/// A sensor sits on the cask within this, m: its bolt and the tape's hook.
+const SLACK_M: f64 = 0.05;
+/// A record that begins with this share of the first peak begins in the impact.
+const UNDER_WAY: f64 = 0.1;
+/// Factors between units that are taken for one another: g and m/s², V and mV.
+const UNITS: [(f64, &str); 2] = [(9.806_65, "g and m/s²"), (1000.0, "V and mV, or g and mg")];
+/// Two chains of one kind have the same noise within this share …
+const ALIKE: f64 = 0.2;
+/// … and peaks that differ by less than this factor less than the units do.
+const PEAKS: f64 = 3.0;
+
+/// Checks of each channel by itself and against the others, beside those of its samples over the impact.
+pub(super) fn judge_worth(signals: &[Signal], events: &Events, cask_file: &CaskFile) -> Vec<Issue> {
+    let mut issues = places(signals, cask_file);
+    for signal in signals {
+        issues.extend(noisy(signal, events, cask_file.drop.impact_velocity_m_s));
+        issues.extend(under_way(signal, events));
+    }
+    issues.extend(units(signals));
+    issues
+}
+
+fn noisy(signal: &Signal, events: &Events, impact_velocity_m_s: f64) -> Option<Issue> {
+    let contact_s = events.first_contact_s?;
+    let end_s = events.slap_down_s.unwrap_or_else(|| signal.end_s());
+    let length_s = (end_s - contact_s).clamp(0.0, LONGEST_S);
+    let u_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
+    (u_m_s > MOST_NOISE * impact_velocity_m_s).then(|| {
+        Issue::new(
+            IssueCode::Noise,
+            Severity::Warning,
+            format!(
+                "the noise of {} ({:.2} g before the impact) alone makes its velocity uncertain by ± {:.2} m/s over {:.0} ms: record more of the free fall, use a more sensitive range, or look for a loose cable",
+                signal.name,
+                signal.noise_m_s2 / 9.806_65,
+                2.0 * u_m_s,
+                1e3 * length_s
+            ),
+        )
+        .on(&signal.name)
+    })
+}
+
+/// What the first sample shows already is missing from the velocity step.
+fn under_way(signal: &Signal, events: &Events) -> Option<Issue> {
+    let contact_s = events.first_contact_s?;
+    let to_s = events.separation_s.unwrap_or(contact_s + 0.02);
+    let is_struck = signal.end == End::First && signal.axis == Axis::Transverse;
+    let force = signal.force_m_s2.get(..signal.index_from(to_s))?;
+    let peak = force.iter().fold(0.0_f64, |m, f| m.max(*f));
+    let first = *force.first()?;
+    let begins = contact_s - signal.start_s < 2.0 / signal.sample_rate_hz;
+    (is_struck && begins && peak > 0.0 && first > UNDER_WAY * peak).then(|| {
+        Issue::new(
+            IssueCode::BeginsLate,
+            Severity::Error,
+            format!(
+                "{} begins in the first impact, at {:.0} % of its peak: what came before is missing from the velocity step; set the trigger at least 0.1 s before the impact",
+                signal.name,
+                100.0 * first / peak
+            ),
+        )
+        .on(&signal.name)
+        .between(signal.start_s, to_s)
+    })
+}
+
+/// Sensors beyond the ends of the cask, and ends that lie the other way round.
+fn places(signals: &[Signal], cask_file: &CaskFile) -> Vec<Issue> {
+    let length_m = cask_file.cask.length_m;
+    let issue = |signal: &Signal, message| {
+        Issue::new(IssueCode::SensorPosition, Severity::Warning, message).on(&signal.name)
+    };
+    let mut issues: Vec<Issue> = signals
+        .iter()
+        .filter(|s| !(-SLACK_M..=length_m + SLACK_M).contains(&s.position_m))
+        .map(|s| {
+            issue(s, format!("{} is placed at {} m, off the cask, which reaches from 0 to {length_m} m: correct `position_m`, measured along the axis from the first end", s.name, s.position_m))
+        })
+        .collect();
+    let transverse = |end| signals.iter().filter(move |s| s.end == end && s.axis == Axis::Transverse);
+    for first in transverse(End::First) {
+        for second in transverse(End::Second).filter(|s| s.position_m <= first.position_m) {
+            issues.push(issue(first, format!(
+                "{} of the first end is placed at {} m, no nearer to it than {} of the second end at {} m: correct `end` or `position_m`",
+                first.name, first.position_m, second.name, second.position_m
+            )));
+        }
+    }
+    let middle_m = length_m / 2.0;
+    let far =
+        |s: &&Signal| if s.end == End::First { s.position_m > middle_m } else { s.position_m < middle_m };
+    if issues.is_empty() {
+        issues.extend(signals.iter().filter(|s| s.axis == Axis::Transverse).filter(far).map(|s| {
+            issue(s, format!("{} belongs to the {} end and is placed at {} m, nearer to the other end of {length_m} m: correct `end` or `position_m`", s.name, s.end, s.position_m))
+        }));
+    }
+    issues
+}
+
+/// Two transverse channels whose noise and peaks both differ by the factor between two units.
+fn units(signals: &[Signal]) -> Vec<Issue> {
+    let transverse: Vec<&Signal> = signals.iter().filter(|s| s.axis == Axis::Transverse).collect();
+    let peak = |s: &Signal| s.force_m_s2.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+    let mut issues = Vec::new();
+    for large in &transverse {
+        for small in &transverse {
+            if small.noise_m_s2 <= 0.0 || peak(small) <= 0.0 {
+                continue;
+            }
+            let (noise, peaks) = (large.noise_m_s2 / small.noise_m_s2, peak(large) / peak(small));
+            let alike = |factor: f64| (noise / factor - 1.0).abs() < ALIKE && peaks > factor / PEAKS;
+            let Some((_, names)) = UNITS.iter().find(|u| alike(u.0)) else { continue };
+            issues.push(
+                Issue::new(
+                    IssueCode::Scale,
+                    Severity::Warning,
+                    format!(
+                        "{} has {noise:.1} times the noise and {peaks:.1} times the peak of {}, the factor between {names}: one of the two has the wrong `unit` or `sensitivity`",
+                        large.name, small.name
+                    ),
+                )
+                .on(&large.name),
+            );
+        }
+    }
+    issues
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,131 @@
+//! Made-up channels to what `worth` says of them.
+
+use super::*;
+use crate::data::{Cask, Contact, Corrections, Drop, FilterChoice, Tolerances};
+
+fn cask_file() -> CaskFile {
+    CaskFile {
+        path: "a.toml".into(),
+        sha256: String::new(),
+        cask: Cask {
+            name: "A".into(),
+            mass_kg: 4000.0,
+            length_m: 5.0,
+            height_m: 0.0,
+            width_m: None,
+            cog_m: 2.5,
+            inertia_kg_m2: 8000.0,
+            is_body: false,
+        },
+        drop: Drop {
+            height_m: 9.0,
+            angle_rad: 0.25,
+            impact_velocity_m_s: 13.29,
+            impact_velocity_given: false,
+            gravity_m_s2: 9.81,
+        },
+        contact: Contact::Rough,
+        filter: FilterChoice::Auto,
+        tolerances: Tolerances::default(),
+        corrections: Corrections::default(),
+        time: None,
+        channels: vec![],
+        defaults: vec![],
+    }
+}
+
+/// A half sine of 5 ms from 20 ms on at 10 kHz; white noise of 1 m/s² is said, none is there.
+fn signal(name: &str, end: End, position_m: f64, peak: f64) -> Signal {
+    let force = |i: u32| {
+        let x = (f64::from(i) - 200.0) / 50.0;
+        if (0.0..1.0).contains(&x) { peak * (std::f64::consts::PI * x).sin() } else { 0.0 }
+    };
+    Signal {
+        name: name.into(),
+        end,
+        axis: Axis::Transverse,
+        position_m,
+        offset_m: 0.0,
+        start_s: 0.0,
+        sample_rate_hz: 1e4,
+        force_m_s2: (0..1000).map(force).collect(),
+        removed_offset_m_s2: 0.0,
+        u_offset_m_s2: 0.0,
+        noise_m_s2: 1.0,
+        noise_spectrum: vec![(10.0, 2e-4), (5000.0, 2e-4)],
+        free_fall_s: 0.2,
+        clipped: vec![],
+        gaps: vec![],
+    }
+}
+
+fn pair() -> [Signal; 2] {
+    [signal("A1", End::First, 0.2, 4000.0), signal("A2", End::Second, 4.8, -1500.0)]
+}
+
+fn found(signals: &[Signal]) -> Vec<(IssueCode, Option<String>)> {
+    let events = Events {
+        first_contact_s: Some(0.02),
+        separation_s: Some(0.025),
+        slap_down_s: Some(0.09),
+        ..Events::default()
+    };
+    judge_worth(signals, &events, &cask_file()).into_iter().map(|i| (i.code, i.channel)).collect()
+}
+
+#[test]
+fn sound_channels_are_not_mentioned() {
+    assert!(found(&pair()).is_empty());
+}
+
+#[test]
+fn noise_that_moves_the_velocity_is_named() {
+    let mut noisy = pair();
+    // White: u² = S/2 (T + T²/T0) = 0.1 · (0.07 + 0.0245): 0.097 m/s, below 1 % of 13.29; ten times S is above.
+    noisy[0].noise_spectrum = vec![(10.0, 0.2), (5000.0, 0.2)];
+    assert!(found(&noisy).is_empty());
+    noisy[0].noise_spectrum = vec![(10.0, 2.0), (5000.0, 2.0)];
+    assert_eq!(found(&noisy), [(IssueCode::Noise, Some("A1".into()))]);
+}
+
+#[test]
+fn a_place_that_cannot_be_is_named() {
+    let place = |first_m: f64, second_m: f64| {
+        let mut signals = pair();
+        (signals[0].position_m, signals[1].position_m) = (first_m, second_m);
+        found(&signals)
+    };
+    let of = |name: &str| (IssueCode::SensorPosition, Some(name.to_owned()));
+    assert!(place(-0.03, 5.04).is_empty());
+    assert_eq!(place(-0.2, 4.8), [of("A1")]);
+    assert_eq!(place(0.2, 480.0), [of("A2")]);
+    assert_eq!(place(4.8, 0.2), [of("A1")]);
+    assert_eq!(place(2.7, 4.8), [of("A1")]);
+}
+
+#[test]
+fn a_record_that_begins_in_the_impact_is_named() {
+    for (cut, wanted) in [(199, 0), (225, 1)] {
+        let mut late = pair().map(|s| s.cut(cut, 1000));
+        for s in &mut late {
+            // Nothing quiet is left to take noise from.
+            s.noise_spectrum.clear();
+        }
+        let mut events = Events { first_contact_s: Some(late[0].start_s.max(0.02)), ..Events::default() };
+        events.separation_s = Some(0.025);
+        let issues = judge_worth(&late, &events, &cask_file());
+        assert_eq!(issues.iter().filter(|i| i.severity == Severity::Error).count(), wanted, "{issues:?}");
+    }
+}
+
+#[test]
+fn units_taken_for_one_another_are_named() {
+    let mut mixed = pair();
+    mixed[0].noise_m_s2 *= 9.806_65;
+    // Noise alone may differ from sensor to sensor.
+    assert!(found(&mixed).is_empty());
+    for f in &mut mixed[0].force_m_s2 {
+        *f *= 9.806_65;
+    }
+    assert_eq!(found(&mixed), [(IssueCode::Scale, Some("A1".into()))]);
+}
