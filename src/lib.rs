@@ -40,7 +40,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     else {
         return draft.without_impact();
     };
-    let (signals, mut found) = condition::condition(
+    let (mut signals, mut found) = condition::condition(
         recording,
         &event,
         &condition::Reach::of(&cask_file.cask, &cask_file.drop),
@@ -51,6 +51,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         return draft.without_impact();
     };
     draft.events.first_contact_s = Some(contact.0);
+    let u_skew_s = align(&mut draft, &mut signals, contact.0);
     let falls: Vec<_> = free_falls(recording, cask_file, contact.0).collect();
     for (channel, fall) in &falls {
         draft.rests.push(RestLevel {
@@ -65,12 +66,10 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         draft.events.fall_end_s = Some(fall.end_s);
     }
     draft.issues.extend(judge::judge_fall(&cask_file.drop, &draft.events));
-    let reconstructed = flight_and_motion(&mut draft, &signals, contact);
+    let reconstructed = flight_and_motion(&mut draft, &signals, contact, u_skew_s);
     judge::weigh_by_distance(&mut draft.issues, &draft.events);
     let on_channels = judge::judge_channels(&signals, &draft.events, cask_file, &draft.issues);
     draft.issues.extend(on_channels);
-    let onsets = events::answers(&signals, contact.0);
-    draft.issues.extend(judge::judge_skew(&onsets, &signals, &cask_file.cask));
     let smooth = draft.smooth(&signals);
     if let Some(Reconstructed { flight, setup, motion, quantities, choice: reconstruction }) = reconstructed {
         draft.issues.extend(judge::judge_coupling(&signals, &flight, cask_file));
@@ -146,6 +145,32 @@ fn is_impact(velocity_step_m_s: f64, cask_file: &CaskFile) -> bool {
     velocity_step_m_s.abs() > 0.1 * cask_file.drop.impact_velocity_m_s
 }
 
+/// Shifts channels whose clock is apart back, if that correction may be made; returns what a delay that a bending wave explains as well
+/// leaves open of R's times, as a standard uncertainty, s.
+fn align(draft: &mut Draft, signals: &mut [Signal], contact_s: f64) -> f64 {
+    let file = draft.cask_file;
+    let onsets = events::answers(signals, contact_s);
+    let issues = judge::judge_skew(&onsets, signals, &file.cask, file.corrections.skew);
+    let mut u_skew_s = 0.0_f64;
+    for issue in &issues {
+        let Some(onset) = onsets.iter().find(|o| issue.channel.as_ref() == Some(&o.channel)) else {
+            continue;
+        };
+        let Some(signal) = signals.iter_mut().find(|s| s.name == onset.channel) else { continue };
+        let is_apart = issue.severity == Severity::Warning;
+        if is_apart && file.corrections.skew {
+            signal.start_s -= onset.delay_s;
+        }
+        if signal.end == data::End::Second {
+            let open_s =
+                if is_apart && file.corrections.skew { onset.u_s } else { onset.delay_s / 3.0_f64.sqrt() };
+            u_skew_s = u_skew_s.max(open_s.abs());
+        }
+    }
+    draft.issues.extend(issues);
+    u_skew_s
+}
+
 /// The free fall as each transverse channel shows it; an AC-coupled one knows neither rest nor fall.
 fn free_falls<'a>(
     recording: &'a Recording,
@@ -168,7 +193,12 @@ struct Reconstructed {
 }
 
 /// The flight fit, the motion and what is read off it; what prevents them goes to the draft's issues.
-fn flight_and_motion(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Option<Reconstructed> {
+fn flight_and_motion(
+    draft: &mut Draft,
+    signals: &[Signal],
+    contact: (f64, f64),
+    u_skew_s: f64,
+) -> Option<Reconstructed> {
     let cask_file = draft.cask_file;
     for end in [data::End::First, data::End::Second] {
         if events::transverse(signals, end).is_none() {
@@ -183,6 +213,7 @@ fn flight_and_motion(draft: &mut Draft, signals: &[Signal], contact: (f64, f64))
         }
     }
     let flight = find_flight(draft, signals, contact)?;
+    draft.u_events_s[2] = draft.u_events_s[2].hypot(u_skew_s);
     let setup = setup(cask_file, signals, &draft.events, &flight);
     let motion = motion::reconstruct(signals, &flight, &draft.events, &setup)?;
     let window = motion::Window {

@@ -3,7 +3,7 @@
 use crate::data::{Axis, FlightFit, Issue, IssueCode, Severity, Signal, Tolerances};
 
 /// Distances from the line beyond this many standard uncertainties speak against one body.
-const SURE: f64 = 3.0;
+const SURE: f64 = 3.5;
 /// … and beyond this, m/s: 0.5 % of a slap-down, what a mode that was not fitted leaves.
 const LEAST_M_S: f64 = 0.1;
 
@@ -20,6 +20,7 @@ struct Reading<'a> {
 /// Each channel is held against the line through the others; the one farthest off, in its uncertainties, is named.
 #[must_use]
 pub fn judge_rigid(signals: &[Signal], flight: &FlightFit, tolerances: &Tolerances) -> Option<Issue> {
+    let turning_rad_s = turning_rad_s(signals, flight);
     let steps: Vec<Reading> = signals
         .iter()
         .filter(|s| s.axis == Axis::Transverse)
@@ -28,7 +29,8 @@ pub fn judge_rigid(signals: &[Signal], flight: &FlightFit, tolerances: &Toleranc
             let step_m_s = plateau.velocity_step_m_s;
             // Half of a 95 % half-width is a standard uncertainty.
             let u_scale_m_s = tolerances.calibration.hypot(tolerances.cross_axis) / 2.0 * step_m_s;
-            let u_m_s = plateau.u_m_s.hypot(u_scale_m_s);
+            let u_place_m_s = tolerances.position_m / 2.0 * turning_rad_s;
+            let u_m_s = plateau.u_m_s.hypot(u_scale_m_s).hypot(u_place_m_s);
             Some(Reading { name: &s.name, position_m: s.position_m, step_m_s, u_m_s })
         })
         .collect();
@@ -55,6 +57,18 @@ pub fn judge_rigid(signals: &[Signal], flight: &FlightFit, tolerances: &Toleranc
         .on(worst.name)
         .between(flight.from_s, flight.to_s)
     })
+}
+
+/// By how much the step changes along the cask between the outermost channels, rad/s: what a misplaced sensor reads more a metre.
+fn turning_rad_s(signals: &[Signal], flight: &FlightFit) -> f64 {
+    let mut steps: Vec<(f64, f64)> = signals
+        .iter()
+        .filter(|s| s.axis == Axis::Transverse)
+        .filter_map(|s| flight.plateau(&s.name).map(|p| (s.position_m, p.velocity_step_m_s)))
+        .collect();
+    steps.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let ends = steps.first().zip(steps.last()).filter(|(a, b)| b.0 - a.0 > 1e-3);
+    ends.map_or(0.0, |(a, b)| ((b.1 - a.1) / (b.0 - a.0)).abs())
 }
 
 /// Least-squares line through steps at a position and its standard uncertainty; `None` without two places a millimetre apart.
