@@ -74,14 +74,14 @@ fn joint(choice: &ReconstructionChoice) -> Markup {
     let used = if choice.rung == ReconstructionRung::Joint {
         "Its motion is the one reported."
     } else {
-        "It serves as a check: the numbers of this report are not its."
+        "It serves as a check: the numbers of this report are those of the reconstruction taken."
     };
     html! {
         p { "The joint fit moves every input within its tolerance until the closures are met: χ² = " (significant(chi_square, 2)) " with "
             (degrees) " degree" (if degrees == 1 { "" } else { "s" }) " of freedom, one a closure. " (used)
             @if moved.is_empty() { " It moves no input by more than a twentieth of its standard uncertainty." } }
         @if !moved.is_empty() {
-            table class="whole" {
+            table {
                 caption { "What the joint fit moves, the largest first. Left: the input's standard uncertainty after the fit over the one before." }
                 thead { tr { th { "Input" } th class="n" { "Standard uncertainty u" } th class="n" { "Moved by, in u" } th class="n" { "Left, %" } } }
                 tbody { @for a in moved.iter().take(MOST_MOVES) { tr {
@@ -110,7 +110,7 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Markup {
         h2 { "Uncertainty" }
         p class="lead" { "Each line is what one standard uncertainty of the input changes. The changes add in squares, and an interval is twice \
             their root. " (largest(budget)) }
-        table class="whole" {
+        table {
             thead { tr { th { "Input" } th { "Known from" } th class="n" { "Standard uncertainty" } th class="n" { "Slap-down speed, m/s" } th class="n" { "k" } } }
             tbody { @for c in budget { tr {
                 th scope="row" { (printable(&c.input)) } td { (known_from(&c.input, result, file)) }
@@ -187,7 +187,7 @@ mod tests {
         let page = budget(result, &analysis.cask_file).into_string();
         assert!(page.contains("± 0.110") && page.contains("± 0.0102"), "{page}");
         assert!(page.contains(
-            "for the speed is calibration of A2 (40 % of the variance), for k cross axis of A1 (62 %"
+            "for the speed is calibration of A2 (40 % of the variance), for k cross axis of A1 (61 %"
         ));
     }
 
@@ -217,7 +217,7 @@ mod tests {
             "fitted with modes and drift (taken)",
             "−0.8 % of ω",
             "χ² = 0.22 with 2 degrees of freedom",
-            "not its",
+            "It serves as a check",
             "20.56 ± 0.11 m/s",
         ] {
             assert!(page.contains(words), "{words}: {page}");

@@ -145,7 +145,7 @@ pub(super) fn models(result: &DropResult) -> Markup {
                 table class="whole" {
                     caption { "The ladder of analytical models with the measured k, the simplest first; rungs that change nothing are left out" }
                     thead { tr { th { "Model" } th class="n" { "Predicted, m/s" } th class="n" { "± 95 %, m/s" }
-                        th class="n" { "Predicted against measured" } th { "Within both intervals" } } }
+                        th class="n" { "Measured against predicted" } th { "Within both intervals" } } }
                     tbody { @for c in &model.candidates { (candidate(c, c.rung == model.rung)) } }
                 }
             }

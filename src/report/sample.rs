@@ -129,8 +129,8 @@ fn model() -> ModelChoice {
                  body with its section of 0.792 m lies within them"
             .into(),
         candidates: vec![
-            candidate(Rung::Rod, BodyModel::Rod, 22.76, 0.20, 10.7, false),
-            candidate(Rung::Body, BodyModel::Body, 20.49, 0.19, -0.34, true),
+            candidate(Rung::Rod, BodyModel::Rod, 22.76, 0.20, -9.7, false),
+            candidate(Rung::Body, BodyModel::Body, 20.49, 0.19, 0.34, true),
         ],
     }
 }
