@@ -15,6 +15,7 @@ pub mod motion;
 pub mod numerics;
 pub mod predict;
 pub mod report;
+mod settle;
 pub mod synth;
 pub mod validate;
 
@@ -26,19 +27,6 @@ use data::{
     WantedImpact,
 };
 use std::path::Path;
-
-/// Separation and slap-down are found again on signals free of ringing this often; the second round moves them by less than a sample.
-const ROUNDS: usize = 3;
-
-/// R cannot strike before its height over this share of v0: rod ends come down with less than 2 v0, angles are known to 40 %.
-const EARLIEST_SLAP_DOWN: f64 = 0.3;
-
-/// Share of the time from contact to slap-down that the first flight fit leaves to the contact, and the longest, s.
-const FIRST_CLEARANCE: f64 = 0.4;
-const LONGEST_CLEARANCE_S: f64 = 0.022;
-
-/// A flight fit that leaves less than this RMS has explained its channel, m/s: 1.5 % of a 9 m fall.
-const EXPLAINED_M_S: f64 = 0.2;
 
 /// From a recording and a cask file to everything that can be said of the drop.
 ///
@@ -52,7 +40,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     else {
         return draft.without_impact();
     };
-    let (signals, mut found) = condition::condition(
+    let (mut signals, mut found) = condition::condition(
         recording,
         &event,
         &condition::Reach::of(&cask_file.cask, &cask_file.drop),
@@ -63,6 +51,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         return draft.without_impact();
     };
     draft.events.first_contact_s = Some(contact.0);
+    let u_skew_s = align(&mut draft, &mut signals, contact.0);
     let falls: Vec<_> = free_falls(recording, cask_file, contact.0).collect();
     for (channel, fall) in &falls {
         draft.rests.push(RestLevel {
@@ -77,12 +66,10 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         draft.events.fall_end_s = Some(fall.end_s);
     }
     draft.issues.extend(judge::judge_fall(&cask_file.drop, &draft.events));
-    let reconstructed = flight_and_motion(&mut draft, &signals, contact);
+    let reconstructed = flight_and_motion(&mut draft, &signals, contact, u_skew_s);
     judge::weigh_by_distance(&mut draft.issues, &draft.events);
     let on_channels = judge::judge_channels(&signals, &draft.events, cask_file, &draft.issues);
     draft.issues.extend(on_channels);
-    let onsets = events::answers(&signals, contact.0);
-    draft.issues.extend(judge::judge_skew(&onsets, &signals, &cask_file.cask));
     let smooth = draft.smooth(&signals);
     if let Some(Reconstructed { flight, setup, motion, quantities, choice: reconstruction }) = reconstructed {
         draft.issues.extend(judge::judge_coupling(&signals, &flight, cask_file));
@@ -158,6 +145,32 @@ fn is_impact(velocity_step_m_s: f64, cask_file: &CaskFile) -> bool {
     velocity_step_m_s.abs() > 0.1 * cask_file.drop.impact_velocity_m_s
 }
 
+/// Shifts channels whose clock is apart back, if that correction may be made; returns what a delay that a bending wave explains as well
+/// leaves open of R's times, as a standard uncertainty, s.
+fn align(draft: &mut Draft, signals: &mut [Signal], contact_s: f64) -> f64 {
+    let file = draft.cask_file;
+    let onsets = events::answers(signals, contact_s);
+    let issues = judge::judge_skew(&onsets, signals, &file.cask, file.corrections.skew);
+    let mut u_skew_s = 0.0_f64;
+    for issue in &issues {
+        let Some(onset) = onsets.iter().find(|o| issue.channel.as_ref() == Some(&o.channel)) else {
+            continue;
+        };
+        let Some(signal) = signals.iter_mut().find(|s| s.name == onset.channel) else { continue };
+        let is_apart = issue.severity == Severity::Warning;
+        if is_apart && file.corrections.skew {
+            signal.start_s -= onset.delay_s;
+        }
+        if signal.end == data::End::Second {
+            let open_s =
+                if is_apart && file.corrections.skew { onset.u_s } else { onset.delay_s / 3.0_f64.sqrt() };
+            u_skew_s = u_skew_s.max(open_s.abs());
+        }
+    }
+    draft.issues.extend(issues);
+    u_skew_s
+}
+
 /// The free fall as each transverse channel shows it; an AC-coupled one knows neither rest nor fall.
 fn free_falls<'a>(
     recording: &'a Recording,
@@ -180,7 +193,12 @@ struct Reconstructed {
 }
 
 /// The flight fit, the motion and what is read off it; what prevents them goes to the draft's issues.
-fn flight_and_motion(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Option<Reconstructed> {
+fn flight_and_motion(
+    draft: &mut Draft,
+    signals: &[Signal],
+    contact: (f64, f64),
+    u_skew_s: f64,
+) -> Option<Reconstructed> {
     let cask_file = draft.cask_file;
     for end in [data::End::First, data::End::Second] {
         if events::transverse(signals, end).is_none() {
@@ -195,6 +213,7 @@ fn flight_and_motion(draft: &mut Draft, signals: &[Signal], contact: (f64, f64))
         }
     }
     let flight = find_flight(draft, signals, contact)?;
+    draft.u_events_s[2] = draft.u_events_s[2].hypot(u_skew_s);
     let setup = setup(cask_file, signals, &draft.events, &flight);
     let motion = motion::reconstruct(signals, &flight, &draft.events, &setup)?;
     let window = motion::Window {
@@ -226,64 +245,18 @@ fn flight_and_motion(draft: &mut Draft, signals: &[Signal], contact: (f64, f64))
     Some(Reconstructed { flight, setup, motion, quantities, choice })
 }
 
-/// Separation, slap-down and the flight between them, each found again with the other's help.
+/// Separation, slap-down and the flight between them; what prevents them goes to the draft's issues.
 fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Option<FlightFit> {
-    let file = draft.cask_file;
-    let v0_m_s = file.drop.impact_velocity_m_s;
-    let least_m_s = 0.3 * v0_m_s;
-    let record_end_s = signals.iter().map(Signal::end_s).fold(f64::INFINITY, f64::min);
-    let drop_m = file.cask.length_m * file.drop.angle_rad.sin();
-    let between_s = contact.0 + EARLIEST_SLAP_DOWN * drop_m / v0_m_s..record_end_s;
-    let length_m = file.cask.length_m;
-    let ends = |signals: &[Signal]| {
-        let on = |end| events::without_first_mode(signals, end, length_m);
-        Some((on(data::End::First)?, on(data::End::Second)?))
-    };
-    let (first, second) = ends(signals)?;
-    let mut struck = events::slap_down(&second, between_s.clone(), least_m_s, false);
-    let end_s = struck.map_or(record_end_s, |s| s.0);
-    // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit goes by.
-    let clearance_s = (FIRST_CLEARANCE * (end_s - contact.0)).min(LONGEST_CLEARANCE_S);
-    let rough_s = events::first_separation(&first, contact.0, end_s).unwrap_or(contact.0 + clearance_s);
-    // The first fit keeps well clear of the contact, which ringing may have seemed to end too soon.
-    let mut free_s =
-        rough_s.max(contact.0 + (FIRST_CLEARANCE * (end_s - contact.0)).min(LONGEST_CLEARANCE_S));
-    let mut left = (rough_s, 0.1 * (rough_s - contact.0));
-    let mut flight: Option<FlightFit> = None;
-    let mut calm = signals.to_vec();
-    for _ in 0..ROUNDS {
-        let end_s = struck.map_or(record_end_s, |s| s.0);
-        let window = motion::Window {
-            contact_s: contact.0,
-            from_s: free_s,
-            to_s: end_s - 5e-4,
-            angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| motion::rotation_rad_s(signals, f)),
-        };
-        let drive =
-            motion::drive(signals, flight.as_ref(), (contact.0, left.0), window.from_s, file.cask.cog_m);
-        let Some(fitted) = motion::fit_flight(signals, &window, drive.as_ref(), file.cask.cog_m) else {
-            break;
-        };
-        motion::take_off_ringing(&mut calm, signals, &fitted, contact.0..end_s + 0.02);
-        let (first, second) = ends(&calm)?;
-        let seen = events::slap_down(&second, between_s.start.max(free_s)..record_end_s, least_m_s, true);
-        // A flight that is explained well has no slap-down hidden in its ringing.
-        if seen.is_some() || fitted.plateaus.iter().all(|p| p.residual_m_s < EXPLAINED_M_S) {
-            struck = seen;
-        }
-        left = events::separation(&first, contact.0, free_s).unwrap_or(left);
-        free_s = left.0 + 0.1 * (left.0 - contact.0) + 3e-4;
-        flight = Some(fitted);
-    }
-    draft.take_times(contact, left, struck, record_end_s);
-    if flight.is_none() {
+    let settled = settle::settle(draft.cask_file, signals, contact.0)?;
+    draft.take_times(contact, settled.left, settled.struck, settle::record_end_s(signals));
+    if settled.flight.is_none() {
         draft.issues.push(Issue::new(
             IssueCode::FlightFit,
             Severity::Error,
             "the free flight between the impacts is too short to be told from them",
         ));
     }
-    flight
+    settled.flight
 }
 
 /// How the axial velocity is had: measured, or by the contact law of the cask file.

@@ -1,5 +1,6 @@
 //! The free fall before first contact to the mains hum in it, which is then taken off the whole signal.
 
+use super::{block_means, block_of};
 use crate::data::{Issue, IssueCode, Severity, Signal};
 use crate::numerics::robust;
 use crate::numerics::sinusoid::{self, Sinusoid};
@@ -32,7 +33,7 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
     if signal.gaps.iter().any(|gap| gap.from < end) {
         return None;
     }
-    let block = coarse(SEARCH_RATE_HZ, signal.sample_rate_hz);
+    let block = block_of(SEARCH_RATE_HZ, signal.sample_rate_hz);
     let means = block_means(signal.force_m_s2.get(..end)?, block);
     let block_rate_hz = signal.sample_rate_hz / number(block);
     let lines: Vec<Sinusoid> = lines(&means, block_rate_hz)
@@ -79,16 +80,6 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
         )
         .on(&signal.name),
     )
-}
-
-/// Samples that are averaged into one.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive ratio of rates")]
-fn coarse(rate_hz: f64, sample_rate_hz: f64) -> usize {
-    ((sample_rate_hz / rate_hz) as usize).max(1)
-}
-
-fn block_means(samples: &[f64], block: usize) -> Vec<f64> {
-    samples.chunks_exact(block).map(|chunk| chunk.iter().sum::<f64>() / number(block)).collect()
 }
 
 /// The line with what the mean over `block` samples takes from it put back: sin(n x)/(n sin x), x = π f/f_s.

@@ -141,6 +141,18 @@ fn restore_low_frequencies(force: &mut [f64], sample_rate_hz: f64, time_constant
     }
 }
 
+/// Samples that are averaged into one to come down to about `rate_hz`.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive ratio of rates")]
+fn block_of(rate_hz: f64, sample_rate_hz: f64) -> usize {
+    ((sample_rate_hz / rate_hz) as usize).max(1)
+}
+
+/// Means of whole blocks.
+#[allow(clippy::cast_precision_loss, reason = "a block's samples")]
+fn block_means(samples: &[f64], block: usize) -> Vec<f64> {
+    samples.chunks_exact(block).map(|chunk| chunk.iter().sum::<f64>() / block as f64).collect()
+}
+
 /// Runs of samples that are no numbers.
 fn missing(force: &[f64]) -> Vec<Span> {
     clipping::runs(force, |f| !f.is_finite())

@@ -1,5 +1,6 @@
 //! The free fall before first contact to a channel's offset and noise.
 
+use super::{block_means, block_of};
 use crate::data::{Issue, IssueCode, Severity, Signal};
 use crate::numerics::{noise, robust};
 
@@ -14,6 +15,9 @@ const NOTABLE_M_S2: f64 = 0.98;
 
 /// Samples this many spreads off the median are disturbances, not offset: none of a million of normal noise is.
 const WILD: f64 = 8.0;
+
+/// The spectrum is that of means at about this rate, Hz: an integral over milliseconds holds nothing above a few hundred.
+const SPECTRUM_RATE_HZ: f64 = 8000.0;
 
 /// A slope counts beyond this many of its standard uncertainties from eight means: one in 10⁴ of white noise is that steep.
 const SURE: f64 = 10.0;
@@ -43,7 +47,9 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<I
     let (first, second) = quiet.split_at(quiet.len() / 2);
     let wander = (robust::mean_and_rms(first).0 - robust::mean_and_rms(second).0).abs();
     signal.noise_m_s2 = robust::spread(&quiet).max(1e-3 * rms);
-    signal.noise_spectrum = noise::spectrum(&quiet, signal.sample_rate_hz);
+    let block = block_of(SPECTRUM_RATE_HZ, signal.sample_rate_hz);
+    signal.noise_spectrum =
+        noise::spectrum(&block_means(&quiet, block), signal.sample_rate_hz / number(block));
     signal.free_fall_s = length_s;
     // White noise averages out; what differs between the two halves does not.
     signal.u_offset_m_s2 = (rms / number(quiet.len()).sqrt()).max(wander / 2.0);
@@ -91,12 +97,10 @@ fn offset(name: &str, mean_m_s2: f64, taken_off: bool) -> Option<Issue> {
     let in_g = mean_m_s2 / 9.806_65;
     let adds_m_s = mean_m_s2.abs() * AHEAD_S;
     let (severity, done) = if taken_off {
-        let severity = if mean_m_s2.abs() > LARGE_M_S2 { Severity::Warning } else { Severity::Note };
-        (
-            severity,
-            "that offset was taken off; check the sensor's bias if it is larger than its data sheet says"
-                .into(),
-        )
+        let is_large = mean_m_s2.abs() > LARGE_M_S2;
+        let look = if is_large { "; check the sensor and its amplifier" } else { "" };
+        let severity = if is_large { Severity::Warning } else { Severity::Note };
+        (severity, format!("that offset was taken off{look}"))
     } else {
         let severity = if adds_m_s > SMALL_M_S { Severity::Warning } else { Severity::Note };
         (

@@ -2,6 +2,7 @@
 
 use super::Measured;
 use crate::data::{AxialClosure, Axis, Events, FlightFit, Motion, Setup};
+use crate::numerics::noise::integral_uncertainty_by;
 
 /// One set of inputs.
 #[derive(Debug, Clone)]
@@ -184,7 +185,10 @@ fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
     let drift_m_s = if measured.flight.drift {
         0.0
     } else {
-        signal.u_offset_m_s2 * (pulse_s + (measured.flight.to_s - measured.flight.from_s) / 2.0)
+        let length_s = pulse_s + (measured.flight.to_s - measured.flight.from_s) / 2.0;
+        let noise_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
+        // Without a spectrum the offset's own uncertainty is all that is known.
+        noise_m_s.max(signal.u_offset_m_s2 * length_s)
     };
     let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
     plateau.u_m_s.hypot(shift_m_s).hypot(drift_m_s).hypot(clipped_m_s)

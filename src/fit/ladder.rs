@@ -10,6 +10,9 @@ use crate::data::{
 /// A closure missed by more standard uncertainties than this is not explained by noise and tolerances (95 %).
 const MOST_MISS: f64 = 2.0;
 
+/// An interval that the next rung makes this much narrower is worth that rung.
+const NARROWED: f64 = 0.75;
+
 /// A rung with everything that it says.
 struct Step {
     candidate: ReconstructionCandidate,
@@ -157,7 +160,8 @@ fn worst(closures: &[Closure]) -> String {
     )
 }
 
-/// The first rung that is consistent and that the next one would not move out of the narrower of both intervals; else the last.
+/// The first rung that is consistent and that the next one would neither move out of the narrower of both intervals nor know much better;
+/// else the last.
 fn taken(steps: &[Step]) -> usize {
     (0..steps.len())
         .find(|&i| {
@@ -169,7 +173,7 @@ fn taken(steps: &[Step]) -> usize {
 
 fn stays(own: &ReconstructionCandidate, next: &ReconstructionCandidate) -> bool {
     let within = |a: Option<Estimate>, b: Option<Estimate>| match (a, b) {
-        (Some(a), Some(b)) => (a.value - b.value).abs() <= a.u95.min(b.u95),
+        (Some(a), Some(b)) => (a.value - b.value).abs() <= a.u95.min(b.u95) && b.u95 > NARROWED * a.u95,
         (None, None) => true,
         _ => false,
     };
@@ -191,7 +195,10 @@ fn reason(steps: &[Step], taken: usize) -> String {
     let mut said = format!("Taken: {}", words(own.rung));
     if let Some(below) = taken.checked_sub(1).map(|i| &steps[i].candidate) {
         let why = if below.consistent {
-            format!("{} would change by more than its interval", words(below.rung))
+            format!(
+                "it changes what the {} says by more than its interval, or knows it better by a quarter",
+                words(below.rung)
+            )
         } else {
             format!("{} leaves {}", words(below.rung), below.residual)
         };

@@ -2,8 +2,8 @@
 
 use crate::data::{Closure, ClosureKind, Drop, Events, Issue, IssueCode, ReconstructionChoice, Severity};
 
-/// A closure missed by this many standard uncertainties is not chance: one sound drop in 370 a closure.
-const MISSED_U: f64 = 3.0;
+/// A closure missed by this many standard uncertainties is not chance: one sound drop in 2000 a closure.
+const MISSED_U: f64 = 3.5;
 /// Missed by this many, the stated things are not what the recording shows.
 const GROSS_U: f64 = 12.0;
 
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn chance_is_not_mentioned_and_more_is_named_by_its_kind() {
-        assert!(judged(&choice(ClosureKind::Height, -2.9)).is_empty());
+        assert!(judged(&choice(ClosureKind::Height, -3.4)).is_empty());
         for (kind, code) in [
             (ClosureKind::Height, IssueCode::Geometry),
             (ClosureKind::Turning, IssueCode::NotRigid),

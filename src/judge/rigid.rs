@@ -3,12 +3,12 @@
 use crate::data::{Axis, FlightFit, Issue, IssueCode, Severity, Signal, Tolerances};
 
 /// Distances from the line beyond this many standard uncertainties speak against one body.
-const SURE: f64 = 3.0;
+const SURE: f64 = 3.5;
 /// … and beyond this, m/s: 0.5 % of a slap-down, what a mode that was not fitted leaves.
 const LEAST_M_S: f64 = 0.1;
 
 /// One channel's step: position, m, step and its standard uncertainty, m/s.
-struct Step<'a> {
+struct Reading<'a> {
     name: &'a str,
     position_m: f64,
     step_m_s: f64,
@@ -20,7 +20,8 @@ struct Step<'a> {
 /// Each channel is held against the line through the others; the one farthest off, in its uncertainties, is named.
 #[must_use]
 pub fn judge_rigid(signals: &[Signal], flight: &FlightFit, tolerances: &Tolerances) -> Option<Issue> {
-    let steps: Vec<Step> = signals
+    let turning_rad_s = turning_rad_s(signals, flight);
+    let steps: Vec<Reading> = signals
         .iter()
         .filter(|s| s.axis == Axis::Transverse)
         .filter_map(|s| {
@@ -28,15 +29,17 @@ pub fn judge_rigid(signals: &[Signal], flight: &FlightFit, tolerances: &Toleranc
             let step_m_s = plateau.velocity_step_m_s;
             // Half of a 95 % half-width is a standard uncertainty.
             let u_scale_m_s = tolerances.calibration.hypot(tolerances.cross_axis) / 2.0 * step_m_s;
-            let u_m_s = plateau.u_m_s.hypot(u_scale_m_s);
-            Some(Step { name: &s.name, position_m: s.position_m, step_m_s, u_m_s })
+            let u_place_m_s = tolerances.position_m / 2.0 * turning_rad_s;
+            let u_m_s = plateau.u_m_s.hypot(u_scale_m_s).hypot(u_place_m_s);
+            Some(Reading { name: &s.name, position_m: s.position_m, step_m_s, u_m_s })
         })
         .collect();
     let (worst, off_m_s, u_m_s) = steps
         .iter()
         .enumerate()
         .filter_map(|(i, step)| {
-            let others: Vec<&Step> = steps.iter().enumerate().filter(|(j, _)| *j != i).map(|s| s.1).collect();
+            let others: Vec<&Reading> =
+                steps.iter().enumerate().filter(|(j, _)| *j != i).map(|s| s.1).collect();
             let (expected_m_s, u_m_s) = line(&others, step.position_m)?;
             Some((step, step.step_m_s - expected_m_s, u_m_s.hypot(step.u_m_s)))
         })
@@ -56,9 +59,21 @@ pub fn judge_rigid(signals: &[Signal], flight: &FlightFit, tolerances: &Toleranc
     })
 }
 
+/// By how much the step changes along the cask between the outermost channels, rad/s: what a misplaced sensor reads more a metre.
+fn turning_rad_s(signals: &[Signal], flight: &FlightFit) -> f64 {
+    let mut steps: Vec<(f64, f64)> = signals
+        .iter()
+        .filter(|s| s.axis == Axis::Transverse)
+        .filter_map(|s| flight.plateau(&s.name).map(|p| (s.position_m, p.velocity_step_m_s)))
+        .collect();
+    steps.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let ends = steps.first().zip(steps.last()).filter(|(a, b)| b.0 - a.0 > 1e-3);
+    ends.map_or(0.0, |(a, b)| ((b.1 - a.1) / (b.0 - a.0)).abs())
+}
+
 /// Least-squares line through steps at a position and its standard uncertainty; `None` without two places a millimetre apart.
-fn line(steps: &[&Step], position_m: f64) -> Option<(f64, f64)> {
-    let weight = |s: &Step| 1.0 / (s.u_m_s * s.u_m_s).max(1e-12);
+fn line(steps: &[&Reading], position_m: f64) -> Option<(f64, f64)> {
+    let weight = |s: &Reading| 1.0 / (s.u_m_s * s.u_m_s).max(1e-12);
     let total: f64 = steps.iter().map(|s| weight(s)).sum();
     let middle_m = steps.iter().map(|s| weight(s) * s.position_m).sum::<f64>() / total;
     let mean_m_s = steps.iter().map(|s| weight(s) * s.step_m_s).sum::<f64>() / total;

@@ -10,10 +10,12 @@ const SILENT: f64 = 8.0;
 const LOUD: f64 = 50.0;
 /// A channel this far below the loudest says nothing either: even at the centre of percussion more arrives.
 const SHARE: f64 = 1e-3;
-/// Samples that the spread is taken from: known to 1 %.
-const SAMPLED: usize = 10_000;
+/// The spread is that of the quietest of this many stretches: ringing after the impact is no noise.
+const STRETCHES: usize = 20;
+/// Samples of a stretch that its spread is taken from: known to 3 %.
+const SAMPLED: usize = 1000;
 
-/// How far a channel goes from its median, m/s², and how far its samples spread, m/s².
+/// How far a channel goes from its median, m/s², and how far its samples spread where it is quietest, m/s².
 struct Reach {
     farthest: f64,
     spread: f64,
@@ -59,18 +61,25 @@ fn reach(channel: &Channel) -> Reach {
 
 fn reach_of<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Reach {
     let value = |x: &T| -> f64 { (*x).into() };
-    let every = (samples.len() / SAMPLED).max(1);
-    let some: Vec<f64> = samples.iter().step_by(every).map(value).filter(|x| x.is_finite()).collect();
-    let middle = robust::median(&mut some.clone());
+    let stretches: Vec<Vec<f64>> = samples
+        .chunks((samples.len() / STRETCHES).max(1))
+        .map(|part| {
+            let every = (part.len() / SAMPLED).max(1);
+            part.iter().step_by(every).map(value).filter(|x| x.is_finite()).collect()
+        })
+        .filter(|part: &Vec<f64>| part.len() >= 8)
+        .collect();
+    let middle = robust::median(&mut stretches.concat());
+    let spread = stretches.iter().map(|part| robust::spread(part)).fold(f64::INFINITY, f64::min);
     // Two running extremes instead of distances: comparisons alone keep up with the reading.
     let (low, high) =
         samples.iter().map(value).filter(|x| x.is_finite()).fold((middle, middle), |(low, high), x| {
             (if x < low { x } else { low }, if x > high { x } else { high })
         });
-    if some.is_empty() {
+    if stretches.is_empty() {
         return Reach { farthest: 0.0, spread: 0.0 };
     }
-    Reach { farthest: scale * (high - middle).max(middle - low), spread: scale * robust::spread(&some) }
+    Reach { farthest: scale * (high - middle).max(middle - low), spread: scale * spread }
 }
 
 #[cfg(test)]
@@ -120,6 +129,14 @@ mod tests {
         assert_eq!(silent(channel("A2", |_| 0.0)), dead);
         assert_eq!(silent(channel("A2", |_| f64::NAN)), dead);
         assert_eq!(silent(channel("A2", |i| 4.0 * (f64::from(i) * 0.0314).sin() + noise(i))), dead);
+    }
+
+    #[test]
+    fn ringing_through_most_of_a_record_is_not_noise() {
+        let rings = |i: u32| noise(i) + if i > 3000 { 200.0 * (f64::from(i) * 0.06).sin() } else { 0.0 };
+        assert!(silent(channel("A2", rings)).is_empty());
+        let both = [channel("A1", rings), channel("A2", noise)];
+        assert_eq!(judge_silent(&both).len(), 1);
     }
 
     #[test]

@@ -11,8 +11,13 @@ const NOTABLE_S: f64 = 3e-4;
 
 /// Holds each delay against what a body can do: answer at once, or as late as a bending wave, never before it is struck.
 #[must_use]
-pub fn judge_skew(onsets: &[Onset], signals: &[Signal], cask: &Cask) -> Vec<Issue> {
-    onsets.iter().filter_map(|onset| skew(onset, signals, cask)).collect()
+pub fn judge_skew(onsets: &[Onset], signals: &[Signal], cask: &Cask, shifted: bool) -> Vec<Issue> {
+    let done = if shifted { "; it was shifted back by as much" } else { "" };
+    let mut issues: Vec<Issue> = onsets.iter().filter_map(|onset| skew(onset, signals, cask)).collect();
+    for issue in issues.iter_mut().filter(|i| i.severity == Severity::Warning) {
+        issue.message.push_str(done);
+    }
+    issues
 }
 
 fn skew(onset: &Onset, signals: &[Signal], cask: &Cask) -> Option<Issue> {
@@ -65,7 +70,7 @@ mod tests {
             is_body: false,
         };
         let onset = Onset { channel: "A2".into(), delay_s, u_s };
-        judge_skew(&[onset], &[], &cask).first().map(|i| i.severity)
+        judge_skew(&[onset], &[], &cask, false).first().map(|i| i.severity)
     }
 
     #[test]

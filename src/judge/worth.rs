@@ -3,8 +3,10 @@
 use crate::data::{Axis, CaskFile, End, Events, Issue, IssueCode, Severity, Signal};
 use crate::numerics::noise::integral_uncertainty_by;
 
-/// Standard uncertainty of the velocity from noise alone that limits a result, as a share of v0: ± 2 % is twice what else it carries.
-const MOST_NOISE: f64 = 0.01;
+/// Standard uncertainty of the velocity from noise alone that leaves little of a result, as a share of v0: ± 6 %.
+const MOST_NOISE: f64 = 0.03;
+/// … and that is worth a note: as much as everything else that the interval carries.
+const NOTABLE_NOISE: f64 = 0.005;
 /// Longest integration that noise is held against, s: contact and the window of the flight's fit.
 const LONGEST_S: f64 = 0.1;
 /// A sensor sits on the cask within this, m: its bolt and the tape's hook.
@@ -34,12 +36,13 @@ fn noisy(signal: &Signal, events: &Events, impact_velocity_m_s: f64) -> Option<I
     let end_s = events.slap_down_s.unwrap_or_else(|| signal.end_s());
     let length_s = (end_s - contact_s).clamp(0.0, LONGEST_S);
     let u_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
-    (u_m_s > MOST_NOISE * impact_velocity_m_s).then(|| {
+    let severity = if u_m_s > MOST_NOISE * impact_velocity_m_s { Severity::Warning } else { Severity::Note };
+    (u_m_s > NOTABLE_NOISE * impact_velocity_m_s).then(|| {
         Issue::new(
             IssueCode::Noise,
-            Severity::Warning,
+            severity,
             format!(
-                "the noise of {} ({:.2} g before the impact) alone makes its velocity uncertain by ± {:.2} m/s over {:.0} ms: record more of the free fall, use a more sensitive range, or look for a loose cable",
+                "the noise of {} ({:.2} g before the impact) alone makes its velocity uncertain by ± {:.2} m/s over {:.0} ms, which is in the intervals: record more of the free fall, use a more sensitive range, or look for a loose cable",
                 signal.name,
                 signal.noise_m_s2 / 9.806_65,
                 2.0 * u_m_s,

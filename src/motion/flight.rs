@@ -3,6 +3,7 @@
 use super::Velocity;
 use crate::data::{Axis, FlightFit, FlightModelScore, Mode, Plateau, Signal};
 use crate::numerics::damped_modes::{Drive, Fit, Form, Oscillation, Series, SeriesFit, fit, uniform_ringing};
+use crate::numerics::noise::integral_uncertainty_by;
 use crate::numerics::robust;
 
 /// Most modes tried: the bending modes of a cask below 400 Hz.
@@ -16,7 +17,7 @@ const LEAST_FLOOR: f64 = 1e-3;
 /// Stretch before the end of a long flight that is compared with the fit, s: two periods of 100 Hz.
 const LATE_S: f64 = 0.02;
 /// An offset from a quarter of a second knows that of the next half to so many of its standard uncertainties (noise of 1/f).
-const DRIFT_FACTOR: f64 = 4.0;
+const DRIFT_FACTOR: f64 = 3.5;
 /// Largest zero shift as a share of the channel's peak: data sheets of shock accelerometers give up to a few percent of full scale.
 const MOST_ZERO_SHIFT: f64 = 0.1;
 /// Lowest frequency sought: this many periods in the window.
@@ -168,7 +169,9 @@ fn late_mismatch_m_s(signal: &Signal, flight: &FlightFit, whole: &Window, cog_m:
         .sum();
     let mismatch_m_s = velocity.mean(from_s, to_s) - expected_m_s - ringing_m_s;
     // What the offset may have gathered since is no contact.
-    let drifted_m_s = DRIFT_FACTOR * signal.u_offset_m_s2 * (to_s - flight.from_s);
+    let since_s = to_s - flight.from_s;
+    let noise_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, since_s);
+    let drifted_m_s = DRIFT_FACTOR * noise_m_s.max(signal.u_offset_m_s2 * since_s);
     Some(mismatch_m_s.signum() * (mismatch_m_s.abs() - drifted_m_s).max(0.0))
 }
 

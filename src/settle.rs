@@ -1,0 +1,148 @@
+//! Signals and first contact to separation, slap-down and the flight between them, each found with the others' help.
+
+use crate::data::{CaskFile, End, Events, FlightFit, Signal};
+use crate::{assemble, events, motion};
+
+/// Separation and slap-down are found again on signals free of ringing this often; the second round moves them by less than a sample.
+const ROUNDS: usize = 3;
+
+/// R cannot strike before its height over this share of v0: rod ends come down with less than 2 v0, angles are known to 40 %.
+const EARLIEST_SLAP_DOWN: f64 = 0.3;
+
+/// R strikes with more than this share of v0 where it slaps down at all.
+const LEAST_SLAP_DOWN: f64 = 0.15;
+
+/// Share of the time from contact to slap-down that the first flight fit leaves to the contact, and the longest, s.
+const FIRST_CLEARANCE: f64 = 0.4;
+const LONGEST_CLEARANCE_S: f64 = 0.022;
+
+/// Shares of the time to the slap-down first seen at which the first fit ends: strong ringing may make that one late, and a fit that
+/// reaches into it explains nothing.
+const FIRST_ENDS: [f64; 4] = [1.0, 0.8, 0.65, 0.5];
+
+/// A flight fit that leaves less than this RMS has explained its channel, m/s: 1.5 % of a 9 m fall.
+const EXPLAINED_M_S: f64 = 0.2;
+
+/// R at slap-down this share of the length off the target is where it should be, an angle 1° off included.
+const NEAR: f64 = 0.02;
+
+/// The contact's force after separation is sought this long beyond a window, s.
+const BEYOND_S: f64 = 0.02;
+
+/// Where the search ended.
+pub(crate) struct Settled {
+    /// Separation and its standard uncertainty, s.
+    pub left: (f64, f64),
+    /// Slap-down and its standard uncertainty, s, where there is one.
+    pub struck: Option<(f64, f64)>,
+    /// The flight between them, where it could be fitted.
+    pub flight: Option<FlightFit>,
+}
+
+/// What the search goes by.
+struct Search<'a> {
+    signals: &'a [Signal],
+    file: &'a CaskFile,
+    contact_s: f64,
+    record_end_s: f64,
+    earliest_s: f64,
+    least_m_s: f64,
+}
+
+/// Settles separation, slap-down and flight; of several beginnings the first that explains the flight and brings R to the target, else the
+/// best. `None` without transverse channels on both ends.
+pub(crate) fn settle(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Option<Settled> {
+    let drop = &file.drop;
+    let descent_m = file.cask.length_m * drop.angle_rad.sin();
+    let search = Search {
+        signals,
+        file,
+        contact_s,
+        record_end_s: record_end_s(signals),
+        earliest_s: contact_s + EARLIEST_SLAP_DOWN * descent_m / drop.impact_velocity_m_s,
+        least_m_s: LEAST_SLAP_DOWN * drop.impact_velocity_m_s,
+    };
+    let (first, second) = search.ends(signals)?;
+    let struck = events::slap_down(&second, search.earliest_s..search.record_end_s, search.least_m_s, false);
+    let mut best: Option<(f64, Settled)> = None;
+    for share in FIRST_ENDS {
+        let attempt = search.attempt(&first, struck, share)?;
+        let cost = search.cost(&attempt);
+        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+            best = Some((cost, attempt));
+        }
+        if cost < 1.0 {
+            break;
+        }
+    }
+    best.map(|(_, settled)| settled)
+}
+
+/// Where the shortest record ends, s.
+pub(crate) fn record_end_s(signals: &[Signal]) -> f64 {
+    signals.iter().map(Signal::end_s).fold(f64::INFINITY, f64::min)
+}
+
+impl Search<'_> {
+    /// Both ends' signals without the first bending mode.
+    fn ends(&self, signals: &[Signal]) -> Option<(Signal, Signal)> {
+        let on = |end| events::without_first_mode(signals, end, self.file.cask.length_m);
+        Some((on(End::First)?, on(End::Second)?))
+    }
+
+    /// Rounds from a first guess of the slap-down, the first fit ending at a share of the time to it.
+    fn attempt(&self, first: &Signal, mut struck: Option<(f64, f64)>, share: f64) -> Option<Settled> {
+        let (signals, contact_s, cog_m) = (self.signals, self.contact_s, self.file.cask.cog_m);
+        let mut end_s = contact_s + share * (struck.map_or(self.record_end_s, |s| s.0) - contact_s);
+        // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit goes by.
+        let cleared_s = contact_s + (FIRST_CLEARANCE * (end_s - contact_s)).min(LONGEST_CLEARANCE_S);
+        let rough_s = events::first_separation(first, contact_s, end_s).unwrap_or(cleared_s);
+        // The first fit keeps well clear of the contact, which ringing may have seemed to end too soon.
+        let mut free_s = rough_s.max(cleared_s);
+        let mut left = (rough_s, 0.1 * (rough_s - contact_s));
+        let mut flight: Option<FlightFit> = None;
+        let mut calm = signals.to_vec();
+        for _ in 0..ROUNDS {
+            let window = motion::Window {
+                contact_s,
+                from_s: free_s,
+                to_s: end_s - 5e-4,
+                angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| motion::rotation_rad_s(signals, f)),
+            };
+            let drive = motion::drive(signals, flight.as_ref(), (contact_s, left.0), window.from_s, cog_m);
+            let Some(fitted) = motion::fit_flight(signals, &window, drive.as_ref(), cog_m) else { break };
+            let beyond_s = struck.map_or(self.record_end_s, |s| s.0).max(end_s) + BEYOND_S;
+            motion::take_off_ringing(&mut calm, signals, &fitted, contact_s..beyond_s);
+            let (first, second) = self.ends(&calm)?;
+            // A flight that is explained well has no slap-down hidden in its ringing; one that is not may show what is none.
+            if is_explained(&fitted) {
+                let between_s = self.earliest_s.max(free_s)..self.record_end_s;
+                struck = events::slap_down(&second, between_s, self.least_m_s, true);
+            }
+            left = events::separation(&first, contact_s, free_s).unwrap_or(left);
+            free_s = left.0 + 0.1 * (left.0 - contact_s) + 3e-4;
+            end_s = struck.map_or(self.record_end_s, |s| s.0);
+            flight = Some(fitted);
+        }
+        Some(Settled { left, struck, flight })
+    }
+
+    /// What is left unexplained, and R's distance from the target, each over what is allowed; below 1 nothing speaks against it.
+    fn cost(&self, settled: &Settled) -> f64 {
+        let Some(flight) = &settled.flight else { return f64::INFINITY };
+        let left_m_s = flight.plateaus.iter().map(|p| p.residual_m_s).fold(0.0, f64::max);
+        let times = Events {
+            first_contact_s: Some(self.contact_s),
+            separation_s: Some(settled.left.0),
+            slap_down_s: settled.struck.map(|s| s.0),
+            ..Events::default()
+        };
+        let moved = motion::outcome(self.signals, flight, &times, &assemble::sticking(self.file));
+        let off_m = moved.and_then(|m| m.second_end_height_m).unwrap_or(self.file.cask.length_m);
+        (left_m_s / EXPLAINED_M_S).max(off_m.abs() / (NEAR * self.file.cask.length_m))
+    }
+}
+
+fn is_explained(flight: &FlightFit) -> bool {
+    flight.plateaus.iter().all(|p| p.residual_m_s < EXPLAINED_M_S)
+}
