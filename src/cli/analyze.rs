@@ -3,7 +3,8 @@
 use super::Outcome;
 use super::output::{Folder, JsonTarget, print};
 use super::progress::with_progress;
-use clap::Args;
+use clap::{Args, ValueEnum};
+use dropcheck::data::{CaskFile, DropResult, Setting};
 use dropcheck::{ingest, report};
 use std::path::PathBuf;
 
@@ -11,7 +12,8 @@ const AFTER_HELP: &str = "\
 Examples:
   dropcheck analyze drop.mcap --cask cask.toml
   dropcheck analyze drop.csv --cask cask.toml --out report
-  dropcheck analyze drop.h5 --cask cask.toml --json - | jq .k";
+  dropcheck analyze drop.h5 --cask cask.toml --json - | jq .k
+  dropcheck analyze drop.mcap --cask cask.toml --without zero_shift,hum";
 
 #[derive(Args)]
 #[command(after_help = AFTER_HELP)]
@@ -27,6 +29,57 @@ pub struct Arguments {
     /// Write the result as JSON to a file; with - to standard output, and nothing else there
     #[arg(long, value_name = "FILE|-")]
     json: Option<PathBuf>,
+    #[command(flatten)]
+    switched_off: SwitchedOff,
+}
+
+/// Corrections of the samples that the command line forbids, whatever the cask file says.
+#[derive(Args)]
+pub struct SwitchedOff {
+    /// Leave a correction of the samples out; several with commas, or once more
+    #[arg(long, value_name = "CORRECTION", value_delimiter = ',')]
+    without: Vec<Correction>,
+}
+
+/// A key of `[corrections]` in the cask file.
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum Correction {
+    /// The mean of the free fall
+    Offset,
+    /// A change of the offset at the first impact
+    ZeroShift,
+    /// A channel stamped late or early
+    Skew,
+    /// Mains hum
+    Hum,
+}
+
+impl SwitchedOff {
+    /// Switches them off before the analysis.
+    pub fn in_cask_file(&self, cask_file: &mut CaskFile) {
+        let made = &mut cask_file.corrections;
+        for correction in &self.without {
+            *match correction {
+                Correction::Offset => &mut made.offset,
+                Correction::ZeroShift => &mut made.zero_shift,
+                Correction::Skew => &mut made.skew,
+                Correction::Hum => &mut made.hum,
+            } = false;
+        }
+    }
+
+    /// Says so in the result, for the cask file and its SHA-256 do not.
+    pub fn in_settings(&self, result: &mut DropResult) {
+        let names = Correction::value_variants().iter().filter(|c| self.without.contains(c));
+        for value in names.filter_map(Correction::to_possible_value) {
+            result.settings.push(Setting {
+                name: format!("correction {}", value.get_name()),
+                value: "switched off".into(),
+                origin: "command line, --without".into(),
+            });
+        }
+    }
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
@@ -35,10 +88,12 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
         arguments.out.as_deref().map(|dir| Folder::checked(dir, &report::FILE_NAMES, &inputs)).transpose()?;
     let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
 
-    let cask_file = ingest::cask_file(&arguments.cask)?;
+    let mut cask_file = ingest::cask_file(&arguments.cask)?;
+    arguments.switched_off.in_cask_file(&mut cask_file);
     let recording =
         with_progress("reading", |progress| ingest::read(&arguments.recording, &cask_file, progress))?;
-    let analysis = dropcheck::analyze(&recording, &cask_file);
+    let mut analysis = dropcheck::analyze(&recording, &cask_file);
+    arguments.switched_off.in_settings(&mut analysis.result);
 
     if let Some(folder) = &folder {
         folder.write(&report::files(&analysis)?)?;

@@ -1,5 +1,6 @@
 //! `batch`: a campaign of recordings with one cask file to one table; a recording that fails does not stop the others.
 
+use super::analyze::SwitchedOff;
 use super::complaint::sentence;
 use super::output::{Folder, print};
 use super::progress::with_progress;
@@ -25,6 +26,8 @@ pub struct Arguments {
     /// Folder for campaign.csv, campaign.json and one report a recording
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    switched_off: SwitchedOff,
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
@@ -39,14 +42,15 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
         }
         None => None,
     };
-    let cask_file = ingest::cask_file(&arguments.cask)?;
+    let mut cask_file = ingest::cask_file(&arguments.cask)?;
+    arguments.switched_off.in_cask_file(&mut cask_file);
     if let Some(first) = recordings.first() {
         ingest::cask_file::require_channels(&cask_file, first)?;
     }
     let mut rows = Vec::with_capacity(recordings.len());
     for (i, path) in recordings.iter().enumerate() {
         let folder = folders.as_ref().and_then(|(_, folders)| folders.get(i));
-        rows.push(row(path, &cask_file, folder));
+        rows.push(row(path, &cask_file, &arguments.switched_off, folder));
     }
     let campaign = Campaign::new(arguments.cask.display().to_string(), rows);
     if let Some((summary, _)) = &folders {
@@ -60,8 +64,13 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     Ok(campaign.recordings.iter().map(outcome).max().unwrap_or(Outcome::Clear))
 }
 
-fn row(path: &Path, cask_file: &CaskFile, folder: Option<&(String, Folder)>) -> CampaignRow {
-    match analysed(path, cask_file, folder) {
+fn row(
+    path: &Path,
+    cask_file: &CaskFile,
+    switched_off: &SwitchedOff,
+    folder: Option<&(String, Folder)>,
+) -> CampaignRow {
+    match analysed(path, cask_file, switched_off, folder) {
         Ok(row) => row,
         Err(complaint) => CampaignRow::failed(path.display().to_string(), sentence(&complaint)),
     }
@@ -70,11 +79,13 @@ fn row(path: &Path, cask_file: &CaskFile, folder: Option<&(String, Folder)>) -> 
 fn analysed(
     path: &Path,
     cask_file: &CaskFile,
+    switched_off: &SwitchedOff,
     folder: Option<&(String, Folder)>,
 ) -> miette::Result<CampaignRow> {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let recording = with_progress(&name, |progress| ingest::read(path, cask_file, progress))?;
-    let analysis = dropcheck::analyze(&recording, cask_file);
+    let mut analysis = dropcheck::analyze(&recording, cask_file);
+    switched_off.in_settings(&mut analysis.result);
     let mut row = CampaignRow::of(&analysis.result);
     if let Some((name, folder)) = folder {
         folder.write(&report::files(&analysis)?)?;

@@ -1,5 +1,6 @@
 //! An analysis to `report.html`: one file without network, for the desk and for A4 paper.
 
+use super::html_reconstruction::{budget, reconstruction};
 use super::html_sections as sections;
 use super::pictures::Picture;
 use super::rounding::{interval, percent};
@@ -31,12 +32,13 @@ pub(super) fn page(analysis: &Analysis, pictures: &[Picture]) -> String {
         @for name in ["accelerations", "velocities", "motion", "spectra"] {
             (picture(pictures, name))
         }
+        (reconstruction(result))
+        (sections::flight(result))
+        (budget(result, &analysis.cask_file))
         (sections::models(result))
         (sections::predictions(result))
-        (sections::budget(result))
-        (sections::flight(result))
         (sections::channels(result))
-        (sections::provenance(result))
+        (sections::provenance(result, &analysis.cask_file))
         footer {
             "An interval holds the value with 95 % probability. Times count from the recording's first sample unless an \
              axis says otherwise. Body axes: axial from the first end to the second, transverse away from the target."

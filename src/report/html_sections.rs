@@ -5,8 +5,11 @@ use super::prediction::{KEPT_SENTENCE, contact_words, kept_mark};
 use super::rounding::{
     MISSING, fixed, interval, optional, optional_fixed, parts, percent, plain, significant,
 };
+use super::settings;
 use super::table::{FIRST_IMPACT_CODES, SLAP_DOWN_CODES, end_axis};
-use super::text::{code_word, format_word, printable, reason, sentence, severity_word, span_text};
+use super::text::{
+    code_word, format_word, printable, reason, sentence, severity_word, span_text, true_minus,
+};
 use crate::data::{CaskFile, DropResult, Estimate, FlightRegime, Issue, IssueCode, ModelCandidate};
 use maud::{Markup, html};
 
@@ -142,7 +145,7 @@ pub(super) fn models(result: &DropResult) -> Markup {
                 table class="whole" {
                     caption { "The ladder of analytical models with the measured k, the simplest first; rungs that change nothing are left out" }
                     thead { tr { th { "Model" } th class="n" { "Predicted, m/s" } th class="n" { "± 95 %, m/s" }
-                        th class="n" { "Predicted against measured" } th { "Within both intervals" } } }
+                        th class="n" { "Measured against predicted" } th { "Within both intervals" } } }
                     tbody { @for c in &model.candidates { (candidate(c, c.rung == model.rung)) } }
                 }
             }
@@ -231,24 +234,6 @@ pub(super) fn flight(result: &DropResult) -> Markup {
     }
 }
 
-/// What each input contributes to the intervals, largest first.
-pub(super) fn budget(result: &DropResult) -> Markup {
-    if result.budget.is_empty() {
-        return html! {};
-    }
-    html! {
-        h2 { "Uncertainty" }
-        p class="lead" { "Each input was moved by its standard uncertainty through the reconstruction. The changes add in squares; an interval is twice their root." }
-        table class="whole" {
-            thead { tr { th { "Input" } th class="n" { "Standard uncertainty" } th class="n" { "Slap-down speed, m/s" } th class="n" { "k" } } }
-            tbody { @for c in &result.budget { tr {
-                th scope="row" { (printable(&c.input)) } td class="n" { (printable(&c.standard_uncertainty)) }
-                td class="n" { (optional_fixed(c.speed_m_s, 3)) } td class="n" { (optional_fixed(c.k, 4)) }
-            } } }
-        }
-    }
-}
-
 /// What each channel is worth.
 pub(super) fn channels(result: &DropResult) -> Markup {
     let g = |value: Option<f64>| optional(value.map(|v| v / STANDARD_GRAVITY_M_S2), 3);
@@ -268,7 +253,8 @@ pub(super) fn channels(result: &DropResult) -> Markup {
 }
 
 /// Which files, which version, which settings.
-pub(super) fn provenance(result: &DropResult) -> Markup {
+pub(super) fn provenance(result: &DropResult, file: &CaskFile) -> Markup {
+    let stated = settings::of_cask_file(file, &result.settings);
     html! {
         h2 { "Provenance" }
         table class="whole" {
@@ -281,14 +267,12 @@ pub(super) fn provenance(result: &DropResult) -> Markup {
                 tr { th scope="row" { "Slap-down speed" } td { (interval(result.slap_down.speed.as_ref())) " · result schema " (result.schema) } }
             }
         }
-        @if !result.settings.is_empty() {
-            table {
-                caption { "Every setting and where it came from" }
-                thead { tr { th { "Setting" } th { "Value" } th { "From" } } }
-                tbody { @for s in &result.settings { tr {
-                    th scope="row" { (printable(&s.name)) } td { (printable(&s.value)) } td { (printable(&s.origin)) }
-                } } }
-            }
+        table {
+            caption { "Every setting and where it came from" }
+            thead { tr { th { "Setting" } th { "Value" } th { "From" } } }
+            tbody { @for s in result.settings.iter().chain(&stated) { tr {
+                th scope="row" { (printable(&s.name)) } td { (true_minus(&printable(&s.value))) } td { (printable(&s.origin)) }
+            } } }
         }
     }
 }

@@ -23,9 +23,17 @@ pub fn result(result: &DropResult) -> Result<Vec<u8>, ReportError> {
         &mut second.vertical_velocity,
         &mut second.horizontal_velocity,
         &mut second.angle,
+        &mut second.second_end_height,
         &mut result.k,
     ] {
-        *estimate = estimate.filter(|e: &Estimate| e.value.is_finite() && e.u95.is_finite());
+        *estimate = estimate.filter(is_whole);
+    }
+    if let Some(choice) = &mut result.reconstruction {
+        for candidate in &mut choice.candidates {
+            candidate.speed = candidate.speed.filter(is_whole);
+            candidate.k = candidate.k.filter(is_whole);
+        }
+        choice.chi_square = choice.chi_square.filter(|c| c.0.is_finite());
     }
     result.comparison = result.comparison.filter(|c| {
         [c.predicted, c.predicted_u95, c.measured, c.measured_u95, c.difference_percent]
@@ -33,6 +41,10 @@ pub fn result(result: &DropResult) -> Result<Vec<u8>, ReportError> {
             .all(|x| x.is_finite())
     });
     pretty(&result)
+}
+
+fn is_whole(estimate: &Estimate) -> bool {
+    estimate.value.is_finite() && estimate.u95.is_finite()
 }
 
 /// The JSON of `inspect`.
@@ -65,6 +77,9 @@ mod tests {
         assert_eq!(json["model"]["name"], "body");
         assert_eq!(json["predictions"][0]["contact"], "rough");
         assert_eq!(json["quality"][0]["code"], "clipped");
+        assert_eq!(json["reconstruction"]["rung"], "flight");
+        assert_eq!(json["reconstruction"]["closures"][1]["kind"], "turning");
+        assert_eq!(json["reconstruction"]["chi_square"][1], 2);
         for key in ["time", "flight_time", "speed", "vertical_velocity", "horizontal_velocity", "angle"] {
             assert!(json["slap_down"][key]["u95"].is_f64(), "{key}");
         }
@@ -75,8 +90,16 @@ mod tests {
         let mut analysis = sample::analysis();
         analysis.result.k = Some(Estimate::new(f64::NAN, 0.1, "1"));
         analysis.result.slap_down.speed = Some(Estimate::new(20.0, f64::INFINITY, "m/s"));
+        let choice = analysis.result.reconstruction.as_mut().expect("the sample has one");
+        choice.candidates[0].k = Some(Estimate::new(f64::NAN, 0.1, "1"));
+        choice.closures[0].miss_in_u = f64::NAN;
+        choice.chi_square = Some((f64::INFINITY, 2));
         let json: Value = serde_json::from_slice(&result(&analysis.result).unwrap()).unwrap();
         assert!(json["k"].is_null());
         assert!(json["slap_down"]["speed"].is_null());
+        let choice = &json["reconstruction"];
+        assert!(choice["candidates"][0]["k"].is_null() && choice["chi_square"].is_null());
+        assert!(choice["closures"][0]["miss_in_u"].is_null());
+        assert!(choice["candidates"][1]["k"]["value"].is_f64());
     }
 }

@@ -7,6 +7,7 @@ mod curves_h5;
 mod curves_mcap;
 mod grid;
 mod html;
+mod html_reconstruction;
 mod html_sections;
 mod json;
 mod listing;
@@ -16,7 +17,10 @@ mod rounding;
 #[cfg(test)]
 mod sample;
 #[cfg(test)]
+mod sample_reconstruction;
+#[cfg(test)]
 mod sample_study;
+mod settings;
 mod synthetic;
 mod table;
 mod template;

@@ -1,11 +1,11 @@
 //! A plausible analysis of an ANF-18 drop, made by hand, for the tests of this module only.
 
+use super::sample_reconstruction;
 use crate::data::{
     Analysis, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelSpec, ChannelSummary, Comparison,
-    Contact, Contribution, Coupling, Curves, Drop, DropResult, End, Estimate, Events, FilterChoice,
-    FirstImpact, FlightFit, FlightModelScore, FlightRegime, Input, Issue, IssueCode, Mode, ModelCandidate,
-    ModelChoice, MotionCurve, Plateau, Prediction, RecordingFormat, Rung, Setting, Severity, SlapDown,
-    Source, Spectrum, Unit, Verdict,
+    Contact, Coupling, Curves, Drop, DropResult, End, Estimate, Events, FilterChoice, FirstImpact, FlightFit,
+    FlightModelScore, FlightRegime, Input, Issue, IssueCode, Mode, ModelCandidate, ModelChoice, MotionCurve,
+    Plateau, Prediction, RecordingFormat, Rung, Setting, Severity, SlapDown, Source, Spectrum, Unit, Verdict,
 };
 use std::f64::consts::PI;
 
@@ -32,6 +32,8 @@ pub(super) fn without_anything() -> Analysis {
     result.first_impact = FirstImpact::default();
     result.slap_down = SlapDown::default();
     result.k = None;
+    result.reconstruction = None;
+    result.budget.clear();
     result.model = None;
     result.comparison = None;
     result.events = Events::default();
@@ -81,7 +83,7 @@ fn result() -> DropResult {
             second_end_height: estimate(0.012, 0.09, "m"),
         },
         k: estimate(0.5588, 0.0102, "1"),
-        reconstruction: None,
+        reconstruction: Some(sample_reconstruction::choice()),
         model: Some(model()),
         predictions: predictions(),
         comparison: Some(Comparison {
@@ -106,12 +108,7 @@ fn result() -> DropResult {
             summary("A2", End::Second, "/daq/a2.samples"),
         ],
         flight: Some(flight()),
-        budget: vec![Contribution {
-            input: "calibration of A2".into(),
-            standard_uncertainty: "0.5 %".into(),
-            speed_m_s: Some(0.035),
-            k: Some(0.0001),
-        }],
+        budget: sample_reconstruction::budget(),
         settings: settings(),
     }
 }
@@ -132,8 +129,8 @@ fn model() -> ModelChoice {
                  body with its section of 0.792 m lies within them"
             .into(),
         candidates: vec![
-            candidate(Rung::Rod, BodyModel::Rod, 22.76, 0.20, 10.7, false),
-            candidate(Rung::Body, BodyModel::Body, 20.49, 0.19, -0.34, true),
+            candidate(Rung::Rod, BodyModel::Rod, 22.76, 0.20, -9.7, false),
+            candidate(Rung::Body, BodyModel::Body, 20.49, 0.19, 0.34, true),
         ],
     }
 }
@@ -286,7 +283,12 @@ pub(super) fn cask_file() -> CaskFile {
             channel("A1", End::First, "/daq/a1.samples", 0.15),
             channel("A2", End::Second, "/daq/a2.samples", 5.362),
         ],
-        defaults: ["cask.cog_m", "drop.gravity_m_s2", "contact.friction"].map(String::from).to_vec(),
+        defaults: ["cask.cog_m", "drop.gravity_m_s2", "contact.friction"]
+            .map(String::from)
+            .into_iter()
+            // The sample states the tolerance of its angle, and no other.
+            .chain(super::settings::TOLERANCES[1..].iter().map(|t| format!("tolerance.{}", t.key)))
+            .collect(),
     }
 }
 

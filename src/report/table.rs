@@ -42,6 +42,7 @@ pub fn table(analysis: &Analysis) -> String {
     out.push_str(&verdict(result));
     out.push_str(&quantities(result));
     out.push_str(&comparison(result));
+    out.push_str(&reconstruction(result));
     out.push_str(&predictions(result));
     out.push_str(&channels(result));
     out.push_str(&quality(&result.quality));
@@ -167,6 +168,28 @@ fn comparison(result: &DropResult) -> String {
     out
 }
 
+/// The rung taken and why, and the closure that is missed most.
+fn reconstruction(result: &DropResult) -> String {
+    let Some(choice) = &result.reconstruction else { return String::new() };
+    let mut out = heading("How the motion was reconstructed");
+    out.push_str(&wrap(&text::sentence(&choice.reason), WIDTH, 2));
+    if let Some(worst) = choice.closures.iter().max_by(|a, b| a.miss_in_u.abs().total_cmp(&b.miss_in_u.abs()))
+    {
+        let of = match choice.closures.len() {
+            1 => "The one closure".to_owned(),
+            n => format!("Of {n} closures the worst"),
+        };
+        let miss = format!(
+            "{of}, {}, is missed by {}, {} standard uncertainties.",
+            worst.name,
+            text::true_minus(&worst.miss),
+            rounding::fixed(worst.miss_in_u.abs(), 1)
+        );
+        out.push_str(&wrap(&miss, WIDTH, 2));
+    }
+    out
+}
+
 fn predictions(result: &DropResult) -> String {
     if result.predictions.is_empty() {
         return String::new();
@@ -262,6 +285,12 @@ mod tests {
         {
             assert!(text.contains(words), "{words} is missing in\n{text}");
         }
+        let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(
+            flat.contains("first impact, is missed by −0.8 % of ω, 0.4 standard uncertainties."),
+            "{flat}"
+        );
+        assert!(flat.contains("reconstructed Taken: planar motion with modes and drift"), "{flat}");
     }
 
     #[test]

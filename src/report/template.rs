@@ -93,6 +93,22 @@ angle_deg = 15.0            # {FILL_IN}: inclination of the axis above the horiz
 # [filter]                  # left out: chosen from the mass and the data; give one of the two
 # cfc = 180                 # a channel frequency class of SAE J211 / ISO 6487
 # cutoff_hz = 400.0         # a −3 dB cut-off
+
+# [tolerance]               # half-widths of 95 % intervals; these are the defaults
+# angle_deg = 0.4           # drop angle
+# impact_velocity_percent = 0.3
+# calibration_percent = 1.0 # scale of a channel
+# cross_axis_percent = 2.0  # what a sensor reads of the other body axis, tilt included
+# position_m = 0.01         # place of a sensor along the axis
+# cog_m = 0.01              # centre of gravity
+# inertia_percent = 2.0
+# friction_percent = 10.0   # contact law, of the way from rough to smooth
+
+# [corrections]             # all are made; false leaves one out
+# offset = true             # mean of the free fall
+# zero_shift = true         # change of the offset at the first impact
+# skew = true               # a channel stamped late or early
+# hum = true                # mains hum
 "#
         ),
     );
@@ -349,6 +365,30 @@ mod tests {
         let listing = listing(vec![listed("{ topic = \"/a.b\", field = \"acc.z\" }", "number", None)]);
         let table = parsed(&cask_file(&listing));
         assert_eq!(table["channel"][0]["source"]["field"].as_str(), Some("acc.z"));
+    }
+
+    #[test]
+    fn the_tolerances_shown_are_all_and_the_defaults() {
+        let text = cask_file(&listing(Vec::new()));
+        let (_, rest) = text.split_once("# [tolerance]").expect("the table");
+        let (table, _) = rest.split_once("\n\n").expect("its end");
+        let lines: Vec<&str> = table.lines().skip(1).map(|line| line.trim_start_matches("# ")).collect();
+        let stated: toml::Table = lines.join("\n").parse().expect("valid once the marks are off");
+        let d = crate::data::Tolerances::default();
+        let expected = [
+            ("angle_deg", d.angle_rad.to_degrees()),
+            ("impact_velocity_percent", 100.0 * d.impact_velocity),
+            ("calibration_percent", 100.0 * d.calibration),
+            ("cross_axis_percent", 100.0 * d.cross_axis),
+            ("position_m", d.position_m),
+            ("cog_m", d.cog_m),
+            ("inertia_percent", 100.0 * d.inertia),
+            ("friction_percent", 100.0 * d.friction),
+        ];
+        assert_eq!(stated.len(), expected.len());
+        for (key, value) in expected {
+            assert!((stated[key].as_float().expect(key) - value).abs() < 1e-9, "{key}");
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Words from files to words that are safe and fit the page: no control characters, wrapped, coloured by SGR codes.
 
-use crate::data::{DropResult, Issue, IssueCode, RecordingFormat, Severity, Verdict};
+use crate::data::{DropResult, Issue, IssueCode, ReconstructionRung, RecordingFormat, Severity, Verdict};
 use std::fmt::Write;
 
 /// Adds one line; writing to a string does not fail.
@@ -165,9 +165,34 @@ pub(super) fn span_text(issue: &Issue) -> Option<String> {
     }
 }
 
+/// `text` with a true minus sign before each number that has a hyphen for one.
+pub(super) fn true_minus(text: &str) -> String {
+    let mut before = ' ';
+    let mut letters = text.chars().peekable();
+    let mut out = String::with_capacity(text.len());
+    while let Some(letter) = letters.next() {
+        let is_sign = letter == '-'
+            && (before.is_whitespace() || before == '(')
+            && letters.peek().is_some_and(char::is_ascii_digit);
+        out.push(if is_sign { '−' } else { letter });
+        before = letter;
+    }
+    out
+}
+
+/// A rung of the reconstruction as a table names it.
+pub(super) fn rung_words(rung: ReconstructionRung) -> &'static str {
+    match rung {
+        ReconstructionRung::Channels => "each channel by itself",
+        ReconstructionRung::Planar => "planar motion, mean of the flight",
+        ReconstructionRung::Flight => "planar motion, flight fitted with modes and drift",
+        ReconstructionRung::Joint => "joint fit of all inputs within their tolerances",
+    }
+}
+
 /// A reason as a sentence: a capital and a full stop.
 pub(super) fn sentence(reason: &str) -> String {
-    let reason = printable(reason);
+    let reason = true_minus(&printable(reason));
     let reason = reason.trim().trim_end_matches('.');
     let mut letters = reason.chars();
     letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
@@ -202,6 +227,15 @@ mod tests {
     fn a_long_path_keeps_its_end() {
         assert_eq!(tail("/a/long/way/to/test.mcap", 12), "…o/test.mcap");
         assert_eq!(tail("test.mcap", 12), "test.mcap");
+    }
+
+    #[test]
+    fn a_sign_is_a_minus_and_a_hyphen_stays_one() {
+        assert_eq!(
+            true_minus("-0.8 % of A1-2 (-3), slap-down, 1e-3"),
+            "−0.8 % of A1-2 (−3), slap-down, 1e-3"
+        );
+        assert_eq!(sentence("off by -1"), "Off by −1.");
     }
 
     #[test]

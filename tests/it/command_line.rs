@@ -344,3 +344,31 @@ fn every_output_of_a_run_is_there() {
         assert!(!html.contains(outside), "the report reaches for the network: {outside}");
     }
 }
+
+#[test]
+fn a_correction_switched_off_is_said_in_the_result() {
+    let (recording, cask) = (fixture("anf18-json.mcap"), fixture("anf18-json.toml"));
+    let with = |more: &[&str]| {
+        let words = [
+            "analyze".as_ref(),
+            recording.as_os_str(),
+            "--cask".as_ref(),
+            cask.as_os_str(),
+            "--json".as_ref(),
+        ];
+        dropcheck(words.into_iter().chain(["-".as_ref()]).chain(more.iter().map(AsRef::as_ref)))
+    };
+    let off = |answer: &Answer| -> Vec<String> {
+        let result = answer.json();
+        let settings = result["settings"].as_array().expect("a list").clone();
+        let off = settings.iter().filter(|s| s["origin"] == "command line, --without");
+        off.map(|s| s["name"].as_str().expect("a name").to_owned()).collect()
+    };
+    assert!(off(&with(&[])).is_empty());
+    let answer = with(&["--without", "hum,offset", "--without", "offset"]);
+    assert_eq!(off(&answer), ["correction offset", "correction hum"]);
+    // What is not taken off shows as an offset of nothing.
+    assert_eq!(answer.json()["channels"][0]["offset_m_s2"], 0.0);
+    assert!(with(&[]).json()["channels"][0]["offset_m_s2"] != 0.0);
+    at_fault(&with(&["--without", "noise"]), &["noise", "offset, zero_shift, skew, hum"]);
+}

@@ -1,0 +1,128 @@
+//! A cask file's tolerances and corrections to lines of the settings.
+
+use super::rounding::plain;
+use crate::data::{CaskFile, Setting, Tolerances};
+
+/// A tolerance of the cask file.
+pub(super) struct Tolerance {
+    /// Its key in `[tolerance]`.
+    pub key: &'static str,
+    /// How the budget calls what it belongs to, or how that begins.
+    pub input: &'static str,
+    name: &'static str,
+    unit: &'static str,
+    value: fn(&Tolerances) -> f64,
+}
+
+/// All of them, in the cask file's order.
+pub(super) const TOLERANCES: [Tolerance; 8] = [
+    Tolerance {
+        key: "angle_deg",
+        input: "drop angle",
+        name: "drop angle",
+        unit: "°",
+        value: |t| t.angle_rad.to_degrees(),
+    },
+    Tolerance {
+        key: "impact_velocity_percent",
+        input: "impact velocity",
+        name: "impact velocity",
+        unit: " %",
+        value: |t| 100.0 * t.impact_velocity,
+    },
+    Tolerance {
+        key: "calibration_percent",
+        input: "calibration of",
+        name: "calibration of a channel",
+        unit: " %",
+        value: |t| 100.0 * t.calibration,
+    },
+    Tolerance {
+        key: "cross_axis_percent",
+        input: "cross axis of",
+        name: "cross axis of a channel",
+        unit: " %",
+        value: |t| 100.0 * t.cross_axis,
+    },
+    Tolerance {
+        key: "position_m",
+        input: "position of",
+        name: "position of a sensor",
+        unit: " mm",
+        value: |t| 1e3 * t.position_m,
+    },
+    Tolerance {
+        key: "cog_m",
+        input: "centre of gravity",
+        name: "centre of gravity",
+        unit: " mm",
+        value: |t| 1e3 * t.cog_m,
+    },
+    Tolerance {
+        key: "inertia_percent",
+        input: "inertia",
+        name: "inertia",
+        unit: " %",
+        value: |t| 100.0 * t.inertia,
+    },
+    Tolerance {
+        key: "friction_percent",
+        input: "contact law",
+        name: "contact law",
+        unit: " % of rough to smooth",
+        value: |t| 100.0 * t.friction,
+    },
+];
+
+/// Whether the cask file leaves this key of `[tolerance]` to its default.
+pub(super) fn is_default(file: &CaskFile, key: &str) -> bool {
+    file.defaults.iter().any(|d| d.strip_prefix("tolerance.") == Some(key))
+}
+
+/// The tolerances, and the corrections that are switched off; without what `said` says already.
+pub(super) fn of_cask_file(file: &CaskFile, said: &[Setting]) -> Vec<Setting> {
+    let tolerances = TOLERANCES.iter().map(|t| Setting {
+        name: format!("tolerance of {}", t.name),
+        value: format!("± {}{} (95 %)", plain((t.value)(&file.tolerances), 3), t.unit),
+        origin: if is_default(file, t.key) { "default" } else { "cask file" }.into(),
+    });
+    let made = &file.corrections;
+    let corrections =
+        [("offset", made.offset), ("zero_shift", made.zero_shift), ("skew", made.skew), ("hum", made.hum)];
+    let off = corrections.into_iter().filter(|(_, made)| !made).map(|(name, _)| Setting {
+        name: format!("correction {name}"),
+        value: "switched off".into(),
+        origin: "cask file".into(),
+    });
+    let mut settings: Vec<Setting> = tolerances.chain(off).collect();
+    settings.retain(|own| said.iter().all(|other| other.name != own.name));
+    settings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+
+    #[test]
+    fn tolerances_have_their_unit_and_their_origin() {
+        let settings = of_cask_file(&sample::cask_file(), &[]);
+        let said = |name: &str| settings.iter().find(|s| s.name == name).expect(name);
+        assert_eq!(said("tolerance of drop angle").value, "± 0.4° (95 %)");
+        assert_eq!(said("tolerance of drop angle").origin, "cask file");
+        assert_eq!(said("tolerance of position of a sensor").value, "± 10 mm (95 %)");
+        assert_eq!(said("tolerance of inertia").origin, "default");
+        assert_eq!(settings.len(), 8);
+    }
+
+    #[test]
+    fn only_a_correction_that_is_off_is_said_and_only_once() {
+        let mut file = sample::cask_file();
+        file.corrections.hum = false;
+        let settings = of_cask_file(&file, &[]);
+        let off: Vec<&str> =
+            settings.iter().map(|s| s.name.as_str()).filter(|n| n.starts_with("correction")).collect();
+        assert_eq!(off, ["correction hum"]);
+        assert_eq!(of_cask_file(&file, &settings), []);
+    }
+}
