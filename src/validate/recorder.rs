@@ -111,7 +111,7 @@ fn seats(case: &mut Case, wish: &Wish) -> Vec<Seat> {
 fn chain(chance: &mut Chance, rate_hz: f64) -> Chain {
     let noise_m_s2 = chance.log_even(0.02, 0.5) * STANDARD_GRAVITY_M_S2;
     // Power of the 1/f part.
-    let pink = chance.even(0.0, 0.5);
+    let pink = chance.even(0.0, 0.1);
     let resonance_hz = rate_hz * chance.log_even(0.8, 2.0);
     let damping = chance.log_even(0.02, 0.7);
     Chain {

@@ -81,11 +81,17 @@ fn sound_channels_are_not_mentioned() {
 #[test]
 fn noise_that_moves_the_velocity_is_named() {
     let mut noisy = pair();
-    // White: u² = S/2 (T + T²/T0) = 0.1 · (0.07 + 0.0245): 0.097 m/s, below 1 % of 13.29; ten times S is above.
-    noisy[0].noise_spectrum = vec![(10.0, 0.2), (5000.0, 0.2)];
-    assert!(found(&noisy).is_empty());
-    noisy[0].noise_spectrum = vec![(10.0, 2.0), (5000.0, 2.0)];
-    assert_eq!(found(&noisy), [(IssueCode::Noise, Some("A1".into()))]);
+    // White: u² = S/2 (T + T²/T0) = S · 0.0472 s: 0.043 m/s for 0.04, below 0.5 % of 13.29; 0.22 for 1, a note; 0.69 for 10, above 3 %.
+    let severity = |noisy: &[Signal]| {
+        let events = Events { first_contact_s: Some(0.02), slap_down_s: Some(0.09), ..Events::default() };
+        judge_worth(noisy, &events, &cask_file()).first().map(|i| (i.code, i.severity))
+    };
+    noisy[0].noise_spectrum = vec![(10.0, 0.04), (5000.0, 0.04)];
+    assert_eq!(severity(&noisy), None);
+    noisy[0].noise_spectrum = vec![(10.0, 1.0), (5000.0, 1.0)];
+    assert_eq!(severity(&noisy), Some((IssueCode::Noise, Severity::Note)));
+    noisy[0].noise_spectrum = vec![(10.0, 10.0), (5000.0, 10.0)];
+    assert_eq!(severity(&noisy), Some((IssueCode::Noise, Severity::Warning)));
 }
 
 #[test]
