@@ -10,7 +10,7 @@ const ROUNDS: usize = 3;
 const EARLIEST_SLAP_DOWN: f64 = 0.3;
 
 /// R strikes with more than this share of v0 where it slaps down at all.
-const LEAST_SLAP_DOWN: f64 = 0.15;
+const LEAST_SLAP_DOWN: f64 = 0.08;
 
 /// Share of the time from contact to slap-down that the first flight fit leaves to the contact, and the longest, s.
 const FIRST_CLEARANCE: f64 = 0.4;
@@ -25,6 +25,9 @@ const EXPLAINED_M_S: f64 = 0.2;
 
 /// R at slap-down this share of the length off the target is where it should be, an angle 1° off included.
 const NEAR: f64 = 0.02;
+
+/// A rotation this share off what the impulse of the first impact gives the cask is not the rigid body's.
+const TURNED: f64 = 0.1;
 
 /// The contact's force after separation is sought this long beyond a window, s.
 const BEYOND_S: f64 = 0.02;
@@ -127,7 +130,7 @@ impl Search<'_> {
         Some(Settled { left, struck, flight })
     }
 
-    /// What is left unexplained, and R's distance from the target, each over what is allowed; below 1 nothing speaks against it.
+    /// What is left unexplained, R's distance from the target and the rotation beside the impulse, each over what is allowed; below 1 nothing speaks against it.
     fn cost(&self, settled: &Settled) -> f64 {
         let Some(flight) = &settled.flight else { return f64::INFINITY };
         let left_m_s = flight.plateaus.iter().map(|p| p.residual_m_s).fold(0.0, f64::max);
@@ -138,8 +141,13 @@ impl Search<'_> {
             ..Events::default()
         };
         let moved = motion::outcome(self.signals, flight, &times, &assemble::sticking(self.file));
-        let off_m = moved.and_then(|m| m.second_end_height_m).unwrap_or(self.file.cask.length_m);
-        (left_m_s / EXPLAINED_M_S).max(off_m.abs() / (NEAR * self.file.cask.length_m))
+        let cask = &self.file.cask;
+        let turning = moved.as_ref().filter(|_| cask.is_body).map_or(0.0, |m| {
+            let by_impulse_rad_s = m.angular_impulse_m2_s * cask.mass_kg / cask.inertia_kg_m2;
+            (m.separation.angular_velocity_rad_s / by_impulse_rad_s - 1.0).abs()
+        });
+        let off_m = moved.and_then(|m| m.second_end_height_m).unwrap_or(cask.length_m);
+        (left_m_s / EXPLAINED_M_S).max(off_m.abs() / (NEAR * cask.length_m)).max(turning / TURNED)
     }
 }
 

@@ -4,6 +4,10 @@ use super::Measured;
 use crate::data::{AxialClosure, Axis, Events, FlightFit, Motion, Setup};
 use crate::numerics::noise::integral_uncertainty_by;
 
+/// What a mode leaves in the velocity step for each period that the flight shows of it, as a share of its amplitude: a window of one period
+/// knows a mode's mean to half a percent of it on simulated drops (docs/uncertainty.md).
+const RINGING_SHARE: f64 = 0.005;
+
 /// One set of inputs.
 #[derive(Debug, Clone)]
 pub(super) struct Inputs {
@@ -176,7 +180,7 @@ fn of_channel(all: &mut Vec<Input>, measured: &Measured, motion: &Motion, channe
     }
 }
 
-/// What the fit leaves open; where a zero shift set in during the contact; what the offset may be off since; what clipping cut off.
+/// What the fit leaves open; what the modes' form leaves; where a zero shift set in during the contact; what the offset may be off since; what clipping cut off.
 fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
     let (signal, plateau) = (&measured.signals[channel], &measured.flight.plateaus[channel]);
     let contact_s = measured.events.first_contact_s.unwrap_or(0.0);
@@ -191,7 +195,15 @@ fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
         noise_m_s.max(signal.u_offset_m_s2 * length_s)
     };
     let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
-    plateau.u_m_s.hypot(shift_m_s).hypot(drift_m_s).hypot(clipped_m_s)
+    let length_s = measured.flight.to_s - measured.flight.from_s;
+    let ringing_m_s: f64 = measured
+        .flight
+        .modes
+        .iter()
+        .zip(&plateau.ringing_m_s)
+        .map(|(mode, (a, b))| RINGING_SHARE * a.hypot(*b) / (mode.frequency_hz * length_s))
+        .sum();
+    plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(clipped_m_s)
 }
 
 /// Change of the body-axis velocities of S over the contact, m/s: transverse, axial.
