@@ -81,7 +81,7 @@ fn joint(choice: &ReconstructionChoice) -> Markup {
             (degrees) " degree" (if degrees == 1 { "" } else { "s" }) " of freedom, one a closure. " (used)
             @if moved.is_empty() { " It moves no input by more than a twentieth of its standard uncertainty." } }
         @if !moved.is_empty() {
-            table {
+            table class="whole" {
                 caption { "What the joint fit moves, the largest first. Left: the input's standard uncertainty after the fit over the one before." }
                 thead { tr { th { "Input" } th class="n" { "Standard uncertainty u" } th class="n" { "Moved by, in u" } th class="n" { "Left, %" } } }
                 tbody { @for a in moved.iter().take(MOST_MOVES) { tr {
