@@ -20,7 +20,7 @@ pub(super) fn reconstruction(result: &DropResult) -> Markup {
         p class="lead" { (sentence(&choice.reason)) }
         table class="whole" {
             caption { "The reconstructions of this recording, the simplest first; ± holds 95 %. The first is taken that noise and tolerances \
-                explain and whose answer the next would not change by more than its interval." }
+                explain and whose answer the next would neither change by more than the narrower interval nor know better by a quarter." }
             thead { tr { th { "Reconstruction" } th class="n" { "Slap-down speed" } th class="n" { "k" } th { "What it leaves" } th { "Explained" } } }
             tbody { @for c in &choice.candidates { (rung(c, c.rung == choice.rung)) } }
         }
@@ -47,7 +47,7 @@ fn closures(choice: &ReconstructionChoice) -> Markup {
         @if !choice.closures.is_empty() {
             table class="whole" {
                 caption { "Closures: what the motion must meet beside the velocity steps. A miss within 2 standard uncertainties (u) of all \
-                    inputs together is within noise and tolerances; beyond 3 it is a finding." }
+                    inputs together is within noise and tolerances; one far beyond is a finding." }
                 thead { tr { th { "Closure" } th class="n" { "Missed by" } th class="n" { "in u" }
                     @if fitted { th class="n" { "Left by the joint fit, in u of the closure" } } } }
                 tbody { @for c in &choice.closures { (closure(c, fitted)) } }
@@ -81,7 +81,7 @@ fn joint(choice: &ReconstructionChoice) -> Markup {
             (degrees) " degree" (if degrees == 1 { "" } else { "s" }) " of freedom, one a closure. " (used)
             @if moved.is_empty() { " It moves no input by more than a twentieth of its standard uncertainty." } }
         @if !moved.is_empty() {
-            table {
+            table class="whole" {
                 caption { "What the joint fit moves, the largest first. Left: the input's standard uncertainty after the fit over the one before." }
                 thead { tr { th { "Input" } th class="n" { "Standard uncertainty u" } th class="n" { "Moved by, in u" } th class="n" { "Left, %" } } }
                 tbody { @for a in moved.iter().take(MOST_MOVES) { tr {
