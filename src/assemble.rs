@@ -117,6 +117,7 @@ impl<'a> Draft<'a> {
                 contact_s,
                 from_s: left_s + 0.1 * (left_s - contact_s) + 3e-4,
                 to_s: struck_s - 5e-4,
+                drift: self.cask_file.corrections.zero_shift,
                 angular_velocity_rad_s: quantities.angular_velocity.value,
             });
         let filtered = window

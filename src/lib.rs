@@ -73,7 +73,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let smooth = draft.smooth(&signals);
     if let Some(Reconstructed { flight, setup, motion, quantities, choice: reconstruction }) = reconstructed {
         draft.issues.extend(judge::judge_coupling(&signals, &flight, cask_file));
-        draft.issues.extend(judge::judge_rigid(&signals, &flight, &cask_file.tolerances));
+        draft.issues.extend(judge::judge_rigid(&signals, &flight, &cask_file.tolerances, &cask_file.drop));
         if !draft.issues.iter().any(judge::invalidates) {
             draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
             draft.issues.extend(judge::judge_closures(&reconstruction, &cask_file.drop, &draft.events));
@@ -220,6 +220,7 @@ fn flight_and_motion(
         contact_s: contact.0,
         from_s: flight.from_s,
         to_s: flight.to_s,
+        drift: flight.drift,
         angular_velocity_rad_s: motion::rotation_rad_s(signals, &flight),
     };
     let plain = motion::mean_of_flight(signals, &flight, &window, setup.cog_m);

@@ -6,6 +6,10 @@ use crate::{assemble, events, motion};
 /// Separation and slap-down are found again on signals free of ringing this often; the second round moves them by less than a sample.
 const ROUNDS: usize = 3;
 
+/// Further rounds where the last one moved the slap-down by more than [`SETTLED_S`]: its flight was fitted over the wrong stretch.
+const FURTHER_ROUNDS: usize = 3;
+const SETTLED_S: f64 = 1e-3;
+
 /// R cannot strike before its height over this share of v0: rod ends come down with less than 2 v0, angles are known to 40 %.
 const EARLIEST_SLAP_DOWN: f64 = 0.3;
 
@@ -105,11 +109,12 @@ impl Search<'_> {
         let mut left = (rough_s, 0.1 * (rough_s - contact_s));
         let mut flight: Option<FlightFit> = None;
         let mut calm = signals.to_vec();
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS + FURTHER_ROUNDS {
             let window = motion::Window {
                 contact_s,
                 from_s: free_s,
                 to_s: end_s - 5e-4,
+                drift: self.file.corrections.zero_shift,
                 angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| motion::rotation_rad_s(signals, f)),
             };
             let drive = motion::drive(signals, flight.as_ref(), (contact_s, left.0), window.from_s, cog_m);
@@ -124,8 +129,11 @@ impl Search<'_> {
             }
             left = events::separation(&first, contact_s, free_s).unwrap_or(left);
             free_s = left.0 + 0.1 * (left.0 - contact_s) + 3e-4;
-            end_s = struck.map_or(self.record_end_s, |s| s.0);
             flight = Some(fitted);
+            let fitted_to_s = std::mem::replace(&mut end_s, struck.map_or(self.record_end_s, |s| s.0));
+            if round + 1 >= ROUNDS && (end_s - fitted_to_s).abs() < SETTLED_S {
+                break;
+            }
         }
         Some(Settled { left, struck, flight })
     }

@@ -75,6 +75,7 @@ impl Middle {
             contact_s: self.events.first_contact_s.expect("a contact"),
             from_s: self.flight.from_s,
             to_s: self.flight.to_s,
+            drift: true,
             angular_velocity_rad_s: 5.0,
         }
     }

@@ -34,6 +34,7 @@ pub fn without_first_mode(signals: &[Signal], end: End, length_m: f64) -> Option
     });
     if let Some(other) = of_same_times {
         let ratio = shape(own) / shape(other);
+        // f − Y(d)/Y(d′) f′, Y = 1 − 4.65 d/l   (37)
         for (force, other_m_s2) in free.force_m_s2.iter_mut().zip(&other.force_m_s2) {
             *force -= ratio * other_m_s2;
         }

@@ -10,7 +10,7 @@ const FAR_OUTSIDE: f64 = 0.25;
 /// Zero shifts whose effect on the velocity over the contact is below this are a note, m/s: 0.5 % of a slap-down.
 const SMALL_SHIFT_M_S: f64 = 0.1;
 /// Velocity gained late in a flight beyond this share of v0 is another contact.
-const LATE_SHARE: f64 = 0.02;
+const LATE_SHARE: f64 = 0.03;
 /// Sliding below this is sticking, m/s: 5 % cross-axis sensitivity of a 13 m/s step.
 const SMALL_SLIP_M_S: f64 = 0.65;
 /// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1 % of a slap-down.

@@ -1,6 +1,6 @@
 //! The velocity steps of three and more transverse channels to whether one rigid body can have them.
 
-use crate::data::{Axis, FlightFit, Issue, IssueCode, Severity, Signal, Tolerances};
+use crate::data::{Axis, Drop, FlightFit, Issue, IssueCode, Severity, Signal, Tolerances};
 
 /// Distances from the line beyond this many standard uncertainties speak against one body.
 const SURE: f64 = 3.5;
@@ -19,7 +19,14 @@ struct Reading<'a> {
 ///
 /// Each channel is held against the line through the others; the one farthest off, in its uncertainties, is named.
 #[must_use]
-pub fn judge_rigid(signals: &[Signal], flight: &FlightFit, tolerances: &Tolerances) -> Option<Issue> {
+pub fn judge_rigid(
+    signals: &[Signal],
+    flight: &FlightFit,
+    tolerances: &Tolerances,
+    drop: &Drop,
+) -> Option<Issue> {
+    // About what the axial velocity changes by: a rough contact takes all of it.
+    let axial_m_s = drop.impact_velocity_m_s * drop.angle_rad.sin();
     let turning_rad_s = turning_rad_s(signals, flight);
     let steps: Vec<Reading> = signals
         .iter()
@@ -28,7 +35,8 @@ pub fn judge_rigid(signals: &[Signal], flight: &FlightFit, tolerances: &Toleranc
             let plateau = flight.plateau(&s.name)?;
             let step_m_s = plateau.velocity_step_m_s;
             // Half of a 95 % half-width is a standard uncertainty.
-            let u_scale_m_s = tolerances.calibration.hypot(tolerances.cross_axis) / 2.0 * step_m_s;
+            let u_scale_m_s =
+                (tolerances.calibration * step_m_s).hypot(tolerances.cross_axis * axial_m_s) / 2.0;
             let u_place_m_s = tolerances.position_m / 2.0 * turning_rad_s;
             let u_m_s = plateau.u_m_s.hypot(u_scale_m_s).hypot(u_place_m_s);
             Some(Reading { name: &s.name, position_m: s.position_m, step_m_s, u_m_s })
@@ -132,7 +140,14 @@ mod tests {
             drift: false,
             candidates: vec![],
         };
-        judge_rigid(&signals, &flight, &Tolerances::default()).and_then(|i| i.channel)
+        let drop = Drop {
+            height_m: 9.0,
+            angle_rad: 0.26,
+            impact_velocity_m_s: 13.3,
+            impact_velocity_given: false,
+            gravity_m_s2: 9.81,
+        };
+        judge_rigid(&signals, &flight, &Tolerances::default(), &drop).and_then(|i| i.channel)
     }
 
     #[test]

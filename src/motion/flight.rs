@@ -46,6 +46,8 @@ pub struct Window {
     pub from_s: f64,
     /// End of it.
     pub to_s: f64,
+    /// Whether a change of the offset may be fitted.
+    pub drift: bool,
     /// ω of the flight where it is known already, rad/s: its centrifugal force is taken off; else 0.
     pub angular_velocity_rad_s: f64,
 }
@@ -73,12 +75,13 @@ pub fn fit_flight(
     let highest_hz = (0.2 * fewest as f64 / length_s).min(1500.0);
     let free_hz = ((LEAST_PERIODS / length_s).max(LOWEST_HZ), highest_hz);
     let mut fits = Vec::new();
-    for drift in [false, true] {
+    let drifts = if whole.drift { &[false, true][..] } else { &[false] };
+    for &drift in drifts {
         fits.extend(chain(&series, free_hz, Form { drift, drive: None }));
     }
     if drive.is_some() && fits.iter().all(|f| !is_clear(&series, f, length_s)) {
         let driven_hz = ((LEAST_DRIVEN_PERIODS / length_s).max(LOWEST_HZ), highest_hz);
-        for drift in [false, true] {
+        for &drift in drifts {
             fits.extend(chain(&series, driven_hz, Form { drift, drive }).into_iter().skip(1));
         }
     }
