@@ -33,6 +33,9 @@ const NEAR: f64 = 0.02;
 /// A rotation this share off what the impulse of the first impact gives the cask is not the rigid body's.
 const TURNED: f64 = 0.1;
 
+/// Fits of a flight with fewer periods of its slowest mode may differ by much and leave the same.
+const TOLD_APART_PERIODS: f64 = 1.5;
+
 /// The contact's force after separation is sought this long beyond a window, s.
 const BEYOND_S: f64 = 0.02;
 
@@ -108,6 +111,7 @@ impl Search<'_> {
         let mut free_s = rough_s.max(cleared_s);
         let mut left = (rough_s, 0.1 * (rough_s - contact_s));
         let mut flight: Option<FlightFit> = None;
+        let mut others: Vec<FlightFit> = Vec::new();
         let mut calm = signals.to_vec();
         for round in 0..ROUNDS + FURTHER_ROUNDS {
             let window = motion::Window {
@@ -118,7 +122,9 @@ impl Search<'_> {
                 angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| motion::rotation_rad_s(signals, f)),
             };
             let drive = motion::drive(signals, flight.as_ref(), (contact_s, left.0), window.from_s, cog_m);
-            let Some(fitted) = motion::fit_flight(signals, &window, drive.as_ref(), cog_m) else { break };
+            let mut fits = motion::fit_flights(signals, &window, drive.as_ref(), cog_m).into_iter();
+            let Some(fitted) = fits.next() else { break };
+            others = fits.collect();
             let beyond_s = struck.map_or(self.record_end_s, |s| s.0).max(end_s) + BEYOND_S;
             motion::take_off_ringing(&mut calm, signals, &fitted, contact_s..beyond_s);
             let (first, second) = self.ends(&calm)?;
@@ -135,7 +141,17 @@ impl Search<'_> {
                 break;
             }
         }
-        Some(Settled { left, struck, flight })
+        Some(self.best_of(Settled { left, struck, flight }, others))
+    }
+
+    /// Where a flight shows too little of its slowest mode to tell the fits apart, the first of them that the closures do not speak against.
+    fn best_of(&self, settled: Settled, others: Vec<FlightFit>) -> Settled {
+        if self.cost(&settled) < 1.0 || settled.flight.as_ref().is_none_or(is_told_apart) {
+            return settled;
+        }
+        let Settled { left, struck, .. } = settled;
+        let with = |flight| Settled { left, struck, flight: Some(flight) };
+        others.into_iter().map(with).find(|other| self.cost(other) < 1.0).unwrap_or(settled)
     }
 
     /// What is left unexplained, R's distance from the target and the rotation beside the impulse, each over what is allowed; below 1 nothing speaks against it.
@@ -157,6 +173,12 @@ impl Search<'_> {
         let off_m = moved.and_then(|m| m.second_end_height_m).unwrap_or(cask.length_m);
         (left_m_s / EXPLAINED_M_S).max(off_m.abs() / (NEAR * cask.length_m)).max(turning / TURNED)
     }
+}
+
+/// Whether the flight shows its slowest mode for long enough.
+fn is_told_apart(flight: &FlightFit) -> bool {
+    let length_s = flight.to_s - flight.from_s;
+    flight.modes.iter().all(|m| m.frequency_hz * length_s > TOLD_APART_PERIODS)
 }
 
 fn is_explained(flight: &FlightFit) -> bool {

@@ -117,7 +117,7 @@ fn flight_fit(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
     bencher
         .counter(m.conditioned())
-        .bench(|| motion::fit_flight(&m.signals, &m.window(), m.cask_file.cask.cog_m));
+        .bench(|| motion::fit_flight(&m.signals, &m.window(), None, m.cask_file.cask.cog_m));
 }
 
 #[divan::bench(args = SIZES)]

@@ -20,7 +20,7 @@ const WILD: f64 = 8.0;
 const SPECTRUM_RATE_HZ: f64 = 8000.0;
 
 /// A slope counts beyond this many of its standard uncertainties from eight means: one in 10⁴ of white noise is that steep.
-const SURE: f64 = 10.0;
+const SURE: f64 = 15.0;
 const BLOCKS: usize = 8;
 
 /// Contact and flight that an offset is carried over, s: a 9 m drop from 15°.

@@ -2,8 +2,9 @@
 
 use crate::data::{CaskFile, Coupling, FlightFit, Issue, IssueCode, Plateau, Severity, Signal};
 
-/// Time constants looked for, s: shorter ones leave no step to measure, longer ones lose less than 2 % of it in 50 ms.
-const TIME_CONSTANTS_S: std::ops::RangeInclusive<f64> = 0.03..=5.0;
+/// Time constants looked for, s: shorter ones leave no step to measure, longer ones lose less than 2 % of it in 50 ms
+/// and are within what noise of 1/f looks like.
+const TIME_CONSTANTS_S: std::ops::RangeInclusive<f64> = 0.03..=2.5;
 /// A step smaller than this share of the largest has no droop of its own to tell.
 const LEAST_STEP: f64 = 0.1;
 /// A droop counts beyond this many of its standard uncertainties.

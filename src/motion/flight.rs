@@ -6,6 +6,8 @@ use crate::numerics::damped_modes::{Drive, Fit, Form, Oscillation, Series, Serie
 use crate::numerics::noise::integral_uncertainty_by;
 use crate::numerics::robust;
 
+/// Most fits described: the one taken and those that could stand in for it.
+const MOST_FITS: usize = 5;
 /// Most modes tried: the bending modes of a cask below 400 Hz.
 const MOST_MODES: usize = 3;
 /// Points a window: 240 over 60 ms resolve 400 Hz tenfold.
@@ -52,10 +54,38 @@ pub struct Window {
     pub angular_velocity_rad_s: f64,
 }
 
-/// Fits all signals over the window; `None` where it is too short or nothing can be fitted.
+/// Fits all signals over the window, the most probable fit first; empty where it is too short or nothing can be fitted.
 ///
-/// Velocity v_j(t) = p_j + d_j t + Σ_m e^(−ζωt)(A cos ωt + B sin ωt)   (20), modes common to all channels; their number and
-/// whether there is a drift are decided by the Bayesian information criterion (21).
+/// Velocity v_j(t) = p_j + d_j t + Σ_m e^(−ζωt)(A cos ωt + B sin ωt)   (20), modes common to all channels, their phases free or those that
+/// the contact force gives them; their number and whether there is a drift are decided by the Bayesian information criterion (21).
+#[must_use]
+pub fn fit_flights(signals: &[Signal], window: &Window, drive: Option<&Drive>, cog_m: f64) -> Vec<FlightFit> {
+    let cut = Window { to_s: window.to_s.min(window.from_s + LONGEST_S), ..*window };
+    let series: Vec<Series> = signals.iter().map(|s| series(s, &cut, cog_m)).collect();
+    let mut fits = candidates(&series, &cut, drive);
+    let peaks_m_s2: Vec<f64> =
+        signals.iter().map(|s| s.force_m_s2.iter().fold(0.0_f64, |m, f| m.max(f.abs()))).collect();
+    fits.retain(|f| has_plausible_drift(&peaks_m_s2, f));
+    let Some(richest) = fits.iter().max_by_key(|f| f.parameters).map(|f| f.correlation) else {
+        return Vec::new();
+    };
+    let mut scored: Vec<(f64, Fit)> =
+        fits.into_iter().map(|f| (f.bic(&series, richest) + improbability(&peaks_m_s2, &f), f)).collect();
+    scored.sort_by(|a, b| a.0.total_cmp(&b.0));
+    (0..scored.len().min(MOST_FITS))
+        .map(|i| {
+            let mut flight = described(signals, &cut, &scored, i);
+            let mismatches: Vec<Option<f64>> =
+                signals.iter().map(|s| late_mismatch_m_s(s, &flight, window, cog_m)).collect();
+            for (plateau, mismatch) in flight.plateaus.iter_mut().zip(mismatches) {
+                plateau.late_mismatch_m_s = mismatch;
+            }
+            flight
+        })
+        .collect()
+}
+
+/// The most probable of [`fit_flights`].
 #[must_use]
 pub fn fit_flight(
     signals: &[Signal],
@@ -63,66 +93,60 @@ pub fn fit_flight(
     drive: Option<&Drive>,
     cog_m: f64,
 ) -> Option<FlightFit> {
-    let whole = window;
-    let window = &Window { to_s: whole.to_s.min(whole.from_s + LONGEST_S), ..*whole };
-    let series: Vec<Series> = signals.iter().map(|s| series(s, window, cog_m)).collect();
+    fit_flights(signals, window, drive, cog_m).into_iter().next()
+}
+
+/// Every number of modes with and without drift, in free phases, and in driven ones where the free ones are not clear.
+fn candidates(series: &[Series], window: &Window, drive: Option<&Drive>) -> Vec<Fit> {
     let length_s = window.to_s - window.from_s;
-    let fewest = series.iter().map(|s| s.value.len()).min()?;
+    let fewest = series.iter().map(|s| s.value.len()).min().unwrap_or(0);
     if length_s <= 0.0 || fewest < 8 {
-        return None;
+        return Vec::new();
     }
     #[allow(clippy::cast_precision_loss, reason = "at most POINTS")]
     let highest_hz = (0.2 * fewest as f64 / length_s).min(1500.0);
-    let free_hz = ((LEAST_PERIODS / length_s).max(LOWEST_HZ), highest_hz);
+    let band_hz = |periods: f64| ((periods / length_s).max(LOWEST_HZ), highest_hz);
+    let drifts = if window.drift { &[false, true][..] } else { &[false] };
     let mut fits = Vec::new();
-    let drifts = if whole.drift { &[false, true][..] } else { &[false] };
     for &drift in drifts {
-        fits.extend(chain(&series, free_hz, Form { drift, drive: None }));
+        fits.extend(chain(series, band_hz(LEAST_PERIODS), Form { drift, drive: None }));
     }
-    if drive.is_some() && fits.iter().all(|f| !is_clear(&series, f, length_s)) {
-        let driven_hz = ((LEAST_DRIVEN_PERIODS / length_s).max(LOWEST_HZ), highest_hz);
+    if drive.is_some() && fits.iter().all(|f| !is_clear(series, f, length_s)) {
         for &drift in drifts {
-            fits.extend(chain(&series, driven_hz, Form { drift, drive }).into_iter().skip(1));
+            let driven = chain(series, band_hz(LEAST_DRIVEN_PERIODS), Form { drift, drive });
+            fits.extend(driven.into_iter().skip(1));
         }
     }
-    let peaks_m_s2: Vec<f64> =
-        signals.iter().map(|s| s.force_m_s2.iter().fold(0.0_f64, |m, f| m.max(f.abs()))).collect();
-    fits.retain(|f| has_plausible_drift(&peaks_m_s2, f));
-    let richest = fits.iter().max_by_key(|f| f.parameters)?.correlation;
-    let score = |f: &Fit| f.bic(&series, richest) + improbability(&peaks_m_s2, f);
-    fits.sort_by(|a, b| score(a).total_cmp(&score(b)));
-    let best = fits.first()?;
-    let plateaus = plateaus(signals, &fits, &|f: &Fit| score(f) - score(best) < INDISTINCT);
+    fits
+}
+
+/// The fit at `taken` of those sorted by their score, the others as its rivals.
+fn described(signals: &[Signal], window: &Window, scored: &[(f64, Fit)], taken: usize) -> FlightFit {
+    let (score, best) = &scored[taken];
     let mut order: Vec<usize> = (0..best.modes.len()).collect();
     order.sort_by(|&a, &b| best.modes[a].frequency_hz.total_cmp(&best.modes[b].frequency_hz));
-    let mut flight = FlightFit {
+    let rivals: Vec<&Fit> =
+        scored.iter().filter(|s| (s.0 - score).abs() < INDISTINCT).map(|s| &s.1).collect();
+    let mut plateaus = plateaus(signals, best, &rivals);
+    for plateau in &mut plateaus {
+        plateau.ringing_m_s = order.iter().map(|&i| plateau.ringing_m_s[i]).collect();
+    }
+    FlightFit {
         from_s: window.from_s,
         to_s: window.to_s,
         modes: order.iter().map(|&i| mode(best, i)).collect(),
-        plateaus: plateaus
-            .into_iter()
-            .map(|mut p| {
-                p.ringing_m_s = order.iter().map(|&i| p.ringing_m_s[i]).collect();
-                p
-            })
-            .collect(),
+        plateaus,
         drift: best.drift,
-        candidates: fits
+        candidates: scored
             .iter()
-            .map(|f| FlightModelScore {
+            .map(|(bic, f)| FlightModelScore {
                 modes: f.modes.len(),
                 drift: f.drift,
-                bic: score(f),
+                bic: *bic,
                 residual_m_s: f.series.iter().map(|s| s.residual).fold(0.0, f64::max),
             })
             .collect(),
-    };
-    let mismatches: Vec<Option<f64>> =
-        signals.iter().map(|s| late_mismatch_m_s(s, &flight, whole, cog_m)).collect();
-    for (plateau, mismatch) in flight.plateaus.iter_mut().zip(mismatches) {
-        plateau.late_mismatch_m_s = mismatch;
     }
-    Some(flight)
 }
 
 /// The same window with each velocity step the mean over it: no mode, no drift. The candidates stay those of the best fit.
@@ -137,7 +161,7 @@ pub fn mean_of_flight(
     let series: Vec<Series> = signals.iter().map(|s| series(s, &window, cog_m)).collect();
     let mean = fit(&series, &[], None, Form::FREE)?;
     Some(FlightFit {
-        plateaus: plateaus(signals, &[mean], &|_| true),
+        plateaus: plateaus(signals, &mean, &[&mean]),
         modes: Vec::new(),
         drift: false,
         ..best.clone()
@@ -308,15 +332,13 @@ fn mode(fit: &Fit, index: usize) -> Mode {
 }
 
 /// Plateaus of the best fit; what candidates that cannot be told from it say otherwise adds to their uncertainty.
-fn plateaus(signals: &[Signal], fits: &[Fit], is_rival: &dyn Fn(&Fit) -> bool) -> Vec<Plateau> {
-    let Some(best) = fits.first() else { return Vec::new() };
+fn plateaus(signals: &[Signal], best: &Fit, rivals: &[&Fit]) -> Vec<Plateau> {
     signals
         .iter()
         .enumerate()
         .map(|(i, signal)| {
             let own = &best.series[i];
-            let apart: Vec<f64> =
-                fits.iter().filter(|f| is_rival(f)).map(|f| f.series[i].plateau - own.plateau).collect();
+            let apart: Vec<f64> = rivals.iter().map(|f| f.series[i].plateau - own.plateau).collect();
             let spread = robust::mean_and_rms(&apart);
             Plateau {
                 channel: signal.name.clone(),

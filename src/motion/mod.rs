@@ -7,7 +7,7 @@ mod reconstruct;
 mod ringing;
 
 pub use curves::{channel_curves, cutoff_hz, filtered, read_channels, spectra};
-pub use flight::{Window, fit_flight, mean_of_flight};
+pub use flight::{Window, fit_flight, fit_flights, mean_of_flight};
 pub use histories::drive;
 pub use reconstruct::{outcome, reconstruct};
 pub use ringing::{rotation_rad_s, take_off_ringing};
