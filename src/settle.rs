@@ -10,7 +10,7 @@ const ROUNDS: usize = 3;
 const FURTHER_ROUNDS: usize = 3;
 const SETTLED_S: f64 = 1e-3;
 
-/// R cannot strike before its height over this share of v0: rod ends come down with less than 2 v0, angles are known to 40 %.
+/// R cannot strike before this share of its height over v0: rod ends come down with less than 2 v0, angles are known to 40 %.
 const EARLIEST_SLAP_DOWN: f64 = 0.3;
 
 /// R strikes with more than this share of v0 where it slaps down at all.

@@ -19,7 +19,7 @@ const WILD: f64 = 8.0;
 /// The spectrum is that of means at about this rate, Hz: an integral over milliseconds holds nothing above a few hundred.
 const SPECTRUM_RATE_HZ: f64 = 8000.0;
 
-/// A slope counts beyond this many of its standard uncertainties from eight means: one in 10⁴ of white noise is that steep.
+/// A slope counts beyond this many of its standard uncertainties from eight means: noise of 1/f is ten times as steep as white noise.
 const SURE: f64 = 15.0;
 const BLOCKS: usize = 8;
 

@@ -39,6 +39,7 @@ impl Default for Tolerances {
 
 /// Which corrections of the samples may be made; what is made is reported with its size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(clippy::struct_excessive_bools, reason = "four switches that have nothing to do with one another")]
 pub struct Corrections {
     /// The mean of the free fall is taken off.
     pub offset: bool,

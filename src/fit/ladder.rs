@@ -36,7 +36,7 @@ pub fn ladder(
     let closures = model.closures(joint.as_ref());
     let mut steps = Vec::new();
     if let (Some(reading), Some(plain)) = (reading, plain) {
-        steps.extend(by_channels(measured, plain, reading, &flight));
+        steps.push(by_channels(measured, plain, reading, &flight));
     }
     if let Some(plain) = plain {
         let measured = Measured { flight: plain, ..*measured };
@@ -83,12 +83,7 @@ fn step(rung: ReconstructionRung, quantities: Quantities, consistent: bool, resi
 }
 
 /// (a) Speed and k as [P] reads them off the velocity curves of single channels; the other quantities are the planar motion's.
-fn by_channels(
-    measured: &Measured,
-    plain: &FlightFit,
-    reading: ChannelReading,
-    motion: &Quantities,
-) -> Option<Step> {
+fn by_channels(measured: &Measured, plain: &FlightFit, reading: ChannelReading, motion: &Quantities) -> Step {
     let left_m_s = |end: End| {
         let signals = measured.signals.iter().filter(|s| s.axis == Axis::Transverse && s.end == end);
         signals.filter_map(|s| plain.plateau(&s.name)).map(|p| p.residual_m_s).fold(0.0, f64::max)
@@ -110,7 +105,7 @@ fn by_channels(
         ..motion.clone()
     };
     let residual = format!("{:.2} m/s of ringing in the flight", first_left_m_s.max(second_left_m_s));
-    Some(step(ReconstructionRung::Channels, quantities, explains(plain), residual))
+    step(ReconstructionRung::Channels, quantities, explains(plain), residual)
 }
 
 /// (b) Planar motion, each velocity step the mean over the flight.

@@ -37,6 +37,6 @@ pub struct Measured<'a> {
     pub inertia_m2: Option<f64>,
     /// Rest before the release, as the DC-coupled channels show it.
     pub rests: &'a [RestLevel],
-    /// Free fall from release to first contact, s, where the record shows it.
+    /// Free fall from release to the first touch, s, where the record shows it.
     pub fall_s: Option<f64>,
 }

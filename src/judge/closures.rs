@@ -10,12 +10,22 @@ const GROSS_U: f64 = 12.0;
 /// One issue a closure that is missed by more than noise and tolerances explain.
 #[must_use]
 pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Events) -> Vec<Issue> {
-    choice
-        .closures
-        .iter()
-        .filter(|c| c.miss_in_u.abs() > MISSED_U)
-        .map(|closure| issue(closure, drop, events))
-        .collect()
+    let missed = choice.closures.iter().filter(|c| c.miss_in_u.abs() > MISSED_U);
+    let mut issues: Vec<Issue> = missed.map(|closure| issue(closure, drop, events)).collect();
+    issues.extend(on_trust(choice));
+    issues
+}
+
+/// What no closure of this recording tests.
+fn on_trust(choice: &ReconstructionChoice) -> Option<Issue> {
+    let shows_rest = choice.closures.iter().any(|c| matches!(c.kind, ClosureKind::Rest | ClosureKind::Fall));
+    (!shows_rest).then(|| {
+        Issue::new(
+            IssueCode::Scale,
+            Severity::Note,
+            "the recording shows no rest before the release: nothing in it tests the drop height, the clock's rate or a scale error that all channels share, and they are taken as stated; record from before the release with DC-coupled sensors",
+        )
+    })
 }
 
 /// The fall that the recording shows beside the one that the cask file states.
@@ -104,7 +114,14 @@ mod tests {
 
     #[test]
     fn chance_is_not_mentioned_and_more_is_named_by_its_kind() {
-        assert!(judged(&choice(ClosureKind::Height, -3.4)).is_empty());
+        let severities =
+            |kind| -> Vec<Severity> { judged(&choice(kind, -3.4)).iter().map(|i| i.severity).collect() };
+        assert!(severities(ClosureKind::Rest).is_empty());
+        assert_eq!(
+            severities(ClosureKind::Height),
+            [Severity::Note],
+            "nothing tests what all channels share"
+        );
         for (kind, code) in [
             (ClosureKind::Height, IssueCode::Geometry),
             (ClosureKind::Turning, IssueCode::NotRigid),

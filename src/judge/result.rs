@@ -15,7 +15,7 @@ const LATE_SHARE: f64 = 0.03;
 const SMALL_SLIP_M_S: f64 = 0.65;
 /// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1 % of a slap-down.
 const LARGE_RESIDUAL_M_S: f64 = 0.2;
-/// A velocity step that is known no better than to this share of v0 (k = 1) says little, however well it is known how little.
+/// A velocity step that is known no better than to this share of v0, as a standard uncertainty, says little, however well it is known how little.
 const LARGE_U_SHARE: f64 = 0.1;
 
 /// Checks the motion against what a dropped cask can do.
@@ -63,7 +63,7 @@ pub fn judge_motion(
     }
     // What the rebound may be off lets L sink by as much more.
     let flown_s = quantities.flight_time.map_or(0.0, |t| t.value);
-    let open_m = quantities.rebound_velocity.u95 * flown_s;
+    let open_m = quantities.rebound_velocity.u95 / 2.0 * flown_s;
     if motion.lowest_first_end_m < -GRAZE_SHARE * cask_file.cask.length_m - open_m {
         issues.push(Issue::new(
             IssueCode::SecondContact,

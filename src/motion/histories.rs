@@ -6,7 +6,7 @@ use crate::numerics::damped_modes::Drive;
 use nalgebra::Complex;
 
 /// Steps over the contact in which the ringing is followed: a fortieth of a period of 400 Hz in 20 ms.
-const STEPS: usize = 320;
+const STEPS: u16 = 320;
 /// Rounds in which the shape of the force is freed of ringing: the second moves the ringing by a percent of itself.
 const ROUNDS: usize = 2;
 /// A mode that answered more strongly by this factor while it was driven than as L left is not known well enough to follow back.
@@ -113,9 +113,13 @@ impl Histories {
         }
         for _ in 0..ROUNDS {
             let turning: Vec<f64> = (0..=STEPS).map(|i| line.at(self, self.grid_s(i), 0.0).1).collect();
-            let driven: Vec<Vec<Complex<f64>>> =
-                fit.modes.iter().map(|mode| driven(mode, &turning, self.length_s / STEPS as f64)).collect();
-            let before: Vec<f64> = (0..self.velocities.len()).map(|i| self.bending_m_s(i, STEPS)).collect();
+            let driven: Vec<Vec<Complex<f64>>> = fit
+                .modes
+                .iter()
+                .map(|mode| driven(mode, &turning, self.length_s / f64::from(STEPS)))
+                .collect();
+            let before: Vec<f64> =
+                (0..self.velocities.len()).map(|i| self.bending_m_s(i, usize::from(STEPS))).collect();
             let left_s = self.contact_s + self.length_s - fit.from_s;
             self.bending = fit
                 .plateaus
@@ -123,13 +127,13 @@ impl Histories {
                 .map(|plateau| bending(&fit.modes, &plateau.ringing_m_s, &driven, left_s))
                 .collect();
             for (i, before) in before.into_iter().enumerate() {
-                self.corrections_m_s[i] += self.bending_m_s(i, STEPS) - before;
+                self.corrections_m_s[i] += self.bending_m_s(i, usize::from(STEPS)) - before;
             }
         }
     }
 
-    fn grid_s(&self, step: usize) -> f64 {
-        self.contact_s + self.length_s * step as f64 / STEPS as f64
+    fn grid_s(&self, step: u16) -> f64 {
+        self.contact_s + self.length_s * f64::from(step) / f64::from(STEPS)
     }
 
     /// Ringing of a channel at a step of the grid, m/s.
@@ -140,11 +144,12 @@ impl Histories {
     /// ∫f of a channel since before contact, ringing led out in proportion to time, m/s.
     pub fn at(&self, index: usize, time_s: f64) -> f64 {
         let share = ((time_s - self.contact_s) / self.length_s).clamp(0.0, 1.0);
-        let position = share * STEPS as f64;
+        let position = share * f64::from(STEPS);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and STEPS")]
         let step = position as usize;
-        let (a, b) = (self.bending_m_s(index, step), self.bending_m_s(index, (step + 1).min(STEPS)));
-        let bending_m_s = a + (position - step as f64) * (b - a);
+        let (a, b) =
+            (self.bending_m_s(index, step), self.bending_m_s(index, (step + 1).min(usize::from(STEPS))));
+        let bending_m_s = a + position.fract() * (b - a);
         self.velocities[index].at(time_s) - bending_m_s + share * self.corrections_m_s[index]
     }
 
@@ -182,12 +187,12 @@ fn bending(
     driven: &[Vec<Complex<f64>>],
     left_s: f64,
 ) -> Vec<f64> {
-    let mut sum = vec![0.0; STEPS + 1];
+    let mut sum = vec![0.0; usize::from(STEPS) + 1];
     for ((mode, &(a, b)), driven) in modes.iter().zip(amplitudes_m_s).zip(driven) {
         let omega = std::f64::consts::TAU * mode.frequency_hz;
         let as_left = Complex::new(a, -b) * (Complex::new(-mode.damping * omega, omega) * left_s).exp();
         let largest = driven.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        let last = driven[STEPS];
+        let last = driven[usize::from(STEPS)];
         if last.norm() * MOST_DECLINE < largest || largest <= 0.0 {
             continue;
         }
@@ -218,7 +223,7 @@ pub fn drive(
     let turning: Vec<f64> = (0..=STEPS).map(|i| line.at(&histories, histories.grid_s(i), 0.0).1).collect();
     Some(Drive {
         age_s: from_s - contact_s,
-        step_s: histories.length_s / STEPS as f64,
+        step_s: histories.length_s / f64::from(STEPS),
         impulses: turning.windows(2).map(|pair| pair[0] - pair[1]).collect(),
     })
 }

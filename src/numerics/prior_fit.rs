@@ -3,7 +3,7 @@
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, storage::Owned};
 
-/// Step of the derivatives, in prior standard deviations: the models are smooth over that, and 1e-3 is far above their round-off.
+/// Step of the derivatives, in prior standard deviations: the models are smooth over that, and the change stands far above their round-off.
 const STEP: f64 = 0.05;
 
 /// Residuals of the observations at given unknowns, each over its standard uncertainty; `None` where the model fails there.

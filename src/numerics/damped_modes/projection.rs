@@ -31,12 +31,11 @@ fn mode_columns(series: &Series, mode: Oscillation, form: Form) -> DMatrix<f64> 
     let mut columns = DMatrix::zeros(series.time_s.len(), form.width());
     let phase = form.drive.map(|drive| drive.phase(mode));
     for (row, value) in Ringing::new(mode, &series.time_s).enumerate() {
-        match phase {
-            Some(phase) => columns[(row, 0)] = (phase * value).re,
-            None => {
-                columns[(row, 0)] = value.re;
-                columns[(row, 1)] = value.im;
-            }
+        if let Some(phase) = phase {
+            columns[(row, 0)] = (phase * value).re;
+        } else {
+            columns[(row, 0)] = value.re;
+            columns[(row, 1)] = value.im;
         }
     }
     columns
