@@ -11,3 +11,4 @@ mod reference;
 mod run;
 mod synth;
 mod tidy;
+mod uncertainty;

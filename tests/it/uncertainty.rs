@@ -1,0 +1,74 @@
+//! The linear propagation of the uncertainty against draws of its inputs (JCGM 101), and the ladder on a committed recording.
+
+use dropcheck::data::{AxialClosure, Estimate, ReconstructionRung, Setup};
+use dropcheck::{condition, events, fit, ingest, motion};
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use std::path::Path;
+
+/// Draws: the standard deviation of 4000 is known to 1/√8000 = 1.1 %.
+const DRAWS: usize = 4000;
+
+fn fixture(name: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
+}
+
+#[test]
+fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
+    let file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
+    let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
+    let result = dropcheck::analyze(&recording, &file).result;
+    let event = events::locate(&recording, &file.drop).expect("an impact");
+    let reach = condition::Reach::of(&file.cask, &file.drop);
+    let (signals, _) = condition::condition(&recording, &event, &reach, file.corrections);
+    let setup = Setup {
+        length_m: file.cask.length_m,
+        height_m: file.cask.height_m,
+        cog_m: file.cask.cog_m,
+        angle_rad: file.drop.angle_rad,
+        impact_velocity_m_s: file.drop.impact_velocity_m_s,
+        gravity_m_s2: file.drop.gravity_m_s2,
+        axial: AxialClosure::Sticking,
+    };
+    let u_s = |time: Option<Estimate>| time.map_or(0.0, |t| t.u95 / 2.0);
+    let measured = fit::Measured {
+        signals: &signals,
+        flight: result.flight.as_ref().expect("a flight"),
+        events: &result.events,
+        u_events_s: [u_s(result.first_impact.time), 1e-4, u_s(result.slap_down.time)],
+        setup: &setup,
+        other_law: Some(AxialClosure::Sliding { friction_ppm: 0 }),
+        tolerances: file.tolerances,
+        inertia_m2: Some(file.cask.inertia_kg_m2 / file.cask.mass_kg),
+        rests: &[],
+        fall_s: None,
+    };
+    let linear = fit::quantities(&measured, &motion::outcome).expect("quantities");
+    let (mut chance, mut left) = (ChaCha8Rng::seed_from_u64(4), DRAWS);
+    let mut draw = |count: usize| {
+        left = left.checked_sub(1)?;
+        Some((0..count).map(|_| StandardNormal.sample(&mut chance)).collect())
+    };
+    let (speed_m_s, k) = fit::spread_by_draws(&measured, &motion::outcome, &mut draw).expect("draws");
+    // Four standard deviations of the draws' own scatter; what bends over ± 3 u adds less.
+    for (by_draws, by_slopes) in
+        [(speed_m_s, linear.speed.expect("a slap-down").u95 / 2.0), (k, linear.k.u95 / 2.0)]
+    {
+        assert!((by_draws / by_slopes - 1.0).abs() < 0.045, "{by_draws} by draws, {by_slopes} by slopes");
+    }
+}
+
+#[test]
+fn every_rung_speaks_and_the_budget_adds_up() {
+    let file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
+    let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
+    let result = dropcheck::analyze(&recording, &file).result;
+    let choice = result.reconstruction.expect("a reconstruction");
+    let rungs: Vec<ReconstructionRung> = choice.candidates.iter().map(|c| c.rung).collect();
+    assert_eq!(rungs, ReconstructionRung::ALL);
+    let squares: f64 = result.budget.iter().filter_map(|c| c.speed_m_s).map(|u| u * u).sum();
+    let speed = result.slap_down.speed.expect("a slap-down");
+    assert!((2.0 * squares.sqrt() / speed.u95 - 1.0).abs() < 1e-9, "{} {}", squares.sqrt(), speed.u95);
+    assert!(choice.closures.iter().all(|c| c.miss_in_u.abs() < 3.5), "{:?}", choice.closures);
+}
