@@ -20,6 +20,8 @@ const LEAST_FLOOR: f64 = 1e-3;
 const LATE_S: f64 = 0.02;
 /// An offset from a quarter of a second knows that of the next half to so many of its standard uncertainties (noise of 1/f).
 const DRIFT_FACTOR: f64 = 3.5;
+/// Share of the centrifugal force that a sensor may read more or less: 2 % of cross axis, and ω to 1.5 %, which counts twice.
+const TURNED_SHARE: f64 = 0.05;
 /// Largest zero shift as a share of the channel's peak: data sheets of shock accelerometers give up to a few percent of full scale.
 const MOST_ZERO_SHIFT: f64 = 0.1;
 /// Lowest frequency sought: this many periods in the window.
@@ -198,7 +200,9 @@ fn late_mismatch_m_s(signal: &Signal, flight: &FlightFit, whole: &Window, cog_m:
     // What the offset may have gathered since is no contact.
     let since_s = to_s - flight.from_s;
     let noise_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, since_s);
-    let drifted_m_s = DRIFT_FACTOR * noise_m_s.max(signal.u_offset_m_s2 * since_s);
+    let arms_m = (signal.position_m - cog_m).hypot(signal.offset_m);
+    let turned_m_s = TURNED_SHARE * whole.angular_velocity_rad_s.powi(2) * arms_m * since_s;
+    let drifted_m_s = turned_m_s + DRIFT_FACTOR * noise_m_s.max(signal.u_offset_m_s2 * since_s);
     Some(mismatch_m_s.signum() * (mismatch_m_s.abs() - drifted_m_s).max(0.0))
 }
 
