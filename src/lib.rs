@@ -51,6 +51,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         return draft.without_impact();
     };
     draft.events.first_contact_s = Some(contact.0);
+    draft.u_events_s[0] = contact.1;
     let u_skew_s = align(&mut draft, &mut signals, contact.0);
     let falls: Vec<_> = free_falls(recording, cask_file, contact.0).collect();
     for (channel, fall) in &falls {

@@ -72,3 +72,16 @@ fn every_rung_speaks_and_the_budget_adds_up() {
     assert!((2.0 * squares.sqrt() / speed.u95 - 1.0).abs() < 1e-9, "{} {}", squares.sqrt(), speed.u95);
     assert!(choice.closures.iter().all(|c| c.miss_in_u.abs() < 3.5), "{:?}", choice.closures);
 }
+
+#[test]
+fn one_end_alone_gives_its_time_with_an_interval_and_says_what_is_missing() {
+    let mut file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
+    file.channels.truncate(1);
+    let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
+    let result = dropcheck::analyze(&recording, &file).result;
+    let time = result.first_impact.time.expect("a first contact");
+    // The fixture strikes at 0.1 s.
+    assert!(time.u95 > 0.0 && (time.value - 0.1).abs() < time.u95, "{time:?}");
+    assert!(result.k.is_none() && result.slap_down.speed.is_none());
+    assert!(result.quality.iter().any(|i| i.code == dropcheck::data::IssueCode::MissingChannel));
+}
