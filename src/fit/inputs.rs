@@ -185,23 +185,23 @@ fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
     let (signal, plateau) = (&measured.signals[channel], &measured.flight.plateaus[channel]);
     let contact_s = measured.events.first_contact_s.unwrap_or(0.0);
     let pulse_s = measured.events.separation_s.map_or(0.0, |t| t - contact_s);
+    let flight_s = measured.flight.to_s - measured.flight.from_s;
     let shift_m_s = plateau.zero_shift_m_s2.abs() * pulse_s / 12.0_f64.sqrt();
     let drift_m_s = if measured.flight.drift {
         0.0
     } else {
-        let length_s = pulse_s + (measured.flight.to_s - measured.flight.from_s) / 2.0;
+        let length_s = pulse_s + flight_s / 2.0;
         let noise_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
         // Without a spectrum the offset's own uncertainty is all that is known.
         noise_m_s.max(signal.u_offset_m_s2 * length_s)
     };
     let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
-    let length_s = measured.flight.to_s - measured.flight.from_s;
     let ringing_m_s: f64 = measured
         .flight
         .modes
         .iter()
         .zip(&plateau.ringing_m_s)
-        .map(|(mode, (a, b))| RINGING_SHARE * a.hypot(*b) / (mode.frequency_hz * length_s))
+        .map(|(mode, (a, b))| RINGING_SHARE * a.hypot(*b) / (mode.frequency_hz * flight_s))
         .sum();
     plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(clipped_m_s)
 }

@@ -16,7 +16,7 @@ const NARROWED: f64 = 0.75;
 /// A rung with everything that it says.
 struct Step {
     candidate: ReconstructionCandidate,
-    quantities: Option<Quantities>,
+    quantities: Quantities,
 }
 
 /// Every rung and the one taken: the simplest whose residuals are within what noise and tolerances explain, and whose answer the next one
@@ -31,7 +31,7 @@ pub fn ladder(
     reconstruct: Reconstruct,
 ) -> Option<(Quantities, ReconstructionChoice)> {
     let model = Model::new(measured, reconstruct)?;
-    let flight = quantities_of(&model, None)?;
+    let flight = model.by_stated_inputs()?;
     let joint = model.joint();
     let closures = model.closures(joint.as_ref());
     let mut steps = Vec::new();
@@ -44,13 +44,13 @@ pub fn ladder(
     }
     steps.push(by_flight(measured, flight, &closures));
     if let Some(fit) = &joint
-        && let Some(quantities) = quantities_of(&model, Some(fit))
+        && let Some(quantities) = model.propagate(fit)
     {
         steps.push(by_joint(quantities, fit.chi_square, closures.len()));
     }
     let taken = taken(&steps);
     let reason = reason(&steps, taken);
-    let quantities = steps[taken].quantities.clone()?;
+    let quantities = steps[taken].quantities.clone();
     Some((
         quantities,
         ReconstructionChoice {
@@ -64,13 +64,6 @@ pub fn ladder(
     ))
 }
 
-fn quantities_of(model: &Model, fit: Option<&crate::numerics::prior_fit::PriorFit>) -> Option<Quantities> {
-    match fit {
-        Some(fit) => model.propagate(fit),
-        None => model.propagate(&crate::numerics::prior_fit::PriorFit::of_priors(model.inputs.len())),
-    }
-}
-
 fn step(rung: ReconstructionRung, quantities: Quantities, consistent: bool, residual: String) -> Step {
     let candidate = ReconstructionCandidate {
         rung,
@@ -79,7 +72,7 @@ fn step(rung: ReconstructionRung, quantities: Quantities, consistent: bool, resi
         consistent,
         residual,
     };
-    Step { candidate, quantities: Some(quantities) }
+    Step { candidate, quantities }
 }
 
 /// (a) Speed and k as [P] reads them off the velocity curves of single channels; the other quantities are the planar motion's.
@@ -111,9 +104,9 @@ fn by_channels(measured: &Measured, plain: &FlightFit, reading: ChannelReading, 
 /// (b) Planar motion, each velocity step the mean over the flight.
 fn planar(measured: &Measured, reconstruct: Reconstruct) -> Option<Step> {
     let model = Model::new(measured, reconstruct)?;
-    let quantities = quantities_of(&model, None)?;
+    let quantities = model.by_stated_inputs()?;
     let closures = model.closures(None);
-    let left_m_s = measured.flight.plateaus.iter().map(|p| p.residual_m_s).fold(0.0, f64::max);
+    let left_m_s = most_left_m_s(measured.flight);
     let consistent = explains(measured.flight) && meets(&closures);
     let residual = format!("{left_m_s:.2} m/s about the mean of the flight; {}", worst(&closures));
     Some(step(ReconstructionRung::Planar, quantities, consistent, residual))
@@ -121,7 +114,7 @@ fn planar(measured: &Measured, reconstruct: Reconstruct) -> Option<Step> {
 
 /// (c) The flight fitted with modes and drift.
 fn by_flight(measured: &Measured, quantities: Quantities, closures: &[Closure]) -> Step {
-    let left_m_s = measured.flight.plateaus.iter().map(|p| p.residual_m_s).fold(0.0, f64::max);
+    let left_m_s = most_left_m_s(measured.flight);
     let what = match (measured.flight.modes.len(), measured.flight.drift) {
         (0, false) => "no mode, no drift".to_owned(),
         (n, drift) => {
@@ -136,6 +129,11 @@ fn by_flight(measured: &Measured, quantities: Quantities, closures: &[Closure]) 
 fn by_joint(quantities: Quantities, chi_square: f64, degrees: usize) -> Step {
     let residual = format!("χ² = {chi_square:.1} for {degrees} observables");
     step(ReconstructionRung::Joint, quantities, true, residual)
+}
+
+/// The largest residual of the channels, m/s.
+fn most_left_m_s(flight: &FlightFit) -> f64 {
+    flight.plateaus.iter().map(|p| p.residual_m_s).fold(0.0, f64::max)
 }
 
 /// Whether the best fit of the flight is the one without modes and drift.

@@ -29,8 +29,7 @@ const NOTABLE_MOVE: f64 = 0.05;
 /// cannot be had.
 #[must_use]
 pub fn quantities(measured: &Measured, reconstruct: Reconstruct) -> Option<Quantities> {
-    let model = Model::new(measured, reconstruct)?;
-    model.propagate(&PriorFit::of_priors(model.inputs.len()))
+    Model::new(measured, reconstruct)?.by_stated_inputs()
 }
 
 /// Standard deviations of speed, m/s, and k over the given draws of the inputs, each a list of standard normal deviates that is repeated
@@ -61,7 +60,7 @@ pub(super) struct Model<'a> {
     reconstruct: Reconstruct<'a>,
     base: Inputs,
     motion: Motion,
-    pub inputs: Vec<Input>,
+    inputs: Vec<Input>,
     observables: Vec<Observable>,
     /// What the other contact law would say less what the stated one says: of the quantities, then of the observables.
     law: Option<(Vec<f64>, Vec<f64>)>,
@@ -128,6 +127,11 @@ impl<'a> Model<'a> {
             return None;
         }
         fit(self.inputs.len(), &|by_u| self.residuals(by_u))
+    }
+
+    /// The quantities by the inputs as they are stated.
+    pub fn by_stated_inputs(&self) -> Option<Quantities> {
+        self.propagate(&PriorFit::of_priors(self.inputs.len()))
     }
 
     /// The quantities where a fit ended, with what each datum contributes.
