@@ -17,6 +17,7 @@ pub mod predict;
 pub mod report;
 mod settle;
 pub mod synth;
+pub mod trial;
 pub mod validate;
 
 use assemble::Draft;

@@ -21,6 +21,7 @@ mod signal;
 mod study;
 mod synthetic;
 mod tolerances;
+mod trial;
 
 pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
@@ -54,3 +55,4 @@ pub use study::{
 };
 pub use synthetic::{SceneFile, SyntheticChannel, SyntheticRecording, WantedImpact};
 pub use tolerances::{Corrections, Tolerances};
+pub use trial::{TrialJob, TrialLine, TrialMap, TrialPart, TrialPoint, TrialRequest};
