@@ -35,6 +35,8 @@ pub(crate) struct Wish {
     pub contact: Option<Contact>,
     /// Whether there is an axial channel; `None`: as it comes.
     pub axial: Option<bool>,
+    /// Whether the rest before the release is recorded; `None`: as it comes.
+    pub rest: Option<bool>,
     /// Two transverse channels on the first end.
     pub third_channel: bool,
     /// Nothing that makes thousands of samples more than the damage needs.
@@ -44,7 +46,14 @@ pub(crate) struct Wish {
 impl Wish {
     /// Anything.
     pub(super) const fn new() -> Self {
-        Self { lands_again: false, contact: None, axial: None, third_channel: false, slow_recorder: false }
+        Self {
+            lands_again: false,
+            contact: None,
+            axial: None,
+            rest: None,
+            third_channel: false,
+            slow_recorder: false,
+        }
     }
 }
 

@@ -49,7 +49,8 @@ fn timed(case: &mut Case, wish: &Wish) -> f64 {
     let truth = case.motion.truth;
     let chance = &mut case.chance;
     let fall_s = (2.0 * case.scene.drop.height_m / case.scene.drop.gravity_m_s2).sqrt();
-    case.scene.rest = chance.is(0.2);
+    let shows_rest = chance.is(0.2);
+    case.scene.rest = wish.rest.unwrap_or(shows_rest);
     let is_short = chance.is(0.8);
     case.scene.before_s = if case.scene.rest {
         fall_s + chance.even(0.1, 0.4)

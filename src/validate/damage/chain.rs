@@ -3,7 +3,7 @@
 use super::super::draw::Wish;
 use super::super::recorder::{self, STANDARD_GRAVITY_M_S2 as G_M_S2};
 use super::super::{Case, Means};
-use super::{Kind, SOUND};
+use super::{Kind, SOUND, rest};
 use crate::data::{Chain, End};
 
 pub(super) const KINDS: &[Kind] = &[
@@ -104,7 +104,16 @@ pub(super) const KINDS: &[Kind] = &[
         name: "clock_rate",
         sizes: &[0.1, 0.3, 1.0, 3.0, 10.0],
         unit: "%",
-        before: |case, size, _| case.scene.clock_error = case.chance.sign() * size / 100.0,
+        wish: |_| rest(false),
+        before: |case, size, _| clock(case, size),
+        ..SOUND
+    },
+    Kind {
+        name: "clock_rate_rest",
+        sizes: &[0.1, 0.3, 1.0, 3.0, 10.0],
+        unit: "%",
+        wish: |_| rest(true),
+        before: |case, size, _| clock(case, size),
         ..SOUND
     },
     Kind {
@@ -143,6 +152,15 @@ pub(super) const KINDS: &[Kind] = &[
         name: "scale_all",
         sizes: &[1.0, 3.0, 10.0, 30.0, 100.0],
         unit: "%",
+        wish: |_| rest(false),
+        before: |case, size, _| scale(case, size, true),
+        ..SOUND
+    },
+    Kind {
+        name: "scale_all_rest",
+        sizes: &[1.0, 3.0, 10.0, 30.0, 100.0],
+        unit: "%",
+        wish: |_| rest(true),
         before: |case, size, _| scale(case, size, true),
         ..SOUND
     },
@@ -212,6 +230,11 @@ fn clip(case: &mut Case, end: End, size: f64, means: &Means) {
     let channel = &mut case.scene.channels[which];
     channel.chain.full_scale_m_s2 = Some(limit_m_s2);
     case.stated.channels[which].full_scale = is_stated.then(|| limit_m_s2 / recorder::unit_m_s2(channel));
+}
+
+/// A recorder that runs fast or slow.
+fn clock(case: &mut Case, size: f64) {
+    case.scene.clock_error = case.chance.sign() * size / 100.0;
 }
 
 /// First contact by the recorder's clock, its length and the way from there to the slap-down, s.

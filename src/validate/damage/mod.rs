@@ -33,6 +33,11 @@ const SOUND: Kind = Kind {
     after: |_, _, _| {},
 };
 
+/// A record with the rest before the release in it, or without.
+fn rest(is_shown: bool) -> Wish {
+    Wish { rest: Some(is_shown), slow_recorder: true, ..Wish::new() }
+}
+
 /// All kinds.
 fn all() -> impl Iterator<Item = &'static Kind> + Clone {
     chain::KINDS.iter().chain(samples::KINDS).chain(stated::KINDS)

@@ -2,7 +2,7 @@
 
 use super::super::Case;
 use super::super::draw::Wish;
-use super::{Kind, SOUND};
+use super::{Kind, SOUND, rest};
 use crate::data::Contact;
 
 pub(super) const KINDS: &[Kind] = &[
@@ -24,6 +24,15 @@ pub(super) const KINDS: &[Kind] = &[
         name: "stated_height",
         sizes: &[2.0, 5.0, 10.0, 20.0, 50.0],
         unit: "%",
+        wish: |_| rest(false),
+        before: |case, size, _| height(case, size),
+        ..SOUND
+    },
+    Kind {
+        name: "stated_height_rest",
+        sizes: &[2.0, 5.0, 10.0, 20.0, 50.0],
+        unit: "%",
+        wish: |_| rest(true),
         before: |case, size, _| height(case, size),
         ..SOUND
     },
