@@ -69,7 +69,9 @@ impl<'a> Draft<'a> {
         self.events.separation_s = Some(left.0);
         self.events.slap_down_s = struck.map(|s| s.0);
         self.u_events_s = [contact.1, left.1, struck.map_or(0.0, |s| s.1)];
-        if struck.is_none() {
+        // An end without a channel has said so itself.
+        let is_recorded = self.issues.iter().all(|i| i.code != IssueCode::MissingChannel);
+        if struck.is_none() && is_recorded {
             let after_s = end_s - left.0;
             let (code, why) = if after_s < 0.3 {
                 (IssueCode::EndsEarly, "the recording ends before it")
@@ -85,6 +87,15 @@ impl<'a> Draft<'a> {
                 ),
             ));
         }
+    }
+
+    /// Says that no flight could be had.
+    pub fn flight_is_too_short(&mut self) {
+        self.issues.push(Issue::new(
+            IssueCode::FlightFit,
+            Severity::Error,
+            "the free flight between the impacts is too short to be told from them and from ringing",
+        ));
     }
 
     /// Takes over what was measured and how it compares.

@@ -13,6 +13,7 @@ pub mod ingest;
 pub mod judge;
 pub mod motion;
 pub mod numerics;
+mod one_end;
 pub mod predict;
 pub mod report;
 mod settle;
@@ -23,10 +24,10 @@ pub mod validate;
 use assemble::Draft;
 use data::{
     Analysis, AxialClosure, Axis, Campaign, CampaignRequest, Cask, CaskFile, Channel, Contact, Coupling,
-    CrushableEnd, Drop, Events, FlightFit, Issue, IssueCode, Motion, Quantities, ReconstructionChoice,
-    Recording, RestLevel, Scene, SceneFile, SceneNumber, Setup, Severity, Signal, SyntheticRecording,
-    WantedImpact,
+    CrushableEnd, Drop, Events, FlightFit, Motion, Quantities, ReconstructionChoice, Recording, RestLevel,
+    Scene, SceneFile, SceneNumber, Setup, Severity, Signal, SyntheticRecording, WantedImpact,
 };
+use one_end::StandIn;
 use std::path::Path;
 
 /// From a recording and a cask file to everything that can be said of the drop.
@@ -54,6 +55,8 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     draft.events.first_contact_s = Some(contact.0);
     draft.u_events_s[0] = contact.1;
     let u_skew_s = align(&mut draft, &mut signals, contact.0);
+    let recorded = signals.len();
+    let stand_in = one_end::stand_in(cask_file, &mut signals, contact.0);
     let falls: Vec<_> = free_falls(recording, cask_file, contact.0).collect();
     for (channel, fall) in &falls {
         draft.rests.push(RestLevel {
@@ -68,9 +71,10 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         draft.events.fall_end_s = Some(fall.end_s);
     }
     draft.issues.extend(judge::judge_fall(&cask_file.drop, &draft.events));
-    let reconstructed = flight_and_motion(&mut draft, &signals, contact, u_skew_s);
+    let reconstructed = flight_and_motion(&mut draft, &signals, contact, (u_skew_s, stand_in.as_ref()));
+    let (of_recorded, _) = signals.split_at(recorded);
     judge::weigh_by_distance(&mut draft.issues, &draft.events);
-    let on_channels = judge::judge_channels(&signals, &draft.events, cask_file, &draft.issues);
+    let on_channels = judge::judge_channels(of_recorded, &draft.events, cask_file, &draft.issues);
     draft.issues.extend(on_channels);
     let smooth = draft.smooth(&signals);
     if let Some(Reconstructed { flight, setup, motion, quantities, choice: reconstruction }) = reconstructed {
@@ -83,7 +87,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         draft.flight = Some(flight);
         if draft.issues.iter().any(judge::invalidates) {
             // What an error speaks against is not stated at all: the times and curves remain.
-            draft.draw(&signals, &smooth);
+            draft.draw(of_recorded, &smooth[..recorded]);
             return draft.finish();
         }
         let compared =
@@ -95,7 +99,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         draft.curves.motion = Some(motion.curve);
         draft.filter_effect(&smooth, &setup);
     }
-    draft.draw(&signals, &smooth);
+    draft.draw(of_recorded, &smooth[..recorded]);
     draft.finish()
 }
 
@@ -199,22 +203,25 @@ fn flight_and_motion(
     draft: &mut Draft,
     signals: &[Signal],
     contact: (f64, f64),
-    u_skew_s: f64,
+    (u_skew_s, stand_in): (f64, Option<&StandIn>),
 ) -> Option<Reconstructed> {
     let cask_file = draft.cask_file;
-    for end in [data::End::First, data::End::Second] {
-        if events::transverse(signals, end).is_none() {
-            draft.issues.push(Issue::new(
-                IssueCode::MissingChannel,
-                Severity::Error,
-                format!(
-                    "no transverse channel on the {end} end: rotation, k and slap-down need one on each end"
-                ),
-            ));
+    let is_missing = |end: &data::End| match stand_in {
+        Some(_) => *end == data::End::Second,
+        None => events::transverse(signals, *end).is_none(),
+    };
+    if let Some(end) = [data::End::First, data::End::Second].into_iter().find(is_missing) {
+        draft.issues.push(judge::judge_missing_end(end, stand_in.is_some()));
+        stand_in?;
+    }
+    let mut flight = find_flight(draft, signals, contact, stand_in.is_none())?;
+    if let Some(stand_in) = stand_in {
+        if !settle::is_told_apart(&flight) {
+            draft.flight_is_too_short();
             return None;
         }
+        stand_in.doubt(&mut flight);
     }
-    let flight = find_flight(draft, signals, contact)?;
     draft.u_events_s[2] = draft.u_events_s[2].hypot(u_skew_s);
     let setup = setup(cask_file, signals, &draft.events, &flight);
     let motion = motion::reconstruct(signals, &flight, &draft.events, &setup)?;
@@ -235,7 +242,8 @@ fn flight_and_motion(
         setup: &setup,
         other_law: other_law(setup.axial),
         tolerances: cask_file.tolerances,
-        inertia_m2: cask.is_body.then_some(cask.inertia_kg_m2 / cask.mass_kg),
+        // An end that the mass properties stand in for cannot test them.
+        inertia_m2: (cask.is_body && stand_in.is_none()).then_some(cask.inertia_kg_m2 / cask.mass_kg),
         rests: &draft.rests,
         fall_s: draft
             .events
@@ -249,15 +257,17 @@ fn flight_and_motion(
 }
 
 /// Separation, slap-down and the flight between them; what prevents them goes to the draft's issues.
-fn find_flight(draft: &mut Draft, signals: &[Signal], contact: (f64, f64)) -> Option<FlightFit> {
+fn find_flight(
+    draft: &mut Draft,
+    signals: &[Signal],
+    contact: (f64, f64),
+    has_both_ends: bool,
+) -> Option<FlightFit> {
     let settled = settle::settle(draft.cask_file, signals, contact.0)?;
-    draft.take_times(contact, settled.left, settled.struck, settle::record_end_s(signals));
+    let struck = settled.struck.filter(|_| has_both_ends);
+    draft.take_times(contact, settled.left, struck, settle::record_end_s(signals));
     if settled.flight.is_none() {
-        draft.issues.push(Issue::new(
-            IssueCode::FlightFit,
-            Severity::Error,
-            "the free flight between the impacts is too short to be told from them",
-        ));
+        draft.flight_is_too_short();
     }
     settled.flight
 }

@@ -1,7 +1,7 @@
 //! Signals and first contact to separation, slap-down and the flight between them, each found with the others' help.
 
 use crate::data::{CaskFile, End, Events, FlightFit, Signal};
-use crate::{assemble, events, motion};
+use crate::{assemble, events, judge, motion};
 
 /// Separation and slap-down are found again on signals free of ringing this often; the second round moves them by less than a sample.
 const ROUNDS: usize = 3;
@@ -75,7 +75,10 @@ pub(crate) fn settle(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Opt
     let (first, second) = search.ends(signals)?;
     let struck = events::slap_down(&second, search.earliest_s..search.record_end_s, search.least_m_s, false);
     let mut best: Option<(f64, Settled)> = None;
-    for share in FIRST_ENDS {
+    // Where the velocities are cut off no beginning leads to a flight that explains them.
+    let before_s = struck.map_or(search.record_end_s, |s| s.0);
+    let is_hopeless = signals.iter().any(|s| judge::is_cut_off(s, contact_s, before_s));
+    for share in FIRST_ENDS.into_iter().take(if is_hopeless { 1 } else { FIRST_ENDS.len() }) {
         let attempt = search.attempt(&first, struck, share)?;
         let cost = search.cost(&attempt);
         if best.as_ref().is_none_or(|(least, _)| cost < *least) {
@@ -176,7 +179,7 @@ impl Search<'_> {
 }
 
 /// Whether the flight shows its slowest mode for long enough.
-fn is_told_apart(flight: &FlightFit) -> bool {
+pub(crate) fn is_told_apart(flight: &FlightFit) -> bool {
     let length_s = flight.to_s - flight.from_s;
     flight.modes.iter().all(|m| m.frequency_hz * length_s > TOLD_APART_PERIODS)
 }

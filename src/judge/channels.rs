@@ -31,6 +31,12 @@ pub fn judge_channels(
     issues
 }
 
+/// Whether clipping between two times takes more of the velocity than may be missing.
+#[must_use]
+pub fn is_cut_off(signal: &Signal, from_s: f64, to_s: f64) -> bool {
+    signal.lost_to_clipping_m_s(from_s, to_s) > MOST_LOST_M_S
+}
+
 /// One issue a channel and phase: what stands at a limit before, between and after the impacts.
 fn clipped(signal: &Signal, events: &Events) -> Vec<Issue> {
     let separation_s = events.separation_s.unwrap_or(f64::INFINITY);

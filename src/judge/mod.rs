@@ -11,7 +11,7 @@ mod silent;
 mod skew;
 mod worth;
 
-pub use channels::judge_channels;
+pub use channels::{is_cut_off, judge_channels};
 pub use closures::judge_closures;
 pub use coupling::judge_coupling;
 pub use fall::judge_fall;
@@ -20,7 +20,7 @@ pub use rigid::judge_rigid;
 pub use silent::judge_silent;
 pub use skew::judge_skew;
 
-use crate::data::{Events, Issue, IssueCode, Severity, Verdict};
+use crate::data::{End, Events, Issue, IssueCode, Severity, Verdict};
 
 /// Free fall before first contact that the offset may come from, s.
 const OFFSET_WINDOW_S: f64 = 0.25;
@@ -50,10 +50,23 @@ pub fn weigh_by_distance(issues: &mut [Issue], events: &Events) {
     }
 }
 
+/// No transverse channel on an end; `is_stood_in_for` where the mass properties say what it would have read.
+#[must_use]
+pub fn judge_missing_end(end: End, is_stood_in_for: bool) -> Issue {
+    let effect = if is_stood_in_for {
+        "rotation and k rest on the inertia and centre of gravity of the cask file, and nothing shows the slap-down; record both ends"
+    } else {
+        "rotation, k and slap-down need one on each end"
+    };
+    let message = format!("no transverse channel on the {end} end: {effect}");
+    Issue::new(IssueCode::MissingChannel, Severity::Error, message)
+}
+
 /// Whether an issue takes away what was read off the motion; a missing slap-down leaves the first impact as it is.
 #[must_use]
 pub fn invalidates(issue: &Issue) -> bool {
-    issue.severity == Severity::Error && !matches!(issue.code, IssueCode::EndsEarly | IssueCode::NoSlapDown)
+    issue.severity == Severity::Error
+        && !matches!(issue.code, IssueCode::EndsEarly | IssueCode::NoSlapDown | IssueCode::MissingChannel)
 }
 
 /// Sorts the findings, errors first, and says what they amount to: any error fails, any warning asks for a review.

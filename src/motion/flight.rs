@@ -5,6 +5,7 @@ use crate::data::{Axis, FlightFit, FlightModelScore, Mode, Plateau, Signal};
 use crate::numerics::damped_modes::{Drive, Fit, Form, Oscillation, Series, SeriesFit, fit, uniform_ringing};
 use crate::numerics::noise::integral_uncertainty_by;
 use crate::numerics::robust;
+use rayon::prelude::*;
 
 /// Most fits described: the one taken and those that could stand in for it.
 const MOST_FITS: usize = 5;
@@ -109,15 +110,13 @@ fn candidates(series: &[Series], window: &Window, drive: Option<&Drive>) -> Vec<
     let highest_hz = (0.2 * fewest as f64 / length_s).min(1500.0);
     let band_hz = |periods: f64| ((periods / length_s).max(LOWEST_HZ), highest_hz);
     let drifts = if window.drift { &[false, true][..] } else { &[false] };
-    let mut fits = Vec::new();
-    for &drift in drifts {
-        fits.extend(chain(series, band_hz(LEAST_PERIODS), Form { drift, drive: None }));
-    }
+    let chains = |drive: Option<&Drive>, periods: f64| -> Vec<Vec<Fit>> {
+        drifts.par_iter().map(|&drift| chain(series, band_hz(periods), Form { drift, drive })).collect()
+    };
+    let mut fits = chains(None, LEAST_PERIODS).concat();
     if drive.is_some() && fits.iter().all(|f| !is_clear(series, f, length_s)) {
-        for &drift in drifts {
-            let driven = chain(series, band_hz(LEAST_DRIVEN_PERIODS), Form { drift, drive });
-            fits.extend(driven.into_iter().skip(1));
-        }
+        let driven = chains(drive, LEAST_DRIVEN_PERIODS);
+        fits.extend(driven.into_iter().flat_map(|chain| chain.into_iter().skip(1)));
     }
     fits
 }
@@ -202,7 +201,10 @@ fn late_mismatch_m_s(signal: &Signal, flight: &FlightFit, whole: &Window, cog_m:
     let noise_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, since_s);
     let arms_m = (signal.position_m - cog_m).hypot(signal.offset_m);
     let turned_m_s = TURNED_SHARE * whole.angular_velocity_rad_s.powi(2) * arms_m * since_s;
-    let drifted_m_s = turned_m_s + DRIFT_FACTOR * noise_m_s.max(signal.u_offset_m_s2 * since_s);
+    // A drift fitted over the window says less and less of what comes after it.
+    let slope_m_s = if flight.drift { plateau.u_zero_shift_m_s2 * since_s } else { 0.0 };
+    let gathered_m_s = noise_m_s.max(signal.u_offset_m_s2 * since_s).hypot(slope_m_s);
+    let drifted_m_s = turned_m_s + DRIFT_FACTOR * gathered_m_s;
     Some(mismatch_m_s.signum() * (mismatch_m_s.abs() - drifted_m_s).max(0.0))
 }
 

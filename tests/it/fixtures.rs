@@ -161,3 +161,23 @@ fn every_fixture_is_tested() {
         }
     }
 }
+
+#[test]
+fn one_end_alone_gives_the_first_impact_and_its_restitution() {
+    let truth = read_json(&fixture("anf18-json.truth.json"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let cask = folder.path().join("one-end.toml");
+    let whole = std::fs::read_to_string(fixture("anf18-json.toml")).expect("a cask file");
+    let second = whole.rfind("[[channel]]").expect("two channels");
+    std::fs::write(&cask, &whole[..second]).expect("a cask file");
+    let answer = analyze(&fixture("anf18-json.mcap"), &cask);
+    let result = answer.json();
+    let of = |key: &str| number(&truth, &format!("/{key}")).expect(key);
+    near(&result, "/k", of("k"), RESTITUTION);
+    near(&result, "/first_impact/angular_velocity", of("omega_rebound"), 0.05 * of("omega_rebound"));
+    // A tenth of the contact: the separation is where the force fades out.
+    near(&result, "/first_impact/duration", of("contact_s"), 0.1 * of("contact_s"));
+    assert!(result["slap_down"]["speed"].is_null() && result["slap_down"]["time"].is_null());
+    assert_eq!(codes(&result), ["missing_channel"]);
+    assert_eq!((result["verdict"].as_str(), answer.status), (Some("fail"), 1));
+}

@@ -20,6 +20,7 @@ fn allowed(module: &str) -> Option<Vec<&'static str>> {
         "trial" => {
             Some([&STAGES[..], &["data", "numerics", "synth", "assemble", "settle", "analyze"]].concat())
         } // every method, held against the others
+        "one_end" => Some(vec!["data", "predict"]), // … what a missing end would have read
         "settle" => Some([&STAGES[..], &["data", "numerics", "assemble"]].concat()), // … and its search
         stage if STAGES.contains(&stage) => Some(vec!["data", "numerics"]),
         _ => None,
