@@ -5,7 +5,7 @@ use crate::data::{AxialClosure, Axis, Events, FlightFit, Motion, Setup};
 use crate::numerics::noise::integral_uncertainty_by;
 
 /// What a mode leaves in the velocity step for each period that the flight shows of it, as a share of its amplitude: a window of one period
-/// knows a mode's mean to half a percent of it on simulated drops (docs/uncertainty.md).
+/// knows a mode's mean to half a percent of it on simulated drops, and one of half a period to two (docs/uncertainty.md).
 const RINGING_SHARE: f64 = 0.005;
 
 /// One set of inputs.
@@ -201,7 +201,11 @@ fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
         .modes
         .iter()
         .zip(&plateau.ringing_m_s)
-        .map(|(mode, (a, b))| RINGING_SHARE * a.hypot(*b) / (mode.frequency_hz * flight_s))
+        .map(|(mode, (a, b))| {
+            let periods = mode.frequency_hz * flight_s;
+            // Of less than a period the fit sees a bend of the plateau.
+            RINGING_SHARE * a.hypot(*b) / periods.min(periods * periods)
+        })
         .sum();
     plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(clipped_m_s)
 }

@@ -43,10 +43,10 @@ pub fn ladder(
         steps.extend(planar(&measured, reconstruct));
     }
     steps.push(by_flight(measured, flight, &closures));
-    if let Some(fit) = &joint
-        && let Some(quantities) = model.propagate(fit)
-    {
-        steps.push(by_joint(quantities, fit.chi_square, closures.len()));
+    if let Some(fit) = &joint {
+        let widened = widened(&closures);
+        let step = |quantities| by_joint(quantities, fit.chi_square, closures.len(), widened);
+        steps.extend(model.propagate(fit, widened).map(step));
     }
     let taken = taken(&steps);
     let reason = reason(&steps, taken);
@@ -125,9 +125,17 @@ fn by_flight(measured: &Measured, quantities: Quantities, closures: &[Closure]) 
     step(ReconstructionRung::Flight, quantities, meets(closures), residual)
 }
 
+/// How much wider the intervals of a joint fit are for data that contradict one another by more than chance (Birge 1932)   (31b)
+fn widened(closures: &[Closure]) -> f64 {
+    closures.iter().map(|c| c.miss_in_u.abs() / MOST_MISS).fold(1.0, f64::max)
+}
+
 /// (d) Everything fitted within its tolerance.
-fn by_joint(quantities: Quantities, chi_square: f64, degrees: usize) -> Step {
-    let residual = format!("χ² = {chi_square:.1} for {degrees} observables");
+fn by_joint(quantities: Quantities, chi_square: f64, degrees: usize, widened: f64) -> Step {
+    let mut residual = format!("χ² = {chi_square:.1} for {degrees} observables");
+    if widened > 1.0 {
+        residual = format!("{residual}, intervals widened {widened:.1} times for it");
+    }
     step(ReconstructionRung::Joint, quantities, true, residual)
 }
 

@@ -131,15 +131,15 @@ impl<'a> Model<'a> {
 
     /// The quantities by the inputs as they are stated.
     pub fn by_stated_inputs(&self) -> Option<Quantities> {
-        self.propagate(&PriorFit::of_priors(self.inputs.len()))
+        self.propagate(&PriorFit::of_priors(self.inputs.len()), 1.0)
     }
 
-    /// The quantities where a fit ended, with what each datum contributes.
-    pub fn propagate(&self, fit: &PriorFit) -> Option<Quantities> {
+    /// The quantities where a fit ended, with what each datum contributes, `widened` times as uncertain as it says.
+    pub fn propagate(&self, fit: &PriorFit, widened: f64) -> Option<Quantities> {
         let values = self.values(&fit.unknowns)?;
         let slopes = derivatives(&|by_u| self.values(by_u), &fit.unknowns)?;
         // Each datum moves the unknowns by its column of the response, and they the quantities.
-        let by_datum = slopes * &fit.response;
+        let by_datum = slopes * &fit.response * widened;
         let struck = self.measured.events.slap_down_s.is_some();
         let estimate = |i: usize, unit| Estimate::new(values[i], COVERAGE * by_datum.row(i).norm(), unit);
         let at_slap_down = |i: usize, unit| struck.then(|| estimate(i, unit));

@@ -12,8 +12,41 @@ const GROSS_U: f64 = 12.0;
 pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Events) -> Vec<Issue> {
     let missed = choice.closures.iter().filter(|c| c.miss_in_u.abs() > MISSED_U);
     let mut issues: Vec<Issue> = missed.map(|closure| issue(closure, drop, events)).collect();
+    if issues.is_empty() {
+        issues.extend(together(choice));
+    }
     issues.extend(on_trust(choice));
     issues
+}
+
+/// Closures of which each is missed by less than chance allows, and all together by more.
+fn together(choice: &ReconstructionChoice) -> Option<Issue> {
+    let (chi_square, degrees) = choice.chi_square?;
+    (chi_square > most_chi_square(degrees)).then(|| {
+        let missed: Vec<String> = choice
+            .closures
+            .iter()
+            .filter(|c| c.miss_in_u.abs() > 1.0)
+            .map(|c| format!("{} by {} ({:.1} u)", c.name, c.miss, c.miss_in_u.abs()))
+            .collect();
+        Issue::new(
+            IssueCode::Geometry,
+            Severity::Warning,
+            format!(
+                "what the motion must meet is missed by more than chance, all together (χ² = {chi_square:.1} for {degrees}): {}; check angle, height, scales, positions and mass properties of the cask file",
+                missed.join(", ")
+            ),
+        )
+    })
+}
+
+/// χ² that chance passes as often as one closure passes [`MISSED_U`] (Wilson & Hilferty 1931).
+fn most_chi_square(degrees: usize) -> f64 {
+    #[allow(clippy::cast_precision_loss, reason = "a few closures")]
+    let n = degrees as f64;
+    // The normal deviate that is passed on one side as often as 3.5 on both.
+    let share = 2.0 / (9.0 * n);
+    n * (1.0 - share + 3.31 * share.sqrt()).powi(3)
 }
 
 /// What no closure of this recording tests.

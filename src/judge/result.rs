@@ -9,6 +9,8 @@ use crate::data::{
 const FAR_OUTSIDE: f64 = 0.25;
 /// Zero shifts whose effect on the velocity over the contact is below this are a note, m/s: 0.5 % of a slap-down.
 const SMALL_SHIFT_M_S: f64 = 0.1;
+/// The same in a flight that does not show a period of each mode, where a drift is a part of the mode as well as of the sensor, m/s.
+const SMALL_BEND_M_S: f64 = 0.5;
 /// Velocity gained late in a flight beyond this share of v0 is another contact.
 const LATE_SHARE: f64 = 0.03;
 /// Sliding below this is sticking, m/s: 5 % cross-axis sensitivity of a 13 m/s step.
@@ -99,7 +101,8 @@ fn flight_issues(flight: &FlightFit, quantities: &Quantities) -> Vec<Issue> {
     for plateau in &flight.plateaus {
         let effect_m_s = plateau.zero_shift_m_s2.abs() * quantities.duration.value;
         if flight.drift && plateau.zero_shift_m_s2.abs() > 3.0 * plateau.u_zero_shift_m_s2 {
-            let severity = if effect_m_s > SMALL_SHIFT_M_S { Severity::Warning } else { Severity::Note };
+            let small_m_s = if shows_its_modes(flight) { SMALL_SHIFT_M_S } else { SMALL_BEND_M_S };
+            let severity = if effect_m_s > small_m_s { Severity::Warning } else { Severity::Note };
             issues.push(
                 Issue::new(
                     IssueCode::ZeroShift,
@@ -151,6 +154,11 @@ fn flight_issues(flight: &FlightFit, quantities: &Quantities) -> Vec<Issue> {
         }
     }
     issues
+}
+
+/// Whether the flight shows a period of its slowest mode.
+fn shows_its_modes(flight: &FlightFit) -> bool {
+    flight.modes.iter().all(|m| m.frequency_hz * (flight.to_s - flight.from_s) > 1.0)
 }
 
 /// What a comparison that does not agree amounts to.

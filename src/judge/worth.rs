@@ -3,8 +3,8 @@
 use crate::data::{Axis, CaskFile, End, Events, Issue, IssueCode, Severity, Signal};
 use crate::numerics::noise::integral_uncertainty_by;
 
-/// Standard uncertainty of the velocity from noise alone that leaves little of a result, as a share of v0: ± 6 %.
-const MOST_NOISE: f64 = 0.03;
+/// Standard uncertainty of the velocity from noise alone that leaves little of a result, as a share of v0: ± 10 %.
+const MOST_NOISE: f64 = 0.05;
 /// … and that is worth a note: as much as everything else that the interval carries.
 const NOTABLE_NOISE: f64 = 0.005;
 /// Longest integration that noise is held against, s: contact and the window of the flight's fit.
