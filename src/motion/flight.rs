@@ -2,7 +2,9 @@
 
 use super::Velocity;
 use crate::data::{Axis, FlightFit, FlightModelScore, Mode, Plateau, Signal};
-use crate::numerics::damped_modes::{Drive, Fit, Form, Oscillation, Series, SeriesFit, fit, uniform_ringing};
+use crate::numerics::damped_modes::{
+    Drive, Fit, Form, Oscillation, Seeds, Series, SeriesFit, fit, uniform_ringing,
+};
 use crate::numerics::noise::integral_uncertainty_by;
 use crate::numerics::robust;
 use rayon::prelude::*;
@@ -111,7 +113,8 @@ fn candidates(series: &[Series], window: &Window, drive: Option<&Drive>) -> Vec<
     let band_hz = |periods: f64| ((periods / length_s).max(LOWEST_HZ), highest_hz);
     let drifts = if window.drift { &[false, true][..] } else { &[false] };
     let chains = |drive: Option<&Drive>, periods: f64| -> Vec<Vec<Fit>> {
-        drifts.par_iter().map(|&drift| chain(series, band_hz(periods), Form { drift, drive })).collect()
+        let seeds = Seeds::new(series, band_hz(periods), drive);
+        drifts.par_iter().map(|&drift| chain(series, &seeds, Form { drift, drive })).collect()
     };
     let mut fits = chains(None, LEAST_PERIODS).concat();
     if drive.is_some() && fits.iter().all(|f| !is_clear(series, f, length_s)) {
@@ -236,16 +239,16 @@ fn improbability(peaks_m_s2: &[f64], fit: &Fit) -> f64 {
 }
 
 /// Fits with none, one, two … modes, each started from the last, until nothing is left to explain.
-fn chain(series: &[Series], band_hz: (f64, f64), form: Form) -> Vec<Fit> {
+fn chain(series: &[Series], seeds: &Seeds, form: Form) -> Vec<Fit> {
     let Some(first) = fit(series, &[], None, form) else { return Vec::new() };
     let mut fits = vec![first];
-    while fits.len() <= MOST_MODES && band_hz.1 > band_hz.0 {
+    while fits.len() <= MOST_MODES {
         let last = &fits[fits.len() - 1];
         if series.iter().zip(&last.series).all(|(s, f)| f.residual < 1.1 * s.floor) {
             break;
         }
         let start: Vec<Oscillation> = last.modes.clone();
-        match fit(series, &start, Some(band_hz), form) {
+        match fit(series, &start, Some(seeds), form) {
             Some(next) if is_sound(series, &next) => fits.push(next),
             _ => break,
         }

@@ -66,7 +66,7 @@ impl Form<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Series, fit};
+    use super::super::{Seeds, Series, fit};
     use super::*;
     use std::f64::consts::TAU;
 
@@ -98,7 +98,8 @@ mod tests {
         let half_sine = |i: i32| (std::f64::consts::PI * (f64::from(i) + 0.5) / 100.0).sin();
         let drive = Drive { age_s: 6e-3, step_s: 5e-5, impulses: (0..100).map(half_sine).collect() };
         let form = Form { drift: false, drive: Some(&drive) };
-        let fit = fit(&series, &[], Some((20.0, 600.0)), form).expect("a fit");
+        let fit =
+            fit(&series, &[], Some(&Seeds::new(&series, (20.0, 600.0), Some(&drive))), form).expect("a fit");
         assert!((fit.modes[0].frequency_hz - 31.0).abs() < 0.1, "{fit:?}");
         // The grids of drive and truth differ by (ωh)²/24 = 1e-6 of the amplitude, which a window this short blows up a hundredfold.
         assert!((fit.series[0].plateau - 20.0).abs() < 2e-3, "{fit:?}");

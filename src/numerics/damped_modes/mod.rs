@@ -10,6 +10,7 @@ use projection::{best_seed, refine};
 use ringing::Ringing;
 
 pub use drive::{Drive, Form};
+pub use projection::Seeds;
 pub use ringing::uniform_ringing;
 
 /// A mode damped more than this is none: bolted and welded structures have 0.5 to 8 %, and an oscillation that dies within a
@@ -90,20 +91,18 @@ impl Fit {
     }
 }
 
-/// Fits with `start.len() + 1` modes, the new one sought over `band_hz`, or with `start` alone where `band_hz` is `None`.
+/// Fits with `start.len() + 1` modes, the new one the best of `seeds`, or with `start` alone where there are none.
 ///
 /// `None` where a series has fewer points than unknowns or the fit is singular.
 #[must_use]
-pub fn fit(series: &[Series], start: &[Oscillation], band_hz: Option<(f64, f64)>, form: Form) -> Option<Fit> {
+pub fn fit(series: &[Series], start: &[Oscillation], seeds: Option<&Seeds>, form: Form) -> Option<Fit> {
     let mut modes = start.to_vec();
-    if let Some(band) = band_hz {
-        modes.push(best_seed(series, start, band, form)?);
+    if let Some(seeds) = seeds {
+        modes.push(best_seed(series, start, seeds, form)?);
     }
     if !modes.is_empty() {
         let refined = refine(series, &modes, form);
-        let (low, high) = band_hz.unwrap_or((0.0, f64::INFINITY));
-        let is_mode =
-            |m: &Oscillation| m.damping < MOST_DAMPING && (0.8 * low..1.25 * high).contains(&m.frequency_hz);
+        let is_mode = |m: &Oscillation| m.damping < MOST_DAMPING && seeds.is_none_or(|s| s.is_near(m));
         // A refinement that runs out of bounds misses another mode: the seeds stand until that one is found too.
         if let Some(refined) = refined.filter(|r| r.iter().all(is_mode)) {
             modes = refined;
@@ -152,7 +151,8 @@ mod tests {
     fn one_mode_is_found_and_taken_off() {
         let truth = [Oscillation { frequency_hz: 62.0, damping: 0.02 }];
         let series = ringing(&truth, 0.0);
-        let fit = fit(&series, &[], Some((20.0, 600.0)), Form::FREE).expect("a fit");
+        let fit =
+            fit(&series, &[], Some(&Seeds::new(&series, (20.0, 600.0), None)), Form::FREE).expect("a fit");
         assert!((fit.modes[0].frequency_hz - 62.0).abs() < 0.05, "{fit:?}");
         // The disturbance has 6e-4 RMS over 240 points: 1e-4 is three of its standard errors.
         assert!((fit.series[0].plateau - 20.0).abs() < 2e-4, "{}", fit.series[0].plateau);
@@ -171,7 +171,11 @@ mod tests {
             let mut fits = vec![fit(&series, &[], None, Form::FREE).expect("a line")];
             while fits.len() < 4 {
                 let start = fits[fits.len() - 1].modes.clone();
-                let Some(next) = fit(&series, &start, Some((20.0, 600.0)), Form::FREE) else { break };
+                let Some(next) =
+                    fit(&series, &start, Some(&Seeds::new(&series, (20.0, 600.0), None)), Form::FREE)
+                else {
+                    break;
+                };
                 fits.push(next);
             }
             let richest = fits[fits.len() - 1].correlation;
@@ -191,7 +195,8 @@ mod tests {
             *v += if *t > 0.03 { 1.5 } else { 0.0 };
         }
         series[0].steps_s = vec![0.03];
-        let fit = fit(&series, &[], Some((20.0, 600.0)), Form::FREE).expect("a fit");
+        let fit =
+            fit(&series, &[], Some(&Seeds::new(&series, (20.0, 600.0), None)), Form::FREE).expect("a fit");
         assert!((fit.series[0].jumps[0] - 1.5).abs() < 1e-3);
         assert!((fit.series[0].plateau - 20.0).abs() < 1e-3);
     }
