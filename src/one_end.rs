@@ -15,8 +15,8 @@ pub(crate) struct StandIn {
 }
 
 impl StandIn {
-    /// Name of the signal that stands in: no cask file can name a channel so.
-    const NAME: &'static str = "\u{0}other end";
+    /// Name of the signal that stands in, as the report shows it.
+    const NAME: &'static str = "the second end (by the mass properties)";
 
     /// Tells a flight fit how little is known of this end.
     pub fn doubt(&self, flight: &mut FlightFit) {

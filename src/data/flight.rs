@@ -41,6 +41,10 @@ pub struct FlightModelScore {
     pub modes: usize,
     /// Whether each channel has a drift (zero shift).
     pub drift: bool,
+    /// Whether the contact force gives the modes their phases; else they are free.
+    pub driven: bool,
+    /// Whether it is the fit taken: the one of the lowest criterion, or where the motion speaks against that one the next.
+    pub taken: bool,
     /// Bayesian information criterion; lower is better.
     pub bic: f64,
     /// RMS of what the fit leaves over all channels, m/s.

@@ -143,9 +143,12 @@ fn described(signals: &[Signal], window: &Window, scored: &[(f64, Fit)], taken: 
         drift: best.drift,
         candidates: scored
             .iter()
-            .map(|(bic, f)| FlightModelScore {
+            .enumerate()
+            .map(|(i, (bic, f))| FlightModelScore {
                 modes: f.modes.len(),
                 drift: f.drift,
+                driven: f.driven,
+                taken: i == taken,
                 bic: *bic,
                 residual_m_s: f.series.iter().map(|s| s.residual).fold(0.0, f64::max),
             })

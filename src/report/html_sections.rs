@@ -197,12 +197,14 @@ pub(super) fn predictions(result: &DropResult) -> Markup {
 /// The fit of the free-flight window: plateaus, modes, candidates.
 pub(super) fn flight(result: &DropResult) -> Markup {
     let Some(fit) = &result.flight else { return html! {} };
-    let taken = |modes: usize, drift: bool| modes == fit.modes.len() && drift == fit.drift;
+    let is_lowest = fit.candidates.first().is_none_or(|c| c.taken);
     html! {
         h2 { "Fit of the flight" }
         p class="lead" { "From " (fixed(fit.from_s * 1e3, 2)) " to " (fixed(fit.to_s * 1e3, 2)) " ms after the first sample: one plateau a channel"
             @if fit.drift { ", with a drift (zero shift)" } @else { ", without drift" } "; the number of bending modes is the one with the \
-            lowest information criterion." }
+            lowest information criterion"
+            @if is_lowest { "." } @else { " of those with which the second end is on the target as it strikes and the cask turns as the first impact \
+            has it." } }
         div class="pair" {
             table class="whole" {
                 caption { "Plateaus" }
@@ -223,9 +225,11 @@ pub(super) fn flight(result: &DropResult) -> Markup {
                 }
                 table class="whole" {
                     caption { "Candidates that were tried; BIC: the lower the better" }
-                    thead { tr { th { "Modes" } th { "Drift" } th class="n" { "BIC" } th class="n" { "Residual, m/s" } } }
-                    tbody { @for c in &fit.candidates { tr class=[taken(c.modes, c.drift).then_some("chosen")] {
-                        td { (c.modes) @if taken(c.modes, c.drift) { " (taken)" } } td { @if c.drift { "yes" } @else { "no" } }
+                    thead { tr { th { "Modes" } th { "Phases" } th { "Drift" } th class="n" { "BIC" } th class="n" { "Residual, m/s" } } }
+                    tbody { @for c in &fit.candidates { tr class=[c.taken.then_some("chosen")] {
+                        td { (c.modes) @if c.taken { " (taken)" } }
+                        td { @if c.driven { "by the impact" } @else if c.modes > 0 { "free" } @else { "–" } }
+                        td { @if c.drift { "yes" } @else { "no" } }
                         td class="n" { (fixed(c.bic, 1)) } td class="n" { (significant(c.residual_m_s, 2)) }
                     } } }
                 }

@@ -209,7 +209,14 @@ fn flight() -> FlightFit {
         ringing_m_s: vec![(0.7, -0.4)],
         late_mismatch_m_s: None,
     };
-    let score = |modes, drift, bic, residual_m_s| FlightModelScore { modes, drift, bic, residual_m_s };
+    let score = |modes, drift, bic, residual_m_s| FlightModelScore {
+        modes,
+        drift,
+        driven: false,
+        taken: modes == 1 && !drift,
+        bic,
+        residual_m_s,
+    };
     FlightFit {
         from_s: SEPARATION_S + 0.0005,
         to_s: SLAP_DOWN_S - 0.0005,
@@ -217,10 +224,10 @@ fn flight() -> FlightFit {
         modes: vec![Mode { frequency_hz: 95.0, damping: 0.02, amplitude_m_s: 0.9 }],
         drift: false,
         candidates: vec![
-            score(0, false, 8123.0, 0.61),
             score(1, false, -3120.0, 0.032),
             score(1, true, -3107.0, 0.032),
             score(2, false, -3098.0, 0.032),
+            score(0, false, 8123.0, 0.61),
         ],
     }
 }
