@@ -1,0 +1,151 @@
+//! The rungs of the prediction to how far off a drop on stiff ends each is, and what it costs.
+
+use super::scene::{ANF_10, ANF_18, Plan, VHLW};
+use super::summary::{Subject, fraction, point};
+use crate::data::{BodyModel, Contact, Rung, TrialPart, TrialPoint, TrialRequest, Truth};
+use crate::predict;
+use crate::trial::timing::{Effort, Work, in_turn};
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
+use std::hint::black_box;
+
+/// Length of a stiff contact, s: the cask turns by 3e-4 of a radian in it and gains 5e-4 m/s by gravity.
+const STIFF_S: f64 = 5e-5;
+
+/// A thin rod of the length of ANF-18.
+const ROD: super::scene::Build = ("rod", 4466.0, 5.512, 0.0);
+
+/// Drops of one kind, from numbers between 0 and 1.
+struct Class {
+    name: &'static str,
+    builds: &'static [super::scene::Build],
+    contact: Contact,
+    angle_deg: (f64, f64),
+    k: (f64, f64),
+    /// Only those drops in which L touches again before R strikes.
+    lands_again: bool,
+}
+
+/// A drop with so small a k is predicted with k = 0: the limit that the rungs differ in.
+const LIMIT_K: f64 = 2e-3;
+
+const CLASSES: [Class; 5] = [
+    Class {
+        name: "thin rod, rough",
+        builds: &[ROD],
+        contact: Contact::Rough,
+        angle_deg: (5.0, 30.0),
+        k: (0.1, 0.8),
+        lands_again: false,
+    },
+    Class {
+        name: "body, rough",
+        builds: &[ANF_10, ANF_18, VHLW],
+        contact: Contact::Rough,
+        angle_deg: (5.0, 30.0),
+        k: (0.1, 0.8),
+        lands_again: false,
+    },
+    Class {
+        name: "body, friction 0.3",
+        builds: &[ANF_10, ANF_18, VHLW],
+        contact: Contact::Coulomb(0.3),
+        angle_deg: (5.0, 30.0),
+        k: (0.1, 0.8),
+        lands_again: false,
+    },
+    Class {
+        name: "k to 0, rough",
+        builds: &[ANF_10, ANF_18, VHLW],
+        contact: Contact::Rough,
+        angle_deg: (8.0, 40.0),
+        k: (1e-3, 1e-3),
+        lands_again: false,
+    },
+    Class {
+        name: "first end lands again, rough",
+        builds: &[ANF_10, ANF_18, VHLW],
+        contact: Contact::Rough,
+        angle_deg: (62.0, 68.0),
+        k: (0.1, 0.22),
+        lands_again: true,
+    },
+];
+
+/// Errors are against `synth` on stiff ends.
+pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
+    let mut part = TrialPart::default();
+    for (done, class) in CLASSES.iter().enumerate() {
+        progress(fraction(done, CLASSES.len()));
+        part.points.extend(of_class(class, request));
+    }
+    progress(1.0);
+    part
+}
+
+/// The drops of a class on stiff ends, with their truth; those in which R does not strike are left out.
+fn drops(class: &Class, request: &TrialRequest) -> Vec<(Plan, Truth)> {
+    let count = if request.quick { 10 } else { 60 } * if class.lands_again { 3 } else { 1 };
+    let mut random = ChaCha8Rng::seed_from_u64(request.seed);
+    let mut between = |(low, high): (f64, f64)| low + (high - low) * random.random::<f64>();
+    let plans: Vec<Plan> = (0..count)
+        .map(|number| Plan {
+            pulse_s: STIFF_S,
+            contact: class.contact,
+            ..Plan::of(
+                class.builds[number % class.builds.len()],
+                between(class.angle_deg),
+                between(class.k),
+                0,
+            )
+        })
+        .collect();
+    plans
+        .into_par_iter()
+        .filter_map(|plan| {
+            let truth = *plan.draw().truth();
+            let is_wanted = truth.speed.is_some() && (truth.relands > 0 || !class.lands_again);
+            is_wanted.then_some((plan, truth))
+        })
+        .collect()
+}
+
+fn of_class(class: &Class, request: &TrialRequest) -> Vec<TrialPoint> {
+    let drops = drops(class, request);
+    let Some((timed, timed_truth)) = drops.first() else { return Vec::new() };
+    // The k that the stiff contact gave, not the one that it was built for.
+    let stated_k = |truth: &Truth| truth.k.map_or(0.0, |k| if k < LIMIT_K { 0.0 } else { k.min(1.0) });
+    let speed_m_s = |rung: Rung, plan: &Plan, truth: &Truth| {
+        let (cask, drop) = plan.cask_and_drop();
+        let body = predict::body(&cask, BodyModel::Body);
+        predict::predict_by(rung, &body, &drop, class.contact, stated_k(truth)).slap_down_speed_m_s
+    };
+    let (cask, drop) = timed.cask_and_drop();
+    let (body, k) = (predict::body(&cask, BodyModel::Body), stated_k(timed_truth));
+    let mut work: Vec<Work> = Vec::new();
+    for rung in Rung::ALL {
+        work.push(Box::new(move || {
+            black_box(predict::predict_by(rung, black_box(&body), &drop, class.contact, k));
+        }));
+    }
+    let timings = in_turn(&mut work, Effort::of(request.quick));
+    let points = Rung::ALL.into_iter().zip(timings).map(|(rung, timing)| {
+        let errors: Vec<Option<f64>> = drops
+            .iter()
+            .map(|(plan, truth)| {
+                let (predicted, truth) = speed_m_s(rung, plan, truth).zip(truth.speed)?;
+                Some(100.0 * (predicted / truth - 1.0).abs())
+            })
+            .collect();
+        let subject = Subject {
+            family: "prediction",
+            method: rung.words(),
+            class: class.name,
+            is_default: rung == Rung::FurtherImpacts,
+            error_unit: "% of the slap-down speed",
+        };
+        point(subject, &errors, 100.0, timing)
+    });
+    points.collect()
+}
