@@ -1,5 +1,6 @@
 //! Methods of finding first contact to their errors and times.
 
+use super::method_map::{self, MethodStress};
 use super::sample::{self, Class, Prepared};
 use super::scene::STANDARD_GRAVITY_M_S2;
 use super::summary::{Subject, fraction, point};
@@ -25,6 +26,25 @@ const CLASSES: [Class; 5] = [
     Class { name: "force plateau", make: |plan, _, share| plan.yield_share = Some(0.4 + 0.4 * share) },
 ];
 
+const STRESSES: [MethodStress; 2] = [
+    MethodStress {
+        name: "first-contact-noise",
+        title: "First contact by each method under white noise",
+        axis: "RMS of the noise, g",
+        error: "error of first contact, % of the pulse",
+        values: &[0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 70.0, 100.0, 200.0],
+        apply: |plan, _, g| plan.each_chain(|c| c.white_noise_m_s2 = g * STANDARD_GRAVITY_M_S2),
+    },
+    MethodStress {
+        name: "first-contact-rate",
+        title: "First contact by each method on few samples",
+        axis: "samples in the first contact",
+        error: "error of first contact, % of the pulse",
+        values: &[500.0, 300.0, 200.0, 100.0, 70.0, 50.0, 30.0, 20.0, 15.0, 10.0, 7.0, 5.0, 3.0],
+        apply: |plan, _, samples| plan.rate_hz = samples / plan.pulse_s,
+    },
+];
+
 /// |t − truth| in percent of the first contact's length.
 fn error_percent(drop: &Prepared, found_s: f64) -> f64 {
     let contact_s = drop.drawn.truth().contact_s.unwrap_or(f64::NAN);
@@ -42,8 +62,20 @@ pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
             request,
         ));
     }
+    let names = Detector::ALL.map(Detector::words);
+    for stress in &STRESSES {
+        part.maps.push(method_map::map(stress, request, &names, &|drop| {
+            Detector::ALL.map(|d| off(d, drop)).into()
+        }));
+    }
     progress(1.0);
     part
+}
+
+/// The error of one detector; none where it finds nothing.
+fn off(detector: Detector, drop: &Prepared) -> Option<f64> {
+    let found_s = first_contact_by(detector, &drop.signals, &drop.coarse)?;
+    Some(error_percent(drop, found_s))
 }
 
 fn of_class(class: &Class, drops: &[Prepared], request: &TrialRequest) -> Vec<TrialPoint> {
@@ -56,12 +88,7 @@ fn of_class(class: &Class, drops: &[Prepared], request: &TrialRequest) -> Vec<Tr
     }
     let timings = in_turn(&mut work, Effort::of(request.quick));
     let points = Detector::ALL.into_iter().zip(timings).map(|(detector, timing)| {
-        let errors: Vec<Option<f64>> = drops
-            .iter()
-            .map(|d| {
-                first_contact_by(detector, &d.signals, &d.coarse).map(|found_s| error_percent(d, found_s))
-            })
-            .collect();
+        let errors: Vec<Option<f64>> = drops.iter().map(|drop| off(detector, drop)).collect();
         let subject = Subject {
             family: "first contact",
             method: detector.words(),

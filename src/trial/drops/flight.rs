@@ -1,5 +1,6 @@
 //! Ways to fit the flight to how far off they leave the velocity step, and what they cost.
 
+use super::method_map::{self, MethodStress};
 use super::sample::{self, Class, Prepared};
 use super::scene::STANDARD_GRAVITY_M_S2;
 use super::summary::{Subject, fraction, point};
@@ -39,6 +40,28 @@ const CLASSES: [Class; 5] = [
         make: |plan, flight_s, share| plan.modes = vec![mode(1, (0.7 + 0.5 * share) / flight_s)],
     },
 ];
+
+const STRESSES: [MethodStress; 2] = [
+    MethodStress {
+        name: "flight-fit-periods",
+        title: "Velocity step by each flight fit, one strong mode ringing ever slower",
+        axis: "periods of the mode in the flight",
+        error: "error of the worst channel's velocity step, %",
+        values: &[8.0, 5.0, 3.0, 2.0, 1.5, 1.2, 1.0, 0.8, 0.7, 0.6, 0.5, 0.35, 0.2],
+        apply: |plan, flight_s, periods| plan.modes = vec![mode(1, periods / flight_s)],
+    },
+    MethodStress {
+        name: "flight-fit-noise",
+        title: "Velocity step by each flight fit under white noise, nothing ringing",
+        axis: "RMS of the noise, g",
+        error: "error of the worst channel's velocity step, %",
+        values: &[0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0],
+        apply: |plan, _, g| plan.each_chain(|c| c.white_noise_m_s2 = g * STANDARD_GRAVITY_M_S2),
+    },
+];
+
+/// What the program takes.
+const MOST_PROBABLE: &str = "most probable (BIC)";
 
 /// A mode as strong as the uniform beam's.
 pub(super) fn mode(order: u8, frequency_hz: f64) -> BendingMode {
@@ -127,13 +150,24 @@ pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
         let drops = sample::prepared(&sample::plans(class, count, request));
         part.points.extend(of_class(class, &drops, request));
     }
+    let names: Vec<&str> = [MOST_PROBABLE].into_iter().chain(Shape::ALL.map(Shape::words)).collect();
+    for stress in &STRESSES {
+        part.maps.push(method_map::map(stress, request, &names, &errors_percent));
+    }
     progress(1.0);
     part
 }
 
+/// The error of every method on one drop, the program's own first.
+fn errors_percent(drop: &Prepared) -> Vec<Option<f64>> {
+    let Some(flight) = Flight::of(drop) else { return Vec::new() };
+    let by_shape = Shape::ALL.map(|shape| flight.error_percent(flight.by_shape(shape)));
+    [flight.error_percent(flight.most_probable())].into_iter().chain(by_shape).collect()
+}
+
 fn of_class(class: &Class, drops: &[Prepared], request: &TrialRequest) -> Vec<TrialPoint> {
-    let flights: Vec<Flight> = drops.par_iter().filter_map(Flight::of).collect();
-    let Some(timed) = flights.first() else { return Vec::new() };
+    let Some(timed) = drops.iter().find_map(Flight::of) else { return Vec::new() };
+    let timed = &timed;
     let mut work: Vec<Work> = vec![Box::new(|| {
         black_box(timed.most_probable());
     })];
@@ -150,14 +184,12 @@ fn of_class(class: &Class, drops: &[Prepared], request: &TrialRequest) -> Vec<Tr
         is_default,
         error_unit: "% of the velocity step",
     };
-    let mut methods: Vec<(Subject, Vec<Option<f64>>)> = vec![(
-        subject("most probable (BIC)", true),
-        flights.par_iter().map(|f| f.error_percent(f.most_probable())).collect(),
-    )];
-    for shape in Shape::ALL {
-        let errors = flights.par_iter().map(|f| f.error_percent(f.by_shape(shape))).collect();
-        methods.push((subject(shape.words(), false), errors));
-    }
-    // A step that was not had is wholly off.
-    methods.into_iter().zip(timings).map(|((s, errors), timing)| point(s, &errors, 100.0, timing)).collect()
+    let errors: Vec<Vec<Option<f64>>> = drops.par_iter().map(errors_percent).collect();
+    let methods = [MOST_PROBABLE].into_iter().chain(Shape::ALL.map(Shape::words));
+    let points = methods.zip(timings).enumerate().map(|(i, (method, timing))| {
+        let of_method: Vec<Option<f64>> = errors.iter().filter_map(|e| e.get(i).copied()).collect();
+        // A step that was not had is wholly off.
+        point(subject(method, method == MOST_PROBABLE), &of_method, 100.0, timing)
+    });
+    points.collect()
 }

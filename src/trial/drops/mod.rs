@@ -2,6 +2,7 @@
 
 mod detection;
 mod flight;
+mod method_map;
 mod prediction;
 mod reconstruction;
 mod roots;

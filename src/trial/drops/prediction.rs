@@ -9,9 +9,13 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 use std::hint::black_box;
+use std::ops::RangeInclusive;
 
 /// Length of a stiff contact, s: the cask turns by 3e-4 of a radian in it and gains 5e-4 m/s by gravity.
 const STIFF_S: f64 = 5e-5;
+
+/// The same where L may come to rest on it, which has to be stepped as finely as a contact: longer, and as much further off.
+const RESTED_S: f64 = 1e-3;
 
 /// A thin rod of the length of ANF-18.
 const ROD: super::scene::Build = ("rod", 4466.0, 5.512, 0.0);
@@ -23,21 +27,23 @@ struct Class {
     contact: Contact,
     angle_deg: (f64, f64),
     k: (f64, f64),
-    /// Only those drops in which L touches again before R strikes.
-    lands_again: bool,
+    /// How often L touches again before R strikes.
+    touches: RangeInclusive<u32>,
 }
 
 /// A drop with so small a k is predicted with k = 0: the limit that the rungs differ in.
 const LIMIT_K: f64 = 2e-3;
 
-const CLASSES: [Class; 5] = [
+const ANY: RangeInclusive<u32> = 0..=u32::MAX;
+
+const CLASSES: [Class; 6] = [
     Class {
         name: "thin rod, rough",
         builds: &[ROD],
         contact: Contact::Rough,
         angle_deg: (5.0, 30.0),
         k: (0.1, 0.8),
-        lands_again: false,
+        touches: ANY,
     },
     Class {
         name: "body, rough",
@@ -45,7 +51,7 @@ const CLASSES: [Class; 5] = [
         contact: Contact::Rough,
         angle_deg: (5.0, 30.0),
         k: (0.1, 0.8),
-        lands_again: false,
+        touches: ANY,
     },
     Class {
         name: "body, friction 0.3",
@@ -53,7 +59,7 @@ const CLASSES: [Class; 5] = [
         contact: Contact::Coulomb(0.3),
         angle_deg: (5.0, 30.0),
         k: (0.1, 0.8),
-        lands_again: false,
+        touches: ANY,
     },
     Class {
         name: "k to 0, rough",
@@ -61,15 +67,23 @@ const CLASSES: [Class; 5] = [
         contact: Contact::Rough,
         angle_deg: (8.0, 40.0),
         k: (1e-3, 1e-3),
-        lands_again: false,
+        touches: ANY,
     },
     Class {
-        name: "first end lands again, rough",
+        name: "first end lands once more, rough",
         builds: &[ANF_10, ANF_18, VHLW],
         contact: Contact::Rough,
         angle_deg: (62.0, 68.0),
         k: (0.1, 0.22),
-        lands_again: true,
+        touches: 1..=1,
+    },
+    Class {
+        name: "first end rattles, rough",
+        builds: &[ANF_10, ANF_18, VHLW],
+        contact: Contact::Rough,
+        angle_deg: (58.0, 68.0),
+        k: (0.1, 0.22),
+        touches: 2..=u32::MAX,
     },
 ];
 
@@ -86,12 +100,12 @@ pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
 
 /// The drops of a class on stiff ends, with their truth; those in which R does not strike are left out.
 fn drops(class: &Class, request: &TrialRequest) -> Vec<(Plan, Truth)> {
-    let count = if request.quick { 10 } else { 60 } * if class.lands_again { 3 } else { 1 };
+    let count = if request.quick { 10 } else { 60 } * if class.touches == ANY { 1 } else { 3 };
     let mut random = ChaCha8Rng::seed_from_u64(request.seed);
     let mut between = |(low, high): (f64, f64)| low + (high - low) * random.random::<f64>();
     let plans: Vec<Plan> = (0..count)
         .map(|number| Plan {
-            pulse_s: STIFF_S,
+            pulse_s: if class.touches == ANY && class.k.1 > LIMIT_K { STIFF_S } else { RESTED_S },
             contact: class.contact,
             ..Plan::of(
                 class.builds[number % class.builds.len()],
@@ -105,7 +119,7 @@ fn drops(class: &Class, request: &TrialRequest) -> Vec<(Plan, Truth)> {
         .into_par_iter()
         .filter_map(|plan| {
             let truth = *plan.draw().truth();
-            let is_wanted = truth.speed.is_some() && (truth.relands > 0 || !class.lands_again);
+            let is_wanted = truth.speed.is_some() && class.touches.contains(&truth.relands);
             is_wanted.then_some((plan, truth))
         })
         .collect()
