@@ -101,19 +101,20 @@ fn the_highest_rung_of_the_prediction_meets_the_simulation() {
         // A contact of 50 µs turns the cask by 3e-4 rad and gives it 5e-4 m/s; together below 0.05 % of the speed.
         assert!(highest(class) < 0.05, "{class}: {}", highest(class));
     }
-    // Twenty times as long a contact where L lands again.
-    assert!(highest("first end lands once more, rough") < 1.0);
+    // Twenty times as long a contact where L lands again; every touch is an impact to a stiff end, and a graze none to the program.
+    let stiff = point(&part, "body, every touch an impact", "first end lands once more, rough");
+    assert!(stiff.median_error < 1.0, "{stiff:?}");
     // What each rung adds is missed by percents on the rung below.
     for (rung, class) in [
         ("rod", "body, rough"),
         ("body", "body, friction 0.3"),
         ("body with friction", "k to 0, rough"),
-        ("body, unilateral contact", "first end lands once more, rough"),
+        ("body, unilateral contact", "first end rattles, rough"),
     ] {
         assert!(point(&part, rung, class).median_error > 1.0, "{rung}, {class}");
     }
-    // Grazes shallower than 1 % of the length are no impacts to the prediction, and are to a stiff end: L sinks by 55 mm at most, and
-    // what it reaches in that, √(2 · 9.81 · 0.055) = 1 m/s, is at most a tenth of R's speed.
-    assert!(highest("k to 0, rough") < 10.0 && highest("first end rattles, rough") < 10.0);
+    // Grazes shallower than 1 % of the length are no impacts to the program: L sinks by 55 mm at most, and what it falls with by that,
+    // √(2 · 9.81 · 0.055) = 1 m/s, is at most a tenth of R's speed.
+    assert!(highest("k to 0, rough") < 10.0);
     assert!(highest("k to 0, rough") < point(&part, "body with friction", "k to 0, rough").median_error);
 }

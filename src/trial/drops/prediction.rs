@@ -2,7 +2,9 @@
 
 use super::scene::{ANF_10, ANF_18, Plan, VHLW};
 use super::summary::{Subject, fraction, point};
-use crate::data::{BodyModel, Contact, Rung, TrialPart, TrialPoint, TrialRequest, Truth};
+use crate::data::{
+    Body, BodyModel, Contact, Drop, Prediction, Rung, TrialPart, TrialPoint, TrialRequest, Truth,
+};
 use crate::predict;
 use crate::trial::timing::{Effort, Work, in_turn};
 use rand::rngs::ChaCha8Rng;
@@ -35,6 +37,33 @@ struct Class {
 const LIMIT_K: f64 = 2e-3;
 
 const ANY: RangeInclusive<u32> = 0..=u32::MAX;
+
+/// A rung, or the highest one with every touch of L an impact: the limit of stiff ends, where the program leaves grazes out.
+#[derive(Clone, Copy, PartialEq)]
+enum Method {
+    By(Rung),
+    EveryTouch,
+}
+
+impl Method {
+    fn all() -> impl Iterator<Item = Self> {
+        Rung::ALL.into_iter().map(Self::By).chain([Self::EveryTouch])
+    }
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::By(rung) => rung.words(),
+            Self::EveryTouch => "body, every touch an impact",
+        }
+    }
+
+    fn predict(self, body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction {
+        match self {
+            Self::By(rung) => predict::predict_by(rung, body, drop, contact, k),
+            Self::EveryTouch => predict::predict_grazing(body, drop, contact, k, 0.0),
+        }
+    }
+}
 
 const CLASSES: [Class; 6] = [
     Class {
@@ -130,33 +159,30 @@ fn of_class(class: &Class, request: &TrialRequest) -> Vec<TrialPoint> {
     let Some((timed, timed_truth)) = drops.first() else { return Vec::new() };
     // The k that the stiff contact gave, not the one that it was built for.
     let stated_k = |truth: &Truth| truth.k.map_or(0.0, |k| if k < LIMIT_K { 0.0 } else { k.min(1.0) });
-    let speed_m_s = |rung: Rung, plan: &Plan, truth: &Truth| {
+    let of = |plan: &Plan| {
         let (cask, drop) = plan.cask_and_drop();
-        let body = predict::body(&cask, BodyModel::Body);
-        predict::predict_by(rung, &body, &drop, class.contact, stated_k(truth)).slap_down_speed_m_s
+        (predict::body(&cask, BodyModel::Body), drop)
     };
-    let (cask, drop) = timed.cask_and_drop();
-    let (body, k) = (predict::body(&cask, BodyModel::Body), stated_k(timed_truth));
+    let ((body, drop), k) = (of(timed), stated_k(timed_truth));
     let mut work: Vec<Work> = Vec::new();
-    for rung in Rung::ALL {
+    for method in Method::all() {
         work.push(Box::new(move || {
-            black_box(predict::predict_by(rung, black_box(&body), &drop, class.contact, k));
+            black_box(method.predict(black_box(&body), &drop, class.contact, k));
         }));
     }
     let timings = in_turn(&mut work, Effort::of(request.quick));
-    let points = Rung::ALL.into_iter().zip(timings).map(|(rung, timing)| {
-        let errors: Vec<Option<f64>> = drops
-            .iter()
-            .map(|(plan, truth)| {
-                let (predicted, truth) = speed_m_s(rung, plan, truth).zip(truth.speed)?;
-                Some(100.0 * (predicted / truth - 1.0).abs())
-            })
-            .collect();
+    let points = Method::all().zip(timings).map(|(method, timing)| {
+        let error_percent = |(plan, truth): &(Plan, Truth)| {
+            let (body, drop) = of(plan);
+            let predicted = method.predict(&body, &drop, class.contact, stated_k(truth));
+            Some(100.0 * (predicted.slap_down_speed_m_s? / truth.speed? - 1.0).abs())
+        };
+        let errors: Vec<Option<f64>> = drops.iter().map(error_percent).collect();
         let subject = Subject {
             family: "prediction",
-            method: rung.words(),
+            method: method.words(),
             class: class.name,
-            is_default: rung == Rung::FurtherImpacts,
+            is_default: method == Method::By(Rung::FurtherImpacts),
             error_unit: "% of the slap-down speed",
         };
         point(subject, &errors, 100.0, timing)
