@@ -18,13 +18,13 @@ pub(super) fn jobs() -> Vec<TrialJob> {
     let job = |name, weight, run| TrialJob { name, weight, run };
     vec![
         job("first-contact", 1.0, detection::run),
-        job("flight-fit", 1.0, flight::run),
-        job("reconstruction", 2.0, reconstruction::run),
+        job("flight-fit", 6.0, flight::run),
+        job("reconstruction", 6.0, reconstruction::run),
         job("root", 0.5, roots::run),
-        job("prediction", 0.5, prediction::run),
-        job("recorder", 8.0, recorder),
-        job("statements", 4.0, statements),
-        job("drops", 5.0, drops),
+        job("prediction", 4.0, prediction::run),
+        job("recorder", 12.0, recorder),
+        job("statements", 6.0, statements),
+        job("drops", 9.0, drops),
     ]
 }
 
