@@ -4,13 +4,13 @@ use super::transverse;
 use crate::data::{CoarseEvent, End, Signal};
 
 /// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
-const FOOT: f64 = 0.02;
+pub(super) const FOOT: f64 = 0.02;
 /// The rise is followed up to this share of the peak to extrapolate it to zero.
 const SHOULDER: f64 = 0.3;
 /// A pulse has ended where the force stays below this share of its peak.
 const TAIL: f64 = 0.05;
 /// Noise is passed by this many of its standard deviations.
-const NOISE_FACTOR: f64 = 6.0;
+pub(super) const NOISE_FACTOR: f64 = 6.0;
 /// Width of the means that R's velocity is compared by, s: two periods of an 80 Hz mode, less than a flight from 5°.
 const WIDTH_S: f64 = 0.025;
 /// The means are compared this often, s: a hundredth of the stretch in which the onset is then sought.
@@ -23,12 +23,20 @@ const LONGEST_CONTACT_S: f64 = 0.05;
 /// First contact of L and its standard uncertainty, s.
 #[must_use]
 pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<(f64, f64)> {
+    let (signal, stretch, sign) = stretch(signals, coarse)?;
+    // Before first contact nothing rings: the first rise is the one.
+    onset(signal, stretch, sign, Rise::First)
+}
+
+/// The signal on which first contact is sought, the samples among which it lies, and the sign of its pulse.
+pub(super) fn stretch<'a>(
+    signals: &'a [Signal],
+    coarse: &CoarseEvent,
+) -> Option<(&'a Signal, std::ops::Range<usize>, f64)> {
     let signal = transverse(signals, End::First).or_else(|| signals.first())?;
-    let sign = coarse.velocity_step_m_s.signum();
     let from = signal.index_from(coarse.near_s - 0.2 * coarse.spread_s);
     let to = signal.index_from(coarse.near_s + 1.2 * coarse.spread_s);
-    // Before first contact nothing rings: the first rise is the one.
-    onset(signal, from..to, sign, Rise::First)
+    Some((signal, from..to, coarse.velocity_step_m_s.signum()))
 }
 
 /// First contact of R on its signal between two times and its standard uncertainty, s; `None` where the record holds none.

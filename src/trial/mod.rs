@@ -2,6 +2,7 @@
 
 mod drops;
 mod samples;
+pub mod timing;
 
 use crate::data::TrialJob;
 

@@ -4,6 +4,7 @@ mod covariance;
 mod drive;
 mod projection;
 mod ringing;
+mod shape;
 
 use covariance::describe;
 use projection::{best_seed, refine};
@@ -12,6 +13,7 @@ use ringing::Ringing;
 pub use drive::{Drive, Form};
 pub use projection::Seeds;
 pub use ringing::uniform_ringing;
+pub use shape::{Shape, fit_shape};
 
 /// A mode damped more than this is none: bolted and welded structures have 0.5 to 8 %, and an oscillation that dies within a
 /// period can stand for anything.

@@ -1,0 +1,149 @@
+//! The rungs of the reconstruction to how far off each leaves slap-down speed and k, and what it costs by itself.
+
+use super::flight::mode;
+use super::sample::{self, Class, Prepared};
+use super::scene::{Drawn, STANDARD_GRAVITY_M_S2};
+use super::summary::{Subject, fraction, point};
+use crate::data::{
+    Estimate, Events, FlightFit, ReconstructionChoice, ReconstructionRung, Setup, TrialPart, TrialPoint,
+    TrialRequest,
+};
+use crate::trial::timing::{Effort, Timing, Work, in_turn};
+use crate::{analyze, assemble, fit, motion, settle};
+use rayon::prelude::*;
+use std::hint::black_box;
+
+const CLASSES: [Class; 5] = [
+    Class { name: "calm", make: |_, _, _| {} },
+    Class {
+        name: "5 g of noise",
+        make: |plan, _, _| plan.each_chain(|c| c.white_noise_m_s2 = 5.0 * STANDARD_GRAVITY_M_S2),
+    },
+    Class {
+        name: "one mode, 2 to 5 periods",
+        make: |plan, flight_s, share| plan.modes = vec![mode(1, (2.0 + 3.0 * share) / flight_s)],
+    },
+    Class {
+        name: "slow mode, 0.7 to 1.2 periods",
+        make: |plan, flight_s, share| plan.modes = vec![mode(1, (0.7 + 0.5 * share) / flight_s)],
+    },
+    Class { name: "12 ms pulse", make: |plan, _, _| plan.pulse_s = 0.012 },
+];
+
+/// What the result gives: the rung that it says to take.
+const TAKEN: &str = "as taken";
+
+const METHODS: [&str; 5] = ["channels", "planar", "flight", "joint", TAKEN];
+
+pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
+    let mut part = TrialPart::default();
+    for (done, class) in CLASSES.iter().enumerate() {
+        progress(fraction(done, CLASSES.len()));
+        let count = if request.quick { 6 } else { 40 };
+        part.points.extend(of_class(class, &sample::plans(class, count, request), request));
+    }
+    progress(1.0);
+    part
+}
+
+fn of_class(class: &Class, plans: &[super::scene::Plan], request: &TrialRequest) -> Vec<TrialPoint> {
+    let readings: Vec<Vec<(Option<f64>, Option<f64>)>> =
+        plans.par_iter().map(|plan| off(&plan.draw())).collect();
+    let timed =
+        plans.first().into_iter().flat_map(|plan| sample::prepared(std::slice::from_ref(plan))).next();
+    let Some(timings) = timed.as_ref().and_then(|drop| times(drop, request)) else { return Vec::new() };
+    let mut points = Vec::new();
+    for (i, method) in METHODS.into_iter().enumerate() {
+        let subject = |family, error_unit| Subject {
+            family,
+            method,
+            class: class.name,
+            is_default: method == TAKEN,
+            error_unit,
+        };
+        let speeds: Vec<Option<f64>> = readings.iter().map(|r| r[i].0).collect();
+        let ks: Vec<Option<f64>> = readings.iter().map(|r| r[i].1).collect();
+        points.push(point(
+            subject("reconstruction, speed", "% of the slap-down speed"),
+            &speeds,
+            100.0,
+            timings[i],
+        ));
+        points.push(point(subject("reconstruction, k", "1"), &ks, 1.0, timings[i]));
+    }
+    points
+}
+
+/// Errors of speed, %, and k by each method, in the order of [`METHODS`]; none where there is no number.
+fn off(drawn: &Drawn) -> Vec<(Option<f64>, Option<f64>)> {
+    let truth = drawn.truth();
+    let result = drawn.recorded().1.map(|recording| analyze(&recording, &drawn.stated).result);
+    let speed_off = |stated: Option<Estimate>| {
+        let (stated, truth) = stated.zip(truth.speed)?;
+        Some(100.0 * (stated.value / truth - 1.0).abs())
+    };
+    let k_off = |stated: Option<Estimate>| Some((stated?.value - truth.k?).abs());
+    let choice: Option<&ReconstructionChoice> = result.as_ref().and_then(|r| r.reconstruction.as_ref());
+    let by_rung = |rung: ReconstructionRung| {
+        let candidate = choice.and_then(|c| c.candidates.iter().find(|c| c.rung == rung));
+        (speed_off(candidate.and_then(|c| c.speed)), k_off(candidate.and_then(|c| c.k)))
+    };
+    let taken = result.as_ref().map_or((None, None), |r| (speed_off(r.slap_down.speed), k_off(r.k)));
+    ReconstructionRung::ALL.into_iter().map(by_rung).chain([taken]).collect()
+}
+
+/// What each rung takes once the events are known, in the order of [`METHODS`]: the number alone for the first three, all rungs with
+/// their intervals for the joint fit and the choice, which are one piece of work.
+fn times(drop: &Prepared, request: &TrialRequest) -> Option<Vec<Timing>> {
+    let (signals, file) = (&drop.signals, &drop.drawn.stated);
+    let settled = settle::settle(file, signals, drop.contact_s)?;
+    let flight = settled.flight?;
+    let struck = settled.struck?;
+    let events = Events {
+        first_contact_s: Some(drop.contact_s),
+        separation_s: Some(settled.left.0),
+        slap_down_s: Some(struck.0),
+        ..Events::default()
+    };
+    let setup: Setup = assemble::sticking(file);
+    let cog_m = file.cask.cog_m;
+    let window = motion::Window {
+        contact_s: drop.contact_s,
+        from_s: flight.from_s,
+        to_s: flight.to_s,
+        drift: flight.drift,
+        angular_velocity_rad_s: motion::rotation_rad_s(signals, &flight),
+    };
+    let mean = || motion::mean_of_flight(signals, &flight, &window, cog_m);
+    let move_by = |flight: Option<FlightFit>| motion::outcome(signals, &flight?, &events, &setup);
+    let measured = fit::Measured {
+        signals,
+        flight: &flight,
+        events: &events,
+        u_events_s: [1e-5, settled.left.1, struck.1],
+        setup: &setup,
+        other_law: None,
+        tolerances: file.tolerances,
+        inertia_m2: Some(file.cask.inertia_kg_m2 / file.cask.mass_kg),
+        rests: &[],
+        fall_s: None,
+    };
+    let mut work: Vec<Work> = vec![
+        Box::new(|| {
+            black_box(motion::read_channels(black_box(signals), &events, &setup));
+        }),
+        Box::new(|| {
+            black_box(move_by(mean()));
+        }),
+        Box::new(|| {
+            black_box(move_by(motion::fit_flight(signals, &window, None, cog_m)));
+        }),
+        Box::new(|| {
+            let reading = motion::read_channels(signals, &events, &setup);
+            black_box(fit::ladder(&measured, mean().as_ref(), reading, &motion::outcome));
+        }),
+    ];
+    let mut timings = in_turn(&mut work, Effort::of(request.quick));
+    timings.extend(timings.last().copied());
+    Some(timings)
+}

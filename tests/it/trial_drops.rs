@@ -1,0 +1,120 @@
+//! The quick trial's accuracy figures, seeded, to the bounds that keep a change from losing accuracy. Times are not looked at.
+
+use dropcheck::data::{TrialPart, TrialPoint, TrialRequest};
+
+const REQUEST: TrialRequest = TrialRequest { quick: true, seed: 1 };
+
+fn run(name: &str) -> TrialPart {
+    let job = dropcheck::trial::jobs().into_iter().find(|job| job.name == name).expect("a job of that name");
+    (job.run)(&REQUEST, &|_| {})
+}
+
+/// The default's points, one a class.
+fn defaults(part: &TrialPart) -> impl Iterator<Item = &TrialPoint> {
+    part.points.iter().filter(|p| p.is_default)
+}
+
+/// The others on the class of `point`.
+fn rivals<'a>(part: &'a TrialPart, point: &'a TrialPoint) -> impl Iterator<Item = &'a TrialPoint> {
+    part.points.iter().filter(|p| !p.is_default && p.class == point.class && p.family == point.family)
+}
+
+fn point<'a>(part: &'a TrialPart, method: &str, class: &str) -> &'a TrialPoint {
+    part.points.iter().find(|p| p.method == method && p.class == class).expect("a point")
+}
+
+#[test]
+fn first_contact_is_found_and_no_rival_is_nearer() {
+    let part = run("first-contact");
+    assert_eq!(part.points.len(), 20);
+    for found in defaults(&part) {
+        // The chord of a pulse's rise from 2 % to 30 % meets zero within 1 % of its length. 5 g of noise over the slope π peak/T of 400 g
+        // add 0.4 % of the length, three times that at the 95th percentile; a rise of 25 samples a pulse is known to half a sample.
+        let bound = match found.class.as_str() {
+            "5 g of noise" => 2.2,
+            "25 samples a pulse" => 2.0,
+            _ => 1.0,
+        };
+        assert!(found.p95_error < bound, "{found:?}");
+        assert!(rivals(&part, found).all(|r| r.median_error > found.median_error), "{found:?}");
+    }
+}
+
+#[test]
+fn the_flight_fit_tells_ringing_from_the_step() {
+    let part = run("flight-fit");
+    assert_eq!(part.points.len(), 30);
+    for found in defaults(&part) {
+        // Noise of 0.1 g at 20 kHz gathers 0.98 √((T + L/3)/20 000) = 1.1e-3 m/s by the middle of a flight of 60 ms; three times that of a step of
+        // 1 m/s is 0.33 %, of 5 g fifty times as much. A mode's mean is known to 0.5 % of it.
+        let bound = if found.class == "5 g of noise" { 16.5 } else { 0.5 };
+        assert!(found.p95_error < bound, "{found:?}");
+    }
+    // What rings is not in the mean: modes as strong as a beam's leave percents there.
+    for class in ["one mode, 2 to 5 periods", "two modes", "slow mode, 0.7 to 1.2 periods"] {
+        assert!(point(&part, "mean", class).median_error > 1.0);
+        assert!(point(&part, "line", class).median_error > 1.0);
+    }
+}
+
+#[test]
+fn the_reconstruction_keeps_its_reference_accuracy() {
+    let part = run("reconstruction");
+    for found in defaults(&part) {
+        // Measured on simulated drops by another program: planar motion with the modes fitted is within 0.4 % of speed and 0.011 of k. Noise of 5 g
+        // leaves 0.055 m/s on each step; three times that on both over 16 m/s is 1.5 %, over v0 of 13.3 m/s 0.018 of k.
+        let noisy = found.class == "5 g of noise";
+        let bound = match (found.family.as_str(), noisy) {
+            ("reconstruction, speed", false) => 0.4,
+            ("reconstruction, speed", true) => 1.5,
+            (_, false) => 0.011,
+            (_, true) => 0.018,
+        };
+        assert!(found.p95_error < bound, "{found:?}");
+    }
+    // Fig. 13's way leaves gravity out: -3.4 to -1.8 % without any ringing, worse with it.
+    for class in ["calm", "one mode, 2 to 5 periods", "slow mode, 0.7 to 1.2 periods", "12 ms pulse"] {
+        assert!(point(&part, "channels", class).median_error > 1.0);
+    }
+}
+
+#[test]
+fn the_march_finds_the_first_root() {
+    let part = run("root");
+    assert_eq!(part.points.len(), 20);
+    for found in defaults(&part) {
+        // Heights of 5 m are rounded to 1e-15 m; at a slope of 0.1 m/s, the least there is, that is 1e-14 s of 0.05 s.
+        assert!(found.p95_error < 100.0 * 2e-13, "{found:?}");
+    }
+    // A bracket over several roots ends at any of them.
+    assert!(point(&part, "bisection", "steep, several roots").median_error > 1.0);
+    assert!(point(&part, "ITP", "steep, several roots").median_error > 1.0);
+    // φ³/6 of the angle left at the slap-down: 2° of 8°, 10° of 30°.
+    assert!(point(&part, "closed form (small angles)", "flat, 3 to 8°").p95_error < 0.1);
+}
+
+#[test]
+fn the_highest_rung_of_the_prediction_meets_the_simulation() {
+    let part = run("prediction");
+    let highest = |class| point(&part, "body, further impacts", class).median_error;
+    for class in ["thin rod, rough", "body, rough", "body, friction 0.3"] {
+        // A contact of 50 µs turns the cask by 3e-4 rad and gives it 5e-4 m/s; together below 0.05 % of the speed.
+        assert!(highest(class) < 0.05, "{class}: {}", highest(class));
+    }
+    // Twenty times as long a contact where L lands again; every touch is an impact to a stiff end, and a graze none to the program.
+    let stiff = point(&part, "body, every touch an impact", "first end lands once more, rough");
+    assert!(stiff.median_error < 1.0, "{stiff:?}");
+    // What each rung adds is missed by percents on the rung below.
+    for (rung, class) in [
+        ("rod", "body, rough"),
+        ("body", "body, friction 0.3"),
+        ("body with friction", "k to 0, rough"),
+        ("body, unilateral contact", "first end rattles, rough"),
+    ] {
+        assert!(point(&part, rung, class).median_error > 1.0, "{rung}, {class}");
+    }
+    // Grazes shallower than 1 % of the length are no impacts to the program: L sinks by 55 mm at most, and what it falls with by that,
+    // √(2 · 9.81 · 0.055) = 1 m/s, is at most a tenth of R's speed.
+    assert!(highest("k to 0, rough") < 10.0);
+    assert!(highest("k to 0, rough") < point(&part, "body with friction", "k to 0, rough").median_error);
+}
