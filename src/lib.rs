@@ -83,6 +83,10 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         if !draft.issues.iter().any(judge::invalidates) {
             draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
             draft.issues.extend(judge::judge_closures(&reconstruction, &cask_file.drop, &draft.events));
+            let touched_m_s = touch_effect_m_s(cask_file, quantities.k.value);
+            let length_m = cask_file.cask.length_m;
+            draft.issues.extend(judge::judge_touch(&motion, &quantities, touched_m_s, length_m));
+            draft.issues.extend(judge::judge_struck_end(&signals, &draft.events));
         }
         draft.flight = Some(flight);
         if draft.issues.iter().any(judge::invalidates) {
@@ -144,6 +148,17 @@ const MEANS: validate::Means<'static> = validate::Means {
 #[must_use]
 pub fn synthesise(scene: &Scene) -> SyntheticRecording {
     synth::record(scene, &synth::simulate(scene))
+}
+
+/// What touches of L that are too shallow to count as impacts change of the predicted slap-down speed, m/s.
+fn touch_effect_m_s(cask_file: &CaskFile, k: f64) -> f64 {
+    let body = predict::body(&cask_file.cask, data::BodyModel::Body);
+    let speed_m_s = |graze_share: f64| {
+        let k = k.clamp(0.0, 1.0);
+        predict::predict_grazing(&body, &cask_file.drop, cask_file.contact, k, graze_share)
+            .slap_down_speed_m_s
+    };
+    speed_m_s(data::GRAZE_SHARE).zip(speed_m_s(0.0)).map_or(0.0, |(grazed, struck)| (grazed - struck).abs())
 }
 
 /// A velocity change of L below a tenth of the fall's is no first impact.

@@ -1,6 +1,6 @@
-//! The drift of the channels in the flight to the time constant of an AC coupling that nobody stated.
+//! The drifts of the channels in the flight to what drives them all: an AC coupling that nobody stated, or a target that L rests on.
 
-use crate::data::{CaskFile, Coupling, FlightFit, Issue, IssueCode, Plateau, Severity, Signal};
+use crate::data::{Axis, CaskFile, Coupling, FlightFit, Issue, IssueCode, Plateau, Severity, Signal};
 
 /// Time constants looked for, s: shorter ones leave no step to measure, longer ones lose less than 2 % of it in 50 ms
 /// and are within what noise of 1/f looks like.
@@ -19,7 +19,36 @@ const AGREEMENT: f64 = 0.2;
 #[must_use]
 pub fn judge_coupling(signals: &[Signal], flight: &FlightFit, cask_file: &CaskFile) -> Vec<Issue> {
     let stated = cask_file.channels.iter().filter(|c| c.coupling != Coupling::Dc);
-    undeclared(signals, flight, &stated.map(|c| c.name.as_str()).collect::<Vec<_>>())
+    let declared_ac: Vec<&str> = stated.map(|c| c.name.as_str()).collect();
+    let mut issues = undeclared(signals, flight, &declared_ac);
+    if declared_ac.is_empty() {
+        issues.extend(supported(signals, flight));
+    }
+    issues
+}
+
+/// A push at L's corner accelerates every transverse channel in the proportion of its velocity step (38): the first end rests on the target.
+fn supported(signals: &[Signal], flight: &FlightFit) -> Option<Issue> {
+    let transverse: Vec<&str> =
+        signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| s.name.as_str()).collect();
+    let of_transverse = flight.plateaus.iter().filter(|p| transverse.contains(&p.channel.as_str()));
+    let growths: Vec<(&Plateau, f64, f64)> = of_transverse
+        .map(|p| {
+            (p, p.zero_shift_m_s2 / p.velocity_step_m_s, p.u_zero_shift_m_s2 / p.velocity_step_m_s.abs())
+        })
+        .collect();
+    let rate_hz = common_rate(&growths).filter(|_| flight.drift)?;
+    Some(
+        Issue::new(
+            IssueCode::SecondContact,
+            Severity::Warning,
+            format!(
+                "in the flight every transverse channel goes on gaining what it gained in the first impact, {:.0} % of it in 10 ms: the target still pushes the first end, and the flight is not free",
+                rate_hz
+            ),
+        )
+        .between(flight.from_s, flight.to_s),
+    )
 }
 
 fn undeclared(signals: &[Signal], flight: &FlightFit, declared_ac: &[&str]) -> Vec<Issue> {

@@ -1,8 +1,8 @@
 //! A reconstructed motion to what speaks against it.
 
 use crate::data::{
-    Axis, CaskFile, Comparison, Contact, End, FlightFit, GRAZE_SHARE, Issue, IssueCode, Motion, Quantities,
-    Severity, Signal,
+    Axis, CaskFile, Comparison, Contact, End, Events, FlightFit, GRAZE_SHARE, Issue, IssueCode, Motion,
+    Quantities, Severity, Signal,
 };
 
 /// k this far outside 0 to 1 is an error whatever its interval.
@@ -15,6 +15,10 @@ const SMALL_BEND_M_S: f64 = 0.5;
 const LATE_SHARE: f64 = 0.03;
 /// Sliding below this is sticking, m/s: 5 % cross-axis sensitivity of a 13 m/s step.
 const SMALL_SLIP_M_S: f64 = 0.65;
+/// L this share of the length below where it left is on the target again: 5 mm, what corner and target are even to.
+const TOUCHED_SHARE: f64 = 0.001;
+/// An impact has moved the end that it strikes more than the other one after this, s, whatever rings with it.
+const STRUCK_S: f64 = 2e-3;
 /// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1 % of a slap-down.
 const LARGE_RESIDUAL_M_S: f64 = 0.2;
 /// A velocity step that is known no better than to this share of v0, as a standard uncertainty, says little, however well it is known how little.
@@ -63,9 +67,10 @@ pub fn judge_motion(
             ),
         ));
     }
-    // What the rebound may be off lets L sink by as much more.
+    // What rebound and angle may be off lets L sink by as much more.
     let flown_s = quantities.flight_time.map_or(0.0, |t| t.value);
-    let open_m = quantities.rebound_velocity.u95 / 2.0 * flown_s;
+    let turned_rad = quantities.angle.map_or(0.0, |a| a.u95.to_radians());
+    let open_m = quantities.rebound_velocity.u95 * flown_s + turned_rad * cask_file.cask.cog_m;
     if motion.lowest_first_end_m < -GRAZE_SHARE * cask_file.cask.length_m - open_m {
         issues.push(Issue::new(
             IssueCode::SecondContact,
@@ -77,6 +82,55 @@ pub fn judge_motion(
         ));
     }
     issues
+}
+
+/// Touches of L that the flight leaves out: `effect_m_s` is what they change of the slap-down speed by the prediction with the measured k.
+///
+/// A touch so slow that it shows in no channel still carries the cask: L rests on the target, or lands as R strikes.
+#[must_use]
+pub fn judge_touch(
+    motion: &Motion,
+    quantities: &Quantities,
+    effect_m_s: f64,
+    length_m: f64,
+) -> Option<Issue> {
+    let interval_m_s = quantities.speed?.u95;
+    (motion.lowest_first_end_m < -TOUCHED_SHARE * length_m && effect_m_s > interval_m_s).then(|| {
+        Issue::new(
+            IssueCode::SecondContact,
+            Severity::Warning,
+            format!(
+                "the first end comes down to the target before the second end strikes ({:.0} mm below where it left): by the prediction for this k that changes the slap-down speed by {effect_m_s:.2} m/s, and the flight leaves it out",
+                -1e3 * motion.lowest_first_end_m
+            ),
+        )
+    })
+}
+
+/// R strikes where its velocity changes more than that of L; where it is the other way round L was struck.
+#[must_use]
+pub fn judge_struck_end(signals: &[Signal], events: &Events) -> Option<Issue> {
+    let from_s = events.slap_down_s?;
+    let of = |end: End| signals.iter().find(|s| s.axis == Axis::Transverse && s.end == end);
+    let (first, second) = (of(End::First)?, of(End::Second)?);
+    let gained_m_s = |s: &Signal| {
+        let (from, to) = (s.index_from(from_s), s.index_from(from_s + STRUCK_S));
+        s.force_m_s2.get(from..to).unwrap_or_default().iter().sum::<f64>() / s.sample_rate_hz
+    };
+    let (first_m_s, second_m_s) = (gained_m_s(first), gained_m_s(second));
+    (first_m_s > second_m_s.max(0.0)).then(|| {
+        Issue::new(
+            IssueCode::SecondContact,
+            Severity::Warning,
+            format!(
+                "what was taken for the slap-down moves {} by {first_m_s:+.2} m/s and {} by {second_m_s:+.2} m/s within {:.0} ms: the first end was struck again, and the second end strikes later",
+                first.name,
+                second.name,
+                1e3 * STRUCK_S
+            ),
+        )
+        .between(from_s, from_s + STRUCK_S)
+    })
 }
 
 /// Each end's own impact pushes it away from the target.

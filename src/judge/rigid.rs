@@ -2,9 +2,8 @@
 
 use crate::data::{Axis, Drop, FlightFit, Issue, IssueCode, Severity, Signal, Tolerances};
 
-/// Distances from the line beyond this many standard uncertainties speak against one body: of 400 sound drops with three and more
-/// channels one in fifty passes 3.5, by modes that were fitted to one end better than to the other.
-const SURE: f64 = 5.0;
+/// Distances from the line beyond this many standard uncertainties speak against one body: of three or four channels the one farthest off.
+const SURE: f64 = 4.0;
 /// … and beyond this, m/s: 0.5 % of a slap-down, what a mode that was not fitted leaves.
 const LEAST_M_S: f64 = 0.1;
 
@@ -26,8 +25,9 @@ pub fn judge_rigid(
     tolerances: &Tolerances,
     drop: &Drop,
 ) -> Option<Issue> {
-    // About what the axial velocity changes by: a rough contact takes all of it.
-    let axial_m_s = drop.impact_velocity_m_s * drop.angle_rad.sin();
+    // About what the axial velocity changes by: where L sticks its corner is thrown straight up.
+    let first_m_s = flight.plateaus.iter().map(|p| p.velocity_step_m_s).fold(0.0, f64::max);
+    let axial_m_s = first_m_s * drop.angle_rad.tan();
     let turning_rad_s = turning_rad_s(signals, flight);
     let steps: Vec<Reading> = signals
         .iter()

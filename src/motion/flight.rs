@@ -19,8 +19,12 @@ const POINTS: usize = 240;
 const LONGEST_S: f64 = 0.1;
 /// Least noise of a velocity, as a share of its range in the window: linearity of the best sensors.
 const LEAST_FLOOR: f64 = 1e-3;
-/// Stretch before the end of a long flight that is compared with the fit, s: two periods of 100 Hz.
+/// Stretches before the end of a long flight that are compared with the fit, s: two periods of 100 Hz, and a shorter one for what
+/// happens shortly before the slap-down, in which a mode that is not fitted well leaves more …
 const LATE_S: f64 = 0.02;
+const LAST_S: f64 = 0.004;
+/// … of which this share counts.
+const LAST_SHARE: f64 = 0.5;
 /// An offset from a quarter of a second knows that of the next half to so many of its standard uncertainties (noise of 1/f).
 const DRIFT_FACTOR: f64 = 3.5;
 /// Share of the centrifugal force that a sensor may read more or less: 2 % of cross axis, and ω to 1.5 %, which counts twice.
@@ -175,33 +179,37 @@ pub fn mean_of_flight(
     })
 }
 
+/// Mean of a channel's modes over a stretch counted from the flight window's start, m/s.
+fn mean_ringing_m_s(flight: &FlightFit, plateau: &Plateau, after_s: std::ops::Range<f64>) -> f64 {
+    let points: u16 = 40;
+    let step_s = (after_s.end - after_s.start) / f64::from(points);
+    let of_mode = |(m, &(a, b)): (&Mode, &(f64, f64))| {
+        let mode = Oscillation { frequency_hz: m.frequency_hz, damping: m.damping };
+        let ringing = uniform_ringing(mode, after_s.start + step_s / 2.0, step_s);
+        ringing.take(usize::from(points)).map(|z| (a * z.re + b * z.im) / f64::from(points)).sum::<f64>()
+    };
+    flight.modes.iter().zip(&plateau.ringing_m_s).map(of_mode).sum()
+}
+
 /// What the velocity has come to do by the end of the flight: another contact leaves a step.
 fn late_mismatch_m_s(signal: &Signal, flight: &FlightFit, whole: &Window, cog_m: f64) -> Option<f64> {
     let to_s = whole.to_s.min(signal.end_s());
-    let from_s = to_s - LATE_S;
-    if from_s < flight.from_s + LATE_S || signal.touches(&signal.gaps, flight.from_s, to_s) {
+    if to_s < flight.from_s + 2.0 * LATE_S || signal.touches(&signal.gaps, flight.from_s, to_s) {
         return None;
     }
     let plateau = flight.plateau(&signal.name)?;
     let velocity = Velocity::of(signal, whole.contact_s - 2e-3, to_s);
-    let middle_s = f64::midpoint(from_s, to_s) - flight.from_s;
     let centrifugal_m_s2 = -whole.angular_velocity_rad_s.powi(2) * centrifugal_arm_m(signal, cog_m);
-    let expected_m_s = plateau.velocity_step_m_s + (plateau.zero_shift_m_s2 + centrifugal_m_s2) * middle_s;
-    let points: u16 = 40;
-    let step_s = LATE_S / f64::from(points);
-    let ringing_m_s: f64 = flight
-        .modes
-        .iter()
-        .zip(&plateau.ringing_m_s)
-        .map(|(m, &(a, b))| {
-            let mode = Oscillation { frequency_hz: m.frequency_hz, damping: m.damping };
-            uniform_ringing(mode, from_s - flight.from_s + step_s / 2.0, step_s)
-                .take(usize::from(points))
-                .map(|z| (a * z.re + b * z.im) / f64::from(points))
-                .sum::<f64>()
-        })
-        .sum();
-    let mismatch_m_s = velocity.mean(from_s, to_s) - expected_m_s - ringing_m_s;
+    let off_m_s = |length_s: f64| {
+        let from_s = to_s - length_s;
+        let middle_s = f64::midpoint(from_s, to_s) - flight.from_s;
+        let straight_m_s =
+            plateau.velocity_step_m_s + (plateau.zero_shift_m_s2 + centrifugal_m_s2) * middle_s;
+        let after_s = from_s - flight.from_s..to_s - flight.from_s;
+        velocity.mean(from_s, to_s) - straight_m_s - mean_ringing_m_s(flight, plateau, after_s)
+    };
+    let (late_m_s, last_m_s) = (off_m_s(LATE_S), LAST_SHARE * off_m_s(LAST_S));
+    let mismatch_m_s = if last_m_s.abs() > late_m_s.abs() { last_m_s } else { late_m_s };
     // What the offset may have gathered since is no contact.
     let since_s = to_s - flight.from_s;
     let noise_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, since_s);
