@@ -1,8 +1,12 @@
 //! Each method of the program beside its rivals: time, error against a truth, and where it fails.
 
 mod drops;
+mod front;
 mod samples;
 pub mod timing;
+
+pub use front::front;
+pub use samples::accuracy as sample_accuracy;
 
 use crate::data::TrialJob;
 
