@@ -79,6 +79,40 @@ pub struct TrialPart {
     pub maps: Vec<TrialMap>,
 }
 
+/// What a trial ran on.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TrialMachine {
+    /// The processor, as it calls itself.
+    pub processor: String,
+    /// Threads that run at once.
+    pub cores: usize,
+    /// Operating system and architecture.
+    pub system: String,
+    /// Whether the program was built with optimisation; without it times say nothing.
+    pub is_optimised: bool,
+}
+
+/// A whole trial.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// "dropcheck.validation/1".
+    pub schema: String,
+    /// The program's version.
+    pub version: String,
+    /// What was asked for.
+    pub request: TrialRequest,
+    /// What it ran on.
+    pub machine: TrialMachine,
+    /// A sentence on programs of others that were tried beside.
+    pub peers: String,
+    /// Points of the speed-accuracy charts.
+    pub points: Vec<TrialPoint>,
+    /// For each point whether no other of its class beats it.
+    pub is_on_front: Vec<bool>,
+    /// Failure maps.
+    pub maps: Vec<TrialMap>,
+}
+
 /// A part of the trial that runs, and is kept, by itself.
 #[derive(Clone, Copy)]
 pub struct TrialJob {
