@@ -79,6 +79,23 @@ pub struct TrialPart {
     pub maps: Vec<TrialMap>,
 }
 
+/// Work that programs of others are given too: the same samples, held against the same truth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrialPeerWork {
+    /// What the method is for: "filter", "integration".
+    pub family: &'static str,
+    /// The class of scenes.
+    pub class: String,
+    /// Order of one pass and design frequency over sample rate of a low-pass; none for an integral over unit length.
+    pub low_pass: Option<(u32, f64)>,
+    /// What is worked on.
+    pub samples: Vec<f64>,
+    /// What should come of it.
+    pub truth: Vec<f64>,
+    /// Of what the error is a share.
+    pub error_unit: &'static str,
+}
+
 /// What a trial ran on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrialMachine {

@@ -6,7 +6,7 @@ mod samples;
 pub mod timing;
 
 pub use front::front;
-pub use samples::accuracy as sample_accuracy;
+pub use samples::{accuracy as sample_accuracy, peer_work};
 
 use crate::data::{Trial, TrialJob, TrialMachine, TrialPart, TrialRequest};
 

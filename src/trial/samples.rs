@@ -8,7 +8,7 @@ mod integration;
 mod reference;
 mod summary;
 
-use crate::data::{TrialJob, TrialPart, TrialRequest};
+use crate::data::{TrialJob, TrialPart, TrialPeerWork, TrialRequest};
 
 pub(super) fn jobs() -> Vec<TrialJob> {
     vec![
@@ -36,4 +36,10 @@ pub fn accuracy(request: &TrialRequest) -> TrialPart {
         cutoff::maps(request),
     ];
     TrialPart { points: points.concat(), maps: maps.concat() }
+}
+
+/// The work of these methods that programs of others are given too.
+#[must_use]
+pub fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
+    [filters::peer_work(request), integration::peer_work(request)].concat()
 }

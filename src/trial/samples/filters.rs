@@ -2,7 +2,7 @@
 
 use super::reference::low_passed;
 use super::summary::{Family, chance, silent_line, worst_of_peak};
-use crate::data::{TrialLine, TrialMap, TrialPart, TrialPoint, TrialRequest};
+use crate::data::{TrialLine, TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest};
 use crate::numerics::filter::{EndPadding, FilterForm, LowPass};
 use crate::trial::timing::{Effort, Work, in_turn};
 use rand_distr::{Distribution, StandardNormal};
@@ -80,6 +80,10 @@ fn narrowed(samples: &[f64]) -> Vec<f32> {
     samples.iter().map(|x| *x as f32).collect()
 }
 
+fn class_name(order: u32, design: f64) -> String {
+    format!("order {order}, f/fs = {design:e}")
+}
+
 /// Points of one order and cut-off.
 fn class_points(
     request: &TrialRequest,
@@ -92,7 +96,7 @@ fn class_points(
         (true, false) | (false, true) => 3,
         (false, false) => 15,
     };
-    let class = format!("order {order}, f/fs = {design:e}");
+    let class = class_name(order, design);
     let per_case: Vec<Vec<f64>> = (0..cases)
         .into_par_iter()
         .map(|case| {
@@ -193,6 +197,24 @@ pub(super) fn maps(request: &TrialRequest) -> Vec<TrialMap> {
             lines: lines(&HIGHER_ORDER, &orders, request.seed),
         },
     ]
+}
+
+/// What programs of others are given.
+pub(super) fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
+    let work = |(order, design): (u32, f64)| {
+        let samples = scene(order, design, request.seed, 0);
+        let truth = low_passed(&samples, order, design);
+        let (family, error_unit) = (FAMILY.name, FAMILY.error_unit);
+        TrialPeerWork {
+            family,
+            class: class_name(order, design),
+            low_pass: Some((order, design)),
+            samples,
+            truth,
+            error_unit,
+        }
+    };
+    [(2, 1e-2), (2, 1e-3), (2, 1e-4), (4, 1e-3), (4, 1e-4)].map(work).to_vec()
 }
 
 /// The whole job.

@@ -1,7 +1,7 @@
 //! Rules and sums of a running integral to their errors on pulses whose integral is known, and time.
 
 use super::summary::{Family, chance, silent_line, worst_of_peak};
-use crate::data::{TrialMap, TrialPart, TrialPoint, TrialRequest};
+use crate::data::{TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest};
 use crate::numerics::integration::{IntegrationRule, Summation, running_integral_by};
 use crate::trial::timing::{Effort, Work, in_turn};
 use rand::{Rng, RngExt};
@@ -225,6 +225,22 @@ fn accumulation(request: &TrialRequest, longest: u64) -> TrialMap {
 /// Where rules and sums fail: few samples in a pulse, and many in a record.
 pub(super) fn maps(request: &TrialRequest, longest: u64) -> Vec<TrialMap> {
     vec![over_step(false, request), over_step(true, request), accumulation(request, longest)]
+}
+
+/// What programs of others are given.
+pub(super) fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
+    let work = |class: &Class| {
+        let (samples, truth) = made(class, 0.1, request.seed, 0);
+        TrialPeerWork {
+            family: FAMILY.name,
+            class: class.name.to_owned(),
+            low_pass: None,
+            samples,
+            truth,
+            error_unit: FAMILY.error_unit,
+        }
+    };
+    CLASSES.iter().map(work).collect()
 }
 
 /// The whole job.
