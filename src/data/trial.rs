@@ -38,6 +38,14 @@ pub struct TrialPoint {
     pub cases: u32,
 }
 
+impl TrialPoint {
+    /// Whether the method is a program of others.
+    #[must_use]
+    pub fn is_peer(&self) -> bool {
+        self.method.starts_with("scipy ")
+    }
+}
+
 /// One method along a rising stress.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialLine {

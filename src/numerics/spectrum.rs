@@ -21,17 +21,12 @@ pub fn magnitude(samples: &[f64], sample_rate_hz: f64) -> (Vec<f64>, Vec<f64>) {
     (frequency_hz, magnitude)
 }
 
-/// The frequency, Hz, below which this share of the energy lies, by [`magnitude`]'s answer; 0 for an empty one.
+/// The highest frequency, Hz, at which the magnitude exceeds this share of its largest, by [`magnitude`]'s answer; 0 for an empty one.
 #[must_use]
-pub fn containing_hz(frequency_hz: &[f64], magnitude: &[f64], share: f64) -> f64 {
-    let whole: f64 = magnitude.iter().map(|m| m * m).sum();
-    let mut sum = 0.0;
-    let inside = |m: &&f64| {
-        sum += **m * **m;
-        sum < share * whole
-    };
-    let lines = magnitude.iter().take_while(inside).count();
-    frequency_hz.get(lines).or(frequency_hz.last()).copied().unwrap_or(0.0)
+pub fn highest_above_hz(frequency_hz: &[f64], magnitude: &[f64], share: f64) -> f64 {
+    let largest = magnitude.iter().copied().fold(0.0, f64::max);
+    let last = magnitude.iter().rposition(|m| *m > share * largest);
+    last.and_then(|line| frequency_hz.get(line)).copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]
@@ -39,11 +34,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_energy_of_a_sine_lies_below_its_line() {
-        let wave: Vec<f64> = (0..256).map(|i| (f64::from(i) * std::f64::consts::TAU / 16.0).sin()).collect();
+    fn the_highest_line_of_two_sines_is_that_of_the_faster() {
+        let turn = |i: i32| f64::from(i) * std::f64::consts::TAU;
+        let wave: Vec<f64> = (0..256).map(|i| (turn(i) / 16.0).sin() + 0.1 * (turn(i) / 4.0).sin()).collect();
         let (f, m) = magnitude(&wave, 256.0);
-        assert!((containing_hz(&f, &m, 0.99) - 16.0).abs() < 1e-9);
-        assert!(containing_hz(&[], &[], 0.99).abs() < 1e-300);
+        assert!((highest_above_hz(&f, &m, 0.05) - 64.0).abs() < 1e-9);
+        assert!((highest_above_hz(&f, &m, 0.2) - 16.0).abs() < 1e-9);
+        assert!(highest_above_hz(&[], &[], 0.5).abs() < 1e-300);
     }
 
     #[test]

@@ -4,25 +4,34 @@ use crate::data::TrialPoint;
 
 /// Two errors below this cannot be told apart: a few roundings of a double.
 const ROUNDING: f64 = 1e-15;
+/// Two errors or two times whose ratio is below this are alike: another seed, another run moves them as much.
+const ALIKE: f64 = 1.1;
 
 /// For each point whether it lies on the front: no other of its family, class and units is at least as accurate (95th
-/// percentile) and at least as fast, and better in one of the two.
+/// percentile) and at least as fast, and better in one of the two. Programs of others take no part and are on no front.
 ///
-/// A rival counts as faster only where the quartiles of the two times do not overlap.
+/// A rival is better only by more than 10 %, and faster only where the quartiles of the two times do not overlap either.
 #[must_use]
 pub fn front(points: &[TrialPoint]) -> Vec<bool> {
     let rivals = |a: &TrialPoint, b: &TrialPoint| {
-        a.family == b.family && a.class == b.class && a.error_unit == b.error_unit && a.time_per == b.time_per
+        a.family == b.family
+            && a.class == b.class
+            && a.error_unit == b.error_unit
+            && a.time_per == b.time_per
+            && !a.is_peer()
     };
     let error = |p: &TrialPoint| p.p95_error.max(ROUNDING);
     let beats = |a: &TrialPoint, b: &TrialPoint| {
-        let (faster, not_slower) = (
-            a.time_quartiles_ns[1] < b.time_quartiles_ns[0],
-            a.time_quartiles_ns[0] <= b.time_quartiles_ns[1],
-        );
-        (error(a) < error(b) && not_slower) || (error(a) <= error(b) && faster)
+        let apart = |a: &TrialPoint, b: &TrialPoint| {
+            ALIKE * a.time_ns < b.time_ns && a.time_quartiles_ns[1] < b.time_quartiles_ns[0]
+        };
+        let (faster, slower) = (apart(a, b), apart(b, a));
+        (ALIKE * error(a) < error(b) && !slower) || (error(a) <= ALIKE * error(b) && faster)
     };
-    points.iter().map(|p| !points.iter().any(|rival| rivals(rival, p) && beats(rival, p))).collect()
+    points
+        .iter()
+        .map(|p| !p.is_peer() && !points.iter().any(|rival| rivals(rival, p) && beats(rival, p)))
+        .collect()
 }
 
 #[cfg(test)]
@@ -55,6 +64,13 @@ mod tests {
             point("b", 1.0, 9.0),
         ];
         assert_eq!(front(&points), [true, true, false, false, true]);
+    }
+
+    #[test]
+    fn programs_of_others_take_no_part() {
+        let mut peer = point("a", 1e-9, 1.0);
+        peer.method = "scipy sosfiltfilt".into();
+        assert_eq!(front(&[point("a", 1e-6, 5.0), peer]), [true, false]);
     }
 
     #[test]

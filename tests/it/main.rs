@@ -11,4 +11,5 @@ mod reference;
 mod run;
 mod synth;
 mod tidy;
+mod trial;
 mod uncertainty;

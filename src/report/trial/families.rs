@@ -33,10 +33,15 @@ impl<'a> Family<'a> {
         distinct(beaten.map(|(p, _)| p.class.as_str()))
     }
 
-    /// Methods that are on the front of no class.
+    /// Methods of the program that are on the front of no class.
     pub(super) fn never_on_front(&self) -> Vec<&'a str> {
         let on = |method: &&str| self.points.iter().any(|(p, on_front)| p.method == *method && *on_front);
-        self.methods().into_iter().filter(|method| !on(method)).collect()
+        self.methods().into_iter().filter(|method| !on(method) && !self.is_peer(method)).collect()
+    }
+
+    /// Whether this method is a program of others.
+    pub(super) fn is_peer(&self, method: &str) -> bool {
+        self.points.iter().any(|(p, _)| p.method == method && p.is_peer())
     }
 
     /// A name for files.

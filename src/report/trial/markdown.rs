@@ -70,7 +70,7 @@ pub fn markdown(trial: &Trial, folder: Option<&str>) -> String {
             );
         }
         if !never.is_empty() {
-            let _ = writeln!(out, "\nOn no front, and not offered: {}.", cell(&never.join(", ")));
+            let _ = writeln!(out, "\nOn no front, and not offered: {}.", cell(&never.join("; ")));
         }
     }
     out.push_str("\n### Where methods fail\n");

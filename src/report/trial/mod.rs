@@ -22,9 +22,6 @@ use crate::data::Trial;
 pub const TRIAL_NAMES: [&str; 5] =
     ["validation.html", "validation.json", "points.csv", "maps.csv", "validation.md"];
 
-/// Beginning of the names of methods that are programs of others.
-const PEER: &str = "scipy ";
-
 /// Every file of a trial by name, in the order in which a reader meets them.
 ///
 /// # Errors

@@ -31,6 +31,7 @@ pub(super) fn page(trial: &Trial, pictures: &[Picture]) -> String {
         }
         h2 { "Speed against accuracy" }
         @for family in &families {
+            h3 { (printable(family.name)) }
             (picture(pictures, &family.file_name()))
             (place_of_default(family))
         }
@@ -45,7 +46,7 @@ pub(super) fn page(trial: &Trial, pictures: &[Picture]) -> String {
         footer {
             "Errors are against truths from outside the methods: arithmetic of 106 bits, closed forms, simulated drops that share no formula \
              with the analysis. A method is on the front where no other of its class is at least as accurate (95th percentile) and as fast, and \
-             better in one; times whose quartiles overlap count as equal."
+             better in one; what differs by less than 10 %, and times whose quartiles overlap, count as equal."
         }
     };
     document("Validation of dropcheck's methods", &trial.version, STYLE, &content)
@@ -88,7 +89,7 @@ fn place_of_default(family: &Family) -> Markup {
             (reason(family.name).unwrap_or("No reason is written for this."))
         } }
         @if !never.is_empty() {
-            p class="note" { "On no front: " (printable(&never.join(", "))) ". The command line offers none of these to choose." }
+            p class="note" { "On no front: " (printable(&never.join("; "))) ". The command line offers none of these to choose." }
         }
     }
 }
@@ -191,6 +192,6 @@ mod tests {
         let mut trial = sample::trial();
         trial.is_on_front = vec![false, true];
         let page = page(&trial, &charts(&trial).unwrap());
-        assert!(page.contains("off the front") && page.contains("keeps all digits"));
+        assert!(page.contains("off the front") && page.contains("keeps 13 digits"));
     }
 }

@@ -4,7 +4,6 @@ use super::super::ReportError;
 use super::super::pictures::Picture;
 use super::super::pictures::panel::{self, Area, FONT, GREY, INK, WIDTH};
 use super::super::text::printable;
-use super::PEER;
 use super::families::Family;
 use super::shapes::{Failure, ROW, colour, mark, rows, tick, word};
 use crate::data::TrialPoint;
@@ -28,7 +27,7 @@ pub(super) fn picture(family: &Family) -> Result<Picture, ReportError> {
     let svg = draw(family).map_err(failed)?;
     let caption = format!(
         "Error ({}, median; the line upwards ends at the 95th percentile) over the time of a {} (median and quartiles). Below and left is better. \
-         Grey line: the front, what no other beats in both. Ring: what the program takes. Hollow: programs of others.",
+         Grey line: the front, what no other beats in both. Ring: what the program takes. Hollow: programs of others, which take no part in the front.",
         printable(family.error_unit),
         printable(family.time_per)
     );
@@ -49,7 +48,7 @@ fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
     if low > high {
         return 1e-1..1e1;
     }
-    let (low, high) = ((0.8 * low).log10().floor(), (1.25 * high).log10().ceil());
+    let (low, high) = ((0.5 * low).log10().floor(), (2.0 * high).log10().ceil());
     10_f64.powf(low)..10_f64.powf(high.max(low + 1.0))
 }
 
@@ -74,7 +73,7 @@ fn draw(family: &Family) -> Result<String, String> {
         root.fill(&WHITE).map_err(failed)?;
         let (legend, panels) = root.split_vertically(head);
         for (i, (text, (left, top))) in words.iter().zip(&places).enumerate() {
-            mark(&legend, i, (left + 12, top + 30), methods[i].starts_with(PEER)).map_err(failed)?;
+            mark(&legend, i, (left + 12, top + 30), family.is_peer(methods[i])).map_err(failed)?;
             word(&legend, text, (left + 34, top + 31), 30).map_err(failed)?;
         }
         for (class, area) in classes.iter().zip(panels.split_evenly((panel_rows as usize, COLUMNS))) {
@@ -137,7 +136,7 @@ fn one(
         if point.is_default {
             area.draw(&Circle::new(pixel(at), 21, INK.stroke_width(4)))?;
         }
-        mark(area, index, pixel(at), point.method.starts_with(PEER))?;
+        mark(area, index, pixel(at), point.is_peer())?;
     }
     Ok(())
 }

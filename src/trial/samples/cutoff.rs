@@ -4,7 +4,7 @@ use super::summary::{Family, chance, silent_line};
 use crate::data::{FilterChoice, TrialMap, TrialPart, TrialPoint, TrialRequest};
 use crate::motion::cutoff_hz;
 use crate::numerics::filter::ZeroPhaseLowPass;
-use crate::numerics::spectrum::{containing_hz, magnitude};
+use crate::numerics::spectrum::{highest_above_hz, magnitude};
 use crate::trial::timing::{Effort, Work, in_turn};
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
@@ -39,8 +39,8 @@ const CHOICES: [Choice; 8] = [
 
 /// A mass so large that the rule by mass asks for next to nothing, kg.
 const NO_MASS_KG: f64 = 1e15;
-/// Share of the energy that the cut-off from the spectrum leaves alone.
-const SPECTRUM_SHARE: f64 = 0.999;
+/// Share of the spectrum's largest line at which the cut-off from the spectrum is set.
+const SPECTRUM_SHARE: f64 = 0.02;
 
 impl Choice {
     fn name(self) -> String {
@@ -62,7 +62,7 @@ impl Choice {
             Self::MassAndPulse => cutoff_hz(FilterChoice::Auto, mass_kg, Some(pulse_s)).0,
             Self::Spectrum => {
                 let (frequency_hz, magnitude) = magnitude(samples, RATE_HZ);
-                containing_hz(&frequency_hz, &magnitude, SPECTRUM_SHARE)
+                highest_above_hz(&frequency_hz, &magnitude, SPECTRUM_SHARE)
             }
         }
     }
