@@ -33,7 +33,7 @@ pub(super) fn picture(map: &TrialMap) -> Result<Picture, ReportError> {
         .iter()
         .filter_map(|line| {
             let at = breaks::of(map, line).at?;
-            Some(format!("{} at {}", line.method, super::super::rounding::plain(at, 2)))
+            Some(format!("{} at {}", printable(&line.method), super::super::rounding::plain(at, 2)))
         })
         .collect();
     let found = if broken.is_empty() {
@@ -48,7 +48,7 @@ pub(super) fn picture(map: &TrialMap) -> Result<Picture, ReportError> {
     } else {
         " No method of this map has a way to say that something is wrong."
     };
-    let title = map.title.clone();
+    let title = printable(&map.title);
     let caption = format!("{found}{marks}");
     let alt = format!("{title}. {caption}");
     let svg = panel::described(&svg, &title);

@@ -22,7 +22,7 @@ const MOST_DECADES: i32 = 12;
 /// The chart.
 pub(super) fn picture(family: &Family) -> Result<Picture, ReportError> {
     let name = family.file_name();
-    let title = format!("Speed against accuracy: {}", family.name);
+    let title = format!("Speed against accuracy: {}", printable(family.name));
     let failed = |reason| ReportError::Picture { picture: name.clone(), reason };
     let svg = draw(family).map_err(failed)?;
     let caption = format!(

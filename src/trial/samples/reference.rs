@@ -50,6 +50,7 @@ mod tests {
 
     #[test]
     fn a_sine_takes_the_butterworth_gain() {
+        // Angles of up to 190 are rounded by 1.4e-14, and so is the sine.
         let turn = 0.01_f64;
         let x: Vec<f64> = (0..6000).map(|i| (2.0 * PI * turn * f64::from(i)).cos()).collect();
         for order in [2, 4] {
@@ -57,7 +58,7 @@ mod tests {
             let ratio = (PI * turn).tan() / (PI * 0.02).tan();
             let gain = 1.0 / (1.0 + ratio.powi(2 * i32::try_from(order).unwrap()));
             // 3000 samples from either end: 60/f, of which the slowest pole leaves e^(−0.38 · 2π · 60).
-            assert!((2900..3100).all(|i| (y[i] - gain * x[i]).abs() < 1e-14), "{order}");
+            assert!((2900..3100).all(|i| (y[i] - gain * x[i]).abs() < 4e-14), "{order}");
         }
     }
 }
