@@ -11,7 +11,9 @@ use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
 use std::ops::Range;
 
+/// Height of a panel of many lines, and of one of three at most.
 const PANEL: u32 = 600;
+const PANEL_OF_FEW: u32 = 440;
 /// Decades that are drawn below the limit and above it.
 const BELOW: i32 = 14;
 const ABOVE: i32 = 3;
@@ -71,7 +73,7 @@ fn draw(map: &TrialMap) -> Result<String, String> {
     let words: Vec<String> = map.lines.iter().map(|line| printable(&line.method)).collect();
     let (places, legend_rows) = rows(&words, 66);
     let head = u32::try_from(70 + ROW * legend_rows).map_err(|e| e.to_string())?;
-    let height = head + PANEL;
+    let height = head + if map.lines.len() > 3 { PANEL } else { PANEL_OF_FEW };
     let finite = || map.stresses.iter().copied().filter(|s| s.is_finite() && (!map.is_log || *s > 0.0));
     let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), s| (l.min(s), h.max(s)));
     if low > high {

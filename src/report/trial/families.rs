@@ -33,9 +33,11 @@ impl<'a> Family<'a> {
         distinct(beaten.map(|(p, _)| p.class.as_str()))
     }
 
-    /// Methods of the program that are on the front of no class.
+    /// Rivals in the program that are on the front of no class.
     pub(super) fn never_on_front(&self) -> Vec<&'a str> {
-        let on = |method: &&str| self.points.iter().any(|(p, on_front)| p.method == *method && *on_front);
+        let on = |method: &&str| {
+            self.points.iter().any(|(p, on_front)| p.method == *method && (*on_front || p.is_default))
+        };
         self.methods().into_iter().filter(|method| !on(method) && !self.is_peer(method)).collect()
     }
 

@@ -75,7 +75,8 @@ pub fn markdown(trial: &Trial, folder: Option<&str>) -> String {
     }
     out.push_str("\n### Where methods fail\n");
     for map in &trial.maps {
-        let _ = writeln!(out, "\n#### {}\n", cell(&map.title));
+        // One stress may have a map for each quantity.
+        let _ = writeln!(out, "\n#### {}: {}\n", cell(&map.title), cell(&map.error));
         if let Some(folder) = folder {
             let _ = writeln!(
                 out,

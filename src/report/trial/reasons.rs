@@ -22,6 +22,23 @@ pub(super) fn reason(family: &str) -> Option<&'static str> {
             "No fixed class suits casks of 1 t and of 100 t. The larger of mass and pulse does not cut the peak of the pulse, however short; it \
              leaves ringing where a cask rings below it, which the flight's fit takes off and a filter cannot. Filtered curves are only drawn."
         }
+        "flight fit" => {
+            "How many modes ring is not known beforehand. Any fixed number fails in another class; the most probable one is taken, at the cost of \
+             fitting them all."
+        }
+        "reconstruction, speed" | "reconstruction, k" => {
+            "Which rung suffices is not known beforehand. All four are made, at the cost of their sum, and the simplest is taken that noise and \
+             tolerances explain: it is as good as the best to within the interval, where any fixed rung fails in another class."
+        }
+        "root of the flight" => {
+            "The first root is wanted, and rivals must be told a bracket that holds it and no other. The march needs none: its steps are proved too \
+             short to pass a root."
+        }
+        "prediction" => {
+            "Which rung suffices is not known before the drop is followed; the highest holds wherever a lower one does, for microseconds. A touch of \
+             the first end that would sink it less than 1 % of the length is taken for a graze, since the corner is crushed by more (9); on a rigid \
+             target every touch is an impact, and there the rival that takes it for one is right."
+        }
         _ => return None,
     })
 }
