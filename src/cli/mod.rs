@@ -3,12 +3,16 @@
 mod analyze;
 mod batch;
 mod complaint;
+mod document;
 mod init;
 mod inspect;
+mod machine;
 mod output;
+mod peers;
 mod predict;
 mod progress;
 mod synth;
+mod trial;
 mod validate;
 
 pub use complaint::complain;
@@ -50,7 +54,7 @@ pub enum Command {
     Init(init::Arguments),
     /// Make a synthetic recording of a scene, with its cask file and its truth
     Synth(synth::Arguments),
-    /// Measure how far off the analysis is, on random scenes whose truth is known
+    /// Measure speed against accuracy of every method and where each fails; or the analysis on random scenes
     Validate(validate::Arguments),
 }
 

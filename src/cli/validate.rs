@@ -1,33 +1,39 @@
-//! `validate`: a campaign of random scenes with known truth to tables of how far off the analysis is and how often it says so.
+//! `validate`: the trial of every method; or a campaign of random scenes with known truth to tables of how far off the analysis is.
 
 use super::Outcome;
+use super::document::Marks;
 use super::output::{Folder, print, replace};
 use super::progress::with_progress;
+use super::trial;
 use clap::Args;
-use dropcheck::data::{CampaignRequest, SceneNumber};
+use dropcheck::data::{CampaignRequest, SceneNumber, TrialRequest};
 use dropcheck::report::{self, SyntheticFormat};
 use dropcheck::validate;
 use std::path::{Path, PathBuf};
 
 const AFTER_HELP: &str = "\
+Without --campaign and --scene every method is tried beside its rivals: error, time, and
+where it fails. --quick takes a minute. A run that was broken off goes on where it stood.
+
 Undamaged scenes are U0, U1 …, damaged ones D0, D1 …: with its seed a number names the same scene for ever.
 
 Examples:
+  dropcheck validate --quick --out validation
+  dropcheck validate --out validation --into docs/validation.md
   dropcheck validate --campaign 2000
   dropcheck validate --campaign 200 --kinds undamaged,skew,hum --out campaign
   dropcheck validate --campaign 2000 --into docs/validation.md
   dropcheck validate --scene D17 --out scene";
 
 /// What the tables stand between in a document.
-const BEGIN: &str = "<!-- campaign: begin -->";
-const END: &str = "<!-- campaign: end -->";
+const MARKS: Marks = Marks { begin: "<!-- campaign: begin -->", end: "<!-- campaign: end -->" };
 
 /// Files of a campaign's folder.
 const NAMES: [&str; 2] = ["campaign.csv", "campaign.md"];
 
 #[derive(Args)]
 #[command(after_help = AFTER_HELP)]
-#[command(group = clap::ArgGroup::new("what").required(true).args(["campaign", "scene"]))]
+#[command(group = clap::ArgGroup::new("what").args(["campaign", "scene"]))]
 pub struct Arguments {
     /// Analyse N random undamaged scenes and N with one damage each
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
@@ -35,19 +41,26 @@ pub struct Arguments {
     /// Write one scene of the campaign as recording, cask file and truth into --out
     #[arg(long, value_name = "NUMBER", value_parser = number, requires = "out")]
     scene: Option<SceneNumber>,
+    /// Try the methods on fewer scenes, within a minute
+    #[arg(long, conflicts_with = "what")]
+    quick: bool,
+    /// Measure anew what an unfinished trial in --out has measured already
+    #[arg(long, conflicts_with = "what", requires = "out")]
+    afresh: bool,
     /// Seed of everything random
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
     /// all, undamaged, or kinds of damage, separated by commas
-    #[arg(long, value_name = "KINDS", default_value = "all", value_delimiter = ',', value_parser = kind)]
+    #[arg(long, value_name = "KINDS", default_value = "all", value_delimiter = ',', value_parser = kind, requires = "campaign")]
     kinds: Vec<&'static str>,
     /// What is stated is exactly true: no deviations within the tolerances
-    #[arg(long)]
+    #[arg(long, requires = "what")]
     exact: bool,
-    /// Folder for campaign.csv and campaign.md, or for the files of the scene
+    /// Folder for the page, charts and tables of the trial, for campaign.csv and campaign.md, or for the files of the scene
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Document in which the tables replace what stands between the lines `<!-- campaign: begin -->` and `<!-- campaign: end -->`
+    /// Document in which the result replaces what stands between the lines `<!-- trial: begin -->` and `<!-- trial: end -->`, or of a
+    /// campaign between `<!-- campaign: begin -->` and `<!-- campaign: end -->`
     #[arg(long, value_name = "FILE", conflicts_with = "scene")]
     into: Option<PathBuf>,
 }
@@ -75,16 +88,22 @@ fn number(word: &str) -> Result<SceneNumber, String> {
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
-    match (arguments.scene, &arguments.out) {
-        (Some(number), Some(out)) => one(arguments, number, out),
-        _ => campaign(arguments, arguments.campaign.unwrap_or_default()),
+    match (arguments.scene, &arguments.out, arguments.campaign) {
+        (Some(number), Some(out), _) => one(arguments, number, out),
+        (_, _, Some(scenes)) => campaign(arguments, scenes),
+        (_, out, None) => trial::run(&trial::Wanted {
+            request: TrialRequest { quick: arguments.quick, seed: arguments.seed },
+            afresh: arguments.afresh,
+            out: out.as_deref(),
+            into: arguments.into.as_deref(),
+        }),
     }
 }
 
 fn campaign(arguments: &Arguments, scenes: u32) -> miette::Result<Outcome> {
     let folder = arguments.out.as_deref().map(|out| Folder::checked(out, &NAMES, &[])).transpose()?;
     let document =
-        arguments.into.as_deref().map(|path| parts(path).map(|parts| (path, parts))).transpose()?;
+        arguments.into.as_deref().map(|path| MARKS.parts(path).map(|parts| (path, parts))).transpose()?;
     let has = |word| arguments.kinds.contains(&word);
     let damages = validate::kinds().map(|kind| kind.0);
     let request = CampaignRequest {
@@ -108,21 +127,6 @@ fn campaign(arguments: &Arguments, scenes: u32) -> miette::Result<Outcome> {
         print(&tables)?;
     }
     Ok(Outcome::Clear)
-}
-
-/// What stands before and after the tables in a document, the lines that mark them included.
-fn parts(path: &Path) -> miette::Result<(String, String)> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|source| miette::miette!("{} cannot be read: {source}", path.display()))?;
-    let found = text.find(BEGIN).map(|at| at + BEGIN.len()).zip(text.find(END));
-    match found.filter(|(begin, end)| begin <= end) {
-        Some((begin, end)) => Ok((text[..begin].to_owned(), text[end..].to_owned())),
-        None => Err(miette::miette!(
-            help = format!("write the lines {BEGIN} and {END} where the tables are to stand"),
-            "{} does not say where the tables go",
-            path.display()
-        )),
-    }
 }
 
 /// Writes the files of one scene.
@@ -149,16 +153,5 @@ mod tests {
         for word in ["", "17", "Ux", "ü3", "D-1"] {
             assert!(number(word).is_err(), "{word}");
         }
-    }
-
-    #[test]
-    fn the_tables_replace_what_stands_between_the_marks() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("a.md");
-        std::fs::write(&path, format!("a\n{BEGIN}\nold\n{END}\nb\n")).expect("a file");
-        let (before, after) = parts(&path).expect("marks");
-        assert_eq!((before, after), (format!("a\n{BEGIN}"), format!("{END}\nb\n")));
-        std::fs::write(&path, format!("{END}{BEGIN}")).expect("a file");
-        assert!(parts(&path).is_err());
     }
 }

@@ -55,4 +55,6 @@ pub use study::{
 };
 pub use synthetic::{SceneFile, SyntheticChannel, SyntheticRecording, WantedImpact};
 pub use tolerances::{Corrections, Tolerances};
-pub use trial::{TrialJob, TrialLine, TrialMap, TrialPart, TrialPoint, TrialRequest};
+pub use trial::{
+    Trial, TrialJob, TrialLine, TrialMachine, TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest,
+};

@@ -38,6 +38,14 @@ pub struct TrialPoint {
     pub cases: u32,
 }
 
+impl TrialPoint {
+    /// Whether the method is a program of others.
+    #[must_use]
+    pub fn is_peer(&self) -> bool {
+        self.method.starts_with("scipy ")
+    }
+}
+
 /// One method along a rising stress.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialLine {
@@ -75,6 +83,57 @@ pub struct TrialMap {
 pub struct TrialPart {
     /// Points of the speed-accuracy charts.
     pub points: Vec<TrialPoint>,
+    /// Failure maps.
+    pub maps: Vec<TrialMap>,
+}
+
+/// Work that programs of others are given too: the same samples, held against the same truth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrialPeerWork {
+    /// What the method is for: "filter", "integration".
+    pub family: &'static str,
+    /// The class of scenes.
+    pub class: String,
+    /// Order of one pass and design frequency over sample rate of a low-pass; none for an integral over unit length.
+    pub low_pass: Option<(u32, f64)>,
+    /// What is worked on.
+    pub samples: Vec<f64>,
+    /// What should come of it.
+    pub truth: Vec<f64>,
+    /// Of what the error is a share.
+    pub error_unit: &'static str,
+}
+
+/// What a trial ran on.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TrialMachine {
+    /// The processor, as it calls itself.
+    pub processor: String,
+    /// Threads that run at once.
+    pub cores: usize,
+    /// Operating system and architecture.
+    pub system: String,
+    /// Whether the program was built with optimisation; without it times say nothing.
+    pub is_optimised: bool,
+}
+
+/// A whole trial.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// "dropcheck.validation/1".
+    pub schema: String,
+    /// The program's version.
+    pub version: String,
+    /// What was asked for.
+    pub request: TrialRequest,
+    /// What it ran on.
+    pub machine: TrialMachine,
+    /// A sentence on programs of others that were tried beside.
+    pub peers: String,
+    /// Points of the speed-accuracy charts.
+    pub points: Vec<TrialPoint>,
+    /// For each point whether no other of its class beats it.
+    pub is_on_front: Vec<bool>,
     /// Failure maps.
     pub maps: Vec<TrialMap>,
 }

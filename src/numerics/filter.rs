@@ -1,5 +1,16 @@
 //! A second-order Butterworth low-pass forward and back: zero phase, stable at any cut-off.
 
+mod ends;
+mod fourier;
+mod gustafsson;
+mod low_pass;
+mod stage;
+
+pub use ends::EndPadding;
+pub use low_pass::{FilterForm, LowPass};
+pub use stage::Sample;
+
+use stage::Stage;
 use std::f64::consts::{PI, SQRT_2};
 
 /// Design frequency of a channel frequency class over its number: 2.0775 (ISO 6487, SAE J211-1)   (25)
@@ -12,12 +23,10 @@ pub const TWO_PASS_CUTOFF: f64 = 0.802_243_262_923_150_2;
 ///
 /// g = tan(π f / f_s), R = 1/√2; the state-variable form keeps its round-off near 1e-15 of the peak where direct forms
 /// lose all digits as f/f_s → 0 (Zavalishin 2012, chapter 4).   (26)
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ZeroPhaseLowPass {
     gain: f64,
-    first: f64,
-    second: f64,
-    third: f64,
+    stage: Stage<f64>,
     padding: usize,
 }
 
@@ -29,7 +38,6 @@ impl ZeroPhaseLowPass {
             return None;
         }
         let g = (PI * design_hz / sample_rate_hz).tan();
-        let first = 1.0 / (1.0 + g * (g + SQRT_2));
         // The impulse response decays as e^(−√½ 2π f t): 1e-6 of it is left after 3.1 / f.
         #[allow(
             clippy::cast_possible_truncation,
@@ -37,7 +45,7 @@ impl ZeroPhaseLowPass {
             reason = "positive and cut to the signal's length when used"
         )]
         let padding = (3.1 * sample_rate_hz / design_hz).ceil() as usize;
-        Some(Self { gain: g, first, second: g * first, third: g * g * first, padding })
+        Some(Self { gain: g, stage: Stage::state_variable(g, SQRT_2), padding })
     }
 
     /// By the channel frequency class.
@@ -55,35 +63,9 @@ impl ZeroPhaseLowPass {
     /// The filtered samples; both ends are continued by odd reflection for the filter's own memory.
     #[must_use]
     pub fn apply(&self, samples: &[f64]) -> Vec<f64> {
-        let n = samples.len();
-        if n < 2 {
-            return samples.to_vec();
-        }
-        let pad = self.padding.min(n - 1);
-        let (head, tail) = (samples[0], samples[n - 1]);
-        let mut work = Vec::with_capacity(n + 2 * pad);
-        work.extend(samples[1..=pad].iter().rev().map(|x| 2.0 * head - x));
-        work.extend_from_slice(samples);
-        work.extend(samples[n - 1 - pad..n - 1].iter().rev().map(|x| 2.0 * tail - x));
-        self.pass(work.iter_mut());
-        self.pass(work.iter_mut().rev());
-        work.drain(..pad);
-        work.truncate(n);
-        work
-    }
-
-    /// One pass, started in the steady state of its first sample.
-    fn pass<'a>(&self, mut samples: impl Iterator<Item = &'a mut f64>) {
-        let Some(start) = samples.next() else { return };
-        let (mut band, mut low) = (0.0, *start);
-        for x in samples {
-            let v3 = *x - low;
-            let v1 = self.first * band + self.second * v3;
-            let v2 = low + self.second * band + self.third * v3;
-            band = 2.0 * v1 - band;
-            low = 2.0 * v2 - low;
-            *x = v2;
-        }
+        let (mut work, head) = EndPadding::Odd.extended(samples, self.padding);
+        stage::forward_and_back(std::slice::from_ref(&self.stage), &mut work, true);
+        ends::cut(work, head, samples.len())
     }
 
     /// |H| of the whole (both passes) at a frequency, Hz, at the sample rate the filter was made for.

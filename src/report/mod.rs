@@ -25,6 +25,7 @@ mod synthetic;
 mod table;
 mod template;
 mod text;
+mod trial;
 
 pub use campaign::{Campaign, CampaignRow};
 pub use json::{listing as listing_json, result as result_json};
@@ -37,6 +38,7 @@ pub use synthetic::{SyntheticError, SyntheticFormat, synthetic_files, synthetic_
 pub use table::table;
 pub use template::cask_file as cask_file_template;
 pub use text::printable;
+pub use trial::{TRIAL_NAMES, trial_files, trial_markdown};
 
 use crate::data::Analysis;
 

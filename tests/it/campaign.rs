@@ -152,7 +152,7 @@ fn the_tables_have_every_kind_and_size_and_count_what_is_missed() {
 #[test]
 fn words_that_name_nothing_are_refused_with_what_there_is() {
     for (words, wanted) in [
-        (&["validate"][..], "--campaign"),
+        (&["validate", "--quick", "--campaign", "1"][..], "--campaign"),
         (&["validate", "--campaign", "1", "--kinds", "rust"], "clip_first"),
         (&["validate", "--campaign", "0"], "1..=1000000"),
         (&["validate", "--scene", "17", "--out", "x"], "D and a number"),

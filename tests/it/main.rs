@@ -11,5 +11,6 @@ mod reference;
 mod run;
 mod synth;
 mod tidy;
+mod trial;
 mod trial_drops;
 mod uncertainty;

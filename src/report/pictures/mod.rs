@@ -9,7 +9,7 @@ mod decimate;
 mod legend;
 mod look;
 mod monte_carlo;
-mod panel;
+pub(super) mod panel;
 mod regimes;
 mod rows;
 mod sensitivity;
