@@ -8,6 +8,7 @@ mod inspect;
 mod output;
 mod predict;
 mod progress;
+mod replace;
 mod synth;
 mod validate;
 
