@@ -2,6 +2,7 @@
 
 use super::analyze::SwitchedOff;
 use super::complaint::sentence;
+use super::limits::Bounds;
 use super::output::{Folder, print};
 use super::progress::with_progress;
 use super::{Outcome, output::CannotWrite};
@@ -31,6 +32,8 @@ pub struct Arguments {
     out: Option<PathBuf>,
     #[command(flatten)]
     switched_off: SwitchedOff,
+    #[command(flatten)]
+    bounds: Bounds,
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
@@ -52,14 +55,12 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     let mut rows = Vec::with_capacity(recordings.len());
     for (i, path) in recordings.iter().enumerate() {
         let folder = folders.as_ref().and_then(|(_, folders)| folders.get(i));
-        rows.push(row(path, &cask_file, &arguments.switched_off, folder));
+        rows.push(row(path, &cask_file, arguments, folder));
     }
     let campaign = Campaign::new(arguments.cask.display().to_string(), rows);
     if let Some((summary, _)) = &folders {
-        summary.write(&[
-            (SUMMARY[0].to_owned(), campaign.json()?),
-            (SUMMARY[1].to_owned(), campaign.csv()?),
-        ])?;
+        summary
+            .write(&[(SUMMARY[0].to_owned(), campaign.json()?), (SUMMARY[1].to_owned(), campaign.csv()?)])?;
     }
     print(&campaign.table())?;
     let outcome = |row: &CampaignRow| row.verdict.map_or(Outcome::NotDone, Outcome::from);
@@ -69,10 +70,10 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
 fn row(
     path: &Path,
     cask_file: &CaskFile,
-    switched_off: &SwitchedOff,
+    arguments: &Arguments,
     folder: Option<&(String, Folder)>,
 ) -> CampaignRow {
-    match analysed(path, cask_file, switched_off, folder) {
+    match analysed(path, cask_file, arguments, folder) {
         Ok(row) => row,
         Err(complaint) => CampaignRow::failed(path.display().to_string(), sentence(&complaint)),
     }
@@ -81,13 +82,14 @@ fn row(
 fn analysed(
     path: &Path,
     cask_file: &CaskFile,
-    switched_off: &SwitchedOff,
+    arguments: &Arguments,
     folder: Option<&(String, Folder)>,
 ) -> miette::Result<CampaignRow> {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    let recording = with_progress(&name, |progress| ingest::read(path, cask_file, progress))?;
+    let limits = arguments.bounds.limits();
+    let recording = with_progress(&name, |progress| ingest::read_within(path, cask_file, &limits, progress))?;
     let mut analysis = dropcheck::analyze(&recording, cask_file);
-    switched_off.in_settings(&mut analysis.result);
+    arguments.switched_off.in_settings(&mut analysis.result);
     let mut row = CampaignRow::of(&analysis.result);
     if let Some((name, folder)) = folder {
         folder.write(&report::files(&analysis)?)?;

@@ -5,6 +5,7 @@ mod batch;
 mod complaint;
 mod init;
 mod inspect;
+mod limits;
 mod output;
 mod predict;
 mod progress;

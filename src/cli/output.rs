@@ -105,8 +105,10 @@ impl Folder {
 
     /// Writes every file beside its place and puts them there only when all are complete.
     pub fn write(&self, files: &[(String, Vec<u8>)]) -> Result<(), CannotWrite> {
-        replace_set(&self.path, files)
-            .map_err(|Stopped { path, source }| CannotWrite::Failed { path: shown(&path), source: bare(&source) })
+        replace_set(&self.path, files).map_err(|Stopped { path, source }| CannotWrite::Failed {
+            path: shown(&path),
+            source: bare(&source),
+        })
     }
 }
 

@@ -1,12 +1,16 @@
 //! Protobuf messages to the wanted fields, by the schema's own descriptor set and straight from the wire.
 
-use super::plan::{Decode, Leaf, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns};
+use super::plan::{
+    Decode, Leaf, MOST_LEAVES, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns,
+};
 use super::wire::{Item, Wire};
 use crate::data::Samples;
 use prost_reflect::{DescriptorPool, FieldDescriptor, Kind, MessageDescriptor};
 
 /// Messages nested deeper than this (or in themselves) hold no signal that a person would name by a path.
 const DEEPEST: usize = 8;
+/// So many fields of a type are looked at: types that hold themselves several times multiply at each level.
+const MOST_VISITED: usize = 20_000;
 
 /// The message type that `schema_name` names in a serialised descriptor set.
 ///
@@ -23,20 +27,24 @@ pub(super) fn message_type(schema_name: &str, descriptor_set: &[u8]) -> Result<M
 /// The numeric fields of a message type.
 pub(super) fn leaves(message: &MessageDescriptor) -> Vec<Leaf> {
     let mut found = Vec::new();
-    descend(message, "", DEEPEST, &mut found);
+    let mut left = MOST_VISITED;
+    descend(message, "", DEEPEST, &mut left, &mut found);
+    found.truncate(MOST_LEAVES);
     found
 }
 
-fn descend(message: &MessageDescriptor, path: &str, depth: usize, found: &mut Vec<Leaf>) {
+fn descend(message: &MessageDescriptor, path: &str, depth: usize, left: &mut usize, found: &mut Vec<Leaf>) {
     if depth == 0 || is_time(message) {
         return;
     }
     for field in message.fields() {
+        let Some(fewer) = left.checked_sub(1) else { return };
+        *left = fewer;
         let below =
             if path.is_empty() { field.name().to_owned() } else { format!("{path}.{}", field.name()) };
         match field.kind() {
             Kind::Message(inner) if !field.is_list() && !field.is_map() => {
-                descend(&inner, &below, depth - 1, found);
+                descend(&inner, &below, depth - 1, left, found);
             }
             kind if is_number(&kind) && !field.is_map() => {
                 found.push(Leaf { path: below, is_array: field.is_list() });
