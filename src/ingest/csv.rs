@@ -29,7 +29,16 @@ pub(super) fn read(
     limits: &Limits,
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
-    let input = Input::open(path, limits)?;
+    of_input(path, Input::open(path, limits)?, cask_file, (limits, progress))
+}
+
+/// The same of a text that is opened already.
+fn of_input(
+    path: &Path,
+    input: Input,
+    cask_file: &CaskFile,
+    (limits, progress): (&Limits, Progress),
+) -> Result<RawRecording, IngestError> {
     let layout = Layout::of(&input).ok_or_else(|| no_table(path))?;
     let plans: Vec<Plan> = cask_file
         .channels
@@ -267,5 +276,7 @@ fn row_error(
     IngestError::Content { path: path.display().to_string(), place: format!("line {line}"), problem, mend }
 }
 
+#[cfg(test)]
+mod fuzz_tests;
 #[cfg(test)]
 pub(super) mod tests;

@@ -5,6 +5,8 @@ pub mod cask_file;
 mod csv;
 mod detect;
 mod error;
+#[cfg(test)]
+mod fuzz;
 mod hdf5;
 mod in_memory;
 mod limits;

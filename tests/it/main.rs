@@ -3,6 +3,7 @@
 mod campaign;
 mod command_line;
 mod compliant;
+mod damage;
 mod fixtures;
 mod golden;
 mod predict_command;

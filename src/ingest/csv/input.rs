@@ -26,6 +26,19 @@ pub(super) struct Input {
 }
 
 impl Input {
+    /// A text in memory, in UTF-8 or what is taken for it.
+    #[cfg(test)]
+    pub(super) fn of_bytes(text: &[u8]) -> Self {
+        let (head, rest) = text.split_at(text.len().min(1 << 16));
+        Self {
+            head: head.to_vec(),
+            is_whole: rest.is_empty(),
+            rest: Box::new(Cursor::new(rest.to_vec())),
+            bytes: text.len() as u64,
+            encoding: "UTF-8",
+        }
+    }
+
     pub(super) fn open(path: &Path, limits: &Limits) -> Result<Self, IngestError> {
         let io = |source| error::io(path, source);
         let mut file = File::open(path).map_err(io)?;

@@ -5,24 +5,12 @@ use super::plan::{
 };
 use super::wire::{Item, Wire};
 use crate::data::Samples;
-use prost_reflect::{DescriptorPool, FieldDescriptor, Kind, MessageDescriptor};
+use prost_reflect::{FieldDescriptor, Kind, MessageDescriptor};
 
 /// Messages nested deeper than this (or in themselves) hold no signal that a person would name by a path.
 const DEEPEST: usize = 8;
 /// So many fields of a type are looked at: types that hold themselves several times multiply at each level.
 const MOST_VISITED: usize = 20_000;
-
-/// The message type that `schema_name` names in a serialised descriptor set.
-///
-/// # Errors
-/// Why there is none.
-pub(super) fn message_type(schema_name: &str, descriptor_set: &[u8]) -> Result<MessageDescriptor, String> {
-    let pool = DescriptorPool::decode(descriptor_set).map_err(|error| {
-        format!("its schema {schema_name:?} holds no descriptor set that can be used: {error}")
-    })?;
-    pool.get_message_by_name(schema_name.trim_start_matches('.'))
-        .ok_or_else(|| format!("its schema's descriptor set holds no message {schema_name:?}"))
-}
 
 /// The numeric fields of a message type.
 pub(super) fn leaves(message: &MessageDescriptor) -> Vec<Leaf> {

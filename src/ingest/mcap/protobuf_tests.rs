@@ -1,6 +1,7 @@
 //! Tests of the protobuf decoder against messages that the reflection library encodes.
 
 use super::*;
+use crate::ingest::mcap::descriptors::message_type;
 use crate::ingest::mcap::path::FieldPath;
 use crate::ingest::mcap::written::{ZERO_NS, block_descriptors, protobuf_block};
 
@@ -9,7 +10,10 @@ fn decoded(
     field: &str,
     data: &[u8],
 ) -> Result<(Value, Value, Option<f64>, Option<String>), String> {
-    let message = message_type("dropcheck.AccelerationBlock", &block_descriptors(is_packed))?;
+    let message = message_type(
+        "dropcheck.AccelerationBlock",
+        &block_descriptors(is_packed),
+    )?;
     let plan = Plan::new(&[FieldPath::parse(field).unwrap()]);
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
@@ -68,7 +72,9 @@ fn a_cut_message_is_an_error_or_holds_less_and_never_panics() {
 
 #[test]
 fn leaves_stop_at_times_and_at_messages_within_themselves() {
-    let message = message_type("dropcheck.AccelerationBlock", &block_descriptors(true)).unwrap();
+    let message =
+        message_type("dropcheck.AccelerationBlock", &block_descriptors(true))
+            .unwrap();
     let paths: Vec<String> = leaves(&message).into_iter().map(|leaf| leaf.path).collect();
     assert!(paths.contains(&"samples".to_owned()) && paths.contains(&"nested.level".to_owned()));
     assert!(!paths.iter().any(|path| path.contains("seconds")), "{paths:?}");
