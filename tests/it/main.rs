@@ -10,6 +10,7 @@ mod predict_command;
 mod properties;
 mod reference;
 mod run;
+mod safety;
 mod synth;
 mod tidy;
 mod uncertainty;

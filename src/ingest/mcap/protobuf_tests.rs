@@ -10,10 +10,7 @@ fn decoded(
     field: &str,
     data: &[u8],
 ) -> Result<(Value, Value, Option<f64>, Option<String>), String> {
-    let message = message_type(
-        "dropcheck.AccelerationBlock",
-        &block_descriptors(is_packed),
-    )?;
+    let message = message_type("dropcheck.AccelerationBlock", &block_descriptors(is_packed))?;
     let plan = Plan::new(&[FieldPath::parse(field).unwrap()]);
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
@@ -72,9 +69,7 @@ fn a_cut_message_is_an_error_or_holds_less_and_never_panics() {
 
 #[test]
 fn leaves_stop_at_times_and_at_messages_within_themselves() {
-    let message =
-        message_type("dropcheck.AccelerationBlock", &block_descriptors(true))
-            .unwrap();
+    let message = message_type("dropcheck.AccelerationBlock", &block_descriptors(true)).unwrap();
     let paths: Vec<String> = leaves(&message).into_iter().map(|leaf| leaf.path).collect();
     assert!(paths.contains(&"samples".to_owned()) && paths.contains(&"nested.level".to_owned()));
     assert!(!paths.iter().any(|path| path.contains("seconds")), "{paths:?}");
