@@ -36,7 +36,7 @@ pub fn replace_set(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Sto
         Ok(there) if !there.is_dir() => {
             return Err(at(folder)(io::Error::other("a link or a file has taken the folder's place")));
         }
-        Ok(_) => {}
+        Ok(_) => turn.clear_stale(folder, files),
     }
     if exchange(parent, folder, files).map_err(at(folder))? == Exchanged::Yes {
         return Ok(());
@@ -73,6 +73,9 @@ impl Turn {
             let is_own = name.to_string_lossy().starts_with(OWN_PREFIX) && name != UNFINISHED;
             if is_own && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
                 clear(&entry.path(), files);
+            } else if is_own && entry.metadata().is_ok_and(|there| there.is_file() && there.len() == 0) {
+                // Made to see whether the folder can be written to.
+                let _ = fs::remove_file(entry.path());
             }
         }
     }
@@ -229,8 +232,8 @@ fn exchange_names(_: &Path, _: &Path) -> io::Result<()> {
 
 /// Stages the files in `folder` itself and moves each to its place.
 fn move_one_by_one(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
-    let turn = Turn::take(folder);
-    turn.clear_stale(folder, files);
+    // Two ways may lead to the folder, through one parent each.
+    let _turn = Turn::take(folder);
     let unfinished = folder.join(UNFINISHED);
     settle(folder, &unfinished, files)?;
     let staging = staging_in(folder).map_err(at(folder))?;

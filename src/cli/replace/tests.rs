@@ -69,6 +69,7 @@ fn what_a_stopped_run_left_is_made_good_by_the_next() {
         fs::create_dir(&stale).unwrap();
         fs::write(stale.join("report.html"), "half").unwrap();
     }
+    fs::write(folder.join(".dropcheck-probe"), "").unwrap();
     replace_set(&folder, &set("newest")).unwrap();
     assert_eq!(contents(&folder), ["newest"; 3]);
     assert_eq!(names(&folder), ["curves.csv", "of-another-set.svg", "photos", "report.html", "result.json"]);
