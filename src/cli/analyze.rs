@@ -95,7 +95,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     arguments.switched_off.in_cask_file(&mut cask_file);
     let limits = arguments.bounds.limits();
     let recording = with_progress("reading", |progress| {
-        ingest::read_within(&arguments.recording, &cask_file, &limits, progress)
+        ingest::read_within(&arguments.recording, &cask_file, limits, progress)
     })?;
     let mut analysis = dropcheck::analyze(&recording, &cask_file);
     arguments.switched_off.in_settings(&mut analysis.result);

@@ -22,7 +22,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     let json = JsonTarget::checked(arguments.json.as_deref(), &[&arguments.recording])?;
     let listing = with_progress("reading", |progress| {
-        ingest::list_within(&arguments.recording, &arguments.bounds.limits(), progress)
+        ingest::list_within(&arguments.recording, arguments.bounds.limits(), progress)
     })?;
     json.write(|| report::listing_json(&listing))?;
     if !json.is_standard_output() {

@@ -26,7 +26,7 @@ use std::path::Path;
 pub(super) fn read(
     path: &Path,
     cask_file: &CaskFile,
-    limits: &Limits,
+    limits: Limits,
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
     of_input(path, Input::open(path, limits)?, cask_file, (limits, progress))
@@ -37,7 +37,7 @@ fn of_input(
     path: &Path,
     input: Input,
     cask_file: &CaskFile,
-    (limits, progress): (&Limits, Progress),
+    (limits, progress): (Limits, Progress),
 ) -> Result<RawRecording, IngestError> {
     let layout = Layout::of(&input).ok_or_else(|| no_table(path))?;
     let plans: Vec<Plan> = cask_file
@@ -170,7 +170,7 @@ fn columns(
     input: Input,
     layout: &Layout,
     wanted: &Wanted,
-    (limits, progress): (&Limits, Progress),
+    (limits, progress): (Limits, Progress),
 ) -> Result<(Vec<Vec<f64>>, Stamps, Ending), IngestError> {
     // What is set aside is a guess from the first rows; more is taken as it comes.
     let most_rows = limits.samples_bytes() / (8 * wanted.columns.len().max(1) as u64);
@@ -240,7 +240,7 @@ fn time_error(path: &Path, channel: &str, error: &TimeBaseError) -> IngestError 
 
 fn row_error(
     path: &Path,
-    limits: &Limits,
+    limits: Limits,
     (layout, wanted): (&Layout, &Wanted),
     error: RowError,
 ) -> IngestError {

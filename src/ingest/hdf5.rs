@@ -26,7 +26,7 @@ const TIME_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "Ti
 pub(super) fn read(
     path: &Path,
     cask_file: &CaskFile,
-    limits: &Limits,
+    limits: Limits,
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
     let file = open(path)?;
@@ -44,7 +44,7 @@ pub(super) fn read(
 /// What of the memory is taken.
 struct Room<'a> {
     path: &'a Path,
-    limits: &'a Limits,
+    limits: Limits,
     held_bytes: u64,
 }
 

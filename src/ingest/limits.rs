@@ -28,28 +28,28 @@ impl Limits {
     }
 
     /// Samples with their times, as read, of all channels: a half, for what follows needs as much again.
-    pub(super) fn samples_bytes(&self) -> u64 {
+    pub(super) fn samples_bytes(self) -> u64 {
         self.memory_bytes / 2
     }
 
     /// One record, message, chunk or converted text: a quarter, for it is held beside what it is turned into.
-    pub(super) fn part_bytes(&self) -> u64 {
+    pub(super) fn part_bytes(self) -> u64 {
         self.memory_bytes / 4
     }
 
     /// All that a file of `file_bytes` unpacks to: recordings pack a hundredfold at most, a bomb a thousandfold and more.
-    pub(super) fn unpacked_bytes(&self, file_bytes: u64) -> u64 {
+    pub(super) fn unpacked_bytes(self, file_bytes: u64) -> u64 {
         const TIGHTEST_RECORDING: u64 = 256;
         file_bytes.saturating_mul(TIGHTEST_RECORDING).saturating_add(self.memory_bytes)
     }
 
     /// One line of a text: 1 MiB as usual, where a row of a hundred thousand channels still fits.
-    pub(super) fn line_bytes(&self) -> u64 {
+    pub(super) fn line_bytes(self) -> u64 {
         self.memory_bytes / 4096
     }
 
     /// The refusal of `what`, which would pass `limit_bytes`.
-    pub(super) fn refusal(&self, path: &Path, what: &str, limit_bytes: u64) -> IngestError {
+    pub(super) fn refusal(self, path: &Path, what: &str, limit_bytes: u64) -> IngestError {
         IngestError::TooLarge {
             path: path.display().to_string(),
             what: what.to_owned(),

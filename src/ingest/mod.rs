@@ -62,7 +62,7 @@ pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
 /// # Errors
 /// [`IngestError`] where a file, a source or its content is at fault.
 pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Recording, IngestError> {
-    read_within(path, cask_file, &Limits::default(), progress)
+    read_within(path, cask_file, Limits::default(), progress)
 }
 
 /// As [`read`], within other limits than the usual ones.
@@ -72,7 +72,7 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
 pub fn read_within(
     path: &Path,
     cask_file: &CaskFile,
-    limits: &Limits,
+    limits: Limits,
     progress: Progress,
 ) -> Result<Recording, IngestError> {
     cask_file::require_channels(cask_file, path)?;
@@ -96,14 +96,14 @@ pub fn read_within(
 /// # Errors
 /// [`IngestError`] where the file is none that can be read.
 pub fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
-    list_within(path, &Limits::default(), progress)
+    list_within(path, Limits::default(), progress)
 }
 
 /// As [`list`], within other limits than the usual ones.
 ///
 /// # Errors
 /// As [`list`]; [`IngestError::TooLarge`] where the file would pass a limit.
-pub fn list_within(path: &Path, limits: &Limits, progress: Progress) -> Result<Listing, IngestError> {
+pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Listing, IngestError> {
     match detect::format(path)? {
         RecordingFormat::Mcap => mcap::list(path, limits, progress),
         RecordingFormat::Hdf5 => hdf5::list(path, limits, progress),

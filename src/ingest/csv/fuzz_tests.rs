@@ -32,7 +32,7 @@ fn tables() {
     let limits = Limits::of_memory(0);
     let cask = cask_file(&["A1"]);
     fuzz::run("csv", &seeds, &words, |bytes| {
-        match of_input(Path::new("r"), Input::of_bytes(bytes), &cask, (&limits, &|_| ())) {
+        match of_input(Path::new("r"), Input::of_bytes(bytes), &cask, (limits, &|_| ())) {
             Ok(raw) => format!(
                 "{:?} {:?}",
                 raw.issues,

@@ -39,7 +39,7 @@ impl Input {
         }
     }
 
-    pub(super) fn open(path: &Path, limits: &Limits) -> Result<Self, IngestError> {
+    pub(super) fn open(path: &Path, limits: Limits) -> Result<Self, IngestError> {
         let io = |source| error::io(path, source);
         let mut file = File::open(path).map_err(io)?;
         let bytes = file.metadata().map_err(io)?.len();

@@ -62,7 +62,7 @@ impl Sink for Survey {
 /// A file that cannot be read or holds no rows of numbers.
 pub(in super::super) fn list(
     path: &Path,
-    limits: &Limits,
+    limits: Limits,
     progress: Progress,
 ) -> Result<Listing, IngestError> {
     let input = Input::open(path, limits)?;

@@ -68,7 +68,7 @@ pub(super) fn read(
     layout: &Layout,
     wanted: &Wanted,
     sink: &mut impl Sink,
-    (limits, progress): (&Limits, Progress),
+    (limits, progress): (Limits, Progress),
 ) -> Result<Ending, RowError> {
     let longest = usize::try_from(limits.line_bytes()).unwrap_or(usize::MAX);
     let mut table = Table {

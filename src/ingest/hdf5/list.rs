@@ -23,12 +23,12 @@ const RANGED_SAMPLES: usize = 20_000_000;
 const MOST_VALUES: u64 = 1 << 30;
 
 /// What a listing may still cost.
-struct Effort<'a> {
-    limits: &'a Limits,
+struct Effort {
+    limits: Limits,
     values_left: u64,
 }
 
-impl Effort<'_> {
+impl Effort {
     /// Whether a column may be read; it is then paid for.
     fn pays_for(&mut self, column: &Column) -> bool {
         let (held, part) = (column.held_bytes(), column.part_bytes());
@@ -98,7 +98,7 @@ fn columns_of(file: &File, path: &str) -> Option<Vec<String>> {
 /// A file that the library cannot open.
 pub(in super::super) fn list(
     path: &Path,
-    limits: &Limits,
+    limits: Limits,
     progress: Progress,
 ) -> Result<Listing, IngestError> {
     let mut effort = Effort { limits, values_left: MOST_VALUES };

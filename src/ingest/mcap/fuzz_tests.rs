@@ -64,10 +64,10 @@ fn mcap_records() {
     let limits = Limits::of_memory(0);
     fuzz::run("mcap", &files(), &[b"\x05", b"\x06\0\0\0\0\0\0\0\0", b"zstd", b"lz4"], |bytes| {
         let length = bytes.len() as u64;
-        let mut listing = ListWalk::new(&limits);
-        let listed = scan_in(Cursor::new(bytes), length, &limits, &mut listing, &|_| ());
+        let mut listing = ListWalk::new(limits);
+        let listed = scan_in(Cursor::new(bytes), length, limits, &mut listing, &|_| ());
         let mut reading = Reading::new(&cask.channels);
-        match scan_in(Cursor::new(bytes), length, &limits, &mut reading, &|_| ()) {
+        match scan_in(Cursor::new(bytes), length, limits, &mut reading, &|_| ()) {
             Ok(scanned) => {
                 let issues: Vec<String> = scanned.issues().into_iter().map(|issue| issue.message).collect();
                 format!("{issues:?} {:?}", reading.finish(Path::new("r"), &scanned).map(|raw| raw.issues))

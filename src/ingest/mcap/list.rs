@@ -20,7 +20,7 @@ use std::path::Path;
 /// Only where the file cannot be read at all.
 pub(in crate::ingest) fn list(
     path: &Path,
-    limits: &Limits,
+    limits: Limits,
     progress: Progress,
 ) -> Result<Listing, IngestError> {
     let bytes = std::fs::metadata(path).map_err(|source| error::io(path, source))?.len();
@@ -363,7 +363,7 @@ impl Field {
 }
 
 impl ListWalk {
-    pub(super) fn new(limits: &Limits) -> Self {
+    pub(super) fn new(limits: Limits) -> Self {
         /// A tree of JSON values takes up to so many times its text: two letters become 32 bytes.
         const TREE_BYTES: u64 = 32;
         Self {

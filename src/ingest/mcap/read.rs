@@ -20,7 +20,7 @@ use std::path::Path;
 pub(in crate::ingest) fn read(
     path: &Path,
     cask_file: &CaskFile,
-    limits: &Limits,
+    limits: Limits,
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
     let mut reading = Reading::new(&cask_file.channels);

@@ -23,7 +23,7 @@ const READ_BUFFER_BYTES: usize = 1 << 18;
 /// Only where the file cannot be read at all, or passes a limit; damage and truncation are in the answer.
 pub(super) fn scan(
     path: &Path,
-    limits: &Limits,
+    limits: Limits,
     sink: &mut dyn Sink,
     progress: Progress,
 ) -> Result<Scanned, IngestError> {
@@ -40,7 +40,7 @@ pub(super) fn scan(
 pub(super) fn scan_in(
     mut file: impl Read + Seek,
     length: u64,
-    limits: &Limits,
+    limits: Limits,
     sink: &mut dyn Sink,
     progress: Progress,
 ) -> std::io::Result<Scanned> {
@@ -49,7 +49,7 @@ pub(super) fn scan_in(
         file: BufReader::with_capacity(READ_BUFFER_BYTES, file),
         at: mcap::MAGIC.len() as u64,
         length,
-        limits: *limits,
+        limits,
         unpacked_bytes: 0,
         chunks: Chunks::new(length, limits.part_bytes()),
         catalog: Catalog::default(),
@@ -117,7 +117,7 @@ impl<File: Read + Seek> Walk<File> {
 
     /// The limit that what was read so far has passed: words and bytes.
     fn passed_limit(&self, sink: &dyn Sink) -> Option<(&'static str, u64)> {
-        let limits = &self.limits;
+        let limits = self.limits;
         let passed = [
             ("the samples of the channels read take", sink.held_bytes(), limits.samples_bytes()),
             ("its schemas and topics take", self.catalog.held_bytes(), limits.part_bytes()),
@@ -185,7 +185,7 @@ impl<File: Read + Seek> Walk<File> {
         let before = self.scanned.counts;
         sink.chunk_begins();
         let (mut messages, mut unpacked) = (0, self.unpacked_bytes);
-        let (catalog, scanned, limits) = (&mut self.catalog, &mut self.scanned, &self.limits);
+        let (catalog, scanned, limits) = (&mut self.catalog, &mut self.scanned, self.limits);
         let most_unpacked = limits.unpacked_bytes(self.length);
         scanned.counts.add(op::CHUNK);
         let end = self.chunks.read(&mut self.file, claimed, available, &mut |opcode, body| {
@@ -203,8 +203,7 @@ impl<File: Read + Seek> Walk<File> {
         }
         self.at = start + RECORD_HEADER_BYTES + claimed.min(available);
         match end {
-            ChunkEnd::Whole { .. } => Ok(Next::Go),
-            ChunkEnd::Stopped => Ok(Next::Go),
+            ChunkEnd::Whole { .. } | ChunkEnd::Stopped => Ok(Next::Go),
             ChunkEnd::TooLarge => {
                 self.scanned.over = Some(("one of its messages takes", self.limits.part_bytes()));
                 Ok(Next::Stop)
