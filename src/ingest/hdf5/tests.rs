@@ -206,3 +206,37 @@ fn everything_is_listed() {
     assert!((fast.sample_rate_hz.unwrap() / 1000.0 - 1.0).abs() < 2e-3);
     assert!(fast.encoding.starts_with("float32, 2000 × 3"), "{}", fast.encoding);
 }
+
+#[test]
+fn a_shape_that_would_fill_the_memory_is_refused_before_it_is_read() {
+    let made = made(|file| {
+        let zeros = vec![0.0_f64; 5_000_000];
+        let dataset = file.new_dataset_builder().deflate(9).chunk(500_000).with_data(&zeros).create("a")?;
+        number(&dataset, "sample_rate_hz", 1e5)
+    });
+    let cask = cask_file(&["/a"]);
+    assert!(read(&made.path, &cask, Limits::default(), &|_| {}).is_ok());
+    // 40 MB of samples, and half of the least memory is 32 MiB.
+    let refused = read(&made.path, &cask, Limits::of_memory(0), &|_| {}).unwrap_err();
+    assert!(matches!(refused, IngestError::TooLarge { .. }), "{refused}");
+    let listing = list(&made.path, Limits::of_memory(0), &|_| {}).unwrap();
+    assert_eq!((listing.channels[0].samples, listing.channels[0].range), (Some(5_000_000), None));
+}
+
+#[test]
+fn groups_in_a_circle_are_listed_to_an_end() {
+    let made = made(|file| {
+        let group = file.create_group("g")?;
+        group.link_hard("/g", "again")?;
+        group.link_hard("/g", "and_again")
+    });
+    assert!(list(&made.path, Limits::default(), &|_| {}).unwrap().counts["groups"] <= 10_000);
+}
+
+#[test]
+fn data_that_lie_elsewhere_are_refused() {
+    let made = made(|file| {
+        file.new_dataset::<f64>().shape(100).external("/etc/hostname", 0, 800).create("a").map(drop)
+    });
+    assert!(told(&made, "/a").contains("/etc/hostname"), "{}", told(&made, "/a"));
+}
