@@ -77,13 +77,13 @@ fn set_down(target: &str, input: &[u8]) -> PathBuf {
     path
 }
 
-/// Stores the shortest of what the run found, half a hundred kilobytes at most.
+/// Stores the shortest of what the run found, twenty inputs of fifty kilobytes together at most.
 fn keep(target: &str, pool: &[Vec<u8>], seeds: usize) {
     std::fs::create_dir_all(folder(target)).unwrap();
     let mut found: Vec<&Vec<u8>> = pool.iter().skip(seeds).collect();
     found.sort_by_key(|input| input.len());
     let mut left = 50_000_usize;
-    for input in found.into_iter().take(60) {
+    for input in found.into_iter().take(20) {
         let Some(fewer) = left.checked_sub(input.len()) else { break };
         left = fewer;
         let mut hasher = DefaultHasher::new();
