@@ -1,6 +1,7 @@
 //! `analyze`: one recording and one cask file to a table and a report.
 
 use super::Outcome;
+use super::limits::Bounds;
 use super::output::{Folder, JsonTarget, print};
 use super::progress::with_progress;
 use clap::{Args, ValueEnum};
@@ -31,6 +32,8 @@ pub struct Arguments {
     json: Option<PathBuf>,
     #[command(flatten)]
     switched_off: SwitchedOff,
+    #[command(flatten)]
+    bounds: Bounds,
 }
 
 /// Corrections of the samples that the command line forbids, whatever the cask file says.
@@ -90,8 +93,10 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
 
     let mut cask_file = ingest::cask_file(&arguments.cask)?;
     arguments.switched_off.in_cask_file(&mut cask_file);
-    let recording =
-        with_progress("reading", |progress| ingest::read(&arguments.recording, &cask_file, progress))?;
+    let limits = arguments.bounds.limits();
+    let recording = with_progress("reading", |progress| {
+        ingest::read_within(&arguments.recording, &cask_file, limits, progress)
+    })?;
     let mut analysis = dropcheck::analyze(&recording, &cask_file);
     arguments.switched_off.in_settings(&mut analysis.result);
 

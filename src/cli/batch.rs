@@ -2,6 +2,7 @@
 
 use super::analyze::SwitchedOff;
 use super::complaint::sentence;
+use super::limits::Bounds;
 use super::output::{Folder, print};
 use super::progress::with_progress;
 use super::{Outcome, output::CannotWrite};
@@ -13,6 +14,9 @@ use std::path::{Path, PathBuf};
 
 /// What a file of a folder is named where it is taken for a recording.
 const RECORDING_ENDINGS: [&str; 5] = ["mcap", "h5", "hdf5", "hdf", "csv"];
+
+/// What the campaign's folder holds beside the reports.
+const SUMMARY: [&str; 2] = ["campaign.json", "campaign.csv"];
 
 #[derive(Args)]
 #[command(after_help = "Example:\n  dropcheck batch tests/*.mcap --cask cask.toml --out campaign")]
@@ -28,6 +32,8 @@ pub struct Arguments {
     out: Option<PathBuf>,
     #[command(flatten)]
     switched_off: SwitchedOff,
+    #[command(flatten)]
+    bounds: Bounds,
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
@@ -36,8 +42,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     inputs.push(&arguments.cask);
     let folders = match &arguments.out {
         Some(out) => {
-            let names = ["campaign.json", "campaign.csv"];
-            let summary = Folder::checked(out, &names, &inputs)?;
+            let summary = Folder::checked(out, &SUMMARY, &inputs)?;
             Some((summary, report_folders(out, &recordings, &inputs)?))
         }
         None => None,
@@ -50,14 +55,12 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     let mut rows = Vec::with_capacity(recordings.len());
     for (i, path) in recordings.iter().enumerate() {
         let folder = folders.as_ref().and_then(|(_, folders)| folders.get(i));
-        rows.push(row(path, &cask_file, &arguments.switched_off, folder));
+        rows.push(row(path, &cask_file, arguments, folder));
     }
     let campaign = Campaign::new(arguments.cask.display().to_string(), rows);
     if let Some((summary, _)) = &folders {
-        summary.write(&[
-            ("campaign.json".to_owned(), campaign.json()?),
-            ("campaign.csv".to_owned(), campaign.csv()?),
-        ])?;
+        summary
+            .write(&[(SUMMARY[0].to_owned(), campaign.json()?), (SUMMARY[1].to_owned(), campaign.csv()?)])?;
     }
     print(&campaign.table())?;
     let outcome = |row: &CampaignRow| row.verdict.map_or(Outcome::NotDone, Outcome::from);
@@ -67,10 +70,10 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
 fn row(
     path: &Path,
     cask_file: &CaskFile,
-    switched_off: &SwitchedOff,
+    arguments: &Arguments,
     folder: Option<&(String, Folder)>,
 ) -> CampaignRow {
-    match analysed(path, cask_file, switched_off, folder) {
+    match analysed(path, cask_file, arguments, folder) {
         Ok(row) => row,
         Err(complaint) => CampaignRow::failed(path.display().to_string(), sentence(&complaint)),
     }
@@ -79,13 +82,14 @@ fn row(
 fn analysed(
     path: &Path,
     cask_file: &CaskFile,
-    switched_off: &SwitchedOff,
+    arguments: &Arguments,
     folder: Option<&(String, Folder)>,
 ) -> miette::Result<CampaignRow> {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    let recording = with_progress(&name, |progress| ingest::read(path, cask_file, progress))?;
+    let limits = arguments.bounds.limits();
+    let recording = with_progress(&name, |progress| ingest::read_within(path, cask_file, limits, progress))?;
     let mut analysis = dropcheck::analyze(&recording, cask_file);
-    switched_off.in_settings(&mut analysis.result);
+    arguments.switched_off.in_settings(&mut analysis.result);
     let mut row = CampaignRow::of(&analysis.result);
     if let Some((name, folder)) = folder {
         folder.write(&report::files(&analysis)?)?;
@@ -135,10 +139,12 @@ fn report_folders(
 ) -> Result<Vec<(String, Folder)>, CannotWrite> {
     let mut folders: Vec<(String, Folder)> = Vec::new();
     for path in recordings {
-        let stem = path.file_stem().map_or_else(|| "recording".into(), |s| s.to_string_lossy().into_owned());
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        // "...csv" has the stem "..", which is a way out of the folder and no name.
+        let stem = if stem.trim_matches('.').is_empty() { "recording".to_owned() } else { stem };
         let mut name = stem.clone();
         let mut number = 2;
-        while folders.iter().any(|(taken, _)| *taken == name) {
+        while SUMMARY.contains(&name.as_str()) || folders.iter().any(|(taken, _)| *taken == name) {
             name = format!("{stem}-{number}");
             number += 1;
         }
@@ -159,6 +165,15 @@ mod tests {
         let folders = report_folders(out.path(), &recordings, &[]).unwrap();
         let names: Vec<&str> = folders.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(names, ["t1", "t1-2", "t2"]);
+    }
+
+    #[test]
+    fn a_recordings_name_leads_nowhere_else() {
+        let out = tempfile::tempdir().unwrap();
+        let recordings = ["...csv", "..mcap", "a/campaign.json.h5", "b/../..."].map(PathBuf::from);
+        let folders = report_folders(out.path(), &recordings, &[]).unwrap();
+        let names: Vec<&str> = folders.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["recording", "recording-2", "campaign.json-2", "recording-3"]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `init`: what a recording holds to a cask file to fill in, on standard output.
 
 use super::Outcome;
+use super::limits::Bounds;
 use super::output::print_plain;
 use super::progress::with_progress;
 use clap::Args;
@@ -12,10 +13,14 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// The recording: MCAP, HDF5 or CSV, told by its content
     recording: PathBuf,
+    #[command(flatten)]
+    bounds: Bounds,
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
-    let listing = with_progress("reading", |progress| ingest::list(&arguments.recording, progress))?;
+    let listing = with_progress("reading", |progress| {
+        ingest::list_within(&arguments.recording, arguments.bounds.limits(), progress)
+    })?;
     print_plain(report::cask_file_template(&listing).as_bytes())?;
     Ok(Outcome::Clear)
 }

@@ -1,6 +1,7 @@
 //! `inspect`: what a recording holds, as a table or JSON.
 
 use super::Outcome;
+use super::limits::Bounds;
 use super::output::{JsonTarget, print};
 use super::progress::with_progress;
 use clap::Args;
@@ -14,11 +15,15 @@ pub struct Arguments {
     /// Write the listing as JSON to a file; with - to standard output, and nothing else there
     #[arg(long, value_name = "FILE|-")]
     json: Option<PathBuf>,
+    #[command(flatten)]
+    bounds: Bounds,
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     let json = JsonTarget::checked(arguments.json.as_deref(), &[&arguments.recording])?;
-    let listing = with_progress("reading", |progress| ingest::list(&arguments.recording, progress))?;
+    let listing = with_progress("reading", |progress| {
+        ingest::list_within(&arguments.recording, arguments.bounds.limits(), progress)
+    })?;
     json.write(|| report::listing_json(&listing))?;
     if !json.is_standard_output() {
         print(&report::listing_table(&listing))?;

@@ -1,5 +1,6 @@
 //! Finished bytes to files, whole or not at all, and to standard output; checked before the work begins.
 
+use super::replace::{OWN_PREFIX, Stopped, parent_of, replace_set, staging_in, sync_folder, write_whole};
 use dropcheck::report::ReportError;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Write};
@@ -28,7 +29,7 @@ pub enum CannotWrite {
     #[diagnostic(help("choose another place, or remove it yourself"))]
     Foreign { path: String },
     #[error("{path} is a symbolic link")]
-    #[diagnostic(help("name the file that it points to"))]
+    #[diagnostic(help("name what it points to"))]
     Link { path: String },
     #[error("{path} is a folder, and a file of that name must be written")]
     #[diagnostic(help("choose another place, or remove it yourself"))]
@@ -65,6 +66,10 @@ impl Folder {
         if path.as_os_str().is_empty() {
             return Err(CannotWrite::NoFolder { path: "\"\"".into() });
         }
+        // A link may have been put there to have files written elsewhere.
+        if fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink()) {
+            return Err(CannotWrite::Link { path: shown(path) });
+        }
         let mut standing = path;
         while fs::symlink_metadata(standing).is_err() {
             standing = match standing.parent() {
@@ -98,38 +103,12 @@ impl Folder {
         shown(&self.path.join(name))
     }
 
-    /// Writes every file beside its place and moves them there only when all are complete.
+    /// Writes every file beside its place and puts them there only when all are complete.
     pub fn write(&self, files: &[(String, Vec<u8>)]) -> Result<(), CannotWrite> {
-        let failed = |path: &Path| {
-            let path = shown(path);
-            move |source: io::Error| CannotWrite::Failed { path, source: bare(&source) }
-        };
-        if self.path.is_dir() {
-            let staging = staging_in(&self.path).map_err(failed(&self.path))?;
-            for (name, bytes) in files {
-                write_whole(&staging.path().join(name), bytes).map_err(failed(&self.path.join(name)))?;
-            }
-            // The JSON goes first: it marks the folder as this program's, should a later move fail.
-            let (first, rest): (Vec<_>, Vec<_>) = files.iter().partition(|(name, _)| is_json(name));
-            for (name, _) in first.into_iter().chain(rest) {
-                let target = self.path.join(name);
-                fs::rename(staging.path().join(name), &target).map_err(failed(&target))?;
-            }
-            return sync_folder(&self.path).map_err(failed(&self.path));
-        }
-        let parent = match self.path.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
-        fs::create_dir_all(parent).map_err(failed(parent))?;
-        let staging = staging_in(parent).map_err(failed(parent))?;
-        for (name, bytes) in files {
-            write_whole(&staging.path().join(name), bytes).map_err(failed(&self.path.join(name)))?;
-        }
-        fs::rename(staging.path(), &self.path).map_err(failed(&self.path))?;
-        // The folder has its name now; nothing is left to clear away.
-        let _ = staging.keep();
-        sync_folder(parent).map_err(failed(parent))
+        replace_set(&self.path, files).map_err(|Stopped { path, source }| CannotWrite::Failed {
+            path: shown(&path),
+            source: bare(&source),
+        })
     }
 }
 
@@ -171,7 +150,7 @@ impl JsonTarget {
             }
             Err(_) => {}
         }
-        let parent = folder_of(path);
+        let parent = parent_of(path);
         if !parent.is_dir() {
             return Err(CannotWrite::NoFolder { path: shown(parent) });
         }
@@ -208,19 +187,12 @@ fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if fs::metadata(path).is_ok_and(|m| !m.is_file()) {
         return fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
     }
-    let parent = folder_of(path);
+    let parent = parent_of(path);
     let staging = staging_in(parent)?;
     let staged = staging.path().join("json");
     write_whole(&staged, bytes)?;
     fs::rename(&staged, path)?;
     sync_folder(parent)
-}
-
-fn folder_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    }
 }
 
 /// Writes to standard output with colours where a terminal shows them; a reader that left early is no error.
@@ -244,33 +216,9 @@ fn settled(written: io::Result<()>) -> Result<(), CannotWrite> {
     }
 }
 
-/// A folder that vanishes unless it is moved, beside the place its content goes to.
-fn staging_in(folder: &Path) -> io::Result<tempfile::TempDir> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".dropcheck-");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As any folder the user makes: the process's mask takes away what it must.
-        builder.permissions(fs::Permissions::from_mode(0o777));
-    }
-    builder.tempdir_in(folder)
-}
-
-fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = File::create_new(path)?;
-    file.write_all(bytes)?;
-    file.sync_all()
-}
-
-/// Makes the new names durable; a system that cannot open a folder has its own way.
-fn sync_folder(folder: &Path) -> io::Result<()> {
-    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
-}
-
 fn writable(folder: &Path) -> Result<(), CannotWrite> {
     tempfile::Builder::new()
-        .prefix(".dropcheck-")
+        .prefix(OWN_PREFIX)
         .tempfile_in(folder)
         .map(drop)
         .map_err(|source| CannotWrite::NotWritable { path: shown(folder), source: bare(&source) })

@@ -61,7 +61,9 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
-    let folder = Folder::checked(place, &names.each_ref().map(String::as_str), &[&arguments.scene])?;
+    // Whoever names a file may reach it by a link; the folder itself must be none.
+    let place = place.canonicalize().unwrap_or_else(|_| place.to_path_buf());
+    let folder = Folder::checked(&place, &names.each_ref().map(String::as_str), &[&arguments.scene])?;
 
     let mut scene_file = dropcheck::scene_file(&arguments.scene)?;
     if let Some(seed) = arguments.seed {

@@ -173,7 +173,7 @@ pub(super) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
     Ok(text)
 }
 
-fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
+pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
     let document = Document::new(&CASK_FILE, path, text);
     let root = document.root()?;
     let mut defaults = Vec::new();

@@ -11,7 +11,7 @@ pub(super) use list::list;
 
 use super::error::{self, IngestError};
 use super::time_base::{self, TimeBaseError, Uniform};
-use super::{Progress, RawChannel, RawRecording};
+use super::{Limits, Progress, RawChannel, RawRecording};
 use crate::data::{CaskFile, ChannelSpec, Issue, IssueCode, Samples, Severity, Source};
 use input::Input;
 use layout::Layout;
@@ -26,9 +26,19 @@ use std::path::Path;
 pub(super) fn read(
     path: &Path,
     cask_file: &CaskFile,
+    limits: Limits,
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
-    let input = Input::open(path)?;
+    of_input(path, Input::open(path, limits)?, cask_file, (limits, progress))
+}
+
+/// The same of a text that is opened already.
+fn of_input(
+    path: &Path,
+    input: Input,
+    cask_file: &CaskFile,
+    (limits, progress): (Limits, Progress),
+) -> Result<RawRecording, IngestError> {
     let layout = Layout::of(&input).ok_or_else(|| no_table(path))?;
     let plans: Vec<Plan> = cask_file
         .channels
@@ -39,7 +49,7 @@ pub(super) fn read(
         plans.iter().map(|plan| plan.column),
         &plans.iter().filter_map(|plan| plan.time_column).collect::<Vec<_>>(),
     );
-    let (mut held, stamps, ending) = columns(path, input, &layout, &wanted, progress)?;
+    let (mut held, stamps, ending) = columns(path, input, &layout, &wanted, (limits, progress))?;
     let mut uses = vec![0_usize; wanted.columns.len()];
     for plan in &plans {
         uses[wanted.slot(plan.column)] += 1;
@@ -148,6 +158,10 @@ impl Sink for Keep<'_> {
             column.push(value);
         }
     }
+
+    fn held_bytes(&self) -> u64 {
+        self.columns.iter().map(|column| 8 * column.len() as u64).sum()
+    }
 }
 
 /// The wanted columns, times in s; their stamps; and how the file ended.
@@ -156,13 +170,16 @@ fn columns(
     input: Input,
     layout: &Layout,
     wanted: &Wanted,
-    progress: Progress,
+    (limits, progress): (Limits, Progress),
 ) -> Result<(Vec<Vec<f64>>, Stamps, Ending), IngestError> {
-    let rows_expected = layout.rows_expected(input.bytes);
+    // What is set aside is a guess from the first rows; more is taken as it comes.
+    let most_rows = limits.samples_bytes() / (8 * wanted.columns.len().max(1) as u64);
+    let rows_expected =
+        layout.rows_expected(input.bytes).min(usize::try_from(most_rows).unwrap_or(usize::MAX));
     let columns = wanted.columns.iter().map(|_| Vec::with_capacity(rows_expected)).collect();
     let mut keep = Keep { wanted, columns, stamps: Stamps::default() };
-    let ending = rows::read(input, layout, wanted, &mut keep, progress)
-        .map_err(|error| row_error(path, layout, wanted, error))?;
+    let ending = rows::read(input, layout, wanted, &mut keep, (limits, progress))
+        .map_err(|error| row_error(path, limits, (layout, wanted), error))?;
     let Keep { mut columns, stamps, .. } = keep;
     for (slot, values) in columns.iter_mut().enumerate() {
         let scale_s = layout.time_scale_s(wanted.columns[slot]).unwrap_or(1.0);
@@ -221,7 +238,12 @@ fn time_error(path: &Path, channel: &str, error: &TimeBaseError) -> IngestError 
     )
 }
 
-fn row_error(path: &Path, layout: &Layout, wanted: &Wanted, error: RowError) -> IngestError {
+fn row_error(
+    path: &Path,
+    limits: Limits,
+    (layout, wanted): (&Layout, &Wanted),
+    error: RowError,
+) -> IngestError {
     let headed = |slot: usize| {
         wanted
             .columns
@@ -231,6 +253,12 @@ fn row_error(path: &Path, layout: &Layout, wanted: &Wanted, error: RowError) -> 
     };
     let (line, problem, mend) = match error {
         RowError::Io(source) => return error::io(path, source),
+        RowError::TooMany => {
+            return limits.refusal(path, "the samples of the columns read take", limits.samples_bytes());
+        }
+        RowError::TooLong { line } => {
+            return limits.refusal(path, &format!("line {line} takes"), limits.line_bytes());
+        }
         RowError::Word { line, slot, cell } => (
             line,
             format!("column {:?} holds {cell:?}, which is no number", headed(slot)),
@@ -244,14 +272,11 @@ fn row_error(path: &Path, layout: &Layout, wanted: &Wanted, error: RowError) -> 
             format!("column {:?} holds no time for this row", headed(slot)),
             "delete the row in a copy, or name another column of times".to_owned(),
         ),
-        RowError::TooLong { line } => (
-            line,
-            "the line is longer than 1 MiB".to_owned(),
-            "this is no table of one row a sample; export it again".to_owned(),
-        ),
     };
     IngestError::Content { path: path.display().to_string(), place: format!("line {line}"), problem, mend }
 }
 
+#[cfg(test)]
+mod fuzz_tests;
 #[cfg(test)]
 pub(super) mod tests;

@@ -56,6 +56,23 @@ pub enum IngestError {
         /// Near names, what there is, what to write.
         mend: String,
     },
+    /// A part of the file would take more memory than reading may.
+    #[error("{path}: {what} more than {limit}, the limit where reading may take {memory} of memory")]
+    #[diagnostic(help(
+        "a file that claims so much is damaged or made to do harm; if it is sound, allow more: --max-memory {more}"
+    ))]
+    TooLarge {
+        /// The file.
+        path: String,
+        /// Which part, and what it does: "its samples take".
+        what: String,
+        /// The limit of that part.
+        limit: String,
+        /// The memory allowed.
+        memory: String,
+        /// Four times that, as the option takes it.
+        more: String,
+    },
     /// The file's content contradicts its format.
     #[error("{path}: {place}: {problem}")]
     #[diagnostic(help("{mend}"))]

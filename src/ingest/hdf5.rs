@@ -9,7 +9,7 @@ pub(super) use list::list;
 
 use super::error::{self, IngestError};
 use super::time_base::{self, Uniform};
-use super::{Progress, RawChannel, RawRecording};
+use super::{Limits, Progress, RawChannel, RawRecording};
 use crate::data::{CaskFile, ChannelSpec, Samples, Source};
 use attributes::Attributes;
 use dataset::Column;
@@ -26,25 +26,55 @@ const TIME_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "Ti
 pub(super) fn read(
     path: &Path,
     cask_file: &CaskFile,
+    limits: Limits,
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
     let file = open(path)?;
+    let mut room = Room { path, limits, held_bytes: 0 };
     let count = cask_file.channels.len().max(1);
     let mut channels = Vec::with_capacity(count);
     for spec in 0..cask_file.channels.len() {
-        channels.push(read_channel(path, &file, spec, cask_file)?);
+        channels.push(read_channel(&mut room, &file, spec, cask_file)?);
         #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
         progress((spec + 1) as f64 / count as f64);
     }
     Ok(RawRecording { channels, zero_unix_ns: None, issues: Vec::new() })
 }
 
+/// What of the memory is taken.
+struct Room<'a> {
+    path: &'a Path,
+    limits: Limits,
+    held_bytes: u64,
+}
+
+impl Room<'_> {
+    /// Takes room for a column before it is read.
+    fn take(&mut self, column: &Column) -> Result<(), IngestError> {
+        let (part_bytes, samples_bytes) = (self.limits.part_bytes(), self.limits.samples_bytes());
+        self.held_bytes = self.held_bytes.saturating_add(column.held_bytes());
+        if column.part_bytes() > part_bytes {
+            let what = format!("a block of {} takes", column.source());
+            return Err(self.limits.refusal(self.path, &what, part_bytes));
+        }
+        if self.held_bytes > samples_bytes {
+            return Err(self.limits.refusal(
+                self.path,
+                "the samples of the channels read take",
+                samples_bytes,
+            ));
+        }
+        Ok(())
+    }
+}
+
 fn read_channel(
-    path: &Path,
+    room: &mut Room,
     file: &File,
     index: usize,
     cask_file: &CaskFile,
 ) -> Result<RawChannel, IngestError> {
+    let path = room.path;
     let spec = &cask_file.channels[index];
     let wrong = |problem: String, mend: String| error::source(path, &spec.name, problem, mend);
     let Source::Path(source) = &spec.source else {
@@ -54,10 +84,12 @@ fn read_channel(
         ));
     };
     let column = locate(path, file, spec, source)?;
+    room.take(&column)?;
     let attributes = Attributes::of(file, &column);
     let samples = column.samples().map_err(|fault| wrong(fault.problem, fault.mend))?;
     let samples = attributes.scaled(samples);
     let time = time_column(path, file, spec, cask_file.time.as_deref(), &column)?;
+    time.iter().try_for_each(|time| room.take(time))?;
     let uniform = on_base(samples, time.as_ref(), spec, &attributes)
         .map_err(|fault| wrong(format!("{}: {}", column.source(), fault.problem), fault.mend))?;
     Ok(RawChannel { spec: index, uniform, unit: attributes.unit })

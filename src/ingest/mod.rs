@@ -5,14 +5,18 @@ pub mod cask_file;
 mod csv;
 mod detect;
 mod error;
+#[cfg(test)]
+mod fuzz;
 mod hdf5;
 mod in_memory;
+mod limits;
 mod mcap;
 pub mod scene_file;
 pub mod time_base;
 
 pub use error::IngestError;
 pub use in_memory::synthetic;
+pub use limits::{LEAST_MEMORY_BYTES, Limits};
 
 use crate::data::{CaskFile, Issue, Listing, Recording, RecordingFormat};
 use sha2::{Digest, Sha256};
@@ -58,15 +62,28 @@ pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
 /// # Errors
 /// [`IngestError`] where a file, a source or its content is at fault.
 pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Recording, IngestError> {
+    read_within(path, cask_file, Limits::default(), progress)
+}
+
+/// As [`read`], within other limits than the usual ones.
+///
+/// # Errors
+/// As [`read`]; [`IngestError::TooLarge`] where the file would pass a limit.
+pub fn read_within(
+    path: &Path,
+    cask_file: &CaskFile,
+    limits: Limits,
+    progress: Progress,
+) -> Result<Recording, IngestError> {
     cask_file::require_channels(cask_file, path)?;
     let format = detect::format(path)?;
     // The hash takes as long as the reading: it runs beside it.
     let (raw, sha256) = std::thread::scope(|scope| {
         let hashing = scope.spawn(|| sha256(path));
         let raw = match format {
-            RecordingFormat::Mcap => mcap::read(path, cask_file, progress),
-            RecordingFormat::Hdf5 => hdf5::read(path, cask_file, progress),
-            RecordingFormat::Csv => csv::read(path, cask_file, progress),
+            RecordingFormat::Mcap => mcap::read(path, cask_file, limits, progress),
+            RecordingFormat::Hdf5 => hdf5::read(path, cask_file, limits, progress),
+            RecordingFormat::Csv => csv::read(path, cask_file, limits, progress),
         };
         (raw, hashing.join())
     });
@@ -79,10 +96,18 @@ pub fn read(path: &Path, cask_file: &CaskFile, progress: Progress) -> Result<Rec
 /// # Errors
 /// [`IngestError`] where the file is none that can be read.
 pub fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
+    list_within(path, Limits::default(), progress)
+}
+
+/// As [`list`], within other limits than the usual ones.
+///
+/// # Errors
+/// As [`list`]; [`IngestError::TooLarge`] where the file would pass a limit.
+pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Listing, IngestError> {
     match detect::format(path)? {
-        RecordingFormat::Mcap => mcap::list(path, progress),
-        RecordingFormat::Hdf5 => hdf5::list(path, progress),
-        RecordingFormat::Csv => csv::list(path, progress),
+        RecordingFormat::Mcap => mcap::list(path, limits, progress),
+        RecordingFormat::Hdf5 => hdf5::list(path, limits, progress),
+        RecordingFormat::Csv => csv::list(path, limits, progress),
     }
 }
 

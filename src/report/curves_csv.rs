@@ -65,7 +65,9 @@ fn columns(curves: &Curves) -> Vec<Column<'_>> {
 /// A text cell that no spreadsheet takes for a formula.
 pub(super) fn text_cell(text: &str) -> String {
     let text = printable(text);
-    if text.starts_with(['=', '+', '-', '@']) { format!("'{text}") } else { text }
+    // Some spreadsheets skip blanks, and some take the full-width signs of a Japanese keyboard likewise.
+    let is_formula = text.trim_start().starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠']);
+    if is_formula { format!("'{text}") } else { text }
 }
 
 /// Seven digits, more than any recorder resolves, in half the bytes of seventeen.
@@ -121,7 +123,10 @@ mod tests {
     #[test]
     fn a_name_cannot_be_a_formula() {
         let mut curves = sample::analysis().curves;
-        curves.channels[0].channel = "=HYPERLINK(\"x\")".into();
-        assert!(rows(&curves)[0][1].starts_with("'="));
+        for name in ["=HYPERLINK(\"x\")", "+1", "-1", "@A1", "\t=1", " =1", "\u{ff1d}1"] {
+            curves.channels[0].channel = name.into();
+            let header = rows(&curves)[0][1].to_owned();
+            assert!(header.starts_with('\''), "{header}");
+        }
     }
 }

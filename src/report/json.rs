@@ -2,6 +2,7 @@
 
 use super::ReportError;
 use crate::data::{DropResult, Estimate, Listing};
+use std::fmt::Write as _;
 
 /// `result.json`: an estimate that is not finite becomes null as a whole, for half a quantity is none.
 ///
@@ -57,9 +58,24 @@ pub fn listing(listing: &Listing) -> Result<Vec<u8>, ReportError> {
 
 /// Two spaces of indentation and a line feed at the end.
 pub(super) fn pretty<T: serde::Serialize>(value: &T) -> Result<Vec<u8>, ReportError> {
-    let mut bytes = serde_json::to_vec_pretty(value)?;
-    bytes.push(b'\n');
-    Ok(bytes)
+    let mut text = serde_json::to_string_pretty(value)?;
+    if text.contains(steers) {
+        text = text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
+            if steers(c) {
+                let _ = write!(out, "\\u{:04x}", u32::from(c));
+            } else {
+                out.push(c);
+            }
+            out
+        });
+    }
+    text.push('\n');
+    Ok(text.into_bytes())
+}
+
+/// Whether JSON may hold it bare and a terminal would obey it: controls beyond ASCII, line ends and directions of Unicode.
+fn steers(c: char) -> bool {
+    matches!(c, '\u{7f}'..='\u{9f}' | '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 #[cfg(test)]
@@ -67,6 +83,14 @@ mod tests {
     use super::super::sample;
     use super::*;
     use serde_json::Value;
+
+    #[test]
+    fn words_of_a_file_do_not_steer_a_terminal() {
+        let words = "A\u{9b}2J\u{202e}\u{1b}[2J\u{7f}é";
+        let text = String::from_utf8(pretty(&words).unwrap()).unwrap();
+        assert_eq!(text.trim_end(), r#""A\u009b2J\u202e\u001b[2J\u007fé""#);
+        assert_eq!(serde_json::from_str::<String>(&text).unwrap(), words);
+    }
 
     #[test]
     fn the_result_has_the_keys_of_the_contract() {

@@ -59,8 +59,8 @@ pub(super) fn styled(style: Style, text: &str) -> String {
 pub fn printable(text: &str) -> String {
     text.chars()
         .filter_map(|c| match c {
-            '\t' | '\n' | '\r' => Some(' '),
-            '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => None,
+            '\t' | '\n' | '\r' | '\u{2028}' | '\u{2029}' => Some(' '),
+            '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => None,
             c if c.is_control() => None,
             c => Some(c),
         })

@@ -3,12 +3,14 @@
 mod campaign;
 mod command_line;
 mod compliant;
+mod damage;
 mod fixtures;
 mod golden;
 mod predict_command;
 mod properties;
 mod reference;
 mod run;
+mod safety;
 mod synth;
 mod tidy;
 mod trial;

@@ -1,5 +1,6 @@
 //! A text file to bytes in which digits and delimiters are ASCII, whatever its encoding.
 
+use super::super::Limits;
 use super::super::error::{self, IngestError};
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use std::borrow::Cow;
@@ -9,9 +10,6 @@ use std::path::Path;
 
 /// How much of a file is looked at for its layout.
 const HEAD_BYTES: u64 = 1 << 16;
-
-/// UTF-16 is turned into UTF-8 in memory as a whole; a file beyond this is refused.
-const LARGEST_UTF16_BYTES: u64 = 1 << 30;
 
 /// A text file, opened.
 pub(super) struct Input {
@@ -28,7 +26,20 @@ pub(super) struct Input {
 }
 
 impl Input {
-    pub(super) fn open(path: &Path) -> Result<Self, IngestError> {
+    /// A text in memory, in UTF-8 or what is taken for it.
+    #[cfg(test)]
+    pub(super) fn of_bytes(text: &[u8]) -> Self {
+        let (head, rest) = text.split_at(text.len().min(1 << 16));
+        Self {
+            head: head.to_vec(),
+            is_whole: rest.is_empty(),
+            rest: Box::new(Cursor::new(rest.to_vec())),
+            bytes: text.len() as u64,
+            encoding: "UTF-8",
+        }
+    }
+
+    pub(super) fn open(path: &Path, limits: Limits) -> Result<Self, IngestError> {
         let io = |source| error::io(path, source);
         let mut file = File::open(path).map_err(io)?;
         let bytes = file.metadata().map_err(io)?.len();
@@ -40,7 +51,13 @@ impl Input {
             _ => None,
         };
         if let Some((coding, name)) = wide {
-            return Self::decoded(path, file, head, bytes, (coding, name));
+            // It is turned into UTF-8 in memory as a whole.
+            if bytes > limits.part_bytes() {
+                let what = format!("it is a text in {name} and takes");
+                return Err(limits.refusal(path, &what, limits.part_bytes()));
+            }
+            file.read_to_end(&mut head).map_err(io)?;
+            return Ok(Self::decoded(&head, bytes, (coding, name)));
         }
         let has_mark = head.starts_with(b"\xEF\xBB\xBF");
         if has_mark {
@@ -60,27 +77,12 @@ impl Input {
         Ok(Self { head, is_whole, rest: Box::new(file), bytes, encoding })
     }
 
-    fn decoded(
-        path: &Path,
-        mut file: File,
-        mut head: Vec<u8>,
-        bytes: u64,
-        coding: (&'static Encoding, &'static str),
-    ) -> Result<Self, IngestError> {
-        if bytes > LARGEST_UTF16_BYTES {
-            return Err(IngestError::Content {
-                path: path.display().to_string(),
-                place: "the byte-order mark".into(),
-                problem: format!("the file is {} of {bytes} bytes, too large to convert here", coding.1),
-                mend: "save it as UTF-8".into(),
-            });
-        }
-        file.read_to_end(&mut head).map_err(|source| error::io(path, source))?;
-        let (text, _, _) = coding.0.decode(&head);
+    fn decoded(head: &[u8], bytes: u64, coding: (&'static Encoding, &'static str)) -> Self {
+        let (text, _, _) = coding.0.decode(head);
         let mut text = text.into_owned().into_bytes();
         let rest = text.split_off(text.len().min(1 << 16));
         let is_whole = rest.is_empty();
-        Ok(Self { head: text, is_whole, rest: Box::new(Cursor::new(rest)), bytes, encoding: coding.1 })
+        Self { head: text, is_whole, rest: Box::new(Cursor::new(rest)), bytes, encoding: coding.1 }
     }
 }
 

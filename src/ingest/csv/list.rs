@@ -5,7 +5,7 @@ use super::input::Input;
 use super::layout::{Column, Layout};
 use super::rows::{self, Sink, Wanted};
 use super::stamp::Stamps;
-use super::{Progress, ending_issues, no_table, row_error, time_base};
+use super::{Limits, Progress, ending_issues, no_table, row_error, time_base};
 use crate::data::{IssueCode, ListedChannel, Listing, RecordingFormat, Samples};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -50,14 +50,22 @@ impl Sink for Survey {
             self.times.push(values[slot]);
         }
     }
+
+    fn held_bytes(&self) -> u64 {
+        8 * self.times.len() as u64
+    }
 }
 
 /// Lists the columns of the text at `path`.
 ///
 /// # Errors
 /// A file that cannot be read or holds no rows of numbers.
-pub(in super::super) fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
-    let input = Input::open(path)?;
+pub(in super::super) fn list(
+    path: &Path,
+    limits: Limits,
+    progress: Progress,
+) -> Result<Listing, IngestError> {
+    let input = Input::open(path, limits)?;
     let (bytes, encoding) = (input.bytes, input.encoding);
     let layout = Layout::of(&input).ok_or_else(|| no_table(path))?;
     let time_column = layout.time_column();
@@ -70,8 +78,8 @@ pub(in super::super) fn list(path: &Path, progress: Progress) -> Result<Listing,
         stamps: Stamps::default(),
         rows: 0,
     };
-    let ending = rows::read(input, &layout, &wanted, &mut survey, progress)
-        .map_err(|error| row_error(path, &layout, &wanted, error))?;
+    let ending = rows::read(input, &layout, &wanted, &mut survey, (limits, progress))
+        .map_err(|error| row_error(path, limits, (&layout, &wanted), error))?;
     let scale_s = time_column.and_then(|column| layout.time_scale_s(column)).unwrap_or(1.0);
     if !survey.stamps.any() {
         for t in &mut survey.times {

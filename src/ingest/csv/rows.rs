@@ -1,12 +1,12 @@
 //! Lines of a table to rows of numbers, only the wanted columns, in one pass with bounded memory.
 
-use super::super::Progress;
+use super::super::{Limits, Progress};
 use super::input::Input;
 use super::layout::Layout;
 use super::number;
 use std::io::Read;
 
-/// Bytes read at a time, and the longest line: a row of a hundred thousand channels still fits.
+/// Bytes read at a time, unless a line is longer.
 const CHUNK_BYTES: usize = 1 << 20;
 
 /// Which columns to read.
@@ -39,6 +39,8 @@ pub(super) trait Sink {
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64>;
     /// One row, a value a slot, NaN where missing.
     fn row(&mut self, values: &[f64]);
+    /// Memory that the rows taken so far hold.
+    fn held_bytes(&self) -> u64;
 }
 
 /// How the table ended.
@@ -57,6 +59,7 @@ pub(super) enum RowError {
     Word { line: u64, slot: usize, cell: String },
     NoTime { line: u64, slot: usize },
     TooLong { line: u64 },
+    TooMany,
 }
 
 /// Reads every row into `sink`.
@@ -65,8 +68,9 @@ pub(super) fn read(
     layout: &Layout,
     wanted: &Wanted,
     sink: &mut impl Sink,
-    progress: Progress,
+    (limits, progress): (Limits, Progress),
 ) -> Result<Ending, RowError> {
+    let longest = usize::try_from(limits.line_bytes()).unwrap_or(usize::MAX);
     let mut table = Table {
         delimiter: layout.delimiter,
         decimal: layout.decimal,
@@ -80,7 +84,9 @@ pub(super) fn read(
     let mut done = 0_u64;
     loop {
         let held = buffer.len();
-        let room = CHUNK_BYTES.saturating_sub(held) as u64;
+        // A line that fills the buffer gets twice the room, up to the longest that is allowed.
+        let most = if held < CHUNK_BYTES { CHUNK_BYTES } else { held.saturating_mul(2) };
+        let room = most.min(longest).saturating_sub(held) as u64;
         (&mut input.rest).take(room).read_to_end(&mut buffer).map_err(RowError::Io)?;
         let is_last = buffer.len() == held && room > 0;
         let end = buffer.iter().rposition(|&b| b == b'\n').map_or(0, |at| at + 1);
@@ -97,7 +103,10 @@ pub(super) fn read(
             let cut_line = table.last_line(&buffer, layout, sink)?;
             return Ok(Ending { lines: table.line, cut_line });
         }
-        if buffer.len() >= CHUNK_BYTES {
+        if sink.held_bytes() > limits.samples_bytes() {
+            return Err(RowError::TooMany);
+        }
+        if buffer.len() >= longest {
             return Err(RowError::TooLong { line: table.line + 1 });
         }
         #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]

@@ -52,7 +52,7 @@ fn read_bytes(content: &[u8], cask_file: &CaskFile) -> Result<RawRecording, Inge
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("r.csv");
     std::fs::write(&path, content).unwrap();
-    read(&path, cask_file, &|_| {})
+    read(&path, cask_file, Limits::default(), &|_| {})
 }
 
 fn values(recording: &RawRecording, channel: usize) -> Vec<f64> {
@@ -204,7 +204,7 @@ fn a_table_is_listed() {
         "Lauf 3\nZeit [ms];A1 [g];Notiz;leer\n0;1,5;ok;\n1;-2,5;ok;\n3;7;;\n4;1;;\n5;1;;\n",
     )
     .unwrap();
-    let listing = list(&path, &|_| {}).unwrap();
+    let listing = list(&path, Limits::default(), &|_| {}).unwrap();
     assert_eq!(
         (listing.counts["rows"], listing.counts["columns"], listing.counts["preamble_lines"]),
         (5, 4, 1)

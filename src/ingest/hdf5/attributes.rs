@@ -22,6 +22,9 @@ const UNIT_NAMES: [&str; 2] = ["unit", "units"];
 /// An attribute with more values than this is none of these.
 const MOST_VALUES: usize = 4096;
 
+/// Larger than any rate, unit or scale.
+const MOST_BYTES: usize = 1 << 20;
+
 /// Longest text of an attribute of fixed length.
 const TEXT_BYTES: usize = 256;
 
@@ -114,7 +117,10 @@ fn pick<T>(mut values: Vec<T>, column: &Column) -> Option<T> {
 
 fn attribute(place: &Location, name: &str) -> Option<Attribute> {
     // Asking for one that is not there fills the library's error stack; the names do not.
-    place.attr(name).ok().filter(|attribute| attribute.size() <= MOST_VALUES)
+    place.attr(name).ok().filter(|attribute| {
+        let bytes = attribute.dtype().map_or(usize::MAX, |dtype| dtype.size());
+        attribute.size() <= MOST_VALUES && bytes.saturating_mul(attribute.size()) <= MOST_BYTES
+    })
 }
 
 fn number(place: &Location, name: &str, column: &Column) -> Option<f64> {

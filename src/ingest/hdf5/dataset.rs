@@ -6,9 +6,6 @@ use crate::data::Samples;
 use hdf5_metno::types::{FloatSize, IntSize, TypeDescriptor};
 use hdf5_metno::{Dataset, Datatype, File, H5Type, Hyperslab, Selection, SliceOrIndex};
 
-/// A column longer than this is refused: 6 hours at 100 kHz, 17 GB of f64.
-const LARGEST_SAMPLES: usize = 1 << 31;
-
 /// No filter that is built in packs tighter (deflate: 1032 : 1), so that a dataset that claims more was damaged or never written.
 const TIGHTEST_PACKING: u64 = 1100;
 
@@ -64,8 +61,16 @@ pub(super) fn find(file: &File, source: &str) -> Result<Column, Missing> {
 }
 
 fn column(dataset: Dataset, name: String, index: Option<usize>) -> Result<Column, Fault> {
-    let (kind, shape) = readable(&dataset, &name)?;
     let wrong = |problem: String, mend: &str| Fault { problem, mend: mend.to_owned() };
+    // A file that was sent may name any other on this machine.
+    let external = dataset.create_plist().map(|list| list.external()).unwrap_or_default();
+    if let Some(other) = external.iter().find(|file| file.name.contains(['/', '\\'])) {
+        return Err(wrong(
+            format!("the data of {name} are in another file, {}, which lies elsewhere", other.name),
+            "ask for a recording that holds its own data: `h5repack IN OUT` makes one",
+        ));
+    }
+    let (kind, shape) = readable(&dataset, &name)?;
     let (length, columns, index) = match (shape.as_slice(), index) {
         (&[length], None | Some(0)) => (length, 1, None),
         (&[_], Some(_)) => {
@@ -120,8 +125,7 @@ fn readable(dataset: &Dataset, name: &str) -> Result<(Kind, Vec<usize>), Fault> 
     let rows = shape.first().copied().unwrap_or(0);
     let bytes = claimed.and_then(|count| count.checked_mul(dtype.size())).and_then(|b| u64::try_from(b).ok());
     let stored = dataset.storage_size();
-    let is_plausible = rows <= LARGEST_SAMPLES
-        && bytes.is_some_and(|bytes| bytes <= stored.saturating_mul(TIGHTEST_PACKING));
+    let is_plausible = bytes.is_some_and(|bytes| bytes <= stored.saturating_mul(TIGHTEST_PACKING));
     if !is_plausible {
         return Err(Fault {
             problem: format!("{name} claims {rows} rows, of which the file holds {stored} bytes"),
@@ -188,6 +192,19 @@ impl Column {
 
     pub(super) fn len(&self) -> usize {
         self.length
+    }
+
+    /// Memory of its numbers when they are read, of the widest kind.
+    pub(super) fn held_bytes(&self) -> u64 {
+        8 * self.length as u64
+    }
+
+    /// Memory of the largest block that the library must unpack, or that is read at once, to have them.
+    pub(super) fn part_bytes(&self) -> u64 {
+        let chunk = self.dataset.chunk().unwrap_or_default();
+        let values = chunk.iter().fold(1_u64, |product, &n| product.saturating_mul(n as u64));
+        let rows = if self.index.is_some() { chunk.first().copied().unwrap_or(1) as u64 } else { 1 };
+        8 * values.max(rows.saturating_mul(self.columns as u64))
     }
 
     /// Its numbers as stored: f32 and short integers as f32, the rest as f64.

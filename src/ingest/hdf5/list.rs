@@ -4,7 +4,7 @@ use super::super::error::IngestError;
 use super::attributes::Attributes;
 use super::dataset::{self, Column, Missing};
 use super::fault::Fault;
-use super::{Progress, open, sibling_times, storage, time_base};
+use super::{Limits, Progress, open, sibling_times, storage, time_base};
 use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Samples};
 use hdf5_metno::{File, Group};
 use std::collections::BTreeMap;
@@ -18,6 +18,29 @@ const MOST_OBJECTS: usize = 10_000;
 const MOST_COLUMNS: usize = 256;
 /// The range of a longer column is not looked for: `inspect` should answer at once.
 const RANGED_SAMPLES: usize = 20_000_000;
+
+/// So many values are read for ranges and times in all: names may stand for one large dataset many times over.
+const MOST_VALUES: u64 = 1 << 30;
+
+/// What a listing may still cost.
+struct Effort {
+    limits: Limits,
+    values_left: u64,
+}
+
+impl Effort {
+    /// Whether a column may be read; it is then paid for.
+    fn pays_for(&mut self, column: &Column) -> bool {
+        let (held, part) = (column.held_bytes(), column.part_bytes());
+        let values = (column.len() * column.columns) as u64;
+        let pays = held <= self.limits.samples_bytes() && part <= self.limits.part_bytes();
+        if pays && values <= self.values_left {
+            self.values_left -= values;
+            return true;
+        }
+        false
+    }
+}
 
 /// Everything in the file, by path.
 #[derive(Default)]
@@ -36,7 +59,8 @@ pub(super) fn sources(file: &File) -> Vec<String> {
 
 fn walk(group: &Group, path: &str, depth: usize, objects: &mut Objects) {
     for name in group.member_names().unwrap_or_default() {
-        if objects.datasets.len() + objects.broken.len() >= MOST_OBJECTS {
+        let groups = usize::try_from(objects.groups).unwrap_or(usize::MAX);
+        if objects.datasets.len() + objects.broken.len() + groups >= MOST_OBJECTS {
             return;
         }
         let full = format!("{path}/{name}");
@@ -72,7 +96,12 @@ fn columns_of(file: &File, path: &str) -> Option<Vec<String>> {
 ///
 /// # Errors
 /// A file that the library cannot open.
-pub(in super::super) fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
+pub(in super::super) fn list(
+    path: &Path,
+    limits: Limits,
+    progress: Progress,
+) -> Result<Listing, IngestError> {
+    let mut effort = Effort { limits, values_left: MOST_VALUES };
     let file = open(path)?;
     let mut objects = Objects::default();
     walk(&file, "", 0, &mut objects);
@@ -80,10 +109,13 @@ pub(in super::super) fn list(path: &Path, progress: Progress) -> Result<Listing,
     let mut issues: Vec<Issue> = Vec::new();
     let count = objects.datasets.len().max(1);
     for (number, dataset) in objects.datasets.iter().enumerate() {
+        if channels.len() >= MOST_OBJECTS {
+            break;
+        }
         match columns_of(&file, dataset) {
             Some(sources) => {
                 for source in &sources {
-                    channels.push(listed(&file, source, &mut issues));
+                    channels.push(listed(&file, source, &mut effort, &mut issues));
                 }
             }
             None => channels.push(unreadable(&file, dataset)),
@@ -155,7 +187,7 @@ fn unreadable(file: &File, path: &str) -> ListedChannel {
     ListedChannel { encoding, unreadable: Some(reason), ..blank(path, "dataset") }
 }
 
-fn listed(file: &File, source: &str, issues: &mut Vec<Issue>) -> ListedChannel {
+fn listed(file: &File, source: &str, effort: &mut Effort, issues: &mut Vec<Issue>) -> ListedChannel {
     let Ok(column) = dataset::find(file, source) else { return unreadable(file, source) };
     let attributes = Attributes::of(file, &column);
     let kind = if column.index.is_some() { "column" } else { "dataset" };
@@ -164,7 +196,7 @@ fn listed(file: &File, source: &str, issues: &mut Vec<Issue>) -> ListedChannel {
         encoding: storage(&column.dataset),
         ..blank(source, kind)
     };
-    match survey(file, &column, &attributes, &mut channel) {
+    match survey(file, &column, &attributes, effort, &mut channel) {
         Ok(found) => issues.extend(found.into_iter().map(|issue| issue.on(source))),
         Err(fault) => channel.unreadable = Some(fault.problem),
     }
@@ -176,13 +208,14 @@ fn survey(
     file: &File,
     column: &Column,
     attributes: &Attributes,
+    effort: &mut Effort,
     channel: &mut ListedChannel,
 ) -> Result<Vec<Issue>, Fault> {
     channel.sample_rate_hz = attributes.sample_rate_hz;
     channel.unit.clone_from(&attributes.unit);
     channel.start_s = attributes.start_s;
     let mut samples = Samples::F32(vec![0.0; column.len().min(RANGED_SAMPLES)]);
-    if column.len() <= RANGED_SAMPLES {
+    if column.len() <= RANGED_SAMPLES && effort.pays_for(column) {
         samples = attributes.scaled(column.samples()?);
         channel.range = range(&samples);
     }
@@ -197,6 +230,9 @@ fn survey(
         channel.start_s = attributes.start_s.or(duration_s.map(|_| 0.0));
         return Ok(Vec::new());
     };
+    if !effort.pays_for(&time) {
+        return Ok(Vec::new());
+    }
     let times_s = time.times_s()?;
     if times_s.len() != samples.len() {
         return Ok(Vec::new());

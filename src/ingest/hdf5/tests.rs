@@ -34,7 +34,7 @@ fn values(raw: &RawChannel) -> Vec<f64> {
 }
 
 fn told(made: &Made, source: &str) -> String {
-    let error = read(&made.path, &cask_file(&[source]), &|_| {}).unwrap_err();
+    let error = read(&made.path, &cask_file(&[source]), Limits::default(), &|_| {}).unwrap_err();
     let help = miette::Diagnostic::help(&error).map(|help| help.to_string()).unwrap_or_default();
     format!("{error} | {help}")
 }
@@ -61,7 +61,7 @@ fn every_number_type_filter_and_attribute_is_read() {
         group.new_dataset_builder().chunk(1000).lzf().with_data(&packed).create("lzf").map(|_| ())
     });
     let names = ["/daq/i16", "/daq/u8", "daq/i32", "/daq/i64", "/daq/f64", "/daq/gz", "/daq/lzf"];
-    let channels = read(&made.path, &cask_file(&names), &|_| {}).unwrap().channels;
+    let channels = read(&made.path, &cask_file(&names), Limits::default(), &|_| {}).unwrap().channels;
     assert_eq!(values(&channels[0]), [0.0, 1.0, 151.0]);
     assert_eq!((channels[0].unit.as_deref(), channels[1].unit.as_deref()), (Some("g"), Some("m/s^2")));
     let base = &channels[0].uniform;
@@ -99,7 +99,10 @@ fn two_sensors() -> Made {
 #[test]
 fn each_sensor_keeps_its_own_jittering_times() {
     let made = two_sensors();
-    let channels = read(&made.path, &cask_file(&["/fast/acc[1]", "/slow/acc[0]"]), &|_| {}).unwrap().channels;
+    let channels =
+        read(&made.path, &cask_file(&["/fast/acc[1]", "/slow/acc[0]"]), Limits::default(), &|_| {})
+            .unwrap()
+            .channels;
     for (channel, rate_hz, slope) in [(&channels[0], 1000.0, -1.0), (&channels[1], 250.0, 1.0)] {
         // The sine leaves the fitted slope off by less than its amplitude over the record.
         assert!((channel.uniform.sample_rate_hz / rate_hz - 1.0).abs() < 2e-3);
@@ -119,7 +122,7 @@ fn a_column_of_chunks_is_read_whole() {
         number(&data, "sample_rate", 100.0)?;
         data.write_raw(&flat)
     });
-    let channels = read(&made.path, &cask_file(&["/table[2]"]), &|_| {}).unwrap().channels;
+    let channels = read(&made.path, &cask_file(&["/table[2]"]), Limits::default(), &|_| {}).unwrap().channels;
     let expected: Vec<f64> = flat.iter().skip(2).step_by(3).map(|&x| f64::from(x)).collect();
     assert_eq!(values(&channels[0]), expected);
 }
@@ -134,11 +137,11 @@ fn named_times_and_a_declared_rate_are_followed() {
     let mut cask = cask_file(&["/a"]);
     assert!(told(&made, "/a").contains("nothing says when"), "{}", told(&made, "/a"));
     cask.time = Some("clock".into());
-    let channel = &read(&made.path, &cask, &|_| {}).unwrap().channels[0];
+    let channel = &read(&made.path, &cask, Limits::default(), &|_| {}).unwrap().channels[0];
     assert!((channel.uniform.sample_rate_hz - 50.0).abs() < 1e-9);
     cask.time = None;
     cask.channels[0].sample_rate_hz = Some(80.0);
-    let channel = &read(&made.path, &cask, &|_| {}).unwrap().channels[0];
+    let channel = &read(&made.path, &cask, Limits::default(), &|_| {}).unwrap().channels[0];
     assert!((channel.uniform.sample_rate_hz - 80.0).abs() < 1e-9);
 }
 
@@ -193,7 +196,7 @@ fn a_cut_file_is_told_as_such() {
 #[test]
 fn everything_is_listed() {
     let made = two_sensors();
-    let listing = list(&made.path, &|_| {}).unwrap();
+    let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
     assert_eq!((listing.counts["groups"], listing.counts["datasets"]), (2, 4));
     let sources: Vec<&str> = listing.channels.iter().map(|channel| channel.source.as_str()).collect();
     assert_eq!(sources[..4], ["/fast/acc[0]", "/fast/acc[1]", "/fast/acc[2]", "/fast/time_s"]);
@@ -202,4 +205,38 @@ fn everything_is_listed() {
     assert_eq!((fast.range, fast.gaps, fast.start_s), (Some((-1999.0, 0.0)), Some(0), Some(0.0)));
     assert!((fast.sample_rate_hz.unwrap() / 1000.0 - 1.0).abs() < 2e-3);
     assert!(fast.encoding.starts_with("float32, 2000 × 3"), "{}", fast.encoding);
+}
+
+#[test]
+fn a_shape_that_would_fill_the_memory_is_refused_before_it_is_read() {
+    let made = made(|file| {
+        let zeros = vec![0.0_f64; 5_000_000];
+        let dataset = file.new_dataset_builder().deflate(9).chunk(500_000).with_data(&zeros).create("a")?;
+        number(&dataset, "sample_rate_hz", 1e5)
+    });
+    let cask = cask_file(&["/a"]);
+    assert!(read(&made.path, &cask, Limits::default(), &|_| {}).is_ok());
+    // 40 MB of samples, and half of the least memory is 32 MiB.
+    let refused = read(&made.path, &cask, Limits::of_memory(0), &|_| {}).unwrap_err();
+    assert!(matches!(refused, IngestError::TooLarge { .. }), "{refused}");
+    let listing = list(&made.path, Limits::of_memory(0), &|_| {}).unwrap();
+    assert_eq!((listing.channels[0].samples, listing.channels[0].range), (Some(5_000_000), None));
+}
+
+#[test]
+fn groups_in_a_circle_are_listed_to_an_end() {
+    let made = made(|file| {
+        let group = file.create_group("g")?;
+        group.link_hard("/g", "again")?;
+        group.link_hard("/g", "and_again")
+    });
+    assert!(list(&made.path, Limits::default(), &|_| {}).unwrap().counts["groups"] <= 10_000);
+}
+
+#[test]
+fn data_that_lie_elsewhere_are_refused() {
+    let made = made(|file| {
+        file.new_dataset::<f64>().shape(100).external("/etc/hostname", 0, 800).create("a").map(drop)
+    });
+    assert!(told(&made, "/a").contains("/etc/hostname"), "{}", told(&made, "/a"));
 }

@@ -1,6 +1,8 @@
 //! ROS 2 messages in CDR to the wanted fields, by the schema's `ros2msg` text.
 
-use super::plan::{Decode, Leaf, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns};
+use super::plan::{
+    Decode, Leaf, MOST_LEAVES, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns,
+};
 use super::ros_type::{Field, Length, Type};
 use crate::data::Samples;
 use re_cdr::{BigEndian, CdrReader, LittleEndian, numeric::CdrEndian};
@@ -211,6 +213,7 @@ fn in_words(error: re_cdr::Error) -> String {
 pub(super) fn leaves(fields: &[Field]) -> Vec<Leaf> {
     let mut found = Vec::new();
     descend(fields, "", &mut found);
+    found.truncate(MOST_LEAVES);
     found
 }
 

@@ -12,8 +12,7 @@ const FIXED_HEADER_BYTES: u64 = 8 + 8 + 8 + 4 + 4 + 8;
 const FIXED_HEADER_LENGTH: usize = 40;
 /// Longer than any name of a compression ("zstd", "lz4"); a longer one is damage.
 const LONGEST_COMPRESSION_NAME_BYTES: u64 = 64;
-/// A message may be a whole test in one block; zstd shrinks even constant text less than 4096-fold.
-const LARGEST_RECORD_BYTES: u64 = 1 << 30;
+/// zstd shrinks even constant text less than 4096-fold.
 const LARGEST_EXPANSION: u64 = 4096;
 /// A small file may hold a record of this size; it keeps a nonsense length from taking memory.
 const ALWAYS_ALLOWED_BYTES: u64 = 1 << 24;
@@ -27,6 +26,10 @@ pub(super) enum ChunkEnd {
     Whole { compression: String },
     /// The file ends in it.
     Cut { compression: Option<String>, bytes: u64 },
+    /// Whoever takes the records wants no more.
+    Stopped,
+    /// One of its records is larger than any may be.
+    TooLarge,
     /// It does not decompress, or its check sum does not hold.
     Bad { compression: Option<String>, reason: String, span_ns: (u64, u64) },
 }
@@ -36,6 +39,7 @@ impl ChunkEnd {
     pub(super) fn compression(&self) -> Option<&str> {
         match self {
             Self::Whole { compression } => Some(compression),
+            Self::Stopped | Self::TooLarge => None,
             Self::Cut { compression, .. } | Self::Bad { compression, .. } => compression.as_deref(),
         }
     }
@@ -57,20 +61,21 @@ struct Header {
 }
 
 impl Chunks {
-    /// For a file of `file_bytes`.
-    pub(super) fn new(file_bytes: u64) -> Self {
+    /// For a file of `file_bytes` with records of at most `largest_record_bytes`.
+    pub(super) fn new(file_bytes: u64, largest_record_bytes: u64) -> Self {
         let limit = file_bytes.saturating_mul(LARGEST_EXPANSION).saturating_add(ALWAYS_ALLOWED_BYTES);
-        let record_limit = usize::try_from(limit.min(LARGEST_RECORD_BYTES)).unwrap_or(usize::MAX);
+        let record_limit = usize::try_from(limit.min(largest_record_bytes)).unwrap_or(usize::MAX);
         Self { reader: fresh(record_limit), record_limit }
     }
 
-    /// Reads the chunk whose body begins at `file`, claims `claimed` bytes and has `available`; `take` gets each record.
+    /// Reads the chunk whose body begins at `file`, claims `claimed` bytes and has `available`; `take` gets each
+    /// record and says whether it wants more.
     pub(super) fn read(
         &mut self,
         file: &mut impl Read,
         claimed: u64,
         available: u64,
-        take: &mut dyn FnMut(u8, &[u8]),
+        take: &mut dyn FnMut(u8, &[u8]) -> bool,
     ) -> std::io::Result<ChunkEnd> {
         let body = claimed.min(available);
         let is_cut = claimed > available;
@@ -96,8 +101,10 @@ impl Chunks {
         }
         Ok(match fed.problem {
             None => ChunkEnd::Whole { compression: header.compression },
+            Some(Problem::Stopped) => ChunkEnd::Stopped,
+            Some(Problem::TooLarge) => ChunkEnd::TooLarge,
             Some(_) if is_cut => ChunkEnd::Cut { compression: Some(header.compression), bytes: fed_bytes },
-            Some(reason) => bad(Some(header.compression), &reason, header.span_ns),
+            Some(Problem::Damage(reason)) => bad(Some(header.compression), &reason, header.span_ns),
         })
     }
 
@@ -108,7 +115,7 @@ impl Chunks {
         header: &Header,
         bytes: u64,
         is_cut: bool,
-        take: &mut dyn FnMut(u8, &[u8]),
+        take: &mut dyn FnMut(u8, &[u8]) -> bool,
     ) -> std::io::Result<Fed> {
         let mut prefix: &[u8] = &header.with_lengths(bytes, is_cut);
         let (mut left, mut yielded) = (bytes, 0_u64);
@@ -118,10 +125,12 @@ impl Chunks {
                 Some(Ok(LinearReadEvent::ReadRequest(wanted))) => wanted as u64,
                 Some(Ok(LinearReadEvent::Record { opcode, data })) => {
                     yielded += RECORD_HEADER_BYTES + data.len() as u64;
-                    take(opcode, data);
+                    if !take(opcode, data) {
+                        break Some(Problem::Stopped);
+                    }
                     continue;
                 }
-                Some(Err(error)) => break Some(in_words(&error)),
+                Some(Err(error)) => break Some(header.problem(&error)),
             };
             if prefix.is_empty() && left == 0 {
                 let is_complete = !is_cut && yielded == header.uncompressed;
@@ -147,7 +156,7 @@ impl Chunks {
             }
             self.reader.notify_read(usize::try_from(step).unwrap_or(0));
         };
-        let problem = problem.or_else(|| is_cut.then(|| "it is cut".to_owned()));
+        let problem = problem.or_else(|| is_cut.then(|| Problem::Damage("it is cut".to_owned())));
         Ok(Fed { left, is_clean: false, problem })
     }
 }
@@ -158,10 +167,28 @@ struct Fed {
     left: u64,
     /// Whether the reader stands at a record's boundary again.
     is_clean: bool,
-    problem: Option<String>,
+    problem: Option<Problem>,
+}
+
+/// Why a chunk's records end before it does.
+enum Problem {
+    Stopped,
+    TooLarge,
+    Damage(String),
 }
 
 impl Header {
+    /// A length that the chunk could hold is too large, any other is damage.
+    fn problem(&self, error: &McapError) -> Problem {
+        let could_hold = self.uncompressed / LARGEST_EXPANSION <= self.compressed.max(ALWAYS_ALLOWED_BYTES);
+        match error {
+            McapError::RecordTooLarge { len, .. } if could_hold && *len <= self.uncompressed => {
+                Problem::TooLarge
+            }
+            other => Problem::Damage(in_words(other)),
+        }
+    }
+
     /// A chunk record's beginning with its lengths set to the `data` bytes that are there.
     fn with_lengths(&self, data: u64, is_cut: bool) -> Vec<u8> {
         let mut bytes = vec![op::CHUNK];

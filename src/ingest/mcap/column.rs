@@ -36,12 +36,18 @@ struct RawBlock {
     samples: Samples,
 }
 
+/// A number and its time in memory.
+const NUMBER_BYTES: u64 = 16;
+/// A block in memory, without its samples.
+const BLOCK_BYTES: u64 = size_of::<RawBlock>() as u64;
+
 /// How much a column held when a chunk began.
 #[derive(Debug, Clone, Copy, Default)]
 struct Mark {
     numbers: usize,
     blocks: usize,
     tally: Tally,
+    held_bytes: u64,
 }
 
 /// Counts of messages.
@@ -64,6 +70,8 @@ pub(super) struct Column {
     numbers: Samples,
     blocks: Vec<RawBlock>,
     pub(super) tally: Tally,
+    /// Memory of its times and samples.
+    pub(super) held_bytes: u64,
     pub(super) unit: Option<String>,
     /// Why the first malformed message is so.
     pub(super) first_problem: Option<String>,
@@ -79,6 +87,7 @@ impl Default for Column {
             numbers: Samples::F32(Vec::new()),
             blocks: Vec::new(),
             tally: Tally::default(),
+            held_bytes: 0,
             unit: None,
             first_problem: None,
             mark: Mark::default(),
@@ -105,15 +114,19 @@ impl Column {
         match (value, self.is_blocks()) {
             (Value::Number { value, is_narrow }, None | Some(false)) => {
                 self.times_ns.push(time.0);
+                self.held_bytes += NUMBER_BYTES;
                 push(&mut self.numbers, value, is_narrow);
             }
             (Value::Number { value, .. }, Some(true)) => {
+                self.held_bytes += BLOCK_BYTES + NUMBER_BYTES;
                 self.blocks.push(RawBlock { time_ns: time.0, rate_hz, samples: Samples::F64(vec![value]) });
             }
             (Value::Array(samples), None | Some(true)) => {
                 if samples.is_empty() {
                     return;
                 }
+                let width_bytes = if matches!(samples, Samples::F32(_)) { 4 } else { 8 };
+                self.held_bytes += BLOCK_BYTES + width_bytes * samples.len() as u64;
                 self.blocks.push(RawBlock { time_ns: time.0, rate_hz, samples });
             }
             (Value::Array(_), Some(false)) => {
@@ -142,7 +155,12 @@ impl Column {
 
     /// What follows may be taken back.
     pub(super) fn mark(&mut self) {
-        self.mark = Mark { numbers: self.times_ns.len(), blocks: self.blocks.len(), tally: self.tally };
+        self.mark = Mark {
+            numbers: self.times_ns.len(),
+            blocks: self.blocks.len(),
+            tally: self.tally,
+            held_bytes: self.held_bytes,
+        };
     }
 
     /// Takes back everything since the last mark.
@@ -154,6 +172,7 @@ impl Column {
         }
         self.blocks.truncate(self.mark.blocks);
         self.tally = self.mark.tally;
+        self.held_bytes = self.mark.held_bytes;
     }
 
     /// Takes a single stamp of zero for a time where the other stamps show a clock that counts from its own start.

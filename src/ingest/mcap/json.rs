@@ -1,6 +1,8 @@
 //! JSON messages to the wanted fields, straight from the text: samples never become a tree of values.
 
-use super::plan::{Decode, Leaf, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns};
+use super::plan::{
+    Decode, Leaf, MOST_LEAVES, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns,
+};
 use crate::data::Samples;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use std::borrow::Cow;
@@ -306,12 +308,16 @@ pub(super) fn leaves(message: &[u8]) -> Vec<Leaf> {
     });
     let mut found = Vec::new();
     if let Some(value) = value {
+        // Beyond the limit the rest stays unlisted.
         descend(&value, "", DEEPEST, &mut found);
     }
     found
 }
 
 fn descend(value: &serde_json::Value, path: &str, depth: usize, found: &mut Vec<Leaf>) {
+    if found.len() >= MOST_LEAVES {
+        return;
+    }
     match value {
         serde_json::Value::Number(_) if !path.is_empty() => {
             found.push(Leaf { path: path.to_owned(), is_array: false });

@@ -9,8 +9,8 @@ use super::running::{MOST_SEGMENTS, Running, Segment};
 use super::scan::scan;
 use super::scanned::{ChannelInfo, Scanned, Sink};
 use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Severity};
-use crate::ingest::Progress;
 use crate::ingest::error::{self, IngestError};
+use crate::ingest::{Limits, Progress};
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
@@ -18,10 +18,14 @@ use std::path::Path;
 ///
 /// # Errors
 /// Only where the file cannot be read at all.
-pub(in crate::ingest) fn list(path: &Path, progress: Progress) -> Result<Listing, IngestError> {
+pub(in crate::ingest) fn list(
+    path: &Path,
+    limits: Limits,
+    progress: Progress,
+) -> Result<Listing, IngestError> {
     let bytes = std::fs::metadata(path).map_err(|source| error::io(path, source))?.len();
-    let mut walk = ListWalk::default();
-    let scanned = scan(path, &mut walk, progress)?;
+    let mut walk = ListWalk::new(limits);
+    let scanned = scan(path, limits, &mut walk, progress)?;
     let ListWalk { topics, slots, .. } = &mut walk;
     for topic in topics {
         topic.release(slots);
@@ -72,8 +76,11 @@ struct Topic {
     messages: u64,
     malformed: u64,
     first_problem: Option<String>,
-    /// Messages and malformed ones when a chunk began.
+    /// Messages and malformed ones when the chunk began that was the last to hold a message of it.
     mark: (u64, u64),
+    marked_chunk: u64,
+    /// Blocks that are remembered, or were in a rejected chunk.
+    blocks: u64,
     /// Whether its stamps count from their own start, so that zero is a time; unknown before the second message.
     is_own_clock: Option<bool>,
     /// The first message and its log time, where its stamp is zero, until the second tells what that means.
@@ -89,11 +96,19 @@ struct Field {
     mark: (Running, usize),
 }
 
-#[derive(Default)]
-struct ListWalk {
+pub(super) struct ListWalk {
     topics: Vec<Topic>,
     by_id: HashMap<u16, usize>,
+    /// By name and encoding.
+    by_name: HashMap<(String, String), usize>,
     slots: Slots,
+    /// The longest JSON message that is taken apart.
+    longest_json_bytes: u64,
+    /// Chunks begun.
+    chunk: u64,
+    /// Topics with a message in this chunk.
+    touched: Vec<usize>,
+    held_bytes: u64,
 }
 
 impl Sink for ListWalk {
@@ -103,8 +118,8 @@ impl Sink for ListWalk {
             Some(schema) if !schema.name.is_empty() => format!("{} ({})", info.message_encoding, schema.name),
             _ => info.message_encoding.to_owned(),
         };
-        let same = |topic: &Topic| topic.name == info.topic && topic.encoding == encoding;
-        let index = self.topics.iter().position(same).unwrap_or_else(|| {
+        let same = (info.topic.to_owned(), encoding.clone());
+        let index = self.by_name.get(&same).copied().unwrap_or_else(|| {
             let mut topic = Topic {
                 name: info.topic.to_owned(),
                 encoding: encoding.clone(),
@@ -117,36 +132,47 @@ impl Sink for ListWalk {
                 malformed: 0,
                 first_problem: None,
                 mark: (0, 0),
+                marked_chunk: 0,
+                blocks: 0,
                 is_own_clock: None,
                 held: None,
             };
             if let Some(leaves) = topic.message_type.as_ref().ok().and_then(MessageType::leaves) {
                 topic.prepare(leaves);
             }
+            self.held_bytes += topic.held_bytes();
             self.topics.push(topic);
+            self.by_name.insert(same, self.topics.len() - 1);
             self.topics.len() - 1
         });
         self.by_id.insert(id, index);
     }
 
     fn message(&mut self, id: u16, log_time_ns: i64, data: &[u8]) {
-        let topic = self.by_id.get(&id).and_then(|&index| self.topics.get_mut(index));
-        if let Some(topic) = topic {
-            topic.message(log_time_ns, data, &mut self.slots);
+        let Some(&index) = self.by_id.get(&id) else { return };
+        let Some(topic) = self.topics.get_mut(index) else { return };
+        if topic.marked_chunk != self.chunk {
+            topic.set_mark(self.chunk);
+            self.touched.push(index);
         }
+        let before = topic.held_bytes();
+        topic.message(log_time_ns, data, &mut self.slots, self.longest_json_bytes);
+        self.held_bytes = (self.held_bytes + topic.held_bytes()).saturating_sub(before);
     }
 
     fn chunk_begins(&mut self) {
-        for topic in &mut self.topics {
-            topic.mark = (topic.messages, topic.malformed);
-            for field in &mut topic.fields {
-                field.mark = (field.running, field.segments.len());
-            }
-        }
+        // A topic is marked with its first message: there may be many topics, and many chunks of a message each.
+        self.chunk += 1;
+        self.touched.clear();
+    }
+
+    fn held_bytes(&self) -> u64 {
+        self.held_bytes
     }
 
     fn chunk_rejected(&mut self) {
-        for topic in &mut self.topics {
+        for index in std::mem::take(&mut self.touched) {
+            let Some(topic) = self.topics.get_mut(index) else { continue };
             (topic.messages, topic.malformed) = topic.mark;
             if topic.messages == 0 {
                 (topic.is_own_clock, topic.held) = (None, None);
@@ -160,6 +186,20 @@ impl Sink for ListWalk {
 }
 
 impl Topic {
+    /// Memory that grows with the file.
+    fn held_bytes(&self) -> u64 {
+        let message = self.held.as_ref().map_or(0, |(_, data)| data.len());
+        (message + self.fields.len() * size_of::<Field>()) as u64 + self.blocks * size_of::<Segment>() as u64
+    }
+
+    fn set_mark(&mut self, chunk: u64) {
+        self.marked_chunk = chunk;
+        self.mark = (self.messages, self.malformed);
+        for field in &mut self.fields {
+            field.mark = (field.running, field.segments.len());
+        }
+    }
+
     fn prepare(&mut self, leaves: Vec<Leaf>) {
         let signals: Vec<(Leaf, FieldPath)> = leaves
             .into_iter()
@@ -181,9 +221,16 @@ impl Topic {
             .collect();
     }
 
-    fn message(&mut self, log_time_ns: i64, data: &[u8], slots: &mut Slots) {
+    fn message(&mut self, log_time_ns: i64, data: &[u8], slots: &mut Slots, longest_json_bytes: u64) {
         self.messages += 1;
         if self.decoder.is_none() && matches!(self.message_type, Ok(MessageType::Json)) {
+            if data.len() as u64 > longest_json_bytes {
+                self.message_type = Err(format!(
+                    "its fields were not looked for: a message takes {} MiB; allow more with --max-memory",
+                    data.len() >> 20
+                ));
+                return;
+            }
             let leaves = json::leaves(data);
             if !leaves.is_empty() {
                 self.prepare(leaves);
@@ -242,6 +289,7 @@ impl Topic {
                 Value::Array(samples) if !samples.is_empty() => {
                     field.running.block(time_ns, &samples);
                     if field.segments.len() < MOST_SEGMENTS {
+                        self.blocks += 1;
                         field.segments.push(Segment {
                             start_ns: time_ns,
                             count: samples.len() as u64,
@@ -315,6 +363,21 @@ impl Field {
 }
 
 impl ListWalk {
+    pub(super) fn new(limits: Limits) -> Self {
+        /// A tree of JSON values takes up to so many times its text: two letters become 32 bytes.
+        const TREE_BYTES: u64 = 32;
+        Self {
+            topics: Vec::new(),
+            by_id: HashMap::new(),
+            by_name: HashMap::new(),
+            slots: Slots::default(),
+            longest_json_bytes: limits.part_bytes() / TREE_BYTES,
+            chunk: 0,
+            touched: Vec::new(),
+            held_bytes: 0,
+        }
+    }
+
     /// The earliest sample of all, ns since 1970.
     fn zero_ns(&self) -> Option<i64> {
         self.topics.iter().flat_map(|topic| &topic.fields).filter_map(|field| field.running.first_ns()).min()

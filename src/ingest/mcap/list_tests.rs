@@ -11,7 +11,7 @@ fn listing(bytes: &[u8]) -> Listing {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("recording");
     std::fs::write(&path, bytes).unwrap();
-    list(&path, &|_| ()).unwrap()
+    list(&path, Limits::default(), &|_| ()).unwrap()
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! A channel's record and schema to the type of its messages: which fields they have and how to decode them.
 
 use super::cdr::{self, Cdr};
+use super::descriptors;
 use super::json::Json;
 use super::plan::{Decode, Leaf, Plan};
 use super::protobuf::{self, Protobuf};
@@ -31,7 +32,7 @@ impl MessageType {
         match (info.message_encoding, info.schema) {
             ("json", _) => Ok(Self::Json),
             ("protobuf", Some(schema)) if schema.encoding == "protobuf" => {
-                protobuf::message_type(&schema.name, &schema.data).map(Self::Protobuf)
+                descriptors::message_type(&schema.name, &schema.data).map(Self::Protobuf)
             }
             ("cdr", Some(schema)) if schema.encoding == "ros2msg" => {
                 ros_type::parse(&schema.name, &String::from_utf8_lossy(&schema.data)).map(Self::Cdr)

@@ -4,6 +4,7 @@ mod cdr;
 mod chunk;
 mod column;
 mod complaint;
+mod descriptors;
 mod json;
 mod list;
 mod message_type;
@@ -21,5 +22,7 @@ mod wire;
 pub(super) use list::list;
 pub(super) use read::read;
 
+#[cfg(test)]
+mod fuzz_tests;
 #[cfg(test)]
 pub(super) mod written;

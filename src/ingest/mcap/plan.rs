@@ -229,6 +229,9 @@ pub(super) fn unix_ns(seconds: i64, nanoseconds: i64) -> i64 {
     seconds.saturating_mul(1_000_000_000).saturating_add(nanoseconds)
 }
 
+/// A message with more numeric fields is no recording of sensors; each is looked for in every message.
+pub(super) const MOST_LEAVES: usize = 2000;
+
 /// A field that a message type has.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Leaf {

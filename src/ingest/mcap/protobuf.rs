@@ -1,42 +1,38 @@
 //! Protobuf messages to the wanted fields, by the schema's own descriptor set and straight from the wire.
 
-use super::plan::{Decode, Leaf, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns};
+use super::plan::{
+    Decode, Leaf, MOST_LEAVES, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns,
+};
 use super::wire::{Item, Wire};
 use crate::data::Samples;
-use prost_reflect::{DescriptorPool, FieldDescriptor, Kind, MessageDescriptor};
+use prost_reflect::{FieldDescriptor, Kind, MessageDescriptor};
 
 /// Messages nested deeper than this (or in themselves) hold no signal that a person would name by a path.
 const DEEPEST: usize = 8;
-
-/// The message type that `schema_name` names in a serialised descriptor set.
-///
-/// # Errors
-/// Why there is none.
-pub(super) fn message_type(schema_name: &str, descriptor_set: &[u8]) -> Result<MessageDescriptor, String> {
-    let pool = DescriptorPool::decode(descriptor_set).map_err(|error| {
-        format!("its schema {schema_name:?} holds no descriptor set that can be used: {error}")
-    })?;
-    pool.get_message_by_name(schema_name.trim_start_matches('.'))
-        .ok_or_else(|| format!("its schema's descriptor set holds no message {schema_name:?}"))
-}
+/// So many fields of a type are looked at: types that hold themselves several times multiply at each level.
+const MOST_VISITED: usize = 20_000;
 
 /// The numeric fields of a message type.
 pub(super) fn leaves(message: &MessageDescriptor) -> Vec<Leaf> {
     let mut found = Vec::new();
-    descend(message, "", DEEPEST, &mut found);
+    let mut left = MOST_VISITED;
+    descend(message, "", DEEPEST, &mut left, &mut found);
+    found.truncate(MOST_LEAVES);
     found
 }
 
-fn descend(message: &MessageDescriptor, path: &str, depth: usize, found: &mut Vec<Leaf>) {
+fn descend(message: &MessageDescriptor, path: &str, depth: usize, left: &mut usize, found: &mut Vec<Leaf>) {
     if depth == 0 || is_time(message) {
         return;
     }
     for field in message.fields() {
+        let Some(fewer) = left.checked_sub(1) else { return };
+        *left = fewer;
         let below =
             if path.is_empty() { field.name().to_owned() } else { format!("{path}.{}", field.name()) };
         match field.kind() {
             Kind::Message(inner) if !field.is_list() && !field.is_map() => {
-                descend(&inner, &below, depth - 1, found);
+                descend(&inner, &below, depth - 1, left, found);
             }
             kind if is_number(&kind) && !field.is_map() => {
                 found.push(Leaf { path: below, is_array: field.is_list() });

@@ -1,8 +1,14 @@
 //! Tests of the protobuf decoder against messages that the reflection library encodes.
 
 use super::*;
+use crate::ingest::mcap::descriptors::message_type;
 use crate::ingest::mcap::path::FieldPath;
 use crate::ingest::mcap::written::{ZERO_NS, block_descriptors, protobuf_block};
+use prost_reflect::prost::Message as _;
+use prost_reflect::prost_types::field_descriptor_proto::Type;
+use prost_reflect::prost_types::{
+    DescriptorProto, FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet,
+};
 
 fn decoded(
     is_packed: bool,
@@ -74,4 +80,35 @@ fn leaves_stop_at_times_and_at_messages_within_themselves() {
     assert!(!paths.iter().any(|path| path.contains("seconds")), "{paths:?}");
     assert!(message_type("dropcheck.Other", &block_descriptors(true)).unwrap_err().contains("Other"));
     assert!(message_type("x", b"\xff\xff").is_err());
+}
+
+#[test]
+fn a_type_that_holds_itself_many_times_is_listed_to_an_end() {
+    let fields = (1..=100).map(|number| FieldDescriptorProto {
+        name: Some(format!("again{number}")),
+        number: Some(number),
+        r#type: Some(Type::Message.into()),
+        type_name: Some(".T".into()),
+        ..FieldDescriptorProto::default()
+    });
+    let level = FieldDescriptorProto {
+        name: Some("level".into()),
+        number: Some(101),
+        r#type: Some(Type::Double.into()),
+        ..FieldDescriptorProto::default()
+    };
+    let kind = DescriptorProto {
+        name: Some("T".into()),
+        field: fields.chain([level]).collect(),
+        ..DescriptorProto::default()
+    };
+    let file = FileDescriptorProto {
+        name: Some("t.proto".into()),
+        message_type: vec![kind],
+        ..FileDescriptorProto::default()
+    };
+    let set = FileDescriptorSet { file: vec![file] }.encode_to_vec();
+    // A hundred to the eighth power without the limit.
+    let found = leaves(&message_type("T", &set).unwrap());
+    assert!(!found.is_empty() && found.len() <= crate::ingest::mcap::plan::MOST_LEAVES);
 }

@@ -9,8 +9,8 @@ use super::scanned::{ChannelInfo, Scanned, Sink};
 use super::{complaint, json};
 use crate::data::{CaskFile, ChannelSpec, Issue, IssueCode, Severity};
 use crate::ingest::error::IngestError;
-use crate::ingest::{Progress, RawChannel, RawRecording};
-use std::collections::HashMap;
+use crate::ingest::{Limits, Progress, RawChannel, RawRecording};
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// Reads the channels that `cask_file` names.
@@ -20,10 +20,11 @@ use std::path::Path;
 pub(in crate::ingest) fn read(
     path: &Path,
     cask_file: &CaskFile,
+    limits: Limits,
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
     let mut reading = Reading::new(&cask_file.channels);
-    let scanned = scan(path, &mut reading, progress)?;
+    let scanned = scan(path, limits, &mut reading, progress)?;
     reading.finish(path, &scanned)
 }
 
@@ -52,6 +53,7 @@ pub(super) struct Reading<'a> {
     specs: &'a [ChannelSpec],
     /// All topics of the file.
     pub(super) topics: Vec<String>,
+    known_topics: HashSet<String>,
     pub(super) wanted: Vec<Wanted>,
     decodings: HashMap<u16, Decoding>,
     slots: Slots,
@@ -59,7 +61,7 @@ pub(super) struct Reading<'a> {
 
 impl Sink for Reading<'_> {
     fn channel(&mut self, id: u16, info: &ChannelInfo) {
-        if !self.topics.iter().any(|topic| topic == info.topic) {
+        if self.known_topics.insert(info.topic.to_owned()) {
             self.topics.push(info.topic.to_owned());
         }
         let mut fields: Vec<FieldPath> =
@@ -136,13 +138,18 @@ impl Sink for Reading<'_> {
     fn chunk_rejected(&mut self) {
         self.wanted.iter_mut().for_each(|wanted| wanted.column.roll_back());
     }
+
+    fn held_bytes(&self) -> u64 {
+        self.wanted.iter().map(|wanted| wanted.column.held_bytes).sum()
+    }
 }
 
 impl<'a> Reading<'a> {
-    fn new(specs: &'a [ChannelSpec]) -> Self {
+    pub(super) fn new(specs: &'a [ChannelSpec]) -> Self {
         Self {
             specs,
             topics: Vec::new(),
+            known_topics: HashSet::new(),
             wanted: Vec::new(),
             decodings: HashMap::new(),
             slots: Slots::default(),
@@ -176,7 +183,7 @@ impl<'a> Reading<'a> {
             })
     }
 
-    fn finish(mut self, path: &Path, scanned: &Scanned) -> Result<RawRecording, IngestError> {
+    pub(super) fn finish(mut self, path: &Path, scanned: &Scanned) -> Result<RawRecording, IngestError> {
         self.wanted.iter_mut().for_each(|wanted| wanted.column.settle_clock());
         let mut chosen = Vec::with_capacity(self.specs.len());
         for spec in self.specs {

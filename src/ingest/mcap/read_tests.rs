@@ -14,7 +14,7 @@ fn read_bytes(bytes: &[u8], cask_file: &CaskFile) -> Result<RawRecording, String
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("recording");
     std::fs::write(&path, bytes).unwrap();
-    read(&path, cask_file, &|_| ()).map_err(|error| {
+    read(&path, cask_file, Limits::default(), &|_| ()).map_err(|error| {
         format!(
             "{error} | {}",
             miette::Diagnostic::help(&error).map(|help| help.to_string()).unwrap_or_default()

@@ -3,11 +3,11 @@
 use super::chunk::{ChunkEnd, Chunks};
 use super::scanned::{Catalog, Counts, Loss, Scanned, Sink};
 use super::summary::{self, Summary};
-use crate::ingest::Progress;
 use crate::ingest::error::{self, IngestError};
+use crate::ingest::{Limits, Progress};
 use mcap::records::{Record, op};
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
 /// A record begins with its opcode (1 byte) and its length (8 bytes).
@@ -20,31 +20,56 @@ const READ_BUFFER_BYTES: usize = 1 << 18;
 /// Reads the file at `path` from start to end and hands over what stands in it; memory stays at one record or chunk.
 ///
 /// # Errors
-/// Only where the file cannot be read at all; damage and truncation are in the answer.
-pub(super) fn scan(path: &Path, sink: &mut dyn Sink, progress: Progress) -> Result<Scanned, IngestError> {
-    let mut file = File::open(path).map_err(|source| error::io(path, source))?;
+/// Only where the file cannot be read at all, or passes a limit; damage and truncation are in the answer.
+pub(super) fn scan(
+    path: &Path,
+    limits: Limits,
+    sink: &mut dyn Sink,
+    progress: Progress,
+) -> Result<Scanned, IngestError> {
+    let file = File::open(path).map_err(|source| error::io(path, source))?;
     let length = file.metadata().map_err(|source| error::io(path, source))?.len();
-    let summary = summary::read(&mut file, length).map_err(|source| error::io(path, source))?;
+    let scanned = scan_in(file, length, limits, sink, progress).map_err(|source| error::io(path, source))?;
+    match scanned.over {
+        Some((what, limit_bytes)) => Err(limits.refusal(path, what, limit_bytes)),
+        None => Ok(scanned),
+    }
+}
+
+/// The same of a source of `length` bytes.
+pub(super) fn scan_in(
+    mut file: impl Read + Seek,
+    length: u64,
+    limits: Limits,
+    sink: &mut dyn Sink,
+    progress: Progress,
+) -> std::io::Result<Scanned> {
+    let summary = summary::read(&mut file, length, limits.part_bytes())?;
     let mut walk = Walk {
         file: BufReader::with_capacity(READ_BUFFER_BYTES, file),
         at: mcap::MAGIC.len() as u64,
         length,
-        chunks: Chunks::new(length),
+        limits,
+        unpacked_bytes: 0,
+        chunks: Chunks::new(length, limits.part_bytes()),
         catalog: Catalog::default(),
         scanned: Scanned::default(),
         summary,
         body: Vec::new(),
     };
     walk.register_summary(sink);
-    walk.run(sink, progress).map_err(|source| error::io(path, source))?;
+    walk.run(sink, progress)?;
     Ok(walk.finish())
 }
 
 /// Where the walk through the file stands.
-struct Walk {
+struct Walk<File> {
     file: BufReader<File>,
     at: u64,
     length: u64,
+    limits: Limits,
+    /// Bytes that the chunks have unpacked to.
+    unpacked_bytes: u64,
     chunks: Chunks,
     catalog: Catalog,
     scanned: Scanned,
@@ -60,7 +85,7 @@ enum Next {
     Stop,
 }
 
-impl Walk {
+impl<File: Read + Seek> Walk<File> {
     fn register_summary(&mut self, sink: &mut dyn Sink) {
         let records =
             self.summary.as_mut().map(|summary| std::mem::take(&mut summary.records)).unwrap_or_default();
@@ -76,12 +101,29 @@ impl Walk {
             if self.record(sink)? == Next::Stop {
                 return Ok(());
             }
+            if self.scanned.over.is_none() {
+                self.scanned.over = self.passed_limit(sink);
+            }
+            if self.scanned.over.is_some() {
+                return Ok(());
+            }
             if self.at - said_at >= READ_BUFFER_BYTES as u64 {
                 said_at = self.at;
                 #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
                 progress(self.at as f64 / self.length as f64);
             }
         }
+    }
+
+    /// The limit that what was read so far has passed: words and bytes.
+    fn passed_limit(&self, sink: &dyn Sink) -> Option<(&'static str, u64)> {
+        let limits = self.limits;
+        let passed = [
+            ("the samples of the channels read take", sink.held_bytes(), limits.samples_bytes()),
+            ("its schemas and topics take", self.catalog.held_bytes(), limits.part_bytes()),
+            ("its chunks unpack to", self.unpacked_bytes, limits.unpacked_bytes(self.length)),
+        ];
+        passed.into_iter().find(|(_, bytes, limit)| bytes > limit).map(|(what, _, limit)| (what, limit))
     }
 
     /// One record at the file's level.
@@ -123,6 +165,10 @@ impl Walk {
             self.file.seek_relative(length.cast_signed())?;
             return Ok(Next::Go);
         }
+        if length > self.limits.part_bytes() {
+            self.scanned.over = Some(("one of its messages takes", self.limits.part_bytes()));
+            return Ok(Next::Stop);
+        }
         self.body.clear();
         (&mut self.file).take(length).read_to_end(&mut self.body)?;
         if opcode == op::FOOTER {
@@ -138,22 +184,30 @@ impl Walk {
         let start = self.at;
         let before = self.scanned.counts;
         sink.chunk_begins();
-        let mut messages = 0;
-        let (catalog, scanned) = (&mut self.catalog, &mut self.scanned);
+        let (mut messages, mut unpacked) = (0, self.unpacked_bytes);
+        let (catalog, scanned, limits) = (&mut self.catalog, &mut self.scanned, self.limits);
+        let most_unpacked = limits.unpacked_bytes(self.length);
         scanned.counts.add(op::CHUNK);
         let end = self.chunks.read(&mut self.file, claimed, available, &mut |opcode, body| {
+            unpacked += RECORD_HEADER_BYTES + body.len() as u64;
             scanned.counts.add(opcode);
             messages += u64::from(opcode == op::MESSAGE);
             if !catalog.take(opcode, body, sink, scanned) {
                 scanned.losses.push(Loss::BadRecord { at: start, opcode });
             }
+            unpacked <= most_unpacked && sink.held_bytes() <= limits.samples_bytes()
         })?;
+        self.unpacked_bytes = unpacked;
         if let Some(compression) = end.compression() {
             scanned.compressions.insert(compression.to_owned());
         }
         self.at = start + RECORD_HEADER_BYTES + claimed.min(available);
         match end {
-            ChunkEnd::Whole { .. } => Ok(Next::Go),
+            ChunkEnd::Whole { .. } | ChunkEnd::Stopped => Ok(Next::Go),
+            ChunkEnd::TooLarge => {
+                self.scanned.over = Some(("one of its messages takes", self.limits.part_bytes()));
+                Ok(Next::Stop)
+            }
             ChunkEnd::Cut { bytes, .. } => {
                 self.scanned.losses.push(Loss::CutChunk {
                     at: start,

@@ -31,6 +31,10 @@ pub(super) trait Sink {
     fn chunk_begins(&mut self);
     /// Everything since [`Sink::chunk_begins`] is taken back: the chunk is damaged.
     fn chunk_rejected(&mut self);
+    /// Memory that the samples taken so far hold.
+    fn held_bytes(&self) -> u64 {
+        0
+    }
 }
 
 /// How many of what the container holds.
@@ -83,7 +87,41 @@ pub(super) struct Scanned {
     pub(super) is_closed: bool,
     /// Number of messages that the file's own statistics claim.
     pub(super) claimed_messages: Option<u64>,
-    pub(super) losses: Vec<Loss>,
+    pub(super) losses: Losses,
+    /// The limit that the file passes: words and bytes.
+    pub(super) over: Option<(&'static str, u64)>,
+}
+
+/// So many places of damage are told one by one, the rest as a count: a damaged gigabyte may hold millions.
+const MOST_LOSSES: usize = 20;
+
+/// What could not be read, in the order of the file.
+#[derive(Debug, Default)]
+pub(super) struct Losses {
+    first: Vec<Loss>,
+    /// Those that no longer fit in `first`.
+    more: u64,
+    bad_records: u64,
+    first_bad_record: Option<(u64, u8)>,
+}
+
+impl Losses {
+    /// Takes one more.
+    pub(super) fn push(&mut self, loss: Loss) {
+        match loss {
+            Loss::BadRecord { at, opcode } => {
+                self.bad_records += 1;
+                self.first_bad_record.get_or_insert((at, opcode));
+            }
+            // How the file ends is told in any case.
+            Loss::BadChunk { .. } | Loss::Garbage { .. } if self.first.len() >= MOST_LOSSES => self.more += 1,
+            other => self.first.push(other),
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.first.is_empty() && self.bad_records == 0
+    }
 }
 
 /// The schemas and channels met so far; the first of an id stands.
@@ -91,6 +129,7 @@ pub(super) struct Scanned {
 pub(super) struct Catalog {
     schemas: HashMap<u16, SchemaInfo>,
     channels: HashSet<u16>,
+    held_bytes: u64,
 }
 
 impl Catalog {
@@ -112,6 +151,9 @@ impl Catalog {
                 true
             }
             Some(Record::Schema { header, data }) => {
+                if !self.schemas.contains_key(&header.id) {
+                    self.held_bytes += body.len() as u64;
+                }
                 self.schemas.entry(header.id).or_insert_with(|| SchemaInfo {
                     name: header.name,
                     encoding: header.encoding,
@@ -121,6 +163,7 @@ impl Catalog {
             }
             Some(Record::Channel(channel)) => {
                 if self.channels.insert(channel.id) {
+                    self.held_bytes += body.len() as u64;
                     let info = ChannelInfo {
                         topic: &channel.topic,
                         message_encoding: &channel.message_encoding,
@@ -155,6 +198,11 @@ impl Catalog {
         }
     }
 
+    /// Bytes of the records that it keeps.
+    pub(super) fn held_bytes(&self) -> u64 {
+        self.held_bytes
+    }
+
     pub(super) fn schema_count(&self) -> u64 {
         self.schemas.len() as u64
     }
@@ -184,11 +232,16 @@ pub(super) enum Loss {
 impl Scanned {
     /// The losses as issues, the bad records and bad chunks summed up; without times.
     pub(super) fn issues(&self) -> Vec<Issue> {
-        let mut issues: Vec<Issue> = self.losses.iter().filter_map(Loss::issue).collect();
-        let bad_records = self.losses.iter().filter(|loss| matches!(loss, Loss::BadRecord { .. })).count();
-        if let (1.., Some(Loss::BadRecord { at, opcode })) =
-            (bad_records, self.losses.iter().find(|loss| matches!(loss, Loss::BadRecord { .. })))
-        {
+        let Losses { first, more, bad_records, first_bad_record } = &self.losses;
+        let mut issues: Vec<Issue> = first.iter().filter_map(Loss::issue).collect();
+        if *more > 0 {
+            issues.push(Issue::new(
+                IssueCode::Damaged,
+                Severity::Warning,
+                format!("{more} more places of the file are damaged and were left out"),
+            ));
+        }
+        if let Some((at, opcode)) = first_bad_record {
             issues.push(Issue::new(
                 IssueCode::Damaged,
                 Severity::Warning,

@@ -2,7 +2,6 @@
 
 use super::scan::{RECORD_HEADER_BYTES, RECORD_HEADER_LENGTH};
 use mcap::records::{Record, op};
-use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 
 /// Footer: opcode and length, two offsets and a check sum, then the magic.
@@ -20,12 +19,17 @@ pub(super) struct Summary {
 impl Summary {
     /// The first chunk that begins after byte `at`.
     pub(super) fn next_chunk(&self, at: u64) -> Option<u64> {
-        self.chunk_starts.iter().copied().find(|&start| start > at)
+        self.chunk_starts.get(self.chunk_starts.partition_point(|&start| start <= at)).copied()
     }
 }
 
 /// The summary of `file`, empty where it is closed without one, `None` where it is not closed; the file is left at its start.
-pub(super) fn read(file: &mut File, length: u64) -> std::io::Result<Option<Summary>> {
+/// Schemas and channels beyond `most_bytes` are left to the walk.
+pub(super) fn read(
+    file: &mut (impl Read + Seek),
+    length: u64,
+    most_bytes: u64,
+) -> std::io::Result<Option<Summary>> {
     let magic_bytes = mcap::MAGIC.len() as u64;
     let mut summary = None;
     if length >= magic_bytes + FOOTER_BYTES {
@@ -39,7 +43,7 @@ pub(super) fn read(file: &mut File, length: u64) -> std::io::Result<Option<Summa
     let found = match summary {
         None => None,
         Some(None) => Some(Summary::default()),
-        Some(Some((start, end))) => Some(section(file, start, end)?),
+        Some(Some((start, end))) => Some(section(file, start, end, most_bytes)?),
     };
     file.seek(SeekFrom::Start(0))?;
     Ok(found)
@@ -52,10 +56,11 @@ fn summary_start(footer: &[u8]) -> Option<u64> {
 }
 
 /// The records of the section `start..end`; what does not parse ends it.
-fn section(file: &mut File, start: u64, end: u64) -> std::io::Result<Summary> {
+fn section(file: &mut (impl Read + Seek), start: u64, end: u64, most_bytes: u64) -> std::io::Result<Summary> {
     file.seek(SeekFrom::Start(start))?;
-    let mut reader = std::io::BufReader::new(&*file).take(end - start);
+    let mut reader = std::io::BufReader::new(&mut *file).take(end - start);
     let mut summary = Summary::default();
+    let mut held_bytes = 0;
     loop {
         let mut header = [0; RECORD_HEADER_LENGTH];
         if reader.limit() < RECORD_HEADER_BYTES || reader.read_exact(&mut header).is_err() {
@@ -63,7 +68,8 @@ fn section(file: &mut File, start: u64, end: u64) -> std::io::Result<Summary> {
         }
         let [opcode, length @ ..] = header;
         let length = u64::from_le_bytes(length);
-        if length > reader.limit() {
+        held_bytes += length;
+        if length > reader.limit() || held_bytes > most_bytes {
             break;
         }
         let mut body = Vec::new();

@@ -41,8 +41,8 @@ pub(super) fn places(recording: &SyntheticRecording, format: SyntheticFormat) ->
 fn unused(name: &str, taken: &[String]) -> String {
     let mut name: String =
         name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' }).collect();
-    // A bare number would count columns.
-    if name.bytes().all(|b| b.is_ascii_digit()) {
+    // A bare number would count columns, and a spreadsheet would compute with a minus in front.
+    if name.bytes().all(|b| b.is_ascii_digit()) || name.starts_with('-') {
         name.insert(0, 'A');
     }
     while taken.contains(&name.to_lowercase()) {

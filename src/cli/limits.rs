@@ -1,0 +1,65 @@
+//! `--max-memory`: a size as a person writes it to the limits within which a recording is read.
+
+use clap::Args;
+use dropcheck::ingest::{LEAST_MEMORY_BYTES, Limits};
+
+/// How much memory reading may take.
+#[derive(Args)]
+pub struct Bounds {
+    /// Memory that reading may take; every size that a file claims is held against it [default: 4GiB]
+    #[arg(long, value_name = "SIZE", value_parser = limits)]
+    max_memory: Option<Limits>,
+}
+
+impl Bounds {
+    /// The limits asked for, else the usual ones.
+    pub fn limits(&self) -> Limits {
+        self.max_memory.unwrap_or_default()
+    }
+}
+
+/// Limits from "2GB", "1.5 GiB", "500MB"; thousands and 1024 by the unit's own definition.
+fn limits(text: &str) -> Result<Limits, String> {
+    const UNITS: [(&str, f64); 9] = [
+        ("kib", 1024.0),
+        ("mib", 1_048_576.0),
+        ("gib", 1_073_741_824.0),
+        ("tib", 1_099_511_627_776.0),
+        ("kb", 1e3),
+        ("mb", 1e6),
+        ("gb", 1e9),
+        ("tb", 1e12),
+        ("b", 1.0),
+    ];
+    let lower = text.trim().to_lowercase().replace(',', ".");
+    let (number, factor) = UNITS
+        .iter()
+        .find_map(|(unit, factor)| lower.strip_suffix(unit).map(|number| (number, *factor)))
+        .ok_or_else(|| "a size needs its unit, such as 8GB or 500MB".to_owned())?;
+    let number: f64 = number.trim().parse().map_err(|_| "no number stands before the unit".to_owned())?;
+    let bytes = number * factor;
+    #[allow(clippy::cast_precision_loss, reason = "a small constant")]
+    let least_bytes = LEAST_MEMORY_BYTES as f64;
+    if !(bytes >= least_bytes && bytes < 1e18) {
+        return Err(format!("reading needs {} MiB at least", LEAST_MEMORY_BYTES >> 20));
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in range, tested above")]
+    Ok(Limits::of_memory(bytes as u64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_as_people_write_them() {
+        for (text, bytes) in
+            [("2GB", 2_000_000_000), ("1.5 GiB", 3 << 29), ("500 mb", 500_000_000), ("0,5GiB", 1 << 29)]
+        {
+            assert_eq!(limits(text), Ok(Limits::of_memory(bytes)), "{text}");
+        }
+        for text in ["", "2", "GB", "1MB", "-3GB", "nanGB", "1e30TB", "many"] {
+            assert!(limits(text).is_err(), "{text}");
+        }
+    }
+}

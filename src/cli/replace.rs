@@ -1,0 +1,269 @@
+//! A set of finished files into a folder: all of them or none, whatever interrupts it, and nobody else's touched.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What the program's own folders beside and in a report begin with; none outlives an undisturbed run.
+pub const OWN_PREFIX: &str = ".dropcheck-";
+/// Complete files that were on their way to their places when the run was stopped.
+const UNFINISHED: &str = ".dropcheck-unfinished";
+/// A folder with more entries is no report's but a person's, and is not exchanged as a whole.
+const MOST_ENTRIES: usize = 256;
+
+/// Where a write stopped, and why.
+#[derive(Debug)]
+pub struct Stopped {
+    pub path: PathBuf,
+    pub source: io::Error,
+}
+
+fn at(path: &Path) -> impl FnOnce(io::Error) -> Stopped + '_ {
+    move |source| Stopped { path: path.to_path_buf(), source }
+}
+
+/// Writes `files` to `folder`, which need not exist.
+///
+/// A folder that holds plain files only is exchanged for a complete one in a single step of the file system. Where that
+/// cannot be, complete files are moved one by one; a run that is stopped between two of them is made good by the next.
+pub fn replace_set(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
+    let parent = parent_of(folder);
+    fs::create_dir_all(parent).map_err(at(parent))?;
+    let turn = Turn::take(parent);
+    turn.clear_stale(parent, files);
+    match fs::symlink_metadata(folder) {
+        Err(_) => return appear(parent, folder, files),
+        Ok(there) if !there.is_dir() => {
+            return Err(at(folder)(io::Error::other("a link or a file has taken the folder's place")));
+        }
+        Ok(_) => turn.clear_stale(folder, files),
+    }
+    if exchange(parent, folder, files).map_err(at(folder))? == Exchanged::Yes {
+        return Ok(());
+    }
+    move_one_by_one(folder, files)
+}
+
+/// The folder that `path` lies in.
+pub fn parent_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// One run at a time writes below a folder, where its file system knows locks.
+struct Turn {
+    lock: Option<File>,
+}
+
+impl Turn {
+    fn take(parent: &Path) -> Self {
+        let lock = File::open(parent).ok().filter(|folder| folder.lock().is_ok());
+        Self { lock }
+    }
+
+    /// Removes what a run that was killed left in `parent`: under the lock nobody is at work there.
+    fn clear_stale(&self, parent: &Path, files: &[(String, Vec<u8>)]) {
+        if self.lock.is_none() {
+            return;
+        }
+        for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
+            let name = entry.file_name();
+            let is_own = name.to_string_lossy().starts_with(OWN_PREFIX) && name != UNFINISHED;
+            if is_own && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+                clear(&entry.path(), files);
+            } else if is_own && entry.metadata().is_ok_and(|there| there.is_file() && there.len() == 0) {
+                // Made to see whether the folder can be written to.
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+    }
+}
+
+/// Removes a left-over folder with those of its files that were this program's or still have a name elsewhere.
+fn clear(stale: &Path, files: &[(String, Vec<u8>)]) {
+    for entry in fs::read_dir(stale).into_iter().flatten().flatten() {
+        let is_own = files.iter().any(|(name, _)| entry.file_name() == name.as_str());
+        if is_own || entry.metadata().is_ok_and(|metadata| has_other_name(&metadata)) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+    // Refused where something is left in it.
+    let _ = fs::remove_dir(stale);
+}
+
+#[cfg(unix)]
+fn has_other_name(metadata: &fs::Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    metadata.is_file() && metadata.nlink() > 1
+}
+
+#[cfg(not(unix))]
+fn has_other_name(_: &fs::Metadata) -> bool {
+    false
+}
+
+/// A folder that vanishes unless it is moved, beside the place its content goes to.
+pub fn staging_in(folder: &Path) -> io::Result<tempfile::TempDir> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(OWN_PREFIX);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As any folder the user makes: the process's mask takes away what it must.
+        builder.permissions(fs::Permissions::from_mode(0o777));
+    }
+    builder.tempdir_in(folder)
+}
+
+/// Writes a file that must not exist, down to the disk.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    use std::io::Write;
+    let mut file = File::create_new(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+/// Makes names durable; a system that cannot open a folder has its own way.
+pub fn sync_folder(folder: &Path) -> io::Result<()> {
+    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
+}
+
+fn fill(staging: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
+    for (name, bytes) in files {
+        write_whole(&staging.join(name), bytes).map_err(at(&folder.join(name)))?;
+    }
+    sync_folder(staging).map_err(at(folder))
+}
+
+/// A folder that was not there, complete from its first moment.
+fn appear(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
+    let staging = staging_in(parent).map_err(at(parent))?;
+    fill(staging.path(), folder, files)?;
+    fs::rename(staging.path(), folder).map_err(at(folder))?;
+    // The folder has its name; nothing is left to clear away.
+    let _ = staging.keep();
+    sync_folder(parent).map_err(at(parent))
+}
+
+#[derive(PartialEq)]
+enum Exchanged {
+    Yes,
+    /// Nothing was changed; another way must be found.
+    No,
+}
+
+/// Exchanges `folder` for a complete one that holds its other files too, under names of their own.
+fn exchange(parent: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> io::Result<Exchanged> {
+    let Some(others) = others(folder, files)? else { return Ok(Exchanged::No) };
+    let Ok(staging) = staging_in(parent) else { return Ok(Exchanged::No) };
+    if !take_over_rights(folder, staging.path()) {
+        return Ok(Exchanged::No);
+    }
+    fill(staging.path(), folder, files).map_err(|stopped| stopped.source)?;
+    for name in others {
+        if fs::hard_link(folder.join(&name), staging.path().join(&name)).is_err() {
+            return Ok(Exchanged::No);
+        }
+    }
+    sync_folder(staging.path())?;
+    if exchange_names(staging.path(), folder).is_err() {
+        return Ok(Exchanged::No);
+    }
+    sync_folder(parent)?;
+    // What somebody put into the folder in the meantime goes back to it.
+    let is_swept = self::others(staging.path(), files)?.is_some_and(|late| {
+        late.iter().all(|name| {
+            let place = folder.join(name);
+            fs::symlink_metadata(&place).is_ok() || fs::rename(staging.path().join(name), place).is_ok()
+        })
+    });
+    if !is_swept {
+        // It holds what cannot be put back: it stays where a person can find it.
+        let _ = staging.keep();
+    }
+    Ok(Exchanged::Yes)
+}
+
+/// Names in `folder` that are not among `files`; `None` where it is no plain folder of a report.
+fn others(folder: &Path, files: &[(String, Vec<u8>)]) -> io::Result<Option<Vec<std::ffi::OsString>>> {
+    // Whoever stands in the folder would find himself in one that is gone.
+    let is_here = fs::canonicalize(folder).ok() == fs::canonicalize(".").ok();
+    let mut names = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        if files.iter().any(|(own, _)| name == own.as_str()) {
+            continue;
+        }
+        if is_here || !entry.file_type()?.is_file() || names.len() >= MOST_ENTRIES {
+            return Ok(None);
+        }
+        names.push(name);
+    }
+    Ok((!is_here).then_some(names))
+}
+
+/// Gives `staging` the owner and permissions of `folder`; `false` where that cannot be.
+#[cfg(unix)]
+fn take_over_rights(folder: &Path, staging: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let (Ok(old), Ok(new)) = (fs::metadata(folder), fs::metadata(staging)) else { return false };
+    (old.uid(), old.gid(), old.dev()) == (new.uid(), new.gid(), new.dev())
+        && fs::set_permissions(staging, old.permissions()).is_ok()
+}
+
+#[cfg(not(unix))]
+fn take_over_rights(_: &Path, _: &Path) -> bool {
+    true
+}
+
+#[cfg(target_os = "linux")]
+fn exchange_names(one: &Path, other: &Path) -> io::Result<()> {
+    use rustix::fs::{CWD, RenameFlags, renameat_with};
+    Ok(renameat_with(CWD, one, CWD, other, RenameFlags::EXCHANGE)?)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn exchange_names(_: &Path, _: &Path) -> io::Result<()> {
+    Err(io::Error::from(io::ErrorKind::Unsupported))
+}
+
+/// Stages the files in `folder` itself and moves each to its place.
+fn move_one_by_one(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
+    // Two ways may lead to the folder, through one parent each.
+    let _turn = Turn::take(folder);
+    let unfinished = folder.join(UNFINISHED);
+    settle(folder, &unfinished, files)?;
+    let staging = staging_in(folder).map_err(at(folder))?;
+    fill(staging.path(), folder, files)?;
+    // From here on every file is complete and a next run can end what this one began.
+    fs::rename(staging.path(), &unfinished).map_err(at(&unfinished))?;
+    let _ = staging.keep();
+    sync_folder(folder).map_err(at(folder))?;
+    settle(folder, &unfinished, files)
+}
+
+/// Moves what is in `unfinished` to its places, if it is there.
+fn settle(folder: &Path, unfinished: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
+    if !fs::symlink_metadata(unfinished).is_ok_and(|there| there.is_dir()) {
+        return Ok(());
+    }
+    let staged = fs::read_dir(unfinished).map_err(at(unfinished))?.flatten();
+    let mut names: Vec<_> = staged.map(|entry| entry.file_name()).collect();
+    // The JSON goes first: it marks the folder as this program's, should a later move fail.
+    names.sort_by_key(|name| Path::new(name).extension().is_none_or(|ending| ending != "json"));
+    for name in names {
+        let target = folder.join(&name);
+        // Of another set of files it is the newer one, unless somebody took the place in the meantime.
+        if files.iter().any(|(own, _)| name == own.as_str()) || fs::symlink_metadata(&target).is_err() {
+            fs::rename(unfinished.join(&name), &target).map_err(at(&target))?;
+        }
+    }
+    fs::remove_dir(unfinished).map_err(at(unfinished))?;
+    sync_folder(folder).map_err(at(folder))
+}
+
+#[cfg(test)]
+mod tests;

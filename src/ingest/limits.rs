@@ -1,0 +1,92 @@
+//! The memory that reading may take to the largest size of each part of a file.
+
+use super::error::IngestError;
+use std::path::Path;
+
+/// What reading may take where nobody says otherwise: sixteen channels of ten million samples fit.
+const USUAL_MEMORY_BYTES: u64 = 4 << 30;
+/// Less leaves no room for the reader itself.
+pub const LEAST_MEMORY_BYTES: u64 = 64 << 20;
+
+/// Largest sizes that are believed of a file; all grow with the memory that is allowed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    memory_bytes: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { memory_bytes: USUAL_MEMORY_BYTES }
+    }
+}
+
+impl Limits {
+    /// Limits for so much memory, at least 64 MiB.
+    #[must_use]
+    pub fn of_memory(memory_bytes: u64) -> Self {
+        Self { memory_bytes: memory_bytes.max(LEAST_MEMORY_BYTES) }
+    }
+
+    /// Samples with their times, as read, of all channels: a half, for what follows needs as much again.
+    pub(super) fn samples_bytes(self) -> u64 {
+        self.memory_bytes / 2
+    }
+
+    /// One record, message, chunk or converted text: a quarter, for it is held beside what it is turned into.
+    pub(super) fn part_bytes(self) -> u64 {
+        self.memory_bytes / 4
+    }
+
+    /// All that a file of `file_bytes` unpacks to: recordings pack a hundredfold at most, a bomb a thousandfold and more.
+    pub(super) fn unpacked_bytes(self, file_bytes: u64) -> u64 {
+        const TIGHTEST_RECORDING: u64 = 256;
+        file_bytes.saturating_mul(TIGHTEST_RECORDING).saturating_add(self.memory_bytes)
+    }
+
+    /// One line of a text: 1 MiB as usual, where a row of a hundred thousand channels still fits.
+    pub(super) fn line_bytes(self) -> u64 {
+        self.memory_bytes / 4096
+    }
+
+    /// The refusal of `what`, which would pass `limit_bytes`.
+    pub(super) fn refusal(self, path: &Path, what: &str, limit_bytes: u64) -> IngestError {
+        IngestError::TooLarge {
+            path: path.display().to_string(),
+            what: what.to_owned(),
+            limit: in_words(limit_bytes),
+            memory: in_words(self.memory_bytes),
+            more: in_words(self.memory_bytes.saturating_mul(4)).replace(' ', ""),
+        }
+    }
+}
+
+/// A size in the largest unit that it fills, binary.
+fn in_words(bytes: u64) -> String {
+    let (unit_bytes, unit) = match bytes {
+        0x4000_0000.. => (1_u64 << 30, "GiB"),
+        0x10_0000.. => (1 << 20, "MiB"),
+        _ => (1 << 10, "KiB"),
+    };
+    let tenths = u128::from(bytes) * 10 / u128::from(unit_bytes);
+    if tenths % 10 == 0 {
+        format!("{} {unit}", tenths / 10)
+    } else {
+        format!("{}.{} {unit}", tenths / 10, tenths % 10)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_told_in_the_largest_unit_they_fill() {
+        for (bytes, words) in
+            [(1 << 20, "1 MiB"), (4 << 30, "4 GiB"), (3 << 29, "1.5 GiB"), (1500, "1.4 KiB")]
+        {
+            assert_eq!(in_words(bytes), words);
+        }
+        assert_eq!(Limits::default().part_bytes(), 1 << 30);
+        assert_eq!(Limits::of_memory(0).line_bytes(), LEAST_MEMORY_BYTES / 4096);
+    }
+}

@@ -1,0 +1,271 @@
+//! From names and sizes made to harm, full disks and killed runs to reports that are whole, clean and in their place.
+
+use crate::command_line::{Bench, at_fault};
+use crate::run::{dropcheck, fixture};
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The words of an analysis of fixture `stem` in `recording` into `out`.
+fn words(recording: &Path, cask: &Path, out: &Path) -> Vec<OsString> {
+    let options = [recording, Path::new("--cask"), cask, Path::new("--out"), out];
+    std::iter::once("analyze".into()).chain(options.map(|part| part.as_os_str().to_owned())).collect()
+}
+
+/// Every file below `folder` with its content, by its path from there.
+fn all_files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            found.extend(all_files(&path));
+        } else {
+            found.push((path.clone(), fs::read(&path).expect("a file")));
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The same with the paths from `folder` on.
+fn content(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let from_here = |path: PathBuf| path.strip_prefix(folder).expect("below").to_path_buf();
+    all_files(folder).into_iter().map(|(path, bytes)| (from_here(path), bytes)).collect()
+}
+
+const EVIL: [&str; 4] = [
+    "<script>alert(1)</script>",
+    "=cmd|'/C calc'!A0",
+    "../../../escape\\u001b]0;title\\u0007\\u009b2J\\u202e",
+    "\\\"><img src=x onerror=alert(1)>",
+];
+
+/// Asserts that a file of a report can be opened by anyone.
+fn harmless(path: &Path, bytes: Vec<u8>) {
+    let ending = path.extension().expect("an ending").to_string_lossy().into_owned();
+    if ["h5", "mcap"].contains(&ending.as_str()) {
+        return;
+    }
+    let text = String::from_utf8(bytes).expect("UTF-8");
+    assert!(!text.contains(['\u{1b}', '\u{7}', '\u{9b}', '\u{202e}']), "{}", path.display());
+    if ["html", "svg"].contains(&ending.as_str()) {
+        assert!(!text.contains("<script") && !text.contains("<img src=x"), "{}", path.display());
+    }
+    if ending == "csv" {
+        let mut table = csv::Reader::from_reader(text.as_bytes());
+        let header = table.headers().expect("a header").clone();
+        assert!(header.iter().all(|cell| !cell.starts_with(['=', '+', '-', '@'])), "{header:?}");
+        // Numbers stay numbers, negative ones too.
+        for row in table.records().flatten() {
+            assert!(row.iter().all(|cell| cell.is_empty() || cell.parse::<f64>().is_ok()), "{row:?}");
+        }
+    }
+}
+
+#[test]
+fn names_in_a_file_stay_names() {
+    let bench = Bench::new();
+    let sound = fs::read_to_string(fixture("anf18-json.toml")).expect("a cask file");
+    for (number, evil) in EVIL.iter().enumerate() {
+        let mut text = sound.replace("name = \"A1\"", &format!("name = \"{evil}\""));
+        text = text.replace("[cask]\n", &format!("[cask]\n# {number}\n"));
+        let cask_name = sound.lines().find(|line| line.starts_with("name = ")).expect("a name");
+        text = text.replacen(cask_name, &format!("name = \"{evil}\""), 1);
+        assert_ne!(text, sound);
+        let cask = bench.put("cask <b>.toml", text);
+        let place = bench.0.path().join("place");
+        let out = place.join("a/b");
+        let answer = dropcheck(words(&fixture("anf18-json.mcap"), &cask, &out));
+        assert!(answer.status < 2, "{}", answer.stderr);
+        let printed = format!("{}{}", answer.stdout, answer.stderr);
+        assert!(!printed.contains(['\u{1b}', '\u{7}', '\u{9b}', '\u{202e}']), "{printed:?}");
+        let files = all_files(&place);
+        assert!(
+            files.iter().all(|(path, _)| path.parent() == Some(out.as_path())),
+            "{evil}: files elsewhere"
+        );
+        for (path, bytes) in files {
+            harmless(&path, bytes);
+        }
+        fs::remove_dir_all(&place).expect("the place");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_in_the_place_of_the_report_is_refused() {
+    let bench = Bench::new();
+    let elsewhere = bench.0.path().join("elsewhere");
+    fs::create_dir(&elsewhere).expect("a folder");
+    let out = bench.0.path().join("report");
+    std::os::unix::fs::symlink(&elsewhere, &out).expect("a link");
+    let answer = dropcheck(words(&fixture("anf10-plain.csv"), &fixture("anf10-plain.toml"), &out));
+    at_fault(&answer, &["report", "symbolic link"]);
+    assert!(all_files(&elsewhere).is_empty());
+}
+
+#[test]
+fn a_line_that_fills_the_memory_is_refused_with_the_option() {
+    let bench = Bench::new();
+    let text = format!("time_s,A1\n0,1\n1,2\n2,{}\n", "3".repeat(2 << 20));
+    let answer = crate::run::analyze(&bench.put("long.csv", text), &fixture("anf10-plain.toml"));
+    at_fault(&answer, &["long.csv"]);
+    let text = format!("time_s,A1,A2\n0,1,1\n1,2,1\n2,{},1\n", "3".repeat(2 << 20));
+    let answer = crate::run::analyze(&bench.put("long.csv", text), &fixture("anf10-plain.toml"));
+    at_fault(&answer, &["line 4", "1 MiB", "--max-memory"]);
+}
+
+/// An MCAP file whose chunk unpacks to `messages` JSON blocks of half a million zeros each.
+fn bomb(messages: i32) -> Vec<u8> {
+    let options = mcap::WriteOptions::new().compression(Some(mcap::Compression::Zstd)).chunk_size(None);
+    let mut writer = options.create(std::io::Cursor::new(Vec::new())).expect("a writer");
+    let schema = writer.add_schema("dropcheck.AccelerationBlock", "jsonschema", b"{}").expect("a schema");
+    let zeros = vec!["0"; 500_000].join(",");
+    for topic in ["/daq/a1", "/daq/a2"] {
+        let id =
+            writer.add_channel(schema, topic, "json", &std::collections::BTreeMap::new()).expect("a channel");
+        for number in 0..messages {
+            let data = format!(
+                "{{\"timestamp\":{{\"sec\":{},\"nsec\":0}},\"sample_rate_hz\":5e5,\"samples\":[{zeros}]}}",
+                number + 1
+            );
+            let header =
+                mcap::records::MessageHeader { channel_id: id, sequence: 0, log_time: 1, publish_time: 1 };
+            writer.write_to_known_channel(&header, data.as_bytes()).expect("a message");
+        }
+    }
+    writer.finish().expect("a file");
+    writer.into_inner().into_inner()
+}
+
+#[test]
+fn a_bomb_is_refused_with_the_option_that_would_let_it_in() {
+    let bench = Bench::new();
+    let bytes = bomb(8);
+    assert!(bytes.len() < 100_000, "{} bytes are no bomb", bytes.len());
+    let path = bench.put("bomb.mcap", bytes);
+    let (cask, out) = (bench.put("cask.toml", bomb_cask()), bench.0.path().join("report"));
+    let mut words = words(&path, &cask, &out);
+    words.extend(["--max-memory".into(), "64MiB".into()]);
+    at_fault(&dropcheck(&words), &["bomb.mcap", "32 MiB", "64 MiB", "--max-memory"]);
+    assert!(!out.exists());
+    words.pop();
+    words.push("some".into());
+    let answer = dropcheck(&words);
+    assert!(answer.status == 2 && answer.stderr.contains("8GB"), "{}", answer.stderr);
+}
+
+fn bomb_cask() -> String {
+    let text = fs::read_to_string(fixture("anf18-json.toml")).expect("a cask file");
+    let mut number = 0;
+    text.lines().fold(String::new(), |out, line| {
+        if line.trim_start().starts_with("source") {
+            number += 1;
+            return format!("{out}source = \"/daq/a{number}.samples\"\n");
+        }
+        format!("{out}{line}\n")
+    })
+}
+
+#[cfg(unix)]
+mod interrupted {
+    use super::*;
+    use std::process::{Child, Command, Stdio};
+    use std::time::{Duration, Instant};
+
+    type Content = Vec<(PathBuf, Vec<u8>)>;
+
+    fn started(stem: &str, recording: &str, out: &Path) -> Child {
+        Command::new(env!("CARGO_BIN_EXE_dropcheck"))
+            .args(words(&fixture(recording), &fixture(&format!("{stem}.toml")), out))
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the program starts")
+    }
+
+    const ONE: (&str, &str) = ("anf10-plain", "anf10-plain.csv");
+    const OTHER: (&str, &str) = ("anf18-german", "anf18-german.csv");
+
+    /// The two reports, each whole, and how long the second takes.
+    fn both(bench: &Bench) -> (Content, Content, Duration) {
+        let reports = [ONE, OTHER].map(|(stem, recording)| {
+            let out = bench.0.path().join(stem);
+            let begun = Instant::now();
+            started(stem, recording, &out).wait().expect("a run");
+            (content(&out), begun.elapsed())
+        });
+        let [one, other] = reports;
+        assert!(one.0.len() > 5 && other.0.len() > 5 && one.0 != other.0);
+        (one.0, other.0, other.1)
+    }
+
+    #[test]
+    fn a_killed_run_leaves_the_old_report_or_the_whole_one() {
+        let bench = Bench::new();
+        let (one, other, took) = both(&bench);
+        let out = bench.0.path().join("place/report");
+        let runs = std::env::var("DROPCHECK_KILLS").ok().and_then(|text| text.parse().ok()).unwrap_or(12_u32);
+        let (mut kept, mut replaced) = (0, 0);
+        for run in 0..runs {
+            let _ = fs::remove_dir_all(&out);
+            started(ONE.0, ONE.1, &out).wait().expect("a run");
+            fs::write(out.join("notes.txt"), "mine").expect("a note");
+            let mut child = started(OTHER.0, OTHER.1, &out);
+            // The last third of the run is where it writes.
+            std::thread::sleep(took.mul_f64(0.6 + 0.6 * f64::from(run) / f64::from(runs)));
+            let signal = if run % 2 == 0 { "-KILL" } else { "-INT" };
+            let _ =
+                Command::new("kill").args([signal, &child.id().to_string()]).stderr(Stdio::null()).status();
+            child.wait().expect("a run");
+            let mut found = content(&out);
+            let notes = found.iter().position(|(path, _)| path == Path::new("notes.txt")).expect("the note");
+            found.remove(notes);
+            kept += usize::from(found == one);
+            replaced += usize::from(found == other);
+            assert!(found == one || found == other, "run {run}: a mixture");
+        }
+        println!("{kept} kept, {replaced} replaced");
+        started(OTHER.0, OTHER.1, &out).wait().expect("a run");
+        let left = fs::read_dir(out.parent().expect("a parent")).expect("a folder").count();
+        assert_eq!(left, 1, "what killed runs left is cleared away by the next");
+    }
+
+    #[test]
+    fn two_runs_at_once_leave_one_report_whole() {
+        let bench = Bench::new();
+        let (one, other, _) = both(&bench);
+        for number in 0..3 {
+            let out = bench.0.path().join(format!("place/{number}"));
+            let children = [ONE, OTHER, ONE, OTHER].map(|(stem, recording)| started(stem, recording, &out));
+            for mut child in children {
+                assert!(child.wait().expect("a run").code().is_some_and(|code| code < 2));
+            }
+            let found = content(&out);
+            assert!(found == one || found == other, "a mixture");
+        }
+    }
+
+    #[test]
+    fn a_full_disk_leaves_the_old_report() {
+        let bench = Bench::new();
+        let out = bench.0.path().join("place/report");
+        started(ONE.0, ONE.1, &out).wait().expect("a run");
+        let old = content(&out);
+        // A limit on the size of a file is what a full disk is to whoever writes; the HDF5 library has its own scratch file.
+        for blocks in [1, 16, 60, 200] {
+            let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
+            let answer = Command::new("sh")
+                .args(["-c", &script, "sh", env!("CARGO_BIN_EXE_dropcheck")])
+                .args(words(&fixture(OTHER.1), &fixture("anf18-german.toml"), &out))
+                .output()
+                .expect("a shell");
+            let stderr = String::from_utf8_lossy(&answer.stderr);
+            assert_eq!(answer.status.code(), Some(2), "{blocks}: {stderr}");
+            assert!(!stderr.contains("panicked") && stderr.contains("error"), "{stderr}");
+            assert!(content(&out) == old, "{blocks} blocks: the old report was touched");
+            let left = fs::read_dir(out.parent().expect("a parent")).expect("a folder").count();
+            assert_eq!(left, 1, "{blocks} blocks: something half-written is left");
+        }
+    }
+}
