@@ -1,6 +1,6 @@
 //! The drifts of the channels in the flight to what drives them all: an AC coupling that nobody stated, or a target that L rests on.
 
-use crate::data::{Axis, CaskFile, Coupling, FlightFit, Issue, IssueCode, Plateau, Severity, Signal};
+use crate::data::{Axis, CaskFile, Coupling, Drop, FlightFit, Issue, IssueCode, Plateau, Severity, Signal};
 
 /// Time constants looked for, s: shorter ones leave no step to measure, longer ones lose less than 2 % of it in 50 ms
 /// and are within what noise of 1/f looks like.
@@ -9,6 +9,8 @@ const TIME_CONSTANTS_S: std::ops::RangeInclusive<f64> = 0.03..=2.5;
 const LEAST_STEP: f64 = 0.1;
 /// A droop counts beyond this many of its standard uncertainties.
 const SURE: f64 = 4.0;
+/// What the channel nearest to L reads over g cos φ where the target carries L: less farther from the corner, and as the cask turns.
+const CARRIED: std::ops::RangeInclusive<f64> = 0.5..=1.25;
 /// Droops over steps agree within this share of their mean beside their uncertainties: ringing that the fit leaves.
 const AGREEMENT: f64 = 0.2;
 
@@ -22,13 +24,14 @@ pub fn judge_coupling(signals: &[Signal], flight: &FlightFit, cask_file: &CaskFi
     let declared_ac: Vec<&str> = stated.map(|c| c.name.as_str()).collect();
     let mut issues = undeclared(signals, flight, &declared_ac);
     if declared_ac.is_empty() {
-        issues.extend(supported(signals, flight));
+        issues.extend(supported(signals, flight, &cask_file.drop));
     }
     issues
 }
 
-/// A push at L's corner accelerates every transverse channel in the proportion of its velocity step (38): the first end rests on the target.
-fn supported(signals: &[Signal], flight: &FlightFit) -> Option<Issue> {
+/// A push at L's corner accelerates every transverse channel in the proportion of its velocity step (38), and one that carries the corner
+/// has a sensor there read g cos φ: the first end rests on the target, or bounces there.
+fn supported(signals: &[Signal], flight: &FlightFit, drop: &Drop) -> Option<Issue> {
     let transverse: Vec<&str> =
         signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| s.name.as_str()).collect();
     let of_transverse = flight.plateaus.iter().filter(|p| transverse.contains(&p.channel.as_str()));
@@ -38,6 +41,10 @@ fn supported(signals: &[Signal], flight: &FlightFit) -> Option<Issue> {
         })
         .collect();
     let rate_hz = common_rate(&growths).filter(|_| flight.drift)?;
+    let most_m_s2 = growths.iter().map(|g| g.0.zero_shift_m_s2).fold(0.0, f64::max);
+    if !CARRIED.contains(&(most_m_s2 / (drop.gravity_m_s2 * drop.angle_rad.cos()))) {
+        return None;
+    }
     Some(
         Issue::new(
             IssueCode::SecondContact,
@@ -126,8 +133,8 @@ mod tests {
         }
     }
 
-    /// Steps (m/s) and drifts (m/s²) of two channels, each drift known to 0.5 m/s².
-    fn codes(first: (f64, f64), second: (f64, f64), stated: &[&str]) -> Vec<String> {
+    /// A flight with these steps (m/s) and drifts (m/s²) of two channels, each drift known to 0.5 m/s².
+    fn flight(first: (f64, f64), second: (f64, f64)) -> FlightFit {
         let plateau = |channel: &str, (velocity_step_m_s, zero_shift_m_s2): (f64, f64)| Plateau {
             channel: channel.into(),
             velocity_step_m_s,
@@ -138,16 +145,38 @@ mod tests {
             ringing_m_s: vec![],
             late_mismatch_m_s: None,
         };
-        let flight = FlightFit {
+        FlightFit {
             from_s: 0.0,
             to_s: 0.06,
             plateaus: vec![plateau("A1", first), plateau("A2", second)],
             modes: vec![],
             drift: true,
             candidates: vec![],
-        };
-        let issues = undeclared(&[signal("A1"), signal("A2")], &flight, stated);
+        }
+    }
+
+    fn codes(first: (f64, f64), second: (f64, f64), stated: &[&str]) -> Vec<String> {
+        let issues = undeclared(&[signal("A1"), signal("A2")], &flight(first, second), stated);
         issues.into_iter().map(|i| i.message).collect()
+    }
+
+    #[test]
+    fn a_first_end_that_the_target_carries_is_told_from_a_zero_shift() {
+        let drop = Drop {
+            height_m: 0.5,
+            angle_rad: 0.1,
+            impact_velocity_m_s: 3.13,
+            impact_velocity_given: false,
+            gravity_m_s2: 9.81,
+        };
+        let is_carried =
+            |first, second| supported(&[signal("A1"), signal("A2")], &flight(first, second), &drop).is_some();
+        // Near the corner 8.6 m/s² of g cos φ = 9.76, and −0.43 of that where the step is.
+        assert!(is_carried((2.6, 8.6), (-1.12, -3.7)));
+        // Both channels shifted in proportion, by more than a target can carry; one alone; out of proportion.
+        assert!(!is_carried((2.6, 18.0), (-1.12, -7.7)));
+        assert!(!is_carried((2.6, 8.6), (-1.12, 0.1)));
+        assert!(!is_carried((2.6, 8.6), (-1.12, -9.0)));
     }
 
     #[test]
