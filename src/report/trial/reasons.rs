@@ -5,7 +5,7 @@ pub(super) fn reason(family: &str) -> Option<&'static str> {
     Some(match family {
         "filter" => {
             "A direct form is a third faster, 3 ns a sample, and loses a digit for every half decade of f/fs; its single precision fails at 5e-4. \
-             The state-variable form keeps 13 digits at every rate that a recorder has. The curves that are filtered have some hundred thousand \
+             The state-variable form keeps 13 digits down to f/fs = 1e-5. The curves that are filtered have some hundred thousand \
              samples: the difference is below a millisecond."
         }
         "record ends" => {
