@@ -32,11 +32,11 @@ pub(super) enum Stage<T> {
     },
     /// Two trapezoidal integrators (26).
     StateVariable {
-        /// 1 / (1 + g (g + 2R)).
-        first: T,
-        /// g times the first.
+        /// g (g + 2R) / (1 + g (g + 2R)).
+        decay: T,
+        /// g / (1 + g (g + 2R)).
         second: T,
-        /// g² times the first.
+        /// g times that.
         third: T,
     },
 }
@@ -46,7 +46,7 @@ impl<T: Sample> Stage<T> {
     pub(super) fn state_variable(g: f64, damping: f64) -> Self {
         let first = 1.0 / (1.0 + g * (g + damping));
         Self::StateVariable {
-            first: constant(first),
+            decay: constant(g * (g + damping) * first),
             second: constant(g * first),
             third: constant(g * g * first),
         }
@@ -102,15 +102,15 @@ impl<T: Sample> Stage<T> {
     pub(super) fn run<'a>(&self, samples: impl Iterator<Item = &'a mut T>, state: &mut [T]) {
         let two = constant::<T>(2.0);
         match self {
-            Self::StateVariable { first, second, third } => {
+            Self::StateVariable { decay, second, third } => {
                 let (mut band, mut low) = (state[0], state[1]);
                 for x in samples {
+                    // Only what is added is rounded at its own size: 2 v1 − band and 2 v2 − low would round the states twice.
                     let v3 = *x - low;
-                    let v1 = *first * band + *second * v3;
-                    let v2 = low + *second * band + *third * v3;
-                    band = two * v1 - band;
-                    low = two * v2 - low;
-                    *x = v2;
+                    let added = *second * band + *third * v3;
+                    band = band + two * (*second * v3 - *decay * band);
+                    *x = low + added;
+                    low = low + two * added;
                 }
                 (state[0], state[1]) = (band, low);
             }
