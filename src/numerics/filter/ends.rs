@@ -9,11 +9,11 @@ const NINE: usize = 9;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub enum EndPadding {
     /// Point reflection in the end sample for the filter's memory: lines go on as lines; the end sample keeps its noise.
-    #[default]
     Odd,
     /// Point reflection for 9 samples, whatever the filter's memory.
     OddNine,
-    /// Mirrored for the filter's memory: a slope becomes a kink.
+    /// Mirrored for the filter's memory: the ends keep the filter's own noise; a slope becomes a kink.
+    #[default]
     Even,
     /// Not at all; the states at both ends are those for which forward-back and back-forward agree best (Gustafsson 1996).
     /// A record of fewer samples than four times the order does not tell them.
@@ -24,7 +24,7 @@ pub enum EndPadding {
 
 impl EndPadding {
     /// All of them, the default first.
-    pub const ALL: [Self; 5] = [Self::Odd, Self::OddNine, Self::Even, Self::Gustafsson, Self::Zero];
+    pub const ALL: [Self; 5] = [Self::Even, Self::Odd, Self::OddNine, Self::Gustafsson, Self::Zero];
 
     /// Its name.
     #[must_use]

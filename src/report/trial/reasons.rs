@@ -9,9 +9,9 @@ pub(super) fn reason(family: &str) -> Option<&'static str> {
              samples: the difference is below a millisecond."
         }
         "record ends" => {
-            "Odd reflection passes the noise of the end sample on unfiltered; even reflection leaves the filter's own and is worse only on slopes \
-             steeper than some hundred times that a 1/f. It matters where a record ends within 6.2/f of what is drawn: elsewhere the drawn curves \
-             lie so far inside the filtered stretch that no continuation reaches them. No number of the result is taken from a filtered curve."
+            "Mirroring leaves the filter's own noise at the ends, as Gustafsson's method does at thrice the cost; point reflection passes the noise \
+             of the end sample on and is better only on slopes steeper than some hundred times the filter's own noise a 1/f. Records end in noise. It \
+             matters where a record ends within 6.2/f of what is drawn; no number of the result is taken from a filtered curve."
         }
         "integration" => {
             "On kinked pulses all rules are alike: the samples do not say where between them the kink is. On noise likewise. The corrected \
