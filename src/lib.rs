@@ -86,7 +86,6 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
             let touched_m_s = touch_effect_m_s(cask_file, quantities.k.value);
             let length_m = cask_file.cask.length_m;
             draft.issues.extend(judge::judge_touch(&motion, &quantities, touched_m_s, length_m));
-            draft.issues.extend(judge::judge_struck_end(&signals, &draft.events));
         }
         draft.flight = Some(flight);
         if draft.issues.iter().any(judge::invalidates) {

@@ -15,7 +15,7 @@ pub use channels::{is_cut_off, judge_channels};
 pub use closures::judge_closures;
 pub use coupling::judge_coupling;
 pub use fall::judge_fall;
-pub use result::{judge_comparison, judge_motion, judge_struck_end, judge_touch};
+pub use result::{judge_comparison, judge_motion, judge_touch};
 pub use rigid::judge_rigid;
 pub use silent::judge_silent;
 pub use skew::judge_skew;

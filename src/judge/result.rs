@@ -1,8 +1,8 @@
 //! A reconstructed motion to what speaks against it.
 
 use crate::data::{
-    Axis, CaskFile, Comparison, Contact, End, Events, FlightFit, GRAZE_SHARE, Issue, IssueCode, Motion,
-    Quantities, Severity, Signal,
+    Axis, CaskFile, Comparison, Contact, End, FlightFit, GRAZE_SHARE, Issue, IssueCode, Motion, Quantities,
+    Severity, Signal,
 };
 
 /// k this far outside 0 to 1 is an error whatever its interval.
@@ -17,10 +17,10 @@ const LATE_SHARE: f64 = 0.03;
 const SMALL_SLIP_M_S: f64 = 0.65;
 /// L this share of the length below where it left is on the target again: 5 mm, what corner and target are even to.
 const TOUCHED_SHARE: f64 = 0.001;
-/// An impact has moved the end that it strikes more than the other one after this, s, whatever rings with it.
-const STRUCK_S: f64 = 2e-3;
-/// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1 % of a slap-down.
-const LARGE_RESIDUAL_M_S: f64 = 0.2;
+/// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1.5 % of a slap-down.
+const LARGE_RESIDUAL_M_S: f64 = 0.3;
+/// A velocity this far off its flight before R strikes is another contact, m/s: 1 % of a slap-down.
+const LARGE_MISMATCH_M_S: f64 = 0.2;
 /// A velocity step that is known no better than to this share of v0, as a standard uncertainty, says little, however well it is known how little.
 const LARGE_U_SHARE: f64 = 0.1;
 
@@ -107,32 +107,6 @@ pub fn judge_touch(
     })
 }
 
-/// R strikes where its velocity changes more than that of L; where it is the other way round L was struck.
-#[must_use]
-pub fn judge_struck_end(signals: &[Signal], events: &Events) -> Option<Issue> {
-    let from_s = events.slap_down_s?;
-    let of = |end: End| signals.iter().find(|s| s.axis == Axis::Transverse && s.end == end);
-    let (first, second) = (of(End::First)?, of(End::Second)?);
-    let gained_m_s = |s: &Signal| {
-        let (from, to) = (s.index_from(from_s), s.index_from(from_s + STRUCK_S));
-        s.force_m_s2.get(from..to).unwrap_or_default().iter().sum::<f64>() / s.sample_rate_hz
-    };
-    let (first_m_s, second_m_s) = (gained_m_s(first), gained_m_s(second));
-    (first_m_s > second_m_s.max(0.0)).then(|| {
-        Issue::new(
-            IssueCode::SecondContact,
-            Severity::Warning,
-            format!(
-                "what was taken for the slap-down moves {} by {first_m_s:+.2} m/s and {} by {second_m_s:+.2} m/s within {:.0} ms: the first end was struck again, and the second end strikes later",
-                first.name,
-                second.name,
-                1e3 * STRUCK_S
-            ),
-        )
-        .between(from_s, from_s + STRUCK_S)
-    })
-}
-
 /// Each end's own impact pushes it away from the target.
 fn signs(signals: &[Signal], flight: &FlightFit) -> Vec<Issue> {
     signals
@@ -173,7 +147,7 @@ fn flight_issues(flight: &FlightFit, quantities: &Quantities) -> Vec<Issue> {
             );
         }
         if let Some(mismatch_m_s) = plateau.late_mismatch_m_s
-            && mismatch_m_s.abs() > LARGE_RESIDUAL_M_S.min(LATE_SHARE * quantities.impact_velocity.value)
+            && mismatch_m_s.abs() > LARGE_MISMATCH_M_S.min(LATE_SHARE * quantities.impact_velocity.value)
         {
             issues.push(
                 Issue::new(
