@@ -69,6 +69,7 @@ fn written(work: &[TrialPeerWork], folder: &Path) -> std::io::Result<()> {
             "family": one.family,
             "class": one.class,
             "low_pass": one.low_pass,
+            "drop": one.drop,
             "error_unit": one.error_unit,
         }));
     }

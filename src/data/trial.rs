@@ -96,9 +96,11 @@ pub struct TrialPeerWork {
     pub class: String,
     /// Order of one pass and design frequency over sample rate of a low-pass; none for an integral over unit length.
     pub low_pass: Option<(u32, f64)>,
+    /// Sample rate, Hz, and impact velocity, m/s, of a drop: its second end's transverse force, m/s², is worked on, to its slap-down speed.
+    pub drop: Option<(f64, f64)>,
     /// What is worked on.
     pub samples: Vec<f64>,
-    /// What should come of it.
+    /// What should come of it: as many samples, or the slap-down speed of a drop, m/s.
     pub truth: Vec<f64>,
     /// Of what the error is a share.
     pub error_unit: &'static str,

@@ -6,14 +6,20 @@ mod samples;
 pub mod timing;
 
 pub use front::front;
-pub use samples::{accuracy as sample_accuracy, peer_work};
+pub use samples::accuracy as sample_accuracy;
 
-use crate::data::{Trial, TrialJob, TrialMachine, TrialPart, TrialRequest};
+use crate::data::{Trial, TrialJob, TrialMachine, TrialPart, TrialPeerWork, TrialRequest};
 
 /// The parts of the trial, in the order in which they run.
 #[must_use]
 pub fn jobs() -> Vec<TrialJob> {
     [samples::jobs(), drops::jobs()].concat()
+}
+
+/// The work that programs of others are given too.
+#[must_use]
+pub fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
+    [samples::peer_work(request), drops::peer_work(request)].concat()
 }
 
 /// All parts as one trial; `peers` says what became of the programs of others.

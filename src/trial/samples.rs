@@ -40,6 +40,6 @@ pub fn accuracy(request: &TrialRequest) -> TrialPart {
 
 /// The work of these methods that programs of others are given too.
 #[must_use]
-pub fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
+pub(super) fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
     [filters::peer_work(request), integration::peer_work(request)].concat()
 }

@@ -5,8 +5,8 @@ use super::sample::{self, Class, Prepared};
 use super::scene::{Drawn, STANDARD_GRAVITY_M_S2};
 use super::summary::{Subject, fraction, point};
 use crate::data::{
-    Estimate, Events, FlightFit, ReconstructionChoice, ReconstructionRung, Setup, TrialPart, TrialPoint,
-    TrialRequest,
+    Axis, End, Estimate, Events, FlightFit, ReconstructionChoice, ReconstructionRung, Setup, TrialPart,
+    TrialPeerWork, TrialPoint, TrialRequest,
 };
 use crate::trial::timing::{Effort, Timing, Work, in_turn};
 use crate::{analyze, assemble, fit, motion, settle};
@@ -30,6 +30,9 @@ const CLASSES: [Class; 5] = [
     Class { name: "12 ms pulse", make: |plan, _, _| plan.pulse_s = 0.012 },
 ];
 
+/// The family that others are held against too, and its error.
+const SPEED: (&str, &str) = ("reconstruction, speed", "% of the slap-down speed");
+
 /// What the result gives: the rung that it says to take.
 const TAKEN: &str = "as taken";
 
@@ -44,6 +47,27 @@ pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
     }
     progress(1.0);
     part
+}
+
+/// Some drops of each class for programs of others: what the second end reads, and the speed that it strikes with.
+pub(in crate::trial) fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
+    let of_class = |class: &Class| {
+        let plans = sample::plans(class, if request.quick { 4 } else { 12 }, request);
+        let of_drop = |drop: &Prepared| {
+            let second = drop.signals.iter().find(|s| s.end == End::Second && s.axis == Axis::Transverse)?;
+            Some(TrialPeerWork {
+                family: SPEED.0,
+                class: class.name.to_owned(),
+                low_pass: None,
+                drop: Some((second.sample_rate_hz, drop.drawn.stated.drop.impact_velocity_m_s)),
+                samples: second.force_m_s2.clone(),
+                truth: vec![drop.drawn.truth().speed?],
+                error_unit: SPEED.1,
+            })
+        };
+        sample::prepared(&plans).iter().filter_map(of_drop).collect::<Vec<_>>()
+    };
+    CLASSES.iter().flat_map(of_class).collect()
 }
 
 fn of_class(class: &Class, plans: &[super::scene::Plan], request: &TrialRequest) -> Vec<TrialPoint> {
@@ -63,12 +87,7 @@ fn of_class(class: &Class, plans: &[super::scene::Plan], request: &TrialRequest)
         };
         let speeds: Vec<Option<f64>> = readings.iter().map(|r| r[i].0).collect();
         let ks: Vec<Option<f64>> = readings.iter().map(|r| r[i].1).collect();
-        points.push(point(
-            subject("reconstruction, speed", "% of the slap-down speed"),
-            &speeds,
-            100.0,
-            timings[i],
-        ));
+        points.push(point(subject(SPEED.0, SPEED.1), &speeds, 100.0, timings[i]));
         points.push(point(subject("reconstruction, k", "1"), &ks, 1.0, timings[i]));
     }
     points

@@ -211,6 +211,7 @@ pub(super) fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
             family,
             class: class_name(order, design),
             low_pass: Some((order, design)),
+            drop: None,
             samples,
             truth,
             error_unit,

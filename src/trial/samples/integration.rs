@@ -235,6 +235,7 @@ pub(super) fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
             family: FAMILY.name,
             class: class.name.to_owned(),
             low_pass: None,
+            drop: None,
             samples,
             truth,
             error_unit: FAMILY.error_unit,
