@@ -18,16 +18,25 @@ const POINTS: u16 = 240;
 const LEAST_PERIODS: f64 = 0.6;
 const HIGHEST_HZ: f64 = 400.0;
 
+/// Nothing rings.
+pub(super) const CALM: Class = Class { name: "calm", make: |_, _, _| {} };
+pub(super) const NOISY: Class = Class {
+    name: "5 g of noise",
+    make: |plan, _, _| plan.each_chain(|c| c.white_noise_m_s2 = 5.0 * STANDARD_GRAVITY_M_S2),
+};
+pub(super) const ONE_MODE: Class = Class {
+    name: "one mode, 2 to 5 periods",
+    make: |plan, flight_s, share| plan.modes = vec![mode(1, (2.0 + 3.0 * share) / flight_s)],
+};
+pub(super) const SLOW_MODE: Class = Class {
+    name: "slow mode, 0.7 to 1.2 periods",
+    make: |plan, flight_s, share| plan.modes = vec![mode(1, (0.7 + 0.5 * share) / flight_s)],
+};
+
 const CLASSES: [Class; 5] = [
-    Class { name: "calm", make: |_, _, _| {} },
-    Class {
-        name: "5 g of noise",
-        make: |plan, _, _| plan.each_chain(|c| c.white_noise_m_s2 = 5.0 * STANDARD_GRAVITY_M_S2),
-    },
-    Class {
-        name: "one mode, 2 to 5 periods",
-        make: |plan, flight_s, share| plan.modes = vec![mode(1, (2.0 + 3.0 * share) / flight_s)],
-    },
+    CALM,
+    NOISY,
+    ONE_MODE,
     Class {
         name: "two modes",
         make: |plan, flight_s, share| {
@@ -35,10 +44,7 @@ const CLASSES: [Class; 5] = [
             plan.modes = vec![mode(1, frequency_hz), mode(2, 2.757 * frequency_hz)];
         },
     },
-    Class {
-        name: "slow mode, 0.7 to 1.2 periods",
-        make: |plan, flight_s, share| plan.modes = vec![mode(1, (0.7 + 0.5 * share) / flight_s)],
-    },
+    SLOW_MODE,
 ];
 
 const STRESSES: [MethodStress; 2] = [
@@ -64,7 +70,7 @@ const STRESSES: [MethodStress; 2] = [
 const MOST_PROBABLE: &str = "most probable (BIC)";
 
 /// A mode as strong as the uniform beam's.
-pub(super) fn mode(order: u8, frequency_hz: f64) -> BendingMode {
+fn mode(order: u8, frequency_hz: f64) -> BendingMode {
     BendingMode { order, frequency_hz, damping: 0.03, strength: 1.0 }
 }
 

@@ -1,8 +1,8 @@
 //! The rungs of the reconstruction to how far off each leaves slap-down speed and k, and what it costs by itself.
 
-use super::flight::mode;
+use super::flight::{CALM, NOISY, ONE_MODE, SLOW_MODE};
 use super::sample::{self, Class, Prepared};
-use super::scene::{Drawn, STANDARD_GRAVITY_M_S2};
+use super::scene::Drawn;
 use super::summary::{Subject, fraction, point};
 use crate::data::{
     Axis, End, Estimate, Events, FlightFit, ReconstructionChoice, ReconstructionRung, Setup, TrialPart,
@@ -14,19 +14,10 @@ use rayon::prelude::*;
 use std::hint::black_box;
 
 const CLASSES: [Class; 5] = [
-    Class { name: "calm", make: |_, _, _| {} },
-    Class {
-        name: "5 g of noise",
-        make: |plan, _, _| plan.each_chain(|c| c.white_noise_m_s2 = 5.0 * STANDARD_GRAVITY_M_S2),
-    },
-    Class {
-        name: "one mode, 2 to 5 periods",
-        make: |plan, flight_s, share| plan.modes = vec![mode(1, (2.0 + 3.0 * share) / flight_s)],
-    },
-    Class {
-        name: "slow mode, 0.7 to 1.2 periods",
-        make: |plan, flight_s, share| plan.modes = vec![mode(1, (0.7 + 0.5 * share) / flight_s)],
-    },
+    CALM,
+    NOISY,
+    ONE_MODE,
+    SLOW_MODE,
     Class { name: "12 ms pulse", make: |plan, _, _| plan.pulse_s = 0.012 },
 ];
 
