@@ -50,8 +50,7 @@ fn supported(signals: &[Signal], flight: &FlightFit, drop: &Drop) -> Option<Issu
             IssueCode::SecondContact,
             Severity::Warning,
             format!(
-                "in the flight every transverse channel goes on gaining what it gained in the first impact, {:.0} % of it in 10 ms: the target still pushes the first end, and the flight is not free",
-                rate_hz
+                "in the flight every transverse channel goes on gaining what it gained in the first impact, {rate_hz:.0} % of it in 10 ms: the target still pushes the first end, and the flight is not free"
             ),
         )
         .between(flight.from_s, flight.to_s),
