@@ -101,6 +101,11 @@ mod tests {
 
     /// Steps of 20 − 6 x m/s at four places, each known to 0.02 m/s, the second one off.
     fn named(off_m_s: f64, places_m: &[f64]) -> Option<String> {
+        named_at(0.26, off_m_s, places_m)
+    }
+
+    /// The same of a drop at this angle, rad.
+    fn named_at(angle_rad: f64, off_m_s: f64, places_m: &[f64]) -> Option<String> {
         let names = ["A1", "A2", "A3", "A4"];
         let signals: Vec<Signal> = names
             .iter()
@@ -143,7 +148,7 @@ mod tests {
         };
         let drop = Drop {
             height_m: 9.0,
-            angle_rad: 0.26,
+            angle_rad,
             impact_velocity_m_s: 13.3,
             impact_velocity_given: false,
             gravity_m_s2: 9.81,
@@ -158,6 +163,15 @@ mod tests {
         assert_eq!(named(0.3, &places_m), None);
         assert_eq!(named(3.0, &places_m), Some("A2".into()));
         assert_eq!(named(-3.0, &places_m), Some("A2".into()));
+    }
+
+    #[test]
+    fn a_steep_drop_lets_cross_axes_read_what_the_rebound_throws_along_the_axis() {
+        let places_m = [0.2, 1.0, 4.0, 4.8];
+        // 1 % of 20 tan 37° = 15 m/s is 0.15 m/s a channel, of 20 tan 15° = 5 m/s a third: 0.6 m/s is 2.5 u at 37° and 4.6 u at 15°.
+        assert_eq!(named_at(0.64, 0.6, &places_m), None);
+        assert_eq!(named_at(0.26, 0.6, &places_m), Some("A2".into()));
+        assert_eq!(named_at(0.64, 3.0, &places_m), Some("A2".into()));
     }
 
     #[test]
