@@ -3,7 +3,7 @@
 use super::method_map::{self, MethodStress};
 use super::sample::{self, Class, Prepared};
 use super::scene::STANDARD_GRAVITY_M_S2;
-use super::summary::{Subject, fraction, point};
+use super::summary::{Subject, by_class, point};
 use crate::data::{TrialPart, TrialPoint, TrialRequest};
 use crate::events::{Detector, first_contact_by};
 use crate::trial::timing::{Effort, Work, in_turn};
@@ -52,16 +52,10 @@ fn error_percent(drop: &Prepared, found_s: f64) -> f64 {
 }
 
 pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
-    let mut part = TrialPart::default();
-    for (done, class) in CLASSES.iter().enumerate() {
-        progress(fraction(done, CLASSES.len()));
-        let count = if request.quick { 12 } else { 60 };
-        part.points.extend(of_class(
-            class,
-            &sample::prepared(&sample::plans(class, count, request)),
-            request,
-        ));
-    }
+    let count = if request.quick { 12 } else { 60 };
+    let mut part = by_class(&CLASSES, progress, |class| {
+        of_class(class, &sample::prepared(&sample::plans(class, count, request)), request)
+    });
     let names = Detector::ALL.map(Detector::words);
     for stress in &STRESSES {
         part.maps.push(method_map::map(stress, request, &names, &|drop| {

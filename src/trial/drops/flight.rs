@@ -3,7 +3,7 @@
 use super::method_map::{self, MethodStress};
 use super::sample::{self, Class, Prepared};
 use super::scene::STANDARD_GRAVITY_M_S2;
-use super::summary::{Subject, fraction, point};
+use super::summary::{Subject, by_class, point};
 use crate::data::{BendingMode, Scene, Signal, TrialPart, TrialPoint, TrialRequest};
 use crate::numerics::damped_modes::{Series, Shape, fit_shape};
 use crate::trial::timing::{Effort, Work, in_turn};
@@ -149,13 +149,10 @@ fn velocity_step_m_s(scene: &Scene, still: &crate::data::SimulatedMotion, i: usi
 }
 
 pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
-    let mut part = TrialPart::default();
-    for (done, class) in CLASSES.iter().enumerate() {
-        progress(fraction(done, CLASSES.len()));
-        let count = if request.quick { 8 } else { 40 };
-        let drops = sample::prepared(&sample::plans(class, count, request));
-        part.points.extend(of_class(class, &drops, request));
-    }
+    let count = if request.quick { 8 } else { 40 };
+    let mut part = by_class(&CLASSES, progress, |class| {
+        of_class(class, &sample::prepared(&sample::plans(class, count, request)), request)
+    });
     let names: Vec<&str> = [MOST_PROBABLE].into_iter().chain(Shape::ALL.map(Shape::words)).collect();
     for stress in &STRESSES {
         part.maps.push(method_map::map(stress, request, &names, &errors_percent));

@@ -1,7 +1,7 @@
 //! The rungs of the prediction to how far off a drop on stiff ends each is, and what it costs.
 
 use super::scene::{ANF_10, ANF_18, Plan, VHLW};
-use super::summary::{Subject, fraction, point};
+use super::summary::{Subject, by_class, point};
 use crate::data::{
     Body, BodyModel, Contact, Drop, Prediction, Rung, TrialPart, TrialPoint, TrialRequest, Truth,
 };
@@ -118,11 +118,7 @@ const CLASSES: [Class; 6] = [
 
 /// Errors are against `synth` on stiff ends.
 pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
-    let mut part = TrialPart::default();
-    for (done, class) in CLASSES.iter().enumerate() {
-        progress(fraction(done, CLASSES.len()));
-        part.points.extend(of_class(class, request));
-    }
+    let part = by_class(&CLASSES, progress, |class| of_class(class, request));
     progress(1.0);
     part
 }

@@ -3,7 +3,7 @@
 use super::flight::{CALM, NOISY, ONE_MODE, SLOW_MODE};
 use super::sample::{self, Class, Prepared};
 use super::scene::Drawn;
-use super::summary::{Subject, fraction, point};
+use super::summary::{Subject, by_class, point};
 use crate::data::{
     Axis, End, Estimate, Events, FlightFit, ReconstructionChoice, ReconstructionRung, Setup, TrialPart,
     TrialPeerWork, TrialPoint, TrialRequest,
@@ -30,12 +30,9 @@ const TAKEN: &str = "as taken";
 const METHODS: [&str; 5] = ["channels", "planar", "flight", "joint", TAKEN];
 
 pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
-    let mut part = TrialPart::default();
-    for (done, class) in CLASSES.iter().enumerate() {
-        progress(fraction(done, CLASSES.len()));
-        let count = if request.quick { 6 } else { 40 };
-        part.points.extend(of_class(class, &sample::plans(class, count, request), request));
-    }
+    let count = if request.quick { 6 } else { 40 };
+    let part =
+        by_class(&CLASSES, progress, |class| of_class(class, &sample::plans(class, count, request), request));
     progress(1.0);
     part
 }

@@ -1,6 +1,6 @@
 //! Ways to find the end of the flight to how far off they are, and what they cost.
 
-use super::summary::{Subject, fraction, point};
+use super::summary::{Subject, by_class, point};
 use crate::data::{TrialPart, TrialPoint, TrialRequest};
 use crate::numerics::root::{RootMethod, root_by};
 use crate::trial::timing::{Effort, Work, in_turn};
@@ -159,11 +159,7 @@ impl Way {
 }
 
 pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
-    let mut part = TrialPart::default();
-    for (done, class) in CLASSES.iter().enumerate() {
-        progress(fraction(done, CLASSES.len()));
-        part.points.extend(of_class(class, request));
-    }
+    let part = by_class(&CLASSES, progress, |class| of_class(class, request));
     progress(1.0);
     part
 }

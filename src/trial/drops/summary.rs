@@ -1,6 +1,6 @@
 //! Errors and times of a method to a point of its chart.
 
-use crate::data::TrialPoint;
+use crate::data::{TrialPart, TrialPoint};
 use crate::numerics::robust;
 use crate::trial::timing::Timing;
 
@@ -49,6 +49,20 @@ pub(super) fn percentile(values: &[f64], share: f64) -> f64 {
     sorted.sort_by(f64::total_cmp);
     let index = (share * sorted.len() as f64).ceil() as usize;
     sorted.get(index.saturating_sub(1)).copied().unwrap_or(f64::NAN)
+}
+
+/// The points of class after class; `progress` is told the share that is done.
+pub(super) fn by_class<C>(
+    classes: &[C],
+    progress: &dyn Fn(f64),
+    of_class: impl Fn(&C) -> Vec<TrialPoint>,
+) -> TrialPart {
+    let mut part = TrialPart::default();
+    for (done, class) in classes.iter().enumerate() {
+        progress(fraction(done, classes.len()));
+        part.points.extend(of_class(class));
+    }
+    part
 }
 
 /// `part` of `whole`.
