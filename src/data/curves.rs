@@ -1,4 +1,4 @@
-//! Curves a person looks at: accelerations, velocities, the motion of the cask, spectra.
+//! Curves a person looks at: accelerations, velocities, the motion of the cask.
 
 /// Curves of one channel over the event window.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,17 +36,6 @@ pub struct MotionCurve {
     pub second_end_height_m: Vec<f64>,
 }
 
-/// One-sided amplitude spectrum of one channel over the event window.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Spectrum {
-    /// The channel's name.
-    pub channel: String,
-    /// Frequencies, Hz.
-    pub frequency_hz: Vec<f64>,
-    /// Spectral magnitude |∫ f e^{−iωt} dt|, m/s.
-    pub magnitude_m_s: Vec<f64>,
-}
-
 /// All curves of one analysis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Curves {
@@ -54,6 +43,4 @@ pub struct Curves {
     pub channels: Vec<ChannelCurve>,
     /// The rigid-body motion from just before first contact to the slap-down, where it could be had.
     pub motion: Option<MotionCurve>,
-    /// One a channel, in the cask file's order.
-    pub spectra: Vec<Spectrum>,
 }

@@ -32,7 +32,7 @@ pub use cask::{
     Axis, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice, GRAZE_SHARE, Source, Unit,
 };
 pub use channel::{Channel, Samples, Span};
-pub use curves::{ChannelCurve, Curves, MotionCurve, Spectrum};
+pub use curves::{ChannelCurve, Curves, MotionCurve};
 pub use estimate::Estimate;
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau};
 pub use issue::{Issue, IssueCode, Severity};

@@ -1,10 +1,10 @@
 //! Signals to the curves a person looks at: filtered force, velocity, spectrum.
 
 use super::Velocity;
-use crate::data::{Axis, ChannelCurve, ChannelReading, End, Events, FilterChoice, Setup, Signal, Spectrum};
+use crate::data::{Axis, ChannelCurve, ChannelReading, End, Events, FilterChoice, Setup, Signal};
 use crate::numerics::filter::{CFC_DESIGN, TWO_PASS_CUTOFF, ZeroPhaseLowPass};
 use crate::numerics::quadrature::running_integral;
-use crate::numerics::spectrum;
+use rayon::prelude::*;
 
 /// Shown before first contact, s.
 const BEFORE_S: f64 = 0.01;
@@ -39,7 +39,7 @@ pub fn cutoff_hz(choice: FilterChoice, mass_kg: f64, pulse_s: Option<f64>) -> (f
 #[must_use]
 pub fn filtered(signals: &[Signal], events: &Events, cutoff_hz: f64) -> Vec<Signal> {
     signals
-        .iter()
+        .par_iter()
         .map(|signal| {
             let (first_s, last_s) = shown_s(signal, events);
             // What lies beyond the margin reaches past it with 1e-12 of its size.
@@ -63,7 +63,7 @@ pub fn channel_curves(
     setup: &Setup,
 ) -> Vec<ChannelCurve> {
     signals
-        .iter()
+        .par_iter()
         .zip(smooth)
         .map(|(signal, smooth)| {
             let (from, to) = shown(signal, events);
@@ -103,20 +103,6 @@ pub fn read_channels(signals: &[Signal], events: &Events, setup: &Setup) -> Opti
         first_m_s: at(first, left_s),
         second_m_s: events.slap_down_s.map(|struck_s| at(second, struck_s)),
     })
-}
-
-/// Spectra of all channels from just before first contact to the end of what is shown.
-#[must_use]
-pub fn spectra(signals: &[Signal], events: &Events) -> Vec<Spectrum> {
-    signals
-        .iter()
-        .map(|signal| {
-            let (from, to) = shown(signal, events);
-            let (frequency_hz, magnitude_m_s) =
-                spectrum::magnitude(&signal.force_m_s2[from..to], signal.sample_rate_hz);
-            Spectrum { channel: signal.name.clone(), frequency_hz, magnitude_m_s }
-        })
-        .collect()
 }
 
 /// `count` samples from `time_s` on, 0 where there are none.

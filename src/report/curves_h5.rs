@@ -1,7 +1,7 @@
 //! Curves to `curves.h5`: one group a channel, datasets with their unit, rate and start as attributes.
 
-use super::ReportError;
 use super::grid::{motion_columns, step_s};
+use super::{ReportError, spectrum};
 use crate::data::Analysis;
 use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{Dataset, File, Group, H5Type, Location};
@@ -49,12 +49,11 @@ fn write(file: &File, analysis: &Analysis) -> Result<(), ReportError> {
         dataset(&group, "raw", &curve.raw_m_s2, "m/s^2", &curve.time_s)?;
         dataset(&group, "filtered", &curve.filtered_m_s2, "m/s^2", &curve.time_s)?;
         dataset(&group, "velocity", &curve.velocity_m_s, "m/s", &curve.time_s)?;
-        if let Some(spectrum) = analysis.curves.spectra.iter().find(|s| s.channel == curve.channel) {
-            let frequency = filled(&group, "spectrum_frequency", &spectrum.frequency_hz)?;
-            text(&frequency, "unit", "Hz")?;
-            let magnitude = filled(&group, "spectrum_magnitude", &spectrum.magnitude_m_s)?;
-            text(&magnitude, "unit", "m/s")?;
-        }
+        let (frequency_hz, magnitude_m_s) = spectrum(curve);
+        let frequency = filled(&group, "spectrum_frequency", &frequency_hz)?;
+        text(&frequency, "unit", "Hz")?;
+        let magnitude = filled(&group, "spectrum_magnitude", &magnitude_m_s)?;
+        text(&magnitude, "unit", "m/s")?;
     }
     if let Some(motion) = &analysis.curves.motion {
         let group = file.create_group("motion")?;

@@ -40,7 +40,8 @@ pub use template::cask_file as cask_file_template;
 pub use text::printable;
 pub use trial::{TRIAL_NAMES, trial_files, trial_markdown};
 
-use crate::data::Analysis;
+use crate::data::{Analysis, ChannelCurve};
+use crate::numerics::spectrum::magnitude;
 
 /// Why a part of the report could not be made.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -74,6 +75,16 @@ pub enum ReportError {
         /// What the plotter said.
         reason: String,
     },
+}
+
+/// Frequencies, Hz, and magnitude |∫ f e^(−iωt) dt|, m/s, of a channel's unfiltered force over what is shown of it.
+fn spectrum(curve: &ChannelCurve) -> (Vec<f64>, Vec<f64>) {
+    let (Some(first_s), Some(last_s)) = (curve.time_s.first(), curve.time_s.last()) else {
+        return (Vec::new(), Vec::new());
+    };
+    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+    let sample_rate_hz = (curve.time_s.len().max(2) - 1) as f64 / (last_s - first_s);
+    magnitude(&curve.raw_m_s2, sample_rate_hz)
 }
 
 /// The names of the files of a report, in the order of [`files`].

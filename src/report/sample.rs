@@ -5,7 +5,7 @@ use crate::data::{
     Analysis, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelSpec, ChannelSummary, Comparison,
     Contact, Coupling, Curves, Drop, DropResult, End, Estimate, Events, FilterChoice, FirstImpact, FlightFit,
     FlightModelScore, FlightRegime, Input, Issue, IssueCode, Mode, ModelCandidate, ModelChoice, MotionCurve,
-    Plateau, Prediction, RecordingFormat, Rung, Setting, Severity, SlapDown, Source, Spectrum, Unit, Verdict,
+    Plateau, Prediction, RecordingFormat, Rung, Setting, Severity, SlapDown, Source, Unit, Verdict,
 };
 use std::f64::consts::PI;
 
@@ -324,7 +324,6 @@ fn curves() -> Curves {
     Curves {
         channels: vec![channel("A1", &time_s, &first), channel("A2", &time_s, &second)],
         motion: Some(motion()),
-        spectra: vec![spectrum("A1", 1.0), spectrum("A2", 1.6)],
     }
 }
 
@@ -371,18 +370,4 @@ fn motion() -> MotionCurve {
         motion.second_end_height_m.push(second_height);
     }
     motion
-}
-
-fn spectrum(name: &str, factor: f64) -> Spectrum {
-    let frequency_hz: Vec<f64> = (0..2000).map(|i| f64::from(i) * 25.0).collect();
-    let magnitude = |f: &f64| {
-        let pulse = 20.0 / (1.0 + (f / 120.0).powi(2));
-        let mode = 8.0 / (1.0 + ((f - 95.0) / 6.0).powi(2));
-        factor * (pulse + mode + 0.002 * (1.0 + (f * 0.7).sin().abs()))
-    };
-    Spectrum {
-        channel: name.into(),
-        magnitude_m_s: frequency_hz.iter().map(magnitude).collect(),
-        frequency_hz,
-    }
 }

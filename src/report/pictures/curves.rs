@@ -1,7 +1,7 @@
 //! Accelerations (Fig. 12), velocities (Fig. 13), motion and spectra to panels.
 
-use super::super::ReportError;
 use super::super::grid::STANDARD_GRAVITY_M_S2;
+use super::super::{ReportError, spectrum};
 use super::panel::{COLOURS, Dash, Line, Mark, Panel};
 use super::{Picture, assemble};
 use crate::data::{Analysis, Axis, ChannelCurve, End};
@@ -121,21 +121,19 @@ pub(super) fn motion(analysis: &Analysis) -> Result<Picture, ReportError> {
 pub(super) fn spectra(analysis: &Analysis) -> Result<Picture, ReportError> {
     let lines = analysis
         .curves
-        .spectra
+        .channels
         .iter()
         .enumerate()
-        .map(|(i, spectrum)| Line {
-            label: Some(spectrum.channel.clone()),
+        .map(|(i, curve)| Line {
+            label: Some(curve.channel.clone()),
             colour: COLOURS[i % COLOURS.len()],
             opacity: 0.9,
             stroke: 3,
             dash: Dash::Solid,
-            points: spectrum
-                .frequency_hz
-                .iter()
-                .copied()
-                .zip(spectrum.magnitude_m_s.iter().copied())
-                .collect(),
+            points: {
+                let (frequency_hz, magnitude_m_s) = spectrum(curve);
+                frequency_hz.into_iter().zip(magnitude_m_s).collect()
+            },
         })
         .collect();
     let modes = analysis.result.flight.as_ref().map_or(&[][..], |flight| &flight.modes[..]);
