@@ -4,6 +4,7 @@ use super::transverse;
 use crate::data::{Axis, End, Onset, Signal};
 use crate::numerics::projection::residual_square;
 use crate::numerics::quadrature::running_integral;
+use crate::numerics::reduce::{block_means, peak};
 use std::ops::Range;
 
 /// An answer below this share of the struck end's peak is none: the sensor sits near the centre of percussion.
@@ -21,6 +22,8 @@ const MODEL_SHARE: f64 = 0.005;
 const LENGTHS_S: [f64; 7] = [0.4e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3, 3e-3, 4e-3];
 /// Longest first contact whose peak is looked at, s.
 const CONTACT_S: f64 = 0.02;
+/// A stretch is fitted in so many means of neighbouring samples or a few more: over the longest 50 to a period of 450 Hz.
+const POINTS: usize = 160;
 /// Delays tried in a fit, and between the best two of them.
 const TRIED: u32 = 120;
 const REFINED: u32 = 20;
@@ -68,39 +71,46 @@ impl Cause {
             let next = running_integral(integrals.last()?, 1e3 / rate_hz);
             integrals.push(next);
         }
-        let peak = largest(&integrals[0]);
-        (peak > 0.0).then_some(Self {
+        let largest = peak(&integrals[0]);
+        (largest > 0.0).then_some(Self {
             contact_s,
             start_s: signal.time_s(from),
             sample_rate_hz: rate_hz,
             integrals,
-            peak,
+            peak: largest,
             noise: signal.noise_m_s2,
         })
     }
 
+    /// The integrals of these orders as means of `block` samples each; the others are left empty.
+    fn in_blocks(&self, block: usize, orders: &[usize]) -> Self {
+        let of_order = |order| match self.integrals.get(order) {
+            Some(values) if orders.contains(&order) => block_means(values, block),
+            _ => Vec::new(),
+        };
+        Self {
+            start_s: self.start_s + number(block - 1) / 2.0 / self.sample_rate_hz,
+            sample_rate_hz: self.sample_rate_hz / number(block),
+            integrals: (0..self.integrals.len()).map(of_order).collect(),
+            ..*self
+        }
+    }
+
     /// The integrals of these orders at `count` times from `from_s` on, `step_s` apart, linear between samples.
     fn regressors(&self, orders: &[usize], from_s: f64, step_s: f64, count: usize) -> Vec<Vec<f64>> {
-        let at = |values: &[f64], position: f64| {
-            if position <= 0.0 {
-                return 0.0;
-            }
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "positive, cut to the samples"
-            )]
-            let index = (position as usize).min(values.len().saturating_sub(2));
-            let share = (position - number(index)).min(1.0);
-            values[index] + share * (values[index + 1] - values[index])
-        };
-        orders
-            .iter()
-            .filter_map(|&order| self.integrals.get(order))
+        let first = (from_s - self.start_s) * self.sample_rate_hz;
+        let step = step_s * self.sample_rate_hz;
+        let values = orders.iter().filter_map(|&order| self.integrals.get(order));
+        values
             .map(|values| {
-                (0..count)
-                    .map(|i| at(values, (from_s + number(i) * step_s - self.start_s) * self.sample_rate_hz))
-                    .collect()
+                let last = values.len().saturating_sub(2);
+                let at = |i: usize| {
+                    let position = (first + number(i) * step).max(0.0);
+                    let index = samples(position).min(last);
+                    let share = (position - number(index)).min(1.0);
+                    values[index] + share * (values[index + 1] - values[index])
+                };
+                (0..count).map(at).collect()
             })
             .collect()
     }
@@ -128,14 +138,14 @@ impl<'a> Answer<'a> {
         let from = signal.index_from(cause.contact_s - BEFORE_S);
         let to = signal.index_from(cause.contact_s + CONTACT_S);
         let force = signal.force_m_s2.get(from..to)?;
-        let peak = largest(force);
-        if peak < (LEAST_NOISE * signal.noise_m_s2).max(LEAST_SHARE * cause.peak) {
+        let largest = peak(force);
+        if largest < (LEAST_NOISE * signal.noise_m_s2).max(LEAST_SHARE * cause.peak) {
             return None;
         }
-        let foot = (SEEN_NOISE * signal.noise_m_s2).max(LEAST_SHARE * peak);
+        let foot = (SEEN_NOISE * signal.noise_m_s2).max(LEAST_SHARE * largest);
         let seen = from + force.iter().position(|f| f.abs() > foot)?;
         let is_whole = !signal.touches(&signal.gaps, cause.contact_s - BEFORE_S, cause.contact_s + AFTER_S);
-        let noise = signal.noise_m_s2.hypot(cause.noise * peak / cause.peak);
+        let noise = signal.noise_m_s2.hypot(cause.noise * largest / cause.peak);
         (is_whole && seen > from).then_some(Self { signal, cause, seen, noise })
     }
 
@@ -169,8 +179,12 @@ impl<'a> Answer<'a> {
         if to - self.seen < ORDERS.len() + 4 {
             return None;
         }
-        let values = self.signal.force_m_s2.get(from..to)?;
-        let left = |delay_s: f64| self.left(values, from, &ORDERS, delay_s);
+        let block = ((to - from) / POINTS).max(1);
+        let values = block_means(self.signal.force_m_s2.get(from..to)?, block);
+        let cause = self.cause.in_blocks(block, &ORDERS);
+        let noise = self.noise_of_means(block);
+        let begin_s = self.signal.time_s(from) + number(block - 1) / 2.0 / rate_hz;
+        let left = |delay_s: f64| left(&values, begin_s - delay_s, number(block) / rate_hz, &cause, &ORDERS);
         let seen_s = self.signal.time_s(self.seen) - self.cause.contact_s;
         let (low_s, high_s) = (seen_s - back_s - 3.0 / rate_hz, seen_s + length_s / 2.0);
         let (step_s, coarse) = scan(low_s..high_s, TRIED, &left);
@@ -181,13 +195,14 @@ impl<'a> Answer<'a> {
         let (_, fine) = scan(coarse[best - 1].0..coarse[best + 1].0, REFINED, &left);
         let &(delay_s, least) = fine.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
         let freedom = number(values.len() - ORDERS.len() - 1);
-        let model = MODEL_SHARE * self.size(values, to);
-        if (least / freedom).sqrt() > (2.0 * self.noise).hypot(model) {
+        let answered = number(to - self.seen) / number(block);
+        let model = MODEL_SHARE * size(&values, answered);
+        if (least / freedom).sqrt() > (2.0 * noise).hypot(model) {
             return None;
         }
         // Twice the standard uncertainty where the sum of squares has grown by four variances, or what the model may leave.
-        let variance = (least / freedom).max(self.noise.powi(2));
-        let limit = least + 4.0 * variance + model.powi(2) * number(to - self.seen) / 4.0;
+        let variance = (least / freedom).max(noise.powi(2));
+        let limit = least + 4.0 * variance + model.powi(2) * answered / 4.0;
         let mut as_good = coarse.iter().filter(|c| c.1 <= limit).map(|c| c.0);
         let first_s = as_good.next().unwrap_or(delay_s);
         let last_s = as_good.next_back().unwrap_or(first_s);
@@ -209,22 +224,31 @@ impl<'a> Answer<'a> {
             if values.len() < ORDERS.len() + 6 || !stands_out {
                 return false;
             }
-            let rms = (self.left(values, from, &ORDERS, 0.0) / number(values.len() - 6)).sqrt();
-            rms < (1.5 * self.noise).hypot(MODEL_SHARE * self.size(values, to))
+            let step_s = 1.0 / signal.sample_rate_hz;
+            let left = left(values, signal.time_s(from), step_s, self.cause, &ORDERS);
+            let rms = (left / number(values.len() - 6)).sqrt();
+            rms < (1.5 * self.noise).hypot(MODEL_SHARE * size(values, number((to - self.seen).max(1))))
         })
     }
 
-    /// Sum of squares that the cause leaves of `values`, which begin with sample `from`.
-    fn left(&self, values: &[f64], from: usize, orders: &[usize], delay_s: f64) -> f64 {
-        let from_s = self.signal.time_s(from) - delay_s;
-        let step_s = 1.0 / self.signal.sample_rate_hz;
-        residual_square(values, &self.cause.regressors(orders, from_s, step_s, values.len()))
+    /// Noise of the means of `block` samples: by those before first contact, for noise need not be white.
+    fn noise_of_means(&self, block: usize) -> f64 {
+        let to = self.signal.index_from(self.cause.contact_s - BEFORE_S);
+        let before = self.signal.force_m_s2.get(to.saturating_sub(POINTS * block)..to).unwrap_or_default();
+        let means = block_means(before, block);
+        let rms = size(&means, number(means.len().max(1)));
+        if block == 1 { self.noise } else { (self.noise / number(block).sqrt()).max(rms).min(self.noise) }
     }
+}
 
-    /// RMS of the answer from where it is seen to sample `to`.
-    fn size(&self, values: &[f64], to: usize) -> f64 {
-        (values.iter().map(|v| v * v).sum::<f64>() / number((to - self.seen).max(1))).sqrt()
-    }
+/// Sum of squares that the cause's integrals leave of `values`, taken from `from_s` on, `step_s` apart.
+fn left(values: &[f64], from_s: f64, step_s: f64, cause: &Cause, orders: &[usize]) -> f64 {
+    residual_square(values, &cause.regressors(orders, from_s, step_s, values.len()))
+}
+
+/// Root of the mean square of `values` over so many of them, all others being next to nothing.
+fn size(values: &[f64], count: f64) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / count).sqrt()
 }
 
 /// `steps` + 1 places over a range with what `function` is there, and how far apart they lie.
@@ -232,10 +256,6 @@ fn scan(over: Range<f64>, steps: u32, function: &impl Fn(f64) -> f64) -> (f64, V
     let step = (over.end - over.start) / f64::from(steps);
     let places = (0..=steps).map(|i| over.start + f64::from(i) * step);
     (step, places.map(|x| (x, function(x))).collect())
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |m, f| m.max(f.abs()))
 }
 
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]

@@ -7,6 +7,7 @@ pub mod noise;
 pub mod prior_fit;
 pub mod projection;
 pub mod quadrature;
+pub mod reduce;
 pub mod robust;
 pub mod root;
 pub mod sinusoid;

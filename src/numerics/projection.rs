@@ -1,5 +1,7 @@
 //! Samples and a few regressors to what no combination of the regressors explains.
 
+use super::reduce::dot;
+
 /// A regressor that keeps less than this share of itself beside the others says nothing of its own.
 const DEPENDENT: f64 = 1e-9;
 
@@ -37,10 +39,6 @@ fn take_off(values: &mut [f64], unit: &[f64]) {
     for (v, u) in values.iter_mut().zip(unit) {
         *v -= share * u;
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 #[cfg(test)]
