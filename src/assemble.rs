@@ -5,6 +5,7 @@ use crate::data::{
     FlightFit, Input, Issue, IssueCode, ModelChoice, Quantities, ReconstructionChoice, Recording, RestLevel,
     Setting, Setup, Severity, Signal, SlapDown,
 };
+use crate::numerics::reduce::peak;
 use crate::{fit, judge, motion, predict};
 
 /// The analysis while it is made.
@@ -131,9 +132,11 @@ impl<'a> Draft<'a> {
                 drift: self.cask_file.corrections.zero_shift,
                 angular_velocity_rad_s: quantities.angular_velocity.value,
             });
-        let filtered = window
-            .and_then(|w| motion::fit_flight(smooth, &w, None, setup.cog_m))
-            .and_then(|flight| motion::reconstruct(smooth, &flight, &self.events, setup));
+        let filtered =
+            window.and_then(|w| motion::fit_flight(smooth, &w, None, setup.cog_m)).and_then(|flight| {
+                let integrated = motion::Integrated::over(smooth, &self.events);
+                motion::outcome(&integrated, &flight, &self.events, setup)
+            });
         if let (Some(m), Some(speed)) =
             (filtered.and_then(|m| m.second_end_m_s.map(|v| (m.rebound_m_s, v))), quantities.speed)
         {
@@ -160,9 +163,7 @@ impl<'a> Draft<'a> {
         let (cutoff_hz, origin) = self.cutoff();
         self.curves.channels =
             motion::channel_curves(signals, smooth, &self.events, &sticking(self.cask_file));
-        self.curves.spectra = motion::spectra(signals, &self.events);
         for ((summary, signal), curve) in self.channels.iter_mut().zip(signals).zip(&self.curves.channels) {
-            let peak = |values: &[f64]| values.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
             summary.offset_m_s2 = Some(signal.removed_offset_m_s2);
             summary.noise_m_s2 = Some(signal.noise_m_s2);
             summary.peak_raw_m_s2 = Some(peak(&curve.raw_m_s2));

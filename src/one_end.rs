@@ -32,10 +32,11 @@ impl StandIn {
 /// R's slap-down is not in the record: what comes later than it could come is cut off.
 pub(crate) fn stand_in(file: &CaskFile, signals: &mut Vec<Signal>, contact_s: f64) -> Option<StandIn> {
     let mut transverse = signals.iter().filter(|s| s.axis == Axis::Transverse);
-    let known = transverse.next().filter(|s| s.end == End::First)?.clone();
+    let known = transverse.next().filter(|s| s.end == End::First)?;
     if transverse.any(|s| s.end == End::Second) {
         return None;
     }
+    let known = known.clone();
     let position_m = file.cask.length_m - known.position_m;
     let ratio = |cask: &Cask, drop: &Drop| step_ratio(cask, drop, file, (position_m, known.position_m));
     let share = ratio(&file.cask, &file.drop)?;

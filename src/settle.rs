@@ -47,6 +47,8 @@ pub(crate) struct Settled {
     pub struck: Option<(f64, f64)>,
     /// The flight between them, where it could be fitted.
     pub flight: Option<FlightFit>,
+    /// What that was fitted over.
+    window: Option<motion::Window>,
 }
 
 /// What the search goes by.
@@ -72,14 +74,16 @@ pub(crate) fn settle(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Opt
         earliest_s: contact_s + EARLIEST_SLAP_DOWN * descent_m / drop.impact_velocity_m_s,
         least_m_s: LEAST_SLAP_DOWN * drop.impact_velocity_m_s,
     };
-    let (first, second) = search.ends(signals)?;
-    let struck = events::slap_down(&second, search.earliest_s..search.record_end_s, search.least_m_s, false);
+    let on = |end| events::without_first_mode(signals, end, file.cask.length_m).map(motion::Calmed::new);
+    let mut ends = (on(End::First)?, on(End::Second)?);
+    let struck =
+        events::slap_down(ends.1.signal(), search.earliest_s..search.record_end_s, search.least_m_s, false);
     let mut best: Option<(f64, Settled)> = None;
     // Where the velocities are cut off no beginning leads to a flight that explains them.
     let before_s = struck.map_or(search.record_end_s, |s| s.0);
     let is_hopeless = signals.iter().any(|s| judge::is_cut_off(s, contact_s, before_s));
     for share in FIRST_ENDS.into_iter().take(if is_hopeless { 1 } else { FIRST_ENDS.len() }) {
-        let attempt = search.attempt(&first, struck, share)?;
+        let attempt = search.attempt(&mut ends, struck, share);
         let cost = search.cost(&attempt);
         if best.as_ref().is_none_or(|(least, _)| cost < *least) {
             best = Some((cost, attempt));
@@ -88,7 +92,11 @@ pub(crate) fn settle(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Opt
             break;
         }
     }
-    best.map(|(_, settled)| settled)
+    let mut settled = best?.1;
+    if let (Some(flight), Some(window)) = (&mut settled.flight, &settled.window) {
+        motion::compare_late(flight, signals, window, file.cask.cog_m);
+    }
+    Some(settled)
 }
 
 /// Where the shortest record ends, s.
@@ -97,25 +105,26 @@ pub(crate) fn record_end_s(signals: &[Signal]) -> f64 {
 }
 
 impl Search<'_> {
-    /// Both ends' signals without the first bending mode.
-    fn ends(&self, signals: &[Signal]) -> Option<(Signal, Signal)> {
-        let on = |end| events::without_first_mode(signals, end, self.file.cask.length_m);
-        Some((on(End::First)?, on(End::Second)?))
-    }
-
-    /// Rounds from a first guess of the slap-down, the first fit ending at a share of the time to it.
-    fn attempt(&self, first: &Signal, mut struck: Option<(f64, f64)>, share: f64) -> Option<Settled> {
+    /// Rounds from a first guess of the slap-down, the first fit ending at a share of the time to it; the signals of both ends are without
+    /// the first bending mode.
+    fn attempt(
+        &self,
+        (first, second): &mut (motion::Calmed, motion::Calmed),
+        mut struck: Option<(f64, f64)>,
+        share: f64,
+    ) -> Settled {
+        first.restore();
         let (signals, contact_s, cog_m) = (self.signals, self.contact_s, self.file.cask.cog_m);
         let mut end_s = contact_s + share * (struck.map_or(self.record_end_s, |s| s.0) - contact_s);
         // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit goes by.
         let cleared_s = contact_s + (FIRST_CLEARANCE * (end_s - contact_s)).min(LONGEST_CLEARANCE_S);
-        let rough_s = events::first_separation(first, contact_s, end_s).unwrap_or(cleared_s);
+        let rough_s = events::first_separation(first.signal(), contact_s, end_s).unwrap_or(cleared_s);
         // The first fit keeps well clear of the contact, which ringing may have seemed to end too soon.
         let mut free_s = rough_s.max(cleared_s);
         let mut left = (rough_s, 0.1 * (rough_s - contact_s));
         let mut flight: Option<FlightFit> = None;
         let mut others: Vec<FlightFit> = Vec::new();
-        let mut calm = signals.to_vec();
+        let mut taken_over = None;
         for round in 0..ROUNDS + FURTHER_ROUNDS {
             let window = motion::Window {
                 contact_s,
@@ -129,14 +138,15 @@ impl Search<'_> {
             let Some(fitted) = fits.next() else { break };
             others = fits.collect();
             let beyond_s = struck.map_or(self.record_end_s, |s| s.0).max(end_s) + BEYOND_S;
-            motion::take_off_ringing(&mut calm, signals, &fitted, contact_s..beyond_s);
-            let (first, second) = self.ends(&calm)?;
+            first.take_off(&fitted, contact_s..beyond_s);
+            second.take_off(&fitted, contact_s..beyond_s);
+            taken_over = Some(window);
             // A flight that is explained well has no slap-down hidden in its ringing; one that is not may show what is none.
             if is_explained(&fitted) {
                 let between_s = self.earliest_s.max(free_s)..self.record_end_s;
-                struck = events::slap_down(&second, between_s, self.least_m_s, true);
+                struck = events::slap_down(second.signal(), between_s, self.least_m_s, true);
             }
-            left = events::separation(&first, contact_s, free_s).unwrap_or(left);
+            left = events::separation(first.signal(), contact_s, free_s).unwrap_or(left);
             free_s = left.0 + 0.1 * (left.0 - contact_s) + 3e-4;
             flight = Some(fitted);
             let fitted_to_s = std::mem::replace(&mut end_s, struck.map_or(self.record_end_s, |s| s.0));
@@ -144,7 +154,7 @@ impl Search<'_> {
                 break;
             }
         }
-        Some(self.best_of(Settled { left, struck, flight }, others))
+        self.best_of(Settled { left, struck, flight, window: taken_over }, others)
     }
 
     /// Where a flight shows too little of its slowest mode to tell the fits apart, the first of them that the closures do not speak against.
@@ -152,8 +162,8 @@ impl Search<'_> {
         if self.cost(&settled) < 1.0 || settled.flight.as_ref().is_none_or(is_told_apart) {
             return settled;
         }
-        let Settled { left, struck, .. } = settled;
-        let with = |flight| Settled { left, struck, flight: Some(flight) };
+        let Settled { left, struck, window, .. } = settled;
+        let with = |flight| Settled { left, struck, flight: Some(flight), window };
         others.into_iter().map(with).find(|other| self.cost(other) < 1.0).unwrap_or(settled)
     }
 
@@ -167,7 +177,8 @@ impl Search<'_> {
             slap_down_s: settled.struck.map(|s| s.0),
             ..Events::default()
         };
-        let moved = motion::outcome(self.signals, flight, &times, &assemble::sticking(self.file));
+        let integrated = motion::Integrated::over(self.signals, &times);
+        let moved = motion::outcome(&integrated, flight, &times, &assemble::sticking(self.file));
         let cask = &self.file.cask;
         let turning = moved.as_ref().filter(|_| cask.is_body).map_or(0.0, |m| {
             let by_impulse_rad_s = m.angular_impulse_m2_s * cask.mass_kg / cask.inertia_kg_m2;

@@ -123,9 +123,10 @@ fn flight_fit(bencher: Bencher, samples: usize) {
 #[divan::bench(args = SIZES)]
 fn reconstruct(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
-    bencher
-        .counter(m.conditioned())
-        .bench(|| motion::reconstruct(&m.signals, &m.flight, &m.events, &m.setup).expect("a motion"));
+    bencher.counter(m.conditioned()).bench(|| {
+        let integrated = motion::Integrated::over(&m.signals, &m.events);
+        motion::reconstruct(&integrated, &m.flight, &m.events, &m.setup).expect("a motion")
+    });
 }
 
 #[divan::bench(args = SIZES)]
@@ -143,9 +144,11 @@ fn quantities(bencher: Bencher, samples: usize) {
         rests: &[],
         fall_s: None,
     };
-    bencher
-        .counter(m.conditioned())
-        .bench(|| fit::ladder(&measured, None, None, &motion::outcome).expect("quantities"));
+    bencher.counter(m.conditioned()).bench(|| {
+        let integrated = motion::Integrated::over(&m.signals, &m.events);
+        let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
+        fit::ladder(&measured, None, None, &moved).expect("quantities")
+    });
 }
 
 #[divan::bench(args = SIZES)]

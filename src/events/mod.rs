@@ -8,11 +8,13 @@ mod release;
 
 pub use answer::answers;
 pub use detector::{Detector, first_contact_by};
-pub use locate::locate;
+pub use locate::{last_change_s, locate};
 pub use onset::{first_contact, first_separation, separation, slap_down};
 pub use release::{FreeFall, free_fall};
 
-use crate::data::{Axis, End, Signal};
+use crate::data::{Axis, Channel, End, Samples, Signal};
+use crate::numerics::reduce;
+use std::ops::Range;
 
 /// Slope of the first bending mode of a free uniform beam at its end over its value there, times the length (Blevins 1979).
 const END_SLOPE: f64 = 4.65;
@@ -22,13 +24,19 @@ const LEAST_SHAPE: f64 = 0.2;
 /// The transverse signal nearest to an end without the first bending mode, which both ends of a beam ring with alike: the other end's
 /// signal taken off it in the ratio of the mode's shape at both. Impacts stay, and those of the other end turn their sign.
 ///
-/// The signal as it is where the other end has none of the same times, or where one of both sits near a node.
+/// The signal as it is where the other end has none of the same times, or where one of both sits near a node. Returned with what it is
+/// the sum of: signals by name, each with its weight.
 #[must_use]
-pub fn without_first_mode(signals: &[Signal], end: End, length_m: f64) -> Option<Signal> {
+pub fn without_first_mode(
+    signals: &[Signal],
+    end: End,
+    length_m: f64,
+) -> Option<(Signal, Vec<(String, f64)>)> {
     let own = transverse(signals, end)?;
     let other = transverse(signals, if end == End::First { End::Second } else { End::First });
     let shape = |s: &Signal| 1.0 - END_SLOPE * s.position_m.min(length_m - s.position_m).max(0.0) / length_m;
     let mut free = own.clone();
+    let mut parts = vec![(own.name.clone(), 1.0)];
     let of_same_times = other.filter(|o| {
         (o.sample_rate_hz / own.sample_rate_hz - 1.0).abs() < 1e-9
             && (o.start_s - own.start_s).abs() * own.sample_rate_hz < 1.0
@@ -41,8 +49,21 @@ pub fn without_first_mode(signals: &[Signal], end: End, length_m: f64) -> Option
             *force -= ratio * other_m_s2;
         }
         free.noise_m_s2 = own.noise_m_s2.hypot(ratio * other.noise_m_s2);
+        parts.push((other.name.clone(), -ratio));
     }
-    Some(free)
+    Some((free, parts))
+}
+
+/// Means of the finite samples of blocks of `size` over a range of a channel, m/s²; NaN where there is none.
+fn block_means_m_s2(channel: &Channel, range: Range<usize>, size: usize) -> Vec<f64> {
+    let mut means = match &channel.samples {
+        Samples::F32(v) => reduce::finite_block_means(&v[range], size),
+        Samples::F64(v) => reduce::finite_block_means(&v[range], size),
+    };
+    for mean in &mut means {
+        *mean *= channel.scale_m_s2;
+    }
+    means
 }
 
 /// The transverse signal nearest to an end: what happens there shows on it first.

@@ -13,8 +13,8 @@ pub use propagate::{quantities, spread_by_draws};
 /// Coverage factor of a 95 % interval (GUM, 6.3.3).
 pub const COVERAGE: f64 = 2.0;
 
-/// The measured motion as a function of its inputs, such as `motion::outcome`.
-pub type Reconstruct<'a> = &'a dyn Fn(&[Signal], &FlightFit, &Events, &Setup) -> Option<Motion>;
+/// The measured motion as a function of its inputs, such as `motion::outcome` of the integrated channels.
+pub type Reconstruct<'a> = &'a (dyn Fn(&FlightFit, &Events, &Setup) -> Option<Motion> + Sync);
 
 /// What the propagation starts from.
 #[derive(Debug, Clone, Copy)]

@@ -6,6 +6,7 @@ use super::{COVERAGE, Measured, Reconstruct};
 use crate::data::{Adjustment, Closure, Contribution, Estimate, Motion, Quantities};
 use crate::numerics::prior_fit::{PriorFit, derivatives, fit};
 use nalgebra::DMatrix;
+use std::sync::{Mutex, PoisonError};
 
 /// Number of quantities followed through the propagation.
 const COUNT: usize = 12;
@@ -64,47 +65,53 @@ pub(super) struct Model<'a> {
     observables: Vec<Observable>,
     /// What the other contact law would say less what the stated one says: of the quantities, then of the observables.
     law: Option<(Vec<f64>, Vec<f64>)>,
+    /// Slopes of the quantities and, below them, of the observables, and where they were asked for.
+    known_slopes: Mutex<Vec<(Vec<f64>, DMatrix<f64>)>>,
 }
 
 impl<'a> Model<'a> {
     pub fn new(measured: &'a Measured, reconstruct: Reconstruct<'a>) -> Option<Self> {
         let base = Inputs::new(measured);
-        let motion = reconstruct(measured.signals, &base.flight, &base.events, &base.setup)?;
+        let motion = reconstruct(&base.flight, &base.events, &base.setup)?;
         let inputs = inputs(measured, &motion);
         let observables = observables(measured, &motion);
-        let mut model = Self { measured, reconstruct, base, motion, inputs, observables, law: None };
+        let mut model = Self {
+            measured,
+            reconstruct,
+            base,
+            motion,
+            inputs,
+            observables,
+            law: None,
+            known_slopes: Mutex::default(),
+        };
         if let Some(axial) = measured.other_law {
             let mut other = model.base.clone();
             other.setup.axial = axial;
-            let stated = (model.read(&model.base), model.residuals_of(&model.base));
-            let other = (model.read(&other), model.residuals_of(&other));
-            if let (Some(stated), Some(other), Some(stated_left), Some(other_left)) =
-                (stated.0, other.0, stated.1, other.1)
-            {
+            let both = |inputs| {
+                let motion = model.follow(inputs)?;
+                Some((read_off(&motion, inputs), model.missed(&motion, inputs)?))
+            };
+            if let (Some(stated), Some(other)) = (both(&model.base), both(&other)) {
                 let less = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect();
-                model.law = Some((less(&other, &stated), less(&other_left, &stated_left)));
+                model.law = Some((less(&other.0, &stated.0), less(&other.1, &stated.1)));
             }
         }
         Some(model)
     }
 
     fn follow(&self, inputs: &Inputs) -> Option<Motion> {
-        (self.reconstruct)(self.measured.signals, &inputs.flight, &inputs.events, &inputs.setup)
+        (self.reconstruct)(&inputs.flight, &inputs.events, &inputs.setup)
     }
 
-    fn read(&self, inputs: &Inputs) -> Option<Vec<f64>> {
-        self.follow(inputs).map(|motion| read_off(&motion, inputs))
-    }
-
-    fn residuals_of(&self, inputs: &Inputs) -> Option<Vec<f64>> {
-        let motion = self.follow(inputs)?;
-        self.observables.iter().map(|o| o.residual(self.measured, inputs, &motion)).collect()
+    fn missed(&self, motion: &Motion, inputs: &Inputs) -> Option<Vec<f64>> {
+        self.observables.iter().map(|o| o.residual(self.measured, inputs, motion)).collect()
     }
 
     /// The quantities with the inputs moved by so many standard uncertainties.
     fn values(&self, by_u: &[f64]) -> Option<Vec<f64>> {
         let moved = self.base.moved(&self.inputs, by_u);
-        let mut values = self.read(&moved)?;
+        let mut values = read_off(&self.follow(&moved)?, &moved);
         if let Some((law, _)) = &self.law {
             values.iter_mut().zip(law).for_each(|(value, law)| *value += moved.law_share * law);
         }
@@ -114,11 +121,42 @@ impl<'a> Model<'a> {
     /// The observables' misses, each over its own standard uncertainty.
     fn residuals(&self, by_u: &[f64]) -> Option<Vec<f64>> {
         let moved = self.base.moved(&self.inputs, by_u);
-        let mut left = self.residuals_of(&moved)?;
+        let mut left = self.missed(&self.follow(&moved)?, &moved)?;
         if let Some((_, law)) = &self.law {
             left.iter_mut().zip(law).for_each(|(left, law)| *left += moved.law_share * law);
         }
         Some(left)
+    }
+
+    /// The slopes of [`Self::values`] and, below them, of [`Self::residuals`]: a motion gives both, and what was asked for once is kept.
+    fn slopes(&self, at_u: &[f64]) -> Option<DMatrix<f64>> {
+        let known = || self.known_slopes.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, slopes)) = known().iter().find(|k| k.0 == at_u) {
+            return Some(slopes.clone());
+        }
+        let both = |by_u: &[f64]| {
+            let moved = self.base.moved(&self.inputs, by_u);
+            let motion = self.follow(&moved)?;
+            let mut both = read_off(&motion, &moved);
+            both.extend(self.missed(&motion, &moved)?);
+            if let Some((values, left)) = &self.law {
+                both.iter_mut()
+                    .zip(values.iter().chain(left))
+                    .for_each(|(b, law)| *b += moved.law_share * law);
+            }
+            Some(both)
+        };
+        let slopes = derivatives(&both, at_u)?;
+        known().push((at_u.to_vec(), slopes.clone()));
+        Some(slopes)
+    }
+
+    fn slopes_of_quantities(&self, at_u: &[f64]) -> Option<DMatrix<f64>> {
+        Some(self.slopes(at_u)?.rows(0, COUNT).into_owned())
+    }
+
+    fn slopes_of_residuals(&self, at_u: &[f64]) -> Option<DMatrix<f64>> {
+        Some(self.slopes(at_u)?.rows(COUNT, self.observables.len()).into_owned())
     }
 
     /// The inputs fitted to the observables; `None` where there are none or the motion cannot be followed.
@@ -126,7 +164,7 @@ impl<'a> Model<'a> {
         if self.observables.is_empty() {
             return None;
         }
-        fit(self.inputs.len(), &|by_u| self.residuals(by_u))
+        fit(self.inputs.len(), &|by_u| self.residuals(by_u), &|at_u| self.slopes_of_residuals(at_u))
     }
 
     /// The quantities by the inputs as they are stated.
@@ -137,7 +175,7 @@ impl<'a> Model<'a> {
     /// The quantities where a fit ended, with what each datum contributes, `widened` times as uncertain as it says.
     pub fn propagate(&self, fit: &PriorFit, widened: f64) -> Option<Quantities> {
         let values = self.values(&fit.unknowns)?;
-        let slopes = derivatives(&|by_u| self.values(by_u), &fit.unknowns)?;
+        let slopes = self.slopes_of_quantities(&fit.unknowns)?;
         // Each datum moves the unknowns by its column of the response, and they the quantities.
         let by_datum = slopes * &fit.response * widened;
         let struck = self.measured.events.slap_down_s.is_some();
@@ -184,9 +222,7 @@ impl<'a> Model<'a> {
     /// Each observable's miss by the stated inputs over its uncertainty from all of them, and what a fit leaves of it.
     pub fn closures(&self, fit: Option<&PriorFit>) -> Vec<Closure> {
         let start = vec![0.0; self.inputs.len()];
-        let (Some(misses), Some(slopes)) =
-            (self.residuals(&start), derivatives(&|by_u| self.residuals(by_u), &start))
-        else {
+        let (Some(misses), Some(slopes)) = (self.residuals(&start), self.slopes_of_residuals(&start)) else {
             return Vec::new();
         };
         let left = |i: usize| fit.and_then(|f| f.left.get(i)).copied();

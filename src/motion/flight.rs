@@ -6,7 +6,7 @@ use crate::numerics::damped_modes::{
     Drive, Fit, Form, Oscillation, Seeds, Series, SeriesFit, fit, uniform_ringing,
 };
 use crate::numerics::noise::integral_uncertainty_by;
-use crate::numerics::robust;
+use crate::numerics::{reduce, robust};
 use rayon::prelude::*;
 
 /// Most fits described: the one taken and those that could stand in for it.
@@ -72,8 +72,7 @@ pub fn fit_flights(signals: &[Signal], window: &Window, drive: Option<&Drive>, c
     let cut = Window { to_s: window.to_s.min(window.from_s + LONGEST_S), ..*window };
     let series: Vec<Series> = signals.iter().map(|s| series(s, &cut, cog_m)).collect();
     let mut fits = candidates(&series, &cut, drive);
-    let peaks_m_s2: Vec<f64> =
-        signals.iter().map(|s| s.force_m_s2.iter().fold(0.0_f64, |m, f| m.max(f.abs()))).collect();
+    let peaks_m_s2: Vec<f64> = signals.iter().map(|s| reduce::peak(&s.force_m_s2)).collect();
     fits.retain(|f| has_plausible_drift(&peaks_m_s2, f));
     let Some(richest) = fits.iter().max_by_key(|f| f.parameters).map(|f| f.correlation) else {
         return Vec::new();
@@ -81,17 +80,16 @@ pub fn fit_flights(signals: &[Signal], window: &Window, drive: Option<&Drive>, c
     let mut scored: Vec<(f64, Fit)> =
         fits.into_iter().map(|f| (f.bic(&series, richest) + improbability(&peaks_m_s2, &f), f)).collect();
     scored.sort_by(|a, b| a.0.total_cmp(&b.0));
-    (0..scored.len().min(MOST_FITS))
-        .map(|i| {
-            let mut flight = described(signals, &cut, &scored, i);
-            let mismatches: Vec<Option<f64>> =
-                signals.iter().map(|s| late_mismatch_m_s(s, &flight, window, cog_m)).collect();
-            for (plateau, mismatch) in flight.plateaus.iter_mut().zip(mismatches) {
-                plateau.late_mismatch_m_s = mismatch;
-            }
-            flight
-        })
-        .collect()
+    (0..scored.len().min(MOST_FITS)).map(|i| described(signals, &cut, &scored, i)).collect()
+}
+
+/// Holds the end of the flight in `window` against its fit, for each channel   (20)
+pub fn compare_late(flight: &mut FlightFit, signals: &[Signal], window: &Window, cog_m: f64) {
+    let mismatches: Vec<Option<f64>> =
+        signals.iter().map(|s| late_mismatch_m_s(s, flight, window, cog_m)).collect();
+    for (plateau, mismatch) in flight.plateaus.iter_mut().zip(mismatches) {
+        plateau.late_mismatch_m_s = mismatch;
+    }
 }
 
 /// The most probable of [`fit_flights`].

@@ -1,6 +1,6 @@
 //! Signals and the plateaus of the flight to the integrated channels during contact, and the line over their positions.
 
-use super::Velocity;
+use super::{Integrated, Velocity};
 use crate::data::{Axis, FlightFit, Mode, Signal};
 use crate::numerics::damped_modes::Drive;
 use nalgebra::Complex;
@@ -35,23 +35,22 @@ impl Line {
 
     /// ∫f_η of S, m/s, and Ω = φ̇, rad/s, at a time, given ∫Ω² dt since contact: f_η holds −Ω² η   (16)
     pub fn at(&self, histories: &Histories, time_s: f64, turned_rad2_s: f64) -> (f64, f64) {
-        let values: Vec<f64> = self
-            .channels
-            .iter()
-            .zip(&self.offsets_m)
-            .map(|(&i, offset_m)| histories.at(i, time_s) + turned_rad2_s * offset_m)
-            .collect();
+        let (mut sum, mut moment) = (0.0, 0.0);
+        for ((&i, offset_m), position_m) in self.channels.iter().zip(&self.offsets_m).zip(&self.positions_m) {
+            let value = histories.at(i, time_s) + turned_rad2_s * offset_m;
+            sum += value;
+            moment += (position_m - self.mean_m) * value;
+        }
+        let slope = moment / self.square_m2;
         #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let slope = values.iter().zip(&self.positions_m).map(|(v, x)| (x - self.mean_m) * v).sum::<f64>()
-            / self.square_m2;
+        let mean = sum / self.channels.len() as f64;
         (mean - slope * self.mean_m, slope)
     }
 }
 
 /// The integrated channels over the contact, led to the plateaus of the flight.
-pub(super) struct Histories {
-    velocities: Vec<Velocity>,
+pub(super) struct Histories<'a> {
+    velocities: &'a [Velocity],
     corrections_m_s: Vec<f64>,
     axial: Vec<(usize, f64, f64)>,
     contact_s: f64,
@@ -60,9 +59,9 @@ pub(super) struct Histories {
     bending: Vec<Vec<f64>>,
 }
 
-impl Histories {
+impl<'a> Histories<'a> {
     pub fn new(
-        signals: &[Signal],
+        Integrated { signals, velocities }: &'a Integrated,
         fit: &FlightFit,
         line: &Line,
         (contact_s, separation_s): (f64, f64),
@@ -71,17 +70,13 @@ impl Histories {
         if length_s <= 0.0 {
             return None;
         }
-        let mut velocities = Vec::new();
         let mut corrections_m_s = Vec::new();
-        for signal in signals {
+        for (signal, velocity) in signals.iter().zip(velocities) {
             let plateau = fit.plateau(&signal.name)?;
-            // The same start as the flight fit's, so that both count from one zero.
-            let velocity = Velocity::of(signal, contact_s - 2e-3, separation_s);
             // A zero shift sets in somewhere in the contact: half of it is taken to have acted.
             let before_s = fit.from_s - separation_s + length_s / 2.0;
             let plateau_m_s = plateau.velocity_step_m_s - plateau.zero_shift_m_s2 * before_s;
             corrections_m_s.push(plateau_m_s - velocity.at(separation_s));
-            velocities.push(velocity);
         }
         let axial = (0..signals.len())
             .filter(|&i| signals[i].axis == Axis::Axial)
@@ -94,10 +89,10 @@ impl Histories {
     }
 
     /// The channels as they are, led to nothing.
-    fn as_recorded(signals: &[Signal], (contact_s, left_s): (f64, f64)) -> Option<Self> {
+    fn as_recorded(recorded: &'a Integrated, (contact_s, left_s): (f64, f64)) -> Option<Self> {
         let length_s = left_s - contact_s;
-        let velocities = signals.iter().map(|s| Velocity::of(s, contact_s - 2e-3, left_s)).collect();
-        let corrections_m_s = vec![0.0; signals.len()];
+        let velocities = &recorded.velocities;
+        let corrections_m_s = vec![0.0; velocities.len()];
         let recorded =
             Self { velocities, corrections_m_s, axial: Vec::new(), contact_s, length_s, bending: Vec::new() };
         (length_s > 0.0).then_some(recorded)
@@ -191,9 +186,9 @@ fn bending(
     for ((mode, &(a, b)), driven) in modes.iter().zip(amplitudes_m_s).zip(driven) {
         let omega = std::f64::consts::TAU * mode.frequency_hz;
         let as_left = Complex::new(a, -b) * (Complex::new(-mode.damping * omega, omega) * left_s).exp();
-        let largest = driven.iter().map(|z| z.norm()).fold(0.0, f64::max);
+        let largest = driven.iter().map(Complex::norm_sqr).fold(0.0, f64::max);
         let last = driven[usize::from(STEPS)];
-        if last.norm() * MOST_DECLINE < largest || largest <= 0.0 {
+        if last.norm_sqr() * MOST_DECLINE * MOST_DECLINE < largest || largest <= 0.0 {
             continue;
         }
         // A mode's shape is real: what does not fit the phase is left to the correction.
@@ -216,9 +211,10 @@ pub fn drive(
     cog_m: f64,
 ) -> Option<Drive> {
     let line = Line::through(signals, cog_m)?;
+    let integrated = Integrated::over_contact(signals, (contact_s, left_s));
     let histories = match fit {
-        Some(fit) => Histories::new(signals, fit, &line, (contact_s, left_s))?,
-        None => Histories::as_recorded(signals, (contact_s, left_s))?,
+        Some(fit) => Histories::new(&integrated, fit, &line, (contact_s, left_s))?,
+        None => Histories::as_recorded(&integrated, (contact_s, left_s))?,
     };
     let turning: Vec<f64> = (0..=STEPS).map(|i| line.at(&histories, histories.grid_s(i), 0.0).1).collect();
     Some(Drive {

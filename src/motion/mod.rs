@@ -6,14 +6,40 @@ mod histories;
 mod reconstruct;
 mod ringing;
 
-pub use curves::{channel_curves, cutoff_hz, filtered, read_channels, spectra};
-pub use flight::{Window, fit_flight, fit_flights, mean_of_flight};
+pub use curves::{channel_curves, cutoff_hz, filtered, read_channels};
+pub use flight::{Window, compare_late, fit_flight, fit_flights, mean_of_flight};
 pub use histories::drive;
 pub use reconstruct::{outcome, reconstruct};
-pub use ringing::{rotation_rad_s, take_off_ringing};
+pub use ringing::{Calmed, rotation_rad_s};
 
-use crate::data::Signal;
+use crate::data::{Events, Signal};
 use crate::numerics::quadrature::running_integral;
+
+/// Signals with their running integrals over the contact, which every reconstruction of the same drop asks for again.
+pub struct Integrated<'a> {
+    pub(crate) signals: &'a [Signal],
+    velocities: Vec<Velocity>,
+}
+
+impl<'a> Integrated<'a> {
+    /// Integrals from 2 ms before first contact, where the flight fits begin to count too, until half the contact's length after it: both
+    /// times may be moved within their uncertainty.
+    #[must_use]
+    pub fn over_contact(signals: &'a [Signal], (contact_s, left_s): (f64, f64)) -> Self {
+        let to_s = left_s + 0.5 * (left_s - contact_s).max(0.0);
+        Self {
+            signals,
+            velocities: signals.iter().map(|s| Velocity::of(s, contact_s - 2e-3, to_s)).collect(),
+        }
+    }
+
+    /// The same over what `events` name as the contact; over nothing where they name none.
+    #[must_use]
+    pub fn over(signals: &'a [Signal], events: &Events) -> Self {
+        let contact_s = events.first_contact_s.unwrap_or(0.0);
+        Self::over_contact(signals, (contact_s, events.separation_s.unwrap_or(contact_s)))
+    }
+}
 
 /// Running integral of a signal over a stretch of its record.
 pub(crate) struct Velocity {

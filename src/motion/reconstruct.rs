@@ -1,7 +1,8 @@
 //! Velocity steps of the channels, a contact law and the initial motion to the planar motion of the cask.
 
+use super::Integrated;
 use super::histories::{Histories, Line};
-use crate::data::{AxialClosure, Events, FlightFit, Motion, MotionCurve, MotionState, Setup, Signal};
+use crate::data::{AxialClosure, Events, FlightFit, Motion, MotionCurve, MotionState, Setup};
 
 /// Steps over the contact: 400 over 20 ms leave the trapezoid's error below 1e-5 of the velocities.
 const CONTACT_STEPS: u32 = 400;
@@ -16,10 +17,15 @@ const CURVE_POINTS: u32 = 600;
 /// During contact the channels give ∫f_η of S and Ω by a line over their positions (16); v̇_η = f_η − g cos φ − Ω v_ξ (17);
 /// v_ξ comes from the contact law or the axial channels (18). Afterwards S flies freely (8).
 #[must_use]
-pub fn reconstruct(signals: &[Signal], fit: &FlightFit, events: &Events, setup: &Setup) -> Option<Motion> {
+pub fn reconstruct(
+    integrated: &Integrated,
+    fit: &FlightFit,
+    events: &Events,
+    setup: &Setup,
+) -> Option<Motion> {
     let mut curve = MotionCurve::default();
     let mut record = |state: &MotionState| push(&mut curve, setup, state);
-    let mut motion = follow(signals, fit, events, setup, &mut record)?;
+    let mut motion = follow(integrated, fit, events, setup, &mut record)?;
     let separation = motion.separation;
     let end_s = events.slap_down_s.unwrap_or(fit.to_s);
     for i in 1..=FLIGHT_STEPS {
@@ -32,13 +38,13 @@ pub fn reconstruct(signals: &[Signal], fit: &FlightFit, events: &Events, setup: 
 
 /// The same motion without its curve: what a fit asks for often.
 #[must_use]
-pub fn outcome(signals: &[Signal], fit: &FlightFit, events: &Events, setup: &Setup) -> Option<Motion> {
-    follow(signals, fit, events, setup, &mut |_| ())
+pub fn outcome(integrated: &Integrated, fit: &FlightFit, events: &Events, setup: &Setup) -> Option<Motion> {
+    follow(integrated, fit, events, setup, &mut |_| ())
 }
 
 /// The motion over the contact, each state told to `record`, and its flight.
 fn follow(
-    signals: &[Signal],
+    integrated: &Integrated,
     fit: &FlightFit,
     events: &Events,
     setup: &Setup,
@@ -46,20 +52,20 @@ fn follow(
 ) -> Option<Motion> {
     let contact_s = events.first_contact_s?;
     let separation_s = events.separation_s?;
-    let line = Line::through(signals, setup.cog_m)?;
-    let histories = Histories::new(signals, fit, &line, (contact_s, separation_s))?;
+    let line = Line::through(integrated.signals, setup.cog_m)?;
+    let histories = Histories::new(integrated, fit, &line, (contact_s, separation_s))?;
     let mut body = Contact::start(setup, contact_s);
     let step_s = (separation_s - contact_s) / f64::from(CONTACT_STEPS);
     record(&body.state);
     let (mut turned_rad2_s, mut angular_impulse_m2_s) = (0.0, 0.0);
     for i in 1..=CONTACT_STEPS {
         let time_s = contact_s + f64::from(i) * step_s;
-        let before = body.state;
+        let (before, before_by) = (body.state, body.angle_by);
         turned_rad2_s += before.angular_velocity_rad_s.powi(2) * step_s;
         let (transverse_m_s, rotation_rad_s) = line.at(&histories, time_s, turned_rad2_s);
         let axial_m_s = histories.axial_mean(time_s, rotation_rad_s);
         body.advance(setup, step_s, transverse_m_s, rotation_rad_s, axial_m_s);
-        angular_impulse_m2_s += turning_m2_s(setup, &before, &body.state);
+        angular_impulse_m2_s += turning_m2_s(setup, &before, &body.state, before_by);
         record(&body.state);
     }
     let separation = body.state;
@@ -85,9 +91,24 @@ fn follow(
     })
 }
 
+/// Sine and cosine of an angle that lies `by_rad` beyond that of the given ones; exact to rounding, and quick for the small steps of a
+/// contact.
+fn turned((sin, cos): (f64, f64), by_rad: f64) -> (f64, f64) {
+    // Below 0.01 the next terms of both series are less than 1e-16.
+    let square = by_rad * by_rad;
+    let (s, c) = if by_rad.abs() < 0.01 {
+        let s = by_rad * (1.0 - square / 6.0 * (1.0 - square / 20.0));
+        (s, 1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0)))
+    } else {
+        by_rad.sin_cos()
+    };
+    (sin * c + cos * s, cos * c - sin * s)
+}
+
 /// Angular impulse about S over mass in one step of the contact, m²/s: ∫(a f_z − b f_x) dt with the arms of (3)   (32)
-fn turning_m2_s(setup: &Setup, before: &MotionState, after: &MotionState) -> f64 {
-    let (arm_x_m, arm_z_m) = arm_m(setup, f64::midpoint(before.angle_rad, after.angle_rad), -setup.cog_m);
+fn turning_m2_s(setup: &Setup, before: &MotionState, after: &MotionState, before_by: (f64, f64)) -> f64 {
+    let middle = turned(before_by, (after.angle_rad - before.angle_rad) / 2.0);
+    let (arm_x_m, arm_z_m) = arm_by_m(setup, middle, -setup.cog_m);
     let up_m_s = after.vertical_velocity_m_s - before.vertical_velocity_m_s
         + setup.gravity_m_s2 * (after.time_s - before.time_s);
     let along_m_s = after.horizontal_velocity_m_s - before.horizontal_velocity_m_s;
@@ -151,7 +172,11 @@ fn fly(setup: &Setup, state: &MotionState, time_s: f64) -> MotionState {
 
 /// Distance of the lower corner at axial distance `ahead_m` before S from S, m: horizontal and vertical.
 fn arm_m(setup: &Setup, angle_rad: f64, ahead_m: f64) -> (f64, f64) {
-    let (sin, cos) = angle_rad.sin_cos();
+    arm_by_m(setup, angle_rad.sin_cos(), ahead_m)
+}
+
+/// The same by sine and cosine of the inclination.
+fn arm_by_m(setup: &Setup, (sin, cos): (f64, f64), ahead_m: f64) -> (f64, f64) {
     let half = setup.height_m / 2.0;
     (ahead_m * cos + half * sin, ahead_m * sin - half * cos)
 }
@@ -170,6 +195,8 @@ fn corner_height_m(setup: &Setup, state: &MotionState, ahead_m: f64) -> f64 {
 /// The body while L is on the target.
 struct Contact {
     state: MotionState,
+    /// Sine and cosine of its inclination.
+    angle_by: (f64, f64),
     transverse_m_s: f64,
     axial_m_s: f64,
     last_transverse_m_s: f64,
@@ -189,6 +216,7 @@ impl Contact {
         };
         Self {
             state,
+            angle_by: (sin, cos),
             transverse_m_s: -setup.impact_velocity_m_s * cos,
             axial_m_s: -setup.impact_velocity_m_s * sin,
             last_transverse_m_s: 0.0,
@@ -207,14 +235,14 @@ impl Contact {
     ) {
         let spin = -self.state.angular_velocity_rad_s;
         let mean_spin = f64::midpoint(spin, rotation_rad_s);
-        let middle_rad = self.state.angle_rad + spin * step_s / 2.0;
-        let (sin_m, cos_m) = middle_rad.sin_cos();
+        let (sin_m, cos_m) = turned(self.angle_by, spin * step_s / 2.0);
         let gained_m_s = integral_m_s - self.last_transverse_m_s;
         self.last_transverse_m_s = integral_m_s;
         let g = setup.gravity_m_s2;
         self.transverse_m_s += gained_m_s - (g * cos_m + mean_spin * self.axial_m_s) * step_s;
         let angle_rad = self.state.angle_rad + mean_spin * step_s;
-        let (sin, cos) = angle_rad.sin_cos();
+        self.angle_by = turned(self.angle_by, mean_spin * step_s);
+        let (sin, cos) = self.angle_by;
         self.axial_m_s = match (setup.axial, axial) {
             (AxialClosure::Measured, Some((axial_m_s, position_m))) => {
                 let gained = axial_m_s - self.last_axial_m_s
@@ -224,8 +252,8 @@ impl Contact {
             }
             (AxialClosure::Sliding { friction_ppm }, _) => {
                 let friction = f64::from(friction_ppm) * 1e-6;
-                // f_x = μ f_z: f_ξ = f_η tan(φ + atan μ)   (18)
-                let gained = gained_m_s * (middle_rad + friction.atan()).tan();
+                // f_x = μ f_z: f_ξ = f_η tan(φ + atan μ) = f_η (sin φ + μ cos φ)/(cos φ − μ sin φ)   (18)
+                let gained = gained_m_s * (sin_m + friction * cos_m) / (cos_m - friction * sin_m);
                 self.axial_m_s + gained + (mean_spin * self.transverse_m_s - g * sin_m) * step_s
             }
             // ẋ_C = 0: v_ξ cos φ = v_η sin φ − Ω (c sin φ + (h/2) cos φ)   (18)
@@ -264,7 +292,7 @@ fn push(curve: &mut MotionCurve, setup: &Setup, state: &MotionState) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, End, Mode, Plateau};
+    use crate::data::{Axis, End, Mode, Plateau, Signal};
 
     /// A half sine of 6 ms from 10 ms on whose area is `step_m_s`, at 100 kHz over 80 ms.
     fn signal(name: &str, end: End, position_m: f64, step_m_s: f64) -> Signal {
@@ -326,7 +354,7 @@ mod tests {
             gravity_m_s2: 9.81,
             axial,
         };
-        reconstruct(&signals, &fit, &events, &setup).expect("two channels apart")
+        reconstruct(&Integrated::over(&signals, &events), &fit, &events, &setup).expect("two channels apart")
     }
 
     #[test]

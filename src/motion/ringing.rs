@@ -1,6 +1,6 @@
 //! Signals and their flight fit to the same signals without ringing and zero shift.
 
-use crate::data::{Axis, FlightFit, Plateau, Signal};
+use crate::data::{Axis, FlightFit, Mode, Plateau, Signal};
 use crate::numerics::damped_modes::{Oscillation, uniform_ringing};
 use std::ops::Range;
 
@@ -8,28 +8,61 @@ use std::ops::Range;
 /// nothing of it there, and an error of its damping would be blown up likewise.
 const MOST_GROWTH: f64 = 1.6;
 
-/// Sets `calm`, copies of `signals`, to the signals with the fitted modes and zero shifts taken off between two times, s.
-///
-/// The copies are made by the caller so that rounds of a search share their memory.
-pub fn take_off_ringing(calm: &mut [Signal], signals: &[Signal], fit: &FlightFit, between_s: Range<f64>) {
-    for (calm, signal) in calm.iter_mut().zip(signals) {
-        calm.force_m_s2.clone_from(&signal.force_m_s2);
-        let Some(plateau) = fit.plateau(&signal.name) else { continue };
-        let (from, to) = (signal.index_from(between_s.start), signal.index_from(between_s.end));
-        for force in calm.force_m_s2.iter_mut().take(to).skip(from) {
-            *force -= plateau.zero_shift_m_s2;
-        }
-        take_off_modes(calm, (from, to), fit, plateau);
-    }
+/// A sum of signals from which ringing and zero shift can be taken off, and again with another fit.
+pub struct Calmed {
+    signal: Signal,
+    parts: Vec<(String, f64)>,
+    /// The samples from an index on as they were before.
+    before: (usize, Vec<f64>),
 }
 
-/// Takes off f = v̇ of v = Σ e^(−ζωτ) (A cos ωτ + B sin ωτ), τ from the flight window's start   (20)
-fn take_off_modes(calm: &mut Signal, (from, to): (usize, usize), fit: &FlightFit, plateau: &Plateau) {
-    for (mode, &(a, b)) in fit.modes.iter().zip(&plateau.ringing_m_s) {
+impl Calmed {
+    /// The sum and what it is made of: signals by name, each with its weight.
+    #[must_use]
+    pub fn new((signal, parts): (Signal, Vec<(String, f64)>)) -> Self {
+        Self { signal, parts, before: (0, Vec::new()) }
+    }
+
+    /// The sum as it now is.
+    #[must_use]
+    pub fn signal(&self) -> &Signal {
+        &self.signal
+    }
+
+    /// Puts back what was taken off.
+    pub fn restore(&mut self) {
+        let (from, before) = &mut self.before;
+        self.signal.force_m_s2[*from..*from + before.len()].copy_from_slice(before);
+        before.clear();
+    }
+
+    /// Takes the fitted modes and zero shifts off between two times, s, instead of those taken off before.
+    pub fn take_off(&mut self, fit: &FlightFit, between_s: Range<f64>) {
+        self.restore();
+        let (from, to) = (self.signal.index_from(between_s.start), self.signal.index_from(between_s.end));
+        let to = to.max(from);
+        self.before.0 = from;
+        self.before.1.extend_from_slice(&self.signal.force_m_s2[from..to]);
+        let plateaus: Vec<(&Plateau, f64)> =
+            self.parts.iter().filter_map(|(name, weight)| Some((fit.plateau(name)?, *weight))).collect();
+        let shift_m_s2: f64 = plateaus.iter().map(|(p, weight)| weight * p.zero_shift_m_s2).sum();
+        for force in &mut self.signal.force_m_s2[from..to] {
+            *force -= shift_m_s2;
+        }
+        for (i, mode) in fit.modes.iter().enumerate() {
+            let sizes = plateaus.iter().filter_map(|(p, weight)| Some((p.ringing_m_s.get(i)?, weight)));
+            let size_m_s = sizes.fold((0.0, 0.0), |sum, ((a, b), w)| (sum.0 + w * a, sum.1 + w * b));
+            self.take_off_mode((from, to), mode, size_m_s, fit.from_s);
+        }
+    }
+
+    /// Takes off f = v̇ of v = e^(−ζωτ) (A cos ωτ + B sin ωτ), τ from `begin_s` on   (20)
+    fn take_off_mode(&mut self, (from, to): (usize, usize), mode: &Mode, (a, b): (f64, f64), begin_s: f64) {
+        let calm = &mut self.signal;
         let omega = std::f64::consts::TAU * mode.frequency_hz;
         let decay = mode.damping * omega;
-        let known_from = calm.index_from(fit.from_s - MOST_GROWTH / decay.max(f64::MIN_POSITIVE)).max(from);
-        let tau_s = calm.time_s(known_from) - fit.from_s;
+        let known_from = calm.index_from(begin_s - MOST_GROWTH / decay.max(f64::MIN_POSITIVE)).max(from);
+        let tau_s = calm.time_s(known_from) - begin_s;
         let (cosine, sine) = (omega * b - decay * a, -omega * a - decay * b);
         let mode = Oscillation { frequency_hz: mode.frequency_hz, damping: mode.damping };
         let ringing = uniform_ringing(mode, tau_s, 1.0 / calm.sample_rate_hz);

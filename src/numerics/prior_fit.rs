@@ -2,12 +2,16 @@
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, storage::Owned};
+use rayon::prelude::*;
 
 /// Step of the derivatives, in prior standard deviations: the models are smooth over that, and the change stands far above their round-off.
 const STEP: f64 = 0.05;
 
 /// Residuals of the observations at given unknowns, each over its standard uncertainty; `None` where the model fails there.
-pub type Residuals<'a> = &'a dyn Fn(&[f64]) -> Option<Vec<f64>>;
+pub type Residuals<'a> = &'a (dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync);
+
+/// Their derivatives there, such as [`derivatives`] gives them.
+pub type Slopes<'a> = &'a dyn Fn(&[f64]) -> Option<DMatrix<f64>>;
 
 /// Where the fit ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,14 +47,14 @@ impl PriorFit {
 
 /// Minimises Σ q_i² + Σ r_j(q)²   (30) by Levenberg and Marquardt; `None` where the model fails at the start or the normal matrix is singular.
 #[must_use]
-pub fn fit(count: usize, residuals: Residuals) -> Option<PriorFit> {
+pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFit> {
     let start = DVector::zeros(count);
     residuals(start.as_slice())?;
-    let problem = Problem { residuals, unknowns: start };
+    let problem = Problem { residuals, slopes, unknowns: start };
     let (solved, _) =
         LevenbergMarquardt::new().with_ftol(1e-6).with_xtol(1e-4).with_patience(4).minimize(problem);
     let left = residuals(solved.unknowns.as_slice())?;
-    let jacobian = derivatives(residuals, solved.unknowns.as_slice())?;
+    let jacobian = slopes(solved.unknowns.as_slice())?;
     // q̂ = (1 + JᵀJ)⁻¹ (prior + Jᵀ observation)   (31)
     let normal = DMatrix::identity(count, count) + jacobian.tr_mul(&jacobian);
     let covariance = normal.cholesky()?.inverse();
@@ -66,27 +70,25 @@ pub fn fit(count: usize, residuals: Residuals) -> Option<PriorFit> {
     })
 }
 
-/// ∂r/∂q by central differences; a column an unknown.
+/// ∂r/∂q by central differences, on all cores; a column an unknown.
 #[must_use]
 pub fn derivatives(model: Residuals, at: &[f64]) -> Option<DMatrix<f64>> {
-    let mut columns = Vec::with_capacity(at.len());
-    let mut moved = at.to_vec();
-    for i in 0..at.len() {
-        let mut side = |step: f64| {
-            moved[i] = at[i] + step;
-            let values = model(&moved);
-            moved[i] = at[i];
-            values.map(DVector::from_vec)
+    let column = |i: usize| {
+        let side = |step: f64| {
+            let mut moved = at.to_vec();
+            moved[i] += step;
+            model(&moved).map(DVector::from_vec)
         };
-        let (up, down) = (side(STEP)?, side(-STEP)?);
-        columns.push((up - down) / (2.0 * STEP));
-    }
+        Some((side(STEP)? - side(-STEP)?) / (2.0 * STEP))
+    };
+    let columns: Vec<DVector<f64>> = (0..at.len()).into_par_iter().map(column).collect::<Option<_>>()?;
     let rows = columns.first().map_or(0, DVector::len);
     Some(if rows == 0 { DMatrix::zeros(0, at.len()) } else { DMatrix::from_columns(&columns) })
 }
 
 struct Problem<'a> {
     residuals: Residuals<'a>,
+    slopes: Slopes<'a>,
     unknowns: DVector<f64>,
 }
 
@@ -112,7 +114,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let observed = derivatives(self.residuals, self.unknowns.as_slice())?;
+        let observed = (self.slopes)(self.unknowns.as_slice())?;
         let count = self.unknowns.len();
         let mut all = DMatrix::zeros(count + observed.nrows(), count);
         all.view_mut((0, 0), (count, count)).fill_with_identity();
@@ -125,10 +127,14 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 mod tests {
     use super::*;
 
+    fn by_differences(count: usize, residuals: Residuals) -> Option<PriorFit> {
+        fit(count, residuals, &|at| derivatives(residuals, at))
+    }
+
     #[test]
     fn two_measurements_of_one_thing_meet_by_their_weights() {
         // Prior 0 ± 1, observation 3 ± 0.5 of it: (0/1 + 3/0.25) / (1/1 + 1/0.25) = 2.4, u = √(1/5).
-        let fit = fit(1, &|q| Some(vec![(q[0] - 3.0) / 0.5])).expect("a fit");
+        let fit = by_differences(1, &|q| Some(vec![(q[0] - 3.0) / 0.5])).expect("a fit");
         assert!((fit.unknowns[0] - 2.4).abs() < 1e-6, "{fit:?}");
         assert!((fit.left_share(0) - 0.2_f64.sqrt()).abs() < 1e-6);
         // χ² = 2.4² + (0.6/0.5)².
@@ -138,7 +144,7 @@ mod tests {
     #[test]
     fn a_bent_model_is_solved_where_it_bends() {
         // (q + 0.1 q²) = 2 ± 0.01 holds almost alone: q = (√1.8 − 1)/0.2.
-        let fit = fit(1, &|q| Some(vec![(q[0] + 0.1 * q[0] * q[0] - 2.0) / 0.01])).expect("a fit");
+        let fit = by_differences(1, &|q| Some(vec![(q[0] + 0.1 * q[0] * q[0] - 2.0) / 0.01])).expect("a fit");
         let exact = (1.8_f64.sqrt() - 1.0) / 0.2;
         // The prior pulls by q / (slope/0.01)², below 2e-4.
         assert!((fit.unknowns[0] - exact).abs() < 3e-4, "{fit:?}");
@@ -146,7 +152,7 @@ mod tests {
 
     #[test]
     fn the_contributions_add_up_to_the_variance() {
-        let fit = fit(2, &|q| Some(vec![(q[0] + q[1]) / 0.3])).expect("a fit");
+        let fit = by_differences(2, &|q| Some(vec![(q[0] + q[1]) / 0.3])).expect("a fit");
         // Covariance of (1 + JᵀJ)⁻¹ with J = (1, 1)/0.3: diagonal 1 − 1/(2 + 0.09).
         let variance = 1.0 - 1.0 / 2.09;
         assert!((fit.left_share(0).powi(2) - variance).abs() < 1e-6);
@@ -155,6 +161,6 @@ mod tests {
 
     #[test]
     fn a_model_that_fails_is_no_fit() {
-        assert!(fit(2, &|_| None).is_none());
+        assert!(by_differences(2, &|_| None).is_none());
     }
 }

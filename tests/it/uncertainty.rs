@@ -44,13 +44,15 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         rests: &[],
         fall_s: None,
     };
-    let linear = fit::quantities(&measured, &motion::outcome).expect("quantities");
+    let integrated = motion::Integrated::over(measured.signals, measured.events);
+    let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
+    let linear = fit::quantities(&measured, &moved).expect("quantities");
     let (mut chance, mut left) = (ChaCha8Rng::seed_from_u64(4), DRAWS);
     let mut draw = |count: usize| {
         left = left.checked_sub(1)?;
         Some((0..count).map(|_| StandardNormal.sample(&mut chance)).collect())
     };
-    let (speed_m_s, k) = fit::spread_by_draws(&measured, &motion::outcome, &mut draw).expect("draws");
+    let (speed_m_s, k) = fit::spread_by_draws(&measured, &moved, &mut draw).expect("draws");
     // Four standard deviations of the draws' own scatter; what bends over ± 3 u adds less.
     for (by_draws, by_slopes) in
         [(speed_m_s, linear.speed.expect("a slap-down").u95 / 2.0), (k, linear.k.u95 / 2.0)]

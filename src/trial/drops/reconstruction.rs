@@ -122,7 +122,9 @@ fn times(drop: &Prepared, request: &TrialRequest) -> Option<Vec<Timing>> {
         angular_velocity_rad_s: motion::rotation_rad_s(signals, &flight),
     };
     let mean = || motion::mean_of_flight(signals, &flight, &window, cog_m);
-    let move_by = |flight: Option<FlightFit>| motion::outcome(signals, &flight?, &events, &setup);
+    let integrated = motion::Integrated::over(signals, &events);
+    let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
+    let move_by = |flight: Option<FlightFit>| moved(&flight?, &events, &setup);
     let measured = fit::Measured {
         signals,
         flight: &flight,
@@ -147,7 +149,7 @@ fn times(drop: &Prepared, request: &TrialRequest) -> Option<Vec<Timing>> {
         }),
         Box::new(|| {
             let reading = motion::read_channels(signals, &events, &setup);
-            black_box(fit::ladder(&measured, mean().as_ref(), reading, &motion::outcome));
+            black_box(fit::ladder(&measured, mean().as_ref(), reading, &moved));
         }),
     ];
     let mut timings = in_turn(&mut work, Effort::of(request.quick));
