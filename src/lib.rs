@@ -42,12 +42,10 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     else {
         return draft.without_impact();
     };
-    let (mut signals, mut found) = condition::condition(
-        recording,
-        &event,
-        &condition::Reach::of(&cask_file.cask, &cask_file.drop),
-        cask_file.corrections,
-    );
+    let farthest = condition::Reach::of(&cask_file.cask, &cask_file.drop);
+    let last_s = events::last_change_s(recording, &event, farthest.after_s);
+    let reach = last_s.map_or(farthest, |last_s| farthest.until(last_s - event.near_s - event.spread_s));
+    let (mut signals, mut found) = condition::condition(recording, &event, &reach, cask_file.corrections);
     draft.issues.append(&mut found);
     let Some(contact) = events::first_contact(&signals, &event) else {
         return draft.without_impact();
@@ -238,7 +236,8 @@ fn flight_and_motion(
     }
     draft.u_events_s[2] = draft.u_events_s[2].hypot(u_skew_s);
     let setup = setup(cask_file, signals, &draft.events, &flight);
-    let motion = motion::reconstruct(signals, &flight, &draft.events, &setup)?;
+    let integrated = motion::Integrated::over(signals, &draft.events);
+    let motion = motion::reconstruct(&integrated, &flight, &draft.events, &setup)?;
     let window = motion::Window {
         contact_s: contact.0,
         from_s: flight.from_s,
@@ -266,7 +265,8 @@ fn flight_and_motion(
             .map(|(release_s, end_s)| end_s - release_s),
     };
     let reading = motion::read_channels(signals, &draft.events, &setup);
-    let (quantities, choice) = fit::ladder(&measured, plain.as_ref(), reading, &motion::outcome)?;
+    let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
+    let (quantities, choice) = fit::ladder(&measured, plain.as_ref(), reading, &moved)?;
     Some(Reconstructed { flight, setup, motion, quantities, choice })
 }
 
@@ -302,7 +302,8 @@ fn setup(cask_file: &CaskFile, signals: &[Signal], events: &Events, flight: &Fli
         Contact::Rough => AxialClosure::Sticking,
         Contact::Smooth => sliding(0.0),
         Contact::Coulomb(mu) => {
-            let needed = motion::reconstruct(signals, flight, events, &base).map_or(0.0, |m| m.impulse_ratio);
+            let integrated = motion::Integrated::over(signals, events);
+            let needed = motion::outcome(&integrated, flight, events, &base).map_or(0.0, |m| m.impulse_ratio);
             if needed.abs() <= mu { AxialClosure::Sticking } else { sliding(mu) }
         }
     };

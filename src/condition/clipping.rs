@@ -1,7 +1,7 @@
 //! Samples to the runs that stand at a limit of the measuring chain.
 
 use crate::data::{Channel, Span};
-use crate::numerics::robust;
+use crate::numerics::{reduce, robust};
 
 /// Fewest samples at an extreme that make a flat top.
 const LEAST_RUN: usize = 3;
@@ -30,10 +30,7 @@ pub(super) fn clipped(channel: &Channel, force: &[f64], noise_m_s2: f64, quiet: 
         let limit_m_s2 = (limit * channel.scale_m_s2).abs();
         spans.extend(runs(force, |f| f.abs() >= 0.999 * limit_m_s2));
     }
-    let (low, high) = force
-        .iter()
-        .filter(|f| f.is_finite())
-        .fold((0.0_f64, 0.0_f64), |(low, high), &f| (low.min(f), high.max(f)));
+    let (low, high) = reduce::extremes(force, 0.0);
     for extreme in [low, high] {
         let band = (NOISE_FACTOR * noise_m_s2).max(1e-9 * extreme.abs());
         if extreme.abs() < 4.0 * band {
@@ -53,25 +50,33 @@ pub(super) fn clipped(channel: &Channel, force: &[f64], noise_m_s2: f64, quiet: 
 
 /// Stretches in which every sample is `inside`.
 pub(super) fn runs(force: &[f64], inside: impl Fn(f64) -> bool) -> Vec<Span> {
+    /// Samples asked at once whether any is inside, which costs less than to follow each.
+    const TOGETHER: usize = 64;
     let mut spans = Vec::new();
     let mut from = None;
-    for i in 0..=force.len() {
-        let is_in = i < force.len() && inside(force[i]);
-        match (is_in, from) {
-            (true, None) => from = Some(i),
-            (false, Some(start)) => {
-                spans.push(Span { from: start, to: i });
-                from = None;
+    for (n, chunk) in force.chunks(TOGETHER).enumerate() {
+        if from.is_none() && !chunk.iter().fold(false, |any, f| any | inside(*f)) {
+            continue;
+        }
+        for (i, f) in (n * TOGETHER..).zip(chunk) {
+            match (inside(*f), from) {
+                (true, None) => from = Some(i),
+                (false, Some(start)) => {
+                    spans.push(Span { from: start, to: i });
+                    from = None;
+                }
+                _ => {}
             }
-            _ => {}
         }
     }
+    spans.extend(from.map(|from| Span { from, to: force.len() }));
     spans
 }
 
 /// Standard deviation of the noise by the steps from sample to sample, which no slow swing adds to.
 fn roughness(quiet: &[f64]) -> f64 {
-    let steps: Vec<f64> = quiet.windows(2).map(|w| w[1] - w[0]).filter(|d| d.is_finite()).collect();
+    let pairs = quiet.windows(2).step_by(robust::stride(quiet.len()));
+    let steps: Vec<f64> = pairs.map(|w| w[1] - w[0]).filter(|d| d.is_finite()).collect();
     if steps.len() < 8 { 0.0 } else { robust::spread(&steps) / std::f64::consts::SQRT_2 }
 }
 

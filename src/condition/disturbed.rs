@@ -1,6 +1,7 @@
 //! Samples to the spikes and dropouts of cables and connectors, which no pulse of a cask looks like.
 
 use crate::data::{Issue, IssueCode, Severity, Signal, Span};
+use crate::numerics::reduce;
 
 /// A disturbance stands out of its neighbours by this share of the channel's peak …
 const SHARE_OF_PEAK: f64 = 0.05;
@@ -22,8 +23,7 @@ const MOST_REPEATED: f64 = 0.09;
 
 /// The height above which something is a disturbance, m/s².
 fn height(signal: &Signal, noise_m_s2: f64) -> f64 {
-    let peak = signal.force_m_s2.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-    (SHARE_OF_PEAK * peak).max(NOISE_FACTOR * noise_m_s2)
+    (SHARE_OF_PEAK * reduce::peak(&signal.force_m_s2)).max(NOISE_FACTOR * noise_m_s2)
 }
 
 fn is_lost(signal: &Signal, index: usize) -> bool {
@@ -80,13 +80,18 @@ pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64)
     let height = height(signal, noise_m_s2);
     let end = signal.index_from(before_s);
     let force = &signal.force_m_s2;
-    let (low, high) = force.iter().fold((0.0_f64, 0.0_f64), |(l, h), &f| (l.min(f), h.max(f)));
+    let (low, high) = reduce::extremes(force, 0.0);
     let quiet = force.get(..end).unwrap_or_default();
     #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-    let repeated = 1.0 - runs(quiet).count() as f64 / quiet.len().max(1) as f64;
+    let repeated = {
+        #[allow(clippy::float_cmp, reason = "a dropout repeats a sample to the bit")]
+        let equal = quiet.iter().zip(quiet.get(1..).unwrap_or_default()).filter(|(a, b)| a == b).count();
+        equal as f64 / quiet.len().max(1) as f64
+    };
     let is_noisy = quiet.len() > 50 && repeated < MOST_REPEATED;
     let jump = |a: usize, b: usize| force.get(a).zip(force.get(b)).map_or(0.0, |(x, y)| (x - y).abs());
     let dropouts: Vec<Span> = runs(force)
+        .filter(|&(from, to)| to - from >= LEAST_RUN)
         .filter(|&(from, to)| {
             let jumps =
                 from.checked_sub(1).is_some_and(|i| jump(i, from) > height) || jump(to - 1, to) > height;

@@ -1,7 +1,7 @@
 //! The free fall before first contact to the mains hum in it, which is then taken off the whole signal.
 
-use super::{block_means, block_of};
 use crate::data::{Issue, IssueCode, Severity, Signal};
+use crate::numerics::reduce::{block_means, block_of};
 use crate::numerics::robust;
 use crate::numerics::sinusoid::{self, Sinusoid};
 use std::f64::consts::{PI, TAU};

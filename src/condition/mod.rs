@@ -43,6 +43,12 @@ impl Reach {
             after_s: (descent_s + LEAST_AFTER_S / 2.0).clamp(LEAST_AFTER_S, LONGEST_AFTER_S),
         }
     }
+
+    /// The same, but no farther than what rings after the last change of velocity, s after the coarse event.
+    #[must_use]
+    pub fn until(self, last_change_s: f64) -> Self {
+        Self { after_s: self.after_s.min(last_change_s.max(0.0) + LEAST_AFTER_S), ..self }
+    }
 }
 
 /// Cuts every channel to the window of the event, removes offset and hum as `corrections` allow, marks what is clipped or missing.
@@ -96,7 +102,7 @@ fn signal(
         }
     };
     let before = channel.index_at(event.near_s).saturating_sub(from).min(force.len());
-    let quiet: Vec<f64> = force[..before].iter().copied().filter(|f| f.is_finite()).collect();
+    let quiet: Vec<f64> = robust::sampled(&force[..before]).filter(|f| f.is_finite()).collect();
     let noise_m_s2 = if quiet.is_empty() { 0.0 } else { robust::spread(&quiet) };
     let clipped = clipping::clipped(channel, &force, noise_m_s2, before);
     let gaps = missing(&force);
@@ -139,18 +145,6 @@ fn restore_low_frequencies(force: &mut [f64], sample_rate_hz: f64, time_constant
         previous = y;
         *f += integral / time_constant_s;
     }
-}
-
-/// Samples that are averaged into one to come down to about `rate_hz`.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive ratio of rates")]
-fn block_of(rate_hz: f64, sample_rate_hz: f64) -> usize {
-    ((sample_rate_hz / rate_hz) as usize).max(1)
-}
-
-/// Means of whole blocks.
-#[allow(clippy::cast_precision_loss, reason = "a block's samples")]
-fn block_means(samples: &[f64], block: usize) -> Vec<f64> {
-    samples.chunks_exact(block).map(|chunk| chunk.iter().sum::<f64>() / block as f64).collect()
 }
 
 /// Runs of samples that are no numbers.

@@ -1,7 +1,7 @@
 //! The free fall before first contact to a channel's offset and noise.
 
-use super::{block_means, block_of};
 use crate::data::{Issue, IssueCode, Severity, Signal};
+use crate::numerics::reduce::{block_means, block_of};
 use crate::numerics::{noise, robust};
 
 /// Least free fall an offset is taken from, s: a period of 50 Hz hum is 20 ms, and half of it still bounds an offset.
@@ -33,10 +33,12 @@ const SMALL_M_S: f64 = 0.05;
 pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<Issue> {
     let end = signal.index_from(before_s);
     let length_s = before_s - signal.start_s;
-    let quiet: Vec<f64> = (0..end)
-        .filter(|i| !signal.gaps.iter().any(|g| g.from <= *i && *i < g.to))
-        .map(|i| signal.force_m_s2[i])
-        .collect();
+    let (mut quiet, mut at) = (Vec::with_capacity(end), 0);
+    for gap in signal.gaps.iter().filter(|gap| gap.from < end) {
+        quiet.extend_from_slice(signal.force_m_s2.get(at..gap.from).unwrap_or_default());
+        at = at.max(gap.to);
+    }
+    quiet.extend_from_slice(signal.force_m_s2.get(at..end).unwrap_or_default());
     if length_s < LEAST_S || quiet.len() < 8 {
         // Without free fall the offset may be as large as a usual one.
         signal.u_offset_m_s2 = NOTABLE_M_S2;
@@ -55,11 +57,11 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<I
     signal.u_offset_m_s2 = (rms / number(quiet.len()).sqrt()).max(wander / 2.0);
     if take_off {
         signal.removed_offset_m_s2 = mean;
-        let gaps = signal.gaps.clone();
-        for (i, f) in signal.force_m_s2.iter_mut().enumerate() {
-            if !gaps.iter().any(|g| g.from <= i && i < g.to) {
-                *f -= mean;
-            }
+        for f in &mut signal.force_m_s2 {
+            *f -= mean;
+        }
+        for gap in &signal.gaps {
+            signal.force_m_s2[gap.from..gap.to].fill(0.0);
         }
     }
     let mut issues = Vec::new();
@@ -83,7 +85,7 @@ fn too_short(signal: &Signal, length_s: f64) -> Issue {
 
 /// The samples with wild ones set to the median: a spike is no offset.
 fn tame(mut quiet: Vec<f64>) -> Vec<f64> {
-    let median = robust::median(&mut quiet.clone());
+    let median = robust::median(&mut robust::sampled(&quiet).collect::<Vec<_>>());
     let most = WILD * robust::spread(&quiet);
     if most > 0.0 {
         for x in quiet.iter_mut().filter(|x| (**x - median).abs() > most) {

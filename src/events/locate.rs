@@ -1,7 +1,8 @@
 //! A whole channel to the stretch in which the first impact lies, in one pass.
 
+use super::block_means_m_s2;
 use crate::data::{Axis, Channel, CoarseEvent, Drop, End, Recording};
-use crate::numerics::robust;
+use crate::numerics::{reduce, robust};
 
 /// Width over which a velocity change is looked for, s: longer than any first pulse (1–20 ms), shorter than a flight.
 const WIDTH_S: f64 = 0.025;
@@ -17,6 +18,9 @@ const SHARE: f64 = 0.4;
 /// A change of this share of v0 cos φ is the first impact too, whatever comes later: L loses all of it.
 const SHARE_OF_FALL: f64 = 0.5;
 
+/// What changes the velocity by this share of the largest change may be the slap-down that is sought: it is the first to reach half.
+const LAST_SHARE: f64 = 0.3;
+
 /// Finds the first impact on the transverse channel of the first end (or, without one, on any transverse channel).
 ///
 /// `None` where no channel moves at all.
@@ -24,18 +28,8 @@ const SHARE_OF_FALL: f64 = 0.5;
 pub fn locate(recording: &Recording, drop: &Drop) -> Option<CoarseEvent> {
     let transverse = || recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
     let channel = transverse().find(|c| c.end == End::First).or_else(|| transverse().next())?;
-    let (block_s, means) = block_means(channel)?;
-    let offset = robust::median(&mut means.clone());
-    let mut sum = 0.0;
-    let mut changes = Vec::with_capacity(means.len());
-    for (i, mean) in means.iter().enumerate() {
-        sum += (mean - offset) * block_s;
-        if i >= BLOCKS {
-            sum -= (means[i - BLOCKS] - offset) * block_s;
-        }
-        changes.push(sum);
-    }
-    let largest = changes.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+    let (block_s, changes) = velocity_changes(channel)?;
+    let largest = reduce::peak(&changes);
     let lost_m_s = SHARE_OF_FALL * drop.impact_velocity_m_s * drop.angle_rad.cos().max(0.1);
     let least_m_s = (SHARE * largest).min(lost_m_s);
     let crossing = changes.iter().position(|c| c.abs() >= least_m_s && largest > 0.0)?;
@@ -46,7 +40,40 @@ pub fn locate(recording: &Recording, drop: &Drop) -> Option<CoarseEvent> {
     Some(CoarseEvent { near_s, spread_s: WIDTH_S, velocity_step_m_s: step })
 }
 
-/// Length of a block, s, and the mean force of each, m/s²; missing samples count as the block's others.
+/// The last time within `after_s` of the event at which some transverse channel changes its velocity by a notable share of its largest
+/// change there, s: what lies far beyond it needs no fine work.
+#[must_use]
+pub fn last_change_s(recording: &Recording, event: &CoarseEvent, after_s: f64) -> Option<f64> {
+    let of_channel = |channel: &Channel| {
+        let (block_s, changes) = velocity_changes(channel)?;
+        #[allow(clippy::cast_precision_loss, reason = "block counts stay below 2^52")]
+        let end_s = |block: usize| channel.start_s + (block as f64 + 1.0) * block_s;
+        let from = (0..changes.len()).find(|&i| end_s(i) > event.near_s)?;
+        let to = (from..changes.len()).find(|&i| end_s(i) > event.near_s + event.spread_s + after_s);
+        let within = &changes[from..to.unwrap_or(changes.len())];
+        let least_m_s = LAST_SHARE * reduce::peak(within);
+        within.iter().rposition(|c| c.abs() >= least_m_s).map(|last| end_s(from + last))
+    };
+    let transverse = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
+    transverse.filter_map(of_channel).max_by(f64::total_cmp)
+}
+
+/// Length of a block, s, and by how much the velocity changes over the width that ends with each block, m/s.
+fn velocity_changes(channel: &Channel) -> Option<(f64, Vec<f64>)> {
+    let (block_s, means) = block_means(channel)?;
+    let offset = robust::median(&mut means.clone());
+    let mut sum = 0.0;
+    let changes = (0..means.len()).map(|i| {
+        sum += (means[i] - offset) * block_s;
+        if i >= BLOCKS {
+            sum -= (means[i - BLOCKS] - offset) * block_s;
+        }
+        sum
+    });
+    Some((block_s, changes.collect()))
+}
+
+/// Length of a block, s, and the mean force of each, m/s²; missing samples count as the block's others, a missing block as the last.
 #[allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -54,31 +81,14 @@ pub fn locate(recording: &Recording, drop: &Drop) -> Option<CoarseEvent> {
     reason = "sample counts stay below 2^52"
 )]
 fn block_means(channel: &Channel) -> Option<(f64, Vec<f64>)> {
-    use crate::data::Samples;
-    fn means<T: Copy + Into<f64>>(samples: &[T], size: usize, scale: f64) -> Vec<f64> {
-        let mut last = 0.0;
-        samples
-            .chunks(size)
-            .map(|chunk| {
-                let (mut sum, mut count) = (0.0, 0.0);
-                for &x in chunk {
-                    let x: f64 = x.into();
-                    if x.is_finite() {
-                        sum += x;
-                        count += 1.0;
-                    }
-                }
-                if count > 0.0 {
-                    last = scale * sum / count;
-                }
-                last
-            })
-            .collect()
-    }
     let size = ((WIDTH_S * channel.sample_rate_hz / BLOCKS as f64).round() as usize).max(1);
-    let blocks = match &channel.samples {
-        Samples::F32(v) => means(v, size, channel.scale_m_s2),
-        Samples::F64(v) => means(v, size, channel.scale_m_s2),
-    };
+    let mut blocks = block_means_m_s2(channel, 0..channel.samples.len(), size);
+    let mut last = 0.0;
+    for block in &mut blocks {
+        if block.is_nan() {
+            *block = last;
+        }
+        last = *block;
+    }
     (!blocks.is_empty()).then_some((size as f64 / channel.sample_rate_hz, blocks))
 }

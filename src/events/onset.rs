@@ -2,6 +2,7 @@
 
 use super::transverse;
 use crate::data::{CoarseEvent, End, Signal};
+use crate::numerics::reduce;
 
 /// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
 pub(super) const FOOT: f64 = 0.02;
@@ -150,16 +151,12 @@ pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<(f64, 
 /// Sums of the velocity's samples before each whole block; one longer than there are whole blocks.
 fn velocity_sums(force: &[f64], block: usize, step_s: f64) -> Vec<f64> {
     let (mut velocity_m_s, mut sum) = (0.0, 0.0);
+    let weights: Vec<f64> = (1..=block).rev().map(count).collect();
     let mut sums = vec![0.0];
     sums.extend(force.chunks_exact(block).map(|chunk| {
         // Σ over the block of v + f_0 h + … + f_i h, without following v from sample to sample.
-        let (mut gained, mut total) = (0.0, 0.0);
-        for (f, weight) in chunk.iter().zip((1..=block).rev()) {
-            gained += f;
-            total += f * count(weight);
-        }
-        sum += velocity_m_s * count(block) + total * step_s;
-        velocity_m_s += gained * step_s;
+        sum += velocity_m_s * count(block) + reduce::dot(chunk, &weights) * step_s;
+        velocity_m_s += reduce::sum(chunk) * step_s;
         sum
     }));
     sums

@@ -1,7 +1,9 @@
 //! The record before the first impact to the free fall: the moment of release and the first touch that ends it.
 
-use crate::data::{Axis, Channel, Drop};
-use crate::numerics::robust;
+use super::block_means_m_s2;
+use crate::data::{Axis, Channel, Drop, Samples};
+use crate::numerics::{reduce, robust};
+use std::ops::Range;
 
 /// A step from rest to free fall is this share of g cos φ at least and at most: sensors on a tilted cask, a hook that gives way.
 const STEP: std::ops::Range<f64> = 0.5..1.5;
@@ -49,8 +51,7 @@ pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeF
     let fall_s = drop.impact_velocity_m_s / drop.gravity_m_s2;
     let reach_s = REACH * fall_s + 0.5;
     let from = channel.index_at(contact_s - reach_s);
-    let force = channel.force_m_s2(from, channel.index_at(contact_s));
-    let record = Record::new(&force, channel.sample_rate_hz, weight_m_s2)?;
+    let record = Record::new(channel, from..channel.index_at(contact_s), weight_m_s2)?;
     let contact = (contact_s - channel.time_s(from)) * channel.sample_rate_hz;
     record
         .steps()
@@ -68,7 +69,8 @@ pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeF
 
 /// The samples before first contact and the means of their blocks: a median would stand on a coarse converter's steps.
 struct Record<'a> {
-    force: &'a [f64],
+    channel: &'a Channel,
+    samples: Range<usize>,
     size: usize,
     blocks: Vec<f64>,
     weight_m_s2: f64,
@@ -76,19 +78,19 @@ struct Record<'a> {
 
 impl<'a> Record<'a> {
     /// `None` where the record is shorter than two levels, or the axis lies too flat to feel the weight.
-    fn new(force: &'a [f64], sample_rate_hz: f64, weight_m_s2: f64) -> Option<Self> {
+    fn new(channel: &'a Channel, samples: Range<usize>, weight_m_s2: f64) -> Option<Self> {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
-        let size = ((BLOCK_S * sample_rate_hz) as usize).max(1);
-        let blocks: Vec<f64> = force
-            .chunks_exact(size)
-            .map(|c| robust::mean_and_rms(&c.iter().copied().filter(|x| x.is_finite()).collect::<Vec<_>>()).0)
-            .collect();
-        (blocks.len() > 2 * LEVEL + 2 && weight_m_s2 > 0.5).then_some(Self {
-            force,
-            size,
-            blocks,
-            weight_m_s2,
-        })
+        let size = ((BLOCK_S * channel.sample_rate_hz) as usize).max(1);
+        let mut blocks = block_means_m_s2(channel, samples.clone(), size);
+        blocks.truncate(samples.len() / size);
+        let is_long = blocks.len() > 2 * LEVEL + 2 && weight_m_s2 > 0.5;
+        is_long.then_some(Self { channel, samples, size, blocks, weight_m_s2 })
+    }
+
+    /// The samples in a range counted from the record's first, cut to what there is, m/s².
+    fn force_m_s2(&self, range: Range<usize>) -> Vec<f64> {
+        let at = |i: usize| (self.samples.start + i).min(self.samples.end);
+        self.channel.force_m_s2(at(range.start), at(range.end))
     }
 
     /// Median of the blocks `from..to` that hold samples; NaN where none does.
@@ -128,8 +130,13 @@ impl<'a> Record<'a> {
 
     /// Smallest difference of neighbouring samples, m/s²: both levels may lie half of it off where the noise is less.
     fn converter_step(&self) -> f64 {
-        let steps = self.force.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| *d > 1e-9);
-        let least = steps.fold(f64::INFINITY, f64::min);
+        let scale = self.channel.scale_m_s2.abs();
+        let Range { start, end } = self.samples.clone();
+        let least = scale
+            * match &self.channel.samples {
+                Samples::F32(v) => reduce::least_step(&v[start..end], 1e-9 / scale),
+                Samples::F64(v) => reduce::least_step(&v[start..end], 1e-9 / scale),
+            };
         if least.is_finite() { least } else { 0.0 }
     }
 
@@ -163,14 +170,16 @@ impl<'a> Record<'a> {
 
     /// The sample in or just before `block` from which most of a block's length lies off the free-fall level.
     fn touch(&self, step: usize, block: usize, falling: f64) -> f64 {
-        let calm = self.force.get((step + 2) * self.size..(block - 1) * self.size).unwrap_or_default();
-        let finite: Vec<f64> = calm.iter().copied().filter(|f| f.is_finite()).collect();
+        let calm = self.force_m_s2((step + 2) * self.size..(block - 1) * self.size);
+        let finite: Vec<f64> = robust::sampled(&calm).filter(|f| f.is_finite()).collect();
         let noise = if finite.is_empty() { 0.0 } else { robust::spread(&finite) };
         let level = (TOUCH * self.weight_m_s2).max(NOISE_FACTOR * noise);
         let start = (block - 1) * self.size;
+        let force = self.force_m_s2(start..start + 3 * self.size);
         let is_off = |f: &f64| (f - falling).abs() > level;
         let found = (start..start + 2 * self.size).find(|&i| {
-            let ahead = self.force.get(i..(i + self.size).min(self.force.len())).unwrap_or_default();
+            let at = i - start;
+            let ahead = force.get(at..(at + self.size).min(force.len())).unwrap_or_default();
             ahead.first().is_some_and(is_off)
                 && ahead.iter().filter(|f| is_off(f)).count() * 3 >= 2 * ahead.len()
         });
@@ -180,7 +189,7 @@ impl<'a> Record<'a> {
     /// Where the samples about a step fall below `level`: those above it are counted, so that noise averages.
     fn crossing(&self, step: usize, level: f64) -> f64 {
         let start = step.saturating_sub(LEVEL / 2) * self.size;
-        let about = self.force.get(start..(step + LEVEL / 2) * self.size).unwrap_or_default();
+        let about = self.force_m_s2(start..(step + LEVEL / 2) * self.size);
         count(start + about.iter().filter(|f| **f > level).count())
     }
 }

@@ -1,7 +1,7 @@
 //! The channels as recorded to those that say nothing: unplugged, stuck, or with nothing but noise and hum.
 
 use crate::data::{Channel, Issue, IssueCode, Samples, Severity};
-use crate::numerics::robust;
+use crate::numerics::{reduce, robust};
 
 /// A channel that never leaves its own spread by more than this says nothing: 10⁷ samples of normal noise stay within 5.5,
 /// a sine within 1.4.
@@ -72,10 +72,7 @@ fn reach_of<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Reach {
     let middle = robust::median(&mut stretches.concat());
     let spread = stretches.iter().map(|part| robust::spread(part)).fold(f64::INFINITY, f64::min);
     // Two running extremes instead of distances: comparisons alone keep up with the reading.
-    let (low, high) =
-        samples.iter().map(value).filter(|x| x.is_finite()).fold((middle, middle), |(low, high), x| {
-            (if x < low { x } else { low }, if x > high { x } else { high })
-        });
+    let (low, high) = reduce::extremes(samples, middle);
     if stretches.is_empty() {
         return Reach { farthest: 0.0, spread: 0.0 };
     }

@@ -2,6 +2,7 @@
 
 use crate::data::{Axis, CaskFile, End, Events, Issue, IssueCode, Severity, Signal};
 use crate::numerics::noise::integral_uncertainty_by;
+use crate::numerics::reduce;
 
 /// Standard uncertainty of the velocity from noise alone that leaves little of a result, as a share of v0: ± 10 %.
 const MOST_NOISE: f64 = 0.05;
@@ -59,7 +60,7 @@ fn under_way(signal: &Signal, events: &Events) -> Option<Issue> {
     let to_s = events.separation_s.unwrap_or(contact_s + 0.02);
     let is_struck = signal.end == End::First && signal.axis == Axis::Transverse;
     let force = signal.force_m_s2.get(..signal.index_from(to_s))?;
-    let peak = force.iter().fold(0.0_f64, |m, f| m.max(*f));
+    let peak = reduce::extremes(force, 0.0).1;
     let first = *force.first()?;
     let begins = contact_s - signal.start_s < 2.0 / signal.sample_rate_hz;
     (is_struck && begins && peak > 0.0 && first > UNDER_WAY * peak).then(|| {
@@ -113,7 +114,7 @@ fn places(signals: &[Signal], cask_file: &CaskFile) -> Vec<Issue> {
 /// Two transverse channels whose noise and peaks both differ by the factor between two units.
 fn units(signals: &[Signal]) -> Vec<Issue> {
     let transverse: Vec<&Signal> = signals.iter().filter(|s| s.axis == Axis::Transverse).collect();
-    let peak = |s: &Signal| s.force_m_s2.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+    let peak = |s: &Signal| reduce::peak(&s.force_m_s2);
     let mut issues = Vec::new();
     for large in &transverse {
         for small in &transverse {

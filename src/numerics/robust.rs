@@ -1,5 +1,7 @@
 //! Samples to centre and spread that a few wild values do not move.
 
+use super::reduce;
+
 /// Median; NaN of an empty slice. Reorders `values`.
 pub fn median(values: &mut [f64]) -> f64 {
     let n = values.len();
@@ -15,12 +17,27 @@ pub fn median(values: &mut [f64]) -> f64 {
     }
 }
 
-/// Standard deviation of Gaussian noise from the median distance to the median (factor 1.4826; Hampel 1974).
+/// Most values that a spread is taken from: of normal noise these tell it to 1.2 %.
+const MOST: usize = 10_000;
+
+/// Every n-th value, so that no more than some [`MOST`] are left.
+pub fn sampled(values: &[f64]) -> impl Iterator<Item = f64> {
+    values.iter().step_by(stride(values.len())).copied()
+}
+
+/// How far apart the values of such a sample of `count` lie.
+#[must_use]
+pub fn stride(count: usize) -> usize {
+    (count / MOST).max(1)
+}
+
+/// Standard deviation of Gaussian noise from the median distance to the median (factor 1.4826; Hampel 1974), of many values by a sample.
 #[must_use]
 pub fn spread(values: &[f64]) -> f64 {
-    let mut work = values.to_vec();
+    let values: Vec<f64> = sampled(values).collect();
+    let mut work = values.clone();
     let centre = median(&mut work);
-    for (w, v) in work.iter_mut().zip(values) {
+    for (w, v) in work.iter_mut().zip(&values) {
         *w = (v - centre).abs();
     }
     1.482_602_218_505_602 * median(&mut work)
@@ -31,8 +48,8 @@ pub fn spread(values: &[f64]) -> f64 {
 #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
 pub fn mean_and_rms(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt())
+    let mean = reduce::sum(values) / n;
+    (mean, (reduce::sum_of(values, |v| (v - mean).powi(2)) / n).sqrt())
 }
 
 #[cfg(test)]

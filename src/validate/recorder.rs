@@ -4,6 +4,7 @@ use super::chance::{Chance, round};
 use super::draw::Wish;
 use super::{Case, Means};
 use crate::data::{Axis, Chain, ChannelSpec, Coupling, End, SceneChannel, Source, Tolerances, Unit};
+use crate::numerics::reduce;
 
 /// 1 g, m/s²: the standard value (3rd CGPM 1901).
 pub(super) const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
@@ -191,7 +192,7 @@ pub(super) fn unit_m_s2(channel: &SceneChannel) -> f64 {
 pub(super) fn peak_m_s2(case: &Case, i: usize, means: &Means) -> f64 {
     let channel = &case.scene.channels[i];
     let force = (means.force)(&case.scene, &case.motion, channel, &case.motion.time_s);
-    channel.chain.scale * force.iter().fold(0.0_f64, |peak, f| peak.max(f.abs()))
+    channel.chain.scale * reduce::peak(&force)
 }
 
 /// What channel `i` adds to that: offset, noise, and what its filters overshoot, m/s².
