@@ -4,6 +4,7 @@ mod attributes;
 mod dataset;
 mod fault;
 mod list;
+mod packed;
 
 pub(super) use list::list;
 

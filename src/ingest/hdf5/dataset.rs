@@ -2,6 +2,7 @@
 
 use super::attributes;
 use super::fault::{self, Fault};
+use super::packed::{self, Stored};
 use crate::data::Samples;
 use hdf5_metno::types::{FloatSize, IntSize, TypeDescriptor};
 use hdf5_metno::{Dataset, Datatype, File, H5Type, Hyperslab, Selection, SliceOrIndex};
@@ -251,7 +252,10 @@ impl Column {
         Ok(times_s)
     }
 
-    fn read<T: H5Type>(&self) -> Result<Vec<T>, Fault> {
+    fn read<T: Stored>(&self) -> Result<Vec<T>, Fault> {
+        if let Some(values) = packed::column(&self.dataset, self.index.unwrap_or(0)) {
+            return Ok(values);
+        }
         let read = match self.index {
             None => self.dataset.read_raw::<T>(),
             Some(_) if self.columns == 1 => self.dataset.read_raw::<T>(),

@@ -1,0 +1,205 @@
+//! The deflated chunks of a dataset to one column of it, on all cores: the library unpacks one chunk at a time.
+
+use flate2::{Decompress, FlushDecompress, Status};
+use hdf5_metno::datatype::ByteOrder;
+use hdf5_metno::filters::Filter;
+use hdf5_metno::{Dataset, H5Type};
+use rayon::prelude::*;
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+
+/// Fewer bytes than this are unpacked before the threads have started.
+const LEAST_BYTES: usize = 1 << 16;
+
+/// A number as HDF5 stores it, least byte first.
+pub(super) trait Stored: H5Type + Copy + Default + Send + Sync {
+    /// From its bytes, given one by one.
+    fn from_bytes(byte: impl Fn(usize) -> u8) -> Self;
+}
+
+macro_rules! stored {
+    ($($number:ty),*) => {$(
+        impl Stored for $number {
+            fn from_bytes(byte: impl Fn(usize) -> u8) -> Self {
+                Self::from_le_bytes(std::array::from_fn(byte))
+            }
+        }
+    )*};
+}
+stored!(f32, f64, i8, i16, i32, i64, u8, u16, u32, u64);
+
+/// A chunk: the row and column of its first value, and where its bytes lie.
+struct Place {
+    row: usize,
+    column: usize,
+    at: u64,
+    length: usize,
+}
+
+/// How the chunks of a dataset are laid out.
+struct Layout {
+    rows: usize,
+    columns: usize,
+    is_shuffled: bool,
+}
+
+/// Column `index` of a dataset of one or two dimensions; `None` where the library must read it: other filters, types or byte orders,
+/// chunks that were never written, damage.
+pub(super) fn column<T: Stored>(dataset: &Dataset, index: usize) -> Option<Vec<T>> {
+    let dtype = dataset.dtype().ok()?;
+    let is_plain = dtype.to_descriptor().ok()? == T::type_descriptor()
+        && (dtype.size() == 1 || dtype.byte_order() == ByteOrder::LittleEndian);
+    let is_shuffled = match dataset.filters().as_slice() {
+        [Filter::Deflate(_)] => false,
+        [Filter::Shuffle, Filter::Deflate(_)] => true,
+        _ => return None,
+    };
+    let (shape, chunk) = (dataset.shape(), dataset.chunk()?);
+    let length = *shape.first()?;
+    let layout = Layout { rows: *chunk.first()?, columns: chunk.get(1).copied().unwrap_or(1), is_shuffled };
+    let is_small = length.saturating_mul(size_of::<T>()) < LEAST_BYTES;
+    if !is_plain || is_small || shape.len() != chunk.len() || shape.len() > 2 || layout.rows == 0 {
+        return None;
+    }
+    let places = places(dataset, index, &layout)?;
+    // A chunk for every stretch of rows, or the rest is what the library fills in.
+    if places.len() != length.div_ceil(layout.rows) {
+        return None;
+    }
+    let path = dataset.filename();
+    let mut values = vec![T::default(); length];
+    values
+        .par_chunks_mut(layout.rows)
+        .zip(&places)
+        .enumerate()
+        .map_init(
+            || (File::open(&path).ok(), Vec::new(), Vec::new()),
+            |(file, packed, bytes), (i, (values, place))| {
+                let is_next = place.row == i * layout.rows;
+                is_next.then(|| unpack(file.as_mut()?, place, &layout, (packed, bytes), (index, values)))?
+            },
+        )
+        .collect::<Option<()>>()?;
+    Some(values)
+}
+
+/// The chunks that hold the column, by row.
+fn places(dataset: &Dataset, index: usize, layout: &Layout) -> Option<Vec<Place>> {
+    let mut places = Vec::new();
+    let mut is_whole = true;
+    let base = dataset.file().ok()?.userblock();
+    dataset
+        .chunks_visit(|chunk| {
+            let [row, column] =
+                [0, 1].map(|i| chunk.offset.get(i).map_or(Some(0), |&n| usize::try_from(n).ok()));
+            match (row, column, usize::try_from(chunk.size)) {
+                (Some(row), Some(column), Ok(length)) if chunk.filter_mask == 0 => {
+                    if (column..column + layout.columns).contains(&index) {
+                        places.push(Place { row, column, at: chunk.addr, length });
+                    }
+                }
+                _ => is_whole = false,
+            }
+            0
+        })
+        .ok()?;
+    places.sort_by_key(|place| place.row);
+    // Addresses count from behind a user block in some versions of the library and from the file's start in others.
+    (is_whole && base == 0).then_some(places)
+}
+
+/// One chunk's share of the column.
+fn unpack<T: Stored>(
+    file: &mut File,
+    place: &Place,
+    layout: &Layout,
+    (packed, bytes): (&mut Vec<u8>, &mut Vec<u8>),
+    (index, values): (usize, &mut [T]),
+) -> Option<()> {
+    let count = layout.rows.checked_mul(layout.columns)?;
+    let size = size_of::<T>();
+    // Deflate stores what it cannot pack with five bytes for each 16 KiB: a longer chunk is damage.
+    if place.length > count.checked_mul(size)?.checked_mul(2)?.checked_add(1024)? {
+        return None;
+    }
+    packed.clear();
+    file.seek(SeekFrom::Start(place.at)).ok()?;
+    file.take(place.length as u64).read_to_end(packed).ok()?;
+    bytes.resize(count.checked_mul(size)?, 0);
+    let mut inflate = Decompress::new(true);
+    let status = inflate.decompress(packed, bytes, FlushDecompress::Finish).ok()?;
+    if status != Status::StreamEnd || inflate.total_out() != bytes.len() as u64 {
+        return None;
+    }
+    let first = index - place.column;
+    for (row, value) in values.iter_mut().enumerate() {
+        let at = row * layout.columns + first;
+        *value =
+            T::from_bytes(|i| if layout.is_shuffled { bytes[i * count + at] } else { bytes[at * size + i] });
+    }
+    Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    /// 20 000 rows of numbers that pack and are all different, in one column or three.
+    fn numbers(columns: usize) -> Vec<i32> {
+        (0..20_000 * i32::try_from(columns).unwrap()).map(|i| i * 7919 % 100_003 - 50_000).collect()
+    }
+
+    fn file(path: &Path, columns: usize, chunk_rows: usize, shuffle: bool) -> Dataset {
+        let file = hdf5_metno::File::create(path).unwrap();
+        let builder = file.new_dataset::<i32>();
+        let builder = if shuffle { builder.shuffle() } else { builder }.deflate(4);
+        if columns == 1 {
+            let dataset = builder.chunk(chunk_rows).shape(20_000).create("a").unwrap();
+            dataset.write_raw(&numbers(1)).unwrap();
+        } else {
+            let dataset = builder.chunk((chunk_rows, 2)).shape((20_000, columns)).create("a").unwrap();
+            dataset.write_raw(&numbers(columns)).unwrap();
+        }
+        file.close().unwrap();
+        hdf5_metno::File::open(path).unwrap().dataset("a").unwrap()
+    }
+
+    #[test]
+    fn a_column_is_what_the_library_reads() {
+        let folder = tempfile::tempdir().unwrap();
+        for (columns, chunk_rows, shuffle) in
+            [(1, 999, false), (1, 20_000, true), (3, 777, true), (3, 1, false)]
+        {
+            let path = folder.path().join(format!("{columns}-{chunk_rows}.h5"));
+            let dataset = file(&path, columns, chunk_rows, shuffle);
+            let whole = dataset.read_raw::<i32>().unwrap();
+            for index in 0..columns {
+                let expected: Vec<i32> = whole.iter().copied().skip(index).step_by(columns).collect();
+                assert_eq!(column::<i32>(&dataset, index), Some(expected), "{columns} {chunk_rows} {index}");
+            }
+            // Another type than the stored one is the library's to convert.
+            assert_eq!(column::<i64>(&dataset, 0), None);
+        }
+    }
+
+    #[test]
+    fn what_is_damaged_or_not_there_is_left_to_the_library() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("damaged.h5");
+        let place =
+            places(&file(&path, 1, 999, true), 0, &Layout { rows: 999, columns: 1, is_shuffled: true });
+        let place = place.unwrap().pop().unwrap();
+        let mut bytes = std::fs::read(&path).unwrap();
+        let middle = usize::try_from(place.at).unwrap() + place.length / 2;
+        bytes[middle] ^= 0x10;
+        std::fs::write(&path, bytes).unwrap();
+        let dataset = hdf5_metno::File::open(&path).unwrap().dataset("a").unwrap();
+        assert_eq!(column::<i32>(&dataset, 0), None);
+        let path = folder.path().join("partly.h5");
+        let written = hdf5_metno::File::create(&path).unwrap();
+        let dataset = written.new_dataset::<i32>().deflate(1).chunk(5000).shape(20_000).create("a").unwrap();
+        dataset.write_slice(&numbers(1)[..5000], 5000..10_000).unwrap();
+        assert_eq!(column::<i32>(&dataset, 0), None);
+    }
+}
