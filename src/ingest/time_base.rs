@@ -30,14 +30,14 @@ pub struct Uniform {
 }
 
 /// A contiguous run of samples with its own start and rate.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Block {
     /// Time of its first sample, s.
     pub start_s: f64,
     /// Rate, Hz.
     pub sample_rate_hz: f64,
-    /// Its samples.
-    pub samples: Samples,
+    /// Number of its samples.
+    pub count: usize,
 }
 
 /// A number of a damaged file may have hundreds of digits: those stand with an exponent.

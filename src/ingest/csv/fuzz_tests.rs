@@ -84,9 +84,11 @@ fn times() {
         let blocks = times_s.windows(2).map(|pair| time_base::Block {
             start_s: pair[0],
             sample_rate_hz: pair[1],
-            samples: Samples::F32(vec![1.0, f32::NAN, 3.0]),
+            count: 3,
         });
-        let by_blocks = time_base::from_blocks(blocks.collect());
+        let blocks: Vec<_> = blocks.collect();
+        let three = Samples::F32([1.0, f32::NAN, 3.0].repeat(blocks.len()));
+        let by_blocks = time_base::from_blocks(&blocks, three);
         let ends = [by_times, by_blocks].map(|end| match end {
             Ok(uniform) => format!("{:?}", uniform.issues.iter().map(|issue| issue.code).collect::<Vec<_>>()),
             Err(error) => format!("{error:?}"),

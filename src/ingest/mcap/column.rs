@@ -1,5 +1,6 @@
 //! What the messages of one topic gave for one field, to uniform samples.
 
+use super::numbers::{append, push};
 use super::plan::Value;
 use crate::data::Samples;
 use crate::ingest::time_base::{self, Block, TimeBaseError, Uniform};
@@ -27,13 +28,14 @@ pub(super) fn message_time(stamp: &Value, log_time_ns: i64) -> (i64, TimeOrigin)
 /// 6 January 1980, ns since 1970: the origin of GPS time. A clock that shows less counts from its own start.
 pub(super) const CLOCK_IS_SET_NS: i64 = 315_964_800_000_000_000;
 
-/// The samples of one message with an array.
-#[derive(Debug, Clone)]
+/// One message with an array.
+#[derive(Debug, Clone, Copy)]
 struct RawBlock {
     time_ns: i64,
     /// As stated; `None` where the message has no such field.
     rate_hz: Option<f64>,
-    samples: Samples,
+    /// Number of its samples.
+    count: usize,
 }
 
 /// A number and its time in memory.
@@ -44,7 +46,8 @@ const BLOCK_BYTES: u64 = size_of::<RawBlock>() as u64;
 /// How much a column held when a chunk began.
 #[derive(Debug, Clone, Copy, Default)]
 struct Mark {
-    numbers: usize,
+    times: usize,
+    samples: usize,
     blocks: usize,
     tally: Tally,
     held_bytes: u64,
@@ -66,8 +69,10 @@ pub(super) struct Tally {
 /// The samples of one field, message by message, in the order of the file.
 #[derive(Debug, Clone)]
 pub(super) struct Column {
+    /// Of single numbers, one a sample.
     times_ns: Vec<i64>,
-    numbers: Samples,
+    /// Of all messages, one after another.
+    samples: Samples,
     blocks: Vec<RawBlock>,
     pub(super) tally: Tally,
     /// Memory of its times and samples.
@@ -84,7 +89,7 @@ impl Default for Column {
     fn default() -> Self {
         Self {
             times_ns: Vec::new(),
-            numbers: Samples::F32(Vec::new()),
+            samples: Samples::F32(Vec::new()),
             blocks: Vec::new(),
             tally: Tally::default(),
             held_bytes: 0,
@@ -115,11 +120,12 @@ impl Column {
             (Value::Number { value, is_narrow }, None | Some(false)) => {
                 self.times_ns.push(time.0);
                 self.held_bytes += NUMBER_BYTES;
-                push(&mut self.numbers, value, is_narrow);
+                push(&mut self.samples, value, is_narrow);
             }
-            (Value::Number { value, .. }, Some(true)) => {
+            (Value::Number { value, is_narrow }, Some(true)) => {
                 self.held_bytes += BLOCK_BYTES + NUMBER_BYTES;
-                self.blocks.push(RawBlock { time_ns: time.0, rate_hz, samples: Samples::F64(vec![value]) });
+                self.blocks.push(RawBlock { time_ns: time.0, rate_hz, count: 1 });
+                push(&mut self.samples, value, is_narrow);
             }
             (Value::Array(samples), None | Some(true)) => {
                 if samples.is_empty() {
@@ -127,7 +133,8 @@ impl Column {
                 }
                 let width_bytes = if matches!(samples, Samples::F32(_)) { 4 } else { 8 };
                 self.held_bytes += BLOCK_BYTES + width_bytes * samples.len() as u64;
-                self.blocks.push(RawBlock { time_ns: time.0, rate_hz, samples });
+                self.blocks.push(RawBlock { time_ns: time.0, rate_hz, count: samples.len() });
+                append(&mut self.samples, samples);
             }
             (Value::Array(_), Some(false)) => {
                 self.malformed("the field is a number in some messages and an array in others");
@@ -156,7 +163,8 @@ impl Column {
     /// What follows may be taken back.
     pub(super) fn mark(&mut self) {
         self.mark = Mark {
-            numbers: self.times_ns.len(),
+            times: self.times_ns.len(),
+            samples: self.samples.len(),
             blocks: self.blocks.len(),
             tally: self.tally,
             held_bytes: self.held_bytes,
@@ -165,14 +173,35 @@ impl Column {
 
     /// Takes back everything since the last mark.
     pub(super) fn roll_back(&mut self) {
-        self.times_ns.truncate(self.mark.numbers);
-        match &mut self.numbers {
-            Samples::F32(samples) => samples.truncate(self.mark.numbers),
-            Samples::F64(samples) => samples.truncate(self.mark.numbers),
+        self.times_ns.truncate(self.mark.times);
+        match &mut self.samples {
+            Samples::F32(samples) => samples.truncate(self.mark.samples),
+            Samples::F64(samples) => samples.truncate(self.mark.samples),
         }
         self.blocks.truncate(self.mark.blocks);
         self.tally = self.mark.tally;
         self.held_bytes = self.mark.held_bytes;
+    }
+
+    /// Whether [`Column::append`] gives what taking the other's messages one by one would have given.
+    pub(super) fn continues_with(&self, other: &Self) -> bool {
+        self.is_blocks().is_none_or(|own| other.is_blocks().is_none_or(|others| own == others))
+    }
+
+    /// Adds what another column took of the messages that follow.
+    pub(super) fn append(&mut self, mut other: Self) {
+        let before = self.times_ns.len().max(self.blocks.len());
+        self.zero_stamp = other.zero_stamp.map(|position| before + position).or(self.zero_stamp);
+        self.times_ns.append(&mut other.times_ns);
+        self.blocks.append(&mut other.blocks);
+        append(&mut self.samples, other.samples);
+        self.tally.messages += other.tally.messages;
+        self.tally.malformed += other.tally.malformed;
+        self.tally.bad_stamps += other.tally.bad_stamps;
+        self.tally.stamps += other.tally.stamps;
+        self.held_bytes += other.held_bytes;
+        self.unit = other.unit.or(self.unit.take());
+        self.first_problem = self.first_problem.take().or(other.first_problem);
     }
 
     /// Takes a single stamp of zero for a time where the other stamps show a clock that counts from its own start.
@@ -215,7 +244,7 @@ impl Column {
         if self.blocks.is_empty() {
             let times_s: Vec<f64> =
                 self.times_ns.iter().map(|&time_ns| seconds_from(time_ns, zero_ns)).collect();
-            return Ok(time_base::from_times(&times_s, self.numbers, declared_rate_hz)?);
+            return Ok(time_base::from_times(&times_s, self.samples, declared_rate_hz)?);
         }
         let derived_hz = match declared_rate_hz {
             Some(rate_hz) => Some(rate_hz),
@@ -230,9 +259,9 @@ impl Column {
                 (None, None) => derived_hz.ok_or(ColumnError::NoRate)?,
             };
             let start_s = seconds_from(block.time_ns, zero_ns);
-            blocks.push(Block { start_s, sample_rate_hz, samples: block.samples });
+            blocks.push(Block { start_s, sample_rate_hz, count: block.count });
         }
-        Ok(time_base::from_blocks(blocks)?)
+        Ok(time_base::from_blocks(&blocks, self.samples)?)
     }
 
     fn is_blocks(&self) -> Option<bool> {
@@ -242,8 +271,7 @@ impl Column {
 
 /// Median over neighbouring blocks of length over time to the next, Hz: missing and doubled blocks are few.
 fn derived_rate_hz(blocks: &[RawBlock]) -> Option<f64> {
-    let mut order: Vec<(i64, usize)> =
-        blocks.iter().map(|block| (block.time_ns, block.samples.len())).collect();
+    let mut order: Vec<(i64, usize)> = blocks.iter().map(|block| (block.time_ns, block.count)).collect();
     order.sort_unstable();
     order.dedup_by_key(|(time_ns, _)| *time_ns);
     #[allow(clippy::cast_precision_loss, reason = "block lengths are far below 2^53")]
@@ -263,20 +291,6 @@ fn derived_rate_hz(blocks: &[RawBlock]) -> Option<f64> {
 #[allow(clippy::cast_precision_loss, reason = "spans of a recording are far below 2^53 ns")]
 pub(super) fn seconds_from(time_ns: i64, zero_ns: i64) -> f64 {
     time_ns.saturating_sub(zero_ns) as f64 / 1e9
-}
-
-/// One more number; single precision as long as all are narrow.
-fn push(samples: &mut Samples, value: f64, is_narrow: bool) {
-    match samples {
-        #[allow(clippy::cast_possible_truncation, reason = "f32 holds every narrow value")]
-        Samples::F32(narrow) if is_narrow => narrow.push(value as f32),
-        Samples::F32(narrow) => {
-            let mut wide: Vec<f64> = narrow.iter().map(|&x| f64::from(x)).collect();
-            wide.push(value);
-            *samples = Samples::F64(wide);
-        }
-        Samples::F64(wide) => wide.push(value),
-    }
 }
 
 #[cfg(test)]
@@ -324,7 +338,36 @@ mod tests {
         column.roll_back();
         assert_eq!(column.span_ns(), Some((1, 1)));
         assert_eq!(column.tally, Tally { messages: 1, stamps: 1, ..Tally::default() });
-        assert_eq!(column.numbers, Samples::F32(vec![1.0]));
+        assert_eq!(column.samples, Samples::F32(vec![1.0]));
+    }
+
+    #[test]
+    fn a_column_in_two_parts_is_the_column_in_one() {
+        let number = |value, is_narrow| Value::Number { value, is_narrow };
+        let take = |column: &mut Column, i: i64| {
+            let origin = if i == 4 { TimeOrigin::LogTimeForBadStamp } else { TimeOrigin::Stamp };
+            if i == 3 {
+                column.malformed("cut");
+            }
+            column.unit = Some(if i < 4 { "g" } else { "m/s^2" }.into());
+            #[allow(clippy::cast_precision_loss, reason = "a handful")]
+            column.take(number(0.1 * i as f64, i < 2), (i, origin), None);
+        };
+        for parted_at in 0..6 {
+            let (mut whole, mut first) = (Column::default(), Column::default());
+            (0..6).for_each(|i| take(&mut whole, i));
+            (0..parted_at).for_each(|i| take(&mut first, i));
+            let mut second = Column::default();
+            (parted_at..6).for_each(|i| take(&mut second, i));
+            assert!(first.continues_with(&second));
+            first.append(second);
+            assert_eq!(format!("{first:?}"), format!("{whole:?}"), "{parted_at}");
+        }
+        let mut blocks = Column::default();
+        blocks.take(block(&[1.0]), (0, TimeOrigin::Stamp), None);
+        let mut numbers = Column::default();
+        numbers.take(number(1.0, true), (1, TimeOrigin::Stamp), None);
+        assert!(!blocks.continues_with(&numbers));
     }
 
     #[test]

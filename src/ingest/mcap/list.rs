@@ -112,6 +112,8 @@ pub(super) struct ListWalk {
 }
 
 impl Sink for ListWalk {
+    type Part = ();
+
     fn channel(&mut self, id: u16, info: &ChannelInfo) {
         let schema_name = info.schema.map_or("", |schema| schema.name.as_str());
         let encoding = match info.schema {

@@ -1,5 +1,6 @@
 //! MCAP files to raw channels and listings: JSON, protobuf and ROS 2 messages, whole files and what is left of others.
 
+mod catalog;
 mod cdr;
 mod chunk;
 mod column;
@@ -8,6 +9,7 @@ mod descriptors;
 mod json;
 mod list;
 mod message_type;
+mod numbers;
 mod path;
 mod plan;
 mod protobuf;
@@ -17,6 +19,7 @@ mod running;
 mod scan;
 mod scanned;
 mod summary;
+mod wave;
 mod wire;
 
 pub(super) use list::list;

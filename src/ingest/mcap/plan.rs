@@ -250,7 +250,7 @@ impl Leaf {
 }
 
 /// Turns one message into slots.
-pub(super) trait Decode {
+pub(super) trait Decode: Send + Sync {
     /// Fills `slots`, cleared before, from `data`.
     ///
     /// # Errors

@@ -107,27 +107,8 @@ impl Sink for Reading<'_> {
     }
 
     fn message(&mut self, id: u16, log_time_ns: i64, data: &[u8]) {
-        let Some(decoding) = self.decodings.get(&id) else { return };
-        self.slots.clear(decoding.plan.wants.len());
-        let outcome = decoding.decoder.decode(data, &mut self.slots);
-        for (target, &index) in decoding.plan.targets.iter().zip(&decoding.wanted) {
-            let Some(entry) = self.wanted.get_mut(index) else { continue };
-            if let Err(problem) = &outcome {
-                entry.column.malformed(problem);
-                continue;
-            }
-            let time = message_time(&self.slots.stamp(target), log_time_ns);
-            if let Some(unit) = self.slots.unit(target)
-                && entry.column.unit.as_deref() != Some(unit)
-            {
-                entry.column.unit = Some(unit.to_owned());
-            }
-            let rate_hz = self.slots.rate_hz(target);
-            let value = self.slots.samples(target);
-            if decoding.is_json && entry.leaves.is_empty() && value == super::plan::Value::Missing {
-                entry.leaves = json::leaves(data);
-            }
-            entry.column.take(value, time, rate_hz);
+        if let Some(decoding) = self.decodings.get(&id) {
+            decoding.message((&mut self.wanted, &mut self.slots), log_time_ns, data);
         }
     }
 
@@ -141,6 +122,66 @@ impl Sink for Reading<'_> {
 
     fn held_bytes(&self) -> u64 {
         self.wanted.iter().map(|wanted| wanted.column.held_bytes).sum()
+    }
+
+    type Part = (Vec<Wanted>, Slots);
+
+    fn part(&self) -> Option<Self::Part> {
+        let begun = |own: &Wanted| Wanted {
+            topic: own.topic.clone(),
+            field: own.field.clone(),
+            column: Column::default(),
+            leaves: own.leaves.clone(),
+            unreadable: None,
+        };
+        Some((self.wanted.iter().map(begun).collect(), Slots::default()))
+    }
+
+    fn message_into(&self, part: &mut Self::Part, id: u16, log_time_ns: i64, data: &[u8]) {
+        if let Some(decoding) = self.decodings.get(&id) {
+            decoding.message((&mut part.0, &mut part.1), log_time_ns, data);
+        }
+    }
+
+    fn join(&mut self, (part, _): Self::Part) -> bool {
+        let fits = |(own, others): (&Wanted, &Wanted)| own.column.continues_with(&others.column);
+        if part.len() != self.wanted.len() || !self.wanted.iter().zip(&part).all(fits) {
+            return false;
+        }
+        for (own, others) in self.wanted.iter_mut().zip(part) {
+            own.column.append(others.column);
+            if own.leaves.is_empty() {
+                own.leaves = others.leaves;
+            }
+        }
+        true
+    }
+}
+
+impl Decoding {
+    /// What one message gives each of the wanted fields.
+    fn message(&self, (wanted, slots): (&mut [Wanted], &mut Slots), log_time_ns: i64, data: &[u8]) {
+        slots.clear(self.plan.wants.len());
+        let outcome = self.decoder.decode(data, slots);
+        for (target, &index) in self.plan.targets.iter().zip(&self.wanted) {
+            let Some(entry) = wanted.get_mut(index) else { continue };
+            if let Err(problem) = &outcome {
+                entry.column.malformed(problem);
+                continue;
+            }
+            let time = message_time(&slots.stamp(target), log_time_ns);
+            if let Some(unit) = slots.unit(target)
+                && entry.column.unit.as_deref() != Some(unit)
+            {
+                entry.column.unit = Some(unit.to_owned());
+            }
+            let rate_hz = slots.rate_hz(target);
+            let value = slots.samples(target);
+            if self.is_json && entry.leaves.is_empty() && value == super::plan::Value::Missing {
+                entry.leaves = json::leaves(data);
+            }
+            entry.column.take(value, time, rate_hz);
+        }
     }
 }
 

@@ -1,9 +1,8 @@
 //! What a walk through an MCAP file found: schemas and channels, counts, and what was lost, in words.
 
-use super::scan::parse;
 use crate::data::{Issue, IssueCode, Severity};
-use mcap::records::{Record, op};
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use mcap::records::op;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A schema record.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +21,10 @@ pub(super) struct ChannelInfo<'a> {
 }
 
 /// Takes what a walk finds.
-pub(super) trait Sink {
+pub(super) trait Sink: Sync {
+    /// What one chunk gave by itself.
+    type Part: Send;
+
     /// A channel, before its first message; once for each id.
     fn channel(&mut self, id: u16, info: &ChannelInfo);
     /// A message on a channel that was announced.
@@ -35,6 +37,16 @@ pub(super) trait Sink {
     fn held_bytes(&self) -> u64 {
         0
     }
+    /// An empty part; `None` where chunks must be taken in turn, because what is kept of a message depends on those before.
+    fn part(&self) -> Option<Self::Part> {
+        None
+    }
+    /// [`Sink::message`] into a part.
+    fn message_into(&self, _part: &mut Self::Part, _id: u16, _log_time_ns: i64, _data: &[u8]) {}
+    /// Adds a part behind what there is; `false` and nothing done where it would have come out otherwise in turn.
+    fn join(&mut self, _part: Self::Part) -> bool {
+        false
+    }
 }
 
 /// How many of what the container holds.
@@ -46,6 +58,17 @@ pub(super) struct Counts {
     pub(super) chunks: u64,
     pub(super) attachments: u64,
     pub(super) metadata: u64,
+}
+
+impl std::ops::AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.messages += other.messages;
+        self.schemas += other.schemas;
+        self.channels += other.channels;
+        self.chunks += other.chunks;
+        self.attachments += other.attachments;
+        self.metadata += other.metadata;
+    }
 }
 
 impl Counts {
@@ -121,94 +144,6 @@ impl Losses {
 
     pub(super) fn is_empty(&self) -> bool {
         self.first.is_empty() && self.bad_records == 0
-    }
-}
-
-/// The schemas and channels met so far; the first of an id stands.
-#[derive(Debug, Default)]
-pub(super) struct Catalog {
-    schemas: HashMap<u16, SchemaInfo>,
-    channels: HashSet<u16>,
-    held_bytes: u64,
-}
-
-impl Catalog {
-    /// Takes a record and hands it on; `false` where its body does not parse.
-    pub(super) fn take(
-        &mut self,
-        opcode: u8,
-        body: &[u8],
-        sink: &mut dyn Sink,
-        scanned: &mut Scanned,
-    ) -> bool {
-        if !matches!(opcode, op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE | op::STATISTICS) {
-            return true;
-        }
-        match parse(opcode, body) {
-            Some(Record::Message { header, data }) if self.channels.contains(&header.channel_id) => {
-                let log_time_ns = i64::try_from(header.log_time).unwrap_or(i64::MAX);
-                sink.message(header.channel_id, log_time_ns, &data);
-                true
-            }
-            Some(Record::Schema { header, data }) => {
-                if !self.schemas.contains_key(&header.id) {
-                    self.held_bytes += body.len() as u64;
-                }
-                self.schemas.entry(header.id).or_insert_with(|| SchemaInfo {
-                    name: header.name,
-                    encoding: header.encoding,
-                    data: data.into_owned(),
-                });
-                true
-            }
-            Some(Record::Channel(channel)) => {
-                if self.channels.insert(channel.id) {
-                    self.held_bytes += body.len() as u64;
-                    let info = ChannelInfo {
-                        topic: &channel.topic,
-                        message_encoding: &channel.message_encoding,
-                        schema: self.schemas.get(&channel.schema_id),
-                    };
-                    sink.channel(channel.id, &info);
-                }
-                true
-            }
-            Some(Record::Header(header)) => {
-                (scanned.profile, scanned.library) = (header.profile, header.library);
-                true
-            }
-            Some(Record::Statistics(statistics)) => {
-                scanned.claimed_messages = Some(statistics.message_count);
-                true
-            }
-            _ => false,
-        }
-    }
-
-    /// Takes a record of the summary section, except a channel whose schema is not repeated there.
-    pub(super) fn take_ahead(&mut self, opcode: u8, body: &[u8], sink: &mut dyn Sink, scanned: &mut Scanned) {
-        let is_complete = match parse(opcode, body) {
-            Some(Record::Channel(channel)) => {
-                channel.schema_id == 0 || self.schemas.contains_key(&channel.schema_id)
-            }
-            _ => true,
-        };
-        if is_complete {
-            self.take(opcode, body, sink, scanned);
-        }
-    }
-
-    /// Bytes of the records that it keeps.
-    pub(super) fn held_bytes(&self) -> u64 {
-        self.held_bytes
-    }
-
-    pub(super) fn schema_count(&self) -> u64 {
-        self.schemas.len() as u64
-    }
-
-    pub(super) fn channel_count(&self) -> u64 {
-        self.channels.len() as u64
     }
 }
 

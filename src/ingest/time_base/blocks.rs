@@ -3,11 +3,12 @@
 use super::order::{as_f64, is_same};
 use super::{Block, Number, Placed, RATE_TOLERANCE, TimeBaseError, Uniform, check_rate, fit, missing};
 use crate::data::{Issue, IssueCode, Samples, Severity};
+use std::ops::Range;
 
-/// A block whose samples have the type of the channel.
-struct Piece<S> {
+/// A block, its samples a range of those of all blocks.
+struct Piece {
     start_s: f64,
-    samples: Vec<S>,
+    samples: Range<usize>,
 }
 
 /// What sorting and doubles came to.
@@ -31,25 +32,26 @@ const FILL_FACTOR: f64 = 4.0;
 /// See [`FILL_FACTOR`].
 const FILL_FLOOR: f64 = 1e6;
 
-/// Blocks on a uniform base. Stamps decide where a block lies, to the nearest sample; samples are not moved between.
+/// Blocks on a uniform base, their `samples` one after another. Stamps decide where a block lies, to the nearest sample; samples are not
+/// moved between. Blocks that follow one another stay where they are.
 ///
 /// # Errors
 /// [`TimeBaseError`] where stamps or rates make no record.
-pub fn from_blocks(blocks: Vec<Block>) -> Result<Uniform, TimeBaseError> {
-    let rate_hz = common_rate(&blocks)?;
-    let is_single = blocks.iter().all(|b| matches!(b.samples, Samples::F32(_)));
-    if is_single {
-        let pieces = blocks.into_iter().filter_map(|b| match b.samples {
-            Samples::F32(samples) => Some(Piece { start_s: b.start_s, samples }),
-            Samples::F64(_) => None,
-        });
-        return Ok(join(pieces.collect(), rate_hz)?.into_uniform(Samples::F32));
+pub fn from_blocks(blocks: &[Block], samples: Samples) -> Result<Uniform, TimeBaseError> {
+    let rate_hz = common_rate(blocks)?;
+    let mut pieces = Vec::with_capacity(blocks.len());
+    let mut end = 0;
+    for block in blocks {
+        pieces.push(Piece { start_s: block.start_s, samples: end..end + block.count });
+        end += block.count;
     }
-    let pieces = blocks.into_iter().map(|b| match b.samples {
-        Samples::F32(v) => Piece { start_s: b.start_s, samples: v.into_iter().map(f64::from).collect() },
-        Samples::F64(samples) => Piece { start_s: b.start_s, samples },
-    });
-    Ok(join(pieces.collect(), rate_hz)?.into_uniform(Samples::F64))
+    if end != samples.len() {
+        return Err(TimeBaseError::Lengths { times: end, samples: samples.len() });
+    }
+    Ok(match samples {
+        Samples::F32(samples) => join(pieces, samples, rate_hz)?.into_uniform(Samples::F32),
+        Samples::F64(samples) => join(pieces, samples, rate_hz)?.into_uniform(Samples::F64),
+    })
 }
 
 fn common_rate(blocks: &[Block]) -> Result<f64, TimeBaseError> {
@@ -70,12 +72,12 @@ fn common_rate(blocks: &[Block]) -> Result<f64, TimeBaseError> {
     Ok(first.sample_rate_hz)
 }
 
-fn join<S: Number>(mut pieces: Vec<Piece<S>>, rate_hz: f64) -> Result<Placed<S>, TimeBaseError> {
+fn join<S: Number>(mut pieces: Vec<Piece>, held: Vec<S>, rate_hz: f64) -> Result<Placed<S>, TimeBaseError> {
     let mut issues = Vec::new();
     pieces.retain(|piece| !piece.samples.is_empty());
     sort(&mut pieces, &mut issues);
     let mut doubles = Doubles::default();
-    drop_doubles(&mut pieces, rate_hz, &mut doubles);
+    drop_doubles(&mut pieces, &held, rate_hz, &mut doubles);
     let present: usize = pieces.iter().map(|piece| piece.samples.len()).sum();
     if present < 2 {
         return Err(TimeBaseError::TooFew { count: present });
@@ -83,17 +85,25 @@ fn join<S: Number>(mut pieces: Vec<Piece<S>>, rate_hz: f64) -> Result<Placed<S>,
     let tolerance = stamp_tolerance(&pieces, rate_hz);
     let places = places(&pieces, rate_hz, tolerance, present)?;
     let clock = clock(&pieces, &places, rate_hz, &mut issues);
-    let mut samples = Vec::new();
     let mut gaps = Vec::new();
-    for (piece, &place) in pieces.into_iter().zip(&places) {
-        let held = samples.len();
-        if place > held && held > 0 {
-            let time_s = |index: usize| clock.0 + as_f64(index) / clock.1;
-            gaps.push((place - held, time_s(held - 1), time_s(place)));
-            samples.resize(place, S::MISSING);
+    let mut samples = in_place(&pieces, &places, held, |held| {
+        let mut samples: Vec<S> = Vec::with_capacity(present);
+        for (piece, &place) in pieces.iter().zip(&places) {
+            let end = samples.len();
+            if place > end && end > 0 {
+                let time_s = |index: usize| clock.0 + as_f64(index) / clock.1;
+                gaps.push((place - end, time_s(end - 1), time_s(place)));
+                samples.resize(place, S::MISSING);
+            }
+            append(
+                &mut samples,
+                (piece.start_s, &held[piece.samples.clone()]),
+                (place, clock.1),
+                &mut doubles,
+            );
         }
-        append(&mut samples, piece, (place, clock.1), &mut doubles);
-    }
+        samples
+    });
     report_doubles(&doubles, &mut issues);
     missing::push_gaps(&gaps, &mut issues);
     let lost: usize = gaps.iter().map(|gap| gap.0).sum();
@@ -101,7 +111,24 @@ fn join<S: Number>(mut pieces: Vec<Piece<S>>, rate_hz: f64) -> Result<Placed<S>,
     Ok(Placed { start_s: clock.0, sample_rate_hz: clock.1, samples, gaps, time_jitter_s: 0.0, issues })
 }
 
-fn sort<S>(pieces: &mut [Piece<S>], issues: &mut Vec<Issue>) {
+/// The samples as they are held where every block has its place there already, else what `moved` makes of them.
+fn in_place<S>(
+    pieces: &[Piece],
+    places: &[usize],
+    mut held: Vec<S>,
+    moved: impl FnOnce(&[S]) -> Vec<S>,
+) -> Vec<S> {
+    let ends = std::iter::once(0).chain(pieces.iter().map(|piece| piece.samples.end));
+    let follows =
+        |((piece, place), end): ((&Piece, &usize), usize)| piece.samples.start == end && *place == end;
+    if !pieces.iter().zip(places).zip(ends).all(follows) {
+        return moved(&held);
+    }
+    held.truncate(pieces.last().map_or(0, |piece| piece.samples.end));
+    held
+}
+
+fn sort(pieces: &mut [Piece], issues: &mut Vec<Issue>) {
     let Some(first) = (1..pieces.len()).find(|&i| pieces[i].start_s < pieces[i - 1].start_s) else { return };
     let count = pieces.windows(2).filter(|w| w[1].start_s < w[0].start_s).count();
     let (from_s, to_s) = (pieces[first].start_s, pieces[first - 1].start_s);
@@ -117,12 +144,12 @@ fn sort<S>(pieces: &mut [Piece<S>], issues: &mut Vec<Issue>) {
 }
 
 /// Drops blocks that start where the one before does.
-fn drop_doubles<S: Number>(pieces: &mut Vec<Piece<S>>, rate_hz: f64, doubles: &mut Doubles) {
+fn drop_doubles<S: Number>(pieces: &mut Vec<Piece>, held: &[S], rate_hz: f64, doubles: &mut Doubles) {
+    let of = |piece: &Piece| &held[piece.samples.clone()];
     pieces.dedup_by(|later, kept| {
         let is_double = (later.start_s - kept.start_s) * rate_hz < 0.5 && later.samples.len() > 1;
         if is_double {
-            let is_equal =
-                later.samples.len() == kept.samples.len() && are_same(&later.samples, &kept.samples);
+            let is_equal = later.samples.len() == kept.samples.len() && are_same(of(later), of(kept));
             doubles.add(is_equal, kept.start_s, later.start_s + as_f64(later.samples.len()) / rate_hz);
             if later.samples.len() > kept.samples.len() {
                 std::mem::swap(later, kept);
@@ -143,7 +170,7 @@ const JUDGED_STAMPS: usize = 8;
 ///
 /// Half a sample for stamps of the sampling clock. Stamps of a computer's clock jitter by many samples; then six times the median
 /// miss (four standard deviations of a normal law are 5.9 medians), but less than half a block, since whole blocks get lost.
-fn stamp_tolerance<S>(pieces: &[Piece<S>], rate_hz: f64) -> f64 {
+fn stamp_tolerance(pieces: &[Piece], rate_hz: f64) -> f64 {
     let shortest = pieces.iter().rev().skip(1).map(|p| p.samples.len()).min().unwrap_or(1);
     let half_block = as_f64(shortest) / 2.0;
     let mut misses: Vec<f64> = pieces
@@ -160,8 +187,8 @@ fn stamp_tolerance<S>(pieces: &[Piece<S>], rate_hz: f64) -> f64 {
 }
 
 /// The place of each block's first sample on the base.
-fn places<S>(
-    pieces: &[Piece<S>],
+fn places(
+    pieces: &[Piece],
     rate_hz: f64,
     tolerance: f64,
     present: usize,
@@ -190,8 +217,8 @@ fn places<S>(
 }
 
 /// Start and rate of the base: the nominal rate while the stamps keep to it, else the one they run at.
-fn clock<S>(pieces: &[Piece<S>], places: &[usize], rate_hz: f64, issues: &mut Vec<Issue>) -> (f64, f64) {
-    let off = |piece: &Piece<S>, place: usize| piece.start_s - pieces[0].start_s - as_f64(place) / rate_hz;
+fn clock(pieces: &[Piece], places: &[usize], rate_hz: f64, issues: &mut Vec<Issue>) -> (f64, f64) {
+    let off = |piece: &Piece, place: usize| piece.start_s - pieces[0].start_s - as_f64(place) / rate_hz;
     let offs: Vec<f64> = pieces.iter().zip(places).map(|(piece, &place)| off(piece, place)).collect();
     let worst_s = offs.iter().fold(0.0_f64, |m, o| m.max(o.abs()));
     if worst_s * rate_hz <= 1.0 {
@@ -222,19 +249,19 @@ fn clock<S>(pieces: &[Piece<S>], places: &[usize], rate_hz: f64, issues: &mut Ve
     (pieces[0].start_s + mean_s - slope_s * mean_place, fitted_hz)
 }
 
-/// Appends a block, less what of it is already there.
-fn append<S: Number>(samples: &mut Vec<S>, piece: Piece<S>, at: (usize, f64), doubles: &mut Doubles) {
-    let (place, rate_hz) = at;
-    if samples.is_empty() {
-        *samples = piece.samples;
-        return;
-    }
-    let overlap = samples.len().saturating_sub(place).min(piece.samples.len());
+/// Appends a block, its start in s and its samples, less what of it is already there.
+fn append<S: Number>(
+    samples: &mut Vec<S>,
+    (start_s, block): (f64, &[S]),
+    (place, rate_hz): (usize, f64),
+    doubles: &mut Doubles,
+) {
+    let overlap = if samples.is_empty() { 0 } else { samples.len().saturating_sub(place).min(block.len()) };
     if overlap > 0 {
-        let is_equal = are_same(&samples[place..place + overlap], &piece.samples[..overlap]);
-        doubles.add(is_equal, piece.start_s, piece.start_s + as_f64(overlap) / rate_hz);
+        let is_equal = are_same(&samples[place..place + overlap], &block[..overlap]);
+        doubles.add(is_equal, start_s, start_s + as_f64(overlap) / rate_hz);
     }
-    samples.extend_from_slice(&piece.samples[overlap..]);
+    samples.extend_from_slice(&block[overlap..]);
 }
 
 fn report_doubles(doubles: &Doubles, issues: &mut Vec<Issue>) {

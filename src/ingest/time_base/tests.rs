@@ -157,14 +157,20 @@ fn what_is_no_time_base_says_why() {
     assert!(matches!(from_rate(0.0, 0.0, f64s(&[1.0, 2.0])), Err(TimeBaseError::Rate { .. })));
 }
 
-fn block(first: usize, count: usize) -> Block {
-    let samples = (first..first + count).map(as_f64).collect();
-    Block { start_s: 5.0 + as_f64(first) / 1000.0, sample_rate_hz: 1000.0, samples: Samples::F64(samples) }
+/// A block and its samples.
+fn block(first: usize, count: usize) -> (Block, Vec<f64>) {
+    let block = Block { start_s: 5.0 + as_f64(first) / 1000.0, sample_rate_hz: 1000.0, count };
+    (block, (first..first + count).map(as_f64).collect())
+}
+
+fn of_blocks(blocks: Vec<(Block, Vec<f64>)>) -> Result<Uniform, TimeBaseError> {
+    let (blocks, samples): (Vec<_>, Vec<_>) = blocks.into_iter().unzip();
+    from_blocks(&blocks, Samples::F64(samples.concat()))
 }
 
 #[test]
 fn blocks_in_any_order_make_one_run() {
-    let uniform = from_blocks(vec![block(100, 50), block(0, 100), block(100, 50), block(150, 30)]).unwrap();
+    let uniform = of_blocks(vec![block(100, 50), block(0, 100), block(100, 50), block(150, 30)]).unwrap();
     assert_eq!(uniform.samples, f64s(&(0..180).map(as_f64).collect::<Vec<_>>()));
     assert!((uniform.start_s - 5.0).abs() < 1e-12 && (uniform.sample_rate_hz - 1000.0).abs() < 1e-9);
     assert_eq!(codes(&uniform), [IssueCode::DisorderedBlocks, IssueCode::DuplicateBlocks]);
@@ -173,14 +179,14 @@ fn blocks_in_any_order_make_one_run() {
 
 #[test]
 fn a_missing_block_is_a_gap_and_an_overlap_is_trimmed() {
-    let uniform = from_blocks(vec![block(0, 100), block(200, 100), block(290, 20)]).unwrap();
+    let uniform = of_blocks(vec![block(0, 100), block(200, 100), block(290, 20)]).unwrap();
     assert_eq!(uniform.gaps, [Span { from: 100, to: 200 }]);
     assert_eq!(uniform.samples.len(), 310);
     assert!((uniform.samples.get(309) - 309.0).abs() < 1e-12);
     assert_eq!(codes(&uniform), [IssueCode::DuplicateBlocks, IssueCode::Gap]);
     let mut other = block(100, 50);
-    other.samples = Samples::F64(vec![-1.0; 50]);
-    let uniform = from_blocks(vec![block(0, 100), block(100, 50), other]).unwrap();
+    other.1 = vec![-1.0; 50];
+    let uniform = of_blocks(vec![block(0, 100), block(100, 50), other]).unwrap();
     assert!((uniform.samples.get(120) - 120.0).abs() < 1e-12);
     assert_eq!(uniform.issues[0].severity, Severity::Warning);
 }
@@ -190,10 +196,10 @@ fn blocks_with_jittering_stamps_are_joined() {
     // A computer's clock: ±3 samples about blocks of 100, the stamps' own rate 200 ppm low.
     let blocks = (0..200).map(|i| {
         let mut b = block(i * 100, 100);
-        b.start_s = 5.0 + as_f64(i) * 0.1 * (1.0 + 2e-4) + 0.003 * (as_f64(i) * 1.7).sin();
+        b.0.start_s = 5.0 + as_f64(i) * 0.1 * (1.0 + 2e-4) + 0.003 * (as_f64(i) * 1.7).sin();
         b
     });
-    let uniform = from_blocks(blocks.collect()).unwrap();
+    let uniform = of_blocks(blocks.collect()).unwrap();
     assert_eq!(uniform.samples.len(), 20_000);
     assert!(uniform.gaps.is_empty());
     // The stamps' scatter of 2.1 ms over 200 blocks leaves the slope good to 2.1e-3/(5.8 s·√200) = 2.6e-5.
@@ -204,8 +210,8 @@ fn blocks_with_jittering_stamps_are_joined() {
 #[test]
 fn blocks_with_missing_samples_of_their_own_say_so() {
     let mut broken = block(200, 10);
-    broken.samples = Samples::F64(vec![f64::NAN; 10]);
-    let uniform = from_blocks(vec![block(0, 100), broken]).unwrap();
+    broken.1 = vec![f64::NAN; 10];
+    let uniform = of_blocks(vec![block(0, 100), broken]).unwrap();
     assert_eq!(codes(&uniform), [IssueCode::Gap, IssueCode::NonFinite]);
     assert!(uniform.issues[1].message.starts_with("10 sample(s)"), "{}", uniform.issues[1].message);
 }
@@ -213,18 +219,18 @@ fn blocks_with_missing_samples_of_their_own_say_so() {
 #[test]
 fn blocks_that_make_no_record_say_why() {
     let mut fast = block(100, 10);
-    fast.sample_rate_hz = 2000.0;
+    fast.0.sample_rate_hz = 2000.0;
     let mut far = block(100, 10);
-    far.start_s = 1.7e9;
+    far.0.start_s = 1.7e9;
     let mut still = block(0, 10);
-    still.sample_rate_hz = 0.0;
+    still.0.sample_rate_hz = 0.0;
     for (blocks, expected) in [
         (vec![], "at least two"),
         (vec![block(0, 100), fast], "differ in sample rate"),
         (vec![block(0, 100), far], "times jump"),
         (vec![still], "must be above zero"),
     ] {
-        let error = from_blocks(blocks).unwrap_err();
+        let error = of_blocks(blocks).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
     }
 }
