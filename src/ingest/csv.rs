@@ -4,6 +4,7 @@ mod input;
 mod layout;
 mod list;
 mod number;
+mod pieces;
 mod rows;
 mod stamp;
 
@@ -15,7 +16,7 @@ use super::{Limits, Progress, RawChannel, RawRecording};
 use crate::data::{CaskFile, ChannelSpec, Issue, IssueCode, Samples, Severity, Source};
 use input::Input;
 use layout::Layout;
-use rows::{Ending, RowError, Sink, Wanted};
+use rows::{Ending, RowError, Rows, Sink, Wanted};
 use stamp::Stamps;
 use std::path::Path;
 
@@ -144,23 +145,50 @@ fn find(path: &Path, spec: &ChannelSpec, wanted: &str, layout: &Layout) -> Resul
 /// Keeps the wanted columns whole.
 struct Keep<'a> {
     wanted: &'a Wanted,
-    columns: Vec<Vec<f64>>,
+    columns: Columns,
     stamps: Stamps,
 }
 
-impl Sink for Keep<'_> {
+/// The wanted columns of some of the rows.
+struct Columns(Vec<Vec<f64>>);
+
+impl Rows for Columns {
+    fn word(&mut self, _slot: usize, _cell: &[u8]) -> Option<f64> {
+        None
+    }
+
+    fn row(&mut self, values: &[f64]) {
+        for (column, &value) in self.0.iter_mut().zip(values) {
+            column.push(value);
+        }
+    }
+}
+
+impl Rows for Keep<'_> {
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
         if self.wanted.is_time[slot] { self.stamps.seconds(cell) } else { None }
     }
 
     fn row(&mut self, values: &[f64]) {
-        for (column, &value) in self.columns.iter_mut().zip(values) {
-            column.push(value);
+        self.columns.row(values);
+    }
+}
+
+impl Sink for Keep<'_> {
+    type Part = Columns;
+
+    fn part(&self) -> Columns {
+        Columns(vec![Vec::new(); self.columns.0.len()])
+    }
+
+    fn append(&mut self, part: &mut Columns) {
+        for (column, more) in self.columns.0.iter_mut().zip(&mut part.0) {
+            column.append(more);
         }
     }
 
     fn held_bytes(&self) -> u64 {
-        self.columns.iter().map(|column| 8 * column.len() as u64).sum()
+        self.columns.0.iter().map(|column| 8 * column.len() as u64).sum()
     }
 }
 
@@ -177,10 +205,10 @@ fn columns(
     let rows_expected =
         layout.rows_expected(input.bytes).min(usize::try_from(most_rows).unwrap_or(usize::MAX));
     let columns = wanted.columns.iter().map(|_| Vec::with_capacity(rows_expected)).collect();
-    let mut keep = Keep { wanted, columns, stamps: Stamps::default() };
+    let mut keep = Keep { wanted, columns: Columns(columns), stamps: Stamps::default() };
     let ending = rows::read(input, layout, wanted, &mut keep, (limits, progress))
         .map_err(|error| row_error(path, limits, (layout, wanted), error))?;
-    let Keep { mut columns, stamps, .. } = keep;
+    let Keep { columns: Columns(mut columns), stamps, .. } = keep;
     for (slot, values) in columns.iter_mut().enumerate() {
         let scale_s = layout.time_scale_s(wanted.columns[slot]).unwrap_or(1.0);
         // Stamps are in s already.
@@ -278,5 +306,7 @@ fn row_error(
 
 #[cfg(test)]
 mod fuzz_tests;
+#[cfg(test)]
+mod piece_tests;
 #[cfg(test)]
 pub(super) mod tests;

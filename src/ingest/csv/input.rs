@@ -18,7 +18,7 @@ pub(super) struct Input {
     /// Whether `head` is all there is.
     pub is_whole: bool,
     /// What follows `head`.
-    pub rest: Box<dyn Read>,
+    pub rest: Box<dyn Read + Send>,
     /// Its size on disk.
     pub bytes: u64,
     /// How it is encoded, for people.

@@ -3,7 +3,7 @@
 use super::super::error::IngestError;
 use super::input::Input;
 use super::layout::{Column, Layout};
-use super::rows::{self, Sink, Wanted};
+use super::rows::{self, Rows, Sink, Wanted};
 use super::stamp::Stamps;
 use super::{Limits, Progress, ending_issues, no_table, row_error, time_base};
 use crate::data::{IssueCode, ListedChannel, Listing, RecordingFormat, Samples};
@@ -20,18 +20,32 @@ struct Range {
 }
 
 /// Keeps the times, and of the other columns their ranges.
-struct Survey {
+#[derive(Debug)]
+pub(super) struct Survey {
+    seen: Seen,
+    stamps: Stamps,
+}
+
+/// What some of the rows hold.
+#[derive(Debug)]
+pub(super) struct Seen {
     time_slot: Option<usize>,
     times: Vec<f64>,
     ranges: Vec<Range>,
-    stamps: Stamps,
     rows: u64,
 }
 
-impl Sink for Survey {
-    fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
+impl Seen {
+    fn nothing(time_slot: Option<usize>, columns: usize) -> Self {
+        let range = Range { values: 0, words: 0, smallest: f64::INFINITY, largest: f64::NEG_INFINITY };
+        Self { time_slot, times: Vec::new(), ranges: vec![range; columns], rows: 0 }
+    }
+}
+
+impl Rows for Seen {
+    fn word(&mut self, slot: usize, _cell: &[u8]) -> Option<f64> {
         if self.time_slot == Some(slot) {
-            return self.stamps.seconds(cell);
+            return None;
         }
         self.ranges[slot].words += 1;
         Some(f64::NAN)
@@ -50,9 +64,46 @@ impl Sink for Survey {
             self.times.push(values[slot]);
         }
     }
+}
+
+impl Survey {
+    /// Before the first row.
+    pub(super) fn of(time_slot: Option<usize>, columns: usize) -> Self {
+        Self { seen: Seen::nothing(time_slot, columns), stamps: Stamps::default() }
+    }
+}
+
+impl Rows for Survey {
+    fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
+        if self.seen.time_slot == Some(slot) { self.stamps.seconds(cell) } else { self.seen.word(slot, cell) }
+    }
+
+    fn row(&mut self, values: &[f64]) {
+        self.seen.row(values);
+    }
+}
+
+impl Sink for Survey {
+    type Part = Seen;
+
+    fn part(&self) -> Seen {
+        Seen::nothing(self.seen.time_slot, self.seen.ranges.len())
+    }
+
+    fn append(&mut self, part: &mut Seen) {
+        let part = std::mem::replace(part, self.part());
+        self.seen.rows += part.rows;
+        self.seen.times.extend(part.times);
+        for (range, more) in self.seen.ranges.iter_mut().zip(part.ranges) {
+            range.values += more.values;
+            range.words += more.words;
+            range.smallest = range.smallest.min(more.smallest);
+            range.largest = range.largest.max(more.largest);
+        }
+    }
 
     fn held_bytes(&self) -> u64 {
-        8 * self.times.len() as u64
+        8 * self.seen.times.len() as u64
     }
 }
 
@@ -70,29 +121,23 @@ pub(in super::super) fn list(
     let layout = Layout::of(&input).ok_or_else(|| no_table(path))?;
     let time_column = layout.time_column();
     let wanted = Wanted::new(0..layout.columns.len(), time_column.as_slice());
-    let nothing = Range { values: 0, words: 0, smallest: f64::INFINITY, largest: f64::NEG_INFINITY };
-    let mut survey = Survey {
-        time_slot: time_column,
-        times: Vec::new(),
-        ranges: vec![nothing; layout.columns.len()],
-        stamps: Stamps::default(),
-        rows: 0,
-    };
+    let mut survey = Survey::of(time_column, layout.columns.len());
     let ending = rows::read(input, &layout, &wanted, &mut survey, (limits, progress))
         .map_err(|error| row_error(path, limits, (&layout, &wanted), error))?;
+    let Survey { mut seen, stamps } = survey;
     let scale_s = time_column.and_then(|column| layout.time_scale_s(column)).unwrap_or(1.0);
-    if !survey.stamps.any() {
-        for t in &mut survey.times {
+    if !stamps.any() {
+        for t in &mut seen.times {
             *t *= scale_s;
         }
     }
-    let clock = Clock::of(&survey.times);
+    let clock = Clock::of(&seen.times);
     let channels = layout
         .columns
         .iter()
         .enumerate()
         .filter(|(index, _)| Some(*index) != time_column)
-        .map(|(index, column)| listed(column, &survey.ranges[index], &clock, survey.rows))
+        .map(|(index, column)| listed(column, &seen.ranges[index], &clock, seen.rows))
         .collect();
     let mut issues = ending_issues(&ending);
     issues.extend(clock.issues);
@@ -102,7 +147,7 @@ pub(in super::super) fn list(
         bytes,
         format: RecordingFormat::Csv,
         counts: BTreeMap::from([
-            ("rows".into(), survey.rows),
+            ("rows".into(), seen.rows),
             ("columns".into(), layout.columns.len() as u64),
             ("preamble_lines".into(), layout.preamble_lines),
         ]),

@@ -6,19 +6,20 @@ const POWERS: [f64; 23] = [
     1e19, 1e20, 1e21, 1e22,
 ];
 
+/// The same as integers, as far as eight digits reach.
+const WHOLE_POWERS: [u64; 9] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
+
 /// The number at the start of `text` and how many bytes it takes; `None` where none starts there.
 ///
 /// Exact: up to 2⁵³ and 10²² one division or product rounds correctly (Clinger 1990); longer numbers go to the library.
+#[inline]
 pub(super) fn leading(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
-    let mut at = 0;
-    let is_negative = text.first() == Some(&b'-');
-    if is_negative || text.first() == Some(&b'+') {
-        at = 1;
-    }
+    let first = text.first().copied().unwrap_or_default();
+    let is_negative = first == b'-';
+    let from = usize::from(is_negative | (first == b'+'));
     let mut mantissa = 0_u64;
-    let whole_from = at;
-    at = digits(text, at, &mut mantissa);
-    let mut count = at - whole_from;
+    let mut at = digits(text, from, &mut mantissa);
+    let mut count = at - from;
     let mut fraction = 0;
     if text.get(at) == Some(&decimal) {
         let from = at + 1;
@@ -29,24 +30,61 @@ pub(super) fn leading(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
     if count == 0 {
         return None;
     }
-    let mut exponent = 0_i64;
-    if matches!(text.get(at), Some(b'e' | b'E')) {
-        (exponent, at) = exponent_at(text, at);
+    if count > 19 || mantissa > 1 << 53 || matches!(text.get(at), Some(b'e' | b'E')) {
+        return with_exponent(text, at, (mantissa, count, fraction), decimal);
     }
+    // At most 19 digits stand behind the mark.
+    let value = as_f64(mantissa) / POWERS[fraction];
+    // The sign bit alone, without a jump that half of all samples would take.
+    Some((f64::from_bits(value.to_bits() | (u64::from(is_negative) << 63)), at))
+}
+
+/// The number whose digits end at `at`, of any length and with its exponent.
+#[cold]
+fn with_exponent(
+    text: &[u8],
+    at: usize,
+    (mantissa, count, fraction): (u64, usize, usize),
+    decimal: u8,
+) -> Option<(f64, usize)> {
+    let (exponent, at) = exponent_at(text, at);
     let power = exponent - i64::try_from(fraction).ok()?;
     let magnitude = usize::try_from(power.unsigned_abs()).ok().and_then(|index| POWERS.get(index));
     match magnitude {
         Some(&scale) if count <= 19 && mantissa <= 1 << 53 => {
-            #[allow(clippy::cast_precision_loss, reason = "at most 2^53")]
-            let digits = mantissa as f64;
+            let digits = as_f64(mantissa);
             let value = if power < 0 { digits / scale } else { digits * scale };
-            Some((if is_negative { -value } else { value }, at))
+            Some((if text.first() == Some(&b'-') { -value } else { value }, at))
         }
         _ => Some((by_library(text.get(..at)?, decimal)?, at)),
     }
 }
 
+#[allow(clippy::cast_precision_loss, reason = "at most 2^53")]
+fn as_f64(mantissa: u64) -> f64 {
+    mantissa as f64
+}
+
+/// Appends the digits at `at` to `mantissa`, eight at a time; where they end.
+#[inline]
 fn digits(text: &[u8], mut at: usize, mantissa: &mut u64) -> usize {
+    while let Some(eight) = text.get(at..).and_then(<[u8]>::first_chunk::<8>) {
+        // Each byte less "0": a digit is at most 9, so that adding 0x76 leaves its highest bit clear.
+        let bytes = u64::from_le_bytes(*eight) ^ 0x3030_3030_3030_3030;
+        let others = (bytes.wrapping_add(0x7676_7676_7676_7676) | bytes) & 0x8080_8080_8080_8080;
+        // A carry out of a byte that is no digit reaches later bytes only.
+        let count = (others.trailing_zeros() / 8) as usize;
+        if count == 0 {
+            return at;
+        }
+        // The digits to the right end of eight, zeros before them.
+        *mantissa =
+            mantissa.wrapping_mul(WHOLE_POWERS[count]).wrapping_add(of_eight(bytes << (64 - 8 * count)));
+        at += count;
+        if count < 8 {
+            return at;
+        }
+    }
     while let Some(&byte) = text.get(at) {
         let digit = byte.wrapping_sub(b'0');
         if digit > 9 {
@@ -56,6 +94,14 @@ fn digits(text: &[u8], mut at: usize, mantissa: &mut u64) -> usize {
         at += 1;
     }
     at
+}
+
+/// Eight digits, the first in the lowest byte, as a number: to pairs, to fours, to eight.
+#[inline]
+fn of_eight(digits: u64) -> u64 {
+    let pairs = digits.wrapping_mul(10).wrapping_add(digits >> 8) & 0x00ff_00ff_00ff_00ff;
+    let fours = pairs.wrapping_mul(100).wrapping_add(pairs >> 16) & 0x0000_ffff_0000_ffff;
+    fours.wrapping_mul(10_000).wrapping_add(fours >> 32) & 0xffff_ffff
 }
 
 /// The exponent whose "e" stands at `at`, and where it ends; 0 and `at` where no digits follow.

@@ -4,10 +4,9 @@ use super::super::{Limits, Progress};
 use super::input::Input;
 use super::layout::Layout;
 use super::number;
-use std::io::Read;
-
-/// Bytes read at a time, unless a line is longer.
-const CHUNK_BYTES: usize = 1 << 20;
+use super::pieces::{Batch, Cut, Sizes};
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// Which columns to read.
 pub(super) struct Wanted {
@@ -33,12 +32,22 @@ impl Wanted {
     }
 }
 
-/// Where rows go.
-pub(super) trait Sink {
+/// What takes rows.
+pub(super) trait Rows {
     /// The value of a cell that is no number; `None`: there is none.
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64>;
     /// One row, a value a slot, NaN where missing.
     fn row(&mut self, values: &[f64]);
+}
+
+/// Where the rows of the whole table go.
+pub(super) trait Sink: Rows {
+    /// Takes the rows of one piece; it has no value for a word whose value hangs on rows of other pieces.
+    type Part: Rows + Send;
+    /// A part without rows.
+    fn part(&self) -> Self::Part;
+    /// Takes over the rows of `part`, which follow those taken so far, and leaves it without rows.
+    fn append(&mut self, part: &mut Self::Part);
     /// Memory that the rows taken so far hold.
     fn held_bytes(&self) -> u64;
 }
@@ -64,53 +73,91 @@ pub(super) enum RowError {
 
 /// Reads every row into `sink`.
 pub(super) fn read(
-    mut input: Input,
+    input: Input,
     layout: &Layout,
     wanted: &Wanted,
     sink: &mut impl Sink,
     (limits, progress): (Limits, Progress),
 ) -> Result<Ending, RowError> {
-    let longest = usize::try_from(limits.line_bytes()).unwrap_or(usize::MAX);
-    let mut table = Table {
-        delimiter: layout.delimiter,
-        decimal: layout.decimal,
-        other_decimal: layout.other_decimal(),
-        is_runs: layout.delimiter == b' ',
-        wanted,
-        values: vec![f64::NAN; wanted.columns.len()],
-        line: layout.data_line - 1,
-    };
-    let mut buffer = input.head.split_off(layout.data_offset.min(input.head.len()));
+    let sizes = Sizes::of(limits, input.bytes);
+    read_by(input, (layout, wanted), sink, sizes, progress)
+}
+
+/// The same by pieces and batches of any size; the sizes leave the rows, the error and the ending as they are.
+pub(super) fn read_by(
+    mut input: Input,
+    (layout, wanted): (&Layout, &Wanted),
+    sink: &mut impl Sink,
+    sizes: Sizes,
+    progress: Progress,
+) -> Result<Ending, RowError> {
+    let mut table = Table::of(layout, wanted, layout.data_line - 1);
+    let text = input.head.split_off(layout.data_offset.min(input.head.len()));
+    let (mut batch, mut next) = (Batch { text, is_last: false }, Batch::default());
+    let rest = input.rest.as_mut();
+    batch.fill(rest, sizes).map_err(RowError::Io)?;
+    let mut parts = Vec::new();
     let mut done = 0_u64;
     loop {
-        let held = buffer.len();
-        // A line that fills the buffer gets twice the room, up to the longest that is allowed.
-        let most = if held < CHUNK_BYTES { CHUNK_BYTES } else { held.saturating_mul(2) };
-        let room = most.min(longest).saturating_sub(held) as u64;
-        (&mut input.rest).take(room).read_to_end(&mut buffer).map_err(RowError::Io)?;
-        let is_last = buffer.len() == held && room > 0;
-        let end = buffer.iter().rposition(|&b| b == b'\n').map_or(0, |at| at + 1);
-        let mut at = 0;
-        while at < end {
-            match table.line(&buffer[..end], at, sink)? {
-                Some(next) => at = next,
-                None => return Ok(Ending { lines: table.line, cut_line: Some(table.line) }),
+        let cut = Cut::of(&batch.text, sizes);
+        next.text.clear();
+        next.text.extend_from_slice(&batch.text[cut.end..]);
+        let mut fill_next = || if batch.is_last { Ok(()) } else { next.fill(rest, sizes) };
+        let (filled, lines) = if cut.pieces.len() > 1 {
+            parts.resize_with(cut.pieces.len().max(parts.len()), || sink.part());
+            rayon::join(fill_next, || side_by_side(&batch.text, &cut.pieces, (layout, wanted), &mut parts))
+        } else {
+            (fill_next(), None)
+        };
+        if let Some(lines) = lines {
+            for (part, lines) in parts.iter_mut().zip(lines) {
+                sink.append(part);
+                table.line += lines;
+                sizes.check(sink)?;
+            }
+        } else {
+            parts.clear();
+            for piece in &cut.pieces {
+                if !table.lines(&batch.text[piece.clone()], sink)? {
+                    return Ok(Ending { lines: table.line, cut_line: Some(table.line) });
+                }
+                sizes.check(sink)?;
             }
         }
-        done += end as u64;
-        buffer.drain(..end);
-        if is_last {
-            let cut_line = table.last_line(&buffer, layout, sink)?;
-            return Ok(Ending { lines: table.line, cut_line });
-        }
-        if sink.held_bytes() > limits.samples_bytes() {
-            return Err(RowError::TooMany);
-        }
-        if buffer.len() >= longest {
+        if cut.is_too_long {
             return Err(RowError::TooLong { line: table.line + 1 });
         }
+        done += cut.end as u64;
         #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
         progress((done as f64 / input.bytes.max(1) as f64).min(1.0));
+        if batch.is_last {
+            let cut_line = table.last_line(&batch.text[cut.end..], layout, sink)?;
+            return Ok(Ending { lines: table.line, cut_line });
+        }
+        filled.map_err(RowError::Io)?;
+        std::mem::swap(&mut batch, &mut next);
+    }
+}
+
+/// The lines of each piece, its rows in the part of the same number.
+///
+/// `None` where a piece holds a word, a row at fault or the table's end: only row by row can tell what comes of it.
+fn side_by_side(
+    text: &[u8],
+    pieces: &[Range<usize>],
+    (layout, wanted): (&Layout, &Wanted),
+    parts: &mut [impl Rows + Send],
+) -> Option<Vec<u64>> {
+    let lines = pieces.par_iter().zip(parts).map(|(piece, part)| {
+        let mut table = Table::of(layout, wanted, 0);
+        matches!(table.lines(&text[piece.clone()], part), Ok(true)).then_some(table.line)
+    });
+    lines.collect()
+}
+
+impl Sizes {
+    fn check(self, sink: &impl Sink) -> Result<(), RowError> {
+        if sink.held_bytes() > self.samples_bytes { Err(RowError::TooMany) } else { Ok(()) }
     }
 }
 
@@ -125,9 +172,34 @@ struct Table<'a> {
     line: u64,
 }
 
-impl Table<'_> {
+impl<'a> Table<'a> {
+    /// A table of which `line` lines are behind.
+    fn of(layout: &Layout, wanted: &'a Wanted, line: u64) -> Self {
+        Self {
+            delimiter: layout.delimiter,
+            decimal: layout.decimal,
+            other_decimal: layout.other_decimal(),
+            is_runs: layout.delimiter == b' ',
+            wanted,
+            values: vec![f64::NAN; wanted.columns.len()],
+            line,
+        }
+    }
+
+    /// Whole lines into `sink`; false where a block of zero bytes ends the table.
+    fn lines(&mut self, text: &[u8], sink: &mut impl Rows) -> Result<bool, RowError> {
+        let mut at = 0;
+        while at < text.len() {
+            match self.line(text, at, sink)? {
+                Some(next) => at = next,
+                None => return Ok(false),
+            }
+        }
+        Ok(true)
+    }
+
     /// The line at `at` into `sink`; where the next begins, `None` where a block of zero bytes ends the table.
-    fn line(&mut self, text: &[u8], mut at: usize, sink: &mut impl Sink) -> Result<Option<usize>, RowError> {
+    fn line(&mut self, text: &[u8], mut at: usize, sink: &mut impl Rows) -> Result<Option<usize>, RowError> {
         self.line += 1;
         if self.is_runs {
             at = skip(text, at, |b| b == b' ' || b == b'\t');
@@ -155,7 +227,7 @@ impl Table<'_> {
     }
 
     /// Hands the row on; a row without any value is none.
-    fn finish(&self, sink: &mut impl Sink) -> Result<(), RowError> {
+    fn finish(&self, sink: &mut impl Rows) -> Result<(), RowError> {
         if self.values.iter().all(|value| value.is_nan()) {
             return Ok(());
         }
@@ -168,7 +240,7 @@ impl Table<'_> {
     }
 
     /// The number at `at` into its slot; where the cell ends.
-    fn cell(&mut self, text: &[u8], at: usize, slot: usize, sink: &mut impl Sink) -> Result<usize, RowError> {
+    fn cell(&mut self, text: &[u8], at: usize, slot: usize, sink: &mut impl Rows) -> Result<usize, RowError> {
         let from = if text.get(at) == Some(&b' ') { skip(text, at, |b| b == b' ') } else { at };
         if let Some((value, used)) = number::leading(&text[from..], self.decimal) {
             let end = from + used;
@@ -200,7 +272,7 @@ impl Table<'_> {
         &mut self,
         text: &[u8],
         layout: &Layout,
-        sink: &mut impl Sink,
+        sink: &mut impl Rows,
     ) -> Result<Option<u64>, RowError> {
         if text.trim_ascii().is_empty() {
             return Ok(None);
