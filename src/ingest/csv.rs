@@ -3,7 +3,7 @@
 mod input;
 mod layout;
 mod list;
-mod number;
+
 mod pieces;
 mod rows;
 mod stamp;

@@ -11,6 +11,7 @@ mod hdf5;
 mod in_memory;
 mod limits;
 mod mcap;
+mod number;
 pub mod scene_file;
 pub mod time_base;
 

@@ -1,7 +1,8 @@
 //! The beginning of a text to its layout: delimiter, decimal mark, header, units, where the rows begin.
 
 use super::input::{self, Input};
-use super::{number, stamp};
+use super::stamp;
+use crate::ingest::number;
 
 /// One column of the table.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use super::super::{Limits, Progress};
 use super::input::Input;
 use super::layout::Layout;
-use super::number;
 use super::pieces::{Batch, Cut, Sizes};
+use crate::ingest::number;
 use rayon::prelude::*;
 use std::ops::Range;
 

@@ -4,7 +4,9 @@ use super::plan::{
     Decode, Leaf, MOST_LEAVES, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns,
 };
 use crate::data::Samples;
+use crate::ingest::number;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_json::value::RawValue;
 use std::borrow::Cow;
 use std::fmt;
 
@@ -80,11 +82,28 @@ impl At<'_> {
         At { node, wants: self.wants, slots: self.slots }
     }
 
-    fn fill(&mut self, want: Want, value: &Value) {
-        for &slot in &self.node.slots {
-            if self.wants.get(slot) == Some(&want) {
-                self.slots.set(slot, value.clone());
+    fn fill(&mut self, want: Want, value: Value) {
+        let mut slots = self.node.slots.iter().filter(|&&slot| self.wants.get(slot) == Some(&want));
+        let Some(&last) = slots.next_back() else { return };
+        for &slot in slots {
+            self.slots.set(slot, value.clone());
+        }
+        self.slots.set(last, value);
+    }
+
+    /// Whether a whole array is wanted here and none of its elements by itself.
+    fn wants_array(&self, node: &Node) -> bool {
+        node.children.is_empty() && node.slot(self.wants, Want::Numbers).is_some()
+    }
+
+    /// A value whose text is known: an array of plain numbers is read straight from it.
+    fn take(mut self, text: &RawValue) -> Result<(), serde_json::Error> {
+        match plain_numbers(text.get().as_bytes()) {
+            Some(samples) => {
+                self.fill(Want::Numbers, Value::Array(Samples::F64(samples)));
+                Ok(())
             }
+            None => self.deserialize(&mut serde_json::Deserializer::from_str(text.get())),
         }
     }
 
@@ -93,8 +112,8 @@ impl At<'_> {
     }
 
     fn number(&mut self, value: f64) {
-        self.fill(Want::Numbers, &Value::Number { value, is_narrow: false });
-        self.fill(Want::Stamp, &Value::BadStamp);
+        self.fill(Want::Numbers, Value::Number { value, is_narrow: false });
+        self.fill(Want::Stamp, Value::BadStamp);
     }
 }
 
@@ -135,18 +154,18 @@ impl<'de> Visitor<'de> for At<'_> {
     }
 
     fn visit_unit<E: Error>(mut self) -> Result<(), E> {
-        self.fill(Want::Numbers, &Value::Number { value: f64::NAN, is_narrow: false });
+        self.fill(Want::Numbers, Value::Number { value: f64::NAN, is_narrow: false });
         Ok(())
     }
 
     fn visit_str<E: Error>(mut self, text: &str) -> Result<(), E> {
         if self.wants(Want::Text) {
-            self.fill(Want::Text, &Value::Text(text.to_owned()));
+            self.fill(Want::Text, Value::Text(text.to_owned()));
         }
         if self.wants(Want::Stamp) {
             let stamp = text.parse::<jiff::Timestamp>().ok();
             let ns = stamp.and_then(|stamp| i64::try_from(stamp.as_nanosecond()).ok());
-            self.fill(Want::Stamp, &ns.map_or(Value::BadStamp, Value::Stamp));
+            self.fill(Want::Stamp, ns.map_or(Value::BadStamp, Value::Stamp));
         }
         if self.wants(Want::Numbers)
             && let Some(value) = spelled_number(text)
@@ -170,12 +189,16 @@ impl<'de> Visitor<'de> for At<'_> {
             }
             let value =
                 seconds.map_or(Value::BadStamp, |seconds| Value::Stamp(unix_ns(seconds, nanoseconds)));
-            self.fill(Want::Stamp, &value);
+            self.fill(Want::Stamp, value);
             return Ok(());
         }
         let node = self.node;
         while let Some(key) = map.next_key::<Cow<str>>()? {
             match node.field(&key) {
+                Some(child) if self.wants_array(child) => {
+                    let text = map.next_value::<&RawValue>()?;
+                    self.below(child).take(text).map_err(A::Error::custom)?;
+                }
                 Some(child) => map.next_value_seed(self.below(child))?,
                 None => map.next_value::<IgnoredAny>().map(|_| ())?,
             }
@@ -193,7 +216,7 @@ impl<'de> Visitor<'de> for At<'_> {
                 }
                 samples.push(value);
             }
-            self.fill(Want::Numbers, &Value::Array(Samples::F64(samples)));
+            self.fill(Want::Numbers, Value::Array(Samples::F64(samples)));
             return Ok(());
         }
         let mut index = 0;
@@ -208,6 +231,26 @@ impl<'de> Visitor<'de> for At<'_> {
             index += 1;
         }
     }
+}
+
+/// The numbers of a JSON array, its grammar checked before; `None` where it holds anything else.
+fn plain_numbers(text: &[u8]) -> Option<Vec<f64>> {
+    /// Characters of a number and its comma, as loggers write them; more room is taken as it is needed.
+    const USUAL: usize = 8;
+    let past_spaces = |at: usize| {
+        at + text[at..].iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(text.len() - at)
+    };
+    let mut numbers = Vec::with_capacity(text.len() / USUAL);
+    let mut at = past_spaces(text.strip_prefix(b"[").map(|_| 1)?);
+    while text.get(at) != Some(&b']') {
+        let (value, length) = number::leading(&text[at..], b'.')?;
+        numbers.push(value);
+        at = past_spaces(at + length);
+        if text.get(at) == Some(&b',') {
+            at = past_spaces(at + 1);
+        }
+    }
+    Some(numbers)
 }
 
 /// What protobuf's JSON mapping writes as words.
