@@ -16,6 +16,7 @@ use super::{Limits, Progress, RawChannel, RawRecording};
 use crate::data::{CaskFile, ChannelSpec, Issue, IssueCode, Samples, Severity, Source};
 use input::Input;
 use layout::Layout;
+use rayon::prelude::*;
 use rows::{Ending, RowError, Rows, Sink, Wanted};
 use stamp::Stamps;
 use std::path::Path;
@@ -56,15 +57,26 @@ fn of_input(
         uses[wanted.slot(plan.column)] += 1;
         plan.time_column.into_iter().for_each(|column| uses[wanted.slot(column)] += 1);
     }
+    let samples: Vec<Vec<f64>> = plans
+        .iter()
+        .map(|plan| {
+            let at = wanted.slot(plan.column);
+            uses[at] -= 1;
+            // The last channel to use a column takes it instead of copying it.
+            if uses[at] == 0 { std::mem::take(&mut held[at]) } else { held[at].clone() }
+        })
+        .collect();
+    let uniform: Vec<Result<Uniform, TimeBaseError>> = samples
+        .into_par_iter()
+        .zip(&plans)
+        .map(|(samples, plan)| {
+            on_base(samples, plan.time_column.map(|column| held[wanted.slot(column)].as_slice()), plan)
+        })
+        .collect();
     let mut channels = Vec::with_capacity(plans.len());
-    for (spec, plan) in plans.iter().enumerate() {
-        let at = wanted.slot(plan.column);
-        uses[at] -= 1;
-        // The last channel to use a column takes it instead of copying it.
-        let samples = if uses[at] == 0 { std::mem::take(&mut held[at]) } else { held[at].clone() };
-        let times_s = plan.time_column.map(|column| held[wanted.slot(column)].as_slice());
+    for (spec, (uniform, plan)) in uniform.into_iter().zip(&plans).enumerate() {
         let name = &cask_file.channels[spec].name;
-        let uniform = on_base(samples, times_s, plan).map_err(|error| time_error(path, name, &error))?;
+        let uniform = uniform.map_err(|error| time_error(path, name, &error))?;
         channels.push(RawChannel { spec, uniform, unit: layout.columns[plan.column].unit.clone() });
     }
     Ok(RawRecording { channels, zero_unix_ns: stamps.zero_unix_ns(), issues: ending_issues(&ending) })
@@ -181,10 +193,14 @@ impl Sink for Keep<'_> {
         Columns(vec![Vec::new(); self.columns.0.len()])
     }
 
-    fn append(&mut self, part: &mut Columns) {
-        for (column, more) in self.columns.0.iter_mut().zip(&mut part.0) {
-            column.append(more);
-        }
+    fn append(&mut self, parts: &mut [Columns]) {
+        // Most of the time the system hands out the memory, a page after the other.
+        self.columns.0.par_iter_mut().enumerate().for_each(|(slot, column)| {
+            for part in &*parts {
+                column.extend_from_slice(&part.0[slot]);
+            }
+        });
+        parts.iter_mut().flat_map(|part| &mut part.0).for_each(Vec::clear);
     }
 
     fn held_bytes(&self) -> u64 {

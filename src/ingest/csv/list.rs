@@ -90,15 +90,17 @@ impl Sink for Survey {
         Seen::nothing(self.seen.time_slot, self.seen.ranges.len())
     }
 
-    fn append(&mut self, part: &mut Seen) {
-        let part = std::mem::replace(part, self.part());
-        self.seen.rows += part.rows;
-        self.seen.times.extend(part.times);
-        for (range, more) in self.seen.ranges.iter_mut().zip(part.ranges) {
-            range.values += more.values;
-            range.words += more.words;
-            range.smallest = range.smallest.min(more.smallest);
-            range.largest = range.largest.max(more.largest);
+    fn append(&mut self, parts: &mut [Seen]) {
+        for part in parts {
+            let part = std::mem::replace(part, self.part());
+            self.seen.rows += part.rows;
+            self.seen.times.extend(part.times);
+            for (range, more) in self.seen.ranges.iter_mut().zip(part.ranges) {
+                range.values += more.values;
+                range.words += more.words;
+                range.smallest = range.smallest.min(more.smallest);
+                range.largest = range.largest.max(more.largest);
+            }
         }
     }
 

@@ -13,6 +13,7 @@ const MOST_PIECES: usize = 64;
 
 /// How much of a text is taken at a time, and the most that is believed of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(clippy::struct_field_names, reason = "each name ends in its unit")]
 pub(super) struct Sizes {
     /// Of a piece, unless a line is longer; at most `line_bytes`.
     pub piece_bytes: usize,

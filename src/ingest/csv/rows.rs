@@ -46,8 +46,8 @@ pub(super) trait Sink: Rows {
     type Part: Rows + Send;
     /// A part without rows.
     fn part(&self) -> Self::Part;
-    /// Takes over the rows of `part`, which follow those taken so far, and leaves it without rows.
-    fn append(&mut self, part: &mut Self::Part);
+    /// Takes over the rows of `parts`, which follow those taken so far in their order, and leaves them without rows.
+    fn append(&mut self, parts: &mut [Self::Part]);
     /// Memory that the rows taken so far hold.
     fn held_bytes(&self) -> u64;
 }
@@ -110,11 +110,9 @@ pub(super) fn read_by(
             (fill_next(), None)
         };
         if let Some(lines) = lines {
-            for (part, lines) in parts.iter_mut().zip(lines) {
-                sink.append(part);
-                table.line += lines;
-                sizes.check(sink)?;
-            }
+            sink.append(&mut parts);
+            table.line += lines;
+            sizes.check(sink)?;
         } else {
             parts.clear();
             for piece in &cut.pieces {
@@ -139,7 +137,7 @@ pub(super) fn read_by(
     }
 }
 
-/// The lines of each piece, its rows in the part of the same number.
+/// How many lines the pieces have; their rows in the parts of the same number.
 ///
 /// `None` where a piece holds a word, a row at fault or the table's end: only row by row can tell what comes of it.
 fn side_by_side(
@@ -147,12 +145,12 @@ fn side_by_side(
     pieces: &[Range<usize>],
     (layout, wanted): (&Layout, &Wanted),
     parts: &mut [impl Rows + Send],
-) -> Option<Vec<u64>> {
+) -> Option<u64> {
     let lines = pieces.par_iter().zip(parts).map(|(piece, part)| {
         let mut table = Table::of(layout, wanted, 0);
         matches!(table.lines(&text[piece.clone()], part), Ok(true)).then_some(table.line)
     });
-    lines.collect()
+    lines.sum()
 }
 
 impl Sizes {
