@@ -127,14 +127,14 @@ impl Column {
                 self.blocks.push(RawBlock { time_ns: time.0, rate_hz, count: 1 });
                 push(&mut self.samples, value, is_narrow);
             }
-            (Value::Array(samples), None | Some(true)) => {
+            (Value::Array(mut samples), None | Some(true)) => {
                 if samples.is_empty() {
                     return;
                 }
                 let width_bytes = if matches!(samples, Samples::F32(_)) { 4 } else { 8 };
                 self.held_bytes += BLOCK_BYTES + width_bytes * samples.len() as u64;
                 self.blocks.push(RawBlock { time_ns: time.0, rate_hz, count: samples.len() });
-                append(&mut self.samples, samples);
+                append(&mut self.samples, &mut samples);
             }
             (Value::Array(_), Some(false)) => {
                 self.malformed("the field is a number in some messages and an array in others");
@@ -188,20 +188,26 @@ impl Column {
         self.is_blocks().is_none_or(|own| other.is_blocks().is_none_or(|others| own == others))
     }
 
-    /// Adds what another column took of the messages that follow.
-    pub(super) fn append(&mut self, mut other: Self) {
+    /// Moves over what another column took of the messages that follow; that one is as new, but for the memory it has.
+    pub(super) fn append(&mut self, other: &mut Self) {
         let before = self.times_ns.len().max(self.blocks.len());
         self.zero_stamp = other.zero_stamp.map(|position| before + position).or(self.zero_stamp);
         self.times_ns.append(&mut other.times_ns);
         self.blocks.append(&mut other.blocks);
-        append(&mut self.samples, other.samples);
+        append(&mut self.samples, &mut other.samples);
         self.tally.messages += other.tally.messages;
         self.tally.malformed += other.tally.malformed;
         self.tally.bad_stamps += other.tally.bad_stamps;
         self.tally.stamps += other.tally.stamps;
         self.held_bytes += other.held_bytes;
-        self.unit = other.unit.or(self.unit.take());
-        self.first_problem = self.first_problem.take().or(other.first_problem);
+        self.unit = other.unit.take().or(self.unit.take());
+        self.first_problem = self.first_problem.take().or(other.first_problem.take());
+        *other = Self {
+            times_ns: std::mem::take(&mut other.times_ns),
+            samples: std::mem::replace(&mut other.samples, Samples::F32(Vec::new())),
+            blocks: std::mem::take(&mut other.blocks),
+            ..Self::default()
+        };
     }
 
     /// Takes a single stamp of zero for a time where the other stamps show a clock that counts from its own start.
@@ -360,7 +366,8 @@ mod tests {
             let mut second = Column::default();
             (parted_at..6).for_each(|i| take(&mut second, i));
             assert!(first.continues_with(&second));
-            first.append(second);
+            first.append(&mut second);
+            assert!(second.is_empty() && second.samples.is_empty());
             assert_eq!(format!("{first:?}"), format!("{whole:?}"), "{parted_at}");
         }
         let mut blocks = Column::default();

@@ -7,20 +7,20 @@ pub(super) fn push(samples: &mut Samples, value: f64, is_narrow: bool) {
     match samples {
         #[allow(clippy::cast_possible_truncation, reason = "f32 holds every narrow value")]
         Samples::F32(narrow) if is_narrow => narrow.push(value as f32),
-        Samples::F32(_) => append(samples, Samples::F64(vec![value])),
+        Samples::F32(_) => append(samples, &mut Samples::F64(vec![value])),
         Samples::F64(wide) => wide.push(value),
     }
 }
 
-/// More samples behind those there are; single precision as long as all are.
-pub(super) fn append(samples: &mut Samples, more: Samples) {
+/// Moves more samples behind those there are; single precision as long as all are.
+pub(super) fn append(samples: &mut Samples, more: &mut Samples) {
     match (samples, more) {
-        (Samples::F32(own), Samples::F32(mut more)) => own.append(&mut more),
-        (Samples::F64(own), Samples::F64(mut more)) => own.append(&mut more),
-        (Samples::F64(own), Samples::F32(more)) => own.extend(more.into_iter().map(f64::from)),
+        (Samples::F32(own), Samples::F32(more)) => own.append(more),
+        (Samples::F64(own), Samples::F64(more)) => own.append(more),
+        (Samples::F64(own), Samples::F32(more)) => own.extend(more.drain(..).map(f64::from)),
         (own @ Samples::F32(_), Samples::F64(more)) => {
             let mut wide = widened(own);
-            wide.extend(more);
+            wide.append(more);
             *own = Samples::F64(wide);
         }
     }

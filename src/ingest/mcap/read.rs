@@ -12,6 +12,7 @@ use crate::ingest::error::IngestError;
 use crate::ingest::{Limits, Progress, RawChannel, RawRecording};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 /// Reads the channels that `cask_file` names.
 ///
@@ -57,6 +58,8 @@ pub(super) struct Reading<'a> {
     pub(super) wanted: Vec<Wanted>,
     decodings: HashMap<u16, Decoding>,
     slots: Slots,
+    /// Emptied parts, for their memory.
+    spare: Mutex<Vec<(Vec<Wanted>, Slots)>>,
 }
 
 impl Sink for Reading<'_> {
@@ -127,6 +130,9 @@ impl Sink for Reading<'_> {
     type Part = (Vec<Wanted>, Slots);
 
     fn part(&self) -> Option<Self::Part> {
+        if let Some(part) = self.spare.lock().unwrap_or_else(PoisonError::into_inner).pop() {
+            return Some(part);
+        }
         let begun = |own: &Wanted| Wanted {
             topic: own.topic.clone(),
             field: own.field.clone(),
@@ -143,17 +149,18 @@ impl Sink for Reading<'_> {
         }
     }
 
-    fn join(&mut self, (part, _): Self::Part) -> bool {
+    fn join(&mut self, (mut part, slots): Self::Part) -> bool {
         let fits = |(own, others): (&Wanted, &Wanted)| own.column.continues_with(&others.column);
         if part.len() != self.wanted.len() || !self.wanted.iter().zip(&part).all(fits) {
             return false;
         }
-        for (own, others) in self.wanted.iter_mut().zip(part) {
-            own.column.append(others.column);
+        for (own, others) in self.wanted.iter_mut().zip(&mut part) {
+            own.column.append(&mut others.column);
             if own.leaves.is_empty() {
-                own.leaves = others.leaves;
+                own.leaves.clone_from(&others.leaves);
             }
         }
+        self.spare.get_mut().unwrap_or_else(PoisonError::into_inner).push((part, slots));
         true
     }
 }
@@ -194,6 +201,7 @@ impl<'a> Reading<'a> {
             wanted: Vec::new(),
             decodings: HashMap::new(),
             slots: Slots::default(),
+            spare: Mutex::default(),
         }
     }
 
