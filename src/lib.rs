@@ -72,9 +72,11 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let reconstructed = flight_and_motion(&mut draft, &signals, contact, (u_skew_s, stand_in.as_ref()));
     let (of_recorded, _) = signals.split_at(recorded);
     judge::weigh_by_distance(&mut draft.issues, &draft.events);
-    let on_channels = judge::judge_channels(of_recorded, &draft.events, cask_file, &draft.issues);
+    let (on_channels, smooth) = rayon::join(
+        || judge::judge_channels(of_recorded, &draft.events, cask_file, &draft.issues),
+        || draft.smooth(&signals),
+    );
     draft.issues.extend(on_channels);
-    let smooth = draft.smooth(&signals);
     if let Some(Reconstructed { flight, setup, motion, quantities, choice: reconstruction }) = reconstructed {
         draft.issues.extend(judge::judge_coupling(&signals, &flight, cask_file));
         draft.issues.extend(judge::judge_rigid(&signals, &flight, &cask_file.tolerances, &cask_file.drop));

@@ -75,7 +75,8 @@ pub(crate) fn settle(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Opt
         least_m_s: LEAST_SLAP_DOWN * drop.impact_velocity_m_s,
     };
     let on = |end| events::without_first_mode(signals, end, file.cask.length_m).map(motion::Calmed::new);
-    let mut ends = (on(End::First)?, on(End::Second)?);
+    let (first, second) = rayon::join(|| on(End::First), || on(End::Second));
+    let mut ends = (first?, second?);
     let struck =
         events::slap_down(ends.1.signal(), search.earliest_s..search.record_end_s, search.least_m_s, false);
     let mut best: Option<(f64, Settled)> = None;
@@ -138,8 +139,10 @@ impl Search<'_> {
             let Some(fitted) = fits.next() else { break };
             others = fits.collect();
             let beyond_s = struck.map_or(self.record_end_s, |s| s.0).max(end_s) + BEYOND_S;
-            first.take_off(&fitted, contact_s..beyond_s);
-            second.take_off(&fitted, contact_s..beyond_s);
+            rayon::join(
+                || first.take_off(&fitted, contact_s..beyond_s),
+                || second.take_off(&fitted, contact_s..beyond_s),
+            );
             taken_over = Some(window);
             // A flight that is explained well has no slap-down hidden in its ringing; one that is not may show what is none.
             if is_explained(&fitted) {

@@ -5,6 +5,7 @@ use crate::data::{Axis, End, Onset, Signal};
 use crate::numerics::projection::residual_square;
 use crate::numerics::quadrature::running_integral;
 use crate::numerics::reduce::{block_means, peak};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// An answer below this share of the struck end's peak is none: the sensor sits near the centre of percussion.
@@ -151,7 +152,7 @@ impl<'a> Answer<'a> {
 
     /// The delay by the shortest stretch that tells it well, what longer ones say otherwise in its uncertainty.
     fn delay(&self) -> Option<(f64, f64)> {
-        let fits: Vec<Delay> = LENGTHS_S.iter().filter_map(|&length_s| self.fit(length_s)).collect();
+        let fits: Vec<Delay> = LENGTHS_S.par_iter().filter_map(|&length_s| self.fit(length_s)).collect();
         let fine_s = 5e-5_f64.max(0.5 / self.signal.sample_rate_hz);
         let taken = fits
             .iter()

@@ -3,6 +3,7 @@
 use super::block_means_m_s2;
 use crate::data::{Axis, Channel, CoarseEvent, Drop, End, Recording};
 use crate::numerics::{reduce, robust};
+use rayon::prelude::*;
 
 /// Width over which a velocity change is looked for, s: longer than any first pulse (1–20 ms), shorter than a flight.
 const WIDTH_S: f64 = 0.025;
@@ -54,7 +55,7 @@ pub fn last_change_s(recording: &Recording, event: &CoarseEvent, after_s: f64) -
         let least_m_s = LAST_SHARE * reduce::peak(within);
         within.iter().rposition(|c| c.abs() >= least_m_s).map(|last| end_s(from + last))
     };
-    let transverse = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
+    let transverse = recording.channels.par_iter().filter(|c| c.axis == Axis::Transverse);
     transverse.filter_map(of_channel).max_by(f64::total_cmp)
 }
 

@@ -2,6 +2,7 @@
 
 use crate::data::{Channel, Issue, IssueCode, Samples, Severity};
 use crate::numerics::{reduce, robust};
+use rayon::prelude::*;
 
 /// A channel that never leaves its own spread by more than this says nothing: 10⁷ samples of normal noise stay within 5.5,
 /// a sine within 1.4.
@@ -24,7 +25,7 @@ struct Reach {
 /// Names each channel that stays within its noise over the whole recording while another does not.
 #[must_use]
 pub fn judge_silent(channels: &[Channel]) -> Vec<Issue> {
-    let reaches: Vec<Reach> = channels.iter().map(reach).collect();
+    let reaches: Vec<Reach> = channels.par_iter().map(reach).collect();
     let is_loud = |r: &Reach| r.farthest > LOUD * r.spread && r.farthest > 0.0;
     let loudest = reaches.iter().filter(|r| is_loud(r)).map(|r| r.farthest).fold(0.0, f64::max);
     let is_silent = |r: &Reach| r.farthest <= SILENT * r.spread || r.farthest < SHARE * loudest;

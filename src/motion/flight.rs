@@ -70,7 +70,7 @@ pub struct Window {
 #[must_use]
 pub fn fit_flights(signals: &[Signal], window: &Window, drive: Option<&Drive>, cog_m: f64) -> Vec<FlightFit> {
     let cut = Window { to_s: window.to_s.min(window.from_s + LONGEST_S), ..*window };
-    let series: Vec<Series> = signals.iter().map(|s| series(s, &cut, cog_m)).collect();
+    let series: Vec<Series> = signals.par_iter().map(|s| series(s, &cut, cog_m)).collect();
     let mut fits = candidates(&series, &cut, drive);
     let peaks_m_s2: Vec<f64> = signals.iter().map(|s| reduce::peak(&s.force_m_s2)).collect();
     fits.retain(|f| has_plausible_drift(&peaks_m_s2, f));
@@ -86,7 +86,7 @@ pub fn fit_flights(signals: &[Signal], window: &Window, drive: Option<&Drive>, c
 /// Holds the end of the flight in `window` against its fit, for each channel   (20)
 pub fn compare_late(flight: &mut FlightFit, signals: &[Signal], window: &Window, cog_m: f64) {
     let mismatches: Vec<Option<f64>> =
-        signals.iter().map(|s| late_mismatch_m_s(s, flight, window, cog_m)).collect();
+        signals.par_iter().map(|s| late_mismatch_m_s(s, flight, window, cog_m)).collect();
     for (plateau, mismatch) in flight.plateaus.iter_mut().zip(mismatches) {
         plateau.late_mismatch_m_s = mismatch;
     }

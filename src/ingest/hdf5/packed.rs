@@ -1,4 +1,4 @@
-//! The deflated chunks of a dataset to one column of it, on all cores: the library unpacks one chunk at a time.
+//! The bytes of a dataset, plain or in deflated chunks, to one column of it, on all cores: the library works on one thread at a time.
 
 use flate2::{Decompress, FlushDecompress, Status};
 use hdf5_metno::datatype::ByteOrder;
@@ -8,8 +8,10 @@ use rayon::prelude::*;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 
-/// Fewer bytes than this are unpacked before the threads have started.
+/// Fewer bytes than this are read before the threads have started.
 const LEAST_BYTES: usize = 1 << 16;
+/// Values read at a time of a dataset that lies in one piece: they stay in the cache until they are turned.
+const PIECE_VALUES: usize = 1 << 15;
 
 /// A number as HDF5 stores it, least byte first.
 pub(super) trait Stored: H5Type + Copy + Default + Send + Sync {
@@ -49,16 +51,19 @@ pub(super) fn column<T: Stored>(dataset: &Dataset, index: usize) -> Option<Vec<T
     let dtype = dataset.dtype().ok()?;
     let is_plain = dtype.to_descriptor().ok()? == T::type_descriptor()
         && (dtype.size() == 1 || dtype.byte_order() == ByteOrder::LittleEndian);
+    let length = *dataset.shape().first()?;
+    if !is_plain || length.saturating_mul(size_of::<T>()) < LEAST_BYTES {
+        return None;
+    }
     let is_shuffled = match dataset.filters().as_slice() {
+        [] if dataset.ndim() == 1 && !dataset.is_chunked() => return contiguous(dataset, length),
         [Filter::Deflate(_)] => false,
         [Filter::Shuffle, Filter::Deflate(_)] => true,
         _ => return None,
     };
     let (shape, chunk) = (dataset.shape(), dataset.chunk()?);
-    let length = *shape.first()?;
     let layout = Layout { rows: *chunk.first()?, columns: chunk.get(1).copied().unwrap_or(1), is_shuffled };
-    let is_small = length.saturating_mul(size_of::<T>()) < LEAST_BYTES;
-    if !is_plain || is_small || shape.len() != chunk.len() || shape.len() > 2 || layout.rows == 0 {
+    if shape.len() != chunk.len() || shape.len() > 2 || layout.rows == 0 {
         return None;
     }
     let places = places(dataset, index, &layout)?;
@@ -77,6 +82,33 @@ pub(super) fn column<T: Stored>(dataset: &Dataset, index: usize) -> Option<Vec<T
             |(file, packed, bytes), (i, (values, place))| {
                 let is_next = place.row == i * layout.rows;
                 is_next.then(|| unpack(file.as_mut()?, place, &layout, (packed, bytes), (index, values)))?
+            },
+        )
+        .collect::<Option<()>>()?;
+    Some(values)
+}
+
+/// A dataset of one dimension that lies in one piece.
+fn contiguous<T: Stored>(dataset: &Dataset, length: usize) -> Option<Vec<T>> {
+    let from = dataset.offset().filter(|_| dataset.file().is_ok_and(|file| file.userblock() == 0))?;
+    let is_elsewhere = !dataset.create_plist().ok()?.external().is_empty();
+    if is_elsewhere || dataset.storage_size() != (length * size_of::<T>()) as u64 {
+        return None;
+    }
+    let path = dataset.filename();
+    let mut values = vec![T::default(); length];
+    let pieces = values.par_chunks_mut(PIECE_VALUES).enumerate();
+    pieces
+        .map_init(
+            || (File::open(&path).ok(), vec![0; PIECE_VALUES * size_of::<T>()]),
+            |(file, bytes), (i, values)| {
+                let (file, bytes) = (file.as_mut()?, &mut bytes[..size_of_val(values)]);
+                file.seek(SeekFrom::Start(from + (i * PIECE_VALUES * size_of::<T>()) as u64)).ok()?;
+                file.read_exact(bytes).ok()?;
+                for (value, bytes) in values.iter_mut().zip(bytes.chunks_exact(size_of::<T>())) {
+                    *value = T::from_bytes(|i| bytes[i]);
+                }
+                Some(())
             },
         )
         .collect::<Option<()>>()?;
@@ -181,6 +213,20 @@ mod tests {
             // Another type than the stored one is the library's to convert.
             assert_eq!(column::<i64>(&dataset, 0), None);
         }
+    }
+
+    #[test]
+    fn a_dataset_in_one_piece_is_what_was_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let written = hdf5_metno::File::create(folder.path().join("plain.h5")).unwrap();
+        let values: Vec<f32> =
+            (0..100_003).map(|i: i32| 0.25 * f32::from(i16::try_from(i % 30_000).unwrap())).collect();
+        written.new_dataset_builder().with_data(&values).create("a").unwrap();
+        written.flush().unwrap();
+        let dataset = written.dataset("a").unwrap();
+        assert_eq!(contiguous::<f32>(&dataset, values.len()), Some(values.clone()));
+        assert_eq!(column::<f32>(&dataset, 0), Some(values));
+        assert_eq!(column::<f64>(&dataset, 0), None);
     }
 
     #[test]
