@@ -9,12 +9,11 @@ The drop is that of `whole_process.py`; every figure is the median over whole pr
 """
 
 import argparse
+import multiprocessing
 import os
 import statistics
 import sys
 from pathlib import Path
-
-import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import whole_process as whole
@@ -31,11 +30,12 @@ def recording(count):
         return {name: file[f"daq/{name}"][()] for name in ("a1", "a2")}
 
 
-def write_hdf5(path, data, others, seed=5):
+def write_hdf5(path, count, others, seed=5):
     """The two channels among `others` of noise, a dataset each, without compression."""
     import h5py
+    import numpy as np
 
-    count = len(data["a1"])
+    data = recording(count)
     draw = np.random.default_rng(seed)
     with h5py.File(path, "w") as file:
         for name, samples in list(data.items()) + [(f"n{i}", None) for i in range(others)]:
@@ -46,16 +46,26 @@ def write_hdf5(path, data, others, seed=5):
             dataset.attrs["unit"] = "g"
 
 
-def write_mcap(path, data, others, block=10_000, seed=5):
+def write_mcap(path, count, others, block=10_000, seed=5):
     """The same as protobuf blocks in chunks of 4 MiB with zstd, the channels in turn."""
     sys.path.insert(0, str(whole.ROOT / "fixtures"))
     import formats
+    import numpy as np
 
+    data = recording(count)
     draw = np.random.default_rng(seed)
-    count = len(data["a1"])
     noise = {f"/daq/n{i}": draw.standard_normal(count, dtype="f4") for i in range(others)}
     topics = {f"/daq/{name}": samples for name, samples in data.items()} | noise
     formats.write_mcap(path, "protobuf", topics, whole.RATE_HZ, block=block, chunk=1 << 22)
+
+
+def apart(work, *arguments):
+    """In a process of its own: a child's peak memory counts from what its parent holds when it is started."""
+    process = multiprocessing.get_context("spawn").Process(target=work, args=arguments)
+    process.start()
+    process.join()
+    if process.exitcode:
+        sys.exit(f"{work.__name__} failed")
 
 
 def median_run(program, path, kind, rounds):
@@ -81,25 +91,23 @@ def main():
         return wall_s, mib
 
     for count in (10**5, 3 * 10**5, 10**6, 3 * 10**6, 10**7):
-        recording(count)
+        apart(recording, count)
         for kind in whole.KINDS:
             path = whole.ROOT / f"target/whole_process/{count}.{whole.SUFFIX[kind]}"
             by_samples[kind].append((count, *row("samples a channel", f"{count:.0e}", kind, path)))
     by_channels = {"HDF5 raw f32": [], "MCAP protobuf, zstd": []}
-    data = recording(10**6)
     for channels in (2, 4, 8, 16, 32, 64):
         for kind, suffix, write in (("HDF5 raw f32", "h5", write_hdf5), ("MCAP protobuf, zstd", "mcap", write_mcap)):
             path = FOLDER / f"channels.{suffix}"
-            write(path, data, channels - 2)
+            apart(write, path, 10**6, channels - 2)
             by_channels[kind].append((channels, *row("channels in the file", channels, kind, path)))
             path.unlink()
     if arguments.large:
         count = int(arguments.large / 64 / 4)
-        data = recording(count)
         for kind, suffix, write in (("HDF5 raw f32", "h5", write_hdf5), ("MCAP protobuf, zstd", "mcap", write_mcap)):
             path = FOLDER / f"large.{suffix}"
             if not path.exists():
-                write(path, data, 62)
+                apart(write, path, count, 62)
             row("64 channels", f"{path.stat().st_size / 1e9:.1f} GB", kind, path)
     draw(arguments.chart, by_samples, by_channels)
 
@@ -110,21 +118,31 @@ def draw(path, by_samples, by_channels):
     matplotlib.use("Agg")
     matplotlib.rcParams["svg.hashsalt"] = "dropcheck"
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import NullFormatter, ScalarFormatter
 
-    figure, axes = plt.subplots(2, 2, figsize=(9, 7), constrained_layout=True, sharex="col")
+    figure, axes = plt.subplots(2, 2, figsize=(9, 7), constrained_layout=True, sharex="col", sharey="row")
+    colour = {kind: f"C{i}" for i, kind in enumerate(whole.KINDS)}
     for column, (label, table) in enumerate(
-        (("samples a channel, two channels", by_samples), ("channels in the file, two analysed, 1e6 samples", by_channels))
+        (("samples a channel, two channels", by_samples), ("channels in the file, two of them analysed, 1e6 samples", by_channels))
     ):
         for kind, points in table.items():
-            size, wall_s, mib = np.array(points).T
-            axes[0, column].loglog(size, 1e3 * wall_s, "o-", label=kind)
-            axes[1, column].loglog(size, mib, "o-", label=kind)
+            size, wall_s, mib = zip(*points)
+            axes[0, column].loglog(size, [1e3 * s for s in wall_s], "o-", color=colour[kind], label=kind)
+            axes[1, column].loglog(size, mib, "o-", color=colour[kind], label=kind)
         axes[1, column].set_xlabel(label)
-        for row in (0, 1):
+        if column:
+            axes[1, column].set_xticks(size)
+            axes[1, column].xaxis.set_major_formatter(ScalarFormatter())
+            axes[1, column].xaxis.set_minor_formatter(NullFormatter())
+        for row, ticks in enumerate(([30, 50, 100, 200, 300, 500, 1000], [20, 30, 50, 100, 200, 300])):
             axes[row, column].grid(True, which="both", alpha=0.3)
+            axes[row, column].set_yticks(ticks)
+            axes[row, column].yaxis.set_major_formatter(ScalarFormatter())
+            axes[row, column].yaxis.set_minor_formatter(NullFormatter())
     axes[0, 0].set_ylabel("whole process, ms")
     axes[1, 0].set_ylabel("peak memory, MiB")
-    axes[0, 0].legend(fontsize=8)
+    for column in (0, 1):
+        axes[0, column].legend(fontsize=8)
     figure.suptitle("dropcheck analyze: time and memory against the size of the recording")
     figure.savefig(path, metadata={"Date": None})
 

@@ -43,7 +43,8 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         return draft.without_impact();
     };
     let farthest = condition::Reach::of(&cask_file.cask, &cask_file.drop);
-    let last_s = events::last_change_s(recording, &event, farthest.after_s);
+    let last_s =
+        events::last_change_s(recording, &event, (cask_file.drop.impact_velocity_m_s, farthest.after_s));
     let reach = last_s.map_or(farthest, |last_s| farthest.until(last_s - event.near_s - event.spread_s));
     let (mut signals, mut found) = condition::condition(recording, &event, &reach, cask_file.corrections);
     draft.issues.append(&mut found);

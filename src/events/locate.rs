@@ -19,8 +19,10 @@ const SHARE: f64 = 0.4;
 /// A change of this share of v0 cos φ is the first impact too, whatever comes later: L loses all of it.
 const SHARE_OF_FALL: f64 = 0.5;
 
-/// What changes the velocity by this share of the largest change may be the slap-down that is sought: it is the first to reach half.
+/// What changes the velocity by this share of the largest change may be the slap-down that is sought, which is the first to reach half …
 const LAST_SHARE: f64 = 0.3;
+/// … and so may what reaches this share of v0: no slap-down changes it by less than 0.08.
+const LAST_SHARE_OF_FALL: f64 = 0.06;
 
 /// Finds the first impact on the transverse channel of the first end (or, without one, on any transverse channel).
 ///
@@ -44,7 +46,11 @@ pub fn locate(recording: &Recording, drop: &Drop) -> Option<CoarseEvent> {
 /// The last time within `after_s` of the event at which some transverse channel changes its velocity by a notable share of its largest
 /// change there, s: what lies far beyond it needs no fine work.
 #[must_use]
-pub fn last_change_s(recording: &Recording, event: &CoarseEvent, after_s: f64) -> Option<f64> {
+pub fn last_change_s(
+    recording: &Recording,
+    event: &CoarseEvent,
+    (v0_m_s, after_s): (f64, f64),
+) -> Option<f64> {
     let of_channel = |channel: &Channel| {
         let (block_s, changes) = velocity_changes(channel)?;
         #[allow(clippy::cast_precision_loss, reason = "block counts stay below 2^52")]
@@ -52,7 +58,7 @@ pub fn last_change_s(recording: &Recording, event: &CoarseEvent, after_s: f64) -
         let from = (0..changes.len()).find(|&i| end_s(i) > event.near_s)?;
         let to = (from..changes.len()).find(|&i| end_s(i) > event.near_s + event.spread_s + after_s);
         let within = &changes[from..to.unwrap_or(changes.len())];
-        let least_m_s = LAST_SHARE * reduce::peak(within);
+        let least_m_s = (LAST_SHARE * reduce::peak(within)).min(LAST_SHARE_OF_FALL * v0_m_s);
         within.iter().rposition(|c| c.abs() >= least_m_s).map(|last| end_s(from + last))
     };
     let transverse = recording.channels.par_iter().filter(|c| c.axis == Axis::Transverse);
@@ -92,4 +98,63 @@ fn block_means(channel: &Channel) -> Option<(f64, Vec<f64>)> {
         last = *block;
     }
     (!blocks.is_empty()).then_some((size as f64 / channel.sample_rate_hz, blocks))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Coupling, RecordingFormat, Samples};
+
+    /// A channel of 2 s at 10 kHz that is struck at the given times, s, by pulses of 5 ms that change its velocity by so much, m/s.
+    fn channel(end: End, struck: &[(f64, f64)]) -> Channel {
+        let force = |i: i32| {
+            let at = |&&(from_s, _): &&(f64, f64)| (from_s..from_s + 5e-3).contains(&(f64::from(i) * 1e-4));
+            struck.iter().find(at).map_or(0.0, |(_, change_m_s)| change_m_s / 5e-3)
+        };
+        Channel {
+            name: "A".into(),
+            end,
+            axis: Axis::Transverse,
+            source: "a".into(),
+            position_m: 0.1,
+            offset_m: 0.0,
+            start_s: 0.0,
+            sample_rate_hz: 1e4,
+            samples: Samples::F64((0..20_000).map(force).collect()),
+            scale_m_s2: 1.0,
+            unit: "m/s^2".into(),
+            unit_origin: "cask file",
+            full_scale: None,
+            gaps: vec![],
+            time_jitter_s: 0.0,
+            coupling: Coupling::Dc,
+        }
+    }
+
+    #[test]
+    fn a_slap_down_far_weaker_than_the_first_impact_is_not_left_behind() {
+        let (first, second) = (
+            channel(End::First, &[(0.5, 20.0), (1.9, 20.0)]),
+            channel(End::Second, &[(0.5, -10.0), (1.0, 1.1), (1.3, 0.4)]),
+        );
+        let recording = Recording {
+            path: "a".into(),
+            format: RecordingFormat::Hdf5,
+            sha256: String::new(),
+            channels: vec![first, second],
+            start_unix_ns: None,
+            issues: vec![],
+        };
+        let drop = Drop {
+            height_m: 9.0,
+            angle_rad: 0.26,
+            impact_velocity_m_s: 13.29,
+            impact_velocity_given: false,
+            gravity_m_s2: 9.81,
+        };
+        let event = locate(&recording, &drop).expect("an impact");
+        let last_s = last_change_s(&recording, &event, (drop.impact_velocity_m_s, 1.0)).expect("a change");
+        // The slap-down of 1.1 m/s lies within the width that ends there; 0.4 m/s is none, and 1.9 s lies beyond what is asked for.
+        assert!((1.005..1.0051 + WIDTH_S).contains(&last_s), "{last_s}");
+    }
 }
