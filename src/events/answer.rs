@@ -103,6 +103,7 @@ impl Cause {
         let step = step_s * self.sample_rate_hz;
         let values = orders.iter().filter_map(|&order| self.integrals.get(order));
         values
+            .filter(|values| values.len() >= 2)
             .map(|values| {
                 let last = values.len().saturating_sub(2);
                 let at = |i: usize| {
@@ -182,7 +183,9 @@ impl<'a> Answer<'a> {
         }
         let block = ((to - from) / POINTS).max(1);
         let values = block_means(self.signal.force_m_s2.get(from..to)?, block);
-        let cause = self.cause.in_blocks(block, &ORDERS);
+        // As long in time where the other channel has another rate.
+        let of_cause = samples(number(block) * self.cause.sample_rate_hz / rate_hz).max(1);
+        let cause = self.cause.in_blocks(of_cause, &ORDERS);
         let noise = self.noise_of_means(block);
         let begin_s = self.signal.time_s(from) + number(block - 1) / 2.0 / rate_hz;
         let left = |delay_s: f64| left(&values, begin_s - delay_s, number(block) / rate_hz, &cause, &ORDERS);

@@ -84,6 +84,35 @@ fn a_late_or_early_clock_is_measured_finer_than_a_third_of_a_millisecond() {
 }
 
 #[test]
+fn recorders_of_different_rates_are_compared_over_the_same_times() {
+    for (cause_hz, answer_hz) in [(1e4, 2e5), (2e5, 1e4), (2e5, 2e5)] {
+        for late_s in [0.0, 3.7e-4] {
+            let of_rate =
+                |name, end, rate_hz, force| Signal { sample_rate_hz: rate_hz, ..signal(name, end, force) };
+            let cause = answer(cause_hz, 0.020_03, 1.0, 0.5, 1);
+            let first = of_rate("A1", End::First, cause_hz, cause);
+            let late = answer(answer_hz, 0.020_03 + late_s, -0.5, 0.9, 2);
+            let second = of_rate("A2", End::Second, answer_hz, late);
+            let onset = answers(&[first, second], 0.020_03).pop().expect("an answer");
+            assert!((onset.delay_s - late_s).abs() < 1e-4, "{cause_hz} {answer_hz} {late_s}: {onset:?}");
+        }
+    }
+}
+
+#[test]
+fn a_record_that_ends_with_the_contact_is_no_fault() {
+    let cut = |name, end, rate_hz: f64| {
+        let mut force = answer(rate_hz, 0.020_03, 1.0, 0.5, 1);
+        force.truncate(force.iter().position(|f| f.abs() > 500.0).expect("a pulse"));
+        Signal { sample_rate_hz: rate_hz, ..signal(name, end, force) }
+    };
+    for rates_hz in [(1e4, 2e5), (2e5, 1e4)] {
+        let both = [cut("A1", End::First, rates_hz.0), cut("A2", End::Second, rates_hz.1)];
+        assert!(answers(&both, 0.020_03).len() <= 1);
+    }
+}
+
+#[test]
 fn an_answer_that_begins_below_the_noise_claims_no_delay() {
     // Rigid body and bending cancel at first: the answer starts as the square of time.
     let onset = found(-0.05, 0.05, 0.0);
