@@ -1,0 +1,103 @@
+//! Tests of the samples of one field.
+
+use super::*;
+
+fn block(samples: &[f64]) -> Value {
+    Value::Array(Samples::F64(samples.to_vec()))
+}
+
+#[test]
+fn a_rate_comes_from_the_cask_file_else_the_message_else_the_stamps() {
+    let column = |stated: Option<f64>| {
+        let mut column = Column::default();
+        for i in 0..4 {
+            let time = (1_700_000_000_000_000_000 + i * 2_000_000, TimeOrigin::Stamp);
+            column.take(block(&[1.0, 2.0]), time, stated);
+        }
+        column
+    };
+    let rate = |stated, declared| {
+        column(stated).uniform(1_700_000_000_000_000_000, declared).unwrap().sample_rate_hz
+    };
+    assert!((rate(None, None) - 1000.0).abs() < 1e-6);
+    assert!((rate(Some(1000.0), None) - 1000.0).abs() < 1e-9);
+    assert!((rate(Some(500.0), Some(1000.0)) - 1000.0).abs() < 1e-9);
+    assert!(matches!(column(Some(0.0)).uniform(0, None), Err(ColumnError::StatedRate(_))));
+}
+
+#[test]
+fn one_block_without_a_rate_is_an_error() {
+    let mut column = Column::default();
+    column.take(block(&[1.0, 2.0]), (5, TimeOrigin::LogTime), None);
+    assert!(matches!(column.uniform(0, None), Err(ColumnError::NoRate)));
+}
+
+#[test]
+fn a_rejected_chunk_leaves_no_trace() {
+    let mut column = Column::default();
+    let number = |value| Value::Number { value, is_narrow: true };
+    column.take(number(1.0), (1, TimeOrigin::Stamp), None);
+    column.mark();
+    column.take(number(2.0), (2, TimeOrigin::LogTimeForBadStamp), None);
+    column.malformed("x");
+    column.roll_back();
+    assert_eq!(column.span_ns(), Some((1, 1)));
+    assert_eq!(column.tally, Tally { messages: 1, stamps: 1, ..Tally::default() });
+    assert_eq!(column.samples, Samples::F32(vec![1.0]));
+}
+
+#[test]
+fn a_column_in_two_parts_is_the_column_in_one() {
+    let number = |value, is_narrow| Value::Number { value, is_narrow };
+    let take = |column: &mut Column, i: i64| {
+        let origin = if i == 4 { TimeOrigin::LogTimeForBadStamp } else { TimeOrigin::Stamp };
+        if i == 3 {
+            column.malformed("cut");
+        }
+        column.unit = Some(if i < 4 { "g" } else { "m/s^2" }.into());
+        #[allow(clippy::cast_precision_loss, reason = "a handful")]
+        column.take(number(0.1 * i as f64, i < 2), (i, origin), None);
+    };
+    for parted_at in 0..6 {
+        let (mut whole, mut first) = (Column::default(), Column::default());
+        (0..6).for_each(|i| take(&mut whole, i));
+        (0..parted_at).for_each(|i| take(&mut first, i));
+        let mut second = Column::default();
+        (parted_at..6).for_each(|i| take(&mut second, i));
+        assert!(first.continues_with(&second));
+        first.append(&mut second);
+        assert!(second.is_empty() && second.samples.is_empty());
+        assert_eq!(format!("{first:?}"), format!("{whole:?}"), "{parted_at}");
+    }
+    let mut blocks = Column::default();
+    blocks.take(block(&[1.0]), (0, TimeOrigin::Stamp), None);
+    let mut numbers = Column::default();
+    numbers.take(number(1.0, true), (1, TimeOrigin::Stamp), None);
+    assert!(!blocks.continues_with(&numbers));
+}
+
+#[test]
+fn a_clock_that_starts_at_zero_is_no_missing_stamp() {
+    let column = |step_ns: i64| {
+        let mut column = Column::default();
+        column.take(block(&[1.0, 2.0]), message_time(&Value::Stamp(0), 1_700_000_000_000_000_000), None);
+        column.take(
+            block(&[3.0, 4.0]),
+            message_time(&Value::Stamp(step_ns), 1_700_000_000_002_000_000),
+            None,
+        );
+        column.settle_clock();
+        column
+    };
+    assert_eq!(column(2_000_000).span_ns(), Some((0, 2_000_000)));
+    assert_eq!(column(2_000_000).tally.bad_stamps, 0);
+    // A clock that is set: there zero is no time.
+    assert_eq!(column(1_700_000_000_002_000_000).span_ns().unwrap().0, 1_700_000_000_000_000_000);
+}
+
+#[test]
+fn a_zero_stamp_falls_back_to_the_log_time() {
+    assert_eq!(message_time(&Value::Stamp(0), 7), (7, TimeOrigin::LogTimeForBadStamp));
+    assert_eq!(message_time(&Value::Stamp(3), 7), (3, TimeOrigin::Stamp));
+    assert_eq!(message_time(&Value::Missing, 7), (7, TimeOrigin::LogTime));
+}
