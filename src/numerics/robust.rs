@@ -17,10 +17,10 @@ pub fn median(values: &mut [f64]) -> f64 {
     }
 }
 
-/// Most values that a spread is taken from: of normal noise these tell it to 1.2 %.
+/// Most values that a spread is taken from.
 const MOST: usize = 10_000;
 
-/// Every n-th value, so that no more than some [`MOST`] are left.
+/// Every n-th value, so that no more than some 10 000 are left: of normal noise these tell its spread to 1.2 %.
 pub fn sampled(values: &[f64]) -> impl Iterator<Item = f64> {
     values.iter().step_by(stride(values.len())).copied()
 }
