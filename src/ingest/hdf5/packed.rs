@@ -52,7 +52,9 @@ pub(super) fn column<T: Stored>(dataset: &Dataset, index: usize) -> Option<Vec<T
     let is_plain = dtype.to_descriptor().ok()? == T::type_descriptor()
         && (dtype.size() == 1 || dtype.byte_order() == ByteOrder::LittleEndian);
     let length = *dataset.shape().first()?;
-    if !is_plain || length.saturating_mul(size_of::<T>()) < LEAST_BYTES {
+    // Addresses count from behind a user block in some versions of the library and from the file's start in others.
+    let is_at_start = dataset.file().ok()?.userblock() == 0;
+    if !is_plain || !is_at_start || length.saturating_mul(size_of::<T>()) < LEAST_BYTES {
         return None;
     }
     let is_shuffled = match dataset.filters().as_slice() {
@@ -90,7 +92,7 @@ pub(super) fn column<T: Stored>(dataset: &Dataset, index: usize) -> Option<Vec<T
 
 /// A dataset of one dimension that lies in one piece.
 fn contiguous<T: Stored>(dataset: &Dataset, length: usize) -> Option<Vec<T>> {
-    let from = dataset.offset().filter(|_| dataset.file().is_ok_and(|file| file.userblock() == 0))?;
+    let from = dataset.offset()?;
     let is_elsewhere = !dataset.create_plist().ok()?.external().is_empty();
     if is_elsewhere || dataset.storage_size() != (length * size_of::<T>()) as u64 {
         return None;
@@ -119,14 +121,13 @@ fn contiguous<T: Stored>(dataset: &Dataset, length: usize) -> Option<Vec<T>> {
 fn places(dataset: &Dataset, index: usize, layout: &Layout) -> Option<Vec<Place>> {
     let mut places = Vec::new();
     let mut is_whole = true;
-    let base = dataset.file().ok()?.userblock();
     dataset
         .chunks_visit(|chunk| {
             let [row, column] =
                 [0, 1].map(|i| chunk.offset.get(i).map_or(Some(0), |&n| usize::try_from(n).ok()));
             match (row, column, usize::try_from(chunk.size)) {
                 (Some(row), Some(column), Ok(length)) if chunk.filter_mask == 0 => {
-                    if (column..column + layout.columns).contains(&index) {
+                    if index.checked_sub(column).is_some_and(|first| first < layout.columns) {
                         places.push(Place { row, column, at: chunk.addr, length });
                     }
                 }
@@ -136,8 +137,7 @@ fn places(dataset: &Dataset, index: usize, layout: &Layout) -> Option<Vec<Place>
         })
         .ok()?;
     places.sort_by_key(|place| place.row);
-    // Addresses count from behind a user block in some versions of the library and from the file's start in others.
-    (is_whole && base == 0).then_some(places)
+    is_whole.then_some(places)
 }
 
 /// One chunk's share of the column.
