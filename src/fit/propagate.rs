@@ -88,11 +88,7 @@ impl<'a> Model<'a> {
         if let Some(axial) = measured.other_law {
             let mut other = model.base.clone();
             other.setup.axial = axial;
-            let both = |inputs| {
-                let motion = model.follow(inputs)?;
-                Some((read_off(&motion, inputs), model.missed(&motion, inputs)?))
-            };
-            if let (Some(stated), Some(other)) = (both(&model.base), both(&other)) {
+            if let (Some(stated), Some(other)) = (model.read(&model.base), model.read(&other)) {
                 let less = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect();
                 model.law = Some((less(&other.0, &stated.0), less(&other.1, &stated.1)));
             }
@@ -104,28 +100,31 @@ impl<'a> Model<'a> {
         (self.reconstruct)(&inputs.flight, &inputs.events, &inputs.setup)
     }
 
-    fn missed(&self, motion: &Motion, inputs: &Inputs) -> Option<Vec<f64>> {
-        self.observables.iter().map(|o| o.residual(self.measured, inputs, motion)).collect()
+    /// The quantities, and the observables' misses, each over its own standard uncertainty.
+    fn read(&self, inputs: &Inputs) -> Option<(Vec<f64>, Vec<f64>)> {
+        let motion = self.follow(inputs)?;
+        let missed = self.observables.iter().map(|o| o.residual(self.measured, inputs, &motion));
+        Some((read_off(&motion, inputs), missed.collect::<Option<_>>()?))
     }
 
-    /// The quantities with the inputs moved by so many standard uncertainties.
+    /// The same with the inputs moved by so many standard uncertainties, the contact law among them.
+    fn moved(&self, by_u: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let moved = self.base.moved(&self.inputs, by_u);
+        let (mut values, mut left) = self.read(&moved)?;
+        if let Some(law) = &self.law {
+            let add = |(value, law): (&mut f64, &f64)| *value += moved.law_share * law;
+            values.iter_mut().zip(&law.0).for_each(add);
+            left.iter_mut().zip(&law.1).for_each(add);
+        }
+        Some((values, left))
+    }
+
     fn values(&self, by_u: &[f64]) -> Option<Vec<f64>> {
-        let moved = self.base.moved(&self.inputs, by_u);
-        let mut values = read_off(&self.follow(&moved)?, &moved);
-        if let Some((law, _)) = &self.law {
-            values.iter_mut().zip(law).for_each(|(value, law)| *value += moved.law_share * law);
-        }
-        Some(values)
+        self.moved(by_u).map(|(values, _)| values)
     }
 
-    /// The observables' misses, each over its own standard uncertainty.
     fn residuals(&self, by_u: &[f64]) -> Option<Vec<f64>> {
-        let moved = self.base.moved(&self.inputs, by_u);
-        let mut left = self.missed(&self.follow(&moved)?, &moved)?;
-        if let Some((_, law)) = &self.law {
-            left.iter_mut().zip(law).for_each(|(left, law)| *left += moved.law_share * law);
-        }
-        Some(left)
+        self.moved(by_u).map(|(_, left)| left)
     }
 
     /// The slopes of [`Self::values`] and, below them, of [`Self::residuals`]: a motion gives both, and what was asked for once is kept.
@@ -134,18 +133,7 @@ impl<'a> Model<'a> {
         if let Some((_, slopes)) = known().iter().find(|k| k.0 == at_u) {
             return Some(slopes.clone());
         }
-        let both = |by_u: &[f64]| {
-            let moved = self.base.moved(&self.inputs, by_u);
-            let motion = self.follow(&moved)?;
-            let mut both = read_off(&motion, &moved);
-            both.extend(self.missed(&motion, &moved)?);
-            if let Some((values, left)) = &self.law {
-                both.iter_mut()
-                    .zip(values.iter().chain(left))
-                    .for_each(|(b, law)| *b += moved.law_share * law);
-            }
-            Some(both)
-        };
+        let both = |by_u: &[f64]| self.moved(by_u).map(|(values, left)| [values, left].concat());
         let slopes = derivatives(&both, at_u)?;
         known().push((at_u.to_vec(), slopes.clone()));
         Some(slopes)
