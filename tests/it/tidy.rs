@@ -209,6 +209,19 @@ fn files_are_short_and_say_what_they_do() {
 }
 
 #[test]
+fn no_page_holds_a_half_merged_passage() {
+    let pages = fs::read_dir(root().join("docs")).expect("docs").flatten().map(|entry| entry.path());
+    let pages: Vec<PathBuf> = pages.filter(|page| page.extension().is_some_and(|e| e == "md")).collect();
+    assert!(pages.len() > 5, "the pages were not found: {pages:?}");
+    for page in pages.into_iter().chain([root().join("README.md")]) {
+        let text = fs::read_to_string(&page).expect("UTF-8");
+        let is_mark =
+            |line: &&str| line.starts_with("<<<<<<< ") || line.starts_with(">>>>>>> ") || *line == "=======";
+        assert_eq!(text.lines().find(is_mark), None, "{}", page.display());
+    }
+}
+
+#[test]
 fn modules_are_named_for_what_they_are() {
     for file in rust_files(&root().join("src")) {
         for part in module_path(&file) {
