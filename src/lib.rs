@@ -24,11 +24,15 @@ pub mod validate;
 use assemble::Draft;
 use data::{
     Analysis, AxialClosure, Axis, Campaign, CampaignRequest, Cask, CaskFile, Channel, Contact, Coupling,
-    CrushableEnd, Drop, Events, FlightFit, Motion, Quantities, ReconstructionChoice, Recording, RestLevel,
-    Scene, SceneFile, SceneNumber, Setup, Severity, Signal, SyntheticRecording, WantedImpact,
+    CrushableEnd, Drop, Events, FlightFit, Motion, Quantities, ReconstructionChoice, Recording,
+    RestLevel, RivalLaw, Scene, SceneFile, SceneNumber, Setup, Severity, Signal, SyntheticRecording,
+    WantedImpact,
 };
 use one_end::StandIn;
 use std::path::Path;
+
+/// Part of the way between two contact laws on which the change of the result is taken: a hundred times what friction is rounded to.
+const RIVAL_WAY: f64 = 0.1;
 
 /// From a recording and a cask file to everything that can be said of the drop.
 ///
@@ -256,7 +260,7 @@ fn flight_and_motion(
         events: &draft.events,
         u_events_s: draft.u_events_s,
         setup: &setup,
-        other_law: other_law(setup.axial),
+        rival_law: rival_law(cask_file, &integrated, &flight, &draft.events, setup.axial),
         tolerances: cask_file.tolerances,
         // An end that the mass properties stand in for cannot test them.
         inertia_m2: (cask.is_body && stand_in.is_none()).then_some(cask.inertia_kg_m2 / cask.mass_kg),
@@ -295,12 +299,6 @@ fn setup(cask_file: &CaskFile, signals: &[Signal], events: &Events, flight: &Fli
     if signals.iter().any(|s| s.axis == Axis::Axial) {
         return Setup { axial: AxialClosure::Measured, ..base };
     }
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "cut to 0..=1000 before the cast"
-    )]
-    let sliding = |mu: f64| AxialClosure::Sliding { friction_ppm: (mu.clamp(0.0, 1e3) * 1e6) as u32 };
     let axial = match cask_file.contact {
         Contact::Rough => AxialClosure::Sticking,
         Contact::Smooth => sliding(0.0),
@@ -313,11 +311,29 @@ fn setup(cask_file: &CaskFile, signals: &[Signal], events: &Events, flight: &Fli
     Setup { axial, ..base }
 }
 
-/// The law that the cask file does not name: smooth beside sticking, sticking beside sliding.
-fn other_law(axial: AxialClosure) -> Option<AxialClosure> {
-    match axial {
-        AxialClosure::Sticking => Some(AxialClosure::Sliding { friction_ppm: 0 }),
-        AxialClosure::Sliding { .. } => Some(AxialClosure::Sticking),
-        AxialClosure::Measured => None,
-    }
+/// A law near the stated one on the way to the other; what that way changes bends, and only its beginning is within the tolerance.
+fn rival_law(
+    cask_file: &CaskFile,
+    integrated: &motion::Integrated,
+    flight: &FlightFit,
+    events: &Events,
+    stated: AxialClosure,
+) -> Option<RivalLaw> {
+    let held = motion::outcome(integrated, flight, events, &assemble::sticking(cask_file))?;
+    let holds = held.impulse_ratio.max(0.0);
+    let mu = match stated {
+        AxialClosure::Measured => return None,
+        AxialClosure::Sticking => holds * (1.0 - RIVAL_WAY),
+        AxialClosure::Sliding { friction_ppm } => {
+            let mu = f64::from(friction_ppm) * 1e-6;
+            mu + RIVAL_WAY * (holds - mu)
+        }
+    };
+    Some(RivalLaw { axial: sliding(mu), way: RIVAL_WAY })
+}
+
+/// Sliding with this friction.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to 0..=1000 before the cast")]
+fn sliding(mu: f64) -> AxialClosure {
+    AxialClosure::Sliding { friction_ppm: (mu.clamp(0.0, 1e3) * 1e6) as u32 }
 }

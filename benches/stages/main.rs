@@ -138,7 +138,7 @@ fn quantities(bencher: Bencher, samples: usize) {
         events: &m.events,
         u_events_s: [2e-5, 1e-4, 2e-5],
         setup: &m.setup,
-        other_law: None,
+        rival_law: None,
         tolerances: dropcheck::data::Tolerances::default(),
         inertia_m2: Some(2.58),
         rests: &[],

@@ -109,11 +109,15 @@ impl Scene<'_> {
         let faster_m_s = file.drop.impact_velocity_m_s * (1.0 + known.impact_velocity / 2.0);
         let by_velocity = change(body, &Drop { impact_velocity_m_s: faster_m_s, ..file.drop }, k);
         let by_cog = change(&Body { cog_m: body.cog_m + known.cog_m / 2.0, ..**body }, &file.drop, k);
+        // Part of the way to the other contact law.
+        let other = if file.contact == Contact::Rough { Contact::Smooth } else { Contact::Rough };
+        let by_other = (self.predict)(rung, body, &file.drop, other, k).slap_down_speed_m_s;
+        let by_law = known.friction / 2.0 * by_other.map_or(0.0, |speed| speed - base);
         // While the pulse of duration T lasts the cask turns by about ω T / 2 and gravity adds g T.
         let duration_s = measured.duration.value.max(0.0);
         let turn_rad = -measured.angular_velocity.value * duration_s / 2.0;
         let by_pulse = change(body, &turned(turn_rad), k).abs() + file.drop.gravity_m_s2 * duration_s;
-        let stated = by_angle.hypot(by_inertia).hypot(by_velocity).hypot(by_cog);
+        let stated = by_angle.hypot(by_inertia).hypot(by_velocity).hypot(by_cog).hypot(by_law);
         Some(2.0 * by_k.hypot(stated).hypot(by_pulse / 3.0_f64.sqrt()))
     }
 

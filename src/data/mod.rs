@@ -38,7 +38,7 @@ pub use flight::{FlightFit, FlightModelScore, Mode, Plateau};
 pub use issue::{Issue, IssueCode, Severity};
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};
-pub use motion::{AxialClosure, ChannelReading, Motion, MotionState, Setup};
+pub use motion::{AxialClosure, ChannelReading, Motion, MotionState, RivalLaw, Setup};
 pub use onset::Onset;
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, Quantities};

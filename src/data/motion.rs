@@ -52,6 +52,15 @@ pub enum AxialClosure {
     Measured,
 }
 
+/// A contact law beside the stated one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RivalLaw {
+    /// What it says.
+    pub axial: AxialClosure,
+    /// How far it lies on the way from the stated law, 0, to the other one, 1: from sticking to smooth, from sliding to sticking.
+    pub way: f64,
+}
+
 /// The motion between first contact and slap-down.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {

@@ -32,7 +32,7 @@ impl Default for Tolerances {
             position_m: 0.01,
             cog_m: 0.01,
             inertia: 0.02,
-            friction: 0.1,
+            friction: 0.02,
         }
     }
 }

@@ -138,7 +138,7 @@ pub(super) fn inputs(measured: &Measured, motion: &Motion) -> Vec<Input> {
         let share = known.inertia / 2.0;
         add("inertia", percent(share), Change::Inertia { share });
     }
-    if measured.other_law.is_some() {
+    if measured.rival_law.is_some() {
         let share = known.friction / 2.0;
         let size = format!("{:.0} % of rough to smooth", 100.0 * share);
         add("contact law", size, Change::Law { share });

@@ -5,7 +5,7 @@ mod inputs;
 mod ladder;
 mod propagate;
 
-use crate::data::{AxialClosure, Events, FlightFit, Motion, RestLevel, Setup, Signal, Tolerances};
+use crate::data::{Events, FlightFit, Motion, RestLevel, RivalLaw, Setup, Signal, Tolerances};
 
 pub use ladder::ladder;
 pub use propagate::{quantities, spread_by_draws};
@@ -29,8 +29,8 @@ pub struct Measured<'a> {
     pub u_events_s: [f64; 3],
     /// Geometry, initial motion and contact law.
     pub setup: &'a Setup,
-    /// The contact law that the recording does not exclude either, where no axial channel tests it.
-    pub other_law: Option<AxialClosure>,
+    /// A contact law that the recording does not exclude either, where no axial channel tests it.
+    pub rival_law: Option<RivalLaw>,
     /// How well the stated things are known.
     pub tolerances: Tolerances,
     /// Θ / m, m²; `None` where the cask file describes a thin rod only, which no cask is.

@@ -3,7 +3,7 @@
 use super::closures::{Observable, observables};
 use super::inputs::{Input, Inputs, inputs};
 use super::{COVERAGE, Measured, Reconstruct};
-use crate::data::{Adjustment, Closure, Contribution, Estimate, Motion, Quantities};
+use crate::data::{Adjustment, Closure, Contribution, Estimate, Motion, Quantities, RivalLaw};
 use crate::numerics::prior_fit::{PriorFit, derivatives, fit};
 use nalgebra::DMatrix;
 use std::sync::{Mutex, PoisonError};
@@ -63,7 +63,8 @@ pub(super) struct Model<'a> {
     motion: Motion,
     inputs: Vec<Input>,
     observables: Vec<Observable>,
-    /// What the other contact law would say less what the stated one says: of the quantities, then of the observables.
+    /// What the rival contact law would say less what the stated one says, led on to the whole way between both laws: of the quantities,
+    /// then of the observables.
     law: Option<(Vec<f64>, Vec<f64>)>,
     /// Slopes of the quantities and, below them, of the observables, and where they were asked for.
     known_slopes: Mutex<Vec<(Vec<f64>, DMatrix<f64>)>>,
@@ -85,11 +86,11 @@ impl<'a> Model<'a> {
             law: None,
             known_slopes: Mutex::default(),
         };
-        if let Some(axial) = measured.other_law {
+        if let Some(RivalLaw { axial, way }) = measured.rival_law {
             let mut other = model.base.clone();
             other.setup.axial = axial;
             if let (Some(stated), Some(other)) = (model.read(&model.base), model.read(&other)) {
-                let less = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect();
+                let less = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b) / way).collect();
                 model.law = Some((less(&other.0, &stated.0), less(&other.1, &stated.1)));
             }
         }

@@ -102,7 +102,7 @@ angle_deg = 15.0            # {FILL_IN}: inclination of the axis above the horiz
 # position_m = 0.01         # place of a sensor along the axis
 # cog_m = 0.01              # centre of gravity
 # inertia_percent = 2.0
-# friction_percent = 10.0   # contact law, of the way from rough to smooth
+# friction_percent = 2.0    # contact law, of the way from rough to smooth
 
 # [corrections]             # all are made; false leaves one out
 # offset = true             # mean of the free fall

@@ -4,7 +4,7 @@ use super::chance::{Chance, round};
 use super::{Case, Means};
 use crate::data::{
     BendingMode, Cask, CaskFile, Contact, Corrections, Drop, End, FilterChoice, Scene, SceneNumber,
-    Tolerances, Truth, WantedImpact,
+    SimulatedMotion, Tolerances, Truth, WantedImpact,
 };
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -115,8 +115,8 @@ fn drop(
     let stated = cask(chance, &mut defaults);
     let stated_drop = falls(chance, angle_deg, wish);
     let (drawn, is_said) = contact(chance);
-    let contact = wish.contact.unwrap_or(drawn);
-    if contact == Contact::Rough && !is_said {
+    let stated_contact = wish.contact.unwrap_or(drawn);
+    if stated_contact == Contact::Rough && !is_said {
         defaults.push("contact.friction".to_owned());
     }
     let off = if exact { 0.0 } else { 1.0 };
@@ -135,11 +135,12 @@ fn drop(
         ..stated_drop
     };
     let [first, second] = impacts(chance);
-    let scene = Scene {
+    let share = off * chance.within(tolerances.friction);
+    let mut scene = Scene {
         name: cask.name.clone(),
         seed: chance.seed(),
-        first_end: (means.crush)(&cask, &drop, contact, End::First, first),
-        second_end: (means.crush)(&cask, &drop, contact, End::Second, second),
+        first_end: (means.crush)(&cask, &drop, stated_contact, End::First, first),
+        second_end: (means.crush)(&cask, &drop, stated_contact, End::Second, second),
         modes: modes(chance),
         before_s: 0.1,
         after_s: chance.even(0.02, 0.15),
@@ -150,14 +151,18 @@ fn drop(
         channels: Vec::new(),
         cask,
         drop,
-        contact,
+        contact: stated_contact,
     };
+    if wish.contact.is_none() && share != 0.0 {
+        let held = Scene { contact: Contact::Rough, ..scene.clone() };
+        scene.contact = loosened(stated_contact, impulse_ratio(&(means.simulate)(&held)), share);
+    }
     let cask_file = CaskFile {
         path: PathBuf::from("synthetic.toml"),
         sha256: String::new(),
         cask: stated,
         drop: stated_drop,
-        contact,
+        contact: stated_contact,
         filter: FilterChoice::Auto,
         tolerances,
         corrections: Corrections::default(),
@@ -166,6 +171,31 @@ fn drop(
         defaults,
     };
     (scene, cask_file)
+}
+
+/// I_x / I_z of the first contact.
+fn impulse_ratio(motion: &SimulatedMotion) -> f64 {
+    let end_s = motion.truth.contact_s.unwrap_or(f64::INFINITY);
+    let within = motion.time_s.partition_point(|t| *t <= end_s);
+    let steps = motion.time_s[..within].windows(2).zip(motion.first_end_n.windows(2));
+    let (along, up) = steps.fold((0.0, 0.0), |(along, up), (t, force)| {
+        let half_s = (t[1] - t[0]) / 2.0;
+        (along + half_s * (force[0].0 + force[1].0), up + half_s * (force[0].1 + force[1].1))
+    });
+    if up > 0.0 { along / up } else { 0.0 }
+}
+
+/// The contact a share of the way from one law to the other: of sticking, which takes a friction of `holds`, towards smooth; of what slides
+/// towards sticking.
+fn loosened(contact: Contact, holds: f64, share: f64) -> Contact {
+    let slides = match contact {
+        Contact::Smooth => Some(0.0),
+        Contact::Coulomb(mu) if mu < holds => Some(mu),
+        _ => None,
+    };
+    // Nothing is smoother than smooth, and no corner sticks better than it sticks.
+    let mu = slides.map_or(holds * (1.0 - share.abs()), |mu| (mu + share * (holds - mu)).abs());
+    if holds > 0.0 { Contact::Coulomb(mu) } else { contact }
 }
 
 /// One of the casks; four in ten are stretched, one in four states its centre of gravity, one in four its inertia.

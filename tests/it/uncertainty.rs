@@ -1,6 +1,6 @@
 //! The linear propagation of the uncertainty against draws of its inputs (JCGM 101), and the ladder on a committed recording.
 
-use dropcheck::data::{AxialClosure, Estimate, ReconstructionRung, Setup};
+use dropcheck::data::{AxialClosure, Estimate, ReconstructionRung, RivalLaw, Setup};
 use dropcheck::{condition, events, fit, ingest, motion};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -38,7 +38,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         events: &result.events,
         u_events_s: [u_s(result.first_impact.time), 1e-4, u_s(result.slap_down.time)],
         setup: &setup,
-        other_law: Some(AxialClosure::Sliding { friction_ppm: 0 }),
+        rival_law: Some(RivalLaw { axial: AxialClosure::Sliding { friction_ppm: 0 }, way: 1.0 }),
         tolerances: file.tolerances,
         inertia_m2: Some(file.cask.inertia_kg_m2 / file.cask.mass_kg),
         rests: &[],

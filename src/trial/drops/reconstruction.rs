@@ -131,7 +131,7 @@ fn times(drop: &Prepared, request: &TrialRequest) -> Option<Vec<Timing>> {
         events: &events,
         u_events_s: [1e-5, settled.left.1, struck.1],
         setup: &setup,
-        other_law: None,
+        rival_law: None,
         tolerances: file.tolerances,
         inertia_m2: Some(file.cask.inertia_kg_m2 / file.cask.mass_kg),
         rests: &[],
