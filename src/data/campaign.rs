@@ -86,6 +86,8 @@ pub struct CampaignRow {
     pub rung: Option<ReconstructionRung>,
     /// What each rung says.
     pub candidates: Vec<ReconstructionCandidate>,
+    /// By how many standard uncertainties each closure is missed.
+    pub misses_u: Vec<f64>,
     /// How long the analysis took, s.
     pub analysis_s: f64,
     /// Draws before this one that gave no such drop, by reason.

@@ -26,6 +26,7 @@ pub(super) fn row(
         quantities: quantities(&truth, analysis),
         rung: analysis.and_then(rung),
         candidates: analysis.map_or_else(Vec::new, rungs),
+        misses_u: analysis.map_or_else(Vec::new, misses_u),
         truth,
         scene: case.scene,
         stated: case.stated,
@@ -58,6 +59,12 @@ fn rung(analysis: &Analysis) -> Option<ReconstructionRung> {
 /// What every rung of the reconstruction says.
 fn rungs(analysis: &Analysis) -> Vec<ReconstructionCandidate> {
     analysis.result.reconstruction.as_ref().map_or_else(Vec::new, |choice| choice.candidates.clone())
+}
+
+/// By how many standard uncertainties each closure is missed.
+fn misses_u(analysis: &Analysis) -> Vec<f64> {
+    let closures = analysis.result.reconstruction.iter().flat_map(|choice| &choice.closures);
+    closures.map(|closure| closure.miss_in_u).collect()
 }
 
 /// The rows as CSV, one a scene; times of the analysis are left out, so that the same campaign gives the same bytes.
@@ -116,6 +123,7 @@ fn cells(seed: u64, row: &CampaignRow) -> Vec<Cell> {
         cells.push(maybe(&format!("{name}_k"), k.map(|e| e.value)));
         cells.push(maybe(&format!("{name}_k_u95"), k.map(|e| e.u95)));
     }
+    cells.push(maybe("largest_miss_u", statistics::largest_miss_u(row)));
     cells.extend(scene_cells(row));
     cells
 }

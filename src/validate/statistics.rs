@@ -31,6 +31,11 @@ pub(super) fn outcome(row: &CampaignRow) -> Outcome {
     }
 }
 
+/// By how many standard uncertainties the closure that is missed most is missed.
+pub(super) fn largest_miss_u(row: &CampaignRow) -> Option<f64> {
+    row.misses_u.iter().map(|miss| miss.abs()).max_by(f64::total_cmp)
+}
+
 /// The quantity of this name.
 pub(super) fn scored(row: &CampaignRow, name: &str) -> Option<Scored> {
     row.quantities.iter().find(|scored| scored.name == name).copied()

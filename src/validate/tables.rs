@@ -1,9 +1,9 @@
 //! A campaign to the tables that say how far off the analysis is, how often its intervals hold, and how often it says so.
 
 use super::score::{code_name, rung_name};
-use super::statistics::{Outcome, Spread, outcome, quantile, scored};
+use super::statistics::{Outcome, Spread, largest_miss_u, outcome, quantile, scored};
 use super::table::{Table, number, share};
-use crate::data::{Campaign, CampaignRow, Damage, Estimate, ReconstructionRung, Severity, Verdict};
+use crate::data::{Campaign, CampaignRow, Contact, Damage, Estimate, ReconstructionRung, Severity, Verdict};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -32,6 +32,9 @@ pub fn markdown(campaign: &Campaign) -> String {
     if !damaged.is_empty() {
         section(&mut text, "Damaged scenes, by kind", &damages(&damaged, false));
         section(&mut text, "Damaged scenes, by kind and size", &damages(&damaged, true));
+    }
+    if !undamaged.is_empty() && !damaged.is_empty() {
+        section(&mut text, "What a stricter limit of the closures would do", &limits(&undamaged, &damaged));
     }
     section(&mut text, "Passed and wrong", &missed(&campaign.rows));
     text
@@ -195,9 +198,9 @@ const CLASSES: [(&str, Belongs); 27] = [
     ("drop of 9 m and more", |row| row.stated.drop.height_m >= 9.0),
     ("drop of 3 to 9 m", |row| (3.0..9.0).contains(&row.stated.drop.height_m)),
     ("drop below 3 m", |row| row.stated.drop.height_m < 3.0),
-    ("rough", |row| row.scene.contact == crate::data::Contact::Rough),
-    ("smooth", |row| row.scene.contact == crate::data::Contact::Smooth),
-    ("Coulomb", |row| matches!(row.scene.contact, crate::data::Contact::Coulomb(_))),
+    ("rough", |row| row.stated.contact == Contact::Rough),
+    ("smooth", |row| row.stated.contact == Contact::Smooth),
+    ("Coulomb", |row| matches!(row.stated.contact, Contact::Coulomb(_))),
     ("with an axial channel", |row| row.scene.channels.iter().any(|c| c.axis == crate::data::Axis::Axial)),
     ("force plateau", |row| row.scene.first_end.yield_n.is_some()),
     ("rest recorded", |row| row.scene.rest),
@@ -316,6 +319,24 @@ fn outcomes(kind: &str, size: String, rows: &[&CampaignRow]) -> Vec<String> {
         missed.to_string(),
         number(200.0 * missed as f64 / rows.len() as f64, 1),
     ]
+}
+
+/// Limits of what a closure may be missed by, in standard uncertainties.
+const LIMITS_U: [f64; 5] = [3.5, 3.0, 2.5, 2.0, 1.5];
+
+/// What each limit would have kept from passing: of sound drops, and of damaged ones that passed and are wrong.
+fn limits(undamaged: &[&CampaignRow], damaged: &[&CampaignRow]) -> String {
+    let passed = of_verdict(undamaged, Verdict::Pass);
+    let missed: Vec<&CampaignRow> =
+        damaged.iter().copied().filter(|row| outcome(row) == Outcome::Missed).collect();
+    let mut table = Table::new(&["limit, u", "sound drops that pass", "damaged ones missed"]);
+    for limit_u in LIMITS_U {
+        let within = |rows: &[&CampaignRow]| {
+            rows.iter().filter(|row| largest_miss_u(row).is_none_or(|miss| miss <= limit_u)).count()
+        };
+        table.row([number(limit_u, 1), share(within(&passed), undamaged.len()), within(&missed).to_string()]);
+    }
+    table.finish()
 }
 
 /// Every scene that passed and is wrong.
