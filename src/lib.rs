@@ -24,12 +24,15 @@ pub mod validate;
 use assemble::Draft;
 use data::{
     Analysis, AxialClosure, Axis, Campaign, CampaignRequest, Cask, CaskFile, Channel, Contact, Coupling,
-    CrushableEnd, Drop, Events, FlightFit, Motion, Quantities, ReconstructionChoice, Recording,
+    CrushableEnd, Drop, Events, FlightFit, Issue, Motion, Quantities, ReconstructionChoice, Recording,
     RestLevel, RivalLaw, Scene, SceneFile, SceneNumber, Setup, Severity, Signal, SyntheticRecording,
     WantedImpact,
 };
 use one_end::StandIn;
 use std::path::Path;
+
+/// What the length of a pulse is uncertain by, as a share, where its samples are clipped or missing.
+const CUT_PULSE: f64 = 0.1;
 
 /// Part of the way between two contact laws on which the change of the result is taken: a hundred times what friction is rounded to.
 const RIVAL_WAY: f64 = 0.1;
@@ -85,7 +88,10 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     if let Some(Reconstructed { flight, setup, motion, quantities, choice: reconstruction }) = reconstructed {
         draft.issues.extend(judge::judge_coupling(&signals, &flight, cask_file));
         draft.issues.extend(judge::judge_rigid(&signals, &flight, &cask_file.tolerances, &cask_file.drop));
-        if !draft.issues.iter().any(judge::invalidates) {
+        let known = (quantities.k, quantities.speed);
+        let is_told = judge::tells_lost_steps(&reconstruction, known, of_recorded, contact.0);
+        let is_open = |issue: &Issue| judge::invalidates(issue, is_told);
+        if !draft.issues.iter().any(is_open) {
             draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
             draft.issues.extend(judge::judge_closures(&reconstruction, &cask_file.drop, &draft.events));
             let touched_m_s = touch_effect_m_s(cask_file, quantities.k.value);
@@ -93,7 +99,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
             draft.issues.extend(judge::judge_touch(&motion, &quantities, touched_m_s, length_m));
         }
         draft.flight = Some(flight);
-        if draft.issues.iter().any(judge::invalidates) {
+        if draft.issues.iter().any(is_open) {
             // What an error speaks against is not stated at all: the times and curves remain.
             draft.draw(of_recorded, &smooth[..recorded]);
             return draft.finish();
@@ -286,7 +292,13 @@ fn find_flight(
 ) -> Option<FlightFit> {
     let settled = settle::settle(draft.cask_file, signals, contact.0)?;
     let struck = settled.struck.filter(|_| has_both_ends);
-    draft.take_times(contact, settled.left, struck, settle::record_end_s(signals));
+    let left_s = settled.left.0;
+    let is_cut = |s: &&Signal| [&s.clipped, &s.gaps].iter().any(|spans| s.touches(spans, contact.0, left_s));
+    // A pulse without its peak or a part of its flanks ends where it fades out of less: a tenth of its length.
+    let struck_end = events::transverse(signals, data::End::First);
+    let u_cut_s = struck_end.filter(is_cut).map_or(0.0, |_| CUT_PULSE * (left_s - contact.0));
+    let left = (left_s, settled.left.1.hypot(u_cut_s));
+    draft.take_times(contact, left, struck, settle::record_end_s(signals));
     if settled.flight.is_none() {
         draft.flight_is_too_short();
     }

@@ -111,6 +111,13 @@ impl Signal {
             .sum()
     }
 
+    /// How much of the time between two times was not recorded, s.
+    #[must_use]
+    pub fn missing_s(&self, from_s: f64, to_s: f64) -> f64 {
+        let inside_s = |gap: &Span| self.time_s(gap.to).min(to_s) - self.time_s(gap.from).max(from_s);
+        self.gaps.iter().map(|gap| inside_s(gap).max(0.0)).sum()
+    }
+
     /// Whether any of `spans` lies in `from_s..to_s`.
     #[must_use]
     pub fn touches(&self, spans: &[Span], from_s: f64, to_s: f64) -> bool {

@@ -8,6 +8,10 @@ use crate::numerics::noise::integral_uncertainty_by;
 /// knows a mode's mean to half a percent of it on simulated drops, and one of half a period to two (docs/uncertainty.md).
 const RINGING_SHARE: f64 = 0.005;
 
+/// What a gap may have held, as a standard uncertainty, over v0 and its share of the contact: the middle of a half sine that throws L back
+/// as fast as it came holds π of them, and its ends none.
+const GAP_SHARE: f64 = 3.0;
+
 /// One set of inputs.
 #[derive(Debug, Clone)]
 pub(super) struct Inputs {
@@ -180,7 +184,7 @@ fn of_channel(all: &mut Vec<Input>, measured: &Measured, motion: &Motion, channe
     }
 }
 
-/// What the fit leaves open; what the modes' form leaves; where a zero shift set in during the contact; what the offset may be off since; what clipping cut off.
+/// What the fit leaves open; what the modes' form leaves; where a zero shift set in during the contact; what the offset may be off since; what clipping cut off; what a gap may have held.
 fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
     let (signal, plateau) = (&measured.signals[channel], &measured.flight.plateaus[channel]);
     let contact_s = measured.events.first_contact_s.unwrap_or(0.0);
@@ -196,6 +200,9 @@ fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
         noise_m_s.max(signal.u_offset_m_s2 * length_s)
     };
     let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
+    let missing =
+        if pulse_s > 0.0 { signal.missing_s(contact_s, contact_s + pulse_s) / pulse_s } else { 0.0 };
+    let gap_m_s = (GAP_SHARE * missing).min(1.0) * measured.setup.impact_velocity_m_s;
     let ringing_m_s: f64 = measured
         .flight
         .modes
@@ -207,7 +214,7 @@ fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
             RINGING_SHARE * a.hypot(*b) / periods.min(periods * periods)
         })
         .sum();
-    plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(clipped_m_s)
+    plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(clipped_m_s).hypot(gap_m_s)
 }
 
 /// Change of the body-axis velocities of S over the contact, m/s: transverse, axial.

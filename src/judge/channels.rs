@@ -5,6 +5,8 @@ use crate::data::{CaskFile, Events, Issue, IssueCode, Severity, Signal};
 
 /// Velocity that clipping may cut off before the slap-down and leave something to measure, m/s: 2 % of a 9 m fall's.
 const MOST_LOST_M_S: f64 = 0.27;
+/// What is left to know a velocity step by that a channel lost.
+const AS_FAR_AS_TOLD: &str = "k and the slap-down velocity are had only as far as the other channels and the way of the second end to the target tell them";
 
 /// Checks each channel over the event: clipped, lost, sampled too slowly, noisy, in the wrong place. `found` is what is known of them already.
 #[must_use]
@@ -58,7 +60,8 @@ fn clipped(signal: &Signal, events: &Events) -> Vec<Issue> {
         let lost_m_s = signal.lost_to_clipping_m_s(from_s, to_s);
         let counts = from_s < slap_down_s && lost_m_s > MOST_LOST_M_S;
         let effect = if from_s < slap_down_s {
-            format!("; about {lost_m_s:.2} m/s of velocity is cut off")
+            let had = if counts { format!(", and {AS_FAR_AS_TOLD}") } else { String::new() };
+            format!("; about {lost_m_s:.2} m/s of velocity is cut off{had}")
         } else {
             String::new()
         };
@@ -87,9 +90,9 @@ fn lost(signal: &Signal, contact_s: f64, separation_s: f64, slap_down_s: Option<
             IssueCode::Gap,
             Severity::Error,
             format!(
-                "{} lost samples during the first impact: its velocity step cannot be had{}",
+                "{} lost samples during the first impact, and with them its velocity step: {}",
                 signal.name,
-                if slap_down_s.is_some() { ", and with it neither k nor the slap-down velocity" } else { "" }
+                if slap_down_s.is_some() { AS_FAR_AS_TOLD } else { "no slap-down tells what it was" }
             ),
         )
         .on(&signal.name)

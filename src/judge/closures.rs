@@ -1,11 +1,22 @@
 //! What the motion must meet and misses, to what speaks against scales, positions, angle and height.
 
-use crate::data::{Closure, ClosureKind, Drop, Events, Issue, IssueCode, ReconstructionChoice, Severity};
+use crate::data::{
+    Closure, ClosureKind, Drop, Estimate, Events, Issue, IssueCode, ReconstructionChoice, ReconstructionRung,
+    Severity, Signal,
+};
 
 /// A closure missed by this many standard uncertainties is not chance: one sound drop in 2000 a closure.
 const MISSED_U: f64 = 3.5;
 /// Missed by this many, the stated things are not what the recording shows.
 const GROSS_U: f64 = 12.0;
+
+/// About first contact, s: a gap there may hide it.
+const CONTACT_S: f64 = 1e-3;
+/// Closures missed by so many standard uncertainties contradict a motion that has steps free to move (95 %).
+const MOST_MISS: f64 = 2.0;
+/// Intervals beyond these say nothing that the bounds of k do not, and speeds beyond a seventh are no speeds.
+const MOST_U95_K: f64 = 0.25;
+const MOST_U95_SPEED: f64 = 0.15;
 
 /// One issue a closure that is missed by more than noise and tolerances explain.
 #[must_use]
@@ -17,6 +28,31 @@ pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Event
     }
     issues.extend(on_trust(choice));
     issues
+}
+
+/// Whether what the motion must meet tells velocity steps that channels lost: R's way to the target one of both ends', the turning by the
+/// impulse the other's.
+///
+/// What hides the first contact hides the time that both count from; and where one is missed though steps are free to move, more is amiss.
+#[must_use]
+pub fn tells_lost_steps(
+    choice: &ReconstructionChoice,
+    (k, speed): (Estimate, Option<Estimate>),
+    signals: &[Signal],
+    contact_s: f64,
+) -> bool {
+    let has = |kind| choice.closures.iter().any(|c| c.kind == kind);
+    let all_met = choice.closures.iter().all(|c| c.miss_in_u.abs() < MOST_MISS);
+    let shows_contact =
+        signals.iter().all(|s| !s.touches(&s.gaps, contact_s - CONTACT_S, contact_s + CONTACT_S));
+    let says_something =
+        k.u95 < MOST_U95_K && speed.is_some_and(|speed| speed.u95 < MOST_U95_SPEED * speed.value);
+    choice.rung == ReconstructionRung::Joint
+        && has(ClosureKind::Height)
+        && has(ClosureKind::Turning)
+        && all_met
+        && shows_contact
+        && says_something
 }
 
 /// Closures of which each is missed by less than chance allows, and all together by more.
@@ -112,7 +148,6 @@ fn issue(closure: &Closure, drop: &Drop, events: &Events) -> Issue {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::ReconstructionRung;
 
     fn choice(kind: ClosureKind, miss_in_u: f64) -> ReconstructionChoice {
         let closure = Closure {
@@ -168,6 +203,23 @@ mod tests {
             assert_eq!(said.contains("0.500 s, which is 1.23 m"), kind == ClosureKind::Fall);
         }
         assert_eq!(judged(&choice(ClosureKind::Rest, 4.0))[0].channel.as_deref(), Some("A1"));
+    }
+
+    #[test]
+    fn steps_are_told_by_both_closures_where_neither_is_missed_and_the_interval_says_something() {
+        let told = |misses: [f64; 2], u95: f64| {
+            let [height, turning] = misses;
+            let mut choice = choice(ClosureKind::Height, height);
+            choice.closures.extend(self::choice(ClosureKind::Turning, turning).closures);
+            let speed = Estimate::new(20.0, 0.2, "m/s");
+            tells_lost_steps(&choice, (Estimate::new(0.5, u95, "1"), Some(speed)), &[], 0.1)
+        };
+        assert!(told([0.5, -1.5], 0.1));
+        assert!(!told([0.5, -2.5], 0.1), "missed though a step is free to move");
+        assert!(!told([0.5, -1.5], 0.3), "k may be anything");
+        let alone = choice(ClosureKind::Height, 0.5);
+        let k = Estimate::new(0.5, 0.1, "1");
+        assert!(!tells_lost_steps(&alone, (k, Some(Estimate::new(20.0, 0.2, "m/s"))), &[], 0.1));
     }
 
     #[test]

@@ -12,7 +12,7 @@ mod skew;
 mod worth;
 
 pub use channels::{is_cut_off, judge_channels};
-pub use closures::judge_closures;
+pub use closures::{judge_closures, tells_lost_steps};
 pub use coupling::judge_coupling;
 pub use fall::judge_fall;
 pub use result::{judge_comparison, judge_motion, judge_touch};
@@ -62,11 +62,16 @@ pub fn judge_missing_end(end: End, is_stood_in_for: bool) -> Issue {
     Issue::new(IssueCode::MissingChannel, Severity::Error, message)
 }
 
-/// Whether an issue takes away what was read off the motion; a missing slap-down leaves the first impact as it is.
+/// Whether an issue takes away what was read off the motion; a missing slap-down leaves the first impact as it is, and a velocity step that
+/// a channel lost may be one that `is_told` by the rest of the motion.
 #[must_use]
-pub fn invalidates(issue: &Issue) -> bool {
-    issue.severity == Severity::Error
-        && !matches!(issue.code, IssueCode::EndsEarly | IssueCode::NoSlapDown | IssueCode::MissingChannel)
+pub fn invalidates(issue: &Issue, is_told: bool) -> bool {
+    let is_kept = match issue.code {
+        IssueCode::EndsEarly | IssueCode::NoSlapDown | IssueCode::MissingChannel => true,
+        IssueCode::Clipped | IssueCode::Gap => is_told,
+        _ => false,
+    };
+    issue.severity == Severity::Error && !is_kept
 }
 
 /// Sorts the findings, errors first, and says what they amount to: any error fails, any warning asks for a review.
