@@ -24,9 +24,8 @@ pub mod validate;
 use assemble::Draft;
 use data::{
     Analysis, AxialClosure, Axis, Campaign, CampaignRequest, Cask, CaskFile, Channel, Contact, Coupling,
-    CrushableEnd, Drop, Events, FlightFit, Issue, Motion, Quantities, ReconstructionChoice, Recording,
-    RestLevel, RivalLaw, Scene, SceneFile, SceneNumber, Setup, Severity, Signal, SyntheticRecording,
-    WantedImpact,
+    CrushableEnd, Drop, Events, FlightFit, Motion, Quantities, ReconstructionChoice, Recording, RestLevel,
+    RivalLaw, Scene, SceneFile, SceneNumber, Setup, Severity, Signal, SyntheticRecording, WantedImpact,
 };
 use one_end::StandIn;
 use std::path::Path;
@@ -89,9 +88,8 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         draft.issues.extend(judge::judge_coupling(&signals, &flight, cask_file));
         draft.issues.extend(judge::judge_rigid(&signals, &flight, &cask_file.tolerances, &cask_file.drop));
         let known = (quantities.k, quantities.speed);
-        let is_told = judge::tells_lost_steps(&reconstruction, known, of_recorded, contact.0);
-        let is_open = |issue: &Issue| judge::invalidates(issue, is_told);
-        if !draft.issues.iter().any(is_open) {
+        let mut is_told = judge::tells_lost_steps(&reconstruction, known, of_recorded, contact.0);
+        if !draft.issues.iter().any(|issue| judge::invalidates(issue, is_told)) {
             draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
             draft.issues.extend(judge::judge_closures(&reconstruction, &cask_file.drop, &draft.events));
             let touched_m_s = touch_effect_m_s(cask_file, quantities.k.value);
@@ -99,7 +97,8 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
             draft.issues.extend(judge::judge_touch(&motion, &quantities, touched_m_s, length_m));
         }
         draft.flight = Some(flight);
-        if draft.issues.iter().any(is_open) {
+        is_told &= !draft.issues.iter().any(judge::contradicts_motion);
+        if draft.issues.iter().any(|issue| judge::invalidates(issue, is_told)) {
             // What an error speaks against is not stated at all: the times and curves remain.
             draft.draw(of_recorded, &smooth[..recorded]);
             return draft.finish();

@@ -48,7 +48,7 @@ pub use reconstruction::{
 };
 pub use recording::{Recording, RecordingFormat};
 pub use scene::{BendingMode, Chain, CrushableEnd, Scene, SceneChannel, SimulatedMotion, Truth};
-pub use signal::{CoarseEvent, Signal};
+pub use signal::{CoarseEvent, MOST_LOST_M_S, Signal};
 pub use study::{
     AngleCurve, Criterion, CriticalAngle, CriticalRange, MonteCarlo, PredictionRow, QuantileCurves, Regime,
     RegimeMap, Request, Sensitivity, Study, Sweep, SweepVariable, Uncertain,

@@ -1,7 +1,7 @@
 //! The uncertain inputs of the reconstruction, each with its standard uncertainty, and the reconstruction's inputs with them moved.
 
 use super::Measured;
-use crate::data::{AxialClosure, Axis, Events, FlightFit, Motion, Setup};
+use crate::data::{AxialClosure, Axis, Events, FlightFit, MOST_LOST_M_S, Motion, Setup, Signal};
 use crate::numerics::noise::integral_uncertainty_by;
 
 /// What a mode leaves in the velocity step for each period that the flight shows of it, as a share of its amplitude: a window of one period
@@ -199,10 +199,6 @@ fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
         // Without a spectrum the offset's own uncertainty is all that is known.
         noise_m_s.max(signal.u_offset_m_s2 * length_s)
     };
-    let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
-    let missing =
-        if pulse_s > 0.0 { signal.missing_s(contact_s, contact_s + pulse_s) / pulse_s } else { 0.0 };
-    let gap_m_s = (GAP_SHARE * missing).min(1.0) * measured.setup.impact_velocity_m_s;
     let ringing_m_s: f64 = measured
         .flight
         .modes
@@ -214,7 +210,22 @@ fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
             RINGING_SHARE * a.hypot(*b) / periods.min(periods * periods)
         })
         .sum();
-    plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(clipped_m_s).hypot(gap_m_s)
+    plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(lost_m_s(measured, signal))
+}
+
+/// What clipping cut off a channel's step and what a gap in the contact may have held, m/s.
+fn lost_m_s(measured: &Measured, signal: &Signal) -> f64 {
+    let contact_s = measured.events.first_contact_s.unwrap_or(0.0);
+    let left_s = measured.events.separation_s.unwrap_or(contact_s);
+    let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
+    let missing = signal.missing_s(contact_s, left_s) / (left_s - contact_s).max(f64::MIN_POSITIVE);
+    let gap_m_s = (GAP_SHARE * missing).min(1.0) * measured.setup.impact_velocity_m_s;
+    clipped_m_s.hypot(gap_m_s)
+}
+
+/// Whether a channel has lost its velocity step, so that a closure is spent on telling it.
+pub(super) fn has_lost_step(measured: &Measured) -> bool {
+    measured.signals.iter().any(|signal| lost_m_s(measured, signal) > MOST_LOST_M_S)
 }
 
 /// Change of the body-axis velocities of S over the contact, m/s: transverse, axial.

@@ -1,10 +1,8 @@
 //! Signals and events to what speaks against single channels.
 
 use super::{sampling, worth};
-use crate::data::{CaskFile, Events, Issue, IssueCode, Severity, Signal};
+use crate::data::{CaskFile, Events, Issue, IssueCode, MOST_LOST_M_S, Severity, Signal};
 
-/// Velocity that clipping may cut off before the slap-down and leave something to measure, m/s: 2 % of a 9 m fall's.
-const MOST_LOST_M_S: f64 = 0.27;
 /// What is left to know a velocity step by that a channel lost.
 const AS_FAR_AS_TOLD: &str = "k and the slap-down velocity are had only as far as the other channels and the way of the second end to the target tell them";
 

@@ -74,6 +74,16 @@ pub fn invalidates(issue: &Issue, is_told: bool) -> bool {
     issue.severity == Severity::Error && !is_kept
 }
 
+/// Whether a finding says that the motion is not the one that was reconstructed: then the motion tells no velocity step either.
+#[must_use]
+pub fn contradicts_motion(issue: &Issue) -> bool {
+    let is_of_motion = matches!(
+        issue.code,
+        IssueCode::FlightFit | IssueCode::SecondContact | IssueCode::Geometry | IssueCode::NotRigid
+    );
+    is_of_motion && issue.severity != Severity::Note
+}
+
 /// Sorts the findings, errors first, and says what they amount to: any error fails, any warning asks for a review.
 #[must_use]
 pub fn verdict(issues: &mut [Issue]) -> Verdict {

@@ -1,6 +1,6 @@
 //! The linear propagation of the uncertainty against draws of its inputs (JCGM 101), and the ladder on a committed recording.
 
-use dropcheck::data::{AxialClosure, Estimate, ReconstructionRung, RivalLaw, Setup};
+use dropcheck::data::{AxialClosure, End, Estimate, ReconstructionRung, RivalLaw, Samples, Setup, Verdict};
 use dropcheck::{condition, events, fit, ingest, motion};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -86,4 +86,27 @@ fn one_end_alone_gives_its_time_with_an_interval_and_says_what_is_missing() {
     assert!(time.u95 > 0.0 && (time.value - 0.1).abs() < time.u95, "{time:?}");
     assert!(result.slap_down.speed.is_none());
     assert!(result.quality.iter().any(|i| i.code == dropcheck::data::IssueCode::MissingChannel));
+}
+
+#[test]
+fn what_clipping_took_of_the_impact_is_had_from_the_rest_of_the_motion() {
+    let file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
+    let mut recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
+    let whole = dropcheck::analyze(&recording, &file).result;
+    let first = recording.channels.iter_mut().find(|c| c.end == End::First).expect("a first end");
+    let Samples::F64(samples) = &mut first.samples else { panic!("JSON holds doubles") };
+    let limit = 0.8 * samples.iter().copied().fold(0.0, f64::max);
+    samples.iter_mut().for_each(|sample| *sample = sample.clamp(-limit, limit));
+    let cut = dropcheck::analyze(&recording, &file).result;
+    assert_eq!(cut.verdict, Verdict::Fail, "a step is lost");
+    println!("{:?} {:?}", cut.quality, cut.reconstruction);
+    let truth: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(fixture("anf18-json.truth.json")).expect("a truth"))
+            .expect("JSON");
+    let stated = [(cut.k, whole.k, "k"), (cut.slap_down.speed, whole.slap_down.speed, "speed")];
+    for (cut, whole, key) in stated {
+        let (cut, whole) = (cut.expect(key), whole.expect(key));
+        let off = (cut.value - truth[key].as_f64().expect(key)).abs();
+        assert!(off <= cut.u95 && cut.u95 > whole.u95, "{key}: {cut:?} beside {whole:?}, off by {off}");
+    }
 }
