@@ -1,9 +1,9 @@
 //! The bytes of a dataset, plain or in deflated chunks, to one column of it, on all cores: the library works on one thread at a time.
 
-use flate2::{Decompress, FlushDecompress, Status};
 use hdf5_metno::datatype::ByteOrder;
 use hdf5_metno::filters::Filter;
 use hdf5_metno::{Dataset, H5Type};
+use libdeflater::Decompressor;
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -158,9 +158,7 @@ fn unpack<T: Stored>(
     file.seek(SeekFrom::Start(place.at)).ok()?;
     file.take(place.length as u64).read_to_end(packed).ok()?;
     bytes.resize(count.checked_mul(size)?, 0);
-    let mut inflate = Decompress::new(true);
-    let status = inflate.decompress(packed, bytes, FlushDecompress::Finish).ok()?;
-    if status != Status::StreamEnd || inflate.total_out() != bytes.len() as u64 {
+    if Decompressor::new().zlib_decompress(packed, bytes).ok()? != bytes.len() {
         return None;
     }
     let first = index - place.column;
