@@ -49,7 +49,8 @@ pub fn ladder(
     }
     steps.push(by_flight(measured, flight, &closures));
     if let Some(fit) = &joint {
-        let widened = if has_lost_step(measured) { UNTESTED } else { widened(&closures) };
+        let tested = if has_lost_step(measured) { UNTESTED } else { 1.0 };
+        let widened = widened(&closures).max(tested);
         let step = |quantities| by_joint(quantities, fit.chi_square, closures.len(), widened);
         steps.extend(model.propagate(fit, widened).map(step));
     }
