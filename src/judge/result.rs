@@ -38,11 +38,16 @@ pub fn judge_motion(
     issues.extend(flight_issues(flight, quantities));
     let k = quantities.k;
     let beyond = k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0;
-    if beyond || !(-FAR_OUTSIDE..=1.0 + FAR_OUTSIDE).contains(&k.value) {
+    if beyond || !(-FAR_OUTSIDE..=1.0 + FAR_OUTSIDE).contains(&k.value) || k.u95 > 1.0 {
         issues.push(Issue::new(
             IssueCode::RestitutionRange,
             Severity::Error,
-            format!("k = {:.2} ± {:.2} lies outside 0 to 1: a scale, a unit, a polarity or the drop height is wrong", k.value, k.u95),
+            format!(
+                "k = {:.2} ± {:.2} {}: a scale, a unit, a polarity or the drop height is wrong",
+                k.value,
+                k.u95,
+                if k.u95 > 1.0 { "says nothing of a number between 0 and 1" } else { "lies outside 0 to 1" }
+            ),
         ));
     }
     if quantities.angular_velocity.value <= 0.0 {
