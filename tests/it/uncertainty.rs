@@ -96,7 +96,9 @@ fn what_clipping_took_of_the_impact_is_had_from_the_rest_of_the_motion() {
     let first = recording.channels.iter_mut().find(|c| c.end == End::First).expect("a first end");
     let Samples::F64(samples) = &mut first.samples else { panic!("JSON holds doubles") };
     let limit = 0.8 * samples.iter().copied().fold(0.0, f64::max);
-    samples.iter_mut().for_each(|sample| *sample = sample.clamp(-limit, limit));
+    for sample in samples {
+        *sample = sample.clamp(-limit, limit);
+    }
     let cut = dropcheck::analyze(&recording, &file).result;
     assert_eq!(cut.verdict, Verdict::Fail, "a step is lost");
     let truth: serde_json::Value =
