@@ -10,10 +10,6 @@ const ROUNDS: usize = 3;
 const FURTHER_ROUNDS: usize = 3;
 const SETTLED_S: f64 = 1e-3;
 
-/// A window that has moved by less, s, with an ω that has changed by less than this share, gives the same fit: a tenth of a point of it.
-const MOVED_S: f64 = 2e-5;
-const TURNED_BY: f64 = 1e-3;
-
 /// R cannot strike before this share of its height over v0: rod ends come down with less than 2 v0, angles are known to 40 %.
 const EARLIEST_SLAP_DOWN: f64 = 0.3;
 
@@ -138,9 +134,6 @@ impl Search<'_> {
                 drift: self.file.corrections.zero_shift,
                 angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| motion::rotation_rad_s(signals, f)),
             };
-            if taken_over.as_ref().is_some_and(|last| is_as_before(&window, last, flight.as_ref())) {
-                break;
-            }
             let drive = motion::drive(signals, flight.as_ref(), (contact_s, left.0), window.from_s, cog_m);
             let mut fits = motion::fit_flights(signals, &window, drive.as_ref(), cog_m).into_iter();
             let Some(fitted) = fits.next() else { break };
@@ -197,14 +190,6 @@ impl Search<'_> {
         let off_m = moved.and_then(|m| m.second_end_height_m).unwrap_or(cask.length_m);
         (left_m_s / EXPLAINED_M_S).max(off_m.abs() / (NEAR * cask.length_m)).max(turning / TURNED)
     }
-}
-
-/// Whether a fit over `window` would say what `last` said; one with modes driven by the contact's force has that force better each time.
-fn is_as_before(window: &motion::Window, last: &motion::Window, flight: Option<&FlightFit>) -> bool {
-    let moved_s = (window.from_s - last.from_s).abs().max((window.to_s - last.to_s).abs());
-    let turned = (window.angular_velocity_rad_s - last.angular_velocity_rad_s).abs();
-    let is_driven = flight.is_some_and(|f| f.candidates.iter().any(|c| c.taken && c.driven));
-    moved_s < MOVED_S && turned < TURNED_BY * window.angular_velocity_rad_s.abs() && !is_driven
 }
 
 /// Whether the flight shows its slowest mode for long enough.
