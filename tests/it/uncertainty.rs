@@ -101,7 +101,6 @@ fn what_clipping_took_of_the_impact_is_had_from_the_rest_of_the_motion() {
     }
     let cut = dropcheck::analyze(&recording, &file).result;
     assert_eq!(cut.verdict, Verdict::Fail, "a step is lost");
-    println!("{:?} {:?}", cut.quality, cut.reconstruction);
     let truth: serde_json::Value =
         serde_json::from_slice(&std::fs::read(fixture("anf18-json.truth.json")).expect("a truth"))
             .expect("JSON");
