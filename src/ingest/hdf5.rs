@@ -5,8 +5,10 @@ mod dataset;
 mod fault;
 mod list;
 mod packed;
+mod watch;
 
 pub(super) use list::list;
+pub(super) use watch::require_library;
 
 use super::error::{self, IngestError};
 use super::time_base::{self, Uniform};
@@ -16,6 +18,7 @@ use attributes::Attributes;
 use dataset::Column;
 use hdf5_metno::{Dataset, File};
 use std::path::Path;
+use watch::Signs;
 
 /// Names under which a sibling dataset holds the times.
 const TIME_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "Time"];
@@ -30,14 +33,24 @@ pub(super) fn read(
     limits: Limits,
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
+    let (file, named) = (path.to_owned(), cask_file.clone());
+    watch::watched(path, progress, move |signs| read_channels(&file, &named, limits, signs))
+}
+
+fn read_channels(
+    path: &Path,
+    cask_file: &CaskFile,
+    limits: Limits,
+    signs: &Signs,
+) -> Result<RawRecording, IngestError> {
     let file = open(path)?;
-    let mut room = Room { path, limits, held_bytes: 0 };
+    let mut room = Room { path, limits, signs, held_bytes: 0 };
     let count = cask_file.channels.len().max(1);
     let mut channels = Vec::with_capacity(count);
     for spec in 0..cask_file.channels.len() {
         channels.push(read_channel(&mut room, &file, spec, cask_file)?);
         #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
-        progress((spec + 1) as f64 / count as f64);
+        signs.done((spec + 1) as f64 / count as f64);
     }
     Ok(RawRecording { channels, zero_unix_ns: None, issues: Vec::new() })
 }
@@ -46,6 +59,7 @@ pub(super) fn read(
 struct Room<'a> {
     path: &'a Path,
     limits: Limits,
+    signs: &'a Signs,
     held_bytes: u64,
 }
 
@@ -65,6 +79,7 @@ impl Room<'_> {
                 samples_bytes,
             ));
         }
+        self.signs.alive(column.held_bytes().saturating_mul(column.columns as u64));
         Ok(())
     }
 }
@@ -76,6 +91,7 @@ fn read_channel(
     cask_file: &CaskFile,
 ) -> Result<RawChannel, IngestError> {
     let path = room.path;
+    room.signs.alive(0);
     let spec = &cask_file.channels[index];
     let wrong = |problem: String, mend: String| error::source(path, &spec.name, problem, mend);
     let Source::Path(source) = &spec.source else {
@@ -84,12 +100,12 @@ fn read_channel(
             "write the dataset's path: source = \"/daq/a1\", or \"/daq/accel[2]\" for a column".into(),
         ));
     };
-    let column = locate(path, file, spec, source)?;
+    let column = locate(room, file, spec, source)?;
     room.take(&column)?;
     let attributes = Attributes::of(file, &column);
     let samples = column.samples().map_err(|fault| wrong(fault.problem, fault.mend))?;
     let samples = attributes.scaled(samples);
-    let time = time_column(path, file, spec, cask_file.time.as_deref(), &column)?;
+    let time = time_column(room, file, spec, cask_file.time.as_deref(), &column)?;
     time.iter().try_for_each(|time| room.take(time))?;
     let uniform = on_base(samples, time.as_ref(), spec, &attributes)
         .map_err(|fault| wrong(format!("{}: {}", column.source(), fault.problem), fault.mend))?;
@@ -103,13 +119,14 @@ fn open(path: &Path) -> Result<File, IngestError> {
 }
 
 /// The dataset or column that a cask file names.
-fn locate(path: &Path, file: &File, spec: &ChannelSpec, source: &str) -> Result<Column, IngestError> {
+fn locate(room: &Room, file: &File, spec: &ChannelSpec, source: &str) -> Result<Column, IngestError> {
+    let path = room.path;
     dataset::find(file, source).map_err(|missing| match missing {
         dataset::Missing::Nowhere => error::source(
             path,
             &spec.name,
             format!("there is no dataset {source}"),
-            error::near_names(path, source, "dataset", &list::sources(file)),
+            error::near_names(path, source, "dataset", &list::sources(file, room.signs)),
         ),
         dataset::Missing::Because(fault) => error::source(path, &spec.name, fault.problem, fault.mend),
     })
@@ -117,7 +134,7 @@ fn locate(path: &Path, file: &File, spec: &ChannelSpec, source: &str) -> Result<
 
 /// The times: as the cask file names them, else a sibling with a usual name and as many values.
 fn time_column(
-    path: &Path,
+    room: &Room,
     file: &File,
     spec: &ChannelSpec,
     time: Option<&str>,
@@ -132,7 +149,7 @@ fn time_column(
     {
         return Ok(Some(found));
     }
-    locate(path, file, spec, name).map(Some)
+    locate(room, file, spec, name).map(Some)
 }
 
 fn sibling_times(file: &File, column: &Column) -> Option<Column> {

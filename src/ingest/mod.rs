@@ -112,6 +112,14 @@ pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Li
     }
 }
 
+/// Whether HDF5 can still be read and written in this process; asked before `path` is.
+///
+/// # Errors
+/// The HDF5 library did not come back from a damaged file that was read earlier.
+pub fn require_hdf5(path: &Path) -> Result<(), IngestError> {
+    hdf5::require_library(path)
+}
+
 /// SHA-256 of the file at `path`, lower-case hexadecimal.
 ///
 /// # Errors

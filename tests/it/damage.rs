@@ -255,6 +255,35 @@ fn a_damaged_hdf5_file_is_right_doubtful_or_refused() {
 }
 
 #[test]
+fn an_hdf5_file_that_is_read_for_ever_is_given_up() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut bytes = std::fs::read(fixture("damaged-clipped.h5")).expect("a fixture");
+    // The size of the free space of a global heap: with 0 the library stays where it is.
+    bytes[3110..3112].fill(0);
+    let endless = folder.path().join("a.h5");
+    std::fs::write(&endless, bytes).expect("a temporary file");
+    let next = folder.path().join("b.csv");
+    std::fs::copy(fixture("anf10-plain.csv"), &next).expect("a temporary file");
+    let (cask, out) = (fixture("damaged-clipped.toml"), folder.path().join("out"));
+    let answer = dropcheck([
+        "batch".as_ref(),
+        endless.as_os_str(),
+        next.as_os_str(),
+        "--cask".as_ref(),
+        cask.as_os_str(),
+        "--out".as_ref(),
+        out.as_os_str(),
+    ]);
+    assert_eq!(answer.status, 2, "{}", answer.stderr);
+    let table = read_json(&out.join("campaign.json"));
+    let errors: Vec<&str> = (0..2).filter_map(|i| table["recordings"][i]["error"].as_str()).collect();
+    assert!(errors[0].contains("given up"), "{errors:?}");
+    // Its report would wait for the library.
+    assert!(errors[1].contains("did not come back from"), "{errors:?}");
+    assert!(!out.join("a").exists() && !out.join("b").exists());
+}
+
+#[test]
 #[ignore = "cuts at every boundary: minutes"]
 fn a_recording_cut_at_any_boundary_is_right_doubtful_or_refused() {
     let folder = tempfile::tempdir().expect("a temporary folder");

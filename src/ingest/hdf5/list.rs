@@ -4,6 +4,7 @@ use super::super::error::IngestError;
 use super::attributes::Attributes;
 use super::dataset::{self, Column, Missing};
 use super::fault::Fault;
+use super::watch::{self, Signs};
 use super::{Limits, Progress, open, sibling_times, storage, time_base};
 use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Samples};
 use hdf5_metno::{File, Group};
@@ -23,12 +24,13 @@ const RANGED_SAMPLES: usize = 20_000_000;
 const MOST_VALUES: u64 = 1 << 30;
 
 /// What a listing may still cost.
-struct Effort {
+struct Effort<'a> {
     limits: Limits,
+    signs: &'a Signs,
     values_left: u64,
 }
 
-impl Effort {
+impl Effort<'_> {
     /// Whether a column may be read; it is then paid for.
     fn pays_for(&mut self, column: &Column) -> bool {
         let (held, part) = (column.held_bytes(), column.part_bytes());
@@ -36,6 +38,7 @@ impl Effort {
         let pays = held <= self.limits.samples_bytes() && part <= self.limits.part_bytes();
         if pays && values <= self.values_left {
             self.values_left -= values;
+            self.signs.alive(values.saturating_mul(8));
             return true;
         }
         false
@@ -51,14 +54,15 @@ struct Objects {
 }
 
 /// What can be written as `source`.
-pub(super) fn sources(file: &File) -> Vec<String> {
+pub(super) fn sources(file: &File, signs: &Signs) -> Vec<String> {
     let mut objects = Objects::default();
-    walk(file, "", 0, &mut objects);
+    walk(file, "", (0, signs), &mut objects);
     objects.datasets.iter().flat_map(|path| columns_of(file, path).unwrap_or_default()).collect()
 }
 
-fn walk(group: &Group, path: &str, depth: usize, objects: &mut Objects) {
+fn walk(group: &Group, path: &str, (depth, signs): (usize, &Signs), objects: &mut Objects) {
     for name in group.member_names().unwrap_or_default() {
+        signs.alive(0);
         let groups = usize::try_from(objects.groups).unwrap_or(usize::MAX);
         if objects.datasets.len() + objects.broken.len() + groups >= MOST_OBJECTS {
             return;
@@ -67,7 +71,7 @@ fn walk(group: &Group, path: &str, depth: usize, objects: &mut Objects) {
         if let Ok(inner) = group.group(&name) {
             objects.groups += 1;
             if depth < DEEPEST {
-                walk(&inner, &full, depth + 1, objects);
+                walk(&inner, &full, (depth + 1, signs), objects);
             }
         } else if group.dataset(&name).is_ok() {
             objects.datasets.push(full);
@@ -101,10 +105,15 @@ pub(in super::super) fn list(
     limits: Limits,
     progress: Progress,
 ) -> Result<Listing, IngestError> {
-    let mut effort = Effort { limits, values_left: MOST_VALUES };
+    let file = path.to_owned();
+    watch::watched(path, progress, move |signs| list_objects(&file, limits, signs))
+}
+
+fn list_objects(path: &Path, limits: Limits, signs: &Signs) -> Result<Listing, IngestError> {
+    let mut effort = Effort { limits, signs, values_left: MOST_VALUES };
     let file = open(path)?;
     let mut objects = Objects::default();
-    walk(&file, "", 0, &mut objects);
+    walk(&file, "", (0, signs), &mut objects);
     let mut channels = Vec::new();
     let mut issues: Vec<Issue> = Vec::new();
     let count = objects.datasets.len().max(1);
@@ -121,7 +130,7 @@ pub(in super::super) fn list(
             None => channels.push(unreadable(&file, dataset)),
         }
         #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
-        progress((number + 1) as f64 / count as f64);
+        signs.done((number + 1) as f64 / count as f64);
     }
     channels.extend(objects.broken.iter().map(|link| ListedChannel {
         unreadable: Some("a link to what is not there".into()),
@@ -188,6 +197,7 @@ fn unreadable(file: &File, path: &str) -> ListedChannel {
 }
 
 fn listed(file: &File, source: &str, effort: &mut Effort, issues: &mut Vec<Issue>) -> ListedChannel {
+    effort.signs.alive(0);
     let Ok(column) = dataset::find(file, source) else { return unreadable(file, source) };
     let attributes = Attributes::of(file, &column);
     let kind = if column.index.is_some() { "column" } else { "dataset" };
