@@ -240,7 +240,7 @@ fn flight_and_motion(
     }
     let mut flight = find_flight(draft, signals, contact, stand_in.is_none())?;
     if let Some(stand_in) = stand_in {
-        if !settle::is_told_apart(&flight) {
+        if !flight.is_told_apart() {
             draft.flight_is_too_short();
             return None;
         }

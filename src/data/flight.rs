@@ -68,10 +68,86 @@ pub struct FlightFit {
     pub candidates: Vec<FlightModelScore>,
 }
 
+/// Fits of a flight with fewer periods of its slowest mode may differ by much and leave the same.
+const TOLD_APART_PERIODS: f64 = 1.5;
+
+/// Modes nearer to one another than this over the window's length are one mode to it: half the width of its spectral lines. Two of them
+/// bend around whatever else the window holds, a part of the contact first of all.
+const RESOLVED: f64 = 0.5;
+
 impl FlightFit {
+    /// How many periods of its slowest mode it shows; infinite without modes.
+    #[must_use]
+    pub fn periods(&self) -> f64 {
+        let lowest_hz = self.modes.iter().map(|m| m.frequency_hz).fold(f64::INFINITY, f64::min);
+        lowest_hz * (self.to_s - self.from_s)
+    }
+
+    /// Whether the window tells its modes from one another, or shows a period of each, so that they ring whatever they are called.
+    ///
+    /// Neighbours lie apart by half of 1/T, and there is a period of the fastest for each pair of modes.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss, reason = "a handful of modes")]
+    pub fn resolves_modes(&self) -> bool {
+        let length_s = self.to_s - self.from_s;
+        let is_apart = |pair: &[Mode]| (pair[1].frequency_hz - pair[0].frequency_hz) * length_s > RESOLVED;
+        let fastest_hz = self.modes.iter().map(|m| m.frequency_hz).fold(0.0, f64::max);
+        let pairs = (self.modes.len() * self.modes.len().saturating_sub(1) / 2) as f64;
+        let has_room = fastest_hz * length_s >= pairs;
+        self.periods() > 1.0 || (has_room && self.modes.windows(2).all(is_apart))
+    }
+
+    /// Whether it shows its slowest mode for long enough to tell fits apart by what they leave.
+    #[must_use]
+    pub fn is_told_apart(&self) -> bool {
+        self.periods() > TOLD_APART_PERIODS
+    }
+
     /// The plateau of a channel.
     #[must_use]
     pub fn plateau(&self, channel: &str) -> Option<&Plateau> {
         self.plateaus.iter().find(|p| p.channel == channel)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A flight of so many seconds with undamped modes.
+    fn flight(length_s: f64, frequencies_hz: &[f64]) -> FlightFit {
+        let mode = |&frequency_hz: &f64| Mode { frequency_hz, damping: 0.0, amplitude_m_s: 1.0 };
+        FlightFit {
+            from_s: 1.0,
+            to_s: 1.0 + length_s,
+            plateaus: vec![],
+            modes: frequencies_hz.iter().map(mode).collect(),
+            drift: false,
+            candidates: vec![],
+        }
+    }
+
+    #[test]
+    fn periods_are_those_of_the_slowest_mode() {
+        assert!((flight(0.05, &[30.0, 80.0]).periods() - 1.5).abs() < 1e-9);
+        assert!(!flight(0.049, &[30.0, 80.0]).is_told_apart());
+        assert!(flight(0.051, &[30.0, 80.0]).is_told_apart());
+        assert!(flight(0.001, &[]).is_told_apart(), "nothing rings");
+    }
+
+    #[test]
+    fn a_short_window_resolves_few_modes() {
+        // 20 ms: lines are 50 Hz wide, half of that is 25.
+        assert!(flight(0.02, &[]).resolves_modes());
+        assert!(flight(0.02, &[30.0]).resolves_modes());
+        assert!(flight(0.02, &[30.0, 56.0]).resolves_modes());
+        assert!(!flight(0.02, &[30.0, 54.0]).resolves_modes(), "24 Hz apart");
+        assert!(!flight(0.02, &[10.0, 49.0]).resolves_modes(), "no period of the faster one");
+        assert!(flight(0.02, &[30.0, 80.0, 151.0]).resolves_modes());
+        assert!(
+            !flight(0.02, &[30.0, 80.0, 149.0]).resolves_modes(),
+            "three pairs in less than three periods"
+        );
+        assert!(flight(0.02, &[51.0, 54.0]).resolves_modes(), "a period of each is shown");
     }
 }

@@ -43,8 +43,8 @@ pub use onset::Onset;
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, Quantities};
 pub use reconstruction::{
-    Adjustment, Closure, ClosureKind, ReconstructionCandidate, ReconstructionChoice, ReconstructionRung,
-    RestLevel,
+    Adjustment, Closure, ClosureKind, MISSED_U, ReconstructionCandidate, ReconstructionChoice,
+    ReconstructionRung, RestLevel,
 };
 pub use recording::{Recording, RecordingFormat};
 pub use scene::{BendingMode, Chain, CrushableEnd, Scene, SceneChannel, SimulatedMotion, Truth};

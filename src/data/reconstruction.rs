@@ -62,6 +62,10 @@ pub struct RestLevel {
     pub u_m_s2: f64,
 }
 
+/// A closure missed by this many standard uncertainties is not chance: one sound drop in 4600 a closure, one in a thousand of those with
+/// four or five of them.
+pub const MISSED_U: f64 = 3.7;
+
 /// One observable that the motion must meet beside the velocity steps, and how far it is off.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Closure {

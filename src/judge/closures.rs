@@ -1,12 +1,10 @@
 //! What the motion must meet and misses, to what speaks against scales, positions, angle and height.
 
 use crate::data::{
-    Closure, ClosureKind, Drop, Estimate, Events, Issue, IssueCode, ReconstructionChoice, ReconstructionRung,
-    Severity, Signal,
+    Closure, ClosureKind, Drop, Estimate, Events, Issue, IssueCode, MISSED_U, ReconstructionChoice,
+    ReconstructionRung, Severity, Signal,
 };
 
-/// A closure missed by this many standard uncertainties is not chance: one sound drop in 2000 a closure.
-const MISSED_U: f64 = 3.5;
 /// Missed by this many, the stated things are not what the recording shows.
 const GROSS_U: f64 = 12.0;
 
@@ -80,9 +78,9 @@ fn together(choice: &ReconstructionChoice) -> Option<Issue> {
 fn most_chi_square(degrees: usize) -> f64 {
     #[allow(clippy::cast_precision_loss, reason = "a few closures")]
     let n = degrees as f64;
-    // The normal deviate that is passed on one side as often as 3.5 on both.
+    // The normal deviate that is passed on one side as often as 3.7 on both.
     let share = 2.0 / (9.0 * n);
-    n * (1.0 - share + 3.31 * share.sqrt()).powi(3)
+    n * (1.0 - share + 3.52 * share.sqrt()).powi(3)
 }
 
 /// What no closure of this recording tests.

@@ -19,6 +19,8 @@ const SMALL_SLIP_M_S: f64 = 0.65;
 const TOUCHED_SHARE: f64 = 0.001;
 /// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1.5 % of a slap-down.
 const LARGE_RESIDUAL_M_S: f64 = 0.3;
+/// The same as a share of v0 in a flight too short to tell its modes apart, which three of them may fit with a part of the contact in it.
+const LARGE_RESIDUAL_SHORT: f64 = 0.015;
 /// A velocity this far off its flight before R strikes is another contact, m/s: 1 % of a slap-down.
 const LARGE_MISMATCH_M_S: f64 = 0.2;
 /// A velocity step that is known no better than to this share of v0, as a standard uncertainty, says little, however well it is known how little.
@@ -130,11 +132,26 @@ fn signs(signals: &[Signal], flight: &FlightFit) -> Vec<Issue> {
 }
 
 fn flight_issues(flight: &FlightFit, quantities: &Quantities) -> Vec<Issue> {
+    let v0_m_s = quantities.impact_velocity.value;
     let mut issues = Vec::new();
+    issues.extend(unresolved(flight));
+    if let Some(flown) = quantities.flight_time
+        && flown.value < flown.u95
+    {
+        issues.push(Issue::new(
+            IssueCode::FlightFit,
+            Severity::Warning,
+            format!(
+                "the flight lasts {:.1} ± {:.1} ms: the first end may not have left the target when the second end struck, and k and the slap-down speed then mean nothing",
+                1e3 * flown.value,
+                1e3 * flown.u95
+            ),
+        ));
+    }
     for plateau in &flight.plateaus {
         let effect_m_s = plateau.zero_shift_m_s2.abs() * quantities.duration.value;
         if flight.drift && plateau.zero_shift_m_s2.abs() > 3.0 * plateau.u_zero_shift_m_s2 {
-            let small_m_s = if shows_its_modes(flight) { SMALL_SHIFT_M_S } else { SMALL_BEND_M_S };
+            let small_m_s = if flight.periods() > 1.0 { SMALL_SHIFT_M_S } else { SMALL_BEND_M_S };
             let severity = if effect_m_s > small_m_s { Severity::Warning } else { Severity::Note };
             issues.push(
                 Issue::new(
@@ -166,8 +183,8 @@ fn flight_issues(flight: &FlightFit, quantities: &Quantities) -> Vec<Issue> {
                 .on(&plateau.channel),
             );
         }
-        if plateau.residual_m_s > LARGE_RESIDUAL_M_S
-            || plateau.u_m_s > LARGE_U_SHARE * quantities.impact_velocity.value
+        let short_m_s = if flight.is_told_apart() { f64::INFINITY } else { LARGE_RESIDUAL_SHORT * v0_m_s };
+        if plateau.residual_m_s > LARGE_RESIDUAL_M_S.min(short_m_s) || plateau.u_m_s > LARGE_U_SHARE * v0_m_s
         {
             issues.push(
                 Issue::new(
@@ -189,9 +206,22 @@ fn flight_issues(flight: &FlightFit, quantities: &Quantities) -> Vec<Issue> {
     issues
 }
 
-/// Whether the flight shows a period of its slowest mode.
-fn shows_its_modes(flight: &FlightFit) -> bool {
-    flight.modes.iter().all(|m| m.frequency_hz * (flight.to_s - flight.from_s) > 1.0)
+/// Modes that the flight is too short to tell from one another.
+fn unresolved(flight: &FlightFit) -> Option<Issue> {
+    let modes: Vec<String> = flight.modes.iter().map(|m| format!("{:.0}", m.frequency_hz)).collect();
+    (!flight.resolves_modes()).then(|| {
+        Issue::new(
+            IssueCode::FlightFit,
+            Severity::Warning,
+            format!(
+                "the {:.1} ms of flight are too short to tell the {} modes from one another that were fitted to it ({} Hz): they may stand for a contact that was not over, and the velocity steps, k and the slap-down speed be off by more than their intervals; look at the curves, and state only what they show",
+                1e3 * (flight.to_s - flight.from_s),
+                modes.len(),
+                modes.join(", ")
+            ),
+        )
+        .between(flight.from_s, flight.to_s)
+    })
 }
 
 /// What a comparison that does not agree amounts to.

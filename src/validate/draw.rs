@@ -31,6 +31,8 @@ const SHORTEST_FLIGHT_S: f64 = 8e-3;
 pub(crate) struct Wish {
     /// L touches again before R strikes.
     pub lands_again: bool,
+    /// R strikes so soon after L has left that the drop is left out elsewhere.
+    pub short_flight: bool,
     /// The contact of L, as it is.
     pub contact: Option<Contact>,
     /// Whether there is an axial channel; `None`: as it comes.
@@ -48,6 +50,7 @@ impl Wish {
     pub(super) const fn new() -> Self {
         Self {
             lands_again: false,
+            short_flight: false,
             contact: None,
             axial: None,
             rest: None,
@@ -64,7 +67,7 @@ const ATTEMPTS: u32 = 300;
 pub(super) fn case((seed, number): (u64, SceneNumber), wish: &Wish, exact: bool, means: &Means) -> Case {
     let mut chance = Chance::new(seed, number);
     let mut redraws = BTreeMap::new();
-    let mut angle_deg = stated_angle_deg(&mut chance);
+    let mut angle_deg = stated_angle_deg(&mut chance, wish);
     let mut attempt = 0_u32;
     loop {
         attempt += 1;
@@ -74,14 +77,17 @@ pub(super) fn case((seed, number): (u64, SceneNumber), wish: &Wish, exact: bool,
             return Case { scene, stated, motion, chance, redraws };
         };
         *redraws.entry(lack).or_insert(0) += 1;
-        if wish.lands_again || attempt.is_multiple_of(ATTEMPTS) {
-            angle_deg = stated_angle_deg(&mut chance);
+        if wish.lands_again || wish.short_flight || attempt.is_multiple_of(ATTEMPTS) {
+            angle_deg = stated_angle_deg(&mut chance, wish);
         }
     }
 }
 
-/// 5 to 30° mostly.
-fn stated_angle_deg(chance: &mut Chance) -> f64 {
+/// 5 to 30° mostly; R strikes soon where it is not far from the target.
+fn stated_angle_deg(chance: &mut Chance, wish: &Wish) -> f64 {
+    if wish.short_flight {
+        return round(chance.even(2.0, 8.0), 1);
+    }
     round(if chance.is(0.8) { chance.even(5.0, 30.0) } else { chance.even(2.0, 60.0) }, 1)
 }
 
@@ -100,7 +106,12 @@ fn lacks(truth: &Truth, wish: &Wish) -> Option<&'static str> {
     if truth.relands > 0 {
         return Some("second contact");
     }
-    truth.flight_s.is_none_or(|flight_s| flight_s < SHORTEST_FLIGHT_S).then_some("flight below 8 ms")
+    let is_short = truth.flight_s.is_none_or(|flight_s| flight_s < SHORTEST_FLIGHT_S);
+    match (is_short, wish.short_flight) {
+        (true, false) => Some("flight below 8 ms"),
+        (false, true) => Some("flight of 8 ms and more"),
+        _ => None,
+    }
 }
 
 /// One attempt: the scene as it is and the cask file, both still without channels.

@@ -3,7 +3,9 @@
 use super::score::{code_name, rung_name};
 use super::statistics::{Outcome, Spread, largest_miss_u, outcome, quantile, scored};
 use super::table::{Table, number, share};
-use crate::data::{Campaign, CampaignRow, Contact, Damage, Estimate, ReconstructionRung, Severity, Verdict};
+use crate::data::{
+    Campaign, CampaignRow, Contact, Damage, Estimate, MISSED_U, ReconstructionRung, Severity, Verdict,
+};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -322,7 +324,7 @@ fn outcomes(kind: &str, size: String, rows: &[&CampaignRow]) -> Vec<String> {
 }
 
 /// Limits of what a closure may be missed by, in standard uncertainties.
-const LIMITS_U: [f64; 5] = [3.5, 3.0, 2.5, 2.0, 1.5];
+const LIMITS_U: [f64; 5] = [MISSED_U, 3.0, 2.5, 2.0, 1.5];
 
 /// What each limit would have kept from passing: of sound drops, and of damaged ones that passed and are wrong.
 fn limits(undamaged: &[&CampaignRow], damaged: &[&CampaignRow]) -> String {

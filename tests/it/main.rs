@@ -11,6 +11,7 @@ mod properties;
 mod reference;
 mod run;
 mod safety;
+mod short_flights;
 mod synth;
 mod tidy;
 mod trial;

@@ -198,6 +198,11 @@ pub(super) const KINDS: &[Kind] = &[
         wish: |_| Wish { lands_again: true, slow_recorder: true, ..Wish::new() },
         ..SOUND
     },
+    Kind {
+        name: "short_flight",
+        wish: |_| Wish { short_flight: true, slow_recorder: true, ..Wish::new() },
+        ..SOUND
+    },
 ];
 
 /// Changes the chain of A1 or A2, with a sign by chance.
