@@ -43,7 +43,7 @@ pub use onset::Onset;
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, Quantities};
 pub use reconstruction::{
-    Adjustment, Closure, ClosureKind, MISSED_U, ReconstructionCandidate, ReconstructionChoice,
+    Adjustment, Closure, ClosureKind, MET_U, MISSED_U, ReconstructionCandidate, ReconstructionChoice,
     ReconstructionRung, RestLevel,
 };
 pub use recording::{Recording, RecordingFormat};

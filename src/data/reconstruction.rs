@@ -66,6 +66,9 @@ pub struct RestLevel {
 /// four or five of them.
 pub const MISSED_U: f64 = 3.7;
 
+/// A closure missed by more standard uncertainties than this is not explained by noise and tolerances alone (95 %).
+pub const MET_U: f64 = 2.0;
+
 /// One observable that the motion must meet beside the velocity steps, and how far it is off.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Closure {

@@ -4,12 +4,9 @@ use super::inputs::has_lost_step;
 use super::propagate::Model;
 use super::{COVERAGE, Measured, Reconstruct};
 use crate::data::{
-    Axis, ChannelReading, Closure, End, Estimate, FlightFit, Quantities, ReconstructionCandidate,
+    Axis, ChannelReading, Closure, End, Estimate, FlightFit, MET_U, Quantities, ReconstructionCandidate,
     ReconstructionChoice, ReconstructionRung,
 };
-
-/// A closure missed by more standard uncertainties than this is not explained by noise and tolerances (95 %).
-const MOST_MISS: f64 = 2.0;
 
 /// How much wider the intervals of a joint fit are whose closures are spent on lost velocity steps, and test nothing: so wide they hold 19 of
 /// 20 simulated drops.
@@ -135,7 +132,7 @@ fn by_flight(measured: &Measured, quantities: Quantities, closures: &[Closure]) 
 
 /// How much wider the intervals of a joint fit are for data that contradict one another by more than chance (Birge 1932)   (31b)
 fn widened(closures: &[Closure]) -> f64 {
-    closures.iter().map(|c| c.miss_in_u.abs() / MOST_MISS).fold(1.0, f64::max)
+    closures.iter().map(|c| c.miss_in_u.abs() / MET_U).fold(1.0, f64::max)
 }
 
 /// (d) Everything fitted within its tolerance.
@@ -158,7 +155,7 @@ fn explains(plain: &FlightFit) -> bool {
 }
 
 fn meets(closures: &[Closure]) -> bool {
-    closures.iter().all(|c| c.miss_in_u.abs() <= MOST_MISS)
+    closures.iter().all(|c| c.miss_in_u.abs() <= MET_U)
 }
 
 /// The closure that is missed most.

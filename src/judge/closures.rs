@@ -1,7 +1,7 @@
 //! What the motion must meet and misses, to what speaks against scales, positions, angle and height.
 
 use crate::data::{
-    Closure, ClosureKind, Drop, Estimate, Events, Issue, IssueCode, MISSED_U, ReconstructionChoice,
+    Closure, ClosureKind, Drop, Estimate, Events, Issue, IssueCode, MET_U, MISSED_U, ReconstructionChoice,
     ReconstructionRung, Severity, Signal,
 };
 
@@ -10,8 +10,6 @@ const GROSS_U: f64 = 12.0;
 
 /// About first contact, s: a gap there may hide it.
 const CONTACT_S: f64 = 1e-3;
-/// Closures missed by so many standard uncertainties contradict a motion that has steps free to move (95 %).
-const MOST_MISS: f64 = 2.0;
 /// Intervals beyond these say nothing that the bounds of k do not, and speeds beyond a seventh are no speeds.
 const MOST_U95_K: f64 = 0.25;
 const MOST_U95_SPEED: f64 = 0.15;
@@ -40,7 +38,7 @@ pub fn tells_lost_steps(
     contact_s: f64,
 ) -> bool {
     let has = |kind| choice.closures.iter().any(|c| c.kind == kind);
-    let all_met = choice.closures.iter().all(|c| c.miss_in_u.abs() < MOST_MISS);
+    let all_met = choice.closures.iter().all(|c| c.miss_in_u.abs() < MET_U);
     let shows_contact =
         signals.iter().all(|s| !s.touches(&s.gaps, contact_s - CONTACT_S, contact_s + CONTACT_S));
     let says_something =

@@ -168,20 +168,24 @@ fn drop(
         let held = Scene { contact: Contact::Rough, ..scene.clone() };
         scene.contact = loosened(stated_contact, impulse_ratio(&(means.simulate)(&held)), share);
     }
-    let cask_file = CaskFile {
+    (scene, cask_file(stated, stated_drop, stated_contact, defaults))
+}
+
+/// What the cask file says of a drop, with the usual tolerances.
+fn cask_file(cask: Cask, drop: Drop, contact: Contact, defaults: Vec<String>) -> CaskFile {
+    CaskFile {
         path: PathBuf::from("synthetic.toml"),
         sha256: String::new(),
-        cask: stated,
-        drop: stated_drop,
-        contact: stated_contact,
+        cask,
+        drop,
+        contact,
         filter: FilterChoice::Auto,
-        tolerances,
+        tolerances: Tolerances::default(),
         corrections: Corrections::default(),
         time: None,
         channels: Vec::new(),
         defaults,
-    };
-    (scene, cask_file)
+    }
 }
 
 /// I_x / I_z of the first contact.

@@ -1,6 +1,6 @@
 //! Contacts that last longer than the flight after them, to results that are right or doubtful.
 
-use dropcheck::data::{Scene, Verdict};
+use dropcheck::data::Verdict;
 use dropcheck::ingest;
 
 /// Angle, °; pulse of L, ms; its k; frequencies of the modes, Hz; damping.
@@ -46,8 +46,7 @@ fn a_contact_that_was_not_over_is_no_flight() {
         let path = folder.path().join("scene.toml");
         std::fs::write(&path, scene_text(drop)).expect("a temporary file");
         let made = dropcheck::scene_file(&path).expect("a scene");
-        let scene: &Scene = &made.scene;
-        let synthetic = dropcheck::synthesise(scene);
+        let synthetic = dropcheck::synthesise(&made.scene);
         let truth_m_s = synthetic.truth.speed.expect("a slap-down");
         let recording = ingest::synthetic(&synthetic, &made.stated).expect("a recording");
         let result = dropcheck::analyze(&recording, &made.stated).result;
