@@ -26,13 +26,22 @@ const OVERTONES: [f64; 3] = [1.0, 2.757, 5.404];
 const K_RANGE: (f64, f64) = (0.02, 0.98);
 const SHORTEST_FLIGHT_S: f64 = 8e-3;
 
+/// What happens between the two impacts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Flight {
+    /// L flies until R strikes.
+    Free,
+    /// L touches again before.
+    LandsAgain,
+    /// The same as free, for less than [`SHORTEST_FLIGHT_S`].
+    Short,
+}
+
 /// What a damage needs of the drop that it strikes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Wish {
-    /// L touches again before R strikes.
-    pub lands_again: bool,
-    /// R strikes so soon after L has left that the drop is left out elsewhere.
-    pub short_flight: bool,
+    /// What happens between the impacts.
+    pub flight: Flight,
     /// The contact of L, as it is.
     pub contact: Option<Contact>,
     /// Whether there is an axial channel; `None`: as it comes.
@@ -49,8 +58,7 @@ impl Wish {
     /// Anything.
     pub(super) const fn new() -> Self {
         Self {
-            lands_again: false,
-            short_flight: false,
+            flight: Flight::Free,
             contact: None,
             axial: None,
             rest: None,
@@ -77,7 +85,7 @@ pub(super) fn case((seed, number): (u64, SceneNumber), wish: &Wish, exact: bool,
             return Case { scene, stated, motion, chance, redraws };
         };
         *redraws.entry(lack).or_insert(0) += 1;
-        if wish.lands_again || wish.short_flight || attempt.is_multiple_of(ATTEMPTS) {
+        if wish.flight != Flight::Free || attempt.is_multiple_of(ATTEMPTS) {
             angle_deg = stated_angle_deg(&mut chance, wish);
         }
     }
@@ -85,7 +93,7 @@ pub(super) fn case((seed, number): (u64, SceneNumber), wish: &Wish, exact: bool,
 
 /// 5 to 30° mostly; R strikes soon where it is not far from the target.
 fn stated_angle_deg(chance: &mut Chance, wish: &Wish) -> f64 {
-    if wish.short_flight {
+    if wish.flight == Flight::Short {
         return round(chance.even(2.0, 8.0), 1);
     }
     round(if chance.is(0.8) { chance.even(5.0, 30.0) } else { chance.even(2.0, 60.0) }, 1)
@@ -97,7 +105,7 @@ fn lacks(truth: &Truth, wish: &Wish) -> Option<&'static str> {
     if !(K_RANGE.0..=K_RANGE.1).contains(&k) {
         return Some("k outside 0.02 to 0.98");
     }
-    if wish.lands_again {
+    if wish.flight == Flight::LandsAgain {
         return (truth.relands == 0).then_some("no second contact");
     }
     if truth.first_down_at_slap {
@@ -107,7 +115,7 @@ fn lacks(truth: &Truth, wish: &Wish) -> Option<&'static str> {
         return Some("second contact");
     }
     let is_short = truth.flight_s.is_none_or(|flight_s| flight_s < SHORTEST_FLIGHT_S);
-    match (is_short, wish.short_flight) {
+    match (is_short, wish.flight == Flight::Short) {
         (true, false) => Some("flight below 8 ms"),
         (false, true) => Some("flight of 8 ms and more"),
         _ => None,
@@ -241,7 +249,7 @@ fn cask(chance: &mut Chance, defaults: &mut Vec<String>) -> Cask {
 /// The fall as stated: from 9 m mostly.
 fn falls(chance: &mut Chance, angle_deg: f64, wish: &Wish) -> Drop {
     // L lands again where it is thrown up little and R has a long way.
-    let usual = if wish.lands_again { 0.2 } else { 0.7 };
+    let usual = if wish.flight == Flight::LandsAgain { 0.2 } else { 0.7 };
     let height_m = if chance.is(usual) { 9.0 } else { round(chance.log_even(0.3, 12.0), 2) };
     Drop {
         height_m,

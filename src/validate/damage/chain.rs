@@ -1,6 +1,6 @@
 //! A damage of sensor, cable or recorder to the measuring chain that has it.
 
-use super::super::draw::Wish;
+use super::super::draw::{Flight, Wish};
 use super::super::recorder::{self, STANDARD_GRAVITY_M_S2 as G_M_S2};
 use super::super::{Case, Means};
 use super::{Kind, SOUND, rest};
@@ -195,12 +195,12 @@ pub(super) const KINDS: &[Kind] = &[
     },
     Kind {
         name: "second_contact",
-        wish: |_| Wish { lands_again: true, slow_recorder: true, ..Wish::new() },
+        wish: |_| Wish { flight: Flight::LandsAgain, slow_recorder: true, ..Wish::new() },
         ..SOUND
     },
     Kind {
         name: "short_flight",
-        wish: |_| Wish { short_flight: true, slow_recorder: true, ..Wish::new() },
+        wish: |_| Wish { flight: Flight::Short, slow_recorder: true, ..Wish::new() },
         ..SOUND
     },
 ];
