@@ -62,9 +62,9 @@ pub struct RestLevel {
     pub u_m_s2: f64,
 }
 
-/// A closure missed by this many standard uncertainties is not chance: one sound drop in 4600 a closure, one in a thousand of those with
-/// four or five of them.
-pub const MISSED_U: f64 = 3.7;
+/// A closure missed by this many standard uncertainties is not chance: one sound drop in 2000 a closure. At 3.7 one sound drop in 2000 more
+/// passed, and of 2000 damaged ones four more with a wrong number.
+pub const MISSED_U: f64 = 3.5;
 
 /// A closure missed by more standard uncertainties than this is not explained by noise and tolerances alone (95 %).
 pub const MET_U: f64 = 2.0;

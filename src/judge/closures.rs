@@ -76,9 +76,9 @@ fn together(choice: &ReconstructionChoice) -> Option<Issue> {
 fn most_chi_square(degrees: usize) -> f64 {
     #[allow(clippy::cast_precision_loss, reason = "a few closures")]
     let n = degrees as f64;
-    // The normal deviate that is passed on one side as often as 3.7 on both.
+    // The normal deviate that is passed on one side as often as 3.5 on both.
     let share = 2.0 / (9.0 * n);
-    n * (1.0 - share + 3.52 * share.sqrt()).powi(3)
+    n * (1.0 - share + 3.31 * share.sqrt()).powi(3)
 }
 
 /// What no closure of this recording tests.
