@@ -88,26 +88,17 @@ impl<'a> Histories<'a> {
         Some(histories)
     }
 
-    /// The channels as they are, led to nothing.
-    fn as_recorded(recorded: &'a Integrated, (contact_s, left_s): (f64, f64)) -> Option<Self> {
-        let length_s = left_s - contact_s;
-        let velocities = &recorded.velocities;
-        let corrections_m_s = vec![0.0; velocities.len()];
-        let recorded =
-            Self { velocities, corrections_m_s, axial: Vec::new(), contact_s, length_s, bending: Vec::new() };
-        (length_s > 0.0).then_some(recorded)
-    }
-
     /// Finds what rings in each channel during the contact, and leaves the corrections what that does not explain.
     ///
-    /// The modes start from rest and are driven by the contact force, whose shape the rotation tells: first as it was recorded, then as it
-    /// is without the ringing.
+    /// The modes start from rest and are driven by the contact force, whose shape the rotation tells once it is free of ringing; until then
+    /// a half sine stands for it.
     fn take_off_bending(&mut self, fit: &FlightFit, line: &Line) {
         if fit.modes.is_empty() {
             return;
         }
-        for _ in 0..ROUNDS {
-            let turning: Vec<f64> = (0..=STEPS).map(|i| line.at(self, self.grid_s(i), 0.0).1).collect();
+        for round in 0..ROUNDS {
+            let turning =
+                if round == 0 { half_sine(self.turning_at(line, STEPS)) } else { self.turning_rad_s(line) };
             let driven: Vec<Vec<Complex<f64>>> = fit
                 .modes
                 .iter()
@@ -125,6 +116,16 @@ impl<'a> Histories<'a> {
                 self.corrections_m_s[i] += self.bending_m_s(i, usize::from(STEPS)) - before;
             }
         }
+    }
+
+    /// Ω on the grid, rad/s.
+    fn turning_rad_s(&self, line: &Line) -> Vec<f64> {
+        (0..=STEPS).map(|i| self.turning_at(line, i)).collect()
+    }
+
+    /// Ω at a step of the grid, rad/s.
+    fn turning_at(&self, line: &Line, step: u16) -> f64 {
+        line.at(self, self.grid_s(step), 0.0).1
     }
 
     fn grid_s(&self, step: u16) -> f64 {
@@ -159,6 +160,12 @@ impl<'a> Histories<'a> {
         });
         (n > 0.0).then_some((sums.0 / n, sums.1 / n))
     }
+}
+
+/// The rotation over the contact under a half sine of force, on the grid, that ends at `end_rad_s`.
+fn half_sine(end_rad_s: f64) -> Vec<f64> {
+    let share = |i: u16| f64::from(i) / f64::from(STEPS);
+    (0..=STEPS).map(|i| end_rad_s * (1.0 - (std::f64::consts::PI * share(i)).cos()) / 2.0).collect()
 }
 
 /// Z(t) = ∫ f(τ) e^((−ζ + i) ω (t − τ)) dτ from rest: a mode driven by the shape of the contact force, −dΩ/dt   (36)
@@ -200,8 +207,8 @@ fn bending(
     sum
 }
 
-/// The shape of the contact force from the rotation between first contact and separation, for modes that ring from `from_s` on; freed of
-/// the ringing of an earlier fit where there is one. `None` without two transverse channels apart.
+/// The shape of the contact force between first contact and separation, for modes that ring from `from_s` on: that of the rotation freed
+/// of an earlier fit's ringing, or a half sine where there is none. `None` without two transverse channels apart.
 #[must_use]
 pub fn drive(
     signals: &[Signal],
@@ -211,15 +218,17 @@ pub fn drive(
     cog_m: f64,
 ) -> Option<Drive> {
     let line = Line::through(signals, cog_m)?;
-    let integrated = Integrated::over_contact(signals, (contact_s, left_s));
-    let histories = match fit {
-        Some(fit) => Histories::new(&integrated, fit, &line, (contact_s, left_s))?,
-        None => Histories::as_recorded(&integrated, (contact_s, left_s))?,
+    let turning = match fit {
+        Some(fit) => {
+            let integrated = Integrated::over_contact(signals, (contact_s, left_s));
+            Histories::new(&integrated, fit, &line, (contact_s, left_s))?.turning_rad_s(&line)
+        }
+        None if left_s > contact_s => half_sine(-1.0),
+        None => return None,
     };
-    let turning: Vec<f64> = (0..=STEPS).map(|i| line.at(&histories, histories.grid_s(i), 0.0).1).collect();
     Some(Drive {
         age_s: from_s - contact_s,
-        step_s: histories.length_s / f64::from(STEPS),
+        step_s: (left_s - contact_s) / f64::from(STEPS),
         impulses: turning.windows(2).map(|pair| pair[0] - pair[1]).collect(),
     })
 }
