@@ -103,7 +103,7 @@ fn row(request: &CampaignRequest, number: SceneNumber, means: &Means) -> Campaig
     let begun = Instant::now();
     let analysis = read.map(|read| (means.analyze)(&read, &case.stated));
     let analysis_s = begun.elapsed().as_secs_f64();
-    score::row((number, damage), case, analysis.as_ref(), analysis_s)
+    score::row((number, damage), case, recording.first_contact_s, (analysis.as_ref(), analysis_s))
 }
 
 /// A scene, drawn, struck by its damage and recorded.

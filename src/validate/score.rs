@@ -8,14 +8,15 @@ use crate::data::{
     SceneNumber, Scored, Severity, Truth, Verdict,
 };
 
-/// The row of a scene; no analysis: the recording was refused.
+/// The row of a scene whose first contact is so long after the first sample; no analysis: the recording was refused.
 pub(super) fn row(
     (number, damage): (SceneNumber, Option<Damage>),
     case: Case,
-    analysis: Option<&Analysis>,
-    analysis_s: f64,
+    first_contact_s: f64,
+    (analysis, analysis_s): (Option<&Analysis>, f64),
 ) -> CampaignRow {
     let truth = case.motion.truth;
+    let slap_down_s = truth.slap_t.map(|t| first_contact_s + t * (1.0 + case.scene.clock_error));
     CampaignRow {
         number,
         damage,
@@ -23,7 +24,7 @@ pub(super) fn row(
         findings: analysis.map_or_else(Vec::new, |a| {
             a.result.quality.iter().map(|issue| (issue.code, issue.severity)).collect()
         }),
-        quantities: quantities(&truth, analysis),
+        quantities: quantities(&truth, (first_contact_s, slap_down_s), analysis),
         rung: analysis.and_then(rung),
         candidates: analysis.map_or_else(Vec::new, rungs),
         misses_u: analysis.map_or_else(Vec::new, misses_u),
@@ -35,9 +36,10 @@ pub(super) fn row(
     }
 }
 
-/// What is scored, in this order.
-fn quantities(truth: &Truth, analysis: Option<&Analysis>) -> Vec<Scored> {
+/// What is scored, in this order; the times of first contact and slap-down count from the first sample, s.
+fn quantities(truth: &Truth, times_s: (f64, Option<f64>), analysis: Option<&Analysis>) -> Vec<Scored> {
     let result = analysis.map(|a| &a.result);
+    let first_impact = result.map(|r| &r.first_impact);
     let slap_down = result.map(|r| &r.slap_down);
     let scored = |name, stated: Option<Estimate>, truth| Scored { name, stated, truth };
     vec![
@@ -45,9 +47,12 @@ fn quantities(truth: &Truth, analysis: Option<&Analysis>) -> Vec<Scored> {
         scored("k", result.and_then(|r| r.k), truth.k),
         scored("vertical", slap_down.and_then(|s| s.vertical_velocity), truth.vz),
         scored("horizontal", slap_down.and_then(|s| s.horizontal_velocity), truth.vx),
-        scored("omega", result.and_then(|r| r.first_impact.angular_velocity), truth.omega_rebound),
+        scored("omega", first_impact.and_then(|f| f.angular_velocity), truth.omega_rebound),
         scored("flight", slap_down.and_then(|s| s.flight_time), truth.flight_s),
         scored("angle", slap_down.and_then(|s| s.angle), truth.angle_hit_deg),
+        scored("duration", first_impact.and_then(|f| f.duration), truth.contact_s),
+        scored("contact_time", first_impact.and_then(|f| f.time), Some(times_s.0)),
+        scored("slap_down_time", slap_down.and_then(|s| s.time), times_s.1),
     ]
 }
 

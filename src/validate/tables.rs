@@ -79,7 +79,7 @@ fn pairs<'a>(rows: &'a [&CampaignRow], name: &'a str) -> impl Iterator<Item = (E
 }
 
 /// Names, as they are scored and as they are shown; whether in percent of the truth; decimals.
-const QUANTITIES: [(&str, &str, bool, usize); 7] = [
+const QUANTITIES: [(&str, &str, bool, usize); 10] = [
     ("speed", "slap-down speed, %", true, 2),
     ("k", "k", false, 4),
     ("vertical", "vertical velocity, m/s", false, 3),
@@ -87,6 +87,9 @@ const QUANTITIES: [(&str, &str, bool, usize); 7] = [
     ("omega", "ω after the impact, %", true, 2),
     ("flight", "flight time, %", true, 2),
     ("angle", "angle at slap-down, °", false, 3),
+    ("duration", "duration of the first contact, %", true, 2),
+    ("contact_time", "time of the first contact, s", false, 6),
+    ("slap_down_time", "time of the slap-down, s", false, 6),
 ];
 
 fn intervals(rows: &[&CampaignRow]) -> String {
