@@ -57,41 +57,31 @@ impl<'a> Draft<'a> {
             Severity::Error,
             format!(
                 "no impact was found: no transverse channel changes its velocity by {:.1} m/s within 25 ms; check source, unit and that the recording covers the drop",
-                0.1 * self.cask_file.drop.impact_velocity_m_s
+                self.cask_file.drop.least_impact_m_s()
             ),
         ));
         self.finish()
     }
 
-    /// Takes over the times of the events with their standard uncertainties; a missing slap-down becomes an issue.
-    pub fn take_times(
-        &mut self,
-        contact: (f64, f64),
-        left: (f64, f64),
-        struck: Option<(f64, f64)>,
-        end_s: f64,
-    ) {
+    /// Takes over the times of the events with their standard uncertainties.
+    pub fn take_times(&mut self, contact: (f64, f64), left: (f64, f64), struck: Option<(f64, f64)>) {
         self.events.separation_s = Some(left.0);
         self.events.slap_down_s = struck.map(|s| s.0);
         self.u_events_s = [contact.1, left.1, struck.map_or(0.0, |s| s.1)];
-        // An end without a channel has said so itself.
-        let is_recorded = self.issues.iter().all(|i| i.code != IssueCode::MissingChannel);
-        if struck.is_none() && is_recorded {
-            let after_s = end_s - left.0;
-            let (code, why) = if after_s < 0.3 {
-                (IssueCode::EndsEarly, "the recording ends before it")
-            } else {
-                (IssueCode::NoSlapDown, "the second end shows no impact")
-            };
-            self.issues.push(Issue::new(
-                code,
-                Severity::Error,
-                format!(
-                    "no slap-down within {:.0} ms after the first end left the target: {why}",
-                    1e3 * after_s
-                ),
-            ));
-        }
+    }
+
+    /// Says that the second end shows no slap-down in the time that was recorded after the first one left.
+    pub fn no_slap_down(&mut self, after_s: f64) {
+        let (code, why) = if after_s < 0.3 {
+            (IssueCode::EndsEarly, "the recording ends before it")
+        } else {
+            (IssueCode::NoSlapDown, "the second end shows no impact")
+        };
+        self.issues.push(Issue::new(
+            code,
+            Severity::Error,
+            format!("no slap-down within {:.0} ms after the first end left the target: {why}", 1e3 * after_s),
+        ));
     }
 
     /// Says that no flight could be had.

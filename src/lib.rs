@@ -30,8 +30,8 @@ use data::{
 use one_end::StandIn;
 use std::path::Path;
 
-/// What the length of a pulse is uncertain by, as a share, where its samples are clipped or missing.
-const CUT_PULSE: f64 = 0.1;
+/// What the length of a pulse is uncertain by, as a share, where its samples are clipped or missing, or only the other end shows it.
+const UNCERTAIN_PULSE: f64 = 0.1;
 
 /// Part of the way between two contact laws on which the change of the result is taken: a hundred times what friction is rounded to.
 const RIVAL_WAY: f64 = 0.1;
@@ -43,8 +43,8 @@ const RIVAL_WAY: f64 = 0.1;
 pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let mut draft = Draft::new(recording, cask_file);
     draft.issues.extend(judge::judge_silent(&recording.channels));
-    let Some(event) =
-        events::locate(recording, &cask_file.drop).filter(|e| is_impact(e.velocity_step_m_s, cask_file))
+    let Some(event) = events::locate(recording, one_end::least_step_m_s(cask_file, recording))
+        .filter(|e| e.velocity_step_m_s.abs() > cask_file.drop.least_impact_m_s())
     else {
         return draft.without_impact();
     };
@@ -54,14 +54,22 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let reach = last_s.map_or(farthest, |last_s| farthest.until(last_s - event.near_s - event.spread_s));
     let (mut signals, mut found) = condition::condition(recording, &event, &reach, cask_file.corrections);
     draft.issues.append(&mut found);
-    let Some(contact) = events::first_contact(&signals, &event) else {
+    let Some(mut contact) = events::first_contact(&signals, &event) else {
         return draft.without_impact();
     };
+    if events::transverse(&signals, data::End::First).is_none() {
+        // R shows it a bending wave's way later.
+        contact.1 = contact.1.hypot(cask_file.cask.length_m / data::BENDING_WAVE_M_S / 12.0_f64.sqrt());
+    }
     draft.events.first_contact_s = Some(contact.0);
     draft.u_events_s[0] = contact.1;
     let u_skew_s = align(&mut draft, &mut signals, contact.0);
     let recorded = signals.len();
-    let stand_in = one_end::stand_in(cask_file, &mut signals, contact.0);
+    let mut stand_in = one_end::stand_in(cask_file, &mut signals, contact.0);
+    if let Some(stand_in) = &mut stand_in {
+        let turned_rad = settle::turned_rad(cask_file, &signals, contact.0).unwrap_or(0.0);
+        stand_in.turn(cask_file, &mut signals, turned_rad);
+    }
     let falls: Vec<_> = free_falls(recording, cask_file, contact.0).collect();
     for (channel, fall) in &falls {
         draft.rests.push(RestLevel {
@@ -170,11 +178,6 @@ fn touch_effect_m_s(cask_file: &CaskFile, k: f64) -> f64 {
     speed_m_s(data::GRAZE_SHARE).zip(speed_m_s(0.0)).map_or(0.0, |(grazed, struck)| (grazed - struck).abs())
 }
 
-/// A velocity change of L below a tenth of the fall's is no first impact.
-fn is_impact(velocity_step_m_s: f64, cask_file: &CaskFile) -> bool {
-    velocity_step_m_s.abs() > 0.1 * cask_file.drop.impact_velocity_m_s
-}
-
 /// Shifts channels whose clock is apart back, if that correction may be made; returns what a delay that a bending wave explains as well
 /// leaves open of R's times, as a standard uncertainty, s.
 fn align(draft: &mut Draft, signals: &mut [Signal], contact_s: f64) -> f64 {
@@ -230,15 +233,13 @@ fn flight_and_motion(
     (u_skew_s, stand_in): (f64, Option<&StandIn>),
 ) -> Option<Reconstructed> {
     let cask_file = draft.cask_file;
-    let is_missing = |end: &data::End| match stand_in {
-        Some(_) => *end == data::End::Second,
-        None => events::transverse(signals, *end).is_none(),
-    };
-    if let Some(end) = [data::End::First, data::End::Second].into_iter().find(is_missing) {
+    let is_missing = |end: &data::End| events::transverse(signals, *end).is_none();
+    let missing = [data::End::First, data::End::Second].into_iter().find(is_missing);
+    if let Some(end) = stand_in.map(|s| s.end).or(missing) {
         draft.issues.push(judge::judge_missing_end(end, stand_in.is_some()));
         stand_in?;
     }
-    let mut flight = find_flight(draft, signals, contact, stand_in.is_none())?;
+    let mut flight = find_flight(draft, signals, contact, stand_in)?;
     if let Some(stand_in) = stand_in {
         if !flight.is_told_apart() {
             draft.flight_is_too_short();
@@ -270,6 +271,7 @@ fn flight_and_motion(
         // An end that the mass properties stand in for cannot test them.
         inertia_m2: (cask.is_body && stand_in.is_none()).then_some(cask.inertia_kg_m2 / cask.mass_kg),
         rests: &draft.rests,
+        stood_in: stand_in.and_then(|s| s.stood_in(signals)),
         fall_s: draft
             .events
             .release_s
@@ -287,17 +289,23 @@ fn find_flight(
     draft: &mut Draft,
     signals: &[Signal],
     contact: (f64, f64),
-    has_both_ends: bool,
+    stand_in: Option<&StandIn>,
 ) -> Option<FlightFit> {
     let settled = settle::settle(draft.cask_file, signals, contact.0)?;
-    let struck = settled.struck.filter(|_| has_both_ends);
+    let is_made = |end| stand_in.is_some_and(|s| s.end == end);
+    let shows_slap_down = !is_made(data::End::Second);
+    let struck = settled.struck.filter(|_| shows_slap_down);
     let left_s = settled.left.0;
-    let is_cut = |s: &&Signal| [&s.clipped, &s.gaps].iter().any(|spans| s.touches(spans, contact.0, left_s));
-    // A pulse without its peak or a part of its flanks ends where it fades out of less: a tenth of its length.
+    let is_cut = |s: &Signal| [&s.clipped, &s.gaps].iter().any(|spans| s.touches(spans, contact.0, left_s));
     let struck_end = events::transverse(signals, data::End::First);
-    let u_cut_s = struck_end.filter(is_cut).map_or(0.0, |_| CUT_PULSE * (left_s - contact.0));
-    let left = (left_s, settled.left.1.hypot(u_cut_s));
-    draft.take_times(contact, left, struck, settle::record_end_s(signals));
+    // A pulse without its peak or a part of its flanks ends where it fades out of less: a tenth of its length.
+    let is_uncertain = is_made(data::End::First) || struck_end.is_some_and(is_cut);
+    let u_pulse_s = if is_uncertain { UNCERTAIN_PULSE * (left_s - contact.0) } else { 0.0 };
+    let left = (left_s, settled.left.1.hypot(u_pulse_s));
+    draft.take_times(contact, left, struck);
+    if struck.is_none() && shows_slap_down {
+        draft.no_slap_down(settle::record_end_s(signals) - left_s);
+    }
     if settled.flight.is_none() {
         draft.flight_is_too_short();
     }

@@ -1,6 +1,6 @@
 //! Signals and first contact to separation, slap-down and the flight between them, each found with the others' help.
 
-use crate::data::{CaskFile, End, Events, FlightFit, Signal};
+use crate::data::{CaskFile, End, Events, FlightFit, Motion, Signal};
 use crate::{assemble, events, judge, motion};
 
 /// Separation and slap-down are found again on signals free of ringing this often; the second round moves them by less than a sample.
@@ -101,9 +101,30 @@ pub(crate) fn settle(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Opt
     Some(settled)
 }
 
+/// What the cask turns by from first contact to separation, rad.
+pub(crate) fn turned_rad(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Option<f64> {
+    let settled = settle(file, signals, contact_s)?;
+    let moved = settled.moved(file, signals, contact_s)?;
+    Some(file.drop.angle_rad - moved.separation.angle_rad)
+}
+
 /// Where the shortest record ends, s.
 pub(crate) fn record_end_s(signals: &[Signal]) -> f64 {
     signals.iter().map(Signal::end_s).fold(f64::INFINITY, f64::min)
+}
+
+impl Settled {
+    /// The motion that the signals, the times and the flight give where L sticks.
+    fn moved(&self, file: &CaskFile, signals: &[Signal], contact_s: f64) -> Option<Motion> {
+        let times = Events {
+            first_contact_s: Some(contact_s),
+            separation_s: Some(self.left.0),
+            slap_down_s: self.struck.map(|s| s.0),
+            ..Events::default()
+        };
+        let integrated = motion::Integrated::over(signals, &times);
+        motion::outcome(&integrated, self.flight.as_ref()?, &times, &assemble::sticking(file))
+    }
 }
 
 impl Search<'_> {
@@ -180,14 +201,7 @@ impl Search<'_> {
         } else {
             EXPLAINED_M_S.min(EXPLAINED_SHORT * self.file.drop.impact_velocity_m_s)
         };
-        let times = Events {
-            first_contact_s: Some(self.contact_s),
-            separation_s: Some(settled.left.0),
-            slap_down_s: settled.struck.map(|s| s.0),
-            ..Events::default()
-        };
-        let integrated = motion::Integrated::over(self.signals, &times);
-        let moved = motion::outcome(&integrated, flight, &times, &assemble::sticking(self.file));
+        let moved = settled.moved(self.file, self.signals, self.contact_s);
         let cask = &self.file.cask;
         let turning = moved.as_ref().filter(|_| cask.is_body).map_or(0.0, |m| {
             let by_impulse_rad_s = m.angular_impulse_m2_s * cask.mass_kg / cask.inertia_kg_m2;

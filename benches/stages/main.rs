@@ -49,7 +49,7 @@ impl Middle {
         let recording = read(&folder);
         let cask_file = folder.cask_file.clone();
         let analysis = dropcheck::analyze(&recording, &cask_file);
-        let event = events::locate(&recording, &cask_file.drop).expect("an impact");
+        let event = events::locate(&recording, cask_file.drop.transverse_velocity_m_s()).expect("an impact");
         let (signals, _) = condition::condition(
             &recording,
             &event,
@@ -94,7 +94,9 @@ fn read_format<const N: usize>(bencher: Bencher, kind: Kind) {
 #[divan::bench(args = SIZES)]
 fn locate(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
-    bencher.counter(items(samples)).bench(|| events::locate(&m.recording, &m.cask_file.drop));
+    bencher
+        .counter(items(samples))
+        .bench(|| events::locate(&m.recording, m.cask_file.drop.transverse_velocity_m_s()));
 }
 
 #[divan::bench(args = SIZES)]

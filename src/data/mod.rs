@@ -29,7 +29,8 @@ pub use analysis::{
 };
 pub use campaign::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber, Scored};
 pub use cask::{
-    Axis, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice, GRAZE_SHARE, Source, Unit,
+    Axis, BENDING_WAVE_M_S, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice,
+    GRAZE_SHARE, Source, Unit,
 };
 pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, MotionCurve};
@@ -38,7 +39,7 @@ pub use flight::{FlightFit, FlightModelScore, Mode, Plateau};
 pub use issue::{Issue, IssueCode, Severity};
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};
-pub use motion::{AxialClosure, ChannelReading, Motion, MotionState, RivalLaw, Setup};
+pub use motion::{AxialClosure, ChannelReading, Motion, MotionState, RivalLaw, Setup, StoodIn};
 pub use onset::Onset;
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, Quantities};

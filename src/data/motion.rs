@@ -61,6 +61,17 @@ pub struct RivalLaw {
     pub way: f64,
 }
 
+/// A channel that stands in for an end without one: another one times a number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StoodIn {
+    /// Its place among the signals.
+    pub channel: usize,
+    /// The place of the other one, whose errors it has.
+    pub by: usize,
+    /// The number.
+    pub share: f64,
+}
+
 /// The motion between first contact and slap-down.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {

@@ -1,7 +1,7 @@
 //! A whole channel to the stretch in which the first impact lies, in one pass.
 
 use super::block_means_m_s2;
-use crate::data::{Axis, Channel, CoarseEvent, Drop, End, Recording};
+use crate::data::{Axis, Channel, CoarseEvent, End, Recording};
 use crate::numerics::{reduce, robust};
 use rayon::prelude::*;
 
@@ -16,25 +16,25 @@ const BLOCKS: usize = 40;
 /// At the first impact L changes by (1 + k) v0 cos φ, later by less; spikes and the release change it by far less.
 const SHARE: f64 = 0.4;
 
-/// A change of this share of v0 cos φ is the first impact too, whatever comes later: L loses all of it.
-const SHARE_OF_FALL: f64 = 0.5;
+/// A change of this share of what the first impact makes at the least is that impact too, whatever comes later.
+const SHARE_OF_LEAST: f64 = 0.5;
 
 /// What changes the velocity by this share of the largest change may be the slap-down that is sought, which is the first to reach half …
 const LAST_SHARE: f64 = 0.3;
 /// … and so may what reaches this share of v0: no slap-down changes it by less than 0.08.
 const LAST_SHARE_OF_FALL: f64 = 0.06;
 
-/// Finds the first impact on the transverse channel of the first end (or, without one, on any transverse channel).
+/// Finds the first impact on the transverse channel of the first end (or, without one, on any transverse channel), whose velocity it
+/// changes by `least_step_m_s` at the least: v0 cos φ where L is struck.
 ///
 /// `None` where no channel moves at all.
 #[must_use]
-pub fn locate(recording: &Recording, drop: &Drop) -> Option<CoarseEvent> {
+pub fn locate(recording: &Recording, least_step_m_s: f64) -> Option<CoarseEvent> {
     let transverse = || recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
     let channel = transverse().find(|c| c.end == End::First).or_else(|| transverse().next())?;
     let (block_s, changes) = velocity_changes(channel)?;
     let largest = reduce::peak(&changes);
-    let lost_m_s = SHARE_OF_FALL * drop.impact_velocity_m_s * drop.angle_rad.cos().max(0.1);
-    let least_m_s = (SHARE * largest).min(lost_m_s);
+    let least_m_s = (SHARE * largest).min(SHARE_OF_LEAST * least_step_m_s);
     let crossing = changes.iter().position(|c| c.abs() >= least_m_s && largest > 0.0)?;
     #[allow(clippy::cast_precision_loss, reason = "block counts stay below 2^52")]
     let near_s = channel.start_s + (crossing as f64 + 1.0) * block_s - WIDTH_S;
@@ -145,15 +145,9 @@ mod tests {
             start_unix_ns: None,
             issues: vec![],
         };
-        let drop = Drop {
-            height_m: 9.0,
-            angle_rad: 0.26,
-            impact_velocity_m_s: 13.29,
-            impact_velocity_given: false,
-            gravity_m_s2: 9.81,
-        };
-        let event = locate(&recording, &drop).expect("an impact");
-        let last_s = last_change_s(&recording, &event, (drop.impact_velocity_m_s, 1.0)).expect("a change");
+        let v0_m_s = 13.29;
+        let event = locate(&recording, v0_m_s).expect("an impact");
+        let last_s = last_change_s(&recording, &event, (v0_m_s, 1.0)).expect("a change");
         // The slap-down of 1.1 m/s lies within the width that ends there; 0.4 m/s is none, and 1.9 s lies beyond what is asked for.
         assert!((1.005..1.0051 + WIDTH_S).contains(&last_s), "{last_s}");
     }

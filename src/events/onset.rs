@@ -21,12 +21,25 @@ const SHARE: f64 = 0.5;
 /// Longest first contact looked for, s: pulses of shock-absorbed casks reach 20 ms.
 const LONGEST_CONTACT_S: f64 = 0.05;
 
-/// First contact of L and its standard uncertainty, s.
+/// First contact of L and its standard uncertainty, s; on R alone when that first stirs.
 #[must_use]
 pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<(f64, f64)> {
     let (signal, stretch, sign) = stretch(signals, coarse)?;
-    // Before first contact nothing rings: the first rise is the one.
-    onset(signal, stretch, sign, Rise::First)
+    match signal.end {
+        // Before first contact nothing rings: the first rise is the one.
+        End::First => onset(signal, stretch, sign, Rise::First),
+        End::Second => first_stir(signal, stretch),
+    }
+}
+
+/// When a signal first leaves its noise, to either side, and its standard uncertainty, s: the far end answers by bending first, which may go
+/// against the rigid body's turning.
+fn first_stir(signal: &Signal, stretch: std::ops::Range<usize>) -> Option<(f64, f64)> {
+    let from = stretch.start;
+    let force = signal.force_m_s2.get(stretch)?;
+    let foot = (FOOT * reduce::peak(force)).max(NOISE_FACTOR * signal.noise_m_s2);
+    let first = force.iter().position(|f| f.abs() >= foot)?;
+    Some((signal.time_s(from + first), 0.5 / signal.sample_rate_hz))
 }
 
 /// The signal on which first contact is sought, the samples among which it lies, and the sign of its pulse.
@@ -34,7 +47,7 @@ pub(super) fn stretch<'a>(
     signals: &'a [Signal],
     coarse: &CoarseEvent,
 ) -> Option<(&'a Signal, std::ops::Range<usize>, f64)> {
-    let signal = transverse(signals, End::First).or_else(|| signals.first())?;
+    let signal = transverse(signals, End::First).or_else(|| transverse(signals, End::Second))?;
     let from = signal.index_from(coarse.near_s - 0.2 * coarse.spread_s);
     let to = signal.index_from(coarse.near_s + 1.2 * coarse.spread_s);
     Some((signal, from..to, coarse.velocity_step_m_s.signum()))

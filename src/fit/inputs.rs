@@ -1,7 +1,7 @@
 //! The uncertain inputs of the reconstruction, each with its standard uncertainty, and the reconstruction's inputs with them moved.
 
 use super::Measured;
-use crate::data::{AxialClosure, Axis, Events, FlightFit, MOST_LOST_M_S, Motion, Setup, Signal};
+use crate::data::{AxialClosure, Axis, Events, FlightFit, MOST_LOST_M_S, Motion, Setup, Signal, StoodIn};
 use crate::numerics::noise::integral_uncertainty_by;
 
 /// What a mode leaves in the velocity step for each period that the flight shows of it, as a share of its amplitude: a window of one period
@@ -26,6 +26,8 @@ pub(super) struct Inputs {
     pub inertia_m2: Option<f64>,
     /// Part of the way from the stated contact law to the other one.
     pub law_share: f64,
+    /// The channel that has another one's errors.
+    stood_in: Option<StoodIn>,
 }
 
 /// One input that is uncertain.
@@ -62,6 +64,7 @@ impl Inputs {
             crosses: vec![0.0; channels],
             inertia_m2: measured.inertia_m2,
             law_share: 0.0,
+            stood_in: measured.stood_in,
         }
     }
 
@@ -77,9 +80,13 @@ impl Inputs {
     }
 
     fn apply(&mut self, base: &Self, change: Change, by: f64) {
+        let stood_in = self.stood_in;
         let mut step = |channel: usize, add_m_s: f64| {
-            if let Some(plateau) = self.flight.plateaus.get_mut(channel) {
-                plateau.velocity_step_m_s += add_m_s;
+            let other = stood_in.filter(|s| s.by == channel).map(|s| (s.channel, s.share * add_m_s));
+            for (channel, add_m_s) in [Some((channel, add_m_s)), other].into_iter().flatten() {
+                if let Some(plateau) = self.flight.plateaus.get_mut(channel) {
+                    plateau.velocity_step_m_s += add_m_s;
+                }
             }
         };
         match change {
@@ -163,8 +170,14 @@ fn of_channel(all: &mut Vec<Input>, measured: &Measured, motion: &Motion, channe
     let mut add = |name: &str, size: String, change: Change| {
         all.push(Input { name: format!("{name} of {}", signal.name), size, change });
     };
-    let u_m_s = u_step_m_s(measured, channel);
+    let is_stood_in = measured.stood_in.is_some_and(|s| s.channel == channel);
+    let u_m_s =
+        if is_stood_in { measured.flight.plateaus[channel].u_m_s } else { u_step_m_s(measured, channel) };
     add("velocity step", format!("{u_m_s:.3} m/s"), Change::Step { channel, add_m_s: u_m_s });
+    if is_stood_in {
+        // Its sensor's errors are those of the channel that it is made of.
+        return;
+    }
     let share = known.calibration / 2.0;
     add("calibration", percent(share), Change::Scale { channel, share });
     let (transverse_m_s, axial_m_s) = steps_of_body_m_s(measured.setup, motion);

@@ -5,7 +5,7 @@ mod inputs;
 mod ladder;
 mod propagate;
 
-use crate::data::{Events, FlightFit, Motion, RestLevel, RivalLaw, Setup, Signal, Tolerances};
+use crate::data::{Events, FlightFit, Motion, RestLevel, RivalLaw, Setup, Signal, StoodIn, Tolerances};
 
 pub use ladder::ladder;
 pub use propagate::{quantities, spread_by_draws};
@@ -39,4 +39,6 @@ pub struct Measured<'a> {
     pub rests: &'a [RestLevel],
     /// Free fall from release to the first touch, s, where the record shows it.
     pub fall_s: Option<f64>,
+    /// The channel that stands in for an end without one.
+    pub stood_in: Option<StoodIn>,
 }

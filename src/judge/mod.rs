@@ -53,10 +53,14 @@ pub fn weigh_by_distance(issues: &mut [Issue], events: &Events) {
 /// No transverse channel on an end; `is_stood_in_for` where the mass properties say what it would have read.
 #[must_use]
 pub fn judge_missing_end(end: End, is_stood_in_for: bool) -> Issue {
-    let effect = if is_stood_in_for {
-        "rotation and k rest on the inertia and centre of gravity of the cask file, and nothing shows the slap-down; record both ends"
-    } else {
-        "rotation, k and slap-down need one on each end"
+    let effect = match (is_stood_in_for, end) {
+        (true, End::First) => {
+            "rotation, k and speed rest on the inertia and centre of gravity of the cask file, and first contact is seen a bending wave late; record both ends"
+        }
+        (true, End::Second) => {
+            "rotation and k rest on the inertia and centre of gravity of the cask file, and nothing shows the slap-down; record both ends"
+        }
+        (false, _) => "rotation, k and slap-down need one on each end",
     };
     let message = format!("no transverse channel on the {end} end: {effect}");
     Issue::new(IssueCode::MissingChannel, Severity::Error, message)

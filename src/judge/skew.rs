@@ -1,9 +1,7 @@
 //! The delays between the channels' answers to the first impact to what speaks against their clocks.
 
-use crate::data::{Cask, Issue, IssueCode, Onset, Severity, Signal};
+use crate::data::{BENDING_WAVE_M_S, Cask, Issue, IssueCode, Onset, Severity, Signal};
 
-/// The slowest that bending runs along a cask, m/s: a 5 ms pulse in one that bends at 50 Hz takes its length in 5 ms.
-const WAVE_M_S: f64 = 1000.0;
 /// Delays within this many samples beside their uncertainty are none: first contact itself lies between two samples.
 const SAMPLES: f64 = 1.5;
 /// A late answer that a wave could explain is worth a note beyond this, s.
@@ -23,7 +21,7 @@ pub fn judge_skew(onsets: &[Onset], signals: &[Signal], cask: &Cask, shifted: bo
 fn skew(onset: &Onset, signals: &[Signal], cask: &Cask) -> Option<Issue> {
     let rate_hz = signals.iter().map(|s| s.sample_rate_hz).fold(f64::INFINITY, f64::min);
     let slack_s = 2.0 * onset.u_s + SAMPLES / rate_hz;
-    let wave_s = cask.length_m / WAVE_M_S;
+    let wave_s = cask.length_m / BENDING_WAVE_M_S;
     let size = format!("{:.2} ± {:.2} ms", 1e3 * onset.delay_s.abs(), 2e3 * onset.u_s);
     let name = &onset.channel;
     let (severity, message) = if onset.delay_s < -slack_s {

@@ -2,6 +2,7 @@
 
 use crate::run::{Answer, analyze, fixture, number, read_json};
 use serde_json::Value;
+use std::path::{Path, PathBuf};
 
 /// Largest error of speed of an undamaged recording, relative: what a person may rely on, by the aims of this project.
 /// The simulated scenes leave 0.4 % with the ringing fitted; the rest of the 1 % is for the pulse's own length.
@@ -164,15 +165,21 @@ fn every_fixture_is_tested() {
     }
 }
 
+/// The fixture's cask file with one of its two channels, in a folder.
+fn with_channel(stem: &str, which: usize, folder: &Path) -> PathBuf {
+    let cask = folder.join("one-end.toml");
+    let whole = std::fs::read_to_string(fixture(&format!("{stem}.toml"))).expect("a cask file");
+    let parts: Vec<&str> = whole.split("[[channel]]").collect();
+    assert_eq!(parts.len(), 3, "two channels");
+    std::fs::write(&cask, [parts[0], parts[1 + which]].join("[[channel]]")).expect("a cask file");
+    cask
+}
+
 #[test]
 fn one_end_alone_gives_the_first_impact_and_its_restitution() {
     let truth = read_json(&fixture("anf18-json.truth.json"));
     let folder = tempfile::tempdir().expect("a folder");
-    let cask = folder.path().join("one-end.toml");
-    let whole = std::fs::read_to_string(fixture("anf18-json.toml")).expect("a cask file");
-    let second = whole.rfind("[[channel]]").expect("two channels");
-    std::fs::write(&cask, &whole[..second]).expect("a cask file");
-    let answer = analyze(&fixture("anf18-json.mcap"), &cask);
+    let answer = analyze(&fixture("anf18-json.mcap"), &with_channel("anf18-json", 0, folder.path()));
     let result = answer.json();
     let of = |key: &str| number(&truth, &format!("/{key}")).expect(key);
     near(&result, "/k", of("k"), RESTITUTION);
@@ -180,6 +187,30 @@ fn one_end_alone_gives_the_first_impact_and_its_restitution() {
     // A tenth of the contact: the separation is where the force fades out.
     near(&result, "/first_impact/duration", of("contact_s"), 0.1 * of("contact_s"));
     assert!(result["slap_down"]["speed"].is_null() && result["slap_down"]["time"].is_null());
+    assert_eq!(codes(&result), ["missing_channel"]);
+    assert_eq!((result["verdict"].as_str(), answer.status), (Some("fail"), 1));
+}
+
+#[test]
+fn the_second_end_alone_gives_the_slap_down_too() {
+    let truth = read_json(&fixture("anf18-json.truth.json"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let answer = analyze(&fixture("anf18-json.mcap"), &with_channel("anf18-json", 1, folder.path()));
+    let result = answer.json();
+    let held = [
+        ("/k", "k", 0.06),
+        ("/slap_down/speed", "speed", 0.3),
+        ("/slap_down/angle", "angle_hit_deg", 3.0),
+        ("/first_impact/angular_velocity", "omega_rebound", 0.2),
+        ("/first_impact/duration", "contact_s", 4e-3),
+    ];
+    for (pointer, key, widest) in held {
+        let stated = &result.pointer(pointer).expect(pointer);
+        let (value, u95) =
+            (number(stated, "/value").expect("a value"), number(stated, "/u95").expect("an interval"));
+        let off = (value - number(&truth, &format!("/{key}")).expect(key)).abs();
+        assert!(off <= u95 && u95 <= widest, "{key}: {value} ± {u95}, off by {off}");
+    }
     assert_eq!(codes(&result), ["missing_channel"]);
     assert_eq!((result["verdict"].as_str(), answer.status), (Some("fail"), 1));
 }

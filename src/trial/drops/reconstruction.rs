@@ -136,6 +136,7 @@ fn times(drop: &Prepared, request: &TrialRequest) -> Option<Vec<Timing>> {
         inertia_m2: Some(file.cask.inertia_kg_m2 / file.cask.mass_kg),
         rests: &[],
         fall_s: None,
+        stood_in: None,
     };
     let mut work: Vec<Work> = vec![
         Box::new(|| {
