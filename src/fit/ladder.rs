@@ -46,9 +46,8 @@ pub fn ladder(
     }
     steps.push(by_flight(measured, flight, &closures));
     if let Some(fit) = &joint {
-        let tested = if has_lost_step(measured) { UNTESTED } else { 1.0 };
-        let widened = widened(&closures).max(tested);
-        let step = |quantities| by_joint(quantities, fit.chi_square, closures.len(), widened);
+        let (widened, why) = widened(&closures, has_lost_step(measured));
+        let step = |quantities| by_joint(quantities, fit.chi_square, closures.len(), (widened, why));
         steps.extend(model.propagate(fit, widened).map(step));
     }
     let taken = taken(&steps);
@@ -130,16 +129,28 @@ fn by_flight(measured: &Measured, quantities: Quantities, closures: &[Closure]) 
     step(ReconstructionRung::Flight, quantities, consistent, residual)
 }
 
-/// How much wider the intervals of a joint fit are for data that contradict one another by more than chance (Birge 1932)   (31b)
-fn widened(closures: &[Closure]) -> f64 {
-    closures.iter().map(|c| c.miss_in_u.abs() / MET_U).fold(1.0, f64::max)
+/// How much wider the intervals of a joint fit are, and why: data that contradict one another by more than chance (Birge 1932)   (31b), or
+/// closures that are spent on a lost step.
+fn widened(closures: &[Closure], has_lost_step: bool) -> (f64, &'static str) {
+    let by_misses = closures.iter().map(|c| c.miss_in_u.abs() / MET_U).fold(1.0, f64::max);
+    if has_lost_step && by_misses < UNTESTED {
+        (UNTESTED, "a closure is spent on a lost velocity step")
+    } else {
+        (by_misses, "a closure is missed by more than chance")
+    }
 }
 
 /// (d) Everything fitted within its tolerance.
-fn by_joint(quantities: Quantities, chi_square: f64, degrees: usize, widened: f64) -> Step {
-    let mut residual = format!("χ² = {chi_square:.1} for {degrees} observables");
+fn by_joint(
+    quantities: Quantities,
+    chi_square: f64,
+    degrees: usize,
+    (widened, why): (f64, &'static str),
+) -> Step {
+    let of = if degrees == 1 { "observable" } else { "observables" };
+    let mut residual = format!("χ² = {chi_square:.1} for {degrees} {of}");
     if widened > 1.0 {
-        residual = format!("{residual}, intervals widened {widened:.1} times");
+        residual = format!("{residual}, intervals widened {widened:.1} times: {why}");
     }
     step(ReconstructionRung::Joint, quantities, true, residual)
 }

@@ -122,7 +122,11 @@ pub(super) fn verdict_sentence(result: &DropResult) -> String {
         Verdict::Review => format!("{warnings} warnings need a person's look."),
         Verdict::Fail if errors == 0 => "A quantity could not be had from this recording.".into(),
         Verdict::Fail if result.k.is_some() && result.slap_down.speed.is_some() => {
-            "A velocity step was lost; the rest of the motion tells the numbers.".into()
+            if result.quality.iter().any(|i| i.code == IssueCode::MissingChannel) {
+                "One end has no channel; the mass properties stand in for it.".into()
+            } else {
+                "A velocity step was lost; the rest of the motion tells the numbers.".into()
+            }
         }
         Verdict::Fail if errors == 1 => {
             "A quantity could not be had from this recording: one error says why.".into()
