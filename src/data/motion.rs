@@ -91,7 +91,7 @@ pub struct Motion {
     pub second_end_m_s: Option<(f64, f64)>,
     /// Height of R's corner then, m: 0 but for errors of angle, velocity and time.
     pub second_end_height_m: Option<f64>,
-    /// Lowest height of L's corner between separation and slap-down, m.
+    /// Lowest height of L's corner between separation and slap-down over where it left, m; infinite where no curve was asked for.
     pub lowest_first_end_m: f64,
     /// The motion over time.
     pub curve: MotionCurve,

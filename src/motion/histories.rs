@@ -5,8 +5,8 @@ use crate::data::{Axis, FlightFit, Mode, Signal};
 use crate::numerics::damped_modes::Drive;
 use nalgebra::Complex;
 
-/// Steps over the contact in which the ringing is followed: a fortieth of a period of 400 Hz in 20 ms.
-const STEPS: u16 = 320;
+/// Steps over the contact in which the ringing is followed: a twentieth of a period of 400 Hz in 20 ms.
+const STEPS: u16 = 160;
 /// Rounds in which the shape of the force is freed of ringing: the second moves the ringing by a percent of itself.
 const ROUNDS: usize = 2;
 /// A mode that answered more strongly by this factor while it was driven than as L left is not known well enough to follow back.

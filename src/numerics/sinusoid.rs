@@ -1,5 +1,6 @@
 //! Samples to the sinusoid of a known frequency in them, by least squares.
 
+use nalgebra::Complex;
 use std::f64::consts::TAU;
 
 /// a cos ωt + b sin ωt, t counted from the middle of the samples it was fitted to.
@@ -42,18 +43,19 @@ pub fn fit(samples: &[f64], sample_rate_hz: f64, frequency_hz: f64) -> Option<Si
     let middle = (n - 1) as f64 / 2.0;
     let mut matrix = nalgebra::Matrix4::zeros();
     let mut right = nalgebra::Vector4::zeros();
-    let row = |i: usize| {
-        let t = (i as f64 - middle) / sample_rate_hz;
-        let (sin, cos) = (TAU * frequency_hz * t).sin_cos();
-        nalgebra::Vector4::new(cos, sin, 1.0, t / length_s)
-    };
+    let step = TAU * frequency_hz / sample_rate_hz;
+    // Turned on from sample to sample: a thousand steps cost a thousandth of a billionth of the phase.
+    let turn = Complex::cis(step);
+    let mut phase = Complex::cis(-step * middle);
     let mut square = 0.0;
     for (i, x) in samples.iter().enumerate() {
-        let r = row(i);
-        matrix += r * r.transpose();
-        right += r * *x;
+        let row = nalgebra::Vector4::new(phase.re, phase.im, 1.0, (i as f64 - middle) / n as f64);
+        matrix.syger(1.0, &row, &row, 1.0);
+        right += row * *x;
         square += x * x;
+        phase *= turn;
     }
+    matrix.fill_upper_triangle_with_lower_triangle();
     let inverse = matrix.try_inverse()?;
     let found = inverse * right;
     let left = (square - found.dot(&right)).max(0.0) / (n - 4) as f64;
