@@ -27,6 +27,8 @@ fn at(path: &Path) -> impl FnOnce(io::Error) -> Stopped + '_ {
 /// A folder that holds plain files only is exchanged for a complete one in a single step of the file system. Where that
 /// cannot be, complete files are moved one by one; a run that is stopped between two of them is made good by the next.
 pub fn replace_set(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
+    // "." has no parent by its name, and would wait for its own lock.
+    let folder = &std::path::absolute(folder).map_err(at(folder))?;
     let parent = parent_of(folder);
     fs::create_dir_all(parent).map_err(at(parent))?;
     let turn = Turn::take(parent);
