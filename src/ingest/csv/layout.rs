@@ -346,7 +346,9 @@ fn header_cells(line: &str, delimiter: u8) -> Vec<String> {
 
 fn is_unit(cell: &str) -> bool {
     let bare = cell.trim_matches(['[', ']', '(', ')']).to_lowercase();
-    cell.is_empty() || bare.len() < cell.len() || UNITS.contains(&bare.as_str())
+    // "A1 [g]" is a name with its unit.
+    let is_bracketed = cell.starts_with(['[', '(']) && cell.ends_with([']', ')']);
+    cell.is_empty() || is_bracketed || UNITS.contains(&bare.as_str())
 }
 
 fn columns(header: Option<&Header>, judged: &Judged) -> Vec<Column> {
@@ -377,7 +379,9 @@ fn name_and_unit(header: &str) -> (&str, Option<&str>) {
             && let Some((name, unit)) = rest.rsplit_once(open)
             && !name.trim().is_empty()
         {
-            return (name.trim(), Some(unit.trim()));
+            // "time[0]" counts the columns.
+            let is_index = unit.bytes().all(|b| b.is_ascii_digit());
+            return (name.trim(), (!is_index).then(|| unit.trim()));
         }
     }
     match header.rsplit_once(" / ") {

@@ -110,6 +110,12 @@ fn units_come_from_the_header_or_the_row_below() {
     assert_eq!(recording.channels[1].unit, None);
     let recording = read_bytes(b"t;A1;A2\n[s];[g];[mV]\n0;1;2\n1;1;2\n", &cask_file(&["A1", "A2"])).unwrap();
     assert_eq!(recording.channels[1].unit.as_deref(), Some("mV"));
+    // A header of names with units is none of units, whatever stands above it.
+    let text = "Messung;Fall;12\nZeit [s];A1 [g];A2 (mV)\n0;1;2\n1;1;2\n";
+    let recording = read_bytes(text.as_bytes(), &cask_file(&["A1", "A2"])).unwrap();
+    assert_eq!(recording.channels[1].unit.as_deref(), Some("mV"));
+    let recording = read_bytes(b"time[0];A1[1]\n0;1\n1;1\n", &cask_file(&["A1[1]"])).unwrap();
+    assert_eq!(recording.channels[0].unit, None, "a number counts columns");
 }
 
 #[test]
