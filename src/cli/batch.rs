@@ -116,7 +116,8 @@ fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
             .filter_map(|entry| entry.ok().map(|e| e.path()))
             .filter(|p| {
                 let ending = p.extension().map(|e| e.to_string_lossy().to_lowercase());
-                p.is_file() && ending.is_some_and(|e| RECORDING_ENDINGS.contains(&e.as_str()))
+                let is_summary = p.file_name().is_some_and(|name| SUMMARY.iter().any(|own| name == *own));
+                !is_summary && p.is_file() && ending.is_some_and(|e| RECORDING_ENDINGS.contains(&e.as_str()))
             })
             .collect();
         found.sort();

@@ -22,6 +22,7 @@ mod study;
 mod synthetic;
 mod tolerances;
 mod trial;
+mod unit;
 
 pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
@@ -59,3 +60,4 @@ pub use tolerances::{Corrections, Tolerances};
 pub use trial::{
     Trial, TrialJob, TrialLine, TrialMachine, TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest,
 };
+pub use unit::{STANDARD_GRAVITY_M_S2, acceleration_unit_m_s2};

@@ -3,12 +3,10 @@
 use super::error::{self, IngestError};
 use super::{RawChannel, RawRecording};
 use crate::data::{
-    CaskFile, Channel, ChannelSpec, Issue, IssueCode, Recording, RecordingFormat, Severity, Unit,
+    CaskFile, Channel, ChannelSpec, Issue, IssueCode, Recording, RecordingFormat, STANDARD_GRAVITY_M_S2,
+    Severity, Unit, acceleration_unit_m_s2,
 };
 use std::path::Path;
-
-/// Standard gravity, m/s²: what "g" means in a data sheet (3rd CGPM, 1901); not the site's gravity.
-const STANDARD_GRAVITY_M_S2: f64 = 9.80665;
 
 /// The recording: times from the earliest first sample, every channel with its unit and scale.
 ///
@@ -124,7 +122,7 @@ fn scale(path: &Path, spec: &ChannelSpec, recorded: Option<&str>) -> Result<Scal
             "write `unit = \"g\"` (or \"m/s^2\", or \"V\" or \"mV\" with `sensitivity`) in this channel of the cask file",
         ));
     };
-    match acceleration_unit(text) {
+    match acceleration_unit_m_s2(text) {
         Some(m_s2) => Ok(Scale { m_s2, unit: text.to_owned(), origin: "recording", contradiction: None }),
         None if is_voltage(text) => Err(error::source(
             path,
@@ -159,61 +157,11 @@ fn declared(unit: Unit) -> (f64, &'static str) {
 /// Whether the recording's word means the unit `name`, worth `m_s2`.
 #[allow(clippy::float_cmp, reason = "both come from the same constants")]
 fn same_unit(text: &str, name: &str, m_s2: f64) -> bool {
-    text == name || (!is_voltage(name) && acceleration_unit(text) == Some(m_s2))
+    text == name || (!is_voltage(name) && acceleration_unit_m_s2(text) == Some(m_s2))
 }
 
 fn is_voltage(text: &str) -> bool {
     matches!(text.trim(), "V" | "v" | "mV" | "mv" | "volt" | "Volt" | "volts" | "Volts")
-}
-
-/// m/s² per unit, for the ways in which an acceleration's unit is written; `None` where it is none of them.
-///
-/// Case matters only where it could mislead: "Mg" would be a megagram.
-fn acceleration_unit(text: &str) -> Option<f64> {
-    let plain: String = text
-        .trim()
-        .trim_matches(|c| matches!(c, '[' | ']' | '(' | ')'))
-        .chars()
-        .filter(|c| !c.is_whitespace() && !matches!(c, '^' | '*' | '·' | '{' | '}'))
-        .map(|c| {
-            if c == '²' {
-                '2'
-            } else if matches!(c, '⁻' | '−') {
-                '-'
-            } else {
-                c
-            }
-        })
-        .collect();
-    match plain.as_str() {
-        "mg" | "mgn" | "milli-g" | "millig" => return Some(STANDARD_GRAVITY_M_S2 / 1000.0),
-        "Mg" | "MG" => return None,
-        _ => {}
-    }
-    match plain.to_lowercase().replace('¹', "1").as_str() {
-        "g" | "gn" | "g0" | "gee" | "gs" | "g's" | "g_n" | "g_0" | "gunits" | "gravity"
-        | "standardgravity" => Some(STANDARD_GRAVITY_M_S2),
-        "m/s2"
-        | "m/s/s"
-        | "ms-2"
-        | "m.s-2"
-        | "m/sec2"
-        | "m/sec/sec"
-        | "m/ss"
-        | "m/(s2)"
-        | "meterspersecondsquared"
-        | "metrespersecondsquared"
-        | "meterpersecondsquared"
-        | "metrepersecondsquared"
-        | "mps2"
-        | "m_s2"
-        | "m/s**2" => Some(1.0),
-        "mm/s2" | "mms-2" | "mm/s/s" => Some(1e-3),
-        "cm/s2" | "cms-2" | "gal" => Some(1e-2),
-        "km/s2" => Some(1e3),
-        "ft/s2" => Some(0.3048),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

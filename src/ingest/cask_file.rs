@@ -302,7 +302,13 @@ pub(super) fn drop(table: &Section, defaults: &mut Vec<String>) -> Result<Drop, 
         defaults.push("drop.gravity_m_s2".into());
     }
     let gravity_m_s2 = gravity.map_or(DEFAULT_GRAVITY_M_S2, |gravity| gravity.value);
-    let height_m = table.required_positive("height_m", "9.0")?;
+    let velocity = table.positive("impact_velocity_m_s")?;
+    let height_m = match (&velocity, table.positive("height_m")?) {
+        (_, Some(height)) => height.value,
+        // h = v0² / (2 g).
+        (Some(velocity), None) => velocity.value.powi(2) / (2.0 * gravity_m_s2),
+        (None, None) => table.required_positive("height_m", "9.0")?,
+    };
     let angle = table.required_number("angle_deg", "15.0")?;
     if !(0.0..=90.0).contains(&angle.value) {
         return Err(table.wrong(
@@ -312,7 +318,6 @@ pub(super) fn drop(table: &Section, defaults: &mut Vec<String>) -> Result<Drop, 
             "the inclination of the cask's axis above the horizontal before the drop, in degrees; the first end is the low one",
         ));
     }
-    let velocity = table.positive("impact_velocity_m_s")?;
     if velocity.is_none() {
         defaults.push("drop.impact_velocity_m_s".into());
     }

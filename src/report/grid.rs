@@ -1,9 +1,7 @@
 //! Curves on grids of their own to values at any time.
 
+pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
 use crate::data::{Curves, MotionCurve};
-
-/// Standard gravity, m/s² (3rd CGPM, 1901).
-pub(super) const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
 /// The columns of a motion curve: name with unit, values.
 pub(super) fn motion_columns(motion: &MotionCurve) -> [(&'static str, &[f64]); 7] {

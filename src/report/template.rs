@@ -1,14 +1,14 @@
 //! What a recording holds to a commented cask file to fill in.
 
 use super::text::{line, printable};
-use crate::data::{ListedChannel, Listing};
+use crate::data::{ListedChannel, Listing, acceleration_unit_m_s2};
 use std::fmt::Write;
 
 /// The mark behind every value that only the user knows.
 const FILL_IN: &str = "FILL IN";
 
-/// Units of acceleration, or of a sensor's output, that the cask file knows.
-const UNITS: [&str; 4] = ["g", "m/s^2", "V", "mV"];
+/// Units of a sensor's output that the cask file knows.
+const VOLTAGES: [&str; 2] = ["V", "mV"];
 
 /// Words in a source that make it no acceleration.
 const OTHER_WORDS: [&str; 14] = [
@@ -28,7 +28,7 @@ const OTHER_WORDS: [&str; 14] = [
     "index",
 ];
 
-/// The cask file, valid TOML as it stands; what only the user knows is marked "FILL IN".
+/// The cask file, valid TOML; what only the user knows is marked, its numbers NaN: a likely one, forgotten, would pass for a measured one.
 #[must_use]
 pub fn cask_file(listing: &Listing) -> String {
     let mut out = head(listing);
@@ -63,7 +63,9 @@ fn head(listing: &Listing) -> String {
     line(&mut out, format_args!("# Cask file for {}", printable(&listing.recording)));
     line(
         &mut out,
-        format_args!("# Lines marked \"{FILL_IN}\" hold a placeholder that only you can replace."),
+        format_args!(
+            "# Lines marked \"{FILL_IN}\" hold what only you know: nan is no number, and is refused until you replace it."
+        ),
     );
     line(
         &mut out,
@@ -74,16 +76,16 @@ fn head(listing: &Listing) -> String {
         format_args!(
             r#"[cask]
 name = "CASK"               # {FILL_IN}: the cask's name
-mass_kg = 1000.0            # {FILL_IN}
-length_m = 5.0              # {FILL_IN}: along the axis, between the two ends that strike
+mass_kg = nan               # {FILL_IN}
+length_m = nan              # {FILL_IN}: along the axis, between the two ends that strike
 # height_m = 0.8            # cross-section in the plane of the drop; left out: a thin rod
 # width_m = 0.8             # across that plane, reported only
 # cog_m = 2.5               # centre of gravity from the first end; left out: length_m / 2
 # inertia_kg_m2 = 2100.0    # about the centre of gravity; left out: m (l² + h²) / 12
 
 [drop]
-height_m = 9.0              # {FILL_IN}: free-fall height of the lowest point
-angle_deg = 15.0            # {FILL_IN}: inclination of the axis above the horizontal
+height_m = nan              # {FILL_IN}: free-fall height of the lowest point
+angle_deg = nan             # {FILL_IN}: inclination of the axis above the horizontal
 # impact_velocity_m_s = 13.3  # overrides √(2 g h)
 # gravity_m_s2 = 9.81       # this is the default
 
@@ -131,7 +133,7 @@ angle_deg = 15.0            # {FILL_IN}: inclination of the axis above the horiz
 fn channel(out: &mut String, index: usize, guessed_first: bool, listed: Option<&&ListedChannel>) {
     let source = listed.map_or("/topic.field", |c| c.source.as_str());
     let first = names_end(source).unwrap_or(guessed_first);
-    let (end, position) = if first { ("first", "0.0") } else { ("second", "5.0") };
+    let end = if first { "first" } else { "second" };
     let axial = source.rsplit('.').next() == Some("x") && source.contains("acceleration");
     let axis = if axial { "axial" } else { "transverse" };
     out.push_str("\n[[channel]]\n");
@@ -145,10 +147,7 @@ fn channel(out: &mut String, index: usize, guessed_first: bool, listed: Option<&
         if listed.is_none() { format!("   # {FILL_IN}: see dropcheck inspect") } else { String::new() };
     line(out, format_args!("source = {}{fill}", source_value(source)));
     unit(out, listed.and_then(|c| c.unit.as_deref()));
-    line(
-        out,
-        format_args!("position_m = {position}            # {FILL_IN}: along the axis, from the first end"),
-    );
+    line(out, format_args!("position_m = nan            # {FILL_IN}: along the axis, from the first end"));
     out.push_str(
         "# offset_m = 0.0            # across the axis, positive away from the target\n\
          # polarity = 1              # -1: mounted the other way round\n\
@@ -176,25 +175,23 @@ fn device(source: &str) -> &str {
 
 fn unit(out: &mut String, told: Option<&str>) {
     match told {
-        Some(unit) if UNITS[..2].contains(&unit) => {
+        Some(unit) if acceleration_unit_m_s2(unit).is_some() => {
             line(
                 out,
                 format_args!(
-                    "# unit = {}{}# the recording says so itself",
+                    "# unit = {}{}# left out: the recording says so itself",
                     quoted(unit),
                     pad(unit.len() + 11)
                 ),
             );
         }
-        Some(unit) if UNITS.contains(&unit) => {
+        Some(unit) if VOLTAGES.contains(&unit) => {
             line(out, format_args!("unit = {}{}# as the recording says", quoted(unit), pad(unit.len() + 9)));
-            line(out, format_args!("sensitivity = 10.0          # {FILL_IN}: mV per g"));
+            line(out, format_args!("sensitivity = nan           # {FILL_IN}: mV per g"));
         }
         told => {
-            let says = told.map_or_else(
-                || "the recording does not say".to_owned(),
-                |u| format!("the recording says {:?}", printable(u)),
-            );
+            let quoted = |unit| format!("the recording says {:?}", printable(unit));
+            let says = told.map_or_else(|| "the recording does not say".to_owned(), quoted);
             line(
                 out,
                 format_args!(
@@ -237,8 +234,8 @@ fn accelerations(listing: &Listing) -> Vec<&ListedChannel> {
     let likely: Vec<&ListedChannel> = numeric
         .iter()
         .filter(|c| {
-            let unit = c.unit.as_deref().is_some_and(|u| UNITS.contains(&u));
-            unit || c.source.to_lowercase().contains("acc")
+            let is_known = |unit: &str| acceleration_unit_m_s2(unit).is_some() || VOLTAGES.contains(&unit);
+            c.unit.as_deref().is_some_and(is_known) || c.source.to_lowercase().contains("acc")
         })
         // The y axis of an IMU lies across the plane of the drop.
         .filter(|c| !c.source.ends_with("linear_acceleration.y"))
@@ -329,7 +326,10 @@ mod tests {
         assert_eq!(channels[0]["end"].as_str(), Some("first"));
         assert_eq!(channels[1]["end"].as_str(), Some("second"));
         assert_eq!(channels[1]["unit"].as_str(), Some("mV"));
-        assert_eq!(table["drop"]["angle_deg"].as_float(), Some(15.0));
+        assert!(
+            table["drop"]["angle_deg"].as_float().is_some_and(f64::is_nan),
+            "nothing passes for a measured angle"
+        );
     }
 
     #[test]

@@ -7,10 +7,8 @@ mod analog;
 mod disturbance;
 mod recorder;
 
+use crate::data::STANDARD_GRAVITY_M_S2;
 use crate::data::{Axis, End, Scene, SceneChannel, SimulatedMotion, SyntheticChannel, SyntheticRecording};
-
-/// 1 g, m/s²: the standard value (3rd CGPM 1901).
-const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
 /// What a perfect sensor at a channel's place and axis reads at given times, m/s².
 type Force<'a> = &'a dyn Fn(&SceneChannel, &[f64]) -> Vec<f64>;

@@ -3,11 +3,9 @@
 use super::chance::{Chance, round};
 use super::draw::Wish;
 use super::{Case, Means};
+pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
 use crate::data::{Axis, Chain, ChannelSpec, Coupling, End, SceneChannel, Source, Tolerances, Unit};
 use crate::numerics::reduce;
-
-/// 1 g, m/s²: the standard value (3rd CGPM 1901).
-pub(super) const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
 /// Sample rates of the recorders, Hz.
 const RATES_HZ: [f64; 8] = [2e3, 5e3, 10e3, 20e3, 50e3, 100e3, 200e3, 500e3];

@@ -4,6 +4,7 @@ mod campaign;
 mod command_line;
 mod compliant;
 mod damage;
+mod first_minutes;
 mod fixtures;
 mod golden;
 mod predict_command;

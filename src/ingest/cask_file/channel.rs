@@ -30,6 +30,17 @@ pub(super) fn channels(root: &Section, cask: &Cask) -> Result<Vec<ChannelSpec>, 
                 "name each channel as the test's documents do, each name once",
             ));
         }
+        if let Some(first) = channels.iter().position(|other| other.source == channel.source) {
+            return Err(table.wrong(
+                table.value("source").map_or_else(|| table.span(), toml::Spanned::span),
+                format!(
+                    "{} reads the same source as {}, {}",
+                    channel.name, channels[first].name, channel.source
+                ),
+                "read already".into(),
+                "`dropcheck inspect RECORDING` lists the sources: name each sensor's own",
+            ));
+        }
         lines.push(table.line(name_span.start));
         channels.push(channel);
     }

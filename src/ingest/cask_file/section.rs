@@ -291,6 +291,9 @@ impl<'a> Section<'a> {
                     None => format!("write the number only, without quotes: {key} = 1.0"),
                 }
             }
+            DeValue::Float(float) if float.as_str().ends_with("nan") => {
+                format!("write what it is: `dropcheck init` leaves nan where only you know it, as {key}")
+            }
             DeValue::Float(_) => "write a finite number".to_owned(),
             _ => format!("write the number only: {key} = 1.0"),
         };

@@ -109,7 +109,7 @@ fn defaults_are_filled_in_and_named() {
 
 #[test]
 fn slips_in_tables_and_numbers_are_told_with_line_and_remedy() {
-    let cases: [(&str, &str, &[&str]); 25] = [
+    let cases: [(&str, &str, &[&str]); 26] = [
         ("mass_kg = 4466", "mas_kg = 4466", &["line 4", "knows no key mas_kg", "did you mean mass_kg?"]),
         ("mass_kg = 4466", "mass = 4466", &["did you mean mass_kg?"]),
         ("mass_kg = 4466\n", "", &["[cask] has no mass_kg", "mass_kg = 4466.0"]),
@@ -118,7 +118,12 @@ fn slips_in_tables_and_numbers_are_told_with_line_and_remedy() {
         ("mass_kg = 4466", "mass_kg = 4466 kg", &["unit behind the number", "number only, 4466"]),
         ("mass_kg = 4466", "mass_kg = \"4466\"", &["without quotes: mass_kg = 4466"]),
         ("mass_kg = 4466", "mass_kg = -1", &["mass_kg is -1", "above 0", "in kg"]),
-        ("mass_kg = 4466", "mass_kg = nan", &["nan, not a number", "finite"]),
+        ("mass_kg = 4466", "mass_kg = nan", &["nan, not a number", "dropcheck init"]),
+        (
+            "source = { topic = \"/a.b\", field = \"x.y\" }",
+            "source = \"/daq/a1.samples\"",
+            &["reads the same source as A1"],
+        ),
         ("mass_kg = 4466", "mass_kg = inf", &["inf, not a number"]),
         ("mass_kg = 4466", "mass_kg = true", &["true, not a number"]),
         ("mass_kg = 4466", "angle_deg = 4466", &["belongs in [drop]"]),

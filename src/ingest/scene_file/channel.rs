@@ -1,13 +1,11 @@
 //! A `[[channel]]` table of a scene file to the channel as it is and the channel as the cask file will state it.
 
 use super::values::{flag, number_or, size_or, spans_s, within};
+pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
 use crate::data::{Axis, Cask, Chain, ChannelSpec, Coupling, End, SceneChannel, Source, Unit};
 use crate::ingest::cask_file::CaskFileError;
 use crate::ingest::cask_file::channel::{coupling, polarity};
 use crate::ingest::cask_file::section::Section;
-
-/// 1 g, m/s²: the standard value (3rd CGPM 1901).
-pub(super) const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
 /// Defaults of a channel: a usual recorder and a usual piezoresistive sensor.
 const SAMPLE_RATE_HZ: f64 = 20_000.0;

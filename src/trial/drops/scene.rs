@@ -1,5 +1,6 @@
 //! A few numbers to a simulated drop, its recording and its cask file.
 
+pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
 use crate::data::{
     Axis, BendingMode, Cask, CaskFile, Chain, ChannelSpec, Contact, Corrections, Coupling, Drop, End,
     FilterChoice, Recording, Scene, SceneChannel, SimulatedMotion, Source, SyntheticRecording, Tolerances,
@@ -9,9 +10,6 @@ use crate::{ingest, synth};
 use std::path::PathBuf;
 
 const GRAVITY_M_S2: f64 = 9.81;
-/// 1 g, m/s²: the standard value (3rd CGPM 1901).
-pub(super) const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
-
 /// A cask: name, mass kg, length m, section m (\[P\] Table 3).
 pub(super) type Build = (&'static str, f64, f64, f64);
 

@@ -1,0 +1,75 @@
+//! From what a user does first, and forgets, to what the program says.
+
+use crate::run::{dropcheck, fixture};
+use std::fs;
+use std::time::Duration;
+
+/// No run of these takes a second; one that waits for itself waits for ever.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+#[test]
+fn a_form_that_is_not_filled_in_is_refused_by_its_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (recording, cask) = (fixture("anf18-json.mcap"), folder.path().join("cask.toml"));
+    let analyze =
+        || dropcheck(["analyze".as_ref(), recording.as_os_str(), "--cask".as_ref(), cask.as_os_str()]);
+    let mut form = dropcheck(["init".as_ref(), recording.as_os_str()]).stdout;
+    let answers = [
+        ("mass_kg", "4466.0"),
+        ("length_m", "5.512"),
+        ("height_m", "9.0"),
+        ("angle_deg", "15.0"),
+        ("position_m", "0.156"),
+        ("position_m", "5.356"),
+    ];
+    for (key, value) in answers {
+        fs::write(&cask, &form).expect("a cask file");
+        let answer = analyze();
+        let line = 1 + form.lines().position(|l| l.starts_with(&format!("{key} = nan"))).expect(key);
+        assert_eq!(answer.status, 2, "{key}: {}", answer.stdout);
+        for word in [format!("line {line}:"), format!("{key} is nan"), "dropcheck init".to_owned()] {
+            assert!(answer.stderr.contains(&word), "{word}: {}", answer.stderr);
+        }
+        form = form.replacen(&format!("{key} = nan"), &format!("{key} = {value}"), 1);
+    }
+    fs::write(&cask, form).expect("a cask file");
+    let answer = analyze();
+    assert!(answer.status <= 1, "{}", answer.stderr);
+}
+
+#[test]
+fn a_report_goes_into_the_folder_that_one_stands_in() {
+    for out in [".", "./", "../here"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let here = folder.path().join("here");
+        fs::create_dir(&here).expect("a folder");
+        let assert = assert_cmd::Command::new(env!("CARGO_BIN_EXE_dropcheck"))
+            .args(["predict", "--out", out, "--cask"])
+            .arg(fixture("anf18-json.toml"))
+            .current_dir(&here)
+            .timeout(PATIENCE)
+            .assert();
+        assert.success();
+        assert!(here.join("prediction.json").is_file(), "{out}");
+    }
+}
+
+#[test]
+fn a_campaign_into_the_folder_it_reads_can_be_repeated() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::copy(fixture("anf18-json.mcap"), folder.path().join("drop.mcap")).expect("a recording");
+    let cask = fixture("anf18-json.toml");
+    for _ in 0..2 {
+        let answer = dropcheck([
+            "batch".as_ref(),
+            folder.path().as_os_str(),
+            "--cask".as_ref(),
+            cask.as_os_str(),
+            "--out".as_ref(),
+            folder.path().as_os_str(),
+        ]);
+        assert!(answer.status <= 1, "{}{}", answer.stdout, answer.stderr);
+    }
+    let table = fs::read_to_string(folder.path().join("campaign.csv")).expect("a table");
+    assert_eq!(table.lines().count(), 2, "one recording: {table}");
+}
