@@ -99,6 +99,8 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         let mut is_told = judge::tells_lost_steps(&reconstruction, known, of_recorded, contact.0);
         if !draft.issues.iter().any(|issue| judge::invalidates(issue, is_told)) {
             draft.issues.extend(judge::judge_motion(cask_file, &signals, &flight, &motion, &quantities));
+            draft.issues.extend(judge::judge_strike(&flight, cask_file.drop.impact_velocity_m_s));
+            draft.issues.extend(judge::judge_rest(of_recorded, &draft.events));
             draft.issues.extend(judge::judge_closures(&reconstruction, &cask_file.drop, &draft.events));
             let touched_m_s = touch_effect_m_s(cask_file, quantities.k.value);
             let length_m = cask_file.cask.length_m;

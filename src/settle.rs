@@ -97,6 +97,7 @@ pub(crate) fn settle(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Opt
     let mut settled = best?.1;
     if let (Some(flight), Some(window)) = (&mut settled.flight, &settled.window) {
         motion::compare_late(flight, signals, window, file.cask.cog_m);
+        flight.strike = motion::strike(flight, signals, window, file.cask.cog_m);
     }
     Some(settled)
 }

@@ -66,6 +66,19 @@ pub struct FlightFit {
     pub drift: bool,
     /// Every candidate that was tried, the one taken among them.
     pub candidates: Vec<FlightModelScore>,
+    /// The blow in the flight that explains it best, however little.
+    pub strike: Option<Strike>,
+}
+
+/// A step of all velocities within a flight.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Strike {
+    /// When, s from the recording's first sample.
+    pub time_s: f64,
+    /// What it changes the velocity of a transverse channel by at most, m/s.
+    pub step_m_s: f64,
+    /// How much lower the Bayesian information criterion is with it.
+    pub gain: f64,
 }
 
 /// Fits of a flight with fewer periods of its slowest mode may differ by much and leave the same.
@@ -124,6 +137,7 @@ mod tests {
             modes: frequencies_hz.iter().map(mode).collect(),
             drift: false,
             candidates: vec![],
+            strike: None,
         }
     }
 

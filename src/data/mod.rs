@@ -36,7 +36,7 @@ pub use cask::{
 pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, MotionCurve};
 pub use estimate::Estimate;
-pub use flight::{FlightFit, FlightModelScore, Mode, Plateau};
+pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
 pub use issue::{Issue, IssueCode, Severity};
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};

@@ -88,7 +88,7 @@ fn on_trust(choice: &ReconstructionChoice) -> Option<Issue> {
         Issue::new(
             IssueCode::Scale,
             Severity::Note,
-            "the recording shows no rest before the release: nothing in it tests the drop height, the clock's rate or a scale error that all channels share, and they are taken as stated; record from before the release with DC-coupled sensors",
+            "the recording shows no rest before the release: nothing in it tests the drop height, the clock's rate or a scale error that all channels share, and little tests one of the first end alone, which k follows; they are taken as stated; record from before the release with DC-coupled sensors",
         )
     })
 }

@@ -151,6 +151,7 @@ mod tests {
             modes: vec![],
             drift: true,
             candidates: vec![],
+            strike: None,
         }
     }
 

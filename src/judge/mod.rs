@@ -9,6 +9,7 @@ mod rigid;
 mod sampling;
 mod silent;
 mod skew;
+mod strike;
 mod worth;
 
 pub use channels::{is_cut_off, judge_channels};
@@ -19,6 +20,7 @@ pub use result::{judge_comparison, judge_motion, judge_touch};
 pub use rigid::judge_rigid;
 pub use silent::judge_silent;
 pub use skew::judge_skew;
+pub use strike::{judge_rest, judge_strike};
 
 use crate::data::{End, Events, Issue, IssueCode, Severity, Verdict};
 

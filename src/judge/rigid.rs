@@ -145,6 +145,7 @@ mod tests {
             modes: vec![],
             drift: false,
             candidates: vec![],
+            strike: None,
         };
         let drop = Drop {
             height_m: 9.0,

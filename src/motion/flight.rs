@@ -155,6 +155,7 @@ fn described(signals: &[Signal], window: &Window, scored: &[(f64, Fit)], taken: 
                 residual_m_s: f.series.iter().map(|s| s.residual).fold(0.0, f64::max),
             })
             .collect(),
+        strike: None,
     }
 }
 
@@ -280,7 +281,7 @@ fn range(values: &[f64]) -> f64 {
 }
 
 /// Velocity of one signal over the window in [`POINTS`] means, centrifugal force taken off, lost samples left out.
-fn series(signal: &Signal, window: &Window, cog_m: f64) -> Series {
+pub(super) fn series(signal: &Signal, window: &Window, cog_m: f64) -> Series {
     let velocity = Velocity::of(signal, window.contact_s - 2e-3, window.to_s);
     let arm_m = centrifugal_arm_m(signal, cog_m);
     let centrifugal_m_s2 = -window.angular_velocity_rad_s.powi(2) * arm_m;

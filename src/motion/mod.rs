@@ -5,12 +5,14 @@ mod flight;
 mod histories;
 mod reconstruct;
 mod ringing;
+mod strike;
 
 pub use curves::{channel_curves, cutoff_hz, filtered, read_channels};
 pub use flight::{Window, compare_late, fit_flight, fit_flights, mean_of_flight};
 pub use histories::drive;
 pub use reconstruct::{outcome, reconstruct};
 pub use ringing::{Calmed, rotation_rad_s};
+pub use strike::strike;
 
 use crate::data::{Events, Signal};
 use crate::numerics::quadrature::running_integral;

@@ -334,6 +334,7 @@ mod tests {
             modes: Vec::<Mode>::new(),
             drift: false,
             candidates: vec![],
+            strike: None,
         };
         let events = Events {
             first_contact_s: Some(0.01),

@@ -229,6 +229,7 @@ fn flight() -> FlightFit {
             score(2, false, -3098.0, 0.032),
             score(0, false, 8123.0, 0.61),
         ],
+        strike: None,
     }
 }
 

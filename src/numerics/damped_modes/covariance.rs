@@ -5,7 +5,8 @@ use super::{Fit, Form, Oscillation, Series, SeriesFit};
 use nalgebra::{DMatrix, DVector};
 
 /// Coefficients, uncertainties and residuals at given modes.
-pub(super) fn describe(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
+#[must_use]
+pub fn describe(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
     let drift = form.drift;
     let mut fits = Vec::new();
     let mut lag_sum = 0.0;

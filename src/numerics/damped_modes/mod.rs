@@ -6,7 +6,7 @@ mod projection;
 mod ringing;
 mod shape;
 
-use covariance::describe;
+pub use covariance::describe;
 use projection::{best_seed, refine};
 use ringing::Ringing;
 

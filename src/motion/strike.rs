@@ -1,0 +1,130 @@
+//! A flight to the blow that the cask took in it, where one explains it better than ringing does.
+
+use super::Window;
+use super::flight::series;
+use crate::data::{Axis, FlightFit, Signal, Strike};
+use crate::numerics::damped_modes::{Form, Oscillation, Series, describe, fit};
+use rayon::prelude::*;
+
+/// Places tried over the flight, and about the best of them.
+const PLACES: u32 = 24;
+const REFINED: u32 = 8;
+/// Parts of the flight at its beginning and end in which a step is a contact that was not over, or the slap-down.
+const FIRST_PART: f64 = 0.1;
+const LAST_PART: f64 = 0.06;
+/// Fewest points of a flight in which a step is told from a mode.
+const FEWEST: usize = 30;
+
+/// Looks for one step of all velocities within the flight, beside fewer of its modes: what the contents of the cask do when they strike it,
+/// or a cable. Three modes may bend around such a step and move the plateaus by a part of it.
+///
+/// By the Bayesian information criterion (21) of the flight with the step, its modes as they are, less that of the flight as it was fitted.
+#[must_use]
+pub fn strike(flight: &FlightFit, signals: &[Signal], window: &Window, cog_m: f64) -> Option<Strike> {
+    let window = Window { from_s: flight.from_s, to_s: flight.to_s, ..*window };
+    let series: Vec<Series> = signals.par_iter().map(|s| series(s, &window, cog_m)).collect();
+    if series.iter().any(|s| !s.steps_s.is_empty() || s.value.len() < FEWEST) {
+        return None;
+    }
+    let mut strongest: Vec<_> = flight.modes.iter().collect();
+    strongest.sort_by(|a, b| b.amplitude_m_s.total_cmp(&a.amplitude_m_s));
+    let modes: Vec<Oscillation> =
+        strongest.iter().map(|m| Oscillation { frequency_hz: m.frequency_hz, damping: m.damping }).collect();
+    let taken = fit(&series, &modes, None, Form { drift: flight.drift, drive: None })?;
+    let length_s = window.to_s - window.from_s;
+    let with_step = |form: (usize, bool), after_s: f64| {
+        let (kept, drift) = form;
+        let stepped: Vec<Series> =
+            series.iter().map(|s| Series { steps_s: vec![after_s], ..s.clone() }).collect();
+        let fit = describe(&stepped, modes[..kept].to_vec(), Form { drift, drive: None })?;
+        Some((fit.bic(&stepped, taken.correlation), form, after_s, fit))
+    };
+    let best = |places: Vec<((usize, bool), f64)>| {
+        let tried = places.into_par_iter().filter_map(|(form, after_s)| with_step(form, after_s));
+        tried.min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let share = |i: u32| FIRST_PART + (1.0 - FIRST_PART - LAST_PART) * f64::from(i) / f64::from(PLACES);
+    let drifts = if flight.drift { &[false, true][..] } else { &[false] };
+    let forms = (0..=modes.len()).flat_map(|kept| drifts.iter().map(move |&drift| (kept, drift)));
+    let coarse = forms.flat_map(|form| (0..=PLACES).map(move |i| (form, share(i) * length_s)));
+    let (_, form, about_s, _) = best(coarse.collect())?;
+    let step_s = length_s / f64::from(PLACES);
+    let fine =
+        (0..=REFINED).map(|i| (form, about_s + step_s * (2.0 * f64::from(i) / f64::from(REFINED) - 1.0)));
+    let (bic, _, after_s, found) = best(fine.collect())?;
+    if !(share(0)..=share(PLACES)).contains(&(after_s / length_s)) {
+        return None;
+    }
+    let of_transverse = signals.iter().zip(&found.series).filter(|(s, _)| s.axis == Axis::Transverse);
+    let steps_m_s = of_transverse.filter_map(|(_, f)| f.jumps.first());
+    Some(Strike {
+        time_s: window.from_s + after_s,
+        step_m_s: steps_m_s.copied().max_by(|a, b| a.abs().total_cmp(&b.abs()))?,
+        gain: taken.bic(&series, taken.correlation) - bic,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::flight::fit_flight;
+    use super::*;
+    use crate::data::End;
+    use std::f64::consts::{PI, TAU};
+
+    const RATE_HZ: f64 = 2e4;
+
+    /// Force of 5 ms from 20 ms on, a mode of 80 Hz that rings from then on, and a blow of 1 ms at 60 ms.
+    fn signal(name: &str, end: End, step_m_s: f64, ring_m_s: f64, blow_m_s: f64) -> Signal {
+        let pulse = |t: f64, from_s: f64, length_s: f64, area_m_s: f64| {
+            let x = (t - from_s) / length_s;
+            if (0.0..1.0).contains(&x) { area_m_s * PI / (2.0 * length_s) * (PI * x).sin() } else { 0.0 }
+        };
+        let ring = |t: f64| {
+            let since_s = t - 0.02;
+            let w = TAU * 80.0;
+            if since_s > 0.0 { ring_m_s * w * (-0.02 * w * since_s).exp() * (w * since_s).cos() } else { 0.0 }
+        };
+        let noise = |i: u32| f64::from(i.wrapping_mul(2_654_435_761) >> 16) / 65_536.0 - 0.5;
+        let force = |i: u32| {
+            let t = f64::from(i) / RATE_HZ;
+            pulse(t, 0.02, 5e-3, step_m_s) + ring(t) + pulse(t, 0.06, 1e-3, blow_m_s) + noise(i)
+        };
+        Signal {
+            name: name.into(),
+            end,
+            axis: Axis::Transverse,
+            position_m: if end == End::First { 0.1 } else { 4.9 },
+            offset_m: 0.0,
+            start_s: 0.0,
+            sample_rate_hz: RATE_HZ,
+            force_m_s2: (0..1800).map(force).collect(),
+            removed_offset_m_s2: 0.0,
+            u_offset_m_s2: 0.0,
+            noise_m_s2: 0.3,
+            noise_spectrum: vec![],
+            free_fall_s: 0.02,
+            clipped: vec![],
+            gaps: vec![],
+        }
+    }
+
+    fn found(blow_m_s: f64) -> Strike {
+        let signals = [
+            signal("A1", End::First, 19.0, 2.0, -0.4 * blow_m_s),
+            signal("A2", End::Second, -7.0, 1.8, blow_m_s),
+        ];
+        let window =
+            Window { contact_s: 0.02, from_s: 0.026, to_s: 0.085, drift: true, angular_velocity_rad_s: 0.0 };
+        let flight = fit_flight(&signals, &window, None, 2.5).expect("a flight");
+        strike(&flight, &signals, &window, 2.5).expect("a flight without gaps")
+    }
+
+    #[test]
+    fn a_blow_is_told_from_ringing() {
+        let blow = found(0.5);
+        // A point of the series is a quarter of a millisecond, and the blow lasts one.
+        assert!(blow.gain > 30.0 && (blow.time_s - 0.0605).abs() < 1e-3, "{blow:?}");
+        assert!((blow.step_m_s - 0.5).abs() < 0.05, "{blow:?}");
+        assert!(found(0.0).gain < 10.0, "{:?}", found(0.0));
+    }
+}
