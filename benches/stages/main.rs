@@ -145,6 +145,7 @@ fn quantities(bencher: Bencher, samples: usize) {
         inertia_m2: Some(2.58),
         rests: &[],
         fall_s: None,
+        stood_in: None,
     };
     bencher.counter(m.conditioned()).bench(|| {
         let integrated = motion::Integrated::over(&m.signals, &m.events);
