@@ -17,8 +17,9 @@ const STEEPNESS: f64 = 16.0;
 /// that stays level, as of a cask that is crushed. Noise that comes after the limit is taken to be less.
 const NOISE_LEFT: f64 = 0.6;
 
-/// The smallest step between samples widens the band up to this share of the level: an 8-bit converter's.
-const STEP_OF_BAND: f64 = 4e-3;
+/// The smallest step between samples widens the band up to this share of the level: that of a 10-bit converter over four times the peak, of
+/// an 8-bit one over the peak.
+const STEP_OF_BAND: f64 = 8e-3;
 
 /// Runs of `force` (m/s², of `channel`, with `noise_m_s2` on it) at the stated full scale or flat at an extreme, as indices.
 ///
@@ -149,8 +150,11 @@ mod tests {
 
     #[test]
     fn a_rounded_top_of_a_coarse_converter_is_not() {
-        let coarse: Vec<f64> = pulse(1e9).iter().map(|f| (f / 10.0).round() * 10.0).collect();
-        assert!(clipped(&channel(None), &coarse, 0.0, 0).is_empty());
+        // 28 of 4000 is a step of a 10-bit converter over 3.6 times the peak.
+        for step in [10.0, 28.0] {
+            let coarse: Vec<f64> = pulse(1e9).iter().map(|f| (f / step).round() * step).collect();
+            assert!(clipped(&channel(None), &coarse, 0.0, 0).is_empty(), "{step}");
+        }
         assert!(clipped(&channel(None), &pulse(1e9), 0.0, 0).is_empty());
     }
 
