@@ -35,8 +35,9 @@ impl StandIn {
         }
     }
 
-    /// Takes into account that the cask turned by `turned_rad` in the contact.
+    /// Takes into account that the cask turned by `turned_rad` in the contact: by no more than until it lies flat.
     pub fn turn(&mut self, file: &CaskFile, signals: &mut [Signal], turned_rad: f64) {
+        let turned_rad = turned_rad.max(0.0).min(file.drop.angle_rad);
         let Some((share, u_share)) = share_and_u(file, self.at_m, turned_rad) else { return };
         let by = share / self.share;
         (self.share, self.u_share) = (share, u_share);
