@@ -1,6 +1,6 @@
 //! The first pulse as it was sampled to whether the sample rate and the filter before it were fit for it.
 
-use crate::data::{Axis, End, Events, Issue, IssueCode, Severity, Signal};
+use crate::data::{Events, Issue, IssueCode, Severity, Signal};
 use crate::numerics::spectrum::magnitude;
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -29,10 +29,7 @@ const LONGEST_S: f64 = 0.05;
 /// `disturbed` names the channels whose single samples are off: their spectra say nothing about a filter.
 #[must_use]
 pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&str]) -> Vec<Issue> {
-    let struck = signals
-        .iter()
-        .filter(|s| s.axis == Axis::Transverse && s.end == End::First)
-        .min_by(|a, b| a.position_m.total_cmp(&b.position_m));
+    let struck = super::struck(signals);
     let (Some(struck), Some(contact_s)) = (struck, events.first_contact_s) else { return Vec::new() };
     let to_s = events.separation_s.unwrap_or(contact_s + LONGEST_S).min(contact_s + LONGEST_S);
     let Some((pulse_s, length_s)) = pulse(struck, contact_s..to_s) else { return Vec::new() };
@@ -152,6 +149,7 @@ fn number(n: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::{Axis, End};
 
     /// What `force` says from 20 ms on, sampled at a rate, with the two events.
     fn codes(rate_hz: f64, found_end_s: f64, force: impl Fn(f64) -> f64) -> Vec<IssueCode> {

@@ -1,6 +1,6 @@
 //! A flight and a first contact to what struck the cask in them beside the target.
 
-use crate::data::{Axis, End, Events, FlightFit, Issue, IssueCode, Severity, Signal};
+use crate::data::{Events, FlightFit, Issue, IssueCode, Severity, Signal};
 use crate::numerics::reduce::{block_means, block_of, peak};
 
 /// A step explains a flight better by so much of the Bayesian information criterion: of 2600 simulated sound drops none has more, but for
@@ -43,7 +43,7 @@ pub fn judge_strike(flight: &FlightFit, v0_m_s: f64) -> Option<Issue> {
 #[must_use]
 pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Issue> {
     let (contact_s, left_s) = events.first_contact_s.zip(events.separation_s)?;
-    let struck = signals.iter().find(|s| s.end == End::First && s.axis == Axis::Transverse)?;
+    let struck = super::struck(signals)?;
     let block = block_of(RATE_HZ, struck.sample_rate_hz);
     let force = struck.force_m_s2.get(struck.index_from(contact_s)..struck.index_from(left_s))?;
     let means = block_means(force, block);
@@ -80,7 +80,7 @@ pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Issue> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::Strike;
+    use crate::data::{Axis, End, Strike};
     use std::f64::consts::PI;
 
     fn flight(step_m_s: f64, gain: f64) -> FlightFit {
