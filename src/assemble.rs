@@ -120,17 +120,16 @@ impl<'a> Draft<'a> {
         };
         let window =
             self.events.separation_s.zip(self.events.slap_down_s).map(|(left_s, struck_s)| motion::Window {
-                contact_s,
                 from_s: left_s + 0.1 * (left_s - contact_s) + 3e-4,
                 to_s: struck_s - 5e-4,
                 drift: self.cask_file.corrections.zero_shift,
                 angular_velocity_rad_s: quantities.angular_velocity.value,
             });
-        let filtered =
-            window.and_then(|w| motion::fit_flight(smooth, &w, None, setup.cog_m)).and_then(|flight| {
-                let integrated = motion::Integrated::over(smooth, &self.events);
-                motion::outcome(&integrated, &flight, &self.events, setup)
-            });
+        let filtered = window.and_then(|w| {
+            let integrated = motion::Integrated::over(smooth, contact_s);
+            let flight = motion::fit_flight(&integrated, &w, None, setup.cog_m)?;
+            motion::outcome(&integrated, &flight, &self.events, setup)
+        });
         if let (Some(m), Some(speed)) =
             (filtered.and_then(|m| m.second_end_m_s.map(|v| (m.rebound_m_s, v))), quantities.speed)
         {

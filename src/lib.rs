@@ -241,7 +241,8 @@ fn flight_and_motion(
         draft.issues.push(judge::judge_missing_end(end, stand_in.is_some()));
         stand_in?;
     }
-    let mut flight = find_flight(draft, signals, contact, stand_in)?;
+    let integrated = motion::Integrated::over(signals, contact.0);
+    let mut flight = find_flight(draft, &integrated, contact, stand_in)?;
     if let Some(stand_in) = stand_in {
         if !flight.is_told_apart() {
             draft.flight_is_too_short();
@@ -250,17 +251,15 @@ fn flight_and_motion(
         stand_in.doubt(&mut flight);
     }
     draft.u_events_s[2] = draft.u_events_s[2].hypot(u_skew_s);
-    let setup = setup(cask_file, signals, &draft.events, &flight);
-    let integrated = motion::Integrated::over(signals, &draft.events);
+    let setup = setup(cask_file, &integrated, &draft.events, &flight);
     let motion = motion::reconstruct(&integrated, &flight, &draft.events, &setup)?;
     let window = motion::Window {
-        contact_s: contact.0,
         from_s: flight.from_s,
         to_s: flight.to_s,
         drift: flight.drift,
         angular_velocity_rad_s: motion::rotation_rad_s(signals, &flight),
     };
-    let plain = motion::mean_of_flight(signals, &flight, &window, setup.cog_m);
+    let plain = motion::mean_of_flight(&integrated, &flight, &window, setup.cog_m);
     let cask = &cask_file.cask;
     let measured = fit::Measured {
         signals,
@@ -280,7 +279,7 @@ fn flight_and_motion(
             .zip(draft.events.fall_end_s)
             .map(|(release_s, end_s)| end_s - release_s),
     };
-    let reading = motion::read_channels(signals, &draft.events, &setup);
+    let reading = motion::read_channels(&integrated, &draft.events, &setup);
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
     let (quantities, choice) = fit::ladder(&measured, plain.as_ref(), reading, &moved)?;
     Some(Reconstructed { flight, setup, motion, quantities, choice })
@@ -289,11 +288,12 @@ fn flight_and_motion(
 /// Separation, slap-down and the flight between them; what prevents them goes to the draft's issues.
 fn find_flight(
     draft: &mut Draft,
-    signals: &[Signal],
+    integrated: &motion::Integrated,
     contact: (f64, f64),
     stand_in: Option<&StandIn>,
 ) -> Option<FlightFit> {
-    let settled = settle::settle(draft.cask_file, signals, contact.0)?;
+    let settled = settle::settle(draft.cask_file, integrated)?;
+    let signals = integrated.signals;
     let is_made = |end| stand_in.is_some_and(|s| s.end == end);
     let shows_slap_down = !is_made(data::End::Second);
     let struck = settled.struck.filter(|_| shows_slap_down);
@@ -315,17 +315,21 @@ fn find_flight(
 }
 
 /// How the axial velocity is had: measured, or by the contact law of the cask file.
-fn setup(cask_file: &CaskFile, signals: &[Signal], events: &Events, flight: &FlightFit) -> Setup {
+fn setup(
+    cask_file: &CaskFile,
+    integrated: &motion::Integrated,
+    events: &Events,
+    flight: &FlightFit,
+) -> Setup {
     let base = assemble::sticking(cask_file);
-    if signals.iter().any(|s| s.axis == Axis::Axial) {
+    if integrated.signals.iter().any(|s| s.axis == Axis::Axial) {
         return Setup { axial: AxialClosure::Measured, ..base };
     }
     let axial = match cask_file.contact {
         Contact::Rough => AxialClosure::Sticking,
         Contact::Smooth => sliding(0.0),
         Contact::Coulomb(mu) => {
-            let integrated = motion::Integrated::over(signals, events);
-            let needed = motion::outcome(&integrated, flight, events, &base).map_or(0.0, |m| m.impulse_ratio);
+            let needed = motion::outcome(integrated, flight, events, &base).map_or(0.0, |m| m.impulse_ratio);
             if needed.abs() <= mu { AxialClosure::Sticking } else { sliding(mu) }
         }
     };

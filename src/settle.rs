@@ -1,7 +1,8 @@
 //! Signals and first contact to separation, slap-down and the flight between them, each found with the others' help.
 
 use crate::data::{CaskFile, End, Events, FlightFit, Motion, Signal};
-use crate::{assemble, events, judge, motion};
+use crate::motion::{self, Integrated};
+use crate::{assemble, events, judge};
 
 /// Separation and slap-down are found again on signals free of ringing this often; the second round moves them by less than a sample.
 const ROUNDS: usize = 3;
@@ -40,6 +41,9 @@ const TURNED: f64 = 0.1;
 /// The contact's force after separation is sought this long beyond a window, s.
 const BEYOND_S: f64 = 0.02;
 
+/// What the search looks at begins so long before first contact, s: the means that a slap-down is sought with are half as wide.
+const BEFORE_S: f64 = 0.05;
+
 /// Where the search ended.
 pub(crate) struct Settled {
     /// Separation and its standard uncertainty, s.
@@ -54,9 +58,8 @@ pub(crate) struct Settled {
 
 /// What the search goes by.
 struct Search<'a> {
-    signals: &'a [Signal],
+    integrated: &'a Integrated<'a>,
     file: &'a CaskFile,
-    contact_s: f64,
     record_end_s: f64,
     earliest_s: f64,
     least_m_s: f64,
@@ -64,18 +67,20 @@ struct Search<'a> {
 
 /// Settles separation, slap-down and flight; of several beginnings the first that explains the flight and brings R to the target, else the
 /// best. `None` without transverse channels on both ends.
-pub(crate) fn settle(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Option<Settled> {
+pub(crate) fn settle(file: &CaskFile, integrated: &Integrated) -> Option<Settled> {
+    let &Integrated { signals, contact_s, .. } = integrated;
     let drop = &file.drop;
     let descent_m = file.cask.length_m * drop.angle_rad.sin();
     let search = Search {
-        signals,
+        integrated,
         file,
-        contact_s,
         record_end_s: record_end_s(signals),
         earliest_s: contact_s + EARLIEST_SLAP_DOWN * descent_m / drop.impact_velocity_m_s,
         least_m_s: LEAST_SLAP_DOWN * drop.impact_velocity_m_s,
     };
-    let on = |end| events::without_first_mode(signals, end, file.cask.length_m).map(motion::Calmed::new);
+    let from_s = contact_s - BEFORE_S;
+    let on =
+        |end| events::without_first_mode(signals, end, from_s, file.cask.length_m).map(motion::Calmed::new);
     let (first, second) = rayon::join(|| on(End::First), || on(End::Second));
     let mut ends = (first?, second?);
     let struck =
@@ -96,16 +101,16 @@ pub(crate) fn settle(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Opt
     }
     let mut settled = best?.1;
     if let (Some(flight), Some(window)) = (&mut settled.flight, &settled.window) {
-        motion::compare_late(flight, signals, window, file.cask.cog_m);
-        flight.strike = motion::strike(flight, signals, window, file.cask.cog_m);
+        motion::compare_late(flight, integrated, window, file.cask.cog_m);
+        flight.strike = motion::strike(flight, integrated, window, file.cask.cog_m);
     }
     Some(settled)
 }
 
 /// What the cask turns by from first contact to separation, rad.
 pub(crate) fn turned_rad(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Option<f64> {
-    let settled = settle(file, signals, contact_s)?;
-    let moved = settled.moved(file, signals, contact_s)?;
+    let integrated = Integrated::over(signals, contact_s);
+    let moved = settle(file, &integrated)?.moved(file, &integrated)?;
     Some(file.drop.angle_rad - moved.separation.angle_rad)
 }
 
@@ -116,15 +121,14 @@ pub(crate) fn record_end_s(signals: &[Signal]) -> f64 {
 
 impl Settled {
     /// The motion that the signals, the times and the flight give where L sticks.
-    fn moved(&self, file: &CaskFile, signals: &[Signal], contact_s: f64) -> Option<Motion> {
+    fn moved(&self, file: &CaskFile, integrated: &Integrated) -> Option<Motion> {
         let times = Events {
-            first_contact_s: Some(contact_s),
+            first_contact_s: Some(integrated.contact_s),
             separation_s: Some(self.left.0),
             slap_down_s: self.struck.map(|s| s.0),
             ..Events::default()
         };
-        let integrated = motion::Integrated::over(signals, &times);
-        motion::outcome(&integrated, self.flight.as_ref()?, &times, &assemble::sticking(file))
+        motion::outcome(integrated, self.flight.as_ref()?, &times, &assemble::sticking(file))
     }
 }
 
@@ -138,7 +142,8 @@ impl Search<'_> {
         share: f64,
     ) -> Settled {
         first.restore();
-        let (signals, contact_s, cog_m) = (self.signals, self.contact_s, self.file.cask.cog_m);
+        let &Integrated { signals, contact_s, .. } = self.integrated;
+        let cog_m = self.file.cask.cog_m;
         let mut end_s = contact_s + share * (struck.map_or(self.record_end_s, |s| s.0) - contact_s);
         // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit goes by.
         let cleared_s = contact_s + (FIRST_CLEARANCE * (end_s - contact_s)).min(LONGEST_CLEARANCE_S);
@@ -151,14 +156,13 @@ impl Search<'_> {
         let mut taken_over = None;
         for round in 0..ROUNDS + FURTHER_ROUNDS {
             let window = motion::Window {
-                contact_s,
                 from_s: free_s,
                 to_s: end_s - 5e-4,
                 drift: self.file.corrections.zero_shift,
                 angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| motion::rotation_rad_s(signals, f)),
             };
-            let drive = motion::drive(signals, flight.as_ref(), (contact_s, left.0), window.from_s, cog_m);
-            let mut fits = motion::fit_flights(signals, &window, drive.as_ref(), cog_m).into_iter();
+            let drive = motion::drive(self.integrated, flight.as_ref(), left.0, window.from_s, cog_m);
+            let mut fits = motion::fit_flights(self.integrated, &window, drive.as_ref(), cog_m).into_iter();
             let Some(fitted) = fits.next() else { break };
             others = fits.collect();
             let beyond_s = struck.map_or(self.record_end_s, |s| s.0).max(end_s) + BEYOND_S;
@@ -202,7 +206,7 @@ impl Search<'_> {
         } else {
             EXPLAINED_M_S.min(EXPLAINED_SHORT * self.file.drop.impact_velocity_m_s)
         };
-        let moved = settled.moved(self.file, self.signals, self.contact_s);
+        let moved = settled.moved(self.file, self.integrated);
         let cask = &self.file.cask;
         let turning = moved.as_ref().filter(|_| cask.is_body).map_or(0.0, |m| {
             let by_impulse_rad_s = m.angular_impulse_m2_s * cask.mass_kg / cask.inertia_kg_m2;

@@ -70,9 +70,12 @@ impl Middle {
         Self { cask_file, recording, event, signals, flight, events, setup, analysis }
     }
 
+    fn integrated(&self) -> motion::Integrated<'_> {
+        motion::Integrated::over(&self.signals, self.events.first_contact_s.expect("a contact"))
+    }
+
     fn window(&self) -> motion::Window {
         motion::Window {
-            contact_s: self.events.first_contact_s.expect("a contact"),
             from_s: self.flight.from_s,
             to_s: self.flight.to_s,
             drift: true,
@@ -119,14 +122,14 @@ fn flight_fit(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
     bencher
         .counter(m.conditioned())
-        .bench(|| motion::fit_flight(&m.signals, &m.window(), None, m.cask_file.cask.cog_m));
+        .bench(|| motion::fit_flight(&m.integrated(), &m.window(), None, m.cask_file.cask.cog_m));
 }
 
 #[divan::bench(args = SIZES)]
 fn reconstruct(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
     bencher.counter(m.conditioned()).bench(|| {
-        let integrated = motion::Integrated::over(&m.signals, &m.events);
+        let integrated = m.integrated();
         motion::reconstruct(&integrated, &m.flight, &m.events, &m.setup).expect("a motion")
     });
 }
@@ -148,7 +151,7 @@ fn quantities(bencher: Bencher, samples: usize) {
         stood_in: None,
     };
     bencher.counter(m.conditioned()).bench(|| {
-        let integrated = motion::Integrated::over(&m.signals, &m.events);
+        let integrated = m.integrated();
         let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
         fit::ladder(&measured, None, None, &moved).expect("quantities")
     });

@@ -80,6 +80,13 @@ impl Signal {
     pub fn cut(&self, from: usize, to: usize) -> Self {
         let to = to.min(self.force_m_s2.len());
         let from = from.min(to);
+        self.cut_with(from, self.force_m_s2[from..to].to_vec())
+    }
+
+    /// The samples from `from` on alone, as many as there are in `force_m_s2`, which stands for them.
+    #[must_use]
+    pub fn cut_with(&self, from: usize, force_m_s2: Vec<f64>) -> Self {
+        let to = from + force_m_s2.len();
         let shifted = |spans: &[Span]| {
             let inside = spans.iter().filter(|s| s.from < to && s.to > from);
             inside.map(|s| Span { from: s.from.max(from) - from, to: s.to.min(to) - from }).collect()
@@ -87,7 +94,7 @@ impl Signal {
         Self {
             name: self.name.clone(),
             start_s: self.time_s(from),
-            force_m_s2: self.force_m_s2[from..to].to_vec(),
+            force_m_s2,
             noise_spectrum: self.noise_spectrum.clone(),
             clipped: shifted(&self.clipped),
             gaps: shifted(&self.gaps),

@@ -21,7 +21,7 @@ const END_SLOPE: f64 = 4.65;
 /// A sensor so far in that the mode reads less than this share of its end's is near a node: it cancels nothing.
 const LEAST_SHAPE: f64 = 0.2;
 
-/// The transverse signal nearest to an end without the first bending mode, which both ends of a beam ring with alike: the other end's
+/// The transverse signal nearest to an end from a time on, without the first bending mode, which both ends of a beam ring with alike: the other end's
 /// signal taken off it in the ratio of the mode's shape at both. Impacts stay, and those of the other end turn their sign.
 ///
 /// The signal as it is where the other end has none of the same times, or where one of both sits near a node. Returned with what it is
@@ -30,12 +30,14 @@ const LEAST_SHAPE: f64 = 0.2;
 pub fn without_first_mode(
     signals: &[Signal],
     end: End,
+    from_s: f64,
     length_m: f64,
 ) -> Option<(Signal, Vec<(String, f64)>)> {
     let own = transverse(signals, end)?;
     let other = transverse(signals, if end == End::First { End::Second } else { End::First });
     let shape = |s: &Signal| 1.0 - END_SLOPE * s.position_m.min(length_m - s.position_m).max(0.0) / length_m;
-    let mut free = own.clone();
+    let from = own.index_from(from_s);
+    let mut free = own.cut(from, usize::MAX);
     let mut parts = vec![(own.name.clone(), 1.0)];
     let of_same_times = other.filter(|o| {
         (o.sample_rate_hz / own.sample_rate_hz - 1.0).abs() < 1e-9
@@ -45,7 +47,7 @@ pub fn without_first_mode(
     if let Some(other) = of_same_times {
         let ratio = shape(own) / shape(other);
         // f − Y(d)/Y(d′) f′, Y = 1 − 4.65 d/l   (37)
-        for (force, other_m_s2) in free.force_m_s2.iter_mut().zip(&other.force_m_s2) {
+        for (force, other_m_s2) in free.force_m_s2.iter_mut().zip(other.force_m_s2.iter().skip(from)) {
             *force -= ratio * other_m_s2;
         }
         free.noise_m_s2 = own.noise_m_s2.hypot(ratio * other.noise_m_s2);

@@ -1,6 +1,6 @@
 //! Signals to the curves a person looks at: filtered force, velocity, spectrum.
 
-use super::Velocity;
+use super::{Integrated, Velocity};
 use crate::data::{Axis, ChannelCurve, ChannelReading, End, Events, FilterChoice, Setup, Signal};
 use crate::numerics::filter::{CFC_DESIGN, TWO_PASS_CUTOFF, ZeroPhaseLowPass};
 use crate::numerics::quadrature::running_integral;
@@ -44,12 +44,13 @@ pub fn filtered(signals: &[Signal], events: &Events, cutoff_hz: f64) -> Vec<Sign
             let (first_s, last_s) = shown_s(signal, events);
             // What lies beyond the margin reaches past it with 1e-12 of its size.
             let margin_s = 6.2 / cutoff_hz;
-            let mut cut = signal
-                .cut(signal.index_from(first_s - QUIET_S - margin_s), signal.index_from(last_s + margin_s));
-            if let Some(filter) = ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, cut.sample_rate_hz) {
-                cut.force_m_s2 = filter.apply(&cut.force_m_s2);
-            }
-            cut
+            let from = signal.index_from(first_s - QUIET_S - margin_s);
+            let to = signal.index_from(last_s + margin_s).max(from);
+            let force_m_s2 = match ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, signal.sample_rate_hz) {
+                Some(filter) => filter.apply(&signal.force_m_s2[from..to]),
+                None => signal.force_m_s2[from..to].to_vec(),
+            };
+            signal.cut_with(from, force_m_s2)
         })
         .collect()
 }
@@ -92,12 +93,12 @@ pub fn channel_curves(
 /// The channels by themselves, as \[P\] Fig. 13 has them: −v0 + ∫f dt from first contact, gravity left out between the impacts, read off
 /// as L leaves and as R strikes. `None` without a transverse channel on each end or without first contact and separation.
 #[must_use]
-pub fn read_channels(signals: &[Signal], events: &Events, setup: &Setup) -> Option<ChannelReading> {
-    let (contact_s, left_s) = (events.first_contact_s?, events.separation_s?);
-    let on = |end: End| signals.iter().find(|s| s.axis == Axis::Transverse && s.end == end);
-    let at = |signal: &Signal, time_s: f64| {
-        Velocity::of(signal, contact_s - 2e-3, time_s).at(time_s) - setup.impact_velocity_m_s
-    };
+pub fn read_channels(integrated: &Integrated, events: &Events, setup: &Setup) -> Option<ChannelReading> {
+    let left_s = events.separation_s?;
+    let each = integrated.signals.iter().zip(&integrated.velocities);
+    let on = |end: End| each.clone().find(|(s, _)| s.axis == Axis::Transverse && s.end == end);
+    let at =
+        |(_, velocity): (&Signal, &Velocity), time_s: f64| velocity.at(time_s) - setup.impact_velocity_m_s;
     let (first, second) = (on(End::First)?, on(End::Second)?);
     Some(ChannelReading {
         first_m_s: at(first, left_s),

@@ -1,12 +1,12 @@
 //! The free-flight window to plateaus, drift and as many damped modes as the data call for.
 
-use super::Velocity;
+use super::{Integrated, Velocity};
 use crate::data::{Axis, FlightFit, FlightModelScore, Mode, Plateau, Signal};
 use crate::numerics::damped_modes::{
     Drive, Fit, Form, Oscillation, Seeds, Series, SeriesFit, fit, uniform_ringing,
 };
 use crate::numerics::noise::integral_uncertainty_by;
-use crate::numerics::{reduce, robust};
+use crate::numerics::robust;
 use rayon::prelude::*;
 
 /// Most fits described: the one taken and those that could stand in for it.
@@ -16,7 +16,9 @@ const MOST_MODES: usize = 3;
 /// Points a window: 240 over 60 ms resolve 400 Hz tenfold.
 const POINTS: usize = 240;
 /// Longest window fitted, s: eight periods of 80 Hz; a longer one would only coarsen the points.
-const LONGEST_S: f64 = 0.1;
+pub(super) const LONGEST_S: f64 = 0.1;
+/// Noise is judged by what ends so long before first contact, s.
+pub(super) const CLEAR_S: f64 = 5e-3;
 /// Least noise of a velocity, as a share of its range in the window: linearity of the best sensors.
 const LEAST_FLOOR: f64 = 1e-3;
 /// Stretches before the end of a long flight that are compared with the fit, s: two periods of 100 Hz, and a shorter one for what
@@ -51,8 +53,6 @@ const INDISTINCT: f64 = 10.0;
 /// The times a flight fit needs, s from the recording's first sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    /// First contact: the velocities count from there.
-    pub contact_s: f64,
     /// Start of free flight.
     pub from_s: f64,
     /// End of it.
@@ -63,30 +63,35 @@ pub struct Window {
     pub angular_velocity_rad_s: f64,
 }
 
-/// Fits all signals over the window, the most probable fit first; empty where it is too short or nothing can be fitted.
+/// Fits all velocities over the window, the most probable fit first; empty where it is too short or nothing can be fitted.
 ///
 /// Velocity v_j(t) = p_j + d_j t + Σ_m e^(−ζωt)(A cos ωt + B sin ωt)   (20), modes common to all channels, their phases free or those that
 /// the contact force gives them; their number and whether there is a drift are decided by the Bayesian information criterion (21).
 #[must_use]
-pub fn fit_flights(signals: &[Signal], window: &Window, drive: Option<&Drive>, cog_m: f64) -> Vec<FlightFit> {
+pub fn fit_flights(
+    integrated: &Integrated,
+    window: &Window,
+    drive: Option<&Drive>,
+    cog_m: f64,
+) -> Vec<FlightFit> {
     let cut = Window { to_s: window.to_s.min(window.from_s + LONGEST_S), ..*window };
-    let series: Vec<Series> = signals.par_iter().map(|s| series(s, &cut, cog_m)).collect();
+    let series = series(integrated, &cut, cog_m);
     let mut fits = candidates(&series, &cut, drive);
-    let peaks_m_s2: Vec<f64> = signals.iter().map(|s| reduce::peak(&s.force_m_s2)).collect();
-    fits.retain(|f| has_plausible_drift(&peaks_m_s2, f));
+    let Integrated { signals, peaks_m_s2, .. } = integrated;
+    fits.retain(|f| has_plausible_drift(peaks_m_s2, f));
     let Some(richest) = fits.iter().max_by_key(|f| f.parameters).map(|f| f.correlation) else {
         return Vec::new();
     };
     let mut scored: Vec<(f64, Fit)> =
-        fits.into_iter().map(|f| (f.bic(&series, richest) + improbability(&peaks_m_s2, &f), f)).collect();
+        fits.into_iter().map(|f| (f.bic(&series, richest) + improbability(peaks_m_s2, &f), f)).collect();
     scored.sort_by(|a, b| a.0.total_cmp(&b.0));
     (0..scored.len().min(MOST_FITS)).map(|i| described(signals, &cut, &scored, i)).collect()
 }
 
 /// Holds the end of the flight in `window` against its fit, for each channel   (20)
-pub fn compare_late(flight: &mut FlightFit, signals: &[Signal], window: &Window, cog_m: f64) {
+pub fn compare_late(flight: &mut FlightFit, integrated: &Integrated, window: &Window, cog_m: f64) {
     let mismatches: Vec<Option<f64>> =
-        signals.par_iter().map(|s| late_mismatch_m_s(s, flight, window, cog_m)).collect();
+        integrated.each().map(|of| late_mismatch_m_s(of, flight, window, cog_m)).collect();
     for (plateau, mismatch) in flight.plateaus.iter_mut().zip(mismatches) {
         plateau.late_mismatch_m_s = mismatch;
     }
@@ -95,12 +100,12 @@ pub fn compare_late(flight: &mut FlightFit, signals: &[Signal], window: &Window,
 /// The most probable of [`fit_flights`].
 #[must_use]
 pub fn fit_flight(
-    signals: &[Signal],
+    integrated: &Integrated,
     window: &Window,
     drive: Option<&Drive>,
     cog_m: f64,
 ) -> Option<FlightFit> {
-    fit_flights(signals, window, drive, cog_m).into_iter().next()
+    fit_flights(integrated, window, drive, cog_m).into_iter().next()
 }
 
 /// Every number of modes with and without drift, in free phases, and in driven ones where the free ones are not clear.
@@ -162,16 +167,16 @@ fn described(signals: &[Signal], window: &Window, scored: &[(f64, Fit)], taken: 
 /// The same window with each velocity step the mean over it: no mode, no drift. The candidates stay those of the best fit.
 #[must_use]
 pub fn mean_of_flight(
-    signals: &[Signal],
+    integrated: &Integrated,
     best: &FlightFit,
     window: &Window,
     cog_m: f64,
 ) -> Option<FlightFit> {
     let window = Window { from_s: best.from_s, to_s: best.to_s, ..*window };
-    let series: Vec<Series> = signals.iter().map(|s| series(s, &window, cog_m)).collect();
+    let series = series(integrated, &window, cog_m);
     let mean = fit(&series, &[], None, Form::FREE)?;
     Some(FlightFit {
-        plateaus: plateaus(signals, &mean, &[&mean]),
+        plateaus: plateaus(integrated.signals, &mean, &[&mean]),
         modes: Vec::new(),
         drift: false,
         ..best.clone()
@@ -191,13 +196,17 @@ fn mean_ringing_m_s(flight: &FlightFit, plateau: &Plateau, after_s: std::ops::Ra
 }
 
 /// What the velocity has come to do by the end of the flight: another contact leaves a step.
-fn late_mismatch_m_s(signal: &Signal, flight: &FlightFit, whole: &Window, cog_m: f64) -> Option<f64> {
+fn late_mismatch_m_s(
+    (signal, velocity): (&Signal, &Velocity),
+    flight: &FlightFit,
+    whole: &Window,
+    cog_m: f64,
+) -> Option<f64> {
     let to_s = whole.to_s.min(signal.end_s());
     if to_s < flight.from_s + 2.0 * LATE_S || signal.touches(&signal.gaps, flight.from_s, to_s) {
         return None;
     }
     let plateau = flight.plateau(&signal.name)?;
-    let velocity = Velocity::of(signal, whole.contact_s - 2e-3, to_s);
     let centrifugal_m_s2 = -whole.angular_velocity_rad_s.powi(2) * centrifugal_arm_m(signal, cog_m);
     let off_m_s = |length_s: f64| {
         let from_s = to_s - length_s;
@@ -280,9 +289,17 @@ fn range(values: &[f64]) -> f64 {
     high - low
 }
 
-/// Velocity of one signal over the window in [`POINTS`] means, centrifugal force taken off, lost samples left out.
-pub(super) fn series(signal: &Signal, window: &Window, cog_m: f64) -> Series {
-    let velocity = Velocity::of(signal, window.contact_s - 2e-3, window.to_s);
+/// Each velocity over the window in [`POINTS`] means, centrifugal force taken off, lost samples left out.
+pub(super) fn series(integrated: &Integrated, window: &Window, cog_m: f64) -> Vec<Series> {
+    integrated.each().map(|of| series_of(of, integrated.contact_s, window, cog_m)).collect()
+}
+
+fn series_of(
+    (signal, velocity): (&Signal, &Velocity),
+    contact_s: f64,
+    window: &Window,
+    cog_m: f64,
+) -> Series {
     let arm_m = centrifugal_arm_m(signal, cog_m);
     let centrifugal_m_s2 = -window.angular_velocity_rad_s.powi(2) * arm_m;
     let length_s = (window.to_s.min(signal.end_s()) - window.from_s).max(0.0);
@@ -314,20 +331,20 @@ pub(super) fn series(signal: &Signal, window: &Window, cog_m: f64) -> Series {
         .map(|g| signal.time_s(g.from) - window.from_s)
         .filter(|t| *t > time_s.first().copied().unwrap_or(0.0) && *t < time_s.last().copied().unwrap_or(0.0))
         .collect();
-    let floor = noise_floor(signal, window, length_s).max(LEAST_FLOOR * range(&value).max(0.0));
+    let floor =
+        noise_floor((signal, velocity), contact_s, length_s).max(LEAST_FLOOR * range(&value).max(0.0));
     Series { time_s, value, steps_s, floor: floor.max(1e-9) }
 }
 
 /// RMS of the velocity about a line over as long a stretch of free fall before contact, m/s.
-fn noise_floor(signal: &Signal, window: &Window, length_s: f64) -> f64 {
-    let to_s = window.contact_s - 5e-3;
+fn noise_floor((signal, velocity): (&Signal, &Velocity), contact_s: f64, length_s: f64) -> f64 {
+    let to_s = contact_s - CLEAR_S;
     let from_s = (to_s - length_s).max(signal.start_s);
     let guessed = signal.noise_m_s2 * (length_s / signal.sample_rate_hz).sqrt() / 4.0;
     let points: u32 = 60;
     if to_s - from_s < 0.5 * length_s {
         return guessed;
     }
-    let velocity = Velocity::of(signal, from_s, to_s);
     let bin_s = (to_s - from_s) / f64::from(points);
     let (mut time_s, mut value) = (Vec::new(), Vec::new());
     for i in 0..points {

@@ -61,7 +61,7 @@ pub(super) struct Histories<'a> {
 
 impl<'a> Histories<'a> {
     pub fn new(
-        Integrated { signals, velocities }: &'a Integrated,
+        Integrated { signals, velocities, .. }: &'a Integrated,
         fit: &FlightFit,
         line: &Line,
         (contact_s, separation_s): (f64, f64),
@@ -207,22 +207,20 @@ fn bending(
     sum
 }
 
-/// The shape of the contact force between first contact and separation, for modes that ring from `from_s` on: that of the rotation freed
+/// The shape of the contact force between first contact and separation at `left_s`, for modes that ring from `from_s` on: that of the rotation freed
 /// of an earlier fit's ringing, or a half sine where there is none. `None` without two transverse channels apart.
 #[must_use]
 pub fn drive(
-    signals: &[Signal],
+    integrated: &Integrated,
     fit: Option<&FlightFit>,
-    (contact_s, left_s): (f64, f64),
+    left_s: f64,
     from_s: f64,
     cog_m: f64,
 ) -> Option<Drive> {
-    let line = Line::through(signals, cog_m)?;
+    let contact_s = integrated.contact_s;
+    let line = Line::through(integrated.signals, cog_m)?;
     let turning = match fit {
-        Some(fit) => {
-            let integrated = Integrated::over_contact(signals, (contact_s, left_s));
-            Histories::new(&integrated, fit, &line, (contact_s, left_s))?.turning_rad_s(&line)
-        }
+        Some(fit) => Histories::new(integrated, fit, &line, (contact_s, left_s))?.turning_rad_s(&line),
         None if left_s > contact_s => half_sine(-1.0),
         None => return None,
     };

@@ -14,32 +14,40 @@ pub use reconstruct::{outcome, reconstruct};
 pub use ringing::{Calmed, rotation_rad_s};
 pub use strike::strike;
 
-use crate::data::{Events, Signal};
+use crate::data::Signal;
 use crate::numerics::quadrature::running_integral;
+use crate::numerics::reduce;
+use rayon::prelude::*;
 
-/// Signals with their running integrals over the contact, which every reconstruction of the same drop asks for again.
+/// Velocities count from so long before first contact, s: it may be moved within its uncertainty.
+const MARGIN_S: f64 = 2e-3;
+/// They are followed from so long before it, s: the longest flight window and what keeps its like before first contact clear of that.
+const BEFORE_S: f64 = flight::LONGEST_S + 2.0 * flight::CLEAR_S;
+
+/// Signals with their running integrals, which every flight fit and every reconstruction of the same drop asks for again.
 pub struct Integrated<'a> {
     pub(crate) signals: &'a [Signal],
+    pub(crate) contact_s: f64,
     velocities: Vec<Velocity>,
+    peaks_m_s2: Vec<f64>,
 }
 
 impl<'a> Integrated<'a> {
-    /// Integrals from 2 ms before first contact, where the flight fits begin to count too, until half the contact's length after it: both
-    /// times may be moved within their uncertainty.
+    /// Integrals of whole signals, 0 shortly before first contact.
     #[must_use]
-    pub fn over_contact(signals: &'a [Signal], (contact_s, left_s): (f64, f64)) -> Self {
-        let to_s = left_s + 0.5 * (left_s - contact_s).max(0.0);
-        Self {
-            signals,
-            velocities: signals.iter().map(|s| Velocity::of(s, contact_s - 2e-3, to_s)).collect(),
-        }
+    pub fn over(signals: &'a [Signal], contact_s: f64) -> Self {
+        let of = |s: &Signal| {
+            let mut velocity = Velocity::of(s, contact_s - BEFORE_S, f64::INFINITY);
+            velocity.count_from(contact_s - MARGIN_S);
+            (velocity, reduce::peak(&s.force_m_s2))
+        };
+        let (velocities, peaks_m_s2) = signals.par_iter().map(of).unzip();
+        Self { signals, contact_s, velocities, peaks_m_s2 }
     }
 
-    /// The same over what `events` name as the contact; over nothing where they name none.
-    #[must_use]
-    pub fn over(signals: &'a [Signal], events: &Events) -> Self {
-        let contact_s = events.first_contact_s.unwrap_or(0.0);
-        Self::over_contact(signals, (contact_s, events.separation_s.unwrap_or(contact_s)))
+    /// Each signal with its velocity.
+    fn each(&self) -> impl IndexedParallelIterator<Item = (&'a Signal, &Velocity)> {
+        self.signals.par_iter().zip(&self.velocities)
     }
 }
 
@@ -62,6 +70,21 @@ impl Velocity {
         }
     }
 
+    /// Sets the velocity at the last sample before `zero_s` to 0.
+    fn count_from(&mut self, zero_s: f64) {
+        let zero_m_s = self.values_m_s.get(self.index_from(zero_s).saturating_sub(1)).copied().unwrap_or(0.0);
+        for value in &mut self.values_m_s {
+            *value -= zero_m_s;
+        }
+    }
+
+    /// Index of the first sample at or after a time, cut to what there is.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut at 0 first")]
+    fn index_from(&self, time_s: f64) -> usize {
+        let position = (time_s - self.start_s) * self.sample_rate_hz;
+        (position.ceil().max(0.0) as usize).min(self.values_m_s.len())
+    }
+
     /// Velocity at a time, m/s, linear between samples and constant beyond the ends.
     pub fn at(&self, time_s: f64) -> f64 {
         let Some(last) = self.values_m_s.len().checked_sub(1) else { return 0.0 };
@@ -76,16 +99,13 @@ impl Velocity {
 
     /// Mean velocity between two times, m/s: of the samples there, or the value in the middle where there are none.
     pub fn mean(&self, from_s: f64, to_s: f64) -> f64 {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut at 0 first")]
-        let index = |t: f64| {
-            (((t - self.start_s) * self.sample_rate_hz).ceil().max(0.0) as usize).min(self.values_m_s.len())
-        };
-        let inside = &self.values_m_s[index(from_s)..index(to_s).max(index(from_s))];
+        let from = self.index_from(from_s);
+        let inside = &self.values_m_s[from..self.index_from(to_s).max(from)];
         if inside.is_empty() {
             return self.at(f64::midpoint(from_s, to_s));
         }
         #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
         let n = inside.len() as f64;
-        inside.iter().sum::<f64>() / n
+        reduce::sum(inside) / n
     }
 }

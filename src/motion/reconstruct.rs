@@ -351,7 +351,7 @@ mod tests {
             gravity_m_s2: 9.81,
             axial,
         };
-        reconstruct(&Integrated::over(&signals, &events), &fit, &events, &setup).expect("two channels apart")
+        reconstruct(&Integrated::over(&signals, 0.01), &fit, &events, &setup).expect("two channels apart")
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! A flight to the blow that the cask took in it, where one explains it better than ringing does.
 
-use super::Window;
 use super::flight::series;
-use crate::data::{Axis, FlightFit, Signal, Strike};
-use crate::numerics::damped_modes::{Form, Oscillation, Series, describe, fit};
+use super::{Integrated, Window};
+use crate::data::{Axis, FlightFit, Strike};
+use crate::numerics::damped_modes::{Form, Oscillation, Series, coefficients, fit};
 use rayon::prelude::*;
 
 /// Places tried over the flight, and about the best of them.
@@ -20,9 +20,9 @@ const FEWEST: usize = 30;
 ///
 /// By the Bayesian information criterion (21) of the flight with the step, its modes as they are, less that of the flight as it was fitted.
 #[must_use]
-pub fn strike(flight: &FlightFit, signals: &[Signal], window: &Window, cog_m: f64) -> Option<Strike> {
+pub fn strike(flight: &FlightFit, integrated: &Integrated, window: &Window, cog_m: f64) -> Option<Strike> {
     let window = Window { from_s: flight.from_s, to_s: flight.to_s, ..*window };
-    let series: Vec<Series> = signals.par_iter().map(|s| series(s, &window, cog_m)).collect();
+    let series = series(integrated, &window, cog_m);
     if series.iter().any(|s| !s.steps_s.is_empty() || s.value.len() < FEWEST) {
         return None;
     }
@@ -36,7 +36,7 @@ pub fn strike(flight: &FlightFit, signals: &[Signal], window: &Window, cog_m: f6
         let (kept, drift) = form;
         let stepped: Vec<Series> =
             series.iter().map(|s| Series { steps_s: vec![after_s], ..s.clone() }).collect();
-        let fit = describe(&stepped, modes[..kept].to_vec(), Form { drift, drive: None })?;
+        let fit = coefficients(&stepped, modes[..kept].to_vec(), Form { drift, drive: None })?;
         Some((fit.bic(&stepped, taken.correlation), form, after_s, fit))
     };
     let best = |places: Vec<((usize, bool), f64)>| {
@@ -55,7 +55,8 @@ pub fn strike(flight: &FlightFit, signals: &[Signal], window: &Window, cog_m: f6
     if !(share(0)..=share(PLACES)).contains(&(after_s / length_s)) {
         return None;
     }
-    let of_transverse = signals.iter().zip(&found.series).filter(|(s, _)| s.axis == Axis::Transverse);
+    let of_transverse =
+        integrated.signals.iter().zip(&found.series).filter(|(s, _)| s.axis == Axis::Transverse);
     let steps_m_s = of_transverse.filter_map(|(_, f)| f.jumps.first());
     Some(Strike {
         time_s: window.from_s + after_s,
@@ -68,7 +69,7 @@ pub fn strike(flight: &FlightFit, signals: &[Signal], window: &Window, cog_m: f6
 mod tests {
     use super::super::flight::fit_flight;
     use super::*;
-    use crate::data::End;
+    use crate::data::{End, Signal};
     use std::f64::consts::{PI, TAU};
 
     const RATE_HZ: f64 = 2e4;
@@ -113,10 +114,10 @@ mod tests {
             signal("A1", End::First, 19.0, 2.0, -0.4 * blow_m_s),
             signal("A2", End::Second, -7.0, 1.8, blow_m_s),
         ];
-        let window =
-            Window { contact_s: 0.02, from_s: 0.026, to_s: 0.085, drift: true, angular_velocity_rad_s: 0.0 };
-        let flight = fit_flight(&signals, &window, None, 2.5).expect("a flight");
-        strike(&flight, &signals, &window, 2.5).expect("a flight without gaps")
+        let window = Window { from_s: 0.026, to_s: 0.085, drift: true, angular_velocity_rad_s: 0.0 };
+        let integrated = Integrated::over(&signals, 0.02);
+        let flight = fit_flight(&integrated, &window, None, 2.5).expect("a flight");
+        strike(&flight, &integrated, &window, 2.5).expect("a flight without gaps")
     }
 
     #[test]

@@ -45,7 +45,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         fall_s: None,
         stood_in: None,
     };
-    let integrated = motion::Integrated::over(measured.signals, measured.events);
+    let integrated = motion::Integrated::over(&signals, result.events.first_contact_s.expect("a contact"));
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
     let linear = fit::quantities(&measured, &moved).expect("quantities");
     let (mut chance, mut left) = (ChaCha8Rng::seed_from_u64(4), DRAWS);

@@ -5,8 +5,15 @@ use super::{Fit, Form, Oscillation, Series, SeriesFit};
 use nalgebra::{DMatrix, DVector};
 
 /// Coefficients, uncertainties and residuals at given modes.
+pub(super) fn describe(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
+    let mut fit = coefficients(series, modes, form)?;
+    uncertainties(series, &mut fit, form)?;
+    Some(fit)
+}
+
+/// Coefficients and residuals at given modes; the uncertainties are left at 0.
 #[must_use]
-pub fn describe(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
+pub fn coefficients(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
     let drift = form.drift;
     let mut fits = Vec::new();
     let mut lag_sum = 0.0;
@@ -29,16 +36,14 @@ pub fn describe(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Optio
     }
     #[allow(clippy::cast_precision_loss, reason = "a handful of series")]
     let lag = (lag_sum / series.len() as f64).clamp(0.0, 0.95);
-    let mut fit = Fit {
+    Some(Fit {
         modes,
         drift,
         driven: form.drive.is_some(),
         series: fits,
         correlation: (1.0 + lag) / (1.0 - lag),
         parameters,
-    };
-    uncertainties(series, &mut fit, form)?;
-    Some(fit)
+    })
 }
 
 /// Lag-one autocorrelation.

@@ -6,7 +6,8 @@ mod projection;
 mod ringing;
 mod shape;
 
-pub use covariance::describe;
+pub use covariance::coefficients;
+use covariance::describe;
 use projection::{best_seed, refine};
 use ringing::Ringing;
 

@@ -89,7 +89,6 @@ impl<'a> Flight<'a> {
         let (length_s, slap_s) = (truth.contact_s?, truth.slap_t?);
         let left_s = drop.contact_s + length_s;
         let window = motion::Window {
-            contact_s: drop.contact_s,
             from_s: left_s + 0.1 * length_s + 3e-4,
             to_s: drop.contact_s + slap_s - 5e-4,
             drift: true,
@@ -104,10 +103,10 @@ impl<'a> Flight<'a> {
 
     /// The program's own.
     fn most_probable(&self) -> Option<Vec<f64>> {
-        let (signals, cog_m) = (&self.drop.signals, self.drop.drawn.stated.cask.cog_m);
-        let contact = (self.window.contact_s, self.left_s);
-        let drive = motion::drive(signals, None, contact, self.window.from_s, cog_m);
-        let fit = motion::fit_flight(signals, &self.window, drive.as_ref(), cog_m)?;
+        let cog_m = self.drop.drawn.stated.cask.cog_m;
+        let integrated = motion::Integrated::over(&self.drop.signals, self.drop.contact_s);
+        let drive = motion::drive(&integrated, None, self.left_s, self.window.from_s, cog_m);
+        let fit = motion::fit_flight(&integrated, &self.window, drive.as_ref(), cog_m)?;
         Some(fit.plateaus.iter().map(|p| p.velocity_step_m_s).collect())
     }
 
@@ -120,7 +119,7 @@ impl<'a> Flight<'a> {
 
     /// The velocity of a signal over the window, in means.
     fn series(&self, signal: &Signal) -> Series {
-        let velocity = motion::Velocity::of(signal, self.window.contact_s - 2e-3, self.window.to_s);
+        let velocity = motion::Velocity::of(signal, self.drop.contact_s - 2e-3, self.window.to_s);
         let bin_s = (self.window.to_s - self.window.from_s) / f64::from(POINTS);
         let begins_s = |i: u16| self.window.from_s + f64::from(i) * bin_s;
         Series {

@@ -103,7 +103,9 @@ fn off(drawn: &Drawn) -> Vec<(Option<f64>, Option<f64>)> {
 /// their intervals for the joint fit and the choice, which are one piece of work.
 fn times(drop: &Prepared, request: &TrialRequest) -> Option<Vec<Timing>> {
     let (signals, file) = (&drop.signals, &drop.drawn.stated);
-    let settled = settle::settle(file, signals, drop.contact_s)?;
+    let integrate = || motion::Integrated::over(black_box(signals), drop.contact_s);
+    let integrated = integrate();
+    let settled = settle::settle(file, &integrated)?;
     let flight = settled.flight?;
     let struck = settled.struck?;
     let events = Events {
@@ -115,14 +117,12 @@ fn times(drop: &Prepared, request: &TrialRequest) -> Option<Vec<Timing>> {
     let setup: Setup = assemble::sticking(file);
     let cog_m = file.cask.cog_m;
     let window = motion::Window {
-        contact_s: drop.contact_s,
         from_s: flight.from_s,
         to_s: flight.to_s,
         drift: flight.drift,
         angular_velocity_rad_s: motion::rotation_rad_s(signals, &flight),
     };
-    let mean = || motion::mean_of_flight(signals, &flight, &window, cog_m);
-    let integrated = motion::Integrated::over(signals, &events);
+    let mean = || motion::mean_of_flight(&integrate(), &flight, &window, cog_m);
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
     let move_by = |flight: Option<FlightFit>| moved(&flight?, &events, &setup);
     let measured = fit::Measured {
@@ -140,16 +140,16 @@ fn times(drop: &Prepared, request: &TrialRequest) -> Option<Vec<Timing>> {
     };
     let mut work: Vec<Work> = vec![
         Box::new(|| {
-            black_box(motion::read_channels(black_box(signals), &events, &setup));
+            black_box(motion::read_channels(&integrate(), &events, &setup));
         }),
         Box::new(|| {
             black_box(move_by(mean()));
         }),
         Box::new(|| {
-            black_box(move_by(motion::fit_flight(signals, &window, None, cog_m)));
+            black_box(move_by(motion::fit_flight(&integrate(), &window, None, cog_m)));
         }),
         Box::new(|| {
-            let reading = motion::read_channels(signals, &events, &setup);
+            let reading = motion::read_channels(&integrate(), &events, &setup);
             black_box(fit::ladder(&measured, mean().as_ref(), reading, &moved));
         }),
     ];
