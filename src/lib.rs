@@ -41,6 +41,11 @@ const RIVAL_WAY: f64 = 0.1;
 /// What cannot be had is null in the result, with an issue that says why; the verdict says whether to believe the rest.
 #[must_use]
 pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
+    // On a thread of the pool: any other would be put to sleep and woken again for each piece of work that two threads share.
+    rayon::scope(|_| analyzed(recording, cask_file))
+}
+
+fn analyzed(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let mut draft = Draft::new(recording, cask_file);
     draft.issues.extend(judge::judge_silent(&recording.channels));
     let Some(event) = events::locate(recording, one_end::least_step_m_s(cask_file, recording))

@@ -10,6 +10,7 @@ use crate::data::{
     Span,
 };
 use crate::numerics::robust;
+use rayon::prelude::*;
 
 /// Free fall used for the offset, s: long against noise and hum, short against any free fall from above 0.4 m.
 const BEFORE_S: f64 = 0.25;
@@ -61,15 +62,8 @@ pub fn condition(
     reach: &Reach,
     corrections: Corrections,
 ) -> (Vec<Signal>, Vec<Issue>) {
-    let parts: Vec<_> = std::thread::scope(|scope| {
-        let each = |channel| scope.spawn(move || signal(channel, event, reach, corrections));
-        let running: Vec<_> = recording.channels.iter().map(each).collect();
-        running
-            .into_iter()
-            .map(|r| r.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-            .collect()
-    });
-    let (signals, issues): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+    let each = |channel| signal(channel, event, reach, corrections);
+    let (signals, issues): (Vec<_>, Vec<_>) = recording.channels.par_iter().map(each).unzip();
     (signals, issues.into_iter().flatten().collect())
 }
 
