@@ -2,6 +2,7 @@
 
 use crate::data::{Events, Issue, IssueCode, Severity, Signal};
 use crate::numerics::spectrum::magnitude;
+use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -33,12 +34,14 @@ pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&
     let (Some(struck), Some(contact_s)) = (struck, events.first_contact_s) else { return Vec::new() };
     let to_s = events.separation_s.unwrap_or(contact_s + LONGEST_S).min(contact_s + LONGEST_S);
     let Some((pulse_s, length_s)) = pulse(struck, contact_s..to_s) else { return Vec::new() };
-    let largest = content(struck, pulse_s).map_or(0.0, |c| c.largest);
+    let contents: Vec<Option<Content>> = signals.par_iter().map(|s| content(s, pulse_s)).collect();
+    let of_struck = signals.iter().zip(&contents).find(|(s, _)| s.name == struck.name);
+    let largest = of_struck.and_then(|(_, c)| c.as_ref()).map_or(0.0, |c| c.largest);
     let mut issues = Vec::new();
-    for signal in signals {
+    for (signal, content) in signals.iter().zip(contents) {
         issues.extend(low_rate(signal, pulse_s, length_s));
         if !disturbed.contains(&signal.name.as_str()) {
-            issues.extend(aliasing(signal, pulse_s, largest));
+            issues.extend(content.and_then(|found| aliasing(signal, pulse_s, &found, largest)));
         }
     }
     issues
@@ -118,11 +121,10 @@ fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<Content> {
     })
 }
 
-fn aliasing(signal: &Signal, pulse_s: (f64, f64), largest: f64) -> Option<Issue> {
+fn aliasing(signal: &Signal, pulse_s: (f64, f64), found: &Content, largest: f64) -> Option<Issue> {
     if signal.touches(&signal.gaps, pulse_s.0, pulse_s.1) {
         return None;
     }
-    let found = content(signal, pulse_s)?;
     let share = found.in_band / largest;
     (share > MOST_CONTENT && found.in_band > OVER_NOISE * found.noise).then(|| {
         Issue::new(

@@ -1,6 +1,7 @@
 //! A quiet stretch of samples to the spectrum of its noise, and to what that noise adds to an integral.
 
-use rustfft::{FftPlanner, num_complex::Complex};
+use super::spectrum::forward;
+use rustfft::num_complex::Complex;
 use std::f64::consts::{PI, TAU};
 
 /// Sine tapers averaged (Riedel & Sidorenko 1995): 2 × 5 degrees of freedom a line, a resolution of 3 lines.
@@ -28,7 +29,7 @@ pub fn spectrum(quiet: &[f64], sample_rate_hz: f64) -> Vec<(f64, f64)> {
         return Vec::new();
     }
     let mean = quiet.iter().sum::<f64>() / n as f64;
-    let fft = FftPlanner::new().plan_fft_forward(n);
+    let fft = forward(n);
     let mut lines = vec![0.0; n / 2];
     for taper in 1..=TAPERS {
         let turn = PI * f64::from(taper) / (n + 1) as f64;

@@ -1,6 +1,15 @@
 //! Uniform samples to the magnitude of their Fourier integral.
 
-use rustfft::{FftPlanner, num_complex::Complex};
+use rustfft::{Fft, FftPlanner, num_complex::Complex};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+
+/// Plans are kept: the sines that one is made of cost more than to use it once.
+static PLANS: LazyLock<Mutex<FftPlanner<f64>>> = LazyLock::new(|| Mutex::new(FftPlanner::new()));
+
+/// The forward transform of `count` values.
+pub(super) fn forward(count: usize) -> Arc<dyn Fft<f64>> {
+    PLANS.lock().unwrap_or_else(PoisonError::into_inner).plan_fft_forward(count)
+}
 
 /// Frequencies (Hz) and |∫ x e^{−iωt} dt| up to half the sample rate; padded with zeros to the next power of two.
 ///
@@ -14,7 +23,7 @@ pub fn magnitude(samples: &[f64], sample_rate_hz: f64) -> (Vec<f64>, Vec<f64>) {
     let n = samples.len().next_power_of_two();
     let mut work: Vec<Complex<f64>> = samples.iter().map(|&x| Complex::new(x, 0.0)).collect();
     work.resize(n, Complex::new(0.0, 0.0));
-    FftPlanner::new().plan_fft_forward(n).process(&mut work);
+    forward(n).process(&mut work);
     let bins = n / 2 + 1;
     let frequency_hz = (0..bins).map(|i| i as f64 * sample_rate_hz / n as f64).collect();
     let magnitude = work[..bins].iter().map(|c| c.norm_sqr().sqrt() / sample_rate_hz).collect();
