@@ -1,5 +1,6 @@
 //! Samples to the spikes and dropouts of cables and connectors, which no pulse of a cask looks like.
 
+use super::clipping::runs_of_steps;
 use crate::data::{Issue, IssueCode, Severity, Signal, Span};
 use crate::numerics::reduce;
 
@@ -36,20 +37,22 @@ pub(super) fn spikes(signal: &Signal, velocity_step_m_s: f64) -> Option<Issue> {
     let height = height(signal, signal.noise_m_s2);
     let most_m_s = SHARE_OF_STEP * velocity_step_m_s.abs();
     let (mut found, mut held_m_s) = (Vec::new(), 0.0);
-    let mut i = 2;
-    while i + 2 < force.len() {
-        // Few samples stand out of the one before: what costs more is asked after that.
-        let spike = ((force[i] - force[i - 1]).abs() > height)
-            .then(|| (1..=LONGEST_SPIKE).find_map(|width| area(force, i, width, height).map(|a| (width, a))))
-            .flatten()
+    // Few samples stand out of the one before: what costs more is asked after that.
+    let high = runs_of_steps(force, |before, f| (f - before).abs() > height);
+    let mut free_from = 2;
+    for i in high.into_iter().flat_map(|steps| steps.from + 1..=steps.to) {
+        if i < free_from || i + 2 >= force.len() {
+            continue;
+        }
+        let spike = (1..=LONGEST_SPIKE)
+            .find_map(|width| area(force, i, width, height).map(|a| (width, a)))
             .map(|(width, area)| (width, area / signal.sample_rate_hz))
             .filter(|(_, area_m_s)| *area_m_s < most_m_s && !is_lost(signal, i));
         if let Some((width, area_m_s)) = spike {
             found.push(i);
             held_m_s += area_m_s;
-            i += width;
+            free_from = i + width + 1;
         }
-        i += 1;
     }
     let (first, last) = (found.first()?, found.last()?);
     let severity = if held_m_s > SMALL_M_S { Severity::Warning } else { Severity::Note };
@@ -90,7 +93,11 @@ pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64)
     };
     let is_noisy = quiet.len() > 50 && repeated < MOST_REPEATED;
     let jump = |a: usize, b: usize| force.get(a).zip(force.get(b)).map_or(0.0, |(x, y)| (x - y).abs());
-    let dropouts: Vec<Span> = runs(force)
+    #[allow(clippy::float_cmp, reason = "a dropout repeats a sample to the bit")]
+    let equal = runs_of_steps(force, |a, b| a == b);
+    let dropouts: Vec<Span> = equal
+        .into_iter()
+        .map(|steps| (steps.from, steps.to + 1))
         .filter(|&(from, to)| to - from >= LEAST_RUN)
         .filter(|&(from, to)| {
             let jumps =
@@ -125,16 +132,6 @@ fn bridged_m_s(signal: &Signal, span: Span) -> f64 {
     let at = |i: Option<usize>| i.and_then(|i| signal.force_m_s2.get(i)).copied().unwrap_or(0.0);
     let middle = f64::midpoint(at(span.from.checked_sub(1)), at(Some(span.to)));
     middle.abs() * (span.to - span.from) as f64 / signal.sample_rate_hz
-}
-
-/// Runs of equal samples, as `from..to`.
-fn runs(force: &[f64]) -> impl Iterator<Item = (usize, usize)> + '_ {
-    let mut from = 0;
-    (1..=force.len()).filter_map(move |i| {
-        #[allow(clippy::float_cmp, reason = "a dropout repeats a sample to the bit")]
-        let ends = i == force.len() || force[i] != force[from];
-        ends.then(|| (std::mem::replace(&mut from, i), i))
-    })
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! The free fall before first contact to a channel's offset and noise.
 
 use crate::data::{Issue, IssueCode, Severity, Signal};
-use crate::numerics::reduce::{block_means, block_of};
+use crate::numerics::reduce::{self, block_means, block_of};
 use crate::numerics::{noise, robust};
+use std::borrow::Cow;
 
 /// Least free fall an offset is taken from, s: a period of 50 Hz hum is 20 ms, and half of it still bounds an offset.
 const LEAST_S: f64 = 0.01;
@@ -33,12 +34,7 @@ const SMALL_M_S: f64 = 0.05;
 pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<Issue> {
     let end = signal.index_from(before_s);
     let length_s = before_s - signal.start_s;
-    let (mut quiet, mut at) = (Vec::with_capacity(end), 0);
-    for gap in signal.gaps.iter().filter(|gap| gap.from < end) {
-        quiet.extend_from_slice(signal.force_m_s2.get(at..gap.from).unwrap_or_default());
-        at = at.max(gap.to);
-    }
-    quiet.extend_from_slice(signal.force_m_s2.get(at..end).unwrap_or_default());
+    let quiet = recorded(signal, end);
     if length_s < LEAST_S || quiet.len() < 8 {
         // Without free fall the offset may be as large as a usual one.
         signal.u_offset_m_s2 = NOTABLE_M_S2;
@@ -48,13 +44,18 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<I
     let (mean, rms) = robust::mean_and_rms(&quiet);
     let (first, second) = quiet.split_at(quiet.len() / 2);
     let wander = (robust::mean_and_rms(first).0 - robust::mean_and_rms(second).0).abs();
-    signal.noise_m_s2 = robust::spread(&quiet).max(1e-3 * rms);
+    let noise_m_s2 = robust::spread(&quiet).max(1e-3 * rms);
     let block = block_of(SPECTRUM_RATE_HZ, signal.sample_rate_hz);
-    signal.noise_spectrum =
-        noise::spectrum(&block_means(&quiet, block), signal.sample_rate_hz / number(block));
-    signal.free_fall_s = length_s;
+    let noise_spectrum = noise::spectrum(&block_means(&quiet, block), signal.sample_rate_hz / number(block));
     // White noise averages out; what differs between the two halves does not.
-    signal.u_offset_m_s2 = (rms / number(quiet.len()).sqrt()).max(wander / 2.0);
+    let u_offset_m_s2 = (rms / number(quiet.len()).sqrt()).max(wander / 2.0);
+    let mut issues = Vec::new();
+    issues.extend(offset(&signal.name, mean, take_off));
+    issues.extend(drift(&signal.name, &quiet, (signal.start_s, before_s)));
+    signal.noise_m_s2 = noise_m_s2;
+    signal.noise_spectrum = noise_spectrum;
+    signal.free_fall_s = length_s;
+    signal.u_offset_m_s2 = u_offset_m_s2;
     if take_off {
         signal.removed_offset_m_s2 = mean;
         for f in &mut signal.force_m_s2 {
@@ -64,10 +65,23 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<I
             signal.force_m_s2[gap.from..gap.to].fill(0.0);
         }
     }
-    let mut issues = Vec::new();
-    issues.extend(offset(&signal.name, mean, take_off));
-    issues.extend(drift(signal, &quiet, before_s));
     issues
+}
+
+/// The first `end` samples but for those that are missing.
+fn recorded(signal: &Signal, end: usize) -> Cow<'_, [f64]> {
+    let force = &signal.force_m_s2[..end];
+    let mut gaps = signal.gaps.iter().filter(|gap| gap.from < end).peekable();
+    if gaps.peek().is_none() {
+        return Cow::Borrowed(force);
+    }
+    let (mut quiet, mut at) = (Vec::with_capacity(end), 0);
+    for gap in gaps {
+        quiet.extend_from_slice(force.get(at..gap.from).unwrap_or_default());
+        at = at.max(gap.to);
+    }
+    quiet.extend_from_slice(force.get(at..).unwrap_or_default());
+    Cow::Owned(quiet)
 }
 
 fn too_short(signal: &Signal, length_s: f64) -> Issue {
@@ -84,11 +98,12 @@ fn too_short(signal: &Signal, length_s: f64) -> Issue {
 }
 
 /// The samples with wild ones set to the median: a spike is no offset.
-fn tame(mut quiet: Vec<f64>) -> Vec<f64> {
+fn tame(mut quiet: Cow<'_, [f64]>) -> Cow<'_, [f64]> {
     let median = robust::median(&mut robust::sampled(&quiet).collect::<Vec<_>>());
     let most = WILD * robust::spread(&quiet);
-    if most > 0.0 {
-        for x in quiet.iter_mut().filter(|x| (**x - median).abs() > most) {
+    let (low, high) = reduce::extremes(&quiet, median);
+    if most > 0.0 && (high - median).max(median - low) > most {
+        for x in quiet.to_mut().iter_mut().filter(|x| (**x - median).abs() > most) {
             *x = median;
         }
     }
@@ -125,13 +140,14 @@ fn offset(name: &str, mean_m_s2: f64, taken_off: bool) -> Option<Issue> {
 }
 
 /// A slope of the free fall beyond its noise whose continuation into the flight would matter.
-fn drift(signal: &Signal, quiet: &[f64], before_s: f64) -> Option<Issue> {
+fn drift(name: &str, quiet: &[f64], (from_s, to_s): (f64, f64)) -> Option<Issue> {
     let size = quiet.len() / BLOCKS;
     if size == 0 {
         return None;
     }
     let means: Vec<f64> = quiet.chunks_exact(size).take(BLOCKS).map(|c| robust::mean_and_rms(c).0).collect();
-    let step_s = signal.free_fall_s / number(BLOCKS);
+    let length_s = to_s - from_s;
+    let step_s = length_s / number(BLOCKS);
     let middle = (number(BLOCKS) - 1.0) / 2.0;
     let place = |i: usize| (number(i) - middle) * step_s;
     let square: f64 = (0..BLOCKS).map(|i| place(i).powi(2)).sum();
@@ -140,20 +156,20 @@ fn drift(signal: &Signal, quiet: &[f64], before_s: f64) -> Option<Issue> {
     let left: f64 = means.iter().enumerate().map(|(i, m)| (m - mean - slope * place(i)).powi(2)).sum();
     let u_slope = (left / number(BLOCKS - 2) / square).sqrt();
     // From the middle of the free fall, whose mean was taken off, through contact and flight.
-    let adds_m_s = slope.abs() * AHEAD_S * (signal.free_fall_s / 2.0 + AHEAD_S / 2.0);
+    let adds_m_s = slope.abs() * AHEAD_S * (length_s / 2.0 + AHEAD_S / 2.0);
     (slope.abs() > SURE * u_slope && adds_m_s > SMALL_M_S).then(|| {
         Issue::new(
             IssueCode::Offset,
             Severity::Warning,
             format!(
                 "{} drifts by {:+.1} ± {:.1} g/s before the first impact; going on like that it adds {adds_m_s:.2} m/s by the slap-down: let the amplifier warm up, check the cable and its insulation, or use another channel",
-                signal.name,
+                name,
                 slope / 9.806_65,
                 2.0 * u_slope / 9.806_65
             ),
         )
-        .on(&signal.name)
-        .between(before_s - signal.free_fall_s, before_s)
+        .on(name)
+        .between(from_s, to_s)
     })
 }
 
