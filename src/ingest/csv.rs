@@ -11,7 +11,7 @@ mod stamp;
 pub(super) use list::list;
 
 use super::error::{self, IngestError};
-use super::time_base::{self, TimeBaseError, Uniform};
+use super::time_base::{self, TimeBaseError, Times, Uniform};
 use super::{Limits, Progress, RawChannel, RawRecording};
 use crate::data::{CaskFile, ChannelSpec, Issue, IssueCode, Samples, Severity, Source};
 use input::Input;
@@ -66,11 +66,17 @@ fn of_input(
             if uses[at] == 0 { std::mem::take(&mut held[at]) } else { held[at].clone() }
         })
         .collect();
+    // Columns of times are fitted once, however many channels use them.
+    let times: Vec<Option<Times>> = held
+        .iter()
+        .zip(&wanted.is_time)
+        .map(|(column, is_time)| is_time.then(|| Times::new(column)))
+        .collect();
     let uniform: Vec<Result<Uniform, TimeBaseError>> = samples
         .into_par_iter()
         .zip(&plans)
         .map(|(samples, plan)| {
-            on_base(samples, plan.time_column.map(|column| held[wanted.slot(column)].as_slice()), plan)
+            on_base(samples, plan.time_column.and_then(|column| times[wanted.slot(column)].as_ref()), plan)
         })
         .collect();
     let mut channels = Vec::with_capacity(plans.len());
@@ -238,11 +244,9 @@ fn columns(
     Ok((columns, stamps, ending))
 }
 
-fn on_base(samples: Vec<f64>, times_s: Option<&[f64]>, plan: &Plan) -> Result<Uniform, TimeBaseError> {
-    match (times_s, plan.declared_rate_hz) {
-        (Some(times_s), declared_rate_hz) => {
-            time_base::from_times(times_s, Samples::F64(samples), declared_rate_hz)
-        }
+fn on_base(samples: Vec<f64>, times: Option<&Times>, plan: &Plan) -> Result<Uniform, TimeBaseError> {
+    match (times, plan.declared_rate_hz) {
+        (Some(times), declared_rate_hz) => times.place(Samples::F64(samples), declared_rate_hz),
         (None, Some(rate_hz)) => time_base::from_rate(0.0, rate_hz, Samples::F64(samples)),
         (None, None) => Err(TimeBaseError::Rate { sample_rate_hz: 0.0 }),
     }

@@ -11,6 +11,7 @@ pub use blocks::from_blocks;
 use crate::data::{Issue, IssueCode, Samples, Severity, Span};
 use fit::Fit;
 use order::Ordered;
+use std::sync::OnceLock;
 
 /// Samples on a uniform base.
 #[derive(Debug, Clone, PartialEq)]
@@ -193,27 +194,55 @@ impl<S> Placed<S> {
     }
 }
 
-/// Samples with a time each on a uniform base: sorted, doubles dropped, gaps NaN, real jitter interpolated.
-///
-/// A declared rate wins over the one that the times give; gaps are counted at the times' own rate.
+/// Times that several channels may share; what they say of a base is found once.
+pub struct Times<'a> {
+    each_s: &'a [f64],
+    rise: bool,
+    fit: OnceLock<Result<Fit, TimeBaseError>>,
+}
+
+impl<'a> Times<'a> {
+    /// One time a sample, s.
+    #[must_use]
+    pub fn new(times_s: &'a [f64]) -> Self {
+        Self { each_s: times_s, rise: order::rise(times_s), fit: OnceLock::new() }
+    }
+
+    /// Samples with a time each on a uniform base: sorted, doubles dropped, gaps NaN, real jitter interpolated.
+    ///
+    /// A declared rate wins over the one that the times give; gaps are counted at the times' own rate.
+    ///
+    /// # Errors
+    /// [`TimeBaseError`] where the times make no record.
+    pub fn place(&self, samples: Samples, declared_rate_hz: Option<f64>) -> Result<Uniform, TimeBaseError> {
+        if self.each_s.len() != samples.len() {
+            return Err(TimeBaseError::Lengths { times: self.each_s.len(), samples: samples.len() });
+        }
+        if let Some(rate_hz) = declared_rate_hz {
+            check_rate(rate_hz)?;
+        }
+        match samples {
+            Samples::F32(v) => Ok(place(self, v, declared_rate_hz)?.into_uniform(Samples::F32)),
+            Samples::F64(v) => Ok(place(self, v, declared_rate_hz)?.into_uniform(Samples::F64)),
+        }
+    }
+
+    /// The base nearest to the times as they stand, where they rise.
+    fn fit(&self) -> Result<Fit, TimeBaseError> {
+        self.fit.get_or_init(|| Fit::new(self.each_s)).clone()
+    }
+}
+
+/// [`Times::place`] of a single channel.
 ///
 /// # Errors
-/// [`TimeBaseError`] where the times make no record.
+/// As that.
 pub fn from_times(
     times_s: &[f64],
     samples: Samples,
     declared_rate_hz: Option<f64>,
 ) -> Result<Uniform, TimeBaseError> {
-    if times_s.len() != samples.len() {
-        return Err(TimeBaseError::Lengths { times: times_s.len(), samples: samples.len() });
-    }
-    if let Some(rate_hz) = declared_rate_hz {
-        check_rate(rate_hz)?;
-    }
-    match samples {
-        Samples::F32(v) => Ok(place(times_s, v, declared_rate_hz)?.into_uniform(Samples::F32)),
-        Samples::F64(v) => Ok(place(times_s, v, declared_rate_hz)?.into_uniform(Samples::F64)),
-    }
+    Times::new(times_s).place(samples, declared_rate_hz)
 }
 
 /// Samples without times, at a known rate: only non-finite ones are looked for.
@@ -255,18 +284,18 @@ fn check_rate(sample_rate_hz: f64) -> Result<(), TimeBaseError> {
 }
 
 fn place<S: Number>(
-    times_s: &[f64],
+    times: &Times,
     samples: Vec<S>,
     declared_rate_hz: Option<f64>,
 ) -> Result<Placed<S>, TimeBaseError> {
     let mut issues = Vec::new();
-    let (times_s, mut samples) = match order::ordered(times_s, samples, &mut issues)? {
+    let (times_s, mut samples) = match order::ordered((times.each_s, times.rise), samples, &mut issues)? {
         Ordered::Strict(times_s, samples) => (times_s, samples),
         Ordered::Coarse(times_s, samples) => {
             return place_coarse(&times_s, samples, declared_rate_hz, issues);
         }
     };
-    let fit = Fit::new(&times_s)?;
+    let fit = if times.rise { times.fit()? } else { Fit::new(&times_s)? };
     let sample_rate_hz = declared_rate_hz.unwrap_or(1.0 / fit.period_s);
     if (sample_rate_hz * fit.period_s - 1.0).abs() > RATE_TOLERANCE {
         issues.push(rate_contradiction(sample_rate_hz, 1.0 / fit.period_s));

@@ -2,6 +2,8 @@
 
 use super::TimeBaseError;
 use super::order::as_f64;
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// A stretch of samples without a gap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,16 +84,38 @@ fn median_interval(times_s: &[f64]) -> f64 {
     *median
 }
 
-/// Mean of the intervals no longer than `limit_s`.
+/// Mean of the intervals no longer than `limit_s`: all of them together less the few that are longer.
 fn mean_interval(times_s: &[f64], limit_s: f64) -> Option<f64> {
-    let (mut sum_s, mut count) = (0.0, 0_usize);
-    for pair in times_s.windows(2) {
-        let interval_s = pair[1] - pair[0];
-        let taken = interval_s <= limit_s;
-        sum_s += if taken { interval_s } else { 0.0 };
-        count += usize::from(taken);
-    }
+    let last = times_s.len() - 1;
+    let longer = longer_intervals(times_s, limit_s);
+    let sum_s = times_s[last] - times_s[0] - longer.iter().map(|&i| times_s[i + 1] - times_s[i]).sum::<f64>();
+    let count = last - longer.len();
     (count > 0 && sum_s > 0.0).then(|| sum_s / as_f64(count))
+}
+
+/// Which intervals are longer than `limit_s`, by the index of the time before each.
+fn longer_intervals(times_s: &[f64], limit_s: f64) -> Vec<usize> {
+    /// Intervals asked at once whether any is longer, which costs less than to ask each.
+    const TOGETHER: usize = 64;
+    let is_longer = |(a, b): (&f64, &f64)| b - a > limit_s;
+    let of_piece = |piece: Range<usize>| {
+        let mut longer = Vec::new();
+        for from in piece.clone().step_by(TOGETHER) {
+            let to = (from + TOGETHER).min(piece.end);
+            let pairs = times_s[from..to].iter().zip(&times_s[from + 1..=to]);
+            if pairs.clone().fold(false, |any, pair| any | is_longer(pair)) {
+                longer.extend((from..to).zip(pairs).filter(|(_, pair)| is_longer(*pair)).map(|(i, _)| i));
+            }
+        }
+        longer
+    };
+    pieces(0..times_s.len() - 1).into_par_iter().map(of_piece).collect::<Vec<_>>().concat()
+}
+
+/// A range in parts that threads take side by side.
+fn pieces(whole: Range<usize>) -> Vec<Range<usize>> {
+    const PIECE: usize = 1 << 16;
+    whole.clone().step_by(PIECE).map(|from| from..(from + PIECE).min(whole.end)).collect()
 }
 
 /// Cuts the times at their gaps and gives each run its place on the base.
@@ -100,11 +124,11 @@ fn runs(times_s: &[f64], period_s: f64) -> Result<Vec<Run>, TimeBaseError> {
     let mut runs = vec![Run { first: 0, place: 0 }];
     let mut lost_total = 0.0;
     let mut widest = (0.0, 0);
-    for (i, pair) in times_s.windows(2).enumerate() {
-        let interval_s = pair[1] - pair[0];
-        if interval_s <= GAP_PERIODS * period_s || is_jitter(times_s, i, period_s) {
+    for i in longer_intervals(times_s, GAP_PERIODS * period_s) {
+        if is_jitter(times_s, i, period_s) {
             continue;
         }
+        let interval_s = times_s[i + 1] - times_s[i];
         let steps = (interval_s / period_s).round().max(1.0);
         lost_total += steps - 1.0;
         if steps > widest.0 {
@@ -144,15 +168,15 @@ fn line_of_runs(times_s: &[f64], runs: &[Run]) -> Line {
     let first_s = times_s[0];
     let period_s = (times_s[last] - first_s) / as_f64(last_place);
     let middle = as_f64(last_place) / 2.0;
-    let (mut sum, mut sum_k, mut square, mut cross) = (0.0, 0.0, 0.0, 0.0);
-    each_place(times_s, runs, |t, place| {
+    let sums = over_places(times_s, runs, |sums: &mut [[f64; LANES]; 4], lane, t, place| {
         let k = place - middle;
         let r = t - first_s - period_s * place;
-        sum += r;
-        sum_k += k;
-        square += k * k;
-        cross += k * r;
+        for (sum, x) in sums.iter_mut().zip([r, k, k * k, k * r]) {
+            sum[lane] += x;
+        }
     });
+    let total = |i: usize| sums.iter().flat_map(|part| part[i]).sum::<f64>();
+    let (sum, sum_k, square, cross) = (total(0), total(1), total(2), total(3));
     let n = as_f64(times_s.len());
     let variance = square - sum_k * sum_k / n;
     let slope = if variance > 0.0 { (cross - sum_k * sum / n) / variance } else { 0.0 };
@@ -169,25 +193,46 @@ pub(super) fn line(times_s: &[f64]) -> Line {
 }
 
 fn residual(times_s: &[f64], runs: &[Run], line: &Line) -> (f64, f64) {
-    let (mut sum, mut max_s) = (0.0, 0.0_f64);
-    each_place(times_s, runs, |t, place| {
+    let parts = over_places(times_s, runs, |[squares, largest]: &mut [[f64; LANES]; 2], lane, t, place| {
         let r = t - line.start_s - line.period_s * place;
-        sum += r * r;
-        max_s = max_s.max(r.abs());
+        squares[lane] += r * r;
+        largest[lane] = if r.abs() > largest[lane] { r.abs() } else { largest[lane] };
     });
-    ((sum / as_f64(times_s.len())).sqrt(), max_s)
+    let sum: f64 = parts.iter().flat_map(|part| part[0]).sum();
+    ((sum / as_f64(times_s.len())).sqrt(), parts.iter().flat_map(|part| part[1]).fold(0.0, f64::max))
 }
 
-/// Calls `visit` with each time and its place on the base.
-fn each_place(times_s: &[f64], runs: &[Run], mut visit: impl FnMut(f64, f64)) {
-    for (number, run) in runs.iter().enumerate() {
-        let to = runs.get(number + 1).map_or(times_s.len(), |next| next.first);
-        let mut place = as_f64(run.place);
-        for &t in &times_s[run.first..to] {
-            visit(t, place);
-            place += 1.0;
+/// Sums that do not wait for one another.
+const LANES: usize = 4;
+
+/// Has `add` add each time and its place on the base to the sums of its lane; the sums of the parts that threads took side by side.
+fn over_places<const N: usize>(
+    times_s: &[f64],
+    runs: &[Run],
+    add: impl Fn(&mut [[f64; LANES]; N], usize, f64, f64) + Sync,
+) -> Vec<[[f64; LANES]; N]> {
+    let ends = runs.iter().skip(1).map(|next| next.first).chain([times_s.len()]);
+    let of_run = |(run, to): (&Run, usize)| {
+        let (first, place) = (run.first, run.place);
+        pieces(first..to).into_iter().map(move |piece| (as_f64(place + piece.start - first), piece))
+    };
+    let parts: Vec<_> = runs.iter().zip(ends).flat_map(of_run).collect();
+    let of_part = |(place, piece): (f64, Range<usize>)| {
+        let mut sums = [[0.0; LANES]; N];
+        let mut places: [f64; LANES] = std::array::from_fn(|lane| place + as_f64(lane));
+        let (lanes, rest) = times_s[piece].as_chunks::<LANES>();
+        for times in lanes {
+            for lane in 0..LANES {
+                add(&mut sums, lane, times[lane], places[lane]);
+                places[lane] += as_f64(LANES);
+            }
         }
-    }
+        for (lane, (&t, place)) in rest.iter().zip(places).enumerate() {
+            add(&mut sums, lane, t, place);
+        }
+        sums
+    };
+    parts.into_par_iter().map(of_part).collect()
 }
 
 /// What the times are rounded to: a power of ten (printed times), single precision, or the f64 they are held in.
