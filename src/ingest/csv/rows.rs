@@ -188,12 +188,44 @@ impl<'a> Table<'a> {
     fn lines(&mut self, text: &[u8], sink: &mut impl Rows) -> Result<bool, RowError> {
         let mut at = 0;
         while at < text.len() {
+            if let Some(next) = self.plain_line(text, at) {
+                self.line += 1;
+                sink.row(&self.values);
+                at = next;
+                continue;
+            }
             match self.line(text, at, sink)? {
                 Some(next) => at = next,
                 None => return Ok(false),
             }
         }
         Ok(true)
+    }
+
+    /// The values of a line that begins with the wanted columns, all of them numbers with nothing around them; where the next line begins.
+    fn plain_line(&mut self, text: &[u8], mut at: usize) -> Option<usize> {
+        let last = self.values.len().checked_sub(1)?;
+        if self.is_runs || self.wanted.columns[last] != last {
+            return None;
+        }
+        for (slot, value) in self.values.iter_mut().enumerate() {
+            let (number, used) = number::leading(text.get(at..)?, self.decimal)?;
+            *value = number;
+            at += used;
+            let byte = *text.get(at)?;
+            if slot < last && byte != self.delimiter {
+                return None;
+            }
+            at += 1;
+            if slot == last {
+                return match byte {
+                    b'\n' => Some(at),
+                    b'\r' => (text.get(at) == Some(&b'\n')).then_some(at + 1),
+                    _ => (byte == self.delimiter).then(|| skip(text, at, |b| b != b'\n') + 1),
+                };
+            }
+        }
+        None
     }
 
     /// The line at `at` into `sink`; where the next begins, `None` where a block of zero bytes ends the table.
