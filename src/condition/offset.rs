@@ -36,9 +36,10 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<I
     let length_s = before_s - signal.start_s;
     let quiet = recorded(signal, end);
     if length_s < LEAST_S || quiet.len() < 8 {
+        let issue = too_short(signal, length_s, quiet.len());
         // Without free fall the offset may be as large as a usual one.
         signal.u_offset_m_s2 = NOTABLE_M_S2;
-        return vec![too_short(signal, length_s)];
+        return vec![issue];
     }
     let quiet = tame(quiet);
     let (mean, rms) = robust::mean_and_rms(&quiet);
@@ -84,17 +85,22 @@ fn recorded(signal: &Signal, end: usize) -> Cow<'_, [f64]> {
     Cow::Owned(quiet)
 }
 
-fn too_short(signal: &Signal, length_s: f64) -> Issue {
-    Issue::new(
-        IssueCode::BeginsLate,
-        Severity::Warning,
+fn too_short(signal: &Signal, length_s: f64, samples: usize) -> Issue {
+    let free_fall_ms = 1e3 * length_s.max(0.0);
+    let message = if length_s < LEAST_S {
         format!(
-            "{} has {:.1} ms of free fall before the first impact: no offset could be taken from it. Record from before the release",
-            signal.name,
-            1e3 * length_s.max(0.0)
-        ),
-    )
-    .on(&signal.name)
+            "{} has {free_fall_ms:.1} ms of free fall before the first impact: no offset could be taken from it. Record from before the release",
+            signal.name
+        )
+    } else {
+        // As long a fall with as few samples is a rate at fault, not a late start.
+        format!(
+            "{} has {samples} sample(s) in the {free_fall_ms:.0} ms of free fall before the first impact, at {:.3} Hz: no offset could be taken from so few. \
+             Check the times and their unit, or `sample_rate_hz`, and what is missing",
+            signal.name, signal.sample_rate_hz
+        )
+    };
+    Issue::new(IssueCode::BeginsLate, Severity::Warning, message).on(&signal.name)
 }
 
 /// The samples with wild ones set to the median: a spike is no offset.
@@ -230,5 +236,18 @@ mod tests {
     fn a_record_without_free_fall_begins_late() {
         let issues = treat(&mut channel(0.0, 1), 0.005, true);
         assert_eq!(issues[0].code, IssueCode::BeginsLate);
+        assert!(issues[0].message.contains("5.0 ms of free fall"), "{}", issues[0].message);
+    }
+
+    #[test]
+    fn a_long_fall_of_few_samples_is_no_late_start() {
+        // Times in ms that were taken for seconds.
+        let mut slow = signal(vec![0.0; 300]);
+        slow.sample_rate_hz = 20.0;
+        let issues = treat(&mut slow, 0.25, true);
+        assert_eq!(issues[0].code, IssueCode::BeginsLate);
+        let message = &issues[0].message;
+        assert!(message.contains("5 sample(s) in the 250 ms") && message.contains("20.000 Hz"), "{message}");
+        assert!(message.contains("unit") && !message.contains("Record from before"), "{message}");
     }
 }
