@@ -1,5 +1,6 @@
 //! A column's attributes, or those of the groups above it, to rate, unit, start, scale and offset.
 
+use super::super::time_unit;
 use super::dataset::Column;
 use super::fault::Fault;
 use crate::data::Samples;
@@ -92,16 +93,11 @@ impl Attributes {
 pub(super) fn time_scale(column: &Column) -> Result<(f64, f64), Fault> {
     let own = Attributes::own(&column.dataset, column);
     let unit_s = match own.unit.as_deref().map(str::trim) {
-        None | Some("" | "s" | "sec" | "second" | "seconds") => 1.0,
-        Some("ms" | "milliseconds") => 1e-3,
-        Some("us" | "µs" | "μs" | "microseconds") => 1e-6,
-        Some("ns" | "nanoseconds") => 1e-9,
-        Some(other) => {
-            return Err(Fault {
-                problem: format!("{} is in {other:?}, which is no unit of time known here", column.source()),
-                mend: "name a dataset of times in s, ms, us or ns, or give sample_rate_hz".into(),
-            });
-        }
+        None | Some("") => 1.0,
+        Some(unit) => time_unit::seconds(unit).ok_or_else(|| Fault {
+            problem: format!("{} is in {unit:?}, which is no unit of time known here", column.source()),
+            mend: "name a dataset of times in s, ms, us or ns, or give sample_rate_hz".into(),
+        })?,
     };
     Ok((unit_s * own.scale.unwrap_or(1.0), unit_s * own.offset.unwrap_or(0.0)))
 }
