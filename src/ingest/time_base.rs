@@ -1,6 +1,7 @@
 //! Recorded times and samples to one uniform base, with the error of doing so known.
 
 mod blocks;
+mod coarse;
 mod fit;
 mod missing;
 mod order;
@@ -41,8 +42,20 @@ pub struct Block {
     pub count: usize,
 }
 
+/// `number` rounded to so many significant digits.
+pub(super) fn to_digits(number: f64, digits: i32) -> f64 {
+    if number == 0.0 || !number.is_finite() {
+        return number;
+    }
+    #[allow(clippy::cast_possible_truncation, reason = "the exponent of a finite f64 is below 400")]
+    let places = digits - 1 - number.abs().log10().floor() as i32;
+    // A division by a power of ten is rounded right where a product with its inverse is not.
+    let unit = 10_f64.powi(places.abs());
+    if places < 0 { (number / unit).round() * unit } else { (number * unit).round() / unit }
+}
+
 /// A number of a damaged file may have hundreds of digits: those stand with an exponent.
-fn short(number: f64) -> String {
+pub(super) fn short(number: f64) -> String {
     if number == 0.0 || (1e-6..1e12).contains(&number.abs()) {
         format!("{number}")
     } else {
@@ -83,14 +96,18 @@ pub enum TimeBaseError {
         /// The value, s.
         time_s: f64,
     },
-    /// Times repeat so often that they do not tell when a sample was taken.
+    /// Times repeat so often, and change so seldom or unevenly, that they do not tell when a sample was taken.
     #[error(
-        "times repeat ({repeated} of {count}) and do not advance evenly: their resolution is too coarse; \
-         give sample_rate_hz for this channel"
+        "the times are cut to {} s: {count} samples share {} times that are too few or too uneven to tell their rate; \
+         give sample_rate_hz for this channel",
+        short(to_digits(*step_s, 3)),
+        changes + 1
     )]
     TooCoarse {
-        /// How many times equal the one before.
-        repeated: usize,
+        /// What they are cut to, s.
+        step_s: f64,
+        /// How many times are later than the one before.
+        changes: usize,
         /// Number of times.
         count: usize,
     },
@@ -292,7 +309,7 @@ fn place<S: Number>(
     let (times_s, mut samples) = match order::ordered((times.each_s, times.rise), samples, &mut issues)? {
         Ordered::Strict(times_s, samples) => (times_s, samples),
         Ordered::Coarse(times_s, samples) => {
-            return place_coarse(&times_s, samples, declared_rate_hz, issues);
+            return coarse::place(&times_s, samples, declared_rate_hz, issues);
         }
     };
     let fit = if times.rise { times.fit()? } else { Fit::new(&times_s)? };
@@ -318,32 +335,6 @@ fn place<S: Number>(
     let samples = if fit.runs.len() == 1 { samples } else { missing::spread(&samples, &fit) };
     let gaps = if fit.runs.len() == 1 && non_finite == 0 { Vec::new() } else { missing::spans(&samples) };
     Ok(Placed { start_s: fit.start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
-}
-
-/// Times coarser than the sample interval, such as stamps of whole milliseconds at 10 kHz: a line through them.
-fn place_coarse<S: Number>(
-    times_s: &[f64],
-    mut samples: Vec<S>,
-    declared_rate_hz: Option<f64>,
-    mut issues: Vec<Issue>,
-) -> Result<Placed<S>, TimeBaseError> {
-    let line = fit::line(times_s);
-    let repeated = times_s.windows(2).filter(|w| w[0] >= w[1]).count();
-    let step_s = times_s.windows(2).map(|w| w[1] - w[0]).filter(|&d| d > 0.0).fold(f64::MAX, f64::min);
-    if line.max_s > 1.5 * step_s {
-        return Err(TimeBaseError::TooCoarse { repeated, count: times_s.len() });
-    }
-    let sample_rate_hz = declared_rate_hz.unwrap_or(1.0 / line.period_s);
-    issues.push(Issue::new(
-        IssueCode::TimeJitter,
-        Severity::Note,
-        format!(
-            "times are only given to {step_s:.3e} s and repeat; the samples were taken as evenly spaced at \
-             {sample_rate_hz:.6} Hz, so that the channel's start is known to {step_s:.3e} s only"
-        ),
-    ));
-    let (_, gaps) = missing::mark_non_finite(&mut samples, (line.start_s, sample_rate_hz), &mut issues);
-    Ok(Placed { start_s: line.start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
 }
 
 fn rate_contradiction(declared_hz: f64, own_hz: f64) -> Issue {

@@ -5,8 +5,8 @@ use super::input::Input;
 use super::layout::{Column, Layout};
 use super::rows::{self, Rows, Sink, Wanted};
 use super::stamp::Stamps;
-use super::{Limits, Progress, ending_issues, no_table, row_error, time_base};
-use crate::data::{IssueCode, ListedChannel, Listing, RecordingFormat, Samples};
+use super::{Limits, Progress, TimeBaseError, ending_issues, no_table, row_error, time_base};
+use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Samples, Severity};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -166,15 +166,24 @@ struct Clock {
     start_s: Option<f64>,
     duration_s: Option<f64>,
     gaps: Option<u64>,
-    issues: Vec<crate::data::Issue>,
+    issues: Vec<Issue>,
 }
 
 impl Clock {
     fn of(times_s: &[f64]) -> Self {
-        let Ok(uniform) = time_base::from_times(times_s, Samples::F32(vec![0.0; times_s.len()]), None) else {
-            return Self::default();
+        let repeated = times_s.windows(2).filter(|pair| pair[0] >= pair[1]).count();
+        // The samples are not at hand: a few equal times are taken for rows that came twice, more for times that are coarse.
+        let is_coarse = 10 * repeated > times_s.len();
+        let samples = (0..times_s.len()).map(|i| if is_coarse && i % 2 == 1 { 1.0 } else { 0.0 }).collect();
+        let uniform = match time_base::from_times(times_s, Samples::F32(samples), None) {
+            Ok(uniform) => uniform,
+            Err(TimeBaseError::TooFew { .. }) => return Self::default(),
+            Err(error) => {
+                let issue = Issue::new(IssueCode::TimeJitter, Severity::Warning, error.to_string());
+                return Self { issues: vec![issue], ..Self::default() };
+            }
         };
-        let is_gap = |issue: &&crate::data::Issue| issue.code == IssueCode::Gap;
+        let is_gap = |issue: &&Issue| issue.code == IssueCode::Gap;
         let gaps = if uniform.issues.iter().any(|issue| is_gap(&issue)) { uniform.gaps.len() } else { 0 };
         let (first_s, last_s) =
             times_s.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &t| (a.min(t), b.max(t)));

@@ -31,10 +31,9 @@ pub(super) struct Fit {
 
 /// A straight line through times, one step a sample.
 #[allow(clippy::struct_field_names, reason = "every name ends in its unit")]
-pub(super) struct Line {
-    pub start_s: f64,
-    pub period_s: f64,
-    pub max_s: f64,
+struct Line {
+    start_s: f64,
+    period_s: f64,
 }
 
 /// Interval beyond which samples are missing, in periods.
@@ -181,15 +180,7 @@ fn line_of_runs(times_s: &[f64], runs: &[Run]) -> Line {
     let variance = square - sum_k * sum_k / n;
     let slope = if variance > 0.0 { (cross - sum_k * sum / n) / variance } else { 0.0 };
     let intercept = sum / n - slope * (sum_k / n + middle);
-    Line { start_s: first_s + intercept, period_s: period_s + slope, max_s: 0.0 }
-}
-
-/// A straight line through times taken as gapless.
-pub(super) fn line(times_s: &[f64]) -> Line {
-    let runs = [Run { first: 0, place: 0 }];
-    let line = line_of_runs(times_s, &runs);
-    let (_, max_s) = residual(times_s, &runs, &line);
-    Line { max_s, ..line }
+    Line { start_s: first_s + intercept, period_s: period_s + slope }
 }
 
 fn residual(times_s: &[f64], runs: &[Run], line: &Line) -> (f64, f64) {

@@ -12,6 +12,10 @@ pub(super) enum Ordered<'a, S> {
     Coarse(Cow<'a, [f64]>, Vec<S>),
 }
 
+/// From so many rows a time on they are too coarse even where the samples are equal, as those of a dead channel: a file may have been
+/// written twice, but not three times.
+const COARSE_ROWS: f64 = 2.5;
+
 /// From this part of repeated times with different samples on, the times are too coarse rather than rows doubled.
 const COARSE_PART: f64 = 0.1;
 
@@ -32,17 +36,14 @@ pub(super) fn ordered<'a, S: Number>(
     samples: Vec<S>,
     issues: &mut Vec<Issue>,
 ) -> Result<Ordered<'a, S>, TimeBaseError> {
-    let (Some(&first_s), true) = (times_s.first(), times_s.len() > 1) else {
+    if times_s.len() < 2 {
         return Err(TimeBaseError::TooFew { count: times_s.len() });
-    };
+    }
     if rise {
         return Ok(Ordered::Strict(Cow::Borrowed(times_s), samples));
     }
     if let Some(index) = times_s.iter().position(|t| !t.is_finite()) {
         return Err(TimeBaseError::NotFinite { number: index + 1, time_s: times_s[index] });
-    }
-    if times_s.iter().all(|&t| t.total_cmp(&first_s).is_eq()) {
-        return Err(TimeBaseError::AllEqual { time_s: first_s });
     }
     let (times_s, samples) = sorted(times_s, samples, issues);
     Ok(without_doubles(times_s, samples, issues))
@@ -102,7 +103,10 @@ fn without_doubles<'a, S: Number>(
     let Some((from_s, to_s)) = span_s else {
         return Ordered::Strict(times_s, samples);
     };
-    if as_f64(different) > COARSE_PART * as_f64(times_s.len()) {
+    let rows = as_f64(times_s.len());
+    let is_coarse =
+        as_f64(different) > COARSE_PART * rows || rows > COARSE_ROWS * as_f64(kept.len()) || kept.len() < 2;
+    if is_coarse {
         return Ordered::Coarse(times_s, samples);
     }
     let (severity, tail) = if different == 0 {

@@ -1,0 +1,369 @@
+//! Times coarser than the sample interval, such as stamps of whole milliseconds at 10 kHz, to a rate and how well they tell it.
+//!
+//! A sample whose stamp is later than the one before it was taken within one interval of that stamp. All lines through these
+//! changes that keep to this are as good as one another: the middle one's slope is the period, half of their spread its
+//! uncertainty. A line through all samples would be off by about (step / record)², 1 % for ten steps (docs/formats.md).
+
+use super::order::as_f64;
+use super::{Number, Placed, RATE_TOLERANCE, TimeBaseError, missing, rate_contradiction, short, to_digits};
+use crate::data::{Issue, IssueCode, Severity};
+
+/// Fewer changes make two whole steps at most, which agree with any jitter: nothing would show that they are even.
+const LEAST_CHANGES: usize = 4;
+
+/// A rate more uncertain than this, as a part of itself, makes a warning. Every velocity is off by as much; it is the part by which
+/// a declared rate may contradict the times, and a tenth of what the intervals hold for each channel's calibration.
+const UNSURE: f64 = RATE_TOLERANCE;
+
+/// A rate more uncertain than this is none: what the intervals hold for the calibration no longer covers it.
+const UNKNOWN: f64 = 0.01;
+
+/// Changes this many steps off a line: samples are missing, or the stamps are not those of the samples.
+const UNEVEN_STEPS: f64 = 1.5;
+
+/// Even changes keep to one period about their line; this part of it more is for round-off.
+const ROUND_OFF: f64 = 0.01;
+
+/// Halvings of a bracket: to a part in 2⁴⁸ of it, the round-off of its ends.
+const HALVINGS: usize = 48;
+
+/// What the changes of coarse times say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Steps {
+    /// Time of sample 0, s.
+    start_s: f64,
+    period_s: f64,
+    /// Half-width of the period, as a part of it.
+    uncertainty: f64,
+    /// How far the changes are from the line at most, s.
+    off_s: f64,
+    /// Whether the samples may have been taken evenly.
+    is_even: bool,
+}
+
+/// Samples with times that rise but for many that repeat, evenly spaced.
+pub(super) fn place<S: Number>(
+    times_s: &[f64],
+    mut samples: Vec<S>,
+    declared_rate_hz: Option<f64>,
+    mut issues: Vec<Issue>,
+) -> Result<Placed<S>, TimeBaseError> {
+    let changes: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] > times_s[i - 1]).collect();
+    let step_s = median_step(times_s, &changes);
+    let steps = (changes.len() >= LEAST_CHANGES)
+        .then(|| Steps::of(times_s, &changes))
+        .filter(|steps| steps.uncertainty <= UNKNOWN && steps.off_s <= UNEVEN_STEPS * step_s);
+    let (start_s, sample_rate_hz) = match (declared_rate_hz, steps) {
+        (Some(rate_hz), _) => {
+            issues.push(declared(times_s, &changes, (step_s, steps), rate_hz));
+            (start(times_s, &changes, 1.0 / rate_hz), rate_hz)
+        }
+        (None, Some(steps)) => {
+            issues.push(steps.issue(step_s));
+            (steps.start_s, 1.0 / steps.period_s)
+        }
+        (None, None) if changes.is_empty() => return Err(TimeBaseError::AllEqual { time_s: times_s[0] }),
+        (None, None) => {
+            return Err(TimeBaseError::TooCoarse { step_s, changes: changes.len(), count: times_s.len() });
+        }
+    };
+    let (_, gaps) = missing::mark_non_finite(&mut samples, (start_s, sample_rate_hz), &mut issues);
+    Ok(Placed { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
+}
+
+/// What the times are cut to, s; 0 where they do not change.
+fn median_step(times_s: &[f64], changes: &[usize]) -> f64 {
+    let mut steps: Vec<f64> = changes.iter().map(|&i| times_s[i] - times_s[i - 1]).collect();
+    let middle = steps.len() / 2;
+    if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
+impl Steps {
+    /// Of times with two changes at least.
+    fn of(times_s: &[f64], changes: &[usize]) -> Self {
+        let (first, last) = (changes[0], changes[changes.len() - 1]);
+        let first_s = times_s[first];
+        let points: Vec<(f64, f64)> =
+            changes.iter().map(|&i| (as_f64(i - first), times_s[i] - first_s)).collect();
+        let points = hull(&points);
+        let width = |period_s: f64| range(points.iter().copied(), period_s).1;
+        let length = as_f64(last - first);
+        let through_s = (times_s[last] - first_s) / length;
+        // The end points alone keep the best slope within this.
+        let reach_s = width(through_s) / length;
+        let best_s = least(&width, through_s - reach_s, through_s + reach_s);
+        let best_width_s = width(best_s);
+        let held_s = 4.0 * f64::EPSILON * times_s[0].abs().max(times_s[times_s.len() - 1].abs());
+        let is_even = best_width_s <= (1.0 + ROUND_OFF) * best_s + held_s;
+        // Uneven ones have no width of their own: twice the least one is as likely.
+        let most_s = if is_even { best_s.max(best_width_s) } else { 2.0 * best_width_s };
+        let far_s = (most_s + best_width_s) / length;
+        let (low_s, high_s) =
+            (edge(&width, most_s, (best_s, best_s - far_s)), edge(&width, most_s, (best_s, best_s + far_s)));
+        let period_s = f64::midpoint(low_s, high_s);
+        let (lowest_s, width_s) = range(points.iter().copied(), period_s);
+        let middle_s = first_s + lowest_s + width_s / 2.0;
+        Self {
+            // A change lies up to one period before its sample, half of one in the mean.
+            start_s: middle_s + period_s / 2.0 - period_s * as_f64(first),
+            period_s,
+            uncertainty: (high_s - low_s) / (2.0 * period_s),
+            off_s: width_s / 2.0,
+            is_even,
+        }
+    }
+
+    fn issue(&self, step_s: f64) -> Issue {
+        let rate_hz = 1.0 / self.period_s;
+        let is_sure = self.is_even && self.uncertainty <= UNSURE;
+        let off = format!(
+            "; the times change up to {} s off even steps, so that samples may be missing",
+            nice(self.off_s, 2)
+        );
+        let message = format!(
+            "the times are cut to {} s, about {} samples each; the samples were taken as evenly spaced at {} Hz, a rate that is uncertain by {} %, \
+             and the channel's start is known to {} s only{}{}",
+            nice(step_s, 3),
+            nice(step_s * rate_hz, 3),
+            nice(rate_hz, 6),
+            nice(100.0 * self.uncertainty, 2),
+            nice(step_s, 3),
+            if self.is_even { "" } else { &off },
+            if is_sure { "" } else { "; give sample_rate_hz for this channel" }
+        );
+        let severity = if is_sure { Severity::Note } else { Severity::Warning };
+        Issue::new(IssueCode::TimeJitter, severity, message)
+    }
+}
+
+/// What is said where a rate is declared beside coarse times.
+fn declared(
+    times_s: &[f64],
+    changes: &[usize],
+    (step_s, steps): (f64, Option<Steps>),
+    rate_hz: f64,
+) -> Issue {
+    if let Some(steps) = steps.filter(|steps| steps.is_even)
+        && (rate_hz * steps.period_s - 1.0).abs() > RATE_TOLERANCE.max(steps.uncertainty)
+    {
+        return rate_contradiction(rate_hz, 1.0 / steps.period_s);
+    }
+    let points = times_s.iter().enumerate().map(|(i, t)| (as_f64(i), t - times_s[0]));
+    let width_s = range(points, 1.0 / rate_hz).1;
+    // Samples within a step lie up to a step off; half of one more is a sample lost or another rate.
+    let is_off = !changes.is_empty() && width_s > UNEVEN_STEPS * step_s;
+    let what = if changes.is_empty() {
+        "all times are equal".to_owned()
+    } else if is_off {
+        format!(
+            "the times are cut to {} s and run up to {} s off the declared {} Hz: samples are missing, or the rate is another",
+            nice(step_s, 3),
+            nice(width_s, 2),
+            nice(rate_hz, 6)
+        )
+    } else {
+        format!("the times are cut to {} s", nice(step_s, 3))
+    };
+    let message =
+        format!("{what}; the samples were taken as evenly spaced at the declared {} Hz", nice(rate_hz, 6));
+    Issue::new(IssueCode::TimeJitter, if is_off { Severity::Warning } else { Severity::Note }, message)
+}
+
+fn nice(number: f64, digits: i32) -> String {
+    short(to_digits(number, digits))
+}
+
+/// Time of sample 0 at a known period, s.
+fn start(times_s: &[f64], changes: &[usize], period_s: f64) -> f64 {
+    if changes.is_empty() {
+        return times_s[0];
+    }
+    let points = changes.iter().map(|&i| (as_f64(i), times_s[i] - times_s[0]));
+    let (lowest_s, width_s) = range(points, period_s);
+    times_s[0] + lowest_s + width_s / 2.0 + period_s / 2.0
+}
+
+/// Of what the points are above a line through the origin, the least and the width.
+fn range(points: impl Iterator<Item = (f64, f64)>, slope: f64) -> (f64, f64) {
+    let above = points.map(|(x, y)| y - slope * x);
+    let (low, high) = above.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
+    (low, high - low)
+}
+
+/// The corners of points that rise in x, lower and upper: no line touches any other (Andrew 1979).
+fn hull(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut corners = Vec::new();
+    for side in [1.0, -1.0] {
+        let mut chain: Vec<(f64, f64)> = Vec::new();
+        for &(x, y) in points {
+            while let [.., a, b] = chain[..]
+                && side * ((b.0 - a.0) * (y - a.1) - (b.1 - a.1) * (x - a.0)) <= 0.0
+            {
+                chain.pop();
+            }
+            chain.push((x, y));
+        }
+        corners.append(&mut chain);
+    }
+    corners
+}
+
+/// Where a convex function is least between two places.
+fn least(function: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    for _ in 0..2 * HALVINGS {
+        let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+        if function(a) <= function(b) {
+            high = b;
+        } else {
+            low = a;
+        }
+    }
+    f64::midpoint(low, high)
+}
+
+/// Where a function that is at most `most` at `inside` and above it at `outside` passes `most`.
+fn edge(function: &impl Fn(f64) -> f64, most: f64, (mut inside, mut outside): (f64, f64)) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = f64::midpoint(inside, outside);
+        if function(middle) <= most {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    inside
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Samples;
+    use crate::ingest::time_base::{Uniform, from_times};
+
+    /// Times of `count` samples at a rate from `from_s` on, cut to steps.
+    fn cut(rate_hz: f64, step_s: f64, from_s: f64, count: usize) -> Vec<f64> {
+        (0..count).map(|i| ((from_s + as_f64(i) / rate_hz) / step_s + 1e-9).floor() * step_s).collect()
+    }
+
+    fn placed(times_s: &[f64], declared_hz: Option<f64>) -> Result<Uniform, TimeBaseError> {
+        from_times(times_s, Samples::F64((0..times_s.len()).map(as_f64).collect()), declared_hz)
+    }
+
+    fn only(uniform: &Uniform) -> (Severity, &str) {
+        let [issue] = &uniform.issues[..] else { panic!("{:?}", uniform.issues) };
+        assert_eq!(issue.code, IssueCode::TimeJitter);
+        (issue.severity, &issue.message)
+    }
+
+    #[test]
+    fn the_rate_of_cut_times_lies_within_its_uncertainty() {
+        let mut surest = f64::INFINITY;
+        for (rate_hz, step_s, length_s) in [
+            (20_000.0, 0.1, 0.45),
+            (20_011.3, 0.1, 1.0),
+            (20_000.0, 1e-3, 0.3),
+            (9_973.0, 0.015_625, 0.5),
+            (1_613.0, 1e-3, 0.9),
+            (50_000.0, 1.0, 5.3),
+        ] {
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+            let count = (length_s * rate_hz) as usize;
+            for part in 0..20 {
+                let from_s = 7.0 + as_f64(part) / 20.0 * step_s;
+                let times_s = cut(rate_hz, step_s, from_s, count);
+                let uniform = placed(&times_s, None).unwrap();
+                let changes: Vec<usize> = (1..count).filter(|&i| times_s[i] > times_s[i - 1]).collect();
+                let steps = Steps::of(&times_s, &changes);
+                let error = (uniform.sample_rate_hz / rate_hz - 1.0).abs();
+                assert!(error <= steps.uncertainty + 1e-9, "{rate_hz} {step_s} {part}: {error:e}, {steps:?}");
+                assert!(steps.is_even && steps.uncertainty < 1e-3, "{rate_hz} {step_s} {part}: {steps:?}");
+                assert!((uniform.start_s - from_s).abs() < 1.1 / rate_hz, "{} for {from_s}", uniform.start_s);
+                assert_eq!(only(&uniform).0, Severity::Note, "{}", only(&uniform).1);
+                assert_eq!(uniform.samples.len(), count);
+                surest = surest.min(steps.uncertainty);
+            }
+        }
+        assert!(surest < 1e-5, "{surest}");
+    }
+
+    #[test]
+    fn the_note_says_step_rate_and_uncertainty() {
+        let uniform = placed(&cut(20_000.0, 0.1, 0.03, 9000), None).unwrap();
+        assert_eq!(
+            only(&uniform).1,
+            "the times are cut to 0.1 s, about 2000 samples each; the samples were taken as evenly spaced at 20000 Hz, \
+             a rate that is uncertain by 0.017 %, and the channel's start is known to 0.1 s only"
+        );
+    }
+
+    #[test]
+    fn too_few_steps_tell_no_rate() {
+        // Whole seconds, two and a half of them.
+        let times_s = cut(2000.0, 1.0, 0.3, 5000);
+        let error = placed(&times_s, None).unwrap_err();
+        assert_eq!(error, TimeBaseError::TooCoarse { step_s: 1.0, changes: 2, count: 5000 });
+        assert!(error.to_string().contains("give sample_rate_hz"), "{error}");
+        let uniform = placed(&times_s, Some(2000.0)).unwrap();
+        assert_eq!((uniform.sample_rate_hz, uniform.samples.len()), (2000.0, 5000));
+        assert_eq!(only(&uniform).0, Severity::Note);
+        assert!((uniform.start_s - 0.3).abs() < 1e-3, "{}", uniform.start_s);
+        // Within one second.
+        let equal = vec![5.0; 3000];
+        assert_eq!(placed(&equal, None).unwrap_err(), TimeBaseError::AllEqual { time_s: 5.0 });
+        let uniform = placed(&equal, Some(2000.0)).unwrap();
+        assert_eq!((uniform.start_s, uniform.sample_rate_hz), (5.0, 2000.0));
+        assert!(only(&uniform).1.contains("all times are equal"), "{}", only(&uniform).1);
+    }
+
+    #[test]
+    fn a_wrong_declared_rate_is_a_warning() {
+        let times_s = cut(20_000.0, 0.01, 0.0, 9000);
+        assert_eq!(only(&placed(&times_s, Some(20_000.0)).unwrap()).0, Severity::Note);
+        for wrong_hz in [20_100.0, 19_000.0, 20_000e3] {
+            let uniform = placed(&times_s, Some(wrong_hz)).unwrap();
+            assert_eq!(only(&uniform).0, Severity::Warning, "{}", only(&uniform).1);
+        }
+        // Too few changes to tell a rate of their own still contradict one that is far off.
+        let times_s = cut(2000.0, 1.0, 0.3, 5000);
+        assert_eq!(only(&placed(&times_s, Some(1000.0)).unwrap()).0, Severity::Warning);
+    }
+
+    #[test]
+    fn uneven_steps_never_make_a_mere_note() {
+        // A block of 12 samples of 20 a step is lost in the middle.
+        let mut lost = cut(20_000.0, 1e-3, 0.0, 9000);
+        lost.drain(4000..4012);
+        let uniform = placed(&lost, None).unwrap();
+        assert_eq!(only(&uniform).0, Severity::Warning, "{}", only(&uniform).1);
+        assert!(only(&uniform).1.contains("samples may be missing"), "{}", only(&uniform).1);
+        // More than a step of them.
+        lost.drain(6000..6200);
+        assert!(matches!(placed(&lost, None), Err(TimeBaseError::TooCoarse { .. })));
+        let stated = placed(&lost, Some(20_000.0)).unwrap();
+        assert_eq!(only(&stated).0, Severity::Warning, "{}", only(&stated).1);
+        // Blocks of 1000 samples that a computer stamps as they come, 3 ms early or late.
+        let blocks: Vec<f64> =
+            (0..20_000).map(|i| as_f64(i / 1000) * 0.05 + 0.003 * (as_f64(i / 1000) * 2.3).sin()).collect();
+        match placed(&blocks, None) {
+            Ok(uniform) => assert_eq!(only(&uniform).0, Severity::Warning, "{}", only(&uniform).1),
+            Err(error) => assert!(matches!(error, TimeBaseError::TooCoarse { .. }), "{error}"),
+        }
+    }
+
+    #[test]
+    fn a_short_record_is_less_sure() {
+        // 400 samples in four steps and more: within a sample of 300.
+        let uniform = placed(&cut(1000.0, 0.1, 0.05, 500), None).unwrap();
+        assert_eq!(only(&uniform).0, Severity::Warning);
+        assert!(only(&uniform).1.contains("give sample_rate_hz"), "{}", only(&uniform).1);
+        assert!(matches!(placed(&cut(1000.0, 0.01, 0.0, 60), None), Err(TimeBaseError::TooCoarse { .. })));
+    }
+
+    #[test]
+    fn a_channel_that_does_not_move_has_the_rate_of_the_others() {
+        let times_s = cut(20_000.0, 0.01, 0.0, 9000);
+        let still = from_times(&times_s, Samples::F64(vec![0.0; 9000]), None).unwrap();
+        assert_eq!(still.sample_rate_hz.to_bits(), placed(&times_s, None).unwrap().sample_rate_hz.to_bits());
+        assert_eq!(still.samples.len(), 9000);
+    }
+}
