@@ -184,7 +184,7 @@ impl Rows for Columns {
 
 impl Rows for Keep<'_> {
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
-        if self.wanted.is_time[slot] { self.stamps.seconds(cell) } else { None }
+        if self.wanted.is_time[slot] { self.stamps.seconds(slot, cell) } else { None }
     }
 
     fn row(&mut self, values: &[f64]) {
@@ -235,7 +235,7 @@ fn columns(
         let scale_s = layout.time_scale_s(wanted.columns[slot]).unwrap_or(1.0);
         // Stamps are in s already.
         #[allow(clippy::float_cmp, reason = "1.0 is the literal for seconds")]
-        if wanted.is_time[slot] && scale_s != 1.0 && !stamps.any() {
+        if wanted.is_time[slot] && scale_s != 1.0 && !stamps.are_in(slot) {
             for t in values.iter_mut() {
                 *t *= scale_s;
             }

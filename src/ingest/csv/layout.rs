@@ -15,7 +15,7 @@ pub(super) struct Column {
     pub unit: Option<String>,
     /// Whether its cells are numbers.
     pub is_numeric: bool,
-    /// Whether its cells are date-time stamps.
+    /// Whether its cells are date-time stamps or clock times.
     pub is_stamped: bool,
 }
 
@@ -59,7 +59,7 @@ const DIALECTS: [(u8, u8); 8] = [
 const JUDGED_LINES: usize = 200;
 
 /// Words that head a column of times, without their unit.
-const TIME_NAMES: [&str; 16] = [
+const TIME_NAMES: [&str; 17] = [
     "time",
     "t",
     "zeit",
@@ -68,6 +68,7 @@ const TIME_NAMES: [&str; 16] = [
     "time stamp",
     "zeitstempel",
     "messzeit",
+    "uhrzeit",
     "elapsed time",
     "relative time",
     "rel. time",

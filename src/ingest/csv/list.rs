@@ -75,7 +75,11 @@ impl Survey {
 
 impl Rows for Survey {
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
-        if self.seen.time_slot == Some(slot) { self.stamps.seconds(cell) } else { self.seen.word(slot, cell) }
+        if self.seen.time_slot == Some(slot) {
+            self.stamps.seconds(slot, cell)
+        } else {
+            self.seen.word(slot, cell)
+        }
     }
 
     fn row(&mut self, values: &[f64]) {
@@ -128,7 +132,7 @@ pub(in super::super) fn list(
         .map_err(|error| row_error(path, limits, (&layout, &wanted), error))?;
     let Survey { mut seen, stamps } = survey;
     let scale_s = time_column.and_then(|column| layout.time_scale_s(column)).unwrap_or(1.0);
-    if !stamps.any() {
+    if !time_column.is_some_and(|column| stamps.are_in(column)) {
         for t in &mut seen.times {
             *t *= scale_s;
         }
@@ -212,7 +216,7 @@ impl Clock {
 fn listed(column: &Column, range: &Range, clock: &Clock, rows: u64) -> ListedChannel {
     let is_empty = range.values == 0;
     let unreadable = if column.is_stamped {
-        Some("date-time stamps".to_owned())
+        Some("date-time stamps or clock times".to_owned())
     } else if is_empty && range.words > 0 {
         Some("words, no numbers".to_owned())
     } else if is_empty {

@@ -1,62 +1,231 @@
-//! Date-time stamps (ISO 8601) to seconds from the first.
+//! Date-time stamps (ISO 8601) and clock times to seconds from the first.
 
 use jiff::Timestamp;
-use jiff::civil::DateTime;
+use jiff::civil::{Date, DateTime};
 use jiff::tz::TimeZone;
 
-/// Stamps of one table, counted from the first.
+const SECOND_NS: i64 = 1_000_000_000;
+const HOUR_NS: i64 = 3600 * SECOND_NS;
+const DAY_NS: i64 = 24 * HOUR_NS;
+
+/// How a stamp is written; a column keeps to the kind that it begins with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// `2026-11-20T12:34:56.789Z`.
+    Iso,
+    /// `20.11.2026 12:34:56,789`, `11/20/2026 12:34:56.789`, `2026/11/20 12:34:56.789`.
+    Dated,
+    /// `12:34:56.789`.
+    OfDay,
+    /// `34:56.789`: minutes and seconds.
+    OfHour,
+}
+
+/// Stamps of one table, counted from the first of their kind, so that columns of one kind share a clock.
 #[derive(Debug, Default)]
 pub(super) struct Stamps {
-    zero_ns: Option<i128>,
+    zeros_ns: [Option<i128>; 4],
     is_absolute: bool,
+    columns: Vec<Running>,
+}
+
+/// One column so far.
+#[derive(Debug, Clone, Copy)]
+struct Running {
+    slot: usize,
+    kind: Kind,
+    /// The last date and its day, from 1970.
+    date: ([i16; 3], i64),
+    /// The last time within its day or hour.
+    last_ns: i64,
+    /// What days or hours that the stamps do not say have gone by.
+    passed_ns: i64,
 }
 
 impl Stamps {
-    /// Seconds from the first stamp seen; `None` where `cell` is no stamp.
-    pub(super) fn seconds(&mut self, cell: &[u8]) -> Option<f64> {
-        let (at_ns, is_absolute) = nanoseconds(std::str::from_utf8(cell).ok()?)?;
-        if self.zero_ns.is_none() {
-            self.is_absolute = is_absolute;
+    /// Seconds from the first stamp seen; `None` where `cell` is no stamp, or of another kind than the others in its column, `slot`.
+    pub(super) fn seconds(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
+        let stamp = Stamp::of(cell)?;
+        let place = self.columns.iter().position(|column| column.slot == slot);
+        let place = place.unwrap_or(self.columns.len());
+        if place == self.columns.len() {
+            self.columns.push(Running::from(slot, &stamp)?);
         }
-        let zero_ns = *self.zero_ns.get_or_insert(at_ns);
-        let since_ns = i64::try_from(at_ns - zero_ns).ok()?;
+        let at_ns = self.columns[place].follow(&stamp)?;
+        let zero_ns = &mut self.zeros_ns[stamp.kind as usize];
+        if stamp.kind == Kind::Iso && zero_ns.is_none() {
+            self.is_absolute = stamp.is_absolute;
+        }
+        let since_ns = i64::try_from(at_ns - *zero_ns.get_or_insert(at_ns)).ok()?;
         #[allow(
             clippy::cast_precision_loss,
             reason = "whole and rest apart: exact to a part of a nanosecond"
         )]
-        Some((since_ns / 1_000_000_000) as f64 + (since_ns % 1_000_000_000) as f64 * 1e-9)
+        Some((since_ns / SECOND_NS) as f64 + (since_ns % SECOND_NS) as f64 * 1e-9)
     }
 
-    /// The first stamp, ns since 1970; `None` without stamps.
+    /// The first stamp, ns since 1970; `None` without stamps that state their offset from UTC.
     pub(super) fn zero_unix_ns(&self) -> Option<i64> {
-        self.zero_ns.filter(|_| self.is_absolute).and_then(|zero| i64::try_from(zero).ok())
+        let zero_ns = self.zeros_ns[Kind::Iso as usize].filter(|_| self.is_absolute)?;
+        i64::try_from(zero_ns).ok()
     }
 
-    /// Whether any stamp was seen.
-    pub(super) fn any(&self) -> bool {
-        self.zero_ns.is_some()
+    /// Whether the column holds stamps.
+    pub(super) fn are_in(&self, slot: usize) -> bool {
+        self.columns.iter().any(|column| column.slot == slot)
     }
 }
 
-/// Whether a cell looks like a stamp: `2026-11-20…`.
+impl Running {
+    fn from(slot: usize, stamp: &Stamp) -> Option<Self> {
+        let day = if stamp.kind == Kind::Dated {
+            readings(stamp.date)
+                .into_iter()
+                .flatten()
+                .next()
+                .map(|date| days(Date::constant(1970, 1, 1), date))?
+        } else {
+            0
+        };
+        let last_ns = i64::try_from(stamp.at_ns).unwrap_or_default();
+        Some(Self { slot, kind: stamp.kind, date: (stamp.date, day), last_ns, passed_ns: 0 })
+    }
+
+    /// Nanoseconds on a clock that goes on past midnight or the full hour.
+    fn follow(&mut self, stamp: &Stamp) -> Option<i128> {
+        if stamp.kind != self.kind {
+            return None;
+        }
+        let period_ns = match stamp.kind {
+            Kind::Iso => return Some(stamp.at_ns),
+            Kind::Dated => {
+                if stamp.date != self.date.0 {
+                    self.date = (stamp.date, self.date.1 + days_between(self.date.0, stamp.date)?);
+                }
+                return Some(stamp.at_ns + i128::from(self.date.1) * i128::from(DAY_NS));
+            }
+            Kind::OfDay => DAY_NS,
+            Kind::OfHour => HOUR_NS,
+        };
+        let at_ns = i64::try_from(stamp.at_ns).ok()?;
+        // No drop lasts for half a day: a fall by more is midnight, a rise by more a row out of order there.
+        if self.last_ns - at_ns > period_ns / 2 {
+            self.passed_ns += period_ns;
+        } else if at_ns - self.last_ns > period_ns / 2 && self.passed_ns > 0 {
+            self.passed_ns -= period_ns;
+        }
+        self.last_ns = at_ns;
+        Some(i128::from(at_ns) + i128::from(self.passed_ns))
+    }
+}
+
+/// Whether a cell is a stamp with a time of day; a date alone is none.
 pub(super) fn is_stamp(cell: &[u8]) -> bool {
-    cell.len() >= 10 && cell[..4].iter().all(u8::is_ascii_digit) && cell[4] == b'-' && cell[7] == b'-'
+    Stamp::of(cell).is_some()
 }
 
-/// Nanoseconds since 1970, and whether the stamp states its offset from UTC; without one UTC is taken, which differences do not see.
-fn nanoseconds(text: &str) -> Option<(i128, bool)> {
-    let text = text.trim().trim_matches('"');
-    if !is_stamp(text.as_bytes()) {
+/// Whether a cell looks like `2026-11-20T…`.
+fn is_iso(cell: &[u8]) -> bool {
+    cell.len() > 11 && cell[..4].iter().all(u8::is_ascii_digit) && cell[4] == b'-' && cell[7] == b'-'
+}
+
+/// One cell.
+struct Stamp {
+    kind: Kind,
+    /// The numbers of its date as they stand there; 0 where it has none, or of [`Kind::Iso`].
+    date: [i16; 3],
+    /// Since 1970, midnight or the full hour.
+    at_ns: i128,
+    /// Whether it states its offset from UTC; without one UTC is taken, which differences do not see.
+    is_absolute: bool,
+}
+
+impl Stamp {
+    fn of(cell: &[u8]) -> Option<Self> {
+        let text = std::str::from_utf8(cell).ok()?.trim().trim_matches('"');
+        if is_iso(text.as_bytes()) { Self::iso(text) } else { Self::clock(text) }
+    }
+
+    fn iso(text: &str) -> Option<Self> {
+        // A decimal comma is ISO 8601 as well.
+        let text = text.replace(',', ".");
+        let (at, is_absolute) = match text.parse::<Timestamp>() {
+            Ok(stamp) => (stamp, true),
+            Err(_) => (text.parse::<DateTime>().ok()?.to_zoned(TimeZone::UTC).ok()?.timestamp(), false),
+        };
+        Some(Self { kind: Kind::Iso, date: [0; 3], at_ns: at.as_nanosecond(), is_absolute })
+    }
+
+    fn clock(text: &str) -> Option<Self> {
+        let (date, clock) = match text.rsplit_once([' ', 'T']) {
+            Some((date, clock)) => (Some(date.trim_end().trim_end_matches(',')), clock),
+            None => (None, text),
+        };
+        let mut parts = clock.split(':');
+        let first = whole(parts.next()?, 3)?;
+        let (second, third, none) = (parts.next()?, parts.next(), parts.next());
+        let (hours, minutes, seconds) = match (third, none) {
+            (Some(seconds), None) => (first, whole(second, 2)?, seconds),
+            // Without a fraction it would be hours and minutes.
+            (None, None) if second.contains(['.', ',']) => (0, first, second),
+            _ => return None,
+        };
+        let (seconds, fraction) = seconds.split_once(['.', ',']).unwrap_or((seconds, "0"));
+        let (seconds, fraction_ns) = (whole(seconds, 2)?, fraction_ns(fraction)?);
+        let is_of_hour = third.is_none();
+        if seconds > 59 || (!is_of_hour && minutes > 59) || (date.is_some() && (is_of_hour || hours > 23)) {
+            return None;
+        }
+        let date = date.map(numbers);
+        let kind = match (date, is_of_hour) {
+            (Some(date), _) => readings(date?).iter().any(Option::is_some).then_some(Kind::Dated)?,
+            (None, true) => Kind::OfHour,
+            (None, false) => Kind::OfDay,
+        };
+        let at_ns = (3600 * hours + 60 * minutes + seconds) * SECOND_NS + fraction_ns;
+        Some(Self { kind, date: date.flatten().unwrap_or_default(), at_ns: at_ns.into(), is_absolute: false })
+    }
+}
+
+/// A whole number of so many digits at most.
+fn whole(text: &str, digits: usize) -> Option<i64> {
+    let is_whole = (1..=digits).contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit());
+    is_whole.then(|| text.parse().ok())?
+}
+
+/// Digits behind the decimal mark to nanoseconds; more than nine are cut.
+fn fraction_ns(digits: &str) -> Option<i64> {
+    if digits.is_empty() || !digits.bytes().all(|b| b.is_ascii_digit()) {
         return None;
     }
-    // A decimal comma is ISO 8601 as well.
-    let text = text.replace(',', ".");
-    if let Ok(stamp) = text.parse::<Timestamp>() {
-        return Some((stamp.as_nanosecond(), true));
-    }
-    let civil: DateTime = text.parse().ok()?;
-    let stamp = civil.to_zoned(TimeZone::UTC).ok()?.timestamp();
-    Some((stamp.as_nanosecond(), false))
+    format!("{:0<9}", &digits[..digits.len().min(9)]).parse().ok()
+}
+
+/// The three numbers of a date.
+fn numbers(date: &str) -> Option<[i16; 3]> {
+    let mark = date.chars().find(|c| matches!(c, '.' | '/' | '-'))?;
+    let mut parts = date.split(mark).map(|part| whole(part, 4).and_then(|n| i16::try_from(n).ok()));
+    let numbers = [parts.next()??, parts.next()??, parts.next()??];
+    parts.next().is_none().then_some(numbers)
+}
+
+/// A date as day first and as month first; the year leads where it is told by its size.
+fn readings([a, b, c]: [i16; 3]) -> [Option<Date>; 2] {
+    let date = |year: i16, month: i16, day: i16| {
+        let year = if year < 100 { year + 2000 } else { year };
+        Date::new(year, i8::try_from(month).ok()?, i8::try_from(day).ok()?).ok()
+    };
+    if a > 31 { [date(a, b, c); 2] } else { [date(c, b, a), date(c, a, b)] }
+}
+
+/// Days from one date of a column to another: whether day or month stands first, their order makes neighbours of neighbours.
+fn days_between(from: [i16; 3], to: [i16; 3]) -> Option<i64> {
+    let both = readings(from).into_iter().zip(readings(to));
+    both.filter_map(|(from, to)| Some(days(from?, to?))).min_by_key(|days| days.abs())
+}
+
+fn days(from: Date, to: Date) -> i64 {
+    to.duration_since(from).as_hours() / 24
 }
 
 #[cfg(test)]
@@ -66,13 +235,107 @@ mod tests {
     #[test]
     fn stamps_count_from_the_first() {
         let mut stamps = Stamps::default();
-        assert_eq!(stamps.seconds(b"2026-11-20T12:00:00.000100Z"), Some(0.0));
-        let second = stamps.seconds(b"2026-11-20T13:00:01.000200+01:00").unwrap();
+        assert_eq!(stamps.seconds(0, b"2026-11-20T12:00:00.000100Z"), Some(0.0));
+        let second = stamps.seconds(0, b"2026-11-20T13:00:01.000200+01:00").unwrap();
         assert!((second - 1.0001).abs() < 1e-12);
         assert_eq!(stamps.zero_unix_ns(), Some(1_795_176_000_000_100_000));
+        // Another column's share the clock.
+        assert_eq!(stamps.seconds(1, b"2026-11-20T12:00:02.000100Z"), Some(2.0));
         let mut local = Stamps::default();
-        assert_eq!(local.seconds(b"2026-11-20 12:00:00,5"), Some(0.0));
-        assert_eq!((local.zero_unix_ns(), local.any()), (None, true));
-        assert_eq!(local.seconds(b"20.11.2026 12:00"), None);
+        assert_eq!(local.seconds(0, b"2026-11-20 12:00:00,5"), Some(0.0));
+        assert_eq!((local.zero_unix_ns(), local.are_in(0), local.are_in(1)), (None, true, false));
+        assert_eq!(local.seconds(0, b"20.11.2026 12:00"), None);
+    }
+
+    /// Seconds of the cells of one column.
+    fn seconds(cells: &[&str]) -> Vec<Option<f64>> {
+        let mut stamps = Stamps::default();
+        cells.iter().map(|cell| stamps.seconds(0, cell.as_bytes())).collect()
+    }
+
+    #[test]
+    fn clock_times_go_on_past_midnight() {
+        for cells in [
+            ["23:59:59.5", "23:59:59.75", "00:00:00.25", "23:59:59.875", "0:00:01"],
+            ["59:59,5", "59:59,75", "00:00,25", "59:59,875", "0:01,0"],
+            [
+                "31.12.2026 23:59:59,5",
+                "31.12.2026 23:59:59,75",
+                "01.01.2027 00:00:00,25",
+                "31.12.2026 23:59:59,875",
+                "01.01.2027 00:00:01",
+            ],
+            [
+                "11/12/26 23:59:59.5",
+                "11/12/26 23:59:59.75",
+                "11/13/26 00:00:00.25",
+                "11/12/26 23:59:59.875",
+                "11/13/26 00:00:01",
+            ],
+            [
+                "05/06/2026 23:59:59.5",
+                "05/06/2026 23:59:59.75",
+                "06/06/2026 00:00:00.25",
+                "05/06/2026 23:59:59.875",
+                "06/06/2026 00:00:01",
+            ],
+            [
+                "2026/02/28 23:59:59.5",
+                "2026/02/28 23:59:59.75",
+                "2026/03/01 00:00:00.25",
+                "2026/02/28 23:59:59.875",
+                "2026/03/01 00:00:01",
+            ],
+        ] {
+            assert_eq!(seconds(&cells), [0.0, 0.25, 0.75, 0.375, 1.5].map(Some), "{cells:?}");
+        }
+        // A second session on another day is no part of the first.
+        assert_eq!(seconds(&["20.11.2026 10:00:00", "22.11.2026 10:00:00"])[1], Some(2.0 * 86_400.0));
+    }
+
+    #[test]
+    fn a_column_keeps_to_one_kind() {
+        assert_eq!(
+            seconds(&["12:34:56.5", "34:57.5", "2026-11-20T12:34:58Z", "12:34:57"]),
+            [Some(0.0), None, None, Some(0.5)]
+        );
+    }
+
+    #[test]
+    fn what_is_no_time_of_day_is_no_stamp() {
+        for cell in [
+            "2026-11-20",
+            "20.11.2026",
+            "12:34",
+            "12:60:00",
+            "12:34:60.5",
+            "12:34:56.",
+            "12:34:56.7x",
+            ":34:56",
+            "1:2:3:4",
+            "12:34:56 PM",
+            "31.02.2026 12:00:00",
+            "1.2 12:00:00",
+            "x 12:00:00",
+            "24:00.5 12:00:00",
+            "20.11.2026 24:00:00",
+            "12.5",
+            "",
+        ] {
+            assert!(!is_stamp(cell.as_bytes()), "{cell}");
+        }
+        for cell in [
+            "12:34:56",
+            "7:04:05,123456789123",
+            "100:00:00.0",
+            "75:12.3",
+            "20.11.2026, 12:00:00",
+            "20-11-2026 1:02:03",
+            "2026-11-20T12:00Z",
+        ] {
+            assert!(is_stamp(cell.as_bytes()), "{cell}");
+        }
+        let cut = seconds(&["00:00:00", "00:00:00,1234567899"])[1].unwrap();
+        assert!((cut - 0.123_456_789).abs() < 1e-15, "{cut}");
     }
 }
