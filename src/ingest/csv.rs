@@ -3,10 +3,11 @@
 mod input;
 mod layout;
 mod list;
-
 mod pieces;
+mod reading;
 mod rows;
 mod stamp;
+mod time_column;
 
 pub(super) use list::list;
 
@@ -17,9 +18,11 @@ use crate::data::{CaskFile, ChannelSpec, Issue, IssueCode, Samples, Severity, So
 use input::Input;
 use layout::Layout;
 use rayon::prelude::*;
+use reading::Reading;
 use rows::{Ending, RowError, Rows, Sink, Wanted};
 use stamp::Stamps;
 use std::path::Path;
+use time_column::Scale;
 
 /// The channels of `cask_file` from the text at `path`.
 ///
@@ -52,6 +55,12 @@ fn of_input(
         &plans.iter().filter_map(|plan| plan.time_column).collect::<Vec<_>>(),
     );
     let (mut held, stamps, ending) = columns(path, input, &layout, &wanted, (limits, progress))?;
+    let mut issues = ending_issues(&ending);
+    for (slot, times) in held.iter_mut().enumerate() {
+        if wanted.is_time[slot] && !stamps.are_in(slot) {
+            issues.extend(to_seconds(path, times, wanted.columns[slot], &layout, &plans)?);
+        }
+    }
     let mut uses = vec![0_usize; wanted.columns.len()];
     for plan in &plans {
         uses[wanted.slot(plan.column)] += 1;
@@ -85,7 +94,7 @@ fn of_input(
         let uniform = uniform.map_err(|error| time_error(path, name, &error))?;
         channels.push(RawChannel { spec, uniform, unit: layout.columns[plan.column].unit.clone() });
     }
-    Ok(RawRecording { channels, zero_unix_ns: stamps.zero_unix_ns(), issues: ending_issues(&ending) })
+    Ok(RawRecording { channels, zero_unix_ns: stamps.zero_unix_ns(), issues })
 }
 
 /// What one channel takes from the table.
@@ -108,10 +117,10 @@ impl Plan {
         let column = find(path, spec, source, layout)?;
         let time_column = match spec.time.as_deref().or(time) {
             Some(name) => Some(find(path, spec, name, layout)?),
-            None => layout.time_column().filter(|&found| found != column),
+            None => layout.time_column.filter(|&found| found != column),
         };
         if let Some(found) = time_column
-            && layout.time_scale_s(found).is_none()
+            && layout.time_scale(found) == Scale::Unknown
         {
             return Err(error::source(
                 path,
@@ -128,11 +137,25 @@ impl Plan {
             return Err(error::source(
                 path,
                 &spec.name,
-                format!("no column of times was found among {}", layout.names().join(", ")),
+                no_times(layout),
                 "name it under [recording]: time = \"…\", or give this channel sample_rate_hz",
             ));
         }
         Ok(Self { column, time_column, declared_rate_hz: spec.sample_rate_hz })
+    }
+}
+
+/// That no column holds times, with the one that looks most like it.
+fn no_times(layout: &Layout) -> String {
+    let headed = layout.columns.iter().find(|column| time_column::is_headed(column));
+    match headed.filter(|column| !column.is_numeric && !column.example.is_empty()) {
+        Some(column) => {
+            format!(
+                "no column of times was found: {:?} holds {:?}, which is no time known here",
+                column.header, column.example
+            )
+        }
+        None => format!("no column of times was found among {}", layout.names().join(", ")),
     }
 }
 
@@ -147,7 +170,10 @@ fn find(path: &Path, spec: &ChannelSpec, wanted: &str, layout: &Layout) -> Resul
             if layout.has_header {
                 format!("no column is headed {wanted:?} (the header is line {})", layout.header_line)
             } else {
-                format!("there is no column {wanted:?}: the table has no header, its columns count 1, 2, …")
+                format!(
+                    "there is no column {wanted:?}: the table has no header of {} cells, as its rows have; its columns count 1, 2, …",
+                    layout.columns.len()
+                )
             },
             error::near_names(path, wanted, "column", &layout.names()),
         )),
@@ -214,7 +240,7 @@ impl Sink for Keep<'_> {
     }
 }
 
-/// The wanted columns, times in s; their stamps; and how the file ended.
+/// The wanted columns, stamps among them in s; the stamps; and how the file ended.
 fn columns(
     path: &Path,
     input: Input,
@@ -230,18 +256,32 @@ fn columns(
     let mut keep = Keep { wanted, columns: Columns(columns), stamps: Stamps::default() };
     let ending = rows::read(input, layout, wanted, &mut keep, (limits, progress))
         .map_err(|error| row_error(path, limits, (layout, wanted), error))?;
-    let Keep { columns: Columns(mut columns), stamps, .. } = keep;
-    for (slot, values) in columns.iter_mut().enumerate() {
-        let scale_s = layout.time_scale_s(wanted.columns[slot]).unwrap_or(1.0);
-        // Stamps are in s already.
-        #[allow(clippy::float_cmp, reason = "1.0 is the literal for seconds")]
-        if wanted.is_time[slot] && scale_s != 1.0 && !stamps.are_in(slot) {
-            for t in values.iter_mut() {
-                *t *= scale_s;
-            }
-        }
-    }
+    let Keep { columns: Columns(columns), stamps, .. } = keep;
     Ok((columns, stamps, ending))
+}
+
+/// The numbers in a column of times to s; a warning where nothing says that they are.
+fn to_seconds(
+    path: &Path,
+    times: &mut [f64],
+    column: usize,
+    layout: &Layout,
+    plans: &[Plan],
+) -> Result<Option<Issue>, IngestError> {
+    let mut users = plans.iter().filter(|plan| plan.time_column == Some(column));
+    let declared_rate_hz = users.find_map(|plan| plan.declared_rate_hz);
+    let reading = Reading::of(layout.time_scale(column), times, declared_rate_hz);
+    let header = &layout.columns[column].header;
+    if let Some(doubt) = reading.doubt.as_ref().filter(|doubt| doubt.is_grave()) {
+        return Err(IngestError::Content {
+            path: path.display().to_string(),
+            place: format!("line {}", layout.data_line),
+            problem: doubt.problem(header),
+            mend: doubt.mend(),
+        });
+    }
+    reading.apply(times);
+    Ok(reading.issue(header))
 }
 
 fn on_base(samples: Vec<f64>, times: Option<&Times>, plan: &Plan) -> Result<Uniform, TimeBaseError> {
@@ -307,6 +347,13 @@ fn row_error(
         RowError::TooLong { line } => {
             return limits.refusal(path, &format!("line {line} takes"), limits.line_bytes());
         }
+        RowError::Word { line, slot, cell } if wanted.is_time.get(slot) == Some(&true) => (
+            line,
+            format!("column {:?} holds {cell:?}, which is no time, or not written as the ones before", headed(slot)),
+            "times are numbers, date-time stamps (2026-11-20T12:34:56.789, 20.11.2026 12:34:56,789) or clock times (12:34:56.789); \
+             correct the cell in a copy, or name another column of times"
+                .to_owned(),
+        ),
         RowError::Word { line, slot, cell } => (
             line,
             format!("column {:?} holds {cell:?}, which is no number", headed(slot)),
@@ -330,3 +377,5 @@ mod fuzz_tests;
 mod piece_tests;
 #[cfg(test)]
 pub(super) mod tests;
+#[cfg(test)]
+mod time_tests;

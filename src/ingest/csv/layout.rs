@@ -2,7 +2,8 @@
 
 use super::input::{self, Input};
 use super::stamp;
-use crate::ingest::number;
+use super::time_column::{self, Scale};
+use crate::ingest::{number, time_unit};
 
 /// One column of the table.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,6 +18,8 @@ pub(super) struct Column {
     pub is_numeric: bool,
     /// Whether its cells are date-time stamps or clock times.
     pub is_stamped: bool,
+    /// Its cell in the first row.
+    pub example: String,
 }
 
 /// How a text is laid out.
@@ -38,8 +41,9 @@ pub(super) struct Layout {
     pub data_line: u64,
     /// Where the first row begins in [`Input::head`].
     pub data_offset: usize,
+    /// The column of times, where one was found.
+    pub time_column: Option<usize>,
     is_decimal_seen: bool,
-    is_first_rising: bool,
     mean_row_bytes: usize,
 }
 
@@ -58,33 +62,11 @@ const DIALECTS: [(u8, u8); 8] = [
 /// So many of the last lines of the head decide on the dialect.
 const JUDGED_LINES: usize = 200;
 
-/// Words that head a column of times, without their unit.
-const TIME_NAMES: [&str; 17] = [
-    "time",
-    "t",
-    "zeit",
-    "times",
-    "timestamp",
-    "time stamp",
-    "zeitstempel",
-    "messzeit",
-    "uhrzeit",
-    "elapsed time",
-    "relative time",
-    "rel. time",
-    "sec",
-    "seconds",
-    "temps",
-    "tempo",
-    "tiempo",
-];
-
-/// Units that a row of units may hold, in lower case.
-const UNITS: [&str; 49] = [
-    "s", "sec", "ms", "us", "µs", "μs", "ns", "min", "h", "g", "mg", "gn", "m/s2", "m/s^2", "m/s²", "m/s**2",
-    "mm/s2", "mm/s^2", "v", "mv", "µv", "n", "kn", "hz", "khz", "°c", "degc", "k", "bar", "pa", "kpa", "mpa",
-    "%", "-", "1", "mm", "m", "rad/s", "deg/s", "°/s", "deg", "°", "a", "ma", "µm/m", "um/m", "kg", "nm",
-    "rad",
+/// Units beside those of time that a row of units may hold, in lower case.
+const UNITS: [&str; 40] = [
+    "g", "mg", "gn", "m/s2", "m/s^2", "m/s²", "m/s**2", "mm/s2", "mm/s^2", "v", "mv", "µv", "n", "kn", "hz",
+    "khz", "°c", "degc", "k", "bar", "pa", "kpa", "mpa", "%", "-", "1", "mm", "m", "rad/s", "deg/s", "°/s",
+    "deg", "°", "a", "ma", "µm/m", "um/m", "kg", "nm", "rad",
 ];
 
 struct Line<'a> {
@@ -114,11 +96,12 @@ impl Layout {
         }
         let ((delimiter, decimal), judged) = best?;
         let first = lines.iter().position(|line| is_row(&split(&line.text, delimiter), decimal, &judged))?;
-        let header = header(&lines[..first], delimiter, judged.columns);
         let rows = &lines[first..];
+        let cells: Vec<Vec<&str>> = rows.iter().map(|line| split(&line.text, delimiter)).collect();
+        let header = header(&lines[..first], delimiter, &judged);
         let last = &lines[lines.len() - 1];
         let row_bytes = (last.offset + last.text.len() + 1).saturating_sub(rows[0].offset);
-        let mut columns = columns(header.as_ref(), &judged);
+        let mut columns = columns(header.as_ref(), &judged, &cells[0]);
         if columns.len() > 1 && columns.last().is_some_and(|c| c.header.is_empty() && !c.is_numeric) {
             columns.pop();
         }
@@ -131,12 +114,16 @@ impl Layout {
             preamble_lines: above as u64,
             data_line: first as u64 + 1,
             data_offset: rows[0].offset,
-            is_decimal_seen: rows.iter().any(|line| {
-                split(&line.text, delimiter)
-                    .iter()
-                    .any(|c| c.as_bytes().contains(&decimal) && is_number(c, decimal))
-            }),
-            is_first_rising: is_first_rising(rows, delimiter, decimal),
+            is_decimal_seen: cells
+                .iter()
+                .flatten()
+                .any(|cell| cell.as_bytes().contains(&decimal) && is_number(cell, decimal)),
+            time_column: time_column::find(
+                &columns,
+                header.is_none() && is_first_rising(&cells, decimal),
+                decimal,
+                |column| cells.iter().filter_map(move |cells| cells.get(column).copied()),
+            ),
             mean_row_bytes: (row_bytes / rows.len()).max(2),
             columns,
         })
@@ -157,34 +144,9 @@ impl Layout {
         self.columns.iter().map(|column| column.header.clone()).collect()
     }
 
-    /// The column of times: by its header, by its stamps, or the first of a table without header where it rises.
-    pub(super) fn time_column(&self) -> Option<usize> {
-        let bare: Vec<String> = self
-            .columns
-            .iter()
-            .map(|column| without_unit_suffix(&column.name.to_lowercase()).0.to_owned())
-            .collect();
-        bare.iter()
-            .position(|name| TIME_NAMES.contains(&name.as_str()))
-            .or_else(|| bare.iter().position(|name| name.starts_with("time") || name.starts_with("zeit")))
-            .or_else(|| self.columns.iter().position(|column| column.is_stamped))
-            .or_else(|| (!self.has_header && self.columns.len() > 1 && self.is_first_rising).then_some(0))
-    }
-
-    /// Seconds per unit of a column of times; `None` where its unit is none of time.
-    pub(super) fn time_scale_s(&self, column: usize) -> Option<f64> {
-        let column = self.columns.get(column)?;
-        let name = column.name.to_lowercase();
-        let unit = column.unit.as_deref().or(without_unit_suffix(&name).1);
-        match unit.map(|unit| unit.trim().to_lowercase()).as_deref() {
-            None | Some("" | "s" | "sec" | "secs" | "second" | "seconds" | "sekunden" | "-") => Some(1.0),
-            Some("ms" | "msec" | "milliseconds") => Some(1e-3),
-            Some("us" | "µs" | "μs" | "usec" | "microseconds") => Some(1e-6),
-            Some("ns" | "nsec" | "nanoseconds") => Some(1e-9),
-            Some("min") => Some(60.0),
-            Some(_) if column.is_stamped => Some(1.0),
-            Some(_) => None,
-        }
+    /// What the numbers of a column of times count.
+    pub(super) fn time_scale(&self, column: usize) -> Scale {
+        self.columns.get(column).map_or(Scale::Unknown, Scale::of)
     }
 
     /// The other decimal mark, where rows seen so far hold neither and it is no delimiter.
@@ -281,23 +243,28 @@ fn judge(lines: &[Line], (delimiter, decimal): (u8, u8)) -> Option<Judged> {
 }
 
 /// Whether a line is a row: as many cells, numbers (or nothing) in the columns of numbers, and more numbers than not.
+///
+/// Stamps count only where there is nothing else: one that cannot be read makes a line no header.
 fn is_row(cells: &[&str], decimal: u8, judged: &Judged) -> bool {
     if cells.len() != judged.columns {
         return false;
     }
-    let numeric = || cells.iter().zip(&judged.is_numeric).filter(|(_, is_numeric)| **is_numeric);
-    let values = numeric().filter(|(cell, _)| is_value(cell, decimal)).count();
-    2 * values >= numeric().count()
-        && numeric().all(|(cell, _)| is_value(cell, decimal) || number::is_missing(cell.as_bytes()))
+    let is_plain = |c: usize| judged.is_numeric[c] && !judged.is_stamped[c];
+    let has_plain = (0..judged.columns).any(is_plain);
+    let decisive: Vec<&str> = (0..judged.columns)
+        .filter(|&c| if has_plain { is_plain(c) } else { judged.is_numeric[c] })
+        .map(|c| cells[c])
+        .collect();
+    let values = decisive.iter().filter(|cell| is_value(cell, decimal)).count();
+    2 * values >= decisive.len()
+        && decisive.iter().all(|cell| is_value(cell, decimal) || number::is_missing(cell.as_bytes()))
 }
 
-fn is_first_rising(rows: &[Line], delimiter: u8, decimal: u8) -> bool {
+fn is_first_rising(rows: &[Vec<&str>], decimal: u8) -> bool {
     let firsts: Option<Vec<f64>> = rows
         .iter()
-        .filter(|line| !line.text.trim().is_empty())
-        .map(|line| {
-            split(&line.text, delimiter).first().and_then(|cell| number::of_cell(cell.as_bytes(), decimal))
-        })
+        .filter(|cells| !matches!(cells[..], [] | [""]))
+        .map(|cells| cells.first().and_then(|cell| number::of_cell(cell.as_bytes(), decimal)))
         .collect();
     firsts.is_some_and(|firsts| firsts.len() > 1 && firsts.windows(2).all(|w| w[0] < w[1]))
 }
@@ -310,10 +277,13 @@ struct Header {
 }
 
 /// The header above the rows, with the row of units where there is one.
-fn header(above: &[Line], delimiter: u8, columns: usize) -> Option<Header> {
+fn header(above: &[Line], delimiter: u8, judged: &Judged) -> Option<Header> {
+    // A delimiter may end the rows and not the header; a header short of a column of numbers would head the wrong ones.
+    let is_last_empty = judged.is_numeric.last() == Some(&false);
     let fitting = |index: usize| {
         let cells = header_cells(&above[index].text, delimiter);
-        (cells.len() == columns || cells.len() + 1 == columns).then_some(cells)
+        (cells.len() == judged.columns || (is_last_empty && cells.len() + 1 == judged.columns))
+            .then_some(cells)
     };
     let mut filled = (0..above.len()).rev().filter(|&i| !above[i].text.trim().is_empty());
     let nearest = filled.next()?;
@@ -349,10 +319,16 @@ fn is_unit(cell: &str) -> bool {
     let bare = cell.trim_matches(['[', ']', '(', ')']).to_lowercase();
     // "A1 [g]" is a name with its unit.
     let is_bracketed = cell.starts_with(['[', '(']) && cell.ends_with([']', ')']);
-    cell.is_empty() || is_bracketed || UNITS.contains(&bare.as_str())
+    // "hh:mm:ss.000".
+    let is_clock = bare.contains(':') && bare.bytes().all(|b| b"dmyhsf0:.,/- ".contains(&b));
+    cell.is_empty()
+        || is_bracketed
+        || is_clock
+        || time_unit::seconds(&bare).is_some()
+        || UNITS.contains(&bare.as_str())
 }
 
-fn columns(header: Option<&Header>, judged: &Judged) -> Vec<Column> {
+fn columns(header: Option<&Header>, judged: &Judged, first_row: &[&str]) -> Vec<Column> {
     (0..judged.columns)
         .map(|index| {
             let header_text = match header {
@@ -368,6 +344,7 @@ fn columns(header: Option<&Header>, judged: &Judged) -> Vec<Column> {
                 header: header_text,
                 is_numeric: judged.is_numeric[index],
                 is_stamped: judged.is_stamped[index],
+                example: first_row.get(index).map_or("", |cell| cell).to_owned(),
             }
         })
         .collect()
@@ -388,13 +365,5 @@ fn name_and_unit(header: &str) -> (&str, Option<&str>) {
     match header.rsplit_once(" / ") {
         Some((name, unit)) if is_unit(unit.trim()) => (name.trim(), Some(unit.trim())),
         _ => (header, None),
-    }
-}
-
-/// `time_ms` to `time` and `ms`.
-fn without_unit_suffix(name: &str) -> (&str, Option<&str>) {
-    match name.rsplit_once('_') {
-        Some((bare, unit @ ("s" | "sec" | "ms" | "us" | "ns"))) => (bare, Some(unit)),
-        _ => (name, None),
     }
 }

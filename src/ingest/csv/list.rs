@@ -3,6 +3,7 @@
 use super::super::error::IngestError;
 use super::input::Input;
 use super::layout::{Column, Layout};
+use super::reading::Reading;
 use super::rows::{self, Rows, Sink, Wanted};
 use super::stamp::Stamps;
 use super::{Limits, Progress, TimeBaseError, ending_issues, no_table, row_error, time_base};
@@ -125,17 +126,17 @@ pub(in super::super) fn list(
     let input = Input::open(path, limits)?;
     let (bytes, encoding) = (input.bytes, input.encoding);
     let layout = Layout::of(&input).ok_or_else(|| no_table(path))?;
-    let time_column = layout.time_column();
+    let time_column = layout.time_column;
     let wanted = Wanted::new(0..layout.columns.len(), time_column.as_slice());
     let mut survey = Survey::of(time_column, layout.columns.len());
     let ending = rows::read(input, &layout, &wanted, &mut survey, (limits, progress))
         .map_err(|error| row_error(path, limits, (&layout, &wanted), error))?;
     let Survey { mut seen, stamps } = survey;
-    let scale_s = time_column.and_then(|column| layout.time_scale_s(column)).unwrap_or(1.0);
-    if !time_column.is_some_and(|column| stamps.are_in(column)) {
-        for t in &mut seen.times {
-            *t *= scale_s;
-        }
+    let mut issues = ending_issues(&ending);
+    if let Some(column) = time_column.filter(|&column| !stamps.are_in(column)) {
+        let reading = Reading::of(layout.time_scale(column), &seen.times, None);
+        reading.apply(&mut seen.times);
+        issues.extend(reading.issue(&layout.columns[column].header));
     }
     let clock = Clock::of(&seen.times);
     let channels = layout
@@ -145,7 +146,6 @@ pub(in super::super) fn list(
         .filter(|(index, _)| Some(*index) != time_column)
         .map(|(index, column)| listed(column, &seen.ranges[index], &clock, seen.rows))
         .collect();
-    let mut issues = ending_issues(&ending);
     issues.extend(clock.issues);
     Ok(Listing {
         schema: "dropcheck.inspect/1",
@@ -256,7 +256,7 @@ fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
         "none: columns count 1, 2, …".to_owned()
     };
     let time = layout
-        .time_column()
+        .time_column
         .and_then(|index| layout.columns.get(index))
         .map_or_else(|| "none found".to_owned(), |column| column.header.clone());
     BTreeMap::from([

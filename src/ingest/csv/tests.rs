@@ -48,19 +48,19 @@ pub(in super::super) fn cask_file(sources: &[&str]) -> CaskFile {
     }
 }
 
-fn read_bytes(content: &[u8], cask_file: &CaskFile) -> Result<RawRecording, IngestError> {
+pub(super) fn read_bytes(content: &[u8], cask_file: &CaskFile) -> Result<RawRecording, IngestError> {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("r.csv");
     std::fs::write(&path, content).unwrap();
     read(&path, cask_file, Limits::default(), &|_| {})
 }
 
-fn values(recording: &RawRecording, channel: usize) -> Vec<f64> {
+pub(super) fn values(recording: &RawRecording, channel: usize) -> Vec<f64> {
     let samples = &recording.channels[channel].uniform.samples;
     (0..samples.len()).map(|i| samples.get(i)).collect()
 }
 
-fn told(error: &IngestError) -> String {
+pub(super) fn told(error: &IngestError) -> String {
     let help = miette::Diagnostic::help(error).map(|help| help.to_string()).unwrap_or_default();
     format!("{error} | {help}")
 }

@@ -1,0 +1,169 @@
+//! Numbers in a column of times to seconds, also where nothing says their unit.
+
+use super::super::time_base::{short, to_digits};
+use super::time_column::Scale;
+use crate::data::{Issue, IssueCode, Severity};
+
+/// Units of time that a recorder may have left out, with seconds a unit.
+const UNITS: [(&str, f64); 4] = [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
+
+/// 1990-01-01 and 2100-01-01, s since 1970: no recorder counts the time since then by chance.
+const EPOCH_S: (f64, f64) = (631_152_000.0, 4_102_444_800.0);
+
+/// Rates at which impacts are recorded, Hz: from pulses of 10 ms at ten samples each to the fastest transient recorders.
+const USUAL_HZ: (f64, f64) = (1e3, 5e6);
+
+/// The least rate of times that count ms, µs or ns since 1970, Hz: a counter of ns since its start looks like µs since 1970 at a thousandth of its rate.
+const LEAST_EPOCH_HZ: f64 = 100.0;
+
+/// Below this rate a contact of 10 ms holds not one sample, Hz: no recording of a drop is lost with those that are refused.
+const LEAST_HZ: f64 = 100.0;
+
+/// Less than any contact with its flight, s: so short a record is of another unit.
+const SHORTEST_S: f64 = 0.02;
+
+/// A stated rate tells units apart, which are thousandfold, by this part of itself.
+const ALIKE: f64 = 0.1;
+
+/// How many intervals are looked at: their median only has to tell a thousandfold.
+const LOOKED_AT: usize = 4096;
+
+/// How the numbers in a column of times are read.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Reading {
+    /// Seconds a unit.
+    pub scale_s: f64,
+    /// Nothing says that it is seconds, and there is a likelier unit.
+    pub doubt: Option<Doubt>,
+}
+
+/// Why times without a unit may be no seconds.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Doubt {
+    /// The rate that they give in seconds, Hz.
+    rate_hz: f64,
+    /// Units in which they would be a usual recording, with the rate in Hz.
+    likelier: Vec<(&'static str, f64)>,
+}
+
+impl Reading {
+    /// The reading of `times` that count `scale`, in a channel whose rate is stated or not.
+    pub(super) fn of(scale: Scale, times: &[f64], declared_rate_hz: Option<f64>) -> Self {
+        let sure = |scale_s| Self { scale_s, doubt: None };
+        if let Scale::Known(scale_s) = scale {
+            return sure(scale_s);
+        }
+        let Some(clock) = Clock::of(times) else { return sure(1.0) };
+        if let Some(scale_s) = clock.since_1970() {
+            return sure(scale_s);
+        }
+        if let Some(declared_hz) = declared_rate_hz {
+            let is_it = |(_, scale_s): &&(_, f64)| (clock.rate / scale_s / declared_hz - 1.0).abs() < ALIKE;
+            return sure(UNITS.iter().find(is_it).map_or(1.0, |unit| unit.1));
+        }
+        let likelier: Vec<(&str, f64)> = UNITS[1..]
+            .iter()
+            .filter(|(_, scale_s)| {
+                (USUAL_HZ.0..=USUAL_HZ.1).contains(&(clock.rate / scale_s))
+                    && clock.span * scale_s >= SHORTEST_S
+            })
+            .map(|(name, scale_s)| (*name, clock.rate / scale_s))
+            .collect();
+        let is_doubtful = clock.rate < USUAL_HZ.0 && !likelier.is_empty();
+        Self { scale_s: 1.0, doubt: is_doubtful.then_some(Doubt { rate_hz: clock.rate, likelier }) }
+    }
+
+    /// The times to seconds.
+    pub(super) fn apply(&self, times: &mut [f64]) {
+        #[allow(clippy::float_cmp, reason = "1.0 is the literal for seconds")]
+        if self.scale_s != 1.0 {
+            for t in times {
+                *t *= self.scale_s;
+            }
+        }
+    }
+
+    /// The doubt in words, for times in the column headed so.
+    pub(super) fn issue(&self, header: &str) -> Option<Issue> {
+        let doubt = self.doubt.as_ref()?;
+        let message = format!("{}: {}", doubt.problem(header), doubt.mend());
+        Some(Issue::new(IssueCode::TimeJitter, Severity::Warning, message))
+    }
+}
+
+impl Doubt {
+    /// Whether the times in seconds are of no use whatever they are.
+    pub(super) fn is_grave(&self) -> bool {
+        self.rate_hz < LEAST_HZ
+    }
+
+    pub(super) fn problem(&self, header: &str) -> String {
+        format!(
+            "nothing says the unit of the times in column {header:?}; taken as seconds they give a rate of {}",
+            rate(self.rate_hz)
+        )
+    }
+
+    pub(super) fn mend(&self) -> String {
+        let asked: Vec<String> = self
+            .likelier
+            .iter()
+            .map(|(name, rate_hz)| format!("{name}, which is {}", rate(*rate_hz)))
+            .collect();
+        let (name, rate_hz) = self.likelier[0];
+        format!(
+            "are they in {}? Then head the column with [{name}] in a copy, or write sample_rate_hz = {} in each [[channel]]; \
+             head it with [s] if they are seconds",
+            asked.join(", or in "),
+            short(to_digits(rate_hz, 6))
+        )
+    }
+}
+
+fn rate(rate_hz: f64) -> String {
+    let (value, unit) = if rate_hz < 1e3 { (rate_hz, "Hz") } else { (rate_hz / 1e3, "kHz") };
+    format!("{} {unit}", short(to_digits(value, 4)))
+}
+
+/// What the bare numbers say.
+struct Clock {
+    first: f64,
+    last: f64,
+    /// Rows per unit.
+    rate: f64,
+    span: f64,
+}
+
+impl Clock {
+    fn of(times: &[f64]) -> Option<Self> {
+        let (first, last) = times
+            .iter()
+            .filter(|t| t.is_finite())
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &t| (a.min(t), b.max(t)));
+        let span = last - first;
+        if times.len() < 2 || !(span.is_finite() && span > 0.0) {
+            return None;
+        }
+        #[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
+        let mean = span / (times.len() - 1) as f64;
+        let stride = times.len().div_ceil(LOOKED_AT);
+        let pairs = times.windows(2).step_by(stride);
+        let mut steps: Vec<f64> = pairs.map(|pair| pair[1] - pair[0]).filter(|d| *d > 0.0).collect();
+        let middle = steps.len() / 2;
+        let median =
+            if steps.is_empty() { mean } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+        // A pause lengthens the mean, times that repeat the median.
+        Some(Self { first, last, rate: 1.0 / mean.min(median), span })
+    }
+
+    /// Seconds a unit of times that count from 1970.
+    fn since_1970(&self) -> Option<f64> {
+        let is_it = |(_, scale_s): &&(_, f64)| {
+            let least_hz = if *scale_s < 1.0 { LEAST_EPOCH_HZ } else { 1.0 };
+            self.first * scale_s > EPOCH_S.0
+                && self.last * scale_s < EPOCH_S.1
+                && (least_hz..=USUAL_HZ.1).contains(&(self.rate / scale_s))
+        };
+        UNITS.iter().find(is_it).map(|unit| unit.1)
+    }
+}

@@ -1,0 +1,193 @@
+//! Headers and first rows to the column of times and to what its numbers count.
+
+use super::layout::Column;
+use super::stamp::Stamps;
+use crate::ingest::{number, time_unit};
+
+/// Words that head a column of times, without their unit.
+const TIME_NAMES: [&str; 26] = [
+    "time",
+    "t",
+    "zeit",
+    "times",
+    "timestamp",
+    "time stamp",
+    "zeitstempel",
+    "messzeit",
+    "uhrzeit",
+    "elapsed time",
+    "relative time",
+    "rel. time",
+    "datetime",
+    "date/time",
+    "date time",
+    "sec",
+    "seconds",
+    "ms",
+    "msec",
+    "us",
+    "µs",
+    "usec",
+    "ns",
+    "temps",
+    "tempo",
+    "tiempo",
+];
+
+/// What the numbers in a column of times count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Scale {
+    /// So many seconds a unit.
+    Known(f64),
+    /// Nothing says it.
+    Open,
+    /// A unit that is none of time.
+    Unknown,
+}
+
+impl Scale {
+    /// As the header, the row of units or the name says.
+    pub(super) fn of(column: &Column) -> Self {
+        if column.is_stamped {
+            return Self::Known(1.0);
+        }
+        match column.unit.as_deref().map(str::trim) {
+            None | Some("" | "-" | "1") => {
+                let (_, unit) = name_and_unit(&column.name);
+                unit.and_then(time_unit::seconds).map_or(Self::Open, Self::Known)
+            }
+            Some(unit) => time_unit::seconds(unit).map_or(Self::Unknown, Self::Known),
+        }
+    }
+}
+
+/// The column of times: by its header, by its stamps, or the first of a table without header where it rises.
+///
+/// Of several the first whose times rise with every row; where none does, the one whose times rise most often.
+/// `cells` gives a column's cells of the first rows.
+pub(super) fn find<'a, Cells: Iterator<Item = &'a str>>(
+    columns: &[Column],
+    is_first_rising: bool,
+    decimal: u8,
+    cells: impl Fn(usize) -> Cells,
+) -> Option<usize> {
+    let bare: Vec<String> = columns.iter().map(bare_name).collect();
+    let is_named = |i: &usize| TIME_NAMES.contains(&bare[*i].as_str());
+    let begins_so = |i: &usize| begins_so(&bare[*i]);
+    let all = || 0..columns.len();
+    let mut found: Vec<usize> = Vec::new();
+    let ranked = all()
+        .filter(is_named)
+        .chain(all().filter(begins_so))
+        .chain(all().filter(|&i| columns[i].is_stamped))
+        .chain((is_first_rising && columns.len() > 1).then_some(0));
+    for i in ranked {
+        // Words are no times, whatever they are headed.
+        if columns[i].is_numeric && !found.contains(&i) {
+            found.push(i);
+        }
+    }
+    if found.len() < 2 {
+        return found.first().copied();
+    }
+    let rises: Vec<(usize, usize)> = found.iter().map(|&i| rises(cells(i), decimal)).collect();
+    // Nine of ten: as where the time base takes times for coarse.
+    let is_fine = |(rises, pairs): &(usize, usize)| 10 * rises >= 9 * pairs;
+    let finest = rises.iter().map(|(rises, _)| *rises).max();
+    let place = rises.iter().position(is_fine).or_else(|| rises.iter().position(|(r, _)| Some(*r) == finest));
+    place.map(|place| found[place])
+}
+
+/// Whether a column is headed as one of times.
+pub(super) fn is_headed(column: &Column) -> bool {
+    let bare = bare_name(column);
+    TIME_NAMES.contains(&bare.as_str()) || begins_so(&bare)
+}
+
+fn bare_name(column: &Column) -> String {
+    name_and_unit(&column.name).0.to_lowercase()
+}
+
+fn begins_so(name: &str) -> bool {
+    name.starts_with("time") || name.starts_with("zeit")
+}
+
+/// How many of the cells are later than the one before, and how many have one before.
+fn rises<'a>(cells: impl Iterator<Item = &'a str>, decimal: u8) -> (usize, usize) {
+    let mut stamps = Stamps::default();
+    let times: Vec<f64> = cells
+        .filter_map(|cell| {
+            number::of_cell(cell.as_bytes(), decimal).or_else(|| stamps.seconds(0, cell.as_bytes()))
+        })
+        .collect();
+    (times.windows(2).filter(|pair| pair[0] < pair[1]).count(), times.len().saturating_sub(1))
+}
+
+/// `time_ms`, `TimeMs`, `Zeit in ms` or `t/ms` to its name and `ms`.
+fn name_and_unit(name: &str) -> (&str, Option<&str>) {
+    let name = name.trim();
+    let is_unit = |text: &str| time_unit::seconds(text).is_some();
+    if let Some((bare, unit)) = name.rsplit_once(['_', ' ', '/', '-', '.', ',', ':'])
+        && is_unit(unit)
+    {
+        return (without_in(bare), Some(unit));
+    }
+    let is_hump = |pair: &(char, char)| pair.0.is_lowercase() && pair.1.is_uppercase();
+    let pairs = name.chars().zip(name.chars().skip(1));
+    if let Some(last) = pairs.enumerate().filter(|(_, pair)| is_hump(pair)).map(|(i, _)| i).last()
+        && let Some((at, _)) = name.char_indices().nth(last + 1)
+        && is_unit(&name[at..])
+    {
+        return (without_in(&name[..at]), Some(&name[at..]));
+    }
+    (name, is_unit(name).then_some(name))
+}
+
+/// "Zeit in" and "time /" to the name.
+fn without_in(name: &str) -> &str {
+    let name = name.trim_end_matches(['_', ' ', '/', '-', '.', ',', ':']);
+    let bare = [" in", "_in", "In"].iter().find_map(|word| name.strip_suffix(word));
+    bare.unwrap_or(name).trim_end()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_in_names_are_understood() {
+        for (header, name, scale) in [
+            ("time_ms", "time", Scale::Known(1e-3)),
+            ("Zeit in ms", "Zeit", Scale::Known(1e-3)),
+            ("TimeMs", "Time", Scale::Known(1e-3)),
+            ("timeInMs", "time", Scale::Known(1e-3)),
+            ("t/ms", "t", Scale::Known(1e-3)),
+            ("t / ms", "t", Scale::Known(1e-3)),
+            ("Time msec", "Time", Scale::Known(1e-3)),
+            ("t_us", "t", Scale::Known(1e-6)),
+            ("Zeit in µs", "Zeit", Scale::Known(1e-6)),
+            ("timestamp_ns", "timestamp", Scale::Known(1e-9)),
+            ("time_s", "time", Scale::Known(1.0)),
+            ("Time in seconds", "Time", Scale::Known(1.0)),
+            ("Zeit in min", "Zeit", Scale::Known(60.0)),
+            ("ms", "ms", Scale::Known(1e-3)),
+            ("Zeit", "Zeit", Scale::Open),
+            ("Times", "Times", Scale::Open),
+            ("TimeStamp", "TimeStamp", Scale::Open),
+            ("t", "t", Scale::Open),
+        ] {
+            assert_eq!(name_and_unit(header).0, name, "{header}");
+            let column = Column {
+                header: header.into(),
+                name: header.into(),
+                unit: None,
+                is_numeric: true,
+                is_stamped: false,
+                example: String::new(),
+            };
+            assert_eq!(Scale::of(&column), scale, "{header}");
+            let stated = Column { unit: Some("s".into()), ..column };
+            assert_eq!(Scale::of(&stated), Scale::Known(1.0), "{header}: a stated unit goes first");
+        }
+    }
+}

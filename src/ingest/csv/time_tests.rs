@@ -1,0 +1,221 @@
+//! Columns of times as loggers and spreadsheets write them, to rates, starts or words.
+
+use super::tests::{cask_file, read_bytes, told, values};
+use super::*;
+use std::fmt::Write as _;
+
+/// A table of so many rows, the time of each by its number.
+fn table(header: &str, rows: usize, mark: char, time: impl Fn(usize) -> String) -> String {
+    let mut text = format!("{header}\n");
+    for i in 0..rows {
+        let _ = writeln!(text, "{}{mark}{i}{mark}{}", time(i), i % 7);
+    }
+    text
+}
+
+/// Whole units and a fraction of one of so many digits.
+fn decimal(count: usize, digits: usize, point: char) -> String {
+    let unit = 10_usize.pow(u32::try_from(digits).unwrap());
+    format!("{}{point}{:0digits$}", count / unit, count % unit)
+}
+
+#[test]
+fn clock_times_are_read_with_any_delimiter() {
+    // 20 kHz over midnight, or the full hour.
+    let clock = |i: usize, point| {
+        let count = (86_400 * 20_000 - 100 + i) % (86_400 * 20_000);
+        let (s, rest) = (count / 20_000, count % 20_000);
+        (format!("{:02}:{:02}", s / 3600, s / 60 % 60), format!("{:02}{point}{:06}", s % 60, rest * 50))
+    };
+    let of_day = |i, point| format!("{}:{}", clock(i, point).0, clock(i, point).1);
+    let of_hour = |i, point| format!("{}:{}", &clock(i, point).0[3..], clock(i, point).1);
+    let day = |i: usize| if i < 100 { 20 } else { 21 };
+    let texts = [
+        table("Time,A1,A2", 300, ',', |i| of_day(i, '.')),
+        table("Uhrzeit;A1;A2", 300, ';', |i| of_day(i, ',')),
+        table("Time\tA1\tA2", 300, '\t', |i| of_day(i, '.')),
+        table("Time\tA1\tA2", 300, '\t', |i| of_day(i, ',')),
+        table("Time A1 A2", 300, ' ', |i| of_day(i, '.')),
+        table("when;A1;A2", 300, ';', |i| of_hour(i, ',')),
+        table("Date,Time,A1,A2", 300, ',', |i| format!("2026-11-{},{}", day(i), of_day(i, '.'))),
+        table("Datum;Uhrzeit;A1;A2", 300, ';', |i| format!("{}.11.2026;{}", day(i), of_day(i, ','))),
+        table("Datum Zeit A1 A2", 300, ' ', |i| format!("{}.11.2026 {}", day(i), of_day(i, ','))),
+        table("Zeit;A1;A2", 300, ';', |i| format!("{}.11.2026 {}", day(i), of_day(i, ','))),
+        table("Zeit\tA1\tA2", 300, '\t', |i| format!("{}.11.2026 {}", day(i), of_day(i, ','))),
+        table("Timestamp,A1,A2", 300, ',', |i| format!("11/{}/2026 {}", day(i), of_day(i, '.'))),
+        table("Timestamp,A1,A2", 300, ',', |i| format!("\"2026/11/{} {}\"", day(i), of_day(i, '.'))),
+        table("Zeit;A1;A2\nhh:mm:ss.000;g;g", 300, ';', |i| of_day(i, ',')),
+    ];
+    for text in texts {
+        let shown = &text[..200];
+        let recording = read_bytes(text.as_bytes(), &cask_file(&["A1", "A2"])).map_err(|e| told(&e));
+        let recording = recording.unwrap_or_else(|error| panic!("{shown}\n{error}"));
+        let a1 = &recording.channels[0].uniform;
+        assert!((a1.sample_rate_hz - 20_000.0).abs() < 1e-3, "{shown}: {}", a1.sample_rate_hz);
+        assert!(a1.start_s.abs() < 1e-9 && a1.issues.is_empty(), "{shown}: {:?}", a1.issues);
+        let numbers = values(&recording, 0);
+        assert!(numbers.len() == 300 && (numbers[299] - 299.0).abs() < 1e-12, "{shown}");
+        assert_eq!(recording.zero_unix_ns, None);
+    }
+}
+
+#[test]
+fn a_clock_time_that_is_not_needed_is_no_obstacle() {
+    let text = table("Time,t2,A1,A2", 100, ',', |i| format!("12:3x:{i},{}", decimal(i, 3, '.')));
+    let mut by_rate = cask_file(&["A1"]);
+    let message = told(&read_bytes(text.as_bytes(), &by_rate).unwrap_err());
+    assert!(message.contains("\"Time\" holds \"12:3x:0\", which is no time known here"), "{message}");
+    by_rate.channels[0].sample_rate_hz = Some(1000.0);
+    assert_eq!(values(&read_bytes(text.as_bytes(), &by_rate).unwrap(), 0).len(), 100);
+    let mut by_name = cask_file(&["A1"]);
+    by_name.time = Some("t2".into());
+    let recording = read_bytes(text.as_bytes(), &by_name).unwrap();
+    assert!((recording.channels[0].uniform.sample_rate_hz - 1000.0).abs() < 1e-6);
+    // Nor where the first rows hold no time and most do.
+    let late = table("t,Clock,A1,A2", 100, ',', |i| {
+        let clock = if i < 3 { "--:--:--".into() } else { format!("12:34:{}", decimal(i + 10_000, 3, '.')) };
+        format!("{},{clock}", decimal(i, 3, '.'))
+    });
+    assert_eq!(values(&read_bytes(late.as_bytes(), &cask_file(&["A1"])).unwrap(), 0).len(), 100);
+    // Named as the times, it is told where it goes wrong.
+    let text = "Time,A1\n12:34:56.1,1\n12:34:56.2,1\n34:56.3,1\n12:34:56.4,1\n";
+    let message = told(&read_bytes(text.as_bytes(), &cask_file(&["A1"])).unwrap_err());
+    assert!(message.contains("line 4") && message.contains("\"34:56.3\", which is no time"), "{message}");
+}
+
+#[test]
+fn stamps_beside_other_times_leave_their_unit_alone() {
+    let text = table("Time,t [ms],A1,A2", 100, ',', |i| format!("12:34:{},{i}", decimal(i + 10_000, 3, '.')));
+    let mut cask = cask_file(&["A1", "A2"]);
+    cask.channels[1].time = Some("t [ms]".into());
+    let recording = read_bytes(text.as_bytes(), &cask).unwrap();
+    for channel in &recording.channels {
+        assert!((channel.uniform.sample_rate_hz - 1000.0).abs() < 1e-6, "{}", channel.uniform.sample_rate_hz);
+    }
+}
+
+#[test]
+fn a_header_short_of_a_column_heads_none() {
+    // A decimal comma between commas: "A1" would be the milliseconds.
+    let text = table("Time,A1,A2", 100, ',', |i| format!("12:34:56,{i:03}"));
+    let message = told(&read_bytes(text.as_bytes(), &cask_file(&["A1"])).unwrap_err());
+    assert!(message.contains("no header of 4 cells"), "{message}");
+}
+
+#[test]
+fn of_two_columns_of_times_the_finer_is_taken() {
+    for header in ["Timestamp;t [s];A1;A2", "Timestamp;Zeit;A1;A2"] {
+        let text = table(header, 3000, ';', |i| format!("12:34:{:02};{}", 10 + i / 1000, decimal(i, 3, ',')));
+        let recording = read_bytes(text.as_bytes(), &cask_file(&["A1"])).unwrap();
+        let a1 = &recording.channels[0].uniform;
+        assert!(
+            (a1.sample_rate_hz - 1000.0).abs() < 1e-6 && a1.issues.is_empty(),
+            "{header}: {:?}",
+            a1.issues
+        );
+    }
+    // As good as one another: the first.
+    let text = table("Timestamp;t [s];A1;A2", 300, ';', |i| {
+        format!("12:34:{};{}", decimal(10_000 + 2 * i, 3, ','), decimal(i, 3, ','))
+    });
+    let recording = read_bytes(text.as_bytes(), &cask_file(&["A1"])).unwrap();
+    assert!((recording.channels[0].uniform.sample_rate_hz - 500.0).abs() < 1e-6);
+}
+
+/// 0.45 s at 20 kHz, the times in units of so many microseconds.
+fn counted(header: &str, unit_us: usize, from: usize) -> String {
+    table(&format!("{header};A1;A2"), 9000, ';', |i| {
+        let (whole, rest) = (50 * i / unit_us, 50 * i % unit_us);
+        format!("{},{:03}", whole + from, rest * 1000 / unit_us)
+    })
+}
+
+#[test]
+fn units_that_names_or_epochs_tell() {
+    for (header, unit_us, from) in [
+        ("Zeit in ms", 1000, 0),
+        ("TimeMs", 1000, 0),
+        ("time_ms", 1000, 0),
+        ("Time (msec)", 1000, 0),
+        ("t/ms", 1000, 0),
+        ("t_us", 1, 0),
+        ("Zeit [µs]", 1, 5_000_000),
+        ("Time", 1000, 1_795_176_000_123),
+        ("Time", 1, 1_795_176_000_123_000),
+    ] {
+        let recording =
+            read_bytes(counted(header, unit_us, from).as_bytes(), &cask_file(&["A1"])).map_err(|e| told(&e));
+        let recording = recording.unwrap_or_else(|error| panic!("{header}: {error}"));
+        let a1 = &recording.channels[0].uniform;
+        assert!((a1.sample_rate_hz / 20_000.0 - 1.0).abs() < 1e-4, "{header}: {}", a1.sample_rate_hz);
+        assert!(recording.issues.is_empty(), "{header}: {:?}", recording.issues);
+    }
+    let nanoseconds = table("t;A1;A2", 9000, ';', |i| format!("{}", 1_795_176_000_123_000_000 + 50_000 * i));
+    let recording = read_bytes(nanoseconds.as_bytes(), &cask_file(&["A1"])).unwrap();
+    assert!((recording.channels[0].uniform.sample_rate_hz / 20_000.0 - 1.0).abs() < 1e-4);
+}
+
+#[test]
+fn milliseconds_without_a_unit_are_asked_about() {
+    for (unit_us, unit) in [(1000, "[ms]"), (1, "[µs]")] {
+        let text = counted("Zeit", unit_us, 0);
+        let mut cask = cask_file(&["A1"]);
+        let message = told(&read_bytes(text.as_bytes(), &cask).unwrap_err());
+        for part in ["\"Zeit\"", "line 2", unit, "20 kHz", "sample_rate_hz = 20000"] {
+            assert!(message.contains(part), "{message}");
+        }
+        // A rate that agrees settles it.
+        cask.channels[0].sample_rate_hz = Some(20_000.0);
+        let recording = read_bytes(text.as_bytes(), &cask).unwrap();
+        let a1 = &recording.channels[0].uniform;
+        assert!(
+            recording.issues.is_empty() && a1.issues.is_empty(),
+            "{:?} {:?}",
+            recording.issues,
+            a1.issues
+        );
+        // One that agrees with no unit wins as ever, with a warning.
+        cask.channels[0].sample_rate_hz = Some(31_000.0);
+        let recording = read_bytes(text.as_bytes(), &cask).unwrap();
+        assert_eq!(recording.channels[0].uniform.issues[0].severity, Severity::Warning);
+    }
+}
+
+#[test]
+fn a_slow_sensor_is_read_with_a_question() {
+    // An IMU at 400 Hz for 30 s: in milliseconds it would be 400 kHz.
+    let text = |header: &str, rows| table(&format!("{header},A1,A2"), rows, ',', |i| decimal(25 * i, 4, '.'));
+    let recording = read_bytes(text("Time", 12_000).as_bytes(), &cask_file(&["A1"])).unwrap();
+    assert!((recording.channels[0].uniform.sample_rate_hz - 400.0).abs() < 1e-6);
+    let [issue] = &recording.issues[..] else { panic!("{:?}", recording.issues) };
+    assert!(
+        issue.severity == Severity::Warning && issue.message.contains("400 Hz: are they in ms"),
+        "{}",
+        issue.message
+    );
+    // Where the unit is stated, or milliseconds would make no drop, there is nothing to ask.
+    for (header, rows) in [("Time [s]", 12_000), ("time_s", 12_000), ("Time", 4000)] {
+        let recording = read_bytes(text(header, rows).as_bytes(), &cask_file(&["A1"])).unwrap();
+        assert!(recording.issues.is_empty(), "{header}: {:?}", recording.issues);
+    }
+    let epoch = table("Time,A1,A2", 3000, ',', |i| decimal(1_795_176_000_000 + 20 * i, 3, '.'));
+    assert!(read_bytes(epoch.as_bytes(), &cask_file(&["A1"])).is_ok(), "50 Hz since 1970");
+}
+
+#[test]
+fn a_listing_says_what_the_times_leave_open() {
+    let listed = |text: &str| {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("r.csv");
+        std::fs::write(&path, text).unwrap();
+        list(&path, Limits::default(), &|_| {}).unwrap()
+    };
+    let listing = listed(&counted("Zeit", 1000, 0));
+    assert!(listing.issues[0].message.contains("are they in ms"), "{:?}", listing.issues);
+    let listing = listed(&table("Zeit;A1;A2", 3000, ';', |i| format!("12:34:{:02}", i / 2000)));
+    assert!(listing.issues[0].message.contains("give sample_rate_hz"), "{:?}", listing.issues);
+    assert_eq!(listing.channels[0].sample_rate_hz, None);
+    let listing = listed(&table("Zeit;A1;A2", 9000, ';', |i| decimal(i / 2000, 1, ',')));
+    assert!((listing.channels[0].sample_rate_hz.unwrap() / 20_000.0 - 1.0).abs() < 1e-3);
+    assert!(listing.issues[0].message.contains("cut to 0.1 s"), "{:?}", listing.issues);
+}
