@@ -3,6 +3,7 @@
 mod campaign;
 mod command_line;
 mod compliant;
+mod csv_times;
 mod damage;
 mod first_minutes;
 mod fixtures;
