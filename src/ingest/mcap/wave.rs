@@ -11,8 +11,6 @@ use rayon::prelude::*;
 const LARGEST_BYTES: u64 = 16 << 20;
 /// What one chunk of a wave may unpack to: beyond it is unpacked again in turn, where the file's own limits hold.
 const MOST_UNPACKED_BYTES: u64 = 64 << 20;
-/// Chunks of a wave for each thread: one that is slower than the others is made up for.
-const CHUNKS_A_THREAD: usize = 2;
 
 /// A chunk as it stands in the file.
 pub(super) struct Packed {
@@ -39,9 +37,9 @@ pub(super) struct Wave {
 }
 
 impl Wave {
-    /// With decompressors by `reader`.
+    /// With a decompressor by `reader` for each thread: what more of them would even out costs less than the memory that they take.
     pub(super) fn new(reader: impl Fn() -> Chunks) -> Self {
-        let readers = (0..CHUNKS_A_THREAD * rayon::current_num_threads()).map(|_| reader()).collect();
+        let readers = (0..rayon::current_num_threads()).map(|_| reader()).collect();
         Self { waiting: Vec::new(), held_bytes: 0, readers, spare: Vec::new() }
     }
 
