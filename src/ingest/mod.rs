@@ -27,7 +27,7 @@ use std::io::Read;
 use std::path::Path;
 
 /// Called with the fraction done, 0 to 1, now and then.
-pub type Progress<'a> = &'a dyn Fn(f64);
+pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
 
 /// What a format's reader hands over for one `[[channel]]`: uniform samples, still in the recording's unit and clock.
 #[derive(Debug)]
@@ -83,9 +83,11 @@ pub fn read_within(
     let (raw, sha256) = std::thread::scope(|scope| {
         let hashing = scope.spawn(|| sha256(path));
         let raw = match format {
-            RecordingFormat::Mcap => mcap::read(path, cask_file, limits, progress),
+            // On a thread of the pool, which need not be put to sleep for each piece that two threads share.
+            RecordingFormat::Mcap => rayon::scope(|_| mcap::read(path, cask_file, limits, progress)),
+            RecordingFormat::Csv => rayon::scope(|_| csv::read(path, cask_file, limits, progress)),
+            // It waits for the library's own thread.
             RecordingFormat::Hdf5 => hdf5::read(path, cask_file, limits, progress),
-            RecordingFormat::Csv => csv::read(path, cask_file, limits, progress),
         };
         (raw, hashing.join())
     });

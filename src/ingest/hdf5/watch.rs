@@ -104,7 +104,7 @@ fn within<T: Send + 'static>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::cell::RefCell;
+    use std::sync::Mutex;
     use std::panic::{AssertUnwindSafe, catch_unwind};
     use std::thread::sleep;
 
@@ -112,8 +112,8 @@ mod tests {
 
     #[test]
     fn work_that_shows_signs_may_take_any_time() {
-        let seen = RefCell::new(Vec::new());
-        let answer = within(SHORT, &|fraction| seen.borrow_mut().push(fraction), |signs| {
+        let seen = Mutex::new(Vec::new());
+        let answer = within(SHORT, &|fraction| seen.lock().expect("no panic").push(fraction), |signs| {
             for tenth in 1..=10 {
                 sleep(SHORT / 5);
                 signs.alive(0);
@@ -122,7 +122,7 @@ mod tests {
             "whole"
         });
         assert_eq!(answer, Some("whole"));
-        assert_eq!(seen.borrow().len(), 10);
+        assert_eq!(seen.lock().expect("no panic").len(), 10);
     }
 
     #[test]
