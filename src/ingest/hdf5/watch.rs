@@ -104,8 +104,8 @@ fn within<T: Send + 'static>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Mutex;
     use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::sync::Mutex;
     use std::thread::sleep;
 
     const SHORT: Duration = Duration::from_millis(200);

@@ -1,6 +1,6 @@
 //! Modes found to coefficients with their standard uncertainties.
 
-use super::projection::{Projection, columns, project, rms, to_parameters};
+use super::projection::{OfTimes, Projection, columns, project, rms, to_parameters};
 use super::{Fit, Form, Oscillation, Series, SeriesFit};
 use nalgebra::{DMatrix, DVector};
 
@@ -18,8 +18,7 @@ pub fn coefficients(series: &[Series], modes: Vec<Oscillation>, form: Form) -> O
     let mut fits = Vec::new();
     let mut lag_sum = 0.0;
     let mut parameters = 2 * modes.len();
-    for s in series {
-        let (solution, residual) = project(s, &modes, form)?;
+    for (s, (solution, residual)) in series.iter().zip(project(series, &modes, form)?) {
         let fixed = 1 + usize::from(drift);
         let jumps = s.steps_s.len();
         lag_sum += lag_one(&residual);
@@ -61,8 +60,9 @@ fn uncertainties(series: &[Series], fit: &mut Fit, form: Form) -> Option<()> {
         series.iter().zip(&fit.series).map(|(s, f)| 1.0 / f.residual.hypot(s.floor).max(1e-300)).collect();
     let (mut row, mut column) = (0, 2 * fit.modes.len());
     let mut places = Vec::new();
-    for (s, weight) in series.iter().zip(&weights) {
-        let block = columns(s, &fit.modes, form) * *weight;
+    let blocks = OfTimes::new(series, |s| Some(columns(s, &fit.modes, form)))?;
+    for (block, weight) in blocks.each().zip(&weights) {
+        let block = block * *weight;
         jacobian.view_mut((row, column), block.shape()).copy_from(&block);
         places.push(column);
         row += block.nrows();

@@ -2,7 +2,7 @@
 
 use super::{Drive, Form, Oscillation, Ringing, Series};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
-use nalgebra::{Complex, DMatrix, DVector, Dyn, Owned};
+use nalgebra::{Cholesky, Complex, DMatrix, DVector, Dyn, Owned};
 
 /// Damping ratios stay below this: above, a "mode" is a bend of the plateau.
 const MAX_DAMPING: f64 = 0.3;
@@ -27,7 +27,7 @@ pub(super) fn columns(series: &Series, modes: &[Oscillation], form: Form) -> DMa
 }
 
 /// Cosine and sine of one mode, or the one sum of both that its drive gives it.
-fn mode_columns(series: &Series, mode: Oscillation, form: Form) -> DMatrix<f64> {
+pub(super) fn mode_columns(series: &Series, mode: Oscillation, form: Form) -> DMatrix<f64> {
     let mut columns = DMatrix::zeros(series.time_s.len(), form.width());
     let phase = form.drive.map(|drive| drive.phase(mode));
     for (row, value) in Ringing::new(mode, &series.time_s).enumerate() {
@@ -45,127 +45,87 @@ fn fixed_columns(series: &Series, drift: bool) -> usize {
     1 + usize::from(drift) + series.steps_s.len()
 }
 
-/// Best linear coefficients and what they leave.
+/// Something that hangs on the times of a series alone, one for all neighbours that share them.
+pub(super) struct OfTimes<T> {
+    made: Vec<T>,
+    places: Vec<usize>,
+}
+
+impl<T> OfTimes<T> {
+    /// By `make`, from the first series of each times; `None` where that is.
+    pub(super) fn new(series: &[Series], make: impl Fn(&Series) -> Option<T>) -> Option<Self> {
+        let (mut made, mut places) = (Vec::new(), Vec::new());
+        for (i, own) in series.iter().enumerate() {
+            let before = i.checked_sub(1).map(|i| &series[i]);
+            if before.is_none_or(|b| b.time_s != own.time_s || b.steps_s != own.steps_s) {
+                made.push(make(own)?);
+            }
+            places.push(made.len() - 1);
+        }
+        Some(Self { made, places })
+    }
+
+    /// That of each series.
+    pub(super) fn each(&self) -> impl Iterator<Item = &T> {
+        self.places.iter().map(|&place| &self.made[place])
+    }
+
+    /// What comes of this and `other`, which hangs on the times of the same series.
+    pub(super) fn with<U, V>(
+        &self,
+        other: &OfTimes<U>,
+        make: impl Fn(&T, &U) -> Option<V>,
+    ) -> Option<OfTimes<V>> {
+        let made = self.made.iter().zip(&other.made).map(|(own, other)| make(own, other));
+        Some(OfTimes { made: made.collect::<Option<_>>()?, places: self.places.clone() })
+    }
+}
+
+/// The normal equations of the linear problem, its columns scaled to length 1.
+struct Normal {
+    columns: DMatrix<f64>,
+    scales: Vec<f64>,
+    cholesky: Cholesky<f64, Dyn>,
+}
+
+impl Normal {
+    fn new(series: &Series, modes: &[Oscillation], form: Form) -> Option<Self> {
+        let mut columns = columns(series, modes, form);
+        if columns.nrows() < columns.ncols() + 2 {
+            return None;
+        }
+        let scales: Vec<f64> = columns.column_iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();
+        for (mut column, scale) in columns.column_iter_mut().zip(&scales) {
+            column /= *scale;
+        }
+        let cholesky = columns.tr_mul(&columns).cholesky()?;
+        Some(Self { columns, scales, cholesky })
+    }
+
+    fn solve(&self, values: &[f64]) -> (DVector<f64>, DVector<f64>) {
+        let value = DVector::from_column_slice(values);
+        let mut solution = self.cholesky.solve(&self.columns.tr_mul(&value));
+        let residual = value - &self.columns * &solution;
+        for (coefficient, scale) in solution.iter_mut().zip(&self.scales) {
+            *coefficient /= scale;
+        }
+        (solution, residual)
+    }
+}
+
+/// Best linear coefficients of each series and what they leave; `None` where a series has fewer than two points over.
 pub(super) fn project(
-    series: &Series,
+    series: &[Series],
     modes: &[Oscillation],
     form: Form,
-) -> Option<(DVector<f64>, DVector<f64>)> {
-    let mut matrix = columns(series, modes, form);
-    if matrix.nrows() < matrix.ncols() + 2 {
-        return None;
-    }
-    let scales: Vec<f64> = matrix.column_iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();
-    for (mut column, scale) in matrix.column_iter_mut().zip(&scales) {
-        column /= *scale;
-    }
-    let value = DVector::from_column_slice(&series.value);
-    let normal = matrix.tr_mul(&matrix);
-    let mut solution = normal.cholesky()?.solve(&matrix.tr_mul(&value));
-    let residual = value - &matrix * &solution;
-    for (coefficient, scale) in solution.iter_mut().zip(&scales) {
-        *coefficient /= scale;
-    }
-    Some((solution, residual))
+) -> Option<Vec<(DVector<f64>, DVector<f64>)>> {
+    let normals = OfTimes::new(series, |s| Normal::new(s, modes, form))?;
+    Some(series.iter().zip(normals.each()).map(|(s, normal)| normal.solve(&s.value)).collect())
 }
 
 #[allow(clippy::cast_precision_loss, reason = "a few thousand points")]
 pub(super) fn rms(residual: &DVector<f64>) -> f64 {
     (residual.norm_squared() / residual.len() as f64).sqrt()
-}
-
-/// One more mode as it is tried: its columns in each series, and their products with one another.
-struct Seed {
-    mode: Oscillation,
-    columns: Vec<DMatrix<f64>>,
-    normals: Vec<DMatrix<f64>>,
-}
-
-/// The modes that are tried in a band: steps of 7 % and three dampings. Made once for all fits of the same series and drive.
-pub struct Seeds {
-    band_hz: (f64, f64),
-    seeds: Vec<Seed>,
-}
-
-impl Seeds {
-    /// The seeds of a band, Hz, for `series` and what drives them.
-    #[must_use]
-    pub fn new(series: &[Series], band_hz: (f64, f64), drive: Option<&Drive>) -> Self {
-        let form = Form { drift: false, drive };
-        let mut seeds = Vec::new();
-        let mut frequency_hz = band_hz.0;
-        while frequency_hz <= band_hz.1 {
-            for damping in [0.005, 0.03, 0.1] {
-                let mode = Oscillation { frequency_hz, damping };
-                let columns: Vec<_> = series.iter().map(|s| mode_columns(s, mode, form)).collect();
-                let normals = columns.iter().map(|c| c.tr_mul(c)).collect();
-                seeds.push(Seed { mode, columns, normals });
-            }
-            frequency_hz *= 1.07;
-        }
-        Self { band_hz, seeds }
-    }
-
-    /// Whether a mode lies in the band or close to it.
-    pub(super) fn is_near(&self, mode: &Oscillation) -> bool {
-        (0.8 * self.band_hz.0..1.25 * self.band_hz.1).contains(&mode.frequency_hz)
-    }
-}
-
-/// The seed that, added to `start`, leaves least.
-pub(super) fn best_seed(
-    series: &[Series],
-    start: &[Oscillation],
-    seeds: &Seeds,
-    form: Form,
-) -> Option<Oscillation> {
-    let backgrounds =
-        series.iter().map(|s| Background::new(s, start, form)).collect::<Option<Vec<Background>>>()?;
-    // Two modes at one place are one mode and a singular fit.
-    let is_free =
-        |seed: &&Seed| start.iter().all(|m| (m.frequency_hz / seed.mode.frequency_hz).ln().abs() >= 0.05);
-    let score = |seed: &Seed| -> Option<f64> {
-        let parts = backgrounds.iter().zip(&seed.columns).zip(&seed.normals);
-        parts
-            .map(|((b, columns), normal)| {
-                b.mean_square_with(columns, normal).map(|left| (left + b.floor.powi(2)).ln())
-            })
-            .sum()
-    };
-    let scored = seeds.seeds.iter().filter(is_free).filter_map(|seed| Some((score(seed)?, seed.mode)));
-    scored.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, mode)| mode)
-}
-
-/// One series with what the modes known so far explain taken off, so that a further mode costs two columns.
-struct Background {
-    floor: f64,
-    basis: DMatrix<f64>,
-    rest: DVector<f64>,
-}
-
-impl Background {
-    /// `None` where one mode more would leave fewer than two points over.
-    fn new(series: &Series, start: &[Oscillation], form: Form) -> Option<Self> {
-        let matrix = columns(series, start, form);
-        if matrix.nrows() < matrix.ncols() + form.width() + 2 {
-            return None;
-        }
-        let basis = matrix.qr().q();
-        let value = DVector::from_column_slice(&series.value);
-        let rest = &value - &basis * basis.tr_mul(&value);
-        Some(Self { floor: series.floor, basis, rest })
-    }
-
-    /// Mean square of what is left with the best amplitudes of one more mode, its columns and their products given; `None` where it adds
-    /// nothing of its own.
-    #[allow(clippy::cast_precision_loss, reason = "a few thousand points")]
-    fn mean_square_with(&self, columns: &DMatrix<f64>, products: &DMatrix<f64>) -> Option<f64> {
-        let known = self.basis.tr_mul(columns);
-        let along = columns.tr_mul(&self.rest);
-        let normal = products - known.tr_mul(&known);
-        let explained = along.dot(&normal.cholesky()?.solve(&along));
-        Some((self.rest.norm_squared() - explained).max(0.0) / self.rest.len() as f64)
-    }
 }
 
 /// The variable projection problem in ln f and the logit of ζ / 0.3, residuals weighted by each series' own size.
@@ -198,8 +158,7 @@ impl Projection<'_> {
     fn residuals_at(&self, parameters: &DVector<f64>) -> Option<DVector<f64>> {
         let modes = to_modes(parameters);
         let mut all = Vec::new();
-        for (series, weight) in self.series.iter().zip(&self.weights) {
-            let (_, residual) = project(series, &modes, self.form)?;
+        for ((_, residual), weight) in project(self.series, &modes, self.form)?.iter().zip(&self.weights) {
             all.extend(residual.iter().map(|r| r * weight));
         }
         all.iter().all(|r| r.is_finite()).then(|| DVector::from_vec(all))
@@ -211,14 +170,15 @@ impl Projection<'_> {
         let rows: usize = self.series.iter().map(|s| s.value.len()).sum();
         let mut jacobian = DMatrix::zeros(rows, parameters.len());
         let mut row = 0;
-        for (series, weight) in self.series.iter().zip(&self.weights) {
-            let (solution, _) = project(series, &modes, self.form)?;
-            let basis = columns(series, &modes, self.form).qr().q();
+        let projected = project(self.series, &modes, self.form)?;
+        let bases = OfTimes::new(self.series, |s| Some(columns(s, &modes, self.form).qr().q()))?;
+        let each = self.series.iter().zip(&self.weights).zip(projected).zip(bases.each());
+        for (((series, weight), (solution, _)), basis) in each {
             let fixed = fixed_columns(series, self.form.drift);
             let amplitudes = self.form.amplitudes(&modes, &solution.as_slice()[fixed..]);
             for (i, (mode, amplitude)) in modes.iter().zip(amplitudes).enumerate() {
                 let slopes = self.mode_slopes(series, *mode, amplitude);
-                let unexplained = (&slopes - &basis * basis.tr_mul(&slopes)) * -*weight;
+                let unexplained = (&slopes - basis * basis.tr_mul(&slopes)) * -*weight;
                 jacobian.view_mut((row, 2 * i), unexplained.shape()).copy_from(&unexplained);
             }
             row += series.value.len();
@@ -281,10 +241,9 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Projection<'_> {
 }
 
 pub(super) fn refine(series: &[Series], modes: &[Oscillation], form: Form) -> Option<Vec<Oscillation>> {
-    let weights = series
-        .iter()
-        .map(|s| project(s, modes, form).map(|(_, r)| 1.0 / rms(&r).hypot(s.floor).max(1e-300)))
-        .collect::<Option<Vec<f64>>>()?;
+    let projected = project(series, modes, form)?;
+    let weight = |(s, (_, left)): (&Series, &(_, DVector<f64>))| 1.0 / rms(left).hypot(s.floor).max(1e-300);
+    let weights = series.iter().zip(&projected).map(weight).collect();
     let problem = Projection { series, weights, form, parameters: to_parameters(modes) };
     let (solved, report) = LevenbergMarquardt::new()
         .with_patience(20)
