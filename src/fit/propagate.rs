@@ -23,6 +23,10 @@ const ANGLE: usize = 9;
 const HEIGHT: usize = 10;
 const SLIP: usize = 11;
 
+/// Slopes hold as far from where they were taken, in standard uncertainties of the inputs: a motion bends so little within them that
+/// results move by 1e-7 of themselves and intervals by 6e-4 at most (fixtures).
+const NEAR_U: f64 = 0.1;
+
 /// Moves below this many standard uncertainties are not worth a line.
 const NOTABLE_MOVE: f64 = 0.05;
 
@@ -128,10 +132,12 @@ impl<'a> Model<'a> {
         self.moved(by_u).map(|(_, left)| left)
     }
 
-    /// The slopes of [`Self::values`] and, below them, of [`Self::residuals`]: a motion gives both, and what was asked for once is kept.
+    /// The slopes of [`Self::values`] and, below them, of [`Self::residuals`]: a motion gives both, and what was asked for near by is kept.
     fn slopes(&self, at_u: &[f64]) -> Option<DMatrix<f64>> {
         let known = || self.known_slopes.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, slopes)) = known().iter().find(|k| k.0 == at_u) {
+        let apart_u =
+            |known: &[f64]| known.iter().zip(at_u).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        if let Some((_, slopes)) = known().iter().find(|known| apart_u(&known.0) <= NEAR_U) {
             return Some(slopes.clone());
         }
         let both = |by_u: &[f64]| self.moved(by_u).map(|(values, left)| [values, left].concat());
