@@ -1,6 +1,7 @@
 //! `analyze`: one recording and one cask file to a table and a report.
 
 use super::Outcome;
+use super::awake::awake;
 use super::limits::Bounds;
 use super::output::{Folder, JsonTarget, print};
 use super::progress::with_progress;
@@ -105,7 +106,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
         ingest::read_within(&arguments.recording, &cask_file, limits, progress)
     })?;
     keep_freed_memory();
-    let mut analysis = dropcheck::analyze(&recording, &cask_file);
+    let mut analysis = awake(|| dropcheck::analyze(&recording, &cask_file));
     arguments.switched_off.in_settings(&mut analysis.result);
 
     if let Some(folder) = &folder {

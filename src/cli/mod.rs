@@ -1,6 +1,7 @@
 //! Words on the command line to one command each, and its outcome to an exit status.
 
 mod analyze;
+mod awake;
 mod batch;
 mod complaint;
 mod document;
