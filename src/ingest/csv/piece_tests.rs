@@ -89,6 +89,20 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn lines_taken_whole_give_what_their_cells_give(lines in prop::collection::vec(line(), 0..100)) {
+        let layout = layout(".0");
+        // A blank before its first number has a line read cell by cell.
+        let blank = |line: &String| if line.starts_with(|c: char| c.is_ascii_digit()) { " " } else { "" };
+        let by_cells: String = lines.iter().map(|line| format!("{}{line}", blank(line))).collect();
+        let cells = told(by_cells.as_bytes(), 0, IN_ORDER, &layout);
+        prop_assert_eq!(told(lines.concat().as_bytes(), 0, IN_ORDER, &layout), cells);
+    }
+}
+
 #[test]
 fn the_first_fault_in_order_is_told_with_its_line() {
     let layout = layout(".0");

@@ -57,6 +57,20 @@ fn a_gap_is_filled_and_told() {
 }
 
 #[test]
+fn gaps_of_a_long_record_are_found_wherever_they_lie() {
+    // Threads take 65 536 intervals each: gaps across, at and beside the ends of these.
+    let lost = [70..75, 65_530..65_545, 131_072..131_073, 196_600..196_608];
+    let kept: Vec<usize> = (0..262_200).filter(|i| !lost.iter().any(|gap| gap.contains(i))).collect();
+    let times: Vec<f64> = kept.iter().map(|&i| 3.0 + as_f64(i) * 2e-6).collect();
+    let values: Vec<f64> = kept.iter().map(|&i| as_f64(i)).collect();
+    let uniform = from_times(&times, f64s(&values), None).unwrap();
+    let gaps: Vec<_> = uniform.gaps.iter().map(|gap| gap.from..gap.to).collect();
+    assert_eq!(gaps, lost);
+    assert!((0..262_200).all(|i| uniform.samples.get(i).is_nan() || uniform.samples.get(i) == as_f64(i)));
+    assert!((uniform.sample_rate_hz / 5e5 - 1.0).abs() < 1e-12, "{}", uniform.sample_rate_hz);
+}
+
+#[test]
 fn disorder_and_doubles_are_put_right() {
     let mut rows: Vec<(f64, f64)> = (0..100).map(|i| (as_f64(i) * 0.01, as_f64(i))).collect();
     rows.swap(10, 50);
