@@ -96,8 +96,8 @@ proptest! {
     fn lines_taken_whole_give_what_their_cells_give(lines in prop::collection::vec(line(), 0..100)) {
         let layout = layout(".0");
         // A blank before its first number has a line read cell by cell.
-        let blank = |line: &String| if line.starts_with(|c: char| c.is_ascii_digit()) { " " } else { "" };
-        let by_cells: String = lines.iter().map(|line| format!("{}{line}", blank(line))).collect();
+        let blank = |line: &str| if line.starts_with(|c: char| c.is_ascii_digit()) { " " } else { "" };
+        let by_cells: String = lines.iter().flat_map(|line| [blank(line), line]).collect();
         let cells = told(by_cells.as_bytes(), 0, IN_ORDER, &layout);
         prop_assert_eq!(told(lines.concat().as_bytes(), 0, IN_ORDER, &layout), cells);
     }
