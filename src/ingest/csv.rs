@@ -13,7 +13,7 @@ pub(super) use list::list;
 
 use super::error::{self, IngestError};
 use super::time_base::{self, TimeBaseError, Times, Uniform};
-use super::{Limits, Progress, RawChannel, RawRecording};
+use super::{Limits, Progress, RawChannel, RawRecording, number};
 use crate::data::{CaskFile, ChannelSpec, Issue, IssueCode, Samples, Severity, Source};
 use input::Input;
 use layout::Layout;
@@ -353,6 +353,11 @@ fn row_error(
             "times are numbers, date-time stamps (2026-11-20T12:34:56.789, 20.11.2026 12:34:56,789) or clock times (12:34:56.789); \
              correct the cell in a copy, or name another column of times"
                 .to_owned(),
+        ),
+        RowError::Word { line, slot, cell } if number::is_grouped(&cell) => (
+            line,
+            format!("column {:?} holds {cell:?}, a number whose thousands are marked too", headed(slot)),
+            "only a decimal mark is read: export the table again without thousands separators".to_owned(),
         ),
         RowError::Word { line, slot, cell } => (
             line,

@@ -153,6 +153,27 @@ pub(super) fn is_missing(cell: &[u8]) -> bool {
         || WORDS.iter().any(|word| cell.eq_ignore_ascii_case(word))
 }
 
+/// Whether a cell is a number whose thousands are marked too, such as "1.234,5", "1,234,567" or "12'345.6".
+///
+/// One mark alone is not taken for that of thousands: "1,234" may be a decimal fraction.
+pub(super) fn is_grouped(cell: &str) -> bool {
+    let digits = cell.trim().trim_start_matches(['-', '+']);
+    let mut groups = digits.split(['.', ',', '\'', '’', ' ', '\u{a0}', '\u{202f}']);
+    let marks: Vec<char> = digits.chars().filter(|c| !c.is_ascii_digit()).collect();
+    let Some((last, thousands)) = marks.split_last() else { return false };
+    let has_fraction = thousands.first().is_some_and(|first| first != last);
+    let is_digits = |group: &str| group.bytes().all(|b| b.is_ascii_digit());
+    let is_first = groups.next().is_some_and(|first| (1..=3).contains(&first.len()) && is_digits(first));
+    let rest: Vec<&str> = groups.collect();
+    let whole = if has_fraction { &rest[..rest.len().saturating_sub(1)] } else { &rest[..] };
+    // An unknown mark leaves a group that is not of three.
+    is_first
+        && (marks.len() > 1 || !matches!(last, '.' | ','))
+        && thousands.windows(2).all(|pair| pair[0] == pair[1])
+        && whole.iter().all(|group| group.len() == 3)
+        && rest.iter().all(|group| is_digits(group))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -211,6 +232,26 @@ mod tests {
     fn words_are_no_numbers() {
         for text in ["", "-", "e5", ".", "1.2.3", "1,5", "12a", "0x10", "1e", "--1", "20.11.2026"] {
             assert_eq!(of_cell(text.as_bytes(), b'.'), None, "{text}");
+        }
+        for cell in ["1.234,5", "-1,234.5", "1,234,567", "12'345.67", "1 234", "1.234.567,0", "1\u{a0}234,5"]
+        {
+            assert!(is_grouped(cell), "{cell}");
+        }
+        for cell in [
+            "1,234",
+            "1.5",
+            "12345",
+            "20.11.2026",
+            "1,23,4.5",
+            "a.bcd,e",
+            "1234,567.8",
+            "",
+            "-",
+            "1.234.",
+            "OVL",
+            "x 1",
+        ] {
+            assert!(!is_grouped(cell), "{cell}");
         }
         assert!(is_missing(b"") && is_missing(b"NaN") && !is_missing(b"ok"));
     }

@@ -223,17 +223,23 @@ fn judge(lines: &[Line], (delimiter, decimal): (u8, u8)) -> Option<Judged> {
     let rows: Vec<&Vec<&str>> = rows.iter().filter(|cells| cells.len() == columns).collect();
     let mut score = 0;
     let (mut values, mut stamps) = (vec![0_usize; columns], vec![0_usize; columns]);
+    let mut words = vec![0_i64; columns];
     for cells in &rows {
         for (column, cell) in cells.iter().enumerate() {
             if is_value(cell, decimal) {
                 score += 1;
                 values[column] += 1;
                 stamps[column] += usize::from(stamp::is_stamp(cell.as_bytes()));
+            } else if number::is_grouped(cell) {
+                // A number too, though it is not read: other delimiters would cut it to pieces that are.
+                score += 1;
             } else if !number::is_missing(cell.as_bytes()) {
-                score -= 2;
+                words[column] += 1;
             }
         }
     }
+    // A word among numbers speaks against the dialect, a column of words does not.
+    score -= (0..columns).filter(|&c| values[c] > 0).map(|c| 2 * words[c]).sum::<i64>();
     let filled = |column: usize| {
         rows.iter().filter(|cells| !number::is_missing(cells[column].as_bytes())).count().max(1)
     };

@@ -1,6 +1,7 @@
 //! Delimited text to the list of its columns.
 
 use super::super::error::IngestError;
+use super::super::number;
 use super::input::Input;
 use super::layout::{Column, Layout};
 use super::reading::Reading;
@@ -12,10 +13,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// What is known of a column after one pass.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Range {
     values: u64,
     words: u64,
+    /// The first of the words, or its beginning.
+    word: Option<String>,
     smallest: f64,
     largest: f64,
 }
@@ -38,17 +41,20 @@ pub(super) struct Seen {
 
 impl Seen {
     fn nothing(time_slot: Option<usize>, columns: usize) -> Self {
-        let range = Range { values: 0, words: 0, smallest: f64::INFINITY, largest: f64::NEG_INFINITY };
+        let range =
+            Range { values: 0, words: 0, word: None, smallest: f64::INFINITY, largest: f64::NEG_INFINITY };
         Self { time_slot, times: Vec::new(), ranges: vec![range; columns], rows: 0 }
     }
 }
 
 impl Rows for Seen {
-    fn word(&mut self, slot: usize, _cell: &[u8]) -> Option<f64> {
+    fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
         if self.time_slot == Some(slot) {
             return None;
         }
-        self.ranges[slot].words += 1;
+        let range = &mut self.ranges[slot];
+        range.words += 1;
+        range.word.get_or_insert_with(|| rows::shown(cell));
         Some(f64::NAN)
     }
 
@@ -103,6 +109,7 @@ impl Sink for Survey {
             for (range, more) in self.seen.ranges.iter_mut().zip(part.ranges) {
                 range.values += more.values;
                 range.words += more.words;
+                range.word = range.word.take().or(more.word);
                 range.smallest = range.smallest.min(more.smallest);
                 range.largest = range.largest.max(more.largest);
             }
@@ -217,12 +224,15 @@ fn listed(column: &Column, range: &Range, clock: &Clock, rows: u64) -> ListedCha
     let is_empty = range.values == 0;
     let unreadable = if column.is_stamped {
         Some("date-time stamps or clock times".to_owned())
-    } else if is_empty && range.words > 0 {
-        Some("words, no numbers".to_owned())
+    } else if let Some(word) = &range.word {
+        let count = if is_empty { "its".to_owned() } else { format!("{} of {rows}", range.words) };
+        let reason = match number::is_grouped(word) {
+            true => ": the thousands are marked too, and only a decimal mark is read",
+            false => "",
+        };
+        Some(format!("{count} cells are no numbers, such as {word:?}{reason}"))
     } else if is_empty {
         Some("empty".to_owned())
-    } else if range.words > 0 {
-        Some(format!("{} of {rows} cells are words", range.words))
     } else {
         None
     };

@@ -290,8 +290,7 @@ impl<'a> Table<'a> {
                 .or_else(|| sink.word(slot, cell))
         };
         let Some(value) = value else {
-            let cell = super::input::text(&cell[..cell.len().min(40)]).into_owned();
-            return Err(RowError::Word { line: self.line, slot, cell });
+            return Err(RowError::Word { line: self.line, slot, cell: shown(cell) });
         };
         self.values[slot] = value;
         Ok(end)
@@ -354,6 +353,11 @@ impl<'a> Table<'a> {
         }
         at
     }
+}
+
+/// A cell for people, cut to what fits a line.
+pub(super) fn shown(cell: &[u8]) -> String {
+    super::input::text(&cell[..cell.len().min(40)]).into_owned()
 }
 
 /// The first place from `at` on where `passes` fails.

@@ -162,7 +162,7 @@ fn what_is_wrong_is_said_with_line_and_column() {
     let cases: [(&str, &str, &[&str]); 8] = [
         ("t,A1\n0,1\n1,oops\n2,3\n3,4\n", "A1", &["line 3", "\"A1\" holds \"oops\"", "empty"]),
         ("t,A1\n0,1\n1,2\n,3\n3,4\n", "A1", &["line 4", "\"t\" holds no time"]),
-        ("t;A1\n0;1,5\n1;1.234,5\n2;3\n", "A1", &["line 3", "1.234,5", "','"]),
+        ("t;A1\n0;1,5\n1;1.234,5\n2;3\n", "A1", &["line 3", "1.234,5", "without thousands separators"]),
         ("t,A1\n0,1\n1,2\n", "a1", &["headed \"a1\"", "did you mean A1"]),
         ("t,A1,A1\n0,1,1\n1,2,1\n", "A1", &["2 columns are headed \"A1\""]),
         ("t,A1\n0,1\n0,1\n", "A1", &["all times are 0 s"]),
