@@ -21,6 +21,6 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     let listing = with_progress("reading", |progress| {
         ingest::list_within(&arguments.recording, arguments.bounds.limits(), progress)
     })?;
-    print_plain(report::cask_file_template(&listing).as_bytes())?;
+    print_plain(report::cask_file_template(&listing)?.as_bytes())?;
     Ok(Outcome::Clear)
 }

@@ -10,6 +10,7 @@ mod html;
 mod html_reconstruction;
 mod html_sections;
 mod json;
+mod likely;
 mod listing;
 mod pictures;
 mod prediction;
@@ -36,7 +37,7 @@ pub use prediction::{
 };
 pub use synthetic::{SyntheticError, SyntheticFormat, synthetic_files, synthetic_names};
 pub use table::table;
-pub use template::cask_file as cask_file_template;
+pub use template::{NoChannels, cask_file as cask_file_template};
 pub use text::printable;
 pub use trial::{TRIAL_NAMES, trial_files, trial_markdown};
 

@@ -1,42 +1,35 @@
 //! What a recording holds to a commented cask file to fill in.
 
+use super::likely::{self, VOLTAGES, is_time, names_end};
 use super::text::{line, printable};
-use crate::data::{ListedChannel, Listing, acceleration_unit_m_s2};
+use crate::data::{ListedChannel, Listing, RecordingFormat, Severity, acceleration_unit_m_s2};
 use std::fmt::Write;
 
 /// The mark behind every value that only the user knows.
 const FILL_IN: &str = "FILL IN";
 
-/// Units of a sensor's output that the cask file knows.
-const VOLTAGES: [&str; 2] = ["V", "mV"];
-
-/// Words in a source that make it no acceleration.
-const OTHER_WORDS: [&str; 14] = [
-    "time",
-    "stamp",
-    "sec",
-    "nsec",
-    "nanosec",
-    "seq",
-    "covariance",
-    "orientation",
-    "angular",
-    "gyro",
-    "temp",
-    "sample_rate",
-    "frame_id",
-    "index",
-];
+/// A recording of which no form could ever be filled in.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+#[error("{recording}: {problem}")]
+#[diagnostic(help("{mend}"))]
+pub struct NoChannels {
+    recording: String,
+    problem: String,
+    mend: String,
+}
 
 /// The cask file, valid TOML; what only the user knows is marked, its numbers NaN: a likely one, forgotten, would pass for a measured one.
-#[must_use]
-pub fn cask_file(listing: &Listing) -> String {
-    let mut out = head(listing);
-    let taken = accelerations(listing);
+///
+/// # Errors
+/// [`NoChannels`] where nothing that looks like an acceleration can be read.
+pub fn cask_file(listing: &Listing) -> Result<String, NoChannels> {
+    let taken = likely::accelerations(listing);
     if taken.is_empty() {
-        out.push_str("# No source in this recording looks like an acceleration. Name yours here:\n");
-        channel(&mut out, 0, true, None);
-        channel(&mut out, 1, false, None);
+        return Err(no_channels(listing));
+    }
+    let mut out = head(listing);
+    for issue in listing.issues.iter().filter(|issue| issue.severity != Severity::Note) {
+        line(&mut out, format_args!("# Of the recording: {}", printable(&issue.message)));
     }
     let mut devices: Vec<&str> = Vec::new();
     for (i, listed) in taken.iter().enumerate() {
@@ -45,17 +38,58 @@ pub fn cask_file(listing: &Listing) -> String {
             devices.push(device);
             devices.len() - 1
         });
-        channel(&mut out, i, place.is_multiple_of(2), Some(listed));
+        channel(&mut out, i, place.is_multiple_of(2), listed);
     }
-    let left: Vec<&ListedChannel> =
-        listing.channels.iter().filter(|c| !taken.iter().any(|t| t.source == c.source)).collect();
-    if !left.is_empty() {
+    let left = listing.channels.iter().filter(|c| !taken.iter().any(|t| t.source == c.source));
+    let (unreadable, other): (Vec<&ListedChannel>, Vec<_>) = left.partition(|c| c.unreadable.is_some());
+    if !unreadable.is_empty() {
+        out.push_str("\n# Also in the recording, but it cannot be read:\n");
+        for listed in unreadable {
+            line(&mut out, format_args!("#   {}", printable(&likely::reason(listed))));
+        }
+    }
+    if !other.is_empty() {
         out.push_str("\n# Also in the recording, but it does not move or does not look like an acceleration in the plane of the drop:\n");
-        for listed in left {
+        for listed in other {
             line(&mut out, format_args!("#   {}", printable(&listed.source)));
         }
     }
-    out
+    Ok(out)
+}
+
+/// What is there instead, and what makes it a recording that can be analysed.
+fn no_channels(listing: &Listing) -> NoChannels {
+    /// More than this many reasons no longer fit a terminal's few lines.
+    const HANDFUL: usize = 4;
+    let unreadable = likely::unreadable(listing);
+    let reasons: Vec<String> = unreadable.iter().take(HANDFUL).map(|listed| likely::reason(listed)).collect();
+    let more = match unreadable.len().saturating_sub(HANDFUL) {
+        0 => String::new(),
+        more => format!("; and {more} more"),
+    };
+    let problem = if listing.channels.is_empty() {
+        "it holds nothing that could be read as samples".to_owned()
+    } else if reasons.is_empty() {
+        let names: Vec<&str> = listing.channels.iter().take(HANDFUL).map(|c| c.source.as_str()).collect();
+        format!("nothing in it looks like an acceleration: it holds {}", names.join(", "))
+    } else {
+        format!("no acceleration in it can be read: {}{more}", reasons.join("; "))
+    };
+    let mend = match listing.format {
+        _ if reasons.is_empty() => {
+            "check that this is the recording of the accelerometers; if it is, write the [[channel]] tables by hand, each with its source"
+        }
+        RecordingFormat::Csv => {
+            "in a copy, make every cell of these columns a number with one decimal mark and no thousands separators, or empty it: an empty cell counts as missing"
+        }
+        RecordingFormat::Hdf5 => "save each channel as a dataset of numbers, one value a sample",
+        RecordingFormat::Mcap => "have the recorder write the samples as numbers or arrays of numbers",
+    };
+    NoChannels {
+        recording: listing.recording.clone(),
+        problem,
+        mend: format!("{mend}; `dropcheck inspect {}` lists all that is in it", listing.recording),
+    }
 }
 
 fn head(listing: &Listing) -> String {
@@ -130,34 +164,34 @@ angle_deg = nan             # {FILL_IN}: inclination of the axis above the horiz
     out
 }
 
-fn channel(out: &mut String, index: usize, guessed_first: bool, listed: Option<&&ListedChannel>) {
-    let source = listed.map_or("/topic.field", |c| c.source.as_str());
+fn channel(out: &mut String, index: usize, guessed_first: bool, listed: &ListedChannel) {
+    let source = listed.source.as_str();
     let first = names_end(source).unwrap_or(guessed_first);
     let end = if first { "first" } else { "second" };
     let axial = source.rsplit('.').next() == Some("x") && source.contains("acceleration");
     let axis = if axial { "axial" } else { "transverse" };
     out.push_str("\n[[channel]]\n");
-    if let Some(listed) = listed {
-        line(out, format_args!("# {}", facts(listed)));
-    }
+    line(out, format_args!("# {}", facts(listed)));
     line(out, format_args!("name = \"A{}\"", index + 1));
     line(out, format_args!("end = \"{end}\"{}# check: \"first\" or \"second\"", pad(end.len() + 8)));
     line(out, format_args!("axis = \"{axis}\"{}# check: \"transverse\" or \"axial\"", pad(axis.len() + 9)));
-    let fill =
-        if listed.is_none() { format!("   # {FILL_IN}: see dropcheck inspect") } else { String::new() };
-    line(out, format_args!("source = {}{fill}", source_value(source)));
-    unit(out, listed.and_then(|c| c.unit.as_deref()));
+    line(out, format_args!("source = {}", source_value(source)));
+    unit(out, listed.unit.as_deref());
     line(out, format_args!("position_m = nan            # {FILL_IN}: along the axis, from the first end"));
     out.push_str(
         "# offset_m = 0.0            # across the axis, positive away from the target\n\
          # polarity = 1              # -1: mounted the other way round\n\
          # full_scale = 2000.0       # in `unit`: where the channel clips\n",
     );
-    match listed.and_then(|c| c.sample_rate_hz) {
-        Some(_) => out.push_str("# sample_rate_hz = 100000.0 # overrides what the recording says\n"),
-        None => out.push_str(
-            "# sample_rate_hz = 100000.0 # needed where the recording has neither rate nor times\n",
-        ),
+    if listed.sample_rate_hz.is_some() {
+        out.push_str("# sample_rate_hz = 100000.0 # overrides what the recording says\n");
+    } else {
+        line(
+            out,
+            format_args!(
+                "sample_rate_hz = nan        # {FILL_IN}: no rate or times were found; or name the times below and take this line out"
+            ),
+        );
     }
     out.push_str(
         "# time = \"/daq/time_s\"      # this channel's own times (CSV column, HDF5 dataset)\n\
@@ -223,59 +257,6 @@ fn facts(listed: &ListedChannel) -> String {
     printable(&facts.join(", "))
 }
 
-/// The sources that look like accelerations: by unit or name where any does, else all that are numbers.
-fn accelerations(listing: &Listing) -> Vec<&ListedChannel> {
-    let numeric: Vec<&ListedChannel> = listing
-        .channels
-        .iter()
-        .filter(|c| c.unreadable.is_none() && c.kind != "topic" && c.samples != Some(0))
-        .filter(|c| !OTHER_WORDS.iter().any(|word| has_word(&c.source, word)) && !is_time(&c.source))
-        .collect();
-    let likely: Vec<&ListedChannel> = numeric
-        .iter()
-        .filter(|c| {
-            let is_known = |unit: &str| acceleration_unit_m_s2(unit).is_some() || VOLTAGES.contains(&unit);
-            c.unit.as_deref().is_some_and(is_known) || c.source.to_lowercase().contains("acc")
-        })
-        // The y axis of an IMU lies across the plane of the drop.
-        .filter(|c| !c.source.ends_with("linear_acceleration.y"))
-        .copied()
-        .collect();
-    let taken = if likely.is_empty() { numeric } else { likely };
-    // A source that never changes is an axis that nobody connected, unless nothing else is there.
-    let moves = |c: &&ListedChannel| c.range.is_none_or(|(low, high)| low < high);
-    if taken.iter().any(moves) { taken.into_iter().filter(moves).collect() } else { taken }
-}
-
-/// Whether `word` stands in `source` between letters of another kind.
-fn has_word(source: &str, word: &str) -> bool {
-    let source = source.to_lowercase();
-    let letter = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphabetic());
-    source.match_indices(word).any(|(at, _)| {
-        !letter(source[..at].chars().next_back()) && !letter(source[at + word.len()..].chars().next())
-    })
-}
-
-fn is_time(source: &str) -> bool {
-    let last = source.rsplit(['/', '.']).next().unwrap_or(source).to_lowercase();
-    last == "t"
-        || last.starts_with("t_")
-        || last.starts_with("t [")
-        || last.contains("time")
-        || last.starts_with("zeit")
-}
-
-/// Whether a source names its end: first or second.
-fn names_end(source: &str) -> Option<bool> {
-    if has_word(source, "first") {
-        Some(true)
-    } else if has_word(source, "second") {
-        Some(false)
-    } else {
-        None
-    }
-}
-
 /// A source as TOML: a listing may tell it as the table of topic and field, else it is a string.
 fn source_value(source: &str) -> String {
     let table = format!("source = {source}").parse::<toml::Table>().ok().and_then(|t| {
@@ -320,7 +301,7 @@ mod tests {
             listed("/daq/a2", "dataset", Some("mV")),
             listed("/daq/time_s", "dataset", Some("s")),
         ]);
-        let table = parsed(&cask_file(&listing));
+        let table = parsed(&cask_file(&listing).unwrap());
         let channels = table["channel"].as_array().unwrap();
         assert_eq!(channels.len(), 2);
         assert_eq!(channels[0]["end"].as_str(), Some("first"));
@@ -339,7 +320,7 @@ mod tests {
             .flat_map(|axis| ["first", "second"].map(|end| format!("/imu_{end}.linear_acceleration.{axis}")))
             .chain(["/imu_first.orientation.x".into(), "/imu_first.header.stamp.sec".into()]);
         let listing = listing(sources.map(|s| listed(&s, "number", None)).collect());
-        let table = parsed(&cask_file(&listing));
+        let table = parsed(&cask_file(&listing).unwrap());
         let channels = table["channel"].as_array().unwrap();
         assert_eq!(channels.len(), 4);
         for channel in channels {
@@ -355,7 +336,7 @@ mod tests {
         let mut listing =
             listing(vec![listed(awkward, "column", Some("x\"\ny")), listed("other\n]", "topic", None)]);
         listing.recording = "r\n[evil]".into();
-        let table = parsed(&cask_file(&listing));
+        let table = parsed(&cask_file(&listing).unwrap());
         assert_eq!(table["channel"][0]["source"].as_str(), Some(awkward));
         assert!(!table.contains_key("evil"));
     }
@@ -363,13 +344,13 @@ mod tests {
     #[test]
     fn a_topic_with_a_dot_keeps_its_table() {
         let listing = listing(vec![listed("{ topic = \"/a.b\", field = \"acc.z\" }", "number", None)]);
-        let table = parsed(&cask_file(&listing));
+        let table = parsed(&cask_file(&listing).unwrap());
         assert_eq!(table["channel"][0]["source"]["field"].as_str(), Some("acc.z"));
     }
 
     #[test]
     fn the_tolerances_shown_are_all_and_the_defaults() {
-        let text = cask_file(&listing(Vec::new()));
+        let text = cask_file(&listing(vec![listed("/daq/a1", "dataset", None)])).unwrap();
         let (_, rest) = text.split_once("# [tolerance]").expect("the table");
         let (table, _) = rest.split_once("\n\n").expect("its end");
         let lines: Vec<&str> = table.lines().skip(1).map(|line| line.trim_start_matches("# ")).collect();
@@ -391,9 +372,39 @@ mod tests {
         }
     }
 
+    fn unreadable(source: &str, unit: Option<&str>) -> ListedChannel {
+        let unreadable = Some("9 of 20 cells are no numbers, such as \"x\"".to_owned());
+        ListedChannel { unreadable, ..listed(source, "column", unit) }
+    }
+
     #[test]
-    fn an_empty_recording_still_gives_a_form() {
-        let table = parsed(&cask_file(&listing(Vec::new())));
-        assert_eq!(table["channel"].as_array().unwrap().len(), 2);
+    fn a_recording_without_channels_is_refused_with_the_reason() {
+        for (channels, expected) in [
+            (Vec::new(), "it holds nothing"),
+            (vec![listed("/daq/time_s", "dataset", Some("s"))], "it holds /daq/time_s"),
+            (vec![unreadable("A1", None), unreadable("A2", None)], "A1: 9 of 20 cells"),
+            // What can be read is no acceleration, and what is one cannot.
+            (vec![unreadable("A1", Some("g")), listed("count", "column", None)], "A1: 9 of 20 cells"),
+        ] {
+            let refusal = cask_file(&listing(channels)).unwrap_err();
+            assert!(refusal.to_string().contains(expected), "{refusal}");
+            assert!(refusal.mend.contains("dropcheck inspect"), "{}", refusal.mend);
+        }
+    }
+
+    #[test]
+    fn what_is_left_out_and_what_is_missing_stand_in_the_form() {
+        let mut without_rate = listed("A1", "column", Some("g"));
+        without_rate.sample_rate_hz = None;
+        let mut listing = listing(vec![without_rate, unreadable("A2", Some("g"))]);
+        let doubt = crate::data::IssueCode::TimeJitter;
+        listing.issues = vec![crate::data::Issue::new(doubt, Severity::Warning, "are they in ms?")];
+        let text = cask_file(&listing).unwrap();
+        assert!(
+            text.contains("#   A2: 9 of 20 cells") && text.contains("# Of the recording: are they in ms?")
+        );
+        let table = parsed(&text);
+        assert_eq!(table["channel"].as_array().unwrap().len(), 1);
+        assert!(table["channel"][0]["sample_rate_hz"].as_float().is_some_and(f64::is_nan));
     }
 }

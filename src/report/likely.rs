@@ -1,0 +1,105 @@
+//! What a recording holds to the sources that look like accelerations in the plane of the drop.
+
+use crate::data::{ListedChannel, Listing, acceleration_unit_m_s2};
+
+/// Units of a sensor's output that the cask file knows.
+pub(super) const VOLTAGES: [&str; 2] = ["V", "mV"];
+
+/// Words in a source that make it no acceleration.
+const OTHER_WORDS: [&str; 14] = [
+    "time",
+    "stamp",
+    "sec",
+    "nsec",
+    "nanosec",
+    "seq",
+    "covariance",
+    "orientation",
+    "angular",
+    "gyro",
+    "temp",
+    "sample_rate",
+    "frame_id",
+    "index",
+];
+
+/// The sources that look like accelerations and can be read: by unit or name where any does, else all that are numbers; none where
+/// those that do look so cannot be read.
+pub(super) fn accelerations(listing: &Listing) -> Vec<&ListedChannel> {
+    let numeric: Vec<&ListedChannel> =
+        candidates(listing).filter(|c| c.unreadable.is_none() && c.kind != "topic").collect();
+    let likely: Vec<&ListedChannel> = numeric
+        .iter()
+        .filter(|c| is_likely(c))
+        // The y axis of an IMU lies across the plane of the drop.
+        .filter(|c| !c.source.ends_with("linear_acceleration.y"))
+        .copied()
+        .collect();
+    let taken = if !likely.is_empty() {
+        likely
+    } else if candidates(listing).any(|c| c.unreadable.is_some() && is_likely(c)) {
+        Vec::new()
+    } else {
+        numeric
+    };
+    // A source that never changes is an axis that nobody connected, unless nothing else is there.
+    let moves = |c: &&ListedChannel| c.range.is_none_or(|(low, high)| low < high);
+    if taken.iter().any(moves) { taken.into_iter().filter(moves).collect() } else { taken }
+}
+
+/// The sources that might be accelerations if they could be read; those that look like it where any does.
+pub(super) fn unreadable(listing: &Listing) -> Vec<&ListedChannel> {
+    let all: Vec<&ListedChannel> = candidates(listing).filter(|c| c.unreadable.is_some()).collect();
+    let likely: Vec<&ListedChannel> = all.iter().copied().filter(|c| is_likely(c)).collect();
+    if likely.is_empty() { all } else { likely }
+}
+
+/// A source and why it cannot be read.
+pub(super) fn reason(listed: &ListedChannel) -> String {
+    format!("{}: {}", listed.source, listed.unreadable.as_deref().unwrap_or("it cannot be read"))
+}
+
+/// Sources that are not called something else.
+fn candidates(listing: &Listing) -> impl Iterator<Item = &ListedChannel> {
+    listing
+        .channels
+        .iter()
+        .filter(|c| c.samples != Some(0))
+        .filter(|c| !OTHER_WORDS.iter().any(|word| has_word(&c.source, word)) && !is_time(&c.source))
+}
+
+/// Whether unit or name say that it is an acceleration.
+fn is_likely(listed: &ListedChannel) -> bool {
+    let is_known = |unit: &str| acceleration_unit_m_s2(unit).is_some() || VOLTAGES.contains(&unit);
+    listed.unit.as_deref().is_some_and(is_known) || listed.source.to_lowercase().contains("acc")
+}
+
+/// Whether `word` stands in `source` between letters of another kind.
+fn has_word(source: &str, word: &str) -> bool {
+    let source = source.to_lowercase();
+    let letter = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphabetic());
+    source.match_indices(word).any(|(at, _)| {
+        !letter(source[..at].chars().next_back()) && !letter(source[at + word.len()..].chars().next())
+    })
+}
+
+/// Whether a source is named as times are.
+pub(super) fn is_time(source: &str) -> bool {
+    let last = source.rsplit(['/', '.']).next().unwrap_or(source).to_lowercase();
+    last == "t"
+        || last.starts_with("t_")
+        || last.starts_with("t [")
+        || last.contains("time")
+        || last.starts_with("zeit")
+}
+
+/// Whether a source names its end: first or second.
+pub(super) fn names_end(source: &str) -> Option<bool> {
+    if has_word(source, "first") {
+        Some(true)
+    } else if has_word(source, "second") {
+        Some(false)
+    } else {
+        None
+    }
+}
