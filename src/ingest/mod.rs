@@ -14,6 +14,7 @@ mod mcap;
 mod number;
 pub mod scene_file;
 pub mod time_base;
+mod time_name;
 mod time_unit;
 
 pub use error::IngestError;

@@ -2,37 +2,7 @@
 
 use super::layout::Column;
 use super::stamp::Stamps;
-use crate::ingest::{number, time_unit};
-
-/// Words that head a column of times, without their unit.
-const TIME_NAMES: [&str; 26] = [
-    "time",
-    "t",
-    "zeit",
-    "times",
-    "timestamp",
-    "time stamp",
-    "zeitstempel",
-    "messzeit",
-    "uhrzeit",
-    "elapsed time",
-    "relative time",
-    "rel. time",
-    "datetime",
-    "date/time",
-    "date time",
-    "sec",
-    "seconds",
-    "ms",
-    "msec",
-    "us",
-    "µs",
-    "usec",
-    "ns",
-    "temps",
-    "tempo",
-    "tiempo",
-];
+use crate::ingest::{number, time_name, time_unit};
 
 /// What the numbers in a column of times count.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,7 +23,7 @@ impl Scale {
         }
         match column.unit.as_deref().map(str::trim) {
             None | Some("" | "-" | "1") => {
-                let (_, unit) = name_and_unit(&column.name);
+                let (_, unit) = time_name::split(&column.name);
                 unit.and_then(time_unit::seconds).map_or(Self::Open, Self::Known)
             }
             Some(unit) => time_unit::seconds(unit).map_or(Self::Unknown, Self::Known),
@@ -72,7 +42,7 @@ pub(super) fn find<'a, Cells: Iterator<Item = &'a str>>(
     cells: impl Fn(usize) -> Cells,
 ) -> Option<usize> {
     let bare: Vec<String> = columns.iter().map(bare_name).collect();
-    let is_named = |i: &usize| TIME_NAMES.contains(&bare[*i].as_str());
+    let is_named = |i: &usize| is_named(&columns[*i], &bare[*i]);
     let begins_so = |i: &usize| begins_so(&bare[*i]);
     let all = || 0..columns.len();
     let mut found: Vec<usize> = Vec::new();
@@ -101,11 +71,15 @@ pub(super) fn find<'a, Cells: Iterator<Item = &'a str>>(
 /// Whether a column is headed as one of times.
 pub(super) fn is_headed(column: &Column) -> bool {
     let bare = bare_name(column);
-    TIME_NAMES.contains(&bare.as_str()) || begins_so(&bare)
+    is_named(column, &bare) || begins_so(&bare)
+}
+
+fn is_named(column: &Column, bare: &str) -> bool {
+    time_name::is_time(bare) || (time_name::is_axis(bare) && matches!(Scale::of(column), Scale::Known(_)))
 }
 
 fn bare_name(column: &Column) -> String {
-    name_and_unit(&column.name).0.to_lowercase()
+    time_name::split(&column.name).0.to_lowercase()
 }
 
 fn begins_so(name: &str) -> bool {
@@ -121,33 +95,6 @@ fn rises<'a>(cells: impl Iterator<Item = &'a str>, decimal: u8) -> (usize, usize
         })
         .collect();
     (times.windows(2).filter(|pair| pair[0] < pair[1]).count(), times.len().saturating_sub(1))
-}
-
-/// `time_ms`, `TimeMs`, `Zeit in ms` or `t/ms` to its name and `ms`.
-fn name_and_unit(name: &str) -> (&str, Option<&str>) {
-    let name = name.trim();
-    let is_unit = |text: &str| time_unit::seconds(text).is_some();
-    if let Some((bare, unit)) = name.rsplit_once(['_', ' ', '/', '-', '.', ',', ':'])
-        && is_unit(unit)
-    {
-        return (without_in(bare), Some(unit));
-    }
-    let is_hump = |pair: &(char, char)| pair.0.is_lowercase() && pair.1.is_uppercase();
-    let pairs = name.chars().zip(name.chars().skip(1));
-    if let Some(last) = pairs.enumerate().filter(|(_, pair)| is_hump(pair)).map(|(i, _)| i).last()
-        && let Some((at, _)) = name.char_indices().nth(last + 1)
-        && is_unit(&name[at..])
-    {
-        return (without_in(&name[..at]), Some(&name[at..]));
-    }
-    (name, is_unit(name).then_some(name))
-}
-
-/// "Zeit in" and "time /" to the name.
-fn without_in(name: &str) -> &str {
-    let name = name.trim_end_matches(['_', ' ', '/', '-', '.', ',', ':']);
-    let bare = [" in", "_in", "In"].iter().find_map(|word| name.strip_suffix(word));
-    bare.unwrap_or(name).trim_end()
 }
 
 #[cfg(test)]
@@ -176,7 +123,7 @@ mod tests {
             ("TimeStamp", "TimeStamp", Scale::Open),
             ("t", "t", Scale::Open),
         ] {
-            assert_eq!(name_and_unit(header).0, name, "{header}");
+            assert_eq!(time_name::split(header).0, name, "{header}");
             let column = Column {
                 header: header.into(),
                 name: header.into(),
