@@ -1,10 +1,14 @@
 //! HDF5 datasets and columns to the channels that a cask file names, with their attributes and their own times.
 
 mod attributes;
+mod clocks;
 mod dataset;
 mod fault;
+mod find;
 mod list;
 mod packed;
+mod rate;
+mod record;
 mod watch;
 
 pub(super) use list::list;
@@ -15,13 +19,11 @@ use super::time_base::{self, Uniform};
 use super::{Limits, Progress, RawChannel, RawRecording};
 use crate::data::{CaskFile, ChannelSpec, Samples, Source};
 use attributes::Attributes;
+use clocks::Clocks;
 use dataset::Column;
 use hdf5_metno::{Dataset, File};
 use std::path::Path;
 use watch::Signs;
-
-/// Names under which a sibling dataset holds the times.
-const TIME_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "Time"];
 
 /// The channels of `cask_file` from the HDF5 file at `path`.
 ///
@@ -44,7 +46,7 @@ fn read_channels(
     signs: &Signs,
 ) -> Result<RawRecording, IngestError> {
     let file = open(path)?;
-    let mut room = Room { path, limits, signs, held_bytes: 0 };
+    let mut room = Room { path, limits, signs, held_bytes: 0, clocks: Clocks::default() };
     let count = cask_file.channels.len().max(1);
     let mut channels = Vec::with_capacity(count);
     for spec in 0..cask_file.channels.len() {
@@ -61,6 +63,7 @@ struct Room<'a> {
     limits: Limits,
     signs: &'a Signs,
     held_bytes: u64,
+    clocks: Clocks,
 }
 
 impl Room<'_> {
@@ -121,42 +124,37 @@ fn open(path: &Path) -> Result<File, IngestError> {
 /// The dataset or column that a cask file names.
 fn locate(room: &Room, file: &File, spec: &ChannelSpec, source: &str) -> Result<Column, IngestError> {
     let path = room.path;
-    dataset::find(file, source).map_err(|missing| match missing {
-        dataset::Missing::Nowhere => error::source(
+    find::find(file, source).map_err(|missing| match missing {
+        find::Missing::Nowhere => error::source(
             path,
             &spec.name,
             format!("there is no dataset {source}"),
             error::near_names(path, source, "dataset", &list::sources(file, room.signs)),
         ),
-        dataset::Missing::Because(fault) => error::source(path, &spec.name, fault.problem, fault.mend),
+        find::Missing::Because(fault) => error::source(path, &spec.name, fault.problem, fault.mend),
     })
 }
 
 /// The times: as the cask file names them, else a sibling with a usual name and as many values.
 fn time_column(
-    room: &Room,
+    room: &mut Room,
     file: &File,
     spec: &ChannelSpec,
     time: Option<&str>,
     column: &Column,
 ) -> Result<Option<Column>, IngestError> {
     let Some(name) = spec.time.as_deref().or(time) else {
-        return Ok(sibling_times(file, column));
+        return Ok(room.clocks.of(file, column));
     };
-    // A bare name is looked for beside the samples first.
+    // A bare name is looked for beside the samples first, in their own records before all.
+    let records = column.records().map(|records| format!("{records}.{name}"));
+    let beside = records.into_iter().chain([format!("{}/{name}", column.group())]);
     if !name.starts_with('/')
-        && let Ok(found) = dataset::find(file, &format!("{}/{name}", column.group()))
+        && let Some(found) = beside.into_iter().find_map(|source| find::find(file, &source).ok())
     {
         return Ok(Some(found));
     }
     locate(room, file, spec, name).map(Some)
-}
-
-fn sibling_times(file: &File, column: &Column) -> Option<Column> {
-    TIME_NAMES.iter().find_map(|name| {
-        let found = dataset::find(file, &format!("{}/{name}", column.group())).ok()?;
-        (found.len() == column.len() && found.source() != column.source()).then_some(found)
-    })
 }
 
 fn on_base(
@@ -173,13 +171,15 @@ fn on_base(
         let times_s = time.times_s()?;
         return time_base::from_times(&times_s, samples, spec.sample_rate_hz).map_err(in_time);
     }
-    let Some(rate_hz) = spec.sample_rate_hz.or(attributes.sample_rate_hz) else {
-        return Err(fault::Fault {
-            problem: "nothing says when its samples were taken: no attribute sample_rate_hz, no dataset of times beside it"
-                .into(),
-            mend: "give sample_rate_hz in this channel of the cask file, or time = \"/path/of/times\"".into(),
-        });
-    };
+    let stated = spec.sample_rate_hz.map(Ok).or_else(|| attributes.rate.clone());
+    let stated = stated.unwrap_or_else(|| {
+        Err("nothing says when its samples were taken: no attribute sample_rate_hz, no dataset of times beside it"
+            .into())
+    });
+    let rate_hz = stated.map_err(|problem| fault::Fault {
+        problem,
+        mend: "give sample_rate_hz in this channel of the cask file, or time = \"/path/of/times\"".into(),
+    })?;
     time_base::from_rate(attributes.start_s.unwrap_or(0.0), rate_hz, samples).map_err(in_time)
 }
 
@@ -199,5 +199,7 @@ fn storage(dataset: &Dataset) -> String {
     text
 }
 
+#[cfg(test)]
+mod layout_tests;
 #[cfg(test)]
 mod tests;

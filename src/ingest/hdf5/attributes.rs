@@ -1,8 +1,9 @@
 //! A column's attributes, or those of the groups above it, to rate, unit, start, scale and offset.
 
-use super::super::time_unit;
+use super::super::{time_name, time_unit};
 use super::dataset::Column;
 use super::fault::Fault;
+use super::rate;
 use crate::data::Samples;
 use hdf5_metno::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenUnicode};
 use hdf5_metno::{Attribute, File, Location};
@@ -10,15 +11,19 @@ use hdf5_metno::{Attribute, File, Location};
 /// What the recording says of a column.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Attributes {
-    pub sample_rate_hz: Option<f64>,
+    /// Samples a second, or why what stands there is none.
+    pub rate: Option<Result<f64, String>>,
     pub unit: Option<String>,
     pub start_s: Option<f64>,
     pub scale: Option<f64>,
     pub offset: Option<f64>,
 }
 
-const RATE_NAMES: [&str; 5] = ["sample_rate_hz", "sample_rate", "fs", "sampling_rate_hz", "sampling_rate"];
 const UNIT_NAMES: [&str; 2] = ["unit", "units"];
+/// The second is that of the CF conventions of netCDF.
+const SCALE_NAMES: [&str; 2] = ["scale", "scale_factor"];
+/// As [`SCALE_NAMES`].
+const OFFSET_NAMES: [&str; 2] = ["offset", "add_offset"];
 
 /// An attribute with more values than this is none of these.
 const MOST_VALUES: usize = 4096;
@@ -49,20 +54,36 @@ impl Attributes {
     fn own(place: &Location, column: &Column) -> Self {
         let number = |name: &str| number(place, name, column);
         Self {
-            sample_rate_hz: RATE_NAMES.iter().find_map(|name| number(name)),
+            rate: rate::stated(place, column),
             unit: UNIT_NAMES.iter().find_map(|name| text(place, name, column)),
             start_s: number("start_time_s"),
-            scale: number("scale"),
-            offset: number("offset"),
+            scale: SCALE_NAMES.iter().find_map(|name| number(name)),
+            offset: OFFSET_NAMES.iter().find_map(|name| number(name)),
         }
     }
 
     fn fill(&mut self, other: Self) {
-        self.sample_rate_hz = self.sample_rate_hz.or(other.sample_rate_hz);
+        self.rate = self.rate.take().or(other.rate);
         self.unit = self.unit.take().or(other.unit);
         self.start_s = self.start_s.or(other.start_s);
         self.scale = self.scale.or(other.scale);
         self.offset = self.offset.or(other.offset);
+    }
+
+    /// What is done to the stored numbers, for people; empty where nothing is.
+    pub(super) fn scaling(&self) -> String {
+        let (scale, offset) = (self.scale.map(|s| format!(" × {s}")), self.offset.map(|o| format!(" + {o}")));
+        match (scale, offset) {
+            (None, None) => String::new(),
+            (scale, offset) => {
+                format!(", value = stored{}{}", scale.unwrap_or_default(), offset.unwrap_or_default())
+            }
+        }
+    }
+
+    /// The rate that is stated, Hz.
+    pub(super) fn sample_rate_hz(&self) -> Option<f64> {
+        self.rate.as_ref().and_then(|rate| rate.as_ref().ok()).copied()
     }
 
     /// value = raw · scale + offset.
@@ -89,11 +110,11 @@ impl Attributes {
     }
 }
 
-/// Seconds per unit of a column of times, and its offset in s, from its own attributes alone.
+/// Seconds per unit of a column of times, and its offset in s, from its own attributes and name alone.
 pub(super) fn time_scale(column: &Column) -> Result<(f64, f64), Fault> {
     let own = Attributes::own(&column.dataset, column);
     let unit_s = match own.unit.as_deref().map(str::trim) {
-        None | Some("") => 1.0,
+        None | Some("") => time_name::split(column.bare_name()).1.and_then(time_unit::seconds).unwrap_or(1.0),
         Some(unit) => time_unit::seconds(unit).ok_or_else(|| Fault {
             problem: format!("{} is in {unit:?}, which is no unit of time known here", column.source()),
             mend: "name a dataset of times in s, ms, us or ns, or give sample_rate_hz".into(),
@@ -119,11 +140,25 @@ fn attribute(place: &Location, name: &str) -> Option<Attribute> {
     })
 }
 
-fn number(place: &Location, name: &str, column: &Column) -> Option<f64> {
+/// What an attribute holds for one column.
+pub(super) enum Value {
+    Number(f64),
+    Text(String),
+}
+
+/// The attribute's value for the column: the only one, or that of its index.
+pub(super) fn value(place: &Location, name: &str, column: &Column) -> Option<Value> {
     let attribute = attribute(place, name)?;
     match attribute.read_raw::<f64>() {
-        Ok(values) => pick(values, column),
-        Err(_) => texts(&attribute).and_then(|values| pick(values, column))?.trim().parse().ok(),
+        Ok(values) => pick(values, column).map(Value::Number),
+        Err(_) => texts(&attribute).and_then(|values| pick(values, column)).map(Value::Text),
+    }
+}
+
+fn number(place: &Location, name: &str, column: &Column) -> Option<f64> {
+    match value(place, name, column)? {
+        Value::Number(number) => Some(number),
+        Value::Text(text) => text.trim().parse().ok(),
     }
     .filter(|value: &f64| value.is_finite())
 }

@@ -1,151 +1,72 @@
-//! A dataset path to the numbers of one column.
+//! A column, row or field of a dataset to its numbers.
 
 use super::attributes;
 use super::fault::{self, Fault};
 use super::packed::{self, Stored};
+use super::record::Field;
 use crate::data::Samples;
 use hdf5_metno::types::{FloatSize, IntSize, TypeDescriptor};
-use hdf5_metno::{Dataset, Datatype, File, H5Type, Hyperslab, Selection, SliceOrIndex};
-
-/// No filter that is built in packs tighter (deflate: 1032 : 1), so that a dataset that claims more was damaged or never written.
-const TIGHTEST_PACKING: u64 = 1100;
+use hdf5_metno::{Dataset, Datatype, H5Type, Hyperslab, Selection, SliceOrIndex};
 
 /// Values read at a time where whole rows are read for one column: 2 MB of f64.
 const BLOCK_VALUES: usize = 1 << 18;
 
-/// One column of numbers in a file.
+/// One channel's numbers in a file: a dataset, a column or row of one, or a field of its records.
 pub(super) struct Column {
     pub dataset: Dataset,
-    /// Which column of a two-dimensional dataset.
+    /// Which of several channels in one dataset.
     pub index: Option<usize>,
-    /// Number of columns; 1 for one dimension.
+    /// Number of channels in the dataset, or in the field of its records.
     pub columns: usize,
-    name: String,
-    length: usize,
-    kind: Kind,
+    /// The dataset's path.
+    pub name: String,
+    /// Number of samples.
+    pub length: usize,
+    pub kind: Kind,
+    pub place: Place,
 }
 
 /// How a column is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+pub(super) enum Kind {
     Int(IntSize),
     Unsigned(IntSize),
     Single,
     Double,
 }
 
-/// Why a source names no column.
-pub(super) enum Missing {
-    Nowhere,
-    Because(Fault),
+/// Where the numbers of a channel lie in its dataset.
+pub(super) enum Place {
+    /// They are all of it.
+    Whole,
+    /// In a column.
+    Column,
+    /// In a row.
+    Row,
+    /// In a field of its records.
+    Field(Field),
 }
 
-/// The column that `source` names: `/group/dataset`, or `/group/dataset[2]` of a two-dimensional one.
-pub(super) fn find(file: &File, source: &str) -> Result<Column, Missing> {
-    let path = format!("/{}", source.trim().trim_start_matches('/'));
-    if let Ok(dataset) = file.dataset(&path) {
-        return column(dataset, path, None).map_err(Missing::Because);
-    }
-    if let Some((bare, index)) = path.strip_suffix(']').and_then(|path| path.rsplit_once('['))
-        && let Ok(index) = index.trim().parse()
-        && let Ok(dataset) = file.dataset(bare)
-    {
-        return column(dataset, bare.to_owned(), Some(index)).map_err(Missing::Because);
-    }
-    if file.group(&path).is_ok() {
-        return Err(Missing::Because(Fault {
-            problem: format!("{path} is a group, not a dataset"),
-            mend: "name one of the datasets in it; `dropcheck inspect` lists them".into(),
-        }));
-    }
-    Err(Missing::Nowhere)
-}
-
-fn column(dataset: Dataset, name: String, index: Option<usize>) -> Result<Column, Fault> {
-    let wrong = |problem: String, mend: &str| Fault { problem, mend: mend.to_owned() };
-    // A file that was sent may name any other on this machine.
-    let external = dataset.create_plist().map(|list| list.external()).unwrap_or_default();
-    if let Some(other) = external.iter().find(|file| file.name.contains(['/', '\\'])) {
-        return Err(wrong(
-            format!("the data of {name} are in another file, {}, which lies elsewhere", other.name),
-            "ask for a recording that holds its own data: `h5repack IN OUT` makes one",
-        ));
-    }
-    let (kind, shape) = readable(&dataset, &name)?;
-    let (length, columns, index) = match (shape.as_slice(), index) {
-        (&[length], None | Some(0)) => (length, 1, None),
-        (&[_], Some(_)) => {
-            return Err(wrong(format!("{name} has one dimension"), "leave out the [ ] behind its name"));
-        }
-        (&[rows, columns], Some(index)) if index < columns => (rows, columns, Some(index)),
-        (&[_, columns], Some(index)) => {
-            return Err(wrong(
-                format!("{name} has {columns} columns, there is no [{index}]"),
-                "columns count from 0",
-            ));
-        }
-        (&[rows, 1], None) => (rows, 1, Some(0)),
-        (&[rows, columns], None) => {
-            return Err(wrong(
-                format!("{name} has {rows} rows and {columns} columns"),
-                &format!("name one column: \"{name}[0]\" to \"{name}[{}]\"", columns.saturating_sub(1)),
-            ));
-        }
-        _ => {
-            return Err(wrong(
-                format!("{name} has {} dimensions", shape.len()),
-                "only one and two dimensions are read; save the channel as a dataset of its own",
-            ));
-        }
-    };
-    Ok(Column { dataset, index, columns, name, length, kind })
-}
-
-/// How a dataset's numbers are read, and its shape; a fault where it holds none.
-pub(super) fn shape_of(dataset: &Dataset, name: &str) -> Result<Vec<usize>, Fault> {
-    readable(dataset, name).map(|(_, shape)| shape)
-}
-
-fn readable(dataset: &Dataset, name: &str) -> Result<(Kind, Vec<usize>), Fault> {
-    const NUMBERS: &str = "name a dataset of numbers; `dropcheck inspect` lists them";
-    let wrong = |what: String| Fault { problem: format!("{name} {what}"), mend: NUMBERS.into() };
-    let dtype = dataset.dtype().map_err(|error| fault::of_dataset(name, &error))?;
-    let kind = kind(&dtype).ok_or_else(|| wrong(format!("holds no numbers but {}", type_name(&dtype))))?;
-    let space = dataset.space().map_err(|error| fault::of_dataset(name, &error))?;
-    if space.is_null() {
-        return Err(wrong("is empty".into()));
-    }
-    let shape = space.shape();
-    if shape.is_empty() {
-        return Err(wrong("is a single value".into()));
-    }
-    if shape.contains(&0) {
-        return Err(wrong("is empty".into()));
-    }
-    let claimed = shape.iter().try_fold(1_usize, |product, &n| product.checked_mul(n));
-    let rows = shape.first().copied().unwrap_or(0);
-    let bytes = claimed.and_then(|count| count.checked_mul(dtype.size())).and_then(|b| u64::try_from(b).ok());
-    let stored = dataset.storage_size();
-    let is_plausible = bytes.is_some_and(|bytes| bytes <= stored.saturating_mul(TIGHTEST_PACKING));
-    if !is_plausible {
-        return Err(Fault {
-            problem: format!("{name} claims {rows} rows, of which the file holds {stored} bytes"),
-            mend: "it was never written, or the file is damaged: copy it from the logger again".into(),
-        });
-    }
-    Ok((kind, shape))
-}
-
-fn kind(dtype: &Datatype) -> Option<Kind> {
+/// How the numbers of a dataset are read; `None` where it holds none.
+pub(super) fn kind(dtype: &Datatype) -> Option<Kind> {
     match dtype.to_descriptor() {
-        Ok(TypeDescriptor::Integer(size)) => Some(Kind::Int(size)),
-        Ok(TypeDescriptor::Unsigned(size)) => Some(Kind::Unsigned(size)),
-        Ok(TypeDescriptor::Float(FloatSize::U4)) => Some(Kind::Single),
-        Ok(TypeDescriptor::Float(_)) => Some(Kind::Double),
-        Ok(_) => None,
+        Ok(descriptor) => Kind::of(&descriptor),
         // Half precision and odd widths have no name in Rust; the library converts them.
         Err(_) if dtype.size() <= 2 && dtype.conv_to::<f32>().is_some() => Some(Kind::Single),
         Err(_) => dtype.conv_to::<f64>().map(|_| Kind::Double),
+    }
+}
+
+impl Kind {
+    /// How numbers of this type are read; `None` where they are none.
+    pub(super) fn of(descriptor: &TypeDescriptor) -> Option<Self> {
+        match descriptor {
+            TypeDescriptor::Integer(size) => Some(Self::Int(*size)),
+            TypeDescriptor::Unsigned(size) => Some(Self::Unsigned(*size)),
+            TypeDescriptor::Float(FloatSize::U4) => Some(Self::Single),
+            TypeDescriptor::Float(_) => Some(Self::Double),
+            _ => None,
+        }
     }
 }
 
@@ -180,10 +101,35 @@ pub(super) fn type_name(dtype: &Datatype) -> String {
 impl Column {
     /// What to write as `source`.
     pub(super) fn source(&self) -> String {
-        match self.index {
-            Some(index) => format!("{}[{index}]", self.name),
-            None => self.name.clone(),
+        let name = match &self.place {
+            Place::Field(field) => format!("{}.{}", self.name, field.name),
+            _ => self.name.clone(),
+        };
+        self.index.map_or(name.clone(), |index| format!("{name}[{index}]"))
+    }
+
+    /// What it is, for people.
+    pub(super) fn kind_name(&self) -> &'static str {
+        match self.place {
+            Place::Field(_) => "field",
+            Place::Row => "row",
+            Place::Column => "column",
+            Place::Whole if self.index.is_some() => "column",
+            Place::Whole => "dataset",
         }
+    }
+
+    /// The last part of its name, which may tell its unit.
+    pub(super) fn bare_name(&self) -> &str {
+        match &self.place {
+            Place::Field(field) => &field.name,
+            _ => self.name.rsplit_once('/').map_or(&self.name, |(_, name)| name),
+        }
+    }
+
+    /// The dataset whose records it is a field of.
+    pub(super) fn records(&self) -> Option<&str> {
+        matches!(self.place, Place::Field(_)).then_some(self.name.as_str())
     }
 
     /// The group it lies in, without a trailing slash.
@@ -204,8 +150,14 @@ impl Column {
     pub(super) fn part_bytes(&self) -> u64 {
         let chunk = self.dataset.chunk().unwrap_or_default();
         let values = chunk.iter().fold(1_u64, |product, &n| product.saturating_mul(n as u64));
-        let rows = if self.index.is_some() { chunk.first().copied().unwrap_or(1) as u64 } else { 1 };
-        8 * values.max(rows.saturating_mul(self.columns as u64))
+        match &self.place {
+            Place::Field(field) => values.saturating_mul(field.record_bytes as u64),
+            Place::Column => {
+                let rows = chunk.first().copied().unwrap_or(1) as u64;
+                8 * values.max(rows.saturating_mul(self.columns as u64))
+            }
+            Place::Whole | Place::Row => 8 * values,
+        }
     }
 
     /// Its numbers as stored: f32 and short integers as f32, the rest as f64.
@@ -253,21 +205,37 @@ impl Column {
     }
 
     fn read<T: Stored>(&self) -> Result<Vec<T>, Fault> {
-        if let Some(values) = packed::column(&self.dataset, self.index.unwrap_or(0)) {
+        let is_down = self.dataset.shape().first() == Some(&self.length);
+        if is_down
+            && !matches!(self.place, Place::Field(_))
+            && let Some(values) = packed::column(&self.dataset, self.index.unwrap_or(0))
+        {
             return Ok(values);
         }
-        let read = match self.index {
-            None => self.dataset.read_raw::<T>(),
-            Some(_) if self.columns == 1 => self.dataset.read_raw::<T>(),
-            Some(index) if self.dataset.is_chunked() => self.read_rows(index),
-            Some(index) => {
-                let slab = Hyperslab::from(vec![SliceOrIndex::from(..), SliceOrIndex::from(index)]);
-                self.dataset
-                    .read_slice_1d::<T, Selection>(Selection::from(slab))
-                    .map(|array| array.into_raw_vec_and_offset().0)
-            }
+        let slice = |slab: Vec<SliceOrIndex>| {
+            let slab = Selection::from(Hyperslab::from(slab));
+            self.dataset.read_slice_1d::<T, Selection>(slab).map(|array| array.into_raw_vec_and_offset().0)
+        };
+        let index = self.index.unwrap_or(0);
+        let read = match &self.place {
+            Place::Field(field) => return self.read_field(field),
+            Place::Whole => self.dataset.read_raw::<T>(),
+            Place::Row => slice(vec![SliceOrIndex::from(index), SliceOrIndex::from(..)]),
+            Place::Column if self.dataset.is_chunked() => self.read_rows(index),
+            Place::Column => slice(vec![SliceOrIndex::from(..), SliceOrIndex::from(index)]),
         };
         read.map_err(|error| fault::of_dataset(&self.source(), &error))
+    }
+
+    fn read_field<T: Stored>(&self, field: &Field) -> Result<Vec<T>, Fault> {
+        packed::field(&self.dataset, field).ok_or_else(|| Fault {
+            problem: format!(
+                "{}: its records are damaged, or packed in a way that is not read",
+                self.source()
+            ),
+            mend: "copy the file from the logger again, or repack it with gzip: `h5repack -f GZIP=1 IN OUT`"
+                .into(),
+        })
     }
 
     /// One column of a chunked dataset, taken from whole rows: picking it in the library costs four times as much.

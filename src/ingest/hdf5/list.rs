@@ -2,11 +2,14 @@
 
 use super::super::error::IngestError;
 use super::attributes::Attributes;
-use super::dataset::{self, Column, Missing};
+use super::clocks::Clocks;
+use super::dataset::Column;
 use super::fault::Fault;
+use super::find::{self, Missing};
+use super::time_base::TimeBaseError;
 use super::watch::{self, Signs};
-use super::{Limits, Progress, open, sibling_times, storage, time_base};
-use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Samples};
+use super::{Limits, Progress, open, storage, time_base};
+use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Samples, Severity};
 use hdf5_metno::{File, Group};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -28,6 +31,7 @@ struct Effort<'a> {
     limits: Limits,
     signs: &'a Signs,
     values_left: u64,
+    clocks: Clocks,
 }
 
 impl Effort<'_> {
@@ -57,7 +61,7 @@ struct Objects {
 pub(super) fn sources(file: &File, signs: &Signs) -> Vec<String> {
     let mut objects = Objects::default();
     walk(file, "", (0, signs), &mut objects);
-    objects.datasets.iter().flat_map(|path| columns_of(file, path).unwrap_or_default()).collect()
+    objects.datasets.iter().flat_map(|path| sources_of(file, path).unwrap_or_default()).collect()
 }
 
 fn walk(group: &Group, path: &str, (depth, signs): (usize, &Signs), objects: &mut Objects) {
@@ -84,16 +88,10 @@ fn walk(group: &Group, path: &str, (depth, signs): (usize, &Signs), objects: &mu
     }
 }
 
-/// The sources of one dataset: itself, or its columns; `None` where it holds no numbers in one or two dimensions.
-fn columns_of(file: &File, path: &str) -> Option<Vec<String>> {
+/// The sources of one dataset: itself, its columns, rows or fields; `None` where it holds no numbers in one or two dimensions.
+fn sources_of(file: &File, path: &str) -> Option<Vec<String>> {
     let dataset = file.dataset(path).ok()?;
-    match dataset::shape_of(&dataset, path).ok()?.as_slice() {
-        [_] | [_, 1] => Some(vec![path.to_owned()]),
-        [_, columns] if *columns <= MOST_COLUMNS => {
-            Some((0..*columns).map(|i| format!("{path}[{i}]")).collect())
-        }
-        _ => None,
-    }
+    find::sources(&dataset, path, MOST_COLUMNS).ok().filter(|sources| !sources.is_empty())
 }
 
 /// Lists what the HDF5 file at `path` holds.
@@ -110,7 +108,7 @@ pub(in super::super) fn list(
 }
 
 fn list_objects(path: &Path, limits: Limits, signs: &Signs) -> Result<Listing, IngestError> {
-    let mut effort = Effort { limits, signs, values_left: MOST_VALUES };
+    let mut effort = Effort { limits, signs, values_left: MOST_VALUES, clocks: Clocks::default() };
     let file = open(path)?;
     let mut objects = Objects::default();
     walk(&file, "", (0, signs), &mut objects);
@@ -121,7 +119,7 @@ fn list_objects(path: &Path, limits: Limits, signs: &Signs) -> Result<Listing, I
         if channels.len() >= MOST_OBJECTS {
             break;
         }
-        match columns_of(&file, dataset) {
+        match sources_of(&file, dataset) {
             Some(sources) => {
                 for source in &sources {
                     channels.push(listed(&file, source, &mut effort, &mut issues));
@@ -187,7 +185,7 @@ fn blank(source: &str, kind: &str) -> ListedChannel {
 
 /// A dataset that holds no channel, with the reason.
 fn unreadable(file: &File, path: &str) -> ListedChannel {
-    let fault = match dataset::find(file, path) {
+    let fault = match find::find(file, path) {
         Err(Missing::Because(fault)) => fault.problem,
         Err(Missing::Nowhere) | Ok(_) => "it cannot be opened".to_owned(),
     };
@@ -198,12 +196,12 @@ fn unreadable(file: &File, path: &str) -> ListedChannel {
 
 fn listed(file: &File, source: &str, effort: &mut Effort, issues: &mut Vec<Issue>) -> ListedChannel {
     effort.signs.alive(0);
-    let Ok(column) = dataset::find(file, source) else { return unreadable(file, source) };
+    let Ok(column) = find::find(file, source) else { return unreadable(file, source) };
     let attributes = Attributes::of(file, &column);
-    let kind = if column.index.is_some() { "column" } else { "dataset" };
+    let kind = column.kind_name();
     let mut channel = ListedChannel {
         samples: Some(column.len() as u64),
-        encoding: storage(&column.dataset),
+        encoding: storage(&column.dataset) + &attributes.scaling(),
         ..blank(source, kind)
     };
     match survey(file, &column, &attributes, effort, &mut channel) {
@@ -221,7 +219,7 @@ fn survey(
     effort: &mut Effort,
     channel: &mut ListedChannel,
 ) -> Result<Vec<Issue>, Fault> {
-    channel.sample_rate_hz = attributes.sample_rate_hz;
+    channel.sample_rate_hz = attributes.sample_rate_hz();
     channel.unit.clone_from(&attributes.unit);
     channel.start_s = attributes.start_s;
     let mut samples = Samples::F32(vec![0.0; column.len().min(RANGED_SAMPLES)]);
@@ -229,16 +227,14 @@ fn survey(
         samples = attributes.scaled(column.samples()?);
         channel.range = range(&samples);
     }
-    let Some(time) = sibling_times(file, column) else {
+    let Some(time) = effort.clocks.of(file, column) else {
         let intervals = column.len().saturating_sub(1);
         #[allow(clippy::cast_precision_loss, reason = "below 2^31")]
-        let duration_s = attributes
-            .sample_rate_hz
-            .filter(|rate_hz| *rate_hz > 0.0)
-            .map(|rate_hz| intervals as f64 / rate_hz);
+        let duration_s = channel.sample_rate_hz.map(|rate_hz| intervals as f64 / rate_hz);
         channel.duration_s = duration_s;
         channel.start_s = attributes.start_s.or(duration_s.map(|_| 0.0));
-        return Ok(Vec::new());
+        let no_rate = attributes.rate.clone().and_then(Result::err);
+        return Ok(no_rate.map(no_base).into_iter().collect());
     };
     if !effort.pays_for(&time) {
         return Ok(Vec::new());
@@ -247,7 +243,11 @@ fn survey(
     if times_s.len() != samples.len() {
         return Ok(Vec::new());
     }
-    let Ok(uniform) = time_base::from_times(&times_s, samples, None) else { return Ok(Vec::new()) };
+    let uniform = match time_base::from_times(&times_s, samples, None) {
+        Ok(uniform) => uniform,
+        Err(TimeBaseError::TooFew { .. }) => return Ok(Vec::new()),
+        Err(error) => return Ok(vec![no_base(format!("{}: {error}", time.source()))]),
+    };
     let (first_s, last_s) =
         times_s.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &t| (a.min(t), b.max(t)));
     channel.sample_rate_hz = Some(uniform.sample_rate_hz);
@@ -256,6 +256,11 @@ fn survey(
     let has_gap = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
     channel.gaps = Some(if has_gap { uniform.gaps.len() as u64 } else { 0 });
     Ok(uniform.issues)
+}
+
+/// That times or rate would not do, as reading says.
+fn no_base(problem: String) -> Issue {
+    Issue::new(IssueCode::TimeJitter, Severity::Warning, problem)
 }
 
 fn range(samples: &Samples) -> Option<(f64, f64)> {

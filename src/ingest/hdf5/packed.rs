@@ -1,5 +1,6 @@
-//! The bytes of a dataset, plain or in deflated chunks, to one column of it, on all cores: the library works on one thread at a time.
+//! The bytes of a dataset, plain or in deflated chunks, to one column or field of it, on all cores: the library works on one thread at a time.
 
+use super::record::Field;
 use hdf5_metno::datatype::ByteOrder;
 use hdf5_metno::filters::Filter;
 use hdf5_metno::{Dataset, H5Type};
@@ -39,10 +40,13 @@ struct Place {
 }
 
 /// How the chunks of a dataset are laid out.
-struct Layout {
+struct Layout<'a> {
     rows: usize,
     columns: usize,
+    is_deflated: bool,
     is_shuffled: bool,
+    /// The field to be taken, where the values are records.
+    field: Option<&'a Field>,
 }
 
 /// Column `index` of a dataset of one or two dimensions; `None` where the library must read it: other filters, types or byte orders,
@@ -63,8 +67,76 @@ pub(super) fn column<T: Stored>(dataset: &Dataset, index: usize) -> Option<Vec<T
         [Filter::Shuffle, Filter::Deflate(_)] => true,
         _ => return None,
     };
+    chunked(dataset, index, (true, is_shuffled), None)
+}
+
+/// One field of the records of a dataset; `None` where they are packed otherwise, were never written or are damaged.
+///
+/// The library would need a type made for these records, which only its unsafe part can have.
+pub(super) fn field<T: Stored>(dataset: &Dataset, field: &Field) -> Option<Vec<T>> {
+    if field.bytes != size_of::<T>() || dataset.file().ok()?.userblock() != 0 {
+        return None;
+    }
+    let filters = match dataset.filters().as_slice() {
+        [] if !dataset.is_chunked() => return records(dataset, field),
+        [] => (false, false),
+        [Filter::Deflate(_)] => (true, false),
+        [Filter::Shuffle, Filter::Deflate(_)] => (true, true),
+        _ => return None,
+    };
+    chunked(dataset, 0, filters, Some(field))
+}
+
+/// A field of records that lie in one piece.
+fn records<T: Stored>(dataset: &Dataset, field: &Field) -> Option<Vec<T>> {
+    let (from, length) = (dataset.offset()?, dataset.size());
+    let is_elsewhere = !dataset.create_plist().ok()?.external().is_empty();
+    let stored = length.checked_mul(field.record_bytes)?;
+    if is_elsewhere || dataset.storage_size() != stored as u64 || field.record_bytes == 0 {
+        return None;
+    }
+    // As many whole records as a piece of plain values has bytes, so that wide ones take no more memory.
+    let piece = (PIECE_VALUES * size_of::<f64>() / field.record_bytes).max(1);
+    let path = dataset.filename();
+    let mut values = vec![T::default(); length];
+    values
+        .par_chunks_mut(piece)
+        .enumerate()
+        .map_init(
+            || (File::open(&path).ok(), Vec::new()),
+            |(file, bytes), (i, values)| {
+                let file = file.as_mut()?;
+                bytes.resize(values.len() * field.record_bytes, 0);
+                file.seek(SeekFrom::Start(from + (i * piece * field.record_bytes) as u64)).ok()?;
+                file.read_exact(bytes).ok()?;
+                for (value, record) in values.iter_mut().zip(bytes.chunks_exact(field.record_bytes)) {
+                    *value = T::from_bytes(|i| record[field.byte(i)]);
+                }
+                Some(())
+            },
+        )
+        .collect::<Option<()>>()?;
+    Some(values)
+}
+
+impl Field {
+    /// Where byte `i` of its number, counted from the lowest, stands in a record.
+    fn byte(&self, i: usize) -> usize {
+        self.from + if self.is_big_endian { self.bytes - 1 - i } else { i }
+    }
+}
+
+/// A column of a dataset in chunks, deflated and shuffled or not, or a field of the records in it.
+fn chunked<T: Stored>(
+    dataset: &Dataset,
+    index: usize,
+    (is_deflated, is_shuffled): (bool, bool),
+    field: Option<&Field>,
+) -> Option<Vec<T>> {
     let (shape, chunk) = (dataset.shape(), dataset.chunk()?);
-    let layout = Layout { rows: *chunk.first()?, columns: chunk.get(1).copied().unwrap_or(1), is_shuffled };
+    let length = *shape.first()?;
+    let columns = chunk.get(1).copied().unwrap_or(1);
+    let layout = Layout { rows: *chunk.first()?, columns, is_deflated, is_shuffled, field };
     if shape.len() != chunk.len() || shape.len() > 2 || layout.rows == 0 {
         return None;
     }
@@ -149,19 +221,35 @@ fn unpack<T: Stored>(
     (index, values): (usize, &mut [T]),
 ) -> Option<()> {
     let count = layout.rows.checked_mul(layout.columns)?;
-    let size = size_of::<T>();
+    let size = layout.field.map_or(size_of::<T>(), |field| field.record_bytes);
     // Deflate stores what it cannot pack with five bytes for each 16 KiB: a longer chunk is damage.
     if place.length > count.checked_mul(size)?.checked_mul(2)?.checked_add(1024)? {
         return None;
     }
-    packed.clear();
     file.seek(SeekFrom::Start(place.at)).ok()?;
-    file.take(place.length as u64).read_to_end(packed).ok()?;
     bytes.resize(count.checked_mul(size)?, 0);
-    if Decompressor::new().zlib_decompress(packed, bytes).ok()? != bytes.len() {
+    if layout.is_deflated {
+        packed.clear();
+        file.take(place.length as u64).read_to_end(packed).ok()?;
+        if Decompressor::new().zlib_decompress(packed, bytes).ok()? != bytes.len() {
+            return None;
+        }
+    } else if place.length == bytes.len() {
+        file.read_exact(bytes).ok()?;
+    } else {
         return None;
     }
     let first = index - place.column;
+    if let Some(field) = layout.field {
+        for (row, value) in values.iter_mut().enumerate() {
+            let at = row * layout.columns + first;
+            *value = T::from_bytes(|i| {
+                let byte = field.byte(i);
+                if layout.is_shuffled { bytes[byte * count + at] } else { bytes[at * size + byte] }
+            });
+        }
+        return Some(());
+    }
     for (row, value) in values.iter_mut().enumerate() {
         let at = row * layout.columns + first;
         *value =
@@ -231,8 +319,8 @@ mod tests {
     fn what_is_damaged_or_not_there_is_left_to_the_library() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("damaged.h5");
-        let place =
-            places(&file(&path, 1, 999, true), 0, &Layout { rows: 999, columns: 1, is_shuffled: true });
+        let layout = Layout { rows: 999, columns: 1, is_deflated: true, is_shuffled: true, field: None };
+        let place = places(&file(&path, 1, 999, true), 0, &layout);
         let place = place.unwrap().pop().unwrap();
         let mut bytes = std::fs::read(&path).unwrap();
         let middle = usize::try_from(place.at).unwrap() + place.length / 2;

@@ -6,13 +6,13 @@ use crate::data::IssueCode;
 use hdf5_metno::types::VarLenUnicode;
 use std::path::PathBuf;
 
-struct Made {
+pub(super) struct Made {
     _dir: tempfile::TempDir,
-    path: PathBuf,
+    pub path: PathBuf,
 }
 
 /// A file that `fill` fills.
-fn made(fill: impl FnOnce(&File) -> hdf5_metno::Result<()>) -> Made {
+pub(super) fn made(fill: impl FnOnce(&File) -> hdf5_metno::Result<()>) -> Made {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("r.h5");
     let created = File::create(&path).unwrap();
@@ -21,19 +21,19 @@ fn made(fill: impl FnOnce(&File) -> hdf5_metno::Result<()>) -> Made {
     Made { _dir: dir, path }
 }
 
-fn number(place: &hdf5_metno::Location, name: &str, value: f64) -> hdf5_metno::Result<()> {
+pub(super) fn number(place: &hdf5_metno::Location, name: &str, value: f64) -> hdf5_metno::Result<()> {
     place.new_attr::<f64>().create(name)?.write_scalar(&value)
 }
 
-fn text(place: &hdf5_metno::Location, name: &str, value: &str) -> hdf5_metno::Result<()> {
+pub(super) fn text(place: &hdf5_metno::Location, name: &str, value: &str) -> hdf5_metno::Result<()> {
     place.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&value.parse::<VarLenUnicode>().unwrap())
 }
 
-fn values(raw: &RawChannel) -> Vec<f64> {
+pub(super) fn values(raw: &RawChannel) -> Vec<f64> {
     (0..raw.uniform.samples.len()).map(|i| raw.uniform.samples.get(i)).collect()
 }
 
-fn told(made: &Made, source: &str) -> String {
+pub(super) fn told(made: &Made, source: &str) -> String {
     let error = read(&made.path, &cask_file(&[source]), Limits::default(), &|_| {}).unwrap_err();
     let help = miette::Diagnostic::help(&error).map(|help| help.to_string()).unwrap_or_default();
     format!("{error} | {help}")

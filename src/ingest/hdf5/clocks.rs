@@ -1,0 +1,54 @@
+//! The times beside a channel, by their name.
+
+use super::super::time_name;
+use super::dataset::Column;
+use super::{find, record};
+use hdf5_metno::File;
+
+/// Names that go before others.
+const FIRST_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "Time"];
+
+/// Times by their names, of the group or the records that were asked for last: channels come in the order of the file.
+#[derive(Default)]
+pub(super) struct Clocks {
+    place: Option<String>,
+    sources: Vec<String>,
+}
+
+impl Clocks {
+    /// The times of a channel: a field of the same records, else a dataset beside it, that has a usual name and as many values.
+    pub(super) fn of(&mut self, file: &File, column: &Column) -> Option<Column> {
+        let is_apart = |times: &Column| times.len() == column.len() && times.source() != column.source();
+        let records = column.records().map(|name| (format!("{name}."), true));
+        records.into_iter().chain([(format!("{}/", column.group()), false)]).find_map(
+            |(place, is_records)| {
+                if self.place.as_ref() != Some(&place) {
+                    let names = if is_records { fields(file, &place) } else { members(file, &place) };
+                    self.sources = ranked(&place, names);
+                    self.place = Some(place);
+                }
+                self.sources.iter().filter_map(|source| find::find(file, source).ok()).find(is_apart)
+            },
+        )
+    }
+}
+
+fn fields(file: &File, place: &str) -> Vec<String> {
+    let dtype = file.dataset(place.trim_end_matches('.')).and_then(|dataset| dataset.dtype());
+    let fields = dtype.map(|dtype| record::fields(&dtype)).unwrap_or_default();
+    fields.into_iter().map(|field| field.name).collect()
+}
+
+fn members(file: &File, place: &str) -> Vec<String> {
+    file.group(place).and_then(|group| group.member_names()).unwrap_or_default()
+}
+
+/// The sources named as times, likeliest first.
+fn ranked(place: &str, mut names: Vec<String>) -> Vec<String> {
+    names.retain(|name| {
+        let last = name.rsplit_once('.').map_or(name.as_str(), |(_, last)| last);
+        time_name::is_time(time_name::split(last).0)
+    });
+    names.sort_by_key(|name| FIRST_NAMES.iter().position(|first| first == name).unwrap_or(FIRST_NAMES.len()));
+    names.into_iter().map(|name| format!("{place}{name}")).collect()
+}
