@@ -1,5 +1,6 @@
 //! Delimited text to the channels that a cask file names, whatever its delimiter, decimal mark, encoding and preamble.
 
+mod header;
 mod input;
 mod layout;
 mod list;
@@ -117,7 +118,7 @@ impl Plan {
         let column = find(path, spec, source, layout)?;
         let time_column = match spec.time.as_deref().or(time) {
             Some(name) => Some(find(path, spec, name, layout)?),
-            None => layout.time_column.filter(|&found| found != column),
+            None => layout.time_of(column),
         };
         if let Some(found) = time_column
             && layout.time_scale(found) == Scale::Unknown
@@ -133,7 +134,9 @@ impl Plan {
                 "head the column with [s], [ms], [µs] or [ns], or give sample_rate_hz and another time column",
             ));
         }
-        if time_column.is_none() && spec.sample_rate_hz.is_none() {
+        let stated_hz = if time_column.is_none() { layout.stated_rate_hz(column) } else { None };
+        let declared_rate_hz = spec.sample_rate_hz.or(stated_hz);
+        if time_column.is_none() && declared_rate_hz.is_none() {
             return Err(error::source(
                 path,
                 &spec.name,
@@ -141,7 +144,7 @@ impl Plan {
                 "name it under [recording]: time = \"…\", or give this channel sample_rate_hz",
             ));
         }
-        Ok(Self { column, time_column, declared_rate_hz: spec.sample_rate_hz })
+        Ok(Self { column, time_column, declared_rate_hz })
     }
 }
 
@@ -378,6 +381,8 @@ fn row_error(
 
 #[cfg(test)]
 mod fuzz_tests;
+#[cfg(test)]
+mod layout_tests;
 #[cfg(test)]
 mod piece_tests;
 #[cfg(test)]

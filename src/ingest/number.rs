@@ -133,24 +133,46 @@ pub(super) fn of_cell(cell: &[u8], decimal: u8) -> Option<f64> {
 
 /// Whether a cell says that there is no value.
 pub(super) fn is_missing(cell: &[u8]) -> bool {
-    const WORDS: [&[u8]; 13] = [
-        b"nan",
-        b"-nan",
-        b"inf",
-        b"-inf",
-        b"+inf",
-        b"infinity",
-        b"-infinity",
-        b"null",
-        b"none",
-        b"na",
-        b"n/a",
-        b"#n/a",
-        b"1.#qnan",
+    /// Of spreadsheets, of C libraries, and of loggers whose converter ran over its range.
+    const WORDS: [&str; 34] = [
+        "nan",
+        "-nan",
+        "nan(ind)",
+        "-nan(ind)",
+        "inf",
+        "-inf",
+        "+inf",
+        "infinity",
+        "-infinity",
+        "∞",
+        "-∞",
+        "+∞",
+        "null",
+        "none",
+        "na",
+        "n/a",
+        "#n/a",
+        "#nv",
+        "novalue",
+        "no value",
+        "1.#qnan",
+        "-1.#qnan",
+        "1.#ind",
+        "-1.#ind",
+        "1.#inf",
+        "-1.#inf",
+        "ovl",
+        "-ovl",
+        "+ovl",
+        "ovld",
+        "-ovld",
+        "+ovld",
+        "overload",
+        "overrange",
     ];
     cell.is_empty()
-        || matches!(cell, b"-" | b"--")
-        || WORDS.iter().any(|word| cell.eq_ignore_ascii_case(word))
+        || matches!(cell, b"-" | b"--" | b"---")
+        || WORDS.iter().any(|word| cell.eq_ignore_ascii_case(word.as_bytes()))
 }
 
 /// Whether a cell is a number whose thousands are marked too, such as "1.234,5", "1,234,567" or "12'345.6".

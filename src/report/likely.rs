@@ -90,7 +90,8 @@ pub(super) fn is_time(source: &str) -> bool {
         || last.starts_with("t_")
         || last.starts_with("t [")
         || last.contains("time")
-        || last.starts_with("zeit")
+        || last.contains("zeit")
+        || ["x_value", "elapsed"].iter().any(|name| last.starts_with(name))
 }
 
 /// Whether a source names its end: first or second.

@@ -1,9 +1,10 @@
 //! The beginning of a text to its layout: delimiter, decimal mark, header, units, where the rows begin.
 
+use super::header;
 use super::input::{self, Input};
 use super::stamp;
 use super::time_column::{self, Scale};
-use crate::ingest::{number, time_unit};
+use crate::ingest::number;
 
 /// One column of the table.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,7 +24,7 @@ pub(super) struct Column {
 }
 
 /// How a text is laid out.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Layout {
     /// Between cells; a space stands for any run of blanks.
     pub delimiter: u8,
@@ -43,6 +44,8 @@ pub(super) struct Layout {
     pub data_offset: usize,
     /// The column of times, where one was found.
     pub time_column: Option<usize>,
+    /// Intervals between rows that a header of LabVIEW's states, s, by cell.
+    intervals_s: Vec<Option<f64>>,
     is_decimal_seen: bool,
     mean_row_bytes: usize,
 }
@@ -62,31 +65,28 @@ const DIALECTS: [(u8, u8); 8] = [
 /// So many of the last lines of the head decide on the dialect.
 const JUDGED_LINES: usize = 200;
 
-/// Units beside those of time that a row of units may hold, in lower case.
-const UNITS: [&str; 40] = [
-    "g", "mg", "gn", "m/s2", "m/s^2", "m/s²", "m/s**2", "mm/s2", "mm/s^2", "v", "mv", "µv", "n", "kn", "hz",
-    "khz", "°c", "degc", "k", "bar", "pa", "kpa", "mpa", "%", "-", "1", "mm", "m", "rad/s", "deg/s", "°/s",
-    "deg", "°", "a", "ma", "µm/m", "um/m", "kg", "nm", "rad",
-];
-
-struct Line<'a> {
+/// A line of the head.
+pub(super) struct Line<'a> {
     offset: usize,
-    text: std::borrow::Cow<'a, str>,
+    pub text: std::borrow::Cow<'a, str>,
 }
 
 /// What the judged lines say under one dialect.
-struct Judged {
+pub(super) struct Judged {
     score: i64,
-    columns: usize,
-    is_numeric: Vec<bool>,
-    is_stamped: Vec<bool>,
+    pub columns: usize,
+    pub is_numeric: Vec<bool>,
+    pub is_stamped: Vec<bool>,
+    /// Columns without a single value or word.
+    pub is_empty: Vec<bool>,
 }
 
 impl Layout {
     /// The layout of `input`; `None` where its head holds no rows of numbers.
     pub(super) fn of(input: &Input) -> Option<Self> {
         let lines = lines(input);
-        let judged_lines = &lines[lines.len().saturating_sub(JUDGED_LINES)..];
+        let begin = header::labview_lines(&lines);
+        let judged_lines = &lines[lines.len().saturating_sub(JUDGED_LINES).max(begin)..];
         let mut best: Option<((u8, u8), Judged)> = None;
         for dialect in DIALECTS {
             let Some(judged) = judge(judged_lines, dialect) else { continue };
@@ -95,16 +95,27 @@ impl Layout {
             }
         }
         let ((delimiter, decimal), judged) = best?;
-        let first = lines.iter().position(|line| is_row(&split(&line.text, delimiter), decimal, &judged))?;
-        let rows = &lines[first..];
-        let cells: Vec<Vec<&str>> = rows.iter().map(|line| split(&line.text, delimiter)).collect();
-        let header = header(&lines[..first], delimiter, &judged);
-        let last = &lines[lines.len() - 1];
-        let row_bytes = (last.offset + last.text.len() + 1).saturating_sub(rows[0].offset);
-        let mut columns = columns(header.as_ref(), &judged, &cells[0]);
-        if columns.len() > 1 && columns.last().is_some_and(|c| c.header.is_empty() && !c.is_numeric) {
+        let is_row = |line: &Line| is_row(&split(&line.text, delimiter), decimal, &judged);
+        let first = begin + lines[begin..].iter().position(is_row)?;
+        let cells: Vec<Vec<&str>> = lines[first..].iter().map(|line| split(&line.text, delimiter)).collect();
+        let header = header::header(&lines[..first], delimiter, &judged);
+        let mut columns = header::columns(header.as_ref(), &judged, &cells[0]);
+        while columns.len() > 1 && columns.last().is_some_and(|c| c.header.is_empty() && !c.is_numeric) {
             columns.pop();
         }
+        let time_column = time_column::find(
+            &columns,
+            header.is_none() && is_first_rising(&cells, decimal),
+            decimal,
+            |column| cells.iter().filter_map(move |cells| cells.get(column).copied()),
+        );
+        let extra = match (time_column, &header) {
+            (Some(column), Some(_)) => extremes(&cells, column, decimal),
+            _ => 0,
+        };
+        let (first, cells) = (first + extra, &cells[extra..]);
+        let last = &lines[lines.len() - 1];
+        let row_bytes = (last.offset + last.text.len() + 1).saturating_sub(lines[first].offset);
         let above = header.as_ref().map_or(first, |header| header.line);
         Some(Self {
             delimiter,
@@ -113,20 +124,30 @@ impl Layout {
             header_line: header.as_ref().map_or(0, |header| header.line as u64 + 1),
             preamble_lines: above as u64,
             data_line: first as u64 + 1,
-            data_offset: rows[0].offset,
+            data_offset: lines[first].offset,
             is_decimal_seen: cells
                 .iter()
                 .flatten()
                 .any(|cell| cell.as_bytes().contains(&decimal) && is_number(cell, decimal)),
-            time_column: time_column::find(
-                &columns,
-                header.is_none() && is_first_rising(&cells, decimal),
-                decimal,
-                |column| cells.iter().filter_map(move |cells| cells.get(column).copied()),
-            ),
-            mean_row_bytes: (row_bytes / rows.len()).max(2),
+            time_column,
+            intervals_s: header::labview_intervals(&lines[..begin], delimiter),
+            mean_row_bytes: (row_bytes / cells.len()).max(2),
             columns,
         })
+    }
+
+    /// The column of times of a channel: where several have the header of times, the nearest on its left.
+    pub(super) fn time_of(&self, column: usize) -> Option<usize> {
+        let found = self.time_column.filter(|&found| found != column)?;
+        let is_alike =
+            |c: &usize| self.columns[*c].is_numeric && self.columns[*c].header == self.columns[found].header;
+        Some((0..column).rev().find(is_alike).unwrap_or(found))
+    }
+
+    /// The rate that LabVIEW states for a column above the rows, Hz.
+    pub(super) fn stated_rate_hz(&self, column: usize) -> Option<f64> {
+        let own = self.intervals_s.get(column).copied().flatten();
+        own.or_else(|| self.intervals_s.iter().copied().flatten().next()).map(f64::recip)
     }
 
     /// The columns whose header, or header without unit, is `wanted`.
@@ -245,7 +266,8 @@ fn judge(lines: &[Line], (delimiter, decimal): (u8, u8)) -> Option<Judged> {
     };
     let is_numeric: Vec<bool> = (0..columns).map(|c| 2 * values[c] > filled(c)).collect();
     let is_stamped = (0..columns).map(|c| 2 * stamps[c] > filled(c)).collect();
-    is_numeric.contains(&true).then_some(Judged { score, columns, is_numeric, is_stamped })
+    let is_empty = (0..columns).map(|c| rows.iter().all(|cells| cells[c].is_empty())).collect();
+    is_numeric.contains(&true).then_some(Judged { score, columns, is_numeric, is_stamped, is_empty })
 }
 
 /// Whether a line is a row: as many cells, numbers (or nothing) in the columns of numbers, and more numbers than not.
@@ -275,101 +297,21 @@ fn is_first_rising(rows: &[Vec<&str>], decimal: u8) -> bool {
     firsts.is_some_and(|firsts| firsts.len() > 1 && firsts.windows(2).all(|w| w[0] < w[1]))
 }
 
-struct Header {
-    /// Index of its line.
-    line: usize,
-    cells: Vec<String>,
-    units: Option<Vec<String>>,
-}
-
-/// The header above the rows, with the row of units where there is one.
-fn header(above: &[Line], delimiter: u8, judged: &Judged) -> Option<Header> {
-    // A delimiter may end the rows and not the header; a header short of a column of numbers would head the wrong ones.
-    let is_last_empty = judged.is_numeric.last() == Some(&false);
-    let fitting = |index: usize| {
-        let cells = header_cells(&above[index].text, delimiter);
-        (cells.len() == judged.columns || (is_last_empty && cells.len() + 1 == judged.columns))
-            .then_some(cells)
+/// How many rows of extremes stand before the samples: two or three whose times are, among others, those of the first row behind them
+/// and of the end, where all rows behind rise.
+fn extremes(rows: &[Vec<&str>], time_column: usize, decimal: u8) -> usize {
+    /// Rows that are looked at, and the least that tell.
+    const LOOKED_AT: usize = 64;
+    const LEAST: usize = 4;
+    let cell = |cells: &Vec<&str>| number::of_cell(cells.get(time_column)?.as_bytes(), decimal);
+    let times: Vec<f64> = rows.iter().take(LOOKED_AT).map_while(cell).collect();
+    #[allow(clippy::float_cmp, reason = "the same text gives the same number")]
+    let is_so = |count: &usize| {
+        let Some((head, rest)) = times.split_at_checked(*count) else { return false };
+        rest.len() >= LEAST
+            && rest.windows(2).all(|pair| pair[0] < pair[1])
+            && head.contains(&rest[0])
+            && head.iter().any(|&t| t >= rest[rest.len() - 1])
     };
-    let mut filled = (0..above.len()).rev().filter(|&i| !above[i].text.trim().is_empty());
-    let nearest = filled.next()?;
-    let cells = fitting(nearest)?;
-    let is_units = cells.iter().any(|cell| !cell.is_empty()) && cells.iter().all(|cell| is_unit(cell));
-    if is_units
-        && let Some(line) = filled.next()
-        && let Some(names) = fitting(line)
-        && names.iter().any(|name| !name.is_empty())
-    {
-        return Some(Header { line, cells: names, units: Some(cells) });
-    }
-    Some(Header { line: nearest, cells, units: None })
-}
-
-/// A header's cells by the rules of CSV (quotes, doubled quotes), without the mark of a comment.
-fn header_cells(line: &str, delimiter: u8) -> Vec<String> {
-    let line = line.trim_start_matches(['#', '%']).trim_start_matches(' ');
-    if delimiter == b' ' {
-        return line.split_ascii_whitespace().map(str::to_owned).collect();
-    }
-    let mut reader = ::csv::ReaderBuilder::new()
-        .delimiter(delimiter)
-        .has_headers(false)
-        .flexible(true)
-        .trim(::csv::Trim::All)
-        .from_reader(line.as_bytes());
-    let record = reader.records().next().and_then(Result::ok).unwrap_or_default();
-    record.iter().map(str::to_owned).collect()
-}
-
-fn is_unit(cell: &str) -> bool {
-    let bare = cell.trim_matches(['[', ']', '(', ')']).to_lowercase();
-    // "A1 [g]" is a name with its unit.
-    let is_bracketed = cell.starts_with(['[', '(']) && cell.ends_with([']', ')']);
-    // "hh:mm:ss.000".
-    let is_clock = bare.contains(':') && bare.bytes().all(|b| b"dmyhsf0:.,/- ".contains(&b));
-    cell.is_empty()
-        || is_bracketed
-        || is_clock
-        || time_unit::seconds(&bare).is_some()
-        || UNITS.contains(&bare.as_str())
-}
-
-fn columns(header: Option<&Header>, judged: &Judged, first_row: &[&str]) -> Vec<Column> {
-    (0..judged.columns)
-        .map(|index| {
-            let header_text = match header {
-                Some(header) => header.cells.get(index).cloned().unwrap_or_default(),
-                None => (index + 1).to_string(),
-            };
-            let (name, own_unit) = name_and_unit(&header_text);
-            let row_unit = header.and_then(|h| h.units.as_ref()).and_then(|units| units.get(index));
-            let row_unit = row_unit.map(|unit| unit.trim_matches(['[', ']', '(', ')']).to_owned());
-            Column {
-                name: name.to_owned(),
-                unit: row_unit.or_else(|| own_unit.map(str::to_owned)).filter(|unit| !unit.is_empty()),
-                header: header_text,
-                is_numeric: judged.is_numeric[index],
-                is_stamped: judged.is_stamped[index],
-                example: first_row.get(index).map_or("", |cell| cell).to_owned(),
-            }
-        })
-        .collect()
-}
-
-/// "A1 [g]", "A1 (g)" or "A1 / g" to "A1" and "g".
-fn name_and_unit(header: &str) -> (&str, Option<&str>) {
-    for (open, close) in [('[', ']'), ('(', ')')] {
-        if let Some(rest) = header.strip_suffix(close)
-            && let Some((name, unit)) = rest.rsplit_once(open)
-            && !name.trim().is_empty()
-        {
-            // "time[0]" counts the columns.
-            let is_index = unit.bytes().all(|b| b.is_ascii_digit());
-            return (name.trim(), (!is_index).then(|| unit.trim()));
-        }
-    }
-    match header.rsplit_once(" / ") {
-        Some((name, unit)) if is_unit(unit.trim()) => (name.trim(), Some(unit.trim())),
-        _ => (header, None),
-    }
+    [2, 3].into_iter().find(is_so).unwrap_or(0)
 }

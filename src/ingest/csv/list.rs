@@ -145,7 +145,9 @@ pub(in super::super) fn list(
         reading.apply(&mut seen.times);
         issues.extend(reading.issue(&layout.columns[column].header));
     }
-    let clock = Clock::of(&seen.times);
+    let stated_rate_hz = layout.stated_rate_hz(usize::MAX).filter(|_| time_column.is_none());
+    let clock =
+        stated_rate_hz.map_or_else(|| Clock::of(&seen.times), |rate_hz| Clock::at(rate_hz, seen.rows));
     let channels = layout
         .columns
         .iter()
@@ -181,6 +183,17 @@ struct Clock {
 }
 
 impl Clock {
+    /// Of rows that follow one another at a stated rate.
+    #[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
+    fn at(rate_hz: f64, rows: u64) -> Self {
+        Self {
+            sample_rate_hz: Some(rate_hz),
+            start_s: Some(0.0),
+            duration_s: Some(rows.saturating_sub(1) as f64 / rate_hz),
+            ..Self::default()
+        }
+    }
+
     fn of(times_s: &[f64]) -> Self {
         let repeated = times_s.windows(2).filter(|pair| pair[0] >= pair[1]).count();
         // The samples are not at hand: a few equal times are taken for rows that came twice, more for times that are coarse.
@@ -268,7 +281,7 @@ fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
     let time = layout
         .time_column
         .and_then(|index| layout.columns.get(index))
-        .map_or_else(|| "none found".to_owned(), |column| column.header.clone());
+        .map_or_else(|| none_found(layout), |column| column.header.clone());
     BTreeMap::from([
         ("delimiter".into(), delimiter.into()),
         ("decimal mark".into(), decimal.into()),
@@ -276,4 +289,9 @@ fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
         ("header".into(), header),
         ("time column".into(), time),
     ])
+}
+
+fn none_found(layout: &Layout) -> String {
+    let stated = layout.stated_rate_hz(usize::MAX).map(|rate_hz| format!("; Delta_X states {rate_hz} Hz"));
+    format!("none found{}", stated.unwrap_or_default())
 }

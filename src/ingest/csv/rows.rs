@@ -240,6 +240,7 @@ impl<'a> Table<'a> {
             _ => {}
         }
         self.values.fill(f64::NAN);
+        let from = at;
         let mut column = 0;
         'row: for slot in 0..self.wanted.columns.len() {
             while column < self.wanted.columns[slot] {
@@ -252,14 +253,18 @@ impl<'a> Table<'a> {
             }
             at = self.cell(text, at, slot, sink)?;
         }
-        self.finish(sink)?;
-        Ok(Some(skip(text, at, |b| b != b'\n') + 1))
+        let end = skip(text, at, |b| b != b'\n');
+        self.finish(text.get(from..end).unwrap_or_default(), sink)?;
+        Ok(Some(end + 1))
     }
 
-    /// Hands the row on; a row without any value is none.
-    fn finish(&self, sink: &mut impl Rows) -> Result<(), RowError> {
+    /// Hands the row of `line` on. A row without any value is none; where no times tell that it is missing, only if its line is empty too.
+    fn finish(&self, line: &[u8], sink: &mut impl Rows) -> Result<(), RowError> {
         if self.values.iter().all(|value| value.is_nan()) {
-            return Ok(());
+            let is_bare = |byte: &u8| *byte == self.delimiter || matches!(byte, b' ' | b'\t' | b'\r' | b'"');
+            if self.wanted.is_time.contains(&true) || line.iter().all(is_bare) {
+                return Ok(());
+            }
         }
         let no_time = |slot: &usize| self.wanted.is_time[*slot] && self.values[*slot].is_nan();
         if let Some(slot) = (0..self.values.len()).find(no_time) {

@@ -1,0 +1,133 @@
+//! Tables with delimiters at the end of some lines, headers of LabVIEW and DIAdem, and cells for what was not measured.
+
+use super::tests::{cask_file, read_bytes, told, values};
+use super::*;
+
+#[track_caller]
+fn read_as(text: &str, sources: &[&str]) -> RawRecording {
+    read_bytes(text.as_bytes(), &cask_file(sources))
+        .unwrap_or_else(|error| panic!("{text}\n{}", told(&error)))
+}
+
+/// Rows of `A1` 1.5, 2.5, … and `A2` -1, -2, … behind times of 0.1 s.
+const ROWS: &str = "0.0\t1.5\t-1\n0.1\t2.5\t-2\n0.2\t3.5\t-3\n0.3\t4.5\t-4\n0.4\t5.5\t-5\n";
+
+#[track_caller]
+fn holds_rows(text: &str) {
+    let recording = read_as(text, &["A1", "A2"]);
+    assert_eq!(values(&recording, 0), [1.5, 2.5, 3.5, 4.5, 5.5], "{text}");
+    assert_eq!(values(&recording, 1), [-1.0, -2.0, -3.0, -4.0, -5.0], "{text}");
+    assert!((recording.channels[0].uniform.sample_rate_hz - 10.0).abs() < 1e-9, "{text}");
+    assert!(recording.issues.is_empty(), "{text}: {:?}", recording.issues);
+}
+
+#[test]
+fn a_delimiter_at_the_end_of_header_or_rows_is_none_between_columns() {
+    for end in ["", "\t", "\t\t"] {
+        holds_rows(&format!("t\tA1\tA2{end}\n{ROWS}"));
+        holds_rows(&format!("t\tA1\tA2{end}\ns\tg\tg{end}\n{ROWS}"));
+        holds_rows(&format!("t\tA1\tA2\n{}", ROWS.replace('\n', &format!("{end}\n"))));
+        holds_rows(&format!("t\tA1\tA2\ns\tg\tg{end}\n{}", ROWS.replace('\n', &format!("{end}\n"))));
+    }
+}
+
+#[test]
+fn times_are_found_by_the_names_that_loggers_give_them() {
+    for name in [
+        "X-Achse [s]",
+        "Relative Zeit [s]",
+        "Abtastzeit [s]",
+        "Time axis",
+        "X_Value",
+        "Elapsed",
+        "X-Axis (s)",
+    ] {
+        holds_rows(&format!("{name}\tA1\tA2\n{ROWS}"));
+    }
+    // One axis of an accelerometer.
+    let axes = "X-Achse [m/s²]\tY-Achse [m/s²]\n1.5\t2\n2.5\t3\n";
+    let message = told(&read_bytes(axes.as_bytes(), &cask_file(&["Y-Achse"])).unwrap_err());
+    assert!(message.contains("no column of times"), "{message}");
+}
+
+#[test]
+fn rows_below_the_units_are_no_samples() {
+    for extra in [
+        "Minimum\t1.5\t-5\nMaximum\t5.5\t-1\n",
+        "Kommentar\t\t\n",
+        "0.0\t1.5\t-5\n0.4\t5.5\t-1\n",
+        "0.0\t1.5\t-5\n0.4\t5.5\t-1\n0.2\t3.5\t-3\n",
+        "min\t\t\nmax\t\t\nvon Hand gesetzt\t\t\n",
+    ] {
+        holds_rows(&format!("Zeit\tA1\tA2\ns\tg\tg\n{extra}{ROWS}"));
+    }
+    holds_rows(&format!("Lauf 7\nZeit [s]\tA1 [g]\tA2 [g]\nKommentar: von Hand\n{ROWS}"));
+    holds_rows(&format!("Zeit [s]\tA1 [g]\tA2 [g]\nMinimum:\t1.5\t-5\n{ROWS}"));
+    let units = format!("Zeit\tA1\tA2\ns\tg\tg\nMinimum\t1.5\t-5\n{ROWS}");
+    assert_eq!(read_as(&units, &["A1"]).channels[0].unit.as_deref(), Some("g"));
+}
+
+const LVM: &str = "LabVIEW Measurement\t\nWriter_Version\t2\nSeparator\tTab\nDecimal_Separator\t.\nMulti_Headings\tNo\n\
+    X_Columns\tOne\nTime_Pref\tRelative\nDate\t2026/11/20\nTime\t12:34:56.789\n***End_of_Header***\t\n\t\n\
+    Channels\t2\t\t\nSamples\t5\t5\t\nDate\t2026/11/20\t2026/11/20\t\nTime\t12:34:56.789\t12:34:56.789\t\n\
+    X_Dimension\tTime\tTime\t\nX0\t0.0000000000000000E+0\t0.0000000000000000E+0\t\nDelta_X\t0.100000\t0.100000\t\n\
+    ***End_of_Header***\t\t\t\n";
+
+#[test]
+fn measurement_files_of_labview_are_read_with_and_without_times() {
+    holds_rows(&format!("{LVM}X_Value\tA1\tA2\tComment\n{ROWS}"));
+    holds_rows(&format!("{LVM}X_Value\tA1\tA2\tComment\n{}", ROWS.replace('\n', "\t\n")));
+    let each = ROWS.lines().map(|row| {
+        let (time, cells) = row.split_once('\t').unwrap();
+        row.replace(cells, &cells.replace('\t', &format!("\t{time}\t"))) + "\n"
+    });
+    holds_rows(&format!("{LVM}X_Value\tA1\tX_Value\tA2\tComment\n{}", each.collect::<String>()));
+    let none: String = ROWS.lines().map(|row| format!("{}\n", &row[3..])).collect();
+    holds_rows(&format!("{LVM}X_Value\tA1\tA2\tComment\n{none}"));
+    for without in
+        [LVM.replace("Delta_X", "Other"), LVM.replace("Dimension\tTime\tTime", "Dimension\tForce\tForce")]
+    {
+        let text = format!("{without}X_Value\tA1\tA2\tComment\n{none}");
+        let message = told(&read_bytes(text.as_bytes(), &cask_file(&["A1"])).unwrap_err());
+        assert!(message.contains("no column of times") && message.contains("sample_rate_hz"), "{message}");
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("r.lvm");
+    std::fs::write(&path, format!("{LVM}X_Value\tA1\tA2\tComment\n{none}")).unwrap();
+    let listing = list(&path, Limits::default(), &|_| {}).unwrap();
+    let a1 = listing.channels.iter().find(|channel| channel.source == "A1").unwrap();
+    assert_eq!((a1.sample_rate_hz, a1.samples), (Some(10.0), Some(5)));
+    assert_eq!(listing.facts["time column"], "none found; Delta_X states 10 Hz");
+}
+
+#[test]
+fn a_channel_keeps_to_the_times_on_its_left() {
+    let text = "t\tA1\tt\tA2\n0.0\t1\t0.00\t5\n0.1\t2\t0.05\t6\n0.2\t3\t0.10\t7\n";
+    let recording = read_as(text, &["A1", "A2"]);
+    let rates_hz = [0, 1].map(|channel: usize| recording.channels[channel].uniform.sample_rate_hz);
+    assert!((rates_hz[0] - 10.0).abs() < 1e-9 && (rates_hz[1] - 20.0).abs() < 1e-9, "{rates_hz:?}");
+}
+
+#[test]
+fn a_cell_over_the_range_or_without_value_is_missing() {
+    for word in
+        ["#NV", "OVL", "OVLD", "-OVL", "∞", "-∞", "1.#QNAN", "1.#IND", "-1.#IND", "NoValue", "---", "NaN"]
+    {
+        let text = format!("t\tA1\tA2\n{}", ROWS.replace("3.5", word));
+        let recording = read_as(&text, &["A1", "A2"]);
+        assert!(values(&recording, 0)[2].is_nan() && values(&recording, 1)[2] == -3.0, "{word}");
+        assert_eq!(recording.channels[0].uniform.issues[0].code, IssueCode::NonFinite, "{word}");
+        // Without times the place of the others hangs on it.
+        let mut cask = cask_file(&["A1"]);
+        cask.channels[0].sample_rate_hz = Some(10.0);
+        for text in [format!("A1\n1.5\n{word}\n3.5\n4.5\n"), format!("n;A1\n1;1,5\n2;{word}\n3;3,5\n4;4,5\n")]
+        {
+            let recording = read_bytes(text.as_bytes(), &cask).unwrap();
+            assert_eq!((values(&recording, 0).len(), values(&recording, 0)[2]), (4, 3.5), "{text}");
+        }
+    }
+    let mut cask = cask_file(&["A1"]);
+    cask.channels[0].sample_rate_hz = Some(10.0);
+    let recording = read_bytes(b"A1;A2\n1;2\n;3\n3;4\n;\n;\n", &cask).unwrap();
+    assert_eq!(values(&recording, 0).len(), 3, "empty lines at the end are none");
+}
