@@ -52,11 +52,18 @@ impl<'a> Draft<'a> {
 
     /// The result where no impact was found.
     pub fn without_impact(mut self) -> Analysis {
+        let is_doubt = |i: &&Issue| i.code == IssueCode::TimeJitter && i.severity == Severity::Warning;
+        let doubt = self.issues.iter().find(is_doubt).map_or_else(String::new, |issue| {
+            let of = issue.channel.as_ref().map_or_else(String::new, |channel| format!(" of {channel}"));
+            format!(
+                "; the rate{of} is in doubt (time_jitter), and a rate too high makes every velocity too small by as much: clear that up first"
+            )
+        });
         self.issues.push(Issue::new(
             IssueCode::NoImpact,
             Severity::Error,
             format!(
-                "no impact was found: no transverse channel changes its velocity by {:.1} m/s within 25 ms; check source, unit and that the recording covers the drop",
+                "no impact was found: no transverse channel changes its velocity by {:.1} m/s within 25 ms; check source, unit and that the recording covers the drop{doubt}",
                 self.cask_file.drop.least_impact_m_s()
             ),
         ));

@@ -31,6 +31,19 @@ pub struct Uniform {
     pub issues: Vec<Issue>,
 }
 
+impl Uniform {
+    /// The same samples at a declared rate, which wins over that of the recorded times, with a warning.
+    ///
+    /// # Errors
+    /// [`TimeBaseError::Rate`] where it is no rate.
+    pub(super) fn at(mut self, declared_hz: f64) -> Result<Self, TimeBaseError> {
+        check_rate(declared_hz)?;
+        self.issues.push(rate_contradiction(declared_hz, self.sample_rate_hz));
+        self.sample_rate_hz = declared_hz;
+        Ok(self)
+    }
+}
+
 /// A contiguous run of samples with its own start and rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Block {

@@ -254,11 +254,16 @@ impl Column {
         }
         let derived_hz = match declared_rate_hz {
             Some(rate_hz) => Some(rate_hz),
-            None => derived_rate_hz(&self.blocks),
+            None => derived_rate_hz(&self.blocks).map(|derived| derived.rate_hz),
         };
+        // At a rate that is far off, steady stamps would leave a gap behind every block, or let each cover the next.
+        let own_hz = declared_rate_hz.and_then(|declared_hz| {
+            let is_far = |rate_hz: &f64| (declared_hz / rate_hz - 1.0).abs() > FAR;
+            derived_rate_hz(&self.blocks).filter(|own| own.is_steady).map(|own| own.rate_hz).filter(is_far)
+        });
         let mut blocks = Vec::with_capacity(self.blocks.len());
         for block in self.blocks {
-            let sample_rate_hz = match (declared_rate_hz, block.rate_hz) {
+            let sample_rate_hz = match (own_hz.or(declared_rate_hz), block.rate_hz) {
                 (Some(rate_hz), _) => rate_hz,
                 (None, Some(rate_hz)) if rate_hz.is_finite() && rate_hz > 0.0 => rate_hz,
                 (None, Some(rate_hz)) => return Err(ColumnError::StatedRate(rate_hz)),
@@ -267,7 +272,11 @@ impl Column {
             let start_s = seconds_from(block.time_ns, zero_ns);
             blocks.push(Block { start_s, sample_rate_hz, count: block.count });
         }
-        Ok(time_base::from_blocks(&blocks, self.samples)?)
+        let placed = time_base::from_blocks(&blocks, self.samples)?;
+        Ok(match (own_hz, declared_rate_hz) {
+            (Some(_), Some(declared_hz)) => placed.at(declared_hz)?,
+            _ => placed,
+        })
     }
 
     fn is_blocks(&self) -> Option<bool> {
@@ -275,8 +284,18 @@ impl Column {
     }
 }
 
+/// A declared rate further than this from that of the stamps is no correction of them: computers' clocks and doubled stamps stay below.
+const FAR: f64 = 0.1;
+
+/// What the stamps of blocks say.
+struct Derived {
+    rate_hz: f64,
+    /// Nine of ten intervals say the same to [`FAR`]: the stamps are those of the samples, not of a writer that hurries after them.
+    is_steady: bool,
+}
+
 /// Median over neighbouring blocks of length over time to the next, Hz: missing and doubled blocks are few.
-fn derived_rate_hz(blocks: &[RawBlock]) -> Option<f64> {
+fn derived_rate_hz(blocks: &[RawBlock]) -> Option<Derived> {
     let mut order: Vec<(i64, usize)> = blocks.iter().map(|block| (block.time_ns, block.count)).collect();
     order.sort_unstable();
     order.dedup_by_key(|(time_ns, _)| *time_ns);
@@ -290,7 +309,10 @@ fn derived_rate_hz(blocks: &[RawBlock]) -> Option<f64> {
         .collect();
     let middle = rates_hz.len() / 2;
     rates_hz.sort_unstable_by(f64::total_cmp);
-    rates_hz.get(middle).copied()
+    let rate_hz = rates_hz.get(middle).copied()?;
+    let alike = rates_hz.iter().filter(|other_hz| (*other_hz / rate_hz - 1.0).abs() < FAR).count();
+    // Fewer intervals than four agree by chance.
+    Some(Derived { rate_hz, is_steady: rates_hz.len() >= 4 && 10 * alike >= 9 * rates_hz.len() })
 }
 
 /// Seconds from `zero_ns` to `time_ns`, subtracted as integers: absolute times lose a microsecond as f64.

@@ -26,6 +26,36 @@ fn a_rate_comes_from_the_cask_file_else_the_message_else_the_stamps() {
 }
 
 #[test]
+fn a_rate_that_contradicts_the_stamps_by_far_tears_no_blocks_apart() {
+    let column = |nanoseconds: &dyn Fn(i64) -> i64| {
+        let mut column = Column::default();
+        for i in 0..10_i32 {
+            let first = f64::from(2 * i);
+            column.take(
+                block(&[first, first + 1.0]),
+                (nanoseconds(i.into()), TimeOrigin::Stamp),
+                Some(1000.0),
+            );
+        }
+        column
+    };
+    for declared_hz in [100.0, 10_000.0] {
+        let uniform = column(&|i| 2_000_000 * i).uniform(0, Some(declared_hz)).unwrap();
+        assert_eq!((uniform.samples.len(), uniform.gaps.len()), (20, 0), "{declared_hz}");
+        assert!((uniform.sample_rate_hz - declared_hz).abs() < 1e-9);
+        let message = &uniform.issues[0].message;
+        assert!(
+            message.contains("1000.000000 Hz") && message.contains("declared and was taken"),
+            "{message}"
+        );
+    }
+    // Stamps of a writer that hurries after the samples say nothing of their rate.
+    let hurried = column(&|i| if i % 2 == 0 { 40_000_000 * i } else { 40_000_000 * (i - 1) + 1000 });
+    let uniform = hurried.uniform(0, Some(50.0)).unwrap();
+    assert!(uniform.issues.iter().all(|issue| !issue.message.contains("declared")), "{:?}", uniform.issues);
+}
+
+#[test]
 fn one_block_without_a_rate_is_an_error() {
     let mut column = Column::default();
     column.take(block(&[1.0, 2.0]), (5, TimeOrigin::LogTime), None);
