@@ -239,9 +239,10 @@ fn listed(column: &Column, range: &Range, clock: &Clock, rows: u64) -> ListedCha
         Some("date-time stamps or clock times".to_owned())
     } else if let Some(word) = &range.word {
         let count = if is_empty { "its".to_owned() } else { format!("{} of {rows}", range.words) };
-        let reason = match number::is_grouped(word) {
-            true => ": the thousands are marked too, and only a decimal mark is read",
-            false => "",
+        let reason = if number::is_grouped(word) {
+            ": the thousands are marked too, and only a decimal mark is read"
+        } else {
+            ""
         };
         Some(format!("{count} cells are no numbers, such as {word:?}{reason}"))
     } else if is_empty {
