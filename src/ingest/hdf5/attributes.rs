@@ -112,7 +112,11 @@ impl Attributes {
 
 /// Seconds per unit of a column of times, and its offset in s, from its own attributes and name alone.
 pub(super) fn time_scale(column: &Column) -> Result<(f64, f64), Fault> {
-    let own = Attributes::own(&column.dataset, column);
+    // Those of records are for the samples in them.
+    let own = match column.records() {
+        Some(_) => Attributes::default(),
+        None => Attributes::own(&column.dataset, column),
+    };
     let unit_s = match own.unit.as_deref().map(str::trim) {
         None | Some("") => time_name::split(column.bare_name()).1.and_then(time_unit::seconds).unwrap_or(1.0),
         Some(unit) => time_unit::seconds(unit).ok_or_else(|| Fault {

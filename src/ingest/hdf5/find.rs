@@ -183,18 +183,16 @@ const NUMBERS: &str = "name a dataset of numbers; `dropcheck inspect` lists them
 /// How the numbers of a dataset are read; a fault where it holds none.
 fn kind_of(dtype: &Datatype, name: &str) -> Result<Kind, Fault> {
     let is_records = matches!(dtype.to_descriptor(), Ok(TypeDescriptor::Compound(_)));
-    kind(dtype).ok_or_else(|| match is_records {
-        true => Fault {
-            problem: format!(
-                "{name} holds {}: none of numbers, or beside others of varying length or other byte order",
-                type_name(dtype)
-            ),
-            mend: "save each field of numbers as a dataset of its own".into(),
-        },
-        false => Fault {
-            problem: format!("{name} holds no numbers but {}", type_name(dtype)),
-            mend: NUMBERS.into(),
-        },
+    kind(dtype).ok_or_else(|| {
+        let what = type_name(dtype);
+        if is_records {
+            Fault {
+                problem: format!("{name} holds {what}: none of numbers, or beside others of varying length or other byte order"),
+                mend: "save each field of numbers as a dataset of its own".into(),
+            }
+        } else {
+            Fault { problem: format!("{name} holds no numbers but {what}"), mend: NUMBERS.into() }
+        }
     })
 }
 
