@@ -1,6 +1,6 @@
 //! What a recording holds to the sources that look like accelerations in the plane of the drop.
 
-use crate::data::{ListedChannel, Listing, acceleration_unit_m_s2};
+use crate::data::{ListedChannel, Listing, RecordingFormat, acceleration_unit_m_s2};
 
 /// Units of a sensor's output that the cask file knows.
 pub(super) const VOLTAGES: [&str; 2] = ["V", "mV"];
@@ -22,6 +22,16 @@ const OTHER_WORDS: [&str; 14] = [
     "frame_id",
     "index",
 ];
+
+/// A recording of which no form could ever be filled in.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+#[error("{recording}: {problem}")]
+#[diagnostic(help("{mend}"))]
+pub struct NoChannels {
+    recording: String,
+    problem: String,
+    mend: String,
+}
 
 /// The sources that look like accelerations and can be read: by unit or name where any does, else all that are numbers; none where
 /// those that do look so cannot be read.
@@ -57,6 +67,41 @@ pub(super) fn unreadable(listing: &Listing) -> Vec<&ListedChannel> {
 /// A source and why it cannot be read.
 pub(super) fn reason(listed: &ListedChannel) -> String {
     format!("{}: {}", listed.source, listed.unreadable.as_deref().unwrap_or("it cannot be read"))
+}
+
+/// What is there instead, and what makes it a recording that can be analysed.
+pub(super) fn none(listing: &Listing) -> NoChannels {
+    /// More than this many reasons no longer fit a terminal's few lines.
+    const HANDFUL: usize = 4;
+    let unreadable = unreadable(listing);
+    let reasons: Vec<String> = unreadable.iter().take(HANDFUL).map(|listed| reason(listed)).collect();
+    let more = match unreadable.len().saturating_sub(HANDFUL) {
+        0 => String::new(),
+        more => format!("; and {more} more"),
+    };
+    let problem = if listing.channels.is_empty() {
+        "it holds nothing that could be read as samples".to_owned()
+    } else if reasons.is_empty() {
+        let names: Vec<&str> = listing.channels.iter().take(HANDFUL).map(|c| c.source.as_str()).collect();
+        format!("nothing in it looks like an acceleration: it holds {}", names.join(", "))
+    } else {
+        format!("no acceleration in it can be read: {}{more}", reasons.join("; "))
+    };
+    let mend = match listing.format {
+        _ if reasons.is_empty() => {
+            "check that this is the recording of the accelerometers; if it is, write the [[channel]] tables by hand, each with its source"
+        }
+        RecordingFormat::Csv => {
+            "in a copy, make every cell of these columns a number with one decimal mark and no thousands separators, or empty it: an empty cell counts as missing"
+        }
+        RecordingFormat::Hdf5 => "save each channel as a dataset of numbers, one value a sample",
+        RecordingFormat::Mcap => "have the recorder write the samples as numbers or arrays of numbers",
+    };
+    NoChannels {
+        recording: listing.recording.clone(),
+        problem,
+        mend: format!("{mend}; `dropcheck inspect {}` lists all that is in it", listing.recording),
+    }
 }
 
 /// Sources that are not called something else.

@@ -30,6 +30,7 @@ mod trial;
 
 pub use campaign::{Campaign, CampaignRow};
 pub use json::{listing as listing_json, result as result_json};
+pub use likely::NoChannels;
 pub use listing::table as listing_table;
 pub use prediction::{
     csv as prediction_csv, json as prediction_json, study_file_names, study_files, study_json, study_table,
@@ -37,7 +38,7 @@ pub use prediction::{
 };
 pub use synthetic::{SyntheticError, SyntheticFormat, synthetic_files, synthetic_names};
 pub use table::table;
-pub use template::{NoChannels, cask_file as cask_file_template};
+pub use template::cask_file as cask_file_template;
 pub use text::printable;
 pub use trial::{TRIAL_NAMES, trial_files, trial_markdown};
 

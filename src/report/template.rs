@@ -1,22 +1,12 @@
 //! What a recording holds to a commented cask file to fill in.
 
-use super::likely::{self, VOLTAGES, is_time, names_end};
+use super::likely::{self, NoChannels, VOLTAGES, is_time, names_end};
 use super::text::{line, printable};
-use crate::data::{ListedChannel, Listing, RecordingFormat, Severity, acceleration_unit_m_s2};
+use crate::data::{ListedChannel, Listing, Severity, acceleration_unit_m_s2};
 use std::fmt::Write;
 
 /// The mark behind every value that only the user knows.
 const FILL_IN: &str = "FILL IN";
-
-/// A recording of which no form could ever be filled in.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-#[error("{recording}: {problem}")]
-#[diagnostic(help("{mend}"))]
-pub struct NoChannels {
-    recording: String,
-    problem: String,
-    mend: String,
-}
 
 /// The cask file, valid TOML; what only the user knows is marked, its numbers NaN: a likely one, forgotten, would pass for a measured one.
 ///
@@ -25,7 +15,7 @@ pub struct NoChannels {
 pub fn cask_file(listing: &Listing) -> Result<String, NoChannels> {
     let taken = likely::accelerations(listing);
     if taken.is_empty() {
-        return Err(no_channels(listing));
+        return Err(likely::none(listing));
     }
     let mut out = head(listing);
     for issue in listing.issues.iter().filter(|issue| issue.severity != Severity::Note) {
@@ -55,41 +45,6 @@ pub fn cask_file(listing: &Listing) -> Result<String, NoChannels> {
         }
     }
     Ok(out)
-}
-
-/// What is there instead, and what makes it a recording that can be analysed.
-fn no_channels(listing: &Listing) -> NoChannels {
-    /// More than this many reasons no longer fit a terminal's few lines.
-    const HANDFUL: usize = 4;
-    let unreadable = likely::unreadable(listing);
-    let reasons: Vec<String> = unreadable.iter().take(HANDFUL).map(|listed| likely::reason(listed)).collect();
-    let more = match unreadable.len().saturating_sub(HANDFUL) {
-        0 => String::new(),
-        more => format!("; and {more} more"),
-    };
-    let problem = if listing.channels.is_empty() {
-        "it holds nothing that could be read as samples".to_owned()
-    } else if reasons.is_empty() {
-        let names: Vec<&str> = listing.channels.iter().take(HANDFUL).map(|c| c.source.as_str()).collect();
-        format!("nothing in it looks like an acceleration: it holds {}", names.join(", "))
-    } else {
-        format!("no acceleration in it can be read: {}{more}", reasons.join("; "))
-    };
-    let mend = match listing.format {
-        _ if reasons.is_empty() => {
-            "check that this is the recording of the accelerometers; if it is, write the [[channel]] tables by hand, each with its source"
-        }
-        RecordingFormat::Csv => {
-            "in a copy, make every cell of these columns a number with one decimal mark and no thousands separators, or empty it: an empty cell counts as missing"
-        }
-        RecordingFormat::Hdf5 => "save each channel as a dataset of numbers, one value a sample",
-        RecordingFormat::Mcap => "have the recorder write the samples as numbers or arrays of numbers",
-    };
-    NoChannels {
-        recording: listing.recording.clone(),
-        problem,
-        mend: format!("{mend}; `dropcheck inspect {}` lists all that is in it", listing.recording),
-    }
 }
 
 fn head(listing: &Listing) -> String {
@@ -388,7 +343,8 @@ mod tests {
         ] {
             let refusal = cask_file(&listing(channels)).unwrap_err();
             assert!(refusal.to_string().contains(expected), "{refusal}");
-            assert!(refusal.mend.contains("dropcheck inspect"), "{}", refusal.mend);
+            let mend = miette::Diagnostic::help(&refusal).unwrap().to_string();
+            assert!(mend.contains("dropcheck inspect"), "{mend}");
         }
     }
 
