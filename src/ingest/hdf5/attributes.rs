@@ -72,7 +72,7 @@ impl Attributes {
 
     /// What is done to the stored numbers, for people; empty where nothing is.
     pub(super) fn scaling(&self) -> String {
-        let (scale, offset) = (self.scale.map(|s| format!(" × {s}")), self.offset.map(|o| format!(" + {o}")));
+        let (scale, offset) = (self.scale.map(|s| format!(" × {s}")), self.offset.map(|o| format!(" {o:+}")));
         match (scale, offset) {
             (None, None) => String::new(),
             (scale, offset) => {

@@ -82,7 +82,7 @@ fn scaled_integers_are_in_the_unit_that_is_stated() {
     let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
     assert_eq!(listing.channels[0].range, Some((0.0, 151.0)));
     assert!(
-        listing.channels[0].encoding.ends_with("value = stored × 0.5 + 1"),
+        listing.channels[0].encoding.ends_with("value = stored × 0.5 +1"),
         "{}",
         listing.channels[0].encoding
     );
