@@ -254,6 +254,9 @@ fn judge(lines: &[Line], (delimiter, decimal): (u8, u8)) -> Option<Judged> {
             } else if number::is_grouped(cell) {
                 // A number too, though it is not read: other delimiters would cut it to pieces that are.
                 score += 1;
+            } else if is_number(cell, if decimal == b',' { b'.' } else { b',' }) {
+                // Of the other dialect.
+                score -= 2;
             } else if !number::is_missing(cell.as_bytes()) {
                 words[column] += 1;
             }

@@ -132,3 +132,10 @@ fn a_cell_over_the_range_or_without_value_is_missing() {
     let recording = read_bytes(b"A1;A2\n1;2\n;3\n3;4\n;\n;\n", &cask).unwrap();
     assert_eq!(values(&recording, 0).len(), 3, "empty lines at the end are none");
 }
+
+#[test]
+fn thousands_in_quotes_are_no_decimal_fractions() {
+    let rows = "0.000,\"1,683\",5\n0.001,12,6\n0.002,\"-1,200\",7\n0.003,\"-1,416\",8\n";
+    let message = told(&read_bytes(format!("t,A1,A2\n{rows}").as_bytes(), &cask_file(&["A1"])).unwrap_err());
+    assert!(message.contains("line 2") && message.contains("1,683") && message.contains("'.'"), "{message}");
+}
