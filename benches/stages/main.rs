@@ -118,20 +118,27 @@ fn low_pass(bencher: Bencher, samples: usize) {
 }
 
 #[divan::bench(args = SIZES)]
+fn integrate(bencher: Bencher, samples: usize) {
+    let m = Middle::new(samples);
+    bencher.counter(m.conditioned()).bench(|| m.integrated());
+}
+
+#[divan::bench(args = SIZES)]
 fn flight_fit(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
+    let integrated = m.integrated();
     bencher
         .counter(m.conditioned())
-        .bench(|| motion::fit_flight(&m.integrated(), &m.window(), None, m.cask_file.cask.cog_m));
+        .bench(|| motion::fit_flight(&integrated, &m.window(), None, m.cask_file.cask.cog_m));
 }
 
 #[divan::bench(args = SIZES)]
 fn reconstruct(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
-    bencher.counter(m.conditioned()).bench(|| {
-        let integrated = m.integrated();
-        motion::reconstruct(&integrated, &m.flight, &m.events, &m.setup).expect("a motion")
-    });
+    let integrated = m.integrated();
+    bencher
+        .counter(m.conditioned())
+        .bench(|| motion::reconstruct(&integrated, &m.flight, &m.events, &m.setup).expect("a motion"));
 }
 
 #[divan::bench(args = SIZES)]
@@ -150,8 +157,8 @@ fn quantities(bencher: Bencher, samples: usize) {
         fall_s: None,
         stood_in: None,
     };
+    let integrated = m.integrated();
     bencher.counter(m.conditioned()).bench(|| {
-        let integrated = m.integrated();
         let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
         fit::ladder(&measured, None, None, &moved).expect("quantities")
     });
