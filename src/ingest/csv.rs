@@ -259,7 +259,15 @@ fn columns(
     let mut keep = Keep { wanted, columns: Columns(columns), stamps: Stamps::default() };
     let ending = rows::read(input, layout, wanted, &mut keep, (limits, progress))
         .map_err(|error| row_error(path, limits, (layout, wanted), error))?;
-    let Keep { columns: Columns(columns), stamps, .. } = keep;
+    let Keep { columns: Columns(mut columns), stamps, .. } = keep;
+    if !wanted.is_time.contains(&true) {
+        // Blank lines behind the table are no samples.
+        let is_row = |row: &usize| columns.iter().any(|column| !column[*row].is_nan());
+        let rows = (0..columns.first().map_or(0, Vec::len)).rev().find(is_row).map_or(0, |last| last + 1);
+        for column in &mut columns {
+            column.truncate(rows);
+        }
+    }
     Ok((columns, stamps, ending))
 }
 

@@ -48,6 +48,8 @@ pub(super) struct Layout {
     intervals_s: Vec<Option<f64>>,
     is_decimal_seen: bool,
     mean_row_bytes: usize,
+    /// Whether blank lines stand between the rows, as doubled line breaks leave them.
+    pub is_spaced: bool,
 }
 
 /// Delimiter and decimal mark, likeliest first where a file fits several.
@@ -132,6 +134,9 @@ impl Layout {
             time_column,
             intervals_s: header::labview_intervals(&lines[..begin], delimiter),
             mean_row_bytes: (row_bytes / cells.len()).max(2),
+            // Rows that lost their values are fewer.
+            is_spaced: lines[first..].iter().filter(|line| line.text.trim().is_empty()).count() * 3
+                > lines.len() - first,
             columns,
         })
     }

@@ -139,3 +139,19 @@ fn thousands_in_quotes_are_no_decimal_fractions() {
     let message = told(&read_bytes(format!("t,A1,A2\n{rows}").as_bytes(), &cask_file(&["A1"])).unwrap_err());
     assert!(message.contains("line 2") && message.contains("1,683") && message.contains("'.'"), "{message}");
 }
+
+#[test]
+fn a_line_without_values_keeps_its_place_where_no_times_tell() {
+    let mut cask = cask_file(&["A1"]);
+    cask.channels[0].sample_rate_hz = Some(10.0);
+    for empty in [",", "\"\",\"\"", "", " , ", "\r"] {
+        let rows = format!("A1,A2\n1,2\n3,4\n5,6\n7,8\n{empty}\n9,10\n11,12\n\n\n");
+        let read = read_bytes(rows.as_bytes(), &cask).unwrap();
+        let samples = &read.channels[0].uniform.samples;
+        assert_eq!(samples.len(), 7, "{empty:?}");
+        assert!(samples.get(4).is_nan() && (samples.get(6) - 11.0).abs() < 1e-12, "{empty:?}");
+    }
+    // Doubled line breaks are none.
+    let read = read_bytes(b"A1,A2\n\n1,2\n\n3,4\n\n5,6\n\n7,8\n\n", &cask).unwrap();
+    assert_eq!(read.channels[0].uniform.samples.len(), 4);
+}

@@ -166,6 +166,8 @@ struct Table<'a> {
     other_decimal: Option<u8>,
     is_runs: bool,
     wanted: &'a Wanted,
+    /// Whether a line without any value is a sample that is missing: no times tell that it is.
+    keeps_empty: bool,
     values: Vec<f64>,
     line: u64,
 }
@@ -179,6 +181,7 @@ impl<'a> Table<'a> {
             other_decimal: layout.other_decimal(),
             is_runs: layout.delimiter == b' ',
             wanted,
+            keeps_empty: !layout.is_spaced && !wanted.is_time.contains(&true),
             values: vec![f64::NAN; wanted.columns.len()],
             line,
         }
@@ -236,7 +239,7 @@ impl<'a> Table<'a> {
         }
         match text.get(at) {
             Some(0) => return Ok(None),
-            Some(b'\n') => return Ok(Some(at + 1)),
+            Some(b'\n') if !self.keeps_empty => return Ok(Some(at + 1)),
             _ => {}
         }
         self.values.fill(f64::NAN);
@@ -258,9 +261,9 @@ impl<'a> Table<'a> {
         Ok(Some(end + 1))
     }
 
-    /// Hands the row of `line` on. A row without any value is none; where no times tell that it is missing, only if its line is empty too.
+    /// Hands the row of `line` on. A row without any value is none where times tell that it is missing, or between doubled line breaks.
     fn finish(&self, line: &[u8], sink: &mut impl Rows) -> Result<(), RowError> {
-        if self.values.iter().all(|value| value.is_nan()) {
+        if !self.keeps_empty && self.values.iter().all(|value| value.is_nan()) {
             let is_bare = |byte: &u8| *byte == self.delimiter || matches!(byte, b' ' | b'\t' | b'\r' | b'"');
             if self.wanted.is_time.contains(&true) || line.iter().all(is_bare) {
                 return Ok(());
