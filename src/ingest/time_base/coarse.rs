@@ -148,15 +148,17 @@ fn declared(
     {
         return rate_contradiction(rate_hz, 1.0 / steps.period_s);
     }
-    let points = times_s.iter().enumerate().map(|(i, t)| (as_f64(i), t - times_s[0]));
-    let width_s = range(points, 1.0 / rate_hz).1;
-    // Samples within a step lie up to a step off; half of one more is a sample lost or another rate.
-    let is_off = !changes.is_empty() && width_s > UNEVEN_STEPS * step_s;
+    let points = changes.iter().map(|&i| (as_f64(i), times_s[i] - times_s[0]));
+    let width_s = if changes.is_empty() { 0.0 } else { range(points, 1.0 / rate_hz).1 };
+    // Each change lies within one interval of its sample, and the rate may be off by its tolerance; more is samples lost or another rate.
+    let length_s = times_s[times_s.len() - 1] - times_s[0];
+    let is_uneven = changes.len() >= LEAST_CHANGES && !Steps::of(times_s, changes).is_even;
+    let is_off = is_uneven || width_s > (1.0 + ROUND_OFF) / rate_hz + RATE_TOLERANCE * length_s;
     let what = if changes.is_empty() {
         "all times are equal".to_owned()
     } else if is_off {
         format!(
-            "the times are cut to {} s and run up to {} s off the declared {} Hz: samples are missing, or the rate is another",
+            "the times are cut to {} s and change up to {} s off even steps at the declared {} Hz: samples are missing, or the rate is another",
             nice(step_s, 3),
             nice(width_s, 2),
             nice(rate_hz, 6)
@@ -341,6 +343,13 @@ mod tests {
         assert!(matches!(placed(&lost, None), Err(TimeBaseError::TooCoarse { .. })));
         let stated = placed(&lost, Some(20_000.0)).unwrap();
         assert_eq!(only(&stated).0, Severity::Warning, "{}", only(&stated).1);
+        // Few samples of a step of 1000, and too few steps to tell a rate: what is declared cannot explain them either.
+        for (step_s, count, lost_from) in [(0.05, 9000, 3000), (0.1, 7000, 4500)] {
+            let mut lost = cut(20_000.0, step_s, 0.013, count);
+            lost.drain(lost_from..lost_from + 40);
+            let stated = placed(&lost, Some(20_000.0)).unwrap();
+            assert_eq!(only(&stated).0, Severity::Warning, "{step_s}: {}", only(&stated).1);
+        }
         // Blocks of 1000 samples that a computer stamps as they come, 3 ms early or late.
         let blocks: Vec<f64> =
             (0..20_000).map(|i| as_f64(i / 1000) * 0.05 + 0.003 * (as_f64(i / 1000) * 2.3).sin()).collect();
