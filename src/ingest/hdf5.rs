@@ -106,12 +106,18 @@ fn read_channel(
     let column = locate(room, file, spec, source)?;
     room.take(&column)?;
     let attributes = Attributes::of(file, &column);
+    if let Some(problem) = &attributes.unclear {
+        let mend =
+            "correct the attribute in a copy, or write the channel with its scale as a dataset of numbers";
+        return Err(wrong(format!("{}: {problem}", column.source()), mend.into()));
+    }
     let samples = column.samples().map_err(|fault| wrong(fault.problem, fault.mend))?;
     let samples = attributes.scaled(samples);
     let time = time_column(room, file, spec, cask_file.time.as_deref(), &column)?;
     time.iter().try_for_each(|time| room.take(time))?;
-    let uniform = on_base(samples, time.as_ref(), spec, &attributes)
+    let mut uniform = on_base(samples, time.as_ref(), spec, &attributes)
         .map_err(|fault| wrong(format!("{}: {}", column.source(), fault.problem), fault.mend))?;
+    uniform.issues.extend(attributes.other_rate(uniform.sample_rate_hz));
     Ok(RawChannel { spec: index, uniform, unit: attributes.unit })
 }
 

@@ -168,7 +168,7 @@ pub enum TimeBaseError {
 const STEADY_PART: f64 = 0.02;
 
 /// A declared rate further than this from the times' own is worth a warning: oscillators keep 1e-4.
-const RATE_TOLERANCE: f64 = 1e-3;
+pub(super) const RATE_TOLERANCE: f64 = 1e-3;
 
 /// A sample type that a base can hold.
 pub(super) trait Number: Copy {

@@ -4,7 +4,8 @@ use super::super::{time_name, time_unit};
 use super::dataset::Column;
 use super::fault::Fault;
 use super::rate;
-use crate::data::Samples;
+use crate::data::{Issue, IssueCode, Samples, Severity};
+use crate::ingest::time_base::RATE_TOLERANCE;
 use hdf5_metno::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenUnicode};
 use hdf5_metno::{Attribute, File, Location};
 
@@ -17,6 +18,8 @@ pub(super) struct Attributes {
     pub start_s: Option<f64>,
     pub scale: Option<f64>,
     pub offset: Option<f64>,
+    /// What a scale or offset says that is no number.
+    pub unclear: Option<String>,
 }
 
 const UNIT_NAMES: [&str; 2] = ["unit", "units"];
@@ -59,6 +62,7 @@ impl Attributes {
             start_s: number("start_time_s"),
             scale: SCALE_NAMES.iter().find_map(|name| number(name)),
             offset: OFFSET_NAMES.iter().find_map(|name| number(name)),
+            unclear: SCALE_NAMES.iter().chain(&OFFSET_NAMES).find_map(|name| unclear(place, name, column)),
         }
     }
 
@@ -68,6 +72,18 @@ impl Attributes {
         self.start_s = self.start_s.or(other.start_s);
         self.scale = self.scale.or(other.scale);
         self.offset = self.offset.or(other.offset);
+        self.unclear = self.unclear.take().or(other.unclear);
+    }
+
+    /// A warning where the recording states another rate than the one that was taken.
+    pub(super) fn other_rate(&self, taken_hz: f64) -> Option<Issue> {
+        let stated_hz = self.sample_rate_hz()?;
+        ((stated_hz / taken_hz - 1.0).abs() > RATE_TOLERANCE).then(|| {
+            let message = format!(
+                "an attribute of the recording states {stated_hz} Hz, the samples were taken at {taken_hz:.6} Hz by the times or by sample_rate_hz of the cask file: one of the two is wrong, and every velocity goes with the rate"
+            );
+            Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+        })
     }
 
     /// What is done to the stored numbers, for people; empty where nothing is.
@@ -165,6 +181,27 @@ fn number(place: &Location, name: &str, column: &Column) -> Option<f64> {
         Value::Text(text) => text.trim().parse().ok(),
     }
     .filter(|value: &f64| value.is_finite())
+}
+
+/// What a scale or an offset says where it is no number. Names that are not of the CF conventions may hold words ("linear").
+fn unclear(place: &Location, name: &str, column: &Column) -> Option<String> {
+    attribute(place, name)?;
+    let says = match value(place, name, column) {
+        Some(Value::Number(number)) if number.is_finite() => return None,
+        Some(Value::Number(number)) => number.to_string(),
+        Some(Value::Text(text)) if text.trim().parse::<f64>().is_ok_and(f64::is_finite) => return None,
+        Some(Value::Text(text)) => {
+            let is_word = !text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+            if is_word && !name.contains('_') {
+                return None;
+            }
+            format!("{text:?}")
+        }
+        None => format!("of another length than the {} channels", column.columns),
+    };
+    Some(format!(
+        "the attribute {name}, by which its numbers are to be scaled, is {says}, which is no number"
+    ))
 }
 
 fn text(place: &Location, name: &str, column: &Column) -> Option<String> {

@@ -88,6 +88,26 @@ fn scaled_integers_are_in_the_unit_that_is_stated() {
     );
 }
 
+#[test]
+fn a_scale_that_is_no_number_and_a_rate_that_is_another_are_told() {
+    let made = made(|file| {
+        for (name, scale) in [("comma", "1,05"), ("unit", "1.05 g"), ("word", "linear")] {
+            let data = file.new_dataset_builder().with_data(&[1.0_f32, 2.0, 3.0]).create(name)?;
+            number(&data, "fs", 100.0)?;
+            text(&data, if name == "word" { "scale" } else { "scale_factor" }, scale)?;
+        }
+        let data = file.new_dataset_builder().with_data(&[1.0_f32, 2.0, 3.0]).create("rates")?;
+        number(&data, "fs", 102.0)?;
+        file.new_dataset_builder().with_data(&[0.0, 0.01, 0.02]).create("time").map(|_| ())
+    });
+    for (source, says) in [("/comma", "scale_factor"), ("/unit", "\"1.05 g\"")] {
+        assert!(told(&made, source).contains(says), "{}", told(&made, source));
+    }
+    assert_eq!(values(&channels(&made, &["/word"])[0]), vec![1.0, 2.0, 3.0]);
+    let issues = &channels(&made, &["/rates"])[0].uniform.issues;
+    assert!(issues.iter().any(|issue| issue.message.contains("states 102 Hz")), "{issues:?}");
+}
+
 /// A record as tables of a logger hold them: time, two sensors, a list, what is no number.
 #[derive(H5Type, Clone)]
 #[repr(C)]

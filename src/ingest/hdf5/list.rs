@@ -233,8 +233,8 @@ fn survey(
         let duration_s = channel.sample_rate_hz.map(|rate_hz| intervals as f64 / rate_hz);
         channel.duration_s = duration_s;
         channel.start_s = attributes.start_s.or(duration_s.map(|_| 0.0));
-        let no_rate = attributes.rate.clone().and_then(Result::err);
-        return Ok(no_rate.map(no_base).into_iter().collect());
+        let unclear = attributes.unclear.clone().or(attributes.rate.clone().and_then(Result::err));
+        return Ok(unclear.map(no_base).into_iter().collect());
     };
     if !effort.pays_for(&time) {
         return Ok(Vec::new());
