@@ -95,6 +95,8 @@ proptest! {
     #[test]
     fn lines_taken_whole_give_what_their_cells_give(lines in prop::collection::vec(line(), 0..100)) {
         let layout = layout(".0");
+        // A blank more may make a line too long.
+        let lines: Vec<String> = lines.into_iter().filter(|line| line.len() + 1 < LINE_BYTES).collect();
         // A blank before its first number has a line read cell by cell.
         let blank = |line: &str| if line.starts_with(|c: char| c.is_ascii_digit()) { " " } else { "" };
         let by_cells: String = lines.iter().flat_map(|line| [blank(line), line]).collect();
