@@ -2,7 +2,7 @@
 
 use super::numbers::{append, push};
 use super::plan::Value;
-use crate::data::Samples;
+use crate::data::{Issue, IssueCode, Samples, Severity};
 use crate::ingest::time_base::{self, Block, TimeBaseError, Uniform};
 
 /// Where a message's time comes from.
@@ -261,6 +261,8 @@ impl Column {
             let is_far = |rate_hz: &f64| (declared_hz / rate_hz - 1.0).abs() > FAR;
             derived_rate_hz(&self.blocks).filter(|own| own.is_steady).map(|own| own.rate_hz).filter(is_far)
         });
+        let few_hz =
+            derived_rate_hz(&self.blocks).filter(|own| own.intervals < ENOUGH).map(|own| own.rate_hz);
         let mut blocks = Vec::with_capacity(self.blocks.len());
         for block in self.blocks {
             let sample_rate_hz = match (own_hz.or(declared_rate_hz), block.rate_hz) {
@@ -272,7 +274,9 @@ impl Column {
             let start_s = seconds_from(block.time_ns, zero_ns);
             blocks.push(Block { start_s, sample_rate_hz, count: block.count });
         }
-        let placed = time_base::from_blocks(&blocks, self.samples)?;
+        let mut placed = time_base::from_blocks(&blocks, self.samples)?;
+        // Between many blocks a rate shows in every one; between few it looks like samples that are missing.
+        placed.issues.extend(few_hz.and_then(|own_hz| few_blocks(own_hz, placed.sample_rate_hz)));
         Ok(match (own_hz, declared_rate_hz) {
             (Some(_), Some(declared_hz)) => placed.at(declared_hz)?,
             _ => placed,
@@ -287,9 +291,28 @@ impl Column {
 /// A declared rate further than this from that of the stamps is no correction of them: computers' clocks and doubled stamps stay below.
 const FAR: f64 = 0.1;
 
+/// Fewer intervals between blocks agree by chance.
+const ENOUGH: usize = 4;
+
+/// A rate this far from that of a few stamps is worth a warning: every velocity is off by as much, and a stamp 1 ms late in blocks of 0.2 s
+/// stays below.
+const FEW_APART: f64 = 5e-3;
+
+/// A warning where a few blocks are stamped as at another rate than the one that was taken.
+fn few_blocks(own_hz: f64, taken_hz: f64) -> Option<Issue> {
+    ((taken_hz / own_hz - 1.0).abs() > FEW_APART).then(|| {
+        let message = format!(
+            "its few blocks are stamped as at {own_hz:.1} Hz, and {taken_hz:.1} Hz is stated: samples between them are missing, or the rate is wrong, and every velocity with it"
+        );
+        Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+    })
+}
+
 /// What the stamps of blocks say.
 struct Derived {
     rate_hz: f64,
+    /// How many intervals say it.
+    intervals: usize,
     /// Nine of ten intervals say the same to [`FAR`]: the stamps are those of the samples, not of a writer that hurries after them.
     is_steady: bool,
 }
@@ -311,8 +334,8 @@ fn derived_rate_hz(blocks: &[RawBlock]) -> Option<Derived> {
     rates_hz.sort_unstable_by(f64::total_cmp);
     let rate_hz = rates_hz.get(middle).copied()?;
     let alike = rates_hz.iter().filter(|other_hz| (*other_hz / rate_hz - 1.0).abs() < FAR).count();
-    // Fewer intervals than four agree by chance.
-    Some(Derived { rate_hz, is_steady: rates_hz.len() >= 4 && 10 * alike >= 9 * rates_hz.len() })
+    let intervals = rates_hz.len();
+    Some(Derived { rate_hz, intervals, is_steady: intervals >= ENOUGH && 10 * alike >= 9 * intervals })
 }
 
 /// Seconds from `zero_ns` to `time_ns`, subtracted as integers: absolute times lose a microsecond as f64.

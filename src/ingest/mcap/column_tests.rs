@@ -56,6 +56,21 @@ fn a_rate_that_contradicts_the_stamps_by_far_tears_no_blocks_apart() {
 }
 
 #[test]
+fn a_few_long_blocks_at_another_rate_are_told() {
+    let told = |stated_hz: f64| {
+        let mut column = Column::default();
+        for i in 0..2_i64 {
+            let samples: Vec<f64> = (0..2000).map(f64::from).collect();
+            // 2000 samples at 10 kHz.
+            column.take(block(&samples), (200_000_000 * i, TimeOrigin::Stamp), Some(stated_hz));
+        }
+        let issues = column.uniform(0, None).unwrap().issues;
+        issues.iter().any(|i| i.severity == Severity::Warning && i.message.contains("as at 10000.0 Hz"))
+    };
+    assert!(told(10_200.0) && told(9_800.0) && !told(10_010.0) && !told(10_000.0));
+}
+
+#[test]
 fn one_block_without_a_rate_is_an_error() {
     let mut column = Column::default();
     column.take(block(&[1.0, 2.0]), (5, TimeOrigin::LogTime), None);
