@@ -50,12 +50,11 @@ pub(super) fn place<S: Number>(
 ) -> Result<Placed<S>, TimeBaseError> {
     let changes: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] > times_s[i - 1]).collect();
     let step_s = median_step(times_s, &changes);
-    let steps = (changes.len() >= LEAST_CHANGES)
-        .then(|| Steps::of(times_s, &changes))
-        .filter(|steps| steps.uncertainty <= UNKNOWN && steps.off_s <= UNEVEN_STEPS * step_s);
+    let told = (changes.len() >= LEAST_CHANGES).then(|| Steps::of(times_s, &changes));
+    let steps = told.filter(|steps| steps.uncertainty <= UNKNOWN && steps.off_s <= UNEVEN_STEPS * step_s);
     let (start_s, sample_rate_hz) = match (declared_rate_hz, steps) {
         (Some(rate_hz), _) => {
-            issues.push(declared(times_s, &changes, (step_s, steps), rate_hz));
+            issues.push(declared(times_s, &changes, (step_s, told, steps), rate_hz));
             (start(times_s, &changes, 1.0 / rate_hz), rate_hz)
         }
         (None, Some(steps)) => {
@@ -136,14 +135,14 @@ impl Steps {
     }
 }
 
-/// What is said where a rate is declared beside coarse times.
+/// What is said where a rate is declared beside coarse times; of the `steps` that they tell those that are `sure` have a rate of their own.
 fn declared(
     times_s: &[f64],
     changes: &[usize],
-    (step_s, steps): (f64, Option<Steps>),
+    (step_s, steps, sure): (f64, Option<Steps>, Option<Steps>),
     rate_hz: f64,
 ) -> Issue {
-    if let Some(steps) = steps.filter(|steps| steps.is_even)
+    if let Some(steps) = sure.filter(|steps| steps.is_even)
         && (rate_hz * steps.period_s - 1.0).abs() > RATE_TOLERANCE.max(steps.uncertainty)
     {
         return rate_contradiction(rate_hz, 1.0 / steps.period_s);
@@ -152,7 +151,7 @@ fn declared(
     let width_s = if changes.is_empty() { 0.0 } else { range(points, 1.0 / rate_hz).1 };
     // Each change lies within one interval of its sample, and the rate may be off by its tolerance; more is samples lost or another rate.
     let length_s = times_s[times_s.len() - 1] - times_s[0];
-    let is_uneven = changes.len() >= LEAST_CHANGES && !Steps::of(times_s, changes).is_even;
+    let is_uneven = steps.is_some_and(|steps| !steps.is_even);
     let is_off = is_uneven || width_s > (1.0 + ROUND_OFF) / rate_hz + RATE_TOLERANCE * length_s;
     let what = if changes.is_empty() {
         "all times are equal".to_owned()
