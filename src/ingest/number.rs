@@ -11,6 +11,26 @@ const POWERS: [f64; 23] = [
 /// Exact: up to 2⁵³ and 10²² one division or product rounds correctly (Clinger 1990); longer numbers go to the library.
 #[inline]
 pub(super) fn leading(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
+    with_kind(text, decimal).map(|(value, used, _)| (value, used))
+}
+
+/// The same of a number as JSON writes it: finite, digits on both sides of the mark, no zero before others, no plus.
+#[inline]
+pub(super) fn leading_json(text: &[u8]) -> Option<(f64, usize)> {
+    let (value, used, is_plain) = with_kind(text, b'.')?;
+    let number = &text[..used];
+    let digits = number.strip_prefix(b"-").unwrap_or(number);
+    let is_digit = |at: usize| digits.get(at).is_some_and(u8::is_ascii_digit);
+    let is_json = is_digit(0)
+        && is_digit(digits.len() - 1)
+        && !(digits[0] == b'0' && is_digit(1))
+        && (is_plain || value.is_finite() && !digits.windows(2).any(|pair| matches!(pair, b".e" | b".E")));
+    is_json.then_some((value, used))
+}
+
+/// The value, the bytes it takes, and whether it has at most fifteen digits and no exponent.
+#[inline]
+fn with_kind(text: &[u8], decimal: u8) -> Option<(f64, usize, bool)> {
     let first = text.first().copied().unwrap_or_default();
     let is_negative = first == b'-';
     let from = usize::from(matches!(first, b'-' | b'+'));
@@ -29,11 +49,12 @@ pub(super) fn leading(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
     }
     // Fifteen digits stay below 2^53.
     if count > 15 || matches!(text.get(at), Some(b'e' | b'E')) {
-        return with_exponent(text, at, (mantissa, count, fraction), decimal);
+        let (value, used) = with_exponent(text, at, (mantissa, count, fraction), decimal)?;
+        return Some((value, used, false));
     }
     let value = as_f64(mantissa) / POWERS[fraction];
     // The sign bit alone, without a jump that half of all samples would take.
-    Some((f64::from_bits(value.to_bits() | (u64::from(is_negative) << 63)), at))
+    Some((f64::from_bits(value.to_bits() | (u64::from(is_negative) << 63)), at, true))
 }
 
 /// The number whose digits end at `at`, of any length and with its exponent.
@@ -245,8 +266,11 @@ mod tests {
         ) {
             let expected: f64 = number.parse().unwrap();
             prop_assume!(behind.as_bytes().get(..2).is_none_or(|b| b[0] != b'e' || !b[1].is_ascii_digit()));
-            let (value, used) = leading((number.clone() + &behind).as_bytes(), b'.').unwrap();
+            let text = number.clone() + &behind;
+            let (value, used) = leading(text.as_bytes(), b'.').unwrap();
             prop_assert_eq!((value.to_bits(), used), (expected.to_bits(), number.len()));
+            let is_json = serde_json::from_str::<f64>(&number).is_ok();
+            prop_assert_eq!(leading_json(text.as_bytes()).is_some(), is_json, "{}", number);
         }
     }
 

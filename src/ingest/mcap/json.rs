@@ -1,12 +1,12 @@
 //! JSON messages to the wanted fields, straight from the text: samples never become a tree of values.
 
+mod fields;
+
 use super::plan::{
     Decode, Leaf, MOST_LEAVES, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns,
 };
 use crate::data::Samples;
-use crate::ingest::number;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
-use serde_json::value::RawValue;
 use std::borrow::Cow;
 use std::fmt;
 
@@ -26,10 +26,22 @@ impl Json {
     }
 
     fn attempt(&self, text: &[u8], slots: &mut Slots) -> Result<(), serde_json::Error> {
+        if self.root(slots).whole_object(text) {
+            return Ok(());
+        }
+        slots.clear(self.plan.wants.len());
+        self.by_grammar(text, slots)
+    }
+
+    /// The same by `serde_json` alone, which says where a text at fault ceases to be JSON.
+    fn by_grammar(&self, text: &[u8], slots: &mut Slots) -> Result<(), serde_json::Error> {
         let mut deserializer = serde_json::Deserializer::from_slice(text);
-        let seed = At { node: &self.plan.root, wants: &self.plan.wants, slots };
-        seed.deserialize(&mut deserializer)?;
+        self.root(slots).deserialize(&mut deserializer)?;
         deserializer.end()
+    }
+
+    fn root<'a>(&'a self, slots: &'a mut Slots) -> At<'a> {
+        At { node: &self.plan.root, wants: &self.plan.wants, slots }
     }
 }
 
@@ -94,17 +106,6 @@ impl At<'_> {
     /// Whether a whole array is wanted here and none of its elements by itself.
     fn wants_array(&self, node: &Node) -> bool {
         node.children.is_empty() && node.slot(self.wants, Want::Numbers).is_some()
-    }
-
-    /// A value whose text is known: an array of plain numbers is read straight from it.
-    fn take(mut self, text: &RawValue) -> Result<(), serde_json::Error> {
-        match plain_numbers(text.get().as_bytes()) {
-            Some(samples) => {
-                self.fill(Want::Numbers, Value::Array(Samples::F64(samples)));
-                Ok(())
-            }
-            None => self.deserialize(&mut serde_json::Deserializer::from_str(text.get())),
-        }
     }
 
     fn wants(&self, want: Want) -> bool {
@@ -195,10 +196,6 @@ impl<'de> Visitor<'de> for At<'_> {
         let node = self.node;
         while let Some(key) = map.next_key::<Cow<str>>()? {
             match node.field(&key) {
-                Some(child) if self.wants_array(child) => {
-                    let text = map.next_value::<&RawValue>()?;
-                    self.below(child).take(text).map_err(A::Error::custom)?;
-                }
                 Some(child) => map.next_value_seed(self.below(child))?,
                 None => map.next_value::<IgnoredAny>().map(|_| ())?,
             }
@@ -231,26 +228,6 @@ impl<'de> Visitor<'de> for At<'_> {
             index += 1;
         }
     }
-}
-
-/// The numbers of a JSON array, its grammar checked before; `None` where it holds anything else.
-fn plain_numbers(text: &[u8]) -> Option<Vec<f64>> {
-    /// Characters of a number and its comma, as loggers write them; more room is taken as it is needed.
-    const USUAL: usize = 8;
-    let past_spaces = |at: usize| {
-        at + text[at..].iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(text.len() - at)
-    };
-    let mut numbers = Vec::with_capacity(text.len() / USUAL);
-    let mut at = past_spaces(text.strip_prefix(b"[").map(|_| 1)?);
-    while text.get(at) != Some(&b']') {
-        let (value, length) = number::leading(&text[at..], b'.')?;
-        numbers.push(value);
-        at = past_spaces(at + length);
-        if text.get(at) == Some(&b',') {
-            at = past_spaces(at + 1);
-        }
-    }
-    Some(numbers)
 }
 
 /// What protobuf's JSON mapping writes as words.

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::ingest::mcap::path::FieldPath;
+use proptest::prelude::*;
 
 fn decoded(field: &str, text: &str) -> Result<(Value, Value, Option<f64>, Option<String>), String> {
     let plan = Plan::new(&[FieldPath::parse(field).unwrap()]);
@@ -58,4 +59,73 @@ fn leaves_are_the_numbers_without_the_stamp() {
     let paths: Vec<(String, bool)> =
         leaves(text).into_iter().map(|leaf| (leaf.path, leaf.is_array)).collect();
     assert_eq!(paths, [("a.b".to_owned(), false), ("s".to_owned(), true)]);
+}
+
+/// What the walk along the text and `serde_json` alone make of the same message.
+fn both(text: &str) -> (bool, Vec<Value>, Option<Vec<Value>>) {
+    let json = Json::new(&Plan::new(&["s", "a.b", "s2[1]"].map(|field| FieldPath::parse(field).unwrap())));
+    let count = json.plan.wants.len();
+    let mut walked = Slots::default();
+    walked.clear(count);
+    let is_whole = json.root(&mut walked).whole_object(text.as_bytes());
+    let mut plain = Slots::default();
+    plain.clear(count);
+    let by_grammar = json.by_grammar(text.as_bytes(), &mut plain).ok();
+    (is_whole, walked.values, by_grammar.map(|()| plain.values))
+}
+
+#[test]
+fn usual_messages_are_walked_along() {
+    for text in [
+        r#"{"stamp":{"sec":1,"nsec":2},"rate":5e3,"s":[1.5,-2,0,1e-05],"w":"x, {[","a":{"b":3,"c":[{}]}}"#,
+        " {\n \"s\" : [ 1 , -0.5 ] , \"s2\": [1, 2, 3], \"n\": null, \"t\": true }\n",
+        r#"{"s":[],"a":{},"s2":[null,4],"ä":[[1,2],"]"]}"#,
+        "{}",
+    ] {
+        let (is_whole, walked, by_grammar) = both(text);
+        assert!(is_whole, "{text}");
+        // NaN is not itself, but prints the same.
+        assert_eq!(format!("{walked:?}"), format!("{:?}", by_grammar.unwrap()), "{text}");
+    }
+}
+
+#[test]
+fn no_text_that_is_no_json_is_walked_to_its_end() {
+    for text in [
+        r#"{"s":[1,]}"#,
+        r#"{"s":[,1]}"#,
+        r#"{"s":[01]}"#,
+        r#"{"s":[+1]}"#,
+        r#"{"s":[.5]}"#,
+        r#"{"s":[5.]}"#,
+        r#"{"s":[5.e3]}"#,
+        r#"{"s":[1 2]}"#,
+        r#"{"s":[1}"#,
+        r#"{"s":[1]"#,
+        r#"{"s":[1],}"#,
+        r#"{"s":[1]}}"#,
+        r#"{"s" [1]}"#,
+        r#"{"s":}"#,
+        r"{s:[1]}",
+        r#"{"a":{"b":1,},"s":[1]}"#,
+        "{\"s\u{1}\":[1]}",
+        "[1]",
+        "",
+    ] {
+        let (is_whole, _, by_grammar) = both(text);
+        assert!(!is_whole, "{text}");
+        assert!(by_grammar.is_none() || text == "[1]", "{text}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2048) })]
+
+    #[test]
+    fn the_walk_and_the_grammar_agree_on_any_message(
+        text in r#"\{ ?("(s|s2|a|t)" ?: ?(\[-?[0-9]{1,3}(\.[0-9]{0,2})?(e-?[0-9])?(, ?[0-9.]{1,3}){0,2}\]|\{"b":[0-9]\}|[0-9]|"x"),?){0,3}\}?"#,
+    ) {
+        let (is_whole, walked, by_grammar) = both(&text);
+        prop_assert!(!is_whole || Some(walked) == by_grammar, "{}", text);
+    }
 }
