@@ -53,7 +53,10 @@ fn analyzed(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     else {
         return draft.without_impact();
     };
-    let farthest = condition::Reach::of(&cask_file.cask, &cask_file.drop);
+    let drop = &cask_file.drop;
+    let another = events::another_drop(recording, &event, drop.impact_velocity_m_s / drop.gravity_m_s2);
+    draft.issues.extend(another.map(|another| judge::judge_several_drops(&event, &another)));
+    let farthest = condition::Reach::of(&cask_file.cask, drop);
     let last_s =
         events::last_change_s(recording, &event, (cask_file.drop.impact_velocity_m_s, farthest.after_s));
     let reach = last_s.map_or(farthest, |last_s| farthest.until(last_s - event.near_s - event.spread_s));

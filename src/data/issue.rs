@@ -74,6 +74,8 @@ pub enum IssueCode {
     EndsEarly,
     /// No impact was found.
     NoImpact,
+    /// Another drop in the same recording.
+    SeveralDrops,
     /// No slap-down was found.
     NoSlapDown,
     /// L touches again before R strikes.

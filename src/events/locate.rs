@@ -4,6 +4,7 @@ use super::block_means_m_s2;
 use crate::data::{Axis, Channel, CoarseEvent, End, Recording};
 use crate::numerics::{reduce, robust};
 use rayon::prelude::*;
+use std::ops::RangeInclusive;
 
 /// Width over which a velocity change is looked for, s: longer than any first pulse (1–20 ms), shorter than a flight.
 const WIDTH_S: f64 = 0.025;
@@ -24,23 +25,58 @@ const LAST_SHARE: f64 = 0.3;
 /// … and so may what reaches this share of v0: no slap-down changes it by less than 0.08.
 const LAST_SHARE_OF_FALL: f64 = 0.06;
 
+/// Falls after the first impact from which on a second like it is another drop, in v0/g: a body that leaves with up to 0.7 v0 has come down
+/// twice by then, and once more with half of v0 at most.
+const APART_FALLS: f64 = 2.5;
+/// A change alike, over that of the first impact: drops of one height at any of the usual angles and k. A cable that is pulled makes
+/// more, what lifts the cask or sets it down less.
+const ALIKE: RangeInclusive<f64> = 0.6..=1.7;
+
 /// Finds the first impact on the transverse channel of the first end (or, without one, on any transverse channel), whose velocity it
 /// changes by `least_step_m_s` at the least: v0 cos φ where L is struck.
 ///
 /// `None` where no channel moves at all.
 #[must_use]
 pub fn locate(recording: &Recording, least_step_m_s: f64) -> Option<CoarseEvent> {
-    let transverse = || recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
-    let channel = transverse().find(|c| c.end == End::First).or_else(|| transverse().next())?;
+    let channel = struck(recording)?;
     let (block_s, changes) = velocity_changes(channel)?;
     let largest = reduce::peak(&changes);
     let least_m_s = (SHARE * largest).min(SHARE_OF_LEAST * least_step_m_s);
     let crossing = changes.iter().position(|c| c.abs() >= least_m_s && largest > 0.0)?;
+    Some(event_at(crossing, channel, (block_s, &changes)))
+}
+
+/// The first impact of another drop in the same recording, long after the one at `event`; `fall_s` is how long a drop falls, s.
+#[must_use]
+pub fn another_drop(recording: &Recording, event: &CoarseEvent, fall_s: f64) -> Option<CoarseEvent> {
+    let channel = struck(recording)?;
+    let from_s = event.near_s + APART_FALLS * fall_s;
+    let (block_s, changes) = velocity_changes(channel)?;
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a float-to-integer cast saturates"
+    )]
+    let from = (((from_s - channel.start_s) / block_s).max(0.0) as usize).min(changes.len());
+    let share = |change: &f64| change / event.velocity_step_m_s;
+    let crossing = from + changes[from..].iter().position(|c| share(c) >= *ALIKE.start())?;
+    let found = event_at(crossing, channel, (block_s, &changes));
+    ALIKE.contains(&share(&found.velocity_step_m_s)).then_some(found)
+}
+
+/// The transverse channel of the first end, or without one any.
+fn struck(recording: &Recording) -> Option<&Channel> {
+    let transverse = || recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
+    transverse().find(|c| c.end == End::First).or_else(|| transverse().next())
+}
+
+/// The event whose change of velocity becomes notable at block `crossing`.
+fn event_at(crossing: usize, channel: &Channel, (block_s, changes): (f64, &[f64])) -> CoarseEvent {
     #[allow(clippy::cast_precision_loss, reason = "block counts stay below 2^52")]
     let near_s = channel.start_s + (crossing as f64 + 1.0) * block_s - WIDTH_S;
     let end = (crossing + BLOCKS).min(changes.len());
     let step = changes[crossing..end].iter().fold(0.0_f64, |m, &c| if c.abs() > m.abs() { c } else { m });
-    Some(CoarseEvent { near_s, spread_s: WIDTH_S, velocity_step_m_s: step })
+    CoarseEvent { near_s, spread_s: WIDTH_S, velocity_step_m_s: step }
 }
 
 /// The last time within `after_s` of the event at which some transverse channel changes its velocity by a notable share of its largest
@@ -105,7 +141,7 @@ mod tests {
     use super::*;
     use crate::data::{Coupling, RecordingFormat, Samples};
 
-    /// A channel of 2 s at 10 kHz that is struck at the given times, s, by pulses of 5 ms that change its velocity by so much, m/s.
+    /// A channel of 6 s at 10 kHz that is struck at the given times, s, by pulses of 5 ms that change its velocity by so much, m/s.
     fn channel(end: End, struck: &[(f64, f64)]) -> Channel {
         let force = |i: i32| {
             let at = |&&(from_s, _): &&(f64, f64)| (from_s..from_s + 5e-3).contains(&(f64::from(i) * 1e-4));
@@ -120,7 +156,7 @@ mod tests {
             offset_m: 0.0,
             start_s: 0.0,
             sample_rate_hz: 1e4,
-            samples: Samples::F64((0..20_000).map(force).collect()),
+            samples: Samples::F64((0..60_000).map(force).collect()),
             scale_m_s2: 1.0,
             unit: "m/s^2".into(),
             unit_origin: "cask file",
@@ -131,20 +167,39 @@ mod tests {
         }
     }
 
+    fn recording(channels: Vec<Channel>) -> Recording {
+        Recording {
+            path: "a".into(),
+            format: RecordingFormat::Hdf5,
+            sha256: String::new(),
+            channels,
+            start_unix_ns: None,
+            issues: vec![],
+        }
+    }
+
+    #[test]
+    fn another_drop_is_an_impact_alike_that_no_rebound_can_be() {
+        let another = |struck: &[(f64, f64)]| {
+            let recording = recording(vec![channel(End::First, struck)]);
+            another_drop(&recording, &locate(&recording, 13.29).expect("an impact"), 1.355)
+        };
+        let found = another(&[(0.5, 20.0), (0.9, -12.0), (5.0, 16.0)]).expect("another drop");
+        assert!((found.velocity_step_m_s - 16.0).abs() < 0.2, "{found:?}");
+        assert!((4.97..5.0).contains(&found.near_s), "{found:?}");
+        // A rebound, one that is too weak, a cable that is pulled, and one the other way.
+        for later in [(2.5, 16.0), (5.0, 10.0), (5.0, 60.0), (5.0, -16.0)] {
+            assert_eq!(another(&[(0.5, 20.0), later]), None, "{later:?}");
+        }
+    }
+
     #[test]
     fn a_slap_down_far_weaker_than_the_first_impact_is_not_left_behind() {
         let (first, second) = (
             channel(End::First, &[(0.5, 20.0), (1.9, 20.0)]),
             channel(End::Second, &[(0.5, -10.0), (1.0, 1.1), (1.3, 0.4)]),
         );
-        let recording = Recording {
-            path: "a".into(),
-            format: RecordingFormat::Hdf5,
-            sha256: String::new(),
-            channels: vec![first, second],
-            start_unix_ns: None,
-            issues: vec![],
-        };
+        let recording = recording(vec![first, second]);
         let v0_m_s = 13.29;
         let event = locate(&recording, v0_m_s).expect("an impact");
         let last_s = last_change_s(&recording, &event, (v0_m_s, 1.0)).expect("a change");

@@ -1,6 +1,6 @@
 //! The recorded free fall beside the one that the cask file states, to what speaks against them.
 
-use crate::data::{Drop, Events, Issue, IssueCode, Severity};
+use crate::data::{CoarseEvent, Drop, Events, Issue, IssueCode, Severity};
 
 /// A first touch this share of the fall time before first contact is another event, not a late onset.
 const MOST_LAG: f64 = 0.02;
@@ -22,6 +22,24 @@ pub fn judge_fall(drop: &Drop, events: &Events) -> Vec<Issue> {
         );
     }
     issues
+}
+
+/// Says that another drop follows the one at `event`.
+#[must_use]
+pub fn judge_several_drops(event: &CoarseEvent, another: &CoarseEvent) -> Issue {
+    let (from_s, to_s) = (another.near_s, another.near_s + another.spread_s);
+    Issue::new(
+        IssueCode::SeveralDrops,
+        Severity::Warning,
+        format!(
+            "the first end is struck once more at {to_s:.2} s, {:.1} s after the impact found, and changes its velocity by {:.1} m/s \
+             ({:.1} m/s there): that is another drop. The first one was analysed; for the other, cut the recording between them in a copy",
+            another.near_s - event.near_s,
+            another.velocity_step_m_s.abs(),
+            event.velocity_step_m_s.abs(),
+        ),
+    )
+    .between(from_s, to_s)
 }
 
 #[cfg(test)]

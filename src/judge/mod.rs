@@ -15,7 +15,7 @@ mod worth;
 pub use channels::{is_cut_off, judge_channels};
 pub use closures::{judge_closures, tells_lost_steps};
 pub use coupling::judge_coupling;
-pub use fall::judge_fall;
+pub use fall::{judge_fall, judge_several_drops};
 pub use result::{judge_comparison, judge_motion, judge_touch};
 pub use rigid::judge_rigid;
 pub use silent::judge_silent;
