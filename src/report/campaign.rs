@@ -4,9 +4,10 @@ use super::ReportError;
 use super::columns::columns;
 use super::curves_csv::text_cell;
 use super::rounding::{MISSING, interval, percent};
-use super::text::{Style, WIDTH, line, printable, styled, tail, verdict_word, wrap};
-use crate::data::{Comparison, DropResult, Estimate, Verdict};
+use super::text::{Style, WIDTH, code_word, line, printable, styled, tail, verdict_word, wrap};
+use crate::data::{Comparison, DropResult, Estimate, Issue, IssueCode, Severity, Verdict};
 use serde::Serialize;
+use std::path::Path;
 
 /// One recording of a campaign.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -27,6 +28,8 @@ pub struct CampaignRow {
     pub comparison: Option<Comparison>,
     /// Warnings and errors among the findings.
     pub findings: usize,
+    /// Their codes, each once, errors first.
+    pub codes: Vec<IssueCode>,
     /// Why it could not be analysed.
     pub error: Option<String>,
 }
@@ -36,6 +39,15 @@ impl CampaignRow {
     #[must_use]
     pub fn of(result: &DropResult) -> Self {
         let finite = |e: &Estimate| e.value.is_finite() && e.u95.is_finite();
+        let mut grave: Vec<&Issue> =
+            result.quality.iter().filter(|issue| issue.severity != Severity::Note).collect();
+        grave.sort_by_key(|issue| std::cmp::Reverse(issue.severity));
+        let mut codes = Vec::new();
+        for issue in &grave {
+            if !codes.contains(&issue.code) {
+                codes.push(issue.code);
+            }
+        }
         Self {
             recording: result.input.recording.clone(),
             report: None,
@@ -44,7 +56,8 @@ impl CampaignRow {
             k: result.k.filter(finite),
             model: result.model.as_ref().map(|m| m.name.as_str()),
             comparison: result.comparison,
-            findings: result.quality.iter().filter(|i| i.severity != crate::data::Severity::Note).count(),
+            findings: grave.len(),
+            codes,
             error: None,
         }
     }
@@ -61,8 +74,13 @@ impl CampaignRow {
             model: None,
             comparison: None,
             findings: 0,
+            codes: Vec::new(),
             error: Some(error),
         }
+    }
+
+    fn code_words(&self) -> Vec<String> {
+        self.codes.iter().copied().map(code_word).collect()
     }
 }
 
@@ -86,36 +104,55 @@ impl Campaign {
         Self { schema: "dropcheck.campaign/1", version: env!("CARGO_PKG_VERSION"), cask, recordings }
     }
 
-    /// The table, 80 columns wide; reasons of failures stand below it.
+    /// The table, 80 columns wide; below it what was found, and reasons of failures.
     #[must_use]
     pub fn table(&self) -> String {
+        /// Characters of a recording's name that leave room for the other columns.
+        const NAME: usize = 28;
+        let folder = self.common_folder();
+        let name = |row: &CampaignRow, width: usize| {
+            let own = folder.and_then(|folder| Path::new(&row.recording).strip_prefix(folder).ok());
+            tail(&own.map_or_else(|| row.recording.clone(), |own| own.display().to_string()), width)
+        };
+        let word = |row: &CampaignRow| row.verdict.map_or("ERROR", verdict_word);
         let rows: Vec<Vec<String>> = self
             .recordings
             .iter()
             .map(|row| {
                 vec![
-                    tail(&row.recording, 24),
-                    row.verdict.map_or("ERROR", verdict_word).to_owned(),
+                    name(row, NAME),
+                    word(row).to_owned(),
                     interval(row.slap_down_speed.as_ref()).replace(" m/s", ""),
                     interval(row.k.as_ref()),
                     row.comparison.map_or_else(|| MISSING.to_owned(), |c| percent(c.difference_percent)),
-                    row.findings.to_string(),
                 ]
             })
             .collect();
-        let header = ["recording", "verdict", "speed m/s", "k", "meas/pred", "findings"];
         let mut out = format!("{}\n", styled(Style::Bold, &printable(&self.cask)));
-        out.push_str(&columns(&header, &rows, &[4, 5]));
+        if let Some(folder) = folder {
+            line(&mut out, format_args!("recordings in {}", tail(&folder.display().to_string(), WIDTH - 14)));
+        }
+        out.push_str(&columns(&["recording", "verdict", "speed m/s", "k", "meas/pred"], &rows, &[4]));
         for row in &self.recordings {
-            if let Some(error) = &row.error {
-                line(
-                    &mut out,
-                    format_args!("\n  {}  {}", styled(Style::Red, "error"), tail(&row.recording, 60)),
-                );
-                out.push_str(&wrap(error, WIDTH, 6));
-            }
+            let (style, why) = match (&row.error, row.verdict) {
+                (Some(error), _) => (Style::Red, error.clone()),
+                (None, _) if row.codes.is_empty() => continue,
+                (None, Some(Verdict::Fail)) => (Style::Red, row.code_words().join(", ")),
+                (None, _) => (Style::Yellow, row.code_words().join(", ")),
+            };
+            let head = styled(style, &word(row).to_lowercase());
+            line(&mut out, format_args!("\n  {head}  {}", name(row, WIDTH - 10)));
+            out.push_str(&wrap(&why, WIDTH, 6));
         }
         out
+    }
+
+    /// The folder in which all recordings are, where they are in one.
+    fn common_folder(&self) -> Option<&Path> {
+        let mut folders = self.recordings.iter().map(|row| Path::new(&row.recording).parent());
+        let first = folders.next()??;
+        let is_one = !first.as_os_str().is_empty() && folders.all(|folder| folder == Some(first));
+        is_one.then_some(first)
     }
 
     /// `campaign.json`.
@@ -144,6 +181,7 @@ impl Campaign {
             "difference_percent",
             "agrees",
             "findings",
+            "codes",
             "error",
         ])?;
         let number = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
@@ -160,6 +198,7 @@ impl Campaign {
                 number(row.comparison.map(|c| c.difference_percent)),
                 row.comparison.map_or_else(String::new, |c| c.agrees.to_string()),
                 row.findings.to_string(),
+                row.code_words().join(" "),
                 text_cell(row.error.as_deref().unwrap_or_default()),
             ])?;
         }
@@ -185,6 +224,24 @@ mod tests {
         let text = anstream::adapter::strip_str(&campaign().table()).to_string();
         assert!(text.contains("ERROR") && text.contains("record it again"));
         assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
+    }
+
+    #[test]
+    fn the_table_shows_names_whole_and_what_was_found() {
+        let mut rows = campaign().recordings;
+        rows[0].recording = "of/a/test site/damaged-truncated.mcap".into();
+        rows[0].codes = vec![IssueCode::EndsEarly, IssueCode::Gap];
+        rows[1].recording = "of/a/test site/b.mcap".into();
+        let text = |rows: &[CampaignRow]| {
+            let table = Campaign::new("anf18.toml".into(), rows.to_vec()).table();
+            anstream::adapter::strip_str(&table).to_string()
+        };
+        let together = text(&rows);
+        assert!(together.contains("recordings in of/a/test site\n"), "{together}");
+        assert!(together.contains("\n  damaged-truncated.mcap  REVIEW"), "{together}");
+        assert!(together.contains("review  damaged-truncated.mcap\n      ends_early, gap\n"), "{together}");
+        rows[1].recording = "b.mcap".into();
+        assert!(!text(&rows).contains("recordings in"));
     }
 
     #[test]
