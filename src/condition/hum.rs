@@ -1,9 +1,9 @@
 //! The free fall before first contact to the mains hum in it, which is then taken off the whole signal.
 
-use crate::data::{Issue, IssueCode, Severity, Signal};
+use crate::data::{Issue, IssueCode, STANDARD_GRAVITY_M_S2, Severity, Signal};
 use crate::numerics::reduce::{block_means, block_of};
-use crate::numerics::robust;
 use crate::numerics::sinusoid::{self, Sinusoid};
+use crate::numerics::{as_f64, robust};
 use std::f64::consts::{PI, TAU};
 
 /// Frequencies of power grids, Hz: Europe, America, railways.
@@ -35,7 +35,7 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
     }
     let block = block_of(SEARCH_RATE_HZ, signal.sample_rate_hz);
     let means = block_means(signal.force_m_s2.get(..end)?, block);
-    let block_rate_hz = signal.sample_rate_hz / number(block);
+    let block_rate_hz = signal.sample_rate_hz / as_f64(block);
     let lines: Vec<Sinusoid> = lines(&means, block_rate_hz)
         .iter()
         .map(|line| unblocked(line, block, signal.sample_rate_hz))
@@ -47,10 +47,10 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
         return None;
     }
     let used = means.len() * block;
-    let middle = (number(used) - 1.0) / 2.0;
+    let middle = (as_f64(used) - 1.0) / 2.0;
     if take_off {
         for (i, f) in signal.force_m_s2.iter_mut().enumerate() {
-            let since_s = (number(i) - middle) / signal.sample_rate_hz;
+            let since_s = (as_f64(i) - middle) / signal.sample_rate_hz;
             *f -= lines.iter().map(|line| line.at(since_s)).sum::<f64>();
         }
         for gap in signal.gaps.clone() {
@@ -58,7 +58,7 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
         }
     }
     let left_m_s =
-        if take_off { left_m_s(&lines, number(used) / signal.sample_rate_hz, &swing) } else { whole_m_s };
+        if take_off { left_m_s(&lines, as_f64(used) / signal.sample_rate_hz, &swing) } else { whole_m_s };
     let severity = if left_m_s > MOST_LEFT_M_S { Severity::Warning } else { Severity::Note };
     let done = if take_off {
         format!("it was taken off, and up to {left_m_s:.3} m/s of it may be left in the velocity")
@@ -74,7 +74,7 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
             format!(
                 "{} hums with {:.2} g at {:.1} Hz{harmonics} before the impact: {done}; check shields and earth loops",
                 signal.name,
-                fundamental.amplitude() / 9.806_65,
+                fundamental.amplitude() / STANDARD_GRAVITY_M_S2,
                 fundamental.frequency_hz
             ),
         )
@@ -85,13 +85,13 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
 /// The line with what the mean over `block` samples takes from it put back: sin(n x)/(n sin x), x = π f/f_s.
 fn unblocked(line: &Sinusoid, block: usize, sample_rate_hz: f64) -> Sinusoid {
     let x = PI * line.frequency_hz / sample_rate_hz;
-    let share = (number(block) * x).sin() / (number(block) * x.sin());
+    let share = (as_f64(block) * x).sin() / (as_f64(block) * x.sin());
     Sinusoid { cosine: line.cosine / share, sine: line.sine / share, ..*line }
 }
 
 /// The fundamental and the harmonics that stand out, strongest grid only; empty where none does.
 fn lines(quiet: &[f64], sample_rate_hz: f64) -> Vec<Sinusoid> {
-    let length_s = number(quiet.len()) / sample_rate_hz;
+    let length_s = as_f64(quiet.len()) / sample_rate_hz;
     let mut left = quiet.to_vec();
     let band = |f: f64| (f * (1.0 - WITHIN), f * (1.0 + WITHIN));
     let fundamental = MAINS_HZ
@@ -122,7 +122,7 @@ fn lines(quiet: &[f64], sample_rate_hz: f64) -> Vec<Sinusoid> {
 fn stands_out(line: &Sinusoid, samples: &[f64], sample_rate_hz: f64) -> bool {
     let mut rest = samples.to_vec();
     take(&mut rest, line, sample_rate_hz);
-    let apart_hz = sample_rate_hz / number(samples.len());
+    let apart_hz = sample_rate_hz / as_f64(samples.len());
     let mut beside: Vec<f64> = [-3.0, -2.0, -1.5, 1.5, 2.0, 3.0]
         .iter()
         .filter_map(|n| sinusoid::fit(&rest, sample_rate_hz, line.frequency_hz + n * apart_hz))
@@ -135,13 +135,13 @@ fn stands_out(line: &Sinusoid, samples: &[f64], sample_rate_hz: f64) -> bool {
 
 /// Standard uncertainty of the amplitude by what is left beside the line, white: σ √(2/n).
 fn line_uncertainty(line: &Sinusoid, rest: &[f64]) -> f64 {
-    line.u_amplitude.max(robust::spread(rest) * (2.0 / number(rest.len())).sqrt())
+    line.u_amplitude.max(robust::spread(rest) * (2.0 / as_f64(rest.len())).sqrt())
 }
 
 fn take(samples: &mut [f64], line: &Sinusoid, sample_rate_hz: f64) {
-    let middle = (number(samples.len()) - 1.0) / 2.0;
+    let middle = (as_f64(samples.len()) - 1.0) / 2.0;
     for (i, x) in samples.iter_mut().enumerate() {
-        *x -= line.at((number(i) - middle) / sample_rate_hz);
+        *x -= line.at((as_f64(i) - middle) / sample_rate_hz);
     }
 }
 
@@ -158,11 +158,6 @@ fn left_m_s(lines: &[Sinusoid], length_s: f64, swing: &impl Fn(&Sinusoid, f64) -
             2.0 * swing(line, u.hypot(drifted))
         })
         .sum()
-}
-
-#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-fn number(n: usize) -> f64 {
-    n as f64
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The free fall before first contact to a channel's offset and noise.
 
-use crate::data::{Issue, IssueCode, Severity, Signal};
+use crate::data::{Issue, IssueCode, STANDARD_GRAVITY_M_S2, Severity, Signal};
 use crate::numerics::reduce::{self, block_means, block_of};
-use crate::numerics::{noise, robust};
+use crate::numerics::{as_f64, noise, robust};
 use std::borrow::Cow;
 
 /// Least free fall an offset is taken from, s: a period of 50 Hz hum is 20 ms, and half of it still bounds an offset.
@@ -47,9 +47,9 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<I
     let wander = (robust::mean_and_rms(first).0 - robust::mean_and_rms(second).0).abs();
     let noise_m_s2 = robust::spread(&quiet).max(1e-3 * rms);
     let block = block_of(SPECTRUM_RATE_HZ, signal.sample_rate_hz);
-    let noise_spectrum = noise::spectrum(&block_means(&quiet, block), signal.sample_rate_hz / number(block));
+    let noise_spectrum = noise::spectrum(&block_means(&quiet, block), signal.sample_rate_hz / as_f64(block));
     // White noise averages out; what differs between the two halves does not.
-    let u_offset_m_s2 = (rms / number(quiet.len()).sqrt()).max(wander / 2.0);
+    let u_offset_m_s2 = (rms / as_f64(quiet.len()).sqrt()).max(wander / 2.0);
     let mut issues = Vec::new();
     issues.extend(offset(&signal.name, mean, take_off));
     issues.extend(drift(&signal.name, &quiet, (signal.start_s, before_s)));
@@ -117,7 +117,7 @@ fn tame(mut quiet: Cow<'_, [f64]>) -> Cow<'_, [f64]> {
 }
 
 fn offset(name: &str, mean_m_s2: f64, taken_off: bool) -> Option<Issue> {
-    let in_g = mean_m_s2 / 9.806_65;
+    let in_g = mean_m_s2 / STANDARD_GRAVITY_M_S2;
     let adds_m_s = mean_m_s2.abs() * AHEAD_S;
     let (severity, done) = if taken_off {
         let is_large = mean_m_s2.abs() > LARGE_M_S2;
@@ -153,14 +153,14 @@ fn drift(name: &str, quiet: &[f64], (from_s, to_s): (f64, f64)) -> Option<Issue>
     }
     let means: Vec<f64> = quiet.chunks_exact(size).take(BLOCKS).map(|c| robust::mean_and_rms(c).0).collect();
     let length_s = to_s - from_s;
-    let step_s = length_s / number(BLOCKS);
-    let middle = (number(BLOCKS) - 1.0) / 2.0;
-    let place = |i: usize| (number(i) - middle) * step_s;
+    let step_s = length_s / as_f64(BLOCKS);
+    let middle = (as_f64(BLOCKS) - 1.0) / 2.0;
+    let place = |i: usize| (as_f64(i) - middle) * step_s;
     let square: f64 = (0..BLOCKS).map(|i| place(i).powi(2)).sum();
     let slope = means.iter().enumerate().map(|(i, m)| place(i) * m).sum::<f64>() / square;
     let mean = robust::mean_and_rms(&means).0;
     let left: f64 = means.iter().enumerate().map(|(i, m)| (m - mean - slope * place(i)).powi(2)).sum();
-    let u_slope = (left / number(BLOCKS - 2) / square).sqrt();
+    let u_slope = (left / as_f64(BLOCKS - 2) / square).sqrt();
     // From the middle of the free fall, whose mean was taken off, through contact and flight.
     let adds_m_s = slope.abs() * AHEAD_S * (length_s / 2.0 + AHEAD_S / 2.0);
     (slope.abs() > SURE * u_slope && adds_m_s > SMALL_M_S).then(|| {
@@ -170,18 +170,13 @@ fn drift(name: &str, quiet: &[f64], (from_s, to_s): (f64, f64)) -> Option<Issue>
             format!(
                 "{} drifts by {:+.1} ± {:.1} g/s before the first impact; going on like that it adds {adds_m_s:.2} m/s by the slap-down: let the amplifier warm up, check the cable and its insulation, or use another channel",
                 name,
-                slope / 9.806_65,
-                2.0 * u_slope / 9.806_65
+                slope / STANDARD_GRAVITY_M_S2,
+                2.0 * u_slope / STANDARD_GRAVITY_M_S2
             ),
         )
         .on(name)
         .between(from_s, to_s)
     })
-}
-
-#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-fn number(n: usize) -> f64 {
-    n as f64
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::transverse;
 use crate::data::{Axis, End, Onset, Signal};
+use crate::numerics::as_f64;
 use crate::numerics::projection::residual_square;
 use crate::numerics::quadrature::running_integral;
 use crate::numerics::reduce::{block_means, peak};
@@ -92,8 +93,8 @@ impl Cause {
             _ => Vec::new(),
         };
         Self {
-            start_s: self.start_s + number(block - 1) / 2.0 / self.sample_rate_hz,
-            sample_rate_hz: self.sample_rate_hz / number(block),
+            start_s: self.start_s + as_f64(block - 1) / 2.0 / self.sample_rate_hz,
+            sample_rate_hz: self.sample_rate_hz / as_f64(block),
             integrals: (0..self.integrals.len()).map(of_order).collect(),
             ..*self
         }
@@ -119,9 +120,9 @@ impl Cause {
                 }
                 let last = values.len().saturating_sub(2);
                 let at = |i: usize| {
-                    let position = (first + number(i) * step).max(0.0);
+                    let position = (first + as_f64(i) * step).max(0.0);
                     let index = samples(position).min(last);
-                    let share = (position - number(index)).min(1.0);
+                    let share = (position - as_f64(index)).min(1.0);
                     values[index] + share * (values[index + 1] - values[index])
                 };
                 (0..count).map(at).collect()
@@ -196,11 +197,11 @@ impl<'a> Answer<'a> {
         let block = ((to - from) / POINTS).max(1);
         let values = block_means(self.signal.force_m_s2.get(from..to)?, block);
         // As long in time where the other channel has another rate.
-        let of_cause = samples(number(block) * self.cause.sample_rate_hz / rate_hz).max(1);
+        let of_cause = samples(as_f64(block) * self.cause.sample_rate_hz / rate_hz).max(1);
         let cause = self.cause.in_blocks(of_cause, &ORDERS);
         let noise = self.noise_of_means(block);
-        let begin_s = self.signal.time_s(from) + number(block - 1) / 2.0 / rate_hz;
-        let left = |delay_s: f64| left(&values, begin_s - delay_s, number(block) / rate_hz, &cause, &ORDERS);
+        let begin_s = self.signal.time_s(from) + as_f64(block - 1) / 2.0 / rate_hz;
+        let left = |delay_s: f64| left(&values, begin_s - delay_s, as_f64(block) / rate_hz, &cause, &ORDERS);
         let seen_s = self.signal.time_s(self.seen) - self.cause.contact_s;
         let (low_s, high_s) = (seen_s - back_s - 3.0 / rate_hz, seen_s + length_s / 2.0);
         let (step_s, coarse) = scan(low_s..high_s, TRIED, &left);
@@ -210,8 +211,8 @@ impl<'a> Answer<'a> {
         }
         let (_, fine) = scan(coarse[best - 1].0..coarse[best + 1].0, REFINED, &left);
         let &(delay_s, least) = fine.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let freedom = number(values.len() - ORDERS.len() - 1);
-        let answered = number(to - self.seen) / number(block);
+        let freedom = as_f64(values.len() - ORDERS.len() - 1);
+        let answered = as_f64(to - self.seen) / as_f64(block);
         let model = MODEL_SHARE * size(&values, answered);
         if (least / freedom).sqrt() > (2.0 * noise).hypot(model) {
             return None;
@@ -236,14 +237,14 @@ impl<'a> Answer<'a> {
             let to = begins + samples(length_s * signal.sample_rate_hz);
             let Some(values) = signal.force_m_s2.get(from..to) else { return false };
             let square: f64 = values.iter().map(|v| v * v).sum();
-            let stands_out = square > 9.0 * number(values.len()) * self.noise.powi(2);
+            let stands_out = square > 9.0 * as_f64(values.len()) * self.noise.powi(2);
             if values.len() < ORDERS.len() + 6 || !stands_out {
                 return false;
             }
             let step_s = 1.0 / signal.sample_rate_hz;
             let left = left(values, signal.time_s(from), step_s, self.cause, &ORDERS);
-            let rms = (left / number(values.len() - 6)).sqrt();
-            rms < (1.5 * self.noise).hypot(MODEL_SHARE * size(values, number((to - self.seen).max(1))))
+            let rms = (left / as_f64(values.len() - 6)).sqrt();
+            rms < (1.5 * self.noise).hypot(MODEL_SHARE * size(values, as_f64((to - self.seen).max(1))))
         })
     }
 
@@ -252,8 +253,8 @@ impl<'a> Answer<'a> {
         let to = self.signal.index_from(self.cause.contact_s - BEFORE_S);
         let before = self.signal.force_m_s2.get(to.saturating_sub(POINTS * block)..to).unwrap_or_default();
         let means = block_means(before, block);
-        let rms = size(&means, number(means.len().max(1)));
-        if block == 1 { self.noise } else { (self.noise / number(block).sqrt()).max(rms).min(self.noise) }
+        let rms = size(&means, as_f64(means.len().max(1)));
+        if block == 1 { self.noise } else { (self.noise / as_f64(block).sqrt()).max(rms).min(self.noise) }
     }
 }
 
@@ -277,11 +278,6 @@ fn scan(over: Range<f64>, steps: u32, function: &impl Fn(f64) -> f64) -> (f64, V
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
 fn samples(position: f64) -> usize {
     position as usize
-}
-
-#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-fn number(n: usize) -> f64 {
-    n as f64
 }
 
 #[cfg(test)]

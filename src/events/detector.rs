@@ -2,6 +2,7 @@
 
 use super::onset::{self, FOOT, NOISE_FACTOR};
 use crate::data::{CoarseEvent, Signal};
+use crate::numerics::as_f64;
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -45,7 +46,7 @@ pub fn first_contact_by(detector: Detector, signals: &[Signal], coarse: &CoarseE
     let force: Vec<f64> = signal.force_m_s2.get(stretch.clone())?.iter().map(|f| sign * f).collect();
     let level = peak_m_s2(&force)?.max(NOISE_FACTOR / FOOT * signal.noise_m_s2) * FOOT;
     let position = match detector {
-        Detector::RiseLine | Detector::Threshold => count(force.iter().position(|f| *f > level)?),
+        Detector::RiseLine | Detector::Threshold => as_f64(force.iter().position(|f| *f > level)?),
         Detector::ChangePoint => change_point(&force)?,
         Detector::MatchedPulse => matched_pulse(&force, signal.sample_rate_hz)?,
     };
@@ -70,7 +71,7 @@ fn change_point(force: &[f64]) -> Option<f64> {
     let total = rise.len();
     let all = rise.iter().fold((0.0, 0.0), |(s, q), f| (s + f, q + f * f));
     let variance = |n: usize, (sum, square): (f64, f64)| {
-        (square / count(n) - (sum / count(n)).powi(2)).max(FLOOR * peak * peak)
+        (square / as_f64(n) - (sum / as_f64(n)).powi(2)).max(FLOOR * peak * peak)
     };
     let mut before = (0.0, 0.0);
     let mut least: Option<(f64, usize)> = None;
@@ -78,14 +79,14 @@ fn change_point(force: &[f64]) -> Option<f64> {
         if n >= FEWEST {
             let after = (all.0 - before.0, all.1 - before.1);
             let cost =
-                count(n) * variance(n, before).ln() + count(total - n) * variance(total - n, after).ln();
+                as_f64(n) * variance(n, before).ln() + as_f64(total - n) * variance(total - n, after).ln();
             if least.is_none_or(|(lowest, _)| cost < lowest) {
                 least = Some((cost, n));
             }
         }
         before = (before.0 + f, before.1 + f * f);
     }
-    least.map(|(_, n)| count(n))
+    least.map(|(_, n)| as_f64(n))
 }
 
 /// Start of the half sine, in samples, that leaves the least square sum.
@@ -125,18 +126,18 @@ fn best_start(force: &[f64], length: f64) -> Option<Match> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
     let whole = length.round() as usize;
     let starts = 0..(force.len() + 1).checked_sub(whole).filter(|_| whole >= 3)?;
-    let turn = PI / count(whole);
+    let turn = PI / as_f64(whole);
     let (mut cosine, mut sine) = (vec![0.0], vec![0.0]);
     let (mut c, mut s) = (0.0, 0.0);
     for (i, f) in force.iter().enumerate() {
-        let (sin, cos) = (turn * count(i)).sin_cos();
+        let (sin, cos) = (turn * as_f64(i)).sin_cos();
         c += f * cos;
         s += f * sin;
         cosine.push(c);
         sine.push(s);
     }
     let projection = |start: usize| {
-        let (sin, cos) = (turn * count(start)).sin_cos();
+        let (sin, cos) = (turn * as_f64(start)).sin_cos();
         (sine[start + whole] - sine[start]) * cos - (cosine[start + whole] - cosine[start]) * sin
     };
     let at = |Range { start, end }: Range<usize>| {
@@ -151,12 +152,7 @@ fn best_start(force: &[f64], length: f64) -> Option<Match> {
     } else {
         0.0
     };
-    Some((top * top / (count(whole) / 2.0), count(start) + shift, count(whole)))
-}
-
-#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-fn count(n: usize) -> f64 {
-    n as f64
+    Some((top * top / (as_f64(whole) / 2.0), as_f64(start) + shift, as_f64(whole)))
 }
 
 #[cfg(test)]

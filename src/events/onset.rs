@@ -2,7 +2,7 @@
 
 use super::transverse;
 use crate::data::{CoarseEvent, End, Signal};
-use crate::numerics::reduce;
+use crate::numerics::{as_f64, reduce};
 
 /// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
 pub(super) const FOOT: f64 = 0.02;
@@ -73,7 +73,7 @@ pub fn slap_down(
     let blocks = (width / block).max(1);
     let sums = velocity_sums(force, block, 1.0 / signal.sample_rate_hz);
     let last_sum = sums.len() - 1;
-    let mean = |a: usize, b: usize| (sums[b] - sums[a]) / count((b - a).max(1) * block);
+    let mean = |a: usize, b: usize| (sums[b] - sums[a]) / as_f64((b - a).max(1) * block);
     let change = |i: usize| mean(i, (i + blocks).min(last_sum)) - mean(i.saturating_sub(blocks), i);
     let first = (signal.index_from(between_s.start).saturating_sub(start) / block).max(1);
     // A mean over less than a third of the width says nothing: R's pulse must be in the record.
@@ -121,10 +121,10 @@ fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise
     };
     let low = (0..high).rev().find(|&i| sign * force[i] < foot).map_or(0, |i| i + 1);
     let crossing = interpolated(force, low, sign * foot);
-    let points: Vec<(f64, f64)> = (low..=high).map(|i| (count(i), sign * force[i])).collect();
+    let points: Vec<(f64, f64)> = (low..=high).map(|i| (as_f64(i), sign * force[i])).collect();
     let extrapolated = zero_of_line(&points).unwrap_or(crossing);
     // A rise that is steeper than the sampling, or one that bends, puts the line's zero past the crossing or far before it.
-    let reach = (count(high) - crossing).max(1.0);
+    let reach = (as_f64(high) - crossing).max(1.0);
     let position = extrapolated.clamp(crossing - reach, crossing);
     let u_s = ((crossing - position).max(0.5) / 3.0_f64.sqrt()) / signal.sample_rate_hz;
     Some((signal.time_s(from) + position / signal.sample_rate_hz, u_s))
@@ -164,11 +164,11 @@ pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<(f64, 
 /// Sums of the velocity's samples before each whole block; one longer than there are whole blocks.
 fn velocity_sums(force: &[f64], block: usize, step_s: f64) -> Vec<f64> {
     let (mut velocity_m_s, mut sum) = (0.0, 0.0);
-    let weights: Vec<f64> = (1..=block).rev().map(count).collect();
+    let weights: Vec<f64> = (1..=block).rev().map(as_f64).collect();
     let mut sums = vec![0.0];
     sums.extend(force.chunks_exact(block).map(|chunk| {
         // Σ over the block of v + f_0 h + … + f_i h, without following v from sample to sample.
-        sum += velocity_m_s * count(block) + reduce::dot(chunk, &weights) * step_s;
+        sum += velocity_m_s * as_f64(block) + reduce::dot(chunk, &weights) * step_s;
         velocity_m_s += reduce::sum(chunk) * step_s;
         sum
     }));
@@ -195,7 +195,7 @@ fn smoothed(force: &[f64], sample_rate_hz: f64) -> Vec<f64> {
     (0..force.len())
         .map(|i| {
             let (a, b) = (i.saturating_sub(half), (i + half + 1).min(force.len()));
-            (sums[b] - sums[a]) / count(b - a)
+            (sums[b] - sums[a]) / as_f64(b - a)
         })
         .collect()
 }
@@ -207,21 +207,16 @@ fn interpolated(force: &[f64], index: usize, level: f64) -> f64 {
     }
     let (a, b) = (force[index - 1], force[index]);
     let share = if (b - a).abs() > 0.0 { ((level - a) / (b - a)).clamp(0.0, 1.0) } else { 1.0 };
-    count(index) - 1.0 + share
+    as_f64(index) - 1.0 + share
 }
 
 /// Zero of the least-squares line through points; `None` for fewer than two or a line that does not rise.
 fn zero_of_line(points: &[(f64, f64)]) -> Option<f64> {
-    let n = count(points.len());
+    let n = as_f64(points.len());
     let (mx, my) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
     let (sxx, sxy) =
         points.iter().fold((0.0, 0.0), |(xx, xy), p| (xx + (p.0 - mx).powi(2), xy + (p.0 - mx) * (p.1 - my)));
     (points.len() > 1 && sxy > 0.0).then(|| mx - my * sxx / sxy)
-}
-
-#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-fn count(n: usize) -> f64 {
-    n as f64
 }
 
 #[cfg(test)]

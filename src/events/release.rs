@@ -2,7 +2,7 @@
 
 use super::block_means_m_s2;
 use crate::data::{Axis, Channel, Drop, Samples};
-use crate::numerics::{reduce, robust};
+use crate::numerics::{as_f64, reduce, robust};
 use std::ops::Range;
 
 /// A step from rest to free fall is this share of g cos φ at least and at most: sensors on a tilted cask, a hook that gives way.
@@ -148,7 +148,7 @@ impl<'a> Record<'a> {
             .filter(|level| level.is_finite())
             .collect();
         // A scatter over n levels is known to 1/√(2n) of itself: the few of a short fall are given that margin twice.
-        let margin = 1.0 + (2.0 / count(levels.len().max(1))).sqrt();
+        let margin = 1.0 + (2.0 / as_f64(levels.len().max(1))).sqrt();
         let scatter_m_s2 =
             if levels.len() > 1 { robust::mean_and_rms(&levels).1 } else { TOUCH * self.weight_m_s2 };
         margin * scatter_m_s2.hypot(self.converter_step() / 12.0_f64.sqrt())
@@ -183,20 +183,15 @@ impl<'a> Record<'a> {
             ahead.first().is_some_and(is_off)
                 && ahead.iter().filter(|f| is_off(f)).count() * 3 >= 2 * ahead.len()
         });
-        count(found.unwrap_or(block * self.size))
+        as_f64(found.unwrap_or(block * self.size))
     }
 
     /// Where the samples about a step fall below `level`: those above it are counted, so that noise averages.
     fn crossing(&self, step: usize, level: f64) -> f64 {
         let start = step.saturating_sub(LEVEL / 2) * self.size;
         let about = self.force_m_s2(start..(step + LEVEL / 2) * self.size);
-        count(start + about.iter().filter(|f| **f > level).count())
+        as_f64(start + about.iter().filter(|f| **f > level).count())
     }
-}
-
-#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-fn count(n: usize) -> f64 {
-    n as f64
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! Signals and events to what speaks against single channels.
 
 use super::{sampling, worth};
-use crate::data::{CaskFile, Events, Issue, IssueCode, MOST_LOST_M_S, Severity, Signal};
+use crate::data::{
+    CaskFile, Events, Issue, IssueCode, MOST_LOST_M_S, STANDARD_GRAVITY_M_S2, Severity, Signal,
+};
 
 /// What is left to know a velocity step by that a channel lost.
 const AS_FAR_AS_TOLD: &str = "k and the slap-down velocity are had only as far as the other channels and the way of the second end to the target tell them";
@@ -71,7 +73,7 @@ fn clipped(signal: &Signal, events: &Events) -> Vec<Issue> {
                 format!(
                     "{} stands at its limit of {:.0} g for {number} samples {when}{effect}. Use a sensor or range with more head-room",
                     signal.name,
-                    (signal.force_m_s2[first.from] + signal.removed_offset_m_s2).abs() / 9.806_65,
+                    (signal.force_m_s2[first.from] + signal.removed_offset_m_s2).abs() / STANDARD_GRAVITY_M_S2,
                 ),
             )
             .on(&signal.name)

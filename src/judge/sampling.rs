@@ -1,6 +1,7 @@
 //! The first pulse as it was sampled to whether the sample rate and the filter before it were fit for it.
 
 use crate::data::{Events, Issue, IssueCode, Severity, Signal};
+use crate::numerics::as_f64;
 use crate::numerics::spectrum::magnitude;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -59,8 +60,8 @@ fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), f64)> {
     let high = (reached..force.len()).find(|&i| force[i] <= foot)?;
     // Dips of ringing on the pulse do not end its upper half.
     let high_half = (reached..high).rev().find(|&i| force[i] > shoulder)? + 1;
-    let rise = |i: usize, level: f64| number(i) + (level - force[i]) / (force[i + 1] - force[i]);
-    let fall = |i: usize, level: f64| number(i) - (level - force[i]) / (force[i - 1] - force[i]);
+    let rise = |i: usize, level: f64| as_f64(i) + (level - force[i]) / (force[i + 1] - force[i]);
+    let fall = |i: usize, level: f64| as_f64(i) - (level - force[i]) / (force[i - 1] - force[i]);
     let whole = (rise(low, foot), fall(high, foot));
     let half = fall(high_half, shoulder) - rise(reached - 1, shoulder);
     let samples = ((whole.1 - whole.0) / FLANKS[0].1).min(half / FLANKS[1].1);
@@ -106,7 +107,7 @@ fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<Content> {
     let count = force.len();
     let margin = signal.index_from(pulse_s.0).saturating_sub(from).max(1);
     for i in 0..margin.min(count / 2) {
-        let weight = 0.5 - 0.5 * (PI * (number(i) + 0.5) / number(margin)).cos();
+        let weight = 0.5 - 0.5 * (PI * (as_f64(i) + 0.5) / as_f64(margin)).cos();
         force[i] *= weight;
         force[count - 1 - i] *= weight;
     }
@@ -115,9 +116,9 @@ fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<Content> {
     let (frequency_hz, size) = magnitude(&force, signal.sample_rate_hz);
     let band = &size[frequency_hz.partition_point(|f| *f < BAND * signal.sample_rate_hz)..];
     Some(Content {
-        in_band: (band.iter().map(|m| m * m).sum::<f64>() / number(band.len().max(1))).sqrt(),
+        in_band: (band.iter().map(|m| m * m).sum::<f64>() / as_f64(band.len().max(1))).sqrt(),
         largest: size.iter().fold(0.0, |m, s| s.max(m)),
-        noise: signal.noise_m_s2 * number(count).sqrt() / signal.sample_rate_hz,
+        noise: signal.noise_m_s2 * as_f64(count).sqrt() / signal.sample_rate_hz,
     })
 }
 
@@ -141,11 +142,6 @@ fn aliasing(signal: &Signal, pulse_s: (f64, f64), found: &Content, largest: f64)
         .on(&signal.name)
         .between(pulse_s.0, pulse_s.1)
     })
-}
-
-#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-fn number(n: usize) -> f64 {
-    n as f64
 }
 
 #[cfg(test)]

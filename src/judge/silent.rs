@@ -1,6 +1,6 @@
 //! The channels as recorded to those that say nothing: unplugged, stuck, or with nothing but noise and hum.
 
-use crate::data::{Channel, Issue, IssueCode, Samples, Severity};
+use crate::data::{Channel, Issue, IssueCode, STANDARD_GRAVITY_M_S2, Samples, Severity};
 use crate::numerics::{reduce, robust};
 use rayon::prelude::*;
 
@@ -35,7 +35,7 @@ pub fn judge_silent(channels: &[Channel]) -> Vec<Issue> {
         .filter(|(_, r)| loudest > 0.0 && is_silent(r))
         .map(|(channel, r)| {
             let found = if r.farthest > 0.0 {
-                format!("stays within {:.2} g of its mean, all of it noise or hum,", r.farthest / 9.806_65)
+                format!("stays within {:.2} g of its mean, all of it noise or hum,", r.farthest / STANDARD_GRAVITY_M_S2)
             } else {
                 "holds one value".into()
             };

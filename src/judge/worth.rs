@@ -1,6 +1,6 @@
 //! Noise, place, start and size of each channel to whether it can carry the result.
 
-use crate::data::{Axis, CaskFile, End, Events, Issue, IssueCode, Severity, Signal};
+use crate::data::{Axis, CaskFile, End, Events, Issue, IssueCode, STANDARD_GRAVITY_M_S2, Severity, Signal};
 use crate::numerics::noise::integral_uncertainty_by;
 use crate::numerics::reduce;
 
@@ -15,7 +15,7 @@ const SLACK_M: f64 = 0.05;
 /// A record that begins with this share of the first peak begins in the impact.
 const UNDER_WAY: f64 = 0.1;
 /// Factors between units that are taken for one another: g and m/s², V and mV.
-const UNITS: [(f64, &str); 2] = [(9.806_65, "g and m/s²"), (1000.0, "V and mV, or g and mg")];
+const UNITS: [(f64, &str); 2] = [(STANDARD_GRAVITY_M_S2, "g and m/s²"), (1000.0, "V and mV, or g and mg")];
 /// Two chains of one kind have the same noise within this share …
 const ALIKE: f64 = 0.2;
 /// … and peaks that differ by less than this factor less than the units do.
@@ -45,7 +45,7 @@ fn noisy(signal: &Signal, events: &Events, impact_velocity_m_s: f64) -> Option<I
             format!(
                 "the noise of {} ({:.2} g before the impact) alone makes its velocity uncertain by ± {:.2} m/s over {:.0} ms, which is in the intervals: record more of the free fall, use a more sensitive range, or look for a loose cable",
                 signal.name,
-                signal.noise_m_s2 / 9.806_65,
+                signal.noise_m_s2 / STANDARD_GRAVITY_M_S2,
                 2.0 * u_m_s,
                 1e3 * length_s
             ),

@@ -12,3 +12,10 @@ pub mod robust;
 pub mod root;
 pub mod sinusoid;
 pub mod spectrum;
+
+/// A count of samples or the like as a number; exact below 2^53.
+#[must_use]
+#[allow(clippy::cast_precision_loss, reason = "counts stay below 2^53")]
+pub fn as_f64(count: usize) -> f64 {
+    count as f64
+}

@@ -2,6 +2,7 @@
 
 use super::projection::{OfTimes, columns, mode_columns};
 use super::{Drive, Form, Oscillation, Series};
+use crate::numerics::as_f64;
 use nalgebra::{DMatrix, DVector};
 
 /// One more mode as it is tried: its columns, and their products with one another.
@@ -72,7 +73,7 @@ pub(super) fn best_seed(
                 .map(|(((series, rest), (columns, _)), free)| {
                     let along = columns.tr_mul(rest);
                     let explained = along.dot(&free.solve(&along));
-                    let left = (rest.norm_squared() - explained).max(0.0) / count(rest.len());
+                    let left = (rest.norm_squared() - explained).max(0.0) / as_f64(rest.len());
                     (left + series.floor.powi(2)).ln()
                 })
                 .sum(),
@@ -86,9 +87,4 @@ pub(super) fn best_seed(
 fn basis(series: &Series, start: &[Oscillation], form: Form) -> Option<DMatrix<f64>> {
     let matrix = columns(series, start, form);
     (matrix.nrows() >= matrix.ncols() + form.width() + 2).then(|| matrix.qr().q())
-}
-
-#[allow(clippy::cast_precision_loss, reason = "a few thousand points")]
-fn count(n: usize) -> f64 {
-    n as f64
 }
