@@ -1,29 +1,32 @@
 //! Delimited text to the channels that a cask file names, whatever its delimiter, decimal mark, encoding and preamble.
 
+mod complaint;
 mod header;
 mod input;
 mod layout;
 mod list;
 mod pieces;
+mod plan;
 mod reading;
 mod rows;
 mod stamp;
 mod time_column;
+mod witness;
 
 pub(super) use list::list;
 
-use super::error::{self, IngestError};
+use super::error::IngestError;
 use super::time_base::{self, TimeBaseError, Times, Uniform};
-use super::{Limits, Progress, RawChannel, RawRecording, number};
-use crate::data::{CaskFile, ChannelSpec, Issue, IssueCode, Samples, Severity, Source};
+use super::{Limits, Progress, RawChannel, RawRecording};
+use crate::data::{CaskFile, Issue, Samples};
 use input::Input;
 use layout::Layout;
+use plan::Plan;
 use rayon::prelude::*;
 use reading::Reading;
-use rows::{Ending, RowError, Rows, Sink, Wanted};
+use rows::{Ending, Rows, Sink, Wanted};
 use stamp::Stamps;
 use std::path::Path;
-use time_column::Scale;
 
 /// The channels of `cask_file` from the text at `path`.
 ///
@@ -45,7 +48,7 @@ fn of_input(
     cask_file: &CaskFile,
     (limits, progress): (Limits, Progress),
 ) -> Result<RawRecording, IngestError> {
-    let layout = Layout::of(&input).ok_or_else(|| no_table(path))?;
+    let layout = Layout::of(&input).ok_or_else(|| complaint::no_table(path))?;
     let plans: Vec<Plan> = cask_file
         .channels
         .iter()
@@ -56,7 +59,7 @@ fn of_input(
         &plans.iter().filter_map(|plan| plan.time_column).collect::<Vec<_>>(),
     );
     let (mut held, stamps, ending) = columns(path, input, &layout, &wanted, (limits, progress))?;
-    let mut issues = ending_issues(&ending);
+    let mut issues = complaint::ending_issues(&ending);
     for (slot, times) in held.iter_mut().enumerate() {
         if wanted.is_time[slot] && !stamps.are_in(slot) {
             issues.extend(to_seconds(path, times, wanted.columns[slot], &layout, &plans)?);
@@ -92,101 +95,12 @@ fn of_input(
     let mut channels = Vec::with_capacity(plans.len());
     for (spec, (uniform, plan)) in uniform.into_iter().zip(&plans).enumerate() {
         let name = &cask_file.channels[spec].name;
-        let uniform = uniform.map_err(|error| time_error(path, name, &error))?;
+        let mut uniform = uniform.map_err(|error| complaint::time_error(path, name, &error))?;
+        let times_s = plan.time_column.map(|column| held[wanted.slot(column)].as_slice());
+        uniform.issues.extend(witness::of_header(path, name, plan, (uniform.sample_rate_hz, times_s))?);
         channels.push(RawChannel { spec, uniform, unit: layout.columns[plan.column].unit.clone() });
     }
     Ok(RawRecording { channels, zero_unix_ns: stamps.zero_unix_ns(), issues })
-}
-
-/// What one channel takes from the table.
-struct Plan {
-    column: usize,
-    time_column: Option<usize>,
-    declared_rate_hz: Option<f64>,
-}
-
-impl Plan {
-    fn of(path: &Path, spec: &ChannelSpec, time: Option<&str>, layout: &Layout) -> Result<Self, IngestError> {
-        let Source::Path(source) = &spec.source else {
-            return Err(error::source(
-                path,
-                &spec.name,
-                "source gives a topic and a field, but this recording is a table",
-                "write the column's header: source = \"A1\"",
-            ));
-        };
-        let column = find(path, spec, source, layout)?;
-        let time_column = match spec.time.as_deref().or(time) {
-            Some(name) => Some(find(path, spec, name, layout)?),
-            None => layout.time_of(column),
-        };
-        if let Some(found) = time_column
-            && layout.time_scale(found) == Scale::Unknown
-        {
-            return Err(error::source(
-                path,
-                &spec.name,
-                format!(
-                    "the times in column {:?} are in {:?}, which is no unit of time known here",
-                    layout.columns[found].header,
-                    layout.columns[found].unit.as_deref().unwrap_or("")
-                ),
-                "head the column with [s], [ms], [µs] or [ns], or give sample_rate_hz and another time column",
-            ));
-        }
-        let stated_hz = if time_column.is_none() { layout.stated_rate_hz(column) } else { None };
-        let declared_rate_hz = spec.sample_rate_hz.or(stated_hz);
-        if time_column.is_none() && declared_rate_hz.is_none() {
-            return Err(error::source(
-                path,
-                &spec.name,
-                no_times(layout),
-                "name it under [recording]: time = \"…\", or give this channel sample_rate_hz",
-            ));
-        }
-        Ok(Self { column, time_column, declared_rate_hz })
-    }
-}
-
-/// That no column holds times, with the one that looks most like it.
-fn no_times(layout: &Layout) -> String {
-    let headed = layout.columns.iter().find(|column| time_column::is_headed(column));
-    match headed.filter(|column| !column.is_numeric && !column.example.is_empty()) {
-        Some(column) => {
-            format!(
-                "no column of times was found: {:?} holds {:?}, which is no time known here",
-                column.header, column.example
-            )
-        }
-        None => format!("no column of times was found among {}", layout.names().join(", ")),
-    }
-}
-
-/// The column with that header, with or without its unit, or with that number where there are no headers.
-fn find(path: &Path, spec: &ChannelSpec, wanted: &str, layout: &Layout) -> Result<usize, IngestError> {
-    let found = layout.find(wanted);
-    match found.as_slice() {
-        [one] => Ok(*one),
-        [] => Err(error::source(
-            path,
-            &spec.name,
-            if layout.has_header {
-                format!("no column is headed {wanted:?} (the header is line {})", layout.header_line)
-            } else {
-                format!(
-                    "there is no column {wanted:?}: the table has no header of {} cells, as its rows have; its columns count 1, 2, …",
-                    layout.columns.len()
-                )
-            },
-            error::near_names(path, wanted, "column", &layout.names()),
-        )),
-        several => Err(error::source(
-            path,
-            &spec.name,
-            format!("{} columns are headed {wanted:?}", several.len()),
-            "rename all but one of them in a copy of the recording",
-        )),
-    }
 }
 
 /// Keeps the wanted columns whole.
@@ -258,7 +172,7 @@ fn columns(
     let columns = wanted.columns.iter().map(|_| Vec::with_capacity(rows_expected)).collect();
     let mut keep = Keep { wanted, columns: Columns(columns), stamps: Stamps::default() };
     let ending = rows::read(input, layout, wanted, &mut keep, (limits, progress))
-        .map_err(|error| row_error(path, limits, (layout, wanted), error))?;
+        .map_err(|error| complaint::row_error(path, limits, (layout, wanted), error))?;
     let Keep { columns: Columns(mut columns), stamps, .. } = keep;
     if !wanted.is_time.contains(&true) {
         // Blank lines behind the table are no samples.
@@ -301,90 +215,6 @@ fn on_base(samples: Vec<f64>, times: Option<&Times>, plan: &Plan) -> Result<Unif
         (None, Some(rate_hz)) => time_base::from_rate(0.0, rate_hz, Samples::F64(samples)),
         (None, None) => Err(TimeBaseError::Rate { sample_rate_hz: 0.0 }),
     }
-}
-
-fn ending_issues(ending: &Ending) -> Vec<Issue> {
-    ending
-        .cut_line
-        .map(|line| {
-            Issue::new(
-                IssueCode::Truncated,
-                Severity::Warning,
-                format!(
-                    "line {line}, the last, ends in the middle and was dropped: the file was cut off while it was written or copied"
-                ),
-            )
-        })
-        .into_iter()
-        .collect()
-}
-
-fn no_table(path: &Path) -> IngestError {
-    IngestError::Content {
-        path: path.display().to_string(),
-        place: "the first 64 KiB".into(),
-        problem: "no rows of numbers were found".into(),
-        mend: "export one row a sample with comma, semicolon or tab between the columns".into(),
-    }
-}
-
-fn time_error(path: &Path, channel: &str, error: &TimeBaseError) -> IngestError {
-    error::source(
-        path,
-        channel,
-        error.to_string(),
-        "check the column of times ([recording] time, or time of the channel), or give sample_rate_hz",
-    )
-}
-
-fn row_error(
-    path: &Path,
-    limits: Limits,
-    (layout, wanted): (&Layout, &Wanted),
-    error: RowError,
-) -> IngestError {
-    let headed = |slot: usize| {
-        wanted
-            .columns
-            .get(slot)
-            .and_then(|&c| layout.columns.get(c))
-            .map_or("", |column| column.header.as_str())
-    };
-    let (line, problem, mend) = match error {
-        RowError::Io(source) => return error::io(path, source),
-        RowError::TooMany => {
-            return limits.refusal(path, "the samples of the columns read take", limits.samples_bytes());
-        }
-        RowError::TooLong { line } => {
-            return limits.refusal(path, &format!("line {line} takes"), limits.line_bytes());
-        }
-        RowError::Word { line, slot, cell } if wanted.is_time.get(slot) == Some(&true) => (
-            line,
-            format!("column {:?} holds {cell:?}, which is no time, or not written as the ones before", headed(slot)),
-            "times are numbers, date-time stamps (2026-11-20T12:34:56.789, 20.11.2026 12:34:56,789) or clock times (12:34:56.789); \
-             correct the cell in a copy, or name another column of times"
-                .to_owned(),
-        ),
-        RowError::Word { line, slot, cell } if number::is_grouped(&cell) => (
-            line,
-            format!("column {:?} holds {cell:?}, a number whose thousands are marked too", headed(slot)),
-            "only a decimal mark is read: export the table again without thousands separators".to_owned(),
-        ),
-        RowError::Word { line, slot, cell } => (
-            line,
-            format!("column {:?} holds {cell:?}, which is no number", headed(slot)),
-            format!(
-                "the decimal mark of this file is taken as {:?}; correct the cell in a copy, or empty it: an empty cell counts as missing",
-                char::from(layout.decimal)
-            ),
-        ),
-        RowError::NoTime { line, slot } => (
-            line,
-            format!("column {:?} holds no time for this row", headed(slot)),
-            "delete the row in a copy, or name another column of times".to_owned(),
-        ),
-    };
-    IngestError::Content { path: path.display().to_string(), place: format!("line {line}"), problem, mend }
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ mod limits;
 mod mcap;
 mod number;
 pub mod scene_file;
+mod stated_rate;
 pub mod time_base;
 mod time_name;
 mod time_unit;

@@ -1,6 +1,7 @@
 //! The lines above the rows to the columns' names and units.
 
 use super::layout::{Column, Judged, Line};
+use crate::ingest::stated_rate::{self, StatedRate};
 use crate::ingest::time_unit;
 
 /// Units beside those of time that a row of units may hold, in lower case.
@@ -56,8 +57,8 @@ pub(super) fn labview_lines(lines: &[Line]) -> usize {
     ends.last().unwrap_or(0)
 }
 
-/// The interval in s of each cell of Delta_X, which stands in a header of LabVIEW's.
-pub(super) fn labview_intervals(lines: &[Line], delimiter: u8) -> Vec<Option<f64>> {
+/// The rate that each cell of Delta_X states, which stands above the rows of LabVIEW's files.
+pub(super) fn labview_rates(lines: &[Line], delimiter: u8) -> Vec<Option<StatedRate>> {
     let cells_of = |name: &str| {
         let cells = lines.iter().rev().map(|line| header_cells(&line.text, delimiter));
         cells.into_iter().find(|cells| cells.first().is_some_and(|first| first == name))
@@ -67,11 +68,16 @@ pub(super) fn labview_intervals(lines: &[Line], delimiter: u8) -> Vec<Option<f64
         None | Some("" | "Time" | "X_Dimension") => true,
         Some(_) => false,
     };
-    let intervals = cells_of("Delta_X").unwrap_or_default().into_iter().enumerate().map(|(i, cell)| {
-        let interval_s = cell.replace(',', ".").parse().ok();
-        interval_s.filter(|interval_s: &f64| is_time(i) && interval_s.is_finite() && *interval_s > 0.0)
+    let rates = cells_of("Delta_X").unwrap_or_default().into_iter().enumerate().map(|(i, cell)| {
+        let interval_s: f64 = cell.replace(',', ".").parse().ok()?;
+        let rate_hz = interval_s.recip();
+        (is_time(i) && rate_hz.is_finite() && rate_hz > 0.0).then(|| StatedRate {
+            place: format!("Delta_X = {cell}"),
+            rate_hz,
+            rounding: stated_rate::rounding(&cell),
+        })
     });
-    intervals.collect()
+    rates.collect()
 }
 
 /// The header above the rows, with the row of units where there is one.

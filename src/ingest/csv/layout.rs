@@ -5,6 +5,7 @@ use super::input::{self, Input};
 use super::stamp;
 use super::time_column::{self, Scale};
 use crate::ingest::number;
+use crate::ingest::stated_rate::{Agreement, StatedRate};
 
 /// One column of the table.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -44,8 +45,8 @@ pub(super) struct Layout {
     pub data_offset: usize,
     /// The column of times, where one was found.
     pub time_column: Option<usize>,
-    /// Intervals between rows that a header of LabVIEW's states, s, by cell.
-    intervals_s: Vec<Option<f64>>,
+    /// Rates that a header of LabVIEW's states, by cell.
+    rates: Vec<Option<StatedRate>>,
     is_decimal_seen: bool,
     mean_row_bytes: usize,
     /// Whether blank lines stand between the rows, as doubled line breaks leave them.
@@ -132,7 +133,7 @@ impl Layout {
                 .flatten()
                 .any(|cell| cell.as_bytes().contains(&decimal) && is_number(cell, decimal)),
             time_column,
-            intervals_s: header::labview_intervals(&lines[..begin], delimiter),
+            rates: header::labview_rates(&lines[..above.max(begin)], delimiter),
             mean_row_bytes: (row_bytes / cells.len()).max(2),
             // Rows that lost their values are fewer.
             is_spaced: lines[first..].iter().filter(|line| line.text.trim().is_empty()).count() * 3
@@ -149,10 +150,15 @@ impl Layout {
         Some((0..column).rev().find(is_alike).unwrap_or(found))
     }
 
-    /// The rate that LabVIEW states for a column above the rows, Hz.
-    pub(super) fn stated_rate_hz(&self, column: usize) -> Option<f64> {
-        let own = self.intervals_s.get(column).copied().flatten();
-        own.or_else(|| self.intervals_s.iter().copied().flatten().next()).map(f64::recip)
+    /// The rate that LabVIEW states for a column above the rows; that of all where there is none of its own.
+    pub(super) fn stated_rate(&self, column: usize) -> Option<&StatedRate> {
+        let own = self.rates.get(column).and_then(Option::as_ref);
+        own.or_else(|| {
+            let mut all = self.rates.iter().flatten();
+            let first = all.next()?;
+            all.all(|other| other.agreement(first.rate_hz, first.rounding) == Agreement::Same)
+                .then_some(first)
+        })
     }
 
     /// The columns whose header, or header without unit, is `wanted`.

@@ -2,6 +2,7 @@
 
 use super::tests::{cask_file, read_bytes, told, values};
 use super::*;
+use crate::data::{IssueCode, Severity};
 
 #[track_caller]
 fn read_as(text: &str, sources: &[&str]) -> RawRecording {
@@ -98,6 +99,60 @@ fn measurement_files_of_labview_are_read_with_and_without_times() {
     let a1 = listing.channels.iter().find(|channel| channel.source == "A1").unwrap();
     assert_eq!((a1.sample_rate_hz, a1.samples), (Some(10.0), Some(5)));
     assert_eq!(listing.facts["time column"], "none found; Delta_X states 10 Hz");
+}
+
+#[test]
+fn a_delta_x_that_contradicts_times_or_cask_file_is_told() {
+    use std::fmt::Write as _;
+    let text = |delta: &str, period_us: u32, has_times: bool| {
+        let header =
+            LVM.replace("0.100000", delta).replace(".\nMulti", ",\nMulti").replace("0.0000", "0,0000");
+        let mut text = format!("{header}X_Value\tA1\tA2\tComment\n");
+        for i in 0..4000 {
+            let time_us = i * period_us;
+            let time = format!("{},{:06}", time_us / 1_000_000, time_us % 1_000_000);
+            let time = if has_times { time } else { String::new() };
+            let _ = writeln!(text, "{time}\t{},5\t{},5", i % 9, i % 7);
+        }
+        text
+    };
+    let issues = |text: &str, cask: &CaskFile| {
+        let recording = read_bytes(text.as_bytes(), cask).map_err(|error| told(&error))?;
+        Ok::<_, String>(recording.channels[0].uniform.issues.clone())
+    };
+    let plain = cask_file(&["A1"]);
+    let mut stated = cask_file(&["A1"]);
+    stated.channels[0].sample_rate_hz = Some(10_000.0);
+    let mut named = cask_file(&["A1"]);
+    named.time = Some("X_Value".into());
+    // Rounded to what the file shows, or as clocks are apart.
+    for (delta, period_us) in [("0,000100", 100), ("1,0E-4", 100), ("0,00010005", 100), ("0,000020", 20)] {
+        assert_eq!(issues(&text(delta, period_us, true), &plain), Ok(Vec::new()), "{delta}");
+    }
+    assert_eq!(issues(&text("0,000100", 100, false), &stated), Ok(Vec::new()));
+    for (text, cask, rate_hz) in [
+        (text("0,0001005", 100, true), &plain, "9950.249 Hz"),
+        (text("0,000105", 100, true), &stated, "9523.81 Hz"),
+        (text("0,000105", 100, true), &named, "9523.81 Hz"),
+        (text("0,000105", 100, false), &stated, "9523.81 Hz"),
+    ] {
+        let issues = issues(&text, cask).unwrap();
+        let [issue] = &issues[..] else { panic!("{issues:?}") };
+        assert_eq!((issue.code, issue.severity), (IssueCode::TimeJitter, Severity::Warning));
+        assert!(issue.message.contains(rate_hz) && issue.message.contains("10000 Hz"), "{}", issue.message);
+    }
+    let message = issues(&text("0,000105", 100, true), &plain).unwrap_err();
+    for part in ["Delta_X = 0,000105", "9523.81 Hz", "sample_rate_hz = 9523.81 or sample_rate_hz = 10000"] {
+        assert!(message.contains(part), "{message}");
+    }
+    // Without LabVIEW's end of the header too.
+    let preamble = text("0,000105", 100, true).replace("***End_of_Header***", "");
+    assert!(issues(&preamble, &plain).is_err());
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("r.lvm");
+    std::fs::write(&path, text("0,000105", 100, true)).unwrap();
+    let listing = list(&path, Limits::default(), &|_| {}).unwrap();
+    assert!(listing.issues.iter().any(|issue| issue.message.contains("Delta_X")), "{:?}", listing.issues);
 }
 
 #[test]

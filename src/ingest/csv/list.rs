@@ -2,12 +2,13 @@
 
 use super::super::error::IngestError;
 use super::super::number;
+use super::complaint::{ending_issues, no_table, row_error};
 use super::input::Input;
 use super::layout::{Column, Layout};
 use super::reading::Reading;
 use super::rows::{self, Rows, Sink, Wanted};
 use super::stamp::Stamps;
-use super::{Limits, Progress, TimeBaseError, ending_issues, no_table, row_error, time_base};
+use super::{Limits, Progress, TimeBaseError, time_base, witness};
 use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Samples, Severity};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -145,9 +146,15 @@ pub(in super::super) fn list(
         reading.apply(&mut seen.times);
         issues.extend(reading.issue(&layout.columns[column].header));
     }
-    let stated_rate_hz = layout.stated_rate_hz(usize::MAX).filter(|_| time_column.is_none());
-    let clock =
-        stated_rate_hz.map_or_else(|| Clock::of(&seen.times), |rate_hz| Clock::at(rate_hz, seen.rows));
+    let stated = layout.stated_rate(usize::MAX);
+    let clock = match stated.filter(|_| time_column.is_none()) {
+        Some(stated) => Clock::at(stated.rate_hz, seen.rows),
+        None => Clock::of(&seen.times),
+    };
+    if time_column.is_some() {
+        let issue = |rate_hz| witness::of_times(stated, rate_hz, &seen.times);
+        issues.extend(clock.sample_rate_hz.and_then(issue));
+    }
     let channels = layout
         .columns
         .iter()
@@ -293,6 +300,7 @@ fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
 }
 
 fn none_found(layout: &Layout) -> String {
-    let stated = layout.stated_rate_hz(usize::MAX).map(|rate_hz| format!("; Delta_X states {rate_hz} Hz"));
+    let stated =
+        layout.stated_rate(usize::MAX).map(|stated| format!("; Delta_X states {} Hz", stated.rate_hz));
     format!("none found{}", stated.unwrap_or_default())
 }

@@ -1,7 +1,7 @@
 //! Tables as they come from loggers and spreadsheets.
 
 use super::*;
-use crate::data::{Axis, Cask, Contact, Coupling, Drop, End, FilterChoice};
+use crate::data::{Axis, Cask, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice, IssueCode, Source};
 
 pub(in super::super) fn cask_file(sources: &[&str]) -> CaskFile {
     let channels = sources.iter().map(|source| ChannelSpec {

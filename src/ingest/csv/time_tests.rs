@@ -2,6 +2,7 @@
 
 use super::tests::{cask_file, read_bytes, told, values};
 use super::*;
+use crate::data::Severity;
 use std::fmt::Write as _;
 
 /// A table of so many rows, the time of each by its number.

@@ -1,0 +1,109 @@
+//! What a table's end, rows, columns and times came to, in words.
+
+use super::super::Limits;
+use super::super::error::{self, IngestError};
+use super::super::number;
+use super::super::time_base::TimeBaseError;
+use super::layout::Layout;
+use super::rows::{Ending, RowError, Wanted};
+use super::time_column;
+use crate::data::{Issue, IssueCode, Severity};
+use std::path::Path;
+
+pub(super) fn ending_issues(ending: &Ending) -> Vec<Issue> {
+    ending
+        .cut_line
+        .map(|line| {
+            Issue::new(
+                IssueCode::Truncated,
+                Severity::Warning,
+                format!(
+                    "line {line}, the last, ends in the middle and was dropped: the file was cut off while it was written or copied"
+                ),
+            )
+        })
+        .into_iter()
+        .collect()
+}
+
+/// That no column holds times, with the one that looks most like it.
+pub(super) fn no_times(layout: &Layout) -> String {
+    let headed = layout.columns.iter().find(|column| time_column::is_headed(column));
+    match headed.filter(|column| !column.is_numeric && !column.example.is_empty()) {
+        Some(column) => {
+            format!(
+                "no column of times was found: {:?} holds {:?}, which is no time known here",
+                column.header, column.example
+            )
+        }
+        None => format!("no column of times was found among {}", layout.names().join(", ")),
+    }
+}
+
+pub(super) fn no_table(path: &Path) -> IngestError {
+    IngestError::Content {
+        path: path.display().to_string(),
+        place: "the first 64 KiB".into(),
+        problem: "no rows of numbers were found".into(),
+        mend: "export one row a sample with comma, semicolon or tab between the columns".into(),
+    }
+}
+
+pub(super) fn time_error(path: &Path, channel: &str, error: &TimeBaseError) -> IngestError {
+    error::source(
+        path,
+        channel,
+        error.to_string(),
+        "check the column of times ([recording] time, or time of the channel), or give sample_rate_hz",
+    )
+}
+
+pub(super) fn row_error(
+    path: &Path,
+    limits: Limits,
+    (layout, wanted): (&Layout, &Wanted),
+    error: RowError,
+) -> IngestError {
+    let headed = |slot: usize| {
+        wanted
+            .columns
+            .get(slot)
+            .and_then(|&c| layout.columns.get(c))
+            .map_or("", |column| column.header.as_str())
+    };
+    let (line, problem, mend) = match error {
+        RowError::Io(source) => return error::io(path, source),
+        RowError::TooMany => {
+            return limits.refusal(path, "the samples of the columns read take", limits.samples_bytes());
+        }
+        RowError::TooLong { line } => {
+            return limits.refusal(path, &format!("line {line} takes"), limits.line_bytes());
+        }
+        RowError::Word { line, slot, cell } if wanted.is_time.get(slot) == Some(&true) => (
+            line,
+            format!("column {:?} holds {cell:?}, which is no time, or not written as the ones before", headed(slot)),
+            "times are numbers, date-time stamps (2026-11-20T12:34:56.789, 20.11.2026 12:34:56,789) or clock times (12:34:56.789); \
+             correct the cell in a copy, or name another column of times"
+                .to_owned(),
+        ),
+        RowError::Word { line, slot, cell } if number::is_grouped(&cell) => (
+            line,
+            format!("column {:?} holds {cell:?}, a number whose thousands are marked too", headed(slot)),
+            "only a decimal mark is read: export the table again without thousands separators".to_owned(),
+        ),
+        RowError::Word { line, slot, cell } => (
+            line,
+            format!("column {:?} holds {cell:?}, which is no number", headed(slot)),
+            format!(
+                "the decimal mark of this file is taken as {:?}; correct the cell in a copy, or empty it: an empty cell counts as missing",
+                char::from(layout.decimal)
+            ),
+        ),
+        RowError::NoTime { line, slot } => (
+            line,
+            format!("column {:?} holds no time for this row", headed(slot)),
+            "delete the row in a copy, or name another column of times".to_owned(),
+        ),
+    };
+    IngestError::Content { path: path.display().to_string(), place: format!("line {line}"), problem, mend }
+}
