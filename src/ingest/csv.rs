@@ -54,10 +54,13 @@ fn of_input(
         .iter()
         .map(|spec| Plan::of(path, spec, cask_file.time.as_deref(), &layout))
         .collect::<Result<_, _>>()?;
-    let wanted = Wanted::new(
-        plans.iter().map(|plan| plan.column),
-        &plans.iter().filter_map(|plan| plan.time_column).collect::<Vec<_>>(),
-    );
+    let mut clocks: Vec<usize> = plans.iter().filter_map(|plan| plan.time_column).collect();
+    clocks.sort_unstable();
+    clocks.dedup();
+    let witnesses: Vec<usize> =
+        clocks.iter().flat_map(|&time| layout.witnesses(time)).map(|(column, _)| column).collect();
+    let values: Vec<_> = plans.iter().map(|plan| (plan.column, plan.time_column)).collect();
+    let wanted = Wanted::new(&values, &witnesses);
     let (mut held, stamps, ending) = columns(path, input, &layout, &wanted, (limits, progress))?;
     let mut issues = complaint::ending_issues(&ending);
     for (slot, times) in held.iter_mut().enumerate() {
@@ -65,6 +68,11 @@ fn of_input(
             issues.extend(to_seconds(path, times, wanted.columns[slot], &layout, &plans)?);
         }
     }
+    for time in clocks {
+        let name = |spec: usize| cask_file.channels[spec].name.as_str();
+        issues.extend(witness::of_columns(path, (time, &held), (&layout, &wanted), (&plans, &name))?);
+    }
+    drop_untimed(&mut held, &wanted, &plans);
     let mut uses = vec![0_usize; wanted.columns.len()];
     for plan in &plans {
         uses[wanted.slot(plan.column)] += 1;
@@ -108,6 +116,14 @@ struct Keep<'a> {
     wanted: &'a Wanted,
     columns: Columns,
     stamps: Stamps,
+    /// Of columns that bear out others.
+    other_stamps: Stamps,
+}
+
+impl<'a> Keep<'a> {
+    fn new(wanted: &'a Wanted, columns: Vec<Vec<f64>>) -> Self {
+        Self { wanted, columns: Columns(columns), stamps: Stamps::default(), other_stamps: Stamps::default() }
+    }
 }
 
 /// The wanted columns of some of the rows.
@@ -127,6 +143,9 @@ impl Rows for Columns {
 
 impl Rows for Keep<'_> {
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
+        if self.wanted.is_witness[slot] {
+            return Some(self.other_stamps.seconds(slot, cell).unwrap_or(f64::NAN));
+        }
         if self.wanted.is_time[slot] { self.stamps.seconds(slot, cell) } else { None }
     }
 
@@ -170,7 +189,7 @@ fn columns(
     let rows_expected =
         layout.rows_expected(input.bytes).min(usize::try_from(most_rows).unwrap_or(usize::MAX));
     let columns = wanted.columns.iter().map(|_| Vec::with_capacity(rows_expected)).collect();
-    let mut keep = Keep { wanted, columns: Columns(columns), stamps: Stamps::default() };
+    let mut keep = Keep::new(wanted, columns);
     let ending = rows::read(input, layout, wanted, &mut keep, (limits, progress))
         .map_err(|error| complaint::row_error(path, limits, (layout, wanted), error))?;
     let Keep { columns: Columns(mut columns), stamps, .. } = keep;
@@ -183,6 +202,33 @@ fn columns(
         }
     }
     Ok((columns, stamps, ending))
+}
+
+/// Leaves the rows without a time, in which a pair of columns has ended before others, out of the times and of what they time.
+fn drop_untimed(held: &mut [Vec<f64>], wanted: &Wanted, plans: &[Plan]) {
+    let mut is_kept: Vec<Option<Vec<bool>>> = vec![None; held.len()];
+    for slot in (0..held.len()).filter(|&slot| wanted.is_time[slot]) {
+        if held[slot].iter().any(|time| time.is_nan()) {
+            is_kept[slot] = Some(held[slot].iter().map(|time| !time.is_nan()).collect());
+        }
+    }
+    let retain = |column: &mut Vec<f64>, is_kept: &[bool]| {
+        let mut rows = is_kept.iter();
+        column.retain(|_| rows.next().copied().unwrap_or(true));
+    };
+    for plan in plans {
+        let clock = plan.time_column.and_then(|time| is_kept[wanted.slot(time)].as_ref());
+        if let Some(is_kept) = clock
+            && !wanted.is_time[wanted.slot(plan.column)]
+        {
+            retain(&mut held[wanted.slot(plan.column)], is_kept);
+        }
+    }
+    for (column, is_kept) in held.iter_mut().zip(&is_kept) {
+        if let Some(is_kept) = is_kept {
+            retain(column, is_kept);
+        }
+    }
 }
 
 /// The numbers in a column of times to s; a warning where nothing says that they are.

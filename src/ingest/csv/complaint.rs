@@ -102,7 +102,8 @@ pub(super) fn row_error(
         RowError::NoTime { line, slot } => (
             line,
             format!("column {:?} holds no time for this row", headed(slot)),
-            "delete the row in a copy, or name another column of times".to_owned(),
+            "fill the time in, or empty the cells of the channels that it times in that row of a copy; or name another column of times"
+                .to_owned(),
         ),
     };
     IngestError::Content { path: path.display().to_string(), place: format!("line {line}"), problem, mend }

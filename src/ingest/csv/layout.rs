@@ -45,6 +45,8 @@ pub(super) struct Layout {
     pub data_offset: usize,
     /// The column of times, where one was found.
     pub time_column: Option<usize>,
+    /// Columns that are certain to hold times, that one and others.
+    sure_times: Vec<usize>,
     /// Rates that a header of LabVIEW's states, by cell.
     rates: Vec<Option<StatedRate>>,
     is_decimal_seen: bool,
@@ -103,16 +105,23 @@ impl Layout {
         let cells: Vec<Vec<&str>> = lines[first..].iter().map(|line| split(&line.text, delimiter)).collect();
         let header = header::header(&lines[..first], delimiter, &judged);
         let mut columns = header::columns(header.as_ref(), &judged, &cells[0]);
+        // A pair of columns may have ended before the judged rows begin.
+        for ((column, cell), _) in
+            columns.iter_mut().zip(&cells[0]).zip(&judged.is_empty).filter(|(_, e)| **e)
+        {
+            column.is_numeric = is_value(cell, decimal);
+            column.is_stamped = stamp::is_stamp(cell.as_bytes());
+        }
         while columns.len() > 1 && columns.last().is_some_and(|c| c.header.is_empty() && !c.is_numeric) {
             columns.pop();
         }
-        let time_column = time_column::find(
+        let times = time_column::find(
             &columns,
             header.is_none() && is_first_rising(&cells, decimal),
             decimal,
             |column| cells.iter().filter_map(move |cells| cells.get(column).copied()),
         );
-        let extra = match (time_column, &header) {
+        let extra = match (times.taken, &header) {
             (Some(column), Some(_)) => extremes(&cells, column, decimal),
             _ => 0,
         };
@@ -132,7 +141,8 @@ impl Layout {
                 .iter()
                 .flatten()
                 .any(|cell| cell.as_bytes().contains(&decimal) && is_number(cell, decimal)),
-            time_column,
+            time_column: times.taken,
+            sure_times: times.sure,
             rates: header::labview_rates(&lines[..above.max(begin)], delimiter),
             mean_row_bytes: (row_bytes / cells.len()).max(2),
             // Rows that lost their values are fewer.
@@ -148,6 +158,18 @@ impl Layout {
         let is_alike =
             |c: &usize| self.columns[*c].is_numeric && self.columns[*c].header == self.columns[found].header;
         Some((0..column).rev().find(is_alike).unwrap_or(found))
+    }
+
+    /// The other columns of times, which have to bear out those of column `time`; each with whether other columns stand between.
+    ///
+    /// One of the same header with columns between is the clock of those.
+    pub(super) fn witnesses(&self, time: usize) -> Vec<(usize, bool)> {
+        let is_apart =
+            |&c: &usize| (c.min(time)..c.max(time)).any(|i| i != time && !self.sure_times.contains(&i));
+        let others = self.sure_times.iter().filter(|&&c| c != time).map(|c| (*c, is_apart(c)));
+        others
+            .filter(|&(c, is_apart)| !is_apart || self.columns[c].header != self.columns[time].header)
+            .collect()
     }
 
     /// The rate that LabVIEW states for a column above the rows; that of all where there is none of its own.

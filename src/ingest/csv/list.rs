@@ -68,7 +68,10 @@ impl Rows for Seen {
                 range.largest = range.largest.max(value);
             }
         }
-        if let Some(slot) = self.time_slot {
+        // A row for other columns than those with these times has none.
+        if let Some(slot) = self.time_slot
+            && !values[slot].is_nan()
+        {
             self.times.push(values[slot]);
         }
     }
@@ -135,7 +138,10 @@ pub(in super::super) fn list(
     let (bytes, encoding) = (input.bytes, input.encoding);
     let layout = Layout::of(&input).ok_or_else(|| no_table(path))?;
     let time_column = layout.time_column;
-    let wanted = Wanted::new(0..layout.columns.len(), time_column.as_slice());
+    let values: Vec<(usize, Option<usize>)> = (0..layout.columns.len())
+        .map(|column| (column, layout.time_of(column).filter(|time| Some(*time) == time_column)))
+        .collect();
+    let wanted = Wanted::new(&values, &[]);
     let mut survey = Survey::of(time_column, layout.columns.len());
     let ending = rows::read(input, &layout, &wanted, &mut survey, (limits, progress))
         .map_err(|error| row_error(path, limits, (&layout, &wanted), error))?;

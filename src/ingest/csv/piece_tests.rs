@@ -36,8 +36,8 @@ fn input(rows: &[u8], ahead: usize) -> Input {
 
 /// All that the readers of `analyze` and of `inspect` tell of the rows.
 fn told(rows: &[u8], ahead: usize, sizes: Sizes, layout: &Layout) -> [String; 2] {
-    let wanted = Wanted::new([1, 2].into_iter(), &[0]);
-    let mut keep = Keep { wanted: &wanted, columns: Columns(vec![Vec::new(); 3]), stamps: Stamps::default() };
+    let wanted = Wanted::new(&[(1, Some(0)), (2, Some(0))], &[]);
+    let mut keep = Keep::new(&wanted, vec![Vec::new(); 3]);
     let end = read_by(input(rows, ahead), (layout, &wanted), &mut keep, sizes, &|_| ());
     let kept = match end {
         Ok(end) => format!("{end:?} {:?} {:?}", keep.columns.0, keep.stamps),
@@ -152,14 +152,13 @@ impl std::io::Read for Broken {
 #[test]
 fn rows_before_a_failure_to_read_are_looked_at_first() {
     let layout = layout(".0");
-    let wanted = Wanted::new([1, 2].into_iter(), &[0]);
+    let wanted = Wanted::new(&[(1, Some(0)), (2, Some(0))], &[]);
     let sizes = Sizes { piece_bytes: 64, batch_bytes: 256, ..IN_ORDER };
     let good = "1,2,3\n".repeat(42);
     for (rows, is_word) in [(good.clone() + "1,oops,3\n" + &good, true), (good.clone() + &good, false)] {
         let mut text = input(b"", 0);
         text.rest = Box::new(Broken(Cursor::new(rows.into_bytes())));
-        let mut keep =
-            Keep { wanted: &wanted, columns: Columns(vec![Vec::new(); 3]), stamps: Stamps::default() };
+        let mut keep = Keep::new(&wanted, vec![Vec::new(); 3]);
         let error = read_by(text, (&layout, &wanted), &mut keep, sizes, &|_| ()).unwrap_err();
         assert_eq!(matches!(error, RowError::Word { line: 44, .. }), is_word, "{error:?}");
         assert_eq!(matches!(error, RowError::Io(_)), !is_word, "{error:?}");

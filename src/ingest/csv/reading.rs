@@ -5,7 +5,7 @@ use super::time_column::Scale;
 use crate::data::{Issue, IssueCode, Severity};
 
 /// Units of time that a recorder may have left out, with seconds a unit.
-const UNITS: [(&str, f64); 4] = [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
+pub(super) const UNITS: [(&str, f64); 4] = [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
 
 /// 1990-01-01 and 2100-01-01, s since 1970: no recorder counts the time since then by chance.
 const EPOCH_S: (f64, f64) = (631_152_000.0, 4_102_444_800.0);
@@ -136,16 +136,17 @@ struct Clock {
 
 impl Clock {
     fn of(times: &[f64]) -> Option<Self> {
-        let (first, last) = times
+        // Rows of other channels may hold no time.
+        let (first, last, count) = times
             .iter()
             .filter(|t| t.is_finite())
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &t| (a.min(t), b.max(t)));
+            .fold((f64::INFINITY, f64::NEG_INFINITY, 0_usize), |(a, b, n), &t| (a.min(t), b.max(t), n + 1));
         let span = last - first;
-        if times.len() < 2 || !(span.is_finite() && span > 0.0) {
+        if count < 2 || !(span.is_finite() && span > 0.0) {
             return None;
         }
         #[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
-        let mean = span / (times.len() - 1) as f64;
+        let mean = span / (count - 1) as f64;
         let stride = times.len().div_ceil(LOOKED_AT);
         let pairs = times.windows(2).step_by(stride);
         let mut steps: Vec<f64> = pairs.map(|pair| pair[1] - pair[0]).filter(|d| *d > 0.0).collect();

@@ -31,16 +31,22 @@ impl Scale {
     }
 }
 
-/// The column of times: by its header, by its stamps, or the first of a table without header where it rises.
-///
-/// Of several the first whose times rise with every row; where none does, the one whose times rise most often.
-/// `cells` gives a column's cells of the first rows.
+/// The columns of times: by their headers, by their stamps, or the first of a table without header where it rises.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct Found {
+    /// Of several the first whose times rise with every row; where none does, the one whose times rise most often.
+    pub taken: Option<usize>,
+    /// All that a name, a unit or stamps show to be times.
+    pub sure: Vec<usize>,
+}
+
+/// Finds them; `cells` gives a column's cells of the first rows.
 pub(super) fn find<'a, Cells: Iterator<Item = &'a str>>(
     columns: &[Column],
     is_first_rising: bool,
     decimal: u8,
     cells: impl Fn(usize) -> Cells,
-) -> Option<usize> {
+) -> Found {
     let bare: Vec<String> = columns.iter().map(bare_name).collect();
     let is_named = |i: &usize| is_named(&columns[*i], &bare[*i]);
     let begins_so = |i: &usize| begins_so(&bare[*i]);
@@ -57,15 +63,18 @@ pub(super) fn find<'a, Cells: Iterator<Item = &'a str>>(
             found.push(i);
         }
     }
+    let is_known = |i: &usize| matches!(Scale::of(&columns[*i]), Scale::Known(_));
+    let is_sure = |i: &usize| is_named(i) || (begins_so(i) && is_known(i)) || columns[*i].is_stamped;
+    let sure = found.iter().copied().filter(is_sure).collect();
     if found.len() < 2 {
-        return found.first().copied();
+        return Found { taken: found.first().copied(), sure };
     }
     let rises: Vec<(usize, usize)> = found.iter().map(|&i| rises(cells(i), decimal)).collect();
     // Nine of ten: as where the time base takes times for coarse.
     let is_fine = |(rises, pairs): &(usize, usize)| 10 * rises >= 9 * pairs;
     let finest = rises.iter().map(|(rises, _)| *rises).max();
     let place = rises.iter().position(is_fine).or_else(|| rises.iter().position(|(r, _)| Some(*r) == finest));
-    place.map(|place| found[place])
+    Found { taken: place.map(|place| found[place]), sure }
 }
 
 /// Whether a column is headed as one of times.

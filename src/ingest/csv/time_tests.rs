@@ -117,10 +117,114 @@ fn of_two_columns_of_times_the_finer_is_taken() {
     }
     // As good as one another: the first.
     let text = table("Timestamp;t [s];A1;A2", 300, ';', |i| {
-        format!("12:34:{};{}", decimal(10_000 + 2 * i, 3, ','), decimal(i, 3, ','))
+        format!("12:34:{};{}", decimal(10_000 + 2 * i, 3, ','), decimal(2 * i + 5000, 3, ','))
     });
     let recording = read_bytes(text.as_bytes(), &cask_file(&["A1"])).unwrap();
-    assert!((recording.channels[0].uniform.sample_rate_hz - 500.0).abs() < 1e-6);
+    let a1 = &recording.channels[0].uniform;
+    assert!((a1.sample_rate_hz - 500.0).abs() < 1e-6 && a1.start_s.abs() < 1e-12, "{}", a1.start_s);
+    assert!(recording.issues.is_empty(), "{:?}", recording.issues);
+}
+
+/// Two columns of times in one table, 4000 rows at 10 kHz by the first.
+fn twofold(headers: &str, other: impl Fn(usize) -> String) -> String {
+    let clock = |i| format!("{};{}", decimal(i, 4, ','), other(i));
+    table(&format!("{headers};A1;A2"), 4000, ';', clock)
+}
+
+#[test]
+fn columns_of_times_that_contradict_each_other_are_told() {
+    let read = |text: &str, cask: &CaskFile| read_bytes(text.as_bytes(), cask).map_err(|error| told(&error));
+    let cask = cask_file(&["A1", "A2"]);
+    // As rounding, other starts, clocks of loggers, whole seconds and counters have it.
+    for text in [
+        twofold("time_s;time_ms", |i| decimal(i, 1, ',')),
+        twofold("time_s;time_ms", |i| (i / 10).to_string()),
+        twofold("time_s;time_ms", |i| decimal(i * 10_005 / 10_000 + 77, 1, ',')),
+        twofold("time_s;Timestamp", |i| format!("12:34:{}", decimal(10_000 + i / 160 * 16, 3, ','))),
+        twofold("time_s;Timestamp", |i| format!("12:34:{:02}", 10 + i / 3000)),
+        twofold("t;Time", |i| (i + 1).to_string()),
+        twofold("t;Timestamp", |i| (1_795_176_000_000_000 + 100 * i).to_string()),
+        twofold("t;Timestamp", |i| (4000 * i).to_string()),
+        twofold("t;time_ms", |_| "5".into()),
+        twofold("t;time_ms", |i| (i % 10).to_string()),
+        twofold("t;Timestamp", |i| {
+            if i % 3 == 0 { "--:--:--".into() } else { format!("12:34:{}", decimal(10_000 + i / 10, 3, ',')) }
+        }),
+    ] {
+        let recording = read(&text, &cask).unwrap_or_else(|error| panic!("{}\n{error}", &text[..90]));
+        assert!(recording.issues.is_empty(), "{}: {:?}", &text[..90], recording.issues);
+        assert!((recording.channels[0].uniform.sample_rate_hz / 1e4 - 1.0).abs() < 1e-6, "{}", &text[..90]);
+    }
+    // By 0.5 %: a warning; where one stepped on the way too.
+    for (text, says) in [
+        (twofold("time_s;time_ms", |i| decimal(i * 1005, 4, ',')), "0.3999 s and 0.4019 s"),
+        (twofold("t;Zeit", |i| decimal(i * 1005, 7, ',')), "0.3999 s and 0.4019 s"),
+        (
+            twofold("t;time_ms", |i| {
+                let ahead = if i < 1000 { 0 } else { 50 - i.saturating_sub(3000) / 20 };
+                decimal(i + ahead, 1, ',')
+            }),
+            "they are 0.005 s apart",
+        ),
+    ] {
+        let recording = read(&text, &cask).unwrap();
+        let [issue] = &recording.issues[..] else { panic!("{:?}", recording.issues) };
+        assert!(issue.severity == Severity::Warning && issue.message.contains(says), "{}", issue.message);
+    }
+    // By 5 %, or by a unit: an error that names both, until the cask file says which.
+    for (text, other) in [
+        (twofold("time_s;time_ms", |i| decimal(i * 105, 3, ',')), "time_ms"),
+        (twofold("time_s;time_ms", |i| decimal(i, 4, ',')), "time_ms"),
+        (twofold("time_s;Clock", |i| format!("12:34:{}", decimal(100_000 + 2 * i, 4, ','))), "Clock"),
+        (twofold("t;t", |i| decimal(i * 105, 6, ',')), "t"),
+    ] {
+        let message = read(&text, &cask).err().unwrap_or_default();
+        for part in ["contradict each other", &format!("time = {other:?}"), "sample_rate_hz", "0.3999 s"] {
+            assert!(message.contains(part), "{message} without {part}");
+        }
+        let mut stated = cask.clone();
+        stated.channels.iter_mut().for_each(|spec| spec.sample_rate_hz = Some(1e4));
+        let recording = read(&text, &stated).unwrap();
+        assert_eq!(recording.issues[0].severity, Severity::Warning);
+        assert!((recording.channels[0].uniform.sample_rate_hz - 1e4).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn each_pair_of_times_and_samples_ends_for_itself() {
+    use std::fmt::Write as _;
+    let mut text = String::from("Time;A1;Time;A2\n");
+    for i in 0..500 {
+        let second = if i < 300 { format!("{};{i}", decimal(2 * i, 3, ',')) } else { ";".into() };
+        let _ = writeln!(text, "{};{i};{second}", decimal(i, 3, ','));
+    }
+    for sources in [&["A1", "A2"], &["A2", "A1"]] {
+        let recording =
+            read_bytes(text.as_bytes(), &cask_file(sources)).unwrap_or_else(|e| panic!("{}", told(&e)));
+        for (channel, source) in recording.channels.iter().zip(sources) {
+            let (count, rate_hz) = if *source == "A1" { (500, 1000.0) } else { (300, 500.0) };
+            assert_eq!(channel.uniform.samples.len(), count, "{source}");
+            assert!((channel.uniform.sample_rate_hz / rate_hz - 1.0).abs() < 1e-9, "{source}");
+            assert!(channel.uniform.issues.is_empty(), "{source}: {:?}", channel.uniform.issues);
+        }
+        assert!(recording.issues.is_empty(), "{:?}", recording.issues);
+    }
+    // A value without its time is at fault as ever.
+    let text = text.replace("0,350;350;;", "0,350;350;;7");
+    let message = told(&read_bytes(text.as_bytes(), &cask_file(&["A1", "A2"])).unwrap_err());
+    assert!(message.contains("line 352") && message.contains("holds no time"), "{message}");
+    // Pairs of other names that do not begin together, or run apart.
+    for (from, step) in [(1000, 10), (0, 11)] {
+        let text = table("Time 1 [s];B1;Time 2 [s];A1;A2", 2000, ';', |i| {
+            format!("{};{i};{}", decimal(10 * i, 4, ','), decimal(from + step * i, 4, ','))
+        });
+        let mut cask = cask_file(&["B1", "A1"]);
+        let message = read_bytes(text.as_bytes(), &cask).map_err(|e| told(&e)).err().unwrap_or_default();
+        assert!(message.contains("\"Time 2 [s]\"") && message.contains("its own"), "{message}");
+        cask.channels[0].time = Some("Time 1 [s]".into());
+        cask.channels[1].time = Some("Time 2 [s]".into());
+        assert!(read_bytes(text.as_bytes(), &cask).is_ok());
+    }
 }
 
 /// 0.45 s at 20 kHz, the times in units of so many microseconds.

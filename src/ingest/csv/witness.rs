@@ -2,9 +2,20 @@
 
 use super::super::error::{self, IngestError};
 use super::super::stated_rate::{Agreement, StatedRate, shown_hz};
+use super::layout::Layout;
 use super::plan::Plan;
+use super::reading;
+use super::rows::Wanted;
+use super::time_column::Scale;
 use crate::data::{Issue, IssueCode, Severity};
+use crate::ingest::time_base::{RATE_TOLERANCE, short, to_digits};
 use std::path::Path;
+
+/// Columns of times further apart than this part of the record leave open which is right.
+const FAR: f64 = 1e-2;
+
+/// Times without a unit are taken to be meant as those that they are within this factor of: other units are farther.
+const ALIKE: f64 = 3.0;
 
 /// What rounding is believed to do to the rate of a column of times at most: coarser ones give none.
 const MOST_ROUNDING: f64 = 1e-2;
@@ -54,6 +65,119 @@ fn contradiction(stated: &StatedRate, taken_hz: f64, says: &str) -> String {
 
 fn warning(message: String) -> Issue {
     Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+}
+
+/// A warning for each other column of times that contradicts the one in column `time` by more than 0.1 % and what both are cut to.
+///
+/// # Errors
+/// It does so by more than 1 %, and the cask file leaves open which to go by.
+pub(super) fn of_columns<'a>(
+    path: &Path,
+    (time, held): (usize, &[Vec<f64>]),
+    (layout, wanted): (&Layout, &Wanted),
+    (plans, name): (&[Plan], &dyn Fn(usize) -> &'a str),
+) -> Result<Vec<Issue>, IngestError> {
+    let mut issues = Vec::new();
+    for (other, is_apart) in layout.witnesses(time) {
+        let slot = wanted.slot(other);
+        let scale = if wanted.is_time[slot] { Scale::Known(1.0) } else { layout.time_scale(other) };
+        let pair = Pair::of(&held[wanted.slot(time)], &held[slot]);
+        let Some((miss, says)) = pair.and_then(|pair| pair.contradiction(scale, is_apart)) else { continue };
+        let headers = [time, other].map(|column| &layout.columns[column].header);
+        let problem = format!(
+            "the times in the columns {:?} and {:?} contradict each other: {says}",
+            headers[0], headers[1]
+        );
+        let is_open = |plan: &&Plan| plan.time_column == Some(time) && !plan.is_settled;
+        let open = plans.iter().position(|plan| is_open(&plan));
+        let mend = if is_apart {
+            format!("give each [[channel]] of the cask file its own, such as time = {:?}", headers[1])
+        } else {
+            format!(
+                "write which is right into the cask file, under [recording]: time = {:?} or time = {:?}; or sample_rate_hz in each [[channel]]",
+                headers[0], headers[1]
+            )
+        };
+        match open.filter(|_| miss > FAR) {
+            Some(spec) => return Err(error::source(path, name(spec), problem, mend)),
+            None => issues
+                .push(warning(format!("{problem}; the first was taken, and every velocity goes with it"))),
+        }
+    }
+    Ok(issues)
+}
+
+/// Two columns of times in the same rows.
+struct Pair {
+    /// Of the rows that hold both, the first as s.
+    rows: Vec<(f64, f64)>,
+    /// Of either, what its times are cut to.
+    steps: (f64, f64),
+}
+
+impl Pair {
+    /// `None` where the second does not rise: it is no time that goes on.
+    fn of(times_s: &[f64], others: &[f64]) -> Option<Self> {
+        let both = times_s.iter().copied().zip(others.iter().copied());
+        let rows: Vec<(f64, f64)> = both.filter(|(a, b)| a.is_finite() && b.is_finite()).collect();
+        let (times_s, others): (Vec<f64>, Vec<f64>) = rows.iter().copied().unzip();
+        let steps = (step(&times_s), step(&others));
+        let is_rising = steps.1 > 0.0 && others.windows(2).all(|pair| pair[0] <= pair[1]);
+        is_rising.then_some(Self { rows, steps })
+    }
+
+    /// By what part of the record the two are apart at most, or in their whole where it is the clocks that differ, and how, in words.
+    fn contradiction(&self, scale: Scale, is_start_shared: bool) -> Option<(f64, String)> {
+        match scale {
+            Scale::Known(unit_s) => self.contradiction_at(unit_s, is_start_shared),
+            Scale::Unknown => None,
+            Scale::Open => {
+                // A counter of the rows.
+                if self.rows.windows(2).all(|pair| (pair[1].1 - pair[0].1 - 1.0).abs() < 1e-9) {
+                    return None;
+                }
+                let (from, to) = (self.rows.first()?, self.rows.last()?);
+                let ratio = |unit_s: f64| (to.1 - from.1) * unit_s / (to.0 - from.0);
+                // In ticks of something else it says nothing.
+                let near = reading::UNITS.iter().map(|unit| unit.1).chain([60.0, 3600.0, 86_400.0]);
+                let unit_s =
+                    near.into_iter().find(|unit_s| (1.0 / ALIKE..ALIKE).contains(&ratio(*unit_s)))?;
+                self.contradiction_at(unit_s, false)
+            }
+        }
+    }
+
+    fn contradiction_at(&self, unit_s: f64, is_start_shared: bool) -> Option<(f64, String)> {
+        let (first, last) = (*self.rows.first()?, *self.rows.last()?);
+        let spans_s = (last.0 - first.0, (last.1 - first.1) * unit_s);
+        let cut_s = self.steps.0 + self.steps.1 * unit_s;
+        let part = |miss_s: f64| ((miss_s.abs() - cut_s) / spans_s.0.abs()).max(0.0);
+        let apart_s = |row: &(f64, f64)| (row.1 - first.1) * unit_s - (row.0 - first.0);
+        let (worst, worst_s) = self
+            .rows
+            .iter()
+            .map(apart_s)
+            .enumerate()
+            .fold((0, 0.0_f64), |held, (i, s)| if s.abs() > held.1.abs() { (i, s) } else { held });
+        let start_s = if is_start_shared { first.1 * unit_s - first.0 } else { 0.0 };
+        // Stamps of a day are no start.
+        let start_s = if start_s.abs() < spans_s.0.abs() { start_s } else { 0.0 };
+        let seconds = |s: f64| short(to_digits(s, 5));
+        if part(worst_s) > RATE_TOLERANCE {
+            // A clock that is another at the end, or one that stepped on the way.
+            let whole = part(spans_s.0 - spans_s.1);
+            let [one_s, other_s] = [spans_s.0, spans_s.1].map(seconds);
+            let says = if whole > RATE_TOLERANCE {
+                format!("from the first row to the last they say {one_s} s and {other_s} s")
+            } else {
+                format!("in row {} of the table they are {} s apart", worst + 1, seconds(worst_s.abs()))
+            };
+            return Some((whole, says));
+        }
+        let whole = part(start_s);
+        let says = format!("they begin {} s apart", seconds(start_s.abs()));
+        (whole > RATE_TOLERANCE).then_some((whole, says))
+    }
 }
 
 /// How far off the rate of times may be for what they are rounded to, as a part of it: one step over the record.
