@@ -107,8 +107,7 @@ fn read_channel(
     room.take(&column)?;
     let attributes = Attributes::of(file, &column);
     if let Some(problem) = &attributes.unclear {
-        let mend =
-            "correct the attribute in a copy, or write the channel with its scale as a dataset of numbers";
+        let mend = "correct the attribute in a copy (where two contradict each other, delete one), or write the channel with its scale as a dataset of numbers";
         return Err(wrong(format!("{}: {problem}", column.source()), mend.into()));
     }
     let samples = column.samples().map_err(|fault| wrong(fault.problem, fault.mend))?;
@@ -118,6 +117,7 @@ fn read_channel(
     let mut uniform = on_base(samples, time.as_ref(), spec, &attributes)
         .map_err(|fault| wrong(format!("{}: {}", column.source(), fault.problem), fault.mend))?;
     uniform.issues.extend(attributes.other_rate(uniform.sample_rate_hz));
+    uniform.issues.extend(attributes.rival());
     Ok(RawChannel { spec: index, uniform, unit: attributes.unit })
 }
 
@@ -177,7 +177,13 @@ fn on_base(
         let times_s = time.times_s()?;
         return time_base::from_times(&times_s, samples, spec.sample_rate_hz).map_err(in_time);
     }
-    let stated = spec.sample_rate_hz.map(Ok).or_else(|| attributes.rate.clone());
+    if spec.sample_rate_hz.is_none()
+        && let Some(rival) = attributes.rate.as_ref().and_then(|stated| stated.rival.as_ref())
+        && rival.is_far
+    {
+        return Err(fault::Fault { problem: rival.problem.clone(), mend: rival.mend.clone() });
+    }
+    let stated = spec.sample_rate_hz.map(Ok).or_else(|| attributes.rate.clone().map(|stated| stated.rate));
     let stated = stated.unwrap_or_else(|| {
         Err("nothing says when its samples were taken: no attribute sample_rate_hz, no dataset of times beside it"
             .into())

@@ -23,7 +23,7 @@ pub(super) struct StatedRate {
 }
 
 /// How a stated rate and another get along.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Agreement {
     /// Within rounding and what clocks are apart.
     Same,

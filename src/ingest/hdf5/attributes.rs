@@ -3,7 +3,7 @@
 use super::super::{time_name, time_unit};
 use super::dataset::Column;
 use super::fault::Fault;
-use super::rate;
+use super::rate::{self, Stated};
 use crate::data::{Issue, IssueCode, Samples, Severity};
 use crate::ingest::time_base::RATE_TOLERANCE;
 use hdf5_metno::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenUnicode};
@@ -12,8 +12,8 @@ use hdf5_metno::{Attribute, File, Location};
 /// What the recording says of a column.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Attributes {
-    /// Samples a second, or why what stands there is none.
-    pub rate: Option<Result<f64, String>>,
+    /// Samples a second, or why what stands there is none; and what contradicts it.
+    pub rate: Option<Stated>,
     pub unit: Option<String>,
     pub start_s: Option<f64>,
     pub scale: Option<f64>,
@@ -62,7 +62,11 @@ impl Attributes {
             start_s: number("start_time_s"),
             scale: SCALE_NAMES.iter().find_map(|name| number(name)),
             offset: OFFSET_NAMES.iter().find_map(|name| number(name)),
-            unclear: SCALE_NAMES.iter().chain(&OFFSET_NAMES).find_map(|name| unclear(place, name, column)),
+            unclear: SCALE_NAMES
+                .iter()
+                .chain(&OFFSET_NAMES)
+                .find_map(|name| unclear(place, name, column))
+                .or_else(|| twofold(SCALE_NAMES, number).or_else(|| twofold(OFFSET_NAMES, number))),
         }
     }
 
@@ -78,7 +82,9 @@ impl Attributes {
     /// A warning where the recording states another rate than the one that was taken.
     pub(super) fn other_rate(&self, taken_hz: f64) -> Option<Issue> {
         let stated_hz = self.sample_rate_hz()?;
-        ((stated_hz / taken_hz - 1.0).abs() > RATE_TOLERANCE).then(|| {
+        // Of two that contradict each other that says enough.
+        let has_rival = self.rate.as_ref().is_some_and(|stated| stated.rival.is_some());
+        (!has_rival && (stated_hz / taken_hz - 1.0).abs() > RATE_TOLERANCE).then(|| {
             let message = format!(
                 "an attribute of the recording states {stated_hz} Hz, the samples were taken at {taken_hz:.6} Hz by the times or by sample_rate_hz of the cask file: one of the two is wrong, and every velocity goes with the rate"
             );
@@ -99,7 +105,14 @@ impl Attributes {
 
     /// The rate that is stated, Hz.
     pub(super) fn sample_rate_hz(&self) -> Option<f64> {
-        self.rate.as_ref().and_then(|rate| rate.as_ref().ok()).copied()
+        self.rate.as_ref().and_then(|stated| stated.rate.as_ref().ok()).copied()
+    }
+
+    /// A warning where two attributes of one place state different rates.
+    pub(super) fn rival(&self) -> Option<Issue> {
+        let rival = self.rate.as_ref()?.rival.as_ref()?;
+        let message = format!("{}; {}", rival.problem, rival.mend);
+        Some(Issue::new(IssueCode::TimeJitter, Severity::Warning, message))
     }
 
     /// value = raw · scale + offset.
@@ -133,6 +146,13 @@ pub(super) fn time_scale(column: &Column) -> Result<(f64, f64), Fault> {
         Some(_) => Attributes::default(),
         None => Attributes::own(&column.dataset, column),
     };
+    if let Some(problem) = &own.unclear {
+        return Err(Fault {
+            problem: format!("{}: {problem}", column.source()),
+            mend: "correct the attribute in a copy, name another dataset of times, or give sample_rate_hz"
+                .into(),
+        });
+    }
     let unit_s = match own.unit.as_deref().map(str::trim) {
         None | Some("") => time_name::split(column.bare_name()).1.and_then(time_unit::seconds).unwrap_or(1.0),
         Some(unit) => time_unit::seconds(unit).ok_or_else(|| Fault {
@@ -202,6 +222,19 @@ fn unclear(place: &Location, name: &str, column: &Column) -> Option<String> {
     Some(format!(
         "the attribute {name}, by which its numbers are to be scaled, is {says}, which is no number"
     ))
+}
+
+/// That two attributes of one meaning say different things.
+fn twofold(names: [&str; 2], number: impl Fn(&str) -> Option<f64>) -> Option<String> {
+    /// Single precision keeps 6e-8 of a number.
+    const ALIKE: f64 = 1e-6;
+    let (one, other) = (number(names[0])?, number(names[1])?);
+    ((one - other).abs() > ALIKE * one.abs().max(other.abs())).then(|| {
+        format!(
+            "the attributes {} = {one} and {} = {other} contradict each other: by which its numbers are to be scaled is open",
+            names[0], names[1]
+        )
+    })
 }
 
 fn text(place: &Location, name: &str, column: &Column) -> Option<String> {

@@ -2,6 +2,7 @@
 
 use super::tests::{Made, made, number, text, told, values};
 use super::*;
+use crate::data::Severity;
 use crate::ingest::csv::tests::cask_file;
 use hdf5_metno::H5Type;
 use hdf5_metno::types::{FixedAscii, VarLenUnicode};
@@ -236,6 +237,77 @@ fn rates_are_read_as_loggers_write_them_or_asked_for() {
         assert!(message.contains("sample_rate_hz"), "{message}");
         let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
         assert!(listing.issues[0].message.contains(name), "{:?}", listing.issues);
+    }
+}
+
+/// 100 samples with some attributes, and times of 10 kHz beside them where wanted.
+fn with_attributes(attributes: &[(&str, &str)], has_times: bool) -> Made {
+    made(|file| {
+        let data = file.new_dataset_builder().with_data(&[1.0_f32; 100]).create("a")?;
+        if has_times {
+            let times: Vec<f64> = (0..100).map(|i| f64::from(i) * 1e-4).collect();
+            file.new_dataset_builder().with_data(&times).create("time_s")?;
+        }
+        attributes.iter().try_for_each(|(name, value)| match value.parse() {
+            Ok(value) => number(&data, name, value),
+            Err(_) => text(&data, name, value),
+        })
+    })
+}
+
+#[test]
+fn attributes_that_contradict_each_other_are_told() {
+    let issues = |made: &Made, rate_hz: Option<f64>| {
+        let mut cask = cask_file(&["/a"]);
+        cask.channels[0].sample_rate_hz = rate_hz;
+        read(&made.path, &cask, Limits::default(), &|_| {}).unwrap().channels[0].uniform.issues.clone()
+    };
+    for same in [
+        [("sample_rate_hz", "10000"), ("fs", "10 kHz")],
+        [("fs", "51200"), ("dt", "1.95e-5")],
+        [("fs", "30000"), ("dt", "33.3 us")],
+        [("fs", "30000"), ("dt", "0.0000333333333")],
+        [("fs", "10000"), ("sampling_rate", "n/a")],
+    ] {
+        assert!(issues(&with_attributes(&same, false), None).is_empty(), "{same:?}");
+    }
+    // By half a percent: a warning.
+    let slightly = with_attributes(&[("fs", "10000"), ("dt", "0.0001005")], false);
+    let [issue] = &issues(&slightly, None)[..] else { panic!() };
+    assert!(
+        issue.severity == Severity::Warning && issue.message.contains("dt = 0.0001005, which is 9950.249 Hz")
+    );
+    for (other, hz) in
+        [(("fs", "10.5 kHz"), "10500"), (("dt", "105 us"), "9523.81"), (("SampleRate", "1e5"), "100000")]
+    {
+        let attributes = [("sample_rate_hz", "10000"), other];
+        let made = with_attributes(&attributes, false);
+        let message = told(&made, "/a");
+        for part in
+            ["/a", "sample_rate_hz = 10000", other.0, "contradict", &format!("or sample_rate_hz = {hz}")]
+        {
+            assert!(message.contains(part), "{message} without {part}");
+        }
+        // What the cask file states is followed, as are times, and both are named.
+        for (made, rate_hz) in [(made, Some(1e4)), (with_attributes(&attributes, true), None)] {
+            let [issue] = &issues(&made, rate_hz)[..] else { panic!("{:?}", issues(&made, rate_hz)) };
+            assert!(
+                issue.severity == Severity::Warning && issue.message.contains(other.0),
+                "{}",
+                issue.message
+            );
+            let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
+            assert!(listing.issues.iter().any(|issue| issue.message.contains("contradict")));
+        }
+    }
+    for (names, values) in
+        [(["scale", "scale_factor"], ["0.5", "0.25"]), (["offset", "add_offset"], ["0", "2"])]
+    {
+        let both = |other| [("fs", "10000"), (names[0], values[0]), (names[1], other)];
+        let message = told(&with_attributes(&both(values[1]), false), "/a");
+        let part = format!("{} = {} and {} = {} contradict", names[0], values[0], names[1], values[1]);
+        assert!(message.contains(&part) && message.contains("delete one"), "{message}");
+        assert!(issues(&with_attributes(&both(values[0]), false), None).is_empty());
     }
 }
 

@@ -233,8 +233,9 @@ fn survey(
         let duration_s = channel.sample_rate_hz.map(|rate_hz| intervals as f64 / rate_hz);
         channel.duration_s = duration_s;
         channel.start_s = attributes.start_s.or(duration_s.map(|_| 0.0));
-        let unclear = attributes.unclear.clone().or(attributes.rate.clone().and_then(Result::err));
-        return Ok(unclear.map(no_base).into_iter().collect());
+        let unclear =
+            attributes.unclear.clone().or(attributes.rate.clone().and_then(|stated| stated.rate.err()));
+        return Ok(unclear.map(no_base).into_iter().chain(attributes.rival()).collect());
     };
     if !effort.pays_for(&time) {
         return Ok(Vec::new());
@@ -255,7 +256,7 @@ fn survey(
     channel.duration_s = Some(last_s - first_s);
     let has_gap = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
     channel.gaps = Some(if has_gap { uniform.gaps.len() as u64 } else { 0 });
-    Ok(uniform.issues)
+    Ok(uniform.issues.into_iter().chain(attributes.rival()).collect())
 }
 
 /// That times or rate would not do, as reading says.

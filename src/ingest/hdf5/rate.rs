@@ -1,5 +1,6 @@
 //! Attributes that state how often samples were taken to a rate.
 
+use super::super::stated_rate::{self, Agreement, StatedRate};
 use super::super::time_unit;
 use super::attributes::{Value, value};
 use super::dataset::Column;
@@ -40,47 +41,97 @@ const UNITS: [(&str, f64); 13] = [
     ("samples/s", 1.0),
 ];
 
-/// The rate that the attributes of `place` state for a column, Hz; where one is no rate, what it says instead.
-pub(super) fn stated(place: &Location, column: &Column) -> Option<Result<f64, String>> {
-    let found = |names: &[&'static str], of: fn(&str) -> Option<f64>| {
-        names.iter().find_map(|name| {
-            Some(match value(place, name, column)? {
-                Value::Number(number) => (*name, number.to_string(), Some(number)),
-                Value::Text(text) => (*name, format!("{text:?}"), of(&text)),
-            })
-        })
+/// What the attributes of one place state.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Stated {
+    /// The rate, Hz; where the first attribute is no rate, what it says instead.
+    pub rate: Result<f64, String>,
+    /// Another attribute there that states another rate.
+    pub rival: Option<Rival>,
+}
+
+/// Two attributes of one place that contradict each other.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Rival {
+    /// Both, in words.
+    pub problem: String,
+    /// Which rates to choose from.
+    pub mend: String,
+    /// Whether they are apart by more than 1 %.
+    pub is_far: bool,
+}
+
+/// The rate that the attributes of `place` state for a column.
+pub(super) fn stated(place: &Location, column: &Column) -> Option<Stated> {
+    let found = |name: &'static str, hz_of: fn(&str) -> Option<f64>, hz: fn(f64) -> f64| {
+        let (shown, rate_hz) = match value(place, name, column)? {
+            Value::Number(number) => (number.to_string(), Some(hz(number))),
+            Value::Text(text) => (format!("{text:?}"), hz_of(&text)),
+        };
+        Some((name, shown, rate_hz.filter(|rate_hz| rate_hz.is_finite() && *rate_hz > 0.0)))
     };
-    let rate = found(&RATE_NAMES, of_text);
-    let rate = rate.or_else(|| {
-        let (name, shown, interval_s) = found(&INTERVAL_NAMES, seconds)?;
-        Some((name, shown, interval_s.map(f64::recip)))
+    let rates = RATE_NAMES.iter().filter_map(|name| found(name, of_text, |hz| hz));
+    let of_interval = |text: &str| seconds(text).map(f64::recip);
+    let mut all = rates.chain(INTERVAL_NAMES.iter().filter_map(|name| found(name, of_interval, f64::recip)));
+    let (name, shown, rate_hz) = all.next()?;
+    let Some(rate_hz) = rate_hz else {
+        let problem = format!(
+            "nothing says when its samples were taken: the attribute {name} is {shown}, which is no rate or interval"
+        );
+        return Some(Stated { rate: Err(problem), rival: None });
+    };
+    let rate = |name: &str, shown: &str, rate_hz: f64| StatedRate {
+        place: format!("{name} = {shown}"),
+        rate_hz,
+        rounding: number_and_unit(shown.trim_matches('"'))
+            .map_or(0.0, |found| stated_rate::rounding(found.0)),
+    };
+    let first = rate(name, &shown, rate_hz);
+    let others = all.filter_map(|(name, shown, rate_hz)| Some(rate(name, &shown, rate_hz?)));
+    let apart = others.map(|other| (first.agreement(other.rate_hz, other.rounding), other));
+    let rival = apart.filter(|(agreement, _)| *agreement != Agreement::Same).max_by_key(|(a, _)| *a);
+    let rival = rival.map(|(agreement, other)| Rival {
+        problem: format!(
+            "the attributes {} and {} contradict each other: one of the two is wrong, and every velocity goes with the rate",
+            first.shown(),
+            other.shown()
+        ),
+        mend: format!(
+            "write the right one into this channel of the cask file: sample_rate_hz = {} or sample_rate_hz = {}",
+            stated_rate::shown_hz(first.rate_hz),
+            stated_rate::shown_hz(other.rate_hz)
+        ),
+        is_far: agreement == Agreement::FarApart,
     });
-    let (name, shown, rate_hz) = rate?;
-    let rate_hz = rate_hz.filter(|rate_hz| rate_hz.is_finite() && *rate_hz > 0.0);
-    Some(rate_hz.ok_or_else(|| {
-        format!("nothing says when its samples were taken: the attribute {name} is {shown}, which is no rate or interval")
-    }))
+    Some(Stated { rate: Ok(rate_hz), rival })
 }
 
 /// "50000", "50 kHz" or "50kS/s" to Hz.
 fn of_text(text: &str) -> Option<f64> {
-    let (number, unit) = number_and_unit(text)?;
+    let (number, unit) = parsed(text)?;
     let scale = UNITS.iter().find(|(name, _)| name.eq_ignore_ascii_case(unit)).map(|unit| unit.1);
     scale.or_else(|| unit.is_empty().then_some(1.0)).map(|scale| number * scale)
 }
 
 /// "2e-5" or "20 us" to s.
 fn seconds(text: &str) -> Option<f64> {
-    let (number, unit) = number_and_unit(text)?;
+    let (number, unit) = parsed(text)?;
     time_unit::seconds(unit).or_else(|| unit.is_empty().then_some(1.0)).map(|scale| number * scale)
 }
 
-fn number_and_unit(text: &str) -> Option<(f64, &str)> {
+fn parsed(text: &str) -> Option<(f64, &str)> {
+    let (number, unit) = number_and_unit(text)?;
+    Some((number.parse().ok()?, unit))
+}
+
+/// "50 kHz" to "50" and "kHz".
+fn number_and_unit(text: &str) -> Option<(&str, &str)> {
     let text = text.trim();
     // The longest beginning that is a number: the e of an exponent is a letter too.
     let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
     ends.into_iter().find_map(|end| {
-        let number: f64 = text[..end].trim_end().parse().ok()?;
+        let number = text[..end].trim_end();
+        number.parse::<f64>().ok()?;
         Some((number, text[end..].trim()))
     })
 }
