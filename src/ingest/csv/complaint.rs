@@ -4,7 +4,7 @@ use super::super::Limits;
 use super::super::error::{self, IngestError};
 use super::super::number;
 use super::super::time_base::TimeBaseError;
-use super::layout::Layout;
+use super::layout::{Column, Layout};
 use super::rows::{Ending, RowError, Wanted};
 use super::time_column;
 use crate::data::{Issue, IssueCode, Severity};
@@ -38,6 +38,19 @@ pub(super) fn no_times(layout: &Layout) -> String {
         }
         None => format!("no column of times was found among {}", layout.names().join(", ")),
     }
+}
+
+/// That the name and the unit of a column of times contradict each other, and what to do.
+pub(super) fn twofold(column: &Column) -> (String, &'static str) {
+    let unit = column.unit.as_deref().unwrap_or_default();
+    let problem = format!(
+        "the times in column {:?} are in another unit by its name than by its unit, {unit:?}",
+        column.header
+    );
+    (
+        problem,
+        "correct the one that is wrong in a copy, or write sample_rate_hz in each [[channel]], which tells them apart",
+    )
 }
 
 pub(super) fn no_table(path: &Path) -> IngestError {

@@ -2,12 +2,13 @@
 
 use super::super::error::IngestError;
 use super::super::number;
-use super::complaint::{ending_issues, no_table, row_error};
+use super::complaint::{ending_issues, no_table, row_error, twofold};
 use super::input::Input;
 use super::layout::{Column, Layout};
 use super::reading::Reading;
 use super::rows::{self, Rows, Sink, Wanted};
 use super::stamp::Stamps;
+use super::time_column::Scale;
 use super::{Limits, Progress, TimeBaseError, time_base, witness};
 use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Samples, Severity};
 use std::collections::BTreeMap;
@@ -151,6 +152,10 @@ pub(in super::super) fn list(
         let reading = Reading::of(layout.time_scale(column), &seen.times, None);
         reading.apply(&mut seen.times);
         issues.extend(reading.issue(&layout.columns[column].header));
+        if let Scale::Twofold(..) = layout.time_scale(column) {
+            let (problem, mend) = twofold(&layout.columns[column]);
+            issues.push(Issue::new(IssueCode::TimeJitter, Severity::Warning, format!("{problem}: {mend}")));
+        }
     }
     let stated = layout.stated_rate(usize::MAX);
     let clock = match stated.filter(|_| time_column.is_none()) {

@@ -54,6 +54,13 @@ impl Plan {
                 "head the column with [s], [ms], [µs] or [ns], or give sample_rate_hz and another time column",
             ));
         }
+        if spec.sample_rate_hz.is_none()
+            && let Some(found) = time_column
+            && let Scale::Twofold(..) = layout.time_scale(found)
+        {
+            let (problem, mend) = complaint::twofold(&layout.columns[found]);
+            return Err(error::source(path, &spec.name, problem, mend));
+        }
         let stated = layout.stated_rate(column).cloned();
         let stated_hz = stated.as_ref().filter(|_| time_column.is_none()).map(|stated| stated.rate_hz);
         let declared_rate_hz = spec.sample_rate_hz.or(stated_hz);

@@ -54,11 +54,17 @@ impl Reading {
             return sure(scale_s);
         }
         let Some(clock) = Clock::of(times) else { return sure(1.0) };
+        let agrees = |scale_s: f64, hz: f64| (clock.rate / scale_s / hz - 1.0).abs() < ALIKE;
+        if let Scale::Twofold(named_s, unit_s) = scale {
+            // Without a rate that tells them apart there is an error, or in a listing a warning.
+            let is_named = declared_rate_hz.is_some_and(|hz| agrees(named_s, hz));
+            return sure(if is_named { named_s } else { unit_s });
+        }
         if let Some(scale_s) = clock.since_1970() {
             return sure(scale_s);
         }
         if let Some(declared_hz) = declared_rate_hz {
-            let is_it = |(_, scale_s): &&(_, f64)| (clock.rate / scale_s / declared_hz - 1.0).abs() < ALIKE;
+            let is_it = |(_, scale_s): &&(_, f64)| agrees(*scale_s, declared_hz);
             return sure(UNITS.iter().find(is_it).map_or(1.0, |unit| unit.1));
         }
         let likelier: Vec<(&str, f64)> = UNITS[1..]

@@ -13,6 +13,8 @@ pub(super) enum Scale {
     Open,
     /// A unit that is none of time.
     Unknown,
+    /// So many seconds by its name, and so many by its unit.
+    Twofold(f64, f64),
 }
 
 impl Scale {
@@ -21,12 +23,17 @@ impl Scale {
         if column.is_stamped {
             return Self::Known(1.0);
         }
+        let (_, unit) = time_name::split(&column.name);
+        let named_s = unit.and_then(time_unit::seconds);
         match column.unit.as_deref().map(str::trim) {
-            None | Some("" | "-" | "1") => {
-                let (_, unit) = time_name::split(&column.name);
-                unit.and_then(time_unit::seconds).map_or(Self::Open, Self::Known)
-            }
-            Some(unit) => time_unit::seconds(unit).map_or(Self::Unknown, Self::Known),
+            None | Some("" | "-" | "1") => named_s.map_or(Self::Open, Self::Known),
+            Some(unit) => match (named_s, time_unit::seconds(unit)) {
+                (_, None) => Self::Unknown,
+                (Some(named_s), Some(unit_s)) if named_s.total_cmp(&unit_s).is_ne() => {
+                    Self::Twofold(named_s, unit_s)
+                }
+                (_, Some(unit_s)) => Self::Known(unit_s),
+            },
         }
     }
 }
@@ -143,7 +150,11 @@ mod tests {
             };
             assert_eq!(Scale::of(&column), scale, "{header}");
             let stated = Column { unit: Some("s".into()), ..column };
-            assert_eq!(Scale::of(&stated), Scale::Known(1.0), "{header}: a stated unit goes first");
+            let expected = match scale {
+                Scale::Known(named_s) if named_s.total_cmp(&1.0).is_ne() => Scale::Twofold(named_s, 1.0),
+                _ => Scale::Known(1.0),
+            };
+            assert_eq!(Scale::of(&stated), expected, "{header}: a stated unit goes with the name's");
         }
     }
 }

@@ -287,6 +287,42 @@ fn milliseconds_without_a_unit_are_asked_about() {
 }
 
 #[test]
+fn a_name_that_contradicts_its_unit_is_asked_about() {
+    for header in
+        ["time_s;A1;A2\nms;g;g", "time_s [ms];A1;A2", "time_s;A1;A2\n[ms];[g];[g]", "t_ms (s);A1;A2"]
+    {
+        let text = table(header, 9000, ';', |i| decimal(50 * i, 3, ','));
+        let mut cask = cask_file(&["A1"]);
+        let message = told(&read_bytes(text.as_bytes(), &cask).unwrap_err());
+        let unit = if header.contains("(s)") { "\"s\"" } else { "\"ms\"" };
+        for part in ["by its name", unit, "sample_rate_hz"] {
+            assert!(message.contains(part), "{message}");
+        }
+        // 0.05 in either: a rate tells which.
+        for rate_hz in [20.0, 20_000.0] {
+            cask.channels[0].sample_rate_hz = Some(rate_hz);
+            let recording = read_bytes(text.as_bytes(), &cask).unwrap();
+            let a1 = &recording.channels[0].uniform;
+            assert!(
+                (a1.sample_rate_hz / rate_hz - 1.0).abs() < 1e-9 && a1.issues.is_empty(),
+                "{:?}",
+                a1.issues
+            );
+        }
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("r.csv");
+        std::fs::write(&path, &text).unwrap();
+        let listing = list(&path, Limits::default(), &|_| {}).unwrap();
+        assert!(listing.issues[0].message.contains("by its name"), "{:?}", listing.issues);
+    }
+    for header in ["time_ms;A1;A2\nms;g;g", "time_ms [msec];A1;A2", "Time [ms];A1;A2", "t;A1;A2\nms;g;g"] {
+        let text = table(header, 9000, ';', |i| decimal(50 * i, 3, ','));
+        let recording = read_bytes(text.as_bytes(), &cask_file(&["A1"])).unwrap();
+        assert!((recording.channels[0].uniform.sample_rate_hz / 2e4 - 1.0).abs() < 1e-9, "{header}");
+    }
+}
+
+#[test]
 fn a_slow_sensor_is_read_with_a_question() {
     // An IMU at 400 Hz for 30 s: in milliseconds it would be 400 kHz.
     let text = |header: &str, rows| table(&format!("{header},A1,A2"), rows, ',', |i| decimal(25 * i, 4, '.'));

@@ -130,7 +130,7 @@ impl Pair {
     fn contradiction(&self, scale: Scale, is_start_shared: bool) -> Option<(f64, String)> {
         match scale {
             Scale::Known(unit_s) => self.contradiction_at(unit_s, is_start_shared),
-            Scale::Unknown => None,
+            Scale::Unknown | Scale::Twofold(..) => None,
             Scale::Open => {
                 // A counter of the rows.
                 if self.rows.windows(2).all(|pair| (pair[1].1 - pair[0].1 - 1.0).abs() < 1e-9) {
