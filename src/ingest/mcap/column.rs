@@ -1,8 +1,10 @@
 //! What the messages of one topic gave for one field, to uniform samples.
 
+use super::block_rate::{Derived, FAR, few_blocks};
 use super::numbers::{append, push};
 use super::plan::Value;
-use crate::data::{Issue, IssueCode, Samples, Severity};
+use crate::data::Samples;
+use crate::ingest::stated_rate::shown_hz;
 use crate::ingest::time_base::{self, Block, TimeBaseError, Uniform};
 
 /// Where a message's time comes from.
@@ -30,12 +32,12 @@ pub(super) const CLOCK_IS_SET_NS: i64 = 315_964_800_000_000_000;
 
 /// One message with an array.
 #[derive(Debug, Clone, Copy)]
-struct RawBlock {
-    time_ns: i64,
+pub(super) struct RawBlock {
+    pub(super) time_ns: i64,
     /// As stated; `None` where the message has no such field.
-    rate_hz: Option<f64>,
+    pub(super) rate_hz: Option<f64>,
     /// Number of its samples.
-    count: usize,
+    pub(super) count: usize,
 }
 
 /// A number and its time in memory.
@@ -108,6 +110,12 @@ pub(super) enum ColumnError {
     StatedRate(f64),
     #[error("it is one block of samples without a sample rate")]
     NoRate,
+    #[error(
+        "its messages state a sample rate of {} Hz, their stamps and lengths say {} Hz: one of the two is wrong, or samples are missing behind \
+         every message",
+        shown_hz(*stated_hz), shown_hz(*own_hz)
+    )]
+    Contradiction { stated_hz: f64, own_hz: f64 },
     #[error(transparent)]
     TimeBase(#[from] TimeBaseError),
 }
@@ -252,17 +260,26 @@ impl Column {
                 self.times_ns.iter().map(|&time_ns| seconds_from(time_ns, zero_ns)).collect();
             return Ok(time_base::from_times(&times_s, self.samples, declared_rate_hz)?);
         }
-        let derived_hz = match declared_rate_hz {
-            Some(rate_hz) => Some(rate_hz),
-            None => derived_rate_hz(&self.blocks).map(|derived| derived.rate_hz),
+        let derived = Derived::of(&self.blocks);
+        let derived_hz = declared_rate_hz.or(derived.as_ref().map(|derived| derived.rate_hz));
+        if declared_rate_hz.is_none()
+            && let Some((stated_hz, own_hz)) =
+                derived.as_ref().and_then(|own| own.contradiction(&self.blocks, &self.samples))
+        {
+            return Err(ColumnError::Contradiction { stated_hz, own_hz });
+        }
+        let is_derived =
+            declared_rate_hz.is_none() && self.blocks.iter().all(|block| block.rate_hz.is_none());
+        let resolution = match &derived {
+            Some(derived) if is_derived => derived.resolution(self.samples.len())?,
+            _ => None,
         };
         // At a rate that is far off, steady stamps would leave a gap behind every block, or let each cover the next.
         let own_hz = declared_rate_hz.and_then(|declared_hz| {
             let is_far = |rate_hz: &f64| (declared_hz / rate_hz - 1.0).abs() > FAR;
-            derived_rate_hz(&self.blocks).filter(|own| own.is_steady).map(|own| own.rate_hz).filter(is_far)
+            derived.as_ref().filter(|own| own.is_steady).map(|own| own.rate_hz).filter(is_far)
         });
-        let few_hz =
-            derived_rate_hz(&self.blocks).filter(|own| own.intervals < ENOUGH).map(|own| own.rate_hz);
+        let few_hz = derived.as_ref().filter(|own| own.is_few()).map(|own| own.rate_hz);
         let mut blocks = Vec::with_capacity(self.blocks.len());
         for block in self.blocks {
             let sample_rate_hz = match (own_hz.or(declared_rate_hz), block.rate_hz) {
@@ -277,6 +294,7 @@ impl Column {
         let mut placed = time_base::from_blocks(&blocks, self.samples)?;
         // Between many blocks a rate shows in every one; between few it looks like samples that are missing.
         placed.issues.extend(few_hz.and_then(|own_hz| few_blocks(own_hz, placed.sample_rate_hz)));
+        placed.issues.extend(resolution);
         Ok(match (own_hz, declared_rate_hz) {
             (Some(_), Some(declared_hz)) => placed.at(declared_hz)?,
             _ => placed,
@@ -286,56 +304,6 @@ impl Column {
     fn is_blocks(&self) -> Option<bool> {
         if self.is_empty() { None } else { Some(!self.blocks.is_empty()) }
     }
-}
-
-/// A declared rate further than this from that of the stamps is no correction of them: computers' clocks and doubled stamps stay below.
-const FAR: f64 = 0.1;
-
-/// Fewer intervals between blocks agree by chance.
-const ENOUGH: usize = 4;
-
-/// A rate this far from that of a few stamps is worth a warning: every velocity is off by as much, and a stamp 1 ms late in blocks of 0.2 s
-/// stays below.
-const FEW_APART: f64 = 5e-3;
-
-/// A warning where a few blocks are stamped as at another rate than the one that was taken.
-fn few_blocks(own_hz: f64, taken_hz: f64) -> Option<Issue> {
-    ((taken_hz / own_hz - 1.0).abs() > FEW_APART).then(|| {
-        let message = format!(
-            "its few blocks are stamped as at {own_hz:.1} Hz, and {taken_hz:.1} Hz is stated: samples between them are missing, or the rate is wrong, and every velocity with it"
-        );
-        Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
-    })
-}
-
-/// What the stamps of blocks say.
-struct Derived {
-    rate_hz: f64,
-    /// How many intervals say it.
-    intervals: usize,
-    /// Nine of ten intervals say the same to [`FAR`]: the stamps are those of the samples, not of a writer that hurries after them.
-    is_steady: bool,
-}
-
-/// Median over neighbouring blocks of length over time to the next, Hz: missing and doubled blocks are few.
-fn derived_rate_hz(blocks: &[RawBlock]) -> Option<Derived> {
-    let mut order: Vec<(i64, usize)> = blocks.iter().map(|block| (block.time_ns, block.count)).collect();
-    order.sort_unstable();
-    order.dedup_by_key(|(time_ns, _)| *time_ns);
-    #[allow(clippy::cast_precision_loss, reason = "block lengths are far below 2^53")]
-    let mut rates_hz: Vec<f64> = order
-        .windows(2)
-        .filter_map(|pair| match pair {
-            [(from, length), (to, _)] => Some(*length as f64 / seconds_from(*to, *from)),
-            _ => None,
-        })
-        .collect();
-    let middle = rates_hz.len() / 2;
-    rates_hz.sort_unstable_by(f64::total_cmp);
-    let rate_hz = rates_hz.get(middle).copied()?;
-    let alike = rates_hz.iter().filter(|other_hz| (*other_hz / rate_hz - 1.0).abs() < FAR).count();
-    let intervals = rates_hz.len();
-    Some(Derived { rate_hz, intervals, is_steady: intervals >= ENOUGH && 10 * alike >= 9 * intervals })
 }
 
 /// Seconds from `zero_ns` to `time_ns`, subtracted as integers: absolute times lose a microsecond as f64.

@@ -1,6 +1,7 @@
 //! Tests of the samples of one field.
 
 use super::*;
+use crate::data::Severity;
 
 fn block(samples: &[f64]) -> Value {
     Value::Array(Samples::F64(samples.to_vec()))
@@ -68,6 +69,83 @@ fn a_few_long_blocks_at_another_rate_are_told() {
         issues.iter().any(|i| i.severity == Severity::Warning && i.message.contains("as at 10000.0 Hz"))
     };
     assert!(told(10_200.0) && told(9_800.0) && !told(10_010.0) && !told(10_000.0));
+}
+
+/// So many blocks of `count` samples that rise, stamped as at `rate_hz` but cut to `cut_ns`.
+fn stamped(blocks: u32, (count, rate_hz): (u32, f64), cut_ns: i64, stated: Option<f64>) -> Column {
+    let mut column = Column::default();
+    for i in 0..blocks {
+        let samples: Vec<f64> = (count * i..count * (i + 1)).map(f64::from).collect();
+        #[allow(clippy::cast_possible_truncation, reason = "a short record")]
+        let time_ns = (f64::from(count * i) / rate_hz * 1e9).round() as i64;
+        column.take(block(&samples), (time_ns / cut_ns * cut_ns, TimeOrigin::Stamp), stated);
+    }
+    column
+}
+
+#[test]
+fn stamps_cut_to_milliseconds_tell_what_they_resolve() {
+    for stated in [Some(1e5), None] {
+        for (blocks, count) in [(90, 512), (90, 1024), (60, 700), (700, 512)] {
+            let uniform = stamped(blocks, (count, 1e5), 1_000_000, stated).uniform(0, None).unwrap();
+            let part = (uniform.sample_rate_hz / 1e5 - 1.0).abs();
+            assert!(
+                part < if stated.is_some() { 1e-12 } else { 1e-3 },
+                "{stated:?} {blocks} {count}: {part}"
+            );
+            assert_eq!(
+                (uniform.samples.len(), uniform.gaps.len()),
+                ((blocks * count) as usize, 0),
+                "{count}"
+            );
+            assert!(
+                uniform.issues.iter().all(|issue| issue.severity == Severity::Note),
+                "{:?}",
+                uniform.issues
+            );
+            assert!(uniform.start_s.abs() < 1e-3);
+        }
+        // Exact ones, though they are whole milliseconds.
+        let uniform = stamped(20, (500, 1e5), 1_000_000, stated).uniform(0, None).unwrap();
+        assert!((uniform.sample_rate_hz / 1e5 - 1.0).abs() < 1e-12 && uniform.issues.is_empty());
+    }
+    // A block that is lost is a gap still.
+    let mut lossy = stamped(40, (512, 1e5), 1_000_000, Some(1e5));
+    lossy.blocks.remove(20);
+    lossy.samples = Samples::F64(vec![0.0; 39 * 512]);
+    let uniform = lossy.uniform(0, None).unwrap();
+    assert!(
+        uniform.gaps.len() == 1 && uniform.samples.len().abs_diff(40 * 512) <= 100,
+        "{}",
+        uniform.samples.len()
+    );
+    // Few blocks do not tell their rate so.
+    let issues = stamped(30, (512, 1e5), 1_000_000, None).uniform(0, None).unwrap().issues;
+    assert!(issues.iter().any(|issue| issue.message.contains("give sample_rate_hz")), "{issues:?}");
+    let error = stamped(11, (512, 1e5), 1_000_000, None).uniform(0, None).unwrap_err();
+    assert!(error.to_string().contains("give sample_rate_hz"), "{error}");
+}
+
+#[test]
+fn messages_that_contradict_their_stamps_by_far_are_told() {
+    for stated_hz in [15_000.0, 14_800.0, 20_000.0, 6700.0, 5000.0] {
+        let column = || stamped(40, (100, 1e4), 1, Some(stated_hz));
+        let error = column().uniform(0, None).unwrap_err().to_string();
+        for part in [&format!("state a sample rate of {stated_hz} Hz"), "say 10000 Hz"] {
+            assert!(error.contains(part), "{error}");
+        }
+        let uniform = column().uniform(0, Some(1e4)).unwrap();
+        assert!(uniform.issues.is_empty() && uniform.samples.len() == 4000, "{:?}", uniform.issues);
+    }
+    // Windows that overlap, with the same samples.
+    let mut windows = Column::default();
+    for i in 0..40_u32 {
+        let samples: Vec<f64> = (40 * i..40 * i + 100).map(f64::from).collect();
+        windows.take(block(&samples), (i64::from(i) * 4_000_000, TimeOrigin::Stamp), Some(1e4));
+    }
+    let uniform = windows.uniform(0, None).unwrap();
+    assert_eq!(uniform.samples.len(), 1660);
+    assert!((uniform.sample_rate_hz - 1e4).abs() < 1e-9);
 }
 
 #[test]

@@ -5,6 +5,7 @@ use super::read::Wanted;
 use super::scanned::Scanned;
 use crate::data::{ChannelSpec, Source};
 use crate::ingest::error::{self, IngestError};
+use crate::ingest::stated_rate::shown_hz;
 use std::path::Path;
 
 /// No topic of the file fits the source.
@@ -96,6 +97,14 @@ pub(super) fn no_samples(path: &Path, spec: &ChannelSpec, entry: &Wanted, scanne
 /// The samples are there, and find no time base.
 pub(super) fn no_base(path: &Path, spec: &ChannelSpec, problem: &ColumnError) -> IngestError {
     let mend = match problem {
+        ColumnError::Contradiction { stated_hz, own_hz } => {
+            let hz = [stated_hz, own_hz].map(|hz| shown_hz(*hz));
+            let mend = format!(
+                "write the right one into this channel of the cask file: sample_rate_hz = {} or sample_rate_hz = {}",
+                hz[0], hz[1]
+            );
+            return error::source(path, &spec.name, format!("{}: {problem}", spec.source), mend);
+        }
         ColumnError::StatedRate(_) => {
             "write the true `sample_rate_hz` in this channel of the cask file: it overrides the recording"
         }

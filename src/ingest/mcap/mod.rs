@@ -1,5 +1,6 @@
 //! MCAP files to raw channels and listings: JSON, protobuf and ROS 2 messages, whole files and what is left of others.
 
+mod block_rate;
 mod catalog;
 mod cdr;
 mod chunk;

@@ -183,7 +183,24 @@ fn stamp_tolerance(pieces: &[Piece], rate_hz: f64) -> f64 {
     }
     let middle = misses.len() / 2;
     let (_, &mut median, _) = misses.select_nth_unstable_by(middle, f64::total_cmp);
-    if median <= 0.5 { 0.5 } else { (6.0 * median).min(half_block) }
+    if median <= 0.5 {
+        return 0.5;
+    }
+    // Two stamps that are cut to a millisecond are up to that nearer or farther than their blocks.
+    let cut = cut_s(pieces, rate_hz) * rate_hz * (1.0 + ROUND_OFF);
+    (6.0 * median).max(cut).min(half_block)
+}
+
+/// Stamps are held as s from the first, with more digits than this part of what they are cut to.
+const ROUND_OFF: f64 = 1e-4;
+
+/// What the stamps are cut to where that is longer than a sample, s: a power of ten that all are multiples of from the first on; else 0.
+fn cut_s(pieces: &[Piece], rate_hz: f64) -> f64 {
+    let is_multiple = |steps: f64| (steps - steps.round()).abs() < ROUND_OFF;
+    let units_s = (0..=6).map(|digits| 10_f64.powi(-digits)).take_while(|unit_s| unit_s * rate_hz > 1.0);
+    let first_s = pieces.first().map_or(0.0, |piece| piece.start_s);
+    let is_it = |unit_s: &f64| pieces.iter().all(|piece| is_multiple((piece.start_s - first_s) / unit_s));
+    units_s.into_iter().find(is_it).unwrap_or(0.0)
 }
 
 /// The place of each block's first sample on the base.
@@ -223,6 +240,15 @@ fn clock(pieces: &[Piece], places: &[usize], rate_hz: f64, issues: &mut Vec<Issu
     let worst_s = offs.iter().fold(0.0_f64, |m, o| m.max(o.abs()));
     if worst_s * rate_hz <= 1.0 {
         return (pieces[0].start_s, rate_hz);
+    }
+    let (low_s, high_s) = offs.iter().fold((0.0_f64, 0.0_f64), |(low, high), &o| (low.min(o), high.max(o)));
+    let cut_s = cut_s(pieces, rate_hz);
+    if high_s - low_s <= cut_s * (1.0 + ROUND_OFF) {
+        let message = format!(
+            "the blocks' stamps are cut to {cut_s} s and agree with {rate_hz:.6} Hz, which was taken; blocks that follow one another were joined"
+        );
+        issues.push(Issue::new(IssueCode::TimeJitter, Severity::Note, message));
+        return (pieces[0].start_s + offs.iter().sum::<f64>() / as_f64(offs.len()), rate_hz);
     }
     let n = as_f64(offs.len());
     let mean_place = places.iter().map(|&p| as_f64(p)).sum::<f64>() / n;

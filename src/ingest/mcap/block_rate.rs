@@ -1,0 +1,161 @@
+//! Stamps and lengths of blocks to the rate that they tell, and to whether it bears out a stated one.
+
+use super::column::{RawBlock, seconds_from};
+use crate::data::{Issue, IssueCode, Samples, Severity};
+use crate::ingest::time_base::{RATE_TOLERANCE, TimeBaseError};
+
+/// A declared rate further than this from that of the stamps is no correction of them: computers' clocks and doubled stamps stay below.
+pub(super) const FAR: f64 = 0.1;
+
+/// Fewer intervals between blocks agree by chance.
+const ENOUGH: usize = 4;
+
+/// A rate this far from that of a few stamps is worth a warning: every velocity is off by as much, and a stamp 1 ms late in blocks of 0.2 s
+/// stays below.
+const FEW_APART: f64 = 5e-3;
+
+/// A warning where a few blocks are stamped as at another rate than the one that was taken.
+pub(super) fn few_blocks(own_hz: f64, taken_hz: f64) -> Option<Issue> {
+    ((taken_hz / own_hz - 1.0).abs() > FEW_APART).then(|| {
+        let message = format!(
+            "its few blocks are stamped as at {own_hz:.1} Hz, and {taken_hz:.1} Hz is stated: samples between them are missing, or the rate is wrong, and every velocity with it"
+        );
+        Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+    })
+}
+
+/// A rate that stamps tell no better than this, as a part of itself, is none: as where single times are coarse.
+const UNKNOWN: f64 = 1e-2;
+
+/// What the stamps of blocks say.
+pub(super) struct Derived {
+    pub(super) rate_hz: f64,
+    /// How many intervals say it.
+    intervals: usize,
+    /// Nine of ten intervals say the same to [`FAR`]: the stamps are those of the samples, not of a writer that hurries after them.
+    pub(super) is_steady: bool,
+    /// What the stamps are cut to, where intervals of equal blocks differ by it, s; else 0.
+    cut_s: f64,
+    span_s: f64,
+}
+
+impl Derived {
+    /// Length over time to the next of neighbouring blocks: the median tells which follow one another, a line through their stamps the rate.
+    pub(super) fn of(blocks: &[RawBlock]) -> Option<Self> {
+        let mut order: Vec<(i64, usize)> = blocks.iter().map(|block| (block.time_ns, block.count)).collect();
+        order.sort_unstable();
+        order.dedup_by_key(|(time_ns, _)| *time_ns);
+        let (first, last) = (order.first()?, order.last()?);
+        let span_s = seconds_from(last.0, first.0);
+        let intervals: Vec<(f64, f64)> = order
+            .iter()
+            .zip(order.iter().skip(1))
+            .map(|((from, length), (to, _))| (as_f64(*length), seconds_from(*to, *from)))
+            .collect();
+        let mut rates_hz: Vec<f64> = intervals.iter().map(|(length, s)| length / s).collect();
+        let middle = rates_hz.len() / 2;
+        rates_hz.sort_unstable_by(f64::total_cmp);
+        let usual_hz = rates_hz.get(middle).copied()?;
+        // A line through stamps that are even adds but its round-off.
+        let is_even = |(length, s): &(f64, f64)| (s * usual_hz - length).abs() < 0.5;
+        let cut_s = if intervals.iter().all(is_even) { 0.0 } else { cut_s(&order) };
+        let rate_hz = if cut_s > 0.0 { through(&intervals, through(&intervals, usual_hz)) } else { usual_hz };
+        let is_alike = |(length, s): &&(f64, f64)| {
+            (length / s / rate_hz - 1.0).abs() < FAR || (length / rate_hz - s).abs() <= cut_s
+        };
+        let alike = intervals.iter().filter(is_alike).count();
+        let intervals = intervals.len();
+        Some(Self {
+            rate_hz,
+            intervals,
+            is_steady: intervals >= ENOUGH && 10 * alike >= 9 * intervals,
+            cut_s,
+            span_s,
+        })
+    }
+
+    /// Whether so few blocks say it that a rate which contradicts them looks like samples that are missing.
+    pub(super) fn is_few(&self) -> bool {
+        self.intervals < ENOUGH
+    }
+
+    /// The rate that the messages state and that of their steady stamps, where it is another by far.
+    ///
+    /// Blocks that cover the beginning of the next with the same samples are windows that overlap.
+    pub(super) fn contradiction(&self, blocks: &[RawBlock], samples: &Samples) -> Option<(f64, f64)> {
+        let stated_hz = blocks.first()?.rate_hz.filter(|hz| hz.is_finite() && *hz > 0.0)?;
+        let is_far = (stated_hz / self.rate_hz - 1.0).abs() > FAR;
+        let is_window = stated_hz < self.rate_hz && overlap(blocks, samples, stated_hz);
+        (self.is_steady && is_far && !is_window).then_some((stated_hz, self.rate_hz))
+    }
+
+    /// How well cut stamps tell the rate: a warning beyond what clocks are apart.
+    ///
+    /// # Errors
+    /// They tell it to no better than 1 %.
+    pub(super) fn resolution(&self, samples: usize) -> Result<Option<Issue>, TimeBaseError> {
+        // A line through n stamps, each off by up to half a cut (uniform), has a slope of this standard deviation; twice it.
+        let part = 2.0 * self.cut_s / (self.span_s * as_f64(self.intervals + 1).sqrt());
+        if part > UNKNOWN {
+            return Err(TimeBaseError::TooCoarse {
+                step_s: self.cut_s,
+                changes: self.intervals,
+                count: samples,
+            });
+        }
+        Ok((part > RATE_TOLERANCE).then(|| {
+            let message = format!(
+                "the blocks' stamps are cut to {} s and tell their rate to ± {:.2} %: give sample_rate_hz for this channel",
+                self.cut_s,
+                100.0 * part
+            );
+            Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+        }))
+    }
+}
+
+/// The rate of a line through the stamps, where blocks follow one another as at about `rate_hz` or leave a gap between.
+fn through(intervals: &[(f64, f64)], rate_hz: f64) -> f64 {
+    let (mut place, mut time_s) = (0.0, 0.0);
+    let mut points = vec![(0.0, 0.0)];
+    for (length, interval_s) in intervals {
+        let steps = interval_s * rate_hz;
+        place += if (steps - length).abs() < 0.5 * length { *length } else { steps };
+        time_s += interval_s;
+        points.push((place, time_s));
+    }
+    let n = as_f64(points.len());
+    let mean = points.iter().fold((0.0, 0.0), |sum, point| (sum.0 + point.0 / n, sum.1 + point.1 / n));
+    let (square, cross) = points.iter().fold((0.0, 0.0), |sum, point| {
+        let (x, y) = (point.0 - mean.0, point.1 - mean.1);
+        (sum.0 + x * x, sum.1 + x * y)
+    });
+    if cross > 0.0 { square / cross } else { rate_hz }
+}
+
+/// What all stamps are multiples of from the first on, a power of ten, s.
+fn cut_s(order: &[(i64, usize)]) -> f64 {
+    let first_ns = order.first().map_or(0, |(time_ns, _)| *time_ns);
+    let units_ns = (3..=9).rev().map(|digits| 10_i64.pow(digits));
+    let is_it =
+        |unit_ns: &i64| order.iter().all(|(time_ns, _)| time_ns.saturating_sub(first_ns) % unit_ns == 0);
+    units_ns.into_iter().find(is_it).map_or(0.0, |unit_ns| seconds_from(unit_ns, 0))
+}
+
+/// Whether the first blocks end, at that rate, with the samples that the next begins with.
+fn overlap(blocks: &[RawBlock], samples: &Samples, rate_hz: f64) -> bool {
+    const LOOKED_AT: usize = 8;
+    let mut end = 0;
+    blocks.windows(2).take(LOOKED_AT).all(|pair| {
+        let (count, next) = (pair[0].count, pair[1].count);
+        end += count;
+        let steps = seconds_from(pair[1].time_ns, pair[0].time_ns) * rate_hz;
+        let shared = (0..=count.min(next)).find(|&n| steps + as_f64(n) >= as_f64(count) - 0.5).unwrap_or(0);
+        (0..shared).all(|i| samples.get(end - shared + i).total_cmp(&samples.get(end + i)).is_eq())
+    })
+}
+
+#[allow(clippy::cast_precision_loss, reason = "lengths and counts of blocks are far below 2^53")]
+fn as_f64(count: usize) -> f64 {
+    count as f64
+}
