@@ -1,5 +1,6 @@
 //! Delimited text to the channels that a cask file names, whatever its delimiter, decimal mark, encoding and preamble.
 
+mod column;
 mod complaint;
 mod header;
 mod input;
@@ -19,12 +20,13 @@ use super::error::IngestError;
 use super::time_base::{self, TimeBaseError, Times, Uniform};
 use super::{Limits, Progress, RawChannel, RawRecording};
 use crate::data::{CaskFile, Issue, Samples};
+use column::{Column, Even, Keep};
 use input::Input;
 use layout::Layout;
 use plan::Plan;
 use rayon::prelude::*;
 use reading::Reading;
-use rows::{Ending, Rows, Sink, Wanted};
+use rows::{Ending, Wanted};
 use stamp::Stamps;
 use std::path::Path;
 
@@ -84,15 +86,13 @@ fn of_input(
             let at = wanted.slot(plan.column);
             uses[at] -= 1;
             // The last channel to use a column takes it instead of copying it.
-            if uses[at] == 0 { std::mem::take(&mut held[at]) } else { held[at].clone() }
+            let values = held[at].each_mut();
+            if uses[at] == 0 { std::mem::take(values) } else { values.clone() }
         })
         .collect();
     // Columns of times are fitted once, however many channels use them.
-    let times: Vec<Option<Times>> = held
-        .iter()
-        .zip(&wanted.is_time)
-        .map(|(column, is_time)| is_time.then(|| Times::new(column)))
-        .collect();
+    let times: Vec<Option<Base>> =
+        held.iter().zip(&wanted.is_time).map(|(column, is_time)| is_time.then(|| Base::of(column))).collect();
     let uniform: Vec<Result<Uniform, TimeBaseError>> = samples
         .into_par_iter()
         .zip(&plans)
@@ -104,76 +104,11 @@ fn of_input(
     for (spec, (uniform, plan)) in uniform.into_iter().zip(&plans).enumerate() {
         let name = &cask_file.channels[spec].name;
         let mut uniform = uniform.map_err(|error| complaint::time_error(path, name, &error))?;
-        let times_s = plan.time_column.map(|column| held[wanted.slot(column)].as_slice());
+        let times_s = plan.time_column.map(|column| &held[wanted.slot(column)]);
         uniform.issues.extend(witness::of_header(path, name, plan, (uniform.sample_rate_hz, times_s))?);
         channels.push(RawChannel { spec, uniform, unit: layout.columns[plan.column].unit.clone() });
     }
     Ok(RawRecording { channels, zero_unix_ns: stamps.zero_unix_ns(), issues })
-}
-
-/// Keeps the wanted columns whole.
-struct Keep<'a> {
-    wanted: &'a Wanted,
-    columns: Columns,
-    stamps: Stamps,
-    /// Of columns that bear out others.
-    other_stamps: Stamps,
-}
-
-impl<'a> Keep<'a> {
-    fn new(wanted: &'a Wanted, columns: Vec<Vec<f64>>) -> Self {
-        Self { wanted, columns: Columns(columns), stamps: Stamps::default(), other_stamps: Stamps::default() }
-    }
-}
-
-/// The wanted columns of some of the rows.
-struct Columns(Vec<Vec<f64>>);
-
-impl Rows for Columns {
-    fn word(&mut self, _slot: usize, _cell: &[u8]) -> Option<f64> {
-        None
-    }
-
-    fn row(&mut self, values: &[f64]) {
-        for (column, &value) in self.0.iter_mut().zip(values) {
-            column.push(value);
-        }
-    }
-}
-
-impl Rows for Keep<'_> {
-    fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
-        if self.wanted.is_witness[slot] {
-            return Some(self.other_stamps.seconds(slot, cell).unwrap_or(f64::NAN));
-        }
-        if self.wanted.is_time[slot] { self.stamps.seconds(slot, cell) } else { None }
-    }
-
-    fn row(&mut self, values: &[f64]) {
-        self.columns.row(values);
-    }
-}
-
-impl Sink for Keep<'_> {
-    type Part = Columns;
-
-    fn part(&self) -> Columns {
-        Columns(vec![Vec::new(); self.columns.0.len()])
-    }
-
-    fn append(&mut self, parts: &mut [Columns]) {
-        // Most of the time the system hands out the memory, a page after the other.
-        self.columns.0.par_iter_mut().enumerate().for_each(|(slot, column)| {
-            for part in &*parts {
-                column.extend_from_slice(&part.0[slot]);
-            }
-        });
-        parts.iter_mut().flat_map(|part| &mut part.0).for_each(Vec::clear);
-    }
-
-    fn held_bytes(&self) -> u64 {
-        self.columns.0.iter().map(|column| 8 * column.len() as u64).sum()
-    }
 }
 
 /// The wanted columns, stamps among them in s; the stamps; and how the file ended.
@@ -183,38 +118,39 @@ fn columns(
     layout: &Layout,
     wanted: &Wanted,
     (limits, progress): (Limits, Progress),
-) -> Result<(Vec<Vec<f64>>, Stamps, Ending), IngestError> {
+) -> Result<(Vec<Column>, Stamps, Ending), IngestError> {
     // What is set aside is a guess from the first rows; more is taken as it comes.
     let most_rows = limits.samples_bytes() / (8 * wanted.columns.len().max(1) as u64);
     let rows_expected =
         layout.rows_expected(input.bytes).min(usize::try_from(most_rows).unwrap_or(usize::MAX));
-    let columns = wanted.columns.iter().map(|_| Vec::with_capacity(rows_expected)).collect();
+    let columns = wanted.columns.iter().map(|_| Column::with_capacity(rows_expected)).collect();
     let mut keep = Keep::new(wanted, columns);
     let ending = rows::read(input, layout, wanted, &mut keep, (limits, progress))
         .map_err(|error| complaint::row_error(path, limits, (layout, wanted), error))?;
-    let Keep { columns: Columns(mut columns), stamps, .. } = keep;
+    let Keep { mut columns, stamps, .. } = keep;
     if !wanted.is_time.contains(&true) {
         // Blank lines behind the table are no samples.
-        let is_row = |row: &usize| columns.iter().any(|column| !column[*row].is_nan());
-        let rows = (0..columns.first().map_or(0, Vec::len)).rev().find(is_row).map_or(0, |last| last + 1);
+        let is_row = |row: &usize| columns.iter().any(|column| !column.each()[*row].is_nan());
+        let rows = (0..columns.first().map_or(0, Column::len)).rev().find(is_row).map_or(0, |last| last + 1);
         for column in &mut columns {
-            column.truncate(rows);
+            column.each_mut().truncate(rows);
         }
     }
     Ok((columns, stamps, ending))
 }
 
 /// Leaves the rows without a time, in which a pair of columns has ended before others, out of the times and of what they time.
-fn drop_untimed(held: &mut [Vec<f64>], wanted: &Wanted, plans: &[Plan]) {
+fn drop_untimed(held: &mut [Column], wanted: &Wanted, plans: &[Plan]) {
     let mut is_kept: Vec<Option<Vec<bool>>> = vec![None; held.len()];
     for slot in (0..held.len()).filter(|&slot| wanted.is_time[slot]) {
-        if held[slot].iter().any(|time| time.is_nan()) {
-            is_kept[slot] = Some(held[slot].iter().map(|time| !time.is_nan()).collect());
+        let times = held[slot].each();
+        if times.iter().any(|time| time.is_nan()) {
+            is_kept[slot] = Some(times.iter().map(|time| !time.is_nan()).collect());
         }
     }
-    let retain = |column: &mut Vec<f64>, is_kept: &[bool]| {
+    let retain = |column: &mut Column, is_kept: &[bool]| {
         let mut rows = is_kept.iter();
-        column.retain(|_| rows.next().copied().unwrap_or(true));
+        column.each_mut().retain(|_| rows.next().copied().unwrap_or(true));
     };
     for plan in plans {
         let clock = plan.time_column.and_then(|time| is_kept[wanted.slot(time)].as_ref());
@@ -234,14 +170,14 @@ fn drop_untimed(held: &mut [Vec<f64>], wanted: &Wanted, plans: &[Plan]) {
 /// The numbers in a column of times to s; a warning where nothing says that they are.
 fn to_seconds(
     path: &Path,
-    times: &mut [f64],
+    times: &mut Column,
     column: usize,
     layout: &Layout,
     plans: &[Plan],
 ) -> Result<Option<Issue>, IngestError> {
     let mut users = plans.iter().filter(|plan| plan.time_column == Some(column));
     let declared_rate_hz = users.find_map(|plan| plan.declared_rate_hz);
-    let reading = Reading::of(layout.time_scale(column), times, declared_rate_hz);
+    let reading = Reading::by(layout.time_scale(column), || times.clock(), declared_rate_hz);
     let header = &layout.columns[column].header;
     if let Some(doubt) = reading.doubt.as_ref().filter(|doubt| doubt.is_grave()) {
         return Err(IngestError::Content {
@@ -251,13 +187,26 @@ fn to_seconds(
             mend: doubt.mend(),
         });
     }
-    reading.apply(times);
+    times.scale(reading.scale_s);
     Ok(reading.issue(header))
 }
 
-fn on_base(samples: Vec<f64>, times: Option<&Times>, plan: &Plan) -> Result<Uniform, TimeBaseError> {
-    match (times, plan.declared_rate_hz) {
-        (Some(times), declared_rate_hz) => times.place(Samples::F64(samples), declared_rate_hz),
+/// The times of channels, as they are held.
+enum Base<'a> {
+    Even(Even),
+    Each(Times<'a>),
+}
+
+impl<'a> Base<'a> {
+    fn of(column: &'a Column) -> Self {
+        column.even().map_or_else(|| Self::Each(Times::new(column.each())), Self::Even)
+    }
+}
+
+fn on_base(samples: Vec<f64>, base: Option<&Base>, plan: &Plan) -> Result<Uniform, TimeBaseError> {
+    match (base, plan.declared_rate_hz) {
+        (Some(Base::Even(times)), declared_rate_hz) => times.place(Samples::F64(samples), declared_rate_hz),
+        (Some(Base::Each(times)), declared_rate_hz) => times.place(Samples::F64(samples), declared_rate_hz),
         (None, Some(rate_hz)) => time_base::from_rate(0.0, rate_hz, Samples::F64(samples)),
         (None, None) => Err(TimeBaseError::Rate { sample_rate_hz: 0.0 }),
     }

@@ -37,10 +37,13 @@ fn input(rows: &[u8], ahead: usize) -> Input {
 /// All that the readers of `analyze` and of `inspect` tell of the rows.
 fn told(rows: &[u8], ahead: usize, sizes: Sizes, layout: &Layout) -> [String; 2] {
     let wanted = Wanted::new(&[(1, Some(0)), (2, Some(0))], &[]);
-    let mut keep = Keep::new(&wanted, vec![Vec::new(); 3]);
+    let mut keep = Keep::new(&wanted, vec![Column::default(); 3]);
     let end = read_by(input(rows, ahead), (layout, &wanted), &mut keep, sizes, &|_| ());
     let kept = match end {
-        Ok(end) => format!("{end:?} {:?} {:?}", keep.columns.0, keep.stamps),
+        Ok(end) => {
+            let columns: Vec<_> = keep.columns.iter().map(Column::values).collect();
+            format!("{end:?} {columns:?} {:?}", keep.stamps)
+        }
         Err(error) => format!("{error:?}"),
     };
     let mut survey = Survey::of(Some(0), 3);
@@ -158,7 +161,7 @@ fn rows_before_a_failure_to_read_are_looked_at_first() {
     for (rows, is_word) in [(good.clone() + "1,oops,3\n" + &good, true), (good.clone() + &good, false)] {
         let mut text = input(b"", 0);
         text.rest = Box::new(Broken(Cursor::new(rows.into_bytes())));
-        let mut keep = Keep::new(&wanted, vec![Vec::new(); 3]);
+        let mut keep = Keep::new(&wanted, vec![Column::default(); 3]);
         let error = read_by(text, (&layout, &wanted), &mut keep, sizes, &|_| ()).unwrap_err();
         assert_eq!(matches!(error, RowError::Word { line: 44, .. }), is_word, "{error:?}");
         assert_eq!(matches!(error, RowError::Io(_)), !is_word, "{error:?}");

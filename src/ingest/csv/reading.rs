@@ -49,11 +49,20 @@ pub(super) struct Doubt {
 impl Reading {
     /// The reading of `times` that count `scale`, in a channel whose rate is stated or not.
     pub(super) fn of(scale: Scale, times: &[f64], declared_rate_hz: Option<f64>) -> Self {
+        Self::by(scale, || Clock::of(times), declared_rate_hz)
+    }
+
+    /// The same of times of which the clock, asked for where the unit is open, is known.
+    pub(super) fn by(
+        scale: Scale,
+        clock: impl FnOnce() -> Option<Clock>,
+        declared_rate_hz: Option<f64>,
+    ) -> Self {
         let sure = |scale_s| Self { scale_s, doubt: None };
         if let Scale::Known(scale_s) = scale {
             return sure(scale_s);
         }
-        let Some(clock) = Clock::of(times) else { return sure(1.0) };
+        let Some(clock) = clock() else { return sure(1.0) };
         let agrees = |scale_s: f64, hz: f64| (clock.rate / scale_s / hz - 1.0).abs() < ALIKE;
         if let Scale::Twofold(named_s, unit_s) = scale {
             // Without a rate that tells them apart there is an error, or in a listing a warning.
@@ -132,16 +141,16 @@ fn rate(rate_hz: f64) -> String {
 }
 
 /// What the bare numbers say.
-struct Clock {
-    first: f64,
-    last: f64,
+pub(super) struct Clock {
+    pub first: f64,
+    pub last: f64,
     /// Rows per unit.
-    rate: f64,
-    span: f64,
+    pub rate: f64,
+    pub span: f64,
 }
 
 impl Clock {
-    fn of(times: &[f64]) -> Option<Self> {
+    pub(super) fn of(times: &[f64]) -> Option<Self> {
         // Rows of other channels may hold no time.
         let (first, last, count) = times
             .iter()

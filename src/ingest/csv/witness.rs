@@ -2,6 +2,7 @@
 
 use super::super::error::{self, IngestError};
 use super::super::stated_rate::{Agreement, StatedRate, shown_hz};
+use super::column::Column;
 use super::layout::Layout;
 use super::plan::Plan;
 use super::reading;
@@ -28,10 +29,10 @@ pub(super) fn of_header(
     path: &Path,
     channel: &str,
     plan: &Plan,
-    (taken_hz, times_s): (f64, Option<&[f64]>),
+    (taken_hz, times_s): (f64, Option<&Column>),
 ) -> Result<Option<Issue>, IngestError> {
     let Some(stated) = &plan.stated else { return Ok(None) };
-    let agreement = stated.agreement(taken_hz, times_s.map_or(0.0, rounding));
+    let agreement = stated.agreement(taken_hz, times_s.map_or(0.0, Column::rounding));
     if agreement == Agreement::FarApart && !plan.is_settled {
         let hz = [stated.rate_hz, taken_hz].map(shown_hz);
         return Err(error::source(
@@ -73,7 +74,7 @@ fn warning(message: String) -> Issue {
 /// It does so by more than 1 %, and the cask file leaves open which to go by.
 pub(super) fn of_columns<'a>(
     path: &Path,
-    (time, held): (usize, &[Vec<f64>]),
+    (time, held): (usize, &[Column]),
     (layout, wanted): (&Layout, &Wanted),
     (plans, name): (&[Plan], &dyn Fn(usize) -> &'a str),
 ) -> Result<Vec<Issue>, IngestError> {
@@ -81,7 +82,7 @@ pub(super) fn of_columns<'a>(
     for (other, is_apart) in layout.witnesses(time) {
         let slot = wanted.slot(other);
         let scale = if wanted.is_time[slot] { Scale::Known(1.0) } else { layout.time_scale(other) };
-        let pair = Pair::of(&held[wanted.slot(time)], &held[slot]);
+        let pair = Pair::of(&held[wanted.slot(time)].values(), &held[slot].values());
         let Some((miss, says)) = pair.and_then(|pair| pair.contradiction(scale, is_apart)) else { continue };
         let headers = [time, other].map(|column| &layout.columns[column].header);
         let problem = format!(
@@ -181,7 +182,7 @@ impl Pair {
 }
 
 /// How far off the rate of times may be for what they are rounded to, as a part of it: one step over the record.
-fn rounding(times_s: &[f64]) -> f64 {
+pub(super) fn rounding(times_s: &[f64]) -> f64 {
     let span_s = times_s.last().zip(times_s.first()).map_or(0.0, |(last, first)| last - first);
     let rounding = step(times_s) / span_s;
     if rounding > 0.0 { rounding.min(MOST_ROUNDING) } else { 0.0 }
