@@ -8,7 +8,6 @@ mod layout;
 mod list;
 mod pieces;
 mod plan;
-mod reading;
 mod rows;
 mod stamp;
 mod time_column;
@@ -18,6 +17,7 @@ pub(super) use list::list;
 
 use super::error::IngestError;
 use super::time_base::{self, TimeBaseError, Times, Uniform};
+use super::time_reading::{Carrier, Reading};
 use super::{Limits, Progress, RawChannel, RawRecording};
 use crate::data::{CaskFile, Issue, Samples};
 use column::{Column, Even, Keep};
@@ -25,7 +25,6 @@ use input::Input;
 use layout::Layout;
 use plan::Plan;
 use rayon::prelude::*;
-use reading::Reading;
 use rows::{Ending, Wanted};
 use stamp::Stamps;
 use std::path::Path;
@@ -183,12 +182,12 @@ fn to_seconds(
         return Err(IngestError::Content {
             path: path.display().to_string(),
             place: format!("line {}", layout.data_line),
-            problem: doubt.problem(header),
-            mend: doubt.mend(),
+            problem: doubt.problem(header, Carrier::Column),
+            mend: doubt.mend(Carrier::Column),
         });
     }
     times.scale(reading.scale_s);
-    Ok(reading.issue(header))
+    Ok(reading.issue(header, Carrier::Column))
 }
 
 /// The times of channels, as they are held.

@@ -114,7 +114,8 @@ fn read_channel(
     let samples = attributes.scaled(samples);
     let time = time_column(room, file, spec, cask_file.time.as_deref(), &column)?;
     time.iter().try_for_each(|time| room.take(time))?;
-    let mut uniform = on_base(samples, time.as_ref(), spec, &attributes)
+    let why_none = if time.is_none() { clocks::why_none(file, &column) } else { None };
+    let mut uniform = on_base(samples, (time.as_ref(), why_none), spec, &attributes)
         .map_err(|fault| wrong(format!("{}: {}", column.source(), fault.problem), fault.mend))?;
     uniform.issues.extend(attributes.other_rate(uniform.sample_rate_hz));
     uniform.issues.extend(attributes.rival());
@@ -165,7 +166,7 @@ fn time_column(
 
 fn on_base(
     samples: Samples,
-    time: Option<&Column>,
+    (time, why_none): (Option<&Column>, Option<String>),
     spec: &ChannelSpec,
     attributes: &Attributes,
 ) -> Result<Uniform, fault::Fault> {
@@ -174,8 +175,11 @@ fn on_base(
         mend: "check the dataset of times (`time` in the cask file), or give sample_rate_hz".into(),
     };
     if let Some(time) = time {
-        let times_s = time.times_s()?;
-        return time_base::from_times(&times_s, samples, spec.sample_rate_hz).map_err(in_time);
+        // A rate that the recording states tells the unit of times that state none.
+        let (times_s, question) = time.times_s(spec.sample_rate_hz.or(attributes.sample_rate_hz()))?;
+        let mut uniform = time_base::from_times(&times_s, samples, spec.sample_rate_hz).map_err(in_time)?;
+        uniform.issues.extend(question);
+        return Ok(uniform);
     }
     if spec.sample_rate_hz.is_none()
         && let Some(rival) = attributes.rate.as_ref().and_then(|stated| stated.rival.as_ref())
@@ -185,8 +189,8 @@ fn on_base(
     }
     let stated = spec.sample_rate_hz.map(Ok).or_else(|| attributes.rate.clone().map(|stated| stated.rate));
     let stated = stated.unwrap_or_else(|| {
-        Err("nothing says when its samples were taken: no attribute sample_rate_hz, no dataset of times beside it"
-            .into())
+        let why_none = why_none.unwrap_or_else(|| "no dataset of times beside it".into());
+        Err(format!("nothing says when its samples were taken: no attribute sample_rate_hz, and {why_none}"))
     });
     let rate_hz = stated.map_err(|problem| fault::Fault {
         problem,
@@ -215,3 +219,5 @@ fn storage(dataset: &Dataset) -> String {
 mod layout_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod time_tests;

@@ -16,6 +16,7 @@ pub mod scene_file;
 mod stated_rate;
 pub mod time_base;
 mod time_name;
+mod time_reading;
 mod time_unit;
 
 pub use error::IngestError;

@@ -1,11 +1,11 @@
 //! The wanted columns of a table in memory: each value, or of times on an even grid their rule.
 
 use super::super::time_base::{self, RATE_TOLERANCE, TimeBaseError, Uniform};
-use super::reading::Clock;
 use super::rows::{Rows, Sink, Wanted};
 use super::stamp::Stamps;
 use super::witness;
 use crate::data::Samples;
+use crate::ingest::time_reading::Clock;
 use rayon::prelude::*;
 use std::borrow::Cow;
 

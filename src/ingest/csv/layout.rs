@@ -3,9 +3,10 @@
 use super::header;
 use super::input::{self, Input};
 use super::stamp;
-use super::time_column::{self, Scale};
+use super::time_column;
 use crate::ingest::number;
 use crate::ingest::stated_rate::{Agreement, StatedRate};
+use crate::ingest::time_reading::Scale;
 
 /// One column of the table.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -200,7 +201,7 @@ impl Layout {
 
     /// What the numbers of a column of times count.
     pub(super) fn time_scale(&self, column: usize) -> Scale {
-        self.columns.get(column).map_or(Scale::Unknown, Scale::of)
+        self.columns.get(column).map_or(Scale::Unknown, time_column::scale)
     }
 
     /// The other decimal mark, where rows seen so far hold neither and it is no delimiter.

@@ -5,12 +5,11 @@ use super::super::number;
 use super::complaint::{ending_issues, no_table, row_error, twofold};
 use super::input::Input;
 use super::layout::{Column, Layout};
-use super::reading::Reading;
 use super::rows::{self, Rows, Sink, Wanted};
 use super::stamp::Stamps;
-use super::time_column::Scale;
 use super::{Limits, Progress, TimeBaseError, time_base, witness};
 use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Samples, Severity};
+use crate::ingest::time_reading::{Carrier, Reading, Scale};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -151,7 +150,7 @@ pub(in super::super) fn list(
     if let Some(column) = time_column.filter(|&column| !stamps.are_in(column)) {
         let reading = Reading::of(layout.time_scale(column), &seen.times, None);
         reading.apply(&mut seen.times);
-        issues.extend(reading.issue(&layout.columns[column].header));
+        issues.extend(reading.issue(&layout.columns[column].header, Carrier::Column));
         if let Scale::Twofold(..) = layout.time_scale(column) {
             let (problem, mend) = twofold(&layout.columns[column]);
             issues.push(Issue::new(IssueCode::TimeJitter, Severity::Warning, format!("{problem}: {mend}")));

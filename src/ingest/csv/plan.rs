@@ -4,8 +4,8 @@ use super::super::error::{self, IngestError};
 use super::super::stated_rate::StatedRate;
 use super::complaint;
 use super::layout::Layout;
-use super::time_column::Scale;
 use crate::data::{ChannelSpec, Source};
+use crate::ingest::time_reading::Scale;
 use std::path::Path;
 
 /// What one channel takes from the table.

@@ -2,40 +2,12 @@
 
 use super::layout::Column;
 use super::stamp::Stamps;
-use crate::ingest::{number, time_name, time_unit};
+use crate::ingest::time_reading::Scale;
+use crate::ingest::{number, time_name};
 
-/// What the numbers in a column of times count.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Scale {
-    /// So many seconds a unit.
-    Known(f64),
-    /// Nothing says it.
-    Open,
-    /// A unit that is none of time.
-    Unknown,
-    /// So many seconds by its name, and so many by its unit.
-    Twofold(f64, f64),
-}
-
-impl Scale {
-    /// As the header, the row of units or the name says.
-    pub(super) fn of(column: &Column) -> Self {
-        if column.is_stamped {
-            return Self::Known(1.0);
-        }
-        let (_, unit) = time_name::split(&column.name);
-        let named_s = unit.and_then(time_unit::seconds);
-        match column.unit.as_deref().map(str::trim) {
-            None | Some("" | "-" | "1") => named_s.map_or(Self::Open, Self::Known),
-            Some(unit) => match (named_s, time_unit::seconds(unit)) {
-                (_, None) => Self::Unknown,
-                (Some(named_s), Some(unit_s)) if named_s.total_cmp(&unit_s).is_ne() => {
-                    Self::Twofold(named_s, unit_s)
-                }
-                (_, Some(unit_s)) => Self::Known(unit_s),
-            },
-        }
-    }
+/// What the numbers of a column of times count, as the header, the row of units or the name says.
+pub(super) fn scale(column: &Column) -> Scale {
+    if column.is_stamped { Scale::Known(1.0) } else { Scale::of(&column.name, column.unit.as_deref()) }
 }
 
 /// The columns of times: by their headers, by their stamps, or the first of a table without header where it rises.
@@ -70,7 +42,7 @@ pub(super) fn find<'a, Cells: Iterator<Item = &'a str>>(
             found.push(i);
         }
     }
-    let is_known = |i: &usize| matches!(Scale::of(&columns[*i]), Scale::Known(_));
+    let is_known = |i: &usize| matches!(scale(&columns[*i]), Scale::Known(_));
     let is_sure = |i: &usize| is_named(i) || (begins_so(i) && is_known(i)) || columns[*i].is_stamped;
     let sure = found.iter().copied().filter(is_sure).collect();
     if found.len() < 2 {
@@ -91,7 +63,7 @@ pub(super) fn is_headed(column: &Column) -> bool {
 }
 
 fn is_named(column: &Column, bare: &str) -> bool {
-    time_name::is_time(bare) || (time_name::is_axis(bare) && matches!(Scale::of(column), Scale::Known(_)))
+    time_name::is_time(bare) || (time_name::is_axis(bare) && matches!(scale(column), Scale::Known(_)))
 }
 
 fn bare_name(column: &Column) -> String {
@@ -148,13 +120,13 @@ mod tests {
                 is_stamped: false,
                 example: String::new(),
             };
-            assert_eq!(Scale::of(&column), scale, "{header}");
+            assert_eq!(super::scale(&column), scale, "{header}");
             let stated = Column { unit: Some("s".into()), ..column };
             let expected = match scale {
                 Scale::Known(named_s) if named_s.total_cmp(&1.0).is_ne() => Scale::Twofold(named_s, 1.0),
                 _ => Scale::Known(1.0),
             };
-            assert_eq!(Scale::of(&stated), expected, "{header}: a stated unit goes with the name's");
+            assert_eq!(super::scale(&stated), expected, "{header}: a stated unit goes with the name's");
         }
     }
 }

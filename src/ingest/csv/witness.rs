@@ -5,11 +5,10 @@ use super::super::stated_rate::{Agreement, StatedRate, shown_hz};
 use super::column::Column;
 use super::layout::Layout;
 use super::plan::Plan;
-use super::reading;
 use super::rows::Wanted;
-use super::time_column::Scale;
 use crate::data::{Issue, IssueCode, Severity};
 use crate::ingest::time_base::{RATE_TOLERANCE, short, to_digits};
+use crate::ingest::time_reading::{self, Scale};
 use std::path::Path;
 
 /// Columns of times further apart than this part of the record leave open which is right.
@@ -140,7 +139,7 @@ impl Pair {
                 let (from, to) = (self.rows.first()?, self.rows.last()?);
                 let ratio = |unit_s: f64| (to.1 - from.1) * unit_s / (to.0 - from.0);
                 // In ticks of something else it says nothing.
-                let near = reading::UNITS.iter().map(|unit| unit.1).chain([60.0, 3600.0, 86_400.0]);
+                let near = time_reading::UNITS.iter().map(|unit| unit.1).chain([60.0, 3600.0, 86_400.0]);
                 let unit_s =
                     near.into_iter().find(|unit_s| (1.0 / ALIKE..ALIKE).contains(&ratio(*unit_s)))?;
                 self.contradiction_at(unit_s, false)

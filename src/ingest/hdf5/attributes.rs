@@ -1,6 +1,6 @@
 //! A column's attributes, or those of the groups above it, to rate, unit, start, scale and offset.
 
-use super::super::{time_name, time_unit};
+use super::super::time_reading::Scale;
 use super::dataset::Column;
 use super::fault::Fault;
 use super::rate::{self, Stated};
@@ -18,6 +18,8 @@ pub(super) struct Attributes {
     pub start_s: Option<f64>,
     pub scale: Option<f64>,
     pub offset: Option<f64>,
+    /// Stored values that stand for a missing sample.
+    pub fills: Vec<f64>,
     /// What a scale or offset says that is no number.
     pub unclear: Option<String>,
 }
@@ -27,6 +29,9 @@ const UNIT_NAMES: [&str; 2] = ["unit", "units"];
 const SCALE_NAMES: [&str; 2] = ["scale", "scale_factor"];
 /// As [`SCALE_NAMES`].
 const OFFSET_NAMES: [&str; 2] = ["offset", "add_offset"];
+
+/// As the CF conventions have them.
+const FILL_NAMES: [&str; 2] = ["_FillValue", "missing_value"];
 
 /// An attribute with more values than this is none of these.
 const MOST_VALUES: usize = 4096;
@@ -40,7 +45,7 @@ const TEXT_BYTES: usize = 256;
 impl Attributes {
     /// The nearest of each, from the dataset up to the root.
     pub(super) fn of(file: &File, column: &Column) -> Self {
-        let mut attributes = Self::own(&column.dataset, column);
+        let mut attributes = Self { fills: fills(column), ..Self::own(&column.dataset, column) };
         let mut group = column.group();
         loop {
             let path = if group.is_empty() { "/" } else { group };
@@ -60,6 +65,7 @@ impl Attributes {
             rate: rate::stated(place, column),
             unit: UNIT_NAMES.iter().find_map(|name| text(place, name, column)),
             start_s: number("start_time_s"),
+            fills: Vec::new(),
             scale: SCALE_NAMES.iter().find_map(|name| number(name)),
             offset: OFFSET_NAMES.iter().find_map(|name| number(name)),
             unclear: SCALE_NAMES
@@ -115,9 +121,16 @@ impl Attributes {
         Some(Issue::new(IssueCode::TimeJitter, Severity::Warning, message))
     }
 
-    /// value = raw · scale + offset.
+    /// value = raw · scale + offset, NaN where raw stands for a missing sample.
     #[allow(clippy::cast_possible_truncation, reason = "f32 samples stay f32")]
-    pub(super) fn scaled(&self, samples: Samples) -> Samples {
+    pub(super) fn scaled(&self, mut samples: Samples) -> Samples {
+        #[allow(clippy::float_cmp, reason = "the very value that stands for nothing")]
+        for &fill in &self.fills {
+            match &mut samples {
+                Samples::F32(v) => v.iter_mut().filter(|x| **x == fill as f32).for_each(|x| *x = f32::NAN),
+                Samples::F64(v) => v.iter_mut().filter(|x| **x == fill).for_each(|x| *x = f64::NAN),
+            }
+        }
         if self.scale.is_none() && self.offset.is_none() {
             return samples;
         }
@@ -139,8 +152,8 @@ impl Attributes {
     }
 }
 
-/// Seconds per unit of a column of times, and its offset in s, from its own attributes and name alone.
-pub(super) fn time_scale(column: &Column) -> Result<(f64, f64), Fault> {
+/// What the numbers of a column of times count, and by what they are scaled and moved before, from its own attributes and name alone.
+pub(super) fn time_scale(column: &Column) -> Result<(Scale, f64, f64), Fault> {
     // Those of records are for the samples in them.
     let own = match column.records() {
         Some(_) => Attributes::default(),
@@ -153,14 +166,23 @@ pub(super) fn time_scale(column: &Column) -> Result<(f64, f64), Fault> {
                 .into(),
         });
     }
-    let unit_s = match own.unit.as_deref().map(str::trim) {
-        None | Some("") => time_name::split(column.bare_name()).1.and_then(time_unit::seconds).unwrap_or(1.0),
-        Some(unit) => time_unit::seconds(unit).ok_or_else(|| Fault {
+    let scale = Scale::of(column.bare_name(), own.unit.as_deref());
+    if scale == Scale::Unknown {
+        let unit = own.unit.unwrap_or_default();
+        return Err(Fault {
             problem: format!("{} is in {unit:?}, which is no unit of time known here", column.source()),
             mend: "name a dataset of times in s, ms, us or ns, or give sample_rate_hz".into(),
-        })?,
-    };
-    Ok((unit_s * own.scale.unwrap_or(1.0), unit_s * own.offset.unwrap_or(0.0)))
+        });
+    }
+    Ok((scale, own.scale.unwrap_or(1.0), own.offset.unwrap_or(0.0)))
+}
+
+/// The stored values that stand for a sample which is missing.
+fn fills(column: &Column) -> Vec<f64> {
+    if column.records().is_some() {
+        return Vec::new();
+    }
+    FILL_NAMES.iter().filter_map(|name| number(&column.dataset, name, column)).collect()
 }
 
 /// The value for the column: the only one, or that of its index where there is one a column.

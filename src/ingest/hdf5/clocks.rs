@@ -33,6 +33,19 @@ impl Clocks {
     }
 }
 
+/// Why what is named as times beside a channel was not taken for its times; `None` where nothing is named so.
+pub(super) fn why_none(file: &File, column: &Column) -> Option<String> {
+    let place = format!("{}/", column.group());
+    let sources = ranked(&place, members(file, &place));
+    sources.iter().filter(|source| **source != column.source()).find_map(|source| {
+        match find::find(file, source) {
+            Ok(times) => Some(format!("{source} holds {} times for {} samples", times.len(), column.len())),
+            Err(find::Missing::Because(fault)) => Some(fault.problem),
+            Err(find::Missing::Nowhere) => None,
+        }
+    })
+}
+
 fn fields(file: &File, place: &str) -> Vec<String> {
     let dtype = file.dataset(place.trim_end_matches('.')).and_then(|dataset| dataset.dtype());
     let fields = dtype.map(|dtype| record::fields(&dtype)).unwrap_or_default();

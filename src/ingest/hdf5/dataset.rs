@@ -4,7 +4,8 @@ use super::attributes;
 use super::fault::{self, Fault};
 use super::packed::{self, Stored};
 use super::record::Field;
-use crate::data::Samples;
+use crate::data::{Issue, Samples};
+use crate::ingest::time_reading::{Carrier, Reading, Scale};
 use hdf5_metno::types::{FloatSize, IntSize, TypeDescriptor};
 use hdf5_metno::{Dataset, Datatype, H5Type, Hyperslab, Selection, SliceOrIndex};
 
@@ -188,20 +189,45 @@ impl Column {
         })
     }
 
-    /// Its numbers as times, s: its own attributes `unit`, `scale` and `offset` are followed.
-    pub(super) fn times_s(&self) -> Result<Vec<f64>, Fault> {
+    /// Its numbers as times, s, and a question where their unit is a guess: its own attributes `unit`, `scale` and `offset` are followed.
+    pub(super) fn times_s(&self, declared_rate_hz: Option<f64>) -> Result<(Vec<f64>, Option<Issue>), Fault> {
         let mut times_s = match self.samples()? {
             Samples::F32(times) => times.into_iter().map(f64::from).collect(),
             Samples::F64(times) => times,
         };
-        let (scale, offset) = attributes::time_scale(self)?;
+        let (counted, scale, offset) = attributes::time_scale(self)?;
         #[allow(clippy::float_cmp, reason = "exactly the values that stand for nothing to do")]
-        if scale != 1.0 || offset != 0.0 {
-            for t in &mut times_s {
-                *t = t.mul_add(scale, offset);
+        let mut apply = |scale: f64, offset: f64| {
+            if scale != 1.0 || offset != 0.0 {
+                for t in &mut times_s {
+                    *t = t.mul_add(scale, offset);
+                }
             }
+        };
+        if let Scale::Known(unit_s) = counted {
+            apply(unit_s * scale, unit_s * offset);
+            return Ok((times_s, None));
         }
-        Ok(times_s)
+        apply(scale, offset);
+        if let Scale::Twofold(..) = counted
+            && declared_rate_hz.is_none()
+        {
+            return Err(Fault {
+                problem: format!("the times of {} are in another unit by its name than by its unit", self.source()),
+                mend: "correct the one that is wrong in a copy, or write sample_rate_hz in each [[channel]], which tells them apart"
+                    .into(),
+            });
+        }
+        let reading = Reading::of(counted, &times_s, declared_rate_hz);
+        let source = self.source();
+        let carrier = if self.records().is_some() { Carrier::Field } else { Carrier::Dataset };
+        if let Some(doubt) = reading.doubt.as_ref().filter(|doubt| doubt.is_grave()) {
+            let problem = doubt.problem(&source, carrier);
+            return Err(Fault { problem, mend: doubt.mend(carrier) });
+        }
+        reading.apply(&mut times_s);
+        let issue = reading.issue(&source, carrier);
+        Ok((times_s, issue))
     }
 
     fn read<T: Stored>(&self) -> Result<Vec<T>, Fault> {

@@ -188,7 +188,7 @@ fn records_that_cannot_be_read_are_told() {
         a: f64,
         note: VarLenUnicode,
     }
-    let rows: Vec<Pair> = (0..5000_u16).map(|i| Pair { t: f64::from(i), a: 1.0 }).collect();
+    let rows: Vec<Pair> = (0..5000_u16).map(|i| Pair { t: f64::from(i) * 1e-4, a: 1.0 }).collect();
     let made = made(|file| {
         file.new_dataset_builder().chunk(1000).deflate(1).with_data(&rows).create("a")?;
         let noted = vec![Noted { a: 1.0, note: VarLenUnicode::new() }; 9];

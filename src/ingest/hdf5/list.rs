@@ -240,7 +240,10 @@ fn survey(
     if !effort.pays_for(&time) {
         return Ok(Vec::new());
     }
-    let times_s = time.times_s()?;
+    let (times_s, question) = match time.times_s(attributes.sample_rate_hz()) {
+        Ok(read) => read,
+        Err(fault) => return Ok(vec![no_base(format!("{}: {}", fault.problem, fault.mend))]),
+    };
     if times_s.len() != samples.len() {
         return Ok(Vec::new());
     }
@@ -256,7 +259,7 @@ fn survey(
     channel.duration_s = Some(last_s - first_s);
     let has_gap = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
     channel.gaps = Some(if has_gap { uniform.gaps.len() as u64 } else { 0 });
-    Ok(uniform.issues.into_iter().chain(attributes.rival()).collect())
+    Ok(uniform.issues.into_iter().chain(question).chain(attributes.rival()).collect())
 }
 
 /// That times or rate would not do, as reading says.

@@ -1,7 +1,7 @@
-//! Numbers in a column of times to seconds, also where nothing says their unit.
+//! Numbers in a column or dataset of times to seconds, also where nothing says their unit.
 
-use super::super::time_base::{short, to_digits};
-use super::time_column::Scale;
+use super::time_base::{short, to_digits};
+use super::{time_name, time_unit};
 use crate::data::{Issue, IssueCode, Severity};
 
 /// Units of time that a recorder may have left out, with seconds a unit.
@@ -27,6 +27,57 @@ const ALIKE: f64 = 0.1;
 
 /// How many intervals are looked at: their median only has to tell a thousandfold.
 const LOOKED_AT: usize = 4096;
+
+/// What the numbers in a column of times count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Scale {
+    /// So many seconds a unit.
+    Known(f64),
+    /// Nothing says it.
+    Open,
+    /// A unit that is none of time.
+    Unknown,
+    /// So many seconds by its name, and so many by its unit.
+    Twofold(f64, f64),
+}
+
+impl Scale {
+    /// As the unit that stands beside the name says, and the name.
+    pub(super) fn of(name: &str, unit: Option<&str>) -> Self {
+        let named_s = time_name::split(name).1.and_then(time_unit::seconds);
+        match unit.map(str::trim) {
+            None | Some("" | "-" | "1") => named_s.map_or(Self::Open, Self::Known),
+            Some(unit) => match (named_s, time_unit::seconds(unit)) {
+                (_, None) => Self::Unknown,
+                (Some(named_s), Some(unit_s)) if named_s.total_cmp(&unit_s).is_ne() => {
+                    Self::Twofold(named_s, unit_s)
+                }
+                (_, Some(unit_s)) => Self::Known(unit_s),
+            },
+        }
+    }
+}
+
+/// What holds times, and how it says their unit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Carrier {
+    /// A column, by its header.
+    Column,
+    /// A dataset, by an attribute.
+    Dataset,
+    /// A field of records, by its name: attributes are for the samples in them.
+    Field,
+}
+
+impl Carrier {
+    fn stating(self, unit: &str) -> String {
+        match self {
+            Self::Column => format!("head the column with [{unit}]"),
+            Self::Field => format!("name the field as t_{unit}"),
+            Self::Dataset => format!("give the dataset an attribute unit = \"{unit}\""),
+        }
+    }
+}
 
 /// How the numbers in a column of times are read.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,9 +150,9 @@ impl Reading {
     }
 
     /// The doubt in words, for times in the column headed so.
-    pub(super) fn issue(&self, header: &str) -> Option<Issue> {
+    pub(super) fn issue(&self, header: &str, carrier: Carrier) -> Option<Issue> {
         let doubt = self.doubt.as_ref()?;
-        let message = format!("{}: {}", doubt.problem(header), doubt.mend());
+        let message = format!("{}: {}", doubt.problem(header, carrier), doubt.mend(carrier));
         Some(Issue::new(IssueCode::TimeJitter, Severity::Warning, message))
     }
 }
@@ -112,14 +163,18 @@ impl Doubt {
         self.rate_hz < LEAST_HZ
     }
 
-    pub(super) fn problem(&self, header: &str) -> String {
+    pub(super) fn problem(&self, header: &str, carrier: Carrier) -> String {
+        let place = match carrier {
+            Carrier::Column => format!("column {header:?}"),
+            Carrier::Dataset | Carrier::Field => header.to_owned(),
+        };
         format!(
-            "nothing says the unit of the times in column {header:?}; taken as seconds they give a rate of {}",
+            "nothing says the unit of the times in {place}; taken as seconds they give a rate of {}",
             rate(self.rate_hz)
         )
     }
 
-    pub(super) fn mend(&self) -> String {
+    pub(super) fn mend(&self, carrier: Carrier) -> String {
         let asked: Vec<String> = self
             .likelier
             .iter()
@@ -127,10 +182,11 @@ impl Doubt {
             .collect();
         let (name, rate_hz) = self.likelier[0];
         format!(
-            "are they in {}? Then head the column with [{name}] in a copy, or write sample_rate_hz = {} in each [[channel]]; \
-             head it with [s] if they are seconds",
+            "are they in {}? Then {} in a copy, or write sample_rate_hz = {} in each [[channel]]; {} if they are seconds",
             asked.join(", or in "),
-            short(to_digits(rate_hz, 6))
+            carrier.stating(name),
+            short(to_digits(rate_hz, 6)),
+            carrier.stating("s")
         )
     }
 }
