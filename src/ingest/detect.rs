@@ -53,11 +53,38 @@ pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
     if has_hdf5_signature(&mut file, metadata.len()).map_err(|source| error::io(path, source))? {
         return Ok(RecordingFormat::Hdf5);
     }
-    // A text with a UTF-16 mark: only its reader decodes it and can say whether it holds rows.
-    if head.starts_with(b"\xFF\xFE") || head.starts_with(b"\xFE\xFF") || looks_like_rows(&head) {
+    // A text in UTF-16: only its reader decodes it and can say whether it holds rows.
+    if wide_text(&head).is_some() || looks_like_rows(&head) {
         return Ok(RecordingFormat::Csv);
     }
     Err(stranger(path, &head))
+}
+
+/// A text in UTF-16: whether the lower byte of each letter stands first, by its mark or by the zero bytes between plain letters.
+pub(super) fn wide_text(head: &[u8]) -> Option<bool> {
+    /// Bytes that are looked at, and the least that tell.
+    const LOOKED_AT: usize = 256;
+    const LEAST: usize = 8;
+    match head {
+        [0xFF, 0xFE, ..] => return Some(true),
+        [0xFE, 0xFF, ..] => return Some(false),
+        _ => {}
+    }
+    let (pairs, _) = head.get(..LOOKED_AT.min(head.len())).unwrap_or_default().as_chunks::<2>();
+    // Three of four: a minus of its own in every cell is another letter.
+    let most = |is_letter: fn(&[u8; 2]) -> bool| {
+        4 * pairs.iter().filter(|pair| is_letter(pair)).count() >= 3 * pairs.len()
+    };
+    match pairs.len() {
+        0..LEAST => None,
+        _ if most(|pair| is_plain(pair[0]) && pair[1] == 0) => Some(true),
+        _ if most(|pair| pair[0] == 0 && is_plain(pair[1])) => Some(false),
+        _ => None,
+    }
+}
+
+fn is_plain(byte: u8) -> bool {
+    matches!(byte, b'\t' | b'\n' | b'\r' | b' '..=b'~')
 }
 
 /// Whether the HDF5 signature stands at 0, 512, 1024, 2048 …: a user block may come first (HDF5 format specification, II.A).
@@ -77,12 +104,12 @@ fn has_hdf5_signature(file: &mut File, length: u64) -> std::io::Result<bool> {
 
 /// Whether two lines one after the other have as many cells each and numbers in them.
 fn looks_like_rows(head: &[u8]) -> bool {
-    if head.contains(&0) {
-        return false;
-    }
+    // A file that its logger reserved ahead ends in zero bytes.
+    let head = head.split(|&byte| byte == 0).next().unwrap_or_default();
     let text = String::from_utf8_lossy(head);
-    let lines: Vec<&str> = text.lines().map(str::trim_end).filter(|line| !line.trim().is_empty()).collect();
-    [';', '\t', ',', ' '].into_iter().any(|delimiter| {
+    let lines: Vec<&str> =
+        text.split(['\n', '\r']).map(str::trim_end).filter(|line| !line.trim().is_empty()).collect();
+    [';', '\t', ',', '|', ' '].into_iter().any(|delimiter| {
         let rows: Vec<Option<usize>> = lines.iter().map(|line| numeric_row(line, delimiter)).collect();
         // The last line may be cut off, a single one may be all there is after a header.
         rows.windows(2).any(|pair| pair[0].is_some() && pair[0] == pair[1])
@@ -97,9 +124,9 @@ fn numeric_row(line: &str, delimiter: char) -> Option<usize> {
     } else {
         line.split(delimiter).map(|cell| cell.trim().trim_matches('"')).collect()
     };
-    let numbers = cells.iter().filter(|cell| cell.replace(',', ".").parse::<f64>().is_ok()).count();
-    let all_numbers = numbers > 0
-        && cells.iter().all(|cell| cell.is_empty() || cell.replace(',', ".").parse::<f64>().is_ok());
+    let is_number = |cell: &str| cell.replace(',', ".").replace('−', "-").parse::<f64>().is_ok();
+    let numbers = cells.iter().filter(|cell| is_number(cell)).count();
+    let all_numbers = numbers > 0 && cells.iter().all(|cell| cell.is_empty() || is_number(cell));
     // Prose has blanks and commas too: there a row must be numbers throughout, or else numbers and words in clear columns.
     if all_numbers || (numbers > 0 && cells.len() >= 2 && delimiter != ' ') {
         Some(cells.len())
@@ -185,8 +212,17 @@ mod tests {
             "a\n1\n",
             "when,a\n2026-01-01T00:00:00,1\n2026-01-01T00:00:01,2\n",
             "time_s,word\n0,ok\n1,bad\n",
+            "t|a\n0|1\n1|2\n",
+            "t;a\r0;1\r1;2\r",
+            "t;a\n0;−1,5\n1;−2,5\n",
+            "t;a\n0;1\n1;2\n\0\0\0\0",
         ] {
             assert_eq!(of(text.as_bytes()), Ok(RecordingFormat::Csv), "{text:?}");
+            for bytes in [u16::to_le_bytes, u16::to_be_bytes] {
+                let wide: Vec<u8> = text.trim_end_matches('\0').encode_utf16().flat_map(bytes).collect();
+                let expected = if wide.len() < 16 { None } else { Some(RecordingFormat::Csv) };
+                assert_eq!(of(&wide).ok(), expected, "{text:?}");
+            }
         }
     }
 

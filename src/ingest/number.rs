@@ -148,14 +148,23 @@ fn by_library(text: &[u8], decimal: u8) -> Option<f64> {
 
 /// A whole cell as a number.
 pub(super) fn of_cell(cell: &[u8], decimal: u8) -> Option<f64> {
+    /// U+2212, the minus of typesetters and of spreadsheets in some languages.
+    const MINUS: &[u8] = "−".as_bytes();
     let cell = cell.trim_ascii();
-    leading(cell, decimal).filter(|&(_, used)| used == cell.len()).map(|(value, _)| value)
+    let whole =
+        |cell: &[u8]| leading(cell, decimal).filter(|&(_, used)| used == cell.len()).map(|(value, _)| value);
+    match cell.strip_prefix(MINUS) {
+        Some(magnitude) if magnitude.first().is_some_and(|byte| !matches!(byte, b'-' | b'+')) => {
+            whole(magnitude).map(|value| -value)
+        }
+        _ => whole(cell),
+    }
 }
 
 /// Whether a cell says that there is no value.
 pub(super) fn is_missing(cell: &[u8]) -> bool {
     /// Of spreadsheets, of C libraries, and of loggers whose converter ran over its range.
-    const WORDS: [&str; 34] = [
+    const WORDS: [&str; 43] = [
         "nan",
         "-nan",
         "nan(ind)",
@@ -190,6 +199,15 @@ pub(super) fn is_missing(cell: &[u8]) -> bool {
         "+ovld",
         "overload",
         "overrange",
+        "ol",
+        "-ol",
+        "+ol",
+        "over",
+        "-over",
+        "+over",
+        "overflow",
+        "#overflow",
+        "-overflow",
     ];
     cell.is_empty()
         || matches!(cell, b"-" | b"--" | b"---")
@@ -276,7 +294,12 @@ mod tests {
 
     #[test]
     fn words_are_no_numbers() {
-        for text in ["", "-", "e5", ".", "1.2.3", "1,5", "12a", "0x10", "1e", "--1", "20.11.2026"] {
+        for (text, value) in [("−1.5", -1.5), (" −2e3 ", -2e3), ("−.5", -0.5)] {
+            assert_eq!(of_cell(text.as_bytes(), b'.'), Some(value), "{text}");
+        }
+        for text in
+            ["−", "−-1", "-−1", "", "-", "e5", ".", "1.2.3", "1,5", "12a", "0x10", "1e", "--1", "20.11.2026"]
+        {
             assert_eq!(of_cell(text.as_bytes(), b'.'), None, "{text}");
         }
         for cell in ["1.234,5", "-1,234.5", "1,234,567", "12'345.67", "1 234", "1.234.567,0", "1\u{a0}234,5"]

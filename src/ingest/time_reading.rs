@@ -93,6 +93,8 @@ pub(super) struct Reading {
 pub(super) struct Doubt {
     /// The rate that they give in seconds, Hz.
     rate_hz: f64,
+    /// Whether they rise by 1 from row to row.
+    counts: bool,
     /// Units in which they would be a usual recording, with the rate in Hz.
     likelier: Vec<(&'static str, f64)>,
 }
@@ -125,7 +127,9 @@ impl Reading {
         }
         if let Some(declared_hz) = declared_rate_hz {
             let is_it = |(_, scale_s): &&(_, f64)| agrees(*scale_s, declared_hz);
-            return sure(UNITS.iter().find(is_it).map_or(1.0, |unit| unit.1));
+            // A counter of the samples, with what is missing left out of it.
+            let else_s = if clock.counts { declared_hz.recip() } else { 1.0 };
+            return sure(UNITS.iter().find(is_it).map_or(else_s, |unit| unit.1));
         }
         let likelier: Vec<(&str, f64)> = UNITS[1..]
             .iter()
@@ -136,7 +140,8 @@ impl Reading {
             .map(|(name, scale_s)| (*name, clock.rate / scale_s))
             .collect();
         let is_doubtful = clock.rate < USUAL_HZ.0 && !likelier.is_empty();
-        Self { scale_s: 1.0, doubt: is_doubtful.then_some(Doubt { rate_hz: clock.rate, likelier }) }
+        let doubt = Doubt { rate_hz: clock.rate, counts: clock.counts, likelier };
+        Self { scale_s: 1.0, doubt: is_doubtful.then_some(doubt) }
     }
 
     /// The times to seconds.
@@ -181,8 +186,13 @@ impl Doubt {
             .map(|(name, rate_hz)| format!("{name}, which is {}", rate(*rate_hz)))
             .collect();
         let (name, rate_hz) = self.likelier[0];
+        let counter = if self.counts {
+            "do they count the samples? Then write sample_rate_hz in each [[channel]]. Or "
+        } else {
+            ""
+        };
         format!(
-            "are they in {}? Then {} in a copy, or write sample_rate_hz = {} in each [[channel]]; {} if they are seconds",
+            "{counter}are they in {}? Then {} in a copy, or write sample_rate_hz = {} in each [[channel]]; {} if they are seconds",
             asked.join(", or in "),
             carrier.stating(name),
             short(to_digits(rate_hz, 6)),
@@ -203,6 +213,8 @@ pub(super) struct Clock {
     /// Rows per unit.
     pub rate: f64,
     pub span: f64,
+    /// Whether most rise by exactly 1, and all by whole numbers.
+    pub counts: bool,
 }
 
 impl Clock {
@@ -224,8 +236,10 @@ impl Clock {
         let middle = steps.len() / 2;
         let median =
             if steps.is_empty() { mean } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+        let is_whole = |time: &f64| time.is_nan() || time.fract().abs() < f64::EPSILON;
+        let counts = (median - 1.0).abs() < f64::EPSILON && times.iter().all(is_whole);
         // A pause lengthens the mean, times that repeat the median.
-        Some(Self { first, last, rate: 1.0 / mean.min(median), span })
+        Some(Self { first, last, rate: 1.0 / mean.min(median), span, counts })
     }
 
     /// Seconds a unit of times that count from 1970.

@@ -142,7 +142,8 @@ impl Even {
 
     fn clock(&self) -> Option<Clock> {
         let (first, last) = (self.at(0), self.at(self.count.checked_sub(2)? + 1));
-        Some(Clock { first, last, rate: self.rate(), span: last - first })
+        let counts = (self.rate() - 1.0).abs() < f64::EPSILON && self.first % self.step == 0;
+        Some(Clock { first, last, rate: self.rate(), span: last - first, counts })
     }
 
     /// Samples at these times, s, on their base; a declared rate in Hz wins over theirs.
@@ -328,6 +329,12 @@ mod tests {
             (ours.span, theirs.span),
         ] {
             assert!((own / other - 1.0).abs() < 1e-9, "{own} {other}");
+        }
+        for (first, counts) in [(7, true), (5, false)] {
+            let values: Vec<f64> = (0..99).map(|i| f64::from(i) + f64::from(first) / 7.0).collect();
+            let [ours, theirs] =
+                [column(&[&values]).clock(), Clock::of(&values)].map(|clock| clock.unwrap().counts);
+            assert_eq!((ours, theirs), (counts, counts));
         }
         held.scale(1e-3);
         let even = held.even().expect("a rule");

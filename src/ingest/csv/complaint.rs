@@ -14,6 +14,13 @@ pub(super) fn ending_issues(ending: &Ending) -> Vec<Issue> {
     ending
         .cut_line
         .map(|line| {
+            if ending.is_zeros {
+                let message = format!(
+                    "from line {line} on stand zero bytes, as a logger leaves them that reserves its file ahead and is not closed: the rows before \
+                     are whole, what follows was not read"
+                );
+                return Issue::new(IssueCode::Truncated, Severity::Warning, message);
+            }
             Issue::new(
                 IssueCode::Truncated,
                 Severity::Warning,

@@ -1,6 +1,7 @@
 //! A text file to bytes in which digits and delimiters are ASCII, whatever its encoding.
 
 use super::super::Limits;
+use super::super::detect;
 use super::super::error::{self, IngestError};
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use std::borrow::Cow;
@@ -45,11 +46,14 @@ impl Input {
         let bytes = file.metadata().map_err(io)?.len();
         let mut head = Vec::new();
         (&mut file).take(HEAD_BYTES).read_to_end(&mut head).map_err(io)?;
-        let wide = match head.as_slice() {
-            [0xFF, 0xFE, ..] => Some((UTF_16LE, "UTF-16 (little-endian)")),
-            [0xFE, 0xFF, ..] => Some((UTF_16BE, "UTF-16 (big-endian)")),
-            _ => None,
+        let coding = |is_low_first: bool| {
+            if is_low_first {
+                (UTF_16LE, "UTF-16 (little-endian)")
+            } else {
+                (UTF_16BE, "UTF-16 (big-endian)")
+            }
         };
+        let wide = detect::wide_text(&head).map(coding);
         if let Some((coding, name)) = wide {
             // It is turned into UTF-8 in memory as a whole.
             if bytes > limits.part_bytes() {
@@ -74,16 +78,40 @@ impl Input {
             (false, _) => "Latin-1 (Windows-1252)",
         };
         let is_whole = bytes <= HEAD_BYTES;
-        Ok(Self { head, is_whole, rest: Box::new(file), bytes, encoding })
+        // Lines that end in a carriage return alone, as old Macintosh programs write them.
+        let is_returned = head.contains(&b'\r') && !head.contains(&b'\n');
+        if is_returned {
+            to_breaks(&mut head);
+        }
+        let rest: Box<dyn Read + Send> = if is_returned { Box::new(Returned(file)) } else { Box::new(file) };
+        Ok(Self { head, is_whole, rest, bytes, encoding })
     }
 
     fn decoded(head: &[u8], bytes: u64, coding: (&'static Encoding, &'static str)) -> Self {
         let (text, _, _) = coding.0.decode(head);
         let mut text = text.into_owned().into_bytes();
+        if !text.contains(&b'\n') {
+            to_breaks(&mut text);
+        }
         let rest = text.split_off(text.len().min(1 << 16));
         let is_whole = rest.is_empty();
         Self { head: text, is_whole, rest: Box::new(Cursor::new(rest)), bytes, encoding: coding.1 }
     }
+}
+
+/// A text whose lines end in carriage returns, with line breaks in their place.
+struct Returned(File);
+
+impl Read for Returned {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let read = self.0.read(buffer)?;
+        to_breaks(&mut buffer[..read]);
+        Ok(read)
+    }
+}
+
+fn to_breaks(text: &mut [u8]) {
+    text.iter_mut().filter(|byte| **byte == b'\r').for_each(|byte| *byte = b'\n');
 }
 
 /// A line as text: UTF-8, else Latin-1.

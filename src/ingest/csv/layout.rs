@@ -57,13 +57,15 @@ pub(super) struct Layout {
 }
 
 /// Delimiter and decimal mark, likeliest first where a file fits several.
-const DIALECTS: [(u8, u8); 8] = [
+const DIALECTS: [(u8, u8); 10] = [
     (b';', b','),
     (b';', b'.'),
     (b'\t', b'.'),
     (b'\t', b','),
     (b',', b'.'),
     (b',', b','),
+    (b'|', b'.'),
+    (b'|', b','),
     (b' ', b'.'),
     (b' ', b','),
 ];

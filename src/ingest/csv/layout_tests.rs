@@ -165,9 +165,24 @@ fn a_channel_keeps_to_the_times_on_its_left() {
 
 #[test]
 fn a_cell_over_the_range_or_without_value_is_missing() {
-    for word in
-        ["#NV", "OVL", "OVLD", "-OVL", "∞", "-∞", "1.#QNAN", "1.#IND", "-1.#IND", "NoValue", "---", "NaN"]
-    {
+    for word in [
+        "#NV",
+        "OL",
+        "-OL",
+        "OVER",
+        "#OVERFLOW",
+        "OVL",
+        "OVLD",
+        "-OVL",
+        "∞",
+        "-∞",
+        "1.#QNAN",
+        "1.#IND",
+        "-1.#IND",
+        "NoValue",
+        "---",
+        "NaN",
+    ] {
         let text = format!("t\tA1\tA2\n{}", ROWS.replace("3.5", word));
         let recording = read_as(&text, &["A1", "A2"]);
         assert!(values(&recording, 0)[2].is_nan(), "{word}");
@@ -193,6 +208,68 @@ fn thousands_in_quotes_are_no_decimal_fractions() {
     let rows = "0.000,\"1,683\",5\n0.001,12,6\n0.002,\"-1,200\",7\n0.003,\"-1,416\",8\n";
     let message = told(&read_bytes(format!("t,A1,A2\n{rows}").as_bytes(), &cask_file(&["A1"])).unwrap_err());
     assert!(message.contains("line 2") && message.contains("1,683") && message.contains("'.'"), "{message}");
+}
+
+#[test]
+fn line_ends_minus_signs_bars_and_wide_letters_are_read() {
+    holds_rows(&format!("t|A1|A2\n{}", ROWS.replace('\t', "|")));
+    holds_rows(&format!(
+        "| t | A1 | A2 |\n{}",
+        ROWS.replace('\t', " | ").replace('\n', " |\n").replace("0.", "| 0.")
+    ));
+    holds_rows(&format!("t\tA1\tA2\n{}", ROWS.replace("\t-", "\t−")));
+    holds_rows(&format!("t\tA1\tA2\n{ROWS}").replace('\n', "\r"));
+    let text = format!("Zeit [s]\tA1 [m/s²]\tA2\n{ROWS}");
+    for text in
+        [text.clone(), text.replace('\n', "\r\n"), text.replace('\n', "\r"), format!("\u{feff}{text}")]
+    {
+        for is_low_first in [true, false] {
+            let bytes = |unit: u16| if is_low_first { unit.to_le_bytes() } else { unit.to_be_bytes() };
+            let wide: Vec<u8> = text.encode_utf16().flat_map(bytes).collect();
+            let recording =
+                read_bytes(&wide, &cask_file(&["A1", "A2"])).unwrap_or_else(|e| panic!("{}", told(&e)));
+            assert_eq!(values(&recording, 1), [-1.0, -2.0, -3.0, -4.0, -5.0], "{text}");
+            assert_eq!(recording.channels[0].unit.as_deref(), Some("m/s²"));
+        }
+    }
+    // Longer than what is looked at first.
+    let numbers: Vec<String> = (0..20_000).map(|i: u32| format!("1;{i}")).collect();
+    let rows = format!("A1;A2\r{}\r", numbers.join("\r"));
+    let mut cask = cask_file(&["A2"]);
+    cask.channels[0].sample_rate_hz = Some(10.0);
+    assert_eq!(values(&read_bytes(rows.as_bytes(), &cask).unwrap(), 0).len(), 20_000);
+}
+
+#[test]
+fn zero_bytes_behind_the_rows_are_told_as_such() {
+    for zeros in ["\0\0\0\0", "\0\0\0\n\0\0"] {
+        let recording = read_as(&format!("t\tA1\tA2\n{ROWS}{zeros}"), &["A1"]);
+        assert_eq!(values(&recording, 0).len(), 5);
+        let [issue] = &recording.issues[..] else { panic!("{:?}", recording.issues) };
+        assert!(issue.message.contains("from line 7 on stand zero bytes"), "{}", issue.message);
+    }
+    let recording = read_as(&format!("t\tA1\tA2\n{ROWS}0.5\t\0\0\0"), &["A1"]);
+    assert!(recording.issues[0].message.contains("ends in the middle"), "{:?}", recording.issues);
+}
+
+#[test]
+fn a_counter_headed_time_is_asked_about() {
+    use std::fmt::Write as _;
+    let mut text = String::from("Time;A1\n");
+    for i in (1..9000).filter(|i| !(4000..4010).contains(i)) {
+        let _ = writeln!(text, "{i};{},5", i % 9);
+    }
+    let mut cask = cask_file(&["A1"]);
+    let message = told(&read_bytes(text.as_bytes(), &cask).unwrap_err());
+    assert!(message.contains("do they count the samples? Then write sample_rate_hz"), "{message}");
+    cask.channels[0].sample_rate_hz = Some(51_200.0);
+    let a1 = &read_bytes(text.as_bytes(), &cask).unwrap().channels[0].uniform;
+    assert!((a1.sample_rate_hz / 51_200.0 - 1.0).abs() < 1e-9 && a1.samples.len() == 8999);
+    assert!(
+        a1.gaps.len() == 1 && a1.issues.len() == 1 && a1.issues[0].code == IssueCode::Gap,
+        "{:?}",
+        a1.issues
+    );
 }
 
 #[test]

@@ -288,6 +288,7 @@ fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
         b';' => "semicolon",
         b'\t' => "tab",
         b',' => "comma",
+        b'|' => "vertical bar",
         _ => "blanks",
     };
     let decimal = if layout.decimal == b',' { "comma" } else { "point" };

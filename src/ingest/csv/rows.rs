@@ -75,6 +75,8 @@ pub(super) struct Ending {
     pub lines: u64,
     /// The line that was cut off and dropped.
     pub cut_line: Option<u64>,
+    /// Whether zero bytes stand there after whole lines.
+    pub is_zeros: bool,
 }
 
 /// Why rows could not be read.
@@ -133,7 +135,7 @@ pub(super) fn read_by(
             parts.clear();
             for piece in &cut.pieces {
                 if !table.lines(&batch.text[piece.clone()], sink)? {
-                    return Ok(Ending { lines: table.line, cut_line: Some(table.line) });
+                    return Ok(Ending { lines: table.line, cut_line: Some(table.line), is_zeros: true });
                 }
                 sizes.check(sink)?;
             }
@@ -145,8 +147,9 @@ pub(super) fn read_by(
         #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
         progress((done as f64 / input.bytes.max(1) as f64).min(1.0));
         if batch.is_last {
-            let cut_line = table.last_line(&batch.text[cut.end..], layout, sink)?;
-            return Ok(Ending { lines: table.line, cut_line });
+            let last = &batch.text[cut.end..];
+            let cut_line = table.last_line(last, layout, sink)?;
+            return Ok(Ending { lines: table.line, cut_line, is_zeros: last.first() == Some(&0) });
         }
         filled.map_err(RowError::Io)?;
         std::mem::swap(&mut batch, &mut next);

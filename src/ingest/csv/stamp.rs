@@ -157,6 +157,7 @@ impl Stamp {
     }
 
     fn clock(text: &str) -> Option<Self> {
+        let (text, half) = halved(text);
         let (date, clock) = match text.rsplit_once([' ', 'T']) {
             Some((date, clock)) => (Some(date.trim_end().trim_end_matches(',')), clock),
             None => (None, text),
@@ -165,9 +166,9 @@ impl Stamp {
         let first = whole(parts.next()?, 3)?;
         let (second, third, none) = (parts.next()?, parts.next(), parts.next());
         let (hours, minutes, seconds) = match (third, none) {
-            (Some(seconds), None) => (first, whole(second, 2)?, seconds),
+            (Some(seconds), None) => (of_day(first, half)?, whole(second, 2)?, seconds),
             // Without a fraction it would be hours and minutes.
-            (None, None) if second.contains(['.', ',']) => (0, first, second),
+            (None, None) if half.is_none() && second.contains(['.', ',']) => (0, first, second),
             _ => return None,
         };
         let (seconds, fraction) = seconds.split_once(['.', ',']).unwrap_or((seconds, "0"));
@@ -184,6 +185,23 @@ impl Stamp {
         };
         let at_ns = (3600 * hours + 60 * minutes + seconds) * SECOND_NS + fraction_ns;
         Some(Self { kind, date: date.flatten().unwrap_or_default(), at_ns: at_ns.into(), is_absolute: false })
+    }
+}
+
+/// "7:04:05 PM" to "7:04:05" and the hours of noon; without AM or PM as it is.
+fn halved(text: &str) -> (&str, Option<i64>) {
+    let half = |suffix: &str, hours: i64| {
+        let (clock, end) = text.split_at_checked(text.len().checked_sub(suffix.len())?)?;
+        end.eq_ignore_ascii_case(suffix).then(|| (clock.trim_end(), Some(hours)))
+    };
+    half("AM", 0).or_else(|| half("PM", 12)).unwrap_or((text, None))
+}
+
+/// The hours of a day: 12 AM is midnight, 12 PM noon.
+fn of_day(hours: i64, half: Option<i64>) -> Option<i64> {
+    match half {
+        None => Some(hours),
+        Some(half) => (1..=12).contains(&hours).then_some(hours % 12 + half),
     }
 }
 
@@ -266,9 +284,9 @@ mod tests {
                 "01.01.2027 00:00:01",
             ],
             [
-                "11/12/26 23:59:59.5",
+                "11/12/26 11:59:59.5 PM",
                 "11/12/26 23:59:59.75",
-                "11/13/26 00:00:00.25",
+                "11/13/26 12:00:00.25 am",
                 "11/12/26 23:59:59.875",
                 "11/13/26 00:00:01",
             ],
@@ -313,7 +331,9 @@ mod tests {
             "12:34:56.7x",
             ":34:56",
             "1:2:3:4",
-            "12:34:56 PM",
+            "13:34:56 PM",
+            "34:56.5 AM",
+            "PM",
             "31.02.2026 12:00:00",
             "1.2 12:00:00",
             "x 12:00:00",
