@@ -5,20 +5,27 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 /// Threads that are kept awake at most: an analysis shares its work among a few.
 const MOST: usize = 3;
 
-/// Says that the work is over, also where it panics.
-struct Over<'a>(&'a AtomicBool);
+/// Whether some work has the pool's threads look out for it: two of them would wait for each other's.
+static IS_TAKEN: AtomicBool = AtomicBool::new(false);
 
-impl Drop for Over<'_> {
+/// Gives a flag another value where work is over, also where it panics.
+struct Then<'a>(&'a AtomicBool, bool);
+
+impl Drop for Then<'_> {
     fn drop(&mut self) {
-        self.0.store(true, Ordering::Release);
+        self.0.store(self.1, Ordering::Release);
     }
 }
 
 /// Does `work` on a thread of the pool while others look out for what it shares with them.
 ///
 /// An analysis shares pieces of a tenth of a millisecond upwards. A thread that has gone to sleep in between takes as long to wake, on a
-/// virtual machine up to two milliseconds. Those that look out give way to any other process. Not for work of which several run at once.
+/// virtual machine up to two milliseconds. Those that look out give way to any other process. Of works at one time the first has them look out.
 pub fn awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    if IS_TAKEN.swap(true, Ordering::AcqRel) {
+        return rayon::scope(|_| work());
+    }
+    let _free = Then(&IS_TAKEN, false);
     let (is_over, awake) = (AtomicBool::new(false), AtomicUsize::new(0));
     rayon::scope(|scope| {
         // The thread that works is one of the pool's.
@@ -40,7 +47,7 @@ pub fn awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
         while awake.load(Ordering::Acquire) < MOST.min(rayon::current_num_threads() - 1) {
             std::thread::yield_now();
         }
-        let _over = Over(is_over);
+        let _over = Then(is_over, true);
         work()
     })
 }
@@ -50,6 +57,7 @@ mod tests {
     use super::*;
     use rayon::prelude::*;
     use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::sync::Mutex;
 
     /// Sums by pieces that are shared again and again, nested as in an analysis.
     fn shared(depth: u32) -> u64 {
@@ -57,8 +65,12 @@ mod tests {
         (0..4_u64).into_par_iter().map(piece).sum()
     }
 
+    /// Held by each test, for which threads then do look out.
+    static ALONE: Mutex<()> = Mutex::new(());
+
     #[test]
     fn nested_pieces_all_end() {
+        let _alone = ALONE.lock();
         for _ in 0..200 {
             assert_eq!(awake(|| shared(4)), 6 * 4_u64.pow(4));
         }
@@ -66,9 +78,22 @@ mod tests {
 
     #[test]
     fn a_panic_ends_the_looking_out() {
+        let _alone = ALONE.lock();
         for _ in 0..20 {
             assert!(catch_unwind(AssertUnwindSafe(|| awake(|| panic!("as it is meant to")))).is_err());
         }
         assert_eq!(awake(|| shared(1)), 24);
+    }
+
+    #[test]
+    fn works_at_one_time_all_end() {
+        let _alone = ALONE.lock();
+        for _ in 0..100 {
+            let both = std::thread::scope(|scope| {
+                let works = [(); 3].map(|()| scope.spawn(|| awake(|| shared(3))));
+                works.map(|work| work.join().unwrap_or(0))
+            });
+            assert_eq!(both, [6 * 4_u64.pow(3); 3]);
+        }
     }
 }
