@@ -7,6 +7,7 @@ mod missing;
 mod order;
 mod resample;
 
+pub(super) use blocks::cut_s;
 pub use blocks::from_blocks;
 
 use crate::data::{Issue, IssueCode, Samples, Severity, Span};

@@ -2,7 +2,7 @@
 
 use super::column::{RawBlock, seconds_from};
 use crate::data::{Issue, IssueCode, Samples, Severity};
-use crate::ingest::time_base::{RATE_TOLERANCE, TimeBaseError};
+use crate::ingest::time_base::{self, RATE_TOLERANCE, TimeBaseError};
 
 /// A declared rate further than this from that of the stamps is no correction of them: computers' clocks and doubled stamps stay below.
 pub(super) const FAR: f64 = 0.1;
@@ -56,10 +56,10 @@ impl Derived {
         let middle = rates_hz.len() / 2;
         rates_hz.sort_unstable_by(f64::total_cmp);
         let usual_hz = rates_hz.get(middle).copied()?;
+        let line_hz = through(&intervals, through(&intervals, usual_hz));
+        let cut_s = time_base::cut_s(&intervals, line_hz);
         // A line through stamps that are even adds but its round-off.
-        let is_even = |(length, s): &(f64, f64)| (s * usual_hz - length).abs() < 0.5;
-        let cut_s = if intervals.iter().all(is_even) { 0.0 } else { cut_s(&order) };
-        let rate_hz = if cut_s > 0.0 { through(&intervals, through(&intervals, usual_hz)) } else { usual_hz };
+        let rate_hz = if cut_s > 0.0 { line_hz } else { usual_hz };
         let is_alike = |(length, s): &&(f64, f64)| {
             (length / s / rate_hz - 1.0).abs() < FAR || (length / rate_hz - s).abs() <= cut_s
         };
@@ -131,15 +131,6 @@ fn through(intervals: &[(f64, f64)], rate_hz: f64) -> f64 {
         (sum.0 + x * x, sum.1 + x * y)
     });
     if cross > 0.0 { square / cross } else { rate_hz }
-}
-
-/// What all stamps are multiples of from the first on, a power of ten, s.
-fn cut_s(order: &[(i64, usize)]) -> f64 {
-    let first_ns = order.first().map_or(0, |(time_ns, _)| *time_ns);
-    let units_ns = (3..=9).rev().map(|digits| 10_i64.pow(digits));
-    let is_it =
-        |unit_ns: &i64| order.iter().all(|(time_ns, _)| time_ns.saturating_sub(first_ns) % unit_ns == 0);
-    units_ns.into_iter().find(is_it).map_or(0.0, |unit_ns| seconds_from(unit_ns, 0))
 }
 
 /// Whether the first blocks end, at that rate, with the samples that the next begins with.

@@ -187,20 +187,55 @@ fn stamp_tolerance(pieces: &[Piece], rate_hz: f64) -> f64 {
         return 0.5;
     }
     // Two stamps that are cut to a millisecond are up to that nearer or farther than their blocks.
-    let cut = cut_s(pieces, rate_hz) * rate_hz * (1.0 + ROUND_OFF);
+    let cut = cut_s(&intervals(pieces), rate_hz) * rate_hz * (1.0 + ROUND_OFF);
     (6.0 * median).max(cut).min(half_block)
 }
 
 /// Stamps are held as s from the first, with more digits than this part of what they are cut to.
 const ROUND_OFF: f64 = 1e-4;
 
-/// What the stamps are cut to where that is longer than a sample, s: a power of ten that all are multiples of from the first on; else 0.
-fn cut_s(pieces: &[Piece], rate_hz: f64) -> f64 {
+/// What stamps are cut to, a power of ten in s, where that shows at a rate in Hz: of the samples of each block and the seconds to the next
+/// stamp; else 0.
+///
+/// Stamps of whole milliseconds may be exact. Where they are cut, some intervals between blocks differ from the usual, all by no more than
+/// one cut, and what they differ by does not add up: samples that are lost do, and a rate that is another.
+pub(in crate::ingest) fn cut_s(intervals: &[(f64, f64)], rate_hz: f64) -> f64 {
+    /// Fewer intervals differ where samples are lost here and there.
+    const SHOWN: usize = 3;
+    /// In cuts: one, and what the slope of a line through a few tens of them leaves.
+    const WIDEST: f64 = 1.5;
+    let mut rates_hz: Vec<f64> = intervals.iter().map(|(length, s)| length / s).collect();
+    if rates_hz.is_empty() {
+        return 0.0;
+    }
+    let middle = rates_hz.len() / 2;
+    let (_, &mut usual_hz, _) = rates_hz.select_nth_unstable_by(middle, f64::total_cmp);
+    let is_gap = |(length, s): &(f64, f64)| (s * usual_hz - length).abs() > 0.5 * length;
     let is_multiple = |steps: f64| (steps - steps.round()).abs() < ROUND_OFF;
     let units_s = (0..=6).map(|digits| 10_f64.powi(-digits)).take_while(|unit_s| unit_s * rate_hz > 1.0);
-    let first_s = pieces.first().map_or(0.0, |piece| piece.start_s);
-    let is_it = |unit_s: &f64| pieces.iter().all(|piece| is_multiple((piece.start_s - first_s) / unit_s));
-    units_s.into_iter().find(is_it).unwrap_or(0.0)
+    let Some(unit_s) =
+        units_s.into_iter().find(|unit_s| intervals.iter().all(|(_, s)| is_multiple(s / unit_s)))
+    else {
+        return 0.0;
+    };
+    let most_s = unit_s * (1.0 + ROUND_OFF);
+    let is_uneven = |interval: &&(f64, f64)| {
+        let off_s = (interval.1 - interval.0 / usual_hz).abs();
+        !is_gap(interval) && off_s * usual_hz >= 0.5 && off_s <= most_s
+    };
+    let (mut off_s, mut low_s, mut high_s) = (0.0_f64, 0.0_f64, 0.0_f64);
+    let adds_up = intervals.iter().any(|interval| {
+        off_s = if is_gap(interval) { 0.0 } else { off_s + interval.1 - interval.0 / rate_hz };
+        (low_s, high_s) = if is_gap(interval) { (0.0, 0.0) } else { (low_s.min(off_s), high_s.max(off_s)) };
+        high_s - low_s > WIDEST * unit_s
+    });
+    if adds_up || intervals.iter().filter(is_uneven).count() < SHOWN { 0.0 } else { unit_s }
+}
+
+/// The samples of each block and the seconds to the next one's stamp.
+fn intervals(pieces: &[Piece]) -> Vec<(f64, f64)> {
+    let of_pair = |pair: &[Piece]| (as_f64(pair[0].samples.len()), pair[1].start_s - pair[0].start_s);
+    pieces.windows(2).map(of_pair).collect()
 }
 
 /// The place of each block's first sample on the base.
@@ -242,7 +277,7 @@ fn clock(pieces: &[Piece], places: &[usize], rate_hz: f64, issues: &mut Vec<Issu
         return (pieces[0].start_s, rate_hz);
     }
     let (low_s, high_s) = offs.iter().fold((0.0_f64, 0.0_f64), |(low, high), &o| (low.min(o), high.max(o)));
-    let cut_s = cut_s(pieces, rate_hz);
+    let cut_s = cut_s(&intervals(pieces), rate_hz);
     if high_s - low_s <= cut_s * (1.0 + ROUND_OFF) {
         let message = format!(
             "the blocks' stamps are cut to {cut_s} s and agree with {rate_hz:.6} Hz, which was taken; blocks that follow one another were joined"
