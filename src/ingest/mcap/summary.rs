@@ -68,10 +68,11 @@ fn section(file: &mut (impl Read + Seek), start: u64, end: u64, most_bytes: u64)
         }
         let [opcode, length @ ..] = header;
         let length = u64::from_le_bytes(length);
-        held_bytes += length;
-        if length > reader.limit() || held_bytes > most_bytes {
+        // A length that the file holds cannot make the sum overflow.
+        if length > reader.limit() || held_bytes + length > most_bytes {
             break;
         }
+        held_bytes += length;
         let mut body = Vec::new();
         (&mut reader).take(length).read_to_end(&mut body)?;
         match opcode {
