@@ -11,50 +11,63 @@ const POWERS: [f64; 23] = [
 /// Exact: up to 2⁵³ and 10²² one division or product rounds correctly (Clinger 1990); longer numbers go to the library.
 #[inline]
 pub(super) fn leading(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
-    with_kind(text, decimal).map(|(value, used, _)| (value, used))
+    Leading::of(text, decimal).map(|number| (number.value, number.used))
 }
 
 /// The same of a number as JSON writes it: finite, digits on both sides of the mark, no zero before others, no plus.
 #[inline]
 pub(super) fn leading_json(text: &[u8]) -> Option<(f64, usize)> {
-    let (value, used, is_plain) = with_kind(text, b'.')?;
-    let number = &text[..used];
-    let digits = number.strip_prefix(b"-").unwrap_or(number);
-    let is_digit = |at: usize| digits.get(at).is_some_and(u8::is_ascii_digit);
-    let is_json = is_digit(0)
-        && is_digit(digits.len() - 1)
-        && !(digits[0] == b'0' && is_digit(1))
-        && (is_plain || value.is_finite() && !digits.windows(2).any(|pair| matches!(pair, b".e" | b".E")));
-    is_json.then_some((value, used))
+    let number = Leading::of(text, b'.')?;
+    let sign = usize::from(text.first() == Some(&b'-'));
+    let is_json = number.whole > 0
+        && (number.fraction > 0 || !number.has_mark)
+        && (number.whole == 1 || text.get(sign) != Some(&b'0'))
+        && text.first() != Some(&b'+')
+        && number.value.is_finite();
+    is_json.then_some((number.value, number.used))
 }
 
-/// The value, the bytes it takes, and whether it has at most fifteen digits and no exponent.
-#[inline]
-fn with_kind(text: &[u8], decimal: u8) -> Option<(f64, usize, bool)> {
-    let first = text.first().copied().unwrap_or_default();
-    let is_negative = first == b'-';
-    let from = usize::from(matches!(first, b'-' | b'+'));
-    let mut mantissa = 0_u64;
-    let mut at = digits(text, from, &mut mantissa);
-    let mut count = at - from;
-    let mut fraction = 0;
-    if text.get(at) == Some(&decimal) {
-        let from = at + 1;
-        at = digits(text, from, &mut mantissa);
-        fraction = at - from;
-        count += fraction;
+/// A number at the start of a text.
+struct Leading {
+    value: f64,
+    /// Bytes that it takes.
+    used: usize,
+    /// Digits before the mark and behind it.
+    whole: usize,
+    fraction: usize,
+    has_mark: bool,
+}
+
+impl Leading {
+    #[inline]
+    fn of(text: &[u8], decimal: u8) -> Option<Self> {
+        let first = text.first().copied().unwrap_or_default();
+        let is_negative = first == b'-';
+        let from = usize::from(matches!(first, b'-' | b'+'));
+        let mut mantissa = 0_u64;
+        let mut at = digits(text, from, &mut mantissa);
+        let whole = at - from;
+        let mut fraction = 0;
+        let has_mark = text.get(at) == Some(&decimal);
+        if has_mark {
+            let from = at + 1;
+            at = digits(text, from, &mut mantissa);
+            fraction = at - from;
+        }
+        let count = whole + fraction;
+        if count == 0 {
+            return None;
+        }
+        // Fifteen digits stay below 2^53.
+        if count > 15 || matches!(text.get(at), Some(b'e' | b'E')) {
+            let (value, used) = with_exponent(text, at, (mantissa, count, fraction), decimal)?;
+            return Some(Self { value, used, whole, fraction, has_mark });
+        }
+        let value = as_f64(mantissa) / POWERS[fraction];
+        // The sign bit alone, without a jump that half of all samples would take.
+        let value = f64::from_bits(value.to_bits() | (u64::from(is_negative) << 63));
+        Some(Self { value, used: at, whole, fraction, has_mark })
     }
-    if count == 0 {
-        return None;
-    }
-    // Fifteen digits stay below 2^53.
-    if count > 15 || matches!(text.get(at), Some(b'e' | b'E')) {
-        let (value, used) = with_exponent(text, at, (mantissa, count, fraction), decimal)?;
-        return Some((value, used, false));
-    }
-    let value = as_f64(mantissa) / POWERS[fraction];
-    // The sign bit alone, without a jump that half of all samples would take.
-    Some((f64::from_bits(value.to_bits() | (u64::from(is_negative) << 63)), at, true))
 }
 
 /// The number whose digits end at `at`, of any length and with its exponent.
