@@ -39,7 +39,8 @@ struct Leading {
 }
 
 impl Leading {
-    #[inline]
+    #[allow(clippy::inline_always, reason = "left alone it is handed over through memory")]
+    #[inline(always)]
     fn of(text: &[u8], decimal: u8) -> Option<Self> {
         let first = text.first().copied().unwrap_or_default();
         let is_negative = first == b'-';
