@@ -58,9 +58,12 @@ fn of_input(
     let mut clocks: Vec<usize> = plans.iter().filter_map(|plan| plan.time_column).collect();
     clocks.sort_unstable();
     clocks.dedup();
-    let witnesses: Vec<usize> =
-        clocks.iter().flat_map(|&time| layout.witnesses(time)).map(|(column, _)| column).collect();
     let values: Vec<_> = plans.iter().map(|plan| (plan.column, plan.time_column)).collect();
+    // Without times only a counter tells that rows are lost.
+    let is_value = |column: &usize| values.iter().any(|(own, _)| own == column);
+    let counter = layout.counter().filter(|column| clocks.is_empty() && !is_value(column));
+    let of_clock = clocks.iter().flat_map(|&time| layout.witnesses(time)).map(|(column, _)| column);
+    let witnesses: Vec<usize> = of_clock.chain(counter).collect();
     let wanted = Wanted::new(&values, &witnesses);
     let (mut held, stamps, ending) = columns(path, input, &layout, &wanted, (limits, progress))?;
     let mut issues = complaint::ending_issues(&ending);
@@ -73,6 +76,9 @@ fn of_input(
         let name = |spec: usize| cask_file.channels[spec].name.as_str();
         issues.extend(witness::of_columns(path, (time, &held), (&layout, &wanted), (&plans, &name))?);
     }
+    let of_counter =
+        |column: usize| witness::of_counter(&layout.columns[column].header, held[wanted.slot(column)].each());
+    issues.extend(counter.and_then(of_counter));
     drop_untimed(&mut held, &wanted, &plans);
     let mut uses = vec![0_usize; wanted.columns.len()];
     for plan in &plans {

@@ -175,6 +175,28 @@ impl Layout {
             .collect()
     }
 
+    /// The column that by its header counts the rows.
+    pub(super) fn counter(&self) -> Option<usize> {
+        const NAMES: [&str; 14] = [
+            "sample",
+            "samples",
+            "sample no",
+            "sample number",
+            "index",
+            "idx",
+            "n",
+            "no",
+            "nr",
+            "no.",
+            "nr.",
+            "#",
+            "count",
+            "counter",
+        ];
+        let is_it = |column: &Column| NAMES.iter().any(|name| column.name.trim().eq_ignore_ascii_case(name));
+        self.columns.iter().position(|column| column.is_numeric && is_it(column))
+    }
+
     /// The rate that LabVIEW states for a column above the rows; that of all where there is none of its own.
     pub(super) fn stated_rate(&self, column: usize) -> Option<&StatedRate> {
         let own = self.rates.get(column).and_then(Option::as_ref);

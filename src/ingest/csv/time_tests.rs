@@ -360,3 +360,31 @@ fn a_listing_says_what_the_times_leave_open() {
     assert!((listing.channels[0].sample_rate_hz.unwrap() / 20_000.0 - 1.0).abs() < 1e-3);
     assert!(listing.issues[0].message.contains("cut to 0.1 s"), "{:?}", listing.issues);
 }
+
+#[test]
+fn rows_that_a_counter_misses_are_told_and_can_be_put_in_their_place() {
+    let of_rows = |rows: &[usize]| {
+        rows.iter().fold("Sample,A1\n".to_owned(), |text, row| format!("{text}{row},{}.5\n", row % 7))
+    };
+    let told = |rows: &[usize]| {
+        let mut file = cask_file(&["A1"]);
+        file.channels[0].sample_rate_hz = Some(1e4);
+        let told = read_bytes(of_rows(rows).as_bytes(), &file).unwrap().issues;
+        file.time = Some("Sample".into());
+        let placed = read_bytes(of_rows(rows).as_bytes(), &file).unwrap();
+        let uniform = &placed.channels[0].uniform;
+        assert!((uniform.sample_rate_hz / 1e4 - 1.0).abs() < 1e-9, "{}", uniform.sample_rate_hz);
+        (told, uniform.samples.len())
+    };
+    let all: Vec<usize> = (0..400).collect();
+    assert_eq!(told(&all), (vec![], 400));
+    let (issues, length) = told(&[&all[..300], &all[320..]].concat());
+    assert!(matches!(&issues[..], [one] if one.severity == Severity::Warning), "{issues:?}");
+    assert!(issues[0].message.contains("20 of them are missing, the first 20 behind row 300"), "{issues:?}");
+    assert_eq!(length, 400);
+    // One that begins anew tells nothing.
+    let mut file = cask_file(&["A1"]);
+    file.channels[0].sample_rate_hz = Some(1e4);
+    let anew = read_bytes(of_rows(&[&all[..], &all[..]].concat()).as_bytes(), &file).unwrap();
+    assert!(anew.issues.is_empty());
+}

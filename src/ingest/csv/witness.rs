@@ -107,6 +107,25 @@ pub(super) fn of_columns<'a>(
     Ok(issues)
 }
 
+/// A warning where a column that counts the rows jumps: those between are lost.
+pub(super) fn of_counter(header: &str, counts: &[f64]) -> Option<Issue> {
+    let steps = || counts.windows(2).map(|pair| pair[1] - pair[0]);
+    // One that begins anew, or counts something else, tells nothing.
+    let is_counter = steps().all(|step| step >= 1.0 && step.fract().abs() < f64::EPSILON);
+    let jumps: Vec<(usize, f64)> = steps().enumerate().filter(|(_, step)| *step > 1.0).collect();
+    let &(row, first) = jumps.first()?;
+    let lost: f64 = jumps.iter().map(|(_, step)| step - 1.0).sum();
+    (is_counter && 10 * jumps.len() < counts.len()).then(|| {
+        let message = format!(
+            "the column {header:?} counts the rows, and {lost} of them are missing, the first {} behind row {} of the table; the others were \
+             taken as one after another: write time = {header:?} under [recording] of the cask file, which keeps their places",
+            first - 1.0,
+            row + 1
+        );
+        Issue::new(IssueCode::Gap, Severity::Warning, message)
+    })
+}
+
 /// Two columns of times in the same rows.
 struct Pair {
     /// Of the rows that hold both, the first as s.
