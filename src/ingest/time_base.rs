@@ -2,13 +2,14 @@
 
 mod blocks;
 mod coarse;
+mod cut;
 mod fit;
 mod missing;
 mod order;
 mod resample;
 
-pub(super) use blocks::cut_s;
 pub use blocks::from_blocks;
+pub(super) use cut::{cut, unit_s};
 
 use crate::data::{Issue, IssueCode, Samples, Severity, Span};
 use fit::Fit;
@@ -363,13 +364,20 @@ fn rate_contradiction(declared_hz: f64, own_hz: f64) -> Issue {
 }
 
 fn jitter_note(fit: &Fit, error: &resample::Difference) -> Issue {
+    // Samples are late by less than the next one's time; beyond that a clock changed its rate, was set, or began anew.
+    let is_clock = fit.rms_s > fit.period_s;
+    let asked = if is_clock {
+        "; so far off is no jitter but a clock that ran at another rate for a while, was set or began anew: look at the times"
+    } else {
+        ""
+    };
     Issue::new(
         IssueCode::TimeJitter,
-        Severity::Note,
+        if is_clock { Severity::Warning } else { Severity::Note },
         format!(
             "times lie {:.3e} s (RMS, {:.1} % of the sample interval) off a uniform base at {:.6} Hz, {:.3e} s at most; \
              the samples were interpolated onto it. Cubic and linear interpolation differ by {:.2} % of the largest \
-             sample RMS, {:.2} % at most, which bounds the error of doing so",
+             sample RMS, {:.2} % at most, which bounds the error of doing so{asked}",
             fit.rms_s,
             100.0 * fit.rms_s / fit.period_s,
             1.0 / fit.period_s,

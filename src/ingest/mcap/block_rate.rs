@@ -30,8 +30,8 @@ const UNKNOWN: f64 = 1e-2;
 /// What the stamps of blocks say.
 pub(super) struct Derived {
     pub(super) rate_hz: f64,
-    /// How many intervals say it.
-    intervals: usize,
+    /// The samples of each block and the seconds to the next stamp.
+    intervals: Vec<(f64, f64)>,
     /// Nine of ten intervals say the same to [`FAR`]: the stamps are those of the samples, not of a writer that hurries after them.
     pub(super) is_steady: bool,
     /// What the stamps are cut to, where intervals of equal blocks differ by it, s; else 0.
@@ -56,27 +56,32 @@ impl Derived {
         let middle = rates_hz.len() / 2;
         rates_hz.sort_unstable_by(f64::total_cmp);
         let usual_hz = rates_hz.get(middle).copied()?;
-        let line_hz = through(&intervals, through(&intervals, usual_hz));
-        let cut_s = time_base::cut_s(&intervals, line_hz);
+        // Where all follow one another; else gaps are left out.
+        let line_hz = through(&intervals, None);
+        let cut_at = |hz: f64| time_base::cut(&intervals, hz).map(|cut| (cut, hz));
+        let cut = cut_at(line_hz).filter(|(cut, _)| cut.is_whole).or_else(|| {
+            let line_hz = through(&intervals, Some(through(&intervals, Some(usual_hz))));
+            cut_at(line_hz)
+        });
+        let cut_s = cut.map_or(0.0, |(cut, _)| cut.unit_s);
         // A line through stamps that are even adds but its round-off.
-        let rate_hz = if cut_s > 0.0 { line_hz } else { usual_hz };
+        let rate_hz = cut.map_or(usual_hz, |(_, line_hz)| line_hz);
         let is_alike = |(length, s): &&(f64, f64)| {
             (length / s / rate_hz - 1.0).abs() < FAR || (length / rate_hz - s).abs() <= cut_s
         };
         let alike = intervals.iter().filter(is_alike).count();
-        let intervals = intervals.len();
-        Some(Self {
-            rate_hz,
-            intervals,
-            is_steady: intervals >= ENOUGH && 10 * alike >= 9 * intervals,
-            cut_s,
-            span_s,
-        })
+        let is_steady = intervals.len() >= ENOUGH && 10 * alike >= 9 * intervals.len();
+        Some(Self { rate_hz, intervals, is_steady, cut_s, span_s })
+    }
+
+    /// Whether a rate in Hz puts the blocks one behind another but for what their stamps are cut to.
+    pub(super) fn is_explained_by(&self, rate_hz: f64) -> bool {
+        time_base::cut(&self.intervals, rate_hz).is_some_and(|cut| cut.is_whole)
     }
 
     /// Whether so few blocks say it that a rate which contradicts them looks like samples that are missing.
     pub(super) fn is_few(&self) -> bool {
-        self.intervals < ENOUGH
+        self.intervals.len() < ENOUGH
     }
 
     /// The rate that the messages state and that of their steady stamps, where it is another by far.
@@ -86,7 +91,25 @@ impl Derived {
         let stated_hz = blocks.first()?.rate_hz.filter(|hz| hz.is_finite() && *hz > 0.0)?;
         let is_far = (stated_hz / self.rate_hz - 1.0).abs() > FAR;
         let is_window = stated_hz < self.rate_hz && overlap(blocks, samples, stated_hz);
-        (self.is_steady && is_far && !is_window).then_some((stated_hz, self.rate_hz))
+        (self.is_steady && is_far && !is_window && !self.is_explained_by(stated_hz))
+            .then_some((stated_hz, self.rate_hz))
+    }
+
+    /// A warning where an interval is longer than the usual by just what stamps may be cut to: a block is lost, or the rate is another.
+    fn is_lost_or_cut(&self) -> Option<Issue> {
+        let unit_s =
+            time_base::unit_s(&self.intervals, self.rate_hz).filter(|unit_s| *unit_s <= COARSEST_S)?;
+        let longer_s = |(length, s): &(f64, f64)| s - length / self.rate_hz;
+        let is_it = |interval: &(f64, f64)| ((longer_s(interval) - unit_s) * self.rate_hz).abs() < 0.5;
+        self.intervals.iter().any(is_it).then(|| {
+            let message = format!(
+                "a stamp comes {unit_s} s late, which all stamps are multiples of: samples are missing there, or the stamps are cut to that and \
+                 {:.1} Hz, had from them, is off by up to {:.1} %: give sample_rate_hz for this channel",
+                self.rate_hz,
+                100.0 * unit_s / self.span_s
+            );
+            Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+        })
     }
 
     /// How well cut stamps tell the rate: a warning beyond what clocks are apart.
@@ -94,12 +117,15 @@ impl Derived {
     /// # Errors
     /// They tell it to no better than 1 %.
     pub(super) fn resolution(&self, samples: usize) -> Result<Option<Issue>, TimeBaseError> {
+        if self.cut_s == 0.0 {
+            return Ok(self.is_lost_or_cut());
+        }
         // A line through n stamps, each off by up to half a cut (uniform), has a slope of this standard deviation; twice it.
-        let part = 2.0 * self.cut_s / (self.span_s * as_f64(self.intervals + 1).sqrt());
+        let part = 2.0 * self.cut_s / (self.span_s * as_f64(self.intervals.len() + 1).sqrt());
         if part > UNKNOWN {
             return Err(TimeBaseError::TooCoarse {
                 step_s: self.cut_s,
-                changes: self.intervals,
+                changes: self.intervals.len(),
                 count: samples,
             });
         }
@@ -114,12 +140,15 @@ impl Derived {
     }
 }
 
-/// The rate of a line through the stamps, where blocks follow one another as at about `rate_hz` or leave a gap between.
-fn through(intervals: &[(f64, f64)], rate_hz: f64) -> f64 {
+/// Stamps are cut to this at the coarsest, s: the tick of a computer's clock.
+const COARSEST_S: f64 = 0.02;
+
+/// The rate of a line through the stamps, where blocks all follow one another, or as at about `rate_hz` or leave a gap between.
+fn through(intervals: &[(f64, f64)], rate_hz: Option<f64>) -> f64 {
     let (mut place, mut time_s) = (0.0, 0.0);
     let mut points = vec![(0.0, 0.0)];
     for (length, interval_s) in intervals {
-        let steps = interval_s * rate_hz;
+        let steps = rate_hz.map_or(*length, |rate_hz| interval_s * rate_hz);
         place += if (steps - length).abs() < 0.5 * length { *length } else { steps };
         time_s += interval_s;
         points.push((place, time_s));
@@ -130,7 +159,7 @@ fn through(intervals: &[(f64, f64)], rate_hz: f64) -> f64 {
         let (x, y) = (point.0 - mean.0, point.1 - mean.1);
         (sum.0 + x * x, sum.1 + x * y)
     });
-    if cross > 0.0 { square / cross } else { rate_hz }
+    if cross > 0.0 { square / cross } else { rate_hz.unwrap_or(1.0) }
 }
 
 /// Whether the first blocks end, at that rate, with the samples that the next begins with.

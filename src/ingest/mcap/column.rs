@@ -277,7 +277,8 @@ impl Column {
         // At a rate that is far off, steady stamps would leave a gap behind every block, or let each cover the next.
         let own_hz = declared_rate_hz.and_then(|declared_hz| {
             let is_far = |rate_hz: &f64| (declared_hz / rate_hz - 1.0).abs() > FAR;
-            derived.as_ref().filter(|own| own.is_steady).map(|own| own.rate_hz).filter(is_far)
+            let own = derived.as_ref().filter(|own| own.is_steady && !own.is_explained_by(declared_hz));
+            own.map(|own| own.rate_hz).filter(is_far)
         });
         let few_hz = derived.as_ref().filter(|own| own.is_few()).map(|own| own.rate_hz);
         let mut blocks = Vec::with_capacity(self.blocks.len());

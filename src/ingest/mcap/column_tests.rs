@@ -158,6 +158,47 @@ fn exact_stamps_of_whole_milliseconds_are_not_taken_for_cut_ones() {
 }
 
 #[test]
+fn a_stated_rate_joins_blocks_whatever_their_stamps_are_cut_to() {
+    for (count, cut_ms) in [(100, 1), (102, 1), (110, 1), (128, 1), (1024, 10), (1020, 5), (2048, 20)] {
+        // In the messages, or in the cask file against another there.
+        for (stated, declared) in [(Some(1e5), None), (Some(98_000.0), Some(1e5)), (None, Some(1e5))] {
+            let column = stamped(300_000 / count, (count, 1e5), cut_ms * 1_000_000, stated);
+            let total = (300_000 / count * count) as usize;
+            let uniform =
+                column.uniform(0, declared).unwrap_or_else(|error| panic!("{count} {cut_ms}: {error}"));
+            assert!(
+                (uniform.sample_rate_hz / 1e5 - 1.0).abs() < 1e-12,
+                "{count} {cut_ms}: {:?}",
+                uniform.issues
+            );
+            assert_eq!((uniform.samples.len(), uniform.gaps.len()), (total, 0), "{count} {cut_ms}");
+            let grave = uniform.issues.iter().filter(|issue| issue.severity != Severity::Note);
+            assert_eq!(grave.count(), 0, "{count} {cut_ms} {:?}", uniform.issues);
+        }
+    }
+}
+
+#[test]
+fn what_coarse_stamps_hide_is_told() {
+    // Samples gone from one block of many alike.
+    let mut column = Column::default();
+    let mut taken = 0;
+    for i in 0..88_i64 {
+        let count = if i == 40 { 492 } else { 512 };
+        let time_ns = (i * 512 * 10_000) / 1_000_000 * 1_000_000;
+        column.take(block(&vec![1.0; count]), (time_ns, TimeOrigin::Stamp), Some(1e5));
+        taken += count;
+    }
+    let uniform = column.uniform(0, None).unwrap();
+    assert_eq!(uniform.samples.len(), taken);
+    let told = |uniform: &Uniform| uniform.issues.iter().any(|issue| issue.severity == Severity::Warning);
+    assert!(told(&uniform), "{:?}", uniform.issues);
+    // A rate that blocks just longer than a tick seem to have.
+    let uniform = stamped(46, (1024, 1e5), 10_000_000, None).uniform(0, None).unwrap();
+    assert!(told(&uniform), "{:?}", uniform.issues);
+}
+
+#[test]
 fn messages_that_contradict_their_stamps_by_far_are_told() {
     for stated_hz in [15_000.0, 14_800.0, 20_000.0, 6700.0, 5000.0] {
         let column = || stamped(40, (100, 1e4), 1, Some(stated_hz));

@@ -1,5 +1,6 @@
 //! Blocks of samples with a stamp each to one run: sorted, doubles dropped, overlaps trimmed, gaps NaN.
 
+use super::cut::{Cut, ROUND_OFF, cut, short_blocks};
 use super::order::{as_f64, is_same};
 use super::{Block, Number, Placed, RATE_TOLERANCE, TimeBaseError, Uniform, check_rate, fit, missing};
 use crate::data::{Issue, IssueCode, Samples, Severity};
@@ -82,9 +83,11 @@ fn join<S: Number>(mut pieces: Vec<Piece>, held: Vec<S>, rate_hz: f64) -> Result
     if present < 2 {
         return Err(TimeBaseError::TooFew { count: present });
     }
-    let tolerance = stamp_tolerance(&pieces, rate_hz);
+    let cut = cut(&intervals(&pieces), rate_hz);
+    let tolerance = stamp_tolerance(&pieces, rate_hz, cut);
+    issues.extend(hidden_loss(&pieces, rate_hz, tolerance));
     let places = places(&pieces, rate_hz, tolerance, present)?;
-    let clock = clock(&pieces, &places, rate_hz, &mut issues);
+    let clock = clock((&pieces, &places), rate_hz, cut, &mut issues);
     let mut gaps = Vec::new();
     let mut samples = in_place(&pieces, &places, held, |held| {
         let mut samples: Vec<S> = Vec::with_capacity(present);
@@ -170,7 +173,12 @@ const JUDGED_STAMPS: usize = 8;
 ///
 /// Half a sample for stamps of the sampling clock. Stamps of a computer's clock jitter by many samples; then six times the median
 /// miss (four standard deviations of a normal law are 5.9 medians), but less than half a block, since whole blocks get lost.
-fn stamp_tolerance(pieces: &[Piece], rate_hz: f64) -> f64 {
+fn stamp_tolerance(pieces: &[Piece], rate_hz: f64, cut: Option<Cut>) -> f64 {
+    // Two stamps that are cut to a millisecond are up to that nearer or farther than their blocks.
+    let cut_samples = cut.map_or(0.0, |cut| cut.unit_s * rate_hz * (1.0 + ROUND_OFF));
+    if cut.is_some_and(|cut| cut.is_whole) {
+        return cut_samples.max(0.5);
+    }
     let shortest = pieces.iter().rev().skip(1).map(|p| p.samples.len()).min().unwrap_or(1);
     let half_block = as_f64(shortest) / 2.0;
     let mut misses: Vec<f64> = pieces
@@ -186,50 +194,21 @@ fn stamp_tolerance(pieces: &[Piece], rate_hz: f64) -> f64 {
     if median <= 0.5 {
         return 0.5;
     }
-    // Two stamps that are cut to a millisecond are up to that nearer or farther than their blocks.
-    let cut = cut_s(&intervals(pieces), rate_hz) * rate_hz * (1.0 + ROUND_OFF);
-    (6.0 * median).max(cut).min(half_block)
+    (6.0 * median).max(cut_samples).min(half_block)
 }
 
-/// Stamps are held as s from the first, with more digits than this part of what they are cut to.
-const ROUND_OFF: f64 = 1e-4;
-
-/// What stamps are cut to, a power of ten in s, where that shows at a rate in Hz: of the samples of each block and the seconds to the next
-/// stamp; else 0.
-///
-/// Stamps of whole milliseconds may be exact. Where they are cut, some intervals between blocks differ from the usual, all by no more than
-/// one cut, and what they differ by does not add up: samples that are lost do, and a rate that is another.
-pub(in crate::ingest) fn cut_s(intervals: &[(f64, f64)], rate_hz: f64) -> f64 {
-    /// Fewer intervals differ where samples are lost here and there.
-    const SHOWN: usize = 3;
-    /// In cuts: one, and what the slope of a line through a few tens of them leaves.
-    const WIDEST: f64 = 1.5;
-    let mut rates_hz: Vec<f64> = intervals.iter().map(|(length, s)| length / s).collect();
-    if rates_hz.is_empty() {
-        return 0.0;
-    }
-    let middle = rates_hz.len() / 2;
-    let (_, &mut usual_hz, _) = rates_hz.select_nth_unstable_by(middle, f64::total_cmp);
-    let is_gap = |(length, s): &(f64, f64)| (s * usual_hz - length).abs() > 0.5 * length;
-    let is_multiple = |steps: f64| (steps - steps.round()).abs() < ROUND_OFF;
-    let units_s = (0..=6).map(|digits| 10_f64.powi(-digits)).take_while(|unit_s| unit_s * rate_hz > 1.0);
-    let Some(unit_s) =
-        units_s.into_iter().find(|unit_s| intervals.iter().all(|(_, s)| is_multiple(s / unit_s)))
-    else {
-        return 0.0;
-    };
-    let most_s = unit_s * (1.0 + ROUND_OFF);
-    let is_uneven = |interval: &&(f64, f64)| {
-        let off_s = (interval.1 - interval.0 / usual_hz).abs();
-        !is_gap(interval) && off_s * usual_hz >= 0.5 && off_s <= most_s
-    };
-    let (mut off_s, mut low_s, mut high_s) = (0.0_f64, 0.0_f64, 0.0_f64);
-    let adds_up = intervals.iter().any(|interval| {
-        off_s = if is_gap(interval) { 0.0 } else { off_s + interval.1 - interval.0 / rate_hz };
-        (low_s, high_s) = if is_gap(interval) { (0.0, 0.0) } else { (low_s.min(off_s), high_s.max(off_s)) };
-        high_s - low_s > WIDEST * unit_s
-    });
-    if adds_up || intervals.iter().filter(is_uneven).count() < SHOWN { 0.0 } else { unit_s }
+/// A warning where blocks are shorter than all others by no more than what stamps leave open: samples may be missing behind them.
+fn hidden_loss(pieces: &[Piece], rate_hz: f64, tolerance: f64) -> Option<Issue> {
+    let lengths: Vec<usize> = pieces.iter().map(|piece| piece.samples.len()).collect();
+    let (count, lacking) = short_blocks(&lengths).filter(|(_, lacking)| as_f64(*lacking) <= tolerance)?;
+    (tolerance > 0.5).then(|| {
+        let message = format!(
+            "{count} block(s) hold fewer samples than all others, {lacking} at most, and the stamps, off by up to {:.3} ms, do not tell whether \
+             samples are missing there; the blocks were joined",
+            1e3 * tolerance / rate_hz
+        );
+        Issue::new(IssueCode::Gap, Severity::Warning, message)
+    })
 }
 
 /// The samples of each block and the seconds to the next one's stamp.
@@ -269,7 +248,12 @@ fn places(
 }
 
 /// Start and rate of the base: the nominal rate while the stamps keep to it, else the one they run at.
-fn clock(pieces: &[Piece], places: &[usize], rate_hz: f64, issues: &mut Vec<Issue>) -> (f64, f64) {
+fn clock(
+    (pieces, places): (&[Piece], &[usize]),
+    rate_hz: f64,
+    cut: Option<Cut>,
+    issues: &mut Vec<Issue>,
+) -> (f64, f64) {
     let off = |piece: &Piece, place: usize| piece.start_s - pieces[0].start_s - as_f64(place) / rate_hz;
     let offs: Vec<f64> = pieces.iter().zip(places).map(|(piece, &place)| off(piece, place)).collect();
     let worst_s = offs.iter().fold(0.0_f64, |m, o| m.max(o.abs()));
@@ -277,7 +261,7 @@ fn clock(pieces: &[Piece], places: &[usize], rate_hz: f64, issues: &mut Vec<Issu
         return (pieces[0].start_s, rate_hz);
     }
     let (low_s, high_s) = offs.iter().fold((0.0_f64, 0.0_f64), |(low, high), &o| (low.min(o), high.max(o)));
-    let cut_s = cut_s(&intervals(pieces), rate_hz);
+    let cut_s = cut.map_or(0.0, |cut| cut.unit_s);
     if high_s - low_s <= cut_s * (1.0 + ROUND_OFF) {
         let message = format!(
             "the blocks' stamps are cut to {cut_s} s and agree with {rate_hz:.6} Hz, which was taken; blocks that follow one another were joined"
