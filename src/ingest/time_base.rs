@@ -364,8 +364,9 @@ fn rate_contradiction(declared_hz: f64, own_hz: f64) -> Issue {
 }
 
 fn jitter_note(fit: &Fit, error: &resample::Difference) -> Issue {
-    // Samples are late by less than the next one's time; beyond that a clock changed its rate, was set, or began anew.
-    let is_clock = fit.rms_s > fit.period_s;
+    /// In intervals: late stamps, with a gap or two that they make up, stay below; a clock 2 % off for a thousand samples is beyond.
+    const MOST_LATE: f64 = 2.0;
+    let is_clock = fit.rms_s > MOST_LATE * fit.period_s;
     let asked = if is_clock {
         "; so far off is no jitter but a clock that ran at another rate for a while, was set or began anew: look at the times"
     } else {

@@ -259,3 +259,18 @@ fn even_stretches_do_not_hide_jitter() {
     assert_eq!(codes(&uniform), [IssueCode::TimeJitter]);
     assert!((uniform.time_jitter_s / 2e-6 - 0.3 / 2_f64.sqrt()).abs() < 0.01, "{}", uniform.time_jitter_s);
 }
+
+#[test]
+fn a_clock_that_changes_its_rate_or_begins_anew_is_no_jitter() {
+    let told = |times_s: &[f64]| {
+        let uniform = from_times(times_s, Samples::F64(vec![1.0; times_s.len()]), None).unwrap();
+        uniform.issues.iter().any(|issue| issue.severity == Severity::Warning)
+    };
+    let even = |i: usize| as_f64(i) * 1e-4;
+    assert!(!told(&(0..6000).map(even).collect::<Vec<_>>()));
+    let slower = |i: usize| even(i) + 0.03 * (even(i) - 0.1).clamp(0.0, 0.1);
+    assert!(told(&(0..6000).map(slower).collect::<Vec<_>>()));
+    // A tenth of an interval early or late is jitter.
+    let late = |i: usize| even(i) + 1e-5 * (as_f64(i * i % 7) - 3.0) / 3.0;
+    assert!(!told(&(0..6000).map(late).collect::<Vec<_>>()));
+}
