@@ -9,7 +9,7 @@ mod order;
 mod resample;
 
 pub use blocks::from_blocks;
-pub(super) use cut::{cut, unit_s};
+pub(super) use cut::{cut, unit_s, usual_hz};
 
 use crate::data::{Issue, IssueCode, Samples, Severity, Span};
 use fit::Fit;

@@ -52,10 +52,7 @@ impl Derived {
             .zip(order.iter().skip(1))
             .map(|((from, length), (to, _))| (as_f64(*length), seconds_from(*to, *from)))
             .collect();
-        let mut rates_hz: Vec<f64> = intervals.iter().map(|(length, s)| length / s).collect();
-        let middle = rates_hz.len() / 2;
-        rates_hz.sort_unstable_by(f64::total_cmp);
-        let usual_hz = rates_hz.get(middle).copied()?;
+        let usual_hz = time_base::usual_hz(&intervals)?;
         // Where all follow one another; else gaps are left out.
         let line_hz = through(&intervals, None);
         let cut_at = |hz: f64| time_base::cut(&intervals, hz).map(|cut| (cut, hz));

@@ -52,8 +52,8 @@ pub(in crate::ingest) fn unit_s(intervals: &[(f64, f64)], rate_hz: f64) -> Optio
         .find(|unit_s| !intervals.is_empty() && intervals.iter().all(|(_, s)| is_multiple(s / unit_s)))
 }
 
-/// The median of what blocks and their intervals say.
-fn usual_hz(intervals: &[(f64, f64)]) -> Option<f64> {
+/// The median of what blocks and their intervals say, Hz.
+pub(in crate::ingest) fn usual_hz(intervals: &[(f64, f64)]) -> Option<f64> {
     let mut rates_hz: Vec<f64> = intervals.iter().map(|(length, s)| length / s).collect();
     let middle = rates_hz.len() / 2;
     (!rates_hz.is_empty()).then(|| *rates_hz.select_nth_unstable_by(middle, f64::total_cmp).1)
