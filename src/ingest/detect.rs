@@ -107,14 +107,19 @@ fn looks_like_rows(head: &[u8]) -> bool {
     // A file that its logger reserved ahead ends in zero bytes.
     let head = head.split(|&byte| byte == 0).next().unwrap_or_default();
     let text = String::from_utf8_lossy(head);
-    let lines: Vec<&str> =
-        text.split(['\n', '\r']).map(str::trim_end).filter(|line| !line.trim().is_empty()).collect();
-    [';', '\t', ',', '|', ' '].into_iter().any(|delimiter| {
-        let rows: Vec<Option<usize>> = lines.iter().map(|line| numeric_row(line, delimiter)).collect();
-        // The last line may be cut off, a single one may be all there is after a header.
-        rows.windows(2).any(|pair| pair[0].is_some() && pair[0] == pair[1])
-            || (lines.len() <= 3 && rows.last().is_some_and(Option::is_some) && lines.len() >= 2)
-    })
+    let mut lines = text.split(['\n', '\r']).map(str::trim_end).filter(|line| !line.trim().is_empty());
+    let cells_of = |line: &str| [';', '\t', ',', '|', ' '].map(|delimiter| numeric_row(line, delimiter));
+    let Some(first) = lines.next() else { return false };
+    let (mut before, mut count) = (cells_of(first), 1);
+    for line in lines {
+        let cells = cells_of(line);
+        if before.iter().zip(&cells).any(|(before, cells)| before.is_some() && before == cells) {
+            return true;
+        }
+        (before, count) = (cells, count + 1);
+    }
+    // The last line may be cut off, a single one may be all there is after a header.
+    (2..=3).contains(&count) && before.iter().any(Option::is_some)
 }
 
 /// Number of cells of a line that holds numbers, `None` where it holds none, or words alone.
