@@ -47,18 +47,20 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
 
 fn analyzed(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     let mut draft = Draft::new(recording, cask_file);
-    draft.issues.extend(judge::judge_silent(&recording.channels));
-    let Some(event) = events::locate(recording, one_end::least_step_m_s(cask_file, recording))
+    let (silent, changes) =
+        rayon::join(|| judge::judge_silent(&recording.channels), || events::Changes::of(recording));
+    draft.issues.extend(silent);
+    let Some(event) = changes
+        .locate(one_end::least_step_m_s(cask_file, recording))
         .filter(|e| e.velocity_step_m_s.abs() > cask_file.drop.least_impact_m_s())
     else {
         return draft.without_impact();
     };
     let drop = &cask_file.drop;
-    let another = events::another_drop(recording, &event, drop.impact_velocity_m_s / drop.gravity_m_s2);
+    let another = changes.another_drop(&event, drop.impact_velocity_m_s / drop.gravity_m_s2);
     draft.issues.extend(another.map(|another| judge::judge_several_drops(&event, &another)));
     let farthest = condition::Reach::of(&cask_file.cask, drop);
-    let last_s =
-        events::last_change_s(recording, &event, (cask_file.drop.impact_velocity_m_s, farthest.after_s));
+    let last_s = changes.last_s(&event, (cask_file.drop.impact_velocity_m_s, farthest.after_s));
     let reach = last_s.map_or(farthest, |last_s| farthest.until(last_s - event.near_s - event.spread_s));
     let (mut signals, mut found) = condition::condition(recording, &event, &reach, cask_file.corrections);
     draft.issues.append(&mut found);

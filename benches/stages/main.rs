@@ -49,7 +49,9 @@ impl Middle {
         let recording = read(&folder);
         let cask_file = folder.cask_file.clone();
         let analysis = dropcheck::analyze(&recording, &cask_file);
-        let event = events::locate(&recording, cask_file.drop.transverse_velocity_m_s()).expect("an impact");
+        let event = events::Changes::of(&recording)
+            .locate(cask_file.drop.transverse_velocity_m_s())
+            .expect("an impact");
         let (signals, _) = condition::condition(
             &recording,
             &event,
@@ -99,7 +101,7 @@ fn locate(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
     bencher
         .counter(items(samples))
-        .bench(|| events::locate(&m.recording, m.cask_file.drop.transverse_velocity_m_s()));
+        .bench(|| events::Changes::of(&m.recording).locate(m.cask_file.drop.transverse_velocity_m_s()));
 }
 
 #[divan::bench(args = SIZES)]

@@ -1,4 +1,4 @@
-//! A whole channel to the stretch in which the first impact lies, in one pass.
+//! Whole channels to the stretch in which the first impact lies, in one pass.
 
 use super::block_means_m_s2;
 use crate::data::{Axis, Channel, CoarseEvent, End, Recording};
@@ -32,88 +32,108 @@ const APART_FALLS: f64 = 2.5;
 /// more, what lifts the cask or sets it down less.
 const ALIKE: RangeInclusive<f64> = 0.6..=1.7;
 
-/// Finds the first impact on the transverse channel of the first end (or, without one, on any transverse channel), whose velocity it
-/// changes by `least_step_m_s` at the least: v0 cos φ where L is struck.
-///
-/// `None` where no channel moves at all.
-#[must_use]
-pub fn locate(recording: &Recording, least_step_m_s: f64) -> Option<CoarseEvent> {
-    let channel = struck(recording)?;
-    let (block_s, changes) = velocity_changes(channel)?;
-    let largest = reduce::peak(&changes);
-    let least_m_s = (SHARE * largest).min(SHARE_OF_LEAST * least_step_m_s);
-    let crossing = changes.iter().position(|c| c.abs() >= least_m_s && largest > 0.0)?;
-    Some(event_at(crossing, channel, (block_s, &changes)))
+/// How the velocity of each transverse channel changes over the whole record: what the first impact and its like are found on.
+pub struct Changes<'a>(Vec<Changing<'a>>);
+
+/// One channel's changes of velocity.
+struct Changing<'a> {
+    channel: &'a Channel,
+    /// Length of a block, s.
+    block_s: f64,
+    /// By how much the velocity changes over the width that ends with each block, m/s.
+    changes_m_s: Vec<f64>,
 }
 
-/// The first impact of another drop in the same recording, long after the one at `event`; `fall_s` is how long a drop falls, s.
-#[must_use]
-pub fn another_drop(recording: &Recording, event: &CoarseEvent, fall_s: f64) -> Option<CoarseEvent> {
-    let channel = struck(recording)?;
-    let from_s = event.near_s + APART_FALLS * fall_s;
-    let (block_s, changes) = velocity_changes(channel)?;
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a float-to-integer cast saturates"
-    )]
-    let from = (((from_s - channel.start_s) / block_s).max(0.0) as usize).min(changes.len());
-    let share = |change: &f64| change / event.velocity_step_m_s;
-    let crossing = from + changes[from..].iter().position(|c| share(c) >= *ALIKE.start())?;
-    let found = event_at(crossing, channel, (block_s, &changes));
-    ALIKE.contains(&share(&found.velocity_step_m_s)).then_some(found)
+impl<'a> Changes<'a> {
+    /// Looks at every sample of the transverse channels once.
+    #[must_use]
+    pub fn of(recording: &'a Recording) -> Self {
+        let transverse = recording.channels.par_iter().filter(|c| c.axis == Axis::Transverse);
+        Self(transverse.filter_map(Changing::of).collect())
+    }
+
+    /// The transverse channel of the first end, or without one any.
+    fn struck(&self) -> Option<&Changing<'a>> {
+        self.0.iter().find(|c| c.channel.end == End::First).or_else(|| self.0.first())
+    }
+
+    /// Finds the first impact on the transverse channel of the first end (or, without one, on any transverse channel), whose velocity
+    /// it changes by `least_step_m_s` at the least: v0 cos φ where L is struck.
+    ///
+    /// `None` where no channel moves at all.
+    #[must_use]
+    pub fn locate(&self, least_step_m_s: f64) -> Option<CoarseEvent> {
+        let struck = self.struck()?;
+        let largest = reduce::peak(&struck.changes_m_s);
+        let least_m_s = (SHARE * largest).min(SHARE_OF_LEAST * least_step_m_s);
+        let crossing = struck.changes_m_s.iter().position(|c| c.abs() >= least_m_s && largest > 0.0)?;
+        Some(struck.event_at(crossing))
+    }
+
+    /// The first impact of another drop in the same recording, long after the one at `event`; `fall_s` is how long a drop falls, s.
+    #[must_use]
+    pub fn another_drop(&self, event: &CoarseEvent, fall_s: f64) -> Option<CoarseEvent> {
+        let struck = self.struck()?;
+        let changes = &struck.changes_m_s;
+        let from_s = event.near_s + APART_FALLS * fall_s;
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a float-to-integer cast saturates"
+        )]
+        let from =
+            (((from_s - struck.channel.start_s) / struck.block_s).max(0.0) as usize).min(changes.len());
+        let share = |change: &f64| change / event.velocity_step_m_s;
+        let crossing = from + changes[from..].iter().position(|c| share(c) >= *ALIKE.start())?;
+        let found = struck.event_at(crossing);
+        ALIKE.contains(&share(&found.velocity_step_m_s)).then_some(found)
+    }
+
+    /// The last time within `after_s` of the event at which some transverse channel changes its velocity by a notable share of its
+    /// largest change there, s: what lies far beyond it needs no fine work.
+    #[must_use]
+    pub fn last_s(&self, event: &CoarseEvent, (v0_m_s, after_s): (f64, f64)) -> Option<f64> {
+        let of_channel = |changing: &Changing| {
+            let changes = &changing.changes_m_s;
+            let from = (0..changes.len()).find(|&i| changing.end_s(i) > event.near_s)?;
+            let beyond_s = event.near_s + event.spread_s + after_s;
+            let to = (from..changes.len()).find(|&i| changing.end_s(i) > beyond_s);
+            let within = &changes[from..to.unwrap_or(changes.len())];
+            let least_m_s = (LAST_SHARE * reduce::peak(within)).min(LAST_SHARE_OF_FALL * v0_m_s);
+            within.iter().rposition(|c| c.abs() >= least_m_s).map(|last| changing.end_s(from + last))
+        };
+        self.0.iter().filter_map(of_channel).max_by(f64::total_cmp)
+    }
 }
 
-/// The transverse channel of the first end, or without one any.
-fn struck(recording: &Recording) -> Option<&Channel> {
-    let transverse = || recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
-    transverse().find(|c| c.end == End::First).or_else(|| transverse().next())
-}
+impl<'a> Changing<'a> {
+    fn of(channel: &'a Channel) -> Option<Self> {
+        let (block_s, means) = block_means(channel)?;
+        let offset = robust::median(&mut means.clone());
+        let mut sum = 0.0;
+        let changes = (0..means.len()).map(|i| {
+            sum += (means[i] - offset) * block_s;
+            if i >= BLOCKS {
+                sum -= (means[i - BLOCKS] - offset) * block_s;
+            }
+            sum
+        });
+        Some(Self { channel, block_s, changes_m_s: changes.collect() })
+    }
 
-/// The event whose change of velocity becomes notable at block `crossing`.
-fn event_at(crossing: usize, channel: &Channel, (block_s, changes): (f64, &[f64])) -> CoarseEvent {
+    /// When a block ends, s.
     #[allow(clippy::cast_precision_loss, reason = "block counts stay below 2^52")]
-    let near_s = channel.start_s + (crossing as f64 + 1.0) * block_s - WIDTH_S;
-    let end = (crossing + BLOCKS).min(changes.len());
-    let step = changes[crossing..end].iter().fold(0.0_f64, |m, &c| if c.abs() > m.abs() { c } else { m });
-    CoarseEvent { near_s, spread_s: WIDTH_S, velocity_step_m_s: step }
-}
+    fn end_s(&self, block: usize) -> f64 {
+        self.channel.start_s + (block as f64 + 1.0) * self.block_s
+    }
 
-/// The last time within `after_s` of the event at which some transverse channel changes its velocity by a notable share of its largest
-/// change there, s: what lies far beyond it needs no fine work.
-#[must_use]
-pub fn last_change_s(
-    recording: &Recording,
-    event: &CoarseEvent,
-    (v0_m_s, after_s): (f64, f64),
-) -> Option<f64> {
-    let of_channel = |channel: &Channel| {
-        let (block_s, changes) = velocity_changes(channel)?;
-        #[allow(clippy::cast_precision_loss, reason = "block counts stay below 2^52")]
-        let end_s = |block: usize| channel.start_s + (block as f64 + 1.0) * block_s;
-        let from = (0..changes.len()).find(|&i| end_s(i) > event.near_s)?;
-        let to = (from..changes.len()).find(|&i| end_s(i) > event.near_s + event.spread_s + after_s);
-        let within = &changes[from..to.unwrap_or(changes.len())];
-        let least_m_s = (LAST_SHARE * reduce::peak(within)).min(LAST_SHARE_OF_FALL * v0_m_s);
-        within.iter().rposition(|c| c.abs() >= least_m_s).map(|last| end_s(from + last))
-    };
-    let transverse = recording.channels.par_iter().filter(|c| c.axis == Axis::Transverse);
-    transverse.filter_map(of_channel).max_by(f64::total_cmp)
-}
-
-/// Length of a block, s, and by how much the velocity changes over the width that ends with each block, m/s.
-fn velocity_changes(channel: &Channel) -> Option<(f64, Vec<f64>)> {
-    let (block_s, means) = block_means(channel)?;
-    let offset = robust::median(&mut means.clone());
-    let mut sum = 0.0;
-    let changes = (0..means.len()).map(|i| {
-        sum += (means[i] - offset) * block_s;
-        if i >= BLOCKS {
-            sum -= (means[i - BLOCKS] - offset) * block_s;
-        }
-        sum
-    });
-    Some((block_s, changes.collect()))
+    /// The event whose change of velocity becomes notable at block `crossing`.
+    fn event_at(&self, crossing: usize) -> CoarseEvent {
+        let end = (crossing + BLOCKS).min(self.changes_m_s.len());
+        let changes = &self.changes_m_s[crossing..end];
+        let step = changes.iter().fold(0.0_f64, |m, &c| if c.abs() > m.abs() { c } else { m });
+        CoarseEvent { near_s: self.end_s(crossing) - WIDTH_S, spread_s: WIDTH_S, velocity_step_m_s: step }
+    }
 }
 
 /// Length of a block, s, and the mean force of each, m/s²; missing samples count as the block's others, a missing block as the last.
@@ -182,7 +202,8 @@ mod tests {
     fn another_drop_is_an_impact_alike_that_no_rebound_can_be() {
         let another = |struck: &[(f64, f64)]| {
             let recording = recording(vec![channel(End::First, struck)]);
-            another_drop(&recording, &locate(&recording, 13.29).expect("an impact"), 1.355)
+            let changes = Changes::of(&recording);
+            changes.another_drop(&changes.locate(13.29).expect("an impact"), 1.355)
         };
         let found = another(&[(0.5, 20.0), (0.9, -12.0), (5.0, 16.0)]).expect("another drop");
         assert!((found.velocity_step_m_s - 16.0).abs() < 0.2, "{found:?}");
@@ -201,8 +222,9 @@ mod tests {
         );
         let recording = recording(vec![first, second]);
         let v0_m_s = 13.29;
-        let event = locate(&recording, v0_m_s).expect("an impact");
-        let last_s = last_change_s(&recording, &event, (v0_m_s, 1.0)).expect("a change");
+        let changes = Changes::of(&recording);
+        let event = changes.locate(v0_m_s).expect("an impact");
+        let last_s = changes.last_s(&event, (v0_m_s, 1.0)).expect("a change");
         // The slap-down of 1.1 m/s lies within the width that ends there; 0.4 m/s is none, and 1.9 s lies beyond what is asked for.
         assert!((1.005..1.0051 + WIDTH_S).contains(&last_s), "{last_s}");
     }

@@ -8,7 +8,7 @@ mod release;
 
 pub use answer::answers;
 pub use detector::{Detector, first_contact_by};
-pub use locate::{another_drop, last_change_s, locate};
+pub use locate::Changes;
 pub use onset::{first_contact, first_separation, separation, slap_down};
 pub use release::{FreeFall, free_fall};
 

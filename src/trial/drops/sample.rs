@@ -56,7 +56,7 @@ fn prepare(plan: &Plan) -> Option<Prepared> {
     let (written, recording) = drawn.recorded();
     let recording = recording?;
     let stated = &drawn.stated;
-    let coarse = events::locate(&recording, stated.drop.transverse_velocity_m_s())?;
+    let coarse = events::Changes::of(&recording).locate(stated.drop.transverse_velocity_m_s())?;
     let reach = condition::Reach::of(&stated.cask, &stated.drop);
     let (signals, _) = condition::condition(&recording, &coarse, &reach, stated.corrections);
     Some(Prepared { contact_s: written.first_contact_s, signals, coarse, drawn })
