@@ -120,37 +120,26 @@ impl<'a> Draft<'a> {
         motion::filtered(signals, &self.events, self.cutoff().0)
     }
 
-    /// States what the curves' low-pass would have changed had it been used for the numbers.
-    pub fn filter_effect(&mut self, smooth: &[Signal], setup: &Setup) {
-        let (Some(quantities), Some(contact_s)) = (&self.quantities, self.events.first_contact_s) else {
-            return;
+    /// What the curves' low-pass would have changed had it been used for the numbers, in words.
+    fn filter_effect(&self, smooth: &[Signal], setup: &Setup) -> Option<String> {
+        let quantities = self.quantities.as_ref()?;
+        let speed = quantities.speed?;
+        let (contact_s, left_s) = (self.events.first_contact_s?, self.events.separation_s?);
+        let window = motion::Window {
+            from_s: left_s + 0.1 * (left_s - contact_s) + 3e-4,
+            to_s: self.events.slap_down_s? - 5e-4,
+            drift: self.cask_file.corrections.zero_shift,
+            angular_velocity_rad_s: quantities.angular_velocity.value,
         };
-        let window =
-            self.events.separation_s.zip(self.events.slap_down_s).map(|(left_s, struck_s)| motion::Window {
-                from_s: left_s + 0.1 * (left_s - contact_s) + 3e-4,
-                to_s: struck_s - 5e-4,
-                drift: self.cask_file.corrections.zero_shift,
-                angular_velocity_rad_s: quantities.angular_velocity.value,
-            });
-        let filtered = window.and_then(|w| {
-            let integrated = motion::Integrated::over(smooth, contact_s);
-            let flight = motion::fit_flight(&integrated, &w, None, setup.cog_m)?;
-            motion::outcome(&integrated, &flight, &self.events, setup)
-        });
-        if let (Some(m), Some(speed)) =
-            (filtered.and_then(|m| m.second_end_m_s.map(|v| (m.rebound_m_s, v))), quantities.speed)
-        {
-            let filtered_speed_m_s = m.1.0.hypot(m.1.1);
-            self.say(
-                "effect of that low-pass, had it been applied before integrating",
-                format!(
-                    "slap-down speed {:+.2} m/s, k {:+.3}",
-                    filtered_speed_m_s - speed.value,
-                    m.0 / setup.impact_velocity_m_s - quantities.k.value
-                ),
-                "from the data",
-            );
-        }
+        let integrated = motion::Integrated::over(smooth, contact_s);
+        let flight = motion::fit_flight(&integrated, &window, None, setup.cog_m)?;
+        let motion = motion::outcome(&integrated, &flight, &self.events, setup)?;
+        let (horizontal_m_s, vertical_m_s) = motion.second_end_m_s?;
+        Some(format!(
+            "slap-down speed {:+.2} m/s, k {:+.3}",
+            horizontal_m_s.hypot(vertical_m_s) - speed.value,
+            motion.rebound_m_s / setup.impact_velocity_m_s - quantities.k.value
+        ))
     }
 
     fn cutoff(&self) -> (f64, &'static str) {
@@ -158,11 +147,22 @@ impl<'a> Draft<'a> {
         motion::cutoff_hz(self.cask_file.filter, self.cask_file.cask.mass_kg, pulse_s)
     }
 
-    /// Draws the curves and takes each channel's peaks, offset and noise.
-    pub fn draw(&mut self, signals: &[Signal], smooth: &[Signal]) {
+    /// Draws the curves and takes each channel's peaks, offset and noise; where there is a motion, by `setup`, what the curves' low-pass
+    /// would have made of it.
+    pub fn draw(&mut self, signals: &[Signal], smooth: &[Signal], setup: Option<&Setup>) {
         let (cutoff_hz, origin) = self.cutoff();
-        self.curves.channels =
-            motion::channel_curves(signals, smooth, &self.events, &sticking(self.cask_file));
+        let (effect, curves) = rayon::join(
+            || setup.and_then(|setup| self.filter_effect(smooth, setup)),
+            || motion::channel_curves(signals, smooth, &self.events, &sticking(self.cask_file)),
+        );
+        self.curves.channels = curves;
+        if let Some(effect) = effect {
+            self.say(
+                "effect of that low-pass, had it been applied before integrating",
+                effect,
+                "from the data",
+            );
+        }
         for ((summary, signal), curve) in self.channels.iter_mut().zip(signals).zip(&self.curves.channels) {
             summary.offset_m_s2 = Some(signal.removed_offset_m_s2);
             summary.noise_m_s2 = Some(signal.noise_m_s2);

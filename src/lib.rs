@@ -102,6 +102,7 @@ fn analyzed(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         || draft.smooth(&signals),
     );
     draft.issues.extend(on_channels);
+    let mut motion_setup = None;
     if let Some(Reconstructed { flight, setup, motion, quantities, choice: reconstruction }) = reconstructed {
         draft.issues.extend(judge::judge_coupling(&signals, &flight, cask_file));
         draft.issues.extend(judge::judge_rigid(&signals, &flight, &cask_file.tolerances, &cask_file.drop));
@@ -120,7 +121,7 @@ fn analyzed(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         is_told &= !draft.issues.iter().any(judge::contradicts_motion);
         if draft.issues.iter().any(|issue| judge::invalidates(issue, is_told)) {
             // What an error speaks against is not stated at all: the times and curves remain.
-            draft.draw(of_recorded, &smooth[..recorded]);
+            draft.draw(of_recorded, &smooth, None);
             return draft.finish();
         }
         let compared =
@@ -130,9 +131,9 @@ fn analyzed(recording: &Recording, cask_file: &CaskFile) -> Analysis {
         }
         draft.measured(quantities, reconstruction, compared);
         draft.curves.motion = Some(motion.curve);
-        draft.filter_effect(&smooth, &setup);
+        motion_setup = Some(setup);
     }
-    draft.draw(of_recorded, &smooth[..recorded]);
+    draft.draw(of_recorded, &smooth, motion_setup.as_ref());
     draft.finish()
 }
 
