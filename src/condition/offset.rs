@@ -41,11 +41,11 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<I
         signal.u_offset_m_s2 = NOTABLE_M_S2;
         return vec![issue];
     }
-    let quiet = tame(quiet);
+    let (quiet, spread_m_s2) = tame(quiet);
     let (mean, rms) = robust::mean_and_rms(&quiet);
     let (first, second) = quiet.split_at(quiet.len() / 2);
     let wander = (robust::mean_and_rms(first).0 - robust::mean_and_rms(second).0).abs();
-    let noise_m_s2 = robust::spread(&quiet).max(1e-3 * rms);
+    let noise_m_s2 = spread_m_s2.max(1e-3 * rms);
     let block = block_of(SPECTRUM_RATE_HZ, signal.sample_rate_hz);
     let noise_spectrum = noise::spectrum(&block_means(&quiet, block), signal.sample_rate_hz / as_f64(block));
     // White noise averages out; what differs between the two halves does not.
@@ -103,17 +103,19 @@ fn too_short(signal: &Signal, length_s: f64, samples: usize) -> Issue {
     Issue::new(IssueCode::BeginsLate, Severity::Warning, message).on(&signal.name)
 }
 
-/// The samples with wild ones set to the median: a spike is no offset.
-fn tame(mut quiet: Cow<'_, [f64]>) -> Cow<'_, [f64]> {
-    let median = robust::median(&mut robust::sampled(&quiet).collect::<Vec<_>>());
-    let most = WILD * robust::spread(&quiet);
+/// The samples with wild ones set to the median, and the spread that is left: a spike is no offset.
+fn tame(mut quiet: Cow<'_, [f64]>) -> (Cow<'_, [f64]>, f64) {
+    let (median, spread) = robust::centre_and_spread(&quiet);
+    let most = WILD * spread;
     let (low, high) = reduce::extremes(&quiet, median);
     if most > 0.0 && (high - median).max(median - low) > most {
         for x in quiet.to_mut().iter_mut().filter(|x| (**x - median).abs() > most) {
             *x = median;
         }
+        let spread = robust::spread(&quiet);
+        return (quiet, spread);
     }
-    quiet
+    (quiet, spread)
 }
 
 fn offset(name: &str, mean_m_s2: f64, taken_off: bool) -> Option<Issue> {

@@ -118,12 +118,19 @@ fn units(signals: &[Signal]) -> Vec<Issue> {
     let mut issues = Vec::new();
     for large in &transverse {
         for small in &transverse {
-            if small.noise_m_s2 <= 0.0 || peak(small) <= 0.0 {
+            if small.noise_m_s2 <= 0.0 {
                 continue;
             }
-            let (noise, peaks) = (large.noise_m_s2 / small.noise_m_s2, peak(large) / peak(small));
-            let alike = |factor: f64| (noise / factor - 1.0).abs() < ALIKE && peaks > factor / PEAKS;
-            let Some((_, names)) = UNITS.iter().find(|u| alike(u.0)) else { continue };
+            // The noise first: peaks are asked for in all samples.
+            let noise = large.noise_m_s2 / small.noise_m_s2;
+            let Some((factor, names)) = UNITS.iter().find(|u| (noise / u.0 - 1.0).abs() < ALIKE) else {
+                continue;
+            };
+            let (highest, lowest) = (peak(large), peak(small));
+            if lowest <= 0.0 || highest / lowest <= factor / PEAKS {
+                continue;
+            }
+            let peaks = highest / lowest;
             issues.push(
                 Issue::new(
                     IssueCode::Scale,

@@ -79,17 +79,18 @@ pub fn integral_uncertainty_by(spectrum: &[(f64, f64)], mean_s: f64, integrate_s
     let high = &spectrum[above..spectrum.len().min(above + 2)];
     let rises = !high.is_empty() && mean(low, 0) > RISES * mean(high, 0);
     let (level, hyperbola) = (mean(low, 0), mean(low, 1));
+    let power = |pair: &[(f64, f64)]| {
+        let (a, b) = (pair[0], pair[1]);
+        (a.1 > 0.0 && b.1 > 0.0).then(|| (b.1 / a.1).ln() / (b.0 / a.0).ln())
+    };
+    let powers: Vec<Option<f64>> = spectrum.windows(2).map(power).collect();
     let density = |f: f64| {
         if f <= lowest.0 {
             return if rises { hyperbola / f } else { level };
         }
         let next = spectrum.partition_point(|bin| bin.0 < f).min(spectrum.len() - 1).max(1);
         let (a, b) = (spectrum[next - 1], spectrum[next]);
-        if a.1 > 0.0 && b.1 > 0.0 {
-            a.1 * (b.1 / a.1).powf((f / a.0).ln() / (b.0 / a.0).ln())
-        } else {
-            a.1.max(b.1)
-        }
+        powers[next - 1].map_or(a.1.max(b.1), |power| a.1 * (f / a.0).powf(power))
     };
     let from_hz = LOWEST_SHARE * lowest.0.min(1.0 / (mean_s + integrate_s));
     let ratio = 10.0_f64.powf(1.0 / STEPS_A_DECADE);

@@ -34,13 +34,18 @@ pub fn stride(count: usize) -> usize {
 /// Standard deviation of Gaussian noise from the median distance to the median (factor 1.4826; Hampel 1974), of many values by a sample.
 #[must_use]
 pub fn spread(values: &[f64]) -> f64 {
-    let values: Vec<f64> = sampled(values).collect();
-    let mut work = values.clone();
+    centre_and_spread(values).1
+}
+
+/// The median of such a sample, and [`spread`].
+#[must_use]
+pub fn centre_and_spread(values: &[f64]) -> (f64, f64) {
+    let mut work: Vec<f64> = sampled(values).collect();
     let centre = median(&mut work);
-    for (w, v) in work.iter_mut().zip(&values) {
-        *w = (v - centre).abs();
+    for w in &mut work {
+        *w = (*w - centre).abs();
     }
-    1.482_602_218_505_602 * median(&mut work)
+    (centre, 1.482_602_218_505_602 * median(&mut work))
 }
 
 /// Mean and root mean square about it; NaN of an empty slice.
