@@ -304,7 +304,7 @@ fn find_flight(
     stand_in: Option<&StandIn>,
 ) -> Option<FlightFit> {
     let settled = settle::settle(draft.cask_file, integrated)?;
-    let signals = integrated.signals;
+    let signals: &[Signal] = &integrated.signals;
     let is_made = |end| stand_in.is_some_and(|s| s.end == end);
     let shows_slap_down = !is_made(data::End::Second);
     let struck = settled.struck.filter(|_| shows_slap_down);

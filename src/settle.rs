@@ -68,7 +68,7 @@ struct Search<'a> {
 /// Settles separation, slap-down and flight; of several beginnings the first that explains the flight and brings R to the target, else the
 /// best. `None` without transverse channels on both ends.
 pub(crate) fn settle(file: &CaskFile, integrated: &Integrated) -> Option<Settled> {
-    let &Integrated { signals, contact_s, .. } = integrated;
+    let &Integrated { ref signals, contact_s, .. } = integrated;
     let drop = &file.drop;
     let descent_m = file.cask.length_m * drop.angle_rad.sin();
     let search = Search {
@@ -142,7 +142,7 @@ impl Search<'_> {
         share: f64,
     ) -> Settled {
         first.restore();
-        let &Integrated { signals, contact_s, .. } = self.integrated;
+        let &Integrated { ref signals, contact_s, .. } = self.integrated;
         let cog_m = self.file.cask.cog_m;
         let mut end_s = contact_s + share * (struck.map_or(self.record_end_s, |s| s.0) - contact_s);
         // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit goes by.

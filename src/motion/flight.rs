@@ -176,7 +176,7 @@ pub fn mean_of_flight(
     let series = series(integrated, &window, cog_m);
     let mean = fit(&series, &[], None, Form::FREE)?;
     Some(FlightFit {
-        plateaus: plateaus(integrated.signals, &mean, &[&mean]),
+        plateaus: plateaus(&integrated.signals, &mean, &[&mean]),
         modes: Vec::new(),
         drift: false,
         ..best.clone()

@@ -218,7 +218,7 @@ pub fn drive(
     cog_m: f64,
 ) -> Option<Drive> {
     let contact_s = integrated.contact_s;
-    let line = Line::through(integrated.signals, cog_m)?;
+    let line = Line::through(&integrated.signals, cog_m)?;
     let turning = match fit {
         Some(fit) => Histories::new(integrated, fit, &line, (contact_s, left_s))?.turning_rad_s(&line),
         None if left_s > contact_s => half_sine(-1.0),

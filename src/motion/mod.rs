@@ -6,6 +6,7 @@ mod histories;
 mod reconstruct;
 mod ringing;
 mod strike;
+mod thin;
 
 pub use curves::{channel_curves, cutoff_hz, filtered, read_channels};
 pub use flight::{Window, compare_late, fit_flight, fit_flights, mean_of_flight};
@@ -18,6 +19,7 @@ use crate::data::Signal;
 use crate::numerics::quadrature::running_integral;
 use crate::numerics::reduce;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// Velocities count from so long before first contact, s: it may be moved within its uncertainty.
 const MARGIN_S: f64 = 2e-3;
@@ -26,16 +28,18 @@ const BEFORE_S: f64 = flight::LONGEST_S + 2.0 * flight::CLEAR_S;
 
 /// Signals with their running integrals, which every flight fit and every reconstruction of the same drop asks for again.
 pub struct Integrated<'a> {
-    pub(crate) signals: &'a [Signal],
+    /// As given, or means of their samples at a rate that the motion needs.
+    pub(crate) signals: Cow<'a, [Signal]>,
     pub(crate) contact_s: f64,
     velocities: Vec<Velocity>,
     peaks_m_s2: Vec<f64>,
 }
 
 impl<'a> Integrated<'a> {
-    /// Integrals of whole signals, 0 shortly before first contact.
+    /// Integrals of whole signals, 0 shortly before first contact; where all are whole, of means at 100 kHz at the least.
     #[must_use]
     pub fn over(signals: &'a [Signal], contact_s: f64) -> Self {
+        let signals = thin::thinned(signals);
         let of = |s: &Signal| {
             let mut velocity = Velocity::of(s, contact_s - BEFORE_S, f64::INFINITY);
             velocity.count_from(contact_s - MARGIN_S);
@@ -46,7 +50,7 @@ impl<'a> Integrated<'a> {
     }
 
     /// Each signal with its velocity.
-    fn each(&self) -> impl IndexedParallelIterator<Item = (&'a Signal, &Velocity)> {
+    fn each(&self) -> impl IndexedParallelIterator<Item = (&Signal, &Velocity)> {
         self.signals.par_iter().zip(&self.velocities)
     }
 }

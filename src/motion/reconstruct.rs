@@ -58,7 +58,7 @@ fn follow(
 ) -> Option<Motion> {
     let contact_s = events.first_contact_s?;
     let separation_s = events.separation_s?;
-    let line = Line::through(integrated.signals, setup.cog_m)?;
+    let line = Line::through(&integrated.signals, setup.cog_m)?;
     let histories = Histories::new(integrated, fit, &line, (contact_s, separation_s))?;
     let mut body = Contact::start(setup, contact_s);
     let step_s = (separation_s - contact_s) / f64::from(CONTACT_STEPS);
