@@ -10,6 +10,7 @@ mod packed;
 mod rate;
 mod record;
 mod watch;
+mod witness;
 
 pub(super) use list::list;
 pub(super) use watch::require_library;
@@ -85,6 +86,14 @@ impl Room<'_> {
         self.signs.alive(column.held_bytes().saturating_mul(column.columns as u64));
         Ok(())
     }
+
+    /// Whether there is room for a column that is not kept.
+    fn has_for_a_while(&mut self, column: &Column) -> bool {
+        let held_bytes = self.held_bytes;
+        let has_room = self.take(column).is_ok();
+        self.held_bytes = held_bytes;
+        has_room
+    }
 }
 
 fn read_channel(
@@ -112,10 +121,12 @@ fn read_channel(
     }
     let samples = column.samples().map_err(|fault| wrong(fault.problem, fault.mend))?;
     let samples = attributes.scaled(samples);
-    let time = time_column(room, file, spec, cask_file.time.as_deref(), &column)?;
-    time.iter().try_for_each(|time| room.take(time))?;
-    let why_none = if time.is_none() { clocks::why_none(file, &column) } else { None };
-    let mut uniform = on_base(samples, (time.as_ref(), why_none), spec, &attributes)
+    let times = time_columns(room, file, spec, cask_file.time.as_deref(), &column)?;
+    times.first().map_or(Ok(()), |time| room.take(time))?;
+    let why_none = if times.is_empty() { clocks::why_none(file, &column) } else { None };
+    let is_settled = spec.sample_rate_hz.is_some() || spec.time.is_some() || cask_file.time.is_some();
+    let may_read = |other: &Column| room.has_for_a_while(other);
+    let mut uniform = on_base(samples, (&times, why_none, may_read), (spec, is_settled), &attributes)
         .map_err(|fault| wrong(format!("{}: {}", column.source(), fault.problem), fault.mend))?;
     uniform.issues.extend(attributes.other_rate(uniform.sample_rate_hz));
     uniform.issues.extend(attributes.rival());
@@ -142,43 +153,63 @@ fn locate(room: &Room, file: &File, spec: &ChannelSpec, source: &str) -> Result<
     })
 }
 
-/// The times: as the cask file names them, else a sibling with a usual name and as many values.
-fn time_column(
+/// The times: as the cask file names them, else siblings with a usual name and as many values; behind the ones to take, all others.
+fn time_columns(
     room: &mut Room,
     file: &File,
     spec: &ChannelSpec,
     time: Option<&str>,
     column: &Column,
-) -> Result<Option<Column>, IngestError> {
-    let Some(name) = spec.time.as_deref().or(time) else {
-        return Ok(room.clocks.of(file, column));
-    };
+) -> Result<Vec<Column>, IngestError> {
+    let mut beside = room.clocks.of(file, column);
+    if let Some(name) = spec.time.as_deref().or(time) {
+        let named = named_times(room, file, spec, name, column)?;
+        beside.retain(|other| other.source() != named.source());
+        beside.insert(0, named);
+    }
+    Ok(beside)
+}
+
+fn named_times(
+    room: &Room,
+    file: &File,
+    spec: &ChannelSpec,
+    name: &str,
+    column: &Column,
+) -> Result<Column, IngestError> {
     // A bare name is looked for beside the samples first, in their own records before all.
     let records = column.records().map(|records| format!("{records}.{name}"));
     let beside = records.into_iter().chain([format!("{}/{name}", column.group())]);
     if !name.starts_with('/')
         && let Some(found) = beside.into_iter().find_map(|source| find::find(file, &source).ok())
     {
-        return Ok(Some(found));
+        return Ok(found);
     }
-    locate(room, file, spec, name).map(Some)
+    locate(room, file, spec, name)
 }
 
 fn on_base(
     samples: Samples,
-    (time, why_none): (Option<&Column>, Option<String>),
-    spec: &ChannelSpec,
+    (times, why_none, mut may_read): (&[Column], Option<String>, impl FnMut(&Column) -> bool),
+    (spec, is_settled): (&ChannelSpec, bool),
     attributes: &Attributes,
 ) -> Result<Uniform, fault::Fault> {
     let in_time = |error: time_base::TimeBaseError| fault::Fault {
         problem: error.to_string(),
         mend: "check the dataset of times (`time` in the cask file), or give sample_rate_hz".into(),
     };
-    if let Some(time) = time {
+    if let Some((time, others)) = times.split_first() {
         // A rate that the recording states tells the unit of times that state none.
         let (times_s, question) = time.times_s(spec.sample_rate_hz.or(attributes.sample_rate_hz()))?;
         let mut uniform = time_base::from_times(&times_s, samples, spec.sample_rate_hz).map_err(in_time)?;
         uniform.issues.extend(question);
+        let is_settled = is_settled || attributes.agrees(uniform.sample_rate_hz);
+        for other in others {
+            match witness::contradiction((time, &times_s), other, &mut may_read) {
+                Some(found) if found.is_far && !is_settled => return Err(found.fault),
+                found => uniform.issues.extend(found.map(witness::Contradiction::issue)),
+            }
+        }
         return Ok(uniform);
     }
     if spec.sample_rate_hz.is_none()

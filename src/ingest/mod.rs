@@ -2,6 +2,7 @@
 
 mod assemble;
 pub mod cask_file;
+mod clock_pair;
 mod csv;
 mod detect;
 mod error;

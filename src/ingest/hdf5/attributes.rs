@@ -90,7 +90,7 @@ impl Attributes {
         let stated_hz = self.sample_rate_hz()?;
         // Of two that contradict each other that says enough.
         let has_rival = self.rate.as_ref().is_some_and(|stated| stated.rival.is_some());
-        (!has_rival && (stated_hz / taken_hz - 1.0).abs() > RATE_TOLERANCE).then(|| {
+        (!has_rival && !self.agrees(taken_hz)).then(|| {
             let message = format!(
                 "an attribute of the recording states {stated_hz} Hz, the samples were taken at {taken_hz:.6} Hz by the times or by sample_rate_hz of the cask file: one of the two is wrong, and every velocity goes with the rate"
             );
@@ -112,6 +112,11 @@ impl Attributes {
     /// The rate that is stated, Hz.
     pub(super) fn sample_rate_hz(&self) -> Option<f64> {
         self.rate.as_ref().and_then(|stated| stated.rate.as_ref().ok()).copied()
+    }
+
+    /// Whether the rate that is stated is the one in Hz.
+    pub(super) fn agrees(&self, taken_hz: f64) -> bool {
+        self.sample_rate_hz().is_some_and(|stated_hz| (stated_hz / taken_hz - 1.0).abs() <= RATE_TOLERANCE)
     }
 
     /// A warning where two attributes of one place state different rates.

@@ -16,20 +16,21 @@ pub(super) struct Clocks {
 }
 
 impl Clocks {
-    /// The times of a channel: a field of the same records, else a dataset beside it, that has a usual name and as many values.
-    pub(super) fn of(&mut self, file: &File, column: &Column) -> Option<Column> {
+    /// The times of a channel, likeliest first: fields of the same records, else datasets beside it, that have a usual name and as many values.
+    pub(super) fn of(&mut self, file: &File, column: &Column) -> Vec<Column> {
         let is_apart = |times: &Column| times.len() == column.len() && times.source() != column.source();
         let records = column.records().map(|name| (format!("{name}."), true));
-        records.into_iter().chain([(format!("{}/", column.group()), false)]).find_map(
-            |(place, is_records)| {
-                if self.place.as_ref() != Some(&place) {
-                    let names = if is_records { fields(file, &place) } else { members(file, &place) };
-                    self.sources = ranked(&place, names);
-                    self.place = Some(place);
-                }
-                self.sources.iter().filter_map(|source| find::find(file, source).ok()).find(is_apart)
-            },
-        )
+        let places = records.into_iter().chain([(format!("{}/", column.group()), false)]);
+        let found = places.map(|(place, is_records)| {
+            if self.place.as_ref() != Some(&place) {
+                let names = if is_records { fields(file, &place) } else { members(file, &place) };
+                self.sources = ranked(&place, names);
+                self.place = Some(place);
+            }
+            let found = self.sources.iter().filter_map(|source| find::find(file, source).ok());
+            found.filter(is_apart).collect::<Vec<_>>()
+        });
+        found.into_iter().find(|found| !found.is_empty()).unwrap_or_default()
     }
 }
 

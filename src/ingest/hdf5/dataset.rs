@@ -189,6 +189,25 @@ impl Column {
         })
     }
 
+    /// The first and the last of its numbers as stored, without reading those between; `None` for a field of records.
+    pub(super) fn ends(&self) -> Option<(f64, f64)> {
+        let last = self.length.checked_sub(1)?;
+        let at = |sample: usize| {
+            let sample = SliceOrIndex::from(sample..sample + 1);
+            let slab = match (&self.place, self.index, self.dataset.ndim()) {
+                (Place::Field(_), ..) => return None,
+                (Place::Row, index, _) => vec![SliceOrIndex::from(index?), sample],
+                (Place::Column, index, _) => vec![sample, SliceOrIndex::from(index?)],
+                (Place::Whole, _, 1) => vec![sample],
+                (Place::Whole, ..) if self.dataset.shape()[0] == 1 => vec![SliceOrIndex::from(0), sample],
+                (Place::Whole, ..) => vec![sample, SliceOrIndex::from(0)],
+            };
+            let slab = Selection::from(Hyperslab::from(slab));
+            self.dataset.read_slice_1d::<f64, Selection>(slab).ok()?.first().copied()
+        };
+        Some((at(0)?, at(last)?))
+    }
+
     /// Its numbers as times, s, and a question where their unit is a guess: its own attributes `unit`, `scale` and `offset` are followed.
     pub(super) fn times_s(&self, declared_rate_hz: Option<f64>) -> Result<(Vec<f64>, Option<Issue>), Fault> {
         let mut times_s = match self.samples()? {

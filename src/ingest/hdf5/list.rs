@@ -8,6 +8,7 @@ use super::fault::Fault;
 use super::find::{self, Missing};
 use super::time_base::TimeBaseError;
 use super::watch::{self, Signs};
+use super::witness::{self, Contradiction};
 use super::{Limits, Progress, open, storage, time_base};
 use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Samples, Severity};
 use hdf5_metno::{File, Group};
@@ -227,7 +228,8 @@ fn survey(
         samples = attributes.scaled(column.samples()?);
         channel.range = range(&samples);
     }
-    let Some(time) = effort.clocks.of(file, column) else {
+    let times = effort.clocks.of(file, column);
+    let Some((time, others)) = times.split_first() else {
         let intervals = column.len().saturating_sub(1);
         #[allow(clippy::cast_precision_loss, reason = "below 2^31")]
         let duration_s = channel.sample_rate_hz.map(|rate_hz| intervals as f64 / rate_hz);
@@ -237,7 +239,7 @@ fn survey(
             attributes.unclear.clone().or(attributes.rate.clone().and_then(|stated| stated.rate.err()));
         return Ok(unclear.map(no_base).into_iter().chain(attributes.rival()).collect());
     };
-    if !effort.pays_for(&time) {
+    if !effort.pays_for(time) {
         return Ok(Vec::new());
     }
     let (times_s, question) = match time.times_s(attributes.sample_rate_hz()) {
@@ -259,7 +261,11 @@ fn survey(
     channel.duration_s = Some(last_s - first_s);
     let has_gap = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
     channel.gaps = Some(if has_gap { uniform.gaps.len() as u64 } else { 0 });
-    Ok(uniform.issues.into_iter().chain(question).chain(attributes.rival()).collect())
+    let told = others
+        .iter()
+        .filter_map(|other| witness::contradiction((time, &times_s), other, |other| effort.pays_for(other)));
+    let told = told.map(Contradiction::issue);
+    Ok(uniform.issues.into_iter().chain(question).chain(attributes.rival()).chain(told).collect())
 }
 
 /// That times or rate would not do, as reading says.

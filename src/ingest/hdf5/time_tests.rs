@@ -82,6 +82,59 @@ fn times_without_a_unit_are_asked_about() {
     assert!(message.contains("by its name") && message.contains("sample_rate_hz"), "{message}");
 }
 
+/// 9000 samples at 20 kHz by `time_s`, beside another dataset of times.
+fn beside(name: &str, others: &[f64], rate_hz: Option<f64>) -> Made {
+    made(|file| {
+        let times: Vec<f64> = (0..9000).map(|i| f64::from(i) / 2e4).collect();
+        file.new_dataset_builder().with_data(&times).create("time_s")?;
+        file.new_dataset_builder().with_data(others).create(name)?;
+        let data = file.new_dataset_builder().with_data(&vec![1.0_f32; 9000]).create("a")?;
+        rate_hz.map_or(Ok(()), |rate_hz| number(&data, "fs", rate_hz))
+    })
+}
+
+#[test]
+fn two_datasets_of_times_that_contradict_each_other_are_told() {
+    let times = |hz: f64| -> Vec<f64> { (0..9000).map(|i| f64::from(i) / hz).collect() };
+    let [issue] = &uniform(&beside("t", &times(1.99e4), None)).issues[..] else { panic!() };
+    let says = "/time_s and /t contradict each other: from the first row to the last they say 0.44995 s and 0.45221 s";
+    assert!(issue.severity == Severity::Warning && issue.code == IssueCode::TimeJitter, "{issue:?}");
+    assert!(issue.message.contains(says), "{}", issue.message);
+    let listing = list(&beside("t", &times(1.99e4), None).path, Limits::default(), &|_| {}).unwrap();
+    assert!(listing.issues.iter().any(|issue| issue.message.contains("contradict")), "{:?}", listing.issues);
+    // By over 1 % nothing is taken, unless something decides.
+    let far: Vec<f64> = times(1.9e4).iter().map(|t| 1.7e18 + 1e9 * t).collect();
+    let message = told(&beside("timestamps", &far, None), "/a");
+    for part in ["/time_s and /timestamps contradict", "time = \"/timestamps\"", "sample_rate_hz"] {
+        assert!(message.contains(part), "{message} without {part}");
+    }
+    assert!(told(&beside("timestamps", &far, Some(1.9e4)), "/a").contains("contradict"));
+    assert_eq!(uniform(&beside("timestamps", &far, Some(2e4))).issues.len(), 1);
+    let mut cask = cask_file(&["/a"]);
+    cask.time = Some("timestamps".into());
+    let channel = read(&beside("timestamps", &far, None).path, &cask, Limits::default(), &|_| {});
+    let uniform = channel.unwrap().channels.remove(0).uniform;
+    assert!((uniform.sample_rate_hz / 1.9e4 - 1.0).abs() < 1e-4, "{}", uniform.sample_rate_hz);
+    assert!(uniform.issues[0].message.contains("/timestamps and /time_s"), "{:?}", uniform.issues);
+}
+
+#[test]
+fn times_that_bear_each_other_out_and_what_is_no_time_say_nothing() {
+    let of = |value: fn(f64) -> f64| -> Vec<f64> { (0..9000).map(|i| value(f64::from(i) / 2e4)).collect() };
+    for (name, others) in [
+        ("t", of(|t| t + 100.0)),
+        ("time_ms", of(|t| 1e3 * t)),
+        ("timestamps", of(|t| 1.7e18 + 1e9 * t)),
+        // A computer's clock that was cut, one that counts rows, ticks, and a temperature.
+        ("timestamps", of(|t| ((t + 0.0003) * 200.0).floor() / 200.0)),
+        ("t", of(|t| (2e4 * t).round())),
+        ("time", of(|t| 12_345.0 * t)),
+        ("t", of(|t| 20.0 + (40.0 * t).sin())),
+    ] {
+        assert!(uniform(&beside(name, &others, None)).issues.is_empty(), "{name} {:?}", &others[..3]);
+    }
+}
+
 #[test]
 fn datasets_that_are_no_times_of_their_neighbours_are_named() {
     let beside = |fill: &dyn Fn(&File) -> hdf5_metno::Result<()>| {
