@@ -114,7 +114,7 @@ fn read_channel(
     };
     let column = locate(room, file, spec, source)?;
     room.take(&column)?;
-    let attributes = Attributes::of(file, &column);
+    let mut attributes = Attributes::of(file, &column);
     if let Some(problem) = &attributes.unclear {
         let mend = "correct the attribute in a copy (where two contradict each other, delete one), or write the channel with its scale as a dataset of numbers";
         return Err(wrong(format!("{}: {problem}", column.source()), mend.into()));
@@ -126,10 +126,15 @@ fn read_channel(
     let why_none = if times.is_empty() { clocks::why_none(file, &column) } else { None };
     let is_settled = spec.sample_rate_hz.is_some() || spec.time.is_some() || cask_file.time.is_some();
     let may_read = |other: &Column| room.has_for_a_while(other);
+    let is_rate_decided = spec.sample_rate_hz.is_some() || !times.is_empty();
     let mut uniform = on_base(samples, (&times, why_none, may_read), (spec, is_settled), &attributes)
         .map_err(|fault| wrong(format!("{}: {}", column.source(), fault.problem), fault.mend))?;
     uniform.issues.extend(attributes.other_rate(uniform.sample_rate_hz));
-    uniform.issues.extend(attributes.rival());
+    if spec.unit.is_some() {
+        // The cask file's goes before all.
+        attributes.other_unit = None;
+    }
+    uniform.issues.extend(attributes.contradictions(is_rate_decided));
     Ok(RawChannel { spec: index, uniform, unit: attributes.unit })
 }
 
@@ -218,7 +223,10 @@ fn on_base(
     {
         return Err(fault::Fault { problem: rival.problem.clone(), mend: rival.mend.clone() });
     }
-    let stated = spec.sample_rate_hz.map(Ok).or_else(|| attributes.rate.clone().map(|stated| stated.rate));
+    let stated = spec
+        .sample_rate_hz
+        .map(Ok)
+        .or_else(|| attributes.rate.clone().map(|stated| stated.rate.map(|rate| rate.rate_hz)));
     let stated = stated.unwrap_or_else(|| {
         let why_none = why_none.unwrap_or_else(|| "no dataset of times beside it".into());
         Err(format!("nothing says when its samples were taken: no attribute sample_rate_hz, and {why_none}"))
@@ -248,6 +256,8 @@ fn storage(dataset: &Dataset) -> String {
 
 #[cfg(test)]
 mod layout_tests;
+#[cfg(test)]
+mod place_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

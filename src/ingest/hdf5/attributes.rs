@@ -3,8 +3,8 @@
 use super::super::time_reading::Scale;
 use super::dataset::Column;
 use super::fault::Fault;
-use super::rate::{self, Stated};
-use crate::data::{Issue, IssueCode, Samples, Severity};
+use super::rate::{self, Rival, Stated};
+use crate::data::{Issue, IssueCode, Samples, Severity, acceleration_unit_m_s2};
 use crate::ingest::time_base::RATE_TOLERANCE;
 use hdf5_metno::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenUnicode};
 use hdf5_metno::{Attribute, File, Location};
@@ -14,6 +14,8 @@ use hdf5_metno::{Attribute, File, Location};
 pub(super) struct Attributes {
     /// Samples a second, or why what stands there is none; and what contradicts it.
     pub rate: Option<Stated>,
+    /// A rate that a group farther off states, which is another.
+    outer_rate: Option<Rival>,
     pub unit: Option<String>,
     pub start_s: Option<f64>,
     pub scale: Option<f64>,
@@ -22,6 +24,10 @@ pub(super) struct Attributes {
     pub fills: Vec<f64>,
     /// What a scale or offset says that is no number.
     pub unclear: Option<String>,
+    /// What a group farther off says otherwise of scale or offset.
+    pub overridden: Vec<Issue>,
+    /// Another unit than the one taken.
+    pub other_unit: Option<Issue>,
 }
 
 const UNIT_NAMES: [&str; 2] = ["unit", "units"];
@@ -50,7 +56,7 @@ impl Attributes {
         loop {
             let path = if group.is_empty() { "/" } else { group };
             if let Ok(found) = file.group(path) {
-                attributes.fill(Self::own(&found, column));
+                attributes.fill(Self::own(&found, column), path);
             }
             if group.is_empty() {
                 return attributes;
@@ -65,6 +71,9 @@ impl Attributes {
             rate: rate::stated(place, column),
             unit: UNIT_NAMES.iter().find_map(|name| text(place, name, column)),
             start_s: number("start_time_s"),
+            outer_rate: None,
+            overridden: Vec::new(),
+            other_unit: two_units(UNIT_NAMES.map(|name| text(place, name, column))),
             fills: Vec::new(),
             scale: SCALE_NAMES.iter().find_map(|name| number(name)),
             offset: OFFSET_NAMES.iter().find_map(|name| number(name)),
@@ -76,7 +85,27 @@ impl Attributes {
         }
     }
 
-    fn fill(&mut self, other: Self) {
+    /// Takes what nothing nearer says from the group at `path`, and keeps what that says otherwise.
+    fn fill(&mut self, other: Self, path: &str) {
+        if let (Some(near), Some(far)) = (&self.rate, &other.rate) {
+            self.outer_rate = self.outer_rate.take().or(near.rival_of(far, path));
+        }
+        // A scale of 1 and an offset of 0 do nothing: they are what a writer puts where each dataset has its own.
+        let pairs = [("scale", self.scale, other.scale, 1.0), ("offset", self.offset, other.offset, 0.0)];
+        let apart = pairs.into_iter().filter_map(|(what, near, far, neutral)| {
+            let (near, far) = (near?, far?);
+            let is_idle = is_alike(far, neutral);
+            (!is_alike(near, far))
+                .then(|| overridden(path, what, &[near, far].map(|x| x.to_string()), is_idle))
+        });
+        self.overridden.extend(apart);
+        if let (Some(near), Some(far)) = (&self.unit, &other.unit)
+            && are_other_units(near, far)
+        {
+            // A wrong one is off by a factor of three and more, which no drop height or geometry bears.
+            self.other_unit
+                .get_or_insert_with(|| overridden(path, "unit", &[near, far].map(Clone::clone), true));
+        }
         self.rate = self.rate.take().or(other.rate);
         self.unit = self.unit.take().or(other.unit);
         self.start_s = self.start_s.or(other.start_s);
@@ -111,7 +140,7 @@ impl Attributes {
 
     /// The rate that is stated, Hz.
     pub(super) fn sample_rate_hz(&self) -> Option<f64> {
-        self.rate.as_ref().and_then(|stated| stated.rate.as_ref().ok()).copied()
+        self.rate.as_ref().and_then(|stated| stated.rate.as_ref().ok()).map(|rate| rate.rate_hz)
     }
 
     /// Whether the rate that is stated is the one in Hz.
@@ -119,11 +148,18 @@ impl Attributes {
         self.sample_rate_hz().is_some_and(|stated_hz| (stated_hz / taken_hz - 1.0).abs() <= RATE_TOLERANCE)
     }
 
-    /// A warning where two attributes of one place state different rates.
-    pub(super) fn rival(&self) -> Option<Issue> {
-        let rival = self.rate.as_ref()?.rival.as_ref()?;
+    /// A warning where two attributes of one place state different rates; where nothing else decides, also where two places do.
+    fn rival(&self, is_decided: bool) -> Option<Issue> {
+        let own = self.rate.as_ref()?.rival.as_ref();
+        let rival = own.or(self.outer_rate.as_ref().filter(|_| !is_decided))?;
         let message = format!("{}; {}", rival.problem, rival.mend);
         Some(Issue::new(IssueCode::TimeJitter, Severity::Warning, message))
+    }
+
+    /// All that they say twice and differently.
+    pub(super) fn contradictions(&self, is_rate_decided: bool) -> Vec<Issue> {
+        let others = self.overridden.iter().chain(&self.other_unit).cloned();
+        self.rival(is_rate_decided).into_iter().chain(others).collect()
     }
 
     /// value = raw · scale + offset, NaN where raw stands for a missing sample.
@@ -253,15 +289,48 @@ fn unclear(place: &Location, name: &str, column: &Column) -> Option<String> {
 
 /// That two attributes of one meaning say different things.
 fn twofold(names: [&str; 2], number: impl Fn(&str) -> Option<f64>) -> Option<String> {
-    /// Single precision keeps 6e-8 of a number.
-    const ALIKE: f64 = 1e-6;
     let (one, other) = (number(names[0])?, number(names[1])?);
-    ((one - other).abs() > ALIKE * one.abs().max(other.abs())).then(|| {
+    (!is_alike(one, other)).then(|| {
         format!(
             "the attributes {} = {one} and {} = {other} contradict each other: by which its numbers are to be scaled is open",
             names[0], names[1]
         )
     })
+}
+
+fn is_alike(one: f64, other: f64) -> bool {
+    /// Single precision keeps 6e-8 of a number.
+    const ALIKE: f64 = 1e-6;
+    (one - other).abs() <= ALIKE * one.abs().max(other.abs())
+}
+
+/// Whether both are units of acceleration, and different ones.
+fn are_other_units(one: &str, other: &str) -> bool {
+    let both = acceleration_unit_m_s2(one).zip(acceleration_unit_m_s2(other));
+    both.is_some_and(|(one, other)| !is_alike(one, other))
+}
+
+/// That two attributes of one place state different units.
+fn two_units([one, other]: [Option<String>; 2]) -> Option<Issue> {
+    let (one, other) = (one?, other?);
+    are_other_units(&one, &other).then(|| {
+        let message = format!(
+            "the attributes unit = {one:?} and units = {other:?} contradict each other; the first was taken: state `unit` in this channel of the cask file"
+        );
+        Issue::new(IssueCode::Scale, Severity::Warning, message)
+    })
+}
+
+/// That a group states another scale, offset or unit than what stands nearer to the samples; a note where it can do no harm unseen.
+///
+/// It may be for other datasets. But nothing in a recording shows a scale that is some percent off, and k goes with it.
+fn overridden(path: &str, what: &str, [near, far]: &[String; 2], is_harmless: bool) -> Issue {
+    let message = format!(
+        "the group {path} states the {what} {far}; nearer to the samples stands {near}, which was taken: one of the two is wrong, or the group's is \
+         for other datasets; correct the wrong one in a copy, or delete that of the group where each dataset has its own"
+    );
+    let severity = if is_harmless { Severity::Note } else { Severity::Warning };
+    Issue::new(IssueCode::Scale, severity, message)
 }
 
 fn text(place: &Location, name: &str, column: &Column) -> Option<String> {

@@ -237,7 +237,7 @@ fn survey(
         channel.start_s = attributes.start_s.or(duration_s.map(|_| 0.0));
         let unclear =
             attributes.unclear.clone().or(attributes.rate.clone().and_then(|stated| stated.rate.err()));
-        return Ok(unclear.map(no_base).into_iter().chain(attributes.rival()).collect());
+        return Ok(unclear.map(no_base).into_iter().chain(attributes.contradictions(false)).collect());
     };
     if !effort.pays_for(time) {
         return Ok(Vec::new());
@@ -265,7 +265,13 @@ fn survey(
         .iter()
         .filter_map(|other| witness::contradiction((time, &times_s), other, |other| effort.pays_for(other)));
     let told = told.map(Contradiction::issue);
-    Ok(uniform.issues.into_iter().chain(question).chain(attributes.rival()).chain(told).collect())
+    Ok(uniform
+        .issues
+        .into_iter()
+        .chain(question)
+        .chain(attributes.contradictions(true))
+        .chain(told)
+        .collect())
 }
 
 /// That times or rate would not do, as reading says.

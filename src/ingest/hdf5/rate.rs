@@ -44,13 +44,13 @@ const UNITS: [(&str, f64); 13] = [
 /// What the attributes of one place state.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Stated {
-    /// The rate, Hz; where the first attribute is no rate, what it says instead.
-    pub rate: Result<f64, String>,
+    /// The rate; where the first attribute is none, what it says instead.
+    pub rate: Result<StatedRate, String>,
     /// Another attribute there that states another rate.
     pub rival: Option<Rival>,
 }
 
-/// Two attributes of one place that contradict each other.
+/// Two attributes that contradict each other.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rival {
     /// Both, in words.
@@ -96,14 +96,34 @@ pub(super) fn stated(place: &Location, column: &Column) -> Option<Stated> {
             first.shown(),
             other.shown()
         ),
-        mend: format!(
-            "write the right one into this channel of the cask file: sample_rate_hz = {} or sample_rate_hz = {}",
-            stated_rate::shown_hz(first.rate_hz),
-            stated_rate::shown_hz(other.rate_hz)
-        ),
+        mend: mend(&first, &other),
         is_far: agreement == Agreement::FarApart,
     });
-    Some(Stated { rate: Ok(rate_hz), rival })
+    Some(Stated { rate: Ok(first), rival })
+}
+
+impl Stated {
+    /// That the group at `path`, farther off, states another rate; the nearer one goes before it, however far they are apart.
+    pub(super) fn rival_of(&self, outer: &Self, path: &str) -> Option<Rival> {
+        let (Ok(near), Ok(far)) = (&self.rate, &outer.rate) else { return None };
+        (near.agreement(far.rate_hz, far.rounding) != Agreement::Same).then(|| Rival {
+            problem: format!(
+                "the group {path} states {}; nearer to the samples stands {}, which was taken: one of the two is wrong, or the group's is for other datasets",
+                far.shown(),
+                near.shown()
+            ),
+            mend: mend(near, far),
+            is_far: false,
+        })
+    }
+}
+
+fn mend(one: &StatedRate, other: &StatedRate) -> String {
+    format!(
+        "write the right one into this channel of the cask file: sample_rate_hz = {} or sample_rate_hz = {}",
+        stated_rate::shown_hz(one.rate_hz),
+        stated_rate::shown_hz(other.rate_hz)
+    )
 }
 
 /// "50000", "50 kHz" or "50kS/s" to Hz.
