@@ -106,7 +106,11 @@ impl Attributes {
             self.other_unit
                 .get_or_insert_with(|| overridden(path, "unit", &[near, far].map(Clone::clone), true));
         }
-        self.rate = self.rate.take().or(other.rate);
+        let is_none = |stated: &Stated| !stated.is_sure;
+        self.rate = match self.rate.take() {
+            near if near.as_ref().is_none_or(is_none) => other.rate.or(near),
+            near => near,
+        };
         self.unit = self.unit.take().or(other.unit);
         self.start_s = self.start_s.or(other.start_s);
         self.scale = self.scale.or(other.scale);
@@ -226,11 +230,11 @@ fn fills(column: &Column) -> Vec<f64> {
     FILL_NAMES.iter().filter_map(|name| number(&column.dataset, name, column)).collect()
 }
 
-/// The value for the column: the only one, or that of its index where there is one a column.
-fn pick<T>(mut values: Vec<T>, column: &Column) -> Option<T> {
+/// The value for the column: that of its index where there is one a column, else the only one, as which several count that are the same.
+fn pick<T: PartialEq>(mut values: Vec<T>, column: &Column) -> Option<T> {
     match (values.len(), column.index) {
-        (1, _) => values.pop(),
         (count, Some(index)) if count == column.columns && index < count => Some(values.swap_remove(index)),
+        (1.., _) if values.windows(2).all(|pair| pair[0] == pair[1]) => values.pop(),
         _ => None,
     }
 }

@@ -213,6 +213,11 @@ fn rates_are_read_as_loggers_write_them_or_asked_for() {
         ("SampleRate", "50 kS/s"),
         ("dt", "20 us"),
         ("wf_increment", "2e-5"),
+        ("Sample_Rate", "50000"),
+        ("sampleRate", "50 kHz"),
+        ("fs_khz", "50"),
+        ("dt_us", "20"),
+        ("DT_ms", "20 us"),
     ] {
         for is_text in [true, false] {
             let made = made(|file| {
@@ -220,7 +225,13 @@ fn rates_are_read_as_loggers_write_them_or_asked_for() {
                 if is_text {
                     return text(&data, name, stated);
                 }
-                let value = if matches!(name, "dt" | "wf_increment") { 2e-5 } else { 5e4 };
+                let value = match name {
+                    "dt" | "wf_increment" => 2e-5,
+                    "dt_us" => 20.0,
+                    "DT_ms" => 0.02,
+                    "fs_khz" => 50.0,
+                    _ => 5e4,
+                };
                 data.new_attr::<f64>().shape(1).create(name)?.write(&[value])
             });
             let rate_hz = channels(&made, &["/a"])[0].uniform.sample_rate_hz;
@@ -238,6 +249,32 @@ fn rates_are_read_as_loggers_write_them_or_asked_for() {
         let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
         assert!(listing.issues[0].message.contains(name), "{:?}", listing.issues);
     }
+}
+
+#[test]
+fn a_list_of_one_rate_is_that_rate_and_what_only_looks_like_one_is_left_alone() {
+    let with = |own: &[(&str, &[f64])], outer: Option<f64>| {
+        made(|file| {
+            let data = file.new_dataset_builder().with_data(&[1.0_f32, 2.0, 3.0]).create("a")?;
+            outer.map_or(Ok(()), |rate_hz| number(file, "fs", rate_hz))?;
+            own.iter().try_for_each(|(name, values)| {
+                data.new_attr::<f64>().shape(values.len()).create(*name)?.write_raw(values)
+            })
+        })
+    };
+    let rate_hz = |made: &Made| channels(made, &["/a"])[0].uniform.sample_rate_hz;
+    assert!((rate_hz(&with(&[("fs", &[5e4, 5e4])], None)) - 5e4).abs() < 1e-9);
+    // A full scale, a list of others' rates, and what is no rate do not stand in the way of one that is.
+    for own in [("FS", &[50.0][..]), ("fs", &[5e4, 4.9e4]), ("Sample_Rate", &[0.0])] {
+        let made = with(&[own], Some(5e4));
+        assert!((rate_hz(&made) - 5e4).abs() < 1e-9, "{own:?}");
+        assert!(channels(&made, &["/a"])[0].uniform.issues.is_empty(), "{own:?}");
+    }
+    let message = told(&with(&[("fs", &[5e4, 4.9e4])], None), "/a");
+    assert!(message.contains("the attribute fs is a list of different values"), "{message}");
+    // Spelled as listed goes before.
+    let rate_hz = rate_hz(&with(&[("SampleRATE", &[5e4]), ("dt", &[2.001e-5])], None));
+    assert!((rate_hz * 2.001e-5 - 1.0).abs() < 1e-9, "{rate_hz}");
 }
 
 /// 100 samples with some attributes, and times of 10 kHz beside them where wanted.

@@ -46,6 +46,8 @@ const UNITS: [(&str, f64); 13] = [
 pub(super) struct Stated {
     /// The rate; where the first attribute is none, what it says instead.
     pub rate: Result<StatedRate, String>,
+    /// Whether it is spelled as those listed, with one value, so that it says something even where that is no rate.
+    pub is_sure: bool,
     /// Another attribute there that states another rate.
     pub rival: Option<Rival>,
 }
@@ -61,24 +63,100 @@ pub(super) struct Rival {
     pub is_far: bool,
 }
 
+/// Hz a unit behind the name of a rate, without underscores.
+const RATE_SUFFIXES: [(&str, f64); 4] = [("", 1.0), ("hz", 1.0), ("khz", 1e3), ("mhz", 1e6)];
+
+/// Seconds a unit behind the name of an interval. No minutes: the end of `dt_min` says that it is the least.
+const INTERVAL_SUFFIXES: [(&str, f64); 6] =
+    [("", 1.0), ("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("µs", 1e-6), ("ns", 1e-9)];
+
+/// What the name of an attribute says of its value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Meaning {
+    /// Whether it is spelled otherwise than those listed, which go before it.
+    is_alike: bool,
+    is_interval: bool,
+    /// Which of those listed.
+    place: usize,
+    /// Hz or s a unit.
+    scale: f64,
+}
+
+impl Meaning {
+    /// Of a name as listed, or but for case, underscores and a unit behind it.
+    fn of(name: &str) -> Option<Self> {
+        let lists = [(&RATE_NAMES[..], &RATE_SUFFIXES[..]), (&INTERVAL_NAMES[..], &INTERVAL_SUFFIXES[..])];
+        let found = |is_alike: bool, matches: &dyn Fn(&str, &str) -> bool| {
+            lists.iter().zip([false, true]).find_map(|((names, suffixes), is_interval)| {
+                let pairs = suffixes
+                    .iter()
+                    .flat_map(|suffix| names.iter().enumerate().map(move |name| (name, suffix)));
+                let mut fitting = pairs.filter(|((_, listed), suffix)| matches(listed, suffix.0));
+                fitting.next().map(|((place, _), suffix)| Self {
+                    is_alike,
+                    is_interval,
+                    place,
+                    scale: suffix.1,
+                })
+            })
+        };
+        let bare = plain(name);
+        // FS is a full scale, DT a dead time and delta_T a temperature.
+        let is_symbol = |listed: &str| ["fs", "dt", "deltat"].contains(&plain(listed).as_str());
+        let is_low = name.ends_with(char::is_lowercase);
+        found(false, &|listed, suffix| suffix.is_empty() && listed == name).or_else(|| {
+            found(true, &|listed, suffix| {
+                bare.strip_suffix(suffix) == Some(&plain(listed))
+                    && (is_low || !suffix.is_empty() || !is_symbol(listed))
+            })
+        })
+    }
+}
+
+fn plain(name: &str) -> String {
+    name.chars().filter(|c| !matches!(c, '_' | ' ' | '-')).flat_map(char::to_lowercase).collect()
+}
+
 /// The rate that the attributes of `place` state for a column.
 pub(super) fn stated(place: &Location, column: &Column) -> Option<Stated> {
-    let found = |name: &'static str, hz_of: fn(&str) -> Option<f64>, hz: fn(f64) -> f64| {
-        let (shown, rate_hz) = match value(place, name, column)? {
-            Value::Number(number) => (number.to_string(), Some(hz(number))),
-            Value::Text(text) => (format!("{text:?}"), hz_of(&text)),
-        };
-        Some((name, shown, rate_hz.filter(|rate_hz| rate_hz.is_finite() && *rate_hz > 0.0)))
+    // The library hands over names of any bytes.
+    let names =
+        place.attr_names().ok()?.into_iter().filter_map(|name| String::from_utf8(name.into_bytes()).ok());
+    let mut named: Vec<(Meaning, String)> =
+        names.filter_map(|name| Some((Meaning::of(&name)?, name))).collect();
+    let order = |(meaning, name): &(Meaning, String)| {
+        (meaning.is_alike, meaning.is_interval, meaning.place, name.clone())
     };
-    let rates = RATE_NAMES.iter().filter_map(|name| found(name, of_text, |hz| hz));
-    let of_interval = |text: &str| seconds(text).map(f64::recip);
-    let mut all = rates.chain(INTERVAL_NAMES.iter().filter_map(|name| found(name, of_interval, f64::recip)));
-    let (name, shown, rate_hz) = all.next()?;
+    named.sort_by_key(order);
+    let found = |(meaning, name): (Meaning, String)| {
+        let hz = |number: f64| if meaning.is_interval { number.recip() } else { number };
+        let (shown, rate_hz, is_known) = match value(place, &name, column) {
+            Some(Value::Number(number)) => (number.to_string(), Some(hz(number * meaning.scale)), true),
+            Some(Value::Text(text)) => {
+                let number = if meaning.is_interval {
+                    seconds(&text, meaning.scale)
+                } else {
+                    of_text(&text, meaning.scale)
+                };
+                (format!("{text:?}"), number.map(hz), true)
+            }
+            None => ("a list of different values".to_owned(), None, false),
+        };
+        let rate_hz = rate_hz.filter(|rate_hz| rate_hz.is_finite() && *rate_hz > 0.0);
+        (is_known && !meaning.is_alike, name, shown, rate_hz)
+    };
+    let mut all: Vec<_> = named.into_iter().map(found).collect();
+    // What only looks like a rate is none where it says none.
+    if all.iter().any(|(is_sure, .., rate_hz)| *is_sure || rate_hz.is_some()) {
+        all.retain(|(is_sure, .., rate_hz)| *is_sure || rate_hz.is_some());
+    }
+    let mut all = all.into_iter();
+    let (is_sure, name, shown, rate_hz) = all.next()?;
     let Some(rate_hz) = rate_hz else {
         let problem = format!(
             "nothing says when its samples were taken: the attribute {name} is {shown}, which is no rate or interval"
         );
-        return Some(Stated { rate: Err(problem), rival: None });
+        return Some(Stated { rate: Err(problem), is_sure, rival: None });
     };
     let rate = |name: &str, shown: &str, rate_hz: f64| StatedRate {
         place: format!("{name} = {shown}"),
@@ -86,8 +164,8 @@ pub(super) fn stated(place: &Location, column: &Column) -> Option<Stated> {
         rounding: number_and_unit(shown.trim_matches('"'))
             .map_or(0.0, |found| stated_rate::rounding(found.0)),
     };
-    let first = rate(name, &shown, rate_hz);
-    let others = all.filter_map(|(name, shown, rate_hz)| Some(rate(name, &shown, rate_hz?)));
+    let first = rate(&name, &shown, rate_hz);
+    let others = all.filter_map(|(_, name, shown, rate_hz)| Some(rate(&name, &shown, rate_hz?)));
     let apart = others.map(|other| (first.agreement(other.rate_hz, other.rounding), other));
     let rival = apart.filter(|(agreement, _)| *agreement != Agreement::Same).max_by_key(|(a, _)| *a);
     let rival = rival.map(|(agreement, other)| Rival {
@@ -99,7 +177,7 @@ pub(super) fn stated(place: &Location, column: &Column) -> Option<Stated> {
         mend: mend(&first, &other),
         is_far: agreement == Agreement::FarApart,
     });
-    Some(Stated { rate: Ok(first), rival })
+    Some(Stated { rate: Ok(first), is_sure: true, rival })
 }
 
 impl Stated {
@@ -126,17 +204,17 @@ fn mend(one: &StatedRate, other: &StatedRate) -> String {
     )
 }
 
-/// "50000", "50 kHz" or "50kS/s" to Hz.
-fn of_text(text: &str) -> Option<f64> {
+/// "50000", "50 kHz" or "50kS/s" to Hz; without a unit in so many Hz.
+fn of_text(text: &str, unit_hz: f64) -> Option<f64> {
     let (number, unit) = parsed(text)?;
     let scale = UNITS.iter().find(|(name, _)| name.eq_ignore_ascii_case(unit)).map(|unit| unit.1);
-    scale.or_else(|| unit.is_empty().then_some(1.0)).map(|scale| number * scale)
+    scale.or_else(|| unit.is_empty().then_some(unit_hz)).map(|scale| number * scale)
 }
 
-/// "2e-5" or "20 us" to s.
-fn seconds(text: &str) -> Option<f64> {
+/// "2e-5" or "20 us" to s; without a unit in so many s.
+fn seconds(text: &str, unit_s: f64) -> Option<f64> {
     let (number, unit) = parsed(text)?;
-    time_unit::seconds(unit).or_else(|| unit.is_empty().then_some(1.0)).map(|scale| number * scale)
+    time_unit::seconds(unit).or_else(|| unit.is_empty().then_some(unit_s)).map(|scale| number * scale)
 }
 
 fn parsed(text: &str) -> Option<(f64, &str)> {
@@ -170,14 +248,44 @@ mod tests {
             ("1 MHz", 1e6),
             ("100 1/s", 100.0),
         ] {
-            assert_eq!(of_text(text), Some(rate_hz), "{text}");
+            assert_eq!(of_text(text, 1.0), Some(rate_hz), "{text}");
         }
         for (text, interval_s) in [("2e-5", 2e-5), ("20 us", 20.0 * 1e-6), ("0.5ms", 0.5 * 1e-3)] {
-            assert_eq!(seconds(text), Some(interval_s), "{text}");
+            assert_eq!(seconds(text, 1.0), Some(interval_s), "{text}");
         }
         for text in ["", "fast", "50 V", "Hz", "20 us"] {
-            assert_eq!(of_text(text), None, "{text}");
+            assert_eq!(of_text(text, 1.0), None, "{text}");
         }
-        assert_eq!(seconds("50 kHz"), None);
+        assert_eq!(seconds("50 kHz", 1.0), None);
+    }
+
+    #[test]
+    fn names_are_told_in_other_spellings_and_with_units() {
+        for (name, is_interval, scale) in [
+            ("sample_rate_hz", false, 1.0_f64),
+            ("Sample_Rate", false, 1.0),
+            ("SAMPLE RATE", false, 1.0),
+            ("sampleRate", false, 1.0),
+            ("samplingRate_kHz", false, 1e3),
+            ("fs_khz", false, 1e3),
+            ("FS_Hz", false, 1.0),
+            ("fs_MHz", false, 1e6),
+            ("dt_us", true, 1e-6),
+            ("dt_ns", true, 1e-9),
+            ("Dt", true, 1.0),
+            ("DT_ms", true, 1e-3),
+            ("deltat", true, 1.0),
+            ("wf_increment_s", true, 1.0),
+        ] {
+            let meaning = Meaning::of(name).unwrap_or_else(|| panic!("{name}"));
+            assert_eq!(
+                (meaning.is_interval, meaning.scale.to_bits()),
+                (is_interval, scale.to_bits()),
+                "{name}"
+            );
+        }
+        for name in ["FS", "DT", "delta_T", "dt_min", "rate", "fs_g", "sample_rate_divider", "offset"] {
+            assert_eq!(Meaning::of(name), None, "{name}");
+        }
     }
 }
