@@ -76,6 +76,20 @@ impl Derived {
         time_base::cut(&self.intervals, rate_hz).is_some_and(|cut| cut.is_whole)
     }
 
+    /// Whether steady stamps, fine enough to do so, tell the rate in Hz.
+    pub(super) fn bears_out(&self, rate_hz: f64) -> bool {
+        self.is_steady
+            && (rate_hz / self.rate_hz - 1.0).abs() <= RATE_TOLERANCE
+            && self.doubt() <= RATE_TOLERANCE
+    }
+
+    /// How far the rate of cut stamps may be off, as a part of it.
+    ///
+    /// A line through n stamps, each off by up to half a cut (uniform), has a slope of this standard deviation; twice it.
+    fn doubt(&self) -> f64 {
+        2.0 * self.cut_s / (self.span_s * as_f64(self.intervals.len() + 1).sqrt())
+    }
+
     /// Whether so few blocks say it that a rate which contradicts them looks like samples that are missing.
     pub(super) fn is_few(&self) -> bool {
         self.intervals.len() < ENOUGH
@@ -109,16 +123,35 @@ impl Derived {
         })
     }
 
+    /// A warning where equal blocks are stamped evenly on so coarse a grid that blocks of another length would be, and their rate is an odd one.
+    ///
+    /// Over n intervals stamps that are cut stay even as long as they run off by less than a cut in all.
+    fn is_on_grid(&self) -> Option<Issue> {
+        let unit_s =
+            time_base::unit_s(&self.intervals, self.rate_hz).filter(|unit_s| *unit_s <= COARSEST_S)?;
+        let part = unit_s / self.span_s;
+        let first = self.intervals.first()?;
+        let are_equal = self.intervals.iter().all(|(length, _)| length.total_cmp(&first.0).is_eq());
+        (are_equal && part > RATE_TOLERANCE && !is_usual(self.rate_hz)).then(|| {
+            let message = format!(
+                "all stamps are multiples of {unit_s} s: if they are cut to that, {:.1} Hz, had from them, is off by up to {:.1} %: \
+                 give sample_rate_hz for this channel",
+                self.rate_hz,
+                100.0 * part
+            );
+            Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+        })
+    }
+
     /// How well cut stamps tell the rate: a warning beyond what clocks are apart.
     ///
     /// # Errors
     /// They tell it to no better than 1 %.
     pub(super) fn resolution(&self, samples: usize) -> Result<Option<Issue>, TimeBaseError> {
         if self.cut_s == 0.0 {
-            return Ok(self.is_lost_or_cut());
+            return Ok(self.is_lost_or_cut().or_else(|| self.is_on_grid()));
         }
-        // A line through n stamps, each off by up to half a cut (uniform), has a slope of this standard deviation; twice it.
-        let part = 2.0 * self.cut_s / (self.span_s * as_f64(self.intervals.len() + 1).sqrt());
+        let part = self.doubt();
         if part > UNKNOWN {
             return Err(TimeBaseError::TooCoarse {
                 step_s: self.cut_s,
@@ -139,6 +172,15 @@ impl Derived {
 
 /// Stamps are cut to this at the coarsest, s: the tick of a computer's clock.
 const COARSEST_S: f64 = 0.02;
+
+/// Whether a rate has one or two digits and no prime factors but 2 and 5, as 40 and 64 kHz: stamps that are cut make one by chance only.
+///
+/// Not 51.2 and 102.4 kHz: blocks of 1024 at 100 kHz, stamped to 10 ms, look like it.
+fn is_usual(rate_hz: f64) -> bool {
+    const DIGITS: [f64; 9] = [10.0, 16.0, 20.0, 25.0, 32.0, 40.0, 50.0, 64.0, 80.0];
+    let digits = 10.0 * rate_hz / 10_f64.powf(rate_hz.log10().floor());
+    DIGITS.iter().any(|usual| (digits / usual - 1.0).abs() < 1e-9)
+}
 
 /// The rate of a line through the stamps, where blocks all follow one another, or as at about `rate_hz` or leave a gap between.
 fn through(intervals: &[(f64, f64)], rate_hz: Option<f64>) -> f64 {

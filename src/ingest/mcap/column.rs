@@ -3,6 +3,7 @@
 use super::block_rate::{Derived, FAR, few_blocks};
 use super::numbers::{append, push};
 use super::plan::Value;
+use super::twice::{Rates, Units};
 use crate::data::Samples;
 use crate::ingest::stated_rate::shown_hz;
 use crate::ingest::time_base::{self, Block, TimeBaseError, Uniform};
@@ -80,6 +81,10 @@ pub(super) struct Column {
     /// Memory of its times and samples.
     pub(super) held_bytes: u64,
     pub(super) unit: Option<String>,
+    /// All that were stated.
+    pub(super) units: Units,
+    /// Two rates that a message states, and contradict each other.
+    pub(super) two_rates: Option<Rates>,
     /// Why the first malformed message is so.
     pub(super) first_problem: Option<String>,
     mark: Mark,
@@ -96,6 +101,8 @@ impl Default for Column {
             tally: Tally::default(),
             held_bytes: 0,
             unit: None,
+            units: Units::default(),
+            two_rates: None,
             first_problem: None,
             mark: Mark::default(),
             zero_stamp: None,
@@ -209,6 +216,8 @@ impl Column {
         self.tally.stamps += other.tally.stamps;
         self.held_bytes += other.held_bytes;
         self.unit = other.unit.take().or(self.unit.take());
+        self.units.append(&other.units);
+        self.two_rates = self.two_rates.take().or(other.two_rates.take());
         self.first_problem = self.first_problem.take().or(other.first_problem.take());
         *other = Self {
             times_ns: std::mem::take(&mut other.times_ns),
@@ -296,6 +305,9 @@ impl Column {
         // Between many blocks a rate shows in every one; between few it looks like samples that are missing.
         placed.issues.extend(few_hz.and_then(|own_hz| few_blocks(own_hz, placed.sample_rate_hz)));
         placed.issues.extend(resolution);
+        let is_decided = declared_rate_hz.is_some()
+            || derived.is_some_and(|derived| derived.bears_out(placed.sample_rate_hz));
+        placed.issues.extend(self.two_rates.filter(|_| !is_decided).map(|rates| rates.issue()));
         Ok(match (own_hz, declared_rate_hz) {
             (Some(_), Some(declared_hz)) => placed.at(declared_hz)?,
             _ => placed,

@@ -199,6 +199,30 @@ fn what_coarse_stamps_hide_is_told() {
 }
 
 #[test]
+fn even_stamps_on_a_coarse_grid_tell_no_odd_rate() {
+    let told = |column: Column| {
+        let uniform = column.uniform(0, None).unwrap();
+        uniform.issues.iter().filter(|issue| issue.severity == Severity::Warning).count()
+    };
+    // Blocks of 10.15 and 10.2 ms that are stamped each 10 ms, as if at 101.5 and 102 kHz.
+    for count in [1015, 1020] {
+        assert_eq!(told(stamped(46, (count, 1e5), 10_000_000, None)), 1, "{count}");
+    }
+    // Exact ones: at a usual rate, of blocks that are not alike, fine, or over so long that it does not matter.
+    assert_eq!(told(stamped(46, (500, 5e4), 1, None)), 0);
+    assert_eq!(told(stamped(46, (512, 1e5), 1, None)), 0);
+    assert_eq!(told(stamped(1200, (512, 51_200.0), 1, None)), 0);
+    let mut column = Column::default();
+    let mut taken = 0;
+    for i in 0..46_i64 {
+        let count = if i % 3 == 0 { 512 } else { 1024 };
+        column.take(block(&vec![1.0; count]), (taken * 1_000_000 / 512 * 10, TimeOrigin::Stamp), None);
+        taken += i64::try_from(count).unwrap();
+    }
+    assert_eq!(told(column), 0);
+}
+
+#[test]
 fn messages_that_contradict_their_stamps_by_far_are_told() {
     for stated_hz in [15_000.0, 14_800.0, 20_000.0, 6700.0, 5000.0] {
         let column = || stamped(40, (100, 1e4), 1, Some(stated_hz));

@@ -20,6 +20,7 @@ mod running;
 mod scan;
 mod scanned;
 mod summary;
+mod twice;
 mod wave;
 mod wire;
 

@@ -1,12 +1,25 @@
 //! Wanted fields of a message type to one tree of everything to fetch: the samples, their stamp, rate and unit.
 
 use super::path::{FieldPath, Step};
+use super::twice::Rates;
 use crate::data::Samples;
 
 /// Names under which a message states the time of its first sample; nanoseconds follow as a structure.
 const STAMP_NAMES: [&[&str]; 3] = [&["timestamp"], &["header", "stamp"], &["stamp"]];
 /// Names under which a message states the rate of its samples, Hz.
-pub(super) const RATE_NAMES: [&str; 3] = ["sample_rate_hz", "sample_rate", "fs"];
+pub(super) const RATE_NAMES: [&str; 8] = [
+    "sample_rate_hz",
+    "sample_rate",
+    "fs",
+    "sampling_rate_hz",
+    "sampling_rate",
+    "fs_hz",
+    // As protobuf and others write them into JSON.
+    "sampleRateHz",
+    "sampleRate",
+];
+/// Name of an interval between samples, or blocks, in any unit: it may contradict a rate, and states none by itself.
+const INTERVAL_NAME: &str = "dt";
 /// Names under which a message states their unit.
 const UNIT_NAMES: [&str; 2] = ["unit", "units"];
 /// Names of the whole seconds of a time.
@@ -83,7 +96,9 @@ pub(super) struct Target {
     /// Its samples.
     pub(super) value: usize,
     stamps: Vec<usize>,
-    rates: Vec<usize>,
+    /// With their names, those of a message one after another.
+    rates: Vec<(usize, &'static str)>,
+    intervals: Vec<usize>,
     units: Vec<usize>,
 }
 
@@ -107,13 +122,21 @@ impl Plan {
                 // An element is taken from its array once that is read.
                 plan.slot(&FieldPath(array.to_vec()), Want::Numbers);
             }
-            let mut target = Target { value, stamps: Vec::new(), rates: Vec::new(), units: Vec::new() };
+            let mut target = Target {
+                value,
+                stamps: Vec::new(),
+                rates: Vec::new(),
+                intervals: Vec::new(),
+                units: Vec::new(),
+            };
             for message in field.enclosing() {
                 for names in STAMP_NAMES {
                     let path = names.iter().fold(message.clone(), |path, name| path.then(name));
                     target.stamps.push(plan.slot(&path, Want::Stamp));
                 }
-                target.rates.extend(RATE_NAMES.map(|name| plan.slot(&message.then(name), Want::Numbers)));
+                let mut number = |name: &'static str| (plan.slot(&message.then(name), Want::Numbers), name);
+                target.rates.extend(RATE_NAMES.map(&mut number));
+                target.intervals.push(number(INTERVAL_NAME).0);
                 target.units.extend(UNIT_NAMES.map(|name| plan.slot(&message.then(name), Want::Text)));
             }
             plan.targets.push(target);
@@ -200,8 +223,22 @@ impl Slots {
 
     /// The rate stated nearest to the field of `target`, Hz, whatever its value.
     pub(super) fn rate_hz(&self, target: &Target) -> Option<f64> {
-        match self.first(&target.rates, |value| matches!(value, Value::Number { .. })) {
-            Value::Number { value, .. } => Some(value),
+        self.rates(target).next().map(|(_, rate_hz)| rate_hz)
+    }
+
+    /// Two rates that the message states for the field of `target`, where they contradict each other.
+    pub(super) fn two_rates(&self, target: &Target) -> Option<Rates> {
+        let intervals = target.intervals.iter().filter_map(|&slot| Some((INTERVAL_NAME, self.number(slot)?)));
+        Rates::of(self.rates(target), intervals)
+    }
+
+    fn rates<'a>(&'a self, target: &'a Target) -> impl Iterator<Item = (&'static str, f64)> + 'a {
+        target.rates.iter().filter_map(|&(slot, name)| Some((name, self.number(slot)?)))
+    }
+
+    fn number(&self, slot: usize) -> Option<f64> {
+        match self.values.get(slot) {
+            Some(Value::Number { value, .. }) => Some(*value),
             _ => None,
         }
     }

@@ -177,12 +177,16 @@ impl Decoding {
                 continue;
             }
             let time = message_time(&slots.stamp(target), log_time_ns);
-            if let Some(unit) = slots.unit(target)
-                && entry.column.unit.as_deref() != Some(unit)
-            {
-                entry.column.unit = Some(unit.to_owned());
+            if let Some(unit) = slots.unit(target) {
+                entry.column.units.take(unit);
+                if entry.column.unit.as_deref() != Some(unit) {
+                    entry.column.unit = Some(unit.to_owned());
+                }
             }
             let rate_hz = slots.rate_hz(target);
+            if entry.column.two_rates.is_none() && rate_hz.is_some() {
+                entry.column.two_rates = slots.two_rates(target);
+            }
             let value = slots.samples(target);
             if self.is_json && entry.leaves.is_empty() && value == super::plan::Value::Missing {
                 entry.leaves = json::leaves(data);
@@ -274,7 +278,7 @@ impl<'a> Reading<'a> {
 
 /// What was wrong with single messages of a channel.
 fn message_issues(spec: &ChannelSpec, column: &Column) -> Vec<Issue> {
-    let mut issues = Vec::new();
+    let mut issues: Vec<Issue> = column.units.issue().map(|issue| issue.on(&spec.name)).into_iter().collect();
     let tally = column.tally;
     if tally.bad_stamps > 0 {
         let (severity, mixed) = if tally.stamps > 0 {

@@ -75,6 +75,54 @@ fn protobuf_blocks_stay_single_precision() {
     );
 }
 
+/// Blocks of 100 samples of whole milliseconds as JSON messages of these fields.
+fn blocks(count: u32, fields: impl Fn(u32) -> String) -> Vec<u8> {
+    closed(WriteOptions::new(), |writer| {
+        let id = channel(writer, "/a", "json", ("", "", b""));
+        for block in 0..count {
+            let time_ns = ZERO_NS + i64::from(block) * 10_000_000;
+            let samples = vec![1.0; 100];
+            let (sec, nsec) = (time_ns / 1_000_000_000, time_ns % 1_000_000_000);
+            let text = format!(
+                r#"{{"timestamp":{{"sec":{sec},"nsec":{nsec}}},{},"samples":{samples:?}}}"#,
+                fields(block)
+            );
+            message(writer, id, time_ns, text.as_bytes());
+        }
+    })
+}
+
+#[test]
+fn two_rates_of_a_message_are_told_where_stamps_do_not_decide() {
+    let issues = |count, fields: &'static str, declared_hz| {
+        let mut cask = cask_file(&["/a.samples"]);
+        cask.channels[0].sample_rate_hz = declared_hz;
+        let raw = read_bytes(&blocks(count, |_| fields.to_owned()), &cask).unwrap();
+        raw.channels[0].uniform.issues.clone()
+    };
+    for fields in [
+        r#""sample_rate_hz":9700,"fs":10000"#,
+        r#""sample_rate_hz":9700,"dt":1e-4"#,
+        r#""sampleRateHz":9700,"dt":100"#,
+        r#""fs":9700,"sampling_rate":10000"#,
+    ] {
+        let [issue] = &issues(1, fields, None)[..] else { panic!("{fields}") };
+        assert!(issue.severity == Severity::Warning && issue.message.contains("9700"), "{issue:?}");
+        assert!(issues(1, fields, Some(1e4)).is_empty(), "{fields}");
+    }
+    assert!(issues(1, r#""sample_rate_hz":10000,"fs":50,"dt":0.0001"#, None).is_empty());
+    assert!(issues(40, r#""sample_rate_hz":10000,"fs":9700"#, None).is_empty());
+}
+
+#[test]
+fn a_unit_that_changes_between_messages_is_told() {
+    let unit = |block| format!(r#""fs":10000,"unit":"{}""#, if block < 20 { "g" } else { "m/s^2" });
+    let raw = read_bytes(&blocks(40, unit), &cask_file(&["/a.samples"])).unwrap();
+    let [issue] = &raw.issues[..] else { panic!("{:?}", raw.issues) };
+    assert!(issue.code == IssueCode::Scale && issue.severity == Severity::Warning, "{issue:?}");
+    assert!(issue.message.contains("from \"g\" to \"m/s^2\""), "{}", issue.message);
+}
+
 fn imu_file(stamps: impl Fn(i64) -> i64) -> Vec<u8> {
     closed(WriteOptions::new(), |writer| {
         let id =
