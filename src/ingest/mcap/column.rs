@@ -3,8 +3,9 @@
 use super::block_rate::{Derived, FAR, few_blocks};
 use super::numbers::{append, push};
 use super::plan::Value;
+use super::shared_stamps::Shared;
 use super::twice::{Rates, Units};
-use crate::data::Samples;
+use crate::data::{Issue, Samples};
 use crate::ingest::stated_rate::shown_hz;
 use crate::ingest::time_base::{self, Block, TimeBaseError, Uniform};
 
@@ -119,10 +120,12 @@ pub(super) enum ColumnError {
     NoRate,
     #[error(
         "its messages state a sample rate of {} Hz, their stamps and lengths say {} Hz: one of the two is wrong, or samples are missing behind \
-         every message",
-        shown_hz(*stated_hz), shown_hz(*own_hz)
+         every message{}",
+        shown_hz(*stated_hz), shown_hz(*own_hz), shared.map(|shared| format!("; {shared}")).unwrap_or_default()
     )]
-    Contradiction { stated_hz: f64, own_hz: f64 },
+    Contradiction { stated_hz: f64, own_hz: f64, shared: Option<Shared> },
+    #[error("{0}, and no rate is stated by which they could be laid one behind another")]
+    SharedStamps(Shared),
     #[error(transparent)]
     TimeBase(#[from] TimeBaseError),
 }
@@ -263,19 +266,25 @@ impl Column {
     ///
     /// # Errors
     /// Rate or times that give no base.
-    pub(super) fn uniform(self, zero_ns: i64, declared_rate_hz: Option<f64>) -> Result<Uniform, ColumnError> {
+    pub(super) fn uniform(
+        mut self,
+        zero_ns: i64,
+        declared_rate_hz: Option<f64>,
+    ) -> Result<Uniform, ColumnError> {
         if self.blocks.is_empty() {
             let times_s: Vec<f64> =
                 self.times_ns.iter().map(|&time_ns| seconds_from(time_ns, zero_ns)).collect();
             return Ok(time_base::from_times(&times_s, self.samples, declared_rate_hz)?);
         }
+        let shared = Shared::of(&self.blocks, &self.samples);
+        let laid = self.laid(shared, declared_rate_hz)?;
         let derived = Derived::of(&self.blocks);
         let derived_hz = declared_rate_hz.or(derived.as_ref().map(|derived| derived.rate_hz));
         if declared_rate_hz.is_none()
             && let Some((stated_hz, own_hz)) =
                 derived.as_ref().and_then(|own| own.contradiction(&self.blocks, &self.samples))
         {
-            return Err(ColumnError::Contradiction { stated_hz, own_hz });
+            return Err(ColumnError::Contradiction { stated_hz, own_hz, shared });
         }
         let is_derived =
             declared_rate_hz.is_none() && self.blocks.iter().all(|block| block.rate_hz.is_none());
@@ -305,6 +314,7 @@ impl Column {
         // Between many blocks a rate shows in every one; between few it looks like samples that are missing.
         placed.issues.extend(few_hz.and_then(|own_hz| few_blocks(own_hz, placed.sample_rate_hz)));
         placed.issues.extend(resolution);
+        placed.issues.extend(laid);
         let is_decided = declared_rate_hz.is_some()
             || derived.is_some_and(|derived| derived.bears_out(placed.sample_rate_hz));
         placed.issues.extend(self.two_rates.filter(|_| !is_decided).map(|rates| rates.issue()));
@@ -312,6 +322,25 @@ impl Column {
             (Some(_), Some(declared_hz)) => placed.at(declared_hz)?,
             _ => placed,
         })
+    }
+
+    /// Stamps anew blocks that share stamps and follow one another at the rate that is stated; a warning where that was done.
+    fn laid(
+        &mut self,
+        shared: Option<Shared>,
+        declared_rate_hz: Option<f64>,
+    ) -> Result<Option<Issue>, ColumnError> {
+        let Some(shared) = shared else { return Ok(None) };
+        let stated_hz = declared_rate_hz.or(self.blocks.first().and_then(|block| block.rate_hz));
+        let rate_hz = stated_hz.ok_or(ColumnError::SharedStamps(shared))?;
+        let is_rate = rate_hz.is_finite() && rate_hz > 0.0;
+        let Some((stamps, issue)) = shared.laid(&self.blocks, rate_hz).filter(|_| is_rate) else {
+            return Ok(None);
+        };
+        for (block, time_ns) in self.blocks.iter_mut().zip(stamps) {
+            block.time_ns = time_ns;
+        }
+        Ok(Some(issue))
     }
 
     fn is_blocks(&self) -> Option<bool> {

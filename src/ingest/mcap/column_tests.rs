@@ -223,6 +223,47 @@ fn even_stamps_on_a_coarse_grid_tell_no_odd_rate() {
 }
 
 #[test]
+fn blocks_that_share_coarse_stamps_are_laid_one_behind_another() {
+    let stamped = |lost: Option<i64>, stated: Option<f64>| {
+        let (mut column, mut taken) = (Column::default(), 0_i64);
+        for i in (0..90).filter(|i| Some(*i) != lost) {
+            let stamp_ns = i * 512 * 10_000 / 10_000_000 * 10_000_000;
+            let samples: Vec<f64> = (taken..taken + 512).map(|i| seconds_from(i, 0)).collect();
+            column.take(block(&samples), (stamp_ns, TimeOrigin::Stamp), stated);
+            taken += 512;
+        }
+        column
+    };
+    for (stated, declared) in [(Some(1e5), None), (None, Some(1e5))] {
+        let uniform = stamped(None, stated).uniform(0, declared).unwrap();
+        assert!((uniform.sample_rate_hz - 1e5).abs() < 1e-6 && uniform.gaps.is_empty());
+        assert!(
+            uniform.samples.len() == 90 * 512 && (0.0..0.01).contains(&uniform.start_s),
+            "{}",
+            uniform.start_s
+        );
+        let [issue] = &uniform.issues[..] else { panic!("{:?}", uniform.issues) };
+        assert!(issue.severity == Severity::Warning && issue.message.contains("same stamp"), "{issue:?}");
+    }
+    // Without a rate, at another one or with a block lost they are not laid so.
+    for (lost, stated) in [(None, None), (None, Some(9e4)), (Some(45), Some(1e5))] {
+        match stamped(lost, stated).uniform(0, None) {
+            Err(error) => assert!(error.to_string().contains("carry the same stamp"), "{error}"),
+            Ok(uniform) => {
+                assert!(uniform.issues.iter().any(|issue| issue.message.contains("too coarse")));
+            }
+        }
+    }
+    // A block that was sent again, corrected, is none of these.
+    let mut column = Column::default();
+    for i in [0, 1, 2, 2, 3, 4, 5, 6] {
+        let value = if column.blocks.len() == 3 { 2.0 } else { 1.0 };
+        column.take(block(&[value; 1000]), (10_000_000 * i, TimeOrigin::Stamp), Some(1e5));
+    }
+    assert_eq!(column.uniform(0, None).unwrap().samples.len(), 7000);
+}
+
+#[test]
 fn messages_that_contradict_their_stamps_by_far_are_told() {
     for stated_hz in [15_000.0, 14_800.0, 20_000.0, 6700.0, 5000.0] {
         let column = || stamped(40, (100, 1e4), 1, Some(stated_hz));

@@ -19,6 +19,7 @@ mod ros_type;
 mod running;
 mod scan;
 mod scanned;
+mod shared_stamps;
 mod summary;
 mod twice;
 mod wave;

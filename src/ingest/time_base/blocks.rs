@@ -319,7 +319,7 @@ fn report_doubles(doubles: &Doubles, issues: &mut Vec<Issue>) {
     } else {
         let message = format!(
             "{count} block(s) cover times that are there already, {} of them with different samples; \
-             the first to start was kept",
+             the first to start was kept; where they follow on one another in truth, the stamps are too coarse for such blocks",
             doubles.different
         );
         Issue::new(IssueCode::DuplicateBlocks, Severity::Warning, message)
