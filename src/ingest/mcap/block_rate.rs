@@ -127,8 +127,10 @@ impl Derived {
     ///
     /// Over n intervals stamps that are cut stay even as long as they run off by less than a cut in all.
     fn is_on_grid(&self) -> Option<Issue> {
-        let unit_s =
-            time_base::unit_s(&self.intervals, self.rate_hz).filter(|unit_s| *unit_s <= COARSEST_S)?;
+        // All multiples of a longer one are multiples of one of these.
+        let widest_s = time_base::unit_s(&self.intervals, self.rate_hz)?;
+        let is_multiple = |unit_s: &f64| (widest_s / unit_s - (widest_s / unit_s).round()).abs() < 1e-6;
+        let unit_s = [COARSEST_S, 0.5 * COARSEST_S].into_iter().find(is_multiple).unwrap_or(widest_s);
         let part = unit_s / self.span_s;
         let first = self.intervals.first()?;
         let are_equal = self.intervals.iter().all(|(length, _)| length.total_cmp(&first.0).is_eq());

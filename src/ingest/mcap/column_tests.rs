@@ -206,7 +206,10 @@ fn even_stamps_on_a_coarse_grid_tell_no_odd_rate() {
     };
     // Blocks of 10.15 and 10.2 ms that are stamped each 10 ms, as if at 101.5 and 102 kHz.
     for count in [1015, 1020] {
-        assert_eq!(told(stamped(46, (count, 1e5), 10_000_000, None)), 1, "{count}");
+        for blocks in [1, 2, 5] {
+            let column = stamped(46 / blocks, (blocks * count, 1e5), 10_000_000, None);
+            assert_eq!(told(column), 1, "{count} {blocks}");
+        }
     }
     // Exact ones: at a usual rate, of blocks that are not alike, fine, or over so long that it does not matter.
     assert_eq!(told(stamped(46, (500, 5e4), 1, None)), 0);

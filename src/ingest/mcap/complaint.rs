@@ -97,7 +97,7 @@ pub(super) fn no_samples(path: &Path, spec: &ChannelSpec, entry: &Wanted, scanne
 /// The samples are there, and find no time base.
 pub(super) fn no_base(path: &Path, spec: &ChannelSpec, problem: &ColumnError) -> IngestError {
     let mend = match problem {
-        ColumnError::Contradiction { stated_hz, own_hz, .. } => {
+        ColumnError::Contradiction { stated_hz, own_hz, shared: None } => {
             let hz = [stated_hz, own_hz].map(|hz| shown_hz(*hz));
             let mend = format!(
                 "write the right one into this channel of the cask file: sample_rate_hz = {} or sample_rate_hz = {}",
@@ -108,7 +108,7 @@ pub(super) fn no_base(path: &Path, spec: &ChannelSpec, problem: &ColumnError) ->
         ColumnError::StatedRate(_) => {
             "write the true `sample_rate_hz` in this channel of the cask file: it overrides the recording"
         }
-        ColumnError::SharedStamps(_) => {
+        ColumnError::Contradiction { .. } | ColumnError::SharedStamps(_) => {
             "write `sample_rate_hz` in this channel of the cask file, and have the recorder stamp finer"
         }
         ColumnError::NoRate => "write `sample_rate_hz` in this channel of the cask file",
