@@ -1,7 +1,7 @@
 //! Blocks of samples with a stamp each to one run: sorted, doubles dropped, overlaps trimmed, gaps NaN.
 
 use super::cut::{Cut, ROUND_OFF, cut, short_blocks};
-use super::order::{as_f64, is_same};
+use super::order::{as_f64, is_same, restart, restarted};
 use super::{Block, Number, Placed, RATE_TOLERANCE, TimeBaseError, Uniform, check_rate, fit, missing};
 use crate::data::{Issue, IssueCode, Samples, Severity};
 use std::ops::Range;
@@ -76,6 +76,8 @@ fn common_rate(blocks: &[Block]) -> Result<f64, TimeBaseError> {
 fn join<S: Number>(mut pieces: Vec<Piece>, held: Vec<S>, rate_hz: f64) -> Result<Placed<S>, TimeBaseError> {
     let mut issues = Vec::new();
     pieces.retain(|piece| !piece.samples.is_empty());
+    let starts_s: Vec<f64> = pieces.iter().map(|piece| piece.start_s).collect();
+    let restart = restart(&starts_s);
     sort(&mut pieces, &mut issues);
     let mut doubles = Doubles::default();
     drop_doubles(&mut pieces, &held, rate_hz, &mut doubles);
@@ -108,6 +110,7 @@ fn join<S: Number>(mut pieces: Vec<Piece>, held: Vec<S>, rate_hz: f64) -> Result
         samples
     });
     report_doubles(&doubles, &mut issues);
+    issues.extend(restart.filter(|_| doubles.different > 0).map(|at| restarted(&starts_s, at)));
     missing::push_gaps(&gaps, &mut issues);
     let lost: usize = gaps.iter().map(|gap| gap.0).sum();
     let gaps = settle_missing(&mut samples, lost, clock, &mut issues);

@@ -49,6 +49,26 @@ pub(super) fn ordered<'a, S: Number>(
     Ok(without_doubles(times_s, samples, issues))
 }
 
+/// Where times in the order of the file begin anew and run once more over those before; late ones and parts that are swapped do not.
+pub(super) fn restart(times_s: &[f64]) -> Option<usize> {
+    /// So many lie before the last of the first run.
+    const OVER: usize = 3;
+    let mut backward = (1..times_s.len()).filter(|&i| times_s[i] < times_s[i - 1]);
+    let (at, None) = (backward.next()?, backward.next()) else { return None };
+    let is_over = times_s.get(at + OVER - 1).is_some_and(|time_s| *time_s < times_s[at - 1]);
+    (at >= OVER && is_over && times_s[0] < times_s[times_s.len() - 1]).then_some(at)
+}
+
+/// A warning that says so.
+pub(super) fn restarted(times_s: &[f64], at: usize) -> Issue {
+    let (from_s, to_s) = (times_s[at - 1], times_s[at]);
+    let message = format!(
+        "the times begin anew: {at} rise to {from_s} s, the next is {to_s} s. The clock was started again, or two recordings follow one another; \
+         both parts lie on the same times, and the samples were mixed: cut the recording there in a copy"
+    );
+    Issue::new(IssueCode::TimeJitter, Severity::Warning, message).between(to_s, from_s)
+}
+
 fn sorted<'a, S: Number>(
     times_s: &'a [f64],
     samples: Vec<S>,
@@ -71,6 +91,16 @@ fn sorted<'a, S: Number>(
         )
         .between(times_s[first], times_s[first - 1]),
     );
+    if let Some(at) = restart(times_s) {
+        // A file that was written twice holds the same once more.
+        let is_copy = |i: usize| {
+            times_s[i].total_cmp(&times_s[i - at]).is_eq()
+                && is_same(samples[i].to_f64(), samples[i - at].to_f64())
+        };
+        if times_s.len() > 2 * at || !(at..times_s.len()).all(is_copy) {
+            issues.push(restarted(times_s, at));
+        }
+    }
     let mut order: Vec<usize> = (0..times_s.len()).collect();
     order.sort_by(|&a, &b| times_s[a].total_cmp(&times_s[b]));
     let sorted_times: Vec<f64> = order.iter().map(|&i| times_s[i]).collect();

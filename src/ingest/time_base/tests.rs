@@ -274,3 +274,26 @@ fn a_clock_that_changes_its_rate_or_begins_anew_is_no_jitter() {
     let late = |i: usize| even(i) + 1e-5 * (as_f64(i * i % 7) - 3.0) / 3.0;
     assert!(!told(&(0..6000).map(late).collect::<Vec<_>>()));
 }
+
+#[test]
+fn times_that_begin_anew_are_named_as_such() {
+    let told = |issues: &[Issue]| issues.iter().any(|issue| issue.message.contains("begin anew: "));
+    // Stamps of blocks, and of single samples; then such that are late, or the same recording twice.
+    let numbers = |starts_s: &[f64], is_copy: bool| -> bool {
+        let count = |i: usize| if is_copy { i % 6 } else { i };
+        let blocks: Vec<Block> =
+            starts_s.iter().map(|&start_s| Block { start_s, sample_rate_hz: 100.0, count: 100 }).collect();
+        let values = (0..100 * starts_s.len()).map(|i| order::as_f64(count(i / 100))).collect();
+        let of_blocks = told(&from_blocks(&blocks, Samples::F64(values)).unwrap().issues);
+        let values = (0..starts_s.len()).map(|i| order::as_f64(count(i))).collect();
+        let of_times = from_times(starts_s, Samples::F64(values), Some(1.0));
+        assert!(of_times.is_err() || told(&of_times.unwrap().issues) == of_blocks, "{starts_s:?}");
+        of_blocks
+    };
+    let run = |from: f64, count: u32| (0..count).map(move |i| from + f64::from(i));
+    assert!(numbers(&run(0.0, 6).chain(run(0.0, 5)).collect::<Vec<_>>(), false));
+    assert!(numbers(&run(1.0, 6).chain(run(0.5, 9)).collect::<Vec<_>>(), false));
+    assert!(!numbers(&run(0.0, 6).chain(run(0.0, 6)).collect::<Vec<_>>(), true));
+    assert!(!numbers(&run(6.0, 6).chain(run(0.0, 6)).collect::<Vec<_>>(), false));
+    assert!(!numbers(&[0.0, 2.0, 3.0, 4.0, 1.0, 5.0, 6.0], false));
+}
