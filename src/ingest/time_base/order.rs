@@ -59,6 +59,24 @@ pub(super) fn restart(times_s: &[f64]) -> Option<usize> {
     (at >= OVER && is_over && times_s[0] < times_s[times_s.len() - 1]).then_some(at)
 }
 
+/// Whether samples from `at` on lie among those before, in the order of their times; rows that were written twice do not, nor do a few runs
+/// that were swapped.
+fn are_mixed<S: Number>(order: &[usize], at: usize, (times_s, samples): (&[f64], &[S])) -> bool {
+    /// Changes from one part to the other that two runs out of place make.
+    const SWAPPED: usize = 4;
+    let is_copy = |a: usize, b: usize| {
+        times_s[a].total_cmp(&times_s[b]).is_eq() && is_same(samples[a].to_f64(), samples[b].to_f64())
+    };
+    let (mut last, mut changes) = (order[0], 0);
+    for &next in &order[1..] {
+        if !is_copy(last, next) {
+            changes += usize::from((last < at) != (next < at));
+            last = next;
+        }
+    }
+    changes > SWAPPED
+}
+
 /// A warning that says so.
 pub(super) fn restarted(times_s: &[f64], at: usize) -> Issue {
     let (from_s, to_s) = (times_s[at - 1], times_s[at]);
@@ -91,18 +109,11 @@ fn sorted<'a, S: Number>(
         )
         .between(times_s[first], times_s[first - 1]),
     );
-    if let Some(at) = restart(times_s) {
-        // A file that was written twice holds the same once more.
-        let is_copy = |i: usize| {
-            times_s[i].total_cmp(&times_s[i - at]).is_eq()
-                && is_same(samples[i].to_f64(), samples[i - at].to_f64())
-        };
-        if times_s.len() > 2 * at || !(at..times_s.len()).all(is_copy) {
-            issues.push(restarted(times_s, at));
-        }
-    }
     let mut order: Vec<usize> = (0..times_s.len()).collect();
     order.sort_by(|&a, &b| times_s[a].total_cmp(&times_s[b]));
+    if let Some(at) = restart(times_s).filter(|&at| are_mixed(&order, at, (times_s, &samples))) {
+        issues.push(restarted(times_s, at));
+    }
     let sorted_times: Vec<f64> = order.iter().map(|&i| times_s[i]).collect();
     (Cow::Owned(sorted_times), order.iter().map(|&i| samples[i]).collect())
 }

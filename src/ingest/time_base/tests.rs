@@ -296,4 +296,12 @@ fn times_that_begin_anew_are_named_as_such() {
     assert!(!numbers(&run(0.0, 6).chain(run(0.0, 6)).collect::<Vec<_>>(), true));
     assert!(!numbers(&run(6.0, 6).chain(run(0.0, 6)).collect::<Vec<_>>(), false));
     assert!(!numbers(&[0.0, 2.0, 3.0, 4.0, 1.0, 5.0, 6.0], false));
+    // Rows written twice, and rows in another's place, are no second run.
+    let rows = |order: &[std::ops::Range<u32>]| {
+        let times_s: Vec<f64> = order.iter().cloned().flatten().map(f64::from).collect();
+        let values = times_s.iter().map(|time_s| (0.3 * time_s).sin()).collect();
+        told(&from_times(&times_s, Samples::F64(values), Some(1.0)).unwrap().issues)
+    };
+    assert!(!rows(&[0..40, 20..90]));
+    assert!(!rows(&[0..20, 40..60, 20..40, 60..90]));
 }
