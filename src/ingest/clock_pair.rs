@@ -1,6 +1,6 @@
-//! Two columns or datasets of times for the same samples to whether they contradict each other.
+//! Two columns or datasets of times for the same samples to where they run apart.
 
-use super::time_base::{RATE_TOLERANCE, short, to_digits};
+use super::time_base::{self, RATE_TOLERANCE, short, to_digits};
 use super::time_reading::{self, Scale};
 
 /// Times further apart than this part of the record leave open which are right.
@@ -64,22 +64,116 @@ impl Pair {
         let start_s = if is_start_shared { first.1 * unit_s - first.0 } else { 0.0 };
         // Stamps of a day are no start.
         let start_s = if start_s.abs() < spans_s.0.abs() { start_s } else { 0.0 };
-        let seconds = |s: f64| short(to_digits(s, 5));
         if part(worst_s) > RATE_TOLERANCE {
             // A clock that is another at the end, or one that stepped on the way.
             let whole = part(spans_s.0 - spans_s.1);
             let [one_s, other_s] = [spans_s.0, spans_s.1].map(seconds);
-            let says = if whole > RATE_TOLERANCE {
-                format!("from the first row to the last they say {one_s} s and {other_s} s")
-            } else {
-                format!("in row {} they are {} s apart", worst + 1, seconds(worst_s.abs()))
-            };
-            return Some((whole, says));
+            if whole > RATE_TOLERANCE {
+                let says = format!("from the first row to the last they say {one_s} s and {other_s} s");
+                return Some((whole, says));
+            }
+            let says =
+                format!("in row {} of the table they are {} s apart", worst + 1, seconds(worst_s.abs()));
+            return self.changes(unit_s).and_then(|changes| changes.rate()).or(Some((whole, says)));
         }
         let whole = part(start_s);
         let says = format!("they begin {} s apart", seconds(start_s.abs()));
-        (whole > RATE_TOLERANCE).then_some((whole, says))
+        if whole > RATE_TOLERANCE {
+            return Some((whole, says));
+        }
+        let changes = self.changes(unit_s)?;
+        changes.rate().or_else(|| changes.step())
     }
+
+    /// The rows in which the second column changes; `None` where the first goes back between them.
+    fn changes(&self, unit_s: f64) -> Option<Changes> {
+        let later = self.rows.windows(2).enumerate().filter(|(_, pair)| pair[1].1 > pair[0].1);
+        let rows: Vec<(usize, f64, f64)> =
+            later.map(|(i, pair)| (i + 2, pair[1].0, pair[1].1 * unit_s)).collect();
+        let is_rising = rows.windows(2).all(|pair| pair[1].1 > pair[0].1);
+        is_rising.then_some(Changes { rows, interval_s: self.steps.0 })
+    }
+}
+
+/// Where a column of times changes, beside another: a clock that is read with each row changes within one row of what it says.
+struct Changes {
+    /// Row of the table, from 1, and both times, s.
+    rows: Vec<(usize, f64, f64)>,
+    /// Of the rows by the first column, s.
+    interval_s: f64,
+}
+
+impl Changes {
+    /// How far the second column's own rate is off, as a part of it, where its changes tell one.
+    fn rate(&self) -> Option<(f64, String)> {
+        let &(_, first_s, first_other_s) = self.rows.first()?;
+        let points: Vec<(f64, f64)> = self
+            .rows
+            .iter()
+            .map(|row| ((row.1 - first_s) / self.interval_s, row.2 - first_other_s))
+            .collect();
+        let held_s = self.rows.last().map_or(0.0, |row| 4.0 * f64::EPSILON * row.2.abs());
+        let (period_s, uncertainty) = time_base::period_of_changes(&points, held_s)?;
+        let pace = period_s / self.interval_s;
+        let span_s = self.rows.last()?.1 - first_s;
+        let says = format!(
+            "by when the second changes it runs on by {} s while the first does by {} s",
+            seconds(span_s * pace),
+            seconds(span_s)
+        );
+        let off = (pace - 1.0).abs();
+        (off > RATE_TOLERANCE.max(uncertainty)).then_some((off, says))
+    }
+
+    /// Where the second column steps against the first for good; the largest step where there are several. No part of the rate is off.
+    fn step(&self) -> Option<(f64, String)> {
+        /// Changes on either side that have to keep to their level, at least and at most: stamps late once come back to it.
+        const LEAST: usize = 5;
+        const MOST: usize = 8;
+        let apart_s: Vec<f64> = self.rows.iter().map(|row| row.2 - row.1).collect();
+        let steps_s: Vec<f64> = apart_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let mut sizes_s: Vec<f64> = steps_s.iter().map(|step_s| step_s.abs()).collect();
+        if sizes_s.len() < 2 * LEAST {
+            return None;
+        }
+        // What the clocks jitter against each other, nine of ten steps, and the row within which they change.
+        let usual = sizes_s.len() * 9 / 10;
+        let usual_s = *sizes_s.select_nth_unstable_by(usual, f64::total_cmp).1;
+        let jitter_s = usual_s + self.interval_s;
+        let level = |range: std::ops::Range<usize>| {
+            let mut level: Vec<f64> = apart_s[range.clone()].to_vec();
+            level.sort_unstable_by(f64::total_cmp);
+            let drift_s = RATE_TOLERANCE * (self.rows[range.end - 1].1 - self.rows[range.start].1);
+            // Stamps of blocks saw: they are on no level.
+            let is_level = level[level.len() - 1] - level[0] <= 2.0 * jitter_s + drift_s;
+            is_level.then_some((level[level.len() / 2], drift_s))
+        };
+        let mut largest: Option<(usize, f64)> = None;
+        for i in (0..steps_s.len()).filter(|&i| steps_s[i].abs() > jitter_s) {
+            let count = MOST.min(i + 1).min(apart_s.len() - 1 - i);
+            if count < LEAST {
+                continue;
+            }
+            let Some((before_s, drift_s)) = level(i + 1 - count..i + 1) else { continue };
+            let Some((behind_s, further_s)) = level(i + 1..i + 1 + count) else { continue };
+            let by_s = (behind_s - before_s).abs();
+            // Across a tick the rate may be off as within the levels.
+            let drift_s = drift_s + further_s + RATE_TOLERANCE * (self.rows[i + 1].1 - self.rows[i].1);
+            if by_s > 2.0 * jitter_s + drift_s && largest.is_none_or(|(_, held_s)| by_s > held_s) {
+                largest = Some((self.rows[i + 1].0, by_s));
+            }
+        }
+        let (row, by_s) = largest?;
+        let says = format!(
+            "at row {row} of the table the second steps by {} s against the first, as where rows are missing or a clock was set",
+            seconds(by_s)
+        );
+        Some((0.0, says))
+    }
+}
+
+fn seconds(s: f64) -> String {
+    short(to_digits(s, 5))
 }
 
 /// The usual step from a time to a later one: their interval, or what they are cut to where that is longer; 0 without any.

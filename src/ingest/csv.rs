@@ -222,6 +222,8 @@ mod fuzz_tests;
 #[cfg(test)]
 mod layout_tests;
 #[cfg(test)]
+mod pair_tests;
+#[cfg(test)]
 mod piece_tests;
 #[cfg(test)]
 pub(super) mod tests;

@@ -9,6 +9,7 @@ mod order;
 mod resample;
 
 pub use blocks::from_blocks;
+pub(super) use coarse::period as period_of_changes;
 pub(super) use cut::{cut, unit_s, usual_hz};
 
 use crate::data::{Issue, IssueCode, Samples, Severity, Span};

@@ -6,7 +6,7 @@ use crate::data::Severity;
 use std::fmt::Write as _;
 
 /// A table of so many rows, the time of each by its number.
-fn table(header: &str, rows: usize, mark: char, time: impl Fn(usize) -> String) -> String {
+pub(super) fn table(header: &str, rows: usize, mark: char, time: impl Fn(usize) -> String) -> String {
     let mut text = format!("{header}\n");
     for i in 0..rows {
         let _ = writeln!(text, "{}{mark}{i}{mark}{}", time(i), i % 7);
@@ -15,7 +15,7 @@ fn table(header: &str, rows: usize, mark: char, time: impl Fn(usize) -> String) 
 }
 
 /// Whole units and a fraction of one of so many digits.
-fn decimal(count: usize, digits: usize, point: char) -> String {
+pub(super) fn decimal(count: usize, digits: usize, point: char) -> String {
     let unit = 10_usize.pow(u32::try_from(digits).unwrap());
     format!("{}{point}{:0digits$}", count / unit, count % unit)
 }
@@ -123,71 +123,6 @@ fn of_two_columns_of_times_the_finer_is_taken() {
     let a1 = &recording.channels[0].uniform;
     assert!((a1.sample_rate_hz - 500.0).abs() < 1e-6 && a1.start_s.abs() < 1e-12, "{}", a1.start_s);
     assert!(recording.issues.is_empty(), "{:?}", recording.issues);
-}
-
-/// Two columns of times in one table, 4000 rows at 10 kHz by the first.
-fn twofold(headers: &str, other: impl Fn(usize) -> String) -> String {
-    let clock = |i| format!("{};{}", decimal(i, 4, ','), other(i));
-    table(&format!("{headers};A1;A2"), 4000, ';', clock)
-}
-
-#[test]
-fn columns_of_times_that_contradict_each_other_are_told() {
-    let read = |text: &str, cask: &CaskFile| read_bytes(text.as_bytes(), cask).map_err(|error| told(&error));
-    let cask = cask_file(&["A1", "A2"]);
-    // As rounding, other starts, clocks of loggers, whole seconds and counters have it.
-    for text in [
-        twofold("time_s;time_ms", |i| decimal(i, 1, ',')),
-        twofold("time_s;time_ms", |i| (i / 10).to_string()),
-        twofold("time_s;time_ms", |i| decimal(i * 10_005 / 10_000 + 77, 1, ',')),
-        twofold("time_s;Timestamp", |i| format!("12:34:{}", decimal(10_000 + i / 160 * 16, 3, ','))),
-        twofold("time_s;Timestamp", |i| format!("12:34:{:02}", 10 + i / 3000)),
-        twofold("t;Time", |i| (i + 1).to_string()),
-        twofold("t;Timestamp", |i| (1_795_176_000_000_000 + 100 * i).to_string()),
-        twofold("t;Timestamp", |i| (4000 * i).to_string()),
-        twofold("t;time_ms", |_| "5".into()),
-        twofold("t;time_ms", |i| (i % 10).to_string()),
-        twofold("t;Timestamp", |i| {
-            if i % 3 == 0 { "--:--:--".into() } else { format!("12:34:{}", decimal(10_000 + i / 10, 3, ',')) }
-        }),
-    ] {
-        let recording = read(&text, &cask).unwrap_or_else(|error| panic!("{}\n{error}", &text[..90]));
-        assert!(recording.issues.is_empty(), "{}: {:?}", &text[..90], recording.issues);
-        assert!((recording.channels[0].uniform.sample_rate_hz / 1e4 - 1.0).abs() < 1e-6, "{}", &text[..90]);
-    }
-    // By 0.5 %: a warning; where one stepped on the way too.
-    for (text, says) in [
-        (twofold("time_s;time_ms", |i| decimal(i * 1005, 4, ',')), "0.3999 s and 0.4019 s"),
-        (twofold("t;Zeit", |i| decimal(i * 1005, 7, ',')), "0.3999 s and 0.4019 s"),
-        (
-            twofold("t;time_ms", |i| {
-                let ahead = if i < 1000 { 0 } else { 50 - i.saturating_sub(3000) / 20 };
-                decimal(i + ahead, 1, ',')
-            }),
-            "they are 0.005 s apart",
-        ),
-    ] {
-        let recording = read(&text, &cask).unwrap();
-        let [issue] = &recording.issues[..] else { panic!("{:?}", recording.issues) };
-        assert!(issue.severity == Severity::Warning && issue.message.contains(says), "{}", issue.message);
-    }
-    // By 5 %, or by a unit: an error that names both, until the cask file says which.
-    for (text, other) in [
-        (twofold("time_s;time_ms", |i| decimal(i * 105, 3, ',')), "time_ms"),
-        (twofold("time_s;time_ms", |i| decimal(i, 4, ',')), "time_ms"),
-        (twofold("time_s;Clock", |i| format!("12:34:{}", decimal(100_000 + 2 * i, 4, ','))), "Clock"),
-        (twofold("t;t", |i| decimal(i * 105, 6, ',')), "t"),
-    ] {
-        let message = read(&text, &cask).err().unwrap_or_default();
-        for part in ["contradict each other", &format!("time = {other:?}"), "sample_rate_hz", "0.3999 s"] {
-            assert!(message.contains(part), "{message} without {part}");
-        }
-        let mut stated = cask.clone();
-        stated.channels.iter_mut().for_each(|spec| spec.sample_rate_hz = Some(1e4));
-        let recording = read(&text, &stated).unwrap();
-        assert_eq!(recording.issues[0].severity, Severity::Warning);
-        assert!((recording.channels[0].uniform.sample_rate_hz - 1e4).abs() < 1e-6);
-    }
 }
 
 #[test]

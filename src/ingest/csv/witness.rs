@@ -61,7 +61,8 @@ fn warning(message: String) -> Issue {
     Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
 }
 
-/// A warning for each other column of times that contradicts the one in column `time` by more than 0.1 % and what both are cut to.
+/// A warning for each other column of times that contradicts the one in column `time` by more than 0.1 % and what both are cut to, or that
+/// by its changes runs at another rate or steps.
 ///
 /// # Errors
 /// It does so by more than 1 %, and the cask file leaves open which to go by.

@@ -41,6 +41,13 @@ struct Steps {
     is_even: bool,
 }
 
+/// The period that changes tell, as sample and time from the first of them, and how uncertain it is as a part of itself; `None` where they
+/// are too few or uneven.
+pub(in super::super) fn period(points: &[(f64, f64)], held_s: f64) -> Option<(f64, f64)> {
+    let steps = (points.len() >= LEAST_CHANGES).then(|| Steps::through(points, (0.0, 0.0), held_s))?;
+    steps.is_even.then_some((steps.period_s, steps.uncertainty))
+}
+
 /// Samples with times that rise but for many that repeat, evenly spaced.
 pub(super) fn place<S: Number>(
     times_s: &[f64],
@@ -80,19 +87,24 @@ fn median_step(times_s: &[f64], changes: &[usize]) -> f64 {
 impl Steps {
     /// Of times with two changes at least.
     fn of(times_s: &[f64], changes: &[usize]) -> Self {
-        let (first, last) = (changes[0], changes[changes.len() - 1]);
+        let first = changes[0];
         let first_s = times_s[first];
         let points: Vec<(f64, f64)> =
             changes.iter().map(|&i| (as_f64(i - first), times_s[i] - first_s)).collect();
-        let points = hull(&points);
+        let held_s = 4.0 * f64::EPSILON * times_s[0].abs().max(times_s[times_s.len() - 1].abs());
+        Self::through(&points, (as_f64(first), first_s), held_s)
+    }
+
+    /// Of changes as sample and time, both counted from the first of them, which is at `origin`; times are held to within `held_s`.
+    fn through(points: &[(f64, f64)], (first, first_s): (f64, f64), held_s: f64) -> Self {
+        let (length, last_s) = points[points.len() - 1];
+        let points = hull(points);
         let width = |period_s: f64| range(points.iter().copied(), period_s).1;
-        let length = as_f64(last - first);
-        let through_s = (times_s[last] - first_s) / length;
+        let through_s = last_s / length;
         // The end points alone keep the best slope within this.
         let reach_s = width(through_s) / length;
         let best_s = least(&width, through_s - reach_s, through_s + reach_s);
         let best_width_s = width(best_s);
-        let held_s = 4.0 * f64::EPSILON * times_s[0].abs().max(times_s[times_s.len() - 1].abs());
         let is_even = best_width_s <= (1.0 + ROUND_OFF) * best_s + held_s;
         // Uneven ones have no width of their own: twice the least one is as likely.
         let most_s = if is_even { best_s.max(best_width_s) } else { 2.0 * best_width_s };
@@ -104,7 +116,7 @@ impl Steps {
         let middle_s = first_s + lowest_s + width_s / 2.0;
         Self {
             // A change lies up to one period before its sample, half of one in the mean.
-            start_s: middle_s + period_s / 2.0 - period_s * as_f64(first),
+            start_s: middle_s + period_s / 2.0 - period_s * first,
             period_s,
             uncertainty: (high_s - low_s) / (2.0 * period_s),
             off_s: width_s / 2.0,
