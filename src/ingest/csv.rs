@@ -8,6 +8,7 @@ mod layout;
 mod list;
 mod pieces;
 mod plan;
+mod preamble;
 mod rows;
 mod stamp;
 mod time_column;
@@ -95,6 +96,7 @@ fn of_input(
             if uses[at] == 0 { std::mem::take(values) } else { values.clone() }
         })
         .collect();
+    let rows = samples.iter().map(Vec::len).max().unwrap_or_default();
     // Columns of times are fitted once, however many channels use them.
     let times: Vec<Option<Base>> =
         held.iter().zip(&wanted.is_time).map(|(column, is_time)| is_time.then(|| Base::of(column))).collect();
@@ -113,6 +115,15 @@ fn of_input(
         uniform.issues.extend(witness::of_header(path, name, plan, (uniform.sample_rate_hz, times_s))?);
         channels.push(RawChannel { spec, uniform, unit: layout.columns[plan.column].unit.clone() });
     }
+    let filled = channels.iter().map(|channel| channel.uniform.samples.len()).max().unwrap_or_default();
+    issues.extend(layout.preamble.of_rows((rows, filled), layout.columns.len()));
+    let rate_issue = |(channel, plan): (&RawChannel, &Plan)| {
+        let rounding = plan.time_column.map(|column| held[wanted.slot(column)].rounding());
+        layout.preamble.of_rate(channel.uniform.sample_rate_hz, rounding)
+    };
+    // Where channels have several rates the one stated is that of some.
+    let all: Option<Vec<Issue>> = channels.iter().zip(&plans).map(rate_issue).collect();
+    issues.extend(all.into_iter().flatten().next());
     Ok(RawRecording { channels, zero_unix_ns: stamps.zero_unix_ns(), issues })
 }
 

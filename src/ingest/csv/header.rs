@@ -180,7 +180,7 @@ pub(super) fn columns(header: Option<&Header>, judged: &Judged, example: &[&str]
 }
 
 /// "A1 [g]", "A1 (g)" or "A1 / g" to "A1" and "g".
-fn name_and_unit(header: &str) -> (&str, Option<&str>) {
+pub(super) fn name_and_unit(header: &str) -> (&str, Option<&str>) {
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some(rest) = header.strip_suffix(close)
             && let Some((name, unit)) = rest.rsplit_once(open)

@@ -2,6 +2,7 @@
 
 use super::header;
 use super::input::{self, Input};
+use super::preamble::Preamble;
 use super::stamp;
 use super::time_column;
 use crate::ingest::number;
@@ -50,6 +51,8 @@ pub(super) struct Layout {
     sure_times: Vec<usize>,
     /// Rates that a header of LabVIEW's states, by cell.
     rates: Vec<Option<StatedRate>>,
+    /// What else is stated above the rows.
+    pub preamble: Preamble,
     is_decimal_seen: bool,
     mean_row_bytes: usize,
     /// Whether blank lines stand between the rows, as doubled line breaks leave them.
@@ -147,6 +150,7 @@ impl Layout {
             time_column: times.taken,
             sure_times: times.sure,
             rates: header::labview_rates(&lines[..above.max(begin)], delimiter),
+            preamble: Preamble::of(&lines[..above.max(begin)], delimiter),
             mean_row_bytes: (row_bytes / cells.len()).max(2),
             // Rows that lost their values are fewer.
             is_spaced: lines[first..].iter().filter(|line| line.text.trim().is_empty()).count() * 3

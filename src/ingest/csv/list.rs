@@ -161,10 +161,12 @@ pub(in super::super) fn list(
         Some(stated) => Clock::at(stated.rate_hz, seen.rows),
         None => Clock::of(&seen.times),
     };
-    if time_column.is_some() {
-        let issue = |rate_hz| witness::of_times(stated, rate_hz, &seen.times);
-        issues.extend(clock.sample_rate_hz.and_then(issue));
+    if let Some(rate_hz) = clock.sample_rate_hz.filter(|_| time_column.is_some()) {
+        issues.extend(witness::of_times(stated, rate_hz, &seen.times));
+        issues.extend(layout.preamble.of_rate(rate_hz, Some(witness::rounding(&seen.times))));
     }
+    let rows = usize::try_from(seen.rows).unwrap_or(usize::MAX);
+    issues.extend(layout.preamble.of_rows((rows, clock.samples()), layout.columns.len()));
     let channels = layout
         .columns
         .iter()
@@ -200,6 +202,17 @@ struct Clock {
 }
 
 impl Clock {
+    /// Samples from the first to the last, those in gaps among them.
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a cast ends at the type's bounds"
+    )]
+    fn samples(&self) -> usize {
+        let between = self.duration_s.zip(self.sample_rate_hz).map_or(0.0, |(s, hz)| s * hz);
+        between.round() as usize + 1
+    }
+
     /// Of rows that follow one another at a stated rate.
     #[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
     fn at(rate_hz: f64, rows: u64) -> Self {

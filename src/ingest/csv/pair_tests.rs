@@ -129,8 +129,9 @@ fn a_rate_that_a_coarse_clock_contradicts_is_told() {
 
 #[test]
 fn stamps_that_jitter_saw_or_come_late_contradict_nothing() {
+    type Stamp = Box<dyn Fn(usize) -> usize>;
     let wave = |i: usize, least: usize| (i * 7919 + i / 7 * 104_729) % least;
-    let stamps: [(&str, Box<dyn Fn(usize) -> usize>); 6] = [
+    let stamps: [(&str, Stamp); 6] = [
         ("blocks of 512, stamped to 1 ms", Box::new(|i| i / 512 * 512 * 5 / 100 * 100)),
         ("ticks of 15.6 ms in whole ms", Box::new(|i| (i * 5 * 10 / 15_625 * 15_625 / 10) / 100 * 100)),
         ("jitter of 2 ms, to 1 ms", Box::new(move |i| (5 * (i / 20 * 20) + wave(i / 20, 200)) / 100 * 100)),

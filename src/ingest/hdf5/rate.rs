@@ -1,7 +1,6 @@
 //! Attributes that state how often samples were taken to a rate.
 
 use super::super::stated_rate::{self, Agreement, StatedRate};
-use super::super::time_unit;
 use super::attributes::{Value, value};
 use super::dataset::Column;
 use hdf5_metno::Location;
@@ -23,23 +22,6 @@ const RATE_NAMES: [&str; 11] = [
 
 /// Attributes that hold the interval between samples, s; `wf_increment` is that of LabVIEW's waveforms.
 const INTERVAL_NAMES: [&str; 5] = ["dt", "wf_increment", "sample_interval", "sampling_interval", "delta_t"];
-
-/// Hz a unit of rate.
-const UNITS: [(&str, f64); 13] = [
-    ("hz", 1.0),
-    ("khz", 1e3),
-    ("mhz", 1e6),
-    ("s/s", 1.0),
-    ("ks/s", 1e3),
-    ("ms/s", 1e6),
-    ("sa/s", 1.0),
-    ("ksa/s", 1e3),
-    ("msa/s", 1e6),
-    ("1/s", 1.0),
-    ("sps", 1.0),
-    ("ksps", 1e3),
-    ("samples/s", 1.0),
-];
 
 /// What the attributes of one place state.
 #[derive(Debug, Clone, PartialEq)]
@@ -134,9 +116,9 @@ pub(super) fn stated(place: &Location, column: &Column) -> Option<Stated> {
             Some(Value::Number(number)) => (number.to_string(), Some(hz(number * meaning.scale)), true),
             Some(Value::Text(text)) => {
                 let number = if meaning.is_interval {
-                    seconds(&text, meaning.scale)
+                    stated_rate::seconds(&text, meaning.scale)
                 } else {
-                    of_text(&text, meaning.scale)
+                    stated_rate::hz(&text, meaning.scale)
                 };
                 (format!("{text:?}"), number.map(hz), true)
             }
@@ -161,7 +143,7 @@ pub(super) fn stated(place: &Location, column: &Column) -> Option<Stated> {
     let rate = |name: &str, shown: &str, rate_hz: f64| StatedRate {
         place: format!("{name} = {shown}"),
         rate_hz,
-        rounding: number_and_unit(shown.trim_matches('"'))
+        rounding: stated_rate::number_and_unit(shown.trim_matches('"'))
             .map_or(0.0, |found| stated_rate::rounding(found.0)),
     };
     let first = rate(&name, &shown, rate_hz);
@@ -204,60 +186,9 @@ fn mend(one: &StatedRate, other: &StatedRate) -> String {
     )
 }
 
-/// "50000", "50 kHz" or "50kS/s" to Hz; without a unit in so many Hz.
-fn of_text(text: &str, unit_hz: f64) -> Option<f64> {
-    let (number, unit) = parsed(text)?;
-    let scale = UNITS.iter().find(|(name, _)| name.eq_ignore_ascii_case(unit)).map(|unit| unit.1);
-    scale.or_else(|| unit.is_empty().then_some(unit_hz)).map(|scale| number * scale)
-}
-
-/// "2e-5" or "20 us" to s; without a unit in so many s.
-fn seconds(text: &str, unit_s: f64) -> Option<f64> {
-    let (number, unit) = parsed(text)?;
-    time_unit::seconds(unit).or_else(|| unit.is_empty().then_some(unit_s)).map(|scale| number * scale)
-}
-
-fn parsed(text: &str) -> Option<(f64, &str)> {
-    let (number, unit) = number_and_unit(text)?;
-    Some((number.parse().ok()?, unit))
-}
-
-/// "50 kHz" to "50" and "kHz".
-fn number_and_unit(text: &str) -> Option<(&str, &str)> {
-    let text = text.trim();
-    // The longest beginning that is a number: the e of an exponent is a letter too.
-    let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
-    ends.into_iter().find_map(|end| {
-        let number = text[..end].trim_end();
-        number.parse::<f64>().ok()?;
-        Some((number, text[end..].trim()))
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn rates_and_intervals_are_read_with_their_units() {
-        for (text, rate_hz) in [
-            ("50000", 5e4),
-            (" 50 kHz ", 5e4),
-            ("50kS/s", 5e4),
-            ("5e4Hz", 5e4),
-            ("1 MHz", 1e6),
-            ("100 1/s", 100.0),
-        ] {
-            assert_eq!(of_text(text, 1.0), Some(rate_hz), "{text}");
-        }
-        for (text, interval_s) in [("2e-5", 2e-5), ("20 us", 20.0 * 1e-6), ("0.5ms", 0.5 * 1e-3)] {
-            assert_eq!(seconds(text, 1.0), Some(interval_s), "{text}");
-        }
-        for text in ["", "fast", "50 V", "Hz", "20 us"] {
-            assert_eq!(of_text(text, 1.0), None, "{text}");
-        }
-        assert_eq!(seconds("50 kHz", 1.0), None);
-    }
 
     #[test]
     fn names_are_told_in_other_spellings_and_with_units() {
