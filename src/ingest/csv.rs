@@ -60,9 +60,8 @@ fn of_input(
     clocks.sort_unstable();
     clocks.dedup();
     let values: Vec<_> = plans.iter().map(|plan| (plan.column, plan.time_column)).collect();
-    // Without times only a counter tells that rows are lost.
     let is_value = |column: &usize| values.iter().any(|(own, _)| own == column);
-    let counter = layout.counter().filter(|column| clocks.is_empty() && !is_value(column));
+    let counter = layout.counter().filter(|column| !clocks.contains(column) && !is_value(column));
     let of_clock = clocks.iter().flat_map(|&time| layout.witnesses(time)).map(|(column, _)| column);
     let witnesses: Vec<usize> = of_clock.chain(counter).collect();
     let wanted = Wanted::new(&values, &witnesses);
@@ -73,12 +72,16 @@ fn of_input(
             issues.extend(to_seconds(path, times, wanted.columns[slot], &layout, &plans)?);
         }
     }
-    for time in clocks {
+    let first_clock =
+        clocks.first().map(|&time| (layout.columns[time].header.as_str(), &held[wanted.slot(time)]));
+    for &time in &clocks {
         let name = |spec: usize| cask_file.channels[spec].name.as_str();
         issues.extend(witness::of_columns(path, (time, &held), (&layout, &wanted), (&plans, &name))?);
     }
-    let of_counter =
-        |column: usize| witness::of_counter(&layout.columns[column].header, held[wanted.slot(column)].each());
+    let of_counter = |column: usize| {
+        let counts = held[wanted.slot(column)].each();
+        witness::of_counter(&layout.columns[column].header, counts, first_clock)
+    };
     issues.extend(counter.and_then(of_counter));
     drop_untimed(&mut held, &wanted, &plans);
     let mut uses = vec![0_usize; wanted.columns.len()];

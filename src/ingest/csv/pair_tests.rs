@@ -3,7 +3,7 @@
 use super::tests::{cask_file, read_bytes, told};
 use super::time_tests::{decimal, table};
 use super::*;
-use crate::data::Severity;
+use crate::data::{IssueCode, Severity};
 
 /// Two columns of times in one table, 4000 rows at 10 kHz by the first.
 fn twofold(headers: &str, other: impl Fn(usize) -> String) -> String {
@@ -151,5 +151,37 @@ fn stamps_that_jitter_saw_or_come_late_contradict_nothing() {
             })
             .collect();
         assert_eq!(said(|i| decimal(rising[i], 5, ',')).unwrap(), [""; 0], "{what}");
+    }
+}
+
+#[test]
+fn a_counter_tells_rows_lost_that_the_times_beside_it_hide() {
+    // From row 100 on `lost` rows are missing, of which the times show so many; cut to steps of 50 µs.
+    let gaps = |header: &str, lost: usize, shown: usize, step: usize| {
+        let text = table(&format!("{header};A1;A2"), 2000, ';', |i| {
+            let behind = |rows| if i < 100 { i } else { i + rows };
+            format!("{};{}", behind(lost), cut(5 * behind(shown) / step * step, 1))
+        });
+        let recording =
+            read_bytes(text.as_bytes(), &cask_file(&["A1"])).map_err(|error| told(&error)).unwrap();
+        recording.issues.into_iter().map(|issue| (issue.code, issue.message)).collect::<Vec<_>>()
+    };
+    for (lost, shown, step) in [(1, 0, 5), (20, 0, 5), (20, 10, 5), (200, 150, 5), (12, 12, 100), (3, 0, 100)]
+    {
+        let [(code, message)] = &gaps("Sample;t", lost, shown, step)[..] else {
+            panic!("{lost} {shown} {step}")
+        };
+        assert_eq!(*code, IssueCode::Gap);
+        assert!(message.contains(&format!("{lost} of them are missing")), "{message}");
+        assert!(message.contains("the times in \"t\" do not show that"), "{message}");
+    }
+    for (header, lost, shown, step) in [
+        ("Sample;t", 0, 0, 5),
+        ("Sample;t", 20, 20, 5),
+        ("Sample;t", 1, 1, 5),
+        ("Speed;t", 20, 0, 5),
+        ("n;t", 0, 0, 100),
+    ] {
+        assert_eq!(gaps(header, lost, shown, step), [], "{header} {lost} {shown} {step}");
     }
 }

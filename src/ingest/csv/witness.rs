@@ -102,23 +102,60 @@ pub(super) fn of_columns<'a>(
     Ok(issues)
 }
 
-/// A warning where a column that counts the rows jumps: those between are lost.
-pub(super) fn of_counter(header: &str, counts: &[f64]) -> Option<Issue> {
+/// A warning where a column that counts the rows jumps, and the times beside it, headed so, do not: those between are lost.
+pub(super) fn of_counter(header: &str, counts: &[f64], times: Option<(&str, &Column)>) -> Option<Issue> {
     let steps = || counts.windows(2).map(|pair| pair[1] - pair[0]);
     // One that begins anew, or counts something else, tells nothing.
     let is_counter = steps().all(|step| step >= 1.0 && step.fract().abs() < f64::EPSILON);
-    let jumps: Vec<(usize, f64)> = steps().enumerate().filter(|(_, step)| *step > 1.0).collect();
+    let mut jumps: Vec<(usize, f64)> = steps().enumerate().filter(|(_, step)| *step > 1.0).collect();
+    if !is_counter || jumps.is_empty() || 10 * jumps.len() >= counts.len() {
+        return None;
+    }
+    if let Some((_, times)) = times {
+        jumps.retain(hidden(counts, &times.values()));
+    }
     let &(row, first) = jumps.first()?;
     let lost: f64 = jumps.iter().map(|(_, step)| step - 1.0).sum();
-    (is_counter && 10 * jumps.len() < counts.len()).then(|| {
-        let message = format!(
-            "the column {header:?} counts the rows, and {lost} of them are missing, the first {} behind row {} of the table; the others were \
-             taken as one after another: write time = {header:?} under [recording] of the cask file, which keeps their places",
-            first - 1.0,
-            row + 1
-        );
-        Issue::new(IssueCode::Gap, Severity::Warning, message)
-    })
+    let (others, mend) = match times {
+        None => (
+            "the others were taken as one after another".to_owned(),
+            format!("write time = {header:?} under [recording] of the cask file"),
+        ),
+        Some((name, _)) => (
+            format!("the times in {name:?} do not show that, so that those behind are early"),
+            format!(
+                "write time = {header:?} under [recording] of the cask file and sample_rate_hz in each [[channel]]"
+            ),
+        ),
+    };
+    let message = format!(
+        "the column {header:?} counts the rows, and {lost} of them are missing, the first {} behind row {} of the table; {others}: {mend}, \
+         which keeps their places",
+        first - 1.0,
+        row + 1
+    );
+    Some(Issue::new(IssueCode::Gap, Severity::Warning, message))
+}
+
+/// Whether times hide a jump of the rows' count: they step by fewer intervals, or are so coarse that the rows between them are taken as evenly
+/// spaced.
+#[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
+fn hidden<'a>(counts: &'a [f64], times: &'a [f64]) -> impl Fn(&(usize, f64)) -> bool + 'a {
+    /// In intervals: beyond, the time base finds a gap. And as a part of a long one, for what times are rounded to.
+    const SHORT: f64 = 0.5;
+    const SHORT_PART: f64 = 0.02;
+    let steps = || times.windows(2).map(|pair| pair[1] - pair[0]);
+    let next = counts.windows(2).map(|pair| pair[1] - pair[0] < 2.0).zip(steps());
+    let (count, span) = next
+        .filter(|(is_next, step)| *is_next && step.is_finite())
+        .fold((0_usize, 0.0), |(count, span), (_, step)| (count + 1, span + step));
+    let interval = span / count.max(1) as f64;
+    // As the time base has it.
+    let is_coarse = 10 * steps().filter(|step| *step <= 0.0).count() > times.len();
+    move |&(row, step)| {
+        let told = (times[row + 1] - times[row]) / interval;
+        is_coarse || step - told > SHORT.max(SHORT_PART * step)
+    }
 }
 
 /// How far off the rate of times may be for what they are rounded to, as a part of it: one step over the record.
