@@ -12,6 +12,7 @@ mod preamble;
 mod rows;
 mod stamp;
 mod time_column;
+mod wanted;
 mod witness;
 
 pub(super) use list::list;

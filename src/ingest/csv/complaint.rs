@@ -15,10 +15,16 @@ pub(super) fn ending_issues(ending: &Ending) -> Vec<Issue> {
         .cut_line
         .map(|line| {
             if ending.is_zeros {
-                let message = format!(
-                    "from line {line} on stand zero bytes, as a logger leaves them that reserves its file ahead and is not closed: the rows before \
-                     are whole, what follows was not read"
-                );
+                let message = match ending.lines_behind {
+                    0 => format!(
+                        "from line {line} on stand zero bytes, as a logger leaves them that reserves its file ahead and is not closed: the rows \
+                         before are whole, what follows was not read"
+                    ),
+                    behind => format!(
+                        "line {line} holds zero bytes, as a disk or a copy at fault leaves them: it and the {behind} lines behind it were not \
+                         read; copy the file again, or cut the zero bytes out of a copy, where the times show what is missing"
+                    ),
+                };
                 return Issue::new(IssueCode::Truncated, Severity::Warning, message);
             }
             Issue::new(

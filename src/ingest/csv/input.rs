@@ -114,6 +114,42 @@ fn to_breaks(text: &mut [u8]) {
     text.iter_mut().filter(|byte| **byte == b'\r').for_each(|byte| *byte = b'\n');
 }
 
+/// Where the line that goes on at `at` ends: its line break, a carriage return without one, a zero byte, or the text's end.
+pub(super) fn end_of_line(text: &[u8], at: usize) -> usize {
+    let rest = text.get(at..).unwrap_or_default();
+    // One comparison a byte for all but control characters.
+    let Some(found) = rest.iter().position(|&b| b <= b'\r' && matches!(b, 0 | b'\n' | b'\r')) else {
+        return text.len();
+    };
+    if rest[found] != b'\r' {
+        return at + found;
+    }
+    // Several before a line break are one end.
+    match rest[found..].iter().position(|&b| b != b'\r').map(|more| found + more) {
+        Some(behind) if rest[behind] == b'\n' => at + behind,
+        Some(_) => at + found,
+        None => text.len(),
+    }
+}
+
+/// Line breaks in a text.
+pub(super) fn breaks(text: &[u8]) -> u64 {
+    text.iter().filter(|&&byte| byte == b'\n').count() as u64
+}
+
+/// The same of a text and what follows it.
+pub(super) fn breaks_to_end(text: &[u8], rest: &mut dyn Read) -> std::io::Result<u64> {
+    let mut count = breaks(text);
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        let read = rest.read(&mut buffer)?;
+        if read == 0 {
+            return Ok(count);
+        }
+        count += breaks(&buffer[..read]);
+    }
+}
+
 /// A line as text: UTF-8, else Latin-1.
 pub(super) fn text(line: &[u8]) -> Cow<'_, str> {
     match std::str::from_utf8(line) {

@@ -247,16 +247,21 @@ impl Layout {
 
 /// The whole lines of the head.
 fn lines(input: &Input) -> Vec<Line<'_>> {
-    let mut lines = Vec::new();
-    let mut offset = 0;
-    for line in input.head.split_inclusive(|&b| b == b'\n') {
+    let (mut lines, mut offset) = (Vec::new(), 0);
+    while offset < input.head.len() {
+        // A carriage return may stand behind the line break; zero bytes are no end here.
+        let returns = input.head[offset..].iter().take_while(|&&b| b == b'\r').count();
+        let mut end = input::end_of_line(&input.head, offset + returns);
+        while input.head.get(end) == Some(&0) {
+            end = input::end_of_line(&input.head, end + 1);
+        }
         // Past the head's end the line goes on.
-        if line.ends_with(b"\n") || input.is_whole {
-            let bare = line.strip_suffix(b"\n").unwrap_or(line);
+        if end < input.head.len() || input.is_whole {
+            let bare = &input.head[offset..end];
             let bare = bare.strip_suffix(b"\r").unwrap_or(bare);
             lines.push(Line { offset, text: input::text(bare) });
         }
-        offset += line.len();
+        offset = end + 1;
     }
     lines
 }

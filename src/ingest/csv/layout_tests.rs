@@ -250,6 +250,38 @@ fn zero_bytes_behind_the_rows_are_told_as_such() {
     }
     let recording = read_as(&format!("t\tA1\tA2\n{ROWS}0.5\t\0\0\0"), &["A1"]);
     assert!(recording.issues[0].message.contains("ends in the middle"), "{:?}", recording.issues);
+    // In a row, in a column that is read and in one that is not: rows behind are lost with it.
+    for zeros in ["0.5\t6.5\0\0\0\n", "0.5\t6.5\t-6\0\0\0\n", "0.5\t\0.5\t-6\n", "\0\0\0\n"] {
+        for sources in [&["A1"][..], &["A2"]] {
+            let recording = read_as(&format!("t\tA1\tA2\n{ROWS}{zeros}{ROWS}"), sources);
+            assert_eq!(values(&recording, 0).len(), 5, "{zeros:?}");
+            let [issue] = &recording.issues[..] else { panic!("{:?}", recording.issues) };
+            let says = "line 7 holds zero bytes";
+            assert!(
+                issue.message.contains(says) && issue.message.contains("the 5 lines behind"),
+                "{}",
+                issue.message
+            );
+        }
+    }
+}
+
+#[test]
+fn carriage_returns_alone_amid_line_breaks_end_lines_too() {
+    let (first, rest) = ROWS.split_at(ROWS.match_indices('\n').nth(1).unwrap().0);
+    for text in [
+        format!("t\tA1\tA2\n{first}{}\n", rest.trim_end().replace('\n', "\r")),
+        format!("t\tA1\tA2\n{first}{}", rest.trim_end().replace('\n', "\r")),
+        format!("t\tA1\tA2\n{}{rest}", first.replace('\n', "\r")),
+        format!("t\tA1\tA2\r{}{rest}", first.replace('\n', "\r")),
+        format!("t\tA1\tA2\r\n{first}{}", rest.replace('\n', "\r\r\n")),
+        format!("t\tA1\tA2\n\r{first}{}", rest.replace('\n', "\n\r")),
+    ] {
+        holds_rows(&text);
+        let recording = read_as(&text, &["A1"]);
+        assert_eq!(values(&recording, 0).len(), 5, "{text:?}");
+        assert_eq!(recording.issues, [], "{text:?}");
+    }
 }
 
 #[test]

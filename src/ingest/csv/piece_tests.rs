@@ -57,6 +57,7 @@ fn line() -> impl Strategy<Value = String> {
     prop_oneof![
         400 => row,
         40 => "[0-9]{1,3},(nan)?,\r?\n",
+        40 => "([0-9]{1,3},[0-9],[0-9](,[0-9])?\r{1,2}){1,3}\n?",
         40 => "\"[0-9]{1,3}\", \"[0-9]\" ,\"\"\"?,?\"\n",
         40 => "[ \t]{0,2}\r?\n",
         20 => "[0-9],[0-9]\n",
@@ -119,7 +120,10 @@ fn the_first_fault_in_order_is_told_with_its_line() {
         (format!("{good},2,3\n{good}1,oops,3\n{good}"), "NoTime { line: 52, slot: 0 }"),
         (format!("{good}{long}1,oops,3\n"), "TooLong { line: 52 }"),
         (format!("{good}1,oops,3\n{long}"), "Word { line: 52, slot: 1, cell: \"oops\" }"),
-        (format!("{good}\0\0\n{good}1,oops,3\n"), "Ending { lines: 52, cut_line: Some(52), is_zeros: true }"),
+        (
+            format!("{good}\0\0\n{good}1,oops,3\n"),
+            "Ending { lines: 52, cut_line: Some(52), is_zeros: true, lines_behind: 51 }",
+        ),
     ] {
         let [kept, _] = told(rows.as_bytes(), 0, sizes, &layout);
         assert!(kept.starts_with(expected), "{kept:?} is not {expected:?}");

@@ -1,52 +1,13 @@
 //! Lines of a table to rows of numbers, only the wanted columns, in one pass with bounded memory.
 
 use super::super::{Limits, Progress};
-use super::input::Input;
+use super::input::{Input, breaks, breaks_to_end, end_of_line};
 use super::layout::Layout;
 use super::pieces::{Batch, Cut, Sizes};
+pub(super) use super::wanted::Wanted;
 use crate::ingest::number;
 use rayon::prelude::*;
 use std::ops::Range;
-
-/// Which columns to read.
-pub(super) struct Wanted {
-    /// Their indices, rising; a slot is a place in this list.
-    pub columns: Vec<usize>,
-    /// For each slot, whether it holds times.
-    pub is_time: Vec<bool>,
-    /// For each slot, whether it only bears times out: its words are no fault.
-    pub is_witness: Vec<bool>,
-    /// For each slot, that of the times of its values.
-    clocks: Vec<Option<usize>>,
-}
-
-impl Wanted {
-    /// The columns of values, each with that of its times, and those that bear times out.
-    pub(super) fn new(values: &[(usize, Option<usize>)], witnesses: &[usize]) -> Self {
-        let times: Vec<usize> = values.iter().filter_map(|(_, time)| *time).collect();
-        let own = values.iter().map(|(column, _)| *column);
-        let mut columns: Vec<usize> = own.chain(times.iter().chain(witnesses).copied()).collect();
-        columns.sort_unstable();
-        columns.dedup();
-        let is_time: Vec<bool> = columns.iter().map(|column| times.contains(column)).collect();
-        let is_value = |column: &usize| values.iter().any(|(own, _)| own == column);
-        let is_witness = columns.iter().map(|c| !times.contains(c) && !is_value(c)).collect();
-        let clock = |column: &usize| values.iter().find(|(own, _)| own == column).and_then(|(_, time)| *time);
-        let clocks = columns.iter().map(|column| columns.binary_search(&clock(column)?).ok()).collect();
-        Self { columns, is_time, is_witness, clocks }
-    }
-
-    /// The slot of a wanted column.
-    pub(super) fn slot(&self, column: usize) -> usize {
-        self.columns.binary_search(&column).unwrap_or(0)
-    }
-
-    /// Whether a row holds a value for which these times hold none; a pair of columns may end before others.
-    fn lacks_time(&self, time_slot: usize, values: &[f64]) -> bool {
-        let mut timed = self.clocks.iter().zip(values).filter(|(clock, _)| **clock == Some(time_slot));
-        values[time_slot].is_nan() && timed.any(|(_, value)| !value.is_nan())
-    }
-}
 
 /// What takes rows.
 pub(super) trait Rows {
@@ -75,8 +36,10 @@ pub(super) struct Ending {
     pub lines: u64,
     /// The line that was cut off and dropped.
     pub cut_line: Option<u64>,
-    /// Whether zero bytes stand there after whole lines.
+    /// Whether zero bytes stand there, after whole lines or in that one.
     pub is_zeros: bool,
+    /// Lines behind the zero bytes, which are not read.
+    pub lines_behind: u64,
 }
 
 /// Why rows could not be read.
@@ -134,8 +97,13 @@ pub(super) fn read_by(
         } else {
             parts.clear();
             for piece in &cut.pieces {
-                if !table.lines(&batch.text[piece.clone()], sink)? {
-                    return Ok(Ending { lines: table.line, cut_line: Some(table.line), is_zeros: true });
+                if let Some(at) = table.lines(&batch.text[piece.clone()], sink)? {
+                    filled.map_err(RowError::Io)?;
+                    let more = breaks_to_end(&next.text, rest).map_err(RowError::Io)?;
+                    let lines_behind =
+                        breaks(&batch.text[piece.start + at..cut.end]).saturating_sub(1) + more;
+                    let cut_line = Some(table.line);
+                    return Ok(Ending { lines: table.line, cut_line, is_zeros: true, lines_behind });
                 }
                 sizes.check(sink)?;
             }
@@ -148,8 +116,14 @@ pub(super) fn read_by(
         progress((done as f64 / input.bytes.max(1) as f64).min(1.0));
         if batch.is_last {
             let last = &batch.text[cut.end..];
-            let cut_line = table.last_line(last, layout, sink)?;
-            return Ok(Ending { lines: table.line, cut_line, is_zeros: last.first() == Some(&0) });
+            // Lines that end in a carriage return alone; what stands behind the last is the last.
+            let before = &last[..last.len().saturating_sub(1)];
+            let whole = before.iter().rposition(|&byte| byte == b'\r').map_or(0, |at| at + 1);
+            let is_whole = table.lines(&last[..whole], sink)?.is_none();
+            let last = &last[whole..];
+            let cut_line = if is_whole { table.last_line(last, layout, sink)? } else { Some(table.line) };
+            let is_zeros = !is_whole || last.first() == Some(&0);
+            return Ok(Ending { lines: table.line, cut_line, is_zeros, lines_behind: 0 });
         }
         filled.map_err(RowError::Io)?;
         std::mem::swap(&mut batch, &mut next);
@@ -167,7 +141,7 @@ fn side_by_side(
 ) -> Option<u64> {
     let lines = pieces.par_iter().zip(parts).map(|(piece, part)| {
         let mut table = Table::of(layout, wanted, 0);
-        matches!(table.lines(&text[piece.clone()], part), Ok(true)).then_some(table.line)
+        matches!(table.lines(&text[piece.clone()], part), Ok(None)).then_some(table.line)
     });
     lines.sum()
 }
@@ -206,8 +180,8 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Whole lines into `sink`; false where a block of zero bytes ends the table.
-    fn lines(&mut self, text: &[u8], sink: &mut impl Rows) -> Result<bool, RowError> {
+    /// Whole lines into `sink`; where the line begins whose zero bytes end the table.
+    fn lines(&mut self, text: &[u8], sink: &mut impl Rows) -> Result<Option<usize>, RowError> {
         let mut at = 0;
         while at < text.len() {
             if let Some(next) = self.plain_line(text, at) {
@@ -218,10 +192,10 @@ impl<'a> Table<'a> {
             }
             match self.line(text, at, sink)? {
                 Some(next) => at = next,
-                None => return Ok(false),
+                None => return Ok(Some(at)),
             }
         }
-        Ok(true)
+        Ok(None)
     }
 
     /// The values of a line that begins with the wanted columns, all of them numbers with nothing around them; where the next line begins.
@@ -243,7 +217,11 @@ impl<'a> Table<'a> {
                 return match byte {
                     b'\n' => Some(at),
                     b'\r' => (text.get(at) == Some(&b'\n')).then_some(at + 1),
-                    _ => (byte == self.delimiter).then(|| skip(text, at, |b| b != b'\n') + 1),
+                    _ if byte == self.delimiter => {
+                        let end = end_of_line(text, at);
+                        (text.get(end) != Some(&0)).then_some(end + 1)
+                    }
+                    _ => None,
                 };
             }
         }
@@ -253,6 +231,10 @@ impl<'a> Table<'a> {
     /// The line at `at` into `sink`; where the next begins, `None` where a block of zero bytes ends the table.
     fn line(&mut self, text: &[u8], mut at: usize, sink: &mut impl Rows) -> Result<Option<usize>, RowError> {
         self.line += 1;
+        // Some write the carriage return behind the line break.
+        while text.get(at) == Some(&b'\r') && text.get(at + 1) != Some(&b'\n') {
+            at += 1;
+        }
         if self.is_runs {
             at = skip(text, at, |b| b == b' ' || b == b'\t');
         }
@@ -275,7 +257,10 @@ impl<'a> Table<'a> {
             }
             at = self.cell(text, at, slot, sink)?;
         }
-        let end = skip(text, at, |b| b != b'\n');
+        let end = end_of_line(text, at);
+        if text.get(end) == Some(&0) {
+            return Ok(None);
+        }
         self.finish(text.get(from..end).unwrap_or_default(), sink)?;
         Ok(Some(end + 1))
     }
@@ -310,7 +295,8 @@ impl<'a> Table<'a> {
         let end = self.end_of_cell(text, at);
         let cell = text[at..end].trim_ascii();
         let cell = cell.strip_prefix(b"\"").and_then(|c| c.strip_suffix(b"\"")).unwrap_or(cell).trim_ascii();
-        let value = if number::is_missing(cell) {
+        // A number before zero bytes may have lost its last digits; its row is not taken.
+        let value = if number::is_missing(cell) || text.get(end) == Some(&0) {
             Some(f64::NAN)
         } else {
             number::of_cell(cell, self.decimal)
@@ -374,7 +360,10 @@ impl<'a> Table<'a> {
             }
         }
         while let Some(&byte) = text.get(at) {
-            if byte == b'\n' || self.is_delimiter(Some(&byte)) {
+            if matches!(byte, b'\n' | 0) || self.is_delimiter(Some(&byte)) {
+                break;
+            }
+            if byte == b'\r' && end_of_line(text, at) == at {
                 break;
             }
             at += 1;

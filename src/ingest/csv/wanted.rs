@@ -1,0 +1,41 @@
+//! Channels with their times and witnesses to the columns that are read.
+
+/// Which columns to read.
+pub(super) struct Wanted {
+    /// Their indices, rising; a slot is a place in this list.
+    pub columns: Vec<usize>,
+    /// For each slot, whether it holds times.
+    pub is_time: Vec<bool>,
+    /// For each slot, whether it only bears times out: its words are no fault.
+    pub is_witness: Vec<bool>,
+    /// For each slot, that of the times of its values.
+    clocks: Vec<Option<usize>>,
+}
+
+impl Wanted {
+    /// The columns of values, each with that of its times, and those that bear times out.
+    pub(super) fn new(values: &[(usize, Option<usize>)], witnesses: &[usize]) -> Self {
+        let times: Vec<usize> = values.iter().filter_map(|(_, time)| *time).collect();
+        let own = values.iter().map(|(column, _)| *column);
+        let mut columns: Vec<usize> = own.chain(times.iter().chain(witnesses).copied()).collect();
+        columns.sort_unstable();
+        columns.dedup();
+        let is_time: Vec<bool> = columns.iter().map(|column| times.contains(column)).collect();
+        let is_value = |column: &usize| values.iter().any(|(own, _)| own == column);
+        let is_witness = columns.iter().map(|c| !times.contains(c) && !is_value(c)).collect();
+        let clock = |column: &usize| values.iter().find(|(own, _)| own == column).and_then(|(_, time)| *time);
+        let clocks = columns.iter().map(|column| columns.binary_search(&clock(column)?).ok()).collect();
+        Self { columns, is_time, is_witness, clocks }
+    }
+
+    /// The slot of a wanted column.
+    pub(super) fn slot(&self, column: usize) -> usize {
+        self.columns.binary_search(&column).unwrap_or(0)
+    }
+
+    /// Whether a row holds a value for which these times hold none; a pair of columns may end before others.
+    pub(super) fn lacks_time(&self, time_slot: usize, values: &[f64]) -> bool {
+        let mut timed = self.clocks.iter().zip(values).filter(|(clock, _)| **clock == Some(time_slot));
+        values[time_slot].is_nan() && timed.any(|(_, value)| !value.is_nan())
+    }
+}
