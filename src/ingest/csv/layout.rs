@@ -167,6 +167,11 @@ impl Layout {
         Some((0..column).rev().find(is_alike).unwrap_or(found))
     }
 
+    /// Whether a column is certain to hold times.
+    pub(super) fn holds_times(&self, column: usize) -> bool {
+        self.sure_times.contains(&column)
+    }
+
     /// The other columns of times, which have to bear out those of column `time`; each with whether other columns stand between.
     ///
     /// One of the same header with columns between is the clock of those.

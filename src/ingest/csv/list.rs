@@ -138,9 +138,12 @@ pub(in super::super) fn list(
     let (bytes, encoding) = (input.bytes, input.encoding);
     let layout = Layout::of(&input).ok_or_else(|| no_table(path))?;
     let time_column = layout.time_column;
-    let values: Vec<(usize, Option<usize>)> = (0..layout.columns.len())
-        .map(|column| (column, layout.time_of(column).filter(|time| Some(*time) == time_column)))
-        .collect();
+    // Other columns of times are none's: a pair of columns may end before others.
+    let is_timed = |column: usize| !layout.holds_times(column);
+    let time_of =
+        |column: usize| layout.time_of(column).filter(|time| Some(*time) == time_column && is_timed(column));
+    let values: Vec<(usize, Option<usize>)> =
+        (0..layout.columns.len()).map(|column| (column, time_of(column))).collect();
     let wanted = Wanted::new(&values, &[]);
     let mut survey = Survey::of(time_column, layout.columns.len());
     let ending = rows::read(input, &layout, &wanted, &mut survey, (limits, progress))

@@ -144,6 +144,18 @@ fn each_pair_of_times_and_samples_ends_for_itself() {
         }
         assert!(recording.issues.is_empty(), "{:?}", recording.issues);
     }
+    // Listed too, whichever is shorter.
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("r.csv");
+    let swapped = text.lines().map(|line| {
+        let cells: Vec<&str> = line.split(';').collect();
+        format!("{};{};{};{}\n", cells[2], cells[3], cells[0], cells[1])
+    });
+    for text in [text.clone(), swapped.collect()] {
+        std::fs::write(&path, text).unwrap();
+        let listing = list(&path, Limits::default(), &|_| {}).unwrap_or_else(|e| panic!("{}", told(&e)));
+        assert_eq!(listing.channels.len(), 3);
+    }
     // A value without its time is at fault as ever.
     let text = text.replace("0,350;350;;", "0,350;350;;7");
     let message = told(&read_bytes(text.as_bytes(), &cask_file(&["A1", "A2"])).unwrap_err());
