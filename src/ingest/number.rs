@@ -162,12 +162,13 @@ fn by_library(text: &[u8], decimal: u8) -> Option<f64> {
 
 /// A whole cell as a number.
 pub(super) fn of_cell(cell: &[u8], decimal: u8) -> Option<f64> {
-    /// U+2212, the minus of typesetters and of spreadsheets in some languages.
-    const MINUS: &[u8] = "−".as_bytes();
+    /// U+2212, the minus of typesetters and of spreadsheets in some languages; U+2013, the dash that text programs make of a minus, and the
+    /// same in Windows-1252.
+    const MINUS: [&[u8]; 3] = ["−".as_bytes(), "–".as_bytes(), b"\x96"];
     let cell = cell.trim_ascii();
     let whole =
         |cell: &[u8]| leading(cell, decimal).filter(|&(_, used)| used == cell.len()).map(|(value, _)| value);
-    match cell.strip_prefix(MINUS) {
+    match MINUS.iter().find_map(|minus| cell.strip_prefix(*minus)) {
         Some(magnitude) if magnitude.first().is_some_and(|byte| !matches!(byte, b'-' | b'+')) => {
             whole(magnitude).map(|value| -value)
         }
@@ -178,7 +179,7 @@ pub(super) fn of_cell(cell: &[u8], decimal: u8) -> Option<f64> {
 /// Whether a cell says that there is no value.
 pub(super) fn is_missing(cell: &[u8]) -> bool {
     /// Of spreadsheets, of C libraries, and of loggers whose converter ran over its range.
-    const WORDS: [&str; 43] = [
+    const WORDS: [&str; 52] = [
         "nan",
         "-nan",
         "nan(ind)",
@@ -197,6 +198,15 @@ pub(super) fn is_missing(cell: &[u8]) -> bool {
         "n/a",
         "#n/a",
         "#nv",
+        "#value!",
+        "#wert!",
+        "#div/0!",
+        "#num!",
+        "#zahl!",
+        "#ref!",
+        "#bezug!",
+        "#name?",
+        "#null!",
         "novalue",
         "no value",
         "1.#qnan",
@@ -308,12 +318,28 @@ mod tests {
 
     #[test]
     fn words_are_no_numbers() {
-        for (text, value) in [("−1.5", -1.5), (" −2e3 ", -2e3), ("−.5", -0.5)] {
+        for (text, value) in [("−1.5", -1.5), (" −2e3 ", -2e3), ("−.5", -0.5), ("–1.5", -1.5)] {
             assert_eq!(of_cell(text.as_bytes(), b'.'), Some(value), "{text}");
         }
-        for text in
-            ["−", "−-1", "-−1", "", "-", "e5", ".", "1.2.3", "1,5", "12a", "0x10", "1e", "--1", "20.11.2026"]
-        {
+        assert_eq!(of_cell(b"\x961,5", b','), Some(-1.5));
+        for text in [
+            "−",
+            "–",
+            "−–1",
+            "−-1",
+            "-−1",
+            "",
+            "-",
+            "e5",
+            ".",
+            "1.2.3",
+            "1,5",
+            "12a",
+            "0x10",
+            "1e",
+            "--1",
+            "20.11.2026",
+        ] {
             assert_eq!(of_cell(text.as_bytes(), b'.'), None, "{text}");
         }
         for cell in ["1.234,5", "-1,234.5", "1,234,567", "12'345.67", "1 234", "1.234.567,0", "1\u{a0}234,5"]

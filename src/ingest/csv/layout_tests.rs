@@ -167,6 +167,9 @@ fn a_channel_keeps_to_the_times_on_its_left() {
 fn a_cell_over_the_range_or_without_value_is_missing() {
     for word in [
         "#NV",
+        "#VALUE!",
+        "#DIV/0!",
+        "#WERT!",
         "OL",
         "-OL",
         "OVER",

@@ -188,13 +188,14 @@ impl Stamp {
     }
 }
 
-/// "7:04:05 PM" to "7:04:05" and the hours of noon; without AM or PM as it is.
+/// "7:04:05 PM" or "7:04:05 p.m." to "7:04:05" and the hours of noon; without either as it is.
 fn halved(text: &str) -> (&str, Option<i64>) {
     let half = |suffix: &str, hours: i64| {
         let (clock, end) = text.split_at_checked(text.len().checked_sub(suffix.len())?)?;
         end.eq_ignore_ascii_case(suffix).then(|| (clock.trim_end(), Some(hours)))
     };
-    half("AM", 0).or_else(|| half("PM", 12)).unwrap_or((text, None))
+    let halves = [("AM", 0), ("PM", 12), ("A.M.", 0), ("P.M.", 12), ("A. M.", 0), ("P. M.", 12)];
+    halves.into_iter().find_map(|(suffix, hours)| half(suffix, hours)).unwrap_or((text, None))
 }
 
 /// The hours of a day: 12 AM is midnight, 12 PM noon.
@@ -284,9 +285,9 @@ mod tests {
                 "01.01.2027 00:00:01",
             ],
             [
-                "11/12/26 11:59:59.5 PM",
+                "11/12/26 11:59:59.5 p. m.",
                 "11/12/26 23:59:59.75",
-                "11/13/26 12:00:00.25 am",
+                "11/13/26 12:00:00.25 a.m.",
                 "11/12/26 23:59:59.875",
                 "11/13/26 00:00:01",
             ],
@@ -349,6 +350,8 @@ mod tests {
             "7:04:05,123456789123",
             "100:00:00.0",
             "75:12.3",
+            "7:04:05 PM",
+            "7:04:05am",
             "20.11.2026, 12:00:00",
             "20-11-2026 1:02:03",
             "2026-11-20T12:00Z",
