@@ -150,15 +150,17 @@ impl Changes {
         };
         let mut largest: Option<(usize, f64)> = None;
         for i in (0..steps_s.len()).filter(|&i| steps_s[i].abs() > jitter_s) {
-            let count = MOST.min(i + 1).min(apart_s.len() - 1 - i);
+            // The step itself makes a change, within what it steps by.
+            let behind = i + 2;
+            let count = MOST.min(i + 1).min(apart_s.len().saturating_sub(behind));
             if count < LEAST {
                 continue;
             }
             let Some((before_s, drift_s)) = level(i + 1 - count..i + 1) else { continue };
-            let Some((behind_s, further_s)) = level(i + 1..i + 1 + count) else { continue };
+            let Some((behind_s, further_s)) = level(behind..behind + count) else { continue };
             let by_s = (behind_s - before_s).abs();
             // Across a tick the rate may be off as within the levels.
-            let drift_s = drift_s + further_s + RATE_TOLERANCE * (self.rows[i + 1].1 - self.rows[i].1);
+            let drift_s = drift_s + further_s + RATE_TOLERANCE * (self.rows[behind].1 - self.rows[i].1);
             if by_s > 2.0 * jitter_s + drift_s && largest.is_none_or(|(_, held_s)| by_s > held_s) {
                 largest = Some((self.rows[i + 1].0, by_s));
             }
