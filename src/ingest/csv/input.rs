@@ -134,7 +134,7 @@ pub(super) fn end_of_line(text: &[u8], at: usize) -> usize {
 
 /// Line breaks in a text.
 pub(super) fn breaks(text: &[u8]) -> u64 {
-    text.iter().filter(|&&byte| byte == b'\n').count() as u64
+    text.iter().map(|&byte| u64::from(byte == b'\n')).sum()
 }
 
 /// The same of a text and what follows it.
