@@ -6,7 +6,7 @@ use super::limits::Bounds;
 use super::output::{Folder, JsonTarget, print};
 use super::progress::with_progress;
 use clap::{Args, ValueEnum};
-use dropcheck::data::{CaskFile, DropResult, Setting};
+use dropcheck::data::{CaskFile, DropResult, RecordingFormat, Setting};
 use dropcheck::{ingest, report};
 use std::path::PathBuf;
 
@@ -103,7 +103,12 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     arguments.switched_off.in_cask_file(&mut cask_file);
     let limits = arguments.bounds.limits();
     let recording = with_progress("reading", |progress| {
-        ingest::read_within(&arguments.recording, &cask_file, limits, progress)
+        let read = || ingest::read_within(&arguments.recording, &cask_file, limits, progress);
+        match ingest::format(&arguments.recording)? {
+            // Its chunks are taken in waves, which end in what one thread does alone; the other formats keep all threads at work.
+            RecordingFormat::Mcap => awake(read),
+            RecordingFormat::Hdf5 | RecordingFormat::Csv => read(),
+        }
     })?;
     keep_freed_memory();
     let mut analysis = awake(|| dropcheck::analyze(&recording, &cask_file));

@@ -63,6 +63,14 @@ pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
     Ok(cask_file::parse(path)?)
 }
 
+/// The format of the recording at `path`, told by its content.
+///
+/// # Errors
+/// [`IngestError`] where it is none that can be read.
+pub fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
+    detect::format(path)
+}
+
 /// Reads the channels that `cask_file` names from the recording at `path`, its format told by its content.
 ///
 /// # Errors

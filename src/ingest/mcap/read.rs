@@ -10,6 +10,7 @@ use super::{complaint, json};
 use crate::data::{CaskFile, ChannelSpec, Issue, IssueCode, Severity};
 use crate::ingest::error::IngestError;
 use crate::ingest::{Limits, Progress, RawChannel, RawRecording};
+use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -154,12 +155,13 @@ impl Sink for Reading<'_> {
         if part.len() != self.wanted.len() || !self.wanted.iter().zip(&part).all(fits) {
             return false;
         }
-        for (own, others) in self.wanted.iter_mut().zip(&mut part) {
+        // Most of the time the system hands out the memory, a page after the other.
+        self.wanted.par_iter_mut().zip(&mut part).for_each(|(own, others)| {
             own.column.append(&mut others.column);
             if own.leaves.is_empty() {
                 own.leaves.clone_from(&others.leaves);
             }
-        }
+        });
         self.spare.get_mut().unwrap_or_else(PoisonError::into_inner).push((part, slots));
         true
     }
