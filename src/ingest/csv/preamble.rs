@@ -76,6 +76,10 @@ impl Preamble {
         for line in above {
             let Some((key, values)) = entry(&line.text, delimiter) else { continue };
             let (name, unit) = header::name_and_unit(&key);
+            // A full scale, a dead time.
+            if ["FS", "DT"].contains(&name) {
+                continue;
+            }
             let name = name.to_lowercase().replace('_', " ");
             let (name, unit) =
                 name.strip_suffix(" hz").map_or((name.as_str(), unit), |name| (name, Some("Hz")));
@@ -284,6 +288,8 @@ mod tests {
             "dt;0,05",
             "dt;50",
             "Heart rate;70",
+            "FS;2000",
+            "DT;0,4",
             "dt",
             "fs=",
         ] {
