@@ -363,8 +363,9 @@ impl<'a> Table<'a> {
             if matches!(byte, b'\n' | 0) || self.is_delimiter(Some(&byte)) {
                 break;
             }
-            if byte == b'\r' && end_of_line(text, at) == at {
-                break;
+            if byte == b'\r' {
+                // At once past a run of them, which would be looked through again from each.
+                return end_of_line(text, at);
             }
             at += 1;
         }

@@ -223,3 +223,14 @@ fn a_table_is_listed() {
     assert_eq!((a1.gaps, a1.duration_s), (Some(1), Some(0.005)));
     assert!(listing.channels[1].unreadable.is_some() && listing.channels[2].unreadable.is_some());
 }
+
+#[test]
+fn a_long_run_of_carriage_returns_is_passed_over_once() {
+    // Looked through again from each of them it would take minutes.
+    let rows = "1.5;2.25\n".repeat(3000);
+    let text = format!("A1;A2\n{rows}1.5;x{}\n", "\r".repeat(900_000));
+    let mut cask = cask_file(&["A1", "A2"]);
+    cask.channels.iter_mut().for_each(|spec| spec.sample_rate_hz = Some(1e4));
+    let error = read_bytes(text.as_bytes(), &cask).unwrap_err();
+    assert!(told(&error).contains("line 3002"), "{}", told(&error));
+}
