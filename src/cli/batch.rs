@@ -87,10 +87,6 @@ fn analysed(
 ) -> miette::Result<CampaignRow> {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let limits = arguments.bounds.limits();
-    if folder.is_some() {
-        // Its curves are written as HDF5 too.
-        ingest::require_hdf5(path)?;
-    }
     let recording = with_progress(&name, |progress| ingest::read_within(path, cask_file, limits, progress))?;
     let mut analysis = dropcheck::analyze(&recording, cask_file);
     arguments.switched_off.in_settings(&mut analysis.result);

@@ -1,30 +1,78 @@
 //! HDF5 datasets and columns to the channels that a cask file names, with their attributes and their own times.
 
+mod answer;
 mod attributes;
 mod clocks;
 mod dataset;
 mod fault;
 mod find;
+mod library;
 mod list;
 mod packed;
 mod rate;
-mod record;
-mod watch;
+mod room;
+mod types;
+mod wall;
 mod witness;
 
 pub(super) use list::list;
-pub(super) use watch::require_library;
+pub(super) use room::use_program;
 
 use super::error::{self, IngestError};
 use super::time_base::{self, Uniform};
 use super::{Limits, Progress, RawChannel, RawRecording};
 use crate::data::{CaskFile, ChannelSpec, Samples, Source};
+use answer::{Dataset, Filter, decoded};
 use attributes::Attributes;
 use clocks::Clocks;
 use dataset::Column;
-use hdf5_metno::{Dataset, File};
+use room::File;
+#[cfg(unix)]
+use std::ffi::OsString;
+use std::io::{BufWriter, stdin, stdout};
 use std::path::Path;
-use watch::Signs;
+use std::process::ExitCode;
+use std::rc::Rc;
+
+/// Where this process was started to take an HDF5 file apart: does so until nobody asks any more. Else `program` is noted as the one to
+/// be started for it.
+pub(super) fn serve(program: &Path) -> Option<ExitCode> {
+    let mut words = std::env::args_os().skip(1);
+    if words.next().is_none_or(|word| word != room::WORD) {
+        #[cfg(unix)]
+        begin_without_variables(program);
+        use_program(program);
+        return None;
+    }
+    let path = words.next()?;
+    let path = Path::new(&path);
+    let mut wall = wall::Wall::around(path);
+    let mut grant = |bytes, held_bytes| wall.grant(bytes, held_bytes);
+    let answered = library::answer(path, &mut stdin().lock(), &mut BufWriter::new(stdout()), &mut grant);
+    Some(if answered.is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Starts the program anew where variables are set by which the C library, which writes the curves of a report in this process, would
+/// load code or take another driver: `HDF5_PLUGIN_PATH`, `HDF5_VOL_CONNECTOR`, `HDF5_DRIVER` and the like.
+#[cfg(unix)]
+fn begin_without_variables(program: &Path) {
+    use std::os::unix::process::CommandExt;
+    let is_heeded = |(name, value): &(OsString, OsString)| {
+        name.as_encoded_bytes().starts_with(b"HDF5_")
+            && (name != room::NO_PLUGINS.0 || value != room::NO_PLUGINS.1)
+    };
+    let mut heeded = std::env::vars_os().filter(is_heeded).peekable();
+    if heeded.peek().is_some() {
+        let mut words = std::env::args_os();
+        let mut command = std::process::Command::new(program);
+        command.arg0(words.next().unwrap_or_default()).args(words);
+        for (name, _) in heeded {
+            command.env_remove(name);
+        }
+        // It does not come back but where it cannot be started; then all goes on with the variables.
+        let _ = command.env(room::NO_PLUGINS.0, room::NO_PLUGINS.1).exec();
+    }
+}
 
 /// The channels of `cask_file` from the HDF5 file at `path`.
 ///
@@ -36,33 +84,39 @@ pub(super) fn read(
     limits: Limits,
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
-    let (file, named) = (path.to_owned(), cask_file.clone());
-    watch::watched(path, progress, move |signs| read_channels(&file, &named, limits, signs))
-}
-
-fn read_channels(
-    path: &Path,
-    cask_file: &CaskFile,
-    limits: Limits,
-    signs: &Signs,
-) -> Result<RawRecording, IngestError> {
-    let file = open(path)?;
-    let mut room = Room { path, limits, signs, held_bytes: 0, clocks: Clocks::default() };
+    let file = File::open(path, limits, wanted(cask_file))?;
+    let mut room = Room { file: &file, held_bytes: 0, clocks: Clocks::default() };
     let count = cask_file.channels.len().max(1);
     let mut channels = Vec::with_capacity(count);
     for spec in 0..cask_file.channels.len() {
-        channels.push(read_channel(&mut room, &file, spec, cask_file)?);
+        let channel = read_channel(&mut room, spec, cask_file);
+        // A library that broke off gives no answers, which is not what is wrong with the channel.
+        file.whole()?;
+        channels.push(channel?);
         #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
-        signs.done((spec + 1) as f64 / count as f64);
+        progress((spec + 1) as f64 / count as f64);
     }
     Ok(RawRecording { channels, zero_unix_ns: None, issues: Vec::new() })
 }
 
+/// Where the sources of a cask file may stand, to ask for all of them at once.
+fn wanted(cask_file: &CaskFile) -> Vec<String> {
+    let sources = cask_file.channels.iter().filter_map(|channel| match &channel.source {
+        Source::Path(source) => Some(source),
+        Source::TopicField { .. } => None,
+    });
+    let times = cask_file.channels.iter().filter_map(|channel| channel.time.as_ref());
+    let all = sources.chain(times).chain(&cask_file.time);
+    let mut wanted: Vec<String> =
+        all.flat_map(|source| find::places(source)).map(|(path, ..)| path).collect();
+    wanted.sort();
+    wanted.dedup();
+    wanted
+}
+
 /// What of the memory is taken.
 struct Room<'a> {
-    path: &'a Path,
-    limits: Limits,
-    signs: &'a Signs,
+    file: &'a Rc<File>,
     held_bytes: u64,
     clocks: Clocks,
 }
@@ -70,20 +124,16 @@ struct Room<'a> {
 impl Room<'_> {
     /// Takes room for a column before it is read.
     fn take(&mut self, column: &Column) -> Result<(), IngestError> {
-        let (part_bytes, samples_bytes) = (self.limits.part_bytes(), self.limits.samples_bytes());
+        let File { limits, path, .. } = &**self.file;
+        let (part_bytes, samples_bytes) = (limits.part_bytes(), limits.samples_bytes());
         self.held_bytes = self.held_bytes.saturating_add(column.held_bytes());
         if column.part_bytes() > part_bytes {
             let what = format!("a block of {} takes", column.source());
-            return Err(self.limits.refusal(self.path, &what, part_bytes));
+            return Err(limits.refusal(path, &what, part_bytes));
         }
         if self.held_bytes > samples_bytes {
-            return Err(self.limits.refusal(
-                self.path,
-                "the samples of the channels read take",
-                samples_bytes,
-            ));
+            return Err(limits.refusal(path, "the samples of the channels read take", samples_bytes));
         }
-        self.signs.alive(column.held_bytes().saturating_mul(column.columns as u64));
         Ok(())
     }
 
@@ -96,14 +146,8 @@ impl Room<'_> {
     }
 }
 
-fn read_channel(
-    room: &mut Room,
-    file: &File,
-    index: usize,
-    cask_file: &CaskFile,
-) -> Result<RawChannel, IngestError> {
-    let path = room.path;
-    room.signs.alive(0);
+fn read_channel(room: &mut Room, index: usize, cask_file: &CaskFile) -> Result<RawChannel, IngestError> {
+    let path = &room.file.path;
     let spec = &cask_file.channels[index];
     let wrong = |problem: String, mend: String| error::source(path, &spec.name, problem, mend);
     let Source::Path(source) = &spec.source else {
@@ -112,18 +156,18 @@ fn read_channel(
             "write the dataset's path: source = \"/daq/a1\", or \"/daq/accel[2]\" for a column".into(),
         ));
     };
-    let column = locate(room, file, spec, source)?;
+    let column = locate(room.file, spec, source)?;
     room.take(&column)?;
-    let mut attributes = Attributes::of(file, &column);
+    let mut attributes = Attributes::of(&column);
     if let Some(problem) = &attributes.unclear {
         let mend = "correct the attribute in a copy (where two contradict each other, delete one), or write the channel with its scale as a dataset of numbers";
         return Err(wrong(format!("{}: {problem}", column.source()), mend.into()));
     }
     let samples = column.samples().map_err(|fault| wrong(fault.problem, fault.mend))?;
     let samples = attributes.scaled(samples);
-    let times = time_columns(room, file, spec, cask_file.time.as_deref(), &column)?;
+    let times = time_columns(room, spec, cask_file.time.as_deref(), &column)?;
     times.first().map_or(Ok(()), |time| room.take(time))?;
-    let why_none = if times.is_empty() { clocks::why_none(file, &column) } else { None };
+    let why_none = if times.is_empty() { clocks::why_none(room.file, &column) } else { None };
     let is_settled = spec.sample_rate_hz.is_some() || spec.time.is_some() || cask_file.time.is_some();
     let may_read = |other: &Column| room.has_for_a_while(other);
     let is_rate_decided = spec.sample_rate_hz.is_some() || !times.is_empty();
@@ -138,37 +182,29 @@ fn read_channel(
     Ok(RawChannel { spec: index, uniform, unit: attributes.unit })
 }
 
-/// The file, with the C library's own printing of errors switched off.
-fn open(path: &Path) -> Result<File, IngestError> {
-    hdf5_metno::silence_errors(true);
-    File::open(path).map_err(|source| fault::of_file(path, &source))
-}
-
 /// The dataset or column that a cask file names.
-fn locate(room: &Room, file: &File, spec: &ChannelSpec, source: &str) -> Result<Column, IngestError> {
-    let path = room.path;
+fn locate(file: &Rc<File>, spec: &ChannelSpec, source: &str) -> Result<Column, IngestError> {
     find::find(file, source).map_err(|missing| match missing {
         find::Missing::Nowhere => error::source(
-            path,
+            &file.path,
             &spec.name,
             format!("there is no dataset {source}"),
-            error::near_names(path, source, "dataset", &list::sources(file, room.signs)),
+            error::near_names(&file.path, source, "dataset", &list::sources(file)),
         ),
-        find::Missing::Because(fault) => error::source(path, &spec.name, fault.problem, fault.mend),
+        find::Missing::Because(fault) => error::source(&file.path, &spec.name, fault.problem, fault.mend),
     })
 }
 
 /// The times: as the cask file names them, else siblings with a usual name and as many values; behind the ones to take, all others.
 fn time_columns(
     room: &mut Room,
-    file: &File,
     spec: &ChannelSpec,
     time: Option<&str>,
     column: &Column,
 ) -> Result<Vec<Column>, IngestError> {
-    let mut beside = room.clocks.of(file, column);
+    let mut beside = room.clocks.of(room.file, column);
     if let Some(name) = spec.time.as_deref().or(time) {
-        let named = named_times(room, file, spec, name, column)?;
+        let named = named_times(room.file, spec, name, column)?;
         beside.retain(|other| other.source() != named.source());
         beside.insert(0, named);
     }
@@ -176,8 +212,7 @@ fn time_columns(
 }
 
 fn named_times(
-    room: &Room,
-    file: &File,
+    file: &Rc<File>,
     spec: &ChannelSpec,
     name: &str,
     column: &Column,
@@ -190,7 +225,7 @@ fn named_times(
     {
         return Ok(found);
     }
-    locate(room, file, spec, name)
+    locate(file, spec, name)
 }
 
 fn on_base(
@@ -240,18 +275,28 @@ fn on_base(
 
 /// How a dataset is stored, for people: type, shape, filters.
 fn storage(dataset: &Dataset) -> String {
-    let kind = dataset.dtype().map_or_else(|_| "unknown type".to_owned(), |dtype| dataset::type_name(&dtype));
-    if dataset.space().is_ok_and(|space| space.is_null()) {
-        return format!("{kind}, no data");
-    }
-    let shape: Vec<String> = dataset.shape().iter().map(ToString::to_string).collect();
-    let filters: Vec<String> = dataset.filters().iter().map(|f| format!("{f:?}").to_lowercase()).collect();
+    let kind = decoded(&dataset.type_name);
+    let Some(shape) = &dataset.shape else { return format!("{kind}, no data") };
+    let shape: Vec<String> = shape.iter().map(ToString::to_string).collect();
+    let filters: Vec<String> = dataset.filters.iter().map(ToString::to_string).collect();
     let mut text = format!("{kind}, {}", if shape.is_empty() { "scalar".into() } else { shape.join(" × ") });
     if !filters.is_empty() {
         text.push_str(", ");
         text.push_str(&filters.join(" + "));
     }
     text
+}
+
+impl std::fmt::Display for Filter {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::Shuffle => f.write_str("shuffle"),
+            Self::Deflate(level) => write!(f, "deflate({level})"),
+            Self::Fletcher32 => f.write_str("fletcher32"),
+            Self::Lzf => f.write_str("lzf"),
+            Self::Other(what) => f.write_str(what),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -94,12 +94,11 @@ pub fn read_within(
     // The hash takes as long as the reading: it runs beside it.
     let (raw, sha256) = std::thread::scope(|scope| {
         let hashing = scope.spawn(|| sha256(path));
+        // On a thread of the pool, which need not be put to sleep for each piece that two threads share.
         let raw = match format {
-            // On a thread of the pool, which need not be put to sleep for each piece that two threads share.
             RecordingFormat::Mcap => rayon::scope(|_| mcap::read(path, cask_file, limits, progress)),
             RecordingFormat::Csv => rayon::scope(|_| csv::read(path, cask_file, limits, progress)),
-            // It waits for the library's own thread.
-            RecordingFormat::Hdf5 => hdf5::read(path, cask_file, limits, progress),
+            RecordingFormat::Hdf5 => rayon::scope(|_| hdf5::read(path, cask_file, limits, progress)),
         };
         (raw, hashing.join())
     });
@@ -127,12 +126,23 @@ pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Li
     }
 }
 
-/// Whether HDF5 can still be read and written in this process; asked before `path` is.
+/// To be called first in `main` of a program that reads HDF5 by this library: where the program was started again to take a file apart it
+/// does so, and `main` ends with what is returned; else the program is noted as the one to be started.
 ///
-/// # Errors
-/// The HDF5 library did not come back from a damaged file that was read earlier.
-pub fn require_hdf5(path: &Path) -> Result<(), IngestError> {
-    hdf5::require_library(path)
+/// The C library for HDF5 breaks off, loops or worse on files that are damaged or made to do harm, so it works in a process of its own
+/// that can reach nothing but the recording. A program with another `main` names one that calls this: [`read_hdf5_with`]. Where variables
+/// `HDF5_…` are set, by which the library would load code, the program is started anew without them (Unix).
+#[must_use]
+pub fn serve_hdf5() -> Option<std::process::ExitCode> {
+    // The running program itself, also after a newer one took its place.
+    let own = Path::new("/proc/self/exe");
+    let program = if own.exists() { Ok(own.to_owned()) } else { std::env::current_exe() };
+    hdf5::serve(&program.unwrap_or_default())
+}
+
+/// Names the program that is started to take HDF5 files apart: one that calls [`serve_hdf5`] first, as `dropcheck` does. The first stays.
+pub fn read_hdf5_with(program: &Path) {
+    hdf5::use_program(program);
 }
 
 /// SHA-256 of the file at `path`, lower-case hexadecimal.

@@ -8,6 +8,7 @@ mod damage;
 mod first_minutes;
 mod fixtures;
 mod golden;
+mod hdf5_room;
 mod layouts;
 mod predict_command;
 mod properties;

@@ -1,13 +1,12 @@
 //! A column's attributes, or those of the groups above it, to rate, unit, start, scale and offset.
 
 use super::super::time_reading::Scale;
+use super::answer::{Object, Value as Held, decoded};
 use super::dataset::Column;
 use super::fault::Fault;
 use super::rate::{self, Rival, Stated};
 use crate::data::{Issue, IssueCode, Samples, Severity, acceleration_unit_m_s2};
 use crate::ingest::time_base::RATE_TOLERANCE;
-use hdf5_metno::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenUnicode};
-use hdf5_metno::{Attribute, File, Location};
 
 /// What the recording says of a column.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -39,24 +38,27 @@ const OFFSET_NAMES: [&str; 2] = ["offset", "add_offset"];
 /// As the CF conventions have them.
 const FILL_NAMES: [&str; 2] = ["_FillValue", "missing_value"];
 
-/// An attribute with more values than this is none of these.
-const MOST_VALUES: usize = 4096;
+const START_NAME: &str = "start_time_s";
 
-/// Larger than any rate, unit or scale.
-const MOST_BYTES: usize = 1 << 20;
+/// The attributes of a dataset or group.
+pub(super) type Place = [(String, Held)];
 
-/// Longest text of an attribute of fixed length.
-const TEXT_BYTES: usize = 256;
+/// Whether an attribute of this name says something of samples.
+pub(super) fn is_read(name: &str) -> bool {
+    let lists = [UNIT_NAMES, SCALE_NAMES, OFFSET_NAMES, FILL_NAMES];
+    name == START_NAME || lists.iter().flatten().any(|known| *known == name) || rate::is_named(name)
+}
 
 impl Attributes {
     /// The nearest of each, from the dataset up to the root.
-    pub(super) fn of(file: &File, column: &Column) -> Self {
-        let mut attributes = Self { fills: fills(column), ..Self::own(&column.dataset, column) };
+    pub(super) fn of(column: &Column) -> Self {
+        let own = Self::own(&column.dataset.attributes, column);
+        let mut attributes = Self { fills: fills(column), ..own };
         let mut group = column.group();
         loop {
             let path = if group.is_empty() { "/" } else { group };
-            if let Ok(found) = file.group(path) {
-                attributes.fill(Self::own(&found, column), path);
+            if let Object::Group { attributes: found, .. } = &*column.dataset.file.object(path) {
+                attributes.fill(Self::own(found, column), path);
             }
             if group.is_empty() {
                 return attributes;
@@ -65,12 +67,12 @@ impl Attributes {
         }
     }
 
-    fn own(place: &Location, column: &Column) -> Self {
+    fn own(place: &Place, column: &Column) -> Self {
         let number = |name: &str| number(place, name, column);
         Self {
             rate: rate::stated(place, column),
             unit: UNIT_NAMES.iter().find_map(|name| text(place, name, column)),
-            start_s: number("start_time_s"),
+            start_s: number(START_NAME),
             outer_rate: None,
             overridden: Vec::new(),
             other_unit: two_units(UNIT_NAMES.map(|name| text(place, name, column))),
@@ -202,7 +204,7 @@ pub(super) fn time_scale(column: &Column) -> Result<(Scale, f64, f64), Fault> {
     // Those of records are for the samples in them.
     let own = match column.records() {
         Some(_) => Attributes::default(),
-        None => Attributes::own(&column.dataset, column),
+        None => Attributes::own(&column.dataset.attributes, column),
     };
     if let Some(problem) = &own.unclear {
         return Err(Fault {
@@ -227,7 +229,7 @@ fn fills(column: &Column) -> Vec<f64> {
     if column.records().is_some() {
         return Vec::new();
     }
-    FILL_NAMES.iter().filter_map(|name| number(&column.dataset, name, column)).collect()
+    FILL_NAMES.iter().filter_map(|name| number(&column.dataset.attributes, name, column)).collect()
 }
 
 /// The value for the column: that of its index where there is one a column, else the only one, as which several count that are the same.
@@ -239,12 +241,8 @@ fn pick<T: PartialEq>(mut values: Vec<T>, column: &Column) -> Option<T> {
     }
 }
 
-fn attribute(place: &Location, name: &str) -> Option<Attribute> {
-    // Asking for one that is not there fills the library's error stack; the names do not.
-    place.attr(name).ok().filter(|attribute| {
-        let bytes = attribute.dtype().map_or(usize::MAX, |dtype| dtype.size());
-        attribute.size() <= MOST_VALUES && bytes.saturating_mul(attribute.size()) <= MOST_BYTES
-    })
+fn attribute<'a>(place: &'a Place, name: &str) -> Option<&'a Held> {
+    place.iter().find(|(there, _)| there == name).map(|(_, held)| held)
 }
 
 /// What an attribute holds for one column.
@@ -254,15 +252,15 @@ pub(super) enum Value {
 }
 
 /// The attribute's value for the column: the only one, or that of its index.
-pub(super) fn value(place: &Location, name: &str, column: &Column) -> Option<Value> {
-    let attribute = attribute(place, name)?;
-    match attribute.read_raw::<f64>() {
-        Ok(values) => pick(values, column).map(Value::Number),
-        Err(_) => texts(&attribute).and_then(|values| pick(values, column)).map(Value::Text),
+pub(super) fn value(place: &Place, name: &str, column: &Column) -> Option<Value> {
+    match attribute(place, name)? {
+        Held::Numbers(numbers) => pick(numbers.clone(), column).map(Value::Number),
+        Held::Texts(texts) => pick(texts.clone(), column).map(|text| Value::Text(decoded(&text))),
+        Held::Other => None,
     }
 }
 
-fn number(place: &Location, name: &str, column: &Column) -> Option<f64> {
+fn number(place: &Place, name: &str, column: &Column) -> Option<f64> {
     match value(place, name, column)? {
         Value::Number(number) => Some(number),
         Value::Text(text) => text.trim().parse().ok(),
@@ -271,7 +269,7 @@ fn number(place: &Location, name: &str, column: &Column) -> Option<f64> {
 }
 
 /// What a scale or an offset says where it is no number. Names that are not of the CF conventions may hold words ("linear").
-fn unclear(place: &Location, name: &str, column: &Column) -> Option<String> {
+fn unclear(place: &Place, name: &str, column: &Column) -> Option<String> {
     attribute(place, name)?;
     let says = match value(place, name, column) {
         Some(Value::Number(number)) if number.is_finite() => return None,
@@ -337,27 +335,9 @@ fn overridden(path: &str, what: &str, [near, far]: &[String; 2], is_harmless: bo
     Issue::new(IssueCode::Scale, severity, message)
 }
 
-fn text(place: &Location, name: &str, column: &Column) -> Option<String> {
-    let values = texts(&attribute(place, name)?)?;
-    pick(values, column)
-        .map(|text| text.trim().trim_end_matches('\0').to_owned())
+fn text(place: &Place, name: &str, column: &Column) -> Option<String> {
+    let Held::Texts(texts) = attribute(place, name)? else { return None };
+    pick(texts.clone(), column)
+        .map(|text| decoded(&text).trim().trim_end_matches('\0').to_owned())
         .filter(|text| !text.is_empty())
-}
-
-fn texts(attribute: &Attribute) -> Option<Vec<String>> {
-    match attribute.dtype().ok()?.to_descriptor().ok()? {
-        TypeDescriptor::VarLenUnicode => {
-            Some(attribute.read_raw::<VarLenUnicode>().ok()?.iter().map(ToString::to_string).collect())
-        }
-        TypeDescriptor::VarLenAscii => {
-            Some(attribute.read_raw::<VarLenAscii>().ok()?.iter().map(ToString::to_string).collect())
-        }
-        TypeDescriptor::FixedAscii(_) => Some(
-            attribute.read_raw::<FixedAscii<TEXT_BYTES>>().ok()?.iter().map(ToString::to_string).collect(),
-        ),
-        TypeDescriptor::FixedUnicode(_) => Some(
-            attribute.read_raw::<FixedUnicode<TEXT_BYTES>>().ok()?.iter().map(ToString::to_string).collect(),
-        ),
-        _ => None,
-    }
 }

@@ -1,9 +1,11 @@
 //! The times beside a channel, by their name.
 
 use super::super::time_name;
+use super::answer::{Object, decoded};
 use super::dataset::Column;
-use super::{find, record};
-use hdf5_metno::File;
+use super::find;
+use super::room::File;
+use std::rc::Rc;
 
 /// Names that go before others.
 const FIRST_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "Time"];
@@ -17,7 +19,7 @@ pub(super) struct Clocks {
 
 impl Clocks {
     /// The times of a channel, likeliest first: fields of the same records, else datasets beside it, that have a usual name and as many values.
-    pub(super) fn of(&mut self, file: &File, column: &Column) -> Vec<Column> {
+    pub(super) fn of(&mut self, file: &Rc<File>, column: &Column) -> Vec<Column> {
         let is_apart = |times: &Column| times.len() == column.len() && times.source() != column.source();
         let records = column.records().map(|name| (format!("{name}."), true));
         let places = records.into_iter().chain([(format!("{}/", column.group()), false)]);
@@ -35,7 +37,7 @@ impl Clocks {
 }
 
 /// Why what is named as times beside a channel was not taken for its times; `None` where nothing is named so.
-pub(super) fn why_none(file: &File, column: &Column) -> Option<String> {
+pub(super) fn why_none(file: &Rc<File>, column: &Column) -> Option<String> {
     let place = format!("{}/", column.group());
     let sources = ranked(&place, members(file, &place));
     sources.iter().filter(|source| **source != column.source()).find_map(|source| {
@@ -47,22 +49,30 @@ pub(super) fn why_none(file: &File, column: &Column) -> Option<String> {
     })
 }
 
-fn fields(file: &File, place: &str) -> Vec<String> {
-    let dtype = file.dataset(place.trim_end_matches('.')).and_then(|dataset| dataset.dtype());
-    let fields = dtype.map(|dtype| record::fields(&dtype)).unwrap_or_default();
-    fields.into_iter().map(|field| field.name).collect()
+fn fields(file: &Rc<File>, place: &str) -> Vec<String> {
+    match &*file.object(place.trim_end_matches('.')) {
+        Object::Dataset(dataset) => dataset.fields.iter().map(|field| decoded(&field.name)).collect(),
+        _ => Vec::new(),
+    }
 }
 
-fn members(file: &File, place: &str) -> Vec<String> {
-    file.group(place).and_then(|group| group.member_names()).unwrap_or_default()
+fn members(file: &Rc<File>, place: &str) -> Vec<String> {
+    let group = place.trim_end_matches('/');
+    match &*file.object(if group.is_empty() { "/" } else { group }) {
+        Object::Group { times, .. } => times.clone(),
+        _ => Vec::new(),
+    }
+}
+
+/// Whether a dataset or field of this name is one of times.
+pub(super) fn is_time(name: &str) -> bool {
+    let last = name.rsplit_once('.').map_or(name, |(_, last)| last);
+    time_name::is_time(time_name::split(last).0)
 }
 
 /// The sources named as times, likeliest first.
 fn ranked(place: &str, mut names: Vec<String>) -> Vec<String> {
-    names.retain(|name| {
-        let last = name.rsplit_once('.').map_or(name.as_str(), |(_, last)| last);
-        time_name::is_time(time_name::split(last).0)
-    });
+    names.retain(|name| is_time(name));
     names.sort_by_key(|name| FIRST_NAMES.iter().position(|first| first == name).unwrap_or(FIRST_NAMES.len()));
     names.into_iter().map(|name| format!("{place}{name}")).collect()
 }

@@ -1,6 +1,7 @@
 //! The HDF5 library's error stacks to one sentence each that a person can act on.
 
 use super::super::error::IngestError;
+use super::answer::{Bytes, decoded};
 use std::path::Path;
 
 /// What is wrong with a dataset, and what to do.
@@ -49,54 +50,46 @@ const MEANINGS: [(&str, &str, &str); 9] = [
         "copy the file from the logger again, or repack it with gzip: `h5repack -f GZIP=1 IN OUT`",
     ),
     (
-        "unable to open external",
-        "the data are in another file that is not there",
-        "put the other file beside this one",
+        "bad version number for layout message",
+        "it is stored as only HDF5 2.0 and newer store it, and versions up to 1.14 are read",
+        "write it anew for older versions: h5py.File(NAME, \"w\", libver=(\"earliest\", \"v114\")), or `h5repack --high=4 IN OUT`",
     ),
 ];
 
-/// A failure to read a dataset.
-pub(super) fn of_dataset(name: &str, error: &hdf5_metno::Error) -> Fault {
-    let (problem, mend) = meaning(error);
-    Fault { problem: format!("{name}: {problem}"), mend }
+impl Fault {
+    /// The same, said of what it is about.
+    pub(super) fn at(self, name: &str) -> Self {
+        Self { problem: format!("{name}: {}", self.problem), ..self }
+    }
 }
 
-/// A failure to open a file.
-pub(super) fn of_file(path: &Path, error: &hdf5_metno::Error) -> IngestError {
-    let (problem, mend) = meaning(error);
+/// A fault of the whole file.
+pub(super) fn of_file(path: &Path, fault: Fault) -> IngestError {
     let size = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
     IngestError::Content {
         path: path.display().to_string(),
         place: format!("HDF5 file of {size} bytes"),
-        problem,
-        mend,
+        problem: fault.problem,
+        mend: fault.mend,
     }
 }
 
-fn meaning(error: &hdf5_metno::Error) -> (String, String) {
-    let words = words(error);
+/// What the library's words mean, outermost first.
+pub(super) fn of_words(words: &[Bytes]) -> Fault {
+    /// A sentence of the library is shorter; names in a damaged file are not.
+    const LONGEST: usize = 200;
+    let words: Vec<String> = words.iter().map(|word| decoded(&word[..word.len().min(LONGEST)])).collect();
     let all = words.join(": ").to_lowercase();
     if let Some((part, problem, mend)) = MEANINGS.iter().find(|(part, ..)| all.contains(part)) {
         // The library gives the sizes for a file that is cut off.
         let detail = words.iter().find(|word| word.to_lowercase().contains(part));
         let sizes =
             detail.and_then(|d| d.split_once("file: ")).map_or(String::new(), |(_, s)| format!(" ({s})"));
-        return (format!("{problem}{sizes}"), (*mend).to_owned());
+        return Fault { problem: format!("{problem}{sizes}"), mend: (*mend).to_owned() };
     }
     let last = words.last().map_or("the library gives no reason", String::as_str);
-    (
-        format!("it cannot be read: {last}"),
-        "the file may be damaged: try `h5dump -H FILE`, or copy it from the logger again".into(),
-    )
-}
-
-/// The library's descriptions, outermost first.
-fn words(error: &hdf5_metno::Error) -> Vec<String> {
-    match error {
-        hdf5_metno::Error::Internal(text) => vec![text.clone()],
-        hdf5_metno::Error::HDF5(stack) => match stack.clone().expand() {
-            Ok(frames) => frames.iter().map(|frame| frame.desc().to_owned()).collect(),
-            Err(_) => vec![error.to_string()],
-        },
+    Fault {
+        problem: format!("it cannot be read: {last}"),
+        mend: "the file may be damaged: try `h5dump -H FILE`, or copy it from the logger again".into(),
     }
 }

@@ -1,10 +1,10 @@
 //! A source as a cask file names it to the dataset, and the column, row or field of it, that it means.
 
-use super::dataset::{Column, Kind, Place, kind, type_name};
+use super::answer::{Dataset, Field, Filter, Number, Object, Storage, decoded};
+use super::dataset::{Column, Place};
 use super::fault::{self, Fault};
-use super::record;
-use hdf5_metno::types::TypeDescriptor;
-use hdf5_metno::{Dataset, Datatype, File};
+use super::room::{File, Found};
+use std::rc::Rc;
 
 /// No filter that is built in packs tighter (deflate: 1032 : 1), so that a dataset that claims more was damaged or never written.
 const TIGHTEST_PACKING: u64 = 1100;
@@ -15,53 +15,71 @@ pub(super) enum Missing {
     Because(Fault),
 }
 
-/// The channel that `source` names: `/group/dataset`, `/group/dataset[2]` of a two-dimensional one, `/group/dataset.field` of records.
-pub(super) fn find(file: &File, source: &str) -> Result<Column, Missing> {
+/// The places where what `source` names may stand, likeliest first, each with what of the name lies within it: names of datasets and
+/// fields may hold points and brackets themselves.
+pub(super) fn places(source: &str) -> Vec<(String, Option<String>, Option<usize>)> {
     let path = format!("/{}", source.trim().trim_start_matches('/'));
-    if let Ok(dataset) = file.dataset(&path) {
-        return column(dataset, path, None).map_err(Missing::Because);
-    }
-    // "[g]" may be a part of the name.
     let indexed = path.strip_suffix(']').and_then(|path| path.rsplit_once('['));
-    let indexed = indexed.and_then(|(bare, index)| Some((bare, Some(index.trim().parse().ok()?))));
-    let (bare, index) = indexed.unwrap_or((&path, None));
-    if index.is_some()
-        && let Ok(dataset) = file.dataset(bare)
-    {
-        return column(dataset, bare.to_owned(), index).map_err(Missing::Because);
+    let indexed = indexed.and_then(|(bare, index)| Some((bare.to_owned(), index.trim().parse().ok()?)));
+    let mut places = vec![(path.clone(), None, None)];
+    let (bare, index) = indexed.map_or((path, None), |(bare, index)| (bare, Some(index)));
+    if index.is_some() {
+        places.push((bare.clone(), None, index));
     }
-    // Names of datasets and fields may hold points themselves.
-    for (at, _) in bare.rmatch_indices('.') {
-        if let Ok(dataset) = file.dataset(&bare[..at]) {
-            let (name, field) = (bare[..at].to_owned(), &bare[at + 1..]);
-            return field_of(dataset, name, field, index).map_err(Missing::Because);
+    let fields = bare.rmatch_indices('.');
+    places.extend(fields.map(|(at, _)| (bare[..at].to_owned(), Some(bare[at + 1..].to_owned()), index)));
+    places
+}
+
+/// The channel that `source` names: `/group/dataset`, `/group/dataset[2]` of a two-dimensional one, `/group/dataset.field` of records.
+pub(super) fn find(file: &Rc<File>, source: &str) -> Result<Column, Missing> {
+    let mut other = None;
+    for (path, field, index) in places(source) {
+        if let Some(dataset) = Found::at(file, &path) {
+            let found = match &field {
+                Some(field) => field_of(dataset, path, field, index),
+                None => column(dataset, path, index),
+            };
+            return found.map_err(Missing::Because);
+        }
+        let object = file.object(&path);
+        if field.is_none() || !matches!(*object, Object::Group { .. }) {
+            other = other.or_else(|| no_dataset(&object, &path));
         }
     }
-    if file.group(&path).is_ok() {
-        return Err(Missing::Because(Fault {
-            problem: format!("{path} is a group, not a dataset"),
-            mend: "name one of the datasets in it; `dropcheck inspect` lists them".into(),
-        }));
+    Err(other.map_or(Missing::Nowhere, Missing::Because))
+}
+
+/// What stands at a path instead of a dataset; `None` where nothing does.
+pub(super) fn no_dataset(object: &Object, path: &str) -> Option<Fault> {
+    let fault = |problem: String, mend: &str| Some(Fault { problem, mend: mend.to_owned() });
+    match object {
+        Object::Nothing | Object::Dataset(_) => None,
+        Object::Group { .. } => fault(
+            format!("{path} is a group, not a dataset"),
+            "name one of the datasets in it; `dropcheck inspect` lists them",
+        ),
+        Object::NamedType => fault(format!("{path} is a type, not a dataset"), NUMBERS),
+        Object::NotFollowed(what) => fault(format!("{path}: {what}"), OWN_DATA),
+        Object::Broken(words) => Some(fault::of_words(words).at(path)),
     }
-    Err(Missing::Nowhere)
 }
 
 /// The sources that a dataset holds, at most `most`; a fault where it holds none.
 pub(super) fn sources(dataset: &Dataset, path: &str, most: usize) -> Result<Vec<String>, Fault> {
+    refuse_unread(dataset, path)?;
     let several = |name: String, count: usize| match count {
         1 => vec![name],
         count if count <= most => (0..count).map(|i| format!("{name}[{i}]")).collect(),
         _ => Vec::new(),
     };
-    let dtype = dataset.dtype().map_err(|error| fault::of_dataset(path, &error))?;
-    let fields = record::fields(&dtype);
-    let (count, _, _) = channels(&shape_of(dataset, &dtype, path)?, path)?;
-    if fields.is_empty() {
-        kind_of(&dtype, path)?;
+    let (count, _, _) = channels(&shape_of(dataset, path)?, path)?;
+    if dataset.fields.is_empty() {
+        number_of(dataset, path)?;
         return Ok(several(path.to_owned(), count));
     }
-    let mut sources: Vec<String> =
-        fields.iter().flat_map(|field| several(format!("{path}.{}", field.name), field.count)).collect();
+    let named = |field: &Field| several(format!("{path}.{}", decoded(&field.name)), field.count);
+    let mut sources: Vec<String> = dataset.fields.iter().flat_map(named).collect();
     sources.truncate(most);
     Ok(sources)
 }
@@ -84,19 +102,17 @@ fn channels(shape: &[usize], name: &str) -> Result<(usize, usize, Place), Fault>
     }
 }
 
-fn column(dataset: Dataset, name: String, index: Option<usize>) -> Result<Column, Fault> {
+fn column(dataset: Found, name: String, index: Option<usize>) -> Result<Column, Fault> {
     let wrong = |problem: String, mend: &str| Fault { problem, mend: mend.to_owned() };
-    refuse_foreign(&dataset, &name)?;
-    let dtype = dataset.dtype().map_err(|error| fault::of_dataset(&name, &error))?;
-    let fields = record::fields(&dtype);
-    if !fields.is_empty() {
+    refuse_unread(&dataset, &name)?;
+    if let Some(first) = dataset.fields.first() {
         return Err(Fault {
-            problem: format!("{name} holds records, with the fields {}", record::names(&fields)),
-            mend: format!("name one field: \"{name}.{}\"", fields[0].name),
+            problem: format!("{name} holds records, with the fields {}", field_names(&dataset.fields)),
+            mend: format!("name one field: \"{name}.{}\"", decoded(&first.name)),
         });
     }
-    let kind = kind_of(&dtype, &name)?;
-    let shape = shape_of(&dataset, &dtype, &name)?;
+    let number = number_of(&dataset, &name)?;
+    let shape = shape_of(&dataset, &name)?;
     let (columns, length, place) = channels(&shape, &name)?;
     let index = match index {
         None | Some(0) if matches!(place, Place::Whole) => (shape.len() > 1).then_some(0),
@@ -117,24 +133,23 @@ fn column(dataset: Dataset, name: String, index: Option<usize>) -> Result<Column
             ));
         }
     };
-    Ok(Column { dataset, index, columns, name, length, kind, place })
+    Ok(Column { dataset, index, columns, name, length, number, place })
 }
 
 /// A field of the records of a dataset.
-fn field_of(dataset: Dataset, name: String, wanted: &str, index: Option<usize>) -> Result<Column, Fault> {
-    refuse_foreign(&dataset, &name)?;
-    let dtype = dataset.dtype().map_err(|error| fault::of_dataset(&name, &error))?;
-    let fields = record::fields(&dtype);
-    let Some(field) = fields.iter().find(|field| field.name == wanted) else {
+fn field_of(dataset: Found, name: String, wanted: &str, index: Option<usize>) -> Result<Column, Fault> {
+    refuse_unread(&dataset, &name)?;
+    let fields = &dataset.fields;
+    let Some(field) = fields.iter().find(|field| decoded(&field.name) == wanted) else {
         let Some(first) = fields.first() else {
-            return Err(kind_of(&dtype, &name).err().unwrap_or_else(|| Fault {
+            return Err(number_of(&dataset, &name).err().unwrap_or_else(|| Fault {
                 problem: format!("{name} holds no records with a field {wanted}, but numbers"),
                 mend: format!("name it without a field: \"{name}\""),
             }));
         };
         return Err(Fault {
             problem: format!("the records of {name} have no field {wanted} of numbers"),
-            mend: format!("name one of {}: \"{name}.{}\"", record::names(&fields), first.name),
+            mend: format!("name one of {}: \"{name}.{}\"", field_names(fields), decoded(&first.name)),
         });
     };
     let place = match index {
@@ -155,37 +170,61 @@ fn field_of(dataset: Dataset, name: String, wanted: &str, index: Option<usize>) 
         }
         index => field.element(index.unwrap_or(0)),
     };
-    let (count, length, _) = channels(&shape_of(&dataset, &dtype, &name)?, &name)?;
+    let (count, length, _) = channels(&shape_of(&dataset, &name)?, &name)?;
     if count > 1 {
         return Err(Fault {
             problem: format!("{name} holds records in rows and columns"),
             mend: "save them as a table of one dimension, one record a sample".into(),
         });
     }
-    let (columns, kind) = (field.count, field.kind);
-    Ok(Column { dataset, index, columns, name, length, kind, place: Place::Field(place) })
+    let (columns, number) = (field.count, field.number);
+    let place = Place::Field(place, wanted.to_owned());
+    Ok(Column { dataset, index, columns, name, length, number, place })
 }
 
-/// A file that was sent may name any other on this machine.
-fn refuse_foreign(dataset: &Dataset, name: &str) -> Result<(), Fault> {
-    let external = dataset.create_plist().map(|list| list.external()).unwrap_or_default();
-    match external.iter().find(|file| file.name.contains(['/', '\\'])) {
-        None => Ok(()),
-        Some(other) => Err(Fault {
-            problem: format!("the data of {name} are in another file, {}, which lies elsewhere", other.name),
-            mend: "ask for a recording that holds its own data: `h5repack IN OUT` makes one".into(),
-        }),
+impl Field {
+    /// One number of the list, as a field of its own.
+    fn element(&self, index: usize) -> Self {
+        Self { count: 1, from: self.from + index * self.number.bytes(), ..self.clone() }
     }
 }
 
+/// Their names, as many as fit a message.
+fn field_names(fields: &[Field]) -> String {
+    const HANDFUL: usize = 12;
+    let names: Vec<String> = fields.iter().take(HANDFUL).map(|field| decoded(&field.name)).collect();
+    let more = if fields.len() > HANDFUL { ", …" } else { "" };
+    format!("{}{more}", names.join(", "))
+}
+
+/// What is not in the recording, or packed by what is not read. A file that was sent may name any other on this machine, and any filter.
+fn refuse_unread(dataset: &Dataset, name: &str) -> Result<(), Fault> {
+    let filter = dataset.filters.iter().find_map(|filter| match filter {
+        Filter::Other(what) => Some(what),
+        _ => None,
+    });
+    let (what, mend) = match (&dataset.storage, filter) {
+        (Storage::External, _) => ("the data are in another file, which is not read".to_owned(), OWN_DATA),
+        (Storage::Virtual, _) => {
+            ("it is put together from other datasets, which is not read".into(), OWN_DATA)
+        }
+        (_, Some(filter)) => (
+            format!("its data are packed by the filter {filter}, which is not read"),
+            "repack them with gzip: `h5repack -f GZIP=1 IN OUT`",
+        ),
+        _ => return Ok(()),
+    };
+    Err(Fault { problem: format!("{name}: {what}"), mend: mend.into() })
+}
+
+const OWN_DATA: &str = "ask for a recording that holds its own data: `h5repack IN OUT` makes one";
 const NUMBERS: &str = "name a dataset of numbers; `dropcheck inspect` lists them";
 
 /// How the numbers of a dataset are read; a fault where it holds none.
-fn kind_of(dtype: &Datatype, name: &str) -> Result<Kind, Fault> {
-    let is_records = matches!(dtype.to_descriptor(), Ok(TypeDescriptor::Compound(_)));
-    kind(dtype).ok_or_else(|| {
-        let what = type_name(dtype);
-        if is_records {
+fn number_of(dataset: &Dataset, name: &str) -> Result<Number, Fault> {
+    dataset.number.ok_or_else(|| {
+        let what = decoded(&dataset.type_name);
+        if dataset.is_records {
             Fault {
                 problem: format!("{name} holds {what}: none of numbers, or beside others of varying length or other byte order"),
                 mend: "save each field of numbers as a dataset of its own".into(),
@@ -197,13 +236,9 @@ fn kind_of(dtype: &Datatype, name: &str) -> Result<Kind, Fault> {
 }
 
 /// The shape of a dataset; a fault where it is empty, or where the file cannot hold it.
-fn shape_of(dataset: &Dataset, dtype: &Datatype, name: &str) -> Result<Vec<usize>, Fault> {
+fn shape_of(dataset: &Dataset, name: &str) -> Result<Vec<usize>, Fault> {
     let wrong = |what: &str| Fault { problem: format!("{name} {what}"), mend: NUMBERS.into() };
-    let space = dataset.space().map_err(|error| fault::of_dataset(name, &error))?;
-    if space.is_null() {
-        return Err(wrong("is empty"));
-    }
-    let shape = space.shape();
+    let Some(shape) = dataset.shape.clone() else { return Err(wrong("is empty")) };
     if shape.is_empty() {
         return Err(wrong("is a single value"));
     }
@@ -212,8 +247,8 @@ fn shape_of(dataset: &Dataset, dtype: &Datatype, name: &str) -> Result<Vec<usize
     }
     let claimed = shape.iter().try_fold(1_usize, |product, &n| product.checked_mul(n));
     let rows = shape.first().copied().unwrap_or(0);
-    let bytes = claimed.and_then(|count| count.checked_mul(dtype.size())).and_then(|b| u64::try_from(b).ok());
-    let stored = dataset.storage_size();
+    let bytes = claimed.and_then(|count| (count as u64).checked_mul(dataset.value_bytes));
+    let stored = dataset.stored_bytes;
     let is_plausible = bytes.is_some_and(|bytes| bytes <= stored.saturating_mul(TIGHTEST_PACKING));
     if !is_plausible {
         return Err(Fault {

@@ -1,24 +1,23 @@
 //! An HDF5 file to the list of its datasets and columns.
 
 use super::super::error::IngestError;
+use super::answer::Object;
 use super::attributes::Attributes;
 use super::clocks::Clocks;
 use super::dataset::Column;
 use super::fault::Fault;
 use super::find::{self, Missing};
+use super::room::{File, Found};
 use super::time_base::TimeBaseError;
-use super::watch::{self, Signs};
 use super::witness::{self, Contradiction};
-use super::{Limits, Progress, open, storage, time_base};
+use super::{Limits, Progress, storage, time_base};
 use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Samples, Severity};
-use hdf5_metno::{File, Group};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::rc::Rc;
 
-/// Groups deeper than this are not followed: links may form circles.
-const DEEPEST: usize = 32;
-/// At most so many objects are listed, for the same reason.
-const MOST_OBJECTS: usize = 10_000;
+/// So many channels are listed at most.
+const MOST_CHANNELS: usize = 10_000;
 /// A dataset with more columns than this is listed in one line: it is no table of channels.
 const MOST_COLUMNS: usize = 256;
 /// The range of a longer column is not looked for: `inspect` should answer at once.
@@ -28,71 +27,36 @@ const RANGED_SAMPLES: usize = 20_000_000;
 const MOST_VALUES: u64 = 1 << 30;
 
 /// What a listing may still cost.
-struct Effort<'a> {
+struct Effort {
     limits: Limits,
-    signs: &'a Signs,
     values_left: u64,
     clocks: Clocks,
 }
 
-impl Effort<'_> {
+impl Effort {
     /// Whether a column may be read; it is then paid for.
     fn pays_for(&mut self, column: &Column) -> bool {
         let (held, part) = (column.held_bytes(), column.part_bytes());
-        let values = (column.len() * column.columns) as u64;
+        let values = (column.len() as u64).saturating_mul(column.columns as u64);
         let pays = held <= self.limits.samples_bytes() && part <= self.limits.part_bytes();
         if pays && values <= self.values_left {
             self.values_left -= values;
-            self.signs.alive(values.saturating_mul(8));
             return true;
         }
         false
     }
 }
 
-/// Everything in the file, by path.
-#[derive(Default)]
-struct Objects {
-    groups: u64,
-    datasets: Vec<String>,
-    broken: Vec<String>,
-}
-
 /// What can be written as `source`.
-pub(super) fn sources(file: &File, signs: &Signs) -> Vec<String> {
-    let mut objects = Objects::default();
-    walk(file, "", (0, signs), &mut objects);
-    objects.datasets.iter().flat_map(|path| sources_of(file, path).unwrap_or_default()).collect()
-}
-
-fn walk(group: &Group, path: &str, (depth, signs): (usize, &Signs), objects: &mut Objects) {
-    for name in group.member_names().unwrap_or_default() {
-        signs.alive(0);
-        let groups = usize::try_from(objects.groups).unwrap_or(usize::MAX);
-        if objects.datasets.len() + objects.broken.len() + groups >= MOST_OBJECTS {
-            return;
-        }
-        let full = format!("{path}/{name}");
-        if let Ok(inner) = group.group(&name) {
-            objects.groups += 1;
-            if depth < DEEPEST {
-                walk(&inner, &full, (depth + 1, signs), objects);
-            }
-        } else if group.dataset(&name).is_ok() {
-            objects.datasets.push(full);
-        } else if !group
-            .loc_type_by_name(&name)
-            .is_ok_and(|kind| kind == hdf5_metno::LocationType::NamedDatatype)
-        {
-            objects.broken.push(full);
-        }
-    }
+pub(super) fn sources(file: &File) -> Vec<String> {
+    let found = file.walk();
+    found.iter().flat_map(|(path, object)| sources_of(object, path).unwrap_or_default()).collect()
 }
 
 /// The sources of one dataset: itself, its columns, rows or fields; `None` where it holds no numbers in one or two dimensions.
-fn sources_of(file: &File, path: &str) -> Option<Vec<String>> {
-    let dataset = file.dataset(path).ok()?;
-    find::sources(&dataset, path, MOST_COLUMNS).ok().filter(|sources| !sources.is_empty())
+fn sources_of(object: &Object, path: &str) -> Option<Vec<String>> {
+    let Object::Dataset(dataset) = object else { return None };
+    find::sources(dataset, path, MOST_COLUMNS).ok().filter(|sources| !sources.is_empty())
 }
 
 /// Lists what the HDF5 file at `path` holds.
@@ -104,55 +68,66 @@ pub(in super::super) fn list(
     limits: Limits,
     progress: Progress,
 ) -> Result<Listing, IngestError> {
-    let file = path.to_owned();
-    watch::watched(path, progress, move |signs| list_objects(&file, limits, signs))
+    let file = File::open(path, limits, Vec::new())?;
+    let listing = list_objects(&file, progress);
+    file.whole().map(|()| listing)
 }
 
-fn list_objects(path: &Path, limits: Limits, signs: &Signs) -> Result<Listing, IngestError> {
-    let mut effort = Effort { limits, signs, values_left: MOST_VALUES, clocks: Clocks::default() };
-    let file = open(path)?;
-    let mut objects = Objects::default();
-    walk(&file, "", (0, signs), &mut objects);
-    let mut channels = Vec::new();
+fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
+    let mut effort = Effort { limits: file.limits, values_left: MOST_VALUES, clocks: Clocks::default() };
+    let objects = file.walk();
+    let (mut channels, mut broken) = (Vec::new(), Vec::new());
     let mut issues: Vec<Issue> = Vec::new();
-    let count = objects.datasets.len().max(1);
-    for (number, dataset) in objects.datasets.iter().enumerate() {
-        if channels.len() >= MOST_OBJECTS {
-            break;
-        }
-        match sources_of(&file, dataset) {
-            Some(sources) => {
-                for source in &sources {
-                    channels.push(listed(&file, source, &mut effort, &mut issues));
-                }
+    let (mut groups, mut datasets) = (0, 0);
+    for (number, (path, object)) in objects.iter().enumerate() {
+        match &**object {
+            Object::Group { .. } => groups += 1,
+            Object::Dataset(_) => datasets += 1,
+            Object::NamedType | Object::Nothing => {}
+            Object::NotFollowed(what) => {
+                broken.push(ListedChannel { unreadable: Some(what.clone()), ..blank(path, "link") });
             }
-            None => channels.push(unreadable(&file, dataset)),
+            Object::Broken(_) => {
+                let what = "a link to what is not there, or what the HDF5 library cannot open";
+                let fault = find::no_dataset(object, path).map(|fault| fault.problem);
+                let reason = fault
+                    .and_then(|f| f.strip_prefix(path).map(|f| f.trim_start_matches([':', ' ']).to_owned()));
+                let reason = reason.filter(|reason| !reason.starts_with("it cannot be read"));
+                broken.push(ListedChannel {
+                    unreadable: Some(reason.unwrap_or_else(|| what.to_owned())),
+                    ..blank(path, "link")
+                });
+            }
+        }
+        if matches!(**object, Object::Dataset(_)) && channels.len() < MOST_CHANNELS {
+            match sources_of(object, path) {
+                Some(sources) => {
+                    for source in &sources {
+                        channels.push(listed(file, source, &mut effort, &mut issues));
+                    }
+                }
+                None => channels.push(unreadable(file, path)),
+            }
         }
         #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
-        signs.done((number + 1) as f64 / count as f64);
+        progress((number + 1) as f64 / objects.len() as f64);
     }
-    channels.extend(objects.broken.iter().map(|link| ListedChannel {
-        unreadable: Some("a link to what is not there".into()),
-        ..blank(link, "link")
-    }));
+    channels.extend(broken);
     count_from_first(&mut channels, &mut issues);
-    let version = hdf5_metno::library_version();
-    Ok(Listing {
+    let version = file.library;
+    Listing {
         schema: "dropcheck.inspect/1",
-        recording: path.display().to_string(),
-        bytes: std::fs::metadata(path).map_or(0, |metadata| metadata.len()),
+        recording: file.path.display().to_string(),
+        bytes: file.bytes,
         format: RecordingFormat::Hdf5,
-        counts: BTreeMap::from([
-            ("groups".into(), objects.groups),
-            ("datasets".into(), objects.datasets.len() as u64),
-        ]),
+        counts: BTreeMap::from([("groups".into(), groups), ("datasets".into(), datasets)]),
         facts: BTreeMap::from([(
             "read with".into(),
             format!("HDF5 library {}.{}.{}", version.0, version.1, version.2),
         )]),
         channels,
         issues,
-    })
+    }
 }
 
 /// Times from the earliest first sample on.
@@ -185,20 +160,19 @@ fn blank(source: &str, kind: &str) -> ListedChannel {
 }
 
 /// A dataset that holds no channel, with the reason.
-fn unreadable(file: &File, path: &str) -> ListedChannel {
+fn unreadable(file: &Rc<File>, path: &str) -> ListedChannel {
     let fault = match find::find(file, path) {
         Err(Missing::Because(fault)) => fault.problem,
         Err(Missing::Nowhere) | Ok(_) => "it cannot be opened".to_owned(),
     };
     let reason = fault.strip_prefix(path).unwrap_or(&fault).trim_start_matches([':', ' ']).to_owned();
-    let encoding = file.dataset(path).map(|dataset| storage(&dataset)).unwrap_or_default();
+    let encoding = Found::at(file, path).map(|dataset| storage(&dataset)).unwrap_or_default();
     ListedChannel { encoding, unreadable: Some(reason), ..blank(path, "dataset") }
 }
 
-fn listed(file: &File, source: &str, effort: &mut Effort, issues: &mut Vec<Issue>) -> ListedChannel {
-    effort.signs.alive(0);
+fn listed(file: &Rc<File>, source: &str, effort: &mut Effort, issues: &mut Vec<Issue>) -> ListedChannel {
     let Ok(column) = find::find(file, source) else { return unreadable(file, source) };
-    let attributes = Attributes::of(file, &column);
+    let attributes = Attributes::of(&column);
     let kind = column.kind_name();
     let mut channel = ListedChannel {
         samples: Some(column.len() as u64),
@@ -214,7 +188,7 @@ fn listed(file: &File, source: &str, effort: &mut Effort, issues: &mut Vec<Issue
 
 /// Range, rate, start and gaps of a column into `channel`.
 fn survey(
-    file: &File,
+    file: &Rc<File>,
     column: &Column,
     attributes: &Attributes,
     effort: &mut Effort,

@@ -1,48 +1,52 @@
 //! The bytes of a dataset, plain or in deflated chunks, to one column or field of it, on all cores: the library works on one thread at a time.
 
-use super::record::Field;
-use hdf5_metno::datatype::ByteOrder;
-use hdf5_metno::filters::Filter;
-use hdf5_metno::{Dataset, H5Type};
+use super::answer::{Chunk, Field, Filter, Number, Storage};
+use super::room::Found;
 use libdeflater::Decompressor;
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 
-/// Fewer bytes than this are read before the threads have started.
-const LEAST_BYTES: usize = 1 << 16;
 /// Values read at a time of a dataset that lies in one piece: they stay in the cache until they are turned.
 const PIECE_VALUES: usize = 1 << 15;
 
 /// A number as HDF5 stores it, least byte first.
-pub(super) trait Stored: H5Type + Copy + Default + Send + Sync {
+pub(super) trait Stored: Copy + Default + Send + Sync {
+    /// What it is called in an answer.
+    const NUMBER: Number;
     /// From its bytes, given one by one.
     fn from_bytes(byte: impl Fn(usize) -> u8) -> Self;
 }
 
 macro_rules! stored {
-    ($($number:ty),*) => {$(
+    ($($number:ty = $name:ident),*) => {$(
         impl Stored for $number {
+            const NUMBER: Number = Number::$name;
             fn from_bytes(byte: impl Fn(usize) -> u8) -> Self {
                 Self::from_le_bytes(std::array::from_fn(byte))
             }
         }
     )*};
 }
-stored!(f32, f64, i8, i16, i32, i64, u8, u16, u32, u64);
-
-/// A chunk: the row and column of its first value, and where its bytes lie.
-struct Place {
-    row: usize,
-    column: usize,
-    at: u64,
-    length: usize,
-}
+stored!(
+    f32 = F32,
+    f64 = F64,
+    i8 = I8,
+    i16 = I16,
+    i32 = I32,
+    i64 = I64,
+    u8 = U8,
+    u16 = U16,
+    u32 = U32,
+    u64 = U64
+);
 
 /// How the chunks of a dataset are laid out.
 struct Layout<'a> {
     rows: usize,
     columns: usize,
+    /// Of one value or record.
+    value_bytes: usize,
     is_deflated: bool,
     is_shuffled: bool,
     /// The field to be taken, where the values are records.
@@ -51,65 +55,58 @@ struct Layout<'a> {
 
 /// Column `index` of a dataset of one or two dimensions; `None` where the library must read it: other filters, types or byte orders,
 /// chunks that were never written, damage.
-pub(super) fn column<T: Stored>(dataset: &Dataset, index: usize) -> Option<Vec<T>> {
-    let dtype = dataset.dtype().ok()?;
-    let is_plain = dtype.to_descriptor().ok()? == T::type_descriptor()
-        && (dtype.size() == 1 || dtype.byte_order() == ByteOrder::LittleEndian);
-    let length = *dataset.shape().first()?;
-    // Addresses count from behind a user block in some versions of the library and from the file's start in others.
-    let is_at_start = dataset.file().ok()?.userblock() == 0;
-    if !is_plain || !is_at_start || length.saturating_mul(size_of::<T>()) < LEAST_BYTES {
+pub(super) fn column<T: Stored>(dataset: &Found, index: usize) -> Option<Vec<T>> {
+    let length = *dataset.shape.as_ref()?.first()?;
+    if !dataset.is_plain || dataset.number != Some(T::NUMBER) || !is_at_start(dataset) {
         return None;
     }
-    let is_shuffled = match dataset.filters().as_slice() {
-        [] if dataset.ndim() == 1 && !dataset.is_chunked() => return contiguous(dataset, length),
-        [Filter::Deflate(_)] => false,
-        [Filter::Shuffle, Filter::Deflate(_)] => true,
-        _ => return None,
-    };
-    chunked(dataset, index, (true, is_shuffled), None)
+    match dataset.storage {
+        Storage::Contiguous(from) if dataset.shape.as_ref()?.len() == 1 => contiguous(dataset, from?, length),
+        _ => chunked(dataset, index, None),
+    }
 }
 
 /// One field of the records of a dataset; `None` where they are packed otherwise, were never written or are damaged.
 ///
 /// The library would need a type made for these records, which only its unsafe part can have.
-pub(super) fn field<T: Stored>(dataset: &Dataset, field: &Field) -> Option<Vec<T>> {
-    if field.bytes != size_of::<T>() || dataset.file().ok()?.userblock() != 0 {
+pub(super) fn field<T: Stored>(dataset: &Found, field: &Field) -> Option<Vec<T>> {
+    if field.number != T::NUMBER || !is_at_start(dataset) {
         return None;
     }
-    let filters = match dataset.filters().as_slice() {
-        [] if !dataset.is_chunked() => return records(dataset, field),
-        [] => (false, false),
-        [Filter::Deflate(_)] => (true, false),
-        [Filter::Shuffle, Filter::Deflate(_)] => (true, true),
-        _ => return None,
-    };
-    chunked(dataset, 0, filters, Some(field))
+    match dataset.storage {
+        Storage::Contiguous(from) => records(dataset, from?, field),
+        _ => chunked(dataset, 0, Some(field)),
+    }
+}
+
+/// Addresses count from behind a user block in some versions of the library and from the file's start in others.
+fn is_at_start(dataset: &Found) -> bool {
+    dataset.file.user_block == 0
 }
 
 /// A field of records that lie in one piece.
-fn records<T: Stored>(dataset: &Dataset, field: &Field) -> Option<Vec<T>> {
-    let (from, length) = (dataset.offset()?, dataset.size());
-    let is_elsewhere = !dataset.create_plist().ok()?.external().is_empty();
-    let stored = length.checked_mul(field.record_bytes)?;
-    if is_elsewhere || dataset.storage_size() != stored as u64 || field.record_bytes == 0 {
+fn records<T: Stored>(dataset: &Found, from: u64, field: &Field) -> Option<Vec<T>> {
+    let record_bytes = usize::try_from(dataset.value_bytes).ok()?;
+    let length = dataset.shape.as_ref()?.iter().try_fold(1_usize, |all, &n| all.checked_mul(n))?;
+    let stored = length.checked_mul(record_bytes)?;
+    if dataset.stored_bytes != stored as u64 || !is_within(dataset, from, stored) || record_bytes == 0 {
         return None;
     }
     // As many whole records as a piece of plain values has bytes, so that wide ones take no more memory.
-    let piece = (PIECE_VALUES * size_of::<f64>() / field.record_bytes).max(1);
-    let path = dataset.filename();
+    let piece = (PIECE_VALUES * size_of::<f64>() / record_bytes).max(1);
+    let path = &dataset.file.path;
     let mut values = vec![T::default(); length];
     values
         .par_chunks_mut(piece)
         .enumerate()
         .map_init(
-            || (File::open(&path).ok(), Vec::new()),
+            || (File::open(path).ok(), Vec::new()),
             |(file, bytes), (i, values)| {
                 let file = file.as_mut()?;
-                bytes.resize(values.len() * field.record_bytes, 0);
-                file.seek(SeekFrom::Start(from + (i * piece * field.record_bytes) as u64)).ok()?;
+                bytes.resize(values.len() * record_bytes, 0);
+                file.seek(SeekFrom::Start(from + (i * piece * record_bytes) as u64)).ok()?;
                 file.read_exact(bytes).ok()?;
-                for (value, record) in values.iter_mut().zip(bytes.chunks_exact(field.record_bytes)) {
+                for (value, record) in values.iter_mut().zip(bytes.chunks_exact(record_bytes)) {
                     *value = T::from_bytes(|i| record[field.byte(i)]);
                 }
                 Some(())
@@ -122,37 +119,38 @@ fn records<T: Stored>(dataset: &Dataset, field: &Field) -> Option<Vec<T>> {
 impl Field {
     /// Where byte `i` of its number, counted from the lowest, stands in a record.
     fn byte(&self, i: usize) -> usize {
-        self.from + if self.is_big_endian { self.bytes - 1 - i } else { i }
+        self.from + if self.is_big_endian { self.number.bytes() - 1 - i } else { i }
     }
 }
 
 /// A column of a dataset in chunks, deflated and shuffled or not, or a field of the records in it.
-fn chunked<T: Stored>(
-    dataset: &Dataset,
-    index: usize,
-    (is_deflated, is_shuffled): (bool, bool),
-    field: Option<&Field>,
-) -> Option<Vec<T>> {
-    let (shape, chunk) = (dataset.shape(), dataset.chunk()?);
-    let length = *shape.first()?;
-    let columns = chunk.get(1).copied().unwrap_or(1);
-    let layout = Layout { rows: *chunk.first()?, columns, is_deflated, is_shuffled, field };
-    if shape.len() != chunk.len() || shape.len() > 2 || layout.rows == 0 {
-        return None;
-    }
-    let places = places(dataset, index, &layout)?;
+fn chunked<T: Stored>(dataset: &Found, index: usize, field: Option<&Field>) -> Option<Vec<T>> {
+    let Storage::Chunked { shape: chunk, chunks } = &dataset.storage else { return None };
+    let (is_deflated, is_shuffled) = match dataset.filters.as_slice() {
+        [] => (false, false),
+        [Filter::Deflate(_)] => (true, false),
+        [Filter::Shuffle, Filter::Deflate(_)] => (true, true),
+        _ => return None,
+    };
+    let length = *dataset.shape.as_ref()?.first()?;
+    let (rows, columns) = (*chunk.first()?, chunk.get(1).copied().unwrap_or(1));
+    let value_bytes = usize::try_from(dataset.value_bytes).ok()?;
+    let layout = Layout { rows, columns, value_bytes, is_deflated, is_shuffled, field };
+    let holds = |chunk: &&Chunk| index.checked_sub(chunk.column).is_some_and(|first| first < columns);
+    let mut places: Vec<&Chunk> = chunks.as_ref()?.iter().filter(holds).collect();
+    places.sort_by_key(|place| place.row);
     // A chunk for every stretch of rows, or the rest is what the library fills in.
-    if places.len() != length.div_ceil(layout.rows) {
+    if chunk.len() > 2 || places.len() != length.div_ceil(rows) {
         return None;
     }
-    let path = dataset.filename();
+    let path = &dataset.file.path;
     let mut values = vec![T::default(); length];
     values
         .par_chunks_mut(layout.rows)
         .zip(&places)
         .enumerate()
         .map_init(
-            || (File::open(&path).ok(), Vec::new(), Vec::new()),
+            || (File::open(path).ok(), Vec::new(), Vec::new()),
             |(file, packed, bytes), (i, (values, place))| {
                 let is_next = place.row == i * layout.rows;
                 is_next.then(|| unpack(file.as_mut()?, place, &layout, (packed, bytes), (index, values)))?
@@ -163,18 +161,17 @@ fn chunked<T: Stored>(
 }
 
 /// A dataset of one dimension that lies in one piece.
-fn contiguous<T: Stored>(dataset: &Dataset, length: usize) -> Option<Vec<T>> {
-    let from = dataset.offset()?;
-    let is_elsewhere = !dataset.create_plist().ok()?.external().is_empty();
-    if is_elsewhere || dataset.storage_size() != (length * size_of::<T>()) as u64 {
+fn contiguous<T: Stored>(dataset: &Found, from: u64, length: usize) -> Option<Vec<T>> {
+    let stored = length.checked_mul(size_of::<T>())?;
+    if dataset.stored_bytes != stored as u64 || !is_within(dataset, from, stored) {
         return None;
     }
-    let path = dataset.filename();
+    let path = &dataset.file.path;
     let mut values = vec![T::default(); length];
     let pieces = values.par_chunks_mut(PIECE_VALUES).enumerate();
     pieces
         .map_init(
-            || (File::open(&path).ok(), vec![0; PIECE_VALUES * size_of::<T>()]),
+            || (File::open(path).ok(), vec![0; PIECE_VALUES * size_of::<T>()]),
             |(file, bytes), (i, values)| {
                 let (file, bytes) = (file.as_mut()?, &mut bytes[..size_of_val(values)]);
                 file.seek(SeekFrom::Start(from + (i * PIECE_VALUES * size_of::<T>()) as u64)).ok()?;
@@ -189,52 +186,33 @@ fn contiguous<T: Stored>(dataset: &Dataset, length: usize) -> Option<Vec<T>> {
     Some(values)
 }
 
-/// The chunks that hold the column, by row.
-fn places(dataset: &Dataset, index: usize, layout: &Layout) -> Option<Vec<Place>> {
-    let mut places = Vec::new();
-    let mut is_whole = true;
-    dataset
-        .chunks_visit(|chunk| {
-            let [row, column] =
-                [0, 1].map(|i| chunk.offset.get(i).map_or(Some(0), |&n| usize::try_from(n).ok()));
-            match (row, column, usize::try_from(chunk.size)) {
-                (Some(row), Some(column), Ok(length)) if chunk.filter_mask == 0 => {
-                    if index.checked_sub(column).is_some_and(|first| first < layout.columns) {
-                        places.push(Place { row, column, at: chunk.addr, length });
-                    }
-                }
-                _ => is_whole = false,
-            }
-            0
-        })
-        .ok()?;
-    places.sort_by_key(|place| place.row);
-    is_whole.then_some(places)
+fn is_within(dataset: &Found, from: u64, bytes: usize) -> bool {
+    from.checked_add(bytes as u64).is_some_and(|end| end <= dataset.file.bytes)
 }
 
 /// One chunk's share of the column.
 fn unpack<T: Stored>(
     file: &mut File,
-    place: &Place,
+    place: &Chunk,
     layout: &Layout,
     (packed, bytes): (&mut Vec<u8>, &mut Vec<u8>),
     (index, values): (usize, &mut [T]),
 ) -> Option<()> {
     let count = layout.rows.checked_mul(layout.columns)?;
-    let size = layout.field.map_or(size_of::<T>(), |field| field.record_bytes);
+    let size = layout.value_bytes;
     // Deflate stores what it cannot pack with five bytes for each 16 KiB: a longer chunk is damage.
-    if place.length > count.checked_mul(size)?.checked_mul(2)?.checked_add(1024)? {
+    if place.bytes > count.checked_mul(size)?.checked_mul(2)?.checked_add(1024)? {
         return None;
     }
     file.seek(SeekFrom::Start(place.at)).ok()?;
     bytes.resize(count.checked_mul(size)?, 0);
     if layout.is_deflated {
         packed.clear();
-        file.take(place.length as u64).read_to_end(packed).ok()?;
+        file.take(place.bytes as u64).read_to_end(packed).ok()?;
         if Decompressor::new().zlib_decompress(packed, bytes).ok()? != bytes.len() {
             return None;
         }
-    } else if place.length == bytes.len() {
+    } else if place.bytes == bytes.len() {
         file.read_exact(bytes).ok()?;
     } else {
         return None;
@@ -261,6 +239,9 @@ fn unpack<T: Stored>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ingest::Limits;
+    use crate::ingest::hdf5::answer::Slab;
+    use crate::ingest::hdf5::room;
     use std::path::Path;
 
     /// 20 000 rows of numbers that pack and are all different, in one column or three.
@@ -268,7 +249,12 @@ mod tests {
         (0..20_000 * i32::try_from(columns).unwrap()).map(|i| i * 7919 % 100_003 - 50_000).collect()
     }
 
-    fn file(path: &Path, columns: usize, chunk_rows: usize, shuffle: bool) -> Dataset {
+    fn opened(path: &Path) -> Found {
+        let file = room::File::open(path, Limits::default(), Vec::new()).unwrap();
+        Found::at(&file, "/a").unwrap()
+    }
+
+    fn file(path: &Path, columns: usize, chunk_rows: usize, shuffle: bool) -> Found {
         let file = hdf5_metno::File::create(path).unwrap();
         let builder = file.new_dataset::<i32>();
         let builder = if shuffle { builder.shuffle() } else { builder }.deflate(4);
@@ -280,7 +266,7 @@ mod tests {
             dataset.write_raw(&numbers(columns)).unwrap();
         }
         file.close().unwrap();
-        hdf5_metno::File::open(path).unwrap().dataset("a").unwrap()
+        opened(path)
     }
 
     #[test]
@@ -291,9 +277,10 @@ mod tests {
         {
             let path = folder.path().join(format!("{columns}-{chunk_rows}.h5"));
             let dataset = file(&path, columns, chunk_rows, shuffle);
-            let whole = dataset.read_raw::<i32>().unwrap();
             for index in 0..columns {
-                let expected: Vec<i32> = whole.iter().copied().skip(index).step_by(columns).collect();
+                let expected: Vec<i32> = numbers(columns).into_iter().skip(index).step_by(columns).collect();
+                let slab = if columns == 1 { Slab::Whole } else { Slab::Column(index) };
+                assert_eq!(dataset.file.values::<i32>("/a", slab, 20_000), Ok(expected.clone()));
                 assert_eq!(column::<i32>(&dataset, index), Some(expected), "{columns} {chunk_rows} {index}");
             }
             // Another type than the stored one is the library's to convert.
@@ -304,13 +291,13 @@ mod tests {
     #[test]
     fn a_dataset_in_one_piece_is_what_was_written() {
         let folder = tempfile::tempdir().unwrap();
-        let written = hdf5_metno::File::create(folder.path().join("plain.h5")).unwrap();
+        let path = folder.path().join("plain.h5");
+        let written = hdf5_metno::File::create(&path).unwrap();
         let values: Vec<f32> =
             (0..100_003).map(|i: i32| 0.25 * f32::from(i16::try_from(i % 30_000).unwrap())).collect();
         written.new_dataset_builder().with_data(&values).create("a").unwrap();
-        written.flush().unwrap();
-        let dataset = written.dataset("a").unwrap();
-        assert_eq!(contiguous::<f32>(&dataset, values.len()), Some(values.clone()));
+        written.close().unwrap();
+        let dataset = opened(&path);
         assert_eq!(column::<f32>(&dataset, 0), Some(values));
         assert_eq!(column::<f64>(&dataset, 0), None);
     }
@@ -319,19 +306,21 @@ mod tests {
     fn what_is_damaged_or_not_there_is_left_to_the_library() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("damaged.h5");
-        let layout = Layout { rows: 999, columns: 1, is_deflated: true, is_shuffled: true, field: None };
-        let place = places(&file(&path, 1, 999, true), 0, &layout);
-        let place = place.unwrap().pop().unwrap();
+        let dataset = file(&path, 1, 999, true);
+        let Storage::Chunked { chunks: Some(chunks), .. } = &dataset.storage else { panic!("no chunks") };
+        let place = chunks.last().unwrap();
         let mut bytes = std::fs::read(&path).unwrap();
-        let middle = usize::try_from(place.at).unwrap() + place.length / 2;
-        bytes[middle] ^= 0x10;
+        bytes[usize::try_from(place.at).unwrap() + place.bytes / 2] ^= 0x10;
+        drop(dataset);
+        let path = folder.path().join("changed.h5");
         std::fs::write(&path, bytes).unwrap();
-        let dataset = hdf5_metno::File::open(&path).unwrap().dataset("a").unwrap();
-        assert_eq!(column::<i32>(&dataset, 0), None);
+        assert_eq!(column::<i32>(&opened(&path), 0), None);
         let path = folder.path().join("partly.h5");
         let written = hdf5_metno::File::create(&path).unwrap();
         let dataset = written.new_dataset::<i32>().deflate(1).chunk(5000).shape(20_000).create("a").unwrap();
         dataset.write_slice(&numbers(1)[..5000], 5000..10_000).unwrap();
-        assert_eq!(column::<i32>(&dataset, 0), None);
+        drop(dataset);
+        written.close().unwrap();
+        assert_eq!(column::<i32>(&opened(&path), 0), None);
     }
 }

@@ -1,9 +1,8 @@
 //! Attributes that state how often samples were taken to a rate.
 
 use super::super::stated_rate::{self, Agreement, StatedRate};
-use super::attributes::{Value, value};
+use super::attributes::{Place, Value, value};
 use super::dataset::Column;
-use hdf5_metno::Location;
 
 /// Attributes that hold a rate, Hz.
 const RATE_NAMES: [&str; 11] = [
@@ -99,13 +98,15 @@ fn plain(name: &str) -> String {
     name.chars().filter(|c| !matches!(c, '_' | ' ' | '-')).flat_map(char::to_lowercase).collect()
 }
 
+/// Whether an attribute of this name may state a rate.
+pub(super) fn is_named(name: &str) -> bool {
+    Meaning::of(name).is_some()
+}
+
 /// The rate that the attributes of `place` state for a column.
-pub(super) fn stated(place: &Location, column: &Column) -> Option<Stated> {
-    // The library hands over names of any bytes.
-    let names =
-        place.attr_names().ok()?.into_iter().filter_map(|name| String::from_utf8(name.into_bytes()).ok());
+pub(super) fn stated(place: &Place, column: &Column) -> Option<Stated> {
     let mut named: Vec<(Meaning, String)> =
-        names.filter_map(|name| Some((Meaning::of(&name)?, name))).collect();
+        place.iter().filter_map(|(name, _)| Some((Meaning::of(name)?, name.clone()))).collect();
     let order = |(meaning, name): &(Meaning, String)| {
         (meaning.is_alike, meaning.is_interval, meaning.place, name.clone())
     };

@@ -4,6 +4,7 @@ use super::super::csv::tests::cask_file;
 use super::tests::{Made, made, number, text, told, values};
 use super::*;
 use crate::data::{IssueCode, Severity};
+use hdf5_metno::File;
 use hdf5_metno::types::VarLenUnicode;
 
 /// 9000 samples at 20 kHz beside a dataset of their times in units of so many µs from `first` on.

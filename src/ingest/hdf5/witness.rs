@@ -29,7 +29,7 @@ impl Contradiction {
 
 /// Where `other`, as many values, contradicts `taken` and the seconds read from it by more than 0.1 % and what both are cut to.
 ///
-/// All its values are read only where the first and the last do not bear out those seconds; `may_read` is asked before.
+/// Its values are read for that; `may_read` is asked before.
 pub(super) fn contradiction(
     (taken, times_s): (&Column, &[f64]),
     other: &Column,
@@ -37,7 +37,7 @@ pub(super) fn contradiction(
 ) -> Option<Contradiction> {
     // What is no time by its unit says nothing.
     let (scale, factor, _) = attributes::time_scale(other).ok()?;
-    if matches!(scale, Scale::Unknown | Scale::Twofold(..)) || is_borne_out(times_s, other, scale, factor) {
+    if matches!(scale, Scale::Unknown | Scale::Twofold(..)) {
         return None;
     }
     let others = may_read(other).then(|| other.samples().ok())??;
@@ -45,6 +45,9 @@ pub(super) fn contradiction(
         Samples::F32(times) => times.into_iter().map(|t| factor * f64::from(t)).collect(),
         Samples::F64(times) => times.into_iter().map(|t| factor * t).collect(),
     };
+    if is_borne_out(times_s, &others, scale) {
+        return None;
+    }
     let (miss, says) = Pair::of(times_s, &others)?.contradiction(scale, false)?;
     let sources = [taken, other].map(Column::source);
     let fault = Fault {
@@ -58,12 +61,12 @@ pub(super) fn contradiction(
 }
 
 /// Whether from the first to the last value the same time goes by in any unit that may be meant.
-fn is_borne_out(times_s: &[f64], other: &Column, scale: Scale, factor: f64) -> bool {
-    let (Some((first, last)), [first_s, .., last_s]) = (other.ends(), times_s) else { return false };
+fn is_borne_out(times_s: &[f64], others: &[f64], scale: Scale) -> bool {
+    let ([first, .., last], [first_s, .., last_s]) = (others, times_s) else { return false };
     let units = match scale {
         Scale::Known(unit_s) => &[("", unit_s)],
         _ => &UNITS[..],
     };
-    let parts = units.iter().map(|unit| factor * (last - first) * unit.1 / (last_s - first_s));
+    let parts = units.iter().map(|unit| (last - first) * unit.1 / (last_s - first_s));
     parts.into_iter().any(|part| (part - 1.0).abs() <= RATE_TOLERANCE)
 }

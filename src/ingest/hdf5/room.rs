@@ -1,0 +1,412 @@
+//! An HDF5 file to what stands in it, by way of a process that holds the C library and can do nothing else.
+//!
+//! The library crashes, loops and takes memory without bound on files that are damaged or made to do harm. Where it does, that process
+//! ends, and the recording is refused; this one goes on.
+
+use super::super::error::IngestError;
+use super::answer::{Answer, Dataset, Object, Received, Request, Slab, receive, send};
+use super::fault::{self, Fault};
+use super::packed::Stored;
+use crate::ingest::Limits;
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
+use std::io::{self, BufReader, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::rc::Rc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// The word by which this program is started to take a file apart.
+pub(super) const WORD: &str = "__hdf5";
+
+/// The variable by which the C library loads no code at all, whatever filter a file names.
+pub(super) const NO_PLUGINS: (&str, &str) = ("HDF5_PLUGIN_PRELOAD", "::");
+
+/// Longest silence beside the time that reading takes. A call that touches only names, shapes and attributes ends within milliseconds
+/// from a disk, within a second from a share on a slow line.
+const PATIENCE: Duration = Duration::from_secs(20);
+/// What the slowest medium in use gives, a stick on USB 1.1.
+const SLOWEST_BYTES_PER_S: u64 = 1_000_000;
+/// All that is noted of a file. Ten thousand datasets with their attributes take 5 MB.
+const MOST_NOTED_BYTES: usize = 128 << 20;
+
+/// The program that is started.
+static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+
+/// Names the program that takes HDF5 files apart when started with [`WORD`]; the first name stays.
+pub(in super::super) fn use_program(program: &Path) {
+    let _ = PROGRAM.set(program.to_owned());
+}
+
+/// An open file, and what is known of it.
+pub(super) struct File {
+    pub path: PathBuf,
+    pub bytes: u64,
+    pub user_block: u64,
+    /// The library's version.
+    pub library: (u8, u8, u8),
+    pub limits: Limits,
+    link: RefCell<Link>,
+    known: RefCell<HashMap<String, Rc<Object>>>,
+    noted_bytes: Cell<usize>,
+    /// Why no more can be had from it.
+    lost: RefCell<Option<Fault>>,
+}
+
+impl File {
+    /// Opens the file and asks what stands at the paths that are `wanted`, in one step.
+    ///
+    /// # Errors
+    /// The library does not open it.
+    pub(super) fn open(path: &Path, limits: Limits, wanted: Vec<String>) -> Result<Rc<Self>, IngestError> {
+        let fault = |fault: Fault| fault::of_file(path, fault);
+        let mut link = Link::to(path).map_err(|refusal| fault(unstarted(&refusal)))?;
+        // A process that has ended already says why below.
+        let _ = link.ask(&Request::Look(wanted));
+        let (user_block, library) = match link.answer() {
+            Ok((Answer::Opened { user_block, library }, _)) => (user_block, library),
+            Ok((Answer::Refused(words), _)) => return Err(fault(fault::of_words(&words))),
+            _ => return Err(fault(link.end())),
+        };
+        let file = Self {
+            path: path.to_owned(),
+            bytes: std::fs::metadata(path).map_or(0, |metadata| metadata.len()),
+            user_block,
+            library,
+            limits,
+            link: RefCell::new(link),
+            known: RefCell::default(),
+            noted_bytes: Cell::new(0),
+            lost: RefCell::default(),
+        };
+        file.note();
+        file.whole()?;
+        Ok(Rc::new(file))
+    }
+
+    /// Whether all that was asked was answered.
+    ///
+    /// # Errors
+    /// The library broke off.
+    pub(super) fn whole(&self) -> Result<(), IngestError> {
+        self.lost.borrow().clone().map_or(Ok(()), |lost| Err(fault::of_file(&self.path, lost)))
+    }
+
+    /// What stands at an absolute path.
+    pub(super) fn object(&self, path: &str) -> Rc<Object> {
+        let known = || self.known.borrow().get(path).cloned();
+        known()
+            .or_else(|| {
+                self.ask(&Request::Look(vec![path.to_owned()]));
+                self.note();
+                known()
+            })
+            .unwrap_or_else(|| Rc::new(Object::Nothing))
+    }
+
+    /// Everything in the file, by path, in its order.
+    pub(super) fn walk(&self) -> Vec<(String, Rc<Object>)> {
+        self.ask(&Request::Walk);
+        self.note()
+    }
+
+    /// `count` numbers of a dataset.
+    pub(super) fn values<T: Stored>(&self, path: &str, slab: Slab, count: usize) -> Result<Vec<T>, Fault> {
+        let mut values = Vec::with_capacity(count);
+        self.ask(&Request::Read { path: path.to_owned(), number: T::NUMBER, slab });
+        loop {
+            if let Some(lost) = self.lost.borrow().clone() {
+                return Err(lost);
+            }
+            self.link.borrow().wait_for(count.saturating_mul(8) as u64);
+            let received = self.link.borrow_mut().receive();
+            match received {
+                Ok((Received::Values(bytes), _)) if bytes.len() / size_of::<T>() <= count - values.len() => {
+                    let numbers = bytes.chunks_exact(size_of::<T>());
+                    values.extend(numbers.map(|bytes| T::from_bytes(|i| bytes[i])));
+                }
+                Ok((Received::Message(Answer::Refused(words)), _)) => {
+                    self.note();
+                    return Err(fault::of_words(&words).at(path));
+                }
+                Ok((Received::Message(Answer::Done), _)) if values.len() == count => return Ok(values),
+                _ => self.lose(),
+            }
+        }
+    }
+
+    fn ask(&self, request: &Request) {
+        if self.lost.borrow().is_none() && self.link.borrow_mut().ask(request).is_err() {
+            self.lose();
+        }
+    }
+
+    /// Takes down what is found until all of a request is answered.
+    fn note(&self) -> Vec<(String, Rc<Object>)> {
+        let mut found = Vec::new();
+        while self.lost.borrow().is_none() {
+            let answer = self.link.borrow_mut().answer();
+            match answer {
+                Ok((Answer::Done, _)) => break,
+                Ok((Answer::Found(path, object), bytes)) if self.has_room_for(bytes) => {
+                    let sane = match object {
+                        Object::Dataset(told) if !told.is_sane(self.bytes) => Object::NotFollowed(
+                            "a dataset whose parts contradict each other: it is damaged".into(),
+                        ),
+                        object => object,
+                    };
+                    let object = Rc::new(sane);
+                    self.known.borrow_mut().insert(path.clone(), Rc::clone(&object));
+                    found.push((path, object));
+                }
+                _ => self.lose(),
+            }
+        }
+        found
+    }
+
+    fn has_room_for(&self, bytes: usize) -> bool {
+        let noted_bytes = self.noted_bytes.get().saturating_add(bytes);
+        self.noted_bytes.set(noted_bytes);
+        noted_bytes <= MOST_NOTED_BYTES
+    }
+
+    fn lose(&self) {
+        let why = self.link.borrow_mut().end();
+        self.lost.borrow_mut().get_or_insert(why);
+    }
+}
+
+/// A dataset in an open file.
+#[derive(Clone)]
+pub(super) struct Found {
+    pub file: Rc<File>,
+    object: Rc<Object>,
+}
+
+impl Found {
+    /// The dataset at an absolute path.
+    pub(super) fn at(file: &Rc<File>, path: &str) -> Option<Self> {
+        let object = file.object(path);
+        matches!(*object, Object::Dataset(_)).then(|| Self { file: Rc::clone(file), object })
+    }
+}
+
+impl std::ops::Deref for Found {
+    type Target = Dataset;
+
+    fn deref(&self) -> &Dataset {
+        match &*self.object {
+            Object::Dataset(dataset) => dataset,
+            _ => unreachable!("made of datasets only"),
+        }
+    }
+}
+
+/// The way to the library and back.
+struct Link {
+    to: Box<dyn Write>,
+    from: Box<dyn Read>,
+    process: Option<Watched>,
+}
+
+impl Link {
+    fn ask(&mut self, request: &Request) -> io::Result<()> {
+        self.wait_for(0);
+        send(&mut self.to, request)?;
+        self.to.flush()
+    }
+
+    /// An answer and its length in bytes.
+    fn answer(&mut self) -> io::Result<(Answer, usize)> {
+        match self.receive()? {
+            (Received::Message(answer), bytes) => Ok((answer, bytes)),
+            (Received::Values(_), _) => Err(io::ErrorKind::InvalidData.into()),
+        }
+    }
+
+    fn receive(&mut self) -> io::Result<(Received<Answer>, usize)> {
+        let mut counted = Counted { from: &mut self.from, bytes: 0 };
+        let received = receive(&mut counted)?;
+        let bytes = counted.bytes;
+        self.wait_for(0);
+        Ok((received, bytes))
+    }
+
+    /// The other side may be silent for as long as reading `bytes` takes.
+    fn wait_for(&self, bytes: u64) {
+        if let Some(process) = &self.process {
+            process.wait_for(bytes);
+        }
+    }
+
+    /// Ends the process and says why it could not go on.
+    fn end(&mut self) -> Fault {
+        let problem = match self.process.take().map(Watched::end) {
+            Some((_, true)) => format!("gave no sign of life for {} s", PATIENCE.as_secs()),
+            Some((Ok(status), false)) => ending(status),
+            Some((Err(_), false)) | None => "gave no answer that can be read".into(),
+        };
+        Fault {
+            problem: format!("the HDF5 library {problem}: the file is damaged, or made to do harm"),
+            mend: "copy it from the logger again; if it is sound, `h5repack IN OUT` writes it anew".into(),
+        }
+    }
+
+    #[cfg(not(test))]
+    fn to(path: &Path) -> io::Result<Self> {
+        Self::by_process(path)
+    }
+
+    /// The tests of this library are no program that could be started: they have the library on a thread, without a wall.
+    #[cfg(test)]
+    fn to(path: &Path) -> io::Result<Self> {
+        let ((mut requests, to), (from, mut answers)) = (io::pipe()?, io::pipe()?);
+        let path = path.to_owned();
+        std::thread::spawn(move || {
+            super::library::answer(&path, &mut requests, &mut answers, &mut |_, _| {})
+        });
+        Ok(Self { to: Box::new(BufWriter::new(to)), from: Box::new(BufReader::new(from)), process: None })
+    }
+
+    #[cfg_attr(test, allow(dead_code, reason = "tests have the library on a thread"))]
+    fn by_process(path: &Path) -> io::Result<Self> {
+        let program = PROGRAM.get().ok_or(io::ErrorKind::NotFound)?;
+        let mut command = Command::new(program);
+        // No plugin path, no other driver or connector; and plugins that lie in the usual folder are off too.
+        command.arg(WORD).arg(path.canonicalize()?).env_clear().env(NO_PLUGINS.0, NO_PLUGINS.1);
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+        #[cfg(unix)]
+        command.current_dir("/");
+        let mut child = command.spawn()?;
+        let pipes = child.stdin.take().zip(child.stdout.take()).ok_or(io::ErrorKind::BrokenPipe)?;
+        let (to, from) = (BufWriter::new(pipes.0), BufReader::with_capacity(1 << 16, pipes.1));
+        Ok(Self { to: Box::new(to), from: Box::new(from), process: Some(Watched::of(child)) })
+    }
+}
+
+fn unstarted(refusal: &io::Error) -> Fault {
+    Fault {
+        problem: match PROGRAM.get() {
+            Some(program) => format!(
+                "HDF5 is read by a process of its own, and {} could not be started: {}",
+                program.display(),
+                super::super::error::bare(refusal)
+            ),
+            None => "HDF5 is read by a process of its own, and no program was named for it".into(),
+        },
+        mend: "a program that uses this library names it: dropcheck::ingest::read_hdf5_with(program)".into(),
+    }
+}
+
+/// How the process ended, after "the HDF5 library".
+fn ending(status: ExitStatus) -> String {
+    #[cfg(unix)]
+    if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
+        use rustix::process::Signal;
+        let took_too_long = [Signal::XCPU.as_raw(), Signal::KILL.as_raw()].contains(&signal);
+        return if took_too_long {
+            "took more processor time or memory than reading it can need and was stopped".into()
+        } else {
+            format!("broke off in it (signal {signal})")
+        };
+    }
+    match status.code() {
+        Some(0) | None => "ended before it had answered".into(),
+        Some(code) => format!("broke off in it (status {code})"),
+    }
+}
+
+struct Counted<'a> {
+    from: &'a mut dyn Read,
+    bytes: usize,
+}
+
+impl Read for Counted<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.from.read(buffer)?;
+        self.bytes += read;
+        Ok(read)
+    }
+}
+
+/// A process that is ended where it is silent for too long.
+struct Watched {
+    child: Arc<Mutex<Child>>,
+    begun: Instant,
+    /// When it counts as silent, ms after it began.
+    silent_ms: Arc<AtomicU64>,
+    is_over: Arc<AtomicBool>,
+    was_silent: Arc<AtomicBool>,
+    watch: Option<JoinHandle<()>>,
+}
+
+impl Watched {
+    fn of(child: Child) -> Self {
+        let begun = Instant::now();
+        let patience_ms = u64::try_from(PATIENCE.as_millis()).unwrap_or(u64::MAX);
+        let mut watched = Self {
+            child: Arc::new(Mutex::new(child)),
+            begun,
+            silent_ms: Arc::new(AtomicU64::new(patience_ms)),
+            is_over: Arc::default(),
+            was_silent: Arc::default(),
+            watch: None,
+        };
+        let [is_over, was_silent] = [&watched.is_over, &watched.was_silent].map(Arc::clone);
+        let (child, silent_ms) = (Arc::clone(&watched.child), Arc::clone(&watched.silent_ms));
+        watched.watch = Some(std::thread::spawn(move || {
+            while !is_over.load(Ordering::Acquire) {
+                let silent = begun + Duration::from_millis(silent_ms.load(Ordering::Acquire));
+                let left = silent.saturating_duration_since(Instant::now());
+                if left.is_zero() {
+                    was_silent.store(true, Ordering::Release);
+                    break;
+                }
+                std::thread::park_timeout(left);
+            }
+            let mut child = child.lock().unwrap_or_else(PoisonError::into_inner);
+            let _ = child.kill();
+            // Waiting for its end here keeps the reader from waiting.
+            let _ = child.wait();
+        }));
+        watched
+    }
+
+    fn wait_for(&self, bytes: u64) {
+        let allowed = PATIENCE + Duration::from_secs(bytes / SLOWEST_BYTES_PER_S);
+        let silent_ms = (self.begun.elapsed().saturating_add(allowed)).as_millis();
+        self.silent_ms.store(u64::try_from(silent_ms).unwrap_or(u64::MAX), Ordering::Release);
+    }
+
+    /// Ends it: how it ended by itself, and whether it was silent for too long.
+    fn end(self) -> (io::Result<ExitStatus>, bool) {
+        let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
+        // What was killed by the system is about to end; what is well waits for requests.
+        let mut ended = child.try_wait();
+        for _ in 0..50 {
+            if !matches!(ended, Ok(None)) {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(2));
+            ended = child.try_wait();
+        }
+        let status = match ended {
+            Ok(Some(status)) => Ok(status),
+            _ => Err(io::ErrorKind::InvalidData.into()),
+        };
+        (status, self.was_silent.load(Ordering::Acquire))
+    }
+}
+
+impl Drop for Watched {
+    fn drop(&mut self) {
+        self.is_over.store(true, Ordering::Release);
+        if let Some(watch) = self.watch.take() {
+            watch.thread().unpark();
+        }
+    }
+}
