@@ -312,6 +312,7 @@ pub(crate) fn sticking(cask_file: &CaskFile) -> Setup {
         impact_velocity_m_s: cask_file.drop.impact_velocity_m_s,
         gravity_m_s2: cask_file.drop.gravity_m_s2,
         axial: crate::data::AxialClosure::Sticking,
+        second_s: 1.0,
     }
 }
 

@@ -66,6 +66,7 @@ impl Middle {
             impact_velocity_m_s: cask_file.drop.impact_velocity_m_s,
             gravity_m_s2: cask_file.drop.gravity_m_s2,
             axial: AxialClosure::Sticking,
+            second_s: 1.0,
         };
         let flight = analysis.result.flight.clone().expect("a flight");
         let events = analysis.result.events;

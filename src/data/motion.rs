@@ -36,6 +36,8 @@ pub struct Setup {
     pub gravity_m_s2: f64,
     /// How the axial velocity during contact is had.
     pub axial: AxialClosure,
+    /// How long a second of the recorder's clock lasts, s: 1 where its rate is as stated.
+    pub second_s: f64,
 }
 
 /// Where the axial velocity during contact comes from.

@@ -19,6 +19,8 @@ pub struct Tolerances {
     pub inertia: f64,
     /// Contact law, as a share of the way from the stated law to the other one.
     pub friction: f64,
+    /// Rate of the recorder's clock, as a share of it; all channels share it.
+    pub clock: f64,
 }
 
 impl Default for Tolerances {
@@ -33,6 +35,7 @@ impl Default for Tolerances {
             cog_m: 0.01,
             inertia: 0.02,
             friction: 0.02,
+            clock: 0.0005,
         }
     }
 }

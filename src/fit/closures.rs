@@ -69,7 +69,7 @@ impl Observable {
                 Some((1.0 + scale) * rest_m_s2 - cross * g * sin - g * cos)
             }
             // g t = v0   (35)
-            Self::Fall { fall_s } => Some(g * fall_s - setup.impact_velocity_m_s),
+            Self::Fall { fall_s } => Some(g * fall_s * setup.second_s - setup.impact_velocity_m_s),
         }
     }
 

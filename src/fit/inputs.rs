@@ -51,6 +51,7 @@ enum Change {
     CentreOfGravity { by_m: f64 },
     Inertia { share: f64 },
     Law { share: f64 },
+    Clock { share: f64 },
 }
 
 impl Inputs {
@@ -116,6 +117,7 @@ impl Inputs {
             Change::CentreOfGravity { by_m } => self.setup.cog_m += by * by_m,
             Change::Inertia { share } => self.inertia_m2 = self.inertia_m2.map(|i| i * (1.0 + by * share)),
             Change::Law { share } => self.law_share += by * share,
+            Change::Clock { share } => self.setup.second_s += by * share,
         }
     }
 }
@@ -154,6 +156,8 @@ pub(super) fn inputs(measured: &Measured, motion: &Motion) -> Vec<Input> {
         let size = format!("{:.0} % of rough to smooth", 100.0 * share);
         add("contact law", size, Change::Law { share });
     }
+    let share = known.clock / 2.0;
+    add("recorder's clock", format!("{:.3} %", 100.0 * share), Change::Clock { share });
     all
 }
 

@@ -86,8 +86,9 @@ fn by_channels(measured: &Measured, plain: &FlightFit, reading: ChannelReading, 
     let v0_m_s = measured.setup.impact_velocity_m_s;
     let (first_left_m_s, second_left_m_s) = (left_m_s(End::First), left_m_s(End::Second));
     let u_m_s = |value_m_s: f64, left_m_s: f64| {
-        let by_scale = measured.tolerances.calibration / 2.0 * (value_m_s + v0_m_s);
-        left_m_s.hypot(by_scale).hypot(measured.tolerances.impact_velocity / 2.0 * v0_m_s)
+        let known = &measured.tolerances;
+        let by_scale = known.calibration.hypot(known.clock) / 2.0 * (value_m_s + v0_m_s);
+        left_m_s.hypot(by_scale).hypot(known.impact_velocity / 2.0 * v0_m_s)
     };
     let speed =
         reading.second_m_s.map(|v| Estimate::new(v.abs(), COVERAGE * u_m_s(v, second_left_m_s), "m/s"));

@@ -55,6 +55,8 @@ pub(super) struct Histories<'a> {
     axial: Vec<(usize, f64, f64)>,
     contact_s: f64,
     length_s: f64,
+    /// How long a second of the recorder's clock lasts, s.
+    second_s: f64,
     /// Ringing of each channel over the contact on a grid of [`STEPS`], m/s.
     bending: Vec<Vec<f64>>,
 }
@@ -82,10 +84,22 @@ impl<'a> Histories<'a> {
             .filter(|&i| signals[i].axis == Axis::Axial)
             .map(|i| (i, signals[i].position_m, signals[i].offset_m))
             .collect();
-        let mut histories =
-            Self { velocities, corrections_m_s, axial, contact_s, length_s, bending: Vec::new() };
+        let mut histories = Self {
+            velocities,
+            corrections_m_s,
+            axial,
+            contact_s,
+            length_s,
+            second_s: 1.0,
+            bending: Vec::new(),
+        };
         histories.take_off_bending(fit, line);
         Some(histories)
+    }
+
+    /// The same where a second of the recorder's clock lasts so long: every integral is as much longer.
+    pub fn at_rate(self, second_s: f64) -> Self {
+        Self { second_s, ..self }
     }
 
     /// Finds what rings in each channel during the contact, and leaves the corrections what that does not explain.
@@ -137,7 +151,7 @@ impl<'a> Histories<'a> {
         self.bending.get(index).and_then(|b| b.get(step)).copied().unwrap_or(0.0)
     }
 
-    /// ∫f of a channel since before contact, ringing led out in proportion to time, m/s.
+    /// ∫f of a channel from before contact to a recorded time, ringing led out in proportion to time, m/s.
     pub fn at(&self, index: usize, time_s: f64) -> f64 {
         let share = ((time_s - self.contact_s) / self.length_s).clamp(0.0, 1.0);
         let position = share * f64::from(STEPS);
@@ -146,7 +160,8 @@ impl<'a> Histories<'a> {
         let (a, b) =
             (self.bending_m_s(index, step), self.bending_m_s(index, (step + 1).min(usize::from(STEPS))));
         let bending_m_s = a + position.fract() * (b - a);
-        self.velocities[index].at(time_s) - bending_m_s + share * self.corrections_m_s[index]
+        self.second_s
+            * (self.velocities[index].at(time_s) - bending_m_s + share * self.corrections_m_s[index])
     }
 
     /// Mean over the axial channels of ∫f_ξ of their place on the axis, m/s, and their mean position, m; `None` without any.

@@ -59,13 +59,15 @@ fn follow(
     let contact_s = events.first_contact_s?;
     let separation_s = events.separation_s?;
     let line = Line::through(&integrated.signals, setup.cog_m)?;
-    let histories = Histories::new(integrated, fit, &line, (contact_s, separation_s))?;
+    let histories =
+        Histories::new(integrated, fit, &line, (contact_s, separation_s))?.at_rate(setup.second_s);
     let mut body = Contact::start(setup, contact_s);
-    let step_s = (separation_s - contact_s) / f64::from(CONTACT_STEPS);
+    let recorded_s = (separation_s - contact_s) / f64::from(CONTACT_STEPS);
+    let step_s = recorded_s * setup.second_s;
     record(&body.state);
     let (mut turned_rad2_s, mut angular_impulse_m2_s) = (0.0, 0.0);
     for i in 1..=CONTACT_STEPS {
-        let time_s = contact_s + f64::from(i) * step_s;
+        let time_s = contact_s + f64::from(i) * recorded_s;
         let (before, before_by) = (body.state, body.angle_by);
         turned_rad2_s += before.angular_velocity_rad_s.powi(2) * step_s;
         let (transverse_m_s, rotation_rad_s) = line.at(&histories, time_s, turned_rad2_s);
@@ -79,8 +81,9 @@ fn follow(
     let impulse_ratio = separation.horizontal_velocity_m_s
         / (separation.vertical_velocity_m_s
             + setup.impact_velocity_m_s
-            + setup.gravity_m_s2 * (separation_s - contact_s));
-    let slap_down = events.slap_down_s.map(|t| fly(setup, &separation, t));
+            + setup.gravity_m_s2 * (separation.time_s - contact_s));
+    let slap_down =
+        events.slap_down_s.map(|t| fly(setup, &separation, contact_s + (t - contact_s) * setup.second_s));
     let ahead_m = setup.length_m - setup.cog_m;
     Some(Motion {
         separation,
@@ -350,6 +353,7 @@ mod tests {
             impact_velocity_m_s: 13.0,
             gravity_m_s2: 9.81,
             axial,
+            second_s: 1.0,
         };
         reconstruct(&Integrated::over(&signals, 0.01), &fit, &events, &setup).expect("two channels apart")
     }

@@ -15,7 +15,7 @@ pub(super) struct Tolerance {
 }
 
 /// All of them, in the cask file's order.
-pub(super) const TOLERANCES: [Tolerance; 8] = [
+pub(super) const TOLERANCES: [Tolerance; 9] = [
     Tolerance {
         key: "angle_deg",
         input: "drop angle",
@@ -72,6 +72,13 @@ pub(super) const TOLERANCES: [Tolerance; 8] = [
         unit: " % of rough to smooth",
         value: |t| 100.0 * t.friction,
     },
+    Tolerance {
+        key: "clock_percent",
+        input: "recorder's clock",
+        name: "recorder's clock",
+        unit: " %",
+        value: |t| 100.0 * t.clock,
+    },
 ];
 
 /// Whether the cask file leaves this key of `[tolerance]` to its default.
@@ -112,7 +119,7 @@ mod tests {
         assert_eq!(said("tolerance of drop angle").origin, "cask file");
         assert_eq!(said("tolerance of position of a sensor").value, "± 10 mm (95 %)");
         assert_eq!(said("tolerance of inertia").origin, "default");
-        assert_eq!(settings.len(), 8);
+        assert_eq!(settings.len(), 9);
     }
 
     #[test]

@@ -94,6 +94,7 @@ angle_deg = nan             # {FILL_IN}: inclination of the axis above the horiz
 # cog_m = 0.01              # centre of gravity
 # inertia_percent = 2.0
 # friction_percent = 2.0    # contact law, of the way from rough to smooth
+# clock_percent = 0.05      # rate of the recorder's clock
 
 # [corrections]             # all are made; false leaves one out
 # offset = true             # mean of the free fall
@@ -320,6 +321,7 @@ mod tests {
             ("cog_m", d.cog_m),
             ("inertia_percent", 100.0 * d.inertia),
             ("friction_percent", 100.0 * d.friction),
+            ("clock_percent", 100.0 * d.clock),
         ];
         assert_eq!(stated.len(), expected.len());
         for (key, value) in expected {

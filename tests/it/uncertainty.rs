@@ -1,6 +1,8 @@
 //! The linear propagation of the uncertainty against draws of its inputs (JCGM 101), and the ladder on a committed recording.
 
-use dropcheck::data::{AxialClosure, End, Estimate, ReconstructionRung, RivalLaw, Samples, Setup, Verdict};
+use dropcheck::data::{
+    AxialClosure, End, Estimate, ReconstructionRung, Recording, RivalLaw, Samples, Setup, Verdict,
+};
 use dropcheck::{condition, events, fit, ingest, motion};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -31,6 +33,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         impact_velocity_m_s: file.drop.impact_velocity_m_s,
         gravity_m_s2: file.drop.gravity_m_s2,
         axial: AxialClosure::Sticking,
+        second_s: 1.0,
     };
     let u_s = |time: Option<Estimate>| time.map_or(0.0, |t| t.u95 / 2.0);
     let measured = fit::Measured {
@@ -60,6 +63,66 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         [(speed_m_s, linear.speed.expect("a slap-down").u95 / 2.0), (k, linear.k.u95 / 2.0)]
     {
         assert!((by_draws / by_slopes - 1.0).abs() < 0.045, "{by_draws} by draws, {by_slopes} by slopes");
+    }
+}
+
+/// The fixture as a recorder whose clock is slow by a share would have written it.
+fn by_a_slow_clock(recording: &Recording, share: f64) -> Recording {
+    let mut recording = recording.clone();
+    for channel in &mut recording.channels {
+        channel.sample_rate_hz *= 1.0 + share;
+        channel.start_s /= 1.0 + share;
+    }
+    recording
+}
+
+#[test]
+fn the_clock_contributes_what_another_rate_changes() {
+    let file = ingest::cask_file(&fixture("anf18-german.toml")).expect("a cask file");
+    let recording = ingest::read(&fixture("anf18-german.csv"), &file, &|_| ()).expect("a recording");
+    let stated = |recording: &Recording| {
+        let result = dropcheck::analyze(recording, &file).result;
+        let speed = result.slap_down.speed.expect("a slap-down");
+        (result.k.expect("an impact"), speed, result.budget)
+    };
+    let (k, _, budget) = stated(&recording);
+    let clock = budget.iter().find(|c| c.input == "recorder's clock").expect("an input of its own");
+    assert_eq!(clock.standard_uncertainty, "0.025 %");
+    let u = file.tolerances.clock / 2.0;
+    let k_by_clock = clock.k.expect("k");
+    // All that L gains in the contact is in proportion to it: k v0 + v0. That the cask turns by as much more meanwhile adds 1e-3 of it.
+    assert!((k_by_clock / ((1.0 + k.value) * u) - 1.0).abs() < 2e-3, "{k_by_clock}");
+    let share = 0.02;
+    let ((k_slow, slow, _), (k_fast, fast, _)) =
+        (stated(&by_a_slow_clock(&recording, share)), stated(&by_a_slow_clock(&recording, -share)));
+    for (slow, fast, by_clock) in [(k_slow, k_fast, clock.k), (slow, fast, clock.speed_m_s)] {
+        let (change, expected) =
+            ((slow.value - fast.value).abs() * u / (2.0 * share), by_clock.expect("a share"));
+        // At another rate an event lies on another part of a sample: 0.1 ms of fall are 1 mm/s of 260, and 4e-5 of 0.054.
+        assert!((change / expected - 1.0).abs() < 0.02, "{change} by rates, {expected} by slopes");
+    }
+}
+
+#[test]
+fn a_rate_off_by_less_than_the_stated_tolerance_leaves_the_truth_in_its_interval() {
+    let mut file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
+    let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
+    let truth: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(fixture("anf18-json.truth.json")).expect("a truth"))
+            .expect("JSON");
+    // Off by a share, with a stated tolerance in percent: whether the intervals of k and speed hold the truth.
+    let mut holds = |share: f64, clock_percent: f64| {
+        file.tolerances.clock = clock_percent / 100.0;
+        let result = dropcheck::analyze(&by_a_slow_clock(&recording, share), &file).result;
+        [(result.k, "k"), (result.slap_down.speed, "speed")].map(|(stated, key)| {
+            let stated = stated.expect(key);
+            (stated.value - truth[key].as_f64().expect(key)).abs() <= stated.u95
+        })
+    };
+    for sign in [-1.0, 1.0] {
+        assert_eq!(holds(sign * 0.001, 0.2), [true; 2]);
+        assert_eq!(holds(sign * 0.02, 4.0), [true; 2]);
+        assert!(!holds(sign * 0.02, 0.05)[0], "k by a clock 2 % off");
     }
 }
 

@@ -5,7 +5,7 @@ use super::section::Section;
 use crate::data::{Corrections, Tolerances};
 
 /// Keys of `[tolerance]`, each a 95 % half-width in the unit of its ending.
-pub(super) const TOLERANCE_KEYS: [&str; 8] = [
+pub(super) const TOLERANCE_KEYS: [&str; 9] = [
     "angle_deg",
     "impact_velocity_percent",
     "calibration_percent",
@@ -14,6 +14,7 @@ pub(super) const TOLERANCE_KEYS: [&str; 8] = [
     "cog_m",
     "inertia_percent",
     "friction_percent",
+    "clock_percent",
 ];
 
 /// Keys of `[corrections]`, each true or false.
@@ -54,7 +55,8 @@ pub(super) fn tolerances(
             "position_m" => stated.position_m = given.value,
             "cog_m" => stated.cog_m = given.value,
             "inertia_percent" => stated.inertia = share,
-            _ => stated.friction = share,
+            "friction_percent" => stated.friction = share,
+            _ => stated.clock = share,
         }
     }
     Ok(stated)
@@ -96,7 +98,9 @@ mod tests {
 
     #[test]
     fn what_is_left_out_is_a_default_and_said_to_be_one() {
-        let file = parsed("[tolerance]\nangle_deg = 1\ncalibration_percent = 5\n").expect("a sound file");
+        let stated = "[tolerance]\nangle_deg = 1\ncalibration_percent = 5\nclock_percent = 2\n";
+        let file = parsed(stated).expect("a sound file");
+        assert!((file.tolerances.clock - 0.02).abs() < 1e-12);
         assert!((file.tolerances.angle_rad.to_degrees() - 1.0).abs() < 1e-12);
         assert!((file.tolerances.calibration - 0.05).abs() < 1e-12);
         assert!(file.defaults.iter().any(|d| d == "tolerance.position_m"));
@@ -114,6 +118,8 @@ mod tests {
         let said = |more: &str| parsed(more).expect_err("nonsense");
         assert!(said("[tolerance]\nangle_deg = -1\n").contains("line 8"));
         assert!(said("[tolerance]\ninertia_percent = 120\n").contains("more than the thing itself"));
+        assert!(said("[tolerance]\nclock_percent = 101\n").contains("more than the thing itself"));
+        assert!(said("[tolerance]\nclock_percent = -0.1\n").contains("line 8"));
         assert!(said("[tolerance]\nangle = 1\n").contains("angle"));
         assert!(said("[corrections]\noffset = \"no\"\n").contains("neither true nor false"));
     }
