@@ -337,7 +337,7 @@ fn place<S: Number>(
     missing::report_gaps(&fit, &times_s, &mut issues);
     if fit.rms_s > STEADY_PART * fit.period_s && fit.max_s > 0.75 * fit.resolution_s {
         let moved = resample::resample(&times_s, &samples, &fit);
-        issues.push(jitter_note(&fit, &moved.error));
+        issues.push(jitter_note(&fit, fit::two_periods(&times_s), &moved.error));
         let gaps = missing::spans(&moved.samples);
         return Ok(Placed {
             start_s: moved.start_s,
@@ -364,18 +364,23 @@ fn rate_contradiction(declared_hz: f64, own_hz: f64) -> Issue {
     )
 }
 
-fn jitter_note(fit: &Fit, error: &resample::Difference) -> Issue {
+fn jitter_note(fit: &Fit, two_periods_s: Option<(f64, f64)>, error: &resample::Difference) -> Issue {
     /// In intervals: late stamps, with a gap or two that they make up, stay below; a clock 2 % off for a thousand samples is beyond.
     const MOST_LATE: f64 = 2.0;
     let is_clock = fit.rms_s > MOST_LATE * fit.period_s;
-    let asked = if is_clock {
-        "; so far off is no jitter but a clock that ran at another rate for a while, was set or began anew: look at the times"
-    } else {
-        ""
+    let asked = match two_periods_s {
+        Some((short_s, long_s)) => format!(
+            "; they rise at {:.6} Hz in one part and at {:.6} Hz in another, which is no jitter but a clock that changed its rate: look at \
+             the times; where the samples were taken evenly, take the times out in a copy and state sample_rate_hz",
+            1.0 / short_s,
+            1.0 / long_s
+        ),
+        None if is_clock => "; so far off is no jitter but a clock that ran at another rate for a while, was set or began anew: look at the times".into(),
+        None => String::new(),
     };
     Issue::new(
         IssueCode::TimeJitter,
-        if is_clock { Severity::Warning } else { Severity::Note },
+        if is_clock || two_periods_s.is_some() { Severity::Warning } else { Severity::Note },
         format!(
             "times lie {:.3e} s (RMS, {:.1} % of the sample interval) off a uniform base at {:.6} Hz, {:.3e} s at most; \
              the samples were interpolated onto it. Cubic and linear interpolation differ by {:.2} % of the largest \

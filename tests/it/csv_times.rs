@@ -228,3 +228,30 @@ fn a_slow_recording_in_seconds_stays_readable() {
     let asked: Vec<&Value> = issues.iter().filter(|issue| issue["code"] == "time_jitter").collect();
     assert!(asked.len() == 1 && asked[0]["severity"] == "warning", "{asked:?}");
 }
+
+#[test]
+fn a_time_step_that_changes_on_the_way_asks_for_a_look() {
+    const CHANGED: f64 = 0.0141;
+    let table = fs::read_to_string(fixture("anf18-german.csv")).expect("the recording");
+    let mut text = String::new();
+    for line in table.lines() {
+        let (time, cells) = line.split_once(';').unwrap_or((line, ""));
+        match time.replace(',', ".").parse::<f64>() {
+            Ok(at_s) if at_s > CHANGED => {
+                let late = format!("{:.7}", at_s + 0.02 * (at_s - CHANGED)).replace('.', ",");
+                let _ = writeln!(text, "{late};{cells}");
+            }
+            _ => text = text + line + "\n",
+        }
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("drop.csv");
+    fs::write(&path, text).expect("a temporary file");
+    let answer = analyze(&path, &fixture("anf18-german.toml"));
+    assert_eq!(answer.status, 1, "{}{}", answer.stdout, answer.stderr);
+    let result = answer.json();
+    let issues = result["quality"].as_array().expect("issues");
+    let asked = issues.iter().find(|i| i["code"] == "time_jitter" && i["severity"] == "warning");
+    let said = asked.expect("a warning")["message"].as_str().expect("words");
+    assert!(said.contains("at 9803.9215") && said.contains("at 10000.0000"), "{said}");
+}

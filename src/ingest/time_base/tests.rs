@@ -1,6 +1,8 @@
 //! What the time base must keep: values where times are steady, places where they are not.
 
 use super::*;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 use std::f64::consts::TAU;
 
 fn codes(uniform: &Uniform) -> Vec<IssueCode> {
@@ -273,6 +275,42 @@ fn a_clock_that_changes_its_rate_or_begins_anew_is_no_jitter() {
     // A tenth of an interval early or late is jitter.
     let late = |i: usize| even(i) + 1e-5 * (as_f64(i * i % 7) - 3.0) / 3.0;
     assert!(!told(&(0..6000).map(late).collect::<Vec<_>>()));
+}
+
+#[test]
+fn a_step_that_changes_for_good_is_no_jitter_and_stamps_that_wander_are() {
+    let told = |count: usize, time_in_intervals: &dyn Fn(usize) -> f64| {
+        let times_s: Vec<f64> = (0..count).map(|i| 1e-4 * time_in_intervals(i)).collect();
+        let uniform = from_times(&times_s, Samples::F64(vec![1.0; count]), None).unwrap();
+        uniform.issues.iter().any(|issue| issue.message.contains("changed its rate"))
+    };
+    // From a row on 2 or 1 % longer, printed to a tenth of an interval.
+    for from in [146, 700, 1300] {
+        for longer in [0.02, 0.01] {
+            let rounded =
+                |i: usize| (10.0 * (as_f64(i) + longer * as_f64(i.saturating_sub(from)))).round() / 10.0;
+            assert!(told(1480, &rounded), "{longer} longer from {from} on");
+        }
+    }
+    // Within a tenth of what a stated rate may be off.
+    assert!(!told(1480, &|i| as_f64(i) + 1e-4 * as_f64(i.saturating_sub(146))));
+    let mut chance = ChaCha8Rng::seed_from_u64(7);
+    let mut chance = move || chance.random_range(-1.0..1.0);
+    // Stamps early or late by up to 0.3 of an interval, each by itself or each beside the one before; a recorder that goes on at another
+    // phase after each pause.
+    for count in [200, 1480, 6000] {
+        let each: Vec<f64> = (0..count).map(|_| 0.3 * chance()).collect();
+        assert!(!told(count, &|i| as_f64(i) + each[i]));
+        let walk: Vec<f64> = each
+            .iter()
+            .scan(0.0, |sum, x| {
+                *sum += 0.1 * x;
+                Some(*sum)
+            })
+            .collect();
+        assert!(!told(count, &|i| as_f64(i) + walk[i]));
+        assert!(!told(count, &|i| as_f64(i) + 7.4 * (as_f64(i) / 150.0).floor()));
+    }
 }
 
 #[test]
