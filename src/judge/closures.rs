@@ -103,8 +103,11 @@ fn fall(drop: &Drop, events: &Events) -> String {
     } else {
         format!("the drop height of {} m", drop.height_m)
     };
+    let off = fall_s / expected_s - 1.0;
+    let which = if off < 0.0 { "slow" } else { "fast" };
     format!(
-        "the recording shows a free fall of {fall_s:.3} s, which is {height_m:.2} m and {velocity_m_s:.2} m/s; {stated} in the cask file needs {expected_s:.3} s: check it, and the recording's sample rate"
+        "the recording shows a free fall of {fall_s:.3} s, which is {height_m:.2} m and {velocity_m_s:.2} m/s; {stated} in the cask file needs {expected_s:.3} s: check it; if it is right the recorder's clock is {:.1} % {which}: state its true rate as `sample_rate_hz`",
+        100.0 * off.abs()
     )
 }
 

@@ -127,6 +127,21 @@ fn a_rate_off_by_less_than_the_stated_tolerance_leaves_the_truth_in_its_interval
 }
 
 #[test]
+fn a_clock_that_the_free_fall_contradicts_is_named() {
+    let file = ingest::cask_file(&fixture("vhlw-rest.toml")).expect("a cask file");
+    let recording = ingest::read(&fixture("vhlw-rest.h5"), &file, &|_| ()).expect("a recording");
+    for (share, words) in [(0.02, "clock is 2.0 % slow"), (-0.02, "clock is 2.0 % fast")] {
+        let result = dropcheck::analyze(&by_a_slow_clock(&recording, share), &file).result;
+        assert_eq!(result.verdict, Verdict::Review);
+        assert!(result.quality.iter().any(|i| i.message.contains(words)), "{:?}", result.quality);
+    }
+    let mut known = file.clone();
+    known.tolerances.clock = 0.04;
+    let result = dropcheck::analyze(&by_a_slow_clock(&recording, 0.02), &known).result;
+    assert!(!result.quality.iter().any(|i| i.message.contains("clock is")), "{:?}", result.quality);
+}
+
+#[test]
 fn every_rung_speaks_and_the_budget_adds_up() {
     let file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
     let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
