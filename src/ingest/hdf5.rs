@@ -131,6 +131,10 @@ impl Room<'_> {
             let what = format!("a block of {} takes", column.source());
             return Err(limits.refusal(path, &what, part_bytes));
         }
+        let unpacked_bytes = limits.unpacked_bytes(self.file.bytes);
+        if self.held_bytes > unpacked_bytes {
+            return Err(limits.refusal(path, "the samples of the channels read unpack to", unpacked_bytes));
+        }
         if self.held_bytes > samples_bytes {
             return Err(limits.refusal(path, "the samples of the channels read take", samples_bytes));
         }

@@ -83,7 +83,7 @@ fn wordy() -> Made {
         let b = samples(file, "b")?;
         attribute(&b, "unit", &VarLenAscii::from_ascii(PLACE).unwrap())?;
         attribute(&b, "fs", &PLACE.parse::<FixedUnicode<16>>().unwrap())?;
-        attribute(&**file, "sample_rate_hz", &PLACE.parse::<VarLenUnicode>().unwrap())?;
+        attribute(file, "sample_rate_hz", &PLACE.parse::<VarLenUnicode>().unwrap())?;
         file.create_group("QQQQQQQ")?;
         samples(file, "QQQQQQQ/x")?;
         file.new_dataset_builder().with_data(&[Record { QQQQQQQ: 1.0, b: 2.0 }; 20]).create("r").map(drop)

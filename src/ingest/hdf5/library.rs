@@ -279,7 +279,7 @@ fn described(dataset: &hdf5_metno::Dataset) -> hdf5_metno::Result<Dataset> {
     }
     let space = dataset.space()?;
     told.shape = (!space.is_null()).then(|| space.shape());
-    told.filters = dataset.filters().into_iter().map(filter).collect();
+    told.filters = dataset.filters().iter().map(filter).collect();
     told.stored_bytes = dataset.storage_size();
     told.attributes = attributes_of(dataset);
     told.storage = match dataset.chunk() {
@@ -290,11 +290,11 @@ fn described(dataset: &hdf5_metno::Dataset) -> hdf5_metno::Result<Dataset> {
     Ok(told)
 }
 
-fn filter(filter: hdf5_metno::filters::Filter) -> Filter {
+fn filter(filter: &hdf5_metno::filters::Filter) -> Filter {
     use hdf5_metno::filters::Filter as Known;
     match filter {
         Known::Shuffle => Filter::Shuffle,
-        Known::Deflate(level) => Filter::Deflate(level),
+        Known::Deflate(level) => Filter::Deflate(*level),
         Known::Fletcher32 => Filter::Fletcher32,
         Known::LZF => Filter::Lzf,
         Known::SZip(..) => Filter::Other("SZIP".into()),

@@ -74,7 +74,9 @@ pub(in super::super) fn list(
 }
 
 fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
-    let mut effort = Effort { limits: file.limits, values_left: MOST_VALUES, clocks: Clocks::default() };
+    // No number takes fewer than four bytes once it is unpacked and turned.
+    let values_left = MOST_VALUES.min(file.limits.unpacked_bytes(file.bytes) / 4);
+    let mut effort = Effort { limits: file.limits, values_left, clocks: Clocks::default() };
     let objects = file.walk();
     let (mut channels, mut broken) = (Vec::new(), Vec::new());
     let mut issues: Vec<Issue> = Vec::new();

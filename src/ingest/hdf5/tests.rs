@@ -222,6 +222,13 @@ fn a_shape_that_would_fill_the_memory_is_refused_before_it_is_read() {
     assert!(matches!(refused, IngestError::TooLarge { .. }), "{refused}");
     let listing = list(&made.path, Limits::of_memory(0), &|_| {}).unwrap();
     assert_eq!((listing.channels[0].samples, listing.channels[0].range), (Some(5_000_000), None));
+    // 80 MB from as many kilobytes: a sensor that stands still beside others that do not is in a larger file.
+    let bomb = self::made(|file| {
+        let zeros = vec![0.0_f64; 10_000_000];
+        file.new_dataset_builder().deflate(9).chunk(500_000).with_data(&zeros).create("a").map(drop)
+    });
+    let refused = read(&bomb.path, &cask, Limits::of_memory(4 << 30), &|_| {}).unwrap_err();
+    assert!(refused.to_string().contains("unpack to"), "{refused}");
 }
 
 #[test]

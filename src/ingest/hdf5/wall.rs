@@ -140,7 +140,7 @@ mod reach {
         rules.insert(libc::SYS_prlimit64, where_bits(0, any_bit, 0)?);
         rules.insert(libc::SYS_tgkill, where_bits(0, any_bit, own)?);
         rules.insert(libc::SYS_fcntl, where_bits(1, any_bit, bits(libc::F_GETFL))?);
-        let not_permitted = SeccompAction::Errno(bits(libc::EPERM) as u32);
+        let not_permitted = SeccompAction::Errno(libc::EPERM.unsigned_abs());
         let architecture = std::env::consts::ARCH.try_into()?;
         Ok(SeccompFilter::new(rules, not_permitted, SeccompAction::Allow, architecture)?.try_into()?)
     }
