@@ -19,6 +19,7 @@ const SIZES: [usize; 2] = [100_000, 1_000_000];
 const KINDS: [Kind; 5] = [Kind::Hdf5, Kind::Hdf5Gzip, Kind::Csv, Kind::McapJson, Kind::McapProtobuf];
 
 fn main() {
+    ingest::read_hdf5_with(std::path::Path::new(env!("CARGO_BIN_EXE_dropcheck")));
     divan::Divan::from_args().sample_count(20).main();
 }
 

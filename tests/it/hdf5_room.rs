@@ -151,6 +151,18 @@ fn nothing_but_the_recording_is_read() {
     }
 }
 
+#[test]
+fn what_only_a_newer_library_stores_is_named() {
+    let cask = fixture("vhlw-rest.toml");
+    let folder = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(cask).unwrap().replace("/daq/A1", "/a");
+    let cask = folder.path().join("cask.toml");
+    std::fs::write(&cask, text).unwrap();
+    let answer = crate::run::analyze(&fixture("stored-by-hdf5-2.h5"), &cask);
+    assert_eq!(answer.status, 2);
+    assert!(answer.stderr.contains("only HDF5 2.0 and newer store it"), "{}", answer.stderr);
+}
+
 /// A file whose samples are packed by a filter that this program does not have.
 fn packed_by_a_stranger() -> Made {
     let made = made(|file| {
@@ -221,7 +233,7 @@ fn no_file_is_opened_but_the_recording() {
     let trace = folder.path().join("trace");
     let (recording, cask) = (fixture("vhlw-rest.h5"), fixture("vhlw-rest.toml"));
     let status = Command::new("strace")
-        .args(["-f", "-e", "trace=open,openat,execve,seccomp,landlock_restrict_self", "-o"])
+        .args(["-ff", "-e", "trace=open,openat,execve,seccomp,landlock_restrict_self", "-o"])
         .arg(&trace)
         .arg(env!("CARGO_BIN_EXE_dropcheck"))
         .args([
@@ -235,20 +247,20 @@ fn no_file_is_opened_but_the_recording() {
         .output()
         .expect("strace runs");
     assert!(status.status.success(), "{status:?}");
-    let trace = std::fs::read_to_string(trace).unwrap();
+    // One file a thread and process.
+    let traces = std::fs::read_dir(folder.path()).unwrap().flatten();
+    let traces: Vec<String> = traces.map(|entry| std::fs::read_to_string(entry.path()).unwrap()).collect();
     let of_system = ["/proc/self/", "/sys/fs/cgroup/", "/etc/ld.so.", "/lib", "/usr/lib", "/dev/null"];
     let is_known = |path: &str| {
         of_system.iter().any(|place| path.starts_with(place))
             || [&recording, &cask].iter().any(|input| Path::new(path) == input.as_path())
     };
-    for line in trace.lines().filter(|line| line.contains("open") && !line.contains("= -1")) {
-        let path = line.split('"').nth(1).unwrap_or_default();
-        assert!(is_known(path), "{line}");
+    let opens = |line: &&str| line.starts_with("open") && !line.contains("= -1");
+    for line in traces.iter().flat_map(|trace| trace.lines()).filter(opens) {
+        assert!(is_known(line.split('"').nth(1).unwrap_or_default()), "{line}");
     }
-    let reader = trace.lines().find(|line| line.contains("\"__hdf5\"")).expect("a process for the library");
-    let process = reader.split(' ').next().unwrap();
-    let own: Vec<&str> = trace.lines().filter(|line| line.starts_with(process)).collect();
-    let closed = own.iter().position(|line| line.contains("seccomp(")).expect("a wall");
-    let opened: Vec<&&str> = own[closed..].iter().filter(|line| line.contains("open")).collect();
+    let reader = traces.iter().find(|trace| trace.contains("\"__hdf5\"")).expect("a process for the library");
+    let (_, walled) = reader.split_once("seccomp(").expect("a wall");
+    let opened: Vec<&str> = walled.lines().filter(opens).collect();
     assert!(opened.len() == 1 && opened[0].contains("vhlw-rest.h5"), "{opened:?}");
 }
