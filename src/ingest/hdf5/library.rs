@@ -273,16 +273,17 @@ fn described(dataset: &hdf5_metno::Dataset) -> hdf5_metno::Result<Dataset> {
     if made.get_layout()? == Layout::Virtual {
         return Ok(told);
     }
-    if !made.external().is_empty() {
+    if !made.get_external()?.is_empty() {
         told.storage = Storage::External;
         return Ok(told);
     }
     let space = dataset.space()?;
     told.shape = (!space.is_null()).then(|| space.shape());
-    told.filters = dataset.filters().iter().map(filter).collect();
+    // What cannot be told of the filters must not count as none.
+    told.filters = made.get_filters()?.iter().map(filter).collect();
     told.stored_bytes = dataset.storage_size();
     told.attributes = attributes_of(dataset);
-    told.storage = match dataset.chunk() {
+    told.storage = match made.get_chunk()? {
         Some(shape) => Storage::Chunked { shape, chunks: chunks(dataset, &told.filters) },
         None if dataset.layout() == Layout::Compact => Storage::Compact,
         None => Storage::Contiguous(dataset.offset()),

@@ -277,7 +277,8 @@ impl Link {
         let program = PROGRAM.get().ok_or(io::ErrorKind::NotFound)?;
         let mut command = Command::new(program);
         // No plugin path, no other driver or connector; and plugins that lie in the usual folder are off too.
-        command.arg(WORD).arg(path.canonicalize()?).env_clear().env(NO_PLUGINS.0, NO_PLUGINS.1);
+        let path = if cfg!(unix) { path.canonicalize()? } else { std::path::absolute(path)? };
+        command.arg(WORD).arg(path).env_clear().env(NO_PLUGINS.0, NO_PLUGINS.1);
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         #[cfg(unix)]
         command.current_dir("/");
