@@ -10,6 +10,9 @@ use std::path::PathBuf;
 /// at 45°, 0.5 m at 60°): less than the first impact has crushed off it, so there is nothing left to strike.
 pub const GRAZE_SHARE: f64 = 0.01;
 
+/// More channels than any drop test has, and `init` gives each a table of twenty lines.
+pub const MOST_CHANNELS: usize = 1000;
+
 /// An end of the cask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]

@@ -30,6 +30,8 @@ pub enum IssueCode {
     Truncated,
     /// A part of the file does not decode or fails its check sum.
     Damaged,
+    /// More than a listing shows.
+    Unlisted,
     /// NaN, infinite or empty samples.
     NonFinite,
     /// The channel's own times jitter and were put on a uniform base.

@@ -31,7 +31,7 @@ pub use analysis::{
 pub use campaign::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber, Scored};
 pub use cask::{
     Axis, BENDING_WAVE_M_S, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice,
-    GRAZE_SHARE, Source, Unit,
+    GRAZE_SHARE, MOST_CHANNELS, Source, Unit,
 };
 pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, MotionCurve};

@@ -2,7 +2,7 @@
 
 use super::likely::{self, NoChannels, VOLTAGES, is_time, names_end};
 use super::text::{line, printable};
-use crate::data::{ListedChannel, Listing, Severity, acceleration_unit_m_s2};
+use crate::data::{ListedChannel, Listing, MOST_CHANNELS, Severity, acceleration_unit_m_s2};
 use std::fmt::Write;
 
 /// The mark behind every value that only the user knows.
@@ -13,7 +13,9 @@ const FILL_IN: &str = "FILL IN";
 /// # Errors
 /// [`NoChannels`] where nothing that looks like an acceleration can be read.
 pub fn cask_file(listing: &Listing) -> Result<String, NoChannels> {
-    let taken = likely::accelerations(listing);
+    let mut taken = likely::accelerations(listing);
+    let beyond = taken.len().saturating_sub(MOST_CHANNELS);
+    taken.truncate(MOST_CHANNELS);
     if taken.is_empty() {
         return Err(likely::none(listing));
     }
@@ -29,6 +31,14 @@ pub fn cask_file(listing: &Listing) -> Result<String, NoChannels> {
             devices.len() - 1
         });
         channel(&mut out, i, place.is_multiple_of(2), listed);
+    }
+    if beyond > 0 {
+        line(
+            &mut out,
+            format_args!(
+                "\n# {beyond} more look like these; a cask file holds at most {MOST_CHANNELS} channels."
+            ),
+        );
     }
     let left = listing.channels.iter().filter(|c| !taken.iter().any(|t| t.source == c.source));
     let (unreadable, other): (Vec<&ListedChannel>, Vec<_>) = left.partition(|c| c.unreadable.is_some());

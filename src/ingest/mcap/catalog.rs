@@ -48,6 +48,7 @@ impl Catalog {
                     let info = ChannelInfo {
                         topic: &channel.topic,
                         message_encoding: &channel.message_encoding,
+                        schema_id: channel.schema_id,
                         schema: self.schemas.get(&channel.schema_id),
                     };
                     sink.channel(channel.id, &info);

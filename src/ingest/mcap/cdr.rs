@@ -1,11 +1,13 @@
 //! ROS 2 messages in CDR to the wanted fields, by the schema's `ros2msg` text.
 
 use super::plan::{
-    Decode, Leaf, MOST_LEAVES, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns,
+    Decode, LONGEST_PATH_BYTES, Leaf, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want,
+    unix_ns,
 };
 use super::ros_type::{Field, Length, Type};
 use crate::data::Samples;
 use re_cdr::{BigEndian, CdrReader, LittleEndian, numeric::CdrEndian};
+use std::sync::Arc;
 
 /// A serialised message begins with two bytes of representation and two of options.
 const ENCAPSULATION_BYTES: usize = 4;
@@ -14,16 +16,18 @@ const ENCAPSULATION_BYTES: usize = 4;
 #[derive(Debug)]
 pub(super) struct Cdr {
     plan: Plan,
-    fields: Vec<Field>,
+    fields: Arc<[Field]>,
+    /// So many of the fields hold all that is wanted.
+    needed: usize,
 }
 
 impl Cdr {
     /// For the fields of `plan` in messages of `fields`; fields that they lack stay missing.
-    pub(super) fn new(plan: &Plan, fields: &[Field]) -> Self {
+    pub(super) fn new(plan: &Plan, fields: &Arc<[Field]>) -> Self {
         // What lies behind the last wanted field need not be walked through.
         let needed =
             fields.iter().rposition(|field| plan.root.field(&field.name).is_some()).map_or(0, |at| at + 1);
-        Self { plan: plan.clone(), fields: fields.iter().take(needed).cloned().collect() }
+        Self { plan: plan.clone(), fields: fields.clone(), needed }
     }
 }
 
@@ -32,11 +36,14 @@ impl Decode for Cdr {
         let (header, body) = data
             .split_at_checked(ENCAPSULATION_BYTES)
             .ok_or_else(|| "the message is shorter than its CDR header".to_owned())?;
+        let needed = self.fields.get(..self.needed).unwrap_or_default();
         match header {
-            [0, 0, ..] => Walk::<BigEndian>::new(body, &self.plan.wants, slots)
-                .fields(&self.fields, Some(&self.plan.root)),
-            [0, 1, ..] => Walk::<LittleEndian>::new(body, &self.plan.wants, slots)
-                .fields(&self.fields, Some(&self.plan.root)),
+            [0, 0, ..] => {
+                Walk::<BigEndian>::new(body, &self.plan.wants, slots).fields(needed, Some(&self.plan.root))
+            }
+            [0, 1, ..] => {
+                Walk::<LittleEndian>::new(body, &self.plan.wants, slots).fields(needed, Some(&self.plan.root))
+            }
             _ => Err(format!(
                 "the message is in the representation {header:02x?}; plain CDR of either byte order is read"
             )),
@@ -213,11 +220,13 @@ fn in_words(error: re_cdr::Error) -> String {
 pub(super) fn leaves(fields: &[Field]) -> Vec<Leaf> {
     let mut found = Vec::new();
     descend(fields, "", &mut found);
-    found.truncate(MOST_LEAVES);
     found
 }
 
 fn descend(fields: &[Field], path: &str, found: &mut Vec<Leaf>) {
+    if path.len() > LONGEST_PATH_BYTES {
+        return;
+    }
     for field in fields {
         let below = if path.is_empty() { field.name.clone() } else { format!("{path}.{}", field.name) };
         match &field.kind {

@@ -64,9 +64,9 @@ fn mcap_records() {
     let limits = Limits::of_memory(0);
     fuzz::run("mcap", &files(), &[b"\x05", b"\x06\0\0\0\0\0\0\0\0", b"zstd", b"lz4"], |bytes| {
         let length = bytes.len() as u64;
-        let mut listing = ListWalk::new(limits);
+        let mut listing = ListWalk::new(limits, length);
         let listed = scan_in(Cursor::new(bytes), length, limits, &mut listing, &|_| ());
-        let mut reading = Reading::new(&cask.channels);
+        let mut reading = Reading::new(&cask.channels, limits, length);
         match scan_in(Cursor::new(bytes), length, limits, &mut reading, &|_| ()) {
             Ok(scanned) => {
                 let issues: Vec<String> = scanned.issues().into_iter().map(|issue| issue.message).collect();
@@ -112,11 +112,11 @@ fn cdr_messages() {
     let text = "std_msgs/Header header\nstring[] names\nwstring wide\nfloat64[] list\nint16[3] three\n\
                 Inner[] inners\nbool flag\n===\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\n\
                 string frame_id\n===\nMSG: my/Inner\nfloat32[] values\nuint64 count\n";
-    let imus = ros_type::parse("sensor_msgs/msg/Imu", IMU_TEXT).unwrap();
-    let mixed = ros_type::parse("my/msg/Mixed", text).unwrap();
+    let imus = ros_type::parse("sensor_msgs/msg/Imu", IMU_TEXT, &mut 20_000).unwrap();
+    let mixed = ros_type::parse("my/msg/Mixed", text, &mut 20_000).unwrap();
     for (name, fields) in [("cdr", imus), ("cdr-mixed", mixed)] {
         let plan = plan_of(&cdr::leaves(&fields));
-        let decoder = Cdr::new(&plan, &fields);
+        let decoder = Cdr::new(&plan, &fields.into());
         let seeds = [imu::<LittleEndian>(ZERO_NS, 1.5), imu::<BigEndian>(ZERO_NS, -2.5), vec![0, 1, 0, 0]];
         fuzz::run(name, &seeds, &[b"\0\0\0\x01", b"\x03\0\0\0"], |bytes| decoded(&decoder, &plan, bytes));
     }
@@ -140,12 +140,12 @@ fn ros2msg_schemas() {
         b"A[] b\n",
     ];
     fuzz::run("ros2msg", &[IMU_TEXT.into(), b"A a\n===\nMSG: my/A\nint8 x\n".to_vec()], &words, |bytes| {
-        match ros_type::parse("my/msg/Top", &String::from_utf8_lossy(bytes)) {
+        match ros_type::parse("my/msg/Top", &String::from_utf8_lossy(bytes), &mut 20_000) {
             Err(problem) => problem,
             Ok(fields) => {
                 let leaves = cdr::leaves(&fields);
                 let plan = plan_of(&leaves);
-                format!("{} {}", leaves.len(), decoded(&Cdr::new(&plan, &fields), &plan, &recorded))
+                format!("{} {}", leaves.len(), decoded(&Cdr::new(&plan, &fields.into()), &plan, &recorded))
             }
         }
     });

@@ -3,7 +3,8 @@
 mod fields;
 
 use super::plan::{
-    Decode, Leaf, MOST_LEAVES, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns,
+    Decode, LONGEST_PATH_BYTES, Leaf, MOST_LEAVES, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots,
+    Value, Want, unix_ns,
 };
 use crate::data::Samples;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
@@ -335,7 +336,8 @@ pub(super) fn leaves(message: &[u8]) -> Vec<Leaf> {
 }
 
 fn descend(value: &serde_json::Value, path: &str, depth: usize, found: &mut Vec<Leaf>) {
-    if found.len() >= MOST_LEAVES {
+    // One more than are listed tells that there are more.
+    if found.len() > MOST_LEAVES || path.len() > LONGEST_PATH_BYTES {
         return;
     }
     match value {

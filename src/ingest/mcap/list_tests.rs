@@ -1,6 +1,7 @@
 //! Tests of listing: counts, fields, rates, and files that hold nothing or are cut.
 
 use super::*;
+use crate::data::{IssueCode, Severity};
 use crate::ingest::mcap::written::{
     IMU_TEXT, ZERO_NS, block_descriptors, channel, closed, imu, json_file, message, protobuf_block,
 };
@@ -72,6 +73,52 @@ fn a_clock_that_starts_at_zero_is_kept_and_one_lone_zero_falls_back() {
     assert_eq!(of(&[0, 0, 0]), (Some(3), Some(0.002), true));
     assert_eq!(of(&[0]), (Some(1), None, true));
     assert_eq!(of(&[ZERO_NS, ZERO_NS + 5_000_000]), (Some(2), Some(0.005), true));
+}
+
+#[test]
+fn what_many_topics_hold_together_is_listed_to_a_bound_that_is_said() {
+    let fields = |count: usize| (0..count).map(|i| format!("float64 f{i}\n")).collect::<String>();
+    let bytes = closed(WriteOptions::new(), |writer| {
+        for i in 0..30 {
+            let text = fields(if i == 0 { 2005 } else { 600 });
+            let schema = (&*format!("p/S{i}"), "ros2msg", text.as_bytes());
+            channel(writer, &format!("/t{i}"), "cdr", schema);
+        }
+    });
+    let listing = listing(&bytes);
+    assert_eq!(listing.channels.len(), 10_000);
+    let [note] = &listing.issues[..] else { panic!("{:?}", listing.issues) };
+    assert_eq!((note.code, note.severity), (IssueCode::Unlisted, Severity::Note));
+    // 2000 + 13 · 600 = 9800: of the fifteenth topic 200 fields are listed, of those behind it none.
+    let left_out = "15 more topics and 405 more fields";
+    assert!(note.message.contains(left_out), "{}", note.message);
+}
+
+#[test]
+fn a_long_name_counts_for_as_many_as_its_kilobytes() {
+    let text: String = (0..100).map(|i| format!("float64 f{i}\n")).collect();
+    let bytes = closed(WriteOptions::new(), |writer| {
+        channel(writer, &"t".repeat(1 << 20), "cdr", ("p/S", "ros2msg", text.as_bytes()));
+    });
+    // 1024 and one for the topic, and each field repeats its name.
+    assert_eq!(listing(&bytes).channels.len(), 9);
+}
+
+#[test]
+fn types_that_double_are_taken_apart_to_a_bound() {
+    let levels: String =
+        (1..12).map(|level| format!("===\nMSG: p/A{level}\nA{} a\nA{0} b\n", level + 1)).collect();
+    let text = format!("A1 a\nA1 b\n{levels}===\nMSG: p/A12\nstring s\n");
+    let bytes = closed(WriteOptions::new(), |writer| {
+        for i in 0..100 {
+            channel(writer, &format!("/t{i}"), "cdr", (&*format!("p/S{i}"), "ros2msg", text.as_bytes()));
+        }
+    });
+    let listing = listing(&bytes);
+    let refused = listing.channels.iter().filter(|channel| channel.unreadable.is_some()).count();
+    assert!(listing.channels.len() == 100 && (80..100).contains(&refused), "{refused}");
+    let last = listing.channels[99].unreadable.as_deref().unwrap_or_default();
+    assert!(last.contains("--max-memory"), "{last}");
 }
 
 #[test]

@@ -7,35 +7,87 @@ use super::plan::{Decode, Leaf, Plan};
 use super::protobuf::{self, Protobuf};
 use super::ros_type;
 use super::scanned::ChannelInfo;
+use crate::ingest::Limits;
 use prost_reflect::MessageDescriptor;
+use std::collections::HashMap;
+use std::sync::Arc;
 
+/// A schema is larger than this and the file only to do harm: those of sensors take tens of kilobytes, and each byte of one that is
+/// no schema takes five hundred as it is taken apart.
+const ALWAYS_READ_BYTES: u64 = 256 << 10;
 /// Message encodings that are read.
 const READ: &str = "those that can be read are json, protobuf, and cdr with ros2msg";
 
 /// What is known of a channel's messages.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) enum MessageType {
     /// Each message tells its own fields.
     Json,
     /// From the descriptor set.
     Protobuf(MessageDescriptor),
     /// From the `ros2msg` text.
-    Cdr(Vec<ros_type::Field>),
+    Cdr(Arc<[ros_type::Field]>),
 }
 
-impl MessageType {
+/// The message types of a file: each schema is taken apart once, all of them within a limit.
+#[derive(Debug)]
+pub(super) struct MessageTypes {
+    known: HashMap<(u16, String), Result<MessageType, String>>,
+    left_bytes: u64,
+    largest_bytes: u64,
+}
+
+impl MessageTypes {
+    /// For a file of `file_bytes`.
+    pub(super) fn new(limits: Limits, file_bytes: u64) -> Self {
+        let left_bytes = limits.schemas_bytes(file_bytes);
+        Self {
+            known: HashMap::new(),
+            left_bytes,
+            largest_bytes: file_bytes.saturating_add(ALWAYS_READ_BYTES),
+        }
+    }
+
     /// The type of a channel's messages.
     ///
     /// # Errors
     /// Why its messages cannot be read.
-    pub(super) fn new(info: &ChannelInfo) -> Result<Self, String> {
+    pub(super) fn of(&mut self, info: &ChannelInfo) -> Result<MessageType, String> {
+        /// What is kept of a type besides its text takes a few hundred bytes.
+        const LEAST_BYTES: u64 = 256;
+        /// A field of `ros2msg` is paid for by itself: two lines of text double the number of fields.
+        const FIELD_BYTES: u64 = size_of::<ros_type::Field>() as u64;
+        let key = (info.schema_id, info.message_encoding.to_owned());
+        if let Some(known) = self.known.get(&key) {
+            return known.clone();
+        }
+        let text_bytes = info.schema.map_or(0, |schema| schema.data.len() as u64);
+        if LEAST_BYTES + text_bytes > self.left_bytes.min(self.largest_bytes) {
+            return Err(format!(
+                "its schema of {text_bytes} bytes is more than is read of the schemas of such a file; allow more with --max-memory"
+            ));
+        }
+        let mut left = ros_type::MOST_FIELDS;
+        let found = MessageType::new(info, &mut left);
+        let fields_bytes = (ros_type::MOST_FIELDS - left) as u64 * FIELD_BYTES;
+        self.left_bytes = self.left_bytes.saturating_sub(LEAST_BYTES + text_bytes + fields_bytes);
+        self.known.insert(key, found.clone());
+        found
+    }
+}
+
+impl MessageType {
+    /// The type of a channel's messages.
+    /// As [`MessageTypes::of`] says; the fields of a `ros2msg` are taken from what is `left`.
+    fn new(info: &ChannelInfo, left: &mut usize) -> Result<Self, String> {
         match (info.message_encoding, info.schema) {
             ("json", _) => Ok(Self::Json),
             ("protobuf", Some(schema)) if schema.encoding == "protobuf" => {
                 descriptors::message_type(&schema.name, &schema.data).map(Self::Protobuf)
             }
             ("cdr", Some(schema)) if schema.encoding == "ros2msg" => {
-                ros_type::parse(&schema.name, &String::from_utf8_lossy(&schema.data)).map(Self::Cdr)
+                ros_type::parse(&schema.name, &String::from_utf8_lossy(&schema.data), left)
+                    .map(|fields| Self::Cdr(fields.into()))
             }
             (encoding @ ("protobuf" | "cdr"), None) => {
                 Err(format!("its messages are encoded as {encoding:?} and their schema is missing"))

@@ -21,6 +21,7 @@ mod scan;
 mod scanned;
 mod shared_stamps;
 mod summary;
+mod topic;
 mod twice;
 mod wave;
 mod wire;

@@ -268,6 +268,8 @@ pub(super) fn unix_ns(seconds: i64, nanoseconds: i64) -> i64 {
 
 /// A message with more numeric fields is no recording of sensors; each is looked for in every message.
 pub(super) const MOST_LEAVES: usize = 2000;
+/// What lies below a longer path has none that a person would write; each of its fields would repeat it.
+pub(super) const LONGEST_PATH_BYTES: usize = 1024;
 
 /// A field that a message type has.
 #[derive(Debug, Clone, PartialEq, Eq)]

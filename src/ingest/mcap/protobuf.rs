@@ -1,7 +1,8 @@
 //! Protobuf messages to the wanted fields, by the schema's own descriptor set and straight from the wire.
 
 use super::plan::{
-    Decode, Leaf, MOST_LEAVES, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want, unix_ns,
+    Decode, LONGEST_PATH_BYTES, Leaf, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want,
+    unix_ns,
 };
 use super::wire::{Item, Wire};
 use crate::data::Samples;
@@ -17,12 +18,11 @@ pub(super) fn leaves(message: &MessageDescriptor) -> Vec<Leaf> {
     let mut found = Vec::new();
     let mut left = MOST_VISITED;
     descend(message, "", DEEPEST, &mut left, &mut found);
-    found.truncate(MOST_LEAVES);
     found
 }
 
 fn descend(message: &MessageDescriptor, path: &str, depth: usize, left: &mut usize, found: &mut Vec<Leaf>) {
-    if depth == 0 || is_time(message) {
+    if depth == 0 || path.len() > LONGEST_PATH_BYTES || is_time(message) {
         return;
     }
     for field in message.fields() {

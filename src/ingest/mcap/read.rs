@@ -1,19 +1,19 @@
 //! An MCAP file and a cask file to raw channels: only the topics that are named are decoded.
 
 use super::column::{CLOCK_IS_SET_NS, Column, message_time, seconds_from};
-use super::message_type::{MessageType, implied_unit};
+use super::message_type::{MessageTypes, implied_unit};
 use super::path::{self, FieldPath};
 use super::plan::{Decode, Leaf, Plan, Slots};
 use super::scan::scan;
 use super::scanned::{ChannelInfo, Scanned, Sink};
 use super::{complaint, json};
 use crate::data::{CaskFile, ChannelSpec, Issue, IssueCode, Severity};
-use crate::ingest::error::IngestError;
+use crate::ingest::error::{self, IngestError};
 use crate::ingest::{Limits, Progress, RawChannel, RawRecording};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Reads the channels that `cask_file` names.
 ///
@@ -25,7 +25,8 @@ pub(in crate::ingest) fn read(
     limits: Limits,
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
-    let mut reading = Reading::new(&cask_file.channels);
+    let bytes = std::fs::metadata(path).map_err(|source| error::io(path, source))?.len();
+    let mut reading = Reading::new(&cask_file.channels, limits, bytes);
     let scanned = scan(path, limits, &mut reading, progress)?;
     reading.finish(path, &scanned)
 }
@@ -57,7 +58,10 @@ pub(super) struct Reading<'a> {
     pub(super) topics: Vec<String>,
     known_topics: HashSet<String>,
     pub(super) wanted: Vec<Wanted>,
-    decodings: HashMap<u16, Decoding>,
+    types: MessageTypes,
+    decodings: HashMap<u16, Arc<Decoding>>,
+    /// By topic, schema and encoding: a file may announce one of them under every number.
+    same: HashMap<(String, u16, String), Arc<Decoding>>,
     slots: Slots,
     /// Emptied parts, for their memory.
     spare: Mutex<Vec<(Vec<Wanted>, Slots)>>,
@@ -81,7 +85,12 @@ impl Sink for Reading<'_> {
         if wanted.is_empty() {
             return;
         }
-        match MessageType::new(info) {
+        let same = (info.topic.to_owned(), info.schema_id, info.message_encoding.to_owned());
+        if let Some(known) = self.same.get(&same) {
+            self.decodings.insert(id, known.clone());
+            return;
+        }
+        match self.types.of(info) {
             Ok(message_type) => {
                 let leaves = message_type.leaves();
                 let mut paths = Vec::new();
@@ -98,7 +107,9 @@ impl Sink for Reading<'_> {
                 let plan = Plan::new(&paths);
                 let decoder = message_type.decoder(&plan);
                 let is_json = leaves.is_none();
-                self.decodings.insert(id, Decoding { plan, decoder, wanted, is_json });
+                let decoding = Arc::new(Decoding { plan, decoder, wanted, is_json });
+                self.decodings.insert(id, decoding.clone());
+                self.same.insert(same, decoding);
             }
             Err(reason) => {
                 for &index in &wanted {
@@ -199,13 +210,15 @@ impl Decoding {
 }
 
 impl<'a> Reading<'a> {
-    pub(super) fn new(specs: &'a [ChannelSpec]) -> Self {
+    pub(super) fn new(specs: &'a [ChannelSpec], limits: Limits, file_bytes: u64) -> Self {
         Self {
             specs,
             topics: Vec::new(),
             known_topics: HashSet::new(),
             wanted: Vec::new(),
+            types: MessageTypes::new(limits, file_bytes),
             decodings: HashMap::new(),
+            same: HashMap::new(),
             slots: Slots::default(),
             spare: Mutex::default(),
         }

@@ -4,11 +4,12 @@ use re_ros_msg::MessageSchema;
 use re_ros_msg::message_spec::{
     ArraySize, BuiltInType, ComplexType, MessageSpecification, Type as Parsed, message_package,
 };
+use std::collections::HashMap;
 
 /// ROS messages are not nested deeper; a type within itself is damage.
 const DEEPEST: usize = 16;
 /// More fields than any message has: types that double at each level would fill the memory.
-const MOST_FIELDS: usize = 20_000;
+pub(super) const MOST_FIELDS: usize = 20_000;
 
 /// A field of a message.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,19 +65,26 @@ impl Type {
     }
 }
 
-/// The fields of the message `name` from its schema's text.
+/// The fields of the message `name` from its schema's text; each is taken from what is `left`.
 ///
 /// # Errors
 /// Why the text gives no type.
-pub(super) fn parse(name: &str, text: &str) -> Result<Vec<Field>, String> {
+pub(super) fn parse(name: &str, text: &str, left: &mut usize) -> Result<Vec<Field>, String> {
     let schema =
         MessageSchema::parse(name, text).map_err(|error| format!("its schema does not parse: {error:#}"))?;
-    let mut left = MOST_FIELDS;
-    Resolver { schema: &schema }.message(&schema.spec, DEEPEST, &mut left)
+    let mut resolver = Resolver { of_package: HashMap::new(), of_any: HashMap::new() };
+    for spec in &schema.dependencies {
+        let name = spec.name.rsplit('/').next().unwrap_or_default();
+        resolver.of_package.entry((message_package(&spec.name), name)).or_insert(spec);
+        resolver.of_any.entry(name).or_insert(spec);
+    }
+    resolver.message(&schema.spec, DEEPEST, left)
 }
 
+/// The named types, the first of a name.
 struct Resolver<'a> {
-    schema: &'a MessageSchema,
+    of_package: HashMap<(Option<&'a str>, &'a str), &'a MessageSpecification>,
+    of_any: HashMap<&'a str, &'a MessageSpecification>,
 }
 
 impl Resolver<'_> {
@@ -133,15 +141,9 @@ impl Resolver<'_> {
             ComplexType::Absolute { package, name } => (Some(package.trim_end_matches("/msg")), name),
             ComplexType::Relative { name } => (package, name),
         };
-        let of_package = |spec: &&MessageSpecification| {
-            spec.name.rsplit('/').next() == Some(name) && message_package(&spec.name) == package
-        };
-        let of_any = |spec: &&MessageSpecification| spec.name.rsplit('/').next() == Some(name);
-        let specs = &self.schema.dependencies;
         let is_relative = matches!(complex, ComplexType::Relative { .. });
-        let found =
-            specs.iter().find(of_package).or_else(|| specs.iter().find(of_any).filter(|_| is_relative));
-        match found {
+        let of_any = || self.of_any.get(name.as_str()).filter(|_| is_relative);
+        match self.of_package.get(&(package, name.as_str())).or_else(of_any) {
             Some(spec) => Ok(Type::Message(self.message(spec, depth - 1, left)?)),
             // Some writers leave out what every ROS 2 installation has.
             None if name == "Time" || name == "Duration" => Ok(Type::Message(vec![
@@ -177,7 +179,7 @@ mod tests {
     #[test]
     fn named_types_are_put_in_place_and_a_missing_time_is_known() {
         let text = "std_msgs/Header header\nVec v\nfloat64[9] c\nint16[<=4] d\n================\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n================\nMSG: my/Vec\nfloat32 x # comment\nuint8 OFF=0\n";
-        let fields = parse("my/msg/Top", text).unwrap();
+        let fields = parse("my/msg/Top", text, &mut 20_000).unwrap();
         let Type::Message(header) = &fields[0].kind else { panic!() };
         assert!(matches!(&header[0].kind, Type::Message(time) if time.len() == 2));
         assert_eq!(fields[1].kind, Type::Message(vec![Field { name: "x".into(), kind: Type::F32 }]));
@@ -188,7 +190,7 @@ mod tests {
     #[test]
     fn a_type_in_itself_and_an_unknown_one_are_errors() {
         let itself = "Node next\n===\nMSG: my/Node\nNode next\n";
-        assert!(parse("my/msg/Top", itself).unwrap_err().contains("in itself"));
-        assert!(parse("my/msg/Top", "other/Thing t\n").unwrap_err().contains("Thing"));
+        assert!(parse("my/msg/Top", itself, &mut 20_000).unwrap_err().contains("in itself"));
+        assert!(parse("my/msg/Top", "other/Thing t\n", &mut 20_000).unwrap_err().contains("Thing"));
     }
 }

@@ -17,6 +17,8 @@ pub(super) struct SchemaInfo {
 pub(super) struct ChannelInfo<'a> {
     pub(super) topic: &'a str,
     pub(super) message_encoding: &'a str,
+    /// 0 where it has none.
+    pub(super) schema_id: u16,
     pub(super) schema: Option<&'a SchemaInfo>,
 }
 
