@@ -12,10 +12,8 @@ const FIXED_HEADER_BYTES: u64 = 8 + 8 + 8 + 4 + 4 + 8;
 const FIXED_HEADER_LENGTH: usize = 40;
 /// Longer than any name of a compression ("zstd", "lz4"); a longer one is damage.
 const LONGEST_COMPRESSION_NAME_BYTES: u64 = 64;
-/// zstd shrinks even constant text less than 4096-fold.
-const LARGEST_EXPANSION: u64 = 4096;
-/// A small file may hold a record of this size; it keeps a nonsense length from taking memory.
-const ALWAYS_ALLOWED_BYTES: u64 = 1 << 24;
+/// zstd needs three bytes for a block, which unpacks to 128 KiB at most (RFC 8878): more is damage, not a claim.
+const LARGEST_EXPANSION: u64 = (128 << 10) / 3 + 1;
 /// So much is asked of the file at a time, whatever the record claims.
 const STEP_BYTES: u64 = 1 << 20;
 
@@ -52,19 +50,19 @@ pub(super) struct Chunks {
 }
 
 /// A chunk's header, as far as it is needed.
-struct Header {
+pub(super) struct Header {
     bytes: Vec<u8>,
     compression: String,
     span_ns: (u64, u64),
-    uncompressed: u64,
+    /// What it claims to unpack to, bytes.
+    pub(super) uncompressed: u64,
     compressed: u64,
 }
 
 impl Chunks {
-    /// For a file of `file_bytes` with records of at most `largest_record_bytes`.
-    pub(super) fn new(file_bytes: u64, largest_record_bytes: u64) -> Self {
-        let limit = file_bytes.saturating_mul(LARGEST_EXPANSION).saturating_add(ALWAYS_ALLOWED_BYTES);
-        let record_limit = usize::try_from(limit.min(largest_record_bytes)).unwrap_or(usize::MAX);
+    /// For records of at most `largest_record_bytes`.
+    pub(super) fn new(largest_record_bytes: u64) -> Self {
+        let record_limit = usize::try_from(largest_record_bytes).unwrap_or(usize::MAX);
         Self { reader: fresh(record_limit), record_limit }
     }
 
@@ -88,7 +86,7 @@ impl Chunks {
             });
         };
         let data = body - header.bytes.len() as u64;
-        if !is_cut && header.compressed > data {
+        if !is_cut && !header.is_possible(body) {
             skip(file, data)?;
             return Ok(bad(Some(header.compression), "its sizes contradict each other", header.span_ns));
         }
@@ -178,13 +176,16 @@ enum Problem {
 }
 
 impl Header {
+    /// Whether a chunk of `body` bytes can hold what it claims.
+    pub(super) fn is_possible(&self, body: u64) -> bool {
+        self.compressed <= body - self.bytes.len() as u64
+            && self.uncompressed <= self.compressed.saturating_mul(LARGEST_EXPANSION)
+    }
+
     /// A length that the chunk could hold is too large, any other is damage.
     fn problem(&self, error: &McapError) -> Problem {
-        let could_hold = self.uncompressed / LARGEST_EXPANSION <= self.compressed.max(ALWAYS_ALLOWED_BYTES);
         match error {
-            McapError::RecordTooLarge { len, .. } if could_hold && *len <= self.uncompressed => {
-                Problem::TooLarge
-            }
+            McapError::RecordTooLarge { len, .. } if *len <= self.uncompressed => Problem::TooLarge,
             other => Problem::Damage(in_words(other)),
         }
     }
@@ -207,7 +208,7 @@ impl Header {
 }
 
 /// The header at `file`, `None` where `body` bytes cannot hold it.
-fn header(file: &mut impl Read, body: u64) -> std::io::Result<Option<Header>> {
+pub(super) fn header(file: &mut impl Read, body: u64) -> std::io::Result<Option<Header>> {
     if body < FIXED_HEADER_BYTES {
         skip(file, body)?;
         return Ok(None);

@@ -4,6 +4,7 @@ mod block_rate;
 mod catalog;
 mod cdr;
 mod chunk;
+mod claims;
 mod column;
 mod complaint;
 mod descriptors;

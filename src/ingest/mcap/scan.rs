@@ -2,6 +2,7 @@
 
 use super::catalog::Catalog;
 use super::chunk::{ChunkEnd, Chunks};
+use super::claims;
 use super::scanned::{Counts, Loss, Scanned, Sink};
 use super::summary::{self, Summary};
 use super::wave::{Packed, Unpacked, Wave};
@@ -46,8 +47,17 @@ pub(super) fn scan_in(
     sink: &mut impl Sink,
     progress: Progress,
 ) -> std::io::Result<Scanned> {
-    let summary = summary::read(&mut file, length, limits.part_bytes())?;
-    let chunks = || Chunks::new(length, limits.part_bytes());
+    let (part, unpacked) = (limits.part_bytes(), limits.unpacked_bytes(length));
+    let claims = claims::read(&mut file, length)?;
+    let over = [
+        ("one of its chunks claims to unpack to", claims.largest_bytes, part),
+        ("its chunks claim to unpack to", claims.all_bytes, unpacked),
+    ];
+    if let Some((what, _, limit)) = over.into_iter().find(|(_, claimed, limit)| claimed > limit) {
+        return Ok(Scanned { over: Some((what, limit)), ..Scanned::default() });
+    }
+    let summary = summary::read(&mut file, length, part)?;
+    let chunks = || Chunks::new(part.min(unpacked));
     let mut walk = Walk {
         file: BufReader::with_capacity(READ_BUFFER_BYTES, file),
         at: mcap::MAGIC.len() as u64,
