@@ -19,15 +19,13 @@ pub mod time_base;
 mod time_name;
 mod time_reading;
 mod time_unit;
+mod unchanged;
 
 pub use error::IngestError;
 pub use in_memory::synthetic;
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
 
 use crate::data::{CaskFile, Issue, Listing, Recording, RecordingFormat};
-use sha2::{Digest, Sha256};
-use std::fmt::Write as _;
-use std::io::Read;
 use std::path::Path;
 
 /// Called with the fraction done, 0 to 1, now and then.
@@ -92,18 +90,13 @@ pub fn read_within(
     cask_file::require_channels(cask_file, path)?;
     let format = detect::format(path)?;
     // The hash takes as long as the reading: it runs beside it.
-    let (raw, sha256) = std::thread::scope(|scope| {
-        let hashing = scope.spawn(|| sha256(path));
-        // On a thread of the pool, which need not be put to sleep for each piece that two threads share.
-        let raw = match format {
-            RecordingFormat::Mcap => rayon::scope(|_| mcap::read(path, cask_file, limits, progress)),
-            RecordingFormat::Csv => rayon::scope(|_| csv::read(path, cask_file, limits, progress)),
-            RecordingFormat::Hdf5 => rayon::scope(|_| hdf5::read(path, cask_file, limits, progress)),
-        };
-        (raw, hashing.join())
-    });
-    let sha256 = sha256.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-    assemble::recording(path, format, sha256, raw?, cask_file)
+    // On a thread of the pool, which need not be put to sleep for each piece that two threads share.
+    let (raw, sha256) = unchanged::hashed(path, || match format {
+        RecordingFormat::Mcap => rayon::scope(|_| mcap::read(path, cask_file, limits, progress)),
+        RecordingFormat::Csv => rayon::scope(|_| csv::read(path, cask_file, limits, progress)),
+        RecordingFormat::Hdf5 => rayon::scope(|_| hdf5::read(path, cask_file, limits, progress)),
+    })?;
+    assemble::recording(path, format, sha256, raw, cask_file)
 }
 
 /// Lists what the recording at `path` holds.
@@ -143,42 +136,4 @@ pub fn serve_hdf5() -> Option<std::process::ExitCode> {
 /// Names the program that is started to take HDF5 files apart: one that calls [`serve_hdf5`] first, as `dropcheck` does. The first stays.
 pub fn read_hdf5_with(program: &Path) {
     hdf5::use_program(program);
-}
-
-/// SHA-256 of the file at `path`, lower-case hexadecimal.
-///
-/// # Errors
-/// [`IngestError::Io`] where it cannot be read.
-fn sha256(path: &Path) -> Result<String, IngestError> {
-    let mut file = std::fs::File::open(path).map_err(|source| error::io(path, source))?;
-    let mut hasher = Sha256::new();
-    let mut buffer = vec![0; 1 << 16];
-    loop {
-        let read = file.read(&mut buffer).map_err(|source| error::io(path, source))?;
-        if read == 0 {
-            break;
-        }
-        hasher.update(&buffer[..read]);
-    }
-    Ok(hasher.finalize().iter().fold(String::with_capacity(64), |mut hex, byte| {
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    }))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sha256_is_the_published_one_of_abc() {
-        let dir = tempfile::tempdir().unwrap();
-        let path = dir.path().join("abc");
-        std::fs::write(&path, "abc").unwrap();
-        // FIPS 180-4, example B.1.
-        assert_eq!(
-            sha256(&path).unwrap(),
-            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
-        );
-    }
 }
