@@ -1,13 +1,19 @@
 //! An error to words on standard error: drawn under the line at fault on a terminal, told in plain sentences elsewhere.
 
+use dropcheck::data::shortened;
 use dropcheck::report::printable;
 use miette::{GraphicalReportHandler, GraphicalTheme, Report};
 use std::io::{IsTerminal, Write};
 
-/// Prints `report`; nothing in it can steer the terminal.
+/// A longer line is not drawn but told, and of the line at fault so much is shown before and behind its place.
+const LONGEST_LINE: usize = 400;
+
+/// Prints `report`; nothing in it can steer the terminal, and no line of a file fills it.
 pub fn complain(report: &Report) {
-    let text = if std::io::stderr().is_terminal() { drawn(report) } else { told(report) };
-    let lines: Vec<String> = text.lines().map(printable).collect();
+    let drawn = std::io::stderr().is_terminal().then(|| drawn(report));
+    let fits = |text: &String| text.lines().all(|line| line.len() <= 4 * LONGEST_LINE);
+    let text = drawn.filter(fits).unwrap_or_else(|| told(report));
+    let lines: Vec<String> = text.lines().map(|line| printable(&shortened(line))).collect();
     // There is no one left to tell where standard error is closed.
     let _ = writeln!(anstream::stderr(), "\u{1b}[1;31merror\u{1b}[0m: {}", lines.join("\n").trim());
 }
@@ -33,12 +39,21 @@ fn told(report: &Report) -> String {
             let before = text.get(..at).unwrap_or_default();
             let number = span.line() + before.matches('\n').count() + 1;
             let line = text.lines().nth(number - span.line() - 1).unwrap_or_default();
+            let line = around(line, before.rsplit('\n').next().map_or(0, str::len));
             let word = label.label().map_or_else(String::new, |word| format!("   ({word})"));
             lines.push(format!("  line {number}: {line}{word}"));
         }
     }
     lines.extend(report.help().map(|help| format!("  help: {help}")));
     lines.join("\n")
+}
+
+/// So much of `line` as a person reads around byte `at`.
+fn around(line: &str, at: usize) -> String {
+    let from = line.floor_char_boundary(at.saturating_sub(LONGEST_LINE / 2));
+    let to = line.ceil_char_boundary(at.saturating_add(LONGEST_LINE / 2).min(line.len()));
+    let (before, behind) = (if from > 0 { "…" } else { "" }, if to < line.len() { "…" } else { "" });
+    format!("{before}{}{behind}", line.get(from..to).unwrap_or_default())
 }
 
 /// The message with what caused it, each once.
@@ -55,10 +70,10 @@ fn with_causes(report: &Report) -> String {
 
 /// The error and its remedy as one sentence, for a row of a table.
 pub fn sentence(report: &Report) -> String {
-    let mut text = with_causes(report);
+    let mut text = shortened(&with_causes(report)).into_owned();
     if let Some(help) = report.help() {
         text.push_str("; ");
-        text.push_str(&help.to_string());
+        text.push_str(&shortened(&help.to_string()));
     }
     printable(&text)
 }
@@ -80,6 +95,25 @@ mod tests {
             text,
             "cask.toml, line 2: no key mas_kg\n  line 2: mas_kg = 1.0   (unknown key)\n  help: did you mean mass_kg?"
         );
+    }
+
+    #[test]
+    fn of_a_long_line_the_place_at_fault_is_told() {
+        let line = format!("{}x = oops{}", "é ".repeat(50_000), " z".repeat(50_000));
+        let text = format!("[cask]\n{line}\n");
+        let at = text.find("oops").unwrap();
+        let diagnostic = miette::diagnostic!(
+            labels = vec![miette::LabeledSpan::at(at..at + 4, "not a number")],
+            "cask.toml, line 2: {line}"
+        );
+        let report = Report::new(diagnostic).with_source_code(miette::NamedSource::new("cask.toml", text));
+        let told = told(&report);
+        let shown = told.lines().nth(1).unwrap();
+        assert!(
+            shown.contains("x = oops z") && shown.contains("  line 2: …") && shown.len() < 600,
+            "{shown}"
+        );
+        assert!(shortened(told.lines().next().unwrap()).len() < 700 && sentence(&report).len() < 700);
     }
 
     #[test]

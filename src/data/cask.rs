@@ -13,6 +13,10 @@ pub const GRAZE_SHARE: f64 = 0.01;
 /// More channels than any drop test has, and `init` gives each a table of twenty lines.
 pub const MOST_CHANNELS: usize = 1000;
 
+/// Sample rates that are believed, Hz: the fastest transient recorders take 10⁸ samples a second, and below one in a quarter of an
+/// hour no drop is seen. Spans of time, as those of filters and windows, become counts of samples by it.
+pub const SAMPLE_RATES_HZ: std::ops::RangeInclusive<f64> = 1e-3..=1e8;
+
 /// An end of the cask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]

@@ -113,11 +113,25 @@ pub struct Issue {
     pub to_s: Option<f64>,
 }
 
+/// A message with its middle left out where it quotes more of a file than a person reads: 600 characters are eight lines.
+#[must_use]
+pub fn shortened(message: &str) -> std::borrow::Cow<'_, str> {
+    const MOST_BYTES: usize = 600;
+    if message.len() <= MOST_BYTES {
+        return message.into();
+    }
+    let from = message.floor_char_boundary(MOST_BYTES / 2);
+    let to = message.ceil_char_boundary(message.len() - MOST_BYTES / 2);
+    format!("{} … {}", &message[..from], &message[to..]).into()
+}
+
 impl Issue {
     /// An issue of the whole recording.
     #[must_use]
     pub fn new(code: IssueCode, severity: Severity, message: impl Into<String>) -> Self {
-        Self { code, severity, channel: None, message: message.into(), from_s: None, to_s: None }
+        let message = message.into();
+        let message = shortened(&message).into_owned();
+        Self { code, severity, channel: None, message, from_s: None, to_s: None }
     }
 
     /// The same, about one channel.

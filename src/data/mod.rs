@@ -31,13 +31,13 @@ pub use analysis::{
 pub use campaign::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber, Scored};
 pub use cask::{
     Axis, BENDING_WAVE_M_S, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice,
-    GRAZE_SHARE, MOST_CHANNELS, Source, Unit,
+    GRAZE_SHARE, MOST_CHANNELS, SAMPLE_RATES_HZ, Source, Unit,
 };
 pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, MotionCurve};
 pub use estimate::Estimate;
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
-pub use issue::{Issue, IssueCode, Severity};
+pub use issue::{Issue, IssueCode, Severity, shortened};
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};
 pub use motion::{AxialClosure, ChannelReading, Motion, MotionState, RivalLaw, Setup, StoodIn};

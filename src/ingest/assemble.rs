@@ -1,10 +1,11 @@
 //! What a format's reader hands over, and the cask file, to channels: one clock, one unit, polarity.
 
 use super::error::{self, IngestError};
+use super::stated_rate::shown_hz;
 use super::{RawChannel, RawRecording};
 use crate::data::{
-    CaskFile, Channel, ChannelSpec, Issue, IssueCode, Recording, RecordingFormat, STANDARD_GRAVITY_M_S2,
-    Severity, Unit, acceleration_unit_m_s2,
+    CaskFile, Channel, ChannelSpec, Issue, IssueCode, Recording, RecordingFormat, SAMPLE_RATES_HZ,
+    STANDARD_GRAVITY_M_S2, Severity, Unit, acceleration_unit_m_s2,
 };
 use std::path::Path;
 
@@ -51,6 +52,21 @@ fn channel(
             &spec.name,
             format!("{} holds no number: all its samples are NaN, infinite or empty", spec.source),
             "name the source that holds this sensor's samples, or take this [[channel]] out of the cask file",
+        ));
+    }
+    let rate_hz = raw.uniform.sample_rate_hz;
+    if !SAMPLE_RATES_HZ.contains(&rate_hz) {
+        return Err(error::source(
+            path,
+            &spec.name,
+            format!(
+                "the sample rate of {} is {}, outside {} to {} Hz",
+                spec.source,
+                shown_hz(rate_hz),
+                SAMPLE_RATES_HZ.start(),
+                SAMPLE_RATES_HZ.end()
+            ),
+            "check the rate that the recording states, or the unit of its times, or write the true `sample_rate_hz` in this channel of the cask file",
         ));
     }
     let scale = scale(path, spec, raw.unit.as_deref())?;
@@ -214,6 +230,30 @@ mod tests {
         }
         for text in ["Mg", "m/s", "rad/s", "N", "furlong"] {
             assert!(of(None, Some(text)).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_rate_that_no_recorder_has_is_refused_by_its_channel() {
+        let at = |sample_rate_hz: f64| {
+            let samples = Samples::F64(vec![1.0, 2.0]);
+            let uniform = Uniform {
+                start_s: 0.0,
+                sample_rate_hz,
+                samples,
+                gaps: Vec::new(),
+                time_jitter_s: 0.0,
+                issues: Vec::new(),
+            };
+            let raw = RawChannel { spec: 0, uniform, unit: Some("g".into()) };
+            channel(Path::new("r"), &spec(None), raw, 0.0, &mut Vec::new())
+        };
+        for rate_hz in [1e-3, 50.0, 1e8] {
+            assert!(at(rate_hz).is_ok(), "{rate_hz}");
+        }
+        for rate_hz in [5e-324, 9e-4, 1.1e8, 1e14, 1e308, f64::INFINITY, f64::NAN] {
+            let refused = at(rate_hz).unwrap_err().to_string();
+            assert!(refused.contains("A1") && refused.contains("outside 0.001 to 100000000 Hz"), "{refused}");
         }
     }
 

@@ -1,13 +1,16 @@
 //! A cask file (TOML) to a checked [`CaskFile`], or to one diagnostic that shows the line.
 
+mod body;
 pub(super) mod channel;
+mod range;
 pub(super) mod section;
 pub(super) mod tolerance;
 mod wording;
 
-use crate::data::{Cask, CaskFile, Contact, Drop, FilterChoice};
+use crate::data::{CaskFile, Contact, FilterChoice};
+pub(super) use body::{cask, drop};
 use miette::{Diagnostic, NamedSource, SourceSpan};
-use section::{CASK_FILE, Document, Kind, Placed, Section};
+use section::{CASK_FILE, Document, Kind, Section};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::io::Read;
@@ -70,9 +73,6 @@ pub struct WrongLine {
 /// A larger file is no cask file: a thousand channels take 300 kB.
 const LARGEST_BYTES: u64 = 16 << 20;
 
-/// Standard value where the file gives no gravity: the contract's default.
-const DEFAULT_GRAVITY_M_S2: f64 = 9.81;
-
 /// Reads and checks the cask file at `path`; channels may be missing altogether, as `predict` needs none.
 ///
 /// # Errors
@@ -125,7 +125,11 @@ pub(super) fn read(path: &Path, kind: &Kind) -> Result<Vec<u8>, CaskFileError> {
         let problem = format!("this is a directory, not {}", kind.name);
         return Err(no_cask_file(path, &problem, "name the TOML file in it"));
     }
-    // A pipe states no length: what it delivers is bounded, too.
+    if !metadata.is_file() {
+        let problem = format!("this is a pipe or a device, not {}", kind.name);
+        return Err(no_cask_file(path, &problem, "save it to a file first, and name that"));
+    }
+    // A file may grow while it is read.
     let mut bytes = Vec::new();
     let mut file = std::fs::File::open(path).map_err(io)?.take(LARGEST_BYTES + 1);
     if metadata.len() > LARGEST_BYTES || file.read_to_end(&mut bytes).map_err(io)? as u64 > LARGEST_BYTES {
@@ -178,7 +182,7 @@ pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError
     let root = document.root()?;
     let mut defaults = Vec::new();
     let cask = cask(&root.required_table("cask")?, path, &mut defaults)?;
-    let drop = drop(&root.required_table("drop")?, &mut defaults)?;
+    let drop = drop(&root.required_table("drop")?, &cask, &mut defaults)?;
     let contact = contact(root.table("contact")?.as_ref(), &mut defaults)?;
     let filter = filter(root.table("filter")?.as_ref(), &mut defaults)?;
     let tolerances = tolerance::tolerances(root.table("tolerance")?.as_ref(), &mut defaults)?;
@@ -200,135 +204,6 @@ pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError
         time,
         channels,
         defaults,
-    })
-}
-
-/// `[cask]`, with its defaults named in `defaults`.
-pub(super) fn cask(table: &Section, path: &Path, defaults: &mut Vec<String>) -> Result<Cask, CaskFileError> {
-    let mass_kg = table.required_positive("mass_kg", "4466.0")?;
-    let length_m = table.required_positive("length_m", "5.512")?;
-    let height = table.not_negative("height_m")?;
-    if let Some(height) = &height
-        && height.value > length_m
-    {
-        return Err(table.wrong(
-            height.span.clone(),
-            format!("the section is longer than the cask: height_m {} exceeds length_m {length_m}", height.value),
-            format!("0 to {length_m} m"),
-            "length_m runs along the axis between the two ends that strike, height_m across it; perhaps they are exchanged",
-        ));
-    }
-    let cog = table.positive("cog_m")?;
-    if let Some(cog) = &cog
-        && cog.value >= length_m
-    {
-        return Err(table.wrong(
-            cog.span.clone(),
-            format!(
-                "the centre of gravity lies outside the cask: cog_m {} with length_m {length_m}",
-                cog.value
-            ),
-            format!("between 0 and {length_m} m"),
-            "cog_m counts along the axis from the first end (the one that touches first), in metres",
-        ));
-    }
-    let cog_m = cog.as_ref().map_or(length_m / 2.0, |cog| cog.value);
-    let height_m = height.as_ref().map_or(0.0, |height| height.value);
-    let inertia = table.positive("inertia_kg_m2")?;
-    if let Some(inertia) = &inertia {
-        inertia_is_possible(table, inertia, mass_kg, [length_m, height_m, cog_m])?;
-    }
-    let width_m = table.positive("width_m")?.map(|width| width.value);
-    let name = match table.text("name")? {
-        Some(name) => name.value,
-        None => {
-            path.file_stem().map_or_else(|| "cask".to_owned(), |stem| stem.to_string_lossy().into_owned())
-        }
-    };
-    for (key, is_given) in
-        [("height_m", height.is_some()), ("cog_m", cog.is_some()), ("inertia_kg_m2", inertia.is_some())]
-    {
-        if !is_given {
-            defaults.push(format!("cask.{key}"));
-        }
-    }
-    Ok(Cask {
-        name,
-        mass_kg,
-        length_m,
-        height_m,
-        width_m,
-        cog_m,
-        inertia_kg_m2: inertia
-            .as_ref()
-            .map_or(homogeneous_inertia_kg_m2(mass_kg, length_m, height_m), |inertia| inertia.value),
-        is_body: height_m > 0.0 || cog.is_some() || inertia.is_some(),
-    })
-}
-
-/// Θ = m (l² + h²) / 12, a homogeneous block.
-fn homogeneous_inertia_kg_m2(mass_kg: f64, length_m: f64, height_m: f64) -> f64 {
-    mass_kg * (length_m * length_m + height_m * height_m) / 12.0
-}
-
-/// Whether mass within length and section can have this inertia: at most with all of it in the corners, the centre of gravity kept.
-fn inertia_is_possible(
-    table: &Section,
-    inertia: &Placed<f64>,
-    mass_kg: f64,
-    [length_m, height_m, cog_m]: [f64; 3],
-) -> Result<(), CaskFileError> {
-    // Θ ≤ m (c (l − c) + h²/4).
-    let most = mass_kg * (cog_m * (length_m - cog_m) + height_m * height_m / 4.0);
-    if inertia.value <= most {
-        return Ok(());
-    }
-    let four_digits = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
-    let homogeneous = four_digits(homogeneous_inertia_kg_m2(mass_kg, length_m, height_m));
-    Err(table.wrong(
-        inertia.span.clone(),
-        format!("no cask of this mass and size has an inertia_kg_m2 of {}", inertia.value),
-        format!("at most {}", four_digits(most)),
-        &format!(
-            "it counts about the centre of gravity, not about an end, in kg m²; a homogeneous cask of this mass, length and section has {homogeneous}"
-        ),
-    ))
-}
-
-/// `[drop]`, with its defaults named in `defaults`.
-pub(super) fn drop(table: &Section, defaults: &mut Vec<String>) -> Result<Drop, CaskFileError> {
-    let gravity = table.positive("gravity_m_s2")?;
-    if gravity.is_none() {
-        defaults.push("drop.gravity_m_s2".into());
-    }
-    let gravity_m_s2 = gravity.map_or(DEFAULT_GRAVITY_M_S2, |gravity| gravity.value);
-    let velocity = table.positive("impact_velocity_m_s")?;
-    let height_m = match (&velocity, table.positive("height_m")?) {
-        (_, Some(height)) => height.value,
-        // h = v0² / (2 g).
-        (Some(velocity), None) => velocity.value.powi(2) / (2.0 * gravity_m_s2),
-        (None, None) => table.required_positive("height_m", "9.0")?,
-    };
-    let angle = table.required_number("angle_deg", "15.0")?;
-    if !(0.0..=90.0).contains(&angle.value) {
-        return Err(table.wrong(
-            angle.span,
-            format!("angle_deg is {}, outside 0 to 90", angle.value),
-            "0 to 90 degrees".into(),
-            "the inclination of the cask's axis above the horizontal before the drop, in degrees; the first end is the low one",
-        ));
-    }
-    if velocity.is_none() {
-        defaults.push("drop.impact_velocity_m_s".into());
-    }
-    Ok(Drop {
-        height_m,
-        angle_rad: angle.value.to_radians(),
-        impact_velocity_given: velocity.is_some(),
-        // v0 = √(2 g h).
-        impact_velocity_m_s: velocity
-            .map_or((2.0 * gravity_m_s2 * height_m).sqrt(), |velocity| velocity.value),
-        gravity_m_s2,
     })
 }
 

@@ -1,5 +1,6 @@
 //! Why a recording or a cask file could not be read: which file, where in it, what is wrong, how to mend it.
 
+use crate::data::shortened;
 use std::path::Path;
 
 /// Why a file could not be read.
@@ -114,6 +115,14 @@ pub(super) fn source(
     }
 }
 
+/// How alike two words are, 0 to 1, whatever their case.
+pub(super) fn alike(one: &str, other: &str) -> f64 {
+    /// Comparing takes the square of it, and no one slips in what is longer.
+    const LONGEST: usize = 256;
+    let [one, other] = [one, other].map(|word| word[..word.floor_char_boundary(LONGEST)].to_lowercase());
+    strsim::jaro_winkler(&one, &other)
+}
+
 /// "did you mean …" with the names in `there` that are nearest to `wanted`, or what there is, cut to a handful.
 pub(super) fn near_names(path: &Path, wanted: &str, what: &str, there: &[String]) -> String {
     /// More than this many names no longer fit a terminal's few lines.
@@ -123,15 +132,13 @@ pub(super) fn near_names(path: &Path, wanted: &str, what: &str, there: &[String]
     if there.is_empty() {
         return format!("the recording holds no {what}");
     }
-    let mut ranked: Vec<(f64, &String)> = there
-        .iter()
-        .map(|name| (strsim::jaro_winkler(&wanted.to_lowercase(), &name.to_lowercase()), name))
-        .collect();
+    let mut ranked: Vec<(f64, &String)> = there.iter().map(|name| (alike(wanted, name), name)).collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let near: Vec<&str> =
-        ranked.iter().filter(|(score, _)| *score >= ALIKE).take(3).map(|(_, name)| name.as_str()).collect();
+    let named = |name: &String| shortened(name).into_owned();
+    let near: Vec<String> =
+        ranked.iter().filter(|(score, _)| *score >= ALIKE).take(3).map(|(_, name)| named(name)).collect();
     let hint = if near.is_empty() { String::new() } else { format!("did you mean {}? ", near.join(" or ")) };
-    let listed: Vec<&str> = there.iter().take(HANDFUL).map(String::as_str).collect();
+    let listed: Vec<String> = there.iter().take(HANDFUL).map(named).collect();
     let more = match there.len().saturating_sub(HANDFUL) {
         0 => String::new(),
         more => format!(" and {more} more"),

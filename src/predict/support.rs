@@ -60,6 +60,8 @@ pub(super) struct Forces<T> {
     pub angular_acceleration_rad_s2: T,
     /// ẍ_C, m/s².
     pub slip_rate_m_s2: T,
+    /// What friction must give for the corner not to slide, T/m = b ω̇ − a ω², m/s².
+    held_m_s2: T,
 }
 
 impl<'a> Support<'a> {
@@ -87,53 +89,53 @@ impl Support<'_> {
             Grip::Slides { ratio, .. } => normal_m_s2 * ratio - b * spin + a * w2,
             Grip::Sticks | Grip::Jams => T::from(0.0),
         };
-        Forces { normal_m_s2, angular_acceleration_rad_s2: spin, slip_rate_m_s2 }
+        Forces {
+            normal_m_s2,
+            angular_acceleration_rad_s2: spin,
+            slip_rate_m_s2,
+            held_m_s2: b * spin - a * w2,
+        }
     }
 
     fn friction(&self) -> f64 {
         coefficient(self.contact).min(ROUGH)
     }
 
-    /// The friction that holds a stuck corner, T/m = b ω̇ − a ω², and how much of it N leaves over, m/s².
-    fn held_m_s2(&self, at: &Turning<f64>) -> (f64, f64) {
-        let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
-        let stuck = self.forces(at, Grip::Sticks);
-        let held = b * stuck.angular_acceleration_rad_s2 - a * at.angular_velocity_rad_s.powi(2);
+    /// How much friction N leaves over beside that which holds a stuck corner, m/s².
+    fn left_m_s2(&self, stuck: &Forces<f64>) -> f64 {
         let normal = match self.hold {
             Hold::Pulls => stuck.normal_m_s2.abs(),
             Hold::Pushes | Hold::Yields => stuck.normal_m_s2,
         };
         // Rough sticks as long as it is held at all.
-        let left = match (self.contact, self.hold) {
+        match (self.contact, self.hold) {
             (Contact::Rough, Hold::Pulls | Hold::Pushes) => f64::INFINITY,
             (Contact::Rough, Hold::Yields) => normal,
-            _ => self.friction() * normal - held.abs(),
-        };
-        (held, left)
-    }
-
-    /// Whether the corner sticks, and against what it slides if not.
-    pub fn grip<T: Number>(&self, at: &Turning<T>) -> Grip {
-        let (a, b) = arms_m(self.body, at.angle_rad.re(), self.body.cog_m);
-        let real = at.real();
-        if real.slip_m_s == 0.0 {
-            let (held_m_s2, left_m_s2) = self.held_m_s2(&real);
-            let lets_go = self.hold == Hold::Pushes && self.forces(&real, Grip::Sticks).normal_m_s2 <= 0.0;
-            if left_m_s2 >= 0.0 || lets_go {
-                return Grip::Sticks;
-            }
-            let way = -held_m_s2.signum();
-            return Grip::Slides { way, ratio: self.ratio(&real, way) };
+            _ => self.friction() * normal - stuck.held_m_s2.abs(),
         }
-        let way = real.slip_m_s.signum();
-        let ratio = self.ratio(&real, way);
-        let r2 = self.body.inertia_kg_m2 / self.body.mass_kg;
-        if r2 + a * (a - ratio * b) <= 1e-9 * r2 { Grip::Jams } else { Grip::Slides { way, ratio } }
     }
 
-    /// T/N of a corner that slides `way`; a target that pulls turns its sign. N has the sign of g − b ω².
-    fn ratio(&self, at: &Turning<f64>, way: f64) -> f64 {
-        let (_, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
+    /// Whether the corner sticks, and against what it slides if not; with the forces that then act.
+    pub fn grip(&self, at: &Turning<f64>) -> (Grip, Forces<f64>) {
+        let slides = |grip| (grip, self.forces(at, grip));
+        let arms_m = || arms_m(self.body, at.angle_rad, self.body.cog_m);
+        if at.slip_m_s == 0.0 {
+            let stuck = self.forces(at, Grip::Sticks);
+            let lets_go = self.hold == Hold::Pushes && stuck.normal_m_s2 <= 0.0;
+            if self.left_m_s2(&stuck) >= 0.0 || lets_go {
+                return (Grip::Sticks, stuck);
+            }
+            let way = -stuck.held_m_s2.signum();
+            return slides(Grip::Slides { way, ratio: self.ratio(at, arms_m().1, way) });
+        }
+        let (way, (a, b)) = (at.slip_m_s.signum(), arms_m());
+        let ratio = self.ratio(at, b, way);
+        let r2 = self.body.inertia_kg_m2 / self.body.mass_kg;
+        slides(if r2 + a * (a - ratio * b) <= 1e-9 * r2 { Grip::Jams } else { Grip::Slides { way, ratio } })
+    }
+
+    /// T/N of a corner `b` below S that slides `way`; a target that pulls turns its sign. N has the sign of g − b ω².
+    fn ratio(&self, at: &Turning<f64>, b: f64, way: f64) -> f64 {
         let pushes = self.gravity_m_s2 - b * at.angular_velocity_rad_s.powi(2);
         -self.friction() * way * if self.hold == Hold::Pulls { pushes.signum() } else { 1.0 }
     }
@@ -178,7 +180,7 @@ impl Support<'_> {
             // A corner that slides from rest has used up nothing yet.
             Grip::Slides { way, ratio } if ratio != 0.0 => way * at.slip_m_s,
             Grip::Slides { .. } => 1.0,
-            Grip::Sticks | Grip::Jams => self.held_m_s2(at).1,
+            Grip::Sticks | Grip::Jams => self.left_m_s2(&forces),
         };
         [at.angle_rad, lift, hold]
     }

@@ -16,9 +16,8 @@ const DIGITS_AFTER_THE_FIRST: usize = 12;
 struct Known {
     variable: SweepVariable,
     names: &'static [&'static str],
-    /// Least and largest value; where the least is 0 and `above` is set it is not in the range itself.
+    /// Least and largest value.
     range: (f64, f64),
-    above: bool,
     range_words: &'static str,
     example: &'static str,
 }
@@ -28,7 +27,6 @@ const KNOWN: [Known; 5] = [
         variable: SweepVariable::Angle,
         names: &["angle", "angle_deg", "phi", "φ"],
         range: (0.0, 90.0),
-        above: false,
         range_words: "lies between 0 (flat) and 90 (upright) degrees",
         example: "5:45:5",
     },
@@ -36,7 +34,6 @@ const KNOWN: [Known; 5] = [
         variable: SweepVariable::K,
         names: &["k", "restitution"],
         range: (0.0, 1.0),
-        above: false,
         range_words: "lies between 0 and 1",
         example: "k=0:1:0.1",
     },
@@ -44,24 +41,21 @@ const KNOWN: [Known; 5] = [
         variable: SweepVariable::Friction,
         names: &["friction", "contact", "mu", "μ", "µ"],
         range: (0.0, f64::INFINITY),
-        above: false,
         range_words: "is 0 or more",
         example: "friction=0:1:0.1",
     },
     Known {
         variable: SweepVariable::Length,
         names: &["length", "length_m"],
-        range: (0.0, 100.0),
-        above: true,
-        range_words: "lies above 0 and up to 100 m: it is the length of the cask, in metres",
+        range: (0.01, 100.0),
+        range_words: "lies between 0.01 and 100 m: it is the length of the cask, in metres",
         example: "length=4:6:0.1",
     },
     Known {
         variable: SweepVariable::DropHeight,
         names: &["height", "drop_height", "drop_height_m"],
-        range: (0.0, 1000.0),
-        above: true,
-        range_words: "lies above 0 and up to 1000 m: it is the height of the drop, in metres",
+        range: (0.001, 1000.0),
+        range_words: "lies between 0.001 and 1000 m: it is the height of the drop, in metres",
         example: "height=1:9:0.5",
     },
 ];
@@ -86,7 +80,7 @@ pub fn sweep(text: &str) -> Result<Sweep, String> {
     };
     let (from, to, step) = (number(from)?, number(to)?, number(step)?);
     for (word, value) in [("FROM", from), ("TO", to)] {
-        let inside = (known.range.0..=known.range.1).contains(&value) && !(known.above && value <= 0.0);
+        let inside = (known.range.0..=known.range.1).contains(&value);
         if !inside {
             return Err(format!("{word} is {value}: {} {}", known.names[0], known.range_words));
         }
@@ -191,9 +185,9 @@ mod tests {
             ("-5:45:5", "FROM is -5: angle"),
             ("k=0:1.2:0.1", "k lies between 0 and 1"),
             ("friction=-1:1:0.1", "friction is 0 or more"),
-            ("length=0:6:1", "length lies above 0"),
+            ("length=0:6:1", "length lies between 0.01"),
             ("length=4000:6000:100", "in metres"),
-            ("height=0:9:1", "height lies above 0"),
+            ("height=0:9:1", "height lies between 0.001"),
             ("0:90:nan", "no finite number"),
             ("0:inf:1", "no finite number"),
             ("0:90:1e-9", "larger STEP"),

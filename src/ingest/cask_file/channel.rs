@@ -2,7 +2,7 @@
 
 use super::CaskFileError;
 use super::section::Section;
-use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, Source, Unit};
+use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, SAMPLE_RATES_HZ, Source, Unit};
 use std::ops::Range;
 
 /// A unit's word in a cask file.
@@ -20,7 +20,16 @@ const UNITS: &str = "unit = \"g\", \"m/s^2\", or \"V\" or \"mV\" with sensitivit
 pub(super) fn channels(root: &Section, cask: &Cask) -> Result<Vec<ChannelSpec>, CaskFileError> {
     let mut channels: Vec<ChannelSpec> = Vec::new();
     let mut lines: Vec<usize> = Vec::new();
-    for table in root.tables("channel")? {
+    let tables = root.tables("channel")?;
+    if let Some(beyond) = tables.get(MOST_CHANNELS) {
+        return Err(beyond.wrong(
+            beyond.span(),
+            format!("the file has {} channels", tables.len()),
+            format!("at most {MOST_CHANNELS}"),
+            "keep those of the accelerometers on the cask",
+        ));
+    }
+    for table in tables {
         let (channel, name_span) = channel(&table, cask)?;
         if let Some(first) = channels.iter().position(|other| other.name == channel.name) {
             return Err(table.wrong(
@@ -72,7 +81,7 @@ fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), 
         offset_m: table.number("offset_m")?.map_or(0.0, |offset| offset.value),
         polarity: polarity(table)?,
         full_scale: table.positive("full_scale")?.map(|limit| limit.value),
-        sample_rate_hz: table.positive("sample_rate_hz")?.map(|rate| rate.value),
+        sample_rate_hz: table.within("sample_rate_hz", &SAMPLE_RATES_HZ, "samples a second, in Hz")?,
         time: table.text("time")?.map(|time| time.value),
         coupling: coupling(table)?,
     };

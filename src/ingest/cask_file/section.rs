@@ -322,17 +322,6 @@ impl<'a> Section<'a> {
         }
     }
 
-    pub(in crate::ingest) fn required_positive(
-        &self,
-        key: &str,
-        example: &str,
-    ) -> Result<f64, CaskFileError> {
-        match self.positive(key)? {
-            Some(number) => Ok(number.value),
-            None => Err(self.missing(key, &format!("add a line such as {key} = {example}"))),
-        }
-    }
-
     /// A number of 0 or above.
     pub(in crate::ingest) fn not_negative(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
         match self.number(key)? {

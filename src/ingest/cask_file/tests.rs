@@ -117,7 +117,7 @@ fn slips_in_tables_and_numbers_are_told_with_line_and_remedy() {
         ("mass_kg = 4466", "mass_kg = \"4466 kg\"", &["the text \"4466 kg\"", "number only, 4466"]),
         ("mass_kg = 4466", "mass_kg = 4466 kg", &["unit behind the number", "number only, 4466"]),
         ("mass_kg = 4466", "mass_kg = \"4466\"", &["without quotes: mass_kg = 4466"]),
-        ("mass_kg = 4466", "mass_kg = -1", &["mass_kg is -1", "above 0", "in kg"]),
+        ("mass_kg = 4466", "mass_kg = -1", &["mass_kg is -1", "0.001 to 1000000", "in kg"]),
         ("mass_kg = 4466", "mass_kg = nan", &["nan, not a number", "dropcheck init"]),
         (
             "source = { topic = \"/a.b\", field = \"x.y\" }",
@@ -131,7 +131,7 @@ fn slips_in_tables_and_numbers_are_told_with_line_and_remedy() {
         ("cog_m = 2.7", "cog_m = 5.6", &["centre of gravity lies outside", "from the first end"]),
         ("inertia_kg_m2 = 11_540.0", "inertia_kg_m2 = 0", &["inertia_kg_m2 is 0", "kg m²"]),
         ("angle_deg = 15.0", "angle_deg = 115", &["outside 0 to 90", "0 to 90 degrees"]),
-        ("height_m = 9.0", "height_m = 0", &["height_m is 0", "above 0"]),
+        ("height_m = 9.0", "height_m = 0", &["height_m is 0", "0.001 to 1000"]),
         ("gravity_m_s2 = 9.80", "gravity_m_s2 = -9.8", &["gravity_m_s2 is -9.8"]),
         (
             "friction = 0.4",
@@ -163,6 +163,57 @@ fn an_inertia_about_an_end_is_refused_and_the_largest_possible_is_not() {
     };
     assert!(told(&near("").unwrap_err()).contains("at most 43.2"));
     assert!(near("height_m = 0.5").is_ok());
+}
+
+#[test]
+fn what_no_cask_and_no_drop_can_be_is_refused_with_its_range() {
+    // l = 2 m, m = 120 kg, h = 9 m: v0²/(g l) = 9.
+    let with = |key: &str, value: &str| {
+        let (table, replaced) = match key {
+            "mass_kg" | "length_m" => ("[cask]", Some(key)),
+            "cog_m" | "inertia_kg_m2" => ("[cask]", None),
+            "height_m" => ("[drop]", Some(key)),
+            _ => ("[drop]", None),
+        };
+        let kept = SHORT.lines().filter(|line| replaced.is_none_or(|key| !line.starts_with(key)));
+        let text = kept.collect::<Vec<_>>().join("\n") + "\n";
+        of(&text.replacen(table, &format!("{table}\n{key} = {value}"), 1))
+    };
+    for (key, least, most, beyond) in [
+        ("mass_kg", "1e-3", "1e6", ["9e-4", "1.7e308"]),
+        ("length_m", "0.01", "100.0", ["9e-3", "1e300"]),
+        ("cog_m", "0.2", "1.8", ["0.19", "1.81"]),
+        ("inertia_kg_m2", "0.41", "119.9", ["1e-30", "121.0"]),
+        ("height_m", "3e-3", "1000.0", ["1e-4", "1e150"]),
+        ("impact_velocity_m_s", "0.3", "200.0", ["0.009", "1e5"]),
+        ("gravity_m_s2", "1.0", "2000.0", ["1e-9", "1e4"]),
+    ] {
+        for value in [least, most] {
+            assert!(with(key, value).is_ok(), "{key} = {value}: {}", told(&with(key, value).unwrap_err()));
+        }
+        for value in beyond {
+            let message = told(&with(key, value).unwrap_err());
+            assert!(message.contains(key) && message.len() < 500, "{key} = {value}: {message}");
+        }
+    }
+    // Each for itself is in its range, the two together are no drop.
+    let text = SHORT.replace("length_m = 2", "length_m = 100").replace("height_m = 9", "height_m = 0.002");
+    assert!(told(&of(&text).unwrap_err()).contains("v0²/(g l) is 4.000e-5"));
+}
+
+#[test]
+fn more_channels_than_any_test_has_are_refused() {
+    let many = |count: usize| {
+        let channel = |i| {
+            format!(
+                "[[channel]]\nname = \"A{i}\"\nend = \"first\"\naxis = \"axial\"\nsource = \"/a{i}\"\nposition_m = 0\n"
+            )
+        };
+        of(&(0..count).map(channel).fold(SHORT.to_owned(), |text, channel| text + &channel))
+    };
+    assert_eq!(many(1000).unwrap().channels.len(), 1000);
+    let message = told(&many(1001).unwrap_err());
+    assert!(message.contains("has 1001 channels") && message.contains("at most 1000"), "{message}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Values and keys of a cask file to the words that a diagnostic needs.
 
+use crate::ingest::error::alike;
 use toml::de::DeValue;
 
 /// Below this similarity (Jaro–Winkler, 0 to 1) a word is another word rather than a misspelling.
@@ -14,7 +15,7 @@ pub(super) fn line_of(text: &[u8], at: usize) -> usize {
 pub(super) fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
     known
         .iter()
-        .map(|&candidate| (strsim::jaro_winkler(word, candidate), candidate))
+        .map(|&candidate| (alike(word, candidate), candidate))
         .filter(|(alike, _)| *alike >= ALIKE)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, candidate)| candidate)

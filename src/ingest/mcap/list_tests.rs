@@ -77,7 +77,7 @@ fn a_clock_that_starts_at_zero_is_kept_and_one_lone_zero_falls_back() {
 
 #[test]
 fn what_many_topics_hold_together_is_listed_to_a_bound_that_is_said() {
-    let fields = |count: usize| (0..count).map(|i| format!("float64 f{i}\n")).collect::<String>();
+    let fields = |count: usize| (0..count).map(|i| format!("float64 f{i}\n")).collect::<Vec<_>>().concat();
     let bytes = closed(WriteOptions::new(), |writer| {
         for i in 0..30 {
             let text = fields(if i == 0 { 2005 } else { 600 });
@@ -96,7 +96,7 @@ fn what_many_topics_hold_together_is_listed_to_a_bound_that_is_said() {
 
 #[test]
 fn a_long_name_counts_for_as_many_as_its_kilobytes() {
-    let text: String = (0..100).map(|i| format!("float64 f{i}\n")).collect();
+    let text = (0..100).map(|i| format!("float64 f{i}\n")).collect::<Vec<_>>().concat();
     let bytes = closed(WriteOptions::new(), |writer| {
         channel(writer, &"t".repeat(1 << 20), "cdr", ("p/S", "ros2msg", text.as_bytes()));
     });
@@ -106,8 +106,10 @@ fn a_long_name_counts_for_as_many_as_its_kilobytes() {
 
 #[test]
 fn types_that_double_are_taken_apart_to_a_bound() {
-    let levels: String =
-        (1..12).map(|level| format!("===\nMSG: p/A{level}\nA{} a\nA{0} b\n", level + 1)).collect();
+    let levels = (1..12)
+        .map(|level| format!("===\nMSG: p/A{level}\nA{} a\nA{0} b\n", level + 1))
+        .collect::<Vec<_>>()
+        .concat();
     let text = format!("A1 a\nA1 b\n{levels}===\nMSG: p/A12\nstring s\n");
     let bytes = closed(WriteOptions::new(), |writer| {
         for i in 0..100 {

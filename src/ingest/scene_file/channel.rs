@@ -1,6 +1,6 @@
 //! A `[[channel]]` table of a scene file to the channel as it is and the channel as the cask file will state it.
 
-use super::values::{flag, number_or, size_or, spans_s, within};
+use super::values::{flag, number_or, size_or, spans_s};
 pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
 use crate::data::{Axis, Cask, Chain, ChannelSpec, Coupling, End, SceneChannel, Source, Unit};
 use crate::ingest::cask_file::CaskFileError;
@@ -84,7 +84,8 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
     let axis = table.word("axis", &[("transverse", Axis::Transverse), ("axial", Axis::Axial)], AXIS)?;
     let unit = unit(table, "unit")?.unwrap_or(Unit::G);
     let full_scale = table.positive("full_scale")?.map(|limit| limit.value);
-    let position = |key| within(table, key, 0.0..=cask.length_m, "metres along the axis from the first end");
+    let position =
+        |key| table.within(key, &(0.0..=cask.length_m), "metres along the axis from the first end");
     let coupling = coupling(table)?;
     let channel = SceneChannel {
         name,
@@ -93,7 +94,8 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
         position_m: position("position_m")?.unwrap_or_else(|| usual_position_m(cask, end)),
         offset_m: number_or(table, "offset_m", 0.0)?,
         unit: if unit == Unit::G { "g" } else { "m/s^2" }.to_owned(),
-        sample_rate_hz: within(table, "sample_rate_hz", SLOWEST_HZ..=FASTEST_HZ, "samples a second")?
+        sample_rate_hz: table
+            .within("sample_rate_hz", &(SLOWEST_HZ..=FASTEST_HZ), "samples a second")?
             .unwrap_or(SAMPLE_RATE_HZ),
         chain: chain(table, coupling, full_scale.map(|limit| limit * size_m_s2(unit)))?,
     };
@@ -129,19 +131,21 @@ fn stated_dc(table: &Section) -> Result<bool, CaskFileError> {
 
 fn chain(table: &Section, coupling: Coupling, full_scale_m_s2: Option<f64>) -> Result<Chain, CaskFileError> {
     let in_g = |key, default| size_or(table, key, default).map(|g| g * STANDARD_GRAVITY_M_S2);
-    let frequency = |key| within(table, key, 1.0..=FASTEST_HZ, "in Hz");
+    let frequency = |key| table.within(key, &(1.0..=FASTEST_HZ), "in Hz");
     Ok(Chain {
-        tilt_rad: within(table, "tilt_deg", -90.0..=90.0, "degrees towards the other body axis")?
+        tilt_rad: table
+            .within("tilt_deg", &(-90.0..=90.0), "degrees towards the other body axis")?
             .unwrap_or(0.0)
             .to_radians(),
-        cross_axis: within(table, "cross_axis_percent", -100.0..=100.0, "usual are 1 to 5 percent")?
+        cross_axis: table
+            .within("cross_axis_percent", &(-100.0..=100.0), "usual are 1 to 5 percent")?
             .unwrap_or(0.0)
             / 100.0,
         resonance: beside(
             table,
             frequency("resonance_hz")?,
             ("resonance_damping", "resonance_hz"),
-            within(table, "resonance_damping", 0.001..=2.0, "share of critical damping")?,
+            table.within("resonance_damping", &(0.001..=2.0), "share of critical damping")?,
             RESONANCE_DAMPING,
         )?,
         ac_time_constant_s: match coupling {

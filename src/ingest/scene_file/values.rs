@@ -36,24 +36,6 @@ pub(super) fn whole(table: &Section, key: &str) -> Result<Option<Placed<u64>>, C
     }
 }
 
-/// A number within `range`, of which `what` says the meaning.
-pub(super) fn within(
-    table: &Section,
-    key: &str,
-    range: std::ops::RangeInclusive<f64>,
-    what: &str,
-) -> Result<Option<f64>, CaskFileError> {
-    match table.number(key)? {
-        Some(number) if !range.contains(&number.value) => Err(table.wrong(
-            number.span,
-            format!("{key} is {}, outside {} to {}", number.value, range.start(), range.end()),
-            format!("{} to {}", range.start(), range.end()),
-            what,
-        )),
-        number => Ok(number.map(|number| number.value)),
-    }
-}
-
 /// A number, `default` where the key is missing.
 pub(super) fn number_or(table: &Section, key: &str, default: f64) -> Result<f64, CaskFileError> {
     Ok(table.number(key)?.map_or(default, |number| number.value))
