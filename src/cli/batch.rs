@@ -10,6 +10,7 @@ use clap::Args;
 use dropcheck::data::CaskFile;
 use dropcheck::report::{Campaign, CampaignRow};
 use dropcheck::{ingest, report};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// What a file of a folder is named where it is taken for a recording.
@@ -112,8 +113,9 @@ fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
             .filter_map(|entry| entry.ok().map(|e| e.path()))
             .filter(|p| {
                 let ending = p.extension().map(|e| e.to_string_lossy().to_lowercase());
-                let is_summary = p.file_name().is_some_and(|name| SUMMARY.iter().any(|own| name == *own));
-                !is_summary && p.is_file() && ending.is_some_and(|e| RECORDING_ENDINGS.contains(&e.as_str()))
+                ending.is_some_and(|e| RECORDING_ENDINGS.contains(&e.as_str()))
+                    && p.is_file()
+                    && !is_summary(p)
             })
             .collect();
         found.sort();
@@ -130,6 +132,13 @@ fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
     let mut seen = std::collections::HashSet::new();
     recordings.retain(|path| std::fs::canonicalize(path).map_or(true, |real| seen.insert(real)));
     Ok(recordings)
+}
+
+/// Whether a file is the table of an earlier campaign; a recording may have its name.
+fn is_summary(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(256).read_to_end(&mut head));
+    read.is_ok() && Campaign::begins(&head)
 }
 
 /// A folder a recording, named by its stem; a second one of the same stem gets a number.
@@ -188,6 +197,12 @@ mod tests {
         assert_eq!(names, ["a.CSV", "b.mcap"]);
         let twice = [folder.path().join("b.mcap"), folder.path().to_path_buf(), folder.path().join("none")];
         assert_eq!(recordings(&twice).unwrap().len(), 3);
+        // An earlier campaign's table is none, a recording of its name is one.
+        let table = Campaign::new("cask.toml".into(), Vec::new()).csv().unwrap();
+        for (content, count) in [(table, 2), (b"time_s,A1\n0,1\n".to_vec(), 3)] {
+            std::fs::write(folder.path().join("campaign.csv"), content).unwrap();
+            assert_eq!(recordings(&[folder.path().to_path_buf()]).unwrap().len(), count);
+        }
         let empty = tempfile::tempdir().unwrap();
         assert!(recordings(&[empty.path().to_path_buf()]).is_err());
     }

@@ -11,6 +11,7 @@ mod limits;
 mod machine;
 mod output;
 mod peers;
+mod place;
 mod predict;
 mod progress;
 mod replace;

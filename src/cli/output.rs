@@ -1,5 +1,6 @@
 //! Finished bytes to files, whole or not at all, and to standard output; checked before the work begins.
 
+use super::place;
 use super::replace::{OWN_PREFIX, Stopped, parent_of, replace_set, staging_in, sync_folder, write_whole};
 use dropcheck::report::ReportError;
 use std::fs::{self, File};
@@ -16,6 +17,9 @@ pub enum CannotWrite {
     #[error("{path} is a file, and --out needs a folder")]
     #[diagnostic(help("name a folder that does not exist yet, or an older report's"))]
     NotAFolder { path: String },
+    #[error("{path} is no place for a report: its files would lie among those of the system or of your home")]
+    #[diagnostic(help("name a folder of its own, which need not exist yet, such as --out report"))]
+    Shared { path: String },
     #[error("nothing can be written in {path}")]
     #[diagnostic(help("choose another place, or change its permissions"))]
     NotWritable { path: String, source: io::Error },
@@ -69,6 +73,9 @@ impl Folder {
         // A link may have been put there to have files written elsewhere.
         if fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink()) {
             return Err(CannotWrite::Link { path: shown(path) });
+        }
+        if place::is_shared(path) {
+            return Err(CannotWrite::Shared { path: shown(path) });
         }
         let mut standing = path;
         while fs::symlink_metadata(standing).is_err() {

@@ -97,6 +97,23 @@ pub struct Campaign {
     pub recordings: Vec<CampaignRow>,
 }
 
+/// The columns of `campaign.csv`.
+const COLUMNS: [&str; 13] = [
+    "recording",
+    "verdict",
+    "slap_down_speed_m_s",
+    "slap_down_speed_u95_m_s",
+    "k",
+    "k_u95",
+    "model",
+    "predicted_m_s",
+    "difference_percent",
+    "agrees",
+    "findings",
+    "codes",
+    "error",
+];
+
 impl Campaign {
     /// A campaign of `rows` with one cask file.
     #[must_use]
@@ -163,27 +180,19 @@ impl Campaign {
         super::json::pretty(self)
     }
 
+    /// Whether a file that begins so is a `campaign.csv` of this program.
+    #[must_use]
+    pub fn begins(head: &[u8]) -> bool {
+        head.starts_with(COLUMNS.join(",").as_bytes())
+    }
+
     /// `campaign.csv`.
     ///
     /// # Errors
     /// [`ReportError::Csv`] where the writer fails.
     pub fn csv(&self) -> Result<Vec<u8>, ReportError> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record([
-            "recording",
-            "verdict",
-            "slap_down_speed_m_s",
-            "slap_down_speed_u95_m_s",
-            "k",
-            "k_u95",
-            "model",
-            "predicted_m_s",
-            "difference_percent",
-            "agrees",
-            "findings",
-            "codes",
-            "error",
-        ])?;
+        writer.write_record(COLUMNS)?;
         let number = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
         for row in &self.recordings {
             writer.write_record([

@@ -1,7 +1,7 @@
 //! Curves to `curves.h5`: one group a channel, datasets with their unit, rate and start as attributes.
 
 use super::grid::{motion_columns, step_s};
-use super::{ReportError, spectrum};
+use super::{ReportError, scratch, spectrum};
 use crate::data::Analysis;
 use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{Dataset, File, Group, H5Type, Location};
@@ -24,14 +24,13 @@ pub(super) fn bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
 pub(super) fn through_a_file(
     fill: impl FnOnce(&File) -> Result<(), ReportError>,
 ) -> Result<Vec<u8>, ReportError> {
-    let scratch =
-        |source| ReportError::Scratch { folder: std::env::temp_dir().display().to_string(), source };
-    let folder = tempfile::Builder::new().prefix("dropcheck-").tempdir().map_err(scratch)?;
-    let path = folder.path().join("curves.h5");
+    let failed = |source| ReportError::Scratch { folder: std::env::temp_dir().display().to_string(), source };
+    let folder = scratch::folder().map_err(failed)?;
+    let path = folder.path().join(scratch::FILE_NAME);
     let file = File::create(&path)?;
     fill(&file)?;
     file.close()?;
-    std::fs::read(&path).map_err(scratch)
+    std::fs::read(&path).map_err(failed)
 }
 
 fn write(file: &File, analysis: &Analysis) -> Result<(), ReportError> {

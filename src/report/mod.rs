@@ -21,6 +21,7 @@ mod sample;
 mod sample_reconstruction;
 #[cfg(test)]
 mod sample_study;
+mod scratch;
 mod settings;
 mod synthetic;
 mod table;

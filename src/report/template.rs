@@ -1,7 +1,7 @@
 //! What a recording holds to a commented cask file to fill in.
 
 use super::likely::{self, NoChannels, VOLTAGES, is_time, names_end};
-use super::text::{line, printable};
+use super::text::{is_hidden, line, printable};
 use crate::data::{ListedChannel, Listing, MOST_CHANNELS, Severity, acceleration_unit_m_s2};
 use std::fmt::Write;
 
@@ -241,7 +241,7 @@ fn quoted(text: &str) -> String {
         match c {
             '"' => out.push_str("\\\""),
             '\\' => out.push_str("\\\\"),
-            c if c.is_control() => {
+            c if is_hidden(c) => {
                 let _ = write!(out, "\\u{:04X}", u32::from(c));
             }
             c => out.push(c),
@@ -298,11 +298,13 @@ mod tests {
 
     #[test]
     fn no_name_can_break_the_file() {
-        let awkward = "a\"]\n[cask]\nname = \\\u{1b}";
+        let awkward = "a\"]\n[cask]\nname = \\\u{1b}\u{202e}\u{ffff}";
         let mut listing =
             listing(vec![listed(awkward, "column", Some("x\"\ny")), listed("other\n]", "topic", None)]);
         listing.recording = "r\n[evil]".into();
-        let table = parsed(&cask_file(&listing).unwrap());
+        let text = cask_file(&listing).unwrap();
+        assert!(text.contains("\\u202E\\uFFFF") && !text.contains(['\u{202e}', '\u{ffff}']));
+        let table = parsed(&text);
         assert_eq!(table["channel"][0]["source"].as_str(), Some(awkward));
         assert!(!table.contains_key("evil"));
     }

@@ -60,11 +60,16 @@ pub fn printable(text: &str) -> String {
     text.chars()
         .filter_map(|c| match c {
             '\t' | '\n' | '\r' | '\u{2028}' | '\u{2029}' => Some(' '),
-            '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => None,
-            c if c.is_control() => None,
-            c => Some(c),
+            c => (!is_hidden(c)).then_some(c),
         })
         .collect()
+}
+
+/// Whether a character steers a terminal or the direction of reading, or is none that XML 1.0 knows.
+pub(super) fn is_hidden(c: char) -> bool {
+    let turns =
+        matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    turns || c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')
 }
 
 /// `text` broken between words to `width` columns, each line behind `indent` spaces; a longer word stays whole.

@@ -33,7 +33,8 @@ fn content(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     all_files(folder).into_iter().map(|(path, bytes)| (from_here(path), bytes)).collect()
 }
 
-const EVIL: [&str; 4] = [
+const EVIL: [&str; 5] = [
+    "\\uFFFF\\uFFFE",
     "<script>alert(1)</script>",
     "=cmd|'/C calc'!A0",
     "../../../escape\\u001b]0;title\\u0007\\u009b2J\\u202e",
@@ -49,6 +50,8 @@ fn harmless(path: &Path, bytes: Vec<u8>) {
     let text = String::from_utf8(bytes).expect("UTF-8");
     assert!(!text.contains(['\u{1b}', '\u{7}', '\u{9b}', '\u{202e}']), "{}", path.display());
     if ["html", "svg"].contains(&ending.as_str()) {
+        // XML 1.0 has no such characters; JSON and text do.
+        assert!(!text.contains(['\u{ffff}', '\u{fffe}']), "{}", path.display());
         assert!(!text.contains("<script") && !text.contains("<img src=x"), "{}", path.display());
     }
     if ending == "csv" {
@@ -102,6 +105,41 @@ fn a_link_in_the_place_of_the_report_is_refused() {
     let answer = dropcheck(words(&fixture("anf10-plain.csv"), &fixture("anf10-plain.toml"), &out));
     at_fault(&answer, &["report", "symbolic link"]);
     assert!(all_files(&elsewhere).is_empty());
+}
+
+#[test]
+fn a_line_of_ten_megabytes_is_not_printed_whole() {
+    let bench = Bench::new();
+    let long = "x".repeat(10 << 20);
+    let sound = fs::read_to_string(fixture("anf10-plain.toml")).expect("a cask file");
+    for text in [
+        format!("{sound}\n{long} = oops\n"),
+        sound.replacen("mass_kg", &format!("mass_kg_{long}"), 1),
+        sound.replacen("name = \"A1\"", &format!("name = \"{long}"), 1),
+        sound.replacen("source = \"", &format!("source = \"{long}"), 1),
+        format!("{sound}\nmass_kg = {long}\n"),
+    ] {
+        let answer = crate::run::analyze(&fixture("anf10-plain.csv"), &bench.put("cask.toml", text));
+        at_fault(&answer, &[]);
+        assert!(answer.stderr.len() < 4000, "{} bytes", answer.stderr.len());
+    }
+    let cells = format!("time_s,A1,A2\n0,1,1\n1,2,{}\n", &long[..1_000_000]);
+    let answer = crate::run::analyze(&bench.put("cells.csv", cells), &fixture("anf10-plain.toml"));
+    assert!(answer.stderr.len() < 4000, "{} bytes", answer.stderr.len());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_no_cask_file_and_the_system_no_place_for_a_report() {
+    let bench = Bench::new();
+    let pipe = bench.0.path().join("pipe.toml");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.is_ok_and(|made| made.success()));
+    at_fault(&crate::run::analyze(&fixture("anf10-plain.csv"), &pipe), &["pipe.toml", "pipe or a device"]);
+    for out in ["/", "/usr", "/etc"] {
+        let words = words(&fixture("anf10-plain.csv"), &fixture("anf10-plain.toml"), Path::new(out));
+        at_fault(&dropcheck(words), &[out, "no place for a report", "folder of its own"]);
+    }
 }
 
 #[test]

@@ -97,11 +97,11 @@ mod tests {
     #[test]
     fn a_name_cannot_leave_its_text() {
         let mut analysis = sample::analysis();
-        let name = "<script>alert(1)</script>\u{1}";
+        let name = "<script>alert(1)</script>\u{1}\u{ffff}";
         analysis.curves.channels[0].channel = name.into();
         analysis.result.channels[0].name = name.into();
         let svg: String = draw(&analysis).unwrap().into_iter().map(|p| p.svg).collect();
-        assert!(!svg.contains("<script") && !svg.contains('\u{1}'));
+        assert!(!svg.contains("<script") && !svg.contains(['\u{1}', '\u{ffff}']));
         assert!(svg.contains("&lt;script&gt;"));
     }
 

@@ -1,0 +1,49 @@
+//! A folder to whether it is the system's or the user's whole home rather than a place for one report.
+
+use std::path::Path;
+
+/// Where nothing but the system's own files belongs.
+const SYSTEM: [&str; 14] = [
+    "/bin",
+    "/boot",
+    "/dev/block",
+    "/etc",
+    "/lib",
+    "/lib32",
+    "/lib64",
+    "/proc",
+    "/sbin",
+    "/sys",
+    "/usr",
+    "/Applications",
+    "/Library",
+    "/System",
+];
+/// What holds other folders: one of its own below is a place.
+const CROSSROADS: [&str; 11] =
+    ["/dev", "/home", "/media", "/mnt", "/opt", "/root", "/run", "/srv", "/var", "/usr/local", "/Users"];
+
+/// Whether the files of a report in `folder`, which exists, would mix with a system's or lie about in the user's home.
+pub fn is_shared(folder: &Path) -> bool {
+    let Ok(real) = folder.canonicalize() else { return false };
+    let home = std::env::home_dir().and_then(|home| home.canonicalize().ok());
+    real.parent().is_none()
+        || home.is_some_and(|home| home == real)
+        || CROSSROADS.iter().any(|place| real == Path::new(place))
+        || SYSTEM.iter().any(|place| real.starts_with(place)) && !real.starts_with("/usr/local")
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn systems_folders_are_shared_and_a_folder_of_its_own_is_not() {
+        for folder in ["/", "/usr", "/usr/bin", "/etc", "/bin", "/usr/bin/..", "/dev", "/home", "/var"] {
+            assert!(!Path::new(folder).exists() || is_shared(Path::new(folder)), "{folder}");
+        }
+        assert!(std::env::home_dir().is_none_or(|home| !home.exists() || is_shared(&home)));
+        let own = tempfile::tempdir().unwrap();
+        assert!(!is_shared(own.path()) && !is_shared(&own.path().join("none")));
+    }
+}
