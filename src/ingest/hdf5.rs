@@ -9,6 +9,7 @@ mod find;
 mod library;
 mod list;
 mod packed;
+mod patience;
 mod rate;
 mod room;
 mod types;

@@ -128,6 +128,7 @@ fn a_rate_off_by_less_than_the_stated_tolerance_leaves_the_truth_in_its_interval
 
 #[test]
 fn a_clock_that_the_free_fall_contradicts_is_named() {
+    ingest::read_hdf5_with(std::path::Path::new(env!("CARGO_BIN_EXE_dropcheck")));
     let file = ingest::cask_file(&fixture("vhlw-rest.toml")).expect("a cask file");
     let recording = ingest::read(&fixture("vhlw-rest.h5"), &file, &|_| ()).expect("a recording");
     for (share, words) in [(0.02, "clock is 2.0 % slow"), (-0.02, "clock is 2.0 % fast")] {
