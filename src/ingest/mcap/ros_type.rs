@@ -70,8 +70,10 @@ impl Type {
 /// # Errors
 /// Why the text gives no type.
 pub(super) fn parse(name: &str, text: &str, left: &mut usize) -> Result<Vec<Field>, String> {
+    // Neither defaults nor constants are sent, and the crate panics where one of them is a quotation mark alone.
+    let text = text.replace(['"', '\''], "_");
     let schema =
-        MessageSchema::parse(name, text).map_err(|error| format!("its schema does not parse: {error:#}"))?;
+        MessageSchema::parse(name, &text).map_err(|error| format!("its schema does not parse: {error:#}"))?;
     let mut resolver = Resolver { of_package: HashMap::new(), of_any: HashMap::new() };
     for spec in &schema.dependencies {
         let name = spec.name.rsplit('/').next().unwrap_or_default();
@@ -185,6 +187,15 @@ mod tests {
         assert_eq!(fields[1].kind, Type::Message(vec![Field { name: "x".into(), kind: Type::F32 }]));
         assert_eq!(fields[2].kind, Type::Array(Box::new(Type::F64), Length::Fixed(9)));
         assert_eq!(fields[3].kind, Type::Array(Box::new(Type::I16), Length::Counted));
+    }
+
+    #[test]
+    fn a_quotation_mark_alone_is_no_end_of_the_program() {
+        let fields =
+            parse("my/msg/Top", "string s \"\nstring A='\nstring[] t [',']\nfloat64 x # \"\n", &mut 20_000)
+                .unwrap();
+        let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
+        assert_eq!(names, ["s", "t", "x"]);
     }
 
     #[test]
