@@ -233,8 +233,6 @@ fn on_base(samples: Vec<f64>, base: Option<&Base>, plan: &Plan) -> Result<Unifor
 }
 
 #[cfg(test)]
-mod fuzz_tests;
-#[cfg(test)]
 mod layout_tests;
 #[cfg(test)]
 mod pair_tests;

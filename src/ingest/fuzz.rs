@@ -1,139 +1,156 @@
-//! A corpus and a decoder to many mutated inputs: none may panic, hang or take memory without bound.
-//!
-//! Mutants that end in a way not seen before join the corpus of the run, so that later ones begin behind the first checks.
-//! `DROPCHECK_FUZZ` sets the executions of each decoder, `DROPCHECK_KEEP=1` adds what ended in a way of its own to
-//! `fixtures/corpus`.
+//! Bytes to each decoder, by the name of its folder in `fixtures/corpus`: `tests/fuzz` looks for harmful ones, the tests below replay
+//! what it kept.
 
-use rand::rngs::ChaCha8Rng;
-use rand::{RngExt, SeedableRng};
-use std::collections::HashSet;
-use std::hash::{DefaultHasher, Hash, Hasher};
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use super::scene_file::Crush;
+use super::{Limits, cask_file, csv, hdf5, mcap, number, scene_file, time_base};
+use crate::data::{CaskFile, CrushableEnd, Samples};
+use std::io::Write as _;
+use std::path::Path;
+use std::sync::LazyLock;
+use tempfile::NamedTempFile;
 
-/// Executions of each decoder in a usual run of the tests, and the time after which it ends in any case.
-const USUAL_EXECUTIONS: u64 = 2000;
-const USUAL_TIME: Duration = Duration::from_secs(2);
-/// No input of a few kilobytes may take so long, in the slowest profile.
-const HANG: Duration = Duration::from_secs(5);
-/// Inputs stay short: what breaks a decoder is seldom its length.
-const LONGEST: usize = 1 << 14;
-/// Inputs that end in a way of their own are kept up to so many.
-const MOST_KEPT: usize = 2000;
+/// Takes bytes apart; none may panic, hang or take memory without bound.
+pub type Decoder = fn(&[u8]);
 
-fn folder(target: &str) -> PathBuf {
-    [env!("CARGO_MANIFEST_DIR"), "fixtures/corpus", target].iter().collect()
+/// Every decoder with its name.
+pub const TARGETS: [(&str, Decoder); 10] = [
+    ("answer", answer),
+    ("cask", |bytes| in_file(bytes, |path| drop(cask_file::parse(path)))),
+    ("csv", table),
+    ("json", mcap::fuzz::json),
+    ("mcap", messages),
+    ("number", number),
+    ("protobuf", mcap::fuzz::protobuf),
+    ("ros2", mcap::fuzz::ros2),
+    ("scene", scene),
+    ("times", times),
+];
+
+static TABLE: LazyLock<CaskFile> = LazyLock::new(|| cask_of(&["A1", "A2"]));
+static TOPICS: LazyLock<CaskFile> =
+    LazyLock::new(|| cask_of(&["/daq/a1.samples", "/pb.samples", "/imu.linear_acceleration.z"]));
+static DATASETS: LazyLock<CaskFile> = LazyLock::new(|| cask_of(&["/a", "/m[1]", "/r.z", "/daq/a1"]));
+
+/// A cask file whose channels have these sources.
+fn cask_of(sources: &[&str]) -> CaskFile {
+    let channel = |source: &&str| {
+        format!(
+            "[[channel]]\nname = '{source}'\nend = 'first'\naxis = 'transverse'\nsource = '{source}'\nposition_m = 0\n"
+        )
+    };
+    let head = "[cask]\nname = 'c'\nmass_kg = 1\nlength_m = 1\n[drop]\nheight_m = 1\nangle_deg = 1\n";
+    let text = head.to_owned() + &sources.iter().map(channel).collect::<String>();
+    cask_file::checked(Path::new("c"), &text).expect("a sound cask file")
 }
 
-/// Mutates `seeds` and the target's corpus; `words` are what its format is made of, `decode` tells how an input ended.
-pub(super) fn run(target: &str, seeds: &[Vec<u8>], words: &[&[u8]], decode: impl Fn(&[u8]) -> String) {
-    let asked = std::env::var("DROPCHECK_FUZZ").ok().and_then(|text| text.parse::<u64>().ok());
-    let mut pool: Vec<Vec<u8>> = seeds.to_vec();
-    let mut stored: Vec<_> = std::fs::read_dir(folder(target)).into_iter().flatten().flatten().collect();
-    stored.sort_by_key(std::fs::DirEntry::file_name);
-    pool.extend(stored.iter().map(|entry| std::fs::read(entry.path()).unwrap()));
-    let mut seen = HashSet::new();
-    for input in &pool {
-        seen.insert(executed(target, input, &decode));
-    }
-    let (known, begun) = (pool.len(), Instant::now());
-    let seed = std::env::var("DROPCHECK_SEED").ok().and_then(|text| text.parse().ok()).unwrap_or(1);
-    let mut chance = ChaCha8Rng::seed_from_u64(seed);
-    let mut executions = 0;
-    while executions < asked.unwrap_or(USUAL_EXECUTIONS) {
-        if asked.is_none() && begun.elapsed() > USUAL_TIME {
-            break;
-        }
-        let input = mutant(&pool, words, &mut chance);
-        executions += 1;
-        if seen.insert(executed(target, &input, &decode)) && pool.len() < MOST_KEPT {
-            pool.push(input);
-        }
-    }
-    println!("{target}: {executions} executions, {} ends, {:.1?}", seen.len(), begun.elapsed());
-    if std::env::var_os("DROPCHECK_KEEP").is_some() {
-        keep(target, &pool, known - stored.len());
-    }
+fn in_file(bytes: &[u8], read: impl FnOnce(&Path)) {
+    let mut file = NamedTempFile::new().expect("a folder for temporary files");
+    file.write_all(bytes).expect("room for a short file");
+    read(file.path());
 }
 
-/// How the input ended, without its numbers; panics with the place of the input where it must not end so.
-fn executed(target: &str, input: &[u8], decode: &impl Fn(&[u8]) -> String) -> u64 {
-    let begun = Instant::now();
-    let end = catch_unwind(AssertUnwindSafe(|| decode(input)));
-    let took = begun.elapsed();
-    let Ok(end) = end else { panic!("{target} panics at {}", set_down(target, input).display()) };
-    assert!(took < HANG, "{target} takes {took:?} for {}", set_down(target, input).display());
-    let mut hasher = DefaultHasher::new();
-    for word in end.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| word.len() > 2).take(24) {
-        word.hash(&mut hasher);
+fn table(bytes: &[u8]) {
+    let limits = Limits::of_memory(0);
+    in_file(bytes, |path| {
+        let _ = csv::list(path, limits, &|_| ());
+        let _ = csv::read(path, &TABLE, limits, &|_| ());
+    });
+}
+
+fn messages(bytes: &[u8]) {
+    let limits = Limits::of_memory(0);
+    in_file(bytes, |path| {
+        let _ = mcap::list(path, limits, &|_| ());
+        let _ = mcap::read(path, &TOPICS, limits, &|_| ());
+    });
+}
+
+/// Bytes as what the process answers that takes an HDF5 file apart; packed datasets are read from a sound file.
+fn answer(bytes: &[u8]) {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/vhlw-rest.h5"));
+    let limits = Limits::of_memory(0);
+    hdf5::answer_by(bytes);
+    let _ = hdf5::list(path, limits, &|_| ());
+    hdf5::answer_by(bytes);
+    let _ = hdf5::read(path, &DATASETS, limits, &|_| ());
+}
+
+fn scene(bytes: &[u8]) {
+    let crush: Crush = &|_, _, _, _, _| CrushableEnd { loading_n_m: 1e9, unloading_n_m: 4e9, yield_n: None };
+    in_file(bytes, |path| drop(scene_file::parse(path, crush)));
+}
+
+fn number(bytes: &[u8]) {
+    for decimal in *b".," {
+        let _ = number::of_cell(bytes, decimal);
+        let Some((value, used)) = number::leading(bytes, decimal) else { continue };
+        let text = std::str::from_utf8(&bytes[..used]).expect("ASCII");
+        let same = text.replace(char::from(decimal), ".").parse::<f64>().expect("a number");
+        assert_eq!(value.to_bits(), same.to_bits(), "{text}");
     }
-    hasher.finish()
+    let _ = number::leading_json(bytes);
+    let _ = number::is_missing(bytes);
+    let _ = number::is_grouped(&String::from_utf8_lossy(bytes));
 }
 
-fn set_down(target: &str, input: &[u8]) -> PathBuf {
-    let path = std::env::temp_dir().join(format!("dropcheck-fuzz-{target}"));
-    std::fs::write(&path, input).unwrap();
-    path
+fn times(bytes: &[u8]) {
+    let times_s: Vec<f64> = bytes.as_chunks().0.iter().map(|&eight| f64::from_le_bytes(eight)).collect();
+    let samples = Samples::F64(times_s.iter().map(|t| t * 2.0).collect());
+    let _ = time_base::from_times(&times_s, samples, None);
+    let block = |pair: &[f64]| time_base::Block { start_s: pair[0], sample_rate_hz: pair[1], count: 3 };
+    let blocks: Vec<_> = times_s.windows(2).map(block).collect();
+    let _ = time_base::from_blocks(&blocks, Samples::F32([1.0, f32::NAN, 3.0].repeat(blocks.len())));
 }
 
-/// Stores the shortest of what the run found, twenty inputs of fifty kilobytes together at most.
-fn keep(target: &str, pool: &[Vec<u8>], seeds: usize) {
-    std::fs::create_dir_all(folder(target)).unwrap();
-    let mut found: Vec<&Vec<u8>> = pool.iter().skip(seeds).collect();
-    found.sort_by_key(|input| input.len());
-    let mut left = 50_000_usize;
-    for input in found.into_iter().take(20) {
-        let Some(fewer) = left.checked_sub(input.len()) else { break };
-        left = fewer;
-        let mut hasher = DefaultHasher::new();
-        input.hash(&mut hasher);
-        std::fs::write(folder(target).join(format!("{:016x}", hasher.finish())), input).unwrap();
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
+    use std::panic::catch_unwind;
+    use std::time::{Duration, Instant};
+
+    /// Mutants of each target's inputs; the search for new ones is that of `tests/fuzz`.
+    const MUTANTS: usize = 2000;
+    /// No input of a few kilobytes may take so long, in the slowest profile.
+    const HANG: Duration = Duration::from_secs(5);
+
+    #[test]
+    fn stored_inputs_and_their_mutants_do_no_harm() {
+        for (target, decode) in TARGETS {
+            let folder = format!("{}/fixtures/corpus/{target}", env!("CARGO_MANIFEST_DIR"));
+            let mut paths: Vec<_> =
+                std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+            paths.sort();
+            let stored: Vec<Vec<u8>> = paths.iter().map(|path| std::fs::read(path).unwrap()).collect();
+            let mut chance = ChaCha8Rng::seed_from_u64(1);
+            let mutants = (0..MUTANTS).map(|_| mutant(&stored, &mut chance));
+            for input in stored.iter().cloned().chain(mutants) {
+                let begun = Instant::now();
+                let is_harmless = catch_unwind(|| decode(&input)).is_ok() && begun.elapsed() < HANG;
+                assert!(is_harmless, "{target}: \"{}\"", input.escape_ascii());
+            }
+        }
     }
-}
 
-fn mutant(pool: &[Vec<u8>], words: &[&[u8]], chance: &mut ChaCha8Rng) -> Vec<u8> {
-    let mut input = pool[chance.random_range(0..pool.len())].clone();
-    for _ in 0..1 << chance.random_range(0..5) {
-        mutate(&mut input, pool, words, chance);
-    }
-    input.truncate(LONGEST);
-    input
-}
-
-fn mutate(input: &mut Vec<u8>, pool: &[Vec<u8>], words: &[&[u8]], chance: &mut ChaCha8Rng) {
-    const EDGES: [u64; 12] =
-        [0, 1, 0x7f, 0x80, 0xff, 0x7fff, 0xffff, 0x7fff_ffff, 0xffff_ffff, 1 << 40, u64::MAX >> 1, u64::MAX];
-    let at = chance.random_range(0..=input.len());
-    let rest = input.len() - at;
-    let most = rest.min(1 << chance.random_range(0..9));
-    let span = chance.random_range(0..=most);
-    match chance.random_range(0..10) {
-        0 | 1 if rest > 0 => input[at] ^= 1 << chance.random_range(0..8),
-        2 if rest > 0 => input[at] = chance.random(),
-        3 => {
-            let edge = EDGES[chance.random_range(0..EDGES.len())].to_le_bytes();
-            let width = (1 << chance.random_range(0..4)).min(rest);
-            input[at..at + width].copy_from_slice(&edge[..width]);
+    /// A stored input with a few bytes taken out, alike, doubled, or with the end of another.
+    fn mutant(stored: &[Vec<u8>], chance: &mut ChaCha8Rng) -> Vec<u8> {
+        let any = |chance: &mut ChaCha8Rng| &stored[chance.random_range(0..stored.len())];
+        let mut input = any(chance).clone();
+        for _ in 0..chance.random_range(1..8) {
+            let at = chance.random_range(0..=input.len());
+            let end = (at + chance.random_range(0..16)).min(input.len());
+            match chance.random_range(0..4) {
+                0 => drop(input.drain(at..end)),
+                1 => input[at..end].fill(chance.random()),
+                2 => input.extend_from_within(at..end),
+                _ => {
+                    let other = any(chance);
+                    input.truncate(at);
+                    input.extend_from_slice(&other[chance.random_range(0..=other.len())..]);
+                }
+            }
         }
-        4 => drop(input.drain(at..at + span)),
-        5 => {
-            let block = input[at..at + span].to_vec();
-            let times = chance.random_range(1..5);
-            (0..times).for_each(|_| drop(input.splice(at..at, block.clone())));
-        }
-        6 => {
-            let other = &pool[chance.random_range(0..pool.len())];
-            let from = chance.random_range(0..=other.len());
-            input.truncate(at);
-            input.extend_from_slice(&other[from..]);
-        }
-        7 => input.truncate(at),
-        _ if !words.is_empty() => {
-            let word = words[chance.random_range(0..words.len())];
-            let end = at + if chance.random() { span } else { 0 };
-            drop(input.splice(at..end, word.iter().copied()));
-        }
-        _ => {}
+        input
     }
 }

@@ -17,6 +17,8 @@ mod wall;
 mod witness;
 
 pub(super) use list::list;
+#[cfg(any(test, fuzzing))]
+pub(super) use room::answer_by;
 pub(super) use room::use_program;
 
 use super::error::{self, IngestError};

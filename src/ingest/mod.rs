@@ -6,8 +6,8 @@ mod clock_pair;
 mod csv;
 mod detect;
 mod error;
-#[cfg(test)]
-mod fuzz;
+#[cfg(any(test, fuzzing))]
+pub mod fuzz;
 mod hdf5;
 mod in_memory;
 mod limits;

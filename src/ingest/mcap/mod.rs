@@ -8,6 +8,8 @@ mod claims;
 mod column;
 mod complaint;
 mod descriptors;
+#[cfg(any(test, fuzzing))]
+pub(super) mod fuzz;
 mod json;
 mod list;
 mod message_type;
@@ -30,7 +32,5 @@ mod wire;
 pub(super) use list::list;
 pub(super) use read::read;
 
-#[cfg(test)]
-mod fuzz_tests;
 #[cfg(test)]
 pub(super) mod written;
