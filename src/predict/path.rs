@@ -10,11 +10,14 @@ use crate::data::{Body, Contact, Drop, FlightRegime};
 /// More impacts of L than this before R strikes count as bouncing without end: with k ≤ 0.96 the last rebound is below [`REST_M_S`].
 const MOST_IMPACTS: u32 = 300;
 
-/// A rebound slower than this, m/s, is a rest: it lifts L by 5 nm.
+/// A rebound slower than this, m/s, is a rest on Earth: it lifts L by 5 nm. Another gravity's lifts it as high.
 const REST_M_S: f64 = 3e-4;
 
-/// L that touches the target again sooner than this, s, has not left it: gravity moves a free corner by 5 nm.
+/// L that touches the target again sooner than this, s, has not left it on Earth: gravity moves a free corner by 5 nm.
 const LET_GO_S: f64 = 3e-5;
+
+/// Gravity for which the two hold, m/s²: the default of a cask file.
+const EARTH_M_S2: f64 = 9.81;
 
 /// What L meets, and how far its motion is followed.
 #[derive(Clone, Copy)]
@@ -88,10 +91,15 @@ impl Way<'_> {
         }
     }
 
+    /// Gravity over that of the Earth.
+    fn gravity_share(&self) -> f64 {
+        self.support.gravity_m_s2 / EARTH_M_S2
+    }
+
     /// Whether the last impact left L on the target. Even with k = 0 stopping its sliding may throw a rough corner up.
     fn rests<T: Number>(&self, state: &State<T>) -> bool {
         let body = self.support.body;
-        state.corner(body, body.cog_m).vertical_velocity_m_s.re() < REST_M_S
+        state.corner(body, body.cog_m).vertical_velocity_m_s.re() < REST_M_S * self.gravity_share().sqrt()
     }
 
     /// L on the target until R strikes or the target would have to pull. L then flies, the limit k → 0, unless it sinks deeper than
@@ -101,7 +109,10 @@ impl Way<'_> {
         let end = self.support.rest(from);
         let End::LiftsOff(at, time_s) = end else { return (end, true) };
         let second_s = second_end_touches(self.support.body, self.support.gravity_m_s2, &at);
-        if self.strikes_again(&at, second_s).is_none_or(|again_s| again_s.re() > LET_GO_S) {
+        if self
+            .strikes_again(&at, second_s)
+            .is_none_or(|again_s| again_s.re() > LET_GO_S / self.gravity_share().sqrt())
+        {
             return (End::LiftsOff(at, time_s), true);
         }
         let end = match (Support { hold: Hold::Yields, ..self.support }).rest(&at) {
