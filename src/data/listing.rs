@@ -34,6 +34,26 @@ pub struct ListedChannel {
     pub unreadable: Option<String>,
 }
 
+impl ListedChannel {
+    /// A source of which only its name and kind are known.
+    pub(crate) fn named(source: &str, kind: &str) -> Self {
+        Self {
+            source: source.to_owned(),
+            kind: kind.to_owned(),
+            samples: None,
+            messages: None,
+            sample_rate_hz: None,
+            unit: None,
+            start_s: None,
+            duration_s: None,
+            gaps: None,
+            range: None,
+            encoding: String::new(),
+            unreadable: None,
+        }
+    }
+}
+
 /// What a recording holds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Listing {

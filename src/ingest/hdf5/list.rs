@@ -87,7 +87,10 @@ fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
             Object::Dataset(_) => datasets += 1,
             Object::NamedType | Object::Nothing => {}
             Object::NotFollowed(what) => {
-                broken.push(ListedChannel { unreadable: Some(what.clone()), ..blank(path, "link") });
+                broken.push(ListedChannel {
+                    unreadable: Some(what.clone()),
+                    ..ListedChannel::named(path, "link")
+                });
             }
             Object::Broken(_) => {
                 let what = "a link to what is not there, or what the HDF5 library cannot open";
@@ -97,7 +100,7 @@ fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
                 let reason = reason.filter(|reason| !reason.starts_with("it cannot be read"));
                 broken.push(ListedChannel {
                     unreadable: Some(reason.unwrap_or_else(|| what.to_owned())),
-                    ..blank(path, "link")
+                    ..ListedChannel::named(path, "link")
                 });
             }
         }
@@ -144,23 +147,6 @@ fn count_from_first(channels: &mut [ListedChannel], issues: &mut [Issue]) {
     }
 }
 
-fn blank(source: &str, kind: &str) -> ListedChannel {
-    ListedChannel {
-        source: source.to_owned(),
-        kind: kind.to_owned(),
-        samples: None,
-        messages: None,
-        sample_rate_hz: None,
-        unit: None,
-        start_s: None,
-        duration_s: None,
-        gaps: None,
-        range: None,
-        encoding: String::new(),
-        unreadable: None,
-    }
-}
-
 /// A dataset that holds no channel, with the reason.
 fn unreadable(file: &Rc<File>, path: &str) -> ListedChannel {
     let fault = match find::find(file, path) {
@@ -169,7 +155,7 @@ fn unreadable(file: &Rc<File>, path: &str) -> ListedChannel {
     };
     let reason = fault.strip_prefix(path).unwrap_or(&fault).trim_start_matches([':', ' ']).to_owned();
     let encoding = Found::at(file, path).map(|dataset| storage(&dataset)).unwrap_or_default();
-    ListedChannel { encoding, unreadable: Some(reason), ..blank(path, "dataset") }
+    ListedChannel { encoding, unreadable: Some(reason), ..ListedChannel::named(path, "dataset") }
 }
 
 fn listed(file: &Rc<File>, source: &str, effort: &mut Effort, issues: &mut Vec<Issue>) -> ListedChannel {
@@ -179,7 +165,7 @@ fn listed(file: &Rc<File>, source: &str, effort: &mut Effort, issues: &mut Vec<I
     let mut channel = ListedChannel {
         samples: Some(column.len() as u64),
         encoding: storage(&column.dataset) + &attributes.scaling(),
-        ..blank(source, kind)
+        ..ListedChannel::named(source, kind)
     };
     match survey(file, &column, &attributes, effort, &mut channel) {
         Ok(found) => issues.extend(found.into_iter().map(|issue| issue.on(source))),

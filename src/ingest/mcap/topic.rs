@@ -271,18 +271,10 @@ impl Topic {
                 Ok(_) => Some("its messages hold no numbers".to_owned()),
             };
             return vec![ListedChannel {
-                source: self.name.clone(),
-                kind: "topic".into(),
-                samples: None,
                 messages: Some(self.messages),
-                sample_rate_hz: None,
-                unit: None,
-                start_s: None,
-                duration_s: None,
-                gaps: None,
-                range: None,
                 encoding: self.encoding.clone(),
                 unreadable,
+                ..ListedChannel::named(&self.name, "topic")
             }];
         }
         self.fields.iter().map(|field| field.listed(self, zero_ns)).collect()
