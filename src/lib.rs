@@ -11,24 +11,20 @@ pub mod events;
 pub mod fit;
 pub mod ingest;
 pub mod judge;
+pub mod lab;
 pub mod motion;
 pub mod numerics;
 mod one_end;
 pub mod predict;
 pub mod report;
 mod settle;
-pub mod synth;
-pub mod trial;
-pub mod validate;
 
 use assemble::Draft;
 use data::{
-    Analysis, AxialClosure, Axis, Campaign, CampaignRequest, Cask, CaskFile, Channel, Contact, Coupling,
-    CrushableEnd, Drop, Events, FlightFit, Motion, Quantities, ReconstructionChoice, Recording, RestLevel,
-    RivalLaw, Scene, SceneFile, SceneNumber, Setup, Severity, Signal, SyntheticRecording, WantedImpact,
+    Analysis, AxialClosure, Axis, CaskFile, Channel, Contact, Coupling, Events, FlightFit, Motion,
+    Quantities, ReconstructionChoice, Recording, RestLevel, RivalLaw, Setup, Severity, Signal,
 };
 use one_end::StandIn;
-use std::path::Path;
 
 /// What the length of a pulse is uncertain by, as a share, where its samples are clipped or missing, or only the other end shows it.
 const UNCERTAIN_PULSE: f64 = 0.1;
@@ -135,49 +131,6 @@ fn analyzed(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     }
     draft.draw(of_recorded, &smooth, motion_setup.as_ref());
     draft.finish()
-}
-
-/// Reads and checks a scene file for [`synthesise`].
-///
-/// # Errors
-/// One diagnostic that shows the line.
-pub fn scene_file(path: &Path) -> Result<SceneFile, ingest::IngestError> {
-    Ok(ingest::scene_file::parse(path, &crush)?)
-}
-
-/// The stiffnesses of an end that give a wanted impact.
-fn crush(cask: &Cask, drop: &Drop, contact: Contact, end: data::End, wanted: WantedImpact) -> CrushableEnd {
-    let WantedImpact { duration_s, restitution, yield_share } = wanted;
-    let pulse = synth::Pulse { duration_s, restitution, yield_share };
-    synth::crushable_end(cask, drop, contact, end, pulse)
-}
-
-/// Random scenes with known truth through simulation, recorder and analysis; `progress` is told the share that is done.
-#[must_use]
-pub fn campaign(request: &CampaignRequest, progress: ingest::Progress) -> Campaign {
-    validate::run(request, &MEANS, progress)
-}
-
-/// One scene of a campaign, for [`report::synthetic_files`].
-#[must_use]
-pub fn campaign_scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, SyntheticRecording) {
-    validate::scene(seed, number, exact, &MEANS)
-}
-
-/// What a campaign's scenes pass through.
-const MEANS: validate::Means<'static> = validate::Means {
-    crush: &crush,
-    simulate: &synth::simulate,
-    force: &synth::specific_force_m_s2,
-    record: &synth::record,
-    read: &|recording, cask_file| ingest::synthetic(recording, cask_file).ok(),
-    analyze: &analyze,
-};
-
-/// The recording of a scene by its sensors and recorder, and its truth. The same scene gives the same bits.
-#[must_use]
-pub fn synthesise(scene: &Scene) -> SyntheticRecording {
-    synth::record(scene, &synth::simulate(scene))
 }
 
 /// What touches of L that are too shallow to count as impacts change of the predicted slap-down speed, m/s.

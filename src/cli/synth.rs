@@ -65,11 +65,11 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     let place = place.canonicalize().unwrap_or_else(|_| place.to_path_buf());
     let folder = Folder::checked(&place, &names.each_ref().map(String::as_str), &[&arguments.scene])?;
 
-    let mut scene_file = dropcheck::scene_file(&arguments.scene)?;
+    let mut scene_file = dropcheck::lab::scene_file(&arguments.scene)?;
     if let Some(seed) = arguments.seed {
         scene_file.scene.seed = seed;
     }
-    let recording = dropcheck::synthesise(&scene_file.scene);
+    let recording = dropcheck::lab::synthesise(&scene_file.scene);
     folder.write(&report::synthetic_files(&scene_file, &recording, &name, format)?)?;
 
     let files =

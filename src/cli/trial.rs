@@ -7,8 +7,8 @@ use super::output::{Folder, print, replace};
 use super::peers::peers;
 use super::progress::with_estimate;
 use dropcheck::data::{Trial, TrialMachine, TrialPart, TrialRequest};
+use dropcheck::lab::methods;
 use dropcheck::report::{self, TRIAL_NAMES};
-use dropcheck::trial;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -95,7 +95,7 @@ pub fn run(wanted: &Wanted) -> miette::Result<Outcome> {
         std::fs::create_dir_all(parts)
             .map_err(|source| miette::miette!("{} cannot be made: {source}", parts.display()))?;
     }
-    let jobs = trial::jobs();
+    let jobs = methods::jobs();
     let names: Vec<&str> = jobs.iter().map(|job| job.name).chain([PEERS.0]).collect();
     if wanted.afresh {
         shelf.clear(&names);
@@ -132,7 +132,7 @@ pub fn run(wanted: &Wanted) -> miette::Result<Outcome> {
 
 /// Every part, taken or measured.
 fn measured(shelf: &Shelf, progress: &dyn Fn(&str, f64)) -> miette::Result<Trial> {
-    let jobs = trial::jobs();
+    let jobs = methods::jobs();
     let waiting: f64 =
         jobs.iter().filter(|job| shelf.taken(job.name).is_none()).map(|job| job.weight).sum::<f64>()
             + PEERS.1;
@@ -154,11 +154,11 @@ fn measured(shelf: &Shelf, progress: &dyn Fn(&str, f64)) -> miette::Result<Trial
         kept
     } else {
         progress(PEERS.0, done / waiting);
-        let (part, said) = peers(&trial::peer_work(&shelf.request), shelf.request.quick);
+        let (part, said) = peers(&methods::peer_work(&shelf.request), shelf.request.quick);
         shelf.keep(PEERS.0, part, said)?
     };
     parts.push(beside.part);
-    Ok(trial::gather(shelf.request, shelf.machine.clone(), beside.said, parts))
+    Ok(methods::gather(shelf.request, shelf.machine.clone(), beside.said, parts))
 }
 
 /// What leads from a document to a folder, for references: relative where the folder lies below the document's own.

@@ -7,8 +7,8 @@ use super::progress::with_progress;
 use super::trial;
 use clap::Args;
 use dropcheck::data::{CampaignRequest, SceneNumber, TrialRequest};
+use dropcheck::lab;
 use dropcheck::report::{self, SyntheticFormat};
-use dropcheck::validate;
 use std::path::{Path, PathBuf};
 
 const AFTER_HELP: &str = "\
@@ -70,9 +70,9 @@ const ALL: &str = "all";
 const UNDAMAGED: &str = "undamaged";
 
 fn kind(word: &str) -> Result<&'static str, String> {
-    let mut words = [ALL, UNDAMAGED].into_iter().chain(validate::kinds().map(|kind| kind.0));
+    let mut words = [ALL, UNDAMAGED].into_iter().chain(lab::campaign::kinds().map(|kind| kind.0));
     words.find(|known| *known == word).ok_or_else(|| {
-        let known: Vec<&str> = validate::kinds().map(|kind| kind.0).collect();
+        let known: Vec<&str> = lab::campaign::kinds().map(|kind| kind.0).collect();
         format!("no kind of damage; there are all, undamaged, {}", known.join(", "))
     })
 }
@@ -105,7 +105,7 @@ fn campaign(arguments: &Arguments, scenes: u32) -> miette::Result<Outcome> {
     let document =
         arguments.into.as_deref().map(|path| MARKS.parts(path).map(|parts| (path, parts))).transpose()?;
     let has = |word| arguments.kinds.contains(&word);
-    let damages = validate::kinds().map(|kind| kind.0);
+    let damages = lab::campaign::kinds().map(|kind| kind.0);
     let request = CampaignRequest {
         scenes,
         seed: arguments.seed,
@@ -113,10 +113,10 @@ fn campaign(arguments: &Arguments, scenes: u32) -> miette::Result<Outcome> {
         kinds: damages.filter(|kind| has(ALL) || has(kind)).collect(),
         exact: arguments.exact,
     };
-    let campaign = with_progress("campaign", |progress| dropcheck::campaign(&request, progress));
-    let tables = validate::markdown(&campaign);
+    let campaign = with_progress("campaign", |progress| lab::campaign(&request, progress));
+    let tables = lab::campaign::markdown(&campaign);
     if let Some(folder) = &folder {
-        let csv = validate::csv(&campaign).map_err(report::ReportError::from)?;
+        let csv = lab::campaign::csv(&campaign).map_err(report::ReportError::from)?;
         let [csv_name, tables_name] = NAMES.map(str::to_owned);
         folder.write(&[(csv_name, csv), (tables_name, tables.clone().into_bytes())])?;
     }
@@ -134,7 +134,7 @@ fn one(arguments: &Arguments, number: SceneNumber, out: &Path) -> miette::Result
     let name = format!("{number}.mcap");
     let names = report::synthetic_names(&name);
     let folder = Folder::checked(out, &names.each_ref().map(String::as_str), &[])?;
-    let (scene, recording) = dropcheck::campaign_scene(arguments.seed, number, arguments.exact);
+    let (scene, recording) = lab::campaign_scene(arguments.seed, number, arguments.exact);
     // Protobuf, unlike JSON, holds samples that are infinite.
     folder.write(&report::synthetic_files(&scene, &recording, &name, SyntheticFormat::McapProtobuf)?)?;
     let files = names.each_ref().map(|name| report::printable(&folder.file(name)));

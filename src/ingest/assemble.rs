@@ -13,7 +13,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// A channel without a unit, or with one that is no acceleration.
-pub(super) fn recording(
+pub(crate) fn recording(
     path: &Path,
     format: RecordingFormat,
     sha256: String,

@@ -1,14 +1,14 @@
 //! A cask file (TOML) to a checked [`CaskFile`], or to one diagnostic that shows the line.
 
 mod body;
-pub(super) mod channel;
+pub(crate) mod channel;
 mod range;
-pub(super) mod section;
+pub(crate) mod section;
 pub(super) mod tolerance;
 mod wording;
 
 use crate::data::{CaskFile, Contact, FilterChoice};
-pub(super) use body::{cask, drop};
+pub(crate) use body::{cask, drop};
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use section::{CASK_FILE, Document, Kind, Section};
 use sha2::{Digest, Sha256};
@@ -118,7 +118,7 @@ fn no_cask_file(path: &Path, problem: &str, mend: &str) -> CaskFileError {
 }
 
 /// The bytes of a file of this kind.
-pub(super) fn read(path: &Path, kind: &Kind) -> Result<Vec<u8>, CaskFileError> {
+pub(crate) fn read(path: &Path, kind: &Kind) -> Result<Vec<u8>, CaskFileError> {
     let io = |refusal| CaskFileError::Io { path: path.display().to_string(), kind: kind.name, refusal };
     let metadata = std::fs::metadata(path).map_err(io)?;
     if metadata.is_dir() {
@@ -152,7 +152,7 @@ fn order(kind: &Kind) -> &'static str {
 }
 
 /// The text, without a byte-order mark.
-pub(super) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a str, CaskFileError> {
+pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a str, CaskFileError> {
     if bytes.starts_with(b"\x89HDF") || bytes.starts_with(b"\x89MCAP") {
         let problem = format!("this is a recording, not {}", kind.name);
         return Err(no_cask_file(path, &problem, order(kind)));
@@ -208,7 +208,7 @@ pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError
 }
 
 /// `[contact]`, with its defaults named in `defaults`.
-pub(super) fn contact(table: Option<&Section>, defaults: &mut Vec<String>) -> Result<Contact, CaskFileError> {
+pub(crate) fn contact(table: Option<&Section>, defaults: &mut Vec<String>) -> Result<Contact, CaskFileError> {
     const MEND: &str =
         "friction = \"rough\" (no sliding), \"smooth\" (no friction), or a coefficient such as 0.4";
     let value = table.and_then(|table| table.value("friction").map(|value| (table, value)));

@@ -101,7 +101,7 @@ pub(super) fn io(path: &Path, refusal: std::io::Error) -> IngestError {
 }
 
 /// A channel whose source is at fault.
-pub(super) fn source(
+pub(crate) fn source(
     path: &Path,
     channel: &str,
     problem: impl Into<String>,

@@ -1,9 +1,9 @@
 //! Bytes to each decoder, by the name of its folder in `fixtures/corpus`: `tests/fuzz` looks for harmful ones, the tests below replay
 //! what it kept.
 
-use super::scene_file::Crush;
-use super::{Limits, cask_file, csv, hdf5, mcap, number, scene_file, time_base};
+use super::{Limits, cask_file, csv, hdf5, mcap, number, time_base};
 use crate::data::{CaskFile, CrushableEnd, Samples};
+use crate::lab::scene_file::{self, Crush};
 use std::io::Write as _;
 use std::path::Path;
 use std::sync::LazyLock;

@@ -1,19 +1,17 @@
 //! Recording files and cask files to channels and settings: SI units, one time base a channel, what was missing.
 
-mod assemble;
+pub(crate) mod assemble;
 pub mod cask_file;
 mod clock_pair;
 mod csv;
 mod detect;
-mod error;
+pub(crate) mod error;
 #[cfg(any(test, fuzzing))]
 pub mod fuzz;
 mod hdf5;
-mod in_memory;
 mod limits;
 mod mcap;
 mod number;
-pub mod scene_file;
 mod stated_rate;
 pub mod time_base;
 mod time_name;
@@ -22,7 +20,6 @@ mod time_unit;
 mod unchanged;
 
 pub use error::IngestError;
-pub use in_memory::synthetic;
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
 
 use crate::data::{CaskFile, Issue, Listing, Recording, RecordingFormat};
@@ -33,24 +30,24 @@ pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
 
 /// What a format's reader hands over for one `[[channel]]`: uniform samples, still in the recording's unit and clock.
 #[derive(Debug)]
-struct RawChannel {
+pub(crate) struct RawChannel {
     /// Index into `CaskFile::channels`.
-    spec: usize,
+    pub(crate) spec: usize,
     /// The samples; its times and those of its issues count from [`RawRecording::zero_unix_ns`].
-    uniform: time_base::Uniform,
+    pub(crate) uniform: time_base::Uniform,
     /// The unit that the recording states or that its message type fixes, as written there.
-    unit: Option<String>,
+    pub(crate) unit: Option<String>,
 }
 
 /// What a format's reader hands over for a whole file.
 #[derive(Debug)]
-struct RawRecording {
+pub(crate) struct RawRecording {
     /// One for each `[[channel]]` of the cask file.
-    channels: Vec<RawChannel>,
+    pub(crate) channels: Vec<RawChannel>,
     /// Time zero of the channels' clock, ns since 1970, where the recording knows it.
-    zero_unix_ns: Option<i64>,
+    pub(crate) zero_unix_ns: Option<i64>,
     /// What is wrong with the file; times as in `channels`.
-    issues: Vec<Issue>,
+    pub(crate) issues: Vec<Issue>,
 }
 
 /// Reads and checks a cask file.

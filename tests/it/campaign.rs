@@ -5,7 +5,7 @@ use dropcheck::data::{
     Campaign, CampaignRequest, CampaignRow, Damage, Estimate, IssueCode, ReconstructionCandidate,
     ReconstructionRung, SceneNumber, Severity, Verdict,
 };
-use dropcheck::validate;
+use dropcheck::lab::campaign;
 use std::collections::BTreeMap;
 
 /// Cheap kinds: they make no longer records.
@@ -13,12 +13,12 @@ const KINDS: [&str; 3] = ["gap_flight", "polarity_first", "stated_angle"];
 
 fn run(scenes: u32, seed: u64, exact: bool) -> Campaign {
     let request = CampaignRequest { scenes, seed, undamaged: true, kinds: KINDS.to_vec(), exact };
-    dropcheck::campaign(&request, &|_| {})
+    dropcheck::lab::campaign(&request, &|_| {})
 }
 
 /// The cells of the CSV, a map a scene.
 fn cells(campaign: &Campaign) -> Vec<BTreeMap<String, String>> {
-    let bytes = validate::csv(campaign).expect("the CSV is written");
+    let bytes = campaign::csv(campaign).expect("the CSV is written");
     csv::Reader::from_reader(&bytes[..]).deserialize().map(|row| row.expect("a whole row")).collect()
 }
 
@@ -28,7 +28,7 @@ fn a_seed_gives_the_same_campaign_and_another_seed_another() {
     let numbers: Vec<String> = campaign.rows.iter().map(|row| row.number.to_string()).collect();
     assert_eq!(numbers[..3], ["U0", "U1", "U2"]);
     assert!(campaign.rows[3..].iter().all(|row| matches!(row.number, SceneNumber::Damaged(_))));
-    let csv = |campaign: &Campaign| validate::csv(campaign).expect("the CSV is written");
+    let csv = |campaign: &Campaign| campaign::csv(campaign).expect("the CSV is written");
     assert_eq!(csv(&campaign), csv(&run(3, 7, false)));
     assert_ne!(csv(&campaign), csv(&run(3, 8, false)));
 }
@@ -120,7 +120,7 @@ fn the_tables_have_every_kind_and_size_and_count_what_is_missed() {
     let mut campaign = run(1, 2, true);
     let sound = campaign.rows[0].clone();
     campaign.rows.clear();
-    for (kind, sizes, unit) in validate::kinds() {
+    for (kind, sizes, unit) in campaign::kinds() {
         for &size in sizes {
             let mut row = judged(&sound, Verdict::Pass, Some((if kind == "skew" { 2.5 } else { 0.0 }, 0.0)));
             row.damage = Some(Damage { kind, size, unit });
@@ -135,8 +135,8 @@ fn the_tables_have_every_kind_and_size_and_count_what_is_missed() {
     reviewed.candidates = vec![candidate(ReconstructionRung::Planar, says(0.03))];
     reviewed.rung = Some(ReconstructionRung::Planar);
     campaign.rows.push(reviewed);
-    let tables = validate::markdown(&campaign);
-    for (kind, sizes, unit) in validate::kinds() {
+    let tables = campaign::markdown(&campaign);
+    for (kind, sizes, unit) in campaign::kinds() {
         let outcome = if kind == "skew" { "0 | 0 | 0 | 1 | 200.0" } else { "1 | 0 | 0 | 0 | 0.0" };
         for size in sizes {
             let size = if unit.is_empty() { String::new() } else { format!("{size} {unit}") };

@@ -1,7 +1,7 @@
 //! Contacts that last longer than the flight after them, to results that are right or doubtful.
 
 use dropcheck::data::Verdict;
-use dropcheck::ingest;
+use dropcheck::lab::in_memory;
 
 /// Angle, °; pulse of L, ms; its k; frequencies of the modes, Hz; damping.
 type Drop<'a> = (f64, f64, f64, &'a [f64], f64);
@@ -45,10 +45,10 @@ fn a_contact_that_was_not_over_is_no_flight() {
     for drop in DROPS {
         let path = folder.path().join("scene.toml");
         std::fs::write(&path, scene_text(drop)).expect("a temporary file");
-        let made = dropcheck::scene_file(&path).expect("a scene");
-        let synthetic = dropcheck::synthesise(&made.scene);
+        let made = dropcheck::lab::scene_file(&path).expect("a scene");
+        let synthetic = dropcheck::lab::synthesise(&made.scene);
         let truth_m_s = synthetic.truth.speed.expect("a slap-down");
-        let recording = ingest::synthetic(&synthetic, &made.stated).expect("a recording");
+        let recording = in_memory::synthetic(&synthetic, &made.stated).expect("a recording");
         let result = dropcheck::analyze(&recording, &made.stated).result;
         let Some(speed) = result.slap_down.speed else {
             assert_ne!(result.verdict, Verdict::Pass, "{drop:?}");

@@ -1,7 +1,7 @@
 //! The quick trial of filters, ends, integrals and cut-offs to its errors, held by bounds that theory gives.
 
 use dropcheck::data::{TrialPart, TrialPoint, TrialRequest};
-use dropcheck::trial::sample_accuracy;
+use dropcheck::lab::methods::sample_accuracy;
 use std::sync::OnceLock;
 
 fn accuracy() -> &'static TrialPart {

@@ -5,7 +5,8 @@ use dropcheck::data::{TrialPart, TrialPoint, TrialRequest};
 const REQUEST: TrialRequest = TrialRequest { quick: true, seed: 1 };
 
 fn run(name: &str) -> TrialPart {
-    let job = dropcheck::trial::jobs().into_iter().find(|job| job.name == name).expect("a job of that name");
+    let job =
+        dropcheck::lab::methods::jobs().into_iter().find(|job| job.name == name).expect("a job of that name");
     (job.run)(&REQUEST, &|_| {})
 }
 

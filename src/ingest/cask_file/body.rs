@@ -28,11 +28,7 @@ const LEAST_INERTIA: f64 = 1e-2 / 12.0;
 const DEFAULT_GRAVITY_M_S2: f64 = 9.81;
 
 /// `[cask]`, with its defaults named in `defaults`.
-pub(in crate::ingest) fn cask(
-    table: &Section,
-    path: &Path,
-    defaults: &mut Vec<String>,
-) -> Result<Cask, CaskFileError> {
+pub(crate) fn cask(table: &Section, path: &Path, defaults: &mut Vec<String>) -> Result<Cask, CaskFileError> {
     let mass_kg = table.required_within(
         "mass_kg",
         "4466.0",
@@ -136,11 +132,7 @@ fn inertia_is_possible(
 }
 
 /// `[drop]`, with its defaults named in `defaults`.
-pub(in crate::ingest) fn drop(
-    table: &Section,
-    cask: &Cask,
-    defaults: &mut Vec<String>,
-) -> Result<Drop, CaskFileError> {
+pub(crate) fn drop(table: &Section, cask: &Cask, defaults: &mut Vec<String>) -> Result<Drop, CaskFileError> {
     let gravity =
         table.within("gravity_m_s2", &GRAVITIES_M_S2, "in m/s²: the Moon's to that of a centrifuge")?;
     if gravity.is_none() {

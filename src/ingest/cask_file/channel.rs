@@ -133,7 +133,7 @@ fn unit(table: &Section) -> Result<Option<Unit>, CaskFileError> {
     }
 }
 
-pub(in crate::ingest) fn position_m(table: &Section, cask: &Cask) -> Result<f64, CaskFileError> {
+pub(crate) fn position_m(table: &Section, cask: &Cask) -> Result<f64, CaskFileError> {
     let position = table.required_number("position_m", "0.15")?;
     if (0.0..=cask.length_m).contains(&position.value) {
         return Ok(position.value);
@@ -146,7 +146,7 @@ pub(in crate::ingest) fn position_m(table: &Section, cask: &Cask) -> Result<f64,
     ))
 }
 
-pub(in crate::ingest) fn polarity(table: &Section) -> Result<f64, CaskFileError> {
+pub(crate) fn polarity(table: &Section) -> Result<f64, CaskFileError> {
     match table.number("polarity")? {
         None => Ok(1.0),
         Some(polarity) if (polarity.value.abs() - 1.0).abs() < f64::EPSILON => Ok(polarity.value.signum()),
@@ -159,7 +159,7 @@ pub(in crate::ingest) fn polarity(table: &Section) -> Result<f64, CaskFileError>
     }
 }
 
-pub(in crate::ingest) fn coupling(table: &Section) -> Result<Coupling, CaskFileError> {
+pub(crate) fn coupling(table: &Section) -> Result<Coupling, CaskFileError> {
     const MEND: &str =
         "coupling = \"dc\" (the default: reads constant acceleration) or \"ac\" with time_constant_s";
     let is_ac = table.word("coupling", &[("dc", false), ("ac", true)], MEND)?.unwrap_or(false);

@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 
 impl Section<'_> {
     /// A number within `range`; `why` says what lies beyond or what the key means.
-    pub(in crate::ingest) fn within(
+    pub(crate) fn within(
         &self,
         key: &str,
         range: &RangeInclusive<f64>,
@@ -22,7 +22,7 @@ impl Section<'_> {
     }
 
     /// The same of a key that must be there.
-    pub(in crate::ingest) fn required_within(
+    pub(crate) fn required_within(
         &self,
         key: &str,
         example: &str,
@@ -34,7 +34,7 @@ impl Section<'_> {
     }
 
     /// The refusal of `what`, which lies outside `range`.
-    pub(in crate::ingest) fn outside(
+    pub(crate) fn outside(
         &self,
         span: std::ops::Range<usize>,
         what: &str,

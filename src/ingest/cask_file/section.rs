@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// A kind of file: what a person calls it, and its tables with their keys.
-pub(in crate::ingest) struct Kind {
+pub(crate) struct Kind {
     /// "the cask file".
     pub name: &'static str,
     /// Every table with its keys; "" is the file itself.
@@ -17,7 +17,7 @@ pub(in crate::ingest) struct Kind {
 }
 
 /// The cask file.
-pub(in crate::ingest) const CASK_FILE: Kind = Kind { name: "the cask file", tables: &KEYS };
+pub(crate) const CASK_FILE: Kind = Kind { name: "the cask file", tables: &KEYS };
 
 /// Every table of a cask file with its keys; "" is the file itself.
 const KEYS: [(&str, &[&str]); 10] = [
@@ -55,7 +55,7 @@ const KEYS: [(&str, &[&str]); 10] = [
 const LISTS: [&str; 2] = ["channel", "mode"];
 
 /// A file's text with its name and its kind.
-pub(in crate::ingest) struct Document<'a> {
+pub(crate) struct Document<'a> {
     kind: &'static Kind,
     path: &'a Path,
     text: &'a str,
@@ -63,13 +63,13 @@ pub(in crate::ingest) struct Document<'a> {
 
 /// A value with its place in the text.
 #[derive(Debug, Clone)]
-pub(in crate::ingest) struct Placed<T> {
+pub(crate) struct Placed<T> {
     pub value: T,
     pub span: Range<usize>,
 }
 
 /// A table of the file whose keys are all known.
-pub(in crate::ingest) struct Section<'a> {
+pub(crate) struct Section<'a> {
     document: &'a Document<'a>,
     name: &'static str,
     table: DeTable<'a>,
@@ -77,12 +77,12 @@ pub(in crate::ingest) struct Section<'a> {
 }
 
 impl<'a> Document<'a> {
-    pub(in crate::ingest) fn new(kind: &'static Kind, path: &'a Path, text: &'a str) -> Self {
+    pub(crate) fn new(kind: &'static Kind, path: &'a Path, text: &'a str) -> Self {
         Self { kind, path, text }
     }
 
     /// The file's top level.
-    pub(in crate::ingest) fn root(&'a self) -> Result<Section<'a>, CaskFileError> {
+    pub(crate) fn root(&'a self) -> Result<Section<'a>, CaskFileError> {
         match DeTable::parse(self.text) {
             Ok(table) => self.section("", table.into_inner(), 0..0),
             Err(error) => Err(self.syntax(&error)),
@@ -166,16 +166,16 @@ impl<'a> Section<'a> {
     }
 
     /// Where the section stands.
-    pub(in crate::ingest) fn span(&self) -> Range<usize> {
+    pub(crate) fn span(&self) -> Range<usize> {
         self.span.clone()
     }
 
-    pub(in crate::ingest) fn value(&self, key: &str) -> Option<&Spanned<DeValue<'a>>> {
+    pub(crate) fn value(&self, key: &str) -> Option<&Spanned<DeValue<'a>>> {
         self.table.get(key)
     }
 
     /// A diagnostic at `span`.
-    pub(in crate::ingest) fn wrong(
+    pub(crate) fn wrong(
         &self,
         span: Range<usize>,
         message: String,
@@ -186,11 +186,11 @@ impl<'a> Section<'a> {
     }
 
     /// The line number of a place.
-    pub(in crate::ingest) fn line(&self, at: usize) -> usize {
+    pub(crate) fn line(&self, at: usize) -> usize {
         line_of(self.document.text.as_bytes(), at)
     }
 
-    pub(in crate::ingest) fn missing(&self, key: &str, mend: &str) -> CaskFileError {
+    pub(crate) fn missing(&self, key: &str, mend: &str) -> CaskFileError {
         let message = format!("{} has no {key}", self.title());
         self.wrong(self.span(), message, format!("{key} is missing here"), mend)
     }
@@ -219,7 +219,7 @@ impl<'a> Section<'a> {
     }
 
     /// The table `key`, where there is one.
-    pub(in crate::ingest) fn table(&self, key: &'static str) -> Result<Option<Section<'a>>, CaskFileError> {
+    pub(crate) fn table(&self, key: &'static str) -> Result<Option<Section<'a>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         match value.get_ref() {
             DeValue::Table(table) => self.document.section(key, table.clone(), value.span()).map(Some),
@@ -232,7 +232,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    pub(in crate::ingest) fn required_table(&self, key: &'static str) -> Result<Section<'a>, CaskFileError> {
+    pub(crate) fn required_table(&self, key: &'static str) -> Result<Section<'a>, CaskFileError> {
         self.table(key)?.ok_or_else(|| {
             let Kind { name: file, tables } = self.document.kind;
             let keys =
@@ -247,7 +247,7 @@ impl<'a> Section<'a> {
     }
 
     /// The tables `[[key]]`.
-    pub(in crate::ingest) fn tables(&self, key: &'static str) -> Result<Vec<Section<'a>>, CaskFileError> {
+    pub(crate) fn tables(&self, key: &'static str) -> Result<Vec<Section<'a>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(Vec::new()) };
         let wrong = |span| {
             self.wrong(
@@ -268,7 +268,7 @@ impl<'a> Section<'a> {
     }
 
     /// A finite number.
-    pub(in crate::ingest) fn number(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
+    pub(crate) fn number(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         let number = match value.get_ref() {
             DeValue::Integer(integer) if integer.radix() == 10 => {
@@ -301,16 +301,12 @@ impl<'a> Section<'a> {
         Err(self.wrong(value.span(), message, "a number".into(), &mend))
     }
 
-    pub(in crate::ingest) fn required_number(
-        &self,
-        key: &str,
-        example: &str,
-    ) -> Result<Placed<f64>, CaskFileError> {
+    pub(crate) fn required_number(&self, key: &str, example: &str) -> Result<Placed<f64>, CaskFileError> {
         self.number(key)?.ok_or_else(|| self.missing(key, &format!("add a line such as {key} = {example}")))
     }
 
     /// A number above 0.
-    pub(in crate::ingest) fn positive(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
+    pub(crate) fn positive(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
         match self.number(key)? {
             Some(number) if number.value <= 0.0 => Err(self.wrong(
                 number.span,
@@ -323,7 +319,7 @@ impl<'a> Section<'a> {
     }
 
     /// A number of 0 or above.
-    pub(in crate::ingest) fn not_negative(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
+    pub(crate) fn not_negative(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
         match self.number(key)? {
             Some(number) if number.value < 0.0 => Err(self.wrong(
                 number.span,
@@ -336,7 +332,7 @@ impl<'a> Section<'a> {
     }
 
     /// A word or name, not empty.
-    pub(in crate::ingest) fn text(&self, key: &str) -> Result<Option<Placed<String>>, CaskFileError> {
+    pub(crate) fn text(&self, key: &str) -> Result<Option<Placed<String>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         match value.get_ref() {
             DeValue::String(text) if !text.trim().is_empty() => {
@@ -357,16 +353,12 @@ impl<'a> Section<'a> {
         }
     }
 
-    pub(in crate::ingest) fn required_text(
-        &self,
-        key: &str,
-        example: &str,
-    ) -> Result<Placed<String>, CaskFileError> {
+    pub(crate) fn required_text(&self, key: &str, example: &str) -> Result<Placed<String>, CaskFileError> {
         self.text(key)?.ok_or_else(|| self.missing(key, &format!("add a line such as {key} = \"{example}\"")))
     }
 
     /// One of a few words.
-    pub(in crate::ingest) fn word<T: Copy>(
+    pub(crate) fn word<T: Copy>(
         &self,
         key: &str,
         words: &[(&str, T)],

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::data::{BendingMode, Contact, CrushableEnd};
-use crate::synth::example::{anf18, just_before};
+use crate::lab::synth::example::{anf18, just_before};
 
 /// Kinetic and potential energy, J, of a kept time.
 fn energy_j(scene: &Scene, motion: &SimulatedMotion, i: usize) -> f64 {

@@ -52,7 +52,7 @@ pub fn crushable_end(cask: &Cask, drop: &Drop, contact: Contact, end: End, pulse
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synth::{example, simulate};
+    use crate::lab::synth::{example, simulate};
 
     #[test]
     fn the_end_gives_the_pulse_and_the_restitution_asked_for() {

@@ -8,7 +8,7 @@ use crate::data::{
     Axis, End, Estimate, Events, FlightFit, ReconstructionChoice, ReconstructionRung, Setup, TrialPart,
     TrialPeerWork, TrialPoint, TrialRequest,
 };
-use crate::trial::timing::{Effort, Timing, Work, in_turn};
+use crate::lab::methods::timing::{Effort, Timing, Work, in_turn};
 use crate::{analyze, assemble, fit, motion, settle};
 use rayon::prelude::*;
 use std::hint::black_box;
@@ -38,7 +38,7 @@ pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
 }
 
 /// Some drops of each class for programs of others: what the second end reads, and the speed that it strikes with.
-pub(in crate::trial) fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
+pub(in crate::lab::methods) fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
     let of_class = |class: &Class| {
         let plans = sample::plans(class, if request.quick { 4 } else { 12 }, request);
         let of_drop = |drop: &Prepared| {

@@ -1,9 +1,8 @@
 //! A synthetic recording to the channels that reading its file would give, without the file.
 
-use super::error::{self, IngestError};
-use super::time_base::{self, Block};
-use super::{RawChannel, RawRecording, assemble};
 use crate::data::{CaskFile, Recording, RecordingFormat, Samples, SyntheticChannel, SyntheticRecording};
+use crate::ingest::time_base::{self, Block};
+use crate::ingest::{IngestError, RawChannel, RawRecording, assemble, error};
 use std::path::Path;
 
 /// What stands for the name of the file.

@@ -2,10 +2,10 @@
 
 use super::summary::{Family, chance, silent_line};
 use crate::data::{FilterChoice, TrialMap, TrialPart, TrialPoint, TrialRequest};
+use crate::lab::methods::timing::{Effort, Work, in_turn};
 use crate::motion::cutoff_hz;
 use crate::numerics::filter::ZeroPhaseLowPass;
 use crate::numerics::spectrum::{highest_above_hz, magnitude};
-use crate::trial::timing::{Effort, Work, in_turn};
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;

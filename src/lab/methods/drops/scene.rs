@@ -6,7 +6,7 @@ use crate::data::{
     FilterChoice, Recording, Scene, SceneChannel, SimulatedMotion, Source, SyntheticRecording, Tolerances,
     Truth, Unit,
 };
-use crate::{ingest, synth};
+use crate::lab::{in_memory, synth};
 use std::path::PathBuf;
 
 const GRAVITY_M_S2: f64 = 9.81;
@@ -189,7 +189,7 @@ impl Drawn {
     /// What the recorder wrote, and as it is read; none where it is refused.
     pub(super) fn recorded(&self) -> (SyntheticRecording, Option<Recording>) {
         let written = synth::record(&self.scene, &self.motion);
-        let read = ingest::synthetic(&written, &self.stated).ok();
+        let read = in_memory::synthetic(&written, &self.stated).ok();
         (written, read)
     }
 

@@ -5,9 +5,10 @@ use super::sample::{self, Class, Prepared};
 use super::scene::STANDARD_GRAVITY_M_S2;
 use super::summary::{Subject, by_class, point};
 use crate::data::{BendingMode, Scene, Signal, TrialPart, TrialPoint, TrialRequest};
+use crate::lab::methods::timing::{Effort, Work, in_turn};
+use crate::lab::synth;
+use crate::motion;
 use crate::numerics::damped_modes::{Series, Shape, fit_shape};
-use crate::trial::timing::{Effort, Work, in_turn};
-use crate::{motion, synth};
 use rayon::prelude::*;
 use std::hint::black_box;
 

@@ -1,7 +1,7 @@
 //! Errors of many cases to points and lines of the trial.
 
 use crate::data::{TrialLine, TrialPoint};
-use crate::trial::timing::Timing;
+use crate::lab::methods::timing::Timing;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 

@@ -1,8 +1,8 @@
 //! Errors and times of a method to a point of its chart.
 
 use crate::data::{TrialPart, TrialPoint};
+use crate::lab::methods::timing::Timing;
 use crate::numerics::robust;
-use crate::trial::timing::Timing;
 
 /// What a point is of.
 #[derive(Clone, Copy)]

@@ -6,7 +6,7 @@ use super::scene::STANDARD_GRAVITY_M_S2;
 use super::summary::{Subject, by_class, point};
 use crate::data::{TrialPart, TrialPoint, TrialRequest};
 use crate::events::{Detector, first_contact_by};
-use crate::trial::timing::{Effort, Work, in_turn};
+use crate::lab::methods::timing::{Effort, Work, in_turn};
 use std::hint::black_box;
 
 const CLASSES: [Class; 5] = [

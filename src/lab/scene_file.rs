@@ -3,12 +3,12 @@
 mod channel;
 mod values;
 
-use super::cask_file::section::{Document, Kind, Section};
-use super::cask_file::{self, CaskFileError};
 use crate::data::{
     BendingMode, Cask, CaskFile, Contact, CrushableEnd, Drop, End, FilterChoice, Scene, SceneFile,
     WantedImpact,
 };
+use crate::ingest::cask_file::section::{Document, Kind, Section};
+use crate::ingest::cask_file::{self, CaskFileError};
 use std::path::Path;
 use values::{flag, number_or, size_or, whole};
 

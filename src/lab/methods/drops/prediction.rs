@@ -5,8 +5,8 @@ use super::summary::{Subject, by_class, point};
 use crate::data::{
     Body, BodyModel, Contact, Drop, Prediction, Rung, TrialPart, TrialPoint, TrialRequest, Truth,
 };
+use crate::lab::methods::timing::{Effort, Work, in_turn};
 use crate::predict;
-use crate::trial::timing::{Effort, Work, in_turn};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;

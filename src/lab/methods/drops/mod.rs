@@ -14,7 +14,7 @@ mod sweep;
 
 use crate::data::{TrialJob, TrialPart, TrialRequest};
 
-pub(in crate::trial) use reconstruction::peer_work;
+pub(in crate::lab::methods) use reconstruction::peer_work;
 
 pub(super) fn jobs() -> Vec<TrialJob> {
     let job = |name, weight, run| TrialJob { name, weight, run };

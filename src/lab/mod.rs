@@ -1,0 +1,60 @@
+//! The laboratory: scenes with a known truth, through everything, to how far off the analysis is and what other methods would do.
+//!
+//! It is no part of the product: it may use anything of it, and of the program only the command line uses it.
+
+pub mod campaign;
+pub mod in_memory;
+pub mod methods;
+pub mod scene_file;
+pub mod synth;
+
+use crate::analyze;
+use crate::data::{
+    Campaign, CampaignRequest, Cask, Contact, CrushableEnd, Drop, End, Scene, SceneFile, SceneNumber,
+    SyntheticRecording, WantedImpact,
+};
+use crate::ingest::{IngestError, Progress};
+use std::path::Path;
+
+/// Reads and checks a scene file for [`synthesise`].
+///
+/// # Errors
+/// One diagnostic that shows the line.
+pub fn scene_file(path: &Path) -> Result<SceneFile, IngestError> {
+    Ok(scene_file::parse(path, &crush)?)
+}
+
+/// The stiffnesses of an end that give a wanted impact.
+fn crush(cask: &Cask, drop: &Drop, contact: Contact, end: End, wanted: WantedImpact) -> CrushableEnd {
+    let WantedImpact { duration_s, restitution, yield_share } = wanted;
+    let pulse = synth::Pulse { duration_s, restitution, yield_share };
+    synth::crushable_end(cask, drop, contact, end, pulse)
+}
+
+/// Random scenes with known truth through simulation, recorder and analysis; `progress` is told the share that is done.
+#[must_use]
+pub fn campaign(request: &CampaignRequest, progress: Progress) -> Campaign {
+    campaign::run(request, &MEANS, progress)
+}
+
+/// One scene of a campaign, for [`report::synthetic_files`].
+#[must_use]
+pub fn campaign_scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, SyntheticRecording) {
+    campaign::scene(seed, number, exact, &MEANS)
+}
+
+/// What a campaign's scenes pass through.
+const MEANS: campaign::Means<'static> = campaign::Means {
+    crush: &crush,
+    simulate: &synth::simulate,
+    force: &synth::specific_force_m_s2,
+    record: &synth::record,
+    read: &|recording, cask_file| in_memory::synthetic(recording, cask_file).ok(),
+    analyze: &analyze,
+};
+
+/// The recording of a scene by its sensors and recorder, and its truth. The same scene gives the same bits.
+#[must_use]
+pub fn synthesise(scene: &Scene) -> SyntheticRecording {
+    synth::record(scene, &synth::simulate(scene))
+}
