@@ -1,6 +1,6 @@
 //! The machine at hand to what a trial says of it.
 
-use dropcheck::data::TrialMachine;
+use dropcheck::lab::data::TrialMachine;
 
 /// What this program runs on.
 pub fn machine() -> TrialMachine {

@@ -1,6 +1,6 @@
 //! Work of the trial to the errors and times of scipy on it, where Python has it.
 
-use dropcheck::data::{TrialPart, TrialPeerWork, TrialPoint};
+use dropcheck::lab::data::{TrialPart, TrialPeerWork, TrialPoint};
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};

@@ -3,8 +3,9 @@
 use super::Outcome;
 use super::output::{Folder, print};
 use clap::{Args, ValueEnum};
-use dropcheck::data::{SyntheticRecording, Truth};
-use dropcheck::report::{self, SyntheticFormat};
+use dropcheck::lab::data::{SyntheticRecording, Truth};
+use dropcheck::lab::report::SyntheticFormat;
+use dropcheck::{lab, report};
 use std::path::{Path, PathBuf};
 
 const AFTER_HELP: &str = "\
@@ -56,7 +57,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.scene));
     let format = format(&out, arguments.encoding)?;
     let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let names = report::synthetic_names(&name);
+    let names = lab::report::synthetic_names(&name);
     let place = match out.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -65,12 +66,12 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     let place = place.canonicalize().unwrap_or_else(|_| place.to_path_buf());
     let folder = Folder::checked(&place, &names.each_ref().map(String::as_str), &[&arguments.scene])?;
 
-    let mut scene_file = dropcheck::lab::scene_file(&arguments.scene)?;
+    let mut scene_file = lab::scene_file(&arguments.scene)?;
     if let Some(seed) = arguments.seed {
         scene_file.scene.seed = seed;
     }
-    let recording = dropcheck::lab::synthesise(&scene_file.scene);
-    folder.write(&report::synthetic_files(&scene_file, &recording, &name, format)?)?;
+    let recording = lab::synthesise(&scene_file.scene);
+    folder.write(&lab::report::synthetic_files(&scene_file, &recording, &name, format)?)?;
 
     let files =
         names.each_ref().map(|name| report::printable(&out.with_file_name(name).display().to_string()));
@@ -146,6 +147,6 @@ mod tests {
     fn the_default_is_beside_the_scene_and_its_cask_file_is_not_the_scene() {
         let out = default_out(Path::new("scenes/drop.toml"));
         assert_eq!(out, Path::new("scenes/drop-synth.mcap"));
-        assert_eq!(report::synthetic_names("drop-synth.mcap")[1], "drop-synth.toml");
+        assert_eq!(lab::report::synthetic_names("drop-synth.mcap")[1], "drop-synth.toml");
     }
 }

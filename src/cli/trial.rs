@@ -6,9 +6,10 @@ use super::machine::machine;
 use super::output::{Folder, print, replace};
 use super::peers::peers;
 use super::progress::with_estimate;
-use dropcheck::data::{Trial, TrialMachine, TrialPart, TrialRequest};
+use dropcheck::lab::data::{Trial, TrialMachine, TrialPart, TrialRequest};
 use dropcheck::lab::methods;
-use dropcheck::report::{self, TRIAL_NAMES};
+use dropcheck::lab::report::TRIAL_NAMES;
+use dropcheck::{lab, report};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -114,17 +115,17 @@ pub fn run(wanted: &Wanted) -> miette::Result<Outcome> {
     }
     let trial = with_estimate(|progress| measured(&shelf, progress))?;
     if let Some(folder) = &folder {
-        folder.write(&report::trial_files(&trial)?)?;
+        folder.write(&lab::report::trial_files(&trial)?)?;
         shelf.clear(&names);
     }
     if let Some((path, (before, after))) = &document {
         let charts = wanted.out.map(|out| way(path, out));
-        let text = report::trial_markdown(&trial, charts.as_deref());
+        let text = lab::report::trial_markdown(&trial, charts.as_deref());
         replace(path, format!("{before}\n{text}{after}").as_bytes())?;
     }
     match &folder {
         Some(folder) => print(&format!("Written: {}\n", report::printable(&folder.file(TRIAL_NAMES[0]))))?,
-        None if document.is_none() => print(&report::trial_markdown(&trial, None))?,
+        None if document.is_none() => print(&lab::report::trial_markdown(&trial, None))?,
         None => {}
     }
     Ok(Outcome::Clear)

@@ -6,9 +6,9 @@ use super::output::{Folder, print, replace};
 use super::progress::with_progress;
 use super::trial;
 use clap::Args;
-use dropcheck::data::{CampaignRequest, SceneNumber, TrialRequest};
-use dropcheck::lab;
-use dropcheck::report::{self, SyntheticFormat};
+use dropcheck::lab::data::{CampaignRequest, SceneNumber, TrialRequest};
+use dropcheck::lab::report::SyntheticFormat;
+use dropcheck::{lab, report};
 use std::path::{Path, PathBuf};
 
 const AFTER_HELP: &str = "\
@@ -132,11 +132,11 @@ fn campaign(arguments: &Arguments, scenes: u32) -> miette::Result<Outcome> {
 /// Writes the files of one scene.
 fn one(arguments: &Arguments, number: SceneNumber, out: &Path) -> miette::Result<Outcome> {
     let name = format!("{number}.mcap");
-    let names = report::synthetic_names(&name);
+    let names = lab::report::synthetic_names(&name);
     let folder = Folder::checked(out, &names.each_ref().map(String::as_str), &[])?;
     let (scene, recording) = lab::campaign_scene(arguments.seed, number, arguments.exact);
     // Protobuf, unlike JSON, holds samples that are infinite.
-    folder.write(&report::synthetic_files(&scene, &recording, &name, SyntheticFormat::McapProtobuf)?)?;
+    folder.write(&lab::report::synthetic_files(&scene, &recording, &name, SyntheticFormat::McapProtobuf)?)?;
     let files = names.each_ref().map(|name| report::printable(&folder.file(name)));
     print(&format!("Written: {}\n", files.join(", ")))?;
     Ok(Outcome::Clear)

@@ -1,7 +1,6 @@
 //! The plain structs that pass between stages; they hold no algorithm.
 
 mod analysis;
-mod campaign;
 mod cask;
 mod channel;
 mod curves;
@@ -16,19 +15,15 @@ mod prediction;
 mod quantities;
 mod reconstruction;
 mod recording;
-mod scene;
 mod signal;
 mod study;
-mod synthetic;
 mod tolerances;
-mod trial;
 mod unit;
 
 pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
     ModelChoice, Setting, SlapDown, Verdict,
 };
-pub use campaign::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber, Scored};
 pub use cask::{
     Axis, BENDING_WAVE_M_S, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice,
     GRAZE_SHARE, MOST_CHANNELS, SAMPLE_RATES_HZ, Source, Unit,
@@ -49,15 +44,10 @@ pub use reconstruction::{
     ReconstructionRung, RestLevel,
 };
 pub use recording::{Recording, RecordingFormat};
-pub use scene::{BendingMode, Chain, CrushableEnd, Scene, SceneChannel, SimulatedMotion, Truth};
 pub use signal::{CoarseEvent, MOST_LOST_M_S, Signal};
 pub use study::{
     AngleCurve, Criterion, CriticalAngle, CriticalRange, MonteCarlo, PredictionRow, QuantileCurves, Regime,
     RegimeMap, Request, Sensitivity, Study, Sweep, SweepVariable, Uncertain,
 };
-pub use synthetic::{SceneFile, SyntheticChannel, SyntheticRecording, WantedImpact};
 pub use tolerances::{Corrections, Tolerances};
-pub use trial::{
-    Trial, TrialJob, TrialLine, TrialMachine, TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest,
-};
 pub use unit::{STANDARD_GRAVITY_M_S2, acceleration_unit_m_s2};

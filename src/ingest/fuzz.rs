@@ -2,7 +2,8 @@
 //! what it kept.
 
 use super::{Limits, cask_file, csv, hdf5, mcap, number, time_base};
-use crate::data::{CaskFile, CrushableEnd, Samples};
+use crate::data::{CaskFile, Samples};
+use crate::lab::data::CrushableEnd;
 use crate::lab::scene_file::{self, Crush};
 use std::io::Write as _;
 use std::path::Path;

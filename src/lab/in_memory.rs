@@ -1,8 +1,9 @@
 //! A synthetic recording to the channels that reading its file would give, without the file.
 
-use crate::data::{CaskFile, Recording, RecordingFormat, Samples, SyntheticChannel, SyntheticRecording};
+use crate::data::{CaskFile, Recording, RecordingFormat, Samples};
 use crate::ingest::time_base::{self, Block};
 use crate::ingest::{IngestError, RawChannel, RawRecording, assemble, error};
+use crate::lab::data::{SyntheticChannel, SyntheticRecording};
 use std::path::Path;
 
 /// What stands for the name of the file.

@@ -3,17 +3,19 @@
 //! It is no part of the product: it may use anything of it, and of the program only the command line uses it.
 
 pub mod campaign;
+pub mod data;
 pub mod in_memory;
 pub mod methods;
+pub mod report;
 pub mod scene_file;
 pub mod synth;
 
 use crate::analyze;
-use crate::data::{
-    Campaign, CampaignRequest, Cask, Contact, CrushableEnd, Drop, End, Scene, SceneFile, SceneNumber,
-    SyntheticRecording, WantedImpact,
-};
+use crate::data::{Cask, Contact, Drop, End};
 use crate::ingest::{IngestError, Progress};
+use crate::lab::data::{
+    Campaign, CampaignRequest, CrushableEnd, Scene, SceneFile, SceneNumber, SyntheticRecording, WantedImpact,
+};
 use std::path::Path;
 
 /// Reads and checks a scene file for [`synthesise`].

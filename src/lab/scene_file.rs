@@ -3,12 +3,10 @@
 mod channel;
 mod values;
 
-use crate::data::{
-    BendingMode, Cask, CaskFile, Contact, CrushableEnd, Drop, End, FilterChoice, Scene, SceneFile,
-    WantedImpact,
-};
+use crate::data::{Cask, CaskFile, Contact, Drop, End, FilterChoice};
 use crate::ingest::cask_file::section::{Document, Kind, Section};
 use crate::ingest::cask_file::{self, CaskFileError};
+use crate::lab::data::{BendingMode, CrushableEnd, Scene, SceneFile, WantedImpact};
 use std::path::Path;
 use values::{flag, number_or, size_or, whole};
 

@@ -21,7 +21,7 @@ pub(super) fn bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
 ///
 /// # Errors
 /// [`ReportError::Hdf5`] where the library fails, [`ReportError::Scratch`] where the temporary folder does.
-pub(super) fn through_a_file(
+pub(crate) fn through_a_file(
     fill: impl FnOnce(&File) -> Result<(), ReportError>,
 ) -> Result<Vec<u8>, ReportError> {
     let failed = |source| ReportError::Scratch { folder: std::env::temp_dir().display().to_string(), source };
@@ -96,7 +96,7 @@ fn dataset(group: &Group, name: &str, values: &[f64], unit: &str, time_s: &[f64]
 }
 
 /// A dataset of these values, compressed.
-pub(super) fn filled<T: H5Type>(group: &Group, name: &str, values: &[T]) -> Result<Dataset, ReportError> {
+pub(crate) fn filled<T: H5Type>(group: &Group, name: &str, values: &[T]) -> Result<Dataset, ReportError> {
     let builder = group.new_dataset_builder();
     // A chunked dataset cannot be of length zero.
     let builder = if values.is_empty() { builder } else { builder.shuffle().deflate(GZIP_LEVEL) };
@@ -104,7 +104,7 @@ pub(super) fn filled<T: H5Type>(group: &Group, name: &str, values: &[T]) -> Resu
 }
 
 /// A text attribute.
-pub(super) fn text(place: &Location, name: &str, value: &str) -> Result<(), ReportError> {
+pub(crate) fn text(place: &Location, name: &str, value: &str) -> Result<(), ReportError> {
     // Strings in HDF5 end at the first NUL.
     let value: VarLenUnicode = value.replace('\0', "").parse().unwrap_or_default();
     place.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&value)?;

@@ -48,7 +48,7 @@ pub(super) fn page(analysis: &Analysis, pictures: &[Picture]) -> String {
 }
 
 /// A page of its own around `content`, whose words are escaped already; `style` is added to what all pages share.
-pub(super) fn document(title: &str, version: &str, style: &str, content: &Markup) -> String {
+pub(crate) fn document(title: &str, version: &str, style: &str, content: &Markup) -> String {
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -103,7 +103,7 @@ fn figures(result: &DropResult) -> Markup {
 }
 
 /// The picture of this name with its caption.
-pub(super) fn picture(pictures: &[Picture], name: &str) -> Markup {
+pub(crate) fn picture(pictures: &[Picture], name: &str) -> Markup {
     html! {
         @for picture in pictures.iter().filter(|p| p.name == name) {
             figure aria-label=(printable(&picture.alt)) {

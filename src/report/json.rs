@@ -57,7 +57,7 @@ pub fn listing(listing: &Listing) -> Result<Vec<u8>, ReportError> {
 }
 
 /// Two spaces of indentation and a line feed at the end.
-pub(super) fn pretty<T: serde::Serialize>(value: &T) -> Result<Vec<u8>, ReportError> {
+pub(crate) fn pretty<T: serde::Serialize>(value: &T) -> Result<Vec<u8>, ReportError> {
     let mut text = serde_json::to_string_pretty(value)?;
     if text.contains(steers) {
         text = text.chars().fold(String::with_capacity(text.len()), |mut out, c| {

@@ -3,18 +3,18 @@
 mod campaign;
 mod columns;
 mod curves_csv;
-mod curves_h5;
+pub(crate) mod curves_h5;
 mod curves_mcap;
 mod grid;
-mod html;
+pub(crate) mod html;
 mod html_reconstruction;
 mod html_sections;
-mod json;
+pub(crate) mod json;
 mod likely;
 mod listing;
-mod pictures;
+pub(crate) mod pictures;
 mod prediction;
-mod rounding;
+pub(crate) mod rounding;
 #[cfg(test)]
 mod sample;
 #[cfg(test)]
@@ -23,11 +23,9 @@ mod sample_reconstruction;
 mod sample_study;
 mod scratch;
 mod settings;
-mod synthetic;
 mod table;
 mod template;
-mod text;
-mod trial;
+pub(crate) mod text;
 
 pub use campaign::{Campaign, CampaignRow};
 pub use json::{listing as listing_json, result as result_json};
@@ -37,11 +35,9 @@ pub use prediction::{
     csv as prediction_csv, json as prediction_json, study_file_names, study_files, study_json, study_table,
     table as prediction_table,
 };
-pub use synthetic::{SyntheticError, SyntheticFormat, synthetic_files, synthetic_names};
 pub use table::table;
 pub use template::cask_file as cask_file_template;
 pub use text::printable;
-pub use trial::{TRIAL_NAMES, trial_files, trial_markdown};
 
 use crate::data::{Analysis, ChannelCurve};
 use crate::numerics::spectrum::magnitude;

@@ -45,7 +45,7 @@ pub(super) fn pair(value: f64, u95: f64, unit: &'static str) -> String {
 }
 
 /// `value` with `digits` significant digits, no exponent within 1e-4 to 1e7.
-pub(super) fn significant(value: f64, digits: usize) -> String {
+pub(crate) fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return MISSING.to_owned();
     }
@@ -56,7 +56,7 @@ pub(super) fn significant(value: f64, digits: usize) -> String {
 }
 
 /// `value` with `digits` significant digits and without the zeros at its end: for settings and sizes.
-pub(super) fn plain(value: f64, digits: usize) -> String {
+pub(crate) fn plain(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
     if text.contains('.') && !text.contains('e') {
         return text.trim_end_matches('0').trim_end_matches('.').to_owned();

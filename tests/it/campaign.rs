@@ -1,11 +1,9 @@
 //! From a small campaign to tables and scenes that say the same again, and to what counts as missed.
 
 use crate::run::{analyze, dropcheck, number};
-use dropcheck::data::{
-    Campaign, CampaignRequest, CampaignRow, Damage, Estimate, IssueCode, ReconstructionCandidate,
-    ReconstructionRung, SceneNumber, Severity, Verdict,
-};
+use dropcheck::data::{Estimate, IssueCode, ReconstructionCandidate, ReconstructionRung, Severity, Verdict};
 use dropcheck::lab::campaign;
+use dropcheck::lab::data::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber};
 use std::collections::BTreeMap;
 
 /// Cheap kinds: they make no longer records.

@@ -1,6 +1,6 @@
 //! The quick trial of filters, ends, integrals and cut-offs to its errors, held by bounds that theory gives.
 
-use dropcheck::data::{TrialPart, TrialPoint, TrialRequest};
+use dropcheck::lab::data::{TrialPart, TrialPoint, TrialRequest};
 use dropcheck::lab::methods::sample_accuracy;
 use std::sync::OnceLock;
 

@@ -1,6 +1,6 @@
 //! The quick trial's accuracy figures, seeded, to the bounds that keep a change from losing accuracy. Times are not looked at.
 
-use dropcheck::data::{TrialPart, TrialPoint, TrialRequest};
+use dropcheck::lab::data::{TrialPart, TrialPoint, TrialRequest};
 
 const REQUEST: TrialRequest = TrialRequest { quick: true, seed: 1 };
 

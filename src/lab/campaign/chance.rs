@@ -1,6 +1,6 @@
 //! A seed and a scene's number to its random numbers.
 
-use crate::data::SceneNumber;
+use crate::lab::data::SceneNumber;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};

@@ -2,10 +2,8 @@
 
 use super::chance::{Chance, round};
 use super::{Case, Means};
-use crate::data::{
-    BendingMode, Cask, CaskFile, Contact, Corrections, Drop, End, FilterChoice, Scene, SceneNumber,
-    SimulatedMotion, Tolerances, Truth, WantedImpact,
-};
+use crate::data::{Cask, CaskFile, Contact, Corrections, Drop, End, FilterChoice, Tolerances};
+use crate::lab::data::{BendingMode, Scene, SceneNumber, SimulatedMotion, Truth, WantedImpact};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 

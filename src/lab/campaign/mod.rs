@@ -15,10 +15,10 @@ pub use damage::kinds;
 pub use score::csv;
 pub use tables::markdown;
 
-use crate::data::{
-    Analysis, Campaign, CampaignRequest, CampaignRow, Cask, CaskFile, Contact, CrushableEnd, Damage, Drop,
-    End, Recording, Scene, SceneChannel, SceneFile, SceneNumber, SimulatedMotion, SyntheticRecording,
-    WantedImpact,
+use crate::data::{Analysis, Cask, CaskFile, Contact, Drop, End, Recording};
+use crate::lab::data::{
+    Campaign, CampaignRequest, CampaignRow, CrushableEnd, Damage, Scene, SceneChannel, SceneFile,
+    SceneNumber, SimulatedMotion, SyntheticRecording, WantedImpact,
 };
 use chance::Chance;
 use rayon::prelude::*;

@@ -4,7 +4,8 @@ use super::chance::{Chance, round};
 use super::draw::Wish;
 use super::{Case, Means};
 pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
-use crate::data::{Axis, Chain, ChannelSpec, Coupling, End, SceneChannel, Source, Tolerances, Unit};
+use crate::data::{Axis, ChannelSpec, Coupling, End, Source, Tolerances, Unit};
+use crate::lab::data::{Chain, SceneChannel};
 use crate::numerics::reduce;
 
 /// Sample rates of the recorders, Hz.

@@ -4,9 +4,9 @@ use super::Case;
 use super::chance::round;
 use super::statistics;
 use crate::data::{
-    Analysis, Campaign, CampaignRow, Contact, Damage, Estimate, ReconstructionCandidate, ReconstructionRung,
-    SceneNumber, Scored, Severity, Truth, Verdict,
+    Analysis, Contact, Estimate, ReconstructionCandidate, ReconstructionRung, Severity, Verdict,
 };
+use crate::lab::data::{Campaign, CampaignRow, Damage, SceneNumber, Scored, Truth};
 
 /// The row of a scene whose first contact is so long after the first sample; no analysis: the recording was refused.
 pub(super) fn row(

@@ -1,6 +1,7 @@
 //! Rows to shares, quantiles and classes of right and wrong.
 
-use crate::data::{CampaignRow, Estimate, Scored, Verdict};
+use crate::data::{Estimate, Verdict};
+use crate::lab::data::{CampaignRow, Scored};
 
 /// An error above this many half-widths on a result that passed is a miss: the interval ends half its width, which is one half-width, short of the truth.
 const MISSED_BY: f64 = 2.0;

@@ -3,9 +3,8 @@
 use super::score::{code_name, rung_name};
 use super::statistics::{Outcome, Spread, largest_miss_u, outcome, quantile, scored};
 use super::table::{Table, number, share};
-use crate::data::{
-    Campaign, CampaignRow, Contact, Damage, Estimate, MISSED_U, ReconstructionRung, Severity, Verdict,
-};
+use crate::data::{Contact, Estimate, MISSED_U, ReconstructionRung, Severity, Verdict};
+use crate::lab::data::{Campaign, CampaignRow, Damage};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 

@@ -1,6 +1,6 @@
 //! Points of the trial to which of them no other beats.
 
-use crate::data::TrialPoint;
+use crate::lab::data::TrialPoint;
 
 /// Two errors below this cannot be told apart: a few roundings of a double.
 const ROUNDING: f64 = 1e-15;

@@ -8,7 +8,7 @@ pub mod timing;
 pub use front::front;
 pub use samples::accuracy as sample_accuracy;
 
-use crate::data::{Trial, TrialJob, TrialMachine, TrialPart, TrialPeerWork, TrialRequest};
+use crate::lab::data::{Trial, TrialJob, TrialMachine, TrialPart, TrialPeerWork, TrialRequest};
 
 /// The parts of the trial, in the order in which they run.
 #[must_use]

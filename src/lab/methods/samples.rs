@@ -8,7 +8,7 @@ mod integration;
 mod reference;
 mod summary;
 
-use crate::data::{TrialJob, TrialPart, TrialPeerWork, TrialRequest};
+use crate::lab::data::{TrialJob, TrialPart, TrialPeerWork, TrialRequest};
 
 pub(super) fn jobs() -> Vec<TrialJob> {
     vec![

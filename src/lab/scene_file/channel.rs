@@ -2,10 +2,11 @@
 
 use super::values::{flag, number_or, size_or, spans_s};
 pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
-use crate::data::{Axis, Cask, Chain, ChannelSpec, Coupling, End, SceneChannel, Source, Unit};
+use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, Source, Unit};
 use crate::ingest::cask_file::CaskFileError;
 use crate::ingest::cask_file::channel::{coupling, polarity};
 use crate::ingest::cask_file::section::Section;
+use crate::lab::data::{Chain, SceneChannel};
 
 /// Defaults of a channel: a usual recorder and a usual piezoresistive sensor.
 const SAMPLE_RATE_HZ: f64 = 20_000.0;

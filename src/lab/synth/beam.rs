@@ -1,6 +1,6 @@
 //! Forces on a free beam to the motion of its bending modes.
 
-use crate::data::BendingMode;
+use crate::lab::data::BendingMode;
 
 /// Most bending modes of a scene: the free beam has a shape for each order up to this.
 pub const MOST_MODES: usize = 3;

@@ -2,7 +2,8 @@
 
 use super::beam::{self, MOST_MODES};
 use super::contact::Corner;
-use crate::data::{Contact, Scene};
+use crate::data::Contact;
+use crate::lab::data::Scene;
 use ode_solvers::SVector;
 
 /// x, z, φ, their rates, then q and q̇ of each bending mode; x along the target, z up, φ the inclination.

@@ -8,7 +8,8 @@ mod disturbance;
 mod recorder;
 
 use crate::data::STANDARD_GRAVITY_M_S2;
-use crate::data::{Axis, End, Scene, SceneChannel, SimulatedMotion, SyntheticChannel, SyntheticRecording};
+use crate::data::{Axis, End};
+use crate::lab::data::{Scene, SceneChannel, SimulatedMotion, SyntheticChannel, SyntheticRecording};
 
 /// What a perfect sensor at a channel's place and axis reads at given times, m/s².
 type Force<'a> = &'a dyn Fn(&SceneChannel, &[f64]) -> Vec<f64>;

@@ -1,6 +1,6 @@
 //! Height of a corner over the target to the normal force on it, with the memory of its dent.
 
-use crate::data::CrushableEnd;
+use crate::lab::data::CrushableEnd;
 
 /// Damping of a corner that settles in its dent, as a share of the critical: it rests after some twenty cycles.
 const SETTLING_DAMPING: f64 = 0.05;

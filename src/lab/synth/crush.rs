@@ -1,6 +1,7 @@
 //! A wanted pulse and restitution to the stiffnesses of the end that gives them.
 
-use crate::data::{Cask, Contact, CrushableEnd, Drop, End};
+use crate::data::{Cask, Contact, Drop, End};
+use crate::lab::data::CrushableEnd;
 use std::f64::consts::FRAC_PI_2;
 
 /// The impact that an end is to give.
@@ -77,7 +78,7 @@ mod tests {
         let pulse = Pulse { duration_s: 2e-4, restitution: 0.4, yield_share: Some(0.5) };
         let yielding = crushable_end(&scene.cask, &scene.drop, scene.contact, End::First, pulse);
         let elastic = CrushableEnd { yield_n: None, ..yielding };
-        let peak_n = |end: CrushableEnd, scene: &mut crate::data::Scene| {
+        let peak_n = |end: CrushableEnd, scene: &mut crate::lab::data::Scene| {
             scene.first_end = end;
             simulate(scene).first_end_n.iter().map(|f| f.1).fold(0.0, f64::max)
         };

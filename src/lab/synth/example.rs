@@ -1,8 +1,7 @@
 //! Scenes that the tests of the simulation start from.
 
-use crate::data::{
-    Axis, Cask, Chain, Contact, CrushableEnd, Drop, End, Scene, SceneChannel, SimulatedMotion,
-};
+use crate::data::{Axis, Cask, Contact, Drop, End};
+use crate::lab::data::{Chain, CrushableEnd, Scene, SceneChannel, SimulatedMotion};
 
 /// The scene of `fixtures/anf18-json`: ANF-18, 9 m, 15°, rough; its stiffnesses follow `crush_for` of `fixtures/simulate.py`.
 pub(super) fn anf18() -> Scene {

@@ -4,7 +4,7 @@ use super::beam::MOST_MODES;
 use super::body::{Body, State};
 use super::contact::Passage;
 use super::truth::{self, Event};
-use crate::data::{Scene, SimulatedMotion};
+use crate::lab::data::{Scene, SimulatedMotion};
 use ode_solvers::{Dopri5, OutputType, System};
 use std::f64::consts::FRAC_PI_2;
 

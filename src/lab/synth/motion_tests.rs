@@ -1,7 +1,8 @@
 //! Simulated drops to balances, limits and independent numbers that they must meet.
 
 use super::*;
-use crate::data::{BendingMode, Contact, CrushableEnd};
+use crate::data::Contact;
+use crate::lab::data::{BendingMode, CrushableEnd};
 use crate::lab::synth::example::{anf18, just_before};
 
 /// Kinetic and potential energy, J, of a kept time.

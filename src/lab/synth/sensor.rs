@@ -1,7 +1,8 @@
 //! A simulated motion to the specific force at a point of the cask.
 
 use super::beam;
-use crate::data::{Axis, Scene, SceneChannel, SimulatedMotion};
+use crate::data::Axis;
+use crate::lab::data::{Scene, SceneChannel, SimulatedMotion};
 
 /// The hook lets go within this time, s: that of a quick-release hook, long against a sample.
 const RELEASE_S: f64 = 2e-3;
@@ -124,7 +125,8 @@ mod tests {
     use super::super::example::{anf18, channel, just_before};
     use super::super::simulate;
     use super::*;
-    use crate::data::{BendingMode, Contact};
+    use crate::data::Contact;
+    use crate::lab::data::BendingMode;
     use crate::numerics::quadrature::running_integral;
 
     #[test]

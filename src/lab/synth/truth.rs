@@ -2,7 +2,7 @@
 
 use super::body::{CornerMotion, State};
 use super::contact::Passage;
-use crate::data::{Scene, Truth};
+use crate::lab::data::{Scene, Truth};
 
 /// A change of a contact.
 #[derive(Debug, Clone, Copy)]

@@ -9,7 +9,7 @@ mod decimate;
 mod legend;
 mod look;
 mod monte_carlo;
-pub(super) mod panel;
+pub(crate) mod panel;
 mod regimes;
 mod rows;
 mod sensitivity;
@@ -23,17 +23,17 @@ use crate::data::Analysis;
 use panel::Panel;
 
 /// One picture.
-pub(super) struct Picture {
+pub(crate) struct Picture {
     /// The name of its file, without ".svg".
-    pub(super) name: String,
+    pub(crate) name: String,
     /// Its heading.
-    pub(super) title: String,
+    pub(crate) title: String,
     /// What it shows, for a reader who cannot see it.
-    pub(super) alt: String,
+    pub(crate) alt: String,
     /// What the reader should know beside it.
-    pub(super) caption: String,
+    pub(crate) caption: String,
     /// The drawing.
-    pub(super) svg: String,
+    pub(crate) svg: String,
 }
 
 /// Accelerations, velocities, motion, spectra and comparison; one that has nothing to show says so.

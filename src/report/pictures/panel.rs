@@ -6,19 +6,19 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// Width of a picture in drawing units.
-pub(in super::super) const WIDTH: u32 = 1800;
-pub(in super::super) const FONT: &str = "Helvetica, Arial, sans-serif";
+pub(crate) const WIDTH: u32 = 1800;
+pub(crate) const FONT: &str = "Helvetica, Arial, sans-serif";
 pub(super) const MARK_ROW: i32 = 34;
 pub(super) const LEFT: u32 = 130;
 pub(super) const BOTTOM: u32 = 88;
 /// Air below a panel.
 pub(super) const GAP: i32 = 26;
-pub(in super::super) const RIGHT: i32 = 28;
-pub(in super::super) const INK: RGBColor = RGBColor(38, 42, 48);
-pub(in super::super) const GREY: RGBColor = RGBColor(110, 116, 124);
+pub(crate) const RIGHT: i32 = 28;
+pub(crate) const INK: RGBColor = RGBColor(38, 42, 48);
+pub(crate) const GREY: RGBColor = RGBColor(110, 116, 124);
 
 /// Colours that also readers with a colour vision deficiency tell apart (Okabe & Ito 2008), darkest first.
-pub(in super::super) const COLOURS: [RGBColor; 7] = [
+pub(crate) const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -233,10 +233,10 @@ pub(super) fn draw(panels: &[&Panel]) -> Result<String, String> {
     Ok(sized(&svg, total))
 }
 
-pub(in super::super) type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
 /// A picture that only says a sentence.
-pub(in super::super) fn nothing(sentence: &str) -> Result<String, String> {
+pub(crate) fn nothing(sentence: &str) -> Result<String, String> {
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, (WIDTH, 160)).into_drawing_area();
@@ -251,14 +251,14 @@ pub(in super::super) fn nothing(sentence: &str) -> Result<String, String> {
 }
 
 /// The drawing at half its units on the page, as a picture to those who read the page aloud.
-pub(in super::super) fn sized(svg: &str, height: u32) -> String {
+pub(crate) fn sized(svg: &str, height: u32) -> String {
     let drawn = format!("width=\"{WIDTH}\" height=\"{height}\"");
     let shown = format!("width=\"{}\" height=\"{}\" role=\"img\"", WIDTH / 2, height / 2);
     svg.replacen(&drawn, &shown, 1)
 }
 
 /// The drawing with `title` as its name.
-pub(in super::super) fn described(svg: &str, title: &str) -> String {
+pub(crate) fn described(svg: &str, title: &str) -> String {
     match svg.find('>') {
         Some(end) => format!("{}\n<title>{}</title>{}", &svg[..=end], escaped(title), &svg[end + 1..]),
         None => svg.to_owned(),

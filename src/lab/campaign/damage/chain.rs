@@ -4,7 +4,8 @@ use super::super::draw::{Flight, Wish};
 use super::super::recorder::{self, STANDARD_GRAVITY_M_S2 as G_M_S2};
 use super::super::{Case, Means};
 use super::{Kind, SOUND, rest};
-use crate::data::{Chain, End};
+use crate::data::End;
+use crate::lab::data::Chain;
 
 pub(super) const KINDS: &[Kind] = &[
     Kind {

@@ -6,7 +6,7 @@ mod stated;
 
 use super::draw::Wish;
 use super::{Case, Means};
-use crate::data::SyntheticRecording;
+use crate::lab::data::SyntheticRecording;
 
 /// One kind of damage.
 #[derive(Clone, Copy)]

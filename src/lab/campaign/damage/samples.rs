@@ -2,7 +2,8 @@
 
 use super::super::Case;
 use super::{Kind, SOUND};
-use crate::data::{SyntheticChannel, SyntheticRecording, Unit};
+use crate::data::Unit;
+use crate::lab::data::{SyntheticChannel, SyntheticRecording};
 use std::f64::consts::TAU;
 
 pub(super) const KINDS: &[Kind] = &[

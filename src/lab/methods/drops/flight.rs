@@ -4,7 +4,8 @@ use super::method_map::{self, MethodStress};
 use super::sample::{self, Class, Prepared};
 use super::scene::STANDARD_GRAVITY_M_S2;
 use super::summary::{Subject, by_class, point};
-use crate::data::{BendingMode, Scene, Signal, TrialPart, TrialPoint, TrialRequest};
+use crate::data::Signal;
+use crate::lab::data::{BendingMode, Scene, TrialPart, TrialPoint, TrialRequest};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
 use crate::lab::synth;
 use crate::motion;
@@ -139,7 +140,12 @@ impl<'a> Flight<'a> {
 }
 
 /// ∫ of the rigid body's specific force over the contact at channel `i`, m/s: trapezoids of a five-thousandth, off by 1e-7 of it.
-fn velocity_step_m_s(scene: &Scene, still: &crate::data::SimulatedMotion, i: usize, contact_s: f64) -> f64 {
+fn velocity_step_m_s(
+    scene: &Scene,
+    still: &crate::lab::data::SimulatedMotion,
+    i: usize,
+    contact_s: f64,
+) -> f64 {
     const STEPS: u32 = 5000;
     let step_s = contact_s / f64::from(STEPS);
     let times_s: Vec<f64> = (0..=STEPS).map(|n| f64::from(n) * step_s).collect();

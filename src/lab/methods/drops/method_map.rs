@@ -3,7 +3,7 @@
 use super::sample::{self, Class, Prepared};
 use super::scene::Plan;
 use super::summary::median;
-use crate::data::{TrialLine, TrialMap, TrialRequest};
+use crate::lab::data::{TrialLine, TrialMap, TrialRequest};
 use rayon::prelude::*;
 
 /// A method is off by 1 % of what it measures.

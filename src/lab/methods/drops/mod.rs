@@ -12,7 +12,7 @@ mod stresses;
 mod summary;
 mod sweep;
 
-use crate::data::{TrialJob, TrialPart, TrialRequest};
+use crate::lab::data::{TrialJob, TrialPart, TrialRequest};
 
 pub(in crate::lab::methods) use reconstruction::peer_work;
 

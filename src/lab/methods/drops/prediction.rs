@@ -2,9 +2,8 @@
 
 use super::scene::{ANF_10, ANF_18, Plan, VHLW};
 use super::summary::{Subject, by_class, point};
-use crate::data::{
-    Body, BodyModel, Contact, Drop, Prediction, Rung, TrialPart, TrialPoint, TrialRequest, Truth,
-};
+use crate::data::{Body, BodyModel, Contact, Drop, Prediction, Rung};
+use crate::lab::data::{TrialPart, TrialPoint, TrialRequest, Truth};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
 use crate::predict;
 use rand::rngs::ChaCha8Rng;

@@ -4,10 +4,8 @@ use super::flight::{CALM, NOISY, ONE_MODE, SLOW_MODE};
 use super::sample::{self, Class, Prepared};
 use super::scene::Drawn;
 use super::summary::{Subject, by_class, point};
-use crate::data::{
-    Axis, End, Estimate, Events, FlightFit, ReconstructionChoice, ReconstructionRung, Setup, TrialPart,
-    TrialPeerWork, TrialPoint, TrialRequest,
-};
+use crate::data::{Axis, End, Estimate, Events, FlightFit, ReconstructionChoice, ReconstructionRung, Setup};
+use crate::lab::data::{TrialPart, TrialPeerWork, TrialPoint, TrialRequest};
 use crate::lab::methods::timing::{Effort, Timing, Work, in_turn};
 use crate::{analyze, assemble, fit, motion, settle};
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! Ways to find the end of the flight to how far off they are, and what they cost.
 
 use super::summary::{Subject, by_class, point};
-use crate::data::{TrialPart, TrialPoint, TrialRequest};
+use crate::lab::data::{TrialPart, TrialPoint, TrialRequest};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
 use crate::numerics::root::{RootMethod, root_by};
 use rand::rngs::ChaCha8Rng;

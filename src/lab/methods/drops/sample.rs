@@ -1,7 +1,8 @@
 //! A class of drops and a seed to recordings, conditioned, with the truth that a method is held against.
 
 use super::scene::{ANF_10, ANF_18, Drawn, ESBB, Plan, VHLW};
-use crate::data::{CoarseEvent, Signal, TrialRequest};
+use crate::data::{CoarseEvent, Signal};
+use crate::lab::data::TrialRequest;
 use crate::{condition, events};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};

@@ -2,10 +2,10 @@
 
 pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
 use crate::data::{
-    Axis, BendingMode, Cask, CaskFile, Chain, ChannelSpec, Contact, Corrections, Coupling, Drop, End,
-    FilterChoice, Recording, Scene, SceneChannel, SimulatedMotion, Source, SyntheticRecording, Tolerances,
-    Truth, Unit,
+    Axis, Cask, CaskFile, ChannelSpec, Contact, Corrections, Coupling, Drop, End, FilterChoice, Recording,
+    Source, Tolerances, Unit,
 };
+use crate::lab::data::{BendingMode, Chain, Scene, SceneChannel, SimulatedMotion, SyntheticRecording, Truth};
 use crate::lab::{in_memory, synth};
 use std::path::PathBuf;
 

@@ -1,6 +1,6 @@
 //! Errors and times of a method to a point of its chart.
 
-use crate::data::{TrialPart, TrialPoint};
+use crate::lab::data::{TrialPart, TrialPoint};
 use crate::lab::methods::timing::Timing;
 use crate::numerics::robust;
 

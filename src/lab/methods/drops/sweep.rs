@@ -3,9 +3,8 @@
 use super::scene::{ANF_10, ANF_18, Drawn, ESBB, Plan, VHLW};
 use super::summary::{fraction, median};
 use crate::analyze;
-use crate::data::{
-    Analysis, BendingMode, Estimate, TrialLine, TrialMap, TrialPart, TrialRequest, Truth, Verdict,
-};
+use crate::data::{Analysis, Estimate, Verdict};
+use crate::lab::data::{BendingMode, TrialLine, TrialMap, TrialPart, TrialRequest, Truth};
 use rayon::prelude::*;
 
 /// A slap-down speed further off has failed, %: what a drop test must resolve.

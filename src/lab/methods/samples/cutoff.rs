@@ -1,7 +1,8 @@
 //! Ways to choose a cut-off to how well the filtered curve shows the peak of a pulse with ringing on it, and time.
 
 use super::summary::{Family, chance, silent_line};
-use crate::data::{FilterChoice, TrialMap, TrialPart, TrialPoint, TrialRequest};
+use crate::data::FilterChoice;
+use crate::lab::data::{TrialMap, TrialPart, TrialPoint, TrialRequest};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
 use crate::motion::cutoff_hz;
 use crate::numerics::filter::ZeroPhaseLowPass;

@@ -2,7 +2,7 @@
 
 use super::reference::low_passed;
 use super::summary::{DIVERGED, Family, chance, silent_line};
-use crate::data::{TrialMap, TrialPart, TrialPoint, TrialRequest};
+use crate::lab::data::{TrialMap, TrialPart, TrialPoint, TrialRequest};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
 use crate::numerics::filter::{EndPadding, FilterForm, LowPass};
 use rand_distr::{Distribution, StandardNormal};

@@ -2,7 +2,7 @@
 
 use super::reference::low_passed;
 use super::summary::{Family, chance, silent_line, worst_of_peak};
-use crate::data::{TrialLine, TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest};
+use crate::lab::data::{TrialLine, TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
 use crate::numerics::filter::{EndPadding, FilterForm, LowPass};
 use rand_distr::{Distribution, StandardNormal};

@@ -1,7 +1,7 @@
 //! Rules and sums of a running integral to their errors on pulses whose integral is known, and time.
 
 use super::summary::{Family, chance, silent_line, worst_of_peak};
-use crate::data::{TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest};
+use crate::lab::data::{TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
 use crate::numerics::integration::{IntegrationRule, Summation, running_integral_by};
 use rand::{Rng, RngExt};

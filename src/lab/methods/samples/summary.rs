@@ -1,6 +1,6 @@
 //! Errors of many cases to points and lines of the trial.
 
-use crate::data::{TrialLine, TrialPoint};
+use crate::lab::data::{TrialLine, TrialPoint};
 use crate::lab::methods::timing::Timing;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;

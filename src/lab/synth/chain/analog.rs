@@ -1,7 +1,8 @@
 //! The specific force at a sensor to its sampled signal: mounting, resonance, AC coupling, anti-alias filter, sampling.
 
 use super::Drive;
-use crate::data::{Axis, Scene, SceneChannel};
+use crate::data::Axis;
+use crate::lab::data::{Scene, SceneChannel};
 use std::f64::consts::{FRAC_PI_8, PI};
 
 /// The analog part runs on a grid this much finer than the samples, so that what lies above half their rate folds.

@@ -1,6 +1,6 @@
 //! A channel's seed and chain to what is added to its samples: offset, zero shift, noise, hum, a shaken cable.
 
-use crate::data::Chain;
+use crate::lab::data::Chain;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};

@@ -1,6 +1,6 @@
 //! A signal to what the converter and the store make of it: clipped, in steps, held, lost.
 
-use crate::data::Chain;
+use crate::lab::data::Chain;
 
 /// A count from a product of time and rate; at least 1.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast from float saturates")]

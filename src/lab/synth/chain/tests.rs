@@ -2,7 +2,7 @@
 
 use super::super::example;
 use super::*;
-use crate::data::Chain;
+use crate::lab::data::Chain;
 use std::f64::consts::FRAC_1_PI;
 
 /// The record lasts 0.1 s before and 0.1 s after first contact; the first contact lasts 5 ms.

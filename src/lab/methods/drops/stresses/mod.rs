@@ -6,7 +6,8 @@ mod statements;
 
 use super::scene::STANDARD_GRAVITY_M_S2;
 use super::sweep::Stress;
-use crate::data::{BendingMode, Contact};
+use crate::data::Contact;
+use crate::lab::data::BendingMode;
 
 pub(super) use drop::DROPS;
 pub(super) use recorder::RECORDER;
@@ -20,7 +21,7 @@ const COMMON: Stress =
 mod tests {
     use super::super::sweep::{analysed, scored, sound};
     use super::*;
-    use crate::data::TrialRequest;
+    use crate::lab::data::TrialRequest;
     use rayon::prelude::*;
     use std::collections::BTreeSet;
 

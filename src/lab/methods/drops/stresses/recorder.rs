@@ -1,7 +1,7 @@
 //! A fault of sensor, cable or recorder, growing, to the plan that has it.
 
 use super::{COMMON, STANDARD_GRAVITY_M_S2, Stress};
-use crate::data::Chain;
+use crate::lab::data::Chain;
 
 pub(in super::super) const RECORDER: &[Stress] = &[
     Stress {

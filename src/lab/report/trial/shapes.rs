@@ -1,7 +1,8 @@
 //! Methods to marks of a colour and a shape of their own, and the legend that names them.
 
-use super::super::pictures::panel::{Area, COLOURS, FONT, INK, RIGHT, WIDTH};
-use super::super::text::printable;
+use crate::report::pictures::panel::{Area, COLOURS, FONT, INK, RIGHT, WIDTH};
+use crate::report::rounding;
+use crate::report::text::printable;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -69,7 +70,7 @@ pub(super) fn word(area: &Area, text: &str, at: (i32, i32), size: i32) -> Result
 /// A tick of a logarithmic axis: powers of ten, and plain numbers near 1.
 pub(super) fn tick(value: f64) -> String {
     if (0.009..2e4).contains(&value) {
-        return super::super::rounding::plain(value, 3);
+        return rounding::plain(value, 3);
     }
     format!("{value:.0e}").replace('-', "−")
 }

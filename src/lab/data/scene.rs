@@ -1,6 +1,6 @@
 //! A scene for `synth`: the cask, how it is dropped and struck, what rings in it, and the measuring chain.
 
-use super::cask::{Axis, Cask, Contact, Drop, End};
+use crate::data::{Axis, Cask, Contact, Drop, End};
 
 /// A corner that crushes: bilinear force over depth, so that k < 1 comes out of the two stiffnesses.
 #[derive(Debug, Clone, Copy, PartialEq)]

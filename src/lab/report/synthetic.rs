@@ -7,8 +7,8 @@ mod mcap;
 mod place;
 mod truth;
 
-use super::ReportError;
-use crate::data::{SceneFile, SyntheticRecording};
+use crate::lab::data::{SceneFile, SyntheticRecording};
+use crate::report::ReportError;
 
 /// How a synthetic recording is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

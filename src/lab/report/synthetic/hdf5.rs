@@ -1,7 +1,7 @@
 //! A synthetic recording to HDF5: one dataset a channel in `/daq`; where samples were lost, the times of the rest in `/time_s`.
 
 use super::place::Place;
-use crate::data::SyntheticRecording;
+use crate::lab::data::SyntheticRecording;
 use crate::report::ReportError;
 use crate::report::curves_h5::{filled, text, through_a_file};
 use hdf5_metno::File;

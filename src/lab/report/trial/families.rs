@@ -1,6 +1,6 @@
 //! Points of a trial to families that share a chart, and what their classes show.
 
-use crate::data::{Trial, TrialPoint};
+use crate::lab::data::{Trial, TrialPoint};
 
 /// Points that share a chart: one purpose, one unit of the error, one of the time.
 pub(super) struct Family<'a> {

@@ -1,6 +1,7 @@
 //! A line of a failure map to where it breaks and whether that was noticed.
 
-use crate::data::{TrialLine, TrialMap};
+use crate::lab::data::{TrialLine, TrialMap};
+use crate::report::rounding;
 
 /// Where a method fails.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +54,7 @@ impl Break {
     /// "at 3.2e4", or that it holds.
     pub(super) fn at_words(&self) -> String {
         match self.at {
-            Some(at) => super::super::rounding::plain(at, 2),
+            Some(at) => rounding::plain(at, 2),
             None if self.worst.is_none() => "no number given".to_owned(),
             None => "holds".to_owned(),
         }

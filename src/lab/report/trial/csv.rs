@@ -1,7 +1,7 @@
 //! Points and maps of a trial to CSV, a row a number.
 
-use super::super::ReportError;
-use crate::data::Trial;
+use crate::lab::data::Trial;
+use crate::report::ReportError;
 
 fn finished(writer: ::csv::Writer<Vec<u8>>) -> Result<Vec<u8>, ReportError> {
     writer.into_inner().map_err(|error| ReportError::Csv(::csv::Error::from(error.into_error())))

@@ -1,13 +1,13 @@
 //! A trial to `validation.html`: one file without network, for the desk and for A4 paper; charts first.
 
-use super::super::html::{document, picture};
-use super::super::pictures::Picture;
-use super::super::rounding::significant;
-use super::super::text::printable;
 use super::breaks;
 use super::families::{Family, families};
 use super::reasons::reason;
-use crate::data::{Trial, TrialMap, TrialPoint};
+use crate::lab::data::{Trial, TrialMap, TrialPoint};
+use crate::report::html::{document, picture};
+use crate::report::pictures::Picture;
+use crate::report::rounding::significant;
+use crate::report::text::printable;
 use maud::{Markup, html};
 
 const STYLE: &str = include_str!("../trial.css");

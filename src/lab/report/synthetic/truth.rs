@@ -1,6 +1,6 @@
 //! The truth of a synthetic recording to `….truth.json`.
 
-use crate::data::{SyntheticRecording, Truth};
+use crate::lab::data::{SyntheticRecording, Truth};
 use crate::report::{ReportError, json};
 use serde::Serialize;
 

@@ -1,7 +1,7 @@
 //! What `synth` makes of a scene: the channels as their recorder wrote them, and the truth.
 
-use super::cask::CaskFile;
 use super::scene::{Scene, Truth};
+use crate::data::CaskFile;
 
 /// An end's impact, as a scene file may ask for it instead of stiffnesses.
 #[derive(Debug, Clone, Copy, PartialEq)]

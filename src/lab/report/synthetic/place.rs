@@ -1,7 +1,7 @@
 //! Channel names to places in a recording: topics, datasets, columns, and what a cask file calls them.
 
 use super::SyntheticFormat;
-use crate::data::SyntheticRecording;
+use crate::lab::data::SyntheticRecording;
 
 /// Where a channel stands.
 pub(super) struct Place {

@@ -1,12 +1,12 @@
 //! A failure map to its chart: error over stress, the limit drawn, and whether the program noticed.
 
-use super::super::ReportError;
-use super::super::pictures::Picture;
-use super::super::pictures::panel::{self, Area, FONT, GREY, INK, WIDTH};
-use super::super::text::printable;
 use super::breaks;
 use super::shapes::{Failure, ROW, colour, mark, rows, tick, word};
-use crate::data::TrialMap;
+use crate::lab::data::TrialMap;
+use crate::report::pictures::Picture;
+use crate::report::pictures::panel::{self, Area, FONT, GREY, INK, WIDTH};
+use crate::report::text::printable;
+use crate::report::{ReportError, rounding};
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
 use std::ops::Range;
@@ -35,7 +35,7 @@ pub(super) fn picture(map: &TrialMap) -> Result<Picture, ReportError> {
         .iter()
         .filter_map(|line| {
             let at = breaks::of(map, line).at?;
-            Some(format!("{} at {}", printable(&line.method), super::super::rounding::plain(at, 2)))
+            Some(format!("{} at {}", printable(&line.method), rounding::plain(at, 2)))
         })
         .collect();
     let found = if broken.is_empty() {
@@ -130,7 +130,7 @@ where
         .light_line_style(GREY.mix(0.06))
         .x_labels(10)
         .y_labels(9)
-        .x_label_formatter(&|v| if map.is_log { tick(*v) } else { super::super::rounding::plain(*v, 3) })
+        .x_label_formatter(&|v| if map.is_log { tick(*v) } else { rounding::plain(*v, 3) })
         .y_label_formatter(&|v| tick(*v))
         .draw()?;
     let range = chart.x_range();

@@ -2,7 +2,7 @@
 
 use super::SyntheticError;
 use super::place::Place;
-use crate::data::SyntheticRecording;
+use crate::lab::data::SyntheticRecording;
 use crate::report::ReportError;
 
 /// The table.

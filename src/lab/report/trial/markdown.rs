@@ -4,8 +4,9 @@ use super::breaks;
 use super::families::families;
 use super::page::{again, error_words};
 use super::reasons::reason;
-use crate::data::Trial;
+use crate::lab::data::Trial;
 use crate::report::rounding::significant;
+use crate::report::text::printable;
 use std::fmt::Write;
 
 /// The extract; `folder` is what leads from the document to the charts ("" or ending in "/"), none leaves them out.
@@ -109,5 +110,5 @@ pub fn markdown(trial: &Trial, folder: Option<&str>) -> String {
 
 /// Text that cannot leave its cell or begin markup.
 fn cell(text: &str) -> String {
-    super::super::text::printable(text).replace('|', "\\|").replace('<', "&lt;").replace(['\n', '`'], " ")
+    printable(text).replace('|', "\\|").replace('<', "&lt;").replace(['\n', '`'], " ")
 }

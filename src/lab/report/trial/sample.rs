@@ -1,6 +1,6 @@
 //! A small trial for the tests of its files.
 
-use crate::data::{Trial, TrialLine, TrialMachine, TrialMap, TrialPoint, TrialRequest};
+use crate::lab::data::{Trial, TrialLine, TrialMachine, TrialMap, TrialPoint, TrialRequest};
 
 pub(super) fn trial() -> Trial {
     let point = |method: &str, is_default: bool, error: f64, time_ns: f64| TrialPoint {

@@ -1,11 +1,9 @@
 //! A campaign of random scenes with known truth: what is asked for, and a row for each scene.
 
-use super::analysis::Verdict;
-use super::cask::CaskFile;
-use super::estimate::Estimate;
-use super::issue::{IssueCode, Severity};
-use super::reconstruction::{ReconstructionCandidate, ReconstructionRung};
 use super::scene::{Scene, Truth};
+use crate::data::{
+    CaskFile, Estimate, IssueCode, ReconstructionCandidate, ReconstructionRung, Severity, Verdict,
+};
 use std::collections::BTreeMap;
 
 /// Which scene of a campaign: with its seed it names the same drop for ever.

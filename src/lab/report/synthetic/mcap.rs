@@ -1,7 +1,7 @@
 //! A synthetic recording to MCAP: blocks `dropcheck.AccelerationBlock` in JSON or protobuf, stamped, with their schema.
 
 use super::place::Place;
-use crate::data::{SyntheticChannel, SyntheticRecording};
+use crate::lab::data::{SyntheticChannel, SyntheticRecording};
 use crate::report::ReportError;
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};

@@ -14,9 +14,9 @@ mod speed_chart;
 
 pub use markdown::markdown as trial_markdown;
 
-use super::ReportError;
-use super::pictures::Picture;
-use crate::data::Trial;
+use crate::lab::data::Trial;
+use crate::report::pictures::Picture;
+use crate::report::{ReportError, json};
 
 /// The files of a trial that have the same name whatever was tried; the charts stand beside them.
 pub const TRIAL_NAMES: [&str; 5] =
@@ -30,7 +30,7 @@ pub fn trial_files(trial: &Trial) -> Result<Vec<(String, Vec<u8>)>, ReportError>
     let pictures = charts(trial)?;
     let bytes = [
         page::page(trial, &pictures).into_bytes(),
-        super::json::pretty(trial)?,
+        json::pretty(trial)?,
         csv::points(trial)?,
         csv::maps(trial)?,
         markdown::markdown(trial, Some("")).into_bytes(),

@@ -1,12 +1,12 @@
 //! A family of methods to its chart: error over time, a panel for each class, the front drawn.
 
-use super::super::ReportError;
-use super::super::pictures::Picture;
-use super::super::pictures::panel::{self, Area, FONT, GREY, INK, WIDTH};
-use super::super::text::printable;
 use super::families::Family;
 use super::shapes::{Failure, ROW, colour, mark, rows, tick, word};
-use crate::data::TrialPoint;
+use crate::lab::data::TrialPoint;
+use crate::report::ReportError;
+use crate::report::pictures::Picture;
+use crate::report::pictures::panel::{self, Area, FONT, GREY, INK, WIDTH};
+use crate::report::text::printable;
 use plotters::prelude::*;
 use std::ops::Range;
 

@@ -1,0 +1,13 @@
+//! The plain structs of the laboratory; they hold no algorithm.
+
+mod campaign;
+mod scene;
+mod synthetic;
+mod trial;
+
+pub use campaign::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber, Scored};
+pub use scene::{BendingMode, Chain, CrushableEnd, Scene, SceneChannel, SimulatedMotion, Truth};
+pub use synthetic::{SceneFile, SyntheticChannel, SyntheticRecording, WantedImpact};
+pub use trial::{
+    Trial, TrialJob, TrialLine, TrialMachine, TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest,
+};

@@ -1,0 +1,7 @@
+//! A synthetic recording to its files, a trial to its page, charts and tables.
+
+mod synthetic;
+mod trial;
+
+pub use synthetic::{SyntheticError, SyntheticFormat, synthetic_files, synthetic_names};
+pub use trial::{TRIAL_NAMES, trial_files, trial_markdown};
