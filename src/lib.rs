@@ -11,6 +11,7 @@ pub mod events;
 pub mod fit;
 pub mod ingest;
 pub mod judge;
+#[cfg(feature = "lab")]
 pub mod lab;
 pub mod motion;
 pub mod numerics;

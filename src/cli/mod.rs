@@ -4,20 +4,16 @@ mod analyze;
 mod awake;
 mod batch;
 mod complaint;
-mod document;
 mod init;
 mod inspect;
+#[cfg(feature = "lab")]
+mod lab;
 mod limits;
-mod machine;
 mod output;
-mod peers;
 mod place;
 mod predict;
 mod progress;
 mod replace;
-mod synth;
-mod trial;
-mod validate;
 
 pub use complaint::complain;
 
@@ -25,20 +21,24 @@ use clap::{Parser, Subcommand};
 use dropcheck::data::Verdict;
 use std::process::ExitCode;
 
-const AFTER_HELP: &str = "\
+fn after_help() -> String {
+    let synth = if cfg!(feature = "lab") { "\n  dropcheck synth scene.toml --out drop.mcap" } else { "" };
+    format!(
+        "\
 Examples:
   dropcheck inspect drop.mcap
   dropcheck init drop.mcap > cask.toml
   dropcheck analyze drop.mcap --cask cask.toml --out report
-  dropcheck predict --cask cask.toml --sweep 5:45:5
-  dropcheck synth scene.toml --out drop.mcap
+  dropcheck predict --cask cask.toml --sweep 5:45:5{synth}
 
 Exit status: 0 done, nothing speaks against the result; 1 done, a person should
-look at the data's quality or the comparison; 2 not done, one message says why.";
+look at the data's quality or the comparison; 2 not done, one message says why."
+    )
+}
 
 /// What accelerometers on both ends of a dropped cask say about its slap-down.
 #[derive(Parser)]
-#[command(name = "dropcheck", version, after_help = AFTER_HELP, max_term_width = 100)]
+#[command(name = "dropcheck", version, after_help = after_help(), max_term_width = 100)]
 pub struct CommandLine {
     #[command(subcommand)]
     pub command: Command,
@@ -57,9 +57,11 @@ pub enum Command {
     /// Write a commented cask file to fill in, from what a recording holds
     Init(init::Arguments),
     /// Make a synthetic recording of a scene, with its cask file and its truth
-    Synth(synth::Arguments),
+    #[cfg(feature = "lab")]
+    Synth(lab::synth::Arguments),
     /// Measure speed against accuracy of every method and where each fails; or the analysis on random scenes
-    Validate(validate::Arguments),
+    #[cfg(feature = "lab")]
+    Validate(lab::validate::Arguments),
 }
 
 /// How a command that ran to its end ended.
@@ -100,8 +102,10 @@ pub fn run(command: &Command) -> miette::Result<Outcome> {
         Command::Predict(arguments) => predict::run(arguments),
         Command::Inspect(arguments) => inspect::run(arguments),
         Command::Init(arguments) => init::run(arguments),
-        Command::Synth(arguments) => synth::run(arguments),
-        Command::Validate(arguments) => validate::run(arguments),
+        #[cfg(feature = "lab")]
+        Command::Synth(arguments) => lab::synth::run(arguments),
+        #[cfg(feature = "lab")]
+        Command::Validate(arguments) => lab::validate::run(arguments),
     }
 }
 

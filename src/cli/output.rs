@@ -175,17 +175,13 @@ impl JsonTarget {
         match self {
             Self::None => {}
             Self::StandardOutput => print_plain(&make()?)?,
-            Self::File(path) => {
-                let bytes = make()?;
-                write_file(path, &bytes)
-                    .map_err(|source| CannotWrite::Failed { path: shown(path), source: bare(&source) })?;
-            }
+            Self::File(path) => replace(path, &make()?)?,
         }
         Ok(())
     }
 }
 
-/// Replaces a document that was read before, whole or not at all.
+/// Writes a file, or replaces one that was there, whole or not at all.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), CannotWrite> {
     write_file(path, bytes).map_err(|source| CannotWrite::Failed { path: shown(path), source: bare(&source) })
 }

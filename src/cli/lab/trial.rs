@@ -1,9 +1,9 @@
 //! `validate` without a campaign: every part of the trial, kept as it is done, to the page, charts and tables.
 
-use super::Outcome;
+use super::super::Outcome;
+use super::super::output::{Folder, print, replace};
 use super::document::Marks;
 use super::machine::machine;
-use super::output::{Folder, print, replace};
 use super::peers::peers;
 use super::progress::with_estimate;
 use dropcheck::lab::data::{Trial, TrialMachine, TrialPart, TrialRequest};

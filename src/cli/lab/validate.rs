@@ -1,9 +1,9 @@
 //! `validate`: the trial of every method; or a campaign of random scenes with known truth to tables of how far off the analysis is.
 
-use super::Outcome;
+use super::super::Outcome;
+use super::super::output::{Folder, print, replace};
+use super::super::progress::with_progress;
 use super::document::Marks;
-use super::output::{Folder, print, replace};
-use super::progress::with_progress;
 use super::trial;
 use clap::Args;
 use dropcheck::lab::data::{CampaignRequest, SceneNumber, TrialRequest};

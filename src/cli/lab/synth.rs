@@ -1,7 +1,7 @@
 //! `synth`: a scene file to a synthetic recording, the cask file to analyse it with, and its truth.
 
-use super::Outcome;
-use super::output::{Folder, print};
+use super::super::Outcome;
+use super::super::output::{Folder, print};
 use clap::{Args, ValueEnum};
 use dropcheck::lab::data::{SyntheticRecording, Truth};
 use dropcheck::lab::report::SyntheticFormat;

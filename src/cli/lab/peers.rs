@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-const SCRIPT: &str = include_str!("../../benches/peer_methods.py");
+const SCRIPT: &str = include_str!("../../../benches/peer_methods.py");
 
 /// Longer than this no peer is waited for: the work takes a tenth of it.
 const PATIENCE: Duration = Duration::from_mins(2);
