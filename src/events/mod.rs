@@ -1,13 +1,11 @@
 //! Conditioned channels to the times that matter: release, first contact, separation, slap-down.
 
 mod answer;
-mod detector;
 mod locate;
-mod onset;
+pub(crate) mod onset;
 mod release;
 
 pub use answer::answers;
-pub use detector::{Detector, first_contact_by};
 pub use locate::Changes;
 pub use onset::{first_contact, first_separation, separation, slap_down};
 pub use release::{FreeFall, free_fall};

@@ -5,13 +5,13 @@ use crate::data::{CoarseEvent, End, Signal};
 use crate::numerics::{as_f64, reduce};
 
 /// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
-pub(super) const FOOT: f64 = 0.02;
+pub(crate) const FOOT: f64 = 0.02;
 /// The rise is followed up to this share of the peak to extrapolate it to zero.
 const SHOULDER: f64 = 0.3;
 /// A pulse has ended where the force stays below this share of its peak.
 const TAIL: f64 = 0.05;
 /// Noise is passed by this many of its standard deviations.
-pub(super) const NOISE_FACTOR: f64 = 6.0;
+pub(crate) const NOISE_FACTOR: f64 = 6.0;
 /// Width of the means that R's velocity is compared by, s: two periods of an 80 Hz mode, less than a flight from 5°.
 const WIDTH_S: f64 = 0.025;
 /// The means are compared this often, s: a hundredth of the stretch in which the onset is then sought.
@@ -43,7 +43,7 @@ fn first_stir(signal: &Signal, stretch: std::ops::Range<usize>) -> Option<(f64, 
 }
 
 /// The signal on which first contact is sought, the samples among which it lies, and the sign of its pulse.
-pub(super) fn stretch<'a>(
+pub(crate) fn stretch<'a>(
     signals: &'a [Signal],
     coarse: &CoarseEvent,
 ) -> Option<(&'a Signal, std::ops::Range<usize>, f64)> {

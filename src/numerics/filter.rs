@@ -1,16 +1,9 @@
 //! A second-order Butterworth low-pass forward and back: zero phase, stable at any cut-off.
 
-mod ends;
-mod fourier;
-mod gustafsson;
-mod low_pass;
-mod stage;
+pub(crate) mod ends;
+pub(crate) mod stage;
 
-pub use ends::EndPadding;
-pub use low_pass::{FilterForm, LowPass};
-pub use stage::Sample;
-
-use stage::Stage;
+use stage::StateVariable;
 use std::f64::consts::{PI, SQRT_2};
 
 /// Design frequency of a channel frequency class over its number: 2.0775 (ISO 6487, SAE J211-1)   (25)
@@ -26,7 +19,7 @@ pub const TWO_PASS_CUTOFF: f64 = 0.802_243_262_923_150_2;
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZeroPhaseLowPass {
     gain: f64,
-    stage: Stage<f64>,
+    stage: StateVariable<f64>,
     padding: usize,
 }
 
@@ -45,7 +38,7 @@ impl ZeroPhaseLowPass {
             reason = "positive and cut to the signal's length when used"
         )]
         let padding = (3.1 * sample_rate_hz / design_hz).ceil() as usize;
-        Some(Self { gain: g, stage: Stage::state_variable(g, SQRT_2), padding })
+        Some(Self { gain: g, stage: StateVariable::new(g, SQRT_2), padding })
     }
 
     /// By the channel frequency class.
@@ -63,8 +56,8 @@ impl ZeroPhaseLowPass {
     /// The filtered samples; both ends are mirrored for the filter's own memory.
     #[must_use]
     pub fn apply(&self, samples: &[f64]) -> Vec<f64> {
-        let (mut work, head) = EndPadding::default().extended(samples, self.padding);
-        stage::forward_and_back(std::slice::from_ref(&self.stage), &mut work, true);
+        let (mut work, head) = ends::continued(samples, self.padding, |_, x| x);
+        stage::forward_and_back(&self.stage, &mut work);
         ends::cut(work, head, samples.len())
     }
 

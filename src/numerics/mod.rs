@@ -2,7 +2,6 @@
 
 pub mod damped_modes;
 pub mod filter;
-pub mod integration;
 pub mod noise;
 pub mod prior_fit;
 pub mod projection;

@@ -170,7 +170,7 @@ mod tests {
         let printed = |t: f64| {
             l / 2.0 * d.angle_rad.cos() + vz * t - g * t * t / 2.0 + l / 2.0 * (d.angle_rad - w * t).sin()
         };
-        let t = crate::numerics::root::bisect(printed, 0.0, 0.3).expect("a root");
+        let t = crate::lab::methods::rivals::root::bisect(printed, 0.0, 0.3).expect("a root");
         let phi = d.angle_rad - w * t;
         let x = after.horizontal_velocity_m_s + w * l / 2.0 * phi.sin();
         let z = vz - g * t - w * l / 2.0 * phi.cos();

@@ -2,6 +2,7 @@
 
 mod drops;
 mod front;
+pub mod rivals;
 mod samples;
 pub mod timing;
 

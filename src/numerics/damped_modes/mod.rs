@@ -5,7 +5,6 @@ mod drive;
 mod projection;
 mod ringing;
 mod seeds;
-mod shape;
 
 pub use covariance::coefficients;
 use covariance::describe;
@@ -16,7 +15,6 @@ use seeds::best_seed;
 pub use drive::{Drive, Form};
 pub use ringing::uniform_ringing;
 pub use seeds::Seeds;
-pub use shape::{Shape, fit_shape};
 
 /// A mode damped more than this is none: bolted and welded structures have 0.5 to 8 %, and an oscillation that dies within a
 /// period can stand for anything.

@@ -1,66 +1,26 @@
 //! A record to the same with both ends continued, so that a filter need not begin and end on nothing.
 
-use super::stage::{Sample, constant};
+use super::stage::Sample;
 
-/// Samples by which `OddNine` continues: three times the coefficients of a second-order section, as `scipy.signal.sosfiltfilt` does.
-const NINE: usize = 9;
-
-/// How a record is continued beyond its ends.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
-pub enum EndPadding {
-    /// Point reflection in the end sample for the filter's memory: lines go on as lines; the end sample keeps its noise.
-    Odd,
-    /// Point reflection for 9 samples, whatever the filter's memory.
-    OddNine,
-    /// Mirrored for the filter's memory: the ends keep the filter's own noise; a slope becomes a kink.
-    #[default]
-    Even,
-    /// Not at all; the states at both ends are those for which forward-back and back-forward agree best (Gustafsson 1996).
-    /// A record of fewer samples than four times the order does not tell them.
-    Gustafsson,
-    /// Not at all; the filter begins at rest at both ends.
-    Zero,
-}
-
-impl EndPadding {
-    /// All of them, the default first.
-    pub const ALL: [Self; 5] = [Self::Even, Self::Odd, Self::OddNine, Self::Gustafsson, Self::Zero];
-
-    /// Its name.
-    #[must_use]
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Odd => "odd",
-            Self::OddNine => "odd, 9 samples",
-            Self::Even => "even",
-            Self::Gustafsson => "Gustafsson",
-            Self::Zero => "none",
-        }
+/// The samples continued by `pad` at both ends, at most by all but the end sample, and how many stand in front of them.
+///
+/// `beyond` makes a sample outside of the end sample and the one that lies as far inside.
+pub(crate) fn continued<T: Sample>(samples: &[T], pad: usize, beyond: impl Fn(T, T) -> T) -> (Vec<T>, usize) {
+    let n = samples.len();
+    let pad = pad.min(n.saturating_sub(1));
+    if pad == 0 {
+        return (samples.to_vec(), 0);
     }
-
-    /// The samples with their continuation by up to `memory`, and how much of it stands in front.
-    pub(super) fn extended<T: Sample>(self, samples: &[T], memory: usize) -> (Vec<T>, usize) {
-        let n = samples.len();
-        let pad = match self {
-            Self::Odd | Self::Even => memory.min(n.saturating_sub(1)),
-            Self::OddNine => NINE.min(n.saturating_sub(1)),
-            Self::Gustafsson | Self::Zero => 0,
-        };
-        if pad == 0 {
-            return (samples.to_vec(), 0);
-        }
-        let (head, tail, two) = (samples[0], samples[n - 1], constant::<T>(2.0));
-        let beyond = |end: T, x: &T| if self == Self::Even { *x } else { two * end - *x };
-        let mut work = Vec::with_capacity(n + 2 * pad);
-        work.extend(samples[1..=pad].iter().rev().map(|x| beyond(head, x)));
-        work.extend_from_slice(samples);
-        work.extend(samples[n - 1 - pad..n - 1].iter().rev().map(|x| beyond(tail, x)));
-        (work, pad)
-    }
+    let (head, tail) = (samples[0], samples[n - 1]);
+    let mut work = Vec::with_capacity(n + 2 * pad);
+    work.extend(samples[1..=pad].iter().rev().map(|x| beyond(head, *x)));
+    work.extend_from_slice(samples);
+    work.extend(samples[n - 1 - pad..n - 1].iter().rev().map(|x| beyond(tail, *x)));
+    (work, pad)
 }
 
 /// The `count` samples behind the first `head`.
-pub(super) fn cut<T>(mut work: Vec<T>, head: usize, count: usize) -> Vec<T> {
+pub(crate) fn cut<T>(mut work: Vec<T>, head: usize, count: usize) -> Vec<T> {
     work.drain(..head);
     work.truncate(count);
     work

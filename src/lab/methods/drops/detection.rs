@@ -4,8 +4,8 @@ use super::method_map::{self, MethodStress};
 use super::sample::{self, Class, Prepared};
 use super::scene::STANDARD_GRAVITY_M_S2;
 use super::summary::{Subject, by_class, point};
-use crate::events::{Detector, first_contact_by};
 use crate::lab::data::{TrialPart, TrialPoint, TrialRequest};
+use crate::lab::methods::rivals::detector::{Detector, first_contact_by};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
 use std::hint::black_box;
 

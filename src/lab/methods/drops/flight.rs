@@ -6,10 +6,11 @@ use super::scene::STANDARD_GRAVITY_M_S2;
 use super::summary::{Subject, by_class, point};
 use crate::data::Signal;
 use crate::lab::data::{BendingMode, Scene, TrialPart, TrialPoint, TrialRequest};
+use crate::lab::methods::rivals::shape::{Shape, fit_shape};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
 use crate::lab::synth;
 use crate::motion;
-use crate::numerics::damped_modes::{Series, Shape, fit_shape};
+use crate::numerics::damped_modes::Series;
 use rayon::prelude::*;
 use std::hint::black_box;
 

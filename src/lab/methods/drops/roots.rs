@@ -2,8 +2,8 @@
 
 use super::summary::{Subject, by_class, point};
 use crate::lab::data::{TrialPart, TrialPoint, TrialRequest};
+use crate::lab::methods::rivals::root::{RootMethod, root_by};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
-use crate::numerics::root::{RootMethod, root_by};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;

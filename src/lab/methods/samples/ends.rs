@@ -3,8 +3,8 @@
 use super::reference::low_passed;
 use super::summary::{DIVERGED, Family, chance, silent_line};
 use crate::lab::data::{TrialMap, TrialPart, TrialPoint, TrialRequest};
+use crate::lab::methods::rivals::filter::{EndPadding, FilterForm, LowPass};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
-use crate::numerics::filter::{EndPadding, FilterForm, LowPass};
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use std::hint::black_box;

@@ -3,8 +3,8 @@
 use super::reference::low_passed;
 use super::summary::{Family, chance, silent_line, worst_of_peak};
 use crate::lab::data::{TrialLine, TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest};
+use crate::lab::methods::rivals::filter::{EndPadding, FilterForm, LowPass};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
-use crate::numerics::filter::{EndPadding, FilterForm, LowPass};
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use std::f64::consts::PI;

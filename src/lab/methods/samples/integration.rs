@@ -2,8 +2,8 @@
 
 use super::summary::{Family, chance, silent_line, worst_of_peak};
 use crate::lab::data::{TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest};
+use crate::lab::methods::rivals::integration::{IntegrationRule, Summation, running_integral_by};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
-use crate::numerics::integration::{IntegrationRule, Summation, running_integral_by};
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;

@@ -1,6 +1,7 @@
 //! Samples to their zero-phase low-passed selves with initial states that leave no trace of which direction came first.
 
-use super::stage::{Sample, Stage, constant, forward_and_back};
+use super::stage::{Stage, forward_and_back};
+use crate::numerics::filter::stage::{Sample, constant};
 use nalgebra::{DMatrix, DVector};
 
 /// Singular values below this share of the largest are taken for 0: the states that they belong to are not told by the record.

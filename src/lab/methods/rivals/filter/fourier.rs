@@ -1,6 +1,6 @@
 //! Samples to their low-passed selves by way of the spectrum.
 
-use super::stage::{Sample, constant};
+use crate::numerics::filter::stage::{Sample, constant};
 use rustfft::{FftPlanner, num_complex::Complex};
 use std::f64::consts::PI;
 

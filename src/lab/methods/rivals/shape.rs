@@ -1,6 +1,6 @@
 //! Series to plateaus by a shape that is named, instead of by the one that the data call for.
 
-use super::{Fit, Form, Oscillation, Seeds, Series, fit};
+use crate::numerics::damped_modes::{Fit, Form, Oscillation, Seeds, Series, fit};
 
 /// What a series is taken for   (20)
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,10 @@
 //! A Butterworth low-pass of any even order forward and back, in any of its forms and with any continuation of the ends.
 
-use super::ends::{EndPadding, cut};
-use super::stage::{Sample, Stage, forward_and_back};
+use super::ends::EndPadding;
+use super::stage::{Stage, forward_and_back};
 use super::{fourier, gustafsson};
+use crate::numerics::filter::ends::cut;
+use crate::numerics::filter::stage::Sample;
 use std::f64::consts::PI;
 
 /// Highest order of a pass: 20 poles within a factor of two of the cut-off are more than any recorder's filter has.
@@ -39,7 +41,7 @@ impl FilterForm {
     }
 }
 
-/// Two passes of a Butterworth low-pass; [`super::ZeroPhaseLowPass`] is this of second order with both defaults.
+/// Two passes of a Butterworth low-pass; [`crate::numerics::filter::ZeroPhaseLowPass`] is this of second order with both defaults.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LowPass {
     gain: f64,
@@ -120,8 +122,8 @@ impl LowPass {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ZeroPhaseLowPass;
     use super::*;
+    use crate::numerics::filter::ZeroPhaseLowPass;
 
     /// A pulse in the middle of 4000 samples, 0 at both ends.
     fn pulse() -> Vec<f64> {

@@ -1,7 +1,8 @@
 //! A stretch of samples to the beginning of the pulse in it, by a method that is named.
 
-use super::onset::{self, FOOT, NOISE_FACTOR};
 use crate::data::{CoarseEvent, Signal};
+use crate::events::first_contact;
+use crate::events::onset::{self, FOOT, NOISE_FACTOR};
 use crate::numerics::as_f64;
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -9,7 +10,7 @@ use std::ops::Range;
 /// How first contact is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Detector {
-    /// A line through the rise from foot to shoulder, cut with zero: what [`super::first_contact`] does.
+    /// A line through the rise from foot to shoulder, cut with zero: what [`first_contact`] does.
     #[default]
     RiseLine,
     /// The first sample beyond 2 % of the peak, or beyond 6 standard deviations of the noise where that is more.
@@ -41,7 +42,7 @@ impl Detector {
 pub fn first_contact_by(detector: Detector, signals: &[Signal], coarse: &CoarseEvent) -> Option<f64> {
     let (signal, stretch, sign) = onset::stretch(signals, coarse)?;
     if detector == Detector::RiseLine {
-        return super::first_contact(signals, coarse).map(|contact| contact.0);
+        return first_contact(signals, coarse).map(|contact| contact.0);
     }
     let force: Vec<f64> = signal.force_m_s2.get(stretch.clone())?.iter().map(|f| sign * f).collect();
     let level = peak_m_s2(&force)?.max(NOISE_FACTOR / FOOT * signal.noise_m_s2) * FOOT;
@@ -209,7 +210,7 @@ mod tests {
         let coarse = CoarseEvent { near_s: 0.01, spread_s: 0.025, velocity_step_m_s: 20.0 };
         let signals = [signal(0.020_01)];
         let by_default = first_contact_by(Detector::default(), &signals, &coarse);
-        assert_eq!(by_default, super::super::first_contact(&signals, &coarse).map(|c| c.0));
+        assert_eq!(by_default, first_contact(&signals, &coarse).map(|c| c.0));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Uniform samples to their running integral, by any of several rules and sums.
 
-use super::quadrature::running_integral;
+use crate::numerics::quadrature::running_integral;
 use rustfft::{FftPlanner, num_complex::Complex};
 use std::f64::consts::TAU;
 
