@@ -10,12 +10,9 @@ pub mod report;
 pub mod scene_file;
 pub mod synth;
 
-use crate::analyze;
 use crate::data::{Cask, Contact, Drop, End};
-use crate::ingest::{IngestError, Progress};
-use crate::lab::data::{
-    Campaign, CampaignRequest, CrushableEnd, Scene, SceneFile, SceneNumber, SyntheticRecording, WantedImpact,
-};
+use crate::ingest::IngestError;
+use crate::lab::data::{CrushableEnd, Scene, SceneFile, SyntheticRecording, WantedImpact};
 use std::path::Path;
 
 /// Reads and checks a scene file for [`synthesise`].
@@ -32,28 +29,6 @@ fn crush(cask: &Cask, drop: &Drop, contact: Contact, end: End, wanted: WantedImp
     let pulse = synth::Pulse { duration_s, restitution, yield_share };
     synth::crushable_end(cask, drop, contact, end, pulse)
 }
-
-/// Random scenes with known truth through simulation, recorder and analysis; `progress` is told the share that is done.
-#[must_use]
-pub fn campaign(request: &CampaignRequest, progress: Progress) -> Campaign {
-    campaign::run(request, &MEANS, progress)
-}
-
-/// One scene of a campaign, for [`report::synthetic_files`].
-#[must_use]
-pub fn campaign_scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, SyntheticRecording) {
-    campaign::scene(seed, number, exact, &MEANS)
-}
-
-/// What a campaign's scenes pass through.
-const MEANS: campaign::Means<'static> = campaign::Means {
-    crush: &crush,
-    simulate: &synth::simulate,
-    force: &synth::specific_force_m_s2,
-    record: &synth::record,
-    read: &|recording, cask_file| in_memory::synthetic(recording, cask_file).ok(),
-    analyze: &analyze,
-};
 
 /// The recording of a scene by its sensors and recorder, and its truth. The same scene gives the same bits.
 #[must_use]

@@ -11,7 +11,7 @@ const KINDS: [&str; 3] = ["gap_flight", "polarity_first", "stated_angle"];
 
 fn run(scenes: u32, seed: u64, exact: bool) -> Campaign {
     let request = CampaignRequest { scenes, seed, undamaged: true, kinds: KINDS.to_vec(), exact };
-    dropcheck::lab::campaign(&request, &|_| {})
+    campaign::run(&request, &|_| {})
 }
 
 /// The cells of the CSV, a map a scene.

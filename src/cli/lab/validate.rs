@@ -113,7 +113,7 @@ fn campaign(arguments: &Arguments, scenes: u32) -> miette::Result<Outcome> {
         kinds: damages.filter(|kind| has(ALL) || has(kind)).collect(),
         exact: arguments.exact,
     };
-    let campaign = with_progress("campaign", |progress| lab::campaign(&request, progress));
+    let campaign = with_progress("campaign", |progress| lab::campaign::run(&request, progress));
     let tables = lab::campaign::markdown(&campaign);
     if let Some(folder) = &folder {
         let csv = lab::campaign::csv(&campaign).map_err(report::ReportError::from)?;
@@ -134,7 +134,7 @@ fn one(arguments: &Arguments, number: SceneNumber, out: &Path) -> miette::Result
     let name = format!("{number}.mcap");
     let names = lab::report::synthetic_names(&name);
     let folder = Folder::checked(out, &names.each_ref().map(String::as_str), &[])?;
-    let (scene, recording) = lab::campaign_scene(arguments.seed, number, arguments.exact);
+    let (scene, recording) = lab::campaign::scene(arguments.seed, number, arguments.exact);
     // Protobuf, unlike JSON, holds samples that are infinite.
     folder.write(&lab::report::synthetic_files(&scene, &recording, &name, SyntheticFormat::McapProtobuf)?)?;
     let files = names.each_ref().map(|name| report::printable(&folder.file(name)));

@@ -1,9 +1,10 @@
 //! Random numbers to a drop: the cask, how it falls and what its ends do, as they are and as they are stated.
 
+use super::Case;
 use super::chance::{Chance, round};
-use super::{Case, Means};
 use crate::data::{Cask, CaskFile, Contact, Corrections, Drop, End, FilterChoice, Tolerances};
 use crate::lab::data::{BendingMode, Scene, SceneNumber, SimulatedMotion, Truth, WantedImpact};
+use crate::lab::{crush, synth};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -70,15 +71,15 @@ impl Wish {
 const ATTEMPTS: u32 = 300;
 
 /// Draws until there is a drop as wished, and counts the others by what they lack.
-pub(super) fn case((seed, number): (u64, SceneNumber), wish: &Wish, exact: bool, means: &Means) -> Case {
+pub(super) fn case((seed, number): (u64, SceneNumber), wish: &Wish, exact: bool) -> Case {
     let mut chance = Chance::new(seed, number);
     let mut redraws = BTreeMap::new();
     let mut angle_deg = stated_angle_deg(&mut chance, wish);
     let mut attempt = 0_u32;
     loop {
         attempt += 1;
-        let (scene, stated) = drop(&mut chance, angle_deg, wish, (exact, means));
-        let motion = (means.simulate)(&scene);
+        let (scene, stated) = drop(&mut chance, angle_deg, wish, exact);
+        let motion = synth::simulate(&scene);
         let Some(lack) = lacks(&motion.truth, wish) else {
             return Case { scene, stated, motion, chance, redraws };
         };
@@ -121,12 +122,7 @@ fn lacks(truth: &Truth, wish: &Wish) -> Option<&'static str> {
 }
 
 /// One attempt: the scene as it is and the cask file, both still without channels.
-fn drop(
-    chance: &mut Chance,
-    angle_deg: f64,
-    wish: &Wish,
-    (exact, means): (bool, &Means),
-) -> (Scene, CaskFile) {
+fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene, CaskFile) {
     let tolerances = Tolerances::default();
     let mut defaults: Vec<String> = ["gravity_m_s2"].map(|key| format!("drop.{key}")).into();
     let stated = cask(chance, &mut defaults);
@@ -156,8 +152,8 @@ fn drop(
     let mut scene = Scene {
         name: cask.name.clone(),
         seed: chance.seed(),
-        first_end: (means.crush)(&cask, &drop, stated_contact, End::First, first),
-        second_end: (means.crush)(&cask, &drop, stated_contact, End::Second, second),
+        first_end: crush(&cask, &drop, stated_contact, End::First, first),
+        second_end: crush(&cask, &drop, stated_contact, End::Second, second),
         modes: modes(chance),
         before_s: 0.1,
         after_s: chance.even(0.02, 0.15),
@@ -172,7 +168,7 @@ fn drop(
     };
     if wish.contact.is_none() && share != 0.0 {
         let held = Scene { contact: Contact::Rough, ..scene.clone() };
-        scene.contact = loosened(stated_contact, impulse_ratio(&(means.simulate)(&held)), share);
+        scene.contact = loosened(stated_contact, impulse_ratio(&synth::simulate(&held)), share);
     }
     (scene, cask_file(stated, stated_drop, stated_contact, defaults))
 }

@@ -1,6 +1,4 @@
 //! A number of random scenes with known truth, through everything, to how far off the analysis is and how often it says so.
-//!
-//! Simulation, recorder and analysis come in as functions: this stage knows none of them.
 
 mod chance;
 mod damage;
@@ -15,36 +13,19 @@ pub use damage::kinds;
 pub use score::csv;
 pub use tables::markdown;
 
-use crate::data::{Analysis, Cask, CaskFile, Contact, Drop, End, Recording};
+use crate::analyze;
+use crate::data::CaskFile;
+use crate::ingest::Progress;
 use crate::lab::data::{
-    Campaign, CampaignRequest, CampaignRow, CrushableEnd, Damage, Scene, SceneChannel, SceneFile,
-    SceneNumber, SimulatedMotion, SyntheticRecording, WantedImpact,
+    Campaign, CampaignRequest, CampaignRow, Damage, Scene, SceneFile, SceneNumber, SimulatedMotion,
+    SyntheticRecording,
 };
+use crate::lab::{in_memory, synth};
 use chance::Chance;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::mpsc;
 use std::time::Instant;
-
-/// What a perfect sensor reads at its place in a moving scene, m/s², at times in s from first contact.
-pub type Force = dyn Fn(&Scene, &SimulatedMotion, &SceneChannel, &[f64]) -> Vec<f64> + Sync;
-
-/// Everything that a scene passes through.
-#[derive(Clone, Copy)]
-pub struct Means<'a> {
-    /// The stiffnesses of an end that give a wanted impact.
-    pub crush: &'a (dyn Fn(&Cask, &Drop, Contact, End, WantedImpact) -> CrushableEnd + Sync),
-    /// The motion of a scene.
-    pub simulate: &'a (dyn Fn(&Scene) -> SimulatedMotion + Sync),
-    /// What a perfect sensor reads.
-    pub force: &'a Force,
-    /// What the recorder writes.
-    pub record: &'a (dyn Fn(&Scene, &SimulatedMotion) -> SyntheticRecording + Sync),
-    /// The recording as read; none where it is refused.
-    pub read: &'a (dyn Fn(&SyntheticRecording, &CaskFile) -> Option<Recording> + Sync),
-    /// The analysis.
-    pub analyze: &'a (dyn Fn(&Recording, &CaskFile) -> Analysis + Sync),
-}
 
 /// A scene on its way: as it is, as stated, and how it moves.
 pub(crate) struct Case {
@@ -57,14 +38,14 @@ pub(crate) struct Case {
 
 /// Runs the campaign; `progress` is told the share that is done. The same request gives the same rows but for their times.
 #[must_use]
-pub fn run(request: &CampaignRequest, means: &Means, progress: &dyn Fn(f64)) -> Campaign {
+pub fn run(request: &CampaignRequest, progress: Progress) -> Campaign {
     let numbers = numbers(request);
     let rows = std::thread::scope(|scope| {
         let (tell, told) = mpsc::channel();
         let numbers = &numbers;
         let work = scope.spawn(move || {
             let each = |number: &SceneNumber| {
-                let row = row(request, *number, means);
+                let row = row(request, *number);
                 // Nobody listening is no reason to stop.
                 let _ = tell.send(());
                 row
@@ -82,8 +63,8 @@ pub fn run(request: &CampaignRequest, means: &Means, progress: &dyn Fn(f64)) -> 
 
 /// One scene as `synth` writes it: the scene with what is stated of it, and its recording.
 #[must_use]
-pub fn scene(seed: u64, number: SceneNumber, exact: bool, means: &Means) -> (SceneFile, SyntheticRecording) {
-    let (case, recording, _) = made(seed, number, exact, means);
+pub fn scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, SyntheticRecording) {
+    let (case, recording, _) = made(seed, number, exact);
     (SceneFile { scene: case.scene, stated: case.stated }, recording)
 }
 
@@ -97,35 +78,30 @@ fn numbers(request: &CampaignRequest) -> Vec<SceneNumber> {
     (0..undamaged).map(SceneNumber::Undamaged).chain(damaged.map(SceneNumber::Damaged)).collect()
 }
 
-fn row(request: &CampaignRequest, number: SceneNumber, means: &Means) -> CampaignRow {
-    let (case, recording, damage) = made(request.seed, number, request.exact, means);
-    let read = (means.read)(&recording, &case.stated);
+fn row(request: &CampaignRequest, number: SceneNumber) -> CampaignRow {
+    let (case, recording, damage) = made(request.seed, number, request.exact);
+    let read = in_memory::synthetic(&recording, &case.stated).ok();
     let begun = Instant::now();
-    let analysis = read.map(|read| (means.analyze)(&read, &case.stated));
+    let analysis = read.map(|read| analyze(&read, &case.stated));
     let analysis_s = begun.elapsed().as_secs_f64();
     score::row((number, damage), case, recording.first_contact_s, (analysis.as_ref(), analysis_s))
 }
 
 /// A scene, drawn, struck by its damage and recorded.
-fn made(
-    seed: u64,
-    number: SceneNumber,
-    exact: bool,
-    means: &Means,
-) -> (Case, SyntheticRecording, Option<Damage>) {
+fn made(seed: u64, number: SceneNumber, exact: bool) -> (Case, SyntheticRecording, Option<Damage>) {
     let struck = match number {
         SceneNumber::Undamaged(_) => None,
         SceneNumber::Damaged(number) => Some(damage::of(number)),
     };
     let wish = struck.map_or_else(draw::Wish::new, |(kind, size)| (kind.wish)(size));
-    let mut case = draw::case((seed, number), &wish, exact, means);
-    recorder::equip(&mut case, &wish, exact, means);
+    let mut case = draw::case((seed, number), &wish, exact);
+    recorder::equip(&mut case, &wish, exact);
     let Some((kind, size)) = struck else {
-        let recording = (means.record)(&case.scene, &case.motion);
+        let recording = synth::record(&case.scene, &case.motion);
         return (case, recording, None);
     };
-    (kind.before)(&mut case, size, means);
-    let mut recording = (means.record)(&case.scene, &case.motion);
+    (kind.before)(&mut case, size);
+    let mut recording = synth::record(&case.scene, &case.motion);
     (kind.after)(&mut case, &mut recording, size);
     (case, recording, Some(Damage { kind: kind.name, size, unit: kind.unit }))
 }

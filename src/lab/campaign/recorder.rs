@@ -1,11 +1,12 @@
 //! A drop to its sensors and recorder, sound and of the kind that drop tests use, as they are and as they are stated.
 
+use super::Case;
 use super::chance::{Chance, round};
 use super::draw::Wish;
-use super::{Case, Means};
 pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
 use crate::data::{Axis, ChannelSpec, Coupling, End, Source, Tolerances, Unit};
 use crate::lab::data::{Chain, SceneChannel};
+use crate::lab::synth;
 use crate::numerics::reduce;
 
 /// Sample rates of the recorders, Hz.
@@ -31,7 +32,7 @@ struct Seat {
 }
 
 /// Puts sensors on the cask and a recorder behind them.
-pub(super) fn equip(case: &mut Case, wish: &Wish, exact: bool, means: &Means) {
+pub(super) fn equip(case: &mut Case, wish: &Wish, exact: bool) {
     let rate_hz = timed(case, wish);
     let seats = seats(case, wish);
     let chain = chain(&mut case.chance, rate_hz);
@@ -41,7 +42,7 @@ pub(super) fn equip(case: &mut Case, wish: &Wish, exact: bool, means: &Means) {
         case.scene.channels.push(channel);
         case.stated.channels.push(spec);
     }
-    converters(case, means);
+    converters(case);
 }
 
 /// Sets how long the record is; returns the sample rate, Hz.
@@ -168,12 +169,12 @@ fn mounted(
 }
 
 /// Gives every channel a converter that its peak fills to a share; half of the cask files state the full scale.
-fn converters(case: &mut Case, means: &Means) {
+fn converters(case: &mut Case) {
     let bits = case.chance.one_of(&[16_u8, 18, 20, 24]);
     let is_stated = case.chance.is(0.5);
     for i in 0..case.scene.channels.len() {
         let room = case.chance.log_even(1.2, 10.0);
-        let peak_m_s2 = peak_m_s2(case, i, means);
+        let peak_m_s2 = peak_m_s2(case, i);
         let limit_m_s2 = room * (peak_m_s2 + beyond_m_s2(case, i, peak_m_s2));
         case.scene.channels[i].chain.full_scale_m_s2 = Some(limit_m_s2);
         case.scene.channels[i].chain.bits = Some(bits);
@@ -188,9 +189,9 @@ pub(super) fn unit_m_s2(channel: &SceneChannel) -> f64 {
 }
 
 /// The largest force of the drop at channel `i`, as the channel scales it, m/s².
-pub(super) fn peak_m_s2(case: &Case, i: usize, means: &Means) -> f64 {
+pub(super) fn peak_m_s2(case: &Case, i: usize) -> f64 {
     let channel = &case.scene.channels[i];
-    let force = (means.force)(&case.scene, &case.motion, channel, &case.motion.time_s);
+    let force = synth::specific_force_m_s2(&case.scene, &case.motion, channel, &case.motion.time_s);
     channel.chain.scale * reduce::peak(&force)
 }
 

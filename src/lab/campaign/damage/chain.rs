@@ -1,8 +1,8 @@
 //! A damage of sensor, cable or recorder to the measuring chain that has it.
 
+use super::super::Case;
 use super::super::draw::{Flight, Wish};
 use super::super::recorder::{self, STANDARD_GRAVITY_M_S2 as G_M_S2};
-use super::super::{Case, Means};
 use super::{Kind, SOUND, rest};
 use crate::data::End;
 use crate::lab::data::Chain;
@@ -12,56 +12,56 @@ pub(super) const KINDS: &[Kind] = &[
         name: "clip_first",
         sizes: &[2.0, 10.0, 30.0, 60.0],
         unit: "% of the peak cut off",
-        before: |case, size, means| clip(case, End::First, size, means),
+        before: |case, size| clip(case, End::First, size),
         ..SOUND
     },
     Kind {
         name: "clip_second",
         sizes: &[2.0, 10.0, 30.0, 60.0],
         unit: "% of the peak cut off",
-        before: |case, size, means| clip(case, End::Second, size, means),
+        before: |case, size| clip(case, End::Second, size),
         ..SOUND
     },
     Kind {
         name: "gap_impact",
         sizes: &[3.0, 10.0, 30.0, 100.0],
         unit: "% of the contact",
-        before: |case, size, _| gap_impact(case, size),
+        before: gap_impact,
         ..SOUND
     },
     Kind {
         name: "gap_flight",
         sizes: &[3.0, 10.0, 30.0, 80.0],
         unit: "% of the flight",
-        before: |case, size, _| gap_flight(case, size),
+        before: gap_flight,
         ..SOUND
     },
     Kind {
         name: "dropouts",
         sizes: &[3.0, 10.0, 30.0, 100.0],
         unit: "% of the contact each",
-        before: |case, size, _| dropouts(case, size),
+        before: dropouts,
         ..SOUND
     },
     Kind {
         name: "offset",
         sizes: &[1.0, 10.0, 100.0, 1000.0],
         unit: "g",
-        before: |case, size, _| one(case, |chain, sign| chain.offset_m_s2 = sign * size * G_M_S2),
+        before: |case, size| one(case, |chain, sign| chain.offset_m_s2 = sign * size * G_M_S2),
         ..SOUND
     },
     Kind {
         name: "zero_shift",
         sizes: &[0.3, 1.0, 3.0, 10.0, 30.0],
         unit: "g",
-        before: |case, size, _| one(case, |chain, sign| chain.zero_shift_m_s2 = sign * size * G_M_S2),
+        before: |case, size| one(case, |chain, sign| chain.zero_shift_m_s2 = sign * size * G_M_S2),
         ..SOUND
     },
     Kind {
         name: "ac_undeclared",
         sizes: &[0.1, 0.3, 1.0, 3.0, 10.0],
         unit: "Hz",
-        before: |case, size, _| {
+        before: |case, size| {
             one(case, |chain, _| chain.ac_time_constant_s = Some(1.0 / (std::f64::consts::TAU * size)));
         },
         ..SOUND
@@ -70,35 +70,35 @@ pub(super) const KINDS: &[Kind] = &[
         name: "hum",
         sizes: &[0.3, 1.0, 3.0, 10.0, 30.0, 100.0],
         unit: "g",
-        before: |case, size, _| each(case, |chain| chain.hum = Some((size * G_M_S2, 50.0))),
+        before: |case, size| each(case, |chain| chain.hum = Some((size * G_M_S2, 50.0))),
         ..SOUND
     },
     Kind {
         name: "white_noise",
         sizes: &[1.0, 3.0, 10.0, 30.0, 100.0],
         unit: "g",
-        before: |case, size, _| each(case, |chain| chain.white_noise_m_s2 = size * G_M_S2),
+        before: |case, size| each(case, |chain| chain.white_noise_m_s2 = size * G_M_S2),
         ..SOUND
     },
     Kind {
         name: "pink_noise",
         sizes: &[1.0, 3.0, 10.0, 30.0, 100.0],
         unit: "g",
-        before: |case, size, _| each(case, |chain| chain.pink_noise_m_s2 = size * G_M_S2),
+        before: |case, size| each(case, |chain| chain.pink_noise_m_s2 = size * G_M_S2),
         ..SOUND
     },
     Kind {
         name: "cable_noise",
         sizes: &[10.0, 30.0, 100.0, 300.0, 1000.0],
         unit: "g",
-        before: |case, size, _| one(case, |chain, _| chain.cable_noise_m_s2 = size * G_M_S2),
+        before: |case, size| one(case, |chain, _| chain.cable_noise_m_s2 = size * G_M_S2),
         ..SOUND
     },
     Kind {
         name: "skew",
         sizes: &[0.1, 0.5, 1.0, 3.0, 10.0, 20.0],
         unit: "ms",
-        before: |case, size, _| one(case, |chain, sign| chain.skew_s = sign * size * 1e-3),
+        before: |case, size| one(case, |chain, sign| chain.skew_s = sign * size * 1e-3),
         ..SOUND
     },
     Kind {
@@ -106,7 +106,7 @@ pub(super) const KINDS: &[Kind] = &[
         sizes: &[0.1, 0.3, 1.0, 3.0, 10.0],
         unit: "%",
         wish: |_| rest(false),
-        before: |case, size, _| clock(case, size),
+        before: clock,
         ..SOUND
     },
     Kind {
@@ -114,39 +114,39 @@ pub(super) const KINDS: &[Kind] = &[
         sizes: &[0.1, 0.3, 1.0, 3.0, 10.0],
         unit: "%",
         wish: |_| rest(true),
-        before: |case, size, _| clock(case, size),
+        before: clock,
         ..SOUND
     },
     Kind {
         name: "low_rate",
         sizes: &[2.0, 4.0, 6.0, 12.0, 25.0],
         unit: "samples in the contact",
-        before: |case, size, _| low_rate(case, size),
+        before: low_rate,
         ..SOUND
     },
     Kind {
         name: "polarity_first",
-        before: |case, _, _| case.scene.channels[0].chain.swapped_polarity = true,
+        before: |case, _| case.scene.channels[0].chain.swapped_polarity = true,
         ..SOUND
     },
     Kind {
         name: "polarity_second",
-        before: |case, _, _| case.scene.channels[1].chain.swapped_polarity = true,
+        before: |case, _| case.scene.channels[1].chain.swapped_polarity = true,
         ..SOUND
     },
     Kind {
         name: "polarity_all",
-        before: |case, _, _| {
+        before: |case, _| {
             case.scene.channels.iter_mut().for_each(|channel| channel.chain.swapped_polarity = true);
         },
         ..SOUND
     },
-    Kind { name: "ends_exchanged", before: |case, _, _| case.scene.swapped_ends = true, ..SOUND },
+    Kind { name: "ends_exchanged", before: |case, _| case.scene.swapped_ends = true, ..SOUND },
     Kind {
         name: "scale_one",
         sizes: &[1.0, 3.0, 10.0, 30.0, 100.0],
         unit: "%",
-        before: |case, size, _| scale(case, size, false),
+        before: |case, size| scale(case, size, false),
         ..SOUND
     },
     Kind {
@@ -154,7 +154,7 @@ pub(super) const KINDS: &[Kind] = &[
         sizes: &[1.0, 3.0, 10.0, 30.0, 100.0],
         unit: "%",
         wish: |_| rest(false),
-        before: |case, size, _| scale(case, size, true),
+        before: |case, size| scale(case, size, true),
         ..SOUND
     },
     Kind {
@@ -162,7 +162,7 @@ pub(super) const KINDS: &[Kind] = &[
         sizes: &[1.0, 3.0, 10.0, 30.0, 100.0],
         unit: "%",
         wish: |_| rest(true),
-        before: |case, size, _| scale(case, size, true),
+        before: |case, size| scale(case, size, true),
         ..SOUND
     },
     Kind {
@@ -170,30 +170,24 @@ pub(super) const KINDS: &[Kind] = &[
         sizes: &[3.0, 10.0, 30.0, 100.0],
         unit: "%",
         wish: |_| Wish { third_channel: true, slow_recorder: true, ..Wish::new() },
-        before: |case, size, _| not_rigid(case, size),
+        before: not_rigid,
         ..SOUND
     },
     Kind {
         name: "begins_late",
         sizes: &[-30.0, -10.0, -3.0, 0.0, 3.0],
         unit: "ms after first contact",
-        before: |case, size, _| begins_late(case, size),
+        before: begins_late,
         ..SOUND
     },
     Kind {
         name: "ends_early",
         sizes: &[-80.0, -50.0, -10.0, -2.0, 2.0],
         unit: "% of the way past the slap-down",
-        before: |case, size, _| ends_early(case, size),
+        before: ends_early,
         ..SOUND
     },
-    Kind {
-        name: "no_impact",
-        sizes: &[5.0, 50.0],
-        unit: "ms short of it",
-        before: |case, size, _| no_impact(case, size),
-        ..SOUND
-    },
+    Kind { name: "no_impact", sizes: &[5.0, 50.0], unit: "ms short of it", before: no_impact, ..SOUND },
     Kind {
         name: "second_contact",
         wish: |_| Wish { flight: Flight::LandsAgain, slow_recorder: true, ..Wish::new() },
@@ -229,9 +223,9 @@ fn unlimited(case: &mut Case) {
 }
 
 /// Cuts `size` percent off the largest that a transverse channel of `end` reads; half of the cask files state the limit.
-fn clip(case: &mut Case, end: End, size: f64, means: &Means) {
+fn clip(case: &mut Case, end: End, size: f64) {
     let which = usize::from(end == End::Second);
-    let limit_m_s2 = (1.0 - size / 100.0) * recorder::peak_m_s2(case, which, means);
+    let limit_m_s2 = (1.0 - size / 100.0) * recorder::peak_m_s2(case, which);
     let is_stated = case.chance.is(0.5);
     let channel = &mut case.scene.channels[which];
     channel.chain.full_scale_m_s2 = Some(limit_m_s2);

@@ -4,8 +4,8 @@ mod chain;
 mod samples;
 mod stated;
 
+use super::Case;
 use super::draw::Wish;
-use super::{Case, Means};
 use crate::lab::data::SyntheticRecording;
 
 /// One kind of damage.
@@ -18,7 +18,7 @@ pub(super) struct Kind {
     /// What the drop must be like.
     pub wish: fn(f64) -> Wish,
     /// What it does to scene and cask file.
-    pub before: fn(&mut Case, f64, &Means),
+    pub before: fn(&mut Case, f64),
     /// What it does to the recorded samples.
     pub after: fn(&mut Case, &mut SyntheticRecording, f64),
 }
@@ -29,7 +29,7 @@ const SOUND: Kind = Kind {
     sizes: &[0.0],
     unit: "",
     wish: |_| Wish { slow_recorder: true, ..Wish::new() },
-    before: |_, _, _| {},
+    before: |_, _| {},
     after: |_, _, _| {},
 };
 

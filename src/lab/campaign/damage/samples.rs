@@ -11,7 +11,7 @@ pub(super) const KINDS: &[Kind] = &[
         name: "non_finite",
         sizes: &[0.1, 1.0, 10.0, 50.0],
         unit: "% of the samples",
-        after: |case, recording, size| non_finite(case, recording, size),
+        after: non_finite,
         ..SOUND
     },
     Kind { name: "dead", after: |case, recording, _| dies(case, recording, -1.0), ..SOUND },
@@ -26,31 +26,19 @@ pub(super) const KINDS: &[Kind] = &[
         name: "unplugged",
         sizes: &[0.0, 0.1, 1.0, 10.0, 100.0],
         unit: "g of hum",
-        after: |case, recording, size| unplugged(case, recording, size),
+        after: unplugged,
         ..SOUND
     },
-    Kind {
-        name: "drift",
-        sizes: &[1.0, 3.0, 10.0, 30.0, 100.0],
-        unit: "g/s",
-        after: |case, recording, size| drift(case, recording, size),
-        ..SOUND
-    },
-    Kind {
-        name: "spikes",
-        sizes: &[1.0, 5.0, 20.0, 100.0],
-        unit: "spikes",
-        after: |case, recording, size| spikes(case, recording, size),
-        ..SOUND
-    },
+    Kind { name: "drift", sizes: &[1.0, 3.0, 10.0, 30.0, 100.0], unit: "g/s", after: drift, ..SOUND },
+    Kind { name: "spikes", sizes: &[1.0, 5.0, 20.0, 100.0], unit: "spikes", after: spikes, ..SOUND },
     Kind {
         name: "aliasing",
         sizes: &[3.0, 10.0, 30.0, 100.0, 300.0],
         unit: "% of the peak",
-        before: |case, _, _| {
+        before: |case, _| {
             case.scene.channels.iter_mut().for_each(|channel| channel.chain.anti_alias_hz = None);
         },
-        after: |case, recording, size| aliasing(case, recording, size),
+        after: aliasing,
         ..SOUND
     },
     Kind {

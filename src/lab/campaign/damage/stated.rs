@@ -6,26 +6,14 @@ use super::{Kind, SOUND, rest};
 use crate::data::Contact;
 
 pub(super) const KINDS: &[Kind] = &[
-    Kind {
-        name: "stated_position",
-        sizes: &[0.03, 0.1, 0.3, 1.0],
-        unit: "m",
-        before: |case, size, _| position(case, size),
-        ..SOUND
-    },
-    Kind {
-        name: "stated_angle",
-        sizes: &[0.5, 1.0, 2.0, 5.0, 10.0],
-        unit: "°",
-        before: |case, size, _| angle(case, size),
-        ..SOUND
-    },
+    Kind { name: "stated_position", sizes: &[0.03, 0.1, 0.3, 1.0], unit: "m", before: position, ..SOUND },
+    Kind { name: "stated_angle", sizes: &[0.5, 1.0, 2.0, 5.0, 10.0], unit: "°", before: angle, ..SOUND },
     Kind {
         name: "stated_height",
         sizes: &[2.0, 5.0, 10.0, 20.0, 50.0],
         unit: "%",
         wish: |_| rest(false),
-        before: |case, size, _| height(case, size),
+        before: height,
         ..SOUND
     },
     Kind {
@@ -33,7 +21,7 @@ pub(super) const KINDS: &[Kind] = &[
         sizes: &[2.0, 5.0, 10.0, 20.0, 50.0],
         unit: "%",
         wish: |_| rest(true),
-        before: |case, size, _| height(case, size),
+        before: height,
         ..SOUND
     },
     Kind {
@@ -41,7 +29,7 @@ pub(super) const KINDS: &[Kind] = &[
         sizes: &[0.0, 0.1, 0.2, 0.4],
         unit: "true μ",
         wish: |size| contact(Contact::Coulomb(size), false),
-        before: |case, _, _| state(case, Contact::Rough),
+        before: |case, _| state(case, Contact::Rough),
         ..SOUND
     },
     Kind {
@@ -49,7 +37,7 @@ pub(super) const KINDS: &[Kind] = &[
         sizes: &[0.0, 0.1, 0.2, 0.4],
         unit: "true μ",
         wish: |size| contact(Contact::Coulomb(size), true),
-        before: |case, _, _| state(case, Contact::Rough),
+        before: |case, _| state(case, Contact::Rough),
         ..SOUND
     },
     Kind {
@@ -57,7 +45,7 @@ pub(super) const KINDS: &[Kind] = &[
         sizes: &[0.05, 0.1, 0.3, 1.0],
         unit: "true μ",
         wish: |size| contact(Contact::Coulomb(size), false),
-        before: |case, _, _| state(case, Contact::Smooth),
+        before: |case, _| state(case, Contact::Smooth),
         ..SOUND
     },
     Kind {
@@ -65,23 +53,11 @@ pub(super) const KINDS: &[Kind] = &[
         sizes: &[0.05, 0.1, 0.3, 1.0],
         unit: "true μ",
         wish: |size| contact(Contact::Coulomb(size), true),
-        before: |case, _, _| state(case, Contact::Smooth),
+        before: |case, _| state(case, Contact::Smooth),
         ..SOUND
     },
-    Kind {
-        name: "stated_cog",
-        sizes: &[0.02, 0.05, 0.1, 0.2, 0.5],
-        unit: "m",
-        before: |case, size, _| cog(case, size),
-        ..SOUND
-    },
-    Kind {
-        name: "stated_inertia",
-        sizes: &[3.0, 10.0, 30.0, 100.0],
-        unit: "%",
-        before: |case, size, _| inertia(case, size),
-        ..SOUND
-    },
+    Kind { name: "stated_cog", sizes: &[0.02, 0.05, 0.1, 0.2, 0.5], unit: "m", before: cog, ..SOUND },
+    Kind { name: "stated_inertia", sizes: &[3.0, 10.0, 30.0, 100.0], unit: "%", before: inertia, ..SOUND },
 ];
 
 /// A drop with this contact, with or without an axial channel.
