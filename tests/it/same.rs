@@ -1,0 +1,304 @@
+//! From fixtures, corpus and six hundred scenes to what the program says of each: the same as when `tests/same` was written.
+//!
+//! A change that moves code and no result passes; one that changes results shows which. `BLESS=1 cargo test --test it same` writes the
+//! tables anew and keeps the whole answers in the target folder: a later run shows against them what differs in each. To see what a change
+//! did, bless at the commit before it. Every scene is held with `cargo test --release --test it same -- --ignored`.
+
+use crate::run::{analyze, dropcheck, fixture};
+use dropcheck::data::SceneNumber;
+use dropcheck::ingest::{self, IngestError};
+use dropcheck::report::{self, SyntheticFormat};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// The scenes' campaign.
+const SEED: u64 = 20;
+/// Scenes of either kind, sound and damaged.
+const SCENES: u32 = 300;
+/// Of so many scenes one is held by the usual run, whose analysis takes three times as long as a release's.
+const STRIDE: usize = 10;
+/// How far a number may move on a machine whose sines and powers differ in their last digit, relative.
+const OTHER_MACHINE: f64 = 1e-6;
+/// Lines of a table that a failure shows.
+const SHOWN: usize = 12;
+
+/// What the program says of one recording.
+pub struct Said {
+    /// Names the recording.
+    pub name: String,
+    /// The result or why there is none, without names of places.
+    pub result: String,
+    /// The listing or why there is none.
+    pub listing: String,
+}
+
+/// What is said of the recording in `folder` by the cask file there.
+pub fn said(name: String, recording: &Path, cask: &Path) -> Said {
+    ingest::read_hdf5_with(Path::new(env!("CARGO_BIN_EXE_dropcheck")));
+    let result = ingest::cask_file(cask).and_then(|file| {
+        let read = ingest::read(recording, &file, &|_| ())?;
+        Ok(report::result_json(&dropcheck::analyze(&read, &file).result).expect("JSON"))
+    });
+    let listing =
+        ingest::list(recording, &|_| ()).map(|listing| report::listing_json(&listing).expect("JSON"));
+    let text = |said: Result<Vec<u8>, IngestError>| {
+        let said = said.unwrap_or_else(|error| told(&error).into_bytes());
+        placeless(&String::from_utf8(said).expect("UTF-8"), recording, cask)
+    };
+    Said { name, result: text(result), listing: text(listing) }
+}
+
+/// An error with its remedy.
+pub fn told(error: &IngestError) -> String {
+    let help = miette::Diagnostic::help(error).map(|help| help.to_string()).unwrap_or_default();
+    format!("{error} | {help}")
+}
+
+/// The text without names of folders, versions and hashes.
+pub fn placeless(text: &str, recording: &Path, cask: &Path) -> String {
+    let elsewhere = ["recording", "recording_sha256", "cask", "cask_sha256", "version"];
+    let blanked = |line: &str| {
+        let key = line.trim_start().split_once("\": \"").map(|(key, _)| key.trim_start_matches('"'));
+        let end = if line.ends_with(',') { "," } else { "" };
+        match key.filter(|key| elsewhere.contains(key)) {
+            Some(key) => format!("\"{key}\": \"…\"{end}\n"),
+            None => format!("{line}\n"),
+        }
+    };
+    let text: String = text.lines().map(blanked).collect();
+    let paths = [recording, cask].map(|path| path.display().to_string());
+    paths.iter().fold(text, |text, path| text.replace(path, "…"))
+}
+
+/// Sixteen digits that stand for a text.
+pub fn hash(text: &str) -> String {
+    format!("{:x}", Sha256::digest(text))[..16].to_owned()
+}
+
+/// What the sines and powers of this machine give, in sixteen digits.
+fn mathematics() -> String {
+    let values = (1..20_000).map(|i| {
+        let x = f64::from(i) * 0.000_731;
+        [x.sin(), x.cos(), x.exp(), x.ln(), x.powf(0.37), x.tanh(), x.atan2(2.0), x.cbrt()]
+    });
+    let bits: String = values.flatten().map(|value| format!("{:x}", value.to_bits())).collect();
+    hash(&bits)
+}
+
+/// Name, verdict, weighty codes, speed, k, hash of the result, hash of the listing.
+fn row(said: &Said) -> [String; 7] {
+    let result: Value = serde_json::from_str(&said.result).unwrap_or(Value::Null);
+    let verdict = result["verdict"].as_str().unwrap_or("refused").to_owned();
+    let weighty = result["quality"].as_array().into_iter().flatten().filter(|i| i["severity"] != "note");
+    let mut codes: Vec<&str> = weighty.filter_map(|issue| issue["code"].as_str()).collect();
+    codes.sort_unstable();
+    codes.dedup();
+    let estimate = |pointer: &str| {
+        let number = |key: &str| result.pointer(&format!("{pointer}/{key}")).and_then(Value::as_f64);
+        number("value").zip(number("u95")).map_or_else(|| "–".to_owned(), |(v, u95)| format!("{v} ± {u95}"))
+    };
+    let [speed, k] = [estimate("/slap_down/speed"), estimate("/k")];
+    [said.name.clone(), verdict, codes.join(" "), speed, k, hash(&said.result), hash(&said.listing)]
+}
+
+/// Whether both cells say the same, numbers to `tolerance`.
+fn is_alike(old: &str, new: &str, tolerance: f64) -> bool {
+    let numbers = |cell: &str| -> Option<Vec<f64>> { cell.split(" ± ").map(|n| n.parse().ok()).collect() };
+    old == new
+        || numbers(old).zip(numbers(new)).is_some_and(|(old, new)| {
+            old.iter().zip(&new).all(|(old, new)| (old - new).abs() <= tolerance * old.abs())
+        })
+}
+
+/// What differs in a row from the one of the same name in the table; `None` where nothing does.
+fn difference(table: &str, said: &Said, is_same_machine: bool) -> Option<String> {
+    let new = row(said);
+    let Some(old) =
+        table.lines().map(|line| line.split('\t').collect::<Vec<_>>()).find(|old| old[0] == new[0])
+    else {
+        return Some(format!("{}: not in the table", said.name));
+    };
+    // On another machine the last digits differ, and with them the hashes.
+    let (cells, tolerance) = if is_same_machine { (new.len(), 0.0) } else { (5, OTHER_MACHINE) };
+    let differ = (0..cells).filter(|&i| !is_alike(old.get(i).unwrap_or(&""), &new[i], tolerance));
+    let differ: Vec<String> =
+        differ.map(|i| format!("{} → {}", old.get(i).unwrap_or(&"nothing"), new[i])).collect();
+    (!differ.is_empty()).then(|| format!("{}: {}{}", said.name, differ.join(", "), lines_apart(said)))
+}
+
+/// The folder of the whole answers as they were when the tables were written.
+fn kept_folder() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("same")
+}
+
+/// The whole answer of that name.
+fn kept(name: &str, what: &str) -> PathBuf {
+    kept_folder().join(format!("{}.{what}", name.replace('/', "_")))
+}
+
+/// The first lines in which an answer differs from the kept one.
+fn lines_apart(said: &Said) -> String {
+    let mut shown = String::new();
+    for (what, new) in [("result", &said.result), ("listing", &said.listing)] {
+        let Ok(old) = fs::read_to_string(kept(&said.name, what)) else {
+            return "\n    no whole answer is kept: bless at the commit before".to_owned();
+        };
+        let apart = old.lines().zip(new.lines()).filter(|(old, new)| old != new).take(4);
+        for (old, new) in apart {
+            shown += &format!("\n    {what}: {} → {}", old.trim(), new.trim());
+        }
+        let (before, now) = (old.lines().count(), new.lines().count());
+        if before != now {
+            shown += &format!("\n    {what}: {before} → {now} lines");
+        }
+    }
+    shown
+}
+
+/// Holds what is said against the table of that name, or writes it.
+fn hold(table: &str, said: &[Said]) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/same").join(format!("{table}.tsv"));
+    let machine = format!("# mathematics {}", mathematics());
+    if std::env::var_os("BLESS").is_some() {
+        let rows = said.iter().map(|said| row(said).join("\t")).collect::<Vec<_>>().join("\n");
+        fs::write(&path, format!("{machine}\n{rows}\n")).expect("tests/same can be written");
+        fs::create_dir_all(kept_folder()).expect("the target folder");
+        for said in said {
+            fs::write(kept(&said.name, "result"), &said.result).expect("the target folder");
+            fs::write(kept(&said.name, "listing"), &said.listing).expect("the target folder");
+        }
+        return;
+    }
+    let old = fs::read_to_string(&path).expect("a table");
+    let is_same_machine = old.starts_with(&machine);
+    let differ: Vec<String> =
+        said.iter().filter_map(|said| difference(&old, said, is_same_machine)).collect();
+    let shown = differ.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join("\n");
+    assert!(differ.is_empty(), "{} of {} differ from {table}.tsv:\n{shown}", differ.len(), said.len());
+}
+
+#[test]
+fn the_fixtures_by_the_program() {
+    let mut names: Vec<PathBuf> =
+        fs::read_dir(fixture(".")).expect("fixtures").flatten().map(|e| e.path()).collect();
+    names.sort();
+    let is_recording =
+        |path: &&PathBuf| path.extension().is_some_and(|e| ["mcap", "h5", "csv"].iter().any(|r| e == *r));
+    let said: Vec<Said> = names
+        .iter()
+        .filter(is_recording)
+        .map(|recording| {
+            let cask = recording.with_extension("toml");
+            let listed =
+                dropcheck(["inspect".as_ref(), recording.as_os_str(), "--json".as_ref(), "-".as_ref()]);
+            let found = analyze(recording, &cask);
+            let [result, listing] =
+                [found, listed].map(|answer| placeless(&(answer.stdout + &answer.stderr), recording, &cask));
+            let name = recording.file_name().expect("a name").to_string_lossy().into_owned();
+            Said { name, result, listing }
+        })
+        .collect();
+    hold("fixtures", &said);
+}
+
+/// A cask file of the first sources that the recording lists.
+fn cask_of(recording: &Path) -> String {
+    let listed = ingest::list(recording, &|_| ()).map(|listing| listing.channels).unwrap_or_default();
+    let sources = listed.iter().filter(|c| c.unreadable.is_none()).map(|c| c.source.as_str());
+    let sources: Vec<&str> = sources.take(3).chain(listed.is_empty().then_some("1")).collect();
+    cask(
+        &sources
+            .iter()
+            .map(|source| format!("source = {}\nunit = \"g\"\n", Value::from(*source)))
+            .collect::<Vec<_>>(),
+    )
+}
+
+/// A cask file with channels of which each is given but for its name, end and axis.
+pub fn cask(channels: &[String]) -> String {
+    let head =
+        "[cask]\nmass_kg = 4466\nlength_m = 5.512\nheight_m = 0.792\n[drop]\nheight_m = 9\nangle_deg = 15\n";
+    let channels = channels.iter().enumerate().map(|(i, given)| {
+        let (end, position_m) = if i % 2 == 0 { ("first", 0.15) } else { ("second", 5.36) };
+        let at = format!("end = \"{end}\"\naxis = \"transverse\"\nposition_m = {position_m}");
+        format!("[[channel]]\nname = \"C{}\"\n{at}\n{given}", i + 1)
+    });
+    head.to_owned() + &channels.collect::<String>()
+}
+
+#[test]
+fn the_corpus() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut all = Vec::new();
+    for target in ["csv", "mcap", "cask", "scene"] {
+        let entries = fs::read_dir(fixture("corpus").join(target)).expect("a corpus").flatten();
+        let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+        paths.sort();
+        for path in paths {
+            let name = format!("{target}/{}", path.file_name().expect("a name").to_string_lossy());
+            let cask = folder.path().join("cask.toml");
+            all.push(match target {
+                "cask" => said(name, &fixture("anf18-json.mcap"), &path),
+                "scene" => {
+                    let scene = dropcheck::scene_file(&path).map(|file| format!("{file:?}"));
+                    let result = placeless(&scene.unwrap_or_else(|error| told(&error)), &path, &path);
+                    Said { name, result, listing: String::new() }
+                }
+                _ => {
+                    fs::write(&cask, cask_of(&path)).expect("a temporary file");
+                    said(name, &path, &cask)
+                }
+            });
+        }
+    }
+    hold("corpus", &all);
+}
+
+/// One of every `stride` scenes, in every format.
+fn scenes(stride: usize) -> Vec<Said> {
+    let formats = [
+        ("json.mcap", SyntheticFormat::McapJson),
+        ("protobuf.mcap", SyntheticFormat::McapProtobuf),
+        ("h5", SyntheticFormat::Hdf5),
+        ("csv", SyntheticFormat::Csv),
+    ];
+    let numbers = (0..SCENES).map(SceneNumber::Undamaged).chain((0..SCENES).map(SceneNumber::Damaged));
+    let numbers: Vec<SceneNumber> = numbers.step_by(stride).collect();
+    let all = Mutex::new(Vec::new());
+    numbers.into_par_iter().for_each(|number| {
+        let (scene, recording) = dropcheck::campaign_scene(SEED, number, false);
+        for (extension, format) in formats {
+            let folder = tempfile::tempdir().expect("a temporary folder");
+            let name = format!("drop.{extension}");
+            // A table of one rate cannot hold every scene.
+            let Ok(files) = report::synthetic_files(&scene, &recording, &name, format) else { continue };
+            for (name, bytes) in &files {
+                fs::write(folder.path().join(name), bytes).expect("a temporary file");
+            }
+            let [recording, cask] = [0, 1].map(|i| folder.path().join(&files[i].0));
+            let said = said(format!("{number}.{extension}"), &recording, &cask);
+            all.lock().expect("no panic").push(said);
+        }
+    });
+    let mut all = all.into_inner().expect("no panic");
+    all.sort_by(|a, b| a.name.cmp(&b.name));
+    all
+}
+
+#[test]
+fn a_tenth_of_the_scenes_in_every_format() {
+    // The table is written by the run of all.
+    if std::env::var_os("BLESS").is_none() {
+        hold("scenes", &scenes(STRIDE));
+    }
+}
+
+#[test]
+#[ignore = "takes minutes; with --release one"]
+fn every_scene_in_every_format() {
+    hold("scenes", &scenes(1));
+}
