@@ -75,7 +75,7 @@ impl Middle {
     }
 
     fn integrated(&self) -> motion::Integrated<'_> {
-        motion::Integrated::over(&self.signals, self.events.first_contact_s.expect("a contact"))
+        motion::Integrated::over(&self.signals, self.events.first_contact_s().expect("a contact"))
     }
 
     fn window(&self) -> motion::Window {
@@ -152,7 +152,6 @@ fn quantities(bencher: Bencher, samples: usize) {
         signals: &m.signals,
         flight: &m.flight,
         events: &m.events,
-        u_events_s: [2e-5, 1e-4, 2e-5],
         setup: &m.setup,
         rival_law: None,
         tolerances: dropcheck::data::Tolerances::default(),

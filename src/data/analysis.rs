@@ -1,5 +1,6 @@
 //! The result of `analyze`, as the contract's JSON has it, and what the report needs beside it.
 
+use super::at::At;
 use super::cask::CaskFile;
 use super::channel::Span;
 use super::curves::Curves;
@@ -10,7 +11,7 @@ use super::ladder::Rung;
 use super::prediction::{BodyModel, Prediction};
 use super::reconstruction::ReconstructionChoice;
 use super::recording::RecordingFormat;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// The overall word on a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -128,11 +129,39 @@ pub struct Events {
     /// First touch that ends the free fall, where its release was seen; first contact, or before it.
     pub fall_end_s: Option<f64>,
     /// First contact of L.
-    pub first_contact_s: Option<f64>,
+    #[serde(rename = "first_contact_s", serialize_with = "time_s")]
+    pub first_contact: Option<At>,
     /// L leaves the target.
-    pub separation_s: Option<f64>,
+    #[serde(rename = "separation_s", serialize_with = "time_s")]
+    pub separation: Option<At>,
     /// First contact of R.
-    pub slap_down_s: Option<f64>,
+    #[serde(rename = "slap_down_s", serialize_with = "time_s")]
+    pub slap_down: Option<At>,
+}
+
+impl Events {
+    /// First contact of L, s.
+    #[must_use]
+    pub fn first_contact_s(&self) -> Option<f64> {
+        self.first_contact.map(|at| at.time_s)
+    }
+
+    /// L leaves the target, s.
+    #[must_use]
+    pub fn separation_s(&self) -> Option<f64> {
+        self.separation.map(|at| at.time_s)
+    }
+
+    /// First contact of R, s.
+    #[must_use]
+    pub fn slap_down_s(&self) -> Option<f64> {
+        self.slap_down.map(|at| at.time_s)
+    }
+}
+
+#[allow(clippy::ref_option, reason = "serde calls it so")]
+fn time_s<S: Serializer>(at: &Option<At>, to: S) -> Result<S::Ok, S::Error> {
+    at.map(|at| at.time_s).serialize(to)
 }
 
 /// What one channel is worth.

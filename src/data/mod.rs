@@ -1,6 +1,7 @@
 //! The plain structs that pass between stages; they hold no algorithm.
 
 mod analysis;
+mod at;
 mod cask;
 mod channel;
 mod curves;
@@ -24,6 +25,7 @@ pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
     ModelChoice, Setting, SlapDown, Verdict,
 };
+pub use at::At;
 pub use cask::{
     Axis, BENDING_WAVE_M_S, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice,
     GRAZE_SHARE, MOST_CHANNELS, SAMPLE_RATES_HZ, Source, Unit,

@@ -1,7 +1,7 @@
 //! A pulse to its beginning and end, finer than a sample.
 
 use super::transverse;
-use crate::data::{CoarseEvent, End, Signal};
+use crate::data::{At, CoarseEvent, End, Signal};
 use crate::numerics::{as_f64, reduce};
 
 /// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
@@ -23,7 +23,7 @@ const LONGEST_CONTACT_S: f64 = 0.05;
 
 /// First contact of L and its standard uncertainty, s; on R alone when that first stirs.
 #[must_use]
-pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<(f64, f64)> {
+pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
     let (signal, stretch, sign) = stretch(signals, coarse)?;
     match signal.end {
         // Before first contact nothing rings: the first rise is the one.
@@ -34,12 +34,12 @@ pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<(f64, f
 
 /// When a signal first leaves its noise, to either side, and its standard uncertainty, s: the far end answers by bending first, which may go
 /// against the rigid body's turning.
-fn first_stir(signal: &Signal, stretch: std::ops::Range<usize>) -> Option<(f64, f64)> {
+fn first_stir(signal: &Signal, stretch: std::ops::Range<usize>) -> Option<At> {
     let from = stretch.start;
     let force = signal.force_m_s2.get(stretch)?;
     let foot = (FOOT * reduce::peak(force)).max(NOISE_FACTOR * signal.noise_m_s2);
     let first = force.iter().position(|f| f.abs() >= foot)?;
-    Some((signal.time_s(from + first), 0.5 / signal.sample_rate_hz))
+    Some(At { time_s: signal.time_s(from + first), u_s: 0.5 / signal.sample_rate_hz })
 }
 
 /// The signal on which first contact is sought, the samples among which it lies, and the sign of its pulse.
@@ -64,7 +64,7 @@ pub fn slap_down(
     between_s: std::ops::Range<f64>,
     least_change_m_s: f64,
     is_calm: bool,
-) -> Option<(f64, f64)> {
+) -> Option<At> {
     let start = signal.index_from(between_s.start - WIDTH_S);
     let end = signal.index_from(between_s.end + WIDTH_S);
     let force = signal.force_m_s2.get(start..end)?;
@@ -102,7 +102,7 @@ enum Rise {
 }
 
 /// Where the pulse in a stretch of samples leaves zero: a line through its rise from foot to shoulder, cut with zero.
-fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise) -> Option<(f64, f64)> {
+fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise) -> Option<At> {
     let from = stretch.start;
     let force = signal.force_m_s2.get(stretch)?;
     let peak = force.iter().fold(0.0_f64, |m, f| m.max(sign * f));
@@ -127,7 +127,7 @@ fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise
     let reach = (as_f64(high) - crossing).max(1.0);
     let position = extrapolated.clamp(crossing - reach, crossing);
     let u_s = ((crossing - position).max(0.5) / 3.0_f64.sqrt()) / signal.sample_rate_hz;
-    Some((signal.time_s(from) + position / signal.sample_rate_hz, u_s))
+    Some(At { time_s: signal.time_s(from) + position / signal.sample_rate_hz, u_s })
 }
 
 /// When L leaves the target on a signal of it that still rings, s: the force on it first drops to the foot.
@@ -147,7 +147,7 @@ pub fn first_separation(signal: &Signal, contact_s: f64, before_s: f64) -> Optio
 ///
 /// The standard uncertainty is what the force's fall from the foot to zero may hide, a fortieth of the contact, or a sample.
 #[must_use]
-pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<(f64, f64)> {
+pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<At> {
     let from = signal.index_from(contact_s);
     let to = signal.index_from(free_s);
     let beyond = signal.index_from(free_s + 0.5 * (free_s - contact_s));
@@ -158,7 +158,8 @@ pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<(f64, 
     let tail = (TAIL * peak).max(NOISE_FACTOR * signal.noise_m_s2).max(1.5 * left).min(0.5 * peak);
     let end = contact.iter().rposition(|f| f.abs() > tail)? + 1;
     let time_s = signal.time_s(from + end);
-    Some((time_s, ((time_s - contact_s) / 40.0).max(1.0 / signal.sample_rate_hz)))
+    let u_s = ((time_s - contact_s) / 40.0).max(1.0 / signal.sample_rate_hz);
+    Some(At { time_s, u_s })
 }
 
 /// Sums of the velocity's samples before each whole block; one longer than there are whole blocks.
@@ -261,17 +262,17 @@ mod tests {
             let coarse = CoarseEvent { near_s: 0.01, spread_s: 0.025, velocity_step_m_s: 20.0 };
             let first =
                 first_contact(&[signal(End::First, rate, 0.020_03, 3000.0)], &coarse).expect("an onset");
-            assert!((first.0 - 0.020_03).abs() < 6e-5, "{rate}: {first:?}");
+            assert!((first.time_s - 0.020_03).abs() < 6e-5, "{rate}: {first:?}");
             let second = slap_down(&signal(End::Second, rate, 0.080_03, 3000.0), 0.03..0.19, 2.0, true)
                 .expect("an onset");
-            assert!((second.0 - 0.080_03).abs() < 6e-5, "{rate}: {second:?}");
+            assert!((second.time_s - 0.080_03).abs() < 6e-5, "{rate}: {second:?}");
         }
     }
 
     #[test]
     fn separation_is_the_end_of_the_pulse() {
         let s = [signal(End::First, 1e5, 0.020_03, 3000.0)];
-        let (time_s, u_s) = separation(&s[0], 0.020_03, 0.04).expect("a separation");
+        let At { time_s, u_s } = separation(&s[0], 0.020_03, 0.04).expect("a separation");
         assert!((time_s - 0.026_03).abs() < 2.0 * u_s, "{time_s}");
         let rough_s = first_separation(&s[0], 0.020_03, 0.04).expect("a separation");
         assert!((rough_s - 0.026_03).abs() < 2.0 * u_s, "{rough_s}");

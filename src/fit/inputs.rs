@@ -1,7 +1,7 @@
 //! The uncertain inputs of the reconstruction, each with its standard uncertainty, and the reconstruction's inputs with them moved.
 
 use super::Measured;
-use crate::data::{AxialClosure, Axis, Events, FlightFit, MOST_LOST_M_S, Motion, Setup, Signal, StoodIn};
+use crate::data::{At, AxialClosure, Axis, Events, FlightFit, MOST_LOST_M_S, Motion, Setup, Signal, StoodIn};
 use crate::numerics::noise::integral_uncertainty_by;
 
 /// What a mode leaves in the velocity step for each period that the flight shows of it, as a share of its amplitude: a window of one period
@@ -39,6 +39,32 @@ pub(super) struct Input {
     change: Change,
 }
 
+/// An event whose time is uncertain.
+#[derive(Debug, Clone, Copy)]
+enum Event {
+    FirstContact,
+    Separation,
+    SlapDown,
+}
+
+impl Event {
+    /// All, with the words for their times.
+    const ALL: [(Self, &'static str); 3] = [
+        (Self::FirstContact, "time of first contact"),
+        (Self::Separation, "time of separation"),
+        (Self::SlapDown, "time of slap-down"),
+    ];
+
+    /// Its time.
+    fn of(self, events: &mut Events) -> Option<&mut At> {
+        match self {
+            Self::FirstContact => events.first_contact.as_mut(),
+            Self::Separation => events.separation.as_mut(),
+            Self::SlapDown => events.slap_down.as_mut(),
+        }
+    }
+}
+
 /// What a positive standard uncertainty does.
 #[derive(Debug, Clone, Copy)]
 enum Change {
@@ -47,7 +73,7 @@ enum Change {
     Cross { channel: usize, share: f64, other_m_s: f64 },
     Angle { by_rad: f64 },
     ImpactVelocity { share: f64 },
-    Event { which: usize, by_s: f64 },
+    Event { event: Event, by_s: f64 },
     CentreOfGravity { by_m: f64 },
     Inertia { share: f64 },
     Law { share: f64 },
@@ -103,15 +129,9 @@ impl Inputs {
             }
             Change::Angle { by_rad } => self.setup.angle_rad += by * by_rad,
             Change::ImpactVelocity { share } => self.setup.impact_velocity_m_s *= 1.0 + by * share,
-            Change::Event { which, by_s } => {
-                let events = &mut self.events;
-                let slot = match which {
-                    0 => &mut events.first_contact_s,
-                    1 => &mut events.separation_s,
-                    _ => &mut events.slap_down_s,
-                };
-                if let Some(t) = slot {
-                    *t += by * by_s;
+            Change::Event { event, by_s } => {
+                if let Some(at) = event.of(&mut self.events) {
+                    at.time_s += by * by_s;
                 }
             }
             Change::CentreOfGravity { by_m } => self.setup.cog_m += by * by_m,
@@ -139,11 +159,9 @@ pub(super) fn inputs(measured: &Measured, motion: &Motion) -> Vec<Input> {
     add("drop angle", format!("{:.2}°", by_rad.to_degrees()), Change::Angle { by_rad });
     let share = known.impact_velocity / 2.0;
     add("impact velocity", percent(share), Change::ImpactVelocity { share });
-    for (which, name) in
-        ["time of first contact", "time of separation", "time of slap-down"].into_iter().enumerate()
-    {
-        let by_s = measured.u_events_s[which];
-        add(name, format!("{:.3} ms", 1e3 * by_s), Change::Event { which, by_s });
+    for (event, name) in Event::ALL {
+        let by_s = event.of(&mut { *measured.events }).map_or(0.0, |at| at.u_s);
+        add(name, format!("{:.3} ms", 1e3 * by_s), Change::Event { event, by_s });
     }
     let by_m = known.cog_m / 2.0;
     add("centre of gravity", format!("{:.0} mm", 1e3 * by_m), Change::CentreOfGravity { by_m });
@@ -204,8 +222,8 @@ fn of_channel(all: &mut Vec<Input>, measured: &Measured, motion: &Motion, channe
 /// What the fit leaves open; what the modes' form leaves; where a zero shift set in during the contact; what the offset may be off since; what clipping cut off; what a gap may have held.
 fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
     let (signal, plateau) = (&measured.signals[channel], &measured.flight.plateaus[channel]);
-    let contact_s = measured.events.first_contact_s.unwrap_or(0.0);
-    let pulse_s = measured.events.separation_s.map_or(0.0, |t| t - contact_s);
+    let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
+    let pulse_s = measured.events.separation_s().map_or(0.0, |t| t - contact_s);
     let flight_s = measured.flight.to_s - measured.flight.from_s;
     let shift_m_s = plateau.zero_shift_m_s2.abs() * pulse_s / 12.0_f64.sqrt();
     let drift_m_s = if measured.flight.drift {
@@ -232,8 +250,8 @@ fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
 
 /// What clipping cut off a channel's step and what a gap in the contact may have held, m/s.
 fn lost_m_s(measured: &Measured, signal: &Signal) -> f64 {
-    let contact_s = measured.events.first_contact_s.unwrap_or(0.0);
-    let left_s = measured.events.separation_s.unwrap_or(contact_s);
+    let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
+    let left_s = measured.events.separation_s().unwrap_or(contact_s);
     let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
     let missing = signal.missing_s(contact_s, left_s) / (left_s - contact_s).max(f64::MIN_POSITIVE);
     let gap_m_s = (GAP_SHARE * missing).min(1.0) * measured.setup.impact_velocity_m_s;

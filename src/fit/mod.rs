@@ -25,8 +25,6 @@ pub struct Measured<'a> {
     pub flight: &'a FlightFit,
     /// Times of the events.
     pub events: &'a Events,
-    /// Standard uncertainties of first contact, separation and slap-down, s.
-    pub u_events_s: [f64; 3],
     /// Geometry, initial motion and contact law.
     pub setup: &'a Setup,
     /// A contact law that the recording does not exclude either, where no axial channel tests it.

@@ -173,7 +173,7 @@ impl<'a> Model<'a> {
         let slopes = self.slopes_of_quantities(&fit.unknowns)?;
         // Each datum moves the unknowns by its column of the response, and they the quantities.
         let by_datum = slopes * &fit.response * widened;
-        let struck = self.measured.events.slap_down_s.is_some();
+        let struck = self.measured.events.slap_down_s().is_some();
         let estimate = |i: usize, unit| Estimate::new(values[i], COVERAGE * by_datum.row(i).norm(), unit);
         let at_slap_down = |i: usize, unit| struck.then(|| estimate(i, unit));
         Some(Quantities {
@@ -257,7 +257,7 @@ impl<'a> Model<'a> {
 
 /// Rebound ż_L as L leaves (22), k = −ż_L after over ż_L before (23), speed = |v_R| (24), and the rest.
 fn read_off(motion: &Motion, inputs: &Inputs) -> Vec<f64> {
-    let contact_s = inputs.events.first_contact_s.unwrap_or(f64::NAN);
+    let contact_s = inputs.events.first_contact_s().unwrap_or(f64::NAN);
     let (horizontal, vertical) = motion.second_end_m_s.unwrap_or((0.0, 0.0));
     let mut values = vec![0.0; COUNT];
     values[IMPACT] = inputs.setup.impact_velocity_m_s;

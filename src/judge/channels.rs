@@ -17,12 +17,12 @@ pub fn judge_channels(
     found: &[Issue],
 ) -> Vec<Issue> {
     let mut issues = Vec::new();
-    let contact_s = events.first_contact_s;
-    let separation_s = events.separation_s;
+    let contact_s = events.first_contact_s();
+    let separation_s = events.separation_s();
     for signal in signals {
         issues.extend(clipped(signal, events));
         if let (Some(from), Some(to)) = (contact_s, separation_s) {
-            issues.extend(lost(signal, from, to, events.slap_down_s));
+            issues.extend(lost(signal, from, to, events.slap_down_s()));
         }
     }
     let is_disturbance = |code| matches!(code, IssueCode::Spikes | IssueCode::Dropout);
@@ -41,8 +41,8 @@ pub fn is_cut_off(signal: &Signal, from_s: f64, to_s: f64) -> bool {
 
 /// One issue a channel and phase: what stands at a limit before, between and after the impacts.
 fn clipped(signal: &Signal, events: &Events) -> Vec<Issue> {
-    let separation_s = events.separation_s.unwrap_or(f64::INFINITY);
-    let slap_down_s = events.slap_down_s.unwrap_or(f64::INFINITY);
+    let separation_s = events.separation_s().unwrap_or(f64::INFINITY);
+    let slap_down_s = events.slap_down_s().unwrap_or(f64::INFINITY);
     let phases = [
         (f64::NEG_INFINITY, separation_s, "in the first impact"),
         (separation_s, slap_down_s, "in the flight"),

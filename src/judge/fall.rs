@@ -12,7 +12,7 @@ pub fn judge_fall(drop: &Drop, events: &Events) -> Vec<Issue> {
     let warning = |message| Issue::new(IssueCode::Geometry, Severity::Warning, message);
     let mut issues = Vec::new();
     let expected_s = drop.impact_velocity_m_s / drop.gravity_m_s2;
-    if let Some(contact_s) = events.first_contact_s.filter(|c| c - end_s > MOST_LAG * expected_s) {
+    if let Some(contact_s) = events.first_contact_s().filter(|c| c - end_s > MOST_LAG * expected_s) {
         issues.push(
             warning(format!(
                 "the free fall ends at {end_s:.3} s, {:.0} ms before the impact found at {contact_s:.3} s: something soft (water, a guide, a cable) was touched first, and the impact velocity is not that of a free fall",
@@ -45,6 +45,7 @@ pub fn judge_several_drops(event: &CoarseEvent, another: &CoarseEvent) -> Issue 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::At;
 
     fn drop(given: bool) -> Drop {
         Drop {
@@ -60,7 +61,7 @@ mod tests {
         Events {
             release_s,
             fall_end_s: release_s.map(|_| end_s),
-            first_contact_s: Some(contact_s),
+            first_contact: Some(At::exactly(contact_s)),
             ..Events::default()
         }
     }

@@ -4,6 +4,7 @@ mod channels;
 mod closures;
 mod coupling;
 mod fall;
+mod missing;
 mod result;
 mod rigid;
 mod sampling;
@@ -16,6 +17,7 @@ pub use channels::{is_cut_off, judge_channels};
 pub use closures::{judge_closures, tells_lost_steps};
 pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_several_drops};
+pub use missing::{judge_missing_end, judge_no_impact, judge_no_slap_down, judge_short_flight};
 pub use result::{judge_comparison, judge_motion, judge_touch};
 pub use rigid::judge_rigid;
 pub use silent::judge_silent;
@@ -37,9 +39,9 @@ fn struck(signals: &[Signal]) -> Option<&Signal> {
 
 /// What was lost or jitters far from the event does not weigh on the result: such warnings become notes.
 pub fn weigh_by_distance(issues: &mut [Issue], events: &Events) {
-    let Some(contact_s) = events.first_contact_s else { return };
+    let Some(contact_s) = events.first_contact_s() else { return };
     let from_s = contact_s - OFFSET_WINDOW_S;
-    let to_s = events.slap_down_s.map_or(f64::INFINITY, |t| t + ONSET_S);
+    let to_s = events.slap_down_s().map_or(f64::INFINITY, |t| t + ONSET_S);
     for issue in issues {
         let local = matches!(
             issue.code,
@@ -56,22 +58,6 @@ pub fn weigh_by_distance(issues: &mut [Issue], events: &Events) {
             issue.severity = Severity::Note;
         }
     }
-}
-
-/// No transverse channel on an end; `is_stood_in_for` where the mass properties say what it would have read.
-#[must_use]
-pub fn judge_missing_end(end: End, is_stood_in_for: bool) -> Issue {
-    let effect = match (is_stood_in_for, end) {
-        (true, End::First) => {
-            "rotation, k and speed rest on the inertia and centre of gravity of the cask file, and first contact is seen a bending wave late; record both ends"
-        }
-        (true, End::Second) => {
-            "rotation and k rest on the inertia and centre of gravity of the cask file, and nothing shows the slap-down; record both ends"
-        }
-        (false, _) => "rotation, k and slap-down need one on each end",
-    };
-    let message = format!("no transverse channel on the {end} end: {effect}");
-    Issue::new(IssueCode::MissingChannel, Severity::Error, message)
 }
 
 /// Whether an issue takes away what was read off the motion; a missing slap-down leaves the first impact as it is, and a velocity step that

@@ -32,8 +32,8 @@ const LONGEST_S: f64 = 0.05;
 #[must_use]
 pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&str]) -> Vec<Issue> {
     let struck = super::struck(signals);
-    let (Some(struck), Some(contact_s)) = (struck, events.first_contact_s) else { return Vec::new() };
-    let to_s = events.separation_s.unwrap_or(contact_s + LONGEST_S).min(contact_s + LONGEST_S);
+    let (Some(struck), Some(contact_s)) = (struck, events.first_contact_s()) else { return Vec::new() };
+    let to_s = events.separation_s().unwrap_or(contact_s + LONGEST_S).min(contact_s + LONGEST_S);
     let Some((pulse_s, length_s)) = pulse(struck, contact_s..to_s) else { return Vec::new() };
     let contents: Vec<Option<Content>> = signals.par_iter().map(|s| content(s, pulse_s)).collect();
     let of_struck = signals.iter().zip(&contents).find(|(s, _)| s.name == struck.name);
@@ -147,7 +147,7 @@ fn aliasing(signal: &Signal, pulse_s: (f64, f64), found: &Content, largest: f64)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, End};
+    use crate::data::{At, Axis, End};
 
     /// What `force` says from 20 ms on, sampled at a rate, with the two events.
     fn codes(rate_hz: f64, found_end_s: f64, force: impl Fn(f64) -> f64) -> Vec<IssueCode> {
@@ -171,8 +171,8 @@ mod tests {
             gaps: vec![],
         };
         let events = Events {
-            first_contact_s: Some(0.02),
-            separation_s: Some(0.02 + found_end_s),
+            first_contact: Some(At::exactly(0.02)),
+            separation: Some(At::exactly(0.02 + found_end_s)),
             ..Events::default()
         };
         judge_sampling(&[signal], &events, &[]).iter().map(|i| i.code).collect()

@@ -42,7 +42,7 @@ pub fn judge_strike(flight: &FlightFit, v0_m_s: f64) -> Option<Issue> {
 /// blow.
 #[must_use]
 pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Issue> {
-    let (contact_s, left_s) = events.first_contact_s.zip(events.separation_s)?;
+    let (contact_s, left_s) = events.first_contact_s().zip(events.separation_s())?;
     let struck = super::struck(signals)?;
     let block = block_of(RATE_HZ, struck.sample_rate_hz);
     let force = struck.force_m_s2.get(struck.index_from(contact_s)..struck.index_from(left_s))?;
@@ -80,7 +80,7 @@ pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Issue> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, End, Strike};
+    use crate::data::{At, Axis, End, Strike};
     use std::f64::consts::PI;
 
     fn flight(step_m_s: f64, gain: f64) -> FlightFit {
@@ -131,8 +131,11 @@ mod tests {
 
     #[test]
     fn a_force_that_rests_and_comes_again_is_two_contacts() {
-        let events =
-            |left_s| Events { first_contact_s: Some(0.01), separation_s: Some(left_s), ..Events::default() };
+        let events = |left_s| Events {
+            first_contact: Some(At::exactly(0.01)),
+            separation: Some(At::exactly(left_s)),
+            ..Events::default()
+        };
         let twice = signal(&[(0.01, 3000.0), (0.022, 400.0)]);
         let issue = judge_rest(std::slice::from_ref(&twice), &events(0.026)).expect("two contacts");
         assert!(issue.message.contains("from 4.0 to 12.1 ms"), "{}", issue.message);

@@ -33,8 +33,8 @@ pub(super) fn judge_worth(signals: &[Signal], events: &Events, cask_file: &CaskF
 }
 
 fn noisy(signal: &Signal, events: &Events, impact_velocity_m_s: f64) -> Option<Issue> {
-    let contact_s = events.first_contact_s?;
-    let end_s = events.slap_down_s.unwrap_or_else(|| signal.end_s());
+    let contact_s = events.first_contact_s()?;
+    let end_s = events.slap_down_s().unwrap_or_else(|| signal.end_s());
     let length_s = (end_s - contact_s).clamp(0.0, LONGEST_S);
     let u_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
     let severity = if u_m_s > MOST_NOISE * impact_velocity_m_s { Severity::Warning } else { Severity::Note };
@@ -56,8 +56,8 @@ fn noisy(signal: &Signal, events: &Events, impact_velocity_m_s: f64) -> Option<I
 
 /// What the first sample shows already is missing from the velocity step.
 fn under_way(signal: &Signal, events: &Events) -> Option<Issue> {
-    let contact_s = events.first_contact_s?;
-    let to_s = events.separation_s.unwrap_or(contact_s + 0.02);
+    let contact_s = events.first_contact_s()?;
+    let to_s = events.separation_s().unwrap_or(contact_s + 0.02);
     let is_struck = signal.end == End::First && signal.axis == Axis::Transverse;
     let force = signal.force_m_s2.get(..signal.index_from(to_s))?;
     let peak = reduce::extremes(force, 0.0).1;

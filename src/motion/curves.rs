@@ -94,7 +94,7 @@ pub fn channel_curves(
 /// as L leaves and as R strikes. `None` without a transverse channel on each end or without first contact and separation.
 #[must_use]
 pub fn read_channels(integrated: &Integrated, events: &Events, setup: &Setup) -> Option<ChannelReading> {
-    let left_s = events.separation_s?;
+    let left_s = events.separation_s()?;
     let each = integrated.signals.iter().zip(&integrated.velocities);
     let on = |end: End| each.clone().find(|(s, _)| s.axis == Axis::Transverse && s.end == end);
     let at =
@@ -102,7 +102,7 @@ pub fn read_channels(integrated: &Integrated, events: &Events, setup: &Setup) ->
     let (first, second) = (on(End::First)?, on(End::Second)?);
     Some(ChannelReading {
         first_m_s: at(first, left_s),
-        second_m_s: events.slap_down_s.map(|struck_s| at(second, struck_s)),
+        second_m_s: events.slap_down_s().map(|struck_s| at(second, struck_s)),
     })
 }
 
@@ -122,7 +122,7 @@ fn shown(signal: &Signal, events: &Events) -> (usize, usize) {
 
 /// Time range that is shown, s.
 fn shown_s(signal: &Signal, events: &Events) -> (f64, f64) {
-    let first_s = events.first_contact_s.unwrap_or(signal.start_s);
-    let last_s = events.slap_down_s.or(events.separation_s.map(|t| t + 0.05)).unwrap_or(first_s + 0.1);
+    let first_s = events.first_contact_s().unwrap_or(signal.start_s);
+    let last_s = events.slap_down_s().or(events.separation_s().map(|t| t + 0.05)).unwrap_or(first_s + 0.1);
     (first_s - BEFORE_S, last_s + AFTER_S)
 }

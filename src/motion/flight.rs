@@ -50,6 +50,18 @@ const LOWEST_HZ: f64 = 15.0;
 /// A candidate this close in BIC to the best cannot be told from it (Kass & Raftery 1995: above 10 is very strong).
 const INDISTINCT: f64 = 10.0;
 
+/// A fit of the flight ends so long before the slap-down, s: its onset.
+pub const BEFORE_SLAP_DOWN_S: f64 = 5e-4;
+/// … and begins this share of the contact behind its end, and so long, s: what the force's tail hides.
+const BEHIND_CONTACT: f64 = 0.1;
+const BEHIND_CONTACT_S: f64 = 3e-4;
+
+/// When a fit of the flight may begin, s.
+#[must_use]
+pub fn clear_of_contact_s(contact_s: f64, left_s: f64) -> f64 {
+    left_s + BEHIND_CONTACT * (left_s - contact_s) + BEHIND_CONTACT_S
+}
+
 /// The times a flight fit needs, s from the recording's first sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {

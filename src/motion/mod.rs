@@ -9,7 +9,9 @@ mod strike;
 mod thin;
 
 pub use curves::{channel_curves, cutoff_hz, filtered, read_channels};
-pub use flight::{Window, compare_late, fit_flight, fit_flights, mean_of_flight};
+pub use flight::{
+    BEFORE_SLAP_DOWN_S, Window, clear_of_contact_s, compare_late, fit_flight, fit_flights, mean_of_flight,
+};
 pub use histories::drive;
 pub use reconstruct::{outcome, reconstruct};
 pub use ringing::{Calmed, rotation_rad_s};

@@ -27,7 +27,7 @@ pub fn reconstruct(
     let mut record = |state: &MotionState| push(&mut curve, setup, state);
     let mut motion = follow(integrated, fit, events, setup, &mut record)?;
     let separation = motion.separation;
-    let end_s = events.slap_down_s.unwrap_or(fit.to_s);
+    let end_s = events.slap_down_s().unwrap_or(fit.to_s);
     let flight = (1..=FLIGHT_STEPS).map(|i| {
         let share = f64::from(i) / f64::from(FLIGHT_STEPS);
         fly(setup, &separation, separation.time_s + (end_s - separation.time_s) * share)
@@ -56,8 +56,8 @@ fn follow(
     setup: &Setup,
     record: &mut dyn FnMut(&MotionState),
 ) -> Option<Motion> {
-    let contact_s = events.first_contact_s?;
-    let separation_s = events.separation_s?;
+    let contact_s = events.first_contact_s()?;
+    let separation_s = events.separation_s()?;
     let line = Line::through(&integrated.signals, setup.cog_m)?;
     let histories =
         Histories::new(integrated, fit, &line, (contact_s, separation_s))?.at_rate(setup.second_s);
@@ -83,7 +83,7 @@ fn follow(
             + setup.impact_velocity_m_s
             + setup.gravity_m_s2 * (separation.time_s - contact_s));
     let slap_down =
-        events.slap_down_s.map(|t| fly(setup, &separation, contact_s + (t - contact_s) * setup.second_s));
+        events.slap_down_s().map(|t| fly(setup, &separation, contact_s + (t - contact_s) * setup.second_s));
     let ahead_m = setup.length_m - setup.cog_m;
     Some(Motion {
         separation,
@@ -291,7 +291,7 @@ fn push(curve: &mut MotionCurve, setup: &Setup, state: &MotionState) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, End, Mode, Plateau, Signal};
+    use crate::data::{At, Axis, End, Mode, Plateau, Signal};
 
     /// A half sine of 6 ms from 10 ms on whose area is `step_m_s`, at 100 kHz over 80 ms.
     fn signal(name: &str, end: End, position_m: f64, step_m_s: f64) -> Signal {
@@ -340,9 +340,9 @@ mod tests {
             strike: None,
         };
         let events = Events {
-            first_contact_s: Some(0.01),
-            separation_s: Some(0.016),
-            slap_down_s: Some(0.07),
+            first_contact: Some(At::exactly(0.01)),
+            separation: Some(At::exactly(0.016)),
+            slap_down: Some(At::exactly(0.07)),
             ..Events::default()
         };
         let setup = Setup {

@@ -72,9 +72,9 @@ fn events(file: &File, analysis: &Analysis) -> Result<(), ReportError> {
     let events = &analysis.result.events;
     for (name, time_s) in [
         ("release_s", events.release_s),
-        ("first_contact_s", events.first_contact_s),
-        ("separation_s", events.separation_s),
-        ("slap_down_s", events.slap_down_s),
+        ("first_contact_s", events.first_contact_s()),
+        ("separation_s", events.separation_s()),
+        ("slap_down_s", events.slap_down_s()),
     ] {
         if let Some(time_s) = time_s {
             group.new_attr::<f64>().create(name)?.write_scalar(&time_s)?;

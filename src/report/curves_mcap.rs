@@ -101,9 +101,9 @@ impl Curves {
         let events = &analysis.result.events;
         for (name, time_s) in [
             ("release", events.release_s),
-            ("first contact", events.first_contact_s),
-            ("separation", events.separation_s),
-            ("slap-down", events.slap_down_s),
+            ("first contact", events.first_contact_s()),
+            ("separation", events.separation_s()),
+            ("slap-down", events.slap_down_s()),
         ] {
             if let Some(time_s) = time_s.filter(|t| t.is_finite()) {
                 self.begin(time_s);

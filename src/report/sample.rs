@@ -2,7 +2,7 @@
 
 use super::sample_reconstruction;
 use crate::data::{
-    Analysis, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelSpec, ChannelSummary, Comparison,
+    Analysis, At, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelSpec, ChannelSummary, Comparison,
     Contact, Coupling, Curves, Drop, DropResult, End, Estimate, Events, FilterChoice, FirstImpact, FlightFit,
     FlightModelScore, FlightRegime, Input, Issue, IssueCode, Mode, ModelCandidate, ModelChoice, MotionCurve,
     Plateau, Prediction, RecordingFormat, Rung, Setting, Severity, SlapDown, Source, Unit, Verdict,
@@ -99,9 +99,9 @@ fn result() -> DropResult {
         events: Events {
             release_s: None,
             fall_end_s: None,
-            first_contact_s: Some(CONTACT_S),
-            separation_s: Some(SEPARATION_S),
-            slap_down_s: Some(SLAP_DOWN_S),
+            first_contact: Some(At::exactly(CONTACT_S)),
+            separation: Some(At::exactly(SEPARATION_S)),
+            slap_down: Some(At::exactly(SLAP_DOWN_S)),
         },
         channels: vec![
             summary("A1", End::First, "/daq/a1.samples"),

@@ -3,7 +3,7 @@
 //! `BLESS=1 cargo test --test it odd` writes the outcomes anew; read the difference before committing it.
 
 use crate::run::fixture;
-use crate::same::{cask, hash, placeless, told};
+use crate::same::{cask, hash, hash_of, placeless, told};
 use dropcheck::data::{Channel, Issue};
 use dropcheck::ingest;
 use serde_json::Value;
@@ -34,7 +34,6 @@ struct Case {
 /// A channel's clock, unit and samples, which a hash stands for.
 fn of_channel(channel: &Channel) -> String {
     let samples = &channel.samples;
-    let bits: String = (0..samples.len()).map(|i| format!("{:x} ", samples.get(i).to_bits())).collect();
     format!(
         "{}: {} samples at {} Hz from {} s, {} ({}) of {} m/s², {}",
         channel.name,
@@ -44,7 +43,7 @@ fn of_channel(channel: &Channel) -> String {
         channel.unit,
         channel.unit_origin,
         channel.scale_m_s2,
-        hash(&bits)
+        hash_of((0..samples.len()).map(|i| samples.get(i)))
     )
 }
 
@@ -144,15 +143,9 @@ fn odd_files_are_read_or_refused_as_written_down() {
         fs::write(&path, &found).expect("fixtures/odd can be written");
     }
     let expected = fs::read_to_string(&path).expect("outcomes");
+    // A line that is not indented begins an outcome.
     let blocks = |text: &str| -> Vec<String> {
-        let mut blocks: Vec<String> = Vec::new();
-        for line in text.lines() {
-            match blocks.last_mut().filter(|_| line.starts_with(' ')) {
-                Some(block) => *block += &format!("\n{line}"),
-                None => blocks.push(line.to_owned()),
-            }
-        }
-        blocks
+        text.replace("\n    ", "\r    ").lines().map(|block| block.replace('\r', "\n")).collect()
     };
     let (expected, found) = (blocks(&expected), blocks(&found));
     let apart: Vec<String> = expected

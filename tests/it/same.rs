@@ -5,9 +5,10 @@
 //! did, bless at the commit before it. Every scene is held with `cargo test --release --test it same -- --ignored`.
 
 use crate::run::{analyze, dropcheck, fixture};
-use dropcheck::data::SceneNumber;
 use dropcheck::ingest::{self, IngestError};
-use dropcheck::report::{self, SyntheticFormat};
+use dropcheck::lab::data::SceneNumber;
+use dropcheck::lab::report::SyntheticFormat;
+use dropcheck::{lab, report};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -85,8 +86,12 @@ fn mathematics() -> String {
         let x = f64::from(i) * 0.000_731;
         [x.sin(), x.cos(), x.exp(), x.ln(), x.powf(0.37), x.tanh(), x.atan2(2.0), x.cbrt()]
     });
-    let bits: String = values.flatten().map(|value| format!("{:x}", value.to_bits())).collect();
-    hash(&bits)
+    hash_of(values.flatten())
+}
+
+/// Sixteen digits that stand for numbers, to the last bit.
+pub fn hash_of(numbers: impl Iterator<Item = f64>) -> String {
+    hash(&numbers.map(|number| number.to_bits().to_string()).collect::<Vec<_>>().join(" "))
 }
 
 /// Name, verdict, weighty codes, speed, k, hash of the result, hash of the listing.
@@ -142,21 +147,17 @@ fn kept(name: &str, what: &str) -> PathBuf {
 
 /// The first lines in which an answer differs from the kept one.
 fn lines_apart(said: &Said) -> String {
-    let mut shown = String::new();
+    let mut shown = Vec::new();
     for (what, new) in [("result", &said.result), ("listing", &said.listing)] {
         let Ok(old) = fs::read_to_string(kept(&said.name, what)) else {
             return "\n    no whole answer is kept: bless at the commit before".to_owned();
         };
         let apart = old.lines().zip(new.lines()).filter(|(old, new)| old != new).take(4);
-        for (old, new) in apart {
-            shown += &format!("\n    {what}: {} → {}", old.trim(), new.trim());
-        }
+        shown.extend(apart.map(|(old, new)| format!("\n    {what}: {} → {}", old.trim(), new.trim())));
         let (before, now) = (old.lines().count(), new.lines().count());
-        if before != now {
-            shown += &format!("\n    {what}: {before} → {now} lines");
-        }
+        shown.extend((before != now).then(|| format!("\n    {what}: {before} → {now} lines")));
     }
-    shown
+    shown.concat()
 }
 
 /// Holds what is said against the table of that name, or writes it.
@@ -244,7 +245,7 @@ fn the_corpus() {
             all.push(match target {
                 "cask" => said(name, &fixture("anf18-json.mcap"), &path),
                 "scene" => {
-                    let scene = dropcheck::scene_file(&path).map(|file| format!("{file:?}"));
+                    let scene = lab::scene_file(&path).map(|file| format!("{file:?}"));
                     let result = placeless(&scene.unwrap_or_else(|error| told(&error)), &path, &path);
                     Said { name, result, listing: String::new() }
                 }
@@ -270,12 +271,12 @@ fn scenes(stride: usize) -> Vec<Said> {
     let numbers: Vec<SceneNumber> = numbers.step_by(stride).collect();
     let all = Mutex::new(Vec::new());
     numbers.into_par_iter().for_each(|number| {
-        let (scene, recording) = dropcheck::campaign_scene(SEED, number, false);
+        let (scene, recording) = lab::campaign::scene(SEED, number, false);
         for (extension, format) in formats {
             let folder = tempfile::tempdir().expect("a temporary folder");
             let name = format!("drop.{extension}");
             // A table of one rate cannot hold every scene.
-            let Ok(files) = report::synthetic_files(&scene, &recording, &name, format) else { continue };
+            let Ok(files) = lab::report::synthetic_files(&scene, &recording, &name, format) else { continue };
             for (name, bytes) in &files {
                 fs::write(folder.path().join(name), bytes).expect("a temporary file");
             }

@@ -1,8 +1,6 @@
 //! The linear propagation of the uncertainty against draws of its inputs (JCGM 101), and the ladder on a committed recording.
 
-use dropcheck::data::{
-    AxialClosure, End, Estimate, ReconstructionRung, Recording, RivalLaw, Samples, Setup, Verdict,
-};
+use dropcheck::data::{AxialClosure, End, ReconstructionRung, Recording, RivalLaw, Samples, Setup, Verdict};
 use dropcheck::{condition, events, fit, ingest, motion};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -35,12 +33,10 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         axial: AxialClosure::Sticking,
         second_s: 1.0,
     };
-    let u_s = |time: Option<Estimate>| time.map_or(0.0, |t| t.u95 / 2.0);
     let measured = fit::Measured {
         signals: &signals,
         flight: result.flight.as_ref().expect("a flight"),
         events: &result.events,
-        u_events_s: [u_s(result.first_impact.time), 1e-4, u_s(result.slap_down.time)],
         setup: &setup,
         rival_law: Some(RivalLaw { axial: AxialClosure::Sliding { friction_ppm: 0 }, way: 1.0 }),
         tolerances: file.tolerances,
@@ -49,7 +45,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         fall_s: None,
         stood_in: None,
     };
-    let integrated = motion::Integrated::over(&signals, result.events.first_contact_s.expect("a contact"));
+    let integrated = motion::Integrated::over(&signals, result.events.first_contact_s().expect("a contact"));
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
     let linear = fit::quantities(&measured, &moved).expect("quantities");
     let (mut chance, mut left) = (ChaCha8Rng::seed_from_u64(4), DRAWS);

@@ -1,7 +1,7 @@
 //! Made-up channels to what `worth` says of them.
 
 use super::*;
-use crate::data::{Cask, Contact, Corrections, Drop, FilterChoice, Tolerances};
+use crate::data::{At, Cask, Contact, Corrections, Drop, FilterChoice, Tolerances};
 
 fn cask_file() -> CaskFile {
     CaskFile {
@@ -65,9 +65,9 @@ fn pair() -> [Signal; 2] {
 
 fn found(signals: &[Signal]) -> Vec<(IssueCode, Option<String>)> {
     let events = Events {
-        first_contact_s: Some(0.02),
-        separation_s: Some(0.025),
-        slap_down_s: Some(0.09),
+        first_contact: Some(At::exactly(0.02)),
+        separation: Some(At::exactly(0.025)),
+        slap_down: Some(At::exactly(0.09)),
         ..Events::default()
     };
     judge_worth(signals, &events, &cask_file()).into_iter().map(|i| (i.code, i.channel)).collect()
@@ -83,7 +83,11 @@ fn noise_that_moves_the_velocity_is_named() {
     let mut noisy = pair();
     // White: u² = S/2 (T + T²/T0) = S · 0.0472 s: 0.043 m/s for 0.04, below 0.5 % of 13.29; 0.22 for 1, a note; 0.69 for 10, above 3 %.
     let severity = |noisy: &[Signal]| {
-        let events = Events { first_contact_s: Some(0.02), slap_down_s: Some(0.09), ..Events::default() };
+        let events = Events {
+            first_contact: Some(At::exactly(0.02)),
+            slap_down: Some(At::exactly(0.09)),
+            ..Events::default()
+        };
         judge_worth(noisy, &events, &cask_file()).first().map(|i| (i.code, i.severity))
     };
     noisy[0].noise_spectrum = vec![(10.0, 0.04), (5000.0, 0.04)];
@@ -117,8 +121,9 @@ fn a_record_that_begins_in_the_impact_is_named() {
             // Nothing quiet is left to take noise from.
             s.noise_spectrum.clear();
         }
-        let mut events = Events { first_contact_s: Some(late[0].start_s.max(0.02)), ..Events::default() };
-        events.separation_s = Some(0.025);
+        let mut events =
+            Events { first_contact: Some(At::exactly(late[0].start_s.max(0.02))), ..Events::default() };
+        events.separation = Some(At::exactly(0.025));
         let issues = judge_worth(&late, &events, &cask_file());
         assert_eq!(issues.iter().filter(|i| i.severity == Severity::Error).count(), wanted, "{issues:?}");
     }

@@ -13,7 +13,7 @@ pub use damage::kinds;
 pub use score::csv;
 pub use tables::markdown;
 
-use crate::analyze;
+use crate::analysis::analyze;
 use crate::data::CaskFile;
 use crate::ingest::Progress;
 use crate::lab::data::{

@@ -165,7 +165,7 @@ struct Clock {
 
 impl Clock {
     fn of(analysis: &Analysis) -> Self {
-        match analysis.result.events.first_contact_s.filter(|t| t.is_finite()) {
+        match analysis.result.events.first_contact_s().filter(|t| t.is_finite()) {
             Some(zero_s) => Self { zero_s, label: TIME_LABEL },
             None => Self { zero_s: 0.0, label: RECORD_TIME_LABEL },
         }
@@ -179,9 +179,9 @@ impl Clock {
         let events = &analysis.result.events;
         let marks = [
             ("release", events.release_s),
-            ("first contact", events.first_contact_s),
-            ("separation", events.separation_s),
-            ("slap-down", events.slap_down_s),
+            ("first contact", events.first_contact_s()),
+            ("separation", events.separation_s()),
+            ("slap-down", events.slap_down_s()),
         ]
         .into_iter()
         .filter_map(|(label, at)| {

@@ -4,10 +4,13 @@ use super::flight::{CALM, NOISY, ONE_MODE, SLOW_MODE};
 use super::sample::{self, Class, Prepared};
 use super::scene::Drawn;
 use super::summary::{Subject, by_class, point};
-use crate::data::{Axis, End, Estimate, Events, FlightFit, ReconstructionChoice, ReconstructionRung, Setup};
+use crate::analysis::{self, analyze, settle};
+use crate::data::{
+    At, Axis, End, Estimate, Events, FlightFit, ReconstructionChoice, ReconstructionRung, Setup,
+};
 use crate::lab::data::{TrialPart, TrialPeerWork, TrialPoint, TrialRequest};
 use crate::lab::methods::timing::{Effort, Timing, Work, in_turn};
-use crate::{analyze, assemble, fit, motion, settle};
+use crate::{fit, motion};
 use rayon::prelude::*;
 use std::hint::black_box;
 
@@ -107,12 +110,12 @@ fn times(drop: &Prepared, request: &TrialRequest) -> Option<Vec<Timing>> {
     let flight = settled.flight?;
     let struck = settled.struck?;
     let events = Events {
-        first_contact_s: Some(drop.contact_s),
-        separation_s: Some(settled.left.0),
-        slap_down_s: Some(struck.0),
+        first_contact: Some(At { time_s: drop.contact_s, u_s: 1e-5 }),
+        separation: Some(settled.left),
+        slap_down: Some(struck),
         ..Events::default()
     };
-    let setup: Setup = assemble::sticking(file);
+    let setup: Setup = analysis::sticking(file);
     let cog_m = file.cask.cog_m;
     let window = motion::Window {
         from_s: flight.from_s,
@@ -127,7 +130,6 @@ fn times(drop: &Prepared, request: &TrialRequest) -> Option<Vec<Timing>> {
         signals,
         flight: &flight,
         events: &events,
-        u_events_s: [1e-5, settled.left.1, struck.1],
         setup: &setup,
         rival_law: None,
         tolerances: file.tolerances,

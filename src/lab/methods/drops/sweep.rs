@@ -2,7 +2,7 @@
 
 use super::scene::{ANF_10, ANF_18, Drawn, ESBB, Plan, VHLW};
 use super::summary::{fraction, median};
-use crate::analyze;
+use crate::analysis::analyze;
 use crate::data::{Analysis, Estimate, Verdict};
 use crate::lab::data::{BendingMode, TrialLine, TrialMap, TrialPart, TrialRequest, Truth};
 use rayon::prelude::*;

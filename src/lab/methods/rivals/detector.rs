@@ -42,7 +42,7 @@ impl Detector {
 pub fn first_contact_by(detector: Detector, signals: &[Signal], coarse: &CoarseEvent) -> Option<f64> {
     let (signal, stretch, sign) = onset::stretch(signals, coarse)?;
     if detector == Detector::RiseLine {
-        return first_contact(signals, coarse).map(|contact| contact.0);
+        return first_contact(signals, coarse).map(|contact| contact.time_s);
     }
     let force: Vec<f64> = signal.force_m_s2.get(stretch.clone())?.iter().map(|f| sign * f).collect();
     let level = peak_m_s2(&force)?.max(NOISE_FACTOR / FOOT * signal.noise_m_s2) * FOOT;
@@ -210,7 +210,7 @@ mod tests {
         let coarse = CoarseEvent { near_s: 0.01, spread_s: 0.025, velocity_step_m_s: 20.0 };
         let signals = [signal(0.020_01)];
         let by_default = first_contact_by(Detector::default(), &signals, &coarse);
-        assert_eq!(by_default, first_contact(&signals, &coarse).map(|c| c.0));
+        assert_eq!(by_default, first_contact(&signals, &coarse).map(|c| c.time_s));
     }
 
     #[test]

@@ -15,7 +15,7 @@ const RESTITUTIONS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 const MEAN_TURN: f64 = 0.25;
 
 /// An end without a transverse channel of its own.
-pub(crate) struct StandIn {
+pub struct StandIn {
     /// The end that has none.
     pub end: End,
     /// Where the signal that stands in is, and where the one is that it is made of, from L, m.
@@ -63,7 +63,7 @@ impl StandIn {
 
 /// What the first impact changes the velocity of the end that shows it by at the least (k = 0), m/s: v0 cos φ of L, its share of that of R
 /// where only R has a transverse channel.
-pub(crate) fn least_step_m_s(file: &CaskFile, recording: &Recording) -> f64 {
+pub fn least_step_m_s(file: &CaskFile, recording: &Recording) -> f64 {
     let of_first_m_s = file.drop.transverse_velocity_m_s().max(file.drop.least_impact_m_s());
     let transverse = || recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
     let far = transverse().next().filter(|_| transverse().all(|c| c.end == End::Second));
@@ -76,7 +76,7 @@ pub(crate) fn least_step_m_s(file: &CaskFile, recording: &Recording) -> f64 {
 /// transverse forces in one ratio all along, whatever k is   (38)
 ///
 /// Without R its slap-down is not in the record: what comes later than it could come is cut off.
-pub(crate) fn stand_in(file: &CaskFile, signals: &mut Vec<Signal>, contact_s: f64) -> Option<StandIn> {
+pub fn stand_in(file: &CaskFile, signals: &mut Vec<Signal>, contact_s: f64) -> Option<StandIn> {
     let mut transverse = signals.iter().filter(|s| s.axis == Axis::Transverse);
     let known = transverse.next()?;
     if transverse.any(|s| s.end != known.end) {

@@ -1,8 +1,8 @@
 //! Signals and first contact to separation, slap-down and the flight between them, each found with the others' help.
 
-use crate::data::{CaskFile, End, Events, FlightFit, Motion, Signal};
+use crate::data::{At, CaskFile, End, Events, FlightFit, Motion, Signal};
 use crate::motion::{self, Integrated};
-use crate::{assemble, events, judge};
+use crate::{events, judge};
 
 /// Separation and slap-down are found again on signals free of ringing this often; the second round moves them by less than a sample.
 const ROUNDS: usize = 3;
@@ -45,11 +45,11 @@ const BEYOND_S: f64 = 0.02;
 const BEFORE_S: f64 = 0.05;
 
 /// Where the search ended.
-pub(crate) struct Settled {
-    /// Separation and its standard uncertainty, s.
-    pub left: (f64, f64),
-    /// Slap-down and its standard uncertainty, s, where there is one.
-    pub struck: Option<(f64, f64)>,
+pub struct Settled {
+    /// Separation.
+    pub left: At,
+    /// Slap-down, where there is one.
+    pub struck: Option<At>,
     /// The flight between them, where it could be fitted.
     pub flight: Option<FlightFit>,
     /// What that was fitted over.
@@ -67,7 +67,7 @@ struct Search<'a> {
 
 /// Settles separation, slap-down and flight; of several beginnings the first that explains the flight and brings R to the target, else the
 /// best. `None` without transverse channels on both ends.
-pub(crate) fn settle(file: &CaskFile, integrated: &Integrated) -> Option<Settled> {
+pub fn settle(file: &CaskFile, integrated: &Integrated) -> Option<Settled> {
     let &Integrated { ref signals, contact_s, .. } = integrated;
     let drop = &file.drop;
     let descent_m = file.cask.length_m * drop.angle_rad.sin();
@@ -87,7 +87,7 @@ pub(crate) fn settle(file: &CaskFile, integrated: &Integrated) -> Option<Settled
         events::slap_down(ends.1.signal(), search.earliest_s..search.record_end_s, search.least_m_s, false);
     let mut best: Option<(f64, Settled)> = None;
     // Where the velocities are cut off no beginning leads to a flight that explains them.
-    let before_s = struck.map_or(search.record_end_s, |s| s.0);
+    let before_s = struck.map_or(search.record_end_s, |s| s.time_s);
     let is_hopeless = signals.iter().any(|s| judge::is_cut_off(s, contact_s, before_s));
     for share in FIRST_ENDS.into_iter().take(if is_hopeless { 1 } else { FIRST_ENDS.len() }) {
         let attempt = search.attempt(&mut ends, struck, share);
@@ -108,14 +108,14 @@ pub(crate) fn settle(file: &CaskFile, integrated: &Integrated) -> Option<Settled
 }
 
 /// What the cask turns by from first contact to separation, rad.
-pub(crate) fn turned_rad(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Option<f64> {
+pub fn turned_rad(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Option<f64> {
     let integrated = Integrated::over(signals, contact_s);
     let moved = settle(file, &integrated)?.moved(file, &integrated)?;
     Some(file.drop.angle_rad - moved.separation.angle_rad)
 }
 
 /// Where the shortest record ends, s.
-pub(crate) fn record_end_s(signals: &[Signal]) -> f64 {
+pub fn record_end_s(signals: &[Signal]) -> f64 {
     signals.iter().map(Signal::end_s).fold(f64::INFINITY, f64::min)
 }
 
@@ -123,12 +123,12 @@ impl Settled {
     /// The motion that the signals, the times and the flight give where L sticks.
     fn moved(&self, file: &CaskFile, integrated: &Integrated) -> Option<Motion> {
         let times = Events {
-            first_contact_s: Some(integrated.contact_s),
-            separation_s: Some(self.left.0),
-            slap_down_s: self.struck.map(|s| s.0),
+            first_contact: Some(At { time_s: integrated.contact_s, u_s: 0.0 }),
+            separation: Some(self.left),
+            slap_down: self.struck,
             ..Events::default()
         };
-        motion::outcome(integrated, self.flight.as_ref()?, &times, &assemble::sticking(file))
+        motion::outcome(integrated, self.flight.as_ref()?, &times, &super::sticking(file))
     }
 }
 
@@ -138,34 +138,34 @@ impl Search<'_> {
     fn attempt(
         &self,
         (first, second): &mut (motion::Calmed, motion::Calmed),
-        mut struck: Option<(f64, f64)>,
+        mut struck: Option<At>,
         share: f64,
     ) -> Settled {
         first.restore();
         let &Integrated { ref signals, contact_s, .. } = self.integrated;
         let cog_m = self.file.cask.cog_m;
-        let mut end_s = contact_s + share * (struck.map_or(self.record_end_s, |s| s.0) - contact_s);
+        let mut end_s = contact_s + share * (struck.map_or(self.record_end_s, |s| s.time_s) - contact_s);
         // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit goes by.
         let cleared_s = contact_s + (FIRST_CLEARANCE * (end_s - contact_s)).min(LONGEST_CLEARANCE_S);
         let rough_s = events::first_separation(first.signal(), contact_s, end_s).unwrap_or(cleared_s);
         // The first fit keeps well clear of the contact, which ringing may have seemed to end too soon.
         let mut free_s = rough_s.max(cleared_s);
-        let mut left = (rough_s, 0.1 * (rough_s - contact_s));
+        let mut left = At { time_s: rough_s, u_s: 0.1 * (rough_s - contact_s) };
         let mut flight: Option<FlightFit> = None;
         let mut others: Vec<FlightFit> = Vec::new();
         let mut taken_over = None;
         for round in 0..ROUNDS + FURTHER_ROUNDS {
             let window = motion::Window {
                 from_s: free_s,
-                to_s: end_s - 5e-4,
+                to_s: end_s - motion::BEFORE_SLAP_DOWN_S,
                 drift: self.file.corrections.zero_shift,
                 angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| motion::rotation_rad_s(signals, f)),
             };
-            let drive = motion::drive(self.integrated, flight.as_ref(), left.0, window.from_s, cog_m);
+            let drive = motion::drive(self.integrated, flight.as_ref(), left.time_s, window.from_s, cog_m);
             let mut fits = motion::fit_flights(self.integrated, &window, drive.as_ref(), cog_m).into_iter();
             let Some(fitted) = fits.next() else { break };
             others = fits.collect();
-            let beyond_s = struck.map_or(self.record_end_s, |s| s.0).max(end_s) + BEYOND_S;
+            let beyond_s = struck.map_or(self.record_end_s, |s| s.time_s).max(end_s) + BEYOND_S;
             rayon::join(
                 || first.take_off(&fitted, contact_s..beyond_s),
                 || second.take_off(&fitted, contact_s..beyond_s),
@@ -177,9 +177,9 @@ impl Search<'_> {
                 struck = events::slap_down(second.signal(), between_s, self.least_m_s, true);
             }
             left = events::separation(first.signal(), contact_s, free_s).unwrap_or(left);
-            free_s = left.0 + 0.1 * (left.0 - contact_s) + 3e-4;
+            free_s = motion::clear_of_contact_s(contact_s, left.time_s);
             flight = Some(fitted);
-            let fitted_to_s = std::mem::replace(&mut end_s, struck.map_or(self.record_end_s, |s| s.0));
+            let fitted_to_s = std::mem::replace(&mut end_s, struck.map_or(self.record_end_s, |s| s.time_s));
             if round + 1 >= ROUNDS && (end_s - fitted_to_s).abs() < SETTLED_S {
                 break;
             }

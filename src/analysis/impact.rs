@@ -1,0 +1,127 @@
+//! A recording to its first impact: the conditioned signals, when L touches, and what the time before it shows.
+
+use super::{one_end, settle};
+use crate::data::{
+    At, Axis, BENDING_WAVE_M_S, CaskFile, Channel, Coupling, Drop, End, Events, Issue, Recording, RestLevel,
+    Severity, Signal,
+};
+use crate::{condition, events, judge};
+use one_end::StandIn;
+use std::ops::Range;
+
+/// The first impact, and what the analysis of it goes by.
+pub(super) struct Impact {
+    /// The conditioned signals; the last one stands in for an end that has none, where `stand_in` is.
+    pub signals: Vec<Signal>,
+    /// First contact of L.
+    pub contact: At,
+    /// What a delay between channels leaves open of R's times, as a standard uncertainty, s.
+    pub u_skew_s: f64,
+    /// The end without a transverse channel of its own.
+    pub stand_in: Option<StandIn>,
+    /// What the channels read at rest.
+    pub rests: Vec<RestLevel>,
+    /// From the release to the first touch, s, where the record shows them.
+    pub fall_s: Option<Range<f64>>,
+}
+
+impl Impact {
+    /// The first impact of a recording; `None` where no channel shows one.
+    pub fn find(recording: &Recording, file: &CaskFile, findings: &mut Vec<Issue>) -> Option<Self> {
+        let drop = &file.drop;
+        let (silent, changes) =
+            rayon::join(|| judge::judge_silent(&recording.channels), || events::Changes::of(recording));
+        findings.extend(silent);
+        let event = changes
+            .locate(one_end::least_step_m_s(file, recording))
+            .filter(|e| e.velocity_step_m_s.abs() > drop.least_impact_m_s())?;
+        let another = changes.another_drop(&event, drop.impact_velocity_m_s / drop.gravity_m_s2);
+        findings.extend(another.map(|another| judge::judge_several_drops(&event, &another)));
+        let farthest = condition::Reach::of(&file.cask, drop);
+        let last_s = changes.last_s(&event, (drop.impact_velocity_m_s, farthest.after_s));
+        let reach = last_s.map_or(farthest, |last_s| farthest.until(last_s - event.near_s - event.spread_s));
+        let (mut signals, found) = condition::condition(recording, &event, &reach, file.corrections);
+        findings.extend(found);
+        let mut contact = events::first_contact(&signals, &event)?;
+        if events::transverse(&signals, End::First).is_none() {
+            // A bending wave takes this time from L to R, where it is seen first.
+            contact.u_s = contact.u_s.hypot(file.cask.length_m / BENDING_WAVE_M_S / 12.0_f64.sqrt());
+        }
+        let u_skew_s = align(file, &mut signals, contact.time_s, findings);
+        let stand_in = with_both_ends(file, &mut signals, contact.time_s);
+        let (rests, fall_s) = before(recording, drop, contact.time_s);
+        let impact = Self { signals, contact, u_skew_s, stand_in, rests, fall_s };
+        findings.extend(judge::judge_fall(drop, &impact.events()));
+        Some(impact)
+    }
+
+    /// The events up to the first contact.
+    pub fn events(&self) -> Events {
+        Events {
+            release_s: self.fall_s.as_ref().map(|fall_s| fall_s.start),
+            fall_end_s: self.fall_s.as_ref().map(|fall_s| fall_s.end),
+            first_contact: Some(self.contact),
+            ..Events::default()
+        }
+    }
+
+    /// The signals that were recorded.
+    pub fn recorded(&self) -> &[Signal] {
+        &self.signals[..self.signals.len() - usize::from(self.stand_in.is_some())]
+    }
+}
+
+/// Adds the signal that stands in for an end without one, made for the angle that the cask has in the middle of the contact.
+fn with_both_ends(file: &CaskFile, signals: &mut Vec<Signal>, contact_s: f64) -> Option<StandIn> {
+    let mut stand_in = one_end::stand_in(file, signals, contact_s)?;
+    let turned_rad = settle::turned_rad(file, signals, contact_s).unwrap_or(0.0);
+    stand_in.turn(file, signals, turned_rad);
+    Some(stand_in)
+}
+
+/// Shifts channels whose clock is apart back, if that correction may be made; returns what a delay that a bending wave explains as well
+/// leaves open of R's times, as a standard uncertainty, s.
+fn align(file: &CaskFile, signals: &mut [Signal], contact_s: f64, findings: &mut Vec<Issue>) -> f64 {
+    let onsets = events::answers(signals, contact_s);
+    let issues = judge::judge_skew(&onsets, signals, &file.cask, file.corrections.skew);
+    let mut u_skew_s = 0.0_f64;
+    for issue in &issues {
+        let Some(onset) = onsets.iter().find(|o| issue.channel.as_ref() == Some(&o.channel)) else {
+            continue;
+        };
+        let Some(signal) = signals.iter_mut().find(|s| s.name == onset.channel) else { continue };
+        let is_shifted = issue.severity == Severity::Warning && file.corrections.skew;
+        if is_shifted {
+            signal.start_s -= onset.delay_s;
+        }
+        if signal.end == End::Second {
+            let open_s = if is_shifted { onset.u_s } else { onset.delay_s / 3.0_f64.sqrt() };
+            u_skew_s = u_skew_s.max(open_s.abs());
+        }
+    }
+    findings.extend(issues);
+    u_skew_s
+}
+
+/// What the channels read at rest, and the free fall by the one that knows its levels best.
+fn before(recording: &Recording, drop: &Drop, contact_s: f64) -> (Vec<RestLevel>, Option<Range<f64>>) {
+    let falls: Vec<_> = free_falls(recording, drop, contact_s).collect();
+    let rest = |(channel, fall): &(&Channel, events::FreeFall)| RestLevel {
+        channel: channel.name.clone(),
+        rest_m_s2: fall.rest_m_s2,
+        u_m_s2: fall.u_rest_m_s2,
+    };
+    let best = falls.iter().min_by(|a, b| a.1.u_rest_m_s2.total_cmp(&b.1.u_rest_m_s2));
+    (falls.iter().map(rest).collect(), best.map(|(_, fall)| fall.release_s..fall.end_s))
+}
+
+/// The free fall as each transverse channel shows it; an AC-coupled one knows neither rest nor fall.
+fn free_falls<'a>(
+    recording: &'a Recording,
+    drop: &'a Drop,
+    contact_s: f64,
+) -> impl Iterator<Item = (&'a Channel, events::FreeFall)> {
+    let steady =
+        recording.channels.iter().filter(|c| c.axis == Axis::Transverse && c.coupling == Coupling::Dc);
+    steady.filter_map(move |c| events::free_fall(c, drop, contact_s).map(|fall| (c, fall)))
+}

@@ -1,0 +1,66 @@
+//! A flight to what may be stated of the impacts: the quantities, unless something speaks against them, and their prediction.
+
+use super::flight::Flown;
+use super::impact::Impact;
+use crate::data::{BodyModel, CaskFile, Comparison, Events, GRAZE_SHARE, Issue, ModelChoice};
+use crate::{compare, judge, predict};
+
+/// What is measured beside what is predicted.
+pub(super) struct Measured {
+    /// The simplest model that explains it; `None` where there is no slap-down to compare.
+    pub model: Option<ModelChoice>,
+    /// Measured beside predicted.
+    pub comparison: Option<Comparison>,
+}
+
+impl Measured {
+    /// Judges the flight; `None` where an error speaks against what it says, which is then not stated at all.
+    pub fn of(
+        flown: &Flown,
+        impact: &Impact,
+        events: &Events,
+        file: &CaskFile,
+        findings: &mut Vec<Issue>,
+    ) -> Option<Self> {
+        let Flown { flight, reconstruction, quantities, .. } = flown;
+        findings.extend(judge::judge_coupling(&impact.signals, flight, file));
+        findings.extend(judge::judge_rigid(&impact.signals, flight, &file.tolerances, &file.drop));
+        let known = (quantities.k, quantities.speed);
+        let contact_s = impact.contact.time_s;
+        let mut is_told = judge::tells_lost_steps(reconstruction, known, impact.recorded(), contact_s);
+        if !findings.iter().any(|issue| judge::invalidates(issue, is_told)) {
+            findings.extend(of_motion(flown, impact, events, file));
+        }
+        is_told &= !findings.iter().any(judge::contradicts_motion);
+        if findings.iter().any(|issue| judge::invalidates(issue, is_told)) {
+            return None;
+        }
+        let compared = compare::compare(&predict::bodies(&file.cask), file, quantities, &predict::predict_by);
+        let (model, comparison) = compared.unzip();
+        let comparison = comparison.flatten();
+        findings.extend(comparison.as_ref().and_then(judge::judge_comparison));
+        Some(Self { model, comparison })
+    }
+}
+
+/// What the motion itself and its closures say.
+fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -> Vec<Issue> {
+    let Flown { flight, motion, quantities, reconstruction, .. } = flown;
+    let mut found = judge::judge_motion(file, &impact.signals, flight, motion, quantities);
+    found.extend(judge::judge_strike(flight, file.drop.impact_velocity_m_s));
+    found.extend(judge::judge_rest(impact.recorded(), events));
+    found.extend(judge::judge_closures(reconstruction, &file.drop, events));
+    let touched_m_s = touch_effect_m_s(file, quantities.k.value);
+    found.extend(judge::judge_touch(motion, quantities, touched_m_s, file.cask.length_m));
+    found
+}
+
+/// What touches of L that are too shallow to count as impacts change of the predicted slap-down speed, m/s.
+fn touch_effect_m_s(file: &CaskFile, k: f64) -> f64 {
+    let body = predict::body(&file.cask, BodyModel::Body);
+    let speed_m_s = |graze_share: f64| {
+        let k = k.clamp(0.0, 1.0);
+        predict::predict_grazing(&body, &file.drop, file.contact, k, graze_share).slap_down_speed_m_s
+    };
+    speed_m_s(GRAZE_SHARE).zip(speed_m_s(0.0)).map_or(0.0, |(grazed, struck)| (grazed - struck).abs())
+}

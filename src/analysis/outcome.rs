@@ -1,0 +1,246 @@
+//! What the stages found to one [`Analysis`].
+
+use super::impact::Impact;
+use super::{Reached, sticking};
+use crate::data::{
+    Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, DropResult, Estimate, Events, FirstImpact,
+    Input, Issue, Prediction, Quantities, Recording, Setting, Setup, Signal, SlapDown,
+};
+use crate::numerics::reduce::peak;
+use crate::{fit, judge, motion, predict};
+
+/// What a recorder's anti-alias filter delays by, in samples: 1.0 to 1.7 for one of fourth order at 0.4 to 0.25 of the rate, 2.0 for one of
+/// eighth order at 0.4 (Butterworth, at low frequency).
+const CHAIN_DELAY_SAMPLES: f64 = 2.0;
+
+/// What was found from the first impact on.
+pub(super) struct Found {
+    pub impact: Impact,
+    pub events: Events,
+    /// The signals as the curves' low-pass leaves them.
+    pub smooth: Vec<Signal>,
+    pub reached: Reached,
+}
+
+/// The result where no impact was found.
+pub(super) fn without_impact(recording: &Recording, file: &CaskFile, findings: Vec<Issue>) -> Analysis {
+    let channels: Vec<ChannelSummary> = recording.channels.iter().map(summary).collect();
+    let result = of_impact(recording, file, findings, (channels, Events::default()));
+    analysis(recording, file, result, Curves::default())
+}
+
+/// The result from the first impact on, as far as the analysis came.
+pub(super) fn of(recording: &Recording, file: &CaskFile, findings: Vec<Issue>, found: Found) -> Analysis {
+    let Found { impact, events, smooth, reached } = found;
+    let effect = || match &reached {
+        Reached::Measured(flown, _) => filter_effect(&smooth, &events, file, &flown.setup, &flown.quantities),
+        Reached::Impact | Reached::Flown(_) => None,
+    };
+    let signals = impact.recorded();
+    let (effect, curves) =
+        rayon::join(effect, || motion::channel_curves(signals, &smooth, &events, &sticking(file)));
+    let mut channels: Vec<ChannelSummary> = recording.channels.iter().map(summary).collect();
+    for ((summary, signal), curve) in channels.iter_mut().zip(signals).zip(&curves) {
+        summary.offset_m_s2 = Some(signal.removed_offset_m_s2);
+        summary.noise_m_s2 = Some(signal.noise_m_s2);
+        summary.peak_raw_m_s2 = Some(peak(&curve.raw_m_s2));
+        summary.peak_filtered_m_s2 = Some(peak(&curve.filtered_m_s2));
+        summary.clipped.clone_from(&signal.clipped);
+    }
+    let mut curves = Curves { channels: curves, motion: None };
+    let mut result = of_impact(recording, file, findings, (channels, events));
+    result.settings.splice(0..0, of_curves(file, &events, effect));
+    match reached {
+        Reached::Impact => {}
+        Reached::Flown(flown) => result.flight = Some(flown.flight),
+        Reached::Measured(flown, measured) => {
+            let quantities = flown.quantities;
+            state(&mut result, &quantities);
+            result.predictions = predictions(file, Some(quantities.k.value));
+            result.budget = quantities.budget;
+            result.reconstruction = Some(flown.reconstruction);
+            result.model = measured.model;
+            result.comparison = measured.comparison;
+            result.flight = Some(flown.flight);
+            curves.motion = Some(flown.motion.curve);
+        }
+    }
+    analysis(recording, file, result, curves)
+}
+
+fn analysis(recording: &Recording, file: &CaskFile, result: DropResult, curves: Curves) -> Analysis {
+    Analysis { result, cask_file: file.clone(), curves, start_unix_ns: recording.start_unix_ns }
+}
+
+/// The result with the times of the events and nothing of the motion.
+fn of_impact(
+    recording: &Recording,
+    file: &CaskFile,
+    mut findings: Vec<Issue>,
+    (channels, events): (Vec<ChannelSummary>, Events),
+) -> DropResult {
+    let verdict = judge::verdict(&mut findings);
+    let rates_hz = channels.iter().filter(|c| c.axis == Axis::Transverse).map(|c| c.sample_rate_hz);
+    // What the recorder's filters delay all channels by is part of the interval of a time, and of no other.
+    let delay_s = CHAIN_DELAY_SAMPLES / rates_hz.fold(f64::INFINITY, f64::min);
+    let time = |at: At| Estimate::new(at.time_s, (fit::COVERAGE * at.u_s).hypot(delay_s), "s");
+    DropResult {
+        schema: "dropcheck.result/1",
+        version: env!("CARGO_PKG_VERSION"),
+        input: Input {
+            recording: recording.path.display().to_string(),
+            recording_sha256: recording.sha256.clone(),
+            format: recording.format,
+            cask: file.path.display().to_string(),
+            cask_sha256: file.sha256.clone(),
+        },
+        first_impact: FirstImpact { time: events.first_contact.map(time), ..FirstImpact::default() },
+        slap_down: SlapDown { time: events.slap_down.map(time), ..SlapDown::default() },
+        k: None,
+        reconstruction: None,
+        model: None,
+        predictions: predictions(file, None),
+        comparison: None,
+        quality: findings,
+        verdict,
+        events,
+        channels,
+        flight: None,
+        budget: Vec::new(),
+        settings: of_cask_file(file, &events),
+    }
+}
+
+/// Takes what is measured into the result.
+fn state(result: &mut DropResult, quantities: &Quantities) {
+    result.first_impact = FirstImpact {
+        time: result.first_impact.time,
+        impact_velocity: Some(quantities.impact_velocity),
+        duration: Some(quantities.duration),
+        rebound_velocity: Some(quantities.rebound_velocity),
+        angular_velocity: Some(quantities.angular_velocity),
+    };
+    result.slap_down = SlapDown {
+        time: result.slap_down.time,
+        flight_time: quantities.flight_time,
+        speed: quantities.speed,
+        vertical_velocity: quantities.vertical_velocity,
+        horizontal_velocity: quantities.horizontal_velocity,
+        angle: quantities.angle,
+        second_end_height: quantities.second_end_height,
+    };
+    result.k = Some(quantities.k);
+}
+
+/// Rod and body: the four borderline cases, and the cask file's contact law with the measured k.
+fn predictions(file: &CaskFile, k: Option<f64>) -> Vec<Prediction> {
+    let mut all = Vec::new();
+    for body in predict::bodies(&file.cask) {
+        all.extend(predict::borderline_cases(&body, &file.drop));
+        all.extend(k.map(|k| predict::predict(&body, &file.drop, file.contact, k.clamp(0.0, 1.0))));
+    }
+    all
+}
+
+/// The signals as the curves' low-pass leaves them.
+pub(super) fn smooth(signals: &[Signal], events: &Events, file: &CaskFile) -> Vec<Signal> {
+    motion::filtered(signals, events, cutoff(events, file).0)
+}
+
+fn cutoff(events: &Events, file: &CaskFile) -> (f64, &'static str) {
+    let pulse_s =
+        events.separation.zip(events.first_contact).map(|(left, contact)| left.time_s - contact.time_s);
+    motion::cutoff_hz(file.filter, file.cask.mass_kg, pulse_s)
+}
+
+/// What the curves' low-pass would have changed had it been used for the numbers, in words.
+fn filter_effect(
+    smooth: &[Signal],
+    events: &Events,
+    file: &CaskFile,
+    setup: &Setup,
+    quantities: &Quantities,
+) -> Option<String> {
+    let speed = quantities.speed?;
+    let (contact_s, left_s) = (events.first_contact?.time_s, events.separation?.time_s);
+    let window = motion::Window {
+        from_s: motion::clear_of_contact_s(contact_s, left_s),
+        to_s: events.slap_down?.time_s - motion::BEFORE_SLAP_DOWN_S,
+        drift: file.corrections.zero_shift,
+        angular_velocity_rad_s: quantities.angular_velocity.value,
+    };
+    let integrated = motion::Integrated::over(smooth, contact_s);
+    let flight = motion::fit_flight(&integrated, &window, None, setup.cog_m)?;
+    let motion = motion::outcome(&integrated, &flight, events, setup)?;
+    let (horizontal_m_s, vertical_m_s) = motion.second_end_m_s?;
+    Some(format!(
+        "slap-down speed {:+.2} m/s, k {:+.3}",
+        horizontal_m_s.hypot(vertical_m_s) - speed.value,
+        motion.rebound_m_s / setup.impact_velocity_m_s - quantities.k.value
+    ))
+}
+
+fn setting(name: &str, value: impl Into<String>, origin: &str) -> Setting {
+    Setting { name: name.into(), value: value.into(), origin: origin.into() }
+}
+
+/// What the curves are made with, and what that would have changed.
+fn of_curves(file: &CaskFile, events: &Events, effect: Option<String>) -> Vec<Setting> {
+    let (cutoff_hz, origin) = cutoff(events, file);
+    let effect = effect.map(|effect| {
+        setting("effect of that low-pass, had it been applied before integrating", effect, "from the data")
+    });
+    let shown = format!("−3 dB at {cutoff_hz:.0} Hz, zero phase (two passes, second order)");
+    let low_pass = setting("low-pass of the curves shown", shown, origin);
+    let integrated = setting("samples that are integrated", "unfiltered, offset removed", "default");
+    effect.into_iter().chain([low_pass, integrated]).collect()
+}
+
+/// What the analysis went by, and the free fall where it is seen.
+fn of_cask_file(file: &CaskFile, events: &Events) -> Vec<Setting> {
+    let origin = |key: &str| if file.defaults.iter().any(|d| d == key) { "default" } else { "cask file" };
+    let (cask, drop) = (&file.cask, &file.drop);
+    let is_given = drop.impact_velocity_given;
+    let mut settings = vec![
+        setting("mass", format!("{} kg", cask.mass_kg), "cask file"),
+        setting("length", format!("{} m", cask.length_m), "cask file"),
+        setting("section in the plane of the drop", format!("{} m", cask.height_m), origin("cask.height_m")),
+        setting("centre of gravity from the first end", format!("{:.3} m", cask.cog_m), origin("cask.cog_m")),
+        setting("inertia", format!("{:.0} kg m²", cask.inertia_kg_m2), origin("cask.inertia_kg_m2")),
+        setting("drop angle", format!("{:.1}°", drop.angle_rad.to_degrees()), "cask file"),
+        setting(
+            "impact velocity",
+            format!("{:.3} m/s", drop.impact_velocity_m_s),
+            if is_given { "cask file" } else { "√(2 g h)" },
+        ),
+        setting("gravity", format!("{} m/s²", drop.gravity_m_s2), origin("drop.gravity_m_s2")),
+        setting("contact law of the first end", file.contact.to_string(), origin("contact.friction")),
+    ];
+    settings.extend(events.release_s.zip(events.fall_end_s).map(|(release_s, end_s)| {
+        let stated = if is_given { "impact velocity over g" } else { "√(2 h / g)" };
+        let stated_s = drop.impact_velocity_m_s / drop.gravity_m_s2;
+        setting(
+            "free fall seen",
+            format!("{:.4} s, {stated} is {stated_s:.4} s", end_s - release_s),
+            "from the data",
+        )
+    }));
+    settings
+}
+
+fn summary(channel: &Channel) -> ChannelSummary {
+    ChannelSummary {
+        name: channel.name.clone(),
+        end: channel.end,
+        axis: channel.axis,
+        source: channel.source.clone(),
+        samples: channel.samples.len(),
+        sample_rate_hz: channel.sample_rate_hz,
+        unit: format!("{} ({})", channel.unit, channel.unit_origin),
+        offset_m_s2: None,
+        noise_m_s2: None,
+        peak_filtered_m_s2: None,
+        peak_raw_m_s2: None,
+        clipped: Vec::new(),
+    }
+}
