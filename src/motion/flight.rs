@@ -1,6 +1,6 @@
 //! The free-flight window to plateaus, drift and as many damped modes as the data call for.
 
-use super::{Integrated, Velocity};
+use super::{Integrated, Velocity, Window};
 use crate::data::{Axis, FlightFit, FlightModelScore, Mode, Plateau, Signal};
 use crate::numerics::damped_modes::{
     Drive, Fit, Form, Oscillation, Seeds, Series, SeriesFit, fit, uniform_ringing,
@@ -49,31 +49,6 @@ const CLEAR_RESIDUAL: f64 = 3.0;
 const LOWEST_HZ: f64 = 15.0;
 /// A candidate this close in BIC to the best cannot be told from it (Kass & Raftery 1995: above 10 is very strong).
 const INDISTINCT: f64 = 10.0;
-
-/// A fit of the flight ends so long before the slap-down, s: its onset.
-pub const BEFORE_SLAP_DOWN_S: f64 = 5e-4;
-/// … and begins this share of the contact behind its end, and so long, s: what the force's tail hides.
-const BEHIND_CONTACT: f64 = 0.1;
-const BEHIND_CONTACT_S: f64 = 3e-4;
-
-/// When a fit of the flight may begin, s.
-#[must_use]
-pub fn clear_of_contact_s(contact_s: f64, left_s: f64) -> f64 {
-    left_s + BEHIND_CONTACT * (left_s - contact_s) + BEHIND_CONTACT_S
-}
-
-/// The times a flight fit needs, s from the recording's first sample.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Window {
-    /// Start of free flight.
-    pub from_s: f64,
-    /// End of it.
-    pub to_s: f64,
-    /// Whether a change of the offset may be fitted.
-    pub drift: bool,
-    /// ω of the flight where it is known already, rad/s: its centrifugal force is taken off; else 0.
-    pub angular_velocity_rad_s: f64,
-}
 
 /// Fits all velocities over the window, the most probable fit first; empty where it is too short or nothing can be fitted.
 ///

@@ -7,15 +7,15 @@ mod reconstruct;
 mod ringing;
 mod strike;
 mod thin;
+mod window;
 
 pub use curves::{channel_curves, cutoff_hz, filtered, read_channels};
-pub use flight::{
-    BEFORE_SLAP_DOWN_S, Window, clear_of_contact_s, compare_late, fit_flight, fit_flights, mean_of_flight,
-};
+pub use flight::{compare_late, fit_flight, fit_flights, mean_of_flight};
 pub use histories::drive;
 pub use reconstruct::{outcome, reconstruct};
 pub use ringing::{Calmed, rotation_rad_s};
 pub use strike::strike;
+pub use window::{BEFORE_SLAP_DOWN_S, Window, clear_of_contact_s};
 
 use crate::data::Signal;
 use crate::numerics::quadrature::running_integral;

@@ -15,12 +15,9 @@ const STAGES: [&str; 9] =
 fn allowed(module: &str) -> Option<Vec<&'static str>> {
     match module {
         "data" | "numerics" => Some(vec![]),
-        "lab" => {
-            Some([&STAGES[..], &["data", "numerics", "assemble", "one_end", "settle", "analyze"]].concat())
-        } // all of the product, and is used by none of it
-        "assemble" => Some([&STAGES[..], &["data", "numerics"]].concat()), // lib.rs's own hands
-        "one_end" => Some(vec!["data", "predict"]), // … what a missing end would have read
-        "settle" => Some([&STAGES[..], &["data", "numerics", "assemble"]].concat()), // … and its search
+        // The order of the whole, and all of the product, which uses nothing of it.
+        "analysis" => Some([&STAGES[..], &["data", "numerics"]].concat()),
+        "lab" => Some([&STAGES[..], &["data", "numerics", "analysis"]].concat()),
         stage if STAGES.contains(&stage) => Some(vec!["data", "numerics"]),
         _ => None,
     }
