@@ -1,21 +1,55 @@
 //! dropcheck: what accelerometers on both ends of a dropped cask say about its slap-down, and whether to believe it.
 //!
-//! A recording and a cask file pass through the stages in the order that `analysis` alone knows; every stage imports only [`data`] and
-//! [`numerics`].
+//! A library user calls six names: [`cask_file()`] and [`read`] for what a test left behind, [`analyze`] for everything that can be said of it,
+//! [`predict()`] and [`study`] for what the analytical model says, and [`files`] for the report; [`data`] has what passes between them. A
+//! program of its own calls [`serve_hdf5`] first in `main`, or names one that does by [`read_hdf5_with`].
+//!
+//! ```no_run
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let file = dropcheck::cask_file("anf18.toml".as_ref())?;
+//! let recording = dropcheck::read("test.mcap".as_ref(), &file, &|_| ())?;
+//! let analysis = dropcheck::analyze(&recording, &file);
+//! println!("{:?}: k is {:?}", analysis.result.verdict, analysis.result.k);
+//! for (name, bytes) in dropcheck::files(&analysis)? {
+//!     std::fs::write(name, bytes)?;
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! A recording and a cask file pass through stages in the order that `analysis` alone knows; a stage imports only `data` and `numerics`.
 
 mod analysis;
-pub mod compare;
-pub mod condition;
+mod compare;
+mod condition;
 pub mod data;
-pub mod events;
-pub mod fit;
+mod events;
+mod fit;
+#[doc(hidden)]
 pub mod ingest;
-pub mod judge;
+mod judge;
 #[cfg(feature = "lab")]
+#[doc(hidden)]
 pub mod lab;
-pub mod motion;
-pub mod numerics;
+mod motion;
+mod numerics;
+#[doc(hidden)]
 pub mod predict;
+#[doc(hidden)]
 pub mod report;
 
 pub use analysis::analyze;
+pub use ingest::{IngestError, cask_file, read, read_hdf5_with, serve_hdf5};
+pub use predict::{predict, study};
+pub use report::{ReportError, files};
+
+/// Stages one by one, for benchmarks and tests; they change without notice.
+#[doc(hidden)]
+pub mod stages {
+    pub use crate::condition::{Reach, condition};
+    pub use crate::events::Changes;
+    pub use crate::fit::{Measured, ladder, quantities, spread_by_draws};
+    pub use crate::motion::{Integrated, Window, filtered, fit_flight, outcome, reconstruct};
+    pub use crate::numerics::filter::ZeroPhaseLowPass;
+    pub use crate::numerics::spectrum::magnitude;
+}

@@ -7,11 +7,10 @@ mod recordings;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use dropcheck::condition::Reach;
 use dropcheck::data::{
     Analysis, AxialClosure, CaskFile, CoarseEvent, Corrections, Events, FlightFit, Recording, Setup, Signal,
 };
-use dropcheck::{condition, events, fit, ingest, motion, report};
+use dropcheck::{ingest, report, stages};
 use recordings::{Folder, Kind};
 
 /// Samples a channel.
@@ -50,13 +49,13 @@ impl Middle {
         let recording = read(&folder);
         let cask_file = folder.cask_file.clone();
         let analysis = dropcheck::analyze(&recording, &cask_file);
-        let event = events::Changes::of(&recording)
+        let event = stages::Changes::of(&recording)
             .locate(cask_file.drop.transverse_velocity_m_s())
             .expect("an impact");
-        let (signals, _) = condition::condition(
+        let (signals, _) = stages::condition(
             &recording,
             &event,
-            &Reach::of(&cask_file.cask, &cask_file.drop),
+            &stages::Reach::of(&cask_file.cask, &cask_file.drop),
             cask_file.corrections,
         );
         let setup = Setup {
@@ -74,12 +73,12 @@ impl Middle {
         Self { cask_file, recording, event, signals, flight, events, setup, analysis }
     }
 
-    fn integrated(&self) -> motion::Integrated<'_> {
-        motion::Integrated::over(&self.signals, self.events.first_contact_s().expect("a contact"))
+    fn integrated(&self) -> stages::Integrated<'_> {
+        stages::Integrated::over(&self.signals, self.events.first_contact_s().expect("a contact"))
     }
 
-    fn window(&self) -> motion::Window {
-        motion::Window {
+    fn window(&self) -> stages::Window {
+        stages::Window {
             from_s: self.flight.from_s,
             to_s: self.flight.to_s,
             drift: true,
@@ -103,22 +102,22 @@ fn locate(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
     bencher
         .counter(items(samples))
-        .bench(|| events::Changes::of(&m.recording).locate(m.cask_file.drop.transverse_velocity_m_s()));
+        .bench(|| stages::Changes::of(&m.recording).locate(m.cask_file.drop.transverse_velocity_m_s()));
 }
 
 #[divan::bench(args = SIZES)]
 fn condition_channels(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
-    let reach = Reach::of(&m.analysis.cask_file.cask, &m.analysis.cask_file.drop);
+    let reach = stages::Reach::of(&m.analysis.cask_file.cask, &m.analysis.cask_file.drop);
     bencher
         .counter(items(samples))
-        .bench(|| condition::condition(&m.recording, &m.event, &reach, Corrections::default()));
+        .bench(|| stages::condition(&m.recording, &m.event, &reach, Corrections::default()));
 }
 
 #[divan::bench(args = SIZES)]
 fn low_pass(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
-    bencher.counter(m.conditioned()).bench(|| motion::filtered(&m.signals, &m.events, 299.0));
+    bencher.counter(m.conditioned()).bench(|| stages::filtered(&m.signals, &m.events, 299.0));
 }
 
 #[divan::bench(args = SIZES)]
@@ -133,7 +132,7 @@ fn flight_fit(bencher: Bencher, samples: usize) {
     let integrated = m.integrated();
     bencher
         .counter(m.conditioned())
-        .bench(|| motion::fit_flight(&integrated, &m.window(), None, m.cask_file.cask.cog_m));
+        .bench(|| stages::fit_flight(&integrated, &m.window(), None, m.cask_file.cask.cog_m));
 }
 
 #[divan::bench(args = SIZES)]
@@ -142,13 +141,13 @@ fn reconstruct(bencher: Bencher, samples: usize) {
     let integrated = m.integrated();
     bencher
         .counter(m.conditioned())
-        .bench(|| motion::reconstruct(&integrated, &m.flight, &m.events, &m.setup).expect("a motion"));
+        .bench(|| stages::reconstruct(&integrated, &m.flight, &m.events, &m.setup).expect("a motion"));
 }
 
 #[divan::bench(args = SIZES)]
 fn quantities(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
-    let measured = fit::Measured {
+    let measured = stages::Measured {
         signals: &m.signals,
         flight: &m.flight,
         events: &m.events,
@@ -162,8 +161,8 @@ fn quantities(bencher: Bencher, samples: usize) {
     };
     let integrated = m.integrated();
     bencher.counter(m.conditioned()).bench(|| {
-        let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
-        fit::ladder(&measured, None, None, &moved).expect("quantities")
+        let moved = |flight: &_, events: &_, setup: &_| stages::outcome(&integrated, flight, events, setup);
+        stages::ladder(&measured, None, None, &moved).expect("quantities")
     });
 }
 

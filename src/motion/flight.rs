@@ -84,7 +84,7 @@ pub fn compare_late(flight: &mut FlightFit, integrated: &Integrated, window: &Wi
     }
 }
 
-/// The most probable of [`fit_flights`].
+/// The most probable of `fit_flights`.
 #[must_use]
 pub fn fit_flight(
     integrated: &Integrated,

@@ -103,17 +103,6 @@ pub fn integral_uncertainty_by(spectrum: &[(f64, f64)], mean_s: f64, integrate_s
     square.sqrt()
 }
 
-/// The same for samples: their spectrum, and the mean over all of them.
-#[must_use]
-#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-pub fn integral_uncertainty(quiet: &[f64], sample_rate_hz: f64, integrate_s: f64) -> f64 {
-    integral_uncertainty_by(
-        &spectrum(quiet, sample_rate_hz),
-        quiet.len() as f64 / sample_rate_hz,
-        integrate_s,
-    )
-}
-
 /// |H(f)|² of (Q3), s².
 fn weight_square(frequency_hz: f64, mean_s: f64, integrate_s: f64) -> f64 {
     let omega = TAU * frequency_hz;
@@ -163,6 +152,16 @@ mod tests {
             said += integral_uncertainty(&all[..before], RATE_HZ, 0.06).powi(2) / f64::from(draws);
         }
         (said, was)
+    }
+
+    /// The same for samples: their spectrum, and the mean over all of them.
+    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+    fn integral_uncertainty(quiet: &[f64], sample_rate_hz: f64, integrate_s: f64) -> f64 {
+        integral_uncertainty_by(
+            &spectrum(quiet, sample_rate_hz),
+            quiet.len() as f64 / sample_rate_hz,
+            integrate_s,
+        )
     }
 
     #[test]

@@ -2,9 +2,9 @@
 
 use crate::run::{number, read_json};
 use dropcheck::data::{Body, BodyModel, Contact, Drop};
-use dropcheck::numerics::filter::ZeroPhaseLowPass;
-use dropcheck::numerics::spectrum::magnitude;
 use dropcheck::predict::predict;
+use dropcheck::stages::ZeroPhaseLowPass;
+use dropcheck::stages::magnitude;
 use serde_json::Value;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! The linear propagation of the uncertainty against draws of its inputs (JCGM 101), and the ladder on a committed recording.
 
 use dropcheck::data::{AxialClosure, End, ReconstructionRung, Recording, RivalLaw, Samples, Setup, Verdict};
-use dropcheck::{condition, events, fit, ingest, motion};
+use dropcheck::{ingest, stages};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -20,9 +20,9 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
     let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
     let result = dropcheck::analyze(&recording, &file).result;
     let event =
-        events::Changes::of(&recording).locate(file.drop.transverse_velocity_m_s()).expect("an impact");
-    let reach = condition::Reach::of(&file.cask, &file.drop);
-    let (signals, _) = condition::condition(&recording, &event, &reach, file.corrections);
+        stages::Changes::of(&recording).locate(file.drop.transverse_velocity_m_s()).expect("an impact");
+    let reach = stages::Reach::of(&file.cask, &file.drop);
+    let (signals, _) = stages::condition(&recording, &event, &reach, file.corrections);
     let setup = Setup {
         length_m: file.cask.length_m,
         height_m: file.cask.height_m,
@@ -33,7 +33,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         axial: AxialClosure::Sticking,
         second_s: 1.0,
     };
-    let measured = fit::Measured {
+    let measured = stages::Measured {
         signals: &signals,
         flight: result.flight.as_ref().expect("a flight"),
         events: &result.events,
@@ -45,15 +45,15 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         fall_s: None,
         stood_in: None,
     };
-    let integrated = motion::Integrated::over(&signals, result.events.first_contact_s().expect("a contact"));
-    let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
-    let linear = fit::quantities(&measured, &moved).expect("quantities");
+    let integrated = stages::Integrated::over(&signals, result.events.first_contact_s().expect("a contact"));
+    let moved = |flight: &_, events: &_, setup: &_| stages::outcome(&integrated, flight, events, setup);
+    let linear = stages::quantities(&measured, &moved).expect("quantities");
     let (mut chance, mut left) = (ChaCha8Rng::seed_from_u64(4), DRAWS);
     let mut draw = |count: usize| {
         left = left.checked_sub(1)?;
         Some((0..count).map(|_| StandardNormal.sample(&mut chance)).collect())
     };
-    let (speed_m_s, k) = fit::spread_by_draws(&measured, &moved, &mut draw).expect("draws");
+    let (speed_m_s, k) = stages::spread_by_draws(&measured, &moved, &mut draw).expect("draws");
     // Four standard deviations of the draws' own scatter; what bends over ± 3 u adds less.
     for (by_draws, by_slopes) in
         [(speed_m_s, linear.speed.expect("a slap-down").u95 / 2.0), (k, linear.k.u95 / 2.0)]

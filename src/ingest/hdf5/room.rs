@@ -308,7 +308,7 @@ fn unstarted(refusal: &io::Error) -> Fault {
             ),
             None => "HDF5 is read by a process of its own, and no program was named for it".into(),
         },
-        mend: "a program that uses this library names it: dropcheck::ingest::read_hdf5_with(program)".into(),
+        mend: "a program that uses this library names it: dropcheck::read_hdf5_with(program)".into(),
     }
 }
 

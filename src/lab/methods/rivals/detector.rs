@@ -10,7 +10,7 @@ use std::ops::Range;
 /// How first contact is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Detector {
-    /// A line through the rise from foot to shoulder, cut with zero: what [`first_contact`] does.
+    /// A line through the rise from foot to shoulder, cut with zero: what `first_contact` does.
     #[default]
     RiseLine,
     /// The first sample beyond 2 % of the peak, or beyond 6 standard deviations of the noise where that is more.

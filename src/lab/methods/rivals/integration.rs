@@ -90,7 +90,7 @@ impl Summation {
     }
 }
 
-/// Running integral; entry 0 is 0, same length as `samples`. With both defaults it is [`running_integral`].
+/// Running integral; entry 0 is 0, same length as `samples`. With both defaults it is `running_integral`.
 #[must_use]
 pub fn running_integral_by(
     rule: IntegrationRule,

@@ -20,7 +20,7 @@ pub fn bisect(f: impl Fn(f64) -> f64, low: f64, high: f64) -> Option<f64> {
 /// How the first root of a function with a bounded second derivative is sought.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RootMethod {
-    /// Steps proved too short to pass a root: [`first_root`].
+    /// Steps proved too short to pass a root: `first_root`.
     #[default]
     March,
     /// Halving what lies between the start and the last time: [`bisect`].
@@ -47,7 +47,7 @@ impl RootMethod {
     }
 }
 
-/// The root that `method` finds of what [`first_root`] is asked for; only the march promises that it is the first, or that there is none.
+/// The root that `method` finds of what `first_root` is asked for; only the march promises that it is the first, or that there is none.
 pub fn root_by(
     method: RootMethod,
     f: impl Fn(f64) -> (f64, f64),

@@ -6,7 +6,7 @@ use crate::lab::data::{TrialMap, TrialPart, TrialPoint, TrialRequest};
 use crate::lab::methods::timing::{Effort, Work, in_turn};
 use crate::motion::cutoff_hz;
 use crate::numerics::filter::ZeroPhaseLowPass;
-use crate::numerics::spectrum::{highest_above_hz, magnitude};
+use crate::numerics::spectrum::magnitude;
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
@@ -184,4 +184,26 @@ pub(super) fn run(request: &TrialRequest, done: &dyn Fn(f64)) -> TrialPart {
     let points = points(request, Some(Effort::of(request.quick)));
     done(0.9);
     TrialPart { points, maps: maps(request) }
+}
+
+/// The highest frequency, Hz, at which the magnitude exceeds this share of its largest, by [`magnitude`]'s answer; 0 for an empty one.
+fn highest_above_hz(frequency_hz: &[f64], magnitude: &[f64], share: f64) -> f64 {
+    let largest = magnitude.iter().copied().fold(0.0, f64::max);
+    let last = magnitude.iter().rposition(|m| *m > share * largest);
+    last.and_then(|line| frequency_hz.get(line)).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_highest_line_of_two_sines_is_that_of_the_faster() {
+        let turn = |i: i32| f64::from(i) * std::f64::consts::TAU;
+        let wave: Vec<f64> = (0..256).map(|i| (turn(i) / 16.0).sin() + 0.1 * (turn(i) / 4.0).sin()).collect();
+        let (f, m) = magnitude(&wave, 256.0);
+        assert!((highest_above_hz(&f, &m, 0.05) - 64.0).abs() < 1e-9);
+        assert!((highest_above_hz(&f, &m, 0.2) - 16.0).abs() < 1e-9);
+        assert!(highest_above_hz(&[], &[], 0.5).abs() < 1e-300);
+    }
 }
