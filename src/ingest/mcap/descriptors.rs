@@ -7,6 +7,9 @@ use prost_reflect::prost_types::{
 };
 use prost_reflect::{DescriptorPool, MessageDescriptor};
 
+/// What the names of imported files take where each file of a set is made to import all others, bytes: those of five hundred files.
+const MOST_NAMES_BYTES: usize = 16 << 20;
+
 /// The message type that `schema_name` names in a serialised descriptor set.
 ///
 /// # Errors
@@ -22,9 +25,30 @@ pub(super) fn message_type(schema_name: &str, descriptor_set: &[u8]) -> Result<M
         }
         simplify(file);
     }
+    publish(&mut set).map_err(unusable)?;
     let pool = DescriptorPool::from_file_descriptor_set(set).map_err(|error| unusable(error.to_string()))?;
     pool.get_message_by_name(schema_name.trim_start_matches('.'))
         .ok_or_else(|| format!("its schema's descriptor set holds no message {schema_name:?}"))
+}
+
+/// Lets every file import all others where one imports another for its importers too (`import public`): the library that links the types
+/// follows such imports anew for each way that leads to them, and for ever where a file leads to itself.
+fn publish(set: &mut FileDescriptorSet) -> Result<(), String> {
+    if set.file.iter().all(|file| file.public_dependency.is_empty()) {
+        return Ok(());
+    }
+    let names: Vec<String> = set.file.iter().map(|file| file.name().to_owned()).collect();
+    let bytes = names.iter().map(|name| name.len() + size_of::<String>()).sum::<usize>();
+    let bytes = bytes.saturating_mul(names.len());
+    if bytes > MOST_NAMES_BYTES {
+        return Err(format!("it has {} files that import one another, more than are read", names.len()));
+    }
+    for file in &mut set.file {
+        file.public_dependency.clear();
+        file.weak_dependency.clear();
+        file.dependency = names.iter().filter(|name| *name != file.name()).cloned().collect();
+    }
+    Ok(())
 }
 
 /// Takes away comments, services, extensions and options: only which fields are maps or packed matters to the wire.
@@ -74,6 +98,28 @@ mod tests {
         set.file[0].syntax = Some("editions".into());
         let told = message_type(BLOCK, &set.encode_to_vec()).unwrap_err();
         assert!(told.contains("\"editions\""), "{told}");
+    }
+
+    #[test]
+    fn a_file_that_imports_for_its_importers_is_linked_whatever_it_imports() {
+        let mut set = FileDescriptorSet::decode(block_descriptors(true).as_slice()).unwrap();
+        let imports = |name: &str, of: &[&str]| FileDescriptorProto {
+            name: Some(name.into()),
+            syntax: Some("proto3".into()),
+            dependency: of.iter().map(|&name| name.to_owned()).collect(),
+            public_dependency: (0..).take(of.len()).collect(),
+            ..FileDescriptorProto::default()
+        };
+        // Itself; one another; and forty files of which each imports the next twice, to which 2⁴⁰ ways lead.
+        set.file.extend([imports("self", &["self"]), imports("a", &["b"]), imports("b", &["a"])]);
+        for i in 0..40 {
+            let next = format!("f{}", i + 1);
+            set.file.push(imports(&format!("f{i}"), &[&next, &next]));
+        }
+        set.file.push(imports("f40", &[]));
+        assert!(message_type(BLOCK, &set.encode_to_vec()).is_ok());
+        set.file.extend((0..1000).map(|i| imports(&format!("g{i}"), &[])));
+        assert!(message_type(BLOCK, &set.encode_to_vec()).unwrap_err().contains("more than are read"));
     }
 
     #[test]
