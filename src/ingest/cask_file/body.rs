@@ -15,8 +15,9 @@ const DROP_MEND: &str = "in metres: from a millimetre to more than any drop towe
 /// From below that of the least drop to more than that of the highest; beyond, a body turns thousands of times in flight.
 const IMPACTS_M_S: RangeInclusive<f64> = 0.01..=200.0;
 const IMPACT_MEND: &str = "in m/s: no drop of a cask is slower or faster; check the value and its unit";
-/// v0²/(g l): below, the body settles rather than strikes, and above it turns for hundreds of times its fall. 9 m are 3 for 5.5 m.
-const IMPACTS: RangeInclusive<f64> = 5e-3..=5e3;
+/// v0²/(g l), 2 h/l for a fall: below, the body settles in thousands of touches rather than strikes, and above it turns for hundreds of
+/// times its fall. 9 m are 3 for 5.5 m, 0.3 m are 0.1.
+const IMPACTS: RangeInclusive<f64> = 5e-2..=5e3;
 /// From below the Moon's 1.6 m/s² to three hundred times the Earth's in a centrifuge.
 const GRAVITIES_M_S2: RangeInclusive<f64> = 1.0..=3000.0;
 /// A centre of gravity nearer to an end than this share of the length would have nearly the whole mass there.
