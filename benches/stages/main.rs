@@ -8,7 +8,7 @@ mod recordings;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use dropcheck::data::{
-    Analysis, AxialClosure, CaskFile, CoarseEvent, Corrections, Events, FlightFit, Recording, Setup, Signal,
+    Analysis, CaskFile, CoarseEvent, Corrections, Events, FlightFit, Recording, Setup, Signal,
 };
 use dropcheck::{ingest, report, stages};
 use recordings::{Folder, Kind};
@@ -58,16 +58,7 @@ impl Middle {
             &stages::Reach::of(&cask_file.cask, &cask_file.drop),
             cask_file.corrections,
         );
-        let setup = Setup {
-            length_m: cask_file.cask.length_m,
-            height_m: cask_file.cask.height_m,
-            cog_m: cask_file.cask.cog_m,
-            angle_rad: cask_file.drop.angle_rad,
-            impact_velocity_m_s: cask_file.drop.impact_velocity_m_s,
-            gravity_m_s2: cask_file.drop.gravity_m_s2,
-            axial: AxialClosure::Sticking,
-            second_s: 1.0,
-        };
+        let setup = stages::sticking(&cask_file);
         let flight = analysis.result.flight.clone().expect("a flight");
         let events = analysis.result.events;
         Self { cask_file, recording, event, signals, flight, events, setup, analysis }

@@ -56,6 +56,7 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
 }
 
 /// Geometry and initial motion of a cask file, L sticking to the target.
+#[must_use]
 pub fn sticking(cask_file: &CaskFile) -> Setup {
     Setup {
         length_m: cask_file.cask.length_m,

@@ -25,17 +25,19 @@ pub(super) struct Found {
 /// The result where no impact was found.
 pub(super) fn without_impact(recording: &Recording, file: &CaskFile, findings: Vec<Issue>) -> Analysis {
     let channels: Vec<ChannelSummary> = recording.channels.iter().map(summary).collect();
-    let result = of_impact(recording, file, findings, (channels, Events::default()));
+    let result = result(recording, file, findings, (channels, Events::default()), None);
     analysis(recording, file, result, Curves::default())
 }
 
 /// The result from the first impact on, as far as the analysis came.
 pub(super) fn of(recording: &Recording, file: &CaskFile, findings: Vec<Issue>, found: Found) -> Analysis {
     let Found { impact, events, smooth, reached } = found;
-    let effect = || match &reached {
-        Reached::Measured(flown, _) => filter_effect(&smooth, &events, file, &flown.setup, &flown.quantities),
+    let measured = match &reached {
+        Reached::Measured(flown, _) => Some(flown),
         Reached::Impact | Reached::Flown(_) => None,
     };
+    let quantities = measured.map(|flown| &flown.quantities);
+    let effect = || filter_effect(&smooth, &events, file, &measured?.setup, quantities?);
     let signals = impact.recorded();
     let (effect, curves) =
         rayon::join(effect, || motion::channel_curves(signals, &smooth, &events, &sticking(file)));
@@ -48,16 +50,13 @@ pub(super) fn of(recording: &Recording, file: &CaskFile, findings: Vec<Issue>, f
         summary.clipped.clone_from(&signal.clipped);
     }
     let mut curves = Curves { channels: curves, motion: None };
-    let mut result = of_impact(recording, file, findings, (channels, events));
+    let mut result = result(recording, file, findings, (channels, events), quantities);
     result.settings.splice(0..0, of_curves(file, &events, effect));
     match reached {
         Reached::Impact => {}
         Reached::Flown(flown) => result.flight = Some(flown.flight),
         Reached::Measured(flown, measured) => {
-            let quantities = flown.quantities;
-            state(&mut result, &quantities);
-            result.predictions = predictions(file, Some(quantities.k.value));
-            result.budget = quantities.budget;
+            result.budget = flown.quantities.budget;
             result.reconstruction = Some(flown.reconstruction);
             result.model = measured.model;
             result.comparison = measured.comparison;
@@ -72,12 +71,13 @@ fn analysis(recording: &Recording, file: &CaskFile, result: DropResult, curves: 
     Analysis { result, cask_file: file.clone(), curves, start_unix_ns: recording.start_unix_ns }
 }
 
-/// The result with the times of the events and nothing of the motion.
-fn of_impact(
+/// The result with the times of the events and, where they are measured, the quantities.
+fn result(
     recording: &Recording,
     file: &CaskFile,
     mut findings: Vec<Issue>,
     (channels, events): (Vec<ChannelSummary>, Events),
+    quantities: Option<&Quantities>,
 ) -> DropResult {
     let verdict = judge::verdict(&mut findings);
     let rates_hz = channels.iter().filter(|c| c.axis == Axis::Transverse).map(|c| c.sample_rate_hz);
@@ -94,12 +94,26 @@ fn of_impact(
             cask: file.path.display().to_string(),
             cask_sha256: file.sha256.clone(),
         },
-        first_impact: FirstImpact { time: events.first_contact.map(time), ..FirstImpact::default() },
-        slap_down: SlapDown { time: events.slap_down.map(time), ..SlapDown::default() },
-        k: None,
+        first_impact: FirstImpact {
+            time: events.first_contact.map(time),
+            impact_velocity: quantities.map(|q| q.impact_velocity),
+            duration: quantities.map(|q| q.duration),
+            rebound_velocity: quantities.map(|q| q.rebound_velocity),
+            angular_velocity: quantities.map(|q| q.angular_velocity),
+        },
+        slap_down: SlapDown {
+            time: events.slap_down.map(time),
+            flight_time: quantities.and_then(|q| q.flight_time),
+            speed: quantities.and_then(|q| q.speed),
+            vertical_velocity: quantities.and_then(|q| q.vertical_velocity),
+            horizontal_velocity: quantities.and_then(|q| q.horizontal_velocity),
+            angle: quantities.and_then(|q| q.angle),
+            second_end_height: quantities.and_then(|q| q.second_end_height),
+        },
+        k: quantities.map(|q| q.k),
         reconstruction: None,
         model: None,
-        predictions: predictions(file, None),
+        predictions: predictions(file, quantities.map(|q| q.k.value)),
         comparison: None,
         quality: findings,
         verdict,
@@ -109,27 +123,6 @@ fn of_impact(
         budget: Vec::new(),
         settings: of_cask_file(file, &events),
     }
-}
-
-/// Takes what is measured into the result.
-fn state(result: &mut DropResult, quantities: &Quantities) {
-    result.first_impact = FirstImpact {
-        time: result.first_impact.time,
-        impact_velocity: Some(quantities.impact_velocity),
-        duration: Some(quantities.duration),
-        rebound_velocity: Some(quantities.rebound_velocity),
-        angular_velocity: Some(quantities.angular_velocity),
-    };
-    result.slap_down = SlapDown {
-        time: result.slap_down.time,
-        flight_time: quantities.flight_time,
-        speed: quantities.speed,
-        vertical_velocity: quantities.vertical_velocity,
-        horizontal_velocity: quantities.horizontal_velocity,
-        angle: quantities.angle,
-        second_end_height: quantities.second_end_height,
-    };
-    result.k = Some(quantities.k);
 }
 
 /// Rod and body: the four borderline cases, and the cask file's contact law with the measured k.

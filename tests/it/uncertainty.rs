@@ -1,6 +1,6 @@
 //! The linear propagation of the uncertainty against draws of its inputs (JCGM 101), and the ladder on a committed recording.
 
-use dropcheck::data::{AxialClosure, End, ReconstructionRung, Recording, RivalLaw, Samples, Setup, Verdict};
+use dropcheck::data::{AxialClosure, End, ReconstructionRung, Recording, RivalLaw, Samples, Verdict};
 use dropcheck::{ingest, stages};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -23,16 +23,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         stages::Changes::of(&recording).locate(file.drop.transverse_velocity_m_s()).expect("an impact");
     let reach = stages::Reach::of(&file.cask, &file.drop);
     let (signals, _) = stages::condition(&recording, &event, &reach, file.corrections);
-    let setup = Setup {
-        length_m: file.cask.length_m,
-        height_m: file.cask.height_m,
-        cog_m: file.cask.cog_m,
-        angle_rad: file.drop.angle_rad,
-        impact_velocity_m_s: file.drop.impact_velocity_m_s,
-        gravity_m_s2: file.drop.gravity_m_s2,
-        axial: AxialClosure::Sticking,
-        second_s: 1.0,
-    };
+    let setup = stages::sticking(&file);
     let measured = stages::Measured {
         signals: &signals,
         flight: result.flight.as_ref().expect("a flight"),
