@@ -48,13 +48,6 @@ enum Event {
 }
 
 impl Event {
-    /// All, with the words for their times.
-    const ALL: [(Self, &'static str); 3] = [
-        (Self::FirstContact, "time of first contact"),
-        (Self::Separation, "time of separation"),
-        (Self::SlapDown, "time of slap-down"),
-    ];
-
     /// Its time.
     fn of(self, events: &mut Events) -> Option<&mut At> {
         match self {
@@ -159,8 +152,13 @@ pub(super) fn inputs(measured: &Measured, motion: &Motion) -> Vec<Input> {
     add("drop angle", format!("{:.2}°", by_rad.to_degrees()), Change::Angle { by_rad });
     let share = known.impact_velocity / 2.0;
     add("impact velocity", percent(share), Change::ImpactVelocity { share });
-    for (event, name) in Event::ALL {
-        let by_s = event.of(&mut { *measured.events }).map_or(0.0, |at| at.u_s);
+    let events = measured.events;
+    for (event, at, name) in [
+        (Event::FirstContact, events.first_contact, "time of first contact"),
+        (Event::Separation, events.separation, "time of separation"),
+        (Event::SlapDown, events.slap_down, "time of slap-down"),
+    ] {
+        let by_s = at.map_or(0.0, |at| at.u_s);
         add(name, format!("{:.3} ms", 1e3 * by_s), Change::Event { event, by_s });
     }
     let by_m = known.cog_m / 2.0;
