@@ -36,6 +36,8 @@ pub enum IssueCode {
     NonFinite,
     /// The channel's own times jitter and were put on a uniform base.
     TimeJitter,
+    /// What tells the rate or the unit of the times is contradicted or leaves them in doubt.
+    Clock,
     /// A message carried no stamp, and its log time was taken.
     LogTimeUsed,
     /// Single samples far off their neighbours.

@@ -355,7 +355,7 @@ fn place<S: Number>(
 
 fn rate_contradiction(declared_hz: f64, own_hz: f64) -> Issue {
     Issue::new(
-        IssueCode::TimeJitter,
+        IssueCode::Clock,
         Severity::Warning,
         format!(
             "the recorded times say {own_hz:.6} Hz, {declared_hz:.6} Hz is declared and was taken; \
@@ -367,7 +367,7 @@ fn rate_contradiction(declared_hz: f64, own_hz: f64) -> Issue {
 fn jitter_note(fit: &Fit, two_periods_s: Option<(f64, f64)>, error: &resample::Difference) -> Issue {
     /// In intervals: late stamps, with a gap or two that they make up, stay below; a clock 2 % off for a thousand samples is beyond.
     const MOST_LATE: f64 = 2.0;
-    let is_clock = fit.rms_s > MOST_LATE * fit.period_s;
+    let is_late = fit.rms_s > MOST_LATE * fit.period_s;
     let asked = match two_periods_s {
         Some((short_s, long_s)) => format!(
             "; they rise at {:.6} Hz in one part and at {:.6} Hz in another, which is no jitter but a clock that changed its rate: look at \
@@ -375,12 +375,13 @@ fn jitter_note(fit: &Fit, two_periods_s: Option<(f64, f64)>, error: &resample::D
             1.0 / short_s,
             1.0 / long_s
         ),
-        None if is_clock => "; so far off is no jitter but a clock that ran at another rate for a while, was set or began anew: look at the times".into(),
+        None if is_late => "; so far off is no jitter but a clock that ran at another rate for a while, was set or began anew: look at the times".into(),
         None => String::new(),
     };
+    let is_jitter = asked.is_empty();
     Issue::new(
-        IssueCode::TimeJitter,
-        if is_clock || two_periods_s.is_some() { Severity::Warning } else { Severity::Note },
+        if is_jitter { IssueCode::TimeJitter } else { IssueCode::Clock },
+        if is_jitter { Severity::Note } else { Severity::Warning },
         format!(
             "times lie {:.3e} s (RMS, {:.1} % of the sample interval) off a uniform base at {:.6} Hz, {:.3e} s at most; \
              the samples were interpolated onto it. Cubic and linear interpolation differ by {:.2} % of the largest \

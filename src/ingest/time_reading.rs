@@ -158,7 +158,7 @@ impl Reading {
     pub(super) fn issue(&self, header: &str, carrier: Carrier) -> Option<Issue> {
         let doubt = self.doubt.as_ref()?;
         let message = format!("{}: {}", doubt.problem(header, carrier), doubt.mend(carrier));
-        Some(Issue::new(IssueCode::TimeJitter, Severity::Warning, message))
+        Some(Issue::new(IssueCode::Clock, Severity::Warning, message))
     }
 }
 

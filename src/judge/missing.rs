@@ -8,11 +8,11 @@ const LONG_ENOUGH_S: f64 = 0.3;
 /// No channel shows an impact; what was found so far may say why.
 #[must_use]
 pub fn judge_no_impact(found: &[Issue], drop: &Drop) -> Issue {
-    let is_doubt = |i: &&Issue| i.code == IssueCode::TimeJitter && i.severity == Severity::Warning;
+    let is_doubt = |i: &&Issue| i.code == IssueCode::Clock && i.severity == Severity::Warning;
     let doubt = found.iter().find(is_doubt).map_or_else(String::new, |issue| {
         let of = issue.channel.as_ref().map_or_else(String::new, |channel| format!(" of {channel}"));
         format!(
-            "; the rate{of} is in doubt (time_jitter), and a rate too high makes every velocity too small by as much: clear that up first"
+            "; the rate{of} is in doubt (clock), and a rate too high makes every velocity too small by as much: clear that up first"
         )
     });
     let message = format!(

@@ -225,7 +225,7 @@ fn a_slow_recording_in_seconds_stays_readable() {
     assert_eq!(answer.status, 1, "{result}");
     assert!(number(&result, "/slap_down/time/value").is_some(), "{result}");
     let issues = result["quality"].as_array().expect("issues");
-    let asked: Vec<&Value> = issues.iter().filter(|issue| issue["code"] == "time_jitter").collect();
+    let asked: Vec<&Value> = issues.iter().filter(|issue| issue["code"] == "clock").collect();
     assert!(asked.len() == 1 && asked[0]["severity"] == "warning", "{asked:?}");
 }
 
@@ -251,7 +251,7 @@ fn a_time_step_that_changes_on_the_way_asks_for_a_look() {
     assert_eq!(answer.status, 1, "{}{}", answer.stdout, answer.stderr);
     let result = answer.json();
     let issues = result["quality"].as_array().expect("issues");
-    let asked = issues.iter().find(|i| i["code"] == "time_jitter" && i["severity"] == "warning");
+    let asked = issues.iter().find(|i| i["code"] == "clock" && i["severity"] == "warning");
     let said = asked.expect("a warning")["message"].as_str().expect("words");
     assert!(said.contains("at 9803.9215") && said.contains("at 10000.0000"), "{said}");
 }

@@ -138,7 +138,7 @@ fn a_delta_x_that_contradicts_times_or_cask_file_is_told() {
     ] {
         let issues = issues(&text, cask).unwrap();
         let [issue] = &issues[..] else { panic!("{issues:?}") };
-        assert_eq!((issue.code, issue.severity), (IssueCode::TimeJitter, Severity::Warning));
+        assert_eq!((issue.code, issue.severity), (IssueCode::Clock, Severity::Warning));
         assert!(issue.message.contains(rate_hz) && issue.message.contains("10000 Hz"), "{}", issue.message);
     }
     let message = issues(&text("0,000105", 100, true), &plain).unwrap_err();

@@ -156,7 +156,7 @@ pub(in super::super) fn list(
         issues.extend(reading.issue(&layout.columns[column].header, Carrier::Column));
         if let Scale::Twofold(..) = layout.time_scale(column) {
             let (problem, mend) = twofold(&layout.columns[column]);
-            issues.push(Issue::new(IssueCode::TimeJitter, Severity::Warning, format!("{problem}: {mend}")));
+            issues.push(Issue::new(IssueCode::Clock, Severity::Warning, format!("{problem}: {mend}")));
         }
     }
     let stated = layout.stated_rate(usize::MAX);
@@ -236,7 +236,7 @@ impl Clock {
             Ok(uniform) => uniform,
             Err(TimeBaseError::TooFew { .. }) => return Self::default(),
             Err(error) => {
-                let issue = Issue::new(IssueCode::TimeJitter, Severity::Warning, error.to_string());
+                let issue = Issue::new(IssueCode::Clock, Severity::Warning, error.to_string());
                 return Self { issues: vec![issue], ..Self::default() };
             }
         };

@@ -124,7 +124,7 @@ impl Preamble {
             stated.shown(),
             stated_rate::shown_hz(taken_hz)
         );
-        Some(Issue::new(IssueCode::TimeJitter, Severity::Warning, message))
+        Some(Issue::new(IssueCode::Clock, Severity::Warning, message))
     }
 }
 
@@ -267,7 +267,7 @@ mod tests {
                 let [(code, message)] = &said(above, header, (500, 0), rate_hz)[..] else {
                     panic!("{above} {header}")
                 };
-                assert_eq!(*code, IssueCode::TimeJitter);
+                assert_eq!(*code, IssueCode::Clock);
                 assert!(message.contains("which is 204") && message.contains("20000 Hz"), "{message}");
             }
         }

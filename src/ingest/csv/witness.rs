@@ -58,7 +58,7 @@ fn contradiction(stated: &StatedRate, taken_hz: f64, says: &str) -> String {
 }
 
 fn warning(message: String) -> Issue {
-    Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+    Issue::new(IssueCode::Clock, Severity::Warning, message)
 }
 
 /// A warning for each other column of times that contradicts the one in column `time` by more than 0.1 % and what both are cut to, or that

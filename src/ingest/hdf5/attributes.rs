@@ -129,7 +129,7 @@ impl Attributes {
             let message = format!(
                 "an attribute of the recording states {stated_hz} Hz, the samples were taken at {taken_hz:.6} Hz by the times or by sample_rate_hz of the cask file: one of the two is wrong, and every velocity goes with the rate"
             );
-            Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+            Issue::new(IssueCode::Clock, Severity::Warning, message)
         })
     }
 
@@ -159,7 +159,7 @@ impl Attributes {
         let own = self.rate.as_ref()?.rival.as_ref();
         let rival = own.or(self.outer_rate.as_ref().filter(|_| !is_decided))?;
         let message = format!("{}; {}", rival.problem, rival.mend);
-        Some(Issue::new(IssueCode::TimeJitter, Severity::Warning, message))
+        Some(Issue::new(IssueCode::Clock, Severity::Warning, message))
     }
 
     /// All that they say twice and differently.

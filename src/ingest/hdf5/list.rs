@@ -238,7 +238,7 @@ fn survey(
 
 /// That times or rate would not do, as reading says.
 fn no_base(problem: String) -> Issue {
-    Issue::new(IssueCode::TimeJitter, Severity::Warning, problem)
+    Issue::new(IssueCode::Clock, Severity::Warning, problem)
 }
 
 fn range(samples: &Samples) -> Option<(f64, f64)> {

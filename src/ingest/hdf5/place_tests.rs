@@ -38,7 +38,7 @@ fn a_nearer_rate_is_taken_and_another_one_told() {
     ] {
         let made = nested([&[own], &[outer], &[]], false);
         let [issue] = &issues(&made, |_| ())[..] else { panic!("{:?}", issues(&made, |_| ())) };
-        assert_eq!((issue.code, issue.severity), (IssueCode::TimeJitter, Severity::Warning));
+        assert_eq!((issue.code, issue.severity), (IssueCode::Clock, Severity::Warning));
         assert!(parts.iter().all(|part| issue.message.contains(part)), "{}", issue.message);
         let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
         assert_eq!(listing.issues.len(), 1, "{:?}", listing.issues);

@@ -108,7 +108,7 @@ fn each_sensor_keeps_its_own_jittering_times() {
         // The sine leaves the fitted slope off by less than its amplitude over the record.
         assert!((channel.uniform.sample_rate_hz / rate_hz - 1.0).abs() < 2e-3);
         assert!(channel.uniform.time_jitter_s * rate_hz > 0.15);
-        assert_eq!(channel.uniform.issues[0].code, IssueCode::TimeJitter);
+        assert_eq!(channel.uniform.issues[0].code, IssueCode::Clock);
         assert_eq!(channel.unit.as_deref(), Some("g"));
         let middle = channel.uniform.samples.get(100);
         assert!((middle - slope * 100.0).abs() < 1.0, "{middle}");

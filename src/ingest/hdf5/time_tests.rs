@@ -99,7 +99,7 @@ fn two_datasets_of_times_that_contradict_each_other_are_told() {
     let times = |hz: f64| -> Vec<f64> { (0..9000).map(|i| f64::from(i) / hz).collect() };
     let [issue] = &uniform(&beside("t", &times(1.99e4), None)).issues[..] else { panic!() };
     let says = "/time_s and /t contradict each other: from the first row to the last they say 0.44995 s and 0.45221 s";
-    assert!(issue.severity == Severity::Warning && issue.code == IssueCode::TimeJitter, "{issue:?}");
+    assert!(issue.severity == Severity::Warning && issue.code == IssueCode::Clock, "{issue:?}");
     assert!(issue.message.contains(says), "{}", issue.message);
     let listing = list(&beside("t", &times(1.99e4), None).path, Limits::default(), &|_| {}).unwrap();
     assert!(listing.issues.iter().any(|issue| issue.message.contains("contradict")), "{:?}", listing.issues);

@@ -23,7 +23,7 @@ impl Contradiction {
             "{}; those of the first were taken, and every velocity goes with them",
             self.fault.problem
         );
-        Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+        Issue::new(IssueCode::Clock, Severity::Warning, message)
     }
 }
 

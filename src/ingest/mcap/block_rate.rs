@@ -20,7 +20,7 @@ pub(super) fn few_blocks(own_hz: f64, taken_hz: f64) -> Option<Issue> {
         let message = format!(
             "its few blocks are stamped as at {own_hz:.1} Hz, and {taken_hz:.1} Hz is stated: samples between them are missing, or the rate is wrong, and every velocity with it"
         );
-        Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+        Issue::new(IssueCode::Clock, Severity::Warning, message)
     })
 }
 
@@ -119,7 +119,7 @@ impl Derived {
                 self.rate_hz,
                 100.0 * unit_s / self.span_s
             );
-            Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+            Issue::new(IssueCode::Clock, Severity::Warning, message)
         })
     }
 
@@ -141,7 +141,7 @@ impl Derived {
                 self.rate_hz,
                 100.0 * part
             );
-            Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+            Issue::new(IssueCode::Clock, Severity::Warning, message)
         })
     }
 
@@ -167,7 +167,7 @@ impl Derived {
                 self.cut_s,
                 100.0 * part
             );
-            Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+            Issue::new(IssueCode::Clock, Severity::Warning, message)
         }))
     }
 }

@@ -78,7 +78,7 @@ impl Shared {
              end, and a rate off by up to {:.1} %: have the recorder stamp finer",
             100.0 * cut_s * rate_hz / place_of_all(blocks)
         );
-        Some((stamps.collect(), Issue::new(IssueCode::TimeJitter, Severity::Warning, message)))
+        Some((stamps.collect(), Issue::new(IssueCode::Clock, Severity::Warning, message)))
     }
 }
 

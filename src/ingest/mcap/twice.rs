@@ -54,7 +54,7 @@ impl Rates {
             shown_hz(self.0.rate_hz),
             shown_hz(self.1.rate_hz)
         );
-        Issue::new(IssueCode::TimeJitter, Severity::Warning, message)
+        Issue::new(IssueCode::Clock, Severity::Warning, message)
     }
 }
 

@@ -269,7 +269,7 @@ fn clock(
         let message = format!(
             "the blocks' stamps are cut to {cut_s} s and agree with {rate_hz:.6} Hz, which was taken; blocks that follow one another were joined"
         );
-        issues.push(Issue::new(IssueCode::TimeJitter, Severity::Note, message));
+        issues.push(Issue::new(IssueCode::Clock, Severity::Note, message));
         return (pieces[0].start_s + offs.iter().sum::<f64>() / as_f64(offs.len()), rate_hz);
     }
     let n = as_f64(offs.len());
@@ -286,7 +286,7 @@ fn clock(
     let rms_s = (left.map(|r| r * r).sum::<f64>() / n).sqrt();
     let is_far = (fitted_hz / rate_hz - 1.0).abs() > RATE_TOLERANCE;
     issues.push(Issue::new(
-        IssueCode::TimeJitter,
+        IssueCode::Clock,
         if is_far { Severity::Warning } else { Severity::Note },
         format!(
             "the blocks' stamps run at {fitted_hz:.6} Hz, {:.1} ppm off the stated {rate_hz:.6} Hz, and scatter by \

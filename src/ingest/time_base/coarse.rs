@@ -143,7 +143,7 @@ impl Steps {
             if is_sure { "" } else { "; give sample_rate_hz for this channel" }
         );
         let severity = if is_sure { Severity::Note } else { Severity::Warning };
-        Issue::new(IssueCode::TimeJitter, severity, message)
+        Issue::new(IssueCode::Clock, severity, message)
     }
 }
 
@@ -179,7 +179,7 @@ fn declared(
     };
     let message =
         format!("{what}; the samples were taken as evenly spaced at the declared {} Hz", nice(rate_hz, 6));
-    Issue::new(IssueCode::TimeJitter, if is_off { Severity::Warning } else { Severity::Note }, message)
+    Issue::new(IssueCode::Clock, if is_off { Severity::Warning } else { Severity::Note }, message)
 }
 
 fn nice(number: f64, digits: i32) -> String {
@@ -264,7 +264,7 @@ mod tests {
 
     fn only(uniform: &Uniform) -> (Severity, &str) {
         let [issue] = &uniform.issues[..] else { panic!("{:?}", uniform.issues) };
-        assert_eq!(issue.code, IssueCode::TimeJitter);
+        assert_eq!(issue.code, IssueCode::Clock);
         (issue.severity, &issue.message)
     }
 

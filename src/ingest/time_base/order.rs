@@ -84,7 +84,7 @@ pub(super) fn restarted(times_s: &[f64], at: usize) -> Issue {
         "the times begin anew: {at} rise to {from_s} s, the next is {to_s} s. The clock was started again, or two recordings follow one another; \
          both parts lie on the same times, and the samples were mixed: cut the recording there in a copy"
     );
-    Issue::new(IssueCode::TimeJitter, Severity::Warning, message).between(to_s, from_s)
+    Issue::new(IssueCode::Clock, Severity::Warning, message).between(to_s, from_s)
 }
 
 fn sorted<'a, S: Number>(
