@@ -19,10 +19,10 @@ Undamaged scenes are U0, U1 …, damaged ones D0, D1 …: with its seed a number
 
 Examples:
   dropcheck validate --quick --out validation
-  dropcheck validate --out validation --into docs/validation.md
+  dropcheck validate --out docs/measured/trial --into docs/measured/trial.md
   dropcheck validate --campaign 2000
   dropcheck validate --campaign 200 --kinds undamaged,skew,hum --out campaign
-  dropcheck validate --campaign 2000 --into docs/validation.md
+  dropcheck validate --campaign 2000 --into docs/measured/campaign.md
   dropcheck validate --scene D17 --out scene";
 
 /// What the tables stand between in a document.

@@ -1,4 +1,4 @@
-//! A trial to the Markdown that stands in `docs/validation.md`: charts, the place of each default, where methods fail.
+//! A trial to the Markdown that stands in `docs/measured/trial.md`: charts, the place of each default, where methods fail.
 
 use super::breaks;
 use super::families::families;
