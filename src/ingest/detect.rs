@@ -1,6 +1,7 @@
 //! A file's first bytes to its format, whatever its name.
 
 use super::error::{self, IngestError};
+use super::strangers;
 use crate::data::RecordingFormat;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -11,22 +12,6 @@ const HDF5_SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// How much of a text is looked at for rows of numbers: beyond any preamble seen in loggers' exports.
 const HEAD_BYTES: u64 = 1 << 16;
 const FORMATS: &str = "dropcheck reads MCAP, HDF5 and delimited text (CSV)";
-
-/// Formats that are met at test sites and are not read, by their first bytes, with what to do.
-const STRANGERS: [(&[u8], &str, &str); 8] = [
-    (b"#ROSBAG", "a ROS 1 bag", "convert it to MCAP: `mcap convert in.bag out.mcap`"),
-    (
-        b"SQLite format 3",
-        "a SQLite file, perhaps a ROS 2 bag",
-        "convert it to MCAP: `ros2 bag convert` or `mcap convert`",
-    ),
-    (b"TDSm", "a TDMS file", "export it from the data acquisition as HDF5 or CSV"),
-    (b"MDF ", "an ASAM MDF file", "export it as HDF5 or CSV"),
-    (b"UnFinMF", "an unfinalised ASAM MDF file", "finalise it and export it as HDF5 or CSV"),
-    (b"MATLAB 5.0", "a MATLAB file before version 7.3", "save it with -v7.3, which is HDF5, or export CSV"),
-    (b"PK\x03\x04", "a ZIP archive or an office document", "unpack it, or save the sheet as CSV"),
-    (b"\x1f\x8b", "a gzip archive", "unpack it first: `gunzip FILE`"),
-];
 
 /// The format of the file at `path`.
 ///
@@ -52,6 +37,9 @@ pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
     }
     if has_hdf5_signature(&mut file, metadata.len()).map_err(|source| error::io(path, source))? {
         return Ok(RecordingFormat::Hdf5);
+    }
+    if let Some((what, mend)) = strangers::named(&head) {
+        return Err(unknown(path, &format!("it is {what}"), mend));
     }
     // A text in UTF-16: only its reader decodes it and can say whether it holds rows.
     if wide_text(&head).is_some() || looks_like_rows(&head) {
@@ -142,9 +130,6 @@ fn numeric_row(line: &str, delimiter: char) -> Option<usize> {
 
 /// The error for content of no format that is read: its name where it is known, else its first bytes.
 fn stranger(path: &Path, head: &[u8]) -> IngestError {
-    if let Some((_, what, mend)) = STRANGERS.iter().find(|(magic, ..)| head.starts_with(magic)) {
-        return unknown(path, &format!("it is {what}"), mend);
-    }
     if head.windows(11).any(|window| window == b"[[channel]]") {
         return unknown(
             path,

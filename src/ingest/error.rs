@@ -1,5 +1,6 @@
 //! Why a recording or a cask file could not be read: which file, where in it, what is wrong, how to mend it.
 
+use super::clock::Refusal;
 use crate::data::shortened;
 use std::path::Path;
 
@@ -113,6 +114,11 @@ pub(crate) fn source(
         problem: problem.into(),
         mend: mend.into(),
     }
+}
+
+/// A channel that is refused for its clock.
+pub(super) fn refused(path: &Path, channel: &str, refusal: Refusal) -> IngestError {
+    source(path, channel, refusal.problem, refusal.remedy)
 }
 
 /// How alike two words are, 0 to 1, whatever their case.

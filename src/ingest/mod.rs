@@ -2,9 +2,12 @@
 
 pub(crate) mod assemble;
 pub mod cask_file;
+#[allow(dead_code, reason = "readers move onto it one by one")]
+pub(crate) mod clock;
 mod clock_pair;
 mod csv;
 mod detect;
+#[allow(dead_code, reason = "readers move onto it one by one")]
 pub(crate) mod error;
 #[cfg(any(test, fuzzing))]
 pub mod fuzz;
@@ -12,12 +15,21 @@ mod hdf5;
 mod limits;
 mod mcap;
 mod number;
+mod shown;
 mod stated_rate;
+#[allow(dead_code, reason = "readers move onto it one by one")]
+mod statement;
+mod strangers;
+#[allow(dead_code, reason = "readers move onto it one by one")]
 pub mod time_base;
 mod time_name;
 mod time_reading;
 mod time_unit;
+#[allow(dead_code, reason = "readers move onto it one by one")]
+mod times;
 mod unchanged;
+#[allow(dead_code, reason = "readers move onto it one by one")]
+mod vocabulary;
 
 pub use error::IngestError;
 pub use limits::{LEAST_MEMORY_BYTES, Limits};

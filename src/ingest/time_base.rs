@@ -8,10 +8,14 @@ mod missing;
 mod order;
 mod resample;
 
+pub(super) use super::clock::RATE_TOLERANCE;
+pub(super) use super::shown::{short, to_digits};
 pub use blocks::from_blocks;
 pub(super) use coarse::period as period_of_changes;
 pub(super) use cut::{cut, unit_s, usual_hz};
 
+use super::clock::{self, Claims, Refusal};
+use super::shown::digits;
 use crate::data::{Issue, IssueCode, Samples, Severity, Span};
 use fit::Fit;
 use order::Ordered;
@@ -41,9 +45,20 @@ impl Uniform {
     /// [`TimeBaseError::Rate`] where it is no rate.
     pub(super) fn at(mut self, declared_hz: f64) -> Result<Self, TimeBaseError> {
         check_rate(declared_hz)?;
-        self.issues.push(rate_contradiction(declared_hz, self.sample_rate_hz));
+        let own = clock::of_times(self.sample_rate_hz, 0.0);
+        self.issues.extend(Claims::of_cask(Some(declared_hz)).weigh(Some(&own))?.issues);
         self.sample_rate_hz = declared_hz;
         Ok(self)
+    }
+}
+
+impl TimeBaseError {
+    /// What is wrong with its own remedy where it has one, else with this.
+    pub(super) fn refusal(self, remedy: &str) -> Refusal {
+        match self {
+            Self::Refused(refusal) => refusal,
+            other => Refusal::new(other.to_string(), remedy),
+        }
     }
 }
 
@@ -56,27 +71,6 @@ pub struct Block {
     pub sample_rate_hz: f64,
     /// Number of its samples.
     pub count: usize,
-}
-
-/// `number` rounded to so many significant digits.
-pub(super) fn to_digits(number: f64, digits: i32) -> f64 {
-    if number == 0.0 || !number.is_finite() {
-        return number;
-    }
-    #[allow(clippy::cast_possible_truncation, reason = "the exponent of a finite f64 is below 400")]
-    let places = digits - 1 - number.abs().log10().floor() as i32;
-    // A division by a power of ten is rounded right where a product with its inverse is not.
-    let unit = 10_f64.powi(places.abs());
-    if places < 0 { (number / unit).round() * unit } else { (number * unit).round() / unit }
-}
-
-/// A number of a damaged file may have hundreds of digits: those stand with an exponent.
-pub(super) fn short(number: f64) -> String {
-    if number == 0.0 || (1e-6..1e12).contains(&number.abs()) {
-        format!("{number}")
-    } else {
-        format!("{number:e}")
-    }
 }
 
 /// Why times give no uniform base.
@@ -116,7 +110,7 @@ pub enum TimeBaseError {
     #[error(
         "the times are cut to {} s: {count} samples share {} times that are too few or too uneven to tell their rate; \
          give sample_rate_hz for this channel",
-        short(to_digits(*step_s, 3)),
+        digits(*step_s, 3),
         changes + 1
     )]
     TooCoarse {
@@ -143,6 +137,9 @@ pub enum TimeBaseError {
         /// The rate of the rest, Hz.
         sample_rate_hz: f64,
     },
+    /// Nothing states a rate, or rates contradict each other.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
     /// A rate is zero, negative or no number.
     #[error(
         "the sample rate is {sample_rate_hz} Hz: it must be above zero; set sample_rate_hz in the cask file"
@@ -169,9 +166,6 @@ pub enum TimeBaseError {
 /// Times that lie nearer to the base than this part of the sample interval (RMS) leave their samples where they are: at
 /// 2 % a sine of a tenth of the sample rate is off by 1 % of itself at most, a tenth of what its sampling costs.
 const STEADY_PART: f64 = 0.02;
-
-/// A declared rate further than this from the times' own is worth a warning: oscillators keep 1e-4.
-pub(super) const RATE_TOLERANCE: f64 = 1e-3;
 
 /// A sample type that a base can hold.
 pub(super) trait Number: Copy {
@@ -243,21 +237,27 @@ impl<'a> Times<'a> {
 
     /// Samples with a time each on a uniform base: sorted, doubles dropped, gaps NaN, real jitter interpolated.
     ///
-    /// A declared rate wins over the one that the times give; gaps are counted at the times' own rate.
+    /// The rate is the one that [`Claims::weigh`] takes; gaps are counted at the times' own rate.
     ///
     /// # Errors
     /// [`TimeBaseError`] where the times make no record.
-    pub fn place(&self, samples: Samples, declared_rate_hz: Option<f64>) -> Result<Uniform, TimeBaseError> {
+    pub fn place_by(&self, samples: Samples, claims: &Claims) -> Result<Uniform, TimeBaseError> {
         if self.each_s.len() != samples.len() {
             return Err(TimeBaseError::Lengths { times: self.each_s.len(), samples: samples.len() });
         }
-        if let Some(rate_hz) = declared_rate_hz {
-            check_rate(rate_hz)?;
-        }
+        claims.cask_hz.map_or(Ok(()), check_rate)?;
         match samples {
-            Samples::F32(v) => Ok(place(self, v, declared_rate_hz)?.into_uniform(Samples::F32)),
-            Samples::F64(v) => Ok(place(self, v, declared_rate_hz)?.into_uniform(Samples::F64)),
+            Samples::F32(v) => Ok(place(self, v, claims)?.into_uniform(Samples::F32)),
+            Samples::F64(v) => Ok(place(self, v, claims)?.into_uniform(Samples::F64)),
         }
+    }
+
+    /// The same where nothing but a cask file may state a rate.
+    ///
+    /// # Errors
+    /// As [`Times::place_by`].
+    pub fn place(&self, samples: Samples, declared_rate_hz: Option<f64>) -> Result<Uniform, TimeBaseError> {
+        self.place_by(samples, &Claims::of_cask(declared_rate_hz))
     }
 
     /// The base nearest to the times as they stand, where they rise.
@@ -276,6 +276,17 @@ pub fn from_times(
     declared_rate_hz: Option<f64>,
 ) -> Result<Uniform, TimeBaseError> {
     Times::new(times_s).place(samples, declared_rate_hz)
+}
+
+/// Samples without times, at the rate that is claimed.
+///
+/// # Errors
+/// As [`from_rate`]; [`TimeBaseError::Refused`] where none is stated, or two that contradict each other.
+pub fn from_claims(start_s: f64, claims: &Claims, samples: Samples) -> Result<Uniform, TimeBaseError> {
+    let taken = claims.weigh(None)?;
+    let mut uniform = from_rate(start_s, taken.rate_hz, samples)?;
+    uniform.issues.extend(taken.issues);
+    Ok(uniform)
 }
 
 /// Samples without times, at a known rate: only non-finite ones are looked for.
@@ -316,23 +327,20 @@ fn check_rate(sample_rate_hz: f64) -> Result<(), TimeBaseError> {
     }
 }
 
-fn place<S: Number>(
-    times: &Times,
-    samples: Vec<S>,
-    declared_rate_hz: Option<f64>,
-) -> Result<Placed<S>, TimeBaseError> {
+fn place<S: Number>(times: &Times, samples: Vec<S>, claims: &Claims) -> Result<Placed<S>, TimeBaseError> {
     let mut issues = Vec::new();
     let (times_s, mut samples) = match order::ordered((times.each_s, times.rise), samples, &mut issues)? {
         Ordered::Strict(times_s, samples) => (times_s, samples),
         Ordered::Coarse(times_s, samples) => {
-            return coarse::place(&times_s, samples, declared_rate_hz, issues);
+            return coarse::place(&times_s, samples, claims, issues);
         }
     };
     let fit = if times.rise { times.fit()? } else { Fit::new(&times_s)? };
-    let sample_rate_hz = declared_rate_hz.unwrap_or(1.0 / fit.period_s);
-    if (sample_rate_hz * fit.period_s - 1.0).abs() > RATE_TOLERANCE {
-        issues.push(rate_contradiction(sample_rate_hz, 1.0 / fit.period_s));
-    }
+    let span_s = times_s[times_s.len() - 1] - times_s[0];
+    let own = clock::of_times(1.0 / fit.period_s, fit.resolution_s / span_s);
+    let taken = claims.weigh(Some(&own))?;
+    let sample_rate_hz = taken.rate_hz;
+    issues.extend(taken.issues);
     let non_finite = missing::mark_non_finite_timed(&mut samples, &times_s, &mut issues);
     missing::report_gaps(&fit, &times_s, &mut issues);
     if fit.rms_s > STEADY_PART * fit.period_s && fit.max_s > 0.75 * fit.resolution_s {
@@ -351,17 +359,6 @@ fn place<S: Number>(
     let samples = if fit.runs.len() == 1 { samples } else { missing::spread(&samples, &fit) };
     let gaps = if fit.runs.len() == 1 && non_finite == 0 { Vec::new() } else { missing::spans(&samples) };
     Ok(Placed { start_s: fit.start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
-}
-
-fn rate_contradiction(declared_hz: f64, own_hz: f64) -> Issue {
-    Issue::new(
-        IssueCode::Clock,
-        Severity::Warning,
-        format!(
-            "the recorded times say {own_hz:.6} Hz, {declared_hz:.6} Hz is declared and was taken; \
-             remove sample_rate_hz if the times are right"
-        ),
-    )
 }
 
 fn jitter_note(fit: &Fit, two_periods_s: Option<(f64, f64)>, error: &resample::Difference) -> Issue {

@@ -5,8 +5,11 @@
 //! uncertainty. A line through all samples would be off by about (step / record)², 1 % for ten steps (docs/formats.md).
 
 use super::order::as_f64;
-use super::{Number, Placed, RATE_TOLERANCE, TimeBaseError, missing, rate_contradiction, short, to_digits};
+use super::{Number, Placed, RATE_TOLERANCE, TimeBaseError, missing};
 use crate::data::{Issue, IssueCode, Severity};
+use crate::ingest::clock::{Claims, of_times};
+use crate::ingest::shown::digits as nice;
+use crate::numerics::robust;
 
 /// Fewer changes make two whole steps at most, which agree with any jitter: nothing would show that they are even.
 const LEAST_CHANGES: usize = 4;
@@ -52,36 +55,36 @@ pub(in super::super) fn period(points: &[(f64, f64)], held_s: f64) -> Option<(f6
 pub(super) fn place<S: Number>(
     times_s: &[f64],
     mut samples: Vec<S>,
-    declared_rate_hz: Option<f64>,
+    claims: &Claims,
     mut issues: Vec<Issue>,
 ) -> Result<Placed<S>, TimeBaseError> {
     let changes: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] > times_s[i - 1]).collect();
-    let step_s = median_step(times_s, &changes);
+    let mut steps_s: Vec<f64> = changes.iter().map(|&i| times_s[i] - times_s[i - 1]).collect();
+    let step_s = if steps_s.is_empty() { 0.0 } else { robust::median(&mut steps_s) };
     let told = (changes.len() >= LEAST_CHANGES).then(|| Steps::of(times_s, &changes));
     let steps = told.filter(|steps| steps.uncertainty <= UNKNOWN && steps.off_s <= UNEVEN_STEPS * step_s);
-    let (start_s, sample_rate_hz) = match (declared_rate_hz, steps) {
-        (Some(rate_hz), _) => {
-            issues.push(declared(times_s, &changes, (step_s, told, steps), rate_hz));
-            (start(times_s, &changes, 1.0 / rate_hz), rate_hz)
-        }
-        (None, Some(steps)) => {
-            issues.push(steps.issue(step_s));
-            (steps.start_s, 1.0 / steps.period_s)
-        }
-        (None, None) if changes.is_empty() => return Err(TimeBaseError::AllEqual { time_s: times_s[0] }),
-        (None, None) => {
-            return Err(TimeBaseError::TooCoarse { step_s, changes: changes.len(), count: times_s.len() });
-        }
+    if steps.is_none() && claims.is_empty() {
+        return Err(match changes.len() {
+            0 => TimeBaseError::AllEqual { time_s: times_s[0] },
+            changes => TimeBaseError::TooCoarse { step_s, changes, count: times_s.len() },
+        });
+    }
+    // Uneven changes tell no rate that could contradict a stated one.
+    let even = steps.filter(|steps| steps.is_even || claims.is_empty());
+    let own = even.map(|steps| of_times(1.0 / steps.period_s, steps.uncertainty));
+    let taken = claims.weigh(own.as_ref())?;
+    let sample_rate_hz = taken.rate_hz;
+    let start_s = if let Some(steps) = steps.filter(|_| taken.is_of_times) {
+        issues.push(steps.issue(step_s));
+        steps.start_s
+    } else {
+        let at_declared = declared(times_s, &changes, (step_s, told), sample_rate_hz);
+        issues.extend(Some(at_declared).filter(|_| taken.issues.is_empty()));
+        start(times_s, &changes, 1.0 / sample_rate_hz)
     };
+    issues.extend(taken.issues);
     let (_, gaps) = missing::mark_non_finite(&mut samples, (start_s, sample_rate_hz), &mut issues);
     Ok(Placed { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
-}
-
-/// What the times are cut to, s; 0 where they do not change.
-fn median_step(times_s: &[f64], changes: &[usize]) -> f64 {
-    let mut steps: Vec<f64> = changes.iter().map(|&i| times_s[i] - times_s[i - 1]).collect();
-    let middle = steps.len() / 2;
-    if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 impl Steps {
@@ -147,18 +150,13 @@ impl Steps {
     }
 }
 
-/// What is said where a rate is declared beside coarse times; of the `steps` that they tell those that are `sure` have a rate of their own.
+/// What is said where a rate is declared beside coarse times, which change by `step_s` and tell the `steps`.
 fn declared(
     times_s: &[f64],
     changes: &[usize],
-    (step_s, steps, sure): (f64, Option<Steps>, Option<Steps>),
+    (step_s, steps): (f64, Option<Steps>),
     rate_hz: f64,
 ) -> Issue {
-    if let Some(steps) = sure.filter(|steps| steps.is_even)
-        && (rate_hz * steps.period_s - 1.0).abs() > RATE_TOLERANCE.max(steps.uncertainty)
-    {
-        return rate_contradiction(rate_hz, 1.0 / steps.period_s);
-    }
     let points = changes.iter().map(|&i| (as_f64(i), times_s[i] - times_s[0]));
     let width_s = if changes.is_empty() { 0.0 } else { range(points, 1.0 / rate_hz).1 };
     // Each change lies within one interval of its sample, and the rate may be off by its tolerance; more is samples lost or another rate.
@@ -180,10 +178,6 @@ fn declared(
     let message =
         format!("{what}; the samples were taken as evenly spaced at the declared {} Hz", nice(rate_hz, 6));
     Issue::new(IssueCode::Clock, if is_off { Severity::Warning } else { Severity::Note }, message)
-}
-
-fn nice(number: f64, digits: i32) -> String {
-    short(to_digits(number, digits))
 }
 
 /// Time of sample 0 at a known period, s.

@@ -2,6 +2,7 @@
 
 use super::order::as_f64;
 use super::{RATE_TOLERANCE, TimeBaseError};
+use crate::numerics::robust;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -97,9 +98,7 @@ fn median_interval(times_s: &[f64]) -> f64 {
     let count = times_s.len() - 1;
     let stride = count.div_ceil(GUESS_INTERVALS).max(1);
     let mut intervals: Vec<f64> = (0..count).step_by(stride).map(|i| times_s[i + 1] - times_s[i]).collect();
-    let middle = intervals.len() / 2;
-    let (_, median, _) = intervals.select_nth_unstable_by(middle, f64::total_cmp);
-    *median
+    robust::median(&mut intervals)
 }
 
 /// Mean of the intervals no longer than `limit_s`: all of them together less the few that are longer.

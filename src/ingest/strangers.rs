@@ -1,0 +1,159 @@
+//! First bytes of files that are no recording read here to their name, and to how to make one of them.
+
+const EXPORT: &str = "export the channels from the program that wrote it as CSV, HDF5 or MCAP";
+const UNPACK: &str = "unpack it first, and name the file that was in it";
+
+/// Where a mark stands, its bytes, what the file is, and what to do with it.
+const MARKS: [(usize, &[u8], &str, &str); 32] = [
+    (0, b"#ROSBAG", "a ROS 1 bag", "convert it to MCAP: `mcap convert in.bag out.mcap`"),
+    (
+        0,
+        b"SQLite format 3",
+        "a SQLite file, perhaps a ROS 2 bag",
+        "convert it to MCAP: `ros2 bag convert` or `mcap convert`",
+    ),
+    (0, b"TDSm", "a TDMS file", EXPORT),
+    (
+        0,
+        b"TDSh",
+        "the index of a TDMS file",
+        "name the file beside it that holds the samples, exported as CSV or HDF5",
+    ),
+    (0, b"MDF ", "an ASAM MDF file", "export it as HDF5 or CSV"),
+    (0, b"UnFinMF", "an unfinalised ASAM MDF file", "finalise it and export it as HDF5 or CSV"),
+    (
+        0,
+        b"MATLAB 5.0",
+        "a MATLAB file before version 7.3",
+        "save it with -v7.3, which is HDF5, or export CSV",
+    ),
+    (0, b"PK\x03\x04", "a ZIP archive or an office document", "unpack it, or save the sheet as CSV"),
+    (0, b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "an office document (.xls, .doc)", "save the sheet as CSV"),
+    (0, b"%PDF", "a PDF document", EXPORT),
+    (0, b"\x1f\x8b", "a gzip archive", "unpack it first: `gunzip FILE`"),
+    (0, b"\xFD7zXZ\0", "an xz archive", UNPACK),
+    (0, b"BZh", "a bzip2 archive", UNPACK),
+    (0, b"\x28\xB5\x2F\xFD", "a Zstandard archive", UNPACK),
+    (0, b"\x04\x22\x4D\x18", "an LZ4 archive", UNPACK),
+    (0, b"7z\xBC\xAF\x27\x1C", "a 7-Zip archive", UNPACK),
+    (0, b"PAR1\x15", "a Parquet file", EXPORT),
+    (0, b"ARROW1\0", "an Arrow file", EXPORT),
+    (0, b"FEA1\0", "a Feather file", EXPORT),
+    (0, b"\x93NUMPY", "a NumPy array", "save the channels as HDF5 or CSV"),
+    (
+        0,
+        b"CDF\x01",
+        "a netCDF file before version 4",
+        "convert it to version 4, which is HDF5: `nccopy -k nc4 IN OUT`",
+    ),
+    (
+        0,
+        b"CDF\x02",
+        "a netCDF file before version 4",
+        "convert it to version 4, which is HDF5: `nccopy -k nc4 IN OUT`",
+    ),
+    (
+        8,
+        b"WAVE",
+        "a WAV sound file",
+        "export the channels as CSV or HDF5, with their unit: a WAV file states none",
+    ),
+    (0, b"\x1A\x45\xDF\xA3", "an EBML file, such as .ide of an enDAQ or Slam Stick recorder", EXPORT),
+    (0, b"|CF,", "an imc FAMOS file", EXPORT),
+    (0, b"|CB,", "an imc FAMOS file", EXPORT),
+    (0, b"DIAEXTENDED HEADER", "the header of a DIAdem file", EXPORT),
+    (
+        0,
+        b"\x89MCAP0\n",
+        "an MCAP file that lost bytes in a copy made in text mode",
+        "copy it from the logger again, in binary mode",
+    ),
+    (0, b"\x89PNG", "a picture", EXPORT),
+    (0, b"\xFF\xD8\xFF", "a picture", EXPORT),
+    (0, b"{\\rtf", "a text document (RTF)", EXPORT),
+    (0, b"\x7FELF", "a program", "name the recording here"),
+];
+
+/// What a file that begins so is and what to do, where it is known to be no recording read here.
+pub(super) fn named(head: &[u8]) -> Option<(&'static str, &'static str)> {
+    let has_mark = |(at, mark, ..): &&(usize, &[u8], &str, &str)| {
+        head.get(*at..).is_some_and(|from| from.starts_with(mark))
+    };
+    let found = MARKS.iter().find(has_mark).map(|(_, _, what, mend)| (*what, *mend));
+    found
+        .or_else(|| {
+            is_matlab_4(head)
+                .then_some(("a MATLAB file of version 4", "save it with -v7.3, which is HDF5, or export CSV"))
+        })
+        .or_else(|| sheet(head))
+}
+
+/// A matrix of version 4: five whole numbers of four bytes for type, rows, columns, imaginary part and length of the name, which follows
+/// with a zero byte (MathWorks, MAT-file format, appendix on level 4).
+fn is_matlab_4(head: &[u8]) -> bool {
+    let (words, _) = head.as_chunks::<4>();
+    let [kind, rows, columns, imaginary, length, ..] = words else { return false };
+    let of = |read: fn([u8; 4]) -> u32, least_type: u32| {
+        let [kind, rows, columns, imaginary, length] =
+            [kind, rows, columns, imaginary, length].map(|word| read(*word));
+        let is_type = kind.checked_sub(least_type).is_some_and(|kind| kind <= 52 && kind % 10 <= 2);
+        let name = head.get(20..20 + length.min(64) as usize);
+        let is_name = name.and_then(|name| name.split_last()).is_some_and(|(end, name)| {
+            *end == 0
+                && !name.is_empty()
+                && name.iter().all(|&byte| byte == b'_' || byte.is_ascii_alphanumeric())
+        });
+        is_type && rows > 0 && columns > 0 && imaginary <= 1 && is_name
+    };
+    of(u32::from_le_bytes, 0) || of(u32::from_be_bytes, 1000)
+}
+
+/// Texts with numbers in them that are no table of samples.
+fn sheet(head: &[u8]) -> Option<(&'static str, &'static str)> {
+    let text = String::from_utf8_lossy(head);
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let (first, second) = (lines.next()?, lines.next().unwrap_or_default());
+    // `-1` opens a data set, whose number follows: 58 holds samples, wrapped over lines; `58b` holds them in binary.
+    let number = second.split_whitespace().next().unwrap_or_default().trim_end_matches('b');
+    if first == "-1" && (1..=4).contains(&number.len()) && number.bytes().all(|byte| byte.is_ascii_digit()) {
+        return Some(("a universal file (UFF)", EXPORT));
+    }
+    if first.starts_with(['-', '#']) && first.contains("EV5") {
+        return Some((
+            "an EV5 test sheet, which lists a test",
+            "name the files of samples that it lists, exported as CSV",
+        ));
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_other_programs_are_named() {
+        let matlab = |words: [u32; 5], bytes: fn(u32) -> [u8; 4]| {
+            words.into_iter().flat_map(bytes).chain(*b"acc\0\x01\x02").collect::<Vec<u8>>()
+        };
+        for (head, part) in [
+            (b"RIFF\x24\0\0\0WAVEfmt ".to_vec(), "WAV"),
+            (b"PAR1\x15\x04".to_vec(), "Parquet"),
+            (b"    -1\n    58\nA1\n".to_vec(), "UFF"),
+            (b"    -1\r\n   58b     1     2\r\n".to_vec(), "UFF"),
+            (b"    -1\n   151\nmodel\n".to_vec(), "UFF"),
+            (matlab([0, 1000, 1, 0, 4], u32::to_le_bytes), "version 4"),
+            (matlab([1000, 1000, 1, 0, 4], u32::to_be_bytes), "version 4"),
+        ] {
+            assert!(named(&head).is_some_and(|(what, _)| what.contains(part)), "{part}");
+        }
+        for table in [
+            &b"-1\n58.5\n60\n"[..],
+            b"-1;58\n-2;59\n",
+            b"t;a\n0;1\n",
+            b"\0\0\0\0\x01\0\0\0\x01\0\0\0\0\0\0\0\x02\0\0\0\x01\0",
+        ] {
+            assert_eq!(named(table), None);
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Numbers in a column or dataset of times to seconds: by the unit that is stated, by 1970, or by a rate that is stated.
+
+use super::clock::Refusal;
+use super::shown;
+use super::vocabulary::{split, time_unit_s};
+use crate::numerics::robust;
+
+/// Units of time that a recorder may have left out, with seconds a unit.
+const UNITS: [(&str, f64); 4] = [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
+
+/// 1990-01-01 and 2100-01-01, s since 1970: no recorder counts the time since then by chance.
+const EPOCH_S: (f64, f64) = (631_152_000.0, 4_102_444_800.0);
+
+/// Rates at which impacts are recorded, Hz: from pulses of 10 ms at ten samples each to the fastest transient recorders.
+const USUAL_HZ: (f64, f64) = (1e3, 5e6);
+
+/// The least rate of times that count ms, µs or ns since 1970, Hz: a counter of ns since its start looks like µs since 1970 at a thousandth of its rate.
+const LEAST_EPOCH_HZ: f64 = 100.0;
+
+/// Less than any contact with its flight, s: so short a record is of another unit.
+const SHORTEST_S: f64 = 0.02;
+
+/// A stated rate tells units apart, which are thousandfold, by this part of itself.
+const ALIKE: f64 = 0.1;
+
+/// Times of a second column without a unit are in the one in which they run as long as the first to this factor: other units are farther.
+const NEAR: f64 = 3.0;
+
+/// What the numbers in a column of times count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Scale {
+    /// So many seconds a unit.
+    Known(f64),
+    /// Nothing says it.
+    Open,
+    /// A unit that is none of time.
+    Unknown,
+    /// So many seconds by its name, and so many by its unit: `time_ms` in `s`.
+    Twofold(f64, f64),
+}
+
+impl Scale {
+    /// As the unit that stands beside the name says, and the name.
+    pub(super) fn of(name: &str, unit: Option<&str>) -> Self {
+        let named_s = split(name).1.and_then(time_unit_s);
+        match unit.map(str::trim) {
+            None | Some("" | "-" | "1") => named_s.map_or(Self::Open, Self::Known),
+            Some(unit) => match (named_s, time_unit_s(unit)) {
+                (_, None) => Self::Unknown,
+                (Some(named_s), Some(unit_s)) if named_s.total_cmp(&unit_s).is_ne() => {
+                    Self::Twofold(named_s, unit_s)
+                }
+                (_, Some(unit_s)) => Self::Known(unit_s),
+            },
+        }
+    }
+
+    /// Seconds a unit of a second column of times, beside first times that run for `span_s`; `None` where it counts rows or something else.
+    pub(super) fn beside(self, span_s: f64, others: &[f64]) -> Option<f64> {
+        match self {
+            Self::Known(unit_s) => Some(unit_s),
+            Self::Unknown | Self::Twofold(..) => None,
+            Self::Open => {
+                let counted = Counted::of(others)?;
+                let ratio = |unit_s: &f64| counted.span * unit_s / span_s;
+                let units = UNITS.iter().map(|unit| unit.1).chain([60.0, 3600.0, 86_400.0]);
+                let mut near = units.filter(|unit_s| (1.0 / NEAR..NEAR).contains(&ratio(unit_s)));
+                near.next().filter(|_| !counted.is_counter)
+            }
+        }
+    }
+}
+
+/// What holds times, with its name for people.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Carrier<'a> {
+    /// A column, which states a unit by its header.
+    Column(&'a str),
+    /// A dataset, which states it by an attribute.
+    Dataset(&'a str),
+    /// A field of records, which states it by its name: attributes are for the samples in them.
+    Field(&'a str),
+}
+
+impl Carrier<'_> {
+    fn stating(self, unit: &str) -> String {
+        match self {
+            Self::Column(_) => format!("head the column with [{unit}]"),
+            Self::Field(_) => format!("name the field as t_{unit}"),
+            Self::Dataset(_) => format!("give the dataset an attribute unit = \"{unit}\""),
+        }
+    }
+
+    fn place(self) -> String {
+        match self {
+            Self::Column(header) => format!("column {header:?}"),
+            Self::Dataset(source) | Self::Field(source) => source.to_owned(),
+        }
+    }
+}
+
+/// Seconds a unit of `times` that count `scale`, in channels whose rate is stated or not.
+///
+/// # Errors
+/// [`Refusal`] where the unit is none of time, where name and unit contradict each other, and where none is stated and the times are a
+/// usual recording in ms, µs or ns but not in s.
+pub(super) fn seconds_a_unit(
+    scale: Scale,
+    carrier: Carrier,
+    times: &[f64],
+    stated_hz: Option<f64>,
+) -> Result<f64, Refusal> {
+    let counted = || Counted::of(times);
+    match scale {
+        Scale::Known(unit_s) => Ok(unit_s),
+        Scale::Unknown => Err(Refusal::new(
+            format!("the times in {} are in a unit that is none of time known here", carrier.place()),
+            format!(
+                "{}, or give sample_rate_hz and another time column",
+                carrier.stating("s").replace("s]", "s], [ms], [µs] or [ns]")
+            ),
+        )),
+        Scale::Twofold(named_s, unit_s) => {
+            let agrees = |scale_s: &f64| {
+                stated_hz.zip(counted()).is_some_and(|(hz, counted)| counted.is_at(*scale_s, hz))
+            };
+            [named_s, unit_s].into_iter().find(agrees).ok_or_else(|| {
+                Refusal::new(
+                    format!("the times in {} are in another unit by their name than by their unit", carrier.place()),
+                    "correct the one that is wrong in a copy, or write sample_rate_hz in each [[channel]], which tells them apart",
+                )
+            })
+        }
+        Scale::Open => counted().map_or(Ok(1.0), |counted| counted.seconds_a_unit(carrier, stated_hz)),
+    }
+}
+
+/// What bare numbers say of the time that they count.
+struct Counted {
+    first: f64,
+    last: f64,
+    /// Rows per unit.
+    rate: f64,
+    span: f64,
+    /// Whether most rise by exactly 1, and all by whole numbers.
+    is_counter: bool,
+}
+
+impl Counted {
+    fn of(times: &[f64]) -> Option<Self> {
+        /// How many intervals are looked at: their median only has to tell a thousandfold.
+        const LOOKED_AT: usize = 4096;
+        // Rows of other channels may hold no time.
+        let (first, last, count) = times
+            .iter()
+            .filter(|t| t.is_finite())
+            .fold((f64::INFINITY, f64::NEG_INFINITY, 0_usize), |(a, b, n), &t| (a.min(t), b.max(t), n + 1));
+        let span = last - first;
+        if count < 2 || !(span.is_finite() && span > 0.0) {
+            return None;
+        }
+        #[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
+        let mean = span / (count - 1) as f64;
+        let pairs = times.windows(2).step_by(times.len().div_ceil(LOOKED_AT));
+        let mut steps: Vec<f64> = pairs.map(|pair| pair[1] - pair[0]).filter(|d| *d > 0.0).collect();
+        let median = if steps.is_empty() { mean } else { robust::median(&mut steps) };
+        let is_whole = |time: &f64| time.is_nan() || time.fract().abs() < f64::EPSILON;
+        let is_counter = (median - 1.0).abs() < f64::EPSILON && times.iter().all(is_whole);
+        // A pause lengthens the mean, times that repeat the median.
+        Some(Self { first, last, rate: 1.0 / mean.min(median), span, is_counter })
+    }
+
+    /// Whether the times run at a rate in Hz if a unit is so many seconds.
+    fn is_at(&self, unit_s: f64, rate_hz: f64) -> bool {
+        (self.rate / unit_s / rate_hz - 1.0).abs() < ALIKE
+    }
+
+    fn seconds_a_unit(&self, carrier: Carrier, stated_hz: Option<f64>) -> Result<f64, Refusal> {
+        if let Some(unit_s) = self.since_1970() {
+            return Ok(unit_s);
+        }
+        if let Some(stated_hz) = stated_hz {
+            let found = UNITS.iter().find(|(_, unit_s)| self.is_at(*unit_s, stated_hz));
+            // A counter of the samples, with what is missing left out of it.
+            let else_s = if self.is_counter { stated_hz.recip() } else { 1.0 };
+            return Ok(found.map_or(else_s, |unit| unit.1));
+        }
+        let is_usual = |unit: &&(&str, f64)| {
+            (USUAL_HZ.0..=USUAL_HZ.1).contains(&(self.rate / unit.1)) && self.span * unit.1 >= SHORTEST_S
+        };
+        let likelier: Vec<_> = UNITS[1..].iter().filter(is_usual).collect();
+        if self.rate >= USUAL_HZ.0 || likelier.is_empty() {
+            Ok(1.0)
+        } else {
+            Err(self.doubt(carrier, &likelier))
+        }
+    }
+
+    fn doubt(&self, carrier: Carrier, likelier: &[&(&str, f64)]) -> Refusal {
+        let named = |(name, unit_s): &(&str, f64)| {
+            format!("{name}, which is {} Hz", shown::digits(self.rate / unit_s, 4))
+        };
+        let asked: Vec<String> = likelier.iter().map(|unit| named(unit)).collect();
+        let (name, unit_s) = likelier[0];
+        let counter = if self.is_counter {
+            "do they count the samples? Then write sample_rate_hz in each [[channel]]. Or "
+        } else {
+            ""
+        };
+        Refusal::new(
+            format!(
+                "nothing says the unit of the times in {}; taken as seconds they give a rate of {} Hz",
+                carrier.place(),
+                shown::digits(self.rate, 4)
+            ),
+            format!(
+                "{counter}are they in {}? Then {} in a copy, or write sample_rate_hz = {} in each [[channel]]; {} if they are seconds",
+                asked.join(", or in "),
+                carrier.stating(name),
+                shown::digits(self.rate / unit_s, 6),
+                carrier.stating("s")
+            ),
+        )
+    }
+
+    /// Seconds a unit of times that count from 1970.
+    fn since_1970(&self) -> Option<f64> {
+        let is_it = |(_, unit_s): &&(&str, f64)| {
+            let least_hz = if *unit_s < 1.0 { LEAST_EPOCH_HZ } else { 1.0 };
+            self.first * unit_s > EPOCH_S.0
+                && self.last * unit_s < EPOCH_S.1
+                && (least_hz..=USUAL_HZ.1).contains(&(self.rate / unit_s))
+        };
+        UNITS.iter().find(is_it).map(|unit| unit.1)
+    }
+}

@@ -1,0 +1,261 @@
+//! The words by which recordings name times, rates, intervals and units to what they mean; the one list of them.
+
+/// Words that head times, without their unit, in lower case.
+const TIMES: [&str; 32] = [
+    "time",
+    "t",
+    "zeit",
+    "times",
+    "timestamp",
+    "timestamps",
+    "time stamp",
+    "zeitstempel",
+    "messzeit",
+    "abtastzeit",
+    "uhrzeit",
+    "elapsed",
+    "elapsed time",
+    "relative time",
+    "relative zeit",
+    "rel. time",
+    "rel. zeit",
+    "datetime",
+    "date/time",
+    "date time",
+    // LabVIEW's name for the times of its measurement files.
+    "x_value",
+    "sec",
+    "seconds",
+    "ms",
+    "msec",
+    "us",
+    "µs",
+    "usec",
+    "ns",
+    "temps",
+    "tempo",
+    "tiempo",
+];
+
+/// Names of the axis of a plot: times where a unit of time stands beside it, else one axis of an accelerometer.
+const AXES: [&str; 6] = ["x", "x-achse", "x-axis", "x achse", "x axis", "x_axis"];
+
+/// Names of a rate, in lower case without what parts their words: `Sample Rate` and `sample_rate` are `samplerate`.
+const RATES: [&str; 9] = [
+    "samplerate",
+    "samplingrate",
+    "samplingfrequency",
+    "samplefrequency",
+    "fs",
+    "scanrate",
+    "abtastrate",
+    "abtastfrequenz",
+    "samplingfrequenz",
+];
+
+/// Names of the interval between samples, as [`RATES`]; `wfincrement` is that of LabVIEW's waveforms.
+const INTERVALS: [&str; 9] = [
+    "dt",
+    "deltat",
+    "wfincrement",
+    "sampleinterval",
+    "samplinginterval",
+    "sampleperiod",
+    "samplingperiod",
+    "abtastintervall",
+    "abtastperiode",
+];
+
+/// Names of the number of samples, as [`RATES`]; LabVIEW writes `Samples`.
+const COUNTS: [&str; 10] = [
+    "samples",
+    "numberofsamples",
+    "no.ofsamples",
+    "samplecount",
+    "samplesperchannel",
+    "recordlength",
+    "numberofpoints",
+    "anzahlwerte",
+    "anzahlmesswerte",
+    "anzahlabtastwerte",
+];
+
+/// Names that in capitals mean something else: FS is a full scale, DT a dead time, `delta_T` a temperature.
+const SYMBOLS: [&str; 3] = ["fs", "dt", "deltat"];
+
+/// Units of time, in lower case, with seconds a unit.
+const TIME_UNITS: [(&[&str], f64); 6] = [
+    (&["s", "sec", "secs", "second", "seconds", "sek", "sekunde", "sekunden"], 1.0),
+    (&["ms", "msec", "msecs", "millis", "millisecond", "milliseconds", "millisekunden"], 1e-3),
+    (
+        &["us", "µs", "μs", "usec", "µsec", "μsec", "micros", "microsecond", "microseconds", "mikrosekunden"],
+        1e-6,
+    ),
+    (&["ns", "nsec", "nanos", "nanosecond", "nanoseconds", "nanosekunden"], 1e-9),
+    (&["min", "minute", "minutes", "minuten"], 60.0),
+    (&["h", "hour", "hours", "std", "stunden"], 3600.0),
+];
+
+/// Units of a rate, in lower case, with Hz a unit.
+const RATE_UNITS: [(&[&str], f64); 3] = [
+    (&["hz", "s/s", "sa/s", "1/s", "sps", "samples/s", "samples/sec"], 1.0),
+    (&["khz", "ks/s", "ksa/s", "ksps"], 1e3),
+    (&["mhz", "ms/s", "msa/s", "msps"], 1e6),
+];
+
+/// Units of what else a recorder may hold, in lower case; those of accelerations are in [`crate::data::acceleration_unit_m_s2`].
+const OTHER_UNITS: [&str; 58] = [
+    "v", "volt", "volts", "mv", "µv", "uv", "n", "kn", "lbf", "°c", "°c/10", "degc", "c", "°f", "k", "bar",
+    "mbar", "pa", "hpa", "kpa", "mpa", "psi", "%", "-", "–", "1", "mm", "cm", "m", "km", "in", "ft", "m/s",
+    "km/h", "mph", "rad/s", "deg/s", "°/s", "rpm", "deg", "°", "a", "ma", "µm/m", "um/m", "µε", "ue", "ut",
+    "µt", "gauss", "kg", "nm", "rad", "counts", "count", "lsb", "digits", "pc/g",
+];
+
+/// What the name of an attribute, a field or a line above a table says of its value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Meaning {
+    /// A rate; Hz a unit.
+    Rate(f64),
+    /// An interval between samples; seconds a unit.
+    Interval(f64),
+    /// A number of samples.
+    Count,
+}
+
+/// The meaning of a name, whatever its case and what parts its words; a unit may stand behind it: `Sample Rate kHz`, `dt_us`.
+pub(super) fn meaning(name: &str) -> Option<Meaning> {
+    let parted: Vec<&str> = name.split(['_', ' ', '-']).filter(|word| !word.is_empty()).collect();
+    let bare = parted.concat().to_lowercase();
+    let is_symbol = SYMBOLS.contains(&bare.as_str()) && name.ends_with(char::is_uppercase);
+    if let Some(meaning) = plain_meaning(&bare).filter(|_| !is_symbol) {
+        return Some(meaning);
+    }
+    // `fsHz` and `sampleRateHz` part the unit by its capital alone.
+    let (rest, unit) = match parted[..] {
+        [ref rest @ .., unit] if !rest.is_empty() => (rest.concat().to_lowercase(), unit.to_owned()),
+        _ => {
+            let at = name.char_indices().rev().find(|(_, c)| c.is_uppercase())?.0;
+            (name[..at].to_lowercase(), name[at..].to_owned())
+        }
+    };
+    match plain_meaning(&rest)? {
+        Meaning::Rate(_) => rate_unit_hz(&unit).map(Meaning::Rate),
+        // `dt_min` is the least interval, not one in minutes.
+        Meaning::Interval(_) => time_unit_s(&unit).filter(|unit_s| *unit_s <= 1.0).map(Meaning::Interval),
+        Meaning::Count => None,
+    }
+}
+
+fn plain_meaning(bare: &str) -> Option<Meaning> {
+    if RATES.contains(&bare) {
+        Some(Meaning::Rate(1.0))
+    } else if INTERVALS.contains(&bare) {
+        Some(Meaning::Interval(1.0))
+    } else {
+        COUNTS.contains(&bare).then_some(Meaning::Count)
+    }
+}
+
+/// Seconds a unit of time, whatever its case; `None` where the word names none.
+///
+/// What the CF conventions of netCDF write behind it, "since 1970-01-01", says only where the times begin.
+pub(super) fn time_unit_s(unit: &str) -> Option<f64> {
+    let unit = unit.split_once(" since ").map_or(unit, |(unit, _)| unit);
+    of_list(&TIME_UNITS, unit)
+}
+
+/// Hz a unit of rate, whatever its case; `None` where the word names none.
+pub(super) fn rate_unit_hz(unit: &str) -> Option<f64> {
+    of_list(&RATE_UNITS, unit)
+}
+
+fn of_list(units: &[(&[&str], f64)], unit: &str) -> Option<f64> {
+    let unit = unit.trim().to_lowercase();
+    units.iter().find(|(names, _)| names.contains(&unit.as_str())).map(|unit| unit.1)
+}
+
+/// Whether a word is a unit that a row of units may hold; brackets around it do not count.
+pub(super) fn is_unit(word: &str) -> bool {
+    let bare = word.trim().trim_matches(['[', ']', '(', ')', '"']).trim();
+    crate::data::acceleration_unit_m_s2(bare).is_some()
+        || time_unit_s(bare).is_some()
+        || rate_unit_hz(bare).is_some()
+        || OTHER_UNITS.contains(&bare.to_lowercase().as_str())
+}
+
+/// Whether a name without its unit is one of times.
+pub(super) fn is_time(bare: &str) -> bool {
+    TIMES.contains(&bare.to_lowercase().as_str())
+}
+
+/// Whether a name without its unit is one of an axis.
+pub(super) fn is_axis(bare: &str) -> bool {
+    AXES.contains(&bare.to_lowercase().as_str())
+}
+
+/// `time_ms`, `TimeMs`, `Zeit in ms` or `t/ms` to its name and `ms`.
+pub(super) fn split(name: &str) -> (&str, Option<&str>) {
+    let name = name.trim();
+    let is_unit = |text: &str| time_unit_s(text).is_some();
+    if let Some((bare, unit)) = name.rsplit_once(['_', ' ', '/', '-', '.', ',', ':'])
+        && is_unit(unit)
+    {
+        return (without_in(bare), Some(unit));
+    }
+    let is_hump = |pair: &(char, char)| pair.0.is_lowercase() && pair.1.is_uppercase();
+    let pairs = name.chars().zip(name.chars().skip(1));
+    if let Some(last) = pairs.enumerate().filter(|(_, pair)| is_hump(pair)).map(|(i, _)| i).last()
+        && let Some((at, _)) = name.char_indices().nth(last + 1)
+        && is_unit(&name[at..])
+    {
+        return (without_in(&name[..at]), Some(&name[at..]));
+    }
+    (name, is_unit(name).then_some(name))
+}
+
+/// "Zeit in" and "time /" to the name.
+fn without_in(name: &str) -> &str {
+    let name = name.trim_end_matches(['_', ' ', '/', '-', '.', ',', ':']);
+    let bare = [" in", "_in", "In"].iter().find_map(|word| name.strip_suffix(word));
+    bare.unwrap_or(name).trim_end()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_rates_and_intervals_are_known_with_their_units() {
+        for (name, meaning_of_it) in [
+            ("sample_rate_hz", Meaning::Rate(1.0)),
+            ("sampleRateHz", Meaning::Rate(1.0)),
+            ("SampleRate", Meaning::Rate(1.0)),
+            ("Sampling Rate", Meaning::Rate(1.0)),
+            ("fs", Meaning::Rate(1.0)),
+            ("Fs", Meaning::Rate(1.0)),
+            ("fs_khz", Meaning::Rate(1e3)),
+            ("FS_Hz", Meaning::Rate(1.0)),
+            ("Abtastrate", Meaning::Rate(1.0)),
+            ("dt", Meaning::Interval(1.0)),
+            ("dt_us", Meaning::Interval(1e-6)),
+            ("wf_increment", Meaning::Interval(1.0)),
+            ("Number of samples", Meaning::Count),
+        ] {
+            assert_eq!(meaning(name), Some(meaning_of_it), "{name}");
+        }
+        for name in ["FS", "DT", "delta_T", "dt_min", "rate", "fsx", "samples_s", "", "_", "f", "Hz"] {
+            assert_eq!(meaning(name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn words_of_units_are_known_whatever_their_case_and_brackets() {
+        for word in ["g", "[m/s²]", "(ms)", "V", "kHz", "°C", "-", "\"mV\"", "Sekunden"] {
+            assert!(is_unit(word), "{word}");
+        }
+        for word in ["A1", "3.5", "", "furlong", "Kanal 1"] {
+            assert!(!is_unit(word), "{word}");
+        }
+        assert_eq!(time_unit_s("milliseconds since 2026-11-01"), Some(1e-3));
+    }
+}
