@@ -8,6 +8,7 @@ mod curves;
 mod estimate;
 mod flight;
 mod issue;
+pub(crate) mod keys;
 mod ladder;
 mod listing;
 mod motion;

@@ -7,6 +7,7 @@ pub(crate) mod section;
 pub(super) mod tolerance;
 mod wording;
 
+use crate::data::keys::TABLES;
 use crate::data::{CaskFile, Contact, FilterChoice};
 pub(crate) use body::{cask, drop};
 use miette::{Diagnostic, NamedSource, SourceSpan};
@@ -102,11 +103,7 @@ pub fn require_channels(cask_file: &CaskFile, recording: &Path) -> Result<(), Ca
         "`dropcheck init {}` writes one [[channel]] table for each source in the recording: copy those of the accelerometers",
         recording.display()
     );
-    Err(no_cask_file(path_of(cask_file), problem, &mend))
-}
-
-fn path_of(cask_file: &CaskFile) -> &Path {
-    &cask_file.path
+    Err(no_cask_file(&cask_file.path, problem, &mend))
 }
 
 fn no_cask_file(path: &Path, problem: &str, mend: &str) -> CaskFileError {
@@ -180,18 +177,18 @@ pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
 pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
     let document = Document::new(&CASK_FILE, path, text);
     let root = document.root()?;
-    let mut defaults = Vec::new();
-    let cask = cask(&root.required_table("cask")?, path, &mut defaults)?;
-    let drop = drop(&root.required_table("drop")?, &cask, &mut defaults)?;
-    let contact = contact(root.table("contact")?.as_ref(), &mut defaults)?;
-    let filter = filter(root.table("filter")?.as_ref(), &mut defaults)?;
-    let tolerances = tolerance::tolerances(root.table("tolerance")?.as_ref(), &mut defaults)?;
-    let corrections = tolerance::corrections(root.table("corrections")?.as_ref())?;
-    let time = match root.table("recording")? {
-        Some(table) => table.text("time")?.map(|time| time.value),
-        None => None,
-    };
+    let cask = cask(&root.required_table("cask")?, path)?;
+    let drop = drop(&root.required_table("drop")?, &cask)?;
+    let contact = contact(&root.table("contact")?)?;
+    let filter = filter(&root.table("filter")?)?;
+    let tolerances = tolerance::tolerances(&root.table("tolerance")?)?;
+    let corrections = tolerance::corrections(&root.table("corrections")?)?;
+    let time = root.table("recording")?.text("time")?.map(|time| time.value);
     let channels = channel::channels(&root, &cask)?;
+    let mut defaults = assumed(&root, &["cask", "drop", "contact", "tolerance"]);
+    if filter == FilterChoice::Auto {
+        defaults.push("filter".into());
+    }
     Ok(CaskFile {
         path: path.to_owned(),
         sha256: String::new(),
@@ -207,21 +204,29 @@ pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError
     })
 }
 
-/// `[contact]`, with its defaults named in `defaults`.
-pub(crate) fn contact(table: Option<&Section>, defaults: &mut Vec<String>) -> Result<Contact, CaskFileError> {
+/// The keys of these tables that the file leaves out and whose defaults enter the result.
+pub(crate) fn assumed(root: &Section, tables: &[&str]) -> Vec<String> {
+    let rows = TABLES.iter().filter(|table| tables.contains(&table.name));
+    let keys = rows.flat_map(|table| table.keys.iter().map(move |key| (table.name, key)));
+    let is_left_out = |table: &str, key: &str| {
+        let table = root.value(table).and_then(|table| table.get_ref().as_table());
+        table.is_none_or(|table| !table.contains_key(key))
+    };
+    keys.filter(|(table, key)| key.is_assumed() && is_left_out(table, key.name))
+        .map(|(table, key)| format!("{table}.{}", key.name))
+        .collect()
+}
+
+/// `[contact]`.
+pub(crate) fn contact(table: &Section) -> Result<Contact, CaskFileError> {
     const MEND: &str =
         "friction = \"rough\" (no sliding), \"smooth\" (no friction), or a coefficient such as 0.4";
-    let value = table.and_then(|table| table.value("friction").map(|value| (table, value)));
-    let Some((table, value)) = value else {
-        defaults.push("contact.friction".into());
-        return Ok(Contact::Rough);
-    };
+    let Some(value) = table.value("friction") else { return Ok(Contact::Rough) };
     if value.get_ref().is_str() {
-        return table
-            .word("friction", &[("rough", Contact::Rough), ("smooth", Contact::Smooth)], MEND)?
-            .ok_or_else(|| table.missing("friction", MEND));
+        let words = [("rough", Contact::Rough), ("smooth", Contact::Smooth)];
+        return Ok(table.word("friction", &words, MEND)?.unwrap_or(Contact::Rough));
     }
-    let coefficient = table.required_number("friction", "0.4")?;
+    let coefficient = table.required_number("friction")?;
     if coefficient.value < 0.0 {
         return Err(table.wrong(
             coefficient.span,
@@ -233,12 +238,8 @@ pub(crate) fn contact(table: Option<&Section>, defaults: &mut Vec<String>) -> Re
     Ok(Contact::Coulomb(coefficient.value))
 }
 
-fn filter(table: Option<&Section>, defaults: &mut Vec<String>) -> Result<FilterChoice, CaskFileError> {
-    let Some(table) = table else {
-        defaults.push("filter".into());
-        return Ok(FilterChoice::Auto);
-    };
-    match (table.positive("cfc")?, table.positive("cutoff_hz")?) {
+fn filter(table: &Section) -> Result<FilterChoice, CaskFileError> {
+    match (table.number("cfc")?, table.number("cutoff_hz")?) {
         (Some(_), Some(cutoff)) => Err(table.wrong(
             cutoff.span,
             "[filter] gives both cfc and cutoff_hz".into(),
@@ -247,10 +248,7 @@ fn filter(table: Option<&Section>, defaults: &mut Vec<String>) -> Result<FilterC
         )),
         (Some(class), None) => Ok(FilterChoice::Cfc(class.value)),
         (None, Some(cutoff)) => Ok(FilterChoice::CutoffHz(cutoff.value)),
-        (None, None) => {
-            defaults.push("filter".into());
-            Ok(FilterChoice::Auto)
-        }
+        (None, None) => Ok(FilterChoice::Auto),
     }
 }
 

@@ -3,6 +3,7 @@
 mod channel;
 mod values;
 
+use crate::data::keys::{self, names};
 use crate::data::{Cask, CaskFile, Contact, Drop, End, FilterChoice};
 use crate::ingest::cask_file::section::{Document, Kind, Section};
 use crate::ingest::cask_file::{self, CaskFileError};
@@ -32,7 +33,7 @@ const SCENE_FILE: Kind = Kind {
                 "channel",
             ],
         ),
-        ("cask", &["name", "mass_kg", "length_m", "height_m", "width_m", "cog_m", "inertia_kg_m2"]),
+        ("cask", &names(&keys::CASK)),
         (
             "drop",
             &[
@@ -44,7 +45,7 @@ const SCENE_FILE: Kind = Kind {
                 "stated_angle_deg",
             ],
         ),
-        ("contact", &["friction"]),
+        ("contact", &names(&keys::CONTACT)),
         ("first_end", &END_KEYS),
         ("second_end", &END_KEYS),
         ("mode", &["order", "frequency_hz", "damping", "strength"]),
@@ -119,16 +120,14 @@ pub fn parse(path: &Path, crush: Crush) -> Result<SceneFile, CaskFileError> {
 fn checked(path: &Path, text: &str, crush: Crush) -> Result<SceneFile, CaskFileError> {
     let document = Document::new(&SCENE_FILE, path, text);
     let root = document.root()?;
-    let mut defaults = Vec::new();
     let drop_table = root.required_table("drop")?;
-    let cask = cask_file::cask(&root.required_table("cask")?, path, &mut defaults)?;
-    let drop = cask_file::drop(&drop_table, &cask, &mut defaults)?;
+    let cask = cask_file::cask(&root.required_table("cask")?, path)?;
+    let drop = cask_file::drop(&drop_table, &cask)?;
     inclined(&drop_table)?;
-    let contact = cask_file::contact(root.table("contact")?.as_ref(), &mut defaults)?;
+    let contact = cask_file::contact(&root.table("contact")?)?;
     let name = root.text("name")?.map_or_else(|| cask.name.clone(), |name| name.value);
-    let stiffness = |end, table: Option<Section>, usual| {
-        let asked = table.as_ref().map_or(Ok(Asked::Impact(usual)), |table| asked(table, usual))?;
-        Ok::<_, CaskFileError>(match asked {
+    let stiffness = |end, table: Section, usual| {
+        Ok::<_, CaskFileError>(match asked(&table, usual)? {
             Asked::Direct(direct) => direct,
             Asked::Impact(impact) => crush(&cask, &drop, contact, end, impact),
         })
@@ -154,9 +153,7 @@ fn checked(path: &Path, text: &str, crush: Crush) -> Result<SceneFile, CaskFileE
         drop,
         contact,
     };
-    if let Some(table) = root.table("recording")? {
-        recording(&table, &mut scene)?;
-    }
+    recording(&root.table("recording")?, &mut scene)?;
     affordable(&root, &tables, &scene)?;
     let stated = CaskFile {
         path: path.to_owned(),
@@ -169,7 +166,7 @@ fn checked(path: &Path, text: &str, crush: Crush) -> Result<SceneFile, CaskFileE
         corrections: crate::data::Corrections::default(),
         time: None,
         channels: specs,
-        defaults,
+        defaults: cask_file::assumed(&root, &["cask", "drop", "contact"]),
     };
     Ok(SceneFile { scene, stated })
 }
@@ -253,12 +250,12 @@ fn mode(table: &Section) -> Result<BendingMode, CaskFileError> {
             table.wrong(order.span, message, "1, 2 or 3".into(), "1 is the shape with two nodes")
         })?,
     };
-    let frequency = table.required_number("frequency_hz", "62.0")?;
     let frequency_hz =
         table.within("frequency_hz", &(1.0..=20_000.0), "natural frequency of the free beam, in Hz")?;
     Ok(BendingMode {
         order,
-        frequency_hz: frequency_hz.unwrap_or(frequency.value),
+        frequency_hz: frequency_hz
+            .ok_or_else(|| table.missing("frequency_hz", "add a line such as frequency_hz = 62.0"))?,
         damping: table.within("damping", &(0.0..=0.9), "share of critical damping")?.unwrap_or(MODE_DAMPING),
         strength: number_or(table, "strength", 1.0)?,
     })

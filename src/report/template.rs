@@ -2,6 +2,7 @@
 
 use super::likely::{self, NoChannels, VOLTAGES, is_time, names_end};
 use super::text::{is_hidden, line, printable};
+use crate::data::keys::{CHANNEL, Key, TABLES, Takes};
 use crate::data::{ListedChannel, Listing, MOST_CHANNELS, Severity, acceleration_unit_m_s2};
 use std::fmt::Write;
 
@@ -70,64 +71,40 @@ fn head(listing: &Listing) -> String {
         &mut out,
         format_args!("# Lengths in m, mass in kg, angles in degrees. A line behind # is optional.\n"),
     );
-    line(
-        &mut out,
-        format_args!(
-            r#"[cask]
-name = "CASK"               # {FILL_IN}: the cask's name
-mass_kg = nan               # {FILL_IN}
-length_m = nan              # {FILL_IN}: along the axis, between the two ends that strike
-# height_m = 0.8            # cross-section in the plane of the drop; left out: a thin rod
-# width_m = 0.8             # across that plane, reported only
-# cog_m = 2.5               # centre of gravity from the first end; left out: length_m / 2
-# inertia_kg_m2 = 2100.0    # about the centre of gravity; left out: m (l² + h²) / 12
-
-[drop]
-height_m = nan              # {FILL_IN}: free-fall height of the lowest point
-angle_deg = nan             # {FILL_IN}: inclination of the axis above the horizontal
-# impact_velocity_m_s = 13.3  # overrides √(2 g h)
-# gravity_m_s2 = 9.81       # this is the default
-
-# [contact]
-# friction = "rough"        # "rough" (default), "smooth" or a Coulomb coefficient such as 0.4
-
-# [filter]                  # left out: chosen from the mass and the data; give one of the two
-# cfc = 180                 # a channel frequency class of SAE J211 / ISO 6487
-# cutoff_hz = 400.0         # a −3 dB cut-off
-
-# [tolerance]               # half-widths of 95 % intervals; these are the defaults
-# angle_deg = 0.4           # drop angle
-# impact_velocity_percent = 0.3
-# calibration_percent = 1.0 # scale of a channel
-# cross_axis_percent = 2.0  # what a sensor reads of the other body axis, tilt included
-# position_m = 0.01         # place of a sensor along the axis
-# cog_m = 0.01              # centre of gravity
-# inertia_percent = 2.0
-# friction_percent = 2.0    # contact law, of the way from rough to smooth
-# clock_percent = 0.05      # rate of the recorder's clock
-
-# [corrections]             # all are made; false leaves one out
-# offset = true             # mean of the free fall
-# zero_shift = true         # change of the offset at the first impact
-# skew = true               # a channel stamped late or early
-# hum = true                # mains hum
-"#
-        ),
-    );
-    match listing.channels.iter().find(|c| is_time(&c.source) && c.kind != "number" && c.kind != "array") {
-        Some(time) => {
-            line(&mut out, format_args!("# [recording]"));
-            line(&mut out, format_args!("# time = {}   # where the times are not found by themselves\n", quoted(&time.source)));
+    let time =
+        listing.channels.iter().find(|c| is_time(&c.source) && c.kind != "number" && c.kind != "array");
+    for table in TABLES.iter().take_while(|table| table.name != "channel") {
+        let mark = if table.keys.iter().any(|key| key.is_asked) { "" } else { "# " };
+        entry(&mut out, &format!("{mark}[{}]", table.name), table.remark);
+        for key in table.keys {
+            match time.filter(|_| table.name == "recording") {
+                Some(time) => entry(&mut out, &format!("# time = {}", quoted(&time.source)), key.remark),
+                None => key_line(&mut out, key),
+            }
         }
-        None => out.push_str(
-            "# [recording]\n# time = \"time_s\"           # CSV column or HDF5 dataset with the times, where they are not found by themselves\n\n",
-        ),
+        out.push('\n');
     }
     out.push_str(
         "# At least one transverse channel on each end. The first end is low and touches first.\n\
          # Ends, axes and signs below are guesses: check each against the test plan.\n",
     );
     out
+}
+
+/// A line of the form, its remark in the column of remarks.
+fn entry(out: &mut String, text: &str, remark: &str) {
+    let remark = if remark.is_empty() { String::new() } else { format!(" # {remark}") };
+    line(out, format_args!("{}", format!("{text:<27}{remark}").trim_end()));
+}
+
+/// The line of a key: asked for where only the user knows it, else behind a mark that makes it a remark.
+fn key_line(out: &mut String, key: &Key) {
+    if !key.is_asked {
+        return entry(out, &format!("# {} = {}", key.name, key.example), key.remark);
+    }
+    let value = if matches!(key.takes, Takes::Number(_)) { "nan" } else { key.example };
+    let colon = if key.remark.is_empty() { "" } else { ": " };
+    entry(out, &format!("{} = {value}", key.name), &format!("{FILL_IN}{colon}{}", key.remark));
 }
 
 fn channel(out: &mut String, index: usize, guessed_first: bool, listed: &ListedChannel) {
@@ -138,31 +115,23 @@ fn channel(out: &mut String, index: usize, guessed_first: bool, listed: &ListedC
     let axis = if axial { "axial" } else { "transverse" };
     out.push_str("\n[[channel]]\n");
     line(out, format_args!("# {}", facts(listed)));
-    line(out, format_args!("name = \"A{}\"", index + 1));
-    line(out, format_args!("end = \"{end}\"{}# check: \"first\" or \"second\"", pad(end.len() + 8)));
-    line(out, format_args!("axis = \"{axis}\"{}# check: \"transverse\" or \"axial\"", pad(axis.len() + 9)));
-    line(out, format_args!("source = {}", source_value(source)));
-    unit(out, listed.unit.as_deref());
-    line(out, format_args!("position_m = nan            # {FILL_IN}: along the axis, from the first end"));
-    out.push_str(
-        "# offset_m = 0.0            # across the axis, positive away from the target\n\
-         # polarity = 1              # -1: mounted the other way round\n\
-         # full_scale = 2000.0       # in `unit`: where the channel clips\n",
-    );
-    if listed.sample_rate_hz.is_some() {
-        out.push_str("# sample_rate_hz = 100000.0 # overrides what the recording says\n");
-    } else {
-        line(
-            out,
-            format_args!(
-                "sample_rate_hz = nan        # {FILL_IN}: no rate or times were found; or name the times below and take this line out"
-            ),
-        );
+    for key in &CHANNEL {
+        match key.name {
+            "name" => line(out, format_args!("name = \"A{}\"", index + 1)),
+            "end" => entry(out, &format!("end = \"{end}\""), key.remark),
+            "axis" => entry(out, &format!("axis = \"{axis}\""), key.remark),
+            "source" => line(out, format_args!("source = {}", source_value(source))),
+            "unit" => unit(out, listed.unit.as_deref(), key),
+            "sample_rate_hz" if listed.sample_rate_hz.is_none() => {
+                const NONE: &str =
+                    "no rate or times were found; or name the times below and take this line out";
+                entry(out, "sample_rate_hz = nan", &format!("{FILL_IN}: {NONE}"));
+            }
+            // They stand beside the unit and the coupling that need them.
+            "sensitivity" | "time_constant_s" => {}
+            _ => key_line(out, key),
+        }
     }
-    out.push_str(
-        "# time = \"/daq/time_s\"      # this channel's own times (CSV column, HDF5 dataset)\n\
-         # coupling = \"dc\"           # or \"ac\", then also time_constant_s = 0.3\n",
-    );
 }
 
 /// What the axes of one sensor share: the topic of a message path with a vector, else the source itself.
@@ -173,38 +142,23 @@ fn device(source: &str) -> &str {
     }
 }
 
-fn unit(out: &mut String, told: Option<&str>) {
+fn unit(out: &mut String, told: Option<&str>, key: &Key) {
     match told {
         Some(unit) if acceleration_unit_m_s2(unit).is_some() => {
-            line(
-                out,
-                format_args!(
-                    "# unit = {}{}# left out: the recording says so itself",
-                    quoted(unit),
-                    pad(unit.len() + 11)
-                ),
-            );
+            entry(out, &format!("# unit = {}", quoted(unit)), key.remark);
         }
         Some(unit) if VOLTAGES.contains(&unit) => {
-            line(out, format_args!("unit = {}{}# as the recording says", quoted(unit), pad(unit.len() + 9)));
-            line(out, format_args!("sensitivity = nan           # {FILL_IN}: mV per g"));
+            entry(out, &format!("unit = {}", quoted(unit)), "as the recording says");
+            entry(out, "sensitivity = nan", &format!("{FILL_IN}: mV per g"));
         }
         told => {
             let quoted = |unit| format!("the recording says {:?}", printable(unit));
             let says = told.map_or_else(|| "the recording does not say".to_owned(), quoted);
-            line(
-                out,
-                format_args!(
-                    "unit = \"g\"                  # {FILL_IN}: \"g\", \"m/s^2\", \"V\" or \"mV\"; {says}"
-                ),
-            );
-            line(out, format_args!("# sensitivity = 10.0        # mV per g, with \"V\" and \"mV\""));
+            let remark = format!("{FILL_IN}: \"g\", \"m/s^2\", \"V\" or \"mV\"; {says}");
+            entry(out, &format!("unit = {}", key.example), &remark);
+            entry(out, "# sensitivity = 10.0", "mV per g, with \"V\" and \"mV\"");
         }
     }
-}
-
-fn pad(used: usize) -> String {
-    " ".repeat(28usize.saturating_sub(used).max(1))
 }
 
 fn facts(listed: &ListedChannel) -> String {

@@ -6,20 +6,9 @@ use crate::data::{Cask, Drop};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// What a cask and a drop may be, of models of a centimetre and a gram to more than any cask there is: within it `predict` ends in a
-/// second, and no product of two keys leaves the numbers that a double holds.
-const MASSES_KG: RangeInclusive<f64> = 1e-3..=1e6;
-const LENGTHS_M: RangeInclusive<f64> = 0.01..=100.0;
-const DROP_HEIGHTS_M: RangeInclusive<f64> = 1e-3..=1000.0;
-const DROP_MEND: &str = "in metres: from a millimetre to more than any drop tower";
-/// From below that of the least drop to more than that of the highest; beyond, a body turns thousands of times in flight.
-const IMPACTS_M_S: RangeInclusive<f64> = 0.01..=200.0;
-const IMPACT_MEND: &str = "in m/s: no drop of a cask is slower or faster; check the value and its unit";
 /// v0²/(g l), 2 h/l for a fall: below, the body settles in thousands of touches rather than strikes, and above it turns for hundreds of
 /// times its fall. 9 m are 3 for 5.5 m, 0.3 m are 0.1.
 const IMPACTS: RangeInclusive<f64> = 5e-2..=5e3;
-/// From below the Moon's 1.6 m/s² to three hundred times the Earth's in a centrifuge.
-const GRAVITIES_M_S2: RangeInclusive<f64> = 1.0..=3000.0;
 /// A centre of gravity nearer to an end than this share of the length would have nearly the whole mass there.
 const COG_SHARE: f64 = 0.1;
 /// Inertia over m l² of a mass within a tenth of the length, 1/12 of its square; a homogeneous rod has 1/12.
@@ -28,21 +17,11 @@ const LEAST_INERTIA: f64 = 1e-2 / 12.0;
 /// Standard value where the file gives no gravity: the contract's default.
 const DEFAULT_GRAVITY_M_S2: f64 = 9.81;
 
-/// `[cask]`, with its defaults named in `defaults`.
-pub(crate) fn cask(table: &Section, path: &Path, defaults: &mut Vec<String>) -> Result<Cask, CaskFileError> {
-    let mass_kg = table.required_within(
-        "mass_kg",
-        "4466.0",
-        &MASSES_KG,
-        "a model of a gram to more than any cask, in kg",
-    )?;
-    let length_m = table.required_within(
-        "length_m",
-        "5.512",
-        &LENGTHS_M,
-        "a model of a centimetre to more than any cask, in metres",
-    )?;
-    let height = table.not_negative("height_m")?;
+/// `[cask]`; its name is that of the file at `path` where it gives none.
+pub(crate) fn cask(table: &Section, path: &Path) -> Result<Cask, CaskFileError> {
+    let mass_kg = table.required_number("mass_kg")?.value;
+    let length_m = table.required_number("length_m")?.value;
+    let height = table.number("height_m")?;
     if let Some(height) = &height
         && height.value > length_m
     {
@@ -53,7 +32,7 @@ pub(crate) fn cask(table: &Section, path: &Path, defaults: &mut Vec<String>) -> 
             "length_m runs along the axis between the two ends that strike, height_m across it; perhaps they are exchanged",
         ));
     }
-    let cog = table.positive("cog_m")?;
+    let cog = table.number("cog_m")?;
     let inside = COG_SHARE * length_m..=(1.0 - COG_SHARE) * length_m;
     if let Some(cog) = cog.as_ref().filter(|cog| !inside.contains(&cog.value)) {
         let what = if cog.value < length_m { "at the very end of" } else { "outside" };
@@ -69,24 +48,17 @@ pub(crate) fn cask(table: &Section, path: &Path, defaults: &mut Vec<String>) -> 
     }
     let cog_m = cog.as_ref().map_or(length_m / 2.0, |cog| cog.value);
     let height_m = height.as_ref().map_or(0.0, |height| height.value);
-    let inertia = table.positive("inertia_kg_m2")?;
+    let inertia = table.number("inertia_kg_m2")?;
     if let Some(inertia) = &inertia {
         inertia_is_possible(table, inertia, mass_kg, [length_m, height_m, cog_m])?;
     }
-    let width_m = table.positive("width_m")?.map(|width| width.value);
+    let width_m = table.number("width_m")?.map(|width| width.value);
     let name = match table.text("name")? {
         Some(name) => name.value,
         None => {
             path.file_stem().map_or_else(|| "cask".to_owned(), |stem| stem.to_string_lossy().into_owned())
         }
     };
-    for (key, is_given) in
-        [("height_m", height.is_some()), ("cog_m", cog.is_some()), ("inertia_kg_m2", inertia.is_some())]
-    {
-        if !is_given {
-            defaults.push(format!("cask.{key}"));
-        }
-    }
     Ok(Cask {
         name,
         mass_kg,
@@ -132,47 +104,29 @@ fn inertia_is_possible(
     ))
 }
 
-/// `[drop]`, with its defaults named in `defaults`.
-pub(crate) fn drop(table: &Section, cask: &Cask, defaults: &mut Vec<String>) -> Result<Drop, CaskFileError> {
-    let gravity =
-        table.within("gravity_m_s2", &GRAVITIES_M_S2, "in m/s²: the Moon's to that of a centrifuge")?;
-    if gravity.is_none() {
-        defaults.push("drop.gravity_m_s2".into());
-    }
-    let gravity_m_s2 = gravity.unwrap_or(DEFAULT_GRAVITY_M_S2);
-    let velocity = table.within("impact_velocity_m_s", &IMPACTS_M_S, IMPACT_MEND)?;
-    let height = table.within("height_m", &DROP_HEIGHTS_M, DROP_MEND)?;
+/// `[drop]`, whose ranges hold of the height and the velocity that it leaves out too.
+pub(crate) fn drop(table: &Section, cask: &Cask) -> Result<Drop, CaskFileError> {
+    let gravity_m_s2 = table.number("gravity_m_s2")?.map_or(DEFAULT_GRAVITY_M_S2, |gravity| gravity.value);
+    let velocity = table.number("impact_velocity_m_s")?.map(|velocity| velocity.value);
+    let height = table.number("height_m")?.map(|height| height.value);
     let height_m = match (&velocity, height) {
         (_, Some(height_m)) => height_m,
         // h = v0² / (2 g).
         (Some(velocity_m_s), None) => velocity_m_s.powi(2) / (2.0 * gravity_m_s2),
-        (None, None) => table.required_within("height_m", "9.0", &DROP_HEIGHTS_M, DROP_MEND)?,
+        (None, None) => table.required_number("height_m")?.value,
     };
-    let angle = table.required_number("angle_deg", "15.0")?;
-    if !(0.0..=90.0).contains(&angle.value) {
-        return Err(table.wrong(
-            angle.span,
-            format!("angle_deg is {}, outside 0 to 90", angle.value),
-            "0 to 90 degrees".into(),
-            "the inclination of the cask's axis above the horizontal before the drop, in degrees; the first end is the low one",
-        ));
-    }
+    let angle = table.required_number("angle_deg")?;
     // v0 = √(2 g h).
     let impact_velocity_m_s = velocity.unwrap_or((2.0 * gravity_m_s2 * height_m).sqrt());
-    let place = |key| table.value(key).map_or_else(|| table.span(), toml::Spanned::span);
-    if velocity.is_none() {
-        defaults.push("drop.impact_velocity_m_s".into());
-        if !IMPACTS_M_S.contains(&impact_velocity_m_s) {
-            let what = format!("height_m gives an impact at {impact_velocity_m_s:.3} m/s");
-            return Err(table.outside(place("height_m"), &what, &IMPACTS_M_S, IMPACT_MEND));
-        }
-    }
+    let implied = Placed { value: impact_velocity_m_s, span: table.place("height_m") };
+    let what = format!("height_m gives an impact at {impact_velocity_m_s:.3} m/s");
+    table.allows("impact_velocity_m_s", &implied, &what)?;
     let ratio = impact_velocity_m_s.powi(2) / (gravity_m_s2 * cask.length_m);
     if !IMPACTS.contains(&ratio) {
         let key = if velocity.is_some() { "impact_velocity_m_s" } else { "height_m" };
         let length_m = cask.length_m;
         let what = format!("{key} is no drop of a cask of {length_m} m: v0²/(g l) is {ratio:.3e}");
-        return Err(table.outside(place(key), &what, &IMPACTS, "check both values and their units"));
+        return Err(table.outside(table.place(key), &what, &IMPACTS, "check both values and their units"));
     }
     Ok(Drop {
         height_m,

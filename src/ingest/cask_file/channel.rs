@@ -2,17 +2,8 @@
 
 use super::CaskFileError;
 use super::section::Section;
-use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, SAMPLE_RATES_HZ, Source, Unit};
+use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, Source, Unit};
 use std::ops::Range;
-
-/// A unit's word in a cask file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum UnitWord {
-    G,
-    MetrePerSecondSquared,
-    Volt,
-    Millivolt,
-}
 
 const UNITS: &str = "unit = \"g\", \"m/s^2\", or \"V\" or \"mV\" with sensitivity in mV per g; left out: what the recording says";
 
@@ -41,7 +32,7 @@ pub(super) fn channels(root: &Section, cask: &Cask) -> Result<Vec<ChannelSpec>, 
         }
         if let Some(first) = channels.iter().position(|other| other.source == channel.source) {
             return Err(table.wrong(
-                table.value("source").map_or_else(|| table.span(), toml::Spanned::span),
+                table.place("source"),
                 format!(
                     "{} reads the same source as {}, {}",
                     channel.name, channels[first].name, channel.source
@@ -61,7 +52,7 @@ fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), 
         "end = \"first\" (the low end, which touches first) or \"second\" (the one that slaps down)";
     const AXIS: &str =
         "axis = \"transverse\" (across the cask, in the plane of the drop) or \"axial\" (along it)";
-    let name = table.required_text("name", "A1")?;
+    let name = table.required_text("name")?;
     let end = table
         .word("end", &[("first", End::First), ("second", End::Second)], END)?
         .ok_or_else(|| table.missing("end", END))?;
@@ -80,8 +71,8 @@ fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), 
         position_m,
         offset_m: table.number("offset_m")?.map_or(0.0, |offset| offset.value),
         polarity: polarity(table)?,
-        full_scale: table.positive("full_scale")?.map(|limit| limit.value),
-        sample_rate_hz: table.within("sample_rate_hz", &SAMPLE_RATES_HZ, "samples a second, in Hz")?,
+        full_scale: table.number("full_scale")?.map(|limit| limit.value),
+        sample_rate_hz: table.number("sample_rate_hz")?.map(|rate| rate.value),
         time: table.text("time")?.map(|time| time.value),
         coupling: coupling(table)?,
     };
@@ -92,49 +83,51 @@ fn source(table: &Section) -> Result<Source, CaskFileError> {
     const MEND: &str = "`dropcheck inspect RECORDING` lists what to write: source = \"/topic.field\" (MCAP), \"/group/dataset\" or \"/dataset[2]\" (HDF5), a column's header (CSV)";
     let Some(value) = table.value("source") else { return Err(table.missing("source", MEND)) };
     if !value.get_ref().is_table() {
-        let text = table.text("source")?.ok_or_else(|| table.missing("source", MEND))?;
-        return Ok(Source::Path(text.value));
+        return Ok(Source::Path(table.required_text("source")?.value));
     }
-    let parts = table.table("source")?.ok_or_else(|| table.missing("source", MEND))?;
+    let parts = table.table("source")?;
     Ok(Source::TopicField {
-        topic: parts.required_text("topic", "/imu")?.value,
-        field: parts.required_text("field", "linear_acceleration.z")?.value,
+        topic: parts.required_text("topic")?.value,
+        field: parts.required_text("field")?.value,
     })
 }
 
 fn unit(table: &Section) -> Result<Option<Unit>, CaskFileError> {
     let words = [
-        ("g", UnitWord::G),
-        ("m/s^2", UnitWord::MetrePerSecondSquared),
-        ("V", UnitWord::Volt),
-        ("mV", UnitWord::Millivolt),
+        ("g", Unit::G),
+        ("m/s^2", Unit::MetrePerSecondSquared),
+        ("V", Unit::Volt { sensitivity_mv_per_g: f64::NAN }),
+        ("mV", Unit::Millivolt { sensitivity_mv_per_g: f64::NAN }),
     ];
-    let word = table.word("unit", &words, UNITS)?;
-    let sensitivity = table.positive("sensitivity")?;
-    let is_voltage = matches!(word, Some(UnitWord::Volt | UnitWord::Millivolt));
-    match (word, sensitivity) {
-        (Some(_), None) if is_voltage => Err(table.wrong(
-            table.value("unit").map_or_else(|| table.span(), toml::Spanned::span),
-            "a unit of voltage needs sensitivity".into(),
-            "needs sensitivity beside it".into(),
-            "add sensitivity = 10.0, in mV per g, from the sensor's calibration sheet (with the amplifier's gain)",
-        )),
-        (Some(UnitWord::Volt), Some(s)) => Ok(Some(Unit::Volt { sensitivity_mv_per_g: s.value })),
-        (Some(UnitWord::Millivolt), Some(s)) => Ok(Some(Unit::Millivolt { sensitivity_mv_per_g: s.value })),
-        (_, Some(sensitivity)) => Err(table.wrong(
-            sensitivity.span,
-            "sensitivity has no meaning without unit = \"V\" or \"mV\"".into(),
-            "only with \"V\" or \"mV\"".into(),
-            "write unit = \"V\" or \"mV\" if the recording holds voltages; delete sensitivity if it holds g or m/s²",
-        )),
-        (Some(UnitWord::G), None) => Ok(Some(Unit::G)),
-        (Some(_), None) => Ok(Some(Unit::MetrePerSecondSquared)),
-        (None, None) => Ok(None),
+    let mut unit = table.word("unit", &words, UNITS)?;
+    let given = table.number("sensitivity")?;
+    match (&mut unit, given) {
+        (Some(Unit::Volt { sensitivity_mv_per_g } | Unit::Millivolt { sensitivity_mv_per_g }), given) => {
+            let given = given.ok_or_else(|| {
+                table.wrong(
+                    table.place("unit"),
+                    "a unit of voltage needs sensitivity".into(),
+                    "needs sensitivity beside it".into(),
+                    "add sensitivity = 10.0, in mV per g, from the sensor's calibration sheet (with the amplifier's gain)",
+                )
+            })?;
+            *sensitivity_mv_per_g = given.value;
+        }
+        (_, Some(given)) => {
+            return Err(table.wrong(
+                given.span,
+                "sensitivity has no meaning without unit = \"V\" or \"mV\"".into(),
+                "only with \"V\" or \"mV\"".into(),
+                "write unit = \"V\" or \"mV\" if the recording holds voltages; delete sensitivity if it holds g or m/s²",
+            ));
+        }
+        _ => {}
     }
+    Ok(unit)
 }
 
 pub(crate) fn position_m(table: &Section, cask: &Cask) -> Result<f64, CaskFileError> {
-    let position = table.required_number("position_m", "0.15")?;
+    let position = table.required_number("position_m")?;
     if (0.0..=cask.length_m).contains(&position.value) {
         return Ok(position.value);
     }
@@ -163,10 +156,10 @@ pub(crate) fn coupling(table: &Section) -> Result<Coupling, CaskFileError> {
     const MEND: &str =
         "coupling = \"dc\" (the default: reads constant acceleration) or \"ac\" with time_constant_s";
     let is_ac = table.word("coupling", &[("dc", false), ("ac", true)], MEND)?.unwrap_or(false);
-    match (is_ac, table.positive("time_constant_s")?) {
+    match (is_ac, table.number("time_constant_s")?) {
         (true, Some(constant)) => Ok(Coupling::Ac { time_constant_s: constant.value }),
         (true, None) => Err(table.wrong(
-            table.value("coupling").map_or_else(|| table.span(), toml::Spanned::span),
+            table.place("coupling"),
             "coupling = \"ac\" needs time_constant_s".into(),
             "needs time_constant_s beside it".into(),
             "add time_constant_s, in s: 1/(2π f) with f the lower −3 dB corner in Hz from the data sheet (0.5 Hz: 0.318)",

@@ -1,11 +1,72 @@
 //! A number of a cask or scene file to itself, or to the diagnostic that names its range.
 
 use super::CaskFileError;
-use super::section::Section;
+use super::section::{Placed, Section};
+use super::wording::unit_of;
+use crate::data::keys::{self, Allowed, Takes};
 use crate::ingest::time_base::short;
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
+
+type Stated = Result<Option<Placed<f64>>, CaskFileError>;
 
 impl Section<'_> {
+    /// A number within what its row of [`keys::TABLES`] allows; any finite one where a scene file has a key of its own.
+    pub(crate) fn number(&self, key: &str) -> Stated {
+        match keys::row(self.name(), key).map(|row| row.takes) {
+            Some(Takes::Number(Allowed::FromZero)) => self.not_negative(key),
+            Some(Takes::Number(Allowed::AboveZero)) => self.positive(key),
+            _ => {
+                let number = self.finite(key)?;
+                if let Some(number) = &number {
+                    self.allows(key, number, &format!("{key} is {}", short(number.value)))?;
+                }
+                Ok(number)
+            }
+        }
+    }
+
+    /// Whether the range of `key` holds `number`, of which the refusal says `what`.
+    pub(super) fn allows(&self, key: &str, number: &Placed<f64>, what: &str) -> Result<(), CaskFileError> {
+        match keys::row(self.name(), key).map(|row| row.takes) {
+            Some(Takes::Number(Allowed::Within(least, most, why)))
+                if !(least..=most).contains(&number.value) =>
+            {
+                let allowed = format!("{} to {}", short(least), short(most));
+                let degrees = if key.ends_with("_deg") { " degrees" } else { "" };
+                let message = format!("{what}, outside {allowed}");
+                Err(self.wrong(number.span.clone(), message, allowed + degrees, why))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The same of a key that must be there.
+    pub(crate) fn required_number(&self, key: &str) -> Result<Placed<f64>, CaskFileError> {
+        self.number(key)?.ok_or_else(|| self.without(key))
+    }
+
+    /// A number above 0.
+    pub(crate) fn positive(&self, key: &str) -> Stated {
+        self.bounded(key, |number| number > 0.0, ["be above 0", "a number above 0"])
+    }
+
+    /// A number of 0 or above.
+    pub(crate) fn not_negative(&self, key: &str) -> Stated {
+        self.bounded(key, |number| number >= 0.0, ["not be below 0", "0 or more"])
+    }
+
+    fn bounded(&self, key: &str, is_allowed: fn(f64) -> bool, [must, expected]: [&str; 2]) -> Stated {
+        match self.finite(key)? {
+            Some(number) if !is_allowed(number.value) => Err(self.wrong(
+                number.span,
+                format!("{key} is {}: it must {must}", number.value),
+                expected.into(),
+                &format!("check the value{}", unit_of(key)),
+            )),
+            number => Ok(number),
+        }
+    }
+
     /// A number within `range`; `why` says what lies beyond or what the key means.
     pub(crate) fn within(
         &self,
@@ -13,7 +74,7 @@ impl Section<'_> {
         range: &RangeInclusive<f64>,
         why: &str,
     ) -> Result<Option<f64>, CaskFileError> {
-        match self.number(key)? {
+        match self.finite(key)? {
             Some(number) if !range.contains(&number.value) => {
                 Err(self.outside(number.span, &format!("{key} is {}", short(number.value)), range, why))
             }
@@ -21,22 +82,10 @@ impl Section<'_> {
         }
     }
 
-    /// The same of a key that must be there.
-    pub(crate) fn required_within(
-        &self,
-        key: &str,
-        example: &str,
-        range: &RangeInclusive<f64>,
-        why: &str,
-    ) -> Result<f64, CaskFileError> {
-        let missing = || self.missing(key, &format!("add a line such as {key} = {example}"));
-        self.within(key, range, why)?.ok_or_else(missing)
-    }
-
     /// The refusal of `what`, which lies outside `range`.
     pub(crate) fn outside(
         &self,
-        span: std::ops::Range<usize>,
+        span: Range<usize>,
         what: &str,
         range: &RangeInclusive<f64>,
         why: &str,

@@ -1,7 +1,8 @@
 //! A TOML table to values that know their place, each wrong one to a diagnostic under its line.
 
-use super::wording::{described, line_of, nearest, number_with_unit, unit_mend, unit_of};
+use super::wording::{described, line_of, nearest, number_with_unit, unit_mend};
 use super::{CaskFileError, WrongLine};
+use crate::data::keys::{self, names};
 use miette::NamedSource;
 use std::ops::Range;
 use std::path::Path;
@@ -22,37 +23,29 @@ pub(crate) const CASK_FILE: Kind = Kind { name: "the cask file", tables: &KEYS }
 /// Every table of a cask file with its keys; "" is the file itself.
 const KEYS: [(&str, &[&str]); 10] = [
     ("", &["cask", "drop", "contact", "tolerance", "corrections", "filter", "recording", "channel"]),
-    ("cask", &["name", "mass_kg", "length_m", "height_m", "width_m", "cog_m", "inertia_kg_m2"]),
-    ("drop", &["height_m", "angle_deg", "impact_velocity_m_s", "gravity_m_s2"]),
-    ("contact", &["friction"]),
-    ("tolerance", &super::tolerance::TOLERANCE_KEYS),
-    ("corrections", &super::tolerance::CORRECTION_KEYS),
-    ("filter", &["cfc", "cutoff_hz"]),
-    ("recording", &["time"]),
-    (
-        "channel",
-        &[
-            "name",
-            "end",
-            "axis",
-            "source",
-            "unit",
-            "position_m",
-            "offset_m",
-            "polarity",
-            "sensitivity",
-            "full_scale",
-            "sample_rate_hz",
-            "time",
-            "coupling",
-            "time_constant_s",
-        ],
-    ),
-    ("source", &["topic", "field"]),
+    ("cask", &names(&keys::CASK)),
+    ("drop", &names(&keys::DROP)),
+    ("contact", &names(&keys::CONTACT)),
+    ("tolerance", &names(&keys::TOLERANCE)),
+    ("corrections", &names(&keys::CORRECTIONS)),
+    ("filter", &names(&keys::FILTER)),
+    ("recording", &names(&keys::RECORDING)),
+    ("channel", &names(&keys::CHANNEL)),
+    ("source", &names(&keys::SOURCE)),
 ];
 
 /// The tables of which a file may have any number.
 const LISTS: [&str; 2] = ["channel", "mode"];
+
+/// A table as a person finds it in a file.
+fn titled(name: &str) -> String {
+    match name {
+        "" => "the file".into(),
+        name if LISTS.contains(&name) => format!("[[{name}]]"),
+        "source" => "source = { … }".into(),
+        name => format!("[{name}]"),
+    }
+}
 
 /// A file's text with its name and its kind.
 pub(crate) struct Document<'a> {
@@ -157,17 +150,22 @@ impl<'a> Section<'a> {
 
     /// The table as a person finds it in the file.
     fn title(&self) -> String {
-        match self.name {
-            "" => "the file".into(),
-            name if LISTS.contains(&name) => format!("[[{name}]]"),
-            "source" => "source = { … }".into(),
-            name => format!("[{name}]"),
-        }
+        titled(self.name)
+    }
+
+    /// The table's name.
+    pub(super) fn name(&self) -> &'static str {
+        self.name
     }
 
     /// Where the section stands.
     pub(crate) fn span(&self) -> Range<usize> {
         self.span.clone()
+    }
+
+    /// Where a key's value stands; where it is left out, its table.
+    pub(crate) fn place(&self, key: &str) -> Range<usize> {
+        self.value(key).map_or_else(|| self.span(), Spanned::span)
     }
 
     pub(crate) fn value(&self, key: &str) -> Option<&Spanned<DeValue<'a>>> {
@@ -202,8 +200,8 @@ impl<'a> Section<'a> {
         let tables = self.document.kind.tables;
         let others: Vec<String> = tables
             .iter()
-            .filter(|(name, keys)| *name != self.name && *name != "source" && keys.contains(&word))
-            .map(|(name, _)| if LISTS.contains(name) { format!("[[{name}]]") } else { format!("[{name}]") })
+            .filter(|(name, keys)| ![self.name, "source", ""].contains(name) && keys.contains(&word))
+            .map(|(name, _)| titled(name))
             .collect();
         let all = known.join(", ");
         let mend = if others.is_empty() {
@@ -218,11 +216,13 @@ impl<'a> Section<'a> {
         self.wrong(key.span(), message, format!("unknown {what}"), &mend)
     }
 
-    /// The table `key`, where there is one.
-    pub(crate) fn table(&self, key: &'static str) -> Result<Option<Section<'a>>, CaskFileError> {
-        let Some(value) = self.value(key) else { return Ok(None) };
+    /// The table `key`; an empty one where there is none.
+    pub(crate) fn table(&self, key: &'static str) -> Result<Section<'a>, CaskFileError> {
+        let Some(value) = self.value(key) else {
+            return Ok(Section { document: self.document, name: key, table: DeTable::new(), span: 0..0 });
+        };
         match value.get_ref() {
-            DeValue::Table(table) => self.document.section(key, table.clone(), value.span()).map(Some),
+            DeValue::Table(table) => self.document.section(key, table.clone(), value.span()),
             _ => Err(self.wrong(
                 value.span(),
                 format!("{key} is {}, not a table", described(value.get_ref())),
@@ -233,17 +233,16 @@ impl<'a> Section<'a> {
     }
 
     pub(crate) fn required_table(&self, key: &'static str) -> Result<Section<'a>, CaskFileError> {
-        self.table(key)?.ok_or_else(|| {
-            let Kind { name: file, tables } = self.document.kind;
-            let keys =
-                tables.iter().find(|(name, _)| *name == key).map_or(String::new(), |(_, k)| k.join(", "));
-            self.wrong(
-                self.span(),
-                format!("{file} has no [{key}]"),
-                format!("[{key}] is missing"),
-                &format!("add a line [{key}] and below it its keys: {keys}"),
-            )
-        })
+        let table = self.table(key)?;
+        if self.value(key).is_some() {
+            return Ok(table);
+        }
+        Err(self.wrong(
+            self.span(),
+            format!("{} has no [{key}]", self.document.kind.name),
+            format!("[{key}] is missing"),
+            &format!("add a line [{key}] and below it its keys: {}", table.keys().join(", ")),
+        ))
     }
 
     /// The tables `[[key]]`.
@@ -268,7 +267,7 @@ impl<'a> Section<'a> {
     }
 
     /// A finite number.
-    pub(crate) fn number(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
+    pub(super) fn finite(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         let number = match value.get_ref() {
             DeValue::Integer(integer) if integer.radix() == 10 => {
@@ -301,36 +300,6 @@ impl<'a> Section<'a> {
         Err(self.wrong(value.span(), message, "a number".into(), &mend))
     }
 
-    pub(crate) fn required_number(&self, key: &str, example: &str) -> Result<Placed<f64>, CaskFileError> {
-        self.number(key)?.ok_or_else(|| self.missing(key, &format!("add a line such as {key} = {example}")))
-    }
-
-    /// A number above 0.
-    pub(crate) fn positive(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
-        match self.number(key)? {
-            Some(number) if number.value <= 0.0 => Err(self.wrong(
-                number.span,
-                format!("{key} is {}: it must be above 0", number.value),
-                "a number above 0".into(),
-                &format!("check the value{}", unit_of(key)),
-            )),
-            number => Ok(number),
-        }
-    }
-
-    /// A number of 0 or above.
-    pub(crate) fn not_negative(&self, key: &str) -> Result<Option<Placed<f64>>, CaskFileError> {
-        match self.number(key)? {
-            Some(number) if number.value < 0.0 => Err(self.wrong(
-                number.span,
-                format!("{key} is {}: it must not be below 0", number.value),
-                "0 or more".into(),
-                &format!("check the value{}", unit_of(key)),
-            )),
-            number => Ok(number),
-        }
-    }
-
     /// A word or name, not empty.
     pub(crate) fn text(&self, key: &str) -> Result<Option<Placed<String>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(None) };
@@ -353,8 +322,14 @@ impl<'a> Section<'a> {
         }
     }
 
-    pub(crate) fn required_text(&self, key: &str, example: &str) -> Result<Placed<String>, CaskFileError> {
-        self.text(key)?.ok_or_else(|| self.missing(key, &format!("add a line such as {key} = \"{example}\"")))
+    pub(crate) fn required_text(&self, key: &str) -> Result<Placed<String>, CaskFileError> {
+        self.text(key)?.ok_or_else(|| self.without(key))
+    }
+
+    /// That a key is missing, with a line such as it could have.
+    pub(super) fn without(&self, key: &str) -> CaskFileError {
+        let example = keys::row(self.name, key).map_or("", |row| row.example);
+        self.missing(key, &format!("add a line such as {key} = {example}"))
     }
 
     /// One of a few words.

@@ -4,40 +4,26 @@ use super::CaskFileError;
 use super::section::Section;
 use crate::data::{Corrections, Tolerances};
 
-/// Keys of `[tolerance]`, each a 95 % half-width in the unit of its ending.
-pub(super) const TOLERANCE_KEYS: [&str; 9] = [
-    "angle_deg",
-    "impact_velocity_percent",
-    "calibration_percent",
-    "cross_axis_percent",
-    "position_m",
-    "cog_m",
-    "inertia_percent",
-    "friction_percent",
-    "clock_percent",
-];
-
-/// Keys of `[corrections]`, each true or false.
-pub(super) const CORRECTION_KEYS: [&str; 4] = ["offset", "zero_shift", "skew", "hum"];
-
 /// A tolerance above this share says that nothing is known, percent.
 const LARGEST_PERCENT: f64 = 100.0;
 
-/// `[tolerance]`; what it leaves out is a default, named in `defaults`.
-pub(super) fn tolerances(
-    table: Option<&Section>,
-    defaults: &mut Vec<String>,
-) -> Result<Tolerances, CaskFileError> {
+/// `[tolerance]`, with the defaults of what it leaves out.
+pub(super) fn tolerances(table: &Section) -> Result<Tolerances, CaskFileError> {
     let mut stated = Tolerances::default();
-    for key in TOLERANCE_KEYS {
-        let given = match table {
-            Some(table) => table.not_negative(key)?.map(|value| (table, value)),
-            None => None,
-        };
-        let Some((table, given)) = given else {
-            defaults.push(format!("tolerance.{key}"));
-            continue;
-        };
+    let as_it_stands: fn(f64) -> f64 = |value| value;
+    let percent: fn(f64) -> f64 = |percent| percent / 100.0;
+    for (key, tolerance, in_si) in [
+        ("angle_deg", &mut stated.angle_rad, f64::to_radians as fn(f64) -> f64),
+        ("impact_velocity_percent", &mut stated.impact_velocity, percent),
+        ("calibration_percent", &mut stated.calibration, percent),
+        ("cross_axis_percent", &mut stated.cross_axis, percent),
+        ("position_m", &mut stated.position_m, as_it_stands),
+        ("cog_m", &mut stated.cog_m, as_it_stands),
+        ("inertia_percent", &mut stated.inertia, percent),
+        ("friction_percent", &mut stated.friction, percent),
+        ("clock_percent", &mut stated.clock, percent),
+    ] {
+        let Some(given) = table.number(key)? else { continue };
         if key.ends_with("_percent") && given.value > LARGEST_PERCENT {
             return Err(table.wrong(
                 given.span,
@@ -46,32 +32,20 @@ pub(super) fn tolerances(
                 "the half-width of the 95 % interval, in percent: 1.5 means ± 1.5 %",
             ));
         }
-        let share = given.value / 100.0;
-        match key {
-            "angle_deg" => stated.angle_rad = given.value.to_radians(),
-            "impact_velocity_percent" => stated.impact_velocity = share,
-            "calibration_percent" => stated.calibration = share,
-            "cross_axis_percent" => stated.cross_axis = share,
-            "position_m" => stated.position_m = given.value,
-            "cog_m" => stated.cog_m = given.value,
-            "inertia_percent" => stated.inertia = share,
-            "friction_percent" => stated.friction = share,
-            _ => stated.clock = share,
-        }
+        *tolerance = in_si(given.value);
     }
     Ok(stated)
 }
 
 /// `[corrections]`; what it leaves out is made.
-pub(super) fn corrections(table: Option<&Section>) -> Result<Corrections, CaskFileError> {
+pub(super) fn corrections(table: &Section) -> Result<Corrections, CaskFileError> {
     let mut made = Corrections::default();
-    let Some(table) = table else { return Ok(made) };
-    for (key, made) in CORRECTION_KEYS.into_iter().zip([
-        &mut made.offset,
-        &mut made.zero_shift,
-        &mut made.skew,
-        &mut made.hum,
-    ]) {
+    for (key, made) in [
+        ("offset", &mut made.offset),
+        ("zero_shift", &mut made.zero_shift),
+        ("skew", &mut made.skew),
+        ("hum", &mut made.hum),
+    ] {
         let Some(value) = table.value(key) else { continue };
         *made = value.get_ref().as_bool().ok_or_else(|| {
             table.wrong(

@@ -78,7 +78,7 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
     const END: &str = "end = \"first\" (the low end) or \"second\" (the one that slaps down)";
     const AXIS: &str =
         "axis = \"transverse\" (across the cask, in the plane of the drop) or \"axial\" (along it)";
-    let name = table.required_text("name", "A1")?.value;
+    let name = table.required_text("name")?.value;
     let end = table
         .word("end", &[("first", End::First), ("second", End::Second)], END)?
         .ok_or_else(|| table.missing("end", END))?;

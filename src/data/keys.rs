@@ -1,0 +1,255 @@
+//! The keys of a cask file: what each takes, its default, and its line in the form that `init` writes.
+//!
+//! The parser and the form read these rows, and a test holds the table in docs/formats.md against them.
+
+use super::SAMPLE_RATES_HZ;
+
+/// What stands behind a key.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Takes {
+    /// Text in quotes; where only some words will do, the parser lists them.
+    Text,
+    /// A word or a number.
+    TextOrNumber,
+    /// A text or a table of two texts.
+    TextOrTable,
+    /// true or false.
+    Flag,
+    /// A number.
+    Number(Allowed),
+}
+
+/// Which numbers a key allows by itself; what depends on another key is the parser's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Allowed {
+    /// Every finite one.
+    Any,
+    /// 0 and more.
+    FromZero,
+    /// More than 0.
+    AboveZero,
+    /// From the first to the second; the text says what lies beyond, or what the key means.
+    Within(f64, f64, &'static str),
+}
+
+/// A key of a table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Key {
+    /// As it is written; a quantity's ends in its unit.
+    pub name: &'static str,
+    /// What stands behind it.
+    pub takes: Takes,
+    /// What holds where it is left out, as docs/formats.md says it; [`REQUIRED`] where nothing does.
+    pub default: &'static str,
+    /// A value as it could stand in a file; "" where the form has no line of its own for the key.
+    pub example: &'static str,
+    /// What the form says of it.
+    pub remark: &'static str,
+    /// Whether the form asks for it, since only the user knows it.
+    pub is_asked: bool,
+}
+
+/// A table of the file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KeyTable {
+    /// The word in its brackets.
+    pub name: &'static str,
+    /// What the form says of it.
+    pub remark: &'static str,
+    /// Its keys, in the order of the form.
+    pub keys: &'static [Key],
+}
+
+/// The default of a key that must be there.
+pub const REQUIRED: &str = "required";
+
+/// The tables of a cask file, in the order of the form; `source` stands within a channel.
+pub static TABLES: [KeyTable; 9] = [
+    KeyTable { name: "cask", remark: "", keys: &CASK },
+    KeyTable { name: "drop", remark: "", keys: &DROP },
+    KeyTable { name: "contact", remark: "", keys: &CONTACT },
+    KeyTable {
+        name: "filter",
+        remark: "left out: chosen from the mass and the data; give one of the two",
+        keys: &FILTER,
+    },
+    KeyTable {
+        name: "tolerance",
+        remark: "half-widths of 95 % intervals; these are the defaults",
+        keys: &TOLERANCE,
+    },
+    KeyTable { name: "corrections", remark: "all are made; false leaves one out", keys: &CORRECTIONS },
+    KeyTable { name: "recording", remark: "", keys: &RECORDING },
+    KeyTable { name: "channel", remark: "", keys: &CHANNEL },
+    KeyTable { name: "source", remark: "", keys: &SOURCE },
+];
+
+/// Keys of `[cask]`.
+///
+/// What a cask and a drop may be: models of a centimetre and a gram to more than any cask there is. Within it `predict` ends in a second,
+/// and no product of two keys leaves the numbers that a double holds.
+pub const CASK: [Key; 7] = [
+    text("name", "the file's name").asked(r#""CASK""#, "the cask's name"),
+    number("mass_kg", REQUIRED)
+        .within(1e-3, 1e6, "a model of a gram to more than any cask, in kg")
+        .asked("4466.0", ""),
+    number("length_m", REQUIRED)
+        .within(0.01, 100.0, "a model of a centimetre to more than any cask, in metres")
+        .asked("5.512", "along the axis, between the two ends that strike"),
+    number("height_m", "0")
+        .zero_or_more()
+        .shown("0.8", "cross-section in the plane of the drop; left out: a thin rod"),
+    number("width_m", "–").above_zero().shown("0.8", "across that plane, reported only"),
+    number("cog_m", "`length_m` / 2")
+        .above_zero()
+        .shown("2.5", "centre of gravity from the first end; left out: length_m / 2"),
+    number("inertia_kg_m2", "m (l² + h²)/12")
+        .above_zero()
+        .shown("2100.0", "about the centre of gravity; left out: m (l² + h²) / 12"),
+];
+
+/// Keys of `[drop]`.
+pub const DROP: [Key; 4] = [
+    number("height_m", "required, but beside `impact_velocity_m_s`: then v0²/(2 g)")
+        .within(1e-3, 1000.0, "in metres: from a millimetre to more than any drop tower")
+        .asked("9.0", "free-fall height of the lowest point"),
+    number("angle_deg", REQUIRED)
+        .within(
+            0.0,
+            90.0,
+            "the inclination of the cask's axis above the horizontal before the drop, in degrees; the first end is the low one",
+        )
+        .asked("15.0", "inclination of the axis above the horizontal"),
+    // From below the velocity of the least drop to above that of the highest; beyond, a body turns thousands of times in flight.
+    number("impact_velocity_m_s", "√(2 g h)")
+        .within(0.01, 200.0, "in m/s: no drop of a cask is slower or faster; check the value and its unit")
+        .shown("13.3", "overrides √(2 g h)"),
+    // From below the Moon's 1.6 m/s² to three hundred times the Earth's in a centrifuge.
+    number("gravity_m_s2", "9.81")
+        .within(1.0, 3000.0, "in m/s²: the Moon's to that of a centrifuge")
+        .shown("9.81", "this is the default"),
+];
+
+/// Keys of `[contact]`.
+pub const CONTACT: [Key; 1] = [Key { takes: Takes::TextOrNumber, ..text("friction", "`\"rough\"`") }
+    .shown(r#""rough""#, r#""rough" (default), "smooth" or a Coulomb coefficient such as 0.4"#)];
+
+/// Keys of `[filter]`.
+pub const FILTER: [Key; 2] = [
+    number("cfc", "").above_zero().shown("180", "a channel frequency class of SAE J211 / ISO 6487"),
+    number("cutoff_hz", "").above_zero().shown("400.0", "a −3 dB cut-off"),
+];
+
+/// Keys of `[tolerance]`, each a 95 % half-width in the unit of its ending.
+pub const TOLERANCE: [Key; 9] = [
+    number("angle_deg", "0.4").zero_or_more().shown("0.4", "drop angle"),
+    number("impact_velocity_percent", "0.3").zero_or_more().shown("0.3", ""),
+    number("calibration_percent", "1").zero_or_more().shown("1.0", "scale of a channel"),
+    number("cross_axis_percent", "2")
+        .zero_or_more()
+        .shown("2.0", "what a sensor reads of the other body axis, tilt included"),
+    number("position_m", "0.01").zero_or_more().shown("0.01", "place of a sensor along the axis"),
+    number("cog_m", "0.01").zero_or_more().shown("0.01", "centre of gravity"),
+    number("inertia_percent", "2").zero_or_more().shown("2.0", ""),
+    number("friction_percent", "2")
+        .zero_or_more()
+        .shown("2.0", "contact law, of the way from rough to smooth"),
+    number("clock_percent", "0.05").zero_or_more().shown("0.05", "rate of the recorder's clock"),
+];
+
+/// Keys of `[corrections]`.
+pub const CORRECTIONS: [Key; 4] = [
+    flag("offset").shown("true", "mean of the free fall"),
+    flag("zero_shift").shown("true", "change of the offset at the first impact"),
+    flag("skew").shown("true", "a channel stamped late or early"),
+    flag("hum").shown("true", "mains hum"),
+];
+
+/// Keys of `[recording]`.
+pub const RECORDING: [Key; 1] = [text("time", "found").shown(
+    r#""time_s""#,
+    "CSV column or HDF5 dataset with the times, where they are not found by themselves",
+)];
+
+/// Keys of `[[channel]]`.
+pub const CHANNEL: [Key; 14] = [
+    text("name", REQUIRED).asked(r#""A1""#, ""),
+    text("end", REQUIRED).asked(r#""first""#, r#"check: "first" or "second""#),
+    text("axis", REQUIRED).asked(r#""transverse""#, r#"check: "transverse" or "axial""#),
+    Key { takes: Takes::TextOrTable, ..text("source", REQUIRED) }.asked(r#""/daq/a1.samples""#, ""),
+    text("unit", "the recording's").shown(r#""g""#, "left out: the recording says so itself"),
+    number("position_m", REQUIRED).asked("0.15", "along the axis, from the first end"),
+    number("offset_m", "0").shown("0.0", "across the axis, positive away from the target"),
+    number("polarity", "1").shown("1", "-1: mounted the other way round"),
+    number("sensitivity", "").above_zero().shown("10.0", r#"mV per g, with "V" and "mV""#),
+    number("full_scale", "–").above_zero().shown("2000.0", "in `unit`: where the channel clips"),
+    number("sample_rate_hz", "the recording's")
+        .within(*SAMPLE_RATES_HZ.start(), *SAMPLE_RATES_HZ.end(), "samples a second, in Hz")
+        .shown("100000.0", "overrides what the recording says"),
+    text("time", "`[recording] time`")
+        .shown(r#""/daq/time_s""#, "this channel's own times (CSV column, HDF5 dataset)"),
+    text("coupling", "`\"dc\"`").shown(r#""dc""#, r#"or "ac", then also time_constant_s = 0.3"#),
+    number("time_constant_s", "").above_zero(),
+];
+
+/// Keys of a source that is a table, `{ topic = …, field = … }`.
+pub const SOURCE: [Key; 2] = [
+    text("topic", REQUIRED).shown(r#""/imu""#, ""),
+    text("field", REQUIRED).shown(r#""linear_acceleration.z""#, ""),
+];
+
+const fn text(name: &'static str, default: &'static str) -> Key {
+    Key { name, takes: Takes::Text, default, example: "", remark: "", is_asked: false }
+}
+
+const fn number(name: &'static str, default: &'static str) -> Key {
+    Key { takes: Takes::Number(Allowed::Any), ..text(name, default) }
+}
+
+const fn flag(name: &'static str) -> Key {
+    Key { takes: Takes::Flag, ..text(name, "true") }
+}
+
+impl Key {
+    const fn zero_or_more(self) -> Self {
+        Self { takes: Takes::Number(Allowed::FromZero), ..self }
+    }
+
+    const fn above_zero(self) -> Self {
+        Self { takes: Takes::Number(Allowed::AboveZero), ..self }
+    }
+
+    const fn within(self, least: f64, most: f64, why: &'static str) -> Self {
+        Self { takes: Takes::Number(Allowed::Within(least, most, why)), ..self }
+    }
+
+    /// Whether a value that the file leaves out enters the result all the same.
+    pub fn is_assumed(&self) -> bool {
+        let is_number = matches!(self.takes, Takes::Number(_) | Takes::TextOrNumber);
+        is_number && !self.default.starts_with(REQUIRED) && !["", "–"].contains(&self.default)
+    }
+
+    const fn shown(self, example: &'static str, remark: &'static str) -> Self {
+        Self { example, remark, ..self }
+    }
+
+    const fn asked(self, example: &'static str, remark: &'static str) -> Self {
+        Self { is_asked: true, ..self.shown(example, remark) }
+    }
+}
+
+/// The row of a key in the table of this name.
+pub fn row(table: &str, key: &str) -> Option<&'static Key> {
+    TABLES.iter().find(|known| known.name == table)?.keys.iter().find(|known| known.name == key)
+}
+
+/// The names of keys, in their order.
+pub const fn names<const N: usize>(keys: &[Key; N]) -> [&'static str; N] {
+    let mut names = [""; N];
+    let mut i = 0;
+    while i < N {
+        names[i] = keys[i].name;
+        i += 1;
+    }
+    names
+}
