@@ -5,6 +5,7 @@ mod command_line;
 mod compliant;
 mod csv_times;
 mod damage;
+mod documents;
 mod first_minutes;
 mod fixtures;
 mod golden;

@@ -1,0 +1,117 @@
+//! From the pages that a person wrote to what they must hold: links that lead somewhere, answers that are the program's.
+
+use crate::run::dropcheck;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Every page below `directory`, sorted.
+fn pages_below(directory: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(directory).expect("a folder").flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            found.extend(pages_below(&path));
+        } else if path.extension().is_some_and(|extension| extension == "md") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// README, changelog and `docs`, without what programs write.
+fn written_pages() -> Vec<PathBuf> {
+    let mut pages = pages_below(&root().join("docs"));
+    pages.retain(|page| !page.starts_with(root().join("docs/measured")));
+    pages.extend(["README.md", "CHANGELOG.md"].map(|name| root().join(name)));
+    assert!(pages.len() > 15, "the pages were not found: {pages:?}");
+    pages
+}
+
+fn text(page: &Path) -> String {
+    fs::read_to_string(page).unwrap_or_else(|error| panic!("{}: {error}", page.display()))
+}
+
+/// Lines of a page with their number, without fenced and indented code.
+fn lines_without_code(text: &str) -> Vec<(usize, &str)> {
+    let mut is_code = false;
+    let outside = |(_, line): &(usize, &str)| {
+        let is_fence = line.trim_start().starts_with("```");
+        is_code ^= is_fence;
+        !is_code && !is_fence && !line.starts_with("    ")
+    };
+    text.lines().enumerate().map(|(i, line)| (i + 1, line)).filter(outside).collect()
+}
+
+/// What stands in the brackets of `](…)`, code in backticks left out.
+fn links(text: &str) -> Vec<String> {
+    let lines: Vec<&str> = lines_without_code(text).into_iter().map(|(_, line)| line).collect();
+    let prose: String = lines.join(" ").split('`').step_by(2).collect();
+    prose.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(to, _)| to.to_owned()).collect()
+}
+
+/// The anchor of each heading, as code hosts make them: `## What is left, 2` is `what-is-left-2`.
+fn anchors(text: &str) -> Vec<String> {
+    let headings = lines_without_code(text).into_iter().filter_map(|(_, line)| {
+        let title = line.trim_start_matches('#');
+        (title.len() < line.len()).then_some(title.trim())
+    });
+    let is_kept = |c: &char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
+    headings
+        .map(|title| title.to_lowercase().chars().filter(is_kept).collect::<String>().replace(' ', "-"))
+        .collect()
+}
+
+/// The first block of a page's code that begins with the command, without that line.
+fn answer<'a>(page: &'a str, command: &str) -> &'a str {
+    let (_, rest) = page.split_once(&format!("$ {command}")).expect("the command");
+    let (_, block) = rest.split_once('\n').expect("an answer");
+    block.split("```").next().unwrap_or_default()
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let mut dead = Vec::new();
+    let mut looked_at = 0;
+    let others = ["fixtures/README.md", "tests/campaign/README.md"].map(|name| root().join(name));
+    for page in pages_below(&root().join("docs")).into_iter().chain(written_pages()).chain(others) {
+        for link in links(&text(&page)) {
+            if link.starts_with("http") {
+                continue;
+            }
+            looked_at += 1;
+            let (file, anchor) = link.split_once('#').unwrap_or((&link, ""));
+            let target = if file.is_empty() { page.clone() } else { page.with_file_name(file) };
+            let is_there = target.exists()
+                && (anchor.is_empty() || anchors(&text(&target)).iter().any(|found| found == anchor));
+            if !is_there {
+                dead.push(format!("{}: {link}", page.display()));
+            }
+        }
+    }
+    assert!(looked_at > 100, "the links were not found: {looked_at}");
+    assert!(dead.is_empty(), "links that lead nowhere:\n{}", dead.join("\n"));
+}
+
+#[test]
+fn what_the_pages_show_is_what_the_program_says() {
+    let page = text(&root().join("README.md"));
+    let shown = answer(&page, "dropcheck analyze fixtures/anf18-json.mcap");
+    let golden = text(&root().join("tests/golden/anf18-json.txt"));
+    assert!(golden.starts_with(shown), "README.md shows another table than tests/golden/anf18-json.txt");
+
+    let words = "predict --cask fixtures/anf18-json.toml --k 0.5 --contact 0.4 --k-range 0.3:0.7 --friction-range 0.2:0.6";
+    let page = text(&root().join("docs/predicting.md"));
+    let shown = answer(&page, &format!("dropcheck {words}"));
+    let cask = root().join("fixtures/anf18-json.toml");
+    let words: Vec<String> = words
+        .split(' ')
+        .map(|word| word.replace("fixtures/anf18-json.toml", &cask.to_string_lossy()))
+        .collect();
+    let said = dropcheck(&words).stdout;
+    assert!(said.starts_with(shown), "docs/predicting.md shows another table than the program:\n{said}");
+}
