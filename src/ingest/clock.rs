@@ -149,8 +149,11 @@ fn both(taken: &Statement, other: &Statement) -> String {
 }
 
 fn overruled(taken: &Statement, other: &Statement) -> Issue {
-    let message =
-        format!("{}; the first was taken, and every velocity goes with the rate", both(taken, other));
+    let message = format!(
+        "{}; the first was taken, and every velocity goes with the rate: if the second is right, write sample_rate_hz = {}",
+        both(taken, other),
+        shown::hz(other.rate_hz)
+    );
     Issue::new(IssueCode::Clock, Severity::Warning, message)
 }
 

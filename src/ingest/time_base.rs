@@ -3,40 +3,32 @@
 mod blocks;
 mod coarse;
 mod cut;
+mod error;
 mod fit;
 mod missing;
 mod order;
 mod resample;
+mod uniform;
 
 pub(super) use super::clock::RATE_TOLERANCE;
 pub(super) use super::shown::{short, to_digits};
 pub use blocks::from_blocks;
 pub(super) use coarse::period as period_of_changes;
 pub(super) use cut::{cut, unit_s, usual_hz};
+pub use error::TimeBaseError;
+use error::check_rate;
+pub use uniform::{Block, Uniform};
 
-use super::clock::{self, Claims, Refusal};
-use super::shown::digits;
-use crate::data::{Issue, IssueCode, Samples, Severity, Span};
+use super::clock::{self, Claims};
+use crate::data::{Issue, IssueCode, Samples, Severity};
 use fit::Fit;
 use order::Ordered;
 use std::sync::OnceLock;
+use uniform::{Number, Placed};
 
-/// Samples on a uniform base.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Uniform {
-    /// Time of sample 0, in the clock of the times given, s.
-    pub start_s: f64,
-    /// Rate, Hz.
-    pub sample_rate_hz: f64,
-    /// Samples; NaN where missing.
-    pub samples: Samples,
-    /// Stretches without samples.
-    pub gaps: Vec<Span>,
-    /// RMS distance of the recorded times from the base, s; 0 where samples were not moved.
-    pub time_jitter_s: f64,
-    /// What was put right: duplicates, disorder, gaps, jitter (times in the clock of the times given).
-    pub issues: Vec<Issue>,
-}
+/// Times that lie nearer to the base than this part of the sample interval (RMS) leave their samples where they are: at
+/// 2 % a sine of a tenth of the sample rate is off by 1 % of itself at most, a tenth of what its sampling costs.
+const STEADY_PART: f64 = 0.02;
 
 impl Uniform {
     /// The same samples at a declared rate, which wins over that of the recorded times, with a warning.
@@ -49,175 +41,6 @@ impl Uniform {
         self.issues.extend(Claims::of_cask(Some(declared_hz)).weigh(Some(&own))?.issues);
         self.sample_rate_hz = declared_hz;
         Ok(self)
-    }
-}
-
-impl TimeBaseError {
-    /// What is wrong with its own remedy where it has one, else with this.
-    pub(super) fn refusal(self, remedy: &str) -> Refusal {
-        match self {
-            Self::Refused(refusal) => refusal,
-            other => Refusal::new(other.to_string(), remedy),
-        }
-    }
-}
-
-/// A contiguous run of samples with its own start and rate.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Block {
-    /// Time of its first sample, s.
-    pub start_s: f64,
-    /// Rate, Hz.
-    pub sample_rate_hz: f64,
-    /// Number of its samples.
-    pub count: usize,
-}
-
-/// Why times give no uniform base.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum TimeBaseError {
-    /// There are fewer than two samples.
-    #[error("{count} sample(s) make no record: at least two are needed")]
-    TooFew {
-        /// How many there are.
-        count: usize,
-    },
-    /// Times and samples differ in number.
-    #[error("there are {times} times but {samples} samples: each sample needs one time of its own")]
-    Lengths {
-        /// Number of times.
-        times: usize,
-        /// Number of samples.
-        samples: usize,
-    },
-    /// A time is NaN or infinite.
-    #[error(
-        "time number {number} is {time_s}, which is no time: remove that row or name another time source"
-    )]
-    NotFinite {
-        /// Which, counted from 1.
-        number: usize,
-        /// Its value, s.
-        time_s: f64,
-    },
-    /// All times are the same.
-    #[error("all times are {time_s} s: these are no times; give sample_rate_hz instead")]
-    AllEqual {
-        /// The value, s.
-        time_s: f64,
-    },
-    /// Times repeat so often, and change so seldom or unevenly, that they do not tell when a sample was taken.
-    #[error(
-        "the times are cut to {} s: {count} samples share {} times that are too few or too uneven to tell their rate; \
-         give sample_rate_hz for this channel",
-        digits(*step_s, 3),
-        changes + 1
-    )]
-    TooCoarse {
-        /// What they are cut to, s.
-        step_s: f64,
-        /// How many times are later than the one before.
-        changes: usize,
-        /// Number of times.
-        count: usize,
-    },
-    /// Times jump so far that filling the gap would not fit in memory.
-    #[error(
-        "times jump from {} s to {} s, which would be {lost:.3e} samples at {} Hz: no gap of one record; check the clock, \
-         or cut the recording there",
-        short(*from_s), short(*to_s), short(*sample_rate_hz)
-    )]
-    Jump {
-        /// Last time before the jump, s.
-        from_s: f64,
-        /// First time after it, s.
-        to_s: f64,
-        /// Samples that would have to be filled in.
-        lost: f64,
-        /// The rate of the rest, Hz.
-        sample_rate_hz: f64,
-    },
-    /// Nothing states a rate, or rates contradict each other.
-    #[error(transparent)]
-    Refused(#[from] Refusal),
-    /// A rate is zero, negative or no number.
-    #[error(
-        "the sample rate is {sample_rate_hz} Hz: it must be above zero; set sample_rate_hz in the cask file"
-    )]
-    Rate {
-        /// The rate, Hz.
-        sample_rate_hz: f64,
-    },
-    /// Blocks of one channel differ in rate.
-    #[error(
-        "blocks differ in sample rate: {first_hz} Hz at first, {other_hz} Hz from {at_s} s on; \
-         cut the recording there, or set sample_rate_hz if one of them is wrong"
-    )]
-    RateChanges {
-        /// Rate of the first block, Hz.
-        first_hz: f64,
-        /// The other rate, Hz.
-        other_hz: f64,
-        /// Where it starts, s.
-        at_s: f64,
-    },
-}
-
-/// Times that lie nearer to the base than this part of the sample interval (RMS) leave their samples where they are: at
-/// 2 % a sine of a tenth of the sample rate is off by 1 % of itself at most, a tenth of what its sampling costs.
-const STEADY_PART: f64 = 0.02;
-
-/// A sample type that a base can hold.
-pub(super) trait Number: Copy {
-    /// What stands where a sample is missing.
-    const MISSING: Self;
-    /// As f64.
-    fn to_f64(self) -> f64;
-    /// From f64, rounded.
-    fn from_f64(value: f64) -> Self;
-}
-
-impl Number for f32 {
-    const MISSING: Self = f32::NAN;
-    fn to_f64(self) -> f64 {
-        f64::from(self)
-    }
-    #[allow(clippy::cast_possible_truncation, reason = "interpolated between f32 samples")]
-    fn from_f64(value: f64) -> Self {
-        value as f32
-    }
-}
-
-impl Number for f64 {
-    const MISSING: Self = f64::NAN;
-    fn to_f64(self) -> f64 {
-        self
-    }
-    fn from_f64(value: f64) -> Self {
-        value
-    }
-}
-
-/// Samples placed on a base, before their type is forgotten again.
-struct Placed<S> {
-    start_s: f64,
-    sample_rate_hz: f64,
-    samples: Vec<S>,
-    gaps: Vec<Span>,
-    time_jitter_s: f64,
-    issues: Vec<Issue>,
-}
-
-impl<S> Placed<S> {
-    fn into_uniform(self, wrap: impl FnOnce(Vec<S>) -> Samples) -> Uniform {
-        Uniform {
-            start_s: self.start_s,
-            sample_rate_hz: self.sample_rate_hz,
-            samples: wrap(self.samples),
-            gaps: self.gaps,
-            time_jitter_s: self.time_jitter_s,
-            issues: self.issues,
-        }
     }
 }
 
@@ -317,14 +140,6 @@ pub fn from_rate(start_s: f64, sample_rate_hz: f64, samples: Samples) -> Result<
     debug_assert_eq!(count == 0, gaps.is_empty());
     uniform.gaps = gaps;
     Ok(uniform)
-}
-
-fn check_rate(sample_rate_hz: f64) -> Result<(), TimeBaseError> {
-    if sample_rate_hz.is_finite() && sample_rate_hz > 0.0 {
-        Ok(())
-    } else {
-        Err(TimeBaseError::Rate { sample_rate_hz })
-    }
 }
 
 fn place<S: Number>(times: &Times, samples: Vec<S>, claims: &Claims) -> Result<Placed<S>, TimeBaseError> {

@@ -72,7 +72,7 @@ fn a_stated_rate_that_contradicts_the_stamps_is_named_beside_what_comes_of_it() 
             issues.iter().filter(|i| i["code"] == code).filter_map(|i| i["message"].as_str()).collect()
         };
         let contradictions = told("clock");
-        assert!(contradictions.iter().any(|m| m.contains("declared and was taken")), "{rate_hz}: {result}");
+        assert!(contradictions.iter().any(|m| m.contains("the first was taken")), "{rate_hz}: {result}");
         assert!(told("gap").is_empty() && told("duplicate_blocks").is_empty(), "{rate_hz}: {result}");
         if has_impact {
             assert!(number(&result, "/first_impact/time/value").is_some(), "{rate_hz}: {result}");

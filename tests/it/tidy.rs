@@ -23,12 +23,12 @@ fn allowed(module: &str) -> Option<Vec<&'static str>> {
     }
 }
 
-fn root() -> &'static Path {
+pub(crate) fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
 /// Every Rust file below `directory`, sorted.
-fn rust_files(directory: &Path) -> Vec<PathBuf> {
+pub(crate) fn rust_files(directory: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
         let path = entry.path();
@@ -43,7 +43,7 @@ fn rust_files(directory: &Path) -> Vec<PathBuf> {
 }
 
 /// The module path of a file below `src`: `src/a/b.rs` and `src/a/b/mod.rs` are both `[a, b]`.
-fn module_path(file: &Path) -> Vec<String> {
+pub(crate) fn module_path(file: &Path) -> Vec<String> {
     let relative = file.strip_prefix(root().join("src")).expect("below src").with_extension("");
     let mut parts: Vec<String> = relative.iter().map(|part| part.to_string_lossy().into_owned()).collect();
     if parts.last().is_some_and(|last| last == "mod") {
@@ -53,7 +53,7 @@ fn module_path(file: &Path) -> Vec<String> {
 }
 
 /// The text without comments and strings, so that neither is taken for a path.
-fn code_of(text: &str) -> String {
+pub(crate) fn code_of(text: &str) -> String {
     let mut code = String::with_capacity(text.len());
     for line in text.lines() {
         let mut rest = line.split("//").next().unwrap_or_default();

@@ -1,9 +1,12 @@
 //! Blocks of samples with a stamp each to one run: sorted, doubles dropped, overlaps trimmed, gaps NaN.
 
 use super::cut::{Cut, ROUND_OFF, cut, short_blocks};
+use super::error::{TimeBaseError, check_rate};
 use super::order::{as_f64, is_same, restart, restarted};
-use super::{Block, Number, Placed, RATE_TOLERANCE, TimeBaseError, Uniform, check_rate, fit, missing};
+use super::uniform::{Block, Number, Placed, Uniform};
+use super::{fit, missing};
 use crate::data::{Issue, IssueCode, Samples, Severity};
+use crate::ingest::clock::RATE_TOLERANCE;
 use std::ops::Range;
 
 /// A block, its samples a range of those of all blocks.

@@ -4,10 +4,12 @@
 //! changes that keep to this are as good as one another: the middle one's slope is the period, half of their spread its
 //! uncertainty. A line through all samples would be off by about (step / record)², 1 % for ten steps (docs/formats.md).
 
+use super::error::TimeBaseError;
+use super::missing;
 use super::order::as_f64;
-use super::{Number, Placed, RATE_TOLERANCE, TimeBaseError, missing};
+use super::uniform::{Number, Placed};
 use crate::data::{Issue, IssueCode, Severity};
-use crate::ingest::clock::{Claims, of_times};
+use crate::ingest::clock::{Claims, RATE_TOLERANCE, of_times};
 use crate::ingest::shown::digits as nice;
 use crate::numerics::robust;
 

@@ -1,7 +1,8 @@
 //! Rising times to the uniform base nearest to them: start, period, and which sample belongs where.
 
+use super::error::TimeBaseError;
 use super::order::as_f64;
-use super::{RATE_TOLERANCE, TimeBaseError};
+use crate::ingest::clock::RATE_TOLERANCE;
 use crate::numerics::robust;
 use rayon::prelude::*;
 use std::ops::Range;

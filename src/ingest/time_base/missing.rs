@@ -1,8 +1,8 @@
 //! Samples with gaps to samples with NaN in them, and the issues that say so.
 
-use super::Number;
 use super::fit::Fit;
 use super::order::as_f64;
+use super::uniform::Number;
 use crate::data::{Issue, IssueCode, Severity, Span};
 
 /// Up to this many gaps get an issue each; more are summed up in one.

@@ -1,6 +1,7 @@
 //! Times as recorded to times that rise: sorted, without doubles.
 
-use super::{Number, TimeBaseError};
+use super::error::TimeBaseError;
+use super::uniform::Number;
 use crate::data::{Issue, IssueCode, Severity};
 use std::borrow::Cow;
 

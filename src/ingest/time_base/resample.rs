@@ -1,8 +1,8 @@
 //! Samples at jittering times to samples at uniform times, by local cubic interpolation.
 
-use super::Number;
 use super::fit::{Fit, whole};
 use super::order::as_f64;
+use super::uniform::Number;
 
 /// Samples moved onto a base.
 pub(super) struct Resampled<S> {
