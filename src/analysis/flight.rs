@@ -3,8 +3,8 @@
 use super::impact::Impact;
 use super::{settle, sticking};
 use crate::data::{
-    At, AxialClosure, Axis, CaskFile, Contact, End, Events, FlightFit, Issue, Motion, Quantities,
-    ReconstructionChoice, RivalLaw, Setup, Signal,
+    At, AxialClosure, Axis, CaskFile, Contact, DropFinding, End, Events, Finding, FlightFit, Motion,
+    Quantities, ReconstructionChoice, RivalLaw, Setup, Signal,
 };
 use crate::motion::{self, Integrated};
 use crate::{events, fit, judge};
@@ -25,12 +25,16 @@ pub(super) struct Flown {
 }
 
 /// The events as far as they are found, and the flight where the motion could be had; what prevents it goes to the findings.
-pub(super) fn flown(impact: &Impact, file: &CaskFile, findings: &mut Vec<Issue>) -> (Events, Option<Flown>) {
+pub(super) fn flown(
+    impact: &Impact,
+    file: &CaskFile,
+    findings: &mut Vec<Finding>,
+) -> (Events, Option<Flown>) {
     let mut events = impact.events();
     let is_missing = |end: &End| events::transverse(&impact.signals, *end).is_none();
     let missing = [End::First, End::Second].into_iter().find(is_missing);
     if let Some(end) = impact.stand_in.as_ref().map(|s| s.end).or(missing) {
-        findings.push(judge::judge_missing_end(end, impact.stand_in.is_some()));
+        findings.push(DropFinding::MissingEnd { end, is_stood_in_for: impact.stand_in.is_some() }.into());
         if impact.stand_in.is_none() {
             return (events, None);
         }
@@ -52,7 +56,7 @@ fn fitted(
     file: &CaskFile,
     integrated: &Integrated,
     events: &mut Events,
-    findings: &mut Vec<Issue>,
+    findings: &mut Vec<Finding>,
 ) -> Option<FlightFit> {
     let settled = settle::settle(file, integrated)?;
     let signals: &[Signal] = &integrated.signals;
@@ -71,7 +75,7 @@ fn fitted(
     }
     let flight = settled.flight.filter(|flight| impact.stand_in.is_none() || flight.is_told_apart());
     let Some(mut flight) = flight else {
-        findings.push(judge::judge_short_flight());
+        findings.push(DropFinding::ShortFlight.into());
         return None;
     };
     if let Some(stand_in) = &impact.stand_in {

@@ -2,8 +2,8 @@
 
 use super::{one_end, settle};
 use crate::data::{
-    At, Axis, BENDING_WAVE_M_S, CaskFile, Channel, Coupling, Drop, End, Events, Issue, Recording, RestLevel,
-    Severity, Signal,
+    At, Axis, BENDING_WAVE_M_S, CaskFile, Channel, Coupling, Drop, End, Events, Finding, Recording,
+    RestLevel, Severity, Signal,
 };
 use crate::{condition, events, judge};
 use one_end::StandIn;
@@ -27,7 +27,7 @@ pub(super) struct Impact {
 
 impl Impact {
     /// The first impact of a recording; `None` where no channel shows one.
-    pub fn find(recording: &Recording, file: &CaskFile, findings: &mut Vec<Issue>) -> Option<Self> {
+    pub fn find(recording: &Recording, file: &CaskFile, findings: &mut Vec<Finding>) -> Option<Self> {
         let drop = &file.drop;
         let (silent, changes) =
             rayon::join(|| judge::judge_silent(&recording.channels), || events::Changes::of(recording));
@@ -81,16 +81,16 @@ fn with_both_ends(file: &CaskFile, signals: &mut Vec<Signal>, contact_s: f64) ->
 
 /// Shifts channels whose clock is apart back, if that correction may be made; returns what a delay that a bending wave explains as well
 /// leaves open of R's times, as a standard uncertainty, s.
-fn align(file: &CaskFile, signals: &mut [Signal], contact_s: f64, findings: &mut Vec<Issue>) -> f64 {
+fn align(file: &CaskFile, signals: &mut [Signal], contact_s: f64, findings: &mut Vec<Finding>) -> f64 {
     let onsets = events::answers(signals, contact_s);
-    let issues = judge::judge_skew(&onsets, signals, &file.cask, file.corrections.skew);
     let mut u_skew_s = 0.0_f64;
-    for issue in &issues {
-        let Some(onset) = onsets.iter().find(|o| issue.channel.as_ref() == Some(&o.channel)) else {
+    for onset in &onsets {
+        let Some(finding) = judge::judge_skew(onset, signals, &file.cask, file.corrections.skew) else {
             continue;
         };
+        let is_shifted = finding.severity == Severity::Warning && file.corrections.skew;
+        findings.push(finding);
         let Some(signal) = signals.iter_mut().find(|s| s.name == onset.channel) else { continue };
-        let is_shifted = issue.severity == Severity::Warning && file.corrections.skew;
         if is_shifted {
             signal.start_s -= onset.delay_s;
         }
@@ -99,7 +99,6 @@ fn align(file: &CaskFile, signals: &mut [Signal], contact_s: f64, findings: &mut
             u_skew_s = u_skew_s.max(open_s.abs());
         }
     }
-    findings.extend(issues);
     u_skew_s
 }
 

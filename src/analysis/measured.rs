@@ -2,7 +2,7 @@
 
 use super::flight::Flown;
 use super::impact::Impact;
-use crate::data::{BodyModel, CaskFile, Comparison, Events, GRAZE_SHARE, Issue, ModelChoice};
+use crate::data::{BodyModel, CaskFile, Comparison, Events, Finding, GRAZE_SHARE, ModelChoice};
 use crate::{compare, judge, predict};
 
 /// What is measured beside what is predicted.
@@ -20,7 +20,7 @@ impl Measured {
         impact: &Impact,
         events: &Events,
         file: &CaskFile,
-        findings: &mut Vec<Issue>,
+        findings: &mut Vec<Finding>,
     ) -> Option<Self> {
         let Flown { flight, reconstruction, quantities, .. } = flown;
         findings.extend(judge::judge_coupling(&impact.signals, flight, file));
@@ -44,7 +44,7 @@ impl Measured {
 }
 
 /// What the motion itself and its closures say.
-fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -> Vec<Issue> {
+fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -> Vec<Finding> {
     let Flown { flight, motion, quantities, reconstruction, .. } = flown;
     let mut found = judge::judge_motion(file, &impact.signals, flight, motion, quantities);
     found.extend(judge::judge_strike(flight, file.drop.impact_velocity_m_s));

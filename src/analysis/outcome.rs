@@ -3,8 +3,8 @@
 use super::impact::Impact;
 use super::{Reached, sticking};
 use crate::data::{
-    Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, DropResult, Estimate, Events, FirstImpact,
-    Input, Issue, Prediction, Quantities, Recording, Setting, Setup, Signal, SlapDown,
+    Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, DropResult, Estimate, Events, Finding,
+    FirstImpact, Input, Prediction, Quantities, Recording, Setting, Setup, Signal, SlapDown,
 };
 use crate::numerics::reduce::peak;
 use crate::{fit, judge, motion, predict};
@@ -23,14 +23,14 @@ pub(super) struct Found {
 }
 
 /// The result where no impact was found.
-pub(super) fn without_impact(recording: &Recording, file: &CaskFile, findings: Vec<Issue>) -> Analysis {
+pub(super) fn without_impact(recording: &Recording, file: &CaskFile, findings: Vec<Finding>) -> Analysis {
     let channels: Vec<ChannelSummary> = recording.channels.iter().map(summary).collect();
     let result = result(recording, file, findings, (channels, Events::default()), None);
     analysis(recording, file, result, Curves::default())
 }
 
 /// The result from the first impact on, as far as the analysis came.
-pub(super) fn of(recording: &Recording, file: &CaskFile, findings: Vec<Issue>, found: Found) -> Analysis {
+pub(super) fn of(recording: &Recording, file: &CaskFile, findings: Vec<Finding>, found: Found) -> Analysis {
     let Found { impact, events, smooth, reached } = found;
     let measured = match &reached {
         Reached::Measured(flown, _) => Some(flown),
@@ -75,7 +75,7 @@ fn analysis(recording: &Recording, file: &CaskFile, result: DropResult, curves: 
 fn result(
     recording: &Recording,
     file: &CaskFile,
-    mut findings: Vec<Issue>,
+    mut findings: Vec<Finding>,
     (channels, events): (Vec<ChannelSummary>, Events),
     quantities: Option<&Quantities>,
 ) -> DropResult {

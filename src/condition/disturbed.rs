@@ -1,7 +1,7 @@
 //! Samples to the spikes and dropouts of cables and connectors, which no pulse of a cask looks like.
 
 use super::clipping::runs_of_steps;
-use crate::data::{Issue, IssueCode, Severity, Signal, Span};
+use crate::data::{ChannelFinding, Finding, Severity, Signal, Span};
 use crate::numerics::reduce;
 
 /// A disturbance stands out of its neighbours by this share of the channel's peak …
@@ -32,7 +32,7 @@ fn is_lost(signal: &Signal, index: usize) -> bool {
 }
 
 /// Spikes of one to five samples with what they hold together; nothing is repaired.
-pub(super) fn spikes(signal: &Signal, velocity_step_m_s: f64) -> Option<Issue> {
+pub(super) fn spikes(signal: &Signal, velocity_step_m_s: f64) -> Option<Finding> {
     let force = &signal.force_m_s2;
     let height = height(signal, signal.noise_m_s2);
     let most_m_s = SHARE_OF_STEP * velocity_step_m_s.abs();
@@ -56,13 +56,8 @@ pub(super) fn spikes(signal: &Signal, velocity_step_m_s: f64) -> Option<Issue> {
     }
     let (first, last) = (found.first()?, found.last()?);
     let severity = if held_m_s > SMALL_M_S { Severity::Warning } else { Severity::Note };
-    let message = format!(
-        "{} has {} spikes of one to five samples that no cask makes; left in, they move the velocity by up to {held_m_s:.3} m/s: fasten or change the cable and its connectors",
-        signal.name,
-        found.len(),
-    );
-    let issue = Issue::new(IssueCode::Spikes, severity, message);
-    Some(issue.on(&signal.name).between(signal.time_s(*first), signal.time_s(*last)))
+    let found = ChannelFinding::Spikes { count: found.len(), held_m_s, severity };
+    Some(found.on(&signal.name).between(signal.time_s(*first), signal.time_s(*last)))
 }
 
 /// What the `width` samples from `i` on hold above their neighbours, m/s² × samples, if they are a spike.
@@ -79,7 +74,7 @@ fn area(force: &[f64], i: usize, width: usize, height: f64) -> Option<f64> {
 }
 
 /// Runs of equal samples that no converter gives, marked as gaps and set to 0, and said so.
-pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64) -> Option<Issue> {
+pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64) -> Option<Finding> {
     let height = height(signal, noise_m_s2);
     let end = signal.index_from(before_s);
     let force = &signal.force_m_s2;
@@ -115,15 +110,11 @@ pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64)
     for span in &dropouts {
         signal.force_m_s2[span.from..span.to].fill(0.0);
     }
-    let message = format!(
-        "{} repeats itself to the bit in {} stretches of {samples} samples together: a connector or the recorder dropped out; they are taken for lost (the longest would hold about {most_m_s:.2} m/s): fasten cable and connectors",
-        signal.name,
-        dropouts.len()
-    );
+    let stretches = dropouts.len();
     signal.gaps.extend(dropouts);
     signal.gaps.sort_by_key(|gap| gap.from);
-    let issue = Issue::new(IssueCode::Dropout, Severity::Warning, message);
-    Some(issue.on(&signal.name).between(signal.time_s(first.from), signal.time_s(last.to)))
+    let found = ChannelFinding::Dropout { stretches, samples, most_m_s };
+    Some(found.on(&signal.name).between(signal.time_s(first.from), signal.time_s(last.to)))
 }
 
 /// What a straight bridge over a span holds, against 0, m/s.
@@ -138,6 +129,7 @@ fn bridged_m_s(signal: &Signal, span: Span) -> f64 {
 mod tests {
     use super::super::tests::{noise, signal};
     use super::*;
+    use crate::data::What;
 
     /// 50 ms of free fall and a half sine of 40 ms at 10 kHz, noise of 1 m/s².
     fn pulse() -> Signal {
@@ -166,15 +158,11 @@ mod tests {
             for f in &mut spiky.force_m_s2[200..200 + width] {
                 *f += 900.0;
             }
-            let issue = spikes(&spiky, 20.0).expect("a spike");
+            let finding = spikes(&spiky, 20.0).expect("a spike");
+            let What::Channel(ChannelFinding::Spikes { count: 1, held_m_s: held, .. }) = finding.what else {
+                panic!("{finding:?}")
+            };
             // 900 m/s² for 0.1 ms a sample, noise of 1 m/s² on it.
-            let held: f64 = issue
-                .message
-                .split("up to ")
-                .nth(1)
-                .and_then(|m| m.split(' ').next())
-                .and_then(|m| m.parse().ok())
-                .expect("a size");
             #[allow(clippy::cast_precision_loss, reason = "at most 5")]
             let expected = 0.09 * width as f64;
             assert!((held - expected).abs() < 0.01 * expected + 6e-4, "{held} {expected}");

@@ -1,6 +1,6 @@
 //! The free fall before first contact to the mains hum in it, which is then taken off the whole signal.
 
-use crate::data::{Issue, IssueCode, STANDARD_GRAVITY_M_S2, Severity, Signal};
+use crate::data::{ChannelFinding, Finding, Severity, Signal};
 use crate::numerics::reduce::{block_means, block_of};
 use crate::numerics::sinusoid::{self, Sinusoid};
 use crate::numerics::{as_f64, robust};
@@ -28,7 +28,7 @@ const SEARCH_RATE_HZ: f64 = 4000.0;
 const AHEAD_S: f64 = 0.1;
 
 /// Finds hum before `before_s`; takes it off all samples if `take_off`, and says so.
-pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Option<Issue> {
+pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Option<Finding> {
     let end = signal.index_from(before_s);
     if signal.gaps.iter().any(|gap| gap.from < end) {
         return None;
@@ -59,27 +59,15 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Optio
     }
     let left_m_s =
         if take_off { left_m_s(&lines, as_f64(used) / signal.sample_rate_hz, &swing) } else { whole_m_s };
-    let severity = if left_m_s > MOST_LEFT_M_S { Severity::Warning } else { Severity::Note };
-    let done = if take_off {
-        format!("it was taken off, and up to {left_m_s:.3} m/s of it may be left in the velocity")
-    } else {
-        format!("left as it is it swings the velocity by {left_m_s:.3} m/s")
+    let found = ChannelFinding::Hum {
+        amplitude_m_s2: fundamental.amplitude(),
+        frequency_hz: fundamental.frequency_hz,
+        harmonics: lines.len() - 1,
+        is_taken_off: take_off,
+        left_m_s,
+        severity: if left_m_s > MOST_LEFT_M_S { Severity::Warning } else { Severity::Note },
     };
-    let harmonics =
-        if lines.len() > 1 { format!(" and {} harmonics", lines.len() - 1) } else { String::new() };
-    Some(
-        Issue::new(
-            IssueCode::Hum,
-            severity,
-            format!(
-                "{} hums with {:.2} g at {:.1} Hz{harmonics} before the impact: {done}; check shields and earth loops",
-                signal.name,
-                fundamental.amplitude() / STANDARD_GRAVITY_M_S2,
-                fundamental.frequency_hz
-            ),
-        )
-        .on(&signal.name),
-    )
+    Some(found.on(&signal.name))
 }
 
 /// The line with what the mean over `block` samples takes from it put back: sin(n x)/(n sin x), x = π f/f_s.
@@ -164,6 +152,7 @@ fn left_m_s(lines: &[Sinusoid], length_s: f64, swing: &impl Fn(&Sinusoid, f64) -
 mod tests {
     use super::super::tests::{noise, signal};
     use super::*;
+    use crate::data::What;
 
     /// 0.2 s of free fall and 0.1 s after it at 10 kHz, noise of 2 m/s², with this beside it.
     fn channel(beside: impl Fn(f64) -> f64, seed: u64) -> Signal {
@@ -179,8 +168,8 @@ mod tests {
         for frequency_hz in [49.8, 50.0, 60.1] {
             let mut humming = channel(mains(frequency_hz, 10.0), 3);
             let clean = channel(|_| 0.0, 3);
-            let issue = treat(&mut humming, 0.2, true).expect("10 m/s² of hum");
-            assert_eq!((issue.code, issue.severity), (IssueCode::Hum, Severity::Note), "{}", issue.message);
+            let finding = treat(&mut humming, 0.2, true).expect("10 m/s² of hum");
+            assert_eq!(finding.severity, Severity::Note, "{finding:?}");
             // u_A = 2 √(2/2000) = 0.063; u_f = 0.78 · 0.063/(10 · 0.2) = 25 mHz: 0.31 m/s² at 0.2 s from the middle.
             let off = humming.force_m_s2.iter().zip(&clean.force_m_s2).map(|(a, b)| (a - b).abs());
             assert!(off.fold(0.0, f64::max) < 3.0 * (0.063 + 0.31), "{frequency_hz}");
@@ -192,14 +181,13 @@ mod tests {
         let both = |t: f64| mains(50.0, 10.0)(t) + mains(150.0, 5.0)(t);
         let mut humming = channel(both, 4);
         let before = humming.clone();
-        let issue = treat(&mut humming, 0.2, false).expect("hum");
-        assert!(
-            issue.message.contains("1 harmonics") && issue.message.contains("left as it is"),
-            "{}",
-            issue.message
-        );
+        let finding = treat(&mut humming, 0.2, false).expect("hum");
+        let is_as_found = |what: &What| {
+            matches!(what, What::Channel(ChannelFinding::Hum { harmonics: 1, is_taken_off: false, .. }))
+        };
+        assert!(is_as_found(&finding.what), "{finding:?}");
         // 2 · 10/(2π 50) + 2 · 5/(2π 150) = 0.074 m/s.
-        assert_eq!(issue.severity, Severity::Warning);
+        assert_eq!(finding.severity, Severity::Warning);
         assert_eq!(humming, before);
     }
 

@@ -6,8 +6,7 @@ mod hum;
 mod offset;
 
 use crate::data::{
-    Cask, Channel, CoarseEvent, Corrections, Coupling, Drop, Issue, IssueCode, Recording, Severity, Signal,
-    Span,
+    Cask, Channel, ChannelFinding, CoarseEvent, Corrections, Coupling, Drop, Finding, Recording, Signal, Span,
 };
 use crate::numerics::robust;
 use rayon::prelude::*;
@@ -61,10 +60,10 @@ pub fn condition(
     event: &CoarseEvent,
     reach: &Reach,
     corrections: Corrections,
-) -> (Vec<Signal>, Vec<Issue>) {
+) -> (Vec<Signal>, Vec<Finding>) {
     let each = |channel| signal(channel, event, reach, corrections);
-    let (signals, issues): (Vec<_>, Vec<_>) = recording.channels.par_iter().map(each).unzip();
-    (signals, issues.into_iter().flatten().collect())
+    let (signals, findings): (Vec<_>, Vec<_>) = recording.channels.par_iter().map(each).unzip();
+    (signals, findings.into_iter().flatten().collect())
 }
 
 fn signal(
@@ -72,24 +71,14 @@ fn signal(
     event: &CoarseEvent,
     reach: &Reach,
     corrections: Corrections,
-) -> (Signal, Vec<Issue>) {
+) -> (Signal, Vec<Finding>) {
     let from = channel.index_at(event.near_s - reach.before_s);
     let to = channel.index_at(event.near_s + event.spread_s + reach.after_s);
-    let mut issues = Vec::new();
+    let mut findings = Vec::new();
     let mut force = match channel.coupling {
         Coupling::Dc => channel.force_m_s2(from, to),
         Coupling::Ac { time_constant_s } => {
-            issues.push(
-                Issue::new(
-                    IssueCode::AcCoupled,
-                    Severity::Note,
-                    format!(
-                        "{} is AC-coupled; its droop was put back with the stated time constant of {time_constant_s} s",
-                        channel.name
-                    ),
-                )
-                .on(&channel.name),
-            );
+            findings.push(ChannelFinding::AcStated { time_constant_s }.on(&channel.name));
             let mut whole = channel.force_m_s2(0, to);
             restore_low_frequencies(&mut whole, channel.sample_rate_hz, time_constant_s);
             whole.split_off(from.min(whole.len()))
@@ -122,11 +111,11 @@ fn signal(
         clipped,
         gaps,
     };
-    issues.extend(disturbed::mark_dropouts(&mut signal, noise_m_s2, event.near_s));
-    issues.extend(hum::treat(&mut signal, event.near_s, corrections.hum));
-    issues.extend(offset::treat(&mut signal, event.near_s, corrections.offset));
-    issues.extend(disturbed::spikes(&signal, event.velocity_step_m_s));
-    (signal, issues)
+    findings.extend(disturbed::mark_dropouts(&mut signal, noise_m_s2, event.near_s));
+    findings.extend(hum::treat(&mut signal, event.near_s, corrections.hum));
+    findings.extend(offset::treat(&mut signal, event.near_s, corrections.offset));
+    findings.extend(disturbed::spikes(&signal, event.velocity_step_m_s));
+    (signal, findings)
 }
 
 /// Undoes a first-order high-pass: x = y + ∫ y dt / T   (19), from the channel's first sample on.

@@ -1,6 +1,6 @@
 //! The free fall before first contact to a channel's offset and noise.
 
-use crate::data::{Issue, IssueCode, STANDARD_GRAVITY_M_S2, Severity, Signal};
+use crate::data::{ChannelFinding, Finding, Severity, Signal};
 use crate::numerics::reduce::{self, block_means, block_of};
 use crate::numerics::{as_f64, noise, robust};
 use std::borrow::Cow;
@@ -31,15 +31,15 @@ const AHEAD_S: f64 = 0.06;
 const SMALL_M_S: f64 = 0.05;
 
 /// Notes the mean before `before_s`, its uncertainty and the noise in the signal, and takes the mean off if `take_off`.
-pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<Issue> {
+pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<Finding> {
     let end = signal.index_from(before_s);
     let length_s = before_s - signal.start_s;
     let quiet = recorded(signal, end);
     if length_s < LEAST_S || quiet.len() < 8 {
-        let issue = too_short(signal, length_s, quiet.len());
+        let finding = too_short(signal, length_s, quiet.len());
         // Without free fall the offset may be as large as a usual one.
         signal.u_offset_m_s2 = NOTABLE_M_S2;
-        return vec![issue];
+        return vec![finding];
     }
     let (quiet, spread_m_s2) = tame(quiet);
     let (mean, rms) = robust::mean_and_rms(&quiet);
@@ -50,9 +50,9 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<I
     let noise_spectrum = noise::spectrum(&block_means(&quiet, block), signal.sample_rate_hz / as_f64(block));
     // White noise averages out; what differs between the two halves does not.
     let u_offset_m_s2 = (rms / as_f64(quiet.len()).sqrt()).max(wander / 2.0);
-    let mut issues = Vec::new();
-    issues.extend(offset(&signal.name, mean, take_off));
-    issues.extend(drift(&signal.name, &quiet, (signal.start_s, before_s)));
+    let mut findings = Vec::new();
+    findings.extend(offset(&signal.name, mean, take_off));
+    findings.extend(drift(&signal.name, &quiet, (signal.start_s, before_s)));
     signal.noise_m_s2 = noise_m_s2;
     signal.noise_spectrum = noise_spectrum;
     signal.free_fall_s = length_s;
@@ -66,7 +66,7 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<I
             signal.force_m_s2[gap.from..gap.to].fill(0.0);
         }
     }
-    issues
+    findings
 }
 
 /// The first `end` samples but for those that are missing.
@@ -85,22 +85,14 @@ fn recorded(signal: &Signal, end: usize) -> Cow<'_, [f64]> {
     Cow::Owned(quiet)
 }
 
-fn too_short(signal: &Signal, length_s: f64, samples: usize) -> Issue {
-    let free_fall_ms = 1e3 * length_s.max(0.0);
-    let message = if length_s < LEAST_S {
-        format!(
-            "{} has {free_fall_ms:.1} ms of free fall before the first impact: no offset could be taken from it. Record from before the release",
-            signal.name
-        )
+fn too_short(signal: &Signal, length_s: f64, samples: usize) -> Finding {
+    let found = if length_s < LEAST_S {
+        ChannelFinding::ShortFreeFall { length_s: length_s.max(0.0) }
     } else {
         // As long a fall with as few samples is a rate at fault, not a late start.
-        format!(
-            "{} has {samples} sample(s) in the {free_fall_ms:.0} ms of free fall before the first impact, at {:.3} Hz: no offset could be taken from so few. \
-             Check the times and their unit, or `sample_rate_hz`, and what is missing",
-            signal.name, signal.sample_rate_hz
-        )
+        ChannelFinding::FewSamples { length_s, samples, sample_rate_hz: signal.sample_rate_hz }
     };
-    Issue::new(IssueCode::BeginsLate, Severity::Warning, message).on(&signal.name)
+    found.on(&signal.name)
 }
 
 /// The samples with wild ones set to the median, and the spread that is left: a spike is no offset.
@@ -118,37 +110,19 @@ fn tame(mut quiet: Cow<'_, [f64]>) -> (Cow<'_, [f64]>, f64) {
     (quiet, spread)
 }
 
-fn offset(name: &str, mean_m_s2: f64, taken_off: bool) -> Option<Issue> {
-    let in_g = mean_m_s2 / STANDARD_GRAVITY_M_S2;
+fn offset(name: &str, mean_m_s2: f64, taken_off: bool) -> Option<Finding> {
     let adds_m_s = mean_m_s2.abs() * AHEAD_S;
-    let (severity, done) = if taken_off {
-        let is_large = mean_m_s2.abs() > LARGE_M_S2;
-        let look = if is_large { "; check the sensor and its amplifier" } else { "" };
-        let severity = if is_large { Severity::Warning } else { Severity::Note };
-        (severity, format!("that offset was taken off{look}"))
-    } else {
-        let severity = if adds_m_s > SMALL_M_S { Severity::Warning } else { Severity::Note };
-        (
-            severity,
-            format!(
-                "the cask file leaves that offset in, which adds {adds_m_s:.2} m/s over {:.0} ms; set `offset = true` under `[corrections]` to have it taken off",
-                1e3 * AHEAD_S
-            ),
-        )
-    };
-    let notable = if taken_off { mean_m_s2.abs() > NOTABLE_M_S2 } else { adds_m_s > 0.1 * SMALL_M_S };
-    notable.then(|| {
-        Issue::new(
-            IssueCode::Offset,
-            severity,
-            format!("{name} reads {in_g:+.2} g before the first impact, where free fall reads 0; {done}"),
-        )
-        .on(name)
-    })
+    if taken_off {
+        let found = ChannelFinding::OffsetTakenOff { mean_m_s2, is_large: mean_m_s2.abs() > LARGE_M_S2 };
+        return (mean_m_s2.abs() > NOTABLE_M_S2).then(|| found.on(name));
+    }
+    let severity = if adds_m_s > SMALL_M_S { Severity::Warning } else { Severity::Note };
+    let found = ChannelFinding::OffsetLeftIn { mean_m_s2, adds_m_s, over_s: AHEAD_S, severity };
+    (adds_m_s > 0.1 * SMALL_M_S).then(|| found.on(name))
 }
 
 /// A slope of the free fall beyond its noise whose continuation into the flight would matter.
-fn drift(name: &str, quiet: &[f64], (from_s, to_s): (f64, f64)) -> Option<Issue> {
+fn drift(name: &str, quiet: &[f64], (from_s, to_s): (f64, f64)) -> Option<Finding> {
     let size = quiet.len() / BLOCKS;
     if size == 0 {
         return None;
@@ -165,26 +139,15 @@ fn drift(name: &str, quiet: &[f64], (from_s, to_s): (f64, f64)) -> Option<Issue>
     let u_slope = (left / as_f64(BLOCKS - 2) / square).sqrt();
     // From the middle of the free fall, whose mean was taken off, through contact and flight.
     let adds_m_s = slope.abs() * AHEAD_S * (length_s / 2.0 + AHEAD_S / 2.0);
-    (slope.abs() > SURE * u_slope && adds_m_s > SMALL_M_S).then(|| {
-        Issue::new(
-            IssueCode::Offset,
-            Severity::Warning,
-            format!(
-                "{} drifts by {:+.1} ± {:.1} g/s before the first impact; going on like that it adds {adds_m_s:.2} m/s by the slap-down: let the amplifier warm up, check the cable and its insulation, or use another channel",
-                name,
-                slope / STANDARD_GRAVITY_M_S2,
-                2.0 * u_slope / STANDARD_GRAVITY_M_S2
-            ),
-        )
-        .on(name)
-        .between(from_s, to_s)
-    })
+    let found = ChannelFinding::Drift { slope_m_s3: slope, u_m_s3: u_slope, adds_m_s };
+    (slope.abs() > SURE * u_slope && adds_m_s > SMALL_M_S).then(|| found.on(name).between(from_s, to_s))
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::tests::{noise, signal};
     use super::*;
+    use crate::data::What;
 
     /// 0.2 s of free fall and 0.1 s after it at 10 kHz: an offset of 3 m/s², noise of 2 m/s², and a slope.
     fn channel(slope: f64, seed: u64) -> Signal {
@@ -208,11 +171,14 @@ mod tests {
     fn an_offset_that_stays_is_said_with_what_it_adds() {
         let mut left = channel(0.0, 1);
         let before = left.force_m_s2.clone();
-        let issues = treat(&mut left, 0.2, false);
+        let findings = treat(&mut left, 0.2, false);
         assert_eq!(left.force_m_s2, before);
         assert!(left.removed_offset_m_s2.abs() < 1e-300);
+        let What::Channel(ChannelFinding::OffsetLeftIn { adds_m_s, severity, .. }) = findings[0].what else {
+            panic!("{findings:?}")
+        };
         // 3 m/s² over 60 ms.
-        assert!(issues[0].message.contains("0.18 m/s") && issues[0].severity == Severity::Warning);
+        assert!((adds_m_s - 0.18).abs() < 0.01 && severity == Severity::Warning, "{findings:?}");
     }
 
     #[test]
@@ -220,20 +186,19 @@ mod tests {
         // 49 m/s³, known to 2/√2000 · √12/0.2 = 0.8, adds 49 · 0.06 · 0.13 = 0.38 m/s.
         let drifting = treat(&mut channel(49.0, 2), 0.2, true);
         assert!(
-            drifting.iter().any(|i| i.message.contains("drifts by +") && i.severity == Severity::Warning),
+            drifting.iter().any(|f| matches!(f.what, What::Channel(ChannelFinding::Drift { slope_m_s3, .. }) if slope_m_s3 > 0.0)),
             "{drifting:?}"
         );
         for seed in 0..50 {
-            let issues = treat(&mut channel(0.0, seed), 0.2, true);
-            assert!(issues.iter().all(|i| i.severity == Severity::Note), "{seed}: {issues:?}");
+            let findings = treat(&mut channel(0.0, seed), 0.2, true);
+            assert!(findings.iter().all(|i| i.severity == Severity::Note), "{seed}: {findings:?}");
         }
     }
 
     #[test]
     fn a_record_without_free_fall_begins_late() {
-        let issues = treat(&mut channel(0.0, 1), 0.005, true);
-        assert_eq!(issues[0].code, IssueCode::BeginsLate);
-        assert!(issues[0].message.contains("5.0 ms of free fall"), "{}", issues[0].message);
+        let findings = treat(&mut channel(0.0, 1), 0.005, true);
+        assert_eq!(findings[0].what, What::Channel(ChannelFinding::ShortFreeFall { length_s: 0.005 }));
     }
 
     #[test]
@@ -241,10 +206,8 @@ mod tests {
         // Times in ms that were taken for seconds.
         let mut slow = signal(vec![0.0; 300]);
         slow.sample_rate_hz = 20.0;
-        let issues = treat(&mut slow, 0.25, true);
-        assert_eq!(issues[0].code, IssueCode::BeginsLate);
-        let message = &issues[0].message;
-        assert!(message.contains("5 sample(s) in the 250 ms") && message.contains("20.000 Hz"), "{message}");
-        assert!(message.contains("unit") && !message.contains("Record from before"), "{message}");
+        let findings = treat(&mut slow, 0.25, true);
+        let few = ChannelFinding::FewSamples { length_s: 0.25, samples: 5, sample_rate_hz: 20.0 };
+        assert_eq!(findings[0].what, What::Channel(few));
     }
 }

@@ -5,8 +5,8 @@ use super::cask::CaskFile;
 use super::channel::Span;
 use super::curves::Curves;
 use super::estimate::Estimate;
+use super::finding::Finding;
 use super::flight::FlightFit;
-use super::issue::Issue;
 use super::ladder::Rung;
 use super::prediction::{BodyModel, Prediction};
 use super::reconstruction::ReconstructionChoice;
@@ -229,7 +229,7 @@ pub struct DropResult {
     /// Measured beside predicted.
     pub comparison: Option<Comparison>,
     /// Every finding, errors first.
-    pub quality: Vec<Issue>,
+    pub quality: Vec<Finding>,
     /// The overall word.
     pub verdict: Verdict,
     /// Times of the events.

@@ -1,6 +1,6 @@
 //! What a recording holds, before any cask file is known: the answer of `inspect`.
 
-use super::issue::Issue;
+use super::finding::Finding;
 use super::recording::RecordingFormat;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -73,5 +73,5 @@ pub struct Listing {
     /// Every source of samples.
     pub channels: Vec<ListedChannel>,
     /// What is wrong with the file.
-    pub issues: Vec<Issue>,
+    pub issues: Vec<Finding>,
 }

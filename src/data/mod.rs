@@ -6,8 +6,8 @@ mod cask;
 mod channel;
 mod curves;
 mod estimate;
+mod finding;
 mod flight;
-mod issue;
 pub(crate) mod keys;
 mod ladder;
 mod listing;
@@ -34,8 +34,10 @@ pub use cask::{
 pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, MotionCurve};
 pub use estimate::Estimate;
+pub use finding::{
+    CODES, ChannelFinding, DropFinding, During, Finding, Issue, IssueCode, Severity, What, shortened,
+};
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
-pub use issue::{Issue, IssueCode, Severity, shortened};
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};
 pub use motion::{AxialClosure, ChannelReading, Motion, MotionState, RivalLaw, Setup, StoodIn};

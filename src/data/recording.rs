@@ -1,7 +1,7 @@
 //! A recording, read: its channels and what was wrong with the file.
 
 use super::channel::Channel;
-use super::issue::Issue;
+use super::finding::Finding;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -33,5 +33,5 @@ pub struct Recording {
     /// Absolute time of the recording's first sample, ns since 1970, where the recording knows it.
     pub start_unix_ns: Option<i64>,
     /// What reading it found wrong: truncation, gaps, doubled blocks, jitter.
-    pub issues: Vec<Issue>,
+    pub issues: Vec<Finding>,
 }

@@ -1,8 +1,8 @@
 //! What the motion must meet and misses, to what speaks against scales, positions, angle and height.
 
 use crate::data::{
-    Closure, ClosureKind, Drop, Estimate, Events, Issue, IssueCode, MET_U, MISSED_U, ReconstructionChoice,
-    ReconstructionRung, Severity, Signal,
+    Closure, ClosureKind, Drop, DropFinding, Estimate, Events, Finding, MET_U, MISSED_U,
+    ReconstructionChoice, ReconstructionRung, Signal,
 };
 
 /// Missed by this many, the stated things are not what the recording shows.
@@ -14,16 +14,16 @@ const CONTACT_S: f64 = 1e-3;
 const MOST_U95_K: f64 = 0.25;
 const MOST_U95_SPEED: f64 = 0.15;
 
-/// One issue a closure that is missed by more than noise and tolerances explain.
+/// One finding a closure that is missed by more than noise and tolerances explain.
 #[must_use]
-pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Events) -> Vec<Issue> {
+pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Events) -> Vec<Finding> {
     let missed = choice.closures.iter().filter(|c| c.miss_in_u.abs() > MISSED_U);
-    let mut issues: Vec<Issue> = missed.map(|closure| issue(closure, drop, events)).collect();
-    if issues.is_empty() {
-        issues.extend(together(choice));
+    let mut findings: Vec<Finding> = missed.map(|closure| self::missed(closure, drop, events)).collect();
+    if findings.is_empty() {
+        findings.extend(together(choice));
     }
-    issues.extend(on_trust(choice));
-    issues
+    findings.extend(on_trust(choice));
+    findings
 }
 
 /// Whether what the motion must meet tells velocity steps that channels lost: R's way to the target one of both ends', the turning by the
@@ -52,23 +52,11 @@ pub fn tells_lost_steps(
 }
 
 /// Closures of which each is missed by less than chance allows, and all together by more.
-fn together(choice: &ReconstructionChoice) -> Option<Issue> {
+fn together(choice: &ReconstructionChoice) -> Option<Finding> {
     let (chi_square, degrees) = choice.chi_square?;
     (chi_square > most_chi_square(degrees)).then(|| {
-        let missed: Vec<String> = choice
-            .closures
-            .iter()
-            .filter(|c| c.miss_in_u.abs() > 1.0)
-            .map(|c| format!("{} by {} ({:.1} u)", c.name, c.miss, c.miss_in_u.abs()))
-            .collect();
-        Issue::new(
-            IssueCode::Geometry,
-            Severity::Warning,
-            format!(
-                "what the motion must meet is missed by more than chance, all together (χ² = {chi_square:.1} for {degrees}): {}; check angle, height, scales, positions and mass properties of the cask file",
-                missed.join(", ")
-            ),
-        )
+        let closures = choice.closures.iter().filter(|c| c.miss_in_u.abs() > 1.0).cloned().collect();
+        DropFinding::AllMissed { chi_square, degrees, closures }.into()
     })
 }
 
@@ -82,71 +70,23 @@ fn most_chi_square(degrees: usize) -> f64 {
 }
 
 /// What no closure of this recording tests.
-fn on_trust(choice: &ReconstructionChoice) -> Option<Issue> {
+fn on_trust(choice: &ReconstructionChoice) -> Option<Finding> {
     let shows_rest = choice.closures.iter().any(|c| matches!(c.kind, ClosureKind::Rest | ClosureKind::Fall));
-    (!shows_rest).then(|| {
-        Issue::new(
-            IssueCode::Scale,
-            Severity::Note,
-            "the recording shows no rest before the release: nothing in it tests the drop height, the clock's rate or a scale error that all channels share, and little tests one of the first end alone, which k follows; they are taken as stated; record from before the release with DC-coupled sensors",
-        )
-    })
+    (!shows_rest).then(|| DropFinding::Untested.into())
 }
 
-/// The fall that the recording shows beside the one that the cask file states.
-fn fall(drop: &Drop, events: &Events) -> String {
+fn missed(closure: &Closure, drop: &Drop, events: &Events) -> Finding {
     let fall_s = events.release_s.zip(events.fall_end_s).map_or(0.0, |(release_s, end_s)| end_s - release_s);
-    let (height_m, velocity_m_s) = (0.5 * drop.gravity_m_s2 * fall_s * fall_s, drop.gravity_m_s2 * fall_s);
-    let expected_s = drop.impact_velocity_m_s / drop.gravity_m_s2;
-    let stated = if drop.impact_velocity_given {
-        format!("the impact velocity of {:.2} m/s", drop.impact_velocity_m_s)
-    } else {
-        format!("the drop height of {} m", drop.height_m)
-    };
-    let off = fall_s / expected_s - 1.0;
-    let which = if off < 0.0 { "slow" } else { "fast" };
-    format!(
-        "the recording shows a free fall of {fall_s:.3} s, which is {height_m:.2} m and {velocity_m_s:.2} m/s; {stated} in the cask file needs {expected_s:.3} s: check it; if it is right the recorder's clock is {:.1} % {which}: state its true rate as `sample_rate_hz`",
-        100.0 * off.abs()
-    )
-}
-
-fn issue(closure: &Closure, drop: &Drop, events: &Events) -> Issue {
-    let gross = closure.miss_in_u.abs() > GROSS_U;
-    let severity = if gross { Severity::Error } else { Severity::Warning };
-    let how_far = format!("{} ({:.1} standard uncertainties)", closure.miss, closure.miss_in_u.abs());
-    let (code, message) = match closure.kind {
-        ClosureKind::Height => (
-            IssueCode::Geometry,
-            format!(
-                "the second end would be {how_far} from the target when it strikes: drop angle, drop height, a scale, the clock or a sensor position is not as stated"
-            ),
-        ),
-        ClosureKind::Turning => (
-            IssueCode::NotRigid,
-            format!(
-                "the cask turns by {how_far} otherwise than the first impact turns a rigid body of this section, centre of gravity and inertia: check each channel's scale and position, and state `inertia_kg_m2` and `cog_m`"
-            ),
-        ),
-        ClosureKind::Rest => (
-            IssueCode::Scale,
-            format!(
-                "{} is off by {how_far} at rest before the release: check its sensitivity, unit and the angle",
-                closure.channel.as_deref().unwrap_or("a channel")
-            ),
-        ),
-        ClosureKind::Fall => (IssueCode::Geometry, fall(drop, events)),
-    };
-    let issue = Issue::new(code, severity, message);
-    match &closure.channel {
-        Some(channel) => issue.on(channel),
-        None => issue,
-    }
+    let is_gross = closure.miss_in_u.abs() > GROSS_U;
+    let found =
+        Finding::from(DropFinding::Missed { closure: closure.clone(), is_gross, drop: drop.clone(), fall_s });
+    Finding { channel: closure.channel.clone(), ..found }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::{IssueCode, Severity};
 
     fn choice(kind: ClosureKind, miss_in_u: f64) -> ReconstructionChoice {
         let closure = Closure {
@@ -167,7 +107,7 @@ mod tests {
         }
     }
 
-    fn judged(choice: &ReconstructionChoice) -> Vec<Issue> {
+    fn judged(choice: &ReconstructionChoice) -> Vec<Finding> {
         let drop = Drop {
             height_m: 9.0,
             angle_rad: 0.2,
@@ -195,9 +135,9 @@ mod tests {
             (ClosureKind::Rest, IssueCode::Scale),
             (ClosureKind::Fall, IssueCode::Geometry),
         ] {
-            let issues = judged(&choice(kind, -4.0));
-            assert_eq!((issues[0].code, issues[0].severity), (code, Severity::Warning));
-            let said = &issues[0].message;
+            let findings = judged(&choice(kind, -4.0));
+            assert_eq!((findings[0].code, findings[0].severity), (code, Severity::Warning));
+            let said = &findings[0].message;
             assert_eq!(said.contains("+30 mm (4.0 standard uncertainties)"), kind != ClosureKind::Fall);
             assert_eq!(said.contains("0.500 s, which is 1.23 m"), kind == ClosureKind::Fall);
         }

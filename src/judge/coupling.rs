@@ -1,6 +1,8 @@
 //! The drifts of the channels in the flight to what drives them all: an AC coupling that nobody stated, or a target that L rests on.
 
-use crate::data::{Axis, CaskFile, Coupling, Drop, FlightFit, Issue, IssueCode, Plateau, Severity, Signal};
+use crate::data::{
+    Axis, CaskFile, ChannelFinding, Coupling, Drop, DropFinding, Finding, FlightFit, Plateau, Signal,
+};
 
 /// Time constants looked for, s: shorter ones leave no step to measure, longer ones lose less than 2 % of it in 50 ms
 /// and are within what noise of 1/f looks like.
@@ -19,19 +21,19 @@ const AGREEMENT: f64 = 0.2;
 /// After a step s a first-order high-pass reads −s/T, s being what is left of the step: drift over step is −1/T on every
 /// channel   (Q4). A zero shift of one channel knows nothing of the step of another, so one channel alone tells nothing.
 #[must_use]
-pub fn judge_coupling(signals: &[Signal], flight: &FlightFit, cask_file: &CaskFile) -> Vec<Issue> {
+pub fn judge_coupling(signals: &[Signal], flight: &FlightFit, cask_file: &CaskFile) -> Vec<Finding> {
     let stated = cask_file.channels.iter().filter(|c| c.coupling != Coupling::Dc);
     let declared_ac: Vec<&str> = stated.map(|c| c.name.as_str()).collect();
-    let mut issues = undeclared(signals, flight, &declared_ac);
+    let mut findings = undeclared(signals, flight, &declared_ac);
     if declared_ac.is_empty() {
-        issues.extend(supported(signals, flight, &cask_file.drop));
+        findings.extend(supported(signals, flight, &cask_file.drop));
     }
-    issues
+    findings
 }
 
 /// A push at L's corner accelerates every transverse channel in the proportion of its velocity step (38), and one that carries the corner
 /// has a sensor there read g cos φ: the first end rests on the target, or bounces there.
-fn supported(signals: &[Signal], flight: &FlightFit, drop: &Drop) -> Option<Issue> {
+fn supported(signals: &[Signal], flight: &FlightFit, drop: &Drop) -> Option<Finding> {
     let transverse: Vec<&str> =
         signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| s.name.as_str()).collect();
     let of_transverse = flight.plateaus.iter().filter(|p| transverse.contains(&p.channel.as_str()));
@@ -45,19 +47,10 @@ fn supported(signals: &[Signal], flight: &FlightFit, drop: &Drop) -> Option<Issu
     if !CARRIED.contains(&(most_m_s2 / (drop.gravity_m_s2 * drop.angle_rad.cos()))) {
         return None;
     }
-    Some(
-        Issue::new(
-            IssueCode::SecondContact,
-            Severity::Warning,
-            format!(
-                "in the flight every transverse channel goes on gaining what it gained in the first impact, {rate_hz:.0} % of it in 10 ms: the target still pushes the first end, and the flight is not free"
-            ),
-        )
-        .between(flight.from_s, flight.to_s),
-    )
+    Some(Finding::from(DropFinding::Carried { rate_hz }).between(flight.from_s, flight.to_s))
 }
 
-fn undeclared(signals: &[Signal], flight: &FlightFit, declared_ac: &[&str]) -> Vec<Issue> {
+fn undeclared(signals: &[Signal], flight: &FlightFit, declared_ac: &[&str]) -> Vec<Finding> {
     let is_stated = |name: &str| declared_ac.contains(&name);
     let all: Vec<&Plateau> = flight.plateaus.iter().filter(|p| !is_stated(&p.channel)).collect();
     let largest_m_s = all.iter().map(|p| p.velocity_step_m_s.abs()).fold(0.0, f64::max);
@@ -78,18 +71,12 @@ fn undeclared(signals: &[Signal], flight: &FlightFit, declared_ac: &[&str]) -> V
     droops
         .iter()
         .map(|(plateau, ..)| {
-            Issue::new(
-                IssueCode::AcCoupled,
-                Severity::Warning,
-                format!(
-                    "{} droops after its step in the proportion of the other channels, {:+.2} g after {:+.1} m/s, as behind a high-pass of {time_constant_s:.2} s: it is AC-coupled; set `coupling = \"ac\"` and `time_constant_s` from the amplifier's data sheet, or record DC-coupled",
-                    plateau.channel,
-                    plateau.zero_shift_m_s2 / 9.806_65,
-                    plateau.velocity_step_m_s,
-                ),
-            )
-            .on(&plateau.channel)
-            .between(flight.from_s, flight.to_s)
+            let found = ChannelFinding::AcUnstated {
+                droop_m_s2: plateau.zero_shift_m_s2,
+                step_m_s: plateau.velocity_step_m_s,
+                time_constant_s,
+            };
+            found.on(&plateau.channel).between(flight.from_s, flight.to_s)
         })
         .collect()
 }
@@ -110,7 +97,7 @@ fn common_rate(droops: &[(&Plateau, f64, f64)]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, End};
+    use crate::data::{Axis, End, What};
 
     fn signal(name: &str) -> Signal {
         Signal {
@@ -155,9 +142,9 @@ mod tests {
         }
     }
 
-    fn codes(first: (f64, f64), second: (f64, f64), stated: &[&str]) -> Vec<String> {
-        let issues = undeclared(&[signal("A1"), signal("A2")], &flight(first, second), stated);
-        issues.into_iter().map(|i| i.message).collect()
+    fn found(first: (f64, f64), second: (f64, f64), stated: &[&str]) -> Vec<What> {
+        let findings = undeclared(&[signal("A1"), signal("A2")], &flight(first, second), stated);
+        findings.into_iter().map(|f| f.what).collect()
     }
 
     #[test]
@@ -182,19 +169,22 @@ mod tests {
     #[test]
     fn droops_in_proportion_are_a_coupling() {
         // T = 0.3 s: 19/0.3 and −7/0.3, less what has drooped already.
-        let found = codes((19.0, -61.0), (-7.0, 23.0), &[]);
-        assert_eq!(found.len(), 2);
-        assert!(found[0].contains("high-pass of 0.31 s"), "{}", found[0]);
-        assert!(codes((19.0, -61.0), (-7.0, 23.0), &["A1", "A2"]).is_empty());
+        let both = found((19.0, -61.0), (-7.0, 23.0), &[]);
+        assert_eq!(both.len(), 2);
+        let What::Channel(ChannelFinding::AcUnstated { time_constant_s, .. }) = both[0] else {
+            panic!("{both:?}")
+        };
+        assert!((time_constant_s - 0.31).abs() < 5e-3, "{both:?}");
+        assert!(found((19.0, -61.0), (-7.0, 23.0), &["A1", "A2"]).is_empty());
     }
 
     #[test]
     fn a_zero_shift_is_none() {
         // One channel alone; both with the same sign; both out of proportion; none.
-        assert!(codes((19.0, -61.0), (-7.0, 0.4), &[]).is_empty());
-        assert!(codes((19.0, -61.0), (-7.0, -23.0), &[]).is_empty());
-        assert!(codes((19.0, -61.0), (-7.0, 60.0), &[]).is_empty());
-        assert!(codes((19.0, -0.3), (-7.0, 0.2), &[]).is_empty());
-        assert!(codes((19.0, -61.0), (-0.5, 1.7), &[]).is_empty());
+        assert!(found((19.0, -61.0), (-7.0, 0.4), &[]).is_empty());
+        assert!(found((19.0, -61.0), (-7.0, -23.0), &[]).is_empty());
+        assert!(found((19.0, -61.0), (-7.0, 60.0), &[]).is_empty());
+        assert!(found((19.0, -0.3), (-7.0, 0.2), &[]).is_empty());
+        assert!(found((19.0, -61.0), (-0.5, 1.7), &[]).is_empty());
     }
 }

@@ -1,4 +1,4 @@
-//! Everything found on the way to issues and a verdict: what speaks against the result.
+//! Everything found on the way to findings and a verdict: what speaks against the result.
 
 mod channels;
 mod closures;
@@ -17,14 +17,14 @@ pub use channels::{is_cut_off, judge_channels};
 pub use closures::{judge_closures, tells_lost_steps};
 pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_several_drops};
-pub use missing::{judge_missing_end, judge_no_impact, judge_no_slap_down, judge_short_flight};
+pub use missing::{judge_no_impact, judge_no_slap_down};
 pub use result::{judge_comparison, judge_motion, judge_touch};
 pub use rigid::judge_rigid;
 pub use silent::judge_silent;
 pub use skew::judge_skew;
 pub use strike::{judge_rest, judge_strike};
 
-use crate::data::{Axis, End, Events, Issue, IssueCode, Severity, Signal, Verdict};
+use crate::data::{Axis, End, Events, Finding, IssueCode, Severity, Signal, Verdict};
 
 /// Free fall before first contact that the offset may come from, s.
 const OFFSET_WINDOW_S: f64 = 0.25;
@@ -38,13 +38,13 @@ fn struck(signals: &[Signal]) -> Option<&Signal> {
 }
 
 /// What was lost or jitters far from the event does not weigh on the result: such warnings become notes.
-pub fn weigh_by_distance(issues: &mut [Issue], events: &Events) {
+pub fn weigh_by_distance(findings: &mut [Finding], events: &Events) {
     let Some(contact_s) = events.first_contact_s() else { return };
     let from_s = contact_s - OFFSET_WINDOW_S;
     let to_s = events.slap_down_s().map_or(f64::INFINITY, |t| t + ONSET_S);
-    for issue in issues {
+    for finding in findings {
         let local = matches!(
-            issue.code,
+            finding.code,
             IssueCode::Gap
                 | IssueCode::NonFinite
                 | IssueCode::DuplicateBlocks
@@ -52,41 +52,41 @@ pub fn weigh_by_distance(issues: &mut [Issue], events: &Events) {
                 | IssueCode::Dropout
         );
         if let (true, Severity::Warning, Some(from), Some(to)) =
-            (local, issue.severity, issue.from_s, issue.to_s)
+            (local, finding.severity, finding.from_s, finding.to_s)
             && (to < from_s || from > to_s)
         {
-            issue.severity = Severity::Note;
+            finding.severity = Severity::Note;
         }
     }
 }
 
-/// Whether an issue takes away what was read off the motion; a missing slap-down leaves the first impact as it is, and a velocity step that
+/// Whether a finding takes away what was read off the motion; a missing slap-down leaves the first impact as it is, and a velocity step that
 /// a channel lost may be one that `is_told` by the rest of the motion.
 #[must_use]
-pub fn invalidates(issue: &Issue, is_told: bool) -> bool {
-    let is_kept = match issue.code {
+pub fn invalidates(finding: &Finding, is_told: bool) -> bool {
+    let is_kept = match finding.code {
         IssueCode::EndsEarly | IssueCode::NoSlapDown | IssueCode::MissingChannel => true,
         IssueCode::Clipped | IssueCode::Gap => is_told,
         _ => false,
     };
-    issue.severity == Severity::Error && !is_kept
+    finding.severity == Severity::Error && !is_kept
 }
 
 /// Whether a finding says that the motion is not the one that was reconstructed: then the motion tells no velocity step either.
 #[must_use]
-pub fn contradicts_motion(issue: &Issue) -> bool {
+pub fn contradicts_motion(finding: &Finding) -> bool {
     let is_of_motion = matches!(
-        issue.code,
+        finding.code,
         IssueCode::FlightFit | IssueCode::SecondContact | IssueCode::Geometry | IssueCode::NotRigid
     );
-    is_of_motion && issue.severity != Severity::Note
+    is_of_motion && finding.severity != Severity::Note
 }
 
 /// Sorts the findings, errors first, and says what they amount to: any error fails, any warning asks for a review.
 #[must_use]
-pub fn verdict(issues: &mut [Issue]) -> Verdict {
-    issues.sort_by(|a, b| b.severity.cmp(&a.severity).then(a.code.cmp(&b.code)));
-    match issues.first().map(|i| i.severity) {
+pub fn verdict(findings: &mut [Finding]) -> Verdict {
+    findings.sort_by(|a, b| b.severity.cmp(&a.severity).then(a.code.cmp(&b.code)));
+    match findings.first().map(|f| f.severity) {
         Some(Severity::Error) => Verdict::Fail,
         Some(Severity::Warning) => Verdict::Review,
         _ => Verdict::Pass,

@@ -1,6 +1,6 @@
 //! The velocity steps of three and more transverse channels to whether one rigid body can have them.
 
-use crate::data::{Axis, Drop, FlightFit, Issue, IssueCode, Severity, Signal, Tolerances};
+use crate::data::{Axis, ChannelFinding, Drop, Finding, FlightFit, Signal, Tolerances};
 
 /// Distances from the line beyond this many standard uncertainties speak against one body: of three or four channels the one farthest off.
 const SURE: f64 = 4.0;
@@ -24,7 +24,7 @@ pub fn judge_rigid(
     flight: &FlightFit,
     tolerances: &Tolerances,
     drop: &Drop,
-) -> Option<Issue> {
+) -> Option<Finding> {
     // About what the axial velocity changes by: where L sticks its corner is thrown straight up.
     let first_m_s = flight.plateaus.iter().map(|p| p.velocity_step_m_s).fold(0.0, f64::max);
     let axial_m_s = first_m_s * drop.angle_rad.tan();
@@ -53,19 +53,9 @@ pub fn judge_rigid(
             Some((step, step.step_m_s - expected_m_s, u_m_s.hypot(step.u_m_s)))
         })
         .max_by(|a, b| (a.1.abs() / a.2).total_cmp(&(b.1.abs() / b.2)))?;
-    (off_m_s.abs() > SURE * u_m_s && off_m_s.abs() > LEAST_M_S).then(|| {
-        Issue::new(
-            IssueCode::NotRigid,
-            Severity::Warning,
-            format!(
-                "{} gains {off_m_s:+.2} ± {:.2} m/s more in the first impact than the other channels have a rigid body gain there: check its scale, polarity, position and mount, or leave it out of the cask file",
-                worst.name,
-                2.0 * u_m_s
-            ),
-        )
-        .on(worst.name)
-        .between(flight.from_s, flight.to_s)
-    })
+    let found = ChannelFinding::OffLine { off_m_s, u_m_s };
+    (off_m_s.abs() > SURE * u_m_s && off_m_s.abs() > LEAST_M_S)
+        .then(|| found.on(worst.name).between(flight.from_s, flight.to_s))
 }
 
 /// By how much the step changes along the cask between the outermost channels, rad/s: what a misplaced sensor reads more a metre.

@@ -1,6 +1,6 @@
 //! The first pulse as it was sampled to whether the sample rate and the filter before it were fit for it.
 
-use crate::data::{Events, Issue, IssueCode, Severity, Signal};
+use crate::data::{ChannelFinding, Events, Finding, Signal};
 use crate::numerics::as_f64;
 use crate::numerics::spectrum::magnitude;
 use rayon::prelude::*;
@@ -30,7 +30,7 @@ const LONGEST_S: f64 = 0.05;
 ///
 /// `disturbed` names the channels whose single samples are off: their spectra say nothing about a filter.
 #[must_use]
-pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&str]) -> Vec<Issue> {
+pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&str]) -> Vec<Finding> {
     let struck = super::struck(signals);
     let (Some(struck), Some(contact_s)) = (struck, events.first_contact_s()) else { return Vec::new() };
     let to_s = events.separation_s().unwrap_or(contact_s + LONGEST_S).min(contact_s + LONGEST_S);
@@ -38,14 +38,14 @@ pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&
     let contents: Vec<Option<Content>> = signals.par_iter().map(|s| content(s, pulse_s)).collect();
     let of_struck = signals.iter().zip(&contents).find(|(s, _)| s.name == struck.name);
     let largest = of_struck.and_then(|(_, c)| c.as_ref()).map_or(0.0, |c| c.largest);
-    let mut issues = Vec::new();
+    let mut findings = Vec::new();
     for (signal, content) in signals.iter().zip(contents) {
-        issues.extend(low_rate(signal, pulse_s, length_s));
+        findings.extend(low_rate(signal, pulse_s, length_s));
         if !disturbed.contains(&signal.name.as_str()) {
-            issues.extend(content.and_then(|found| aliasing(signal, pulse_s, &found, largest)));
+            findings.extend(content.and_then(|found| aliasing(signal, pulse_s, &found, largest)));
         }
     }
-    issues
+    findings
 }
 
 /// Where the force of the first pulse passes the lower flank and falls below it, and the length of a half sine as wide, s.
@@ -69,23 +69,14 @@ fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), f64)> {
     (foot < 0.5 * peak).then(|| ((at_s(whole.0), at_s(whole.1)), samples / signal.sample_rate_hz))
 }
 
-fn low_rate(signal: &Signal, pulse_s: (f64, f64), length_s: f64) -> Option<Issue> {
+fn low_rate(signal: &Signal, pulse_s: (f64, f64), length_s: f64) -> Option<Finding> {
     let samples = length_s * signal.sample_rate_hz;
     (samples < LEAST_SAMPLES).then(|| {
         // π²/12 N² of the area of a half sine: its two kinks against the trapezoid.
         let off_percent = 100.0 * PI * PI / 12.0 / (samples * samples);
-        Issue::new(
-            IssueCode::LowRate,
-            Severity::Warning,
-            format!(
-                "{} has {samples:.1} samples over the first pulse of {:.1} ms: its velocity step may be off by {off_percent:.0} % and more; sample at {:.0} Hz or faster",
-                signal.name,
-                1e3 * length_s,
-                2.0 * LEAST_SAMPLES / length_s
-            ),
-        )
-        .on(&signal.name)
-        .between(pulse_s.0, pulse_s.1)
+        let least_hz = 2.0 * LEAST_SAMPLES / length_s;
+        let found = ChannelFinding::LowRate { samples, pulse_s: length_s, off_percent, least_hz };
+        found.on(&signal.name).between(pulse_s.0, pulse_s.1)
     })
 }
 
@@ -122,32 +113,20 @@ fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<Content> {
     })
 }
 
-fn aliasing(signal: &Signal, pulse_s: (f64, f64), found: &Content, largest: f64) -> Option<Issue> {
+fn aliasing(signal: &Signal, pulse_s: (f64, f64), found: &Content, largest: f64) -> Option<Finding> {
     if signal.touches(&signal.gaps, pulse_s.0, pulse_s.1) {
         return None;
     }
     let share = found.in_band / largest;
-    (share > MOST_CONTENT && found.in_band > OVER_NOISE * found.noise).then(|| {
-        Issue::new(
-            IssueCode::Aliasing,
-            Severity::Warning,
-            format!(
-                "{} has {:.0} % of the pulse's spectrum left just below half its sample rate of {:.0} Hz: what lies above it has folded down, by about {:.0} % of the velocity step; put an anti-alias filter before the sampling, or sample faster",
-                signal.name,
-                100.0 * share,
-                signal.sample_rate_hz,
-                50.0 * share
-            ),
-        )
-        .on(&signal.name)
-        .between(pulse_s.0, pulse_s.1)
-    })
+    let said = ChannelFinding::Aliasing { share, sample_rate_hz: signal.sample_rate_hz };
+    (share > MOST_CONTENT && found.in_band > OVER_NOISE * found.noise)
+        .then(|| said.on(&signal.name).between(pulse_s.0, pulse_s.1))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{At, Axis, End};
+    use crate::data::{At, Axis, End, IssueCode};
 
     /// What `force` says from 20 ms on, sampled at a rate, with the two events.
     fn codes(rate_hz: f64, found_end_s: f64, force: impl Fn(f64) -> f64) -> Vec<IssueCode> {

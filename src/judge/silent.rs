@@ -1,6 +1,6 @@
 //! The channels as recorded to those that say nothing: unplugged, stuck, or with nothing but noise and hum.
 
-use crate::data::{Channel, Issue, IssueCode, STANDARD_GRAVITY_M_S2, Samples, Severity};
+use crate::data::{Channel, ChannelFinding, Finding, Samples};
 use crate::numerics::{reduce, robust};
 use rayon::prelude::*;
 
@@ -24,7 +24,7 @@ struct Reach {
 
 /// Names each channel that stays within its noise over the whole recording while another does not.
 #[must_use]
-pub fn judge_silent(channels: &[Channel]) -> Vec<Issue> {
+pub fn judge_silent(channels: &[Channel]) -> Vec<Finding> {
     let reaches: Vec<Reach> = channels.par_iter().map(reach).collect();
     let is_loud = |r: &Reach| r.farthest > LOUD * r.spread && r.farthest > 0.0;
     let loudest = reaches.iter().filter(|r| is_loud(r)).map(|r| r.farthest).fold(0.0, f64::max);
@@ -33,22 +33,7 @@ pub fn judge_silent(channels: &[Channel]) -> Vec<Issue> {
         .iter()
         .zip(&reaches)
         .filter(|(_, r)| loudest > 0.0 && is_silent(r))
-        .map(|(channel, r)| {
-            let found = if r.farthest > 0.0 {
-                format!("stays within {:.2} g of its mean, all of it noise or hum,", r.farthest / STANDARD_GRAVITY_M_S2)
-            } else {
-                "holds one value".into()
-            };
-            Issue::new(
-                IssueCode::DeadChannel,
-                Severity::Error,
-                format!(
-                    "{} {found} while others show the impacts: unplugged, broken, or the wrong `source`; name the right one or take the channel out of the cask file",
-                    channel.name
-                ),
-            )
-            .on(&channel.name)
-        })
+        .map(|(channel, r)| ChannelFinding::Dead { farthest_m_s2: r.farthest }.on(&channel.name))
         .collect()
 }
 

@@ -1,60 +1,35 @@
-//! The delays between the channels' answers to the first impact to what speaks against their clocks.
+//! The delay of a channel's answer to the first impact to what speaks against its clock.
 
-use crate::data::{BENDING_WAVE_M_S, Cask, Issue, IssueCode, Onset, Severity, Signal};
+use crate::data::{BENDING_WAVE_M_S, Cask, ChannelFinding, Finding, Onset, Signal};
 
 /// Delays within this many samples beside their uncertainty are none: first contact itself lies between two samples.
 const SAMPLES: f64 = 1.5;
 /// A late answer that a wave could explain is worth a note beyond this, s.
 const NOTABLE_S: f64 = 3e-4;
 
-/// Holds each delay against what a body can do: answer at once, or as late as a bending wave, never before it is struck.
+/// Holds a delay against what a body can do: answer at once, or as late as a bending wave, never before it is struck.
 #[must_use]
-pub fn judge_skew(onsets: &[Onset], signals: &[Signal], cask: &Cask, shifted: bool) -> Vec<Issue> {
-    let done = if shifted { "; it was shifted back by as much" } else { "" };
-    let mut issues: Vec<Issue> = onsets.iter().filter_map(|onset| skew(onset, signals, cask)).collect();
-    for issue in issues.iter_mut().filter(|i| i.severity == Severity::Warning) {
-        issue.message.push_str(done);
-    }
-    issues
-}
-
-fn skew(onset: &Onset, signals: &[Signal], cask: &Cask) -> Option<Issue> {
+pub fn judge_skew(onset: &Onset, signals: &[Signal], cask: &Cask, is_shifted: bool) -> Option<Finding> {
+    let &Onset { delay_s, u_s, .. } = onset;
     let rate_hz = signals.iter().map(|s| s.sample_rate_hz).fold(f64::INFINITY, f64::min);
-    let slack_s = 2.0 * onset.u_s + SAMPLES / rate_hz;
+    let slack_s = 2.0 * u_s + SAMPLES / rate_hz;
     let wave_s = cask.length_m / BENDING_WAVE_M_S;
-    let size = format!("{:.2} ± {:.2} ms", 1e3 * onset.delay_s.abs(), 2e3 * onset.u_s);
-    let name = &onset.channel;
-    let (severity, message) = if onset.delay_s < -slack_s {
-        (
-            Severity::Warning,
-            format!(
-                "{name} answers the first impact {size} before the first end is struck, which no body does: the channels' clocks are apart; record them with one trigger, or shift the channel"
-            ),
-        )
-    } else if onset.delay_s > wave_s + slack_s {
-        (
-            Severity::Warning,
-            format!(
-                "{name} answers the first impact {size} after the first end is struck, and a bending wave needs {:.1} ms at most: the channels' clocks are apart; record them with one trigger, or shift the channel",
-                1e3 * wave_s
-            ),
-        )
-    } else if onset.delay_s > slack_s + NOTABLE_S {
-        (
-            Severity::Note,
-            format!(
-                "{name} answers the first impact {size} after the first end is struck: a bending wave may take as long, or the channels' clocks are apart; check that one trigger starts both"
-            ),
-        )
+    let found = if delay_s < -slack_s {
+        ChannelFinding::AnswersEarly { delay_s, u_s, is_shifted }
+    } else if delay_s > wave_s + slack_s {
+        ChannelFinding::AnswersLate { delay_s, u_s, wave_s, is_shifted }
+    } else if delay_s > slack_s + NOTABLE_S {
+        ChannelFinding::AnswersAsAWave { delay_s, u_s }
     } else {
         return None;
     };
-    Some(Issue::new(IssueCode::Skew, severity, message).on(name))
+    Some(found.on(&onset.channel))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::Severity;
 
     fn severity(delay_s: f64, u_s: f64) -> Option<Severity> {
         let cask = Cask {
@@ -68,7 +43,7 @@ mod tests {
             is_body: false,
         };
         let onset = Onset { channel: "A2".into(), delay_s, u_s };
-        judge_skew(&[onset], &[], &cask, false).first().map(|i| i.severity)
+        judge_skew(&onset, &[], &cask, false).map(|f| f.severity)
     }
 
     #[test]

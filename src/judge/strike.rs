@@ -1,6 +1,6 @@
 //! A flight and a first contact to what struck the cask in them beside the target.
 
-use crate::data::{Events, FlightFit, Issue, IssueCode, Severity, Signal};
+use crate::data::{ChannelFinding, DropFinding, Events, Finding, FlightFit, Signal};
 use crate::numerics::reduce::{block_means, block_of, peak};
 
 /// A step explains a flight better by so much of the Bayesian information criterion: of 2600 simulated sound drops none has more, but for
@@ -22,26 +22,16 @@ const AGAIN: f64 = 0.05;
 
 /// A blow within the flight, which modes and drift bent around.
 #[must_use]
-pub fn judge_strike(flight: &FlightFit, v0_m_s: f64) -> Option<Issue> {
+pub fn judge_strike(flight: &FlightFit, v0_m_s: f64) -> Option<Finding> {
     let strike = flight.strike.filter(|s| s.gain > LEAST_GAIN && s.step_m_s.abs() > LEAST_STEP * v0_m_s)?;
-    let after_ms = 1e3 * (strike.time_s - flight.from_s);
-    Some(
-        Issue::new(
-            IssueCode::SecondContact,
-            Severity::Warning,
-            format!(
-                "the velocities step by up to {:.2} m/s about {after_ms:.1} ms into the flight, which explains it better than ringing does: contents that strike the cask, a cable or a second touch; k and the slap-down speed may be off by more than their intervals",
-                strike.step_m_s.abs()
-            ),
-        )
-        .between(strike.time_s, strike.time_s),
-    )
+    let found = DropFinding::Blow { step_m_s: strike.step_m_s, after_s: strike.time_s - flight.from_s };
+    Some(Finding::from(found).between(strike.time_s, strike.time_s))
 }
 
 /// A first end that no force reaches for a part of what was taken for one contact: it left the target before, and what came then is another
 /// blow.
 #[must_use]
-pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Issue> {
+pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Finding> {
     let (contact_s, left_s) = events.first_contact_s().zip(events.separation_s())?;
     let struck = super::struck(signals)?;
     let block = block_of(RATE_HZ, struck.sample_rate_hz);
@@ -62,25 +52,16 @@ pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Issue> {
     (longest.start > 0 && is_long && again).then(|| {
         #[allow(clippy::cast_precision_loss, reason = "a contact's samples")]
         let at_s = |mean: usize| contact_s + (mean * block) as f64 / struck.sample_rate_hz;
-        Issue::new(
-            IssueCode::SecondContact,
-            Severity::Warning,
-            format!(
-                "{} feels no force from {:.1} to {:.1} ms after first contact, and then again: the first end left the target and was struck once more, or something strikes the cask; k, rotation and flight are those after it",
-                struck.name,
-                1e3 * (at_s(longest.start) - contact_s),
-                1e3 * (at_s(longest.end) - contact_s)
-            ),
-        )
-        .on(&struck.name)
-        .between(at_s(longest.start), at_s(longest.end))
+        let (from_s, to_s) = (at_s(longest.start), at_s(longest.end));
+        let found = ChannelFinding::ForceRests { from_s: from_s - contact_s, to_s: to_s - contact_s };
+        found.on(&struck.name).between(from_s, to_s)
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{At, Axis, End, Strike};
+    use crate::data::{At, Axis, End, Strike, What};
     use std::f64::consts::PI;
 
     fn flight(step_m_s: f64, gain: f64) -> FlightFit {
@@ -97,8 +78,9 @@ mod tests {
 
     #[test]
     fn a_step_counts_that_is_large_and_beyond_doubt() {
-        let said = judge_strike(&flight(-0.5, 40.0), 13.3).expect("a blow").message;
-        assert!(said.contains("0.50 m/s about 30.0 ms into the flight"), "{said}");
+        let said = judge_strike(&flight(-0.5, 40.0), 13.3).expect("a blow");
+        let is_as_given = |after_s: f64| (after_s - 0.03).abs() < 1e-9;
+        assert!(matches!(said.what, What::Drop(DropFinding::Blow { after_s, .. }) if is_as_given(after_s)));
         assert!(judge_strike(&flight(-0.5, 8.0), 13.3).is_none());
         assert!(judge_strike(&flight(0.1, 40.0), 13.3).is_none());
     }
@@ -137,8 +119,12 @@ mod tests {
             ..Events::default()
         };
         let twice = signal(&[(0.01, 3000.0), (0.022, 400.0)]);
-        let issue = judge_rest(std::slice::from_ref(&twice), &events(0.026)).expect("two contacts");
-        assert!(issue.message.contains("from 4.0 to 12.1 ms"), "{}", issue.message);
+        let found = judge_rest(std::slice::from_ref(&twice), &events(0.026)).expect("two contacts");
+        let are = |from_s: f64, to_s: f64| (from_s - 4e-3).abs() < 1e-4 && (to_s - 12.1e-3).abs() < 1e-4;
+        let What::Channel(ChannelFinding::ForceRests { from_s, to_s }) = found.what else {
+            panic!("{found:?}")
+        };
+        assert!(are(from_s, to_s), "{}", found.message);
         assert!(judge_rest(&[twice], &events(0.014)).is_none(), "one contact");
         // A limiter that yields and then bottoms out never lets go.
         let staged = signal(&[(0.01, 400.0), (0.0125, 400.0), (0.015, 3000.0)]);

@@ -1,6 +1,8 @@
 //! Noise, place, start and size of each channel to whether it can carry the result.
 
-use crate::data::{Axis, CaskFile, End, Events, Issue, IssueCode, STANDARD_GRAVITY_M_S2, Severity, Signal};
+use crate::data::{
+    Axis, CaskFile, ChannelFinding, End, Events, Finding, STANDARD_GRAVITY_M_S2, Severity, Signal,
+};
 use crate::numerics::noise::integral_uncertainty_by;
 use crate::numerics::reduce;
 
@@ -22,40 +24,28 @@ const ALIKE: f64 = 0.2;
 const PEAKS: f64 = 3.0;
 
 /// Checks of each channel by itself and against the others, beside those of its samples over the impact.
-pub(super) fn judge_worth(signals: &[Signal], events: &Events, cask_file: &CaskFile) -> Vec<Issue> {
-    let mut issues = places(signals, cask_file);
+pub(super) fn judge_worth(signals: &[Signal], events: &Events, cask_file: &CaskFile) -> Vec<Finding> {
+    let mut findings = places(signals, cask_file);
     for signal in signals {
-        issues.extend(noisy(signal, events, cask_file.drop.impact_velocity_m_s));
-        issues.extend(under_way(signal, events));
+        findings.extend(noisy(signal, events, cask_file.drop.impact_velocity_m_s));
+        findings.extend(under_way(signal, events));
     }
-    issues.extend(units(signals));
-    issues
+    findings.extend(units(signals));
+    findings
 }
 
-fn noisy(signal: &Signal, events: &Events, impact_velocity_m_s: f64) -> Option<Issue> {
+fn noisy(signal: &Signal, events: &Events, impact_velocity_m_s: f64) -> Option<Finding> {
     let contact_s = events.first_contact_s()?;
     let end_s = events.slap_down_s().unwrap_or_else(|| signal.end_s());
     let length_s = (end_s - contact_s).clamp(0.0, LONGEST_S);
     let u_m_s = integral_uncertainty_by(&signal.noise_spectrum, signal.free_fall_s, length_s);
     let severity = if u_m_s > MOST_NOISE * impact_velocity_m_s { Severity::Warning } else { Severity::Note };
-    (u_m_s > NOTABLE_NOISE * impact_velocity_m_s).then(|| {
-        Issue::new(
-            IssueCode::Noise,
-            severity,
-            format!(
-                "the noise of {} ({:.2} g before the impact) alone makes its velocity uncertain by ± {:.2} m/s over {:.0} ms, which is in the intervals: record more of the free fall, use a more sensitive range, or look for a loose cable",
-                signal.name,
-                signal.noise_m_s2 / STANDARD_GRAVITY_M_S2,
-                2.0 * u_m_s,
-                1e3 * length_s
-            ),
-        )
-        .on(&signal.name)
-    })
+    let found = ChannelFinding::Noise { noise_m_s2: signal.noise_m_s2, u_m_s, length_s, severity };
+    (u_m_s > NOTABLE_NOISE * impact_velocity_m_s).then(|| found.on(&signal.name))
 }
 
 /// What the first sample shows already is missing from the velocity step.
-fn under_way(signal: &Signal, events: &Events) -> Option<Issue> {
+fn under_way(signal: &Signal, events: &Events) -> Option<Finding> {
     let contact_s = events.first_contact_s()?;
     let to_s = events.separation_s().unwrap_or(contact_s + 0.02);
     let is_struck = signal.end == End::First && signal.axis == Axis::Transverse;
@@ -63,59 +53,42 @@ fn under_way(signal: &Signal, events: &Events) -> Option<Issue> {
     let peak = reduce::extremes(force, 0.0).1;
     let first = *force.first()?;
     let begins = contact_s - signal.start_s < 2.0 / signal.sample_rate_hz;
-    (is_struck && begins && peak > 0.0 && first > UNDER_WAY * peak).then(|| {
-        Issue::new(
-            IssueCode::BeginsLate,
-            Severity::Error,
-            format!(
-                "{} begins in the first impact, at {:.0} % of its peak: what came before is missing from the velocity step; set the trigger at least 0.1 s before the impact",
-                signal.name,
-                100.0 * first / peak
-            ),
-        )
-        .on(&signal.name)
-        .between(signal.start_s, to_s)
-    })
+    let found = ChannelFinding::BeginsInImpact { share: first / peak };
+    (is_struck && begins && peak > 0.0 && first > UNDER_WAY * peak)
+        .then(|| found.on(&signal.name).between(signal.start_s, to_s))
 }
 
 /// Sensors beyond the ends of the cask, and ends that lie the other way round.
-fn places(signals: &[Signal], cask_file: &CaskFile) -> Vec<Issue> {
+fn places(signals: &[Signal], cask_file: &CaskFile) -> Vec<Finding> {
     let length_m = cask_file.cask.length_m;
-    let issue = |signal: &Signal, message| {
-        Issue::new(IssueCode::SensorPosition, Severity::Warning, message).on(&signal.name)
-    };
-    let mut issues: Vec<Issue> = signals
-        .iter()
-        .filter(|s| !(-SLACK_M..=length_m + SLACK_M).contains(&s.position_m))
-        .map(|s| {
-            issue(s, format!("{} is placed at {} m, off the cask, which reaches from 0 to {length_m} m: correct `position_m`, measured along the axis from the first end", s.name, s.position_m))
-        })
-        .collect();
+    let off = |s: &&Signal| !(-SLACK_M..=length_m + SLACK_M).contains(&s.position_m);
+    let off_cask = |s: &Signal| ChannelFinding::OffCask { position_m: s.position_m, length_m }.on(&s.name);
+    let mut findings: Vec<Finding> = signals.iter().filter(off).map(off_cask).collect();
     let transverse = |end| signals.iter().filter(move |s| s.end == end && s.axis == Axis::Transverse);
     for first in transverse(End::First) {
         for second in transverse(End::Second).filter(|s| s.position_m <= first.position_m) {
-            issues.push(issue(first, format!(
-                "{} of the first end is placed at {} m, no nearer to it than {} of the second end at {} m: correct `end` or `position_m`",
-                first.name, first.position_m, second.name, second.position_m
-            )));
+            let (position_m, second_m) = (first.position_m, second.position_m);
+            let found = ChannelFinding::NotNearer { position_m, second: second.name.clone(), second_m };
+            findings.push(found.on(&first.name));
         }
     }
     let middle_m = length_m / 2.0;
     let far =
         |s: &&Signal| if s.end == End::First { s.position_m > middle_m } else { s.position_m < middle_m };
-    if issues.is_empty() {
-        issues.extend(signals.iter().filter(|s| s.axis == Axis::Transverse).filter(far).map(|s| {
-            issue(s, format!("{} belongs to the {} end and is placed at {} m, nearer to the other end of {length_m} m: correct `end` or `position_m`", s.name, s.end, s.position_m))
-        }));
+    let nearer = |s: &Signal| {
+        ChannelFinding::NearerOtherEnd { end: s.end, position_m: s.position_m, length_m }.on(&s.name)
+    };
+    if findings.is_empty() {
+        findings.extend(signals.iter().filter(|s| s.axis == Axis::Transverse).filter(far).map(nearer));
     }
-    issues
+    findings
 }
 
 /// Two transverse channels whose noise and peaks both differ by the factor between two units.
-fn units(signals: &[Signal]) -> Vec<Issue> {
+fn units(signals: &[Signal]) -> Vec<Finding> {
     let transverse: Vec<&Signal> = signals.iter().filter(|s| s.axis == Axis::Transverse).collect();
     let peak = |s: &Signal| reduce::peak(&s.force_m_s2);
-    let mut issues = Vec::new();
+    let mut findings = Vec::new();
     for large in &transverse {
         for small in &transverse {
             if small.noise_m_s2 <= 0.0 {
@@ -130,21 +103,16 @@ fn units(signals: &[Signal]) -> Vec<Issue> {
             if lowest <= 0.0 || highest / lowest <= factor / PEAKS {
                 continue;
             }
-            let peaks = highest / lowest;
-            issues.push(
-                Issue::new(
-                    IssueCode::Scale,
-                    Severity::Warning,
-                    format!(
-                        "{} has {noise:.1} times the noise and {peaks:.1} times the peak of {}, the factor between {names}: one of the two has the wrong `unit` or `sensitivity`",
-                        large.name, small.name
-                    ),
-                )
-                .on(&large.name),
-            );
+            let found = ChannelFinding::UnitFactor {
+                noise,
+                peak: highest / lowest,
+                other: small.name.clone(),
+                units: names,
+            };
+            findings.push(found.on(&large.name));
         }
     }
-    issues
+    findings
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! From the source text to who uses whom: holds the layers of `docs/architecture.md`, the length and the first line of files.
 
+use dropcheck::data::CODES;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -246,22 +247,27 @@ fn the_reader_of_use_lines_sees_a_trespass() {
     assert_eq!(named("// crate::ingest\nlet s = \"crate::ingest\"; use crate::data::Cask;"), [""; 0]);
 }
 
+/// The lines of a page from the first with that beginning on, as long as they have it.
+fn run_of<'a>(page: &'a str, beginning: &str) -> Vec<&'a str> {
+    let has_it = |line: &&str| line.starts_with(beginning);
+    page.lines().skip_while(|line| !has_it(line)).take_while(has_it).collect()
+}
+
 #[test]
-fn every_quality_check_has_its_section() {
-    let code = fs::read_to_string(root().join("src/data/issue.rs")).expect("UTF-8");
-    let list = code.split("pub enum IssueCode {").nth(1).and_then(|rest| rest.split("\n}").next());
-    let names = list.expect("the list of codes").lines().filter_map(|line| line.trim().strip_suffix(','));
-    let snake = |name: &str| {
-        let lower = |(i, c): (usize, char)| {
-            let gap = if c.is_uppercase() && i > 0 { "_" } else { "" };
-            format!("{gap}{}", c.to_lowercase())
-        };
-        name.chars().enumerate().map(lower).collect::<String>()
-    };
-    let wanted: BTreeSet<String> = names.map(snake).collect();
-    let page = fs::read_to_string(root().join("docs/quality.md")).expect("UTF-8");
-    let found: BTreeSet<String> =
-        page.lines().filter_map(|line| line.strip_prefix("## ")).map(str::to_owned).collect();
-    assert!(wanted.len() > 30, "the codes were not read: {wanted:?}");
-    assert_eq!(wanted, found, "docs/quality.md has a section for each code and no other");
+fn the_pages_hold_every_code_as_the_table_of_codes_has_it() {
+    let word = |code| serde_json::to_value(code).expect("a word").as_str().expect("a word").to_owned();
+    let page = |name: &str| fs::read_to_string(root().join("docs").join(name)).expect("UTF-8");
+    let (quality, formats) = (page("quality.md"), page("formats.md"));
+    let groups = CODES.map(|(group, rows)| {
+        let links: Vec<String> = rows.iter().map(|(c, _)| format!("[{0}](#{0})", word(*c))).collect();
+        format!("- {group}: {}", links.join(" · "))
+    });
+    let codes = || CODES.iter().flat_map(|(_, rows)| *rows);
+    let sections: Vec<String> = codes().map(|(code, _)| format!("## {}", word(*code))).collect();
+    let rows: Vec<String> =
+        codes().map(|(c, meaning)| format!("| [`{0}`](quality.md#{0}) | {meaning} |", word(*c))).collect();
+    let found = quality.lines().filter(|line| line.starts_with("## "));
+    assert_eq!(run_of(&quality, "- "), groups, "the index of docs/quality.md");
+    assert_eq!(found.collect::<Vec<_>>(), sections, "the sections of docs/quality.md");
+    assert_eq!(run_of(&formats, "| [`"), rows, "the codes in docs/formats.md:\n{}", rows.join("\n"));
 }

@@ -1,7 +1,7 @@
 //! Made-up channels to what `worth` says of them.
 
 use super::*;
-use crate::data::{At, Cask, Contact, Corrections, Drop, FilterChoice, Tolerances};
+use crate::data::{At, Cask, Contact, Corrections, Drop, FilterChoice, IssueCode, Tolerances};
 
 fn cask_file() -> CaskFile {
     CaskFile {
@@ -124,8 +124,8 @@ fn a_record_that_begins_in_the_impact_is_named() {
         let mut events =
             Events { first_contact: Some(At::exactly(late[0].start_s.max(0.02))), ..Events::default() };
         events.separation = Some(At::exactly(0.025));
-        let issues = judge_worth(&late, &events, &cask_file());
-        assert_eq!(issues.iter().filter(|i| i.severity == Severity::Error).count(), wanted, "{issues:?}");
+        let findings = judge_worth(&late, &events, &cask_file());
+        assert_eq!(findings.iter().filter(|i| i.severity == Severity::Error).count(), wanted, "{findings:?}");
     }
 }
 

@@ -1,0 +1,213 @@
+//! What speaks against the drop as a whole, with its numbers, to code, severity and sentence.
+
+use super::{Finding, IssueCode as Code, Severity};
+use crate::data::{Closure, ClosureKind, Comparison, Drop, End, Estimate};
+
+/// A finding about the drop, its motion or its prediction.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
+pub enum DropFinding {
+    /// No channel changes its velocity by so much; `doubt` is the finding on a clock that may be why.
+    NoImpact { least_m_s: f64, doubt: Option<Box<Finding>> },
+    /// No transverse channel on an end, which the mass properties may stand in for.
+    MissingEnd { end: End, is_stood_in_for: bool },
+    /// The recording ends so long after the separation, before a slap-down.
+    EndsEarly { after_s: f64 },
+    /// No slap-down for so long after the separation.
+    NoSlapDown { after_s: f64 },
+    /// The flight is too short to be fitted.
+    ShortFlight,
+    /// Another drop, so long after the one that was analysed.
+    SeveralDrops { at_s: f64, later_s: f64, step_m_s: f64, first_step_m_s: f64 },
+    /// The free fall ends well before the impact.
+    SoftTouch { end_s: f64, contact_s: f64 },
+    /// A coefficient of restitution that is none.
+    Restitution { k: Estimate },
+    /// The second end rises.
+    TurnsTheWrongWay,
+    /// The axial channel has L slide on a contact that is called rough.
+    Slides { slip: Estimate },
+    /// L would sink so far below where it left the target.
+    Sinks { depth_m: f64 },
+    /// L comes down to the target so softly that no channel shows it.
+    Settles { depth_m: f64, effect_m_s: f64 },
+    /// The velocities step in the flight.
+    Blow { step_m_s: f64, after_s: f64 },
+    /// The target pushes L through the flight.
+    Carried { rate_hz: f64 },
+    /// The flight may have lasted no time.
+    NoFlight { flight_time: Estimate },
+    /// The flight is too short to tell its modes from one another.
+    Unresolved { flight_s: f64, modes_hz: Vec<f64> },
+    /// Measured and predicted lie apart.
+    Disagreement { comparison: Comparison },
+    /// A closure is missed by more than chance; the numbers are taken away where that `is_gross`. The recording shows a free fall of `fall_s`.
+    Missed { closure: Closure, is_gross: bool, drop: Drop, fall_s: f64 },
+    /// All closures together are missed by more than chance.
+    AllMissed { chi_square: f64, degrees: usize, closures: Vec<Closure> },
+    /// No rest before the release: nothing tests what all channels share.
+    Untested,
+}
+
+impl DropFinding {
+    /// The check that speaks, and how much it weighs.
+    pub(super) fn code(&self) -> (Code, Severity) {
+        use Severity::{Error, Note, Warning};
+        match self {
+            Self::NoImpact { .. } => (Code::NoImpact, Error),
+            Self::MissingEnd { .. } => (Code::MissingChannel, Error),
+            Self::EndsEarly { .. } => (Code::EndsEarly, Error),
+            Self::NoSlapDown { .. } => (Code::NoSlapDown, Error),
+            Self::ShortFlight => (Code::FlightFit, Error),
+            Self::NoFlight { .. } | Self::Unresolved { .. } => (Code::FlightFit, Warning),
+            Self::SeveralDrops { .. } => (Code::SeveralDrops, Warning),
+            Self::SoftTouch { .. } | Self::AllMissed { .. } => (Code::Geometry, Warning),
+            Self::Restitution { .. } => (Code::RestitutionRange, Error),
+            Self::TurnsTheWrongWay => (Code::EndsExchanged, Error),
+            Self::Slides { .. } => (Code::Friction, Warning),
+            Self::Sinks { .. } | Self::Settles { .. } | Self::Blow { .. } | Self::Carried { .. } => {
+                (Code::SecondContact, Warning)
+            }
+            Self::Disagreement { .. } => (Code::Disagreement, Warning),
+            Self::Missed { closure, is_gross, .. } => {
+                let code = match closure.kind {
+                    ClosureKind::Height | ClosureKind::Fall => Code::Geometry,
+                    ClosureKind::Turning => Code::NotRigid,
+                    ClosureKind::Rest => Code::Scale,
+                };
+                (code, if *is_gross { Error } else { Warning })
+            }
+            Self::Untested => (Code::Scale, Note),
+        }
+    }
+
+    /// What was found, its size, and what to do.
+    #[allow(clippy::too_many_lines, reason = "a list of sentences")]
+    pub(super) fn sentence(&self) -> String {
+        match self {
+            Self::NoImpact { least_m_s, doubt } => {
+                let doubt = doubt.as_ref().map_or_else(String::new, |finding| {
+                    let of = finding.channel.as_ref().map_or_else(String::new, |channel| format!(" of {channel}"));
+                    format!("; the rate{of} is in doubt (clock), and a rate too high makes every velocity too small by as much: clear that up first")
+                });
+                format!("no impact was found: no transverse channel changes its velocity by {least_m_s:.1} m/s within 25 ms; check source, unit and that the recording covers the drop{doubt}")
+            }
+            Self::MissingEnd { end, is_stood_in_for } => {
+                let effect = match (is_stood_in_for, end) {
+                    (true, End::First) => {
+                        "rotation, k and speed rest on the inertia and centre of gravity of the cask file, and first contact is seen a bending wave late; record both ends"
+                    }
+                    (true, End::Second) => {
+                        "rotation and k rest on the inertia and centre of gravity of the cask file, and nothing shows the slap-down; record both ends"
+                    }
+                    (false, _) => "rotation, k and slap-down need one on each end",
+                };
+                format!("no transverse channel on the {end} end: {effect}")
+            }
+            Self::EndsEarly { after_s } => format!(
+                "no slap-down within {:.0} ms after the first end left the target: the recording ends before it",
+                1e3 * after_s
+            ),
+            Self::NoSlapDown { after_s } => format!(
+                "no slap-down within {:.0} ms after the first end left the target: the second end shows no impact",
+                1e3 * after_s
+            ),
+            Self::ShortFlight => {
+                "the free flight between the impacts is too short to be told from them and from ringing".into()
+            }
+            Self::SeveralDrops { at_s, later_s, step_m_s, first_step_m_s } => format!(
+                "the first end is struck once more at {at_s:.2} s, {later_s:.1} s after the impact found, and changes its velocity by {step_m_s:.1} m/s ({first_step_m_s:.1} m/s there): that is another drop. The first one was analysed; for the other, cut the recording between them in a copy"
+            ),
+            Self::SoftTouch { end_s, contact_s } => format!(
+                "the free fall ends at {end_s:.3} s, {:.0} ms before the impact found at {contact_s:.3} s: something soft (water, a guide, a cable) was touched first, and the impact velocity is not that of a free fall",
+                1e3 * (contact_s - end_s)
+            ),
+            Self::Restitution { k } => {
+                let why =
+                    if k.u95 > 1.0 { "says nothing of a number between 0 and 1" } else { "lies outside 0 to 1" };
+                format!("k = {:.2} ± {:.2} {why}: a scale, a unit, a polarity or the drop height is wrong", k.value, k.u95)
+            }
+            Self::TurnsTheWrongWay => {
+                "the cask turns the wrong way (the second end rises): the ends are exchanged or a polarity is wrong in the cask file".into()
+            }
+            Self::Slides { slip } => format!(
+                "the axial channel has the first end slide at {:+.1} ± {:.1} m/s as it leaves, the cask file calls the contact rough: check the axial channel's polarity and cross-axis sensitivity, or set `friction`",
+                slip.value, slip.u95
+            ),
+            Self::Sinks { depth_m } => format!(
+                "the first end would sink {:.0} mm below where it left the target before the second end strikes: it touched again, and the flight was not free",
+                1e3 * depth_m
+            ),
+            Self::Settles { depth_m, effect_m_s } => format!(
+                "the first end comes down to the target before the second end strikes ({:.0} mm below where it left): by the prediction for this k that changes the slap-down speed by {effect_m_s:.2} m/s, and the flight leaves it out",
+                1e3 * depth_m
+            ),
+            Self::Blow { step_m_s, after_s } => format!(
+                "the velocities step by up to {:.2} m/s about {:.1} ms into the flight, which explains it better than ringing does: contents that strike the cask, a cable or a second touch; k and the slap-down speed may be off by more than their intervals",
+                step_m_s.abs(), 1e3 * after_s
+            ),
+            Self::Carried { rate_hz } => format!(
+                "in the flight every transverse channel goes on gaining what it gained in the first impact, {rate_hz:.0} % of it in 10 ms: the target still pushes the first end, and the flight is not free"
+            ),
+            Self::NoFlight { flight_time } => format!(
+                "the flight lasts {:.1} ± {:.1} ms: the first end may not have left the target when the second end struck, and k and the slap-down speed then mean nothing",
+                1e3 * flight_time.value, 1e3 * flight_time.u95
+            ),
+            Self::Unresolved { flight_s, modes_hz } => {
+                let modes: Vec<String> = modes_hz.iter().map(|f| format!("{f:.0}")).collect();
+                format!(
+                    "the {:.1} ms of flight are too short to tell the {} modes from one another that were fitted to it ({} Hz): they may stand for a contact that was not over, and the velocity steps, k and the slap-down speed be off by more than their intervals; look at the curves, and state only what they show",
+                    1e3 * flight_s, modes.len(), modes.join(", ")
+                )
+            }
+            Self::Disagreement { comparison: c } => format!(
+                "measured {:.2} ± {:.2} m/s and predicted {:.2} ± {:.2} m/s lie apart beyond both intervals: check contact law, angle, mass properties and scales",
+                c.measured, c.measured_u95, c.predicted, c.predicted_u95
+            ),
+            Self::Missed { closure, drop, fall_s, .. } => missed(closure, drop, *fall_s),
+            Self::AllMissed { chi_square, degrees, closures } => {
+                let miss = |c: &Closure| format!("{} by {} ({:.1} u)", c.name, c.miss, c.miss_in_u.abs());
+                let missed: Vec<String> = closures.iter().map(miss).collect();
+                format!(
+                    "what the motion must meet is missed by more than chance, all together (χ² = {chi_square:.1} for {degrees}): {}; check angle, height, scales, positions and mass properties of the cask file",
+                    missed.join(", ")
+                )
+            }
+            Self::Untested => "the recording shows no rest before the release: nothing in it tests the drop height, the clock's rate or a scale error that all channels share, and little tests one of the first end alone, which k follows; they are taken as stated; record from before the release with DC-coupled sensors".into(),
+        }
+    }
+}
+
+fn missed(closure: &Closure, drop: &Drop, fall_s: f64) -> String {
+    let how_far = format!("{} ({:.1} standard uncertainties)", closure.miss, closure.miss_in_u.abs());
+    match closure.kind {
+        ClosureKind::Height => format!(
+            "the second end would be {how_far} from the target when it strikes: drop angle, drop height, a scale, the clock or a sensor position is not as stated"
+        ),
+        ClosureKind::Turning => format!(
+            "the cask turns by {how_far} otherwise than the first impact turns a rigid body of this section, centre of gravity and inertia: check each channel's scale and position, and state `inertia_kg_m2` and `cog_m`"
+        ),
+        ClosureKind::Rest => format!(
+            "{} is off by {how_far} at rest before the release: check its sensitivity, unit and the angle",
+            closure.channel.as_deref().unwrap_or("a channel")
+        ),
+        ClosureKind::Fall => fall(drop, fall_s),
+    }
+}
+
+/// The free fall that the recording shows beside the one that the cask file states.
+fn fall(drop: &Drop, fall_s: f64) -> String {
+    let (height_m, velocity_m_s) = (0.5 * drop.gravity_m_s2 * fall_s * fall_s, drop.gravity_m_s2 * fall_s);
+    let expected_s = drop.impact_velocity_m_s / drop.gravity_m_s2;
+    let stated = if drop.impact_velocity_given {
+        format!("the impact velocity of {:.2} m/s", drop.impact_velocity_m_s)
+    } else {
+        format!("the drop height of {} m", drop.height_m)
+    };
+    let off = fall_s / expected_s - 1.0;
+    let which = if off < 0.0 { "slow" } else { "fast" };
+    format!(
+        "the recording shows a free fall of {fall_s:.3} s, which is {height_m:.2} m and {velocity_m_s:.2} m/s; {stated} in the cask file needs {expected_s:.3} s: check it; if it is right the recorder's clock is {:.1} % {which}: state its true rate as `sample_rate_hz`",
+        100.0 * off.abs()
+    )
+}

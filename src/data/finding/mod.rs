@@ -1,0 +1,119 @@
+//! What speaks against a recording or a result, with its numbers, to its code, its severity and its sentence.
+
+mod channel;
+mod code;
+mod drop;
+
+pub use channel::{ChannelFinding, During};
+pub use code::{CODES, IssueCode, Severity};
+pub use drop::DropFinding;
+
+use serde::{Serialize, Serializer};
+use std::borrow::Cow;
+
+/// What was found: the check's numbers. Code, severity and sentence are made of them here alone.
+#[derive(Debug, Clone, PartialEq)]
+pub enum What {
+    /// About one channel.
+    Channel(ChannelFinding),
+    /// About the drop, its motion or its prediction.
+    Drop(DropFinding),
+    /// About the file, in words.
+    Said(IssueCode, String),
+}
+
+/// One finding about a recording or a result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// What it is, with its numbers.
+    pub what: What,
+    /// Which check speaks.
+    pub code: IssueCode,
+    /// How much it weighs; far from the event less than what was found would by itself.
+    pub severity: Severity,
+    /// The channel's name in the cask file, where it concerns one.
+    pub channel: Option<String>,
+    /// One sentence: what was found, its size, and what to do.
+    pub message: String,
+    /// Start of the span it concerns, s from the recording's first sample.
+    pub from_s: Option<f64>,
+    /// End of that span, s from the recording's first sample.
+    pub to_s: Option<f64>,
+}
+
+/// As files are read, a finding is made of words.
+pub type Issue = Finding;
+
+impl From<DropFinding> for Finding {
+    fn from(found: DropFinding) -> Self {
+        let (code, severity) = found.code();
+        let message = shortened(&found.sentence()).into_owned();
+        Self { what: What::Drop(found), code, severity, channel: None, message, from_s: None, to_s: None }
+    }
+}
+
+impl ChannelFinding {
+    /// The finding, about the channel of that name.
+    #[must_use]
+    pub fn on(self, channel: &str) -> Finding {
+        let (code, severity) = self.code();
+        let message = shortened(&self.sentence(channel)).into_owned();
+        let channel = Some(channel.to_owned());
+        Finding { what: What::Channel(self), code, severity, channel, message, from_s: None, to_s: None }
+    }
+}
+
+impl Finding {
+    /// A finding of the whole recording.
+    #[must_use]
+    pub fn new(code: IssueCode, severity: Severity, message: impl Into<String>) -> Self {
+        let message = shortened(&message.into()).into_owned();
+        let what = What::Said(code, message.clone());
+        Self { what, code, severity, channel: None, message, from_s: None, to_s: None }
+    }
+
+    /// The same, about one channel.
+    #[must_use]
+    pub fn on(mut self, channel: &str) -> Self {
+        self.channel = Some(channel.to_owned());
+        self
+    }
+
+    /// The same, about a span of time, s from the recording's first sample.
+    #[must_use]
+    pub fn between(mut self, from_s: f64, to_s: f64) -> Self {
+        self.from_s = Some(from_s);
+        self.to_s = Some(to_s);
+        self
+    }
+}
+
+/// A row of `quality` in the result.
+#[derive(Serialize)]
+struct Row<'a> {
+    code: IssueCode,
+    severity: Severity,
+    channel: Option<&'a str>,
+    message: &'a str,
+    from_s: Option<f64>,
+    to_s: Option<f64>,
+}
+
+impl Serialize for Finding {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let &Self { code, severity, ref channel, ref message, from_s, to_s, .. } = self;
+        Row { code, severity, channel: channel.as_deref(), message, from_s, to_s }.serialize(serializer)
+    }
+}
+
+/// A message with its middle left out where it quotes more of a file than a person reads: 600 characters are eight lines.
+#[must_use]
+pub fn shortened(message: &str) -> Cow<'_, str> {
+    const MOST_BYTES: usize = 600;
+    if message.len() <= MOST_BYTES {
+        return message.into();
+    }
+    let from = message.floor_char_boundary(MOST_BYTES / 2);
+    let to = message.ceil_char_boundary(message.len() - MOST_BYTES / 2);
+    format!("{} … {}", &message[..from], &message[to..]).into()
+}
