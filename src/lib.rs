@@ -49,7 +49,7 @@ pub mod stages {
     pub use crate::analysis::sticking;
     pub use crate::condition::{Reach, condition};
     pub use crate::events::Changes;
-    pub use crate::fit::{Measured, ladder, quantities, spread_by_draws};
+    pub use crate::fit::{Basis, ladder, quantities, spread_by_draws};
     pub use crate::motion::{Integrated, Window, filtered, fit_flight, outcome, reconstruct};
     pub use crate::numerics::filter::ZeroPhaseLowPass;
     pub use crate::numerics::spectrum::magnitude;

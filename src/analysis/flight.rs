@@ -103,7 +103,7 @@ fn moved(
     };
     let plain = motion::mean_of_flight(integrated, &flight, &window, setup.cog_m);
     let cask = &file.cask;
-    let measured = fit::Measured {
+    let measured = fit::Basis {
         signals,
         flight: &flight,
         events,

@@ -52,7 +52,7 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
             Some(measured) => Reached::Measured(Box::new(flown), measured),
         },
     };
-    outcome::of(recording, file, findings, outcome::Found { impact, events, smooth, reached })
+    outcome::of(recording, file, findings, outcome::Gathered { impact, events, smooth, reached })
 }
 
 /// Geometry and initial motion of a cask file, L sticking to the target.

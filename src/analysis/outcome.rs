@@ -14,7 +14,7 @@ use crate::{fit, judge, motion, predict};
 const CHAIN_DELAY_SAMPLES: f64 = 2.0;
 
 /// What was found from the first impact on.
-pub(super) struct Found {
+pub(super) struct Gathered {
     pub impact: Impact,
     pub events: Events,
     /// The signals as the curves' low-pass leaves them.
@@ -30,8 +30,13 @@ pub(super) fn without_impact(recording: &Recording, file: &CaskFile, findings: V
 }
 
 /// The result from the first impact on, as far as the analysis came.
-pub(super) fn of(recording: &Recording, file: &CaskFile, findings: Vec<Finding>, found: Found) -> Analysis {
-    let Found { impact, events, smooth, reached } = found;
+pub(super) fn of(
+    recording: &Recording,
+    file: &CaskFile,
+    findings: Vec<Finding>,
+    found: Gathered,
+) -> Analysis {
+    let Gathered { impact, events, smooth, reached } = found;
     let measured = match &reached {
         Reached::Measured(flown, _) => Some(flown),
         Reached::Impact | Reached::Flown(_) => None,

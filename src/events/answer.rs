@@ -45,7 +45,7 @@ pub fn answers(signals: &[Signal], contact_s: f64) -> Vec<Onset> {
         .iter()
         .filter(|s| s.axis == Axis::Transverse && s.name != struck.name)
         .filter_map(|signal| {
-            let (delay_s, u_s) = Answer::new(signal, &cause)?.delay()?;
+            let (delay_s, u_s) = Answering::new(signal, &cause)?.delay()?;
             Some(Onset { channel: signal.name.clone(), delay_s, u_s })
         })
         .collect()
@@ -132,7 +132,7 @@ impl Cause {
 }
 
 /// A channel around its answer.
-struct Answer<'a> {
+struct Answering<'a> {
     signal: &'a Signal,
     cause: &'a Cause,
     /// First sample that stands out of the noise.
@@ -148,7 +148,7 @@ struct Delay {
     u_s: f64,
 }
 
-impl<'a> Answer<'a> {
+impl<'a> Answering<'a> {
     fn new(signal: &'a Signal, cause: &'a Cause) -> Option<Self> {
         let from = signal.index_from(cause.contact_s - BEFORE_S);
         let to = signal.index_from(cause.contact_s + CONTACT_S);

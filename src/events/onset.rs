@@ -24,7 +24,7 @@ const LONGEST_CONTACT_S: f64 = 0.05;
 /// First contact of L and its standard uncertainty, s; on R alone when that first stirs.
 #[must_use]
 pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
-    let (signal, stretch, sign) = stretch(signals, coarse)?;
+    let FirstPulse { signal, stretch, sign } = FirstPulse::about(signals, coarse)?;
     match signal.end {
         // Before first contact nothing rings: the first rise is the one.
         End::First => onset(signal, stretch, sign, Rise::First),
@@ -42,15 +42,24 @@ fn first_stir(signal: &Signal, stretch: std::ops::Range<usize>) -> Option<At> {
     Some(At { time_s: signal.time_s(from + first), u_s: 0.5 / signal.sample_rate_hz })
 }
 
-/// The signal on which first contact is sought, the samples among which it lies, and the sign of its pulse.
-pub(crate) fn stretch<'a>(
-    signals: &'a [Signal],
-    coarse: &CoarseEvent,
-) -> Option<(&'a Signal, std::ops::Range<usize>, f64)> {
-    let signal = transverse(signals, End::First).or_else(|| transverse(signals, End::Second))?;
-    let from = signal.index_from(coarse.near_s - 0.2 * coarse.spread_s);
-    let to = signal.index_from(coarse.near_s + 1.2 * coarse.spread_s);
-    Some((signal, from..to, coarse.velocity_step_m_s.signum()))
+/// Where first contact is sought.
+pub(crate) struct FirstPulse<'a> {
+    /// The signal.
+    pub signal: &'a Signal,
+    /// The samples among which it lies.
+    pub stretch: std::ops::Range<usize>,
+    /// 1 or −1: to which side the pulse goes.
+    pub sign: f64,
+}
+
+impl<'a> FirstPulse<'a> {
+    /// About a coarse event; on R where L has no transverse channel.
+    pub(crate) fn about(signals: &'a [Signal], coarse: &CoarseEvent) -> Option<Self> {
+        let signal = transverse(signals, End::First).or_else(|| transverse(signals, End::Second))?;
+        let from = signal.index_from(coarse.near_s - 0.2 * coarse.spread_s);
+        let to = signal.index_from(coarse.near_s + 1.2 * coarse.spread_s);
+        Some(Self { signal, stretch: from..to, sign: coarse.velocity_step_m_s.signum() })
+    }
 }
 
 /// First contact of R on its signal between two times and its standard uncertainty, s; `None` where the record holds none.

@@ -1,6 +1,6 @@
 //! What the motion must meet beside the velocity steps, and by how much given inputs miss it.
 
-use super::Measured;
+use super::Basis;
 use super::inputs::Inputs;
 use crate::data::{ClosureKind, Motion};
 
@@ -74,7 +74,7 @@ impl Observable {
     }
 
     /// Its own standard uncertainty.
-    fn u(&self, measured: &Measured) -> f64 {
+    fn u(&self, measured: &Basis) -> f64 {
         match self {
             Self::Height => U_HEIGHT_M,
             Self::Turning { u_rad_s } => *u_rad_s,
@@ -84,12 +84,12 @@ impl Observable {
     }
 
     /// The miss over its own standard uncertainty.
-    pub fn residual(&self, measured: &Measured, inputs: &Inputs, motion: &Motion) -> Option<f64> {
+    pub fn residual(&self, measured: &Basis, inputs: &Inputs, motion: &Motion) -> Option<f64> {
         self.miss(inputs, motion).map(|miss| miss / self.u(measured))
     }
 
     /// A miss of `residual` own standard uncertainties as a person reads it.
-    pub fn words(&self, measured: &Measured, motion: &Motion, residual: f64) -> String {
+    pub fn words(&self, measured: &Basis, motion: &Motion, residual: f64) -> String {
         let miss = residual * self.u(measured);
         match self {
             Self::Height => format!("{:+.0} mm", 1e3 * miss),
@@ -105,7 +105,7 @@ impl Observable {
 }
 
 /// The observables that this recording has.
-pub(super) fn observables(measured: &Measured, motion: &Motion) -> Vec<Observable> {
+pub(super) fn observables(measured: &Basis, motion: &Motion) -> Vec<Observable> {
     let mut all = Vec::new();
     if motion.second_end_height_m.is_some() {
         all.push(Observable::Height);

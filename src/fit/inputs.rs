@@ -1,6 +1,6 @@
 //! The uncertain inputs of the reconstruction, each with its standard uncertainty, and the reconstruction's inputs with them moved.
 
-use super::Measured;
+use super::Basis;
 use crate::data::{At, AxialClosure, Axis, Events, FlightFit, MOST_LOST_M_S, Motion, Setup, Signal, StoodIn};
 use crate::numerics::noise::integral_uncertainty_by;
 
@@ -32,7 +32,7 @@ pub(super) struct Inputs {
 
 /// One input that is uncertain.
 #[derive(Debug, Clone)]
-pub(super) struct Input {
+pub(super) struct UncertainInput {
     pub name: String,
     /// Its standard uncertainty, as a person reads it.
     pub size: String,
@@ -74,7 +74,7 @@ enum Change {
 }
 
 impl Inputs {
-    pub fn new(measured: &Measured) -> Self {
+    pub fn new(measured: &Basis) -> Self {
         let channels = measured.flight.plateaus.len();
         Self {
             flight: measured.flight.clone(),
@@ -89,7 +89,7 @@ impl Inputs {
     }
 
     /// These inputs with each of `inputs` moved by so many of its standard uncertainties.
-    pub fn moved(&self, inputs: &[Input], by_u: &[f64]) -> Self {
+    pub fn moved(&self, inputs: &[UncertainInput], by_u: &[f64]) -> Self {
         let mut moved = self.clone();
         for (input, &by) in inputs.iter().zip(by_u) {
             if by != 0.0 {
@@ -136,7 +136,7 @@ impl Inputs {
 }
 
 /// Every input that is uncertain, with its size; `motion` is the one that the stated inputs give.
-pub(super) fn inputs(measured: &Measured, motion: &Motion) -> Vec<Input> {
+pub(super) fn inputs(measured: &Basis, motion: &Motion) -> Vec<UncertainInput> {
     let mut all = Vec::new();
     for (channel, signal) in measured.signals.iter().enumerate() {
         if signal.axis == Axis::Transverse || measured.setup.axial == AxialClosure::Measured {
@@ -146,7 +146,7 @@ pub(super) fn inputs(measured: &Measured, motion: &Motion) -> Vec<Input> {
     // Half of a 95 % half-width is a standard uncertainty.
     let known = &measured.tolerances;
     let mut add = |name: &str, size: String, change: Change| {
-        all.push(Input { name: name.into(), size, change });
+        all.push(UncertainInput { name: name.into(), size, change });
     };
     let by_rad = known.angle_rad / 2.0;
     add("drop angle", format!("{:.2}°", by_rad.to_degrees()), Change::Angle { by_rad });
@@ -182,13 +182,13 @@ fn percent(share: f64) -> String {
 }
 
 /// Step, calibration, cross axis and position of one channel.
-fn of_channel(all: &mut Vec<Input>, measured: &Measured, motion: &Motion, channel: usize) {
+fn of_channel(all: &mut Vec<UncertainInput>, measured: &Basis, motion: &Motion, channel: usize) {
     let (signal, known) = (&measured.signals[channel], &measured.tolerances);
     if channel >= measured.flight.plateaus.len() {
         return;
     }
     let mut add = |name: &str, size: String, change: Change| {
-        all.push(Input { name: format!("{name} of {}", signal.name), size, change });
+        all.push(UncertainInput { name: format!("{name} of {}", signal.name), size, change });
     };
     let is_stood_in = measured.stood_in.is_some_and(|s| s.channel == channel);
     let u_m_s =
@@ -218,7 +218,7 @@ fn of_channel(all: &mut Vec<Input>, measured: &Measured, motion: &Motion, channe
 }
 
 /// What the fit leaves open; what the modes' form leaves; where a zero shift set in during the contact; what the offset may be off since; what clipping cut off; what a gap may have held.
-fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
+fn u_step_m_s(measured: &Basis, channel: usize) -> f64 {
     let (signal, plateau) = (&measured.signals[channel], &measured.flight.plateaus[channel]);
     let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
     let pulse_s = measured.events.separation_s().map_or(0.0, |t| t - contact_s);
@@ -247,7 +247,7 @@ fn u_step_m_s(measured: &Measured, channel: usize) -> f64 {
 }
 
 /// What clipping cut off a channel's step and what a gap in the contact may have held, m/s.
-fn lost_m_s(measured: &Measured, signal: &Signal) -> f64 {
+fn lost_m_s(measured: &Basis, signal: &Signal) -> f64 {
     let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
     let left_s = measured.events.separation_s().unwrap_or(contact_s);
     let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
@@ -257,7 +257,7 @@ fn lost_m_s(measured: &Measured, signal: &Signal) -> f64 {
 }
 
 /// Whether a channel has lost its velocity step, so that a closure is spent on telling it.
-pub(super) fn has_lost_step(measured: &Measured) -> bool {
+pub(super) fn has_lost_step(measured: &Basis) -> bool {
     measured.signals.iter().any(|signal| lost_m_s(measured, signal) > MOST_LOST_M_S)
 }
 

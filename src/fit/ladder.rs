@@ -2,7 +2,7 @@
 
 use super::inputs::has_lost_step;
 use super::propagate::Model;
-use super::{COVERAGE, Measured, Reconstruct};
+use super::{Basis, COVERAGE, Reconstruct};
 use crate::data::{
     Axis, ChannelReading, Closure, End, Estimate, FlightFit, MET_U, Quantities, ReconstructionCandidate,
     ReconstructionChoice, ReconstructionRung,
@@ -27,7 +27,7 @@ struct Step {
 /// `plain` is the flight fit without modes and drift. `None` where the motion cannot be had.
 #[must_use]
 pub fn ladder(
-    measured: &Measured,
+    measured: &Basis,
     plain: Option<&FlightFit>,
     reading: Option<ChannelReading>,
     reconstruct: Reconstruct,
@@ -41,7 +41,7 @@ pub fn ladder(
         steps.push(by_channels(measured, plain, reading, &flight));
     }
     if let Some(plain) = plain {
-        let measured = Measured { flight: plain, ..*measured };
+        let measured = Basis { flight: plain, ..*measured };
         steps.extend(planar(&measured, reconstruct));
     }
     steps.push(by_flight(measured, flight, &closures));
@@ -78,7 +78,7 @@ fn step(rung: ReconstructionRung, quantities: Quantities, consistent: bool, resi
 }
 
 /// (a) Speed and k as [P] reads them off the velocity curves of single channels; the other quantities are the planar motion's.
-fn by_channels(measured: &Measured, plain: &FlightFit, reading: ChannelReading, motion: &Quantities) -> Step {
+fn by_channels(measured: &Basis, plain: &FlightFit, reading: ChannelReading, motion: &Quantities) -> Step {
     let left_m_s = |end: End| {
         let signals = measured.signals.iter().filter(|s| s.axis == Axis::Transverse && s.end == end);
         signals.filter_map(|s| plain.plateau(&s.name)).map(|p| p.residual_m_s).fold(0.0, f64::max)
@@ -105,7 +105,7 @@ fn by_channels(measured: &Measured, plain: &FlightFit, reading: ChannelReading, 
 }
 
 /// (b) Planar motion, each velocity step the mean over the flight.
-fn planar(measured: &Measured, reconstruct: Reconstruct) -> Option<Step> {
+fn planar(measured: &Basis, reconstruct: Reconstruct) -> Option<Step> {
     let model = Model::new(measured, reconstruct)?;
     let quantities = model.by_stated_inputs()?;
     let closures = model.closures(None);
@@ -116,7 +116,7 @@ fn planar(measured: &Measured, reconstruct: Reconstruct) -> Option<Step> {
 }
 
 /// (c) The flight fitted with modes and drift.
-fn by_flight(measured: &Measured, quantities: Quantities, closures: &[Closure]) -> Step {
+fn by_flight(measured: &Basis, quantities: Quantities, closures: &[Closure]) -> Step {
     let left_m_s = most_left_m_s(measured.flight);
     let what = match (measured.flight.modes.len(), measured.flight.drift) {
         (0, false) => "no mode, no drift".to_owned(),

@@ -18,7 +18,7 @@ pub type Reconstruct<'a> = &'a (dyn Fn(&FlightFit, &Events, &Setup) -> Option<Mo
 
 /// What the propagation starts from.
 #[derive(Debug, Clone, Copy)]
-pub struct Measured<'a> {
+pub struct Basis<'a> {
     /// The conditioned channels.
     pub signals: &'a [Signal],
     /// The flight fit.

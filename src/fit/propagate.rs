@@ -1,8 +1,8 @@
 //! A motion with its uncertain inputs to quantities with intervals, with or without the observables that it must meet.
 
 use super::closures::{Observable, observables};
-use super::inputs::{Input, Inputs, inputs};
-use super::{COVERAGE, Measured, Reconstruct};
+use super::inputs::{Inputs, UncertainInput, inputs};
+use super::{Basis, COVERAGE, Reconstruct};
 use crate::data::{Adjustment, Closure, Contribution, Estimate, Motion, Quantities, RivalLaw};
 use crate::numerics::prior_fit::{PriorFit, derivatives, fit};
 use nalgebra::DMatrix;
@@ -33,7 +33,7 @@ const NOTABLE_MOVE: f64 = 0.05;
 /// Reads the quantities off the motion and propagates the inputs' standard uncertainties to them (GUM, 5.1.2); `None` where the motion
 /// cannot be had.
 #[must_use]
-pub fn quantities(measured: &Measured, reconstruct: Reconstruct) -> Option<Quantities> {
+pub fn quantities(measured: &Basis, reconstruct: Reconstruct) -> Option<Quantities> {
     Model::new(measured, reconstruct)?.by_stated_inputs()
 }
 
@@ -41,7 +41,7 @@ pub fn quantities(measured: &Measured, reconstruct: Reconstruct) -> Option<Quant
 /// over the inputs: what the linear propagation is checked against (JCGM 101).
 #[must_use]
 pub fn spread_by_draws(
-    measured: &Measured,
+    measured: &Basis,
     reconstruct: Reconstruct,
     draws: &mut dyn FnMut(usize) -> Option<Vec<f64>>,
 ) -> Option<(f64, f64)> {
@@ -61,11 +61,11 @@ pub fn spread_by_draws(
 
 /// The reconstruction as a function of its inputs' moves.
 pub(super) struct Model<'a> {
-    measured: &'a Measured<'a>,
+    measured: &'a Basis<'a>,
     reconstruct: Reconstruct<'a>,
     base: Inputs,
     motion: Motion,
-    inputs: Vec<Input>,
+    inputs: Vec<UncertainInput>,
     observables: Vec<Observable>,
     /// What the rival contact law would say less what the stated one says, led on to the whole way between both laws: of the quantities,
     /// then of the observables.
@@ -75,7 +75,7 @@ pub(super) struct Model<'a> {
 }
 
 impl<'a> Model<'a> {
-    pub fn new(measured: &'a Measured, reconstruct: Reconstruct<'a>) -> Option<Self> {
+    pub fn new(measured: &'a Basis, reconstruct: Reconstruct<'a>) -> Option<Self> {
         let base = Inputs::new(measured);
         let motion = reconstruct(&base.flight, &base.events, &base.setup)?;
         let inputs = inputs(measured, &motion);

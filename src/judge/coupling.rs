@@ -37,13 +37,9 @@ fn supported(signals: &[Signal], flight: &FlightFit, drop: &Drop) -> Option<Find
     let transverse: Vec<&str> =
         signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| s.name.as_str()).collect();
     let of_transverse = flight.plateaus.iter().filter(|p| transverse.contains(&p.channel.as_str()));
-    let growths: Vec<(&Plateau, f64, f64)> = of_transverse
-        .map(|p| {
-            (p, p.zero_shift_m_s2 / p.velocity_step_m_s, p.u_zero_shift_m_s2 / p.velocity_step_m_s.abs())
-        })
-        .collect();
+    let growths: Vec<Trend> = of_transverse.map(|p| Trend::of(p, 1.0)).collect();
     let rate_hz = common_rate(&growths).filter(|_| flight.drift)?;
-    let most_m_s2 = growths.iter().map(|g| g.0.zero_shift_m_s2).fold(0.0, f64::max);
+    let most_m_s2 = growths.iter().map(|g| g.plateau.zero_shift_m_s2).fold(0.0, f64::max);
     if !CARRIED.contains(&(most_m_s2 / (drop.gravity_m_s2 * drop.angle_rad.cos()))) {
         return None;
     }
@@ -54,14 +50,11 @@ fn undeclared(signals: &[Signal], flight: &FlightFit, declared_ac: &[&str]) -> V
     let is_stated = |name: &str| declared_ac.contains(&name);
     let all: Vec<&Plateau> = flight.plateaus.iter().filter(|p| !is_stated(&p.channel)).collect();
     let largest_m_s = all.iter().map(|p| p.velocity_step_m_s.abs()).fold(0.0, f64::max);
-    let droops: Vec<(&Plateau, f64, f64)> = all
+    let droops: Vec<Trend> = all
         .into_iter()
         .filter(|p| signals.iter().any(|s| s.name == p.channel))
         .filter(|p| p.velocity_step_m_s.abs() > LEAST_STEP * largest_m_s)
-        .map(|p| {
-            let step = p.velocity_step_m_s;
-            (p, -p.zero_shift_m_s2 / step, p.u_zero_shift_m_s2 / step.abs())
-        })
+        .map(|p| Trend::of(p, -1.0))
         .collect();
     let Some(rate) = common_rate(&droops) else { return Vec::new() };
     let time_constant_s = 1.0 / rate;
@@ -70,7 +63,7 @@ fn undeclared(signals: &[Signal], flight: &FlightFit, declared_ac: &[&str]) -> V
     }
     droops
         .iter()
-        .map(|(plateau, ..)| {
+        .map(|Trend { plateau, .. }| {
             let found = ChannelFinding::AcUnstated {
                 droop_m_s2: plateau.zero_shift_m_s2,
                 step_m_s: plateau.velocity_step_m_s,
@@ -81,16 +74,35 @@ fn undeclared(signals: &[Signal], flight: &FlightFit, declared_ac: &[&str]) -> V
         .collect()
 }
 
-/// 1/T where two droops and more tell the same, each by itself beyond doubt; Hz.
-fn common_rate(droops: &[(&Plateau, f64, f64)]) -> Option<f64> {
-    let is_sure = droops.iter().all(|(_, rate, u)| *rate > SURE * u);
-    if droops.len() < 2 || !is_sure {
+/// A drift in the flight over the velocity step before it.
+struct Trend<'a> {
+    plateau: &'a Plateau,
+    rate_hz: f64,
+    u_hz: f64,
+}
+
+impl<'a> Trend<'a> {
+    /// The drift that goes on as the step did (sign 1), or back from it (−1).
+    fn of(plateau: &'a Plateau, sign: f64) -> Self {
+        let step_m_s = plateau.velocity_step_m_s;
+        Self {
+            plateau,
+            rate_hz: sign * plateau.zero_shift_m_s2 / step_m_s,
+            u_hz: plateau.u_zero_shift_m_s2 / step_m_s.abs(),
+        }
+    }
+}
+
+/// The rate where two trends and more tell the same, each by itself beyond doubt, as 3.2 Hz ± 0.1 Hz of A1 and 3.3 Hz ± 0.1 Hz of A2; Hz.
+fn common_rate(trends: &[Trend]) -> Option<f64> {
+    let is_sure = trends.iter().all(|t| t.rate_hz > SURE * t.u_hz);
+    if trends.len() < 2 || !is_sure {
         return None;
     }
-    let weight = |u: f64| 1.0 / (u * u).max(f64::MIN_POSITIVE);
-    let total: f64 = droops.iter().map(|(.., u)| weight(*u)).sum();
-    let mean = droops.iter().map(|(_, rate, u)| rate * weight(*u)).sum::<f64>() / total;
-    let agree = droops.iter().all(|(_, rate, u)| (rate - mean).abs() < AGREEMENT * mean + 2.0 * u);
+    let weight = |t: &Trend| 1.0 / (t.u_hz * t.u_hz).max(f64::MIN_POSITIVE);
+    let total: f64 = trends.iter().map(weight).sum();
+    let mean = trends.iter().map(|t| t.rate_hz * weight(t)).sum::<f64>() / total;
+    let agree = trends.iter().all(|t| (t.rate_hz - mean).abs() < AGREEMENT * mean + 2.0 * t.u_hz);
     (agree && mean > 0.0).then_some(mean)
 }
 

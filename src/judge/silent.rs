@@ -17,7 +17,7 @@ const STRETCHES: usize = 20;
 const SAMPLED: usize = 1000;
 
 /// How far a channel goes from its median, m/s², and how far its samples spread where it is quietest, m/s².
-struct Reach {
+struct Excursion {
     farthest: f64,
     spread: f64,
 }
@@ -25,10 +25,10 @@ struct Reach {
 /// Names each channel that stays within its noise over the whole recording while another does not.
 #[must_use]
 pub fn judge_silent(channels: &[Channel]) -> Vec<Finding> {
-    let reaches: Vec<Reach> = channels.par_iter().map(reach).collect();
-    let is_loud = |r: &Reach| r.farthest > LOUD * r.spread && r.farthest > 0.0;
+    let reaches: Vec<Excursion> = channels.par_iter().map(reach).collect();
+    let is_loud = |r: &Excursion| r.farthest > LOUD * r.spread && r.farthest > 0.0;
     let loudest = reaches.iter().filter(|r| is_loud(r)).map(|r| r.farthest).fold(0.0, f64::max);
-    let is_silent = |r: &Reach| r.farthest <= SILENT * r.spread || r.farthest < SHARE * loudest;
+    let is_silent = |r: &Excursion| r.farthest <= SILENT * r.spread || r.farthest < SHARE * loudest;
     channels
         .iter()
         .zip(&reaches)
@@ -37,7 +37,7 @@ pub fn judge_silent(channels: &[Channel]) -> Vec<Finding> {
         .collect()
 }
 
-fn reach(channel: &Channel) -> Reach {
+fn reach(channel: &Channel) -> Excursion {
     let scale = channel.scale_m_s2.abs();
     match &channel.samples {
         Samples::F32(v) => reach_of(v, scale),
@@ -45,7 +45,7 @@ fn reach(channel: &Channel) -> Reach {
     }
 }
 
-fn reach_of<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Reach {
+fn reach_of<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Excursion {
     let value = |x: &T| -> f64 { (*x).into() };
     let stretches: Vec<Vec<f64>> = samples
         .chunks((samples.len() / STRETCHES).max(1))
@@ -60,9 +60,9 @@ fn reach_of<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Reach {
     // Two running extremes instead of distances: comparisons alone keep up with the reading.
     let (low, high) = reduce::extremes(samples, middle);
     if stretches.is_empty() {
-        return Reach { farthest: 0.0, spread: 0.0 };
+        return Excursion { farthest: 0.0, spread: 0.0 };
     }
-    Reach { farthest: scale * (high - middle).max(middle - low), spread: scale * spread }
+    Excursion { farthest: scale * (high - middle).max(middle - low), spread: scale * spread }
 }
 
 #[cfg(test)]

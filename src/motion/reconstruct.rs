@@ -61,7 +61,7 @@ fn follow(
     let line = Line::through(&integrated.signals, setup.cog_m)?;
     let histories =
         Histories::new(integrated, fit, &line, (contact_s, separation_s))?.at_rate(setup.second_s);
-    let mut body = Contact::start(setup, contact_s);
+    let mut body = OnTarget::start(setup, contact_s);
     let recorded_s = (separation_s - contact_s) / f64::from(CONTACT_STEPS);
     let step_s = recorded_s * setup.second_s;
     record(&body.state);
@@ -192,7 +192,7 @@ fn corner_height_m(setup: &Setup, state: &MotionState, ahead_m: f64) -> f64 {
 }
 
 /// The body while L is on the target.
-struct Contact {
+struct OnTarget {
     state: MotionState,
     /// Sine and cosine of its inclination.
     angle_by: (f64, f64),
@@ -202,7 +202,7 @@ struct Contact {
     last_axial_m_s: f64,
 }
 
-impl Contact {
+impl OnTarget {
     fn start(setup: &Setup, time_s: f64) -> Self {
         let (sin, cos) = setup.angle_rad.sin_cos();
         let state = MotionState {

@@ -31,6 +31,8 @@ struct Stretch<T> {
     ratio: T,
     /// I_z until the sliding stops, N s; without end in the last stretch.
     length_n_s: Option<T>,
+    /// Whether the corner sticks in it.
+    sticks: bool,
 }
 
 /// The corner's velocity and what moves it: Δẋ_C = n_xx I_x − n_xz I_z, Δż_C = n_zz I_z − n_xz I_x.
@@ -66,19 +68,20 @@ impl<T: Number> ContactPoint<T> {
         }
     }
 
-    /// The corner slides until it stops, then sticks or slides the way it is driven. The flag says whether it sticks in the end.
-    fn stretches(&self, friction: f64) -> (Option<Stretch<T>>, Stretch<T>, bool) {
+    /// The corner slides until it stops, if it does; then it sticks or slides the way it is driven.
+    fn stretches(&self, friction: f64) -> (Option<Stretch<T>>, Stretch<T>) {
         let (ratio, sticks) = self.ratio_from_rest(friction);
-        let last = Stretch { ratio, length_n_s: None };
+        let last = Stretch { ratio, length_n_s: None, sticks };
         if self.slip_m_s.re() == 0.0 {
-            return (None, last, sticks);
+            return (None, last);
         }
         let against = T::from(-friction * self.slip_m_s.re().signum());
         let slip_rate = self.n_xx * against - self.n_xz;
         if slip_rate.re() * self.slip_m_s.re() >= 0.0 {
-            return (None, Stretch { ratio: against, length_n_s: None }, false);
+            return (None, Stretch { ratio: against, length_n_s: None, sticks: false });
         }
-        (Some(Stretch { ratio: against, length_n_s: Some(-self.slip_m_s / slip_rate) }), last, sticks)
+        let length_n_s = Some(-self.slip_m_s / slip_rate);
+        (Some(Stretch { ratio: against, length_n_s, sticks: false }), last)
     }
 }
 
@@ -103,7 +106,7 @@ pub(super) fn strike_first_end<T: Number>(
         point.approach_m_s -= point.n_xz * impulse_x;
         point.slip_m_s = T::from(0.0);
     }
-    let (first, last, sticks) = point.stretches(friction);
+    let (first, last) = point.stretches(friction);
     // A corner at rest on the target may still jam: friction that presses it on (Painlevé).
     let jams = || {
         point.approach_m_s.re() == 0.0 && first.as_ref().is_some_and(|s| normal_rate(&point, s).re() < 0.0)
@@ -124,7 +127,7 @@ pub(super) fn strike_first_end<T: Number>(
         horizontal_impulse_n_s: impulse_x,
         vertical_impulse_n_s: impulse_z,
         friction_to_stick: (point.n_xz / point.n_xx).abs(),
-        sticks,
+        sticks: last.sticks,
     }
 }
 

@@ -3,7 +3,7 @@
 use super::held::Held;
 use super::impact::{Struck, strike_first_end};
 use super::path::{Outcome, Way};
-use super::resting::End;
+use super::resting::RestEnd;
 use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
 use super::{predict, rod, thin_rod};
@@ -72,7 +72,7 @@ fn alike(one: Option<f64>, other: Option<f64>) -> bool {
 }
 
 /// An impact law: body, motion before, contact law and k to the motion after.
-type Impact = fn(&Body, &State<f64>, Contact, f64) -> Struck<f64>;
+type ImpactLaw = fn(&Body, &State<f64>, Contact, f64) -> Struck<f64>;
 
 impl Case<'_> {
     fn start(&self) -> State<f64> {
@@ -80,7 +80,7 @@ impl Case<'_> {
     }
 
     /// k = 0: L held on the target until R strikes; else one flight.
-    fn held_or_one_flight(&self, impact: Impact) -> Prediction {
+    fn held_or_one_flight(&self, impact: ImpactLaw) -> Prediction {
         let start = self.start();
         let struck = impact(self.body, &start, self.contact, self.k);
         let outcome = if self.k <= 0.0 { self.held(&struck.after) } else { self.one_flight(&struck) };
@@ -104,8 +104,8 @@ impl Case<'_> {
         let second_end = match self.contact {
             Contact::Coulomb(_) => {
                 match Support::of(self.body, self.drop, self.contact, Hold::Pulls).rest(after) {
-                    End::Strikes(at, time_s) => Some((at, time_s)),
-                    End::LiftsOff(..) | End::Never => None,
+                    RestEnd::Strikes(at, time_s) => Some((at, time_s)),
+                    RestEnd::LiftsOff(..) | RestEnd::Never => None,
                 }
             }
             _ => self.closed_form(after).and_then(|held| {

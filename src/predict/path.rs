@@ -2,7 +2,7 @@
 
 use super::flight::{first_end_touches, second_end_touches, sinks};
 use super::impact::strike_first_end;
-use super::resting::End;
+use super::resting::RestEnd;
 use super::state::{Number, State, second_end_m};
 use super::support::{Hold, Support};
 use crate::data::{Body, Contact, Drop, FlightRegime};
@@ -56,20 +56,20 @@ impl Way<'_> {
             if self.rests(&state) {
                 let (end, held) = self.rest(&state);
                 match end {
-                    End::Strikes(at, time_s) => {
+                    RestEnd::Strikes(at, time_s) => {
                         let whole = held && outcome.impacts == 1 && elapsed_s.re() == 0.0;
                         outcome.regime = if whole { FlightRegime::Contact } else { FlightRegime::Mixed };
                         outcome.second_end = Some((at, elapsed_s + time_s));
                         return outcome;
                     }
-                    End::LiftsOff(at, time_s) => {
+                    RestEnd::LiftsOff(at, time_s) => {
                         if time_s.re() > 0.0 {
                             outcome.regime = FlightRegime::Mixed;
                         }
                         state = at;
                         elapsed_s += time_s;
                     }
-                    End::Never => return outcome,
+                    RestEnd::Never => return outcome,
                 }
             }
             let second_s = second_end_touches(body, gravity_m_s2, &state);
@@ -105,20 +105,20 @@ impl Way<'_> {
     /// L on the target until R strikes or the target would have to pull. L then flies, the limit k → 0, unless it sinks deeper than
     /// a graze: then it has not left the target at all and slides on until it rises by itself.
     /// The flag says whether the contact law held L all the time.
-    fn rest<T: Number>(&self, from: &State<T>) -> (End<T>, bool) {
+    fn rest<T: Number>(&self, from: &State<T>) -> (RestEnd<T>, bool) {
         let end = self.support.rest(from);
-        let End::LiftsOff(at, time_s) = end else { return (end, true) };
+        let RestEnd::LiftsOff(at, time_s) = end else { return (end, true) };
         let second_s = second_end_touches(self.support.body, self.support.gravity_m_s2, &at);
         if self
             .strikes_again(&at, second_s)
             .is_none_or(|again_s| again_s.re() > LET_GO_S / self.gravity_share().sqrt())
         {
-            return (End::LiftsOff(at, time_s), true);
+            return (RestEnd::LiftsOff(at, time_s), true);
         }
         let end = match (Support { hold: Hold::Yields, ..self.support }).rest(&at) {
-            End::Strikes(at, more_s) => End::Strikes(at, time_s + more_s),
-            End::LiftsOff(at, more_s) => End::LiftsOff(at, time_s + more_s),
-            End::Never => End::Never,
+            RestEnd::Strikes(at, more_s) => RestEnd::Strikes(at, time_s + more_s),
+            RestEnd::LiftsOff(at, more_s) => RestEnd::LiftsOff(at, time_s + more_s),
+            RestEnd::Never => RestEnd::Never,
         };
         (end, false)
     }

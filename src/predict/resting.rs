@@ -18,7 +18,7 @@ const LONGEST: f64 = 40.0;
 const STILL: f64 = 1e-9;
 
 /// How a rest of L on the target ends.
-pub(super) enum End<T> {
+pub(super) enum RestEnd<T> {
     /// R strikes: the motion then, and the time since the start, s.
     Strikes(State<T>, T),
     /// L lifts off.
@@ -39,23 +39,23 @@ enum Margin {
 
 impl Support<'_> {
     /// Follows L's rest on the target to its end. Whole turns that the body made in flight do not count.
-    pub fn rest<T: Number>(&self, from: &State<T>) -> End<T> {
+    pub fn rest<T: Number>(&self, from: &State<T>) -> RestEnd<T> {
         let turns_rad = TAU * (from.angle_rad.re() / TAU).round();
         match self.rest_within_a_turn(&from.turned(-turns_rad)) {
-            End::Strikes(at, time_s) => End::Strikes(at.turned(turns_rad), time_s),
-            End::LiftsOff(at, time_s) => End::LiftsOff(at.turned(turns_rad), time_s),
-            End::Never => End::Never,
+            RestEnd::Strikes(at, time_s) => RestEnd::Strikes(at.turned(turns_rad), time_s),
+            RestEnd::LiftsOff(at, time_s) => RestEnd::LiftsOff(at.turned(turns_rad), time_s),
+            RestEnd::Never => RestEnd::Never,
         }
     }
 
     /// Past the vertical L does not bring R down on this side.
-    fn rest_within_a_turn<T: Number>(&self, from: &State<T>) -> End<T> {
+    fn rest_within_a_turn<T: Number>(&self, from: &State<T>) -> RestEnd<T> {
         let mut elapsed_s = T::from(0.0);
         if from.angle_rad.re().cos() <= 0.0 {
-            return End::Never;
+            return RestEnd::Never;
         }
         if from.angle_rad.re() <= 0.0 {
-            return End::Strikes(*from, elapsed_s);
+            return RestEnd::Strikes(*from, elapsed_s);
         }
         let mut at = Turning::of(self.body, from);
         let unit_s = (self.body.length_m / self.gravity_m_s2).sqrt();
@@ -69,11 +69,11 @@ impl Support<'_> {
             if self.hold != Hold::Pulls && forces.normal_m_s2 <= 0.0 {
                 // What lifts off at once moves as the impact left it.
                 let lifted = if elapsed_s.re() == 0.0 { *from } else { self.state(&at) };
-                return End::LiftsOff(lifted, elapsed_s);
+                return RestEnd::LiftsOff(lifted, elapsed_s);
             }
             let turning_rad_s = at.angular_velocity_rad_s.re().abs();
             if turning_rad_s < STILL && forces.angular_acceleration_rad_s2.abs() < STILL {
-                return End::Never;
+                return RestEnd::Never;
             }
             let step_s = (STEP / turning_rad_s).min(STEP * unit_s);
             let next = self.step(&at, grip, T::from(step_s));
@@ -86,13 +86,13 @@ impl Support<'_> {
             at = self.step(&at, grip, taken_s);
             elapsed_s += taken_s;
             match ended {
-                Margin::Angle => return End::Strikes(self.state(&at), elapsed_s),
-                Margin::Lift => return End::LiftsOff(self.state(&at), elapsed_s),
+                Margin::Angle => return RestEnd::Strikes(self.state(&at), elapsed_s),
+                Margin::Lift => return RestEnd::LiftsOff(self.state(&at), elapsed_s),
                 Margin::Hold if grip != Grip::Sticks => at.slip_m_s = T::from(0.0),
                 Margin::Hold => {}
             }
         }
-        End::Never
+        RestEnd::Never
     }
 
     /// The time within a step of `step_s` at which the first margin is used up, and which one.
@@ -141,11 +141,11 @@ mod tests {
         })
     }
 
-    fn second_end(end: &End<f64>) -> (State<f64>, f64) {
+    fn second_end(end: &RestEnd<f64>) -> (State<f64>, f64) {
         match end {
-            End::Strikes(state, time_s) => (*state, *time_s),
-            End::LiftsOff(..) => panic!("L lifts off"),
-            End::Never => panic!("R never strikes"),
+            RestEnd::Strikes(state, time_s) => (*state, *time_s),
+            RestEnd::LiftsOff(..) => panic!("L lifts off"),
+            RestEnd::Never => panic!("R never strikes"),
         }
     }
 
@@ -170,7 +170,7 @@ mod tests {
     #[test]
     fn a_pivot_lifts_off_where_the_rods_force_changes_sign() {
         let rod = thin_rod(1000.0, 5.0);
-        let End::LiftsOff(at, time_s) =
+        let RestEnd::LiftsOff(at, time_s) =
             support(&rod, Contact::Rough, Hold::Pushes).rest(&turning(&rod, 1.3, 1.0))
         else {
             panic!("it stays");
@@ -203,8 +203,8 @@ mod tests {
         let body = Body { height_m: 0.8, ..thin_rod(1000.0, 5.0) };
         let rest =
             |angle_rad| support(&body, Contact::Rough, Hold::Pushes).rest(&turning(&body, angle_rad, 0.0));
-        assert!(matches!(rest(std::f64::consts::FRAC_PI_2 - 0.05), End::Never));
-        assert!(matches!(rest((5.0_f64 / 0.8).atan()), End::Never));
-        assert!(matches!(rest(1.3), End::LiftsOff(..)));
+        assert!(matches!(rest(std::f64::consts::FRAC_PI_2 - 0.05), RestEnd::Never));
+        assert!(matches!(rest((5.0_f64 / 0.8).atan()), RestEnd::Never));
+        assert!(matches!(rest(1.3), RestEnd::LiftsOff(..)));
     }
 }

@@ -24,7 +24,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
     let reach = stages::Reach::of(&file.cask, &file.drop);
     let (signals, _) = stages::condition(&recording, &event, &reach, file.corrections);
     let setup = stages::sticking(&file);
-    let measured = stages::Measured {
+    let measured = stages::Basis {
         signals: &signals,
         flight: result.flight.as_ref().expect("a flight"),
         events: &result.events,

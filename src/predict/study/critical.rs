@@ -13,7 +13,7 @@ const RANGE_FRICTIONS: u32 = 7;
 
 /// What one case shows of one criterion.
 #[derive(Debug, Clone)]
-struct Found {
+struct Shown {
     /// Where it is largest; `None` if L strikes once before R at no angle.
     peak: Option<Peak>,
     /// Angle and size of the largest value at which L strikes again before R; minus infinity if it never does.
@@ -21,11 +21,11 @@ struct Found {
 }
 
 /// Angles, degrees, and the predictions there.
-pub(super) type Traced<'a> = (&'a [f64], &'a [Prediction]);
+pub(super) type AtAngles<'a> = (&'a [f64], &'a [Prediction]);
 
 /// Every criterion's critical angle for a case whose predictions are known at some angles.
-pub(super) fn critical_angles(fall: &Fall, band_percent: f64, traced: Traced) -> Vec<CriticalAngle> {
-    let of = |(criterion, found): (Criterion, Found)| {
+pub(super) fn critical_angles(fall: &Fall, band_percent: f64, traced: AtAngles) -> Vec<CriticalAngle> {
+    let of = |(criterion, found): (Criterion, Shown)| {
         let none = || Peak { angle_deg: f64::NAN, largest: f64::NAN, bands_deg: Vec::new() };
         let peak = found.peak.unwrap_or_else(none);
         CriticalAngle {
@@ -48,7 +48,7 @@ fn above(bounced: (f64, f64), largest: f64) -> Option<(f64, f64)> {
     exceeds.then_some(bounced)
 }
 
-fn find(fall: &Fall, band_percent: f64, (angles_deg, predictions): Traced) -> [Found; 3] {
+fn find(fall: &Fall, band_percent: f64, (angles_deg, predictions): AtAngles) -> [Shown; 3] {
     let at = |angle_deg: f64| Sample::new(angle_deg, &fall.at(angle_deg));
     let samples: Vec<Sample> =
         angles_deg.iter().zip(predictions).map(|(&angle_deg, p)| Sample::new(angle_deg, p)).collect();
@@ -61,7 +61,7 @@ fn find(fall: &Fall, band_percent: f64, (angles_deg, predictions): Traced) -> [F
         }
     }
     let samples = with_jumps(&samples, &at);
-    [0, 1, 2].map(|criterion| Found {
+    [0, 1, 2].map(|criterion| Shown {
         peak: peak(&samples, criterion, &at, band_percent),
         bounced: bounced[criterion],
     })
@@ -78,19 +78,19 @@ pub(super) fn ranges(cask_file: &CaskFile, request: &Request, angles_deg: &[f64]
     );
     let falls = super::falls(cask_file, &contacts, &ks);
     let of = |fall: &Fall| find(fall, request.band_percent, (angles_deg, &fall.over(angles_deg)));
-    let found: Vec<[Found; 3]> = falls.par_iter().map(of).collect();
+    let found: Vec<[Shown; 3]> = falls.par_iter().map(of).collect();
     let mut ranges = Vec::new();
     for body in super::bodies(&cask_file.cask) {
         for (index, criterion) in Criterion::ALL.into_iter().enumerate() {
             let of_body = falls.iter().zip(&found).filter(|(fall, _)| fall.body.model == body.model);
-            let cases: Vec<(&Fall, &Found)> = of_body.map(|(fall, found)| (fall, &found[index])).collect();
+            let cases: Vec<(&Fall, &Shown)> = of_body.map(|(fall, found)| (fall, &found[index])).collect();
             ranges.extend(range(body.model, criterion, &cases));
         }
     }
     ranges
 }
 
-fn range(model: BodyModel, criterion: Criterion, cases: &[(&Fall, &Found)]) -> Option<CriticalRange> {
+fn range(model: BodyModel, criterion: Criterion, cases: &[(&Fall, &Shown)]) -> Option<CriticalRange> {
     let mut peaks = cases.iter().filter_map(|(fall, found)| found.peak.as_ref().map(|peak| (fall, peak)));
     let (fall, first) = peaks.next()?;
     let mut range = CriticalRange {

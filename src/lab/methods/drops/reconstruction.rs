@@ -126,7 +126,7 @@ fn times(drop: &Prepared, request: &TrialRequest) -> Option<Vec<Timing>> {
     let mean = || motion::mean_of_flight(&integrate(), &flight, &window, cog_m);
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(&integrated, flight, events, setup);
     let move_by = |flight: Option<FlightFit>| moved(&flight?, &events, &setup);
-    let measured = fit::Measured {
+    let measured = fit::Basis {
         signals,
         flight: &flight,
         events: &events,

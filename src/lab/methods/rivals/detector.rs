@@ -40,7 +40,7 @@ impl Detector {
 /// First contact of L by `detector`, s; `None` where the stretch about `coarse` holds no pulse.
 #[must_use]
 pub fn first_contact_by(detector: Detector, signals: &[Signal], coarse: &CoarseEvent) -> Option<f64> {
-    let (signal, stretch, sign) = onset::stretch(signals, coarse)?;
+    let onset::FirstPulse { signal, stretch, sign } = onset::FirstPulse::about(signals, coarse)?;
     if detector == Detector::RiseLine {
         return first_contact(signals, coarse).map(|contact| contact.time_s);
     }
