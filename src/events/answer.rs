@@ -164,7 +164,7 @@ impl<'a> Answering<'a> {
         (is_whole && seen > from).then_some(Self { signal, cause, seen, noise })
     }
 
-    /// The delay by the shortest stretch that tells it well, what longer ones say otherwise in its uncertainty.
+    /// The delay by the shortest stretch that tells it well; by how much longer stretches say otherwise is in its uncertainty.
     fn delay(&self) -> Option<(f64, f64)> {
         let fits: Vec<Delay> = LENGTHS_S.par_iter().filter_map(|&length_s| self.fit(length_s)).collect();
         let fine_s = 5e-5_f64.max(0.5 / self.signal.sample_rate_hz);
@@ -263,7 +263,7 @@ fn left(values: &[f64], from_s: f64, step_s: f64, cause: &Cause, orders: &[usize
     residual_square(values, &cause.regressors(orders, from_s, step_s, values.len()))
 }
 
-/// Root of the mean square of `values` over so many of them, all others being next to nothing.
+/// Root mean square over `count` of the values, the others being next to zero.
 fn size(values: &[f64], count: f64) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / count).sqrt()
 }

@@ -17,22 +17,22 @@ const BLOCKS: usize = 40;
 /// At the first impact L changes by (1 + k) v0 cos φ, later by less; spikes and the release change it by far less.
 const SHARE: f64 = 0.4;
 
-/// A change of this share of what the first impact makes at the least is that impact too, whatever comes later.
+/// A change of this share of the least that the first impact can make is the first impact too, however large a later one is.
 const SHARE_OF_LEAST: f64 = 0.5;
 
-/// What changes the velocity by this share of the largest change may be the slap-down that is sought, which is the first to reach half …
+/// A change of this share of the largest one may be the slap-down, which is sought as the first to reach half of it …
 const LAST_SHARE: f64 = 0.3;
-/// … and so may what reaches this share of v0: no slap-down changes it by less than 0.08.
+/// … and so may a change of this share of v0: no slap-down makes less than 0.08 v0.
 const LAST_SHARE_OF_FALL: f64 = 0.06;
 
-/// Falls after the first impact from which on a second like it is another drop, in v0/g: a body that leaves with up to 0.7 v0 has come down
-/// twice by then, and once more with half of v0 at most.
+/// A change like the first impact's this long after it is another drop, in falls of v0/g: by then a body that left the target with 0.7 v0 has
+/// come down twice, and strikes a third time with half of v0 at most.
 const APART_FALLS: f64 = 2.5;
-/// A change alike, over that of the first impact: drops of one height at any of the usual angles and k. A cable that is pulled makes
-/// more, what lifts the cask or sets it down less.
+/// A change is like the first impact's within these factors: drops of one height at any of the usual angles and k. A pulled cable makes a larger
+/// change, lifting or setting down the cask a smaller one.
 const ALIKE: RangeInclusive<f64> = 0.6..=1.7;
 
-/// How the velocity of each transverse channel changes over the whole record: what the first impact and its like are found on.
+/// How the velocity of each transverse channel changes over the whole record: first impact and further drops are found on it.
 pub struct Changes<'a>(Vec<Changing<'a>>);
 
 /// One channel's changes of velocity.
@@ -52,7 +52,7 @@ impl<'a> Changes<'a> {
         Self(transverse.filter_map(Changing::of).collect())
     }
 
-    /// The transverse channel of the first end, or without one any.
+    /// The transverse channel of the first end; any other where that end has none.
     fn struck(&self) -> Option<&Changing<'a>> {
         self.0.iter().find(|c| c.channel.end == End::First).or_else(|| self.0.first())
     }

@@ -6,7 +6,7 @@ use crate::data::{ClosureKind, Motion};
 
 /// Height of R's corner above the target as it strikes: corner and target are even to some millimetres, m.
 const U_HEIGHT_M: f64 = 0.003;
-/// Angular impulse against Θ ω: what a reconstruction of a finite pulse that rings leaves on simulated drops, as a share of ω.
+/// Angular impulse against Θ ω, as a share of ω: so far apart are both on simulated drops whose pulse is finite and rings.
 const U_TURNING: f64 = 0.005;
 /// A hook lets go within some milliseconds, s.
 const U_RELEASE_S: f64 = 0.005;

@@ -4,12 +4,12 @@ use super::Basis;
 use crate::data::{At, AxialClosure, Axis, Events, FlightFit, MOST_LOST_M_S, Motion, Setup, Signal, StoodIn};
 use crate::numerics::noise::integral_uncertainty_by;
 
-/// What a mode leaves in the velocity step for each period that the flight shows of it, as a share of its amplitude: a window of one period
-/// knows a mode's mean to half a percent of it on simulated drops, and one of half a period to two (docs/uncertainty.md).
+/// Error of a velocity step from a mode of which the flight shows one period, as a share of the mode's amplitude; twice the periods leave half
+/// of it. On simulated drops a window of one period leaves half a percent, one of half a period two percent (docs/uncertainty.md).
 const RINGING_SHARE: f64 = 0.005;
 
-/// What a gap may have held, as a standard uncertainty, over v0 and its share of the contact: the middle of a half sine that throws L back
-/// as fast as it came holds π of them, and its ends none.
+/// Standard uncertainty of the velocity that a gap in the contact took, over v0 times the gap's share of the contact. A pulse that throws L back
+/// as fast as it came changes its velocity by 2 v0: a gap of a tenth in the middle of such a half sine takes 0.1 π v0, one at its end next to none.
 const GAP_SHARE: f64 = 3.0;
 
 /// One set of inputs.
@@ -26,7 +26,7 @@ pub(super) struct Inputs {
     pub inertia_m2: Option<f64>,
     /// Part of the way from the stated contact law to the other one.
     pub law_share: f64,
-    /// The channel that has another one's errors.
+    /// The made-up channel of an end without one, and the channel that it is made of, whose errors it has.
     stood_in: Option<StoodIn>,
 }
 
@@ -217,7 +217,8 @@ fn of_channel(all: &mut Vec<UncertainInput>, measured: &Basis, motion: &Motion, 
     }
 }
 
-/// What the fit leaves open; what the modes' form leaves; where a zero shift set in during the contact; what the offset may be off since; what clipping cut off; what a gap may have held.
+/// Standard uncertainty of a channel's velocity step, m/s, of six parts: the plateau's fit, the modes' form, the time in the contact at which a zero
+/// shift set in, the drift of the offset since the free fall, clipping, gaps.
 fn u_step_m_s(measured: &Basis, channel: usize) -> f64 {
     let (signal, plateau) = (&measured.signals[channel], &measured.flight.plateaus[channel]);
     let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
@@ -239,14 +240,14 @@ fn u_step_m_s(measured: &Basis, channel: usize) -> f64 {
         .zip(&plateau.ringing_m_s)
         .map(|(mode, (a, b))| {
             let periods = mode.frequency_hz * flight_s;
-            // Of less than a period the fit sees a bend of the plateau.
+            // A mode of which the flight shows less than a period looks like a bend of the plateau.
             RINGING_SHARE * a.hypot(*b) / periods.min(periods * periods)
         })
         .sum();
     plateau.u_m_s.hypot(ringing_m_s).hypot(shift_m_s).hypot(drift_m_s).hypot(lost_m_s(measured, signal))
 }
 
-/// What clipping cut off a channel's step and what a gap in the contact may have held, m/s.
+/// Velocity that clipping, or a gap in the contact, may have taken from a channel's step, m/s.
 fn lost_m_s(measured: &Basis, signal: &Signal) -> f64 {
     let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
     let left_s = measured.events.separation_s().unwrap_or(contact_s);
@@ -256,7 +257,7 @@ fn lost_m_s(measured: &Basis, signal: &Signal) -> f64 {
     clipped_m_s.hypot(gap_m_s)
 }
 
-/// Whether a channel has lost its velocity step, so that a closure is spent on telling it.
+/// Whether a channel has lost its velocity step to clipping or a gap: a closure then tells the step, and tests nothing.
 pub(super) fn has_lost_step(measured: &Basis) -> bool {
     measured.signals.iter().any(|signal| lost_m_s(measured, signal) > MOST_LOST_M_S)
 }

@@ -8,11 +8,11 @@ use crate::data::{
     ReconstructionChoice, ReconstructionRung,
 };
 
-/// How much wider the intervals of a joint fit are whose closures are spent on lost velocity steps, and test nothing: so wide they hold 19 of
-/// 20 simulated drops.
+/// Where the closures tell lost velocity steps they test nothing, and the intervals of the joint fit are widened by this: with it they hold 19 of 20
+/// simulated drops.
 const UNTESTED: f64 = 2.0;
 
-/// An interval that the next rung makes this much narrower is worth that rung.
+/// The next rung is taken where it narrows an interval to less than this share.
 const NARROWED: f64 = 0.75;
 
 /// A rung with everything that it says.
@@ -125,7 +125,7 @@ fn by_flight(measured: &Basis, quantities: Quantities, closures: &[Closure]) -> 
         }
     };
     let residual = format!("{left_m_s:.3} m/s about {what}; {}", worst(closures));
-    // What a lost step is uncertain by leaves no closure missed, and the number as wrong as it is.
+    // A lost step is so uncertain that no closure counts as missed, however wrong the step is: the closures then say nothing.
     let consistent = meets(closures) && !has_lost_step(measured);
     step(ReconstructionRung::Flight, quantities, consistent, residual)
 }

@@ -67,8 +67,7 @@ pub(super) struct Model<'a> {
     motion: Motion,
     inputs: Vec<UncertainInput>,
     observables: Vec<Observable>,
-    /// What the rival contact law would say less what the stated one says, led on to the whole way between both laws: of the quantities,
-    /// then of the observables.
+    /// Change of the quantities, then of the observables, from the stated contact law to the rival one: that over a tenth of the way, times ten.
     law: Option<(Vec<f64>, Vec<f64>)>,
     /// Slopes of the quantities and, below them, of the observables, and where they were asked for.
     known_slopes: Mutex<Vec<(Vec<f64>, DMatrix<f64>)>>,
@@ -132,7 +131,8 @@ impl<'a> Model<'a> {
         self.moved(by_u).map(|(_, left)| left)
     }
 
-    /// The slopes of [`Self::values`] and, below them, of [`Self::residuals`]: a motion gives both, and what was asked for near by is kept.
+    /// The slopes of [`Self::values`] and, below them, of [`Self::residuals`]. One motion gives both; slopes at inputs near by that were made
+    /// before are given again.
     fn slopes(&self, at_u: &[f64]) -> Option<DMatrix<f64>> {
         let known = || self.known_slopes.lock().unwrap_or_else(PoisonError::into_inner);
         let apart_u =
@@ -167,7 +167,7 @@ impl<'a> Model<'a> {
         self.propagate(&PriorFit::of_priors(self.inputs.len()), 1.0)
     }
 
-    /// The quantities where a fit ended, with what each datum contributes, `widened` times as uncertain as it says.
+    /// The quantities at the inputs that a fit ended with, the contribution of each datum to their uncertainty widened by a factor.
     pub fn propagate(&self, fit: &PriorFit, widened: f64) -> Option<Quantities> {
         let values = self.values(&fit.unknowns)?;
         let slopes = self.slopes_of_quantities(&fit.unknowns)?;
@@ -214,7 +214,7 @@ impl<'a> Model<'a> {
         budget
     }
 
-    /// Each observable's miss by the stated inputs over its uncertainty from all of them, and what a fit leaves of it.
+    /// By how much the stated inputs miss each observable, over the uncertainty that all inputs give it, and how much of the miss a fit leaves.
     pub fn closures(&self, fit: Option<&PriorFit>) -> Vec<Closure> {
         let start = vec![0.0; self.inputs.len()];
         let (Some(misses), Some(slopes)) = (self.residuals(&start), self.slopes_of_residuals(&start)) else {

@@ -5,12 +5,12 @@ use crate::data::{
     ReconstructionChoice, ReconstructionRung, Signal,
 };
 
-/// Missed by this many, the stated things are not what the recording shows.
+/// A closure that is missed by this many standard uncertainties takes the numbers away: angle, height or a scale is not as stated.
 const GROSS_U: f64 = 12.0;
 
-/// About first contact, s: a gap there may hide it.
+/// A gap within this time of the first contact may hide the contact, s.
 const CONTACT_S: f64 = 1e-3;
-/// Intervals beyond these say nothing that the bounds of k do not, and speeds beyond a seventh are no speeds.
+/// 95 % half-widths beyond which a number says nothing: k ± 0.25 spans half of 0 to 1; of a speed, as a share, 20 ± 3 m/s.
 const MOST_U95_K: f64 = 0.25;
 const MOST_U95_SPEED: f64 = 0.15;
 
@@ -26,10 +26,11 @@ pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Event
     findings
 }
 
-/// Whether what the motion must meet tells velocity steps that channels lost: R's way to the target one of both ends', the turning by the
-/// impulse the other's.
+/// Whether the closures tell the velocity steps that channels lost to clipping or gaps: R's height at the slap-down tells the step of one end,
+/// rotation against impulse that of the other.
 ///
-/// What hides the first contact hides the time that both count from; and where one is missed though steps are free to move, more is amiss.
+/// A gap at the first contact hides the time that both closures count from. A closure that is missed though the lost steps are free to move
+/// says that more is wrong than the steps.
 #[must_use]
 pub fn tells_lost_steps(
     choice: &ReconstructionChoice,
@@ -51,7 +52,7 @@ pub fn tells_lost_steps(
         && says_something
 }
 
-/// Closures of which each is missed by less than chance allows, and all together by more.
+/// Three closures missed by 3 u each: chance allows one such miss, but not all three together.
 fn together(choice: &ReconstructionChoice) -> Option<Finding> {
     let (chi_square, degrees) = choice.chi_square?;
     (chi_square > most_chi_square(degrees)).then(|| {
@@ -64,12 +65,12 @@ fn together(choice: &ReconstructionChoice) -> Option<Finding> {
 fn most_chi_square(degrees: usize) -> f64 {
     #[allow(clippy::cast_precision_loss, reason = "a few closures")]
     let n = degrees as f64;
-    // The normal deviate that is passed on one side as often as 3.5 on both.
+    // A normal deviate is above 3.31 as often as it is beyond ± 3.5.
     let share = 2.0 / (9.0 * n);
     n * (1.0 - share + 3.31 * share.sqrt()).powi(3)
 }
 
-/// What no closure of this recording tests.
+/// A recording without rest or fall: no closure tests drop height, clock or a scale error common to all channels.
 fn on_trust(choice: &ReconstructionChoice) -> Option<Finding> {
     let shows_rest = choice.closures.iter().any(|c| matches!(c.kind, ClosureKind::Rest | ClosureKind::Fall));
     (!shows_rest).then(|| DropFinding::Untested.into())

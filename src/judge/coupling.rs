@@ -31,8 +31,8 @@ pub fn judge_coupling(signals: &[Signal], flight: &FlightFit, cask_file: &CaskFi
     findings
 }
 
-/// A push at L's corner accelerates every transverse channel in the proportion of its velocity step (38), and one that carries the corner
-/// has a sensor there read g cos φ: the first end rests on the target, or bounces there.
+/// A push at L's corner accelerates every transverse channel in the proportion of its velocity step (38). Where the push carries the corner, a
+/// sensor there reads g cos φ: the first end rests on the target, or bounces there.
 fn supported(signals: &[Signal], flight: &FlightFit, drop: &Drop) -> Option<Finding> {
     let transverse: Vec<&str> =
         signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| s.name.as_str()).collect();

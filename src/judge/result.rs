@@ -15,15 +15,17 @@ const SMALL_BEND_M_S: f64 = 0.5;
 const LATE_SHARE: f64 = 0.03;
 /// Sliding below this is sticking, m/s: 5 % cross-axis sensitivity of a 13 m/s step.
 const SMALL_SLIP_M_S: f64 = 0.65;
-/// L this share of the length below where it left is on the target again: 5 mm, what corner and target are even to.
+/// L is on the target again where it is this share of the cask's length below the place it left: 5 mm of 5 m, to which corner and target are
+/// even.
 const TOUCHED_SHARE: f64 = 0.001;
 /// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1.5 % of a slap-down.
 const LARGE_RESIDUAL_M_S: f64 = 0.3;
-/// The same as a share of v0 in a flight too short to tell its modes apart, which three of them may fit with a part of the contact in it.
+/// The same limit as a share of v0 for a flight too short to tell its modes apart: three modes may fit a flight that still holds a part of
+/// the contact.
 const LARGE_RESIDUAL_SHORT: f64 = 0.015;
 /// A velocity this far off its flight before R strikes is another contact, m/s: 1 % of a slap-down.
 const LARGE_MISMATCH_M_S: f64 = 0.2;
-/// A velocity step that is known no better than to this share of v0, as a standard uncertainty, says little, however well it is known how little.
+/// A velocity step whose standard uncertainty is above this share of v0 says little: 4 ± 2.7 m/s of 13.3 m/s.
 const LARGE_U_SHARE: f64 = 0.1;
 
 /// Checks the motion against what a dropped cask can do.

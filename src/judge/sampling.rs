@@ -21,7 +21,7 @@ const BAND: f64 = 0.4;
 /// Content there over the largest of the spectrum: 0.05 folds to 2.5 % of the velocity step. Drawn pulses of 25 samples and more
 /// that end in a jump (k = 0.02) reach 0.026, pulses of 5 samples begin at 0.14.
 const MOST_CONTENT: f64 = 0.05;
-/// The content must be this many times what the noise has there.
+/// Content of less than this many times the noise in the band is noise.
 const OVER_NOISE: f64 = 3.0;
 /// Longest contact whose pulse is sought, s.
 const LONGEST_S: f64 = 0.05;
@@ -102,7 +102,7 @@ fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<Content> {
         force[i] *= weight;
         force[count - 1 - i] *= weight;
     }
-    // Zeros behind it only make the spectrum's lines denser.
+    // Zeros behind the stretch only make the lines of its spectrum denser.
     force.resize(count.max(256) * 2, 0.0);
     let (frequency_hz, size) = magnitude(&force, signal.sample_rate_hz);
     let band = &size[frequency_hz.partition_point(|f| *f < BAND * signal.sample_rate_hz)..];

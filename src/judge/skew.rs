@@ -2,7 +2,7 @@
 
 use crate::data::{BENDING_WAVE_M_S, Cask, ChannelFinding, Finding, Onset, Signal};
 
-/// Delays within this many samples beside their uncertainty are none: first contact itself lies between two samples.
+/// A delay of up to this many samples beside its uncertainty counts as none: first contact itself lies between two samples.
 const SAMPLES: f64 = 1.5;
 /// A late answer that a wave could explain is worth a note beyond this, s.
 const NOTABLE_S: f64 = 3e-4;

@@ -6,7 +6,7 @@ use crate::numerics::reduce::{block_means, block_of, peak};
 /// A step explains a flight better by so much of the Bayesian information criterion: of 2600 simulated sound drops none has more, but for
 /// steps below [`LEAST_STEP`].
 const LEAST_GAIN: f64 = 20.0;
-/// Smaller steps change the speed by less than it is known to, as a share of v0.
+/// A smaller step changes the slap-down speed by less than its interval, as a share of v0.
 const LEAST_STEP: f64 = 0.01;
 
 /// Force is looked at in means over this rate, Hz: ringing of a sensor's mount is no force.

@@ -18,9 +18,10 @@ const SLACK_M: f64 = 0.05;
 const UNDER_WAY: f64 = 0.1;
 /// Factors between units that are taken for one another: g and m/s², V and mV.
 const UNITS: [(f64, &str); 2] = [(STANDARD_GRAVITY_M_S2, "g and m/s²"), (1000.0, "V and mV, or g and mg")];
-/// Two chains of one kind have the same noise within this share …
+/// Two measuring chains of one kind and unit have the same noise within this share.
 const ALIKE: f64 = 0.2;
-/// … and peaks that differ by less than this factor less than the units do.
+/// Peaks of two channels in one unit differ by less than this factor: noise of 9.8 times and peaks of more than 9.8 / 3 times those of another
+/// channel are g taken for m/s².
 const PEAKS: f64 = 3.0;
 
 /// Checks of each channel by itself and against the others, beside those of its samples over the impact.
