@@ -1,7 +1,8 @@
 //! A first impact to the flight after it: separation, slap-down, and the motion between them.
 
 use super::impact::Impact;
-use super::{settle, sticking};
+use super::settle;
+use super::setup::sticking;
 use crate::data::{
     At, AxialClosure, Axis, CaskFile, Contact, DropFinding, End, Events, Finding, FlightFit, Motion,
     Quantities, ReconstructionChoice, RivalLaw, Setup, Signal,

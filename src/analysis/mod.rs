@@ -5,23 +5,17 @@ mod impact;
 mod measured;
 pub mod one_end;
 mod outcome;
+mod reached;
 pub mod settle;
+mod setup;
 
-use crate::data::{Analysis, AxialClosure, CaskFile, Recording, Setup};
+pub use setup::sticking;
+
+use crate::data::{Analysis, CaskFile, Recording};
 use crate::judge;
-use flight::Flown;
 use impact::Impact;
 use measured::Measured;
-
-/// How far an analysis came from the first impact on.
-enum Reached {
-    /// The times, as far as they were found, and the curves of the channels.
-    Impact,
-    /// The motion too, but what it says of the impacts is not to be stated.
-    Flown(Box<Flown>),
-    /// The quantities, beside their prediction.
-    Measured(Box<Flown>, Measured),
-}
+use reached::Reached;
 
 /// From a recording and a cask file to everything that can be said of the drop.
 ///
@@ -53,19 +47,4 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
         },
     };
     outcome::of(recording, file, findings, outcome::Gathered { impact, events, smooth, reached })
-}
-
-/// Geometry and initial motion of a cask file, L sticking to the target.
-#[must_use]
-pub fn sticking(cask_file: &CaskFile) -> Setup {
-    Setup {
-        length_m: cask_file.cask.length_m,
-        height_m: cask_file.cask.height_m,
-        cog_m: cask_file.cask.cog_m,
-        angle_rad: cask_file.drop.angle_rad,
-        impact_velocity_m_s: cask_file.drop.impact_velocity_m_s,
-        gravity_m_s2: cask_file.drop.gravity_m_s2,
-        axial: AxialClosure::Sticking,
-        second_s: 1.0,
-    }
 }

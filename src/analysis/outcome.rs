@@ -1,7 +1,8 @@
 //! What the stages found to one [`Analysis`].
 
 use super::impact::Impact;
-use super::{Reached, sticking};
+use super::reached::Reached;
+use super::setup::sticking;
 use crate::data::{
     Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, DropResult, Estimate, Events, Finding,
     FirstImpact, Input, Prediction, Quantities, Recording, Setting, Setup, Signal, SlapDown,

@@ -128,7 +128,7 @@ impl Settled {
             slap_down: self.struck,
             ..Events::default()
         };
-        motion::outcome(integrated, self.flight.as_ref()?, &times, &super::sticking(file))
+        motion::outcome(integrated, self.flight.as_ref()?, &times, &super::setup::sticking(file))
     }
 }
 

@@ -1,10 +1,10 @@
 //! `analyze`: one recording and one cask file to a table and a report.
 
 use super::Outcome;
-use super::awake::awake;
 use super::limits::Bounds;
 use super::output::{Folder, JsonTarget, print};
 use super::progress::with_progress;
+use super::tuning::{awake, keep_freed_memory};
 use clap::{Args, ValueEnum};
 use dropcheck::data::{CaskFile, DropResult, RecordingFormat, Setting};
 use dropcheck::{ingest, report};
@@ -84,13 +84,6 @@ impl SwitchedOff {
             });
         }
     }
-}
-
-/// Lets the many pieces of an analysis take their memory from those before them. glibc gives freed pieces above a limit back to the
-/// system, and each page of the next one is fetched anew; the limit rises to the size of a piece when that is freed, up to 32 MiB.
-fn keep_freed_memory() {
-    const PIECE_BYTES: usize = 31 << 20;
-    drop(std::hint::black_box(Vec::<u8>::with_capacity(PIECE_BYTES)));
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {

@@ -10,7 +10,7 @@ use clap::Args;
 use dropcheck::data::CaskFile;
 use dropcheck::report::{Campaign, CampaignRow};
 use dropcheck::{ingest, report};
-use std::io::Read;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 /// What a file of a folder is named where it is taken for a recording.
@@ -109,16 +109,12 @@ fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
         }
         let entries = std::fs::read_dir(path)
             .map_err(|source| miette::miette!("the folder {} cannot be read: {source}", path.display()))?;
-        let mut found: Vec<PathBuf> = entries
-            .filter_map(|entry| entry.ok().map(|e| e.path()))
-            .filter(|p| {
-                let ending = p.extension().map(|e| e.to_string_lossy().to_lowercase());
-                ending.is_some_and(|e| RECORDING_ENDINGS.contains(&e.as_str()))
-                    && p.is_file()
-                    && !is_summary(p)
-            })
-            .collect();
-        found.sort();
+        let mut files: Vec<PathBuf> =
+            entries.filter_map(|entry| entry.ok().map(|e| e.path())).filter(|p| p.is_file()).collect();
+        files.sort();
+        let (found, others): (Vec<PathBuf>, Vec<PathBuf>) =
+            files.into_iter().filter(|p| !is_summary(p)).partition(|p| has_ending(p));
+        tell_left_out(path, &others);
         if found.is_empty() {
             return Err(miette::miette!(
                 help = "name the recordings themselves: their content, not their name, tells the format",
@@ -132,6 +128,27 @@ fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
     let mut seen = std::collections::HashSet::new();
     recordings.retain(|path| std::fs::canonicalize(path).map_or(true, |real| seen.insert(real)));
     Ok(recordings)
+}
+
+fn has_ending(path: &Path) -> bool {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    ending.is_some_and(|ending| RECORDING_ENDINGS.contains(&ending.as_str()))
+}
+
+/// Says on standard error which files of a folder were not taken for recordings, by their endings; cask files and truths lie beside them.
+fn tell_left_out(folder: &Path, others: &[PathBuf]) {
+    let endings = others.iter().filter_map(|path| path.extension()?.to_str());
+    let mut endings: Vec<&str> = endings.filter(|ending| !["toml", "json"].contains(ending)).collect();
+    endings.sort_unstable();
+    endings.dedup();
+    if !endings.is_empty() {
+        let (folder, endings) = (folder.display().to_string(), endings.join(", ."));
+        let words = format!(
+            "files of {folder} that end in .{endings} were left out; name a recording among them itself"
+        );
+        // There is no one left to tell where standard error is closed.
+        let _ = writeln!(anstream::stderr(), "note: {}", report::printable(&words));
+    }
 }
 
 /// Whether a file is the table of an earlier campaign; a recording may have its name.

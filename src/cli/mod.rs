@@ -1,7 +1,6 @@
 //! Words on the command line to one command each, and its outcome to an exit status.
 
 mod analyze;
-mod awake;
 mod batch;
 mod complaint;
 mod init;
@@ -14,6 +13,7 @@ mod place;
 mod predict;
 mod progress;
 mod replace;
+mod tuning;
 
 pub use complaint::complain;
 

@@ -1,7 +1,8 @@
 //! Modes found to coefficients with their standard uncertainties.
 
+use super::drive::Form;
 use super::projection::{OfTimes, Projection, columns, project, rms, to_parameters};
-use super::{Fit, Form, Oscillation, Series, SeriesFit};
+use super::series::{Fit, Oscillation, Series, SeriesFit};
 use nalgebra::{DMatrix, DVector};
 
 /// Coefficients, uncertainties and residuals at given modes.

@@ -1,6 +1,6 @@
 //! What drove a series' modes before it begins, to the phase that they begin with.
 
-use super::Oscillation;
+use super::series::Oscillation;
 use nalgebra::Complex;
 
 /// A force of known shape and unknown size that ended before a series begins.

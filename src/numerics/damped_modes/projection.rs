@@ -1,6 +1,8 @@
 //! Frequencies and dampings to the best linear coefficients, and to better frequencies and dampings (Golub & Pereyra 1973).
 
-use super::{Drive, Form, Oscillation, Ringing, Series};
+use super::drive::{Drive, Form};
+use super::ringing::Ringing;
+use super::series::{Oscillation, Series};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{Cholesky, Complex, DMatrix, DVector, Dyn, Owned};
 

@@ -1,6 +1,6 @@
 //! A damped mode and times to e^((−ζ + i) ω t), most of them by turning the last value on.
 
-use super::Oscillation;
+use super::series::Oscillation;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 

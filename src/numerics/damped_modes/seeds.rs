@@ -1,7 +1,8 @@
 //! A further mode sought among many that are tried.
 
+use super::drive::{Drive, Form};
 use super::projection::{OfTimes, columns, mode_columns};
-use super::{Drive, Form, Oscillation, Series};
+use super::series::{Oscillation, Series};
 use crate::numerics::as_f64;
 use nalgebra::{DMatrix, DVector};
 

@@ -1,0 +1,18 @@
+//! A cask file to geometry and initial motion.
+
+use crate::data::{AxialClosure, CaskFile, Setup};
+
+/// Geometry and initial motion of a cask file, L sticking to the target.
+#[must_use]
+pub fn sticking(cask_file: &CaskFile) -> Setup {
+    Setup {
+        length_m: cask_file.cask.length_m,
+        height_m: cask_file.cask.height_m,
+        cog_m: cask_file.cask.cog_m,
+        angle_rad: cask_file.drop.angle_rad,
+        impact_velocity_m_s: cask_file.drop.impact_velocity_m_s,
+        gravity_m_s2: cask_file.drop.gravity_m_s2,
+        axial: AxialClosure::Sticking,
+        second_s: 1.0,
+    }
+}
