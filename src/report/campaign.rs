@@ -1,10 +1,11 @@
 //! A campaign of recordings to one table, CSV and JSON; a recording that failed is a row with its reason.
 
 use super::ReportError;
-use super::columns::columns;
-use super::curves_csv::text_cell;
+use super::document::{Chapter, Document, Passage};
+use super::records::{CsvColumn, number, records, text_cell};
 use super::rounding::{MISSING, interval, percent};
-use super::text::{Style, WIDTH, code_word, line, printable, styled, tail, verdict_word, wrap};
+use super::table::{Shape, Table, TableCell};
+use super::text::{Style, WIDTH, code_word, tail, verdict_word};
 use crate::data::{Comparison, DropResult, Estimate, Issue, IssueCode, Severity, Verdict};
 use serde::Serialize;
 use std::path::Path;
@@ -98,21 +99,23 @@ pub struct Campaign {
 }
 
 /// The columns of `campaign.csv`.
-const COLUMNS: [&str; 13] = [
-    "recording",
-    "verdict",
-    "slap_down_speed_m_s",
-    "slap_down_speed_u95_m_s",
-    "k",
-    "k_u95",
-    "model",
-    "predicted_m_s",
-    "difference_percent",
-    "agrees",
-    "findings",
-    "codes",
-    "error",
-];
+fn columns<'a>() -> [CsvColumn<&'a CampaignRow>; 13] {
+    [
+        ("recording", |row| text_cell(&row.recording)),
+        ("verdict", |row| row.verdict.map_or_else(|| "error".into(), |v| verdict_word(v).to_lowercase())),
+        ("slap_down_speed_m_s", |row| number(row.slap_down_speed.map(|e| e.value))),
+        ("slap_down_speed_u95_m_s", |row| number(row.slap_down_speed.map(|e| e.u95))),
+        ("k", |row| number(row.k.map(|e| e.value))),
+        ("k_u95", |row| number(row.k.map(|e| e.u95))),
+        ("model", |row| row.model.unwrap_or_default().to_owned()),
+        ("predicted_m_s", |row| number(row.comparison.map(|c| c.predicted))),
+        ("difference_percent", |row| number(row.comparison.map(|c| c.difference_percent))),
+        ("agrees", |row| row.comparison.map_or_else(String::new, |c| c.agrees.to_string())),
+        ("findings", |row| row.findings.to_string()),
+        ("codes", |row| row.code_words().join(" ")),
+        ("error", |row| text_cell(row.error.as_deref().unwrap_or_default())),
+    ]
+}
 
 impl Campaign {
     /// A campaign of `rows` with one cask file.
@@ -124,6 +127,10 @@ impl Campaign {
     /// The table, 80 columns wide; below it what was found, and reasons of failures.
     #[must_use]
     pub fn table(&self) -> String {
+        super::as_text::text(&self.document())
+    }
+
+    fn document(&self) -> Document {
         /// Characters of a recording's name that leave room for the other columns.
         const NAME: usize = 28;
         let folder = self.common_folder();
@@ -132,36 +139,34 @@ impl Campaign {
             tail(&own.map_or_else(|| row.recording.clone(), |own| own.display().to_string()), width)
         };
         let word = |row: &CampaignRow| row.verdict.map_or("ERROR", verdict_word);
-        let rows: Vec<Vec<String>> = self
-            .recordings
-            .iter()
-            .map(|row| {
-                vec![
-                    name(row, NAME),
-                    word(row).to_owned(),
-                    interval(row.slap_down_speed.as_ref()).replace(" m/s", ""),
-                    interval(row.k.as_ref()),
-                    row.comparison.map_or_else(|| MISSING.to_owned(), |c| percent(c.difference_percent)),
-                ]
-            })
-            .collect();
-        let mut out = format!("{}\n", styled(Style::Bold, &printable(&self.cask)));
-        if let Some(folder) = folder {
-            line(&mut out, format_args!("recordings in {}", tail(&folder.display().to_string(), WIDTH - 14)));
-        }
-        out.push_str(&columns(&["recording", "verdict", "speed m/s", "k", "meas/pred"], &rows, &[4]));
-        for row in &self.recordings {
-            let (style, why) = match (&row.error, row.verdict) {
-                (Some(error), _) => (Style::Red, error.clone()),
-                (None, _) if row.codes.is_empty() => continue,
-                (None, Some(Verdict::Fail)) => (Style::Red, row.code_words().join(", ")),
-                (None, _) => (Style::Yellow, row.code_words().join(", ")),
-            };
-            let head = styled(style, &word(row).to_lowercase());
-            line(&mut out, format_args!("\n  {head}  {}", name(row, WIDTH - 10)));
-            out.push_str(&wrap(&why, WIDTH, 6));
-        }
-        out
+        let table = Table::of(&self.recordings)
+            .head("recording", |row| name(row, NAME))
+            .text("verdict", word)
+            .text("speed m/s", |row| interval(row.slap_down_speed.as_ref()).replace(" m/s", ""))
+            .text("k", |row| interval(row.k.as_ref()))
+            .number("meas/pred", |row| {
+                row.comparison.map_or(MISSING.into(), |c| percent(c.difference_percent))
+            });
+        let grave: Vec<&CampaignRow> =
+            self.recordings.iter().filter(|row| row.error.is_some() || !row.codes.is_empty()).collect();
+        let style = |row: &CampaignRow| match row.verdict {
+            Some(Verdict::Pass | Verdict::Review) if row.error.is_none() => Style::Yellow,
+            _ => Style::Red,
+        };
+        let why = |row: &CampaignRow| row.error.clone().unwrap_or_else(|| row.code_words().join(", "));
+        let reasons = Table::of(&grave)
+            .shape(Shape::ApartItems)
+            .tag("verdict", |row| TableCell::toned(style(row), word(row).to_lowercase()))
+            .head("recording", |row| name(row, WIDTH - 10))
+            .text("why", |row| why(row));
+        let place =
+            folder.map(|folder| format!("recordings in {}", tail(&folder.display().to_string(), WIDTH - 14)));
+        let chapter = Chapter::new("")
+            .with(Passage::title(&self.cask[..]))
+            .with_all(place.map(Passage::line))
+            .with(table)
+            .with(reasons);
+        Document { chapters: vec![chapter], ..Document::default() }
     }
 
     /// The folder in which all recordings are, where they are in one.
@@ -183,7 +188,7 @@ impl Campaign {
     /// Whether a file that begins so is a `campaign.csv` of this program.
     #[must_use]
     pub fn begins(head: &[u8]) -> bool {
-        head.starts_with(COLUMNS.join(",").as_bytes())
+        head.starts_with(columns().map(|column| column.0).join(",").as_bytes())
     }
 
     /// `campaign.csv`.
@@ -191,27 +196,7 @@ impl Campaign {
     /// # Errors
     /// [`ReportError::Csv`] where the writer fails.
     pub fn csv(&self) -> Result<Vec<u8>, ReportError> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(COLUMNS)?;
-        let number = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
-        for row in &self.recordings {
-            writer.write_record([
-                text_cell(&row.recording),
-                row.verdict.map_or_else(|| "error".into(), |v| verdict_word(v).to_lowercase()),
-                number(row.slap_down_speed.map(|e| e.value)),
-                number(row.slap_down_speed.map(|e| e.u95)),
-                number(row.k.map(|e| e.value)),
-                number(row.k.map(|e| e.u95)),
-                row.model.unwrap_or_default().to_owned(),
-                number(row.comparison.map(|c| c.predicted)),
-                number(row.comparison.map(|c| c.difference_percent)),
-                row.comparison.map_or_else(String::new, |c| c.agrees.to_string()),
-                row.findings.to_string(),
-                row.code_words().join(" "),
-                text_cell(row.error.as_deref().unwrap_or_default()),
-            ])?;
-        }
-        writer.into_inner().map_err(|error| ReportError::Csv(csv::Error::from(error.into_error())))
+        records(&columns(), &self.recordings)
     }
 }
 

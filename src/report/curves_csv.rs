@@ -2,7 +2,7 @@
 
 use super::ReportError;
 use super::grid::{Reader, STANDARD_GRAVITY_M_S2, common_time_s, motion_columns};
-use super::text::printable;
+use super::records::{finished, text_cell};
 use crate::data::Curves;
 use std::fmt::Write;
 
@@ -31,7 +31,7 @@ pub(super) fn bytes(curves: &Curves) -> Result<Vec<u8>, ReportError> {
         }
         writer.write_record(None::<&[u8]>)?;
     }
-    writer.into_inner().map_err(|error| ReportError::Csv(csv::Error::from(error.into_error())))
+    finished(writer)
 }
 
 /// One column beside the time.
@@ -60,14 +60,6 @@ fn columns(curves: &Curves) -> Vec<Column<'_>> {
         }
     }
     columns
-}
-
-/// A text cell that no spreadsheet takes for a formula.
-pub(super) fn text_cell(text: &str) -> String {
-    let text = printable(text);
-    // Some spreadsheets skip blanks, and some take the full-width signs of a Japanese keyboard likewise.
-    let is_formula = text.trim_start().starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠']);
-    if is_formula { format!("'{text}") } else { text }
 }
 
 /// Seven digits, more than any recorder resolves, in half the bytes of seventeen.

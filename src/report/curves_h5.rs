@@ -1,6 +1,6 @@
 //! Curves to `curves.h5`: one group a channel, datasets with their unit, rate and start as attributes.
 
-use super::grid::{motion_columns, step_s};
+use super::grid::{motion_columns, named_events, step_s};
 use super::{ReportError, scratch, spectrum};
 use crate::data::Analysis;
 use hdf5_metno::types::VarLenUnicode;
@@ -69,15 +69,10 @@ fn write(file: &File, analysis: &Analysis) -> Result<(), ReportError> {
 
 fn events(file: &File, analysis: &Analysis) -> Result<(), ReportError> {
     let group = file.create_group("events")?;
-    let events = &analysis.result.events;
-    for (name, time_s) in [
-        ("release_s", events.release_s),
-        ("first_contact_s", events.first_contact_s()),
-        ("separation_s", events.separation_s()),
-        ("slap_down_s", events.slap_down_s()),
-    ] {
+    for (name, time_s) in named_events(&analysis.result.events) {
+        let name = format!("{}_s", name.replace([' ', '-'], "_"));
         if let Some(time_s) = time_s {
-            group.new_attr::<f64>().create(name)?.write_scalar(&time_s)?;
+            group.new_attr::<f64>().create(&*name)?.write_scalar(&time_s)?;
         }
     }
     Ok(())

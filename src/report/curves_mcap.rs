@@ -2,7 +2,7 @@
 
 use super::ReportError;
 use super::curves_csv::single;
-use super::grid::{STANDARD_GRAVITY_M_S2, motion_columns};
+use super::grid::{STANDARD_GRAVITY_M_S2, motion_columns, named_events};
 use super::text::printable;
 use crate::data::{Analysis, ChannelCurve, MotionCurve};
 use mcap::records::MessageHeader;
@@ -98,13 +98,7 @@ impl Curves {
     fn events(&mut self, analysis: &Analysis) -> Result<(), ReportError> {
         let schema = self.schema("dropcheck.Event", &["name", "time_s"])?;
         let id = self.writer.add_channel(schema, "/dropcheck/events", "json", &BTreeMap::new())?;
-        let events = &analysis.result.events;
-        for (name, time_s) in [
-            ("release", events.release_s),
-            ("first contact", events.first_contact_s()),
-            ("separation", events.separation_s()),
-            ("slap-down", events.slap_down_s()),
-        ] {
+        for (name, time_s) in named_events(&analysis.result.events) {
             if let Some(time_s) = time_s.filter(|t| t.is_finite()) {
                 self.begin(time_s);
                 // Writing to a string does not fail.

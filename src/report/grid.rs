@@ -1,7 +1,7 @@
 //! Curves on grids of their own to values at any time.
 
 pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
-use crate::data::{Curves, MotionCurve};
+use crate::data::{Curves, Events, MotionCurve};
 
 /// The columns of a motion curve: name with unit, values.
 pub(super) fn motion_columns(motion: &MotionCurve) -> [(&'static str, &[f64]); 7] {
@@ -13,6 +13,16 @@ pub(super) fn motion_columns(motion: &MotionCurve) -> [(&'static str, &[f64]); 7
         ("horizontal_velocity_second_m_s", &motion.second_end_horizontal_m_s),
         ("height_first_m", &motion.first_end_height_m),
         ("height_second_m", &motion.second_end_height_m),
+    ]
+}
+
+/// The events by name, s; `None` where one was not found.
+pub(super) fn named_events(events: &Events) -> [(&'static str, Option<f64>); 4] {
+    [
+        ("release", events.release_s),
+        ("first contact", events.first_contact_s()),
+        ("separation", events.separation_s()),
+        ("slap-down", events.slap_down_s()),
     ]
 }
 

@@ -1,45 +1,45 @@
-//! What a recording holds to the table of `inspect`, 80 columns wide.
+//! What a recording holds to the document that `inspect` shows.
 
-use super::columns::columns;
+use super::analysis::quality;
+use super::document::{Chapter, Document, Passage};
+use super::medium::Medium;
 use super::rounding::{MISSING, plain};
-use super::table::quality;
-use super::text::{Style, WIDTH, format_word, line, printable, styled, tail, wrap};
+use super::table::{Shape, Table};
+use super::text::{format_word, tail};
 use crate::data::{ListedChannel, Listing};
 
 /// The table, with SGR colours that the caller strips where no terminal shows it.
 #[must_use]
 pub fn table(listing: &Listing) -> String {
+    super::as_text::text(&document(listing))
+}
+
+fn document(listing: &Listing) -> Document {
     let title = format!(
         "{} · {} · {}",
         tail(&listing.recording, 50),
         format_word(listing.format),
         size(listing.bytes)
     );
-    let mut out = format!("{}\n", styled(Style::Bold, &title));
     let counts: Vec<String> = listing.counts.iter().map(|(name, count)| counted(name, *count)).collect();
-    if !counts.is_empty() {
-        out.push_str(&wrap(&counts.join(", "), WIDTH, 0));
-    }
-    for (name, value) in &listing.facts {
-        out.push_str(&wrap(&format!("{}: {value}", name.replace('_', " ")), WIDTH, 0));
-    }
-    line(&mut out, format_args!("\n{}", styled(Style::Bold, "Sources")));
-    if listing.channels.is_empty() {
-        out.push_str("  none\n");
-    } else {
-        out.push_str(&sources(&listing.channels));
-    }
-    for channel in &listing.channels {
-        if let Some(reason) = &channel.unreadable {
-            let text = format!("{} cannot be read: {reason}", channel.source);
-            out.push_str(&wrap(&text, WIDTH, 2));
-        }
-    }
-    out.push_str(&encodings(&listing.channels));
+    let counts = (!counts.is_empty()).then(|| Passage::line(counts.join(", ")));
+    let facts = listing
+        .facts
+        .iter()
+        .map(|(name, value)| Passage::line(format!("{}: {value}", name.replace('_', " "))));
+    let unreadable = listing.channels.iter().filter_map(|channel| {
+        let reason = channel.unreadable.as_ref()?;
+        Some(Passage::text(format!("{} cannot be read: {reason}", channel.source)))
+    });
+    let mut chapters = vec![
+        Chapter::new("").with(Passage::title(title)).with_all(counts).with_all(facts),
+        Chapter::new("Sources").with_all(sources(&listing.channels)).with_all(unreadable),
+        Chapter::new("Stored as").with_all(encodings(&listing.channels).into_iter().map(Passage::text)),
+    ];
     if !listing.issues.is_empty() {
-        out.push_str(&quality(&listing.issues));
+        chapters.push(quality(&listing.issues));
     }
-    out
+    Document { chapters, ..Document::default() }
 }
 
 /// "3 chunks", "1 chunk".
@@ -49,48 +49,51 @@ fn counted(name: &str, count: u64) -> String {
     format!("{count} {name}")
 }
 
-/// Heads of the columns of [`cells`], and which of them are said in one sentence where all sources share them.
-const HEADER: [(&str, bool); 8] = [
-    ("source", false),
-    ("samples", false),
-    ("rate", false),
-    ("unit", false),
-    ("start", true),
-    ("length", true),
-    ("gaps", true),
-    ("range", false),
-];
-
-fn sources(channels: &[ListedChannel]) -> String {
-    let rows: Vec<Vec<String>> = channels.iter().map(cells).collect();
-    let shared = |i: usize| rows.len() > 1 && HEADER[i].1 && rows.iter().all(|row| row[i] == rows[0][i]);
-    let shown: Vec<usize> = (0..HEADER.len()).filter(|i| !shared(*i)).collect();
-    let header: Vec<&str> = shown.iter().map(|i| HEADER[*i].0).collect();
-    let right: Vec<usize> =
-        (0..shown.len()).filter(|i| (1..7).contains(&shown[*i]) && shown[*i] != 3).collect();
-    let mut cut: Vec<Vec<String>> =
-        rows.iter().map(|row| shown.iter().map(|i| row[*i].clone()).collect()).collect();
-    let longest = channels.iter().map(|c| c.source.chars().count()).max().unwrap_or(0);
-    let mut out = if longest > WIDEST_SOURCE {
-        under_topics(&header, &mut cut, &right)
-    } else {
-        columns(&header, &cut, &right)
-    };
-    let common: Vec<String> = (0..HEADER.len())
-        .filter(|i| shared(*i) && rows[0][*i] != MISSING)
-        .map(|i| match (HEADER[i].0, rows[0][i].as_str()) {
-            ("gaps", "0") => "no gaps".to_owned(),
-            (name, value) => format!("{name} {value}"),
-        })
-        .collect();
-    if !common.is_empty() {
-        out.push_str(&wrap(&format!("Every source: {}.", common.join(", ")), WIDTH, 2));
-    }
-    out
-}
+/// Columns that are said in one sentence where all sources share what they hold.
+const SHARED: [&str; 3] = ["start", "length", "gaps"];
 
 /// Sources up to this many columns leave room for the rest of the table; longer ones stand under their topic or group.
 const WIDEST_SOURCE: usize = 32;
+
+fn sources(channels: &[ListedChannel]) -> Vec<Passage> {
+    if channels.is_empty() {
+        return vec![Passage::text("none")];
+    }
+    let longest = channels.iter().map(|c| c.source.chars().count()).max().unwrap_or(0);
+    let is_long = longest > WIDEST_SOURCE;
+    let known = |words: Option<String>| words.unwrap_or_else(|| MISSING.to_owned());
+    let seconds = |t: Option<f64>| known(t.map(|t| format!("{} s", plain(t, 3))));
+    let mut table: Table = Table::of(channels)
+        .head("source", |c| if is_long { format!("  {}", split(&c.source).1) } else { c.source.clone() })
+        .number("samples", |c| known(c.samples.or(c.messages).map(|n| n.to_string())))
+        .number("rate", |c| known(c.sample_rate_hz.map(rate)))
+        .text("unit", |c| known(c.unit.clone()))
+        .number("start", |c| seconds(c.start_s))
+        .number("length", |c| seconds(c.duration_s))
+        .number("gaps", |c| known(c.gaps.map(|n| n.to_string())))
+        .text("range", |c| {
+            known(c.range.map(|(low, high)| format!("{} … {}", plain(low, 3), plain(high, 3))))
+        })
+        .into();
+    if is_long {
+        table.shape = Shape::Groups(channels.iter().map(|c| split(&c.source).0.to_owned()).collect());
+    }
+    let mut common = Vec::new();
+    table.columns.retain(|column| {
+        let (name, words) = (column.head.on(Medium::Page), column.cells[0].words.on(Medium::Page));
+        let is_shared = SHARED.contains(&name)
+            && channels.len() > 1
+            && column.cells.iter().all(|cell| cell.words.on(Medium::Page) == words);
+        match (name, words) {
+            _ if !is_shared || words == MISSING => {}
+            ("gaps", "0") => common.push("no gaps".to_owned()),
+            _ => common.push(format!("{name} {words}")),
+        }
+        !is_shared
+    });
+    let common = (!common.is_empty()).then(|| Passage::text(format!("Every source: {}.", common.join(", "))));
+    [table.into()].into_iter().chain(common).collect()
+}
 
 /// A source as the topic or group that others share, and the rest of its path with the mark that joins them.
 fn split(source: &str) -> (&str, &str) {
@@ -99,48 +102,6 @@ fn split(source: &str) -> (&str, &str) {
         Some(dot) => source.split_at(name + dot),
         None => source.split_at(name.saturating_sub(1)),
     }
-}
-
-/// The table with each topic or group on a line of its own above its sources.
-fn under_topics(header: &[&str], rows: &mut [Vec<String>], right: &[usize]) -> String {
-    let mut topics: Vec<String> = Vec::with_capacity(rows.len());
-    for row in rows.iter_mut() {
-        let (topic, rest) = split(&row[0]);
-        topics.push(topic.to_owned());
-        row[0] = format!("  {rest}");
-    }
-    let table = columns(header, rows, right);
-    let head = table.lines().count().saturating_sub(rows.len());
-    // A cell that is wrapped all the same has more lines than rows: then only the first topic can be placed.
-    let is_aligned = head == columns(header, &[], right).lines().count();
-    let mut out = String::new();
-    for (i, text) in table.lines().enumerate() {
-        if let Some(row) = i.checked_sub(head).filter(|_| is_aligned)
-            && (row == 0 || topics.get(row) != topics.get(row - 1))
-        {
-            line(&mut out, format_args!("  {}", printable(&topics[row])));
-        }
-        line(&mut out, format_args!("{text}"));
-    }
-    out
-}
-
-fn cells(channel: &ListedChannel) -> Vec<String> {
-    let samples = channel.samples.or(channel.messages);
-    let seconds = |t: Option<f64>| t.map_or_else(|| MISSING.to_owned(), |t| format!("{} s", plain(t, 3)));
-    vec![
-        channel.source.clone(),
-        samples.map_or_else(|| MISSING.to_owned(), |n| n.to_string()),
-        channel.sample_rate_hz.map_or_else(|| MISSING.to_owned(), rate),
-        channel.unit.clone().unwrap_or_else(|| MISSING.to_owned()),
-        seconds(channel.start_s),
-        seconds(channel.duration_s),
-        channel.gaps.map_or_else(|| MISSING.to_owned(), |n| n.to_string()),
-        channel.range.map_or_else(
-            || MISSING.to_owned(),
-            |(low, high)| format!("{} … {}", plain(low, 3), plain(high, 3)),
-        ),
-    ]
 }
 
 fn rate(rate_hz: f64) -> String {
@@ -152,7 +113,7 @@ fn rate(rate_hz: f64) -> String {
 }
 
 /// How the sources are stored, each way once.
-fn encodings(channels: &[ListedChannel]) -> String {
+fn encodings(channels: &[ListedChannel]) -> Vec<String> {
     let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
     for channel in channels.iter().filter(|c| !c.encoding.is_empty()) {
         match groups.iter_mut().find(|(encoding, _)| *encoding == channel.encoding) {
@@ -160,17 +121,11 @@ fn encodings(channels: &[ListedChannel]) -> String {
             None => groups.push((&channel.encoding, vec![&channel.source])),
         }
     }
-    if groups.is_empty() {
-        return String::new();
-    }
-    let mut out = format!("\n{}\n", styled(Style::Bold, "Stored as"));
-    for (encoding, sources) in groups {
-        let named = sources.first().copied().unwrap_or_default();
-        let others =
-            if sources.len() > 1 { format!(" and {} more", sources.len() - 1) } else { String::new() };
-        out.push_str(&wrap(&format!("{encoding}: {}{others}", printable(named)), WIDTH, 2));
-    }
-    out
+    let words = |(encoding, sources): (&str, Vec<&str>)| match sources[..] {
+        [one] => format!("{encoding}: {one}"),
+        _ => format!("{encoding}: {} and {} more", sources[0], sources.len() - 1),
+    };
+    groups.into_iter().map(words).collect()
 }
 
 #[allow(clippy::cast_precision_loss, reason = "three digits are shown")]
@@ -187,6 +142,7 @@ fn size(bytes: u64) -> String {
 
 #[cfg(test)]
 pub(super) mod tests {
+    use super::super::text::WIDTH;
     use super::*;
     use crate::data::RecordingFormat;
     use std::collections::BTreeMap;

@@ -1,19 +1,28 @@
 //! An analysis to bytes: table, JSON, HTML, pictures, curves. Nothing here writes a report's file.
 
+mod analysis;
+#[cfg(test)]
+mod analysis_tests;
+pub(crate) mod as_html;
+#[cfg(feature = "lab")]
+pub(crate) mod as_markdown;
+mod as_text;
 mod campaign;
-mod columns;
 mod curves_csv;
 pub(crate) mod curves_h5;
 mod curves_mcap;
+#[cfg_attr(not(feature = "lab"), allow(dead_code, reason = "the pages of the laboratory use all of it"))]
+pub(crate) mod document;
 mod grid;
-pub(crate) mod html;
-mod html_reconstruction;
-mod html_sections;
 pub(crate) mod json;
 mod likely;
 mod listing;
+#[cfg_attr(not(feature = "lab"), allow(dead_code, reason = "the pages of the laboratory use all of it"))]
+pub(crate) mod medium;
 pub(crate) mod pictures;
 mod prediction;
+mod reconstruction;
+pub(crate) mod records;
 pub(crate) mod rounding;
 #[cfg(test)]
 mod sample;
@@ -23,19 +32,17 @@ mod sample_reconstruction;
 mod sample_study;
 mod scratch;
 mod settings;
-mod table;
+pub(crate) mod table;
 mod template;
+mod tested;
 pub(crate) mod text;
+mod words;
 
 pub use campaign::{Campaign, CampaignRow};
 pub use json::{listing as listing_json, result as result_json};
 pub use likely::NoChannels;
 pub use listing::table as listing_table;
-pub use prediction::{
-    csv as prediction_csv, json as prediction_json, study_file_names, study_files, study_json, study_table,
-    table as prediction_table,
-};
-pub use table::table;
+pub use prediction::{study_file_names, study_files, study_json, study_table};
 pub use template::cask_file as cask_file_template;
 pub use text::printable;
 
@@ -86,6 +93,12 @@ fn spectrum(curve: &ChannelCurve) -> (Vec<f64>, Vec<f64>) {
     magnitude(&curve.raw_m_s2, sample_rate_hz)
 }
 
+/// The table of an analysis, with SGR colours that the caller strips where no terminal shows it.
+#[must_use]
+pub fn table(analysis: &Analysis) -> String {
+    as_text::text(&analysis::document(analysis))
+}
+
 /// The names of the files of a report, in the order of [`files`].
 pub const FILE_NAMES: [&str; 10] = [
     "report.html",
@@ -121,10 +134,10 @@ pub fn files(analysis: &Analysis) -> Result<Vec<(String, Vec<u8>)>, ReportError>
 
 type Files = Vec<(String, Vec<u8>)>;
 
-fn all_but_mcap(analysis: &Analysis) -> Result<(Files, Vec<pictures::Picture>), ReportError> {
+fn all_but_mcap(analysis: &Analysis) -> Result<(Files, Vec<pictures::draw::Picture>), ReportError> {
     let pictures = pictures::draw(analysis)?;
     let files = vec![
-        ("report.html".to_owned(), html::page(analysis, &pictures).into_bytes()),
+        ("report.html".to_owned(), as_html::page(&analysis::document(analysis), &pictures).into_bytes()),
         ("result.json".to_owned(), json::result(&analysis.result)?),
         ("curves.csv".to_owned(), curves_csv::bytes(&analysis.curves)?),
         ("curves.h5".to_owned(), curves_h5::bytes(analysis)?),

@@ -70,7 +70,7 @@ pub(super) fn optional(value: Option<f64>, digits: usize) -> String {
 }
 
 /// An optional number with fixed decimals, or the dash.
-pub(super) fn optional_fixed(value: Option<f64>, decimals: usize) -> String {
+pub(crate) fn optional_fixed(value: Option<f64>, decimals: usize) -> String {
     value.filter(|v| v.is_finite()).map_or_else(|| MISSING.to_owned(), |value| fixed(value, decimals))
 }
 

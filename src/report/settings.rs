@@ -7,78 +7,38 @@ use crate::data::{CaskFile, Setting, Tolerances};
 pub(super) struct Tolerance {
     /// Its key in `[tolerance]`.
     pub key: &'static str,
-    /// How the budget calls what it belongs to, or how that begins.
-    pub input: &'static str,
     name: &'static str,
     unit: &'static str,
     value: fn(&Tolerances) -> f64,
 }
 
+impl Tolerance {
+    const fn new(
+        key: &'static str,
+        name: &'static str,
+        unit: &'static str,
+        value: fn(&Tolerances) -> f64,
+    ) -> Self {
+        Self { key, name, unit, value }
+    }
+
+    /// Whether the budget calls one of its inputs so: "calibration of A2" is of the "calibration of a channel".
+    pub(super) fn is_of(&self, input: &str) -> bool {
+        input.starts_with(self.name.split(" a ").next().unwrap_or(self.name))
+    }
+}
+
 /// All of them, in the cask file's order.
 pub(super) const TOLERANCES: [Tolerance; 9] = [
-    Tolerance {
-        key: "angle_deg",
-        input: "drop angle",
-        name: "drop angle",
-        unit: "°",
-        value: |t| t.angle_rad.to_degrees(),
-    },
-    Tolerance {
-        key: "impact_velocity_percent",
-        input: "impact velocity",
-        name: "impact velocity",
-        unit: " %",
-        value: |t| 100.0 * t.impact_velocity,
-    },
-    Tolerance {
-        key: "calibration_percent",
-        input: "calibration of",
-        name: "calibration of a channel",
-        unit: " %",
-        value: |t| 100.0 * t.calibration,
-    },
-    Tolerance {
-        key: "cross_axis_percent",
-        input: "cross axis of",
-        name: "cross axis of a channel",
-        unit: " %",
-        value: |t| 100.0 * t.cross_axis,
-    },
-    Tolerance {
-        key: "position_m",
-        input: "position of",
-        name: "position of a sensor",
-        unit: " mm",
-        value: |t| 1e3 * t.position_m,
-    },
-    Tolerance {
-        key: "cog_m",
-        input: "centre of gravity",
-        name: "centre of gravity",
-        unit: " mm",
-        value: |t| 1e3 * t.cog_m,
-    },
-    Tolerance {
-        key: "inertia_percent",
-        input: "inertia",
-        name: "inertia",
-        unit: " %",
-        value: |t| 100.0 * t.inertia,
-    },
-    Tolerance {
-        key: "friction_percent",
-        input: "contact law",
-        name: "contact law",
-        unit: " % of rough to smooth",
-        value: |t| 100.0 * t.friction,
-    },
-    Tolerance {
-        key: "clock_percent",
-        input: "recorder's clock",
-        name: "recorder's clock",
-        unit: " %",
-        value: |t| 100.0 * t.clock,
-    },
+    Tolerance::new("angle_deg", "drop angle", "°", |t| t.angle_rad.to_degrees()),
+    Tolerance::new("impact_velocity_percent", "impact velocity", " %", |t| 100.0 * t.impact_velocity),
+    Tolerance::new("calibration_percent", "calibration of a channel", " %", |t| 100.0 * t.calibration),
+    Tolerance::new("cross_axis_percent", "cross axis of a channel", " %", |t| 100.0 * t.cross_axis),
+    Tolerance::new("position_m", "position of a sensor", " mm", |t| 1e3 * t.position_m),
+    Tolerance::new("cog_m", "centre of gravity", " mm", |t| 1e3 * t.cog_m),
+    Tolerance::new("inertia_percent", "inertia", " %", |t| 100.0 * t.inertia),
+    Tolerance::new("friction_percent", "contact law", " % of rough to smooth", |t| 100.0 * t.friction),
+    Tolerance::new("clock_percent", "recorder's clock", " %", |t| 100.0 * t.clock),
 ];
 
 /// Whether the cask file leaves this key of `[tolerance]` to its default.

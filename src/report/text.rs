@@ -1,6 +1,8 @@
 //! Words from files to words that are safe and fit the page: no control characters, wrapped, coloured by SGR codes.
 
-use crate::data::{DropResult, Issue, IssueCode, ReconstructionRung, RecordingFormat, Severity, Verdict};
+use crate::data::{
+    Axis, DropResult, End, Issue, IssueCode, ReconstructionRung, RecordingFormat, Severity, Verdict,
+};
 use std::fmt::Write;
 
 /// Adds one line; writing to a string does not fail.
@@ -29,7 +31,7 @@ pub(super) const WIDTH: usize = 80;
 
 /// An SGR colour (ECMA-48, 8.3.117); whoever prints strips it where no terminal reads it.
 #[derive(Clone, Copy)]
-pub(super) enum Style {
+pub(crate) enum Style {
     /// A heading.
     Bold,
     /// What matters less.
@@ -202,12 +204,40 @@ pub(super) fn rung_words(rung: ReconstructionRung) -> &'static str {
     }
 }
 
+/// "first, transverse".
+pub(super) fn end_axis(end: End, axis: Axis) -> String {
+    let end = match end {
+        End::First => "first",
+        End::Second => "second",
+    };
+    let axis = match axis {
+        Axis::Transverse => "transverse",
+        Axis::Axial => "axial",
+    };
+    format!("{end}, {axis}")
+}
+
+/// What stands behind the name of the row that was taken.
+pub(super) fn taken_mark(is_taken: bool) -> &'static str {
+    if is_taken { " (taken)" } else { "" }
+}
+
+/// "yes" or "no".
+pub(super) fn yes(so: bool) -> &'static str {
+    if so { "yes" } else { "no" }
+}
+
+/// `words` with a capital.
+pub(super) fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
+}
+
 /// A reason as a sentence: a capital and a full stop.
 pub(super) fn sentence(reason: &str) -> String {
     let reason = true_minus(&printable(reason));
-    let reason = reason.trim().trim_end_matches('.');
-    let mut letters = reason.chars();
-    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+    let words = capital(reason.trim().trim_end_matches('.'));
+    if words.is_empty() { words } else { words + "." }
 }
 
 /// The message of the first error among `codes`, else of any error, else of a warning among `codes`: why a quantity is missing.

@@ -6,7 +6,6 @@ mod draw;
 mod recorder;
 mod score;
 mod statistics;
-mod table;
 mod tables;
 
 pub use damage::kinds;

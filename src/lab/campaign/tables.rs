@@ -1,49 +1,63 @@
-//! A campaign to the tables that say how far off the analysis is, how often its intervals hold, and how often it says so.
+//! A campaign to the document that says how far off the analysis is, how often its intervals hold, and how often it says so.
 
 use super::score::{code_name, rung_name};
 use super::statistics::{Outcome, Spread, largest_miss_u, outcome, quantile, scored};
-use super::table::{Table, number, share};
 use crate::data::{Contact, Estimate, MISSED_U, ReconstructionRung, Severity, Verdict};
-use crate::lab::data::{Campaign, CampaignRow, Damage};
+use crate::lab::data::{Campaign, CampaignRow};
+use crate::report::as_markdown;
+use crate::report::document::{Chapter, Document, Passage};
+use crate::report::rounding::optional_fixed;
+use crate::report::table::{Rows, Table};
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 /// The whole as Markdown.
 #[must_use]
 pub fn markdown(campaign: &Campaign) -> String {
+    as_markdown::markdown(&document(campaign), None)
+}
+
+fn document(campaign: &Campaign) -> Document {
     let (undamaged, damaged): (Vec<&CampaignRow>, Vec<&CampaignRow>) =
         campaign.rows.iter().partition(|row| row.damage.is_none());
     let request = &campaign.request;
-    let mut text = format!(
-        "{} undamaged and {} damaged scenes, seed {}{}; one analysis takes {} ms (median).\n",
+    let summary = format!(
+        "{} undamaged and {} damaged scenes, seed {}{}; one analysis takes {} ms (median).",
         undamaged.len(),
         damaged.len(),
         request.seed,
         if request.exact { ", what is stated exactly true" } else { "" },
         number(1e3 * median(campaign.rows.iter().map(|row| row.analysis_s)), 1),
     );
+    let mut chapters = vec![Chapter::new("").with(Passage::text(summary))];
+    let mut chapter = |heading: &str, table| chapters.push(Chapter::new(heading).with(table));
     if !undamaged.is_empty() {
-        section(&mut text, "Undamaged scenes", &verdicts(&undamaged));
-        section(&mut text, "Errors and intervals", &intervals(&undamaged));
-        section(&mut text, "What keeps undamaged scenes from passing", &codes(&undamaged));
-        section(&mut text, "By class", &classes(&undamaged));
-        section(&mut text, "Rungs of the reconstruction", &ladder(&undamaged));
-        section(&mut text, "Drops drawn and left out", &redraws(&undamaged));
+        chapter("Undamaged scenes", verdicts(&undamaged));
+        chapter("Errors and intervals", intervals(&undamaged));
+        chapter("What keeps undamaged scenes from passing", codes(&undamaged));
+        chapter("By class", classes(&undamaged));
+        chapter("Rungs of the reconstruction", ladder(&undamaged));
+        chapter("Drops drawn and left out", redraws(&undamaged));
     }
     if !damaged.is_empty() {
-        section(&mut text, "Damaged scenes, by kind", &damages(&damaged, false));
-        section(&mut text, "Damaged scenes, by kind and size", &damages(&damaged, true));
+        chapter("Damaged scenes, by kind", damages(&damaged, false));
+        chapter("Damaged scenes, by kind and size", damages(&damaged, true));
     }
     if !undamaged.is_empty() && !damaged.is_empty() {
-        section(&mut text, "What a stricter limit of the closures would do", &limits(&undamaged, &damaged));
+        chapter("What a stricter limit of the closures would do", limits(&undamaged, &damaged));
     }
-    section(&mut text, "Passed and wrong", &missed(&campaign.rows));
-    text
+    chapter("Passed and wrong", missed(&campaign.rows));
+    Document { chapters, ..Document::default() }
 }
 
-fn section(text: &mut String, title: &str, table: &str) {
-    // Writing to a string does not fail.
-    let _ = write!(text, "\n### {title}\n\n{table}");
+/// A number with this many decimals; a dash where there is none.
+fn number(value: f64, decimals: usize) -> String {
+    optional_fixed(Some(value), decimals)
+}
+
+/// A share in percent.
+#[allow(clippy::cast_precision_loss, reason = "counts of scenes")]
+fn share(part: usize, of: usize) -> String {
+    if of == 0 { "–".to_owned() } else { format!("{:.1} %", 100.0 * part as f64 / of as f64) }
 }
 
 fn median(values: impl Iterator<Item = f64>) -> f64 {
@@ -56,20 +70,22 @@ fn of_verdict<'a>(rows: &[&'a CampaignRow], verdict: Verdict) -> Vec<&'a Campaig
     rows.iter().copied().filter(|row| row.verdict == Some(verdict)).collect()
 }
 
-fn verdicts(rows: &[&CampaignRow]) -> String {
-    let mut table = Table::new(&["verdict", "scenes", "share", "speed and k right or held", "missed"]);
-    for (name, verdict) in [("pass", Verdict::Pass), ("review", Verdict::Review), ("fail", Verdict::Fail)] {
-        let of = of_verdict(rows, verdict);
-        let count = |wanted: &[Outcome]| of.iter().filter(|row| wanted.contains(&outcome(row))).count();
-        table.row([
-            name.to_owned(),
-            of.len().to_string(),
-            share(of.len(), rows.len()),
-            count(&[Outcome::Right, Outcome::Covered]).to_string(),
-            count(&[Outcome::Missed]).to_string(),
-        ]);
-    }
-    table.finish()
+fn count(rows: &[&CampaignRow], wanted: &[Outcome]) -> usize {
+    rows.iter().filter(|row| wanted.contains(&outcome(row))).count()
+}
+
+fn verdicts(rows: &[&CampaignRow]) -> Passage {
+    let of = [("pass", Verdict::Pass), ("review", Verdict::Review), ("fail", Verdict::Fail)]
+        .map(|(name, verdict)| (name, of_verdict(rows, verdict)));
+    Table::of(&of)
+        .text("verdict", |(name, _)| *name)
+        .number("scenes", |(_, of)| of.len().to_string())
+        .number("share", |(_, of)| share(of.len(), rows.len()))
+        .number("speed and k right or held", |(_, of)| {
+            count(of, &[Outcome::Right, Outcome::Covered]).to_string()
+        })
+        .number("missed", |(_, of)| count(of, &[Outcome::Missed]).to_string())
+        .into()
 }
 
 /// Statement and truth of one quantity over the scenes that have both.
@@ -91,45 +107,36 @@ const QUANTITIES: [(&str, &str, bool, usize); 10] = [
     ("slap_down_time", "time of the slap-down, s", false, 6),
 ];
 
-fn intervals(rows: &[&CampaignRow]) -> String {
-    let mut table = Table::new(&[
-        "scenes",
-        "quantity",
-        "stated",
-        "error: median",
-        "95th",
-        "largest",
-        "half-width: median",
-        "holds the truth",
-    ]);
+fn intervals(rows: &[&CampaignRow]) -> Passage {
     let passed = of_verdict(rows, Verdict::Pass);
-    for (name, of) in [("passed", &passed[..]), ("all", rows)] {
-        for (quantity, shown, relative, decimals) in QUANTITIES {
-            let spread = Spread::of(pairs(of, quantity), relative);
-            table.row([
-                name.to_owned(),
-                shown.to_owned(),
-                spread.count().to_string(),
-                number(quantile(&spread.errors, 0.5), decimals),
-                number(quantile(&spread.errors, 0.95), decimals),
-                number(quantile(&spread.errors, 1.0), decimals),
-                number(quantile(&spread.half_widths, 0.5), decimals),
-                share(spread.held, spread.count()),
-            ]);
-        }
-    }
-    table.finish()
+    let spreads: Vec<_> = [("passed", &passed[..]), ("all", rows)]
+        .into_iter()
+        .flat_map(|(name, of)| {
+            QUANTITIES.map(|(quantity, shown, relative, decimals)| {
+                (name, shown, decimals, Spread::of(pairs(of, quantity), relative))
+            })
+        })
+        .collect();
+    Table::of(&spreads)
+        .text("scenes", |(name, ..)| *name)
+        .text("quantity", |(_, shown, ..)| *shown)
+        .number("stated", |(.., spread)| spread.count().to_string())
+        .number("error: median", |(_, _, decimals, spread)| number(quantile(&spread.errors, 0.5), *decimals))
+        .number("95th", |(_, _, decimals, spread)| number(quantile(&spread.errors, 0.95), *decimals))
+        .number("largest", |(_, _, decimals, spread)| number(quantile(&spread.errors, 1.0), *decimals))
+        .number("half-width: median", |(_, _, decimals, spread)| {
+            number(quantile(&spread.half_widths, 0.5), *decimals)
+        })
+        .number("holds the truth", |(.., spread)| share(spread.held, spread.count()))
+        .into()
 }
 
-fn codes(rows: &[&CampaignRow]) -> String {
+fn codes(rows: &[&CampaignRow]) -> Passage {
     let mut counts: BTreeMap<(Severity, String), [usize; 3]> = BTreeMap::new();
     for row in rows {
-        let mut codes: Vec<(Severity, String)> = row
-            .findings
-            .iter()
-            .filter(|finding| finding.1 != Severity::Note)
-            .map(|finding| (finding.1, code_name(finding.0)))
-            .collect();
+        let grave = row.findings.iter().filter(|finding| finding.1 != Severity::Note);
+        let mut codes: Vec<(Severity, String)> =
+            grave.map(|finding| (finding.1, code_name(finding.0))).collect();
         codes.sort();
         codes.dedup();
         let is_alone = codes.len() == 1;
@@ -143,18 +150,13 @@ fn codes(rows: &[&CampaignRow]) -> String {
     }
     let mut counts: Vec<_> = counts.into_iter().collect();
     counts.sort_by_key(|(_, count)| std::cmp::Reverse(count[0]));
-    let mut table = Table::new(&["finding", "severity", "scenes", "alone", "numbers hold all the same"]);
-    for ((severity, code), [all, alone, held]) in counts {
-        let severity = if severity == Severity::Error { "error" } else { "warning" };
-        table.row([
-            format!("`{code}`"),
-            severity.to_owned(),
-            all.to_string(),
-            alone.to_string(),
-            held.to_string(),
-        ]);
-    }
-    table.finish()
+    Table::of(&counts)
+        .code("finding", |((_, code), _)| &code[..])
+        .text("severity", |((severity, _), _)| if *severity == Severity::Error { "error" } else { "warning" })
+        .number("scenes", |(_, [all, ..])| all.to_string())
+        .number("alone", |(_, [_, alone, _])| alone.to_string())
+        .number("numbers hold all the same", |(_, [.., held])| held.to_string())
+        .into()
 }
 
 /// Whether a scene belongs to a class.
@@ -210,166 +212,153 @@ const CLASSES: [(&str, Belongs); 27] = [
     ("rest recorded", |row| row.scene.rest),
 ];
 
-fn classes(rows: &[&CampaignRow]) -> String {
-    let mut table =
-        Table::new(&["class", "scenes", "pass", "speed: 95th, %", "held", "k: 95th", "held", "missed"]);
-    for (name, belongs) in CLASSES {
-        let of: Vec<&CampaignRow> = rows.iter().copied().filter(|row| belongs(row)).collect();
-        let speed = Spread::of(pairs(&of, "speed"), true);
-        let k = Spread::of(pairs(&of, "k"), false);
-        table.row([
-            name.to_owned(),
-            of.len().to_string(),
-            share(of_verdict(&of, Verdict::Pass).len(), of.len()),
-            number(quantile(&speed.errors, 0.95), 2),
-            share(speed.held, speed.count()),
-            number(quantile(&k.errors, 0.95), 4),
-            share(k.held, k.count()),
-            of.iter().filter(|row| outcome(row) == Outcome::Missed).count().to_string(),
-        ]);
-    }
-    table.finish()
+/// Errors of speed and k, and how often their intervals hold.
+struct Both {
+    speed: Spread,
+    k: Spread,
 }
 
-fn ladder(rows: &[&CampaignRow]) -> String {
-    let mut table = Table::new(&[
-        "rung",
-        "taken",
-        "had",
-        "speed: median, %",
-        "95th",
-        "held",
-        "k: median",
-        "95th",
-        "held",
-    ]);
-    for rung in ReconstructionRung::ALL {
+fn classes(rows: &[&CampaignRow]) -> Passage {
+    let classes = CLASSES.map(|(name, belongs)| {
+        let of: Vec<&CampaignRow> = rows.iter().copied().filter(|row| belongs(row)).collect();
+        let (speed, k) = (Spread::of(pairs(&of, "speed"), true), Spread::of(pairs(&of, "k"), false));
+        (name, Both { speed, k }, of)
+    });
+    Table::of(&classes)
+        .text("class", |(name, ..)| *name)
+        .number("scenes", |(.., of)| of.len().to_string())
+        .number("pass", |(.., of)| share(of_verdict(of, Verdict::Pass).len(), of.len()))
+        .number("speed: 95th, %", |(_, both, _)| number(quantile(&both.speed.errors, 0.95), 2))
+        .number("held", |(_, both, _)| share(both.speed.held, both.speed.count()))
+        .number("k: 95th", |(_, both, _)| number(quantile(&both.k.errors, 0.95), 4))
+        .number("held", |(_, both, _)| share(both.k.held, both.k.count()))
+        .number("missed", |(.., of)| count(of, &[Outcome::Missed]).to_string())
+        .into()
+}
+
+fn ladder(rows: &[&CampaignRow]) -> Passage {
+    let rungs = ReconstructionRung::ALL.map(|rung| {
         let had: Vec<_> = rows
             .iter()
             .filter_map(|row| row.candidates.iter().find(|c| c.rung == rung).map(|c| (row.truth, c)))
             .collect();
         let speed = Spread::of(had.iter().filter_map(|(truth, c)| c.speed.zip(truth.speed)), true);
         let k = Spread::of(had.iter().filter_map(|(truth, c)| c.k.zip(truth.k)), false);
-        table.row([
-            rung_name(rung).to_owned(),
-            rows.iter().filter(|row| row.rung == Some(rung)).count().to_string(),
-            had.len().to_string(),
-            number(quantile(&speed.errors, 0.5), 2),
-            number(quantile(&speed.errors, 0.95), 2),
-            share(speed.held, speed.count()),
-            number(quantile(&k.errors, 0.5), 4),
-            number(quantile(&k.errors, 0.95), 4),
-            share(k.held, k.count()),
-        ]);
-    }
-    table.finish()
+        (rung, had.len(), Both { speed, k })
+    });
+    Table::of(&rungs)
+        .text("rung", |(rung, ..)| rung_name(*rung))
+        .number("taken", |(rung, ..)| rows.iter().filter(|row| row.rung == Some(*rung)).count().to_string())
+        .number("had", |(_, had, _)| had.to_string())
+        .number("speed: median, %", |(.., both)| number(quantile(&both.speed.errors, 0.5), 2))
+        .number("95th", |(.., both)| number(quantile(&both.speed.errors, 0.95), 2))
+        .number("held", |(.., both)| share(both.speed.held, both.speed.count()))
+        .number("k: median", |(.., both)| number(quantile(&both.k.errors, 0.5), 4))
+        .number("95th", |(.., both)| number(quantile(&both.k.errors, 0.95), 4))
+        .number("held", |(.., both)| share(both.k.held, both.k.count()))
+        .into()
 }
 
-fn redraws(rows: &[&CampaignRow]) -> String {
+fn redraws(rows: &[&CampaignRow]) -> Passage {
     let mut counts: BTreeMap<&str, u32> = BTreeMap::new();
     for (reason, count) in rows.iter().flat_map(|row| &row.redraws) {
         *counts.entry(reason).or_default() += count;
     }
-    let mut table = Table::new(&["reason", "draws"]);
-    for (reason, count) in counts {
-        table.row([reason.to_owned(), count.to_string()]);
-    }
-    table.finish()
+    let counts: Vec<_> = counts.into_iter().collect();
+    Table::of(&counts)
+        .text("reason", |(reason, _)| *reason)
+        .number("draws", |(_, count)| count.to_string())
+        .into()
 }
 
-/// The outcomes of every kind of damage, in the order of the kinds, and of every size of it.
-fn damages(rows: &[&CampaignRow], by_size: bool) -> String {
-    let mut table =
-        Table::new(&["damage", "size", "scenes", "right", "covered", "caught", "missed", "missed per 200"]);
-    let is = |row: &CampaignRow, kind: &str, size: Option<f64>| {
-        row.damage.is_some_and(|d: Damage| {
-            d.kind == kind && size.is_none_or(|size| d.size.to_bits() == size.to_bits())
-        })
-    };
+/// The outcomes of every kind of damage, in the order of the kinds, or of every size of it.
+fn damages(rows: &[&CampaignRow], by_size: bool) -> Passage {
+    let mut groups: Vec<(&str, String, Vec<&CampaignRow>)> = Vec::new();
     for (kind, sizes, unit) in super::kinds() {
-        let wanted: Vec<Option<f64>> =
-            if by_size { sizes.iter().map(|size| Some(*size)).collect() } else { vec![None] };
-        for size in wanted {
-            let of: Vec<&CampaignRow> = rows.iter().copied().filter(|row| is(row, kind, size)).collect();
-            let shown = match size {
-                Some(size) if !unit.is_empty() => format!("{size} {unit}"),
-                None if !unit.is_empty() => {
-                    format!("{} to {} {unit}", sizes[0], sizes.last().copied().unwrap_or_default())
-                }
-                _ => String::new(),
-            };
-            if !of.is_empty() {
-                table.row(outcomes(kind, shown, &of));
+        let of_kind = rows.iter().copied().filter(|row| row.damage.is_some_and(|d| d.kind == kind));
+        if by_size {
+            for size in sizes {
+                let is_size =
+                    |row: &&CampaignRow| row.damage.is_some_and(|d| d.size.to_bits() == size.to_bits());
+                let shown = if unit.is_empty() { String::new() } else { format!("{size} {unit}") };
+                groups.push((kind, shown, of_kind.clone().filter(is_size).collect()));
             }
+        } else {
+            let largest = sizes.last().copied().unwrap_or_default();
+            let shown =
+                if unit.is_empty() { String::new() } else { format!("{} to {largest} {unit}", sizes[0]) };
+            groups.push((kind, shown, of_kind.collect()));
         }
     }
+    groups.retain(|(.., of)| !of.is_empty());
     if !by_size {
-        table.row(outcomes("all", String::new(), rows));
+        groups.push(("all", String::new(), rows.to_vec()));
     }
-    table.finish()
+    let table = Table::of(&groups)
+        .text("damage", |(kind, ..)| *kind)
+        .number("size", |(_, size, _)| &size[..])
+        .number("scenes", |(.., of)| of.len().to_string());
+    outcomes(table).into()
 }
 
+/// The columns of what became of the scenes of a row.
 #[allow(clippy::cast_precision_loss, reason = "counts of scenes")]
-fn outcomes(kind: &str, size: String, rows: &[&CampaignRow]) -> Vec<String> {
-    let count = |wanted| rows.iter().filter(|row| outcome(row) == wanted).count();
-    let missed = count(Outcome::Missed);
-    vec![
-        kind.to_owned(),
-        size,
-        rows.len().to_string(),
-        count(Outcome::Right).to_string(),
-        count(Outcome::Covered).to_string(),
-        count(Outcome::Caught).to_string(),
-        missed.to_string(),
-        number(200.0 * missed as f64 / rows.len() as f64, 1),
-    ]
+fn outcomes<'a>(
+    table: Rows<'a, (&'a str, String, Vec<&'a CampaignRow>)>,
+) -> Rows<'a, (&'a str, String, Vec<&'a CampaignRow>)> {
+    table
+        .number("right", |(.., of)| count(of, &[Outcome::Right]).to_string())
+        .number("covered", |(.., of)| count(of, &[Outcome::Covered]).to_string())
+        .number("caught", |(.., of)| count(of, &[Outcome::Caught]).to_string())
+        .number("missed", |(.., of)| count(of, &[Outcome::Missed]).to_string())
+        .number("missed per 200", |(.., of)| {
+            number(200.0 * count(of, &[Outcome::Missed]) as f64 / of.len() as f64, 1)
+        })
 }
 
 /// Limits of what a closure may be missed by, in standard uncertainties.
 const LIMITS_U: [f64; 5] = [MISSED_U, 3.0, 2.5, 2.0, 1.5];
 
 /// What each limit would have kept from passing: of sound drops, and of damaged ones that passed and are wrong.
-fn limits(undamaged: &[&CampaignRow], damaged: &[&CampaignRow]) -> String {
+fn limits(undamaged: &[&CampaignRow], damaged: &[&CampaignRow]) -> Passage {
     let passed = of_verdict(undamaged, Verdict::Pass);
     let missed: Vec<&CampaignRow> =
         damaged.iter().copied().filter(|row| outcome(row) == Outcome::Missed).collect();
-    let mut table = Table::new(&["limit, u", "sound drops that pass", "damaged ones missed"]);
-    for limit_u in LIMITS_U {
-        let within = |rows: &[&CampaignRow]| {
-            rows.iter().filter(|row| largest_miss_u(row).is_none_or(|miss| miss <= limit_u)).count()
-        };
-        table.row([number(limit_u, 1), share(within(&passed), undamaged.len()), within(&missed).to_string()]);
-    }
-    table.finish()
+    let within = |rows: &[&CampaignRow], limit_u: f64| {
+        rows.iter().filter(|row| largest_miss_u(row).is_none_or(|miss| miss <= limit_u)).count()
+    };
+    Table::of(&LIMITS_U)
+        .number("limit, u", |limit_u| number(*limit_u, 1))
+        .number("sound drops that pass", |limit_u| share(within(&passed, *limit_u), undamaged.len()))
+        .number("damaged ones missed", |limit_u| within(&missed, *limit_u).to_string())
+        .into()
 }
 
 /// Every scene that passed and is wrong.
-fn missed(rows: &[CampaignRow]) -> String {
-    let mut table = Table::new(&["scene", "damage", "speed", "true", "k", "true"]);
-    let mut any = false;
-    for row in rows.iter().filter(|row| outcome(row) == Outcome::Missed) {
-        any = true;
-        let damage = row.damage.map_or_else(
-            || "none".to_owned(),
-            |d| {
-                format!(
-                    "{} {} {}",
-                    d.kind,
-                    if d.unit.is_empty() { String::new() } else { d.size.to_string() },
-                    d.unit
-                )
-            },
-        );
-        let shown = |name: &str, decimals| {
-            let scored = scored(row, name);
-            let stated = scored.and_then(|s| s.stated).map_or_else(
-                || "–".to_owned(),
-                |e| format!("{} ± {}", number(e.value, decimals), number(e.u95, decimals)),
-            );
-            [stated, number(scored.and_then(|s| s.truth).unwrap_or(f64::NAN), decimals)]
-        };
-        let (speed, k) = (shown("speed", 3), shown("k", 4));
-        table.row([row.number.to_string(), damage.trim().to_owned()].into_iter().chain(speed).chain(k));
+fn missed(rows: &[CampaignRow]) -> Passage {
+    let missed: Vec<&CampaignRow> = rows.iter().filter(|row| outcome(row) == Outcome::Missed).collect();
+    if missed.is_empty() {
+        return Passage::text("None.");
     }
-    if any { table.finish() } else { "None.\n".to_owned() }
+    let damage = |row: &CampaignRow| match row.damage {
+        None => "none".to_owned(),
+        Some(d) if d.unit.is_empty() => d.kind.to_owned(),
+        Some(d) => format!("{} {} {}", d.kind, d.size, d.unit),
+    };
+    let stated = |row: &CampaignRow, name, decimals| {
+        scored(row, name).and_then(|s| s.stated).map_or_else(
+            || "–".to_owned(),
+            |e| format!("{} ± {}", number(e.value, decimals), number(e.u95, decimals)),
+        )
+    };
+    let truth =
+        |row: &CampaignRow, name, decimals| optional_fixed(scored(row, name).and_then(|s| s.truth), decimals);
+    Table::of(&missed)
+        .text("scene", |row| row.number.to_string())
+        .text("damage", |row| damage(row))
+        .number("speed", |row| stated(row, "speed", 3))
+        .number("true", |row| truth(row, "speed", 3))
+        .number("k", |row| stated(row, "k", 4))
+        .number("true", |row| truth(row, "k", 4))
+        .into()
 }

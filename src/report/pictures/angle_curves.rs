@@ -1,11 +1,11 @@
 //! Curves over the drop angle to pictures: components (Figs. 4 and 5), magnitudes (Fig. 7), energy (Fig. 8), sections (Fig. 9).
 
 use super::super::ReportError;
-use super::super::prediction::{case_words, contact_words};
 use super::super::rounding::plain;
+use super::super::words::{case_words, contact_words};
+use super::draw::{Picture, Plate};
 use super::look::{Look, angle_panel, body_words, from_zero};
 use super::panel::{COLOURS, Dash, Line, Panel};
-use super::{Picture, assemble_or};
 use crate::data::{AngleCurve, BodyModel, Contact, Study};
 use plotters::style::RGBColor;
 
@@ -58,7 +58,9 @@ pub(super) fn components(study: &Study, contact: Contact, name: &str) -> Result<
          the drop angle{figure}. {OPEN}{}{many}",
         held_sentence(&panels)
     );
-    assemble_or(name, &format!("Components of the slap-down velocity, {contact}"), caption, &panels, NOTHING)
+    Plate::new(name, format!("Components of the slap-down velocity, {contact}"), caption)
+        .or(NOTHING)
+        .picture(&panels)
 }
 
 /// Magnitudes of every case.
@@ -82,7 +84,7 @@ pub(super) fn speeds(study: &Study, name: &str) -> Result<Picture, ReportError> 
         held_sentence(&panels),
         look.left_out()
     );
-    assemble_or(name, title, caption, &panels, NOTHING)
+    Plate::new(name, title, caption).or(NOTHING).picture(&panels)
 }
 
 /// Ratio of kinetic energies of every case.
@@ -96,7 +98,7 @@ pub(super) fn energies(study: &Study, name: &str) -> Result<Picture, ReportError
          centre between the impacts adds more than the first impact took. {OPEN}{}",
         look.left_out()
     );
-    assemble_or(name, "Energy left for the second impact", caption, &panels, NOTHING)
+    Plate::new(name, "Energy left for the second impact", caption).or(NOTHING).picture(&panels)
 }
 
 /// The cask's length with different sections, smooth and elastic.
@@ -125,7 +127,7 @@ pub(super) fn sections(study: &Study, name: &str) -> Result<Picture, ReportError
          impact ([P] Fig. 9). {OPEN}",
         plain(study.cask_file.cask.length_m, 4)
     );
-    assemble_or(name, "The section of the cask against the thin rod", caption, &[panel], NOTHING)
+    Plate::new(name, "The section of the cask against the thin rod", caption).or(NOTHING).picture(&[panel])
 }
 
 /// One panel a body with the lines that `lines` makes of its curves.
@@ -139,7 +141,7 @@ fn panels(study: &Study, y_label: &'static str, lines: impl Fn(&AngleCurve) -> V
             panel.lines = ordered(study, model).into_iter().flat_map(&lines).collect();
             // Closed forms last, so that the legend names the cases first.
             panel.lines.sort_by_key(|line| line.stroke == HELD_STROKE);
-            panel.y_range = from_zero(&panel);
+            panel.y.range = from_zero(&panel);
             panel
         })
         .collect()
@@ -161,7 +163,7 @@ fn case_line(look: &Look, curve: &AngleCurve, values: &[f64]) -> Option<Line> {
 
 fn line_of(curve: &AngleCurve, label: String, colour: RGBColor, dash: Dash, values: &[f64]) -> Line {
     let points = curve.angle_deg.iter().copied().zip(values.iter().map(|v| v.abs())).collect();
-    Line { label: Some(label), colour, opacity: 1.0, stroke: 4, dash, points }
+    Line::new(colour, points).named(label).broken(dash)
 }
 
 /// The closed form, where the curve has one.

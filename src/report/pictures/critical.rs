@@ -1,25 +1,18 @@
 //! Critical angles to one picture: a row a case, a bar for its band and a dot for where it is largest.
 
 use super::super::ReportError;
-use super::super::prediction::{
-    bands_words, case_words, criterion_value, criterion_words, degrees, has_ranges,
-};
 use super::super::rounding::{MISSING, plain};
-use super::super::text::printable;
-use super::look::Look;
-use super::panel::{self, Area, COLOURS, FONT, INK, WIDTH};
-use super::rows::Rows;
-use super::{Picture, assemble_or};
+use super::super::words::{bands_words, case_words, criterion_value, criterion_words, degrees, has_ranges};
+use super::draw::{Picture, Plate};
+use super::look::{Look, angle_axis, angle_panel};
+use super::panel::{Axis, COLOURS, Fill, Line, Panel, Points, RowWords, Shape};
 use crate::data::{Criterion, CriticalAngle, CriticalRange, Study};
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::RGBColor;
 
 const TITLE: &str = "Critical angles";
-const LEFT: u32 = 400;
-const RIGHT: u32 = 330;
+
+/// Height of a row.
 const ROW: u32 = 46;
-const BOTTOM: u32 = 88;
-const TOP: u32 = 14;
 
 /// One row of the picture.
 enum Row {
@@ -43,21 +36,15 @@ struct Case {
 /// The picture.
 pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError> {
     let rows = rows(study);
-    let angles = &study.request.angles_deg;
-    let ends = angles.first().copied().zip(angles.last().copied()).filter(|(from, to)| from < to);
-    let (Some((from, to)), false) = (ends, rows.is_empty()) else {
-        let nothing = (
-            "There is nothing to show: no case has a slap-down.",
-            "No case of this study has a critical angle.",
-        );
-        return assemble_or(name, TITLE, String::new(), &[], nothing);
-    };
-    let failed = |reason| ReportError::Picture { picture: name.to_owned(), reason };
-    let svg = draw(&rows, from..to, study.request.angle_deg).map_err(failed)?;
-    let caption = caption(study, &rows);
-    let alt = format!("{TITLE}. {}", spoken(&rows));
-    let svg = panel::described(&svg, TITLE);
-    Ok(Picture { name: name.to_owned(), title: TITLE.to_owned(), alt, caption, svg })
+    let nothing =
+        ("There is nothing to show: no case has a slap-down.", "No case of this study has a critical angle.");
+    let is_empty = rows.is_empty() || angle_axis(&study.request).range.is_none();
+    let panels = if is_empty { vec![] } else { vec![panel(study, &rows)] };
+    let mut picture = Plate::new(name, TITLE, caption(study, &rows)).or(nothing).picture(&panels)?;
+    if !panels.is_empty() {
+        picture.alt = format!("{TITLE}. {}", spoken(&rows));
+    }
+    Ok(picture)
 }
 
 fn caption(study: &Study, rows: &[Row]) -> String {
@@ -155,97 +142,49 @@ fn range_case(r: &CriticalRange) -> Case {
     }
 }
 
-fn draw(rows: &[Row], x: std::ops::Range<f64>, asked_deg: f64) -> Result<String, String> {
-    let count = u32::try_from(rows.len()).map_err(|e| e.to_string())?;
-    let height = TOP + ROW * count + BOTTOM;
-    let mut svg = String::new();
-    {
-        let root = SVGBackend::with_string(&mut svg, (WIDTH, height)).into_drawing_area();
-        paint(&root, rows, x, asked_deg).map_err(|e| e.to_string())?;
-    }
-    Ok(panel::sized(&svg, height))
-}
-
-type Failure = DrawingAreaErrorKind<std::io::Error>;
-
-fn paint(root: &Area, rows: &[Row], x: std::ops::Range<f64>, asked_deg: f64) -> Result<(), Failure> {
-    root.fill(&WHITE)?;
-    #[allow(clippy::cast_precision_loss, reason = "rows are few")]
-    let count = rows.len() as f64;
-    let mut chart = ChartBuilder::on(root)
-        .margin_top(TOP)
-        .margin_right(RIGHT)
-        .x_label_area_size(BOTTOM)
-        .y_label_area_size(LEFT)
-        .build_cartesian_2d(x.clone(), Rows(0.0..count))?;
-    chart
-        .configure_mesh()
-        .disable_y_mesh()
-        .x_desc("drop angle, °")
-        .axis_desc_style((FONT, 32, &INK))
-        .label_style((FONT, 30, &INK))
-        .axis_style(INK.mix(0.5))
-        .bold_line_style(INK.mix(0.15))
-        .light_line_style(INK.mix(0.0))
-        .x_labels(10)
-        .x_label_formatter(&|x| plain(*x, 4))
-        .draw()?;
-    if x.contains(&asked_deg) {
-        let line = vec![(asked_deg, 0.0), (asked_deg, count)];
-        chart.draw_series(DashedLineSeries::new(line, 10, 8, INK.mix(0.55).stroke_width(2)))?;
-    }
-    let mut y = count - 0.5;
-    for row in rows {
-        match row {
-            Row::Heading(words) => {
-                let at = chart.backend_coord(&(x.start, y)).1;
-                let style = TextStyle::from((FONT, 32).into_font().style(FontStyle::Bold)).color(&INK);
-                root.draw(&Text::new(
-                    words.clone(),
-                    (20, at),
-                    style.pos(Pos::new(HPos::Left, VPos::Center)),
-                ))?;
-            }
-            Row::Case(case) => {
-                let place = |angle_deg: f64| chart.backend_coord(&(angle_deg.clamp(x.start, x.end), y));
-                paint_case(root, case, place)?;
-            }
+fn panel(study: &Study, rows: &[Row]) -> Panel {
+    let words = |row: &Row| match row {
+        Row::Heading(words) => RowWords { left: words.clone(), is_heading: true, ..RowWords::default() },
+        Row::Case(case) => {
+            RowWords { left: case.label.clone(), right: case.words.clone(), ..RowWords::default() }
         }
-        y -= 1.0;
-    }
-    root.present()
-}
-
-fn paint_case(root: &Area, case: &Case, place: impl Fn(f64) -> (i32, i32)) -> Result<(), Failure> {
-    let y = place(0.0).1;
-    let words = |text: String, x: i32, side: HPos| {
-        let style = TextStyle::from((FONT, 29).into_font()).color(&INK).pos(Pos::new(side, VPos::Center));
-        root.draw(&Text::new(printable(&text), (x, y), style))
     };
-    words(case.label.clone(), LEFT.cast_signed() - 16, HPos::Right)?;
-    words(case.words.clone(), WIDTH.cast_signed() - RIGHT.cast_signed() + 18, HPos::Left)?;
-    for band in &case.bands_deg {
-        let (from, to) = (place(band.0).0, place(band.1).0);
-        let corners = [(from, y - 11), (to.max(from + 2), y + 11)];
-        root.draw(&Rectangle::new(corners, case.colour.mix(0.32).filled()))?;
-        for x in [from, to] {
-            root.draw(&PathElement::new(vec![(x, y - 11), (x, y + 11)], case.colour.stroke_width(3)))?;
+    let y = Axis::rows(rows.iter().map(words).collect());
+    let mut y_case = y.range.unwrap_or_default().1 - 0.5;
+    let mut panel = Panel {
+        x: angle_axis(&study.request),
+        y,
+        height: ROW * u32::try_from(rows.len()).unwrap_or(1),
+        sides: Some((400, 330)),
+        ..angle_panel(&study.request, String::new(), "")
+    };
+    for row in rows {
+        if let Row::Case(case) = row {
+            add_case(&mut panel, case, y_case);
         }
+        y_case -= 1.0;
     }
-    if let Some(larger_deg) = case.larger_deg {
-        root.draw(&Circle::new(place(larger_deg), 8, WHITE.filled()))?;
-        root.draw(&Circle::new(place(larger_deg), 8, case.colour.stroke_width(3)))?;
-    }
+    panel
+}
+
+/// The band of a case as a bar, its critical angle as a dot, or as two joined by a line.
+fn add_case(panel: &mut Panel, case: &Case, y: f64) {
+    /// Half the height of a bar.
+    const HALF: f64 = 0.24;
+    let (first, last) = panel.x.range.unwrap_or_default();
+    let cut = |band: &(f64, f64)| (band.0.clamp(first, last), band.1.clamp(first, last));
+    let bands: Vec<(f64, f64)> = case.bands_deg.iter().map(cut).collect();
+    let upright = |x: f64| Line { stroke: 3, ..Line::new(case.colour, vec![(x, y - HALF), (x, y + HALF)]) };
+    panel.lines.extend(bands.iter().flat_map(|(from, to)| [*from, *to]).map(upright));
+    let areas = bands.into_iter().map(|band| Fill::rectangle(band, (y - HALF, y + HALF))).collect();
+    panel.fills.push(Fill { label: None, colour: case.colour, opacity: 0.32, areas });
+    let larger = case.larger_deg.map(|at| (at, y)).into_iter().collect();
+    panel.points.push(Points { is_hollow: true, radius: 8, ..Points::new(case.colour, Shape::Dot, larger) });
     let (low, high) = case.angle_deg;
-    if !(low.is_finite() && high.is_finite()) {
-        return Ok(());
-    }
     if low < high {
-        root.draw(&PathElement::new(vec![place(low), place(high)], case.colour.stroke_width(4)))?;
+        panel.lines.push(Line::new(case.colour, vec![(low, y), (high, y)]));
     }
-    for angle_deg in [low, high] {
-        root.draw(&Circle::new(place(angle_deg), 10, WHITE.filled()))?;
-        root.draw(&Circle::new(place(angle_deg), 8, case.colour.filled()))?;
-    }
-    Ok(())
+    panel
+        .points
+        .push(Points { radius: 8, ..Points::new(case.colour, Shape::Dot, vec![(low, y), (high, y)]) });
 }

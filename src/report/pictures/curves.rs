@@ -1,9 +1,9 @@
 //! Accelerations (Fig. 12), velocities (Fig. 13), motion and spectra to panels.
 
-use super::super::grid::STANDARD_GRAVITY_M_S2;
+use super::super::grid::{STANDARD_GRAVITY_M_S2, named_events};
 use super::super::{ReportError, spectrum};
-use super::panel::{COLOURS, Dash, Line, Mark, Panel};
-use super::{Picture, assemble};
+use super::draw::{Picture, Plate};
+use super::panel::{Axis as PanelAxis, COLOURS, Dash, Line, Mark, Panel};
 use crate::data::{Analysis, Axis, ChannelCurve, End};
 use plotters::style::RGBColor;
 
@@ -18,22 +18,12 @@ pub(super) fn accelerations(analysis: &Analysis) -> Result<Picture, ReportError>
         .map(|(end, title)| {
             let mut lines = Vec::new();
             for (curve, colour, axis) in curves_of(analysis, end) {
-                lines.push(Line {
-                    label: Some(format!("{} unfiltered", curve.channel)),
-                    colour,
-                    opacity: 0.32,
-                    stroke: 2,
-                    dash: Dash::Solid,
-                    points: clock.points(&curve.time_s, &curve.raw_m_s2, 1.0 / STANDARD_GRAVITY_M_S2),
-                });
-                lines.push(Line {
-                    label: Some(format!("{} filtered{}", curve.channel, axis_note(axis))),
-                    colour,
-                    opacity: 1.0,
-                    stroke: 4,
-                    dash: dash_of(axis),
-                    points: clock.points(&curve.time_s, &curve.filtered_m_s2, 1.0 / STANDARD_GRAVITY_M_S2),
-                });
+                let in_g = |values: &[f64]| clock.points(&curve.time_s, values, 1.0 / STANDARD_GRAVITY_M_S2);
+                let raw =
+                    Line::new(colour, in_g(&curve.raw_m_s2)).named(format!("{} unfiltered", curve.channel));
+                let label = format!("{} filtered{}", curve.channel, axis_note(axis));
+                lines.push(Line { opacity: 0.32, stroke: 2, ..raw });
+                lines.push(Line::new(colour, in_g(&curve.filtered_m_s2)).named(label).broken(dash_of(axis)));
             }
             clock.panel(analysis, title, "deceleration, g", lines)
         })
@@ -48,7 +38,7 @@ pub(super) fn accelerations(analysis: &Analysis) -> Result<Picture, ReportError>
         "Specific force at both ends over time, offset removed: unfiltered (faint) and filtered (bold), 1 g = 9.80665 m/s². \
          A decelerating end reads positive on its transverse axis.{filter}"
     );
-    assemble("accelerations", "Deceleration of both ends", caption, &panels)
+    Plate::new("accelerations", "Deceleration of both ends", caption).picture(&panels)
 }
 
 /// The velocity of both ends, from the sensors and as the rigid body moves.
@@ -57,25 +47,15 @@ pub(super) fn velocities(analysis: &Analysis) -> Result<Picture, ReportError> {
     let mut sensors = Vec::new();
     for end in [End::First, End::Second] {
         for (curve, colour, axis) in curves_of(analysis, end) {
-            sensors.push(Line {
-                label: Some(format!("{} ({} end{})", curve.channel, end_word(end), axis_note(axis))),
-                colour,
-                opacity: 1.0,
-                stroke: 4,
-                dash: dash_of(axis),
-                points: clock.points(&curve.time_s, &curve.velocity_m_s, 1.0),
-            });
+            let label = format!("{} ({} end{})", curve.channel, end_word(end), axis_note(axis));
+            let points = clock.points(&curve.time_s, &curve.velocity_m_s, 1.0);
+            sensors.push(Line::new(colour, points).named(label).broken(dash_of(axis)));
         }
     }
     let mut panels = vec![clock.panel(analysis, "Along the sensors", "velocity, m/s", sensors)];
     if let Some(motion) = &analysis.curves.motion {
-        let line = |label: &str, colour: usize, dash, values: &[f64]| Line {
-            label: Some(label.to_owned()),
-            colour: COLOURS[colour],
-            opacity: 1.0,
-            stroke: 4,
-            dash,
-            points: clock.points(&motion.time_s, values, 1.0),
+        let line = |label: &str, colour: usize, dash, values: &[f64]| {
+            Line::new(COLOURS[colour], clock.points(&motion.time_s, values, 1.0)).named(label).broken(dash)
         };
         let lines = vec![
             line("first end, vertical", 0, Dash::Solid, &motion.first_end_vertical_m_s),
@@ -87,7 +67,7 @@ pub(super) fn velocities(analysis: &Analysis) -> Result<Picture, ReportError> {
     let caption = "Velocity over time. Above: each sensor's unfiltered signal integrated along its axis, gravity left out between \
                    the contacts. Below: the ends of the rigid body that all channels share, up positive."
         .to_owned();
-    assemble("velocities", "Velocity of both ends", caption, &panels)
+    Plate::new("velocities", "Velocity of both ends", caption).picture(&panels)
 }
 
 /// Heights of both ends and the inclination.
@@ -95,53 +75,40 @@ pub(super) fn motion(analysis: &Analysis) -> Result<Picture, ReportError> {
     let clock = Clock::of(analysis);
     let mut panels = Vec::new();
     if let Some(motion) = &analysis.curves.motion {
-        let line = |label: Option<&str>, colour: usize, values: &[f64], factor: f64| Line {
-            label: label.map(str::to_owned),
-            colour: COLOURS[colour],
-            opacity: 1.0,
-            stroke: 4,
-            dash: Dash::Solid,
-            points: clock.points(&motion.time_s, values, factor),
+        let line = |colour: usize, values: &[f64], factor: f64| {
+            Line::new(COLOURS[colour], clock.points(&motion.time_s, values, factor))
         };
         let heights = vec![
-            line(Some("first end"), 0, &motion.first_end_height_m, 1.0),
-            line(Some("second end"), 1, &motion.second_end_height_m, 1.0),
+            line(0, &motion.first_end_height_m, 1.0).named("first end"),
+            line(1, &motion.second_end_height_m, 1.0).named("second end"),
         ];
         panels.push(clock.panel(analysis, "Height above the target", "height, m", heights));
-        let angle = vec![line(None, 2, &motion.angle_rad, 180.0 / std::f64::consts::PI)];
+        let angle = vec![line(2, &motion.angle_rad, 180.0 / std::f64::consts::PI)];
         panels.push(clock.panel(analysis, "Inclination of the axis", "angle, °", angle));
     }
     let caption = "The rigid body's motion from just before first contact to the slap-down: height of the corner of each end that \
                    touches the target, and inclination of the axis above the horizontal."
         .to_owned();
-    assemble("motion", "Motion of the cask", caption, &panels)
+    Plate::new("motion", "Motion of the cask", caption).picture(&panels)
 }
 
 /// The amplitude spectra of all channels up to half the sample rate.
 pub(super) fn spectra(analysis: &Analysis) -> Result<Picture, ReportError> {
-    let lines = analysis
-        .curves
-        .channels
-        .iter()
-        .enumerate()
-        .map(|(i, curve)| Line {
-            label: Some(curve.channel.clone()),
-            colour: COLOURS[i % COLOURS.len()],
+    let line = |(i, curve): (usize, &ChannelCurve)| {
+        let (frequency_hz, magnitude_m_s) = spectrum(curve);
+        let points = frequency_hz.into_iter().zip(magnitude_m_s).collect();
+        Line {
             opacity: 0.9,
             stroke: 3,
-            dash: Dash::Solid,
-            points: {
-                let (frequency_hz, magnitude_m_s) = spectrum(curve);
-                frequency_hz.into_iter().zip(magnitude_m_s).collect()
-            },
-        })
-        .collect();
+            ..Line::new(COLOURS[i % COLOURS.len()], points).named(&curve.channel[..])
+        }
+    };
+    let lines = analysis.curves.channels.iter().enumerate().map(line).collect();
     let modes = analysis.result.flight.as_ref().map_or(&[][..], |flight| &flight.modes[..]);
     let panel = Panel {
         title: "Amplitude spectrum".into(),
-        x_label: "frequency, Hz",
-        y_label: "magnitude, m/s",
-        logarithmic: true,
+        x: PanelAxis::new("frequency, Hz").logarithmic(),
+        y: PanelAxis::new("magnitude, m/s").logarithmic(),
         height: 560,
         lines,
         marks: modes
@@ -154,7 +121,7 @@ pub(super) fn spectra(analysis: &Analysis) -> Result<Picture, ReportError> {
     let caption = "One-sided amplitude spectrum of the unfiltered specific force over the event window, up to half the sample rate; \
                    both axes logarithmic. Marked: the bending modes that the fit of the flight took."
         .to_owned();
-    assemble("spectra", "Spectra", caption, &[panel])
+    Plate::new("spectra", "Spectra", caption).picture(&[panel])
 }
 
 /// The time axis: from first contact where it is known.
@@ -175,30 +142,23 @@ impl Clock {
         time_s.iter().zip(values).map(|(t, v)| ((t - self.zero_s) * 1e3, v * factor)).collect()
     }
 
-    fn panel(&self, analysis: &Analysis, title: &str, y_label: &'static str, lines: Vec<Line>) -> Panel {
-        let events = &analysis.result.events;
-        let marks = [
-            ("release", events.release_s),
-            ("first contact", events.first_contact_s()),
-            ("separation", events.separation_s()),
-            ("slap-down", events.slap_down_s()),
-        ]
-        .into_iter()
-        .filter_map(|(label, at)| {
-            let at = (at.filter(|t| t.is_finite())? - self.zero_s) * 1e3;
-            // An event a hair beyond the curve, as the slap-down that ends the motion, is marked at its end.
-            let (from, to) = ends(&lines)?;
-            let slack = 0.01 * (to - from);
-            let shown = (from - slack..=to + slack).contains(&at);
-            let at = at.clamp(from, to);
-            shown.then(|| Mark { at, label: label.into() })
-        })
-        .collect();
+    fn panel(&self, analysis: &Analysis, title: &str, y_label: &str, lines: Vec<Line>) -> Panel {
+        let marks = named_events(&analysis.result.events)
+            .into_iter()
+            .filter_map(|(label, at)| {
+                let at = (at.filter(|t| t.is_finite())? - self.zero_s) * 1e3;
+                // An event a hair beyond the curve, as the slap-down that ends the motion, is marked at its end.
+                let (from, to) = ends(&lines)?;
+                let slack = 0.01 * (to - from);
+                let shown = (from - slack..=to + slack).contains(&at);
+                let at = at.clamp(from, to);
+                shown.then(|| Mark { at, label: label.into() })
+            })
+            .collect();
         Panel {
             title: title.to_owned(),
-            x_label: self.label,
-            y_label,
-            logarithmic: false,
+            x: PanelAxis::new(self.label),
+            y: PanelAxis::new(y_label),
             height: 350,
             lines,
             marks,

@@ -1,8 +1,8 @@
 //! Contact laws and k to colours and strokes, so that a case looks the same in every picture; and the axis of the angle.
 
-use super::super::prediction::contact_words;
 use super::super::rounding::plain;
-use super::panel::{COLOURS, Dash, Mark, Panel};
+use super::super::words::contact_words;
+use super::panel::{Axis, COLOURS, Dash, Mark, Panel};
 use crate::data::{BodyModel, Cask, Contact, Request};
 use plotters::style::RGBColor;
 
@@ -95,16 +95,20 @@ pub(super) fn body_words(model: BodyModel, cask: &Cask, with_length: bool) -> St
     }
 }
 
-/// An empty panel over the angles of the study, the angle asked for marked.
-pub(super) fn angle_panel(request: &Request, title: String, y_label: &'static str) -> Panel {
+/// The axis of the drop angle, as far as the study goes.
+pub(super) fn angle_axis(request: &Request) -> Axis {
     let ends = request.angles_deg.first().copied().zip(request.angles_deg.last().copied());
+    Axis::new("drop angle, °").over(ends.filter(|(from, to)| from < to))
+}
+
+/// An empty panel over the angles of the study, the angle asked for marked.
+pub(super) fn angle_panel(request: &Request, title: String, y_label: &str) -> Panel {
     let at = request.angle_deg;
     Panel {
         title,
-        x_label: "drop angle, °",
-        y_label,
+        x: angle_axis(request),
+        y: Axis::new(y_label),
         height: 400,
-        x_range: ends.filter(|(from, to)| from < to),
         marks: vec![Mark { at, label: format!("{}°", plain(at, 4)) }],
         ..Panel::default()
     }

@@ -6,12 +6,13 @@ mod comparison;
 mod critical;
 mod curves;
 mod decimate;
+pub(crate) mod draw;
 mod legend;
 mod look;
 mod monte_carlo;
+#[cfg_attr(not(feature = "lab"), allow(dead_code, reason = "the pages of the laboratory use all of it"))]
 pub(crate) mod panel;
 mod regimes;
-mod rows;
 mod sensitivity;
 mod study;
 mod sweep;
@@ -20,21 +21,7 @@ pub(super) use study::{draw_study, names as study_names};
 
 use super::ReportError;
 use crate::data::Analysis;
-use panel::Panel;
-
-/// One picture.
-pub(crate) struct Picture {
-    /// The name of its file, without ".svg".
-    pub(crate) name: String,
-    /// Its heading.
-    pub(crate) title: String,
-    /// What it shows, for a reader who cannot see it.
-    pub(crate) alt: String,
-    /// What the reader should know beside it.
-    pub(crate) caption: String,
-    /// The drawing.
-    pub(crate) svg: String,
-}
+use draw::Picture;
 
 /// Accelerations, velocities, motion, spectra and comparison; one that has nothing to show says so.
 ///
@@ -48,35 +35,6 @@ pub(super) fn draw(analysis: &Analysis) -> Result<Vec<Picture>, ReportError> {
         curves::spectra(analysis)?,
         comparison::picture(analysis)?,
     ])
-}
-
-/// Draws `panels` one below the other, or a sentence where there is none.
-fn assemble(name: &str, title: &str, caption: String, panels: &[Panel]) -> Result<Picture, ReportError> {
-    let nothing =
-        ("There is nothing to show: see the findings.", "The recording did not yield this picture.");
-    assemble_or(name, title, caption, panels, nothing)
-}
-
-/// [`assemble`] with the sentence of the empty picture and its caption.
-fn assemble_or(
-    name: &str,
-    title: &str,
-    caption: String,
-    panels: &[Panel],
-    nothing: (&str, &str),
-) -> Result<Picture, ReportError> {
-    let panels: Vec<&Panel> = panels.iter().filter(|panel| panel.has_points()).collect();
-    let failed = |reason| ReportError::Picture { picture: name.to_owned(), reason };
-    let (name, title) = (name.to_owned(), title.to_owned());
-    if panels.is_empty() {
-        let svg = panel::nothing(nothing.0).map_err(failed)?;
-        let alt = format!("{title}: nothing to show.");
-        return Ok(Picture { name, title, alt, caption: nothing.1.to_owned(), svg });
-    }
-    let svg = panel::draw(&panels).map_err(failed)?;
-    let alt = format!("{title}. {caption}");
-    let svg = panel::described(&svg, &title);
-    Ok(Picture { name, title, alt, caption, svg })
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! Monte Carlo to one picture: quantiles of the speed, share of the draws in their band, histogram of the critical angle.
 
 use super::super::ReportError;
-use super::super::prediction::{bands_words, criterion_words, degrees};
 use super::super::rounding::plain;
+use super::super::words::{bands_words, criterion_words, degrees};
+use super::draw::{Picture, Plate};
 use super::look::angle_panel;
 use super::panel::{COLOURS, Dash, Fill, Line, Panel};
-use super::{Picture, assemble_or};
 use crate::data::{Criterion, QuantileCurves, Study};
 
 const NOTHING: (&str, &str) = (
@@ -35,7 +35,7 @@ pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError>
         plain(found.band_percent, 3)
     );
     let nothing = if found.uncertain.draws == 0 { NO_DRAWS } else { NOTHING };
-    assemble_or(name, &title, caption, &panels, nothing)
+    Plate::new(name, title, caption).or(nothing).picture(&panels)
 }
 
 fn quantiles(study: &Study, speed: &QuantileCurves) -> Panel {
@@ -59,7 +59,7 @@ fn shares(study: &Study) -> Panel {
     let found = &study.monte_carlo;
     let title = format!("Share of the draws within {} % of their largest", plain(found.band_percent, 3));
     let mut panel = angle_panel(&study.request, title, "share of the draws, %");
-    panel.y_range = Some((0.0, 104.0));
+    panel.y.range = Some((0.0, 104.0));
     panel.height = 300;
     for q in &found.quantiles {
         let (colour, dash) = match q.criterion {
@@ -74,7 +74,7 @@ fn shares(study: &Study) -> Panel {
                 label: None,
                 colour: COLOURS[0],
                 opacity: 0.14,
-                areas: q.robust_bands_deg.iter().map(|band| zone(*band, 104.0)).collect(),
+                areas: q.robust_bands_deg.iter().map(|band| Fill::rectangle(*band, (0.0, 104.0))).collect(),
             });
         }
     }
@@ -94,15 +94,13 @@ fn histogram(study: &Study, speed: &QuantileCurves) -> Panel {
     let mut panel = angle_panel(&study.request, title, "share of the draws, %");
     panel.height = 260;
     let top = bars.largest() * 1.1;
-    panel.y_range = Some((0.0, top));
+    panel.y.range = Some((0.0, top));
     let fill = |opacity, areas| Fill { label: None, colour: COLOURS[0], opacity, areas };
-    panel.fills = vec![fill(0.14, vec![zone((low, high), top)]), fill(0.75, bars.areas(panel.x_range))];
+    panel.fills = vec![
+        fill(0.14, vec![Fill::rectangle((low, high), (0.0, top))]),
+        fill(0.75, bars.areas(panel.x.range)),
+    ];
     panel
-}
-
-/// From the foot of a panel to its top.
-fn zone((from, to): (f64, f64), top: f64) -> Vec<(f64, f64)> {
-    vec![(from, 0.0), (from, top), (to, top), (to, 0.0)]
 }
 
 /// Most bars of a histogram: finer ones cannot be told apart on paper.
@@ -141,14 +139,14 @@ impl Bars {
             .filter(|bar| bar.2 > 0.0 && bar.0.is_finite() && bar.1.is_finite())
             .map(|&(from, to, share)| {
                 let (from, to) = (from.clamp(low, high), to.clamp(low, high));
-                vec![(from, 0.0), (from, share), (to, share), (to, 0.0)]
+                Fill::rectangle((from, to), (0.0, share))
             })
             .collect()
     }
 }
 
 fn line(label: &str, colour: usize, dash: Dash, points: Vec<(f64, f64)>) -> Line {
-    Line { label: Some(label.to_owned()), colour: COLOURS[colour], opacity: 1.0, stroke: 4, dash, points }
+    Line::new(COLOURS[colour], points).named(label).broken(dash)
 }
 
 fn pairs(x: &[f64], y: &[f64], factor: f64) -> Vec<(f64, f64)> {

@@ -1,10 +1,10 @@
 //! The gradient of the speed over the drop angle to one picture, with the angles at which the speed does not tell k.
 
 use super::super::ReportError;
-use super::super::prediction::{bands_words, case_words};
+use super::super::words::{bands_words, case_words};
+use super::draw::{Picture, Plate};
 use super::look::{Look, angle_panel};
-use super::panel::{Dash, Dot, Fill, GREY, Line, Panel};
-use super::{Picture, assemble_or};
+use super::panel::{Dash, Fill, GREY, Line, Panel, Points, Shape};
 use crate::data::{Contact, Sensitivity, Study};
 
 const NOTHING: (&str, &str) =
@@ -45,7 +45,7 @@ pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError>
          rotation or the flight time.{cut}{blind}{}",
         look.left_out()
     );
-    assemble_or(name, "Sensitivity of the slap-down speed", caption, &panels, NOTHING)
+    Plate::new(name, "Sensitivity of the slap-down speed", caption).or(NOTHING).picture(&panels)
 }
 
 fn by_k(study: &Study, shown: &[&Sensitivity], look: &Look) -> Panel {
@@ -64,9 +64,8 @@ fn by_k(study: &Study, shown: &[&Sensitivity], look: &Look) -> Panel {
             points: poorly.collect(),
             ..line
         });
-        panel
-            .dots
-            .extend(s.blind_angles_deg.iter().map(|angle| Dot { at: (*angle, 0.0), colour: line.colour }));
+        let blind = s.blind_angles_deg.iter().map(|angle| (*angle, 0.0)).collect();
+        panel.points.push(Points::new(line.colour, Shape::Dot, blind));
         panel.lines.push(line);
     }
     if shown.iter().any(|s| !s.blind_bands_deg.is_empty()) {
@@ -91,14 +90,8 @@ fn by_angle(study: &Study, shown: &[&Sensitivity], look: &Look) -> Panel {
 fn zero(study: &Study, shown: &[&Sensitivity]) -> Option<Line> {
     let angles = &study.request.angles_deg;
     let any = shown.iter().any(|s| s.by_k_m_s.iter().any(|v| v.is_finite()));
-    any.then(|| Line {
-        label: None,
-        colour: GREY,
-        opacity: 0.8,
-        stroke: 2,
-        dash: Dash::Solid,
-        points: angles.first().into_iter().chain(angles.last()).map(|x| (*x, 0.0)).collect(),
-    })
+    let ends = angles.first().into_iter().chain(angles.last()).map(|x| (*x, 0.0)).collect();
+    any.then(|| Line { opacity: 0.8, stroke: 2, ..Line::new(GREY, ends) })
 }
 
 /// Share of the values that the axis leaves out at either end: the few steep places would flatten all others.
@@ -123,7 +116,7 @@ fn clip(panel: &mut Panel) -> bool {
     let (low, high) = ((low - 0.5 * span).max(least.min(0.0)), (high + 0.5 * span).min(most.max(0.0)));
     let air = 0.06 * (high - low).max(f64::MIN_POSITIVE);
     let (low, high) = (low - air, high + air);
-    panel.y_range = Some((low, high));
+    panel.y.range = Some((low, high));
     for line in &mut panel.lines {
         line.points = clipped(&line.points, low, high);
     }
@@ -151,14 +144,8 @@ fn clipped(points: &[(f64, f64)], low: f64, high: f64) -> Vec<(f64, f64)> {
 }
 
 fn line(s: &Sensitivity, values: &[f64], look: &Look) -> Line {
-    Line {
-        label: Some(case_words(s.contact, s.k)),
-        colour: look.colour(s.contact, s.k),
-        opacity: 1.0,
-        stroke: 4,
-        dash: look.dash(s.k),
-        points: s.angle_deg.iter().copied().zip(values.iter().copied()).collect(),
-    }
+    let points = s.angle_deg.iter().copied().zip(values.iter().copied()).collect();
+    Line::new(look.colour(s.contact, s.k), points).named(case_words(s.contact, s.k)).broken(look.dash(s.k))
 }
 
 #[cfg(test)]
@@ -185,16 +172,9 @@ mod tests {
     fn a_spike_does_not_flatten_the_rest() {
         let points: Vec<(f64, f64)> =
             (0..100_i32).map(|i| (f64::from(i), if i == 50 { 1e4 } else { f64::from(i % 7) })).collect();
-        let line = Line {
-            label: Some("case".into()),
-            colour: GREY,
-            opacity: 1.0,
-            stroke: 4,
-            dash: Dash::Solid,
-            points,
-        };
+        let line = Line::new(GREY, points).named("case");
         let mut panel = Panel { lines: vec![line], ..Panel::default() };
         assert!(clip(&mut panel));
-        assert!(panel.y_range.is_some_and(|(low, high)| low <= 0.0 && (6.0..20.0).contains(&high)));
+        assert!(panel.y.range.is_some_and(|(low, high)| low <= 0.0 && (6.0..20.0).contains(&high)));
     }
 }

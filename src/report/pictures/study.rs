@@ -2,8 +2,9 @@
 
 use super::super::ReportError;
 use super::super::rounding::plain;
+use super::draw::Picture;
 use super::look::MOST_CONTACTS;
-use super::{Picture, angle_curves, critical, monte_carlo, regimes, sensitivity, sweep};
+use super::{angle_curves, critical, monte_carlo, regimes, sensitivity, sweep};
 use crate::data::{Contact, Request, Study};
 use rayon::prelude::*;
 

@@ -1,11 +1,11 @@
 //! The predictions of a sweep to one picture: speed over what was swept, a line a case.
 
 use super::super::ReportError;
-use super::super::prediction::{contact_words, variable_words};
 use super::super::rounding::plain;
+use super::super::words::{contact_words, variable_words};
+use super::draw::{Picture, Plate};
 use super::look::{Look, body_words, spread};
-use super::panel::{COLOURS, Dash, Line, Panel};
-use super::{Picture, assemble_or};
+use super::panel::{Axis, COLOURS, Line, Panel};
 use crate::data::{BodyModel, Contact, PredictionRow, Study, Sweep, SweepVariable};
 
 const TITLE: &str = "Slap-down speed over the sweep";
@@ -24,7 +24,7 @@ pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError>
     // Stable: of equally many the one named first.
     sweeps.sort_by_key(|sweep| std::cmp::Reverse(sweep.values.len()));
     let Some((along, others)) = sweeps.split_first() else {
-        return assemble_or(name, TITLE, String::new(), &[], NOTHING);
+        return Plate::new(name, TITLE, String::new()).or(NOTHING).picture(&[]);
     };
     let held: Vec<(SweepVariable, f64)> = others
         .iter()
@@ -48,7 +48,7 @@ pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError>
         "Magnitude of the velocity of the second end just before it strikes. Where a line is broken off the second end never strikes; \
          where the first end strikes again before it, the line may jump.{fixed}{left_out}"
     );
-    assemble_or(name, TITLE, caption, &panels, NOTHING)
+    Plate::new(name, TITLE, caption).or(NOTHING).picture(&panels)
 }
 
 /// What a line or a panel is for; what is swept is `None`.
@@ -110,11 +110,8 @@ fn curves(study: &Study, rows: &[&PredictionRow], along: &Sweep, cases: &[Case])
             let of_case = rows.iter().copied().filter(|row| case.holds(row));
             panel.lines.push(Line {
                 label: Some(case.words()).filter(|words| !words.is_empty()),
-                colour: look.colour(law(case), restitution(case)),
-                opacity: 1.0,
-                stroke: 4,
                 dash: look.dash(restitution(case)),
-                points: points(of_case, along.variable),
+                ..Line::new(look.colour(law(case), restitution(case)), points(of_case, along.variable))
             });
         }
         panel
@@ -152,14 +149,8 @@ fn families(
         for (i, value) in values.iter().enumerate() {
             let of_line =
                 rows.iter().copied().filter(|row| case.holds(row) && is_at(row, second.variable, *value));
-            panel.lines.push(Line {
-                label: Some(value_words(second.variable, *value)),
-                colour: COLOURS[i % COLOURS.len()],
-                opacity: 1.0,
-                stroke: 4,
-                dash: Dash::Solid,
-                points: points(of_line, along.variable),
-            });
+            let line = Line::new(COLOURS[i % COLOURS.len()], points(of_line, along.variable));
+            panel.lines.push(line.named(value_words(second.variable, *value)));
         }
         panel
     });
@@ -179,10 +170,9 @@ fn panel(along: &Sweep, title: String) -> Panel {
     let ends = along.values.first().copied().zip(along.values.last().copied());
     Panel {
         title,
-        x_label: variable_words(along.variable),
-        y_label: "slap-down speed, m/s",
+        x: Axis::new(variable_words(along.variable)).over(ends.filter(|(from, to)| from < to)),
+        y: Axis::new("slap-down speed, m/s"),
         height: 380,
-        x_range: ends.filter(|(from, to)| from < to),
         ..Panel::default()
     }
 }

@@ -1,6 +1,7 @@
 //! Predictions to CSV: one row each; what does not exist is an empty cell.
 
 use super::super::ReportError;
+use super::super::records::finished;
 use crate::data::PredictionRow;
 use rayon::prelude::*;
 use std::fmt::Display;
@@ -45,10 +46,6 @@ pub fn csv(rows: &[PredictionRow]) -> Result<Vec<u8>, ReportError> {
         bytes.extend(chunk);
     }
     Ok(bytes)
-}
-
-fn finished(writer: csv::Writer<Vec<u8>>) -> Result<Vec<u8>, ReportError> {
-    writer.into_inner().map_err(|error| ReportError::Csv(csv::Error::from(error.into_error())))
 }
 
 fn lines(rows: &[PredictionRow]) -> Result<Vec<u8>, ReportError> {

@@ -96,16 +96,6 @@ pub fn study_json(study: &Study) -> Result<Vec<u8>, ReportError> {
     Ok(bytes)
 }
 
-/// The JSON of predictions alone.
-///
-/// # Errors
-/// [`ReportError::Json`] where the writer fails.
-pub fn json(rows: &[PredictionRow]) -> Result<Vec<u8>, ReportError> {
-    let mut bytes = head(rows)?;
-    bytes.extend(b"\n}\n");
-    Ok(bytes)
-}
-
 /// The document up to the end of the predictions, its brace still open.
 fn head(rows: &[PredictionRow]) -> Result<Vec<u8>, ReportError> {
     let compact = rows.len() > MOST_SPREAD;
@@ -255,12 +245,14 @@ mod tests {
     #[test]
     fn few_predictions_are_spread_and_many_stand_on_a_line_each() {
         let rows = sample_study::study().rows;
-        let text = String::from_utf8(json(&rows).unwrap()).unwrap();
+        let json = |rows| study_json(&Study { rows, ..sample_study::study() }).unwrap();
+        let text = String::from_utf8(json(rows.clone())).unwrap();
         assert!(text.contains("\n      \"k\": "), "{text}");
         let many = vec![rows[0].clone(); CHUNK + 5];
-        let bytes = json(&many).unwrap();
-        assert_eq!(read(&bytes)["predictions"].as_array().unwrap().len(), many.len());
-        assert!(String::from_utf8(bytes).unwrap().lines().count() < many.len() + 10);
+        let found = read(&json(many.clone()));
+        assert_eq!(found["predictions"].as_array().unwrap().len(), many.len());
+        let text = String::from_utf8(json(many)).unwrap();
+        assert!(text.lines().filter(|line| line.starts_with("    {\"")).count() >= CHUNK + 5, "{text}");
     }
 
     #[test]
@@ -276,6 +268,7 @@ mod tests {
 
     #[test]
     fn no_predictions_are_an_empty_list() {
-        assert_eq!(read(&json(&[]).unwrap())["predictions"], Value::Array(Vec::new()));
+        let study = Study { rows: Vec::new(), ..sample_study::study() };
+        assert_eq!(read(&study_json(&study).unwrap())["predictions"], Value::Array(Vec::new()));
     }
 }

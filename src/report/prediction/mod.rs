@@ -1,25 +1,19 @@
 //! A study of predictions to its files: page, JSON, CSV and pictures; and to the table of the terminal.
 
+mod critical;
 mod csv;
 mod json;
 mod models;
-mod page;
-mod page_tables;
-mod summary;
-mod table;
-mod words;
+mod rows;
+mod study;
+#[cfg(test)]
+mod study_tests;
 
-pub use csv::csv;
-pub use json::{json, study_json};
-pub(super) use table::at_one_angle;
-pub use table::{study_table, table};
-pub(super) use words::{
-    KEPT_SENTENCE, bands_words, case_words, contact_words, criterion_value, criterion_words, degrees,
-    has_ranges, kept_mark, variable_words,
-};
+pub use json::study_json;
+pub(super) use rows::prediction_columns;
 
 use super::ReportError;
-use super::pictures;
+use super::{as_html, as_text, pictures};
 use crate::data::{Request, Study};
 
 /// The names of the files that [`study_files`] makes for a study of this request, in its order.
@@ -29,6 +23,12 @@ pub fn study_file_names(request: &Request) -> Vec<String> {
     own.into_iter()
         .chain(pictures::study_names(request).into_iter().map(|name| format!("{name}.svg")))
         .collect()
+}
+
+/// The whole of a study for the terminal.
+#[must_use]
+pub fn study_table(study: &Study) -> String {
+    as_text::text(&study::document(study))
 }
 
 /// Every file of a study by name, in the order in which a reader meets them.
@@ -42,7 +42,7 @@ pub fn study_files(study: &Study) -> Result<Vec<(String, Vec<u8>)>, ReportError>
     );
     let pictures = pictures?;
     let mut files = vec![
-        ("prediction.html".to_owned(), page::page(study, &pictures).into_bytes()),
+        ("prediction.html".to_owned(), as_html::page(&study::document(study), &pictures).into_bytes()),
         ("prediction.json".to_owned(), json?),
         ("prediction.csv".to_owned(), csv?),
     ];

@@ -2,25 +2,27 @@
 
 mod breaks;
 mod csv;
+mod document;
 mod failure_chart;
 mod families;
-mod markdown;
-mod page;
 mod reasons;
 #[cfg(test)]
 mod sample;
-mod shapes;
 mod speed_chart;
 
-pub use markdown::markdown as trial_markdown;
-
 use crate::lab::data::Trial;
-use crate::report::pictures::Picture;
-use crate::report::{ReportError, json};
+use crate::report::pictures::draw::Picture;
+use crate::report::{ReportError, as_html, as_markdown, json};
 
 /// The files of a trial that have the same name whatever was tried; the charts stand beside them.
 pub const TRIAL_NAMES: [&str; 5] =
     ["validation.html", "validation.json", "points.csv", "maps.csv", "validation.md"];
+
+/// The extract; `folder` is what leads from the document to the charts ("" or ending in "/"), none leaves them out.
+#[must_use]
+pub fn trial_markdown(trial: &Trial, folder: Option<&str>) -> String {
+    as_markdown::markdown(&document::document(trial), folder)
+}
 
 /// Every file of a trial by name, in the order in which a reader meets them.
 ///
@@ -28,12 +30,13 @@ pub const TRIAL_NAMES: [&str; 5] =
 /// [`ReportError`] where one of them cannot be made; then none is returned.
 pub fn trial_files(trial: &Trial) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     let pictures = charts(trial)?;
+    let document = document::document(trial);
     let bytes = [
-        page::page(trial, &pictures).into_bytes(),
+        as_html::page(&document, &pictures).into_bytes(),
         json::pretty(trial)?,
         csv::points(trial)?,
         csv::maps(trial)?,
-        markdown::markdown(trial, Some("")).into_bytes(),
+        as_markdown::markdown(&document, Some("")).into_bytes(),
     ];
     let mut files: Vec<(String, Vec<u8>)> = TRIAL_NAMES.map(str::to_owned).into_iter().zip(bytes).collect();
     files.extend(pictures.into_iter().map(|p| (format!("{}.svg", p.name), p.svg.into_bytes())));

@@ -1,39 +1,40 @@
 //! A family of methods to its chart: error over time, a panel for each class, the front drawn.
 
 use super::families::Family;
-use super::shapes::{Failure, ROW, colour, mark, rows, tick, word};
 use crate::lab::data::TrialPoint;
 use crate::report::ReportError;
-use crate::report::pictures::Picture;
-use crate::report::pictures::panel::{self, Area, FONT, GREY, INK, WIDTH};
-use crate::report::text::printable;
-use plotters::prelude::*;
-use std::ops::Range;
+use crate::report::pictures::draw::{Picture, Plate};
+use crate::report::pictures::panel::{Axis, COLOURS, GREY, INK, Line, Panel, Points, Shape};
 
-/// Panels beside each other, and the height of one.
-const COLUMNS: usize = 2;
-const PANEL: u32 = 560;
+/// Height of a panel.
+const PANEL: u32 = 410;
 /// An error below this is drawn at it: less than a rounding of the peak.
 const LEAST_ERROR: f64 = 1e-17;
 /// An error above this is drawn at it: the method diverged.
 const MOST_ERROR: f64 = 1e3;
-const MOST_DECADES: i32 = 12;
+/// Decades below the largest error: beyond them nothing differs to an engineer; roundings stay in sight.
+const MOST_DECADES: i32 = 20;
 
 /// The chart.
 pub(super) fn picture(family: &Family) -> Result<Picture, ReportError> {
-    let name = family.file_name();
-    let title = format!("Speed against accuracy: {}", printable(family.name));
-    let failed = |reason| ReportError::Picture { picture: name.clone(), reason };
-    let svg = draw(family).map_err(failed)?;
     let caption = format!(
         "Error ({}, median; the line upwards ends at the 95th percentile) over the time of a {} (median and quartiles). Below and left is better. \
          Grey line: the front, what no other beats in both. Ring: what the program takes. Hollow: programs of others, which take no part in the front.",
-        printable(family.error_unit),
-        printable(family.time_per)
+        family.error_unit, family.time_per
     );
-    let alt = format!("{title}. {caption}");
-    let svg = panel::described(&svg, &title);
-    Ok(Picture { name, title, alt, caption, svg })
+    let title = format!("Speed against accuracy: {}", family.name);
+    let methods = family.methods();
+    let look = |(i, method): (usize, &&str)| Points {
+        is_hollow: family.is_peer(method),
+        ..Points::new(COLOURS[i % COLOURS.len()], Shape::of(i), Vec::new()).named(*method)
+    };
+    let looks: Vec<Points> = methods.iter().enumerate().map(look).collect();
+    let axes = axes(family);
+    let classes = family.classes();
+    let class_panels = classes.iter().map(|class| panel(&axes, class, &family.of_class(class), &looks));
+    let legend = Panel { points: looks.clone(), ..Panel::default() };
+    let panels: Vec<Panel> = [legend].into_iter().chain(class_panels).collect();
+    Plate { columns: 2, ..Plate::new(&family.file_name(), title, caption) }.picture(&panels)
 }
 
 fn drawn_error(error: f64) -> f64 {
@@ -41,108 +42,60 @@ fn drawn_error(error: f64) -> f64 {
 }
 
 /// Whole decades around the values; one and a half at least.
-fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
+fn decades(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values
         .filter(|v| v.is_finite() && *v > 0.0)
         .fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
     if low > high {
-        return 1e-1..1e1;
+        return (1e-1, 1e1);
     }
     let (low, high) = ((0.5 * low).log10().floor(), (2.0 * high).log10().ceil());
-    10_f64.powf(low)..10_f64.powf(high.max(low + 1.0))
+    (10_f64.powf(low), 10_f64.powf(high.max(low + 1.0)))
 }
 
-fn draw(family: &Family) -> Result<String, String> {
-    let methods = family.methods();
-    let words: Vec<String> = methods.iter().map(|m| printable(m)).collect();
-    let (places, legend_rows) = rows(&words, 34);
-    let head = u32::try_from(20 + ROW * legend_rows).map_err(|e| e.to_string())?;
-    let classes = family.classes();
-    let panel_rows = u32::try_from(classes.len().div_ceil(COLUMNS)).map_err(|e| e.to_string())?;
-    let height = head + PANEL * panel_rows;
-    let x =
-        decades(family.points.iter().flat_map(|(p, _)| p.time_quartiles_ns.into_iter().chain([p.time_ns])));
-    let mut y =
-        decades(family.points.iter().flat_map(|(p, _)| [p.median_error, p.p95_error].map(drawn_error)));
-    // Beyond that many decades below the top nothing differs to an engineer; roundings stay in sight.
-    y.start = y.start.max(y.end * 10_f64.powi(-MOST_DECADES - 8));
-    let mut svg = String::new();
-    {
-        let root = SVGBackend::with_string(&mut svg, (WIDTH, height)).into_drawing_area();
-        let failed = |e: Failure| e.to_string();
-        root.fill(&WHITE).map_err(failed)?;
-        let (legend, panels) = root.split_vertically(head);
-        for (i, (text, (left, top))) in words.iter().zip(&places).enumerate() {
-            mark(&legend, i, (left + 12, top + 30), family.is_peer(methods[i])).map_err(failed)?;
-            word(&legend, text, (left + 34, top + 31), 30).map_err(failed)?;
-        }
-        for (class, area) in classes.iter().zip(panels.split_evenly((panel_rows as usize, COLUMNS))) {
-            one(&area, family, &methods, class, (x.clone(), y.clone())).map_err(failed)?;
-        }
-        root.present().map_err(failed)?;
-    }
-    Ok(panel::sized(&svg, height))
+/// Time and error, the same for every class.
+fn axes(family: &Family) -> [Axis; 2] {
+    let points = || family.points.iter().map(|(p, _)| p);
+    let times = decades(points().flat_map(|p| p.time_quartiles_ns.into_iter().chain([p.time_ns])));
+    let (least, most) = decades(points().flat_map(|p| [p.median_error, p.p95_error].map(drawn_error)));
+    let errors = (least.max(most * 10_f64.powi(-MOST_DECADES)), most);
+    [
+        Axis::new(format!("ns a {}", family.time_per)).logarithmic().over(Some(times)),
+        Axis::new(format!("error, {}", family.error_unit)).logarithmic().over(Some(errors)),
+    ]
 }
 
 /// The panel of one class.
-fn one(
-    area: &Area,
-    family: &Family,
-    methods: &[&str],
-    class: &str,
-    (x, y): (Range<f64>, Range<f64>),
-) -> Result<(), Failure> {
-    word(area, class, (120, 26), 31)?;
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(50)
-        .margin_right(30)
-        .margin_bottom(18)
-        .x_label_area_size(82)
-        .y_label_area_size(118)
-        .build_cartesian_2d(x.log_scale(), y.clone().log_scale())?;
-    let y_label = format!("error, {}", family.error_unit);
-    chart
-        .configure_mesh()
-        .x_desc(format!("ns a {}", family.time_per))
-        .y_desc(printable(&y_label))
-        .axis_desc_style((FONT, 29, &INK))
-        .label_style((FONT, 27, &INK))
-        .axis_style(GREY)
-        .bold_line_style(GREY.mix(0.28))
-        .light_line_style(GREY.mix(0.08))
-        .x_labels(8)
-        .y_labels(9)
-        .x_label_formatter(&|v| tick(*v))
-        .y_label_formatter(&|v| tick(*v))
-        .draw()?;
-    let points = family.of_class(class);
-    let mut front: Vec<(f64, f64)> = points.iter().filter(|(_, on)| *on).map(|(p, _)| place(p, &y)).collect();
+fn panel(axes: &[Axis; 2], class: &str, points: &[(&TrialPoint, bool)], looks: &[Points]) -> Panel {
+    let [x, y] = axes.clone();
+    let least = y.range.map_or(LEAST_ERROR, |(least, _)| least);
+    let height = |error| drawn_error(error).max(least);
+    let place = |p: &TrialPoint| (p.time_ns.max(f64::MIN_POSITIVE), height(p.median_error));
+    let mut front: Vec<(f64, f64)> = points.iter().filter(|(_, on)| *on).map(|(p, _)| place(p)).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
-    chart.draw_series([PathElement::new(steps(&front), GREY.mix(0.7).stroke_width(4))])?;
-    let base = area.get_base_pixel();
-    let pixel = |at: (f64, f64)| {
-        let (x, y) = chart.backend_coord(&at);
-        (x - base.0, y - base.1)
+    let mut panel = Panel {
+        title: class.to_owned(),
+        x,
+        y,
+        height: PANEL,
+        lines: vec![Line { opacity: 0.7, ..Line::new(GREY, steps(&front)) }],
+        ..Panel::default()
     };
     for (point, _) in points {
-        let index = methods.iter().position(|m| *m == point.method).unwrap_or(0);
-        let at = place(point, &y);
-        let high = drawn_error(point.p95_error).max(y.start);
+        let Some(look) = looks.iter().find(|look| look.label.as_ref() == Some(&point.method)) else {
+            continue;
+        };
+        let at = place(point);
         let [low_ns, high_ns] = point.time_quartiles_ns.map(|t| t.max(f64::MIN_POSITIVE));
-        let whiskers = [[at, (at.0, high)], [(low_ns, at.1), (high_ns, at.1)]];
-        for [from, to] in whiskers {
-            area.draw(&PathElement::new(vec![pixel(from), pixel(to)], colour(index).stroke_width(3)))?;
+        for ends in [[at, (at.0, height(point.p95_error))], [(low_ns, at.1), (high_ns, at.1)]] {
+            panel.lines.push(Line { stroke: 3, ..Line::new(look.colour, ends.into()) });
         }
         if point.is_default {
-            area.draw(&Circle::new(pixel(at), 21, INK.stroke_width(4)))?;
+            panel.points.push(Points { radius: 21, ..Points::new(INK, Shape::Ring, vec![at]) });
         }
-        mark(area, index, pixel(at), point.is_peer())?;
+        panel.points.push(Points { at: vec![at], label: None, ..look.clone() });
     }
-    Ok(())
-}
-
-fn place(point: &TrialPoint, y: &Range<f64>) -> (f64, f64) {
-    (point.time_ns.max(f64::MIN_POSITIVE), drawn_error(point.median_error).max(y.start))
+    panel
 }
 
 /// A staircase: from one point on until the next is better.

@@ -1,17 +1,22 @@
 //! Contact laws, criteria, bands and inputs of a study to the words that table, page and pictures share.
 
-use super::super::rounding::{MISSING, fixed, plain};
+use super::rounding::{MISSING, fixed, plain};
 use crate::data::{Contact, Criterion, FlightRegime, Request, Rung, SweepVariable, Uncertain};
+
+/// Rows of a table of cases on a terminal and on a page, and where all are.
+pub(super) const MOST_ROWS: usize = 16;
+pub(super) const MOST_ON_PAGE: usize = 48;
+pub(super) const OTHERS: &str = "see prediction.json.";
 
 /// What marks a prediction whose first end stays on the target.
 const KEPT_MARK: &str = "†";
 
 /// What the mark means.
-pub(in super::super) const KEPT_SENTENCE: &str =
+pub(super) const KEPT_SENTENCE: &str =
     "† the first end stays on the target until the second strikes; in all other cases it flies.";
 
 /// The mark, where it applies.
-pub(in super::super) fn kept_mark(regime: FlightRegime) -> &'static str {
+pub(super) fn kept_mark(regime: FlightRegime) -> &'static str {
     match regime {
         FlightRegime::Free => "",
         FlightRegime::Contact | FlightRegime::Mixed => KEPT_MARK,
@@ -19,7 +24,7 @@ pub(in super::super) fn kept_mark(regime: FlightRegime) -> &'static str {
 }
 
 /// "rough", "smooth" or "μ 0.4".
-pub(in super::super) fn contact_words(contact: Contact) -> String {
+pub(super) fn contact_words(contact: Contact) -> String {
     match contact {
         Contact::Coulomb(coefficient) => format!("μ {}", plain(coefficient, 3)),
         contact => contact.to_string(),
@@ -27,12 +32,12 @@ pub(in super::super) fn contact_words(contact: Contact) -> String {
 }
 
 /// "rough, k = 0.5".
-pub(in super::super) fn case_words(contact: Contact, k: f64) -> String {
+pub(super) fn case_words(contact: Contact, k: f64) -> String {
     format!("{}, k = {}", contact_words(contact), plain(k, 3))
 }
 
 /// What is largest, for a person.
-pub(in super::super) fn criterion_words(criterion: Criterion) -> &'static str {
+pub(super) fn criterion_words(criterion: Criterion) -> &'static str {
     match criterion {
         Criterion::Speed => "slap-down speed",
         Criterion::VerticalSpeed => "vertical speed",
@@ -50,7 +55,7 @@ pub(super) fn criterion_short(criterion: Criterion) -> &'static str {
 }
 
 /// A value of the criterion with its unit.
-pub(in super::super) fn criterion_value(criterion: Criterion, value: f64) -> String {
+pub(super) fn criterion_value(criterion: Criterion, value: f64) -> String {
     if !value.is_finite() {
         return MISSING.to_owned();
     }
@@ -61,7 +66,7 @@ pub(in super::super) fn criterion_value(criterion: Criterion, value: f64) -> Str
 }
 
 /// An angle to a tenth of a degree, without the sign for degrees.
-pub(in super::super) fn degrees(angle_deg: f64) -> String {
+pub(super) fn degrees(angle_deg: f64) -> String {
     if !angle_deg.is_finite() {
         return MISSING.to_owned();
     }
@@ -70,7 +75,7 @@ pub(in super::super) fn degrees(angle_deg: f64) -> String {
 }
 
 /// "3.5–28, 61–70", or the dash where there is none.
-pub(in super::super) fn bands_words(bands_deg: &[(f64, f64)]) -> String {
+pub(super) fn bands_words(bands_deg: &[(f64, f64)]) -> String {
     let band = |(from, to): &(f64, f64)| {
         let (from, to) = (degrees(*from), degrees(*to));
         if from == to { from } else { format!("{from}–{to}") }
@@ -109,7 +114,7 @@ pub(super) fn angles_words(angles_deg: &[f64], most: usize) -> String {
 }
 
 /// What a sweep varies, with its unit.
-pub(in super::super) fn variable_words(variable: SweepVariable) -> &'static str {
+pub(super) fn variable_words(variable: SweepVariable) -> &'static str {
     match variable {
         SweepVariable::Angle => "drop angle, °",
         SweepVariable::K => "coefficient of restitution k",
@@ -130,25 +135,8 @@ fn spread_words(range: (f64, f64)) -> String {
     if range.0 < range.1 { format!("{} (uniform)", range_words(range)) } else { range_words(range) }
 }
 
-/// Every uncertain input and how it is spread, in the order of the draws.
-pub(super) fn uncertain_words(u: &Uncertain, contact: Contact) -> Vec<(&'static str, String)> {
-    let share = |value: f64, of: &str| {
-        format!("± {} % of {of}, 95 % of a normal distribution", plain(value * 100.0, 3))
-    };
-    let friction = u.friction.map_or_else(|| format!("taken as {}", contact_words(contact)), spread_words);
-    vec![
-        ("coefficient of restitution k", spread_words(u.k)),
-        ("friction coefficient μ", friction),
-        ("drop angle", format!("± {}°, 95 % of a normal distribution", plain(u.angle_deg, 3))),
-        ("height of the drop", share(u.drop_height, "it")),
-        ("length and section", share(u.size, "each")),
-        ("centre of gravity", share(u.cog, "the length")),
-        ("inertia", share(u.inertia, "it")),
-    ]
-}
-
 /// The uncertain inputs in one sentence.
-pub(super) fn uncertain_short(u: &Uncertain, contact: Contact) -> String {
+pub(super) fn uncertain_words(u: &Uncertain, contact: Contact) -> String {
     let share = |value: f64| format!("± {} %", plain(value * 100.0, 3));
     let friction = u.friction.map_or_else(
         || format!("contact {}", contact_words(contact)),
@@ -179,7 +167,7 @@ pub(super) fn rung_short(rung: Rung) -> &'static str {
 }
 
 /// Whether anything goes through a range: else the critical ranges only repeat the one critical angle.
-pub(in super::super) fn has_ranges(request: &Request) -> bool {
+pub(super) fn has_ranges(request: &Request) -> bool {
     let wide = |(from, to): (f64, f64)| from < to;
     wide(request.uncertain.k) || request.uncertain.friction.map_or(request.contacts.len() > 1, wide)
 }
@@ -192,6 +180,13 @@ pub(super) fn through_words(request: &Request) -> String {
     }
     let contacts: Vec<String> = request.contacts.iter().map(|c| contact_words(*c)).collect();
     format!("k {k}, {}", contacts.join(", "))
+}
+
+/// The value at the angle nearest to `at_deg`.
+pub(super) fn nearest(angles_deg: &[f64], values: &[f64], at_deg: f64) -> Option<f64> {
+    let off = |angle: &f64| (angle - at_deg).abs();
+    let pairs = angles_deg.iter().zip(values);
+    pairs.min_by(|a, b| off(a.0).total_cmp(&off(b.0))).map(|(_, v)| *v).filter(|v| v.is_finite())
 }
 
 #[cfg(test)]

@@ -1,0 +1,300 @@
+//! An analysis to the document that the terminal and `report.html` show.
+
+use super::document::{Chapter, Content, Document, Fact, Frame, Passage, Tone};
+use super::grid::STANDARD_GRAVITY_M_S2;
+use super::medium::{Medium, Words};
+use super::prediction::prediction_columns;
+use super::reconstruction::{budget, flight, reconstruction};
+use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
+use super::settings;
+use super::table::{Shape, Table, TableCell};
+use super::tested::tested;
+use super::text::{
+    Style, code_word, end_axis, format_word, reason, sentence, severity_word, span_text, tail, taken_mark,
+    true_minus, verdict_sentence, verdict_word, yes,
+};
+use super::words::{KEPT_SENTENCE, contact_words};
+use crate::data::{
+    Analysis, CaskFile, DropResult, Estimate, FlightRegime, Issue, IssueCode, Severity, Verdict,
+};
+
+/// Findings that take away what the first impact would give.
+const FIRST_IMPACT_CODES: [IssueCode; 5] = [
+    IssueCode::NoImpact,
+    IssueCode::BeginsLate,
+    IssueCode::MissingChannel,
+    IssueCode::DeadChannel,
+    IssueCode::Truncated,
+];
+
+/// Findings that take away what the slap-down would give.
+const SLAP_DOWN_CODES: [IssueCode; 8] = [
+    IssueCode::NoSlapDown,
+    IssueCode::EndsEarly,
+    IssueCode::NoImpact,
+    IssueCode::MissingChannel,
+    IssueCode::DeadChannel,
+    IssueCode::SecondContact,
+    IssueCode::FlightFit,
+    IssueCode::Truncated,
+];
+
+/// The whole document. A terminal has the findings last, where the eye rests; a page has them with the results.
+pub(super) fn document(analysis: &Analysis) -> Document {
+    let (result, file) = (&analysis.result, &analysis.cask_file);
+    let name = &file.cask.name;
+    let mut curves = Chapter::new("Curves").only(Medium::Page);
+    for name in ["accelerations", "velocities", "motion", "spectra"] {
+        curves = curves.with(Passage::picture(name, name, ""));
+    }
+    Document {
+        page: Frame {
+            title: format!("Drop test of {name} – {}", verdict_word(result.verdict)),
+            product: "Drop test report",
+            version: result.version.to_owned(),
+            heading: format!("{name}: slap-down drop test"),
+            about: result.input.recording.clone(),
+            footer: "An interval holds the value with 95 % probability. Times count from the recording's first sample unless an axis says \
+                     otherwise. Body axes: axial from the first end to the second, transverse away from the target.",
+            style: "",
+        },
+        chapters: vec![
+            summary(result, file),
+            tested(file, "What was tested"),
+            quantities(result),
+            comparison(result),
+            quality(&result.quality).only(Medium::Page),
+            curves,
+            reconstruction(result),
+            flight(result),
+            budget(result, file),
+            predictions(result),
+            channels(result),
+            quality(&result.quality).only(Medium::Terminal),
+            provenance(result, file),
+        ],
+    }
+}
+
+/// What was dropped, the verdict, and the four numbers that a reader looks for first.
+fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
+    let (cask, drop) = (&file.cask, &file.drop);
+    let section =
+        if cask.height_m > 0.0 { format!(", h {} m", plain(cask.height_m, 5)) } else { String::new() };
+    let what = format!(
+        "{} · drop {} m at {}° · {} kg, l {} m{section} · {} contact",
+        cask.name,
+        plain(drop.height_m, 5),
+        plain(drop.angle_rad.to_degrees(), 5),
+        plain(cask.mass_kg, 6),
+        plain(cask.length_m, 5),
+        contact_words(file.contact)
+    );
+    let files = format!(
+        "{} ({}) with {}",
+        tail(&result.input.recording, 40),
+        format_word(result.input.format),
+        tail(&result.input.cask, 24)
+    );
+    let style = match result.verdict {
+        Verdict::Pass => Style::Green,
+        Verdict::Review => Style::Yellow,
+        Verdict::Fail => Style::Red,
+    };
+    Chapter::new("")
+        .with(Passage::title(what).only(Medium::Terminal))
+        .with(Passage::line(files).only(Medium::Terminal))
+        .with(Content::Banner(Tone(style, verdict_word(result.verdict).to_owned()), verdict_sentence(result)))
+        .with(Content::Figures(figures(result)))
+}
+
+fn figures(result: &DropResult) -> Vec<[String; 3]> {
+    let speed = result.slap_down.speed.as_ref();
+    let why = if speed.is_none() { reason(result, &SLAP_DOWN_CODES) } else { "" };
+    let model = result.model.as_ref().map_or("no model taken", |m| m.rung.words());
+    let compared = result.comparison.as_ref();
+    let figure = |name: &str, value: Option<String>, detail: String| {
+        [name.to_owned(), value.unwrap_or_else(|| MISSING.to_owned()), detail]
+    };
+    vec![
+        figure("Slap-down speed, measured", Some(interval(speed)), why.to_owned()),
+        figure(
+            "Slap-down speed, predicted",
+            compared.map(|c| pair(c.predicted, c.predicted_u95, "m/s")),
+            compared.map_or_else(String::new, |_| format!("{model}, measured k")),
+        ),
+        figure(
+            "Measured against predicted",
+            compared.map(|c| percent(c.difference_percent)),
+            compared.map_or("", |c| agreement(c.agrees)).to_owned(),
+        ),
+        figure("Coefficient of restitution k", Some(interval(result.k.as_ref())), String::new()),
+    ]
+}
+
+fn agreement(agrees: bool) -> &'static str {
+    if agrees { "within both intervals" } else { "beyond both intervals" }
+}
+
+/// First impact, slap-down and k, each with its interval or with the reason why it is missing.
+fn quantities(result: &DropResult) -> Chapter {
+    let (first, second) = (&result.first_impact, &result.slap_down);
+    let first_impact = [
+        ("first contact", &first.time, "after the first sample"),
+        ("impact velocity", &first.impact_velocity, ""),
+        ("contact lasts", &first.duration, ""),
+        ("rebound velocity", &first.rebound_velocity, "vertical, up positive"),
+        ("angular velocity", &first.angular_velocity, ""),
+        ("restitution k", &result.k, "rebound over impact velocity"),
+    ];
+    let slap_down = [
+        ("speed", &second.speed, "just before the second end strikes"),
+        ("vertical velocity", &second.vertical_velocity, "up positive"),
+        ("horizontal velocity", &second.horizontal_velocity, ""),
+        ("angle", &second.angle, "of the axis above the horizontal"),
+        ("flight time", &second.flight_time, "from separation"),
+        ("time", &second.time, "after the first sample"),
+    ];
+    Chapter::new(Words::or("Results, ± 95 %", "")).with(Content::Beside([
+        estimates(result, "First impact", &first_impact, &FIRST_IMPACT_CODES),
+        estimates(result, "Slap-down", &slap_down, &SLAP_DOWN_CODES),
+    ]))
+}
+
+/// Estimates; the reason for the missing ones stands once below them.
+fn estimates(
+    result: &DropResult,
+    caption: &str,
+    rows: &[(&str, &Option<Estimate>, &str)],
+    codes: &[IssueCode],
+) -> Vec<Passage> {
+    let facts: Vec<Fact> = rows
+        .iter()
+        .map(|(name, value, note)| Fact::number(*name, interval(value.as_ref())).note(*note))
+        .collect();
+    let missing = facts.iter().any(|fact| fact.value == MISSING);
+    let why =
+        missing.then(|| Passage::note(format!("{MISSING} could not be had: {}", reason(result, codes))));
+    [Passage::facts(caption, facts)].into_iter().chain(why).collect()
+}
+
+/// The measured speed beside the predicted one, the model taken and why, and all that were held against the measurement.
+fn comparison(result: &DropResult) -> Chapter {
+    let taken = result.model.as_ref();
+    let compared = result.comparison.as_ref().map_or_else(
+        || Passage::text(format!("{MISSING} could not be compared: {}", reason(result, &SLAP_DOWN_CODES))),
+        |c| {
+            let by = taken.map_or_else(String::new, |m| format!("{} with the measured k", m.rung.words()));
+            let style = if c.agrees { Style::Green } else { Style::Yellow };
+            let facts = vec![
+                Fact::number("measured", pair(c.measured, c.measured_u95, "m/s")),
+                Fact::number("predicted", pair(c.predicted, c.predicted_u95, "m/s")).note(by),
+                Fact::number("difference", percent(c.difference_percent)).toned(style, agreement(c.agrees)),
+            ];
+            Passage::facts("", facts)
+        },
+    );
+    let model = taken.map(|model| {
+        let candidates = Table::of(&model.candidates)
+            .caption("The ladder of analytical models with the measured k, the simplest first; rungs that change nothing are left out")
+            .chosen(|c| c.rung == model.rung)
+            .head("Model", |c| format!("{}{}", c.rung.words(), taken_mark(c.rung == model.rung)))
+            .number("Predicted, m/s", |c| optional_fixed(c.predicted, 2))
+            .number("± 95 %, m/s", |c| optional(c.u95, 2))
+            .number("Measured against predicted", |c| c.difference_percent.map_or(MISSING.into(), percent))
+            .text("Within both intervals", |c| yes(c.consistent));
+        let words = format!("Model: {}. {}", model.rung.words(), sentence(&model.reason));
+        [Passage::text(words), Passage::from(candidates).only(Medium::Page)]
+    });
+    Chapter::new("Measured beside predicted")
+        .with(compared)
+        .with(Passage::picture("comparison", "", ""))
+        .with_all(model.into_iter().flatten())
+}
+
+/// Every finding: severity, code, channel and span, and what it says.
+pub(super) fn quality(issues: &[Issue]) -> Chapter {
+    let chapter = Chapter::new("Quality");
+    if issues.is_empty() {
+        return chapter.with(Passage::text(Words::or("No check found anything to say.", "no findings")));
+    }
+    let style = |severity| match severity {
+        Severity::Note => Style::Dim,
+        Severity::Warning => Style::Yellow,
+        Severity::Error => Style::Red,
+    };
+    let findings = Table::of(issues)
+        .class("")
+        .shape(Shape::Items)
+        .tag("Severity", |i| TableCell::toned(style(i.severity), severity_word(i.severity)))
+        .code("Check", |i| code_word(i.code))
+        .text("Channel", |i| i.channel.as_deref().unwrap_or(MISSING))
+        .soft("When", |i| span_text(i).unwrap_or_else(|| MISSING.into()))
+        .text("Finding", |i| &i.message[..]);
+    chapter.with(findings)
+}
+
+/// What the analytical models say at the angle of the drop.
+fn predictions(result: &DropResult) -> Chapter {
+    if result.predictions.is_empty() {
+        return Chapter::new("");
+    }
+    let table = Table::of(&result.predictions).class("").caption(
+        "Rigid-body models at the angle of the drop. Energy: kinetic, before the slap-down over before the first impact.",
+    );
+    let table = prediction_columns(table, Some, false)
+        .number("Angle, °", |p| optional_fixed(p.slap_down_angle_deg, 1))
+        .only(Medium::Page)
+        .number("Impacts of the first end", |p| p.first_end_impacts.to_string())
+        .only(Medium::Page);
+    let kept = result.predictions.iter().any(|p| p.regime == FlightRegime::Contact);
+    Chapter::new("Predictions").with(table).with_all(kept.then(|| Passage::note(KEPT_SENTENCE)))
+}
+
+/// What each channel is worth.
+fn channels(result: &DropResult) -> Chapter {
+    let g = |value: Option<f64>| optional(value.map(|v| v / STANDARD_GRAVITY_M_S2), 3);
+    let rate = |rate_hz: f64, digits| format!("{} kHz", plain(rate_hz / 1e3, digits));
+    let table = Table::of(&result.channels)
+        .class("")
+        .caption("Offset, noise (RMS) and peaks in g; the peak is that of the filtered curve.")
+        .head(Words::or("Channel", "channel"), |c| &c.name[..])
+        .text(Words::or("End, axis", "end, axis"), |c| end_axis(c.end, c.axis))
+        .code("Source", |c| &c.source[..])
+        .only(Medium::Page)
+        .number("Samples", |c| c.samples.to_string())
+        .only(Medium::Page)
+        .number(Words::or("Rate", "rate"), |c| {
+            Words::or(rate(c.sample_rate_hz, 6), rate(c.sample_rate_hz, 5))
+        })
+        .text(Words::or("Unit", "unit"), |c| {
+            Words::or(&c.unit[..], c.unit.split(" (").next().unwrap_or_default())
+        })
+        .number(Words::or("Offset", "offset g"), |c| g(c.offset_m_s2))
+        .number(Words::or("Noise", "noise g"), |c| g(c.noise_m_s2))
+        .number(Words::or("Peak", "peak g"), |c| g(c.peak_filtered_m_s2))
+        .number(Words::or("Unfiltered", "raw g"), |c| g(c.peak_raw_m_s2));
+    Chapter::new("Channels").with(table)
+}
+
+/// Which files, which version, which settings.
+fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
+    let (input, speed) = (&result.input, interval(result.slap_down.speed.as_ref()));
+    let facts = vec![
+        Fact::words("Recording", format!("{} ({})", input.recording, format_word(input.format))),
+        Fact::code("its SHA-256", &input.recording_sha256[..]),
+        Fact::words("Cask file", &input.cask[..]),
+        Fact::code("its SHA-256", &input.cask_sha256[..]),
+        Fact::words("Program", format!("dropcheck {}", result.version)),
+        Fact::words("Slap-down speed", format!("{speed} · result schema {}", result.schema)),
+    ];
+    let stated = settings::of_cask_file(file, &result.settings);
+    let all: Vec<_> = result.settings.iter().chain(&stated).collect();
+    let settings = Table::of(&all)
+        .class("")
+        .caption("Every setting and where it came from")
+        .head("Setting", |s| &s.name[..])
+        .text("Value", |s| true_minus(&s.value))
+        .text("From", |s| &s.origin[..]);
+    Chapter::new("Provenance").only(Medium::Page).with(Passage::facts("", facts)).with(settings)
+}

@@ -1,0 +1,114 @@
+//! What an analysis says on a terminal and on its page.
+
+use super::analysis::document;
+use super::text::WIDTH;
+use super::{as_html, as_text, pictures, sample};
+use crate::data::Analysis;
+
+fn text_of(analysis: &Analysis) -> String {
+    as_text::text(&document(analysis))
+}
+
+fn bare(text: &str) -> String {
+    anstream::adapter::strip_str(text).to_string()
+}
+
+#[test]
+fn eighty_columns_hold_it() {
+    for analysis in [sample::analysis(), sample::without_anything()] {
+        for line in bare(&text_of(&analysis)).lines() {
+            assert!(line.chars().count() <= WIDTH, "{} columns: {line}", line.chars().count());
+        }
+    }
+}
+
+#[test]
+fn the_figures_are_there() {
+    let text = bare(&text_of(&sample::analysis()));
+    for words in
+        ["REVIEW", "20.56 ± 0.11 m/s", "0.559 ± 0.010", "+0.3 %", "within both intervals", "clipped · A1"]
+    {
+        assert!(text.contains(words), "{words} is missing in\n{text}");
+    }
+    let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(flat.contains("first impact, is missed by −0.8 % of ω, 0.4 standard uncertainties."), "{flat}");
+    assert!(flat.contains("reconstructed Taken: planar motion with modes and drift"), "{flat}");
+}
+
+#[test]
+fn a_missing_quantity_says_why() {
+    let text = bare(&text_of(&sample::without_anything()));
+    assert!(text.contains("FAIL"));
+    assert!(text.contains("– could not be had: no impact was found"), "{text}");
+}
+
+#[test]
+fn names_from_files_cannot_colour_the_terminal() {
+    let mut analysis = sample::analysis();
+    analysis.cask_file.cask.name = "\u{1b}[31mX".into();
+    analysis.result.channels[0].name = "\u{1b}[2JA".into();
+    analysis.result.quality[0].message = "\u{1b}[5mblink".into();
+    let text = text_of(&analysis);
+    for code in ["\u{1b}[31m", "\u{1b}[2J", "\u{1b}[5m"] {
+        assert!(!text.contains(code));
+    }
+}
+
+fn made(analysis: &Analysis) -> String {
+    as_html::page(&document(analysis), &pictures::draw(analysis).unwrap())
+}
+
+#[test]
+fn it_stands_alone() {
+    let page = made(&sample::analysis());
+    for call in ["src=", "href=", "url(", "@import", "<script", "http://", "https://"] {
+        let hits = page.matches(call).count();
+        // The only address is the name of the SVG vocabulary.
+        let allowed = if call == "http://" { page.matches("http://www.w3.org/2000/svg").count() } else { 0 };
+        assert_eq!(hits, allowed, "{call}");
+    }
+    assert!(page.len() < 2_500_000, "{} bytes", page.len());
+}
+
+#[test]
+fn it_says_what_the_result_says() {
+    let page = made(&sample::analysis());
+    for words in [
+        "REVIEW",
+        "20.56 ± 0.11 m/s",
+        "0.559 ± 0.010",
+        "clipped",
+        "9f86d081884c7d65",
+        "CFC 180",
+        "95.0",
+        "calibration of A2",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn words_from_files_are_escaped() {
+    let mut analysis = sample::analysis();
+    let evil = "<img src=x onerror=alert(1)>\"'\u{1b}[2J";
+    analysis.cask_file.cask.name = evil.into();
+    analysis.result.input.recording = evil.into();
+    analysis.result.channels[0].name = evil.into();
+    analysis.result.channels[0].source = evil.into();
+    analysis.result.channels[0].unit = evil.into();
+    analysis.curves.channels[0].channel = evil.into();
+    analysis.result.quality[0].message = evil.into();
+    analysis.result.quality[0].channel = Some(evil.into());
+    analysis.result.settings[0].value = evil.into();
+    if let Some(model) = &mut analysis.result.model {
+        model.reason = evil.into();
+    }
+    let page = made(&analysis);
+    assert!(!page.contains("<img") && !page.contains('\u{1b}'));
+}
+
+#[test]
+fn what_is_missing_is_explained() {
+    let page = made(&sample::without_anything());
+    assert!(page.contains("FAIL") && page.contains("no impact was found"));
+}

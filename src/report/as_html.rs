@@ -1,0 +1,142 @@
+//! A document to a page: one file without network, for the desk and for A4 paper. Every word is escaped here.
+
+use super::document::{Content, Document, Fact, Frame, Passage, Role, Tone};
+use super::medium::{Medium, Words};
+use super::pictures::draw::Picture;
+use super::table::{CellKind, Table, TableCell, TableColumn};
+use super::text::{capital, printable};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = include_str!("report.css");
+
+/// The page with these pictures.
+pub(crate) fn page(document: &Document, pictures: &[Picture]) -> String {
+    let Frame { title, product, version, heading, about, footer, style } = &document.page;
+    let generator = format!("dropcheck {version}");
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                // Whatever a file smuggled in could neither run nor call out.
+                meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'";
+                meta name="generator" content=(generator);
+                title { (printable(title)) }
+                style { (PreEscaped(STYLE)) (PreEscaped(style)) }
+            }
+            body { main {
+                header {
+                    div class="product" { (product) " · " (generator) }
+                    h1 { (printable(heading)) }
+                    p class="soft" { (printable(about)) }
+                }
+                @for chapter in &document.chapters {
+                    @if let Some(words) = chapter.heading(Medium::Page).map(printable) {
+                        @if chapter.level == 2 { h2 { (words) } } @else { h3 { (words) } }
+                    }
+                    @for passage in chapter.shown(Medium::Page) { (self::passage(passage, pictures)) }
+                }
+                footer { (footer) }
+            } }
+        }
+    }
+    .into_string()
+}
+
+fn passage(passage: &Passage, pictures: &[Picture]) -> Markup {
+    match &passage.content {
+        Content::Sentence(role, words) => sentence(*role, words),
+        Content::Banner(Tone(_, word), sentence) => html! {
+            div class=(format!("banner {}", word.to_lowercase())) role="status" { strong { (word) } span { (printable(sentence)) } }
+        },
+        Content::Figures(figures) => html! {
+            dl class="figures" { @for [name, value, detail] in figures {
+                div { dt { (name) } dd { (value) @if !detail.is_empty() { small { (printable(detail)) } } } }
+            } }
+        },
+        Content::Facts(caption, facts) => self::facts(caption, facts),
+        Content::Table(table) => self::table(table),
+        Content::Picture(name, _, room) => html! {
+            @for picture in pictures.iter().filter(|picture| picture.name == *name) {
+                figure aria-label=(printable(&picture.alt)) class=[class(room)] {
+                    (PreEscaped(&picture.svg))
+                    figcaption { strong { (printable(&picture.title)) ". " } (printable(&picture.caption)) }
+                }
+            }
+        },
+        Content::List(sentences) => {
+            html! { ul class="limits" { @for sentence in sentences { li { (sentence) } } } }
+        }
+        Content::Beside(columns) => html! {
+            div class="pair" { @for column in columns { div { @for passage in column.iter().filter(|p| p.is_shown(Medium::Page)) {
+                (self::passage(passage, pictures))
+            } } } }
+        },
+    }
+}
+
+/// A class where there is one.
+fn class(name: &str) -> Option<&str> {
+    (!name.is_empty()).then_some(name)
+}
+
+fn sentence(role: Role, words: &Words) -> Markup {
+    let name = match role {
+        Role::Title | Role::Text => "",
+        Role::Line => "soft",
+        Role::Lead => "lead",
+        Role::Note => "note",
+    };
+    html! { p class=[class(name)] { (printable(words.on(Medium::Page))) } }
+}
+
+fn facts(caption: &str, facts: &[Fact]) -> Markup {
+    let noted = facts.iter().any(|fact| !fact.note.1.is_empty());
+    html! {
+        table class="whole" {
+            @if !caption.is_empty() { caption { (printable(caption)) } }
+            tbody { @for fact in facts { tr {
+                th scope="row" { (capital(&printable(&fact.name))) @if fact.is_default { " " (default_mark("default")) } }
+                (cell(fact.kind, &fact.value.as_str().into()))
+                @if noted { td class="soft" { (printable(fact.shown_note())) } }
+            } } }
+        }
+    }
+}
+
+fn default_mark(word: &str) -> Markup {
+    html! { span class="default" { (word) } }
+}
+
+fn table(table: &Table) -> Markup {
+    let columns = table.shown(Medium::Page);
+    let (rows, left_out) = table.rows(Medium::Page);
+    let number = |column: &TableColumn| column.is_number().then_some("n");
+    html! {
+        table class=[class(table.class)] {
+            @if !table.caption.is_empty() { caption { (printable(&table.caption)) } }
+            thead { tr { @for column in &columns {
+                th scope="col" class=[number(column)] { (printable(column.head.on(Medium::Page))) }
+            } } }
+            tbody { @for (row, is_chosen) in table.chosen.iter().enumerate().take(rows) {
+                tr class=[is_chosen.then_some("chosen")] { @for column in &columns { (cell(column.kind, &column.cells[row])) } }
+            } }
+        }
+        @if let Some(sentence) = left_out { p class="note" { (sentence) } }
+    }
+}
+
+fn cell(kind: CellKind, cell: &TableCell) -> Markup {
+    let text = printable(cell.words.on(Medium::Page));
+    let words =
+        html! { (text) @if !cell.mark.is_empty() { @if !text.is_empty() { " " } (default_mark(cell.mark)) } };
+    match kind {
+        CellKind::Head => html! { th scope="row" { (words) } },
+        CellKind::Text => html! { td { (words) } },
+        CellKind::Number => html! { td class="n" { (words) } },
+        CellKind::Soft => html! { td class="u" { (words) } },
+        CellKind::Code => html! { td { code { (words) } } },
+        CellKind::Tag => html! { td class=(format!("tag {text}")) { (words) } },
+    }
+}

@@ -1,0 +1,59 @@
+//! A document to Markdown that stands within another document.
+
+use super::document::{Content, Document, Passage};
+use super::medium::Medium;
+use super::table::{CellKind, Table, TableCell};
+use super::text::printable;
+
+/// The Markdown; `folder` is what leads from the other document to the pictures ("" or ending in "/"), none leaves them out.
+pub(crate) fn markdown(document: &Document, folder: Option<&str>) -> String {
+    let mut blocks = Vec::new();
+    for chapter in &document.chapters {
+        let heading = chapter.heading(Medium::Markdown);
+        blocks
+            .extend(heading.map(|words| format!("{} {}\n", "#".repeat(chapter.level + 1), cell_text(words))));
+        blocks.extend(chapter.shown(Medium::Markdown).into_iter().filter_map(|shown| passage(shown, folder)));
+    }
+    blocks.join("\n")
+}
+
+fn passage(passage: &Passage, folder: Option<&str>) -> Option<String> {
+    match &passage.content {
+        Content::Sentence(_, words) => {
+            Some(format!("{}\n", printable(words.on(Medium::Markdown)).replace('<', "&lt;")))
+        }
+        Content::Picture(name, title, _) => {
+            folder.map(|folder| format!("![{}]({folder}{name}.svg)\n", cell_text(title)))
+        }
+        Content::Table(table) => Some(self::table(table)),
+        Content::Banner(..)
+        | Content::Figures(_)
+        | Content::Facts(..)
+        | Content::List(_)
+        | Content::Beside(_) => None,
+    }
+}
+
+fn table(table: &Table) -> String {
+    let columns = table.shown(Medium::Markdown);
+    let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    let heads = columns.iter().map(|column| cell_text(column.head.on(Medium::Markdown)));
+    let rule = columns.iter().map(|_| "---".to_owned());
+    let rows = (0..table.chosen.len())
+        .map(|i| row(columns.iter().map(|column| cell(column.kind, &column.cells[i])).collect()));
+    [row(heads.collect()), row(rule.collect())].into_iter().chain(rows).collect()
+}
+
+fn cell(kind: CellKind, cell: &TableCell) -> String {
+    let text = cell_text(cell.words.on(Medium::Markdown));
+    match kind {
+        CellKind::Code => format!("`{text}`"),
+        _ if !cell.mark.is_empty() => format!("{text} ({})", cell.mark),
+        _ => text,
+    }
+}
+
+/// Text that cannot leave its cell or begin markup.
+fn cell_text(text: &str) -> String {
+    printable(text).replace('|', "\\|").replace('<', "&lt;").replace('`', " ")
+}

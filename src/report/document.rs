@@ -1,0 +1,254 @@
+//! What a person is to read to a document of chapters: tables, facts and sentences, each once for every medium.
+
+use super::medium::{Medium, Words};
+use super::rounding::MISSING;
+use super::table::{CellKind, Rows, Table};
+use super::text::Style;
+
+/// What is read from its first line to its last.
+#[derive(Default)]
+pub(crate) struct Document {
+    /// What a page says besides its chapters.
+    pub(crate) page: Frame,
+    /// In the order of reading.
+    pub(crate) chapters: Vec<Chapter>,
+}
+
+/// What stands around the chapters of a page.
+#[derive(Default)]
+pub(crate) struct Frame {
+    /// Words of the browser's tab.
+    pub(crate) title: String,
+    /// What kind of report it is.
+    pub(crate) product: &'static str,
+    /// The program's version.
+    pub(crate) version: String,
+    /// The heading of the whole.
+    pub(crate) heading: String,
+    /// What it is made from.
+    pub(crate) about: String,
+    /// Sentences at the foot.
+    pub(crate) footer: &'static str,
+    /// Style besides that of all pages.
+    pub(crate) style: &'static str,
+}
+
+/// What stands below a heading; none where its words are empty.
+pub(crate) struct Chapter {
+    heading: Words,
+    /// 2 below the whole, 3 below a chapter of 2.
+    pub(crate) level: usize,
+    /// Whether chapters stand below it.
+    is_part: bool,
+    /// Where alone it is shown.
+    only: Option<Medium>,
+    passages: Vec<Passage>,
+}
+
+impl Chapter {
+    /// Nothing yet below this heading.
+    pub(crate) fn new(heading: impl Into<Words>) -> Self {
+        Self { heading: heading.into(), level: 2, is_part: false, only: None, passages: Vec::new() }
+    }
+
+    /// The heading of the chapters after it.
+    pub(crate) fn part(heading: &str) -> Self {
+        Self { is_part: true, ..Self::new(heading) }
+    }
+
+    /// One level deeper.
+    pub(crate) fn below(self) -> Self {
+        Self { level: 3, ..self }
+    }
+
+    /// On this medium alone.
+    pub(crate) fn only(self, medium: Medium) -> Self {
+        Self { only: Some(medium), ..self }
+    }
+
+    /// And then this.
+    pub(crate) fn with(mut self, passage: impl Into<Passage>) -> Self {
+        self.passages.push(passage.into());
+        self
+    }
+
+    /// And then these, if any.
+    pub(crate) fn with_all(mut self, passages: impl IntoIterator<Item = Passage>) -> Self {
+        self.passages.extend(passages);
+        self
+    }
+
+    /// The heading, unless nothing would stand below it.
+    pub(crate) fn heading(&self, medium: Medium) -> Option<&str> {
+        let words = self.heading.on(medium);
+        (!words.is_empty() && (self.is_part || !self.shown(medium).is_empty())).then_some(words)
+    }
+
+    /// What of it this medium shows; nothing where it shows none of it.
+    pub(crate) fn shown(&self, medium: Medium) -> Vec<&Passage> {
+        let all = if self.only.is_none_or(|only| only == medium) { &self.passages[..] } else { &[] };
+        all.iter().filter(|passage| passage.is_shown(medium)).collect()
+    }
+}
+
+/// One thing below a heading.
+pub(crate) struct Passage {
+    /// Where alone it is shown.
+    pub(crate) only: Option<Medium>,
+    pub(crate) content: Content,
+}
+
+/// What a passage may be.
+pub(crate) enum Content {
+    /// Words in the given role.
+    Sentence(Role, Words),
+    /// A word in its colour, and what it means.
+    Banner(Tone, String),
+    /// The numbers that a reader looks for first: name, value, what to know of it.
+    Figures(Vec<[String; 3]>),
+    /// A caption, and names with what they stand for.
+    Facts(String, Vec<Fact>),
+    Table(Table),
+    /// The picture of this name, and what it shows in a few words; its room on paper as a class of the style.
+    Picture(String, String, &'static str),
+    /// Sentences one below the other.
+    List(Vec<&'static str>),
+    /// Two columns where there is room.
+    Beside([Vec<Passage>; 2]),
+}
+
+/// What a sentence is for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// It names the whole.
+    Title,
+    /// It stands with the title.
+    Line,
+    /// It leads to what follows.
+    Lead,
+    Text,
+    /// It explains what stands above it.
+    Note,
+}
+
+/// A word in a colour.
+pub(crate) struct Tone(pub(crate) Style, pub(crate) String);
+
+impl Passage {
+    fn sentence(role: Role, words: impl Into<Words>) -> Self {
+        Content::Sentence(role, words.into()).into()
+    }
+
+    /// What names the whole.
+    pub(crate) fn title(words: impl Into<Words>) -> Self {
+        Self::sentence(Role::Title, words)
+    }
+
+    /// What stands with the title.
+    pub(crate) fn line(words: impl Into<Words>) -> Self {
+        Self::sentence(Role::Line, words)
+    }
+
+    /// What leads to the passages after it.
+    pub(crate) fn lead(words: impl Into<Words>) -> Self {
+        Self::sentence(Role::Lead, words)
+    }
+
+    /// Plain words.
+    pub(crate) fn text(words: impl Into<Words>) -> Self {
+        Self::sentence(Role::Text, words)
+    }
+
+    /// What explains the passage before it.
+    pub(crate) fn note(words: impl Into<Words>) -> Self {
+        Self::sentence(Role::Note, words)
+    }
+
+    /// Names with what they stand for.
+    pub(crate) fn facts(caption: impl Into<String>, facts: Vec<Fact>) -> Self {
+        Content::Facts(caption.into(), facts).into()
+    }
+
+    /// The picture of this name.
+    pub(crate) fn picture(name: &str, title: &str, room: &'static str) -> Self {
+        Content::Picture(name.to_owned(), title.to_owned(), room).into()
+    }
+
+    /// On this medium alone.
+    pub(crate) fn only(self, medium: Medium) -> Self {
+        Self { only: Some(medium), ..self }
+    }
+
+    /// Whether this medium shows it.
+    pub(crate) fn is_shown(&self, medium: Medium) -> bool {
+        let is_drawn = matches!(self.content, Content::Figures(_) | Content::Picture(..) | Content::List(_));
+        self.only.is_none_or(|only| only == medium) && !(is_drawn && medium == Medium::Terminal)
+    }
+}
+
+impl From<Content> for Passage {
+    fn from(content: Content) -> Self {
+        Self { only: None, content }
+    }
+}
+
+impl<R> From<Rows<'_, R>> for Passage {
+    fn from(rows: Rows<'_, R>) -> Self {
+        Table::from(rows).into()
+    }
+}
+
+impl From<Table> for Passage {
+    fn from(table: Table) -> Self {
+        Content::Table(table).into()
+    }
+}
+
+/// A name and what it stands for.
+pub(crate) struct Fact {
+    pub(crate) name: String,
+    /// Whether nobody stated it.
+    pub(crate) is_default: bool,
+    pub(crate) kind: CellKind,
+    pub(crate) value: String,
+    /// Its unit, or a few words on it.
+    pub(crate) note: Tone,
+}
+
+impl Fact {
+    /// A number.
+    pub(crate) fn number(name: impl Into<String>, value: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            is_default: false,
+            kind: CellKind::Number,
+            value: value.into(),
+            note: Tone(Style::Dim, String::new()),
+        }
+    }
+
+    /// Words.
+    pub(crate) fn words(name: impl Into<String>, value: impl Into<String>) -> Self {
+        Self { kind: CellKind::Text, ..Self::number(name, value) }
+    }
+
+    /// Words as a machine writes them.
+    pub(crate) fn code(name: impl Into<String>, value: impl Into<String>) -> Self {
+        Self { kind: CellKind::Code, ..Self::number(name, value) }
+    }
+
+    /// With its unit, or a few words on it.
+    pub(crate) fn note(self, note: impl Into<String>) -> Self {
+        self.toned(Style::Dim, note)
+    }
+
+    /// The words on its value, where it has one.
+    pub(crate) fn shown_note(&self) -> &str {
+        if self.value == MISSING { "" } else { &self.note.1 }
+    }
+
+    /// With words in a colour.
+    pub(crate) fn toned(self, style: Style, note: impl Into<String>) -> Self {
+        Self { note: Tone(style, note.into()), ..self }
+    }
+}

@@ -1,0 +1,186 @@
+//! Critical angles of a study, over ranges and under uncertain inputs, to chapters.
+
+use super::super::document::{Chapter, Passage};
+use super::super::medium::{Medium, Words};
+use super::super::rounding::{MISSING, fixed, plain};
+use super::super::table::{Shape, Table};
+use super::super::words::{
+    MOST_ON_PAGE, MOST_ROWS, OTHERS, band_around_words, bands_words, case_words, contact_words,
+    criterion_short, criterion_value, criterion_words, degrees, has_ranges, nearest, through_words,
+    uncertain_words, widest_bands_words,
+};
+
+use crate::data::{BodyModel, Criterion, CriticalAngle, CriticalRange, MonteCarlo, QuantileCurves, Study};
+
+/// A value of the criterion, with the unit left to the head of its column.
+fn bare(criterion: Criterion, value: f64) -> String {
+    criterion_value(criterion, value).trim_end_matches(" m/s").to_owned()
+}
+
+/// Critical angle, largest value and band of every case and criterion.
+pub(super) fn critical(study: &Study) -> Chapter {
+    let speeds: Vec<&CriticalAngle> =
+        study.critical.iter().filter(|c| c.criterion == Criterion::Speed).collect();
+    let chapter = Chapter::new("Critical angles");
+    let picture = Passage::picture("critical-angles", "", "tall");
+    if speeds.is_empty() {
+        let none = Passage::text("No case has a slap-down at any angle.").only(Medium::Page);
+        return chapter.with(none).with(picture);
+    }
+    let found = |of: &CriticalAngle, criterion| {
+        let same = |c: &&CriticalAngle| (c.model, c.contact, c.k) == (of.model, of.contact, of.k);
+        study.critical.iter().filter(same).find(|c| c.criterion == criterion && c.angle_deg.is_finite())
+    };
+    let largest = |criterion| {
+        move |of: &&CriticalAngle| found(of, criterion).map_or(MISSING.into(), |c| bare(criterion, c.largest))
+    };
+    let place = |criterion| {
+        move |of: &&CriticalAngle| {
+            let Some(c) = found(of, criterion) else { return MISSING.into() };
+            let at = degrees(c.angle_deg);
+            let around = band_around_words(&c.bands_deg, c.angle_deg);
+            Words::or(format!("{at} ({})", bands_words(&c.bands_deg)), format!("{at} ({around})"))
+        }
+    };
+    let at = |short: &str| Words::or("at, ° (band)", short);
+    let table = Table::of(&speeds)
+        .class("many")
+        .shape(Shape::Fitting)
+        .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
+        .text(Words::or("Model", "model"), |c| c.model.as_str())
+        .soft(Words::or("Contact", "contact"), |c| contact_words(c.contact))
+        .number("k", |c| plain(c.k, 3))
+        .number(Words::or("Speed, m/s", "v m/s"), largest(Criterion::Speed))
+        .text(at("speed"), place(Criterion::Speed))
+        .number("Vertical, m/s", largest(Criterion::VerticalSpeed))
+        .only(Medium::Page)
+        .text(at("vertical"), place(Criterion::VerticalSpeed))
+        .number("Energy ratio", largest(Criterion::EnergyRatio))
+        .only(Medium::Page)
+        .text(at("energy"), place(Criterion::EnergyRatio));
+    let band = plain(study.request.band_percent, 3);
+    chapter
+        .with(Passage::lead(format!("Where each is largest, °, and the angles within {band} % of it.")))
+        .with(table)
+        .with_all(larger_sentence(study).map(Passage::note))
+        .with(picture)
+}
+
+/// Where the speed is larger still, as the first end strikes again before the second.
+fn larger_sentence(study: &Study) -> Option<String> {
+    let larger = study.ranges.iter().filter(|r| r.criterion == Criterion::Speed);
+    let larger = larger.filter_map(|r| r.further_impacts.map(|at| (r.model, at)));
+    let of_cases = study.critical.iter().filter(|c| c.criterion == Criterion::Speed);
+    let of_cases = of_cases.filter_map(|c| c.further_impacts.map(|at| (c.model, at)));
+    let all: Vec<(BodyModel, (f64, f64))> = larger.chain(of_cases).collect();
+    let most = |model: BodyModel| {
+        let of_model = all.iter().filter(|found| found.0 == model).map(|found| found.1);
+        let (angle_deg, speed) = of_model.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(format!("{} {} m/s at {}°", model.as_str(), fixed(speed, 2), degrees(angle_deg)))
+    };
+    let words: Vec<String> = [BodyModel::Rod, BodyModel::Body].into_iter().filter_map(most).collect();
+    (!words.is_empty()).then(|| {
+        format!(
+            "While the first end strikes once. Where it strikes again the speed jumps from angle to angle and can be larger: {}.",
+            words.join(", ")
+        )
+    })
+}
+
+/// Critical angles over the ranges of k and friction.
+pub(super) fn ranges(study: &Study) -> Chapter {
+    let chapter = Chapter::new(format!("Over {}", through_words(&study.request)));
+    if study.ranges.is_empty() || !has_ranges(&study.request) {
+        return chapter;
+    }
+    let worst = |r: &CriticalRange| {
+        let (angle_deg, contact, k) = r.worst;
+        format!("{}°, {}", degrees(angle_deg), case_words(contact, k))
+    };
+    let table = Table::of(&study.ranges)
+        .caption("All else as stated. Every band: the angles that lie in the band of every one of the cases.")
+        .shape(Shape::Fitting)
+        .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
+        .text(Words::or("Model", "model"), |r| r.model.as_str())
+        .text(Words::or("Largest", "largest"), |r| {
+            Words::or(criterion_words(r.criterion), criterion_short(r.criterion))
+        })
+        .text(Words::or("Critical angle, °", "critical °"), |r| bands_words(&[r.angle_deg]))
+        .text(Words::or("Worst case", "worst"), |r| criterion_value(r.criterion, r.largest))
+        .text(Words::or("Where", "at"), worst)
+        .text(Words::or("Every band, °", "every band °"), |r| {
+            Words::or(bands_words(&r.common_bands_deg), widest_bands_words(&r.common_bands_deg, 2))
+        });
+    chapter.with(table)
+}
+
+/// Whether any draw had a slap-down; where none was asked for there is none.
+pub(super) fn has_quantiles(found: &MonteCarlo) -> bool {
+    found.quantiles.iter().any(|q| q.critical_angle_deg[2].is_finite())
+}
+
+/// What was drawn from, and what came of it.
+pub(super) fn monte_carlo(study: &Study) -> Chapter {
+    let found = &study.monte_carlo;
+    let u = &found.uncertain;
+    if u.draws == 0 {
+        let none = Passage::text("No draws were asked for.");
+        let picture = Passage::picture("monte-carlo", "", "tall");
+        return Chapter::new("Monte Carlo").only(Medium::Page).with(none).with(picture);
+    }
+    let chapter = Chapter::new(format!("Monte Carlo, {} draws of the {}", u.draws, found.model.as_str()));
+    let drawn = Passage::text(uncertain_words(u, found.contact));
+    let chapter = if has_quantiles(found) {
+        let band = plain(found.band_percent, 3);
+        let robust =
+            format!("robust: there at least 95 % of the draws are within {band} % of their own largest.");
+        chapter
+            .with(drawn)
+            .with(quantiles(&found.quantiles))
+            .with(Passage::note(robust))
+            .with_all(at_the_angle(study).map(Passage::text))
+    } else {
+        let none = Passage::text("Too few draws have a slap-down.");
+        chapter.with_all([drawn, none].map(|passage| passage.only(Medium::Page)))
+    };
+    chapter.with(Passage::picture("monte-carlo", "", "tall"))
+}
+
+/// Median and the range of 95 % of the draws.
+fn quantiles(found: &[QuantileCurves]) -> Passage {
+    let how_large = |q: &QuantileCurves| {
+        let [low, _, median, _, high] = q.largest.map(|value| bare(q.criterion, value));
+        let unit = if q.criterion == Criterion::EnergyRatio { "" } else { " m/s" };
+        Words::or(format!("{median}{unit} ({low}–{high})"), format!("{median} ({low}–{high})"))
+    };
+    let critical = |q: &QuantileCurves| {
+        let [low, _, median, _, high] = q.critical_angle_deg;
+        format!("{}° ({})", degrees(median), bands_words(&[(low, high)]))
+    };
+    let table = Table::of(found)
+        .caption("Found: the median, and the range of 95 % of the draws.")
+        .shape(Shape::Fitting)
+        .head(Words::or("Largest", "largest"), |q| {
+            Words::or(criterion_words(q.criterion), criterion_short(q.criterion))
+        })
+        .text(Words::or("Critical angle (95 %)", "critical (95 %)"), critical)
+        .text(Words::or("How large (95 %)", "how large (95 %)"), how_large)
+        .text(Words::or("Robust band, °", "robust band °"), |q| {
+            Words::or(bands_words(&q.robust_bands_deg), widest_bands_words(&q.robust_bands_deg, 3))
+        });
+    table.into()
+}
+
+/// What the draws say of the slap-down speed at the angle asked for.
+fn at_the_angle(study: &Study) -> Option<String> {
+    let found = &study.monte_carlo;
+    let q = found.quantiles.iter().find(|q| q.criterion == Criterion::Speed)?;
+    let at = |values: &[f64]| nearest(&found.angle_deg, values, study.request.angle_deg);
+    Some(format!(
+        "At {}°: {} m/s, 95 % of the draws between {} and {} m/s.",
+        degrees(at(&found.angle_deg)?),
+        fixed(at(&q.q50)?, 2),
+        fixed(at(&q.q025)?, 2),
+        fixed(at(&q.q975)?, 2)
+    ))
+}

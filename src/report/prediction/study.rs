@@ -1,0 +1,178 @@
+//! A study to the document that the terminal and `prediction.html` show.
+
+use super::super::document::{Chapter, Content, Document, Fact, Frame, Passage};
+use super::super::medium::{Medium, Words};
+use super::super::pictures::study_names;
+use super::super::rounding::{MISSING, fixed, plain};
+use super::super::tested::tested;
+use super::super::words::{
+    bands_words, case_words, contact_words, criterion_value, degrees, nearest, range_words, variable_words,
+};
+use super::critical::{critical, has_quantiles, monte_carlo, ranges};
+use super::models::{ladders, sensitivities};
+use super::rows::{predictions, title};
+use crate::data::{Criterion, Request, Study, Sweep};
+
+/// A longer table of predictions stands at the end of the page, not between the reader and what was found.
+const MOST_ROWS_AHEAD: usize = 40;
+
+/// What the models leave out.
+const LIMITS: [&str; 5] = [
+    "One plane, a rigid cask and a rigid target; an impact takes no time. A real first impact of some milliseconds lets the cask turn and fall \
+     while it lasts.",
+    "k is given, not predicted. That of a real cask varies with the angle: do not carry it from one angle to another.",
+    "\"Rough\" assumes that the first end does not slide; the friction that this needs stands with the predictions. Where the target gives \
+     less, the Coulomb coefficient is the better input.",
+    "For k = 0 the closed form of [P] Table 2 holds the first end on the target whatever the contact force. Where the force would have to \
+     pull, the first end lifts off and the speeds here are those of the flight; the closed form stands beside them.",
+    "A critical band is counted from the largest value of its own curve. It says nothing about what the cask withstands.",
+];
+
+/// The whole document.
+pub(super) fn document(study: &Study) -> Document {
+    let file = &study.cask_file;
+    let name = &file.cask.name;
+    let on_page = predictions(&study.rows, Medium::Page);
+    let is_long = study.rows.len() > MOST_ROWS_AHEAD;
+    let later = format!("The {} predictions stand at the end of this page.", study.rows.len());
+    let (ahead, at_end) = if is_long {
+        (vec![Passage::text(later).only(Medium::Page)], on_page)
+    } else {
+        (on_page, Vec::new())
+    };
+    let asked = Passage::facts("Cases", asked(&study.request)).only(Medium::Page);
+    Document {
+        page: Frame {
+            title: format!("Prediction for {name}"),
+            product: "Prediction report",
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            heading: format!("{name}: slap-down prediction"),
+            about: file.path.display().to_string(),
+            footer: "The drop angle is the inclination of the cask's axis above the horizontal at first contact. The first end is the low one, \
+                     the second end slaps down. Vertical velocities are positive up. [P]: the BAM paper on slap-down impacts of packagings \
+                     (PATRAM).",
+            style: include_str!("../prediction.css"),
+        },
+        chapters: vec![
+            Chapter::new("").with(Content::Figures(figures(study))),
+            tested(file, "What was asked").with(asked),
+            Chapter::new(Words::or("Predictions", ""))
+                .with(Passage::title(title(&study.rows, file)).only(Medium::Terminal))
+                .with_all(predictions(&study.rows, Medium::Terminal))
+                .with_all(ahead)
+                .with(Passage::picture("sweep", "", "")),
+            critical(study),
+            ranges(study),
+            over_the_angle(&study.request),
+            monte_carlo(study),
+            ladders(study),
+            sensitivities(study),
+            Chapter::new("Regimes").with(Passage::picture("regimes", "", "")),
+            Chapter::new("Limits").with(Content::List(LIMITS.to_vec())),
+            Chapter::new("All predictions").with_all(at_end),
+            provenance(study),
+        ],
+    }
+}
+
+/// The pictures over the angle, in the order of their files.
+fn over_the_angle(request: &Request) -> Chapter {
+    let is_wanted = |name: &String| {
+        ["smooth-rough", "speeds", "energy-ratio", "section"].contains(&name.as_str())
+            || name.starts_with("components-")
+    };
+    let names = study_names(request).into_iter().filter(is_wanted);
+    Chapter::new("Over the drop angle").with_all(names.map(|name| Passage::picture(&name, "", "short")))
+}
+
+/// The four figures that a reader looks for first.
+fn figures(study: &Study) -> Vec<[String; 3]> {
+    let drawn = &study.monte_carlo;
+    let worst = study
+        .critical
+        .iter()
+        .filter(|c| c.model == drawn.model && c.criterion == Criterion::Speed && c.largest.is_finite())
+        .max_by(|a, b| a.largest.total_cmp(&b.largest));
+    let speed = drawn.quantiles.iter().find(|q| q.criterion == Criterion::Speed && has_quantiles(drawn));
+    let at = study.request.angle_deg;
+    let here = |values: &[f64]| nearest(&drawn.angle_deg, values, at);
+    let at_angle = speed.and_then(|q| Some([here(&q.q50)?, here(&q.q025)?, here(&q.q975)?]));
+    let figure = |name: String, found: Option<[String; 2]>| {
+        let [value, detail] = found.unwrap_or_else(|| [MISSING.to_owned(), String::new()]);
+        [name, value, detail]
+    };
+    vec![
+        figure(
+            "Largest slap-down speed".to_owned(),
+            worst.map(|c| {
+                let of = format!(
+                    "{}, {}, at {}°",
+                    c.model.as_str(),
+                    case_words(c.contact, c.k),
+                    degrees(c.angle_deg)
+                );
+                [criterion_value(c.criterion, c.largest), of]
+            }),
+        ),
+        figure(
+            format!("At {}°, inputs uncertain", plain(at, 4)),
+            at_angle.map(|speeds| {
+                let [median, low, high] = speeds.map(|speed| fixed(speed, 2));
+                [format!("{median} m/s"), format!("95 % of the draws {low} to {high} m/s")]
+            }),
+        ),
+        figure(
+            "Critical angle, inputs uncertain".to_owned(),
+            speed.map(|q| {
+                let [low, _, median, _, high] = q.critical_angle_deg;
+                let range = bands_words(&[(low, high)]);
+                [format!("{}°", degrees(median)), format!("95 % of the draws {range}°")]
+            }),
+        ),
+        figure(
+            "Critical in 95 % of the draws".to_owned(),
+            speed.map(|q| {
+                let unit = if q.robust_bands_deg.is_empty() { "" } else { "°" };
+                let band = plain(drawn.band_percent, 3);
+                let value = format!("{}{unit}", bands_words(&q.robust_bands_deg));
+                [value, format!("speed within {band} % of its largest")]
+            }),
+        ),
+    ]
+}
+
+/// Contact laws, k, angle and sweeps.
+fn asked(request: &Request) -> Vec<Fact> {
+    let contacts: Vec<String> = request.contacts.iter().map(|c| contact_words(*c)).collect();
+    let ks: Vec<String> = request.ks.iter().map(|k| plain(*k, 3)).collect();
+    let band = format!("within {} % of the largest value", plain(request.band_percent, 3));
+    let mut facts = vec![
+        Fact::words("Contact of the first end", contacts.join(", ")),
+        Fact::words("Coefficient of restitution k", ks.join(", ")),
+        Fact::words("Drop angle, where one is needed", format!("{}°", plain(request.angle_deg, 4))),
+    ];
+    let sweep = |s: &Sweep| Fact::words(format!("Sweep: {}", variable_words(s.variable)), sweep_words(s));
+    facts.extend(request.sweeps.iter().map(sweep));
+    facts.push(Fact::words("Critical band", band));
+    facts
+}
+
+fn sweep_words(sweep: &Sweep) -> String {
+    match (sweep.values.first(), sweep.values.last()) {
+        (Some(from), Some(to)) => format!("{}, {} values", range_words((*from, *to)), sweep.values.len()),
+        _ => MISSING.to_owned(),
+    }
+}
+
+/// Which file, which version.
+fn provenance(study: &Study) -> Chapter {
+    let facts = vec![
+        Fact::words("Cask file", study.cask_file.path.display().to_string()),
+        Fact::code("its SHA-256", &study.cask_file.sha256[..]),
+        Fact::words(
+            "Program",
+            format!("dropcheck {} · schema dropcheck.prediction/1", env!("CARGO_PKG_VERSION")),
+        ),
+    ];
+    Chapter::new("Provenance").only(Medium::Page).with(Passage::facts("", facts))
+}

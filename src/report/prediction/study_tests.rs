@@ -1,0 +1,189 @@
+//! What a study says on a terminal and on its page.
+
+use super::super::sample_study;
+use super::super::text::WIDTH;
+use super::super::words::rung_short;
+use super::rows::MOST_ON_PAGE;
+use super::{study_files, study_table};
+use crate::data::{BodyModel, Rung, Study, Sweep, SweepVariable};
+use crate::report::pictures::study_names;
+
+fn bare(study: &Study) -> String {
+    anstream::adapter::strip_str(&study_table(study)).to_string()
+}
+
+/// One contact law and one k at one angle.
+fn single() -> Study {
+    let mut study = sample_study::swept();
+    study.rows.retain(|row| row.angle_deg.to_bits() == 15.0_f64.to_bits());
+    study.request.sweeps.clear();
+    study.ladders.truncate(1);
+    study
+}
+
+#[test]
+fn eighty_columns_hold_it() {
+    let mut wide = sample_study::swept();
+    wide.rows.truncate(300);
+    for (i, row) in wide.rows.iter_mut().enumerate() {
+        row.drop_height_m = if i % 2 == 0 { 0.333 } else { 9.125 };
+        row.angle_deg = 88.25;
+        row.prediction.first_end_impacts = 2;
+        row.prediction.closed_form_speed_m_s = Some(20.12);
+    }
+    wide.cask_file.cask.name = "A cask with a name ".repeat(8);
+    let studies =
+        [sample_study::study(), sample_study::swept(), sample_study::without_slap_down(), single(), wide];
+    for study in studies {
+        let text = bare(&study);
+        for line in text.lines() {
+            assert!(line.chars().count() <= WIDTH, "{} columns: {line}\n{text}", line.chars().count());
+        }
+    }
+}
+
+#[test]
+fn every_block_has_its_figures() {
+    let text = bare(&sample_study::study());
+    for words in [
+        "held: closed form for k = 0",
+        "Critical angles",
+        "12 (3.5–28)",
+        "12 (0–24.2, …)",
+        "Over k 0 to 1 and μ 0.2 to 0.6",
+        "12°, rough, k = 1",
+        "Monte Carlo, 2000 draws of the body",
+        "12° (4.5–19.5)",
+        "seed 1",
+        "At 15°: ",
+        "suffices: the simplest that no richer one moves by more than 0.1 %",
+        "35.3",
+        "rod 30.20 m/s at 89°",
+    ] {
+        assert!(text.contains(words), "{words} is missing in\n{text}");
+    }
+}
+
+#[test]
+fn one_case_shows_every_rung() {
+    let text = bare(&single());
+    for rung in Rung::ALL {
+        assert!(text.contains(rung_short(rung)) && text.contains(rung.adds()), "{text}");
+    }
+    assert!(text.contains("−8.0 %") && text.contains("The model \"body\" suffices"), "{text}");
+}
+
+#[test]
+fn ranges_that_are_points_are_not_repeated() {
+    let mut study = single();
+    assert!(bare(&study).contains("every band"));
+    study.request.uncertain.k = (0.5, 0.5);
+    study.request.uncertain.friction = None;
+    assert!(!bare(&study).contains("every band"));
+}
+
+#[test]
+fn without_draws_there_is_no_block_of_them() {
+    let mut study = sample_study::study();
+    study.monte_carlo.uncertain.draws = 0;
+    for q in &mut study.monte_carlo.quantiles {
+        q.critical_angle_deg = [f64::NAN; 5];
+    }
+    assert!(!bare(&study).contains("Monte Carlo"));
+}
+
+#[test]
+fn a_long_table_shows_its_ends_and_says_what_is_left_out() {
+    let study = sample_study::swept();
+    let text = bare(&study);
+    assert!(text.contains(&format!(
+        "… {} of {} rows are left out here",
+        study.rows.len() - 24,
+        study.rows.len()
+    )));
+    assert!(text.lines().count() < 100, "{text}");
+    let first = text.lines().filter(|line| line.trim_start().starts_with("0 ")).count();
+    let last = text.lines().filter(|line| line.trim_start().starts_with("90 ")).count();
+    // Three lengths of two bodies at 0° and at 90°: the twelve rows at either end reach over both.
+    assert_eq!((first, last), (6, 6), "{text}");
+}
+
+#[test]
+fn the_closed_form_stands_beside_the_flying_value() {
+    let mut study = sample_study::study();
+    study.rows[0].prediction.closed_form_speed_m_s = Some(20.12);
+    let text = bare(&study);
+    let row = text.lines().find(|line| line.trim_start().starts_with("15  rod    rough    0")).unwrap();
+    assert!(row.contains("19.9") && row.ends_with("20.12"), "{row}");
+    study.rows.retain(|row| row.prediction.k > 0.0);
+    assert!(!bare(&study).contains("held"));
+}
+
+#[test]
+fn names_from_files_cannot_colour_the_terminal() {
+    let mut study = sample_study::study();
+    study.cask_file.cask.name = "\u{1b}[31mX".into();
+    assert!(!study_table(&study).contains("\u{1b}[31m"));
+}
+
+#[test]
+fn the_friction_that_sticking_needs_is_said_once() {
+    let mut study = sample_study::study();
+    assert!(bare(&study).contains("friction is at least 0.624 (rod), 0.624 (body)"));
+    study.request.sweeps = vec![Sweep { variable: SweepVariable::Angle, values: vec![15.0, 16.0] }];
+    // It depends on the angle: over several there is no one value.
+    let body = study.rows.iter().position(|row| row.prediction.model == BodyModel::Body).unwrap();
+    study.rows[body].prediction.friction_to_stick = 0.5;
+    assert!(!bare(&study).contains("friction is at least"));
+}
+
+fn made(study: &Study) -> String {
+    String::from_utf8(study_files(study).unwrap().swap_remove(0).1).unwrap()
+}
+
+#[test]
+fn it_stands_alone() {
+    let page = made(&sample_study::study());
+    for call in ["src=", "href=", "url(", "@import", "<script", "http://", "https://"] {
+        let hits = page.matches(call).count();
+        // The only address is the name of the SVG vocabulary.
+        let allowed = if call == "http://" { page.matches("http://www.w3.org/2000/svg").count() } else { 0 };
+        assert_eq!(hits, allowed, "{call}");
+    }
+    assert!(page.len() < 1_500_000, "{} bytes", page.len());
+}
+
+#[test]
+fn it_shows_every_picture() {
+    for study in [sample_study::study(), sample_study::swept(), sample_study::without_slap_down()] {
+        let page = made(&study);
+        assert_eq!(page.matches("<figure").count(), study_names(&study.request).len());
+    }
+}
+
+#[test]
+fn words_from_files_are_escaped() {
+    let mut study = sample_study::study();
+    let evil = "<img src=x onerror=alert(1)>\"'\u{1b}[2J";
+    study.cask_file.cask.name = evil.into();
+    study.cask_file.path = evil.into();
+    study.cask_file.sha256 = evil.into();
+    let page = made(&study);
+    assert!(!page.contains("<img") && !page.contains('\u{1b}'));
+    assert!(page.contains("&lt;img"));
+}
+
+#[test]
+fn a_long_sweep_points_to_the_csv() {
+    let study = sample_study::swept();
+    let page = made(&study);
+    assert!(study.rows.len() > MOST_ON_PAGE);
+    assert!(page.contains(&format!("{} more", study.rows.len() - MOST_ON_PAGE)));
+    assert!(page.contains("prediction.csv"));
+    assert!(page.find("All predictions") > page.find("Sensitivity"));
+}
+
+#[test]
+fn without_a_slap_down_it_says_so() {
+    assert!(made(&sample_study::without_slap_down()).contains("the second end never strikes"));
+}

@@ -1,0 +1,282 @@
+//! How the motion was had from the channels, and how sure its numbers are, to chapters of the report.
+
+use super::document::{Chapter, Content, Passage};
+use super::medium::Medium;
+use super::rounding::{MISSING, fixed, interval, optional_fixed, significant};
+use super::settings::{TOLERANCES, is_default};
+use super::table::{Table, TableCell};
+use super::text::{rung_words, sentence, taken_mark, true_minus, yes};
+use crate::data::{CaskFile, Contribution, DropResult, FlightFit, ReconstructionChoice, ReconstructionRung};
+
+/// Moves of the joint fit that are listed; the smaller ones say nothing.
+const MOST_MOVES: usize = 10;
+
+/// The rung taken and why, the other rungs, the closures and the joint fit.
+pub(super) fn reconstruction(result: &DropResult) -> Chapter {
+    let chapter = Chapter::new("How the motion was reconstructed");
+    let Some(choice) = &result.reconstruction else { return chapter };
+    let rungs = Table::of(&choice.candidates)
+        .caption(
+            "The reconstructions of this recording, the simplest first; ± holds 95 %. The first is taken that noise and tolerances explain \
+             and whose answer the next would neither change by more than the narrower interval nor know better by a quarter.",
+        )
+        .chosen(|c| c.rung == choice.rung)
+        .head("Reconstruction", |c| format!("{}{}", rung_words(c.rung), taken_mark(c.rung == choice.rung)))
+        .number("Slap-down speed", |c| interval(c.speed.as_ref()))
+        .number("k", |c| interval(c.k.as_ref()))
+        .text("What it leaves", |c| true_minus(&c.residual))
+        .text("Explained", |c| yes(c.consistent));
+    let of_page = [rungs.into()].into_iter().chain(closures(choice)).chain(joint(choice));
+    chapter
+        .with(Passage::lead(sentence(&choice.reason)))
+        .with_all(worst_closure(choice).map(|words| Passage::text(words).only(Medium::Terminal)))
+        .with_all(of_page.map(|passage| passage.only(Medium::Page)))
+}
+
+/// The closure that is missed most.
+fn worst_closure(choice: &ReconstructionChoice) -> Option<String> {
+    let worst = choice.closures.iter().max_by(|a, b| a.miss_in_u.abs().total_cmp(&b.miss_in_u.abs()))?;
+    let of = match choice.closures.len() {
+        1 => "The one closure".to_owned(),
+        n => format!("Of {n} closures the worst"),
+    };
+    Some(format!(
+        "{of}, {}, is missed by {}, {} standard uncertainties.",
+        worst.name,
+        true_minus(&worst.miss),
+        fixed(worst.miss_in_u.abs(), 1)
+    ))
+}
+
+fn closures(choice: &ReconstructionChoice) -> Option<Passage> {
+    let table = Table::of(&choice.closures)
+        .caption(
+            "Closures: what the motion must meet beside the velocity steps. A miss within 2 standard uncertainties (u) of all inputs \
+             together is within noise and tolerances; one far beyond is a finding.",
+        )
+        .head("Closure", |c| &c.name[..])
+        .number("Missed by", |c| true_minus(&c.miss))
+        .number("in u", |c| fixed(c.miss_in_u, 1))
+        .number("Left by the joint fit, in u of the closure", |c| fixed(c.left_in_u, 2))
+        .if_any(choice.chi_square.is_some());
+    (!choice.closures.is_empty()).then(|| table.into())
+}
+
+/// χ² of the joint fit and what it moved.
+fn joint(choice: &ReconstructionChoice) -> Vec<Passage> {
+    let Some((chi_square, degrees)) = choice.chi_square else { return Vec::new() };
+    let used = if choice.rung == ReconstructionRung::Joint {
+        "Its motion is the one reported."
+    } else {
+        "It serves as a check: the numbers of this report are those of the reconstruction taken."
+    };
+    let still = " It moves no input by more than a twentieth of its standard uncertainty.";
+    let sentence = format!(
+        "The joint fit moves every input within its tolerance until the closures are met: χ² = {} with {degrees} degree{} of freedom, one a \
+         closure. {used}{}",
+        significant(chi_square, 2),
+        if degrees == 1 { "" } else { "s" },
+        if choice.adjustments.is_empty() { still } else { "" }
+    );
+    let moved = Table::of(&choice.adjustments)
+        .caption("What the joint fit moves, the largest first. Left: the input's standard uncertainty after the fit over the one before.")
+        .most(0, MOST_MOVES, "each moved by less.")
+        .head("Input", |a| &a.input[..])
+        .number("Standard uncertainty u", |a| &a.standard_uncertainty[..])
+        .number("Moved by, in u", |a| fixed(a.moved_in_u, 2))
+        .number("Left, %", |a| fixed(100.0 * a.left_share, 0));
+    let moved = (!choice.adjustments.is_empty()).then(|| moved.into());
+    [Passage::text(sentence)].into_iter().chain(moved).collect()
+}
+
+/// The fit of the free-flight window: plateaus, modes, candidates.
+pub(super) fn flight(result: &DropResult) -> Chapter {
+    let chapter = Chapter::new("Fit of the flight").only(Medium::Page);
+    let Some(fit) = &result.flight else { return chapter };
+    let modes = Table::of(&fit.modes)
+        .caption(if fit.modes.is_empty() {
+            "Bending modes taken: none, nothing rings"
+        } else {
+            "Bending modes taken"
+        })
+        .number("Frequency, Hz", |m| fixed(m.frequency_hz, 1))
+        .number("Damping ratio", |m| significant(m.damping, 2))
+        .number("Amplitude, m/s", |m| significant(m.amplitude_m_s, 2));
+    let phases = |driven, modes| match modes {
+        _ if driven => "by the impact",
+        0 => MISSING,
+        _ => "free",
+    };
+    let candidates = Table::of(&fit.candidates)
+        .caption("Candidates that were tried; BIC: the lower the better")
+        .chosen(|c| c.taken)
+        .text("Modes", |c| format!("{}{}", c.modes, taken_mark(c.taken)))
+        .text("Phases", |c| phases(c.driven, c.modes))
+        .text("Drift", |c| yes(c.drift))
+        .number("BIC", |c| fixed(c.bic, 1))
+        .number("Residual, m/s", |c| significant(c.residual_m_s, 2));
+    let plateaus = Table::of(&fit.plateaus)
+        .caption("Plateaus")
+        .head("Channel", |p| &p.channel[..])
+        .number("Velocity step, m/s", |p| fixed(p.velocity_step_m_s, 3))
+        .number("u, m/s", |p| significant(p.u_m_s, 2))
+        .number("Zero shift, m/s²", |p| significant(p.zero_shift_m_s2, 2))
+        .number("Residual, m/s", |p| significant(p.residual_m_s, 2));
+    chapter
+        .with(Passage::lead(flight_sentence(fit)))
+        .with(Content::Beside([vec![plateaus.into()], vec![modes.into(), candidates.into()]]))
+}
+
+fn flight_sentence(fit: &FlightFit) -> String {
+    let drift = if fit.drift { ", with a drift (zero shift)" } else { ", without drift" };
+    let of = if fit.candidates.first().is_none_or(|c| c.taken) {
+        "."
+    } else {
+        " of those with which the second end is on the target as it strikes and the cask turns as the first impact has it."
+    };
+    format!(
+        "From {} to {} ms after the first sample: one plateau a channel{drift}; the number of bending modes is the one with the lowest \
+         information criterion{of}",
+        fixed(fit.from_s * 1e3, 2),
+        fixed(fit.to_s * 1e3, 2)
+    )
+}
+
+/// Twice the root of the sum of squares of what the inputs contribute; `None` where one of them is not known.
+fn total(budget: &[Contribution], of: impl Fn(&Contribution) -> Option<f64>) -> Option<f64> {
+    let squares: Option<f64> = budget.iter().map(|c| of(c).map(|x| x * x)).sum();
+    squares.map(|s| 2.0 * s.sqrt())
+}
+
+/// What each input contributes to the intervals, largest first, and what they come to.
+pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
+    let budget = &result.budget;
+    let chapter = Chapter::new("Uncertainty").only(Medium::Page);
+    if budget.is_empty() {
+        return chapter;
+    }
+    let sum = |of: fn(&Contribution) -> Option<f64>, decimals| {
+        format!("± {}", optional_fixed(total(budget, of), decimals))
+    };
+    // The last row is that of their sum.
+    let rows: Vec<Option<&Contribution>> = budget.iter().map(Some).chain([None]).collect();
+    let all = "Interval (95 %): twice the root of the sum of squares";
+    let table = Table::of(&rows)
+        .class("")
+        .chosen(Option::is_none)
+        .head("Input", |c| c.map_or(all, |c| &c.input[..]))
+        .text("Known from", |c| c.map_or_else(|| "".into(), |c| known_from(&c.input, result, file)))
+        .number("Standard uncertainty", |c| c.map_or("", |c| &c.standard_uncertainty[..]))
+        .number("Slap-down speed, m/s", |c| {
+            c.map_or_else(|| sum(|c| c.speed_m_s, 3), |c| optional_fixed(c.speed_m_s, 3))
+        })
+        .number("k", |c| c.map_or_else(|| sum(|c| c.k, 4), |c| optional_fixed(c.k, 4)));
+    let lead = format!(
+        "Each line is what one standard uncertainty of the input changes. The changes add in squares, and an interval is twice their root. {}",
+        largest(budget)
+    );
+    let is_planar = result.reconstruction.as_ref().is_none_or(|r| r.rung != ReconstructionRung::Channels);
+    let single = "Speed and k were read off single channels, with the intervals given there: this table is that of the planar motion.";
+    chapter.with(Passage::lead(lead)).with(table).with_all((!is_planar).then(|| Passage::note(single)))
+}
+
+/// Which input weighs most, in the speed and in k.
+fn largest(budget: &[Contribution]) -> String {
+    let most = |of: &dyn Fn(&Contribution) -> Option<f64>| -> Option<(String, f64)> {
+        let squares: f64 = budget.iter().filter_map(of).map(|x| x * x).sum();
+        let largest = budget
+            .iter()
+            .filter_map(|c| of(c).map(|x| (c, x)))
+            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+        (squares > 0.0).then(|| (largest.0.input.clone(), 100.0 * largest.1 * largest.1 / squares))
+    };
+    let share = |(input, percent): &(String, f64)| format!("{input} ({percent:.0} % of the variance)");
+    match (most(&|c| c.speed_m_s), most(&|c| c.k)) {
+        (Some(speed), Some(k)) if speed.0 == k.0 => {
+            format!("The largest is {}, for the speed, and {:.0} % for k.", share(&speed), k.1)
+        }
+        (Some(speed), Some(k)) => {
+            format!("The largest for the speed is {}, for k {}.", share(&speed), share(&k))
+        }
+        (None, Some(k)) => format!("The largest for k is {}.", share(&k)),
+        (Some(speed), None) => format!("The largest for the speed is {}.", share(&speed)),
+        (None, None) => String::new(),
+    }
+}
+
+/// Whether the recording tells an input's uncertainty, the cask file states it, or it is a default.
+fn known_from(input: &str, result: &DropResult, file: &CaskFile) -> TableCell {
+    let is_closure =
+        result.reconstruction.as_ref().is_some_and(|r| r.closures.iter().any(|c| c.name == input));
+    match TOLERANCES.iter().find(|t| t.is_of(input)) {
+        _ if is_closure => "closure".into(),
+        Some(t) if is_default(file, t.key) => TableCell::marked("", "default"),
+        Some(_) => "cask file".into(),
+        None if input.is_empty() => MISSING.into(),
+        None => "recording".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::document::Document;
+    use super::super::{as_html, sample};
+    use super::*;
+
+    fn page(chapter: Chapter) -> String {
+        as_html::page(&Document { chapters: vec![chapter], ..Document::default() }, &[])
+    }
+
+    fn contribution(input: &str, speed_m_s: Option<f64>, k: f64) -> Contribution {
+        Contribution { input: input.into(), standard_uncertainty: "0.5 %".into(), speed_m_s, k: Some(k) }
+    }
+
+    #[test]
+    fn the_budget_adds_up_to_the_interval() {
+        let analysis = sample::analysis();
+        let result = &analysis.result;
+        let speed = total(&result.budget, |c| c.speed_m_s).expect("all known");
+        // The sample states its interval with two digits.
+        assert!((speed - result.slap_down.speed.expect("a speed").u95).abs() < 0.005);
+        let page = page(budget(result, &analysis.cask_file));
+        assert!(page.contains("± 0.110") && page.contains("± 0.0102"), "{page}");
+        assert!(page.contains(
+            "for the speed is calibration of A2 (40 % of the variance), for k cross axis of A1 (61 %"
+        ));
+    }
+
+    #[test]
+    fn without_a_slap_down_there_is_no_total_of_its_speed() {
+        let budget = [contribution("drop angle", None, 0.003), contribution("inertia", None, 0.004)];
+        assert_eq!(total(&budget, |c| c.speed_m_s), None);
+        assert!((total(&budget, |c| c.k).expect("all known") - 0.01).abs() < 1e-12);
+        assert_eq!(largest(&budget), "The largest for k is inertia (64 % of the variance).");
+    }
+
+    #[test]
+    fn a_tolerance_says_where_it_is_from() {
+        let analysis = sample::analysis();
+        let known = |input: &str| known_from(input, &analysis.result, &analysis.cask_file);
+        let from = |input: &str| known(input).words.on(Medium::Page).to_owned();
+        assert_eq!(known("calibration of A2").mark, "default");
+        assert_eq!(from("drop angle"), "cask file");
+        assert_eq!(from("velocity step of A1"), "recording");
+        assert_eq!(from("time of slap-down"), "recording");
+        assert_eq!(from("height of the second end at slap-down"), "closure");
+    }
+
+    #[test]
+    fn the_rung_taken_and_the_closures_are_there() {
+        let found = page(reconstruction(&sample::analysis().result));
+        for words in [
+            "fitted with modes and drift (taken)",
+            "−0.8 % of ω",
+            "χ² = 0.22 with 2 degrees of freedom",
+            "It serves as a check",
+            "20.56 ± 0.11 m/s",
+        ] {
+            assert!(found.contains(words), "{words}: {found}");
+        }
+        assert!(!page(reconstruction(&sample::without_anything().result)).contains("<h2>"));
+    }
+}
