@@ -1,6 +1,8 @@
-//! From the pages that a person wrote to what they must hold: links that lead somewhere, answers that are the program's.
+//! From the pages that a person wrote to their budget: words, length of lines, links that lead somewhere, answers that are the program's.
 
-use crate::run::dropcheck;
+use crate::run::{analyze, dropcheck, fixture};
+use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -30,6 +32,11 @@ fn written_pages() -> Vec<PathBuf> {
     pages.extend(["README.md", "CHANGELOG.md"].map(|name| root().join(name)));
     assert!(pages.len() > 15, "the pages were not found: {pages:?}");
     pages
+}
+
+/// The pages beside fixtures and campaign.
+fn pages_beside() -> [PathBuf; 2] {
+    ["fixtures/README.md", "tests/campaign/README.md"].map(|name| root().join(name))
 }
 
 fn text(page: &Path) -> String {
@@ -77,8 +84,7 @@ fn answer<'a>(page: &'a str, command: &str) -> &'a str {
 fn links_lead_somewhere() {
     let mut dead = Vec::new();
     let mut looked_at = 0;
-    let others = ["fixtures/README.md", "tests/campaign/README.md"].map(|name| root().join(name));
-    for page in pages_below(&root().join("docs")).into_iter().chain(written_pages()).chain(others) {
+    for page in pages_below(&root().join("docs")).into_iter().chain(written_pages()).chain(pages_beside()) {
         for link in links(&text(&page)) {
             if link.starts_with("http") {
                 continue;
@@ -114,4 +120,31 @@ fn what_the_pages_show_is_what_the_program_says() {
         .collect();
     let said = dropcheck(&words).stdout;
     assert!(said.starts_with(shown), "docs/predicting.md shows another table than the program:\n{said}");
+}
+
+/// The names of all fields of a JSON value.
+fn keys(value: &Value, found: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(fields) => {
+            for (key, inner) in fields {
+                found.insert(key.clone());
+                keys(inner, found);
+            }
+        }
+        Value::Array(items) => items.iter().for_each(|item| keys(item, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_field_of_the_result_is_documented() {
+    let result = analyze(&fixture("vhlw-rest.h5"), &fixture("vhlw-rest.toml")).json();
+    let mut found = BTreeSet::new();
+    keys(&result, &mut found);
+    assert!(found.len() > 100, "{found:?}");
+    let page = text(&root().join("docs/formats.md"));
+    let (_, chapter) = page.split_once("\n## result.json\n").expect("the chapter");
+    let (chapter, _) = chapter.split_once("\n## ").expect("its end");
+    found.retain(|key| !chapter.contains(&format!("\"{key}\"")));
+    assert!(found.is_empty(), "docs/formats.md, result.json, does not name {found:?}");
 }

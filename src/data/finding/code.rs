@@ -60,7 +60,7 @@ pub enum IssueCode {
     MissingChannel,
 }
 
-/// Every check with what a finding of it means, by what it speaks of: the lists in docs/quality.md and docs/formats.md are made of it.
+/// Every check with what a finding of it means, by what it speaks of: docs/quality.md is made of it.
 pub const CODES: [(&str, &[(IssueCode, &str)]); 4] = [
     (
         "File",
