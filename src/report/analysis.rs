@@ -139,43 +139,36 @@ fn agreement(agrees: bool) -> &'static str {
 /// First impact, slap-down and k, each with its interval or with the reason why it is missing.
 fn quantities(result: &DropResult) -> Chapter {
     let (first, second) = (&result.first_impact, &result.slap_down);
-    let first_impact = [
-        ("first contact", &first.time, "after the first sample"),
-        ("impact velocity", &first.impact_velocity, ""),
-        ("contact lasts", &first.duration, ""),
-        ("rebound velocity", &first.rebound_velocity, "vertical, up positive"),
-        ("angular velocity", &first.angular_velocity, ""),
-        ("restitution k", &result.k, "rebound over impact velocity"),
+    let fact = |name: &str, value: &Option<Estimate>, note: &str| {
+        Fact::number(name, interval(value.as_ref())).note(note)
+    };
+    let first_impact = vec![
+        fact("first contact", &first.time, "after the first sample"),
+        fact("impact velocity", &first.impact_velocity, ""),
+        fact("contact lasts", &first.duration, ""),
+        fact("rebound velocity", &first.rebound_velocity, "vertical, up positive"),
+        fact("angular velocity", &first.angular_velocity, ""),
+        fact("restitution k", &result.k, "rebound over impact velocity"),
     ];
-    let slap_down = [
-        ("speed", &second.speed, "just before the second end strikes"),
-        ("vertical velocity", &second.vertical_velocity, "up positive"),
-        ("horizontal velocity", &second.horizontal_velocity, ""),
-        ("angle", &second.angle, "of the axis above the horizontal"),
-        ("flight time", &second.flight_time, "from separation"),
-        ("time", &second.time, "after the first sample"),
+    let slap_down = vec![
+        fact("speed", &second.speed, "just before the second end strikes"),
+        fact("vertical velocity", &second.vertical_velocity, "up positive"),
+        fact("horizontal velocity", &second.horizontal_velocity, ""),
+        fact("angle", &second.angle, "of the axis above the horizontal"),
+        fact("flight time", &second.flight_time, "from separation"),
+        fact("time", &second.time, "after the first sample"),
     ];
     Chapter::new(Words::or("Results, ± 95 %", "")).with(Content::Beside([
-        estimates(result, "First impact", &first_impact, &FIRST_IMPACT_CODES),
-        estimates(result, "Slap-down", &slap_down, &SLAP_DOWN_CODES),
+        estimates(result, "First impact", first_impact, &FIRST_IMPACT_CODES),
+        estimates(result, "Slap-down", slap_down, &SLAP_DOWN_CODES),
     ]))
 }
 
 /// Estimates; the reason for the missing ones stands once below them.
-fn estimates(
-    result: &DropResult,
-    caption: &str,
-    rows: &[(&str, &Option<Estimate>, &str)],
-    codes: &[IssueCode],
-) -> Vec<Passage> {
-    let facts: Vec<Fact> = rows
-        .iter()
-        .map(|(name, value, note)| Fact::number(*name, interval(value.as_ref())).note(*note))
-        .collect();
-    let missing = facts.iter().any(|fact| fact.value == MISSING);
-    let why =
-        missing.then(|| Passage::note(format!("{MISSING} could not be had: {}", reason(result, codes))));
-    [Passage::facts(caption, facts)].into_iter().chain(why).collect()
+fn estimates(result: &DropResult, caption: &str, facts: Vec<Fact>, codes: &[IssueCode]) -> Vec<Passage> {
+    let is_missing = facts.iter().any(|fact| fact.value == MISSING);
+    let why = || Passage::note(format!("{MISSING} could not be had: {}", reason(result, codes)));
+    [Passage::facts(caption, facts)].into_iter().chain(is_missing.then(why)).collect()
 }
 
 /// The measured speed beside the predicted one, the model taken and why, and all that were held against the measurement.

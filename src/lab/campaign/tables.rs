@@ -7,7 +7,7 @@ use crate::lab::data::{Campaign, CampaignRow};
 use crate::report::as_markdown;
 use crate::report::document::{Chapter, Document, Passage};
 use crate::report::rounding::optional_fixed;
-use crate::report::table::{Rows, Table};
+use crate::report::table::Table;
 use std::collections::BTreeMap;
 
 /// The whole as Markdown.
@@ -272,6 +272,7 @@ fn redraws(rows: &[&CampaignRow]) -> Passage {
 }
 
 /// The outcomes of every kind of damage, in the order of the kinds, or of every size of it.
+#[allow(clippy::cast_precision_loss, reason = "counts of scenes")]
 fn damages(rows: &[&CampaignRow], by_size: bool) -> Passage {
     let mut groups: Vec<(&str, String, Vec<&CampaignRow>)> = Vec::new();
     for (kind, sizes, unit) in super::kinds() {
@@ -294,19 +295,10 @@ fn damages(rows: &[&CampaignRow], by_size: bool) -> Passage {
     if !by_size {
         groups.push(("all", String::new(), rows.to_vec()));
     }
-    let table = Table::of(&groups)
+    Table::of(&groups)
         .text("damage", |(kind, ..)| *kind)
         .number("size", |(_, size, _)| &size[..])
-        .number("scenes", |(.., of)| of.len().to_string());
-    outcomes(table).into()
-}
-
-/// The columns of what became of the scenes of a row.
-#[allow(clippy::cast_precision_loss, reason = "counts of scenes")]
-fn outcomes<'a>(
-    table: Rows<'a, (&'a str, String, Vec<&'a CampaignRow>)>,
-) -> Rows<'a, (&'a str, String, Vec<&'a CampaignRow>)> {
-    table
+        .number("scenes", |(.., of)| of.len().to_string())
         .number("right", |(.., of)| count(of, &[Outcome::Right]).to_string())
         .number("covered", |(.., of)| count(of, &[Outcome::Covered]).to_string())
         .number("caught", |(.., of)| count(of, &[Outcome::Caught]).to_string())
@@ -314,6 +306,7 @@ fn outcomes<'a>(
         .number("missed per 200", |(.., of)| {
             number(200.0 * count(of, &[Outcome::Missed]) as f64 / of.len() as f64, 1)
         })
+        .into()
 }
 
 /// Limits of what a closure may be missed by, in standard uncertainties.

@@ -78,7 +78,8 @@ fn panel(axes: &[Axis; 2], class: &str, points: &[(&TrialPoint, bool)], looks: &
         x,
         y,
         height: PANEL,
-        lines: vec![Line { opacity: 0.7, ..Line::new(GREY, steps(&front)) }],
+        // A line a step: a longer one would lose the order of its points where two stand above one another.
+        lines: steps(&front).windows(2).map(|step| Line::new(GREY, step.to_vec())).collect(),
         ..Panel::default()
     };
     for (point, _) in points {
