@@ -80,7 +80,7 @@ fn missed(closure: &Closure, drop: &Drop, events: &Events) -> Finding {
     let fall_s = events.release_s.zip(events.fall_end_s).map_or(0.0, |(release_s, end_s)| end_s - release_s);
     let is_gross = closure.miss_in_u.abs() > GROSS_U;
     let found =
-        Finding::from(DropFinding::Missed { closure: closure.clone(), is_gross, drop: drop.clone(), fall_s });
+        Finding::from(DropFinding::Missed { closure: closure.clone(), is_gross, drop: *drop, fall_s });
     Finding { channel: closure.channel.clone(), ..found }
 }
 
