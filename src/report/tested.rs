@@ -26,7 +26,7 @@ pub(super) fn tested(file: &CaskFile, heading: &str) -> Chapter {
             "Inertia about the centre of gravity",
             "cask.inertia_kg_m2",
             plain(cask.inertia_kg_m2, 6),
-            "kg m²",
+            "kg\u{a0}m²",
         ),
     ];
     if let Some(width_m) = cask.width_m {
