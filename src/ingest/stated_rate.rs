@@ -1,7 +1,6 @@
 //! A rate that a recording states, against others, to whether they are one.
 
 use super::time_base::{RATE_TOLERANCE, short, to_digits};
-use super::time_unit;
 
 /// Rates further apart than this are no two clocks: one of the statements is wrong, and nothing tells which.
 const FAR: f64 = 1e-2;
@@ -94,23 +93,6 @@ pub(super) fn rounding(number: &str) -> f64 {
     0.5 * 10_f64.powi(-decimals) / value
 }
 
-/// "50000", "50 kHz" or "50kS/s" to Hz; without a unit in so many Hz.
-pub(super) fn hz(text: &str, unit_hz: f64) -> Option<f64> {
-    let (number, unit) = parsed(text)?;
-    hz_a_unit(unit).or_else(|| unit.is_empty().then_some(unit_hz)).map(|scale| number * scale)
-}
-
-/// "2e-5" or "20 us" to s; without a unit in so many s.
-pub(super) fn seconds(text: &str, unit_s: f64) -> Option<f64> {
-    let (number, unit) = parsed(text)?;
-    time_unit::seconds(unit).or_else(|| unit.is_empty().then_some(unit_s)).map(|scale| number * scale)
-}
-
-fn parsed(text: &str) -> Option<(f64, &str)> {
-    let (number, unit) = number_and_unit(text)?;
-    Some((number.parse().ok()?, unit))
-}
-
 /// "50 kHz" to "50" and "kHz".
 pub(super) fn number_and_unit(text: &str) -> Option<(&str, &str)> {
     let text = text.trim();
@@ -164,26 +146,5 @@ mod tests {
         }
         assert_eq!(stated(0.0).agreement(9_990.0 / 1.02, 0.02), Agreement::FarApart);
         assert_eq!(stated(0.0).shown(), "fs = 10 kHz, which is 10000 Hz");
-    }
-
-    #[test]
-    fn rates_and_intervals_are_read_with_their_units() {
-        for (text, rate_hz) in [
-            ("50000", 5e4),
-            (" 50 kHz ", 5e4),
-            ("50kS/s", 5e4),
-            ("5e4Hz", 5e4),
-            ("1 MHz", 1e6),
-            ("100 1/s", 100.0),
-        ] {
-            assert_eq!(hz(text, 1.0), Some(rate_hz), "{text}");
-        }
-        for (text, interval_s) in [("2e-5", 2e-5), ("20 us", 20.0 * 1e-6), ("0.5ms", 0.5 * 1e-3)] {
-            assert_eq!(seconds(text, 1.0), Some(interval_s), "{text}");
-        }
-        for text in ["", "fast", "50 V", "Hz", "20 us"] {
-            assert_eq!(hz(text, 1.0), None, "{text}");
-        }
-        assert_eq!(seconds("50 kHz", 1.0), None);
     }
 }

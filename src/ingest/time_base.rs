@@ -24,7 +24,8 @@ use crate::data::{Issue, IssueCode, Samples, Severity};
 use fit::Fit;
 use order::Ordered;
 use std::sync::OnceLock;
-use uniform::{Number, Placed};
+pub(super) use uniform::Number;
+use uniform::Placed;
 
 /// Times that lie nearer to the base than this part of the sample interval (RMS) leave their samples where they are: at
 /// 2 % a sine of a tenth of the sample rate is off by 1 % of itself at most, a tenth of what its sampling costs.

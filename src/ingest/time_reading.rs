@@ -63,18 +63,12 @@ impl Scale {
 pub(super) enum Carrier {
     /// A column, by its header.
     Column,
-    /// A dataset, by an attribute.
-    Dataset,
-    /// A field of records, by its name: attributes are for the samples in them.
-    Field,
 }
 
 impl Carrier {
     fn stating(self, unit: &str) -> String {
         match self {
             Self::Column => format!("head the column with [{unit}]"),
-            Self::Field => format!("name the field as t_{unit}"),
-            Self::Dataset => format!("give the dataset an attribute unit = \"{unit}\""),
         }
     }
 }
@@ -171,7 +165,6 @@ impl Doubt {
     pub(super) fn problem(&self, header: &str, carrier: Carrier) -> String {
         let place = match carrier {
             Carrier::Column => format!("column {header:?}"),
-            Carrier::Dataset | Carrier::Field => header.to_owned(),
         };
         format!(
             "nothing says the unit of the times in {place}; taken as seconds they give a rate of {}",

@@ -98,7 +98,7 @@ const TIME_UNITS: [(&[&str], f64); 6] = [
 
 /// Units of a rate, in lower case, with Hz a unit.
 const RATE_UNITS: [(&[&str], f64); 3] = [
-    (&["hz", "s/s", "sa/s", "1/s", "sps", "samples/s", "samples/sec"], 1.0),
+    (&["hz", "hertz", "s/s", "sa/s", "1/s", "sps", "samples/s", "samples/sec"], 1.0),
     (&["khz", "ks/s", "ksa/s", "ksps"], 1e3),
     (&["mhz", "ms/s", "msa/s", "msps"], 1e6),
 ];

@@ -26,12 +26,12 @@ pub(super) fn decoded(bytes: &[u8]) -> String {
 /// What is asked.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Request {
-    /// What stands at these paths; of each that is something also the groups above it and what is named as times beside it.
-    Look(Vec<String>),
+    /// What stands at a path; of a dataset also the groups above it and what is named as times beside it.
+    Look(String),
     /// Everything in the file.
     Walk,
-    /// The numbers of a dataset.
-    Read { path: String, number: Number, slab: Slab },
+    /// The numbers of a dataset, as f64 where they are wide, else as f32.
+    Read { path: String, is_wide: bool, slab: Slab },
 }
 
 /// Which numbers of a dataset, along its longer dimension where it is one channel.
@@ -146,6 +146,18 @@ pub(super) enum Filter {
     Other(String),
 }
 
+impl std::fmt::Display for Filter {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::Shuffle => f.write_str("shuffle"),
+            Self::Deflate(level) => write!(f, "deflate({level})"),
+            Self::Fletcher32 => f.write_str("fletcher32"),
+            Self::Lzf => f.write_str("lzf"),
+            Self::Other(what) => f.write_str(what),
+        }
+    }
+}
+
 /// A field of numbers in records.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Field {
@@ -176,6 +188,11 @@ pub(super) enum Number {
 }
 
 impl Number {
+    /// Whether it is an integer.
+    pub(super) fn is_whole(self) -> bool {
+        !matches!(self, Self::F32 | Self::F64)
+    }
+
     /// Bytes of one.
     pub(super) fn bytes(self) -> usize {
         match self {
@@ -187,7 +204,52 @@ impl Number {
     }
 }
 
+/// A number as HDF5 stores it, to the sample that it is held as.
+pub(super) trait Stored {
+    /// What it is called in an answer.
+    const NUMBER: Number;
+    /// f32 for f32 and short integers, f64 for all others.
+    type Sample: Copy + Default + Send + Sync;
+    /// From its bytes, least first, given one by one.
+    fn sample(byte: impl Fn(usize) -> u8) -> Self::Sample;
+}
+
+macro_rules! stored {
+    ($($number:ty = $name:ident as $sample:ty),*) => {$(
+        impl Stored for $number {
+            const NUMBER: Number = Number::$name;
+            type Sample = $sample;
+            #[allow(clippy::cast_lossless, clippy::cast_precision_loss, reason = "counts beyond 2^53 lose what no sensor resolves")]
+            fn sample(byte: impl Fn(usize) -> u8) -> $sample {
+                Self::from_le_bytes(std::array::from_fn(byte)) as $sample
+            }
+        }
+    )*};
+}
+stored!(
+    f32 = F32 as f32,
+    f64 = F64 as f64,
+    i8 = I8 as f32,
+    i16 = I16 as f32,
+    i32 = I32 as f64,
+    i64 = I64 as f64,
+    u8 = U8 as f32,
+    u16 = U16 as f32,
+    u32 = U32 as f64,
+    u64 = U64 as f64
+);
+
 impl Dataset {
+    /// How it is stored, for people: type, shape, filters.
+    pub(super) fn described(&self) -> String {
+        let kind = decoded(&self.type_name);
+        let Some(shape) = &self.shape else { return format!("{kind}, no data") };
+        let shape: Vec<String> = shape.iter().map(ToString::to_string).collect();
+        let shape = if shape.is_empty() { "scalar".into() } else { shape.join(" × ") };
+        let filters = self.filters.iter().map(ToString::to_string).collect::<Vec<_>>().join(" + ");
+        [kind, shape, filters].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+    }
+
     /// Whether its parts fit together and into a file of `file_bytes`.
     pub(super) fn is_sane(&self, file_bytes: u64) -> bool {
         let record_bytes = usize::try_from(self.value_bytes).unwrap_or(0);
@@ -233,11 +295,11 @@ pub(super) enum Received<T> {
     Values(Vec<u8>),
 }
 
-/// The next frame.
+/// The next frame, and its length in bytes.
 ///
 /// # Errors
 /// The other side ended, or sent what is no frame.
-pub(super) fn receive<T: DeserializeOwned>(from: &mut impl Read) -> io::Result<Received<T>> {
+pub(super) fn receive<T: DeserializeOwned>(from: &mut impl Read) -> io::Result<(Received<T>, usize)> {
     let mut head = [0; 5];
     from.read_exact(&mut head)?;
     let [kind, length @ ..] = head;
@@ -254,10 +316,10 @@ pub(super) fn receive<T: DeserializeOwned>(from: &mut impl Read) -> io::Result<R
         return Err(ErrorKind::UnexpectedEof.into());
     }
     if is_values {
-        return Ok(Received::Values(bytes));
+        return Ok((Received::Values(bytes), length as usize));
     }
     let message = postcard::from_bytes(&bytes).map_err(|_| ErrorKind::InvalidData)?;
-    Ok(Received::Message(message))
+    Ok((Received::Message(message), length as usize))
 }
 
 #[cfg(test)]
@@ -278,7 +340,7 @@ mod tests {
         let mut sound = Vec::new();
         send(&mut sound, &Answer::Found("/a".into(), Object::NamedType)).unwrap();
         let answer = |bytes: &[u8]| match receive::<Answer>(&mut &*bytes) {
-            Ok(Received::Message(answer)) => Some(answer),
+            Ok((Received::Message(answer), _)) => Some(answer),
             _ => None,
         };
         assert_eq!(answer(&sound), Some(Answer::Found("/a".into(), Object::NamedType)));

@@ -1,11 +1,13 @@
-//! The times beside a channel, by their name.
+//! The times beside a channel, by their names, to seconds.
 
-use super::super::time_name;
 use super::answer::{Object, decoded};
-use super::dataset::Column;
-use super::find;
-use super::room::File;
-use std::rc::Rc;
+use super::attributes::Attributes;
+use super::column::Column;
+use super::fault::Fault;
+use super::{find, names};
+use crate::data::{Issue, Samples};
+use crate::ingest::clock::{Clock, Refusal};
+use crate::ingest::times::{Carrier, Scale, seconds_a_unit};
 
 /// Names that go before others.
 const FIRST_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "Time"];
@@ -19,60 +21,99 @@ pub(super) struct Clocks {
 
 impl Clocks {
     /// The times of a channel, likeliest first: fields of the same records, else datasets beside it, that have a usual name and as many values.
-    pub(super) fn of(&mut self, file: &Rc<File>, column: &Column) -> Vec<Column> {
-        let is_apart = |times: &Column| times.len() == column.len() && times.source() != column.source();
-        let records = column.records().map(|name| (format!("{name}."), true));
-        let places = records.into_iter().chain([(format!("{}/", column.group()), false)]);
-        let found = places.map(|(place, is_records)| {
+    pub(super) fn of(&mut self, column: &Column) -> Vec<Column> {
+        let is_apart = |times: &Column| times.length == column.length && times.source() != column.source();
+        let records = column.records().map(|name| format!("{name}."));
+        for place in records.into_iter().chain([format!("{}/", column.group())]) {
             if self.place.as_ref() != Some(&place) {
-                let names = if is_records { fields(file, &place) } else { members(file, &place) };
-                self.sources = ranked(&place, names);
+                self.sources = sources(&place, column);
                 self.place = Some(place);
             }
-            let found = self.sources.iter().filter_map(|source| find::find(file, source).ok());
-            found.filter(is_apart).collect::<Vec<_>>()
-        });
-        found.into_iter().find(|found| !found.is_empty()).unwrap_or_default()
+            let found =
+                self.sources.iter().filter_map(|source| find::find(&column.dataset.file, source).ok()?);
+            let found: Vec<Column> = found.filter(is_apart).collect();
+            if !found.is_empty() {
+                return found;
+            }
+        }
+        Vec::new()
     }
 }
 
-/// Why what is named as times beside a channel was not taken for its times; `None` where nothing is named so.
-pub(super) fn why_none(file: &Rc<File>, column: &Column) -> Option<String> {
-    let place = format!("{}/", column.group());
-    let sources = ranked(&place, members(file, &place));
-    sources.iter().filter(|source| **source != column.source()).find_map(|source| {
-        match find::find(file, source) {
-            Ok(times) => Some(format!("{source} holds {} times for {} samples", times.len(), column.len())),
-            Err(find::Missing::Because(fault)) => Some(fault.problem),
-            Err(find::Missing::Nowhere) => None,
-        }
-    })
+/// Why a channel has no times: what is named as times beside it, and is none of its own.
+pub(super) fn why_none(column: &Column) -> String {
+    let sources = sources(&format!("{}/", column.group()), column);
+    let others = sources.iter().filter(|source| **source != column.source());
+    let mut reasons = others.filter_map(|source| match find::find(&column.dataset.file, source) {
+        Ok(times) => Some(format!("{source} holds {} times for {} samples", times?.length, column.length)),
+        Err(fault) => Some(fault.to_string()),
+    });
+    reasons.next().unwrap_or_else(|| "no dataset of times beside it".into())
 }
 
-fn fields(file: &Rc<File>, place: &str) -> Vec<String> {
-    match &*file.object(place.trim_end_matches('.')) {
+/// What is named as times in a group (`/daq/`) or in records (`/daq/table.`), likeliest first.
+fn sources(place: &str, column: &Column) -> Vec<String> {
+    let path = place.trim_end_matches(['/', '.']);
+    let mut names = match &*column.dataset.file.object(if path.is_empty() { "/" } else { path }) {
+        Object::Group { times, .. } => times.clone(),
         Object::Dataset(dataset) => dataset.fields.iter().map(|field| decoded(&field.name)).collect(),
         _ => Vec::new(),
-    }
-}
-
-fn members(file: &Rc<File>, place: &str) -> Vec<String> {
-    let group = place.trim_end_matches('/');
-    match &*file.object(if group.is_empty() { "/" } else { group }) {
-        Object::Group { times, .. } => times.clone(),
-        _ => Vec::new(),
-    }
-}
-
-/// Whether a dataset or field of this name is one of times.
-pub(super) fn is_time(name: &str) -> bool {
-    let last = name.rsplit_once('.').map_or(name, |(_, last)| last);
-    time_name::is_time(time_name::split(last).0)
-}
-
-/// The sources named as times, likeliest first.
-fn ranked(place: &str, mut names: Vec<String>) -> Vec<String> {
-    names.retain(|name| is_time(name));
+    };
+    names.retain(|name| names::is_time(name));
     names.sort_by_key(|name| FIRST_NAMES.iter().position(|first| first == name).unwrap_or(FIRST_NAMES.len()));
     names.into_iter().map(|name| format!("{place}{name}")).collect()
+}
+
+/// The numbers of a column of times, with its own scale and offset, and what a unit of them is.
+fn counted(times: &Column) -> Result<(Vec<f64>, Scale), Fault> {
+    let own = Attributes::own(times).map_err(|refusal| Fault::from(refusal).at(&times.source()))?;
+    let unit = own.unit.clone();
+    let numbers = match times.samples()? {
+        Samples::F32(numbers) => numbers.into_iter().map(f64::from).collect(),
+        Samples::F64(numbers) => numbers,
+    };
+    Ok((own.applied(numbers), Scale::of(times.bare_name(), unit.as_deref())))
+}
+
+/// The times of a column in seconds; a rate that is stated tells units apart where nothing else does.
+///
+/// # Errors
+/// They cannot be read, or nothing tells their unit.
+pub(super) fn seconds(times: &Column, stated_hz: Option<f64>) -> Result<Vec<f64>, Fault> {
+    let (mut numbers, scale) = counted(times)?;
+    let source = times.source();
+    let carrier = if times.records().is_some() { Carrier::Field(&source) } else { Carrier::Dataset(&source) };
+    let unit_s = seconds_a_unit(scale, carrier, &numbers, stated_hz)?;
+    #[allow(clippy::float_cmp, reason = "1.0 is the literal for seconds")]
+    if unit_s != 1.0 {
+        for t in &mut numbers {
+            *t *= unit_s;
+        }
+    }
+    Ok(numbers)
+}
+
+/// Whether other times beside a channel bear out those that were taken, in seconds; what is no time by its unit says nothing.
+///
+/// # Errors
+/// They are far apart, and nothing decides between them.
+pub(super) fn witness(
+    taken: (&Column, &[f64]),
+    other: &Column,
+    is_decided: bool,
+) -> Result<Option<Issue>, Refusal> {
+    let Ok((mut others, scale)) = counted(other) else { return Ok(None) };
+    let (first_s, last_s) = span_s(taken.1);
+    let Some(unit_s) = scale.beside(last_s - first_s, &others) else { return Ok(None) };
+    for t in &mut others {
+        *t *= unit_s;
+    }
+    let [one, two] = [taken.0, other].map(|column| format!("{:?}", column.source()));
+    let clock = Clock { name: &one, times_s: taken.1 };
+    clock.borne_out_by(&Clock { name: &two, times_s: &others }, false, is_decided)
+}
+
+/// The least and the largest time, s.
+pub(super) fn span_s(times_s: &[f64]) -> (f64, f64) {
+    times_s.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &t| (a.min(t), b.max(t)))
 }

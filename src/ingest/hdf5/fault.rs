@@ -2,13 +2,17 @@
 
 use super::super::error::IngestError;
 use super::answer::{Bytes, decoded};
+use crate::ingest::clock::Refusal;
 use std::path::Path;
 
 /// What is wrong with a dataset, and what to do.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{place}{problem}")]
 pub(super) struct Fault {
+    /// What it is about with what parts it from the problem, "/a " or "/a: "; empty where that is said elsewhere.
+    place: String,
     pub problem: String,
-    pub mend: String,
+    pub remedy: String,
 }
 
 /// Part of the library's words, what they mean, and what to do.
@@ -57,9 +61,30 @@ const MEANINGS: [(&str, &str, &str); 9] = [
 ];
 
 impl Fault {
-    /// The same, said of what it is about.
+    pub(super) fn new(problem: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { place: String::new(), problem: problem.into(), remedy: remedy.into() }
+    }
+
+    /// What `name` is or has: "/a" and "is empty".
+    pub(super) fn of(name: &str, problem: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { place: format!("{name} "), ..Self::new(problem, remedy) }
+    }
+
+    /// The same, said of `name`, unless it says itself what it is about.
     pub(super) fn at(self, name: &str) -> Self {
-        Self { problem: format!("{name}: {}", self.problem), ..self }
+        if self.place.is_empty() { Self { place: format!("{name}: "), ..self } } else { self }
+    }
+
+    /// The problem alone where it is one of `name`, else with what it is one of.
+    pub(super) fn beside(&self, name: &str) -> String {
+        let is_own = self.place.trim_end_matches([':', ' ']) == name;
+        if is_own { self.problem.clone() } else { self.to_string() }
+    }
+}
+
+impl From<Refusal> for Fault {
+    fn from(Refusal { problem, remedy }: Refusal) -> Self {
+        Self::new(problem, remedy)
     }
 }
 
@@ -70,7 +95,7 @@ pub(super) fn of_file(path: &Path, fault: Fault) -> IngestError {
         path: path.display().to_string(),
         place: format!("HDF5 file of {size} bytes"),
         problem: fault.problem,
-        mend: fault.mend,
+        mend: fault.remedy,
     }
 }
 
@@ -80,16 +105,16 @@ pub(super) fn of_words(words: &[Bytes]) -> Fault {
     const LONGEST: usize = 200;
     let words: Vec<String> = words.iter().map(|word| decoded(&word[..word.len().min(LONGEST)])).collect();
     let all = words.join(": ").to_lowercase();
-    if let Some((part, problem, mend)) = MEANINGS.iter().find(|(part, ..)| all.contains(part)) {
+    if let Some((part, problem, remedy)) = MEANINGS.iter().find(|(part, ..)| all.contains(part)) {
         // The library gives the sizes for a file that is cut off.
         let detail = words.iter().find(|word| word.to_lowercase().contains(part));
         let sizes =
             detail.and_then(|d| d.split_once("file: ")).map_or(String::new(), |(_, s)| format!(" ({s})"));
-        return Fault { problem: format!("{problem}{sizes}"), mend: (*mend).to_owned() };
+        return Fault::new(format!("{problem}{sizes}"), *remedy);
     }
     let last = words.last().map_or("the library gives no reason", String::as_str);
-    Fault {
-        problem: format!("it cannot be read: {last}"),
-        mend: "the file may be damaged: try `h5dump -H FILE`, or copy it from the logger again".into(),
-    }
+    Fault::new(
+        format!("it cannot be read: {last}"),
+        "the file may be damaged: try `h5dump -H FILE`, or copy it from the logger again",
+    )
 }

@@ -1,19 +1,14 @@
 //! A source as a cask file names it to the dataset, and the column, row or field of it, that it means.
 
 use super::answer::{Dataset, Field, Filter, Number, Object, Storage, decoded};
-use super::dataset::{Column, Place};
+use super::column::{Column, Place};
 use super::fault::{self, Fault};
 use super::room::{File, Found};
+use crate::ingest::error;
 use std::rc::Rc;
 
 /// No filter that is built in packs tighter (deflate: 1032 : 1), so that a dataset that claims more was damaged or never written.
 const TIGHTEST_PACKING: u64 = 1100;
-
-/// Why a source names no column.
-pub(super) enum Missing {
-    Nowhere,
-    Because(Fault),
-}
 
 /// The places where what `source` names may stand, likeliest first, each with what of the name lies within it: names of datasets and
 /// fields may hold points and brackets themselves.
@@ -31,57 +26,98 @@ pub(super) fn places(source: &str) -> Vec<(String, Option<String>, Option<usize>
     places
 }
 
-/// The channel that `source` names: `/group/dataset`, `/group/dataset[2]` of a two-dimensional one, `/group/dataset.field` of records.
-pub(super) fn find(file: &Rc<File>, source: &str) -> Result<Column, Missing> {
-    let mut other = None;
+/// The channel that `source` names: `/group/dataset`, `/group/dataset[2]` of a two-dimensional one, `/group/dataset.field` of records;
+/// `None` where nothing stands there.
+///
+/// # Errors
+/// What stands there is no channel of numbers.
+pub(super) fn find(file: &Rc<File>, source: &str) -> Result<Option<Column>, Fault> {
+    let mut other = Ok(None);
     for (path, field, index) in places(source) {
         if let Some(dataset) = Found::at(file, &path) {
-            let found = match &field {
+            return match &field {
                 Some(field) => field_of(dataset, path, field, index),
                 None => column(dataset, path, index),
-            };
-            return found.map_err(Missing::Because);
+            }
+            .map(Some);
         }
         let object = file.object(&path);
-        if field.is_none() || !matches!(*object, Object::Group { .. }) {
-            other = other.or_else(|| no_dataset(&object, &path));
+        if other.is_ok() && (field.is_none() || !matches!(*object, Object::Group { .. })) {
+            other = no_dataset(&object, &path).map_or(Ok(None), Err);
         }
     }
-    Err(other.map_or(Missing::Nowhere, Missing::Because))
+    other
+}
+
+/// The channel that `source` names.
+///
+/// # Errors
+/// There is none; where nothing stands there, with the sources that are most like it.
+pub(super) fn locate(file: &Rc<File>, source: &str) -> Result<Column, Fault> {
+    find(file, source)?.ok_or_else(|| {
+        let all: Vec<String> = file
+            .walk()
+            .iter()
+            .filter_map(|(path, object)| match &**object {
+                Object::Dataset(dataset) => sources(dataset, path).ok(),
+                _ => None,
+            })
+            .flatten()
+            .collect();
+        let remedy = error::near_names(&file.path, source, "dataset", &all);
+        Fault::new(format!("there is no dataset {source}"), remedy)
+    })
 }
 
 /// What stands at a path instead of a dataset; `None` where nothing does.
 pub(super) fn no_dataset(object: &Object, path: &str) -> Option<Fault> {
-    let fault = |problem: String, mend: &str| Some(Fault { problem, mend: mend.to_owned() });
     match object {
         Object::Nothing | Object::Dataset(_) => None,
-        Object::Group { .. } => fault(
-            format!("{path} is a group, not a dataset"),
+        Object::Group { .. } => Some(Fault::of(
+            path,
+            "is a group, not a dataset",
             "name one of the datasets in it; `dropcheck inspect` lists them",
-        ),
-        Object::NamedType => fault(format!("{path} is a type, not a dataset"), NUMBERS),
-        Object::NotFollowed(what) => fault(format!("{path}: {what}"), OWN_DATA),
+        )),
+        Object::NamedType => Some(Fault::of(path, "is a type, not a dataset", NUMBERS)),
+        Object::NotFollowed(what) => Some(Fault::new(what, OWN_DATA).at(path)),
         Object::Broken(words) => Some(fault::of_words(words).at(path)),
     }
 }
 
-/// The sources that a dataset holds, at most `most`; a fault where it holds none.
-pub(super) fn sources(dataset: &Dataset, path: &str, most: usize) -> Result<Vec<String>, Fault> {
+/// A dataset with more columns than this is no table of channels.
+const MOST_COLUMNS: usize = 256;
+
+/// The sources that a dataset holds.
+///
+/// # Errors
+/// It holds no numbers in one or two dimensions, or in too many columns.
+pub(super) fn sources(dataset: &Dataset, path: &str) -> Result<Vec<String>, Fault> {
     refuse_unread(dataset, path)?;
     let several = |name: String, count: usize| match count {
         1 => vec![name],
-        count if count <= most => (0..count).map(|i| format!("{name}[{i}]")).collect(),
-        _ => Vec::new(),
+        count => (0..count.min(MOST_COLUMNS)).map(|i| format!("{name}[{i}]")).collect(),
     };
-    let (count, _, _) = channels(&shape_of(dataset, path)?, path)?;
+    let shape = shape_of(dataset, path)?;
+    let (count, _, place) = channels(&shape, path)?;
     if dataset.fields.is_empty() {
         number_of(dataset, path)?;
-        return Ok(several(path.to_owned(), count));
+        return if count > MOST_COLUMNS {
+            Err(unnamed(path, &shape, &place, count))
+        } else {
+            Ok(several(path.to_owned(), count))
+        };
     }
     let named = |field: &Field| several(format!("{path}.{}", decoded(&field.name)), field.count);
     let mut sources: Vec<String> = dataset.fields.iter().flat_map(named).collect();
-    sources.truncate(most);
+    sources.truncate(MOST_COLUMNS);
     Ok(sources)
+}
+
+/// That a source names none of the columns or rows of a dataset.
+fn unnamed(name: &str, shape: &[usize], place: &Place, count: usize) -> Fault {
+    let what = if matches!(place, Place::Row) { "row" } else { "column" };
+    let remedy = format!("name one {what}: \"{name}[0]\" to \"{name}[{}]\"", count.saturating_sub(1));
+    Fault::of(name, format!("has {} rows and {} columns", shape[0], shape[1]), remedy)
 }
 
 /// More rows than this are samples, not channels: no recorder of these tests has so many, and so few samples are no record of a drop.
@@ -95,42 +131,37 @@ fn channels(shape: &[usize], name: &str) -> Result<(usize, usize, Place), Fault>
         [length] | [length, 1] | [1, length] => Ok((1, length, Place::Whole)),
         [rows, length] if rows <= MOST_ROWS && length >= LONGER * rows => Ok((rows, length, Place::Row)),
         [length, columns] => Ok((columns, length, Place::Column)),
-        _ => Err(Fault {
-            problem: format!("{name} has {} dimensions", shape.len()),
-            mend: "only one and two dimensions are read; save the channel as a dataset of its own".into(),
-        }),
+        _ => Err(Fault::of(
+            name,
+            format!("has {} dimensions", shape.len()),
+            "only one and two dimensions are read; save the channel as a dataset of its own",
+        )),
     }
 }
 
 fn column(dataset: Found, name: String, index: Option<usize>) -> Result<Column, Fault> {
-    let wrong = |problem: String, mend: &str| Fault { problem, mend: mend.to_owned() };
+    let wrong = |problem: String, remedy: &str| Fault::of(&name, problem, remedy);
     refuse_unread(&dataset, &name)?;
     if let Some(first) = dataset.fields.first() {
-        return Err(Fault {
-            problem: format!("{name} holds records, with the fields {}", field_names(&dataset.fields)),
-            mend: format!("name one field: \"{name}.{}\"", decoded(&first.name)),
-        });
+        return Err(wrong(
+            format!("holds records, with the fields {}", field_names(&dataset.fields)),
+            &format!("name one field: \"{name}.{}\"", decoded(&first.name)),
+        ));
     }
     let number = number_of(&dataset, &name)?;
     let shape = shape_of(&dataset, &name)?;
     let (columns, length, place) = channels(&shape, &name)?;
     let index = match index {
         None | Some(0) if matches!(place, Place::Whole) => (shape.len() > 1).then_some(0),
+        None => return Err(unnamed(&name, &shape, &place, columns)),
         Some(_) if shape.len() == 1 => {
-            return Err(wrong(format!("{name} has one dimension"), "leave out the [ ] behind its name"));
+            return Err(wrong("has one dimension".into(), "leave out the [ ] behind its name"));
         }
         Some(index) if index < columns => Some(index),
         Some(index) => {
-            let what = if matches!(place, Place::Row) { "rows, one a channel" } else { "columns" };
-            let mend = "columns, or rows where those are the channels, count from 0";
-            return Err(wrong(format!("{name} has {columns} {what}, there is no [{index}]"), mend));
-        }
-        None => {
-            let what = if matches!(place, Place::Row) { "row" } else { "column" };
-            return Err(wrong(
-                format!("{name} has {} rows and {} columns", shape[0], shape[1]),
-                &format!("name one {what}: \"{name}[0]\" to \"{name}[{}]\"", columns.saturating_sub(1)),
-            ));
+            let all = if matches!(place, Place::Row) { "rows, one a channel" } else { "columns" };
+            let remedy = "columns, or rows where those are the channels, count from 0";
+            return Err(wrong(format!("has {columns} {all}, there is no [{index}]"), remedy));
         }
     };
     Ok(Column { dataset, index, columns, name, length, number, place })
@@ -138,55 +169,47 @@ fn column(dataset: Found, name: String, index: Option<usize>) -> Result<Column, 
 
 /// A field of the records of a dataset.
 fn field_of(dataset: Found, name: String, wanted: &str, index: Option<usize>) -> Result<Column, Fault> {
+    let wrong = |problem: String, remedy: String| Fault::of(&name, problem, remedy);
     refuse_unread(&dataset, &name)?;
     let fields = &dataset.fields;
     let Some(field) = fields.iter().find(|field| decoded(&field.name) == wanted) else {
-        let Some(first) = fields.first() else {
-            return Err(number_of(&dataset, &name).err().unwrap_or_else(|| Fault {
-                problem: format!("{name} holds no records with a field {wanted}, but numbers"),
-                mend: format!("name it without a field: \"{name}\""),
-            }));
-        };
-        return Err(Fault {
-            problem: format!("the records of {name} have no field {wanted} of numbers"),
-            mend: format!("name one of {}: \"{name}.{}\"", field_names(fields), decoded(&first.name)),
-        });
+        if fields.is_empty() {
+            number_of(&dataset, &name)?;
+            return Err(wrong(
+                format!("holds no records with a field {wanted}, but numbers"),
+                format!("name it without a field: \"{name}\""),
+            ));
+        }
+        return Err(wrong(
+            format!("has no field {wanted} of numbers"),
+            format!("name one of {}, such as \"{name}.{}\"", field_names(fields), decoded(&fields[0].name)),
+        ));
     };
-    let place = match index {
-        None if field.count > 1 => {
-            return Err(Fault {
-                problem: format!("{name}.{wanted} holds {} numbers a record", field.count),
-                mend: format!("name one: \"{name}.{wanted}[0]\" to \"{name}.{wanted}[{}]\"", field.count - 1),
-            });
+    let (last, several) = (field.count - 1, format!("holds {} numbers a record", field.count));
+    let field = match index {
+        None if last > 0 => {
+            let remedy = format!("name one: \"{name}.{wanted}[0]\" to \"{name}.{wanted}[{last}]\"");
+            return Err(Fault::of(&format!("{name}.{wanted}"), several, remedy));
         }
-        Some(index) if index >= field.count => {
-            return Err(Fault {
-                problem: format!(
-                    "{name}.{wanted} holds {} numbers a record, there is no [{index}]",
-                    field.count
-                ),
-                mend: "they count from 0".into(),
-            });
+        Some(index) if index > last => {
+            let problem = format!("{several}, there is no [{index}]");
+            return Err(Fault::of(&format!("{name}.{wanted}"), problem, "they count from 0"));
         }
-        index => field.element(index.unwrap_or(0)),
+        // One number of the list, as a field of its own.
+        index => {
+            Field { count: 1, from: field.from + index.unwrap_or(0) * field.number.bytes(), ..field.clone() }
+        }
     };
     let (count, length, _) = channels(&shape_of(&dataset, &name)?, &name)?;
     if count > 1 {
-        return Err(Fault {
-            problem: format!("{name} holds records in rows and columns"),
-            mend: "save them as a table of one dimension, one record a sample".into(),
-        });
+        return Err(wrong(
+            "holds records in rows and columns".into(),
+            "save them as a table of one dimension, one record a sample".into(),
+        ));
     }
-    let (columns, number) = (field.count, field.number);
-    let place = Place::Field(place, wanted.to_owned());
+    let (columns, number) = (last + 1, field.number);
+    let place = Place::Field(field, wanted.to_owned());
     Ok(Column { dataset, index, columns, name, length, number, place })
-}
-
-impl Field {
-    /// One number of the list, as a field of its own.
-    fn element(&self, index: usize) -> Self {
-        Self { count: 1, from: self.from + index * self.number.bytes(), ..self.clone() }
-    }
 }
 
 /// Their names, as many as fit a message.
@@ -203,7 +226,7 @@ fn refuse_unread(dataset: &Dataset, name: &str) -> Result<(), Fault> {
         Filter::Other(what) => Some(what),
         _ => None,
     });
-    let (what, mend) = match (&dataset.storage, filter) {
+    let (what, remedy) = match (&dataset.storage, filter) {
         (Storage::External, _) => ("the data are in another file, which is not read".to_owned(), OWN_DATA),
         (Storage::Virtual, _) => {
             ("it is put together from other datasets, which is not read".into(), OWN_DATA)
@@ -214,7 +237,7 @@ fn refuse_unread(dataset: &Dataset, name: &str) -> Result<(), Fault> {
         ),
         _ => return Ok(()),
     };
-    Err(Fault { problem: format!("{name}: {what}"), mend: mend.into() })
+    Err(Fault::new(what, remedy).at(name))
 }
 
 const OWN_DATA: &str = "ask for a recording that holds its own data: `h5repack IN OUT` makes one";
@@ -225,19 +248,22 @@ fn number_of(dataset: &Dataset, name: &str) -> Result<Number, Fault> {
     dataset.number.ok_or_else(|| {
         let what = decoded(&dataset.type_name);
         if dataset.is_records {
-            Fault {
-                problem: format!("{name} holds {what}: none of numbers, or beside others of varying length or other byte order"),
-                mend: "save each field of numbers as a dataset of its own".into(),
-            }
+            Fault::of(
+                name,
+                format!(
+                    "holds {what}: none of numbers, or beside others of varying length or other byte order"
+                ),
+                "save each field of numbers as a dataset of its own",
+            )
         } else {
-            Fault { problem: format!("{name} holds no numbers but {what}"), mend: NUMBERS.into() }
+            Fault::of(name, format!("holds no numbers but {what}"), NUMBERS)
         }
     })
 }
 
 /// The shape of a dataset; a fault where it is empty, or where the file cannot hold it.
 fn shape_of(dataset: &Dataset, name: &str) -> Result<Vec<usize>, Fault> {
-    let wrong = |what: &str| Fault { problem: format!("{name} {what}"), mend: NUMBERS.into() };
+    let wrong = |what: &str| Fault::of(name, what, NUMBERS);
     let Some(shape) = dataset.shape.clone() else { return Err(wrong("is empty")) };
     if shape.is_empty() {
         return Err(wrong("is a single value"));
@@ -251,10 +277,11 @@ fn shape_of(dataset: &Dataset, name: &str) -> Result<Vec<usize>, Fault> {
     let stored = dataset.stored_bytes;
     let is_plausible = bytes.is_some_and(|bytes| bytes <= stored.saturating_mul(TIGHTEST_PACKING));
     if !is_plausible {
-        return Err(Fault {
-            problem: format!("{name} claims {rows} rows, of which the file holds {stored} bytes"),
-            mend: "it was never written, or the file is damaged: copy it from the logger again".into(),
-        });
+        return Err(Fault::of(
+            name,
+            format!("claims {rows} rows, of which the file holds {stored} bytes"),
+            "it was never written, or the file is damaged: copy it from the logger again",
+        ));
     }
     Ok(shape)
 }

@@ -1,10 +1,10 @@
 //! An HDF5 file, through the C library, to descriptions and numbers: all that hands a file's bytes to C, in a process of its own.
 
 use super::answer::{
-    Answer, Bytes, Chunk, Dataset, Filter, Number, Object, Received, Request, Slab, Storage, Value, receive,
-    send, send_values,
+    Answer, Bytes, Chunk, Dataset, Filter, Object, Received, Request, Slab, Storage, Value, receive, send,
+    send_values,
 };
-use super::{attributes, clocks, types};
+use super::{names, types};
 use hdf5_metno::dataset::Layout;
 use hdf5_metno::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenUnicode};
 use hdf5_metno::{
@@ -42,6 +42,8 @@ struct Opened<'a> {
     /// Told how many bytes come next, and how many are held at a time.
     grant: &'a mut dyn FnMut(u64, u64),
     members: HashMap<String, Members>,
+    /// What was described beside what was asked for.
+    told: HashSet<String>,
 }
 
 /// Answers what is asked about the file at `path` until nobody asks any more.
@@ -63,12 +65,13 @@ pub(super) fn answer(
         }
     };
     send(to, &Answer::Opened { user_block: file.userblock(), library: hdf5_metno::library_version() })?;
-    let mut opened = Opened { file, grant, members: HashMap::new() };
-    while let Ok(Received::Message(request)) = receive(from) {
+    to.flush()?;
+    let mut opened = Opened { file, grant, members: HashMap::new(), told: HashSet::new() };
+    while let Ok((Received::Message(request), _)) = receive(from) {
         match request {
-            Request::Look(paths) => opened.look(&paths, to)?,
+            Request::Look(path) => opened.look(path, to)?,
             Request::Walk => opened.walk("", 0, &mut 0, to)?,
-            Request::Read { path, number, slab } => opened.read(&path, number, slab, to)?,
+            Request::Read { path, is_wide, slab } => opened.read(&path, is_wide, slab, to)?,
         }
         send(to, &Answer::Done)?;
         to.flush()?;
@@ -88,19 +91,20 @@ fn words(error: &hdf5_metno::Error) -> Vec<Bytes> {
 }
 
 impl Opened<'_> {
-    fn look(&mut self, paths: &[String], to: &mut impl Write) -> io::Result<()> {
-        let (mut told, mut asked) = (HashSet::new(), paths.to_vec());
-        while let Some(path) = asked.pop() {
-            if !told.insert(path.clone()) {
-                continue;
-            }
+    fn look(&mut self, path: String, to: &mut impl Write) -> io::Result<()> {
+        let object = self.object(&path);
+        let mut beside = Vec::new();
+        if matches!(object, Object::Dataset(_)) {
+            let groups = path.match_indices('/').map(|(at, _)| path[..at.max(1)].to_owned());
+            let group = path.rsplit_once('/').map_or("", |(group, _)| group);
+            let times = self.times_in(group).into_iter().map(|name| format!("{group}/{name}"));
+            beside = groups.chain(times).filter(|other| *other != path).collect();
+        }
+        // The root stands above every channel: the reader keeps what it was told once.
+        beside.retain(|other| self.told.insert(other.clone()));
+        send(to, &Answer::Found(path, object))?;
+        for path in beside {
             let object = self.object(&path);
-            if matches!(object, Object::Dataset(_)) {
-                let groups = path.match_indices('/').map(|(at, _)| path[..at.max(1)].to_owned());
-                asked.extend(groups);
-                let group = path.rsplit_once('/').map_or("", |(group, _)| group);
-                asked.extend(self.times_in(group).iter().map(|name| format!("{group}/{name}")));
-            }
             send(to, &Answer::Found(path, object))?;
         }
         Ok(())
@@ -166,7 +170,7 @@ impl Opened<'_> {
     }
 
     fn times_in(&mut self, group: &str) -> Vec<String> {
-        self.members(group).keys().filter(|name| clocks::is_time(name)).cloned().collect()
+        self.members(group).keys().filter(|name| names::is_time(name)).cloned().collect()
     }
 
     /// The members of a group, named by its path without a slash at its end.
@@ -184,18 +188,11 @@ impl Opened<'_> {
     }
 
     /// Sends the numbers of a dataset, or why they cannot be read.
-    fn read(&mut self, path: &str, number: Number, slab: Slab, to: &mut impl Write) -> io::Result<()> {
-        let sent = match number {
-            Number::I8 => self.send_numbers(path, slab, i8::to_le_bytes, to),
-            Number::I16 => self.send_numbers(path, slab, i16::to_le_bytes, to),
-            Number::I32 => self.send_numbers(path, slab, i32::to_le_bytes, to),
-            Number::I64 => self.send_numbers(path, slab, i64::to_le_bytes, to),
-            Number::U8 => self.send_numbers(path, slab, u8::to_le_bytes, to),
-            Number::U16 => self.send_numbers(path, slab, u16::to_le_bytes, to),
-            Number::U32 => self.send_numbers(path, slab, u32::to_le_bytes, to),
-            Number::U64 => self.send_numbers(path, slab, u64::to_le_bytes, to),
-            Number::F32 => self.send_numbers(path, slab, f32::to_le_bytes, to),
-            Number::F64 => self.send_numbers(path, slab, f64::to_le_bytes, to),
+    fn read(&mut self, path: &str, is_wide: bool, slab: Slab, to: &mut impl Write) -> io::Result<()> {
+        let sent = if is_wide {
+            self.send_numbers(path, slab, f64::to_le_bytes, to)
+        } else {
+            self.send_numbers(path, slab, f32::to_le_bytes, to)
         };
         match sent {
             Ok(sent) => sent,
@@ -329,8 +326,7 @@ fn chunks(dataset: &hdf5_metno::Dataset, filters: &[Filter]) -> Option<Vec<Chunk
 fn attributes_of(place: &Location) -> Vec<(String, Value)> {
     // The wrapper makes text of names of any bytes; they are bytes again before anybody looks at them.
     let names = place.attr_names().unwrap_or_default().into_iter().map(String::into_bytes);
-    let names =
-        names.filter_map(|name| String::from_utf8(name).ok()).filter(|name| attributes::is_read(name));
+    let names = names.filter_map(|name| String::from_utf8(name).ok()).filter(|name| names::is_read(name));
     let held = names.filter_map(|name| {
         let value = value(&place.attr(&name).ok()?)?;
         Some((name, value))

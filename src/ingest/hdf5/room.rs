@@ -4,9 +4,8 @@
 //! ends, and the recording is refused; this one goes on.
 
 use super::super::error::IngestError;
-use super::answer::{Answer, Dataset, Object, Received, Request, Slab, receive, send};
+use super::answer::{Answer, Dataset, Number, Object, Received, Request, Slab, Stored, receive, send};
 use super::fault::{self, Fault};
-use super::packed::Stored;
 use super::patience::{PATIENCE, Watched};
 use crate::ingest::Limits;
 use std::cell::{Cell, RefCell};
@@ -50,21 +49,19 @@ pub(super) struct File {
 }
 
 impl File {
-    /// Opens the file and asks what stands at the paths that are `wanted`, in one step.
+    /// Opens the file.
     ///
     /// # Errors
     /// The library does not open it.
-    pub(super) fn open(path: &Path, limits: Limits, wanted: Vec<String>) -> Result<Rc<Self>, IngestError> {
+    pub(super) fn open(path: &Path, limits: Limits) -> Result<Rc<Self>, IngestError> {
         let fault = |fault: Fault| fault::of_file(path, fault);
         let mut link = Link::to(path).map_err(|refusal| fault(unstarted(&refusal)))?;
-        // A process that has ended already says why below.
-        let _ = link.ask(&Request::Look(wanted));
         let (user_block, library) = match link.answer() {
             Ok((Answer::Opened { user_block, library }, _)) => (user_block, library),
             Ok((Answer::Refused(words), _)) => return Err(fault(fault::of_words(&words))),
             _ => return Err(fault(link.end())),
         };
-        let file = Self {
+        Ok(Rc::new(Self {
             path: path.to_owned(),
             bytes: std::fs::metadata(path).map_or(0, |metadata| metadata.len()),
             user_block,
@@ -74,10 +71,7 @@ impl File {
             known: RefCell::default(),
             noted_bytes: Cell::new(0),
             lost: RefCell::default(),
-        };
-        file.note();
-        file.whole()?;
-        Ok(Rc::new(file))
+        }))
     }
 
     /// Whether all that was asked was answered.
@@ -93,7 +87,7 @@ impl File {
         let known = || self.known.borrow().get(path).cloned();
         known()
             .or_else(|| {
-                self.ask(&Request::Look(vec![path.to_owned()]));
+                self.ask(&Request::Look(path.to_owned()));
                 self.note();
                 known()
             })
@@ -106,10 +100,15 @@ impl File {
         self.note()
     }
 
-    /// `count` numbers of a dataset.
-    pub(super) fn values<T: Stored>(&self, path: &str, slab: Slab, count: usize) -> Result<Vec<T>, Fault> {
+    /// `count` numbers of a dataset, turned into f32 or f64 by the library.
+    pub(super) fn values<S: Stored<Sample = S>>(
+        &self,
+        path: &str,
+        slab: Slab,
+        count: usize,
+    ) -> Result<Vec<S>, Fault> {
         let mut values = Vec::with_capacity(count);
-        self.ask(&Request::Read { path: path.to_owned(), number: T::NUMBER, slab });
+        self.ask(&Request::Read { path: path.to_owned(), is_wide: S::NUMBER == Number::F64, slab });
         loop {
             if let Some(lost) = self.lost.borrow().clone() {
                 return Err(lost);
@@ -117,9 +116,9 @@ impl File {
             self.link.borrow().wait_for(count.saturating_mul(8) as u64);
             let received = self.link.borrow_mut().receive();
             match received {
-                Ok((Received::Values(bytes), _)) if bytes.len() / size_of::<T>() <= count - values.len() => {
-                    let numbers = bytes.chunks_exact(size_of::<T>());
-                    values.extend(numbers.map(|bytes| T::from_bytes(|i| bytes[i])));
+                Ok((Received::Values(bytes), _)) if bytes.len() / size_of::<S>() <= count - values.len() => {
+                    let numbers = bytes.chunks_exact(size_of::<S>());
+                    values.extend(numbers.map(|bytes| S::sample(|i| bytes[i])));
                 }
                 Ok((Received::Message(Answer::Refused(words)), _)) => {
                     self.note();
@@ -231,11 +230,9 @@ impl Link {
     }
 
     fn receive(&mut self) -> io::Result<(Received<Answer>, usize)> {
-        let mut counted = Counted { from: &mut self.from, bytes: 0 };
-        let received = receive(&mut counted)?;
-        let bytes = counted.bytes;
+        let received = receive(&mut self.from)?;
         self.wait_for(0);
-        Ok((received, bytes))
+        Ok(received)
     }
 
     /// The other side may be silent for as long as reading `bytes` takes.
@@ -252,10 +249,10 @@ impl Link {
             Some((Ok(status), false)) => ending(status),
             Some((Err(_), false)) | None => "gave no answer that can be read".into(),
         };
-        Fault {
-            problem: format!("the HDF5 library {problem}: the file is damaged, or made to do harm"),
-            mend: "copy it from the logger again; if it is sound, `h5repack IN OUT` writes it anew".into(),
-        }
+        Fault::new(
+            format!("the HDF5 library {problem}: the file is damaged, or made to do harm"),
+            "copy it from the logger again; if it is sound, `h5repack IN OUT` writes it anew",
+        )
     }
 
     #[cfg(not(any(test, fuzzing)))]
@@ -299,17 +296,17 @@ impl Link {
 }
 
 fn unstarted(refusal: &io::Error) -> Fault {
-    Fault {
-        problem: match PROGRAM.get() {
-            Some(program) => format!(
-                "HDF5 is read by a process of its own, and {} could not be started: {}",
-                program.display(),
-                super::super::error::bare(refusal)
-            ),
-            None => "HDF5 is read by a process of its own, and no program was named for it".into(),
-        },
-        mend: "a program that uses this library names it: dropcheck::read_hdf5_with(program)".into(),
-    }
+    let what = match PROGRAM.get() {
+        Some(program) => {
+            let why = super::super::error::bare(refusal);
+            format!("{} could not be started: {why}", program.display())
+        }
+        None => "no program was named for it".into(),
+    };
+    Fault::new(
+        format!("HDF5 is read by a process of its own, and {what}"),
+        "a program that uses this library names it: dropcheck::read_hdf5_with(program)",
+    )
 }
 
 /// How the process ended, after "the HDF5 library".
@@ -327,18 +324,5 @@ fn ending(status: ExitStatus) -> String {
     match status.code() {
         Some(0) | None => "ended before it had answered".into(),
         Some(code) => format!("broke off in it (status {code})"),
-    }
-}
-
-struct Counted<'a> {
-    from: &'a mut dyn Read,
-    bytes: usize,
-}
-
-impl Read for Counted<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let read = self.from.read(buffer)?;
-        self.bytes += read;
-        Ok(read)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::super::csv::tests::cask_file;
 use super::*;
-use crate::data::IssueCode;
+use crate::data::{IssueCode, Samples, Severity};
 use hdf5_metno::File;
 use hdf5_metno::types::VarLenUnicode;
 use std::path::PathBuf;
@@ -247,4 +247,71 @@ fn data_that_lie_elsewhere_are_refused() {
         file.new_dataset::<f64>().shape(100).external("/etc/hostname", 0, 800).create("a").map(drop)
     });
     assert!(told(&made, "/a").contains("in another file, which is not read"), "{}", told(&made, "/a"));
+}
+
+type Places<'a> = &'a [(&'a str, &'a str)];
+
+/// 100 samples `/daq/a` with attributes of their own and of their group; sources in words or numbers.
+fn nested(samples: &[i16], own: &[(&str, &str)], outer: &[(&str, &str)]) -> Made {
+    made(|file| {
+        let group = file.create_group("daq")?;
+        let data = group.new_dataset_builder().with_data(samples).create("a")?;
+        let locations: [&hdf5_metno::Location; 2] = [&data, &group];
+        for (location, attributes) in locations.into_iter().zip([own, outer]) {
+            for (name, value) in attributes {
+                value.parse().map_or_else(|_| text(location, name, value), |x| number(location, name, x))?;
+            }
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn the_nearest_attribute_is_taken_and_another_one_is_told_or_refused() {
+    // Attributes of the dataset and of its group, the samples' value, and the severity of the one finding.
+    let rate = ("fs", "10000");
+    let rows: [(Places, Places, f64, Option<Severity>); 9] = [
+        (&[rate], &[("dt", "0.0001")], 2.0, None),
+        (&[rate], &[("sampleRate", "10.5 kHz")], 2.0, Some(Severity::Warning)),
+        (&[("fs_khz", "10")], &[("scale", "0.5")], 1.0, None),
+        (&[rate, ("scale", "0.5")], &[("scale_factor", "0.25")], 1.0, Some(Severity::Warning)),
+        (&[rate, ("scale", "0.5")], &[("scale", "1")], 1.0, Some(Severity::Note)),
+        (&[rate, ("offset", "2")], &[("add_offset", "5")], 4.0, Some(Severity::Warning)),
+        (&[rate, ("scale", "linear")], &[], 2.0, None),
+        (&[rate, ("unit", "g")], &[("units", "m/s^2")], 2.0, Some(Severity::Note)),
+        (&[rate, ("scale", "1"), ("binToVoltFactor", "0.5")], &[("binToVoltConstant", "0")], 2.0, None),
+    ];
+    for (own, outer, expected, severity) in rows {
+        let made = nested(&[2; 100], own, outer);
+        let channel =
+            &read(&made.path, &cask_file(&["/daq/a"]), Limits::default(), &|_| {}).unwrap().channels[0];
+        assert!((values(channel)[99] - expected).abs() < 1e-12, "{own:?} {outer:?}");
+        let severities: Vec<Severity> = channel.uniform.issues.iter().map(|issue| issue.severity).collect();
+        assert_eq!(severities, Vec::from_iter(severity), "{own:?} {outer:?}: {:?}", channel.uniform.issues);
+        let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
+        assert_eq!(listing.channels[0].range, Some((expected, expected)));
+        assert_eq!(listing.issues.len(), severities.len(), "{:?}", listing.issues);
+    }
+    let refused: [(Places, Places, &[&str]); 7] = [
+        (&[rate, ("dt", "0.00011")], &[], &["10000 Hz", "9090.909 Hz", "sample_rate_hz = 10000 or"]),
+        (&[("fs", "0")], &[rate], &["fs = 0 is no rate", "give sample_rate_hz"]),
+        (&[rate, ("scale", "0.5"), ("scale_factor", "0.25")], &[], &["contradict each other", "delete it"]),
+        (&[rate, ("scale_factor", "1,05")], &[], &["scale_factor = 1,05", "is no number"]),
+        (&[rate, ("unit", "g"), ("units", "m/s^2")], &[], &["unit = g and units = m/s^2 contradict"]),
+        (
+            &[rate],
+            &[("binToVoltFactor", "3e-4")],
+            &["counts of the recorder", "binToVoltFactor = 0.0003", "scale = 1"],
+        ),
+        (&[rate, ("range", "200")], &[], &["range = 200", "raw · scale + offset"]),
+    ];
+    for (own, outer, parts) in refused {
+        let made = nested(&[2; 100], own, outer);
+        let message = told(&made, "/daq/a");
+        for part in parts {
+            assert!(message.contains(part), "{own:?}: {message} without {part}");
+        }
+        let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
+        assert_eq!(listing.issues.len(), 1, "{own:?}: {:?}", listing.issues);
+    }
 }

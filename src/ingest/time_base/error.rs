@@ -95,7 +95,7 @@ pub enum TimeBaseError {
 
 impl TimeBaseError {
     /// What is wrong with its own remedy where it has one, else with this.
-    pub(super) fn refusal(self, remedy: &str) -> Refusal {
+    pub(in crate::ingest) fn refusal(self, remedy: &str) -> Refusal {
         match self {
             Self::Refused(refusal) => refusal,
             other => Refusal::new(other.to_string(), remedy),

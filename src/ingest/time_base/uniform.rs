@@ -31,7 +31,7 @@ pub struct Block {
 }
 
 /// A sample type that a base can hold.
-pub(super) trait Number: Copy {
+pub(in crate::ingest) trait Number: Copy {
     /// What stands where a sample is missing.
     const MISSING: Self;
     /// As f64.
