@@ -4,7 +4,6 @@ pub(crate) mod assemble;
 pub mod cask_file;
 #[allow(dead_code, reason = "readers move onto it one by one")]
 pub(crate) mod clock;
-mod clock_pair;
 mod csv;
 mod detect;
 #[allow(dead_code, reason = "readers move onto it one by one")]
@@ -22,9 +21,6 @@ mod statement;
 mod strangers;
 #[allow(dead_code, reason = "readers move onto it one by one")]
 pub mod time_base;
-mod time_name;
-mod time_reading;
-mod time_unit;
 #[allow(dead_code, reason = "readers move onto it one by one")]
 mod times;
 mod unchanged;

@@ -11,23 +11,6 @@ const ROUNDED_DIGITS: usize = 3;
 /// Printed with at least so many decimals, as C and LabVIEW do unasked, a number may be rounded however few digits it has.
 const PRINTED_DECIMALS: i32 = 6;
 
-/// Hz a unit of rate.
-const UNITS: [(&str, f64); 13] = [
-    ("hz", 1.0),
-    ("khz", 1e3),
-    ("mhz", 1e6),
-    ("s/s", 1.0),
-    ("ks/s", 1e3),
-    ("ms/s", 1e6),
-    ("sa/s", 1.0),
-    ("ksa/s", 1e3),
-    ("msa/s", 1e6),
-    ("1/s", 1.0),
-    ("sps", 1.0),
-    ("ksps", 1e3),
-    ("samples/s", 1.0),
-];
-
 /// A rate as a recording states it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct StatedRate {
@@ -91,23 +74,6 @@ pub(super) fn rounding(number: &str) -> f64 {
         return 0.0;
     }
     0.5 * 10_f64.powi(-decimals) / value
-}
-
-/// "50 kHz" to "50" and "kHz".
-pub(super) fn number_and_unit(text: &str) -> Option<(&str, &str)> {
-    let text = text.trim();
-    // The longest beginning that is a number: the e of an exponent is a letter too.
-    let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
-    ends.into_iter().find_map(|end| {
-        let number = text[..end].trim_end();
-        number.parse::<f64>().ok()?;
-        Some((number, text[end..].trim()))
-    })
-}
-
-/// Hz that a unit of rate is.
-pub(super) fn hz_a_unit(unit: &str) -> Option<f64> {
-    UNITS.iter().find(|(name, _)| name.eq_ignore_ascii_case(unit)).map(|unit| unit.1)
 }
 
 #[cfg(test)]

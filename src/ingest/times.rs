@@ -110,7 +110,19 @@ pub(super) fn seconds_a_unit(
     times: &[f64],
     stated_hz: Option<f64>,
 ) -> Result<f64, Refusal> {
-    let counted = || Counted::of(times);
+    seconds_by(scale, carrier, || Counted::of(times), stated_hz)
+}
+
+/// The same of times of which what they count is known where it is asked for.
+///
+/// # Errors
+/// As [`seconds_a_unit`].
+pub(super) fn seconds_by(
+    scale: Scale,
+    carrier: Carrier,
+    counted: impl Fn() -> Option<Counted>,
+    stated_hz: Option<f64>,
+) -> Result<f64, Refusal> {
     match scale {
         Scale::Known(unit_s) => Ok(unit_s),
         Scale::Unknown => Err(Refusal::new(
@@ -136,18 +148,19 @@ pub(super) fn seconds_a_unit(
 }
 
 /// What bare numbers say of the time that they count.
-struct Counted {
-    first: f64,
-    last: f64,
+pub(super) struct Counted {
+    pub first: f64,
+    pub last: f64,
     /// Rows per unit.
-    rate: f64,
-    span: f64,
+    pub rate: f64,
+    pub span: f64,
     /// Whether most rise by exactly 1, and all by whole numbers.
-    is_counter: bool,
+    pub is_counter: bool,
 }
 
 impl Counted {
-    fn of(times: &[f64]) -> Option<Self> {
+    /// `None` where no two times differ.
+    pub(super) fn of(times: &[f64]) -> Option<Self> {
         /// How many intervals are looked at: their median only has to tell a thousandfold.
         const LOOKED_AT: usize = 4096;
         // Rows of other channels may hold no time.

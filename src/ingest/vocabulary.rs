@@ -80,6 +80,10 @@ const COUNTS: [&str; 10] = [
     "anzahlabtastwerte",
 ];
 
+/// Names of a column that counts the rows, as [`RATES`].
+const COUNTERS: [&str; 12] =
+    ["sample", "samples", "sampleno", "samplenr", "index", "idx", "n", "no", "nr", "#", "count", "counter"];
+
 /// Names that in capitals mean something else: FS is a full scale, DT a dead time, `delta_T` a temperature.
 const SYMBOLS: [&str; 3] = ["fs", "dt", "deltat"];
 
@@ -186,6 +190,12 @@ pub(super) fn is_unit(word: &str) -> bool {
 /// Whether a name without its unit is one of times.
 pub(super) fn is_time(bare: &str) -> bool {
     TIMES.contains(&bare.to_lowercase().as_str())
+}
+
+/// Whether a column of that name counts the rows.
+pub(super) fn is_counter(name: &str) -> bool {
+    let bare = name.trim().to_lowercase().replace([' ', '_', '-', '.'], "");
+    COUNTERS.contains(&bare.as_str())
 }
 
 /// Whether a name without its unit is one of an axis.

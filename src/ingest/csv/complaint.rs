@@ -1,42 +1,35 @@
 //! What a table's end, rows, columns and times came to, in words.
 
 use super::super::Limits;
+use super::super::clock::Refusal;
 use super::super::error::{self, IngestError};
 use super::super::number;
 use super::super::time_base::TimeBaseError;
-use super::layout::{Column, Layout};
-use super::rows::{Ending, RowError, Wanted};
+use super::layout::Layout;
+use super::rows::{Ending, RowError};
 use super::time_column;
+use super::wanted::Wanted;
 use crate::data::{Issue, IssueCode, Severity};
 use std::path::Path;
 
-pub(super) fn ending_issues(ending: &Ending) -> Vec<Issue> {
-    ending
-        .cut_line
-        .map(|line| {
-            if ending.is_zeros {
-                let message = match ending.lines_behind {
-                    0 => format!(
-                        "from line {line} on stand zero bytes, as a logger leaves them that reserves its file ahead and is not closed: the rows \
-                         before are whole, what follows was not read"
-                    ),
-                    behind => format!(
-                        "line {line} holds zero bytes, as a disk or a copy at fault leaves them: it and the {behind} lines behind it were not \
-                         read; copy the file again, or cut the zero bytes out of a copy, where the times show what is missing"
-                    ),
-                };
-                return Issue::new(IssueCode::Truncated, Severity::Warning, message);
-            }
-            Issue::new(
-                IssueCode::Truncated,
-                Severity::Warning,
-                format!(
-                    "line {line}, the last, ends in the middle and was dropped: the file was cut off while it was written or copied"
-                ),
-            )
-        })
-        .into_iter()
-        .collect()
+/// What to do about times that give no base.
+pub(super) const TIMES_REMEDY: &str =
+    "check the column of times ([recording] time, or time of the channel), or give sample_rate_hz";
+
+/// What a table's end says of the rows that were behind it.
+pub(super) fn ending_issue(ending: &Ending) -> Option<Issue> {
+    let line = ending.cut_line?;
+    let message = if ending.is_zeros {
+        format!(
+            "from line {line} on stand zero bytes, as where a logger was not closed or a copy failed: the rows before are whole, what follows was \
+             not read; where rows stand behind, copy the file again"
+        )
+    } else {
+        format!(
+            "line {line}, the last, ends in the middle and was dropped: the file was cut off while it was written or copied"
+        )
+    };
+    Some(Issue::new(IssueCode::Truncated, Severity::Warning, message))
 }
 
 /// That no column holds times, with the one that looks most like it.
@@ -53,19 +46,13 @@ pub(super) fn no_times(layout: &Layout) -> String {
     }
 }
 
-/// That the name and the unit of a column of times contradict each other, and what to do.
-pub(super) fn twofold(column: &Column) -> (String, &'static str) {
-    let unit = column.unit.as_deref().unwrap_or_default();
-    let problem = format!(
-        "the times in column {:?} are in another unit by its name than by its unit, {unit:?}",
-        column.header
-    );
-    (
-        problem,
-        "correct the one that is wrong in a copy, or write sample_rate_hz in each [[channel]], which tells them apart",
-    )
+/// Rows that are refused as a whole.
+pub(super) fn of_rows(path: &Path, refusal: Refusal) -> IngestError {
+    let Refusal { problem, remedy } = refusal;
+    IngestError::Content { path: path.display().to_string(), place: "the rows".into(), problem, mend: remedy }
 }
 
+/// No table at all.
 pub(super) fn no_table(path: &Path) -> IngestError {
     IngestError::Content {
         path: path.display().to_string(),
@@ -75,13 +62,9 @@ pub(super) fn no_table(path: &Path) -> IngestError {
     }
 }
 
-pub(super) fn time_error(path: &Path, channel: &str, error: &TimeBaseError) -> IngestError {
-    error::source(
-        path,
-        channel,
-        error.to_string(),
-        "check the column of times ([recording] time, or time of the channel), or give sample_rate_hz",
-    )
+/// Times that give no base.
+pub(super) fn time_error(path: &Path, channel: &str, error: TimeBaseError) -> IngestError {
+    error::refused(path, channel, error.refusal(TIMES_REMEDY))
 }
 
 pub(super) fn row_error(
@@ -122,7 +105,7 @@ pub(super) fn row_error(
             format!("column {:?} holds {cell:?}, which is no number", headed(slot)),
             format!(
                 "the decimal mark of this file is taken as {:?}; correct the cell in a copy, or empty it: an empty cell counts as missing",
-                char::from(layout.decimal)
+                char::from(layout.dialect.decimal)
             ),
         ),
         RowError::NoTime { line, slot } => (

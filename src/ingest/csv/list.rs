@@ -1,127 +1,92 @@
-//! Delimited text to the list of its columns.
+//! Delimited text to the list of its columns, on the clock that reading one of them would take.
 
+use super::super::clock::{Claims, Refusal};
 use super::super::error::IngestError;
-use super::super::number;
-use super::complaint::{ending_issues, no_table, row_error, twofold};
-use super::input::Input;
-use super::layout::{Column, Layout};
-use super::rows::{self, Rows, Sink, Wanted};
-use super::stamp::Stamps;
-use super::{Limits, Progress, TimeBaseError, time_base, witness};
-use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Samples, Severity};
-use crate::ingest::time_reading::{Carrier, Reading, Scale};
+use super::super::{number, shown};
+use super::columns::{HeldColumn, Keep};
+use super::complaint::{self, ending_issue, no_table, row_error};
+use super::header;
+use super::layout::Layout;
+use super::lines::Text;
+use super::plan::Plan;
+use super::rows::{self, Part, Sink};
+use super::table::Table;
+use super::wanted::Wanted;
+use super::{Limits, Progress};
+use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Severity};
+use crate::ingest::time_base::TimeBaseError;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// What is known of a column after one pass.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 struct Range {
-    values: u64,
     words: u64,
     /// The first of the words, or its beginning.
     word: Option<String>,
-    smallest: f64,
-    largest: f64,
+    /// The smallest and the largest number.
+    numbers: Option<(f64, f64)>,
 }
 
-/// Keeps the times, and of the other columns their ranges.
+/// Keeps the columns that one channel would take, and of all columns what they hold.
 #[derive(Debug)]
-pub(super) struct Survey {
-    seen: Seen,
-    stamps: Stamps,
-}
-
-/// What some of the rows hold.
-#[derive(Debug)]
-pub(super) struct Seen {
-    time_slot: Option<usize>,
-    times: Vec<f64>,
+pub(super) struct Survey<'a> {
+    keep: Keep<'a>,
+    /// The places among all columns of those that are kept.
+    slots: Vec<usize>,
     ranges: Vec<Range>,
-    rows: u64,
+    rows: usize,
+    /// Rows up to the last that holds a number.
+    filled: usize,
 }
 
-impl Seen {
-    fn nothing(time_slot: Option<usize>, columns: usize) -> Self {
-        let range =
-            Range { values: 0, words: 0, word: None, smallest: f64::INFINITY, largest: f64::NEG_INFINITY };
-        Self { time_slot, times: Vec::new(), ranges: vec![range; columns], rows: 0 }
+impl<'a> Survey<'a> {
+    /// Before the first row; `all` are read, and `kept` of them kept.
+    pub(super) fn of(all: &Wanted, kept: &'a Wanted) -> Self {
+        Self {
+            keep: Keep::new(kept, vec![HeldColumn::default(); kept.columns.len()]),
+            slots: kept.columns.iter().map(|&column| all.slot(column)).collect(),
+            ranges: vec![Range::default(); all.columns.len()],
+            rows: 0,
+            filled: 0,
+        }
     }
 }
 
-impl Rows for Seen {
+impl Sink for Survey<'_> {
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
-        if self.time_slot == Some(slot) {
-            return None;
+        let kept = self.slots.iter().position(|&kept| kept == slot);
+        let value = kept.and_then(|kept| self.keep.word(kept, cell));
+        let is_time = kept.is_some_and(|kept| self.keep.is_time(kept));
+        if !is_time && value.is_none_or(f64::is_nan) {
+            let range = &mut self.ranges[slot];
+            range.words += 1;
+            range.word.get_or_insert_with(|| rows::shown(cell));
         }
-        let range = &mut self.ranges[slot];
-        range.words += 1;
-        range.word.get_or_insert_with(|| rows::shown(cell));
-        Some(f64::NAN)
+        value.or((!is_time).then_some(f64::NAN))
     }
 
-    fn row(&mut self, values: &[f64]) {
-        self.rows += 1;
-        for (range, &value) in self.ranges.iter_mut().zip(values) {
-            if value.is_finite() {
-                range.values += 1;
-                range.smallest = range.smallest.min(value);
-                range.largest = range.largest.max(value);
+    fn append(&mut self, parts: &mut [Part]) {
+        for part in &*parts {
+            for (range, values) in self.ranges.iter_mut().zip(&part.0) {
+                for (row, &value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
+                    let (smallest, largest) = range.numbers.unwrap_or((value, value));
+                    range.numbers = Some((smallest.min(value), largest.max(value)));
+                    self.filled = self.filled.max(self.rows + row + 1);
+                }
             }
+            self.rows += part.0.first().map_or(0, Vec::len);
         }
-        // A row for other columns than those with these times has none.
-        if let Some(slot) = self.time_slot
-            && !values[slot].is_nan()
-        {
-            self.times.push(values[slot]);
-        }
-    }
-}
-
-impl Survey {
-    /// Before the first row.
-    pub(super) fn of(time_slot: Option<usize>, columns: usize) -> Self {
-        Self { seen: Seen::nothing(time_slot, columns), stamps: Stamps::default() }
-    }
-}
-
-impl Rows for Survey {
-    fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
-        if self.seen.time_slot == Some(slot) {
-            self.stamps.seconds(slot, cell)
-        } else {
-            self.seen.word(slot, cell)
-        }
-    }
-
-    fn row(&mut self, values: &[f64]) {
-        self.seen.row(values);
-    }
-}
-
-impl Sink for Survey {
-    type Part = Seen;
-
-    fn part(&self) -> Seen {
-        Seen::nothing(self.seen.time_slot, self.seen.ranges.len())
-    }
-
-    fn append(&mut self, parts: &mut [Seen]) {
-        for part in parts {
-            let part = std::mem::replace(part, self.part());
-            self.seen.rows += part.rows;
-            self.seen.times.extend(part.times);
-            for (range, more) in self.seen.ranges.iter_mut().zip(part.ranges) {
-                range.values += more.values;
-                range.words += more.words;
-                range.word = range.word.take().or(more.word);
-                range.smallest = range.smallest.min(more.smallest);
-                range.largest = range.largest.max(more.largest);
-            }
-        }
+        let mut take = |part: &mut Part| {
+            Part(self.slots.iter().map(|&slot| std::mem::take(&mut part.0[slot])).collect())
+        };
+        let mut kept: Vec<Part> = parts.iter_mut().map(&mut take).collect();
+        self.keep.append(&mut kept);
+        parts.iter_mut().for_each(Part::clear);
     }
 
     fn held_bytes(&self) -> u64 {
-        8 * self.seen.times.len() as u64
+        self.keep.held_bytes()
     }
 }
 
@@ -134,9 +99,9 @@ pub(in super::super) fn list(
     limits: Limits,
     progress: Progress,
 ) -> Result<Listing, IngestError> {
-    let input = Input::open(path, limits)?;
-    let (bytes, encoding) = (input.bytes, input.encoding);
-    let layout = Layout::of(&input).ok_or_else(|| no_table(path))?;
+    let text = Text::open(path, limits)?;
+    let (bytes, encoding) = (text.bytes, text.encoding);
+    let layout = Layout::of(&text).ok_or_else(|| no_table(path))?;
     let time_column = layout.time_column;
     // Other columns of times are none's: a pair of columns may end before others.
     let is_timed = |column: usize| !layout.holds_times(column);
@@ -144,47 +109,34 @@ pub(in super::super) fn list(
         |column: usize| layout.time_of(column).filter(|time| Some(*time) == time_column && is_timed(column));
     let values: Vec<(usize, Option<usize>)> =
         (0..layout.columns.len()).map(|column| (column, time_of(column))).collect();
-    let wanted = Wanted::new(&values, &[]);
-    let mut survey = Survey::of(time_column, layout.columns.len());
-    let ending = rows::read(input, &layout, &wanted, &mut survey, (limits, progress))
-        .map_err(|error| row_error(path, limits, (&layout, &wanted), error))?;
-    let Survey { mut seen, stamps } = survey;
-    let mut issues = ending_issues(&ending);
-    if let Some(column) = time_column.filter(|&column| !stamps.are_in(column)) {
-        let reading = Reading::of(layout.time_scale(column), &seen.times, None);
-        reading.apply(&mut seen.times);
-        issues.extend(reading.issue(&layout.columns[column].header, Carrier::Column));
-        if let Scale::Twofold(..) = layout.time_scale(column) {
-            let (problem, mend) = twofold(&layout.columns[column]);
-            issues.push(Issue::new(IssueCode::Clock, Severity::Warning, format!("{problem}: {mend}")));
-        }
-    }
-    let stated = layout.stated_rate(usize::MAX);
-    let clock = match stated.filter(|_| time_column.is_none()) {
-        Some(stated) => Clock::at(stated.rate_hz, seen.rows),
-        None => Clock::of(&seen.times),
-    };
-    if let Some(rate_hz) = clock.sample_rate_hz.filter(|_| time_column.is_some()) {
-        issues.extend(witness::of_times(stated, rate_hz, &seen.times));
-        issues.extend(layout.preamble.of_rate(rate_hz, Some(witness::rounding(&seen.times))));
-    }
-    let rows = usize::try_from(seen.rows).unwrap_or(usize::MAX);
-    issues.extend(layout.preamble.of_rows((rows, clock.samples()), layout.columns.len()));
+    let all = Wanted::new(&values, &[]);
+    let plans = [plan(&layout)];
+    let kept = Wanted::of(&plans, &layout);
+    let mut survey = Survey::of(&all, &kept);
+    let ending = rows::read(text, &layout, &all, &mut survey, (limits, progress))
+        .map_err(|error| row_error(path, limits, (&layout, &all), error))?;
+    let Survey { keep: Keep { columns, stamps, .. }, ranges, filled: rows, .. } = survey;
+    let mut issues = Vec::from_iter(ending_issue(&ending));
+    let table = Table { layout: &layout, plans: &plans, wanted: &kept, columns, stamps };
+    let clock = ListedClock::of(table, &mut issues).unwrap_or_else(|Refusal { problem, remedy }| {
+        issues.push(Issue::new(IssueCode::Clock, Severity::Warning, format!("{problem}: {remedy}")));
+        ListedClock::default()
+    });
+    issues.extend(layout.preamble.of_rows(rows, clock.samples));
     let channels = layout
         .columns
         .iter()
         .enumerate()
         .filter(|(index, _)| Some(*index) != time_column)
-        .map(|(index, column)| listed(column, &seen.ranges[index], &clock, seen.rows))
+        .map(|(index, column)| listed(column, &ranges[index], &clock, rows as u64))
         .collect();
-    issues.extend(clock.issues);
     Ok(Listing {
         schema: "dropcheck.inspect/1",
         recording: path.display().to_string(),
         bytes,
         format: RecordingFormat::Csv,
         counts: BTreeMap::from([
-            ("rows".into(), seen.rows),
+            ("rows".into(), rows as u64),
             ("columns".into(), layout.columns.len() as u64),
             ("preamble_lines".into(), layout.preamble_lines),
         ]),
@@ -194,80 +146,80 @@ pub(in super::super) fn list(
     })
 }
 
-/// What the times say of every column.
+/// What a channel would take whose cask file says nothing but its source: the first column of numbers, on the times that were found.
+fn plan(layout: &Layout) -> Plan {
+    let time_column = layout.time_column;
+    let is_numbers = |&column: &usize| layout.columns[column].is_numeric && !layout.holds_times(column);
+    let mut found =
+        (0..layout.columns.len()).filter(is_numbers).filter(|column| Some(*column) != time_column);
+    let column =
+        found.find(|column| layout.time_of(*column) == time_column).or(time_column).unwrap_or_default();
+    let claims = Claims { stated: layout.preamble.statements(column), ..Claims::default() };
+    Plan { column, time_column, claims }
+}
+
+/// When the samples of every column were taken.
 #[derive(Default)]
-struct Clock {
+struct ListedClock {
     sample_rate_hz: Option<f64>,
     start_s: Option<f64>,
     duration_s: Option<f64>,
     gaps: Option<u64>,
-    issues: Vec<Issue>,
+    /// With those that times show to be missing.
+    samples: usize,
 }
 
-impl Clock {
-    /// Samples from the first to the last, those in gaps among them.
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a cast ends at the type's bounds"
-    )]
-    fn samples(&self) -> usize {
-        let between = self.duration_s.zip(self.sample_rate_hz).map_or(0.0, |(s, hz)| s * hz);
-        between.round() as usize + 1
-    }
-
-    /// Of rows that follow one another at a stated rate.
+impl ListedClock {
+    /// As reading takes it; what speaks against it goes to `issues`.
     #[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
-    fn at(rate_hz: f64, rows: u64) -> Self {
-        Self {
-            sample_rate_hz: Some(rate_hz),
-            start_s: Some(0.0),
-            duration_s: Some(rows.saturating_sub(1) as f64 / rate_hz),
-            ..Self::default()
+    fn of(mut table: Table, issues: &mut Vec<Issue>) -> Result<Self, Refusal> {
+        let plan = &table.plans[0];
+        table.drop_blank()?;
+        issues.extend(table.counter_jumps());
+        if plan.time_column.is_none() && plan.claims.is_empty() {
+            return Ok(Self::default());
         }
-    }
-
-    fn of(times_s: &[f64]) -> Self {
-        let repeated = times_s.windows(2).filter(|pair| pair[0] >= pair[1]).count();
-        // The samples are not at hand: a few equal times are taken for rows that came twice, more for times that are coarse.
-        let is_coarse = 10 * repeated > times_s.len();
-        let samples = (0..times_s.len()).map(|i| if is_coarse && i % 2 == 1 { 1.0 } else { 0.0 }).collect();
-        let uniform = match time_base::from_times(times_s, Samples::F32(samples), None) {
-            Ok(uniform) => uniform,
-            Err(TimeBaseError::TooFew { .. }) => return Self::default(),
-            Err(error) => {
-                let issue = Issue::new(IssueCode::Clock, Severity::Warning, error.to_string());
-                return Self { issues: vec![issue], ..Self::default() };
-            }
+        issues.extend(table.settle_times().map_err(|refused| refused.refusal)?);
+        table.drop_untimed();
+        let slot = |column: usize| table.wanted.slot(column);
+        let times = plan.time_column.map(|time| table.columns[slot(time)].values().into_owned());
+        let (first_s, last_s) = times
+            .iter()
+            .flatten()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &t| (a.min(t), b.max(t)));
+        if plan.time_column != Some(plan.column) {
+            // A value that is missing is no gap of the times.
+            let at = slot(plan.column);
+            table.columns[at]
+                .each_mut()
+                .iter_mut()
+                .filter(|value| value.is_nan())
+                .for_each(|value| *value = 0.0);
+        }
+        let uniform = match table.uniforms().remove(0) {
+            Err(TimeBaseError::TooFew { .. }) => return Ok(Self::default()),
+            uniform => uniform.map_err(|error| error.refusal(complaint::TIMES_REMEDY))?,
         };
-        let is_gap = |issue: &&Issue| issue.code == IssueCode::Gap;
-        let gaps = if uniform.issues.iter().any(|issue| is_gap(&issue)) { uniform.gaps.len() } else { 0 };
-        let (first_s, last_s) =
-            times_s.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &t| (a.min(t), b.max(t)));
-        Self {
+        let count = uniform.samples.len();
+        let has_gaps = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
+        issues.extend(uniform.issues.into_iter().map(|issue| Issue {
+            from_s: issue.from_s.map(|t| t - first_s),
+            to_s: issue.to_s.map(|t| t - first_s),
+            ..issue
+        }));
+        let of_rate = count.saturating_sub(1) as f64 / uniform.sample_rate_hz;
+        Ok(Self {
             sample_rate_hz: Some(uniform.sample_rate_hz),
             start_s: Some(0.0),
-            duration_s: Some(last_s - first_s),
-            gaps: Some(gaps as u64),
-            issues: uniform
-                .issues
-                .into_iter()
-                .map(|mut issue| {
-                    // The times alone were looked at: what interpolation does to the samples is not known here.
-                    if let Some(at) = issue.message.find("; the samples were interpolated") {
-                        issue.message.truncate(at);
-                    }
-                    issue.from_s = issue.from_s.map(|t| t - first_s);
-                    issue.to_s = issue.to_s.map(|t| t - first_s);
-                    issue
-                })
-                .collect(),
-        }
+            duration_s: Some(if times.is_some() { last_s - first_s } else { of_rate }),
+            gaps: times.is_some().then_some(if has_gaps { uniform.gaps.len() as u64 } else { 0 }),
+            samples: count,
+        })
     }
 }
 
-fn listed(column: &Column, range: &Range, clock: &Clock, rows: u64) -> ListedChannel {
-    let is_empty = range.values == 0;
+fn listed(column: &header::TableColumn, range: &Range, clock: &ListedClock, rows: u64) -> ListedChannel {
+    let is_empty = range.numbers.is_none();
     let unreadable = if column.is_stamped {
         Some("date-time stamps or clock times".to_owned())
     } else if let Some(word) = &range.word {
@@ -293,22 +245,22 @@ fn listed(column: &Column, range: &Range, clock: &Clock, rows: u64) -> ListedCha
         start_s: clock.start_s,
         duration_s: clock.duration_s,
         gaps: clock.gaps,
-        range: (!is_empty).then_some((range.smallest, range.largest)),
+        range: range.numbers.filter(|_| !column.is_stamped),
         encoding: "text".into(),
         unreadable,
     }
 }
 
 fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
-    let delimiter = match layout.delimiter {
+    let delimiter = match layout.dialect.delimiter.0 {
         b';' => "semicolon",
         b'\t' => "tab",
         b',' => "comma",
         b'|' => "vertical bar",
         _ => "blanks",
     };
-    let decimal = if layout.decimal == b',' { "comma" } else { "point" };
-    let header = if layout.has_header {
+    let decimal = if layout.dialect.decimal == b',' { "comma" } else { "point" };
+    let header = if layout.header_line > 0 {
         format!("line {}", layout.header_line)
     } else {
         "none: columns count 1, 2, …".to_owned()
@@ -327,7 +279,8 @@ fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
 }
 
 fn none_found(layout: &Layout) -> String {
+    let stated = layout.preamble.statements(usize::MAX);
     let stated =
-        layout.stated_rate(usize::MAX).map(|stated| format!("; Delta_X states {} Hz", stated.rate_hz));
+        stated.first().map(|stated| format!("; {} states {} Hz", stated.place, shown::hz(stated.rate_hz)));
     format!("none found{}", stated.unwrap_or_default())
 }

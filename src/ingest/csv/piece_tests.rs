@@ -1,8 +1,10 @@
 //! Random tables by pieces of any size: the rows, the error and the ending are those of reading it in order.
 
+use super::lines::Lines;
 use super::list::Survey;
 use super::pieces::Sizes;
-use super::rows::{RowError, Wanted, read_by};
+use super::rows::{RowError, read_by};
+use super::wanted::Wanted;
 use super::*;
 use proptest::prelude::*;
 use std::io::Cursor;
@@ -19,34 +21,32 @@ const IN_ORDER: Sizes = Sizes {
 
 fn layout(decimal: &str) -> Layout {
     let text = format!("{HEADER}0,1{decimal},2\n1,2,3\n2,3,1\n");
-    Layout::of(&Input::of_bytes(text.as_bytes())).unwrap()
+    Layout::of(&Text::of(Box::new(Cursor::new(text)), 0, "").unwrap()).unwrap()
 }
 
-/// The text after the header, of which `ahead` bytes are read with it.
-fn input(rows: &[u8], ahead: usize) -> Input {
-    let (ahead, rest) = rows.split_at(ahead.min(rows.len()));
-    Input {
-        head: [HEADER.as_bytes(), ahead].concat(),
-        is_whole: false,
-        rest: Box::new(Cursor::new(rest.to_vec())),
-        bytes: (HEADER.len() + rows.len()) as u64,
-        encoding: "UTF-8",
-    }
+/// The header and `rows`, of which `ahead` bytes are read with it.
+fn input(rows: &[u8], ahead: usize) -> Text {
+    let all = Cursor::new([HEADER.as_bytes(), rows].concat());
+    let mut text = Text::of(Box::new(all), (HEADER.len() + rows.len()) as u64, "").unwrap();
+    let mut behind = text.head.split_off((HEADER.len() + ahead).min(text.head.len()));
+    behind.extend(text.rest.has_zeros.then_some(0));
+    text.rest = Lines::of(Box::new(Cursor::new(behind)));
+    text
 }
 
 /// All that the readers of `analyze` and of `inspect` tell of the rows.
 fn told(rows: &[u8], ahead: usize, sizes: Sizes, layout: &Layout) -> [String; 2] {
     let wanted = Wanted::new(&[(1, Some(0)), (2, Some(0))], &[]);
-    let mut keep = Keep::new(&wanted, vec![Column::default(); 3]);
+    let mut keep = Keep::new(&wanted, vec![HeldColumn::default(); 3]);
     let end = read_by(input(rows, ahead), (layout, &wanted), &mut keep, sizes, &|_| ());
     let kept = match end {
         Ok(end) => {
-            let columns: Vec<_> = keep.columns.iter().map(Column::values).collect();
+            let columns: Vec<_> = keep.columns.iter().map(HeldColumn::values).collect();
             format!("{end:?} {columns:?} {:?}", keep.stamps)
         }
         Err(error) => format!("{error:?}"),
     };
-    let mut survey = Survey::of(Some(0), 3);
+    let mut survey = Survey::of(&wanted, &wanted);
     let end = read_by(input(rows, ahead), (layout, &wanted), &mut survey, sizes, &|_| ());
     [kept, end.map_or_else(|error| format!("{error:?}"), |end| format!("{end:?} {survey:?}"))]
 }
@@ -120,10 +120,7 @@ fn the_first_fault_in_order_is_told_with_its_line() {
         (format!("{good},2,3\n{good}1,oops,3\n{good}"), "NoTime { line: 52, slot: 0 }"),
         (format!("{good}{long}1,oops,3\n"), "TooLong { line: 52 }"),
         (format!("{good}1,oops,3\n{long}"), "Word { line: 52, slot: 1, cell: \"oops\" }"),
-        (
-            format!("{good}\0\0\n{good}1,oops,3\n"),
-            "Ending { lines: 52, cut_line: Some(52), is_zeros: true, lines_behind: 51 }",
-        ),
+        (format!("{good}\0\0\n{good}1,oops,3\n"), "Ending { cut_line: Some(52), is_zeros: true }"),
     ] {
         let [kept, _] = told(rows.as_bytes(), 0, sizes, &layout);
         assert!(kept.starts_with(expected), "{kept:?} is not {expected:?}");
@@ -141,7 +138,7 @@ fn rows_past_the_memory_are_refused_before_later_faults() {
         assert!(kept.starts_with(expected), "{before}: {kept}");
     }
     let fits = "1,2,3\n".repeat(100);
-    assert!(told(fits.as_bytes(), 0, sizes, &layout)[0].starts_with("Ending { lines: 101"));
+    assert!(told(fits.as_bytes(), 0, sizes, &layout)[0].starts_with("Ending { cut_line: None"));
 }
 
 /// A reader that fails once its text is read.
@@ -164,8 +161,8 @@ fn rows_before_a_failure_to_read_are_looked_at_first() {
     let good = "1,2,3\n".repeat(42);
     for (rows, is_word) in [(good.clone() + "1,oops,3\n" + &good, true), (good.clone() + &good, false)] {
         let mut text = input(b"", 0);
-        text.rest = Box::new(Broken(Cursor::new(rows.into_bytes())));
-        let mut keep = Keep::new(&wanted, vec![Column::default(); 3]);
+        text.rest = Lines::of(Box::new(Broken(Cursor::new(rows.into_bytes()))));
+        let mut keep = Keep::new(&wanted, vec![HeldColumn::default(); 3]);
         let error = read_by(text, (&layout, &wanted), &mut keep, sizes, &|_| ()).unwrap_err();
         assert_eq!(matches!(error, RowError::Word { line: 44, .. }), is_word, "{error:?}");
         assert_eq!(matches!(error, RowError::Io(_)), !is_word, "{error:?}");

@@ -50,7 +50,7 @@ pub(super) struct Batch {
 
 impl Batch {
     /// Reads on behind the text held; a line that fills the batch gets twice the room.
-    pub(super) fn fill(&mut self, rest: &mut (dyn Read + Send), sizes: Sizes) -> std::io::Result<()> {
+    pub(super) fn fill(&mut self, rest: &mut impl Read, sizes: Sizes) -> std::io::Result<()> {
         let held = self.text.len();
         let most = if held < sizes.batch_bytes { sizes.batch_bytes } else { held.saturating_mul(2) };
         let room = most - held;

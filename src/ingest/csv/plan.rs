@@ -1,26 +1,22 @@
 //! A channel of the cask file to what it takes from the table.
 
+use super::super::clock::Claims;
 use super::super::error::{self, IngestError};
-use super::super::stated_rate::StatedRate;
 use super::complaint;
 use super::layout::Layout;
 use crate::data::{ChannelSpec, Source};
-use crate::ingest::time_reading::Scale;
 use std::path::Path;
 
 /// What one channel takes from the table.
 pub(super) struct Plan {
     pub column: usize,
     pub time_column: Option<usize>,
-    /// Hz.
-    pub declared_rate_hz: Option<f64>,
-    /// What the header states, whether or not it is taken.
-    pub stated: Option<StatedRate>,
-    /// Whether the cask file says what to go by: a rate, or which column holds the times.
-    pub is_settled: bool,
+    /// What is said of its rate apart from its times.
+    pub claims: Claims,
 }
 
 impl Plan {
+    /// What `spec` asks for, with the times that the cask file names for all channels.
     pub(super) fn of(
         path: &Path,
         spec: &ChannelSpec,
@@ -36,35 +32,17 @@ impl Plan {
             ));
         };
         let column = find(path, spec, source, layout)?;
-        let time_column = match spec.time.as_deref().or(time) {
+        let named = spec.time.as_deref().or(time);
+        let time_column = match named {
             Some(name) => Some(find(path, spec, name, layout)?),
             None => layout.time_of(column),
         };
-        if let Some(found) = time_column
-            && layout.time_scale(found) == Scale::Unknown
-        {
-            return Err(error::source(
-                path,
-                &spec.name,
-                format!(
-                    "the times in column {:?} are in {:?}, which is no unit of time known here",
-                    layout.columns[found].header,
-                    layout.columns[found].unit.as_deref().unwrap_or("")
-                ),
-                "head the column with [s], [ms], [µs] or [ns], or give sample_rate_hz and another time column",
-            ));
-        }
-        if spec.sample_rate_hz.is_none()
-            && let Some(found) = time_column
-            && let Scale::Twofold(..) = layout.time_scale(found)
-        {
-            let (problem, mend) = complaint::twofold(&layout.columns[found]);
-            return Err(error::source(path, &spec.name, problem, mend));
-        }
-        let stated = layout.stated_rate(column).cloned();
-        let stated_hz = stated.as_ref().filter(|_| time_column.is_none()).map(|stated| stated.rate_hz);
-        let declared_rate_hz = spec.sample_rate_hz.or(stated_hz);
-        if time_column.is_none() && declared_rate_hz.is_none() {
+        let claims = Claims {
+            cask_hz: spec.sample_rate_hz,
+            are_times_named: named.is_some(),
+            stated: layout.preamble.statements(column),
+        };
+        if time_column.is_none() && claims.is_empty() {
             return Err(error::source(
                 path,
                 &spec.name,
@@ -72,8 +50,12 @@ impl Plan {
                 "name it under [recording]: time = \"…\", or give this channel sample_rate_hz",
             ));
         }
-        let is_settled = spec.sample_rate_hz.is_some() || spec.time.is_some() || time.is_some();
-        Ok(Self { column, time_column, declared_rate_hz, stated, is_settled })
+        Ok(Self { column, time_column, claims })
+    }
+
+    /// Whether the cask file says what to go by: a rate, or which column holds the times.
+    pub(super) fn is_decided(&self) -> bool {
+        self.claims.cask_hz.is_some() || self.claims.are_times_named
     }
 }
 
@@ -85,7 +67,7 @@ fn find(path: &Path, spec: &ChannelSpec, wanted: &str, layout: &Layout) -> Resul
         [] => Err(error::source(
             path,
             &spec.name,
-            if layout.has_header {
+            if layout.header_line > 0 {
                 format!("no column is headed {wanted:?} (the header is line {})", layout.header_line)
             } else {
                 format!(

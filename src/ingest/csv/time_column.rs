@@ -1,12 +1,12 @@
 //! Headers and first rows to the column of times and to what its numbers count.
 
-use super::layout::Column;
+use super::header::TableColumn;
 use super::stamp::Stamps;
-use crate::ingest::time_reading::Scale;
-use crate::ingest::{number, time_name};
+use crate::ingest::times::Scale;
+use crate::ingest::{number, vocabulary};
 
 /// What the numbers of a column of times count, as the header, the row of units or the name says.
-pub(super) fn scale(column: &Column) -> Scale {
+pub(super) fn scale(column: &TableColumn) -> Scale {
     if column.is_stamped { Scale::Known(1.0) } else { Scale::of(&column.name, column.unit.as_deref()) }
 }
 
@@ -21,7 +21,7 @@ pub(super) struct Found {
 
 /// Finds them; `cells` gives a column's cells of the first rows.
 pub(super) fn find<'a, Cells: Iterator<Item = &'a str>>(
-    columns: &[Column],
+    columns: &[TableColumn],
     is_first_rising: bool,
     decimal: u8,
     cells: impl Fn(usize) -> Cells,
@@ -57,17 +57,17 @@ pub(super) fn find<'a, Cells: Iterator<Item = &'a str>>(
 }
 
 /// Whether a column is headed as one of times.
-pub(super) fn is_headed(column: &Column) -> bool {
+pub(super) fn is_headed(column: &TableColumn) -> bool {
     let bare = bare_name(column);
     is_named(column, &bare) || begins_so(&bare)
 }
 
-fn is_named(column: &Column, bare: &str) -> bool {
-    time_name::is_time(bare) || (time_name::is_axis(bare) && matches!(scale(column), Scale::Known(_)))
+fn is_named(column: &TableColumn, bare: &str) -> bool {
+    vocabulary::is_time(bare) || (vocabulary::is_axis(bare) && matches!(scale(column), Scale::Known(_)))
 }
 
-fn bare_name(column: &Column) -> String {
-    time_name::split(&column.name).0.to_lowercase()
+fn bare_name(column: &TableColumn) -> String {
+    vocabulary::split(&column.name).0.to_lowercase()
 }
 
 fn begins_so(name: &str) -> bool {
@@ -77,12 +77,11 @@ fn begins_so(name: &str) -> bool {
 /// How many of the cells are later than the one before, and how many have one before.
 fn rises<'a>(cells: impl Iterator<Item = &'a str>, decimal: u8) -> (usize, usize) {
     let mut stamps = Stamps::default();
-    let times: Vec<f64> = cells
-        .filter_map(|cell| {
-            number::of_cell(cell.as_bytes(), decimal).or_else(|| stamps.seconds(0, cell.as_bytes()))
-        })
+    let times: Vec<Option<f64>> = cells
+        .map(|cell| number::of_cell(cell.as_bytes(), decimal).or_else(|| stamps.seconds(0, cell.as_bytes())))
         .collect();
-    (times.windows(2).filter(|pair| pair[0] < pair[1]).count(), times.len().saturating_sub(1))
+    let rises = |pair: &&[Option<f64>]| pair[0].zip(pair[1]).is_some_and(|(one, next)| one < next);
+    (times.windows(2).filter(rises).count(), times.len().saturating_sub(1))
 }
 
 #[cfg(test)]
@@ -111,8 +110,8 @@ mod tests {
             ("TimeStamp", "TimeStamp", Scale::Open),
             ("t", "t", Scale::Open),
         ] {
-            assert_eq!(time_name::split(header).0, name, "{header}");
-            let column = Column {
+            assert_eq!(vocabulary::split(header).0, name, "{header}");
+            let column = TableColumn {
                 header: header.into(),
                 name: header.into(),
                 unit: None,
@@ -121,7 +120,7 @@ mod tests {
                 example: String::new(),
             };
             assert_eq!(super::scale(&column), scale, "{header}");
-            let stated = Column { unit: Some("s".into()), ..column };
+            let stated = TableColumn { unit: Some("s".into()), ..column };
             let expected = match scale {
                 Scale::Known(named_s) if named_s.total_cmp(&1.0).is_ne() => Scale::Twofold(named_s, 1.0),
                 _ => Scale::Known(1.0),

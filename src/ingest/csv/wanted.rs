@@ -1,6 +1,10 @@
 //! Channels with their times and witnesses to the columns that are read.
 
+use super::layout::Layout;
+use super::plan::Plan;
+
 /// Which columns to read.
+#[derive(Debug)]
 pub(super) struct Wanted {
     /// Their indices, rising; a slot is a place in this list.
     pub columns: Vec<usize>,
@@ -13,6 +17,16 @@ pub(super) struct Wanted {
 }
 
 impl Wanted {
+    /// What channels take, and the columns that bear their times out; without times the one that counts the rows.
+    pub(super) fn of(plans: &[Plan], layout: &Layout) -> Self {
+        let values: Vec<_> = plans.iter().map(|plan| (plan.column, plan.time_column)).collect();
+        let times: Vec<usize> = plans.iter().filter_map(|plan| plan.time_column).collect();
+        let counter =
+            layout.counter().filter(|column| times.is_empty() && !values.contains(&(*column, None)));
+        let of_times = times.iter().flat_map(|&time| layout.witnesses(time)).map(|(column, _)| column);
+        Self::new(&values, &of_times.chain(counter).collect::<Vec<_>>())
+    }
+
     /// The columns of values, each with that of its times, and those that bear times out.
     pub(super) fn new(values: &[(usize, Option<usize>)], witnesses: &[usize]) -> Self {
         let times: Vec<usize> = values.iter().filter_map(|(_, time)| *time).collect();

@@ -3,7 +3,6 @@
 use crate::data::{Issue, IssueCode, Severity, acceleration_unit_m_s2};
 use crate::ingest::stated_rate::{Agreement, StatedRate, rounding, shown_hz};
 use crate::ingest::time_base::RATE_TOLERANCE;
-use crate::ingest::time_reading;
 
 /// An interval that is further than this factor off one over the rate, in any unit, is one of something else, as of whole blocks.
 const ALIKE: f64 = 1.2;
@@ -23,7 +22,7 @@ impl Rates {
     ) -> Option<Self> {
         let first = rates.next()?;
         let of_interval = |(name, interval): (&'a str, f64)| {
-            let hz = time_reading::UNITS.iter().map(|unit| 1.0 / (interval * unit.1));
+            let hz = [1.0, 1e-3, 1e-6, 1e-9].into_iter().map(|unit_s| 1.0 / (interval * unit_s));
             let hz = hz.into_iter().find(|hz| (1.0 / ALIKE..ALIKE).contains(&(hz / first.1)))?;
             Some((name, interval, hz))
         };

@@ -1,23 +1,22 @@
 //! The wanted columns of a table in memory: each value, or of times on an even grid their rule.
 
-use super::super::time_base::{self, RATE_TOLERANCE, TimeBaseError, Uniform};
-use super::rows::{Rows, Sink, Wanted};
+use super::super::times::Counted;
+use super::even::Even;
+use super::rows::{Part, Sink};
 use super::stamp::Stamps;
-use super::witness;
-use crate::data::Samples;
-use crate::ingest::time_reading::Clock;
+use super::wanted::Wanted;
 use rayon::prelude::*;
 use std::borrow::Cow;
 
 /// One wanted column.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Column {
+pub(super) struct HeldColumn {
     /// All values but these are none, where they keep to a rule.
     even: Option<Even>,
     each: Vec<f64>,
 }
 
-impl Column {
+impl HeldColumn {
     /// For so many values without a second thought.
     pub(super) fn with_capacity(count: usize) -> Self {
         Self { even: None, each: Vec::with_capacity(count) }
@@ -62,9 +61,9 @@ impl Column {
         &mut self.each
     }
 
-    /// What the numbers of times say before their unit is known.
-    pub(super) fn clock(&self) -> Option<Clock> {
-        self.even.map_or_else(|| Clock::of(&self.each), |even| even.clock())
+    /// What the bare numbers say of the time that they count.
+    pub(super) fn counted(&self) -> Option<Counted> {
+        self.even.map_or_else(|| Counted::of(&self.each), |even| even.counted())
     }
 
     /// The values times `scale`.
@@ -75,139 +74,30 @@ impl Column {
             None => {}
         }
     }
-
-    /// How far off the rate of times may be for what they are rounded to, as a part of it.
-    pub(super) fn rounding(&self) -> f64 {
-        // The step over the record; on an even grid nothing is rounded.
-        if self.even.is_some() { 0.0 } else { witness::rounding(&self.each) }
-    }
-}
-
-/// Times whose digits stand on an even grid, (first + i·step) / divisor · scale: most recorders write such, and they need no memory.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Even {
-    first: i64,
-    step: i64,
-    /// A power of ten.
-    divisor: f64,
-    scale: f64,
-    count: usize,
-}
-
-/// Whole numbers below are exact in f64.
-const EXACT: i64 = 1 << 53;
-
-impl Even {
-    /// The rule of the first two values, read with as few decimals as they have, where they rise; it counts none of them yet.
-    fn of(values: &[f64]) -> Option<Self> {
-        /// Decimals of picoseconds in s.
-        const MOST_DECIMALS: i32 = 12;
-        let &[from, to, ..] = values else { return None };
-        (0..=MOST_DECIMALS).find_map(|decimals| {
-            let divisor = 10_f64.powi(decimals);
-            let first = whole(from, divisor)?;
-            let step = whole(to, divisor)? - first;
-            (step > 0).then_some(Self { first, step, divisor, scale: 1.0, count: 0 })
-        })
-    }
-
-    /// Value `index`, before scaling to the bit what its digits are read as.
-    #[allow(clippy::cast_precision_loss, clippy::cast_possible_wrap, reason = "`keeps` stays below 2^53")]
-    fn at(&self, index: usize) -> f64 {
-        (self.first + self.step * index as i64) as f64 / self.divisor * self.scale
-    }
-
-    fn values(self) -> impl Iterator<Item = f64> {
-        (0..self.count).map(move |index| self.at(index))
-    }
-
-    /// Whether `values` are the next ones.
-    fn keeps(&self, values: &[f64]) -> bool {
-        /// Values asked at once, which costs less than to ask each.
-        const TOGETHER: usize = 64;
-        let last = i64::try_from(self.count + values.len())
-            .ok()
-            .and_then(|count| self.step.checked_mul(count)?.checked_add(self.first));
-        let is_next = |(index, value): (usize, &f64)| self.at(index).to_bits() == value.to_bits();
-        let mut chunks = values.chunks(TOGETHER).zip((self.count..).step_by(TOGETHER));
-        last.is_some_and(|last| last < EXACT)
-            && chunks.all(|(chunk, from)| (from..).zip(chunk).fold(true, |all, next| all & is_next(next)))
-    }
-
-    /// Rows per unit.
-    #[allow(clippy::cast_precision_loss, reason = "`keeps` stays below 2^53")]
-    fn rate(&self) -> f64 {
-        self.divisor / self.step as f64 / self.scale
-    }
-
-    fn clock(&self) -> Option<Clock> {
-        let (first, last) = (self.at(0), self.at(self.count.checked_sub(2)? + 1));
-        let counts = (self.rate() - 1.0).abs() < f64::EPSILON && self.first % self.step == 0;
-        Some(Clock { first, last, rate: self.rate(), span: last - first, counts })
-    }
-
-    /// Samples at these times, s, on their base; a declared rate in Hz wins over theirs.
-    ///
-    /// # Errors
-    /// As [`time_base::Times::place`].
-    pub(super) fn place(
-        &self,
-        samples: Samples,
-        declared_rate_hz: Option<f64>,
-    ) -> Result<Uniform, TimeBaseError> {
-        if samples.len() != self.count {
-            return Err(TimeBaseError::Lengths { times: self.count, samples: samples.len() });
-        }
-        let mut uniform = time_base::from_rate(self.at(0), self.rate(), samples)?;
-        match declared_rate_hz {
-            Some(rate_hz) if (rate_hz / self.rate() - 1.0).abs() > RATE_TOLERANCE => uniform.at(rate_hz),
-            _ => {
-                uniform.sample_rate_hz = declared_rate_hz.unwrap_or(uniform.sample_rate_hz);
-                Ok(uniform)
-            }
-        }
-    }
-}
-
-/// `value` · `divisor` where that is a whole number to the last bit.
-#[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "below 2^53")]
-fn whole(value: f64, divisor: f64) -> Option<i64> {
-    let whole = (value * divisor).round();
-    let is_it = whole.abs() < EXACT as f64 && (whole / divisor).to_bits() == value.to_bits();
-    is_it.then_some(whole as i64)
 }
 
 /// Keeps the wanted columns whole.
+#[derive(Debug)]
 pub(super) struct Keep<'a> {
     wanted: &'a Wanted,
-    pub columns: Vec<Column>,
+    pub columns: Vec<HeldColumn>,
     pub stamps: Stamps,
     /// Of columns that bear out others.
     other_stamps: Stamps,
 }
 
 impl<'a> Keep<'a> {
-    pub(super) fn new(wanted: &'a Wanted, columns: Vec<Column>) -> Self {
+    pub(super) fn new(wanted: &'a Wanted, columns: Vec<HeldColumn>) -> Self {
         Self { wanted, columns, stamps: Stamps::default(), other_stamps: Stamps::default() }
     }
-}
 
-/// Some rows of the wanted columns.
-pub(super) struct Part(Vec<Vec<f64>>);
-
-impl Rows for Part {
-    fn word(&mut self, _slot: usize, _cell: &[u8]) -> Option<f64> {
-        None
-    }
-
-    fn row(&mut self, values: &[f64]) {
-        for (column, &value) in self.0.iter_mut().zip(values) {
-            column.push(value);
-        }
+    /// Whether a slot holds the times of channels, in which a word is at fault.
+    pub(super) fn is_time(&self, slot: usize) -> bool {
+        self.wanted.is_time[slot]
     }
 }
 
-impl Rows for Keep<'_> {
+impl Sink for Keep<'_> {
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
         if self.wanted.is_witness[slot] {
             return Some(self.other_stamps.seconds(slot, cell).unwrap_or(f64::NAN));
@@ -215,30 +105,18 @@ impl Rows for Keep<'_> {
         if self.wanted.is_time[slot] { self.stamps.seconds(slot, cell) } else { None }
     }
 
-    fn row(&mut self, values: &[f64]) {
-        for (column, &value) in self.columns.iter_mut().zip(values) {
-            column.extend(&[value], false);
-        }
-    }
-}
-
-impl Sink for Keep<'_> {
-    type Part = Part;
-
-    fn part(&self) -> Part {
-        Part(vec![Vec::new(); self.columns.len()])
-    }
-
     fn append(&mut self, parts: &mut [Part]) {
+        // A table of one piece is held as it is.
+        let may_keep_rule = parts.len() > 1;
         // Most of the time the system hands out the memory, a page after the other.
         self.columns.par_iter_mut().zip(&self.wanted.is_time).enumerate().for_each(
             |(slot, (column, is_time))| {
                 for part in &*parts {
-                    column.extend(&part.0[slot], *is_time);
+                    column.extend(&part.0[slot], *is_time && may_keep_rule);
                 }
             },
         );
-        parts.iter_mut().flat_map(|part| &mut part.0).for_each(Vec::clear);
+        parts.iter_mut().for_each(Part::clear);
     }
 
     fn held_bytes(&self) -> u64 {
@@ -249,11 +127,13 @@ impl Sink for Keep<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ingest::time_base::Times;
+    use crate::data::Samples;
+    use crate::ingest::clock::Claims;
+    use crate::ingest::time_base::{Times, Uniform};
     use proptest::prelude::*;
 
-    fn column(pieces: &[&[f64]]) -> Column {
-        let mut column = Column::default();
+    fn column(pieces: &[&[f64]]) -> HeldColumn {
+        let mut column = HeldColumn::default();
         for piece in pieces {
             column.extend(piece, true);
         }
@@ -303,7 +183,7 @@ mod tests {
         samples[7] = f64::NAN;
         let even = column(&[&values]).even().expect("a rule");
         for declared_hz in [None, Some(50_010.0), Some(48_000.0)] {
-            let ours = even.place(Samples::F64(samples.clone()), declared_hz).unwrap();
+            let ours = even.place(Samples::F64(samples.clone()), &Claims::of_cask(declared_hz)).unwrap();
             let theirs = Times::new(&values).place(Samples::F64(samples.clone()), declared_hz).unwrap();
             assert!((ours.sample_rate_hz / theirs.sample_rate_hz - 1.0).abs() < 1e-12);
             assert_eq!((ours.start_s, &ours.gaps), (theirs.start_s, &theirs.gaps));
@@ -314,14 +194,14 @@ mod tests {
             };
             assert_eq!(said(&ours), said(&theirs));
         }
-        assert!(even.place(Samples::F64(vec![0.0; 999]), None).is_err());
+        assert!(even.place(Samples::F64(vec![0.0; 999]), &Claims::default()).is_err());
     }
 
     #[test]
     fn a_rule_has_the_clock_of_its_times_in_any_unit() {
         let values = times(3, 20, 3, 500);
         let mut held = column(&[&values]);
-        let (ours, theirs) = (held.clock().unwrap(), Clock::of(&values).unwrap());
+        let (ours, theirs) = (held.counted().unwrap(), Counted::of(&values).unwrap());
         for (own, other) in [
             (ours.first, theirs.first),
             (ours.last, theirs.last),
@@ -332,13 +212,14 @@ mod tests {
         }
         for (first, counts) in [(7, true), (5, false)] {
             let values: Vec<f64> = (0..99).map(|i| f64::from(i) + f64::from(first) / 7.0).collect();
-            let [ours, theirs] =
-                [column(&[&values]).clock(), Clock::of(&values)].map(|clock| clock.unwrap().counts);
+            let [ours, theirs] = [column(&[&values]).counted(), Counted::of(&values)]
+                .map(|counted| counted.unwrap().is_counter);
             assert_eq!((ours, theirs), (counts, counts));
         }
         held.scale(1e-3);
         let even = held.even().expect("a rule");
-        assert!((even.rate() - 50_000.0).abs() < 1e-6 && (even.at(499) - 9.983e-3).abs() < 1e-15);
+        let last = even.values().last().unwrap();
+        assert!((even.counted().unwrap().rate - 50_000.0).abs() < 1e-6 && (last - 9.983e-3).abs() < 1e-15);
     }
 
     #[test]

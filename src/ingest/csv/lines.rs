@@ -1,0 +1,196 @@
+//! The bytes of a text file to lines in an encoding whose digits and delimiters are ASCII, each ended by \n alone.
+
+use super::super::Limits;
+use super::super::detect;
+use super::super::error::{self, IngestError};
+use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{Cursor, Read};
+use std::path::Path;
+
+/// How much of a file is looked at for its layout.
+const HEAD_BYTES: u64 = 1 << 16;
+
+/// A text file, opened.
+pub(super) struct Text {
+    /// Its beginning, without a byte-order mark.
+    pub head: Vec<u8>,
+    /// Whether `head` is all there is.
+    pub is_whole: bool,
+    /// What follows `head`.
+    pub rest: Lines,
+    /// Its size on disk.
+    pub bytes: u64,
+    /// How it is encoded, for people.
+    pub encoding: &'static str,
+}
+
+impl Text {
+    /// The text at `path`.
+    pub(super) fn open(path: &Path, limits: Limits) -> Result<Self, IngestError> {
+        let io = |source| error::io(path, source);
+        let mut file = File::open(path).map_err(io)?;
+        let bytes = file.metadata().map_err(io)?.len();
+        let mut head = Vec::new();
+        (&mut file).take(HEAD_BYTES).read_to_end(&mut head).map_err(io)?;
+        if let Some(is_low_first) = detect::wide_text(&head) {
+            let (coding, name): (&Encoding, _) = if is_low_first {
+                (UTF_16LE, "UTF-16 (little-endian)")
+            } else {
+                (UTF_16BE, "UTF-16 (big-endian)")
+            };
+            // It is turned into UTF-8 in memory as a whole.
+            if bytes > limits.part_bytes() {
+                let what = format!("it is a text in {name} and takes");
+                return Err(limits.refusal(path, &what, limits.part_bytes()));
+            }
+            file.read_to_end(&mut head).map_err(io)?;
+            let text = coding.decode(&head).0.into_owned();
+            return Self::of(Box::new(Cursor::new(text)), bytes, name).map_err(io);
+        }
+        let has_mark = head.starts_with(b"\xEF\xBB\xBF");
+        if has_mark {
+            head.drain(..3);
+        }
+        // A letter cut in two at the head's end is no reason to call the text Latin-1.
+        let is_utf8 = std::str::from_utf8(&head).map_or_else(|error| error.error_len().is_none(), |_| true);
+        let encoding = match (is_utf8, has_mark) {
+            (true, true) => "UTF-8 with byte-order mark",
+            (true, false) => "UTF-8",
+            (false, _) => "Latin-1 (Windows-1252)",
+        };
+        Self::of(Box::new(Cursor::new(head).chain(file)), bytes, encoding).map_err(io)
+    }
+
+    /// The text that `source` gives.
+    pub(super) fn of(
+        source: Box<dyn Read + Send>,
+        bytes: u64,
+        encoding: &'static str,
+    ) -> std::io::Result<Self> {
+        let mut rest = Lines::of(source);
+        let mut head = Vec::new();
+        let read = (&mut rest).take(HEAD_BYTES).read_to_end(&mut head)?;
+        Ok(Self { head, is_whole: (read as u64) < HEAD_BYTES, rest, bytes, encoding })
+    }
+
+    /// The whole lines of the head.
+    pub(super) fn lines(&self) -> Vec<Line<'_>> {
+        let mut offset = 0;
+        let all = self.head.split_inclusive(|&byte| byte == b'\n').map(|line| {
+            offset += line.len();
+            (offset - line.len(), line)
+        });
+        // Past the head's end its last line goes on.
+        let whole = all.filter(|(_, line)| self.is_whole || line.ends_with(b"\n"));
+        whole
+            .map(|(offset, line)| Line { offset, text: text(line.strip_suffix(b"\n").unwrap_or(line)) })
+            .collect()
+    }
+}
+
+/// A text as it is read, up to its first zero byte; \r\n and \r alone are turned into \n.
+pub(super) struct Lines {
+    source: Box<dyn Read + Send>,
+    /// Whether a \r came last: a \n that follows belongs to it.
+    is_behind_return: bool,
+    /// Whether a zero byte ended the text.
+    pub has_zeros: bool,
+}
+
+impl Read for Lines {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        while !self.has_zeros && !buffer.is_empty() {
+            let read = self.source.read(buffer)?;
+            let kept = self.settle(&mut buffer[..read]);
+            // All that was read may be the \n of a "\r\n".
+            if kept > 0 || read == 0 {
+                return Ok(kept);
+            }
+        }
+        Ok(0)
+    }
+}
+
+impl Lines {
+    /// The text that `source` gives.
+    pub(super) fn of(source: Box<dyn Read + Send>) -> Self {
+        Self { source, is_behind_return: false, has_zeros: false }
+    }
+
+    /// Ends the lines of `text`; how many of its bytes are left.
+    fn settle(&mut self, text: &mut [u8]) -> usize {
+        /// Bytes asked at once whether any is a \r or zero, which costs less than to ask each.
+        const TOGETHER: usize = 64;
+        let mut kept = 0;
+        for from in (0..text.len()).step_by(TOGETHER) {
+            let to = text.len().min(from + TOGETHER);
+            let found = |found: u8, byte: &u8| found | u8::from(*byte == b'\r') | u8::from(*byte == 0);
+            if !self.is_behind_return && text[from..to].iter().fold(0, found) == 0 {
+                text.copy_within(from..to, kept);
+                kept += to - from;
+                continue;
+            }
+            for at in from..to {
+                let byte = text[at];
+                if byte == 0 {
+                    self.has_zeros = true;
+                    return kept;
+                }
+                let is_ended = self.is_behind_return && byte == b'\n';
+                self.is_behind_return = byte == b'\r';
+                text[kept] = if self.is_behind_return { b'\n' } else { byte };
+                kept += usize::from(!is_ended);
+            }
+        }
+        kept
+    }
+}
+
+/// A line of the beginning of a text.
+pub(super) struct Line<'a> {
+    /// Where it begins in [`Text::head`].
+    pub offset: usize,
+    /// Without its line break.
+    pub text: Cow<'a, str>,
+}
+
+/// A line as text: UTF-8, else Latin-1.
+pub(super) fn text(line: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(line) {
+        Ok(text) => Cow::Borrowed(text),
+        Err(_) => WINDOWS_1252.decode_without_bom_handling(line).0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The text that is left of `bytes`, read so many at a time.
+    fn settled(bytes: &'static [u8], at_a_time: usize) -> (Vec<u8>, bool) {
+        let mut lines = Lines::of(Box::new(Cursor::new(bytes)));
+        let (mut text, mut buffer) = (Vec::new(), vec![0; at_a_time]);
+        while let read @ 1.. = lines.read(&mut buffer).unwrap() {
+            text.extend_from_slice(&buffer[..read]);
+        }
+        (text, lines.has_zeros)
+    }
+
+    #[test]
+    fn lines_end_in_one_byte_wherever_they_are_cut() {
+        for at_a_time in [1, 2, 3, 64, 1000] {
+            for (bytes, expected, has_zeros) in [
+                (&b"a\r\nb\rc\n\n"[..], &b"a\nb\nc\n\n"[..], false),
+                (b"\r\n\r\n\r\r\n", b"\n\n\n\n", false),
+                (b"a\nb\r", b"a\nb\n", false),
+                (b"a\r\n1\0\0\nb", b"a\n1", true),
+                (b"\0", b"", true),
+                (&[b'x'; 300], &[b'x'; 300], false),
+            ] {
+                assert_eq!(settled(bytes, at_a_time), (expected.to_vec(), has_zeros), "{at_a_time}");
+            }
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! The columns of a table to the samples of its channels on their time base.
+
+use super::columns::HeldColumn;
+use super::even::Even;
+use super::layout::Layout;
+use super::plan::Plan;
+use super::stamp::Stamps;
+use super::wanted::Wanted;
+use crate::data::{Issue, IssueCode, Samples, Severity};
+use crate::ingest::clock::{Clock, Refusal};
+use crate::ingest::time_base::{self, TimeBaseError, Times, Uniform};
+use crate::ingest::times::{self, Carrier, Scale};
+use rayon::prelude::*;
+
+/// The wanted columns of a table, with what is said of them.
+pub(super) struct Table<'a> {
+    pub layout: &'a Layout,
+    pub plans: &'a [Plan],
+    pub wanted: &'a Wanted,
+    pub columns: Vec<HeldColumn>,
+    pub stamps: Stamps,
+}
+
+/// Why the times of a channel are refused.
+pub(super) struct Refused {
+    /// The place of its plan.
+    pub plan: usize,
+    pub refusal: Refusal,
+}
+
+/// The times of channels, as they are held.
+enum Base<'a> {
+    Even(Even),
+    Each(Times<'a>),
+}
+
+impl Table<'_> {
+    /// Turns the times into s, and compares them with other columns of times; warnings where those do not bear them out.
+    pub(super) fn settle_times(&mut self) -> Result<Vec<Issue>, Refused> {
+        let mut issues = Vec::new();
+        let mut clocks: Vec<usize> = self.plans.iter().filter_map(|plan| plan.time_column).collect();
+        clocks.sort_unstable();
+        clocks.dedup();
+        for &time in &clocks {
+            self.scale_times(time)?;
+        }
+        for &time in &clocks {
+            for (other, is_apart) in self.layout.witnesses(time) {
+                issues.extend(self.borne_out(time, other, is_apart)?);
+            }
+        }
+        Ok(issues)
+    }
+
+    /// The numbers of the times in column `time` to s.
+    fn scale_times(&mut self, time: usize) -> Result<(), Refused> {
+        let is_user = |plan: &Plan| plan.time_column == Some(time);
+        let plan = self.plans.iter().position(is_user).unwrap_or_default();
+        let refused = |refusal| Refused { plan, refusal };
+        let column = &mut self.columns[self.wanted.slot(time)];
+        let header = self.layout.columns[time].header.as_str();
+        if !self.stamps.are_in(self.wanted.slot(time)) {
+            let mut users = self.plans.iter().filter(|plan| is_user(plan));
+            let stated_hz = users.find_map(|plan| plan.claims.cask_hz);
+            let scale = self.layout.time_scale(time);
+            let unit_s = times::seconds_by(scale, Carrier::Column(header), || column.counted(), stated_hz);
+            column.scale(unit_s.map_err(refused)?);
+        }
+        begins_anew(column.each()).map_or(Ok(()), |row| {
+            let problem = format!(
+                "the times in column {header:?} fall back to where they began at line {}, as below rows of extremes (minimum, maximum) or at \
+                 the beginning of another record",
+                self.layout.data_line + row as u64
+            );
+            Err(refused(Refusal::new(problem, "delete the rows above that line in a copy")))
+        })
+    }
+
+    /// What the times in column `other` say of those in column `time`; columns that they may be the clock of stand between where they are
+    /// `apart`.
+    fn borne_out(&self, time: usize, other: usize, is_apart: bool) -> Result<Option<Issue>, Refused> {
+        let [own_s, others] = [time, other].map(|column| self.columns[self.wanted.slot(column)].values());
+        let slot = self.wanted.slot(other);
+        let is_in_s = self.wanted.is_time[slot] || self.layout.columns[other].is_stamped;
+        let scale = if is_in_s { Scale::Known(1.0) } else { self.layout.time_scale(other) };
+        let both = || own_s.iter().zip(&*others).filter(|(own, other)| own.is_finite() && other.is_finite());
+        let Some((first, last)) = both().next().zip(both().next_back()) else { return Ok(None) };
+        let Some(unit_s) = scale.beside(last.0 - first.0, &others) else { return Ok(None) };
+        let others_s: Vec<f64> = others.iter().map(|other| other * unit_s).collect();
+        let names = [time, other].map(|column| format!("{:?}", self.layout.columns[column].header));
+        let is_open = |plan: &Plan| plan.time_column == Some(time) && !plan.is_decided();
+        let open = self.plans.iter().position(is_open);
+        let own = Clock { name: &names[0], times_s: &own_s };
+        let other = Clock { name: &names[1], times_s: &others_s };
+        let said = own.borne_out_by(&other, is_apart, open.is_none());
+        said.map_err(|refusal| Refused { plan: open.unwrap_or_default(), refusal })
+    }
+
+    /// A warning where no times are there, and a column that counts the rows jumps: those between are lost.
+    pub(super) fn counter_jumps(&self) -> Option<Issue> {
+        let column =
+            self.layout.counter().filter(|_| self.plans.iter().all(|plan| plan.time_column.is_none()))?;
+        let counts = self.columns[self.wanted.slot(column)].each();
+        let steps = || counts.windows(2).map(|pair| pair[1] - pair[0]);
+        // One that begins anew, or counts something else, tells nothing.
+        let is_counter = steps().all(|step| step >= 1.0 && step.fract().abs() < f64::EPSILON);
+        let jumps: Vec<(usize, f64)> = steps().enumerate().filter(|(_, step)| *step > 1.0).collect();
+        let &(row, first) = jumps.first().filter(|_| is_counter && 10 * jumps.len() < counts.len())?;
+        let lost: f64 = jumps.iter().map(|(_, step)| step - 1.0).sum();
+        let header = &self.layout.columns[column].header;
+        let message = format!(
+            "the column {header:?} counts the rows, and {lost} of them are missing, the first {} behind row {} of the table; the others were taken \
+             as one after another: write time = {header:?} under [recording] of the cask file, which keeps their places",
+            first - 1.0,
+            row + 1
+        );
+        Some(Issue::new(IssueCode::Gap, Severity::Warning, message))
+    }
+
+    /// How many samples a channel has at most.
+    pub(super) fn rows(&self) -> usize {
+        let held = self.plans.iter().map(|plan| self.columns[self.wanted.slot(plan.column)].len());
+        held.max().unwrap_or_default()
+    }
+
+    /// Where no times tell what is missing, leaves out blank lines behind the table.
+    ///
+    /// # Errors
+    /// Over a third of the lines before are blank too, as doubled line breaks leave them.
+    pub(super) fn drop_blank(&mut self) -> Result<(), Refusal> {
+        if self.wanted.is_time.contains(&true) {
+            return Ok(());
+        }
+        let is_row = |row: &usize| self.columns.iter().any(|column| !column.each()[*row].is_nan());
+        let all = 0..self.columns.first().map_or(0, HeldColumn::len);
+        let rows = all.rev().find(is_row).map_or(0, |last| last + 1);
+        let blank = rows - (0..rows).filter(is_row).count();
+        if blank > rows / 3 {
+            return Err(Refusal::new(
+                format!(
+                    "of its {rows} lines {blank} are empty, and no times tell whether samples are missing there"
+                ),
+                "delete the empty lines in a copy, or name a column of times",
+            ));
+        }
+        self.columns.iter_mut().for_each(|column| column.each_mut().truncate(rows));
+        Ok(())
+    }
+
+    /// Leaves rows without a time out of the times and of what they time: in `Time;A1;Time;A2` one pair may end before the other.
+    pub(super) fn drop_untimed(&mut self) {
+        let Self { plans, wanted, columns: held, .. } = self;
+        let mut is_kept: Vec<Option<Vec<bool>>> = vec![None; held.len()];
+        for slot in (0..held.len()).filter(|&slot| wanted.is_time[slot]) {
+            let times = held[slot].each();
+            if times.iter().any(|time| time.is_nan()) {
+                is_kept[slot] = Some(times.iter().map(|time| !time.is_nan()).collect());
+            }
+        }
+        let retain = |column: &mut HeldColumn, is_kept: &[bool]| {
+            let mut rows = is_kept.iter();
+            column.each_mut().retain(|_| rows.next().copied().unwrap_or(true));
+        };
+        for plan in *plans {
+            let clock = plan.time_column.and_then(|time| is_kept[wanted.slot(time)].as_ref());
+            if let Some(is_kept) = clock
+                && !wanted.is_time[wanted.slot(plan.column)]
+            {
+                retain(&mut held[wanted.slot(plan.column)], is_kept);
+            }
+        }
+        for (column, is_kept) in held.iter_mut().zip(&is_kept) {
+            if let Some(is_kept) = is_kept {
+                retain(column, is_kept);
+            }
+        }
+    }
+
+    /// The samples of each channel on their base, for which they are taken out of the table.
+    pub(super) fn uniforms(&mut self) -> Vec<Result<Uniform, TimeBaseError>> {
+        let Self { plans, wanted, columns, .. } = self;
+        let mut uses = vec![0_usize; columns.len()];
+        for column in plans.iter().flat_map(|plan| [Some(plan.column), plan.time_column]).flatten() {
+            uses[wanted.slot(column)] += 1;
+        }
+        let samples: Vec<Vec<f64>> = plans
+            .iter()
+            .map(|plan| {
+                let at = wanted.slot(plan.column);
+                uses[at] -= 1;
+                // The last channel to use a column takes it instead of copying it.
+                let values = columns[at].each_mut();
+                if uses[at] == 0 { std::mem::take(values) } else { values.clone() }
+            })
+            .collect();
+        // Columns of times are fitted once, however many channels use them.
+        let times = columns.iter().zip(&wanted.is_time);
+        let bases: Vec<Option<Base>> = times.map(|(column, is_time)| is_time.then(|| base(column))).collect();
+        let base_of = |plan: &Plan| bases[wanted.slot(plan.time_column?)].as_ref();
+        let channels = samples.into_par_iter().zip(*plans);
+        channels.map(|(samples, plan)| on_base(Samples::F64(samples), base_of(plan), plan)).collect()
+    }
+}
+
+fn base(column: &HeldColumn) -> Base<'_> {
+    column.even().map_or_else(|| Base::Each(Times::new(column.each())), Base::Even)
+}
+
+fn on_base(samples: Samples, base: Option<&Base>, plan: &Plan) -> Result<Uniform, TimeBaseError> {
+    match base {
+        Some(Base::Even(times)) => times.place(samples, &plan.claims),
+        Some(Base::Each(times)) => times.place_by(samples, &plan.claims),
+        None => time_base::from_claims(0.0, &plan.claims, samples),
+    }
+}
+
+/// Where times, within the first four rows, fall back to the first of them.
+fn begins_anew(times: &[f64]) -> Option<usize> {
+    (1..times.len().min(4)).find(|&row| times[row] < times[row - 1] && times[row] <= times[0])
+}
