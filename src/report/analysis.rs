@@ -7,7 +7,7 @@ use super::prediction::prediction_columns;
 use super::reconstruction::{budget, flight, reconstruction};
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
 use super::settings;
-use super::table::{Shape, Table, TableCell};
+use super::table::{Table, TableCell, TableShape};
 use super::tested::tested;
 use super::text::{
     Style, code_word, end_axis, format_word, reason, sentence, severity_word, span_text, tail, taken_mark,
@@ -218,7 +218,7 @@ pub(super) fn quality(issues: &[Issue]) -> Chapter {
     };
     let findings = Table::of(issues)
         .class("")
-        .shape(Shape::Items)
+        .shape(TableShape::Items)
         .tag("Severity", |i| TableCell::toned(style(i.severity), severity_word(i.severity)))
         .code("Check", |i| code_word(i.code))
         .text("Channel", |i| i.channel.as_deref().unwrap_or(MISSING))

@@ -3,7 +3,7 @@
 use super::document::{Content, Document, Fact, Passage, Role, Tone};
 use super::medium::Medium;
 use super::rounding::MISSING;
-use super::table::{Shape, Table, TableColumn};
+use super::table::{Table, TableColumn, TableShape};
 use super::text::{Style, WIDTH, lines, printable, styled, styled_lines, wrap};
 use comfy_table::{CellAlignment, ContentArrangement, TableStyle};
 
@@ -61,11 +61,11 @@ fn table(table: &Table) -> String {
     let columns = table.shown(Medium::Terminal);
     let (rows, left_out) = table.rows(Medium::Terminal);
     let mut out = match &table.shape {
-        Shape::Columns => aligned(&columns, rows, 2),
-        Shape::Fitting => aligned(&columns, rows, if fits(&columns, rows) { 2 } else { 1 }),
-        Shape::Groups(names) => grouped(&columns, rows, names),
-        Shape::Items => (0..rows).map(|row| item(&columns, row)).collect(),
-        Shape::ApartItems => (0..rows).flat_map(|row| ["\n".to_owned(), item(&columns, row)]).collect(),
+        TableShape::Columns => aligned(&columns, rows, 2),
+        TableShape::Fitting => aligned(&columns, rows, if fits(&columns, rows) { 2 } else { 1 }),
+        TableShape::Groups(names) => grouped(&columns, rows, names),
+        TableShape::Items => (0..rows).map(|row| item(&columns, row)).collect(),
+        TableShape::ApartItems => (0..rows).flat_map(|row| ["\n".to_owned(), item(&columns, row)]).collect(),
     };
     if let Some(sentence) = left_out {
         out += &wrap(&sentence, WIDTH, 2);

@@ -4,7 +4,7 @@ use super::ReportError;
 use super::document::{Chapter, Document, Passage};
 use super::records::{CsvColumn, number, records, text_cell};
 use super::rounding::{MISSING, interval, percent};
-use super::table::{Shape, Table, TableCell};
+use super::table::{Table, TableCell, TableShape};
 use super::text::{Style, WIDTH, code_word, tail, verdict_word};
 use crate::data::{Comparison, DropResult, Estimate, Issue, IssueCode, Severity, Verdict};
 use serde::Serialize;
@@ -155,7 +155,7 @@ impl Campaign {
         };
         let why = |row: &CampaignRow| row.error.clone().unwrap_or_else(|| row.code_words().join(", "));
         let reasons = Table::of(&grave)
-            .shape(Shape::ApartItems)
+            .shape(TableShape::ApartItems)
             .tag("verdict", |row| TableCell::toned(style(row), word(row).to_lowercase()))
             .head("recording", |row| name(row, WIDTH - 10))
             .text("why", |row| why(row));

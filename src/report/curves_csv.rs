@@ -35,17 +35,17 @@ pub(super) fn bytes(curves: &Curves) -> Result<Vec<u8>, ReportError> {
 }
 
 /// One column beside the time.
-struct Column<'a> {
+struct CurveColumn<'a> {
     header: String,
     reader: Reader<'a>,
     factor: f64,
 }
 
-fn columns(curves: &Curves) -> Vec<Column<'_>> {
+fn columns(curves: &Curves) -> Vec<CurveColumn<'_>> {
     let mut columns = Vec::new();
     let mut add = |header: String, time_s, values, factor| {
         if let Some(reader) = Reader::new(time_s, values) {
-            columns.push(Column { header: text_cell(&header), reader, factor });
+            columns.push(CurveColumn { header: text_cell(&header), reader, factor });
         }
     };
     for curve in &curves.channels {

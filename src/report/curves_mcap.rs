@@ -19,7 +19,7 @@ pub(super) fn bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
     let options = WriteOptions::new()
         .compression(Some(Compression::Zstd))
         .library(concat!("dropcheck ", env!("CARGO_PKG_VERSION")));
-    let mut file = Curves {
+    let mut file = CurvesFile {
         writer: options.create(Cursor::new(Vec::new()))?,
         start_ns: analysis.start_unix_ns.unwrap_or(0),
         buffer: String::new(),
@@ -53,13 +53,13 @@ fn topic(name: &str, taken: &[String]) -> String {
 }
 
 /// The file under way.
-struct Curves {
+struct CurvesFile {
     writer: Writer<Cursor<Vec<u8>>>,
     start_ns: i64,
     buffer: String,
 }
 
-impl Curves {
+impl CurvesFile {
     /// Registers a JSON schema with a time stamp and numbers.
     fn schema(&mut self, name: &str, fields: &[&str]) -> Result<u16, ReportError> {
         let mut properties = serde_json::Map::new();

@@ -2,7 +2,7 @@
 
 use super::medium::{Medium, Words};
 use super::rounding::MISSING;
-use super::table::{CellKind, Rows, Table};
+use super::table::{CellKind, Table, TableRows};
 use super::text::Style;
 
 /// What is read from its first line to its last.
@@ -192,8 +192,8 @@ impl From<Content> for Passage {
     }
 }
 
-impl<R> From<Rows<'_, R>> for Passage {
-    fn from(rows: Rows<'_, R>) -> Self {
+impl<R> From<TableRows<'_, R>> for Passage {
+    fn from(rows: TableRows<'_, R>) -> Self {
         Table::from(rows).into()
     }
 }

@@ -4,7 +4,7 @@ use super::analysis::quality;
 use super::document::{Chapter, Document, Passage};
 use super::medium::Medium;
 use super::rounding::{MISSING, plain};
-use super::table::{Shape, Table};
+use super::table::{Table, TableShape};
 use super::text::{format_word, tail};
 use crate::data::{ListedChannel, Listing};
 
@@ -76,7 +76,7 @@ fn sources(channels: &[ListedChannel]) -> Vec<Passage> {
         })
         .into();
     if is_long {
-        table.shape = Shape::Groups(channels.iter().map(|c| split(&c.source).0.to_owned()).collect());
+        table.shape = TableShape::Groups(channels.iter().map(|c| split(&c.source).0.to_owned()).collect());
     }
     let mut common = Vec::new();
     table.columns.retain(|column| {

@@ -14,18 +14,18 @@ pub(crate) struct Table {
     pub(crate) chosen: Vec<bool>,
     /// Rows that a terminal and a page show at most, and where all are.
     pub(crate) most: Option<(usize, usize, &'static str)>,
-    pub(crate) shape: Shape,
+    pub(crate) shape: TableShape,
 }
 
 /// How a terminal shows the rows.
 #[derive(Default, PartialEq)]
-pub(crate) enum Shape {
+pub(crate) enum TableShape {
     /// Beside one another, cells too wide wrapped.
     #[default]
     Columns,
     /// Beside one another, closer together where they would not fit otherwise.
     Fitting,
-    /// As [`Shape::Columns`], each row below the name of the group it belongs to.
+    /// As [`TableShape::Columns`], each row below the name of the group it belongs to.
     Groups(Vec<String>),
     /// The last cell of a row below the others.
     Items,
@@ -99,8 +99,8 @@ impl TableCell {
 
 impl Table {
     /// A table of these rows without a column yet.
-    pub(crate) fn of<R>(rows: &[R]) -> Rows<'_, R> {
-        Rows { rows, table: Self { class: "whole", chosen: vec![false; rows.len()], ..Self::default() } }
+    pub(crate) fn of<R>(rows: &[R]) -> TableRows<'_, R> {
+        TableRows { rows, table: Self { class: "whole", chosen: vec![false; rows.len()], ..Self::default() } }
     }
 
     /// The columns that a medium shows.
@@ -123,12 +123,12 @@ impl Table {
 }
 
 /// A table while its columns are set.
-pub(crate) struct Rows<'a, R> {
+pub(crate) struct TableRows<'a, R> {
     rows: &'a [R],
     pub(crate) table: Table,
 }
 
-impl<'a, R> Rows<'a, R> {
+impl<'a, R> TableRows<'a, R> {
     fn column<C: Into<TableCell>>(
         mut self,
         kind: CellKind,
@@ -215,14 +215,14 @@ impl<'a, R> Rows<'a, R> {
     }
 
     /// How a terminal shows the rows.
-    pub(crate) fn shape(mut self, shape: Shape) -> Self {
+    pub(crate) fn shape(mut self, shape: TableShape) -> Self {
         self.table.shape = shape;
         self
     }
 }
 
-impl<R> From<Rows<'_, R>> for Table {
-    fn from(rows: Rows<'_, R>) -> Self {
+impl<R> From<TableRows<'_, R>> for Table {
+    fn from(rows: TableRows<'_, R>) -> Self {
         rows.table
     }
 }

@@ -3,7 +3,7 @@
 use super::super::text::printable;
 use super::decimate::runs;
 use super::legend::{Area, FONT, Failure, heading, point, word};
-use super::panel::{Axis, Fill, GREY, INK, Line, Mark, Panel, Scale, WIDTH};
+use super::panel::{Fill, GREY, INK, Line, Mark, Panel, PanelAxis, Scale, WIDTH};
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -28,7 +28,7 @@ enum Coordinate {
 }
 
 impl Coordinate {
-    fn of(axis: &Axis, range: Range<f64>) -> Self {
+    fn of(axis: &PanelAxis, range: Range<f64>) -> Self {
         match axis.scale {
             Scale::Linear => Self::Linear(range.into()),
             Scale::Logarithmic => Self::Logarithmic(range.log_scale().into()),
@@ -70,7 +70,7 @@ impl Ranged for Coordinate {
     }
 }
 
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Coordinate, Coordinate>>;
+type PanelChart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Coordinate, Coordinate>>;
 
 impl Panel {
     /// Heights of what stands above the axes, and of the whole panel, in a picture or a part of it this wide.
@@ -165,12 +165,12 @@ pub(super) fn one(area: &Area, panel: &Panel) -> Result<(), Failure> {
 }
 
 /// The place in the area of a point on the axes.
-fn place(area: &Area, chart: &Chart, at: (f64, f64)) -> (i32, i32) {
+fn place(area: &Area, chart: &PanelChart, at: (f64, f64)) -> (i32, i32) {
     let (base, at) = (area.get_base_pixel(), chart.backend_coord(&at));
     (at.0 - base.0, at.1 - base.1)
 }
 
-fn draw_line(chart: &mut Chart, panel: &Panel, line: &Line) -> Result<(), Failure> {
+fn draw_line(chart: &mut PanelChart, panel: &Panel, line: &Line) -> Result<(), Failure> {
     let style = line.colour.mix(line.opacity).stroke_width(line.stroke);
     let x = chart.x_range();
     let along = |v: f64| panel.x.place(v);
@@ -191,12 +191,12 @@ fn draw_line(chart: &mut Chart, panel: &Panel, line: &Line) -> Result<(), Failur
     Ok(())
 }
 
-fn draw_fill(chart: &mut Chart, fill: &Fill) -> Result<(), Failure> {
+fn draw_fill(chart: &mut PanelChart, fill: &Fill) -> Result<(), Failure> {
     let areas = fill.areas.iter().map(|area| Polygon::new(area.clone(), fill.colour.mix(fill.opacity)));
     chart.draw_series(areas).map(drop)
 }
 
-fn draw_points(area: &Area, panel: &Panel, chart: &Chart) -> Result<(), Failure> {
+fn draw_points(area: &Area, panel: &Panel, chart: &PanelChart) -> Result<(), Failure> {
     for points in &panel.points {
         for at in points.at.iter().filter(|at| panel.drawable(**at)) {
             point(area, points, place(area, chart, *at))?;
@@ -206,7 +206,7 @@ fn draw_points(area: &Area, panel: &Panel, chart: &Chart) -> Result<(), Failure>
 }
 
 /// The words of the rows, at the left of the axes and at their right.
-fn draw_rows(area: &Area, panel: &Panel, chart: &Chart) -> Result<(), Failure> {
+fn draw_rows(area: &Area, panel: &Panel, chart: &PanelChart) -> Result<(), Failure> {
     let Scale::Rows(rows) = &panel.y.scale else { return Ok(()) };
     let x = chart.x_range();
     let mut y = chart.y_range().end - 0.5;
@@ -257,7 +257,8 @@ mod tests {
     fn near_marks_are_set_in_rows_of_their_own() {
         let marks = [("first contact", 0.0), ("separation", 6.0), ("slap-down", 60.0)];
         let marks = marks.map(|(label, at)| Mark { at, label: label.into() }).into();
-        let panel = Panel { x: Axis::new("time, ms").over(Some((-10.0, 100.0))), marks, ..Panel::default() };
+        let panel =
+            Panel { x: PanelAxis::new("time, ms").over(Some((-10.0, 100.0))), marks, ..Panel::default() };
         assert_eq!(panel.mark_rows(WIDTH), [0, 1, 0]);
     }
 

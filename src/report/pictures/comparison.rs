@@ -4,7 +4,7 @@ use super::super::ReportError;
 use super::super::rounding::{fixed, interval, pair, plain};
 use super::super::words::contact_words;
 use super::draw::{Picture, Plate};
-use super::panel::{Axis, COLOURS, Fill, Line, Mark, Panel, Points, RowWords, Shape};
+use super::panel::{COLOURS, Fill, Line, Mark, Panel, PanelAxis, PointShape, Points, RowWords};
 use crate::data::{Analysis, Estimate, Prediction};
 
 const TITLE: &str = "Measured beside predicted";
@@ -13,7 +13,7 @@ const TITLE: &str = "Measured beside predicted";
 const ROW: u32 = 52;
 
 /// One row: its words, speed, half-width and whether it is made with the measured k.
-struct Row {
+struct ComparedRow {
     label: String,
     speed_m_s: f64,
     u95_m_s: Option<f64>,
@@ -32,14 +32,14 @@ pub(super) fn picture(analysis: &Analysis) -> Result<Picture, ReportError> {
     if !panels.is_empty() {
         let speed = measured
             .map_or("No measured speed".into(), |speed| format!("Measured {}", interval(Some(&speed))));
-        let words = |row: &Row| format!("{}: {:.2} m/s", row.label, row.speed_m_s);
+        let words = |row: &ComparedRow| format!("{}: {:.2} m/s", row.label, row.speed_m_s);
         let rows = rows.iter().map(words).collect::<Vec<_>>().join("; ");
         picture.alt = format!("{TITLE}. {speed}. {rows}");
     }
     Ok(picture)
 }
 
-fn rows(analysis: &Analysis) -> Vec<Row> {
+fn rows(analysis: &Analysis) -> Vec<ComparedRow> {
     let result = &analysis.result;
     let measured_k = result.k.map(|k| k.value);
     let row = |p: &Prediction| {
@@ -55,22 +55,22 @@ fn rows(analysis: &Analysis) -> Vec<Row> {
             .filter(|u| u.is_finite());
         let k = if own_k { format!("{} (measured)", fixed(p.k, 3)) } else { plain(p.k, 3) };
         let label = format!("{}, {}, k = {k}", p.model.as_str(), contact_words(p.contact));
-        Some(Row { label, speed_m_s, u95_m_s, own_k })
+        Some(ComparedRow { label, speed_m_s, u95_m_s, own_k })
     };
     result.predictions.iter().filter_map(row).collect()
 }
 
-fn panel(rows: &[Row], measured: Option<Estimate>) -> Panel {
-    let words = |row: &Row| {
+fn panel(rows: &[ComparedRow], measured: Option<Estimate>) -> Panel {
+    let words = |row: &ComparedRow| {
         let value = |u95| pair(row.speed_m_s, u95, "m/s").replace(" m/s", "");
         let right = row.u95_m_s.map_or_else(|| format!("{:.2}", row.speed_m_s), value);
         RowWords { left: row.label.clone(), right, is_heading: false }
     };
-    let y = Axis::rows(rows.iter().map(words).collect());
+    let y = PanelAxis::rows(rows.iter().map(words).collect());
     let foot_to_top = y.range.unwrap_or_default();
     let count = foot_to_top.1;
     let mut panel = Panel {
-        x: Axis::new("slap-down speed, m/s").over(Some(speed_range(rows, measured))),
+        x: PanelAxis::new("slap-down speed, m/s").over(Some(speed_range(rows, measured))),
         y,
         height: ROW * u32::try_from(rows.len().max(1)).unwrap_or(1),
         sides: Some((560, 230)),
@@ -84,7 +84,8 @@ fn panel(rows: &[Row], measured: Option<Estimate>) -> Panel {
     }
     let mut y = count - 0.5;
     for row in rows {
-        let (colour, shape) = if row.own_k { (COLOURS[1], Shape::Square) } else { (COLOURS[0], Shape::Dot) };
+        let (colour, shape) =
+            if row.own_k { (COLOURS[1], PointShape::Square) } else { (COLOURS[0], PointShape::Dot) };
         if let Some(u95) = row.u95_m_s {
             let (low, high) = (row.speed_m_s - u95, row.speed_m_s + u95);
             let ends = [low, high].map(|x| vec![(x, y - 0.21), (x, y + 0.21)]);
@@ -98,7 +99,7 @@ fn panel(rows: &[Row], measured: Option<Estimate>) -> Panel {
     panel
 }
 
-fn speed_range(rows: &[Row], measured: Option<Estimate>) -> (f64, f64) {
+fn speed_range(rows: &[ComparedRow], measured: Option<Estimate>) -> (f64, f64) {
     let ends = rows.iter().map(|row| (row.speed_m_s, row.u95_m_s.unwrap_or(0.0)));
     let own = measured.map(|e| (e.value, if e.u95.is_finite() { e.u95 } else { 0.0 }));
     let (low, high) =

@@ -5,7 +5,7 @@ use super::super::rounding::{MISSING, plain};
 use super::super::words::{bands_words, case_words, criterion_value, criterion_words, degrees, has_ranges};
 use super::draw::{Picture, Plate};
 use super::look::{Look, angle_axis, angle_panel};
-use super::panel::{Axis, COLOURS, Fill, Line, Panel, Points, RowWords, Shape};
+use super::panel::{COLOURS, Fill, Line, Panel, PanelAxis, PointShape, Points, RowWords};
 use crate::data::{Criterion, CriticalAngle, CriticalRange, Study};
 use plotters::style::RGBColor;
 
@@ -15,14 +15,14 @@ const TITLE: &str = "Critical angles";
 const ROW: u32 = 46;
 
 /// One row of the picture.
-enum Row {
+enum CriticalRow {
     /// What the rows below it are about.
     Heading(String),
     /// One case, or the ranges of k and friction together.
-    Case(Case),
+    Case(CriticalCase),
 }
 
-struct Case {
+struct CriticalCase {
     label: String,
     colour: RGBColor,
     /// Lowest and highest critical angle, degrees; the same for one case.
@@ -47,9 +47,9 @@ pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError>
     Ok(picture)
 }
 
-fn caption(study: &Study, rows: &[Row]) -> String {
+fn caption(study: &Study, rows: &[CriticalRow]) -> String {
     let look = Look::of(&study.request.contacts, &study.request.ks);
-    let rings = rows.iter().any(|row| matches!(row, Row::Case(case) if case.larger_deg.is_some()));
+    let rings = rows.iter().any(|row| matches!(row, CriticalRow::Case(case) if case.larger_deg.is_some()));
     let mut caption = vec![format!(
         "Dots: the drop angle at which each quantity is largest while the first end strikes once, with the value at the right. \
          Bars: the angles within {} % of it.",
@@ -71,12 +71,12 @@ fn caption(study: &Study, rows: &[Row]) -> String {
     caption.concat()
 }
 
-fn spoken(rows: &[Row]) -> String {
+fn spoken(rows: &[CriticalRow]) -> String {
     let rows: Vec<String> = rows
         .iter()
         .map(|row| match row {
-            Row::Heading(words) => format!("{words}:"),
-            Row::Case(case) => {
+            CriticalRow::Heading(words) => format!("{words}:"),
+            CriticalRow::Case(case) => {
                 format!("{}: {}, band {}°;", case.label, case.words, bands_words(&case.bands_deg))
             }
         })
@@ -84,7 +84,7 @@ fn spoken(rows: &[Row]) -> String {
     rows.join(" ")
 }
 
-fn rows(study: &Study) -> Vec<Row> {
+fn rows(study: &Study) -> Vec<CriticalRow> {
     let look = Look::of(&study.request.contacts, &study.request.ks);
     let crowded = crowded(study, &look);
     let mut rows = Vec::new();
@@ -92,12 +92,12 @@ fn rows(study: &Study) -> Vec<Row> {
         let drawn = |c: &&CriticalAngle| c.criterion == criterion && look.shows(c.contact, c.k);
         let cases =
             study.critical.iter().filter(drawn).filter(|c| !crowded || c.model == study.monte_carlo.model);
-        let mut group: Vec<Row> = cases.map(|c| Row::Case(case(c, &look))).collect();
+        let mut group: Vec<CriticalRow> = cases.map(|c| CriticalRow::Case(case(c, &look))).collect();
         let wide = has_ranges(&study.request);
         let ranges = study.ranges.iter().filter(|range| wide && range.criterion == criterion);
-        group.extend(ranges.map(|range| Row::Case(range_case(range))));
+        group.extend(ranges.map(|range| CriticalRow::Case(range_case(range))));
         if !group.is_empty() {
-            rows.push(Row::Heading(format!("Largest {}", criterion_words(criterion))));
+            rows.push(CriticalRow::Heading(format!("Largest {}", criterion_words(criterion))));
             rows.extend(group);
         }
     }
@@ -112,8 +112,8 @@ fn crowded(study: &Study, look: &Look) -> bool {
     speeds.filter(|c| look.shows(c.contact, c.k)).count() > MOST_CASES
 }
 
-fn case(c: &CriticalAngle, look: &Look) -> Case {
-    Case {
+fn case(c: &CriticalAngle, look: &Look) -> CriticalCase {
+    CriticalCase {
         label: format!("{}, {}", c.model.as_str(), case_words(c.contact, c.k)),
         colour: look.colour(c.contact, c.k),
         angle_deg: (c.angle_deg, c.angle_deg),
@@ -131,8 +131,8 @@ fn value_words(criterion: Criterion, largest: f64, angle_deg: f64) -> String {
     format!("{} at {}°", criterion_value(criterion, largest), degrees(angle_deg))
 }
 
-fn range_case(r: &CriticalRange) -> Case {
-    Case {
+fn range_case(r: &CriticalRange) -> CriticalCase {
+    CriticalCase {
         label: format!("{}, all k and friction", r.model.as_str()),
         colour: COLOURS[6],
         angle_deg: r.angle_deg,
@@ -142,14 +142,16 @@ fn range_case(r: &CriticalRange) -> Case {
     }
 }
 
-fn panel(study: &Study, rows: &[Row]) -> Panel {
-    let words = |row: &Row| match row {
-        Row::Heading(words) => RowWords { left: words.clone(), is_heading: true, ..RowWords::default() },
-        Row::Case(case) => {
+fn panel(study: &Study, rows: &[CriticalRow]) -> Panel {
+    let words = |row: &CriticalRow| match row {
+        CriticalRow::Heading(words) => {
+            RowWords { left: words.clone(), is_heading: true, ..RowWords::default() }
+        }
+        CriticalRow::Case(case) => {
             RowWords { left: case.label.clone(), right: case.words.clone(), ..RowWords::default() }
         }
     };
-    let y = Axis::rows(rows.iter().map(words).collect());
+    let y = PanelAxis::rows(rows.iter().map(words).collect());
     let mut y_case = y.range.unwrap_or_default().1 - 0.5;
     let mut panel = Panel {
         x: angle_axis(&study.request),
@@ -159,7 +161,7 @@ fn panel(study: &Study, rows: &[Row]) -> Panel {
         ..angle_panel(&study.request, String::new(), "")
     };
     for row in rows {
-        if let Row::Case(case) = row {
+        if let CriticalRow::Case(case) = row {
             add_case(&mut panel, case, y_case);
         }
         y_case -= 1.0;
@@ -168,7 +170,7 @@ fn panel(study: &Study, rows: &[Row]) -> Panel {
 }
 
 /// The band of a case as a bar, its critical angle as a dot, or as two joined by a line.
-fn add_case(panel: &mut Panel, case: &Case, y: f64) {
+fn add_case(panel: &mut Panel, case: &CriticalCase, y: f64) {
     /// Half the height of a bar.
     const HALF: f64 = 0.24;
     let (first, last) = panel.x.range.unwrap_or_default();
@@ -179,12 +181,16 @@ fn add_case(panel: &mut Panel, case: &Case, y: f64) {
     let areas = bands.into_iter().map(|band| Fill::rectangle(band, (y - HALF, y + HALF))).collect();
     panel.fills.push(Fill { label: None, colour: case.colour, opacity: 0.32, areas });
     let larger = case.larger_deg.map(|at| (at, y)).into_iter().collect();
-    panel.points.push(Points { is_hollow: true, radius: 8, ..Points::new(case.colour, Shape::Dot, larger) });
+    panel.points.push(Points {
+        is_hollow: true,
+        radius: 8,
+        ..Points::new(case.colour, PointShape::Dot, larger)
+    });
     let (low, high) = case.angle_deg;
     if low < high {
         panel.lines.push(Line::new(case.colour, vec![(low, y), (high, y)]));
     }
     panel
         .points
-        .push(Points { radius: 8, ..Points::new(case.colour, Shape::Dot, vec![(low, y), (high, y)]) });
+        .push(Points { radius: 8, ..Points::new(case.colour, PointShape::Dot, vec![(low, y), (high, y)]) });
 }

@@ -3,7 +3,7 @@
 use super::super::grid::{STANDARD_GRAVITY_M_S2, named_events};
 use super::super::{ReportError, spectrum};
 use super::draw::{Picture, Plate};
-use super::panel::{Axis as PanelAxis, COLOURS, Dash, Line, Mark, Panel};
+use super::panel::{COLOURS, Dash, Line, Mark, Panel, PanelAxis};
 use crate::data::{Analysis, Axis, ChannelCurve, End};
 use plotters::style::RGBColor;
 
@@ -12,7 +12,7 @@ const RECORD_TIME_LABEL: &str = "time from the recording's first sample, ms";
 
 /// The deceleration of both ends, unfiltered and filtered.
 pub(super) fn accelerations(analysis: &Analysis) -> Result<Picture, ReportError> {
-    let clock = Clock::of(analysis);
+    let clock = EventClock::of(analysis);
     let panels: Vec<Panel> = [(End::First, "First end"), (End::Second, "Second end")]
         .into_iter()
         .map(|(end, title)| {
@@ -43,7 +43,7 @@ pub(super) fn accelerations(analysis: &Analysis) -> Result<Picture, ReportError>
 
 /// The velocity of both ends, from the sensors and as the rigid body moves.
 pub(super) fn velocities(analysis: &Analysis) -> Result<Picture, ReportError> {
-    let clock = Clock::of(analysis);
+    let clock = EventClock::of(analysis);
     let mut sensors = Vec::new();
     for end in [End::First, End::Second] {
         for (curve, colour, axis) in curves_of(analysis, end) {
@@ -72,7 +72,7 @@ pub(super) fn velocities(analysis: &Analysis) -> Result<Picture, ReportError> {
 
 /// Heights of both ends and the inclination.
 pub(super) fn motion(analysis: &Analysis) -> Result<Picture, ReportError> {
-    let clock = Clock::of(analysis);
+    let clock = EventClock::of(analysis);
     let mut panels = Vec::new();
     if let Some(motion) = &analysis.curves.motion {
         let line = |colour: usize, values: &[f64], factor: f64| {
@@ -125,12 +125,12 @@ pub(super) fn spectra(analysis: &Analysis) -> Result<Picture, ReportError> {
 }
 
 /// The time axis: from first contact where it is known.
-struct Clock {
+struct EventClock {
     zero_s: f64,
     label: &'static str,
 }
 
-impl Clock {
+impl EventClock {
     fn of(analysis: &Analysis) -> Self {
         match analysis.result.events.first_contact_s().filter(|t| t.is_finite()) {
             Some(zero_s) => Self { zero_s, label: TIME_LABEL },

@@ -10,7 +10,7 @@
 pub(super) fn runs(points: &[(f64, f64)], from: f64, to: f64, columns: usize) -> Vec<Vec<(f64, f64)>> {
     let mut runs: Vec<Vec<(f64, f64)>> = Vec::new();
     let mut run: Vec<(f64, f64)> = Vec::new();
-    let mut column: Option<Column> = None;
+    let mut column: Option<PixelColumn> = None;
     for &(x, y) in points {
         if !(x.is_finite() && y.is_finite()) {
             flush(&mut run, column.take().as_ref());
@@ -25,7 +25,7 @@ pub(super) fn runs(points: &[(f64, f64)], from: f64, to: f64, columns: usize) ->
         let index = (((x - from) / (to - from)) * columns as f64) as usize;
         match &mut column {
             Some(open) if open.index == index => open.take(x, y),
-            _ => flush(&mut run, column.replace(Column { index, low: (x, y), high: (x, y) }).as_ref()),
+            _ => flush(&mut run, column.replace(PixelColumn { index, low: (x, y), high: (x, y) }).as_ref()),
         }
     }
     flush(&mut run, column.as_ref());
@@ -35,13 +35,13 @@ pub(super) fn runs(points: &[(f64, f64)], from: f64, to: f64, columns: usize) ->
     runs
 }
 
-struct Column {
+struct PixelColumn {
     index: usize,
     low: (f64, f64),
     high: (f64, f64),
 }
 
-impl Column {
+impl PixelColumn {
     fn take(&mut self, x: f64, y: f64) {
         if y < self.low.1 {
             self.low = (x, y);
@@ -52,8 +52,8 @@ impl Column {
     }
 }
 
-fn flush(run: &mut Vec<(f64, f64)>, column: Option<&Column>) {
-    let Some(&Column { low, high, .. }) = column else { return };
+fn flush(run: &mut Vec<(f64, f64)>, column: Option<&PixelColumn>) {
+    let Some(&PixelColumn { low, high, .. }) = column else { return };
     let (first, second) = if low.0 <= high.0 { (low, high) } else { (high, low) };
     run.push(first);
     if second != first {

@@ -128,15 +128,15 @@ fn described(svg: &str, title: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::panel::{Axis, COLOURS, Line};
+    use super::super::panel::{COLOURS, Line, PanelAxis};
     use super::*;
 
     #[test]
     fn a_logarithmic_axis_drops_what_it_cannot_show() {
         let points = vec![(0.0, 1.0), (10.0, 0.0), (10.0, 1.0), (1000.0, 0.1)];
         let panel = Panel {
-            x: Axis::new("frequency, Hz").logarithmic(),
-            y: Axis::new("magnitude").logarithmic(),
+            x: PanelAxis::new("frequency, Hz").logarithmic(),
+            y: PanelAxis::new("magnitude").logarithmic(),
             height: 350,
             lines: vec![Line::new(COLOURS[0], points)],
             ..Panel::default()

@@ -1,7 +1,7 @@
 //! The title of a panel and the names of its lines, areas and points, above the axes.
 
 use super::super::text::printable;
-use super::panel::{Dash, Fill, INK, Line, Panel, Points, Shape};
+use super::panel::{Dash, Fill, INK, Line, Panel, PointShape, Points};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -23,7 +23,7 @@ const SAMPLE: i32 = 58;
 
 /// What an entry of a legend stands for.
 #[derive(Clone, Copy)]
-enum Key<'a> {
+enum LegendKey<'a> {
     Line(&'a Line),
     Fill(&'a Fill),
     Points(&'a Points),
@@ -31,7 +31,7 @@ enum Key<'a> {
 
 /// One entry of a legend: what it stands for, its words, its row and where it begins.
 struct Entry<'a> {
-    key: Key<'a>,
+    key: LegendKey<'a>,
     label: String,
     row: usize,
     left: i32,
@@ -45,10 +45,10 @@ impl Panel {
         let limit = width.cast_signed() - RIGHT;
         let room = limit - LEFT;
         let mut left_over = room - letters(&self.title, 19) - 40;
-        let mut rows: Vec<Vec<(Key, String, i32)>> = vec![Vec::new()];
-        let lines = self.lines.iter().map(|line| (Key::Line(line), line.label.as_deref()));
-        let fills = self.fills.iter().map(|fill| (Key::Fill(fill), fill.label.as_deref()));
-        let points = self.points.iter().map(|points| (Key::Points(points), points.label.as_deref()));
+        let mut rows: Vec<Vec<(LegendKey, String, i32)>> = vec![Vec::new()];
+        let lines = self.lines.iter().map(|line| (LegendKey::Line(line), line.label.as_deref()));
+        let fills = self.fills.iter().map(|fill| (LegendKey::Fill(fill), fill.label.as_deref()));
+        let points = self.points.iter().map(|points| (LegendKey::Points(points), points.label.as_deref()));
         for (key, label) in lines.chain(fills).chain(points) {
             let Some(label) = label.map(printable) else { continue };
             let takes = SAMPLE + letters(&label, 13) + 26;
@@ -91,18 +91,18 @@ pub(super) fn heading(area: &Area, panel: &Panel) -> Result<(), Failure> {
         let drop = LEGEND_ROW * i32::try_from(row).unwrap_or(0);
         area.draw(&Text::new(label, (left + SAMPLE, 17 + drop), entry.clone()))?;
         match key {
-            Key::Fill(fill) => {
+            LegendKey::Fill(fill) => {
                 let corners = [(left, 18 + drop), (left + 48, 40 + drop)];
                 area.draw(&Rectangle::new(corners, fill.colour.mix(fill.opacity).filled()))?;
             }
-            Key::Line(line) => {
+            LegendKey::Line(line) => {
                 let style = line.colour.mix(line.opacity).stroke_width(line.stroke.max(3));
                 for &(from, to) in sample(line.dash) {
                     let stroke = vec![(left + from, 29 + drop), (left + to, 29 + drop)];
                     area.draw(&PathElement::new(stroke, style))?;
                 }
             }
-            Key::Points(points) => point(area, points, (left + 36, 29 + drop))?,
+            LegendKey::Points(points) => point(area, points, (left + 36, 29 + drop))?,
         }
     }
     Ok(())
@@ -124,19 +124,19 @@ pub(super) fn word(
 pub(super) fn point(area: &Area, points: &Points, (x, y): (i32, i32)) -> Result<(), Failure> {
     let (r, colour) = (points.radius, points.colour);
     let corners: &[(i32, i32)] = match points.shape {
-        Shape::Square => &[(-9, -9), (9, -9), (9, 9), (-9, 9), (-9, -9)],
-        Shape::Triangle => &[(0, -12), (12, 9), (-12, 9), (0, -12)],
-        Shape::Diamond => &[(0, -13), (13, 0), (0, 13), (-13, 0), (0, -13)],
-        Shape::Tip => &[(0, 12), (12, -9), (-12, -9), (0, 12)],
-        Shape::Cross => {
+        PointShape::Square => &[(-9, -9), (9, -9), (9, 9), (-9, 9), (-9, -9)],
+        PointShape::Triangle => &[(0, -12), (12, 9), (-12, 9), (0, -12)],
+        PointShape::Diamond => &[(0, -13), (13, 0), (0, 13), (-13, 0), (0, -13)],
+        PointShape::Tip => &[(0, 12), (12, -9), (-12, -9), (0, 12)],
+        PointShape::Cross => {
             for side in [r, -r] {
                 let stroke = vec![(x - r, y - side), (x + r, y + side)];
                 area.draw(&PathElement::new(stroke, colour.stroke_width(6)))?;
             }
             return Ok(());
         }
-        Shape::Ring => return area.draw(&Circle::new((x, y), r, colour.stroke_width(4))),
-        Shape::Dot => {
+        PointShape::Ring => return area.draw(&Circle::new((x, y), r, colour.stroke_width(4))),
+        PointShape::Dot => {
             area.draw(&Circle::new((x, y), r + 2, WHITE.filled()))?;
             let style = if points.is_hollow { colour.stroke_width(4) } else { colour.filled() };
             return area.draw(&Circle::new((x, y), r, style));

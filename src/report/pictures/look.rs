@@ -2,7 +2,7 @@
 
 use super::super::rounding::plain;
 use super::super::words::contact_words;
-use super::panel::{Axis, COLOURS, Dash, Mark, Panel};
+use super::panel::{COLOURS, Dash, Mark, Panel, PanelAxis};
 use crate::data::{BodyModel, Cask, Contact, Request};
 use plotters::style::RGBColor;
 
@@ -96,9 +96,9 @@ pub(super) fn body_words(model: BodyModel, cask: &Cask, with_length: bool) -> St
 }
 
 /// The axis of the drop angle, as far as the study goes.
-pub(super) fn angle_axis(request: &Request) -> Axis {
+pub(super) fn angle_axis(request: &Request) -> PanelAxis {
     let ends = request.angles_deg.first().copied().zip(request.angles_deg.last().copied());
-    Axis::new("drop angle, °").over(ends.filter(|(from, to)| from < to))
+    PanelAxis::new("drop angle, °").over(ends.filter(|(from, to)| from < to))
 }
 
 /// An empty panel over the angles of the study, the angle asked for marked.
@@ -107,7 +107,7 @@ pub(super) fn angle_panel(request: &Request, title: String, y_label: &str) -> Pa
     Panel {
         title,
         x: angle_axis(request),
-        y: Axis::new(y_label),
+        y: PanelAxis::new(y_label),
         height: 400,
         marks: vec![Mark { at, label: format!("{}°", plain(at, 4)) }],
         ..Panel::default()

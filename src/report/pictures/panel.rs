@@ -108,7 +108,7 @@ impl Fill {
 
 /// The shape of a point.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Shape {
+pub(crate) enum PointShape {
     Dot,
     Square,
     Triangle,
@@ -119,7 +119,7 @@ pub(crate) enum Shape {
     Cross,
 }
 
-impl Shape {
+impl PointShape {
     /// Of the method at this place: colour and shape together tell 35 apart.
     pub(crate) fn of(index: usize) -> Self {
         [Self::Dot, Self::Square, Self::Triangle, Self::Diamond, Self::Tip][index % 5]
@@ -132,7 +132,7 @@ pub(crate) struct Points {
     /// Its name in the legend; `None` keeps it out.
     pub(crate) label: Option<String>,
     pub(crate) colour: RGBColor,
-    pub(crate) shape: Shape,
+    pub(crate) shape: PointShape,
     /// Half the size in drawing units.
     pub(crate) radius: i32,
     pub(crate) is_hollow: bool,
@@ -141,7 +141,7 @@ pub(crate) struct Points {
 
 impl Points {
     /// Full points that the legend does not name.
-    pub(crate) fn new(colour: RGBColor, shape: Shape, at: Vec<(f64, f64)>) -> Self {
+    pub(crate) fn new(colour: RGBColor, shape: PointShape, at: Vec<(f64, f64)>) -> Self {
         Self { label: None, colour, shape, radius: 10, is_hollow: false, at }
     }
 
@@ -177,14 +177,14 @@ pub(crate) enum Scale {
 
 /// One axis.
 #[derive(Clone, Default)]
-pub(crate) struct Axis {
+pub(crate) struct PanelAxis {
     pub(crate) label: String,
     pub(crate) scale: Scale,
     /// Its ends; `None`: as far as the lines reach.
     pub(crate) range: Option<(f64, f64)>,
 }
 
-impl Axis {
+impl PanelAxis {
     /// A linear axis as long as what it shows.
     pub(crate) fn new(label: impl Into<String>) -> Self {
         Self { label: label.into(), ..Self::default() }
@@ -236,8 +236,8 @@ impl Axis {
 #[derive(Default)]
 pub(crate) struct Panel {
     pub(crate) title: String,
-    pub(crate) x: Axis,
-    pub(crate) y: Axis,
+    pub(crate) x: PanelAxis,
+    pub(crate) y: PanelAxis,
     /// Height in drawing units, without head and axis; 0 is a legend without axes.
     pub(crate) height: u32,
     /// Room for the words of rows at the left and the right; `None`: for ticks.
@@ -274,7 +274,7 @@ impl Panel {
 
     /// Whether the axes know a place for it.
     pub(super) fn drawable(&self, (x, y): (f64, f64)) -> bool {
-        let has_place = |axis: &Axis, v: f64| v.is_finite() && (v > 0.0 || !axis.is_logarithmic());
+        let has_place = |axis: &PanelAxis, v: f64| v.is_finite() && (v > 0.0 || !axis.is_logarithmic());
         has_place(&self.x, x) && has_place(&self.y, y)
     }
 }

@@ -4,7 +4,7 @@ use super::super::ReportError;
 use super::super::words::contact_words;
 use super::draw::{Picture, Plate};
 use super::look::{MOST_CONTACTS, angle_axis, angle_panel, body_words};
-use super::panel::{Axis, Fill, Panel, RowWords};
+use super::panel::{Fill, Panel, PanelAxis, RowWords};
 use crate::data::{Regime, RegimeMap, Study};
 use plotters::style::RGBColor;
 use std::ops::Range;
@@ -82,8 +82,8 @@ fn panels(study: &Study, map: &RegimeMap) -> [Panel; 2] {
     let ends = |edges: &[f64]| edges.first().copied().zip(edges.last().copied());
     let upper = Panel {
         title,
-        x: Axis::default().over(ends(&angles)),
-        y: Axis::new("k").over(ends(&ks)),
+        x: PanelAxis::default().over(ends(&angles)),
+        y: PanelAxis::new("k").over(ends(&ks)),
         height: MAP,
         fills: fills(&map.regimes[first..], (&angles, &ks)),
         ..angle_panel(&study.request, String::new(), "")
@@ -91,7 +91,7 @@ fn panels(study: &Study, map: &RegimeMap) -> [Panel; 2] {
     let strip = RowWords { left: "k = 0".into(), ..RowWords::default() };
     let lower = Panel {
         x: angle_axis(&study.request).over(ends(&angles)),
-        y: Axis::rows(vec![strip]),
+        y: PanelAxis::rows(vec![strip]),
         height: STRIP,
         fills: fills(&map.regimes[..first], (&angles, &[0.0, 1.0])),
         ..Panel::default()
@@ -104,7 +104,7 @@ fn fills(regimes: &[Vec<Regime>], (x, y): (&[f64], &[f64])) -> Vec<Fill> {
     let runs = runs(regimes);
     // A little over the neighbour below: no hairline is left between them when the picture is scaled.
     let over = y.first().zip(y.last()).map_or(0.0, |(from, to)| (to - from) / f64::from(MAP));
-    let area = |run: &Run| {
+    let area = |run: &RegimeRun| {
         let low = if run.rows.start > 0 { y[run.rows.start] - over } else { y[0] };
         Fill::rectangle((x[run.columns.start], x[run.columns.end]), (low, y[run.rows.end]))
     };
@@ -134,7 +134,7 @@ fn edges(centres: &[f64]) -> Vec<f64> {
 
 /// Cells of one regime in a rectangle.
 #[derive(Debug, PartialEq)]
-struct Run {
+struct RegimeRun {
     regime: Regime,
     columns: Range<usize>,
     rows: Range<usize>,
@@ -142,18 +142,18 @@ struct Run {
 
 /// Equal neighbours in a row as one, and equal ones in rows above each other again as one: some hundred rectangles instead of
 /// eighteen thousand cells.
-fn runs(regimes: &[Vec<Regime>]) -> Vec<Run> {
-    let mut done: Vec<Run> = Vec::new();
-    let mut open: Vec<Run> = Vec::new();
+fn runs(regimes: &[Vec<Regime>]) -> Vec<RegimeRun> {
+    let mut done: Vec<RegimeRun> = Vec::new();
+    let mut open: Vec<RegimeRun> = Vec::new();
     for (i, row) in regimes.iter().enumerate() {
         let mut grown = Vec::new();
         let mut from = 0;
         for cells in row.chunk_by(|a, b| a == b) {
             let columns = from..from + cells.len();
             from = columns.end;
-            let same = |run: &Run| run.regime == cells[0] && run.columns == columns;
+            let same = |run: &RegimeRun| run.regime == cells[0] && run.columns == columns;
             let start = open.iter().position(same).map_or(i, |at| open.swap_remove(at).rows.start);
-            grown.push(Run { regime: cells[0], columns, rows: start..i + 1 });
+            grown.push(RegimeRun { regime: cells[0], columns, rows: start..i + 1 });
         }
         done.append(&mut open);
         open = grown;

@@ -4,7 +4,7 @@ use super::super::ReportError;
 use super::super::words::{bands_words, case_words};
 use super::draw::{Picture, Plate};
 use super::look::{Look, angle_panel};
-use super::panel::{Dash, Fill, GREY, Line, Panel, Points, Shape};
+use super::panel::{Dash, Fill, GREY, Line, Panel, PointShape, Points};
 use crate::data::{Contact, Sensitivity, Study};
 
 const NOTHING: (&str, &str) =
@@ -65,7 +65,7 @@ fn by_k(study: &Study, shown: &[&Sensitivity], look: &Look) -> Panel {
             ..line
         });
         let blind = s.blind_angles_deg.iter().map(|angle| (*angle, 0.0)).collect();
-        panel.points.push(Points::new(line.colour, Shape::Dot, blind));
+        panel.points.push(Points::new(line.colour, PointShape::Dot, blind));
         panel.lines.push(line);
     }
     if shown.iter().any(|s| !s.blind_bands_deg.is_empty()) {

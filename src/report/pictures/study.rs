@@ -9,7 +9,7 @@ use crate::data::{Contact, Request, Study};
 use rayon::prelude::*;
 
 /// One chart by its name, and how it is drawn.
-enum Chart {
+enum StudyChart {
     Speeds,
     Components(Contact),
     Energies,
@@ -22,7 +22,7 @@ enum Chart {
 }
 
 /// The charts of a request, in the order in which a reader meets them.
-fn charts(request: &Request) -> Vec<(String, Chart)> {
+fn charts(request: &Request) -> Vec<(String, StudyChart)> {
     let mut shown: Vec<Contact> = Vec::new();
     for contact in &request.contacts {
         if !shown.contains(contact) {
@@ -30,23 +30,24 @@ fn charts(request: &Request) -> Vec<(String, Chart)> {
         }
     }
     let both = shown.len() == 2 && shown.contains(&Contact::Smooth) && shown.contains(&Contact::Rough);
-    let mut charts = vec![(if both { "smooth-rough" } else { "speeds" }.to_owned(), Chart::Speeds)];
+    let mut charts = vec![(if both { "smooth-rough" } else { "speeds" }.to_owned(), StudyChart::Speeds)];
     shown.truncate(MOST_CONTACTS);
-    charts.extend(shown.into_iter().map(|contact| (components_name(contact), Chart::Components(contact))));
+    charts
+        .extend(shown.into_iter().map(|contact| (components_name(contact), StudyChart::Components(contact))));
     for (name, chart) in [
-        ("energy-ratio", Chart::Energies),
-        ("section", Chart::Sections),
-        ("critical-angles", Chart::Critical),
-        ("monte-carlo", Chart::MonteCarlo),
-        ("sensitivity", Chart::Sensitivity),
-        ("regimes", Chart::Regimes),
+        ("energy-ratio", StudyChart::Energies),
+        ("section", StudyChart::Sections),
+        ("critical-angles", StudyChart::Critical),
+        ("monte-carlo", StudyChart::MonteCarlo),
+        ("sensitivity", StudyChart::Sensitivity),
+        ("regimes", StudyChart::Regimes),
     ] {
         if request.uncertain.draws > 0 || name != "monte-carlo" {
             charts.push((name.to_owned(), chart));
         }
     }
     if !request.sweeps.is_empty() {
-        charts.push(("sweep".to_owned(), Chart::Sweep));
+        charts.push(("sweep".to_owned(), StudyChart::Sweep));
     }
     charts
 }
@@ -76,15 +77,15 @@ pub(in super::super) fn draw_study(study: &Study) -> Result<Vec<Picture>, Report
     charts(&study.request)
         .into_par_iter()
         .map(|(name, chart)| match chart {
-            Chart::Speeds => angle_curves::speeds(study, &name),
-            Chart::Components(contact) => angle_curves::components(study, contact, &name),
-            Chart::Energies => angle_curves::energies(study, &name),
-            Chart::Sections => angle_curves::sections(study, &name),
-            Chart::Critical => critical::picture(study, &name),
-            Chart::MonteCarlo => monte_carlo::picture(study, &name),
-            Chart::Sensitivity => sensitivity::picture(study, &name),
-            Chart::Regimes => regimes::picture(study, &name),
-            Chart::Sweep => sweep::picture(study, &name),
+            StudyChart::Speeds => angle_curves::speeds(study, &name),
+            StudyChart::Components(contact) => angle_curves::components(study, contact, &name),
+            StudyChart::Energies => angle_curves::energies(study, &name),
+            StudyChart::Sections => angle_curves::sections(study, &name),
+            StudyChart::Critical => critical::picture(study, &name),
+            StudyChart::MonteCarlo => monte_carlo::picture(study, &name),
+            StudyChart::Sensitivity => sensitivity::picture(study, &name),
+            StudyChart::Regimes => regimes::picture(study, &name),
+            StudyChart::Sweep => sweep::picture(study, &name),
         })
         .collect()
 }

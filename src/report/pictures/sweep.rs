@@ -5,7 +5,7 @@ use super::super::rounding::plain;
 use super::super::words::{contact_words, variable_words};
 use super::draw::{Picture, Plate};
 use super::look::{Look, body_words, spread};
-use super::panel::{Axis, COLOURS, Line, Panel};
+use super::panel::{COLOURS, Line, Panel, PanelAxis};
 use crate::data::{BodyModel, Contact, PredictionRow, Study, Sweep, SweepVariable};
 
 const TITLE: &str = "Slap-down speed over the sweep";
@@ -53,13 +53,13 @@ pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError>
 
 /// What a line or a panel is for; what is swept is `None`.
 #[derive(Clone, Copy, PartialEq)]
-struct Case {
+struct SweepCase {
     model: BodyModel,
     contact: Option<Contact>,
     k: Option<f64>,
 }
 
-impl Case {
+impl SweepCase {
     fn of(row: &PredictionRow, friction_swept: bool, k_swept: bool) -> Self {
         let p = &row.prediction;
         Self { model: p.model, contact: (!friction_swept).then_some(p.contact), k: (!k_swept).then_some(p.k) }
@@ -78,10 +78,10 @@ impl Case {
 }
 
 /// The cases of the rows, in their order.
-fn cases(rows: &[&PredictionRow], friction_swept: bool, k_swept: bool) -> Vec<Case> {
+fn cases(rows: &[&PredictionRow], friction_swept: bool, k_swept: bool) -> Vec<SweepCase> {
     let mut cases = Vec::new();
     for row in rows {
-        let case = Case::of(row, friction_swept, k_swept);
+        let case = SweepCase::of(row, friction_swept, k_swept);
         if !cases.contains(&case) {
             cases.push(case);
         }
@@ -90,7 +90,12 @@ fn cases(rows: &[&PredictionRow], friction_swept: bool, k_swept: bool) -> Vec<Ca
 }
 
 /// One variable: a panel a body, a line a contact law and k.
-fn curves(study: &Study, rows: &[&PredictionRow], along: &Sweep, cases: &[Case]) -> (Vec<Panel>, String) {
+fn curves(
+    study: &Study,
+    rows: &[&PredictionRow],
+    along: &Sweep,
+    cases: &[SweepCase],
+) -> (Vec<Panel>, String) {
     let mut contacts: Vec<Contact> = Vec::new();
     for case in cases {
         let contact = law(case);
@@ -102,9 +107,9 @@ fn curves(study: &Study, rows: &[&PredictionRow], along: &Sweep, cases: &[Case])
     let look = Look::of(&contacts, &ks);
     let panels = [BodyModel::Rod, BodyModel::Body].map(|model| {
         let mut panel = panel(along, body_words(model, &study.cask_file.cask, !length_swept(study)));
-        let mut shown: Vec<&Case> =
+        let mut shown: Vec<&SweepCase> =
             cases.iter().filter(|c| c.model == model && look.shows(law(c), restitution(c))).collect();
-        let place = |case: &Case| contacts.iter().position(|c| *c == law(case));
+        let place = |case: &SweepCase| contacts.iter().position(|c| *c == law(case));
         shown.sort_by(|a, b| place(a).cmp(&place(b)).then(restitution(b).total_cmp(&restitution(a))));
         for case in shown {
             let of_case = rows.iter().copied().filter(|row| case.holds(row));
@@ -120,12 +125,12 @@ fn curves(study: &Study, rows: &[&PredictionRow], along: &Sweep, cases: &[Case])
 }
 
 /// The contact law of a case, or any one where friction is swept.
-fn law(case: &Case) -> Contact {
+fn law(case: &SweepCase) -> Contact {
     case.contact.unwrap_or(Contact::Rough)
 }
 
 /// k of a case, or any one where k is swept.
-fn restitution(case: &Case) -> f64 {
+fn restitution(case: &SweepCase) -> f64 {
     case.k.unwrap_or(0.0)
 }
 
@@ -134,7 +139,7 @@ fn families(
     study: &Study,
     rows: &[&PredictionRow],
     (along, second): (&Sweep, &Sweep),
-    mut cases: Vec<Case>,
+    mut cases: Vec<SweepCase>,
 ) -> (Vec<Panel>, String) {
     let all = cases.len();
     if all > MOST_PANELS && cases.iter().any(|case| case.model == BodyModel::Body) {
@@ -170,8 +175,8 @@ fn panel(along: &Sweep, title: String) -> Panel {
     let ends = along.values.first().copied().zip(along.values.last().copied());
     Panel {
         title,
-        x: Axis::new(variable_words(along.variable)).over(ends.filter(|(from, to)| from < to)),
-        y: Axis::new("slap-down speed, m/s"),
+        x: PanelAxis::new(variable_words(along.variable)).over(ends.filter(|(from, to)| from < to)),
+        y: PanelAxis::new("slap-down speed, m/s"),
         height: 380,
         ..Panel::default()
     }

@@ -3,7 +3,7 @@
 use super::super::document::{Chapter, Passage};
 use super::super::medium::{Medium, Words};
 use super::super::rounding::{MISSING, fixed, plain};
-use super::super::table::{Shape, Table};
+use super::super::table::{Table, TableShape};
 use super::super::words::{
     MOST_ON_PAGE, MOST_ROWS, OTHERS, band_around_words, bands_words, case_words, contact_words,
     criterion_short, criterion_value, criterion_words, degrees, has_ranges, nearest, through_words,
@@ -45,7 +45,7 @@ pub(super) fn critical(study: &Study) -> Chapter {
     let at = |short: &str| Words::or("at, ° (band)", short);
     let table = Table::of(&speeds)
         .class("many")
-        .shape(Shape::Fitting)
+        .shape(TableShape::Fitting)
         .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
         .text(Words::or("Model", "model"), |c| c.model.as_str())
         .soft(Words::or("Contact", "contact"), |c| contact_words(c.contact))
@@ -99,7 +99,7 @@ pub(super) fn ranges(study: &Study) -> Chapter {
     };
     let table = Table::of(&study.ranges)
         .caption("All else as stated. Every band: the angles that lie in the band of every one of the cases.")
-        .shape(Shape::Fitting)
+        .shape(TableShape::Fitting)
         .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
         .text(Words::or("Model", "model"), |r| r.model.as_str())
         .text(Words::or("Largest", "largest"), |r| {
@@ -159,7 +159,7 @@ fn quantiles(found: &[QuantileCurves]) -> Passage {
     };
     let table = Table::of(found)
         .caption("Found: the median, and the range of 95 % of the draws.")
-        .shape(Shape::Fitting)
+        .shape(TableShape::Fitting)
         .head(Words::or("Largest", "largest"), |q| {
             Words::or(criterion_words(q.criterion), criterion_short(q.criterion))
         })

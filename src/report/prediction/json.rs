@@ -18,25 +18,25 @@ const MOST_SPREAD: usize = 400;
 
 /// What follows the predictions.
 #[derive(Serialize)]
-struct Found<'a> {
-    input: Input,
+struct StudyFound<'a> {
+    input: StudyInput,
     ladders: &'a [Ladder],
     critical_angles: &'a [CriticalAngle],
-    critical_ranges: Vec<Range<'a>>,
+    critical_ranges: Vec<FoundRange<'a>>,
     monte_carlo: &'a MonteCarlo,
     sensitivities: &'a [Sensitivity],
     regime_maps: &'a [RegimeMap],
 }
 
 #[derive(Serialize)]
-struct Input {
+struct StudyInput {
     cask: String,
     cask_sha256: String,
 }
 
 /// A critical range with the worst case by name.
 #[derive(Serialize)]
-struct Range<'a> {
+struct FoundRange<'a> {
     model: &'static str,
     criterion: Criterion,
     angle_deg: (f64, f64),
@@ -63,8 +63,8 @@ pub fn study_json(study: &Study) -> Result<Vec<u8>, ReportError> {
         contact: range.worst.1,
         k: range.worst.2,
     };
-    let found = Found {
-        input: Input {
+    let found = StudyFound {
+        input: StudyInput {
             cask: study.cask_file.path.display().to_string(),
             cask_sha256: study.cask_file.sha256.clone(),
         },
@@ -73,7 +73,7 @@ pub fn study_json(study: &Study) -> Result<Vec<u8>, ReportError> {
         critical_ranges: study
             .ranges
             .iter()
-            .map(|r| Range {
+            .map(|r| FoundRange {
                 model: r.model.as_str(),
                 criterion: r.criterion,
                 angle_deg: r.angle_deg,
@@ -108,7 +108,10 @@ fn head(rows: &[PredictionRow]) -> Result<Vec<u8>, ReportError> {
                 if compact {
                     serde_json::to_writer(&mut bytes, row)?;
                 } else {
-                    row.serialize(&mut serde_json::Serializer::with_formatter(&mut bytes, Spread::below(2)))?;
+                    row.serialize(&mut serde_json::Serializer::with_formatter(
+                        &mut bytes,
+                        SpreadFormat::below(2),
+                    ))?;
                 }
                 bytes.push(b',');
             }
@@ -130,20 +133,20 @@ fn head(rows: &[PredictionRow]) -> Result<Vec<u8>, ReportError> {
 
 fn spread(value: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
     let mut bytes = Vec::new();
-    value.serialize(&mut serde_json::Serializer::with_formatter(&mut bytes, Spread::below(0)))?;
+    value.serialize(&mut serde_json::Serializer::with_formatter(&mut bytes, SpreadFormat::below(0)))?;
     Ok(bytes)
 }
 
 /// Every key and every array within an array on a line of its own, the plain values of an array on one line: a curve of 181
 /// numbers is a line, not a page.
-struct Spread {
+struct SpreadFormat {
     /// Steps of indentation of what surrounds the document.
     base: usize,
     /// For every open object or array whether anything in it stands on a line of its own, and whether it is an array.
     open: Vec<(bool, bool)>,
 }
 
-impl Spread {
+impl SpreadFormat {
     fn below(base: usize) -> Self {
         Self { base, open: Vec::new() }
     }
@@ -171,7 +174,7 @@ impl Spread {
     }
 }
 
-impl Formatter for Spread {
+impl Formatter for SpreadFormat {
     fn begin_array<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
         self.begin(writer, true)
     }

@@ -3,7 +3,7 @@
 use super::super::document::{Chapter, Passage};
 use super::super::medium::{Medium, Words};
 use super::super::rounding::{MISSING, optional_fixed, percent, plain};
-use super::super::table::{Shape, Table};
+use super::super::table::{Table, TableShape};
 use super::super::text::capital;
 use super::super::words::{
     MOST_ON_PAGE, MOST_ROWS, OTHERS, angles_words, bands_words, case_words, contact_words, degrees, nearest,
@@ -44,7 +44,7 @@ pub(super) fn ladders(study: &Study) -> Chapter {
 
 fn many_ladders(ladders: &[Ladder]) -> Passage {
     let mut table = Table::of(ladders)
-        .shape(Shape::Fitting)
+        .shape(TableShape::Fitting)
         .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
         .soft(Words::or("Contact", "contact"), |ladder| contact_words(ladder.contact))
         .number("k", |ladder| plain(ladder.k, 3));
@@ -99,7 +99,7 @@ pub(super) fn sensitivities(study: &Study) -> Chapter {
     };
     let table = Table::of(&study.sensitivities)
         .caption("Gradient of the slap-down speed.")
-        .shape(Shape::Fitting)
+        .shape(TableShape::Fitting)
         .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
         .text(Words::or("Model", "model"), |s| s.model.as_str())
         .soft(Words::or("Contact", "contact"), |s| contact_words(s.contact))

@@ -3,7 +3,7 @@
 use super::super::document::Passage;
 use super::super::medium::{Medium, Words};
 use super::super::rounding::{optional, optional_fixed, plain};
-use super::super::table::{Rows, Shape, Table};
+use super::super::table::{Table, TableRows, TableShape};
 use super::super::words::{KEPT_SENTENCE, contact_words, kept_mark};
 use crate::data::{BodyModel, CaskFile, Contact, Prediction, PredictionRow};
 
@@ -22,10 +22,10 @@ const AGAIN_MARK: &str = "‡";
 /// Adds the columns of a prediction; `None` is a row that stands for those left out. On a terminal the heads of a study take two
 /// lines, so that further columns have room.
 pub(in super::super) fn prediction_columns<'a, R>(
-    rows: Rows<'a, R>,
+    rows: TableRows<'a, R>,
     of: impl Fn(&'a R) -> Option<&'a Prediction> + Copy,
     in_study: bool,
-) -> Rows<'a, R> {
+) -> TableRows<'a, R> {
     let cell =
         |words: fn(&Prediction) -> String| move |row: &'a R| of(row).map_or_else(|| "…".to_owned(), words);
     let contact = move |row: &'a R| {
@@ -74,7 +74,7 @@ impl Varying {
 }
 
 /// A row of the table; `None` stands for those left out.
-struct Shown<'a>(Option<&'a PredictionRow>);
+struct ShownRow<'a>(Option<&'a PredictionRow>);
 
 /// The predictions of a study as this medium shows them, and what their marks mean.
 pub(super) fn predictions(all: &[PredictionRow], medium: Medium) -> Vec<Passage> {
@@ -88,12 +88,12 @@ pub(super) fn predictions(all: &[PredictionRow], medium: Medium) -> Vec<Passage>
         Medium::Terminal => all.iter().map(Some).collect(),
         _ => all.iter().take(MOST_ON_PAGE).map(Some).collect(),
     };
-    let rows: Vec<Shown> = rows.into_iter().map(Shown).collect();
+    let rows: Vec<ShownRow> = rows.into_iter().map(ShownRow).collect();
     let cell =
-        |words: fn(&PredictionRow) -> Words| move |row: &Shown| row.0.map_or_else(|| "…".into(), words);
+        |words: fn(&PredictionRow) -> Words| move |row: &ShownRow| row.0.map_or_else(|| "…".into(), words);
     let table = Table::of(&rows)
         .class("many")
-        .shape(Shape::Fitting)
+        .shape(TableShape::Fitting)
         .caption("Velocity of the second end just before it strikes. Energy: kinetic, before the slap-down over before the first impact.")
         .number(Words::or("φ0, °", "φ0\n°"), cell(|row| plain(row.angle_deg, 6).into()))
         .number(Words::or("Length, m", "l\nm"), cell(|row| Words::or(plain(row.length_m, 5), plain(row.length_m, 4))))

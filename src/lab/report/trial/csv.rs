@@ -5,11 +5,11 @@ use crate::report::ReportError;
 use crate::report::records::{CsvColumn, records};
 
 /// A point and whether it is on the front.
-type Point<'a> = (&'a TrialPoint, bool);
+type PointRow<'a> = (&'a TrialPoint, bool);
 
 /// `points.csv`.
 pub(super) fn points(trial: &Trial) -> Result<Vec<u8>, ReportError> {
-    let columns: [CsvColumn<Point>; 13] = [
+    let columns: [CsvColumn<PointRow>; 13] = [
         ("family", |(p, _)| p.family.clone()),
         ("class", |(p, _)| p.class.clone()),
         ("method", |(p, _)| p.method.clone()),

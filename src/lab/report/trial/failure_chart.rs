@@ -3,7 +3,7 @@
 use super::breaks;
 use crate::lab::data::{TrialLine, TrialMap};
 use crate::report::pictures::draw::{Picture, Plate};
-use crate::report::pictures::panel::{ALARM, Axis, COLOURS, Dash, Line, Panel, Points, Shape};
+use crate::report::pictures::panel::{ALARM, COLOURS, Dash, Line, Panel, PanelAxis, PointShape, Points};
 use crate::report::{ReportError, rounding};
 
 /// Height of a panel of many lines, and of one of three at most.
@@ -71,10 +71,10 @@ fn stress_range(map: &TrialMap) -> Option<(f64, f64)> {
 }
 
 fn panel(map: &TrialMap) -> Panel {
-    let x = Axis::new(&map.stress[..]).over(stress_range(map));
+    let x = PanelAxis::new(&map.stress[..]).over(stress_range(map));
     let mut panel = Panel {
         title: map.title.clone(),
-        y: Axis::new(&map.error[..]).logarithmic().over(Some(error_range(map))),
+        y: PanelAxis::new(&map.error[..]).logarithmic().over(Some(error_range(map))),
         height: if map.lines.len() > 3 { PANEL } else { PANEL_OF_FEW },
         ..Panel::default()
     };
@@ -107,7 +107,7 @@ fn add_line(panel: &mut Panel, map: &TrialMap, line: &TrialLine, index: usize) {
         }
     }
     panel.lines.push(Line::new(colour, points));
-    panel.points.push(Points::new(colour, Shape::of(index), said).named(&line.method[..]));
-    panel.points.push(Points { radius: 6, ..Points::new(colour, Shape::Dot, silent) });
-    panel.points.push(Points { radius: 11, ..Points::new(ALARM, Shape::Cross, unsaid) });
+    panel.points.push(Points::new(colour, PointShape::of(index), said).named(&line.method[..]));
+    panel.points.push(Points { radius: 6, ..Points::new(colour, PointShape::Dot, silent) });
+    panel.points.push(Points { radius: 11, ..Points::new(ALARM, PointShape::Cross, unsaid) });
 }

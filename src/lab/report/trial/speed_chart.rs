@@ -4,7 +4,7 @@ use super::families::Family;
 use crate::lab::data::TrialPoint;
 use crate::report::ReportError;
 use crate::report::pictures::draw::{Picture, Plate};
-use crate::report::pictures::panel::{Axis, COLOURS, GREY, INK, Line, Panel, Points, Shape};
+use crate::report::pictures::panel::{COLOURS, GREY, INK, Line, Panel, PanelAxis, PointShape, Points};
 
 /// Height of a panel.
 const PANEL: u32 = 410;
@@ -26,7 +26,7 @@ pub(super) fn picture(family: &Family) -> Result<Picture, ReportError> {
     let methods = family.methods();
     let look = |(i, method): (usize, &&str)| Points {
         is_hollow: family.is_peer(method),
-        ..Points::new(COLOURS[i % COLOURS.len()], Shape::of(i), Vec::new()).named(*method)
+        ..Points::new(COLOURS[i % COLOURS.len()], PointShape::of(i), Vec::new()).named(*method)
     };
     let looks: Vec<Points> = methods.iter().enumerate().map(look).collect();
     let axes = axes(family);
@@ -54,19 +54,19 @@ fn decades(values: impl Iterator<Item = f64>) -> (f64, f64) {
 }
 
 /// Time and error, the same for every class.
-fn axes(family: &Family) -> [Axis; 2] {
+fn axes(family: &Family) -> [PanelAxis; 2] {
     let points = || family.points.iter().map(|(p, _)| p);
     let times = decades(points().flat_map(|p| p.time_quartiles_ns.into_iter().chain([p.time_ns])));
     let (least, most) = decades(points().flat_map(|p| [p.median_error, p.p95_error].map(drawn_error)));
     let errors = (least.max(most * 10_f64.powi(-MOST_DECADES)), most);
     [
-        Axis::new(format!("ns a {}", family.time_per)).logarithmic().over(Some(times)),
-        Axis::new(format!("error, {}", family.error_unit)).logarithmic().over(Some(errors)),
+        PanelAxis::new(format!("ns a {}", family.time_per)).logarithmic().over(Some(times)),
+        PanelAxis::new(format!("error, {}", family.error_unit)).logarithmic().over(Some(errors)),
     ]
 }
 
 /// The panel of one class.
-fn panel(axes: &[Axis; 2], class: &str, points: &[(&TrialPoint, bool)], looks: &[Points]) -> Panel {
+fn panel(axes: &[PanelAxis; 2], class: &str, points: &[(&TrialPoint, bool)], looks: &[Points]) -> Panel {
     let [x, y] = axes.clone();
     let least = y.range.map_or(LEAST_ERROR, |(least, _)| least);
     let height = |error| drawn_error(error).max(least);
@@ -92,7 +92,7 @@ fn panel(axes: &[Axis; 2], class: &str, points: &[(&TrialPoint, bool)], looks: &
             panel.lines.push(Line { stroke: 3, ..Line::new(look.colour, ends.into()) });
         }
         if point.is_default {
-            panel.points.push(Points { radius: 21, ..Points::new(INK, Shape::Ring, vec![at]) });
+            panel.points.push(Points { radius: 21, ..Points::new(INK, PointShape::Ring, vec![at]) });
         }
         panel.points.push(Points { at: vec![at], label: None, ..look.clone() });
     }
