@@ -6,6 +6,13 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// What a newcomer reads in five minutes, words.
+const README_WORDS: usize = 2000;
+/// Words of all pages, but for `docs/measured`, which programs write.
+const ALL_WORDS: usize = 30_000;
+/// Characters of a line of prose; tables and code may be wider.
+const WIDTH: usize = 120;
+
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -78,6 +85,33 @@ fn answer<'a>(page: &'a str, command: &str) -> &'a str {
     let (_, rest) = page.split_once(&format!("$ {command}")).expect("the command");
     let (_, block) = rest.split_once('\n').expect("an answer");
     block.split("```").next().unwrap_or_default()
+}
+
+#[test]
+fn the_pages_keep_their_budget_of_words() {
+    let is_word = |word: &&str| word.contains(char::is_alphanumeric); // the bars of tables are none
+    let count = |page: &PathBuf| text(page).split_whitespace().filter(is_word).count();
+    let readme = count(&root().join("README.md"));
+    assert!(readme < README_WORDS, "the README has {readme} words, below {README_WORDS} is meant");
+    let counts: Vec<(usize, PathBuf)> =
+        written_pages().into_iter().map(|page| (count(&page), page)).collect();
+    let all: usize = counts.iter().map(|(words, _)| words).sum();
+    assert!(all < ALL_WORDS, "{all} words, below {ALL_WORDS} is meant: {counts:#?}");
+}
+
+#[test]
+fn lines_of_prose_fit_a_window() {
+    let mut wide = Vec::new();
+    for page in written_pages().into_iter().chain(pages_beside()) {
+        let text = text(&page);
+        for (number, line) in lines_without_code(&text) {
+            let length = line.chars().count();
+            if length >= WIDTH && !line.trim_start().starts_with('|') {
+                wide.push(format!("{}:{number}: {length} characters", page.display()));
+            }
+        }
+    }
+    assert!(wide.is_empty(), "prose is below {WIDTH} characters a line:\n{}", wide.join("\n"));
 }
 
 #[test]
