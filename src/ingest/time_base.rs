@@ -13,6 +13,7 @@ mod uniform;
 pub(super) use super::clock::RATE_TOLERANCE;
 pub(super) use super::shown::{short, to_digits};
 pub use blocks::from_blocks;
+pub(super) use blocks::lay as lay_blocks;
 pub(super) use cut::{cut, unit_s, usual_hz};
 pub use error::TimeBaseError;
 use error::check_rate;

@@ -1,8 +1,9 @@
 //! Records to the schemas and channels of a file, and to messages of known channels.
 
-use super::scan::parse;
-use super::scanned::{ChannelInfo, Scanned, SchemaInfo, Sink};
+use super::scanned::{ChannelInfo, Scanned, SchemaInfo};
+use super::topics::Topics;
 use mcap::records::{Record, op};
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 /// The schemas and channels met so far; the first of an id stands.
@@ -13,98 +14,87 @@ pub(super) struct Catalog {
     held_bytes: u64,
 }
 
+/// A message of a known channel.
+pub(super) struct Message<'a> {
+    pub(super) channel: u16,
+    pub(super) log_time_ns: i64,
+    pub(super) data: Cow<'a, [u8]>,
+}
+
+/// What a record holds for who reads the file.
+pub(super) enum Sorted<'a> {
+    /// A message of a known channel.
+    Message(Message<'a>),
+    /// Something to be added to the catalog, or to what is known of the file.
+    New(Record<'a>),
+    /// Nothing: a schema or channel that was there before, or a record of the file's index.
+    Nothing,
+    /// Why the record cannot be used.
+    Bad(&'static str),
+}
+
 impl Catalog {
-    /// Takes a record and hands it on; `false` where its body does not parse.
-    pub(super) fn take(
-        &mut self,
-        opcode: u8,
-        body: &[u8],
-        sink: &mut impl Sink,
-        scanned: &mut Scanned,
-    ) -> bool {
+    /// What a record holds.
+    pub(super) fn sorted<'a>(&self, opcode: u8, body: &'a [u8]) -> Sorted<'a> {
         if !matches!(opcode, op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE | op::STATISTICS) {
-            return true;
+            return Sorted::Nothing;
         }
-        match parse(opcode, body) {
-            Some(Record::Message { header, data }) if self.channels.contains(&header.channel_id) => {
-                let log_time_ns = i64::try_from(header.log_time).unwrap_or(i64::MAX);
-                sink.message(header.channel_id, log_time_ns, &data);
-                true
+        match mcap::parse_record(opcode, body).ok() {
+            Some(Record::Message { header, .. }) if !self.channels.contains(&header.channel_id) => {
+                Sorted::Bad("whose channel is missing")
             }
-            Some(Record::Schema { header, data }) => {
-                if !self.schemas.contains_key(&header.id) {
-                    self.held_bytes += body.len() as u64;
-                }
-                self.schemas.entry(header.id).or_insert_with(|| SchemaInfo {
-                    name: header.name,
-                    encoding: header.encoding,
-                    data: data.into_owned(),
-                });
-                true
-            }
-            Some(Record::Channel(channel)) => {
-                if self.channels.insert(channel.id) {
-                    self.held_bytes += body.len() as u64;
-                    let info = ChannelInfo {
-                        topic: &channel.topic,
-                        message_encoding: &channel.message_encoding,
-                        schema_id: channel.schema_id,
-                        schema: self.schemas.get(&channel.schema_id),
-                    };
-                    sink.channel(channel.id, &info);
-                }
-                true
-            }
-            Some(Record::Header(header)) => {
-                (scanned.profile, scanned.library) = (header.profile, header.library);
-                true
-            }
-            Some(Record::Statistics(statistics)) => {
-                scanned.claimed_messages = Some(statistics.message_count);
-                true
-            }
-            _ => false,
+            Some(Record::Message { header, data }) => Sorted::Message(Message {
+                channel: header.channel_id,
+                log_time_ns: i64::try_from(header.log_time).unwrap_or(i64::MAX),
+                data,
+            }),
+            Some(Record::Schema { header, .. }) if self.schemas.contains_key(&header.id) => Sorted::Nothing,
+            Some(Record::Channel(channel)) if self.channels.contains(&channel.id) => Sorted::Nothing,
+            Some(record) => Sorted::New(record),
+            None => Sorted::Bad("that does not parse"),
         }
     }
 
-    /// Takes a record of the summary section, except a channel whose schema is not repeated there.
-    pub(super) fn take_ahead(
-        &mut self,
-        opcode: u8,
-        body: &[u8],
-        sink: &mut impl Sink,
-        scanned: &mut Scanned,
-    ) {
-        let is_complete = match parse(opcode, body) {
-            Some(Record::Channel(channel)) => {
+    /// Adds what a record tells that is new.
+    pub(super) fn add(&mut self, record: Record, topics: &mut Topics, scanned: &mut Scanned) {
+        match record {
+            Record::Schema { header, data } => {
+                self.held_bytes += (header.name.len() + header.encoding.len() + data.len()) as u64;
+                let info =
+                    SchemaInfo { name: header.name, encoding: header.encoding, data: data.into_owned() };
+                self.schemas.insert(header.id, info);
+            }
+            Record::Channel(channel) => {
+                self.channels.insert(channel.id);
+                self.held_bytes += (channel.topic.len() + channel.message_encoding.len()) as u64;
+                let info = ChannelInfo {
+                    topic: &channel.topic,
+                    message_encoding: &channel.message_encoding,
+                    schema_id: channel.schema_id,
+                    schema: self.schemas.get(&channel.schema_id),
+                };
+                topics.channel(channel.id, &info);
+            }
+            Record::Header(header) => (scanned.profile, scanned.library) = (header.profile, header.library),
+            Record::Statistics(statistics) => scanned.claimed_messages = Some(statistics.message_count),
+            _ => {}
+        }
+    }
+
+    /// Adds a record of the summary section, except a channel whose schema is not repeated there.
+    pub(super) fn add_ahead(&mut self, record: Record, topics: &mut Topics, scanned: &mut Scanned) {
+        let is_complete = match &record {
+            Record::Channel(channel) => {
                 channel.schema_id == 0 || self.schemas.contains_key(&channel.schema_id)
             }
             _ => true,
         };
         if is_complete {
-            self.take(opcode, body, sink, scanned);
+            self.add(record, topics, scanned);
         }
     }
 
-    /// Takes a record of a chunk into a part; `false` where [`Catalog::take`] would do more with it than hand on a message.
-    pub(super) fn take_into<S: Sink>(&self, opcode: u8, body: &[u8], sink: &S, part: &mut S::Part) -> bool {
-        match (opcode, parse(opcode, body)) {
-            (op::MESSAGE, Some(Record::Message { header, data })) => {
-                let is_known = self.channels.contains(&header.channel_id);
-                if is_known {
-                    let log_time_ns = i64::try_from(header.log_time).unwrap_or(i64::MAX);
-                    sink.message_into(part, header.channel_id, log_time_ns, &data);
-                }
-                is_known
-            }
-            (op::SCHEMA, Some(Record::Schema { header, .. })) => self.schemas.contains_key(&header.id),
-            (op::CHANNEL, Some(Record::Channel(channel))) => self.channels.contains(&channel.id),
-            (op::HEADER | op::STATISTICS | op::MESSAGE | op::SCHEMA | op::CHANNEL, _) => false,
-            _ => true,
-        }
-    }
-
-    /// Bytes of the records that it keeps.
+    /// Bytes of the names and schemas that it keeps.
     pub(super) fn held_bytes(&self) -> u64 {
         self.held_bytes
     }

@@ -1,11 +1,14 @@
 //! One chunk to the records in it: decompressed as it is read, its check sum tested, cut ones as far as they go.
 
-use super::scan::{RECORD_HEADER_BYTES, RECORD_HEADER_LENGTH};
 use mcap::McapError;
 use mcap::records::op;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use std::io::Read;
 
+/// A record begins with its opcode (1 byte) and its length (8 bytes).
+pub(super) const RECORD_HEADER_BYTES: u64 = 9;
+/// The same, as the length of a buffer.
+pub(super) const RECORD_HEADER_LENGTH: usize = 9;
 /// Chunk header without its compression's name: times, uncompressed size, check sum, name length, compressed size.
 const FIXED_HEADER_BYTES: u64 = 8 + 8 + 8 + 4 + 4 + 8;
 /// The same, as the length of a buffer.
@@ -17,30 +20,27 @@ const LARGEST_EXPANSION: u64 = (128 << 10) / 3 + 1;
 /// So much is asked of the file at a time, whatever the record claims.
 const STEP_BYTES: u64 = 1 << 20;
 
+/// What a chunk was.
+#[derive(Debug)]
+pub(super) struct Ended {
+    /// The compression that it names, where its header was read.
+    pub(super) compression: Option<String>,
+    pub(super) how: ChunkEnd,
+}
+
 /// How a chunk ended.
 #[derive(Debug)]
 pub(super) enum ChunkEnd {
     /// All of it was read and its check sum holds, or it has none.
-    Whole { compression: String },
-    /// The file ends in it.
-    Cut { compression: Option<String>, bytes: u64 },
+    Whole,
+    /// The file ends in it, after so many of its bytes.
+    Cut { bytes: u64 },
     /// Whoever takes the records wants no more.
     Stopped,
     /// One of its records is larger than any may be.
     TooLarge,
     /// It does not decompress, or its check sum does not hold.
-    Bad { compression: Option<String>, reason: String, span_ns: (u64, u64) },
-}
-
-impl ChunkEnd {
-    /// The compression that the chunk names.
-    pub(super) fn compression(&self) -> Option<&str> {
-        match self {
-            Self::Whole { compression } => Some(compression),
-            Self::Stopped | Self::TooLarge => None,
-            Self::Cut { compression, .. } | Self::Bad { compression, .. } => compression.as_deref(),
-        }
-    }
+    Bad { reason: String, span_ns: (u64, u64) },
 }
 
 /// Reads chunks one after the other, with the decompressors' memory kept.
@@ -74,36 +74,40 @@ impl Chunks {
         claimed: u64,
         available: u64,
         take: &mut dyn FnMut(u8, &[u8]) -> bool,
-    ) -> std::io::Result<ChunkEnd> {
+    ) -> std::io::Result<Ended> {
         let body = claimed.min(available);
         let is_cut = claimed > available;
         let Some(header) = header(file, body)? else {
-            return Ok(if is_cut {
-                ChunkEnd::Cut { compression: None, bytes: body }
+            let how = if is_cut {
+                ChunkEnd::Cut { bytes: body }
             } else {
                 skip(file, body.saturating_sub(FIXED_HEADER_BYTES))?;
-                bad(None, "its header makes no sense", (0, 0))
-            });
+                ChunkEnd::Bad { reason: "its header makes no sense".into(), span_ns: (0, 0) }
+            };
+            return Ok(Ended { compression: None, how });
         };
+        let bad = |reason| ChunkEnd::Bad { reason, span_ns: header.span_ns };
         let data = body - header.bytes.len() as u64;
-        if !is_cut && !header.is_possible(body) {
+        let how = if is_cut || header.is_possible(body) {
+            // Bytes behind the compressed ones are padding: the reader never sees them, so no record can reach into them.
+            let fed_bytes = data.min(header.compressed);
+            let fed = self.feed(file, &header, fed_bytes, is_cut, take)?;
+            skip(file, fed.left + (data - fed_bytes))?;
+            if !fed.is_clean {
+                self.reader = fresh(self.record_limit);
+            }
+            match fed.problem {
+                None => ChunkEnd::Whole,
+                Some(Problem::Stopped) => ChunkEnd::Stopped,
+                Some(Problem::TooLarge) => ChunkEnd::TooLarge,
+                Some(_) if is_cut => ChunkEnd::Cut { bytes: fed_bytes },
+                Some(Problem::Damage(reason)) => bad(reason),
+            }
+        } else {
             skip(file, data)?;
-            return Ok(bad(Some(header.compression), "its sizes contradict each other", header.span_ns));
-        }
-        // Bytes behind the compressed ones are padding: the reader never sees them, so no record can reach into them.
-        let fed_bytes = data.min(header.compressed);
-        let fed = self.feed(file, &header, fed_bytes, is_cut, take)?;
-        skip(file, fed.left + (data - fed_bytes))?;
-        if !fed.is_clean {
-            self.reader = fresh(self.record_limit);
-        }
-        Ok(match fed.problem {
-            None => ChunkEnd::Whole { compression: header.compression },
-            Some(Problem::Stopped) => ChunkEnd::Stopped,
-            Some(Problem::TooLarge) => ChunkEnd::TooLarge,
-            Some(_) if is_cut => ChunkEnd::Cut { compression: Some(header.compression), bytes: fed_bytes },
-            Some(Problem::Damage(reason)) => bad(Some(header.compression), &reason, header.span_ns),
-        })
+            bad("its sizes contradict each other".into())
+        };
+        Ok(Ended { compression: Some(header.compression), how })
     }
 
     /// Feeds the chunk's `bytes`, its lengths set to what is there, to the reader.
@@ -235,10 +239,6 @@ fn fresh(record_limit: usize) -> LinearReader {
         .with_validate_chunk_crcs(true)
         .with_record_length_limit(record_limit);
     LinearReader::new_with_options(options)
-}
-
-fn bad(compression: Option<String>, reason: &str, span_ns: (u64, u64)) -> ChunkEnd {
-    ChunkEnd::Bad { compression, reason: reason.to_owned(), span_ns }
 }
 
 fn skip(file: &mut impl Read, bytes: u64) -> std::io::Result<()> {

@@ -1,7 +1,6 @@
 //! The chunk headers of an MCAP file to what its chunks claim to unpack to, before any of them is unpacked.
 
-use super::chunk;
-use super::scan::{RECORD_HEADER_BYTES, RECORD_HEADER_LENGTH};
+use super::chunk::{self, RECORD_HEADER_BYTES, RECORD_HEADER_LENGTH};
 use mcap::records::op;
 use std::io::{BufReader, Read, Seek};
 

@@ -20,12 +20,24 @@ pub(super) enum TimeOrigin {
     LogTimeForBadStamp,
 }
 
-/// The time of a message, ns since 1970, from its stamp or else from its log time.
-pub(super) fn message_time(stamp: &Value, log_time_ns: i64) -> (i64, TimeOrigin) {
-    match stamp {
-        Value::Stamp(0) | Value::BadStamp => (log_time_ns, TimeOrigin::LogTimeForBadStamp),
-        Value::Stamp(ns) => (*ns, TimeOrigin::Stamp),
-        _ => (log_time_ns, TimeOrigin::LogTime),
+/// The time of a message.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct MessageTime {
+    /// Since 1970.
+    ns: i64,
+    origin: TimeOrigin,
+}
+
+impl MessageTime {
+    /// From a message's stamp or else from its log time.
+    pub(super) fn of(stamp: &Value, log_time_ns: i64) -> Self {
+        match stamp {
+            Value::Stamp(0) | Value::BadStamp => {
+                Self { ns: log_time_ns, origin: TimeOrigin::LogTimeForBadStamp }
+            }
+            Value::Stamp(ns) => Self { ns: *ns, origin: TimeOrigin::Stamp },
+            _ => Self { ns: log_time_ns, origin: TimeOrigin::LogTime },
+        }
     }
 }
 
@@ -42,32 +54,32 @@ pub(super) struct RawBlock {
     pub(super) count: usize,
 }
 
-/// A number and its time in memory.
-const NUMBER_BYTES: u64 = 16;
-/// A block in memory, without its samples.
-const BLOCK_BYTES: u64 = size_of::<RawBlock>() as u64;
-
-/// How much a column held when a chunk began.
-#[derive(Debug, Clone, Copy, Default)]
-struct Mark {
-    times: usize,
-    samples: usize,
-    blocks: usize,
-    tally: Tally,
-    held_bytes: u64,
+/// How many messages of a column carry what stamp.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Stamps {
+    /// One that was used.
+    pub(super) good: u64,
+    /// One that is zero or not understood.
+    pub(super) bad: u64,
 }
 
-/// Counts of messages.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Tally {
-    /// All of the topic.
-    pub(super) messages: u64,
-    /// Those that do not decode.
-    pub(super) malformed: u64,
-    /// Those whose stamp is zero or not understood.
-    pub(super) bad_stamps: u64,
-    /// Those with a stamp that was used.
-    pub(super) stamps: u64,
+/// What a listing shows of samples.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Extent {
+    pub(super) samples: u64,
+    /// The least and the largest that is finite.
+    pub(super) range: Option<(f64, f64)>,
+}
+
+/// When the samples of a column were taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Timing {
+    pub(super) start_s: f64,
+    pub(super) sample_rate_hz: f64,
+    /// Number of samples, missing ones too.
+    pub(super) count: usize,
+    /// Number of gaps.
+    pub(super) gaps: usize,
 }
 
 /// The samples of one field, message by message, in the order of the file.
@@ -75,39 +87,39 @@ pub(super) struct Tally {
 pub(super) struct Column {
     /// Of single numbers, one a sample.
     times_ns: Vec<i64>,
-    /// Of all messages, one after another.
+    /// Of all messages, one after another; without those of blocks where there is an extent.
     samples: Samples,
     blocks: Vec<RawBlock>,
-    pub(super) tally: Tally,
-    /// Memory of its times and samples.
-    pub(super) held_bytes: u64,
-    pub(super) unit: Option<String>,
+    pub(super) extent: Option<Extent>,
+    pub(super) stamps: Stamps,
     /// All that were stated.
     pub(super) units: Units,
     /// Two rates that a message states, and contradict each other.
     pub(super) two_rates: Option<Rates>,
-    /// Why the first malformed message is so.
-    pub(super) first_problem: Option<String>,
-    mark: Mark,
-    /// Which sample or block came first with a stamp of exactly zero.
+    /// Which sample or block came last with a stamp of exactly zero.
     zero_stamp: Option<usize>,
 }
 
-impl Default for Column {
-    fn default() -> Self {
-        Self {
-            times_ns: Vec::new(),
-            samples: Samples::F32(Vec::new()),
-            blocks: Vec::new(),
-            tally: Tally::default(),
-            held_bytes: 0,
-            unit: None,
-            units: Units::default(),
-            two_rates: None,
-            first_problem: None,
-            mark: Mark::default(),
-            zero_stamp: None,
+impl Extent {
+    fn see(&mut self, value: &Value) {
+        match value {
+            Value::Number { value, .. } => self.see_all(std::iter::once(*value)),
+            Value::Array(Samples::F32(samples)) => self.see_all(samples.iter().copied().map(f64::from)),
+            Value::Array(Samples::F64(samples)) => self.see_all(samples.iter().copied()),
+            _ => {}
         }
+    }
+
+    fn see_all(&mut self, samples: impl ExactSizeIterator<Item = f64>) {
+        self.samples += samples.len() as u64;
+        for value in samples.filter(|value| value.is_finite()) {
+            self.widen((value, value));
+        }
+    }
+
+    fn widen(&mut self, (least, largest): (f64, f64)) {
+        self.range =
+            Some(self.range.map_or((least, largest), |(low, high)| (low.min(least), high.max(largest))));
     }
 }
 
@@ -131,135 +143,136 @@ pub(super) enum ColumnError {
 }
 
 impl Column {
-    /// Takes what one message gave.
-    pub(super) fn take(&mut self, value: Value, time: (i64, TimeOrigin), rate_hz: Option<f64>) {
-        self.tally.messages += 1;
-        match (value, self.is_blocks()) {
-            (Value::Number { value, is_narrow }, None | Some(false)) => {
-                self.times_ns.push(time.0);
-                self.held_bytes += NUMBER_BYTES;
-                push(&mut self.samples, value, is_narrow);
-            }
-            (Value::Number { value, is_narrow }, Some(true)) => {
-                self.held_bytes += BLOCK_BYTES + NUMBER_BYTES;
-                self.blocks.push(RawBlock { time_ns: time.0, rate_hz, count: 1 });
-                push(&mut self.samples, value, is_narrow);
-            }
-            (Value::Array(mut samples), None | Some(true)) => {
-                if samples.is_empty() {
-                    return;
-                }
-                let width_bytes = if matches!(samples, Samples::F32(_)) { 4 } else { 8 };
-                self.held_bytes += BLOCK_BYTES + width_bytes * samples.len() as u64;
-                self.blocks.push(RawBlock { time_ns: time.0, rate_hz, count: samples.len() });
-                append(&mut self.samples, &mut samples);
-            }
-            (Value::Array(_), Some(false)) => {
-                self.malformed("the field is a number in some messages and an array in others");
-                self.tally.messages -= 1;
-                return;
-            }
-            _ => return,
+    /// Without samples; with an extent in place of the samples of blocks where it is for a listing.
+    pub(super) fn new(is_listed: bool) -> Self {
+        Self {
+            times_ns: Vec::new(),
+            samples: Samples::F32(Vec::new()),
+            blocks: Vec::new(),
+            extent: is_listed.then(Extent::default),
+            stamps: Stamps::default(),
+            units: Units::default(),
+            two_rates: None,
+            zero_stamp: None,
         }
-        match time.1 {
-            TimeOrigin::Stamp => self.tally.stamps += 1,
+    }
+
+    /// Takes what one message gave.
+    pub(super) fn take(&mut self, value: Value, time: MessageTime, rate_hz: Option<f64>) {
+        let count = match &value {
+            Value::Number { .. } => 1,
+            Value::Array(samples) => samples.len(),
+            _ => 0,
+        };
+        if count == 0 {
+            return;
+        }
+        if let Some(extent) = &mut self.extent {
+            extent.see(&value);
+        }
+        if matches!(value, Value::Array(_)) && self.blocks.is_empty() {
+            self.turn_to_blocks();
+        }
+        let is_block = matches!(value, Value::Array(_)) || !self.blocks.is_empty();
+        if is_block {
+            self.blocks.push(RawBlock { time_ns: time.ns, rate_hz, count });
+        } else {
+            self.times_ns.push(time.ns);
+        }
+        match value {
+            _ if is_block && self.extent.is_some() => {}
+            Value::Number { value, is_narrow } => push(&mut self.samples, value, is_narrow),
+            Value::Array(mut samples) => append(&mut self.samples, &mut samples),
+            _ => {}
+        }
+        match time.origin {
+            TimeOrigin::Stamp => self.stamps.good += 1,
             TimeOrigin::LogTimeForBadStamp => {
-                self.tally.bad_stamps += 1;
-                self.zero_stamp = Some(self.times_ns.len().max(self.blocks.len()) - 1);
+                self.stamps.bad += 1;
+                self.zero_stamp = Some(self.len() - 1);
             }
             TimeOrigin::LogTime => {}
         }
     }
 
-    /// Counts a message that does not decode.
-    pub(super) fn malformed(&mut self, problem: &str) {
-        self.tally.messages += 1;
-        self.tally.malformed += 1;
-        self.first_problem.get_or_insert_with(|| problem.to_owned());
-    }
-
-    /// What follows may be taken back.
-    pub(super) fn mark(&mut self) {
-        self.mark = Mark {
-            times: self.times_ns.len(),
-            samples: self.samples.len(),
-            blocks: self.blocks.len(),
-            tally: self.tally,
-            held_bytes: self.held_bytes,
-        };
-    }
-
-    /// Takes back everything since the last mark.
-    pub(super) fn roll_back(&mut self) {
-        self.times_ns.truncate(self.mark.times);
-        match &mut self.samples {
-            Samples::F32(samples) => samples.truncate(self.mark.samples),
-            Samples::F64(samples) => samples.truncate(self.mark.samples),
+    /// Takes single numbers for blocks of one sample: some writers leave out the brackets of such a block.
+    fn turn_to_blocks(&mut self) {
+        let block = |time_ns| RawBlock { time_ns, rate_hz: None, count: 1 };
+        self.blocks.extend(self.times_ns.drain(..).map(block));
+        if self.extent.is_some() {
+            self.samples = Samples::F32(Vec::new());
         }
-        self.blocks.truncate(self.mark.blocks);
-        self.tally = self.mark.tally;
-        self.held_bytes = self.mark.held_bytes;
-    }
-
-    /// Whether [`Column::append`] gives what taking the other's messages one by one would have given.
-    pub(super) fn continues_with(&self, other: &Self) -> bool {
-        self.is_blocks().is_none_or(|own| other.is_blocks().is_none_or(|others| own == others))
     }
 
     /// Moves over what another column took of the messages that follow; that one is as new, but for the memory it has.
     pub(super) fn append(&mut self, other: &mut Self) {
-        let before = self.times_ns.len().max(self.blocks.len());
-        self.zero_stamp = other.zero_stamp.map(|position| before + position).or(self.zero_stamp);
+        let before = self.len();
+        self.zero_stamp = other.zero_stamp.take().map(|position| before + position).or(self.zero_stamp);
+        if !self.blocks.is_empty() {
+            other.turn_to_blocks();
+        } else if !other.blocks.is_empty() {
+            self.turn_to_blocks();
+        }
         self.times_ns.append(&mut other.times_ns);
         self.blocks.append(&mut other.blocks);
         append(&mut self.samples, &mut other.samples);
-        self.tally.messages += other.tally.messages;
-        self.tally.malformed += other.tally.malformed;
-        self.tally.bad_stamps += other.tally.bad_stamps;
-        self.tally.stamps += other.tally.stamps;
-        self.held_bytes += other.held_bytes;
-        self.unit = other.unit.take().or(self.unit.take());
-        self.units.append(&other.units);
-        self.two_rates = self.two_rates.take().or(other.two_rates.take());
-        self.first_problem = self.first_problem.take().or(other.first_problem.take());
-        *other = Self {
-            times_ns: std::mem::take(&mut other.times_ns),
-            samples: std::mem::replace(&mut other.samples, Samples::F32(Vec::new())),
-            blocks: std::mem::take(&mut other.blocks),
-            ..Self::default()
-        };
+        if matches!(other.samples, Samples::F64(_)) {
+            other.samples = Samples::F32(Vec::new());
+        }
+        if let (Some(own), Some(more)) = (&mut self.extent, &mut other.extent) {
+            let Extent { samples, range } = std::mem::take(more);
+            own.samples += samples;
+            range.into_iter().for_each(|range| own.widen(range));
+        }
+        let Stamps { good, bad } = std::mem::take(&mut other.stamps);
+        self.stamps.good += good;
+        self.stamps.bad += bad;
+        self.units.append(&std::mem::take(&mut other.units));
+        let two_rates = other.two_rates.take();
+        self.two_rates = self.two_rates.take().or(two_rates);
     }
 
     /// Takes a single stamp of zero for a time where the other stamps show a clock that counts from its own start.
     pub(super) fn settle_clock(&mut self) {
-        let (1, Some(position)) = (self.tally.bad_stamps, self.zero_stamp) else { return };
-        let is_own_clock = |time_ns: i64| time_ns.abs() < CLOCK_IS_SET_NS;
-        let others = self.times_ns.iter().copied().chain(self.blocks.iter().map(|block| block.time_ns));
-        if self.tally.stamps == 0
-            || !others.enumerate().all(|(index, time_ns)| index == position || is_own_clock(time_ns))
-        {
+        let (1, Some(position)) = (self.stamps.bad, self.zero_stamp) else { return };
+        let is_own_clock = |(at, time_ns): (usize, i64)| at == position || time_ns.abs() < CLOCK_IS_SET_NS;
+        if self.stamps.good == 0 || !self.starts_ns().enumerate().all(is_own_clock) {
             return;
         }
-        let place = match self.blocks.get_mut(position) {
-            Some(block) => Some(&mut block.time_ns),
-            None => self.times_ns.get_mut(position),
-        };
-        if let Some(time_ns) = place {
-            *time_ns = 0;
-            self.tally.bad_stamps = 0;
-            self.tally.stamps += 1;
+        match self.blocks.get_mut(position) {
+            Some(block) => block.time_ns = 0,
+            None => self.times_ns[position] = 0,
         }
+        self.stamps = Stamps { good: self.stamps.good + 1, bad: 0 };
+    }
+
+    /// The times of the messages, since 1970.
+    fn starts_ns(&self) -> impl Iterator<Item = i64> {
+        self.times_ns.iter().copied().chain(self.blocks.iter().map(|block| block.time_ns))
+    }
+
+    /// Number of messages that gave samples.
+    fn len(&self) -> usize {
+        self.times_ns.len() + self.blocks.len()
     }
 
     /// Whether there are no samples.
     pub(super) fn is_empty(&self) -> bool {
-        self.times_ns.is_empty() && self.blocks.is_empty()
+        self.len() == 0
+    }
+
+    /// Memory of its times and samples.
+    pub(super) fn held_bytes(&self) -> u64 {
+        let (narrow, wide) = match &self.samples {
+            Samples::F32(samples) => (samples.len(), 0),
+            Samples::F64(samples) => (0, samples.len()),
+        };
+        (4 * narrow + 8 * (wide + self.times_ns.len()) + size_of::<RawBlock>() * self.blocks.len()) as u64
     }
 
     /// The earliest and the latest time of a message, ns since 1970.
     pub(super) fn span_ns(&self) -> Option<(i64, i64)> {
-        let times = || self.times_ns.iter().copied().chain(self.blocks.iter().map(|block| block.time_ns));
-        Some((times().min()?, times().max()?))
+        Some((self.starts_ns().min()?, self.starts_ns().max()?))
     }
 
     /// The samples on a uniform base, times counted from `zero_ns`; `declared_rate_hz` overrides what the messages say.
@@ -324,6 +337,30 @@ impl Column {
         })
     }
 
+    /// As [`Column::uniform`] as far as a listing shows it, which needs no samples of blocks.
+    pub(super) fn timing(self, zero_ns: i64) -> Result<Timing, ColumnError> {
+        if self.blocks.is_empty() {
+            let uniform = self.uniform(zero_ns, None)?;
+            let (count, gaps) = (uniform.samples.len(), uniform.gaps.len());
+            return Ok(Timing { start_s: uniform.start_s, sample_rate_hz: uniform.sample_rate_hz, count, gaps });
+        }
+        let own_hz = Derived::of(&self.blocks).map(|derived| derived.rate_hz);
+        let stated_hz = self.blocks.iter().find_map(|block| block.rate_hz);
+        let sample_rate_hz = stated_hz.or(own_hz).ok_or(ColumnError::NoRate)?;
+        let block = |block: &RawBlock| {
+            let start_s = seconds_from(block.time_ns, zero_ns);
+            Block { start_s, sample_rate_hz, count: block.count }
+        };
+        let blocks: Vec<Block> = self.blocks.iter().map(block).collect();
+        let laid = time_base::lay_blocks(&blocks, &|_, _| true)?;
+        Ok(Timing {
+            start_s: laid.start_s,
+            sample_rate_hz: laid.sample_rate_hz,
+            count: laid.count(),
+            gaps: laid.gap_count(),
+        })
+    }
+
     /// Stamps anew blocks that share stamps and follow one another at the rate that is stated; a warning where that was done.
     fn laid(
         &mut self,
@@ -341,10 +378,6 @@ impl Column {
             block.time_ns = time_ns;
         }
         Ok(Some(issue))
-    }
-
-    fn is_blocks(&self) -> Option<bool> {
-        if self.is_empty() { None } else { Some(!self.blocks.is_empty()) }
     }
 }
 

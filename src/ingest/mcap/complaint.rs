@@ -1,8 +1,9 @@
 //! Why a channel of the cask file cannot be had from an MCAP file, with what to do about it.
 
 use super::column::ColumnError;
-use super::read::Wanted;
+use super::path;
 use super::scanned::Scanned;
+use super::topic::{Gathered, Topic};
 use crate::data::{ChannelSpec, Source};
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::stated_rate::shown_hz;
@@ -48,48 +49,48 @@ pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scann
 }
 
 /// The topic is there, and gave no samples.
-pub(super) fn no_samples(path: &Path, spec: &ChannelSpec, entry: &Wanted, scanned: &Scanned) -> IngestError {
-    let field = entry.field.to_string();
-    if let Some(reason) = &entry.unreadable {
+pub(super) fn no_samples(
+    path: &Path,
+    spec: &ChannelSpec,
+    (topic, gathered): &(Topic, Gathered),
+    scanned: &Scanned,
+) -> IngestError {
+    let Topic { name, leaves, unreadable, .. } = topic;
+    let Gathered { messages, malformed, first_problem, leaves: seen, .. } = gathered;
+    let field = path::field_in(&spec.source, name).unwrap_or_default().to_string();
+    if let Some(reason) = unreadable {
         return error::source(
             path,
             &spec.name,
-            format!("the topic {} cannot be read: {reason}", entry.topic),
+            format!("the topic {name} cannot be read: {reason}"),
             "convert the recording, or record it again, with one of these encodings",
         );
     }
-    let tally = entry.column.tally;
-    if tally.messages == 0 {
-        let problem = format!("the topic {} has no messages", entry.topic);
+    if *messages == 0 {
+        let problem = format!("the topic {name} has no messages");
         return error::source(path, &spec.name, problem, lost(scanned, "check that the sensor was recorded"));
     }
-    if let (true, Some(problem)) = (tally.malformed == tally.messages, &entry.column.first_problem) {
+    if let (true, Some(problem)) = (malformed == messages, first_problem) {
         return error::source(
             path,
             &spec.name,
-            format!(
-                "none of the {} messages of {} decodes; the first: {problem}",
-                tally.messages, entry.topic
-            ),
+            format!("none of the {messages} messages of {name} decodes; the first: {problem}"),
             "check that the source names the samples, and that the topic's schema is the one its messages were written with",
         );
     }
-    if entry.leaves.iter().any(|leaf| leaf.path == field) {
+    let there: Vec<String> = leaves.iter().chain(seen).map(|leaf| leaf.path.clone()).collect();
+    if there.contains(&field) {
         return error::source(
             path,
             &spec.name,
-            format!(
-                "the field {field} holds no samples in any of the {} messages of {}",
-                tally.messages, entry.topic
-            ),
+            format!("the field {field} holds no samples in any of the {messages} messages of {name}"),
             "check that the sensor was recorded",
         );
     }
-    let there: Vec<String> = entry.leaves.iter().map(|leaf| leaf.path.clone()).collect();
     error::source(
         path,
         &spec.name,
-        format!("the messages of {} have no numeric field {field}", entry.topic),
+        format!("the messages of {name} have no numeric field {field}"),
         error::near_names(path, &field, "numeric field in this topic", &there),
     )
 }

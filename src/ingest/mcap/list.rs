@@ -1,15 +1,15 @@
-//! An MCAP file to its listing: every numeric field of every topic, read once and kept nowhere.
+//! An MCAP file to its listing: every numeric field of every topic, as reading would take it.
 
-use super::column::CLOCK_IS_SET_NS;
-use super::message_type::{MessageType, MessageTypes};
-use super::plan::Slots;
+use super::column::{CLOCK_IS_SET_NS, Column, Extent, seconds_from};
+use super::path::source_text;
 use super::scan::scan;
-use super::scanned::{ChannelInfo, Scanned, Sink};
-use super::topic::{Room, Topic};
-use crate::data::{ListedChannel, Listing, RecordingFormat};
+use super::scanned::Scanned;
+use super::topic::{Field, Gathered, Topic};
+use super::topics::Asked;
+use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Severity};
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::{Limits, Progress};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Lists what the file at `path` holds.
@@ -22,23 +22,24 @@ pub(in crate::ingest) fn list(
     progress: Progress,
 ) -> Result<Listing, IngestError> {
     let bytes = std::fs::metadata(path).map_err(|source| error::io(path, source))?.len();
-    let mut walk = ListWalk::new(limits, bytes);
-    let scanned = scan(path, limits, &mut walk, progress)?;
-    let ListWalk { topics, slots, .. } = &mut walk;
-    for topic in topics {
-        topic.release(slots);
-    }
+    let (scanned, topics) = scan(path, limits, Asked::Everything, progress)?;
+    let unlisted = topics.unlisted();
+    let mut topics = topics.finish();
+    topics.iter_mut().for_each(|(_, gathered)| gathered.settle_clocks());
+    let columns = topics.iter().flat_map(|(_, gathered)| &gathered.columns);
+    let zero_ns = columns.filter_map(Column::span_ns).map(|(from, _)| from).min();
     let mut issues = scanned.issues();
-    issues.extend(walk.topics.iter().filter_map(Topic::issue));
-    issues.extend(walk.room.issue());
+    issues.extend(topics.iter().filter_map(|(topic, gathered)| undecoded(topic, gathered)));
+    issues.extend(unlisted);
+    let channels = topics.into_iter().flat_map(|(topic, gathered)| listed(&topic, gathered, zero_ns));
     Ok(Listing {
         schema: "dropcheck.inspect/1",
         recording: path.display().to_string(),
         bytes,
         format: RecordingFormat::Mcap,
         counts: scanned.counts.named(),
-        facts: facts(&scanned, walk.zero_ns()),
-        channels: walk.finish(),
+        facts: facts(&scanned, zero_ns),
+        channels: channels.collect(),
         issues,
     })
 }
@@ -63,108 +64,65 @@ fn facts(scanned: &Scanned, zero_ns: Option<i64>) -> BTreeMap<String, String> {
     .collect()
 }
 
-pub(super) struct ListWalk {
-    topics: Vec<Topic>,
-    room: Room,
-    types: MessageTypes,
-    by_id: HashMap<u16, usize>,
-    /// By name and encoding.
-    by_name: HashMap<(String, String), usize>,
-    slots: Slots,
-    /// The longest JSON message that is taken apart.
-    longest_json_bytes: u64,
-    /// Chunks begun.
-    chunk: u64,
-    /// Topics with a message in this chunk.
-    touched: Vec<usize>,
-    held_bytes: u64,
+fn undecoded(topic: &Topic, gathered: &Gathered) -> Option<Issue> {
+    let Gathered { messages, malformed, first_problem, .. } = gathered;
+    first_problem.as_ref().map(|problem| {
+        let name = &topic.name;
+        let message =
+            format!("{malformed} of {messages} messages of {name} do not decode; the first: {problem}");
+        Issue::new(IssueCode::Damaged, Severity::Warning, message)
+    })
 }
 
-impl Sink for ListWalk {
-    type Part = ();
-
-    fn channel(&mut self, id: u16, info: &ChannelInfo) {
-        let encoding = match info.schema {
-            Some(schema) if !schema.name.is_empty() => format!("{} ({})", info.message_encoding, schema.name),
-            _ => info.message_encoding.to_owned(),
+/// A line for each field of a topic, or one that says why there is none.
+fn listed(topic: &Topic, gathered: Gathered, zero_ns: Option<i64>) -> Vec<ListedChannel> {
+    let Gathered { messages, mut columns, .. } = gathered;
+    if topic.fields.is_empty() {
+        let none = || (messages > 0).then(|| "its messages hold no numbers".to_owned());
+        return vec![ListedChannel {
+            messages: Some(messages),
+            encoding: topic.encoding.clone(),
+            unreadable: topic.unreadable.clone().or_else(none),
+            ..ListedChannel::named(&topic.name, "topic")
+        }];
+    }
+    columns.resize_with(topic.fields.len(), || Column::new(true));
+    let one = |(field, column): (&Field, Column)| {
+        let Extent { samples, range } = column.extent.unwrap_or_default();
+        let listed = ListedChannel {
+            samples: Some(samples),
+            messages: Some(messages),
+            unit: column.units.first().or(field.unit).map(str::to_owned),
+            range,
+            encoding: topic.encoding.clone(),
+            ..ListedChannel::named(
+                &source_text(&topic.name, &field.path.to_string()),
+                if field.is_array { "array" } else { "number" },
+            )
         };
-        let same = (info.topic.to_owned(), encoding.clone());
-        let known = self.by_name.get(&same).copied();
-        if known.is_none() && !self.room.takes(info.topic.len() + encoding.len()) {
-            self.room.topics_out += 1;
-            return;
-        }
-        let index = known.unwrap_or_else(|| {
-            let mut topic = Topic::new(info, encoding, self.types.of(info));
-            if let Some(leaves) = topic.message_type.as_ref().ok().and_then(MessageType::leaves) {
-                topic.prepare(leaves, &mut self.room);
-            }
-            self.held_bytes += topic.held_bytes();
-            self.topics.push(topic);
-            self.by_name.insert(same, self.topics.len() - 1);
-            self.topics.len() - 1
-        });
-        self.by_id.insert(id, index);
-    }
+        timed(listed, column, zero_ns)
+    };
+    topic.fields.iter().zip(columns).map(one).collect()
+}
 
-    fn message(&mut self, id: u16, log_time_ns: i64, data: &[u8]) {
-        let Some(&index) = self.by_id.get(&id) else { return };
-        let Some(topic) = self.topics.get_mut(index) else { return };
-        if topic.marked_chunk != self.chunk {
-            topic.set_mark(self.chunk);
-            self.touched.push(index);
-        }
-        let before = topic.held_bytes();
-        topic.message(log_time_ns, data, (&mut self.slots, &mut self.room), self.longest_json_bytes);
-        self.held_bytes = (self.held_bytes + topic.held_bytes()).saturating_sub(before);
-    }
-
-    fn chunk_begins(&mut self) {
-        // A topic is marked with its first message: there may be many topics, and many chunks of a message each.
-        self.chunk += 1;
-        self.touched.clear();
-    }
-
-    fn held_bytes(&self) -> u64 {
-        self.held_bytes
-    }
-
-    fn chunk_rejected(&mut self) {
-        for index in std::mem::take(&mut self.touched) {
-            let Some(topic) = self.topics.get_mut(index) else { continue };
-            topic.roll_back();
-        }
+/// With the times that reading would take.
+fn timed(listed: ListedChannel, column: Column, zero_ns: Option<i64>) -> ListedChannel {
+    let (Some((first_ns, _)), Some(zero_ns)) = (column.span_ns(), zero_ns) else { return listed };
+    let Ok(timing) = column.timing(zero_ns) else {
+        return ListedChannel { start_s: Some(seconds_from(first_ns, zero_ns)), ..listed };
+    };
+    ListedChannel {
+        sample_rate_hz: Some(timing.sample_rate_hz),
+        start_s: Some(timing.start_s),
+        duration_s: Some(as_f64(timing.count - 1) / timing.sample_rate_hz),
+        gaps: Some(timing.gaps as u64),
+        ..listed
     }
 }
 
-impl ListWalk {
-    pub(super) fn new(limits: Limits, file_bytes: u64) -> Self {
-        /// A tree of JSON values takes up to so many times its text: two letters become 32 bytes.
-        const TREE_BYTES: u64 = 32;
-        Self {
-            topics: Vec::new(),
-            room: Room::default(),
-            types: MessageTypes::new(limits, file_bytes),
-            by_id: HashMap::new(),
-            by_name: HashMap::new(),
-            slots: Slots::default(),
-            longest_json_bytes: limits.part_bytes() / TREE_BYTES,
-            chunk: 0,
-            touched: Vec::new(),
-            held_bytes: 0,
-        }
-    }
-
-    /// The earliest sample of all, ns since 1970.
-    fn zero_ns(&self) -> Option<i64> {
-        self.topics.iter().filter_map(Topic::first_ns).min()
-    }
-
-    /// Every source, times counted from the earliest sample of all.
-    fn finish(&self) -> Vec<ListedChannel> {
-        let zero_ns = self.zero_ns();
-        self.topics.iter().flat_map(|topic| topic.listed(zero_ns)).collect()
-    }
+#[allow(clippy::cast_precision_loss, reason = "counts of samples stay below 2^53")]
+fn as_f64(count: usize) -> f64 {
+    count as f64
 }
 
 #[cfg(test)]

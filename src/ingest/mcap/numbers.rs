@@ -15,20 +15,18 @@ pub(super) fn push(samples: &mut Samples, value: f64, is_narrow: bool) {
 /// Moves more samples behind those there are; single precision as long as all are.
 pub(super) fn append(samples: &mut Samples, more: &mut Samples) {
     match (samples, more) {
-        (Samples::F32(own), Samples::F32(more)) => own.append(more),
-        (Samples::F64(own), Samples::F64(more)) => own.append(more),
+        (Samples::F32(own), Samples::F32(more)) => follow(own, more),
+        (Samples::F64(own), Samples::F64(more)) => follow(own, more),
         (Samples::F64(own), Samples::F32(more)) => own.extend(more.drain(..).map(f64::from)),
         (own @ Samples::F32(_), Samples::F64(more)) => {
-            let mut wide = widened(own);
-            wide.append(more);
+            let mut wide = (0..own.len()).map(|i| own.get(i)).collect();
+            follow(&mut wide, more);
             *own = Samples::F64(wide);
         }
     }
 }
 
-fn widened(samples: &Samples) -> Vec<f64> {
-    match samples {
-        Samples::F32(narrow) => narrow.iter().map(|&x| f64::from(x)).collect(),
-        Samples::F64(wide) => wide.clone(),
-    }
+/// Moves `more` behind `own`, or in its place where that has no memory yet.
+fn follow<S>(own: &mut Vec<S>, more: &mut Vec<S>) {
+    if own.capacity() == 0 { std::mem::swap(own, more) } else { own.append(more) }
 }

@@ -1,52 +1,51 @@
 //! An MCAP file to its schemas, channels and messages, in the order of the file, whole or not.
 
-use super::catalog::Catalog;
-use super::chunk::{ChunkEnd, Chunks};
+use super::catalog::{Catalog, Sorted};
+use super::chunk::{ChunkEnd, Chunks, RECORD_HEADER_BYTES, RECORD_HEADER_LENGTH};
 use super::claims;
-use super::scanned::{Counts, Loss, Scanned, Sink};
+use super::scanned::{Counts, Loss, Scanned};
 use super::summary::{self, Summary};
+use super::topics::{Asked, Topics};
 use super::wave::{Packed, Unpacked, Wave};
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::{Limits, Progress};
-use mcap::records::{Record, op};
+use mcap::records::op;
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
-/// A record begins with its opcode (1 byte) and its length (8 bytes).
-pub(super) const RECORD_HEADER_BYTES: u64 = 9;
-/// The same, as the length of a buffer.
-pub(super) const RECORD_HEADER_LENGTH: usize = 9;
 /// Larger than most chunks' share between two looks at the progress; smaller than any cache.
 const READ_BUFFER_BYTES: usize = 1 << 18;
 
-/// Reads the file at `path` from start to end and hands over what stands in it; memory stays at one record or chunk.
+/// Reads the file at `path` from start to end: how it is made, and what its messages gave of what is asked for.
 ///
 /// # Errors
 /// Only where the file cannot be read at all, or passes a limit; damage and truncation are in the answer.
-pub(super) fn scan(
+pub(super) fn scan<'a>(
     path: &Path,
     limits: Limits,
-    sink: &mut impl Sink,
+    asked: Asked<'a>,
     progress: Progress,
-) -> Result<Scanned, IngestError> {
+) -> Result<(Scanned, Topics<'a>), IngestError> {
     let file = File::open(path).map_err(|source| error::io(path, source))?;
     let length = file.metadata().map_err(|source| error::io(path, source))?.len();
-    let scanned = scan_in(file, length, limits, sink, progress).map_err(|source| error::io(path, source))?;
+    let topics = Topics::new(asked, limits, length);
+    let (scanned, topics) =
+        scan_in(file, length, topics, progress).map_err(|source| error::io(path, source))?;
     match scanned.over {
         Some((what, limit_bytes)) => Err(limits.refusal(path, what, limit_bytes)),
-        None => Ok(scanned),
+        None => Ok((scanned, topics)),
     }
 }
 
 /// The same of a source of `length` bytes.
-pub(super) fn scan_in(
+fn scan_in<'a>(
     mut file: impl Read + Seek,
     length: u64,
-    limits: Limits,
-    sink: &mut impl Sink,
+    topics: Topics<'a>,
     progress: Progress,
-) -> std::io::Result<Scanned> {
+) -> std::io::Result<(Scanned, Topics<'a>)> {
+    let limits = topics.limits;
     let (part, unpacked) = (limits.part_bytes(), limits.unpacked_bytes(length));
     let claims = claims::read(&mut file, length)?;
     let over = [
@@ -54,7 +53,7 @@ pub(super) fn scan_in(
         ("its chunks claim to unpack to", claims.all_bytes, unpacked),
     ];
     if let Some((what, _, limit)) = over.into_iter().find(|(_, claimed, limit)| claimed > limit) {
-        return Ok(Scanned { over: Some((what, limit)), ..Scanned::default() });
+        return Ok((Scanned { over: Some((what, limit)), ..Scanned::default() }, topics));
     }
     let summary = summary::read(&mut file, length, part)?;
     let chunks = || Chunks::new(part.min(unpacked));
@@ -64,25 +63,25 @@ pub(super) fn scan_in(
         taken: Taken {
             length,
             limits,
-            unpacked_bytes: 0,
             chunks: chunks(),
             catalog: Catalog::default(),
             scanned: Scanned::default(),
+            topics,
         },
         wave: Wave::new(chunks),
         summary,
         body: Vec::new(),
     };
-    walk.register_summary(sink);
-    walk.run(sink, progress)?;
+    walk.register_summary();
+    walk.run(progress)?;
     Ok(walk.finish())
 }
 
 /// Where the walk through the file stands.
-struct Walk<File> {
+struct Walk<'a, File> {
     file: BufReader<File>,
     at: u64,
-    taken: Taken,
+    taken: Taken<'a>,
     /// Chunks that were read and not yet taken.
     wave: Wave,
     summary: Option<Summary>,
@@ -91,14 +90,13 @@ struct Walk<File> {
 }
 
 /// What was taken from the file, in its order.
-struct Taken {
+struct Taken<'a> {
     length: u64,
     limits: Limits,
-    /// Bytes that the chunks have unpacked to.
-    unpacked_bytes: u64,
     chunks: Chunks,
     catalog: Catalog,
     scanned: Scanned,
+    topics: Topics<'a>,
 }
 
 /// Whether the walk goes on after a record.
@@ -108,24 +106,25 @@ enum Next {
     Stop,
 }
 
-impl<File: Read + Seek> Walk<File> {
-    fn register_summary(&mut self, sink: &mut impl Sink) {
-        let records =
-            self.summary.as_mut().map(|summary| std::mem::take(&mut summary.records)).unwrap_or_default();
-        for (opcode, body) in &records {
-            self.taken.catalog.take_ahead(*opcode, body, sink, &mut self.taken.scanned);
+impl<'a, File: Read + Seek> Walk<'a, File> {
+    fn register_summary(&mut self) {
+        let Taken { catalog, scanned, topics, .. } = &mut self.taken;
+        for (opcode, body) in self.summary.as_ref().map_or(&[][..], |summary| &summary.records) {
+            if let Sorted::New(record) = catalog.sorted(*opcode, body) {
+                catalog.add_ahead(record, topics, scanned);
+            }
         }
     }
 
-    fn run(&mut self, sink: &mut impl Sink, progress: Progress) -> std::io::Result<()> {
+    fn run(&mut self, progress: Progress) -> std::io::Result<()> {
         self.file.seek_relative(self.at.cast_signed())?;
         let mut said_at = 0;
         loop {
-            if self.record(sink)? == Next::Stop {
-                return self.settle(sink);
+            if self.record()? == Next::Stop {
+                return self.settle();
             }
             if self.taken.scanned.over.is_none() {
-                self.taken.scanned.over = self.taken.passed_limit(sink);
+                self.taken.scanned.over = self.taken.passed_limit();
             }
             if self.taken.scanned.over.is_some() {
                 return Ok(());
@@ -139,10 +138,10 @@ impl<File: Read + Seek> Walk<File> {
     }
 
     /// One record at the file's level.
-    fn record(&mut self, sink: &mut impl Sink) -> std::io::Result<Next> {
+    fn record(&mut self) -> std::io::Result<Next> {
         let left = self.taken.length.saturating_sub(self.at);
         if left < RECORD_HEADER_BYTES {
-            self.settle(sink)?;
+            self.settle()?;
             self.taken.scanned.losses.push(Loss::EndsEarly { at: self.at, bytes: left, inside: None });
             return Ok(Next::Stop);
         }
@@ -152,18 +151,18 @@ impl<File: Read + Seek> Walk<File> {
         let claimed = u64::from_le_bytes(length);
         let available = left - RECORD_HEADER_BYTES;
         if opcode == op::CHUNK && claimed <= available && Wave::takes(claimed) {
-            return self.waiting_chunk(claimed, sink);
+            return self.waiting_chunk(claimed);
         }
         let is_known = (op::HEADER..=op::DATA_END).contains(&opcode);
         let is_passed_over = is_known && opcode != op::CHUNK && !is_read(opcode) && claimed <= available;
         if !is_passed_over {
-            self.settle(sink)?;
+            self.settle()?;
         }
         if opcode == 0 || (claimed > available && (!is_known || self.summary.is_some())) {
             return self.resume_after_garbage();
         }
         if opcode == op::CHUNK {
-            return self.chunk(claimed, available, sink);
+            return self.chunk(claimed, available);
         }
         if claimed > available {
             self.taken.scanned.losses.push(Loss::EndsEarly {
@@ -173,11 +172,11 @@ impl<File: Read + Seek> Walk<File> {
             });
             return Ok(Next::Stop);
         }
-        self.whole_record(opcode, claimed, sink)
+        self.whole_record(opcode, claimed)
     }
 
     /// A record other than a chunk that lies wholly in the file.
-    fn whole_record(&mut self, opcode: u8, length: u64, sink: &mut impl Sink) -> std::io::Result<Next> {
+    fn whole_record(&mut self, opcode: u8, length: u64) -> std::io::Result<Next> {
         let start = self.at;
         self.at += RECORD_HEADER_BYTES + length;
         self.taken.scanned.counts.add(opcode);
@@ -194,29 +193,33 @@ impl<File: Read + Seek> Walk<File> {
         if opcode == op::FOOTER {
             return self.end_magic();
         }
-        if !self.taken.catalog.take(opcode, &self.body, sink, &mut self.taken.scanned) {
-            self.taken.scanned.losses.push(Loss::BadRecord { at: start, opcode });
+        let Taken { catalog, scanned, topics, .. } = &mut self.taken;
+        match catalog.sorted(opcode, &self.body) {
+            Sorted::Message(message) => topics.take_alone(&message),
+            Sorted::New(record) => catalog.add(record, topics, scanned),
+            Sorted::Nothing => {}
+            Sorted::Bad(why) => scanned.losses.push(Loss::BadRecord { at: start, opcode, why }),
         }
         Ok(Next::Go)
     }
 
     /// A chunk that waits until there are enough to be unpacked beside one another.
-    fn waiting_chunk(&mut self, length: u64, sink: &mut impl Sink) -> std::io::Result<Next> {
+    fn waiting_chunk(&mut self, length: u64) -> std::io::Result<Next> {
         let mut body = self.wave.buffer();
         (&mut self.file).take(length).read_to_end(&mut body)?;
         self.wave.push(Packed { start: self.at, body });
         self.at += RECORD_HEADER_BYTES + length;
         if self.wave.is_full() {
-            self.settle(sink)?;
+            self.settle()?;
         }
         Ok(Next::Go)
     }
 
     /// Takes the chunks that wait.
-    fn settle(&mut self, sink: &mut impl Sink) -> std::io::Result<()> {
-        for (packed, unpacked) in self.wave.unpack(&self.taken.catalog, sink) {
+    fn settle(&mut self) -> std::io::Result<()> {
+        for (packed, unpacked) in self.wave.unpack(&self.taken.catalog, &self.taken.topics) {
             if self.taken.scanned.over.is_none() {
-                self.taken.waited(&packed, unpacked, sink)?;
+                self.taken.waited(&packed, unpacked)?;
             }
             self.wave.reuse(packed);
         }
@@ -224,10 +227,10 @@ impl<File: Read + Seek> Walk<File> {
     }
 
     /// A chunk that is unpacked as it is read.
-    fn chunk(&mut self, claimed: u64, available: u64, sink: &mut impl Sink) -> std::io::Result<Next> {
+    fn chunk(&mut self, claimed: u64, available: u64) -> std::io::Result<Next> {
         let start = self.at;
         self.at = start + RECORD_HEADER_BYTES + claimed.min(available);
-        self.taken.chunk(&mut self.file, start, (claimed, available), sink)
+        self.taken.chunk(&mut self.file, start, claimed, available)
     }
 
     /// After bytes that are no record: the next chunk that the summary's index names, else the end.
@@ -254,45 +257,39 @@ impl<File: Read + Seek> Walk<File> {
         Ok(Next::Stop)
     }
 
-    fn finish(mut self) -> Scanned {
-        self.taken.scanned.counts.schemas = self.taken.catalog.schema_count();
-        self.taken.scanned.counts.channels = self.taken.catalog.channel_count();
-        self.taken.scanned
+    fn finish(self) -> (Scanned, Topics<'a>) {
+        let Taken { catalog, mut scanned, topics, .. } = self.taken;
+        scanned.counts.schemas = catalog.schema_count();
+        scanned.counts.channels = catalog.channel_count();
+        (scanned, topics)
     }
 }
 
-impl Taken {
+impl Taken<'_> {
     /// The limit that what was read so far has passed: words and bytes.
-    fn passed_limit(&self, sink: &impl Sink) -> Option<(&'static str, u64)> {
+    fn passed_limit(&self) -> Option<(&'static str, u64)> {
         let limits = self.limits;
+        let unpacked = self.scanned.counts.unpacked_bytes;
         let passed = [
-            ("the samples of the channels read take", sink.held_bytes(), limits.samples_bytes()),
+            ("the samples of the channels read take", self.topics.held_bytes(), limits.samples_bytes()),
             ("its schemas and topics take", self.catalog.held_bytes(), limits.part_bytes()),
-            ("its chunks unpack to", self.unpacked_bytes, limits.unpacked_bytes(self.length)),
+            ("its chunks unpack to", unpacked, limits.unpacked_bytes(self.length)),
         ];
         passed.into_iter().find(|(_, bytes, limit)| bytes > limit).map(|(what, _, limit)| (what, limit))
     }
 
     /// What a chunk gave by itself, or the chunk once more where it must be taken in turn.
-    fn waited<S: Sink>(
-        &mut self,
-        packed: &Packed,
-        unpacked: Option<Unpacked<S::Part>>,
-        sink: &mut S,
-    ) -> std::io::Result<()> {
-        let joined = unpacked.and_then(|Unpacked { part, counts, bytes, compression }| {
-            sink.join(part).then_some((counts, bytes, compression))
-        });
-        if let Some((counts, bytes, compression)) = joined {
+    fn waited(&mut self, packed: &Packed, unpacked: Option<Unpacked>) -> std::io::Result<()> {
+        if let Some(Unpacked { part, counts, compression }) = unpacked {
+            self.topics.join(part);
             self.scanned.counts += counts;
-            self.unpacked_bytes += bytes;
-            self.scanned.compressions.insert(compression);
+            self.scanned.compressions.extend(compression);
         } else {
             let length = packed.body.len() as u64;
-            self.chunk(&mut packed.body.as_slice(), packed.start, (length, length), sink)?;
+            self.chunk(&mut packed.body.as_slice(), packed.start, length, length)?;
         }
         if self.scanned.over.is_none() {
-            self.scanned.over = self.passed_limit(sink);
+            self.scanned.over = self.passed_limit();
         }
         Ok(())
     }
@@ -302,49 +299,46 @@ impl Taken {
         &mut self,
         source: &mut impl Read,
         start: u64,
-        (claimed, available): (u64, u64),
-        sink: &mut impl Sink,
+        claimed: u64,
+        available: u64,
     ) -> std::io::Result<Next> {
-        let before = self.scanned.counts;
-        sink.chunk_begins();
-        let (mut messages, mut unpacked) = (0, self.unpacked_bytes);
-        let (catalog, scanned, limits) = (&mut self.catalog, &mut self.scanned, self.limits);
-        let most_unpacked = limits.unpacked_bytes(self.length);
-        scanned.counts.add(op::CHUNK);
+        let mut counts = Counts { chunks: 1, ..Counts::default() };
+        let Self { catalog, scanned, topics, limits, .. } = self;
+        let most_unpacked =
+            limits.unpacked_bytes(self.length).saturating_sub(scanned.counts.unpacked_bytes);
+        let most_held = limits.samples_bytes().saturating_sub(topics.held_bytes());
+        let mut part = topics.part();
         let end = self.chunks.read(source, claimed, available, &mut |opcode, body| {
-            unpacked += RECORD_HEADER_BYTES + body.len() as u64;
-            scanned.counts.add(opcode);
-            messages += u64::from(opcode == op::MESSAGE);
-            if !catalog.take(opcode, body, sink, scanned) {
-                scanned.losses.push(Loss::BadRecord { at: start, opcode });
+            counts.add_unpacked(opcode, body);
+            match catalog.sorted(opcode, body) {
+                Sorted::Message(message) => topics.take_in_turn(&mut part, &message),
+                Sorted::New(record) => catalog.add(record, topics, scanned),
+                Sorted::Nothing => {}
+                Sorted::Bad(why) => scanned.losses.push(Loss::BadRecord { at: start, opcode, why }),
             }
-            unpacked <= most_unpacked && sink.held_bytes() <= limits.samples_bytes()
+            counts.unpacked_bytes <= most_unpacked && part.held_bytes <= most_held
         })?;
-        self.unpacked_bytes = unpacked;
-        if let Some(compression) = end.compression() {
-            scanned.compressions.insert(compression.to_owned());
+        scanned.compressions.extend(end.compression);
+        let messages = counts.messages;
+        if let ChunkEnd::Bad { reason, span_ns } = end.how {
+            let Counts { chunks, unpacked_bytes, .. } = counts;
+            scanned.counts += Counts { chunks, unpacked_bytes, ..Counts::default() };
+            scanned.losses.push(Loss::BadChunk { at: start, reason, messages, span_ns });
+            return Ok(Next::Go);
         }
-        match end {
-            ChunkEnd::Whole { .. } | ChunkEnd::Stopped => Ok(Next::Go),
+        topics.join(part);
+        scanned.counts += counts;
+        match end.how {
             ChunkEnd::TooLarge => {
-                self.scanned.over = Some(("one of its messages takes", self.limits.part_bytes()));
+                scanned.over = Some(("one of its messages takes", limits.part_bytes()));
                 Ok(Next::Stop)
             }
-            ChunkEnd::Cut { bytes, .. } => {
-                self.scanned.losses.push(Loss::CutChunk {
-                    at: start,
-                    never_closed: claimed == u64::MAX,
-                    bytes,
-                    messages,
-                });
+            ChunkEnd::Cut { bytes } => {
+                let never_closed = claimed == u64::MAX;
+                scanned.losses.push(Loss::CutChunk { at: start, never_closed, bytes, messages });
                 Ok(Next::Stop)
             }
-            ChunkEnd::Bad { reason, span_ns, .. } => {
-                sink.chunk_rejected();
-                self.scanned.counts = Counts { chunks: before.chunks + 1, ..before };
-                self.scanned.losses.push(Loss::BadChunk { at: start, reason, messages, span_ns });
-                Ok(Next::Go)
-            }
+            _ => Ok(Next::Go),
         }
     }
 }
@@ -352,9 +346,4 @@ impl Taken {
 /// Whether the walk takes a record of this kind at the file's level.
 fn is_read(opcode: u8) -> bool {
     matches!(opcode, op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE | op::STATISTICS | op::FOOTER)
-}
-
-/// A record's parsed form, `None` where its body does not parse.
-pub(super) fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
-    mcap::parse_record(opcode, body).ok()
 }

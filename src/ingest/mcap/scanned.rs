@@ -1,5 +1,6 @@
 //! What a walk through an MCAP file found: schemas and channels, counts, and what was lost, in words.
 
+use super::chunk::RECORD_HEADER_BYTES;
 use crate::data::{Issue, IssueCode, Severity};
 use mcap::records::op;
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,35 +23,6 @@ pub(super) struct ChannelInfo<'a> {
     pub(super) schema: Option<&'a SchemaInfo>,
 }
 
-/// Takes what a walk finds.
-pub(super) trait Sink: Sync {
-    /// What one chunk gave by itself.
-    type Part: Send;
-
-    /// A channel, before its first message; once for each id.
-    fn channel(&mut self, id: u16, info: &ChannelInfo);
-    /// A message on a channel that was announced.
-    fn message(&mut self, id: u16, log_time_ns: i64, data: &[u8]);
-    /// What follows may be taken back.
-    fn chunk_begins(&mut self);
-    /// Everything since [`Sink::chunk_begins`] is taken back: the chunk is damaged.
-    fn chunk_rejected(&mut self);
-    /// Memory that the samples taken so far hold.
-    fn held_bytes(&self) -> u64 {
-        0
-    }
-    /// An empty part; `None` where chunks must be taken in turn, because what is kept of a message depends on those before.
-    fn part(&self) -> Option<Self::Part> {
-        None
-    }
-    /// [`Sink::message`] into a part.
-    fn message_into(&self, _part: &mut Self::Part, _id: u16, _log_time_ns: i64, _data: &[u8]) {}
-    /// Adds a part behind what there is; `false` and nothing done where it would have come out otherwise in turn.
-    fn join(&mut self, _part: Self::Part) -> bool {
-        false
-    }
-}
-
 /// How many of what the container holds.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Counts {
@@ -60,6 +32,8 @@ pub(super) struct Counts {
     pub(super) chunks: u64,
     pub(super) attachments: u64,
     pub(super) metadata: u64,
+    /// What the records of the chunks take, unpacked.
+    pub(super) unpacked_bytes: u64,
 }
 
 impl std::ops::AddAssign for Counts {
@@ -70,10 +44,17 @@ impl std::ops::AddAssign for Counts {
         self.chunks += other.chunks;
         self.attachments += other.attachments;
         self.metadata += other.metadata;
+        self.unpacked_bytes += other.unpacked_bytes;
     }
 }
 
 impl Counts {
+    /// Counts one record of a chunk.
+    pub(super) fn add_unpacked(&mut self, opcode: u8, body: &[u8]) {
+        self.unpacked_bytes += RECORD_HEADER_BYTES + body.len() as u64;
+        self.add(opcode);
+    }
+
     /// Counts one record.
     pub(super) fn add(&mut self, opcode: u8) {
         match opcode {
@@ -127,16 +108,18 @@ pub(super) struct Losses {
     /// Those that no longer fit in `first`.
     more: u64,
     bad_records: u64,
-    first_bad_record: Option<(u64, u8)>,
+    /// The first of them, in words.
+    first_bad_record: Option<String>,
 }
 
 impl Losses {
     /// Takes one more.
     pub(super) fn push(&mut self, loss: Loss) {
         match loss {
-            Loss::BadRecord { at, opcode } => {
+            Loss::BadRecord { at, opcode, why } => {
                 self.bad_records += 1;
-                self.first_bad_record.get_or_insert((at, opcode));
+                self.first_bad_record
+                    .get_or_insert_with(|| format!("a {} at byte {at} {why}", record_name(opcode)));
             }
             // How the file ends is told in any case.
             Loss::BadChunk { .. } | Loss::Garbage { .. } if self.first.len() >= MOST_LOSSES => self.more += 1,
@@ -159,7 +142,7 @@ pub(super) enum Loss {
     /// A chunk fails its check sum or does not decompress.
     BadChunk { at: u64, reason: String, messages: u64, span_ns: (u64, u64) },
     /// A record's body does not parse, or a message belongs to no channel.
-    BadRecord { at: u64, opcode: u8 },
+    BadRecord { at: u64, opcode: u8, why: &'static str },
     /// Bytes that are no record.
     Garbage { at: u64, bytes: u64, resumed: bool },
     /// The footer is there, the closing magic is not.
@@ -178,15 +161,9 @@ impl Scanned {
                 format!("{more} more places of the file are damaged and were left out"),
             ));
         }
-        if let Some((at, opcode)) = first_bad_record {
-            issues.push(Issue::new(
-                IssueCode::Damaged,
-                Severity::Warning,
-                format!(
-                    "{bad_records} records do not parse and were skipped, the first a {} at byte {at}",
-                    record_name(*opcode)
-                ),
-            ));
+        if let Some(first) = first_bad_record {
+            let message = format!("{bad_records} records were skipped, the first {first}");
+            issues.push(Issue::new(IssueCode::Damaged, Severity::Warning, message));
         }
         if let (Some(claimed), true) = (self.claimed_messages, self.losses.is_empty())
             && claimed != self.counts.messages

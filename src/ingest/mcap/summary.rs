@@ -1,6 +1,6 @@
 //! A closed MCAP file's summary section to its schemas, channels and chunk positions, before the walk begins.
 
-use super::scan::{RECORD_HEADER_BYTES, RECORD_HEADER_LENGTH};
+use super::chunk::{RECORD_HEADER_BYTES, RECORD_HEADER_LENGTH};
 use mcap::records::{Record, op};
 use std::io::{Read, Seek, SeekFrom};
 
@@ -78,7 +78,7 @@ fn section(file: &mut (impl Read + Seek), start: u64, end: u64, most_bytes: u64)
         match opcode {
             op::SCHEMA | op::CHANNEL => summary.records.push((opcode, body)),
             op::CHUNK_INDEX => {
-                if let Some(Record::ChunkIndex(index)) = super::scan::parse(opcode, &body) {
+                if let Ok(Record::ChunkIndex(index)) = mcap::parse_record(opcode, &body) {
                     summary.chunk_starts.push(index.chunk_start_offset);
                 }
             }

@@ -77,6 +77,11 @@ impl Units {
         later.0.iter().for_each(|unit| self.take(unit));
     }
 
+    /// The first.
+    pub(super) fn first(&self) -> Option<&str> {
+        self.0.first().map(String::as_str)
+    }
+
     /// A warning where one is another than the first.
     pub(super) fn issue(&self) -> Option<Issue> {
         let (first, others) = self.0.split_first()?;

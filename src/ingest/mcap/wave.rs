@@ -1,10 +1,10 @@
-//! Whole chunks in memory, several at once, to what each of them gives a sink by itself.
+//! Whole chunks in memory, several at once, to what each of them gives by itself.
 
-use super::catalog::Catalog;
+use super::catalog::{Catalog, Sorted};
 use super::chunk::{ChunkEnd, Chunks};
-use super::scan::RECORD_HEADER_BYTES;
-use super::scanned::{Counts, Sink};
-use mcap::records::op;
+use super::scanned::Counts;
+use super::topic::Part;
+use super::topics::Topics;
 use rayon::prelude::*;
 
 /// A larger chunk is unpacked as it is read, by itself.
@@ -21,11 +21,10 @@ pub(super) struct Packed {
 }
 
 /// What a chunk gave that holds nothing but messages of known channels, and is sound.
-pub(super) struct Unpacked<Part> {
+pub(super) struct Unpacked {
     pub part: Part,
     pub counts: Counts,
-    pub bytes: u64,
-    pub compression: String,
+    pub compression: Option<String>,
 }
 
 /// Chunks that wait for one another, and the decompressors.
@@ -65,17 +64,13 @@ impl Wave {
     }
 
     /// Unpacks what waits, and hands it over in order; a chunk that must be taken in turn comes without a part.
-    pub(super) fn unpack<S: Sink>(
-        &mut self,
-        catalog: &Catalog,
-        sink: &S,
-    ) -> Vec<(Packed, Option<Unpacked<S::Part>>)> {
+    pub(super) fn unpack(&mut self, catalog: &Catalog, topics: &Topics) -> Vec<(Packed, Option<Unpacked>)> {
         self.held_bytes = 0;
         let waiting = std::mem::take(&mut self.waiting);
         let pairs = waiting.into_par_iter().zip(&mut self.readers);
         pairs
             .map(|(packed, reader)| {
-                let unpacked = unpacked(&packed.body, reader, catalog, sink);
+                let unpacked = unpacked(&packed.body, reader, catalog, topics);
                 (packed, unpacked)
             })
             .collect()
@@ -89,24 +84,18 @@ impl Wave {
     }
 }
 
-fn unpacked<S: Sink>(
-    body: &[u8],
-    reader: &mut Chunks,
-    catalog: &Catalog,
-    sink: &S,
-) -> Option<Unpacked<S::Part>> {
-    let mut part = sink.part()?;
-    let (mut counts, mut bytes) = (Counts::default(), 0);
-    counts.add(op::CHUNK);
+fn unpacked(mut body: &[u8], reader: &mut Chunks, catalog: &Catalog, topics: &Topics) -> Option<Unpacked> {
+    let (mut part, mut counts) = (topics.part(), Counts { chunks: 1, ..Counts::default() });
     let length = body.len() as u64;
-    let mut rest = body;
-    let end = reader.read(&mut rest, length, length, &mut |opcode, record| {
-        bytes += RECORD_HEADER_BYTES + record.len() as u64;
-        counts.add(opcode);
-        bytes <= MOST_UNPACKED_BYTES && catalog.take_into(opcode, record, sink, &mut part)
+    let end = reader.read(&mut body, length, length, &mut |opcode, record| {
+        counts.add_unpacked(opcode, record);
+        counts.unpacked_bytes <= MOST_UNPACKED_BYTES
+            && match catalog.sorted(opcode, record) {
+                Sorted::Message(message) => topics.take(&mut part, &message),
+                Sorted::Nothing => true,
+                Sorted::New(_) | Sorted::Bad(_) => false,
+            }
     });
-    match end {
-        Ok(ChunkEnd::Whole { compression }) => Some(Unpacked { part, counts, bytes, compression }),
-        _ => None,
-    }
+    let end = end.ok().filter(|end| matches!(end.how, ChunkEnd::Whole))?;
+    Some(Unpacked { part, counts, compression: end.compression })
 }

@@ -42,6 +42,40 @@ const FILL_FLOOR: f64 = 1e6;
 /// # Errors
 /// [`TimeBaseError`] where stamps or rates make no record.
 pub fn from_blocks(blocks: &[Block], samples: Samples) -> Result<Uniform, TimeBaseError> {
+    let count: usize = blocks.iter().map(|block| block.count).sum();
+    if count != samples.len() {
+        return Err(TimeBaseError::Lengths { times: count, samples: samples.len() });
+    }
+    Ok(match samples {
+        Samples::F32(samples) => join(blocks, samples)?.into_uniform(Samples::F32),
+        Samples::F64(samples) => join(blocks, samples)?.into_uniform(Samples::F64),
+    })
+}
+
+/// Where blocks lie on a uniform base.
+pub(in crate::ingest) struct Laid {
+    /// Those that are kept, in the order of their stamps.
+    pieces: Vec<Piece>,
+    /// The place of each one's first sample.
+    places: Vec<usize>,
+    /// Time of the first sample, s.
+    pub(in crate::ingest) start_s: f64,
+    /// Hz.
+    pub(in crate::ingest) sample_rate_hz: f64,
+    /// Samples that are missing between blocks, from when to when, s.
+    gaps: Vec<(usize, f64, f64)>,
+    doubles: Doubles,
+    issues: Vec<Issue>,
+}
+
+/// [`from_blocks`] as far as stamps and lengths tell; `are_same` says of two runs of samples whether they are the same.
+///
+/// # Errors
+/// As that.
+pub(in crate::ingest) fn lay(
+    blocks: &[Block],
+    are_same: &impl Fn(&Range<usize>, &Range<usize>) -> bool,
+) -> Result<Laid, TimeBaseError> {
     let rate_hz = common_rate(blocks)?;
     let mut pieces = Vec::with_capacity(blocks.len());
     let mut end = 0;
@@ -49,13 +83,57 @@ pub fn from_blocks(blocks: &[Block], samples: Samples) -> Result<Uniform, TimeBa
         pieces.push(Piece { start_s: block.start_s, samples: end..end + block.count });
         end += block.count;
     }
-    if end != samples.len() {
-        return Err(TimeBaseError::Lengths { times: end, samples: samples.len() });
+    let (mut issues, mut doubles) = (Vec::new(), Doubles::default());
+    pieces.retain(|piece| !piece.samples.is_empty());
+    sort(&mut pieces, &mut issues);
+    drop_doubles(&mut pieces, rate_hz, &mut doubles, are_same);
+    let present: usize = pieces.iter().map(|piece| piece.samples.len()).sum();
+    if present < 2 {
+        return Err(TimeBaseError::TooFew { count: present });
     }
-    Ok(match samples {
-        Samples::F32(samples) => join(pieces, samples, rate_hz)?.into_uniform(Samples::F32),
-        Samples::F64(samples) => join(pieces, samples, rate_hz)?.into_uniform(Samples::F64),
-    })
+    let cut = cut(&intervals(&pieces), rate_hz);
+    let tolerance = stamp_tolerance(&pieces, rate_hz, cut);
+    issues.extend(hidden_loss(&pieces, rate_hz, tolerance));
+    let places = places(&pieces, rate_hz, tolerance, present)?;
+    let (start_s, sample_rate_hz) = clock((&pieces, &places), rate_hz, cut, &mut issues);
+    let time_s = |index: usize| start_s + as_f64(index) / sample_rate_hz;
+    let (mut gaps, mut end) = (Vec::new(), 0);
+    for (piece, &place) in pieces.iter().zip(&places) {
+        if place > end && end > 0 {
+            gaps.push((place - end, time_s(end - 1), time_s(place)));
+        }
+        end = end.max(place + piece.samples.len());
+    }
+    Ok(Laid { pieces, places, start_s, sample_rate_hz, gaps, doubles, issues })
+}
+
+impl Laid {
+    /// Number of samples, missing ones too.
+    pub(in crate::ingest) fn count(&self) -> usize {
+        let ends = self.pieces.iter().zip(&self.places).map(|(piece, place)| place + piece.samples.len());
+        ends.max().unwrap_or(0)
+    }
+
+    /// Number of stretches that are missing between blocks.
+    pub(in crate::ingest) fn gap_count(&self) -> usize {
+        self.gaps.len()
+    }
+
+    /// The samples at their places.
+    fn filled<S: Number>(&mut self, held: Vec<S>) -> Vec<S> {
+        let rate_hz = self.sample_rate_hz;
+        let doubles = &mut self.doubles;
+        in_place(&self.pieces, &self.places, held, |held| {
+            let mut samples: Vec<S> = Vec::new();
+            for (piece, &place) in self.pieces.iter().zip(&self.places) {
+                if place > samples.len() && !samples.is_empty() {
+                    samples.resize(place, S::MISSING);
+                }
+                append(&mut samples, (piece.start_s, &held[piece.samples.clone()]), (place, rate_hz), doubles);
+            }
+            samples
+        })
+    }
 }
 
 fn common_rate(blocks: &[Block]) -> Result<f64, TimeBaseError> {
@@ -76,48 +154,19 @@ fn common_rate(blocks: &[Block]) -> Result<f64, TimeBaseError> {
     Ok(first.sample_rate_hz)
 }
 
-fn join<S: Number>(mut pieces: Vec<Piece>, held: Vec<S>, rate_hz: f64) -> Result<Placed<S>, TimeBaseError> {
-    let mut issues = Vec::new();
-    pieces.retain(|piece| !piece.samples.is_empty());
-    let starts_s: Vec<f64> = pieces.iter().map(|piece| piece.start_s).collect();
-    let restart = restart(&starts_s);
-    sort(&mut pieces, &mut issues);
-    let mut doubles = Doubles::default();
-    drop_doubles(&mut pieces, &held, rate_hz, &mut doubles);
-    let present: usize = pieces.iter().map(|piece| piece.samples.len()).sum();
-    if present < 2 {
-        return Err(TimeBaseError::TooFew { count: present });
-    }
-    let cut = cut(&intervals(&pieces), rate_hz);
-    let tolerance = stamp_tolerance(&pieces, rate_hz, cut);
-    issues.extend(hidden_loss(&pieces, rate_hz, tolerance));
-    let places = places(&pieces, rate_hz, tolerance, present)?;
-    let clock = clock((&pieces, &places), rate_hz, cut, &mut issues);
-    let mut gaps = Vec::new();
-    let mut samples = in_place(&pieces, &places, held, |held| {
-        let mut samples: Vec<S> = Vec::with_capacity(present);
-        for (piece, &place) in pieces.iter().zip(&places) {
-            let end = samples.len();
-            if place > end && end > 0 {
-                let time_s = |index: usize| clock.0 + as_f64(index) / clock.1;
-                gaps.push((place - end, time_s(end - 1), time_s(place)));
-                samples.resize(place, S::MISSING);
-            }
-            append(
-                &mut samples,
-                (piece.start_s, &held[piece.samples.clone()]),
-                (place, clock.1),
-                &mut doubles,
-            );
-        }
-        samples
-    });
+fn join<S: Number>(blocks: &[Block], held: Vec<S>) -> Result<Placed<S>, TimeBaseError> {
+    let mut laid = lay(blocks, &|a, b| are_same(&held[a.clone()], &held[b.clone()]))?;
+    let mut samples = laid.filled(held);
+    let Laid { start_s, sample_rate_hz, gaps, doubles, mut issues, .. } = laid;
     report_doubles(&doubles, &mut issues);
-    issues.extend(restart.filter(|_| doubles.different > 0).map(|at| restarted(&starts_s, at)));
+    let starts_s: Vec<f64> =
+        blocks.iter().filter(|block| block.count > 0).map(|block| block.start_s).collect();
+    let restart = restart(&starts_s).filter(|_| doubles.different > 0);
+    issues.extend(restart.map(|at| restarted(&starts_s, at)));
     missing::push_gaps(&gaps, &mut issues);
     let lost: usize = gaps.iter().map(|gap| gap.0).sum();
-    let gaps = settle_missing(&mut samples, lost, clock, &mut issues);
-    Ok(Placed { start_s: clock.0, sample_rate_hz: clock.1, samples, gaps, time_jitter_s: 0.0, issues })
+    let gaps = settle_missing(&mut samples, lost, (start_s, sample_rate_hz), &mut issues);
+    Ok(Placed { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
 }
 
 /// The samples as they are held where every block has its place there already, else what `moved` makes of them.
@@ -153,12 +202,17 @@ fn sort(pieces: &mut [Piece], issues: &mut Vec<Issue>) {
 }
 
 /// Drops blocks that start where the one before does.
-fn drop_doubles<S: Number>(pieces: &mut Vec<Piece>, held: &[S], rate_hz: f64, doubles: &mut Doubles) {
-    let of = |piece: &Piece| &held[piece.samples.clone()];
+fn drop_doubles(
+    pieces: &mut Vec<Piece>,
+    rate_hz: f64,
+    doubles: &mut Doubles,
+    are_same: &impl Fn(&Range<usize>, &Range<usize>) -> bool,
+) {
     pieces.dedup_by(|later, kept| {
         let is_double = (later.start_s - kept.start_s) * rate_hz < 0.5 && later.samples.len() > 1;
         if is_double {
-            let is_equal = later.samples.len() == kept.samples.len() && are_same(of(later), of(kept));
+            let is_equal =
+                later.samples.len() == kept.samples.len() && are_same(&later.samples, &kept.samples);
             doubles.add(is_equal, kept.start_s, later.start_s + as_f64(later.samples.len()) / rate_hz);
             if later.samples.len() > kept.samples.len() {
                 std::mem::swap(later, kept);
