@@ -1,7 +1,7 @@
 //! What a format's reader hands over, and the cask file, to channels: one clock, one unit, polarity.
 
 use super::error::{self, IngestError};
-use super::stated_rate::shown_hz;
+use super::shown;
 use super::{RawChannel, RawRecording};
 use crate::data::{
     CaskFile, Channel, ChannelSpec, Issue, IssueCode, Recording, RecordingFormat, SAMPLE_RATES_HZ,
@@ -62,7 +62,7 @@ fn channel(
             format!(
                 "the sample rate of {} is {}, outside {} to {} Hz",
                 spec.source,
-                shown_hz(rate_hz),
+                shown::hz(rate_hz),
                 SAMPLE_RATES_HZ.start(),
                 SAMPLE_RATES_HZ.end()
             ),

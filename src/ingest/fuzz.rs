@@ -98,9 +98,9 @@ fn times(bytes: &[u8]) {
     let times_s: Vec<f64> = bytes.as_chunks().0.iter().map(|&eight| f64::from_le_bytes(eight)).collect();
     let samples = Samples::F64(times_s.iter().map(|t| t * 2.0).collect());
     let _ = time_base::from_times(&times_s, samples, None);
-    let block = |pair: &[f64]| time_base::Block { start_s: pair[0], sample_rate_hz: pair[1], count: 3 };
-    let blocks: Vec<_> = times_s.windows(2).map(block).collect();
-    let _ = time_base::from_blocks(&blocks, Samples::F32([1.0, f32::NAN, 3.0].repeat(blocks.len())));
+    let Some((&rate_hz, starts_s)) = times_s.split_first() else { return };
+    let blocks: Vec<_> = starts_s.iter().map(|&start_s| time_base::Block { start_s, count: 3 }).collect();
+    let _ = time_base::from_blocks(&blocks, rate_hz, Samples::F32([1.0, f32::NAN, 3.0].repeat(blocks.len())));
 }
 
 #[cfg(test)]

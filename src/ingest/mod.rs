@@ -15,7 +15,6 @@ mod limits;
 mod mcap;
 mod number;
 mod shown;
-mod stated_rate;
 #[allow(dead_code, reason = "readers move onto it one by one")]
 mod statement;
 mod strangers;

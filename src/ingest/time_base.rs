@@ -1,22 +1,23 @@
 //! Recorded times and samples to one uniform base, with the error of doing so known.
 
+mod block_rate;
 mod blocks;
 mod coarse;
-mod cut;
 mod error;
 mod fit;
 mod missing;
 mod order;
+mod pieces;
 mod resample;
+mod stamps;
 mod uniform;
 
-pub(super) use super::clock::RATE_TOLERANCE;
-pub(super) use super::shown::{short, to_digits};
+pub(super) use super::shown::short;
+pub(super) use block_rate::{PREFIX, lay as lay_blocks, place as place_blocks};
 pub use blocks::from_blocks;
-pub(super) use blocks::lay as lay_blocks;
-pub(super) use cut::{cut, unit_s, usual_hz};
 pub use error::TimeBaseError;
 use error::check_rate;
+pub(super) use pieces::Content;
 pub use uniform::{Block, Uniform};
 
 use super::clock::{self, Claims};

@@ -20,7 +20,7 @@ pub fn synthetic(recording: &SyntheticRecording, cask_file: &CaskFile) -> Result
         let Some(stated) = cask_file.channels.get(spec) else { break };
         let uniform = {
             let (blocks, samples) = blocks(channel, stated.polarity);
-            time_base::from_blocks(&blocks, Samples::F32(samples))
+            time_base::from_blocks(&blocks, channel.sample_rate_hz, Samples::F32(samples))
         }
         .map_err(|problem| {
             let mend = "record the channel over the whole drop";
@@ -41,7 +41,7 @@ fn blocks(channel: &SyntheticChannel, polarity: f64) -> (Vec<Block>, Vec<f32>) {
             #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
             let start_s = channel.start_s + at as f64 / channel.sample_rate_hz;
             samples.extend(run.iter().map(|&x| if polarity < 0.0 { -x } else { x }));
-            blocks.push(Block { start_s, sample_rate_hz: channel.sample_rate_hz, count: run.len() });
+            blocks.push(Block { start_s, count: run.len() });
         }
         // The lost sample that ends the run counts too.
         at += run.len() + 1;

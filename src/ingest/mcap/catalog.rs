@@ -1,9 +1,8 @@
 //! Records to the schemas and channels of a file, and to messages of known channels.
 
-use super::scanned::{ChannelInfo, Scanned, SchemaInfo};
+use super::scanned::{ChannelInfo, Message, Scanned, SchemaInfo};
 use super::topics::Topics;
 use mcap::records::{Record, op};
-use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 /// The schemas and channels met so far; the first of an id stands.
@@ -12,13 +11,6 @@ pub(super) struct Catalog {
     schemas: HashMap<u16, SchemaInfo>,
     channels: HashSet<u16>,
     held_bytes: u64,
-}
-
-/// A message of a known channel.
-pub(super) struct Message<'a> {
-    pub(super) channel: u16,
-    pub(super) log_time_ns: i64,
-    pub(super) data: Cow<'a, [u8]>,
 }
 
 /// What a record holds for who reads the file.

@@ -37,16 +37,48 @@ impl Decode for Cdr {
             .split_at_checked(ENCAPSULATION_BYTES)
             .ok_or_else(|| "the message is shorter than its CDR header".to_owned())?;
         let needed = self.fields.get(..self.needed).unwrap_or_default();
-        match header {
-            [0, 0, ..] => {
-                Walk::<BigEndian>::new(body, &self.plan.wants, slots).fields(needed, Some(&self.plan.root))
+        let Plan { root, wants, .. } = &self.plan;
+        let walked = match header {
+            [0, 0, ..] => Walk::<BigEndian>::new(body, wants, slots).fields(needed, Some(root)),
+            [0, 1, ..] => Walk::<LittleEndian>::new(body, wants, slots).fields(needed, Some(root)),
+            _ => {
+                return Err(format!(
+                    "the message is in the representation {header:02x?}; plain CDR of either byte order is read"
+                ));
             }
-            [0, 1, ..] => {
-                Walk::<LittleEndian>::new(body, &self.plan.wants, slots).fields(needed, Some(&self.plan.root))
-            }
-            _ => Err(format!(
-                "the message is in the representation {header:02x?}; plain CDR of either byte order is read"
-            )),
+        };
+        walked.map_err(|problem| problem.to_string())
+    }
+}
+
+/// Why a message does not decode.
+#[derive(Debug, thiserror::Error)]
+#[error("at {field}: {what}")]
+struct Undecoded {
+    field: String,
+    what: String,
+}
+
+impl Undecoded {
+    fn new(what: impl Into<String>) -> Self {
+        Self { field: String::new(), what: what.into() }
+    }
+
+    /// The same in a message that is the field `name`.
+    fn below(mut self, name: &str) -> Self {
+        if !self.field.is_empty() {
+            self.field.insert(0, '.');
+        }
+        self.field.insert_str(0, name);
+        self
+    }
+}
+
+impl From<re_cdr::Error> for Undecoded {
+    fn from(error: re_cdr::Error) -> Self {
+        match error {
+            re_cdr::Error::UnexpectedEof => Self::new("the message ends before it"),
+            other => Self::new(other.to_string()),
         }
     }
 }
@@ -63,18 +95,15 @@ impl<'a, Order: CdrEndian> Walk<'a, Order> {
         Self { reader: CdrReader::new(body), wants, slots }
     }
 
-    fn fields(&mut self, fields: &[Field], node: Option<&Node>) -> Result<(), String> {
+    fn fields(&mut self, fields: &[Field], node: Option<&Node>) -> Result<(), Undecoded> {
         for field in fields {
             let child = node.and_then(|node| node.field(&field.name));
-            self.value(&field.kind, child).map_err(|problem| match problem.strip_prefix("at ") {
-                Some(deeper) => format!("at {}.{deeper}", field.name),
-                None => format!("at {}: {problem}", field.name),
-            })?;
+            self.value(&field.kind, child).map_err(|problem| problem.below(&field.name))?;
         }
         Ok(())
     }
 
-    fn value(&mut self, kind: &Type, node: Option<&Node>) -> Result<(), String> {
+    fn value(&mut self, kind: &Type, node: Option<&Node>) -> Result<(), Undecoded> {
         match kind {
             Type::Text => {
                 let text = self.text()?;
@@ -84,8 +113,9 @@ impl<'a, Order: CdrEndian> Walk<'a, Order> {
                 Ok(())
             }
             Type::WideText => {
-                let units = self.reader.read_u32().map_err(in_words)? as usize;
-                self.reader.read_bytes(units.saturating_mul(2)).map(|_| ()).map_err(in_words)
+                let units = self.reader.read_u32()? as usize;
+                self.reader.read_bytes(units.saturating_mul(2))?;
+                Ok(())
             }
             Type::Message(fields) => self.message(fields, node),
             Type::Array(element, length) => self.array(element, *length, node),
@@ -99,7 +129,7 @@ impl<'a, Order: CdrEndian> Walk<'a, Order> {
         }
     }
 
-    fn message(&mut self, fields: &[Field], node: Option<&Node>) -> Result<(), String> {
+    fn message(&mut self, fields: &[Field], node: Option<&Node>) -> Result<(), Undecoded> {
         if let (Some(slot), [seconds, nanoseconds]) =
             (node.and_then(|node| node.slot(self.wants, Want::Stamp)), fields)
             && SECONDS_NAMES.contains(&seconds.name.as_str())
@@ -113,10 +143,10 @@ impl<'a, Order: CdrEndian> Walk<'a, Order> {
         self.fields(fields, node)
     }
 
-    fn array(&mut self, element: &Type, length: Length, node: Option<&Node>) -> Result<(), String> {
+    fn array(&mut self, element: &Type, length: Length, node: Option<&Node>) -> Result<(), Undecoded> {
         let count = match length {
             Length::Fixed(count) => count,
-            Length::Counted => self.reader.read_u32().map_err(in_words)? as usize,
+            Length::Counted => self.reader.read_u32()? as usize,
         };
         let Some(bytes) = element.bytes() else {
             for index in 0..count {
@@ -135,13 +165,16 @@ impl<'a, Order: CdrEndian> Walk<'a, Order> {
             }
             return Ok(());
         }
-        self.reader.align(bytes).map_err(in_words)?;
+        self.reader.align(bytes)?;
         if count.saturating_mul(bytes) > self.reader.remaining() {
-            return Err(format!("{count} numbers are announced, and the message ends before them"));
+            return Err(Undecoded::new(format!(
+                "{count} numbers are announced, and the message ends before them"
+            )));
         }
         let slot = node.and_then(|node| node.slot(self.wants, Want::Numbers));
         let (Some(slot), Some(node)) = (slot, node) else {
-            return self.reader.read_bytes(count * bytes).map(|_| ()).map_err(in_words);
+            self.reader.read_bytes(count * bytes)?;
+            return Ok(());
         };
         let samples = self.numbers(element, count)?;
         self.slots.set(slot, Value::Array(samples));
@@ -149,10 +182,10 @@ impl<'a, Order: CdrEndian> Walk<'a, Order> {
         Ok(())
     }
 
-    fn numbers(&mut self, element: &Type, count: usize) -> Result<Samples, String> {
+    fn numbers(&mut self, element: &Type, count: usize) -> Result<Samples, Undecoded> {
         Ok(match element {
-            Type::F32 => Samples::F32(self.reader.read_numeric_vec(count).map_err(in_words)?),
-            Type::F64 => Samples::F64(self.reader.read_numeric_vec(count).map_err(in_words)?),
+            Type::F32 => Samples::F32(self.reader.read_numeric_vec(count)?),
+            Type::F64 => Samples::F64(self.reader.read_numeric_vec(count)?),
             Type::I16 => Samples::F32(self.converted::<i16, f32>(count)?),
             other if other.is_narrow() => {
                 let mut samples = Vec::with_capacity(count);
@@ -176,15 +209,15 @@ impl<'a, Order: CdrEndian> Walk<'a, Order> {
         })
     }
 
-    fn converted<From: re_cdr::CdrPod + Into<To>, To>(&mut self, count: usize) -> Result<Vec<To>, String> {
-        let numbers: Vec<From> = self.reader.read_numeric_vec(count).map_err(in_words)?;
+    fn converted<From: re_cdr::CdrPod + Into<To>, To>(&mut self, count: usize) -> Result<Vec<To>, Undecoded> {
+        let numbers: Vec<From> = self.reader.read_numeric_vec(count)?;
         Ok(numbers.into_iter().map(Into::into).collect())
     }
 
     #[allow(clippy::cast_precision_loss, reason = "samples beyond 2^53 do not occur")]
-    fn number(&mut self, kind: &Type) -> Result<f64, String> {
+    fn number(&mut self, kind: &Type) -> Result<f64, Undecoded> {
         let reader = &mut self.reader;
-        match kind {
+        let number = match kind {
             Type::U8 => reader.read_u8().map(f64::from),
             Type::I8 => reader.read_i8().map(f64::from),
             Type::U16 => reader.read_u16().map(f64::from),
@@ -195,24 +228,16 @@ impl<'a, Order: CdrEndian> Walk<'a, Order> {
             Type::I64 => reader.read_i64().map(|value| value as f64),
             Type::F32 => reader.read_f32().map(f64::from),
             Type::F64 => reader.read_f64(),
-            _ => return Err("a number is expected".into()),
-        }
-        .map_err(in_words)
+            _ => return Err(Undecoded::new("a number is expected")),
+        };
+        Ok(number?)
     }
 
     /// A string's bytes without the closing zero.
-    fn text(&mut self) -> Result<&'a [u8], String> {
-        let length = self.reader.read_u32().map_err(in_words)? as usize;
-        let bytes = self.reader.read_bytes(length).map_err(in_words)?;
+    fn text(&mut self) -> Result<&'a [u8], Undecoded> {
+        let length = self.reader.read_u32()? as usize;
+        let bytes = self.reader.read_bytes(length)?;
         Ok(bytes.strip_suffix(&[0]).unwrap_or(bytes))
-    }
-}
-
-#[allow(clippy::needless_pass_by_value, reason = "the shape that map_err takes")]
-fn in_words(error: re_cdr::Error) -> String {
-    match error {
-        re_cdr::Error::UnexpectedEof => "the message ends before it".into(),
-        other => other.to_string(),
     }
 }
 

@@ -1,13 +1,14 @@
 //! What the messages of one topic gave for one field, to uniform samples.
 
-use super::block_rate::{Derived, FAR, few_blocks};
+use super::extent::Extent;
 use super::numbers::{append, push};
-use super::plan::Value;
-use super::shared_stamps::Shared;
-use super::twice::{Rates, Units};
-use crate::data::{Issue, Samples};
-use crate::ingest::stated_rate::shown_hz;
-use crate::ingest::time_base::{self, Block, TimeBaseError, Uniform};
+use super::plan::{StatedRate, Value};
+use crate::data::{Samples, acceleration_unit_m_s2};
+use crate::ingest::clock::{Claims, Refusal};
+use crate::ingest::shown;
+use crate::ingest::statement::Statement;
+use crate::ingest::time_base::{self, Block, Content, PREFIX, TimeBaseError, Uniform};
+use crate::ingest::vocabulary::Meaning;
 
 /// Where a message's time comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,12 +47,10 @@ pub(super) const CLOCK_IS_SET_NS: i64 = 315_964_800_000_000_000;
 
 /// One message with an array.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct RawBlock {
-    pub(super) time_ns: i64,
-    /// As stated; `None` where the message has no such field.
-    pub(super) rate_hz: Option<f64>,
+struct RawBlock {
+    time_ns: i64,
     /// Number of its samples.
-    pub(super) count: usize,
+    count: usize,
 }
 
 /// How many messages of a column carry what stamp.
@@ -61,14 +60,6 @@ pub(super) struct Stamps {
     pub(super) good: u64,
     /// One that is zero or not understood.
     pub(super) bad: u64,
-}
-
-/// What a listing shows of samples.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Extent {
-    pub(super) samples: u64,
-    /// The least and the largest that is finite.
-    pub(super) range: Option<(f64, f64)>,
 }
 
 /// When the samples of a column were taken.
@@ -87,59 +78,28 @@ pub(super) struct Timing {
 pub(super) struct Column {
     /// Of single numbers, one a sample.
     times_ns: Vec<i64>,
-    /// Of all messages, one after another; without those of blocks where there is an extent.
+    /// Of all messages, one after another; of the first blocks alone where there is an extent.
     samples: Samples,
     blocks: Vec<RawBlock>,
+    /// For a listing.
     pub(super) extent: Option<Extent>,
     pub(super) stamps: Stamps,
-    /// All that were stated.
-    pub(super) units: Units,
-    /// Two rates that a message states, and contradict each other.
-    pub(super) two_rates: Option<Rates>,
+    /// The units that messages state, each once, as they come.
+    units: Vec<String>,
+    /// The rates that messages state, each once, as they come.
+    rates: Vec<StatedRate>,
     /// Which sample or block came last with a stamp of exactly zero.
     zero_stamp: Option<usize>,
 }
 
-impl Extent {
-    fn see(&mut self, value: &Value) {
-        match value {
-            Value::Number { value, .. } => self.see_all(std::iter::once(*value)),
-            Value::Array(Samples::F32(samples)) => self.see_all(samples.iter().copied().map(f64::from)),
-            Value::Array(Samples::F64(samples)) => self.see_all(samples.iter().copied()),
-            _ => {}
-        }
-    }
+/// Of what messages state so many are kept that differ: two tell that they change.
+const MOST_STATED: usize = 4;
 
-    fn see_all(&mut self, samples: impl ExactSizeIterator<Item = f64>) {
-        self.samples += samples.len() as u64;
-        for value in samples.filter(|value| value.is_finite()) {
-            self.widen((value, value));
-        }
+/// Adds what is not there yet.
+fn state<T: PartialEq>(known: &mut Vec<T>, stated: T) {
+    if known.len() < MOST_STATED && !known.contains(&stated) {
+        known.push(stated);
     }
-
-    fn widen(&mut self, (least, largest): (f64, f64)) {
-        self.range =
-            Some(self.range.map_or((least, largest), |(low, high)| (low.min(least), high.max(largest))));
-    }
-}
-
-/// Why a column gives no uniform samples.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum ColumnError {
-    #[error("its messages state a sample rate of {0} Hz")]
-    StatedRate(f64),
-    #[error("it is one block of samples without a sample rate")]
-    NoRate,
-    #[error(
-        "its messages state a sample rate of {} Hz, their stamps and lengths say {} Hz: one of the two is wrong, or samples are missing behind \
-         every message{}",
-        shown_hz(*stated_hz), shown_hz(*own_hz), shared.map(|shared| format!("; {shared}")).unwrap_or_default()
-    )]
-    Contradiction { stated_hz: f64, own_hz: f64, shared: Option<Shared> },
-    #[error("{0}, and no rate is stated by which they could be laid one behind another")]
-    SharedStamps(Shared),
-    #[error(transparent)]
-    TimeBase(#[from] TimeBaseError),
 }
 
 impl Column {
@@ -151,14 +111,14 @@ impl Column {
             blocks: Vec::new(),
             extent: is_listed.then(Extent::default),
             stamps: Stamps::default(),
-            units: Units::default(),
-            two_rates: None,
+            units: Vec::new(),
+            rates: Vec::new(),
             zero_stamp: None,
         }
     }
 
     /// Takes what one message gave.
-    pub(super) fn take(&mut self, value: Value, time: MessageTime, rate_hz: Option<f64>) {
+    pub(super) fn take(&mut self, value: Value, time: MessageTime) {
         let count = match &value {
             Value::Number { .. } => 1,
             Value::Array(samples) => samples.len(),
@@ -167,22 +127,23 @@ impl Column {
         if count == 0 {
             return;
         }
-        if let Some(extent) = &mut self.extent {
-            extent.see(&value);
-        }
-        if matches!(value, Value::Array(_)) && self.blocks.is_empty() {
+        let is_array = matches!(value, Value::Array(_));
+        if is_array && self.blocks.is_empty() {
             self.turn_to_blocks();
         }
-        let is_block = matches!(value, Value::Array(_)) || !self.blocks.is_empty();
+        let is_block = is_array || !self.blocks.is_empty();
+        let is_kept = !is_block || self.is_prefix();
+        if let Some(extent) = &mut self.extent {
+            extent.see(&value, is_block);
+        }
         if is_block {
-            self.blocks.push(RawBlock { time_ns: time.ns, rate_hz, count });
+            self.blocks.push(RawBlock { time_ns: time.ns, count });
         } else {
             self.times_ns.push(time.ns);
         }
         match value {
-            _ if is_block && self.extent.is_some() => {}
-            Value::Number { value, is_narrow } => push(&mut self.samples, value, is_narrow),
-            Value::Array(mut samples) => append(&mut self.samples, &mut samples),
+            Value::Number { value, is_narrow } if is_kept => push(&mut self.samples, value, is_narrow),
+            Value::Array(mut samples) if is_kept => append(&mut self.samples, &mut samples),
             _ => {}
         }
         match time.origin {
@@ -195,12 +156,36 @@ impl Column {
         }
     }
 
+    /// Takes a unit that a message states.
+    pub(super) fn state_unit(&mut self, unit: &str) {
+        if !self.units.iter().any(|known| known == unit) {
+            state(&mut self.units, unit.to_owned());
+        }
+    }
+
+    /// Takes a rate that a message states.
+    pub(super) fn state_rate(&mut self, rate: StatedRate) {
+        state(&mut self.rates, rate);
+    }
+
+    /// Whether all samples so far are held, and those of one more block are: for a listing the first of them will do.
+    fn is_prefix(&self) -> bool {
+        let held = self.samples.len();
+        self.extent.as_ref().is_none_or(|extent| held < PREFIX && held as u64 == extent.samples)
+    }
+
     /// Takes single numbers for blocks of one sample: some writers leave out the brackets of such a block.
     fn turn_to_blocks(&mut self) {
-        let block = |time_ns| RawBlock { time_ns, rate_hz: None, count: 1 };
-        self.blocks.extend(self.times_ns.drain(..).map(block));
-        if self.extent.is_some() {
-            self.samples = Samples::F32(Vec::new());
+        if self.times_ns.is_empty() {
+            return;
+        }
+        self.blocks.extend(self.times_ns.drain(..).map(|time_ns| RawBlock { time_ns, count: 1 }));
+        if let Some(extent) = &mut self.extent {
+            let mut of_numbers = Extent::default();
+            for i in 0..self.samples.len() {
+                of_numbers.see(&Value::Number { value: self.samples.get(i), is_narrow: false }, true);
+            }
+            (extent.holes, extent.digests) = (of_numbers.holes, of_numbers.digests);
         }
     }
 
@@ -213,23 +198,32 @@ impl Column {
         } else if !other.blocks.is_empty() {
             self.turn_to_blocks();
         }
+        if self.blocks.is_empty() || self.is_prefix() {
+            append(&mut self.samples, &mut other.samples);
+        }
         self.times_ns.append(&mut other.times_ns);
         self.blocks.append(&mut other.blocks);
-        append(&mut self.samples, &mut other.samples);
-        if matches!(other.samples, Samples::F64(_)) {
-            other.samples = Samples::F32(Vec::new());
+        match &mut other.samples {
+            Samples::F32(samples) => samples.clear(),
+            Samples::F64(_) => other.samples = Samples::F32(Vec::new()),
         }
         if let (Some(own), Some(more)) = (&mut self.extent, &mut other.extent) {
-            let Extent { samples, range } = std::mem::take(more);
-            own.samples += samples;
-            range.into_iter().for_each(|range| own.widen(range));
+            own.append(std::mem::take(more));
         }
         let Stamps { good, bad } = std::mem::take(&mut other.stamps);
         self.stamps.good += good;
         self.stamps.bad += bad;
-        self.units.append(&std::mem::take(&mut other.units));
-        let two_rates = other.two_rates.take();
-        self.two_rates = self.two_rates.take().or(two_rates);
+        other.units.drain(..).for_each(|unit| state(&mut self.units, unit));
+        other.rates.drain(..).for_each(|rate| state(&mut self.rates, rate));
+    }
+
+    /// Gives the memory of times and samples back, in a listing.
+    pub(super) fn forget_times(&mut self) {
+        if let (false, Some(extent)) = (self.is_empty(), &mut self.extent) {
+            let kept = Extent { digests: Vec::new(), is_without_times: true, ..std::mem::take(extent) };
+            let (units, rates) = (std::mem::take(&mut self.units), std::mem::take(&mut self.rates));
+            *self = Self { extent: Some(kept), units, rates, ..Self::new(true) };
+        }
     }
 
     /// Takes a single stamp of zero for a time where the other stamps show a clock that counts from its own start.
@@ -267,7 +261,9 @@ impl Column {
             Samples::F32(samples) => (samples.len(), 0),
             Samples::F64(samples) => (0, samples.len()),
         };
-        (4 * narrow + 8 * (wide + self.times_ns.len()) + size_of::<RawBlock>() * self.blocks.len()) as u64
+        let digests = self.extent.as_ref().map_or(0, |extent| extent.digests.len());
+        let eights = wide + self.times_ns.len() + digests;
+        (4 * narrow + 8 * eights + size_of::<RawBlock>() * self.blocks.len()) as u64
     }
 
     /// The earliest and the latest time of a message, ns since 1970.
@@ -275,109 +271,89 @@ impl Column {
         Some((self.starts_ns().min()?, self.starts_ns().max()?))
     }
 
-    /// The samples on a uniform base, times counted from `zero_ns`; `declared_rate_hz` overrides what the messages say.
+    /// The unit that its messages state first.
+    pub(super) fn unit(&self) -> Option<&str> {
+        self.units.first().map(String::as_str)
+    }
+
+    /// How the unit changes between its messages, where it does.
+    pub(super) fn unit_change(&self) -> Option<String> {
+        let (first, others) = self.units.split_first()?;
+        let is_other = |unit: &&String| match (acceleration_unit_m_s2(first), acceleration_unit_m_s2(unit)) {
+            (Some(one), Some(other)) => one.total_cmp(&other).is_ne(),
+            _ => !unit.trim().eq_ignore_ascii_case(first.trim()),
+        };
+        let other = others.iter().find(is_other)?;
+        Some(format!("the unit changes between its messages, from {first:?} to {other:?}"))
+    }
+
+    /// What is said of its rate but by its stamps.
+    fn claims(&self, cask_hz: Option<f64>) -> Result<Claims, Refusal> {
+        let is_rate = |rate: &StatedRate| rate.hz.is_finite() && rate.hz > 0.0;
+        if let (None, Some(StatedRate { name, hz, .. })) =
+            (cask_hz, self.rates.iter().find(|rate| !is_rate(rate)))
+        {
+            return Err(Refusal::new(
+                format!("its messages state a sample rate of {} Hz ({name})", shown::short(*hz)),
+                "write the true `sample_rate_hz` in this channel of the cask file: it overrides the recording",
+            ));
+        }
+        let nearest = self.rates.iter().map(|rate| rate.level).min().unwrap_or(0);
+        let mut rates: Vec<&StatedRate> = self.rates.iter().collect();
+        rates.sort_by_key(|rate| rate.level);
+        let statement = |rate: &StatedRate| {
+            let stated = Statement::of(rate.name, &rate.hz.to_string(), Meaning::Rate(1.0));
+            stated.map(|stated| stated.at(rate.level - nearest))
+        };
+        let stated = rates.into_iter().filter_map(statement).collect();
+        Ok(Claims { cask_hz, stated, ..Claims::default() })
+    }
+
+    /// Its blocks, times counted from `zero_ns`.
+    fn blocks_from(&self, zero_ns: i64) -> Vec<Block> {
+        let block =
+            |block: &RawBlock| Block { start_s: seconds_from(block.time_ns, zero_ns), count: block.count };
+        self.blocks.iter().map(block).collect()
+    }
+
+    /// The samples on a uniform base, times counted from `zero_ns`; `cask_hz` overrides what the messages say.
     ///
     /// # Errors
     /// Rate or times that give no base.
-    pub(super) fn uniform(
-        mut self,
-        zero_ns: i64,
-        declared_rate_hz: Option<f64>,
-    ) -> Result<Uniform, ColumnError> {
+    pub(super) fn uniform(self, zero_ns: i64, cask_hz: Option<f64>) -> Result<Uniform, TimeBaseError> {
         if self.blocks.is_empty() {
+            // A rate in messages of single numbers is that of something else, such as blocks beside them.
             let times_s: Vec<f64> =
                 self.times_ns.iter().map(|&time_ns| seconds_from(time_ns, zero_ns)).collect();
-            return Ok(time_base::from_times(&times_s, self.samples, declared_rate_hz)?);
+            return time_base::from_times(&times_s, self.samples, cask_hz);
         }
-        let shared = Shared::of(&self.blocks, &self.samples);
-        let laid = self.laid(shared, declared_rate_hz)?;
-        let derived = Derived::of(&self.blocks);
-        let derived_hz = declared_rate_hz.or(derived.as_ref().map(|derived| derived.rate_hz));
-        if declared_rate_hz.is_none()
-            && let Some((stated_hz, own_hz)) =
-                derived.as_ref().and_then(|own| own.contradiction(&self.blocks, &self.samples))
-        {
-            return Err(ColumnError::Contradiction { stated_hz, own_hz, shared });
-        }
-        let is_derived =
-            declared_rate_hz.is_none() && self.blocks.iter().all(|block| block.rate_hz.is_none());
-        let resolution = match &derived {
-            Some(derived) if is_derived => derived.resolution(self.samples.len())?,
-            _ => None,
-        };
-        // At a rate that is far off, steady stamps would leave a gap behind every block, or let each cover the next.
-        let own_hz = declared_rate_hz.and_then(|declared_hz| {
-            let is_far = |rate_hz: &f64| (declared_hz / rate_hz - 1.0).abs() > FAR;
-            let own = derived.as_ref().filter(|own| own.is_steady && !own.is_explained_by(declared_hz));
-            own.map(|own| own.rate_hz).filter(is_far)
-        });
-        let few_hz = derived.as_ref().filter(|own| own.is_few()).map(|own| own.rate_hz);
-        let mut blocks = Vec::with_capacity(self.blocks.len());
-        for block in self.blocks {
-            let sample_rate_hz = match (own_hz.or(declared_rate_hz), block.rate_hz) {
-                (Some(rate_hz), _) => rate_hz,
-                (None, Some(rate_hz)) if rate_hz.is_finite() && rate_hz > 0.0 => rate_hz,
-                (None, Some(rate_hz)) => return Err(ColumnError::StatedRate(rate_hz)),
-                (None, None) => derived_hz.ok_or(ColumnError::NoRate)?,
-            };
-            let start_s = seconds_from(block.time_ns, zero_ns);
-            blocks.push(Block { start_s, sample_rate_hz, count: block.count });
-        }
-        let mut placed = time_base::from_blocks(&blocks, self.samples)?;
-        // Between many blocks a rate shows in every one; between few it looks like samples that are missing.
-        placed.issues.extend(few_hz.and_then(|own_hz| few_blocks(own_hz, placed.sample_rate_hz)));
-        placed.issues.extend(resolution);
-        placed.issues.extend(laid);
-        let is_decided = declared_rate_hz.is_some()
-            || derived.is_some_and(|derived| derived.bears_out(placed.sample_rate_hz));
-        placed.issues.extend(self.two_rates.filter(|_| !is_decided).map(|rates| rates.issue()));
-        Ok(match (own_hz, declared_rate_hz) {
-            (Some(_), Some(declared_hz)) => placed.at(declared_hz)?,
-            _ => placed,
-        })
+        let claims = self.claims(cask_hz)?;
+        time_base::place_blocks(&self.blocks_from(zero_ns), &claims, self.samples)
     }
 
-    /// As [`Column::uniform`] as far as a listing shows it, which needs no samples of blocks.
-    pub(super) fn timing(self, zero_ns: i64) -> Result<Timing, ColumnError> {
-        if self.blocks.is_empty() {
+    /// As [`Column::uniform`] as far as a listing shows it, which holds no samples of blocks.
+    ///
+    /// # Errors
+    /// As that.
+    pub(super) fn timing(self, zero_ns: i64) -> Result<Timing, TimeBaseError> {
+        let Some(extent) = self.extent.as_ref().filter(|_| !self.blocks.is_empty()) else {
             let uniform = self.uniform(zero_ns, None)?;
             let (count, gaps) = (uniform.samples.len(), uniform.gaps.len());
-            return Ok(Timing { start_s: uniform.start_s, sample_rate_hz: uniform.sample_rate_hz, count, gaps });
-        }
-        let own_hz = Derived::of(&self.blocks).map(|derived| derived.rate_hz);
-        let stated_hz = self.blocks.iter().find_map(|block| block.rate_hz);
-        let sample_rate_hz = stated_hz.or(own_hz).ok_or(ColumnError::NoRate)?;
-        let block = |block: &RawBlock| {
-            let start_s = seconds_from(block.time_ns, zero_ns);
-            Block { start_s, sample_rate_hz, count: block.count }
+            return Ok(Timing {
+                start_s: uniform.start_s,
+                sample_rate_hz: uniform.sample_rate_hz,
+                count,
+                gaps,
+            });
         };
-        let blocks: Vec<Block> = self.blocks.iter().map(block).collect();
-        let laid = time_base::lay_blocks(&blocks, &|_, _| true)?;
+        let content = Content { samples: &self.samples, digests: Some(&extent.digests) };
+        let laid = time_base::lay_blocks(&self.blocks_from(zero_ns), &self.claims(None)?, &content)?;
         Ok(Timing {
             start_s: laid.start_s,
             sample_rate_hz: laid.sample_rate_hz,
             count: laid.count(),
-            gaps: laid.gap_count(),
+            gaps: laid.gap_count() + extent.holes,
         })
-    }
-
-    /// Stamps anew blocks that share stamps and follow one another at the rate that is stated; a warning where that was done.
-    fn laid(
-        &mut self,
-        shared: Option<Shared>,
-        declared_rate_hz: Option<f64>,
-    ) -> Result<Option<Issue>, ColumnError> {
-        let Some(shared) = shared else { return Ok(None) };
-        let stated_hz = declared_rate_hz.or(self.blocks.first().and_then(|block| block.rate_hz));
-        let rate_hz = stated_hz.ok_or(ColumnError::SharedStamps(shared))?;
-        let is_rate = rate_hz.is_finite() && rate_hz > 0.0;
-        let Some((stamps, issue)) = shared.laid(&self.blocks, rate_hz).filter(|_| is_rate) else {
-            return Ok(None);
-        };
-        for (block, time_ns) in self.blocks.iter_mut().zip(stamps) {
-            block.time_ns = time_ns;
-        }
-        Ok(Some(issue))
     }
 }
 

@@ -7,6 +7,7 @@ use super::plan::{
     Value, Want, unix_ns,
 };
 use crate::data::Samples;
+use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use std::borrow::Cow;
 use std::fmt;
@@ -182,9 +183,9 @@ impl<'de> Visitor<'de> for At<'_> {
             let (mut seconds, mut nanoseconds) = (None, 0);
             while let Some(key) = map.next_key::<Cow<str>>()? {
                 if SECONDS_NAMES.contains(&&*key) {
-                    seconds = map.next_value_seed(WholeNumber)?;
+                    seconds = map.next_value::<Scalar>()?.whole();
                 } else if NANOSECONDS_NAMES.contains(&&*key) {
-                    nanoseconds = map.next_value_seed(WholeNumber)?.unwrap_or(0);
+                    nanoseconds = map.next_value::<Scalar>()?.whole().unwrap_or(0);
                 } else {
                     map.next_value::<IgnoredAny>()?;
                 }
@@ -208,7 +209,8 @@ impl<'de> Visitor<'de> for At<'_> {
         let node = self.node;
         if self.wants(Want::Numbers) {
             let mut samples = Vec::new();
-            while let Some(value) = seq.next_element_seed(Number)? {
+            while let Some(scalar) = seq.next_element::<Scalar>()? {
+                let value = scalar.sample()?;
                 if let Some(child) = node.element(samples.len()) {
                     self.below(child).number(value);
                 }
@@ -241,84 +243,35 @@ fn spelled_number(text: &str) -> Option<f64> {
     }
 }
 
-/// An array's element as a number; null and words are NaN.
-struct Number;
-
-impl<'de> DeserializeSeed<'de> for Number {
-    type Value = f64;
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<f64, D::Error> {
-        deserializer.deserialize_any(self)
-    }
+/// A number, or what writers put in its place: null, a word, or a 64-bit integer in quotes (protobuf's JSON mapping).
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "a number is expected")]
+enum Scalar<'a> {
+    Number(f64),
+    #[serde(borrow)]
+    Text(Cow<'a, str>),
+    Missing(()),
 }
 
-impl Visitor<'_> for Number {
-    type Value = f64;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a number")
+impl Scalar<'_> {
+    /// A sample: null is NaN.
+    fn sample<E: Error>(&self) -> Result<f64, E> {
+        match self {
+            Self::Number(value) => Ok(*value),
+            Self::Missing(()) => Ok(f64::NAN),
+            Self::Text(text) => spelled_number(text)
+                .ok_or_else(|| E::custom(format!("{text:?} stands where a number should"))),
+        }
     }
 
-    fn visit_f64<E: Error>(self, value: f64) -> Result<f64, E> {
-        Ok(value)
-    }
-
-    #[allow(clippy::cast_precision_loss, reason = "samples beyond 2^53 do not occur")]
-    fn visit_i64<E: Error>(self, value: i64) -> Result<f64, E> {
-        Ok(value as f64)
-    }
-
-    #[allow(clippy::cast_precision_loss, reason = "samples beyond 2^53 do not occur")]
-    fn visit_u64<E: Error>(self, value: u64) -> Result<f64, E> {
-        Ok(value as f64)
-    }
-
-    fn visit_unit<E: Error>(self) -> Result<f64, E> {
-        Ok(f64::NAN)
-    }
-
-    fn visit_str<E: Error>(self, text: &str) -> Result<f64, E> {
-        spelled_number(text).ok_or_else(|| E::custom(format!("{text:?} stands where a number should")))
-    }
-}
-
-/// A whole number, also where a writer put it in quotes (protobuf's JSON mapping of 64-bit integers).
-struct WholeNumber;
-
-impl<'de> DeserializeSeed<'de> for WholeNumber {
-    type Value = Option<i64>;
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Option<i64>, D::Error> {
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl Visitor<'_> for WholeNumber {
-    type Value = Option<i64>;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a whole number")
-    }
-
-    fn visit_i64<E: Error>(self, value: i64) -> Result<Option<i64>, E> {
-        Ok(Some(value))
-    }
-
-    fn visit_u64<E: Error>(self, value: u64) -> Result<Option<i64>, E> {
-        Ok(i64::try_from(value).ok())
-    }
-
+    /// A whole number.
     #[allow(clippy::cast_possible_truncation, reason = "a float-to-integer cast saturates")]
-    fn visit_f64<E: Error>(self, value: f64) -> Result<Option<i64>, E> {
-        Ok(Some(value as i64))
-    }
-
-    fn visit_str<E: Error>(self, text: &str) -> Result<Option<i64>, E> {
-        Ok(text.parse().ok())
-    }
-
-    fn visit_unit<E: Error>(self) -> Result<Option<i64>, E> {
-        Ok(None)
+    fn whole(&self) -> Option<i64> {
+        match self {
+            Self::Number(value) => Some(*value as i64),
+            Self::Text(text) => text.parse().ok(),
+            Self::Missing(()) => None,
+        }
     }
 }
 

@@ -10,8 +10,11 @@ fn decoded(field: &str, text: &str) -> Result<(Value, Value, Option<f64>, Option
     slots.clear(plan.wants.len());
     Json::new(&plan).decode(text.as_bytes(), &mut slots)?;
     let target = &plan.targets[0];
-    let (stamp, rate, unit) =
-        (slots.stamp(target), slots.rate_hz(target), slots.unit(target).map(String::from));
+    let (stamp, rate, unit) = (
+        slots.stamp(target),
+        slots.rates(target).next().map(|rate| rate.hz),
+        slots.unit(target).map(String::from),
+    );
     Ok((slots.samples(target), stamp, rate, unit))
 }
 

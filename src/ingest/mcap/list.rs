@@ -1,6 +1,7 @@
 //! An MCAP file to its listing: every numeric field of every topic, as reading would take it.
 
-use super::column::{CLOCK_IS_SET_NS, Column, Extent, seconds_from};
+use super::column::{CLOCK_IS_SET_NS, Column, seconds_from};
+use super::extent::Extent;
 use super::path::source_text;
 use super::scan::scan;
 use super::scanned::Scanned;
@@ -8,6 +9,7 @@ use super::topic::{Field, Gathered, Topic};
 use super::topics::Asked;
 use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Severity};
 use crate::ingest::error::{self, IngestError};
+use crate::ingest::time_base::TimeBaseError;
 use crate::ingest::{Limits, Progress};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -24,14 +26,16 @@ pub(in crate::ingest) fn list(
     let bytes = std::fs::metadata(path).map_err(|source| error::io(path, source))?.len();
     let (scanned, topics) = scan(path, limits, Asked::Everything, progress)?;
     let unlisted = topics.unlisted();
-    let mut topics = topics.finish();
-    topics.iter_mut().for_each(|(_, gathered)| gathered.settle_clocks());
+    let topics = topics.finish();
     let columns = topics.iter().flat_map(|(_, gathered)| &gathered.columns);
     let zero_ns = columns.filter_map(Column::span_ns).map(|(from, _)| from).min();
     let mut issues = scanned.issues();
     issues.extend(topics.iter().filter_map(|(topic, gathered)| undecoded(topic, gathered)));
     issues.extend(unlisted);
-    let channels = topics.into_iter().flat_map(|(topic, gathered)| listed(&topic, gathered, zero_ns));
+    let mut channels = Vec::new();
+    for (topic, gathered) in topics {
+        listed(&topic, gathered, zero_ns, &mut channels, &mut issues);
+    }
     Ok(Listing {
         schema: "dropcheck.inspect/1",
         recording: path.display().to_string(),
@@ -39,7 +43,7 @@ pub(in crate::ingest) fn list(
         format: RecordingFormat::Mcap,
         counts: scanned.counts.named(),
         facts: facts(&scanned, zero_ns),
-        channels: channels.collect(),
+        channels,
         issues,
     })
 }
@@ -74,50 +78,72 @@ fn undecoded(topic: &Topic, gathered: &Gathered) -> Option<Issue> {
     })
 }
 
-/// A line for each field of a topic, or one that says why there is none.
-fn listed(topic: &Topic, gathered: Gathered, zero_ns: Option<i64>) -> Vec<ListedChannel> {
+/// Adds a line for each field of a topic, or one that says why there is none, and what reading would refuse.
+fn listed(
+    topic: &Topic,
+    gathered: Gathered,
+    zero_ns: Option<i64>,
+    channels: &mut Vec<ListedChannel>,
+    issues: &mut Vec<Issue>,
+) {
     let Gathered { messages, mut columns, .. } = gathered;
     if topic.fields.is_empty() {
         let none = || (messages > 0).then(|| "its messages hold no numbers".to_owned());
-        return vec![ListedChannel {
+        channels.push(ListedChannel {
             messages: Some(messages),
             encoding: topic.encoding.clone(),
             unreadable: topic.unreadable.clone().or_else(none),
             ..ListedChannel::named(&topic.name, "topic")
-        }];
+        });
+        return;
     }
     columns.resize_with(topic.fields.len(), || Column::new(true));
-    let one = |(field, column): (&Field, Column)| {
-        let Extent { samples, range } = column.extent.unwrap_or_default();
-        let listed = ListedChannel {
+    let mut said: Vec<String> = Vec::new();
+    for (Field { path, is_array, unit }, column) in topic.fields.iter().zip(columns) {
+        let Extent { samples, range, is_without_times, .. } = column.extent.clone().unwrap_or_default();
+        let source = source_text(&topic.name, &path.to_string());
+        let refused = column.unit_change().map(|problem| (IssueCode::Scale, problem));
+        let mut channel = ListedChannel {
             samples: Some(samples),
             messages: Some(messages),
-            unit: column.units.first().or(field.unit).map(str::to_owned),
+            unit: column.unit().or(*unit).map(str::to_owned),
             range,
             encoding: topic.encoding.clone(),
-            ..ListedChannel::named(
-                &source_text(&topic.name, &field.path.to_string()),
-                if field.is_array { "array" } else { "number" },
-            )
+            ..ListedChannel::named(&source, if *is_array { "array" } else { "number" })
         };
-        timed(listed, column, zero_ns)
-    };
-    topic.fields.iter().zip(columns).map(one).collect()
+        let untimed = if is_without_times {
+            Some("its times take more memory than is allowed, and tell no rate here: allow more with --max-memory".into())
+        } else {
+            timed(&mut channel, column, zero_ns).err().map(|problem| problem.to_string())
+        };
+        channels.push(channel);
+        // What holds for one field of a topic mostly holds for all.
+        for (code, problem) in refused.into_iter().chain(untimed.map(|problem| (IssueCode::Clock, problem))) {
+            if !said.contains(&problem) {
+                issues.push(Issue::new(code, Severity::Warning, format!("{source}: {problem}")));
+                said.push(problem);
+            }
+        }
+    }
 }
 
-/// With the times that reading would take.
-fn timed(listed: ListedChannel, column: Column, zero_ns: Option<i64>) -> ListedChannel {
-    let (Some((first_ns, _)), Some(zero_ns)) = (column.span_ns(), zero_ns) else { return listed };
-    let Ok(timing) = column.timing(zero_ns) else {
-        return ListedChannel { start_s: Some(seconds_from(first_ns, zero_ns)), ..listed };
+/// Adds the times that reading would take.
+///
+/// # Errors
+/// Why it would refuse them; too few samples are no fault of a recording.
+fn timed(channel: &mut ListedChannel, column: Column, zero_ns: Option<i64>) -> Result<(), TimeBaseError> {
+    let (Some((first_ns, _)), Some(zero_ns)) = (column.span_ns(), zero_ns) else { return Ok(()) };
+    channel.start_s = Some(seconds_from(first_ns, zero_ns));
+    let timing = match column.timing(zero_ns) {
+        Ok(timing) => timing,
+        Err(TimeBaseError::TooFew { .. }) => return Ok(()),
+        Err(problem) => return Err(problem),
     };
-    ListedChannel {
-        sample_rate_hz: Some(timing.sample_rate_hz),
-        start_s: Some(timing.start_s),
-        duration_s: Some(as_f64(timing.count - 1) / timing.sample_rate_hz),
-        gaps: Some(timing.gaps as u64),
-        ..listed
-    }
+    channel.sample_rate_hz = Some(timing.sample_rate_hz);
+    channel.start_s = Some(timing.start_s);
+    channel.duration_s = Some(as_f64(timing.count - 1) / timing.sample_rate_hz);
+    channel.gaps = Some(timing.gaps as u64);
+    Ok(())
 }
 
 #[allow(clippy::cast_precision_loss, reason = "counts of samples stay below 2^53")]

@@ -1,6 +1,5 @@
 //! MCAP files to raw channels and listings: JSON, protobuf and ROS 2 messages, whole files and what is left of others.
 
-mod block_rate;
 mod catalog;
 mod cdr;
 mod chunk;
@@ -8,6 +7,7 @@ mod claims;
 mod column;
 mod complaint;
 mod descriptors;
+mod extent;
 #[cfg(any(test, fuzzing))]
 pub(super) mod fuzz;
 mod json;
@@ -21,11 +21,9 @@ mod read;
 mod ros_type;
 mod scan;
 mod scanned;
-mod shared_stamps;
 mod summary;
 mod topic;
 mod topics;
-mod twice;
 mod wave;
 mod wire;
 

@@ -1,7 +1,6 @@
 //! Wanted fields of a message type to one tree of everything to fetch: the samples, their stamp, rate and unit.
 
 use super::path::{FieldPath, Step};
-use super::twice::Rates;
 use crate::data::Samples;
 
 /// Names under which a message states the time of its first sample; nanoseconds follow as a structure.
@@ -18,8 +17,6 @@ pub(super) const RATE_NAMES: [&str; 8] = [
     "sampleRateHz",
     "sampleRate",
 ];
-/// Name of an interval between samples, or blocks, in any unit: it may contradict a rate, and states none by itself.
-const INTERVAL_NAME: &str = "dt";
 /// Names under which a message states their unit.
 const UNIT_NAMES: [&str; 2] = ["unit", "units"];
 /// Names of the whole seconds of a time.
@@ -96,10 +93,20 @@ pub(super) struct Target {
     /// Its samples.
     pub(super) value: usize,
     stamps: Vec<usize>,
-    /// With their names, those of a message one after another.
-    rates: Vec<(usize, &'static str)>,
-    intervals: Vec<usize>,
+    /// Slots with what they state, those of a message one after another.
+    rates: Vec<(usize, StatedRate)>,
     units: Vec<usize>,
+}
+
+/// A rate that a message states.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct StatedRate {
+    /// Of its field.
+    pub(super) name: &'static str,
+    /// How many messages lie between that field and the samples.
+    pub(super) level: usize,
+    /// As it stands there.
+    pub(super) hz: f64,
 }
 
 /// Everything to fetch from the messages of one channel.
@@ -122,21 +129,16 @@ impl Plan {
                 // An element is taken from its array once that is read.
                 plan.slot(&FieldPath(array.to_vec()), Want::Numbers);
             }
-            let mut target = Target {
-                value,
-                stamps: Vec::new(),
-                rates: Vec::new(),
-                intervals: Vec::new(),
-                units: Vec::new(),
-            };
-            for message in field.enclosing() {
+            let mut target = Target { value, stamps: Vec::new(), rates: Vec::new(), units: Vec::new() };
+            for (level, message) in field.enclosing().enumerate() {
                 for names in STAMP_NAMES {
                     let path = names.iter().fold(message.clone(), |path, name| path.then(name));
                     target.stamps.push(plan.slot(&path, Want::Stamp));
                 }
-                let mut number = |name: &'static str| (plan.slot(&message.then(name), Want::Numbers), name);
-                target.rates.extend(RATE_NAMES.map(&mut number));
-                target.intervals.push(number(INTERVAL_NAME).0);
+                target.rates.extend(RATE_NAMES.map(|name| {
+                    let stated = StatedRate { name, level, hz: f64::NAN };
+                    (plan.slot(&message.then(name), Want::Numbers), stated)
+                }));
                 target.units.extend(UNIT_NAMES.map(|name| plan.slot(&message.then(name), Want::Text)));
             }
             plan.targets.push(target);
@@ -221,26 +223,12 @@ impl Slots {
         self.first(&target.stamps, |value| matches!(value, Value::Stamp(_) | Value::BadStamp))
     }
 
-    /// The rate stated nearest to the field of `target`, Hz, whatever its value.
-    pub(super) fn rate_hz(&self, target: &Target) -> Option<f64> {
-        self.rates(target).next().map(|(_, rate_hz)| rate_hz)
-    }
-
-    /// Two rates that the message states for the field of `target`, where they contradict each other.
-    pub(super) fn two_rates(&self, target: &Target) -> Option<Rates> {
-        let intervals = target.intervals.iter().filter_map(|&slot| Some((INTERVAL_NAME, self.number(slot)?)));
-        Rates::of(self.rates(target), intervals)
-    }
-
-    fn rates<'a>(&'a self, target: &'a Target) -> impl Iterator<Item = (&'static str, f64)> + 'a {
-        target.rates.iter().filter_map(|&(slot, name)| Some((name, self.number(slot)?)))
-    }
-
-    fn number(&self, slot: usize) -> Option<f64> {
-        match self.values.get(slot) {
-            Some(Value::Number { value, .. }) => Some(*value),
+    /// The rates that the message states for the field of `target`, the nearest first, whatever their values.
+    pub(super) fn rates<'a>(&'a self, target: &'a Target) -> impl Iterator<Item = StatedRate> + 'a {
+        target.rates.iter().filter_map(|&(slot, stated)| match self.values.get(slot) {
+            Some(Value::Number { value, .. }) => Some(StatedRate { hz: *value, ..stated }),
             _ => None,
-        }
+        })
     }
 
     /// The unit stated nearest to the field of `target`.

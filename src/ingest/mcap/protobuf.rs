@@ -224,8 +224,7 @@ impl Field {
             (Item::Bytes(packed), samples) => {
                 unpack(&self.kind, packed, samples).ok_or_else(|| self.wrong_type())
             }
-            (one, Samples::F32(samples)) => {
-                let Item::Fixed32(bytes) = one else { return Err(self.wrong_type()) };
+            (Item::Fixed32(bytes), Samples::F32(samples)) => {
                 samples.push(f32::from_le_bytes(*bytes));
                 Ok(())
             }
@@ -233,6 +232,7 @@ impl Field {
                 samples.push(scalar(&self.kind, one).ok_or_else(|| self.wrong_type())?);
                 Ok(())
             }
+            _ => Err(self.wrong_type()),
         }
     }
 
@@ -294,25 +294,15 @@ fn unpack(kind: &Kind, packed: &[u8], samples: &mut Samples) -> Option<()> {
             samples.extend(words.iter().map(|&word| f32::from_le_bytes(word)));
             rest.is_empty().then_some(())
         }
-        (Kind::Double | Kind::Fixed64 | Kind::Sfixed64, Samples::F64(samples)) => {
-            let (words, rest) = packed.as_chunks::<8>();
-            samples.reserve(words.len());
-            for &word in words {
-                samples.push(scalar(kind, &Item::Fixed64(word))?);
-            }
-            rest.is_empty().then_some(())
-        }
-        (Kind::Fixed32 | Kind::Sfixed32, Samples::F64(samples)) => {
-            let (words, rest) = packed.as_chunks::<4>();
-            for &word in words {
-                samples.push(scalar(kind, &Item::Fixed32(word))?);
-            }
-            rest.is_empty().then_some(())
-        }
-        (_, Samples::F64(samples)) => {
+        (kind, Samples::F64(samples)) => {
             let mut wire = Wire::new(packed);
             while !wire.is_empty() {
-                samples.push(scalar(kind, &Item::Varint(wire.varint().ok()?))?);
+                let item = match kind {
+                    Kind::Double | Kind::Fixed64 | Kind::Sfixed64 => Item::Fixed64(wire.fixed().ok()?),
+                    Kind::Float | Kind::Fixed32 | Kind::Sfixed32 => Item::Fixed32(wire.fixed().ok()?),
+                    _ => Item::Varint(wire.varint().ok()?),
+                };
+                samples.push(scalar(kind, &item)?);
             }
             Some(())
         }

@@ -21,8 +21,11 @@ fn decoded(
     slots.clear(plan.wants.len());
     Protobuf::new(&plan, &message).decode(data, &mut slots)?;
     let target = &plan.targets[0];
-    let (stamp, rate, unit) =
-        (slots.stamp(target), slots.rate_hz(target), slots.unit(target).map(String::from));
+    let (stamp, rate, unit) = (
+        slots.stamp(target),
+        slots.rates(target).next().map(|rate| rate.hz),
+        slots.unit(target).map(String::from),
+    );
     Ok((slots.samples(target), stamp, rate, unit))
 }
 

@@ -25,7 +25,7 @@ pub(in crate::ingest) fn read(
     let specs = &cask_file.channels;
     let (scanned, topics) = scan(path, limits, Asked::Sources(specs), progress)?;
     let mut topics = topics.finish();
-    let chosen = chosen(path, specs, &mut topics, &scanned)?;
+    let chosen = chosen(path, specs, &topics, &scanned)?;
     let columns = || chosen.iter().map(|&(topic, field)| &topics[topic].1.columns[field]);
     let zero_ns = columns().filter_map(Column::span_ns).map(|(from, _)| from).min().unwrap_or(0);
     let last_ns = columns().filter_map(Column::span_ns).map(|(_, to)| to).max().unwrap_or(0);
@@ -39,16 +39,19 @@ pub(in crate::ingest) fn read(
     for (position, (spec, &(topic, field))) in specs.iter().zip(&chosen).enumerate() {
         let (Topic { fields, .. }, gathered) = &mut topics[topic];
         issues.extend(message_issues(spec, gathered, &gathered.columns[field]));
+        if let Some(change) = gathered.columns[field].unit_change() {
+            issues.push(complaint::two_units(path, spec, &change)?);
+        }
         // A second channel on the same field gets its own copy.
         let column = if chosen[position + 1..].contains(&(topic, field)) {
             gathered.columns[field].clone()
         } else {
             std::mem::replace(&mut gathered.columns[field], Column::new(false))
         };
-        let unit = column.units.first().or(fields[field].unit).map(str::to_owned);
+        let unit = column.unit().or(fields[field].unit).map(str::to_owned);
         let uniform = column
             .uniform(zero_ns, spec.sample_rate_hz)
-            .map_err(|problem| complaint::no_base(path, spec, &problem))?;
+            .map_err(|problem| complaint::no_base(path, spec, problem))?;
         channels.push(RawChannel { spec: position, uniform, unit });
     }
     Ok(RawRecording { channels, zero_unix_ns: (zero_ns >= CLOCK_IS_SET_NS).then_some(zero_ns), issues })
@@ -58,10 +61,9 @@ pub(in crate::ingest) fn read(
 fn chosen(
     path: &Path,
     specs: &[ChannelSpec],
-    topics: &mut [(Topic, Gathered)],
+    topics: &[(Topic, Gathered)],
     scanned: &Scanned,
 ) -> Result<Vec<(usize, usize)>, IngestError> {
-    topics.iter_mut().for_each(|(_, gathered)| gathered.settle_clocks());
     let has_samples = |topic: usize, field: usize| {
         topics[topic].1.columns.get(field).is_some_and(|column| !column.is_empty())
     };
@@ -87,7 +89,7 @@ fn chosen(
 /// What was wrong with single messages of a channel.
 fn message_issues(spec: &ChannelSpec, gathered: &Gathered, column: &Column) -> Vec<Issue> {
     let Gathered { messages, malformed, first_problem, .. } = gathered;
-    let mut issues: Vec<Issue> = column.units.issue().map(|issue| issue.on(&spec.name)).into_iter().collect();
+    let mut issues = Vec::new();
     let Stamps { good, bad } = column.stamps;
     if bad > 0 {
         let (severity, mixed) = if good > 0 {

@@ -93,34 +93,95 @@ fn blocks(count: u32, fields: impl Fn(u32) -> String) -> Vec<u8> {
 }
 
 #[test]
-fn two_rates_of_a_message_are_told_where_stamps_do_not_decide() {
-    let issues = |count, fields: &'static str, declared_hz| {
+fn two_rates_of_a_message_are_weighed_or_refused() {
+    let read = |count, fields: &'static str, declared_hz| {
         let mut cask = cask_file(&["/a.samples"]);
         cask.channels[0].sample_rate_hz = declared_hz;
-        let raw = read_bytes(&blocks(count, |_| fields.to_owned()), &cask).unwrap();
-        raw.channels[0].uniform.issues.clone()
+        read_bytes(&blocks(count, |_| fields.to_owned()), &cask)
     };
-    for fields in [
-        r#""sample_rate_hz":9700,"fs":10000"#,
-        r#""sample_rate_hz":9700,"dt":1e-4"#,
-        r#""sampleRateHz":9700,"dt":100"#,
-        r#""fs":9700,"sampling_rate":10000"#,
-    ] {
-        let [issue] = &issues(1, fields, None)[..] else { panic!("{fields}") };
-        assert!(issue.severity == Severity::Warning && issue.message.contains("9700"), "{issue:?}");
-        assert!(issues(1, fields, Some(1e4)).is_empty(), "{fields}");
+    for fields in [r#""sample_rate_hz":9700,"fs":10000"#, r#""fs":9700,"sampling_rate":10000"#] {
+        let refused = read(1, fields, None).unwrap_err();
+        assert!(refused.contains("9700") && refused.contains("or sample_rate_hz = 10000"), "{refused}");
+        assert!(read(1, fields, Some(1e4)).is_ok(), "{fields}");
     }
-    assert!(issues(1, r#""sample_rate_hz":10000,"fs":50,"dt":0.0001"#, None).is_empty());
-    assert!(issues(40, r#""sample_rate_hz":10000,"fs":9700"#, None).is_empty());
+    let sound = read(40, r#""sample_rate_hz":10000,"fs":10000.5"#, None).unwrap();
+    assert!(sound.channels[0].uniform.issues.is_empty());
 }
 
 #[test]
-fn a_unit_that_changes_between_messages_is_told() {
+fn a_unit_that_changes_between_messages_is_refused_unless_the_cask_file_states_one() {
     let unit = |block| format!(r#""fs":10000,"unit":"{}""#, if block < 20 { "g" } else { "m/s^2" });
-    let raw = read_bytes(&blocks(40, unit), &cask_file(&["/a.samples"])).unwrap();
+    let mut cask = cask_file(&["/a.samples"]);
+    let refused = read_bytes(&blocks(40, unit), &cask).map(|_| ()).unwrap_err();
+    assert!(refused.contains("from \"g\" to \"m/s^2\"") && refused.contains("write `unit`"), "{refused}");
+    cask.channels[0].unit = Some(Unit::G);
+    let raw = read_bytes(&blocks(40, unit), &cask).unwrap();
     let [issue] = &raw.issues[..] else { panic!("{:?}", raw.issues) };
     assert!(issue.code == IssueCode::Scale && issue.severity == Severity::Warning, "{issue:?}");
-    assert!(issue.message.contains("from \"g\" to \"m/s^2\""), "{}", issue.message);
+    let same = |block| format!(r#""fs":10000,"unit":"{}""#, if block < 20 { "m/s^2" } else { "m/s²" });
+    assert_eq!(read_bytes(&blocks(40, same), &cask_file(&["/a.samples"])).unwrap().issues, []);
+}
+
+/// Blocks of so many samples as at 100 kHz, their stamps cut to whole ms of so many.
+fn stamped(count: u32, samples: u32, cut_ms: i64, fields: &str) -> Vec<u8> {
+    closed(WriteOptions::new(), |writer| {
+        let id = channel(writer, "/a", "json", ("", "", b""));
+        for block in 0..count {
+            let time_ns = i64::from(block * samples) * 10_000 / (1_000_000 * cut_ms) * (1_000_000 * cut_ms);
+            let (sec, nsec) = ((ZERO_NS + time_ns) / 1_000_000_000, (ZERO_NS + time_ns) % 1_000_000_000);
+            let values: Vec<u32> = (block * samples..(block + 1) * samples).collect();
+            let text = format!(r#"{{"stamp":{{"sec":{sec},"nsec":{nsec}}}{fields},"samples":{values:?}}}"#);
+            message(writer, id, ZERO_NS, text.as_bytes());
+        }
+    })
+}
+
+#[test]
+fn stamps_that_tell_the_rate_badly_ask_for_it() {
+    let read = |bytes: &[u8], declared_hz| {
+        let mut cask = cask_file(&["/a.samples"]);
+        cask.channels[0].sample_rate_hz = declared_hz;
+        read_bytes(bytes, &cask)
+    };
+    // Blocks of 10.15 ms that are stamped each 10 ms, and exact ones of 10 ms that look the same.
+    for samples in [1015, 1000] {
+        let bytes = stamped(46, samples, 10, "");
+        let refused = read(&bytes, None).unwrap_err();
+        assert!(
+            refused.contains("no rate is stated") && refused.contains("write `sample_rate_hz`"),
+            "{refused}"
+        );
+        let raw = read(&bytes, Some(1e5)).unwrap();
+        assert!((raw.channels[0].uniform.sample_rate_hz / 1e5 - 1.0).abs() < 1e-9, "{samples}");
+        assert!(raw.channels[0].uniform.gaps.is_empty());
+    }
+    let fine = read(&stamped(700, 512, 1, ""), None).unwrap();
+    // Cut to 1 ms over 3.6 s.
+    assert!((fine.channels[0].uniform.sample_rate_hz / 1e5 - 1.0).abs() < 1e-3);
+    assert!(read(&stamped(3, 512, 1, ""), None).unwrap_err().contains("too few"));
+    assert!(read(&stamped(1, 512, 1, ""), None).unwrap_err().contains("one block"));
+}
+
+#[test]
+fn blocks_that_share_stamps_are_refused() {
+    let bytes = stamped(90, 512, 10, r#","fs":100000"#);
+    for declared_hz in [None, Some(1e5)] {
+        let mut cask = cask_file(&["/a.samples"]);
+        cask.channels[0].sample_rate_hz = declared_hz;
+        let refused = read_bytes(&bytes, &cask).map(|_| ()).unwrap_err();
+        assert!(refused.contains("carry the same stamp") && refused.contains("stamp finer"), "{refused}");
+    }
+}
+
+#[test]
+fn a_listing_says_what_reading_refuses() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("recording");
+    std::fs::write(&path, stamped(90, 512, 10, "")).unwrap();
+    let listing = crate::ingest::mcap::list(&path, Limits::default(), &|_| ()).unwrap();
+    assert_eq!((listing.channels[0].samples, listing.channels[0].sample_rate_hz), (Some(46_080), None));
+    assert!(listing.issues[0].message.starts_with("/a.samples: "), "{:?}", listing.issues);
+    assert!(listing.issues[0].message.contains("carry the same stamp"), "{:?}", listing.issues);
 }
 
 fn imu_file(stamps: impl Fn(i64) -> i64) -> Vec<u8> {

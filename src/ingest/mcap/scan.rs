@@ -304,8 +304,7 @@ impl Taken<'_> {
     ) -> std::io::Result<Next> {
         let mut counts = Counts { chunks: 1, ..Counts::default() };
         let Self { catalog, scanned, topics, limits, .. } = self;
-        let most_unpacked =
-            limits.unpacked_bytes(self.length).saturating_sub(scanned.counts.unpacked_bytes);
+        let most_unpacked = limits.unpacked_bytes(self.length).saturating_sub(scanned.counts.unpacked_bytes);
         let most_held = limits.samples_bytes().saturating_sub(topics.held_bytes());
         let mut part = topics.part();
         let end = self.chunks.read(source, claimed, available, &mut |opcode, body| {

@@ -3,7 +3,9 @@
 use super::chunk::RECORD_HEADER_BYTES;
 use crate::data::{Issue, IssueCode, Severity};
 use mcap::records::op;
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 
 /// A schema record.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +23,13 @@ pub(super) struct ChannelInfo<'a> {
     /// 0 where it has none.
     pub(super) schema_id: u16,
     pub(super) schema: Option<&'a SchemaInfo>,
+}
+
+/// A message of a known channel.
+pub(super) struct Message<'a> {
+    pub(super) channel: u16,
+    pub(super) log_time_ns: i64,
+    pub(super) data: Cow<'a, [u8]>,
 }
 
 /// How many of what the container holds.
@@ -68,17 +77,10 @@ impl Counts {
 
     /// By name, as a listing shows them.
     pub(super) fn named(&self) -> BTreeMap<String, u64> {
-        [
-            ("messages", self.messages),
-            ("schemas", self.schemas),
-            ("channels", self.channels),
-            ("chunks", self.chunks),
-            ("attachments", self.attachments),
-            ("metadata", self.metadata),
-        ]
-        .into_iter()
-        .map(|(name, count)| (name.to_owned(), count))
-        .collect()
+        let Self { messages, schemas, channels, chunks, attachments, metadata, .. } = *self;
+        let names = ["messages", "schemas", "channels", "chunks", "attachments", "metadata"];
+        let counts = [messages, schemas, channels, chunks, attachments, metadata];
+        names.map(str::to_owned).into_iter().zip(counts).collect()
     }
 }
 
@@ -116,10 +118,9 @@ impl Losses {
     /// Takes one more.
     pub(super) fn push(&mut self, loss: Loss) {
         match loss {
-            Loss::BadRecord { at, opcode, why } => {
+            Loss::BadRecord { .. } => {
                 self.bad_records += 1;
-                self.first_bad_record
-                    .get_or_insert_with(|| format!("a {} at byte {at} {why}", record_name(opcode)));
+                self.first_bad_record.get_or_insert_with(|| loss.to_string());
             }
             // How the file ends is told in any case.
             Loss::BadChunk { .. } | Loss::Garbage { .. } if self.first.len() >= MOST_LOSSES => self.more += 1,
@@ -152,102 +153,83 @@ pub(super) enum Loss {
 impl Scanned {
     /// The losses as issues, the bad records and bad chunks summed up; without times.
     pub(super) fn issues(&self) -> Vec<Issue> {
+        let damaged = |message| Issue::new(IssueCode::Damaged, Severity::Warning, message);
         let Losses { first, more, bad_records, first_bad_record } = &self.losses;
-        let mut issues: Vec<Issue> = first.iter().filter_map(Loss::issue).collect();
+        let mut issues: Vec<Issue> = first.iter().map(Loss::issue).collect();
         if *more > 0 {
-            issues.push(Issue::new(
-                IssueCode::Damaged,
-                Severity::Warning,
-                format!("{more} more places of the file are damaged and were left out"),
-            ));
+            issues.push(damaged(format!("{more} more places of the file are damaged and were left out")));
         }
         if let Some(first) = first_bad_record {
-            let message = format!("{bad_records} records were skipped, the first {first}");
-            issues.push(Issue::new(IssueCode::Damaged, Severity::Warning, message));
+            issues.push(damaged(format!("{bad_records} records were skipped, the first {first}")));
         }
-        if let (Some(claimed), true) = (self.claimed_messages, self.losses.is_empty())
-            && claimed != self.counts.messages
-        {
-            issues.push(Issue::new(
-                IssueCode::Damaged,
-                Severity::Warning,
-                format!(
-                    "the file's statistics count {claimed} messages, {} were found",
-                    self.counts.messages
-                ),
-            ));
+        let found = self.counts.messages;
+        if let Some(claimed) = self.claimed_messages.filter(|&n| n != found && self.losses.is_empty()) {
+            issues
+                .push(damaged(format!("the file's statistics count {claimed} messages, {found} were found")));
         }
         issues
     }
 }
 
 impl Loss {
-    fn issue(&self) -> Option<Issue> {
-        let (code, severity, message) = match self {
-            Self::EndsEarly { at, bytes: 0, .. } => (
-                IssueCode::Truncated,
-                Severity::Warning,
-                format!(
-                    "the file was never closed: it ends at byte {at} without its footer; every whole message before was read, what was not yet written is lost"
-                ),
-            ),
-            Self::EndsEarly { at, bytes, inside } => (
-                IssueCode::Truncated,
-                Severity::Warning,
-                format!(
-                    "the file ends in the middle of a {} at byte {at}: its last {bytes} bytes could not be used, and what followed is lost",
-                    inside.map_or("record", record_name)
-                ),
-            ),
-            Self::CutChunk { at, never_closed, bytes, messages } => (
-                IssueCode::Truncated,
-                Severity::Warning,
-                format!(
-                    "{} the chunk at byte {at}: {}, and what followed is lost",
-                    if *never_closed {
-                        "the file's writer was stopped before it closed"
-                    } else {
-                        "the file ends in the middle of"
-                    },
-                    if *messages == 0 {
-                        "no whole message is in it".to_owned()
-                    } else {
-                        format!(
-                            "{messages} whole messages in it were kept without a check sum, the rest of its {bytes} bytes could not be used"
-                        )
-                    }
-                ),
-            ),
-            Self::BadChunk { at, reason, messages, span_ns: (from, to) } => (
-                IssueCode::Damaged,
-                Severity::Warning,
-                format!(
-                    "the chunk at byte {at} is damaged ({reason}) and was left out: at least {messages} messages over {:.6} s",
-                    seconds(to.saturating_sub(*from))
-                ),
-            ),
-            Self::Garbage { at, bytes, resumed } => (
-                IssueCode::Damaged,
-                Severity::Warning,
-                format!(
-                    "at byte {at} stands no MCAP record: {bytes} bytes were skipped, {}",
-                    if *resumed {
-                        "reading went on at the next chunk of the file's index"
-                    } else {
-                        "up to the end of the file"
-                    }
-                ),
-            ),
-            Self::NoEndMagic { at } => (
-                IssueCode::Truncated,
-                Severity::Warning,
-                format!(
-                    "the file ends at byte {at} within its closing mark; all records before it were read"
-                ),
-            ),
-            Self::BadRecord { .. } => return None,
+    fn issue(&self) -> Issue {
+        let code = match self {
+            Self::EndsEarly { .. } | Self::CutChunk { .. } | Self::NoEndMagic { .. } => IssueCode::Truncated,
+            Self::BadChunk { .. } | Self::BadRecord { .. } | Self::Garbage { .. } => IssueCode::Damaged,
         };
-        Some(Issue::new(code, severity, message))
+        Issue::new(code, Severity::Warning, self.to_string())
+    }
+}
+
+impl fmt::Display for Loss {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::EndsEarly { at, bytes: 0, .. } => write!(
+                f,
+                "the file was never closed: it ends at byte {at} without its footer; every whole message before was read, what was not yet written is lost"
+            ),
+            Self::EndsEarly { at, bytes, inside } => write!(
+                f,
+                "the file ends in the middle of a {} at byte {at}: its last {bytes} bytes could not be used, and what followed is lost",
+                inside.map_or("record", record_name)
+            ),
+            Self::CutChunk { at, never_closed, bytes, messages } => {
+                f.write_str(if *never_closed {
+                    "the file's writer was stopped before it closed"
+                } else {
+                    "the file ends in the middle of"
+                })?;
+                write!(f, " the chunk at byte {at}: ")?;
+                if *messages == 0 {
+                    f.write_str("no whole message is in it")?;
+                } else {
+                    write!(
+                        f,
+                        "{messages} whole messages in it were kept without a check sum, the rest of its {bytes} bytes could not be used"
+                    )?;
+                }
+                f.write_str(", and what followed is lost")
+            }
+            Self::BadChunk { at, reason, messages, span_ns: (from, to) } => write!(
+                f,
+                "the chunk at byte {at} is damaged ({reason}) and was left out: at least {messages} messages over {:.6} s",
+                seconds(to.saturating_sub(*from))
+            ),
+            Self::Garbage { at, bytes, resumed } => write!(
+                f,
+                "at byte {at} stands no MCAP record: {bytes} bytes were skipped, {}",
+                if *resumed {
+                    "reading went on at the next chunk of the file's index"
+                } else {
+                    "up to the end of the file"
+                }
+            ),
+            Self::NoEndMagic { at } => write!(
+                f,
+                "the file ends at byte {at} within its closing mark; all records before it were read"
+            ),
+            Self::BadRecord { at, opcode, why } => write!(f, "a {} at byte {at} {why}", record_name(*opcode)),
+        }
     }
 }
 

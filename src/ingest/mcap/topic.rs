@@ -1,11 +1,11 @@
 //! A topic of an MCAP file with the fields that are asked for, and what its messages gave for each.
 
-use super::catalog::Message;
 use super::column::{Column, MessageTime};
 use super::json;
 use super::message_type::MessageType;
 use super::path::FieldPath;
 use super::plan::{Decode, Leaf, Plan, Slots, Value};
+use super::scanned::Message;
 use rayon::prelude::*;
 
 /// A topic, whatever the number of channels that write on it.
@@ -84,13 +84,8 @@ impl Gathered {
         }
         for (target, &field) in stream.plan.targets.iter().zip(&stream.fields) {
             let Some(column) = self.columns.get_mut(field) else { continue };
-            if let Some(unit) = slots.unit(target) {
-                column.units.take(unit);
-            }
-            let rate_hz = slots.rate_hz(target);
-            if column.two_rates.is_none() && rate_hz.is_some() {
-                column.two_rates = slots.two_rates(target);
-            }
+            slots.unit(target).into_iter().for_each(|unit| column.state_unit(unit));
+            slots.rates(target).for_each(|rate| column.state_rate(rate));
             let time = MessageTime::of(&slots.stamp(target), message.log_time_ns);
             let value = slots.samples(target);
             if value == Value::Missing
@@ -99,13 +94,8 @@ impl Gathered {
             {
                 self.leaves = json::leaves(&message.data);
             }
-            column.take(value, time, rate_hz);
+            column.take(value, time);
         }
-    }
-
-    /// [`Column::settle_clock`] of all columns.
-    pub(super) fn settle_clocks(&mut self) {
-        self.columns.iter_mut().for_each(Column::settle_clock);
     }
 
     /// Moves over what the messages that follow gave, and leaves memory for others.
@@ -131,16 +121,16 @@ pub(super) struct Part {
     /// The topics with a message: a file may have thousands, and chunks of a message each.
     touched: Vec<usize>,
     slots: Slots,
-    /// Whether counts and ranges are kept in place of the samples of arrays.
-    is_listed: bool,
+    /// So many bytes of times may be held for a listing; `None` where samples are read, which have a limit of their own.
+    most_listed_bytes: Option<u64>,
     /// Memory of times and samples.
     pub(super) held_bytes: u64,
 }
 
 impl Part {
     /// Without messages so far.
-    pub(super) fn new(is_listed: bool) -> Self {
-        Self { is_listed, ..Self::default() }
+    pub(super) fn new(most_listed_bytes: Option<u64>) -> Self {
+        Self { most_listed_bytes, ..Self::default() }
     }
 
     /// Takes a message of the `stream` on the `topic`.
@@ -151,13 +141,14 @@ impl Part {
             self.touched.push(stream.topic);
         }
         if gathered.columns.len() < topic.fields.len() {
-            let is_listed = self.is_listed;
+            let is_listed = self.most_listed_bytes.is_some();
             gathered.columns.resize_with(topic.fields.len(), || Column::new(is_listed));
         }
         let held = |gathered: &Gathered| gathered.columns.iter().map(Column::held_bytes).sum::<u64>();
         let before = held(gathered);
         gathered.take(stream, message, &mut self.slots);
         self.held_bytes = (self.held_bytes + held(gathered)).saturating_sub(before);
+        self.keep_within();
     }
 
     /// Moves over what the messages that follow gave, and leaves `other` as new but for its memory.
@@ -178,6 +169,18 @@ impl Part {
             (self.gathered[at], other.gathered[at]) = (own, more);
         }
         self.held_bytes += std::mem::take(&mut other.held_bytes);
+        self.keep_within();
+    }
+
+    /// Lists a file that holds more times than there is memory for without them.
+    fn keep_within(&mut self) {
+        if self.most_listed_bytes.is_some_and(|most| self.held_bytes > most) {
+            self.gathered
+                .iter_mut()
+                .flat_map(|gathered| &mut gathered.columns)
+                .for_each(Column::forget_times);
+            self.held_bytes = 0;
+        }
     }
 
     fn make_room(&mut self, topics: usize) {

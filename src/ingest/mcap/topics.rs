@@ -1,11 +1,11 @@
 //! The channels of an MCAP file to its topics, and their messages to a column for each field that is asked for.
 
-use super::catalog::Message;
+use super::column::Column;
 use super::json;
 use super::message_type::{MessageType, MessageTypes, implied_unit};
 use super::path::{self, FieldPath};
 use super::plan::{Leaf, MOST_LEAVES, Plan};
-use super::scanned::ChannelInfo;
+use super::scanned::{ChannelInfo, Message};
 use super::topic::{Gathered, Part, Stream, Topic};
 use crate::data::{ChannelSpec, Issue, IssueCode, Severity};
 use crate::ingest::Limits;
@@ -72,7 +72,7 @@ impl<'a> Topics<'a> {
             by_channel: HashMap::new(),
             same: HashMap::new(),
             room: Room { left: MOST_LISTED, topics_out: 0, fields_out: 0 },
-            taken: Part::new(matches!(asked, Asked::Everything)),
+            taken: Part::new(most_listed(asked, limits, 1)),
             spare: Mutex::default(),
         }
     }
@@ -233,7 +233,7 @@ impl<'a> Topics<'a> {
     /// An empty part.
     pub(super) fn part(&self) -> Part {
         let spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        spare.unwrap_or_else(|| Part::new(matches!(self.asked, Asked::Everything)))
+        spare.unwrap_or_else(|| Part::new(most_listed(self.asked, self.limits, rayon::current_num_threads())))
     }
 
     /// Adds a part behind what there is.
@@ -262,6 +262,12 @@ impl<'a> Topics<'a> {
     pub(super) fn finish(self) -> Vec<(Topic, Gathered)> {
         let mut gathered = self.taken.gathered;
         gathered.resize_with(self.all.len(), Gathered::default);
+        gathered.iter_mut().flat_map(|gathered| &mut gathered.columns).for_each(Column::settle_clock);
         self.all.into_iter().zip(gathered).collect()
     }
+}
+
+/// What each of so many parts that are held at a time may hold for a listing, bytes.
+fn most_listed(asked: Asked, limits: Limits, parts: usize) -> Option<u64> {
+    matches!(asked, Asked::Everything).then(|| limits.samples_bytes() / (2 * parts as u64))
 }

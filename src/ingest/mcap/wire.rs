@@ -70,7 +70,11 @@ impl<'a> Wire<'a> {
         Err("a number has more than 64 bits".into())
     }
 
-    fn fixed<const N: usize>(&mut self) -> Result<[u8; N], String> {
+    /// So many bytes.
+    ///
+    /// # Errors
+    /// There are fewer.
+    pub(super) fn fixed<const N: usize>(&mut self) -> Result<[u8; N], String> {
         let (bytes, rest) = self.rest.split_first_chunk().ok_or_else(ends)?;
         self.rest = rest;
         Ok(*bytes)

@@ -1,19 +1,15 @@
 //! Blocks of samples with a stamp each to one run: sorted, doubles dropped, overlaps trimmed, gaps NaN.
 
-use super::cut::{Cut, ROUND_OFF, cut, short_blocks};
 use super::error::{TimeBaseError, check_rate};
+use super::fit::{FILL_FACTOR, FILL_FLOOR};
 use super::order::{as_f64, is_same, restart, restarted};
+use super::pieces::{Content, Piece, pieces};
+use super::stamps::{Cut, Interval, ROUND_OFF, Stamps};
 use super::uniform::{Block, Number, Placed, Uniform};
 use super::{fit, missing};
 use crate::data::{Issue, IssueCode, Samples, Severity};
 use crate::ingest::clock::RATE_TOLERANCE;
-use std::ops::Range;
-
-/// A block, its samples a range of those of all blocks.
-struct Piece {
-    start_s: f64,
-    samples: Range<usize>,
-}
+use crate::numerics::robust;
 
 /// What sorting and doubles came to.
 #[derive(Default)]
@@ -31,24 +27,20 @@ impl Doubles {
     }
 }
 
-/// Limits of [`from_blocks`]: filled samples against those present, as in the single-time case.
-const FILL_FACTOR: f64 = 4.0;
-/// See [`FILL_FACTOR`].
-const FILL_FLOOR: f64 = 1e6;
-
-/// Blocks on a uniform base, their `samples` one after another. Stamps decide where a block lies, to the nearest sample; samples are not
-/// moved between. Blocks that follow one another stay where they are.
+/// Blocks on a uniform base at a rate in Hz, their `samples` one after another. Stamps decide where a block lies, to the nearest sample;
+/// samples are not moved between. Blocks that follow one another stay where they are.
 ///
 /// # Errors
-/// [`TimeBaseError`] where stamps or rates make no record.
-pub fn from_blocks(blocks: &[Block], samples: Samples) -> Result<Uniform, TimeBaseError> {
+/// [`TimeBaseError`] where stamps or rate make no record.
+pub fn from_blocks(blocks: &[Block], rate_hz: f64, samples: Samples) -> Result<Uniform, TimeBaseError> {
     let count: usize = blocks.iter().map(|block| block.count).sum();
     if count != samples.len() {
         return Err(TimeBaseError::Lengths { times: count, samples: samples.len() });
     }
+    let laid = lay(blocks, rate_hz, &Content { samples: &samples, digests: None })?;
     Ok(match samples {
-        Samples::F32(samples) => join(blocks, samples)?.into_uniform(Samples::F32),
-        Samples::F64(samples) => join(blocks, samples)?.into_uniform(Samples::F64),
+        Samples::F32(samples) => filled(laid, samples).into_uniform(Samples::F32),
+        Samples::F64(samples) => filled(laid, samples).into_uniform(Samples::F64),
     })
 }
 
@@ -58,6 +50,8 @@ pub(in crate::ingest) struct Laid {
     pieces: Vec<Piece>,
     /// The place of each one's first sample.
     places: Vec<usize>,
+    /// The stamps of all blocks, in the order of the file, s.
+    starts_s: Vec<f64>,
     /// Time of the first sample, s.
     pub(in crate::ingest) start_s: f64,
     /// Hz.
@@ -68,34 +62,35 @@ pub(in crate::ingest) struct Laid {
     issues: Vec<Issue>,
 }
 
-/// [`from_blocks`] as far as stamps and lengths tell; `are_same` says of two runs of samples whether they are the same.
+/// [`from_blocks`] as far as stamps and lengths tell.
 ///
 /// # Errors
 /// As that.
-pub(in crate::ingest) fn lay(
-    blocks: &[Block],
-    are_same: &impl Fn(&Range<usize>, &Range<usize>) -> bool,
-) -> Result<Laid, TimeBaseError> {
-    let rate_hz = common_rate(blocks)?;
-    let mut pieces = Vec::with_capacity(blocks.len());
-    let mut end = 0;
-    for block in blocks {
-        pieces.push(Piece { start_s: block.start_s, samples: end..end + block.count });
-        end += block.count;
+pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &Content) -> Result<Laid, TimeBaseError> {
+    check_rate(rate_hz)?;
+    if let Some(index) = blocks.iter().position(|block| !block.start_s.is_finite()) {
+        return Err(TimeBaseError::NotFinite { number: index + 1, time_s: blocks[index].start_s });
     }
-    let (mut issues, mut doubles) = (Vec::new(), Doubles::default());
+    let mut pieces = pieces(blocks);
     pieces.retain(|piece| !piece.samples.is_empty());
+    let (mut issues, mut doubles) = (Vec::new(), Doubles::default());
+    let starts_s: Vec<f64> = pieces.iter().map(|piece| piece.start_s).collect();
     sort(&mut pieces, &mut issues);
-    drop_doubles(&mut pieces, rate_hz, &mut doubles, are_same);
+    drop_doubles(&mut pieces, rate_hz, &mut doubles, content);
     let present: usize = pieces.iter().map(|piece| piece.samples.len()).sum();
     if present < 2 {
         return Err(TimeBaseError::TooFew { count: present });
     }
-    let cut = cut(&intervals(&pieces), rate_hz);
-    let tolerance = stamp_tolerance(&pieces, rate_hz, cut);
-    issues.extend(hidden_loss(&pieces, rate_hz, tolerance));
+    let of_pair = |pair: &[Piece]| Interval {
+        length: as_f64(pair[0].samples.len()),
+        s: pair[1].start_s - pair[0].start_s,
+    };
+    let stamps = Stamps(pieces.windows(2).map(of_pair).collect());
+    let cut = stamps.cut(rate_hz);
+    let tolerance = stamp_tolerance(&stamps, rate_hz, cut);
+    issues.extend(hidden_loss(&stamps, rate_hz, tolerance));
     let places = places(&pieces, rate_hz, tolerance, present)?;
-    let (start_s, sample_rate_hz) = clock((&pieces, &places), rate_hz, cut, &mut issues);
+    let (start_s, sample_rate_hz) = clock((&pieces, &places), rate_hz, &stamps, &mut issues);
     let time_s = |index: usize| start_s + as_f64(index) / sample_rate_hz;
     let (mut gaps, mut end) = (Vec::new(), 0);
     for (piece, &place) in pieces.iter().zip(&places) {
@@ -104,7 +99,7 @@ pub(in crate::ingest) fn lay(
         }
         end = end.max(place + piece.samples.len());
     }
-    Ok(Laid { pieces, places, start_s, sample_rate_hz, gaps, doubles, issues })
+    Ok(Laid { pieces, places, starts_s, start_s, sample_rate_hz, gaps, doubles, issues })
 }
 
 impl Laid {
@@ -118,55 +113,33 @@ impl Laid {
     pub(in crate::ingest) fn gap_count(&self) -> usize {
         self.gaps.len()
     }
+}
 
-    /// The samples at their places.
-    fn filled<S: Number>(&mut self, held: Vec<S>) -> Vec<S> {
-        let rate_hz = self.sample_rate_hz;
-        let doubles = &mut self.doubles;
-        in_place(&self.pieces, &self.places, held, |held| {
-            let mut samples: Vec<S> = Vec::new();
-            for (piece, &place) in self.pieces.iter().zip(&self.places) {
-                if place > samples.len() && !samples.is_empty() {
-                    samples.resize(place, S::MISSING);
-                }
-                append(&mut samples, (piece.start_s, &held[piece.samples.clone()]), (place, rate_hz), doubles);
+/// The samples at their places.
+fn filled<S: Number>(laid: Laid, held: Vec<S>) -> Placed<S> {
+    let Laid { pieces, places, starts_s, start_s, sample_rate_hz, gaps, mut doubles, mut issues } = laid;
+    let mut samples = in_place(&pieces, &places, held, |held| {
+        let mut samples: Vec<S> = Vec::new();
+        for (piece, &place) in pieces.iter().zip(&places) {
+            if place > samples.len() && !samples.is_empty() {
+                samples.resize(place, S::MISSING);
             }
-            samples
-        })
-    }
-}
-
-fn common_rate(blocks: &[Block]) -> Result<f64, TimeBaseError> {
-    let Some(first) = blocks.first() else { return Err(TimeBaseError::TooFew { count: 0 }) };
-    for (index, block) in blocks.iter().enumerate() {
-        check_rate(block.sample_rate_hz)?;
-        if !block.start_s.is_finite() {
-            return Err(TimeBaseError::NotFinite { number: index + 1, time_s: block.start_s });
+            append(
+                &mut samples,
+                (piece.start_s, &held[piece.samples.clone()]),
+                (place, sample_rate_hz),
+                &mut doubles,
+            );
         }
-        if (block.sample_rate_hz / first.sample_rate_hz - 1.0).abs() > RATE_TOLERANCE {
-            return Err(TimeBaseError::RateChanges {
-                first_hz: first.sample_rate_hz,
-                other_hz: block.sample_rate_hz,
-                at_s: block.start_s,
-            });
-        }
-    }
-    Ok(first.sample_rate_hz)
-}
-
-fn join<S: Number>(blocks: &[Block], held: Vec<S>) -> Result<Placed<S>, TimeBaseError> {
-    let mut laid = lay(blocks, &|a, b| are_same(&held[a.clone()], &held[b.clone()]))?;
-    let mut samples = laid.filled(held);
-    let Laid { start_s, sample_rate_hz, gaps, doubles, mut issues, .. } = laid;
+        samples
+    });
     report_doubles(&doubles, &mut issues);
-    let starts_s: Vec<f64> =
-        blocks.iter().filter(|block| block.count > 0).map(|block| block.start_s).collect();
     let restart = restart(&starts_s).filter(|_| doubles.different > 0);
     issues.extend(restart.map(|at| restarted(&starts_s, at)));
     missing::push_gaps(&gaps, &mut issues);
     let lost: usize = gaps.iter().map(|gap| gap.0).sum();
     let gaps = settle_missing(&mut samples, lost, (start_s, sample_rate_hz), &mut issues);
-    Ok(Placed { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
+    Placed { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues }
 }
 
 /// The samples as they are held where every block has its place there already, else what `moved` makes of them.
@@ -202,17 +175,11 @@ fn sort(pieces: &mut [Piece], issues: &mut Vec<Issue>) {
 }
 
 /// Drops blocks that start where the one before does.
-fn drop_doubles(
-    pieces: &mut Vec<Piece>,
-    rate_hz: f64,
-    doubles: &mut Doubles,
-    are_same: &impl Fn(&Range<usize>, &Range<usize>) -> bool,
-) {
+fn drop_doubles(pieces: &mut Vec<Piece>, rate_hz: f64, doubles: &mut Doubles, content: &Content) {
     pieces.dedup_by(|later, kept| {
         let is_double = (later.start_s - kept.start_s) * rate_hz < 0.5 && later.samples.len() > 1;
         if is_double {
-            let is_equal =
-                later.samples.len() == kept.samples.len() && are_same(&later.samples, &kept.samples);
+            let is_equal = later.samples.len() == kept.samples.len() && content.are_same(later, kept);
             doubles.add(is_equal, kept.start_s, later.start_s + as_f64(later.samples.len()) / rate_hz);
             if later.samples.len() > kept.samples.len() {
                 std::mem::swap(later, kept);
@@ -233,48 +200,36 @@ const JUDGED_STAMPS: usize = 8;
 ///
 /// Half a sample for stamps of the sampling clock. Stamps of a computer's clock jitter by many samples; then six times the median
 /// miss (four standard deviations of a normal law are 5.9 medians), but less than half a block, since whole blocks get lost.
-fn stamp_tolerance(pieces: &[Piece], rate_hz: f64, cut: Option<Cut>) -> f64 {
+fn stamp_tolerance(stamps: &Stamps, rate_hz: f64, cut: Option<Cut>) -> f64 {
     // Two stamps that are cut to a millisecond are up to that nearer or farther than their blocks.
     let cut_samples = cut.map_or(0.0, |cut| cut.unit_s * rate_hz * (1.0 + ROUND_OFF));
     if cut.is_some_and(|cut| cut.is_whole) {
         return cut_samples.max(0.5);
     }
-    let shortest = pieces.iter().rev().skip(1).map(|p| p.samples.len()).min().unwrap_or(1);
-    let half_block = as_f64(shortest) / 2.0;
-    let mut misses: Vec<f64> = pieces
-        .windows(2)
-        .map(|w| ((w[1].start_s - w[0].start_s) * rate_hz - as_f64(w[0].samples.len())).abs())
-        .filter(|&miss| miss < half_block)
-        .collect();
-    if misses.len() < JUDGED_STAMPS {
-        return 0.5;
-    }
-    let middle = misses.len() / 2;
-    let (_, &mut median, _) = misses.select_nth_unstable_by(middle, f64::total_cmp);
-    if median <= 0.5 {
-        return 0.5;
-    }
-    (6.0 * median).max(cut_samples).min(half_block)
+    let half_block = 0.5 * stamps.0.iter().map(|interval| interval.length).fold(f64::INFINITY, f64::min);
+    let misses = stamps.0.iter().map(|interval| interval.miss(rate_hz).abs());
+    let mut misses: Vec<f64> = misses.filter(|&miss| miss < half_block).collect();
+    let median = if misses.len() < JUDGED_STAMPS { 0.0 } else { robust::median(&mut misses) };
+    if median <= 0.5 { 0.5 } else { (6.0 * median).max(cut_samples).min(half_block) }
 }
 
-/// A warning where blocks are shorter than all others by no more than what stamps leave open: samples may be missing behind them.
-fn hidden_loss(pieces: &[Piece], rate_hz: f64, tolerance: f64) -> Option<Issue> {
-    let lengths: Vec<usize> = pieces.iter().map(|piece| piece.samples.len()).collect();
-    let (count, lacking) = short_blocks(&lengths).filter(|(_, lacking)| as_f64(*lacking) <= tolerance)?;
-    (tolerance > 0.5).then(|| {
+/// A warning where blocks are shorter than nine of ten others by no more than what stamps leave open: samples may be missing behind them.
+fn hidden_loss(stamps: &Stamps, rate_hz: f64, tolerance: f64) -> Option<Issue> {
+    let mut lengths: Vec<f64> = stamps.0.iter().map(|interval| interval.length).collect();
+    let usual = robust::median(&mut lengths);
+    let lacking: Vec<f64> =
+        lengths.iter().map(|length| usual - length).filter(|lack| (0.5..=tolerance).contains(lack)).collect();
+    let alike = lengths.iter().filter(|length| (usual - **length).abs() < 0.5).count();
+    (tolerance > 0.5 && !lacking.is_empty() && 10 * alike >= 9 * lengths.len()).then(|| {
         let message = format!(
-            "{count} block(s) hold fewer samples than all others, {lacking} at most, and the stamps, off by up to {:.3} ms, do not tell whether \
+            "{} block(s) hold fewer samples than all others, {} at most, and the stamps, off by up to {:.3} ms, do not tell whether \
              samples are missing there; the blocks were joined",
+            lacking.len(),
+            lacking.iter().copied().fold(0.0, f64::max),
             1e3 * tolerance / rate_hz
         );
         Issue::new(IssueCode::Gap, Severity::Warning, message)
     })
-}
-
-/// The samples of each block and the seconds to the next one's stamp.
-fn intervals(pieces: &[Piece]) -> Vec<(f64, f64)> {
-    let of_pair = |pair: &[Piece]| (as_f64(pair[0].samples.len()), pair[1].start_s - pair[0].start_s);
-    pieces.windows(2).map(of_pair).collect()
 }
 
 /// The place of each block's first sample on the base.
@@ -311,7 +266,7 @@ fn places(
 fn clock(
     (pieces, places): (&[Piece], &[usize]),
     rate_hz: f64,
-    cut: Option<Cut>,
+    stamps: &Stamps,
     issues: &mut Vec<Issue>,
 ) -> (f64, f64) {
     let off = |piece: &Piece, place: usize| piece.start_s - pieces[0].start_s - as_f64(place) / rate_hz;
@@ -321,14 +276,6 @@ fn clock(
         return (pieces[0].start_s, rate_hz);
     }
     let (low_s, high_s) = offs.iter().fold((0.0_f64, 0.0_f64), |(low, high), &o| (low.min(o), high.max(o)));
-    let cut_s = cut.map_or(0.0, |cut| cut.unit_s);
-    if high_s - low_s <= cut_s * (1.0 + ROUND_OFF) {
-        let message = format!(
-            "the blocks' stamps are cut to {cut_s} s and agree with {rate_hz:.6} Hz, which was taken; blocks that follow one another were joined"
-        );
-        issues.push(Issue::new(IssueCode::Clock, Severity::Note, message));
-        return (pieces[0].start_s + offs.iter().sum::<f64>() / as_f64(offs.len()), rate_hz);
-    }
     let n = as_f64(offs.len());
     let mean_place = places.iter().map(|&p| as_f64(p)).sum::<f64>() / n;
     let mean_s = offs.iter().sum::<f64>() / n;
@@ -342,6 +289,22 @@ fn clock(
     let left = places.iter().zip(&offs).map(|(&p, &o)| o - mean_s - slope_s * (as_f64(p) - mean_place));
     let rms_s = (left.map(|r| r * r).sum::<f64>() / n).sqrt();
     let is_far = (fitted_hz / rate_hz - 1.0).abs() > RATE_TOLERANCE;
+    if let Some(unit_s) = stamps.unit_s(rate_hz).filter(|unit_s| high_s - low_s <= unit_s * (1.0 + ROUND_OFF))
+    {
+        // Exact stamps of whole milliseconds look like stamps of another rate that are cut to them.
+        let is_doubtful = is_far && stamps.cut(rate_hz).is_none();
+        let doubt = if is_doubtful {
+            format!(", but would tell {fitted_hz:.6} Hz if they were exact")
+        } else {
+            String::new()
+        };
+        let message = format!(
+            "the blocks' stamps are cut to {unit_s} s and agree with {rate_hz:.6} Hz, which was taken{doubt}; blocks that follow one another were joined"
+        );
+        let severity = if is_doubtful { Severity::Warning } else { Severity::Note };
+        issues.push(Issue::new(IssueCode::Clock, severity, message));
+        return (pieces[0].start_s + mean_s, rate_hz);
+    }
     issues.push(Issue::new(
         IssueCode::Clock,
         if is_far { Severity::Warning } else { Severity::Note },

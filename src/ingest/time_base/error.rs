@@ -78,19 +78,6 @@ pub enum TimeBaseError {
         /// The rate, Hz.
         sample_rate_hz: f64,
     },
-    /// Blocks of one channel differ in rate.
-    #[error(
-        "blocks differ in sample rate: {first_hz} Hz at first, {other_hz} Hz from {at_s} s on; \
-         cut the recording there, or set sample_rate_hz if one of them is wrong"
-    )]
-    RateChanges {
-        /// Rate of the first block, Hz.
-        first_hz: f64,
-        /// The other rate, Hz.
-        other_hz: f64,
-        /// Where it starts, s.
-        at_s: f64,
-    },
 }
 
 impl TimeBaseError {

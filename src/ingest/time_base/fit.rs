@@ -45,9 +45,9 @@ const GAP_PERIODS: f64 = 1.5;
 const GUESS_INTERVALS: usize = 4096;
 
 /// Filling gaps may cost this many times the samples present, and `FILL_FLOOR` samples more.
-const FILL_FACTOR: f64 = 4.0;
+pub(super) const FILL_FACTOR: f64 = 4.0;
 /// See [`FILL_FACTOR`]: 8 MB, so that a short record with a long pause still reads.
-const FILL_FLOOR: f64 = 1e6;
+pub(super) const FILL_FLOOR: f64 = 1e6;
 
 impl Fit {
     /// The base nearest to strictly rising, finite times (at least two).

@@ -177,13 +177,13 @@ fn what_is_no_time_base_says_why() {
 
 /// A block and its samples.
 fn block(first: usize, count: usize) -> (Block, Vec<f64>) {
-    let block = Block { start_s: 5.0 + as_f64(first) / 1000.0, sample_rate_hz: 1000.0, count };
+    let block = Block { start_s: 5.0 + as_f64(first) / 1000.0, count };
     (block, (first..first + count).map(as_f64).collect())
 }
 
 fn of_blocks(blocks: Vec<(Block, Vec<f64>)>) -> Result<Uniform, TimeBaseError> {
     let (blocks, samples): (Vec<_>, Vec<_>) = blocks.into_iter().unzip();
-    from_blocks(&blocks, Samples::F64(samples.concat()))
+    from_blocks(&blocks, 1000.0, Samples::F64(samples.concat()))
 }
 
 #[test]
@@ -236,21 +236,14 @@ fn blocks_with_missing_samples_of_their_own_say_so() {
 
 #[test]
 fn blocks_that_make_no_record_say_why() {
-    let mut fast = block(100, 10);
-    fast.0.sample_rate_hz = 2000.0;
     let mut far = block(100, 10);
     far.0.start_s = 1.7e9;
-    let mut still = block(0, 10);
-    still.0.sample_rate_hz = 0.0;
-    for (blocks, expected) in [
-        (vec![], "at least two"),
-        (vec![block(0, 100), fast], "differ in sample rate"),
-        (vec![block(0, 100), far], "times jump"),
-        (vec![still], "must be above zero"),
-    ] {
+    for (blocks, expected) in [(vec![], "at least two"), (vec![block(0, 100), far], "times jump")] {
         let error = of_blocks(blocks).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
     }
+    let still = from_blocks(&[block(0, 10).0], 0.0, f64s(&[1.0; 10])).unwrap_err();
+    assert!(still.to_string().contains("must be above zero"), "{still}");
 }
 
 #[test]
@@ -320,10 +313,9 @@ fn times_that_begin_anew_are_named_as_such() {
     // Stamps of blocks, and of single samples; then such that are late, or the same recording twice.
     let numbers = |starts_s: &[f64], is_copy: bool| -> bool {
         let count = |i: usize| if is_copy { i % 6 } else { i };
-        let blocks: Vec<Block> =
-            starts_s.iter().map(|&start_s| Block { start_s, sample_rate_hz: 100.0, count: 100 }).collect();
+        let blocks: Vec<Block> = starts_s.iter().map(|&start_s| Block { start_s, count: 100 }).collect();
         let values = (0..100 * starts_s.len()).map(|i| order::as_f64(count(i / 100))).collect();
-        let of_blocks = told(&from_blocks(&blocks, Samples::F64(values)).unwrap().issues);
+        let of_blocks = told(&from_blocks(&blocks, 100.0, Samples::F64(values)).unwrap().issues);
         let values = (0..starts_s.len()).map(|i| order::as_f64(count(i))).collect();
         let of_times = from_times(starts_s, Samples::F64(values), Some(1.0));
         assert!(of_times.is_err() || told(&of_times.unwrap().issues) == of_blocks, "{starts_s:?}");

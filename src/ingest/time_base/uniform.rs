@@ -19,13 +19,11 @@ pub struct Uniform {
     pub issues: Vec<Issue>,
 }
 
-/// A contiguous run of samples with its own start and rate.
+/// A contiguous run of samples with its own start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Block {
     /// Time of its first sample, s.
     pub start_s: f64,
-    /// Rate, Hz.
-    pub sample_rate_hz: f64,
     /// Number of its samples.
     pub count: usize,
 }

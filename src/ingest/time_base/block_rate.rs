@@ -1,0 +1,143 @@
+//! What is claimed of a channel's rate, and the stamps of its blocks, to the rate at which the blocks are laid.
+
+use super::blocks::{self, Laid};
+use super::error::{TimeBaseError, check_rate};
+use super::pieces::{Content, Piece, pieces};
+use super::stamps::{Stamps, Told};
+use super::uniform::{Block, Uniform};
+use crate::data::{Issue, IssueCode, Samples, Severity};
+use crate::ingest::clock::{Claims, RATE_TOLERANCE, Refusal};
+use crate::ingest::shown;
+use crate::ingest::statement::Statement;
+
+/// A rate this far from that of a few stamps is worth a warning: every velocity is off by as much, and a stamp 1 ms late in blocks of 0.2 s
+/// stays below.
+const FEW_APART: f64 = 5e-3;
+
+/// From one block of so many on that carries the stamp of the one before the stamps are too coarse, rather than blocks sent again.
+const SHARED_OF: usize = 10;
+/// Fewer may as well be sent again, corrected.
+const LEAST_SHARED: usize = 3;
+
+/// Of so many samples the first blocks of a channel are kept where its samples are not: enough to tell whether they overlap.
+pub(in crate::ingest) const PREFIX: usize = 1 << 16;
+
+/// The rate of a channel in blocks.
+struct BlockRate {
+    /// At which the blocks follow one another, Hz.
+    laid_hz: f64,
+    /// The cask file's, where its stamps contradict it, Hz.
+    stated_hz: Option<f64>,
+    issues: Vec<Issue>,
+}
+
+/// Blocks on a uniform base by what is claimed of their rate, their `samples` one after another.
+///
+/// # Errors
+/// [`TimeBaseError`] where claims and stamps give no rate, or stamps no record.
+pub(in crate::ingest) fn place(
+    blocks: &[Block],
+    claims: &Claims,
+    samples: Samples,
+) -> Result<Uniform, TimeBaseError> {
+    let content = Content { samples: &samples, digests: None };
+    let BlockRate { laid_hz, stated_hz, issues } = rate(blocks, claims, &content)?;
+    let mut uniform = blocks::from_blocks(blocks, laid_hz, samples)?;
+    uniform.sample_rate_hz = stated_hz.unwrap_or(uniform.sample_rate_hz);
+    uniform.issues.extend(issues);
+    Ok(uniform)
+}
+
+/// The same as far as a listing shows it.
+///
+/// # Errors
+/// As [`place`].
+pub(in crate::ingest) fn lay(
+    blocks: &[Block],
+    claims: &Claims,
+    content: &Content,
+) -> Result<Laid, TimeBaseError> {
+    let BlockRate { laid_hz, stated_hz, .. } = rate(blocks, claims, content)?;
+    let mut laid = blocks::lay(blocks, laid_hz, content)?;
+    laid.sample_rate_hz = stated_hz.unwrap_or(laid.sample_rate_hz);
+    Ok(laid)
+}
+
+fn rate(blocks: &[Block], claims: &Claims, content: &Content) -> Result<BlockRate, TimeBaseError> {
+    claims.cask_hz.map_or(Ok(()), check_rate)?;
+    no_shared_stamps(blocks, content)?;
+    let nearest_hz = claims.cask_hz.or(claims.stated.first().map(|stated| stated.rate_hz));
+    let told = Stamps::of(blocks).told(nearest_hz);
+    let Some(nearest_hz) = nearest_hz else {
+        let laid_hz = alone(blocks, told)?;
+        return Ok(BlockRate { laid_hz, stated_hz: None, issues: Vec::new() });
+    };
+    let is_window = |told: &Told| nearest_hz < told.rate_hz && content.overlaps(blocks, nearest_hz);
+    let own = told.filter(|told| !told.is_few && !is_window(told)).map(|told| Statement {
+        place: "the stamps of its blocks".into(),
+        rate_hz: told.rate_hz,
+        rounding: told.uncertainty,
+        distance: 0,
+    });
+    let taken = claims.weigh(own.as_ref())?;
+    let mut issues = taken.issues;
+    issues.extend(told.filter(|told| told.is_few).and_then(|told| few_blocks(told.rate_hz, taken.rate_hz)));
+    let is_borne_out =
+        |own: &Statement| (nearest_hz / own.rate_hz - 1.0).abs() <= RATE_TOLERANCE.max(own.rounding);
+    // Blocks stay where the stamps have them while these bear a statement out; at another rate steady stamps would leave a gap behind every
+    // block, or let each cover the next.
+    let laid_hz = own.filter(|own| !is_borne_out(own)).map_or(nearest_hz, |own| own.rate_hz);
+    Ok(BlockRate { laid_hz, stated_hz: claims.cask_hz.filter(|hz| hz.total_cmp(&laid_hz).is_ne()), issues })
+}
+
+/// The rate that stamps tell where nothing states one.
+fn alone(blocks: &[Block], told: Option<Told>) -> Result<f64, Refusal> {
+    const REMEDY: &str = "write `sample_rate_hz` in this channel of the cask file";
+    let problem = match told {
+        _ if blocks.len() < 2 => "it is one block of samples without a sample rate".to_owned(),
+        None => "no rate is stated, and the stamps of its blocks are too uneven to tell one".to_owned(),
+        Some(told) if told.is_few => {
+            format!("no rate is stated, and the stamps of {} blocks are too few to tell one", blocks.len())
+        }
+        Some(told) if told.uncertainty > RATE_TOLERANCE => format!(
+            "no rate is stated, and the stamps of its blocks tell their {} Hz to ± {} % only",
+            shown::hz(told.rate_hz),
+            shown::digits(100.0 * told.uncertainty, 2)
+        ),
+        Some(told) => return Ok(told.rate_hz),
+    };
+    Err(Refusal::new(problem, REMEDY))
+}
+
+/// Refuses blocks of which many carry the stamp of the one before though their samples differ: nothing tells where one is lost.
+fn no_shared_stamps(blocks: &[Block], content: &Content) -> Result<(), Refusal> {
+    let pieces = pieces(blocks);
+    let is_shared = |pair: &&[Piece]| {
+        let [one, other] = pair else { return false };
+        one.start_s.total_cmp(&other.start_s).is_eq()
+            && (one.samples.len() != other.samples.len() || !content.are_same(one, other))
+    };
+    let count = pieces.windows(2).filter(is_shared).count();
+    if count < LEAST_SHARED || SHARED_OF * count <= blocks.len() {
+        return Ok(());
+    }
+    let problem = format!(
+        "{count} of {} messages carry the same stamp as the one before though their samples differ: the stamps are coarser than a block is \
+         long, and do not tell whether one is lost",
+        blocks.len()
+    );
+    Err(Refusal::new(problem, "have the recorder stamp finer, or write longer blocks"))
+}
+
+/// A warning where a few blocks are stamped as at another rate than the one that was taken: between many blocks a rate shows in every one,
+/// between few it looks like samples that are missing.
+fn few_blocks(own_hz: f64, taken_hz: f64) -> Option<Issue> {
+    ((taken_hz / own_hz - 1.0).abs() > FEW_APART).then(|| {
+        let message = format!(
+            "its few blocks are stamped as at {} Hz, and {} Hz is stated: samples between them are missing, or the rate is wrong, and every velocity with it",
+            shown::hz(own_hz),
+            shown::hz(taken_hz)
+        );
+        Issue::new(IssueCode::Clock, Severity::Warning, message)
+    })
+}

@@ -1,0 +1,62 @@
+//! Blocks to where their samples lie among those of all, and to which of them are the same.
+
+use super::order::{as_f64, is_same};
+use super::uniform::Block;
+use crate::data::Samples;
+use std::ops::Range;
+
+/// A block, its samples a range of those of all blocks.
+pub(super) struct Piece {
+    /// Which block it is, in the order of the file.
+    pub(super) number: usize,
+    pub(super) start_s: f64,
+    pub(super) samples: Range<usize>,
+}
+
+/// The blocks with the places of their samples among those of all.
+pub(super) fn pieces(blocks: &[Block]) -> Vec<Piece> {
+    let mut end = 0;
+    let piece = |(number, block): (usize, &Block)| {
+        let samples = end..end + block.count;
+        end = samples.end;
+        Piece { number, start_s: block.start_s, samples }
+    };
+    blocks.iter().enumerate().map(piece).collect()
+}
+
+/// The samples of blocks as far as the rate depends on them.
+pub(in crate::ingest) struct Content<'a> {
+    /// Those of the first blocks at least, one block after another.
+    pub(in crate::ingest) samples: &'a Samples,
+    /// A number for the samples of each block, where not all are at hand.
+    pub(in crate::ingest) digests: Option<&'a [u64]>,
+}
+
+impl Content<'_> {
+    /// Whether two blocks of the same length hold the same samples.
+    pub(super) fn are_same(&self, one: &Piece, other: &Piece) -> bool {
+        match self.digests {
+            Some(digests) => digests[one.number] == digests[other.number],
+            None => self.is_run(one.samples.start, other.samples.start, one.samples.len()),
+        }
+    }
+
+    /// Whether so many samples from `one` on are those from `other` on.
+    fn is_run(&self, one: usize, other: usize, count: usize) -> bool {
+        one.max(other) + count <= self.samples.len()
+            && (0..count).all(|i| is_same(self.samples.get(one + i), self.samples.get(other + i)))
+    }
+
+    /// Whether the first blocks end, at a rate, with the samples that the next begins with: windows that overlap.
+    pub(super) fn overlaps(&self, blocks: &[Block], rate_hz: f64) -> bool {
+        const LOOKED_AT: usize = 8;
+        let mut end = 0;
+        blocks.windows(2).take(LOOKED_AT).all(|pair| {
+            let count = pair[0].count;
+            end += count;
+            let left = as_f64(count) - (pair[1].start_s - pair[0].start_s) * rate_hz;
+            let shared = (0..=count.min(pair[1].count)).find(|&n| as_f64(n) >= left - 0.5).unwrap_or(0);
+            self.is_run(end - shared, end, shared)
+        })
+    }
+}
