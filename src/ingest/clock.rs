@@ -255,6 +255,9 @@ mod tests {
         Statement { place: format!("fs = {rate_hz}"), rate_hz, rounding: 0.0, distance }
     }
 
+    /// Cask file, whether it names the times, statements, times: the rate taken with the number of warnings, or a part of the refusal.
+    type Row<'a> = (Option<f64>, bool, &'a [Statement], Option<Statement>, Result<(f64, usize), &'a str>);
+
     #[test]
     fn a_rate_is_weighed_by_the_table() {
         let claims = |cask_hz, are_times_named, stated: &[Statement]| Claims {
@@ -264,8 +267,6 @@ mod tests {
         };
         let fine = |rate_hz| Some(of_times(rate_hz, 0.0));
         let coarse = |rate_hz| Some(of_times(rate_hz, 5e-3));
-        // Cask file, whether it names the times, statements, times: the rate taken with the number of warnings, or a part of the refusal.
-        type Row<'a> = (Option<f64>, bool, &'a [Statement], Option<Statement>, Result<(f64, usize), &'a str>);
         let rows: [Row; 19] = [
             (Some(1e4), false, &[stated(9e3, 0), stated(1e4, 0)], fine(8e3), Ok((1e4, 2))),
             (Some(1e4), false, &[], fine(10_005.0), Ok((1e4, 0))),

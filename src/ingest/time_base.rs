@@ -32,6 +32,9 @@ use uniform::Placed;
 /// 2 % a sine of a tenth of the sample rate is off by 1 % of itself at most, a tenth of what its sampling costs.
 const STEADY_PART: f64 = 0.02;
 
+/// What rounding is believed to do to the rate of times at most, as a part of it: three times in whole hundredths of a second tell none.
+const MOST_ROUNDING: f64 = 1e-2;
+
 impl Uniform {
     /// The same samples at a declared rate, which wins over that of the recorded times, with a warning.
     ///
@@ -154,7 +157,8 @@ fn place<S: Number>(times: &Times, samples: Vec<S>, claims: &Claims) -> Result<P
     };
     let fit = if times.rise { times.fit()? } else { Fit::new(&times_s)? };
     let span_s = times_s[times_s.len() - 1] - times_s[0];
-    let own = clock::of_times(1.0 / fit.period_s, fit.resolution_s / span_s);
+    let rounding = (fit.resolution_s / span_s).min(MOST_ROUNDING);
+    let own = clock::of_times(1.0 / fit.period_s, rounding);
     let taken = claims.weigh(Some(&own))?;
     let sample_rate_hz = taken.rate_hz;
     issues.extend(taken.issues);
