@@ -128,7 +128,9 @@ impl Lines {
             let to = text.len().min(from + TOGETHER);
             let found = |found: u8, byte: &u8| found | u8::from(*byte == b'\r') | u8::from(*byte == 0);
             if !self.is_behind_return && text[from..to].iter().fold(0, found) == 0 {
-                text.copy_within(from..to, kept);
+                if kept < from {
+                    text.copy_within(from..to, kept);
+                }
                 kept += to - from;
                 continue;
             }
