@@ -3,8 +3,7 @@
 
 use super::{Limits, cask_file, csv, hdf5, mcap, number, time_base};
 use crate::data::{CaskFile, Samples};
-use crate::lab::data::CrushableEnd;
-use crate::lab::scene_file::{self, Crush};
+use crate::lab::scene_file;
 use std::io::Write as _;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -77,8 +76,7 @@ fn answer(bytes: &[u8]) {
 }
 
 fn scene(bytes: &[u8]) {
-    let crush: Crush = &|_, _, _, _, _| CrushableEnd { loading_n_m: 1e9, unloading_n_m: 4e9, yield_n: None };
-    in_file(bytes, |path| drop(scene_file::parse(path, crush)));
+    in_file(bytes, |path| drop(scene_file::read(path)));
 }
 
 fn number(bytes: &[u8]) {

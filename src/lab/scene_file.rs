@@ -4,15 +4,14 @@ mod channel;
 mod values;
 
 use crate::data::keys::{self, names};
-use crate::data::{Cask, CaskFile, Contact, Drop, End, FilterChoice};
+use crate::data::{Cask, CaskFile, Drop, End, FilterChoice};
+use crate::ingest::IngestError;
 use crate::ingest::cask_file::section::{Document, Kind, Section};
 use crate::ingest::cask_file::{self, CaskFileError};
 use crate::lab::data::{BendingMode, CrushableEnd, Scene, SceneFile, WantedImpact};
+use crate::lab::synth::crushable_end;
 use std::path::Path;
 use values::{flag, number_or, size_or, whole};
-
-/// From the wanted impact of an end to the stiffnesses that give it.
-pub type Crush<'a> = &'a dyn Fn(&Cask, &Drop, Contact, End, WantedImpact) -> CrushableEnd;
 
 /// The scene file.
 const SCENE_FILE: Kind = Kind {
@@ -108,16 +107,16 @@ const MOST_SAMPLES: f64 = 2e7;
 /// Share of critical damping of a bolted steel structure.
 const MODE_DAMPING: f64 = 0.02;
 
-/// Reads and checks the scene file at `path`; `crush` turns a wanted impact into stiffnesses.
+/// Reads and checks the scene file at `path`.
 ///
 /// # Errors
-/// [`CaskFileError`], one message that shows the line.
-pub fn parse(path: &Path, crush: Crush) -> Result<SceneFile, CaskFileError> {
+/// One diagnostic that shows the line.
+pub fn read(path: &Path) -> Result<SceneFile, IngestError> {
     let bytes = cask_file::read(path, &SCENE_FILE)?;
-    checked(path, cask_file::text(path, &bytes, &SCENE_FILE)?, crush)
+    Ok(checked(path, cask_file::text(path, &bytes, &SCENE_FILE)?)?)
 }
 
-fn checked(path: &Path, text: &str, crush: Crush) -> Result<SceneFile, CaskFileError> {
+fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
     let document = Document::new(&SCENE_FILE, path, text);
     let root = document.root()?;
     let drop_table = root.required_table("drop")?;
@@ -129,7 +128,7 @@ fn checked(path: &Path, text: &str, crush: Crush) -> Result<SceneFile, CaskFileE
     let stiffness = |end, table: Section, usual| {
         Ok::<_, CaskFileError>(match asked(&table, usual)? {
             Asked::Direct(direct) => direct,
-            Asked::Impact(impact) => crush(&cask, &drop, contact, end, impact),
+            Asked::Impact(impact) => crushable_end(&cask, &drop, contact, end, impact),
         })
     };
     let first_end = stiffness(End::First, root.table("first_end")?, FIRST_IMPACT)?;

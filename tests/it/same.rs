@@ -245,7 +245,7 @@ fn the_corpus() {
             all.push(match target {
                 "cask" => said(name, &fixture("anf18-json.mcap"), &path),
                 "scene" => {
-                    let scene = lab::scene_file(&path).map(|file| format!("{file:?}"));
+                    let scene = lab::scene_file::read(&path).map(|file| format!("{file:?}"));
                     let result = placeless(&scene.unwrap_or_else(|error| told(&error)), &path, &path);
                     Said { name, result, listing: String::new() }
                 }

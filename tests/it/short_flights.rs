@@ -45,7 +45,7 @@ fn a_contact_that_was_not_over_is_no_flight() {
     for drop in DROPS {
         let path = folder.path().join("scene.toml");
         std::fs::write(&path, scene_text(drop)).expect("a temporary file");
-        let made = dropcheck::lab::scene_file(&path).expect("a scene");
+        let made = dropcheck::lab::scene_file::read(&path).expect("a scene");
         let synthetic = dropcheck::lab::synthesise(&made.scene);
         let truth_m_s = synthetic.truth.speed.expect("a slap-down");
         let recording = in_memory::synthetic(&synthetic, &made.stated).expect("a recording");

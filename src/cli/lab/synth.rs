@@ -66,7 +66,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     let place = place.canonicalize().unwrap_or_else(|_| place.to_path_buf());
     let folder = Folder::checked(&place, &names.each_ref().map(String::as_str), &[&arguments.scene])?;
 
-    let mut scene_file = lab::scene_file(&arguments.scene)?;
+    let mut scene_file = lab::scene_file::read(&arguments.scene)?;
     if let Some(seed) = arguments.seed {
         scene_file.scene.seed = seed;
     }

@@ -1,22 +1,12 @@
 //! Random numbers to a drop: the cask, how it falls and what its ends do, as they are and as they are stated.
 
-use super::Case;
-use super::chance::{Chance, round};
-use crate::data::{Cask, CaskFile, Contact, Corrections, Drop, End, FilterChoice, Tolerances};
-use crate::lab::data::{BendingMode, Scene, SceneNumber, SimulatedMotion, Truth, WantedImpact};
-use crate::lab::{crush, synth};
+use crate::data::{Cask, CaskFile, Contact, Drop, End, Tolerances};
+use crate::lab::chance::{Chance, round};
+use crate::lab::damage::{BetweenImpacts, Wish};
+use crate::lab::data::{BendingMode, Scene, SimulatedMotion, Truth, WantedImpact};
+use crate::lab::drawn::{BUILDS, DrawnDrop, GRAVITY_M_S2, cask_file, fall};
+use crate::lab::synth;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
-
-const GRAVITY_M_S2: f64 = 9.81;
-
-/// Casks of \[P\] Table 3 and a slender beam: name, mass kg, length m, section m.
-const CASKS: [(&str, f64, f64, f64); 4] = [
-    ("ESBB", 315.0, 4.538, 0.15),
-    ("ANF-10", 1429.0, 4.725, 0.565),
-    ("ANF-18", 4466.0, 5.512, 0.792),
-    ("VHLW", 20_950.0, 4.486, 1.156),
-];
 
 /// Bending frequencies of a free uniform beam over its first.
 const OVERTONES: [f64; 3] = [1.0, 2.757, 5.404];
@@ -25,55 +15,15 @@ const OVERTONES: [f64; 3] = [1.0, 2.757, 5.404];
 const K_RANGE: (f64, f64) = (0.02, 0.98);
 const SHORTEST_FLIGHT_S: f64 = 8e-3;
 
-/// What happens between the two impacts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Flight {
-    /// L flies until R strikes.
-    Free,
-    /// L touches again before.
-    LandsAgain,
-    /// The same as free, for less than [`SHORTEST_FLIGHT_S`].
-    Short,
-}
-
-/// What a damage needs of the drop that it strikes.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Wish {
-    /// What happens between the impacts.
-    pub flight: Flight,
-    /// The contact of L, as it is.
-    pub contact: Option<Contact>,
-    /// Whether there is an axial channel; `None`: as it comes.
-    pub axial: Option<bool>,
-    /// Whether the rest before the release is recorded; `None`: as it comes.
-    pub rest: Option<bool>,
-    /// Two transverse channels on the first end.
-    pub third_channel: bool,
-    /// Nothing that makes thousands of samples more than the damage needs.
-    pub slow_recorder: bool,
-}
-
-impl Wish {
-    /// Anything.
-    pub(super) const fn new() -> Self {
-        Self {
-            flight: Flight::Free,
-            contact: None,
-            axial: None,
-            rest: None,
-            third_channel: false,
-            slow_recorder: false,
-        }
-    }
-}
+/// Draws of a scene that gave no such drop, by what they lack.
+pub(super) type Redraws = BTreeMap<&'static str, u32>;
 
 /// The angle is drawn again only after so many attempts with it: else the flat drops would be the ones left out.
 const ATTEMPTS: u32 = 300;
 
 /// Draws until there is a drop as wished, and counts the others by what they lack.
-pub(super) fn case((seed, number): (u64, SceneNumber), wish: &Wish, exact: bool) -> Case {
-    let mut chance = Chance::new(seed, number);
-    let mut redraws = BTreeMap::new();
+pub(super) fn drawn(mut chance: Chance, wish: &Wish, exact: bool) -> (DrawnDrop, Redraws) {
+    let mut redraws = Redraws::new();
     let mut angle_deg = stated_angle_deg(&mut chance, wish);
     let mut attempt = 0_u32;
     loop {
@@ -81,10 +31,10 @@ pub(super) fn case((seed, number): (u64, SceneNumber), wish: &Wish, exact: bool)
         let (scene, stated) = drop(&mut chance, angle_deg, wish, exact);
         let motion = synth::simulate(&scene);
         let Some(lack) = lacks(&motion.truth, wish) else {
-            return Case { scene, stated, motion, chance, redraws };
+            return (DrawnDrop { scene, stated, motion, chance }, redraws);
         };
         *redraws.entry(lack).or_insert(0) += 1;
-        if wish.flight != Flight::Free || attempt.is_multiple_of(ATTEMPTS) {
+        if wish.flight != BetweenImpacts::Free || attempt.is_multiple_of(ATTEMPTS) {
             angle_deg = stated_angle_deg(&mut chance, wish);
         }
     }
@@ -92,7 +42,7 @@ pub(super) fn case((seed, number): (u64, SceneNumber), wish: &Wish, exact: bool)
 
 /// 5 to 30° mostly; R strikes soon where it is not far from the target.
 fn stated_angle_deg(chance: &mut Chance, wish: &Wish) -> f64 {
-    if wish.flight == Flight::Short {
+    if wish.flight == BetweenImpacts::Short {
         return round(chance.even(2.0, 8.0), 1);
     }
     round(if chance.is(0.8) { chance.even(5.0, 30.0) } else { chance.even(2.0, 60.0) }, 1)
@@ -104,7 +54,7 @@ fn lacks(truth: &Truth, wish: &Wish) -> Option<&'static str> {
     if !(K_RANGE.0..=K_RANGE.1).contains(&k) {
         return Some("k outside 0.02 to 0.98");
     }
-    if wish.flight == Flight::LandsAgain {
+    if wish.flight == BetweenImpacts::LandsAgain {
         return (truth.relands == 0).then_some("no second contact");
     }
     if truth.first_down_at_slap {
@@ -114,7 +64,7 @@ fn lacks(truth: &Truth, wish: &Wish) -> Option<&'static str> {
         return Some("second contact");
     }
     let is_short = truth.flight_s.is_none_or(|flight_s| flight_s < SHORTEST_FLIGHT_S);
-    match (is_short, wish.flight == Flight::Short) {
+    match (is_short, wish.flight == BetweenImpacts::Short) {
         (true, false) => Some("flight below 8 ms"),
         (false, true) => Some("flight of 8 ms and more"),
         _ => None,
@@ -124,7 +74,7 @@ fn lacks(truth: &Truth, wish: &Wish) -> Option<&'static str> {
 /// One attempt: the scene as it is and the cask file, both still without channels.
 fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene, CaskFile) {
     let tolerances = Tolerances::default();
-    let mut defaults: Vec<String> = ["gravity_m_s2"].map(|key| format!("drop.{key}")).into();
+    let mut defaults = vec!["drop.gravity_m_s2".to_owned()];
     let stated = cask(chance, &mut defaults);
     let stated_drop = falls(chance, angle_deg, wish);
     let (drawn, is_said) = contact(chance);
@@ -152,8 +102,8 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
     let mut scene = Scene {
         name: cask.name.clone(),
         seed: chance.seed(),
-        first_end: crush(&cask, &drop, stated_contact, End::First, first),
-        second_end: crush(&cask, &drop, stated_contact, End::Second, second),
+        first_end: synth::crushable_end(&cask, &drop, stated_contact, End::First, first),
+        second_end: synth::crushable_end(&cask, &drop, stated_contact, End::Second, second),
         modes: modes(chance),
         before_s: 0.1,
         after_s: chance.even(0.02, 0.15),
@@ -171,23 +121,6 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
         scene.contact = loosened(stated_contact, impulse_ratio(&synth::simulate(&held)), share);
     }
     (scene, cask_file(stated, stated_drop, stated_contact, defaults))
-}
-
-/// What the cask file says of a drop, with the usual tolerances.
-fn cask_file(cask: Cask, drop: Drop, contact: Contact, defaults: Vec<String>) -> CaskFile {
-    CaskFile {
-        path: PathBuf::from("synthetic.toml"),
-        sha256: String::new(),
-        cask,
-        drop,
-        contact,
-        filter: FilterChoice::Auto,
-        tolerances: Tolerances::default(),
-        corrections: Corrections::default(),
-        time: None,
-        channels: Vec::new(),
-        defaults,
-    }
 }
 
 /// I_x / I_z of the first contact.
@@ -217,41 +150,34 @@ fn loosened(contact: Contact, holds: f64, share: f64) -> Contact {
 
 /// One of the casks; four in ten are stretched, one in four states its centre of gravity, one in four its inertia.
 fn cask(chance: &mut Chance, defaults: &mut Vec<String>) -> Cask {
-    let (name, mut mass_kg, mut length_m, mut height_m) = chance.one_of(&CASKS);
-    let mut name = name.to_owned();
+    let mut build = chance.one_of(&BUILDS);
+    let mut name = build.name.to_owned();
     if chance.is(0.4) {
-        mass_kg = round(mass_kg * chance.even(0.6, 1.6), 0);
-        length_m = round(length_m * chance.even(0.7, 1.3), 3);
-        height_m = round(height_m * chance.even(0.5, 1.2), 3);
+        build.mass_kg = round(build.mass_kg * chance.even(0.6, 1.6), 0);
+        build.length_m = round(build.length_m * chance.even(0.7, 1.3), 3);
+        build.section_m = round(build.section_m * chance.even(0.5, 1.2), 3);
         name.push_str("-var");
     }
-    let mut cog_m = length_m / 2.0;
+    let mut cask = Cask { name, ..build.cask() };
     if chance.is(0.25) {
-        cog_m = round(length_m * chance.even(0.45, 0.55), 3);
+        cask.cog_m = round(cask.length_m * chance.even(0.45, 0.55), 3);
     } else {
         defaults.push("cask.cog_m".to_owned());
     }
-    let mut inertia_kg_m2 = mass_kg * (length_m * length_m + height_m * height_m) / 12.0;
     if chance.is(0.25) {
-        inertia_kg_m2 = round(inertia_kg_m2 * chance.even(0.85, 1.15), 0);
+        cask.inertia_kg_m2 = round(cask.inertia_kg_m2 * chance.even(0.85, 1.15), 0);
     } else {
         defaults.push("cask.inertia_kg_m2".to_owned());
     }
-    Cask { name, mass_kg, length_m, height_m, width_m: None, cog_m, inertia_kg_m2, is_body: true }
+    cask
 }
 
 /// The fall as stated: from 9 m mostly.
 fn falls(chance: &mut Chance, angle_deg: f64, wish: &Wish) -> Drop {
     // L lands again where it is thrown up little and R has a long way.
-    let usual = if wish.flight == Flight::LandsAgain { 0.2 } else { 0.7 };
+    let usual = if wish.flight == BetweenImpacts::LandsAgain { 0.2 } else { 0.7 };
     let height_m = if chance.is(usual) { 9.0 } else { round(chance.log_even(0.3, 12.0), 2) };
-    Drop {
-        height_m,
-        angle_rad: angle_deg.to_radians(),
-        impact_velocity_m_s: (2.0 * GRAVITY_M_S2 * height_m).sqrt(),
-        impact_velocity_given: false,
-        gravity_m_s2: GRAVITY_M_S2,
-    }
+    fall(height_m, angle_deg.to_radians())
 }
 
 /// The contact of L, and whether the cask file says it where it is the default.
@@ -287,13 +213,8 @@ fn modes(chance: &mut Chance) -> Vec<BendingMode> {
     let first_hz = chance.log_even(30.0, 160.0);
     let strength = if chance.is(0.5) { chance.even(0.2, 1.0) } else { 1.0 };
     let mut modes = Vec::new();
-    for (order, overtone) in (1..).zip(OVERTONES).take(if part < 0.5 {
-        1
-    } else if part < 0.82 {
-        2
-    } else {
-        3
-    }) {
+    let most = 1 + usize::from(part >= 0.5) + usize::from(part >= 0.82);
+    for (order, overtone) in (1..).zip(OVERTONES).take(most) {
         let frequency_hz = first_hz * overtone * if order == 1 { 1.0 } else { chance.even(0.8, 1.1) };
         if frequency_hz > 400.0 {
             break;

@@ -1,38 +1,38 @@
 //! A number of random scenes with known truth, through everything, to how far off the analysis is and how often it says so.
 
-mod chance;
-mod damage;
 mod draw;
 mod recorder;
 mod score;
 mod statistics;
 mod tables;
 
-pub use damage::kinds;
 pub use score::csv;
 pub use tables::markdown;
 
 use crate::analysis::analyze;
-use crate::data::CaskFile;
 use crate::ingest::Progress;
+use crate::lab::chance::Chance;
+use crate::lab::damage::{self, DamageKind, Wish};
 use crate::lab::data::{
-    Campaign, CampaignRequest, CampaignRow, Damage, Scene, SceneFile, SceneNumber, SimulatedMotion,
-    SyntheticRecording,
+    Campaign, CampaignRequest, CampaignRow, Damage, SceneFile, SceneNumber, SyntheticRecording,
 };
-use crate::lab::{in_memory, synth};
-use chance::Chance;
+use crate::lab::drawn::DrawnDrop;
+use draw::Redraws;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::sync::mpsc;
 use std::time::Instant;
 
-/// A scene on its way: as it is, as stated, and how it moves.
-pub(crate) struct Case {
-    scene: Scene,
-    stated: CaskFile,
-    motion: SimulatedMotion,
-    chance: Chance,
-    redraws: BTreeMap<&'static str, u32>,
+/// A scene, drawn, struck by its damage and recorded.
+struct RecordedScene {
+    drop: DrawnDrop,
+    redraws: Redraws,
+    damage: Option<Damage>,
+    recording: SyntheticRecording,
+}
+
+/// Names of all kinds of damage, and their sizes with the unit.
+pub fn kinds() -> impl Iterator<Item = (&'static str, &'static [f64], &'static str)> {
+    damage::drawn().map(|kind| (kind.name, &kind.sizes[..], kind.unit))
 }
 
 /// Runs the campaign; `progress` is told the share that is done. The same request gives the same rows but for their times.
@@ -63,44 +63,63 @@ pub fn run(request: &CampaignRequest, progress: Progress) -> Campaign {
 /// One scene as `synth` writes it: the scene with what is stated of it, and its recording.
 #[must_use]
 pub fn scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, SyntheticRecording) {
-    let (case, recording, _) = made(seed, number, exact);
-    (SceneFile { scene: case.scene, stated: case.stated }, recording)
+    let RecordedScene { drop, recording, .. } = recorded(seed, number, exact);
+    (SceneFile { scene: drop.scene, stated: drop.stated }, recording)
 }
 
 /// The numbers of the scenes: damaged ones are counted through all kinds, those not asked for left out.
 fn numbers(request: &CampaignRequest) -> Vec<SceneNumber> {
     let undamaged = if request.undamaged { request.scenes } else { 0 };
-    let is_any = damage::kinds().any(|kind| request.kinds.contains(&kind.0));
+    let is_any = damage::drawn().any(|kind| request.kinds.contains(&kind.name));
     let damaged = if is_any { request.scenes } else { 0 };
-    let wanted = |number: &u32| request.kinds.contains(&damage::of(*number).0.name);
+    let wanted = |number: &u32| request.kinds.contains(&kind_and_size(*number).0.name);
     let damaged = (0..u32::MAX).filter(wanted).take(usize::try_from(damaged).unwrap_or(0));
     (0..undamaged).map(SceneNumber::Undamaged).chain(damaged.map(SceneNumber::Damaged)).collect()
 }
 
-fn row(request: &CampaignRequest, number: SceneNumber) -> CampaignRow {
-    let (case, recording, damage) = made(request.seed, number, request.exact);
-    let read = in_memory::synthetic(&recording, &case.stated).ok();
-    let begun = Instant::now();
-    let analysis = read.map(|read| analyze(&read, &case.stated));
-    let analysis_s = begun.elapsed().as_secs_f64();
-    score::row((number, damage), case, recording.first_contact_s, (analysis.as_ref(), analysis_s))
+/// What is wrong with damaged scene `number`: kinds take turns, then sizes.
+fn kind_and_size(number: u32) -> (&'static DamageKind, f64) {
+    let kinds: Vec<&DamageKind> = damage::drawn().collect();
+    let number = usize::try_from(number).unwrap_or(0);
+    let kind = kinds[number % kinds.len()];
+    (kind, kind.sizes[(number / kinds.len()) % kind.sizes.len()])
 }
 
-/// A scene, drawn, struck by its damage and recorded.
-fn made(seed: u64, number: SceneNumber, exact: bool) -> (Case, SyntheticRecording, Option<Damage>) {
-    let struck = match number {
-        SceneNumber::Undamaged(_) => None,
-        SceneNumber::Damaged(number) => Some(damage::of(number)),
+fn row(request: &CampaignRequest, number: SceneNumber) -> CampaignRow {
+    let scene = recorded(request.seed, number, request.exact);
+    let read = scene.drop.read(&scene.recording);
+    let begun = Instant::now();
+    let analysis = read.map(|read| analyze(&read, &scene.drop.stated));
+    let analysis_s = begun.elapsed().as_secs_f64();
+    CampaignRow { analysis_s, ..score::row(number, scene, analysis.as_ref()) }
+}
+
+fn recorded(seed: u64, number: SceneNumber, exact: bool) -> RecordedScene {
+    // A stream of its own for every scene, so that none moves another.
+    let (stream, struck) = match number {
+        SceneNumber::Undamaged(number) => (2 * u64::from(number), None),
+        SceneNumber::Damaged(number) => (2 * u64::from(number) + 1, Some(kind_and_size(number))),
     };
-    let wish = struck.map_or_else(draw::Wish::new, |(kind, size)| (kind.wish)(size));
-    let mut case = draw::case((seed, number), &wish, exact);
-    recorder::equip(&mut case, &wish, exact);
-    let Some((kind, size)) = struck else {
-        let recording = synth::record(&case.scene, &case.motion);
-        return (case, recording, None);
-    };
-    (kind.before)(&mut case, size);
-    let mut recording = synth::record(&case.scene, &case.motion);
-    (kind.after)(&mut case, &mut recording, size);
-    (case, recording, Some(Damage { kind: kind.name, size, unit: kind.unit }))
+    let wish = struck.map_or(Wish::ANY, |(kind, size)| kind.wish(size));
+    let (mut drop, redraws) = draw::drawn(Chance::new(seed, stream), &wish, exact);
+    recorder::equip(&mut drop, &wish, exact);
+    let recording = struck.map(|(kind, size)| kind.strike(&mut drop, size));
+    let recording = recording.unwrap_or_else(|| drop.recorded());
+    let damage = struck.map(|(kind, size)| Damage { kind: kind.name, size, unit: kind.unit });
+    RecordedScene { drop, redraws, damage, recording }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn numbers_go_through_all_kinds_and_sizes() {
+        let most = kinds().map(|kind| kind.1.len()).max().expect("some") * kinds().count();
+        let seen: BTreeSet<(&str, u64)> = (0..u32::try_from(most).expect("some"))
+            .map(|number| (kind_and_size(number).0.name, kind_and_size(number).1.to_bits()))
+            .collect();
+        assert_eq!(seen.len(), kinds().map(|kind| kind.1.len()).sum::<usize>());
+    }
 }

@@ -1,13 +1,10 @@
 //! A drop to its sensors and recorder, sound and of the kind that drop tests use, as they are and as they are stated.
 
-use super::Case;
-use super::chance::{Chance, round};
-use super::draw::Wish;
-pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
-use crate::data::{Axis, ChannelSpec, Coupling, End, Source, Tolerances, Unit};
+use crate::data::{Axis, ChannelSpec, End, STANDARD_GRAVITY_M_S2, Tolerances};
+use crate::lab::chance::{Chance, round};
+use crate::lab::damage::Wish;
 use crate::lab::data::{Chain, SceneChannel};
-use crate::lab::synth;
-use crate::numerics::reduce;
+use crate::lab::drawn::{DrawnDrop, spec, unit_m_s2};
 
 /// Sample rates of the recorders, Hz.
 const RATES_HZ: [f64; 8] = [2e3, 5e3, 10e3, 20e3, 50e3, 100e3, 200e3, 500e3];
@@ -32,13 +29,23 @@ struct Seat {
 }
 
 /// Puts sensors on the cask and a recorder behind them.
-pub(super) fn equip(case: &mut Case, wish: &Wish, exact: bool) {
+pub(super) fn equip(case: &mut DrawnDrop, wish: &Wish, exact: bool) {
     let rate_hz = timed(case, wish);
     let seats = seats(case, wish);
     let chain = chain(&mut case.chance, rate_hz);
-    let unit_is_g = case.chance.is(0.8);
+    let unit = if case.chance.is(0.8) { "g" } else { "m/s^2" };
+    let common = SceneChannel {
+        name: String::new(),
+        end: End::First,
+        axis: Axis::Transverse,
+        position_m: 0.0,
+        offset_m: 0.0,
+        unit: unit.to_owned(),
+        sample_rate_hz: rate_hz,
+        chain,
+    };
     for seat in seats {
-        let (channel, spec) = mounted(case, &seat, (&chain, unit_is_g), rate_hz, exact);
+        let (channel, spec) = mounted(case, &seat, &common, exact);
         case.scene.channels.push(channel);
         case.stated.channels.push(spec);
     }
@@ -46,7 +53,7 @@ pub(super) fn equip(case: &mut Case, wish: &Wish, exact: bool) {
 }
 
 /// Sets how long the record is; returns the sample rate, Hz.
-fn timed(case: &mut Case, wish: &Wish) -> f64 {
+fn timed(case: &mut DrawnDrop, wish: &Wish) -> f64 {
     let truth = case.motion.truth;
     let chance = &mut case.chance;
     let fall_s = (2.0 * case.scene.drop.height_m / case.scene.drop.gravity_m_s2).sqrt();
@@ -76,7 +83,7 @@ fn timed(case: &mut Case, wish: &Wish) -> f64 {
 }
 
 /// One transverse sensor near each end, sometimes more, sometimes an axial one.
-fn seats(case: &mut Case, wish: &Wish) -> Vec<Seat> {
+fn seats(case: &mut DrawnDrop, wish: &Wish) -> Vec<Seat> {
     let cask = &case.stated.cask;
     let chance = &mut case.chance;
     let is_off_axis = chance.is(0.2);
@@ -125,12 +132,11 @@ fn chain(chance: &mut Chance, rate_hz: f64) -> Chain {
     }
 }
 
-/// A channel as it is and as the cask file states it.
+/// A channel as it is and as the cask file states it; `common` is what all channels have in common.
 fn mounted(
-    case: &mut Case,
+    case: &mut DrawnDrop,
     seat: &Seat,
-    (common, unit_is_g): (&Chain, bool),
-    rate_hz: f64,
+    common: &SceneChannel,
     exact: bool,
 ) -> (SceneChannel, ChannelSpec) {
     let Tolerances { calibration, cross_axis, position_m, .. } = case.stated.tolerances;
@@ -142,61 +148,35 @@ fn mounted(
         axis: seat.axis,
         position_m: (seat.position_m + off * chance.within(position_m)).clamp(0.0, case.stated.cask.length_m),
         offset_m: seat.offset_m,
-        unit: if unit_is_g { "g" } else { "m/s^2" }.to_owned(),
-        sample_rate_hz: rate_hz,
         chain: Chain {
             scale: 1.0 + off * chance.within(calibration),
             cross_axis: off * chance.within(cross_axis),
             offset_m_s2: chance.even(-0.5, 0.5) * STANDARD_GRAVITY_M_S2,
-            ..common.clone()
+            ..common.chain.clone()
         },
+        ..common.clone()
     };
-    let spec = ChannelSpec {
-        name: channel.name.clone(),
-        end: seat.end,
-        axis: seat.axis,
-        source: Source::Path(channel.name.clone()),
-        unit: Some(if unit_is_g { Unit::G } else { Unit::MetrePerSecondSquared }),
-        position_m: seat.position_m,
-        offset_m: seat.offset_m,
-        polarity: 1.0,
-        full_scale: None,
-        sample_rate_hz: None,
-        time: None,
-        coupling: Coupling::Dc,
-    };
-    (channel, spec)
+    let stated = ChannelSpec { position_m: seat.position_m, ..spec(&channel) };
+    (channel, stated)
 }
 
 /// Gives every channel a converter that its peak fills to a share; half of the cask files state the full scale.
-fn converters(case: &mut Case) {
+fn converters(case: &mut DrawnDrop) {
     let bits = case.chance.one_of(&[16_u8, 18, 20, 24]);
     let is_stated = case.chance.is(0.5);
     for i in 0..case.scene.channels.len() {
         let room = case.chance.log_even(1.2, 10.0);
-        let peak_m_s2 = peak_m_s2(case, i);
+        let peak_m_s2 = case.peak_m_s2(i);
         let limit_m_s2 = room * (peak_m_s2 + beyond_m_s2(case, i, peak_m_s2));
         case.scene.channels[i].chain.full_scale_m_s2 = Some(limit_m_s2);
         case.scene.channels[i].chain.bits = Some(bits);
         case.stated.channels[i].full_scale =
-            is_stated.then(|| limit_m_s2 / unit_m_s2(&case.scene.channels[i]));
+            is_stated.then(|| limit_m_s2 / unit_m_s2(&case.scene.channels[i].unit));
     }
 }
 
-/// m/s² per unit of the recording.
-pub(super) fn unit_m_s2(channel: &SceneChannel) -> f64 {
-    if channel.unit == "g" { STANDARD_GRAVITY_M_S2 } else { 1.0 }
-}
-
-/// The largest force of the drop at channel `i`, as the channel scales it, m/s².
-pub(super) fn peak_m_s2(case: &Case, i: usize) -> f64 {
-    let channel = &case.scene.channels[i];
-    let force = synth::specific_force_m_s2(&case.scene, &case.motion, channel, &case.motion.time_s);
-    channel.chain.scale * reduce::peak(&force)
-}
-
 /// What channel `i` adds to that: offset, noise, and what its filters overshoot, m/s².
-fn beyond_m_s2(case: &Case, i: usize, peak_m_s2: f64) -> f64 {
+fn beyond_m_s2(case: &DrawnDrop, i: usize, peak_m_s2: f64) -> f64 {
     /// A Butterworth of fourth order overshoots a step by 11 %; pulses of 25 samples by far less.
     const OVERSHOOT: f64 = 0.05;
     let chain = &case.scene.channels[i].chain;

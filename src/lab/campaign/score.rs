@@ -1,38 +1,32 @@
 //! An analysis beside its truth to a row, and rows to CSV.
 
-use super::Case;
-use super::chance::round;
-use super::statistics;
-use crate::data::{
-    Analysis, Contact, Estimate, ReconstructionCandidate, ReconstructionRung, Severity, Verdict,
-};
-use crate::lab::data::{Campaign, CampaignRow, Damage, SceneNumber, Scored, Truth};
+use super::{RecordedScene, statistics};
+use crate::data::{Analysis, Estimate, ReconstructionRung, Severity, Verdict};
+use crate::lab::chance::round;
+use crate::lab::data::{Campaign, CampaignRow, SceneNumber, Scored, Truth};
 
-/// The row of a scene whose first contact is so long after the first sample; no analysis: the recording was refused.
-pub(super) fn row(
-    (number, damage): (SceneNumber, Option<Damage>),
-    case: Case,
-    first_contact_s: f64,
-    (analysis, analysis_s): (Option<&Analysis>, f64),
-) -> CampaignRow {
-    let truth = case.motion.truth;
-    let slap_down_s = truth.slap_t.map(|t| first_contact_s + t * (1.0 + case.scene.clock_error));
+/// The row of a scene, without the time that its analysis took; no analysis: the recording was refused.
+pub(super) fn row(number: SceneNumber, scene: RecordedScene, analysis: Option<&Analysis>) -> CampaignRow {
+    let RecordedScene { drop, redraws, damage, recording } = scene;
+    let truth = drop.motion.truth;
+    let first_contact_s = recording.first_contact_s;
+    let slap_down_s = truth.slap_t.map(|t| first_contact_s + t * (1.0 + drop.scene.clock_error));
+    let result = analysis.map(|a| &a.result);
+    let choice = result.and_then(|r| r.reconstruction.as_ref());
     CampaignRow {
         number,
         damage,
-        verdict: analysis.map(|a| a.result.verdict),
-        findings: analysis.map_or_else(Vec::new, |a| {
-            a.result.quality.iter().map(|issue| (issue.code, issue.severity)).collect()
-        }),
+        verdict: result.map(|r| r.verdict),
+        findings: result.into_iter().flat_map(|r| &r.quality).map(|i| (i.code, i.severity)).collect(),
         quantities: quantities(&truth, (first_contact_s, slap_down_s), analysis),
-        rung: analysis.and_then(rung),
-        candidates: analysis.map_or_else(Vec::new, rungs),
-        misses_u: analysis.map_or_else(Vec::new, misses_u),
+        rung: choice.map(|choice| choice.rung),
+        candidates: choice.map_or_else(Vec::new, |choice| choice.candidates.clone()),
+        misses_u: choice.into_iter().flat_map(|c| &c.closures).map(|c| c.miss_in_u).collect(),
         truth,
-        scene: case.scene,
-        stated: case.stated,
-        analysis_s,
-        redraws: case.redraws,
+        scene: drop.scene,
+        stated: drop.stated,
+        analysis_s: 0.0,
+        redraws,
     }
 }
 
@@ -54,22 +48,6 @@ fn quantities(truth: &Truth, times_s: (f64, Option<f64>), analysis: Option<&Anal
         scored("contact_time", first_impact.and_then(|f| f.time), Some(times_s.0)),
         scored("slap_down_time", slap_down.and_then(|s| s.time), times_s.1),
     ]
-}
-
-/// The rung of the reconstruction that was taken.
-fn rung(analysis: &Analysis) -> Option<ReconstructionRung> {
-    analysis.result.reconstruction.as_ref().map(|choice| choice.rung)
-}
-
-/// What every rung of the reconstruction says.
-fn rungs(analysis: &Analysis) -> Vec<ReconstructionCandidate> {
-    analysis.result.reconstruction.as_ref().map_or_else(Vec::new, |choice| choice.candidates.clone())
-}
-
-/// By how many standard uncertainties each closure is missed.
-fn misses_u(analysis: &Analysis) -> Vec<f64> {
-    let closures = analysis.result.reconstruction.iter().flat_map(|choice| &choice.closures);
-    closures.map(|closure| closure.miss_in_u).collect()
 }
 
 /// The rows as CSV, one a scene; times of the analysis are left out, so that the same campaign gives the same bytes.
@@ -149,8 +127,8 @@ fn scene_cells(row: &CampaignRow) -> Vec<Cell> {
         cell("stated_drop_height_m", stated.drop.height_m),
         cell("angle_deg", truth.angle_deg),
         cell("stated_angle_deg", round(stated.drop.angle_rad.to_degrees(), 9)),
-        cell("contact", friction(scene.contact)),
-        cell("stated_contact", friction(stated.contact)),
+        cell("contact", scene.contact),
+        cell("stated_contact", stated.contact),
         maybe("contact_s", truth.contact_s),
         cell("yields", yes(scene.first_end.yield_n.is_some())),
         cell("modes", scene.modes.len()),
@@ -224,10 +202,6 @@ pub(super) fn verdict(verdict: Option<Verdict>) -> &'static str {
         Some(Verdict::Review) => "review",
         Some(Verdict::Fail) => "fail",
     }
-}
-
-fn friction(contact: Contact) -> String {
-    contact.to_string()
 }
 
 fn yes(is: bool) -> &'static str {

@@ -1,5 +1,6 @@
 //! Each method of the program beside its rivals: time, error against a truth, and where it fails.
 
+mod contest;
 mod drops;
 mod front;
 pub mod rivals;
@@ -7,7 +8,6 @@ mod samples;
 pub mod timing;
 
 pub use front::front;
-pub use samples::accuracy as sample_accuracy;
 
 use crate::lab::data::{Trial, TrialJob, TrialMachine, TrialPart, TrialPeerWork, TrialRequest};
 

@@ -57,12 +57,7 @@ swapped_polarity = true
 "#;
 
 fn of(text: &str) -> Result<SceneFile, CaskFileError> {
-    let crush = |_: &Cask, _: &Drop, _, end: End, wanted: WantedImpact| CrushableEnd {
-        loading_n_m: wanted.duration_s,
-        unloading_n_m: wanted.restitution,
-        yield_n: wanted.yield_share.or((end == End::Second).then_some(2.0)),
-    };
-    checked(Path::new("scene.toml"), text, &crush)
+    checked(Path::new("scene.toml"), text)
 }
 
 fn near(value: f64, wanted: f64) {
@@ -74,8 +69,9 @@ fn near(value: f64, wanted: f64) {
 fn six_lines_make_a_scene() {
     let SceneFile { scene, stated } = of(SHORT).unwrap();
     assert_eq!((scene.name.as_str(), scene.seed, scene.modes.len()), ("scene", 1, 0));
-    near(scene.first_end.loading_n_m, 6e-3);
-    near(scene.second_end.unloading_n_m, 0.3);
+    // The stiffnesses of an end are as k².
+    near(scene.first_end.loading_n_m / scene.first_end.unloading_n_m, 0.25);
+    near(scene.second_end.loading_n_m / scene.second_end.unloading_n_m, 0.09);
     assert_eq!(scene.channels.len(), 2);
     near(scene.channels[0].position_m, 0.15);
     near(scene.channels[1].position_m, 1.85);
@@ -86,7 +82,8 @@ fn six_lines_make_a_scene() {
 #[test]
 fn every_key_finds_its_place() {
     let SceneFile { scene, stated } = of(FULL).unwrap();
-    near(scene.first_end.yield_n.unwrap(), 0.8);
+    near(scene.first_end.loading_n_m / scene.first_end.unloading_n_m, 0.3025);
+    assert!(scene.first_end.yield_n.is_some());
     near(scene.second_end.unloading_n_m, 4e7);
     assert_eq!(scene.modes[0].order, 2);
     // 9 m take 1.3546 s.

@@ -1,26 +1,21 @@
 //! A wanted pulse and restitution to the stiffnesses of the end that gives them.
 
 use crate::data::{Cask, Contact, Drop, End};
-use crate::lab::data::CrushableEnd;
+use crate::lab::data::{CrushableEnd, WantedImpact};
 use std::f64::consts::FRAC_PI_2;
-
-/// The impact that an end is to give.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pulse {
-    /// How long the contact lasts, s; a yield plateau lengthens it.
-    pub duration_s: f64,
-    /// k, above 0 and not above 1.
-    pub restitution: f64,
-    /// Yield force over the peak that the elastic end would have at the drop's impact velocity; `None`: no yield.
-    pub yield_share: Option<f64>,
-}
 
 /// The end whose impact is `pulse`: K = m_eff (π/2 (1 + k)/T)², K_u = K/k².
 ///
 /// m_eff is the mass that the corner of `end` shows the target: of L at the drop angle under `contact`; of R with the
 /// axis flat and sliding freely. The turn of the body and gravity during the pulse are left out.
 #[must_use]
-pub fn crushable_end(cask: &Cask, drop: &Drop, contact: Contact, end: End, pulse: Pulse) -> CrushableEnd {
+pub fn crushable_end(
+    cask: &Cask,
+    drop: &Drop,
+    contact: Contact,
+    end: End,
+    pulse: WantedImpact,
+) -> CrushableEnd {
     let (reach_m, angle_rad, contact) = match end {
         End::First => (cask.cog_m, drop.angle_rad, contact),
         End::Second => (cask.length_m - cask.cog_m, 0.0, Contact::Smooth),
@@ -60,7 +55,7 @@ mod tests {
         for contact in [Contact::Rough, Contact::Smooth, Contact::Coulomb(0.2)] {
             let mut scene = example::anf18();
             scene.contact = contact;
-            let pulse = Pulse { duration_s: 2e-4, restitution: 0.4, yield_share: None };
+            let pulse = WantedImpact { duration_s: 2e-4, restitution: 0.4, yield_share: None };
             scene.first_end = crushable_end(&scene.cask, &scene.drop, contact, End::First, pulse);
             let truth = simulate(&scene).truth;
             // Left out: the turn within the pulse, φ̇ T = 1e-3 rad on arms of m, and g T = 2e-3 m/s of 13.3 m/s.
@@ -75,7 +70,7 @@ mod tests {
     fn the_yield_force_is_a_share_of_the_peak() {
         let mut scene = example::anf18();
         scene.contact = Contact::Smooth;
-        let pulse = Pulse { duration_s: 2e-4, restitution: 0.4, yield_share: Some(0.5) };
+        let pulse = WantedImpact { duration_s: 2e-4, restitution: 0.4, yield_share: Some(0.5) };
         let yielding = crushable_end(&scene.cask, &scene.drop, scene.contact, End::First, pulse);
         let elastic = CrushableEnd { yield_n: None, ..yielding };
         let peak_n = |end: CrushableEnd, scene: &mut crate::lab::data::Scene| {

@@ -14,7 +14,7 @@ mod truth;
 
 pub use beam::MOST_MODES;
 pub use chain::record;
-pub use crush::{Pulse, crushable_end};
+pub use crush::crushable_end;
 pub use motion::simulate;
 pub use sensor::specific_force_m_s2;
 

@@ -2,17 +2,13 @@
 
 mod detection;
 mod flight;
-mod method_map;
 mod prediction;
 mod reconstruction;
 mod roots;
 mod sample;
-mod scene;
-mod stresses;
-mod summary;
 mod sweep;
 
-use crate::lab::data::{TrialJob, TrialPart, TrialRequest};
+use crate::lab::data::TrialJob;
 
 pub(in crate::lab::methods) use reconstruction::peer_work;
 
@@ -24,20 +20,8 @@ pub(super) fn jobs() -> Vec<TrialJob> {
         job("reconstruction", 6.0, reconstruction::run),
         job("root", 0.5, roots::run),
         job("prediction", 4.0, prediction::run),
-        job("recorder", 12.0, recorder),
-        job("statements", 6.0, statements),
-        job("drops", 9.0, drops),
+        job("recorder", 12.0, |request, progress| sweep::run("chain", request, progress)),
+        job("statements", 4.0, |request, progress| sweep::run("stated", request, progress)),
+        job("drops", 9.0, |request, progress| sweep::run("drop", request, progress)),
     ]
-}
-
-fn recorder(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
-    sweep::run(stresses::RECORDER, request, progress)
-}
-
-fn statements(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
-    sweep::run(stresses::STATEMENTS, request, progress)
-}
-
-fn drops(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
-    sweep::run(stresses::DROPS, request, progress)
 }

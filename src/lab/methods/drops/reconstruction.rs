@@ -1,29 +1,34 @@
 //! The rungs of the reconstruction to how far off each leaves slap-down speed and k, and what it costs by itself.
 
-use super::flight::{CALM, NOISY, ONE_MODE, SLOW_MODE};
-use super::sample::{self, Class, Prepared};
-use super::scene::Drawn;
-use super::summary::{Subject, by_class, point};
-use crate::analysis::{self, analyze, settle};
-use crate::data::{
-    At, Axis, End, Estimate, Events, FlightFit, ReconstructionChoice, ReconstructionRung, Setup,
-};
+use super::flight::{CALM, ONE_MODE, SLOW_MODE};
+use super::sample::{self, DropClass, NOISY, Prepared};
+use crate::analysis::{self, settle};
+use crate::data::{At, Axis, End, Estimate, Events, FlightFit, ReconstructionRung, Setup};
 use crate::lab::data::{TrialPart, TrialPeerWork, TrialPoint, TrialRequest};
+use crate::lab::drawn::DrawnDrop;
+use crate::lab::methods::contest::{Purpose, Record, by_class};
 use crate::lab::methods::timing::{Effort, Timing, Work, in_turn};
+use crate::lab::plan::Plan;
 use crate::{fit, motion};
 use rayon::prelude::*;
 use std::hint::black_box;
 
-const CLASSES: [Class; 5] = [
+const CLASSES: [DropClass; 5] = [
     CALM,
     NOISY,
     ONE_MODE,
     SLOW_MODE,
-    Class { name: "12 ms pulse", make: |plan, _, _| plan.pulse_s = 0.012 },
+    DropClass { name: "12 ms pulse", make: |plan, _, _| plan.pulse_s = 0.012 },
 ];
 
-/// The family that others are held against too, and its error.
-const SPEED: (&str, &str) = ("reconstruction, speed", "% of the slap-down speed");
+/// Speed, which programs of others are held against too, and k.
+const SPEED: Purpose = Purpose {
+    name: "reconstruction, speed",
+    error_unit: "% of the slap-down speed",
+    time_per: "call",
+    missing: 100.0,
+};
+const K: Purpose = Purpose { name: "reconstruction, k", error_unit: "1", time_per: "call", missing: 1.0 };
 
 /// What the result gives: the rung that it says to take.
 const TAKEN: &str = "as taken";
@@ -40,18 +45,18 @@ pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
 
 /// Some drops of each class for programs of others: what the second end reads, and the speed that it strikes with.
 pub(in crate::lab::methods) fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
-    let of_class = |class: &Class| {
+    let of_class = |class: &DropClass| {
         let plans = sample::plans(class, if request.quick { 4 } else { 12 }, request);
         let of_drop = |drop: &Prepared| {
             let second = drop.signals.iter().find(|s| s.end == End::Second && s.axis == Axis::Transverse)?;
             Some(TrialPeerWork {
-                family: SPEED.0,
+                family: SPEED.name,
                 class: class.name.to_owned(),
                 low_pass: None,
-                drop: Some((second.sample_rate_hz, drop.drawn.stated.drop.impact_velocity_m_s)),
+                drop: Some((second.sample_rate_hz, drop.drop.stated.drop.impact_velocity_m_s)),
                 samples: second.force_m_s2.clone(),
-                truth: vec![drop.drawn.truth().speed?],
-                error_unit: SPEED.1,
+                truth: vec![drop.drop.motion.truth.speed?],
+                error_unit: SPEED.error_unit,
             })
         };
         sample::prepared(&plans).iter().filter_map(of_drop).collect::<Vec<_>>()
@@ -59,51 +64,52 @@ pub(in crate::lab::methods) fn peer_work(request: &TrialRequest) -> Vec<TrialPee
     CLASSES.iter().flat_map(of_class).collect()
 }
 
-fn of_class(class: &Class, plans: &[super::scene::Plan], request: &TrialRequest) -> Vec<TrialPoint> {
-    let readings: Vec<Vec<(Option<f64>, Option<f64>)>> =
-        plans.par_iter().map(|plan| off(&plan.draw())).collect();
-    let timed =
-        plans.first().into_iter().flat_map(|plan| sample::prepared(std::slice::from_ref(plan))).next();
-    let Some(timings) = timed.as_ref().and_then(|drop| times(drop, request)) else { return Vec::new() };
+fn of_class(class: &DropClass, plans: &[Plan], request: &TrialRequest) -> Vec<TrialPoint> {
+    let errors: Vec<[Errors; METHODS.len()]> = plans.par_iter().map(|plan| errors(&plan.draw())).collect();
+    let timed = sample::prepared(plans.get(..1).unwrap_or_default());
+    let Some(timings) = timed.first().and_then(|drop| times(drop, request)) else { return Vec::new() };
     let mut points = Vec::new();
     for (i, method) in METHODS.into_iter().enumerate() {
-        let subject = |family, error_unit| Subject {
-            family,
-            method,
-            class: class.name,
+        let record = |error: fn(&Errors) -> Option<f64>| Record {
+            method: method.to_owned(),
             is_default: method == TAKEN,
-            error_unit,
+            errors: errors.iter().map(|of_drop| error(&of_drop[i])).collect(),
+            timing: timings[i],
         };
-        let speeds: Vec<Option<f64>> = readings.iter().map(|r| r[i].0).collect();
-        let ks: Vec<Option<f64>> = readings.iter().map(|r| r[i].1).collect();
-        points.push(point(subject(SPEED.0, SPEED.1), &speeds, 100.0, timings[i]));
-        points.push(point(subject("reconstruction, k", "1"), &ks, 1.0, timings[i]));
+        points.push(SPEED.point(class.name, record(|errors| errors.speed_percent)));
+        points.push(K.point(class.name, record(|errors| errors.k)));
     }
     points
 }
 
-/// Errors of speed, %, and k by each method, in the order of [`METHODS`]; none where there is no number.
-fn off(drawn: &Drawn) -> Vec<(Option<f64>, Option<f64>)> {
-    let truth = drawn.truth();
-    let result = drawn.recorded().1.map(|recording| analyze(&recording, &drawn.stated).result);
-    let speed_off = |stated: Option<Estimate>| {
-        let (stated, truth) = stated.zip(truth.speed)?;
-        Some(100.0 * (stated.value / truth - 1.0).abs())
+/// What a method misses on a drop; none where it gives no number.
+struct Errors {
+    speed_percent: Option<f64>,
+    k: Option<f64>,
+}
+
+/// The errors of each of [`METHODS`].
+fn errors(drop: &DrawnDrop) -> [Errors; METHODS.len()] {
+    let truth = &drop.motion.truth;
+    let result = drop.analyzed(&drop.recorded()).map(|analysis| analysis.result);
+    let errors = |speed: Option<Estimate>, k: Option<Estimate>| Errors {
+        speed_percent: speed.zip(truth.speed).map(|(e, truth)| 100.0 * (e.value / truth - 1.0).abs()),
+        k: k.zip(truth.k).map(|(e, truth)| (e.value - truth).abs()),
     };
-    let k_off = |stated: Option<Estimate>| Some((stated?.value - truth.k?).abs());
-    let choice: Option<&ReconstructionChoice> = result.as_ref().and_then(|r| r.reconstruction.as_ref());
+    let candidates = result.iter().filter_map(|r| r.reconstruction.as_ref()).flat_map(|c| &c.candidates);
     let by_rung = |rung: ReconstructionRung| {
-        let candidate = choice.and_then(|c| c.candidates.iter().find(|c| c.rung == rung));
-        (speed_off(candidate.and_then(|c| c.speed)), k_off(candidate.and_then(|c| c.k)))
+        let candidate = candidates.clone().find(|candidate| candidate.rung == rung);
+        errors(candidate.and_then(|c| c.speed), candidate.and_then(|c| c.k))
     };
-    let taken = result.as_ref().map_or((None, None), |r| (speed_off(r.slap_down.speed), k_off(r.k)));
-    ReconstructionRung::ALL.into_iter().map(by_rung).chain([taken]).collect()
+    let [channels, planar, flight, joint] = ReconstructionRung::ALL.map(by_rung);
+    let taken = result.as_ref().map_or(errors(None, None), |r| errors(r.slap_down.speed, r.k));
+    [channels, planar, flight, joint, taken]
 }
 
 /// What each rung takes once the events are known, in the order of [`METHODS`]: the number alone for the first three, all rungs with
 /// their intervals for the joint fit and the choice, which are one piece of work.
 fn times(drop: &Prepared, request: &TrialRequest) -> Option<Vec<Timing>> {
-    let (signals, file) = (&drop.signals, &drop.drawn.stated);
+    let (signals, file) = (&drop.signals, &drop.drop.stated);
     let integrate = || motion::Integrated::over(black_box(signals), drop.contact_s);
     let integrated = integrate();
     let settled = settle::settle(file, &integrated)?;

@@ -1,15 +1,12 @@
 //! Ways to find the end of the flight to how far off they are, and what they cost.
 
-use super::summary::{Subject, by_class, point};
-use crate::lab::data::{TrialPart, TrialPoint, TrialRequest};
+use crate::lab::chance::Chance;
+use crate::lab::data::{TrialPart, TrialRequest};
+use crate::lab::drawn::GRAVITY_M_S2;
+use crate::lab::methods::contest::{Contest, Purpose, by_class};
 use crate::lab::methods::rivals::root::{RootMethod, root_by};
-use crate::lab::methods::timing::{Effort, Work, in_turn};
-use rand::rngs::ChaCha8Rng;
-use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
-use std::hint::black_box;
 
-const GRAVITY_M_S2: f64 = 9.81;
 /// Height that counts as touching, m.
 const TOUCH_M: f64 = 1e-9;
 /// Grid on which a flight's changes of sign are counted: two roots closer than a twenty-thousandth of it are one.
@@ -17,7 +14,7 @@ const GRID: u32 = 20_000;
 
 /// R's corner in flight: z(τ) = z₀ + ż₀ τ − g τ²/2 + r sin(φ0 − ω τ) − (h/2) cos(φ0 − ω τ), and a root known by construction.
 #[derive(Clone, Copy)]
-struct Flight {
+struct RootedFlight {
     height_m: f64,
     rising_m_s: f64,
     turning_rad_s: f64,
@@ -30,7 +27,7 @@ struct Flight {
     last_s: f64,
 }
 
-impl Flight {
+impl RootedFlight {
     /// Height and its slope.
     fn at(&self, t: f64) -> (f64, f64) {
         let (sin, cos) = (self.angle_rad - self.turning_rad_s * t).sin_cos();
@@ -46,8 +43,8 @@ impl Flight {
     }
 
     /// A flight with L on the target at its start and R on it at `root_s`: the rise of S is what makes it so.
-    fn with_root(random: &mut ChaCha8Rng, class: &Class) -> Self {
-        let mut between = |(low, high): (f64, f64)| low + (high - low) * random.random::<f64>();
+    fn with_root(chance: &mut Chance, class: &RootClass) -> Self {
+        let mut between = |(low, high): (f64, f64)| chance.even(low, high);
         let (length_m, half_section_m) = (between((4.5, 5.6)), between((0.0, 0.5)));
         let reach_m = 0.5 * length_m;
         let angle_rad = between(class.angle_deg).to_radians();
@@ -94,7 +91,7 @@ impl Flight {
 }
 
 /// Flights of one kind: angle at the start, how far past flat R strikes, ω, and how often the height may change its sign.
-struct Class {
+struct RootClass {
     name: &'static str,
     angle_deg: (f64, f64),
     beyond_deg: (f64, f64),
@@ -102,29 +99,29 @@ struct Class {
     changes: std::ops::RangeInclusive<u32>,
 }
 
-const CLASSES: [Class; 4] = [
-    Class {
+const CLASSES: [RootClass; 4] = [
+    RootClass {
         name: "flat, 3 to 8°",
         angle_deg: (3.0, 8.0),
         beyond_deg: (0.0, 2.0),
         turning_rad_s: (3.0, 8.0),
         changes: 1..=1,
     },
-    Class {
+    RootClass {
         name: "usual, 8 to 30°",
         angle_deg: (8.0, 30.0),
         beyond_deg: (0.0, 10.0),
         turning_rad_s: (3.0, 8.0),
         changes: 1..=1,
     },
-    Class {
+    RootClass {
         name: "steep, 30 to 70°",
         angle_deg: (30.0, 70.0),
         beyond_deg: (0.0, 40.0),
         turning_rad_s: (2.0, 8.0),
         changes: 1..=1,
     },
-    Class {
+    RootClass {
         name: "steep, several roots",
         angle_deg: (30.0, 70.0),
         beyond_deg: (20.0, 100.0),
@@ -140,37 +137,44 @@ enum Way {
     ClosedForm,
 }
 
-impl Way {
-    fn root_s(self, flight: &Flight) -> Option<f64> {
-        match self {
-            Self::By(method) => {
-                root_by(method, |t| flight.at(t), flight.bound_m_s2(), flight.last_s, TOUCH_M)
-            }
-            Self::ClosedForm => flight.closed_form_s(),
-        }
-    }
-
-    fn words(self) -> &'static str {
-        match self {
-            Self::By(method) => method.words(),
-            Self::ClosedForm => "closed form (small angles)",
-        }
+fn contest() -> Contest<Way, RootedFlight, f64> {
+    Contest {
+        purpose: Purpose {
+            name: "root of the flight",
+            error_unit: "% of the flight",
+            time_per: "call",
+            missing: 100.0,
+        },
+        methods: RootMethod::ALL.into_iter().map(Way::By).chain([Way::ClosedForm]).collect(),
+        default: Way::By(RootMethod::default()),
+        name: |way| match way {
+            Way::By(method) => method.words().to_owned(),
+            Way::ClosedForm => "closed form (small angles)".to_owned(),
+        },
+        run: |way, flight| match way {
+            Way::By(method) => root_by(method, |t| flight.at(t), flight.bound_m_s2(), flight.last_s, TOUCH_M),
+            Way::ClosedForm => flight.closed_form_s(),
+        },
+        error: |flight, found_s| 100.0 * (found_s / flight.root_s - 1.0).abs(),
+        parts: |_| 1,
     }
 }
 
 pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
-    let part = by_class(&CLASSES, progress, |class| of_class(class, request));
+    let contest = contest();
+    let part = by_class(&CLASSES, progress, |class| {
+        contest.points(class.name, &flights(class, request), 16, request)
+    });
     progress(1.0);
     part
 }
 
 /// Flights of a class; one that is not to be had in a thousand attempts is left out.
-fn flights(class: &Class, request: &TrialRequest) -> Vec<Flight> {
+fn flights(class: &RootClass, request: &TrialRequest) -> Vec<RootedFlight> {
     let count: u64 = if request.quick { 60 } else { 1000 };
     let draw = |number: u64| {
-        let mut random = ChaCha8Rng::seed_from_u64(request.seed);
-        random.set_stream(number);
-        (0..1000).map(|_| Flight::with_root(&mut random, class)).find(|flight| {
+        let mut chance = Chance::new(request.seed, number);
+        (0..1000).map(|_| RootedFlight::with_root(&mut chance, class)).find(|flight| {
             let steep = flight.at(flight.root_s).1 < -0.1;
             steep && {
                 let (is_first, changes) = flight.signs();
@@ -179,32 +183,4 @@ fn flights(class: &Class, request: &TrialRequest) -> Vec<Flight> {
         })
     };
     (0..count).into_par_iter().filter_map(draw).collect()
-}
-
-fn of_class(class: &Class, request: &TrialRequest) -> Vec<TrialPoint> {
-    let flights = flights(class, request);
-    let Some(timed) = flights.get(..flights.len().min(16)) else { return Vec::new() };
-    let ways: Vec<Way> = RootMethod::ALL.into_iter().map(Way::By).chain([Way::ClosedForm]).collect();
-    let mut work: Vec<Work> = Vec::new();
-    for way in &ways {
-        work.push(Box::new(move || {
-            for flight in timed {
-                black_box(way.root_s(black_box(flight)));
-            }
-        }));
-    }
-    let timings = in_turn(&mut work, Effort::of(request.quick));
-    let points = ways.iter().zip(timings).map(|(way, timing)| {
-        let error = |flight: &Flight| way.root_s(flight).map(|t| 100.0 * (t / flight.root_s - 1.0).abs());
-        let errors: Vec<Option<f64>> = flights.iter().map(error).collect();
-        let subject = Subject {
-            family: "root of the flight",
-            method: way.words(),
-            class: class.name,
-            is_default: *way == Way::By(RootMethod::default()),
-            error_unit: "% of the flight",
-        };
-        point(subject, &errors, 100.0, timing.per(timed.len()))
-    });
-    points.collect()
 }

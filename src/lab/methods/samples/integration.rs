@@ -1,21 +1,24 @@
 //! Rules and sums of a running integral to their errors on pulses whose integral is known, and time.
 
-use super::summary::{Family, chance, silent_line, worst_of_peak};
-use crate::lab::data::{TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest};
+use super::worst_of_peak;
+use crate::lab::chance::Chance;
+use crate::lab::data::{TrialMap, TrialPart, TrialPeerWork, TrialRequest};
+use crate::lab::methods::contest::{Contest, DIVERGED, Purpose, by_class, map, silent_line};
 use crate::lab::methods::rivals::integration::{IntegrationRule, Summation, running_integral_by};
-use crate::lab::methods::timing::{Effort, Work, in_turn};
-use rand::{Rng, RngExt};
-use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use std::f64::consts::PI;
-use std::hint::black_box;
 
-const FAMILY: Family = Family { name: "integration", error_unit: "of the velocity step", time_per: "sample" };
+const INTEGRATION: Purpose = Purpose {
+    name: "integration",
+    error_unit: "of the velocity step",
+    time_per: "sample",
+    missing: DIVERGED,
+};
 
 /// Rule and sum.
-type Method = (IntegrationRule, Summation);
+type IntegrationMethod = (IntegrationRule, Summation);
 
-const METHODS: [Method; 7] = [
+const METHODS: [IntegrationMethod; 7] = [
     (IntegrationRule::CorrectedTrapezoid, Summation::F64),
     (IntegrationRule::Trapezoid, Summation::F64),
     (IntegrationRule::Simpson, Summation::F64),
@@ -25,16 +28,9 @@ const METHODS: [Method; 7] = [
     (IntegrationRule::CorrectedTrapezoid, Summation::Compensated),
 ];
 
-fn name((rule, summation): Method) -> String {
-    match summation {
-        Summation::F64 => rule.as_str().to_owned(),
-        other => format!("{}, {}", rule.as_str(), other.as_str()),
-    }
-}
-
 /// A pulse of height 1 between two silences.
 #[derive(Clone, Copy)]
-struct Pulse {
+struct ForcePulse {
     /// Its slope jumps at both ends: a half sine; else three derivatives are continuous: sin⁴.
     kinked: bool,
     /// Share of the record before it.
@@ -43,7 +39,7 @@ struct Pulse {
     length: f64,
 }
 
-impl Pulse {
+impl ForcePulse {
     fn force(self, share: f64) -> f64 {
         let angle = PI * (share - self.start) / self.length;
         if !(0.0..=PI).contains(&angle) {
@@ -68,102 +64,76 @@ impl Pulse {
 }
 
 /// A class: a record of 0.1 s.
-struct Class {
+struct PulseClass {
     name: &'static str,
     samples: u32,
     kinked: bool,
     noise: f64,
 }
 
-const CLASSES: [Class; 5] = [
-    Class { name: "smooth pulse, 10 kHz", samples: 1_000, kinked: false, noise: 0.0 },
-    Class { name: "smooth pulse, 100 kHz", samples: 10_000, kinked: false, noise: 0.0 },
-    Class { name: "kinked pulse, 10 kHz", samples: 1_000, kinked: true, noise: 0.0 },
-    Class { name: "kinked pulse, 100 kHz", samples: 10_000, kinked: true, noise: 0.0 },
-    Class { name: "smooth pulse with 1 % noise, 100 kHz", samples: 10_000, kinked: false, noise: 0.01 },
+const CLASSES: [PulseClass; 5] = [
+    PulseClass { name: "smooth pulse, 10 kHz", samples: 1_000, kinked: false, noise: 0.0 },
+    PulseClass { name: "smooth pulse, 100 kHz", samples: 10_000, kinked: false, noise: 0.0 },
+    PulseClass { name: "kinked pulse, 10 kHz", samples: 1_000, kinked: true, noise: 0.0 },
+    PulseClass { name: "kinked pulse, 100 kHz", samples: 10_000, kinked: true, noise: 0.0 },
+    PulseClass { name: "smooth pulse with 1 % noise, 100 kHz", samples: 10_000, kinked: false, noise: 0.01 },
 ];
 
-/// Samples and true velocities of a case; the record's length is 1.
-fn made(class: &Class, length: f64, seed: u64, case: u32) -> (Vec<f64>, Vec<f64>) {
-    let mut generator = chance(seed, case);
-    // The pulse begins anywhere between two samples.
-    let start = 0.3 + 0.1 * generator.random::<f64>();
-    let pulse = Pulse { kinked: class.kinked, start, length };
-    let share = |i: u32| f64::from(i) / f64::from(class.samples);
-    let force = (0..=class.samples).map(|i| {
-        let noise: f64 = StandardNormal.sample(&mut generator);
-        pulse.force(share(i)) + class.noise * noise
-    });
-    (force.collect(), (0..=class.samples).map(|i| pulse.velocity(share(i))).collect())
+/// Samples of a record of length 1, and its true velocities.
+struct ForceRecord {
+    force: Vec<f64>,
+    velocity: Vec<f64>,
 }
 
-fn error((rule, summation): Method, (force, truth): &(Vec<f64>, Vec<f64>)) -> f64 {
-    let step = 1.0 / f64::from(u32::try_from(force.len() - 1).unwrap_or(u32::MAX));
-    worst_of_peak(running_integral_by(rule, summation, force, step).into_iter(), truth)
-}
-
-/// Speed-accuracy points of every class; pulses of 8 to 12 ms.
-pub(super) fn points(request: &TrialRequest, effort: Option<Effort>) -> Vec<TrialPoint> {
-    let cases = if request.quick { 50 } else { 400 };
-    let mut points = Vec::new();
-    for class in &CLASSES {
-        let errors: Vec<Vec<f64>> = (0..cases)
-            .into_par_iter()
-            .map(|case| {
-                let length = 0.08 + 0.04 * f64::from(case) / f64::from(cases);
-                let made = made(class, length, request.seed, case);
-                METHODS.iter().map(|method| error(*method, &made)).collect()
-            })
-            .collect();
-        let timings = effort.map(|effort| {
-            let (force, _) = made(class, 0.1, request.seed, 0);
-            let mut work: Vec<Work> = METHODS
-                .iter()
-                .map(|&(rule, summation)| -> Work {
-                    let force = &force;
-                    Box::new(move || {
-                        drop(black_box(running_integral_by(rule, summation, black_box(force), 1e-5)));
-                    })
-                })
-                .collect();
-            in_turn(&mut work, effort).into_iter().map(|t| t.per(force.len())).collect::<Vec<_>>()
-        });
-        for (i, method) in METHODS.iter().enumerate() {
-            let errors = errors.iter().map(|case| case[i]).collect();
-            let is_default = *method == (IntegrationRule::default(), Summation::default());
-            let timing = timings.as_ref().and_then(|t| t.get(i).copied());
-            points.push(FAMILY.point((&name(*method), class.name), is_default, errors, timing));
-        }
+impl PulseClass {
+    fn record(&self, length: f64, seed: u64, number: u32) -> ForceRecord {
+        let mut chance = Chance::new(seed, u64::from(number));
+        // The pulse begins anywhere between two samples.
+        let pulse = ForcePulse { kinked: self.kinked, start: chance.even(0.3, 0.4), length };
+        let share = |i: u32| f64::from(i) / f64::from(self.samples);
+        let force = (0..=self.samples).map(|i| pulse.force(share(i)) + self.noise * chance.normal());
+        let force = force.collect();
+        ForceRecord { force, velocity: (0..=self.samples).map(|i| pulse.velocity(share(i))).collect() }
     }
-    points
+}
+
+fn contest(methods: &[IntegrationMethod]) -> Contest<IntegrationMethod, ForceRecord, Vec<f64>> {
+    Contest {
+        purpose: INTEGRATION,
+        methods: methods.to_vec(),
+        default: (IntegrationRule::default(), Summation::default()),
+        name: |(rule, summation)| match summation {
+            Summation::F64 => rule.as_str().to_owned(),
+            other => format!("{}, {}", rule.as_str(), other.as_str()),
+        },
+        run: |(rule, summation), record| {
+            let step = 1.0 / f64::from(u32::try_from(record.force.len() - 1).unwrap_or(u32::MAX));
+            Some(running_integral_by(rule, summation, &record.force, step))
+        },
+        error: |record, made| worst_of_peak(made.into_iter(), &record.velocity),
+        parts: |record| record.force.len(),
+    }
 }
 
 /// Error over the samples in a pulse.
 fn over_step(kinked: bool, request: &TrialRequest) -> TrialMap {
-    let shape = if kinked { "kinked" } else { "smooth" };
     let stresses: Vec<f64> = (-10..=-1).map(|quarter| 10_f64.powf(0.25 * f64::from(quarter))).collect();
-    let cases = if request.quick { 25 } else { 200 };
-    let class = Class { name: "", samples: 2_000, kinked, noise: 0.0 };
-    let rules = &METHODS[..5];
-    let line = |method: &Method| {
-        let at = |stress: &f64| {
-            // The record has 2000 samples: the pulse takes as many of them as one step is a share of it.
-            let length = 1.0 / (f64::from(class.samples) * stress);
-            let errors = (0..cases).map(|case| error(*method, &made(&class, length, request.seed, case)));
-            Some(super::summary::median_and_p95(errors.collect())[0])
-        };
-        silent_line(&name(*method), stresses.iter().map(at).collect())
+    let count = if request.quick { 25 } else { 200 };
+    let class = PulseClass { name: "", samples: 2_000, kinked, noise: 0.0 };
+    let records = |stress: &f64| {
+        // The record has 2000 samples: the pulse takes as many of them as one step is a share of it.
+        let length = 1.0 / (f64::from(class.samples) * stress);
+        (0..count).map(|number| class.record(length, request.seed, number)).collect()
     };
-    TrialMap {
-        name: format!("step-over-pulse-{shape}"),
-        title: format!("Velocity along a {shape} pulse as the samples in it grow few"),
-        stress: "time between samples over the pulse's length".to_owned(),
-        is_log: true,
-        error: "error, of the velocity step".to_owned(),
-        limit: 0.01,
-        lines: rules.iter().map(line).collect(),
-        stresses,
-    }
+    let lines = contest(&METHODS[..5]).lines(&stresses, records);
+    let shape = if kinked { "kinked" } else { "smooth" };
+    let words = [
+        &format!("step-over-pulse-{shape}"),
+        &format!("Velocity along a {shape} pulse as the samples in it grow few"),
+        "time between samples over the pulse's length",
+        "error, of the velocity step",
+    ];
+    map(words, stresses, 0.01, lines)
 }
 
 /// Relative error of sums of ever more samples: offset 1000 counts, noise of 256, held against the exact sum of whole numbers.
@@ -173,8 +143,8 @@ fn accumulation(request: &TrialRequest, longest: u64) -> TrialMap {
         .take_while(|count| *count <= longest)
         .collect();
     let counts = || {
-        let mut generator = chance(request.seed, 0);
-        std::iter::repeat_with(move || 1000 - 256 + i64::from(generator.next_u32() >> 23))
+        let mut chance = Chance::new(request.seed, 0);
+        std::iter::repeat_with(move || 1000 - 256 + i64::try_from(chance.index(512)).unwrap_or(0))
     };
     let mut exact = Vec::new();
     let (mut sum, mut at) = (0_i64, 0_u64);
@@ -205,49 +175,44 @@ fn accumulation(request: &TrialRequest, longest: u64) -> TrialMap {
                     break;
                 }
             }
-            silent_line(summation.as_str(), errors)
+            silent_line(summation.as_str().to_owned(), errors)
         })
         .collect();
     #[allow(clippy::cast_precision_loss, reason = "counts of samples up to 1e8")]
     let stresses = stresses.into_iter().map(|count| count as f64).collect();
-    TrialMap {
-        name: "accumulation".to_owned(),
-        title: "Sums of ever more samples with an offset".to_owned(),
-        stress: "samples summed".to_owned(),
-        is_log: true,
-        stresses,
-        error: "error, of the sum".to_owned(),
-        limit: 0.01,
-        lines,
-    }
-}
-
-/// Where rules and sums fail: few samples in a pulse, and many in a record.
-pub(super) fn maps(request: &TrialRequest, longest: u64) -> Vec<TrialMap> {
-    vec![over_step(false, request), over_step(true, request), accumulation(request, longest)]
+    let words =
+        ["accumulation", "Sums of ever more samples with an offset", "samples summed", "error, of the sum"];
+    map(words, stresses, 0.01, lines)
 }
 
 /// What programs of others are given.
 pub(super) fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
-    let work = |class: &Class| {
-        let (samples, truth) = made(class, 0.1, request.seed, 0);
+    let work = |class: &PulseClass| {
+        let ForceRecord { force, velocity } = class.record(0.1, request.seed, 0);
         TrialPeerWork {
-            family: FAMILY.name,
+            family: INTEGRATION.name,
             class: class.name.to_owned(),
             low_pass: None,
             drop: None,
-            samples,
-            truth,
-            error_unit: FAMILY.error_unit,
+            samples: force,
+            truth: velocity,
+            error_unit: INTEGRATION.error_unit,
         }
     };
     CLASSES.iter().map(work).collect()
 }
 
-/// The whole job.
-pub(super) fn run(request: &TrialRequest, done: &dyn Fn(f64)) -> TrialPart {
-    let points = points(request, Some(Effort::of(request.quick)));
-    done(0.6);
+/// The whole job: pulses of 8 to 12 ms in a record of 0.1 s; few samples in a pulse, and many in a record.
+pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
+    let count = if request.quick { 50 } else { 400 };
+    let part = by_class(&CLASSES, &|share| progress(0.6 * share), |class| {
+        let record = |number: u32| {
+            class.record(0.08 + 0.04 * f64::from(number) / f64::from(count), request.seed, number)
+        };
+        let records: Vec<ForceRecord> = (0..count).into_par_iter().map(record).collect();
+        contest(&METHODS).points(class.name, &records, 1, request)
+    });
     let longest = if request.quick { 10_000_000 } else { 100_000_000 };
-    TrialPart { points, maps: maps(request, longest) }
+    let maps = vec![over_step(false, request), over_step(true, request), accumulation(request, longest)];
+    TrialPart { maps, ..part }
 }

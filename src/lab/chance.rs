@@ -1,6 +1,5 @@
-//! A seed and a scene's number to its random numbers.
+//! A seed and the number of a stream to random numbers.
 
-use crate::lab::data::SceneNumber;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -8,17 +7,14 @@ use rand_distr::{Distribution, StandardNormal};
 /// Standard deviations in the half-width that holds 95 % of a normal distribution, as the analysis takes them.
 const SIGMAS_OF_95: f64 = 2.0;
 
-/// The random numbers of one scene.
+/// The random numbers of one scene or case.
 pub(super) struct Chance(ChaCha8Rng);
 
 impl Chance {
     /// A stream of its own for every scene, so that none moves another.
-    pub(super) fn new(seed: u64, number: SceneNumber) -> Self {
+    pub(super) fn new(seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        generator.set_stream(match number {
-            SceneNumber::Undamaged(number) => 2 * u64::from(number),
-            SceneNumber::Damaged(number) => 2 * u64::from(number) + 1,
-        });
+        generator.set_stream(stream);
         Self(generator)
     }
 

@@ -1,0 +1,145 @@
+//! A damage of sensor, cable or recorder to the measuring chain that has it.
+
+use super::super::data::Chain;
+use super::super::drawn::{DrawnDrop, unit_m_s2};
+use crate::data::{End, STANDARD_GRAVITY_M_S2};
+use std::f64::consts::TAU;
+
+/// Damages the scene by `kind`; one that is done to something else does nothing to it.
+pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
+    let size_m_s2 = size * STANDARD_GRAVITY_M_S2;
+    match kind {
+        "clip_first" => clip(case, End::First, size),
+        "clip_second" => clip(case, End::Second, size),
+        "gap_impact" => gap_impact(case, size),
+        "gap_flight" => gap_flight(case, size),
+        "dropouts" => dropouts(case, size),
+        "offset" => one(case, |chain, sign| chain.offset_m_s2 = sign * size_m_s2),
+        "zero_shift" => one(case, |chain, sign| chain.zero_shift_m_s2 = sign * size_m_s2),
+        "ac_undeclared" => one(case, |chain, _| chain.ac_time_constant_s = Some(1.0 / (TAU * size))),
+        "hum" => each(case, |chain| chain.hum = Some((size_m_s2, 50.0))),
+        "white_noise" => each(case, |chain| chain.white_noise_m_s2 = size_m_s2),
+        "pink_noise" => each(case, |chain| chain.pink_noise_m_s2 = size_m_s2),
+        "cable_noise" => one(case, |chain, _| chain.cable_noise_m_s2 = size_m_s2),
+        "skew" => one(case, |chain, sign| chain.skew_s = sign * size * 1e-3),
+        "clock_rate" | "clock_rate_rest" => case.scene.clock_error = case.chance.sign() * size / 100.0,
+        "low_rate" => low_rate(case, size),
+        "polarity_first" => case.scene.channels[0].chain.swapped_polarity = true,
+        "polarity_second" => case.scene.channels[1].chain.swapped_polarity = true,
+        "polarity_all" => chains(case).for_each(|chain| chain.swapped_polarity = true),
+        "ends_exchanged" => case.scene.swapped_ends = true,
+        "scale_one" => scale(case, size, false),
+        "scale_all" | "scale_all_rest" => scale(case, size, true),
+        "not_rigid" => not_rigid(case, size),
+        "begins_late" => {
+            case.scene.before_s = -size * 1e-3;
+            case.scene.rest = false;
+        }
+        "ends_early" => case.scene.after_s = size / 100.0 * (case.way_s() - case.contact_s()),
+        "no_impact" => {
+            case.scene.before_s = case.scene.before_s.max(0.1);
+            case.scene.after_s = -case.way_s() - size * 1e-3;
+        }
+        "tilt" => case.scene.channels[0].chain.tilt_rad = size.to_radians(),
+        "aliasing" => chains(case).for_each(|chain| chain.anti_alias_hz = None),
+        _ => {}
+    }
+}
+
+fn chains(case: &mut DrawnDrop) -> impl Iterator<Item = &mut Chain> {
+    case.scene.channels.iter_mut().map(|channel| &mut channel.chain)
+}
+
+/// Changes the chain of A1 or A2, with a sign by chance.
+///
+/// The converter's range goes, so that the damage stands alone.
+fn one(case: &mut DrawnDrop, change: impl FnOnce(&mut Chain, f64)) {
+    let (which, sign) = (case.chance.index(2), case.chance.sign());
+    change(&mut case.scene.channels[which].chain, sign);
+    unlimited(case);
+}
+
+/// Changes the chain of every channel.
+fn each(case: &mut DrawnDrop, change: impl FnMut(&mut Chain)) {
+    chains(case).for_each(change);
+    unlimited(case);
+}
+
+/// A converter that never clips.
+fn unlimited(case: &mut DrawnDrop) {
+    for (channel, spec) in case.scene.channels.iter_mut().zip(&mut case.stated.channels) {
+        (channel.chain.full_scale_m_s2, channel.chain.bits, spec.full_scale) = (None, None, None);
+    }
+}
+
+/// Cuts `size` percent off the largest that a transverse channel of `end` reads; half of the cask files state the limit.
+fn clip(case: &mut DrawnDrop, end: End, size: f64) {
+    let which = usize::from(end == End::Second);
+    let limit_m_s2 = (1.0 - size / 100.0) * case.peak_m_s2(which);
+    let is_stated = case.chance.is(0.5);
+    let channel = &mut case.scene.channels[which];
+    channel.chain.full_scale_m_s2 = Some(limit_m_s2);
+    case.stated.channels[which].full_scale = is_stated.then(|| limit_m_s2 / unit_m_s2(&channel.unit));
+}
+
+/// Some of the channels: one or all.
+fn some(case: &mut DrawnDrop) -> Vec<usize> {
+    let (all, which) = (case.chance.is(0.4), case.chance.index(2));
+    if all { (0..case.scene.channels.len()).collect() } else { vec![which] }
+}
+
+fn gap_impact(case: &mut DrawnDrop, size: f64) {
+    let contact_s = case.contact_s();
+    let from_s = case.first_s() + case.chance.even(-0.2, 0.8) * contact_s;
+    for i in some(case) {
+        case.scene.channels[i].chain.gaps_s.push((from_s, from_s + size / 100.0 * contact_s));
+    }
+}
+
+fn gap_flight(case: &mut DrawnDrop, size: f64) {
+    let contact_s = case.contact_s();
+    let flight_s = case.way_s() - contact_s;
+    let from_s = case.first_s() + contact_s + case.chance.even(0.05, 0.97 - size / 100.0 * 0.9) * flight_s;
+    for i in some(case) {
+        case.scene.channels[i].chain.gaps_s.push((from_s, from_s + size / 100.0 * 0.9 * flight_s));
+    }
+}
+
+/// One in the contact, two in the flight.
+fn dropouts(case: &mut DrawnDrop, size: f64) {
+    let (first_s, contact_s, way_s) = (case.first_s(), case.contact_s(), case.way_s());
+    let which = case.chance.index(2);
+    for (low_s, high_s) in [(0.0, contact_s), (contact_s, way_s), (contact_s, way_s)] {
+        let from_s = first_s + case.chance.even(low_s, high_s);
+        case.scene.channels[which].chain.dropouts_s.push((from_s, from_s + size / 100.0 * contact_s));
+    }
+}
+
+/// So many samples in the contact, and no filter before the sampling.
+fn low_rate(case: &mut DrawnDrop, size: f64) {
+    let contact_s = case.contact_s();
+    for channel in &mut case.scene.channels {
+        // As a recorder is set: in whole hertz.
+        channel.sample_rate_hz = (size / contact_s).round().max(100.0);
+        channel.chain.anti_alias_hz = None;
+    }
+}
+
+/// One or all channels too large or too small.
+fn scale(case: &mut DrawnDrop, size: f64, all: bool) {
+    let (which, up) = (case.chance.index(2), case.chance.is(0.5));
+    let factor = if up { 1.0 + size / 100.0 } else { 1.0 / (1.0 + size / 100.0) };
+    for (i, channel) in case.scene.channels.iter_mut().enumerate() {
+        if all || i == which {
+            channel.chain.scale *= factor;
+        }
+    }
+    unlimited(case);
+}
+
+/// The second sensor of the first end shows another step than its neighbour.
+fn not_rigid(case: &mut DrawnDrop, size: f64) {
+    let up = case.chance.is(0.5);
+    case.scene.channels[2].chain.scale *= if up { 1.0 + size / 100.0 } else { 1.0 / (1.0 + size / 100.0) };
+    unlimited(case);
+}

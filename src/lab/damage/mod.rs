@@ -1,0 +1,143 @@
+//! The table of damages to drops that have them: at a size that the campaign draws, or at one that grows until the analysis fails.
+
+mod chain;
+mod harder;
+mod samples;
+mod stated;
+mod wish;
+
+use super::data::SyntheticRecording;
+use super::drawn::DrawnDrop;
+use super::plan::Plan;
+use std::sync::LazyLock;
+pub(super) use wish::{BetweenImpacts, Wish};
+
+/// A row of `damages.tsv`: one thing that may be wrong with a recording or its cask file, or that makes a drop hard to tell.
+pub(super) struct DamageKind {
+    /// What it is done to: "chain", "samples" or what is "stated"; "flight": of such a drop; "drop": of a drop that grows harder.
+    pub of: &'static str,
+    pub name: &'static str,
+    /// Unit of the sizes; empty where there is one size only.
+    pub unit: &'static str,
+    /// From small to gross, for the campaign to draw from; empty: not in the campaign.
+    pub sizes: Vec<f64>,
+    /// What the drop must be like, in words of [`Wish::of`].
+    needs: &'static str,
+    /// Whether k has a map of its own where this grows.
+    pub tells_k: bool,
+    /// From harmless to gross, 13 of them; empty: does not grow.
+    pub growing: Vec<f64>,
+    /// What it is, for a person.
+    pub what: &'static str,
+}
+
+static TABLE: LazyLock<Vec<DamageKind>> = LazyLock::new(|| {
+    let lines = include_str!("damages.tsv").lines();
+    lines.filter(|line| !line.is_empty() && !line.starts_with('#')).map(DamageKind::of_line).collect()
+});
+
+/// The kinds that the campaign draws from, in the order of its numbers.
+pub(super) fn drawn() -> impl Iterator<Item = &'static DamageKind> {
+    TABLE.iter().filter(|kind| !kind.sizes.is_empty())
+}
+
+/// The kinds that grow.
+pub(super) fn growing() -> impl Iterator<Item = &'static DamageKind> {
+    TABLE.iter().filter(|kind| !kind.growing.is_empty())
+}
+
+impl DamageKind {
+    /// Of cells between tabs; "-" is an empty one.
+    fn of_line(line: &'static str) -> Self {
+        let mut cells = line.split('\t').map(|cell| if cell == "-" { "" } else { cell });
+        let mut next = || cells.next().unwrap_or_default();
+        let numbers =
+            |cell: &str| cell.split_whitespace().map(|n| n.parse().unwrap_or(f64::NAN)).collect::<Vec<f64>>();
+        Self {
+            of: next(),
+            name: next(),
+            unit: next(),
+            sizes: numbers(next()),
+            needs: next(),
+            tells_k: next() == "k",
+            growing: numbers(next()),
+            what: next(),
+        }
+    }
+
+    /// What the drop must be like that is struck at this size.
+    pub(super) fn wish(&self, size: f64) -> Wish {
+        Wish::of(self.needs, size)
+    }
+
+    /// Damages the drop and its cask file, then its recording.
+    pub(super) fn strike(&self, drop: &mut DrawnDrop, size: f64) -> SyntheticRecording {
+        chain::strike(self.name, drop, size);
+        stated::strike(self.name, drop, size);
+        let mut recording = drop.recorded();
+        samples::strike(self.name, drop, &mut recording, size);
+        recording
+    }
+
+    /// The drop of a sound plan with a flight of `flight_s`, and its recording, grown to this size.
+    pub(super) fn grown(&self, plan: &Plan, flight_s: f64, size: f64) -> (DrawnDrop, SyntheticRecording) {
+        let mut plan = plan.clone();
+        harder::harden(self.name, &mut plan, flight_s, size);
+        plan.contact = self.wish(size).contact.unwrap_or(plan.contact);
+        let mut drop = plan.draw();
+        let recording = self.strike(&mut drop, size);
+        (drop, recording)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::drawn::ANF_18;
+    use super::*;
+    use crate::data::Contact;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_kind_has_a_name_of_its_own_and_sizes_that_grow() {
+        let names: BTreeSet<&str> = TABLE.iter().map(|kind| kind.name).collect();
+        assert_eq!(names.len(), TABLE.len());
+        for DamageKind { name, sizes, growing, what, .. } in TABLE.iter() {
+            assert!(!what.is_empty() && sizes.len() + growing.len() > 0, "{name}");
+            assert!(sizes.iter().chain(growing).all(|size| size.is_finite()), "{name}");
+            assert!(sizes.windows(2).all(|pair| pair[0] < pair[1]), "{name}");
+            // The quick run takes every third: it holds the first and the last.
+            assert!([0, 13].contains(&growing.len()), "{name}");
+            assert!(growing.is_sorted() || growing.iter().rev().is_sorted(), "{name}");
+        }
+    }
+
+    #[test]
+    fn every_kind_does_something() {
+        let mut plan = Plan::of(ANF_18, 15.0, 0.5, 1);
+        plan.rate_hz = 5e3;
+        plan.contact = Contact::Coulomb(0.25);
+        plan.chain.anti_alias_hz = Some(2e3);
+        let sound = || {
+            let mut drop = plan.draw();
+            drop.scene.channels.push(drop.scene.channels[0].clone());
+            drop.stated.channels.push(drop.stated.channels[0].clone());
+            drop
+        };
+        let said = |drop: &DrawnDrop, recording: &SyntheticRecording| {
+            format!("{:?} {:?} {recording:?}", drop.scene, drop.stated)
+        };
+        let untouched = said(&sound(), &sound().recorded());
+        for kind in TABLE.iter() {
+            let size = kind.sizes.last().or(kind.growing.last()).copied().expect("a size");
+            let (mut struck, (hard, recording)) = (sound(), kind.grown(&plan, 0.1, size));
+            let is_struck = {
+                let recording = kind.strike(&mut struck, size);
+                said(&struck, &recording) != untouched
+            };
+            let is_hard = format!("{:?}", hard.scene) != format!("{:?}", plan.draw().scene);
+            assert!(!recording.channels.is_empty());
+            assert_eq!(is_struck, !["drop", "flight"].contains(&kind.of), "{}", kind.name);
+            assert!(is_struck || is_hard || kind.of == "flight", "{}", kind.name);
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! A wrong statement to the cask file that makes it.
+
+use super::super::drawn::DrawnDrop;
+use crate::data::Contact;
+
+/// Damages what is stated by `kind`; one that is done to something else does nothing to it.
+pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
+    match kind {
+        "stated_position" => position(case, size),
+        "stated_angle" => angle(case, size),
+        "stated_height" | "stated_height_rest" => height(case, size),
+        "stated_rough" | "stated_rough_axial" => state(case, Contact::Rough),
+        "stated_smooth" | "stated_smooth_axial" => state(case, Contact::Smooth),
+        "stated_cog" => cog(case, size),
+        "stated_inertia" => inertia(case, size),
+        _ => {}
+    }
+}
+
+/// A key of the cask file that is given after all.
+fn given(case: &mut DrawnDrop, key: &str) {
+    case.stated.defaults.retain(|default| default != key);
+}
+
+/// Too large or too small by `size` percent.
+fn factor(case: &mut DrawnDrop, size: f64) -> f64 {
+    let factor = 1.0 + size / 100.0;
+    if case.chance.is(0.5) { factor } else { 1.0 / factor }
+}
+
+/// One of A1 and A2 somewhere else along the cask; still on it, so that nothing but the data can tell.
+fn position(case: &mut DrawnDrop, size: f64) {
+    let (which, sign) = (case.chance.index(2), case.chance.sign());
+    let length_m = case.stated.cask.length_m;
+    let position_m = &mut case.stated.channels[which].position_m;
+    let moved_m = *position_m + sign * size;
+    *position_m = if (0.0..=length_m).contains(&moved_m) { moved_m } else { *position_m - sign * size };
+}
+
+fn angle(case: &mut DrawnDrop, size: f64) {
+    let stated_deg = case.stated.drop.angle_rad.to_degrees();
+    let moved_deg = stated_deg + case.chance.sign() * size;
+    let moved_deg = if moved_deg > 0.0 { moved_deg } else { stated_deg + size };
+    case.stated.drop.angle_rad = moved_deg.to_radians();
+}
+
+fn height(case: &mut DrawnDrop, size: f64) {
+    let factor = factor(case, size);
+    let drop = &mut case.stated.drop;
+    drop.height_m *= factor;
+    drop.impact_velocity_m_s = (2.0 * drop.gravity_m_s2 * drop.height_m).sqrt();
+}
+
+fn state(case: &mut DrawnDrop, contact: Contact) {
+    given(case, "contact.friction");
+    case.stated.contact = contact;
+}
+
+fn cog(case: &mut DrawnDrop, size: f64) {
+    given(case, "cask.cog_m");
+    let sign = case.chance.sign();
+    case.stated.cask.cog_m += sign * size;
+}
+
+fn inertia(case: &mut DrawnDrop, size: f64) {
+    given(case, "cask.inertia_kg_m2");
+    let factor = factor(case, size);
+    case.stated.cask.inertia_kg_m2 *= factor;
+}

@@ -1,0 +1,145 @@
+//! A cask, how it falls and what it carries, to the simulated drop with its cask file, and that to its recording.
+
+use super::chance::Chance;
+use super::data::{Scene, SceneChannel, SimulatedMotion, SyntheticRecording};
+use super::{in_memory, synth};
+use crate::analysis::analyze;
+use crate::data::{
+    Analysis, Cask, CaskFile, ChannelSpec, Contact, Corrections, Coupling, Drop, FilterChoice, Recording,
+    STANDARD_GRAVITY_M_S2, Source, Tolerances, Unit,
+};
+use crate::numerics::reduce;
+use std::path::PathBuf;
+
+pub(super) const GRAVITY_M_S2: f64 = 9.81;
+
+/// A cask as a block of its length and section.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Build {
+    pub name: &'static str,
+    pub mass_kg: f64,
+    pub length_m: f64,
+    pub section_m: f64,
+}
+
+/// A slender beam and casks of \[P\] Table 3.
+pub(super) const ESBB: Build = Build { name: "ESBB", mass_kg: 315.0, length_m: 4.538, section_m: 0.15 };
+pub(super) const ANF_10: Build = Build { name: "ANF-10", mass_kg: 1429.0, length_m: 4.725, section_m: 0.565 };
+pub(super) const ANF_18: Build = Build { name: "ANF-18", mass_kg: 4466.0, length_m: 5.512, section_m: 0.792 };
+pub(super) const VHLW: Build = Build { name: "VHLW", mass_kg: 20_950.0, length_m: 4.486, section_m: 1.156 };
+pub(super) const BUILDS: [Build; 4] = [ESBB, ANF_10, ANF_18, VHLW];
+
+impl Build {
+    /// The cask with its centre of gravity in the middle and a block's inertia.
+    pub(super) fn cask(self) -> Cask {
+        let Self { name, mass_kg, length_m, section_m: height_m } = self;
+        Cask {
+            name: name.to_owned(),
+            mass_kg,
+            length_m,
+            height_m,
+            width_m: None,
+            cog_m: length_m / 2.0,
+            inertia_kg_m2: mass_kg * (length_m * length_m + height_m * height_m) / 12.0,
+            is_body: true,
+        }
+    }
+}
+
+/// A free fall from this height.
+pub(super) fn fall(height_m: f64, angle_rad: f64) -> Drop {
+    Drop {
+        height_m,
+        angle_rad,
+        impact_velocity_m_s: (2.0 * GRAVITY_M_S2 * height_m).sqrt(),
+        impact_velocity_given: false,
+        gravity_m_s2: GRAVITY_M_S2,
+    }
+}
+
+/// What the cask file says of a drop, with the usual tolerances and still without channels; `defaults` are the keys that it leaves out.
+pub(super) fn cask_file(cask: Cask, drop: Drop, contact: Contact, defaults: Vec<String>) -> CaskFile {
+    CaskFile {
+        path: PathBuf::from("synthetic.toml"),
+        sha256: String::new(),
+        cask,
+        drop,
+        contact,
+        filter: FilterChoice::Auto,
+        tolerances: Tolerances::default(),
+        corrections: Corrections::default(),
+        time: None,
+        channels: Vec::new(),
+        defaults,
+    }
+}
+
+/// What a true cask file says of a channel.
+pub(super) fn spec(channel: &SceneChannel) -> ChannelSpec {
+    ChannelSpec {
+        name: channel.name.clone(),
+        end: channel.end,
+        axis: channel.axis,
+        source: Source::Path(channel.name.clone()),
+        unit: Some(if channel.unit == "g" { Unit::G } else { Unit::MetrePerSecondSquared }),
+        position_m: channel.position_m,
+        offset_m: channel.offset_m,
+        polarity: 1.0,
+        full_scale: None,
+        sample_rate_hz: None,
+        time: None,
+        coupling: Coupling::Dc,
+    }
+}
+
+/// m/s² per unit of the recording.
+pub(super) fn unit_m_s2(unit: &str) -> f64 {
+    if unit == "g" { STANDARD_GRAVITY_M_S2 } else { 1.0 }
+}
+
+/// A drop on its way to its recording: as it is, as stated, how it moves, and what is random of it yet.
+pub(super) struct DrawnDrop {
+    pub scene: Scene,
+    pub stated: CaskFile,
+    pub motion: SimulatedMotion,
+    pub chance: Chance,
+}
+
+impl DrawnDrop {
+    /// First contact by the recorder's clock, s.
+    pub(super) fn first_s(&self) -> f64 {
+        self.scene.before_s
+    }
+
+    /// Length of the first contact, s.
+    pub(super) fn contact_s(&self) -> f64 {
+        self.motion.truth.contact_s.unwrap_or(0.0)
+    }
+
+    /// From first contact to the slap-down, s.
+    pub(super) fn way_s(&self) -> f64 {
+        self.motion.truth.slap_t.unwrap_or(0.0)
+    }
+
+    /// The largest force of the drop at channel `i`, as the channel scales it, m/s².
+    pub(super) fn peak_m_s2(&self, i: usize) -> f64 {
+        let channel = &self.scene.channels[i];
+        let force = synth::specific_force_m_s2(&self.scene, &self.motion, channel, &self.motion.time_s);
+        channel.chain.scale * reduce::peak(&force)
+    }
+
+    /// What the recorder writes.
+    pub(super) fn recorded(&self) -> SyntheticRecording {
+        synth::record(&self.scene, &self.motion)
+    }
+
+    /// What reading the recording gives; none where it is refused.
+    pub(super) fn read(&self, recording: &SyntheticRecording) -> Option<Recording> {
+        in_memory::synthetic(recording, &self.stated).ok()
+    }
+
+    /// What the program says of the recording; none where it is refused.
+    pub(super) fn analyzed(&self, recording: &SyntheticRecording) -> Option<Analysis> {
+        Some(analyze(&self.read(recording)?, &self.stated))
+    }
+}

@@ -1,0 +1,102 @@
+//! A few numbers to a simulated drop and its cask file, all of it true.
+
+use super::chance::Chance;
+use super::data::{BendingMode, Chain, Scene, SceneChannel, WantedImpact};
+use super::drawn::{Build, DrawnDrop, cask_file, fall, spec};
+use super::synth;
+pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
+use crate::data::{Axis, Contact, End};
+
+/// A drop as a trial speaks of it.
+#[derive(Debug, Clone)]
+pub(super) struct Plan {
+    pub build: Build,
+    pub angle_deg: f64,
+    /// Coefficient of restitution of a short impact.
+    pub k: f64,
+    /// Length of the first contact, s.
+    pub pulse_s: f64,
+    /// Yield force over the elastic peak.
+    pub yield_share: Option<f64>,
+    pub contact: Contact,
+    pub modes: Vec<BendingMode>,
+    pub rate_hz: f64,
+    /// Chain of both transverse channels.
+    pub chain: Chain,
+    pub before_s: f64,
+    /// Record after the slap-down, s.
+    pub after_s: f64,
+    pub seed: u64,
+}
+
+impl Plan {
+    /// A sound recording of a 9 m drop: 20 kHz, 0.1 g of noise, no ringing, 5 ms of contact.
+    pub(super) fn of(build: Build, angle_deg: f64, k: f64, seed: u64) -> Self {
+        Self {
+            build,
+            angle_deg,
+            k,
+            pulse_s: 5e-3,
+            yield_share: None,
+            contact: Contact::Rough,
+            modes: Vec::new(),
+            rate_hz: 2e4,
+            chain: Chain { white_noise_m_s2: 0.1 * STANDARD_GRAVITY_M_S2, ..Chain::perfect() },
+            before_s: 0.1,
+            after_s: 0.05,
+            seed,
+        }
+    }
+
+    /// A mode as strong as the uniform beam's.
+    pub(super) fn mode(order: u8, frequency_hz: f64) -> BendingMode {
+        BendingMode { order, frequency_hz, damping: 0.03, strength: 1.0 }
+    }
+
+    /// The drop, simulated.
+    pub(super) fn draw(&self) -> DrawnDrop {
+        let cask = self.build.cask();
+        let drop = fall(9.0, self.angle_deg.to_radians());
+        let end = |end, duration_s, restitution| {
+            let wanted = WantedImpact { duration_s, restitution, yield_share: self.yield_share };
+            synth::crushable_end(&cask, &drop, self.contact, end, wanted)
+        };
+        let scene = Scene {
+            name: cask.name.clone(),
+            seed: self.seed,
+            first_end: end(End::First, self.pulse_s, self.k),
+            second_end: end(End::Second, 4e-3, 0.3),
+            contact: self.contact,
+            modes: self.modes.clone(),
+            before_s: self.before_s,
+            after_s: self.after_s,
+            rest: false,
+            clock_error: 0.0,
+            swapped_ends: false,
+            channels: [End::First, End::Second].map(|end| self.channel(end)).into(),
+            cask,
+            drop,
+        };
+        let mut stated = cask_file(scene.cask.clone(), drop, self.contact, Vec::new());
+        stated.channels = scene.channels.iter().map(spec).collect();
+        DrawnDrop { motion: synth::simulate(&scene), scene, stated, chance: Chance::new(self.seed, 0) }
+    }
+
+    /// The transverse channel 0.15 m from an end.
+    fn channel(&self, end: End) -> SceneChannel {
+        let (name, position_m) = match end {
+            End::First => ("A1", 0.15),
+            End::Second => ("A2", self.build.length_m - 0.15),
+        };
+        SceneChannel {
+            name: name.to_owned(),
+            end,
+            axis: Axis::Transverse,
+            position_m,
+            offset_m: 0.0,
+            unit: "m/s^2".to_owned(),
+            sample_rate_hz: self.rate_hz,
+            chain: self.chain.clone(),
+        }
+    }
+}
