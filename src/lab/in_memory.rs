@@ -18,11 +18,9 @@ pub fn synthetic(recording: &SyntheticRecording, cask_file: &CaskFile) -> Result
     let mut channels = Vec::with_capacity(recording.channels.len());
     for (spec, channel) in recording.channels.iter().enumerate() {
         let Some(stated) = cask_file.channels.get(spec) else { break };
-        let uniform = {
-            let (blocks, samples) = blocks(channel, stated.polarity);
-            time_base::from_blocks(&blocks, channel.sample_rate_hz, Samples::F32(samples))
-        }
-        .map_err(|problem| {
+        let (blocks, samples) = blocks(channel, stated.polarity);
+        let uniform = time_base::from_blocks(&blocks, channel.sample_rate_hz, Samples::F32(samples));
+        let uniform = uniform.map_err(|problem| {
             let mend = "record the channel over the whole drop";
             error::source(path, &channel.name, problem.to_string(), mend)
         })?;
@@ -35,16 +33,10 @@ pub fn synthetic(recording: &SyntheticRecording, cask_file: &CaskFile) -> Result
 /// The runs of samples between losses, as a sensor writes them that is mounted with `polarity`.
 fn blocks(channel: &SyntheticChannel, polarity: f64) -> (Vec<Block>, Vec<f32>) {
     let (mut blocks, mut samples) = (Vec::new(), Vec::new());
-    let mut at = 0;
-    for run in channel.samples.split(|x| x.is_nan()) {
-        if !run.is_empty() {
-            #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
-            let start_s = channel.start_s + at as f64 / channel.sample_rate_hz;
-            samples.extend(run.iter().map(|&x| if polarity < 0.0 { -x } else { x }));
-            blocks.push(Block { start_s, count: run.len() });
-        }
-        // The lost sample that ends the run counts too.
-        at += run.len() + 1;
+    for (from, run) in channel.runs() {
+        let start_s = channel.time_s(from);
+        samples.extend(run.iter().map(|&x| if polarity < 0.0 { -x } else { x }));
+        blocks.push(Block { start_s, count: run.len() });
     }
     (blocks, samples)
 }

@@ -4,8 +4,7 @@ use super::chance::Chance;
 use super::data::{BendingMode, Chain, Scene, SceneChannel, WantedImpact};
 use super::drawn::{Build, DrawnDrop, cask_file, fall, spec};
 use super::synth;
-pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
-use crate::data::{Axis, Contact, End};
+use crate::data::{Contact, End, STANDARD_GRAVITY_M_S2};
 
 /// A drop as a trial speaks of it.
 #[derive(Debug, Clone)]
@@ -89,14 +88,10 @@ impl Plan {
             End::Second => ("A2", self.build.length_m - 0.15),
         };
         SceneChannel {
-            name: name.to_owned(),
-            end,
-            axis: Axis::Transverse,
-            position_m,
-            offset_m: 0.0,
             unit: "m/s^2".to_owned(),
             sample_rate_hz: self.rate_hz,
             chain: self.chain.clone(),
+            ..SceneChannel::perfect(name, end, position_m)
         }
     }
 }

@@ -4,11 +4,12 @@ mod channel;
 mod values;
 
 use crate::data::keys::{self, names};
-use crate::data::{Cask, CaskFile, Drop, End, FilterChoice};
+use crate::data::{Cask, CaskFile, Drop, End};
 use crate::ingest::IngestError;
 use crate::ingest::cask_file::section::{Document, Kind, Section};
 use crate::ingest::cask_file::{self, CaskFileError};
 use crate::lab::data::{BendingMode, CrushableEnd, Scene, SceneFile, WantedImpact};
+use crate::lab::drawn;
 use crate::lab::synth::crushable_end;
 use std::path::Path;
 use values::{flag, number_or, size_or, whole};
@@ -154,18 +155,11 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
     };
     recording(&root.table("recording")?, &mut scene)?;
     affordable(&root, &tables, &scene)?;
+    let defaults = cask_file::assumed(&root, &["cask", "drop", "contact"]);
     let stated = CaskFile {
         path: path.to_owned(),
-        sha256: String::new(),
-        cask,
-        drop: stated_drop(&drop_table, drop)?,
-        contact,
-        filter: FilterChoice::Auto,
-        tolerances: crate::data::Tolerances::default(),
-        corrections: crate::data::Corrections::default(),
-        time: None,
         channels: specs,
-        defaults: cask_file::assumed(&root, &["cask", "drop", "contact"]),
+        ..drawn::cask_file(cask, stated_drop(&drop_table, drop)?, contact, defaults)
     };
     Ok(SceneFile { scene, stated })
 }

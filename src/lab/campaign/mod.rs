@@ -16,19 +16,10 @@ use crate::lab::damage::{self, DamageKind, Wish};
 use crate::lab::data::{
     Campaign, CampaignRequest, CampaignRow, Damage, SceneFile, SceneNumber, SyntheticRecording,
 };
-use crate::lab::drawn::DrawnDrop;
-use draw::Redraws;
 use rayon::prelude::*;
+use score::RecordedScene;
 use std::sync::mpsc;
 use std::time::Instant;
-
-/// A scene, drawn, struck by its damage and recorded.
-struct RecordedScene {
-    drop: DrawnDrop,
-    redraws: Redraws,
-    damage: Option<Damage>,
-    recording: SyntheticRecording,
-}
 
 /// Names of all kinds of damage, and their sizes with the unit.
 pub fn kinds() -> impl Iterator<Item = (&'static str, &'static [f64], &'static str)> {

@@ -35,14 +35,10 @@ pub(super) fn equip(case: &mut DrawnDrop, wish: &Wish, exact: bool) {
     let chain = chain(&mut case.chance, rate_hz);
     let unit = if case.chance.is(0.8) { "g" } else { "m/s^2" };
     let common = SceneChannel {
-        name: String::new(),
-        end: End::First,
-        axis: Axis::Transverse,
-        position_m: 0.0,
-        offset_m: 0.0,
         unit: unit.to_owned(),
         sample_rate_hz: rate_hz,
         chain,
+        ..SceneChannel::perfect("", End::First, 0.0)
     };
     for seat in seats {
         let (channel, spec) = mounted(case, &seat, &common, exact);

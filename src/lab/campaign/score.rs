@@ -1,9 +1,19 @@
 //! An analysis beside its truth to a row, and rows to CSV.
 
-use super::{RecordedScene, statistics};
+use super::draw::Redraws;
+use super::statistics;
 use crate::data::{Analysis, Estimate, ReconstructionRung, Severity, Verdict};
 use crate::lab::chance::round;
-use crate::lab::data::{Campaign, CampaignRow, SceneNumber, Scored, Truth};
+use crate::lab::data::{Campaign, CampaignRow, Damage, SceneNumber, Scored, SyntheticRecording, Truth};
+use crate::lab::drawn::DrawnDrop;
+
+/// A scene, drawn, struck by its damage and recorded.
+pub(super) struct RecordedScene {
+    pub drop: DrawnDrop,
+    pub redraws: Redraws,
+    pub damage: Option<Damage>,
+    pub recording: SyntheticRecording,
+}
 
 /// The row of a scene, without the time that its analysis took; no analysis: the recording was refused.
 pub(super) fn row(number: SceneNumber, scene: RecordedScene, analysis: Option<&Analysis>) -> CampaignRow {

@@ -115,6 +115,23 @@ pub struct SceneChannel {
     pub chain: Chain,
 }
 
+impl SceneChannel {
+    /// A transverse channel in g at 20 kHz whose chain alters nothing.
+    #[must_use]
+    pub fn perfect(name: &str, end: End, position_m: f64) -> Self {
+        Self {
+            name: name.to_owned(),
+            end,
+            axis: Axis::Transverse,
+            position_m,
+            offset_m: 0.0,
+            unit: "g".to_owned(),
+            sample_rate_hz: 2e4,
+            chain: Chain::perfect(),
+        }
+    }
+}
+
 /// A scene, checked, with its defaults filled in.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {

@@ -38,6 +38,27 @@ pub struct SyntheticChannel {
     pub samples: Vec<f32>,
 }
 
+impl SyntheticChannel {
+    /// The runs of samples between losses, each with the index of its first sample.
+    pub fn runs(&self) -> impl Iterator<Item = (usize, &[f32])> {
+        let mut at = 0;
+        let begun = self.samples.split(|x| x.is_nan()).map(move |run| {
+            let from = at;
+            // The lost sample that ends the run counts too.
+            at += run.len() + 1;
+            (from, run)
+        });
+        begun.filter(|(_, run)| !run.is_empty())
+    }
+
+    /// Stamp of sample `index`, s.
+    #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
+    #[must_use]
+    pub fn time_s(&self, index: usize) -> f64 {
+        self.start_s + index as f64 / self.sample_rate_hz
+    }
+}
+
 /// A synthetic recording with its truth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SyntheticRecording {

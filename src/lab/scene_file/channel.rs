@@ -1,12 +1,12 @@
 //! A `[[channel]]` table of a scene file to the channel as it is and the channel as the cask file will state it.
 
 use super::values::{flag, number_or, size_or, spans_s};
-pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
-use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, Source, Unit};
+use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, STANDARD_GRAVITY_M_S2, Source, Unit};
 use crate::ingest::cask_file::CaskFileError;
 use crate::ingest::cask_file::channel::{coupling, polarity};
 use crate::ingest::cask_file::section::Section;
 use crate::lab::data::{Chain, SceneChannel};
+use crate::lab::drawn::{spec, unit_m_s2};
 
 /// Defaults of a channel: a usual recorder and a usual piezoresistive sensor.
 const SAMPLE_RATE_HZ: f64 = 20_000.0;
@@ -26,22 +26,18 @@ pub(super) type Both = (SceneChannel, ChannelSpec);
 
 /// One transverse sensor near each end, for a scene without channels.
 pub(super) fn usual(cask: &Cask) -> Vec<Both> {
-    [("A1", End::First), ("A2", End::Second)]
-        .map(|(name, end)| {
-            let channel = SceneChannel {
-                name: name.to_owned(),
-                end,
-                axis: Axis::Transverse,
-                position_m: usual_position_m(cask, end),
-                offset_m: 0.0,
-                unit: "g".to_owned(),
-                sample_rate_hz: SAMPLE_RATE_HZ,
-                chain: usual_chain(),
-            };
-            let stated = stated(&channel, Unit::G);
-            (channel, stated)
-        })
-        .into()
+    let channel = |(name, end)| {
+        let mut channel = SceneChannel::perfect(name, end, usual_position_m(cask, end));
+        channel.chain.white_noise_m_s2 = WHITE_NOISE_G * STANDARD_GRAVITY_M_S2;
+        let stated = stated(&channel);
+        (channel, stated)
+    };
+    [("A1", End::First), ("A2", End::Second)].map(channel).into()
+}
+
+/// What a true cask file says of a channel, its source still to be named.
+fn stated(channel: &SceneChannel) -> ChannelSpec {
+    ChannelSpec { source: Source::Path(String::new()), ..spec(channel) }
 }
 
 fn usual_position_m(cask: &Cask, end: End) -> f64 {
@@ -49,27 +45,6 @@ fn usual_position_m(cask: &Cask, end: End) -> f64 {
     match end {
         End::First => from_end_m,
         End::Second => cask.length_m - from_end_m,
-    }
-}
-
-fn usual_chain() -> Chain {
-    Chain { white_noise_m_s2: WHITE_NOISE_G * STANDARD_GRAVITY_M_S2, ..Chain::perfect() }
-}
-
-fn stated(channel: &SceneChannel, unit: Unit) -> ChannelSpec {
-    ChannelSpec {
-        name: channel.name.clone(),
-        end: channel.end,
-        axis: channel.axis,
-        source: Source::Path(String::new()),
-        unit: Some(unit),
-        position_m: channel.position_m,
-        offset_m: channel.offset_m,
-        polarity: 1.0,
-        full_scale: None,
-        sample_rate_hz: None,
-        time: None,
-        coupling: Coupling::Dc,
     }
 }
 
@@ -84,6 +59,7 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
         .ok_or_else(|| table.missing("end", END))?;
     let axis = table.word("axis", &[("transverse", Axis::Transverse), ("axial", Axis::Axial)], AXIS)?;
     let unit = unit(table, "unit")?.unwrap_or(Unit::G);
+    let unit_name = if unit == Unit::G { "g" } else { "m/s^2" };
     let full_scale = table.positive("full_scale")?.map(|limit| limit.value);
     let position =
         |key| table.within(key, &(0.0..=cask.length_m), "metres along the axis from the first end");
@@ -94,26 +70,22 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
         axis: axis.unwrap_or(Axis::Transverse),
         position_m: position("position_m")?.unwrap_or_else(|| usual_position_m(cask, end)),
         offset_m: number_or(table, "offset_m", 0.0)?,
-        unit: if unit == Unit::G { "g" } else { "m/s^2" }.to_owned(),
+        unit: unit_name.to_owned(),
         sample_rate_hz: table
             .within("sample_rate_hz", &(SLOWEST_HZ..=FASTEST_HZ), "samples a second")?
             .unwrap_or(SAMPLE_RATE_HZ),
-        chain: chain(table, coupling, full_scale.map(|limit| limit * size_m_s2(unit)))?,
+        chain: chain(table, coupling, full_scale.map(|limit| limit * unit_m_s2(unit_name)))?,
     };
     let is_hidden = stated_dc(table)?;
-    let declared = stated(&channel, self::unit(table, "stated_unit")?.unwrap_or(unit));
-    let spec = ChannelSpec {
+    let stated = ChannelSpec {
+        unit: Some(self::unit(table, "stated_unit")?.unwrap_or(unit)),
         position_m: position("stated_position_m")?.unwrap_or(channel.position_m),
         polarity: polarity(table)?,
         full_scale,
         coupling: if is_hidden { Coupling::Dc } else { coupling },
-        ..declared
+        ..stated(&channel)
     };
-    Ok((channel, spec))
-}
-
-fn size_m_s2(unit: Unit) -> f64 {
-    if unit == Unit::G { STANDARD_GRAVITY_M_S2 } else { 1.0 }
+    Ok((channel, stated))
 }
 
 fn unit(table: &Section, key: &str) -> Result<Option<Unit>, CaskFileError> {

@@ -30,9 +30,6 @@ struct PredictedClass {
     touches: RangeInclusive<u32>,
 }
 
-/// Casks that are bodies.
-const BODIES: &[Build] = &[ANF_10, ANF_18, VHLW];
-
 /// A drop with so small a k is predicted with k = 0: the limit that the rungs differ in.
 const LIMIT_K: f64 = 2e-3;
 
@@ -54,55 +51,33 @@ struct StiffDrop {
     speed_m_s: f64,
 }
 
+const BODY: PredictedClass = PredictedClass {
+    name: "body, rough",
+    builds: &[ANF_10, ANF_18, VHLW],
+    contact: Contact::Rough,
+    angle_deg: (5.0, 30.0),
+    k: (0.1, 0.8),
+    touches: ANY,
+};
+const RATTLES: PredictedClass = PredictedClass {
+    name: "first end rattles, rough",
+    angle_deg: (58.0, 68.0),
+    k: (0.1, 0.22),
+    touches: 2..=u32::MAX,
+    ..BODY
+};
 const CLASSES: [PredictedClass; 6] = [
-    PredictedClass {
-        name: "thin rod, rough",
-        builds: &[ROD],
-        contact: Contact::Rough,
-        angle_deg: (5.0, 30.0),
-        k: (0.1, 0.8),
-        touches: ANY,
-    },
-    PredictedClass {
-        name: "body, rough",
-        builds: BODIES,
-        contact: Contact::Rough,
-        angle_deg: (5.0, 30.0),
-        k: (0.1, 0.8),
-        touches: ANY,
-    },
-    PredictedClass {
-        name: "body, friction 0.3",
-        builds: BODIES,
-        contact: Contact::Coulomb(0.3),
-        angle_deg: (5.0, 30.0),
-        k: (0.1, 0.8),
-        touches: ANY,
-    },
-    PredictedClass {
-        name: "k to 0, rough",
-        builds: BODIES,
-        contact: Contact::Rough,
-        angle_deg: (8.0, 40.0),
-        k: (1e-3, 1e-3),
-        touches: ANY,
-    },
+    PredictedClass { name: "thin rod, rough", builds: &[ROD], ..BODY },
+    BODY,
+    PredictedClass { name: "body, friction 0.3", contact: Contact::Coulomb(0.3), ..BODY },
+    PredictedClass { name: "k to 0, rough", angle_deg: (8.0, 40.0), k: (1e-3, 1e-3), ..BODY },
     PredictedClass {
         name: "first end lands once more, rough",
-        builds: BODIES,
-        contact: Contact::Rough,
         angle_deg: (62.0, 68.0),
-        k: (0.1, 0.22),
         touches: 1..=1,
+        ..RATTLES
     },
-    PredictedClass {
-        name: "first end rattles, rough",
-        builds: BODIES,
-        contact: Contact::Rough,
-        angle_deg: (58.0, 68.0),
-        k: (0.1, 0.22),
-        touches: 2..=u32::MAX,
-    },
+    RATTLES,
 ];
 
 fn contest() -> Contest<Predictor, StiffDrop, f64> {

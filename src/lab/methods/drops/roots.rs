@@ -99,36 +99,30 @@ struct RootClass {
     changes: std::ops::RangeInclusive<u32>,
 }
 
-const CLASSES: [RootClass; 4] = [
-    RootClass {
-        name: "flat, 3 to 8°",
-        angle_deg: (3.0, 8.0),
-        beyond_deg: (0.0, 2.0),
-        turning_rad_s: (3.0, 8.0),
-        changes: 1..=1,
-    },
-    RootClass {
-        name: "usual, 8 to 30°",
-        angle_deg: (8.0, 30.0),
-        beyond_deg: (0.0, 10.0),
-        turning_rad_s: (3.0, 8.0),
-        changes: 1..=1,
-    },
-    RootClass {
-        name: "steep, 30 to 70°",
-        angle_deg: (30.0, 70.0),
-        beyond_deg: (0.0, 40.0),
-        turning_rad_s: (2.0, 8.0),
-        changes: 1..=1,
-    },
-    RootClass {
-        name: "steep, several roots",
-        angle_deg: (30.0, 70.0),
-        beyond_deg: (20.0, 100.0),
-        turning_rad_s: (4.0, 14.0),
-        changes: 2..=u32::MAX,
-    },
-];
+const FLAT: RootClass = RootClass {
+    name: "flat, 3 to 8°",
+    angle_deg: (3.0, 8.0),
+    beyond_deg: (0.0, 2.0),
+    turning_rad_s: (3.0, 8.0),
+    changes: 1..=1,
+};
+const USUAL: RootClass =
+    RootClass { name: "usual, 8 to 30°", angle_deg: (8.0, 30.0), beyond_deg: (0.0, 10.0), ..FLAT };
+const STEEP: RootClass = RootClass {
+    name: "steep, 30 to 70°",
+    angle_deg: (30.0, 70.0),
+    beyond_deg: (0.0, 40.0),
+    turning_rad_s: (2.0, 8.0),
+    ..FLAT
+};
+const SEVERAL: RootClass = RootClass {
+    name: "steep, several roots",
+    beyond_deg: (20.0, 100.0),
+    turning_rad_s: (4.0, 14.0),
+    changes: 2..=u32::MAX,
+    ..STEEP
+};
+const CLASSES: [RootClass; 4] = [FLAT, USUAL, STEEP, SEVERAL];
 
 /// A method of the library, or the closed form that holds for flat drops only.
 #[derive(Clone, Copy, PartialEq)]

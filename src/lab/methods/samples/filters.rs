@@ -1,7 +1,6 @@
 //! The forms of a low-pass to their round-off and time, over cut-off and order.
 
-use super::reference::low_passed;
-use super::worst_of_peak;
+use super::reference::{low_passed, worst_of_peak};
 use crate::lab::chance::Chance;
 use crate::lab::data::{TrialMap, TrialPart, TrialPeerWork, TrialRequest};
 use crate::lab::methods::contest::{Contest, DIVERGED, Purpose, by_class, map};

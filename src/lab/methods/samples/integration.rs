@@ -1,6 +1,6 @@
 //! Rules and sums of a running integral to their errors on pulses whose integral is known, and time.
 
-use super::worst_of_peak;
+use super::reference::worst_of_peak;
 use crate::lab::chance::Chance;
 use crate::lab::data::{TrialMap, TrialPart, TrialPeerWork, TrialRequest};
 use crate::lab::methods::contest::{Contest, DIVERGED, Purpose, by_class, map, silent_line};

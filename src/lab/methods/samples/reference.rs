@@ -1,6 +1,7 @@
-//! Samples to their low-passed selves in 106 bits: second-order sections in direct form I, from rest at both ends.
+//! Samples to their low-passed selves in 106 bits: second-order sections in direct form I, from rest at both ends; and to how far others are off.
 
 use super::double_double::DoubleDouble;
+use crate::lab::methods::contest::DIVERGED;
 
 /// b0 (= b2 = b1/2), a1, a2.
 type Section = [DoubleDouble; 3];
@@ -43,6 +44,20 @@ fn one_pass([b, a1, a2]: &Section, samples: &mut [DoubleDouble]) {
     }
 }
 
+/// Largest difference of two curves over the peak of the second.
+pub(super) fn worst_of_peak(made: impl Iterator<Item = f64>, truth: &[f64]) -> f64 {
+    let peak = truth.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
+    let mut worst = 0.0_f64;
+    for (made, true_value) in made.zip(truth) {
+        let off = (made - true_value).abs();
+        if off.is_nan() {
+            return DIVERGED;
+        }
+        worst = worst.max(off);
+    }
+    worst / peak.max(f64::MIN_POSITIVE)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -60,5 +75,11 @@ mod tests {
             // 3000 samples from either end: 60/f, of which the slowest pole leaves e^(−0.38 · 2π · 60).
             assert!((2900..3100).all(|i| (y[i] - gain * x[i]).abs() < 4e-14), "{order}");
         }
+    }
+
+    #[test]
+    fn a_curve_that_is_no_number_has_diverged() {
+        assert!(worst_of_peak([1.0, f64::NAN].into_iter(), &[1.0, 1.0]) >= DIVERGED);
+        assert!((worst_of_peak([1.0, 3.0].into_iter(), &[1.0, 2.0]) - 0.5).abs() < 1e-15);
     }
 }

@@ -27,9 +27,7 @@ fn write(file: &File, recording: &SyntheticRecording, places: &[Place]) -> Resul
             let times =
                 if file.link_exists("time_s") { file.group("time_s")? } else { file.create_group("time_s")? };
             let kept = channel.samples.iter().enumerate().filter(|(_, x)| !x.is_nan());
-            #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
-            let times_s: Vec<f64> =
-                kept.map(|(i, _)| channel.start_s + i as f64 / channel.sample_rate_hz).collect();
+            let times_s: Vec<f64> = kept.map(|(i, _)| channel.time_s(i)).collect();
             let times = filled(&times, &place.name, &times_s)?;
             text(&times, "unit", "s")?;
         }

@@ -84,23 +84,14 @@ struct Block<'a> {
 fn blocks(channel: &SyntheticChannel) -> Vec<Block<'_>> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast from float saturates")]
     let longest = ((BLOCK_S * channel.sample_rate_hz) as usize).max(2);
-    let mut blocks = Vec::new();
-    let mut at = 0;
-    for run in channel.samples.split(|x| x.is_nan()) {
-        for (i, samples) in run.chunks(longest).enumerate() {
-            #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
-            let start_s = channel.start_s + (at + i * longest) as f64 / channel.sample_rate_hz;
-            blocks.push(Block {
-                stamp_ns: START_NS + nanoseconds(start_s),
-                sample_rate_hz: channel.sample_rate_hz,
-                unit: &channel.unit,
-                samples,
-            });
-        }
-        // The lost sample that ends the run counts too.
-        at += run.len() + 1;
-    }
-    blocks
+    let block = |(from, samples)| Block {
+        stamp_ns: START_NS + nanoseconds(channel.time_s(from)),
+        sample_rate_hz: channel.sample_rate_hz,
+        unit: &channel.unit,
+        samples,
+    };
+    let parts = channel.runs().flat_map(|(from, run)| (from..).step_by(longest).zip(run.chunks(longest)));
+    parts.map(block).collect()
 }
 
 #[allow(clippy::cast_possible_truncation, reason = "a cast from float saturates")]
