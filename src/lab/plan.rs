@@ -8,7 +8,7 @@ use crate::data::{Contact, End, STANDARD_GRAVITY_M_S2};
 
 /// A drop as a trial speaks of it.
 #[derive(Debug, Clone)]
-pub(super) struct Plan {
+pub(super) struct DropPlan {
     pub build: Build,
     pub angle_deg: f64,
     /// Coefficient of restitution of a short impact.
@@ -28,7 +28,7 @@ pub(super) struct Plan {
     pub seed: u64,
 }
 
-impl Plan {
+impl DropPlan {
     /// A sound recording of a 9 m drop: 20 kHz, 0.1 g of noise, no ringing, 5 ms of contact.
     pub(super) fn of(build: Build, angle_deg: f64, k: f64, seed: u64) -> Self {
         Self {

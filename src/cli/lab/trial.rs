@@ -21,7 +21,7 @@ const PARTS: &str = "parts";
 const PEERS: (&str, f64) = ("peers", 2.0);
 
 /// What is asked for.
-pub struct Wanted<'a> {
+pub struct WantedTrial<'a> {
     pub request: TrialRequest,
     pub afresh: bool,
     pub out: Option<&'a Path>,
@@ -87,7 +87,7 @@ impl Shelf {
     }
 }
 
-pub fn run(wanted: &Wanted) -> miette::Result<Outcome> {
+pub fn run(wanted: &WantedTrial) -> miette::Result<Outcome> {
     let folder = wanted.out.map(|out| Folder::checked(out, &TRIAL_NAMES, &[])).transpose()?;
     let document = wanted.into.map(|path| MARKS.parts(path).map(|parts| (path, parts))).transpose()?;
     let shelf =

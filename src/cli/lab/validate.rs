@@ -91,7 +91,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     match (arguments.scene, &arguments.out, arguments.campaign) {
         (Some(number), Some(out), _) => one(arguments, number, out),
         (_, _, Some(scenes)) => campaign(arguments, scenes),
-        (_, out, None) => trial::run(&trial::Wanted {
+        (_, out, None) => trial::run(&trial::WantedTrial {
             request: TrialRequest { quick: arguments.quick, seed: arguments.seed },
             afresh: arguments.afresh,
             out: out.as_deref(),

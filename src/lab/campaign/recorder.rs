@@ -1,6 +1,6 @@
 //! A drop to its sensors and recorder, sound and of the kind that drop tests use, as they are and as they are stated.
 
-use crate::data::{Axis, ChannelSpec, End, STANDARD_GRAVITY_M_S2, Tolerances};
+use crate::data::{Axis, End, STANDARD_GRAVITY_M_S2, Tolerances};
 use crate::lab::chance::{Chance, round};
 use crate::lab::damage::Wish;
 use crate::lab::data::{Chain, SceneChannel};
@@ -19,31 +19,18 @@ const MOST_SAMPLES: f64 = 1.2e5;
 /// A resonance is simulated up to this rate; faster recorders look at sensors that resonate beyond their band.
 const RESONANT_HZ: f64 = 50e3;
 
-/// Where a sensor sits, before its chain.
-struct Seat {
-    name: &'static str,
-    end: End,
-    axis: Axis,
-    position_m: f64,
-    offset_m: f64,
-}
-
 /// Puts sensors on the cask and a recorder behind them.
 pub(super) fn equip(case: &mut DrawnDrop, wish: &Wish, exact: bool) {
     let rate_hz = timed(case, wish);
     let seats = seats(case, wish);
     let chain = chain(&mut case.chance, rate_hz);
     let unit = if case.chance.is(0.8) { "g" } else { "m/s^2" };
-    let common = SceneChannel {
-        unit: unit.to_owned(),
-        sample_rate_hz: rate_hz,
-        chain,
-        ..SceneChannel::perfect("", End::First, 0.0)
-    };
     for seat in seats {
-        let (channel, spec) = mounted(case, &seat, &common, exact);
+        let seat =
+            SceneChannel { unit: unit.to_owned(), sample_rate_hz: rate_hz, chain: chain.clone(), ..seat };
+        case.stated.channels.push(spec(&seat));
+        let channel = mounted(case, seat, exact);
         case.scene.channels.push(channel);
-        case.stated.channels.push(spec);
     }
     converters(case);
 }
@@ -78,8 +65,8 @@ fn timed(case: &mut DrawnDrop, wish: &Wish) -> f64 {
     rate_hz
 }
 
-/// One transverse sensor near each end, sometimes more, sometimes an axial one.
-fn seats(case: &mut DrawnDrop, wish: &Wish) -> Vec<Seat> {
+/// Where the sensors sit as stated: a transverse one near each end, sometimes more, sometimes an axial one.
+fn seats(case: &mut DrawnDrop, wish: &Wish) -> Vec<SceneChannel> {
     let cask = &case.stated.cask;
     let chance = &mut case.chance;
     let is_off_axis = chance.is(0.2);
@@ -88,7 +75,7 @@ fn seats(case: &mut DrawnDrop, wish: &Wish) -> Vec<Seat> {
         let aside_m = round(chance.even(-0.4, 0.4) * cask.height_m, 3);
         let position_m = if end == End::First { from_end_m } else { cask.length_m - from_end_m };
         let offset_m = if is_off_axis { aside_m } else { 0.0 };
-        Seat { name, end, axis, position_m: round(position_m, 3), offset_m }
+        SceneChannel { axis, offset_m, ..SceneChannel::perfect(name, end, round(position_m, 3)) }
     };
     let near = (0.05, 0.4);
     let inner = (0.4, 0.3 * cask.length_m);
@@ -128,32 +115,21 @@ fn chain(chance: &mut Chance, rate_hz: f64) -> Chain {
     }
 }
 
-/// A channel as it is and as the cask file states it; `common` is what all channels have in common.
-fn mounted(
-    case: &mut DrawnDrop,
-    seat: &Seat,
-    common: &SceneChannel,
-    exact: bool,
-) -> (SceneChannel, ChannelSpec) {
+/// A channel as it is, by the tolerances off what is stated of its seat.
+fn mounted(case: &mut DrawnDrop, seat: SceneChannel, exact: bool) -> SceneChannel {
     let Tolerances { calibration, cross_axis, position_m, .. } = case.stated.tolerances;
     let off = if exact { 0.0 } else { 1.0 };
     let chance = &mut case.chance;
-    let channel = SceneChannel {
-        name: seat.name.to_owned(),
-        end: seat.end,
-        axis: seat.axis,
+    SceneChannel {
         position_m: (seat.position_m + off * chance.within(position_m)).clamp(0.0, case.stated.cask.length_m),
-        offset_m: seat.offset_m,
         chain: Chain {
             scale: 1.0 + off * chance.within(calibration),
             cross_axis: off * chance.within(cross_axis),
             offset_m_s2: chance.even(-0.5, 0.5) * STANDARD_GRAVITY_M_S2,
-            ..common.chain.clone()
+            ..seat.chain
         },
-        ..common.clone()
-    };
-    let stated = ChannelSpec { position_m: seat.position_m, ..spec(&channel) };
-    (channel, stated)
+        ..seat
+    }
 }
 
 /// Gives every channel a converter that its peak fills to a share; half of the cask files state the full scale.

@@ -1,19 +1,19 @@
 //! The plan of a drop to the plan of one that is harder to tell.
 
 use super::super::data::BendingMode;
-use super::super::plan::Plan;
+use super::super::plan::DropPlan;
 
 /// A flight shows so many periods of a mode that has to be told by itself.
 const CLEAR_PERIODS: f64 = 3.0;
 
 /// Hardens a plan with a flight of `flight_s`; a kind of damage does nothing to it.
-pub(super) fn harden(kind: &str, plan: &mut Plan, flight_s: f64, size: f64) {
-    let clear = Plan::mode(1, CLEAR_PERIODS / flight_s);
+pub(super) fn harden(kind: &str, plan: &mut DropPlan, flight_s: f64, size: f64) {
+    let clear = DropPlan::mode(1, CLEAR_PERIODS / flight_s);
     match kind {
-        "mode_frequency" => plan.modes = vec![Plan::mode(1, size / flight_s)],
+        "mode_frequency" => plan.modes = vec![DropPlan::mode(1, size / flight_s)],
         "mode_damping" => plan.modes = vec![BendingMode { damping: size, ..clear }],
         "close_modes" => {
-            plan.modes = vec![clear, Plan::mode(2, clear.frequency_hz * (1.0 + size / 100.0))];
+            plan.modes = vec![clear, DropPlan::mode(2, clear.frequency_hz * (1.0 + size / 100.0))];
         }
         "mode_strength" => plan.modes = vec![BendingMode { strength: size, ..clear }],
         "k_small" => plan.k = size,

@@ -8,7 +8,7 @@ mod wish;
 
 use super::data::SyntheticRecording;
 use super::drawn::DrawnDrop;
-use super::plan::Plan;
+use super::plan::DropPlan;
 use std::sync::LazyLock;
 pub(super) use wish::{BetweenImpacts, Wish};
 
@@ -80,7 +80,7 @@ impl DamageKind {
     }
 
     /// The drop of a sound plan with a flight of `flight_s`, and its recording, grown to this size.
-    pub(super) fn grown(&self, plan: &Plan, flight_s: f64, size: f64) -> (DrawnDrop, SyntheticRecording) {
+    pub(super) fn grown(&self, plan: &DropPlan, flight_s: f64, size: f64) -> (DrawnDrop, SyntheticRecording) {
         let mut plan = plan.clone();
         harder::harden(self.name, &mut plan, flight_s, size);
         plan.contact = self.wish(size).contact.unwrap_or(plan.contact);
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn every_kind_does_something() {
-        let mut plan = Plan::of(ANF_18, 15.0, 0.5, 1);
+        let mut plan = DropPlan::of(ANF_18, 15.0, 0.5, 1);
         plan.rate_hz = 5e3;
         plan.contact = Contact::Coulomb(0.25);
         plan.chain.anti_alias_hz = Some(2e3);

@@ -22,7 +22,7 @@ pub(super) struct Purpose {
 }
 
 /// What a method did on the cases of a class.
-pub(super) struct Record {
+pub(super) struct MethodRecord {
     pub method: String,
     pub is_default: bool,
     pub errors: Vec<Option<f64>>,
@@ -30,8 +30,18 @@ pub(super) struct Record {
 }
 
 impl Purpose {
+    /// Of methods whose time is that of a sample.
+    pub(super) const fn of_samples(name: &'static str, error_unit: &'static str) -> Self {
+        Self { name, error_unit, time_per: "sample", missing: DIVERGED }
+    }
+
+    /// Of methods that answer a call by a number; without one they are wholly off.
+    pub(super) const fn of_calls(name: &'static str, error_unit: &'static str) -> Self {
+        Self { name, error_unit, time_per: "call", missing: 100.0 }
+    }
+
     /// The point of a method on a class.
-    pub(super) fn point(&self, class: &str, record: Record) -> TrialPoint {
+    pub(super) fn point(&self, class: &str, record: MethodRecord) -> TrialPoint {
         let cases = u32::try_from(record.errors.len()).unwrap_or(u32::MAX);
         let errors = record.errors.into_iter().map(|error| error.unwrap_or(self.missing));
         let [median_error, p95_error] = median_and_p95(errors.collect());
@@ -99,7 +109,7 @@ impl<M: Copy + PartialEq + Sync, C: Sync, O> Contest<M, C, O> {
         let records = self.methods.iter().zip(self.errors(cases)).zip(timings);
         let point = |((method, errors), timing): ((&M, Vec<Option<f64>>), Timing)| {
             let (method, is_default) = ((self.name)(*method), *method == self.default);
-            self.purpose.point(class, Record { method, is_default, errors, timing: timing.per(parts) })
+            self.purpose.point(class, MethodRecord { method, is_default, errors, timing: timing.per(parts) })
         };
         if cases.is_empty() { Vec::new() } else { records.map(point).collect() }
     }

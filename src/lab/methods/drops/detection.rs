@@ -23,12 +23,7 @@ const CLASSES: [DropClass; 5] = [
 fn contest() -> Contest<Detector, Prepared, f64> {
     Contest {
         // Not found at all is as bad as a whole pulse off.
-        purpose: Purpose {
-            name: "first contact",
-            error_unit: "% of the pulse",
-            time_per: "call",
-            missing: 100.0,
-        },
+        purpose: Purpose::of_calls("first contact", "% of the pulse"),
         methods: Detector::ALL.to_vec(),
         default: Detector::default(),
         name: |detector| detector.words().to_owned(),

@@ -5,7 +5,7 @@ use crate::data::Signal;
 use crate::lab::data::{Scene, SimulatedMotion, TrialPart, TrialRequest};
 use crate::lab::methods::contest::{Contest, Purpose, by_class};
 use crate::lab::methods::rivals::shape::{Shape, fit_shape};
-use crate::lab::plan::Plan;
+use crate::lab::plan::DropPlan;
 use crate::lab::synth;
 use crate::motion;
 use crate::numerics::damped_modes::Series;
@@ -21,11 +21,11 @@ const HIGHEST_HZ: f64 = 400.0;
 pub(super) const CALM: DropClass = DropClass { name: "calm", make: |_, _, _| {} };
 pub(super) const ONE_MODE: DropClass = DropClass {
     name: "one mode, 2 to 5 periods",
-    make: |plan, flight_s, share| plan.modes = vec![Plan::mode(1, (2.0 + 3.0 * share) / flight_s)],
+    make: |plan, flight_s, share| plan.modes = vec![DropPlan::mode(1, (2.0 + 3.0 * share) / flight_s)],
 };
 pub(super) const SLOW_MODE: DropClass = DropClass {
     name: "slow mode, 0.7 to 1.2 periods",
-    make: |plan, flight_s, share| plan.modes = vec![Plan::mode(1, (0.7 + 0.5 * share) / flight_s)],
+    make: |plan, flight_s, share| plan.modes = vec![DropPlan::mode(1, (0.7 + 0.5 * share) / flight_s)],
 };
 
 const CLASSES: [DropClass; 5] = [
@@ -36,7 +36,7 @@ const CLASSES: [DropClass; 5] = [
         name: "two modes",
         make: |plan, flight_s, share| {
             let frequency_hz = (2.0 + 2.0 * share) / flight_s;
-            plan.modes = vec![Plan::mode(1, frequency_hz), Plan::mode(2, 2.757 * frequency_hz)];
+            plan.modes = vec![DropPlan::mode(1, frequency_hz), DropPlan::mode(2, 2.757 * frequency_hz)];
         },
     },
     SLOW_MODE,
@@ -125,12 +125,7 @@ fn velocity_step_m_s(scene: &Scene, still: &SimulatedMotion, i: usize, contact_s
 fn contest() -> Contest<FlightFitting, TrueFlight, Vec<f64>> {
     Contest {
         // A step that was not had is wholly off.
-        purpose: Purpose {
-            name: "flight fit",
-            error_unit: "% of the velocity step",
-            time_per: "call",
-            missing: 100.0,
-        },
+        purpose: Purpose::of_calls("flight fit", "% of the velocity step"),
         methods: [FlightFitting::MostProbable].into_iter().chain(Shape::ALL.map(FlightFitting::By)).collect(),
         default: FlightFitting::MostProbable,
         name: |fitting| match fitting {

@@ -5,7 +5,7 @@ use crate::lab::chance::Chance;
 use crate::lab::data::{TrialPart, TrialRequest};
 use crate::lab::drawn::{ANF_10, ANF_18, Build, VHLW};
 use crate::lab::methods::contest::{Contest, Purpose, by_class};
-use crate::lab::plan::Plan;
+use crate::lab::plan::DropPlan;
 use crate::predict;
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
@@ -82,12 +82,7 @@ const CLASSES: [PredictedClass; 6] = [
 
 fn contest() -> Contest<Predictor, StiffDrop, f64> {
     Contest {
-        purpose: Purpose {
-            name: "prediction",
-            error_unit: "% of the slap-down speed",
-            time_per: "call",
-            missing: 100.0,
-        },
+        purpose: Purpose::of_calls("prediction", "% of the slap-down speed"),
         methods: Rung::ALL.into_iter().map(Predictor::By).chain([Predictor::EveryTouch]).collect(),
         default: Predictor::By(Rung::FurtherImpacts),
         name: |predictor| match predictor {
@@ -120,17 +115,17 @@ fn drops(class: &PredictedClass, request: &TrialRequest) -> Vec<StiffDrop> {
     let count = if request.quick { 10 } else { 60 } * if class.touches == ANY { 1 } else { 3 };
     let mut chance = Chance::new(request.seed, 0);
     let mut between = |(low, high): (f64, f64)| chance.even(low, high);
-    let plans: Vec<Plan> = (0..count)
+    let plans: Vec<DropPlan> = (0..count)
         .map(|number| {
             let build = class.builds[number % class.builds.len()];
-            Plan {
+            DropPlan {
                 pulse_s: if class.touches == ANY && class.k.1 > LIMIT_K { STIFF_S } else { RESTED_S },
                 contact: class.contact,
-                ..Plan::of(build, between(class.angle_deg), between(class.k), 0)
+                ..DropPlan::of(build, between(class.angle_deg), between(class.k), 0)
             }
         })
         .collect();
-    let stiff = |plan: &Plan| {
+    let stiff = |plan: &DropPlan| {
         let drawn = plan.draw();
         let truth = drawn.motion.truth;
         let drop = StiffDrop {

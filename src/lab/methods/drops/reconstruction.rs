@@ -6,9 +6,9 @@ use crate::analysis::{self, settle};
 use crate::data::{At, Axis, End, Estimate, Events, FlightFit, ReconstructionRung, Setup};
 use crate::lab::data::{TrialPart, TrialPeerWork, TrialPoint, TrialRequest};
 use crate::lab::drawn::DrawnDrop;
-use crate::lab::methods::contest::{Purpose, Record, by_class};
+use crate::lab::methods::contest::{MethodRecord, Purpose, by_class};
 use crate::lab::methods::timing::{Effort, Timing, Work, in_turn};
-use crate::lab::plan::Plan;
+use crate::lab::plan::DropPlan;
 use crate::{fit, motion};
 use rayon::prelude::*;
 use std::hint::black_box;
@@ -22,13 +22,8 @@ const CLASSES: [DropClass; 5] = [
 ];
 
 /// Speed, which programs of others are held against too, and k.
-const SPEED: Purpose = Purpose {
-    name: "reconstruction, speed",
-    error_unit: "% of the slap-down speed",
-    time_per: "call",
-    missing: 100.0,
-};
-const K: Purpose = Purpose { name: "reconstruction, k", error_unit: "1", time_per: "call", missing: 1.0 };
+const SPEED: Purpose = Purpose::of_calls("reconstruction, speed", "% of the slap-down speed");
+const K: Purpose = Purpose { missing: 1.0, ..Purpose::of_calls("reconstruction, k", "1") };
 
 /// What the result gives: the rung that it says to take.
 const TAKEN: &str = "as taken";
@@ -64,13 +59,13 @@ pub(in crate::lab::methods) fn peer_work(request: &TrialRequest) -> Vec<TrialPee
     CLASSES.iter().flat_map(of_class).collect()
 }
 
-fn of_class(class: &DropClass, plans: &[Plan], request: &TrialRequest) -> Vec<TrialPoint> {
+fn of_class(class: &DropClass, plans: &[DropPlan], request: &TrialRequest) -> Vec<TrialPoint> {
     let errors: Vec<[Errors; METHODS.len()]> = plans.par_iter().map(|plan| errors(&plan.draw())).collect();
     let timed = sample::prepared(plans.get(..1).unwrap_or_default());
     let Some(timings) = timed.first().and_then(|drop| times(drop, request)) else { return Vec::new() };
     let mut points = Vec::new();
     for (i, method) in METHODS.into_iter().enumerate() {
-        let record = |error: fn(&Errors) -> Option<f64>| Record {
+        let record = |error: fn(&Errors) -> Option<f64>| MethodRecord {
             method: method.to_owned(),
             is_default: method == TAKEN,
             errors: errors.iter().map(|of_drop| error(&of_drop[i])).collect(),

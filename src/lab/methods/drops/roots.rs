@@ -126,28 +126,25 @@ const CLASSES: [RootClass; 4] = [FLAT, USUAL, STEEP, SEVERAL];
 
 /// A method of the library, or the closed form that holds for flat drops only.
 #[derive(Clone, Copy, PartialEq)]
-enum Way {
+enum RootFinder {
     By(RootMethod),
     ClosedForm,
 }
 
-fn contest() -> Contest<Way, RootedFlight, f64> {
+fn contest() -> Contest<RootFinder, RootedFlight, f64> {
     Contest {
-        purpose: Purpose {
-            name: "root of the flight",
-            error_unit: "% of the flight",
-            time_per: "call",
-            missing: 100.0,
-        },
-        methods: RootMethod::ALL.into_iter().map(Way::By).chain([Way::ClosedForm]).collect(),
-        default: Way::By(RootMethod::default()),
+        purpose: Purpose::of_calls("root of the flight", "% of the flight"),
+        methods: RootMethod::ALL.into_iter().map(RootFinder::By).chain([RootFinder::ClosedForm]).collect(),
+        default: RootFinder::By(RootMethod::default()),
         name: |way| match way {
-            Way::By(method) => method.words().to_owned(),
-            Way::ClosedForm => "closed form (small angles)".to_owned(),
+            RootFinder::By(method) => method.words().to_owned(),
+            RootFinder::ClosedForm => "closed form (small angles)".to_owned(),
         },
         run: |way, flight| match way {
-            Way::By(method) => root_by(method, |t| flight.at(t), flight.bound_m_s2(), flight.last_s, TOUCH_M),
-            Way::ClosedForm => flight.closed_form_s(),
+            RootFinder::By(method) => {
+                root_by(method, |t| flight.at(t), flight.bound_m_s2(), flight.last_s, TOUCH_M)
+            }
+            RootFinder::ClosedForm => flight.closed_form_s(),
         },
         error: |flight, found_s| 100.0 * (found_s / flight.root_s - 1.0).abs(),
         parts: |_| 1,

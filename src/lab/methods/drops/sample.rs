@@ -6,7 +6,7 @@ use crate::lab::damage;
 use crate::lab::data::{SyntheticRecording, TrialMap, TrialRequest};
 use crate::lab::drawn::{BUILDS, DrawnDrop};
 use crate::lab::methods::contest::{Contest, map, some_of};
-use crate::lab::plan::Plan;
+use crate::lab::plan::DropPlan;
 use crate::{condition, events};
 use rayon::prelude::*;
 
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 pub(super) struct DropClass {
     pub name: &'static str,
     /// What makes a sound drop one of the class, with its flight, s, and a number between 0 and 1.
-    pub make: fn(&mut Plan, f64, f64),
+    pub make: fn(&mut DropPlan, f64, f64),
 }
 
 pub(super) const NOISY: DropClass = DropClass {
@@ -33,14 +33,14 @@ pub(super) struct Prepared {
 }
 
 /// The drops of a class; the same class and seed give the same.
-pub(super) fn plans(class: &DropClass, count: u64, request: &TrialRequest) -> Vec<Plan> {
+pub(super) fn plans(class: &DropClass, count: u64, request: &TrialRequest) -> Vec<DropPlan> {
     (0..count)
         .into_par_iter()
         .map(|number| {
             let mut chance = Chance::new(request.seed, number);
             let build = BUILDS[usize::try_from(number).unwrap_or(0) % BUILDS.len()];
             let (angle_deg, k) = (chance.even(8.0, 22.0), chance.even(0.2, 0.7));
-            let mut plan = Plan::of(build, angle_deg, k, request.seed + number);
+            let mut plan = DropPlan::of(build, angle_deg, k, request.seed + number);
             plan.pulse_s = chance.even(3e-3, 8e-3);
             // Not on the same place of the first sample's interval every time.
             plan.before_s += chance.even(0.0, 1e-3);
@@ -52,13 +52,13 @@ pub(super) fn plans(class: &DropClass, count: u64, request: &TrialRequest) -> Ve
 }
 
 /// Length of a plan's flight, s.
-pub(super) fn flight_s(plan: &Plan) -> f64 {
+pub(super) fn flight_s(plan: &DropPlan) -> f64 {
     plan.draw().motion.truth.flight_s.unwrap_or(0.0)
 }
 
 /// The plans' recordings, read and conditioned; a drop without an impact is left out.
-pub(super) fn prepared(plans: &[Plan]) -> Vec<Prepared> {
-    let recorded = |plan: &Plan| {
+pub(super) fn prepared(plans: &[DropPlan]) -> Vec<Prepared> {
+    let recorded = |plan: &DropPlan| {
         let drop = plan.draw();
         let written = drop.recorded();
         prepare(drop, &written)
@@ -87,12 +87,12 @@ pub(super) fn grown<M: Copy + PartialEq + Sync, C: Sync + Send, O>(
     const LIMIT_PERCENT: f64 = 1.0;
     const SOUND: DropClass = DropClass { name: "sound", make: |_, _, _| {} };
     let kind = damage::growing().find(|one| one.name == kind)?;
-    let plans: Vec<(Plan, f64)> = plans(&SOUND, if request.quick { 5 } else { 25 }, request)
+    let plans: Vec<(DropPlan, f64)> = plans(&SOUND, if request.quick { 5 } else { 25 }, request)
         .into_par_iter()
         .map(|plan| (plan.clone(), flight_s(&plan)))
         .collect();
     let cases = |size: &f64| {
-        let one = |(plan, flight_s): &(Plan, f64)| {
+        let one = |(plan, flight_s): &(DropPlan, f64)| {
             let (drop, written) = kind.grown(plan, *flight_s, *size);
             case(prepare(drop, &written)?)
         };

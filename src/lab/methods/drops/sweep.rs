@@ -6,7 +6,7 @@ use crate::lab::damage::{self, DamageKind};
 use crate::lab::data::{TrialLine, TrialPart, TrialRequest};
 use crate::lab::drawn::{ANF_10, ANF_18, Build, ESBB, VHLW};
 use crate::lab::methods::contest::{fraction, map, middle, some_of};
-use crate::lab::plan::Plan;
+use crate::lab::plan::DropPlan;
 use rayon::prelude::*;
 
 /// What is held against the truth.
@@ -26,15 +26,15 @@ const QUANTITIES: [Quantity; 2] = [
 ];
 
 /// A sound plan, and the length of its flight, s.
-type PlanAndFlight = (Plan, f64);
+type PlanAndFlight = (DropPlan, f64);
 
 /// The drops that every damage is laid on: four casks, angles of 10 to 25°, k of 0.3 to 0.6, pulses of 3 to 8 ms, each with a weak mode and an
 /// offset of half a g.
 fn plans(request: &TrialRequest) -> Vec<PlanAndFlight> {
     let plan = |order: u64, build: Build, [angle_deg, k, pulse_ms, frequency_hz]: [f64; 4]| {
-        let mut plan = Plan::of(build, angle_deg, k, request.seed + order);
+        let mut plan = DropPlan::of(build, angle_deg, k, request.seed + order);
         plan.pulse_s = 1e-3 * pulse_ms;
-        plan.modes = vec![Plan::mode(1, frequency_hz)];
+        plan.modes = vec![DropPlan::mode(1, frequency_hz)];
         plan.modes[0].strength = 0.3;
         plan.chain.offset_m_s2 = 0.5 * STANDARD_GRAVITY_M_S2;
         plan

@@ -96,34 +96,37 @@ fn matched_pulse(force: &[f64], sample_rate_hz: f64) -> Option<f64> {
     const LENGTHS_S: (f64, f64) = (5e-4, 0.03);
     const RATIO: f64 = 1.1;
     const FINE: i32 = 10;
-    let mut best: Option<(f64, f64, f64)> = None;
+    let mut best: Option<PulseMatch> = None;
     let mut length_s = LENGTHS_S.0;
     while length_s < LENGTHS_S.1 {
         best = better(best, best_start(force, length_s * sample_rate_hz));
         length_s *= RATIO;
     }
-    let coarse = best?.2;
+    let coarse = best?.length;
     for step in 1 - FINE..FINE {
         let finer = coarse * RATIO.powf(f64::from(step) / f64::from(FINE));
         best = better(best, best_start(force, finer));
     }
-    best.map(|(_, start, _)| start)
+    best.map(|best| best.start)
 }
 
-/// What is gained, where it starts, how long it is, in samples.
-type Match = (f64, f64, f64);
+/// A half sine laid on samples; start and length in samples.
+#[derive(Clone, Copy)]
+struct PulseMatch {
+    /// What it takes out of the sum of their squares.
+    gained: f64,
+    start: f64,
+    length: f64,
+}
 
-fn better(one: Option<Match>, other: Option<Match>) -> Option<Match> {
-    match (one, other) {
-        (Some(one), Some(other)) => Some(if other.0 > one.0 { other } else { one }),
-        (one, other) => one.or(other),
-    }
+fn better(one: Option<PulseMatch>, other: Option<PulseMatch>) -> Option<PulseMatch> {
+    one.into_iter().chain(other).reduce(|one, other| if other.gained > one.gained { other } else { one })
 }
 
 /// The start from which a half sine of `length` samples takes most out of the samples, between samples by a parabola.
 ///
 /// Σ f_i sin(π (i − s)/m) for every s from one running sum of f_i e^(iπ i/m); what it takes out is its square over m/2   (40)
-fn best_start(force: &[f64], length: f64) -> Option<Match> {
+fn best_start(force: &[f64], length: f64) -> Option<PulseMatch> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
     let whole = length.round() as usize;
     let starts = 0..(force.len() + 1).checked_sub(whole).filter(|_| whole >= 3)?;
@@ -153,7 +156,8 @@ fn best_start(force: &[f64], length: f64) -> Option<Match> {
     } else {
         0.0
     };
-    Some((top * top / (as_f64(whole) / 2.0), as_f64(start) + shift, as_f64(whole)))
+    let gained = top * top / (as_f64(whole) / 2.0);
+    Some(PulseMatch { gained, start: as_f64(start) + shift, length: as_f64(whole) })
 }
 
 #[cfg(test)]

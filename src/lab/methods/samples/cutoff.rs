@@ -3,7 +3,7 @@
 use crate::data::FilterChoice;
 use crate::lab::chance::Chance;
 use crate::lab::data::{TrialMap, TrialPart, TrialRequest};
-use crate::lab::methods::contest::{Contest, DIVERGED, Purpose, by_class, map};
+use crate::lab::methods::contest::{Contest, Purpose, by_class, map};
 use crate::motion::cutoff_hz;
 use crate::numerics::filter::ZeroPhaseLowPass;
 use crate::numerics::spectrum::magnitude;
@@ -119,12 +119,7 @@ impl RingingPulse {
 
 fn contest() -> Contest<CutoffRule, RingingPulse, Vec<f64>> {
     Contest {
-        purpose: Purpose {
-            name: "cut-off",
-            error_unit: "of the pulse's peak",
-            time_per: "sample",
-            missing: DIVERGED,
-        },
+        purpose: Purpose::of_samples("cut-off", "of the pulse's peak"),
         methods: RULES.to_vec(),
         default: CutoffRule::MassAndPulse,
         name: CutoffRule::name,

@@ -3,7 +3,7 @@
 use super::reference::low_passed;
 use crate::lab::chance::Chance;
 use crate::lab::data::{TrialMap, TrialPart, TrialRequest};
-use crate::lab::methods::contest::{Contest, DIVERGED, Purpose, by_class, map};
+use crate::lab::methods::contest::{Contest, Purpose, by_class, map};
 use crate::lab::methods::rivals::filter::{EndPadding, FilterForm, LowPass};
 use rayon::prelude::*;
 
@@ -77,12 +77,7 @@ fn own_noise(design: f64) -> f64 {
 
 fn contest() -> Contest<EndPadding, CutRecord, Vec<f64>> {
     Contest {
-        purpose: Purpose {
-            name: "record ends",
-            error_unit: "of the filter's own noise",
-            time_per: "sample",
-            missing: DIVERGED,
-        },
+        purpose: Purpose::of_samples("record ends", "of the filter's own noise"),
         methods: EndPadding::ALL.to_vec(),
         default: EndPadding::default(),
         name: |ends| ends.as_str().to_owned(),

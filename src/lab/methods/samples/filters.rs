@@ -3,13 +3,12 @@
 use super::reference::{low_passed, worst_of_peak};
 use crate::lab::chance::Chance;
 use crate::lab::data::{TrialMap, TrialPart, TrialPeerWork, TrialRequest};
-use crate::lab::methods::contest::{Contest, DIVERGED, Purpose, by_class, map};
+use crate::lab::methods::contest::{Contest, Purpose, by_class, map};
 use crate::lab::methods::rivals::filter::{EndPadding, FilterForm, LowPass};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-const FILTER: Purpose =
-    Purpose { name: "filter", error_unit: "of the peak", time_per: "sample", missing: DIVERGED };
+const FILTER: Purpose = Purpose::of_samples("filter", "of the peak");
 
 /// A form and whether it is computed in single precision.
 type FilterMethod = (FilterForm, bool);

@@ -3,17 +3,12 @@
 use super::reference::worst_of_peak;
 use crate::lab::chance::Chance;
 use crate::lab::data::{TrialMap, TrialPart, TrialPeerWork, TrialRequest};
-use crate::lab::methods::contest::{Contest, DIVERGED, Purpose, by_class, map, silent_line};
+use crate::lab::methods::contest::{Contest, Purpose, by_class, map, silent_line};
 use crate::lab::methods::rivals::integration::{IntegrationRule, Summation, running_integral_by};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-const INTEGRATION: Purpose = Purpose {
-    name: "integration",
-    error_unit: "of the velocity step",
-    time_per: "sample",
-    missing: DIVERGED,
-};
+const INTEGRATION: Purpose = Purpose::of_samples("integration", "of the velocity step");
 
 /// Rule and sum.
 type IntegrationMethod = (IntegrationRule, Summation);

@@ -4,14 +4,14 @@ use super::double_double::DoubleDouble;
 use crate::lab::methods::contest::DIVERGED;
 
 /// b0 (= b2 = b1/2), a1, a2.
-type Section = [DoubleDouble; 3];
+type DoubledSection = [DoubleDouble; 3];
 
 /// Two passes of a Butterworth low-pass of this order a pass, by the bilinear transform.
 ///
 /// Direct form loses (f_s / 2π f)² of its digits: at f/f_s = 1e-6 that is 3e10 of 1e32.
 pub(super) fn low_passed(samples: &[f64], order: u32, design_over_rate: f64) -> Vec<f64> {
     let mut work: Vec<DoubleDouble> = samples.iter().map(|x| DoubleDouble::from(*x)).collect();
-    let sections: Vec<Section> = (0..order / 2).map(|i| section(order, i, design_over_rate)).collect();
+    let sections: Vec<DoubledSection> = (0..order / 2).map(|i| section(order, i, design_over_rate)).collect();
     for _ in 0..2 {
         for section in &sections {
             one_pass(section, &mut work);
@@ -21,7 +21,7 @@ pub(super) fn low_passed(samples: &[f64], order: u32, design_over_rate: f64) -> 
     work.into_iter().map(DoubleDouble::value).collect()
 }
 
-fn section(order: u32, index: u32, design_over_rate: f64) -> Section {
+fn section(order: u32, index: u32, design_over_rate: f64) -> DoubledSection {
     let number = |x: f64| DoubleDouble::from(x);
     let (sine, cosine) = (DoubleDouble::PI * number(design_over_rate)).sine_and_cosine();
     let angle =
@@ -33,7 +33,7 @@ fn section(order: u32, index: u32, design_over_rate: f64) -> Section {
     [square * scale, number(2.0) * (square - cosine * cosine) * scale, (number(1.0) - cross) * scale]
 }
 
-fn one_pass([b, a1, a2]: &Section, samples: &mut [DoubleDouble]) {
+fn one_pass([b, a1, a2]: &DoubledSection, samples: &mut [DoubleDouble]) {
     let nothing = DoubleDouble::from(0.0);
     let (mut x1, mut x2, mut y1, mut y2) = (nothing, nothing, nothing, nothing);
     for x in samples {

@@ -1,7 +1,7 @@
 //! A synthetic recording to CSV: comma, point, one header with units; a lost sample is an empty cell, a lost row is left out.
 
 use super::SyntheticError;
-use super::place::Place;
+use super::place::SyntheticPlace;
 use crate::lab::data::SyntheticRecording;
 use crate::report::ReportError;
 
@@ -9,7 +9,10 @@ use crate::report::ReportError;
 ///
 /// # Errors
 /// [`SyntheticError::OneRate`] where the channels have several rates; [`ReportError::Csv`] where the writer fails.
-pub(super) fn bytes(recording: &SyntheticRecording, places: &[Place]) -> Result<Vec<u8>, SyntheticError> {
+pub(super) fn bytes(
+    recording: &SyntheticRecording,
+    places: &[SyntheticPlace],
+) -> Result<Vec<u8>, SyntheticError> {
     let channels = &recording.channels;
     let rates_hz: Vec<f64> = channels.iter().map(|c| c.sample_rate_hz).collect();
     let first_hz = rates_hz.first().copied().unwrap_or(1.0);
@@ -19,7 +22,11 @@ pub(super) fn bytes(recording: &SyntheticRecording, places: &[Place]) -> Result<
     table(recording, places, first_hz).map_err(|error| ReportError::Csv(error).into())
 }
 
-fn table(recording: &SyntheticRecording, places: &[Place], rate_hz: f64) -> Result<Vec<u8>, csv::Error> {
+fn table(
+    recording: &SyntheticRecording,
+    places: &[SyntheticPlace],
+    rate_hz: f64,
+) -> Result<Vec<u8>, csv::Error> {
     let channels = &recording.channels;
     let mut times: Vec<(&str, f64)> = vec![("time_s", 0.0)];
     for (channel, place) in channels.iter().zip(places) {

@@ -1,6 +1,6 @@
 //! A synthetic recording to HDF5: one dataset a channel in `/daq`; where samples were lost, the times of the rest in `/time_s`.
 
-use super::place::Place;
+use super::place::SyntheticPlace;
 use crate::lab::data::SyntheticRecording;
 use crate::report::ReportError;
 use crate::report::curves_h5::{filled, text, through_a_file};
@@ -10,11 +10,14 @@ use hdf5_metno::File;
 ///
 /// # Errors
 /// [`ReportError::Hdf5`] where the library fails, [`ReportError::Scratch`] where the temporary folder does.
-pub(super) fn bytes(recording: &SyntheticRecording, places: &[Place]) -> Result<Vec<u8>, ReportError> {
+pub(super) fn bytes(
+    recording: &SyntheticRecording,
+    places: &[SyntheticPlace],
+) -> Result<Vec<u8>, ReportError> {
     through_a_file(|file| write(file, recording, places))
 }
 
-fn write(file: &File, recording: &SyntheticRecording, places: &[Place]) -> Result<(), ReportError> {
+fn write(file: &File, recording: &SyntheticRecording, places: &[SyntheticPlace]) -> Result<(), ReportError> {
     let group = file.create_group("daq")?;
     for (channel, place) in recording.channels.iter().zip(places) {
         let samples: Vec<f32> = channel.samples.iter().copied().filter(|x| !x.is_nan()).collect();

@@ -1,6 +1,6 @@
 //! A synthetic recording to MCAP: blocks `dropcheck.AccelerationBlock` in JSON or protobuf, stamped, with their schema.
 
-use super::place::Place;
+use super::place::SyntheticPlace;
 use crate::lab::data::{SyntheticChannel, SyntheticRecording};
 use crate::report::ReportError;
 use mcap::records::MessageHeader;
@@ -27,7 +27,7 @@ const SCHEMA: &str = "dropcheck.AccelerationBlock";
 
 /// How the blocks are encoded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Encoding {
+pub(super) enum BlockEncoding {
     Json,
     Protobuf,
 }
@@ -38,16 +38,16 @@ pub(super) enum Encoding {
 /// [`ReportError::Mcap`] where the writer fails.
 pub(super) fn bytes(
     recording: &SyntheticRecording,
-    places: &[Place],
-    encoding: Encoding,
+    places: &[SyntheticPlace],
+    encoding: BlockEncoding,
 ) -> Result<Vec<u8>, ReportError> {
     let options = WriteOptions::new()
         .compression(Some(Compression::Zstd))
         .library(concat!("dropcheck ", env!("CARGO_PKG_VERSION")));
     let mut writer = options.create(Cursor::new(Vec::new()))?;
     let (schema, name) = match encoding {
-        Encoding::Json => (writer.add_schema(SCHEMA, "jsonschema", &json_schema()?)?, "json"),
-        Encoding::Protobuf => (writer.add_schema(SCHEMA, "protobuf", &descriptors())?, "protobuf"),
+        BlockEncoding::Json => (writer.add_schema(SCHEMA, "jsonschema", &json_schema()?)?, "json"),
+        BlockEncoding::Protobuf => (writer.add_schema(SCHEMA, "protobuf", &descriptors())?, "protobuf"),
     };
     let mut messages = Vec::new();
     for (channel, place) in recording.channels.iter().zip(places) {
@@ -60,11 +60,11 @@ pub(super) fn bytes(
             channel_id: *channel_id,
             sequence: u32::try_from(sequence).unwrap_or(u32::MAX),
             log_time: u64::try_from(*log_ns).unwrap_or(0),
-            publish_time: u64::try_from(block.stamp_ns).unwrap_or(0),
+            publish_time: u64::try_from(block.timestamp.ns()).unwrap_or(0),
         };
         let data = match encoding {
-            Encoding::Json => block.json()?,
-            Encoding::Protobuf => block.protobuf(),
+            BlockEncoding::Json => serde_json::to_vec(block)?,
+            BlockEncoding::Protobuf => block.protobuf(),
         };
         writer.write_to_known_channel(&header, &data)?;
     }
@@ -72,20 +72,37 @@ pub(super) fn bytes(
     Ok(writer.into_inner().into_inner())
 }
 
-/// Samples that follow one another.
-struct Block<'a> {
-    stamp_ns: i64,
+/// Samples that follow one another, as JSON has them.
+#[derive(Serialize)]
+struct SyntheticBlock<'a> {
+    timestamp: BlockStamp,
     sample_rate_hz: f64,
     unit: &'a str,
     samples: &'a [f32],
 }
 
+#[derive(Serialize)]
+struct BlockStamp {
+    sec: i64,
+    nsec: i64,
+}
+
+impl BlockStamp {
+    fn of(ns: i64) -> Self {
+        Self { sec: ns.div_euclid(1_000_000_000), nsec: ns.rem_euclid(1_000_000_000) }
+    }
+
+    fn ns(&self) -> i64 {
+        1_000_000_000 * self.sec + self.nsec
+    }
+}
+
 /// The channel in blocks; none reaches over a loss.
-fn blocks(channel: &SyntheticChannel) -> Vec<Block<'_>> {
+fn blocks(channel: &SyntheticChannel) -> Vec<SyntheticBlock<'_>> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast from float saturates")]
     let longest = ((BLOCK_S * channel.sample_rate_hz) as usize).max(2);
-    let block = |(from, samples)| Block {
-        stamp_ns: START_NS + nanoseconds(channel.time_s(from)),
+    let block = |(from, samples)| SyntheticBlock {
+        timestamp: BlockStamp::of(START_NS + nanoseconds(channel.time_s(from))),
         sample_rate_hz: channel.sample_rate_hz,
         unit: &channel.unit,
         samples,
@@ -99,47 +116,18 @@ fn nanoseconds(time_s: f64) -> i64 {
     (time_s * 1e9).round() as i64
 }
 
-#[derive(Serialize)]
-struct JsonBlock<'a> {
-    timestamp: Stamp,
-    sample_rate_hz: f64,
-    unit: &'a str,
-    samples: &'a [f32],
-}
-
-#[derive(Serialize)]
-struct Stamp {
-    sec: i64,
-    nsec: i64,
-}
-
-impl Block<'_> {
+impl SyntheticBlock<'_> {
     /// When the block is whole.
     fn end_ns(&self) -> i64 {
         #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
         let long_s = self.samples.len() as f64 / self.sample_rate_hz;
-        self.stamp_ns + nanoseconds(long_s)
-    }
-
-    fn stamp(&self) -> (i64, i64) {
-        (self.stamp_ns.div_euclid(1_000_000_000), self.stamp_ns.rem_euclid(1_000_000_000))
-    }
-
-    fn json(&self) -> Result<Vec<u8>, ReportError> {
-        let (sec, nsec) = self.stamp();
-        let block = JsonBlock {
-            timestamp: Stamp { sec, nsec },
-            sample_rate_hz: self.sample_rate_hz,
-            unit: self.unit,
-            samples: self.samples,
-        };
-        Ok(serde_json::to_vec(&block)?)
+        self.timestamp.ns() + nanoseconds(long_s)
     }
 
     /// The block message on the wire, its fields numbered as in docs/formats.md.
     fn protobuf(&self) -> Vec<u8> {
-        let (seconds, nanos) = self.stamp();
-        let stamp = Timestamp { seconds, nanos: i32::try_from(nanos).unwrap_or(0) };
+        let BlockStamp { sec, nsec } = self.timestamp;
+        let stamp = Timestamp { seconds: sec, nanos: i32::try_from(nsec).unwrap_or(0) };
         let mut data = Vec::with_capacity(4 * self.samples.len() + 64);
         message::encode(1, &stamp, &mut data);
         double::encode(2, &self.sample_rate_hz, &mut data);

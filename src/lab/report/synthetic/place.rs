@@ -4,7 +4,7 @@ use super::SyntheticFormat;
 use crate::lab::data::SyntheticRecording;
 
 /// Where a channel stands.
-pub(super) struct Place {
+pub(super) struct SyntheticPlace {
     /// Name within the format: of the topic or dataset below `/daq/`, or of the column.
     pub name: String,
     /// The source as the cask file writes it.
@@ -14,7 +14,7 @@ pub(super) struct Place {
 }
 
 /// A place for every channel.
-pub(super) fn places(recording: &SyntheticRecording, format: SyntheticFormat) -> Vec<Place> {
+pub(super) fn places(recording: &SyntheticRecording, format: SyntheticFormat) -> Vec<SyntheticPlace> {
     let mut taken: Vec<String> = vec!["time".into(), "time_s".into()];
     let mut places = Vec::new();
     for channel in &recording.channels {
@@ -32,7 +32,7 @@ pub(super) fn places(recording: &SyntheticRecording, format: SyntheticFormat) ->
                 (name.clone(), Some(time))
             }
         };
-        places.push(Place { name, source, time });
+        places.push(SyntheticPlace { name, source, time });
     }
     places
 }
