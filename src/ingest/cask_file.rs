@@ -2,6 +2,7 @@
 
 mod body;
 pub(crate) mod channel;
+pub(super) mod fault;
 mod range;
 pub(crate) mod section;
 pub(super) mod tolerance;
@@ -10,66 +11,12 @@ mod wording;
 use crate::data::keys::TABLES;
 use crate::data::{CaskFile, Contact, FilterChoice};
 pub(crate) use body::{cask, drop};
-use miette::{Diagnostic, NamedSource, SourceSpan};
+pub use fault::{CaskFileError, WrongLine};
 use section::{CASK_FILE, Document, Kind, Section};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::io::Read;
 use std::path::Path;
-
-/// Why a cask file cannot be used.
-#[derive(Debug, thiserror::Error, Diagnostic)]
-pub enum CaskFileError {
-    /// The operating system refused.
-    #[error("{path}: {kind} cannot be read: {}", super::error::bare(.refusal))]
-    #[diagnostic(help("check the name{}, and that you may read it", if *.kind == CASK_FILE.name { " after --cask" } else { "" }))]
-    Io {
-        /// The file.
-        path: String,
-        /// "the cask file", or what else was expected.
-        kind: &'static str,
-        /// Its reason.
-        refusal: std::io::Error,
-    },
-    /// It is no text file that a cask file could be.
-    #[error("{path}: {problem}")]
-    #[diagnostic(help("{mend}"))]
-    NoCaskFile {
-        /// The file.
-        path: String,
-        /// What it is instead.
-        problem: String,
-        /// What to do.
-        mend: String,
-    },
-    /// A line of it is wrong.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Line(#[from] Box<WrongLine>),
-}
-
-/// A line of a cask file that is wrong, with its place.
-#[derive(Debug, thiserror::Error, Diagnostic)]
-#[error("{path}, line {line}: {message}")]
-pub struct WrongLine {
-    /// The file.
-    pub path: String,
-    /// The line, from 1.
-    pub line: usize,
-    /// What is wrong.
-    pub message: String,
-    /// What was expected there.
-    pub expected: String,
-    /// The file's text.
-    #[source_code]
-    pub text: NamedSource<String>,
-    /// Where in it.
-    #[label("{expected}")]
-    pub span: SourceSpan,
-    /// How to mend it.
-    #[help]
-    pub mend: String,
-}
 
 /// A larger file is no cask file: a thousand channels take 300 kB.
 const LARGEST_BYTES: u64 = 16 << 20;

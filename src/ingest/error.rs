@@ -1,6 +1,7 @@
 //! Why a recording or a cask file could not be read: which file, where in it, what is wrong, how to mend it.
 
 use super::clock::Refusal;
+use super::shown::bare;
 use crate::data::shortened;
 use std::path::Path;
 
@@ -10,7 +11,7 @@ pub enum IngestError {
     /// The cask file is at fault.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    CaskFile(#[from] super::cask_file::CaskFileError),
+    CaskFile(#[from] super::cask_file::fault::CaskFileError),
     /// The operating system refused.
     #[error("{path}: {}", bare(.refusal))]
     #[diagnostic(help("check the name, and that you may read it"))]
@@ -88,12 +89,6 @@ pub enum IngestError {
         /// What to do.
         mend: String,
     },
-}
-
-/// The operating system's words without its error number.
-pub(super) fn bare(refusal: &std::io::Error) -> String {
-    let text = refusal.to_string();
-    text.split(" (os error").next().unwrap_or_default().to_owned()
 }
 
 /// The operating system's refusal, with the file's name.

@@ -1,4 +1,4 @@
-//! Numbers to words for messages, as they can be written into a cask file.
+//! Numbers and refusals of the operating system to words for messages.
 
 /// `number` rounded to so many significant digits.
 pub(super) fn to_digits(number: f64, digits: i32) -> f64 {
@@ -29,4 +29,10 @@ pub(super) fn digits(number: f64, digits: i32) -> String {
 /// A rate in Hz, to a tenth of a part in a million.
 pub(super) fn hz(rate_hz: f64) -> String {
     digits(rate_hz, 7)
+}
+
+/// The operating system's words without its error number.
+pub(super) fn bare(refusal: &std::io::Error) -> String {
+    let text = refusal.to_string();
+    text.split(" (os error").next().unwrap_or_default().to_owned()
 }

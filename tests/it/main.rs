@@ -10,6 +10,7 @@ mod first_minutes;
 mod fixtures;
 mod golden;
 mod hdf5_room;
+mod house;
 mod layouts;
 mod odd;
 mod predict_command;

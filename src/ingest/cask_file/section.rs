@@ -1,7 +1,7 @@
 //! A TOML table to values that know their place, each wrong one to a diagnostic under its line.
 
+use super::fault::{CaskFileError, THE_CASK_FILE, WrongLine};
 use super::wording::{described, line_of, nearest, number_with_unit, unit_mend};
-use super::{CaskFileError, WrongLine};
 use crate::data::keys::{self, names};
 use miette::NamedSource;
 use std::ops::Range;
@@ -18,7 +18,7 @@ pub(crate) struct Kind {
 }
 
 /// The cask file.
-pub(crate) const CASK_FILE: Kind = Kind { name: "the cask file", tables: &KEYS };
+pub(crate) const CASK_FILE: Kind = Kind { name: THE_CASK_FILE, tables: &KEYS };
 
 /// Every table of a cask file with its keys; "" is the file itself.
 const KEYS: [(&str, &[&str]); 10] = [

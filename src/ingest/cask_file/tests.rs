@@ -3,6 +3,7 @@
 use super::*;
 use crate::data::keys::{Allowed, TABLES, Takes};
 use crate::data::{Axis, Coupling, End, Source, Unit};
+use miette::Diagnostic;
 
 const FULL: &str = r#"
 [cask]

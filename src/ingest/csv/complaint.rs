@@ -7,7 +7,6 @@ use super::super::number;
 use super::super::time_base::TimeBaseError;
 use super::layout::Layout;
 use super::rows::{Ending, RowError};
-use super::time_column;
 use super::wanted::Wanted;
 use crate::data::{Issue, IssueCode, Severity};
 use std::path::Path;
@@ -30,20 +29,6 @@ pub(super) fn ending_issue(ending: &Ending) -> Option<Issue> {
         )
     };
     Some(Issue::new(IssueCode::Truncated, Severity::Warning, message))
-}
-
-/// That no column holds times, with the one that looks most like it.
-pub(super) fn no_times(layout: &Layout) -> String {
-    let headed = layout.columns.iter().find(|column| time_column::is_headed(column));
-    match headed.filter(|column| !column.is_numeric && !column.example.is_empty()) {
-        Some(column) => {
-            format!(
-                "no column of times was found: {:?} holds {:?}, which is no time known here",
-                column.header, column.example
-            )
-        }
-        None => format!("no column of times was found among {}", layout.names().join(", ")),
-    }
 }
 
 /// Rows that are refused as a whole.

@@ -2,8 +2,8 @@
 
 use super::super::clock::Claims;
 use super::super::error::{self, IngestError};
-use super::complaint;
 use super::layout::Layout;
+use super::time_column;
 use crate::data::{ChannelSpec, Source};
 use std::path::Path;
 
@@ -46,7 +46,7 @@ impl Plan {
             return Err(error::source(
                 path,
                 &spec.name,
-                complaint::no_times(layout),
+                no_times(layout),
                 "name it under [recording]: time = \"…\", or give this channel sample_rate_hz",
             ));
         }
@@ -83,5 +83,19 @@ fn find(path: &Path, spec: &ChannelSpec, wanted: &str, layout: &Layout) -> Resul
             format!("{} columns are headed {wanted:?}", several.len()),
             "rename all but one of them in a copy of the recording",
         )),
+    }
+}
+
+/// That no column holds times, with the one that looks most like it.
+fn no_times(layout: &Layout) -> String {
+    let headed = layout.columns.iter().find(|column| time_column::is_headed(column));
+    match headed.filter(|column| !column.is_numeric && !column.example.is_empty()) {
+        Some(column) => {
+            format!(
+                "no column of times was found: {:?} holds {:?}, which is no time known here",
+                column.header, column.example
+            )
+        }
+        None => format!("no column of times was found among {}", layout.names().join(", ")),
     }
 }

@@ -298,7 +298,7 @@ impl Link {
 fn unstarted(refusal: &io::Error) -> Fault {
     let what = match PROGRAM.get() {
         Some(program) => {
-            let why = super::super::error::bare(refusal);
+            let why = crate::ingest::shown::bare(refusal);
             format!("{} could not be started: {why}", program.display())
         }
         None => "no program was named for it".into(),
