@@ -129,13 +129,16 @@ mod tests {
         let untouched = said(&sound(), &sound().recorded());
         for kind in TABLE.iter() {
             let size = kind.sizes.last().or(kind.growing.last()).copied().expect("a size");
-            let (mut struck, (hard, recording)) = (sound(), kind.grown(&plan, 0.1, size));
+            let mut struck = sound();
             let is_struck = {
                 let recording = kind.strike(&mut struck, size);
                 said(&struck, &recording) != untouched
             };
-            let is_hard = format!("{:?}", hard.scene) != format!("{:?}", plan.draw().scene);
-            assert!(!recording.channels.is_empty());
+            let is_hard = !kind.growing.is_empty() && {
+                let (hard, recording) = kind.grown(&plan, 0.1, size);
+                assert!(!recording.channels.is_empty());
+                format!("{:?}", hard.scene) != format!("{:?}", plan.draw().scene)
+            };
             assert_eq!(is_struck, !["drop", "flight"].contains(&kind.of), "{}", kind.name);
             assert!(is_struck || is_hard || kind.of == "flight", "{}", kind.name);
         }
