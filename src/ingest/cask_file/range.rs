@@ -67,7 +67,8 @@ impl Section<'_> {
         }
     }
 
-    /// A number within `range`; `why` says what lies beyond or what the key means.
+    /// A number within `range`; `why` says what lies beyond or what the key means. Keys of a scene have their ranges beside them.
+    #[cfg(feature = "lab")]
     pub(crate) fn within(
         &self,
         key: &str,
