@@ -17,6 +17,7 @@ mod prediction;
 mod quantities;
 mod reconstruction;
 mod recording;
+pub(crate) mod shown;
 mod signal;
 mod study;
 mod tolerances;
@@ -35,7 +36,8 @@ pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, MotionCurve};
 pub use estimate::Estimate;
 pub use finding::{
-    CODES, ChannelFinding, DropFinding, During, Finding, Issue, IssueCode, Severity, What, shortened,
+    CODES, ChannelFinding, DropFinding, During, Finding, Issue, IssueCode, Jitter, Severity, TimesFinding,
+    What, shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};

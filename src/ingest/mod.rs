@@ -14,7 +14,6 @@ mod hdf5;
 mod limits;
 mod mcap;
 mod number;
-mod shown;
 #[allow(dead_code, reason = "readers move onto it one by one")]
 mod statement;
 mod strangers;
@@ -29,6 +28,7 @@ mod vocabulary;
 pub use error::IngestError;
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
 
+use crate::data::shown;
 use crate::data::{CaskFile, Issue, Listing, Recording, RecordingFormat};
 use std::path::Path;
 

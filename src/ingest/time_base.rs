@@ -21,7 +21,7 @@ pub(super) use pieces::Content;
 pub use uniform::{Block, Uniform};
 
 use super::clock::{self, Claims};
-use crate::data::{Issue, IssueCode, Samples, Severity};
+use crate::data::{Finding, Jitter, Samples, TimesFinding};
 use fit::Fit;
 use order::Ordered;
 use std::sync::OnceLock;
@@ -138,12 +138,10 @@ pub fn from_rate(start_s: f64, sample_rate_hz: f64, samples: Samples) -> Result<
         issues: Vec::new(),
     };
     let clock = (start_s, sample_rate_hz);
-    let (count, gaps) = match &mut uniform.samples {
-        Samples::F32(v) => missing::mark_non_finite(v, clock, &mut uniform.issues),
-        Samples::F64(v) => missing::mark_non_finite(v, clock, &mut uniform.issues),
+    uniform.gaps = match &mut uniform.samples {
+        Samples::F32(v) => missing::mark_non_finite(v, 0, clock, &mut uniform.issues),
+        Samples::F64(v) => missing::mark_non_finite(v, 0, clock, &mut uniform.issues),
     };
-    debug_assert_eq!(count == 0, gaps.is_empty());
-    uniform.gaps = gaps;
     Ok(uniform)
 }
 
@@ -166,7 +164,7 @@ fn place<S: Number>(times: &Times, samples: Vec<S>, claims: &Claims) -> Result<P
     missing::report_gaps(&fit, &times_s, &mut issues);
     if fit.rms_s > STEADY_PART * fit.period_s && fit.max_s > 0.75 * fit.resolution_s {
         let moved = resample::resample(&times_s, &samples, &fit);
-        issues.push(jitter_note(&fit, fit::two_periods(&times_s), &moved.error));
+        issues.push(jitter(&fit, fit::two_periods(&times_s), &moved.error));
         let gaps = missing::spans(&moved.samples);
         return Ok(Placed {
             start_s: moved.start_s,
@@ -182,36 +180,11 @@ fn place<S: Number>(times: &Times, samples: Vec<S>, claims: &Claims) -> Result<P
     Ok(Placed { start_s: fit.start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
 }
 
-fn jitter_note(fit: &Fit, two_periods_s: Option<(f64, f64)>, error: &resample::Difference) -> Issue {
-    /// In intervals: late stamps, with a gap or two that they make up, stay below; a clock 2 % off for a thousand samples is beyond.
-    const MOST_LATE: f64 = 2.0;
-    let is_late = fit.rms_s > MOST_LATE * fit.period_s;
-    let asked = match two_periods_s {
-        Some((short_s, long_s)) => format!(
-            "; they rise at {:.6} Hz in one part and at {:.6} Hz in another, which is no jitter but a clock that changed its rate: look at \
-             the times; where the samples were taken evenly, take the times out in a copy and state sample_rate_hz",
-            1.0 / short_s,
-            1.0 / long_s
-        ),
-        None if is_late => "; so far off is no jitter but a clock that ran at another rate for a while, was set or began anew: look at the times".into(),
-        None => String::new(),
-    };
-    let is_jitter = asked.is_empty();
-    Issue::new(
-        if is_jitter { IssueCode::TimeJitter } else { IssueCode::Clock },
-        if is_jitter { Severity::Note } else { Severity::Warning },
-        format!(
-            "times lie {:.3e} s (RMS, {:.1} % of the sample interval) off a uniform base at {:.6} Hz, {:.3e} s at most; \
-             the samples were interpolated onto it. Cubic and linear interpolation differ by {:.2} % of the largest \
-             sample RMS, {:.2} % at most, which bounds the error of doing so{asked}",
-            fit.rms_s,
-            100.0 * fit.rms_s / fit.period_s,
-            1.0 / fit.period_s,
-            fit.max_s,
-            error.rms_percent,
-            error.max_percent
-        ),
-    )
+fn jitter(fit: &Fit, two_periods_s: Option<(f64, f64)>, error: &resample::Difference) -> Finding {
+    let resample::Difference { rms_percent, max_percent } = *error;
+    let rates_hz = two_periods_s.map(|(short_s, long_s)| (1.0 / short_s, 1.0 / long_s));
+    let &Fit { period_s, rms_s, max_s, .. } = fit;
+    TimesFinding::Jitter(Jitter { period_s, rms_s, max_s, rms_percent, max_percent, rates_hz }).into()
 }
 
 #[cfg(test)]

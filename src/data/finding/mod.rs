@@ -3,10 +3,12 @@
 mod channel;
 mod code;
 mod drop;
+mod times;
 
 pub use channel::{ChannelFinding, During};
 pub use code::{CODES, IssueCode, Severity};
 pub use drop::DropFinding;
+pub use times::{Jitter, TimesFinding};
 
 use serde::{Serialize, Serializer};
 use std::borrow::Cow;
@@ -18,8 +20,10 @@ pub enum What {
     Channel(ChannelFinding),
     /// About the drop, its motion or its prediction.
     Drop(DropFinding),
-    /// About the file, in words.
-    Said(IssueCode, String),
+    /// About the times of a recording.
+    Times(TimesFinding),
+    /// About the file, in words that a reader of one format has, or that a refusal says too.
+    Said(IssueCode, Severity, String),
 }
 
 /// One finding about a recording or a result.
@@ -47,8 +51,16 @@ pub type Issue = Finding;
 impl From<DropFinding> for Finding {
     fn from(found: DropFinding) -> Self {
         let (code, severity) = found.code();
-        let message = shortened(&found.sentence()).into_owned();
-        Self { what: What::Drop(found), code, severity, channel: None, message, from_s: None, to_s: None }
+        let message = found.sentence();
+        Self::made(What::Drop(found), code, severity, &message)
+    }
+}
+
+impl From<TimesFinding> for Finding {
+    fn from(found: TimesFinding) -> Self {
+        let (code, severity) = found.code();
+        let message = found.sentence();
+        Self::made(What::Times(found), code, severity, &message)
     }
 }
 
@@ -57,9 +69,8 @@ impl ChannelFinding {
     #[must_use]
     pub fn on(self, channel: &str) -> Finding {
         let (code, severity) = self.code();
-        let message = shortened(&self.sentence(channel)).into_owned();
-        let channel = Some(channel.to_owned());
-        Finding { what: What::Channel(self), code, severity, channel, message, from_s: None, to_s: None }
+        let message = self.sentence(channel);
+        Finding::made(What::Channel(self), code, severity, &message).on(channel)
     }
 }
 
@@ -67,8 +78,12 @@ impl Finding {
     /// A finding of the whole recording.
     #[must_use]
     pub fn new(code: IssueCode, severity: Severity, message: impl Into<String>) -> Self {
-        let message = shortened(&message.into()).into_owned();
-        let what = What::Said(code, message.clone());
+        let message = message.into();
+        Self::made(What::Said(code, severity, message.clone()), code, severity, &message)
+    }
+
+    fn made(what: What, code: IssueCode, severity: Severity, message: &str) -> Self {
+        let message = shortened(message).into_owned();
         Self { what, code, severity, channel: None, message, from_s: None, to_s: None }
     }
 

@@ -7,7 +7,7 @@ use super::pieces::{Content, Piece, pieces};
 use super::stamps::{Cut, Interval, ROUND_OFF, Stamps};
 use super::uniform::{Block, Number, Placed, Uniform};
 use super::{fit, missing};
-use crate::data::{Issue, IssueCode, Samples, Severity};
+use crate::data::{Finding, Samples, TimesFinding};
 use crate::ingest::clock::RATE_TOLERANCE;
 use crate::numerics::robust;
 
@@ -57,9 +57,9 @@ pub(in crate::ingest) struct Laid {
     /// Hz.
     pub(in crate::ingest) sample_rate_hz: f64,
     /// Samples that are missing between blocks, from when to when, s.
-    gaps: Vec<(usize, f64, f64)>,
+    gaps: Vec<missing::Gap>,
     doubles: Doubles,
-    issues: Vec<Issue>,
+    issues: Vec<Finding>,
 }
 
 /// [`from_blocks`] as far as stamps and lengths tell.
@@ -95,7 +95,7 @@ pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &Content) -> Result<L
     let (mut gaps, mut end) = (Vec::new(), 0);
     for (piece, &place) in pieces.iter().zip(&places) {
         if place > end && end > 0 {
-            gaps.push((place - end, time_s(end - 1), time_s(place)));
+            gaps.push(missing::Gap { lost: place - end, from_s: time_s(end - 1), to_s: time_s(place) });
         }
         end = end.max(place + piece.samples.len());
     }
@@ -137,8 +137,8 @@ fn filled<S: Number>(laid: Laid, held: Vec<S>) -> Placed<S> {
     let restart = restart(&starts_s).filter(|_| doubles.different > 0);
     issues.extend(restart.map(|at| restarted(&starts_s, at)));
     missing::push_gaps(&gaps, &mut issues);
-    let lost: usize = gaps.iter().map(|gap| gap.0).sum();
-    let gaps = settle_missing(&mut samples, lost, (start_s, sample_rate_hz), &mut issues);
+    let lost: usize = gaps.iter().map(|gap| gap.lost).sum();
+    let gaps = missing::mark_non_finite(&mut samples, lost, (start_s, sample_rate_hz), &mut issues);
     Placed { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues }
 }
 
@@ -159,18 +159,11 @@ fn in_place<S>(
     held
 }
 
-fn sort(pieces: &mut [Piece], issues: &mut Vec<Issue>) {
+fn sort(pieces: &mut [Piece], issues: &mut Vec<Finding>) {
     let Some(first) = (1..pieces.len()).find(|&i| pieces[i].start_s < pieces[i - 1].start_s) else { return };
     let count = pieces.windows(2).filter(|w| w[1].start_s < w[0].start_s).count();
     let (from_s, to_s) = (pieces[first].start_s, pieces[first - 1].start_s);
-    issues.push(
-        Issue::new(
-            IssueCode::DisorderedBlocks,
-            Severity::Note,
-            format!("{count} block(s) came after a later one; they were put in order by their stamps"),
-        )
-        .between(from_s, to_s),
-    );
+    issues.push(Finding::from(TimesFinding::BlocksBackward { count }).between(from_s, to_s));
     pieces.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
 }
 
@@ -214,22 +207,15 @@ fn stamp_tolerance(stamps: &Stamps, rate_hz: f64, cut: Option<Cut>) -> f64 {
 }
 
 /// A warning where blocks are shorter than nine of ten others by no more than what stamps leave open: samples may be missing behind them.
-fn hidden_loss(stamps: &Stamps, rate_hz: f64, tolerance: f64) -> Option<Issue> {
+fn hidden_loss(stamps: &Stamps, rate_hz: f64, tolerance: f64) -> Option<Finding> {
     let mut lengths: Vec<f64> = stamps.0.iter().map(|interval| interval.length).collect();
     let usual = robust::median(&mut lengths);
     let lacking: Vec<f64> =
         lengths.iter().map(|length| usual - length).filter(|lack| (0.5..=tolerance).contains(lack)).collect();
     let alike = lengths.iter().filter(|length| (usual - **length).abs() < 0.5).count();
-    (tolerance > 0.5 && !lacking.is_empty() && 10 * alike >= 9 * lengths.len()).then(|| {
-        let message = format!(
-            "{} block(s) hold fewer samples than all others, {} at most, and the stamps, off by up to {:.3} ms, do not tell whether \
-             samples are missing there; the blocks were joined",
-            lacking.len(),
-            lacking.iter().copied().fold(0.0, f64::max),
-            1e3 * tolerance / rate_hz
-        );
-        Issue::new(IssueCode::Gap, Severity::Warning, message)
-    })
+    let most = lacking.iter().copied().fold(0.0, f64::max);
+    let found = TimesFinding::ShortBlocks { count: lacking.len(), lacking: most, off_s: tolerance / rate_hz };
+    (tolerance > 0.5 && !lacking.is_empty() && 10 * alike >= 9 * lengths.len()).then(|| found.into())
 }
 
 /// The place of each block's first sample on the base.
@@ -267,7 +253,7 @@ fn clock(
     (pieces, places): (&[Piece], &[usize]),
     rate_hz: f64,
     stamps: &Stamps,
-    issues: &mut Vec<Issue>,
+    issues: &mut Vec<Finding>,
 ) -> (f64, f64) {
     let off = |piece: &Piece, place: usize| piece.start_s - pieces[0].start_s - as_f64(place) / rate_hz;
     let offs: Vec<f64> = pieces.iter().zip(places).map(|(piece, &place)| off(piece, place)).collect();
@@ -289,31 +275,15 @@ fn clock(
     let left = places.iter().zip(&offs).map(|(&p, &o)| o - mean_s - slope_s * (as_f64(p) - mean_place));
     let rms_s = (left.map(|r| r * r).sum::<f64>() / n).sqrt();
     let is_far = (fitted_hz / rate_hz - 1.0).abs() > RATE_TOLERANCE;
-    if let Some(unit_s) = stamps.unit_s(rate_hz).filter(|unit_s| high_s - low_s <= unit_s * (1.0 + ROUND_OFF))
+    if let Some(cut_s) = stamps.unit_s(rate_hz).filter(|unit_s| high_s - low_s <= unit_s * (1.0 + ROUND_OFF))
     {
         // Exact stamps of whole milliseconds look like stamps of another rate that are cut to them.
-        let is_doubtful = is_far && stamps.cut(rate_hz).is_none();
-        let doubt = if is_doubtful {
-            format!(", but would tell {fitted_hz:.6} Hz if they were exact")
-        } else {
-            String::new()
-        };
-        let message = format!(
-            "the blocks' stamps are cut to {unit_s} s and agree with {rate_hz:.6} Hz, which was taken{doubt}; blocks that follow one another were joined"
-        );
-        let severity = if is_doubtful { Severity::Warning } else { Severity::Note };
-        issues.push(Issue::new(IssueCode::Clock, severity, message));
+        let if_exact_hz = (is_far && stamps.cut(rate_hz).is_none()).then_some(fitted_hz);
+        issues.push(TimesFinding::StampsCut { cut_s, rate_hz, if_exact_hz }.into());
         return (pieces[0].start_s + mean_s, rate_hz);
     }
-    issues.push(Issue::new(
-        IssueCode::Clock,
-        if is_far { Severity::Warning } else { Severity::Note },
-        format!(
-            "the blocks' stamps run at {fitted_hz:.6} Hz, {:.1} ppm off the stated {rate_hz:.6} Hz, and scatter by \
-             {rms_s:.3e} s RMS about that; blocks that follow one another were joined, and the stamps' rate was taken",
-            1e6 * (fitted_hz / rate_hz - 1.0)
-        ),
-    ));
+    let found = TimesFinding::StampsRunOff { stamps_hz: fitted_hz, stated_hz: rate_hz, rms_s, is_far };
+    issues.push(found.into());
     (pieces[0].start_s + mean_s - slope_s * mean_place, fitted_hz)
 }
 
@@ -332,43 +302,9 @@ fn append<S: Number>(
     samples.extend_from_slice(&block[overlap..]);
 }
 
-fn report_doubles(doubles: &Doubles, issues: &mut Vec<Issue>) {
+fn report_doubles(doubles: &Doubles, issues: &mut Vec<Finding>) {
     let Some((from_s, to_s)) = doubles.span_s else { return };
-    let count = doubles.same + doubles.different;
-    let issue = if doubles.different == 0 {
-        let message =
-            format!("{count} block(s) repeat samples that are there already; the copies were dropped");
-        Issue::new(IssueCode::DuplicateBlocks, Severity::Note, message)
-    } else {
-        let message = format!(
-            "{count} block(s) cover times that are there already, {} of them with different samples; \
-             the first to start was kept; where they follow on one another in truth, the stamps are too coarse for such blocks",
-            doubles.different
-        );
-        Issue::new(IssueCode::DuplicateBlocks, Severity::Warning, message)
-    };
-    issues.push(issue.between(from_s, to_s));
-}
-
-/// Non-finite samples that the blocks themselves hold are told apart from the `lost` ones between blocks.
-fn settle_missing<S: Number>(
-    samples: &mut [S],
-    lost: usize,
-    clock: (f64, f64),
-    issues: &mut Vec<Issue>,
-) -> Vec<crate::data::Span> {
-    let count = samples.iter().filter(|s| !s.to_f64().is_finite()).count();
-    if count == 0 {
-        return Vec::new();
-    }
-    if count == lost {
-        return missing::spans(samples);
-    }
-    let mut found = Vec::new();
-    let (_, gaps) = missing::mark_non_finite(samples, clock, &mut found);
-    for mut issue in found {
-        issue.message = format!("{} sample(s) are empty, NaN or infinite and count as missing", count - lost);
-        issues.push(issue);
-    }
-    gaps
+    let &Doubles { same, different, .. } = doubles;
+    let found = TimesFinding::BlocksTwice { count: same + different, different };
+    issues.push(Finding::from(found).between(from_s, to_s));
 }

@@ -8,9 +8,8 @@ use super::error::TimeBaseError;
 use super::missing;
 use super::order::as_f64;
 use super::uniform::{Number, Placed};
-use crate::data::{Issue, IssueCode, Severity};
+use crate::data::{Finding, TimesFinding};
 use crate::ingest::clock::{Claims, RATE_TOLERANCE, of_times};
-use crate::ingest::shown::digits as nice;
 use crate::numerics::robust;
 
 /// Fewer changes make two whole steps at most, which agree with any jitter: nothing would show that they are even.
@@ -58,7 +57,7 @@ pub(super) fn place<S: Number>(
     times_s: &[f64],
     mut samples: Vec<S>,
     claims: &Claims,
-    mut issues: Vec<Issue>,
+    mut issues: Vec<Finding>,
 ) -> Result<Placed<S>, TimeBaseError> {
     let changes: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] > times_s[i - 1]).collect();
     let mut steps_s: Vec<f64> = changes.iter().map(|&i| times_s[i] - times_s[i - 1]).collect();
@@ -77,7 +76,7 @@ pub(super) fn place<S: Number>(
     let taken = claims.weigh(own.as_ref())?;
     let sample_rate_hz = taken.rate_hz;
     let start_s = if let Some(steps) = steps.filter(|_| taken.is_of_times) {
-        issues.push(steps.issue(step_s));
+        issues.push(steps.finding(step_s));
         steps.start_s
     } else {
         let at_declared = declared(times_s, &changes, (step_s, told), sample_rate_hz);
@@ -85,7 +84,7 @@ pub(super) fn place<S: Number>(
         start(times_s, &changes, 1.0 / sample_rate_hz)
     };
     issues.extend(taken.issues);
-    let (_, gaps) = missing::mark_non_finite(&mut samples, (start_s, sample_rate_hz), &mut issues);
+    let gaps = missing::mark_non_finite(&mut samples, 0, (start_s, sample_rate_hz), &mut issues);
     Ok(Placed { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
 }
 
@@ -129,26 +128,11 @@ impl Steps {
         }
     }
 
-    fn issue(&self, step_s: f64) -> Issue {
-        let rate_hz = 1.0 / self.period_s;
-        let is_sure = self.is_even && self.uncertainty <= UNSURE;
-        let off = format!(
-            "; the times change up to {} s off even steps, so that samples may be missing",
-            nice(self.off_s, 2)
-        );
-        let message = format!(
-            "the times are cut to {} s, about {} samples each; the samples were taken as evenly spaced at {} Hz, a rate that is uncertain by {} %, \
-             and the channel's start is known to {} s only{}{}",
-            nice(step_s, 3),
-            nice(step_s * rate_hz, 3),
-            nice(rate_hz, 6),
-            nice(100.0 * self.uncertainty, 2),
-            nice(step_s, 3),
-            if self.is_even { "" } else { &off },
-            if is_sure { "" } else { "; give sample_rate_hz for this channel" }
-        );
-        let severity = if is_sure { Severity::Note } else { Severity::Warning };
-        Issue::new(IssueCode::Clock, severity, message)
+    fn finding(&self, step_s: f64) -> Finding {
+        let &Self { uncertainty, is_even, .. } = self;
+        let off_s = (!is_even).then_some(self.off_s);
+        let is_sure = is_even && uncertainty <= UNSURE;
+        TimesFinding::Coarse { step_s, rate_hz: 1.0 / self.period_s, uncertainty, off_s, is_sure }.into()
     }
 }
 
@@ -158,28 +142,17 @@ fn declared(
     changes: &[usize],
     (step_s, steps): (f64, Option<Steps>),
     rate_hz: f64,
-) -> Issue {
+) -> Finding {
+    if changes.is_empty() {
+        return TimesFinding::AllEqual { rate_hz }.into();
+    }
     let points = changes.iter().map(|&i| (as_f64(i), times_s[i] - times_s[0]));
-    let width_s = if changes.is_empty() { 0.0 } else { range(points, 1.0 / rate_hz).1 };
+    let width_s = range(points, 1.0 / rate_hz).1;
     // Each change lies within one interval of its sample, and the rate may be off by its tolerance; more is samples lost or another rate.
     let length_s = times_s[times_s.len() - 1] - times_s[0];
     let is_uneven = steps.is_some_and(|steps| !steps.is_even);
     let is_off = is_uneven || width_s > (1.0 + ROUND_OFF) / rate_hz + RATE_TOLERANCE * length_s;
-    let what = if changes.is_empty() {
-        "all times are equal".to_owned()
-    } else if is_off {
-        format!(
-            "the times are cut to {} s and change up to {} s off even steps at the declared {} Hz: samples are missing, or the rate is another",
-            nice(step_s, 3),
-            nice(width_s, 2),
-            nice(rate_hz, 6)
-        )
-    } else {
-        format!("the times are cut to {} s", nice(step_s, 3))
-    };
-    let message =
-        format!("{what}; the samples were taken as evenly spaced at the declared {} Hz", nice(rate_hz, 6));
-    Issue::new(IssueCode::Clock, if is_off { Severity::Warning } else { Severity::Note }, message)
+    TimesFinding::CoarseBesideRate { step_s, rate_hz, off_s: is_off.then_some(width_s) }.into()
 }
 
 /// Time of sample 0 at a known period, s.
@@ -247,6 +220,7 @@ fn edge(function: &impl Fn(f64) -> f64, most: f64, (mut inside, mut outside): (f
 mod tests {
     use super::*;
     use crate::data::Samples;
+    use crate::data::{IssueCode, Severity};
     use crate::ingest::time_base::{Uniform, from_times};
 
     /// Times of `count` samples at a rate from `from_s` on, cut to steps.

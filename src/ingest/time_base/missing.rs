@@ -1,9 +1,9 @@
 //! Samples with gaps to samples with NaN in them, and the issues that say so.
 
-use super::fit::Fit;
+use super::fit::{Fit, Run};
 use super::order::as_f64;
 use super::uniform::Number;
-use crate::data::{Issue, IssueCode, Severity, Span};
+use crate::data::{Finding, Span, TimesFinding};
 
 /// Up to this many gaps get an issue each; more are summed up in one.
 const GAPS_TOLD_SINGLY: usize = 5;
@@ -39,34 +39,38 @@ pub(super) fn spread<S: Number>(samples: &[S], fit: &Fit) -> Vec<S> {
     placed
 }
 
-/// Turns infinite samples into NaN and says how many are no numbers; `clock` is start and rate. Count and spans.
+/// Turns infinite samples into NaN and says how many are no numbers beside the `lost` ones between blocks; `clock` is start and rate. The spans.
 pub(super) fn mark_non_finite<S: Number>(
     samples: &mut [S],
+    lost: usize,
     clock: (f64, f64),
-    issues: &mut Vec<Issue>,
-) -> (usize, Vec<Span>) {
-    let Some((count, first, last)) = count_non_finite(samples) else {
-        return (0, Vec::new());
+    issues: &mut Vec<Finding>,
+) -> Vec<Span> {
+    let Some((count, span)) = count_non_finite(samples) else {
+        return Vec::new();
     };
     let time_s = |index: usize| clock.0 + as_f64(index) / clock.1;
-    issues.push(non_finite(count, time_s(first), time_s(last)));
-    (count, spans(samples))
+    if count > lost {
+        issues.push(non_finite(count - lost, time_s(span.from), time_s(span.to)));
+    }
+    spans(samples)
 }
 
 /// The same for samples with a time each; the count alone.
 pub(super) fn mark_non_finite_timed<S: Number>(
     samples: &mut [S],
     times_s: &[f64],
-    issues: &mut Vec<Issue>,
+    issues: &mut Vec<Finding>,
 ) -> usize {
-    let Some((count, first, last)) = count_non_finite(samples) else {
+    let Some((count, span)) = count_non_finite(samples) else {
         return 0;
     };
-    issues.push(non_finite(count, times_s[first], times_s[last]));
+    issues.push(non_finite(count, times_s[span.from], times_s[span.to]));
     count
 }
 
-fn count_non_finite<S: Number>(samples: &mut [S]) -> Option<(usize, usize, usize)> {
+/// How many samples are no numbers, and the first and the last of them.
+fn count_non_finite<S: Number>(samples: &mut [S]) -> Option<(usize, Span)> {
     let count = samples.iter().filter(|s| !s.to_f64().is_finite()).count();
     if count == 0 {
         return None;
@@ -76,47 +80,45 @@ fn count_non_finite<S: Number>(samples: &mut [S]) -> Option<(usize, usize, usize
     for sample in samples.iter_mut().filter(|s| !s.to_f64().is_finite()) {
         *sample = S::MISSING;
     }
-    Some((count, first, last))
+    Some((count, Span { from: first, to: last }))
 }
 
-fn non_finite(count: usize, from_s: f64, to_s: f64) -> Issue {
-    Issue::new(
-        IssueCode::NonFinite,
-        Severity::Warning,
-        format!("{count} sample(s) are empty, NaN or infinite and count as missing"),
-    )
-    .between(from_s, to_s)
+fn non_finite(samples: usize, from_s: f64, to_s: f64) -> Finding {
+    Finding::from(TimesFinding::NonFinite { samples }).between(from_s, to_s)
 }
 
-/// One issue a gap, or one for all where they are many.
-pub(super) fn report_gaps(fit: &Fit, times_s: &[f64], issues: &mut Vec<Issue>) {
-    let gaps: Vec<(usize, f64, f64)> = fit
-        .runs
-        .windows(2)
-        .map(|w| {
-            let lost = w[1].place - w[0].place - (w[1].first - w[0].first);
-            (lost, times_s[w[1].first - 1], times_s[w[1].first])
-        })
-        .collect();
-    push_gaps(&gaps, issues);
+/// A stretch without samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Gap {
+    /// Samples that are missing.
+    pub lost: usize,
+    /// Time of the last sample before, s.
+    pub from_s: f64,
+    /// Time of the first sample after, s.
+    pub to_s: f64,
 }
 
-/// Gaps as (samples lost, last time before, first time after).
-pub(super) fn push_gaps(gaps: &[(usize, f64, f64)], issues: &mut Vec<Issue>) {
+/// One finding a gap, or one for all where they are many.
+pub(super) fn report_gaps(fit: &Fit, times_s: &[f64], issues: &mut Vec<Finding>) {
+    let between = |runs: &[Run]| Gap {
+        lost: runs[1].place - runs[0].place - (runs[1].first - runs[0].first),
+        from_s: times_s[runs[1].first - 1],
+        to_s: times_s[runs[1].first],
+    };
+    push_gaps(&fit.runs.windows(2).map(between).collect::<Vec<Gap>>(), issues);
+}
+
+/// The same of gaps between blocks.
+pub(super) fn push_gaps(gaps: &[Gap], issues: &mut Vec<Finding>) {
     if gaps.len() <= GAPS_TOLD_SINGLY {
-        issues.extend(gaps.iter().map(|&(lost, from_s, to_s)| {
-            let message = format!("{lost} sample(s) are missing over {:.2} ms", 1e3 * (to_s - from_s));
-            Issue::new(IssueCode::Gap, Severity::Warning, message).between(from_s, to_s)
+        issues.extend(gaps.iter().map(|&Gap { lost, from_s, to_s }| {
+            Finding::from(TimesFinding::Gap { lost, over_s: to_s - from_s }).between(from_s, to_s)
         }));
         return;
     }
-    let Some(widest) = gaps.iter().max_by_key(|gap| gap.0) else { return };
-    let lost: usize = gaps.iter().map(|gap| gap.0).sum();
-    let message = format!(
-        "{lost} samples are missing in {} gaps, the longest of {} samples over {:.3e} s (the span given)",
-        gaps.len(),
-        widest.0,
-        widest.2 - widest.1
-    );
-    issues.push(Issue::new(IssueCode::Gap, Severity::Warning, message).between(widest.1, widest.2));
+    let Some(widest) = gaps.iter().max_by_key(|gap| gap.lost) else { return };
+    let lost = gaps.iter().map(|gap| gap.lost).sum();
+    let over_s = widest.to_s - widest.from_s;
+    let found = TimesFinding::Gaps { lost, gaps: gaps.len(), longest: widest.lost, over_s };
+    issues.push(Finding::from(found).between(widest.from_s, widest.to_s));
 }

@@ -2,7 +2,7 @@
 
 use super::error::TimeBaseError;
 use super::uniform::Number;
-use crate::data::{Issue, IssueCode, Severity};
+use crate::data::{Finding, TimesFinding};
 use std::borrow::Cow;
 
 /// Times that rise with their samples.
@@ -35,7 +35,7 @@ pub(super) fn rise(times_s: &[f64]) -> bool {
 pub(super) fn ordered<'a, S: Number>(
     (times_s, rise): (&'a [f64], bool),
     samples: Vec<S>,
-    issues: &mut Vec<Issue>,
+    issues: &mut Vec<Finding>,
 ) -> Result<Ordered<'a, S>, TimeBaseError> {
     if times_s.len() < 2 {
         return Err(TimeBaseError::TooFew { count: times_s.len() });
@@ -79,37 +79,23 @@ fn are_mixed<S: Number>(order: &[usize], at: usize, (times_s, samples): (&[f64],
 }
 
 /// A warning that says so.
-pub(super) fn restarted(times_s: &[f64], at: usize) -> Issue {
-    let (from_s, to_s) = (times_s[at - 1], times_s[at]);
-    let message = format!(
-        "the times begin anew: {at} rise to {from_s} s, the next is {to_s} s. The clock was started again, or two recordings follow one another; \
-         both parts lie on the same times, and the samples were mixed: cut the recording there in a copy"
-    );
-    Issue::new(IssueCode::Clock, Severity::Warning, message).between(to_s, from_s)
+pub(super) fn restarted(times_s: &[f64], at: usize) -> Finding {
+    let (rise_to_s, next_s) = (times_s[at - 1], times_s[at]);
+    Finding::from(TimesFinding::Restarted { count: at, rise_to_s, next_s }).between(next_s, rise_to_s)
 }
 
 fn sorted<'a, S: Number>(
     times_s: &'a [f64],
     samples: Vec<S>,
-    issues: &mut Vec<Issue>,
+    issues: &mut Vec<Finding>,
 ) -> (Cow<'a, [f64]>, Vec<S>) {
     let backward: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] < times_s[i - 1]).collect();
     let Some(&first) = backward.first() else {
         return (Cow::Borrowed(times_s), samples);
     };
-    issues.push(
-        Issue::new(
-            IssueCode::DisorderedBlocks,
-            Severity::Note,
-            format!(
-                "times run backward {} time(s), first from {} s to {} s; the samples were sorted by time",
-                backward.len(),
-                times_s[first - 1],
-                times_s[first]
-            ),
-        )
-        .between(times_s[first], times_s[first - 1]),
-    );
+    let (from_s, to_s) = (times_s[first - 1], times_s[first]);
+    let found = TimesFinding::Backward { count: backward.len(), from_s, to_s };
+    issues.push(Finding::from(found).between(to_s, from_s));
     let mut order: Vec<usize> = (0..times_s.len()).collect();
     order.sort_by(|&a, &b| times_s[a].total_cmp(&times_s[b]));
     if let Some(at) = restart(times_s).filter(|&at| are_mixed(&order, at, (times_s, &samples))) {
@@ -123,7 +109,7 @@ fn sorted<'a, S: Number>(
 fn without_doubles<'a, S: Number>(
     times_s: Cow<'a, [f64]>,
     samples: Vec<S>,
-    issues: &mut Vec<Issue>,
+    issues: &mut Vec<Finding>,
 ) -> Ordered<'a, S> {
     let mut kept: Vec<usize> = vec![0];
     let (mut same, mut different) = (0_usize, 0_usize);
@@ -151,13 +137,8 @@ fn without_doubles<'a, S: Number>(
     if is_coarse {
         return Ordered::Coarse(times_s, samples);
     }
-    let (severity, tail) = if different == 0 {
-        (Severity::Note, "the copies were dropped".to_owned())
-    } else {
-        (Severity::Warning, format!("{different} of them with different values, of which the first was kept"))
-    };
-    let message = format!("{} sample(s) came twice with the same time: {tail}", same + different);
-    issues.push(Issue::new(IssueCode::DuplicateBlocks, severity, message).between(from_s, to_s));
+    let found = TimesFinding::CameTwice { samples: same + different, different };
+    issues.push(Finding::from(found).between(from_s, to_s));
     let times: Vec<f64> = kept.iter().map(|&i| times_s[i]).collect();
     let values: Vec<S> = kept.iter().map(|&i| samples[i]).collect();
     Ordered::Strict(Cow::Owned(times), values)

@@ -1,7 +1,7 @@
 //! What the time base must keep: values where times are steady, places where they are not.
 
 use super::*;
-use crate::data::Span;
+use crate::data::{Issue, IssueCode, Severity, Span};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use std::f64::consts::TAU;

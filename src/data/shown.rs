@@ -1,7 +1,7 @@
 //! Numbers and refusals of the operating system to words for messages.
 
 /// `number` rounded to so many significant digits.
-pub(super) fn to_digits(number: f64, digits: i32) -> f64 {
+pub(crate) fn to_digits(number: f64, digits: i32) -> f64 {
     if number == 0.0 || !number.is_finite() {
         return number;
     }
@@ -13,7 +13,7 @@ pub(super) fn to_digits(number: f64, digits: i32) -> f64 {
 }
 
 /// A number as it is; a number of a damaged file may have hundreds of digits, and stands with an exponent.
-pub(super) fn short(number: f64) -> String {
+pub(crate) fn short(number: f64) -> String {
     if number == 0.0 || (1e-6..1e12).contains(&number.abs()) {
         format!("{number}")
     } else {
@@ -22,17 +22,17 @@ pub(super) fn short(number: f64) -> String {
 }
 
 /// A number with so many significant digits.
-pub(super) fn digits(number: f64, digits: i32) -> String {
+pub(crate) fn digits(number: f64, digits: i32) -> String {
     short(to_digits(number, digits))
 }
 
 /// A rate in Hz, to a tenth of a part in a million.
-pub(super) fn hz(rate_hz: f64) -> String {
+pub(crate) fn hz(rate_hz: f64) -> String {
     digits(rate_hz, 7)
 }
 
 /// The operating system's words without its error number.
-pub(super) fn bare(refusal: &std::io::Error) -> String {
+pub(crate) fn bare(refusal: &std::io::Error) -> String {
     let text = refusal.to_string();
     text.split(" (os error").next().unwrap_or_default().to_owned()
 }
