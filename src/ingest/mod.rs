@@ -2,11 +2,9 @@
 
 pub(crate) mod assemble;
 pub mod cask_file;
-#[allow(dead_code, reason = "readers move onto it one by one")]
 pub(crate) mod clock;
 mod csv;
 mod detect;
-#[allow(dead_code, reason = "readers move onto it one by one")]
 pub(crate) mod error;
 #[cfg(any(test, fuzzing))]
 pub mod fuzz;
@@ -14,15 +12,11 @@ mod hdf5;
 mod limits;
 mod mcap;
 mod number;
-#[allow(dead_code, reason = "readers move onto it one by one")]
 mod statement;
 mod strangers;
-#[allow(dead_code, reason = "readers move onto it one by one")]
 pub mod time_base;
-#[allow(dead_code, reason = "readers move onto it one by one")]
 mod times;
 mod unchanged;
-#[allow(dead_code, reason = "readers move onto it one by one")]
 mod vocabulary;
 
 pub use error::IngestError;

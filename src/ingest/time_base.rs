@@ -12,7 +12,6 @@ mod resample;
 mod stamps;
 mod uniform;
 
-pub(super) use super::shown::short;
 pub(super) use block_rate::{PREFIX, lay as lay_blocks, place as place_blocks};
 pub use blocks::from_blocks;
 pub use error::TimeBaseError;
@@ -20,7 +19,7 @@ use error::check_rate;
 pub(super) use pieces::Content;
 pub use uniform::{Block, Uniform};
 
-use super::clock::{self, Claims};
+use super::clock::{self, Claims, Taken};
 use crate::data::{Finding, Jitter, Samples, TimesFinding};
 use fit::Fit;
 use order::Ordered;
@@ -34,20 +33,6 @@ const STEADY_PART: f64 = 0.02;
 
 /// What rounding is believed to do to the rate of times at most, as a part of it: three times in whole hundredths of a second tell none.
 const MOST_ROUNDING: f64 = 1e-2;
-
-impl Uniform {
-    /// The same samples at a declared rate, which wins over that of the recorded times, with a warning.
-    ///
-    /// # Errors
-    /// [`TimeBaseError::Rate`] where it is no rate.
-    pub(super) fn at(mut self, declared_hz: f64) -> Result<Self, TimeBaseError> {
-        check_rate(declared_hz)?;
-        let own = clock::of_times(self.sample_rate_hz, 0.0);
-        self.issues.extend(Claims::of_cask(Some(declared_hz)).weigh(Some(&own))?.issues);
-        self.sample_rate_hz = declared_hz;
-        Ok(self)
-    }
-}
 
 /// Times that several channels may share; what they say of a base is found once.
 pub struct Times<'a> {
@@ -69,7 +54,7 @@ impl<'a> Times<'a> {
     ///
     /// # Errors
     /// [`TimeBaseError`] where the times make no record.
-    pub fn place_by(&self, samples: Samples, claims: &Claims) -> Result<Uniform, TimeBaseError> {
+    pub fn place(&self, samples: Samples, claims: &Claims) -> Result<Uniform, TimeBaseError> {
         if self.each_s.len() != samples.len() {
             return Err(TimeBaseError::Lengths { times: self.each_s.len(), samples: samples.len() });
         }
@@ -78,14 +63,6 @@ impl<'a> Times<'a> {
             Samples::F32(v) => Ok(place(self, v, claims)?.into_uniform(Samples::F32)),
             Samples::F64(v) => Ok(place(self, v, claims)?.into_uniform(Samples::F64)),
         }
-    }
-
-    /// The same where nothing but a cask file may state a rate.
-    ///
-    /// # Errors
-    /// As [`Times::place_by`].
-    pub fn place(&self, samples: Samples, declared_rate_hz: Option<f64>) -> Result<Uniform, TimeBaseError> {
-        self.place_by(samples, &Claims::of_cask(declared_rate_hz))
     }
 
     /// The base nearest to the times as they stand, where they rise.
@@ -103,7 +80,7 @@ pub fn from_times(
     samples: Samples,
     declared_rate_hz: Option<f64>,
 ) -> Result<Uniform, TimeBaseError> {
-    Times::new(times_s).place(samples, declared_rate_hz)
+    Times::new(times_s).place(samples, &Claims::of_cask(declared_rate_hz))
 }
 
 /// Samples without times, at the rate that is claimed.
@@ -111,7 +88,11 @@ pub fn from_times(
 /// # Errors
 /// As [`from_rate`]; [`TimeBaseError::Refused`] where none is stated, or two that contradict each other.
 pub fn from_claims(start_s: f64, claims: &Claims, samples: Samples) -> Result<Uniform, TimeBaseError> {
-    let taken = claims.weigh(None)?;
+    at_taken(start_s, claims.weigh(None)?, samples)
+}
+
+/// Samples at the rate that was taken, with what contradicts it.
+pub(super) fn at_taken(start_s: f64, taken: Taken, samples: Samples) -> Result<Uniform, TimeBaseError> {
     let mut uniform = from_rate(start_s, taken.rate_hz, samples)?;
     uniform.issues.extend(taken.issues);
     Ok(uniform)

@@ -4,7 +4,7 @@ use super::CaskFileError;
 use super::section::{Placed, Section};
 use super::wording::unit_of;
 use crate::data::keys::{self, Allowed, Takes};
-use crate::ingest::time_base::short;
+use crate::data::shown::short;
 use std::ops::{Range, RangeInclusive};
 
 type Stated = Result<Option<Placed<f64>>, CaskFileError>;

@@ -183,8 +183,9 @@ mod tests {
         samples[7] = f64::NAN;
         let even = column(&[&values]).even().expect("a rule");
         for declared_hz in [None, Some(50_010.0), Some(48_000.0)] {
-            let ours = even.place(Samples::F64(samples.clone()), &Claims::of_cask(declared_hz)).unwrap();
-            let theirs = Times::new(&values).place(Samples::F64(samples.clone()), declared_hz).unwrap();
+            let claims = Claims::of_cask(declared_hz);
+            let ours = even.place(Samples::F64(samples.clone()), &claims).unwrap();
+            let theirs = Times::new(&values).place(Samples::F64(samples.clone()), &claims).unwrap();
             assert!((ours.sample_rate_hz / theirs.sample_rate_hz - 1.0).abs() < 1e-12);
             assert_eq!((ours.start_s, &ours.gaps), (theirs.start_s, &theirs.gaps));
             let said = |uniform: &Uniform| {

@@ -76,15 +76,13 @@ impl Even {
     /// Samples at these times, s, on their base, at the rate that [`Claims::weigh`] takes.
     ///
     /// # Errors
-    /// As [`time_base::Times::place_by`].
+    /// As [`time_base::Times::place`].
     pub(super) fn place(&self, samples: Samples, claims: &Claims) -> Result<Uniform, TimeBaseError> {
         if samples.len() != self.count {
             return Err(TimeBaseError::Lengths { times: self.count, samples: samples.len() });
         }
         let taken = claims.weigh(Some(&clock::of_times(self.rate(), 0.0)))?;
-        let mut uniform = time_base::from_rate(self.at(0), taken.rate_hz, samples)?;
-        uniform.issues.extend(taken.issues);
-        Ok(uniform)
+        time_base::at_taken(self.at(0), taken, samples)
     }
 }
 

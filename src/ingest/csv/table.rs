@@ -209,7 +209,7 @@ fn base(column: &HeldColumn) -> Base<'_> {
 fn on_base(samples: Samples, base: Option<&Base>, plan: &Plan) -> Result<Uniform, TimeBaseError> {
     match base {
         Some(Base::Even(times)) => times.place(samples, &plan.claims),
-        Some(Base::Each(times)) => times.place_by(samples, &plan.claims),
+        Some(Base::Each(times)) => times.place(samples, &plan.claims),
         None => time_base::from_claims(0.0, &plan.claims, samples),
     }
 }

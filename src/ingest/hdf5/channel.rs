@@ -106,7 +106,7 @@ impl Channel {
         // A rate that is stated tells the unit of times that state none.
         let stated_hz = asked.rate_hz.or(stated.first().map(|stated| stated.rate_hz));
         let times_s = clocks::seconds(time, stated_hz).map_err(at)?;
-        let mut uniform = Times::new(&times_s).place_by(samples, &claims).map_err(refused)?;
+        let mut uniform = Times::new(&times_s).place(samples, &claims).map_err(refused)?;
         // A rate that bears the times out decides between them and others.
         let is_decided = !claims.is_empty() || claims.are_times_named;
         for other in others.iter().filter(|other| may_read(other)) {

@@ -45,13 +45,6 @@ struct Steps {
     is_even: bool,
 }
 
-/// The period that changes tell, as sample and time from the first of them, and how uncertain it is as a part of itself; `None` where they
-/// are too few or uneven.
-pub(in super::super) fn period(points: &[(f64, f64)], held_s: f64) -> Option<(f64, f64)> {
-    let steps = (points.len() >= LEAST_CHANGES).then(|| Steps::through(points, (0.0, 0.0), held_s))?;
-    steps.is_even.then_some((steps.period_s, steps.uncertainty))
-}
-
 /// Samples with times that rise but for many that repeat, evenly spaced.
 pub(super) fn place<S: Number>(
     times_s: &[f64],
@@ -96,13 +89,8 @@ impl Steps {
         let points: Vec<(f64, f64)> =
             changes.iter().map(|&i| (as_f64(i - first), times_s[i] - first_s)).collect();
         let held_s = 4.0 * f64::EPSILON * times_s[0].abs().max(times_s[times_s.len() - 1].abs());
-        Self::through(&points, (as_f64(first), first_s), held_s)
-    }
-
-    /// Of changes as sample and time, both counted from the first of them, which is at `origin`; times are held to within `held_s`.
-    fn through(points: &[(f64, f64)], (first, first_s): (f64, f64), held_s: f64) -> Self {
         let (length, last_s) = points[points.len() - 1];
-        let points = hull(points);
+        let points = hull(&points);
         let width = |period_s: f64| range(points.iter().copied(), period_s).1;
         let through_s = last_s / length;
         // The end points alone keep the best slope within this.
@@ -120,7 +108,7 @@ impl Steps {
         let middle_s = first_s + lowest_s + width_s / 2.0;
         Self {
             // A change lies up to one period before its sample, half of one in the mean.
-            start_s: middle_s + period_s / 2.0 - period_s * first,
+            start_s: middle_s + period_s / 2.0 - period_s * as_f64(first),
             period_s,
             uncertainty: (high_s - low_s) / (2.0 * period_s),
             off_s: width_s / 2.0,
