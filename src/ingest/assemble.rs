@@ -4,8 +4,8 @@ use super::error::{self, IngestError};
 use super::shown;
 use super::{RawChannel, RawRecording};
 use crate::data::{
-    CaskFile, Channel, ChannelSpec, Issue, IssueCode, Recording, RecordingFormat, SAMPLE_RATES_HZ,
-    STANDARD_GRAVITY_M_S2, Severity, Unit, acceleration_unit_m_s2,
+    CaskFile, Channel, ChannelFinding, ChannelSpec, Finding, Recording, RecordingFormat, SAMPLE_RATES_HZ,
+    STANDARD_GRAVITY_M_S2, Unit, acceleration_unit_m_s2,
 };
 use std::path::Path;
 
@@ -22,7 +22,7 @@ pub(crate) fn recording(
 ) -> Result<Recording, IngestError> {
     let first_s = raw.channels.iter().map(|channel| channel.uniform.start_s).fold(f64::INFINITY, f64::min);
     let first_s = if first_s.is_finite() { first_s } else { 0.0 };
-    let mut issues: Vec<Issue> = raw.issues.into_iter().map(|issue| shifted(issue, first_s)).collect();
+    let mut issues: Vec<Finding> = raw.issues.into_iter().map(|issue| shifted(issue, first_s)).collect();
     let mut channels = Vec::with_capacity(raw.channels.len());
     for raw_channel in raw.channels {
         let Some(spec) = cask_file.channels.get(raw_channel.spec) else { continue };
@@ -43,7 +43,7 @@ fn channel(
     spec: &ChannelSpec,
     raw: RawChannel,
     first_s: f64,
-    issues: &mut Vec<Issue>,
+    issues: &mut Vec<Finding>,
 ) -> Result<Channel, IngestError> {
     let samples = &raw.uniform.samples;
     if (0..samples.len()).all(|i| !samples.get(i).is_finite()) {
@@ -70,9 +70,7 @@ fn channel(
         ));
     }
     let scale = scale(path, spec, raw.unit.as_deref())?;
-    if let Some(message) = scale.contradiction {
-        issues.push(Issue::new(IssueCode::Scale, Severity::Note, message).on(&spec.name));
-    }
+    issues.extend(scale.contradiction.map(|found| found.on(&spec.name)));
     issues.extend(raw.uniform.issues.into_iter().map(|issue| shifted(issue, first_s).on(&spec.name)));
     Ok(Channel {
         name: spec.name.clone(),
@@ -95,7 +93,7 @@ fn channel(
 }
 
 /// The same issue, its times counted from `first_s`.
-fn shifted(mut issue: Issue, first_s: f64) -> Issue {
+fn shifted(mut issue: Finding, first_s: f64) -> Finding {
     issue.from_s = issue.from_s.map(|time_s| time_s - first_s);
     issue.to_s = issue.to_s.map(|time_s| time_s - first_s);
     issue
@@ -115,19 +113,17 @@ struct Scale {
     m_s2: f64,
     unit: String,
     origin: &'static str,
-    /// The cask file's unit and the recording's differ: a sentence.
-    contradiction: Option<String>,
+    /// Where the cask file's unit and the recording's differ.
+    contradiction: Option<ChannelFinding>,
 }
 
 fn scale(path: &Path, spec: &ChannelSpec, recorded: Option<&str>) -> Result<Scale, IngestError> {
     let recorded = recorded.map(str::trim).filter(|text| !text.is_empty());
     if let Some(unit) = spec.unit {
         let (m_s2, name) = declared(unit);
-        let contradiction = recorded.filter(|text| !same_unit(text, name, m_s2)).map(|text| {
-            format!(
-                "the cask file gives the unit {name:?}, the recording {text:?}; the cask file is followed"
-            )
-        });
+        let contradiction = recorded
+            .filter(|text| !same_unit(text, name, m_s2))
+            .map(|text| ChannelFinding::OtherUnit { stated: name, recorded: text.to_owned() });
         return Ok(Scale { m_s2, unit: name.to_owned(), origin: "cask file", contradiction });
     }
     let Some(text) = recorded else {
@@ -309,7 +305,8 @@ mod tests {
                 gaps: Vec::new(),
                 time_jitter_s: 0.0,
                 issues: vec![
-                    Issue::new(IssueCode::Gap, Severity::Warning, "x").between(start_s, start_s + 0.25),
+                    Finding::from(crate::data::TimesFinding::NonFinite { samples: 1 })
+                        .between(start_s, start_s + 0.25),
                 ],
             },
             unit: Some("g".into()),

@@ -16,7 +16,7 @@
 
 use super::shown;
 use super::statement::Statement;
-use crate::data::{Issue, IssueCode, Severity};
+use crate::data::{ClockFinding, Finding, HowApart, RatesApart, TimesApart};
 use crate::numerics::robust;
 
 /// A rate off by more than this part of itself is told: oscillators keep 1e-4, and every velocity is off by as much.
@@ -60,7 +60,7 @@ pub(super) struct Taken {
     /// Whether it is that of the recorded times.
     pub is_of_times: bool,
     /// What else contradicts it.
-    pub issues: Vec<Issue>,
+    pub issues: Vec<Finding>,
 }
 
 /// How two rates get along.
@@ -128,13 +128,14 @@ impl Claims {
                 "give sample_rate_hz in this channel of the cask file, or name its times: time = \"…\"",
             ));
         };
-        let mut issues = Vec::new();
+        let mut issues: Vec<Finding> = Vec::new();
+        let mut overruled = |other| issues.push(ClockFinding::Rates(apart(&taken, other)).into());
         for other in times.into_iter().chain(&self.stated).filter(|other| **other != taken) {
             let is_open = !is_decided && other.distance <= taken.distance;
             match agreement(&taken, other) {
                 Agreement::Same => {}
-                Agreement::Apart if !is_open || times.is_some() => issues.push(overruled(&taken, other)),
-                Agreement::FarApart if !is_open => issues.push(overruled(&taken, other)),
+                Agreement::Apart if !is_open || times.is_some() => overruled(other),
+                Agreement::FarApart if !is_open => overruled(other),
                 Agreement::Apart | Agreement::FarApart => return Err(contradiction(&taken, other)),
             }
         }
@@ -143,24 +144,15 @@ impl Claims {
     }
 }
 
-fn both(taken: &Statement, other: &Statement) -> String {
-    let rate = |said: &Statement| format!("{} Hz by {}", shown::hz(said.rate_hz), said.place);
-    format!("two rates contradict each other: {}, {}", rate(taken), rate(other))
-}
-
-fn overruled(taken: &Statement, other: &Statement) -> Issue {
-    let message = format!(
-        "{}; the first was taken, and every velocity goes with the rate: if the second is right, write sample_rate_hz = {}",
-        both(taken, other),
-        shown::hz(other.rate_hz)
-    );
-    Issue::new(IssueCode::Clock, Severity::Warning, message)
+fn apart(taken: &Statement, other: &Statement) -> RatesApart {
+    let (taken_hz, taken_by) = (taken.rate_hz, taken.place.clone());
+    RatesApart { taken_hz, taken_by, other_hz: other.rate_hz, other_by: other.place.clone() }
 }
 
 fn contradiction(taken: &Statement, other: &Statement) -> Refusal {
     let [one, two] = [taken, other].map(|said| shown::hz(said.rate_hz));
     Refusal::new(
-        format!("{}: one of the two is wrong, and every velocity goes with the rate", both(taken, other)),
+        format!("{}: one of the two is wrong, and every velocity goes with the rate", apart(taken, other)),
         format!(
             "write the right one into this channel of the cask file: sample_rate_hz = {one} or sample_rate_hz = {two}"
         ),
@@ -187,7 +179,7 @@ impl Clock<'_> {
         other: &Self,
         is_start_shared: bool,
         is_decided: bool,
-    ) -> Result<Option<Issue>, Refusal> {
+    ) -> Result<Option<Finding>, Refusal> {
         let rows = self.times_s.iter().zip(other.times_s).enumerate();
         let mut rows = rows.filter(|(_, (own_s, other_s))| own_s.is_finite() && other_s.is_finite());
         let Some((_, (&first_s, &other_first_s))) = rows.next() else { return Ok(None) };
@@ -219,25 +211,23 @@ impl Clock<'_> {
         if whole.max(worst).max(start) <= RATE_TOLERANCE {
             return Ok(None);
         }
-        let s = |s: f64| shown::digits(s, 5);
-        let says = if whole > RATE_TOLERANCE {
-            format!("from the first row to the last they say {} s and {} s", s(span_s), s(other_span_s))
+        let how = if whole > RATE_TOLERANCE {
+            HowApart::Lasting { taken_s: span_s, other_s: other_span_s }
         } else if worst > RATE_TOLERANCE {
-            format!("in row {} of the table they are {} s apart", worst_row + 1, s(worst_s.abs()))
+            HowApart::InRow { row: worst_row + 1, apart_s: worst_s.abs() }
         } else {
-            format!("they begin {} s apart", s(offset_s.abs()))
+            HowApart::AtStart { apart_s: offset_s.abs() }
         };
         let (one, two) = (self.name, other.name);
-        let problem = format!("the times in {one} and {two} contradict each other: {says}");
+        let apart = TimesApart { taken: one.to_owned(), other: two.to_owned(), how };
         if whole.max(worst).max(start) > FAR && !is_decided {
             let remedy = format!(
                 "write which is right into the cask file, under [recording] or in the [[channel]]: time = {one} or time = {two}; or \
                  sample_rate_hz in each [[channel]]"
             );
-            return Err(Refusal::new(problem, remedy));
+            return Err(Refusal::new(apart.to_string(), remedy));
         }
-        let message = format!("{problem}; the first was taken, and every velocity goes with it");
-        Ok(Some(Issue::new(IssueCode::Clock, Severity::Warning, message)))
+        Ok(Some(ClockFinding::Times(apart).into()))
     }
 }
 

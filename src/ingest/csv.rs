@@ -22,7 +22,7 @@ pub(super) use list::list;
 
 use super::error::{self, IngestError};
 use super::{Limits, Progress, RawChannel, RawRecording};
-use crate::data::{CaskFile, Issue};
+use crate::data::{CaskFile, Finding};
 use columns::{HeldColumn, Keep};
 use layout::Layout;
 use lines::Text;
@@ -53,7 +53,7 @@ pub(super) fn read(
     let mut keep = Keep::new(&wanted, columns);
     let ending = rows::read(text, &layout, &wanted, &mut keep, (limits, progress))
         .map_err(|error| complaint::row_error(path, limits, (&layout, &wanted), error))?;
-    let mut issues: Vec<Issue> = complaint::ending_issue(&ending).into_iter().collect();
+    let mut issues = Vec::from_iter(ending.map(Finding::from));
     let Keep { columns, stamps, .. } = keep;
     let mut table = Table { layout: &layout, plans: &plans, wanted: &wanted, columns, stamps };
     table.drop_blank().map_err(|refusal| complaint::of_rows(path, refusal))?;

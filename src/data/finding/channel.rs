@@ -91,6 +91,8 @@ pub enum ChannelFinding {
     AnswersLate { delay_s: f64, u_s: f64, wave_s: f64, is_shifted: bool },
     /// The channel answers as late as a bending wave may.
     AnswersAsAWave { delay_s: f64, u_s: f64 },
+    /// The recording states another unit than the cask file.
+    OtherUnit { stated: &'static str, recorded: String },
 }
 
 impl ChannelFinding {
@@ -126,6 +128,7 @@ impl ChannelFinding {
             Self::OffLine { .. } => (Code::NotRigid, Warning),
             Self::AnswersEarly { .. } | Self::AnswersLate { .. } => (Code::Skew, Warning),
             Self::AnswersAsAWave { .. } => (Code::Skew, Note),
+            Self::OtherUnit { .. } => (Code::Scale, Note),
         }
     }
 
@@ -282,6 +285,9 @@ impl ChannelFinding {
             Self::AnswersAsAWave { delay_s, u_s } => format!(
                 "{name} answers the first impact {} after the first end is struck: a bending wave may take as long, or the channels' clocks are apart; check that one trigger starts both",
                 size_ms(*delay_s, *u_s)
+            ),
+            Self::OtherUnit { stated, recorded } => format!(
+                "the cask file gives the unit {stated:?}, the recording {recorded:?}; the cask file is followed"
             ),
         }
     }

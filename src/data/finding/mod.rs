@@ -1,13 +1,17 @@
 //! What speaks against a recording or a result, with its numbers, to its code, its severity and its sentence.
 
 mod channel;
+mod clock;
 mod code;
 mod drop;
+mod table;
 mod times;
 
 pub use channel::{ChannelFinding, During};
+pub use clock::{ClockFinding, HowApart, RatesApart, TimesApart};
 pub use code::{CODES, IssueCode, Severity};
 pub use drop::DropFinding;
+pub use table::TableFinding;
 pub use times::{Jitter, TimesFinding};
 
 use serde::{Serialize, Serializer};
@@ -22,6 +26,10 @@ pub enum What {
     Drop(DropFinding),
     /// About the times of a recording.
     Times(TimesFinding),
+    /// About what says when samples were taken.
+    Clock(ClockFinding),
+    /// About the rows of a table.
+    Table(TableFinding),
     /// About the file, in words that a reader of one format has, or that a refusal says too.
     Said(IssueCode, Severity, String),
 }
@@ -61,6 +69,22 @@ impl From<TimesFinding> for Finding {
         let (code, severity) = found.code();
         let message = found.sentence();
         Self::made(What::Times(found), code, severity, &message)
+    }
+}
+
+impl From<ClockFinding> for Finding {
+    fn from(found: ClockFinding) -> Self {
+        let (code, severity) = found.code();
+        let message = found.sentence();
+        Self::made(What::Clock(found), code, severity, &message)
+    }
+}
+
+impl From<TableFinding> for Finding {
+    fn from(found: TableFinding) -> Self {
+        let (code, severity) = found.code();
+        let message = found.sentence();
+        Self::made(What::Table(found), code, severity, &message)
     }
 }
 

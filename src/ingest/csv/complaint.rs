@@ -1,4 +1,4 @@
-//! What a table's end, rows, columns and times came to, in words.
+//! What is wrong with a table's rows, columns or times, in words.
 
 use super::super::Limits;
 use super::super::clock::Refusal;
@@ -6,30 +6,13 @@ use super::super::error::{self, IngestError};
 use super::super::number;
 use super::super::time_base::TimeBaseError;
 use super::layout::Layout;
-use super::rows::{Ending, RowError};
+use super::rows::RowError;
 use super::wanted::Wanted;
-use crate::data::{Issue, IssueCode, Severity};
 use std::path::Path;
 
 /// What to do about times that give no base.
 pub(super) const TIMES_REMEDY: &str =
     "check the column of times ([recording] time, or time of the channel), or give sample_rate_hz";
-
-/// What a table's end says of the rows that were behind it.
-pub(super) fn ending_issue(ending: &Ending) -> Option<Issue> {
-    let line = ending.cut_line?;
-    let message = if ending.is_zeros {
-        format!(
-            "from line {line} on stand zero bytes, as where a logger was not closed or a copy failed: the rows before are whole, what follows was \
-             not read; where rows stand behind, copy the file again"
-        )
-    } else {
-        format!(
-            "line {line}, the last, ends in the middle and was dropped: the file was cut off while it was written or copied"
-        )
-    };
-    Some(Issue::new(IssueCode::Truncated, Severity::Warning, message))
-}
 
 /// Rows that are refused as a whole.
 pub(super) fn of_rows(path: &Path, refusal: Refusal) -> IngestError {

@@ -4,7 +4,7 @@ use super::super::clock::{Claims, Refusal};
 use super::super::error::IngestError;
 use super::super::{number, shown};
 use super::columns::{HeldColumn, Keep};
-use super::complaint::{self, ending_issue, no_table, row_error};
+use super::complaint::{self, no_table, row_error};
 use super::header;
 use super::layout::Layout;
 use super::lines::Text;
@@ -13,7 +13,7 @@ use super::rows::{self, Part, Sink};
 use super::table::Table;
 use super::wanted::Wanted;
 use super::{Limits, Progress};
-use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Severity};
+use crate::data::{ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat};
 use crate::ingest::time_base::TimeBaseError;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -116,10 +116,10 @@ pub(in super::super) fn list(
     let ending = rows::read(text, &layout, &all, &mut survey, (limits, progress))
         .map_err(|error| row_error(path, limits, (&layout, &all), error))?;
     let Survey { keep: Keep { columns, stamps, .. }, ranges, filled: rows, .. } = survey;
-    let mut issues = Vec::from_iter(ending_issue(&ending));
+    let mut issues = Vec::from_iter(ending.map(Finding::from));
     let table = Table { layout: &layout, plans: &plans, wanted: &kept, columns, stamps };
     let clock = ListedClock::of(table, &mut issues).unwrap_or_else(|Refusal { problem, remedy }| {
-        issues.push(Issue::new(IssueCode::Clock, Severity::Warning, format!("{problem}: {remedy}")));
+        issues.push(ClockFinding::Refused(format!("{problem}: {remedy}")).into());
         ListedClock::default()
     });
     issues.extend(layout.preamble.of_rows(rows, clock.samples));
@@ -172,7 +172,7 @@ struct ListedClock {
 impl ListedClock {
     /// As reading takes it; what speaks against it goes to `issues`.
     #[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
-    fn of(mut table: Table, issues: &mut Vec<Issue>) -> Result<Self, Refusal> {
+    fn of(mut table: Table, issues: &mut Vec<Finding>) -> Result<Self, Refusal> {
         let plan = &table.plans[0];
         table.drop_blank()?;
         issues.extend(table.counter_jumps());
@@ -202,7 +202,7 @@ impl ListedClock {
         };
         let count = uniform.samples.len();
         let has_gaps = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
-        issues.extend(uniform.issues.into_iter().map(|issue| Issue {
+        issues.extend(uniform.issues.into_iter().map(|issue| Finding {
             from_s: issue.from_s.map(|t| t - first_s),
             to_s: issue.to_s.map(|t| t - first_s),
             ..issue

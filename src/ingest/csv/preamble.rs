@@ -3,7 +3,7 @@
 use super::cells::Delimiter;
 use super::header::{header_cells, name_and_unit};
 use super::lines::Line;
-use crate::data::{Issue, IssueCode, Severity};
+use crate::data::{Finding, TableFinding};
 use crate::ingest::statement::{Statement, number_and_unit};
 use crate::ingest::vocabulary::{Meaning, meaning, rate_unit_hz, time_unit_s};
 
@@ -59,15 +59,10 @@ impl Preamble {
     }
 
     /// A warning where fewer rows are there than every count that is stated, also with the samples between that times show to be missing.
-    pub(super) fn of_rows(&self, rows: usize, with_missing: usize) -> Option<Issue> {
+    pub(super) fn of_rows(&self, rows: usize, with_missing: usize) -> Option<Finding> {
         let stated = *self.counts.iter().min()?;
-        ((rows.max(with_missing) as u64) < stated).then(|| {
-            let message = format!(
-                "the lines above the table state {stated} samples, and it has {rows} rows: what is missing was lost, or the file was cut off; \
-                 samples lost amid the rows would make all behind them early"
-            );
-            Issue::new(IssueCode::Truncated, Severity::Warning, message)
-        })
+        let is_short = (rows.max(with_missing) as u64) < stated;
+        is_short.then(|| TableFinding::RowsMissing { stated, rows }.into())
     }
 }
 

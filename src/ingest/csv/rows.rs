@@ -6,6 +6,7 @@ use super::layout::Layout;
 use super::lines::{self, Text};
 use super::pieces::{Batch, Cut, Sizes};
 use super::wanted::Wanted;
+use crate::data::TableFinding;
 use crate::ingest::number;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -44,15 +45,6 @@ pub(super) trait Sink {
 /// The value of a cell that is no number, by its slot.
 type Word<'a> = &'a mut dyn FnMut(usize, &[u8]) -> Option<f64>;
 
-/// How the table ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Ending {
-    /// The line that broke off and was dropped.
-    pub cut_line: Option<u64>,
-    /// Whether zero bytes stand there.
-    pub is_zeros: bool,
-}
-
 /// Why rows could not be read.
 #[derive(Debug)]
 pub(super) enum RowError {
@@ -63,14 +55,14 @@ pub(super) enum RowError {
     TooMany,
 }
 
-/// Reads every row into `sink`.
+/// Reads every row into `sink`; how the table ended, where it broke off.
 pub(super) fn read(
     text: Text,
     layout: &Layout,
     wanted: &Wanted,
     sink: &mut impl Sink,
     (limits, progress): (Limits, Progress),
-) -> Result<Ending, RowError> {
+) -> Result<Option<TableFinding>, RowError> {
     let sizes = Sizes::of(limits, text.bytes);
     read_by(text, (layout, wanted), sink, sizes, progress)
 }
@@ -82,7 +74,7 @@ pub(super) fn read_by(
     sink: &mut impl Sink,
     sizes: Sizes,
     progress: Progress,
-) -> Result<Ending, RowError> {
+) -> Result<Option<TableFinding>, RowError> {
     let mut reader = RowReader::of(layout, wanted, layout.data_line - 1);
     let head = text.head.split_off(layout.data_offset.min(text.head.len()));
     let (mut batch, mut next) = (Batch { text: head, is_last: false }, Batch::default());
@@ -121,16 +113,15 @@ pub(super) fn read_by(
         #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
         progress((done as f64 / text.bytes.max(1) as f64).min(1.0));
         if batch.is_last {
-            let is_zeros = text.rest.has_zeros;
             // Before zero bytes a number may have lost its last digits.
-            if is_zeros {
-                return Ok(Ending { cut_line: Some(reader.line + 1), is_zeros });
+            if text.rest.has_zeros {
+                return Ok(Some(TableFinding::ZeroBytes { line: reader.line + 1 }));
             }
             let last = &batch.text[cut.end..];
             let cut_line =
                 reader.last_line(last, layout, &mut parts[0], &mut |slot, cell| sink.word(slot, cell))?;
             sink.append(&mut parts[..1]);
-            return Ok(Ending { cut_line, is_zeros });
+            return Ok(cut_line.map(|line| TableFinding::CutLine { line }));
         }
         filled.map_err(RowError::Io)?;
         std::mem::swap(&mut batch, &mut next);

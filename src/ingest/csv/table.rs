@@ -6,7 +6,7 @@ use super::layout::Layout;
 use super::plan::Plan;
 use super::stamp::Stamps;
 use super::wanted::Wanted;
-use crate::data::{Issue, IssueCode, Samples, Severity};
+use crate::data::{Finding, Samples, TableFinding};
 use crate::ingest::clock::{Clock, Refusal};
 use crate::ingest::time_base::{self, TimeBaseError, Times, Uniform};
 use crate::ingest::times::{self, Carrier, Scale};
@@ -36,7 +36,7 @@ enum Base<'a> {
 
 impl Table<'_> {
     /// Turns the times into s, and compares them with other columns of times; warnings where those do not bear them out.
-    pub(super) fn settle_times(&mut self) -> Result<Vec<Issue>, Refused> {
+    pub(super) fn settle_times(&mut self) -> Result<Vec<Finding>, Refused> {
         let mut issues = Vec::new();
         let mut clocks: Vec<usize> = self.plans.iter().filter_map(|plan| plan.time_column).collect();
         clocks.sort_unstable();
@@ -78,7 +78,7 @@ impl Table<'_> {
 
     /// What the times in column `other` say of those in column `time`; columns that they may be the clock of stand between where they are
     /// `apart`.
-    fn borne_out(&self, time: usize, other: usize, is_apart: bool) -> Result<Option<Issue>, Refused> {
+    fn borne_out(&self, time: usize, other: usize, is_apart: bool) -> Result<Option<Finding>, Refused> {
         let [own_s, others] = [time, other].map(|column| self.columns[self.wanted.slot(column)].values());
         let slot = self.wanted.slot(other);
         let is_in_s = self.wanted.is_time[slot] || self.layout.columns[other].is_stamped;
@@ -97,7 +97,7 @@ impl Table<'_> {
     }
 
     /// A warning where no times are there, and a column that counts the rows jumps: those between are lost.
-    pub(super) fn counter_jumps(&self) -> Option<Issue> {
+    pub(super) fn counter_jumps(&self) -> Option<Finding> {
         let column =
             self.layout.counter().filter(|_| self.plans.iter().all(|plan| plan.time_column.is_none()))?;
         let counts = self.columns[self.wanted.slot(column)].each();
@@ -107,14 +107,8 @@ impl Table<'_> {
         let jumps: Vec<(usize, f64)> = steps().enumerate().filter(|(_, step)| *step > 1.0).collect();
         let &(row, first) = jumps.first().filter(|_| is_counter && 10 * jumps.len() < counts.len())?;
         let lost: f64 = jumps.iter().map(|(_, step)| step - 1.0).sum();
-        let header = &self.layout.columns[column].header;
-        let message = format!(
-            "the column {header:?} counts the rows, and {lost} of them are missing, the first {} behind row {} of the table; the others were taken \
-             as one after another: write time = {header:?} under [recording] of the cask file, which keeps their places",
-            first - 1.0,
-            row + 1
-        );
-        Some(Issue::new(IssueCode::Gap, Severity::Warning, message))
+        let header = self.layout.columns[column].header.clone();
+        Some(TableFinding::CounterJumps { header, lost, count: first - 1.0, row: row + 1 }.into())
     }
 
     /// How many samples a channel has at most.
