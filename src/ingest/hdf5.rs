@@ -115,7 +115,7 @@ impl Room<'_> {
         let (part_bytes, samples_bytes) = (limits.part_bytes(), limits.samples_bytes());
         self.held_bytes = self.held_bytes.saturating_add(column.held_bytes());
         if column.part_bytes() > part_bytes {
-            let what = format!("a block of {} takes", column.source());
+            let what = format!("a block of {} takes", column.source);
             return Err(limits.refusal(path, &what, part_bytes));
         }
         let unpacked_bytes = limits.unpacked_bytes(self.file.bytes);

@@ -1,8 +1,8 @@
-//! What goes between this program and the process that takes an HDF5 file apart: requests, descriptions, numbers, each in a frame.
+//! What goes between this program and the process that takes an HDF5 file apart: requests and answers, each in a frame.
 //!
-//! A frame is its kind (one byte), its length (four, lowest first) and so many bytes. What a file says comes over as bytes: the other
-//! process may have been taken over by the file, so nothing in an answer is believed before [`Dataset::is_sane`] and the reader held it
-//! against the file.
+//! A frame is its length (four bytes, lowest first) and so many bytes of `postcard`. What a file says comes over as bytes: the other process
+//! may have been taken over by the file, so nothing in an answer is believed before [`Dataset::is_sane`] and the reader held it against
+//! the file.
 
 use encoding_rs::WINDOWS_1252;
 use serde::de::DeserializeOwned;
@@ -11,8 +11,8 @@ use std::io::{self, Error, ErrorKind, Read, Write};
 
 /// Longest description in bytes: 4096 values of every attribute that is read, and a million chunks, are less.
 const LONGEST_FRAME: u32 = 32 << 20;
-/// Values are sent in frames of at most so many bytes.
-pub(super) const VALUES_BYTES: usize = 1 << 20;
+/// So many numbers are sent in a frame at most: 2 MB of f64.
+pub(super) const FRAME_NUMBERS: usize = 1 << 18;
 
 /// Text as it stands in the file, in no encoding that is known.
 pub(super) type Bytes = Vec<u8>;
@@ -26,7 +26,7 @@ pub(super) fn decoded(bytes: &[u8]) -> String {
 /// What is asked.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Request {
-    /// What stands at a path; of a dataset also the groups above it and what is named as times beside it.
+    /// What stands at a path.
     Look(String),
     /// Everything in the file.
     Walk,
@@ -46,13 +46,19 @@ pub(super) enum Slab {
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Answer {
     /// The file is open; it begins behind a user block of so many bytes.
-    Opened { user_block: u64, library: (u8, u8, u8) },
+    Opened {
+        user_block: u64,
+        library: (u8, u8, u8),
+    },
     /// What stands at a path.
     Found(String, Object),
     /// The library's words why something cannot be read, outermost first.
     Refused(Vec<Bytes>),
     /// All of a request is answered.
     Done,
+    /// Numbers of a dataset that follow those before, as f32 or as f64.
+    Narrow(Vec<f32>),
+    Wide(Vec<f64>),
 }
 
 /// What stands at a path.
@@ -158,6 +164,30 @@ impl std::fmt::Display for Filter {
     }
 }
 
+/// How chunks are packed that this program unpacks itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Packing {
+    Plain,
+    Deflated,
+    /// The bytes of each place in a value together, then deflated.
+    ShuffledDeflated,
+    /// As some writers have it by mistake, who name the filters in this order.
+    DeflatedShuffled,
+}
+
+impl Packing {
+    /// `None` where only the library can unpack them.
+    pub(super) fn of(filters: &[Filter]) -> Option<Self> {
+        Some(match filters {
+            [] => Self::Plain,
+            [Filter::Deflate(_)] => Self::Deflated,
+            [Filter::Shuffle, Filter::Deflate(_)] => Self::ShuffledDeflated,
+            [Filter::Deflate(_), Filter::Shuffle] => Self::DeflatedShuffled,
+            _ => return None,
+        })
+    }
+}
+
 /// A field of numbers in records.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Field {
@@ -193,6 +223,11 @@ impl Number {
         !matches!(self, Self::F32 | Self::F64)
     }
 
+    /// Whether it is held as f64.
+    pub(super) fn is_wide(self) -> bool {
+        matches!(self, Self::F64 | Self::I32 | Self::I64 | Self::U32 | Self::U64)
+    }
+
     /// Bytes of one.
     pub(super) fn bytes(self) -> usize {
         match self {
@@ -203,41 +238,6 @@ impl Number {
         }
     }
 }
-
-/// A number as HDF5 stores it, to the sample that it is held as.
-pub(super) trait Stored {
-    /// What it is called in an answer.
-    const NUMBER: Number;
-    /// f32 for f32 and short integers, f64 for all others.
-    type Sample: Copy + Default + Send + Sync;
-    /// From its bytes, least first, given one by one.
-    fn sample(byte: impl Fn(usize) -> u8) -> Self::Sample;
-}
-
-macro_rules! stored {
-    ($($number:ty = $name:ident as $sample:ty),*) => {$(
-        impl Stored for $number {
-            const NUMBER: Number = Number::$name;
-            type Sample = $sample;
-            #[allow(clippy::cast_lossless, clippy::cast_precision_loss, reason = "counts beyond 2^53 lose what no sensor resolves")]
-            fn sample(byte: impl Fn(usize) -> u8) -> $sample {
-                Self::from_le_bytes(std::array::from_fn(byte)) as $sample
-            }
-        }
-    )*};
-}
-stored!(
-    f32 = F32 as f32,
-    f64 = F64 as f64,
-    i8 = I8 as f32,
-    i16 = I16 as f32,
-    i32 = I32 as f64,
-    i64 = I64 as f64,
-    u8 = U8 as f32,
-    u16 = U16 as f32,
-    u32 = U32 as f64,
-    u64 = U64 as f64
-);
 
 impl Dataset {
     /// How it is stored, for people: type, shape, filters.
@@ -272,54 +272,24 @@ impl Dataset {
 /// Sends a request or an answer.
 pub(super) fn send(to: &mut impl Write, message: &impl Serialize) -> io::Result<()> {
     let bytes = postcard::to_stdvec(message).map_err(Error::other)?;
-    frame(to, b'a', &bytes)
-}
-
-/// Sends numbers.
-pub(super) fn send_values(to: &mut impl Write, values: &[u8]) -> io::Result<()> {
-    values.chunks(VALUES_BYTES).try_for_each(|part| frame(to, b'v', part))
-}
-
-fn frame(to: &mut impl Write, kind: u8, bytes: &[u8]) -> io::Result<()> {
     let length = u32::try_from(bytes.len()).ok().filter(|length| *length <= LONGEST_FRAME);
-    let length = length.ok_or_else(|| Error::from(ErrorKind::FileTooLarge))?;
-    to.write_all(&[kind])?;
-    to.write_all(&length.to_le_bytes())?;
-    to.write_all(bytes)
+    to.write_all(&length.ok_or(ErrorKind::FileTooLarge)?.to_le_bytes())?;
+    to.write_all(&bytes)
 }
 
-/// A frame's content.
-pub(super) enum Received<T> {
-    Message(T),
-    /// Bytes of numbers.
-    Values(Vec<u8>),
-}
-
-/// The next frame, and its length in bytes.
+/// The next message, and its length in bytes.
 ///
 /// # Errors
-/// The other side ended, or sent what is no frame.
-pub(super) fn receive<T: DeserializeOwned>(from: &mut impl Read) -> io::Result<(Received<T>, usize)> {
-    let mut head = [0; 5];
-    from.read_exact(&mut head)?;
-    let [kind, length @ ..] = head;
-    let length = u32::from_le_bytes(length);
-    let is_values = kind == b'v';
-    let most = if is_values { VALUES_BYTES } else { LONGEST_FRAME as usize };
-    if !matches!(kind, b'a' | b'v') || length as usize > most {
-        return Err(ErrorKind::InvalidData.into());
-    }
+/// The other side ended, or sent what is no message.
+pub(super) fn receive<T: DeserializeOwned>(from: &mut impl Read) -> io::Result<(T, usize)> {
+    let mut length = [0; 4];
+    from.read_exact(&mut length)?;
+    let length = Some(u32::from_le_bytes(length)).filter(|length| *length <= LONGEST_FRAME);
     // What is claimed takes memory only as it comes.
     let mut bytes = Vec::new();
-    from.take(length.into()).read_to_end(&mut bytes)?;
-    if bytes.len() != length as usize {
-        return Err(ErrorKind::UnexpectedEof.into());
-    }
-    if is_values {
-        return Ok((Received::Values(bytes), length as usize));
-    }
+    from.take(length.ok_or(ErrorKind::InvalidData)?.into()).read_to_end(&mut bytes)?;
     let message = postcard::from_bytes(&bytes).map_err(|_| ErrorKind::InvalidData)?;
-    Ok((Received::Message(message), length as usize))
+    Ok((message, bytes.len()))
 }
 
 #[cfg(test)]
@@ -339,15 +309,12 @@ mod tests {
     fn frames_that_claim_or_lack_bytes_are_no_answers() {
         let mut sound = Vec::new();
         send(&mut sound, &Answer::Found("/a".into(), Object::NamedType)).unwrap();
-        let answer = |bytes: &[u8]| match receive::<Answer>(&mut &*bytes) {
-            Ok((Received::Message(answer), _)) => Some(answer),
-            _ => None,
-        };
+        let answer = |bytes: &[u8]| Some(receive::<Answer>(&mut &*bytes).ok()?.0);
         assert_eq!(answer(&sound), Some(Answer::Found("/a".into(), Object::NamedType)));
         for length in 0..sound.len() {
             assert_eq!(answer(&sound[..length]), None, "{length}");
         }
-        assert_eq!(answer(b"a\xff\xff\xff\xff"), None);
-        assert_eq!(answer(b"x\x01\x00\x00\x00a"), None);
+        assert_eq!(answer(b"\xff\xff\xff\xff"), None);
+        assert_eq!(answer(b"\x01\x00\x00\x00a"), None);
     }
 }

@@ -72,7 +72,7 @@ impl Attributes {
     /// # Errors
     /// As [`Attributes::of`].
     pub(super) fn own(column: &Column) -> Result<Self, Refusal> {
-        let mut said = if column.records().is_some() { Vec::new() } else { said(column) };
+        let mut said = if column.is_field() { Vec::new() } else { said(column) };
         said.retain(|said| said.distance == 0);
         Self::of_said(&said, column)
     }
@@ -103,7 +103,7 @@ impl Attributes {
                 all.two_units = Some(Refusal { remedy, ..two });
             }
         }
-        if column.records().is_none() {
+        if !column.is_field() {
             let own = said.iter().filter(|said| said.distance == 0 && said.role() == Some(Role::Fill));
             all.fills = own.filter_map(|said| said.number(column).ok().flatten()).collect();
         }
@@ -200,10 +200,10 @@ impl Attributes {
 /// All that attributes say of a column, nearest first, of one place rates before intervals: an interval is rounded more often.
 fn said(column: &Column) -> Vec<Said> {
     let mut all = Vec::new();
-    let (mut place, mut distance) = (column.name.as_str(), 0);
+    let (mut place, mut distance) = (column.path.as_str(), 0);
     loop {
         let path = if place.is_empty() { "/" } else { place };
-        let object = column.dataset.file.object(path);
+        let object = column.file.object(path);
         let attributes = match &*object {
             Object::Dataset(dataset) => &dataset.attributes[..],
             Object::Group { attributes, .. } => attributes,
@@ -235,9 +235,7 @@ impl Column {
             Held::Other => Vec::new(),
         };
         match self.index {
-            Some(index) if values.len() == self.columns && index < values.len() => {
-                Some(values.swap_remove(index))
-            }
+            index if values.len() == self.columns && index < values.len() => Some(values.swap_remove(index)),
             _ if values.windows(2).all(|pair| pair[0] == pair[1]) => values.pop(),
             _ => None,
         }

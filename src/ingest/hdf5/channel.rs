@@ -45,11 +45,11 @@ impl Channel {
     /// Attributes that contradict each other, times that are none.
     pub(super) fn of(column: Column, asked: &Asked, clocks: &mut Clocks) -> Result<Self, Fault> {
         let attributes =
-            Attributes::of(&column).map_err(|refusal| Fault::from(refusal).at(&column.source()))?;
+            Attributes::of(&column).map_err(|refusal| Fault::from(refusal).at(&column.source))?;
         let mut times = clocks.of(&column);
         if let Some(name) = asked.time {
             let named = named_times(&column, name)?;
-            times.retain(|other| other.source() != named.source());
+            times.retain(|other| other.source != named.source);
             times.insert(0, named);
         }
         Ok(Self { column, attributes, times })
@@ -79,8 +79,7 @@ impl Channel {
         asked: &Asked,
         mut may_read: impl FnMut(&Column) -> bool,
     ) -> Result<Based, Fault> {
-        let source = self.column.source();
-        let at = |fault: Fault| fault.at(&source);
+        let at = |fault: Fault| fault.at(&self.column.source);
         let refused = |error: TimeBaseError| {
             at(error
                 .refusal("check the dataset of times (`time` in the cask file), or give sample_rate_hz")
@@ -120,9 +119,8 @@ impl Channel {
 
 /// The times that a cask file names; a bare name is looked for beside the samples first, in their own records before all.
 fn named_times(column: &Column, name: &str) -> Result<Column, Fault> {
-    let file = &column.dataset.file;
-    let records = column.records().map(|records| format!("{records}.{name}"));
+    let records = column.is_field().then(|| format!("{}.{name}", column.path));
     let mut beside = records.into_iter().chain([format!("{}/{name}", column.group())]);
-    let found = beside.find_map(|source| find::find(file, &source).ok()?).filter(|_| !name.starts_with('/'));
-    found.map_or_else(|| find::locate(file, name), Ok)
+    let found = beside.find_map(|source| find::find(&column.file, &source).ok()?);
+    found.filter(|_| !name.starts_with('/')).map_or_else(|| find::locate(&column.file, name), Ok)
 }

@@ -12,26 +12,25 @@ use crate::ingest::times::{Carrier, Scale, seconds_a_unit};
 /// Names that go before others.
 const FIRST_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "Time"];
 
-/// Times by their names, of the group or the records that were asked for last: channels come in the order of the file.
+/// The times in the group or the records that were asked for last, by their names: channels come in the order of the file.
 #[derive(Default)]
 pub(super) struct Clocks {
     place: Option<String>,
-    sources: Vec<String>,
+    times: Vec<Column>,
 }
 
 impl Clocks {
     /// The times of a channel, likeliest first: fields of the same records, else datasets beside it, that have a usual name and as many values.
     pub(super) fn of(&mut self, column: &Column) -> Vec<Column> {
-        let is_apart = |times: &Column| times.length == column.length && times.source() != column.source();
-        let records = column.records().map(|name| format!("{name}."));
+        let is_apart = |times: &&Column| times.length == column.length && times.source != column.source;
+        let records = column.is_field().then(|| format!("{}.", column.path));
         for place in records.into_iter().chain([format!("{}/", column.group())]) {
             if self.place.as_ref() != Some(&place) {
-                self.sources = sources(&place, column);
+                let named = sources(&place, column).into_iter();
+                self.times = named.filter_map(|source| find::find(&column.file, &source).ok()?).collect();
                 self.place = Some(place);
             }
-            let found =
-                self.sources.iter().filter_map(|source| find::find(&column.dataset.file, source).ok()?);
-            let found: Vec<Column> = found.filter(is_apart).collect();
+            let found: Vec<Column> = self.times.iter().filter(is_apart).cloned().collect();
             if !found.is_empty() {
                 return found;
             }
@@ -43,8 +42,8 @@ impl Clocks {
 /// Why a channel has no times: what is named as times beside it, and is none of its own.
 pub(super) fn why_none(column: &Column) -> String {
     let sources = sources(&format!("{}/", column.group()), column);
-    let others = sources.iter().filter(|source| **source != column.source());
-    let mut reasons = others.filter_map(|source| match find::find(&column.dataset.file, source) {
+    let others = sources.iter().filter(|source| **source != column.source);
+    let mut reasons = others.filter_map(|source| match find::find(&column.file, source) {
         Ok(times) => Some(format!("{source} holds {} times for {} samples", times?.length, column.length)),
         Err(fault) => Some(fault.to_string()),
     });
@@ -54,7 +53,7 @@ pub(super) fn why_none(column: &Column) -> String {
 /// What is named as times in a group (`/daq/`) or in records (`/daq/table.`), likeliest first.
 fn sources(place: &str, column: &Column) -> Vec<String> {
     let path = place.trim_end_matches(['/', '.']);
-    let mut names = match &*column.dataset.file.object(if path.is_empty() { "/" } else { path }) {
+    let mut names = match &*column.file.object(if path.is_empty() { "/" } else { path }) {
         Object::Group { times, .. } => times.clone(),
         Object::Dataset(dataset) => dataset.fields.iter().map(|field| decoded(&field.name)).collect(),
         _ => Vec::new(),
@@ -66,13 +65,13 @@ fn sources(place: &str, column: &Column) -> Vec<String> {
 
 /// The numbers of a column of times, with its own scale and offset, and what a unit of them is.
 fn counted(times: &Column) -> Result<(Vec<f64>, Scale), Fault> {
-    let own = Attributes::own(times).map_err(|refusal| Fault::from(refusal).at(&times.source()))?;
+    let own = Attributes::own(times).map_err(|refusal| Fault::from(refusal).at(&times.source))?;
     let unit = own.unit.clone();
     let numbers = match times.samples()? {
         Samples::F32(numbers) => numbers.into_iter().map(f64::from).collect(),
         Samples::F64(numbers) => numbers,
     };
-    Ok((own.applied(numbers), Scale::of(times.bare_name(), unit.as_deref())))
+    Ok((own.applied(numbers), Scale::of(&times.bare_name(), unit.as_deref())))
 }
 
 /// The times of a column in seconds; a rate that is stated tells units apart where nothing else does.
@@ -81,8 +80,8 @@ fn counted(times: &Column) -> Result<(Vec<f64>, Scale), Fault> {
 /// They cannot be read, or nothing tells their unit.
 pub(super) fn seconds(times: &Column, stated_hz: Option<f64>) -> Result<Vec<f64>, Fault> {
     let (mut numbers, scale) = counted(times)?;
-    let source = times.source();
-    let carrier = if times.records().is_some() { Carrier::Field(&source) } else { Carrier::Dataset(&source) };
+    let source = &times.source;
+    let carrier = if times.is_field() { Carrier::Field(source) } else { Carrier::Dataset(source) };
     let unit_s = seconds_a_unit(scale, carrier, &numbers, stated_hz)?;
     #[allow(clippy::float_cmp, reason = "1.0 is the literal for seconds")]
     if unit_s != 1.0 {
@@ -108,7 +107,7 @@ pub(super) fn witness(
     for t in &mut others {
         *t *= unit_s;
     }
-    let [one, two] = [taken.0, other].map(|column| format!("{:?}", column.source()));
+    let [one, two] = [taken.0, other].map(|column| format!("{:?}", column.source));
     let clock = Clock { name: &one, times_s: taken.1 };
     clock.borne_out_by(&Clock { name: &two, times_s: &others }, false, is_decided)
 }

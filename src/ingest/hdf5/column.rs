@@ -1,21 +1,22 @@
-//! A column, row or field of a dataset to its numbers.
+//! A column, row or field of a dataset with what of it a channel is.
 
-use super::answer::{Field, Number, Slab, Storage, Stored};
-use super::fault::Fault;
-use super::packed;
-use super::room::Found;
-use crate::data::Samples;
+use super::answer::{Dataset, Field, Number, Storage, decoded};
+use super::room::File;
+use std::rc::Rc;
 
 /// One channel's numbers in a file: a dataset, a column or row of one, or a field of its records.
 #[derive(Clone)]
 pub(super) struct Column {
-    pub dataset: Found,
-    /// Which of several channels in one dataset.
-    pub index: Option<usize>,
-    /// Number of channels in the dataset, or in the field of its records.
-    pub columns: usize,
+    pub file: Rc<File>,
+    pub dataset: Rc<Dataset>,
     /// The dataset's path.
-    pub name: String,
+    pub path: String,
+    /// What to write as `source`: `/daq/acc[2]`, `/daq/table.a1`.
+    pub source: String,
+    /// Which of several channels in the dataset, or in a field of its records.
+    pub index: usize,
+    /// How many of them there are.
+    pub columns: usize,
     /// Number of samples.
     pub length: usize,
     pub number: Number,
@@ -23,7 +24,7 @@ pub(super) struct Column {
 }
 
 /// Where the numbers of a channel lie in its dataset.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub(super) enum Place {
     /// They are all of it.
     Whole,
@@ -31,47 +32,38 @@ pub(super) enum Place {
     Column,
     /// In a row.
     Row,
-    /// In a field of its records, of this name.
-    Field(Field, String),
+    /// In a field of its records.
+    Field(Field),
 }
 
 impl Column {
-    /// What to write as `source`.
-    pub(super) fn source(&self) -> String {
-        let name = match &self.place {
-            Place::Field(_, field) => format!("{}.{field}", self.name),
-            _ => self.name.clone(),
-        };
-        self.index.map_or(name.clone(), |index| format!("{name}[{index}]"))
-    }
-
     /// What it is, for people.
     pub(super) fn kind_name(&self) -> &'static str {
         match self.place {
-            Place::Field(..) => "field",
+            Place::Field(_) => "field",
             Place::Row => "row",
             Place::Column => "column",
-            Place::Whole if self.index.is_some() => "column",
+            Place::Whole if self.dataset.shape.as_ref().is_some_and(|shape| shape.len() > 1) => "column",
             Place::Whole => "dataset",
         }
     }
 
     /// The last part of its name, which may tell its unit.
-    pub(super) fn bare_name(&self) -> &str {
+    pub(super) fn bare_name(&self) -> String {
         match &self.place {
-            Place::Field(_, field) => field,
-            _ => self.name.rsplit_once('/').map_or(&self.name, |(_, name)| name),
+            Place::Field(field) => decoded(&field.name),
+            _ => self.path.rsplit('/').next().unwrap_or_default().to_owned(),
         }
     }
 
-    /// The dataset whose records it is a field of.
-    pub(super) fn records(&self) -> Option<&str> {
-        matches!(self.place, Place::Field(..)).then_some(self.name.as_str())
+    /// Whether it is a field of records.
+    pub(super) fn is_field(&self) -> bool {
+        matches!(self.place, Place::Field(_))
     }
 
     /// The group it lies in, without a trailing slash.
     pub(super) fn group(&self) -> &str {
-        self.name.rsplit_once('/').map_or("", |(group, _)| group)
+        self.path.rsplit_once('/').map_or("", |(group, _)| group)
     }
 
     /// Memory of its numbers when they are read, of the widest kind.
@@ -84,55 +76,12 @@ impl Column {
         let Storage::Chunked { shape: chunk, .. } = &self.dataset.storage else { return 0 };
         let values = chunk.iter().fold(1_u64, |product, &n| product.saturating_mul(n as u64));
         match &self.place {
-            Place::Field(..) => values.saturating_mul(self.dataset.value_bytes),
+            Place::Field(_) => values.saturating_mul(self.dataset.value_bytes),
             Place::Column => {
                 let rows = chunk.first().copied().unwrap_or(1) as u64;
                 8_u64.saturating_mul(values.max(rows.saturating_mul(self.columns as u64)))
             }
             Place::Whole | Place::Row => 8_u64.saturating_mul(values),
         }
-    }
-
-    /// Its numbers as stored: f32 and short integers as f32, the rest as f64.
-    pub(super) fn samples(&self) -> Result<Samples, Fault> {
-        Ok(match self.number {
-            Number::F32 => Samples::F32(self.read::<f32, f32>()?),
-            Number::I8 => Samples::F32(self.read::<i8, f32>()?),
-            Number::I16 => Samples::F32(self.read::<i16, f32>()?),
-            Number::U8 => Samples::F32(self.read::<u8, f32>()?),
-            Number::U16 => Samples::F32(self.read::<u16, f32>()?),
-            Number::I32 => Samples::F64(self.read::<i32, f64>()?),
-            Number::I64 => Samples::F64(self.read::<i64, f64>()?),
-            Number::U32 => Samples::F64(self.read::<u32, f64>()?),
-            Number::U64 => Samples::F64(self.read::<u64, f64>()?),
-            Number::F64 => Samples::F64(self.read::<f64, f64>()?),
-        })
-    }
-
-    fn read<T: Stored<Sample = S>, S: Stored<Sample = S>>(&self) -> Result<Vec<S>, Fault> {
-        let index = self.index.unwrap_or(0);
-        let slab = match &self.place {
-            Place::Field(field, _) => {
-                return packed::column::<T>(&self.dataset, 0, Some(field)).ok_or_else(|| self.not_unpacked());
-            }
-            Place::Whole => Slab::Whole,
-            Place::Row => Slab::Row(index),
-            Place::Column => Slab::Column(index),
-        };
-        let is_down = self.dataset.shape.as_ref().and_then(|shape| shape.first()) == Some(&self.length);
-        let packed = if is_down { packed::column::<T>(&self.dataset, index, None) } else { None };
-        packed.map_or_else(|| self.dataset.file.values(&self.name, slab, self.length), Ok)
-    }
-
-    /// Of records only this program can read fields, and only as it unpacks them itself.
-    fn not_unpacked(&self) -> Fault {
-        let stored = self.dataset.described();
-        Fault::of(
-            &self.source(),
-            format!(
-                "cannot be unpacked from {stored}: damaged, or by other filters than deflate, or shuffle and then deflate"
-            ),
-            "copy the file from the logger again, or repack it with gzip: `h5repack -f SHUF -f GZIP=1 IN OUT`",
-        )
     }
 }

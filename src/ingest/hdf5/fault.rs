@@ -15,6 +15,9 @@ pub(super) struct Fault {
     pub remedy: String,
 }
 
+/// What makes a file that needs more than is built in one that does not.
+pub(super) const REPACK: &str = "repack it with gzip: `h5repack -f GZIP=1 IN OUT`";
+
 /// Part of the library's words, what they mean, and what to do.
 const MEANINGS: [(&str, &str, &str); 9] = [
     (
@@ -37,11 +40,7 @@ const MEANINGS: [(&str, &str, &str); 9] = [
         "another program has the file open for writing",
         "close that program, or read a copy",
     ),
-    (
-        "required filter",
-        "the data are compressed by a filter that is not built in",
-        "repack them with gzip: `h5repack -f GZIP=1 IN OUT`",
-    ),
+    ("required filter", "the data are compressed by a filter that is not built in", REPACK),
     ("checksum", "a check sum does not fit: the data are damaged", "copy the file from the logger again"),
     (
         "data error detected by fletcher32",
@@ -73,6 +72,15 @@ impl Fault {
     /// The same, said of `name`, unless it says itself what it is about.
     pub(super) fn at(self, name: &str) -> Self {
         if self.place.is_empty() { Self { place: format!("{name}: "), ..self } } else { self }
+    }
+
+    /// What a listing says of what it is about: the problem, and the command that cures it where there is one.
+    pub(super) fn listed(self) -> String {
+        if self.remedy.contains("h5repack") {
+            format!("{}: {}", self.problem, self.remedy)
+        } else {
+            self.problem
+        }
     }
 
     /// The problem alone where it is one of `name`, else with what it is one of.

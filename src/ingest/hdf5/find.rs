@@ -2,28 +2,22 @@
 
 use super::answer::{Dataset, Field, Filter, Number, Object, Storage, decoded};
 use super::column::{Column, Place};
-use super::fault::{self, Fault};
-use super::room::{File, Found};
+use super::fault::{self, Fault, REPACK};
+use super::room::File;
 use crate::ingest::error;
 use std::rc::Rc;
 
 /// No filter that is built in packs tighter (deflate: 1032 : 1), so that a dataset that claims more was damaged or never written.
 const TIGHTEST_PACKING: u64 = 1100;
 
-/// The places where what `source` names may stand, likeliest first, each with what of the name lies within it: names of datasets and
-/// fields may hold points and brackets themselves.
-pub(super) fn places(source: &str) -> Vec<(String, Option<String>, Option<usize>)> {
-    let path = format!("/{}", source.trim().trim_start_matches('/'));
-    let indexed = path.strip_suffix(']').and_then(|path| path.rsplit_once('['));
-    let indexed = indexed.and_then(|(bare, index)| Some((bare.to_owned(), index.trim().parse().ok()?)));
-    let mut places = vec![(path.clone(), None, None)];
-    let (bare, index) = indexed.map_or((path, None), |(bare, index)| (bare, Some(index)));
-    if index.is_some() {
-        places.push((bare.clone(), None, index));
-    }
-    let fields = bare.rmatch_indices('.');
-    places.extend(fields.map(|(at, _)| (bare[..at].to_owned(), Some(bare[at + 1..].to_owned()), index)));
-    places
+/// The paths at which the dataset of a source may stand, likeliest first, and where the source means one of its fields: `/a.b[2]` may be a
+/// dataset of this name, column 2 of `/a.b`, or number 2 in field `b` of the records `/a`.
+fn places(source: &str) -> impl Iterator<Item = &str> {
+    let is_number = |index: &&str| index.bytes().all(|digit| digit.is_ascii_digit());
+    let indexed = source.strip_suffix(']').and_then(|source| source.rsplit_once('['));
+    let bare = indexed.filter(|(_, index)| is_number(index)).map_or(source, |(bare, _)| bare);
+    let fields = bare.rmatch_indices('.').map(move |(at, _)| &bare[..at]);
+    Some(source).into_iter().chain((bare.len() < source.len()).then_some(bare)).chain(fields)
 }
 
 /// The channel that `source` names: `/group/dataset`, `/group/dataset[2]` of a two-dimensional one, `/group/dataset.field` of records;
@@ -32,21 +26,37 @@ pub(super) fn places(source: &str) -> Vec<(String, Option<String>, Option<usize>
 /// # Errors
 /// What stands there is no channel of numbers.
 pub(super) fn find(file: &Rc<File>, source: &str) -> Result<Option<Column>, Fault> {
+    let source = format!("/{}", source.trim().trim_start_matches('/'));
     let mut other = Ok(None);
-    for (path, field, index) in places(source) {
-        if let Some(dataset) = Found::at(file, &path) {
-            return match &field {
-                Some(field) => field_of(dataset, path, field, index),
-                None => column(dataset, path, index),
-            }
-            .map(Some);
+    for path in places(&source) {
+        let object = file.object(path);
+        if let Object::Dataset(dataset) = &*object {
+            return named(&source, channels(file, dataset, path)?).map(Some);
         }
-        let object = file.object(&path);
-        if other.is_ok() && (field.is_none() || !matches!(*object, Object::Group { .. })) {
-            other = no_dataset(&object, &path).map_or(Ok(None), Err);
+        let is_field = source[path.len()..].starts_with('.');
+        if other.is_ok() && !(is_field && matches!(*object, Object::Group { .. })) {
+            other = no_dataset(&object, path).map_or(Ok(None), Err);
         }
     }
     other
+}
+
+/// Of the channels of a dataset the one that `source` names; one that is alone may be counted or not.
+fn named(source: &str, mut channels: Vec<Column>) -> Result<Column, Fault> {
+    /// More names no longer fit a message.
+    const HANDFUL: usize = 12;
+    let is_meant = |column: &Column| {
+        column.source == source
+            || column.columns == 1 && source.strip_suffix("[0]") == Some(column.source.as_str())
+    };
+    if let Some(at) = channels.iter().position(is_meant) {
+        return Ok(channels.swap_remove(at));
+    }
+    let names: Vec<&str> = channels.iter().take(HANDFUL).map(|column| column.source.as_str()).collect();
+    let more = if channels.len() > HANDFUL { " …" } else { "" };
+    let (path, stored) = (&channels[0].path, channels[0].dataset.described());
+    let problem = format!("{source:?} is none of the {} channel(s) in {path} ({stored})", channels.len());
+    Err(Fault::new(problem, format!("name one: {}{more}", names.join(", "))))
 }
 
 /// The channel that `source` names.
@@ -55,15 +65,13 @@ pub(super) fn find(file: &Rc<File>, source: &str) -> Result<Option<Column>, Faul
 /// There is none; where nothing stands there, with the sources that are most like it.
 pub(super) fn locate(file: &Rc<File>, source: &str) -> Result<Column, Fault> {
     find(file, source)?.ok_or_else(|| {
-        let all: Vec<String> = file
-            .walk()
-            .iter()
-            .filter_map(|(path, object)| match &**object {
-                Object::Dataset(dataset) => sources(dataset, path).ok(),
-                _ => None,
-            })
-            .flatten()
-            .collect();
+        let objects = file.walk();
+        let of_dataset = |(path, object): &(String, Rc<Object>)| match &**object {
+            Object::Dataset(dataset) => channels(file, dataset, path).ok(),
+            _ => None,
+        };
+        let all: Vec<String> =
+            objects.iter().filter_map(of_dataset).flatten().map(|column| column.source).collect();
         let remedy = error::near_names(&file.path, source, "dataset", &all);
         Fault::new(format!("there is no dataset {source}"), remedy)
     })
@@ -84,140 +92,66 @@ pub(super) fn no_dataset(object: &Object, path: &str) -> Option<Fault> {
     }
 }
 
-/// A dataset with more columns than this is no table of channels.
-const MOST_COLUMNS: usize = 256;
-
-/// The sources that a dataset holds.
-///
-/// # Errors
-/// It holds no numbers in one or two dimensions, or in too many columns.
-pub(super) fn sources(dataset: &Dataset, path: &str) -> Result<Vec<String>, Fault> {
-    refuse_unread(dataset, path)?;
-    let several = |name: String, count: usize| match count {
-        1 => vec![name],
-        count => (0..count.min(MOST_COLUMNS)).map(|i| format!("{name}[{i}]")).collect(),
-    };
-    let shape = shape_of(dataset, path)?;
-    let (count, _, place) = channels(&shape, path)?;
-    if dataset.fields.is_empty() {
-        number_of(dataset, path)?;
-        return if count > MOST_COLUMNS {
-            Err(unnamed(path, &shape, &place, count))
-        } else {
-            Ok(several(path.to_owned(), count))
-        };
-    }
-    let named = |field: &Field| several(format!("{path}.{}", decoded(&field.name)), field.count);
-    let mut sources: Vec<String> = dataset.fields.iter().flat_map(named).collect();
-    sources.truncate(MOST_COLUMNS);
-    Ok(sources)
-}
-
-/// That a source names none of the columns or rows of a dataset.
-fn unnamed(name: &str, shape: &[usize], place: &Place, count: usize) -> Fault {
-    let what = if matches!(place, Place::Row) { "row" } else { "column" };
-    let remedy = format!("name one {what}: \"{name}[0]\" to \"{name}[{}]\"", count.saturating_sub(1));
-    Fault::of(name, format!("has {} rows and {} columns", shape[0], shape[1]), remedy)
-}
-
 /// More rows than this are samples, not channels: no recorder of these tests has so many, and so few samples are no record of a drop.
 const MOST_ROWS: usize = 64;
 /// Rows are channels where they are so many times longer than there are of them: a record has more samples than channels.
 const LONGER: usize = 8;
+/// A dataset with more columns than this is no table of channels.
+const MOST_COLUMNS: usize = 4096;
 
-/// How many channels a dataset of this shape holds, of how many samples, and where.
-fn channels(shape: &[usize], name: &str) -> Result<(usize, usize, Place), Fault> {
-    match *shape {
-        [length] | [length, 1] | [1, length] => Ok((1, length, Place::Whole)),
-        [rows, length] if rows <= MOST_ROWS && length >= LONGER * rows => Ok((rows, length, Place::Row)),
-        [length, columns] => Ok((columns, length, Place::Column)),
-        _ => Err(Fault::of(
-            name,
-            format!("has {} dimensions", shape.len()),
-            "only one and two dimensions are read; save the channel as a dataset of its own",
-        )),
-    }
-}
-
-fn column(dataset: Found, name: String, index: Option<usize>) -> Result<Column, Fault> {
-    let wrong = |problem: String, remedy: &str| Fault::of(&name, problem, remedy);
-    refuse_unread(&dataset, &name)?;
-    if let Some(first) = dataset.fields.first() {
-        return Err(wrong(
-            format!("holds records, with the fields {}", field_names(&dataset.fields)),
-            &format!("name one field: \"{name}.{}\"", decoded(&first.name)),
-        ));
-    }
-    let number = number_of(&dataset, &name)?;
-    let shape = shape_of(&dataset, &name)?;
-    let (columns, length, place) = channels(&shape, &name)?;
-    let index = match index {
-        None | Some(0) if matches!(place, Place::Whole) => (shape.len() > 1).then_some(0),
-        None => return Err(unnamed(&name, &shape, &place, columns)),
-        Some(_) if shape.len() == 1 => {
-            return Err(wrong("has one dimension".into(), "leave out the [ ] behind its name"));
+/// The channels that a dataset holds: itself, its columns or rows, or the numbers in the fields of its records; one at least.
+///
+/// # Errors
+/// It holds no numbers in one or two dimensions, or none that are read.
+pub(super) fn channels(file: &Rc<File>, dataset: &Dataset, path: &str) -> Result<Vec<Column>, Fault> {
+    refuse_unread(dataset, path)?;
+    let shape = shape_of(dataset, path)?;
+    let (place, columns, length) = match *shape {
+        [length] | [length, 1] | [1, length] => (Place::Whole, 1, length),
+        [rows, length] if rows <= MOST_ROWS && length >= LONGER * rows => (Place::Row, rows, length),
+        [length, columns] if columns <= MOST_COLUMNS => (Place::Column, columns, length),
+        [rows, columns] => {
+            let problem = format!("has {rows} rows and {columns} columns");
+            return Err(Fault::of(path, problem, "save each channel as a dataset of its own"));
         }
-        Some(index) if index < columns => Some(index),
-        Some(index) => {
-            let all = if matches!(place, Place::Row) { "rows, one a channel" } else { "columns" };
-            let remedy = "columns, or rows where those are the channels, count from 0";
-            return Err(wrong(format!("has {columns} {all}, there is no [{index}]"), remedy));
-        }
-    };
-    Ok(Column { dataset, index, columns, name, length, number, place })
-}
-
-/// A field of the records of a dataset.
-fn field_of(dataset: Found, name: String, wanted: &str, index: Option<usize>) -> Result<Column, Fault> {
-    let wrong = |problem: String, remedy: String| Fault::of(&name, problem, remedy);
-    refuse_unread(&dataset, &name)?;
-    let fields = &dataset.fields;
-    let Some(field) = fields.iter().find(|field| decoded(&field.name) == wanted) else {
-        if fields.is_empty() {
-            number_of(&dataset, &name)?;
-            return Err(wrong(
-                format!("holds no records with a field {wanted}, but numbers"),
-                format!("name it without a field: \"{name}\""),
+        _ => {
+            return Err(Fault::of(
+                path,
+                format!("has {} dimensions", shape.len()),
+                "only one and two dimensions are read; save the channel as a dataset of its own",
             ));
         }
-        return Err(wrong(
-            format!("has no field {wanted} of numbers"),
-            format!("name one of {}, such as \"{name}.{}\"", field_names(fields), decoded(&fields[0].name)),
-        ));
     };
-    let (last, several) = (field.count - 1, format!("holds {} numbers a record", field.count));
-    let field = match index {
-        None if last > 0 => {
-            let remedy = format!("name one: \"{name}.{wanted}[0]\" to \"{name}.{wanted}[{last}]\"");
-            return Err(Fault::of(&format!("{name}.{wanted}"), several, remedy));
-        }
-        Some(index) if index > last => {
-            let problem = format!("{several}, there is no [{index}]");
-            return Err(Fault::of(&format!("{name}.{wanted}"), problem, "they count from 0"));
-        }
-        // One number of the list, as a field of its own.
-        index => {
-            Field { count: 1, from: field.from + index.unwrap_or(0) * field.number.bytes(), ..field.clone() }
-        }
+    let dataset = Rc::new(dataset.clone());
+    let several = |name: &str, count: usize, column: &dyn Fn(usize) -> (Number, Place)| {
+        let of_index = |index: usize| {
+            let (number, place) = column(index);
+            let source = if count > 1 { format!("{name}[{index}]") } else { name.to_owned() };
+            let (file, dataset, path) = (Rc::clone(file), Rc::clone(&dataset), path.to_owned());
+            Column { file, dataset, path, source, index, columns: count, length, number, place }
+        };
+        (0..count.min(MOST_COLUMNS)).map(of_index).collect::<Vec<Column>>()
     };
-    let (count, length, _) = channels(&shape_of(&dataset, &name)?, &name)?;
-    if count > 1 {
-        return Err(wrong(
-            "holds records in rows and columns".into(),
-            "save them as a table of one dimension, one record a sample".into(),
+    if dataset.fields.is_empty() {
+        let number = number_of(&dataset, path)?;
+        return Ok(several(path, columns, &|_| (number, place.clone())));
+    }
+    if columns > 1 {
+        return Err(Fault::of(
+            path,
+            "holds records in rows and columns",
+            "save them as a table of one dimension, one record a sample",
         ));
     }
-    let (columns, number) = (last + 1, field.number);
-    let place = Place::Field(field, wanted.to_owned());
-    Ok(Column { dataset, index, columns, name, length, number, place })
-}
-
-/// Their names, as many as fit a message.
-fn field_names(fields: &[Field]) -> String {
-    const HANDFUL: usize = 12;
-    let names: Vec<String> = fields.iter().take(HANDFUL).map(|field| decoded(&field.name)).collect();
-    let more = if fields.len() > HANDFUL { ", …" } else { "" };
-    format!("{}{more}", names.join(", "))
+    let of_field = |field: &Field| {
+        // One number of a list, as a field of its own.
+        let single = |index: usize| {
+            let from = field.from + index * field.number.bytes();
+            (field.number, Place::Field(Field { count: 1, from, ..field.clone() }))
+        };
+        several(&format!("{path}.{}", decoded(&field.name)), field.count, &single)
+    };
+    Ok(dataset.fields.iter().flat_map(of_field).collect())
 }
 
 /// What is not in the recording, or packed by what is not read. A file that was sent may name any other on this machine, and any filter.
@@ -231,10 +165,9 @@ fn refuse_unread(dataset: &Dataset, name: &str) -> Result<(), Fault> {
         (Storage::Virtual, _) => {
             ("it is put together from other datasets, which is not read".into(), OWN_DATA)
         }
-        (_, Some(filter)) => (
-            format!("its data are packed by the filter {filter}, which is not read"),
-            "repack them with gzip: `h5repack -f GZIP=1 IN OUT`",
-        ),
+        (_, Some(filter)) => {
+            (format!("its data are packed by the filter {filter}, which is not read"), REPACK)
+        }
         _ => return Ok(()),
     };
     Err(Fault::new(what, remedy).at(name))
@@ -262,24 +195,19 @@ fn number_of(dataset: &Dataset, name: &str) -> Result<Number, Fault> {
 }
 
 /// The shape of a dataset; a fault where it is empty, or where the file cannot hold it.
-fn shape_of(dataset: &Dataset, name: &str) -> Result<Vec<usize>, Fault> {
-    let wrong = |what: &str| Fault::of(name, what, NUMBERS);
-    let Some(shape) = dataset.shape.clone() else { return Err(wrong("is empty")) };
-    if shape.is_empty() {
-        return Err(wrong("is a single value"));
-    }
-    if shape.contains(&0) {
-        return Err(wrong("is empty"));
-    }
-    let claimed = shape.iter().try_fold(1_usize, |product, &n| product.checked_mul(n));
-    let rows = shape.first().copied().unwrap_or(0);
-    let bytes = claimed.and_then(|count| (count as u64).checked_mul(dataset.value_bytes));
+fn shape_of<'a>(dataset: &'a Dataset, name: &str) -> Result<&'a [usize], Fault> {
+    let wrong = |what: &str| Err(Fault::of(name, what, NUMBERS));
+    let shape = match dataset.shape.as_deref() {
+        Some([]) => return wrong("is a single value"),
+        Some(shape) if !shape.contains(&0) => shape,
+        _ => return wrong("is empty"),
+    };
+    let claimed = shape.iter().try_fold(dataset.value_bytes, |bytes, &n| bytes.checked_mul(n as u64));
     let stored = dataset.stored_bytes;
-    let is_plausible = bytes.is_some_and(|bytes| bytes <= stored.saturating_mul(TIGHTEST_PACKING));
-    if !is_plausible {
+    if claimed.is_none_or(|bytes| bytes > stored.saturating_mul(TIGHTEST_PACKING)) {
         return Err(Fault::of(
             name,
-            format!("claims {rows} rows, of which the file holds {stored} bytes"),
+            format!("claims {} rows, of which the file holds {stored} bytes", shape[0]),
             "it was never written, or the file is damaged: copy it from the logger again",
         ));
     }

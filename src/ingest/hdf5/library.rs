@@ -1,8 +1,8 @@
 //! An HDF5 file, through the C library, to descriptions and numbers: all that hands a file's bytes to C, in a process of its own.
 
 use super::answer::{
-    Answer, Bytes, Chunk, Dataset, Filter, Object, Received, Request, Slab, Storage, Value, receive, send,
-    send_values,
+    Answer, Bytes, Chunk, Dataset, FRAME_NUMBERS, Filter, Object, Packing, Request, Slab, Storage, Value,
+    receive, send,
 };
 use super::{names, types};
 use hdf5_metno::dataset::Layout;
@@ -10,7 +10,7 @@ use hdf5_metno::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, V
 use hdf5_metno::{
     Attribute, File, H5Type, Hyperslab, LinkType, Location, LocationType, Selection, SliceOrIndex,
 };
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 use std::io::{self, Read, Write};
 use std::path::Path;
 
@@ -26,8 +26,6 @@ const MOST_BYTES: usize = 1 << 20;
 const TEXT_BYTES: usize = 256;
 /// More chunks than this are the library's to find: a table of them would take as long as it spares.
 const MOST_CHUNKS: usize = 1 << 20;
-/// Values read at a time: 2 MB of f64.
-const BLOCK_VALUES: usize = 1 << 18;
 
 const ELSEWHERE: &str = "a link into another file, which is not followed";
 const UNNAMED: &str =
@@ -42,8 +40,6 @@ struct Opened<'a> {
     /// Told how many bytes come next, and how many are held at a time.
     grant: &'a mut dyn FnMut(u64, u64),
     members: HashMap<String, Members>,
-    /// What was described beside what was asked for.
-    told: HashSet<String>,
 }
 
 /// Answers what is asked about the file at `path` until nobody asks any more.
@@ -66,10 +62,13 @@ pub(super) fn answer(
     };
     send(to, &Answer::Opened { user_block: file.userblock(), library: hdf5_metno::library_version() })?;
     to.flush()?;
-    let mut opened = Opened { file, grant, members: HashMap::new(), told: HashSet::new() };
-    while let Ok((Received::Message(request), _)) = receive(from) {
+    let mut opened = Opened { file, grant, members: HashMap::new() };
+    while let Ok((request, _)) = receive(from) {
         match request {
-            Request::Look(path) => opened.look(path, to)?,
+            Request::Look(path) => {
+                let object = opened.object(&path);
+                send(to, &Answer::Found(path, object))?;
+            }
             Request::Walk => opened.walk("", 0, &mut 0, to)?,
             Request::Read { path, is_wide, slab } => opened.read(&path, is_wide, slab, to)?,
         }
@@ -91,25 +90,6 @@ fn words(error: &hdf5_metno::Error) -> Vec<Bytes> {
 }
 
 impl Opened<'_> {
-    fn look(&mut self, path: String, to: &mut impl Write) -> io::Result<()> {
-        let object = self.object(&path);
-        let mut beside = Vec::new();
-        if matches!(object, Object::Dataset(_)) {
-            let groups = path.match_indices('/').map(|(at, _)| path[..at.max(1)].to_owned());
-            let group = path.rsplit_once('/').map_or("", |(group, _)| group);
-            let times = self.times_in(group).into_iter().map(|name| format!("{group}/{name}"));
-            beside = groups.chain(times).filter(|other| *other != path).collect();
-        }
-        // The root stands above every channel: the reader keeps what it was told once.
-        beside.retain(|other| self.told.insert(other.clone()));
-        send(to, &Answer::Found(path, object))?;
-        for path in beside {
-            let object = self.object(&path);
-            send(to, &Answer::Found(path, object))?;
-        }
-        Ok(())
-    }
-
     fn walk(&mut self, group: &str, depth: usize, count: &mut usize, to: &mut impl Write) -> io::Result<()> {
         let names: Vec<String> = self.members(group).keys().cloned().collect();
         for name in names {
@@ -190,23 +170,19 @@ impl Opened<'_> {
     /// Sends the numbers of a dataset, or why they cannot be read.
     fn read(&mut self, path: &str, is_wide: bool, slab: Slab, to: &mut impl Write) -> io::Result<()> {
         let sent = if is_wide {
-            self.send_numbers(path, slab, f64::to_le_bytes, to)
+            self.send_numbers(path, slab, |numbers| send(to, &Answer::Wide(numbers)))
         } else {
-            self.send_numbers(path, slab, f32::to_le_bytes, to)
+            self.send_numbers(path, slab, |numbers| send(to, &Answer::Narrow(numbers)))
         };
-        match sent {
-            Ok(sent) => sent,
-            Err(error) => send(to, &Answer::Refused(words(&error))),
-        }
+        sent.or_else(|error| send(to, &Answer::Refused(words(&error))))
     }
 
-    fn send_numbers<T: H5Type + Copy, const N: usize>(
+    fn send_numbers<T: H5Type + Copy>(
         &mut self,
         path: &str,
         slab: Slab,
-        to_bytes: fn(T) -> [u8; N],
-        to: &mut impl Write,
-    ) -> hdf5_metno::Result<io::Result<()>> {
+        mut send: impl FnMut(Vec<T>) -> io::Result<()>,
+    ) -> hdf5_metno::Result<()> {
         let dataset = self.file.dataset(path)?;
         let shape = dataset.shape();
         let chunk = dataset.chunk().unwrap_or_else(|| vec![1; shape.len()]);
@@ -219,15 +195,14 @@ impl Opened<'_> {
         let is_picked = along == 0 && shape.len() == 2 && dataset.is_chunked();
         let width = if is_picked { shape[1] } else { 1 };
         // Whole chunks, so that none is unpacked twice.
-        let chunks = (BLOCK_VALUES / width / chunk[along]).max(1);
+        let chunks = (FRAME_NUMBERS / width / chunk[along]).max(1);
         let step = chunks.saturating_mul(chunk[along]);
-        let bytes = |values: usize| values.saturating_mul(N) as u64;
+        let bytes = |values: usize| values.saturating_mul(size_of::<T>()) as u64;
         let in_chunk = chunk.iter().fold(1_usize, |all, &n| all.saturating_mul(n));
         let beside = if is_picked { width } else { *chunk.get(1 - along).unwrap_or(&1) };
         let unpacked = bytes(shape[along].saturating_mul(beside));
         (self.grant)(unpacked, bytes(in_chunk).saturating_add(bytes(step.saturating_mul(width))));
-        let mut from = 0;
-        while from < shape[along] {
+        for from in (0..shape[along]).step_by(step) {
             let upto = from.saturating_add(step).min(shape[along]);
             let mut slab = vec![SliceOrIndex::from(across); shape.len()];
             slab[along] = SliceOrIndex::from(from..upto);
@@ -239,13 +214,10 @@ impl Opened<'_> {
                 let line = dataset.read_slice_1d::<T, Selection>(Hyperslab::from(slab).into())?;
                 line.into_raw_vec_and_offset().0
             };
-            let sent: Vec<u8> = values.into_iter().flat_map(to_bytes).collect();
-            if let Err(deaf) = send_values(to, &sent) {
-                return Ok(Err(deaf));
-            }
-            from = upto;
+            let mut parts = values.chunks(FRAME_NUMBERS);
+            parts.try_for_each(|part| send(part.to_vec())).map_err(|deaf| deaf.to_string())?;
         }
-        Ok(Ok(()))
+        Ok(())
     }
 }
 
@@ -304,8 +276,7 @@ fn filter(filter: &hdf5_metno::filters::Filter) -> Filter {
 
 /// Where the chunks lie that this program unpacks itself; `None` where only the library can.
 fn chunks(dataset: &hdf5_metno::Dataset, filters: &[Filter]) -> Option<Vec<Chunk>> {
-    let is_read = matches!(filters, [] | [Filter::Deflate(_)] | [Filter::Shuffle, Filter::Deflate(_)]);
-    if !is_read || dataset.ndim() > 2 || dataset.num_chunks()? > MOST_CHUNKS {
+    if Packing::of(filters).is_none() || dataset.ndim() > 2 || dataset.num_chunks()? > MOST_CHUNKS {
         return None;
     }
     let (mut chunks, mut is_whole) = (Vec::new(), true);

@@ -15,6 +15,8 @@ use std::rc::Rc;
 
 /// So many channels are listed at most.
 const MOST_CHANNELS: usize = 10_000;
+/// A dataset with more columns than this is an image rather than a table of channels.
+const MOST_COLUMNS: usize = 256;
 /// A longer column is not read: `inspect` should answer at once.
 const MOST_SAMPLES: usize = 20_000_000;
 /// So many values are read in all: names may stand for one large dataset many times over.
@@ -98,14 +100,19 @@ impl Lister {
                 if self.channels.len() >= MOST_CHANNELS {
                     return;
                 }
-                match find::sources(dataset, path) {
-                    Ok(sources) => sources.iter().for_each(|source| self.list(file, source)),
-                    Err(fault) => self.channels.push(ListedChannel {
-                        encoding: dataset.described(),
-                        unreadable: Some(fault.problem),
-                        ..ListedChannel::named(path, "dataset")
-                    }),
-                }
+                let channels = find::channels(file, dataset, path).map_err(Fault::listed);
+                let reason = match channels {
+                    Ok(channels) if channels.len() <= MOST_COLUMNS => {
+                        return channels.into_iter().for_each(|column| self.list(column));
+                    }
+                    Ok(channels) => format!("has {} columns, too many for channels", channels.len()),
+                    Err(reason) => reason,
+                };
+                self.channels.push(ListedChannel {
+                    encoding: dataset.described(),
+                    unreadable: Some(reason),
+                    ..ListedChannel::named(path, "dataset")
+                });
             }
             Object::NamedType | Object::Nothing => {}
             Object::NotFollowed(_) | Object::Broken(_) => {
@@ -120,18 +127,17 @@ impl Lister {
         }
     }
 
-    fn list(&mut self, file: &Rc<File>, source: &str) {
-        let mut listed = ListedChannel::named(source, "dataset");
-        if let Err(fault) = self.fill(file, source, &mut listed) {
-            listed.unreadable = Some(fault.problem);
+    fn list(&mut self, column: Column) {
+        let mut listed = ListedChannel::named(&column.source, column.kind_name());
+        if let Err(fault) = self.fill(column, &mut listed) {
+            listed.unreadable = Some(fault.listed());
         }
         self.channels.push(listed);
     }
 
     /// What reading would take of a column into `listed`; where it would refuse the clock, the refusal stands in its place.
-    fn fill(&mut self, file: &Rc<File>, source: &str, listed: &mut ListedChannel) -> Result<(), Fault> {
-        let column = find::locate(file, source)?;
-        column.kind_name().clone_into(&mut listed.kind);
+    fn fill(&mut self, column: Column, listed: &mut ListedChannel) -> Result<(), Fault> {
+        let source = &listed.source.clone();
         listed.samples = Some(column.length as u64);
         listed.encoding = column.dataset.described();
         let asked = Asked::default();

@@ -1,7 +1,9 @@
 //! The bytes of a dataset, plain or in deflated chunks, to one column or field of it, on all cores: the library works on one thread at a time.
 
-use super::answer::{Chunk, Field, Filter, Storage, Stored};
-use super::room::Found;
+use super::answer::{Chunk, Dataset, Field, Number, Packing, Slab, Storage};
+use super::column::{Column, Place};
+use super::fault::{Fault, REPACK};
+use crate::data::Samples;
 use libdeflater::Decompressor;
 use rayon::prelude::*;
 use std::fs::File;
@@ -10,68 +12,107 @@ use std::io::{Read, Seek, SeekFrom};
 /// Bytes read at a time of a dataset that lies in one piece: they stay in the cache until they are turned.
 const PIECE_BYTES: usize = 1 << 18;
 
-/// Column `index` of a dataset of one or two dimensions, or a field of its records; `None` where the library must read it: other filters,
-/// types or byte orders, chunks that were never written, damage. For records the library would need a type made for them, which only its
-/// unsafe part can have.
-pub(super) fn column<T: Stored>(
-    dataset: &Found,
-    index: usize,
-    field: Option<&Field>,
-) -> Option<Vec<T::Sample>> {
-    let is_plain = dataset.is_plain && dataset.number == Some(T::NUMBER);
-    // Addresses count from behind a user block in some versions of the library and from the file's start in others.
-    if dataset.file.user_block != 0 || !field.map_or(is_plain, |field| field.number == T::NUMBER) {
-        return None;
-    }
-    match dataset.storage {
-        Storage::Contiguous(from) => in_one_piece::<T>(dataset, from?, field),
-        _ => chunked::<T>(dataset, index, field),
+/// A number as HDF5 stores it, to the sample that it is held as.
+trait Stored {
+    /// f32 for f32 and short integers, f64 for all others.
+    type Sample: Copy + Default + Send + Sync;
+    /// From its bytes, least first, given one by one.
+    fn sample(byte: impl Fn(usize) -> u8) -> Self::Sample;
+}
+
+macro_rules! stored {
+    ($($name:ident = $number:ty as $sample:ident in $samples:ident),*) => {
+        $(impl Stored for $number {
+            type Sample = $sample;
+            #[allow(clippy::cast_lossless, clippy::cast_precision_loss, reason = "counts beyond 2^53 lose what no sensor resolves")]
+            fn sample(byte: impl Fn(usize) -> u8) -> $sample {
+                Self::from_le_bytes(std::array::from_fn(byte)) as $sample
+            }
+        })*
+
+        /// The numbers of a column, or of a field of records; `None` where the library must read them: other filters, types or byte
+        /// orders, chunks that were never written, damage. For records the library would need a type made for them, which only its unsafe
+        /// part can have.
+        fn numbers(column: &Column) -> Option<Samples> {
+            match column.number {
+                $(Number::$name => values::<$number>(column).map(Samples::$samples)),*
+            }
+        }
+    };
+}
+stored!(
+    F32 = f32 as f32 in F32,
+    F64 = f64 as f64 in F64,
+    I8 = i8 as f32 in F32,
+    I16 = i16 as f32 in F32,
+    I32 = i32 as f64 in F64,
+    I64 = i64 as f64 in F64,
+    U8 = u8 as f32 in F32,
+    U16 = u16 as f32 in F32,
+    U32 = u32 as f64 in F64,
+    U64 = u64 as f64 in F64
+);
+
+impl Column {
+    /// Its numbers as stored: f32 and short integers as f32, the rest as f64.
+    ///
+    /// # Errors
+    /// They cannot be unpacked.
+    pub(super) fn samples(&self) -> Result<Samples, Fault> {
+        if let Some(numbers) = numbers(self) {
+            return Ok(numbers);
+        }
+        let slab = match &self.place {
+            Place::Field(_) => {
+                let stored = self.dataset.described();
+                let problem = format!(
+                    "cannot be unpacked from {stored}: damaged, or by other filters than deflate and shuffle"
+                );
+                return Err(Fault::of(
+                    &self.source,
+                    problem,
+                    format!("copy the file from the logger again, or {REPACK}"),
+                ));
+            }
+            Place::Whole => Slab::Whole,
+            Place::Row => Slab::Row(self.index),
+            Place::Column => Slab::Column(self.index),
+        };
+        self.file.values(&self.path, slab, self.length, self.number.is_wide())
     }
 }
 
-impl Field {
-    /// Where byte `i` of its number, counted from the lowest, stands in a record.
-    fn byte(&self, i: usize) -> usize {
-        self.from + if self.is_big_endian { self.number.bytes() - 1 - i } else { i }
-    }
-}
-
-/// A dataset of one column that lies in one piece, or a field of its records.
-fn in_one_piece<T: Stored>(dataset: &Found, from: u64, field: Option<&Field>) -> Option<Vec<T::Sample>> {
-    let shape = dataset.shape.as_ref()?;
+fn values<T: Stored>(column: &Column) -> Option<Vec<T::Sample>> {
+    let Column { file, dataset, place, .. } = column;
+    let (index, field) = match place {
+        Place::Field(field) => (0, Some(field)),
+        Place::Whole | Place::Column if dataset.is_plain => (column.index, None),
+        _ => return None,
+    };
     let value_bytes = usize::try_from(dataset.value_bytes).ok().filter(|bytes| *bytes > 0)?;
-    let length = shape.iter().try_fold(1_usize, |all, &n| all.checked_mul(n))?;
-    let stored = length.checked_mul(value_bytes)? as u64;
-    let is_within = from.checked_add(stored).is_some_and(|end| end <= dataset.file.bytes);
-    if dataset.stored_bytes != stored || !is_within || shape.iter().filter(|n| **n != 1).count() > 1 {
+    let layout = Layout { rows: 0, columns: 1, value_bytes, packing: Packing::Plain, field, index };
+    let (layout, chunks) = match &dataset.storage {
+        // Addresses count from behind a user block in some versions of the library and from the file's start in others.
+        _ if file.user_block != 0 => return None,
+        Storage::Contiguous(from) => layout.in_one_piece(column, (*from)?)?,
+        Storage::Chunked { shape, chunks } => layout.in_chunks(dataset, shape, chunks.as_ref()?)?,
+        _ => return None,
+    };
+    let (path, mut values) = (&file.path, vec![T::Sample::default(); column.length]);
+    // A chunk for every stretch of rows, or the rest is what the library fills in.
+    if chunks.len() != column.length.div_ceil(layout.rows) {
         return None;
     }
-    let piece = (PIECE_BYTES / value_bytes).max(1);
-    let path = &dataset.file.path;
-    let mut values = vec![T::Sample::default(); length];
     values
-        .par_chunks_mut(piece)
+        .par_chunks_mut(layout.rows)
+        .zip(&chunks)
         .enumerate()
         .map_init(
-            || (File::open(path).ok(), Vec::new()),
-            |(file, bytes), (i, values)| {
-                let file = file.as_mut()?;
-                bytes.resize(values.len() * value_bytes, 0);
-                file.seek(SeekFrom::Start(from + (i * piece * value_bytes) as u64)).ok()?;
-                file.read_exact(bytes).ok()?;
-                match field {
-                    None => {
-                        for (value, bytes) in values.iter_mut().zip(bytes.chunks_exact(size_of::<T>())) {
-                            *value = T::sample(|i| bytes[i]);
-                        }
-                    }
-                    Some(field) => {
-                        for (value, record) in values.iter_mut().zip(bytes.chunks_exact(value_bytes)) {
-                            *value = T::sample(|i| record[field.byte(i)]);
-                        }
-                    }
-                }
-                Some(())
+            || (File::open(path).ok(), Vec::new(), Vec::new()),
+            |(file, packed, bytes), (i, (values, chunk))| {
+                let is_next = chunk.row == i * layout.rows;
+                is_next.then(|| layout.unpack(file.as_mut()?, chunk, packed, bytes))??;
+                layout.take::<T>(bytes, chunk, values)
             },
         )
         .collect::<Option<()>>()?;
@@ -86,133 +127,152 @@ struct Layout<'a> {
     columns: usize,
     /// Of one value or record.
     value_bytes: usize,
-    is_deflated: bool,
-    is_shuffled: bool,
+    packing: Packing,
     /// The field to be taken, where the values are records.
     field: Option<&'a Field>,
     /// The column to be taken.
     index: usize,
 }
 
-/// A column of a dataset in chunks, deflated and shuffled or not, or a field of the records in it.
-fn chunked<T: Stored>(dataset: &Found, index: usize, field: Option<&Field>) -> Option<Vec<T::Sample>> {
-    let Storage::Chunked { shape: chunk, chunks } = &dataset.storage else { return None };
-    let (is_deflated, is_shuffled) = match dataset.filters.as_slice() {
-        [] => (false, false),
-        [Filter::Deflate(_)] => (true, false),
-        [Filter::Shuffle, Filter::Deflate(_)] => (true, true),
-        _ => return None,
-    };
-    let length = *dataset.shape.as_ref()?.first()?;
-    let (rows, columns) = (*chunk.first()?, chunk.get(1).copied().unwrap_or(1));
-    let value_bytes = usize::try_from(dataset.value_bytes).ok()?;
-    let layout = Layout { rows, columns, value_bytes, is_deflated, is_shuffled, field, index };
-    let holds = |chunk: &&Chunk| index.checked_sub(chunk.column).is_some_and(|first| first < columns);
-    let mut places: Vec<&Chunk> = chunks.as_ref()?.iter().filter(holds).collect();
-    places.sort_by_key(|place| place.row);
-    // A chunk for every stretch of rows, or the rest is what the library fills in.
-    if chunk.len() > 2 || places.len() != length.div_ceil(rows) {
-        return None;
+impl Field {
+    /// Where byte `i` of its number, counted from the lowest, stands in a record.
+    fn byte(&self, i: usize) -> usize {
+        self.from + if self.is_big_endian { self.number.bytes() - 1 - i } else { i }
     }
-    let path = &dataset.file.path;
-    let mut values = vec![T::Sample::default(); length];
-    values
-        .par_chunks_mut(rows)
-        .zip(&places)
-        .enumerate()
-        .map_init(
-            || (File::open(path).ok(), Vec::new(), Vec::new()),
-            |(file, packed, bytes), (i, (values, place))| {
-                let is_next = place.row == i * rows;
-                is_next.then(|| layout.unpack(file.as_mut()?, place, packed, bytes))??;
-                layout.take::<T>(bytes, place, values);
-                Some(())
-            },
-        )
-        .collect::<Option<()>>()?;
-    Some(values)
 }
 
-impl Layout<'_> {
+impl<'a> Layout<'a> {
+    /// With the pieces in which a dataset that lies in one is read.
+    fn in_one_piece(self, column: &Column, from: u64) -> Option<(Self, Vec<Chunk>)> {
+        let (bytes, rows) = (self.value_bytes, (PIECE_BYTES / self.value_bytes).max(1));
+        let stored = column.length.checked_mul(bytes)? as u64;
+        let is_within = from.checked_add(stored).is_some_and(|end| end <= column.file.bytes);
+        let piece = |row: usize| Chunk {
+            row,
+            column: 0,
+            at: from + (row * bytes) as u64,
+            bytes: rows.min(column.length - row) * bytes,
+        };
+        let pieces = || (0..column.length).step_by(rows).map(piece).collect();
+        (is_within && column.dataset.stored_bytes == stored).then(|| (Self { rows, ..self }, pieces()))
+    }
+
+    /// With the chunks that hold the column, in order.
+    fn in_chunks(self, dataset: &Dataset, shape: &[usize], chunks: &[Chunk]) -> Option<(Self, Vec<Chunk>)> {
+        let packing = Packing::of(&dataset.filters)?;
+        let (rows, columns) = (*shape.first()?, shape.get(1).copied().unwrap_or(1));
+        let holds =
+            |chunk: &&Chunk| self.index.checked_sub(chunk.column).is_some_and(|first| first < columns);
+        let mut chunks: Vec<Chunk> = chunks.iter().filter(holds).cloned().collect();
+        chunks.sort_by_key(|chunk| chunk.row);
+        (shape.len() <= 2).then_some((Self { rows, columns, packing, ..self }, chunks))
+    }
+
     /// The bytes of a chunk as they were before they were deflated.
     fn unpack(
         &self,
         file: &mut File,
-        place: &Chunk,
+        chunk: &Chunk,
         packed: &mut Vec<u8>,
         bytes: &mut Vec<u8>,
     ) -> Option<()> {
         let whole = self.rows.checked_mul(self.columns)?.checked_mul(self.value_bytes)?;
         // Deflate stores what it cannot pack with five bytes for each 16 KiB: a longer chunk is damage.
-        if place.bytes > whole.checked_mul(2)?.checked_add(1024)? {
+        if chunk.bytes > whole.checked_mul(2)?.checked_add(1024)? {
             return None;
         }
-        file.seek(SeekFrom::Start(place.at)).ok()?;
-        bytes.resize(whole, 0);
-        if !self.is_deflated {
-            return (place.bytes == whole).then(|| file.read_exact(bytes).ok())?;
+        file.seek(SeekFrom::Start(chunk.at)).ok()?;
+        if self.packing == Packing::Plain {
+            bytes.resize(chunk.bytes, 0);
+            return file.read_exact(bytes).ok();
         }
         packed.clear();
-        file.take(place.bytes as u64).read_to_end(packed).ok()?;
+        file.take(chunk.bytes as u64).read_to_end(packed).ok()?;
+        if self.packing == Packing::DeflatedShuffled {
+            *packed = unshuffled(packed, self.value_bytes);
+        }
+        bytes.resize(whole, 0);
         (Decompressor::new().zlib_decompress(packed, bytes).ok()? == whole).then_some(())
     }
 
-    /// The chunk's share of the column out of its bytes.
-    fn take<T: Stored>(&self, bytes: &[u8], place: &Chunk, values: &mut [T::Sample]) {
-        // Two loops over the rows each: where nothing in a loop is asked anew, it takes half the time.
-        match self.field {
-            Some(field) => self.take_by::<T>(bytes, place, values, |i| field.byte(i)),
-            None => self.take_by::<T>(bytes, place, values, |i| i),
+    /// The chunk's share of the column out of its bytes; `None` where it is short of it.
+    fn take<T: Stored>(&self, bytes: &[u8], chunk: &Chunk, values: &mut [T::Sample]) -> Option<()> {
+        let (size, first) = (self.value_bytes, self.index - chunk.column);
+        if bytes.len() < values.len() * self.columns * size {
+            return None;
         }
+        let rows = values.iter_mut().zip(bytes.chunks_exact(self.columns * size));
+        // A loop for each: where nothing in a loop is asked anew, it takes half the time.
+        match (self.packing, self.field) {
+            (Packing::ShuffledDeflated, None) => self.take_shuffled::<T>(bytes, first, values, |i| i),
+            (Packing::ShuffledDeflated, Some(field)) => {
+                self.take_shuffled::<T>(bytes, first, values, |i| field.byte(i));
+            }
+            (_, None) => rows.for_each(|(value, row)| {
+                let stored = &row[first * size..][..size_of::<T>()];
+                *value = T::sample(|i| stored[i]);
+            }),
+            (_, Some(field)) => rows.for_each(|(value, row)| {
+                let record = &row[first * size..];
+                *value = T::sample(|i| record[field.byte(i)]);
+            }),
+        }
+        Some(())
     }
 
-    fn take_by<T: Stored>(
+    fn take_shuffled<T: Stored>(
         &self,
         bytes: &[u8],
-        place: &Chunk,
+        first: usize,
         values: &mut [T::Sample],
         byte: impl Fn(usize) -> usize,
     ) {
-        let (count, size) = (self.rows * self.columns, self.value_bytes);
+        let count = self.rows * self.columns;
         for (row, value) in values.iter_mut().enumerate() {
-            let at = row * self.columns + self.index - place.column;
-            let stored = |i| if self.is_shuffled { byte(i) * count + at } else { at * size + byte(i) };
-            *value = T::sample(|i| bytes[stored(i)]);
+            let at = row * self.columns + first;
+            *value = T::sample(|i| bytes[byte(i) * count + at]);
         }
     }
 }
 
+/// Bytes as they were before they were shuffled as values of so many bytes; what is left behind the last value stays.
+fn unshuffled(bytes: &[u8], size: usize) -> Vec<u8> {
+    let count = bytes.len() / size;
+    let (values, rest) = bytes.split_at(count * size);
+    let ordered = (0..count).flat_map(|value| (0..size).map(move |i| values[i * count + value]));
+    ordered.chain(rest.iter().copied()).collect()
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::{find, room};
     use super::*;
     use crate::ingest::Limits;
     use crate::ingest::hdf5::answer::Slab;
-    use crate::ingest::hdf5::room;
     use std::path::Path;
 
     /// 20 000 rows of numbers that pack and are all different, in one column or three.
-    fn numbers(columns: usize) -> Vec<i32> {
+    fn written(columns: usize) -> Vec<i32> {
         (0..20_000 * i32::try_from(columns).unwrap()).map(|i| i * 7919 % 100_003 - 50_000).collect()
     }
 
-    fn opened(path: &Path) -> Found {
+    fn opened(path: &Path, source: &str) -> Column {
         let file = room::File::open(path, Limits::default()).unwrap();
-        Found::at(&file, "/a").unwrap()
+        find::locate(&file, source).unwrap()
     }
 
-    fn file(path: &Path, columns: usize, chunk_rows: usize, shuffle: bool) -> Found {
+    fn write(path: &Path, columns: usize, chunk_rows: usize, shuffle: bool) {
         let file = hdf5_metno::File::create(path).unwrap();
         let builder = file.new_dataset::<i32>();
         let builder = if shuffle { builder.shuffle() } else { builder }.deflate(4);
         if columns == 1 {
             let dataset = builder.chunk(chunk_rows).shape(20_000).create("a").unwrap();
-            dataset.write_raw(&numbers(1)).unwrap();
+            dataset.write_raw(&written(1)).unwrap();
         } else {
             let dataset = builder.chunk((chunk_rows, 2)).shape((20_000, columns)).create("a").unwrap();
-            dataset.write_raw(&numbers(columns)).unwrap();
+            dataset.write_raw(&written(columns)).unwrap();
         }
         file.close().unwrap();
-        opened(path)
     }
 
     #[test]
@@ -222,20 +282,17 @@ mod tests {
             [(1, 999, false), (1, 20_000, true), (3, 777, true), (3, 1, false)]
         {
             let path = folder.path().join(format!("{columns}-{chunk_rows}.h5"));
-            let dataset = file(&path, columns, chunk_rows, shuffle);
+            write(&path, columns, chunk_rows, shuffle);
             for index in 0..columns {
                 let expected: Vec<f64> =
-                    numbers(columns).into_iter().skip(index).step_by(columns).map(f64::from).collect();
+                    written(columns).into_iter().skip(index).step_by(columns).map(f64::from).collect();
+                let expected = Samples::F64(expected);
+                let source = if columns == 1 { "/a".to_owned() } else { format!("/a[{index}]") };
                 let slab = if columns == 1 { Slab::Whole } else { Slab::Column(index) };
-                assert_eq!(dataset.file.values::<f64>("/a", slab, 20_000), Ok(expected.clone()));
-                assert_eq!(
-                    column::<i32>(&dataset, index, None),
-                    Some(expected),
-                    "{columns} {chunk_rows} {index}"
-                );
+                let column = opened(&path, &source);
+                assert_eq!(column.file.values("/a", slab, 20_000, true), Ok(expected.clone()));
+                assert_eq!(numbers(&column), Some(expected), "{columns} {chunk_rows} {index}");
             }
-            // Another type than the stored one is the library's to convert.
-            assert_eq!(column::<i64>(&dataset, 0, None), None);
         }
     }
 
@@ -243,35 +300,35 @@ mod tests {
     fn a_dataset_in_one_piece_is_what_was_written() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("plain.h5");
-        let written = hdf5_metno::File::create(&path).unwrap();
+        let file = hdf5_metno::File::create(&path).unwrap();
         let values: Vec<f32> =
             (0..100_003).map(|i: i32| 0.25 * f32::from(i16::try_from(i % 30_000).unwrap())).collect();
-        written.new_dataset_builder().with_data(&values).create("a").unwrap();
-        written.close().unwrap();
-        let dataset = opened(&path);
-        assert_eq!(column::<f32>(&dataset, 0, None), Some(values));
-        assert_eq!(column::<f64>(&dataset, 0, None), None);
+        file.new_dataset_builder().with_data(&values).create("a").unwrap();
+        file.close().unwrap();
+        assert_eq!(numbers(&opened(&path, "/a")), Some(Samples::F32(values)));
     }
 
     #[test]
     fn what_is_damaged_or_not_there_is_left_to_the_library() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("damaged.h5");
-        let dataset = file(&path, 1, 999, true);
-        let Storage::Chunked { chunks: Some(chunks), .. } = &dataset.storage else { panic!("no chunks") };
+        write(&path, 1, 999, true);
+        let column = opened(&path, "/a");
+        let Storage::Chunked { chunks: Some(chunks), .. } = &column.dataset.storage else {
+            panic!("no chunks")
+        };
         let place = chunks.last().unwrap();
         let mut bytes = std::fs::read(&path).unwrap();
         bytes[usize::try_from(place.at).unwrap() + place.bytes / 2] ^= 0x10;
-        drop(dataset);
         let path = folder.path().join("changed.h5");
         std::fs::write(&path, bytes).unwrap();
-        assert_eq!(column::<i32>(&opened(&path), 0, None), None);
+        assert_eq!(numbers(&opened(&path, "/a")), None);
         let path = folder.path().join("partly.h5");
-        let written = hdf5_metno::File::create(&path).unwrap();
-        let dataset = written.new_dataset::<i32>().deflate(1).chunk(5000).shape(20_000).create("a").unwrap();
-        dataset.write_slice(&numbers(1)[..5000], 5000..10_000).unwrap();
+        let file = hdf5_metno::File::create(&path).unwrap();
+        let dataset = file.new_dataset::<i32>().deflate(1).chunk(5000).shape(20_000).create("a").unwrap();
+        dataset.write_slice(&written(1)[..5000], 5000..10_000).unwrap();
         drop(dataset);
-        written.close().unwrap();
-        assert_eq!(column::<i32>(&opened(&path), 0, None), None);
+        file.close().unwrap();
+        assert_eq!(numbers(&opened(&path, "/a")), None);
     }
 }

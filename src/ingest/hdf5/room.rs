@@ -4,11 +4,12 @@
 //! ends, and the recording is refused; this one goes on.
 
 use super::super::error::IngestError;
-use super::answer::{Answer, Dataset, Number, Object, Received, Request, Slab, Stored, receive, send};
+use super::answer::{Answer, Object, Request, Slab, receive, send};
 use super::fault::{self, Fault};
-use super::patience::{PATIENCE, Watched};
+use super::patience::{Ended, PATIENCE, Watched};
+use crate::data::Samples;
 use crate::ingest::Limits;
-use std::cell::{Cell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::HashMap;
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
@@ -45,7 +46,7 @@ pub(super) struct File {
     known: RefCell<HashMap<String, Rc<Object>>>,
     noted_bytes: Cell<usize>,
     /// Why no more can be had from it.
-    lost: RefCell<Option<Fault>>,
+    lost: OnceCell<Fault>,
 }
 
 impl File {
@@ -70,7 +71,7 @@ impl File {
             link: RefCell::new(link),
             known: RefCell::default(),
             noted_bytes: Cell::new(0),
-            lost: RefCell::default(),
+            lost: OnceCell::new(),
         }))
     }
 
@@ -79,7 +80,7 @@ impl File {
     /// # Errors
     /// The library broke off.
     pub(super) fn whole(&self) -> Result<(), IngestError> {
-        self.lost.borrow().clone().map_or(Ok(()), |lost| Err(fault::of_file(&self.path, lost)))
+        self.lost.get().map_or(Ok(()), |lost| Err(fault::of_file(&self.path, lost.clone())))
     }
 
     /// What stands at an absolute path.
@@ -100,38 +101,40 @@ impl File {
         self.note()
     }
 
-    /// `count` numbers of a dataset, turned into f32 or f64 by the library.
-    pub(super) fn values<S: Stored<Sample = S>>(
+    /// `count` numbers of a dataset, turned into f64 or f32 by the library.
+    pub(super) fn values(
         &self,
         path: &str,
         slab: Slab,
         count: usize,
-    ) -> Result<Vec<S>, Fault> {
-        let mut values = Vec::with_capacity(count);
-        self.ask(&Request::Read { path: path.to_owned(), is_wide: S::NUMBER == Number::F64, slab });
-        loop {
-            if let Some(lost) = self.lost.borrow().clone() {
-                return Err(lost);
-            }
+        is_wide: bool,
+    ) -> Result<Samples, Fault> {
+        self.ask(&Request::Read { path: path.to_owned(), is_wide, slab });
+        let (mut narrow, mut wide) = (Vec::new(), Vec::new());
+        while self.lost.get().is_none() {
             self.link.borrow().wait_for(count.saturating_mul(8) as u64);
-            let received = self.link.borrow_mut().receive();
-            match received {
-                Ok((Received::Values(bytes), _)) if bytes.len() / size_of::<S>() <= count - values.len() => {
-                    let numbers = bytes.chunks_exact(size_of::<S>());
-                    values.extend(numbers.map(|bytes| S::sample(|i| bytes[i])));
-                }
-                Ok((Received::Message(Answer::Refused(words)), _)) => {
+            let answer = self.link.borrow_mut().answer();
+            match answer {
+                Ok((Answer::Narrow(more), _)) if more.len() <= count - narrow.len() => narrow.extend(more),
+                Ok((Answer::Wide(more), _)) if more.len() <= count - wide.len() => wide.extend(more),
+                Ok((Answer::Refused(words), _)) => {
                     self.note();
                     return Err(fault::of_words(&words).at(path));
                 }
-                Ok((Received::Message(Answer::Done), _)) if values.len() == count => return Ok(values),
-                _ => self.lose(),
+                Ok((Answer::Done, _)) if is_wide && wide.len() == count => return Ok(Samples::F64(wide)),
+                Ok((Answer::Done, _)) if !is_wide && narrow.len() == count => {
+                    return Ok(Samples::F32(narrow));
+                }
+                _ => {
+                    self.lose();
+                }
             }
         }
+        Err(self.lose().clone())
     }
 
     fn ask(&self, request: &Request) {
-        if self.lost.borrow().is_none() && self.link.borrow_mut().ask(request).is_err() {
+        if self.lost.get().is_none() && self.link.borrow_mut().ask(request).is_err() {
             self.lose();
         }
     }
@@ -139,7 +142,7 @@ impl File {
     /// Takes down what is found until all of a request is answered.
     fn note(&self) -> Vec<(String, Rc<Object>)> {
         let mut found = Vec::new();
-        while self.lost.borrow().is_none() {
+        while self.lost.get().is_none() {
             let answer = self.link.borrow_mut().answer();
             match answer {
                 Ok((Answer::Done, _)) => break,
@@ -154,7 +157,9 @@ impl File {
                     self.known.borrow_mut().insert(path.clone(), Rc::clone(&object));
                     found.push((path, object));
                 }
-                _ => self.lose(),
+                _ => {
+                    self.lose();
+                }
             }
         }
         found
@@ -166,35 +171,8 @@ impl File {
         noted_bytes <= MOST_NOTED_BYTES
     }
 
-    fn lose(&self) {
-        let why = self.link.borrow_mut().end();
-        self.lost.borrow_mut().get_or_insert(why);
-    }
-}
-
-/// A dataset in an open file.
-#[derive(Clone)]
-pub(super) struct Found {
-    pub file: Rc<File>,
-    object: Rc<Object>,
-}
-
-impl Found {
-    /// The dataset at an absolute path.
-    pub(super) fn at(file: &Rc<File>, path: &str) -> Option<Self> {
-        let object = file.object(path);
-        matches!(*object, Object::Dataset(_)).then(|| Self { file: Rc::clone(file), object })
-    }
-}
-
-impl std::ops::Deref for Found {
-    type Target = Dataset;
-
-    fn deref(&self) -> &Dataset {
-        match &*self.object {
-            Object::Dataset(dataset) => dataset,
-            _ => unreachable!("made of datasets only"),
-        }
+    fn lose(&self) -> &Fault {
+        self.lost.get_or_init(|| self.link.borrow_mut().end())
     }
 }
 
@@ -223,16 +201,9 @@ impl Link {
 
     /// An answer and its length in bytes.
     fn answer(&mut self) -> io::Result<(Answer, usize)> {
-        match self.receive()? {
-            (Received::Message(answer), bytes) => Ok((answer, bytes)),
-            (Received::Values(_), _) => Err(io::ErrorKind::InvalidData.into()),
-        }
-    }
-
-    fn receive(&mut self) -> io::Result<(Received<Answer>, usize)> {
-        let received = receive(&mut self.from)?;
+        let answer = receive(&mut self.from)?;
         self.wait_for(0);
-        Ok(received)
+        Ok(answer)
     }
 
     /// The other side may be silent for as long as reading `bytes` takes.
@@ -245,9 +216,9 @@ impl Link {
     /// Ends the process and says why it could not go on.
     fn end(&mut self) -> Fault {
         let problem = match self.process.take().map(Watched::end) {
-            Some((_, true)) => format!("gave no sign of life for {} s", PATIENCE.as_secs()),
-            Some((Ok(status), false)) => ending(status),
-            Some((Err(_), false)) | None => "gave no answer that can be read".into(),
+            Some(Ended::Silent) => format!("gave no sign of life for {} s", PATIENCE.as_secs()),
+            Some(Ended::With(status)) => ending(status),
+            Some(Ended::ByReader) | None => "gave no answer that can be read".into(),
         };
         Fault::new(
             format!("the HDF5 library {problem}: the file is damaged, or made to do harm"),

@@ -168,9 +168,9 @@ fn what_is_no_column_says_what_it_is() {
         ("/daq/scalar", &["single value"]),
         ("/daq/none", &["empty"]),
         ("/daq/cube", &["3 dimensions"]),
-        ("/daq/table", &["4 rows and 3 columns", "/daq/table[2]"]),
-        ("/daq/table[3]", &["no [3]"]),
-        ("/daq/a1[1]", &["one dimension"]),
+        ("/daq/table", &["none of the 3 channel(s)", "float32, 4 × 3", "/daq/table[2]"]),
+        ("/daq/table[3]", &["none of the 3 channel(s)"]),
+        ("/daq/a1[1]", &["none of the 1 channel(s)", "name one: /daq/a1"]),
         ("/daq/never[0]", &["never written"]),
         ("/daq/table[x]", &["no dataset"]),
     ];
