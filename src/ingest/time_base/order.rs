@@ -3,6 +3,7 @@
 use super::error::TimeBaseError;
 use super::uniform::Number;
 use crate::data::{Finding, TimesFinding};
+use crate::ingest::clock::Refusal;
 use std::borrow::Cow;
 
 /// Times that rise with their samples.
@@ -46,8 +47,32 @@ pub(super) fn ordered<'a, S: Number>(
     if let Some(index) = times_s.iter().position(|t| !t.is_finite()) {
         return Err(TimeBaseError::NotFinite { number: index + 1, time_s: times_s[index] });
     }
+    if let Some(refusal) = wrapped(times_s) {
+        return Err(refusal.into());
+    }
     let (times_s, samples) = sorted(times_s, samples, issues);
     Ok(without_doubles(times_s, samples, issues))
+}
+
+/// Times that count within each second, minute, hour or day, and fall back by one of it less an interval: `999.95, 0, 0.05` in ms, beside a
+/// column of whole seconds. Sorted they would put the end of a recording before its beginning.
+fn wrapped(times_s: &[f64]) -> Option<Refusal> {
+    const WHOLE_S: [f64; 4] = [1.0, 60.0, 3600.0, 86_400.0];
+    let at = (2..times_s.len()).find(|&i| times_s[i] < times_s[i - 1])?;
+    let interval_s = times_s[at - 1] - times_s[at - 2];
+    let (least_s, most_s) = times_s.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), t| (a.min(*t), b.max(*t)));
+    let is_it = |whole_s: &f64| {
+        let off_s = times_s[at - 1] - times_s[at] + interval_s - whole_s;
+        least_s >= 0.0 && most_s < *whole_s && off_s.abs() < interval_s / 2.0
+    };
+    let whole_s = WHOLE_S.into_iter().find(is_it)?;
+    Some(Refusal::new(
+        format!(
+            "time number {} falls back by {whole_s} s: the times count within each, and something else holds what has gone by",
+            at + 1
+        ),
+        "write one column of times that goes on, in s, in a copy: whole seconds and fraction together",
+    ))
 }
 
 /// Where times in the order of the file begin anew and run once more over those before; late ones and parts that are swapped do not.
