@@ -1,11 +1,11 @@
 //! A measured quantity with its 95 % interval.
 
-use serde::Serialize;
+use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 /// A measured value with the half-width of its 95 % interval and its unit, as the result states it.
 ///
 /// `unit` is "s", "m/s", "rad/s", "deg" or "1"; `value` and `u95` are in that unit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// The value, in `unit`.
     pub value: f64,
@@ -20,5 +20,19 @@ impl Estimate {
     #[must_use]
     pub fn new(value: f64, u95: f64, unit: &'static str) -> Self {
         Self { value, u95, unit }
+    }
+}
+
+/// One that is not finite is null as a whole: half a quantity is none.
+impl Serialize for Estimate {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if !(self.value.is_finite() && self.u95.is_finite()) {
+            return serializer.serialize_none();
+        }
+        let mut parts = serializer.serialize_struct("Estimate", 3)?;
+        parts.serialize_field("value", &self.value)?;
+        parts.serialize_field("u95", &self.u95)?;
+        parts.serialize_field("unit", &self.unit)?;
+        parts.end()
     }
 }

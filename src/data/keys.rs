@@ -60,6 +60,9 @@ pub struct KeyTable {
     pub keys: &'static [Key],
 }
 
+/// What the form that `init` writes has in place of a text that only the user knows; no key takes it for a value.
+pub const FILL_IN: &str = "FILL IN";
+
 /// The default of a key that must be there.
 pub const REQUIRED: &str = "required";
 
@@ -89,7 +92,7 @@ pub static TABLES: [KeyTable; 9] = [
 /// What a cask and a drop may be: models of a centimetre and a gram to more than any cask there is. Within it `predict` ends in a second,
 /// and no product of two keys leaves the numbers that a double holds.
 pub const CASK: [Key; 7] = [
-    text("name", "the file's name").asked(r#""CASK""#, "the cask's name"),
+    text("name", "the file's name").shown(r#""CASK""#, "the cask's name; left out: the file's"),
     number("mass_kg", REQUIRED)
         .within(1e-3, 1e6, "a model of a gram to more than any cask, in kg")
         .asked("4466.0", ""),
@@ -174,8 +177,9 @@ pub const RECORDING: [Key; 1] = [text("time", "found").shown(
 /// Keys of `[[channel]]`.
 pub const CHANNEL: [Key; 14] = [
     text("name", REQUIRED).asked(r#""A1""#, ""),
-    text("end", REQUIRED).asked(r#""first""#, r#"check: "first" or "second""#),
-    text("axis", REQUIRED).asked(r#""transverse""#, r#"check: "transverse" or "axial""#),
+    text("end", REQUIRED).asked(r#""first""#, r#""first" (low, touches first) or "second""#),
+    text("axis", REQUIRED)
+        .asked(r#""transverse""#, r#""transverse" (across the cask, in the plane of the drop) or "axial""#),
     Key { takes: Takes::TextOrTable, ..text("source", REQUIRED) }.asked(r#""/daq/a1.samples""#, ""),
     text("unit", "the recording's").shown(r#""g""#, "left out: the recording says so itself"),
     number("position_m", REQUIRED).asked("0.15", "along the axis, from the first end"),

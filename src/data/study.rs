@@ -162,12 +162,23 @@ pub struct CriticalRange {
     pub angle_deg: (f64, f64),
     /// The largest value over angle, k and friction: the worst case.
     pub largest: f64,
-    /// Angle, contact law and k of the worst case.
-    pub worst: (f64, Contact, f64),
+    /// Where that is.
+    pub worst: WorstCase,
     /// Angles that lie in the band of every k and friction in the ranges, degrees.
     pub common_bands_deg: Vec<(f64, f64)>,
     /// Angle, degrees, and size of a still larger value among the angles tried at which L strikes again before R.
     pub further_impacts: Option<(f64, f64)>,
+}
+
+/// The case with the largest value of all.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct WorstCase {
+    /// Inclination, degrees.
+    pub angle_deg: f64,
+    /// The contact law.
+    pub contact: Contact,
+    /// Coefficient of restitution.
+    pub k: f64,
 }
 
 /// Quantiles over the draws, one entry an angle; NaN where fewer than half of the draws have a slap-down.

@@ -53,3 +53,12 @@ pub fn acceleration_unit_m_s2(text: &str) -> Option<f64> {
         _ => None,
     }
 }
+
+/// Whether a unit is one of a rate of turn, such as "deg/s" or "rad/s", or of its change: no acceleration.
+#[must_use]
+pub fn is_rate_of_turn(text: &str) -> bool {
+    let plain = text.trim_matches(['[', '(', ' ']).to_lowercase();
+    ["deg/s", "mdeg/s", "degree/s", "degrees/s", "°/s", "dps", "rad/s", "mrad/s", "rpm"]
+        .iter()
+        .any(|unit| plain.starts_with(unit))
+}

@@ -10,8 +10,8 @@ use super::settings;
 use super::table::{Table, TableCell, TableShape};
 use super::tested::tested;
 use super::text::{
-    Style, code_word, end_axis, format_word, reason, sentence, severity_word, span_text, tail, taken_mark,
-    true_minus, verdict_sentence, verdict_word, yes,
+    Style, json_word, reason, sentence, span_text, tail, taken_mark, true_minus, verdict_sentence,
+    verdict_word, yes,
 };
 use super::words::{KEPT_SENTENCE, contact_words};
 use crate::data::{
@@ -93,7 +93,7 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
     let files = format!(
         "{} ({}) with {}",
         tail(&result.input.recording, 40),
-        format_word(result.input.format),
+        json_word(result.input.format),
         tail(&result.input.cask, 24)
     );
     let style = match result.verdict {
@@ -219,8 +219,8 @@ pub(super) fn quality(issues: &[Issue]) -> Chapter {
     let findings = Table::of(issues)
         .class("")
         .shape(TableShape::Items)
-        .tag("Severity", |i| TableCell::toned(style(i.severity), severity_word(i.severity)))
-        .code("Check", |i| code_word(i.code))
+        .tag("Severity", |i| TableCell::toned(style(i.severity), json_word(i.severity)))
+        .code("Check", |i| json_word(i.code))
         .text("Channel", |i| i.channel.as_deref().unwrap_or(MISSING))
         .soft("When", |i| span_text(i).unwrap_or_else(|| MISSING.into()))
         .text("Finding", |i| &i.message[..]);
@@ -250,9 +250,12 @@ fn channels(result: &DropResult) -> Chapter {
     let rate = |rate_hz: f64, digits| format!("{} kHz", plain(rate_hz / 1e3, digits));
     let table = Table::of(&result.channels)
         .class("")
-        .caption("Offset, noise (RMS) and peaks in g; the peak is that of the filtered curve.")
+        .caption(
+            "Offset, noise (RMS) and peaks in g. The peaks are those of the event that the curves show, from just before the first impact, \
+             not of the whole recording: of the filtered curve, and of the unfiltered one.",
+        )
         .head(Words::or("Channel", "channel"), |c| &c.name[..])
-        .text(Words::or("End, axis", "end, axis"), |c| end_axis(c.end, c.axis))
+        .text(Words::or("End, axis", "end, axis"), |c| format!("{}, {}", json_word(c.end), json_word(c.axis)))
         .code("Source", |c| &c.source[..])
         .only(Medium::Page)
         .number("Samples", |c| c.samples.to_string())
@@ -265,8 +268,8 @@ fn channels(result: &DropResult) -> Chapter {
         })
         .number(Words::or("Offset", "offset g"), |c| g(c.offset_m_s2))
         .number(Words::or("Noise", "noise g"), |c| g(c.noise_m_s2))
-        .number(Words::or("Peak", "peak g"), |c| g(c.peak_filtered_m_s2))
-        .number(Words::or("Unfiltered", "raw g"), |c| g(c.peak_raw_m_s2));
+        .number(Words::or("Peak of the event", "event\npeak g"), |c| g(c.peak_filtered_m_s2))
+        .number(Words::or("Unfiltered", "event\nraw g"), |c| g(c.peak_raw_m_s2));
     Chapter::new("Channels").with(table)
 }
 
@@ -274,7 +277,7 @@ fn channels(result: &DropResult) -> Chapter {
 fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
     let (input, speed) = (&result.input, interval(result.slap_down.speed.as_ref()));
     let facts = vec![
-        Fact::words("Recording", format!("{} ({})", input.recording, format_word(input.format))),
+        Fact::words("Recording", format!("{} ({})", input.recording, json_word(input.format))),
         Fact::code("its SHA-256", &input.recording_sha256[..]),
         Fact::words("Cask file", &input.cask[..]),
         Fact::code("its SHA-256", &input.cask_sha256[..]),

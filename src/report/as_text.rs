@@ -61,9 +61,11 @@ fn table(table: &Table) -> String {
     let columns = table.shown(Medium::Terminal);
     let (rows, left_out) = table.rows(Medium::Terminal);
     let mut out = match &table.shape {
-        TableShape::Columns => aligned(&columns, rows, 2),
-        TableShape::Fitting => aligned(&columns, rows, if fits(&columns, rows) { 2 } else { 1 }),
-        TableShape::Groups(names) => grouped(&columns, rows, names),
+        TableShape::Columns => lines(aligned(&columns, rows, 2, WIDTH).concat()),
+        TableShape::Fitting => {
+            lines(aligned(&columns, rows, if fits(&columns, rows) { 2 } else { 1 }, WIDTH).concat())
+        }
+        TableShape::Groups(names) => grouped(&columns, rows, names, WIDTH),
         TableShape::Items => (0..rows).map(|row| item(&columns, row)).collect(),
         TableShape::ApartItems => (0..rows).flat_map(|row| ["\n".to_owned(), item(&columns, row)]).collect(),
     };
@@ -88,39 +90,49 @@ fn fits(columns: &[&TableColumn], rows: usize) -> bool {
     columns.iter().map(|column| widest(column) + 2).sum::<usize>() <= WIDTH - 2
 }
 
-/// A line of heads and the rows, the columns `gap` apart; cells too wide are wrapped.
-fn aligned(columns: &[&TableColumn], rows: usize, gap: u16) -> String {
+/// The lines of the heads, and those of each row, the columns `gap` apart; cells too wide are wrapped.
+fn aligned(columns: &[&TableColumn], rows: usize, gap: u16, width: usize) -> Vec<Vec<String>> {
+    /// Stands in a column of its own where a row begins, and is taken off again: a row may have several lines.
+    const BEGINS: char = '•';
     let mut table = comfy_table::Table::new();
     table.load_style(TableStyle::new());
     table.set_content_arrangement(ContentArrangement::Dynamic);
-    table.set_width(u16::try_from(WIDTH - 2).unwrap_or(78));
-    table.set_header(columns.iter().map(|column| column.head.on(Medium::Terminal)));
-    for row in 0..rows {
-        table.add_row(columns.iter().map(|column| cell(column, row)));
+    table.set_width(u16::try_from(width - 1).unwrap_or(79));
+    let row = |cells: Vec<String>| [BEGINS.to_string()].into_iter().chain(cells);
+    table.set_header(row(columns.iter().map(|c| c.head.on(Medium::Terminal).to_owned()).collect()));
+    for i in 0..rows {
+        table.add_row(row(columns.iter().map(|column| cell(column, i)).collect()));
     }
-    for (set, column) in table.column_iter_mut().zip(columns) {
-        set.set_padding((0, gap));
-        if column.is_number() {
+    for (i, set) in table.column_iter_mut().enumerate() {
+        set.set_padding((0, if i == 0 { 0 } else { gap }));
+        if i > 0 && columns[i - 1].is_number() {
             set.set_cell_alignment(CellAlignment::Right);
         }
     }
-    lines(table.lines().map(|line| format!("  {}", line.trim_end())))
+    let mut found: Vec<Vec<String>> = Vec::new();
+    for line in table.lines() {
+        let own = line.strip_prefix(BEGINS);
+        let text = format!("  {}", own.or(line.strip_prefix(' ')).unwrap_or_default().trim_end());
+        match found.last_mut().filter(|_| own.is_none()) {
+            Some(row) => row.push(text),
+            None => found.push(vec![text]),
+        }
+    }
+    found
 }
 
 /// The table with the name of each group on a line of its own above its rows.
-fn grouped(columns: &[&TableColumn], rows: usize, names: &[String]) -> String {
-    let table = aligned(columns, rows, 2);
-    let head = table.lines().count().saturating_sub(rows);
-    // A cell that is wrapped all the same has more lines than rows: then only the first group can be placed.
-    let is_aligned = head == aligned(columns, 0, 2).lines().count();
+fn grouped(columns: &[&TableColumn], rows: usize, names: &[String], width: usize) -> String {
     let mut out = Vec::new();
-    for (i, text) in table.lines().enumerate() {
-        if let Some(row) = i.checked_sub(head).filter(|_| is_aligned)
-            && (row == 0 || names.get(row) != names.get(row - 1))
-        {
-            out.push(format!("  {}", printable(&names[row])));
+    let mut before = "";
+    for (i, row) in aligned(columns, rows, 2, width).into_iter().enumerate() {
+        // The first one is that of the heads.
+        let name = i.checked_sub(1).and_then(|i| names.get(i)).map_or("", String::as_str);
+        if name != before {
+            out.push(format!("  {}", printable(name)).trim_end().to_owned());
         }
-        out.push(text.to_owned());
+        out.extend(row);
+        before = name;
     }
     lines(out)
 }
@@ -147,5 +159,26 @@ mod tests {
         let text = table(&rows.into());
         assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
         assert_eq!(text.matches("word").count(), 41);
+    }
+
+    #[test]
+    fn groups_are_named_whatever_wraps() {
+        let names = ["/cask/first_end/imu", "/cask/first_end/imu", "", "/cask/second_end/imu"];
+        let fields = ["  .linear_acceleration.of_the_upper_sensor.x", "  .y", "A column with a name", "  .z"];
+        let table: Table = Table::of(&fields)
+            .head("source", |f| *f)
+            .text("words", |f| if *f == "  .y" { "word ".repeat(30) } else { "–".into() })
+            .number("samples", |_| "200000")
+            .into();
+        let names = names.map(str::to_owned);
+        for width in [60, WIDTH] {
+            let text = grouped(&table.shown(Medium::Terminal), fields.len(), &names, width);
+            assert!(text.lines().all(|line| line.chars().count() <= width), "{text}");
+            let at = |part: &str| text.lines().position(|line| line.trim_start().starts_with(part));
+            let [first, second] = ["/cask/first_end/imu", "/cask/second_end/imu"].map(at);
+            assert_eq!(text.matches("/imu").count(), 2, "each once: {text}");
+            assert!(first.is_some() && first < at(".linear") && at(".y") < at("A column"), "{text}");
+            assert!(at("A column") < second && second.map(|at| at + 1) == at(".z"), "{text}");
+        }
     }
 }

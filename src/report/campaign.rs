@@ -5,13 +5,13 @@ use super::document::{Chapter, Document, Passage};
 use super::records::{CsvColumn, number, records, text_cell};
 use super::rounding::{MISSING, interval, percent};
 use super::table::{Table, TableCell, TableShape};
-use super::text::{Style, WIDTH, code_word, tail, verdict_word};
+use super::text::{Style, WIDTH, json_word, tail, verdict_word};
 use crate::data::{Comparison, DropResult, Estimate, Issue, IssueCode, Severity, Verdict};
 use serde::Serialize;
 use std::path::Path;
 
 /// One recording of a campaign.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct CampaignRow {
     /// The recording, as given.
     pub recording: String,
@@ -39,7 +39,6 @@ impl CampaignRow {
     /// The row of a result.
     #[must_use]
     pub fn of(result: &DropResult) -> Self {
-        let finite = |e: &Estimate| e.value.is_finite() && e.u95.is_finite();
         let mut grave: Vec<&Issue> =
             result.quality.iter().filter(|issue| issue.severity != Severity::Note).collect();
         grave.sort_by_key(|issue| std::cmp::Reverse(issue.severity));
@@ -51,37 +50,25 @@ impl CampaignRow {
         }
         Self {
             recording: result.input.recording.clone(),
-            report: None,
             verdict: Some(result.verdict),
-            slap_down_speed: result.slap_down.speed.filter(finite),
-            k: result.k.filter(finite),
+            slap_down_speed: result.slap_down.speed,
+            k: result.k,
             model: result.model.as_ref().map(|m| m.name.as_str()),
             comparison: result.comparison,
             findings: grave.len(),
             codes,
-            error: None,
+            ..Self::default()
         }
     }
 
     /// The row of a recording that could not be analysed.
     #[must_use]
     pub fn failed(recording: String, error: String) -> Self {
-        Self {
-            recording,
-            report: None,
-            verdict: None,
-            slap_down_speed: None,
-            k: None,
-            model: None,
-            comparison: None,
-            findings: 0,
-            codes: Vec::new(),
-            error: Some(error),
-        }
+        Self { recording, error: Some(error), ..Self::default() }
     }
 
     fn code_words(&self) -> Vec<String> {
-        self.codes.iter().copied().map(code_word).collect()
+        self.codes.iter().copied().map(json_word).collect()
     }
 }
 

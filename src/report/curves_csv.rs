@@ -1,7 +1,7 @@
 //! Curves to `curves.csv`: one table on the finest channel's times, units in the header.
 
 use super::ReportError;
-use super::grid::{Reader, STANDARD_GRAVITY_M_S2, common_time_s, motion_columns};
+use super::grid::{Reader, Series, channel_series, common_time_s, motion_series};
 use super::records::{finished, text_cell};
 use crate::data::Curves;
 use std::fmt::Write;
@@ -41,23 +41,19 @@ struct CurveColumn<'a> {
     factor: f64,
 }
 
-fn columns(curves: &Curves) -> Vec<CurveColumn<'_>> {
+fn columns<'a>(curves: &'a Curves) -> Vec<CurveColumn<'a>> {
     let mut columns = Vec::new();
-    let mut add = |header: String, time_s, values, factor| {
-        if let Some(reader) = Reader::new(time_s, values) {
-            columns.push(CurveColumn { header: text_cell(&header), reader, factor });
-        }
+    let mut add = |of: &str, time_s: &'a [f64], series: Series<'a>| {
+        let Some(reader) = Reader::new(time_s, series.values) else { return };
+        let header = text_cell(&format!("{of}{}", series.name));
+        columns.push(CurveColumn { header, reader, factor: series.factor });
     };
     for curve in &curves.channels {
-        let name = &curve.channel;
-        add(format!("{name}_raw_g"), &curve.time_s, &curve.raw_m_s2, 1.0 / STANDARD_GRAVITY_M_S2);
-        add(format!("{name}_filtered_g"), &curve.time_s, &curve.filtered_m_s2, 1.0 / STANDARD_GRAVITY_M_S2);
-        add(format!("{name}_velocity_m_s"), &curve.time_s, &curve.velocity_m_s, 1.0);
+        let of = format!("{}_", curve.channel);
+        channel_series(curve).into_iter().for_each(|series| add(&of, &curve.time_s, series));
     }
     if let Some(motion) = &curves.motion {
-        for (name, values) in motion_columns(motion) {
-            add(name.to_owned(), &motion.time_s, values, 1.0);
-        }
+        motion_series(motion).into_iter().for_each(|series| add("", &motion.time_s, series));
     }
     columns
 }

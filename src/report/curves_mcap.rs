@@ -2,9 +2,9 @@
 
 use super::ReportError;
 use super::curves_csv::single;
-use super::grid::{STANDARD_GRAVITY_M_S2, motion_columns, named_events};
+use super::grid::{Series, channel_series, motion_series, named_events};
 use super::text::printable;
-use crate::data::{Analysis, ChannelCurve, MotionCurve};
+use crate::data::Analysis;
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions, Writer};
 use std::collections::BTreeMap;
@@ -24,15 +24,14 @@ pub(super) fn bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
         start_ns: analysis.start_unix_ns.unwrap_or(0),
         buffer: String::new(),
     };
-    let schema = file.schema("dropcheck.ChannelCurve", &["raw_g", "filtered_g", "velocity_m_s"])?;
     let mut topics = Vec::new();
     for curve in &analysis.curves.channels {
         let topic = topic(&curve.channel, &topics);
-        file.channel(schema, &topic, curve)?;
+        file.curve("dropcheck.ChannelCurve", &topic, &curve.time_s, &channel_series(curve))?;
         topics.push(topic);
     }
     if let Some(motion) = &analysis.curves.motion {
-        file.motion(motion)?;
+        file.curve("dropcheck.Motion", "/dropcheck/motion", &motion.time_s, &motion_series(motion))?;
     }
     file.events(analysis)?;
     file.writer.finish()?;
@@ -60,8 +59,8 @@ struct CurvesFile {
 }
 
 impl CurvesFile {
-    /// Registers a JSON schema with a time stamp and numbers.
-    fn schema(&mut self, name: &str, fields: &[&str]) -> Result<u16, ReportError> {
+    /// A channel of JSON messages with a time stamp and these fields; a schema that is there already serves again.
+    fn channel(&mut self, name: &str, topic: &str, fields: &[&str]) -> Result<u16, ReportError> {
         let mut properties = serde_json::Map::new();
         properties.insert(
             "timestamp".into(),
@@ -75,29 +74,12 @@ impl CurvesFile {
             properties.insert((*field).into(), serde_json::json!({"type": kind}));
         }
         let schema = serde_json::json!({"title": name, "type": "object", "properties": properties});
-        Ok(self.writer.add_schema(name, "jsonschema", &serde_json::to_vec(&schema)?)?)
-    }
-
-    fn channel(&mut self, schema: u16, topic: &str, curve: &ChannelCurve) -> Result<(), ReportError> {
-        let id = self.writer.add_channel(schema, topic, "json", &BTreeMap::new())?;
-        let columns: [(&str, &[f64], f64); 3] = [
-            ("raw_g", &curve.raw_m_s2, 1.0 / STANDARD_GRAVITY_M_S2),
-            ("filtered_g", &curve.filtered_m_s2, 1.0 / STANDARD_GRAVITY_M_S2),
-            ("velocity_m_s", &curve.velocity_m_s, 1.0),
-        ];
-        self.samples(id, &curve.time_s, &columns)
-    }
-
-    fn motion(&mut self, motion: &MotionCurve) -> Result<(), ReportError> {
-        let columns = motion_columns(motion);
-        let schema = self.schema("dropcheck.Motion", &columns.map(|(name, _)| name))?;
-        let id = self.writer.add_channel(schema, "/dropcheck/motion", "json", &BTreeMap::new())?;
-        self.samples(id, &motion.time_s, &columns.map(|(name, values)| (name, values, 1.0)))
+        let schema = self.writer.add_schema(name, "jsonschema", &serde_json::to_vec(&schema)?)?;
+        Ok(self.writer.add_channel(schema, topic, "json", &BTreeMap::new())?)
     }
 
     fn events(&mut self, analysis: &Analysis) -> Result<(), ReportError> {
-        let schema = self.schema("dropcheck.Event", &["name", "time_s"])?;
-        let id = self.writer.add_channel(schema, "/dropcheck/events", "json", &BTreeMap::new())?;
+        let id = self.channel("dropcheck.Event", "/dropcheck/events", &["name", "time_s"])?;
         for (name, time_s) in named_events(&analysis.result.events) {
             if let Some(time_s) = time_s.filter(|t| t.is_finite()) {
                 self.begin(time_s);
@@ -109,15 +91,18 @@ impl CurvesFile {
         Ok(())
     }
 
-    fn samples(
+    fn curve(
         &mut self,
-        id: u16,
+        schema: &str,
+        topic: &str,
         time_s: &[f64],
-        columns: &[(&str, &[f64], f64)],
+        series: &[Series],
     ) -> Result<(), ReportError> {
+        let fields: Vec<&str> = series.iter().map(|one| one.name).collect();
+        let id = self.channel(schema, topic, &fields)?;
         for (i, &time_s) in time_s.iter().enumerate() {
             self.begin(time_s);
-            for (name, values, factor) in columns {
+            for Series { name, values, factor } in series {
                 // A value that is missing is left out: JSON has no number for it.
                 if let Some(value) = values.get(i).filter(|v| v.is_finite()) {
                     let _ = write!(self.buffer, r#","{name}":{}"#, single(value * factor));

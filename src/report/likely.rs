@@ -1,6 +1,6 @@
 //! What a recording holds to the sources that look like accelerations in the plane of the drop.
 
-use crate::data::{ListedChannel, Listing, RecordingFormat, acceleration_unit_m_s2};
+use crate::data::{ListedChannel, Listing, RecordingFormat, acceleration_unit_m_s2, is_rate_of_turn};
 
 /// Units of a sensor's output that the cask file knows.
 pub(super) const VOLTAGES: [&str; 2] = ["V", "mV"];
@@ -109,7 +109,7 @@ fn candidates(listing: &Listing) -> impl Iterator<Item = &ListedChannel> {
     listing
         .channels
         .iter()
-        .filter(|c| c.samples != Some(0))
+        .filter(|c| c.samples != Some(0) && !c.unit.as_deref().is_some_and(is_rate_of_turn))
         .filter(|c| !OTHER_WORDS.iter().any(|word| has_word(&c.source, word)) && !is_time(&c.source))
 }
 
@@ -120,7 +120,7 @@ fn is_likely(listed: &ListedChannel) -> bool {
 }
 
 /// Whether `word` stands in `source` between letters of another kind.
-fn has_word(source: &str, word: &str) -> bool {
+pub(super) fn has_word(source: &str, word: &str) -> bool {
     let source = source.to_lowercase();
     let letter = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphabetic());
     source.match_indices(word).any(|(at, _)| {
@@ -137,15 +137,4 @@ pub(super) fn is_time(source: &str) -> bool {
         || last.contains("time")
         || last.contains("zeit")
         || ["x_value", "elapsed"].iter().any(|name| last.starts_with(name))
-}
-
-/// Whether a source names its end: first or second.
-pub(super) fn names_end(source: &str) -> Option<bool> {
-    if has_word(source, "first") {
-        Some(true)
-    } else if has_word(source, "second") {
-        Some(false)
-    } else {
-        None
-    }
 }

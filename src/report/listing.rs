@@ -5,7 +5,7 @@ use super::document::{Chapter, Document, Passage};
 use super::medium::Medium;
 use super::rounding::{MISSING, plain};
 use super::table::{Table, TableShape};
-use super::text::{format_word, tail};
+use super::text::{json_word, tail};
 use crate::data::{ListedChannel, Listing};
 
 /// The table, with SGR colours that the caller strips where no terminal shows it.
@@ -15,12 +15,8 @@ pub fn table(listing: &Listing) -> String {
 }
 
 fn document(listing: &Listing) -> Document {
-    let title = format!(
-        "{} · {} · {}",
-        tail(&listing.recording, 50),
-        format_word(listing.format),
-        size(listing.bytes)
-    );
+    let title =
+        format!("{} · {} · {}", tail(&listing.recording, 50), json_word(listing.format), size(listing.bytes));
     let counts: Vec<String> = listing.counts.iter().map(|(name, count)| counted(name, *count)).collect();
     let counts = (!counts.is_empty()).then(|| Passage::line(counts.join(", ")));
     let facts = listing

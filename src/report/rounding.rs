@@ -11,9 +11,9 @@ const INTERVAL_DIGITS: usize = 2;
 /// Digits of a value whose interval is unknown or nil.
 const BARE_DIGITS: usize = 4;
 
-/// Value, half-width and unit of an estimate as text; `None` where it is missing or not finite. Seconds are told in ms.
-pub(super) fn parts(estimate: Option<&Estimate>) -> Option<(String, String, &str)> {
-    let estimate = estimate.filter(|e| e.value.is_finite())?;
+/// "23.90 ± 0.31 m/s", or the dash of a missing quantity. Seconds are told in ms.
+pub(super) fn interval(estimate: Option<&Estimate>) -> String {
+    let Some(estimate) = estimate.filter(|e| e.value.is_finite()) else { return MISSING.to_owned() };
     let (factor, unit) = match estimate.unit {
         "s" => (1e3, "ms"),
         "deg" => (1.0, "°"),
@@ -21,22 +21,14 @@ pub(super) fn parts(estimate: Option<&Estimate>) -> Option<(String, String, &str
         unit => (1.0, unit),
     };
     let (value, u95) = (estimate.value * factor, estimate.u95 * factor);
-    if !u95.is_finite() {
-        return Some((significant(value, BARE_DIGITS), "unknown".into(), unit));
-    }
-    if u95 <= 0.0 {
-        return Some((significant(value, BARE_DIGITS), "0".into(), unit));
-    }
-    let decimals = decimals_of(u95, INTERVAL_DIGITS);
-    Some((fixed(value, decimals), fixed(u95, decimals), unit))
-}
-
-/// "23.90 ± 0.31 m/s", or the dash of a missing quantity.
-pub(super) fn interval(estimate: Option<&Estimate>) -> String {
-    parts(estimate).map_or_else(
-        || MISSING.to_owned(),
-        |(value, u95, unit)| format!("{value} ± {u95} {unit}").trim_end().to_owned(),
-    )
+    let text = if u95.is_finite() && u95 > 0.0 {
+        let decimals = decimals_of(u95, INTERVAL_DIGITS);
+        format!("{} ± {} {unit}", fixed(value, decimals), fixed(u95, decimals))
+    } else {
+        let u95 = if u95.is_finite() { "0" } else { "unknown" };
+        format!("{} ± {u95} {unit}", significant(value, BARE_DIGITS))
+    };
+    text.trim_end().to_owned()
 }
 
 /// `value ± u95 unit` for a pair that is no [`Estimate`].

@@ -4,7 +4,7 @@ use super::sample;
 use crate::data::{
     AngleCurve, BodyModel, Contact, Criterion, CriticalAngle, CriticalRange, FlightRegime, Ladder,
     LadderStep, MonteCarlo, Prediction, PredictionRow, QuantileCurves, Regime, RegimeMap, Request, Rung,
-    Sensitivity, Study, Sweep, SweepVariable, Uncertain,
+    Sensitivity, Study, Sweep, SweepVariable, Uncertain, WorstCase,
 };
 
 const MODELS: [BodyModel; 2] = [BodyModel::Rod, BodyModel::Body];
@@ -220,7 +220,7 @@ fn range(model: BodyModel, criterion: Criterion) -> CriticalRange {
         criterion,
         angle_deg: (0.5, 17.5),
         largest: if criterion == Criterion::EnergyRatio { 1.031 } else { 25.0 },
-        worst: (12.0, Contact::Rough, 1.0),
+        worst: WorstCase { angle_deg: 12.0, contact: Contact::Rough, k: 1.0 },
         common_bands_deg: vec![(3.5, 24.2)],
         further_impacts: (criterion == Criterion::Speed).then_some((89.0, 30.2)),
     }

@@ -1,15 +1,13 @@
 //! What a recording holds to a commented cask file to fill in.
 
-use super::likely::{self, NoChannels, VOLTAGES, is_time, names_end};
+use super::likely::{self, NoChannels, VOLTAGES, has_word, is_time};
 use super::text::{is_hidden, line, printable};
-use crate::data::keys::{CHANNEL, Key, TABLES, Takes};
+use crate::data::keys::{CHANNEL, FILL_IN, Key, TABLES, Takes};
 use crate::data::{ListedChannel, Listing, MOST_CHANNELS, Severity, acceleration_unit_m_s2};
 use std::fmt::Write;
 
-/// The mark behind every value that only the user knows.
-const FILL_IN: &str = "FILL IN";
-
-/// The cask file, valid TOML; what only the user knows is marked, its numbers NaN: a likely one, forgotten, would pass for a measured one.
+/// The cask file, valid TOML; in place of what only the user knows stands nan or [`FILL_IN`]: a likely value, forgotten, would pass for a
+/// known one.
 ///
 /// # Errors
 /// [`NoChannels`] where nothing that looks like an acceleration can be read.
@@ -24,14 +22,8 @@ pub fn cask_file(listing: &Listing) -> Result<String, NoChannels> {
     for issue in listing.issues.iter().filter(|issue| issue.severity != Severity::Note) {
         line(&mut out, format_args!("# Of the recording: {}", printable(&issue.message)));
     }
-    let mut devices: Vec<&str> = Vec::new();
     for (i, listed) in taken.iter().enumerate() {
-        let device = device(&listed.source);
-        let place = devices.iter().position(|known| *known == device).unwrap_or_else(|| {
-            devices.push(device);
-            devices.len() - 1
-        });
-        channel(&mut out, i, place.is_multiple_of(2), listed);
+        channel(&mut out, i, listed);
     }
     if beyond > 0 {
         line(
@@ -64,7 +56,7 @@ fn head(listing: &Listing) -> String {
     line(
         &mut out,
         format_args!(
-            "# Lines marked \"{FILL_IN}\" hold what only you know: nan is no number, and is refused until you replace it."
+            "# \"{FILL_IN}\" and nan stand for what only you know; a line with one of them is refused until you replace it."
         ),
     );
     line(
@@ -86,7 +78,7 @@ fn head(listing: &Listing) -> String {
     }
     out.push_str(
         "# At least one transverse channel on each end. The first end is low and touches first.\n\
-         # Ends, axes and signs below are guesses: check each against the test plan.\n",
+         # Check each end, axis and sign (polarity) against the test plan.\n",
     );
     out
 }
@@ -102,24 +94,34 @@ fn key_line(out: &mut String, key: &Key) {
     if !key.is_asked {
         return entry(out, &format!("# {} = {}", key.name, key.example), key.remark);
     }
-    let value = if matches!(key.takes, Takes::Number(_)) { "nan" } else { key.example };
+    if !matches!(key.takes, Takes::Number(_)) {
+        return entry(out, &format!("{} = \"{FILL_IN}\"", key.name), key.remark);
+    }
     let colon = if key.remark.is_empty() { "" } else { ": " };
-    entry(out, &format!("{} = {value}", key.name), &format!("{FILL_IN}{colon}{}", key.remark));
+    entry(out, &format!("{} = nan", key.name), &format!("{FILL_IN}{colon}{}", key.remark));
 }
 
-fn channel(out: &mut String, index: usize, guessed_first: bool, listed: &ListedChannel) {
+/// The line of a key that takes one of two words: the one that the source's name holds, else to be filled in.
+fn word_line(out: &mut String, key: &Key, source: &str, words: [&str; 2]) {
+    let held = words.map(|word| has_word(source, word));
+    match words.iter().zip(held).find(|(_, is_held)| *is_held).filter(|_| held != [true; 2]) {
+        Some((word, _)) => {
+            let remark = format!("read off the name, to be checked: {}", key.remark);
+            entry(out, &format!("{} = \"{word}\"", key.name), &remark);
+        }
+        None => key_line(out, key),
+    }
+}
+
+fn channel(out: &mut String, index: usize, listed: &ListedChannel) {
     let source = listed.source.as_str();
-    let first = names_end(source).unwrap_or(guessed_first);
-    let end = if first { "first" } else { "second" };
-    let axial = source.rsplit('.').next() == Some("x") && source.contains("acceleration");
-    let axis = if axial { "axial" } else { "transverse" };
     out.push_str("\n[[channel]]\n");
     line(out, format_args!("# {}", facts(listed)));
     for key in &CHANNEL {
         match key.name {
             "name" => line(out, format_args!("name = \"A{}\"", index + 1)),
-            "end" => entry(out, &format!("end = \"{end}\""), key.remark),
-            "axis" => entry(out, &format!("axis = \"{axis}\""), key.remark),
+            "end" => word_line(out, key, source, ["first", "second"]),
+            "axis" => word_line(out, key, source, ["transverse", "axial"]),
             "source" => line(out, format_args!("source = {}", source_value(source))),
             "unit" => unit(out, listed.unit.as_deref(), key),
             "sample_rate_hz" if listed.sample_rate_hz.is_none() => {
@@ -131,14 +133,6 @@ fn channel(out: &mut String, index: usize, guessed_first: bool, listed: &ListedC
             "sensitivity" | "time_constant_s" => {}
             _ => key_line(out, key),
         }
-    }
-}
-
-/// What the axes of one sensor share: the topic of a message path with a vector, else the source itself.
-fn device(source: &str) -> &str {
-    match source.split_once('.') {
-        Some((topic, field)) if source.starts_with('/') && field.contains('.') => topic,
-        _ => source,
     }
 }
 
@@ -154,8 +148,8 @@ fn unit(out: &mut String, told: Option<&str>, key: &Key) {
         told => {
             let quoted = |unit| format!("the recording says {:?}", printable(unit));
             let says = told.map_or_else(|| "the recording does not say".to_owned(), quoted);
-            let remark = format!("{FILL_IN}: \"g\", \"m/s^2\", \"V\" or \"mV\"; {says}");
-            entry(out, &format!("unit = {}", key.example), &remark);
+            let remark = format!("\"g\", \"m/s^2\", \"V\" or \"mV\"; {says}");
+            entry(out, &format!("unit = \"{FILL_IN}\""), &remark);
             entry(out, "# sensitivity = 10.0", "mV per g, with \"V\" and \"mV\"");
         }
     }
@@ -224,8 +218,10 @@ mod tests {
         let table = parsed(&cask_file(&listing).unwrap());
         let channels = table["channel"].as_array().unwrap();
         assert_eq!(channels.len(), 2);
-        assert_eq!(channels[0]["end"].as_str(), Some("first"));
-        assert_eq!(channels[1]["end"].as_str(), Some("second"));
+        for key in ["end", "axis"] {
+            assert_eq!(channels[1][key].as_str(), Some(FILL_IN), "no name shows it");
+        }
+        assert!(!channels[0].as_table().unwrap().contains_key("unit"), "the recording says so itself");
         assert_eq!(channels[1]["unit"].as_str(), Some("mV"));
         assert!(
             table["drop"]["angle_deg"].as_float().is_some_and(f64::is_nan),
@@ -246,8 +242,34 @@ mod tests {
         for channel in channels {
             let source = channel["source"].as_str().unwrap();
             assert_eq!(channel["end"].as_str().unwrap() == "first", source.contains("first"));
-            assert_eq!(channel["axis"].as_str().unwrap() == "axial", source.contains("acceleration.x"));
+            assert_eq!(channel["axis"].as_str(), Some(FILL_IN));
         }
+    }
+
+    #[test]
+    fn a_word_in_a_name_is_taken_and_marked_and_two_are_not() {
+        let sources = ["first end, axial", "second_transverse", "first or second", "firsthand"];
+        let listing = listing(sources.map(|source| listed(source, "column", None)).into());
+        let text = cask_file(&listing).unwrap();
+        let channels = parsed(&text)["channel"].as_array().unwrap().clone();
+        let words = |key: &str| -> Vec<String> {
+            channels.iter().map(|channel| channel[key].as_str().unwrap().to_owned()).collect()
+        };
+        assert_eq!(words("end"), ["first", "second", FILL_IN, FILL_IN]);
+        assert_eq!(words("axis"), ["axial", "transverse", FILL_IN, FILL_IN]);
+        assert_eq!(words("unit"), [FILL_IN; 4]);
+        assert_eq!(text.matches("read off the name").count(), 4, "{text}");
+    }
+
+    #[test]
+    fn a_rate_of_turn_is_no_acceleration() {
+        let sources = [("A1", "g"), ("Chan 7:6DX0855-AC1", "deg/sec"), ("w", "°/s"), ("r", "rad/s")];
+        let channels: Vec<ListedChannel> =
+            sources.iter().map(|(source, unit)| listed(source, "column", Some(unit))).collect();
+        let text = cask_file(&listing(channels.clone())).unwrap();
+        assert_eq!(parsed(&text)["channel"].as_array().unwrap().len(), 1);
+        assert!(text.contains("#   Chan 7:6DX0855-AC1"), "{text}");
+        assert!(cask_file(&listing(channels[1..].to_vec())).is_err());
     }
 
     #[test]

@@ -1,8 +1,6 @@
 //! Words from files to words that are safe and fit the page: no control characters, wrapped, coloured by SGR codes.
 
-use crate::data::{
-    Axis, DropResult, End, Issue, IssueCode, ReconstructionRung, RecordingFormat, Severity, Verdict,
-};
+use crate::data::{DropResult, Issue, IssueCode, ReconstructionRung, Severity, Verdict};
 use std::fmt::Write;
 
 /// Adds one line; writing to a string does not fail.
@@ -144,27 +142,9 @@ pub(super) fn verdict_sentence(result: &DropResult) -> String {
     }
 }
 
-/// "note", "warning" or "error".
-pub(super) fn severity_word(severity: Severity) -> &'static str {
-    match severity {
-        Severity::Note => "note",
-        Severity::Warning => "warning",
-        Severity::Error => "error",
-    }
-}
-
-/// The code as the result's JSON writes it.
-pub(super) fn code_word(code: IssueCode) -> String {
-    json_word(&code)
-}
-
-/// The format as the result's JSON writes it.
-pub(super) fn format_word(format: RecordingFormat) -> String {
-    json_word(&format)
-}
-
-fn json_word<T: serde::Serialize + std::fmt::Debug>(value: &T) -> String {
-    match serde_json::to_value(value) {
+/// A word as the result's JSON writes it, such as "`ends_early`", "mcap" or "warning".
+pub(super) fn json_word<T: serde::Serialize + std::fmt::Debug>(value: T) -> String {
+    match serde_json::to_value(&value) {
         Ok(serde_json::Value::String(word)) => word,
         _ => format!("{value:?}"),
     }
@@ -202,19 +182,6 @@ pub(super) fn rung_words(rung: ReconstructionRung) -> &'static str {
         ReconstructionRung::Flight => "planar motion, flight fitted with modes and drift",
         ReconstructionRung::Joint => "joint fit of all inputs within their tolerances",
     }
-}
-
-/// "first, transverse".
-pub(super) fn end_axis(end: End, axis: Axis) -> String {
-    let end = match end {
-        End::First => "first",
-        End::Second => "second",
-    };
-    let axis = match axis {
-        Axis::Transverse => "transverse",
-        Axis::Axial => "axial",
-    };
-    format!("{end}, {axis}")
 }
 
 /// What stands behind the name of the row that was taken.
@@ -282,6 +249,6 @@ mod tests {
 
     #[test]
     fn codes_are_written_as_in_the_json() {
-        assert_eq!(code_word(IssueCode::DuplicateBlocks), "duplicate_blocks");
+        assert_eq!(json_word(IssueCode::DuplicateBlocks), "duplicate_blocks");
     }
 }

@@ -14,27 +14,51 @@ fn a_form_that_is_not_filled_in_is_refused_by_its_line() {
     let analyze =
         || dropcheck(["analyze".as_ref(), recording.as_os_str(), "--cask".as_ref(), cask.as_os_str()]);
     let mut form = dropcheck(["init".as_ref(), recording.as_os_str()]).stdout;
+    let words = ["is still to be filled in", "write what it is, such as"];
+    let (number, word) = (("nan", ["is nan", "dropcheck init"]), ("\"FILL IN\"", words));
     let answers = [
-        ("mass_kg", "4466.0"),
-        ("length_m", "5.512"),
-        ("height_m", "9.0"),
-        ("angle_deg", "15.0"),
-        ("position_m", "0.156"),
-        ("position_m", "5.356"),
+        ("mass_kg", "4466.0", number),
+        ("length_m", "5.512", number),
+        ("height_m", "9.0", number),
+        ("angle_deg", "15.0", number),
+        ("end", "\"first\"", word),
+        ("axis", "\"transverse\"", word),
+        ("position_m", "0.156", number),
+        ("end", "\"second\"", word),
+        ("axis", "\"transverse\"", word),
+        ("position_m", "5.356", number),
     ];
-    for (key, value) in answers {
+    for (key, value, (left, words)) in answers {
         fs::write(&cask, &form).expect("a cask file");
         let answer = analyze();
-        let line = 1 + form.lines().position(|l| l.starts_with(&format!("{key} = nan"))).expect(key);
+        let open = format!("{key} = {left}");
+        let line = 1 + form.lines().position(|l| l.starts_with(&open)).expect(key);
         assert_eq!(answer.status, 2, "{key}: {}", answer.stdout);
-        for word in [format!("line {line}:"), format!("{key} is nan"), "dropcheck init".to_owned()] {
+        for word in [format!("line {line}:"), key.to_owned()].into_iter().chain(words.map(str::to_owned)) {
             assert!(answer.stderr.contains(&word), "{word}: {}", answer.stderr);
         }
-        form = form.replacen(&format!("{key} = nan"), &format!("{key} = {value}"), 1);
+        form = form.replacen(&open, &format!("{key} = {value}"), 1);
     }
     fs::write(&cask, form).expect("a cask file");
     let answer = analyze();
     assert!(answer.status <= 1, "{}", answer.stderr);
+}
+
+#[test]
+fn a_unit_that_nobody_says_is_asked_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (recording, cask) = (folder.path().join("raw.csv"), folder.path().join("cask.toml"));
+    let rows: String = (0..400).map(|i| format!("{}.{:04},{},7\n", i / 10_000, i % 10_000, i % 9)).collect();
+    fs::write(&recording, format!("time_s,first_transverse,n\n{rows}")).expect("a recording");
+    let form = dropcheck(["init".as_ref(), recording.as_os_str()]).stdout;
+    assert!(form.contains("unit = \"FILL IN\"") && form.contains("end = \"first\""), "{form}");
+    fs::write(&cask, form.replace("= nan ", "= 1 ")).expect("a cask file");
+    let answer = dropcheck(["analyze".as_ref(), recording.as_os_str(), "--cask".as_ref(), cask.as_os_str()]);
+    let told = answer.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in ["unit is \"FILL IN\"", "is still to be filled in", "unit = \"g\", \"m/s^2\""] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    assert_eq!(answer.status, 2);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::fault::{CaskFileError, THE_CASK_FILE, WrongLine};
 use super::wording::{described, line_of, nearest, number_with_unit, unit_mend};
-use crate::data::keys::{self, names};
+use crate::data::keys::{self, FILL_IN, names};
 use miette::NamedSource;
 use std::ops::Range;
 use std::path::Path;
@@ -280,6 +280,7 @@ impl<'a> Section<'a> {
             return Ok(Some(Placed { value: number, span: value.span() }));
         }
         let mend = match value.get_ref() {
+            DeValue::String(text) if text == FILL_IN => return Err(self.unfilled(key, &self.example(key))),
             DeValue::String(text) => {
                 let plain = text.trim().replace(',', ".");
                 match number_with_unit(&plain) {
@@ -302,8 +303,14 @@ impl<'a> Section<'a> {
 
     /// A word or name, not empty.
     pub(crate) fn text(&self, key: &str) -> Result<Option<Placed<String>>, CaskFileError> {
+        self.text_such_as(key, &self.example(key))
+    }
+
+    /// The same; `such_as` is what to write in place of what `dropcheck init` leaves to be filled in.
+    fn text_such_as(&self, key: &str, such_as: &str) -> Result<Option<Placed<String>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         match value.get_ref() {
+            DeValue::String(text) if text == FILL_IN => Err(self.unfilled(key, such_as)),
             DeValue::String(text) if !text.trim().is_empty() => {
                 Ok(Some(Placed { value: text.to_string(), span: value.span() }))
             }
@@ -328,8 +335,19 @@ impl<'a> Section<'a> {
 
     /// That a key is missing, with a line such as it could have.
     pub(super) fn without(&self, key: &str) -> CaskFileError {
-        let example = keys::row(self.name, key).map_or("", |row| row.example);
-        self.missing(key, &format!("add a line such as {key} = {example}"))
+        self.missing(key, &format!("add a line such as {}", self.example(key)))
+    }
+
+    /// A line that the key could have.
+    fn example(&self, key: &str) -> String {
+        format!("{key} = {}", keys::row(self.name, key).map_or("…", |row| row.example))
+    }
+
+    /// That the form of `dropcheck init` was left as it is here.
+    fn unfilled(&self, key: &str, such_as: &str) -> CaskFileError {
+        let message = format!("{key} is \"{FILL_IN}\": what it is only you know");
+        let label = "this line is still to be filled in".to_owned();
+        self.wrong(self.place(key), message, label, &format!("write what it is, such as {such_as}"))
     }
 
     /// One of a few words.
@@ -339,7 +357,7 @@ impl<'a> Section<'a> {
         words: &[(&str, T)],
         mend: &str,
     ) -> Result<Option<T>, CaskFileError> {
-        let Some(text) = self.text(key)? else { return Ok(None) };
+        let Some(text) = self.text_such_as(key, mend)? else { return Ok(None) };
         if let Some((_, value)) = words.iter().find(|(word, _)| *word == text.value) {
             return Ok(Some(*value));
         }

@@ -3,7 +3,7 @@
 use super::Fall;
 use super::peak::{Peak, Sample, common, peak, with_jumps};
 use crate::data::{
-    BodyModel, CaskFile, Contact, Criterion, CriticalAngle, CriticalRange, Prediction, Request,
+    BodyModel, CaskFile, Contact, Criterion, CriticalAngle, CriticalRange, Prediction, Request, WorstCase,
 };
 use rayon::prelude::*;
 
@@ -98,7 +98,7 @@ fn range(model: BodyModel, criterion: Criterion, cases: &[(&Fall, &Shown)]) -> O
         criterion,
         angle_deg: (first.angle_deg, first.angle_deg),
         largest: first.largest,
-        worst: (first.angle_deg, fall.contact, fall.k),
+        worst: WorstCase { angle_deg: first.angle_deg, contact: fall.contact, k: fall.k },
         common_bands_deg: first.bands_deg.clone(),
         further_impacts: None,
     };
@@ -106,7 +106,7 @@ fn range(model: BodyModel, criterion: Criterion, cases: &[(&Fall, &Shown)]) -> O
         range.angle_deg = (range.angle_deg.0.min(peak.angle_deg), range.angle_deg.1.max(peak.angle_deg));
         if peak.largest > range.largest {
             range.largest = peak.largest;
-            range.worst = (peak.angle_deg, fall.contact, fall.k);
+            range.worst = WorstCase { angle_deg: peak.angle_deg, contact: fall.contact, k: fall.k };
         }
         range.common_bands_deg = common(&range.common_bands_deg, &peak.bands_deg);
     }
@@ -261,7 +261,7 @@ mod tests {
             }
         }
         // The speed grows with k at these angles: the worst case is the highest k.
-        assert!(ranges.iter().filter(|r| r.criterion == Criterion::Speed).all(|r| r.worst.2 == 0.4));
+        assert!(ranges.iter().filter(|r| r.criterion == Criterion::Speed).all(|r| r.worst.k == 0.4));
     }
 
     #[test]
@@ -270,7 +270,7 @@ mod tests {
         asked.uncertain = crate::data::Uncertain { friction: Some((0.0, 0.3)), ..uncertain((0.5, 0.5), 1) };
         let found = &ranges(&cask_file(0.0), &asked, &asked.angles_deg)[0];
         // Less friction leaves more speed to the rod.
-        assert_eq!((found.worst.1, found.worst.2), (Contact::Coulomb(0.0), 0.5));
+        assert_eq!((found.worst.contact, found.worst.k), (Contact::Coulomb(0.0), 0.5));
     }
 
     #[test]

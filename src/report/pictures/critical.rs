@@ -138,7 +138,7 @@ fn range_case(r: &CriticalRange) -> CriticalCase {
         angle_deg: r.angle_deg,
         bands_deg: r.common_bands_deg.clone(),
         larger_deg: r.further_impacts.map(|at| at.0),
-        words: value_words(r.criterion, r.largest, r.worst.0),
+        words: value_words(r.criterion, r.largest, r.worst.angle_deg),
     }
 }
 

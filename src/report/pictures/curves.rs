@@ -17,7 +17,7 @@ pub(super) fn accelerations(analysis: &Analysis) -> Result<Picture, ReportError>
         .into_iter()
         .map(|(end, title)| {
             let mut lines = Vec::new();
-            for (curve, colour, axis) in curves_of(analysis, end) {
+            for EndCurve { curve, colour, axis } in curves_of(analysis, end) {
                 let in_g = |values: &[f64]| clock.points(&curve.time_s, values, 1.0 / STANDARD_GRAVITY_M_S2);
                 let raw =
                     Line::new(colour, in_g(&curve.raw_m_s2)).named(format!("{} unfiltered", curve.channel));
@@ -46,7 +46,7 @@ pub(super) fn velocities(analysis: &Analysis) -> Result<Picture, ReportError> {
     let clock = EventClock::of(analysis);
     let mut sensors = Vec::new();
     for end in [End::First, End::Second] {
-        for (curve, colour, axis) in curves_of(analysis, end) {
+        for EndCurve { curve, colour, axis } in curves_of(analysis, end) {
             let label = format!("{} ({} end{})", curve.channel, end_word(end), axis_note(axis));
             let points = clock.points(&curve.time_s, &curve.velocity_m_s, 1.0);
             sensors.push(Line::new(colour, points).named(label).broken(dash_of(axis)));
@@ -177,11 +177,19 @@ fn ends(lines: &[Line]) -> Option<(f64, f64)> {
     (from <= to).then_some((from, to))
 }
 
-/// The curves of one end with the colour of their channel, which is the same in every picture.
-fn curves_of(analysis: &Analysis, end: End) -> impl Iterator<Item = (&ChannelCurve, RGBColor, Axis)> {
+/// The curve of a channel with its colour, which is the same in every picture.
+struct EndCurve<'a> {
+    curve: &'a ChannelCurve,
+    colour: RGBColor,
+    axis: Axis,
+}
+
+/// The curves of one end.
+fn curves_of(analysis: &Analysis, end: End) -> impl Iterator<Item = EndCurve<'_>> {
     analysis.curves.channels.iter().enumerate().filter_map(move |(i, curve)| {
         let summary = analysis.result.channels.iter().find(|c| c.name == curve.channel)?;
-        (summary.end == end).then_some((curve, COLOURS[i % COLOURS.len()], summary.axis))
+        let colour = COLOURS[i % COLOURS.len()];
+        (summary.end == end).then_some(EndCurve { curve, colour, axis: summary.axis })
     })
 }
 

@@ -94,8 +94,7 @@ pub(super) fn ranges(study: &Study) -> Chapter {
         return chapter;
     }
     let worst = |r: &CriticalRange| {
-        let (angle_deg, contact, k) = r.worst;
-        format!("{}°, {}", degrees(angle_deg), case_words(contact, k))
+        format!("{}°, {}", degrees(r.worst.angle_deg), case_words(r.worst.contact, r.worst.k))
     };
     let table = Table::of(&study.ranges)
         .caption("All else as stated. Every band: the angles that lie in the band of every one of the cases.")

@@ -1,106 +1,45 @@
 //! Predictions to CSV: one row each; what does not exist is an empty cell.
 
 use super::super::ReportError;
-use super::super::records::finished;
+use super::super::records::{CsvColumn, number, records};
 use crate::data::PredictionRow;
-use rayon::prelude::*;
-use std::fmt::Display;
-use std::io::Write;
 
-/// Heads of the columns.
-const HEADER: [&str; 19] = [
-    "angle_deg",
-    "model",
-    "contact",
-    "k",
-    "slap_down_speed_m_s",
-    "vertical_velocity_m_s",
-    "horizontal_velocity_m_s",
-    "angular_velocity_rad_s",
-    "flight_time_s",
-    "energy_ratio",
-    "slap_down_angle_deg",
-    "first_end_impacts",
-    "impulse_ratio",
-    "regime",
-    "length_m",
-    "drop_height_m",
-    "friction_to_stick",
-    "sticks",
-    "closed_form_speed_m_s",
-];
-
-/// Rows that one core writes at a time: enough that handing them out costs nothing.
-pub(super) const CHUNK: usize = 2048;
+/// Its columns; scripts know the first fourteen, and what follows them may grow.
+fn columns<'a>() -> [CsvColumn<&'a PredictionRow>; 19] {
+    [
+        ("angle_deg", |row| row.angle_deg.to_string()),
+        ("model", |row| row.prediction.model.as_str().to_owned()),
+        ("contact", |row| row.prediction.contact.to_string()),
+        ("k", |row| row.prediction.k.to_string()),
+        ("slap_down_speed_m_s", |row| number(row.prediction.slap_down_speed_m_s)),
+        ("vertical_velocity_m_s", |row| number(row.prediction.vertical_velocity_m_s)),
+        ("horizontal_velocity_m_s", |row| number(row.prediction.horizontal_velocity_m_s)),
+        ("angular_velocity_rad_s", |row| number(Some(row.prediction.angular_velocity_rad_s))),
+        ("flight_time_s", |row| number(row.prediction.flight_time_s)),
+        ("energy_ratio", |row| number(row.prediction.energy_ratio)),
+        ("slap_down_angle_deg", |row| number(row.prediction.slap_down_angle_deg)),
+        ("first_end_impacts", |row| row.prediction.first_end_impacts.to_string()),
+        ("impulse_ratio", |row| number(Some(row.prediction.impulse_ratio))),
+        ("regime", |row| row.prediction.regime.to_string()),
+        ("length_m", |row| row.length_m.to_string()),
+        ("drop_height_m", |row| row.drop_height_m.to_string()),
+        ("friction_to_stick", |row| number(Some(row.prediction.friction_to_stick))),
+        ("sticks", |row| row.prediction.sticks.to_string()),
+        ("closed_form_speed_m_s", |row| number(row.prediction.closed_form_speed_m_s)),
+    ]
+}
 
 /// The CSV of `predict`.
 ///
 /// # Errors
 /// [`ReportError::Csv`] where the writer fails.
 pub fn csv(rows: &[PredictionRow]) -> Result<Vec<u8>, ReportError> {
-    let chunks: Result<Vec<Vec<u8>>, ReportError> = rows.par_chunks(CHUNK).map(lines).collect();
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(HEADER)?;
-    let mut bytes = finished(writer)?;
-    for chunk in chunks? {
-        bytes.extend(chunk);
-    }
-    Ok(bytes)
-}
-
-fn lines(rows: &[PredictionRow]) -> Result<Vec<u8>, ReportError> {
-    let mut out = Cells {
-        writer: csv::Writer::from_writer(Vec::with_capacity(rows.len() * 256)),
-        text: Vec::with_capacity(32),
-    };
-    for PredictionRow { angle_deg, length_m, drop_height_m, prediction: p } in rows {
-        out.put(angle_deg)?;
-        out.put(p.model.as_str())?;
-        out.put(p.contact)?;
-        out.put(p.k)?;
-        out.number(p.slap_down_speed_m_s)?;
-        out.number(p.vertical_velocity_m_s)?;
-        out.number(p.horizontal_velocity_m_s)?;
-        out.number(Some(p.angular_velocity_rad_s))?;
-        out.number(p.flight_time_s)?;
-        out.number(p.energy_ratio)?;
-        out.number(p.slap_down_angle_deg)?;
-        out.put(p.first_end_impacts)?;
-        out.number(Some(p.impulse_ratio))?;
-        out.put(p.regime)?;
-        out.put(length_m)?;
-        out.put(drop_height_m)?;
-        out.number(Some(p.friction_to_stick))?;
-        out.put(p.sticks)?;
-        out.number(p.closed_form_speed_m_s)?;
-        out.writer.write_record(None::<&[u8]>)?;
-    }
-    finished(out.writer)
-}
-
-/// The cells of a row, each set in the same buffer: 75 000 rows have over a million.
-struct Cells {
-    writer: csv::Writer<Vec<u8>>,
-    text: Vec<u8>,
-}
-
-impl Cells {
-    fn put(&mut self, value: impl Display) -> csv::Result<()> {
-        self.text.clear();
-        write!(self.text, "{value}")?;
-        self.writer.write_field(&self.text)
-    }
-
-    fn number(&mut self, value: Option<f64>) -> csv::Result<()> {
-        match value.filter(|v| v.is_finite()) {
-            Some(value) => self.put(value),
-            None => self.writer.write_field(""),
-        }
-    }
+    records(&columns(), rows)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::records::CHUNK;
     use super::super::super::sample_study;
     use super::*;
 
@@ -110,10 +49,9 @@ mod tests {
         let text = String::from_utf8(csv(&study.rows).unwrap()).unwrap();
         assert_eq!(text.lines().count(), 1 + study.rows.len());
         let columns = |line: &str| line.split(',').count();
-        assert!(text.lines().all(|line| columns(line) == HEADER.len()), "{text}");
-        // The first fourteen columns are those that scripts know; what follows them may grow.
+        assert!(text.lines().all(|line| columns(line) == super::columns().len()), "{text}");
         assert!(text.starts_with("angle_deg,model,contact,k,slap_down_speed_m_s,vertical_velocity_m_s,"));
-        assert_eq!(HEADER[13], "regime");
+        assert_eq!(super::columns()[13].0, "regime");
     }
 
     #[test]
