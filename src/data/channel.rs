@@ -35,6 +35,63 @@ impl Samples {
             Self::F64(v) => v[index],
         }
     }
+
+    /// All as f64.
+    pub(crate) fn into_f64(self) -> Vec<f64> {
+        match self {
+            Self::F32(v) => v.into_iter().map(f64::from).collect(),
+            Self::F64(v) => v,
+        }
+    }
+
+    /// Other samples, as precise as these.
+    pub(crate) fn alike(&self, samples: Vec<f64>) -> Self {
+        #[allow(clippy::cast_possible_truncation, reason = "made of f32 samples")]
+        match self {
+            Self::F32(_) => Self::F32(samples.into_iter().map(|x| x as f32).collect()),
+            Self::F64(_) => Self::F64(samples),
+        }
+    }
+
+    /// How many are no numbers.
+    pub(crate) fn missing(&self) -> usize {
+        match self {
+            Self::F32(v) => v.iter().filter(|x| !x.is_finite()).count(),
+            Self::F64(v) => v.iter().filter(|x| !x.is_finite()).count(),
+        }
+    }
+
+    /// Puts what `f` makes of each in its place.
+    pub(crate) fn change(&mut self, f: impl Fn(f64) -> f64) {
+        #[allow(clippy::cast_possible_truncation, reason = "as precise as before")]
+        match self {
+            Self::F32(v) => v.iter_mut().for_each(|x| *x = f(f64::from(*x)) as f32),
+            Self::F64(v) => v.iter_mut().for_each(|x| *x = f(*x)),
+        }
+    }
+
+    /// Those at the indices given, in that order.
+    pub(crate) fn picked(&self, indices: &[usize]) -> Self {
+        match self {
+            Self::F32(v) => Self::F32(indices.iter().map(|&i| v[i]).collect()),
+            Self::F64(v) => Self::F64(indices.iter().map(|&i| v[i]).collect()),
+        }
+    }
+
+    /// Stretches of them, each at a place among `count` samples, NaN between.
+    pub(crate) fn spread(&self, count: usize, stretches: &[(Span, usize)]) -> Self {
+        fn laid<T: Copy>(from: &[T], mut laid: Vec<T>, stretches: &[(Span, usize)]) -> Vec<T> {
+            for (span, place) in stretches {
+                let stretch = &from[span.from..span.to];
+                laid[*place..][..stretch.len()].copy_from_slice(stretch);
+            }
+            laid
+        }
+        match self {
+            Self::F32(v) => Self::F32(laid(v, vec![f32::NAN; count], stretches)),
+            Self::F64(v) => Self::F64(laid(v, vec![f64::NAN; count], stretches)),
+        }
+    }
 }
 
 /// A half-open range of sample indices `from..to`.

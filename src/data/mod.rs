@@ -36,8 +36,8 @@ pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, MotionCurve};
 pub use estimate::Estimate;
 pub use finding::{
-    CODES, ChannelFinding, ClockFinding, DropFinding, During, Finding, HowApart, Issue, IssueCode, Jitter,
-    RatesApart, Severity, TableFinding, TimesApart, TimesFinding, What, shortened,
+    AttributeFinding, CODES, ChannelFinding, ClockFinding, DropFinding, During, Finding, HowApart, Issue,
+    IssueCode, Jitter, RatesApart, Severity, TableFinding, TimesApart, TimesFinding, What, shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};

@@ -24,9 +24,10 @@ pub(super) use room::use_program;
 use super::{Limits, Progress, RawChannel, RawRecording};
 use super::{error, error::IngestError};
 use crate::data::{CaskFile, ChannelSpec, Source};
-use channel::{Asked, Channel};
+use crate::numerics::as_f64;
+use channel::DatasetChannel;
 use clocks::Clocks;
-use column::Column;
+use column::DatasetColumn;
 use fault::Fault;
 use room::File;
 #[cfg(unix)]
@@ -87,49 +88,46 @@ pub(super) fn read(
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
     let file = File::open(path, limits)?;
-    let mut room = Room { file: &file, held_bytes: 0, clocks: Clocks::default() };
+    let mut room = MemoryTaken { file: &file, held_bytes: 0, clocks: Clocks::default() };
     let count = cask_file.channels.len().max(1);
     let mut channels = Vec::with_capacity(count);
     for (index, spec) in cask_file.channels.iter().enumerate() {
-        let channel = read_channel(&mut room, spec, &Asked::by(spec, cask_file.time.as_deref()));
+        let channel = read_channel(&mut room, spec, cask_file.time.as_deref());
         // A library that broke off gives no answers, which is not what is wrong with the channel.
         file.whole()?;
         channels.push(RawChannel { spec: index, ..channel? });
-        #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
-        progress((index + 1) as f64 / count as f64);
+        progress(as_f64(index + 1) / as_f64(count));
     }
     Ok(RawRecording { channels, zero_unix_ns: None, issues: Vec::new() })
 }
 
 /// What of the memory is taken.
-struct Room<'a> {
+struct MemoryTaken<'a> {
     file: &'a Rc<File>,
     held_bytes: u64,
     clocks: Clocks,
 }
 
-impl Room<'_> {
+impl MemoryTaken<'_> {
     /// Takes room for a column before it is read.
-    fn take(&mut self, column: &Column) -> Result<(), IngestError> {
+    fn take(&mut self, column: &DatasetColumn) -> Result<(), IngestError> {
         let File { limits, path, .. } = &**self.file;
-        let (part_bytes, samples_bytes) = (limits.part_bytes(), limits.samples_bytes());
         self.held_bytes = self.held_bytes.saturating_add(column.held_bytes());
-        if column.part_bytes() > part_bytes {
-            let what = format!("a block of {} takes", column.source);
-            return Err(limits.refusal(path, &what, part_bytes));
-        }
-        let unpacked_bytes = limits.unpacked_bytes(self.file.bytes);
-        if self.held_bytes > unpacked_bytes {
-            return Err(limits.refusal(path, "the samples of the channels read unpack to", unpacked_bytes));
-        }
-        if self.held_bytes > samples_bytes {
-            return Err(limits.refusal(path, "the samples of the channels read take", samples_bytes));
-        }
-        Ok(())
+        let bounds = [
+            (column.part_bytes(), limits.part_bytes(), format!("a block of {} takes", column.source)),
+            (
+                self.held_bytes,
+                limits.unpacked_bytes(self.file.bytes),
+                "the samples of the channels read unpack to".into(),
+            ),
+            (self.held_bytes, limits.samples_bytes(), "the samples of the channels read take".into()),
+        ];
+        let passed = bounds.iter().find(|(bytes, most, _)| bytes > most);
+        passed.map_or(Ok(()), |(_, most, what)| Err(limits.refusal(path, what, *most)))
     }
 
     /// Whether there is room for a column that is not kept.
-    fn has_for_a_while(&mut self, column: &Column) -> bool {
+    fn has_for_a_while(&mut self, column: &DatasetColumn) -> bool {
         let held_bytes = self.held_bytes;
         let has_room = self.take(column).is_ok();
         self.held_bytes = held_bytes;
@@ -137,7 +135,11 @@ impl Room<'_> {
     }
 }
 
-fn read_channel(room: &mut Room, spec: &ChannelSpec, asked: &Asked) -> Result<RawChannel, IngestError> {
+fn read_channel(
+    room: &mut MemoryTaken,
+    spec: &ChannelSpec,
+    time: Option<&str>,
+) -> Result<RawChannel, IngestError> {
     let path = &room.file.path;
     let refused = |fault: Fault| error::source(path, &spec.name, fault.to_string(), fault.remedy);
     let Source::Path(source) = &spec.source else {
@@ -148,10 +150,12 @@ fn read_channel(room: &mut Room, spec: &ChannelSpec, asked: &Asked) -> Result<Ra
     };
     let column = find::locate(room.file, source).map_err(refused)?;
     room.take(&column)?;
-    let channel = Channel::of(column, asked, &mut room.clocks).map_err(refused)?;
+    let channel =
+        DatasetChannel::of(column, spec.sample_rate_hz, spec.time.as_deref().or(time), &mut room.clocks);
+    let channel = channel.map_err(refused)?;
     channel.times.first().map_or(Ok(()), |time| room.take(time))?;
     let samples = channel.samples().map_err(refused)?;
-    let based = channel.on_base(samples, asked, |other| room.has_for_a_while(other)).map_err(refused)?;
+    let based = channel.on_base(samples, |other| room.has_for_a_while(other)).map_err(refused)?;
     let (mut uniform, attributes) = (based.uniform, channel.attributes);
     uniform.issues.extend(attributes.issues);
     match attributes.two_units {

@@ -1,5 +1,6 @@
 //! What speaks against a recording or a result, with its numbers, to its code, its severity and its sentence.
 
+mod attribute;
 mod channel;
 mod clock;
 mod code;
@@ -7,6 +8,7 @@ mod drop;
 mod table;
 mod times;
 
+pub use attribute::AttributeFinding;
 pub use channel::{ChannelFinding, During};
 pub use clock::{ClockFinding, HowApart, RatesApart, TimesApart};
 pub use code::{CODES, IssueCode, Severity};
@@ -30,6 +32,8 @@ pub enum What {
     Clock(ClockFinding),
     /// About the rows of a table.
     Table(TableFinding),
+    /// About the attributes of an HDF5 dataset.
+    Attribute(AttributeFinding),
     /// About the file, in words that a reader of one format has, or that a refusal says too.
     Said(IssueCode, Severity, String),
 }
@@ -85,6 +89,14 @@ impl From<TableFinding> for Finding {
         let (code, severity) = found.code();
         let message = found.sentence();
         Self::made(What::Table(found), code, severity, &message)
+    }
+}
+
+impl From<AttributeFinding> for Finding {
+    fn from(found: AttributeFinding) -> Self {
+        let (code, severity) = found.code();
+        let message = found.sentence();
+        Self::made(What::Attribute(found), code, severity, &message)
     }
 }
 

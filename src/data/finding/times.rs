@@ -1,7 +1,7 @@
 //! What speaks against the times of a recording, with its numbers, to code, severity and sentence.
 
 use super::{IssueCode as Code, Severity};
-use crate::data::shown::digits;
+use crate::data::shown::{digits, hz};
 
 /// A finding about the times of rows or blocks, in any format.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +35,8 @@ pub enum TimesFinding {
     StampsCut { cut_s: f64, rate_hz: f64, if_exact_hz: Option<f64> },
     /// Stamps of blocks that run at another rate than the stated one, far off or not.
     StampsRunOff { stamps_hz: f64, stated_hz: f64, rms_s: f64, is_far: bool },
+    /// A few blocks that are stamped as at another rate than the one that was taken.
+    FewBlocks { stamps_hz: f64, taken_hz: f64 },
     /// Blocks over times that are there already, some with different samples.
     BlocksTwice { count: usize, different: usize },
 }
@@ -83,6 +85,7 @@ impl TimesFinding {
             | Self::Coarse { is_sure: false, .. }
             | Self::CoarseBesideRate { off_s: Some(_), .. }
             | Self::StampsCut { if_exact_hz: Some(_), .. }
+            | Self::FewBlocks { .. }
             | Self::StampsRunOff { is_far: true, .. } => (Code::Clock, Warning),
             Self::Coarse { .. }
             | Self::CoarseBesideRate { .. }
@@ -161,6 +164,11 @@ impl TimesFinding {
             Self::StampsRunOff { stamps_hz, stated_hz, rms_s, .. } => format!(
                 "the blocks' stamps run at {stamps_hz:.6} Hz, {:.1} ppm off the stated {stated_hz:.6} Hz, and scatter by {rms_s:.3e} s RMS about that; blocks that follow one another were joined, and the stamps' rate was taken",
                 1e6 * (stamps_hz / stated_hz - 1.0)
+            ),
+            Self::FewBlocks { stamps_hz, taken_hz } => format!(
+                "its few blocks are stamped as at {} Hz, and {} Hz is stated: samples between them are missing, or the rate is wrong, and every velocity with it",
+                hz(*stamps_hz),
+                hz(*taken_hz)
             ),
             Self::BlocksTwice { count, different: 0 } => {
                 format!("{count} block(s) repeat samples that are there already; the copies were dropped")

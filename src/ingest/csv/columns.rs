@@ -129,7 +129,7 @@ mod tests {
     use super::*;
     use crate::data::Samples;
     use crate::ingest::clock::Claims;
-    use crate::ingest::time_base::{Times, Uniform};
+    use crate::ingest::time_base::{ChannelTimes, Uniform};
     use proptest::prelude::*;
 
     fn column(pieces: &[&[f64]]) -> HeldColumn {
@@ -185,7 +185,7 @@ mod tests {
         for declared_hz in [None, Some(50_010.0), Some(48_000.0)] {
             let claims = Claims::of_cask(declared_hz);
             let ours = even.place(Samples::F64(samples.clone()), &claims).unwrap();
-            let theirs = Times::new(&values).place(Samples::F64(samples.clone()), &claims).unwrap();
+            let theirs = ChannelTimes::new(&values).place(Samples::F64(samples.clone()), &claims).unwrap();
             assert!((ours.sample_rate_hz / theirs.sample_rate_hz - 1.0).abs() < 1e-12);
             assert_eq!((ours.start_s, &ours.gaps), (theirs.start_s, &theirs.gaps));
             let said = |uniform: &Uniform| {

@@ -76,7 +76,7 @@ impl Even {
     /// Samples at these times, s, on their base, at the rate that [`Claims::weigh`] takes.
     ///
     /// # Errors
-    /// As [`time_base::Times::place`].
+    /// As [`time_base::ChannelTimes::place`].
     pub(super) fn place(&self, samples: Samples, claims: &Claims) -> Result<Uniform, TimeBaseError> {
         if samples.len() != self.count {
             return Err(TimeBaseError::Lengths { times: self.count, samples: samples.len() });

@@ -8,7 +8,7 @@ use super::stamp::Stamps;
 use super::wanted::Wanted;
 use crate::data::{Finding, Samples, TableFinding};
 use crate::ingest::clock::{Clock, Refusal};
-use crate::ingest::time_base::{self, TimeBaseError, Times, Uniform};
+use crate::ingest::time_base::{self, ChannelTimes, TimeBaseError, Uniform};
 use crate::ingest::times::{self, Carrier, Scale};
 use rayon::prelude::*;
 
@@ -31,7 +31,7 @@ pub(super) struct Refused {
 /// The times of channels, as they are held.
 enum Base<'a> {
     Even(Even),
-    Each(Times<'a>),
+    Each(ChannelTimes<'a>),
 }
 
 impl Table<'_> {
@@ -197,7 +197,7 @@ impl Table<'_> {
 }
 
 fn base(column: &HeldColumn) -> Base<'_> {
-    column.even().map_or_else(|| Base::Each(Times::new(column.each())), Base::Even)
+    column.even().map_or_else(|| Base::Each(ChannelTimes::new(column.each())), Base::Even)
 }
 
 fn on_base(samples: Samples, base: Option<&Base>, plan: &Plan) -> Result<Uniform, TimeBaseError> {

@@ -25,7 +25,7 @@ pub(super) fn decoded(bytes: &[u8]) -> String {
 
 /// What is asked.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) enum Request {
+pub(super) enum Query {
     /// What stands at a path.
     Look(String),
     /// Everything in the file.
@@ -44,7 +44,7 @@ pub(super) enum Slab {
 
 /// What is answered.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
-pub(super) enum Answer {
+pub(super) enum Reply {
     /// The file is open; it begins behind a user block of so many bytes.
     Opened {
         user_block: u64,
@@ -66,7 +66,7 @@ pub(super) enum Answer {
 pub(super) enum Object {
     Nothing,
     Group {
-        attributes: Vec<(String, Value)>,
+        attributes: Vec<(String, AttributeValue)>,
         /// Members that are named as times.
         times: Vec<String>,
     },
@@ -81,7 +81,7 @@ pub(super) enum Object {
 
 /// What an attribute holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) enum Value {
+pub(super) enum AttributeValue {
     Numbers(Vec<f64>),
     Texts(Vec<Bytes>),
     /// Something else.
@@ -96,11 +96,11 @@ pub(super) struct Dataset {
     /// Of one value or record, bytes.
     pub value_bytes: u64,
     /// How its values are read; `None` where they are no numbers.
-    pub number: Option<Number>,
+    pub number: Option<NumberType>,
     /// Whether the values are stored as `number` is, the lowest byte first.
     pub is_plain: bool,
     /// The fields of numbers in its records.
-    pub fields: Vec<Field>,
+    pub fields: Vec<RecordField>,
     /// Whether its values are records, of numbers or not.
     pub is_records: bool,
     /// `None` where it holds nothing.
@@ -109,7 +109,7 @@ pub(super) struct Dataset {
     pub filters: Vec<Filter>,
     /// Of its values as they are packed in the file.
     pub stored_bytes: u64,
-    pub attributes: Vec<(String, Value)>,
+    pub attributes: Vec<(String, AttributeValue)>,
 }
 
 /// Where the values of a dataset lie.
@@ -190,10 +190,10 @@ impl Packing {
 
 /// A field of numbers in records.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Field {
+pub(super) struct RecordField {
     /// Its name, with those of the fields it lies in before it: `imu.z`.
     pub name: Bytes,
-    pub number: Number,
+    pub number: NumberType,
     /// Numbers in it, one record: above 1 for a list.
     pub count: usize,
     /// Where it begins in a record, bytes.
@@ -204,7 +204,7 @@ pub(super) struct Field {
 
 /// A number as Rust has it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum Number {
+pub(super) enum NumberType {
     I8,
     I16,
     I32,
@@ -217,7 +217,7 @@ pub(super) enum Number {
     F64,
 }
 
-impl Number {
+impl NumberType {
     /// Whether it is an integer.
     pub(super) fn is_whole(self) -> bool {
         !matches!(self, Self::F32 | Self::F64)
@@ -253,7 +253,7 @@ impl Dataset {
     /// Whether its parts fit together and into a file of `file_bytes`.
     pub(super) fn is_sane(&self, file_bytes: u64) -> bool {
         let record_bytes = usize::try_from(self.value_bytes).unwrap_or(0);
-        let fits = |field: &Field| {
+        let fits = |field: &RecordField| {
             let bytes = field.count.checked_mul(field.number.bytes());
             field.count > 0
                 && bytes.and_then(|b| b.checked_add(field.from)).is_some_and(|b| b <= record_bytes)
@@ -308,9 +308,9 @@ mod tests {
     #[test]
     fn frames_that_claim_or_lack_bytes_are_no_answers() {
         let mut sound = Vec::new();
-        send(&mut sound, &Answer::Found("/a".into(), Object::NamedType)).unwrap();
-        let answer = |bytes: &[u8]| Some(receive::<Answer>(&mut &*bytes).ok()?.0);
-        assert_eq!(answer(&sound), Some(Answer::Found("/a".into(), Object::NamedType)));
+        send(&mut sound, &Reply::Found("/a".into(), Object::NamedType)).unwrap();
+        let answer = |bytes: &[u8]| Some(receive::<Reply>(&mut &*bytes).ok()?.0);
+        assert_eq!(answer(&sound), Some(Reply::Found("/a".into(), Object::NamedType)));
         for length in 0..sound.len() {
             assert_eq!(answer(&sound[..length]), None, "{length}");
         }

@@ -1,14 +1,12 @@
 //! The attributes of a column and of the groups above it to rates, unit, start, scale and offset: the nearest of each.
 
-use super::answer::{Object, Value as Held, decoded};
-use super::column::Column;
-use super::names::{self, Role};
-use crate::data::{Issue, IssueCode, Samples, Severity, acceleration_unit_m_s2};
+use super::answer::{AttributeValue as Held, Object, decoded};
+use super::column::DatasetColumn;
+use super::names::{self, AttributeRole};
+use crate::data::{AttributeFinding, Finding, Samples, acceleration_unit_m_s2};
 use crate::ingest::clock::Refusal;
 use crate::ingest::statement::Statement;
-use crate::ingest::time_base::Number;
 use crate::ingest::vocabulary::Meaning;
-use std::fmt::Display;
 
 /// What the recording says of a column.
 #[derive(Debug, Clone, Default)]
@@ -26,7 +24,7 @@ pub(super) struct Attributes {
     /// Stored values that stand for a missing sample.
     fills: Vec<f64>,
     /// What groups farther off say otherwise.
-    pub issues: Vec<Issue>,
+    pub issues: Vec<Finding>,
 }
 
 /// What one attribute says of a column.
@@ -45,16 +43,13 @@ impl Attributes {
     ///
     /// # Errors
     /// A scale or offset is no number or stands twice in one place, or whole numbers are to be converted otherwise.
-    pub(super) fn of(column: &Column) -> Result<Self, Refusal> {
+    pub(super) fn of(column: &DatasetColumn) -> Result<Self, Refusal> {
         let said = said(column);
         let attributes = Self::of_said(&said, column)?;
-        let conversions: Vec<String> =
-            said.iter().filter(|said| said.role() == Some(Role::Conversion)).map(Said::shown).collect();
-        if column.number.is_whole()
-            && attributes.scale.is_none()
-            && attributes.offset.is_none()
-            && !conversions.is_empty()
-        {
+        let conversions = said.iter().filter(|said| said.role() == Some(AttributeRole::Conversion));
+        let conversions: Vec<String> = conversions.map(Said::shown).collect();
+        let is_converted = attributes.scale.or(attributes.offset).is_some();
+        if column.number.is_whole() && !is_converted && !conversions.is_empty() {
             return Err(Refusal::new(
                 format!(
                     "its whole numbers are counts of the recorder, to be converted by {}, which is not done here",
@@ -71,30 +66,26 @@ impl Attributes {
     ///
     /// # Errors
     /// As [`Attributes::of`].
-    pub(super) fn own(column: &Column) -> Result<Self, Refusal> {
+    pub(super) fn own(column: &DatasetColumn) -> Result<Self, Refusal> {
         let mut said = if column.is_field() { Vec::new() } else { said(column) };
         said.retain(|said| said.distance == 0);
         Self::of_said(&said, column)
     }
 
-    fn of_said(said: &[Said], column: &Column) -> Result<Self, Refusal> {
+    fn of_said(said: &[Said], column: &DatasetColumn) -> Result<Self, Refusal> {
+        use AttributeRole::{Fill, Offset, Scale, Start, Unit};
         let mut all = Self::default();
-        let numbers = |role: Role| -> Result<Vec<(f64, &Said)>, Refusal> {
-            let with_role = said.iter().filter(|said| said.role() == Some(role));
-            with_role.filter_map(|said| Some(said.number(column).transpose()?.map(|x| (x, said)))).collect()
+        let with = |role: AttributeRole| said.iter().filter(move |said| said.role() == Some(role));
+        let numbers = |role: AttributeRole| -> Result<Vec<(f64, &Said)>, Refusal> {
+            with(role).filter_map(|said| Some(said.number(column).transpose()?.map(|x| (x, said)))).collect()
         };
+        let is_same = |near: &f64, far: &f64| is_alike(*near, *far);
         // A scale of 1 and an offset of 0 do nothing: they are what a writer puts where each dataset has its own.
-        all.scale =
-            all.nearest(numbers(Role::Scale)?, |near, far| is_alike(*near, *far), |far| is_alike(*far, 1.0))?;
-        all.offset = all.nearest(
-            numbers(Role::Offset)?,
-            |near, far| is_alike(*near, *far),
-            |far| is_alike(*far, 0.0),
-        )?;
-        all.start_s = numbers(Role::Start)?.first().map(|start| start.0);
-        let units = said.iter().filter(|said| said.role() == Some(Role::Unit));
+        all.scale = all.nearest(numbers(Scale)?, is_same, |far| is_alike(*far, 1.0))?;
+        all.offset = all.nearest(numbers(Offset)?, is_same, |far| is_alike(*far, 0.0))?;
+        all.start_s = numbers(Start)?.first().map(|start| start.0);
         let units =
-            units.filter_map(|said| Some((said.value.clone().filter(|unit| !unit.is_empty())?, said)));
+            with(Unit).filter_map(|said| Some((said.value.clone().filter(|unit| !unit.is_empty())?, said)));
         // A wrong unit is off by a factor of three and more, which no drop height or geometry bears.
         match all.nearest(units.collect(), |near, far| !are_other_units(near, far), |_| true) {
             Ok(unit) => all.unit = unit,
@@ -104,7 +95,7 @@ impl Attributes {
             }
         }
         if !column.is_field() {
-            let own = said.iter().filter(|said| said.distance == 0 && said.role() == Some(Role::Fill));
+            let own = with(Fill).filter(|said| said.distance == 0);
             all.fills = own.filter_map(|said| said.number(column).ok().flatten()).collect();
         }
         for said in said {
@@ -133,7 +124,7 @@ impl Attributes {
     ///
     /// # Errors
     /// Two of one place differ.
-    fn nearest<T: Display>(
+    fn nearest<T>(
         &mut self,
         found: Vec<(T, &Said)>,
         is_same: fn(&T, &T) -> bool,
@@ -150,15 +141,9 @@ impl Attributes {
                 "correct one in a copy, or delete it",
             ));
         }
-        let message = format!(
-            "the group {} states {}; nearer to the samples stands {}, which was taken: one of the two is wrong, or the group's is for other \
-             datasets; correct the wrong one in a copy, or delete that of the group where each dataset has its own",
-            far.place,
-            far.shown(),
-            near.shown()
-        );
-        let severity = if is_harmless(&other) { Severity::Note } else { Severity::Warning };
-        self.issues.push(Issue::new(IssueCode::Scale, severity, message));
+        let (group, is_harmless) = (far.place.clone(), is_harmless(&other));
+        let (stated, nearer) = (far.shown(), near.shown());
+        self.issues.push(AttributeFinding::GroupDiffers { group, stated, nearer, is_harmless }.into());
         Ok(Some(taken))
     }
 
@@ -174,31 +159,23 @@ impl Attributes {
     }
 
     /// value = raw · scale + offset, NaN where raw stands for a missing sample.
-    pub(super) fn scaled(&self, samples: Samples) -> Samples {
-        match samples {
-            Samples::F32(values) => Samples::F32(self.applied(values)),
-            Samples::F64(values) => Samples::F64(self.applied(values)),
+    pub(super) fn scaled(&self, mut samples: Samples) -> Samples {
+        let fills = samples.alike(self.fills.clone()).into_f64();
+        let (scale, offset) = (self.scale.unwrap_or(1.0), self.offset.unwrap_or(0.0));
+        let is_scaled = self.scale.is_some() || self.offset.is_some();
+        if is_scaled || !fills.is_empty() {
+            samples.change(|x| match x {
+                fill if fills.contains(&fill) => f64::NAN,
+                x if is_scaled => x * scale + offset,
+                x => x,
+            });
         }
-    }
-
-    /// The same of values of one type.
-    pub(super) fn applied<S: Number>(&self, mut values: Vec<S>) -> Vec<S> {
-        for fill in self.fills.iter().map(|fill| S::from_f64(*fill).to_f64()) {
-            #[allow(clippy::float_cmp, reason = "the very value that stands for nothing")]
-            values.iter_mut().filter(|x| x.to_f64() == fill).for_each(|x| *x = S::MISSING);
-        }
-        if self.scale.is_some() || self.offset.is_some() {
-            let (scale, offset) = (self.scale.unwrap_or(1.0), self.offset.unwrap_or(0.0));
-            for x in &mut values {
-                *x = S::from_f64(x.to_f64() * scale + offset);
-            }
-        }
-        values
+        samples
     }
 }
 
 /// All that attributes say of a column, nearest first, of one place rates before intervals: an interval is rounded more often.
-fn said(column: &Column) -> Vec<Said> {
+fn said(column: &DatasetColumn) -> Vec<Said> {
     let mut all = Vec::new();
     let (mut place, mut distance) = (column.path.as_str(), 0);
     loop {
@@ -223,7 +200,7 @@ fn said(column: &Column) -> Vec<Said> {
     all
 }
 
-impl Column {
+impl DatasetColumn {
     /// The column's value of an attribute: that of its index where there is one a column, else the only one, as which several count that
     /// are the same.
     fn own_of(&self, held: &Held) -> Option<String> {
@@ -243,7 +220,7 @@ impl Column {
 }
 
 impl Said {
-    fn role(&self) -> Option<Role> {
+    fn role(&self) -> Option<AttributeRole> {
         names::role(&self.name, self.distance)
     }
 
@@ -256,7 +233,7 @@ impl Said {
     ///
     /// # Errors
     /// It is no finite number: `scale_factor = 1,05`.
-    fn number(&self, column: &Column) -> Result<Option<f64>, Refusal> {
+    fn number(&self, column: &DatasetColumn) -> Result<Option<f64>, Refusal> {
         let text = self.value.as_deref().unwrap_or_default();
         match text.parse::<f64>() {
             Ok(number) if number.is_finite() => return Ok(Some(number)),

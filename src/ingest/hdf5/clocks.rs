@@ -2,10 +2,10 @@
 
 use super::answer::{Object, decoded};
 use super::attributes::Attributes;
-use super::column::Column;
+use super::column::DatasetColumn;
 use super::fault::Fault;
 use super::{find, names};
-use crate::data::{Issue, Samples};
+use crate::data::{Finding, Samples};
 use crate::ingest::clock::{Clock, Refusal};
 use crate::ingest::times::{Carrier, Scale, seconds_a_unit};
 
@@ -16,13 +16,14 @@ const FIRST_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "T
 #[derive(Default)]
 pub(super) struct Clocks {
     place: Option<String>,
-    times: Vec<Column>,
+    times: Vec<DatasetColumn>,
 }
 
 impl Clocks {
     /// The times of a channel, likeliest first: fields of the same records, else datasets beside it, that have a usual name and as many values.
-    pub(super) fn of(&mut self, column: &Column) -> Vec<Column> {
-        let is_apart = |times: &&Column| times.length == column.length && times.source != column.source;
+    pub(super) fn of(&mut self, column: &DatasetColumn) -> Vec<DatasetColumn> {
+        let is_apart =
+            |times: &&DatasetColumn| times.length == column.length && times.source != column.source;
         let records = column.is_field().then(|| format!("{}.", column.path));
         for place in records.into_iter().chain([format!("{}/", column.group())]) {
             if self.place.as_ref() != Some(&place) {
@@ -30,7 +31,7 @@ impl Clocks {
                 self.times = named.filter_map(|source| find::find(&column.file, &source).ok()?).collect();
                 self.place = Some(place);
             }
-            let found: Vec<Column> = self.times.iter().filter(is_apart).cloned().collect();
+            let found: Vec<DatasetColumn> = self.times.iter().filter(is_apart).cloned().collect();
             if !found.is_empty() {
                 return found;
             }
@@ -40,7 +41,7 @@ impl Clocks {
 }
 
 /// Why a channel has no times: what is named as times beside it, and is none of its own.
-pub(super) fn why_none(column: &Column) -> String {
+pub(super) fn why_none(column: &DatasetColumn) -> String {
     let sources = sources(&format!("{}/", column.group()), column);
     let others = sources.iter().filter(|source| **source != column.source);
     let mut reasons = others.filter_map(|source| match find::find(&column.file, source) {
@@ -51,7 +52,7 @@ pub(super) fn why_none(column: &Column) -> String {
 }
 
 /// What is named as times in a group (`/daq/`) or in records (`/daq/table.`), likeliest first.
-fn sources(place: &str, column: &Column) -> Vec<String> {
+fn sources(place: &str, column: &DatasetColumn) -> Vec<String> {
     let path = place.trim_end_matches(['/', '.']);
     let mut names = match &*column.file.object(if path.is_empty() { "/" } else { path }) {
         Object::Group { times, .. } => times.clone(),
@@ -64,21 +65,17 @@ fn sources(place: &str, column: &Column) -> Vec<String> {
 }
 
 /// The numbers of a column of times, with its own scale and offset, and what a unit of them is.
-fn counted(times: &Column) -> Result<(Vec<f64>, Scale), Fault> {
+fn counted(times: &DatasetColumn) -> Result<(Vec<f64>, Scale), Fault> {
     let own = Attributes::own(times).map_err(|refusal| Fault::from(refusal).at(&times.source))?;
-    let unit = own.unit.clone();
-    let numbers = match times.samples()? {
-        Samples::F32(numbers) => numbers.into_iter().map(f64::from).collect(),
-        Samples::F64(numbers) => numbers,
-    };
-    Ok((own.applied(numbers), Scale::of(&times.bare_name(), unit.as_deref())))
+    let numbers = own.scaled(Samples::F64(times.samples()?.into_f64())).into_f64();
+    Ok((numbers, Scale::of(&times.bare_name(), own.unit.as_deref())))
 }
 
 /// The times of a column in seconds; a rate that is stated tells units apart where nothing else does.
 ///
 /// # Errors
 /// They cannot be read, or nothing tells their unit.
-pub(super) fn seconds(times: &Column, stated_hz: Option<f64>) -> Result<Vec<f64>, Fault> {
+pub(super) fn seconds(times: &DatasetColumn, stated_hz: Option<f64>) -> Result<Vec<f64>, Fault> {
     let (mut numbers, scale) = counted(times)?;
     let source = &times.source;
     let carrier = if times.is_field() { Carrier::Field(source) } else { Carrier::Dataset(source) };
@@ -97,10 +94,10 @@ pub(super) fn seconds(times: &Column, stated_hz: Option<f64>) -> Result<Vec<f64>
 /// # Errors
 /// They are far apart, and nothing decides between them.
 pub(super) fn witness(
-    taken: (&Column, &[f64]),
-    other: &Column,
+    taken: (&DatasetColumn, &[f64]),
+    other: &DatasetColumn,
     is_decided: bool,
-) -> Result<Option<Issue>, Refusal> {
+) -> Result<Option<Finding>, Refusal> {
     let Ok((mut others, scale)) = counted(other) else { return Ok(None) };
     let (first_s, last_s) = span_s(taken.1);
     let Some(unit_s) = scale.beside(last_s - first_s, &others) else { return Ok(None) };

@@ -1,12 +1,12 @@
 //! A column, row or field of a dataset with what of it a channel is.
 
-use super::answer::{Dataset, Field, Number, Storage, decoded};
+use super::answer::{Dataset, NumberType, RecordField, Storage, decoded};
 use super::room::File;
 use std::rc::Rc;
 
 /// One channel's numbers in a file: a dataset, a column or row of one, or a field of its records.
 #[derive(Clone)]
-pub(super) struct Column {
+pub(super) struct DatasetColumn {
     pub file: Rc<File>,
     pub dataset: Rc<Dataset>,
     /// The dataset's path.
@@ -19,7 +19,7 @@ pub(super) struct Column {
     pub columns: usize,
     /// Number of samples.
     pub length: usize,
-    pub number: Number,
+    pub number: NumberType,
     pub place: Place,
 }
 
@@ -33,10 +33,10 @@ pub(super) enum Place {
     /// In a row.
     Row,
     /// In a field of its records.
-    Field(Field),
+    Field(RecordField),
 }
 
-impl Column {
+impl DatasetColumn {
     /// What it is, for people.
     pub(super) fn kind_name(&self) -> &'static str {
         match self.place {

@@ -18,6 +18,9 @@ pub(super) struct Fault {
 /// What makes a file that needs more than is built in one that does not.
 pub(super) const REPACK: &str = "repack it with gzip: `h5repack -f GZIP=1 IN OUT`";
 
+const AGAIN: &str = "copy the file from the logger again";
+const BAD_SUM: &str = "a check sum does not fit: the data are damaged";
+
 /// Part of the library's words, what they mean, and what to do.
 const MEANINGS: [(&str, &str, &str); 9] = [
     (
@@ -30,23 +33,15 @@ const MEANINGS: [(&str, &str, &str); 9] = [
         "the program that wrote the file never closed it",
         "in a copy of the file, run `h5clear -s FILE` and try again; what was written last may be missing",
     ),
-    (
-        "file signature not found",
-        "the file is not HDF5, or its beginning is damaged",
-        "copy it from the logger again",
-    ),
+    ("file signature not found", "the file is not HDF5, or its beginning is damaged", AGAIN),
     (
         "unable to lock file",
         "another program has the file open for writing",
         "close that program, or read a copy",
     ),
     ("required filter", "the data are compressed by a filter that is not built in", REPACK),
-    ("checksum", "a check sum does not fit: the data are damaged", "copy the file from the logger again"),
-    (
-        "data error detected by fletcher32",
-        "a check sum does not fit: the data are damaged",
-        "copy the file from the logger again",
-    ),
+    ("checksum", BAD_SUM, AGAIN),
+    ("data error detected by fletcher32", BAD_SUM, AGAIN),
     (
         "filter returned failure",
         "a block of it cannot be unpacked: the data are damaged or their filter is not built in",
@@ -109,20 +104,29 @@ pub(super) fn of_file(path: &Path, fault: Fault) -> IngestError {
 
 /// What the library's words mean, outermost first.
 pub(super) fn of_words(words: &[Bytes]) -> Fault {
+    meaning(words).unwrap_or_else(|| {
+        let last = texts(words).pop().unwrap_or_else(|| "the library gives no reason".into());
+        Fault::new(
+            format!("it cannot be read: {last}"),
+            "the file may be damaged: try `h5dump -H FILE`, or copy it from the logger again",
+        )
+    })
+}
+
+/// The same where it is known.
+pub(super) fn meaning(words: &[Bytes]) -> Option<Fault> {
+    let words = texts(words);
+    let all = words.join(": ").to_lowercase();
+    let (part, problem, remedy) = MEANINGS.iter().find(|(part, ..)| all.contains(part))?;
+    // The library gives the sizes for a file that is cut off.
+    let detail = words.iter().find(|word| word.to_lowercase().contains(part));
+    let sizes = detail.and_then(|detail| detail.split_once("file: "));
+    let sizes = sizes.map_or(String::new(), |(_, sizes)| format!(" ({sizes})"));
+    Some(Fault::new(format!("{problem}{sizes}"), *remedy))
+}
+
+fn texts(words: &[Bytes]) -> Vec<String> {
     /// A sentence of the library is shorter; names in a damaged file are not.
     const LONGEST: usize = 200;
-    let words: Vec<String> = words.iter().map(|word| decoded(&word[..word.len().min(LONGEST)])).collect();
-    let all = words.join(": ").to_lowercase();
-    if let Some((part, problem, remedy)) = MEANINGS.iter().find(|(part, ..)| all.contains(part)) {
-        // The library gives the sizes for a file that is cut off.
-        let detail = words.iter().find(|word| word.to_lowercase().contains(part));
-        let sizes =
-            detail.and_then(|d| d.split_once("file: ")).map_or(String::new(), |(_, s)| format!(" ({s})"));
-        return Fault::new(format!("{problem}{sizes}"), *remedy);
-    }
-    let last = words.last().map_or("the library gives no reason", String::as_str);
-    Fault::new(
-        format!("it cannot be read: {last}"),
-        "the file may be damaged: try `h5dump -H FILE`, or copy it from the logger again",
-    )
+    words.iter().map(|word| decoded(&word[..word.len().min(LONGEST)])).collect()
 }

@@ -1,7 +1,7 @@
 //! A source as a cask file names it to the dataset, and the column, row or field of it, that it means.
 
-use super::answer::{Dataset, Field, Filter, Number, Object, Storage, decoded};
-use super::column::{Column, Place};
+use super::answer::{Dataset, Filter, NumberType, Object, RecordField, Storage, decoded};
+use super::column::{DatasetColumn, Place};
 use super::fault::{self, Fault, REPACK};
 use super::room::File;
 use crate::ingest::error;
@@ -25,7 +25,7 @@ fn places(source: &str) -> impl Iterator<Item = &str> {
 ///
 /// # Errors
 /// What stands there is no channel of numbers.
-pub(super) fn find(file: &Rc<File>, source: &str) -> Result<Option<Column>, Fault> {
+pub(super) fn find(file: &Rc<File>, source: &str) -> Result<Option<DatasetColumn>, Fault> {
     let source = format!("/{}", source.trim().trim_start_matches('/'));
     let mut other = Ok(None);
     for path in places(&source) {
@@ -42,10 +42,10 @@ pub(super) fn find(file: &Rc<File>, source: &str) -> Result<Option<Column>, Faul
 }
 
 /// Of the channels of a dataset the one that `source` names; one that is alone may be counted or not.
-fn named(source: &str, mut channels: Vec<Column>) -> Result<Column, Fault> {
+fn named(source: &str, mut channels: Vec<DatasetColumn>) -> Result<DatasetColumn, Fault> {
     /// More names no longer fit a message.
     const HANDFUL: usize = 12;
-    let is_meant = |column: &Column| {
+    let is_meant = |column: &DatasetColumn| {
         column.source == source
             || column.columns == 1 && source.strip_suffix("[0]") == Some(column.source.as_str())
     };
@@ -63,7 +63,7 @@ fn named(source: &str, mut channels: Vec<Column>) -> Result<Column, Fault> {
 ///
 /// # Errors
 /// There is none; where nothing stands there, with the sources that are most like it.
-pub(super) fn locate(file: &Rc<File>, source: &str) -> Result<Column, Fault> {
+pub(super) fn locate(file: &Rc<File>, source: &str) -> Result<DatasetColumn, Fault> {
     find(file, source)?.ok_or_else(|| {
         let objects = file.walk();
         let of_dataset = |(path, object): &(String, Rc<Object>)| match &**object {
@@ -103,7 +103,7 @@ const MOST_COLUMNS: usize = 4096;
 ///
 /// # Errors
 /// It holds no numbers in one or two dimensions, or none that are read.
-pub(super) fn channels(file: &Rc<File>, dataset: &Dataset, path: &str) -> Result<Vec<Column>, Fault> {
+pub(super) fn channels(file: &Rc<File>, dataset: &Dataset, path: &str) -> Result<Vec<DatasetColumn>, Fault> {
     refuse_unread(dataset, path)?;
     let shape = shape_of(dataset, path)?;
     let (place, columns, length) = match *shape {
@@ -123,14 +123,14 @@ pub(super) fn channels(file: &Rc<File>, dataset: &Dataset, path: &str) -> Result
         }
     };
     let dataset = Rc::new(dataset.clone());
-    let several = |name: &str, count: usize, column: &dyn Fn(usize) -> (Number, Place)| {
+    let several = |name: &str, count: usize, column: &dyn Fn(usize) -> (NumberType, Place)| {
         let of_index = |index: usize| {
             let (number, place) = column(index);
             let source = if count > 1 { format!("{name}[{index}]") } else { name.to_owned() };
             let (file, dataset, path) = (Rc::clone(file), Rc::clone(&dataset), path.to_owned());
-            Column { file, dataset, path, source, index, columns: count, length, number, place }
+            DatasetColumn { file, dataset, path, source, index, columns: count, length, number, place }
         };
-        (0..count.min(MOST_COLUMNS)).map(of_index).collect::<Vec<Column>>()
+        (0..count.min(MOST_COLUMNS)).map(of_index).collect::<Vec<DatasetColumn>>()
     };
     if dataset.fields.is_empty() {
         let number = number_of(&dataset, path)?;
@@ -143,11 +143,11 @@ pub(super) fn channels(file: &Rc<File>, dataset: &Dataset, path: &str) -> Result
             "save them as a table of one dimension, one record a sample",
         ));
     }
-    let of_field = |field: &Field| {
+    let of_field = |field: &RecordField| {
         // One number of a list, as a field of its own.
         let single = |index: usize| {
             let from = field.from + index * field.number.bytes();
-            (field.number, Place::Field(Field { count: 1, from, ..field.clone() }))
+            (field.number, Place::Field(RecordField { count: 1, from, ..field.clone() }))
         };
         several(&format!("{path}.{}", decoded(&field.name)), field.count, &single)
     };
@@ -177,7 +177,7 @@ const OWN_DATA: &str = "ask for a recording that holds its own data: `h5repack I
 const NUMBERS: &str = "name a dataset of numbers; `dropcheck inspect` lists them";
 
 /// How the numbers of a dataset are read; a fault where it holds none.
-fn number_of(dataset: &Dataset, name: &str) -> Result<Number, Fault> {
+fn number_of(dataset: &Dataset, name: &str) -> Result<NumberType, Fault> {
     dataset.number.ok_or_else(|| {
         let what = decoded(&dataset.type_name);
         if dataset.is_records {

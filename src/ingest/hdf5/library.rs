@@ -1,8 +1,8 @@
 //! An HDF5 file, through the C library, to descriptions and numbers: all that hands a file's bytes to C, in a process of its own.
 
 use super::answer::{
-    Answer, Bytes, Chunk, Dataset, FRAME_NUMBERS, Filter, Object, Packing, Request, Slab, Storage, Value,
-    receive, send,
+    AttributeValue, Bytes, Chunk, Dataset, FRAME_NUMBERS, Filter, Object, Packing, Query, Reply, Slab,
+    Storage, receive, send,
 };
 use super::{names, types};
 use hdf5_metno::dataset::Layout;
@@ -56,23 +56,23 @@ pub(super) fn answer(
     let file = match File::open(path) {
         Ok(file) => file,
         Err(error) => {
-            send(to, &Answer::Refused(words(&error)))?;
+            send(to, &Reply::Refused(words(&error)))?;
             return to.flush();
         }
     };
-    send(to, &Answer::Opened { user_block: file.userblock(), library: hdf5_metno::library_version() })?;
+    send(to, &Reply::Opened { user_block: file.userblock(), library: hdf5_metno::library_version() })?;
     to.flush()?;
     let mut opened = Opened { file, grant, members: HashMap::new() };
     while let Ok((request, _)) = receive(from) {
         match request {
-            Request::Look(path) => {
+            Query::Look(path) => {
                 let object = opened.object(&path);
-                send(to, &Answer::Found(path, object))?;
+                send(to, &Reply::Found(path, object))?;
             }
-            Request::Walk => opened.walk("", 0, &mut 0, to)?,
-            Request::Read { path, is_wide, slab } => opened.read(&path, is_wide, slab, to)?,
+            Query::Walk => opened.walk("", 0, &mut 0, to)?,
+            Query::Read { path, is_wide, slab } => opened.read(&path, is_wide, slab, to)?,
         }
-        send(to, &Answer::Done)?;
+        send(to, &Reply::Done)?;
         to.flush()?;
     }
     Ok(())
@@ -100,7 +100,7 @@ impl Opened<'_> {
             let path = format!("{group}/{name}");
             let object = self.object(&path);
             let is_group = matches!(object, Object::Group { .. });
-            send(to, &Answer::Found(path.clone(), object))?;
+            send(to, &Reply::Found(path.clone(), object))?;
             if is_group && depth < DEEPEST {
                 self.walk(&path, depth + 1, count, to)?;
             }
@@ -128,19 +128,20 @@ impl Opened<'_> {
     fn opened(&mut self, path: &str) -> hdf5_metno::Result<Object> {
         let kind = if path == "/" { LocationType::Group } else { self.file.loc_type_by_name(path)? };
         let own = self.file.filename();
+        // A link within the file may lead to one that leaves it.
+        let is_elsewhere = |place: &Location| place.filename().as_bytes() != own.as_bytes();
         match kind {
             LocationType::Group => {
                 let group = self.file.group(path)?;
-                // A link within the file may lead to one that leaves it.
-                if group.filename().as_bytes() != own.as_bytes() {
+                if is_elsewhere(&group) {
                     return Ok(Object::NotFollowed(ELSEWHERE.into()));
                 }
-                let attributes = attributes_of(&group);
-                Ok(Object::Group { attributes, times: self.times_in(path.trim_end_matches('/')) })
+                let times = self.times_in(path.trim_end_matches('/'));
+                Ok(Object::Group { attributes: attributes_of(&group), times })
             }
             LocationType::Dataset => {
                 let dataset = self.file.dataset(path)?;
-                if dataset.filename().as_bytes() != own.as_bytes() {
+                if is_elsewhere(&dataset) {
                     return Ok(Object::NotFollowed(ELSEWHERE.into()));
                 }
                 described(&dataset).map(Object::Dataset)
@@ -170,11 +171,11 @@ impl Opened<'_> {
     /// Sends the numbers of a dataset, or why they cannot be read.
     fn read(&mut self, path: &str, is_wide: bool, slab: Slab, to: &mut impl Write) -> io::Result<()> {
         let sent = if is_wide {
-            self.send_numbers(path, slab, |numbers| send(to, &Answer::Wide(numbers)))
+            self.send_numbers(path, slab, |numbers| send(to, &Reply::Wide(numbers)))
         } else {
-            self.send_numbers(path, slab, |numbers| send(to, &Answer::Narrow(numbers)))
+            self.send_numbers(path, slab, |numbers| send(to, &Reply::Narrow(numbers)))
         };
-        sent.or_else(|error| send(to, &Answer::Refused(words(&error))))
+        sent.or_else(|error| send(to, &Reply::Refused(words(&error))))
     }
 
     fn send_numbers<T: H5Type + Copy>(
@@ -294,7 +295,7 @@ fn chunks(dataset: &hdf5_metno::Dataset, filters: &[Filter]) -> Option<Vec<Chunk
 }
 
 /// Those attributes of a place that may say something of samples.
-fn attributes_of(place: &Location) -> Vec<(String, Value)> {
+fn attributes_of(place: &Location) -> Vec<(String, AttributeValue)> {
     // The wrapper makes text of names of any bytes; they are bytes again before anybody looks at them.
     let names = place.attr_names().unwrap_or_default().into_iter().map(String::into_bytes);
     let names = names.filter_map(|name| String::from_utf8(name).ok()).filter(|name| names::is_read(name));
@@ -306,7 +307,7 @@ fn attributes_of(place: &Location) -> Vec<(String, Value)> {
 }
 
 /// What an attribute holds; `None` where that is too much.
-fn value(attribute: &Attribute) -> Option<Value> {
+fn value(attribute: &Attribute) -> Option<AttributeValue> {
     let dtype = attribute.dtype().ok()?;
     if attribute.size() > MOST_VALUES || dtype.size().saturating_mul(attribute.size()) > MOST_BYTES {
         return None;
@@ -316,14 +317,14 @@ fn value(attribute: &Attribute) -> Option<Value> {
         Ok(TypeDescriptor::VarLenAscii) => texts::<VarLenAscii>(attribute, VarLenAscii::as_bytes),
         Ok(TypeDescriptor::FixedAscii(_)) => texts(attribute, FixedAscii::<TEXT_BYTES>::as_bytes),
         Ok(TypeDescriptor::FixedUnicode(_)) => texts(attribute, FixedUnicode::<TEXT_BYTES>::as_bytes),
-        _ => attribute.read_raw::<f64>().ok().map(Value::Numbers),
+        _ => attribute.read_raw::<f64>().ok().map(AttributeValue::Numbers),
     };
-    Some(texts.unwrap_or(Value::Other))
+    Some(texts.unwrap_or(AttributeValue::Other))
 }
 
 /// Texts as the bytes that they are: the wrapper's own way to `str` does not look whether they are UTF-8.
-fn texts<T: H5Type>(attribute: &Attribute, bytes: fn(&T) -> &[u8]) -> Option<Value> {
+fn texts<T: H5Type>(attribute: &Attribute, bytes: fn(&T) -> &[u8]) -> Option<AttributeValue> {
     let texts = attribute.read_raw::<T>().ok()?;
     let cut = |text: &T| bytes(text).iter().take(TEXT_BYTES).copied().collect();
-    Some(Value::Texts(texts.iter().map(cut).collect()))
+    Some(AttributeValue::Texts(texts.iter().map(cut).collect()))
 }

@@ -1,14 +1,17 @@
 //! An HDF5 file to the list of its datasets and columns, each as reading would take it.
 
 use super::answer::Object;
-use super::channel::{Asked, Channel};
+use super::channel::DatasetChannel;
 use super::clocks::Clocks;
-use super::column::Column;
-use super::fault::Fault;
+use super::column::DatasetColumn;
+use super::fault::{self, Fault};
 use super::find;
 use super::room::File;
-use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Samples, Severity};
+use crate::data::{
+    AttributeFinding, ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, Samples,
+};
 use crate::ingest::{IngestError, Limits, Progress};
+use crate::numerics::as_f64;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::rc::Rc;
@@ -27,12 +30,9 @@ struct Lister {
     limits: Limits,
     values_left: u64,
     clocks: Clocks,
-    groups: u64,
-    datasets: u64,
-    channels: Vec<ListedChannel>,
+    listing: Listing,
     /// Links to what is not there or not followed; they stand behind the channels.
     broken: Vec<ListedChannel>,
-    issues: Vec<Issue>,
 }
 
 /// Lists what the HDF5 file at `path` holds.
@@ -50,41 +50,34 @@ pub(in super::super) fn list(
 }
 
 fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
-    let mut lister = Lister {
-        limits: file.limits,
-        // No number takes fewer than four bytes once it is unpacked and turned.
-        values_left: MOST_VALUES.min(file.limits.unpacked_bytes(file.bytes) / 4),
-        clocks: Clocks::default(),
-        groups: 0,
-        datasets: 0,
-        channels: Vec::new(),
-        broken: Vec::new(),
-        issues: Vec::new(),
-    };
-    let objects = file.walk();
-    for (number, (path, object)) in objects.iter().enumerate() {
-        lister.add(file, path, object);
-        #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
-        progress((number + 1) as f64 / objects.len() as f64);
-    }
-    let Lister { groups, datasets, mut channels, broken, mut issues, .. } = lister;
-    channels.extend(broken);
-    count_from_first(&mut channels, &mut issues);
     let (major, minor, patch) = file.library;
-    Listing {
+    let listing = Listing {
         schema: "dropcheck.inspect/1",
         recording: file.path.display().to_string(),
         bytes: file.bytes,
         format: RecordingFormat::Hdf5,
-        counts: BTreeMap::from([("groups".into(), groups), ("datasets".into(), datasets)]),
+        counts: BTreeMap::from(["groups", "datasets"].map(|counted| (counted.to_owned(), 0))),
         facts: BTreeMap::from([("read with".into(), format!("HDF5 library {major}.{minor}.{patch}"))]),
-        channels,
-        issues,
+        channels: Vec::new(),
+        issues: Vec::new(),
+    };
+    // No number takes fewer than four bytes once it is unpacked and turned.
+    let values_left = MOST_VALUES.min(file.limits.unpacked_bytes(file.bytes) / 4);
+    let (clocks, broken) = (Clocks::default(), Vec::new());
+    let mut lister = Lister { limits: file.limits, values_left, clocks, listing, broken };
+    let objects = file.walk();
+    for (number, (path, object)) in objects.iter().enumerate() {
+        lister.add(file, path, object);
+        progress(as_f64(number + 1) / as_f64(objects.len()));
     }
+    let Lister { mut listing, broken, .. } = lister;
+    listing.channels.extend(broken);
+    count_from_first(&mut listing);
+    listing
 }
 
 /// Times from the earliest first sample on.
-fn count_from_first(channels: &mut [ListedChannel], issues: &mut [Issue]) {
+fn count_from_first(Listing { channels, issues, .. }: &mut Listing) {
     let first_s = channels.iter().filter_map(|channel| channel.start_s).fold(f64::INFINITY, f64::min);
     let starts = channels.iter_mut().filter_map(|channel| channel.start_s.as_mut());
     let places = issues.iter_mut().flat_map(|issue| [&mut issue.from_s, &mut issue.to_s]).flatten();
@@ -94,10 +87,10 @@ fn count_from_first(channels: &mut [ListedChannel], issues: &mut [Issue]) {
 impl Lister {
     fn add(&mut self, file: &Rc<File>, path: &str, object: &Object) {
         match object {
-            Object::Group { .. } => self.groups += 1,
+            Object::Group { .. } => self.count("groups"),
             Object::Dataset(dataset) => {
-                self.datasets += 1;
-                if self.channels.len() >= MOST_CHANNELS {
+                self.count("datasets");
+                if self.listing.channels.len() >= MOST_CHANNELS {
                     return;
                 }
                 let channels = find::channels(file, dataset, path).map_err(Fault::listed);
@@ -108,56 +101,63 @@ impl Lister {
                     Ok(channels) => format!("has {} columns, too many for channels", channels.len()),
                     Err(reason) => reason,
                 };
-                self.channels.push(ListedChannel {
+                self.listing.channels.push(ListedChannel {
                     encoding: dataset.described(),
                     unreadable: Some(reason),
                     ..ListedChannel::named(path, "dataset")
                 });
             }
             Object::NamedType | Object::Nothing => {}
-            Object::NotFollowed(_) | Object::Broken(_) => {
+            Object::NotFollowed(what) => self.list_broken(path, what),
+            Object::Broken(words) => {
                 const NOTHING: &str = "a link to what is not there, or what the HDF5 library cannot open";
-                let fault = find::no_dataset(object, path).map(|fault| fault.problem);
-                let reason = fault.filter(|problem| !problem.starts_with("it cannot be read"));
-                self.broken.push(ListedChannel {
-                    unreadable: Some(reason.unwrap_or_else(|| NOTHING.to_owned())),
-                    ..ListedChannel::named(path, "link")
-                });
+                self.list_broken(
+                    path,
+                    fault::meaning(words).as_ref().map_or(NOTHING, |fault| &fault.problem),
+                );
             }
         }
     }
 
-    fn list(&mut self, column: Column) {
+    fn list_broken(&mut self, path: &str, reason: &str) {
+        let unreadable = Some(reason.to_owned());
+        self.broken.push(ListedChannel { unreadable, ..ListedChannel::named(path, "link") });
+    }
+
+    fn count(&mut self, counted: &str) {
+        *self.listing.counts.entry(counted.to_owned()).or_default() += 1;
+    }
+
+    fn list(&mut self, column: DatasetColumn) {
         let mut listed = ListedChannel::named(&column.source, column.kind_name());
         if let Err(fault) = self.fill(column, &mut listed) {
             listed.unreadable = Some(fault.listed());
         }
-        self.channels.push(listed);
+        self.listing.channels.push(listed);
     }
 
     /// What reading would take of a column into `listed`; where it would refuse the clock, the refusal stands in its place.
-    fn fill(&mut self, column: Column, listed: &mut ListedChannel) -> Result<(), Fault> {
+    fn fill(&mut self, column: DatasetColumn, listed: &mut ListedChannel) -> Result<(), Fault> {
         let source = &listed.source.clone();
         listed.samples = Some(column.length as u64);
         listed.encoding = column.dataset.described();
-        let asked = Asked::default();
-        let channel = match Channel::of(column, &asked, &mut self.clocks) {
+        let channel = match DatasetChannel::of(column, None, None, &mut self.clocks) {
             Ok(channel) => channel,
             Err(fault) => {
-                self.doubt(source, IssueCode::Scale, &fault);
+                self.doubt(source, &fault, AttributeFinding::Refused);
                 return Ok(());
             }
         };
-        let Channel { column, attributes, times } = &channel;
+        let DatasetChannel { column, attributes, claims, times } = &channel;
         listed.encoding += &attributes.scaling();
         listed.unit.clone_from(&attributes.unit);
         if let Some(two) = &attributes.two_units {
-            self.doubt(source, IssueCode::Scale, &Fault::from(two.clone()).at(source));
+            self.doubt(source, &Fault::from(two.clone()).at(source), AttributeFinding::Refused);
         }
-        self.issues.extend(attributes.issues.iter().map(|issue| issue.clone().on(source)));
+        self.listing.issues.extend(attributes.issues.iter().map(|issue| issue.clone().on(source)));
         let is_read = column.length <= MOST_SAMPLES && self.pays_for(column);
         if !is_read || times.first().is_some_and(|time| !self.pays_for(time)) {
-            listed.sample_rate_hz = attributes.stated.first().map(|stated| stated.rate_hz);
+            listed.sample_rate_hz = claims.stated.first().map(|stated| stated.rate_hz);
             return Ok(());
         }
         let samples = channel.samples()?;
@@ -165,26 +165,25 @@ impl Lister {
         if channel.has_no_clock() || column.length < 2 {
             return Ok(());
         }
-        match channel.on_base(samples, &asked, |other| self.pays_for(other)) {
-            Err(fault) => self.doubt(source, IssueCode::Clock, &fault),
+        match channel.on_base(samples, |other| self.pays_for(other)) {
+            Err(fault) => self.doubt(source, &fault, ClockFinding::Refused),
             Ok(based) => {
                 let uniform = based.uniform;
-                #[allow(clippy::cast_precision_loss, reason = "below 2^31")]
-                let even_s = (column.length - 1) as f64 / uniform.sample_rate_hz;
+                let even_s = as_f64(column.length - 1) / uniform.sample_rate_hz;
                 let (first_s, last_s) = based.span_s.unwrap_or((uniform.start_s, f64::NAN));
                 listed.sample_rate_hz = Some(uniform.sample_rate_hz);
                 listed.start_s = Some(first_s);
                 listed.duration_s = Some(based.span_s.map_or(even_s, |_| last_s - first_s));
                 let has_gap = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
                 listed.gaps = based.span_s.map(|_| if has_gap { uniform.gaps.len() as u64 } else { 0 });
-                self.issues.extend(uniform.issues.into_iter().map(|issue| issue.on(source)));
+                self.listing.issues.extend(uniform.issues.into_iter().map(|issue| issue.on(source)));
             }
         }
         Ok(())
     }
 
     /// Whether a column may be read; it is then paid for.
-    fn pays_for(&mut self, column: &Column) -> bool {
+    fn pays_for(&mut self, column: &DatasetColumn) -> bool {
         let values = (column.length as u64).saturating_mul(column.columns as u64);
         let pays = column.held_bytes() <= self.limits.samples_bytes()
             && column.part_bytes() <= self.limits.part_bytes()
@@ -196,9 +195,9 @@ impl Lister {
     }
 
     /// That reading would refuse a channel, in its words.
-    fn doubt(&mut self, source: &str, code: IssueCode, fault: &Fault) {
-        let message = format!("{}: {}", fault.beside(source), fault.remedy);
-        self.issues.push(Issue::new(code, Severity::Warning, message).on(source));
+    fn doubt<F: Into<Finding>>(&mut self, source: &str, fault: &Fault, refused: fn(String) -> F) {
+        let found: Finding = refused(format!("{}: {}", fault.beside(source), fault.remedy)).into();
+        self.listing.issues.push(found.on(source));
     }
 }
 

@@ -4,7 +4,7 @@ use crate::ingest::vocabulary::{self, Meaning};
 
 /// What an attribute says of samples, apart from their rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
+pub(super) enum AttributeRole {
     Unit,
     Start,
     Scale,
@@ -16,16 +16,16 @@ pub(super) enum Role {
 }
 
 /// `scale_factor`, `add_offset`, `_FillValue` and `missing_value` are those of the CF conventions of netCDF.
-const ROLES: [(&str, Role); 9] = [
-    ("unit", Role::Unit),
-    ("units", Role::Unit),
-    ("start_time_s", Role::Start),
-    ("scale", Role::Scale),
-    ("scale_factor", Role::Scale),
-    ("offset", Role::Offset),
-    ("add_offset", Role::Offset),
-    ("_FillValue", Role::Fill),
-    ("missing_value", Role::Fill),
+const ROLES: [(&str, AttributeRole); 9] = [
+    ("unit", AttributeRole::Unit),
+    ("units", AttributeRole::Unit),
+    ("start_time_s", AttributeRole::Start),
+    ("scale", AttributeRole::Scale),
+    ("scale_factor", AttributeRole::Scale),
+    ("offset", AttributeRole::Offset),
+    ("add_offset", AttributeRole::Offset),
+    ("_FillValue", AttributeRole::Fill),
+    ("missing_value", AttributeRole::Fill),
 ];
 
 /// Parts of the names of conversions, in lower case without what parts their words: `binToVoltFactor` of Elsys' TPC5 is one.
@@ -35,13 +35,13 @@ const CONVERSIONS: [&str; 6] = ["tovolt", "tophysical", "conversion", "perbit", 
 const OWN_CONVERSIONS: [&str; 5] = ["range", "gain", "slope", "factor", "resolution"];
 
 /// What an attribute of this name says, `distance` groups above the samples.
-pub(super) fn role(name: &str, distance: usize) -> Option<Role> {
+pub(super) fn role(name: &str, distance: usize) -> Option<AttributeRole> {
     if let Some((_, role)) = ROLES.iter().find(|(known, _)| *known == name) {
         return Some(*role);
     }
     let plain: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
     let own = OWN_CONVERSIONS.iter().filter(|_| distance == 0);
-    CONVERSIONS.iter().chain(own).any(|part| plain.contains(part)).then_some(Role::Conversion)
+    CONVERSIONS.iter().chain(own).any(|part| plain.contains(part)).then_some(AttributeRole::Conversion)
 }
 
 /// Whether an attribute of this name states a rate or an interval.

@@ -1,7 +1,7 @@
 //! The bytes of a dataset, plain or in deflated chunks, to one column or field of it, on all cores: the library works on one thread at a time.
 
-use super::answer::{Chunk, Dataset, Field, Number, Packing, Slab, Storage};
-use super::column::{Column, Place};
+use super::answer::{Chunk, Dataset, NumberType, Packing, RecordField, Slab, Storage};
+use super::column::{DatasetColumn, Place};
 use super::fault::{Fault, REPACK};
 use crate::data::Samples;
 use libdeflater::Decompressor;
@@ -33,9 +33,9 @@ macro_rules! stored {
         /// The numbers of a column, or of a field of records; `None` where the library must read them: other filters, types or byte
         /// orders, chunks that were never written, damage. For records the library would need a type made for them, which only its unsafe
         /// part can have.
-        fn numbers(column: &Column) -> Option<Samples> {
+        fn numbers(column: &DatasetColumn) -> Option<Samples> {
             match column.number {
-                $(Number::$name => values::<$number>(column).map(Samples::$samples)),*
+                $(NumberType::$name => values::<$number>(column).map(Samples::$samples)),*
             }
         }
     };
@@ -53,7 +53,7 @@ stored!(
     U64 = u64 as f64 in F64
 );
 
-impl Column {
+impl DatasetColumn {
     /// Its numbers as stored: f32 and short integers as f32, the rest as f64.
     ///
     /// # Errors
@@ -82,15 +82,15 @@ impl Column {
     }
 }
 
-fn values<T: Stored>(column: &Column) -> Option<Vec<T::Sample>> {
-    let Column { file, dataset, place, .. } = column;
+fn values<T: Stored>(column: &DatasetColumn) -> Option<Vec<T::Sample>> {
+    let DatasetColumn { file, dataset, place, .. } = column;
     let (index, field) = match place {
         Place::Field(field) => (0, Some(field)),
         Place::Whole | Place::Column if dataset.is_plain => (column.index, None),
         _ => return None,
     };
     let value_bytes = usize::try_from(dataset.value_bytes).ok().filter(|bytes| *bytes > 0)?;
-    let layout = Layout { rows: 0, columns: 1, value_bytes, packing: Packing::Plain, field, index };
+    let layout = ChunkLayout { rows: 0, columns: 1, value_bytes, packing: Packing::Plain, field, index };
     let (layout, chunks) = match &dataset.storage {
         // Addresses count from behind a user block in some versions of the library and from the file's start in others.
         _ if file.user_block != 0 => return None,
@@ -120,7 +120,7 @@ fn values<T: Stored>(column: &Column) -> Option<Vec<T::Sample>> {
 }
 
 /// How the values of a column lie in the chunks of its dataset.
-struct Layout<'a> {
+struct ChunkLayout<'a> {
     /// Of a chunk.
     rows: usize,
     /// Of a chunk.
@@ -129,21 +129,21 @@ struct Layout<'a> {
     value_bytes: usize,
     packing: Packing,
     /// The field to be taken, where the values are records.
-    field: Option<&'a Field>,
+    field: Option<&'a RecordField>,
     /// The column to be taken.
     index: usize,
 }
 
-impl Field {
+impl RecordField {
     /// Where byte `i` of its number, counted from the lowest, stands in a record.
     fn byte(&self, i: usize) -> usize {
         self.from + if self.is_big_endian { self.number.bytes() - 1 - i } else { i }
     }
 }
 
-impl<'a> Layout<'a> {
+impl<'a> ChunkLayout<'a> {
     /// With the pieces in which a dataset that lies in one is read.
-    fn in_one_piece(self, column: &Column, from: u64) -> Option<(Self, Vec<Chunk>)> {
+    fn in_one_piece(self, column: &DatasetColumn, from: u64) -> Option<(Self, Vec<Chunk>)> {
         let (bytes, rows) = (self.value_bytes, (PIECE_BYTES / self.value_bytes).max(1));
         let stored = column.length.checked_mul(bytes)? as u64;
         let is_within = from.checked_add(stored).is_some_and(|end| end <= column.file.bytes);
@@ -256,7 +256,7 @@ mod tests {
         (0..20_000 * i32::try_from(columns).unwrap()).map(|i| i * 7919 % 100_003 - 50_000).collect()
     }
 
-    fn opened(path: &Path, source: &str) -> Column {
+    fn opened(path: &Path, source: &str) -> DatasetColumn {
         let file = room::File::open(path, Limits::default()).unwrap();
         find::locate(&file, source).unwrap()
     }

@@ -19,11 +19,11 @@ pub(super) struct Watched {
     /// How long it may be silent from now on.
     allowed: Sender<Duration>,
     told: Cell<Instant>,
-    watch: JoinHandle<Ended>,
+    watch: JoinHandle<ProcessEnd>,
 }
 
 /// How a process ended.
-pub(super) enum Ended {
+pub(super) enum ProcessEnd {
     /// It was silent for too long.
     Silent,
     /// By itself.
@@ -52,19 +52,19 @@ impl Watched {
     }
 
     /// Ends it.
-    pub(super) fn end(self) -> Ended {
+    pub(super) fn end(self) -> ProcessEnd {
         drop(self.allowed);
-        self.watch.join().unwrap_or(Ended::ByReader)
+        self.watch.join().unwrap_or(ProcessEnd::ByReader)
     }
 }
 
 /// Ends the process when it was silent for too long, or the reader needs it no more.
-fn watch(mut child: Child, allowed: &Receiver<Duration>) -> Ended {
+fn watch(mut child: Child, allowed: &Receiver<Duration>) -> ProcessEnd {
     let mut patience = PATIENCE;
     let ended = loop {
         match allowed.recv_timeout(patience) {
             Ok(longer) => patience = longer,
-            Err(RecvTimeoutError::Timeout) => break Ended::Silent,
+            Err(RecvTimeoutError::Timeout) => break ProcessEnd::Silent,
             Err(RecvTimeoutError::Disconnected) => break own_end(&mut child),
         }
     };
@@ -74,13 +74,13 @@ fn watch(mut child: Child, allowed: &Receiver<Duration>) -> Ended {
 }
 
 /// What was killed by the system is about to end; what is well waits for requests.
-fn own_end(child: &mut Child) -> Ended {
+fn own_end(child: &mut Child) -> ProcessEnd {
     for _ in 0..50 {
         match child.try_wait() {
             Ok(None) => std::thread::sleep(Duration::from_millis(2)),
-            Ok(Some(status)) => return Ended::With(status),
+            Ok(Some(status)) => return ProcessEnd::With(status),
             Err(_) => break,
         }
     }
-    Ended::ByReader
+    ProcessEnd::ByReader
 }

@@ -3,10 +3,16 @@
 //! The library crashes, loops and takes memory without bound on files that are damaged or made to do harm. Where it does, that process
 //! ends, and the recording is refused; this one goes on.
 
+#[cfg(any(test, fuzzing))]
+mod thread_tests;
+
+#[cfg(any(test, fuzzing))]
+pub(in crate::ingest) use thread_tests::answer_by;
+
 use super::super::error::IngestError;
-use super::answer::{Answer, Object, Request, Slab, receive, send};
+use super::answer::{Object, Query, Reply, Slab, receive, send};
 use super::fault::{self, Fault};
-use super::patience::{Ended, PATIENCE, Watched};
+use super::patience::{PATIENCE, ProcessEnd, Watched};
 use crate::data::Samples;
 use crate::ingest::Limits;
 use std::cell::{Cell, OnceCell, RefCell};
@@ -58,8 +64,8 @@ impl File {
         let fault = |fault: Fault| fault::of_file(path, fault);
         let mut link = Link::to(path).map_err(|refusal| fault(unstarted(&refusal)))?;
         let (user_block, library) = match link.answer() {
-            Ok((Answer::Opened { user_block, library }, _)) => (user_block, library),
-            Ok((Answer::Refused(words), _)) => return Err(fault(fault::of_words(&words))),
+            Ok((Reply::Opened { user_block, library }, _)) => (user_block, library),
+            Ok((Reply::Refused(words), _)) => return Err(fault(fault::of_words(&words))),
             _ => return Err(fault(link.end())),
         };
         Ok(Rc::new(Self {
@@ -88,7 +94,7 @@ impl File {
         let known = || self.known.borrow().get(path).cloned();
         known()
             .or_else(|| {
-                self.ask(&Request::Look(path.to_owned()));
+                self.ask(&Query::Look(path.to_owned()));
                 self.note();
                 known()
             })
@@ -97,7 +103,7 @@ impl File {
 
     /// Everything in the file, by path, in its order.
     pub(super) fn walk(&self) -> Vec<(String, Rc<Object>)> {
-        self.ask(&Request::Walk);
+        self.ask(&Query::Walk);
         self.note()
     }
 
@@ -109,20 +115,20 @@ impl File {
         count: usize,
         is_wide: bool,
     ) -> Result<Samples, Fault> {
-        self.ask(&Request::Read { path: path.to_owned(), is_wide, slab });
+        self.ask(&Query::Read { path: path.to_owned(), is_wide, slab });
         let (mut narrow, mut wide) = (Vec::new(), Vec::new());
         while self.lost.get().is_none() {
             self.link.borrow().wait_for(count.saturating_mul(8) as u64);
             let answer = self.link.borrow_mut().answer();
             match answer {
-                Ok((Answer::Narrow(more), _)) if more.len() <= count - narrow.len() => narrow.extend(more),
-                Ok((Answer::Wide(more), _)) if more.len() <= count - wide.len() => wide.extend(more),
-                Ok((Answer::Refused(words), _)) => {
+                Ok((Reply::Narrow(more), _)) if more.len() <= count - narrow.len() => narrow.extend(more),
+                Ok((Reply::Wide(more), _)) if more.len() <= count - wide.len() => wide.extend(more),
+                Ok((Reply::Refused(words), _)) => {
                     self.note();
                     return Err(fault::of_words(&words).at(path));
                 }
-                Ok((Answer::Done, _)) if is_wide && wide.len() == count => return Ok(Samples::F64(wide)),
-                Ok((Answer::Done, _)) if !is_wide && narrow.len() == count => {
+                Ok((Reply::Done, _)) if is_wide && wide.len() == count => return Ok(Samples::F64(wide)),
+                Ok((Reply::Done, _)) if !is_wide && narrow.len() == count => {
                     return Ok(Samples::F32(narrow));
                 }
                 _ => {
@@ -133,7 +139,7 @@ impl File {
         Err(self.lose().clone())
     }
 
-    fn ask(&self, request: &Request) {
+    fn ask(&self, request: &Query) {
         if self.lost.get().is_none() && self.link.borrow_mut().ask(request).is_err() {
             self.lose();
         }
@@ -145,8 +151,8 @@ impl File {
         while self.lost.get().is_none() {
             let answer = self.link.borrow_mut().answer();
             match answer {
-                Ok((Answer::Done, _)) => break,
-                Ok((Answer::Found(path, object), bytes)) if self.has_room_for(bytes) => {
+                Ok((Reply::Done, _)) => break,
+                Ok((Reply::Found(path, object), bytes)) if self.has_room_for(bytes) => {
                     let sane = match object {
                         Object::Dataset(told) if !told.is_sane(self.bytes) => Object::NotFollowed(
                             "a dataset whose parts contradict each other: it is damaged".into(),
@@ -176,15 +182,6 @@ impl File {
     }
 }
 
-#[cfg(any(test, fuzzing))]
-thread_local!(static ANSWERS: Cell<Option<Vec<u8>>> = const { Cell::new(None) });
-
-/// The next file that is opened on this thread is answered for by these bytes.
-#[cfg(any(test, fuzzing))]
-pub(in super::super) fn answer_by(bytes: &[u8]) {
-    ANSWERS.set(Some(bytes.to_vec()));
-}
-
 /// The way to the library and back.
 struct Link {
     to: Box<dyn Write>,
@@ -193,14 +190,14 @@ struct Link {
 }
 
 impl Link {
-    fn ask(&mut self, request: &Request) -> io::Result<()> {
+    fn ask(&mut self, request: &Query) -> io::Result<()> {
         self.wait_for(0);
         send(&mut self.to, request)?;
         self.to.flush()
     }
 
     /// An answer and its length in bytes.
-    fn answer(&mut self) -> io::Result<(Answer, usize)> {
+    fn answer(&mut self) -> io::Result<(Reply, usize)> {
         let answer = receive(&mut self.from)?;
         self.wait_for(0);
         Ok(answer)
@@ -216,9 +213,9 @@ impl Link {
     /// Ends the process and says why it could not go on.
     fn end(&mut self) -> Fault {
         let problem = match self.process.take().map(Watched::end) {
-            Some(Ended::Silent) => format!("gave no sign of life for {} s", PATIENCE.as_secs()),
-            Some(Ended::With(status)) => ending(status),
-            Some(Ended::ByReader) | None => "gave no answer that can be read".into(),
+            Some(ProcessEnd::Silent) => format!("gave no sign of life for {} s", PATIENCE.as_secs()),
+            Some(ProcessEnd::With(status)) => ending(status),
+            Some(ProcessEnd::ByReader) | None => "gave no answer that can be read".into(),
         };
         Fault::new(
             format!("the HDF5 library {problem}: the file is damaged, or made to do harm"),
@@ -226,27 +223,15 @@ impl Link {
         )
     }
 
+    /// The tests of this library are no program that could be started.
+    #[cfg(any(test, fuzzing))]
+    fn to(path: &Path) -> io::Result<Self> {
+        thread_tests::link(path)
+    }
+
     #[cfg(not(any(test, fuzzing)))]
     fn to(path: &Path) -> io::Result<Self> {
         Self::by_process(path)
-    }
-
-    /// The tests of this library are no program that could be started: they have the library on a thread, without a wall.
-    #[cfg(any(test, fuzzing))]
-    fn to(path: &Path) -> io::Result<Self> {
-        if let Some(from) = ANSWERS.take() {
-            return Ok(Self {
-                to: Box::new(io::sink()),
-                from: Box::new(io::Cursor::new(from)),
-                process: None,
-            });
-        }
-        let ((mut requests, to), (from, mut answers)) = (io::pipe()?, io::pipe()?);
-        let path = path.to_owned();
-        std::thread::spawn(move || {
-            super::library::answer(&path, &mut requests, &mut answers, &mut |_, _| {})
-        });
-        Ok(Self { to: Box::new(BufWriter::new(to)), from: Box::new(BufReader::new(from)), process: None })
     }
 
     #[cfg_attr(any(test, fuzzing), allow(dead_code, reason = "tests have the library on a thread"))]

@@ -1,6 +1,6 @@
 //! A type in an HDF5 file to numbers, fields of numbers, and words for people.
 
-use super::answer::{Bytes, Field, Number};
+use super::answer::{Bytes, NumberType, RecordField};
 use hdf5_metno::Datatype;
 use hdf5_metno::datatype::ByteOrder;
 use hdf5_metno::types::{CompoundType, FloatSize, IntSize, TypeDescriptor};
@@ -12,27 +12,27 @@ const MOST_FIELDS: usize = 4096;
 const DEEPEST: usize = 8;
 
 /// How numbers of this type are read; `None` where they are none.
-pub(super) fn number(dtype: &Datatype) -> Option<Number> {
+pub(super) fn number(dtype: &Datatype) -> Option<NumberType> {
     match dtype.to_descriptor() {
         Ok(descriptor) => described(&descriptor),
         // Half precision and odd widths have no name in Rust; the library converts them.
-        Err(_) if dtype.size() <= 2 && dtype.conv_to::<f32>().is_some() => Some(Number::F32),
-        Err(_) => dtype.conv_to::<f64>().map(|_| Number::F64),
+        Err(_) if dtype.size() <= 2 && dtype.conv_to::<f32>().is_some() => Some(NumberType::F32),
+        Err(_) => dtype.conv_to::<f64>().map(|_| NumberType::F64),
     }
 }
 
-fn described(descriptor: &TypeDescriptor) -> Option<Number> {
+fn described(descriptor: &TypeDescriptor) -> Option<NumberType> {
     Some(match descriptor {
-        TypeDescriptor::Integer(IntSize::U1) => Number::I8,
-        TypeDescriptor::Integer(IntSize::U2) => Number::I16,
-        TypeDescriptor::Integer(IntSize::U4) => Number::I32,
-        TypeDescriptor::Integer(IntSize::U8) => Number::I64,
-        TypeDescriptor::Unsigned(IntSize::U1) => Number::U8,
-        TypeDescriptor::Unsigned(IntSize::U2) => Number::U16,
-        TypeDescriptor::Unsigned(IntSize::U4) => Number::U32,
-        TypeDescriptor::Unsigned(IntSize::U8) => Number::U64,
-        TypeDescriptor::Float(FloatSize::U4) => Number::F32,
-        TypeDescriptor::Float(_) => Number::F64,
+        TypeDescriptor::Integer(IntSize::U1) => NumberType::I8,
+        TypeDescriptor::Integer(IntSize::U2) => NumberType::I16,
+        TypeDescriptor::Integer(IntSize::U4) => NumberType::I32,
+        TypeDescriptor::Integer(IntSize::U8) => NumberType::I64,
+        TypeDescriptor::Unsigned(IntSize::U1) => NumberType::U8,
+        TypeDescriptor::Unsigned(IntSize::U2) => NumberType::U16,
+        TypeDescriptor::Unsigned(IntSize::U4) => NumberType::U32,
+        TypeDescriptor::Unsigned(IntSize::U8) => NumberType::U64,
+        TypeDescriptor::Float(FloatSize::U4) => NumberType::F32,
+        TypeDescriptor::Float(_) => NumberType::F64,
         _ => return None,
     })
 }
@@ -74,7 +74,7 @@ pub(super) fn name(dtype: &Datatype) -> Bytes {
 
 /// The fields of numbers; none where the type is no record, or none whose layout in the file the library tells: fields that differ in
 /// byte order, and references, texts and lists of varying length, which take other room in the file than in memory.
-pub(super) fn fields(dtype: &Datatype) -> Vec<Field> {
+pub(super) fn fields(dtype: &Datatype) -> Vec<RecordField> {
     let mut fields = Vec::new();
     let is_big_endian = match dtype.byte_order() {
         ByteOrder::BigEndian => true,
@@ -113,7 +113,7 @@ struct Outer<'a> {
 }
 
 impl Outer<'_> {
-    fn add(&self, compound: CompoundType, fields: &mut Vec<Field>) {
+    fn add(&self, compound: CompoundType, fields: &mut Vec<RecordField>) {
         for inner in compound.fields {
             // The wrapper makes text of names of any bytes; they are bytes again before anybody looks at them.
             let name = [self.name, &inner.name.into_bytes()].concat();
@@ -134,7 +134,7 @@ impl Outer<'_> {
                 && count > 0
                 && fields.len() < MOST_FIELDS
             {
-                fields.push(Field { name, number, count, from, is_big_endian: self.is_big_endian });
+                fields.push(RecordField { name, number, count, from, is_big_endian: self.is_big_endian });
             }
         }
     }

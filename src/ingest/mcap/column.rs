@@ -7,7 +7,7 @@ use crate::data::{Samples, acceleration_unit_m_s2};
 use crate::ingest::clock::{Claims, Refusal};
 use crate::ingest::shown;
 use crate::ingest::statement::Statement;
-use crate::ingest::time_base::{self, Block, Content, PREFIX, TimeBaseError, Uniform};
+use crate::ingest::time_base::{self, Block, BlockContent, PREFIX, TimeBaseError, Uniform};
 use crate::ingest::vocabulary::Meaning;
 
 /// Where a message's time comes from.
@@ -346,7 +346,7 @@ impl Column {
                 gaps,
             });
         };
-        let content = Content { samples: &self.samples, digests: Some(&extent.digests) };
+        let content = BlockContent { samples: &self.samples, digests: Some(&extent.digests) };
         let laid = time_base::lay_blocks(&self.blocks_from(zero_ns), &self.claims(None)?, &content)?;
         Ok(Timing {
             start_s: laid.start_s,

@@ -2,10 +2,10 @@
 
 use super::blocks::{self, Laid};
 use super::error::{TimeBaseError, check_rate};
-use super::pieces::{Content, Piece, pieces};
-use super::stamps::{Stamps, Told};
+use super::pieces::{BlockContent, Piece, pieces};
+use super::stamps::{Intervals, Told};
 use super::uniform::{Block, Uniform};
-use crate::data::{Issue, IssueCode, Samples, Severity};
+use crate::data::{Finding, Samples, TimesFinding};
 use crate::ingest::clock::{Claims, RATE_TOLERANCE, Refusal};
 use crate::ingest::shown;
 use crate::ingest::statement::Statement;
@@ -28,7 +28,7 @@ struct BlockRate {
     laid_hz: f64,
     /// The cask file's, where its stamps contradict it, Hz.
     stated_hz: Option<f64>,
-    issues: Vec<Issue>,
+    issues: Vec<Finding>,
 }
 
 /// Blocks on a uniform base by what is claimed of their rate, their `samples` one after another.
@@ -40,7 +40,7 @@ pub(in crate::ingest) fn place(
     claims: &Claims,
     samples: Samples,
 ) -> Result<Uniform, TimeBaseError> {
-    let content = Content { samples: &samples, digests: None };
+    let content = BlockContent { samples: &samples, digests: None };
     let BlockRate { laid_hz, stated_hz, issues } = rate(blocks, claims, &content)?;
     let mut uniform = blocks::from_blocks(blocks, laid_hz, samples)?;
     uniform.sample_rate_hz = stated_hz.unwrap_or(uniform.sample_rate_hz);
@@ -55,7 +55,7 @@ pub(in crate::ingest) fn place(
 pub(in crate::ingest) fn lay(
     blocks: &[Block],
     claims: &Claims,
-    content: &Content,
+    content: &BlockContent,
 ) -> Result<Laid, TimeBaseError> {
     let BlockRate { laid_hz, stated_hz, .. } = rate(blocks, claims, content)?;
     let mut laid = blocks::lay(blocks, laid_hz, content)?;
@@ -63,11 +63,11 @@ pub(in crate::ingest) fn lay(
     Ok(laid)
 }
 
-fn rate(blocks: &[Block], claims: &Claims, content: &Content) -> Result<BlockRate, TimeBaseError> {
+fn rate(blocks: &[Block], claims: &Claims, content: &BlockContent) -> Result<BlockRate, TimeBaseError> {
     claims.cask_hz.map_or(Ok(()), check_rate)?;
     no_shared_stamps(blocks, content)?;
     let nearest_hz = claims.cask_hz.or(claims.stated.first().map(|stated| stated.rate_hz));
-    let told = Stamps::of(blocks).told(nearest_hz);
+    let told = Intervals::of(blocks).told(nearest_hz);
     let Some(nearest_hz) = nearest_hz else {
         let laid_hz = alone(blocks, told)?;
         return Ok(BlockRate { laid_hz, stated_hz: None, issues: Vec::new() });
@@ -81,7 +81,12 @@ fn rate(blocks: &[Block], claims: &Claims, content: &Content) -> Result<BlockRat
     });
     let taken = claims.weigh(own.as_ref())?;
     let mut issues = taken.issues;
-    issues.extend(told.filter(|told| told.is_few).and_then(|told| few_blocks(told.rate_hz, taken.rate_hz)));
+    // Between many blocks a rate shows in every one, between few it looks like samples that are missing.
+    if let Some(Told { rate_hz: stamps_hz, is_few: true, .. }) = told
+        && (taken.rate_hz / stamps_hz - 1.0).abs() > FEW_APART
+    {
+        issues.push(TimesFinding::FewBlocks { stamps_hz, taken_hz: taken.rate_hz }.into());
+    }
     let is_borne_out =
         |own: &Statement| (nearest_hz / own.rate_hz - 1.0).abs() <= RATE_TOLERANCE.max(own.rounding);
     // Blocks stay where the stamps have them while these bear a statement out; at another rate steady stamps would leave a gap behind every
@@ -110,7 +115,7 @@ fn alone(blocks: &[Block], told: Option<Told>) -> Result<f64, Refusal> {
 }
 
 /// Refuses blocks of which many carry the stamp of the one before though their samples differ: nothing tells where one is lost.
-fn no_shared_stamps(blocks: &[Block], content: &Content) -> Result<(), Refusal> {
+fn no_shared_stamps(blocks: &[Block], content: &BlockContent) -> Result<(), Refusal> {
     let pieces = pieces(blocks);
     let is_shared = |pair: &&[Piece]| {
         let [one, other] = pair else { return false };
@@ -127,17 +132,4 @@ fn no_shared_stamps(blocks: &[Block], content: &Content) -> Result<(), Refusal> 
         blocks.len()
     );
     Err(Refusal::new(problem, "have the recorder stamp finer, or write longer blocks"))
-}
-
-/// A warning where a few blocks are stamped as at another rate than the one that was taken: between many blocks a rate shows in every one,
-/// between few it looks like samples that are missing.
-fn few_blocks(own_hz: f64, taken_hz: f64) -> Option<Issue> {
-    ((taken_hz / own_hz - 1.0).abs() > FEW_APART).then(|| {
-        let message = format!(
-            "its few blocks are stamped as at {} Hz, and {} Hz is stated: samples between them are missing, or the rate is wrong, and every velocity with it",
-            shown::hz(own_hz),
-            shown::hz(taken_hz)
-        );
-        Issue::new(IssueCode::Clock, Severity::Warning, message)
-    })
 }

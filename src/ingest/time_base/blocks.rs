@@ -2,26 +2,26 @@
 
 use super::error::{TimeBaseError, check_rate};
 use super::fit::{FILL_FACTOR, FILL_FLOOR};
-use super::order::{as_f64, is_same, restart, restarted};
-use super::pieces::{Content, Piece, pieces};
-use super::stamps::{Cut, Interval, ROUND_OFF, Stamps};
-use super::uniform::{Block, Number, Placed, Uniform};
+use super::order::{is_same, restart, restarted};
+use super::pieces::{BlockContent, Piece, pieces};
+use super::stamps::{Intervals, ROUND_OFF, StampCut, line};
+use super::uniform::{Block, Uniform};
 use super::{fit, missing};
-use crate::data::{Finding, Samples, TimesFinding};
+use crate::data::{Finding, Samples, Span, TimesFinding};
 use crate::ingest::clock::RATE_TOLERANCE;
-use crate::numerics::robust;
+use crate::numerics::{as_f64, robust};
 
 /// What sorting and doubles came to.
 #[derive(Default)]
 struct Doubles {
-    same: usize,
+    count: usize,
     different: usize,
     span_s: Option<(f64, f64)>,
 }
 
 impl Doubles {
     fn add(&mut self, is_equal: bool, from_s: f64, to_s: f64) {
-        self.same += usize::from(is_equal);
+        self.count += 1;
         self.different += usize::from(!is_equal);
         self.span_s = Some(self.span_s.map_or((from_s, to_s), |s| (s.0.min(from_s), s.1.max(to_s))));
     }
@@ -37,19 +37,14 @@ pub fn from_blocks(blocks: &[Block], rate_hz: f64, samples: Samples) -> Result<U
     if count != samples.len() {
         return Err(TimeBaseError::Lengths { times: count, samples: samples.len() });
     }
-    let laid = lay(blocks, rate_hz, &Content { samples: &samples, digests: None })?;
-    Ok(match samples {
-        Samples::F32(samples) => filled(laid, samples).into_uniform(Samples::F32),
-        Samples::F64(samples) => filled(laid, samples).into_uniform(Samples::F64),
-    })
+    let laid = lay(blocks, rate_hz, &BlockContent { samples: &samples, digests: None })?;
+    Ok(filled(laid, samples))
 }
 
 /// Where blocks lie on a uniform base.
 pub(in crate::ingest) struct Laid {
     /// Those that are kept, in the order of their stamps.
     pieces: Vec<Piece>,
-    /// The place of each one's first sample.
-    places: Vec<usize>,
     /// The stamps of all blocks, in the order of the file, s.
     starts_s: Vec<f64>,
     /// Time of the first sample, s.
@@ -66,7 +61,7 @@ pub(in crate::ingest) struct Laid {
 ///
 /// # Errors
 /// As that.
-pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &Content) -> Result<Laid, TimeBaseError> {
+pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &BlockContent) -> Result<Laid, TimeBaseError> {
     check_rate(rate_hz)?;
     if let Some(index) = blocks.iter().position(|block| !block.start_s.is_finite()) {
         return Err(TimeBaseError::NotFinite { number: index + 1, time_s: blocks[index].start_s });
@@ -81,32 +76,28 @@ pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &Content) -> Result<L
     if present < 2 {
         return Err(TimeBaseError::TooFew { count: present });
     }
-    let of_pair = |pair: &[Piece]| Interval {
-        length: as_f64(pair[0].samples.len()),
-        s: pair[1].start_s - pair[0].start_s,
-    };
-    let stamps = Stamps(pieces.windows(2).map(of_pair).collect());
+    let stamps = Intervals::between(&pieces.iter().map(Piece::block).collect::<Vec<Block>>());
     let cut = stamps.cut(rate_hz);
     let tolerance = stamp_tolerance(&stamps, rate_hz, cut);
     issues.extend(hidden_loss(&stamps, rate_hz, tolerance));
-    let places = places(&pieces, rate_hz, tolerance, present)?;
-    let (start_s, sample_rate_hz) = clock((&pieces, &places), rate_hz, &stamps, &mut issues);
+    place(&mut pieces, rate_hz, tolerance, present)?;
+    let (start_s, sample_rate_hz) = clock(&pieces, rate_hz, &stamps, &mut issues);
     let time_s = |index: usize| start_s + as_f64(index) / sample_rate_hz;
     let (mut gaps, mut end) = (Vec::new(), 0);
-    for (piece, &place) in pieces.iter().zip(&places) {
-        if place > end && end > 0 {
-            gaps.push(missing::Gap { lost: place - end, from_s: time_s(end - 1), to_s: time_s(place) });
+    for piece in &pieces {
+        if piece.place > end && end > 0 {
+            let lost = piece.place - end;
+            gaps.push(missing::Gap { lost, from_s: time_s(end - 1), to_s: time_s(piece.place) });
         }
-        end = end.max(place + piece.samples.len());
+        end = end.max(piece.end());
     }
-    Ok(Laid { pieces, places, starts_s, start_s, sample_rate_hz, gaps, doubles, issues })
+    Ok(Laid { pieces, starts_s, start_s, sample_rate_hz, gaps, doubles, issues })
 }
 
 impl Laid {
     /// Number of samples, missing ones too.
     pub(in crate::ingest) fn count(&self) -> usize {
-        let ends = self.pieces.iter().zip(&self.places).map(|(piece, place)| place + piece.samples.len());
-        ends.max().unwrap_or(0)
+        self.pieces.iter().map(Piece::end).max().unwrap_or(0)
     }
 
     /// Number of stretches that are missing between blocks.
@@ -115,48 +106,46 @@ impl Laid {
     }
 }
 
-/// The samples at their places.
-fn filled<S: Number>(laid: Laid, held: Vec<S>) -> Placed<S> {
-    let Laid { pieces, places, starts_s, start_s, sample_rate_hz, gaps, mut doubles, mut issues } = laid;
-    let mut samples = in_place(&pieces, &places, held, |held| {
-        let mut samples: Vec<S> = Vec::new();
-        for (piece, &place) in pieces.iter().zip(&places) {
-            if place > samples.len() && !samples.is_empty() {
-                samples.resize(place, S::MISSING);
+/// The samples at their places; of a block less what of it is already there.
+fn filled(laid: Laid, held: Samples) -> Uniform {
+    let count = laid.count();
+    let Laid { pieces, starts_s, start_s, sample_rate_hz, gaps, mut doubles, mut issues } = laid;
+    let (mut stretches, mut end) = (Vec::with_capacity(pieces.len()), 0_usize);
+    for piece in &pieces {
+        let overlap = end.saturating_sub(piece.place).min(piece.samples.len());
+        let (from, to) = (piece.samples.start + overlap, piece.samples.end);
+        stretches.push((Span { from, to }, piece.place + overlap));
+        end = end.max(piece.end());
+    }
+    let kept: usize = stretches.iter().map(|(span, _)| span.to - span.from).sum();
+    let is_in_place = [held.len(), kept] == [count; 2] && stretches.iter().all(|(span, to)| span.from == *to);
+    let mut samples = if is_in_place {
+        held
+    } else {
+        let laid = held.spread(count, &stretches);
+        for (piece, (span, _)) in pieces.iter().zip(&stretches) {
+            let from = piece.samples.start;
+            let mut doubled = (0..span.from - from)
+                .map(|i| is_same(laid.get(piece.place + i), held.get(from + i)))
+                .peekable();
+            if doubled.peek().is_some() {
+                let to_s = piece.start_s + as_f64(span.from - from) / sample_rate_hz;
+                doubles.add(doubled.all(|is_same| is_same), piece.start_s, to_s);
             }
-            append(
-                &mut samples,
-                (piece.start_s, &held[piece.samples.clone()]),
-                (place, sample_rate_hz),
-                &mut doubles,
-            );
         }
-        samples
-    });
-    report_doubles(&doubles, &mut issues);
+        laid
+    };
+    if let Some((from_s, to_s)) = doubles.span_s {
+        let Doubles { count, different, .. } = doubles;
+        let found = TimesFinding::BlocksTwice { count, different };
+        issues.push(Finding::from(found).between(from_s, to_s));
+    }
     let restart = restart(&starts_s).filter(|_| doubles.different > 0);
     issues.extend(restart.map(|at| restarted(&starts_s, at)));
     missing::push_gaps(&gaps, &mut issues);
     let lost: usize = gaps.iter().map(|gap| gap.lost).sum();
-    let gaps = missing::mark_non_finite(&mut samples, lost, (start_s, sample_rate_hz), &mut issues);
-    Placed { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues }
-}
-
-/// The samples as they are held where every block has its place there already, else what `moved` makes of them.
-fn in_place<S>(
-    pieces: &[Piece],
-    places: &[usize],
-    mut held: Vec<S>,
-    moved: impl FnOnce(&[S]) -> Vec<S>,
-) -> Vec<S> {
-    let ends = std::iter::once(0).chain(pieces.iter().map(|piece| piece.samples.end));
-    let follows =
-        |((piece, place), end): ((&Piece, &usize), usize)| piece.samples.start == end && *place == end;
-    if !pieces.iter().zip(places).zip(ends).all(follows) {
-        return moved(&held);
-    }
-    held.truncate(pieces.last().map_or(0, |piece| piece.samples.end));
-    held
+    let gaps = missing::mark(&mut samples, lost, |i| start_s + as_f64(i) / sample_rate_hz, &mut issues);
+    Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues }
 }
 
 fn sort(pieces: &mut [Piece], issues: &mut Vec<Finding>) {
@@ -168,7 +157,7 @@ fn sort(pieces: &mut [Piece], issues: &mut Vec<Finding>) {
 }
 
 /// Drops blocks that start where the one before does.
-fn drop_doubles(pieces: &mut Vec<Piece>, rate_hz: f64, doubles: &mut Doubles, content: &Content) {
+fn drop_doubles(pieces: &mut Vec<Piece>, rate_hz: f64, doubles: &mut Doubles, content: &BlockContent) {
     pieces.dedup_by(|later, kept| {
         let is_double = (later.start_s - kept.start_s) * rate_hz < 0.5 && later.samples.len() > 1;
         if is_double {
@@ -182,10 +171,6 @@ fn drop_doubles(pieces: &mut Vec<Piece>, rate_hz: f64, doubles: &mut Doubles, co
     });
 }
 
-fn are_same<S: Number>(a: &[S], b: &[S]) -> bool {
-    a.iter().zip(b).all(|(x, y)| is_same(x.to_f64(), y.to_f64()))
-}
-
 /// Fewer stamps than this say nothing about how they jitter.
 const JUDGED_STAMPS: usize = 8;
 
@@ -193,7 +178,7 @@ const JUDGED_STAMPS: usize = 8;
 ///
 /// Half a sample for stamps of the sampling clock. Stamps of a computer's clock jitter by many samples; then six times the median
 /// miss (four standard deviations of a normal law are 5.9 medians), but less than half a block, since whole blocks get lost.
-fn stamp_tolerance(stamps: &Stamps, rate_hz: f64, cut: Option<Cut>) -> f64 {
+fn stamp_tolerance(stamps: &Intervals, rate_hz: f64, cut: Option<StampCut>) -> f64 {
     // Two stamps that are cut to a millisecond are up to that nearer or farther than their blocks.
     let cut_samples = cut.map_or(0.0, |cut| cut.unit_s * rate_hz * (1.0 + ROUND_OFF));
     if cut.is_some_and(|cut| cut.is_whole) {
@@ -207,7 +192,7 @@ fn stamp_tolerance(stamps: &Stamps, rate_hz: f64, cut: Option<Cut>) -> f64 {
 }
 
 /// A warning where blocks are shorter than nine of ten others by no more than what stamps leave open: samples may be missing behind them.
-fn hidden_loss(stamps: &Stamps, rate_hz: f64, tolerance: f64) -> Option<Finding> {
+fn hidden_loss(stamps: &Intervals, rate_hz: f64, tolerance: f64) -> Option<Finding> {
     let mut lengths: Vec<f64> = stamps.0.iter().map(|interval| interval.length).collect();
     let usual = robust::median(&mut lengths);
     let lacking: Vec<f64> =
@@ -218,93 +203,49 @@ fn hidden_loss(stamps: &Stamps, rate_hz: f64, tolerance: f64) -> Option<Finding>
     (tolerance > 0.5 && !lacking.is_empty() && 10 * alike >= 9 * lengths.len()).then(|| found.into())
 }
 
-/// The place of each block's first sample on the base.
-fn places(
-    pieces: &[Piece],
-    rate_hz: f64,
-    tolerance: f64,
-    present: usize,
-) -> Result<Vec<usize>, TimeBaseError> {
+/// Gives each block the place of its first sample on the base.
+fn place(pieces: &mut [Piece], rate_hz: f64, tolerance: f64, present: usize) -> Result<(), TimeBaseError> {
     let limit = FILL_FACTOR.mul_add(as_f64(present), FILL_FLOOR);
-    let mut places = vec![0];
-    for pair in pieces.windows(2) {
-        let place = places[places.len() - 1];
-        let end = place + pair[0].samples.len();
-        let steps = (pair[1].start_s - pair[0].start_s) * rate_hz;
-        let miss = steps - as_f64(pair[0].samples.len());
-        if miss.abs() <= tolerance {
-            places.push(end);
-        } else if as_f64(end) + miss > limit {
-            return Err(TimeBaseError::Jump {
-                from_s: pair[0].start_s,
-                to_s: pair[1].start_s,
-                lost: miss,
-                sample_rate_hz: rate_hz,
-            });
-        } else {
-            places.push(place + fit::whole(steps.round()));
+    for later in 1..pieces.len() {
+        let [before, piece] = &mut pieces[later - 1..=later] else { continue };
+        let steps = (piece.start_s - before.start_s) * rate_hz;
+        let miss = steps - as_f64(before.samples.len());
+        if miss.abs() > tolerance && as_f64(before.end()) + miss > limit {
+            let (from_s, to_s) = (before.start_s, piece.start_s);
+            return Err(TimeBaseError::Jump { from_s, to_s, lost: miss, sample_rate_hz: rate_hz });
         }
+        piece.place =
+            if miss.abs() <= tolerance { before.end() } else { before.place + fit::whole(steps.round()) };
     }
-    Ok(places)
+    Ok(())
 }
 
 /// Start and rate of the base: the nominal rate while the stamps keep to it, else the one they run at.
-fn clock(
-    (pieces, places): (&[Piece], &[usize]),
-    rate_hz: f64,
-    stamps: &Stamps,
-    issues: &mut Vec<Finding>,
-) -> (f64, f64) {
-    let off = |piece: &Piece, place: usize| piece.start_s - pieces[0].start_s - as_f64(place) / rate_hz;
-    let offs: Vec<f64> = pieces.iter().zip(places).map(|(piece, &place)| off(piece, place)).collect();
-    let worst_s = offs.iter().fold(0.0_f64, |m, o| m.max(o.abs()));
-    if worst_s * rate_hz <= 1.0 {
-        return (pieces[0].start_s, rate_hz);
+fn clock(pieces: &[Piece], rate_hz: f64, stamps: &Intervals, issues: &mut Vec<Finding>) -> (f64, f64) {
+    let first_s = pieces[0].start_s;
+    let off = |piece: &Piece| {
+        let place = as_f64(piece.place);
+        (place, piece.start_s - first_s - place / rate_hz)
+    };
+    let offs: Vec<(f64, f64)> = pieces.iter().map(off).collect();
+    let (low_s, high_s) =
+        offs.iter().fold((0.0_f64, 0.0_f64), |(low, high), o| (low.min(o.1), high.max(o.1)));
+    if high_s.max(-low_s) * rate_hz <= 1.0 {
+        return (first_s, rate_hz);
     }
-    let (low_s, high_s) = offs.iter().fold((0.0_f64, 0.0_f64), |(low, high), &o| (low.min(o), high.max(o)));
-    let n = as_f64(offs.len());
-    let mean_place = places.iter().map(|&p| as_f64(p)).sum::<f64>() / n;
-    let mean_s = offs.iter().sum::<f64>() / n;
-    let (mut square, mut cross) = (0.0, 0.0);
-    for (&place, &o) in places.iter().zip(&offs) {
-        square += (as_f64(place) - mean_place).powi(2);
-        cross += (as_f64(place) - mean_place) * (o - mean_s);
-    }
-    let slope_s = if square > 0.0 { cross / square } else { 0.0 };
+    let ((mean_place, mean_s), slope_s) = line(&offs);
     let fitted_hz = 1.0 / (1.0 / rate_hz + slope_s);
-    let left = places.iter().zip(&offs).map(|(&p, &o)| o - mean_s - slope_s * (as_f64(p) - mean_place));
-    let rms_s = (left.map(|r| r * r).sum::<f64>() / n).sqrt();
+    let left = offs.iter().map(|(place, o)| o - mean_s - slope_s * (place - mean_place));
+    let rms_s = (left.map(|r| r * r).sum::<f64>() / as_f64(offs.len())).sqrt();
     let is_far = (fitted_hz / rate_hz - 1.0).abs() > RATE_TOLERANCE;
-    if let Some(cut_s) = stamps.unit_s(rate_hz).filter(|unit_s| high_s - low_s <= unit_s * (1.0 + ROUND_OFF))
-    {
+    let is_cut = |unit_s: &f64| high_s - low_s <= unit_s * (1.0 + ROUND_OFF);
+    if let Some(cut_s) = stamps.unit_s(rate_hz).filter(is_cut) {
         // Exact stamps of whole milliseconds look like stamps of another rate that are cut to them.
         let if_exact_hz = (is_far && stamps.cut(rate_hz).is_none()).then_some(fitted_hz);
         issues.push(TimesFinding::StampsCut { cut_s, rate_hz, if_exact_hz }.into());
-        return (pieces[0].start_s + mean_s, rate_hz);
+        return (first_s + mean_s, rate_hz);
     }
     let found = TimesFinding::StampsRunOff { stamps_hz: fitted_hz, stated_hz: rate_hz, rms_s, is_far };
     issues.push(found.into());
-    (pieces[0].start_s + mean_s - slope_s * mean_place, fitted_hz)
-}
-
-/// Appends a block, its start in s and its samples, less what of it is already there.
-fn append<S: Number>(
-    samples: &mut Vec<S>,
-    (start_s, block): (f64, &[S]),
-    (place, rate_hz): (usize, f64),
-    doubles: &mut Doubles,
-) {
-    let overlap = if samples.is_empty() { 0 } else { samples.len().saturating_sub(place).min(block.len()) };
-    if overlap > 0 {
-        let is_equal = are_same(&samples[place..place + overlap], &block[..overlap]);
-        doubles.add(is_equal, start_s, start_s + as_f64(overlap) / rate_hz);
-    }
-    samples.extend_from_slice(&block[overlap..]);
-}
-
-fn report_doubles(doubles: &Doubles, issues: &mut Vec<Finding>) {
-    let Some((from_s, to_s)) = doubles.span_s else { return };
-    let &Doubles { same, different, .. } = doubles;
-    let found = TimesFinding::BlocksTwice { count: same + different, different };
-    issues.push(Finding::from(found).between(from_s, to_s));
+    (first_s + mean_s - slope_s * mean_place, fitted_hz)
 }

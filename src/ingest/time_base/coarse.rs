@@ -6,11 +6,10 @@
 
 use super::error::TimeBaseError;
 use super::missing;
-use super::order::as_f64;
-use super::uniform::{Number, Placed};
-use crate::data::{Finding, TimesFinding};
+use super::uniform::Uniform;
+use crate::data::{Finding, Samples, TimesFinding};
 use crate::ingest::clock::{Claims, RATE_TOLERANCE, of_times};
-use crate::numerics::robust;
+use crate::numerics::{as_f64, robust};
 
 /// Fewer changes make two whole steps at most, which agree with any jitter: nothing would show that they are even.
 const LEAST_CHANGES: usize = 4;
@@ -46,12 +45,12 @@ struct Steps {
 }
 
 /// Samples with times that rise but for many that repeat, evenly spaced.
-pub(super) fn place<S: Number>(
+pub(super) fn place(
     times_s: &[f64],
-    mut samples: Vec<S>,
+    mut samples: Samples,
     claims: &Claims,
     mut issues: Vec<Finding>,
-) -> Result<Placed<S>, TimeBaseError> {
+) -> Result<Uniform, TimeBaseError> {
     let changes: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] > times_s[i - 1]).collect();
     let mut steps_s: Vec<f64> = changes.iter().map(|&i| times_s[i] - times_s[i - 1]).collect();
     let step_s = if steps_s.is_empty() { 0.0 } else { robust::median(&mut steps_s) };
@@ -72,13 +71,13 @@ pub(super) fn place<S: Number>(
         issues.push(steps.finding(step_s));
         steps.start_s
     } else {
-        let at_declared = declared(times_s, &changes, (step_s, told), sample_rate_hz);
-        issues.extend(Some(at_declared).filter(|_| taken.issues.is_empty()));
-        start(times_s, &changes, 1.0 / sample_rate_hz)
+        let (start_s, found) = at_rate(times_s, &changes, sample_rate_hz, step_s, told);
+        issues.extend(Some(found).filter(|_| taken.issues.is_empty()));
+        start_s
     };
     issues.extend(taken.issues);
-    let gaps = missing::mark_non_finite(&mut samples, 0, (start_s, sample_rate_hz), &mut issues);
-    Ok(Placed { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
+    let gaps = missing::mark(&mut samples, 0, |i| start_s + as_f64(i) / sample_rate_hz, &mut issues);
+    Ok(Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
 }
 
 impl Steps {
@@ -124,33 +123,26 @@ impl Steps {
     }
 }
 
-/// What is said where a rate is declared beside coarse times, which change by `step_s` and tell the `steps`.
-fn declared(
+/// Time of sample 0 at a rate that is declared beside coarse times, which change by `step_s` and tell the `steps`, and what is said of it.
+fn at_rate(
     times_s: &[f64],
     changes: &[usize],
-    (step_s, steps): (f64, Option<Steps>),
     rate_hz: f64,
-) -> Finding {
+    step_s: f64,
+    steps: Option<Steps>,
+) -> (f64, Finding) {
     if changes.is_empty() {
-        return TimesFinding::AllEqual { rate_hz }.into();
+        return (times_s[0], TimesFinding::AllEqual { rate_hz }.into());
     }
+    let period_s = 1.0 / rate_hz;
     let points = changes.iter().map(|&i| (as_f64(i), times_s[i] - times_s[0]));
-    let width_s = range(points, 1.0 / rate_hz).1;
+    let (lowest_s, width_s) = range(points, period_s);
     // Each change lies within one interval of its sample, and the rate may be off by its tolerance; more is samples lost or another rate.
     let length_s = times_s[times_s.len() - 1] - times_s[0];
     let is_uneven = steps.is_some_and(|steps| !steps.is_even);
     let is_off = is_uneven || width_s > (1.0 + ROUND_OFF) / rate_hz + RATE_TOLERANCE * length_s;
-    TimesFinding::CoarseBesideRate { step_s, rate_hz, off_s: is_off.then_some(width_s) }.into()
-}
-
-/// Time of sample 0 at a known period, s.
-fn start(times_s: &[f64], changes: &[usize], period_s: f64) -> f64 {
-    if changes.is_empty() {
-        return times_s[0];
-    }
-    let points = changes.iter().map(|&i| (as_f64(i), times_s[i] - times_s[0]));
-    let (lowest_s, width_s) = range(points, period_s);
-    times_s[0] + lowest_s + width_s / 2.0 + period_s / 2.0
+    let found = TimesFinding::CoarseBesideRate { step_s, rate_hz, off_s: is_off.then_some(width_s) };
+    (times_s[0] + lowest_s + width_s / 2.0 + period_s / 2.0, found.into())
 }
 
 /// Of what the points are above a line through the origin, the least and the width.

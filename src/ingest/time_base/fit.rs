@@ -1,9 +1,8 @@
 //! Rising times to the uniform base nearest to them: start, period, and which sample belongs where.
 
 use super::error::TimeBaseError;
-use super::order::as_f64;
 use crate::ingest::clock::RATE_TOLERANCE;
-use crate::numerics::robust;
+use crate::numerics::{as_f64, robust};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -18,7 +17,7 @@ pub(super) struct Run {
 
 /// The base nearest to the times, t ≈ start + period · place.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Fit {
+pub(super) struct BaseFit {
     pub start_s: f64,
     pub period_s: f64,
     /// Runs, the first at place 0; a new one after each gap.
@@ -29,13 +28,6 @@ pub(super) struct Fit {
     pub max_s: f64,
     /// What the times are rounded to, s; 0 where no rounding shows.
     pub resolution_s: f64,
-}
-
-/// A straight line through times, one step a sample.
-#[allow(clippy::struct_field_names, reason = "every name ends in its unit")]
-struct Line {
-    start_s: f64,
-    period_s: f64,
 }
 
 /// Interval beyond which samples are missing, in periods.
@@ -49,24 +41,22 @@ pub(super) const FILL_FACTOR: f64 = 4.0;
 /// See [`FILL_FACTOR`]: 8 MB, so that a short record with a long pause still reads.
 pub(super) const FILL_FLOOR: f64 = 1e6;
 
-impl Fit {
+impl BaseFit {
     /// The base nearest to strictly rising, finite times (at least two).
     pub(super) fn new(times_s: &[f64]) -> Result<Self, TimeBaseError> {
         let guess_s = median_interval(times_s);
         let mut period_s = mean_interval(times_s, 1.75 * guess_s).unwrap_or(guess_s);
         period_s = mean_interval(times_s, GAP_PERIODS * period_s).unwrap_or(period_s);
         let mut runs = runs(times_s, period_s)?;
-        let mut line = line_of_runs(times_s, &runs);
+        let (mut line_s, mut period_s) = line_of_runs(times_s, &runs);
         if runs.len() > 1 {
-            runs = self::runs(times_s, line.period_s)?;
-            line = line_of_runs(times_s, &runs);
+            runs = self::runs(times_s, period_s)?;
+            (line_s, period_s) = line_of_runs(times_s, &runs);
         }
-        let (rms_s, max_s) = residual(times_s, &runs, &line);
+        let (rms_s, max_s) = residual(times_s, &runs, line_s, period_s);
         let first_s = times_s[0];
-        let start_s =
-            if (line.start_s - first_s).abs() < 1e-6 * line.period_s { first_s } else { line.start_s };
-        let resolution_s = resolution_s(times_s, line.period_s);
-        Ok(Self { start_s, period_s: line.period_s, runs, rms_s, max_s, resolution_s })
+        let start_s = if (line_s - first_s).abs() < 1e-6 * period_s { first_s } else { line_s };
+        Ok(Self { start_s, period_s, runs, rms_s, max_s, resolution_s: resolution_s(times_s, period_s) })
     }
 
     /// Number of places up to the last of `count` recorded samples.
@@ -83,10 +73,10 @@ pub(super) fn two_periods(times_s: &[f64]) -> Option<(f64, f64)> {
     /// In RMS distances of both parts' times from their lines: stamps that walk at random come apart by 8, and by 18 at most in 1200 records.
     const APART: f64 = 20.0;
     let count = FEWEST.max(times_s.len() / PARTS);
-    let parts = times_s.chunks_exact(count).filter_map(|part| Fit::new(part).ok());
+    let parts = times_s.chunks_exact(count).filter_map(|part| BaseFit::new(part).ok());
     // Beyond a gap the samples need not lie at the same phase.
-    let whole: Vec<Fit> = parts.filter(|part| part.runs.len() == 1).collect();
-    let by_period = |a: &&Fit, b: &&Fit| a.period_s.total_cmp(&b.period_s);
+    let whole: Vec<BaseFit> = parts.filter(|part| part.runs.len() == 1).collect();
+    let by_period = |a: &&BaseFit, b: &&BaseFit| a.period_s.total_cmp(&b.period_s);
     let (short, long) = (whole.iter().min_by(by_period)?, whole.iter().max_by(by_period)?);
     let apart_s = (long.period_s - short.period_s) * as_f64(count);
     let is_clock = apart_s > APART * (short.rms_s + long.rms_s)
@@ -153,22 +143,19 @@ fn runs(times_s: &[f64], period_s: f64) -> Result<Vec<Run>, TimeBaseError> {
             widest = (steps, i);
         }
         if lost_total > limit {
-            return Err(jump(times_s, widest, period_s));
+            let (steps, at) = widest;
+            let (from_s, to_s) = (times_s[at], times_s[at + 1]);
+            return Err(TimeBaseError::Jump {
+                from_s,
+                to_s,
+                lost: steps - 1.0,
+                sample_rate_hz: 1.0 / period_s,
+            });
         }
         let last = runs[runs.len() - 1];
         runs.push(Run { first: i + 1, place: last.place + (i - last.first) + whole(steps) });
     }
     Ok(runs)
-}
-
-fn jump(times_s: &[f64], widest: (f64, usize), period_s: f64) -> TimeBaseError {
-    let (steps, at) = widest;
-    TimeBaseError::Jump {
-        from_s: times_s[at],
-        to_s: times_s[at + 1],
-        lost: steps - 1.0,
-        sample_rate_hz: 1.0 / period_s,
-    }
 }
 
 /// Whether a slightly long interval is made good by its neighbours: then a stamp came late, and nothing is missing.
@@ -179,8 +166,8 @@ fn is_jitter(times_s: &[f64], at: usize, period_s: f64) -> bool {
     interval_s < 2.5 * period_s && to - from > 1 && times_s[to] - times_s[from] < expected * period_s
 }
 
-/// Least squares of t over place, on what is left after a first line, so that round-off stays below 1e-9 of a sample.
-fn line_of_runs(times_s: &[f64], runs: &[Run]) -> Line {
+/// Start and period of the base nearest to the times: least squares of t over place, on what is left after a first line, so that round-off stays below 1e-9 of a sample.
+fn line_of_runs(times_s: &[f64], runs: &[Run]) -> (f64, f64) {
     let last = times_s.len() - 1;
     let last_place = runs.last().map_or(last, |run| run.place + (last - run.first));
     let first_s = times_s[0];
@@ -199,12 +186,13 @@ fn line_of_runs(times_s: &[f64], runs: &[Run]) -> Line {
     let variance = square - sum_k * sum_k / n;
     let slope = if variance > 0.0 { (cross - sum_k * sum / n) / variance } else { 0.0 };
     let intercept = sum / n - slope * (sum_k / n + middle);
-    Line { start_s: first_s + intercept, period_s: period_s + slope }
+    (first_s + intercept, period_s + slope)
 }
 
-fn residual(times_s: &[f64], runs: &[Run], line: &Line) -> (f64, f64) {
+/// RMS and largest distance of the times from a base.
+fn residual(times_s: &[f64], runs: &[Run], start_s: f64, period_s: f64) -> (f64, f64) {
     let parts = over_places(times_s, runs, |[squares, largest]: &mut [[f64; LANES]; 2], lane, t, place| {
-        let r = t - line.start_s - line.period_s * place;
+        let r = t - start_s - period_s * place;
         squares[lane] += r * r;
         largest[lane] = if r.abs() > largest[lane] { r.abs() } else { largest[lane] };
     });

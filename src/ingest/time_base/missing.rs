@@ -1,90 +1,51 @@
-//! Samples with gaps to samples with NaN in them, and the issues that say so.
+//! Samples with gaps to samples with NaN in them, and the findings that say so.
 
-use super::fit::{Fit, Run};
-use super::order::as_f64;
-use super::uniform::Number;
-use crate::data::{Finding, Span, TimesFinding};
+use super::fit::{BaseFit, Run};
+use crate::data::{Finding, Samples, Span, TimesFinding};
 
-/// Up to this many gaps get an issue each; more are summed up in one.
+/// Up to this many gaps get a finding each; more are summed up in one.
 const GAPS_TOLD_SINGLY: usize = 5;
 
 /// Stretches of NaN.
-pub(super) fn spans<S: Number>(samples: &[S]) -> Vec<Span> {
-    let mut spans = Vec::new();
-    let mut from = None;
-    for (i, sample) in samples.iter().enumerate() {
-        match (sample.to_f64().is_finite(), from) {
-            (false, None) => from = Some(i),
-            (true, Some(start)) => {
-                spans.push(Span { from: start, to: i });
-                from = None;
-            }
-            _ => {}
+pub(super) fn spans(samples: &Samples) -> Vec<Span> {
+    let mut spans: Vec<Span> = Vec::new();
+    for at in (0..samples.len()).filter(|&i| !samples.get(i).is_finite()) {
+        match spans.last_mut() {
+            Some(span) if span.to == at => span.to = at + 1,
+            _ => spans.push(Span { from: at, to: at + 1 }),
         }
-    }
-    if let Some(start) = from {
-        spans.push(Span { from: start, to: samples.len() });
     }
     spans
 }
 
 /// The samples of all runs at their places, NaN between.
-pub(super) fn spread<S: Number>(samples: &[S], fit: &Fit) -> Vec<S> {
-    let mut placed = vec![S::MISSING; fit.places(samples.len())];
-    for (number, run) in fit.runs.iter().enumerate() {
-        let to = fit.runs.get(number + 1).map_or(samples.len(), |next| next.first);
-        let source = &samples[run.first..to];
-        placed[run.place..run.place + source.len()].copy_from_slice(source);
-    }
-    placed
+pub(super) fn spread(samples: &Samples, fit: &BaseFit) -> Samples {
+    let ends = fit.runs.iter().skip(1).map(|next| next.first).chain([samples.len()]);
+    let stretch = |(run, to): (&Run, usize)| (Span { from: run.first, to }, run.place);
+    let stretches: Vec<(Span, usize)> = fit.runs.iter().zip(ends).map(stretch).collect();
+    samples.spread(fit.places(samples.len()), &stretches)
 }
 
-/// Turns infinite samples into NaN and says how many are no numbers beside the `lost` ones between blocks; `clock` is start and rate. The spans.
-pub(super) fn mark_non_finite<S: Number>(
-    samples: &mut [S],
+/// Turns infinite samples into NaN and says how many are no numbers beside the `lost` ones between blocks. The spans.
+pub(super) fn mark(
+    samples: &mut Samples,
     lost: usize,
-    clock: (f64, f64),
+    time_s: impl Fn(usize) -> f64,
     issues: &mut Vec<Finding>,
 ) -> Vec<Span> {
-    let Some((count, span)) = count_non_finite(samples) else {
-        return Vec::new();
-    };
-    let time_s = |index: usize| clock.0 + as_f64(index) / clock.1;
-    if count > lost {
-        issues.push(non_finite(count - lost, time_s(span.from), time_s(span.to)));
-    }
-    spans(samples)
-}
-
-/// The same for samples with a time each; the count alone.
-pub(super) fn mark_non_finite_timed<S: Number>(
-    samples: &mut [S],
-    times_s: &[f64],
-    issues: &mut Vec<Finding>,
-) -> usize {
-    let Some((count, span)) = count_non_finite(samples) else {
-        return 0;
-    };
-    issues.push(non_finite(count, times_s[span.from], times_s[span.to]));
-    count
-}
-
-/// How many samples are no numbers, and the first and the last of them.
-fn count_non_finite<S: Number>(samples: &mut [S]) -> Option<(usize, Span)> {
-    let count = samples.iter().filter(|s| !s.to_f64().is_finite()).count();
+    let count = samples.missing();
     if count == 0 {
-        return None;
+        return Vec::new();
     }
-    let first = samples.iter().position(|s| !s.to_f64().is_finite())?;
-    let last = samples.iter().rposition(|s| !s.to_f64().is_finite())?;
-    for sample in samples.iter_mut().filter(|s| !s.to_f64().is_finite()) {
-        *sample = S::MISSING;
+    samples.change(|x| if x.is_finite() { x } else { f64::NAN });
+    let spans = spans(samples);
+    if let ([first, ..], [.., last]) = (&spans[..], &spans[..])
+        && count > lost
+    {
+        let found = Finding::from(TimesFinding::NonFinite { samples: count - lost });
+        issues.push(found.between(time_s(first.from), time_s(last.to - 1)));
     }
-    Some((count, Span { from: first, to: last }))
-}
-
-fn non_finite(samples: usize, from_s: f64, to_s: f64) -> Finding {
-    Finding::from(TimesFinding::NonFinite { samples }).between(from_s, to_s)
+    spans
 }
 
 /// A stretch without samples.
@@ -99,7 +60,7 @@ pub(super) struct Gap {
 }
 
 /// One finding a gap, or one for all where they are many.
-pub(super) fn report_gaps(fit: &Fit, times_s: &[f64], issues: &mut Vec<Finding>) {
+pub(super) fn report_gaps(fit: &BaseFit, times_s: &[f64], issues: &mut Vec<Finding>) {
     let between = |runs: &[Run]| Gap {
         lost: runs[1].place - runs[0].place - (runs[1].first - runs[0].first),
         from_s: times_s[runs[1].first - 1],

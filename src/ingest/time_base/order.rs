@@ -1,17 +1,17 @@
 //! Times as recorded to times that rise: sorted, without doubles.
 
 use super::error::TimeBaseError;
-use super::uniform::Number;
-use crate::data::{Finding, TimesFinding};
+use crate::data::{Finding, Samples, TimesFinding};
 use crate::ingest::clock::Refusal;
+use crate::numerics::as_f64;
 use std::borrow::Cow;
 
 /// Times that rise with their samples.
-pub(super) enum Ordered<'a, S> {
-    /// Each later than the one before.
-    Strict(Cow<'a, [f64]>, Vec<S>),
-    /// Many equal to the one before although the samples differ: the times are coarser than the interval.
-    Coarse(Cow<'a, [f64]>, Vec<S>),
+pub(super) struct Ordered<'a> {
+    pub times_s: Cow<'a, [f64]>,
+    pub samples: Samples,
+    /// Whether many are equal to the one before although the samples differ: the times are coarser than the interval.
+    pub is_coarse: bool,
 }
 
 /// From so many rows a time on they are too coarse even where the samples are equal, as those of a dead channel: a file may have been
@@ -33,16 +33,18 @@ pub(super) fn rise(times_s: &[f64]) -> bool {
 }
 
 /// Sorts by time where needed and drops rows that came twice; `rise` is what [`rise`] says of the times.
-pub(super) fn ordered<'a, S: Number>(
-    (times_s, rise): (&'a [f64], bool),
-    samples: Vec<S>,
+pub(super) fn ordered<'a>(
+    times_s: &'a [f64],
+    rise: bool,
+    samples: Samples,
     issues: &mut Vec<Finding>,
-) -> Result<Ordered<'a, S>, TimeBaseError> {
+) -> Result<Ordered<'a>, TimeBaseError> {
     if times_s.len() < 2 {
         return Err(TimeBaseError::TooFew { count: times_s.len() });
     }
+    let taken = Ordered { times_s: Cow::Borrowed(times_s), samples, is_coarse: false };
     if rise {
-        return Ok(Ordered::Strict(Cow::Borrowed(times_s), samples));
+        return Ok(taken);
     }
     if let Some(index) = times_s.iter().position(|t| !t.is_finite()) {
         return Err(TimeBaseError::NotFinite { number: index + 1, time_s: times_s[index] });
@@ -50,8 +52,7 @@ pub(super) fn ordered<'a, S: Number>(
     if let Some(refusal) = wrapped(times_s) {
         return Err(refusal.into());
     }
-    let (times_s, samples) = sorted(times_s, samples, issues);
-    Ok(without_doubles(times_s, samples, issues))
+    Ok(taken.sorted(issues).without_doubles(issues))
 }
 
 /// Times that count within each second, minute, hour or day, and fall back by one of it less an interval: `999.95, 0, 0.05` in ms, beside a
@@ -85,96 +86,82 @@ pub(super) fn restart(times_s: &[f64]) -> Option<usize> {
     (at >= OVER && is_over && times_s[0] < times_s[times_s.len() - 1]).then_some(at)
 }
 
-/// Whether samples from `at` on lie among those before, in the order of their times; rows that were written twice do not, nor do a few runs
-/// that were swapped.
-fn are_mixed<S: Number>(order: &[usize], at: usize, (times_s, samples): (&[f64], &[S])) -> bool {
-    /// Changes from one part to the other that two runs out of place make.
-    const SWAPPED: usize = 4;
-    let is_copy = |a: usize, b: usize| {
-        times_s[a].total_cmp(&times_s[b]).is_eq() && is_same(samples[a].to_f64(), samples[b].to_f64())
-    };
-    let (mut last, mut changes) = (order[0], 0);
-    for &next in &order[1..] {
-        if !is_copy(last, next) {
-            changes += usize::from((last < at) != (next < at));
-            last = next;
-        }
-    }
-    changes > SWAPPED
-}
-
 /// A warning that says so.
 pub(super) fn restarted(times_s: &[f64], at: usize) -> Finding {
     let (rise_to_s, next_s) = (times_s[at - 1], times_s[at]);
     Finding::from(TimesFinding::Restarted { count: at, rise_to_s, next_s }).between(next_s, rise_to_s)
 }
 
-fn sorted<'a, S: Number>(
-    times_s: &'a [f64],
-    samples: Vec<S>,
-    issues: &mut Vec<Finding>,
-) -> (Cow<'a, [f64]>, Vec<S>) {
-    let backward: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] < times_s[i - 1]).collect();
-    let Some(&first) = backward.first() else {
-        return (Cow::Borrowed(times_s), samples);
-    };
-    let (from_s, to_s) = (times_s[first - 1], times_s[first]);
-    let found = TimesFinding::Backward { count: backward.len(), from_s, to_s };
-    issues.push(Finding::from(found).between(to_s, from_s));
-    let mut order: Vec<usize> = (0..times_s.len()).collect();
-    order.sort_by(|&a, &b| times_s[a].total_cmp(&times_s[b]));
-    if let Some(at) = restart(times_s).filter(|&at| are_mixed(&order, at, (times_s, &samples))) {
-        issues.push(restarted(times_s, at));
+impl Ordered<'_> {
+    fn sorted(self, issues: &mut Vec<Finding>) -> Self {
+        let times_s = &self.times_s;
+        let backward: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] < times_s[i - 1]).collect();
+        let Some(&first) = backward.first() else { return self };
+        let (from_s, to_s) = (times_s[first - 1], times_s[first]);
+        let found = TimesFinding::Backward { count: backward.len(), from_s, to_s };
+        issues.push(Finding::from(found).between(to_s, from_s));
+        let mut order: Vec<usize> = (0..times_s.len()).collect();
+        order.sort_by(|&a, &b| times_s[a].total_cmp(&times_s[b]));
+        let restart = restart(times_s).filter(|&at| self.are_mixed(&order, at));
+        issues.extend(restart.map(|at| restarted(times_s, at)));
+        self.picked(&order)
     }
-    let sorted_times: Vec<f64> = order.iter().map(|&i| times_s[i]).collect();
-    (Cow::Owned(sorted_times), order.iter().map(|&i| samples[i]).collect())
-}
 
-/// Drops rows whose time equals the one before.
-fn without_doubles<'a, S: Number>(
-    times_s: Cow<'a, [f64]>,
-    samples: Vec<S>,
-    issues: &mut Vec<Finding>,
-) -> Ordered<'a, S> {
-    let mut kept: Vec<usize> = vec![0];
-    let (mut same, mut different) = (0_usize, 0_usize);
-    let mut span_s: Option<(f64, f64)> = None;
-    let mut last = 0;
-    for i in 1..times_s.len() {
-        if times_s[i] > times_s[last] {
-            last = i;
-            kept.push(i);
-            continue;
+    /// Whether samples from `at` on lie among those before, in the order of their times; rows that were written twice do not, nor do a few
+    /// runs that were swapped.
+    fn are_mixed(&self, order: &[usize], at: usize) -> bool {
+        /// Changes from one part to the other that two runs out of place make.
+        const SWAPPED: usize = 4;
+        let is_copy =
+            |a: usize, b: usize| self.times_s[a].total_cmp(&self.times_s[b]).is_eq() && self.is_same(a, b);
+        let (mut last, mut changes) = (order[0], 0);
+        for &next in &order[1..] {
+            if !is_copy(last, next) {
+                changes += usize::from((last < at) != (next < at));
+                last = next;
+            }
         }
-        if is_same(samples[i].to_f64(), samples[last].to_f64()) {
-            same += 1;
-        } else {
-            different += 1;
+        changes > SWAPPED
+    }
+
+    /// Drops rows whose time equals the one before.
+    fn without_doubles(self, issues: &mut Vec<Finding>) -> Self {
+        let times_s = &self.times_s;
+        let mut kept: Vec<usize> = vec![0];
+        let (mut doubles, mut different) = (Vec::new(), 0_usize);
+        for i in 1..times_s.len() {
+            let last = kept[kept.len() - 1];
+            if times_s[i] > times_s[last] {
+                kept.push(i);
+            } else {
+                doubles.push(i);
+                different += usize::from(!self.is_same(i, last));
+            }
         }
-        span_s = Some((span_s.map_or(times_s[i], |s| s.0), times_s[i]));
+        let (Some(&first), Some(&last)) = (doubles.first(), doubles.last()) else { return self };
+        let rows = as_f64(times_s.len());
+        let is_coarse = as_f64(different) > COARSE_PART * rows
+            || rows > COARSE_ROWS * as_f64(kept.len())
+            || kept.len() < 2;
+        if is_coarse {
+            return Self { is_coarse, ..self };
+        }
+        let found = TimesFinding::CameTwice { samples: doubles.len(), different };
+        issues.push(Finding::from(found).between(times_s[first], times_s[last]));
+        self.picked(&kept)
     }
-    let Some((from_s, to_s)) = span_s else {
-        return Ordered::Strict(times_s, samples);
-    };
-    let rows = as_f64(times_s.len());
-    let is_coarse =
-        as_f64(different) > COARSE_PART * rows || rows > COARSE_ROWS * as_f64(kept.len()) || kept.len() < 2;
-    if is_coarse {
-        return Ordered::Coarse(times_s, samples);
+
+    fn picked(self, rows: &[usize]) -> Self {
+        let times_s = rows.iter().map(|&row| self.times_s[row]).collect();
+        Self { times_s: Cow::Owned(times_s), samples: self.samples.picked(rows), ..self }
     }
-    let found = TimesFinding::CameTwice { samples: same + different, different };
-    issues.push(Finding::from(found).between(from_s, to_s));
-    let times: Vec<f64> = kept.iter().map(|&i| times_s[i]).collect();
-    let values: Vec<S> = kept.iter().map(|&i| samples[i]).collect();
-    Ordered::Strict(Cow::Owned(times), values)
+
+    fn is_same(&self, row: usize, other: usize) -> bool {
+        is_same(self.samples.get(row), self.samples.get(other))
+    }
 }
 
 /// Equal, or both no number.
 pub(super) fn is_same(a: f64, b: f64) -> bool {
     a.total_cmp(&b).is_eq() || (a.is_nan() && b.is_nan())
-}
-
-#[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-pub(super) fn as_f64(count: usize) -> f64 {
-    count as f64
 }

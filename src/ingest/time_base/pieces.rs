@@ -1,8 +1,9 @@
 //! Blocks to where their samples lie among those of all, and to which of them are the same.
 
-use super::order::{as_f64, is_same};
+use super::order::is_same;
 use super::uniform::Block;
 use crate::data::Samples;
+use crate::numerics::as_f64;
 use std::ops::Range;
 
 /// A block, its samples a range of those of all blocks.
@@ -11,6 +12,19 @@ pub(super) struct Piece {
     pub(super) number: usize,
     pub(super) start_s: f64,
     pub(super) samples: Range<usize>,
+    /// The place of its first sample on the base, once it is laid.
+    pub(super) place: usize,
+}
+
+impl Piece {
+    pub(super) fn block(&self) -> Block {
+        Block { start_s: self.start_s, count: self.samples.len() }
+    }
+
+    /// The place behind its last sample.
+    pub(super) fn end(&self) -> usize {
+        self.place + self.samples.len()
+    }
 }
 
 /// The blocks with the places of their samples among those of all.
@@ -19,20 +33,20 @@ pub(super) fn pieces(blocks: &[Block]) -> Vec<Piece> {
     let piece = |(number, block): (usize, &Block)| {
         let samples = end..end + block.count;
         end = samples.end;
-        Piece { number, start_s: block.start_s, samples }
+        Piece { number, start_s: block.start_s, samples, place: 0 }
     };
     blocks.iter().enumerate().map(piece).collect()
 }
 
 /// The samples of blocks as far as the rate depends on them.
-pub(in crate::ingest) struct Content<'a> {
+pub(in crate::ingest) struct BlockContent<'a> {
     /// Those of the first blocks at least, one block after another.
     pub(in crate::ingest) samples: &'a Samples,
     /// A number for the samples of each block, where not all are at hand.
     pub(in crate::ingest) digests: Option<&'a [u64]>,
 }
 
-impl Content<'_> {
+impl BlockContent<'_> {
     /// Whether two blocks of the same length hold the same samples.
     pub(super) fn are_same(&self, one: &Piece, other: &Piece) -> bool {
         match self.digests {

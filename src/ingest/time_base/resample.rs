@@ -1,25 +1,19 @@
 //! Samples at jittering times to samples at uniform times, by local cubic interpolation.
 
-use super::fit::{Fit, whole};
-use super::order::as_f64;
-use super::uniform::Number;
+use super::fit::{BaseFit, whole};
+use crate::data::Samples;
+use crate::numerics::as_f64;
 
-/// Samples moved onto a base.
-pub(super) struct Resampled<S> {
+/// Samples moved onto a base, and how far cubic and linear interpolation lie apart, in percent of the largest sample.
+pub(super) struct Resampled {
     pub start_s: f64,
-    pub samples: Vec<S>,
-    pub error: Difference,
-}
-
-/// How far cubic and linear interpolation lie apart, in percent of the largest sample.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Difference {
+    pub samples: Samples,
     pub rms_percent: f64,
     pub max_percent: f64,
 }
 
 /// The samples at the places of the base that the record covers, NaN in gaps; a place half a period beyond an end holds its value.
-pub(super) fn resample<S: Number>(times_s: &[f64], samples: &[S], fit: &Fit) -> Resampled<S> {
+pub(super) fn resample(times_s: &[f64], samples: &Samples, fit: &BaseFit) -> Resampled {
     let last = times_s.len() - 1;
     let place = |t: f64| (t - fit.start_s) / fit.period_s;
     let first_place = place(times_s[0]).round();
@@ -48,45 +42,44 @@ pub(super) fn resample<S: Number>(times_s: &[f64], samples: &[S], fit: &Fit) -> 
             sum += difference * difference;
             max = max.max(difference);
         }
-        moved.push(S::from_f64(cubic));
+        moved.push(cubic);
     }
-    let largest = samples.iter().map(|s| s.to_f64().abs()).fold(0.0, f64::max);
+    let largest = (0..samples.len()).map(|i| samples.get(i).abs()).fold(0.0, f64::max);
     let percent = if largest > 0.0 { 100.0 / largest } else { 0.0 };
     let rms = (sum / as_f64(count.max(1))).sqrt();
-    let error = Difference { rms_percent: rms * percent, max_percent: max * percent };
-    Resampled { start_s, samples: moved, error }
+    let (rms_percent, max_percent) = (rms * percent, max * percent);
+    Resampled { start_s, samples: samples.alike(moved), rms_percent, max_percent }
 }
 
 /// In a gap: the sample at its edge where that is within half a period, else none.
-fn nearest<S: Number>(times_s: &[f64], samples: &[S], at: usize, place: (f64, f64)) -> S {
+fn nearest(times_s: &[f64], samples: &Samples, at: usize, place: (f64, f64)) -> f64 {
     let (t, period_s) = place;
     if t - times_s[at] < 0.5 * period_s {
-        samples[at]
+        samples.get(at)
     } else if times_s[at + 1] - t <= 0.5 * period_s {
-        samples[at + 1]
+        samples.get(at + 1)
     } else {
-        S::MISSING
+        f64::NAN
     }
 }
 
-fn linear<S: Number>(times_s: &[f64], samples: &[S], at: usize, t: f64) -> f64 {
-    let (a, b) = (samples[at].to_f64(), samples[at + 1].to_f64());
+fn linear(times_s: &[f64], samples: &Samples, at: usize, t: f64) -> f64 {
+    let (a, b) = (samples.get(at), samples.get(at + 1));
     let part = ((t - times_s[at]) / (times_s[at + 1] - times_s[at])).clamp(0.0, 1.0);
     a + part * (b - a)
 }
 
 /// Lagrange's cubic through the two samples on either side; `None` at ends and where neighbours are missing or too unevenly spaced.
-fn cubic<S: Number>(times_s: &[f64], samples: &[S], at: usize, t: f64) -> Option<f64> {
+fn cubic(times_s: &[f64], samples: &Samples, at: usize, t: f64) -> Option<f64> {
     let from = at.checked_sub(1)?;
     let x: &[f64; 4] = times_s.get(from..from + 4)?.try_into().ok()?;
-    let y: &[S; 4] = samples.get(from..from + 4)?.try_into().ok()?;
     let (before, middle, after) = (x[1] - x[0], x[2] - x[1], x[3] - x[2]);
     // Spacings beyond 3 : 1 make the cubic overshoot, and a gap among them has no meaning for the slope.
     if before.max(after) > 3.0 * middle || middle > 3.0 * before.min(after) {
         return None;
     }
     // Newton's divided differences.
-    let [y0, y1, y2, y3] = [y[0].to_f64(), y[1].to_f64(), y[2].to_f64(), y[3].to_f64()];
+    let [y0, y1, y2, y3] = [0, 1, 2, 3].map(|i| samples.get(from + i));
     let slope = (y2 - y1) / middle;
     let left = (slope - (y1 - y0) / before) / (x[2] - x[0]);
     let right = ((y3 - y2) / after - slope) / (x[3] - x[1]);

@@ -1,10 +1,9 @@
 //! Stamps of blocks to the rate that they tell, and to what they are cut to, where that shows.
 
-use super::order::as_f64;
 use super::uniform::Block;
 use crate::ingest::clock::RATE_TOLERANCE;
 use crate::ingest::shown::to_digits;
-use crate::numerics::robust;
+use crate::numerics::{as_f64, robust};
 
 /// Stamps are held as s from the first, with more digits than this part of what they are cut to.
 pub(super) const ROUND_OFF: f64 = 1e-4;
@@ -28,11 +27,11 @@ pub(super) struct Interval {
 }
 
 /// The intervals between stamps that rise.
-pub(super) struct Stamps(pub(super) Vec<Interval>);
+pub(super) struct Intervals(pub(super) Vec<Interval>);
 
 /// What stamps are cut to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Cut {
+pub(super) struct StampCut {
     /// In s.
     pub(super) unit_s: f64,
     /// Whether it explains every interval, so that nothing is lost between blocks.
@@ -49,15 +48,20 @@ pub(super) struct Told {
     pub(super) is_few: bool,
 }
 
-impl Stamps {
+impl Intervals {
     /// Of blocks in any order; of those that share a stamp the first counts.
     pub(super) fn of(blocks: &[Block]) -> Self {
         let mut order = blocks.to_vec();
         order.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
         order.dedup_by(|later, kept| later.start_s <= kept.start_s);
+        Self::between(&order)
+    }
+
+    /// Of blocks in order.
+    pub(super) fn between(blocks: &[Block]) -> Self {
         let interval =
             |pair: &[Block]| Interval { length: as_f64(pair[0].count), s: pair[1].start_s - pair[0].start_s };
-        Self(order.windows(2).map(interval).collect())
+        Self(blocks.windows(2).map(interval).collect())
     }
 
     /// The median of what blocks and their intervals say, Hz; NaN without any.
@@ -100,20 +104,14 @@ impl Stamps {
             time_s += interval.s;
             points.push((place, time_s));
         }
-        let n = as_f64(points.len());
-        let mean = points.iter().fold((0.0, 0.0), |sum, point| (sum.0 + point.0 / n, sum.1 + point.1 / n));
-        let (square, cross) = points.iter().fold((0.0, 0.0), |sum, point| {
-            let (x, y) = (point.0 - mean.0, point.1 - mean.1);
-            (sum.0 + x * x, sum.1 + x * y)
-        });
-        to_digits(square / cross, 10)
+        to_digits(1.0 / line(&points).1, 10)
     }
 
     /// What stamps are cut to, where that shows at a rate in Hz.
     ///
     /// Stamps of whole milliseconds may be exact. Where they are cut, some intervals between blocks differ from the usual, by no more than
     /// one cut, and what they differ by does not add up: samples that are lost do, and a rate that is another.
-    pub(super) fn cut(&self, rate_hz: f64) -> Option<Cut> {
+    pub(super) fn cut(&self, rate_hz: f64) -> Option<StampCut> {
         let (unit_s, usual_hz) = (self.unit_s(rate_hz)?, self.usual_hz());
         let is_uneven = |interval: &&Interval| {
             let off_s = (interval.s - interval.length / usual_hz).abs();
@@ -124,7 +122,7 @@ impl Stamps {
             let uneven = self.0.iter().filter(|interval| !is_gap(interval)).filter(is_uneven).count();
             uneven >= SHOWN && self.spread_s(rate_hz, is_gap) <= WIDEST * unit_s
         };
-        [true, false].into_iter().find(fits).map(|is_whole| Cut { unit_s, is_whole })
+        [true, false].into_iter().find(fits).map(|is_whole| StampCut { unit_s, is_whole })
     }
 
     /// The largest step of 1, 2 or 5 · 10ⁿ s above a sample's time that all intervals are multiples of.
@@ -175,4 +173,15 @@ fn mean_hz<'a>(intervals: impl Iterator<Item = &'a Interval>) -> f64 {
         intervals.fold((0.0, 0.0), |sums, interval| (sums.0 + interval.length, sums.1 + interval.s));
     // Ten digits are more than any clock has, and fewer than round-off spoils.
     to_digits(length / span_s, 10)
+}
+
+/// The middle of points, and the slope of the line through them that is nearest in y.
+pub(super) fn line(points: &[(f64, f64)]) -> ((f64, f64), f64) {
+    let n = as_f64(points.len());
+    let mean_x = points.iter().map(|point| point.0).sum::<f64>() / n;
+    let mean_y = points.iter().map(|point| point.1).sum::<f64>() / n;
+    let (square, cross) = points.iter().fold((0.0, 0.0), |(square, cross), (x, y)| {
+        (square + (x - mean_x).powi(2), cross + (x - mean_x) * (y - mean_y))
+    });
+    ((mean_x, mean_y), if square > 0.0 { cross / square } else { 0.0 })
 }

@@ -10,10 +10,6 @@ fn codes(uniform: &Uniform) -> Vec<IssueCode> {
     uniform.issues.iter().map(|issue| issue.code).collect()
 }
 
-fn as_f64(i: usize) -> f64 {
-    order::as_f64(i)
-}
-
 fn f64s(values: &[f64]) -> Samples {
     Samples::F64(values.to_vec())
 }
@@ -314,9 +310,9 @@ fn times_that_begin_anew_are_named_as_such() {
     let numbers = |starts_s: &[f64], is_copy: bool| -> bool {
         let count = |i: usize| if is_copy { i % 6 } else { i };
         let blocks: Vec<Block> = starts_s.iter().map(|&start_s| Block { start_s, count: 100 }).collect();
-        let values = (0..100 * starts_s.len()).map(|i| order::as_f64(count(i / 100))).collect();
+        let values = (0..100 * starts_s.len()).map(|i| as_f64(count(i / 100))).collect();
         let of_blocks = told(&from_blocks(&blocks, 100.0, Samples::F64(values)).unwrap().issues);
-        let values = (0..starts_s.len()).map(|i| order::as_f64(count(i))).collect();
+        let values = (0..starts_s.len()).map(|i| as_f64(count(i))).collect();
         let of_times = from_times(starts_s, Samples::F64(values), Some(1.0));
         assert!(of_times.is_err() || told(&of_times.unwrap().issues) == of_blocks, "{starts_s:?}");
         of_blocks

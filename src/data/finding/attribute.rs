@@ -1,0 +1,33 @@
+//! What speaks against the attributes by which an HDF5 dataset is read, to code, severity and sentence.
+
+use super::{IssueCode as Code, Severity};
+
+/// A finding about the unit, scale or offset of a dataset.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "a field's name says what it is, the variant's words the rest")]
+pub enum AttributeFinding {
+    /// A group states another value than what stands nearer to the samples, each as `scale = 0.5`; harmless where its value does nothing.
+    GroupDiffers { group: String, stated: String, nearer: String, is_harmless: bool },
+    /// Reading would refuse them: the problem and its remedy.
+    Refused(String),
+}
+
+impl AttributeFinding {
+    /// The check that speaks, and how much it weighs.
+    pub(super) fn code(&self) -> (Code, Severity) {
+        match self {
+            Self::GroupDiffers { is_harmless: true, .. } => (Code::Scale, Severity::Note),
+            Self::GroupDiffers { .. } | Self::Refused(_) => (Code::Scale, Severity::Warning),
+        }
+    }
+
+    /// What was found, its size, and what to do.
+    pub(super) fn sentence(&self) -> String {
+        match self {
+            Self::GroupDiffers { group, stated, nearer, .. } => format!(
+                "the group {group} states {stated}; nearer to the samples stands {nearer}, which was taken: one of the two is wrong, or the group's is for other datasets; correct the wrong one in a copy, or delete that of the group where each dataset has its own"
+            ),
+            Self::Refused(words) => words.clone(),
+        }
+    }
+}
