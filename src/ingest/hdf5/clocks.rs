@@ -12,6 +12,9 @@ use crate::ingest::times::{Carrier, Scale, seconds_a_unit};
 /// Names that go before others.
 const FIRST_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "Time"];
 
+/// No recording has more times beside a channel; each costs a look through the channels of its dataset.
+const MOST_TIMES: usize = 64;
+
 /// The times in the group or the records that were asked for last, by their names: channels come in the order of the file.
 #[derive(Default)]
 pub(super) struct Clocks {
@@ -61,7 +64,7 @@ fn sources(place: &str, column: &DatasetColumn) -> Vec<String> {
     };
     names.retain(|name| names::is_time(name));
     names.sort_by_key(|name| FIRST_NAMES.iter().position(|first| first == name).unwrap_or(FIRST_NAMES.len()));
-    names.into_iter().map(|name| format!("{place}{name}")).collect()
+    names.into_iter().take(MOST_TIMES).map(|name| format!("{place}{name}")).collect()
 }
 
 /// The numbers of a column of times, with its own scale and offset, and what a unit of them is.

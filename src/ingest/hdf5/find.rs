@@ -31,7 +31,7 @@ pub(super) fn find(file: &Rc<File>, source: &str) -> Result<Option<DatasetColumn
     for path in places(&source) {
         let object = file.object(path);
         if let Object::Dataset(dataset) = &*object {
-            return named(&source, channels(file, dataset, path)?).map(Some);
+            return named(&source, channels(file, dataset, path, MOST_NAMED)?).map(Some);
         }
         let is_field = source[path.len()..].starts_with('.');
         if other.is_ok() && !(is_field && matches!(*object, Object::Group { .. })) {
@@ -67,7 +67,7 @@ pub(super) fn locate(file: &Rc<File>, source: &str) -> Result<DatasetColumn, Fau
     find(file, source)?.ok_or_else(|| {
         let objects = file.walk();
         let of_dataset = |(path, object): &(String, Rc<Object>)| match &**object {
-            Object::Dataset(dataset) => channels(file, dataset, path).ok(),
+            Object::Dataset(dataset) => channels(file, dataset, path, MOST_LISTED).ok(),
             _ => None,
         };
         let all: Vec<String> =
@@ -96,22 +96,30 @@ pub(super) fn no_dataset(object: &Object, path: &str) -> Option<Fault> {
 const MOST_ROWS: usize = 64;
 /// Rows are channels where they are so many times longer than there are of them: a record has more samples than channels.
 const LONGER: usize = 8;
-/// A dataset with more columns than this is no table of channels.
-const MOST_COLUMNS: usize = 4096;
+/// Channels of one dataset that are looked through for a source.
+const MOST_NAMED: usize = 4096;
+/// Channels of one dataset that are listed: one with more columns is an image rather than a table.
+pub(super) const MOST_LISTED: usize = 256;
 
-/// The channels that a dataset holds: itself, its columns or rows, or the numbers in the fields of its records; one at least.
+/// The channels that a dataset holds: itself, its columns or rows, or the first numbers in the fields of its records; one at least, and
+/// `most` at most.
 ///
 /// # Errors
-/// It holds no numbers in one or two dimensions, or none that are read.
-pub(super) fn channels(file: &Rc<File>, dataset: &Dataset, path: &str) -> Result<Vec<DatasetColumn>, Fault> {
+/// It holds no numbers in one or two dimensions, none that are read, or more columns than that.
+pub(super) fn channels(
+    file: &Rc<File>,
+    dataset: &Dataset,
+    path: &str,
+    most: usize,
+) -> Result<Vec<DatasetColumn>, Fault> {
     refuse_unread(dataset, path)?;
     let shape = shape_of(dataset, path)?;
     let (place, columns, length) = match *shape {
         [length] | [length, 1] | [1, length] => (Place::Whole, 1, length),
         [rows, length] if rows <= MOST_ROWS && length >= LONGER * rows => (Place::Row, rows, length),
-        [length, columns] if columns <= MOST_COLUMNS => (Place::Column, columns, length),
+        [length, columns] if columns <= most => (Place::Column, columns, length),
         [rows, columns] => {
-            let problem = format!("has {rows} rows and {columns} columns");
+            let problem = format!("has {rows} rows and {columns} columns, too many for channels");
             return Err(Fault::of(path, problem, "save each channel as a dataset of its own"));
         }
         _ => {
@@ -130,7 +138,7 @@ pub(super) fn channels(file: &Rc<File>, dataset: &Dataset, path: &str) -> Result
             let (file, dataset, path) = (Rc::clone(file), Rc::clone(&dataset), path.to_owned());
             DatasetColumn { file, dataset, path, source, index, columns: count, length, number, place }
         };
-        (0..count.min(MOST_COLUMNS)).map(of_index).collect::<Vec<DatasetColumn>>()
+        (0..count.min(most)).map(of_index).collect::<Vec<DatasetColumn>>()
     };
     if dataset.fields.is_empty() {
         let number = number_of(&dataset, path)?;
@@ -151,7 +159,7 @@ pub(super) fn channels(file: &Rc<File>, dataset: &Dataset, path: &str) -> Result
         };
         several(&format!("{path}.{}", decoded(&field.name)), field.count, &single)
     };
-    Ok(dataset.fields.iter().flat_map(of_field).collect())
+    Ok(dataset.fields.iter().flat_map(of_field).take(most).collect())
 }
 
 /// What is not in the recording, or packed by what is not read. A file that was sent may name any other on this machine, and any filter.

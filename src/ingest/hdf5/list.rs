@@ -18,8 +18,6 @@ use std::rc::Rc;
 
 /// So many channels are listed at most.
 const MOST_CHANNELS: usize = 10_000;
-/// A dataset with more columns than this is an image rather than a table of channels.
-const MOST_COLUMNS: usize = 256;
 /// A longer column is not read: `inspect` should answer at once.
 const MOST_SAMPLES: usize = 20_000_000;
 /// So many values are read in all: names may stand for one large dataset many times over.
@@ -93,19 +91,14 @@ impl Lister {
                 if self.listing.channels.len() >= MOST_CHANNELS {
                     return;
                 }
-                let channels = find::channels(file, dataset, path).map_err(Fault::listed);
-                let reason = match channels {
-                    Ok(channels) if channels.len() <= MOST_COLUMNS => {
-                        return channels.into_iter().for_each(|column| self.list(column));
-                    }
-                    Ok(channels) => format!("has {} columns, too many for channels", channels.len()),
-                    Err(reason) => reason,
-                };
-                self.listing.channels.push(ListedChannel {
-                    encoding: dataset.described(),
-                    unreadable: Some(reason),
-                    ..ListedChannel::named(path, "dataset")
-                });
+                match find::channels(file, dataset, path, find::MOST_LISTED) {
+                    Ok(channels) => channels.into_iter().for_each(|column| self.list(column)),
+                    Err(fault) => self.listing.channels.push(ListedChannel {
+                        encoding: dataset.described(),
+                        unreadable: Some(fault.listed()),
+                        ..ListedChannel::named(path, "dataset")
+                    }),
+                }
             }
             Object::NamedType | Object::Nothing => {}
             Object::NotFollowed(what) => self.list_broken(path, what),

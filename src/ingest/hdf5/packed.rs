@@ -141,7 +141,7 @@ impl RecordField {
     }
 }
 
-impl<'a> ChunkLayout<'a> {
+impl ChunkLayout<'_> {
     /// With the pieces in which a dataset that lies in one is read.
     fn in_one_piece(self, column: &DatasetColumn, from: u64) -> Option<(Self, Vec<Chunk>)> {
         let (bytes, rows) = (self.value_bytes, (PIECE_BYTES / self.value_bytes).max(1));
