@@ -3,7 +3,9 @@
 use crate::recordings::{self, Kind};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use dropcheck::data::{Body, BodyModel, Cask, CaskFile, Contact, Drop, Request, Rung, Sweep, SweepVariable};
+use dropcheck::data::{
+    Body, BodyModel, Cask, CaskFile, Contact, Drop, Rung, StudyRequest, Sweep, SweepVariable,
+};
 use dropcheck::predict;
 use std::fmt::{Display, Formatter};
 
@@ -89,8 +91,8 @@ fn steps(count: u32, last: f64) -> Vec<f64> {
 }
 
 /// What `predict` asks for where its user names nothing.
-fn request(file: &CaskFile) -> Request {
-    Request {
+fn request(file: &CaskFile) -> StudyRequest {
+    StudyRequest {
         contacts: vec![Contact::Rough, Contact::Smooth],
         ks: vec![0.0, 1.0],
         angle_deg: 15.0,
@@ -116,6 +118,6 @@ fn prediction_study_with_sweeps(bencher: Bencher) {
     let sweep = |variable, values| Sweep { variable, values };
     let sweeps =
         vec![sweep(SweepVariable::Angle, steps(180, 90.0)), sweep(SweepVariable::K, steps(100, 1.0))];
-    let request = Request { sweeps, ..request(&file) };
+    let request = StudyRequest { sweeps, ..request(&file) };
     bencher.counter(ItemsCount::new(1_u32)).bench(|| predict::study(&file, &request));
 }

@@ -1,6 +1,6 @@
 //! `analyze`: one recording and one cask file to a table and a report.
 
-use super::Outcome;
+use super::Ending;
 use super::limits::Bounds;
 use super::output::{Folder, JsonTarget, print};
 use super::progress::with_progress;
@@ -86,7 +86,7 @@ impl SwitchedOff {
     }
 }
 
-pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
+pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let inputs = [arguments.recording.as_path(), arguments.cask.as_path()];
     let folder =
         arguments.out.as_deref().map(|dir| Folder::checked(dir, &report::FILE_NAMES, &inputs)).transpose()?;

@@ -5,7 +5,7 @@ use super::complaint::sentence;
 use super::limits::Bounds;
 use super::output::{Folder, print};
 use super::progress::with_progress;
-use super::{Outcome, output::CannotWrite};
+use super::{Ending, output::CannotWrite};
 use clap::Args;
 use dropcheck::data::CaskFile;
 use dropcheck::report::{Campaign, CampaignRow};
@@ -37,7 +37,7 @@ pub struct Arguments {
     bounds: Bounds,
 }
 
-pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
+pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let recordings = recordings(&arguments.paths)?;
     let mut inputs: Vec<&Path> = recordings.iter().map(PathBuf::as_path).collect();
     inputs.push(&arguments.cask);
@@ -56,7 +56,8 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     let mut rows = Vec::with_capacity(recordings.len());
     for (i, path) in recordings.iter().enumerate() {
         let folder = folders.as_ref().and_then(|(_, folders)| folders.get(i));
-        rows.push(row(path, &cask_file, arguments, folder));
+        let failed = |complaint| CampaignRow::failed(path.display().to_string(), sentence(&complaint));
+        rows.push(analysed(path, &cask_file, arguments, folder).unwrap_or_else(failed));
     }
     let campaign = Campaign::new(arguments.cask.display().to_string(), rows);
     if let Some((summary, _)) = &folders {
@@ -64,20 +65,8 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
             .write(&[(SUMMARY[0].to_owned(), campaign.json()?), (SUMMARY[1].to_owned(), campaign.csv()?)])?;
     }
     print(&campaign.table())?;
-    let outcome = |row: &CampaignRow| row.verdict.map_or(Outcome::NotDone, Outcome::from);
-    Ok(campaign.recordings.iter().map(outcome).max().unwrap_or(Outcome::Clear))
-}
-
-fn row(
-    path: &Path,
-    cask_file: &CaskFile,
-    arguments: &Arguments,
-    folder: Option<&(String, Folder)>,
-) -> CampaignRow {
-    match analysed(path, cask_file, arguments, folder) {
-        Ok(row) => row,
-        Err(complaint) => CampaignRow::failed(path.display().to_string(), sentence(&complaint)),
-    }
+    let outcome = |row: &CampaignRow| row.verdict.map_or(Ending::NotDone, Ending::from);
+    Ok(campaign.recordings.iter().map(outcome).max().unwrap_or(Ending::Clear))
 }
 
 fn analysed(

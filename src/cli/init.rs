@@ -1,6 +1,6 @@
 //! `init`: what a recording holds to a cask file to fill in, on standard output.
 
-use super::Outcome;
+use super::Ending;
 use super::limits::Bounds;
 use super::output::print_plain;
 use super::progress::with_progress;
@@ -17,10 +17,10 @@ pub struct Arguments {
     bounds: Bounds,
 }
 
-pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
+pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let listing = with_progress("reading", |progress| {
         ingest::list_within(&arguments.recording, arguments.bounds.limits(), progress)
     })?;
     print_plain(report::cask_file_template(&listing)?.as_bytes())?;
-    Ok(Outcome::Clear)
+    Ok(Ending::Clear)
 }

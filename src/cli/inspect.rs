@@ -1,6 +1,6 @@
 //! `inspect`: what a recording holds, as a table or JSON.
 
-use super::Outcome;
+use super::Ending;
 use super::limits::Bounds;
 use super::output::{JsonTarget, print};
 use super::progress::with_progress;
@@ -19,7 +19,7 @@ pub struct Arguments {
     bounds: Bounds,
 }
 
-pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
+pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let json = JsonTarget::checked(arguments.json.as_deref(), &[&arguments.recording])?;
     let listing = with_progress("reading", |progress| {
         ingest::list_within(&arguments.recording, arguments.bounds.limits(), progress)
@@ -29,5 +29,5 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
         print(&report::listing_table(&listing))?;
     }
     let sound = listing.issues.iter().all(|issue| issue.severity == dropcheck::data::Severity::Note);
-    Ok(if sound { Outcome::Clear } else { Outcome::NeedsALook })
+    Ok(if sound { Ending::Clear } else { Ending::NeedsALook })
 }

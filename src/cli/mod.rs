@@ -64,9 +64,9 @@ pub enum Command {
     Validate(lab::validate::Arguments),
 }
 
-/// How a command that ran to its end ended.
+/// How a command that ran to its end ended; its number is the exit status.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Outcome {
+pub enum Ending {
     /// Nothing speaks against the result.
     Clear,
     /// A person should look.
@@ -75,7 +75,7 @@ pub enum Outcome {
     NotDone,
 }
 
-impl From<Verdict> for Outcome {
+impl From<Verdict> for Ending {
     fn from(verdict: Verdict) -> Self {
         match verdict {
             Verdict::Pass => Self::Clear,
@@ -84,18 +84,14 @@ impl From<Verdict> for Outcome {
     }
 }
 
-impl From<Outcome> for ExitCode {
-    fn from(outcome: Outcome) -> Self {
-        match outcome {
-            Outcome::Clear => Self::SUCCESS,
-            Outcome::NeedsALook => Self::from(1),
-            Outcome::NotDone => Self::from(2),
-        }
+impl From<Ending> for ExitCode {
+    fn from(outcome: Ending) -> Self {
+        Self::from(outcome as u8)
     }
 }
 
 /// Runs one command.
-pub fn run(command: &Command) -> miette::Result<Outcome> {
+pub fn run(command: &Command) -> miette::Result<Ending> {
     match command {
         Command::Analyze(arguments) => analyze::run(arguments),
         Command::Batch(arguments) => batch::run(arguments),
@@ -121,6 +117,6 @@ mod tests {
 
     #[test]
     fn the_worst_outcome_is_the_greatest() {
-        assert!(Outcome::Clear < Outcome::NeedsALook && Outcome::NeedsALook < Outcome::NotDone);
+        assert!(Ending::Clear < Ending::NeedsALook && Ending::NeedsALook < Ending::NotDone);
     }
 }

@@ -3,25 +3,10 @@
 use std::path::Path;
 
 /// Where nothing but the system's own files belongs.
-const SYSTEM: [&str; 14] = [
-    "/bin",
-    "/boot",
-    "/dev/block",
-    "/etc",
-    "/lib",
-    "/lib32",
-    "/lib64",
-    "/proc",
-    "/sbin",
-    "/sys",
-    "/usr",
-    "/Applications",
-    "/Library",
-    "/System",
-];
+const SYSTEM: &str =
+    "/bin /boot /dev/block /etc /lib /lib32 /lib64 /proc /sbin /sys /usr /Applications /Library /System";
 /// What holds other folders: one of its own below is a place.
-const CROSSROADS: [&str; 11] =
-    ["/dev", "/home", "/media", "/mnt", "/opt", "/root", "/run", "/srv", "/var", "/usr/local", "/Users"];
+const CROSSROADS: &str = "/dev /home /media /mnt /opt /root /run /srv /var /usr/local /Users";
 
 /// Whether the files of a report in `folder`, which exists, would mix with a system's or lie about in the user's home.
 pub fn is_shared(folder: &Path) -> bool {
@@ -29,8 +14,8 @@ pub fn is_shared(folder: &Path) -> bool {
     let home = std::env::home_dir().and_then(|home| home.canonicalize().ok());
     real.parent().is_none()
         || home.is_some_and(|home| home == real)
-        || CROSSROADS.iter().any(|place| real == Path::new(place))
-        || SYSTEM.iter().any(|place| real.starts_with(place)) && !real.starts_with("/usr/local")
+        || CROSSROADS.split(' ').any(|place| real == Path::new(place))
+        || SYSTEM.split(' ').any(|place| real.starts_with(place)) && !real.starts_with("/usr/local")
 }
 
 #[cfg(all(test, unix))]

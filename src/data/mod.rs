@@ -54,7 +54,7 @@ pub use recording::{Recording, RecordingFormat};
 pub use signal::{CoarseEvent, MOST_LOST_M_S, Signal};
 pub use study::{
     AngleCurve, Criterion, CriticalAngle, CriticalRange, MonteCarlo, PredictionRow, QuantileCurves, Regime,
-    RegimeMap, Request, Sensitivity, Study, Sweep, SweepVariable, Uncertain, WorstCase,
+    RegimeMap, Sensitivity, Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
 };
 pub use tolerances::{Corrections, Tolerances};
 pub use unit::{STANDARD_GRAVITY_M_S2, acceleration_unit_m_s2, is_rate_of_turn};

@@ -46,7 +46,7 @@ pub struct PredictionRow {
 
 /// What is asked of a study besides the rows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Request {
+pub struct StudyRequest {
     /// Contact laws, one or several.
     pub contacts: Vec<Contact>,
     /// Coefficients of restitution, one or several.
@@ -288,7 +288,7 @@ pub struct Study {
     /// The cask.
     pub cask_file: CaskFile,
     /// What was asked.
-    pub request: Request,
+    pub request: StudyRequest,
     /// The predictions asked for.
     pub rows: Vec<PredictionRow>,
     /// The ladder for every contact law and k, at the angle of the request.

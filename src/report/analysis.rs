@@ -1,13 +1,13 @@
 //! An analysis to the document that the terminal and `report.html` show.
 
-use super::document::{Chapter, Content, Document, Fact, Frame, Passage, Tone};
+use super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument, Tone};
 use super::grid::STANDARD_GRAVITY_M_S2;
 use super::medium::{Medium, Words};
 use super::prediction::prediction_columns;
 use super::reconstruction::{budget, flight, reconstruction};
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
 use super::settings;
-use super::table::{Table, TableCell, TableShape};
+use super::table::{ReportTable, TableCell, TableShape};
 use super::tested::tested;
 use super::text::{
     Style, json_word, reason, sentence, span_text, tail, taken_mark, true_minus, verdict_sentence,
@@ -40,14 +40,14 @@ const SLAP_DOWN_CODES: [IssueCode; 8] = [
 ];
 
 /// The whole document. A terminal has the findings last, where the eye rests; a page has them with the results.
-pub(super) fn document(analysis: &Analysis) -> Document {
+pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     let (result, file) = (&analysis.result, &analysis.cask_file);
     let name = &file.cask.name;
     let mut curves = Chapter::new("Curves").only(Medium::Page);
     for name in ["accelerations", "velocities", "motion", "spectra"] {
-        curves = curves.with(Passage::picture(name, name, ""));
+        curves = curves.with(ChapterPart::picture(name, name, ""));
     }
-    Document {
+    ReportDocument {
         page: Frame {
             title: format!("Drop test of {name} – {}", verdict_word(result.verdict)),
             product: "Drop test report",
@@ -102,10 +102,13 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
         Verdict::Fail => Style::Red,
     };
     Chapter::new("")
-        .with(Passage::title(what).only(Medium::Terminal))
-        .with(Passage::line(files).only(Medium::Terminal))
-        .with(Content::Banner(Tone(style, verdict_word(result.verdict).to_owned()), verdict_sentence(result)))
-        .with(Content::Figures(figures(result)))
+        .with(ChapterPart::title(what).only(Medium::Terminal))
+        .with(ChapterPart::line(files).only(Medium::Terminal))
+        .with(PartContent::Banner(
+            Tone(style, verdict_word(result.verdict).to_owned()),
+            verdict_sentence(result),
+        ))
+        .with(PartContent::Figures(figures(result)))
 }
 
 fn figures(result: &DropResult) -> Vec<[String; 3]> {
@@ -158,24 +161,29 @@ fn quantities(result: &DropResult) -> Chapter {
         fact("flight time", &second.flight_time, "from separation"),
         fact("time", &second.time, "after the first sample"),
     ];
-    Chapter::new(Words::or("Results, ± 95 %", "")).with(Content::Beside([
+    Chapter::new(Words::or("Results, ± 95 %", "")).with(PartContent::Beside([
         estimates(result, "First impact", first_impact, &FIRST_IMPACT_CODES),
         estimates(result, "Slap-down", slap_down, &SLAP_DOWN_CODES),
     ]))
 }
 
 /// Estimates; the reason for the missing ones stands once below them.
-fn estimates(result: &DropResult, caption: &str, facts: Vec<Fact>, codes: &[IssueCode]) -> Vec<Passage> {
+fn estimates(result: &DropResult, caption: &str, facts: Vec<Fact>, codes: &[IssueCode]) -> Vec<ChapterPart> {
     let is_missing = facts.iter().any(|fact| fact.value == MISSING);
-    let why = || Passage::note(format!("{MISSING} could not be had: {}", reason(result, codes)));
-    [Passage::facts(caption, facts)].into_iter().chain(is_missing.then(why)).collect()
+    let why = || ChapterPart::note(format!("{MISSING} could not be had: {}", reason(result, codes)));
+    [ChapterPart::facts(caption, facts)].into_iter().chain(is_missing.then(why)).collect()
 }
 
 /// The measured speed beside the predicted one, the model taken and why, and all that were held against the measurement.
 fn comparison(result: &DropResult) -> Chapter {
     let taken = result.model.as_ref();
     let compared = result.comparison.as_ref().map_or_else(
-        || Passage::text(format!("{MISSING} could not be compared: {}", reason(result, &SLAP_DOWN_CODES))),
+        || {
+            ChapterPart::text(format!(
+                "{MISSING} could not be compared: {}",
+                reason(result, &SLAP_DOWN_CODES)
+            ))
+        },
         |c| {
             let by = taken.map_or_else(String::new, |m| format!("{} with the measured k", m.rung.words()));
             let style = if c.agrees { Style::Green } else { Style::Yellow };
@@ -184,11 +192,11 @@ fn comparison(result: &DropResult) -> Chapter {
                 Fact::number("predicted", pair(c.predicted, c.predicted_u95, "m/s")).note(by),
                 Fact::number("difference", percent(c.difference_percent)).toned(style, agreement(c.agrees)),
             ];
-            Passage::facts("", facts)
+            ChapterPart::facts("", facts)
         },
     );
     let model = taken.map(|model| {
-        let candidates = Table::of(&model.candidates)
+        let candidates = ReportTable::of(&model.candidates)
             .caption("The ladder of analytical models with the measured k, the simplest first; rungs that change nothing are left out")
             .chosen(|c| c.rung == model.rung)
             .head("Model", |c| format!("{}{}", c.rung.words(), taken_mark(c.rung == model.rung)))
@@ -197,11 +205,11 @@ fn comparison(result: &DropResult) -> Chapter {
             .number("Measured against predicted", |c| c.difference_percent.map_or(MISSING.into(), percent))
             .text("Within both intervals", |c| yes(c.consistent));
         let words = format!("Model: {}. {}", model.rung.words(), sentence(&model.reason));
-        [Passage::text(words), Passage::from(candidates).only(Medium::Page)]
+        [ChapterPart::text(words), ChapterPart::from(candidates).only(Medium::Page)]
     });
     Chapter::new("Measured beside predicted")
         .with(compared)
-        .with(Passage::picture("comparison", "", ""))
+        .with(ChapterPart::picture("comparison", "", ""))
         .with_all(model.into_iter().flatten())
 }
 
@@ -209,14 +217,14 @@ fn comparison(result: &DropResult) -> Chapter {
 pub(super) fn quality(issues: &[Issue]) -> Chapter {
     let chapter = Chapter::new("Quality");
     if issues.is_empty() {
-        return chapter.with(Passage::text(Words::or("No check found anything to say.", "no findings")));
+        return chapter.with(ChapterPart::text(Words::or("No check found anything to say.", "no findings")));
     }
     let style = |severity| match severity {
         Severity::Note => Style::Dim,
         Severity::Warning => Style::Yellow,
         Severity::Error => Style::Red,
     };
-    let findings = Table::of(issues)
+    let findings = ReportTable::of(issues)
         .class("")
         .shape(TableShape::Items)
         .tag("Severity", |i| TableCell::toned(style(i.severity), json_word(i.severity)))
@@ -232,7 +240,7 @@ fn predictions(result: &DropResult) -> Chapter {
     if result.predictions.is_empty() {
         return Chapter::new("");
     }
-    let table = Table::of(&result.predictions).class("").caption(
+    let table = ReportTable::of(&result.predictions).class("").caption(
         "Rigid-body models at the angle of the drop. Energy: kinetic, before the slap-down over before the first impact.",
     );
     let table = prediction_columns(table, Some, false)
@@ -241,14 +249,14 @@ fn predictions(result: &DropResult) -> Chapter {
         .number("Impacts of the first end", |p| p.first_end_impacts.to_string())
         .only(Medium::Page);
     let kept = result.predictions.iter().any(|p| p.regime == FlightRegime::Contact);
-    Chapter::new("Predictions").with(table).with_all(kept.then(|| Passage::note(KEPT_SENTENCE)))
+    Chapter::new("Predictions").with(table).with_all(kept.then(|| ChapterPart::note(KEPT_SENTENCE)))
 }
 
 /// What each channel is worth.
 fn channels(result: &DropResult) -> Chapter {
     let g = |value: Option<f64>| optional(value.map(|v| v / STANDARD_GRAVITY_M_S2), 3);
     let rate = |rate_hz: f64, digits| format!("{} kHz", plain(rate_hz / 1e3, digits));
-    let table = Table::of(&result.channels)
+    let table = ReportTable::of(&result.channels)
         .class("")
         .caption(
             "Offset, noise (RMS) and peaks in g. The peaks are those of the event that the curves show, from just before the first impact, \
@@ -286,11 +294,11 @@ fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
     ];
     let stated = settings::of_cask_file(file, &result.settings);
     let all: Vec<_> = result.settings.iter().chain(&stated).collect();
-    let settings = Table::of(&all)
+    let settings = ReportTable::of(&all)
         .class("")
         .caption("Every setting and where it came from")
         .head("Setting", |s| &s.name[..])
         .text("Value", |s| true_minus(&s.value))
         .text("From", |s| &s.origin[..]);
-    Chapter::new("Provenance").only(Medium::Page).with(Passage::facts("", facts)).with(settings)
+    Chapter::new("Provenance").only(Medium::Page).with(ChapterPart::facts("", facts)).with(settings)
 }

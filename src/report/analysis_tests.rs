@@ -55,7 +55,7 @@ fn names_from_files_cannot_colour_the_terminal() {
 }
 
 fn made(analysis: &Analysis) -> String {
-    as_html::page(&document(analysis), &pictures::draw(analysis).unwrap())
+    as_html::page(&document(analysis), &pictures::draw(analysis))
 }
 
 #[test]

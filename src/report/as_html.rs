@@ -1,16 +1,16 @@
 //! A document to a page: one file without network, for the desk and for A4 paper. Every word is escaped here.
 
-use super::document::{Content, Document, Fact, Frame, Passage, Role, Tone};
+use super::document::{ChapterPart, Fact, Frame, PartContent, ReportDocument, SentenceRole, Tone};
 use super::medium::{Medium, Words};
 use super::pictures::draw::Picture;
-use super::table::{CellKind, Table, TableCell, TableColumn};
+use super::table::{CellKind, ReportColumn, ReportTable, TableCell};
 use super::text::{capital, printable};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("report.css");
 
 /// The page with these pictures.
-pub(crate) fn page(document: &Document, pictures: &[Picture]) -> String {
+pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
     let Frame { title, product, version, heading, about, footer, style } = &document.page;
     let generator = format!("dropcheck {version}");
     html! {
@@ -44,20 +44,20 @@ pub(crate) fn page(document: &Document, pictures: &[Picture]) -> String {
     .into_string()
 }
 
-fn passage(passage: &Passage, pictures: &[Picture]) -> Markup {
+fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
     match &passage.content {
-        Content::Sentence(role, words) => sentence(*role, words),
-        Content::Banner(Tone(_, word), sentence) => html! {
+        PartContent::Sentence(role, words) => sentence(*role, words),
+        PartContent::Banner(Tone(_, word), sentence) => html! {
             div class=(format!("banner {}", word.to_lowercase())) role="status" { strong { (word) } span { (printable(sentence)) } }
         },
-        Content::Figures(figures) => html! {
+        PartContent::Figures(figures) => html! {
             dl class="figures" { @for [name, value, detail] in figures {
                 div { dt { (name) } dd { (value) @if !detail.is_empty() { small { (printable(detail)) } } } }
             } }
         },
-        Content::Facts(caption, facts) => self::facts(caption, facts),
-        Content::Table(table) => self::table(table),
-        Content::Picture(name, _, room) => html! {
+        PartContent::Facts(caption, facts) => self::facts(caption, facts),
+        PartContent::ReportTable(table) => self::table(table),
+        PartContent::Picture(name, _, room) => html! {
             @for picture in pictures.iter().filter(|picture| picture.name == *name) {
                 figure aria-label=(printable(&picture.alt)) class=[class(room)] {
                     (PreEscaped(&picture.svg))
@@ -65,10 +65,10 @@ fn passage(passage: &Passage, pictures: &[Picture]) -> Markup {
                 }
             }
         },
-        Content::List(sentences) => {
+        PartContent::List(sentences) => {
             html! { ul class="limits" { @for sentence in sentences { li { (sentence) } } } }
         }
-        Content::Beside(columns) => html! {
+        PartContent::Beside(columns) => html! {
             div class="pair" { @for column in columns { div { @for passage in column.iter().filter(|p| p.is_shown(Medium::Page)) {
                 (self::passage(passage, pictures))
             } } } }
@@ -81,12 +81,12 @@ fn class(name: &str) -> Option<&str> {
     (!name.is_empty()).then_some(name)
 }
 
-fn sentence(role: Role, words: &Words) -> Markup {
+fn sentence(role: SentenceRole, words: &Words) -> Markup {
     let name = match role {
-        Role::Title | Role::Text => "",
-        Role::Line => "soft",
-        Role::Lead => "lead",
-        Role::Note => "note",
+        SentenceRole::Title | SentenceRole::Text => "",
+        SentenceRole::Line => "soft",
+        SentenceRole::Lead => "lead",
+        SentenceRole::Note => "note",
     };
     html! { p class=[class(name)] { (printable(words.on(Medium::Page))) } }
 }
@@ -109,10 +109,10 @@ fn default_mark(word: &str) -> Markup {
     html! { span class="default" { (word) } }
 }
 
-fn table(table: &Table) -> Markup {
+fn table(table: &ReportTable) -> Markup {
     let columns = table.shown(Medium::Page);
     let (rows, left_out) = table.rows(Medium::Page);
-    let number = |column: &TableColumn| column.is_number().then_some("n");
+    let number = |column: &ReportColumn| column.is_number().then_some("n");
     html! {
         table class=[class(table.class)] {
             @if !table.caption.is_empty() { caption { (printable(&table.caption)) } }

@@ -1,12 +1,12 @@
 //! A document to Markdown that stands within another document.
 
-use super::document::{Content, Document, Passage};
+use super::document::{ChapterPart, PartContent, ReportDocument};
 use super::medium::Medium;
-use super::table::{CellKind, Table, TableCell};
+use super::table::{CellKind, ReportTable, TableCell};
 use super::text::printable;
 
 /// The Markdown; `folder` is what leads from the other document to the pictures ("" or ending in "/"), none leaves them out.
-pub(crate) fn markdown(document: &Document, folder: Option<&str>) -> String {
+pub(crate) fn markdown(document: &ReportDocument, folder: Option<&str>) -> String {
     let mut blocks = Vec::new();
     for chapter in &document.chapters {
         let heading = chapter.heading(Medium::Markdown);
@@ -17,24 +17,24 @@ pub(crate) fn markdown(document: &Document, folder: Option<&str>) -> String {
     blocks.join("\n")
 }
 
-fn passage(passage: &Passage, folder: Option<&str>) -> Option<String> {
+fn passage(passage: &ChapterPart, folder: Option<&str>) -> Option<String> {
     match &passage.content {
-        Content::Sentence(_, words) => {
+        PartContent::Sentence(_, words) => {
             Some(format!("{}\n", printable(words.on(Medium::Markdown)).replace('<', "&lt;")))
         }
-        Content::Picture(name, title, _) => {
+        PartContent::Picture(name, title, _) => {
             folder.map(|folder| format!("![{}]({folder}{name}.svg)\n", cell_text(title)))
         }
-        Content::Table(table) => Some(self::table(table)),
-        Content::Banner(..)
-        | Content::Figures(_)
-        | Content::Facts(..)
-        | Content::List(_)
-        | Content::Beside(_) => None,
+        PartContent::ReportTable(table) => Some(self::table(table)),
+        PartContent::Banner(..)
+        | PartContent::Figures(_)
+        | PartContent::Facts(..)
+        | PartContent::List(_)
+        | PartContent::Beside(_) => None,
     }
 }
 
-fn table(table: &Table) -> String {
+fn table(table: &ReportTable) -> String {
     let columns = table.shown(Medium::Markdown);
     let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let heads = columns.iter().map(|column| cell_text(column.head.on(Medium::Markdown)));

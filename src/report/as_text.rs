@@ -1,9 +1,9 @@
 //! A document to the text that a terminal shows, 80 columns wide, with SGR colours that the caller strips where none are read.
 
-use super::document::{Content, Document, Fact, Passage, Role, Tone};
+use super::document::{ChapterPart, Fact, PartContent, ReportDocument, SentenceRole, Tone};
 use super::medium::Medium;
 use super::rounding::MISSING;
-use super::table::{Table, TableColumn, TableShape};
+use super::table::{ReportColumn, ReportTable, TableShape};
 use super::text::{Style, WIDTH, lines, printable, styled, styled_lines, wrap};
 use comfy_table::{CellAlignment, ContentArrangement, TableStyle};
 
@@ -11,7 +11,7 @@ use comfy_table::{CellAlignment, ContentArrangement, TableStyle};
 const FACT_WIDTH: usize = 22;
 
 /// The whole document.
-pub(crate) fn text(document: &Document) -> String {
+pub(crate) fn text(document: &ReportDocument) -> String {
     let mut out = String::new();
     for chapter in &document.chapters {
         out.extend(chapter.heading(Medium::Terminal).map(heading));
@@ -24,29 +24,31 @@ fn heading(words: &str) -> String {
     format!("\n{}\n", styled(Style::Bold, &printable(words)))
 }
 
-fn passage(passage: &Passage) -> String {
+fn passage(passage: &ChapterPart) -> String {
     match &passage.content {
-        Content::Sentence(role, words) => {
+        PartContent::Sentence(role, words) => {
             let words = words.on(Medium::Terminal);
             match role {
-                Role::Title => styled_lines(Style::Bold, &wrap(words, WIDTH, 0)),
-                Role::Line => wrap(words, WIDTH, 0),
-                Role::Lead | Role::Text | Role::Note => wrap(words, WIDTH, 2),
+                SentenceRole::Title => styled_lines(Style::Bold, &wrap(words, WIDTH, 0)),
+                SentenceRole::Line => wrap(words, WIDTH, 0),
+                SentenceRole::Lead | SentenceRole::Text | SentenceRole::Note => wrap(words, WIDTH, 2),
             }
         }
-        Content::Banner(Tone(style, word), sentence) => format!("\n{}  {sentence}\n", styled(*style, word)),
-        Content::Facts(caption, facts) => {
+        PartContent::Banner(Tone(style, word), sentence) => {
+            format!("\n{}  {sentence}\n", styled(*style, word))
+        }
+        PartContent::Facts(caption, facts) => {
             let head = if caption.is_empty() { String::new() } else { heading(caption) };
             head + &lines(facts.iter().map(fact))
         }
-        Content::Table(table) => self::table(table),
-        Content::Beside(columns) => columns
+        PartContent::ReportTable(table) => self::table(table),
+        PartContent::Beside(columns) => columns
             .iter()
             .flatten()
             .filter(|passage| passage.is_shown(Medium::Terminal))
             .map(self::passage)
             .collect(),
-        Content::Figures(_) | Content::Picture(..) | Content::List(_) => String::new(),
+        PartContent::Figures(_) | PartContent::Picture(..) | PartContent::List(_) => String::new(),
     }
 }
 
@@ -57,7 +59,7 @@ fn fact(fact: &Fact) -> String {
     line.trim_end().to_owned()
 }
 
-fn table(table: &Table) -> String {
+fn table(table: &ReportTable) -> String {
     let columns = table.shown(Medium::Terminal);
     let (rows, left_out) = table.rows(Medium::Terminal);
     let mut out = match &table.shape {
@@ -76,14 +78,14 @@ fn table(table: &Table) -> String {
 }
 
 /// The words of a cell; `None` where the table has no such row.
-fn cell(column: &TableColumn, row: usize) -> String {
+fn cell(column: &ReportColumn, row: usize) -> String {
     column.cells.get(row).map_or_else(String::new, |cell| printable(cell.words.on(Medium::Terminal)))
 }
 
 /// Whether columns two apart are narrower than the terminal.
-fn fits(columns: &[&TableColumn], rows: usize) -> bool {
+fn fits(columns: &[&ReportColumn], rows: usize) -> bool {
     let width = |text: &str| text.lines().map(|line| line.chars().count()).max().unwrap_or(0);
-    let widest = |column: &&TableColumn| {
+    let widest = |column: &&ReportColumn| {
         let cells = (0..rows).map(|row| width(&cell(column, row)));
         cells.chain([width(column.head.on(Medium::Terminal))]).max().unwrap_or(0)
     };
@@ -91,7 +93,7 @@ fn fits(columns: &[&TableColumn], rows: usize) -> bool {
 }
 
 /// The lines of the heads, and those of each row, the columns `gap` apart; cells too wide are wrapped.
-fn aligned(columns: &[&TableColumn], rows: usize, gap: u16, width: usize) -> Vec<Vec<String>> {
+fn aligned(columns: &[&ReportColumn], rows: usize, gap: u16, width: usize) -> Vec<Vec<String>> {
     /// Stands in a column of its own where a row begins, and is taken off again: a row may have several lines.
     const BEGINS: char = '•';
     let mut table = comfy_table::Table::new();
@@ -122,7 +124,7 @@ fn aligned(columns: &[&TableColumn], rows: usize, gap: u16, width: usize) -> Vec
 }
 
 /// The table with the name of each group on a line of its own above its rows.
-fn grouped(columns: &[&TableColumn], rows: usize, names: &[String], width: usize) -> String {
+fn grouped(columns: &[&ReportColumn], rows: usize, names: &[String], width: usize) -> String {
     let mut out = Vec::new();
     let mut before = "";
     for (i, row) in aligned(columns, rows, 2, width).into_iter().enumerate() {
@@ -138,7 +140,7 @@ fn grouped(columns: &[&TableColumn], rows: usize, names: &[String], width: usize
 }
 
 /// The first cell in its colour, those that are not missing beside it, the last one below.
-fn item(columns: &[&TableColumn], row: usize) -> String {
+fn item(columns: &[&ReportColumn], row: usize) -> String {
     let [first, middle @ .., last] = columns else { return String::new() };
     let style = first.cells[row].style.unwrap_or(Style::Bold);
     let place: Vec<String> =
@@ -154,8 +156,10 @@ mod tests {
     #[test]
     fn a_long_cell_is_wrapped_within_the_width() {
         let rows = [("A1", "word ".repeat(40), "1.0")];
-        let rows =
-            Table::of(&rows).text("name", |r| r.0).text("words", |r| &r.1[..]).number("number", |r| r.2);
+        let rows = ReportTable::of(&rows)
+            .text("name", |r| r.0)
+            .text("words", |r| &r.1[..])
+            .number("number", |r| r.2);
         let text = table(&rows.into());
         assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
         assert_eq!(text.matches("word").count(), 41);
@@ -165,7 +169,7 @@ mod tests {
     fn groups_are_named_whatever_wraps() {
         let names = ["/cask/first_end/imu", "/cask/first_end/imu", "", "/cask/second_end/imu"];
         let fields = ["  .linear_acceleration.of_the_upper_sensor.x", "  .y", "A column with a name", "  .z"];
-        let table: Table = Table::of(&fields)
+        let table: ReportTable = ReportTable::of(&fields)
             .head("source", |f| *f)
             .text("words", |f| if *f == "  .y" { "word ".repeat(30) } else { "–".into() })
             .number("samples", |_| "200000")

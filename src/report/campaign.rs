@@ -1,10 +1,10 @@
 //! A campaign of recordings to one table, CSV and JSON; a recording that failed is a row with its reason.
 
 use super::ReportError;
-use super::document::{Chapter, Document, Passage};
+use super::document::{Chapter, ChapterPart, ReportDocument};
 use super::records::{CsvColumn, number, records, text_cell};
 use super::rounding::{MISSING, interval, percent};
-use super::table::{Table, TableCell, TableShape};
+use super::table::{ReportTable, TableCell, TableShape};
 use super::text::{Style, WIDTH, json_word, tail, verdict_word};
 use crate::data::{Comparison, DropResult, Estimate, Issue, IssueCode, Severity, Verdict};
 use serde::Serialize;
@@ -117,7 +117,7 @@ impl Campaign {
         super::as_text::text(&self.document())
     }
 
-    fn document(&self) -> Document {
+    fn document(&self) -> ReportDocument {
         /// Characters of a recording's name that leave room for the other columns.
         const NAME: usize = 28;
         let folder = self.common_folder();
@@ -126,7 +126,7 @@ impl Campaign {
             tail(&own.map_or_else(|| row.recording.clone(), |own| own.display().to_string()), width)
         };
         let word = |row: &CampaignRow| row.verdict.map_or("ERROR", verdict_word);
-        let table = Table::of(&self.recordings)
+        let table = ReportTable::of(&self.recordings)
             .head("recording", |row| name(row, NAME))
             .text("verdict", word)
             .text("speed m/s", |row| interval(row.slap_down_speed.as_ref()).replace(" m/s", ""))
@@ -141,7 +141,7 @@ impl Campaign {
             _ => Style::Red,
         };
         let why = |row: &CampaignRow| row.error.clone().unwrap_or_else(|| row.code_words().join(", "));
-        let reasons = Table::of(&grave)
+        let reasons = ReportTable::of(&grave)
             .shape(TableShape::ApartItems)
             .tag("verdict", |row| TableCell::toned(style(row), word(row).to_lowercase()))
             .head("recording", |row| name(row, WIDTH - 10))
@@ -149,11 +149,11 @@ impl Campaign {
         let place =
             folder.map(|folder| format!("recordings in {}", tail(&folder.display().to_string(), WIDTH - 14)));
         let chapter = Chapter::new("")
-            .with(Passage::title(&self.cask[..]))
-            .with_all(place.map(Passage::line))
+            .with(ChapterPart::title(&self.cask[..]))
+            .with_all(place.map(ChapterPart::line))
             .with(table)
             .with(reasons);
-        Document { chapters: vec![chapter], ..Document::default() }
+        ReportDocument { chapters: vec![chapter], ..ReportDocument::default() }
     }
 
     /// The folder in which all recordings are, where they are in one.

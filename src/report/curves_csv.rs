@@ -1,7 +1,7 @@
 //! Curves to `curves.csv`: one table on the finest channel's times, units in the header.
 
 use super::ReportError;
-use super::grid::{Reader, Series, channel_series, common_time_s, motion_series};
+use super::grid::{CurveSeries, Reader, channel_series, common_time_s, motion_series};
 use super::records::{finished, text_cell};
 use crate::data::Curves;
 use std::fmt::Write;
@@ -43,7 +43,7 @@ struct CurveColumn<'a> {
 
 fn columns<'a>(curves: &'a Curves) -> Vec<CurveColumn<'a>> {
     let mut columns = Vec::new();
-    let mut add = |of: &str, time_s: &'a [f64], series: Series<'a>| {
+    let mut add = |of: &str, time_s: &'a [f64], series: CurveSeries<'a>| {
         let Some(reader) = Reader::new(time_s, series.values) else { return };
         let header = text_cell(&format!("{of}{}", series.name));
         columns.push(CurveColumn { header, reader, factor: series.factor });

@@ -1,6 +1,6 @@
 //! Curves to `curves.h5`: one group a channel, datasets with their unit, rate and start as attributes.
 
-use super::grid::{Series, motion_series, named_events, step_s};
+use super::grid::{CurveSeries, motion_series, named_events, step_s};
 use super::{ReportError, scratch, spectrum};
 use crate::data::Analysis;
 use hdf5_metno::types::VarLenUnicode;
@@ -56,7 +56,7 @@ fn write(file: &File, analysis: &Analysis) -> Result<(), ReportError> {
     }
     if let Some(motion) = &analysis.curves.motion {
         let group = file.create_group("motion")?;
-        for Series { name, values, .. } in motion_series(motion) {
+        for CurveSeries { name, values, .. } in motion_series(motion) {
             let (name, unit) = [("_rad_s", "rad/s"), ("_m_s", "m/s"), ("_rad", "rad"), ("_m", "m")]
                 .iter()
                 .find_map(|(suffix, unit)| name.strip_suffix(suffix).map(|name| (name, *unit)))

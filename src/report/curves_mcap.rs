@@ -2,7 +2,7 @@
 
 use super::ReportError;
 use super::curves_csv::single;
-use super::grid::{Series, channel_series, motion_series, named_events};
+use super::grid::{CurveSeries, channel_series, motion_series, named_events};
 use super::text::printable;
 use crate::data::Analysis;
 use mcap::records::MessageHeader;
@@ -96,13 +96,13 @@ impl CurvesFile {
         schema: &str,
         topic: &str,
         time_s: &[f64],
-        series: &[Series],
+        series: &[CurveSeries],
     ) -> Result<(), ReportError> {
         let fields: Vec<&str> = series.iter().map(|one| one.name).collect();
         let id = self.channel(schema, topic, &fields)?;
         for (i, &time_s) in time_s.iter().enumerate() {
             self.begin(time_s);
-            for Series { name, values, factor } in series {
+            for CurveSeries { name, values, factor } in series {
                 // A value that is missing is left out: JSON has no number for it.
                 if let Some(value) = values.get(i).filter(|v| v.is_finite()) {
                     let _ = write!(self.buffer, r#","{name}":{}"#, single(value * factor));

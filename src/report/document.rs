@@ -2,12 +2,12 @@
 
 use super::medium::{Medium, Words};
 use super::rounding::MISSING;
-use super::table::{CellKind, Table, TableRows};
+use super::table::{CellKind, ReportTable, TableRows};
 use super::text::Style;
 
 /// What is read from its first line to its last.
 #[derive(Default)]
-pub(crate) struct Document {
+pub(crate) struct ReportDocument {
     /// What a page says besides its chapters.
     pub(crate) page: Frame,
     /// In the order of reading.
@@ -42,7 +42,7 @@ pub(crate) struct Chapter {
     is_part: bool,
     /// Where alone it is shown.
     only: Option<Medium>,
-    passages: Vec<Passage>,
+    passages: Vec<ChapterPart>,
 }
 
 impl Chapter {
@@ -67,13 +67,13 @@ impl Chapter {
     }
 
     /// And then this.
-    pub(crate) fn with(mut self, passage: impl Into<Passage>) -> Self {
+    pub(crate) fn with(mut self, passage: impl Into<ChapterPart>) -> Self {
         self.passages.push(passage.into());
         self
     }
 
     /// And then these, if any.
-    pub(crate) fn with_all(mut self, passages: impl IntoIterator<Item = Passage>) -> Self {
+    pub(crate) fn with_all(mut self, passages: impl IntoIterator<Item = ChapterPart>) -> Self {
         self.passages.extend(passages);
         self
     }
@@ -85,41 +85,41 @@ impl Chapter {
     }
 
     /// What of it this medium shows; nothing where it shows none of it.
-    pub(crate) fn shown(&self, medium: Medium) -> Vec<&Passage> {
+    pub(crate) fn shown(&self, medium: Medium) -> Vec<&ChapterPart> {
         let all = if self.only.is_none_or(|only| only == medium) { &self.passages[..] } else { &[] };
         all.iter().filter(|passage| passage.is_shown(medium)).collect()
     }
 }
 
 /// One thing below a heading.
-pub(crate) struct Passage {
+pub(crate) struct ChapterPart {
     /// Where alone it is shown.
     pub(crate) only: Option<Medium>,
-    pub(crate) content: Content,
+    pub(crate) content: PartContent,
 }
 
 /// What a passage may be.
-pub(crate) enum Content {
+pub(crate) enum PartContent {
     /// Words in the given role.
-    Sentence(Role, Words),
+    Sentence(SentenceRole, Words),
     /// A word in its colour, and what it means.
     Banner(Tone, String),
     /// The numbers that a reader looks for first: name, value, what to know of it.
     Figures(Vec<[String; 3]>),
     /// A caption, and names with what they stand for.
     Facts(String, Vec<Fact>),
-    Table(Table),
+    ReportTable(ReportTable),
     /// The picture of this name, and what it shows in a few words; its room on paper as a class of the style.
     Picture(String, String, &'static str),
     /// Sentences one below the other.
     List(Vec<&'static str>),
     /// Two columns where there is room.
-    Beside([Vec<Passage>; 2]),
+    Beside([Vec<ChapterPart>; 2]),
 }
 
 /// What a sentence is for.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Role {
+pub(crate) enum SentenceRole {
     /// It names the whole.
     Title,
     /// It stands with the title.
@@ -134,44 +134,44 @@ pub(crate) enum Role {
 /// A word in a colour.
 pub(crate) struct Tone(pub(crate) Style, pub(crate) String);
 
-impl Passage {
-    fn sentence(role: Role, words: impl Into<Words>) -> Self {
-        Content::Sentence(role, words.into()).into()
+impl ChapterPart {
+    fn sentence(role: SentenceRole, words: impl Into<Words>) -> Self {
+        PartContent::Sentence(role, words.into()).into()
     }
 
     /// What names the whole.
     pub(crate) fn title(words: impl Into<Words>) -> Self {
-        Self::sentence(Role::Title, words)
+        Self::sentence(SentenceRole::Title, words)
     }
 
     /// What stands with the title.
     pub(crate) fn line(words: impl Into<Words>) -> Self {
-        Self::sentence(Role::Line, words)
+        Self::sentence(SentenceRole::Line, words)
     }
 
     /// What leads to the passages after it.
     pub(crate) fn lead(words: impl Into<Words>) -> Self {
-        Self::sentence(Role::Lead, words)
+        Self::sentence(SentenceRole::Lead, words)
     }
 
     /// Plain words.
     pub(crate) fn text(words: impl Into<Words>) -> Self {
-        Self::sentence(Role::Text, words)
+        Self::sentence(SentenceRole::Text, words)
     }
 
     /// What explains the passage before it.
     pub(crate) fn note(words: impl Into<Words>) -> Self {
-        Self::sentence(Role::Note, words)
+        Self::sentence(SentenceRole::Note, words)
     }
 
     /// Names with what they stand for.
     pub(crate) fn facts(caption: impl Into<String>, facts: Vec<Fact>) -> Self {
-        Content::Facts(caption.into(), facts).into()
+        PartContent::Facts(caption.into(), facts).into()
     }
 
     /// The picture of this name.
     pub(crate) fn picture(name: &str, title: &str, room: &'static str) -> Self {
-        Content::Picture(name.to_owned(), title.to_owned(), room).into()
+        PartContent::Picture(name.to_owned(), title.to_owned(), room).into()
     }
 
     /// On this medium alone.
@@ -181,26 +181,27 @@ impl Passage {
 
     /// Whether this medium shows it.
     pub(crate) fn is_shown(&self, medium: Medium) -> bool {
-        let is_drawn = matches!(self.content, Content::Figures(_) | Content::Picture(..) | Content::List(_));
+        let is_drawn =
+            matches!(self.content, PartContent::Figures(_) | PartContent::Picture(..) | PartContent::List(_));
         self.only.is_none_or(|only| only == medium) && !(is_drawn && medium == Medium::Terminal)
     }
 }
 
-impl From<Content> for Passage {
-    fn from(content: Content) -> Self {
+impl From<PartContent> for ChapterPart {
+    fn from(content: PartContent) -> Self {
         Self { only: None, content }
     }
 }
 
-impl<R> From<TableRows<'_, R>> for Passage {
+impl<R> From<TableRows<'_, R>> for ChapterPart {
     fn from(rows: TableRows<'_, R>) -> Self {
-        Table::from(rows).into()
+        ReportTable::from(rows).into()
     }
 }
 
-impl From<Table> for Passage {
-    fn from(table: Table) -> Self {
-        Content::Table(table).into()
+impl From<ReportTable> for ChapterPart {
+    fn from(table: ReportTable) -> Self {
+        PartContent::ReportTable(table).into()
     }
 }
 

@@ -4,24 +4,24 @@ pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
 use crate::data::{ChannelCurve, Curves, Events, MotionCurve};
 
 /// One quantity of a curve: its name with its unit, its values, and what makes that unit of them.
-pub(super) struct Series<'a> {
+pub(super) struct CurveSeries<'a> {
     pub(super) name: &'static str,
     pub(super) values: &'a [f64],
     pub(super) factor: f64,
 }
 
 /// What a table shows of a channel.
-pub(super) fn channel_series(curve: &ChannelCurve) -> [Series<'_>; 3] {
+pub(super) fn channel_series(curve: &ChannelCurve) -> [CurveSeries<'_>; 3] {
     [
         ("raw_g", &curve.raw_m_s2, 1.0 / STANDARD_GRAVITY_M_S2),
         ("filtered_g", &curve.filtered_m_s2, 1.0 / STANDARD_GRAVITY_M_S2),
         ("velocity_m_s", &curve.velocity_m_s, 1.0),
     ]
-    .map(|(name, values, factor)| Series { name, values, factor })
+    .map(|(name, values, factor)| CurveSeries { name, values, factor })
 }
 
 /// What a table shows of the motion.
-pub(super) fn motion_series(motion: &MotionCurve) -> [Series<'_>; 7] {
+pub(super) fn motion_series(motion: &MotionCurve) -> [CurveSeries<'_>; 7] {
     [
         ("angle_rad", &motion.angle_rad),
         ("angular_velocity_rad_s", &motion.angular_velocity_rad_s),
@@ -31,7 +31,7 @@ pub(super) fn motion_series(motion: &MotionCurve) -> [Series<'_>; 7] {
         ("height_first_m", &motion.first_end_height_m),
         ("height_second_m", &motion.second_end_height_m),
     ]
-    .map(|(name, values)| Series { name, values, factor: 1.0 })
+    .map(|(name, values)| CurveSeries { name, values, factor: 1.0 })
 }
 
 /// The events by name, s; `None` where one was not found.

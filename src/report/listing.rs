@@ -1,10 +1,10 @@
 //! What a recording holds to the document that `inspect` shows.
 
 use super::analysis::quality;
-use super::document::{Chapter, Document, Passage};
+use super::document::{Chapter, ChapterPart, ReportDocument};
 use super::medium::Medium;
 use super::rounding::{MISSING, plain};
-use super::table::{Table, TableShape};
+use super::table::{ReportTable, TableShape};
 use super::text::{json_word, tail};
 use crate::data::{ListedChannel, Listing};
 
@@ -14,28 +14,28 @@ pub fn table(listing: &Listing) -> String {
     super::as_text::text(&document(listing))
 }
 
-fn document(listing: &Listing) -> Document {
+fn document(listing: &Listing) -> ReportDocument {
     let title =
         format!("{} · {} · {}", tail(&listing.recording, 50), json_word(listing.format), size(listing.bytes));
     let counts: Vec<String> = listing.counts.iter().map(|(name, count)| counted(name, *count)).collect();
-    let counts = (!counts.is_empty()).then(|| Passage::line(counts.join(", ")));
+    let counts = (!counts.is_empty()).then(|| ChapterPart::line(counts.join(", ")));
     let facts = listing
         .facts
         .iter()
-        .map(|(name, value)| Passage::line(format!("{}: {value}", name.replace('_', " "))));
+        .map(|(name, value)| ChapterPart::line(format!("{}: {value}", name.replace('_', " "))));
     let unreadable = listing.channels.iter().filter_map(|channel| {
         let reason = channel.unreadable.as_ref()?;
-        Some(Passage::text(format!("{} cannot be read: {reason}", channel.source)))
+        Some(ChapterPart::text(format!("{} cannot be read: {reason}", channel.source)))
     });
     let mut chapters = vec![
-        Chapter::new("").with(Passage::title(title)).with_all(counts).with_all(facts),
+        Chapter::new("").with(ChapterPart::title(title)).with_all(counts).with_all(facts),
         Chapter::new("Sources").with_all(sources(&listing.channels)).with_all(unreadable),
-        Chapter::new("Stored as").with_all(encodings(&listing.channels).into_iter().map(Passage::text)),
+        Chapter::new("Stored as").with_all(encodings(&listing.channels).into_iter().map(ChapterPart::text)),
     ];
     if !listing.issues.is_empty() {
         chapters.push(quality(&listing.issues));
     }
-    Document { chapters, ..Document::default() }
+    ReportDocument { chapters, ..ReportDocument::default() }
 }
 
 /// "3 chunks", "1 chunk".
@@ -51,15 +51,15 @@ const SHARED: [&str; 3] = ["start", "length", "gaps"];
 /// Sources up to this many columns leave room for the rest of the table; longer ones stand under their topic or group.
 const WIDEST_SOURCE: usize = 32;
 
-fn sources(channels: &[ListedChannel]) -> Vec<Passage> {
+fn sources(channels: &[ListedChannel]) -> Vec<ChapterPart> {
     if channels.is_empty() {
-        return vec![Passage::text("none")];
+        return vec![ChapterPart::text("none")];
     }
     let longest = channels.iter().map(|c| c.source.chars().count()).max().unwrap_or(0);
     let is_long = longest > WIDEST_SOURCE;
     let known = |words: Option<String>| words.unwrap_or_else(|| MISSING.to_owned());
     let seconds = |t: Option<f64>| known(t.map(|t| format!("{} s", plain(t, 3))));
-    let mut table: Table = Table::of(channels)
+    let mut table: ReportTable = ReportTable::of(channels)
         .head("source", |c| if is_long { format!("  {}", split(&c.source).1) } else { c.source.clone() })
         .number("samples", |c| known(c.samples.or(c.messages).map(|n| n.to_string())))
         .number("rate", |c| known(c.sample_rate_hz.map(rate)))
@@ -87,7 +87,8 @@ fn sources(channels: &[ListedChannel]) -> Vec<Passage> {
         }
         !is_shared
     });
-    let common = (!common.is_empty()).then(|| Passage::text(format!("Every source: {}.", common.join(", "))));
+    let common =
+        (!common.is_empty()).then(|| ChapterPart::text(format!("Every source: {}.", common.join(", "))));
     [table.into()].into_iter().chain(common).collect()
 }
 

@@ -73,14 +73,6 @@ pub enum ReportError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// A picture could not be drawn.
-    #[error("the picture {picture} could not be drawn: {reason}")]
-    Picture {
-        /// Its name.
-        picture: String,
-        /// What the plotter said.
-        reason: String,
-    },
 }
 
 /// Frequencies, Hz, and magnitude |∫ f e^(−iωt) dt|, m/s, of a channel's unfiltered force over what is shown of it.
@@ -119,30 +111,14 @@ pub const FILE_NAMES: [&str; 10] = [
 /// [`ReportError`] where one of them cannot be made; then none is returned.
 pub fn files(analysis: &Analysis) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     // curves.mcap takes as long as all the others together.
-    let (others, curves_mcap) = std::thread::scope(|scope| {
-        let curves_mcap = scope.spawn(|| curves_mcap::bytes(analysis));
-        (all_but_mcap(analysis), curves_mcap.join())
-    });
-    let (mut files, pictures) = others?;
-    let curves_mcap = curves_mcap.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-    files.push(("curves.mcap".to_owned(), curves_mcap));
-    files.extend(
-        pictures.into_iter().map(|picture| (format!("{}.svg", picture.name), picture.svg.into_bytes())),
+    let (curves_mcap, (curves_h5, curves_csv, pictures)) = rayon::join(
+        || curves_mcap::bytes(analysis),
+        || (curves_h5::bytes(analysis), curves_csv::bytes(&analysis.curves), pictures::draw(analysis)),
     );
-    Ok(files)
-}
-
-type Files = Vec<(String, Vec<u8>)>;
-
-fn all_but_mcap(analysis: &Analysis) -> Result<(Files, Vec<pictures::draw::Picture>), ReportError> {
-    let pictures = pictures::draw(analysis)?;
-    let files = vec![
-        ("report.html".to_owned(), as_html::page(&analysis::document(analysis), &pictures).into_bytes()),
-        ("result.json".to_owned(), json::result(&analysis.result)?),
-        ("curves.csv".to_owned(), curves_csv::bytes(&analysis.curves)?),
-        ("curves.h5".to_owned(), curves_h5::bytes(analysis)?),
-    ];
-    Ok((files, pictures))
+    let page = as_html::page(&analysis::document(analysis), &pictures).into_bytes();
+    let bytes = [page, json::result(&analysis.result)?, curves_csv?, curves_h5?, curves_mcap?];
+    let bytes = bytes.into_iter().chain(pictures.into_iter().map(|picture| picture.svg.into_bytes()));
+    Ok(FILE_NAMES.map(str::to_owned).into_iter().zip(bytes).collect())
 }
 
 #[cfg(test)]

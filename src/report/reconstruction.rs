@@ -1,10 +1,10 @@
 //! How the motion was had from the channels, and how sure its numbers are, to chapters of the report.
 
-use super::document::{Chapter, Content, Passage};
+use super::document::{Chapter, ChapterPart, PartContent};
 use super::medium::Medium;
 use super::rounding::{MISSING, fixed, interval, optional_fixed, significant};
 use super::settings::{TOLERANCES, is_default};
-use super::table::{Table, TableCell};
+use super::table::{ReportTable, TableCell};
 use super::text::{rung_words, sentence, taken_mark, true_minus, yes};
 use crate::data::{CaskFile, Contribution, DropResult, FlightFit, ReconstructionChoice, ReconstructionRung};
 
@@ -15,7 +15,7 @@ const MOST_MOVES: usize = 10;
 pub(super) fn reconstruction(result: &DropResult) -> Chapter {
     let chapter = Chapter::new("How the motion was reconstructed");
     let Some(choice) = &result.reconstruction else { return chapter };
-    let rungs = Table::of(&choice.candidates)
+    let rungs = ReportTable::of(&choice.candidates)
         .caption(
             "The reconstructions of this recording, the simplest first; ± holds 95 %. The first is taken that noise and tolerances explain \
              and whose answer the next would neither change by more than the narrower interval nor know better by a quarter.",
@@ -28,8 +28,8 @@ pub(super) fn reconstruction(result: &DropResult) -> Chapter {
         .text("Explained", |c| yes(c.consistent));
     let of_page = [rungs.into()].into_iter().chain(closures(choice)).chain(joint(choice));
     chapter
-        .with(Passage::lead(sentence(&choice.reason)))
-        .with_all(worst_closure(choice).map(|words| Passage::text(words).only(Medium::Terminal)))
+        .with(ChapterPart::lead(sentence(&choice.reason)))
+        .with_all(worst_closure(choice).map(|words| ChapterPart::text(words).only(Medium::Terminal)))
         .with_all(of_page.map(|passage| passage.only(Medium::Page)))
 }
 
@@ -48,8 +48,8 @@ fn worst_closure(choice: &ReconstructionChoice) -> Option<String> {
     ))
 }
 
-fn closures(choice: &ReconstructionChoice) -> Option<Passage> {
-    let table = Table::of(&choice.closures)
+fn closures(choice: &ReconstructionChoice) -> Option<ChapterPart> {
+    let table = ReportTable::of(&choice.closures)
         .caption(
             "Closures: what the motion must meet beside the velocity steps. A miss within 2 standard uncertainties (u) of all inputs \
              together is within noise and tolerances; one far beyond is a finding.",
@@ -63,7 +63,7 @@ fn closures(choice: &ReconstructionChoice) -> Option<Passage> {
 }
 
 /// χ² of the joint fit and what it moved.
-fn joint(choice: &ReconstructionChoice) -> Vec<Passage> {
+fn joint(choice: &ReconstructionChoice) -> Vec<ChapterPart> {
     let Some((chi_square, degrees)) = choice.chi_square else { return Vec::new() };
     let used = if choice.rung == ReconstructionRung::Joint {
         "Its motion is the one reported."
@@ -78,7 +78,7 @@ fn joint(choice: &ReconstructionChoice) -> Vec<Passage> {
         if degrees == 1 { "" } else { "s" },
         if choice.adjustments.is_empty() { still } else { "" }
     );
-    let moved = Table::of(&choice.adjustments)
+    let moved = ReportTable::of(&choice.adjustments)
         .caption("What the joint fit moves, the largest first. Left: the input's standard uncertainty after the fit over the one before.")
         .most(0, MOST_MOVES, "each moved by less.")
         .head("Input", |a| &a.input[..])
@@ -86,14 +86,14 @@ fn joint(choice: &ReconstructionChoice) -> Vec<Passage> {
         .number("Moved by, in u", |a| fixed(a.moved_in_u, 2))
         .number("Left, %", |a| fixed(100.0 * a.left_share, 0));
     let moved = (!choice.adjustments.is_empty()).then(|| moved.into());
-    [Passage::text(sentence)].into_iter().chain(moved).collect()
+    [ChapterPart::text(sentence)].into_iter().chain(moved).collect()
 }
 
 /// The fit of the free-flight window: plateaus, modes, candidates.
 pub(super) fn flight(result: &DropResult) -> Chapter {
     let chapter = Chapter::new("Fit of the flight").only(Medium::Page);
     let Some(fit) = &result.flight else { return chapter };
-    let modes = Table::of(&fit.modes)
+    let modes = ReportTable::of(&fit.modes)
         .caption(if fit.modes.is_empty() {
             "Bending modes taken: none, nothing rings"
         } else {
@@ -107,7 +107,7 @@ pub(super) fn flight(result: &DropResult) -> Chapter {
         0 => MISSING,
         _ => "free",
     };
-    let candidates = Table::of(&fit.candidates)
+    let candidates = ReportTable::of(&fit.candidates)
         .caption("Candidates that were tried; BIC: the lower the better")
         .chosen(|c| c.taken)
         .text("Modes", |c| format!("{}{}", c.modes, taken_mark(c.taken)))
@@ -115,7 +115,7 @@ pub(super) fn flight(result: &DropResult) -> Chapter {
         .text("Drift", |c| yes(c.drift))
         .number("BIC", |c| fixed(c.bic, 1))
         .number("Residual, m/s", |c| significant(c.residual_m_s, 2));
-    let plateaus = Table::of(&fit.plateaus)
+    let plateaus = ReportTable::of(&fit.plateaus)
         .caption("Plateaus")
         .head("Channel", |p| &p.channel[..])
         .number("Velocity step, m/s", |p| fixed(p.velocity_step_m_s, 3))
@@ -123,8 +123,8 @@ pub(super) fn flight(result: &DropResult) -> Chapter {
         .number("Zero shift, m/s²", |p| significant(p.zero_shift_m_s2, 2))
         .number("Residual, m/s", |p| significant(p.residual_m_s, 2));
     chapter
-        .with(Passage::lead(flight_sentence(fit)))
-        .with(Content::Beside([vec![plateaus.into()], vec![modes.into(), candidates.into()]]))
+        .with(ChapterPart::lead(flight_sentence(fit)))
+        .with(PartContent::Beside([vec![plateaus.into()], vec![modes.into(), candidates.into()]]))
 }
 
 fn flight_sentence(fit: &FlightFit) -> String {
@@ -161,7 +161,7 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
     // The last row is that of their sum.
     let rows: Vec<Option<&Contribution>> = budget.iter().map(Some).chain([None]).collect();
     let all = "Interval (95 %): twice the root of the sum of squares";
-    let table = Table::of(&rows)
+    let table = ReportTable::of(&rows)
         .class("")
         .chosen(Option::is_none)
         .head("Input", |c| c.map_or(all, |c| &c.input[..]))
@@ -177,7 +177,10 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
     );
     let is_planar = result.reconstruction.as_ref().is_none_or(|r| r.rung != ReconstructionRung::Channels);
     let single = "Speed and k were read off single channels, with the intervals given there: this table is that of the planar motion.";
-    chapter.with(Passage::lead(lead)).with(table).with_all((!is_planar).then(|| Passage::note(single)))
+    chapter
+        .with(ChapterPart::lead(lead))
+        .with(table)
+        .with_all((!is_planar).then(|| ChapterPart::note(single)))
 }
 
 /// Which input weighs most, in the speed and in k.
@@ -219,12 +222,12 @@ fn known_from(input: &str, result: &DropResult, file: &CaskFile) -> TableCell {
 
 #[cfg(test)]
 mod tests {
-    use super::super::document::Document;
+    use super::super::document::ReportDocument;
     use super::super::{as_html, sample};
     use super::*;
 
     fn page(chapter: Chapter) -> String {
-        as_html::page(&Document { chapters: vec![chapter], ..Document::default() }, &[])
+        as_html::page(&ReportDocument { chapters: vec![chapter], ..ReportDocument::default() }, &[])
     }
 
     fn contribution(input: &str, speed_m_s: Option<f64>, k: f64) -> Contribution {

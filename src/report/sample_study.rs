@@ -3,15 +3,15 @@
 use super::sample;
 use crate::data::{
     AngleCurve, BodyModel, Contact, Criterion, CriticalAngle, CriticalRange, FlightRegime, Ladder,
-    LadderStep, MonteCarlo, Prediction, PredictionRow, QuantileCurves, Regime, RegimeMap, Request, Rung,
-    Sensitivity, Study, Sweep, SweepVariable, Uncertain, WorstCase,
+    LadderStep, MonteCarlo, Prediction, PredictionRow, QuantileCurves, Regime, RegimeMap, Rung, Sensitivity,
+    Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
 };
 
 const MODELS: [BodyModel; 2] = [BodyModel::Rod, BodyModel::Body];
 
 /// A study of the four borderline cases at 15°, every part filled in.
 pub(super) fn study() -> Study {
-    of(Request {
+    of(StudyRequest {
         contacts: vec![Contact::Rough, Contact::Smooth],
         ks: vec![0.0, 1.0],
         angle_deg: 15.0,
@@ -25,7 +25,7 @@ pub(super) fn study() -> Study {
 /// A study of two sweeps, with a contact law and k of its own.
 pub(super) fn swept() -> Study {
     let base = study().request;
-    of(Request {
+    of(StudyRequest {
         contacts: vec![Contact::Coulomb(0.3)],
         ks: vec![0.5],
         sweeps: vec![
@@ -97,7 +97,7 @@ fn uncertain() -> Uncertain {
     }
 }
 
-fn of(request: Request) -> Study {
+fn of(request: StudyRequest) -> Study {
     let cases: Vec<(BodyModel, Contact, f64)> = MODELS
         .into_iter()
         .flat_map(|model| request.contacts.clone().into_iter().map(move |contact| (model, contact)))
@@ -168,7 +168,7 @@ fn prediction(case: (BodyModel, Contact, f64), angle_deg: f64, length_m: f64) ->
     }
 }
 
-fn ladder(request: &Request, case: (BodyModel, Contact, f64)) -> Ladder {
+fn ladder(request: &StudyRequest, case: (BodyModel, Contact, f64)) -> Ladder {
     let step = |(i, rung): (usize, Rung)| LadderStep {
         rung,
         adds: rung.adds(),
@@ -188,7 +188,7 @@ fn ladder(request: &Request, case: (BodyModel, Contact, f64)) -> Ladder {
     }
 }
 
-fn curve(request: &Request, case: (BodyModel, Contact, f64)) -> AngleCurve {
+fn curve(request: &StudyRequest, case: (BodyModel, Contact, f64)) -> AngleCurve {
     let angle_deg = request.angles_deg.clone();
     let of = |value: fn(&Prediction) -> Option<f64>| -> Vec<f64> {
         angle_deg.iter().map(|angle| value(&prediction(case, *angle, 5.512)).unwrap_or(f64::NAN)).collect()
@@ -226,7 +226,7 @@ fn range(model: BodyModel, criterion: Criterion) -> CriticalRange {
     }
 }
 
-fn monte_carlo(request: &Request) -> MonteCarlo {
+fn monte_carlo(request: &StudyRequest) -> MonteCarlo {
     let angle_deg = request.angles_deg.clone();
     let speeds: Vec<f64> = angle_deg
         .iter()
@@ -260,7 +260,7 @@ fn monte_carlo(request: &Request) -> MonteCarlo {
     }
 }
 
-fn sensitivities(request: &Request) -> Vec<Sensitivity> {
+fn sensitivities(request: &StudyRequest) -> Vec<Sensitivity> {
     let angle_deg = &request.angles_deg;
     let one = |contact, k: f64, blind: f64| Sensitivity {
         model: BodyModel::Body,
@@ -283,7 +283,7 @@ fn sensitivities(request: &Request) -> Vec<Sensitivity> {
         .collect()
 }
 
-fn map(request: &Request, contact: Contact) -> RegimeMap {
+fn map(request: &StudyRequest, contact: Contact) -> RegimeMap {
     let k: Vec<f64> = (0..=100).map(|i| f64::from(i) / 100.0).collect();
     let cell = |k: f64, angle: f64| match (k > 0.0, angle) {
         (false, angle) if angle < 40.0 => Regime::LiftOff,

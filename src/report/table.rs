@@ -5,11 +5,11 @@ use super::text::Style;
 
 /// Columns of cells, and how they are shown.
 #[derive(Default)]
-pub(crate) struct Table {
+pub(crate) struct ReportTable {
     pub(crate) caption: String,
     /// Of the page's style; "whole" keeps a table on one sheet.
     pub(crate) class: &'static str,
-    pub(crate) columns: Vec<TableColumn>,
+    pub(crate) columns: Vec<ReportColumn>,
     /// Of each row whether it is the one that was taken.
     pub(crate) chosen: Vec<bool>,
     /// Rows that a terminal and a page show at most, and where all are.
@@ -50,7 +50,7 @@ pub(crate) enum CellKind {
 }
 
 /// One column.
-pub(crate) struct TableColumn {
+pub(crate) struct ReportColumn {
     pub(crate) head: Words,
     pub(crate) kind: CellKind,
     /// Where alone it is shown.
@@ -58,7 +58,7 @@ pub(crate) struct TableColumn {
     pub(crate) cells: Vec<TableCell>,
 }
 
-impl TableColumn {
+impl ReportColumn {
     /// Whether this medium shows it.
     pub(crate) fn is_shown(&self, medium: Medium) -> bool {
         self.only.is_none_or(|only| only == medium)
@@ -97,14 +97,14 @@ impl TableCell {
     }
 }
 
-impl Table {
+impl ReportTable {
     /// A table of these rows without a column yet.
     pub(crate) fn of<R>(rows: &[R]) -> TableRows<'_, R> {
         TableRows { rows, table: Self { class: "whole", chosen: vec![false; rows.len()], ..Self::default() } }
     }
 
     /// The columns that a medium shows.
-    pub(crate) fn shown(&self, medium: Medium) -> Vec<&TableColumn> {
+    pub(crate) fn shown(&self, medium: Medium) -> Vec<&ReportColumn> {
         self.columns.iter().filter(|column| column.is_shown(medium)).collect()
     }
 
@@ -125,7 +125,7 @@ impl Table {
 /// A table while its columns are set.
 pub(crate) struct TableRows<'a, R> {
     rows: &'a [R],
-    pub(crate) table: Table,
+    pub(crate) table: ReportTable,
 }
 
 impl<'a, R> TableRows<'a, R> {
@@ -136,7 +136,7 @@ impl<'a, R> TableRows<'a, R> {
         cell: impl Fn(&'a R) -> C,
     ) -> Self {
         let cells = self.rows.iter().map(|row| cell(row).into()).collect();
-        self.table.columns.push(TableColumn { head: head.into(), kind, only: None, cells });
+        self.table.columns.push(ReportColumn { head: head.into(), kind, only: None, cells });
         self
     }
 
@@ -221,7 +221,7 @@ impl<'a, R> TableRows<'a, R> {
     }
 }
 
-impl<R> From<TableRows<'_, R>> for Table {
+impl<R> From<TableRows<'_, R>> for ReportTable {
     fn from(rows: TableRows<'_, R>) -> Self {
         rows.table
     }

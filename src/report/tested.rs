@@ -1,6 +1,6 @@
 //! A cask file to the chapter that says what was dropped.
 
-use super::document::{Chapter, Content, Fact, Passage};
+use super::document::{Chapter, ChapterPart, Fact, PartContent};
 use super::medium::Medium;
 use super::rounding::plain;
 use super::words::contact_words;
@@ -39,8 +39,8 @@ pub(super) fn tested(file: &CaskFile, heading: &str) -> Chapter {
         fact("Gravity", "drop.gravity_m_s2", plain(drop.gravity_m_s2, 6), "m/s²"),
         fact("Contact of the first end", "contact.friction", contact_words(file.contact), ""),
     ];
-    Chapter::new(heading).only(Medium::Page).with(Content::Beside([
-        vec![Passage::facts(format!("Cask {}", cask.name), of_cask)],
-        vec![Passage::facts("Drop and contact", of_drop)],
+    Chapter::new(heading).only(Medium::Page).with(PartContent::Beside([
+        vec![ChapterPart::facts(format!("Cask {}", cask.name), of_cask)],
+        vec![ChapterPart::facts("Drop and contact", of_drop)],
     ]))
 }

@@ -1,7 +1,7 @@
 //! Contact laws, criteria, bands and inputs of a study to the words that table, page and pictures share.
 
 use super::rounding::{MISSING, fixed, plain};
-use crate::data::{Contact, Criterion, FlightRegime, Request, Rung, SweepVariable, Uncertain};
+use crate::data::{Contact, Criterion, FlightRegime, Rung, StudyRequest, SweepVariable, Uncertain};
 
 /// Rows of a table of cases on a terminal and on a page, and where all are.
 pub(super) const MOST_ROWS: usize = 16;
@@ -167,13 +167,13 @@ pub(super) fn rung_short(rung: Rung) -> &'static str {
 }
 
 /// Whether anything goes through a range: else the critical ranges only repeat the one critical angle.
-pub(super) fn has_ranges(request: &Request) -> bool {
+pub(super) fn has_ranges(request: &StudyRequest) -> bool {
     let wide = |(from, to): (f64, f64)| from < to;
     wide(request.uncertain.k) || request.uncertain.friction.map_or(request.contacts.len() > 1, wide)
 }
 
 /// The k and friction that the ranges of the critical angles go through.
-pub(super) fn through_words(request: &Request) -> String {
+pub(super) fn through_words(request: &StudyRequest) -> String {
     let k = range_words(request.uncertain.k);
     if let Some(friction) = request.uncertain.friction {
         return format!("k {k} and μ {}", range_words(friction));

@@ -1,6 +1,6 @@
 //! `synth`: a scene file to a synthetic recording, the cask file to analyse it with, and its truth.
 
-use super::super::Outcome;
+use super::super::Ending;
 use super::super::output::{Folder, print};
 use clap::{Args, ValueEnum};
 use dropcheck::lab::data::{SyntheticRecording, Truth};
@@ -53,7 +53,7 @@ enum Unwritable {
     Encoding { path: String },
 }
 
-pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
+pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.scene));
     let format = format(&out, arguments.encoding)?;
     let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -76,7 +76,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     let files =
         names.each_ref().map(|name| report::printable(&out.with_file_name(name).display().to_string()));
     print(&format!("Written: {}\n{}", files.join(", "), summary(&recording)))?;
-    Ok(Outcome::Clear)
+    Ok(Ending::Clear)
 }
 
 fn default_out(scene: &Path) -> PathBuf {

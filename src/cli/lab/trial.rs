@@ -1,6 +1,6 @@
 //! `validate` without a campaign: every part of the trial, kept as it is done, to the page, charts and tables.
 
-use super::super::Outcome;
+use super::super::Ending;
 use super::super::output::{Folder, print, replace};
 use super::document::Marks;
 use super::machine::machine;
@@ -87,7 +87,7 @@ impl Shelf {
     }
 }
 
-pub fn run(wanted: &WantedTrial) -> miette::Result<Outcome> {
+pub fn run(wanted: &WantedTrial) -> miette::Result<Ending> {
     let folder = wanted.out.map(|out| Folder::checked(out, &TRIAL_NAMES, &[])).transpose()?;
     let document = wanted.into.map(|path| MARKS.parts(path).map(|parts| (path, parts))).transpose()?;
     let shelf =
@@ -128,7 +128,7 @@ pub fn run(wanted: &WantedTrial) -> miette::Result<Outcome> {
         None if document.is_none() => print(&lab::report::trial_markdown(&trial, None))?,
         None => {}
     }
-    Ok(Outcome::Clear)
+    Ok(Ending::Clear)
 }
 
 /// Every part, taken or measured.

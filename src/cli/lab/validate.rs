@@ -1,6 +1,6 @@
 //! `validate`: the trial of every method; or a campaign of random scenes with known truth to tables of how far off the analysis is.
 
-use super::super::Outcome;
+use super::super::Ending;
 use super::super::output::{Folder, print, replace};
 use super::super::progress::with_progress;
 use super::document::Marks;
@@ -87,7 +87,7 @@ fn number(word: &str) -> Result<SceneNumber, String> {
     }
 }
 
-pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
+pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     match (arguments.scene, &arguments.out, arguments.campaign) {
         (Some(number), Some(out), _) => one(arguments, number, out),
         (_, _, Some(scenes)) => campaign(arguments, scenes),
@@ -100,7 +100,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
     }
 }
 
-fn campaign(arguments: &Arguments, scenes: u32) -> miette::Result<Outcome> {
+fn campaign(arguments: &Arguments, scenes: u32) -> miette::Result<Ending> {
     let folder = arguments.out.as_deref().map(|out| Folder::checked(out, &NAMES, &[])).transpose()?;
     let document =
         arguments.into.as_deref().map(|path| MARKS.parts(path).map(|parts| (path, parts))).transpose()?;
@@ -126,11 +126,11 @@ fn campaign(arguments: &Arguments, scenes: u32) -> miette::Result<Outcome> {
     if folder.is_none() && document.is_none() {
         print(&tables)?;
     }
-    Ok(Outcome::Clear)
+    Ok(Ending::Clear)
 }
 
 /// Writes the files of one scene.
-fn one(arguments: &Arguments, number: SceneNumber, out: &Path) -> miette::Result<Outcome> {
+fn one(arguments: &Arguments, number: SceneNumber, out: &Path) -> miette::Result<Ending> {
     let name = format!("{number}.mcap");
     let names = lab::report::synthetic_names(&name);
     let folder = Folder::checked(out, &names.each_ref().map(String::as_str), &[])?;
@@ -139,7 +139,7 @@ fn one(arguments: &Arguments, number: SceneNumber, out: &Path) -> miette::Result
     folder.write(&lab::report::synthetic_files(&scene, &recording, &name, SyntheticFormat::McapProtobuf)?)?;
     let files = names.each_ref().map(|name| report::printable(&folder.file(name)));
     print(&format!("Written: {}\n", files.join(", ")))?;
-    Ok(Outcome::Clear)
+    Ok(Ending::Clear)
 }
 
 #[cfg(test)]

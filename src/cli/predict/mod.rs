@@ -4,7 +4,7 @@ mod request;
 mod sweep;
 mod words;
 
-use super::Outcome;
+use super::Ending;
 use super::output::{Folder, JsonTarget, print};
 use clap::Args;
 use dropcheck::data::{Contact, Sweep};
@@ -69,7 +69,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", help_heading = CRITICAL, default_value = "1000", allow_hyphen_values = true, value_parser = words::draws)]
     draws: u32,
     /// Seed of the draws: the same seed gives the same draws everywhere [default: 1]
-    #[arg(long, value_name = "N", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::seed)]
+    #[arg(long, value_name = "N", help_heading = CRITICAL)]
     seed: Option<u64>,
     /// Folder for prediction.html, prediction.json, prediction.csv and the pictures
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
@@ -79,7 +79,7 @@ pub struct Arguments {
     json: Option<PathBuf>,
 }
 
-pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
+pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let inputs = [arguments.cask.as_path()];
     let file = dropcheck::ingest::cask_file(&arguments.cask)?;
     let request = request::request(arguments, &file)?;
@@ -100,5 +100,5 @@ pub fn run(arguments: &Arguments) -> miette::Result<Outcome> {
             print(&format!("\nReport: {}\n", report::printable(&folder.file("prediction.html"))))?;
         }
     }
-    Ok(Outcome::Clear)
+    Ok(Ending::Clear)
 }

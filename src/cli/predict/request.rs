@@ -2,7 +2,7 @@
 
 use super::Arguments;
 use super::sweep::{MOST_PREDICTIONS, name, rounded};
-use dropcheck::data::{CaskFile, Contact, Request, Sweep, SweepVariable, Uncertain};
+use dropcheck::data::{CaskFile, Contact, StudyRequest, Sweep, SweepVariable, Uncertain};
 use dropcheck::predict;
 
 /// Curves are drawn at least this finely: half a degree is finer than a drop can be rigged.
@@ -15,12 +15,12 @@ const LEAST_CURVE_ANGLES: usize = 10;
 const MOST_CURVE_STEPS: f64 = 1800.0;
 
 /// What is asked, with the cask file's values where no option says otherwise.
-pub fn request(arguments: &Arguments, file: &CaskFile) -> miette::Result<Request> {
+pub fn request(arguments: &Arguments, file: &CaskFile) -> miette::Result<StudyRequest> {
     let sweeps = &arguments.sweep;
     each_once(arguments)?;
     lengths_hold_the_section(sweeps, file)?;
     let (contacts, ks) = cases(arguments, file);
-    let request = Request {
+    let request = StudyRequest {
         contacts,
         ks,
         angle_deg: arguments.angle.unwrap_or_else(|| rounded(file.drop.angle_rad.to_degrees())),
@@ -148,7 +148,7 @@ fn uncertain(arguments: &Arguments, file: &CaskFile) -> Uncertain {
 }
 
 /// Whether the table stays one that can be written and read.
-fn few_enough(request: &Request, file: &CaskFile) -> miette::Result<()> {
+fn few_enough(request: &StudyRequest, file: &CaskFile) -> miette::Result<()> {
     let is_swept = |variable| swept(&request.sweeps, variable).is_some();
     let mut factors: Vec<(usize, String)> =
         request.sweeps.iter().map(|s| (s.values.len(), name(s.variable).to_owned())).collect();
@@ -170,14 +170,8 @@ fn few_enough(request: &Request, file: &CaskFile) -> miette::Result<()> {
         .collect();
     let longest = request.sweeps.iter().max_by_key(|sweep| sweep.values.len());
     let longest = longest.map_or("", |sweep| name(sweep.variable));
-    let options = match (is_swept(SweepVariable::K), is_swept(SweepVariable::Friction)) {
-        (false, false) if request.ks.len() * request.contacts.len() > 1 => ", or give --k and --contact",
-        (false, true) if request.ks.len() > 1 => ", or give --k",
-        (true, false) if request.contacts.len() > 1 => ", or give --contact",
-        _ => "",
-    };
     Err(miette::miette!(
-        help = format!("take a larger STEP or a shorter range for {longest}{options}"),
+        help = format!("take a larger STEP or a shorter range for {longest}, or give --k and --contact"),
         "{} = {predictions} predictions are too many; at most {MOST_PREDICTIONS}",
         product.join(" × ")
     ))
@@ -204,7 +198,7 @@ mod tests {
         dropcheck::ingest::cask_file(&path).unwrap()
     }
 
-    fn asked(options: &str) -> miette::Result<Request> {
+    fn asked(options: &str) -> miette::Result<StudyRequest> {
         let words = ["predict", "--cask", "cask.toml"].into_iter().chain(options.split_whitespace());
         request(&Words::try_parse_from(words).unwrap().arguments, &file())
     }

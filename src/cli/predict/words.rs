@@ -121,10 +121,6 @@ pub fn draws(text: &str) -> Result<u32, String> {
     })
 }
 
-pub fn seed(text: &str) -> Result<u64, String> {
-    text.trim().parse().map_err(|_| "give a whole number of 0 or more, such as 7".into())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,9 +5,9 @@ use super::statistics::{Outcome, Spread, largest_miss_u, outcome, quantile, scor
 use crate::data::{Contact, Estimate, MISSED_U, ReconstructionRung, Severity, Verdict};
 use crate::lab::data::{Campaign, CampaignRow};
 use crate::report::as_markdown;
-use crate::report::document::{Chapter, Document, Passage};
+use crate::report::document::{Chapter, ChapterPart, ReportDocument};
 use crate::report::rounding::optional_fixed;
-use crate::report::table::Table;
+use crate::report::table::ReportTable;
 use std::collections::BTreeMap;
 
 /// The whole as Markdown.
@@ -16,7 +16,7 @@ pub fn markdown(campaign: &Campaign) -> String {
     as_markdown::markdown(&document(campaign), None)
 }
 
-fn document(campaign: &Campaign) -> Document {
+fn document(campaign: &Campaign) -> ReportDocument {
     let (undamaged, damaged): (Vec<&CampaignRow>, Vec<&CampaignRow>) =
         campaign.rows.iter().partition(|row| row.damage.is_none());
     let request = &campaign.request;
@@ -28,7 +28,7 @@ fn document(campaign: &Campaign) -> Document {
         if request.exact { ", what is stated exactly true" } else { "" },
         number(1e3 * median(campaign.rows.iter().map(|row| row.analysis_s)), 1),
     );
-    let mut chapters = vec![Chapter::new("").with(Passage::text(summary))];
+    let mut chapters = vec![Chapter::new("").with(ChapterPart::text(summary))];
     let mut chapter = |heading: &str, table| chapters.push(Chapter::new(heading).with(table));
     if !undamaged.is_empty() {
         chapter("Undamaged scenes", verdicts(&undamaged));
@@ -46,7 +46,7 @@ fn document(campaign: &Campaign) -> Document {
         chapter("What a stricter limit of the closures would do", limits(&undamaged, &damaged));
     }
     chapter("Passed and wrong", missed(&campaign.rows));
-    Document { chapters, ..Document::default() }
+    ReportDocument { chapters, ..ReportDocument::default() }
 }
 
 /// A number with this many decimals; a dash where there is none.
@@ -74,10 +74,10 @@ fn count(rows: &[&CampaignRow], wanted: &[Outcome]) -> usize {
     rows.iter().filter(|row| wanted.contains(&outcome(row))).count()
 }
 
-fn verdicts(rows: &[&CampaignRow]) -> Passage {
+fn verdicts(rows: &[&CampaignRow]) -> ChapterPart {
     let of = [("pass", Verdict::Pass), ("review", Verdict::Review), ("fail", Verdict::Fail)]
         .map(|(name, verdict)| (name, of_verdict(rows, verdict)));
-    Table::of(&of)
+    ReportTable::of(&of)
         .text("verdict", |(name, _)| *name)
         .number("scenes", |(_, of)| of.len().to_string())
         .number("share", |(_, of)| share(of.len(), rows.len()))
@@ -107,7 +107,7 @@ const QUANTITIES: [(&str, &str, bool, usize); 10] = [
     ("slap_down_time", "time of the slap-down, s", false, 6),
 ];
 
-fn intervals(rows: &[&CampaignRow]) -> Passage {
+fn intervals(rows: &[&CampaignRow]) -> ChapterPart {
     let passed = of_verdict(rows, Verdict::Pass);
     let spreads: Vec<_> = [("passed", &passed[..]), ("all", rows)]
         .into_iter()
@@ -117,7 +117,7 @@ fn intervals(rows: &[&CampaignRow]) -> Passage {
             })
         })
         .collect();
-    Table::of(&spreads)
+    ReportTable::of(&spreads)
         .text("scenes", |(name, ..)| *name)
         .text("quantity", |(_, shown, ..)| *shown)
         .number("stated", |(.., spread)| spread.count().to_string())
@@ -131,7 +131,7 @@ fn intervals(rows: &[&CampaignRow]) -> Passage {
         .into()
 }
 
-fn codes(rows: &[&CampaignRow]) -> Passage {
+fn codes(rows: &[&CampaignRow]) -> ChapterPart {
     let mut counts: BTreeMap<(Severity, String), [usize; 3]> = BTreeMap::new();
     for row in rows {
         let grave = row.findings.iter().filter(|finding| finding.1 != Severity::Note);
@@ -150,7 +150,7 @@ fn codes(rows: &[&CampaignRow]) -> Passage {
     }
     let mut counts: Vec<_> = counts.into_iter().collect();
     counts.sort_by_key(|(_, count)| std::cmp::Reverse(count[0]));
-    Table::of(&counts)
+    ReportTable::of(&counts)
         .code("finding", |((_, code), _)| &code[..])
         .text("severity", |((severity, _), _)| if *severity == Severity::Error { "error" } else { "warning" })
         .number("scenes", |(_, [all, ..])| all.to_string())
@@ -218,13 +218,13 @@ struct Both {
     k: Spread,
 }
 
-fn classes(rows: &[&CampaignRow]) -> Passage {
+fn classes(rows: &[&CampaignRow]) -> ChapterPart {
     let classes = CLASSES.map(|(name, belongs)| {
         let of: Vec<&CampaignRow> = rows.iter().copied().filter(|row| belongs(row)).collect();
         let (speed, k) = (Spread::of(pairs(&of, "speed"), true), Spread::of(pairs(&of, "k"), false));
         (name, Both { speed, k }, of)
     });
-    Table::of(&classes)
+    ReportTable::of(&classes)
         .text("class", |(name, ..)| *name)
         .number("scenes", |(.., of)| of.len().to_string())
         .number("pass", |(.., of)| share(of_verdict(of, Verdict::Pass).len(), of.len()))
@@ -236,7 +236,7 @@ fn classes(rows: &[&CampaignRow]) -> Passage {
         .into()
 }
 
-fn ladder(rows: &[&CampaignRow]) -> Passage {
+fn ladder(rows: &[&CampaignRow]) -> ChapterPart {
     let rungs = ReconstructionRung::ALL.map(|rung| {
         let had: Vec<_> = rows
             .iter()
@@ -246,7 +246,7 @@ fn ladder(rows: &[&CampaignRow]) -> Passage {
         let k = Spread::of(had.iter().filter_map(|(truth, c)| c.k.zip(truth.k)), false);
         (rung, had.len(), Both { speed, k })
     });
-    Table::of(&rungs)
+    ReportTable::of(&rungs)
         .text("rung", |(rung, ..)| rung_name(*rung))
         .number("taken", |(rung, ..)| rows.iter().filter(|row| row.rung == Some(*rung)).count().to_string())
         .number("had", |(_, had, _)| had.to_string())
@@ -259,13 +259,13 @@ fn ladder(rows: &[&CampaignRow]) -> Passage {
         .into()
 }
 
-fn redraws(rows: &[&CampaignRow]) -> Passage {
+fn redraws(rows: &[&CampaignRow]) -> ChapterPart {
     let mut counts: BTreeMap<&str, u32> = BTreeMap::new();
     for (reason, count) in rows.iter().flat_map(|row| &row.redraws) {
         *counts.entry(reason).or_default() += count;
     }
     let counts: Vec<_> = counts.into_iter().collect();
-    Table::of(&counts)
+    ReportTable::of(&counts)
         .text("reason", |(reason, _)| *reason)
         .number("draws", |(_, count)| count.to_string())
         .into()
@@ -273,7 +273,7 @@ fn redraws(rows: &[&CampaignRow]) -> Passage {
 
 /// The outcomes of every kind of damage, in the order of the kinds, or of every size of it.
 #[allow(clippy::cast_precision_loss, reason = "counts of scenes")]
-fn damages(rows: &[&CampaignRow], by_size: bool) -> Passage {
+fn damages(rows: &[&CampaignRow], by_size: bool) -> ChapterPart {
     let mut groups: Vec<(&str, String, Vec<&CampaignRow>)> = Vec::new();
     for (kind, sizes, unit) in super::kinds() {
         let of_kind = rows.iter().copied().filter(|row| row.damage.is_some_and(|d| d.kind == kind));
@@ -295,7 +295,7 @@ fn damages(rows: &[&CampaignRow], by_size: bool) -> Passage {
     if !by_size {
         groups.push(("all", String::new(), rows.to_vec()));
     }
-    Table::of(&groups)
+    ReportTable::of(&groups)
         .text("damage", |(kind, ..)| *kind)
         .number("size", |(_, size, _)| &size[..])
         .number("scenes", |(.., of)| of.len().to_string())
@@ -313,14 +313,14 @@ fn damages(rows: &[&CampaignRow], by_size: bool) -> Passage {
 const LIMITS_U: [f64; 5] = [MISSED_U, 3.0, 2.5, 2.0, 1.5];
 
 /// What each limit would have kept from passing: of sound drops, and of damaged ones that passed and are wrong.
-fn limits(undamaged: &[&CampaignRow], damaged: &[&CampaignRow]) -> Passage {
+fn limits(undamaged: &[&CampaignRow], damaged: &[&CampaignRow]) -> ChapterPart {
     let passed = of_verdict(undamaged, Verdict::Pass);
     let missed: Vec<&CampaignRow> =
         damaged.iter().copied().filter(|row| outcome(row) == Outcome::Missed).collect();
     let within = |rows: &[&CampaignRow], limit_u: f64| {
         rows.iter().filter(|row| largest_miss_u(row).is_none_or(|miss| miss <= limit_u)).count()
     };
-    Table::of(&LIMITS_U)
+    ReportTable::of(&LIMITS_U)
         .number("limit, u", |limit_u| number(*limit_u, 1))
         .number("sound drops that pass", |limit_u| share(within(&passed, *limit_u), undamaged.len()))
         .number("damaged ones missed", |limit_u| within(&missed, *limit_u).to_string())
@@ -328,10 +328,10 @@ fn limits(undamaged: &[&CampaignRow], damaged: &[&CampaignRow]) -> Passage {
 }
 
 /// Every scene that passed and is wrong.
-fn missed(rows: &[CampaignRow]) -> Passage {
+fn missed(rows: &[CampaignRow]) -> ChapterPart {
     let missed: Vec<&CampaignRow> = rows.iter().filter(|row| outcome(row) == Outcome::Missed).collect();
     if missed.is_empty() {
-        return Passage::text("None.");
+        return ChapterPart::text("None.");
     }
     let damage = |row: &CampaignRow| match row.damage {
         None => "none".to_owned(),
@@ -346,7 +346,7 @@ fn missed(rows: &[CampaignRow]) -> Passage {
     };
     let truth =
         |row: &CampaignRow, name, decimals| optional_fixed(scored(row, name).and_then(|s| s.truth), decimals);
-    Table::of(&missed)
+    ReportTable::of(&missed)
         .text("scene", |row| row.number.to_string())
         .text("damage", |row| damage(row))
         .number("speed", |row| stated(row, "speed", 3))

@@ -3,7 +3,8 @@
 use super::Fall;
 use super::peak::{Peak, Sample, common, peak, with_jumps};
 use crate::data::{
-    BodyModel, CaskFile, Contact, Criterion, CriticalAngle, CriticalRange, Prediction, Request, WorstCase,
+    BodyModel, CaskFile, Contact, Criterion, CriticalAngle, CriticalRange, Prediction, StudyRequest,
+    WorstCase,
 };
 use rayon::prelude::*;
 
@@ -70,7 +71,7 @@ fn find(fall: &Fall, band_percent: f64, (angles_deg, predictions): AtAngles) -> 
 /// For every body and criterion the critical angles while k and friction go through their ranges, looked for from `angles_deg`.
 ///
 /// Cases in which L strikes once before R at no angle have no critical angle and are left out.
-pub(super) fn ranges(cask_file: &CaskFile, request: &Request, angles_deg: &[f64]) -> Vec<CriticalRange> {
+pub(super) fn ranges(cask_file: &CaskFile, request: &StudyRequest, angles_deg: &[f64]) -> Vec<CriticalRange> {
     let ks = spread(request.uncertain.k, RANGE_KS);
     let contacts: Vec<Contact> = request.uncertain.friction.map_or_else(
         || request.contacts.clone(),
@@ -134,7 +135,7 @@ mod tests {
 
     fn critical(height_m: f64, contact: Contact, k: f64, band_percent: f64) -> Vec<CriticalAngle> {
         let file = cask_file(height_m);
-        let asked = Request { band_percent, ..request(vec![contact], vec![k], steps(180, 90.0)) };
+        let asked = StudyRequest { band_percent, ..request(vec![contact], vec![k], steps(180, 90.0)) };
         let fall = Fall { body: super::super::richest(&file), drop: file.drop, contact, k };
         critical_angles(&fall, asked.band_percent, (&asked.angles_deg, &fall.over(&asked.angles_deg)))
     }

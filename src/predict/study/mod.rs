@@ -13,7 +13,7 @@ pub use uncertain::default_uncertain;
 
 use super::{bodies, ladder, predict, speed_gradient};
 use crate::data::{
-    Body, BodyModel, CaskFile, Contact, Drop, Ladder, Prediction, Request, SpeedGradient, Study,
+    Body, BodyModel, CaskFile, Contact, Drop, Ladder, Prediction, SpeedGradient, Study, StudyRequest,
 };
 use rayon::prelude::*;
 
@@ -27,7 +27,7 @@ const DRAW_ANGLES: usize = 91;
 ///
 /// The seed fixes the draws bit by bit; the predictions made of them differ between machines in the last bits of the sine only.
 #[must_use]
-pub fn study(cask_file: &CaskFile, request: &Request) -> Study {
+pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
     let falls = falls(cask_file, &request.contacts, &request.ks);
     let traced: Vec<Vec<Prediction>> = falls.par_iter().map(|fall| fall.over(&request.angles_deg)).collect();
     let (curves, critical): (Vec<_>, Vec<_>) = falls
@@ -99,7 +99,7 @@ fn richest(cask_file: &CaskFile) -> Body {
     super::body(&cask_file.cask, model)
 }
 
-fn ladders(cask_file: &CaskFile, request: &Request) -> Vec<Ladder> {
+fn ladders(cask_file: &CaskFile, request: &StudyRequest) -> Vec<Ladder> {
     let body = richest(cask_file);
     let drop = Drop { angle_rad: request.angle_deg.to_radians(), ..cask_file.drop };
     let of = |&contact: &Contact| request.ks.iter().map(move |&k| ladder(&body, &drop, contact, k));
@@ -197,8 +197,8 @@ mod tests {
         }
     }
 
-    pub(super) fn request(contacts: Vec<Contact>, ks: Vec<f64>, angles_deg: Vec<f64>) -> Request {
-        Request {
+    pub(super) fn request(contacts: Vec<Contact>, ks: Vec<f64>, angles_deg: Vec<f64>) -> StudyRequest {
+        StudyRequest {
             contacts,
             ks,
             angle_deg: 15.0,

@@ -3,7 +3,7 @@
 use super::peak::{Sample, bands};
 use super::uncertain::{Draw, draw};
 use super::{Fall, richest};
-use crate::data::{CaskFile, Criterion, MonteCarlo, QuantileCurves, Request};
+use crate::data::{CaskFile, Criterion, MonteCarlo, QuantileCurves, StudyRequest};
 use rayon::prelude::*;
 
 /// Probabilities of the quantiles.
@@ -21,7 +21,7 @@ struct Traced {
 }
 
 /// What the uncertain inputs make of slap-down and critical angle of the richest body, at nominal `angles_deg`.
-pub(super) fn monte_carlo(cask_file: &CaskFile, request: &Request, angles_deg: &[f64]) -> MonteCarlo {
+pub(super) fn monte_carlo(cask_file: &CaskFile, request: &StudyRequest, angles_deg: &[f64]) -> MonteCarlo {
     let uncertain = request.uncertain;
     let contact = request.contacts.first().copied().unwrap_or(cask_file.contact);
     let base = Fall { body: richest(cask_file), drop: cask_file.drop, contact, k: 0.0 };
@@ -192,7 +192,7 @@ mod tests {
     const DRAWS: u32 = 1000;
 
     fn of(uncertain: Uncertain, angles_deg: Vec<f64>) -> MonteCarlo {
-        let asked = Request { uncertain, ..request(vec![Contact::Rough], vec![0.5], angles_deg) };
+        let asked = StudyRequest { uncertain, ..request(vec![Contact::Rough], vec![0.5], angles_deg) };
         monte_carlo(&cask_file(0.0), &asked, &asked.angles_deg)
     }
 

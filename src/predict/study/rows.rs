@@ -2,7 +2,7 @@
 
 use super::super::bodies;
 use super::{Fall, raised, resized};
-use crate::data::{CaskFile, Contact, PredictionRow, Request, SweepVariable};
+use crate::data::{CaskFile, Contact, PredictionRow, StudyRequest, SweepVariable};
 use rayon::prelude::*;
 
 /// What the sweeps have set at one point of their grid.
@@ -29,7 +29,7 @@ impl Point {
 }
 
 /// Rows of the product of all sweeps, the first outermost; within it of every body, contact law and k that is not swept.
-pub(super) fn rows(cask_file: &CaskFile, request: &Request) -> Vec<PredictionRow> {
+pub(super) fn rows(cask_file: &CaskFile, request: &StudyRequest) -> Vec<PredictionRow> {
     let mut points = vec![Point::default()];
     for sweep in &request.sweeps {
         let with_each = |point: &Point| {
@@ -41,7 +41,7 @@ pub(super) fn rows(cask_file: &CaskFile, request: &Request) -> Vec<PredictionRow
     points.par_iter().flat_map(|point| rows_at(point, cask_file, request)).collect()
 }
 
-fn rows_at(point: &Point, cask_file: &CaskFile, request: &Request) -> Vec<PredictionRow> {
+fn rows_at(point: &Point, cask_file: &CaskFile, request: &StudyRequest) -> Vec<PredictionRow> {
     let contacts = point.friction.map_or_else(|| request.contacts.clone(), |mu| vec![Contact::Coulomb(mu)]);
     let ks = point.k.map_or_else(|| request.ks.clone(), |k| vec![k]);
     let angle_deg = point.angle_deg.unwrap_or(request.angle_deg);
@@ -73,7 +73,7 @@ mod tests {
     fn swept(height_m: f64, sweeps: Vec<(SweepVariable, Vec<f64>)>) -> Vec<PredictionRow> {
         let sweeps = sweeps.into_iter().map(|(variable, values)| Sweep { variable, values }).collect();
         let asked =
-            Request { sweeps, ..request(vec![Contact::Rough, Contact::Smooth], vec![0.0, 1.0], vec![]) };
+            StudyRequest { sweeps, ..request(vec![Contact::Rough, Contact::Smooth], vec![0.0, 1.0], vec![]) };
         rows(&cask_file(height_m), &asked)
     }
 

@@ -2,7 +2,7 @@
 
 use super::peak::bands;
 use super::{Fall, richest};
-use crate::data::{CaskFile, Request, Sensitivity, SpeedGradient};
+use crate::data::{CaskFile, Sensitivity, SpeedGradient, StudyRequest};
 use rayon::prelude::*;
 
 /// Coefficients of restitution for which the sensitivity is stated where the request does not name one.
@@ -33,7 +33,7 @@ impl Answer {
 }
 
 /// The richest body's sensitivities for every contact law, and for the request's k or, unless it names one alone, typical ones.
-pub(super) fn sensitivities(cask_file: &CaskFile, request: &Request) -> Vec<Sensitivity> {
+pub(super) fn sensitivities(cask_file: &CaskFile, request: &StudyRequest) -> Vec<Sensitivity> {
     let ks = if request.ks.len() == 1 { request.ks.as_slice() } else { TYPICAL_KS.as_slice() };
     let (body, drop) = (richest(cask_file), cask_file.drop);
     let mut falls = Vec::new();

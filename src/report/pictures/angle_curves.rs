@@ -1,13 +1,11 @@
 //! Curves over the drop angle to pictures: components (Figs. 4 and 5), magnitudes (Fig. 7), energy (Fig. 8), sections (Fig. 9).
 
-use super::super::ReportError;
 use super::super::rounding::plain;
 use super::super::words::{case_words, contact_words};
 use super::draw::{Picture, Plate};
 use super::look::{Look, angle_panel, body_words, from_zero};
-use super::panel::{COLOURS, Dash, Line, Panel};
+use super::panel::{COLOURS, Colour, Curve, Dash, Panel};
 use crate::data::{AngleCurve, BodyModel, Contact, Study};
-use plotters::style::RGBColor;
 
 const SPEED_LABEL: &str = "slap-down speed, m/s";
 const NOTHING: (&str, &str) =
@@ -22,7 +20,7 @@ const HELD_SENTENCE: &str =
     "Dotted: the closed form for k = 0 ([P] Table 2), the first end held on the target whatever the force.";
 
 /// |vx|, |vz| and the magnitude over the angle for one contact law, lowest and highest k.
-pub(super) fn components(study: &Study, contact: Contact, name: &str) -> Result<Picture, ReportError> {
+pub(super) fn components(study: &Study, contact: Contact, name: &str) -> Picture {
     let ks = ends(&Look::of(&[contact], &study.request.ks).ks);
     let panels = panels(study, "speed, m/s", |curve| {
         let Some(place) = ks.iter().position(|k| k.to_bits() == curve.k.to_bits()) else { return Vec::new() };
@@ -39,9 +37,9 @@ pub(super) fn components(study: &Study, contact: Contact, name: &str) -> Result<
             let label = format!("{words}, k = {}", plain(curve.k, 3));
             // Broad under the others: at small angles the magnitude all but coincides with the vertical part.
             let stroke = if i == 0 { 8 } else { 4 };
-            Line { stroke, ..line_of(curve, label, COLOURS[i], dash, values) }
+            Curve { stroke, ..line_of(curve, label, COLOURS[i], dash, values) }
         };
-        let mut lines: Vec<Line> = parts.into_iter().enumerate().map(line).collect();
+        let mut lines: Vec<Curve> = parts.into_iter().enumerate().map(line).collect();
         lines.extend(held_line(curve, COLOURS[0], format!("magnitude, {HELD}")));
         lines
     });
@@ -64,7 +62,7 @@ pub(super) fn components(study: &Study, contact: Contact, name: &str) -> Result<
 }
 
 /// Magnitudes of every case.
-pub(super) fn speeds(study: &Study, name: &str) -> Result<Picture, ReportError> {
+pub(super) fn speeds(study: &Study, name: &str) -> Picture {
     let look = Look::of(&study.request.contacts, &study.request.ks);
     let panels = panels(study, SPEED_LABEL, |curve| {
         let Some(line) = case_line(&look, curve, &curve.speed_m_s) else { return Vec::new() };
@@ -88,7 +86,7 @@ pub(super) fn speeds(study: &Study, name: &str) -> Result<Picture, ReportError> 
 }
 
 /// Ratio of kinetic energies of every case.
-pub(super) fn energies(study: &Study, name: &str) -> Result<Picture, ReportError> {
+pub(super) fn energies(study: &Study, name: &str) -> Picture {
     let look = Look::of(&study.request.contacts, &study.request.ks);
     let panels = panels(study, "kinetic energy ratio", |curve| {
         case_line(&look, curve, &curve.energy_ratio).into_iter().collect()
@@ -102,7 +100,7 @@ pub(super) fn energies(study: &Study, name: &str) -> Result<Picture, ReportError
 }
 
 /// The cask's length with different sections, smooth and elastic.
-pub(super) fn sections(study: &Study, name: &str) -> Result<Picture, ReportError> {
+pub(super) fn sections(study: &Study, name: &str) -> Picture {
     let title = "Smooth, k = 1".to_owned();
     let own_m = study.cask_file.cask.height_m;
     let mut panel = angle_panel(&study.request, title, SPEED_LABEL);
@@ -119,7 +117,7 @@ pub(super) fn sections(study: &Study, name: &str) -> Result<Picture, ReportError
         let (stroke, opacity) = if i == 0 { (14, 0.35) } else { (4, 1.0) };
         let dash = if i == 1 { Dash::Dashed } else { Dash::Solid };
         let colour = COLOURS[if i < 2 { i } else { i % COLOURS.len() }];
-        panel.lines.push(Line { opacity, stroke, ..line_of(curve, label, colour, dash, &curve.speed_m_s) });
+        panel.lines.push(Curve { opacity, stroke, ..line_of(curve, label, colour, dash, &curve.speed_m_s) });
     }
     panel.height = 520;
     let caption = format!(
@@ -131,7 +129,7 @@ pub(super) fn sections(study: &Study, name: &str) -> Result<Picture, ReportError
 }
 
 /// One panel a body with the lines that `lines` makes of its curves.
-fn panels(study: &Study, y_label: &'static str, lines: impl Fn(&AngleCurve) -> Vec<Line>) -> Vec<Panel> {
+fn panels(study: &Study, y_label: &'static str, lines: impl Fn(&AngleCurve) -> Vec<Curve>) -> Vec<Panel> {
     [BodyModel::Rod, BodyModel::Body]
         .into_iter()
         .filter(|model| study.curves.iter().any(|curve| curve.model == *model))
@@ -155,21 +153,21 @@ fn ordered(study: &Study, model: BodyModel) -> Vec<&AngleCurve> {
     curves
 }
 
-fn case_line(look: &Look, curve: &AngleCurve, values: &[f64]) -> Option<Line> {
+fn case_line(look: &Look, curve: &AngleCurve, values: &[f64]) -> Option<Curve> {
     let (contact, k) = (curve.contact, curve.k);
     look.shows(contact, k)
         .then(|| line_of(curve, case_words(contact, k), look.colour(contact, k), look.dash(k), values))
 }
 
-fn line_of(curve: &AngleCurve, label: String, colour: RGBColor, dash: Dash, values: &[f64]) -> Line {
+fn line_of(curve: &AngleCurve, label: String, colour: Colour, dash: Dash, values: &[f64]) -> Curve {
     let points = curve.angle_deg.iter().copied().zip(values.iter().map(|v| v.abs())).collect();
-    Line::new(colour, points).named(label).broken(dash)
+    Curve::new(colour, points).named(label).broken(dash)
 }
 
 /// The closed form, where the curve has one.
-fn held_line(curve: &AngleCurve, colour: RGBColor, label: String) -> Option<Line> {
+fn held_line(curve: &AngleCurve, colour: Colour, label: String) -> Option<Curve> {
     let any = curve.closed_form_speed_m_s.iter().any(|v| v.is_finite());
-    any.then(|| Line {
+    any.then(|| Curve {
         stroke: HELD_STROKE,
         ..line_of(curve, label, colour, Dash::Dotted, &curve.closed_form_speed_m_s)
     })

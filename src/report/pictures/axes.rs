@@ -1,242 +1,220 @@
 //! One panel to its axes, areas, lines, points and marks.
 
-use super::super::text::printable;
 use super::decimate::runs;
-use super::legend::{Area, FONT, Failure, heading, point, word};
-use super::panel::{Fill, GREY, INK, Line, Mark, Panel, PanelAxis, Scale, WIDTH};
-use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
-use plotters::coord::types::RangedCoordf64;
-use plotters::prelude::*;
-use plotters::style::text_anchor::HPos;
+use super::legend::{self, point, width_of};
+use super::panel::{AxisScale, Curve, Dash, GREY, INK, Mark, Panel, PanelAxis, WIDTH};
+use super::svg::{Anchor, Svg};
 use std::ops::Range;
 
 /// Height of a row of the marks' words.
-const MARK_ROW: i32 = 34;
+const MARK_ROW: f64 = 34.0;
 /// Room for the ticks and the label of the axes.
-const LEFT: u32 = 130;
-const BOTTOM: u32 = 88;
-const RIGHT: u32 = 28;
+const LEFT: f64 = 130.0;
+const BOTTOM: f64 = 88.0;
+const RIGHT: f64 = 28.0;
 /// Air below a panel.
-const GAP: i32 = 26;
+const GAP: f64 = 26.0;
 
-/// An axis as the plotter takes it.
-enum Coordinate {
-    Linear(RangedCoordf64),
-    Logarithmic(LogCoord<f64>),
-    /// Without ticks: its rows are named by words.
-    Rows(Range<f64>),
+/// Height of a panel in a picture, or in a part of it, this wide.
+pub(super) fn height(panel: &Panel, width: f64) -> f64 {
+    let head = head(panel, width);
+    if panel.height == 0 { head } else { head + f64::from(panel.height) + bottom(panel) + GAP }
 }
 
-impl Coordinate {
-    fn of(axis: &PanelAxis, range: Range<f64>) -> Self {
-        match axis.scale {
-            Scale::Linear => Self::Linear(range.into()),
-            Scale::Logarithmic => Self::Logarithmic(range.log_scale().into()),
-            Scale::Rows(_) => Self::Rows(range),
+/// Height of what stands above the axes.
+#[allow(clippy::cast_precision_loss, reason = "rows are few")]
+fn head(panel: &Panel, width: f64) -> f64 {
+    let rows = mark_rows(panel, width).iter().max().map_or(0, |row| row + 1);
+    legend::height(panel, width) + MARK_ROW * rows as f64
+}
+
+fn bottom(panel: &Panel) -> f64 {
+    if panel.x.label.is_empty() { 0.0 } else { BOTTOM }
+}
+
+/// Rows that the words of the marks take, so that none writes over its neighbour.
+fn mark_rows(panel: &Panel, width: f64) -> Vec<usize> {
+    let mut ends: Vec<f64> = Vec::new();
+    let range = panel.x_range();
+    let row = |mark: &Mark| {
+        let half = width_of(&mark.label, 7.0) + 8.0;
+        let at = along(&panel.x, &range, mark.at) * (width - LEFT);
+        let row = ends.iter().position(|end| at - half > *end).unwrap_or(ends.len());
+        ends.resize(ends.len().max(row + 1), 0.0);
+        ends[row] = at + half;
+        row
+    };
+    panel.marks.iter().map(row).collect()
+}
+
+/// How far along its axis a value lies, 0 to 1; not finite where the axis has no place for it.
+fn along(axis: &PanelAxis, range: &Range<f64>, value: f64) -> f64 {
+    let (from, to) = (axis.place(range.start), axis.place(range.end));
+    (axis.place(value) - from) / (to - from)
+}
+
+/// The rectangle between the axes, its corner at (0, 0).
+struct PlotFrame<'a> {
+    panel: &'a Panel,
+    x: Range<f64>,
+    y: Range<f64>,
+    width: f64,
+    height: f64,
+}
+
+/// Draws `panel` in a picture, or in a part of it, this wide.
+pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
+    legend::draw(svg, panel, width);
+    if panel.height == 0 {
+        return;
+    }
+    let (left, right) = panel.sides.map_or((LEFT, RIGHT), |(left, right)| (left.into(), right.into()));
+    let (x, y) = (panel.x_range(), panel.y_range());
+    let frame = PlotFrame { panel, x, y, width: width - left - right, height: panel.height.into() };
+    svg.from((left, head(panel, width)), |svg| {
+        frame.grid(svg);
+        svg.within((frame.width, frame.height), |svg| frame.curves(svg));
+        for points in &panel.points {
+            let places = points.at.iter().map(|at| frame.place(*at));
+            places.filter(|(x, y)| x.is_finite() && y.is_finite()).for_each(|at| point(svg, points, at));
+        }
+        frame.rows(svg, left);
+        for (mark, row) in panel.marks.iter().zip(mark_rows(panel, width)) {
+            frame.mark(svg, mark, row, (left, right));
+        }
+        let size = "font-size=\"26\"";
+        svg.words(&panel.x.label, (frame.width / 2.0, frame.height + BOTTOM - 18.0), Anchor::Middle, size);
+        svg.from((16.0 - left, frame.height / 2.0), |svg| {
+            svg.words(
+                &panel.y.label,
+                (0.0, 0.0),
+                Anchor::Middle,
+                &format!("{size} transform=\"rotate(270)\""),
+            );
+        });
+    });
+}
+
+impl PlotFrame<'_> {
+    fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        let up = along(&self.panel.y, &self.y, y);
+        (along(&self.panel.x, &self.x, x) * self.width, (1.0 - up) * self.height)
+    }
+
+    /// The lines at the ticks, their numbers, and the axes.
+    fn grid(&self, svg: &mut Svg) {
+        let (width, height, panel) = (self.width, self.height, self.panel);
+        let line = |opacity, points| Curve { opacity, stroke: 1, ..Curve::new(GREY, points) };
+        let x = ticks(&panel.x, &self.x, if width < WIDTH / 2.0 { 8 } else { 14 });
+        let y = ticks(&panel.y, &self.y, 8);
+        let across = |value: f64| (along(&panel.x, &self.x, value) * width).round();
+        let up = |value: f64| ((1.0 - along(&panel.y, &self.y, value)) * height).round();
+        for (ticks, opacity) in [(&x.fine, 0.10), (&x.bold, 0.28)] {
+            for at in ticks.iter().map(|v| across(*v)) {
+                svg.line(&line(opacity, vec![(at, 0.0), (at, height)]));
+            }
+        }
+        for (ticks, opacity) in [(&y.fine, 0.10), (&y.bold, 0.28)] {
+            for at in ticks.iter().map(|v| up(*v)) {
+                svg.line(&line(opacity, vec![(0.0, at), (width, at)]));
+            }
+        }
+        svg.line(&line(1.0, vec![(0.0, 0.0), (0.0, height), (width, height)]));
+        for value in x.bold.iter().filter(|_| !panel.x.label.is_empty()) {
+            let at = across(*value);
+            svg.line(&line(1.0, vec![(at, height), (at, height + 5.0)]));
+            svg.word(&tick(*value, panel.x.is_logarithmic()), (at, height + 22.0), Anchor::Middle);
+        }
+        for value in &y.bold {
+            svg.line(&line(1.0, vec![(-5.0, up(*value)), (0.0, up(*value))]));
+            svg.word(&tick(*value, panel.y.is_logarithmic()), (-10.0, up(*value)), Anchor::End);
         }
     }
-}
 
-impl Ranged for Coordinate {
-    type FormatOption = DefaultFormatting;
-    type ValueType = f64;
-
-    #[allow(clippy::cast_possible_truncation, reason = "a pixel place lies within the limits given")]
-    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
-        match self {
-            Self::Linear(axis) => axis.map(value, limit),
-            Self::Logarithmic(axis) => axis.map(value, limit),
-            Self::Rows(rows) => {
-                let share = (value - rows.start) / (rows.end - rows.start);
-                limit.0 + (share * f64::from(limit.1 - limit.0)).round() as i32
+    /// Areas, and lines over them; what is faint lies under what is bold.
+    fn curves(&self, svg: &mut Svg) {
+        for fill in &self.panel.fills {
+            for area in &fill.areas {
+                let corners: Vec<(f64, f64)> = area.iter().map(|at| self.place(*at)).collect();
+                svg.area(&corners, fill.colour, fill.opacity);
+            }
+        }
+        let (faint, bold): (Vec<&Curve>, Vec<&Curve>) =
+            self.panel.lines.iter().partition(|line| line.opacity < 0.5);
+        for line in faint.into_iter().chain(bold) {
+            for points in runs(line.points.iter().map(|at| self.place(*at))) {
+                svg.line(&Curve { points, label: None, ..*line });
             }
         }
     }
 
-    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        match self {
-            Self::Linear(axis) => axis.key_points(hint),
-            Self::Logarithmic(axis) => axis.key_points(hint),
-            Self::Rows(_) => Vec::new(),
+    /// The words of the rows, at the left of the axes and at their right.
+    fn rows(&self, svg: &mut Svg, left: f64) {
+        let AxisScale::Rows(rows) = &self.panel.y.scale else { return };
+        let mut row_y = self.y.end - 0.5;
+        for row in rows {
+            let (_, y) = self.place((self.x.start, row_y));
+            if row.is_heading {
+                let bold = "font-size=\"24\" font-weight=\"bold\"";
+                svg.words(&row.left, (20.0 - left, y), Anchor::Start, bold);
+            } else {
+                svg.word(&row.left, (-16.0, y), Anchor::End);
+                svg.word(&row.right, (self.width + 18.0, y), Anchor::Start);
+            }
+            row_y -= 1.0;
         }
     }
 
-    fn range(&self) -> Range<f64> {
-        match self {
-            Self::Linear(axis) => axis.range(),
-            Self::Logarithmic(axis) => axis.range(),
-            Self::Rows(rows) => rows.clone(),
+    #[allow(clippy::cast_precision_loss, reason = "rows are few")]
+    fn mark(&self, svg: &mut Svg, mark: &Mark, row: usize, (left, right): (f64, f64)) {
+        if !(self.x.start..=self.x.end).contains(&mark.at) {
+            return;
+        }
+        let (x, _) = self.place((mark.at, self.y.end));
+        let top = -MARK_ROW * row as f64;
+        let dashed = Curve { opacity: 0.55, stroke: 2, ..Curve::new(INK, vec![(x, top), (x, self.height)]) };
+        svg.line(&dashed.broken(Dash::Marked));
+        let half = width_of(&mark.label, 7.0);
+        let x = x.clamp((half - 20.0 - left).max(half - left), self.width + right - half - 8.0);
+        svg.word(&mark.label, (x, top - 20.0), Anchor::Middle);
+    }
+}
+
+/// Where an axis has numbers, and where lines alone.
+#[derive(Default)]
+struct Ticks {
+    bold: Vec<f64>,
+    fine: Vec<f64>,
+}
+
+/// At round numbers, `most` of them or one more; of powers of ten each one or every second, third …, and the steps between in fine lines.
+#[allow(clippy::cast_possible_truncation, reason = "whole steps, cut to a few hundred")]
+fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
+    let (from, to) = (axis.place(range.start), axis.place(range.end));
+    let steps = |step: f64| -> Vec<i32> {
+        let [first, last] = [(from / step - 1e-9).ceil(), (to / step + 1e-9).floor()];
+        (first as i32..=(last as i32).min((first as i32).saturating_add(300))).collect()
+    };
+    match axis.scale {
+        AxisScale::Rows(_) => Ticks::default(),
+        AxisScale::Linear => {
+            let least = (to - from) / f64::from(most);
+            let power = 10_f64.powf(least.log10().floor());
+            let step =
+                [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|step| *step >= least * 0.999);
+            let step = step.unwrap_or(least);
+            Ticks { bold: steps(step).into_iter().map(|i| f64::from(i) * step).collect(), fine: Vec::new() }
+        }
+        AxisScale::Logarithmic => {
+            let decades = steps(1.0);
+            let each = decades.len().div_ceil(usize::try_from(most).unwrap_or(8)).max(1);
+            let bold = decades.iter().step_by(each).map(|power| 10_f64.powi(*power)).collect();
+            let all = (from.floor() as i32..=to.floor() as i32)
+                .flat_map(|power| (2..10).map(move |digit| f64::from(digit) * 10_f64.powi(power)));
+            let is_within = |v: &f64| decades.len() <= 12 && (range.start..=range.end).contains(v);
+            Ticks { bold, fine: all.filter(is_within).collect() }
         }
     }
-}
-
-type PanelChart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Coordinate, Coordinate>>;
-
-impl Panel {
-    /// Heights of what stands above the axes, and of the whole panel, in a picture or a part of it this wide.
-    pub(super) fn heights(&self, width: u32) -> (i32, i32) {
-        let rows = self.mark_rows(width).iter().max().map_or(0, |row| row + 1);
-        let head = self.head(width) + MARK_ROW * i32::try_from(rows).unwrap_or(0);
-        if self.height == 0 {
-            return (head, head);
-        }
-        (head, head + GAP + (self.height + self.bottom()).cast_signed())
-    }
-
-    fn bottom(&self) -> u32 {
-        if self.x.label.is_empty() { 0 } else { BOTTOM }
-    }
-
-    /// Rows that the words of the marks take, so that none writes over its neighbour.
-    fn mark_rows(&self, width: u32) -> Vec<usize> {
-        let mut ends: Vec<f64> = Vec::new();
-        let x = self.x_range();
-        let (from, to) = (self.x.place(x.start), self.x.place(x.end));
-        let place = |at: f64| (self.x.place(at) - from) / (to - from) * f64::from(width - LEFT);
-        self.marks
-            .iter()
-            .map(|mark| {
-                // Half the width of a word: 0.28 em a letter at 24 units.
-                let half = f64::from(u32::try_from(mark.label.chars().count()).unwrap_or(0)) * 7.0 + 8.0;
-                let at = place(mark.at);
-                let row = ends.iter().position(|end| at - half > *end).unwrap_or(ends.len());
-                if row == ends.len() {
-                    ends.push(at + half);
-                } else {
-                    ends[row] = at + half;
-                }
-                row
-            })
-            .collect()
-    }
-}
-
-/// Draws `panel` into `area`.
-pub(super) fn one(area: &Area, panel: &Panel) -> Result<(), Failure> {
-    heading(area, panel)?;
-    if panel.height == 0 {
-        return Ok(());
-    }
-    let width = area.dim_in_pixel().0;
-    let (left, right) = panel.sides.unwrap_or((LEFT, RIGHT));
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(panel.heights(width).0)
-        .margin_right(right)
-        .margin_bottom(GAP)
-        .x_label_area_size(panel.bottom())
-        .y_label_area_size(left)
-        .build_cartesian_2d(
-            Coordinate::of(&panel.x, panel.x_range()),
-            Coordinate::of(&panel.y, panel.y_range()),
-        )?;
-    let is_fine = panel.x.is_logarithmic() || panel.y.is_logarithmic();
-    chart
-        .configure_mesh()
-        .x_desc(printable(&panel.x.label))
-        .y_desc(printable(&panel.y.label))
-        .axis_desc_style((FONT, 32, &INK))
-        .label_style((FONT, 30, &INK))
-        .axis_style(GREY)
-        .bold_line_style(GREY.mix(0.28))
-        .light_line_style(GREY.mix(if is_fine { 0.10 } else { 0.0 }))
-        .x_labels(if width < WIDTH { 8 } else { 12 })
-        .y_labels(8)
-        .x_label_formatter(&|x| tick(*x, panel.x.is_logarithmic()))
-        .y_label_formatter(&|y| tick(*y, panel.y.is_logarithmic()))
-        .draw()?;
-    for fill in &panel.fills {
-        draw_fill(&mut chart, fill)?;
-    }
-    // What is faint lies under what is bold.
-    let (faint, bold): (Vec<_>, Vec<_>) = panel.lines.iter().partition(|line| line.opacity < 0.5);
-    for line in faint.into_iter().chain(bold) {
-        draw_line(&mut chart, panel, line)?;
-    }
-    draw_points(area, panel, &chart)?;
-    draw_rows(area, panel, &chart)?;
-    let bounds = (chart.x_range(), chart.y_range());
-    for (mark, row) in panel.marks.iter().zip(panel.mark_rows(width)) {
-        if (bounds.0.start..=bounds.0.end).contains(&mark.at) {
-            let ends = [bounds.1.end, bounds.1.start].map(|y| place(area, &chart, (mark.at, y)));
-            draw_mark(area, mark, row, ends)?;
-        }
-    }
-    Ok(())
-}
-
-/// The place in the area of a point on the axes.
-fn place(area: &Area, chart: &PanelChart, at: (f64, f64)) -> (i32, i32) {
-    let (base, at) = (area.get_base_pixel(), chart.backend_coord(&at));
-    (at.0 - base.0, at.1 - base.1)
-}
-
-fn draw_line(chart: &mut PanelChart, panel: &Panel, line: &Line) -> Result<(), Failure> {
-    let style = line.colour.mix(line.opacity).stroke_width(line.stroke);
-    let x = chart.x_range();
-    let along = |v: f64| panel.x.place(v);
-    let missing = (f64::NAN, f64::NAN);
-    let points: Vec<(f64, f64)> = line
-        .points
-        .iter()
-        .map(|&(x, y)| if panel.drawable((x, y)) { (along(x), y) } else { missing })
-        .collect();
-    for run in runs(&points, along(x.start), along(x.end), WIDTH as usize) {
-        let value = |x: f64| if panel.x.is_logarithmic() { 10f64.powf(x) } else { x };
-        let run: Vec<(f64, f64)> = run.into_iter().map(|(x, y)| (value(x), y)).collect();
-        match line.dash.pieces() {
-            Some((piece, gap)) => chart.draw_series(DashedLineSeries::new(run, piece, gap, style)).map(drop),
-            None => chart.draw_series(LineSeries::new(run, style)).map(drop),
-        }?;
-    }
-    Ok(())
-}
-
-fn draw_fill(chart: &mut PanelChart, fill: &Fill) -> Result<(), Failure> {
-    let areas = fill.areas.iter().map(|area| Polygon::new(area.clone(), fill.colour.mix(fill.opacity)));
-    chart.draw_series(areas).map(drop)
-}
-
-fn draw_points(area: &Area, panel: &Panel, chart: &PanelChart) -> Result<(), Failure> {
-    for points in &panel.points {
-        for at in points.at.iter().filter(|at| panel.drawable(**at)) {
-            point(area, points, place(area, chart, *at))?;
-        }
-    }
-    Ok(())
-}
-
-/// The words of the rows, at the left of the axes and at their right.
-fn draw_rows(area: &Area, panel: &Panel, chart: &PanelChart) -> Result<(), Failure> {
-    let Scale::Rows(rows) = &panel.y.scale else { return Ok(()) };
-    let x = chart.x_range();
-    let mut y = chart.y_range().end - 0.5;
-    for row in rows {
-        let (left, right) = (place(area, chart, (x.start, y)), place(area, chart, (x.end, y)));
-        let font = (FONT, 30).into_font();
-        if row.is_heading {
-            word(area, &row.left, (20, left.1), HPos::Left, font.style(FontStyle::Bold))?;
-        } else {
-            word(area, &row.left, (left.0 - 16, left.1), HPos::Right, font.clone())?;
-            word(area, &row.right, (right.0 + 18, right.1), HPos::Left, font)?;
-        }
-        y -= 1.0;
-    }
-    Ok(())
-}
-
-fn draw_mark(area: &Area, mark: &Mark, row: usize, ends: [(i32, i32); 2]) -> Result<(), Failure> {
-    let [top, bottom] = ends;
-    let lift = MARK_ROW * i32::try_from(row).unwrap_or(0);
-    let mut y = top.1 - lift;
-    while y < bottom.1 {
-        let end = (y + 10).min(bottom.1);
-        area.draw(&PathElement::new(vec![(top.0, y), (top.0, end)], INK.mix(0.55).stroke_width(2)))?;
-        y += 18;
-    }
-    let half = i32::try_from(mark.label.chars().count()).unwrap_or(0) * 7;
-    let width = area.dim_in_pixel().0.cast_signed();
-    let x = top.0.clamp(LEFT.cast_signed() + half - 20, width - half - 8);
-    word(area, &mark.label, (x, top.1 - lift - 20), HPos::Center, (FONT, 30).into_font())
 }
 
 /// A tick's number: as short as it reads well, powers of ten where the axis is logarithmic.
@@ -250,7 +228,6 @@ fn tick(value: f64, logarithmic: bool) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::panel::Mark;
     use super::*;
 
     #[test]
@@ -259,7 +236,7 @@ mod tests {
         let marks = marks.map(|(label, at)| Mark { at, label: label.into() }).into();
         let panel =
             Panel { x: PanelAxis::new("time, ms").over(Some((-10.0, 100.0))), marks, ..Panel::default() };
-        assert_eq!(panel.mark_rows(WIDTH), [0, 1, 0]);
+        assert_eq!(mark_rows(&panel, WIDTH), [0, 1, 0]);
     }
 
     #[test]
@@ -268,5 +245,18 @@ mod tests {
         assert_eq!(tick(-12.5, false), "−12.5");
         assert_eq!(tick(1e-5, true), "1e−5");
         assert_eq!(tick(100.0, true), "100");
+    }
+
+    #[test]
+    fn ticks_stand_at_round_numbers_within_the_axis() {
+        let linear = PanelAxis::new("x");
+        assert_eq!(ticks(&linear, &(-3.0..41.0), 8).bold, [0.0, 10.0, 20.0, 30.0, 40.0]);
+        assert_eq!(ticks(&linear, &(0.0..1.0), 5).bold.len(), 6);
+        let logarithmic = PanelAxis::new("f").logarithmic();
+        let found = ticks(&logarithmic, &(5.0..2000.0), 8);
+        assert_eq!(found.bold, [10.0, 100.0, 1000.0]);
+        assert_eq!((found.fine.first(), found.fine.last()), (Some(&5.0), Some(&2000.0)));
+        assert!(ticks(&logarithmic, &(1e-17..1e3), 8).bold.len() <= 8);
+        assert!(ticks(&PanelAxis::rows(Vec::new()), &(0.0..1.0), 8).bold.is_empty());
     }
 }

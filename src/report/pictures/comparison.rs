@@ -1,13 +1,10 @@
 //! Measured beside predicted slap-down speed to one picture: a row a prediction, a band for the measurement.
 
-use super::super::ReportError;
 use super::super::rounding::{fixed, interval, pair, plain};
 use super::super::words::contact_words;
 use super::draw::{Picture, Plate};
-use super::panel::{COLOURS, Fill, Line, Mark, Panel, PanelAxis, PointShape, Points, RowWords};
+use super::panel::{COLOURS, Curve, Fill, Mark, Panel, PanelAxis, PointShape, Points, RowWords};
 use crate::data::{Analysis, Estimate, Prediction};
-
-const TITLE: &str = "Measured beside predicted";
 
 /// Height of a row.
 const ROW: u32 = 52;
@@ -21,22 +18,12 @@ struct ComparedRow {
 }
 
 /// The picture.
-pub(super) fn picture(analysis: &Analysis) -> Result<Picture, ReportError> {
-    let rows = rows(analysis);
-    let measured = analysis.result.slap_down.speed.filter(|e| e.value.is_finite());
-    let panels = if rows.is_empty() && measured.is_none() { vec![] } else { vec![panel(&rows, measured)] };
+pub(super) fn picture(analysis: &Analysis) -> Picture {
+    let panel = panel(&rows(analysis), analysis.result.slap_down.speed.filter(|e| e.value.is_finite()));
     let caption = "Speed of the second end just before it strikes. Dots: the analytical models with the borderline k; squares: with the \
                    measured k, with their 95 % intervals where known. Dashed line and band: the measurement and its 95 % interval."
         .to_owned();
-    let mut picture = Plate::new("comparison", TITLE, caption).picture(&panels)?;
-    if !panels.is_empty() {
-        let speed = measured
-            .map_or("No measured speed".into(), |speed| format!("Measured {}", interval(Some(&speed))));
-        let words = |row: &ComparedRow| format!("{}: {:.2} m/s", row.label, row.speed_m_s);
-        let rows = rows.iter().map(words).collect::<Vec<_>>().join("; ");
-        picture.alt = format!("{TITLE}. {speed}. {rows}");
-    }
-    Ok(picture)
+    Plate::new("comparison", "Measured beside predicted", caption).picture(panel.as_slice())
 }
 
 fn rows(analysis: &Analysis) -> Vec<ComparedRow> {
@@ -60,7 +47,10 @@ fn rows(analysis: &Analysis) -> Vec<ComparedRow> {
     result.predictions.iter().filter_map(row).collect()
 }
 
-fn panel(rows: &[ComparedRow], measured: Option<Estimate>) -> Panel {
+fn panel(rows: &[ComparedRow], measured: Option<Estimate>) -> Option<Panel> {
+    if rows.is_empty() && measured.is_none() {
+        return None;
+    }
     let words = |row: &ComparedRow| {
         let value = |u95| pair(row.speed_m_s, u95, "m/s").replace(" m/s", "");
         let right = row.u95_m_s.map_or_else(|| format!("{:.2}", row.speed_m_s), value);
@@ -79,7 +69,7 @@ fn panel(rows: &[ComparedRow], measured: Option<Estimate>) -> Panel {
     if let Some(speed) = measured {
         let u95 = if speed.u95.is_finite() { speed.u95 } else { 0.0 };
         let area = Fill::rectangle((speed.value - u95, speed.value + u95), foot_to_top);
-        panel.fills.push(Fill { label: None, colour: COLOURS[2], opacity: 0.22, areas: vec![area] });
+        panel.fills.push(Fill::new(COLOURS[2], 0.22, vec![area]));
         panel.marks.push(Mark { at: speed.value, label: format!("measured {}", interval(Some(&speed))) });
     }
     let mut y = count - 0.5;
@@ -91,12 +81,12 @@ fn panel(rows: &[ComparedRow], measured: Option<Estimate>) -> Panel {
             let ends = [low, high].map(|x| vec![(x, y - 0.21), (x, y + 0.21)]);
             panel
                 .lines
-                .extend(ends.into_iter().chain([vec![(low, y), (high, y)]]).map(|p| Line::new(colour, p)));
+                .extend(ends.into_iter().chain([vec![(low, y), (high, y)]]).map(|p| Curve::new(colour, p)));
         }
         panel.points.push(Points::new(colour, shape, vec![(row.speed_m_s, y)]));
         y -= 1.0;
     }
-    panel
+    Some(panel)
 }
 
 fn speed_range(rows: &[ComparedRow], measured: Option<Estimate>) -> (f64, f64) {

@@ -1,17 +1,17 @@
 //! Accelerations (Fig. 12), velocities (Fig. 13), motion and spectra to panels.
 
 use super::super::grid::{STANDARD_GRAVITY_M_S2, named_events};
-use super::super::{ReportError, spectrum};
+use super::super::spectrum;
+use super::super::text::json_word;
 use super::draw::{Picture, Plate};
-use super::panel::{COLOURS, Dash, Line, Mark, Panel, PanelAxis};
+use super::panel::{COLOURS, Colour, Curve, Dash, Mark, Panel, PanelAxis};
 use crate::data::{Analysis, Axis, ChannelCurve, End};
-use plotters::style::RGBColor;
 
 const TIME_LABEL: &str = "time from first contact, ms";
 const RECORD_TIME_LABEL: &str = "time from the recording's first sample, ms";
 
 /// The deceleration of both ends, unfiltered and filtered.
-pub(super) fn accelerations(analysis: &Analysis) -> Result<Picture, ReportError> {
+pub(super) fn accelerations(analysis: &Analysis) -> Picture {
     let clock = EventClock::of(analysis);
     let panels: Vec<Panel> = [(End::First, "First end"), (End::Second, "Second end")]
         .into_iter()
@@ -20,10 +20,11 @@ pub(super) fn accelerations(analysis: &Analysis) -> Result<Picture, ReportError>
             for EndCurve { curve, colour, axis } in curves_of(analysis, end) {
                 let in_g = |values: &[f64]| clock.points(&curve.time_s, values, 1.0 / STANDARD_GRAVITY_M_S2);
                 let raw =
-                    Line::new(colour, in_g(&curve.raw_m_s2)).named(format!("{} unfiltered", curve.channel));
-                let label = format!("{} filtered{}", curve.channel, axis_note(axis));
-                lines.push(Line { opacity: 0.32, stroke: 2, ..raw });
-                lines.push(Line::new(colour, in_g(&curve.filtered_m_s2)).named(label).broken(dash_of(axis)));
+                    Curve::new(colour, in_g(&curve.raw_m_s2)).named(format!("{} unfiltered", curve.channel));
+                let (dash, note) = axis_look(axis);
+                let label = format!("{} filtered{note}", curve.channel);
+                lines.push(Curve { opacity: 0.32, stroke: 2, ..raw });
+                lines.push(Curve::new(colour, in_g(&curve.filtered_m_s2)).named(label).broken(dash));
             }
             clock.panel(analysis, title, "deceleration, g", lines)
         })
@@ -42,20 +43,21 @@ pub(super) fn accelerations(analysis: &Analysis) -> Result<Picture, ReportError>
 }
 
 /// The velocity of both ends, from the sensors and as the rigid body moves.
-pub(super) fn velocities(analysis: &Analysis) -> Result<Picture, ReportError> {
+pub(super) fn velocities(analysis: &Analysis) -> Picture {
     let clock = EventClock::of(analysis);
     let mut sensors = Vec::new();
     for end in [End::First, End::Second] {
         for EndCurve { curve, colour, axis } in curves_of(analysis, end) {
-            let label = format!("{} ({} end{})", curve.channel, end_word(end), axis_note(axis));
+            let (dash, note) = axis_look(axis);
+            let label = format!("{} ({} end{note})", curve.channel, json_word(end));
             let points = clock.points(&curve.time_s, &curve.velocity_m_s, 1.0);
-            sensors.push(Line::new(colour, points).named(label).broken(dash_of(axis)));
+            sensors.push(Curve::new(colour, points).named(label).broken(dash));
         }
     }
     let mut panels = vec![clock.panel(analysis, "Along the sensors", "velocity, m/s", sensors)];
     if let Some(motion) = &analysis.curves.motion {
         let line = |label: &str, colour: usize, dash, values: &[f64]| {
-            Line::new(COLOURS[colour], clock.points(&motion.time_s, values, 1.0)).named(label).broken(dash)
+            Curve::new(COLOURS[colour], clock.points(&motion.time_s, values, 1.0)).named(label).broken(dash)
         };
         let lines = vec![
             line("first end, vertical", 0, Dash::Solid, &motion.first_end_vertical_m_s),
@@ -71,12 +73,12 @@ pub(super) fn velocities(analysis: &Analysis) -> Result<Picture, ReportError> {
 }
 
 /// Heights of both ends and the inclination.
-pub(super) fn motion(analysis: &Analysis) -> Result<Picture, ReportError> {
+pub(super) fn motion(analysis: &Analysis) -> Picture {
     let clock = EventClock::of(analysis);
     let mut panels = Vec::new();
     if let Some(motion) = &analysis.curves.motion {
         let line = |colour: usize, values: &[f64], factor: f64| {
-            Line::new(COLOURS[colour], clock.points(&motion.time_s, values, factor))
+            Curve::new(COLOURS[colour], clock.points(&motion.time_s, values, factor))
         };
         let heights = vec![
             line(0, &motion.first_end_height_m, 1.0).named("first end"),
@@ -93,14 +95,14 @@ pub(super) fn motion(analysis: &Analysis) -> Result<Picture, ReportError> {
 }
 
 /// The amplitude spectra of all channels up to half the sample rate.
-pub(super) fn spectra(analysis: &Analysis) -> Result<Picture, ReportError> {
+pub(super) fn spectra(analysis: &Analysis) -> Picture {
     let line = |(i, curve): (usize, &ChannelCurve)| {
         let (frequency_hz, magnitude_m_s) = spectrum(curve);
         let points = frequency_hz.into_iter().zip(magnitude_m_s).collect();
-        Line {
+        Curve {
             opacity: 0.9,
             stroke: 3,
-            ..Line::new(COLOURS[i % COLOURS.len()], points).named(&curve.channel[..])
+            ..Curve::new(COLOURS[i % COLOURS.len()], points).named(&curve.channel[..])
         }
     };
     let lines = analysis.curves.channels.iter().enumerate().map(line).collect();
@@ -142,7 +144,7 @@ impl EventClock {
         time_s.iter().zip(values).map(|(t, v)| ((t - self.zero_s) * 1e3, v * factor)).collect()
     }
 
-    fn panel(&self, analysis: &Analysis, title: &str, y_label: &str, lines: Vec<Line>) -> Panel {
+    fn panel(&self, analysis: &Analysis, title: &str, y_label: &str, lines: Vec<Curve>) -> Panel {
         let marks = named_events(&analysis.result.events)
             .into_iter()
             .filter_map(|(label, at)| {
@@ -168,7 +170,7 @@ impl EventClock {
 }
 
 /// First and last time over all lines.
-fn ends(lines: &[Line]) -> Option<(f64, f64)> {
+fn ends(lines: &[Curve]) -> Option<(f64, f64)> {
     let times = || {
         lines.iter().flat_map(|line| line.points.first().into_iter().chain(line.points.last())).map(|p| p.0)
     };
@@ -180,7 +182,7 @@ fn ends(lines: &[Line]) -> Option<(f64, f64)> {
 /// The curve of a channel with its colour, which is the same in every picture.
 struct EndCurve<'a> {
     curve: &'a ChannelCurve,
-    colour: RGBColor,
+    colour: Colour,
     axis: Axis,
 }
 
@@ -193,24 +195,10 @@ fn curves_of(analysis: &Analysis, end: End) -> impl Iterator<Item = EndCurve<'_>
     })
 }
 
-/// An axial channel is dashed.
-fn dash_of(axis: Axis) -> Dash {
+/// How a channel's line is broken, and what its name is followed by: an axial one stands out.
+fn axis_look(axis: Axis) -> (Dash, &'static str) {
     match axis {
-        Axis::Transverse => Dash::Solid,
-        Axis::Axial => Dash::Dashed,
-    }
-}
-
-fn axis_note(axis: Axis) -> &'static str {
-    match axis {
-        Axis::Transverse => "",
-        Axis::Axial => ", axial",
-    }
-}
-
-fn end_word(end: End) -> &'static str {
-    match end {
-        End::First => "first",
-        End::Second => "second",
+        Axis::Transverse => (Dash::Solid, ""),
+        Axis::Axial => (Dash::Dashed, ", axial"),
     }
 }

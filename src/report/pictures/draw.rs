@@ -1,12 +1,8 @@
 //! Panels to the SVG text of a picture.
 
-use super::super::ReportError;
-use super::super::text::printable;
 use super::axes;
-use super::legend::{FONT, Failure};
-use super::panel::{GREY, Panel, WIDTH};
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use super::panel::{AxisScale, Panel, WIDTH};
+use super::svg::{Anchor, Svg};
 
 /// One picture.
 pub(crate) struct Picture {
@@ -47,26 +43,30 @@ impl Plate {
     }
 
     /// The picture of those panels that have something to show.
-    ///
-    /// # Errors
-    /// [`ReportError::Picture`] where the plotter fails.
-    pub(crate) fn picture(self, panels: &[Panel]) -> Result<Picture, ReportError> {
+    pub(crate) fn picture(self, panels: &[Panel]) -> Picture {
         let Self { name, title, caption, nothing, columns } = self;
         let panels: Vec<&Panel> = panels.iter().filter(|panel| panel.has_points()).collect();
-        let failed = |e: Failure| ReportError::Picture { picture: name.clone(), reason: e.to_string() };
         if panels.is_empty() {
-            let svg = empty(nothing.0).map_err(failed)?;
-            let alt = format!("{title}: nothing to show.");
-            return Ok(Picture { name, title, alt, caption: nothing.1.to_owned(), svg });
+            let (svg, alt) = (empty(nothing.0, &title), format!("{title}: nothing to show."));
+            return Picture { name, title, alt, caption: nothing.1.to_owned(), svg };
         }
-        let svg = described(&draw(&panels, columns).map_err(failed)?, &title);
-        let alt = format!("{title}. {caption}");
-        Ok(Picture { name, title, alt, caption, svg })
+        let svg = drawing(&panels, columns, &title);
+        let rows: Vec<String> = panels.iter().flat_map(|panel| spoken(panel)).collect();
+        let alt = format!("{title}. {}", if rows.is_empty() { caption.clone() } else { rows.join("; ") });
+        Picture { name, title, alt, caption, svg }
     }
 }
 
-/// Panels in rows of `columns`, those without axes in rows of their own.
-fn draw(panels: &[&Panel], columns: usize) -> Result<String, Failure> {
+/// The rows of a panel with their words, and what is marked in it.
+fn spoken(panel: &Panel) -> Vec<String> {
+    let AxisScale::Rows(rows) = &panel.y.scale else { return Vec::new() };
+    let marked = panel.marks.iter().map(|mark| mark.label.clone());
+    let rows = rows.iter().filter(|row| row.is_heading || !row.right.is_empty());
+    marked.chain(rows.map(|row| format!("{}: {}", row.left, row.right))).collect()
+}
+
+/// Panels in rows of `columns`, those without axes in rows of their own; `title` names the drawing.
+fn drawing(panels: &[&Panel], columns: usize, title: &str) -> String {
     let mut rows: Vec<Vec<&Panel>> = Vec::new();
     for panel in panels {
         match rows.last_mut().filter(|row| row.len() < columns && row[0].height > 0 && panel.height > 0) {
@@ -74,61 +74,31 @@ fn draw(panels: &[&Panel], columns: usize) -> Result<String, Failure> {
             None => rows.push(vec![panel]),
         }
     }
-    let parts = |row: &[&Panel]| if row[0].height == 0 { 1 } else { columns };
-    let width = |row: &[&Panel]| WIDTH / u32::try_from(parts(row)).unwrap_or(1);
-    let height = |row: &Vec<&Panel>| row.iter().map(|panel| panel.heights(width(row)).1).max().unwrap_or(0);
-    let total = rows.iter().map(height).sum::<i32>().cast_unsigned();
-    drawing(total, |root| {
-        let mut rest = root.clone();
-        for row in &rows {
-            let (area, below) = rest.split_vertically(height(row));
-            rest = below;
-            for (panel, area) in row.iter().zip(area.split_evenly((1, parts(row)))) {
-                axes::one(&area, panel)?;
-            }
+    let mut svg = Svg::default();
+    let mut top = 0.0;
+    for row in &rows {
+        #[allow(clippy::cast_precision_loss, reason = "columns are few")]
+        let width = if row[0].height == 0 { WIDTH } else { WIDTH / columns as f64 };
+        let mut left = 0.0;
+        for panel in row {
+            svg.from((left, top), |svg| axes::draw(svg, panel, width));
+            left += width;
         }
-        Ok(())
-    })
+        top += row.iter().map(|panel| axes::height(panel, width)).fold(0.0, f64::max);
+    }
+    svg.finished((WIDTH, top), title)
 }
 
 /// A picture that only says a sentence.
-fn empty(sentence: &str) -> Result<String, Failure> {
-    drawing(160, |root| {
-        let style =
-            TextStyle::from((FONT, 34).into_font()).color(&GREY).pos(Pos::new(HPos::Center, VPos::Center));
-        root.draw(&Text::new(sentence.to_owned(), (WIDTH.cast_signed() / 2, 80), style))
-    })
-}
-
-/// What `paint` draws, at half its units on the page, as a picture to those who read the page aloud.
-fn drawing(
-    height: u32,
-    paint: impl FnOnce(&super::legend::Area) -> Result<(), Failure>,
-) -> Result<String, Failure> {
-    let mut svg = String::new();
-    {
-        let root = SVGBackend::with_string(&mut svg, (WIDTH, height)).into_drawing_area();
-        root.fill(&WHITE)?;
-        paint(&root)?;
-        root.present()?;
-    }
-    let drawn = format!("width=\"{WIDTH}\" height=\"{height}\"");
-    let shown = format!("width=\"{}\" height=\"{}\" role=\"img\"", WIDTH / 2, height / 2);
-    Ok(svg.replacen(&drawn, &shown, 1))
-}
-
-/// The drawing with `title` as its name.
-fn described(svg: &str, title: &str) -> String {
-    let title = printable(title).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-    match svg.find('>') {
-        Some(end) => format!("{}\n<title>{title}</title>{}", &svg[..=end], &svg[end + 1..]),
-        None => svg.to_owned(),
-    }
+fn empty(sentence: &str, title: &str) -> String {
+    let mut svg = Svg::default();
+    svg.words(sentence, (WIDTH / 2.0, 80.0), Anchor::Middle, "font-size=\"27\"");
+    svg.finished((WIDTH, 160.0), title)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::panel::{COLOURS, Line, PanelAxis};
+    use super::super::panel::{COLOURS, Curve, PanelAxis};
     use super::*;
 
     #[test]
@@ -138,10 +108,10 @@ mod tests {
             x: PanelAxis::new("frequency, Hz").logarithmic(),
             y: PanelAxis::new("magnitude").logarithmic(),
             height: 350,
-            lines: vec![Line::new(COLOURS[0], points)],
+            lines: vec![Curve::new(COLOURS[0], points)],
             ..Panel::default()
         };
-        let svg = draw(&[&panel], 1).unwrap();
-        assert!(svg.contains("polyline") && !svg.contains("2147483"));
+        let svg = drawing(&[&panel], 1, "");
+        assert!(svg.contains("polyline") && !svg.contains("NaN") && !svg.contains("inf"));
     }
 }

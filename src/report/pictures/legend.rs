@@ -1,161 +1,132 @@
 //! The title of a panel and the names of its lines, areas and points, above the axes.
 
 use super::super::text::printable;
-use super::panel::{Dash, Fill, INK, Line, Panel, PointShape, Points};
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-
-pub(super) const FONT: &str = "Helvetica, Arial, sans-serif";
-
-/// Where a picture is drawn.
-pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
-pub(super) type Failure = DrawingAreaErrorKind<std::io::Error>;
+use super::panel::{Colour, Curve, Fill, Panel, PointShape, Points};
+use super::svg::{Anchor, Svg};
 
 /// Height of the title's row.
-const HEAD: i32 = 62;
+const HEAD: f64 = 62.0;
 /// Where title and legend begin and end.
-const LEFT: i32 = 130;
-const RIGHT: i32 = 28;
+const LEFT: f64 = 130.0;
+const RIGHT: f64 = 28.0;
 /// Height of each further row of the legend.
-const LEGEND_ROW: i32 = 40;
+const LEGEND_ROW: f64 = 40.0;
 /// Width of the sample of a line before its words.
-const SAMPLE: i32 = 58;
+const SAMPLE: f64 = 58.0;
+const WHITE: Colour = Colour(255, 255, 255);
 
 /// What an entry of a legend stands for.
 #[derive(Clone, Copy)]
 enum LegendKey<'a> {
-    Line(&'a Line),
+    Curve(&'a Curve),
     Fill(&'a Fill),
     Points(&'a Points),
 }
 
-/// One entry of a legend: what it stands for, its words, its row and where it begins.
+/// One entry of a legend: what it stands for, its words, and where it begins.
 struct Entry<'a> {
     key: LegendKey<'a>,
     label: String,
-    row: usize,
-    left: i32,
+    takes: f64,
+    left: f64,
 }
 
-impl Panel {
-    /// The legend in reading order, each row set to the right; the first leaves room for the title.
-    fn legend(&self, width: u32) -> Vec<Entry<'_>> {
-        // The width of a letter is about 0.52 em: 13 at 25 units, 19 for the bold title.
-        let letters = |label: &str, letter: i32| i32::try_from(label.chars().count()).unwrap_or(0) * letter;
-        let limit = width.cast_signed() - RIGHT;
-        let room = limit - LEFT;
-        let mut left_over = room - letters(&self.title, 19) - 40;
-        let mut rows: Vec<Vec<(LegendKey, String, i32)>> = vec![Vec::new()];
-        let lines = self.lines.iter().map(|line| (LegendKey::Line(line), line.label.as_deref()));
-        let fills = self.fills.iter().map(|fill| (LegendKey::Fill(fill), fill.label.as_deref()));
-        let points = self.points.iter().map(|points| (LegendKey::Points(points), points.label.as_deref()));
-        for (key, label) in lines.chain(fills).chain(points) {
-            let Some(label) = label.map(printable) else { continue };
-            let takes = SAMPLE + letters(&label, 13) + 26;
-            if takes > left_over && !(rows.len() > 1 && rows.last().is_some_and(Vec::is_empty)) {
-                rows.push(Vec::new());
-                left_over = room;
-            }
-            left_over -= takes;
-            if let Some(row) = rows.last_mut() {
-                row.push((key, label, takes));
-            }
-        }
-        let mut entries = Vec::new();
-        for (row, members) in rows.into_iter().enumerate() {
-            let mut left = limit + 26 - members.iter().map(|(_, _, takes)| takes).sum::<i32>();
-            for (key, label, takes) in members {
-                entries.push(Entry { key, label, row, left });
-                left += takes;
-            }
-        }
-        entries
-    }
+/// About the width of words with letters this wide.
+#[allow(clippy::cast_precision_loss, reason = "words are short")]
+pub(super) fn width_of(words: &str, letter: f64) -> f64 {
+    words.chars().count() as f64 * letter
+}
 
-    /// Height of title and legend.
-    pub(super) fn head(&self, width: u32) -> i32 {
-        let last = self.legend(width).last().map(|entry| entry.row);
-        match last {
-            None if self.title.is_empty() => 14,
-            row => HEAD + LEGEND_ROW * i32::try_from(row.unwrap_or(0)).unwrap_or(0),
+/// The rows of the legend in reading order, each set to the right; the first leaves room for the title.
+fn rows(panel: &Panel, width: f64) -> Vec<Vec<Entry<'_>>> {
+    let limit = width - RIGHT;
+    let mut left_over = limit - LEFT - width_of(&panel.title, 19.0) - 40.0;
+    let mut rows: Vec<Vec<Entry>> = vec![Vec::new()];
+    let lines = panel.lines.iter().map(|line| (LegendKey::Curve(line), line.label.as_deref()));
+    let fills = panel.fills.iter().map(|fill| (LegendKey::Fill(fill), fill.label.as_deref()));
+    let points = panel.points.iter().map(|points| (LegendKey::Points(points), points.label.as_deref()));
+    for (key, label) in lines.chain(fills).chain(points) {
+        let Some(label) = label.map(printable) else { continue };
+        let takes = SAMPLE + width_of(&label, 13.0) + 26.0;
+        if takes > left_over && !(rows.len() > 1 && rows.last().is_some_and(Vec::is_empty)) {
+            rows.push(Vec::new());
+            left_over = limit - LEFT;
+        }
+        left_over -= takes;
+        rows.last_mut()
+            .into_iter()
+            .for_each(|row| row.push(Entry { key, label: label.clone(), takes, left: 0.0 }));
+    }
+    for row in &mut rows {
+        let mut left = limit + 26.0 - row.iter().map(|entry| entry.takes).sum::<f64>();
+        for entry in row {
+            entry.left = left;
+            left += entry.takes;
         }
     }
+    rows
+}
+
+/// Height of title and legend in a picture or a part of it this wide.
+#[allow(clippy::cast_precision_loss, reason = "rows are few")]
+pub(super) fn height(panel: &Panel, width: f64) -> f64 {
+    let rows = rows(panel, width);
+    if panel.title.is_empty() && rows.iter().all(Vec::is_empty) {
+        return 14.0;
+    }
+    HEAD + LEGEND_ROW * (rows.len() - 1) as f64
 }
 
 /// The panel's title at the left, its legend at the right of one line.
-pub(super) fn heading(area: &Area, panel: &Panel) -> Result<(), Failure> {
-    let title = TextStyle::from((FONT, 36).into_font().style(FontStyle::Bold)).color(&INK);
-    area.draw(&Text::new(printable(&panel.title), (LEFT, 14), title))?;
-    let entry = TextStyle::from((FONT, 31).into_font()).color(&INK);
-    for Entry { key, label, row, left } in panel.legend(area.dim_in_pixel().0) {
-        let drop = LEGEND_ROW * i32::try_from(row).unwrap_or(0);
-        area.draw(&Text::new(label, (left + SAMPLE, 17 + drop), entry.clone()))?;
-        match key {
-            LegendKey::Fill(fill) => {
-                let corners = [(left, 18 + drop), (left + 48, 40 + drop)];
-                area.draw(&Rectangle::new(corners, fill.colour.mix(fill.opacity).filled()))?;
-            }
-            LegendKey::Line(line) => {
-                let style = line.colour.mix(line.opacity).stroke_width(line.stroke.max(3));
-                for &(from, to) in sample(line.dash) {
-                    let stroke = vec![(left + from, 29 + drop), (left + to, 29 + drop)];
-                    area.draw(&PathElement::new(stroke, style))?;
-                }
-            }
-            LegendKey::Points(points) => point(area, points, (left + 36, 29 + drop))?,
-        }
+pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
+    if !panel.title.is_empty() {
+        svg.words(&panel.title, (LEFT, 29.0), Anchor::Start, "font-size=\"29\" font-weight=\"bold\"");
     }
-    Ok(())
-}
-
-/// Words at their middle height.
-pub(super) fn word(
-    area: &Area,
-    text: &str,
-    at: (i32, i32),
-    side: HPos,
-    font: FontDesc,
-) -> Result<(), Failure> {
-    let style = TextStyle::from(font).color(&INK).pos(Pos::new(side, VPos::Center));
-    area.draw(&Text::new(printable(text), at, style))
+    let mut y = 29.0;
+    for row in rows(panel, width) {
+        for Entry { key, label, left, .. } in row {
+            svg.words(&label, (left + SAMPLE, y), Anchor::Start, "font-size=\"25\"");
+            match key {
+                LegendKey::Fill(fill) => {
+                    let corners = Fill::rectangle((left, left + 48.0), (y - 11.0, y + 11.0));
+                    svg.area(&corners, fill.colour, fill.opacity);
+                }
+                LegendKey::Curve(line) => {
+                    let points = vec![(left, y), (left + 48.0, y)];
+                    svg.line(&Curve { points, stroke: line.stroke.max(3), ..line.clone() });
+                }
+                LegendKey::Points(points) => point(svg, points, (left + 36.0, y)),
+            }
+        }
+        y += LEGEND_ROW;
+    }
 }
 
 /// One point in its shape.
-pub(super) fn point(area: &Area, points: &Points, (x, y): (i32, i32)) -> Result<(), Failure> {
+pub(super) fn point(svg: &mut Svg, points: &Points, (x, y): (f64, f64)) {
     let (r, colour) = (points.radius, points.colour);
-    let corners: &[(i32, i32)] = match points.shape {
-        PointShape::Square => &[(-9, -9), (9, -9), (9, 9), (-9, 9), (-9, -9)],
-        PointShape::Triangle => &[(0, -12), (12, 9), (-12, 9), (0, -12)],
-        PointShape::Diamond => &[(0, -13), (13, 0), (0, 13), (-13, 0), (0, -13)],
-        PointShape::Tip => &[(0, 12), (12, -9), (-12, -9), (0, 12)],
+    let line = |width, points| Curve { stroke: width, ..Curve::new(colour, points) };
+    let corners: &[(f64, f64)] = match points.shape {
+        PointShape::Square => &[(-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0), (-9.0, -9.0)],
+        PointShape::Triangle => &[(0.0, -12.0), (12.0, 9.0), (-12.0, 9.0), (0.0, -12.0)],
+        PointShape::Diamond => &[(0.0, -13.0), (13.0, 0.0), (0.0, 13.0), (-13.0, 0.0), (0.0, -13.0)],
+        PointShape::Tip => &[(0.0, 12.0), (12.0, -9.0), (-12.0, -9.0), (0.0, 12.0)],
         PointShape::Cross => {
-            for side in [r, -r] {
-                let stroke = vec![(x - r, y - side), (x + r, y + side)];
-                area.draw(&PathElement::new(stroke, colour.stroke_width(6)))?;
-            }
-            return Ok(());
+            let r = f64::from(r);
+            return [r, -r]
+                .iter()
+                .for_each(|side| svg.line(&line(6, vec![(x - r, y - side), (x + r, y + side)])));
         }
-        PointShape::Ring => return area.draw(&Circle::new((x, y), r, colour.stroke_width(4))),
+        PointShape::Ring => return svg.circle((x, y), r, colour, Some(4)),
         PointShape::Dot => {
-            area.draw(&Circle::new((x, y), r + 2, WHITE.filled()))?;
-            let style = if points.is_hollow { colour.stroke_width(4) } else { colour.filled() };
-            return area.draw(&Circle::new((x, y), r, style));
+            svg.circle((x, y), r + 2, WHITE, None);
+            return svg.circle((x, y), r, colour, points.is_hollow.then_some(4));
         }
     };
-    let corners: Vec<(i32, i32)> = corners.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();
+    let corners: Vec<(f64, f64)> = corners.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();
+    svg.area(&corners, if points.is_hollow { WHITE } else { colour }, 1.0);
     if points.is_hollow {
-        area.draw(&Polygon::new(corners.clone(), WHITE.filled()))?;
-        return area.draw(&PathElement::new(corners, colour.stroke_width(4)));
-    }
-    area.draw(&Polygon::new(corners, colour.filled()))
-}
-
-/// From where to where the pieces of a line's sample reach.
-fn sample(dash: Dash) -> &'static [(i32, i32)] {
-    match dash {
-        Dash::Solid => &[(0, 48)],
-        Dash::Dashed => &[(0, 20), (28, 48)],
-        Dash::Dotted => &[(0, 6), (14, 20), (28, 34), (42, 48)],
+        svg.line(&line(4, corners));
     }
 }
 
@@ -167,14 +138,14 @@ mod tests {
     #[test]
     fn a_long_legend_takes_more_rows_within_the_width() {
         let line = |i: usize| {
-            Line::new(COLOURS[i % COLOURS.len()], vec![]).named(format!("channel number {i} unfiltered"))
+            Curve::new(COLOURS[i % COLOURS.len()], vec![]).named(format!("channel number {i} unfiltered"))
         };
         let lines = (0..16).map(line).collect();
         let panel = Panel { title: "First end".into(), lines, ..Panel::default() };
-        let entries = panel.legend(WIDTH);
-        assert_eq!(entries.len(), 16);
-        assert!(entries.iter().all(|e| e.left >= LEFT && e.left < WIDTH.cast_signed()));
-        assert!(entries.iter().any(|e| e.row > 0));
-        assert!(entries.windows(2).all(|w| w[0].row < w[1].row || w[0].left < w[1].left));
+        let rows = rows(&panel, WIDTH);
+        assert_eq!(rows.iter().flatten().count(), 16);
+        assert!(rows.len() > 1 && height(&panel, WIDTH) > HEAD);
+        assert!(rows.iter().flatten().all(|e| e.left >= LEFT && e.left < WIDTH));
+        assert!(rows.iter().all(|row| row.windows(2).all(|w| w[0].left < w[1].left)));
     }
 }

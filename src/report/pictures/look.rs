@@ -2,9 +2,8 @@
 
 use super::super::rounding::plain;
 use super::super::words::contact_words;
-use super::panel::{COLOURS, Dash, Mark, Panel, PanelAxis};
-use crate::data::{BodyModel, Cask, Contact, Request};
-use plotters::style::RGBColor;
+use super::panel::{COLOURS, Colour, Dash, Mark, Panel, PanelAxis};
+use crate::data::{BodyModel, Cask, Contact, StudyRequest};
 
 /// Contact laws that a picture shows: more lines than these cannot be told apart.
 pub(super) const MOST_CONTACTS: usize = 3;
@@ -45,7 +44,7 @@ impl Look {
     }
 
     /// Of the contact law, or of k where there is only one law.
-    pub(super) fn colour(&self, contact: Contact, k: f64) -> RGBColor {
+    pub(super) fn colour(&self, contact: Contact, k: f64) -> Colour {
         let index = if self.contacts.len() > 1 {
             self.contacts.iter().position(|c| *c == contact)
         } else {
@@ -96,13 +95,13 @@ pub(super) fn body_words(model: BodyModel, cask: &Cask, with_length: bool) -> St
 }
 
 /// The axis of the drop angle, as far as the study goes.
-pub(super) fn angle_axis(request: &Request) -> PanelAxis {
+pub(super) fn angle_axis(request: &StudyRequest) -> PanelAxis {
     let ends = request.angles_deg.first().copied().zip(request.angles_deg.last().copied());
     PanelAxis::new("drop angle, °").over(ends.filter(|(from, to)| from < to))
 }
 
 /// An empty panel over the angles of the study, the angle asked for marked.
-pub(super) fn angle_panel(request: &Request, title: String, y_label: &str) -> Panel {
+pub(super) fn angle_panel(request: &StudyRequest, title: String, y_label: &str) -> Panel {
     let at = request.angle_deg;
     Panel {
         title,
@@ -112,6 +111,12 @@ pub(super) fn angle_panel(request: &Request, title: String, y_label: &str) -> Pa
         marks: vec![Mark { at, label: format!("{}°", plain(at, 4)) }],
         ..Panel::default()
     }
+}
+
+/// The borders of cells around `centres`: half way between them, the outer ones on the outer centres.
+pub(super) fn edges(centres: &[f64]) -> Vec<f64> {
+    let inner = centres.windows(2).map(|w| f64::midpoint(w[0], w[1]));
+    centres.first().copied().into_iter().chain(inner).chain(centres.last().copied()).collect()
 }
 
 /// From 0 to a little above the largest value that is drawn.
@@ -129,6 +134,11 @@ pub(super) fn from_zero(panel: &Panel) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn borders_lie_between_the_cells() {
+        assert_eq!(edges(&[0.0, 1.0, 3.0]), [0.0, 0.5, 2.0, 3.0]);
+    }
 
     #[test]
     fn many_values_are_thinned_and_keep_their_ends() {

@@ -15,26 +15,23 @@ pub(crate) mod panel;
 mod regimes;
 mod sensitivity;
 mod study;
+mod svg;
 mod sweep;
 
 pub(super) use study::{draw_study, names as study_names};
 
-use super::ReportError;
 use crate::data::Analysis;
 use draw::Picture;
 
 /// Accelerations, velocities, motion, spectra and comparison; one that has nothing to show says so.
-///
-/// # Errors
-/// [`ReportError::Picture`] where the plotter fails.
-pub(super) fn draw(analysis: &Analysis) -> Result<Vec<Picture>, ReportError> {
-    Ok(vec![
-        curves::accelerations(analysis)?,
-        curves::velocities(analysis)?,
-        curves::motion(analysis)?,
-        curves::spectra(analysis)?,
-        comparison::picture(analysis)?,
-    ])
+pub(super) fn draw(analysis: &Analysis) -> Vec<Picture> {
+    vec![
+        curves::accelerations(analysis),
+        curves::velocities(analysis),
+        curves::motion(analysis),
+        curves::spectra(analysis),
+        comparison::picture(analysis),
+    ]
 }
 
 #[cfg(test)]
@@ -44,7 +41,7 @@ mod tests {
 
     #[test]
     fn pictures_are_small_and_self_contained() {
-        for picture in draw(&sample::analysis()).unwrap() {
+        for picture in draw(&sample::analysis()) {
             assert!(picture.svg.starts_with("<svg ") && picture.svg.trim_end().ends_with("</svg>"));
             assert!(picture.svg.len() < 600_000, "{}: {} bytes", picture.name, picture.svg.len());
             assert!(!picture.svg.contains("href"), "{} points elsewhere", picture.name);
@@ -58,7 +55,7 @@ mod tests {
         let name = "<script>alert(1)</script>\u{1}\u{ffff}";
         analysis.curves.channels[0].channel = name.into();
         analysis.result.channels[0].name = name.into();
-        let svg: String = draw(&analysis).unwrap().into_iter().map(|p| p.svg).collect();
+        let svg: String = draw(&analysis).into_iter().map(|p| p.svg).collect();
         assert!(!svg.contains("<script") && !svg.contains(['\u{1}', '\u{ffff}']));
         assert!(svg.contains("&lt;script&gt;"));
     }
@@ -70,13 +67,13 @@ mod tests {
             analysis.curves.channels[0].raw_m_s2[i] = f64::NAN;
         }
         analysis.curves.channels[1].velocity_m_s.fill(f64::NAN);
-        let pictures = draw(&analysis).unwrap();
+        let pictures = draw(&analysis);
         assert!(!pictures[0].svg.contains("-2147483648") && !pictures[1].svg.contains("-2147483648"));
     }
 
     #[test]
     fn nothing_is_said_to_be_nothing() {
-        let pictures = draw(&sample::without_anything()).unwrap();
+        let pictures = draw(&sample::without_anything());
         assert!(pictures.iter().all(|p| p.svg.contains("nothing to show")));
     }
 }

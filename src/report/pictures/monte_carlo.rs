@@ -1,11 +1,10 @@
 //! Monte Carlo to one picture: quantiles of the speed, share of the draws in their band, histogram of the critical angle.
 
-use super::super::ReportError;
 use super::super::rounding::plain;
 use super::super::words::{bands_words, criterion_words, degrees};
 use super::draw::{Picture, Plate};
-use super::look::angle_panel;
-use super::panel::{COLOURS, Dash, Fill, Line, Panel};
+use super::look::{angle_panel, edges};
+use super::panel::{COLOURS, Curve, Dash, Fill, Panel};
 use crate::data::{Criterion, QuantileCurves, Study};
 
 const NOTHING: (&str, &str) = (
@@ -17,7 +16,7 @@ const NO_DRAWS: (&str, &str) =
     ("There is nothing to show: no draws were asked for.", "No draws were asked for.");
 
 /// The picture.
-pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError> {
+pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let found = &study.monte_carlo;
     let title = format!("Slap-down speed under uncertain inputs, {}", found.model.as_str());
     let mut panels = Vec::new();
@@ -41,11 +40,8 @@ pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError>
 fn quantiles(study: &Study, speed: &QuantileCurves) -> Panel {
     let x = &study.monte_carlo.angle_deg;
     let mut panel = angle_panel(&study.request, "Slap-down speed".into(), "slap-down speed, m/s");
-    let fill = |label: &str, opacity, low: &[f64], high: &[f64]| Fill {
-        label: Some(label.to_owned()),
-        colour: COLOURS[0],
-        opacity,
-        areas: Fill::between(x, low, high),
+    let fill = |label: &str, opacity, low, high| {
+        Fill::new(COLOURS[0], opacity, Fill::between(x, low, high)).named(label)
     };
     panel.fills = vec![
         fill("95 % of the draws", 0.22, &speed.q025, &speed.q975),
@@ -70,35 +66,32 @@ fn shares(study: &Study) -> Panel {
         let points = pairs(&found.angle_deg, &q.in_band, 100.0);
         panel.lines.push(line(criterion_words(q.criterion), colour, dash, points));
         if q.criterion == Criterion::Speed {
-            panel.fills.push(Fill {
-                label: None,
-                colour: COLOURS[0],
-                opacity: 0.14,
-                areas: q.robust_bands_deg.iter().map(|band| Fill::rectangle(*band, (0.0, 104.0))).collect(),
-            });
+            let areas = q.robust_bands_deg.iter().map(|band| Fill::rectangle(*band, (0.0, 104.0)));
+            panel.fills.push(Fill::new(COLOURS[0], 0.14, areas.collect()));
         }
     }
     if found.no_slap_down.iter().any(|share| *share > 0.0) {
         let points = pairs(&found.angle_deg, &found.no_slap_down, 100.0);
-        panel.lines.push(Line { opacity: 0.9, ..line("no slap-down", 6, Dash::Dashed, points) });
+        panel.lines.push(Curve { opacity: 0.9, ..line("no slap-down", 6, Dash::Dashed, points) });
     }
     panel
 }
 
 fn histogram(study: &Study, speed: &QuantileCurves) -> Panel {
     let found = &study.monte_carlo;
-    let bars = Bars::of(&found.angle_deg, &speed.critical_counts);
+    let bars = bars(&found.angle_deg, &speed.critical_counts);
     let [low, _, median, _, high] = speed.critical_angle_deg;
     let title =
         format!("Critical angle: median {}°, 95 % within {}°", degrees(median), bands_words(&[(low, high)]));
     let mut panel = angle_panel(&study.request, title, "share of the draws, %");
     panel.height = 260;
-    let top = bars.largest() * 1.1;
+    let top = bars.iter().map(|bar| bar.share).fold(f64::MIN_POSITIVE, f64::max) * 1.1;
     panel.y.range = Some((0.0, top));
-    let fill = |opacity, areas| Fill { label: None, colour: COLOURS[0], opacity, areas };
+    let shown = bars.iter().filter(|bar| bar.share > 0.0);
+    let areas = shown.map(|bar| Fill::rectangle((bar.from, bar.to), (0.0, bar.share))).collect();
     panel.fills = vec![
-        fill(0.14, vec![Fill::rectangle((low, high), (0.0, top))]),
-        fill(0.75, bars.areas(panel.x.range)),
+        Fill::new(COLOURS[0], 0.14, vec![Fill::rectangle((low, high), (0.0, top))]),
+        Fill::new(COLOURS[0], 0.75, areas),
     ];
     panel
 }
@@ -106,47 +99,29 @@ fn histogram(study: &Study, speed: &QuantileCurves) -> Panel {
 /// Most bars of a histogram: finer ones cannot be told apart on paper.
 const MOST_BARS: usize = 100;
 
-/// Bars of a histogram: from, to and share, %.
-struct Bars(Vec<(f64, f64, f64)>);
-
-impl Bars {
-    /// The counts at the angles, drawn together so that there are at most [`MOST_BARS`].
-    fn of(angle_deg: &[f64], counts: &[u32]) -> Self {
-        let together = angle_deg.len().div_ceil(MOST_BARS).max(1);
-        let all: f64 = counts.iter().map(|c| f64::from(*c)).sum();
-        let middle = |i: usize| match (angle_deg.get(i.wrapping_sub(1)), angle_deg.get(i)) {
-            (Some(before), Some(after)) => f64::midpoint(*before, *after),
-            (None, Some(end)) | (Some(end), None) => *end,
-            (None, None) => f64::NAN,
-        };
-        let bar = |(i, counts): (usize, &[u32])| {
-            let from = i * together;
-            let share = 100.0 * counts.iter().map(|c| f64::from(*c)).sum::<f64>() / all.max(1.0);
-            (middle(from), middle(from + counts.len()), share)
-        };
-        let shown = counts.len().min(angle_deg.len());
-        Self(counts[..shown].chunks(together).enumerate().map(bar).collect())
-    }
-
-    fn largest(&self) -> f64 {
-        self.0.iter().map(|bar| bar.2).fold(f64::MIN_POSITIVE, f64::max)
-    }
-
-    fn areas(&self, within: Option<(f64, f64)>) -> Vec<Vec<(f64, f64)>> {
-        let (low, high) = within.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-        self.0
-            .iter()
-            .filter(|bar| bar.2 > 0.0 && bar.0.is_finite() && bar.1.is_finite())
-            .map(|&(from, to, share)| {
-                let (from, to) = (from.clamp(low, high), to.clamp(low, high));
-                Fill::rectangle((from, to), (0.0, share))
-            })
-            .collect()
-    }
+/// A bar of a histogram.
+struct HistogramBar {
+    from: f64,
+    to: f64,
+    /// Percent.
+    share: f64,
 }
 
-fn line(label: &str, colour: usize, dash: Dash, points: Vec<(f64, f64)>) -> Line {
-    Line::new(COLOURS[colour], points).named(label).broken(dash)
+/// The counts at the angles, drawn together so that there are at most [`MOST_BARS`].
+fn bars(angle_deg: &[f64], counts: &[u32]) -> Vec<HistogramBar> {
+    let together = angle_deg.len().div_ceil(MOST_BARS).max(1);
+    let sum = |counts: &[u32]| counts.iter().map(|c| f64::from(*c)).sum::<f64>();
+    let all = sum(counts).max(1.0);
+    let borders = edges(angle_deg);
+    let bar = |(i, held): (usize, &[u32])| {
+        let from = i * together;
+        HistogramBar { from: borders[from], to: borders[from + held.len()], share: 100.0 * sum(held) / all }
+    };
+    counts[..counts.len().min(angle_deg.len())].chunks(together).enumerate().map(bar).collect()
+}
+
+fn line(label: &str, colour: usize, dash: Dash, points: Vec<(f64, f64)>) -> Curve {
+    Curve::new(COLOURS[colour], points).named(label).broken(dash)
 }
 
 fn pairs(x: &[f64], y: &[f64], factor: f64) -> Vec<(f64, f64)> {
@@ -165,10 +140,10 @@ mod tests {
         counts[30] = 600;
         counts[31] = 200;
         counts[180] = 100;
-        let bars = Bars::of(&angle_deg, &counts);
+        let bars = bars(&angle_deg, &counts);
         // Shares of 1000 draws are whole tenths of a percent: their sum is exact but for round-off.
-        assert!((bars.0.iter().map(|b| b.2).sum::<f64>() - 100.0).abs() < 1e-9);
-        assert!(bars.0.len() <= MOST_BARS && bars.0.windows(2).all(|w| w[0].1.to_bits() == w[1].0.to_bits()));
-        assert_eq!(bars.areas(Some((0.0, 90.0))).len(), 3);
+        assert!((bars.iter().map(|b| b.share).sum::<f64>() - 100.0).abs() < 1e-9);
+        assert!(bars.len() <= MOST_BARS && bars.windows(2).all(|w| w[0].to.to_bits() == w[1].from.to_bits()));
+        assert_eq!(bars.iter().filter(|bar| bar.share > 0.0).count(), 3);
     }
 }

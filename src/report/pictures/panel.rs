@@ -1,25 +1,35 @@
 //! What a picture shows to a panel: axes, areas, lines, points and marked events, as data. Drawn at twice the size, so that
 //! its whole-pixel coordinates stay fine.
 
-use plotters::prelude::RGBColor;
 use std::ops::Range;
 
 /// Width of a picture in drawing units.
-pub(crate) const WIDTH: u32 = 1800;
-pub(crate) const INK: RGBColor = RGBColor(38, 42, 48);
-pub(crate) const GREY: RGBColor = RGBColor(110, 116, 124);
+pub(crate) const WIDTH: f64 = 1800.0;
+
+/// Red, green and blue, 0 to 255.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Colour(pub(super) u8, pub(super) u8, pub(super) u8);
+
+impl std::fmt::Display for Colour {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "#{:02x}{:02x}{:02x}", self.0, self.1, self.2)
+    }
+}
+
+pub(crate) const INK: Colour = Colour(38, 42, 48);
+pub(crate) const GREY: Colour = Colour(110, 116, 124);
 /// What is beyond its limit.
-pub(crate) const ALARM: RGBColor = RGBColor(179, 38, 30);
+pub(crate) const ALARM: Colour = Colour(179, 38, 30);
 
 /// Colours that also readers with a colour vision deficiency tell apart (Okabe & Ito 2008), darkest first.
-pub(crate) const COLOURS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(90, 90, 90),
+pub(crate) const COLOURS: [Colour; 7] = [
+    Colour(0, 114, 178),
+    Colour(213, 94, 0),
+    Colour(0, 158, 115),
+    Colour(204, 121, 167),
+    Colour(230, 159, 0),
+    Colour(86, 180, 233),
+    Colour(90, 90, 90),
 ];
 
 /// How a line is broken.
@@ -32,25 +42,28 @@ pub(crate) enum Dash {
     Dashed,
     /// Into short ones.
     Dotted,
+    /// Into short ones close to one another.
+    Marked,
 }
 
 impl Dash {
     /// Lengths of piece and gap in drawing units; `None` where it is not broken.
-    pub(super) fn pieces(self) -> Option<(u32, u32)> {
+    pub(super) fn pieces(self) -> Option<[u32; 2]> {
         match self {
             Self::Solid => None,
-            Self::Dashed => Some((16, 9)),
-            Self::Dotted => Some((5, 8)),
+            Self::Dashed => Some([16, 9]),
+            Self::Dotted => Some([5, 8]),
+            Self::Marked => Some([10, 8]),
         }
     }
 }
 
 /// One line.
 #[derive(Clone)]
-pub(crate) struct Line {
+pub(crate) struct Curve {
     /// Its name in the legend; `None` keeps it out.
     pub(crate) label: Option<String>,
-    pub(crate) colour: RGBColor,
+    pub(crate) colour: Colour,
     /// 0 to 1.
     pub(crate) opacity: f64,
     /// Stroke in drawing units.
@@ -59,9 +72,9 @@ pub(crate) struct Line {
     pub(crate) points: Vec<(f64, f64)>,
 }
 
-impl Line {
+impl Curve {
     /// A bold line that the legend does not name.
-    pub(crate) fn new(colour: RGBColor, points: Vec<(f64, f64)>) -> Self {
+    pub(crate) fn new(colour: Colour, points: Vec<(f64, f64)>) -> Self {
         Self { label: None, colour, opacity: 1.0, stroke: 4, dash: Dash::Solid, points }
     }
 
@@ -80,7 +93,7 @@ impl Line {
 pub(crate) struct Fill {
     /// Its name in the legend; `None` keeps it out.
     pub(crate) label: Option<String>,
-    pub(crate) colour: RGBColor,
+    pub(crate) colour: Colour,
     /// 0 to 1.
     pub(crate) opacity: f64,
     /// The corners of each area.
@@ -88,6 +101,16 @@ pub(crate) struct Fill {
 }
 
 impl Fill {
+    /// Areas that the legend does not name.
+    pub(super) fn new(colour: Colour, opacity: f64, areas: Vec<Vec<(f64, f64)>>) -> Self {
+        Self { label: None, colour, opacity, areas }
+    }
+
+    /// With its name in the legend.
+    pub(super) fn named(self, label: impl Into<String>) -> Self {
+        Self { label: Some(label.into()), ..self }
+    }
+
     /// The area between `low` and `high` over `x`, open where either is missing.
     pub(super) fn between(x: &[f64], low: &[f64], high: &[f64]) -> Vec<Vec<(f64, f64)>> {
         let points: Vec<(f64, [f64; 2])> =
@@ -131,7 +154,7 @@ impl PointShape {
 pub(crate) struct Points {
     /// Its name in the legend; `None` keeps it out.
     pub(crate) label: Option<String>,
-    pub(crate) colour: RGBColor,
+    pub(crate) colour: Colour,
     pub(crate) shape: PointShape,
     /// Half the size in drawing units.
     pub(crate) radius: i32,
@@ -141,7 +164,7 @@ pub(crate) struct Points {
 
 impl Points {
     /// Full points that the legend does not name.
-    pub(crate) fn new(colour: RGBColor, shape: PointShape, at: Vec<(f64, f64)>) -> Self {
+    pub(crate) fn new(colour: Colour, shape: PointShape, at: Vec<(f64, f64)>) -> Self {
         Self { label: None, colour, shape, radius: 10, is_hollow: false, at }
     }
 
@@ -167,7 +190,7 @@ pub(crate) struct RowWords {
 
 /// How values lie on an axis.
 #[derive(Clone, Default)]
-pub(crate) enum Scale {
+pub(crate) enum AxisScale {
     #[default]
     Linear,
     Logarithmic,
@@ -179,7 +202,7 @@ pub(crate) enum Scale {
 #[derive(Clone, Default)]
 pub(crate) struct PanelAxis {
     pub(crate) label: String,
-    pub(crate) scale: Scale,
+    pub(crate) scale: AxisScale,
     /// Its ends; `None`: as far as the lines reach.
     pub(crate) range: Option<(f64, f64)>,
 }
@@ -192,7 +215,7 @@ impl PanelAxis {
 
     /// With powers of ten.
     pub(crate) fn logarithmic(self) -> Self {
-        Self { scale: Scale::Logarithmic, ..self }
+        Self { scale: AxisScale::Logarithmic, ..self }
     }
 
     /// With these ends.
@@ -204,12 +227,12 @@ impl PanelAxis {
     pub(crate) fn rows(rows: Vec<RowWords>) -> Self {
         #[allow(clippy::cast_precision_loss, reason = "rows are few")]
         let count = rows.len().max(1) as f64;
-        Self { label: String::new(), scale: Scale::Rows(rows), range: Some((0.0, count)) }
+        Self { label: String::new(), scale: AxisScale::Rows(rows), range: Some((0.0, count)) }
     }
 
     /// Whether it has powers of ten.
     pub(super) fn is_logarithmic(&self) -> bool {
-        matches!(self.scale, Scale::Logarithmic)
+        matches!(self.scale, AxisScale::Logarithmic)
     }
 
     /// The value as a place along the axis.
@@ -243,7 +266,7 @@ pub(crate) struct Panel {
     /// Room for the words of rows at the left and the right; `None`: for ticks.
     pub(crate) sides: Option<(u32, u32)>,
     pub(crate) fills: Vec<Fill>,
-    pub(crate) lines: Vec<Line>,
+    pub(crate) lines: Vec<Curve>,
     pub(crate) points: Vec<Points>,
     pub(crate) marks: Vec<Mark>,
 }
@@ -274,7 +297,6 @@ impl Panel {
 
     /// Whether the axes know a place for it.
     pub(super) fn drawable(&self, (x, y): (f64, f64)) -> bool {
-        let has_place = |axis: &PanelAxis, v: f64| v.is_finite() && (v > 0.0 || !axis.is_logarithmic());
-        has_place(&self.x, x) && has_place(&self.y, y)
+        self.x.place(x).is_finite() && self.y.place(y).is_finite()
     }
 }

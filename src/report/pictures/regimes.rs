@@ -1,13 +1,10 @@
 //! The regimes over angle and k to one picture: a map a contact law, with k = 0 as a strip of its own.
 
-use super::super::ReportError;
 use super::super::words::contact_words;
 use super::draw::{Picture, Plate};
-use super::look::{MOST_CONTACTS, angle_axis, angle_panel, body_words};
-use super::panel::{Fill, Panel, PanelAxis, RowWords};
+use super::look::{MOST_CONTACTS, angle_axis, angle_panel, body_words, edges};
+use super::panel::{Colour, Fill, Panel, PanelAxis, RowWords};
 use crate::data::{Regime, RegimeMap, Study};
-use plotters::style::RGBColor;
-use std::ops::Range;
 
 const TITLE: &str = "Where the closed forms end";
 /// Heights of a map and of its strip for k = 0.
@@ -15,12 +12,12 @@ const MAP: u32 = 420;
 const STRIP: u32 = 44;
 
 /// The colour of a regime; from light to dark, so that they are told apart without colour too.
-fn colour(regime: Regime) -> RGBColor {
+fn colour(regime: Regime) -> Colour {
     match regime {
-        Regime::ClosedForm => RGBColor(226, 238, 247),
-        Regime::LiftOff => RGBColor(240, 178, 60),
-        Regime::FurtherImpacts => RGBColor(60, 132, 190),
-        Regime::NoSlapDown => RGBColor(60, 60, 66),
+        Regime::ClosedForm => Colour(226, 238, 247),
+        Regime::LiftOff => Colour(240, 178, 60),
+        Regime::FurtherImpacts => Colour(60, 132, 190),
+        Regime::NoSlapDown => Colour(60, 60, 66),
     }
 }
 
@@ -34,7 +31,7 @@ fn words(regime: Regime) -> &'static str {
 }
 
 /// The picture.
-pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError> {
+pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let drawable = |map: &&RegimeMap| map.angle_deg.len() > 1 && map.k.len() > 1;
     let maps: Vec<&RegimeMap> = study.maps.iter().filter(drawable).take(MOST_CONTACTS).collect();
     let left_out =
@@ -45,15 +42,13 @@ pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError>
          first end stays on the target where the contact would push, and lifts off where it would have to pull.{left_out}"
     );
     let nothing = ("There is nothing to show: no map was made.", "No map was made.");
-    let mut panels: Vec<Panel> = maps.iter().flat_map(|map| panels(study, map)).collect();
-    if !panels.is_empty() {
-        panels.insert(0, legend());
+    let panels: Vec<Panel> = maps.iter().flat_map(|map| panels(study, map)).collect();
+    let picture = Plate::new(name, TITLE, caption.clone()).or(nothing).picture(&panels);
+    if maps.is_empty() {
+        picture
+    } else {
+        Picture { alt: format!("{TITLE}. {caption} {}", spoken(&maps)), ..picture }
     }
-    let mut picture = Plate::new(name, TITLE, caption).or(nothing).picture(&panels)?;
-    if !maps.is_empty() {
-        picture.alt = format!("{} {}", picture.alt, spoken(&maps));
-    }
-    Ok(picture)
 }
 
 /// The share of each regime on each map.
@@ -80,12 +75,14 @@ fn panels(study: &Study, map: &RegimeMap) -> [Panel; 2] {
     let first = usize::from(map.k[0] <= 0.0);
     let ks = edges(&map.k[first..]);
     let ends = |edges: &[f64]| edges.first().copied().zip(edges.last().copied());
+    let named = |(fill, regime): (Fill, Regime)| fill.named(words(regime));
+    let fills = |rows, ks: &[f64]| self::fills(rows, &angles, ks);
     let upper = Panel {
         title,
         x: PanelAxis::default().over(ends(&angles)),
         y: PanelAxis::new("k").over(ends(&ks)),
         height: MAP,
-        fills: fills(&map.regimes[first..], (&angles, &ks)),
+        fills: fills(&map.regimes[first..], &ks).into_iter().zip(Regime::ALL).map(named).collect(),
         ..angle_panel(&study.request, String::new(), "")
     };
     let strip = RowWords { left: "k = 0".into(), ..RowWords::default() };
@@ -93,73 +90,32 @@ fn panels(study: &Study, map: &RegimeMap) -> [Panel; 2] {
         x: angle_axis(&study.request).over(ends(&angles)),
         y: PanelAxis::rows(vec![strip]),
         height: STRIP,
-        fills: fills(&map.regimes[..first], (&angles, &[0.0, 1.0])),
+        fills: fills(&map.regimes[..first], &[0.0, 1.0]),
         ..Panel::default()
     };
     [upper, lower]
 }
 
-/// A fill a regime over the cells between these borders.
-fn fills(regimes: &[Vec<Regime>], (x, y): (&[f64], &[f64])) -> Vec<Fill> {
-    let runs = runs(regimes);
+/// A fill a regime over the cells between these borders, equal neighbours in a row as one.
+fn fills(regimes: &[Vec<Regime>], x: &[f64], y: &[f64]) -> Vec<Fill> {
     // A little over the neighbour below: no hairline is left between them when the picture is scaled.
     let over = y.first().zip(y.last()).map_or(0.0, |(from, to)| (to - from) / f64::from(MAP));
-    let area = |run: &RegimeRun| {
-        let low = if run.rows.start > 0 { y[run.rows.start] - over } else { y[0] };
-        Fill::rectangle((x[run.columns.start], x[run.columns.end]), (low, y[run.rows.end]))
-    };
     let fill = |regime| {
-        let areas = runs.iter().filter(|run| run.regime == regime).map(area).collect();
-        Fill { label: None, colour: colour(regime), opacity: 1.0, areas }
+        let mut areas = Vec::new();
+        for (i, row) in regimes.iter().enumerate() {
+            let low = if i > 0 { y[i] - over } else { y[0] };
+            let mut from = 0;
+            for cells in row.chunk_by(|a, b| a == b) {
+                let to = from + cells.len();
+                if cells[0] == regime {
+                    areas.push(Fill::rectangle((x[from], x[to]), (low, y[i + 1])));
+                }
+                from = to;
+            }
+        }
+        Fill::new(colour(regime), 1.0, areas)
     };
     Regime::ALL.map(fill).into()
-}
-
-/// What each colour stands for.
-fn legend() -> Panel {
-    let fill = |regime| Fill {
-        label: Some(words(regime).to_owned()),
-        colour: colour(regime),
-        opacity: 1.0,
-        areas: Vec::new(),
-    };
-    Panel { fills: Regime::ALL.map(fill).into(), ..Panel::default() }
-}
-
-/// The borders of cells around `centres`: half way between them, the outer ones on the outer centres.
-fn edges(centres: &[f64]) -> Vec<f64> {
-    let inner = centres.windows(2).map(|w| f64::midpoint(w[0], w[1]));
-    centres.first().copied().into_iter().chain(inner).chain(centres.last().copied()).collect()
-}
-
-/// Cells of one regime in a rectangle.
-#[derive(Debug, PartialEq)]
-struct RegimeRun {
-    regime: Regime,
-    columns: Range<usize>,
-    rows: Range<usize>,
-}
-
-/// Equal neighbours in a row as one, and equal ones in rows above each other again as one: some hundred rectangles instead of
-/// eighteen thousand cells.
-fn runs(regimes: &[Vec<Regime>]) -> Vec<RegimeRun> {
-    let mut done: Vec<RegimeRun> = Vec::new();
-    let mut open: Vec<RegimeRun> = Vec::new();
-    for (i, row) in regimes.iter().enumerate() {
-        let mut grown = Vec::new();
-        let mut from = 0;
-        for cells in row.chunk_by(|a, b| a == b) {
-            let columns = from..from + cells.len();
-            from = columns.end;
-            let same = |run: &RegimeRun| run.regime == cells[0] && run.columns == columns;
-            let start = open.iter().position(same).map_or(i, |at| open.swap_remove(at).rows.start);
-            grown.push(RegimeRun { regime: cells[0], columns, rows: start..i + 1 });
-        }
-        done.append(&mut open);
-        open = grown;
-    }
-    done.append(&mut open);
-    done
 }
 
 #[cfg(test)]
@@ -168,26 +124,14 @@ mod tests {
     use Regime::{ClosedForm as C, FurtherImpacts as F, NoSlapDown as N};
 
     #[test]
-    fn runs_cover_every_cell_once() {
-        let map = vec![vec![C, C, F, F, N], vec![C, C, F, F, N], vec![C, F, F, F, N], vec![C, C, F, F, N]];
-        let runs = runs(&map);
-        // Columns 4 in one piece; F twice, the middle row apart; likewise C.
-        assert_eq!(runs.len(), 7);
-        let mut seen = vec![vec![None; 5]; 4];
-        for run in &runs {
-            for i in run.rows.clone() {
-                for j in run.columns.clone() {
-                    assert_eq!(seen[i][j].replace(run.regime), None);
-                }
-            }
-        }
-        let seen: Vec<Vec<Regime>> =
-            seen.into_iter().map(|row| row.into_iter().flatten().collect()).collect();
-        assert_eq!(seen, map);
-    }
-
-    #[test]
-    fn borders_lie_between_the_cells() {
-        assert_eq!(edges(&[0.0, 1.0, 3.0]), [0.0, 0.5, 2.0, 3.0]);
+    fn fills_cover_every_cell_once() {
+        let map = [vec![C, C, F, F, N], vec![C, F, F, F, N]];
+        let borders: Vec<f64> = (0..6).map(f64::from).collect();
+        let fills = fills(&map, &borders, &borders[..3]);
+        let area =
+            |corners: &Vec<(f64, f64)>| (corners[2].0 - corners[0].0) * (corners[1].1 - corners[0].1).round();
+        let of = |fill: &Fill| fill.areas.iter().map(area).sum::<f64>();
+        let areas: Vec<f64> = fills.iter().map(of).collect();
+        assert_eq!(areas, [3.0, 0.0, 5.0, 2.0]);
     }
 }

@@ -1,17 +1,16 @@
 //! The gradient of the speed over the drop angle to one picture, with the angles at which the speed does not tell k.
 
-use super::super::ReportError;
-use super::super::words::{bands_words, case_words};
+use super::super::words::{angles_words, case_words};
 use super::draw::{Picture, Plate};
 use super::look::{Look, angle_panel};
-use super::panel::{Dash, Fill, GREY, Line, Panel, PointShape, Points};
+use super::panel::{Curve, Dash, Fill, GREY, Panel, PointShape, Points};
 use crate::data::{Contact, Sensitivity, Study};
 
 const NOTHING: (&str, &str) =
     ("There is nothing to show: the second end never strikes.", "No case of this study has a slap-down.");
 
 /// The picture.
-pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError> {
+pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let mut contacts: Vec<Contact> = Vec::new();
     for s in &study.sensitivities {
         if !contacts.contains(&s.contact) {
@@ -33,8 +32,8 @@ pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError>
         .iter()
         .filter(|s| !s.blind_angles_deg.is_empty())
         .map(|s| {
-            let angles: Vec<(f64, f64)> = s.blind_angles_deg.iter().map(|a| (*a, *a)).collect();
-            format!("{} at {}°", case_words(s.contact, s.k), bands_words(&angles))
+            let angles = angles_words(&s.blind_angles_deg, usize::MAX);
+            format!("{} at {angles}°", case_words(s.contact, s.k))
         })
         .collect();
     let blind = if blind.is_empty() { String::new() } else { format!(" Blind: {}.", blind.join("; ")) };
@@ -56,7 +55,7 @@ fn by_k(study: &Study, shown: &[&Sensitivity], look: &Look) -> Panel {
         let line = line(s, &s.by_k_m_s, look);
         let inside = |angle: f64| s.blind_bands_deg.iter().any(|&(from, to)| (from..=to).contains(&angle));
         let poorly = line.points.iter().map(|&(x, y)| if inside(x) { (x, y) } else { (x, f64::NAN) });
-        panel.lines.push(Line {
+        panel.lines.push(Curve {
             label: None,
             stroke: 20,
             opacity: 0.25,
@@ -69,12 +68,7 @@ fn by_k(study: &Study, shown: &[&Sensitivity], look: &Look) -> Panel {
         panel.lines.push(line);
     }
     if shown.iter().any(|s| !s.blind_bands_deg.is_empty()) {
-        panel.fills.push(Fill {
-            label: Some("k poorly told".into()),
-            colour: GREY,
-            opacity: 0.35,
-            areas: Vec::new(),
-        });
+        panel.fills.push(Fill::new(GREY, 0.35, Vec::new()).named("k poorly told"));
     }
     panel
 }
@@ -87,17 +81,17 @@ fn by_angle(study: &Study, shown: &[&Sensitivity], look: &Look) -> Panel {
 }
 
 /// The line on which nothing changes, where there is anything to hold against it.
-fn zero(study: &Study, shown: &[&Sensitivity]) -> Option<Line> {
+fn zero(study: &Study, shown: &[&Sensitivity]) -> Option<Curve> {
     let angles = &study.request.angles_deg;
     let any = shown.iter().any(|s| s.by_k_m_s.iter().any(|v| v.is_finite()));
     let ends = angles.first().into_iter().chain(angles.last()).map(|x| (*x, 0.0)).collect();
-    any.then(|| Line { opacity: 0.8, stroke: 2, ..Line::new(GREY, ends) })
+    any.then(|| Curve { opacity: 0.8, stroke: 2, ..Curve::new(GREY, ends) })
 }
 
 /// Share of the values that the axis leaves out at either end: the few steep places would flatten all others.
 const OFF_THE_AXIS: f64 = 0.06;
 
-/// Cuts the lines to an axis that most of the values need; whether anything was cut.
+/// Ends the axis where most of the values end; whether any lies beyond.
 fn clip(panel: &mut Panel) -> bool {
     let labelled = panel.lines.iter().filter(|line| line.label.is_some());
     let mut values: Vec<f64> =
@@ -117,35 +111,12 @@ fn clip(panel: &mut Panel) -> bool {
     let air = 0.06 * (high - low).max(f64::MIN_POSITIVE);
     let (low, high) = (low - air, high + air);
     panel.y.range = Some((low, high));
-    for line in &mut panel.lines {
-        line.points = clipped(&line.points, low, high);
-    }
     least < low || most > high
 }
 
-/// The points between `low` and `high`, with those where a line leaves and enters; open outside.
-fn clipped(points: &[(f64, f64)], low: f64, high: f64) -> Vec<(f64, f64)> {
-    let inside = |y: f64| (low..=high).contains(&y);
-    let mut out: Vec<(f64, f64)> = Vec::with_capacity(points.len());
-    for (i, &(x, y)) in points.iter().enumerate() {
-        if let Some(&(x0, y0)) = i.checked_sub(1).and_then(|before| points.get(before)) {
-            let border = |y_border: f64| (x0 + (x - x0) * (y_border - y0) / (y - y0), y_border);
-            let mut crossed: Vec<(f64, f64)> = [low, high]
-                .into_iter()
-                .filter(|b| (y0 < *b && *b < y) || (y < *b && *b < y0))
-                .map(border)
-                .collect();
-            crossed.sort_by(|a, b| a.0.total_cmp(&b.0));
-            out.extend(crossed);
-        }
-        out.push((x, if inside(y) { y } else { f64::NAN }));
-    }
-    out
-}
-
-fn line(s: &Sensitivity, values: &[f64], look: &Look) -> Line {
+fn line(s: &Sensitivity, values: &[f64], look: &Look) -> Curve {
     let points = s.angle_deg.iter().copied().zip(values.iter().copied()).collect();
-    Line::new(look.colour(s.contact, s.k), points).named(case_words(s.contact, s.k)).broken(look.dash(s.k))
+    Curve::new(look.colour(s.contact, s.k), points).named(case_words(s.contact, s.k)).broken(look.dash(s.k))
 }
 
 #[cfg(test)]
@@ -153,26 +124,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_is_cut_where_it_leaves_the_axis() {
-        let cut = clipped(&[(0.0, 0.0), (1.0, 4.0), (2.0, 0.0), (3.0, f64::NAN), (4.0, -4.0)], -1.0, 2.0);
-        let open = |p: &(f64, f64)| p.1.is_nan();
-        assert_eq!(cut[..2], [(0.0, 0.0), (0.5, 2.0)]);
-        assert!(open(&cut[2]));
-        assert_eq!(cut[3..5], [(1.5, 2.0), (2.0, 0.0)]);
-        assert!(open(&cut[5]) && open(&cut[6]) && cut.len() == 7);
-    }
-
-    #[test]
-    fn a_line_that_jumps_across_the_axis_crosses_both_borders() {
-        let cut = clipped(&[(0.0, -3.0), (4.0, 5.0)], -1.0, 3.0);
-        assert_eq!(cut[1..3], [(1.0, -1.0), (3.0, 3.0)]);
-    }
-
-    #[test]
     fn a_spike_does_not_flatten_the_rest() {
         let points: Vec<(f64, f64)> =
             (0..100_i32).map(|i| (f64::from(i), if i == 50 { 1e4 } else { f64::from(i % 7) })).collect();
-        let line = Line::new(GREY, points).named("case");
+        let line = Curve::new(GREY, points).named("case");
         let mut panel = Panel { lines: vec![line], ..Panel::default() };
         assert!(clip(&mut panel));
         assert!(panel.y.range.is_some_and(|(low, high)| low <= 0.0 && (6.0..20.0).contains(&high)));

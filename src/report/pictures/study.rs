@@ -1,28 +1,24 @@
 //! A study to its charts, and a request to their names.
 
-use super::super::ReportError;
 use super::super::rounding::plain;
 use super::draw::Picture;
 use super::look::MOST_CONTACTS;
 use super::{angle_curves, critical, monte_carlo, regimes, sensitivity, sweep};
-use crate::data::{Contact, Request, Study};
+use crate::data::{Contact, Study, StudyRequest};
 use rayon::prelude::*;
 
-/// One chart by its name, and how it is drawn.
-enum StudyChart {
-    Speeds,
-    Components(Contact),
-    Energies,
-    Sections,
-    Critical,
-    MonteCarlo,
-    Sensitivity,
-    Regimes,
-    Sweep,
+/// One chart by its name, and what draws it.
+struct StudyChart {
+    name: String,
+    draw: Box<dyn Fn(&Study, &str) -> Picture + Send + Sync>,
 }
 
 /// The charts of a request, in the order in which a reader meets them.
-fn charts(request: &Request) -> Vec<(String, StudyChart)> {
+fn charts(request: &StudyRequest) -> Vec<StudyChart> {
+    let chart = |name: &str, draw: fn(&Study, &str) -> Picture| StudyChart {
+        name: name.to_owned(),
+        draw: Box::new(draw),
+    };
     let mut shown: Vec<Contact> = Vec::new();
     for contact in &request.contacts {
         if !shown.contains(contact) {
@@ -30,25 +26,18 @@ fn charts(request: &Request) -> Vec<(String, StudyChart)> {
         }
     }
     let both = shown.len() == 2 && shown.contains(&Contact::Smooth) && shown.contains(&Contact::Rough);
-    let mut charts = vec![(if both { "smooth-rough" } else { "speeds" }.to_owned(), StudyChart::Speeds)];
-    shown.truncate(MOST_CONTACTS);
-    charts
-        .extend(shown.into_iter().map(|contact| (components_name(contact), StudyChart::Components(contact))));
-    for (name, chart) in [
-        ("energy-ratio", StudyChart::Energies),
-        ("section", StudyChart::Sections),
-        ("critical-angles", StudyChart::Critical),
-        ("monte-carlo", StudyChart::MonteCarlo),
-        ("sensitivity", StudyChart::Sensitivity),
-        ("regimes", StudyChart::Regimes),
-    ] {
-        if request.uncertain.draws > 0 || name != "monte-carlo" {
-            charts.push((name.to_owned(), chart));
-        }
-    }
-    if !request.sweeps.is_empty() {
-        charts.push(("sweep".to_owned(), StudyChart::Sweep));
-    }
+    let mut charts = vec![chart(if both { "smooth-rough" } else { "speeds" }, angle_curves::speeds)];
+    charts.extend(shown.into_iter().take(MOST_CONTACTS).map(|contact| StudyChart {
+        name: components_name(contact),
+        draw: Box::new(move |study, name| angle_curves::components(study, contact, name)),
+    }));
+    charts.push(chart("energy-ratio", angle_curves::energies));
+    charts.push(chart("section", angle_curves::sections));
+    charts.push(chart("critical-angles", critical::picture));
+    charts.extend((request.uncertain.draws > 0).then(|| chart("monte-carlo", monte_carlo::picture)));
+    charts.push(chart("sensitivity", sensitivity::picture));
+    charts.push(chart("regimes", regimes::picture));
+    charts.extend((!request.sweeps.is_empty()).then(|| chart("sweep", sweep::picture)));
     charts
 }
 
@@ -65,29 +54,13 @@ fn components_name(contact: Contact) -> String {
 }
 
 /// The names of the pictures, in their order.
-pub(in super::super) fn names(request: &Request) -> Vec<String> {
-    charts(request).into_iter().map(|(name, _)| name).collect()
+pub(in super::super) fn names(request: &StudyRequest) -> Vec<String> {
+    charts(request).into_iter().map(|chart| chart.name).collect()
 }
 
 /// Every picture of a study; one that has nothing to show says so.
-///
-/// # Errors
-/// [`ReportError::Picture`] where the plotter fails.
-pub(in super::super) fn draw_study(study: &Study) -> Result<Vec<Picture>, ReportError> {
-    charts(&study.request)
-        .into_par_iter()
-        .map(|(name, chart)| match chart {
-            StudyChart::Speeds => angle_curves::speeds(study, &name),
-            StudyChart::Components(contact) => angle_curves::components(study, contact, &name),
-            StudyChart::Energies => angle_curves::energies(study, &name),
-            StudyChart::Sections => angle_curves::sections(study, &name),
-            StudyChart::Critical => critical::picture(study, &name),
-            StudyChart::MonteCarlo => monte_carlo::picture(study, &name),
-            StudyChart::Sensitivity => sensitivity::picture(study, &name),
-            StudyChart::Regimes => regimes::picture(study, &name),
-            StudyChart::Sweep => sweep::picture(study, &name),
-        })
-        .collect()
+pub(in super::super) fn draw_study(study: &Study) -> Vec<Picture> {
+    charts(&study.request).into_par_iter().map(|chart| (chart.draw)(study, &chart.name)).collect()
 }
 
 #[cfg(test)]
@@ -122,7 +95,7 @@ mod tests {
     #[test]
     fn pictures_are_small_and_self_contained() {
         for study in [sample_study::study(), sample_study::swept()] {
-            for picture in draw_study(&study).unwrap() {
+            for picture in draw_study(&study) {
                 let Picture { name, svg, .. } = &picture;
                 assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"), "{name}");
                 assert!(svg.len() < 200_000, "{name}: {} bytes", svg.len());
@@ -137,7 +110,7 @@ mod tests {
         let mut study = sample_study::study();
         // Only whole lines are drawn as one element with many points; dashes have a few each.
         let solid = |study: &Study| {
-            let svg = draw_study(study).unwrap().swap_remove(0).svg;
+            let svg = draw_study(study).swap_remove(0).svg;
             svg.split("<polyline").filter(|line| line.matches(',').count() > 40).count()
         };
         let whole = solid(&study);
@@ -148,7 +121,7 @@ mod tests {
 
     #[test]
     fn without_a_slap_down_pictures_say_so() {
-        let pictures = draw_study(&sample_study::without_slap_down()).unwrap();
+        let pictures = draw_study(&sample_study::without_slap_down());
         let silent = |name: &str| name != "regimes";
         for picture in pictures.iter().filter(|p| silent(&p.name)) {
             assert!(picture.svg.contains("nothing to show"), "{}", picture.name);
@@ -157,7 +130,7 @@ mod tests {
 
     #[test]
     fn other_cases_name_themselves() {
-        let pictures = draw_study(&sample_study::swept()).unwrap();
+        let pictures = draw_study(&sample_study::swept());
         for picture in pictures.iter().filter(|p| !["section", "monte-carlo"].contains(&p.name.as_str())) {
             let words = format!("{}{}{}", picture.title, picture.svg, picture.caption);
             assert!(words.contains("μ 0.3"), "{}", picture.name);

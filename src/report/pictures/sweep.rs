@@ -1,11 +1,10 @@
 //! The predictions of a sweep to one picture: speed over what was swept, a line a case.
 
-use super::super::ReportError;
 use super::super::rounding::plain;
 use super::super::words::{contact_words, variable_words};
 use super::draw::{Picture, Plate};
 use super::look::{Look, body_words, spread};
-use super::panel::{COLOURS, Line, Panel, PanelAxis};
+use super::panel::{COLOURS, Curve, Panel, PanelAxis};
 use crate::data::{BodyModel, Contact, PredictionRow, Study, Sweep, SweepVariable};
 
 const TITLE: &str = "Slap-down speed over the sweep";
@@ -19,7 +18,7 @@ const MOST_LINES: usize = 7;
 const MOST_PANELS: usize = 4;
 
 /// The picture: the variable with the most values along the axis, the next a line each, further ones at their middle value.
-pub(super) fn picture(study: &Study, name: &str) -> Result<Picture, ReportError> {
+pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let mut sweeps: Vec<&Sweep> = study.request.sweeps.iter().collect();
     // Stable: of equally many the one named first.
     sweeps.sort_by_key(|sweep| std::cmp::Reverse(sweep.values.len()));
@@ -113,10 +112,10 @@ fn curves(
         shown.sort_by(|a, b| place(a).cmp(&place(b)).then(restitution(b).total_cmp(&restitution(a))));
         for case in shown {
             let of_case = rows.iter().copied().filter(|row| case.holds(row));
-            panel.lines.push(Line {
+            panel.lines.push(Curve {
                 label: Some(case.words()).filter(|words| !words.is_empty()),
                 dash: look.dash(restitution(case)),
-                ..Line::new(look.colour(law(case), restitution(case)), points(of_case, along.variable))
+                ..Curve::new(look.colour(law(case), restitution(case)), points(of_case, along.variable))
             });
         }
         panel
@@ -154,7 +153,7 @@ fn families(
         for (i, value) in values.iter().enumerate() {
             let of_line =
                 rows.iter().copied().filter(|row| case.holds(row) && is_at(row, second.variable, *value));
-            let line = Line::new(COLOURS[i % COLOURS.len()], points(of_line, along.variable));
+            let line = Curve::new(COLOURS[i % COLOURS.len()], points(of_line, along.variable));
             panel.lines.push(line.named(value_words(second.variable, *value)));
         }
         panel
@@ -237,7 +236,7 @@ mod tests {
     #[test]
     fn a_panel_a_case_and_a_line_a_value() {
         let study = sample_study::swept();
-        let picture = picture(&study, "sweep").unwrap();
+        let picture = picture(&study, "sweep");
         // Two bodies with one contact law and one k; three lengths over the angle.
         for words in ["Thin rod, μ 0.3, k = 0.5", "section 0.792 m, μ 0.3, k = 0.5", "l = 4 m", "l = 6 m"] {
             assert!(picture.svg.contains(words), "{words}");
@@ -249,7 +248,7 @@ mod tests {
     fn a_third_variable_is_held_at_its_middle() {
         let mut study = sample_study::swept();
         study.request.sweeps.push(Sweep { variable: SweepVariable::DropHeight, values: vec![8.0, 9.0] });
-        let picture = picture(&study, "sweep").unwrap();
+        let picture = picture(&study, "sweep");
         assert!(picture.caption.contains("Drawn at drop 9 m"), "{}", picture.caption);
     }
 
@@ -267,7 +266,7 @@ mod tests {
             })
             .collect();
         study.request.sweeps = vec![Sweep { variable: SweepVariable::Friction, values }];
-        let picture = picture(&study, "sweep").unwrap();
+        let picture = picture(&study, "sweep");
         assert!(picture.svg.contains("friction coefficient μ") && picture.svg.contains("k = 1"));
         assert!(!picture.svg.contains("rough"));
         assert!(picture.caption.contains("Drawn at 15°"));

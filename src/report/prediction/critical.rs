@@ -1,9 +1,9 @@
 //! Critical angles of a study, over ranges and under uncertain inputs, to chapters.
 
-use super::super::document::{Chapter, Passage};
+use super::super::document::{Chapter, ChapterPart};
 use super::super::medium::{Medium, Words};
 use super::super::rounding::{MISSING, fixed, plain};
-use super::super::table::{Table, TableShape};
+use super::super::table::{ReportTable, TableShape};
 use super::super::words::{
     MOST_ON_PAGE, MOST_ROWS, OTHERS, band_around_words, bands_words, case_words, contact_words,
     criterion_short, criterion_value, criterion_words, degrees, has_ranges, nearest, through_words,
@@ -22,9 +22,9 @@ pub(super) fn critical(study: &Study) -> Chapter {
     let speeds: Vec<&CriticalAngle> =
         study.critical.iter().filter(|c| c.criterion == Criterion::Speed).collect();
     let chapter = Chapter::new("Critical angles");
-    let picture = Passage::picture("critical-angles", "", "tall");
+    let picture = ChapterPart::picture("critical-angles", "", "tall");
     if speeds.is_empty() {
-        let none = Passage::text("No case has a slap-down at any angle.").only(Medium::Page);
+        let none = ChapterPart::text("No case has a slap-down at any angle.").only(Medium::Page);
         return chapter.with(none).with(picture);
     }
     let found = |of: &CriticalAngle, criterion| {
@@ -43,7 +43,7 @@ pub(super) fn critical(study: &Study) -> Chapter {
         }
     };
     let at = |short: &str| Words::or("at, ° (band)", short);
-    let table = Table::of(&speeds)
+    let table = ReportTable::of(&speeds)
         .class("many")
         .shape(TableShape::Fitting)
         .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
@@ -60,9 +60,9 @@ pub(super) fn critical(study: &Study) -> Chapter {
         .text(at("energy"), place(Criterion::EnergyRatio));
     let band = plain(study.request.band_percent, 3);
     chapter
-        .with(Passage::lead(format!("Where each is largest, °, and the angles within {band} % of it.")))
+        .with(ChapterPart::lead(format!("Where each is largest, °, and the angles within {band} % of it.")))
         .with(table)
-        .with_all(larger_sentence(study).map(Passage::note))
+        .with_all(larger_sentence(study).map(ChapterPart::note))
         .with(picture)
 }
 
@@ -96,7 +96,7 @@ pub(super) fn ranges(study: &Study) -> Chapter {
     let worst = |r: &CriticalRange| {
         format!("{}°, {}", degrees(r.worst.angle_deg), case_words(r.worst.contact, r.worst.k))
     };
-    let table = Table::of(&study.ranges)
+    let table = ReportTable::of(&study.ranges)
         .caption("All else as stated. Every band: the angles that lie in the band of every one of the cases.")
         .shape(TableShape::Fitting)
         .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
@@ -123,12 +123,12 @@ pub(super) fn monte_carlo(study: &Study) -> Chapter {
     let found = &study.monte_carlo;
     let u = &found.uncertain;
     if u.draws == 0 {
-        let none = Passage::text("No draws were asked for.");
-        let picture = Passage::picture("monte-carlo", "", "tall");
+        let none = ChapterPart::text("No draws were asked for.");
+        let picture = ChapterPart::picture("monte-carlo", "", "tall");
         return Chapter::new("Monte Carlo").only(Medium::Page).with(none).with(picture);
     }
     let chapter = Chapter::new(format!("Monte Carlo, {} draws of the {}", u.draws, found.model.as_str()));
-    let drawn = Passage::text(uncertain_words(u, found.contact));
+    let drawn = ChapterPart::text(uncertain_words(u, found.contact));
     let chapter = if has_quantiles(found) {
         let band = plain(found.band_percent, 3);
         let robust =
@@ -136,17 +136,17 @@ pub(super) fn monte_carlo(study: &Study) -> Chapter {
         chapter
             .with(drawn)
             .with(quantiles(&found.quantiles))
-            .with(Passage::note(robust))
-            .with_all(at_the_angle(study).map(Passage::text))
+            .with(ChapterPart::note(robust))
+            .with_all(at_the_angle(study).map(ChapterPart::text))
     } else {
-        let none = Passage::text("Too few draws have a slap-down.");
+        let none = ChapterPart::text("Too few draws have a slap-down.");
         chapter.with_all([drawn, none].map(|passage| passage.only(Medium::Page)))
     };
-    chapter.with(Passage::picture("monte-carlo", "", "tall"))
+    chapter.with(ChapterPart::picture("monte-carlo", "", "tall"))
 }
 
 /// Median and the range of 95 % of the draws.
-fn quantiles(found: &[QuantileCurves]) -> Passage {
+fn quantiles(found: &[QuantileCurves]) -> ChapterPart {
     let how_large = |q: &QuantileCurves| {
         let [low, _, median, _, high] = q.largest.map(|value| bare(q.criterion, value));
         let unit = if q.criterion == Criterion::EnergyRatio { "" } else { " m/s" };
@@ -156,7 +156,7 @@ fn quantiles(found: &[QuantileCurves]) -> Passage {
         let [low, _, median, _, high] = q.critical_angle_deg;
         format!("{}° ({})", degrees(median), bands_words(&[(low, high)]))
     };
-    let table = Table::of(found)
+    let table = ReportTable::of(found)
         .caption("Found: the median, and the range of 95 % of the draws.")
         .shape(TableShape::Fitting)
         .head(Words::or("Largest", "largest"), |q| {

@@ -14,11 +14,11 @@ pub(super) use rows::prediction_columns;
 
 use super::ReportError;
 use super::{as_html, as_text, pictures};
-use crate::data::{Request, Study};
+use crate::data::{Study, StudyRequest};
 
 /// The names of the files that [`study_files`] makes for a study of this request, in its order.
 #[must_use]
-pub fn study_file_names(request: &Request) -> Vec<String> {
+pub fn study_file_names(request: &StudyRequest) -> Vec<String> {
     let own = ["prediction.html", "prediction.json", "prediction.csv"].map(str::to_owned);
     own.into_iter()
         .chain(pictures::study_names(request).into_iter().map(|name| format!("{name}.svg")))
@@ -40,14 +40,10 @@ pub fn study_files(study: &Study) -> Result<Vec<(String, Vec<u8>)>, ReportError>
         || pictures::draw_study(study),
         || rayon::join(|| json::study_json(study), || csv::csv(&study.rows)),
     );
-    let pictures = pictures?;
-    let mut files = vec![
-        ("prediction.html".to_owned(), as_html::page(&study::document(study), &pictures).into_bytes()),
-        ("prediction.json".to_owned(), json?),
-        ("prediction.csv".to_owned(), csv?),
-    ];
-    files.extend(pictures.into_iter().map(|p| (format!("{}.svg", p.name), p.svg.into_bytes())));
-    Ok(files)
+    let page = as_html::page(&study::document(study), &pictures).into_bytes();
+    let pictures = pictures.into_iter().map(|picture| picture.svg.into_bytes());
+    let bytes = [page, json?, csv?].into_iter().chain(pictures);
+    Ok(study_file_names(&study.request).into_iter().zip(bytes).collect())
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! The ladder of models and the sensitivities of a study to chapters.
 
-use super::super::document::{Chapter, Passage};
+use super::super::document::{Chapter, ChapterPart};
 use super::super::medium::{Medium, Words};
 use super::super::rounding::{MISSING, optional_fixed, percent, plain};
-use super::super::table::{Table, TableShape};
+use super::super::table::{ReportTable, TableShape};
 use super::super::text::capital;
 use super::super::words::{
     MOST_ON_PAGE, MOST_ROWS, OTHERS, angles_words, bands_words, case_words, contact_words, degrees, nearest,
@@ -19,31 +19,31 @@ pub(super) fn ladders(study: &Study) -> Chapter {
         "Slap-down speed by each model, the simplest first; each adds one thing to the one before it. One suffices where no richer one \
          moves the speed by more than {tolerance} %."
     );
-    let lead = Passage::lead(lead).only(Medium::Page);
+    let lead = ChapterPart::lead(lead).only(Medium::Page);
     match &study.ladders[..] {
         [] => Chapter::new(""),
         [one] => {
             let heading =
                 format!("Models at {}°, {}", degrees(one.angle_deg), case_words(one.contact, one.k));
-            Chapter::new(heading).with(lead).with(one_ladder(one)).with(Passage::text(verdict(one)))
+            Chapter::new(heading).with(lead).with(one_ladder(one)).with(ChapterPart::text(verdict(one)))
         }
         many => {
             let heading = format!("Models at {}°, each richer by one thing, m/s", degrees(many[0].angle_deg));
             let suffices =
                 format!("suffices: the simplest that no richer one moves by more than {tolerance} %.");
             let adds = Rung::ALL.map(|rung| format!("{} – {}", rung_short(rung), rung.adds())).join("; ");
-            let adds = Passage::note(format!("{adds}. L is the first end, R the second."));
+            let adds = ChapterPart::note(format!("{adds}. L is the first end, R the second."));
             Chapter::new(heading)
                 .with(lead)
                 .with(many_ladders(many))
-                .with(Passage::note(suffices).only(Medium::Terminal))
+                .with(ChapterPart::note(suffices).only(Medium::Terminal))
                 .with(adds.only(Medium::Page))
         }
     }
 }
 
-fn many_ladders(ladders: &[Ladder]) -> Passage {
-    let mut table = Table::of(ladders)
+fn many_ladders(ladders: &[Ladder]) -> ChapterPart {
+    let mut table = ReportTable::of(ladders)
         .shape(TableShape::Fitting)
         .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
         .soft(Words::or("Contact", "contact"), |ladder| contact_words(ladder.contact))
@@ -61,12 +61,12 @@ fn many_ladders(ladders: &[Ladder]) -> Passage {
     table.text(Words::or("Suffices", "suffices"), suffices).into()
 }
 
-fn one_ladder(ladder: &Ladder) -> Passage {
+fn one_ladder(ladder: &Ladder) -> ChapterPart {
     let name = |rung: Rung| {
         let mark = if rung == ladder.suffices { " (suffices)" } else { "" };
         Words::or(format!("{}{mark}", rung.words()), rung_short(rung))
     };
-    Table::of(&ladder.steps)
+    ReportTable::of(&ladder.steps)
         .chosen(|step| step.rung == ladder.suffices)
         .head(Words::or("Model", "model"), |step| name(step.rung))
         .text(Words::or("Adds", "adds"), |step| step.adds)
@@ -97,7 +97,7 @@ pub(super) fn sensitivities(study: &Study) -> Chapter {
     let here = |s: &Sensitivity, values: &[f64], decimals| {
         optional_fixed(nearest(&s.angle_deg, values, at), decimals)
     };
-    let table = Table::of(&study.sensitivities)
+    let table = ReportTable::of(&study.sensitivities)
         .caption("Gradient of the slap-down speed.")
         .shape(TableShape::Fitting)
         .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
@@ -115,12 +115,12 @@ pub(super) fn sensitivities(study: &Study) -> Chapter {
         .text(Words::or("k poorly told, °", "poorly told °"), |s| {
             Words::or(bands_words(&s.blind_bands_deg), widest_bands_words(&s.blind_bands_deg, 2))
         });
-    let note = Passage::note(
+    let note = ChapterPart::note(
         "blind: dv/dk is nil there. Poorly told: 1 % of the speed is more than 0.1 in k. There k must come from the \
          rebound, the rotation or the flight time.",
     );
     let found = (!study.sensitivities.is_empty()).then(|| [table.into(), note]);
     Chapter::new(format!("Sensitivity at {}°, and where the speed does not tell k", degrees(at)))
         .with_all(found.into_iter().flatten())
-        .with(Passage::picture("sensitivity", "", ""))
+        .with(ChapterPart::picture("sensitivity", "", ""))
 }

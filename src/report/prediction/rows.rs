@@ -1,9 +1,9 @@
 //! Predictions to a table: the columns that every report of them shares, and those of a sweep.
 
-use super::super::document::Passage;
+use super::super::document::ChapterPart;
 use super::super::medium::{Medium, Words};
 use super::super::rounding::{optional, optional_fixed, plain};
-use super::super::table::{Table, TableRows, TableShape};
+use super::super::table::{ReportTable, TableRows, TableShape};
 use super::super::words::{KEPT_SENTENCE, contact_words, kept_mark};
 use crate::data::{BodyModel, CaskFile, Contact, Prediction, PredictionRow};
 
@@ -77,7 +77,7 @@ impl Varying {
 struct ShownRow<'a>(Option<&'a PredictionRow>);
 
 /// The predictions of a study as this medium shows them, and what their marks mean.
-pub(super) fn predictions(all: &[PredictionRow], medium: Medium) -> Vec<Passage> {
+pub(super) fn predictions(all: &[PredictionRow], medium: Medium) -> Vec<ChapterPart> {
     let varying = Varying::of(all);
     let rows: Vec<Option<&PredictionRow>> = match medium {
         Medium::Terminal if all.len() > MOST_ROWS => {
@@ -91,7 +91,7 @@ pub(super) fn predictions(all: &[PredictionRow], medium: Medium) -> Vec<Passage>
     let rows: Vec<ShownRow> = rows.into_iter().map(ShownRow).collect();
     let cell =
         |words: fn(&PredictionRow) -> Words| move |row: &ShownRow| row.0.map_or_else(|| "…".into(), words);
-    let table = Table::of(&rows)
+    let table = ReportTable::of(&rows)
         .class("many")
         .shape(TableShape::Fitting)
         .caption("Velocity of the second end just before it strikes. Energy: kinetic, before the slap-down over before the first impact.")
@@ -117,7 +117,7 @@ pub(super) fn predictions(all: &[PredictionRow], medium: Medium) -> Vec<Passage>
         )
         .if_any(varying.is_held_on(medium));
     let notes = notes(all, medium, varying.is_held_on(medium));
-    let notes = notes.into_iter().map(Passage::note);
+    let notes = notes.into_iter().map(ChapterPart::note);
     [table.into()].into_iter().chain(notes).map(|passage| passage.only(medium)).collect()
 }
 

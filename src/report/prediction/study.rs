@@ -1,6 +1,6 @@
 //! A study to the document that the terminal and `prediction.html` show.
 
-use super::super::document::{Chapter, Content, Document, Fact, Frame, Passage};
+use super::super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument};
 use super::super::medium::{Medium, Words};
 use super::super::pictures::study_names;
 use super::super::rounding::{MISSING, fixed, plain};
@@ -11,7 +11,7 @@ use super::super::words::{
 use super::critical::{critical, has_quantiles, monte_carlo, ranges};
 use super::models::{ladders, sensitivities};
 use super::rows::{predictions, title};
-use crate::data::{Criterion, Request, Study, Sweep};
+use crate::data::{Criterion, Study, StudyRequest, Sweep};
 
 /// A longer table of predictions stands at the end of the page, not between the reader and what was found.
 const MOST_ROWS_AHEAD: usize = 40;
@@ -29,19 +29,19 @@ const LIMITS: [&str; 5] = [
 ];
 
 /// The whole document.
-pub(super) fn document(study: &Study) -> Document {
+pub(super) fn document(study: &Study) -> ReportDocument {
     let file = &study.cask_file;
     let name = &file.cask.name;
     let on_page = predictions(&study.rows, Medium::Page);
     let is_long = study.rows.len() > MOST_ROWS_AHEAD;
     let later = format!("The {} predictions stand at the end of this page.", study.rows.len());
     let (ahead, at_end) = if is_long {
-        (vec![Passage::text(later).only(Medium::Page)], on_page)
+        (vec![ChapterPart::text(later).only(Medium::Page)], on_page)
     } else {
         (on_page, Vec::new())
     };
-    let asked = Passage::facts("Cases", asked(&study.request)).only(Medium::Page);
-    Document {
+    let asked = ChapterPart::facts("Cases", asked(&study.request)).only(Medium::Page);
+    ReportDocument {
         page: Frame {
             title: format!("Prediction for {name}"),
             product: "Prediction report",
@@ -54,21 +54,21 @@ pub(super) fn document(study: &Study) -> Document {
             style: include_str!("../prediction.css"),
         },
         chapters: vec![
-            Chapter::new("").with(Content::Figures(figures(study))),
+            Chapter::new("").with(PartContent::Figures(figures(study))),
             tested(file, "What was asked").with(asked),
             Chapter::new(Words::or("Predictions", ""))
-                .with(Passage::title(title(&study.rows, file)).only(Medium::Terminal))
+                .with(ChapterPart::title(title(&study.rows, file)).only(Medium::Terminal))
                 .with_all(predictions(&study.rows, Medium::Terminal))
                 .with_all(ahead)
-                .with(Passage::picture("sweep", "", "")),
+                .with(ChapterPart::picture("sweep", "", "")),
             critical(study),
             ranges(study),
             over_the_angle(&study.request),
             monte_carlo(study),
             ladders(study),
             sensitivities(study),
-            Chapter::new("Regimes").with(Passage::picture("regimes", "", "")),
-            Chapter::new("Limits").with(Content::List(LIMITS.to_vec())),
+            Chapter::new("Regimes").with(ChapterPart::picture("regimes", "", "")),
+            Chapter::new("Limits").with(PartContent::List(LIMITS.to_vec())),
             Chapter::new("All predictions").with_all(at_end),
             provenance(study),
         ],
@@ -76,13 +76,13 @@ pub(super) fn document(study: &Study) -> Document {
 }
 
 /// The pictures over the angle, in the order of their files.
-fn over_the_angle(request: &Request) -> Chapter {
+fn over_the_angle(request: &StudyRequest) -> Chapter {
     let is_wanted = |name: &String| {
         ["smooth-rough", "speeds", "energy-ratio", "section"].contains(&name.as_str())
             || name.starts_with("components-")
     };
     let names = study_names(request).into_iter().filter(is_wanted);
-    Chapter::new("Over the drop angle").with_all(names.map(|name| Passage::picture(&name, "", "short")))
+    Chapter::new("Over the drop angle").with_all(names.map(|name| ChapterPart::picture(&name, "", "short")))
 }
 
 /// The four figures that a reader looks for first.
@@ -142,7 +142,7 @@ fn figures(study: &Study) -> Vec<[String; 3]> {
 }
 
 /// Contact laws, k, angle and sweeps.
-fn asked(request: &Request) -> Vec<Fact> {
+fn asked(request: &StudyRequest) -> Vec<Fact> {
     let contacts: Vec<String> = request.contacts.iter().map(|c| contact_words(*c)).collect();
     let ks: Vec<String> = request.ks.iter().map(|k| plain(*k, 3)).collect();
     let band = format!("within {} % of the largest value", plain(request.band_percent, 3));
@@ -174,5 +174,5 @@ fn provenance(study: &Study) -> Chapter {
             format!("dropcheck {} · schema dropcheck.prediction/1", env!("CARGO_PKG_VERSION")),
         ),
     ];
-    Chapter::new("Provenance").only(Medium::Page).with(Passage::facts("", facts))
+    Chapter::new("Provenance").only(Medium::Page).with(ChapterPart::facts("", facts))
 }

@@ -5,22 +5,22 @@ use super::failure_chart;
 use super::families::{Family, families};
 use super::reasons::reason;
 use crate::lab::data::{Trial, TrialMap, TrialPoint};
-use crate::report::document::{Chapter, Content, Document, Fact, Frame, Passage};
+use crate::report::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument};
 use crate::report::medium::{Medium, Words};
 use crate::report::rounding::significant;
-use crate::report::table::{Table, TableCell};
+use crate::report::table::{ReportTable, TableCell};
 
 /// Errors from here on are words: the method diverged.
 const DIVERGED: f64 = 1e6;
 
 /// The whole document.
-pub(super) fn document(trial: &Trial) -> Document {
+pub(super) fn document(trial: &Trial) -> ReportDocument {
     let families = families(trial);
     let slow = "This program was built without optimisation: its times say nothing.";
-    let slow = (!trial.machine.is_optimised).then(|| Passage::note(slow));
+    let slow = (!trial.machine.is_optimised).then(|| ChapterPart::note(slow));
     let opening = Chapter::new("")
-        .with(Content::Figures(figures(trial, &families)))
-        .with(Passage::text(extract(trial)).only(Medium::Markdown))
+        .with(PartContent::Figures(figures(trial, &families)))
+        .with(ChapterPart::text(extract(trial)).only(Medium::Markdown))
         .with_all(slow);
     let mut chapters = vec![opening, Chapter::part("Speed against accuracy")];
     chapters.extend(families.iter().map(family_chapter));
@@ -29,7 +29,7 @@ pub(super) fn document(trial: &Trial) -> Document {
     let points = families.iter().map(|family| points(family, &family.points));
     chapters.push(Chapter::new("All points").only(Medium::Page).with_all(points));
     chapters.push(provenance(trial));
-    Document {
+    ReportDocument {
         page: Frame {
             title: "Validation of dropcheck's methods".to_owned(),
             product: "Validation of the methods",
@@ -100,27 +100,27 @@ fn family_chapter(family: &Family) -> Chapter {
     let best: Vec<(&TrialPoint, bool)> =
         family.points.iter().filter(|(p, on_front)| *on_front || p.is_default).copied().collect();
     let place = if beaten.is_empty() {
-        Passage::text("The default is on the front in every class.").only(Medium::Page)
+        ChapterPart::text("The default is on the front in every class.").only(Medium::Page)
     } else {
         let why = reason(family.name).unwrap_or("No reason is written for this.");
-        Passage::text(format!("The default is off the front in: {}. {why}", beaten.join("; ")))
+        ChapterPart::text(format!("The default is off the front in: {}. {why}", beaten.join("; ")))
     };
     let never = (!never.is_empty())
-        .then(|| Passage::note(format!("On no front, and not offered: {}.", never.join("; "))));
+        .then(|| ChapterPart::note(format!("On no front, and not offered: {}.", never.join("; "))));
     Chapter::new(family.name)
         .below()
-        .with(Passage::picture(&family.file_name(), &title, ""))
+        .with(ChapterPart::picture(&family.file_name(), &title, ""))
         .with(points(family, &best).only(Medium::Markdown))
         .with(place)
         .with_all(never)
 }
 
 /// A point a row.
-fn points(family: &Family, points: &[(&TrialPoint, bool)]) -> Passage {
+fn points(family: &Family, points: &[(&TrialPoint, bool)]) -> ChapterPart {
     let default =
         |p: &TrialPoint| TableCell::marked(&p.method[..], if p.is_default { "default" } else { "" });
     let quartiles = |p: &TrialPoint| p.time_quartiles_ns.map(|time_ns| significant(time_ns, 3)).join(" to ");
-    Table::of(points)
+    ReportTable::of(points)
         .class("many")
         .caption(format!("{}: error {}, time of a {}", family.name, family.error_unit, family.time_per))
         .chosen(|(p, _)| p.is_default)
@@ -153,7 +153,7 @@ fn map_chapter(map: &TrialMap) -> Chapter {
         }
     };
     let passes = format!("{} passes {limit} at: {}", map.error, map.stress);
-    let table = Table::of(&rows)
+    let table = ReportTable::of(&rows)
         .class("whole breaks")
         .text(Words::or("Method", "method"), |(method, _)| *method)
         .number(Words::or(format!("Passes {limit} at"), passes), |(_, b)| b.at_words())
@@ -161,7 +161,7 @@ fn map_chapter(map: &TrialMap) -> Chapter {
         .text(Words::or("Noticed", "noticed"), |(_, b)| noticed(b));
     Chapter::new(format!("{}: {}", map.title, map.error))
         .below()
-        .with(Passage::picture(&failure_chart::file_name(map), &map.title, ""))
+        .with(ChapterPart::picture(&failure_chart::file_name(map), &map.title, ""))
         .with(table)
 }
 
@@ -188,8 +188,8 @@ fn provenance(trial: &Trial) -> Chapter {
     let note = "The same seed and version give the same errors; times differ from run to run and from machine to machine.";
     Chapter::new("Machine, and how to run it again")
         .only(Medium::Page)
-        .with(Passage::facts("", facts))
-        .with(Passage::note(note))
+        .with(ChapterPart::facts("", facts))
+        .with(ChapterPart::note(note))
 }
 
 /// The command that makes the same again.
@@ -211,7 +211,7 @@ mod tests {
         trial.points[0].method = evil.into();
         trial.maps[0].title = evil.into();
         trial.machine.processor = evil.into();
-        let page = as_html::page(&document(&trial), &charts(&trial).unwrap());
+        let page = as_html::page(&document(&trial), &charts(&trial));
         assert!(!page.contains("<img") && !page.contains('\u{1b}'));
         for call in ["href=", "url(", "@import", "<script", "https://"] {
             assert!(!page.contains(call), "{call}");
@@ -222,7 +222,7 @@ mod tests {
     fn a_beaten_default_has_its_reason() {
         let mut trial = sample::trial();
         trial.is_on_front = vec![false, true];
-        let page = as_html::page(&document(&trial), &charts(&trial).unwrap());
+        let page = as_html::page(&document(&trial), &charts(&trial));
         assert!(page.contains("off the front") && page.contains("keeps 13 digits"));
     }
 }

@@ -3,8 +3,8 @@
 use super::breaks;
 use crate::lab::data::{TrialLine, TrialMap};
 use crate::report::pictures::draw::{Picture, Plate};
-use crate::report::pictures::panel::{ALARM, COLOURS, Dash, Line, Panel, PanelAxis, PointShape, Points};
-use crate::report::{ReportError, rounding};
+use crate::report::pictures::panel::{ALARM, COLOURS, Curve, Dash, Panel, PanelAxis, PointShape, Points};
+use crate::report::rounding;
 
 /// Height of a panel of many lines, and of one of three at most.
 const PANEL: u32 = 480;
@@ -20,7 +20,7 @@ pub(super) fn file_name(map: &TrialMap) -> String {
 }
 
 /// The chart.
-pub(super) fn picture(map: &TrialMap) -> Result<Picture, ReportError> {
+pub(super) fn picture(map: &TrialMap) -> Picture {
     let broken: Vec<String> = map
         .lines
         .iter()
@@ -83,7 +83,7 @@ fn panel(map: &TrialMap) -> Panel {
     for (i, line) in map.lines.iter().enumerate() {
         add_line(&mut panel, map, line, i);
     }
-    let limit = Line { stroke: 3, ..Line::new(ALARM, vec![(from, map.limit), (to, map.limit)]) };
+    let limit = Curve { stroke: 3, ..Curve::new(ALARM, vec![(from, map.limit), (to, map.limit)]) };
     panel.lines.push(limit.broken(Dash::Dashed).named(format!("limit {}", rounding::plain(map.limit, 3))));
     panel
 }
@@ -106,7 +106,7 @@ fn add_line(panel: &mut Panel, map: &TrialMap, line: &TrialLine, index: usize) {
             _ => silent.push(*at),
         }
     }
-    panel.lines.push(Line::new(colour, points));
+    panel.lines.push(Curve::new(colour, points));
     panel.points.push(Points::new(colour, PointShape::of(index), said).named(&line.method[..]));
     panel.points.push(Points { radius: 6, ..Points::new(colour, PointShape::Dot, silent) });
     panel.points.push(Points { radius: 11, ..Points::new(ALARM, PointShape::Cross, unsaid) });

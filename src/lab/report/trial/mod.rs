@@ -29,7 +29,7 @@ pub fn trial_markdown(trial: &Trial, folder: Option<&str>) -> String {
 /// # Errors
 /// [`ReportError`] where one of them cannot be made; then none is returned.
 pub fn trial_files(trial: &Trial) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
-    let pictures = charts(trial)?;
+    let pictures = charts(trial);
     let document = document::document(trial);
     let bytes = [
         as_html::page(&document, &pictures).into_bytes(),
@@ -44,7 +44,7 @@ pub fn trial_files(trial: &Trial) -> Result<Vec<(String, Vec<u8>)>, ReportError>
 }
 
 /// A chart for each family and each map.
-fn charts(trial: &Trial) -> Result<Vec<Picture>, ReportError> {
+fn charts(trial: &Trial) -> Vec<Picture> {
     let speed = families::families(trial);
     let speed = speed.iter().map(speed_chart::picture);
     speed.chain(trial.maps.iter().map(failure_chart::picture)).collect()

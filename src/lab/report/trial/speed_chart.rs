@@ -2,9 +2,8 @@
 
 use super::families::Family;
 use crate::lab::data::TrialPoint;
-use crate::report::ReportError;
 use crate::report::pictures::draw::{Picture, Plate};
-use crate::report::pictures::panel::{COLOURS, GREY, INK, Line, Panel, PanelAxis, PointShape, Points};
+use crate::report::pictures::panel::{COLOURS, Curve, GREY, INK, Panel, PanelAxis, PointShape, Points};
 
 /// Height of a panel.
 const PANEL: u32 = 410;
@@ -16,7 +15,7 @@ const MOST_ERROR: f64 = 1e3;
 const MOST_DECADES: i32 = 20;
 
 /// The chart.
-pub(super) fn picture(family: &Family) -> Result<Picture, ReportError> {
+pub(super) fn picture(family: &Family) -> Picture {
     let caption = format!(
         "Error ({}, median; the line upwards ends at the 95th percentile) over the time of a {} (median and quartiles). Below and left is better. \
          Grey line: the front, what no other beats in both. Ring: what the program takes. Hollow: programs of others, which take no part in the front.",
@@ -79,7 +78,7 @@ fn panel(axes: &[PanelAxis; 2], class: &str, points: &[(&TrialPoint, bool)], loo
         y,
         height: PANEL,
         // A line a step: a longer one would lose the order of its points where two stand above one another.
-        lines: steps(&front).windows(2).map(|step| Line::new(GREY, step.to_vec())).collect(),
+        lines: steps(&front).windows(2).map(|step| Curve::new(GREY, step.to_vec())).collect(),
         ..Panel::default()
     };
     for (point, _) in points {
@@ -89,7 +88,7 @@ fn panel(axes: &[PanelAxis; 2], class: &str, points: &[(&TrialPoint, bool)], loo
         let at = place(point);
         let [low_ns, high_ns] = point.time_quartiles_ns.map(|t| t.max(f64::MIN_POSITIVE));
         for ends in [[at, (at.0, height(point.p95_error))], [(low_ns, at.1), (high_ns, at.1)]] {
-            panel.lines.push(Line { stroke: 3, ..Line::new(look.colour, ends.into()) });
+            panel.lines.push(Curve { stroke: 3, ..Curve::new(look.colour, ends.into()) });
         }
         if point.is_default {
             panel.points.push(Points { radius: 21, ..Points::new(INK, PointShape::Ring, vec![at]) });

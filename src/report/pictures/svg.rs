@@ -1,0 +1,115 @@
+//! Lines, areas, circles and words to the text of an SVG drawing, in units of which two are a pixel of the page.
+
+use super::super::text::printable;
+use super::panel::{Colour, Curve, INK};
+use std::fmt::{Arguments, Write};
+
+/// Which side of words stands at their place.
+#[derive(Clone, Copy)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// A drawing under way.
+#[derive(Default)]
+pub(super) struct Svg(String);
+
+impl Svg {
+    fn put(&mut self, text: Arguments) {
+        // Writing to a string does not fail.
+        let _ = self.0.write_fmt(text);
+        self.0.push('\n');
+    }
+
+    /// What `paint` draws, its places counted from `at`.
+    pub(super) fn from(&mut self, at: (f64, f64), paint: impl FnOnce(&mut Self)) {
+        self.put(format_args!("<g transform=\"translate({:.0},{:.0})\">", at.0, at.1));
+        paint(self);
+        self.put(format_args!("</g>"));
+    }
+
+    /// What `paint` draws within a rectangle from (0, 0), and no further than half a stroke beyond it.
+    pub(super) fn within(&mut self, (width, height): (f64, f64), paint: impl FnOnce(&mut Self)) {
+        const OVER: f64 = 4.0;
+        let (width, height) = (width + 2.0 * OVER, height + 2.0 * OVER);
+        let frame = format!("x=\"-{OVER}\" y=\"-{OVER}\" width=\"{width:.0}\" height=\"{height:.0}\"");
+        self.put(format_args!("<svg {frame} viewBox=\"-{OVER} -{OVER} {width:.0} {height:.0}\">"));
+        paint(self);
+        self.put(format_args!("</svg>"));
+    }
+
+    /// A line in its colour; its points are places.
+    pub(super) fn line(&mut self, line: &Curve) {
+        let pieces = line
+            .dash
+            .pieces()
+            .map_or_else(String::new, |[piece, gap]| format!(" stroke-dasharray=\"{piece} {gap}\""));
+        let (colour, stroke, points) = (line.colour, line.stroke, places(&line.points));
+        let opacity = opacity("stroke", line.opacity);
+        self.put(format_args!(
+            "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"{stroke}\"{opacity}{pieces} points=\"{points}\"/>"
+        ));
+    }
+
+    /// An area in its colour.
+    pub(super) fn area(&mut self, corners: &[(f64, f64)], colour: Colour, share: f64) {
+        let (points, opacity) = (places(corners), opacity("fill", share));
+        self.put(format_args!("<polygon fill=\"{colour}\"{opacity} points=\"{points}\"/>"));
+    }
+
+    /// A circle, full or as a stroke of this width.
+    pub(super) fn circle(&mut self, (x, y): (f64, f64), radius: i32, colour: Colour, stroke: Option<u32>) {
+        let look = stroke.map_or_else(
+            || format!("fill=\"{colour}\""),
+            |width| format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\""),
+        );
+        self.put(format_args!("<circle cx=\"{x:.0}\" cy=\"{y:.0}\" r=\"{radius}\" {look}/>"));
+    }
+
+    /// Words at their middle height.
+    pub(super) fn word(&mut self, text: &str, at: (f64, f64), anchor: Anchor) {
+        self.words(text, at, anchor, "font-size=\"24\"");
+    }
+
+    /// Words with attributes of their own.
+    pub(super) fn words(&mut self, text: &str, (x, y): (f64, f64), anchor: Anchor, attributes: &str) {
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let text = escaped(text);
+        self.put(format_args!(
+            "<text x=\"{x:.0}\" y=\"{y:.0}\" dy=\".35em\" text-anchor=\"{anchor}\" fill=\"{INK}\" {attributes}>{text}</text>"
+        ));
+    }
+
+    /// The picture of this size, with a name for those who have the page read to them.
+    pub(super) fn finished(self, (width, height): (f64, f64), title: &str) -> String {
+        let size = format!("width=\"{:.0}\" height=\"{:.0}\"", width / 2.0, height / 2.0);
+        format!(
+            "<svg {size} role=\"img\" viewBox=\"0 0 {width:.0} {height:.0}\" xmlns=\"http://www.w3.org/2000/svg\" \
+             font-family=\"Helvetica, Arial, sans-serif\">\n<title>{}</title>\n\
+             <rect width=\"{width:.0}\" height=\"{height:.0}\" fill=\"#ffffff\"/>\n{}</svg>\n",
+            escaped(title),
+            self.0
+        )
+    }
+}
+
+fn escaped(text: &str) -> String {
+    printable(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+fn opacity(of: &str, share: f64) -> String {
+    if share < 1.0 { format!(" {of}-opacity=\"{share}\"") } else { String::new() }
+}
+
+/// Points as whole units; what lies far outside of every picture need not be far.
+fn places(points: &[(f64, f64)]) -> String {
+    const FAR: f64 = 20_000.0;
+    let place = |&(x, y): &(f64, f64)| format!("{:.0},{:.0}", x.clamp(-FAR, FAR), y.clamp(-FAR, FAR));
+    points.iter().map(place).collect::<Vec<_>>().join(" ")
+}
