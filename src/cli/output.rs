@@ -119,24 +119,15 @@ impl Folder {
     }
 }
 
-/// Where `--json` goes.
+/// Where `--json` goes: nowhere, to standard output ("-"), or to a file, found fit before the work.
 #[derive(Debug)]
-pub enum JsonTarget {
-    /// Nowhere.
-    None,
-    /// Standard output.
-    StandardOutput,
-    /// A file, found fit before the work.
-    File(PathBuf),
-}
+pub struct JsonTarget(Option<PathBuf>);
 
 impl JsonTarget {
     /// Checks that `path` can be written, is no input and no other program's; "-" is standard output.
     pub fn checked(path: Option<&Path>, inputs: &[&Path]) -> Result<Self, CannotWrite> {
-        let Some(path) = path else { return Ok(Self::None) };
-        if path == Path::new("-") {
-            return Ok(Self::StandardOutput);
-        }
+        let target = Self(path.map(Path::to_path_buf));
+        let Some(path) = path.filter(|_| !target.is_standard_output()) else { return Ok(target) };
         if is_input(path, inputs) {
             return Err(CannotWrite::Input { path: shown(path) });
         }
@@ -151,7 +142,7 @@ impl JsonTarget {
                 }
             }
             // A pipe or a device takes the bytes as they come.
-            Ok(_) => return Ok(Self::File(path.to_path_buf())),
+            Ok(_) => return Ok(target),
             Err(_) if fs::symlink_metadata(path).is_ok() => {
                 return Err(CannotWrite::Link { path: shown(path) });
             }
@@ -162,20 +153,20 @@ impl JsonTarget {
             return Err(CannotWrite::NoFolder { path: shown(parent) });
         }
         writable(parent)?;
-        Ok(Self::File(path.to_path_buf()))
+        Ok(target)
     }
 
     /// Whether nothing but JSON may stand on standard output.
     pub fn is_standard_output(&self) -> bool {
-        matches!(self, Self::StandardOutput)
+        self.0.as_deref() == Some(Path::new("-"))
     }
 
     /// Makes the JSON and writes it, where it is wanted at all.
     pub fn write(&self, make: impl FnOnce() -> Result<Vec<u8>, ReportError>) -> miette::Result<()> {
-        match self {
-            Self::None => {}
-            Self::StandardOutput => print_plain(&make()?)?,
-            Self::File(path) => replace(path, &make()?)?,
+        match &self.0 {
+            None => {}
+            Some(_) if self.is_standard_output() => print_plain(&make()?)?,
+            Some(path) => replace(path, &make()?)?,
         }
         Ok(())
     }

@@ -5,7 +5,7 @@ use super::document::{Chapter, ChapterPart, ReportDocument};
 use super::records::{CsvColumn, number, records, text_cell};
 use super::rounding::{MISSING, interval, percent};
 use super::table::{ReportTable, TableCell, TableShape};
-use super::text::{Style, WIDTH, json_word, tail, verdict_word};
+use super::text::{Style, WIDTH, distinct, json_word, tail, verdict_word};
 use crate::data::{Comparison, DropResult, Estimate, Issue, IssueCode, Severity, Verdict};
 use serde::Serialize;
 use std::path::Path;
@@ -42,12 +42,7 @@ impl CampaignRow {
         let mut grave: Vec<&Issue> =
             result.quality.iter().filter(|issue| issue.severity != Severity::Note).collect();
         grave.sort_by_key(|issue| std::cmp::Reverse(issue.severity));
-        let mut codes = Vec::new();
-        for issue in &grave {
-            if !codes.contains(&issue.code) {
-                codes.push(issue.code);
-            }
-        }
+        let codes = distinct(grave.iter().map(|issue| issue.code));
         Self {
             recording: result.input.recording.clone(),
             verdict: Some(result.verdict),

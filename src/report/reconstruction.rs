@@ -185,24 +185,17 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
 
 /// Which input weighs most, in the speed and in k.
 fn largest(budget: &[Contribution]) -> String {
-    let most = |of: &dyn Fn(&Contribution) -> Option<f64>| -> Option<(String, f64)> {
+    let share = |of: &dyn Fn(&Contribution) -> Option<f64>| -> Option<String> {
         let squares: f64 = budget.iter().filter_map(of).map(|x| x * x).sum();
-        let largest = budget
-            .iter()
-            .filter_map(|c| of(c).map(|x| (c, x)))
-            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-        (squares > 0.0).then(|| (largest.0.input.clone(), 100.0 * largest.1 * largest.1 / squares))
+        let known = budget.iter().filter_map(|c| of(c).map(|x| (c, x)));
+        let (largest, x) = known.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+        let percent = 100.0 * x * x / squares;
+        (squares > 0.0).then(|| format!("{} ({percent:.0} % of the variance)", largest.input))
     };
-    let share = |(input, percent): &(String, f64)| format!("{input} ({percent:.0} % of the variance)");
-    match (most(&|c| c.speed_m_s), most(&|c| c.k)) {
-        (Some(speed), Some(k)) if speed.0 == k.0 => {
-            format!("The largest is {}, for the speed, and {:.0} % for k.", share(&speed), k.1)
-        }
-        (Some(speed), Some(k)) => {
-            format!("The largest for the speed is {}, for k {}.", share(&speed), share(&k))
-        }
-        (None, Some(k)) => format!("The largest for k is {}.", share(&k)),
-        (Some(speed), None) => format!("The largest for the speed is {}.", share(&speed)),
+    match (share(&|c| c.speed_m_s), share(&|c| c.k)) {
+        (Some(speed), Some(k)) => format!("The largest for the speed is {speed}, for k {k}."),
+        (Some(speed), None) => format!("The largest for the speed is {speed}."),
+        (None, Some(k)) => format!("The largest for k is {k}."),
         (None, None) => String::new(),
     }
 }

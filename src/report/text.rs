@@ -3,6 +3,17 @@
 use crate::data::{DropResult, Issue, IssueCode, ReconstructionRung, Severity, Verdict};
 use std::fmt::Write;
 
+/// Each of `items` once, in the order of first appearance.
+pub(super) fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut found = Vec::new();
+    for item in items {
+        if !found.contains(&item) {
+            found.push(item);
+        }
+    }
+    found
+}
+
 /// Adds one line; writing to a string does not fail.
 pub(super) fn line(out: &mut String, text: std::fmt::Arguments) {
     let _ = out.write_fmt(text);

@@ -1,22 +1,18 @@
 //! The gradient of the speed over the drop angle to one picture, with the angles at which the speed does not tell k.
 
+use super::super::text::distinct;
 use super::super::words::{angles_words, case_words};
 use super::draw::{Picture, Plate};
 use super::look::{Look, angle_panel};
 use super::panel::{Curve, Dash, Fill, GREY, Panel, PointShape, Points};
-use crate::data::{Contact, Sensitivity, Study};
+use crate::data::{Sensitivity, Study};
 
 const NOTHING: (&str, &str) =
     ("There is nothing to show: the second end never strikes.", "No case of this study has a slap-down.");
 
 /// The picture.
 pub(super) fn picture(study: &Study, name: &str) -> Picture {
-    let mut contacts: Vec<Contact> = Vec::new();
-    for s in &study.sensitivities {
-        if !contacts.contains(&s.contact) {
-            contacts.push(s.contact);
-        }
-    }
+    let contacts = distinct(study.sensitivities.iter().map(|s| s.contact));
     let ks: Vec<f64> = study.sensitivities.iter().map(|s| s.k).collect();
     let look = Look::of(&contacts, &ks);
     let shown: Vec<&Sensitivity> =

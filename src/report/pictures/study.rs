@@ -1,6 +1,7 @@
 //! A study to its charts, and a request to their names.
 
 use super::super::rounding::plain;
+use super::super::text::distinct;
 use super::draw::Picture;
 use super::look::MOST_CONTACTS;
 use super::{angle_curves, critical, monte_carlo, regimes, sensitivity, sweep};
@@ -19,12 +20,7 @@ fn charts(request: &StudyRequest) -> Vec<StudyChart> {
         name: name.to_owned(),
         draw: Box::new(draw),
     };
-    let mut shown: Vec<Contact> = Vec::new();
-    for contact in &request.contacts {
-        if !shown.contains(contact) {
-            shown.push(*contact);
-        }
-    }
+    let shown = distinct(request.contacts.iter().copied());
     let both = shown.len() == 2 && shown.contains(&Contact::Smooth) && shown.contains(&Contact::Rough);
     let mut charts = vec![chart(if both { "smooth-rough" } else { "speeds" }, angle_curves::speeds)];
     charts.extend(shown.into_iter().take(MOST_CONTACTS).map(|contact| StudyChart {

@@ -1,6 +1,7 @@
 //! The predictions of a sweep to one picture: speed over what was swept, a line a case.
 
 use super::super::rounding::plain;
+use super::super::text::distinct;
 use super::super::words::{contact_words, variable_words};
 use super::draw::{Picture, Plate};
 use super::look::{Look, body_words, spread};
@@ -33,7 +34,8 @@ pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let rows: Vec<&PredictionRow> =
         study.rows.iter().filter(|row| held.iter().all(|(v, at)| is_at(row, *v, *at))).collect();
     let swept = |variable| sweeps.iter().any(|sweep| sweep.variable == variable);
-    let cases = cases(&rows, swept(SweepVariable::Friction), swept(SweepVariable::K));
+    let [friction_swept, k_swept] = [SweepVariable::Friction, SweepVariable::K].map(swept);
+    let cases = distinct(rows.iter().map(|row| SweepCase::of(row, friction_swept, k_swept)));
     let (panels, left_out) = match others.first() {
         None => curves(study, &rows, along, &cases),
         Some(second) => families(study, &rows, (along, second), cases),
@@ -76,18 +78,6 @@ impl SweepCase {
     }
 }
 
-/// The cases of the rows, in their order.
-fn cases(rows: &[&PredictionRow], friction_swept: bool, k_swept: bool) -> Vec<SweepCase> {
-    let mut cases = Vec::new();
-    for row in rows {
-        let case = SweepCase::of(row, friction_swept, k_swept);
-        if !cases.contains(&case) {
-            cases.push(case);
-        }
-    }
-    cases
-}
-
 /// One variable: a panel a body, a line a contact law and k.
 fn curves(
     study: &Study,
@@ -95,13 +85,7 @@ fn curves(
     along: &Sweep,
     cases: &[SweepCase],
 ) -> (Vec<Panel>, String) {
-    let mut contacts: Vec<Contact> = Vec::new();
-    for case in cases {
-        let contact = law(case);
-        if !contacts.contains(&contact) {
-            contacts.push(contact);
-        }
-    }
+    let contacts = distinct(cases.iter().map(law));
     let ks: Vec<f64> = cases.iter().map(restitution).collect();
     let look = Look::of(&contacts, &ks);
     let panels = [BodyModel::Rod, BodyModel::Body].map(|model| {
