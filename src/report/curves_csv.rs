@@ -50,10 +50,14 @@ fn columns<'a>(curves: &'a Curves) -> Vec<CurveColumn<'a>> {
     };
     for curve in &curves.channels {
         let of = format!("{}_", curve.channel);
-        channel_series(curve).into_iter().for_each(|series| add(&of, &curve.time_s, series));
+        for series in channel_series(curve) {
+            add(&of, &curve.time_s, series);
+        }
     }
     if let Some(motion) = &curves.motion {
-        motion_series(motion).into_iter().for_each(|series| add("", &motion.time_s, series));
+        for series in motion_series(motion) {
+            add("", &motion.time_s, series);
+        }
     }
     columns
 }

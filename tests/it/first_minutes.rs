@@ -48,8 +48,9 @@ fn a_form_that_is_not_filled_in_is_refused_by_its_line() {
 fn a_unit_that_nobody_says_is_asked_for() {
     let folder = tempfile::tempdir().expect("a folder");
     let (recording, cask) = (folder.path().join("raw.csv"), folder.path().join("cask.toml"));
-    let rows: String = (0..400).map(|i| format!("{}.{:04},{},7\n", i / 10_000, i % 10_000, i % 9)).collect();
-    fs::write(&recording, format!("time_s,first_transverse,n\n{rows}")).expect("a recording");
+    let rows: Vec<String> = (0..400).map(|i| format!("0.{i:04},{},7", i % 9)).collect();
+    let table = format!("time_s,first_transverse,n\n{}\n", rows.join("\n"));
+    fs::write(&recording, table).expect("a recording");
     let form = dropcheck(["init".as_ref(), recording.as_os_str()]).stdout;
     assert!(form.contains("unit = \"FILL IN\"") && form.contains("end = \"first\""), "{form}");
     fs::write(&cask, form.replace("= nan ", "= 1 ")).expect("a cask file");

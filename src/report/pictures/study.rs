@@ -8,10 +8,13 @@ use super::{angle_curves, critical, monte_carlo, regimes, sensitivity, sweep};
 use crate::data::{Contact, Study, StudyRequest};
 use rayon::prelude::*;
 
+/// A study and a picture's name to the picture.
+type Draw = Box<dyn Fn(&Study, &str) -> Picture + Send + Sync>;
+
 /// One chart by its name, and what draws it.
 struct StudyChart {
     name: String,
-    draw: Box<dyn Fn(&Study, &str) -> Picture + Send + Sync>,
+    draw: Draw,
 }
 
 /// The charts of a request, in the order in which a reader meets them.
