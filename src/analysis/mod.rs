@@ -46,5 +46,5 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
             Some(measured) => Reached::Measured(Box::new(flown), measured),
         },
     };
-    outcome::of(recording, file, findings, outcome::Gathered { impact, events, smooth, reached })
+    outcome::of(recording, file, findings, outcome::Examined { impact, events, smooth, reached })
 }

@@ -15,7 +15,7 @@ use crate::{fit, judge, motion, predict};
 const CHAIN_DELAY_SAMPLES: f64 = 2.0;
 
 /// What was found from the first impact on.
-pub(super) struct Gathered {
+pub(super) struct Examined {
     pub impact: Impact,
     pub events: Events,
     /// The signals as the curves' low-pass leaves them.
@@ -35,9 +35,9 @@ pub(super) fn of(
     recording: &Recording,
     file: &CaskFile,
     findings: Vec<Finding>,
-    found: Gathered,
+    found: Examined,
 ) -> Analysis {
-    let Gathered { impact, events, smooth, reached } = found;
+    let Examined { impact, events, smooth, reached } = found;
     let measured = match &reached {
         Reached::Measured(flown, _) => Some(flown),
         Reached::Impact | Reached::Flown(_) => None,

@@ -12,7 +12,7 @@ const U_INERTIA_DEFAULT: f64 = 0.05;
 pub type PredictBy<'a> = &'a dyn Fn(Rung, &Body, &Drop, Contact, f64) -> Prediction;
 
 /// What a rung is asked: the rod and the richest body, the cask file and what was measured.
-struct Scene<'a> {
+struct Comparing<'a> {
     rod: &'a Body,
     body: &'a Body,
     file: &'a CaskFile,
@@ -33,7 +33,7 @@ pub fn compare(
     predict: PredictBy,
 ) -> Option<(ModelChoice, Option<Comparison>)> {
     let (rod, body) = (bodies.first()?, bodies.last()?);
-    let scene = Scene { rod, body, file: cask_file, measured, predict };
+    let scene = Comparing { rod, body, file: cask_file, measured, predict };
     let candidates = scene.candidates();
     // A simple model that agrees where a richer one does not agrees by luck: the richer ones must agree as well.
     let taken = (0..candidates.len())
@@ -56,7 +56,7 @@ pub fn compare(
     Some((ModelChoice { name: taken.model, rung: taken.rung, reason, candidates }, comparison))
 }
 
-impl Scene<'_> {
+impl Comparing<'_> {
     /// The rungs that say something of their own.
     fn candidates(&self) -> Vec<ModelCandidate> {
         let mut candidates: Vec<ModelCandidate> = Vec::new();

@@ -202,28 +202,28 @@ pub const SOURCE: [Key; 2] = [
     text("field", REQUIRED).shown(r#""linear_acceleration.z""#, ""),
 ];
 
-const fn text(name: &'static str, default: &'static str) -> Key {
+pub(crate) const fn text(name: &'static str, default: &'static str) -> Key {
     Key { name, takes: Takes::Text, default, example: "", remark: "", is_asked: false }
 }
 
-const fn number(name: &'static str, default: &'static str) -> Key {
+pub(crate) const fn number(name: &'static str, default: &'static str) -> Key {
     Key { takes: Takes::Number(Allowed::Any), ..text(name, default) }
 }
 
-const fn flag(name: &'static str) -> Key {
+pub(crate) const fn flag(name: &'static str) -> Key {
     Key { takes: Takes::Flag, ..text(name, "true") }
 }
 
 impl Key {
-    const fn zero_or_more(self) -> Self {
+    pub(crate) const fn zero_or_more(self) -> Self {
         Self { takes: Takes::Number(Allowed::FromZero), ..self }
     }
 
-    const fn above_zero(self) -> Self {
+    pub(crate) const fn above_zero(self) -> Self {
         Self { takes: Takes::Number(Allowed::AboveZero), ..self }
     }
 
-    const fn within(self, least: f64, most: f64, why: &'static str) -> Self {
+    pub(crate) const fn within(self, least: f64, most: f64, why: &'static str) -> Self {
         Self { takes: Takes::Number(Allowed::Within(least, most, why)), ..self }
     }
 
@@ -233,27 +233,11 @@ impl Key {
         is_number && !self.default.starts_with(REQUIRED) && !["", "–"].contains(&self.default)
     }
 
-    const fn shown(self, example: &'static str, remark: &'static str) -> Self {
+    pub(crate) const fn shown(self, example: &'static str, remark: &'static str) -> Self {
         Self { example, remark, ..self }
     }
 
     const fn asked(self, example: &'static str, remark: &'static str) -> Self {
         Self { is_asked: true, ..self.shown(example, remark) }
     }
-}
-
-/// The row of a key in the table of this name.
-pub fn row(table: &str, key: &str) -> Option<&'static Key> {
-    TABLES.iter().find(|known| known.name == table)?.keys.iter().find(|known| known.name == key)
-}
-
-/// The names of keys, in their order.
-pub const fn names<const N: usize>(keys: &[Key; N]) -> [&'static str; N] {
-    let mut names = [""; N];
-    let mut i = 0;
-    while i < N {
-        names[i] = keys[i].name;
-        i += 1;
-    }
-    names
 }

@@ -57,14 +57,29 @@ pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeF
         .steps()
         .into_iter()
         .filter_map(|block| record.fall_from(block, contact))
-        .filter(|(start, end, ..)| end - start > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
-        .max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)))
-        .map(|(start, end, (rest_m_s2, u_rest_m_s2))| FreeFall {
-            release_s: channel.time_s(from) + start / channel.sample_rate_hz,
-            end_s: channel.time_s(from) + end / channel.sample_rate_hz,
-            rest_m_s2,
-            u_rest_m_s2,
+        .filter(|fall| fall.length() > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
+        .max_by(|a, b| a.length().total_cmp(&b.length()))
+        .map(|fall| FreeFall {
+            release_s: channel.time_s(from) + fall.start / channel.sample_rate_hz,
+            end_s: channel.time_s(from) + fall.end / channel.sample_rate_hz,
+            rest_m_s2: fall.rest_m_s2,
+            u_rest_m_s2: fall.u_rest_m_s2,
         })
+}
+
+/// A free fall by its samples, fractional, counted from the record's first.
+struct SampledFall {
+    start: f64,
+    end: f64,
+    /// As of a [`FreeFall`].
+    rest_m_s2: f64,
+    u_rest_m_s2: f64,
+}
+
+impl SampledFall {
+    fn length(&self) -> f64 {
+        self.end - self.start
+    }
 }
 
 /// The samples before first contact and the means of their blocks: a median would stand on a coarse converter's steps.
@@ -111,9 +126,8 @@ impl<'a> Record<'a> {
             .collect()
     }
 
-    /// Release and end in samples, fractional, and the rest level above the free-fall level with its standard uncertainty, m/s², of the fall
-    /// from a step.
-    fn fall_from(&self, step: usize, contact: f64) -> Option<(f64, f64, (f64, f64))> {
+    /// The fall from a step.
+    fn fall_from(&self, step: usize, contact: f64) -> Option<SampledFall> {
         let near = self.level(step + 1, step + 1 + LEVEL);
         let end = self.departure(step, near);
         // The level of the whole fall is better known than that of its beginning.
@@ -125,7 +139,8 @@ impl<'a> Record<'a> {
         if !STEP.contains(&(rest / self.weight_m_s2)) || rest < CLEAR * u_rest {
             return None;
         }
-        Some((self.crossing(step, falling + 0.5 * rest), end, (rest, u_rest)))
+        let start = self.crossing(step, falling + 0.5 * rest);
+        Some(SampledFall { start, end, rest_m_s2: rest, u_rest_m_s2: u_rest })
     }
 
     /// Smallest difference of neighbouring samples, m/s²: both levels may lie half of it off where the noise is less.

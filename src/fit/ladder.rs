@@ -16,7 +16,7 @@ const UNTESTED: f64 = 2.0;
 const NARROWED: f64 = 0.75;
 
 /// A rung with everything that it says.
-struct Step {
+struct RungStep {
     candidate: ReconstructionCandidate,
     quantities: Quantities,
 }
@@ -66,7 +66,7 @@ pub fn ladder(
     ))
 }
 
-fn step(rung: ReconstructionRung, quantities: Quantities, consistent: bool, residual: String) -> Step {
+fn step(rung: ReconstructionRung, quantities: Quantities, consistent: bool, residual: String) -> RungStep {
     let candidate = ReconstructionCandidate {
         rung,
         speed: quantities.speed,
@@ -74,11 +74,16 @@ fn step(rung: ReconstructionRung, quantities: Quantities, consistent: bool, resi
         consistent,
         residual,
     };
-    Step { candidate, quantities }
+    RungStep { candidate, quantities }
 }
 
 /// (a) Speed and k as [P] reads them off the velocity curves of single channels; the other quantities are the planar motion's.
-fn by_channels(measured: &Basis, plain: &FlightFit, reading: ChannelReading, motion: &Quantities) -> Step {
+fn by_channels(
+    measured: &Basis,
+    plain: &FlightFit,
+    reading: ChannelReading,
+    motion: &Quantities,
+) -> RungStep {
     let left_m_s = |end: End| {
         let signals = measured.signals.iter().filter(|s| s.axis == Axis::Transverse && s.end == end);
         signals.filter_map(|s| plain.plateau(&s.name)).map(|p| p.residual_m_s).fold(0.0, f64::max)
@@ -105,7 +110,7 @@ fn by_channels(measured: &Basis, plain: &FlightFit, reading: ChannelReading, mot
 }
 
 /// (b) Planar motion, each velocity step the mean over the flight.
-fn planar(measured: &Basis, reconstruct: Reconstruct) -> Option<Step> {
+fn planar(measured: &Basis, reconstruct: Reconstruct) -> Option<RungStep> {
     let model = Model::new(measured, reconstruct)?;
     let quantities = model.by_stated_inputs()?;
     let closures = model.closures(None);
@@ -116,7 +121,7 @@ fn planar(measured: &Basis, reconstruct: Reconstruct) -> Option<Step> {
 }
 
 /// (c) The flight fitted with modes and drift.
-fn by_flight(measured: &Basis, quantities: Quantities, closures: &[Closure]) -> Step {
+fn by_flight(measured: &Basis, quantities: Quantities, closures: &[Closure]) -> RungStep {
     let left_m_s = most_left_m_s(measured.flight);
     let what = match (measured.flight.modes.len(), measured.flight.drift) {
         (0, false) => "no mode, no drift".to_owned(),
@@ -147,7 +152,7 @@ fn by_joint(
     chi_square: f64,
     degrees: usize,
     (widened, why): (f64, &'static str),
-) -> Step {
+) -> RungStep {
     let of = if degrees == 1 { "observable" } else { "observables" };
     let mut residual = format!("χ² = {chi_square:.1} for {degrees} {of}");
     if widened > 1.0 {
@@ -180,7 +185,7 @@ fn worst(closures: &[Closure]) -> String {
 
 /// The first rung that is consistent and that the next one would neither move out of the narrower of both intervals nor know much better;
 /// else the last.
-fn taken(steps: &[Step]) -> usize {
+fn taken(steps: &[RungStep]) -> usize {
     (0..steps.len())
         .find(|&i| {
             let own = &steps[i].candidate;
@@ -208,7 +213,7 @@ fn words(rung: ReconstructionRung) -> &'static str {
 }
 
 /// Why this rung, and what the next one would have changed.
-fn reason(steps: &[Step], taken: usize) -> String {
+fn reason(steps: &[RungStep], taken: usize) -> String {
     let own = &steps[taken].candidate;
     let mut said = format!("Taken: {}", words(own.rung));
     if let Some(below) = taken.checked_sub(1).map(|i| &steps[i].candidate) {

@@ -35,7 +35,7 @@ pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&
     let (Some(struck), Some(contact_s)) = (struck, events.first_contact_s()) else { return Vec::new() };
     let to_s = events.separation_s().unwrap_or(contact_s + LONGEST_S).min(contact_s + LONGEST_S);
     let Some((pulse_s, length_s)) = pulse(struck, contact_s..to_s) else { return Vec::new() };
-    let contents: Vec<Option<Content>> = signals.par_iter().map(|s| content(s, pulse_s)).collect();
+    let contents: Vec<Option<BandContent>> = signals.par_iter().map(|s| content(s, pulse_s)).collect();
     let of_struck = signals.iter().zip(&contents).find(|(s, _)| s.name == struck.name);
     let largest = of_struck.and_then(|(_, c)| c.as_ref()).map_or(0.0, |c| c.largest);
     let mut findings = Vec::new();
@@ -81,7 +81,7 @@ fn low_rate(signal: &Signal, pulse_s: (f64, f64), length_s: f64) -> Option<Findi
 }
 
 /// Fourier integral of the stretch about the pulse, m/s.
-struct Content {
+struct BandContent {
     /// RMS of its magnitude in the band below half the sample rate.
     in_band: f64,
     /// Largest magnitude.
@@ -91,7 +91,7 @@ struct Content {
 }
 
 /// The stretch reaches a pulse's length beyond it on both sides, where it is led to zero as half a cosine.
-fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<Content> {
+fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<BandContent> {
     let margin_s = (pulse_s.1 - pulse_s.0).max(4.0 / signal.sample_rate_hz);
     let (from, to) = (signal.index_from(pulse_s.0 - margin_s), signal.index_from(pulse_s.1 + margin_s));
     let mut force = signal.force_m_s2.get(from..to)?.to_vec();
@@ -106,14 +106,14 @@ fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<Content> {
     force.resize(count.max(256) * 2, 0.0);
     let (frequency_hz, size) = magnitude(&force, signal.sample_rate_hz);
     let band = &size[frequency_hz.partition_point(|f| *f < BAND * signal.sample_rate_hz)..];
-    Some(Content {
+    Some(BandContent {
         in_band: (band.iter().map(|m| m * m).sum::<f64>() / as_f64(band.len().max(1))).sqrt(),
         largest: size.iter().fold(0.0, |m, s| s.max(m)),
         noise: signal.noise_m_s2 * as_f64(count).sqrt() / signal.sample_rate_hz,
     })
 }
 
-fn aliasing(signal: &Signal, pulse_s: (f64, f64), found: &Content, largest: f64) -> Option<Finding> {
+fn aliasing(signal: &Signal, pulse_s: (f64, f64), found: &BandContent, largest: f64) -> Option<Finding> {
     if signal.touches(&signal.gaps, pulse_s.0, pulse_s.1) {
         return None;
     }

@@ -106,11 +106,6 @@ pub(super) struct DrawnDrop {
 }
 
 impl DrawnDrop {
-    /// First contact by the recorder's clock, s.
-    pub(super) fn first_s(&self) -> f64 {
-        self.scene.before_s
-    }
-
     /// Length of the first contact, s.
     pub(super) fn contact_s(&self) -> f64 {
         self.motion.truth.contact_s.unwrap_or(0.0)
@@ -124,7 +119,8 @@ impl DrawnDrop {
     /// The largest force of the drop at channel `i`, as the channel scales it, m/s².
     pub(super) fn peak_m_s2(&self, i: usize) -> f64 {
         let channel = &self.scene.channels[i];
-        let force = synth::specific_force_m_s2(&self.scene, &self.motion, channel, &self.motion.time_s);
+        let times_s: Vec<f64> = self.motion.steps.iter().map(|step| step.time_s).collect();
+        let force = synth::specific_force_m_s2(&self.scene, &self.motion, channel, &times_s);
         channel.chain.scale * reduce::peak(&force)
     }
 

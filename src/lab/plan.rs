@@ -23,8 +23,6 @@ pub(super) struct DropPlan {
     /// Chain of both transverse channels.
     pub chain: Chain,
     pub before_s: f64,
-    /// Record after the slap-down, s.
-    pub after_s: f64,
     pub seed: u64,
 }
 
@@ -42,7 +40,6 @@ impl DropPlan {
             rate_hz: 2e4,
             chain: Chain { white_noise_m_s2: 0.1 * STANDARD_GRAVITY_M_S2, ..Chain::perfect() },
             before_s: 0.1,
-            after_s: 0.05,
             seed,
         }
     }
@@ -50,6 +47,11 @@ impl DropPlan {
     /// A mode as strong as the uniform beam's.
     pub(super) fn mode(order: u8, frequency_hz: f64) -> BendingMode {
         BendingMode { order, frequency_hz, damping: 0.03, strength: 1.0 }
+    }
+
+    /// Length of the flight, s.
+    pub(super) fn flight_s(&self) -> f64 {
+        self.draw().motion.truth.flight_s.unwrap_or(0.0)
     }
 
     /// The drop, simulated.
@@ -68,7 +70,7 @@ impl DropPlan {
             contact: self.contact,
             modes: self.modes.clone(),
             before_s: self.before_s,
-            after_s: self.after_s,
+            after_s: 0.05,
             rest: false,
             clock_error: 0.0,
             swapped_ends: false,

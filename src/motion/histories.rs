@@ -13,7 +13,7 @@ const ROUNDS: usize = 2;
 const MOST_DECLINE: f64 = 5.0;
 
 /// Least-squares line over the transverse channels: value at S and slope along the axis.
-pub(super) struct Line {
+pub(super) struct AlongAxis {
     positions_m: Vec<f64>,
     offsets_m: Vec<f64>,
     channels: Vec<usize>,
@@ -21,7 +21,7 @@ pub(super) struct Line {
     square_m2: f64,
 }
 
-impl Line {
+impl AlongAxis {
     pub fn through(signals: &[Signal], cog_m: f64) -> Option<Self> {
         let channels: Vec<usize> =
             (0..signals.len()).filter(|&i| signals[i].axis == Axis::Transverse).collect();
@@ -65,7 +65,7 @@ impl<'a> Histories<'a> {
     pub fn new(
         Integrated { signals, velocities, .. }: &'a Integrated,
         fit: &FlightFit,
-        line: &Line,
+        line: &AlongAxis,
         (contact_s, separation_s): (f64, f64),
     ) -> Option<Self> {
         let length_s = separation_s - contact_s;
@@ -106,7 +106,7 @@ impl<'a> Histories<'a> {
     ///
     /// The modes start from rest and are driven by the contact force, whose shape the rotation tells once it is free of ringing; until then
     /// a half sine stands for it.
-    fn take_off_bending(&mut self, fit: &FlightFit, line: &Line) {
+    fn take_off_bending(&mut self, fit: &FlightFit, line: &AlongAxis) {
         if fit.modes.is_empty() {
             return;
         }
@@ -133,12 +133,12 @@ impl<'a> Histories<'a> {
     }
 
     /// Ω on the grid, rad/s.
-    fn turning_rad_s(&self, line: &Line) -> Vec<f64> {
+    fn turning_rad_s(&self, line: &AlongAxis) -> Vec<f64> {
         (0..=STEPS).map(|i| self.turning_at(line, i)).collect()
     }
 
     /// Ω at a step of the grid, rad/s.
-    fn turning_at(&self, line: &Line, step: u16) -> f64 {
+    fn turning_at(&self, line: &AlongAxis, step: u16) -> f64 {
         line.at(self, self.grid_s(step), 0.0).1
     }
 
@@ -233,7 +233,7 @@ pub fn drive(
     cog_m: f64,
 ) -> Option<Drive> {
     let contact_s = integrated.contact_s;
-    let line = Line::through(&integrated.signals, cog_m)?;
+    let line = AlongAxis::through(&integrated.signals, cog_m)?;
     let turning = match fit {
         Some(fit) => Histories::new(integrated, fit, &line, (contact_s, left_s))?.turning_rad_s(&line),
         None if left_s > contact_s => half_sine(-1.0),

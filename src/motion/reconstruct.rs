@@ -1,7 +1,7 @@
 //! Velocity steps of the channels, a contact law and the initial motion to the planar motion of the cask.
 
 use super::Integrated;
-use super::histories::{Histories, Line};
+use super::histories::{AlongAxis, Histories};
 use crate::data::{AxialClosure, Events, FlightFit, Motion, MotionCurve, MotionState, Setup};
 
 /// Steps over the contact: 200 over 20 ms leave the trapezoid's error below 4e-5 of the velocities.
@@ -58,7 +58,7 @@ fn follow(
 ) -> Option<Motion> {
     let contact_s = events.first_contact_s()?;
     let separation_s = events.separation_s()?;
-    let line = Line::through(&integrated.signals, setup.cog_m)?;
+    let line = AlongAxis::through(&integrated.signals, setup.cog_m)?;
     let histories =
         Histories::new(integrated, fit, &line, (contact_s, separation_s))?.at_rate(setup.second_s);
     let mut body = OnTarget::start(setup, contact_s);

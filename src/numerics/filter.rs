@@ -19,7 +19,7 @@ pub const TWO_PASS_CUTOFF: f64 = 0.802_243_262_923_150_2;
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZeroPhaseLowPass {
     gain: f64,
-    stage: StateVariable<f64>,
+    stage: StateVariable,
     padding: usize,
 }
 

@@ -50,7 +50,7 @@ impl PriorFit {
 pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFit> {
     let start = DVector::zeros(count);
     residuals(start.as_slice())?;
-    let problem = Problem { residuals, slopes, unknowns: start };
+    let problem = PriorProblem { residuals, slopes, unknowns: start };
     let (solved, _) =
         LevenbergMarquardt::new().with_ftol(1e-6).with_xtol(1e-4).with_patience(4).minimize(problem);
     let left = residuals(solved.unknowns.as_slice())?;
@@ -86,13 +86,13 @@ pub fn derivatives(model: Residuals, at: &[f64]) -> Option<DMatrix<f64>> {
     Some(if rows == 0 { DMatrix::zeros(0, at.len()) } else { DMatrix::from_columns(&columns) })
 }
 
-struct Problem<'a> {
+struct PriorProblem<'a> {
     residuals: Residuals<'a>,
     slopes: Slopes<'a>,
     unknowns: DVector<f64>,
 }
 
-impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
+impl LeastSquaresProblem<f64, Dyn, Dyn> for PriorProblem<'_> {
     type ParameterStorage = Owned<f64, Dyn>;
     type ResidualStorage = Owned<f64, Dyn>;
     type JacobianStorage = Owned<f64, Dyn, Dyn>;

@@ -1,6 +1,6 @@
 //! The motion after an impact to the time at which a corner comes down to the target.
 
-use super::state::{Number, State, second_end_m};
+use super::state::{Differentiable, State, second_end_m};
 use crate::data::Body;
 use crate::numerics::root::first_root;
 
@@ -10,7 +10,7 @@ const TOUCH_M: f64 = 1e-9;
 /// First time after now at which the lower corner `along_m` behind S comes down to the target, at most `last_s`.
 ///
 /// z(τ) = z_S + ż_S τ − g τ²/2 − b(φ − ω τ), |z̈| ≤ g + ω² ρ   (8)
-fn next_touch<T: Number>(
+fn next_touch<T: Differentiable>(
     body: &Body,
     gravity_m_s2: f64,
     state: &State<T>,
@@ -37,13 +37,17 @@ fn next_touch<T: Number>(
 }
 
 /// When R's corner comes down first.
-pub(super) fn second_end_touches<T: Number>(body: &Body, gravity_m_s2: f64, state: &State<T>) -> Option<T> {
+pub(super) fn second_end_touches<T: Differentiable>(
+    body: &Body,
+    gravity_m_s2: f64,
+    state: &State<T>,
+) -> Option<T> {
     let along_m = second_end_m(body);
     next_touch(body, gravity_m_s2, state, along_m, longest_s(body, gravity_m_s2, state, along_m))
 }
 
 /// When L's corner comes down again, at most when R does.
-pub(super) fn first_end_touches<T: Number>(
+pub(super) fn first_end_touches<T: Differentiable>(
     body: &Body,
     gravity_m_s2: f64,
     state: &State<T>,
@@ -55,7 +59,7 @@ pub(super) fn first_end_touches<T: Number>(
 }
 
 /// From here on S itself lies deeper than the corner can reach up, s.
-fn longest_s<T: Number>(body: &Body, gravity_m_s2: f64, state: &State<T>, along_m: f64) -> f64 {
+fn longest_s<T: Differentiable>(body: &Body, gravity_m_s2: f64, state: &State<T>, along_m: f64) -> f64 {
     let reach_m = along_m.hypot(body.height_m / 2.0);
     let rise_m_s = state.vertical_velocity_m_s.re();
     let height_m = state.height_m.re().abs() + reach_m;
@@ -63,7 +67,7 @@ fn longest_s<T: Number>(body: &Body, gravity_m_s2: f64, state: &State<T>, along_
 }
 
 /// Whether L, back on the target plane at the start of `span_s`, sinks deeper than `graze_m` before its end.
-pub(super) fn sinks<T: Number>(
+pub(super) fn sinks<T: Differentiable>(
     body: &Body,
     gravity_m_s2: f64,
     state: &State<T>,

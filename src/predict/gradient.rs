@@ -2,7 +2,7 @@
 
 use super::impact::strike_first_end;
 use super::path::Way;
-use super::state::{Number, State, second_end_m};
+use super::state::{Differentiable, State, second_end_m};
 use crate::data::{Body, Contact, Drop, GRAZE_SHARE, SpeedGradient};
 use num_dual::Dual64;
 
@@ -18,7 +18,7 @@ pub fn speed_gradient(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Opt
     Some(SpeedGradient { speed_m_s: by_k.re, by_k_m_s: by_k.eps, by_angle_m_s_rad: by_angle.eps })
 }
 
-fn speed_m_s<T: Number>(body: &Body, drop: &Drop, contact: Contact, angle_rad: T, k: T) -> Option<T> {
+fn speed_m_s<T: Differentiable>(body: &Body, drop: &Drop, contact: Contact, angle_rad: T, k: T) -> Option<T> {
     let start = State::falling(body, angle_rad, drop.impact_velocity_m_s);
     let way = Way::of(body, drop, contact, Some(GRAZE_SHARE));
     let (at, _) = way.follow(strike_first_end(body, &start, contact, k).after, k).second_end?;

@@ -1,6 +1,6 @@
 //! A moving body and its contact law to the motion just after L strikes.
 
-use super::state::{Number, State, arms_m};
+use super::state::{Differentiable, State, arms_m};
 use crate::data::{Body, Contact};
 
 /// The Coulomb coefficient of a contact law: rough is friction without limit, smooth is none.
@@ -44,7 +44,7 @@ struct ContactPoint<T> {
     approach_m_s: T,
 }
 
-impl<T: Number> ContactPoint<T> {
+impl<T: Differentiable> ContactPoint<T> {
     /// L's corner, per unit mass and impulse: n_xx = (1 + b²/r²)/m, n_zz = (1 + a²/r²)/m, n_xz = a b/(r² m), r² = Θ/m   (2) (3)
     fn new(body: &Body, before: &State<T>, a: T, b: T) -> Self {
         let (m, theta) = (body.mass_kg, body.inertia_kg_m2);
@@ -90,7 +90,7 @@ impl<T: Number> ContactPoint<T> {
 /// I_x = m Δẋ, I_z = m Δż, Θ Δω = a I_z − b I_x   (2). While the corner slides I_x = ± μ I_z against the sliding; where it stops it sticks
 /// if friction suffices. The normal force gives back k² of the work that it took (Stronge 1990); without sliding before
 /// the impact that is ż_C' = −k ż_C   (3)–(6).
-pub(super) fn strike_first_end<T: Number>(
+pub(super) fn strike_first_end<T: Differentiable>(
     body: &Body,
     before: &State<T>,
     contact: Contact,
@@ -132,14 +132,14 @@ pub(super) fn strike_first_end<T: Number>(
 }
 
 /// dż_C/dI_z in a stretch.
-fn normal_rate<T: Number>(point: &ContactPoint<T>, stretch: &Stretch<T>) -> T {
+fn normal_rate<T: Differentiable>(point: &ContactPoint<T>, stretch: &Stretch<T>) -> T {
     point.n_zz - point.n_xz * stretch.ratio
 }
 
 /// I_z in the first and in the last stretch.
 ///
 /// ż_C grows linearly with I_z; the work ∫ ż_C dI_z is −C at the end of the compression and −(1 − k²) C at the end.
-fn normal_impulses<T: Number>(
+fn normal_impulses<T: Differentiable>(
     point: &ContactPoint<T>,
     first: Option<&Stretch<T>>,
     last: &Stretch<T>,

@@ -2,7 +2,7 @@
 
 use super::held::Held;
 use super::impact::{Struck, strike_first_end};
-use super::path::{Outcome, Way};
+use super::path::{PathEnd, Way};
 use super::resting::RestEnd;
 use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
@@ -95,12 +95,12 @@ impl Case<'_> {
         self.prediction(&start, &struck, &outcome)
     }
 
-    fn one_flight(&self, struck: &Struck<f64>) -> Outcome<f64> {
+    fn one_flight(&self, struck: &Struck<f64>) -> PathEnd<f64> {
         Way::of(self.body, self.drop, self.contact, None).follow(struck.after, self.k)
     }
 
     /// L held on the target: \[P\] Table 2 for rough and smooth, step by step for the friction between them.
-    fn held(&self, after: &State<f64>) -> Outcome<f64> {
+    fn held(&self, after: &State<f64>) -> PathEnd<f64> {
         let second_end = match self.contact {
             Contact::Coulomb(_) => {
                 match Support::of(self.body, self.drop, self.contact, Hold::Pulls).rest(after) {
@@ -113,7 +113,7 @@ impl Case<'_> {
                 Some((held.at_second_end()?, time_s))
             }),
         };
-        Outcome { second_end, impacts: 1, regime: FlightRegime::Contact }
+        PathEnd { second_end, impacts: 1, regime: FlightRegime::Contact }
     }
 
     /// \[P\] Table 2 for k = 0, rough or smooth   (11) (12)
@@ -132,7 +132,7 @@ impl Case<'_> {
     }
 
     /// What is told of a way that began with `start` and its first impact.
-    pub fn prediction(&self, start: &State<f64>, struck: &Struck<f64>, outcome: &Outcome<f64>) -> Prediction {
+    pub fn prediction(&self, start: &State<f64>, struck: &Struck<f64>, outcome: &PathEnd<f64>) -> Prediction {
         let at = outcome.second_end.as_ref().map(|(state, _)| state);
         let corner = at.map(|state| state.corner(self.body, second_end_m(self.body)));
         Prediction {

@@ -92,6 +92,7 @@ pub fn borderline_cases(body: &Body, drop: &Drop) -> Vec<Prediction> {
 mod tests {
     use super::*;
     use crate::data::FlightRegime;
+    use crate::numerics::root::first_root;
 
     const V0_M_S: f64 = 13.288_340_754_210_061; // √(2 · 9.81 · 9)
 
@@ -168,9 +169,11 @@ mod tests {
         let after = strike_first_end(&rod(l), &start, Contact::Rough, 1.0).after;
         let (vz, w) = (after.vertical_velocity_m_s, after.angular_velocity_rad_s);
         let printed = |t: f64| {
-            l / 2.0 * d.angle_rad.cos() + vz * t - g * t * t / 2.0 + l / 2.0 * (d.angle_rad - w * t).sin()
+            let (sin, cos) = (d.angle_rad - w * t).sin_cos();
+            let height_m = l / 2.0 * (d.angle_rad.cos() + sin) + vz * t - g * t * t / 2.0;
+            (height_m, vz - g * t - w * l / 2.0 * cos)
         };
-        let t = crate::lab::methods::rivals::root::bisect(printed, 0.0, 0.3).expect("a root");
+        let t = first_root(printed, g + w * w * l / 2.0, 0.3, 1e-12).expect("a root");
         let phi = d.angle_rad - w * t;
         let x = after.horizontal_velocity_m_s + w * l / 2.0 * phi.sin();
         let z = vz - g * t - w * l / 2.0 * phi.cos();

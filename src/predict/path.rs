@@ -3,7 +3,7 @@
 use super::flight::{first_end_touches, second_end_touches, sinks};
 use super::impact::strike_first_end;
 use super::resting::RestEnd;
-use super::state::{Number, State, second_end_m};
+use super::state::{Differentiable, State, second_end_m};
 use super::support::{Hold, Support};
 use crate::data::{Body, Contact, Drop, FlightRegime};
 
@@ -28,7 +28,7 @@ pub(super) struct Way<'a> {
 }
 
 /// How the way ends.
-pub(super) struct Outcome<T> {
+pub(super) struct PathEnd<T> {
     /// The motion just before R strikes, and the time since the first impact, s.
     pub second_end: Option<(State<T>, T)>,
     pub impacts: u32,
@@ -47,11 +47,11 @@ impl<'a> Way<'a> {
 
 impl Way<'_> {
     /// Follows flights, rests and further impacts of L until R strikes, or says that it does not.
-    pub fn follow<T: Number>(&self, after_impact: State<T>, k: T) -> Outcome<T> {
+    pub fn follow<T: Differentiable>(&self, after_impact: State<T>, k: T) -> PathEnd<T> {
         let (body, gravity_m_s2) = (self.support.body, self.support.gravity_m_s2);
         let mut state = after_impact;
         let mut elapsed_s = T::from(0.0);
-        let mut outcome = Outcome { second_end: None, impacts: 1, regime: FlightRegime::Free };
+        let mut outcome = PathEnd { second_end: None, impacts: 1, regime: FlightRegime::Free };
         loop {
             if self.rests(&state) {
                 let (end, held) = self.rest(&state);
@@ -97,7 +97,7 @@ impl Way<'_> {
     }
 
     /// Whether the last impact left L on the target. Even with k = 0 stopping its sliding may throw a rough corner up.
-    fn rests<T: Number>(&self, state: &State<T>) -> bool {
+    fn rests<T: Differentiable>(&self, state: &State<T>) -> bool {
         let body = self.support.body;
         state.corner(body, body.cog_m).vertical_velocity_m_s.re() < REST_M_S * self.gravity_share().sqrt()
     }
@@ -105,7 +105,7 @@ impl Way<'_> {
     /// L on the target until R strikes or the target would have to pull. L then flies, the limit k → 0, unless it sinks deeper than
     /// a graze: then it has not left the target at all and slides on until it rises by itself.
     /// The flag says whether the contact law held L all the time.
-    fn rest<T: Number>(&self, from: &State<T>) -> (RestEnd<T>, bool) {
+    fn rest<T: Differentiable>(&self, from: &State<T>) -> (RestEnd<T>, bool) {
         let end = self.support.rest(from);
         let RestEnd::LiftsOff(at, time_s) = end else { return (end, true) };
         let second_s = second_end_touches(self.support.body, self.support.gravity_m_s2, &at);
@@ -124,7 +124,7 @@ impl Way<'_> {
     }
 
     /// When L strikes again before R does, deeper than a graze   (9)
-    fn strikes_again<T: Number>(&self, state: &State<T>, second_s: Option<T>) -> Option<T> {
+    fn strikes_again<T: Differentiable>(&self, state: &State<T>, second_s: Option<T>) -> Option<T> {
         let graze_m = self.graze_m?;
         let (body, gravity_m_s2) = (self.support.body, self.support.gravity_m_s2);
         let first_s = first_end_touches(body, gravity_m_s2, state, second_s)?;
@@ -135,7 +135,7 @@ impl Way<'_> {
     }
 
     /// R at the target but with the axis past the vertical is the other side of the cask.
-    fn is_slap_down<T: Number>(&self, at: &State<T>) -> bool {
+    fn is_slap_down<T: Differentiable>(&self, at: &State<T>) -> bool {
         let body = self.support.body;
         let corner = at.corner(body, second_end_m(body));
         at.angle_rad.re().cos() > 0.0 && corner.vertical_velocity_m_s.re() < 0.0

@@ -1,7 +1,7 @@
 //! L on the target to where R strikes or L lifts off: pivoting, or sliding against friction.
 
 use super::impact::strike_first_end;
-use super::state::{Number, State};
+use super::state::{Differentiable, State};
 use super::support::{Grip, Hold, Support, Turning};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -39,7 +39,7 @@ enum Margin {
 
 impl Support<'_> {
     /// Follows L's rest on the target to its end. Whole turns that the body made in flight do not count.
-    pub fn rest<T: Number>(&self, from: &State<T>) -> RestEnd<T> {
+    pub fn rest<T: Differentiable>(&self, from: &State<T>) -> RestEnd<T> {
         let turns_rad = TAU * (from.angle_rad.re() / TAU).round();
         match self.rest_within_a_turn(&from.turned(-turns_rad)) {
             RestEnd::Strikes(at, time_s) => RestEnd::Strikes(at.turned(turns_rad), time_s),
@@ -49,7 +49,7 @@ impl Support<'_> {
     }
 
     /// Past the vertical L does not bring R down on this side.
-    fn rest_within_a_turn<T: Number>(&self, from: &State<T>) -> RestEnd<T> {
+    fn rest_within_a_turn<T: Differentiable>(&self, from: &State<T>) -> RestEnd<T> {
         let mut elapsed_s = T::from(0.0);
         if from.angle_rad.re().cos() <= 0.0 {
             return RestEnd::Never;
@@ -96,7 +96,7 @@ impl Support<'_> {
     }
 
     /// The time within a step of `step_s` at which the first margin is used up, and which one.
-    fn until_used_up<T: Number>(&self, at: &Turning<T>, grip: Grip, step_s: f64) -> (T, Margin) {
+    fn until_used_up<T: Differentiable>(&self, at: &Turning<T>, grip: Grip, step_s: f64) -> (T, Margin) {
         let real = at.real();
         let (mut low_s, mut high_s) = (0.0, step_s);
         // 2^-24 of a step is a nanosecond. A step of Newton's takes the angle and the sliding from there to their end; where the lift or

@@ -4,9 +4,9 @@ use crate::data::Body;
 use num_dual::DualNum;
 
 /// A number, or one with its derivative: the same code gives the prediction and its gradient.
-pub(super) trait Number: DualNum<Primitive = f64> + Copy {}
+pub(super) trait Differentiable: DualNum<Primitive = f64> + Copy {}
 
-impl<T: DualNum<Primitive = f64> + Copy> Number for T {}
+impl<T: DualNum<Primitive = f64> + Copy> Differentiable for T {}
 
 /// Plane motion of a body: position and velocity of the centre of gravity, inclination, ω = −φ̇.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +28,7 @@ pub(super) struct Corner<T> {
 /// Horizontal and vertical distance a, b from a corner at axial distance `along_m` behind S to S, m.
 ///
 /// a = c cos φ − (h/2) sin φ, b = c sin φ + (h/2) cos φ   (1)
-pub(super) fn arms_m<T: Number>(body: &Body, angle_rad: T, along_m: f64) -> (T, T) {
+pub(super) fn arms_m<T: Differentiable>(body: &Body, angle_rad: T, along_m: f64) -> (T, T) {
     let (sin, cos) = angle_rad.sin_cos();
     // The cosine of a right angle is 6e-17 in doubles: enough to topple a rod that stands.
     let cos = if cos.re().abs() < f64::EPSILON { cos - cos.re() } else { cos };
@@ -41,7 +41,7 @@ pub(super) fn second_end_m(body: &Body) -> f64 {
     body.cog_m - body.length_m
 }
 
-impl<T: Number> State<T> {
+impl<T: Differentiable> State<T> {
     /// Just before L strikes: falling at v0 without rotation, L on the target.
     pub fn falling(body: &Body, angle_rad: T, impact_velocity_m_s: f64) -> Self {
         Self {

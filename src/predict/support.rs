@@ -1,7 +1,7 @@
 //! L on the target to the force that holds it, and to how it turns and slides: one step of its motion.
 
 use super::impact::coefficient;
-use super::state::{Number, State, arms_m};
+use super::state::{Differentiable, State, arms_m};
 use crate::data::{Body, Contact, Drop};
 
 /// A corner that slides slower than this, m/s, was stopped by the impact but for round-off.
@@ -73,7 +73,7 @@ impl<'a> Support<'a> {
 impl Support<'_> {
     /// With z̈_C = 0: N/m = g − a ω̇ − b ω²   (10); stuck, ẍ_C = 0: ω̇ = a g/(r² + a² + b²); sliding, T = r_T N:
     /// ω̇ = (a − r_T b)(g − b ω²)/(r² + a (a − r_T b)), ẍ_C = r_T N/m − b ω̇ + a ω².
-    pub fn forces<T: Number>(&self, at: &Turning<T>, grip: Grip) -> Forces<T> {
+    pub fn forces<T: Differentiable>(&self, at: &Turning<T>, grip: Grip) -> Forces<T> {
         let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
         let r2 = self.body.inertia_kg_m2 / self.body.mass_kg;
         let w2 = at.angular_velocity_rad_s.powi(2);
@@ -141,7 +141,7 @@ impl Support<'_> {
     }
 
     /// The motion of the body with L's corner on the target   (3)
-    pub fn state<T: Number>(&self, at: &Turning<T>) -> State<T> {
+    pub fn state<T: Differentiable>(&self, at: &Turning<T>) -> State<T> {
         let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
         State {
             height_m: b,
@@ -153,7 +153,7 @@ impl Support<'_> {
     }
 
     /// A step of Runge's and Kutta's fourth order.
-    pub fn step<T: Number>(&self, at: &Turning<T>, grip: Grip, step_s: T) -> Turning<T> {
+    pub fn step<T: Differentiable>(&self, at: &Turning<T>, grip: Grip, step_s: T) -> Turning<T> {
         let slope = |at: &Turning<T>| {
             let forces = self.forces(at, grip);
             Turning {
@@ -186,7 +186,7 @@ impl Support<'_> {
     }
 }
 
-impl<T: Number> Turning<T> {
+impl<T: Differentiable> Turning<T> {
     pub fn of(body: &Body, state: &State<T>) -> Self {
         let slip_m_s = state.corner(body, body.cog_m).horizontal_velocity_m_s;
         Self {

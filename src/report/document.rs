@@ -38,8 +38,6 @@ pub(crate) struct Chapter {
     heading: Words,
     /// 2 below the whole, 3 below a chapter of 2.
     pub(crate) level: usize,
-    /// Whether chapters stand below it.
-    is_part: bool,
     /// Where alone it is shown.
     only: Option<Medium>,
     passages: Vec<ChapterPart>,
@@ -48,12 +46,7 @@ pub(crate) struct Chapter {
 impl Chapter {
     /// Nothing yet below this heading.
     pub(crate) fn new(heading: impl Into<Words>) -> Self {
-        Self { heading: heading.into(), level: 2, is_part: false, only: None, passages: Vec::new() }
-    }
-
-    /// The heading of the chapters after it.
-    pub(crate) fn part(heading: &str) -> Self {
-        Self { is_part: true, ..Self::new(heading) }
+        Self { heading: heading.into(), level: 2, only: None, passages: Vec::new() }
     }
 
     /// One level deeper.
@@ -81,7 +74,7 @@ impl Chapter {
     /// The heading, unless nothing would stand below it.
     pub(crate) fn heading(&self, medium: Medium) -> Option<&str> {
         let words = self.heading.on(medium);
-        (!words.is_empty() && (self.is_part || !self.shown(medium).is_empty())).then_some(words)
+        (!words.is_empty() && !self.shown(medium).is_empty()).then_some(words)
     }
 
     /// What of it this medium shows; nothing where it shows none of it.

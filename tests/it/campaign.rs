@@ -2,7 +2,7 @@
 
 use crate::run::{analyze, dropcheck, number};
 use dropcheck::data::{Estimate, IssueCode, ReconstructionCandidate, ReconstructionRung, Severity, Verdict};
-use dropcheck::lab::campaign;
+use dropcheck::lab::campaign::{self, DamageKind};
 use dropcheck::lab::data::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber};
 use std::collections::BTreeMap;
 
@@ -118,7 +118,7 @@ fn the_tables_have_every_kind_and_size_and_count_what_is_missed() {
     let mut campaign = run(1, 2, true);
     let sound = campaign.rows[0].clone();
     campaign.rows.clear();
-    for (kind, sizes, unit) in campaign::kinds() {
+    for &DamageKind { name: kind, ref sizes, unit, .. } in campaign::kinds() {
         for &size in sizes {
             let mut row = judged(&sound, Verdict::Pass, Some((if kind == "skew" { 2.5 } else { 0.0 }, 0.0)));
             row.damage = Some(Damage { kind, size, unit });
@@ -134,7 +134,7 @@ fn the_tables_have_every_kind_and_size_and_count_what_is_missed() {
     reviewed.rung = Some(ReconstructionRung::Planar);
     campaign.rows.push(reviewed);
     let tables = campaign::markdown(&campaign);
-    for (kind, sizes, unit) in campaign::kinds() {
+    for &DamageKind { name: kind, ref sizes, unit, .. } in campaign::kinds() {
         let outcome = if kind == "skew" { "0 | 0 | 0 | 1 | 200.0" } else { "1 | 0 | 0 | 0 | 0.0" };
         for size in sizes {
             let size = if unit.is_empty() { String::new() } else { format!("{size} {unit}") };

@@ -190,7 +190,6 @@ fn no_file_leads_back_to_itself() {
 }
 
 #[test]
-#[ignore = "not true yet: some eleven signatures are left"]
 fn no_signature_holds_a_tuple_of_three() {
     let of = |(path, code): (&Vec<String>, &String)| {
         wide_tuples(code).into_iter().map(|name| format!("{}::{name}", path.join("::"))).collect::<Vec<_>>()

@@ -1,49 +1,29 @@
 //! The quick trial of filters, ends, integrals and cut-offs to its errors, held by bounds that theory gives.
 
-use dropcheck::lab::data::{TrialPart, TrialPoint, TrialRequest};
-use dropcheck::lab::methods::jobs;
+use dropcheck::lab::data::{TrialPoint, TrialRequest};
+use dropcheck::lab::methods::FAMILIES;
 use std::sync::OnceLock;
 
-/// The jobs whose methods turn samples into samples.
+/// The families whose methods turn samples into samples.
 const WITHOUT_DROPS: [&str; 4] = ["filters", "record-ends", "integration", "cut-off"];
 
-fn accuracy() -> &'static TrialPart {
-    static PART: OnceLock<TrialPart> = OnceLock::new();
-    PART.get_or_init(|| {
-        let mut all = TrialPart::default();
-        for job in jobs().iter().filter(|job| WITHOUT_DROPS.contains(&job.name)) {
-            let part = (job.run)(&TrialRequest { quick: true, seed: 1 }, &|_| {});
-            all.points.extend(part.points);
-            all.maps.extend(part.maps);
-        }
-        all
+fn accuracy() -> &'static [TrialPoint] {
+    static POINTS: OnceLock<Vec<TrialPoint>> = OnceLock::new();
+    POINTS.get_or_init(|| {
+        let families = FAMILIES.iter().filter(|family| WITHOUT_DROPS.contains(&family.0));
+        families.flat_map(|family| family.1(&TrialRequest { quick: true, seed: 1 })).collect()
     })
 }
 
 fn points(family: &str, method: &str) -> Vec<&'static TrialPoint> {
     let wanted = |p: &&TrialPoint| p.family == family && p.method == method;
-    let found: Vec<_> = accuracy().points.iter().filter(wanted).collect();
+    let found: Vec<_> = accuracy().iter().filter(wanted).collect();
     assert!(!found.is_empty(), "{family}: {method}");
     found
 }
 
 fn point(family: &str, method: &str, class: &str) -> &'static TrialPoint {
     points(family, method).into_iter().find(|p| p.class == class).expect(class)
-}
-
-fn errors(map: &str, method: &str) -> &'static [Option<f64>] {
-    let map = accuracy().maps.iter().find(|m| m.name == map).expect(map);
-    &map.lines.iter().find(|l| l.method == method).expect(method).errors
-}
-
-/// Whether every error is given and below the bound.
-fn all_below(errors: &[Option<f64>], bound: f64) -> bool {
-    errors.iter().all(|e| e.is_some_and(|e| e < bound))
-}
-
-/// The error at the largest stress.
-fn last(errors: &[Option<f64>]) -> f64 {
-    errors.last().copied().flatten().expect("a number")
 }
 
 #[test]
@@ -55,9 +35,6 @@ fn the_state_variable_filter_keeps_thirteen_digits() {
     // The accuracy that is asked for at 1e-5.
     let narrowest = point("filter", "state-variable", "order 2, f/fs = 1e-5").p95_error;
     assert!(narrowest <= 1e-13, "{narrowest:e}");
-    // The order multiplies sections, ten at most, at a cut-off of 0.01 where one loses 1e-15.
-    assert!(all_below(errors("filter-order", "state-variable"), 1e-13));
-    assert!(all_below(errors("cutoff-over-rate", "state-variable"), 1.2e-13));
 }
 
 #[test]
@@ -66,7 +43,6 @@ fn direct_forms_lose_what_theory_says() {
     let section = point("filter", "direct-form sections", "order 2, f/fs = 1e-5").p95_error;
     assert!((1e-9..1e-6).contains(&section), "{section:e}");
     assert!(point("filter", "direct-form sections, f32", "order 2, f/fs = 1e-4").p95_error > 0.01);
-    assert!(point("filter", "transfer function", "order 4, f/fs = 1e-4").p95_error > 1e-5);
 }
 
 #[test]
@@ -99,17 +75,17 @@ fn even_reflection_and_gustafsson_leave_the_filters_own_noise_at_the_ends() {
 
 #[test]
 fn sums_of_doubles_lose_nothing_that_matters() {
-    // n roundings of 1.1e-16: at most 1.1e-9 for 1e7 samples.
-    for method in ["f64", "f64, compensated"] {
-        assert!(all_below(errors("accumulation", method), 1.2e-9), "{method}");
-    }
-    // Beyond 2²⁴ of its smallest part single precision rounds every addition: 2⁻²⁵ of the sum each at worst, seen after 1e7.
-    assert!(last(errors("accumulation", "f32")) > 1e-6);
+    let of = |method| point("integration", method, "smooth pulse on an offset, 1e6 samples").p95_error;
+    // 1e6 roundings of 1.1e-16 at most, of a sum that grows to 1.
+    assert!(of("corrected trapezoid") < 1.2e-10 && of("trapezoid") < 1.2e-10);
+    // Parts of 1e-6 are added to a sum near 1 in steps of 6e-8: each is off by up to 3 %.
+    assert!(of("trapezoid, f32") > 1e-4, "{:e}", of("trapezoid, f32"));
 }
 
 #[test]
 fn the_default_cutoff_keeps_the_peak_of_any_pulse() {
+    let of = |method| point("cut-off", method, "4.5 t, pulse of 1 ms alone").p95_error;
     // 3/T keeps a half sine's peak within 1 %   (28)
-    assert!(all_below(errors("cutoff-over-pulse", "larger of mass and pulse"), 0.01));
-    assert!(last(errors("cutoff-over-pulse", "CFC 60")) > 0.1);
+    assert!(of("larger of mass and pulse") < 0.01, "{:e}", of("larger of mass and pulse"));
+    assert!(of("CFC 60") > 0.1);
 }

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 const AFTER_HELP: &str = "\
 Without --campaign and --scene every method is tried beside its rivals: error, time, and
-where it fails. --quick takes a minute. A run that was broken off goes on where it stood.
+where it fails. --quick takes a minute.
 
 Undamaged scenes are U0, U1 …, damaged ones D0, D1 …: with its seed a number names the same scene for ever.
 
@@ -44,9 +44,6 @@ pub struct Arguments {
     /// Try the methods on fewer scenes, within a minute
     #[arg(long, conflicts_with = "what")]
     quick: bool,
-    /// Measure anew what an unfinished trial in --out has measured already
-    #[arg(long, conflicts_with = "what", requires = "out")]
-    afresh: bool,
     /// Seed of everything random
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
@@ -56,7 +53,7 @@ pub struct Arguments {
     /// What is stated is exactly true: no deviations within the tolerances
     #[arg(long, requires = "what")]
     exact: bool,
-    /// Folder for the page, charts and tables of the trial, for campaign.csv and campaign.md, or for the files of the scene
+    /// Folder for the page, pictures and tables of the trial, for campaign.csv and campaign.md, or for the files of the scene
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Document in which the result replaces what stands between the lines `<!-- trial: begin -->` and `<!-- trial: end -->`, or of a
@@ -70,9 +67,9 @@ const ALL: &str = "all";
 const UNDAMAGED: &str = "undamaged";
 
 fn kind(word: &str) -> Result<&'static str, String> {
-    let mut words = [ALL, UNDAMAGED].into_iter().chain(lab::campaign::kinds().map(|kind| kind.0));
+    let mut words = [ALL, UNDAMAGED].into_iter().chain(lab::campaign::kinds().map(|kind| kind.name));
     words.find(|known| *known == word).ok_or_else(|| {
-        let known: Vec<&str> = lab::campaign::kinds().map(|kind| kind.0).collect();
+        let known: Vec<&str> = lab::campaign::kinds().map(|kind| kind.name).collect();
         format!("no kind of damage; there are all, undamaged, {}", known.join(", "))
     })
 }
@@ -91,12 +88,10 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     match (arguments.scene, &arguments.out, arguments.campaign) {
         (Some(number), Some(out), _) => one(arguments, number, out),
         (_, _, Some(scenes)) => campaign(arguments, scenes),
-        (_, out, None) => trial::run(&trial::WantedTrial {
-            request: TrialRequest { quick: arguments.quick, seed: arguments.seed },
-            afresh: arguments.afresh,
-            out: out.as_deref(),
-            into: arguments.into.as_deref(),
-        }),
+        (_, out, None) => {
+            let request = TrialRequest { quick: arguments.quick, seed: arguments.seed };
+            trial::run(request, out.as_deref(), arguments.into.as_deref())
+        }
     }
 }
 
@@ -105,7 +100,7 @@ fn campaign(arguments: &Arguments, scenes: u32) -> miette::Result<Ending> {
     let document =
         arguments.into.as_deref().map(|path| MARKS.parts(path).map(|parts| (path, parts))).transpose()?;
     let has = |word| arguments.kinds.contains(&word);
-    let damages = lab::campaign::kinds().map(|kind| kind.0);
+    let damages = lab::campaign::kinds().map(|kind| kind.name);
     let request = CampaignRequest {
         scenes,
         seed: arguments.seed,

@@ -3,16 +3,16 @@
 use super::CaskFileError;
 use super::section::{Placed, Section};
 use super::wording::unit_of;
-use crate::data::keys::{self, Allowed, Takes};
+use crate::data::keys::{Allowed, Takes};
 use crate::data::shown::short;
 use std::ops::{Range, RangeInclusive};
 
 type Stated = Result<Option<Placed<f64>>, CaskFileError>;
 
 impl Section<'_> {
-    /// A number within what its row of [`keys::TABLES`] allows; any finite one where a scene file has a key of its own.
+    /// A number within what its row allows.
     pub(crate) fn number(&self, key: &str) -> Stated {
-        match keys::row(self.name(), key).map(|row| row.takes) {
+        match self.row(key).map(|row| row.takes) {
             Some(Takes::Number(Allowed::FromZero)) => self.not_negative(key),
             Some(Takes::Number(Allowed::AboveZero)) => self.positive(key),
             _ => {
@@ -27,7 +27,7 @@ impl Section<'_> {
 
     /// Whether the range of `key` holds `number`, of which the refusal says `what`.
     pub(super) fn allows(&self, key: &str, number: &Placed<f64>, what: &str) -> Result<(), CaskFileError> {
-        match keys::row(self.name(), key).map(|row| row.takes) {
+        match self.row(key).map(|row| row.takes) {
             Some(Takes::Number(Allowed::Within(least, most, why)))
                 if !(least..=most).contains(&number.value) =>
             {
@@ -46,12 +46,12 @@ impl Section<'_> {
     }
 
     /// A number above 0.
-    pub(crate) fn positive(&self, key: &str) -> Stated {
+    fn positive(&self, key: &str) -> Stated {
         self.bounded(key, |number| number > 0.0, ["be above 0", "a number above 0"])
     }
 
     /// A number of 0 or above.
-    pub(crate) fn not_negative(&self, key: &str) -> Stated {
+    fn not_negative(&self, key: &str) -> Stated {
         self.bounded(key, |number| number >= 0.0, ["not be below 0", "0 or more"])
     }
 
@@ -64,22 +64,6 @@ impl Section<'_> {
                 &format!("check the value{}", unit_of(key)),
             )),
             number => Ok(number),
-        }
-    }
-
-    /// A number within `range`; `why` says what lies beyond or what the key means. Keys of a scene have their ranges beside them.
-    #[cfg(feature = "lab")]
-    pub(crate) fn within(
-        &self,
-        key: &str,
-        range: &RangeInclusive<f64>,
-        why: &str,
-    ) -> Result<Option<f64>, CaskFileError> {
-        match self.finite(key)? {
-            Some(number) if !range.contains(&number.value) => {
-                Err(self.outside(number.span, &format!("{key} is {}", short(number.value)), range, why))
-            }
-            number => Ok(number.map(|number| number.value)),
         }
     }
 

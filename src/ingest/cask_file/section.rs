@@ -2,37 +2,27 @@
 
 use super::fault::{CaskFileError, THE_CASK_FILE, WrongLine};
 use super::wording::{described, line_of, nearest, number_with_unit, unit_mend};
-use crate::data::keys::{self, FILL_IN, names};
+use crate::data::keys::{self, FILL_IN, Key, KeyTable};
 use miette::NamedSource;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A kind of file: what a person calls it, and its tables with their keys.
+/// A kind of file: what a person calls it, what stands in the file itself, and its tables with their keys.
 pub(crate) struct Kind {
     /// "the cask file".
     pub name: &'static str,
-    /// Every table with its keys; "" is the file itself.
-    pub tables: &'static [(&'static str, &'static [&'static str])],
+    pub root: &'static [&'static str],
+    pub tables: &'static [KeyTable],
 }
 
 /// The cask file.
-pub(crate) const CASK_FILE: Kind = Kind { name: THE_CASK_FILE, tables: &KEYS };
-
-/// Every table of a cask file with its keys; "" is the file itself.
-const KEYS: [(&str, &[&str]); 10] = [
-    ("", &["cask", "drop", "contact", "tolerance", "corrections", "filter", "recording", "channel"]),
-    ("cask", &names(&keys::CASK)),
-    ("drop", &names(&keys::DROP)),
-    ("contact", &names(&keys::CONTACT)),
-    ("tolerance", &names(&keys::TOLERANCE)),
-    ("corrections", &names(&keys::CORRECTIONS)),
-    ("filter", &names(&keys::FILTER)),
-    ("recording", &names(&keys::RECORDING)),
-    ("channel", &names(&keys::CHANNEL)),
-    ("source", &names(&keys::SOURCE)),
-];
+pub(crate) const CASK_FILE: Kind = Kind {
+    name: THE_CASK_FILE,
+    root: &["cask", "drop", "contact", "tolerance", "corrections", "filter", "recording", "channel"],
+    tables: &keys::TABLES,
+};
 
 /// The tables of which a file may have any number.
 const LISTS: [&str; 2] = ["channel", "mode"];
@@ -143,19 +133,23 @@ impl<'a> Document<'a> {
 }
 
 impl<'a> Section<'a> {
-    fn keys(&self) -> &'static [&'static str] {
-        let tables = self.document.kind.tables;
-        tables.iter().find(|(name, _)| *name == self.name).map_or(&[], |(_, keys)| keys)
+    /// The names of its keys.
+    fn keys(&self) -> Vec<&'static str> {
+        match self.document.kind.tables.iter().find(|table| table.name == self.name) {
+            Some(table) => table.keys.iter().map(|key| key.name).collect(),
+            None => self.document.kind.root.to_vec(),
+        }
+    }
+
+    /// The row of a key.
+    pub(crate) fn row(&self, key: &str) -> Option<&'static Key> {
+        let table = self.document.kind.tables.iter().find(|table| table.name == self.name)?;
+        table.keys.iter().find(|row| row.name == key)
     }
 
     /// The table as a person finds it in the file.
     fn title(&self) -> String {
         titled(self.name)
-    }
-
-    /// The table's name.
-    pub(super) fn name(&self) -> &'static str {
-        self.name
     }
 
     /// Where the section stands.
@@ -200,12 +194,13 @@ impl<'a> Section<'a> {
         let tables = self.document.kind.tables;
         let others: Vec<String> = tables
             .iter()
-            .filter(|(name, keys)| ![self.name, "source", ""].contains(name) && keys.contains(&word))
-            .map(|(name, _)| titled(name))
+            .filter(|table| ![self.name, "source"].contains(&table.name))
+            .filter(|table| table.keys.iter().any(|key| key.name == word))
+            .map(|table| titled(table.name))
             .collect();
         let all = known.join(", ");
         let mend = if others.is_empty() {
-            match nearest(word, known) {
+            match nearest(word, &known) {
                 Some(near) => format!("did you mean {near}? {} takes: {all}", self.title()),
                 None => format!("{} takes: {all}", self.title()),
             }
@@ -340,7 +335,7 @@ impl<'a> Section<'a> {
 
     /// A line that the key could have.
     fn example(&self, key: &str) -> String {
-        format!("{key} = {}", keys::row(self.name, key).map_or("…", |row| row.example))
+        format!("{key} = {}", self.row(key).map_or("…", |row| row.example))
     }
 
     /// That the form of `dropcheck init` was left as it is here.

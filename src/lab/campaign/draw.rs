@@ -126,11 +126,11 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
 /// I_x / I_z of the first contact.
 fn impulse_ratio(motion: &SimulatedMotion) -> f64 {
     let end_s = motion.truth.contact_s.unwrap_or(f64::INFINITY);
-    let within = motion.time_s.partition_point(|t| *t <= end_s);
-    let steps = motion.time_s[..within].windows(2).zip(motion.first_end_n.windows(2));
-    let (along, up) = steps.fold((0.0, 0.0), |(along, up), (t, force)| {
-        let half_s = (t[1] - t[0]) / 2.0;
-        (along + half_s * (force[0].0 + force[1].0), up + half_s * (force[0].1 + force[1].1))
+    let steps = motion.steps[..motion.count_before(|t| t <= end_s)].windows(2);
+    let (along, up) = steps.fold((0.0, 0.0), |(along, up), steps| {
+        let half_s = (steps[1].time_s - steps[0].time_s) / 2.0;
+        let [before, after] = [0, 1].map(|i| steps[i].loads_n[0]);
+        (along + half_s * (before.0 + after.0), up + half_s * (before.1 + after.1))
     });
     if up > 0.0 { along / up } else { 0.0 }
 }

@@ -12,42 +12,33 @@ pub use tables::markdown;
 use crate::analysis::analyze;
 use crate::ingest::Progress;
 use crate::lab::chance::Chance;
-use crate::lab::damage::{self, DamageKind, Wish};
+pub use crate::lab::damage::DamageKind;
+use crate::lab::damage::{self, Wish};
 use crate::lab::data::{
     Campaign, CampaignRequest, CampaignRow, Damage, SceneFile, SceneNumber, SyntheticRecording,
 };
+use crate::numerics::as_f64;
 use rayon::prelude::*;
 use score::RecordedScene;
-use std::sync::mpsc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// Names of all kinds of damage, and their sizes with the unit.
-pub fn kinds() -> impl Iterator<Item = (&'static str, &'static [f64], &'static str)> {
-    damage::drawn().map(|kind| (kind.name, &kind.sizes[..], kind.unit))
+/// All kinds of damage that a campaign draws.
+pub fn kinds() -> impl Iterator<Item = &'static DamageKind> {
+    damage::drawn()
 }
 
 /// Runs the campaign; `progress` is told the share that is done. The same request gives the same rows but for their times.
 #[must_use]
 pub fn run(request: &CampaignRequest, progress: Progress) -> Campaign {
     let numbers = numbers(request);
-    let rows = std::thread::scope(|scope| {
-        let (tell, told) = mpsc::channel();
-        let numbers = &numbers;
-        let work = scope.spawn(move || {
-            let each = |number: &SceneNumber| {
-                let row = row(request, *number);
-                // Nobody listening is no reason to stop.
-                let _ = tell.send(());
-                row
-            };
-            numbers.par_iter().map(each).collect::<Vec<CampaignRow>>()
-        });
-        for (done, ()) in told.iter().enumerate() {
-            #[allow(clippy::cast_precision_loss, reason = "a share for a progress bar")]
-            progress((done + 1) as f64 / numbers.len() as f64);
-        }
-        work.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    });
+    let done = AtomicUsize::new(0);
+    let each = |number: &SceneNumber| {
+        let row = row(request, *number);
+        progress(as_f64(done.fetch_add(1, Ordering::Relaxed) + 1) / as_f64(numbers.len()));
+        row
+    };
+    let rows = numbers.par_iter().map(each).collect();
     Campaign { request: request.clone(), rows }
 }
 
@@ -91,7 +82,7 @@ fn recorded(seed: u64, number: SceneNumber, exact: bool) -> RecordedScene {
         SceneNumber::Undamaged(number) => (2 * u64::from(number), None),
         SceneNumber::Damaged(number) => (2 * u64::from(number) + 1, Some(kind_and_size(number))),
     };
-    let wish = struck.map_or(Wish::ANY, |(kind, size)| kind.wish(size));
+    let wish = struck.map_or_else(Wish::default, |(kind, size)| kind.wish(size));
     let (mut drop, redraws) = draw::drawn(Chance::new(seed, stream), &wish, exact);
     recorder::equip(&mut drop, &wish, exact);
     let recording = struck.map(|(kind, size)| kind.strike(&mut drop, size));
@@ -107,10 +98,10 @@ mod tests {
 
     #[test]
     fn numbers_go_through_all_kinds_and_sizes() {
-        let most = kinds().map(|kind| kind.1.len()).max().expect("some") * kinds().count();
+        let most = kinds().map(|kind| kind.sizes.len()).max().expect("some") * kinds().count();
         let seen: BTreeSet<(&str, u64)> = (0..u32::try_from(most).expect("some"))
             .map(|number| (kind_and_size(number).0.name, kind_and_size(number).1.to_bits()))
             .collect();
-        assert_eq!(seen.len(), kinds().map(|kind| kind.1.len()).sum::<usize>());
+        assert_eq!(seen.len(), kinds().map(|kind| kind.sizes.len()).sum::<usize>());
     }
 }

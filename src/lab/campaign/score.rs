@@ -2,7 +2,7 @@
 
 use super::draw::Redraws;
 use super::statistics;
-use crate::data::{Analysis, Estimate, ReconstructionRung, Severity, Verdict};
+use crate::data::{Analysis, Estimate, ReconstructionRung, Severity};
 use crate::lab::chance::round;
 use crate::lab::data::{Campaign, CampaignRow, Damage, SceneNumber, Scored, SyntheticRecording, Truth};
 use crate::lab::drawn::DrawnDrop;
@@ -87,6 +87,11 @@ fn maybe(header: &str, value: Option<f64>) -> Cell {
     (header.to_owned(), value.map(|value| value.to_string()).unwrap_or_default())
 }
 
+/// A value and its half-width.
+fn estimate(header: &str, estimate: Option<Estimate>) -> [Cell; 2] {
+    [maybe(header, estimate.map(|e| e.value)), maybe(&format!("{header}_u95"), estimate.map(|e| e.u95))]
+}
+
 fn cells(seed: u64, row: &CampaignRow) -> Vec<Cell> {
     let mut cells = vec![
         cell("scene", row.number),
@@ -94,27 +99,23 @@ fn cells(seed: u64, row: &CampaignRow) -> Vec<Cell> {
         cell("kind", row.damage.map_or("none", |damage| damage.kind)),
         maybe("size", row.damage.map(|damage| damage.size)),
         cell("size_unit", row.damage.map_or("", |damage| damage.unit)),
-        cell("verdict", verdict(row.verdict)),
+        cell("verdict", row.verdict.map_or_else(|| "refused".to_owned(), written)),
         cell("outcome", format!("{:?}", statistics::outcome(row)).to_lowercase()),
         cell("errors", codes(row, Severity::Error)),
         cell("warnings", codes(row, Severity::Warning)),
     ];
     for scored in &row.quantities {
-        cells.push(maybe(scored.name, scored.stated.map(|e| e.value)));
-        cells.push(maybe(&format!("{}_u95", scored.name), scored.stated.map(|e| e.u95)));
+        cells.extend(estimate(scored.name, scored.stated));
         cells.push(maybe(&format!("{}_true", scored.name), scored.truth));
         cells.push(maybe(&format!("{}_off", scored.name), statistics::half_widths_off(scored)));
     }
-    cells.push(cell("rung", row.rung.map_or("", rung_name)));
+    cells.push(cell("rung", row.rung.map_or_else(String::new, written)));
     for rung in ReconstructionRung::ALL {
         let candidate = row.candidates.iter().find(|candidate| candidate.rung == rung);
-        let name = rung_name(rung);
+        let name = written(rung);
         cells.push(cell(&format!("{name}_consistent"), candidate.map_or("", |c| yes(c.consistent))));
-        let (speed, k) = (candidate.and_then(|c| c.speed), candidate.and_then(|c| c.k));
-        cells.push(maybe(&format!("{name}_speed"), speed.map(|e| e.value)));
-        cells.push(maybe(&format!("{name}_speed_u95"), speed.map(|e| e.u95)));
-        cells.push(maybe(&format!("{name}_k"), k.map(|e| e.value)));
-        cells.push(maybe(&format!("{name}_k_u95"), k.map(|e| e.u95)));
+        cells.extend(estimate(&format!("{name}_speed"), candidate.and_then(|c| c.speed)));
+        cells.extend(estimate(&format!("{name}_k"), candidate.and_then(|c| c.k)));
     }
     cells.push(maybe("largest_miss_u", statistics::largest_miss_u(row)));
     cells.extend(scene_cells(row));
@@ -182,36 +183,16 @@ fn scene_cells(row: &CampaignRow) -> Vec<Cell> {
 /// Codes of this severity, each once.
 fn codes(row: &CampaignRow, severity: Severity) -> String {
     let mut names: Vec<String> =
-        row.findings.iter().filter(|f| f.1 == severity).map(|f| code_name(f.0)).collect();
+        row.findings.iter().filter(|f| f.1 == severity).map(|f| written(f.0)).collect();
     names.sort();
     names.dedup();
     names.join(" ")
 }
 
-/// A code as the result writes it.
-pub(super) fn code_name(code: crate::data::IssueCode) -> String {
+/// A code, a rung or a verdict as the result writes it.
+pub(super) fn written(word: impl serde::Serialize) -> String {
     // An enum without data is a JSON string.
-    serde_json::to_string(&code).unwrap_or_default().trim_matches('"').to_owned()
-}
-
-/// A rung as the result writes it.
-pub(super) fn rung_name(rung: ReconstructionRung) -> &'static str {
-    match rung {
-        ReconstructionRung::Channels => "channels",
-        ReconstructionRung::Planar => "planar",
-        ReconstructionRung::Flight => "flight",
-        ReconstructionRung::Joint => "joint",
-    }
-}
-
-/// A verdict as the result writes it.
-pub(super) fn verdict(verdict: Option<Verdict>) -> &'static str {
-    match verdict {
-        None => "refused",
-        Some(Verdict::Pass) => "pass",
-        Some(Verdict::Review) => "review",
-        Some(Verdict::Fail) => "fail",
-    }
+    serde_json::to_string(&word).unwrap_or_default().trim_matches('"').to_owned()
 }
 
 fn yes(is: bool) -> &'static str {

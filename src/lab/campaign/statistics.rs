@@ -8,7 +8,7 @@ const MISSED_BY: f64 = 2.0;
 
 /// What became of a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Outcome {
+pub(super) enum SceneOutcome {
     /// Passed, and right.
     Right,
     /// Not passed, but its numbers hold.
@@ -20,15 +20,15 @@ pub(super) enum Outcome {
 }
 
 /// What became of the scene of this row, by speed and k.
-pub(super) fn outcome(row: &CampaignRow) -> Outcome {
+pub(super) fn outcome(row: &CampaignRow) -> SceneOutcome {
     let off = [scored(row, "speed"), scored(row, "k")].map(|scored| scored.and_then(|s| half_widths_off(&s)));
     let worst = off.iter().flatten().fold(0.0_f64, |worst, off| worst.max(*off));
     let has_both = off.iter().all(Option::is_some);
     match row.verdict {
-        Some(Verdict::Pass) if worst > MISSED_BY => Outcome::Missed,
-        Some(Verdict::Pass) if has_both => Outcome::Right,
-        Some(_) if has_both && worst <= 1.0 => Outcome::Covered,
-        _ => Outcome::Caught,
+        Some(Verdict::Pass) if worst > MISSED_BY => SceneOutcome::Missed,
+        Some(Verdict::Pass) if has_both => SceneOutcome::Right,
+        Some(_) if has_both && worst <= 1.0 => SceneOutcome::Covered,
+        _ => SceneOutcome::Caught,
     }
 }
 
@@ -42,16 +42,11 @@ pub(super) fn scored(row: &CampaignRow, name: &str) -> Option<Scored> {
     row.quantities.iter().find(|scored| scored.name == name).copied()
 }
 
-/// Measured less true.
-pub(super) fn error(stated: &Estimate, truth: f64) -> f64 {
-    stated.value - truth
-}
-
 /// Distance from the truth in half-widths.
 pub(super) fn half_widths_off(scored: &Scored) -> Option<f64> {
     let (stated, truth) = scored.stated.zip(scored.truth)?;
     // No number at all is as far off as can be.
-    let off = error(&stated, truth).abs() / stated.u95.max(f64::MIN_POSITIVE);
+    let off = (stated.value - truth).abs() / stated.u95.max(f64::MIN_POSITIVE);
     Some(if off.is_nan() { f64::INFINITY } else { off })
 }
 
@@ -71,7 +66,7 @@ impl Spread {
         let mut spread = Self { errors: Vec::new(), half_widths: Vec::new(), held: 0 };
         for (stated, truth) in pairs {
             let scale = if relative { 100.0 / truth.abs().max(f64::MIN_POSITIVE) } else { 1.0 };
-            let off = error(&stated, truth).abs();
+            let off = (stated.value - truth).abs();
             spread.held += usize::from(off <= stated.u95);
             spread.errors.push(scale * off);
             spread.half_widths.push(scale * stated.u95);

@@ -1,14 +1,16 @@
 //! A campaign to the document that says how far off the analysis is, how often its intervals hold, and how often it says so.
 
-use super::score::{code_name, rung_name};
-use super::statistics::{Outcome, Spread, largest_miss_u, outcome, quantile, scored};
-use crate::data::{Contact, Estimate, MISSED_U, ReconstructionRung, Severity, Verdict};
+use super::DamageKind;
+use super::score::written;
+use super::statistics::{SceneOutcome, Spread, largest_miss_u, outcome, quantile, scored};
+use crate::data::{Axis, Contact, MISSED_U, ReconstructionRung, Severity, Verdict};
 use crate::lab::data::{Campaign, CampaignRow};
+use crate::numerics::{as_f64, robust};
 use crate::report::as_markdown;
 use crate::report::document::{Chapter, ChapterPart, ReportDocument};
 use crate::report::rounding::optional_fixed;
 use crate::report::table::ReportTable;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The whole as Markdown.
 #[must_use]
@@ -17,20 +19,21 @@ pub fn markdown(campaign: &Campaign) -> String {
 }
 
 fn document(campaign: &Campaign) -> ReportDocument {
-    let (undamaged, damaged): (Vec<&CampaignRow>, Vec<&CampaignRow>) =
-        campaign.rows.iter().partition(|row| row.damage.is_none());
+    let all = Scenes(campaign.rows.iter().collect());
+    let [undamaged, damaged] = [true, false].map(|is_sound| all.that(|row| row.damage.is_none() == is_sound));
     let request = &campaign.request;
+    let mut times_s: Vec<f64> = campaign.rows.iter().map(|row| row.analysis_s).collect();
     let summary = format!(
         "{} undamaged and {} damaged scenes, seed {}{}; one analysis takes {} ms (median).",
-        undamaged.len(),
-        damaged.len(),
+        undamaged.0.len(),
+        damaged.0.len(),
         request.seed,
         if request.exact { ", what is stated exactly true" } else { "" },
-        number(1e3 * median(campaign.rows.iter().map(|row| row.analysis_s)), 1),
+        number(1e3 * robust::median(&mut times_s), 1),
     );
     let mut chapters = vec![Chapter::new("").with(ChapterPart::text(summary))];
     let mut chapter = |heading: &str, table| chapters.push(Chapter::new(heading).with(table));
-    if !undamaged.is_empty() {
+    if !undamaged.0.is_empty() {
         chapter("Undamaged scenes", verdicts(&undamaged));
         chapter("Errors and intervals", intervals(&undamaged));
         chapter("What keeps undamaged scenes from passing", codes(&undamaged));
@@ -38,15 +41,40 @@ fn document(campaign: &Campaign) -> ReportDocument {
         chapter("Rungs of the reconstruction", ladder(&undamaged));
         chapter("Drops drawn and left out", redraws(&undamaged));
     }
-    if !damaged.is_empty() {
+    if !damaged.0.is_empty() {
         chapter("Damaged scenes, by kind", damages(&damaged, false));
         chapter("Damaged scenes, by kind and size", damages(&damaged, true));
     }
-    if !undamaged.is_empty() && !damaged.is_empty() {
+    if !undamaged.0.is_empty() && !damaged.0.is_empty() {
         chapter("What a stricter limit of the closures would do", limits(&undamaged, &damaged));
     }
-    chapter("Passed and wrong", missed(&campaign.rows));
+    chapter("Passed and wrong", missed(&all));
     ReportDocument { chapters, ..ReportDocument::default() }
+}
+
+/// Some scenes of a campaign.
+struct Scenes<'a>(Vec<&'a CampaignRow>);
+
+impl Scenes<'_> {
+    fn that(&self, is_wanted: impl Fn(&CampaignRow) -> bool) -> Self {
+        Self(self.0.iter().copied().filter(|row| is_wanted(row)).collect())
+    }
+
+    fn of(&self, verdict: Verdict) -> Self {
+        self.that(|row| row.verdict == Some(verdict))
+    }
+
+    fn count(&self, wanted: SceneOutcome) -> usize {
+        self.0.iter().filter(|row| outcome(row) == wanted).count()
+    }
+
+    /// Statement and truth of one quantity over the scenes that have both; `relative`: in percent of the truth.
+    fn spread(&self, name: &str, relative: bool) -> Spread {
+        Spread::of(
+            self.0.iter().filter_map(|row| scored(row, name).and_then(|s| s.stated.zip(s.truth))),
+            relative,
+        )
+    }
 }
 
 /// A number with this many decimals; a dash where there is none.
@@ -55,42 +83,33 @@ fn number(value: f64, decimals: usize) -> String {
 }
 
 /// A share in percent.
-#[allow(clippy::cast_precision_loss, reason = "counts of scenes")]
 fn share(part: usize, of: usize) -> String {
-    if of == 0 { "–".to_owned() } else { format!("{:.1} %", 100.0 * part as f64 / of as f64) }
+    if of == 0 { "–".to_owned() } else { format!("{:.1} %", 100.0 * as_f64(part) / as_f64(of)) }
 }
 
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    quantile(&values, 0.5)
+impl Spread {
+    /// The error that this share of the scenes stays below.
+    fn error(&self, share: f64, decimals: usize) -> String {
+        number(quantile(&self.errors, share), decimals)
+    }
+
+    /// How many of the intervals hold the truth.
+    fn held(&self) -> String {
+        share(self.held, self.count())
+    }
 }
 
-fn of_verdict<'a>(rows: &[&'a CampaignRow], verdict: Verdict) -> Vec<&'a CampaignRow> {
-    rows.iter().copied().filter(|row| row.verdict == Some(verdict)).collect()
-}
-
-fn count(rows: &[&CampaignRow], wanted: &[Outcome]) -> usize {
-    rows.iter().filter(|row| wanted.contains(&outcome(row))).count()
-}
-
-fn verdicts(rows: &[&CampaignRow]) -> ChapterPart {
+fn verdicts(scenes: &Scenes) -> ChapterPart {
     let of = [("pass", Verdict::Pass), ("review", Verdict::Review), ("fail", Verdict::Fail)]
-        .map(|(name, verdict)| (name, of_verdict(rows, verdict)));
+        .map(|(name, verdict)| (name, scenes.of(verdict)));
+    let right = |of: &Scenes| of.count(SceneOutcome::Right) + of.count(SceneOutcome::Covered);
     ReportTable::of(&of)
         .text("verdict", |(name, _)| *name)
-        .number("scenes", |(_, of)| of.len().to_string())
-        .number("share", |(_, of)| share(of.len(), rows.len()))
-        .number("speed and k right or held", |(_, of)| {
-            count(of, &[Outcome::Right, Outcome::Covered]).to_string()
-        })
-        .number("missed", |(_, of)| count(of, &[Outcome::Missed]).to_string())
+        .number("scenes", |(_, of)| of.0.len().to_string())
+        .number("share", |(_, of)| share(of.0.len(), scenes.0.len()))
+        .number("speed and k right or held", |(_, of)| right(of).to_string())
+        .number("missed", |(_, of)| of.count(SceneOutcome::Missed).to_string())
         .into()
-}
-
-/// Statement and truth of one quantity over the scenes that have both.
-fn pairs<'a>(rows: &'a [&CampaignRow], name: &'a str) -> impl Iterator<Item = (Estimate, f64)> + 'a {
-    rows.iter().filter_map(move |row| scored(row, name).and_then(|s| s.stated.zip(s.truth)))
 }
 
 /// Names, as they are scored and as they are shown; whether in percent of the truth; decimals.
@@ -107,45 +126,40 @@ const QUANTITIES: [(&str, &str, bool, usize); 10] = [
     ("slap_down_time", "time of the slap-down, s", false, 6),
 ];
 
-fn intervals(rows: &[&CampaignRow]) -> ChapterPart {
-    let passed = of_verdict(rows, Verdict::Pass);
-    let spreads: Vec<_> = [("passed", &passed[..]), ("all", rows)]
-        .into_iter()
-        .flat_map(|(name, of)| {
-            QUANTITIES.map(|(quantity, shown, relative, decimals)| {
-                (name, shown, decimals, Spread::of(pairs(of, quantity), relative))
-            })
+fn intervals(scenes: &Scenes) -> ChapterPart {
+    let passed = scenes.of(Verdict::Pass);
+    let of_scenes = |(name, of): (&'static str, &Scenes)| {
+        QUANTITIES.map(|(quantity, shown, relative, decimals)| {
+            (name, shown, decimals, of.spread(quantity, relative))
         })
-        .collect();
+    };
+    let spreads: Vec<_> = [("passed", &passed), ("all", scenes)].into_iter().flat_map(of_scenes).collect();
     ReportTable::of(&spreads)
         .text("scenes", |(name, ..)| *name)
         .text("quantity", |(_, shown, ..)| *shown)
         .number("stated", |(.., spread)| spread.count().to_string())
-        .number("error: median", |(_, _, decimals, spread)| number(quantile(&spread.errors, 0.5), *decimals))
-        .number("95th", |(_, _, decimals, spread)| number(quantile(&spread.errors, 0.95), *decimals))
-        .number("largest", |(_, _, decimals, spread)| number(quantile(&spread.errors, 1.0), *decimals))
+        .number("error: median", |(_, _, decimals, spread)| spread.error(0.5, *decimals))
+        .number("95th", |(_, _, decimals, spread)| spread.error(0.95, *decimals))
+        .number("largest", |(_, _, decimals, spread)| spread.error(1.0, *decimals))
         .number("half-width: median", |(_, _, decimals, spread)| {
             number(quantile(&spread.half_widths, 0.5), *decimals)
         })
-        .number("holds the truth", |(.., spread)| share(spread.held, spread.count()))
+        .number("holds the truth", |(.., spread)| spread.held())
         .into()
 }
 
-fn codes(rows: &[&CampaignRow]) -> ChapterPart {
+fn codes(scenes: &Scenes) -> ChapterPart {
     let mut counts: BTreeMap<(Severity, String), [usize; 3]> = BTreeMap::new();
-    for row in rows {
+    for row in &scenes.0 {
         let grave = row.findings.iter().filter(|finding| finding.1 != Severity::Note);
-        let mut codes: Vec<(Severity, String)> =
-            grave.map(|finding| (finding.1, code_name(finding.0))).collect();
-        codes.sort();
-        codes.dedup();
+        let codes: BTreeSet<_> = grave.map(|finding| (finding.1, written(finding.0))).collect();
         let is_alone = codes.len() == 1;
-        let is_held = matches!(outcome(row), Outcome::Covered);
+        let is_held = outcome(row) == SceneOutcome::Covered;
         for code in codes {
             let count = counts.entry(code).or_default();
-            count[0] += 1;
-            count[1] += usize::from(is_alone);
-            count[2] += usize::from(is_held);
+            for (count, is_so) in count.iter_mut().zip([true, is_alone, is_held]) {
+                *count += usize::from(is_so);
+            }
         }
     }
     let mut counts: Vec<_> = counts.into_iter().collect();
@@ -207,61 +221,52 @@ const CLASSES: [(&str, Belongs); 27] = [
     ("rough", |row| row.stated.contact == Contact::Rough),
     ("smooth", |row| row.stated.contact == Contact::Smooth),
     ("Coulomb", |row| matches!(row.stated.contact, Contact::Coulomb(_))),
-    ("with an axial channel", |row| row.scene.channels.iter().any(|c| c.axis == crate::data::Axis::Axial)),
+    ("with an axial channel", |row| row.scene.channels.iter().any(|c| c.axis == Axis::Axial)),
     ("force plateau", |row| row.scene.first_end.yield_n.is_some()),
     ("rest recorded", |row| row.scene.rest),
 ];
 
-/// Errors of speed and k, and how often their intervals hold.
-struct Both {
-    speed: Spread,
-    k: Spread,
-}
-
-fn classes(rows: &[&CampaignRow]) -> ChapterPart {
-    let classes = CLASSES.map(|(name, belongs)| {
-        let of: Vec<&CampaignRow> = rows.iter().copied().filter(|row| belongs(row)).collect();
-        let (speed, k) = (Spread::of(pairs(&of, "speed"), true), Spread::of(pairs(&of, "k"), false));
-        (name, Both { speed, k }, of)
-    });
+fn classes(scenes: &Scenes) -> ChapterPart {
+    let classes = CLASSES.map(|(name, belongs)| (name, scenes.that(belongs)));
     ReportTable::of(&classes)
-        .text("class", |(name, ..)| *name)
-        .number("scenes", |(.., of)| of.len().to_string())
-        .number("pass", |(.., of)| share(of_verdict(of, Verdict::Pass).len(), of.len()))
-        .number("speed: 95th, %", |(_, both, _)| number(quantile(&both.speed.errors, 0.95), 2))
-        .number("held", |(_, both, _)| share(both.speed.held, both.speed.count()))
-        .number("k: 95th", |(_, both, _)| number(quantile(&both.k.errors, 0.95), 4))
-        .number("held", |(_, both, _)| share(both.k.held, both.k.count()))
-        .number("missed", |(.., of)| count(of, &[Outcome::Missed]).to_string())
+        .text("class", |(name, _)| *name)
+        .number("scenes", |(_, of)| of.0.len().to_string())
+        .number("pass", |(_, of)| share(of.of(Verdict::Pass).0.len(), of.0.len()))
+        .number("speed: 95th, %", |(_, of)| of.spread("speed", true).error(0.95, 2))
+        .number("held", |(_, of)| of.spread("speed", true).held())
+        .number("k: 95th", |(_, of)| of.spread("k", false).error(0.95, 4))
+        .number("held", |(_, of)| of.spread("k", false).held())
+        .number("missed", |(_, of)| of.count(SceneOutcome::Missed).to_string())
         .into()
 }
 
-fn ladder(rows: &[&CampaignRow]) -> ChapterPart {
+fn ladder(scenes: &Scenes) -> ChapterPart {
     let rungs = ReconstructionRung::ALL.map(|rung| {
-        let had: Vec<_> = rows
-            .iter()
-            .filter_map(|row| row.candidates.iter().find(|c| c.rung == rung).map(|c| (row.truth, c)))
-            .collect();
+        let candidate = |row: &&CampaignRow| {
+            row.candidates.iter().find(|c| c.rung == rung).cloned().map(|candidate| (row.truth, candidate))
+        };
+        let had: Vec<_> = scenes.0.iter().filter_map(candidate).collect();
         let speed = Spread::of(had.iter().filter_map(|(truth, c)| c.speed.zip(truth.speed)), true);
         let k = Spread::of(had.iter().filter_map(|(truth, c)| c.k.zip(truth.k)), false);
-        (rung, had.len(), Both { speed, k })
+        (rung, had.len(), speed, k)
     });
+    let taken = |rung| scenes.0.iter().filter(|row| row.rung == Some(rung)).count();
     ReportTable::of(&rungs)
-        .text("rung", |(rung, ..)| rung_name(*rung))
-        .number("taken", |(rung, ..)| rows.iter().filter(|row| row.rung == Some(*rung)).count().to_string())
-        .number("had", |(_, had, _)| had.to_string())
-        .number("speed: median, %", |(.., both)| number(quantile(&both.speed.errors, 0.5), 2))
-        .number("95th", |(.., both)| number(quantile(&both.speed.errors, 0.95), 2))
-        .number("held", |(.., both)| share(both.speed.held, both.speed.count()))
-        .number("k: median", |(.., both)| number(quantile(&both.k.errors, 0.5), 4))
-        .number("95th", |(.., both)| number(quantile(&both.k.errors, 0.95), 4))
-        .number("held", |(.., both)| share(both.k.held, both.k.count()))
+        .text("rung", |(rung, ..)| written(*rung))
+        .number("taken", |(rung, ..)| taken(*rung).to_string())
+        .number("had", |(_, had, ..)| had.to_string())
+        .number("speed: median, %", |(_, _, speed, _)| speed.error(0.5, 2))
+        .number("95th", |(_, _, speed, _)| speed.error(0.95, 2))
+        .number("held", |(_, _, speed, _)| speed.held())
+        .number("k: median", |(.., k)| k.error(0.5, 4))
+        .number("95th", |(.., k)| k.error(0.95, 4))
+        .number("held", |(.., k)| k.held())
         .into()
 }
 
-fn redraws(rows: &[&CampaignRow]) -> ChapterPart {
+fn redraws(scenes: &Scenes) -> ChapterPart {
     let mut counts: BTreeMap<&str, u32> = BTreeMap::new();
-    for (reason, count) in rows.iter().flat_map(|row| &row.redraws) {
+    for (reason, count) in scenes.0.iter().flat_map(|row| &row.redraws) {
         *counts.entry(reason).or_default() += count;
     }
     let counts: Vec<_> = counts.into_iter().collect();
@@ -272,39 +277,36 @@ fn redraws(rows: &[&CampaignRow]) -> ChapterPart {
 }
 
 /// The outcomes of every kind of damage, in the order of the kinds, or of every size of it.
-#[allow(clippy::cast_precision_loss, reason = "counts of scenes")]
-fn damages(rows: &[&CampaignRow], by_size: bool) -> ChapterPart {
-    let mut groups: Vec<(&str, String, Vec<&CampaignRow>)> = Vec::new();
-    for (kind, sizes, unit) in super::kinds() {
-        let of_kind = rows.iter().copied().filter(|row| row.damage.is_some_and(|d| d.kind == kind));
+fn damages(scenes: &Scenes, by_size: bool) -> ChapterPart {
+    let mut groups: Vec<(&str, String, Scenes)> = Vec::new();
+    for DamageKind { name, sizes, unit, .. } in super::kinds() {
+        let of_kind = scenes.that(|row| row.damage.is_some_and(|d| d.kind == *name));
+        let shown = |sizes: String| if unit.is_empty() { String::new() } else { format!("{sizes} {unit}") };
         if by_size {
-            for size in sizes {
+            groups.extend(sizes.iter().map(|size| {
                 let is_size =
-                    |row: &&CampaignRow| row.damage.is_some_and(|d| d.size.to_bits() == size.to_bits());
-                let shown = if unit.is_empty() { String::new() } else { format!("{size} {unit}") };
-                groups.push((kind, shown, of_kind.clone().filter(is_size).collect()));
-            }
+                    |row: &CampaignRow| row.damage.is_some_and(|d| d.size.to_bits() == size.to_bits());
+                (*name, shown(size.to_string()), of_kind.that(is_size))
+            }));
         } else {
             let largest = sizes.last().copied().unwrap_or_default();
-            let shown =
-                if unit.is_empty() { String::new() } else { format!("{} to {largest} {unit}", sizes[0]) };
-            groups.push((kind, shown, of_kind.collect()));
+            groups.push((*name, shown(format!("{} to {largest}", sizes[0])), of_kind));
         }
     }
-    groups.retain(|(.., of)| !of.is_empty());
+    groups.retain(|(.., of)| !of.0.is_empty());
     if !by_size {
-        groups.push(("all", String::new(), rows.to_vec()));
+        groups.push(("all", String::new(), scenes.that(|_| true)));
     }
     ReportTable::of(&groups)
         .text("damage", |(kind, ..)| *kind)
         .number("size", |(_, size, _)| &size[..])
-        .number("scenes", |(.., of)| of.len().to_string())
-        .number("right", |(.., of)| count(of, &[Outcome::Right]).to_string())
-        .number("covered", |(.., of)| count(of, &[Outcome::Covered]).to_string())
-        .number("caught", |(.., of)| count(of, &[Outcome::Caught]).to_string())
-        .number("missed", |(.., of)| count(of, &[Outcome::Missed]).to_string())
+        .number("scenes", |(.., of)| of.0.len().to_string())
+        .number("right", |(.., of)| of.count(SceneOutcome::Right).to_string())
+        .number("covered", |(.., of)| of.count(SceneOutcome::Covered).to_string())
+        .number("caught", |(.., of)| of.count(SceneOutcome::Caught).to_string())
+        .number("missed", |(.., of)| of.count(SceneOutcome::Missed).to_string())
         .number("missed per 200", |(.., of)| {
-            number(200.0 * count(of, &[Outcome::Missed]) as f64 / of.len() as f64, 1)
+            number(200.0 * as_f64(of.count(SceneOutcome::Missed)) / as_f64(of.0.len()), 1)
         })
         .into()
 }
@@ -313,23 +315,22 @@ fn damages(rows: &[&CampaignRow], by_size: bool) -> ChapterPart {
 const LIMITS_U: [f64; 5] = [MISSED_U, 3.0, 2.5, 2.0, 1.5];
 
 /// What each limit would have kept from passing: of sound drops, and of damaged ones that passed and are wrong.
-fn limits(undamaged: &[&CampaignRow], damaged: &[&CampaignRow]) -> ChapterPart {
-    let passed = of_verdict(undamaged, Verdict::Pass);
-    let missed: Vec<&CampaignRow> =
-        damaged.iter().copied().filter(|row| outcome(row) == Outcome::Missed).collect();
-    let within = |rows: &[&CampaignRow], limit_u: f64| {
-        rows.iter().filter(|row| largest_miss_u(row).is_none_or(|miss| miss <= limit_u)).count()
+fn limits(undamaged: &Scenes, damaged: &Scenes) -> ChapterPart {
+    let passed = undamaged.of(Verdict::Pass);
+    let missed = damaged.that(|row| outcome(row) == SceneOutcome::Missed);
+    let within = |scenes: &Scenes, limit_u: f64| {
+        scenes.that(|row| largest_miss_u(row).is_none_or(|miss| miss <= limit_u)).0.len()
     };
     ReportTable::of(&LIMITS_U)
         .number("limit, u", |limit_u| number(*limit_u, 1))
-        .number("sound drops that pass", |limit_u| share(within(&passed, *limit_u), undamaged.len()))
+        .number("sound drops that pass", |limit_u| share(within(&passed, *limit_u), undamaged.0.len()))
         .number("damaged ones missed", |limit_u| within(&missed, *limit_u).to_string())
         .into()
 }
 
 /// Every scene that passed and is wrong.
-fn missed(rows: &[CampaignRow]) -> ChapterPart {
-    let missed: Vec<&CampaignRow> = rows.iter().filter(|row| outcome(row) == Outcome::Missed).collect();
+fn missed(scenes: &Scenes) -> ChapterPart {
+    let missed = scenes.that(|row| outcome(row) == SceneOutcome::Missed).0;
     if missed.is_empty() {
         return ChapterPart::text("None.");
     }

@@ -82,32 +82,30 @@ fn clip(case: &mut DrawnDrop, end: End, size: f64) {
     case.stated.channels[which].full_scale = is_stated.then(|| limit_m_s2 / unit_m_s2(&channel.unit));
 }
 
-/// Some of the channels: one or all.
-fn some(case: &mut DrawnDrop) -> Vec<usize> {
-    let (all, which) = (case.chance.is(0.4), case.chance.index(2));
-    if all { (0..case.scene.channels.len()).collect() } else { vec![which] }
-}
-
 fn gap_impact(case: &mut DrawnDrop, size: f64) {
     let contact_s = case.contact_s();
-    let from_s = case.first_s() + case.chance.even(-0.2, 0.8) * contact_s;
-    for i in some(case) {
-        case.scene.channels[i].chain.gaps_s.push((from_s, from_s + size / 100.0 * contact_s));
-    }
+    let from_s = case.scene.before_s + case.chance.even(-0.2, 0.8) * contact_s;
+    lose(case, (from_s, from_s + size / 100.0 * contact_s));
 }
 
 fn gap_flight(case: &mut DrawnDrop, size: f64) {
     let contact_s = case.contact_s();
     let flight_s = case.way_s() - contact_s;
-    let from_s = case.first_s() + contact_s + case.chance.even(0.05, 0.97 - size / 100.0 * 0.9) * flight_s;
-    for i in some(case) {
-        case.scene.channels[i].chain.gaps_s.push((from_s, from_s + size / 100.0 * 0.9 * flight_s));
-    }
+    let from_s =
+        case.scene.before_s + contact_s + case.chance.even(0.05, 0.97 - size / 100.0 * 0.9) * flight_s;
+    lose(case, (from_s, from_s + size / 100.0 * 0.9 * flight_s));
+}
+
+/// Loses a span of one channel or of all.
+fn lose(case: &mut DrawnDrop, span_s: (f64, f64)) {
+    let (all, which) = (case.chance.is(0.4), case.chance.index(2));
+    let lost = chains(case).enumerate().filter(|(i, _)| all || *i == which);
+    lost.for_each(|(_, chain)| chain.gaps_s.push(span_s));
 }
 
 /// One in the contact, two in the flight.
 fn dropouts(case: &mut DrawnDrop, size: f64) {
-    let (first_s, contact_s, way_s) = (case.first_s(), case.contact_s(), case.way_s());
+    let (first_s, contact_s, way_s) = (case.scene.before_s, case.contact_s(), case.way_s());
     let which = case.chance.index(2);
     for (low_s, high_s) in [(0.0, contact_s), (contact_s, way_s), (contact_s, way_s)] {
         let from_s = first_s + case.chance.even(low_s, high_s);

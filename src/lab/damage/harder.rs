@@ -6,8 +6,9 @@ use super::super::plan::DropPlan;
 /// A flight shows so many periods of a mode that has to be told by itself.
 const CLEAR_PERIODS: f64 = 3.0;
 
-/// Hardens a plan with a flight of `flight_s`; a kind of damage does nothing to it.
-pub(super) fn harden(kind: &str, plan: &mut DropPlan, flight_s: f64, size: f64) {
+/// Hardens a sound plan; a kind of damage does nothing to it.
+pub(super) fn harden(kind: &str, plan: &mut DropPlan, size: f64) {
+    let flight_s = if kind.contains("mode") { plan.flight_s() } else { 1.0 };
     let clear = DropPlan::mode(1, CLEAR_PERIODS / flight_s);
     match kind {
         "mode_frequency" => plan.modes = vec![DropPlan::mode(1, size / flight_s)],

@@ -13,9 +13,10 @@ use std::sync::LazyLock;
 pub(super) use wish::{BetweenImpacts, Wish};
 
 /// A row of `damages.tsv`: one thing that may be wrong with a recording or its cask file, or that makes a drop hard to tell.
-pub(super) struct DamageKind {
+pub struct DamageKind {
     /// What it is done to: "chain", "samples" or what is "stated"; "flight": of such a drop; "drop": of a drop that grows harder.
-    pub of: &'static str,
+    of: &'static str,
+    /// Its name.
     pub name: &'static str,
     /// Unit of the sizes; empty where there is one size only.
     pub unit: &'static str,
@@ -24,11 +25,11 @@ pub(super) struct DamageKind {
     /// What the drop must be like, in words of [`Wish::of`].
     needs: &'static str,
     /// Whether k has a map of its own where this grows.
-    pub tells_k: bool,
+    pub(super) tells_k: bool,
     /// From harmless to gross, 13 of them; empty: does not grow.
-    pub growing: Vec<f64>,
+    pub(super) growing: Vec<f64>,
     /// What it is, for a person.
-    pub what: &'static str,
+    pub(super) what: &'static str,
 }
 
 static TABLE: LazyLock<Vec<DamageKind>> = LazyLock::new(|| {
@@ -72,17 +73,20 @@ impl DamageKind {
 
     /// Damages the drop and its cask file, then its recording.
     pub(super) fn strike(&self, drop: &mut DrawnDrop, size: f64) -> SyntheticRecording {
-        chain::strike(self.name, drop, size);
-        stated::strike(self.name, drop, size);
+        if self.of == "stated" {
+            stated::strike(self.name, drop, size);
+        } else {
+            chain::strike(self.name, drop, size);
+        }
         let mut recording = drop.recorded();
         samples::strike(self.name, drop, &mut recording, size);
         recording
     }
 
-    /// The drop of a sound plan with a flight of `flight_s`, and its recording, grown to this size.
-    pub(super) fn grown(&self, plan: &DropPlan, flight_s: f64, size: f64) -> (DrawnDrop, SyntheticRecording) {
+    /// The drop of a sound plan, and its recording, grown to this size.
+    pub(super) fn grown(&self, plan: &DropPlan, size: f64) -> (DrawnDrop, SyntheticRecording) {
         let mut plan = plan.clone();
-        harder::harden(self.name, &mut plan, flight_s, size);
+        harder::harden(self.name, &mut plan, size);
         plan.contact = self.wish(size).contact.unwrap_or(plan.contact);
         let mut drop = plan.draw();
         let recording = self.strike(&mut drop, size);
@@ -135,7 +139,7 @@ mod tests {
                 said(&struck, &recording) != untouched
             };
             let is_hard = !kind.growing.is_empty() && {
-                let (hard, recording) = kind.grown(&plan, 0.1, size);
+                let (hard, recording) = kind.grown(&plan, size);
                 assert!(!recording.channels.is_empty());
                 format!("{:?}", hard.scene) != format!("{:?}", plan.draw().scene)
             };

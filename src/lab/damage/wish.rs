@@ -3,9 +3,10 @@
 use crate::data::Contact;
 
 /// What happens between the two impacts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(in super::super) enum BetweenImpacts {
     /// L flies until R strikes.
+    #[default]
     Free,
     /// L touches again before.
     LandsAgain,
@@ -13,8 +14,8 @@ pub(in super::super) enum BetweenImpacts {
     Short,
 }
 
-/// What a damage needs of the drop that it strikes.
-#[derive(Debug, Clone, Copy)]
+/// What a damage needs of the drop that it strikes; by default nothing, as of an undamaged one.
+#[derive(Debug, Clone, Copy, Default)]
 pub(in super::super) struct Wish {
     /// What happens between the impacts.
     pub flight: BetweenImpacts,
@@ -31,16 +32,6 @@ pub(in super::super) struct Wish {
 }
 
 impl Wish {
-    /// Anything: of an undamaged drop.
-    pub(in super::super) const ANY: Self = Self {
-        flight: BetweenImpacts::Free,
-        contact: None,
-        axial: None,
-        rest: None,
-        third_channel: false,
-        slow_recorder: false,
-    };
-
     /// Of words such as "friction no_axial", for a damage of this size.
     pub(super) fn of(words: &str, size: f64) -> Self {
         let has = |word: &str| words.split(' ').any(|one| one == word);

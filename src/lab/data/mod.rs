@@ -6,8 +6,6 @@ mod synthetic;
 mod trial;
 
 pub use campaign::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber, Scored};
-pub use scene::{BendingMode, Chain, CrushableEnd, Scene, SceneChannel, SimulatedMotion, Truth};
+pub use scene::{BendingMode, Chain, CrushableEnd, MotionStep, Scene, SceneChannel, SimulatedMotion, Truth};
 pub use synthetic::{SceneFile, SyntheticChannel, SyntheticRecording, WantedImpact};
-pub use trial::{
-    Trial, TrialJob, TrialLine, TrialMachine, TrialMap, TrialPart, TrialPeerWork, TrialPoint, TrialRequest,
-};
+pub use trial::{Trial, TrialMachine, TrialMap, TrialPoint, TrialRequest, TrialSize};

@@ -27,7 +27,7 @@ pub struct BendingMode {
 }
 
 /// What a sensor and its chain do to the specific force at its place.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Chain {
     /// Inclination of the sensitive axis towards the other body axis, rad.
     pub tilt_rad: f64,
@@ -71,26 +71,7 @@ impl Chain {
     /// A chain that alters nothing.
     #[must_use]
     pub fn perfect() -> Self {
-        Self {
-            tilt_rad: 0.0,
-            cross_axis: 0.0,
-            resonance: None,
-            ac_time_constant_s: None,
-            anti_alias_hz: None,
-            scale: 1.0,
-            offset_m_s2: 0.0,
-            zero_shift_m_s2: 0.0,
-            white_noise_m_s2: 0.0,
-            pink_noise_m_s2: 0.0,
-            hum: None,
-            cable_noise_m_s2: 0.0,
-            full_scale_m_s2: None,
-            bits: None,
-            dropouts_s: Vec::new(),
-            gaps_s: Vec::new(),
-            skew_s: 0.0,
-            swapped_polarity: false,
-        }
+        Self { scale: 1.0, ..Self::default() }
     }
 }
 
@@ -165,33 +146,34 @@ pub struct Scene {
     pub channels: Vec<SceneChannel>,
 }
 
-/// The simulated motion at the integrator's own times, 0 at first contact.
+/// The simulated motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulatedMotion {
-    /// Times, s, ascending.
-    pub time_s: Vec<f64>,
-    /// Position of S, m: x, z.
-    pub position_m: Vec<(f64, f64)>,
-    /// Inclination, rad.
-    pub angle_rad: Vec<f64>,
-    /// Velocity of S, m/s: ẋ, ż.
-    pub velocity_m_s: Vec<(f64, f64)>,
-    /// φ̇, rad/s.
-    pub turning_rad_s: Vec<f64>,
-    /// Acceleration of S, m/s²: ẍ, z̈.
-    pub acceleration_m_s2: Vec<(f64, f64)>,
-    /// φ̈, rad/s².
-    pub angular_acceleration_rad_s2: Vec<f64>,
-    /// Force on L's corner, N: tangential, normal.
-    pub first_end_n: Vec<(f64, f64)>,
-    /// Force on R's corner, N: tangential, normal.
-    pub second_end_n: Vec<(f64, f64)>,
-    /// Velocity of each bending mode's coordinate, m/s: a list over the times for each mode, before its strength.
-    pub bending_m_s: Vec<Vec<f64>>,
-    /// Acceleration of each bending mode's coordinate, m/s², in the same way.
-    pub bending_m_s2: Vec<Vec<f64>>,
+    /// At the integrator's own times, ascending; twice where a contact changes and acceleration may step.
+    pub steps: Vec<MotionStep>,
     /// What a perfect measurement would say.
     pub truth: Truth,
+}
+
+impl SimulatedMotion {
+    /// How many steps lie at times that meet `is_before`, as they do from the first one on.
+    pub fn count_before(&self, is_before: impl Fn(f64) -> bool) -> usize {
+        self.steps.partition_point(|step| is_before(step.time_s))
+    }
+}
+
+/// The simulated motion at one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotionStep {
+    /// Since first contact, s.
+    pub time_s: f64,
+    /// 0 to 2: x and z of S, m, and the inclination, rad; 3 to 5: their rates; then the coordinate of each bending mode, m, and its rate,
+    /// both before its strength.
+    pub state: [f64; 12],
+    /// The rate of each of these.
+    pub rates: [f64; 12],
+    /// Forces on the corners of L and R, N: tangential, normal.
+    pub loads_n: [(f64, f64); 2],
 }
 
 /// What a perfect measurement would say. Times count from first contact.

@@ -1,169 +1,96 @@
-//! Methods that do the same work, and cases of it, to points and lines of the trial: how far off each is, and what it costs.
+//! Methods that do the same work, and cases of it, to points of the trial: how far off each is, and what it costs.
 
-use super::timing::{Effort, Timing, Work, in_turn};
-use crate::lab::data::{TrialLine, TrialMap, TrialPart, TrialPoint, TrialRequest};
+use super::timing::{Work, in_turn};
+use crate::lab::data::{TrialPoint, TrialRequest};
+use crate::numerics::as_f64;
 use rayon::prelude::*;
 use std::hint::black_box;
 
 /// What stands for an error that is no number or beyond all bounds: the method diverged.
 pub(super) const DIVERGED: f64 = 1e9;
 
-/// What all points of a chart share.
-#[derive(Clone, Copy)]
-pub(super) struct Purpose {
+/// What a method that answers a call is off by where it gives no number, %: wholly.
+const NO_NUMBER: f64 = 100.0;
+
+/// Makes an outcome of a case; none where it gives no number.
+type Run<C, O> = Box<dyn Fn(&C) -> Option<O> + Sync>;
+
+/// A way to make an outcome `O` of a case `C`.
+pub(super) struct Method<C, O> {
+    /// Its public name.
+    name: String,
+    run: Run<C, O>,
+}
+
+impl<C, O> Method<C, O> {
+    pub(super) fn new(name: impl Into<String>, run: impl Fn(&C) -> Option<O> + Sync + 'static) -> Self {
+        Self { name: name.into(), run: Box::new(run) }
+    }
+}
+
+/// A family of methods for the same work.
+pub(super) struct Contest<C, O> {
     /// What the methods are for: "filter".
-    pub name: &'static str,
+    pub family: &'static str,
     /// Of what the error is a share, or its unit.
     pub error_unit: &'static str,
-    /// What the time is of: "sample", "call".
-    pub time_per: &'static str,
-    /// What a case counts as in which a method gives no number.
-    pub missing: f64,
-}
-
-/// What a method did on the cases of a class.
-pub(super) struct MethodRecord {
-    pub method: String,
-    pub is_default: bool,
-    pub errors: Vec<Option<f64>>,
-    pub timing: Timing,
-}
-
-impl Purpose {
-    /// Of methods whose time is that of a sample.
-    pub(super) const fn of_samples(name: &'static str, error_unit: &'static str) -> Self {
-        Self { name, error_unit, time_per: "sample", missing: DIVERGED }
-    }
-
-    /// Of methods that answer a call by a number; without one they are wholly off.
-    pub(super) const fn of_calls(name: &'static str, error_unit: &'static str) -> Self {
-        Self { name, error_unit, time_per: "call", missing: 100.0 }
-    }
-
-    /// The point of a method on a class.
-    pub(super) fn point(&self, class: &str, record: MethodRecord) -> TrialPoint {
-        let cases = u32::try_from(record.errors.len()).unwrap_or(u32::MAX);
-        let errors = record.errors.into_iter().map(|error| error.unwrap_or(self.missing));
-        let [median_error, p95_error] = median_and_p95(errors.collect());
-        TrialPoint {
-            family: self.name.to_owned(),
-            method: record.method,
-            class: class.to_owned(),
-            is_default: record.is_default,
-            median_error,
-            p95_error,
-            error_unit: self.error_unit.to_owned(),
-            time_ns: record.timing.median_ns,
-            time_quartiles_ns: record.timing.quartiles_ns,
-            time_per: self.time_per.to_owned(),
-            cases,
-        }
-    }
-}
-
-/// Methods `M` that make an outcome `O` of a case `C`.
-pub(super) struct Contest<M, C, O> {
-    pub purpose: Purpose,
-    pub methods: Vec<M>,
-    /// What the program takes where nothing is said.
-    pub default: M,
-    /// The method by its public name.
-    pub name: fn(M) -> String,
-    /// The work; none where the method gives no number.
-    pub run: fn(M, &C) -> Option<O>,
-    /// How far off the outcome is.
+    /// How many samples a case has, of which one is timed; none: a call is timed.
+    pub samples: Option<fn(&C) -> usize>,
+    /// What the program takes where nothing is said, then its rivals.
+    pub methods: Vec<Method<C, O>>,
+    /// How far off an outcome is.
     pub error: fn(&C, O) -> f64,
-    /// How many of what the time is of a case has.
-    pub parts: fn(&C) -> usize,
 }
 
-impl<M: Copy + PartialEq + Sync, C: Sync, O> Contest<M, C, O> {
-    /// The error of each method, in their order, on each case.
-    fn errors(&self, cases: &[C]) -> Vec<Vec<Option<f64>>> {
-        let on = |case: &C, method: M| (self.run)(method, case).map(|outcome| (self.error)(case, outcome));
-        let of_case = |case: &C| -> Vec<_> { self.methods.iter().map(|method| on(case, *method)).collect() };
-        let by_case: Vec<Vec<Option<f64>>> = cases.par_iter().map(of_case).collect();
-        (0..self.methods.len()).map(|i| by_case.iter().map(|errors| errors[i]).collect()).collect()
-    }
-
-    /// The points of a class of cases; times are those of the first `timed` of them.
-    pub(super) fn points(
+impl<C: Sync, O> Contest<C, O> {
+    /// The points of class after class, of which `named` gives the name and the cases.
+    pub(super) fn points<K>(
         &self,
-        class: &str,
-        cases: &[C],
-        timed: usize,
+        classes: &[K],
         request: &TrialRequest,
+        named: impl Fn(&K) -> (String, Vec<C>),
     ) -> Vec<TrialPoint> {
-        let timed = &cases[..timed.min(cases.len())];
-        let work = |method: &M| -> Work {
-            let method = *method;
-            Box::new(move || {
-                for case in timed {
-                    drop(black_box((self.run)(method, black_box(case))));
-                }
-            })
+        let of_class = |class| {
+            let (name, cases) = named(class);
+            self.of_class(&name, &cases, request)
         };
-        let parts = timed.iter().map(self.parts).sum();
-        let timings =
-            in_turn(&mut self.methods.iter().map(work).collect::<Vec<_>>(), Effort::of(request.quick));
-        let records = self.methods.iter().zip(self.errors(cases)).zip(timings);
-        let point = |((method, errors), timing): ((&M, Vec<Option<f64>>), Timing)| {
-            let (method, is_default) = ((self.name)(*method), *method == self.default);
-            self.purpose.point(class, MethodRecord { method, is_default, errors, timing: timing.per(parts) })
-        };
-        if cases.is_empty() { Vec::new() } else { records.map(point).collect() }
+        classes.iter().flat_map(of_class).collect()
     }
 
-    /// The median error of each method over the cases at each stress; none where fewer than half of them have a number.
-    pub(super) fn lines<S: Sync>(
-        &self,
-        stresses: &[S],
-        cases: impl Fn(&S) -> Vec<C> + Sync,
-    ) -> Vec<TrialLine> {
-        let column = |stress: &S| -> Vec<_> {
-            self.errors(&cases(stress)).iter().map(|errors| middle(errors)).collect()
+    /// Times are those of the first case.
+    fn of_class(&self, class: &str, cases: &[C], request: &TrialRequest) -> Vec<TrialPoint> {
+        let Some(first) = cases.first() else { return Vec::new() };
+        let mut work: Vec<Work> = Vec::new();
+        for Method { run, .. } in &self.methods {
+            work.push(Box::new(move || drop(black_box(run(black_box(first))))));
+        }
+        let times_ns = in_turn(&mut work, request.quick);
+        let (time_per, parts, missing) = match self.samples {
+            Some(samples) => ("sample", samples(first), DIVERGED),
+            None => ("call", 1, NO_NUMBER),
         };
-        let columns: Vec<Vec<Option<f64>>> = stresses.par_iter().map(column).collect();
-        let line = |(i, method): (usize, &M)| {
-            silent_line((self.name)(*method), columns.iter().map(|column| column[i]).collect())
+        let point = |(i, (method, time_ns)): (usize, (&Method<C, O>, [f64; 3]))| {
+            let error = |case: &C| (method.run)(case).map_or(missing, |outcome| (self.error)(case, outcome));
+            TrialPoint {
+                family: self.family.to_owned(),
+                method: method.name.clone(),
+                class: class.to_owned(),
+                is_default: i == 0,
+                error_unit: self.error_unit.to_owned(),
+                time_per: time_per.to_owned(),
+                ..measured(cases.par_iter().map(error).collect(), time_ns.map(|ns| ns / as_f64(parts)))
+            }
         };
-        self.methods.iter().enumerate().map(line).collect()
+        self.methods.iter().zip(times_ns).enumerate().map(point).collect()
     }
 }
 
-/// A map by its name, its title, what grows and what the error is; above `limit` a method has failed.
-pub(super) fn map(words: [&str; 4], stresses: Vec<f64>, limit: f64, lines: Vec<TrialLine>) -> TrialMap {
-    let [name, title, stress, error] = words.map(str::to_owned);
-    let least = stresses.iter().copied().fold(f64::INFINITY, f64::min);
-    let largest = stresses.iter().copied().fold(0.0, f64::max);
-    TrialMap {
-        name,
-        title,
-        stress,
-        is_log: least > 0.0 && largest > 10.0 * least,
-        stresses,
-        error,
-        limit,
-        lines,
-    }
-}
-
-/// Some of a list: all in the full run, every third in the quick one.
-pub(super) fn some_of(values: &[f64], request: &TrialRequest) -> Vec<f64> {
-    values.iter().copied().step_by(if request.quick { 3 } else { 1 }).collect()
-}
-
-/// A line of a map whose method has no way to say that something is wrong.
-pub(super) fn silent_line(method: String, errors: Vec<Option<f64>>) -> TrialLine {
-    let noticed = vec![None; errors.len()];
-    let errors = errors.into_iter().map(|e| e.map(|e| median_and_p95(vec![e])[0])).collect();
-    TrialLine { method, errors, noticed }
-}
-
-/// The median of the numbers; none where fewer than half are any.
-pub(super) fn middle(errors: &[Option<f64>]) -> Option<f64> {
-    let numbers: Vec<f64> = errors.iter().copied().flatten().collect();
-    (2 * numbers.len() > errors.len()).then(|| median_and_p95(numbers)[0])
+/// A point of the errors of cases and the quartiles of a time, its words still to be given.
+pub(super) fn measured(errors: Vec<f64>, [lower_ns, time_ns, upper_ns]: [f64; 3]) -> TrialPoint {
+    let cases = u32::try_from(errors.len()).unwrap_or(u32::MAX);
+    let [median_error, p95_error] = median_and_p95(errors);
+    let time_quartiles_ns = [lower_ns, upper_ns];
+    TrialPoint { median_error, p95_error, time_ns, time_quartiles_ns, cases, ..TrialPoint::default() }
 }
 
 /// Median and 95th percentile, each that of a case; what is no number counts as diverged.
@@ -176,26 +103,6 @@ pub(super) fn median_and_p95(mut errors: Vec<f64>) -> [f64; 2] {
     [errors[last / 2], errors[(95 * last).div_ceil(100)]]
 }
 
-/// The points of class after class; `progress` is told the share that is done.
-pub(super) fn by_class<K>(
-    classes: &[K],
-    progress: &dyn Fn(f64),
-    of_class: impl Fn(&K) -> Vec<TrialPoint>,
-) -> TrialPart {
-    let mut part = TrialPart::default();
-    for (done, class) in classes.iter().enumerate() {
-        progress(fraction(done, classes.len()));
-        part.points.extend(of_class(class));
-    }
-    part
-}
-
-/// `part` of `whole`.
-#[allow(clippy::cast_precision_loss, reason = "a share for a progress bar")]
-pub(super) fn fraction(part: usize, whole: usize) -> f64 {
-    part as f64 / whole.max(1) as f64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -205,12 +112,5 @@ mod tests {
         let bits = |values: [f64; 2]| values.map(f64::to_bits);
         assert_eq!(bits(median_and_p95(vec![3.0, -1.0, 2.0])), bits([2.0, 3.0]));
         assert_eq!(bits(median_and_p95(vec![f64::NAN, 1.0])), bits([1.0, DIVERGED]));
-        assert_eq!(middle(&[Some(2.0), None]), None);
-    }
-
-    #[test]
-    fn an_axis_is_logarithmic_over_more_than_a_decade() {
-        let is_log = |stresses: &[f64]| map([""; 4], stresses.to_vec(), 1.0, Vec::new()).is_log;
-        assert!(is_log(&[100.0, 1.0]) && !is_log(&[2.0, 20.0]) && !is_log(&[100.0, 0.0]));
     }
 }

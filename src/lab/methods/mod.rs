@@ -1,48 +1,59 @@
-//! Each method of the program beside its rivals: time, error against a truth, and where it fails.
+//! Each method of the program beside its rivals: time and error against a truth; and where the program fails.
 
 mod contest;
+mod cutoff;
+mod detection;
+mod detector;
 mod drops;
+mod ends;
+mod filters;
+mod flight;
 mod front;
-pub mod rivals;
-mod samples;
+mod gustafsson;
+mod integration;
+mod prediction;
+mod reconstruction;
+mod reference;
+mod roots;
+mod sweep;
 pub mod timing;
 
-pub use front::front;
+use crate::ingest::Progress;
+use crate::lab::data::{Trial, TrialMachine, TrialPoint, TrialRequest};
+use crate::numerics::as_f64;
 
-use crate::lab::data::{Trial, TrialJob, TrialMachine, TrialPart, TrialPeerWork, TrialRequest};
+/// Tries the methods of a family.
+type Trying = fn(&TrialRequest) -> Vec<TrialPoint>;
 
-/// The parts of the trial, in the order in which they run.
+/// The families by name, in the order in which they are shown.
+pub const FAMILIES: [(&str, Trying); 9] = [
+    ("filters", filters::points),
+    ("record-ends", ends::points),
+    ("integration", integration::points),
+    ("cut-off", cutoff::points),
+    ("first-contact", detection::points),
+    ("flight-fit", flight::points),
+    ("reconstruction", reconstruction::points),
+    ("root", roots::points),
+    ("prediction", prediction::points),
+];
+
+/// The whole trial; `progress` is told the share that is done.
 #[must_use]
-pub fn jobs() -> Vec<TrialJob> {
-    [samples::jobs(), drops::jobs()].concat()
-}
-
-/// The work that programs of others are given too.
-#[must_use]
-pub fn peer_work(request: &TrialRequest) -> Vec<TrialPeerWork> {
-    [samples::peer_work(request), drops::peer_work(request)].concat()
-}
-
-/// All parts as one trial; `peers` says what became of the programs of others.
-#[must_use]
-pub fn gather(
-    request: TrialRequest,
-    machine: TrialMachine,
-    peers: String,
-    parts: impl IntoIterator<Item = TrialPart>,
-) -> Trial {
-    let (mut points, mut maps) = (Vec::new(), Vec::new());
-    for part in parts {
-        points.extend(part.points);
-        maps.extend(part.maps);
+pub fn trial(request: TrialRequest, machine: TrialMachine, progress: Progress) -> Trial {
+    let mut points = Vec::new();
+    for (done, (_, tried)) in FAMILIES.iter().enumerate() {
+        // The maps take the other half of the time.
+        progress(0.5 * as_f64(done) / as_f64(FAMILIES.len()));
+        points.extend(tried(&request));
     }
+    let maps = sweep::maps(&request, &|share| progress(0.5 + 0.5 * share));
+    front::mark_front(&mut points);
     Trial {
-        schema: "dropcheck.validation/1".to_owned(),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
+        schema: "dropcheck.validation/2",
+        version: env!("CARGO_PKG_VERSION"),
         request,
         machine,
-        peers,
-        is_on_front: front(&points),
         points,
         maps,
     }

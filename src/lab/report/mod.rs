@@ -1,4 +1,4 @@
-//! A synthetic recording to its files, a trial to its page, charts and tables.
+//! A synthetic recording to its files, a trial to its page, pictures and tables.
 
 mod synthetic;
 mod trial;

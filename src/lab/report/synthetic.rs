@@ -54,8 +54,8 @@ pub fn synthetic_files(
     let recording = &mounted(scene_file, recording);
     let places = place::places(recording, format);
     let bytes = match format {
-        SyntheticFormat::McapJson => mcap::bytes(recording, &places, mcap::BlockEncoding::Json)?,
-        SyntheticFormat::McapProtobuf => mcap::bytes(recording, &places, mcap::BlockEncoding::Protobuf)?,
+        SyntheticFormat::McapJson => mcap::bytes(recording, &places, true)?,
+        SyntheticFormat::McapProtobuf => mcap::bytes(recording, &places, false)?,
         SyntheticFormat::Hdf5 => hdf5::bytes(recording, &places)?,
         SyntheticFormat::Csv => csv::bytes(recording, &places)?,
     };

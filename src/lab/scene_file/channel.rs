@@ -1,6 +1,6 @@
 //! A `[[channel]]` table of a scene file to the channel as it is and the channel as the cask file will state it.
 
-use super::values::{flag, number_or, size_or, spans_s};
+use super::values::{contradicts, flag, given, spans_s, value, whole};
 use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, STANDARD_GRAVITY_M_S2, Source, Unit};
 use crate::ingest::cask_file::CaskFileError;
 use crate::ingest::cask_file::channel::{coupling, polarity};
@@ -8,18 +8,10 @@ use crate::ingest::cask_file::section::Section;
 use crate::lab::data::{Chain, SceneChannel};
 use crate::lab::drawn::{spec, unit_m_s2};
 
-/// Defaults of a channel: a usual recorder and a usual piezoresistive sensor.
-const SAMPLE_RATE_HZ: f64 = 20_000.0;
-const WHITE_NOISE_G: f64 = 0.1;
-const RESONANCE_DAMPING: f64 = 0.02;
-const MAINS_HZ: f64 = 50.0;
-
 /// Sensors sit this far from their end unless the file says otherwise, m; at most a tenth of the cask.
 const FROM_END_M: f64 = 0.15;
-
-/// The fastest recorder and resonance that are simulated, Hz: faster ones fill the memory.
-const FASTEST_HZ: f64 = 5e6;
-const SLOWEST_HZ: f64 = 100.0;
+/// Deviation of a usual sensor's noise, as the key's default.
+const WHITE_NOISE_G: f64 = 0.1;
 
 /// A channel as it is, and as stated.
 pub(super) type Both = (SceneChannel, ChannelSpec);
@@ -53,33 +45,29 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
     const END: &str = "end = \"first\" (the low end) or \"second\" (the one that slaps down)";
     const AXIS: &str =
         "axis = \"transverse\" (across the cask, in the plane of the drop) or \"axial\" (along it)";
-    let name = table.required_text("name")?.value;
-    let end = table
-        .word("end", &[("first", End::First), ("second", End::Second)], END)?
-        .ok_or_else(|| table.missing("end", END))?;
+    const HIDDEN: &str =
+        "stated_coupling = \"dc\" hides the coupling from the cask file; left out, it is stated as it is";
+    let ends = [("first", End::First), ("second", End::Second)];
+    let end = table.word("end", &ends, END)?.ok_or_else(|| table.missing("end", END))?;
     let axis = table.word("axis", &[("transverse", Axis::Transverse), ("axial", Axis::Axial)], AXIS)?;
     let unit = unit(table, "unit")?.unwrap_or(Unit::G);
     let unit_name = if unit == Unit::G { "g" } else { "m/s^2" };
-    let full_scale = table.positive("full_scale")?.map(|limit| limit.value);
-    let position =
-        |key| table.within(key, &(0.0..=cask.length_m), "metres along the axis from the first end");
+    let full_scale = given(table, "full_scale")?;
     let coupling = coupling(table)?;
     let channel = SceneChannel {
-        name,
+        name: table.required_text("name")?.value,
         end,
         axis: axis.unwrap_or(Axis::Transverse),
-        position_m: position("position_m")?.unwrap_or_else(|| usual_position_m(cask, end)),
-        offset_m: number_or(table, "offset_m", 0.0)?,
+        position_m: position_m(table, "position_m", cask)?.unwrap_or_else(|| usual_position_m(cask, end)),
+        offset_m: value(table, "offset_m")?,
         unit: unit_name.to_owned(),
-        sample_rate_hz: table
-            .within("sample_rate_hz", &(SLOWEST_HZ..=FASTEST_HZ), "samples a second")?
-            .unwrap_or(SAMPLE_RATE_HZ),
+        sample_rate_hz: value(table, "sample_rate_hz")?,
         chain: chain(table, coupling, full_scale.map(|limit| limit * unit_m_s2(unit_name)))?,
     };
-    let is_hidden = stated_dc(table)?;
+    let is_hidden = table.word("stated_coupling", &[("dc", true)], HIDDEN)?.unwrap_or(false);
     let stated = ChannelSpec {
         unit: Some(self::unit(table, "stated_unit")?.unwrap_or(unit)),
-        position_m: position("stated_position_m")?.unwrap_or(channel.position_m),
+        position_m: position_m(table, "stated_position_m", cask)?.unwrap_or(channel.position_m),
         polarity: polarity(table)?,
         full_scale,
         coupling: if is_hidden { Coupling::Dc } else { coupling },
@@ -95,95 +83,47 @@ fn unit(table: &Section, key: &str) -> Result<Option<Unit>, CaskFileError> {
     Ok(word.map(|is_si| if is_si { Unit::MetrePerSecondSquared } else { Unit::G }))
 }
 
-/// Whether the cask file is to hide an AC coupling.
-fn stated_dc(table: &Section) -> Result<bool, CaskFileError> {
-    const MEND: &str =
-        "stated_coupling = \"dc\" hides the coupling from the cask file; left out, it is stated as it is";
-    Ok(table.word("stated_coupling", &[("dc", true)], MEND)?.unwrap_or(false))
+fn position_m(table: &Section, key: &str, cask: &Cask) -> Result<Option<f64>, CaskFileError> {
+    match table.number(key)? {
+        Some(at) if !(0.0..=cask.length_m).contains(&at.value) => {
+            let (what, allowed) = (format!("{key} is {}", at.value), 0.0..=cask.length_m);
+            Err(table.outside(at.span, &what, &allowed, "metres along the axis from the first end"))
+        }
+        at => Ok(at.map(|at| at.value)),
+    }
 }
 
 fn chain(table: &Section, coupling: Coupling, full_scale_m_s2: Option<f64>) -> Result<Chain, CaskFileError> {
-    let in_g = |key, default| size_or(table, key, default).map(|g| g * STANDARD_GRAVITY_M_S2);
-    let frequency = |key| table.within(key, &(1.0..=FASTEST_HZ), "in Hz");
+    for (key, needs) in [("resonance_damping", "resonance_hz"), ("hum_hz", "hum_g"), ("bits", "full_scale")] {
+        if table.value(key).is_some() && table.value(needs).is_none() {
+            let mend = format!("add {needs}, or delete {key}");
+            return Err(contradicts(table, key, &format!("no meaning without {needs}"), &mend));
+        }
+    }
+    let value = |key| value(table, key);
+    let in_g = |key| Ok::<_, CaskFileError>(value(key)? * STANDARD_GRAVITY_M_S2);
+    let (damping, hum_hz) = (value("resonance_damping")?, value("hum_hz")?);
     Ok(Chain {
-        tilt_rad: table
-            .within("tilt_deg", &(-90.0..=90.0), "degrees towards the other body axis")?
-            .unwrap_or(0.0)
-            .to_radians(),
-        cross_axis: table
-            .within("cross_axis_percent", &(-100.0..=100.0), "usual are 1 to 5 percent")?
-            .unwrap_or(0.0)
-            / 100.0,
-        resonance: beside(
-            table,
-            frequency("resonance_hz")?,
-            ("resonance_damping", "resonance_hz"),
-            table.within("resonance_damping", &(0.001..=2.0), "share of critical damping")?,
-            RESONANCE_DAMPING,
-        )?,
+        tilt_rad: value("tilt_deg")?.to_radians(),
+        cross_axis: value("cross_axis_percent")? / 100.0,
+        resonance: given(table, "resonance_hz")?.map(|hz| (hz, damping)),
         ac_time_constant_s: match coupling {
             Coupling::Dc => None,
             Coupling::Ac { time_constant_s } => Some(time_constant_s),
         },
-        anti_alias_hz: frequency("anti_alias_hz")?,
-        scale: table.positive("scale")?.map_or(1.0, |scale| scale.value),
-        offset_m_s2: number_or(table, "offset_g", 0.0)? * STANDARD_GRAVITY_M_S2,
-        zero_shift_m_s2: number_or(table, "zero_shift_g", 0.0)? * STANDARD_GRAVITY_M_S2,
-        white_noise_m_s2: in_g("white_noise_g", WHITE_NOISE_G)?,
-        pink_noise_m_s2: in_g("pink_noise_g", 0.0)?,
-        hum: beside(
-            table,
-            table.positive("hum_g")?.map(|hum| hum.value * STANDARD_GRAVITY_M_S2),
-            ("hum_hz", "hum_g"),
-            frequency("hum_hz")?,
-            MAINS_HZ,
-        )?,
-        cable_noise_m_s2: in_g("cable_noise_g", 0.0)?,
+        anti_alias_hz: given(table, "anti_alias_hz")?,
+        scale: value("scale")?,
+        offset_m_s2: in_g("offset_g")?,
+        zero_shift_m_s2: in_g("zero_shift_g")?,
+        white_noise_m_s2: in_g("white_noise_g")?,
+        pink_noise_m_s2: in_g("pink_noise_g")?,
+        hum: given(table, "hum_g")?.map(|hum_g| (hum_g * STANDARD_GRAVITY_M_S2, hum_hz)),
+        cable_noise_m_s2: in_g("cable_noise_g")?,
         full_scale_m_s2,
-        bits: bits(table, full_scale_m_s2)?,
+        bits: whole(table, "bits")?,
         dropouts_s: spans_s(table, "dropouts_s")?,
         gaps_s: spans_s(table, "gaps_s")?,
-        skew_s: number_or(table, "skew_ms", 0.0)? * 1e-3,
+        skew_s: value("skew_ms")? * 1e-3,
         swapped_polarity: flag(table, "swapped_polarity")?,
     })
-}
-
-/// `first` with its companion, which alone means nothing.
-fn beside(
-    table: &Section,
-    first: Option<f64>,
-    (key, needs): (&str, &str),
-    companion: Option<f64>,
-    default: f64,
-) -> Result<Option<(f64, f64)>, CaskFileError> {
-    match (first, companion) {
-        (None, Some(_)) => Err(alone(table, key, needs)),
-        (first, companion) => Ok(first.map(|first| (first, companion.unwrap_or(default)))),
-    }
-}
-
-fn alone(table: &Section, key: &str, needs: &str) -> CaskFileError {
-    table.wrong(
-        table.value(key).map_or_else(|| table.span(), toml::Spanned::span),
-        format!("{key} has no meaning without {needs}"),
-        format!("only with {needs}"),
-        &format!("add {needs}, or delete {key}"),
-    )
-}
-
-fn bits(table: &Section, full_scale_m_s2: Option<f64>) -> Result<Option<u8>, CaskFileError> {
-    let bits = super::values::whole(table, "bits")?;
-    let Some(bits) = bits else { return Ok(None) };
-    match u8::try_from(bits.value) {
-        Ok(number) if (2..=32).contains(&number) => match full_scale_m_s2 {
-            Some(_) => Ok(Some(number)),
-            None => Err(alone(table, "bits", "full_scale")),
-        },
-        _ => Err(table.wrong(
-            bits.span,
-            format!("bits is {}, outside 2 to 32", bits.value),
-            "2 to 32".into(),
-            "the bits of the converter over ± full_scale; usual are 12 to 24",
-        )),
-    }
 }

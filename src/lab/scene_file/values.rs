@@ -1,34 +1,41 @@
-//! Values that only scene files have, yes or no, whole numbers, shares and spans of time, to numbers or diagnostics.
+//! Values of scene files, numbers with their defaults, yes or no, whole numbers and spans of time, to themselves or to diagnostics.
 
 use crate::ingest::cask_file::CaskFileError;
-use crate::ingest::cask_file::section::{Placed, Section};
+use crate::ingest::cask_file::section::Section;
 use toml::de::DeValue;
+
+/// A number; none where the key is left out.
+pub(super) fn given(table: &Section, key: &str) -> Result<Option<f64>, CaskFileError> {
+    Ok(table.number(key)?.map(|number| number.value))
+}
+
+/// A number, the key's default where it is left out.
+pub(super) fn value(table: &Section, key: &str) -> Result<f64, CaskFileError> {
+    let default = || table.row(key).and_then(|row| row.default.parse().ok()).unwrap_or(0.0);
+    Ok(given(table, key)?.unwrap_or_else(default))
+}
 
 /// `true` or `false`; false where the key is missing.
 pub(super) fn flag(table: &Section, key: &str) -> Result<bool, CaskFileError> {
     let Some(value) = table.value(key) else { return Ok(false) };
-    match value.get_ref() {
-        DeValue::Boolean(flag) => Ok(*flag),
-        _ => Err(table.wrong(
+    value.get_ref().as_bool().ok_or_else(|| {
+        table.wrong(
             value.span(),
             format!("{key} is neither true nor false"),
             "true or false".into(),
             &format!("write {key} = true, or delete the line"),
-        )),
-    }
+        )
+    })
 }
 
-/// A whole number of 0 or more.
-pub(super) fn whole(table: &Section, key: &str) -> Result<Option<Placed<u64>>, CaskFileError> {
-    let Some(value) = table.value(key) else { return Ok(None) };
-    let number = match value.get_ref() {
-        DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().replace('_', "").parse().ok(),
-        _ => None,
-    };
-    match number {
-        Some(number) => Ok(Some(Placed { value: number, span: value.span() })),
+/// A whole number of 0 or more, within the key's range.
+pub(super) fn whole<T: std::str::FromStr>(table: &Section, key: &str) -> Result<Option<T>, CaskFileError> {
+    let Some(number) = table.number(key)? else { return Ok(None) };
+    let written = table.value(key).and_then(|value| value.get_ref().as_integer());
+    match written.and_then(|integer| integer.as_str().replace('_', "").parse().ok()) {
+        Some(whole) => Ok(Some(whole)),
         None => Err(table.wrong(
-            value.span(),
+            number.span,
             format!("{key} is no whole number of 0 or more"),
             "a whole number".into(),
             &format!("write it without point, sign and quotes: {key} = 1"),
@@ -36,24 +43,12 @@ pub(super) fn whole(table: &Section, key: &str) -> Result<Option<Placed<u64>>, C
     }
 }
 
-/// A number, `default` where the key is missing.
-pub(super) fn number_or(table: &Section, key: &str, default: f64) -> Result<f64, CaskFileError> {
-    Ok(table.number(key)?.map_or(default, |number| number.value))
-}
-
-/// A number of 0 or more, `default` where the key is missing.
-pub(super) fn size_or(table: &Section, key: &str, default: f64) -> Result<f64, CaskFileError> {
-    Ok(table.not_negative(key)?.map_or(default, |number| number.value))
-}
-
 /// A list of `[from, to]`, in s after the first sample.
 pub(super) fn spans_s(table: &Section, key: &str) -> Result<Vec<(f64, f64)>, CaskFileError> {
     let Some(value) = table.value(key) else { return Ok(Vec::new()) };
-    let spans = match value.get_ref() {
-        DeValue::Array(items) => items.iter().map(|item| pair(item.get_ref())).collect(),
-        _ => None,
-    };
-    spans.ok_or_else(|| {
+    let spans =
+        value.get_ref().as_array().map(|items| items.iter().map(|item| pair(item.get_ref())).collect());
+    spans.flatten().ok_or_else(|| {
         table.wrong(
             value.span(),
             format!("{key} is no list of spans"),
@@ -66,8 +61,7 @@ pub(super) fn spans_s(table: &Section, key: &str) -> Result<Vec<(f64, f64)>, Cas
 }
 
 fn pair(value: &DeValue) -> Option<(f64, f64)> {
-    let DeValue::Array(ends) = value else { return None };
-    let [from, to] = ends.iter().collect::<Vec<_>>()[..] else { return None };
+    let [from, to] = value.as_array()?.iter().collect::<Vec<_>>()[..] else { return None };
     let seconds = |value: &DeValue| {
         let text = match value {
             DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str(),
@@ -78,4 +72,10 @@ fn pair(value: &DeValue) -> Option<(f64, f64)> {
     };
     let (from_s, to_s) = (seconds(from.get_ref())?, seconds(to.get_ref())?);
     (from_s < to_s).then_some((from_s, to_s))
+}
+
+/// The refusal of a key that the other keys of its table leave no meaning.
+pub(super) fn contradicts(table: &Section, key: &str, expected: &str, mend: &str) -> CaskFileError {
+    let message = format!("{key} contradicts its table: {expected}");
+    table.wrong(table.place(key), message, expected.to_owned(), mend)
 }

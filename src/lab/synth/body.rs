@@ -1,7 +1,7 @@
 //! State of the cask to its rates: a rigid body in the plane with two corners, and the bending modes that ride on it.
 
 use super::beam::{self, MOST_MODES};
-use super::contact::Corner;
+use super::contact::CrushingCorner;
 use crate::data::Contact;
 use crate::lab::data::Scene;
 use ode_solvers::SVector;
@@ -43,16 +43,16 @@ pub(super) type Loads = [(f64, f64); 2];
 
 /// The cask of a scene, with the memory of its dents.
 #[derive(Debug, Clone)]
-pub(super) struct Body<'a> {
+pub(super) struct SceneBody<'a> {
     pub(super) scene: &'a Scene,
-    pub(super) corners: [Corner; 2],
+    pub(super) corners: [CrushingCorner; 2],
     friction: f64,
     hold_s: f64,
     /// Shape of each mode at either end, over the mass, 1/kg.
     driven_per_kg: [[f64; 2]; MOST_MODES],
 }
 
-impl<'a> Body<'a> {
+impl<'a> SceneBody<'a> {
     /// The body as L touches.
     pub(super) fn new(scene: &'a Scene) -> Self {
         let mass_kg = scene.cask.mass_kg;
@@ -63,8 +63,8 @@ impl<'a> Body<'a> {
         Self {
             scene,
             corners: [
-                Corner::new(scene.first_end, mass_kg, true),
-                Corner::new(scene.second_end, mass_kg, false),
+                CrushingCorner::new(scene.first_end, mass_kg, true),
+                CrushingCorner::new(scene.second_end, mass_kg, false),
             ],
             friction: match scene.contact {
                 Contact::Rough => ROUGH,
@@ -112,7 +112,7 @@ impl<'a> Body<'a> {
 
     /// The forces on both corners, N.
     pub(super) fn loads(&self, y: &State) -> Loads {
-        if !self.corners.iter().any(Corner::touches) {
+        if !self.corners.iter().any(CrushingCorner::touches) {
             return [(0.0, 0.0); 2];
         }
         let at = [0, 1].map(|end| self.corner(end, y));

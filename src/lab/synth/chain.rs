@@ -7,15 +7,16 @@ mod analog;
 mod disturbance;
 mod recorder;
 
-use crate::data::STANDARD_GRAVITY_M_S2;
-use crate::data::{Axis, End};
-use crate::lab::data::{Scene, SceneChannel, SimulatedMotion, SyntheticChannel, SyntheticRecording};
+use crate::data::{Axis, End, STANDARD_GRAVITY_M_S2};
+use crate::lab::data::{
+    MotionStep, Scene, SceneChannel, SimulatedMotion, SyntheticChannel, SyntheticRecording,
+};
 
 /// What a perfect sensor at a channel's place and axis reads at given times, m/s².
 type Force<'a> = &'a dyn Fn(&SceneChannel, &[f64]) -> Vec<f64>;
 
 /// The drop as the chain sees it.
-struct Drive<'a> {
+struct SensedDrop<'a> {
     force_m_s2: Force<'a>,
     /// When an end is on the target, s.
     contacts_s: Vec<(f64, f64)>,
@@ -28,8 +29,8 @@ struct Drive<'a> {
 pub fn record(scene: &Scene, motion: &SimulatedMotion) -> SyntheticRecording {
     let force =
         |channel: &SceneChannel, times_s: &[f64]| super::specific_force_m_s2(scene, motion, channel, times_s);
-    let last_s = motion.time_s.last().copied().unwrap_or(0.0);
-    let drive = Drive {
+    let last_s = motion.steps.last().map_or(0.0, |step| step.time_s);
+    let drive = SensedDrop {
         force_m_s2: &force,
         contacts_s: contacts_s(motion),
         end_s: motion.truth.slap_t.map_or(last_s, |slap_s| slap_s + scene.after_s),
@@ -75,8 +76,8 @@ fn seated(scene: &Scene) -> Vec<SceneChannel> {
 fn contacts_s(motion: &SimulatedMotion) -> Vec<(f64, f64)> {
     let mut spans: Vec<(f64, f64)> = Vec::new();
     let mut was_pressed = false;
-    for (i, &time_s) in motion.time_s.iter().enumerate() {
-        let is_pressed = motion.first_end_n[i].1 > 0.0 || motion.second_end_n[i].1 > 0.0;
+    for &MotionStep { time_s, loads_n, .. } in &motion.steps {
+        let is_pressed = loads_n.iter().any(|(_, normal_n)| *normal_n > 0.0);
         match spans.last_mut() {
             Some(span) if is_pressed && was_pressed => span.1 = time_s,
             _ if is_pressed => spans.push((time_s, time_s)),
@@ -87,18 +88,18 @@ fn contacts_s(motion: &SimulatedMotion) -> Vec<(f64, f64)> {
     spans
 }
 
-fn channel(scene: &Scene, seat: &SceneChannel, index: usize, drive: &Drive) -> SyntheticChannel {
+fn channel(scene: &Scene, seat: &SceneChannel, index: usize, drive: &SensedDrop) -> SyntheticChannel {
     let rate_hz = seat.sample_rate_hz * (1.0 + scene.clock_error);
     let count = recorder::count((scene.before_s + drive.end_s) * rate_hz);
     let mut samples_m_s2 = analog::sampled(scene, seat, drive, rate_hz, count);
-    let times = disturbance::Times { from_s: -scene.before_s, rate_hz };
+    let times = disturbance::SampleTimes { from_s: -scene.before_s, rate_hz };
     disturbance::add(&mut samples_m_s2, (scene.seed, index), &seat.chain, &times, &drive.contacts_s);
     let sign = if seat.chain.swapped_polarity { -1.0 } else { 1.0 };
     for sample in &mut samples_m_s2 {
         *sample = recorder::converted(*sample * seat.chain.scale * sign, &seat.chain);
     }
-    recorder::hold(&mut samples_m_s2, &seat.chain.dropouts_s, seat.sample_rate_hz);
-    recorder::lose(&mut samples_m_s2, &seat.chain.gaps_s, seat.sample_rate_hz);
+    recorder::hold(&mut samples_m_s2, &seat.chain.dropouts_s, seat.sample_rate_hz, None);
+    recorder::hold(&mut samples_m_s2, &seat.chain.gaps_s, seat.sample_rate_hz, Some(f64::NAN));
     let unit_m_s2 = if seat.unit == "g" { STANDARD_GRAVITY_M_S2 } else { 1.0 };
     #[allow(clippy::cast_possible_truncation, reason = "recorders store 24 bits at most")]
     let samples = samples_m_s2.iter().map(|x| (x / unit_m_s2) as f32).collect();

@@ -24,7 +24,7 @@ enum Phase {
 
 /// What a change of phase means for the drop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Passage {
+pub(super) enum CornerPassage {
     /// The corner touches.
     Touch,
     /// The corner leaves.
@@ -33,7 +33,7 @@ pub(super) enum Passage {
 
 /// One corner: its law and its dent.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Corner {
+pub(super) struct CrushingCorner {
     law: CrushableEnd,
     phase: Phase,
     /// Height at which the corner meets material, m.
@@ -46,7 +46,7 @@ pub(super) struct Corner {
     damping_n_s_m: f64,
 }
 
-impl Corner {
+impl CrushingCorner {
     /// A corner of a body of `mass_kg` without a dent, at the target or above it.
     pub(super) fn new(law: CrushableEnd, mass_kg: f64, touching: bool) -> Self {
         let phase = if touching { Phase::Loading } else { Phase::Free };
@@ -107,11 +107,11 @@ impl Corner {
     }
 
     /// Into the phase that follows when watch number `which` has fallen below zero.
-    pub(super) fn switch(&mut self, which: usize, height_m: f64) -> Option<Passage> {
+    pub(super) fn switch(&mut self, which: usize, height_m: f64) -> Option<CornerPassage> {
         match (self.phase, which) {
             (Phase::Free, _) => {
                 self.phase = Phase::Loading;
-                return Some(Passage::Touch);
+                return Some(CornerPassage::Touch);
             }
             (Phase::Loading, 1) => self.phase = Phase::Yielding,
             (Phase::Loading | Phase::Yielding, _) => {
@@ -123,7 +123,7 @@ impl Corner {
                 // The dent stays: the next touch is at its floor, and crushes anew.
                 self.phase = Phase::Free;
                 self.floor_m = height_m;
-                return Some(Passage::Leave);
+                return Some(CornerPassage::Leave);
             }
             (Phase::Unloading, _) => self.phase = Phase::Settling,
             (Phase::Settling, _) => {
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn the_force_follows_the_loading_the_plateau_and_the_unloading() {
-        let mut corner = Corner::new(LAW, 1000.0, true);
+        let mut corner = CrushingCorner::new(LAW, 1000.0, true);
         assert!((corner.normal_n(-2e-3, 0.0) - 2e3).abs() < 1e-9);
         assert!(corner.watches(-2e-3, -1.0).iter().all(|w| *w > 0.0));
         assert!(corner.watches(-3.1e-3, -1.0)[1] < 0.0);
@@ -153,17 +153,17 @@ mod tests {
         // 3000 N at 5 mm, 4 N/µm back: 1000 N at 4.5 mm, nothing at 4.25 mm.
         assert!((corner.normal_n(-4.5e-3, 0.0) - 1e3).abs() < 1e-9);
         assert!(corner.watches(-4.2e-3, 1.0)[0] < 0.0);
-        assert_eq!(corner.switch(0, -4.25e-3), Some(Passage::Leave));
+        assert_eq!(corner.switch(0, -4.25e-3), Some(CornerPassage::Leave));
         assert!(!corner.touches());
         assert!(corner.watches(-4.3e-3, -1.0)[0] < 0.0);
         // It meets the floor of its dent and crushes anew.
-        assert_eq!(corner.switch(0, -4.25e-3), Some(Passage::Touch));
+        assert_eq!(corner.switch(0, -4.25e-3), Some(CornerPassage::Touch));
         assert!((corner.normal_n(-5.25e-3, 0.0) - 1e3).abs() < 1e-9);
     }
 
     #[test]
     fn fallen_back_in_its_dent_a_corner_is_damped_and_pressed_beyond_it_loads_on() {
-        let mut corner = Corner::new(LAW, 1000.0, true);
+        let mut corner = CrushingCorner::new(LAW, 1000.0, true);
         corner.switch(0, -1e-3);
         assert!((corner.normal_n(-0.9e-3, 0.1) - 600.0).abs() < 1e-9, "the way out is not damped");
         assert!(corner.watches(-0.9e-3, -0.1)[1] < 0.0);

@@ -75,7 +75,7 @@ mod tests {
         let elastic = CrushableEnd { yield_n: None, ..yielding };
         let peak_n = |end: CrushableEnd, scene: &mut crate::lab::data::Scene| {
             scene.first_end = end;
-            simulate(scene).first_end_n.iter().map(|f| f.1).fold(0.0, f64::max)
+            simulate(scene).steps.iter().map(|step| step.loads_n[0].1).fold(0.0, f64::max)
         };
         let share = peak_n(yielding, &mut scene) / peak_n(elastic, &mut scene);
         assert!((share - 0.5).abs() < 2e-3, "{share}");

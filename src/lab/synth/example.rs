@@ -62,5 +62,5 @@ pub(super) fn channel(axis: Axis, position_m: f64, offset_m: f64) -> SceneChanne
 
 /// Place in the motion of the last state before `at_s`.
 pub(super) fn just_before(motion: &SimulatedMotion, at_s: f64) -> usize {
-    motion.time_s.partition_point(|t| *t < at_s).saturating_sub(1)
+    motion.count_before(|t| t < at_s).saturating_sub(1)
 }

@@ -1,10 +1,9 @@
 //! A scene to the motion of its cask, from first contact to past the slap-down.
 
-use super::beam::MOST_MODES;
-use super::body::{Body, State};
-use super::contact::Passage;
-use super::truth::{self, Event};
-use crate::lab::data::{Scene, SimulatedMotion};
+use super::body::{SceneBody, State};
+use super::contact::CornerPassage;
+use super::truth::{self, ContactChange};
+use crate::lab::data::{MotionStep, Scene, SimulatedMotion};
 use ode_solvers::{Dopri5, OutputType, System};
 use std::f64::consts::FRAC_PI_2;
 
@@ -31,7 +30,7 @@ const HALVINGS: u32 = 60;
 
 /// The body between two changes of its contacts, for the integrator.
 struct Segment<'a> {
-    body: &'a Body<'a>,
+    body: &'a SceneBody<'a>,
     /// Whether to stop where a contact changes or the cask stands upright.
     watched: bool,
 }
@@ -62,46 +61,51 @@ pub fn simulate(scene: &Scene) -> SimulatedMotion {
 
 /// [`simulate`] at a tolerance, so that its convergence can be tested.
 fn follow(scene: &Scene, tolerance: f64) -> SimulatedMotion {
-    let mut body = Body::new(scene);
-    let mut motion = empty(scene);
-    let mut events: Vec<Event> = Vec::new();
+    let mut body = SceneBody::new(scene);
+    let mut events: Vec<ContactChange> = Vec::new();
     let (mut time_s, mut end_s) = (0.0, LONGEST_S);
     let mut y = body.at_first_contact();
-    keep(&mut motion, &body, time_s, &y);
+    let mut kept_steps = vec![kept(&body, time_s, &y)];
     while time_s < end_s && !is_upright(&y) && events.len() < MOST_SWITCHES {
         let march = March { body: &body, tolerance };
-        let (mut steps, whole) = march.over(&y, end_s - time_s, true, MOST_STEPS - motion.time_s.len());
+        let (mut steps, whole) = march.over(&y, end_s - time_s, true, MOST_STEPS - kept_steps.len());
         let Some(last) = steps.pop() else { break };
         let before = steps.last().copied().unwrap_or((0.0, y));
         let change = march.first_change(&before, &last);
-        let (offset_s, state) = change.map_or(last, |c| (before.0 + c.0, c.2));
-        for (offset_s, state) in &steps {
-            keep(&mut motion, &body, time_s + offset_s, state);
-        }
+        let (offset_s, state) = change.map_or(last, |c| (before.0 + c.after_s, c.state));
+        kept_steps.extend(steps.iter().map(|(offset_s, state)| kept(&body, time_s + offset_s, state)));
         (time_s, y) = (time_s + offset_s, state);
-        keep(&mut motion, &body, time_s, &y);
-        if let Some((_, watch, _)) = change {
+        kept_steps.push(kept(&body, time_s, &y));
+        if let Some(Fallen { watch, .. }) = change {
             let end = watch / 2;
             let passage = body.corners[end].switch(watch % 2, body.corner(end, &y).height_m);
             // Once more, under the forces of what follows: acceleration may step.
-            keep(&mut motion, &body, time_s, &y);
+            kept_steps.push(kept(&body, time_s, &y));
             let struck = events.iter().any(|e| e.end == 1);
-            if end == 1 && passage == Some(Passage::Touch) && !struck {
+            if end == 1 && passage == Some(CornerPassage::Touch) && !struck {
                 end_s = time_s + scene.after_s;
             }
-            events.push(Event { passage, end, time_s, state: y, corner: body.corner(end, &y) });
+            events.push(ContactChange { passage, end, time_s, state: y, corner: body.corner(end, &y) });
         }
-        if !whole || motion.time_s.len() >= MOST_STEPS {
+        if !whole || kept_steps.len() >= MOST_STEPS {
             break;
         }
     }
-    motion.truth = truth::truth(scene, &events);
-    motion
+    SimulatedMotion { steps: kept_steps, truth: truth::truth(scene, &events) }
+}
+
+/// A watch that has fallen below zero.
+#[derive(Clone, Copy)]
+struct Fallen {
+    /// Since the step before, s.
+    after_s: f64,
+    watch: usize,
+    state: State,
 }
 
 /// The integrator on a body whose contacts do not change.
 struct March<'a> {
-    body: &'a Body<'a>,
+    body: &'a SceneBody<'a>,
     tolerance: f64,
 }
 
@@ -142,9 +146,9 @@ impl March<'_> {
         self.over(from, offset_s, false, MOST_STEPS).0.last().map_or(*from, |step| step.1)
     }
 
-    /// The first watch to fall below zero between two steps: how long after the first of them, which, and the state there.
-    fn first_change(&self, before: &(f64, State), after: &(f64, State)) -> Option<(f64, usize, State)> {
-        let mut first: Option<(f64, usize, State)> = None;
+    /// The first watch to fall below zero between two steps.
+    fn first_change(&self, before: &(f64, State), after: &(f64, State)) -> Option<Fallen> {
+        let mut first: Option<Fallen> = None;
         let fallen = self.body.watches(&after.1);
         for watch in (0..fallen.len()).filter(|watch| fallen[*watch] < 0.0) {
             // The end of the bracket at which the watch has fallen is the change: the next phase begins in its own range.
@@ -158,52 +162,18 @@ impl March<'_> {
                     low_s = middle_s;
                 }
             }
-            if first.is_none_or(|f| high_s < f.0) {
-                first = Some((high_s, watch, state));
+            if first.is_none_or(|f| high_s < f.after_s) {
+                first = Some(Fallen { after_s: high_s, watch, state });
             }
         }
         first
     }
 }
 
-/// A motion without a time yet.
-fn empty(scene: &Scene) -> SimulatedMotion {
-    let modes = scene.modes.len().min(MOST_MODES);
-    SimulatedMotion {
-        time_s: vec![],
-        position_m: vec![],
-        angle_rad: vec![],
-        velocity_m_s: vec![],
-        turning_rad_s: vec![],
-        acceleration_m_s2: vec![],
-        angular_acceleration_rad_s2: vec![],
-        first_end_n: vec![],
-        second_end_n: vec![],
-        bending_m_s: vec![vec![]; modes],
-        bending_m_s2: vec![vec![]; modes],
-        truth: truth::truth(scene, &[]),
-    }
-}
-
-/// Writes one time down.
-fn keep(motion: &mut SimulatedMotion, body: &Body, time_s: f64, y: &State) {
-    let loads = body.loads(y);
-    let rates = body.rates(y, &loads);
-    motion.time_s.push(time_s);
-    motion.position_m.push((y[0], y[1]));
-    motion.angle_rad.push(y[2]);
-    motion.velocity_m_s.push((y[3], y[4]));
-    motion.turning_rad_s.push(y[5]);
-    motion.acceleration_m_s2.push((rates[3], rates[4]));
-    motion.angular_acceleration_rad_s2.push(rates[5]);
-    motion.first_end_n.push(loads[0]);
-    motion.second_end_n.push(loads[1]);
-    for (i, velocity_m_s) in motion.bending_m_s.iter_mut().enumerate() {
-        velocity_m_s.push(y[7 + 2 * i]);
-    }
-    for (i, acceleration_m_s2) in motion.bending_m_s2.iter_mut().enumerate() {
-        acceleration_m_s2.push(rates[7 + 2 * i]);
-    }
+/// What is written down of one time.
+fn kept(body: &SceneBody, time_s: f64, y: &State) -> MotionStep {
+    let loads_n = body.loads(y);
+    MotionStep { time_s, state: (*y).into(), rates: body.rates(y, &loads_n).into(), loads_n }
 }
 
 #[cfg(test)]

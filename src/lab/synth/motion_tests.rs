@@ -7,11 +7,10 @@ use crate::lab::synth::example::{anf18, just_before};
 
 /// Kinetic and potential energy, J, of a kept time.
 fn energy_j(scene: &Scene, motion: &SimulatedMotion, i: usize) -> f64 {
-    let (vx, vz) = motion.velocity_m_s[i];
-    let w = motion.turning_rad_s[i];
+    let [_, z, _, vx, vz, w, ..] = motion.steps[i].state;
     let cask = &scene.cask;
     0.5 * (cask.mass_kg * (vx * vx + vz * vz) + cask.inertia_kg_m2 * w * w)
-        + cask.mass_kg * scene.drop.gravity_m_s2 * motion.position_m[i].1
+        + cask.mass_kg * scene.drop.gravity_m_s2 * z
 }
 
 #[test]
@@ -45,7 +44,7 @@ fn an_elastic_frictionless_impact_keeps_its_energy() {
     let (first, last) =
         (energy_j(&scene, &motion, 0), energy_j(&scene, &motion, just_before(&motion, slap_s)));
     assert!((last / first - 1.0).abs() < 1e-6, "{first} J, {last} J");
-    assert!(motion.first_end_n.iter().all(|f| f.0 == 0.0 && f.1 >= 0.0));
+    assert!(motion.steps.iter().map(|step| step.loads_n[0]).all(|f| f.0 == 0.0 && f.1 >= 0.0));
 }
 
 #[test]
@@ -55,15 +54,16 @@ fn the_impulses_are_the_change_of_momentum() {
     let left_s = motion.truth.contact_s.expect("L leaves");
     let last = just_before(&motion, left_s);
     // Trapezoids on steps of ω h ≤ 0.1: h² ω²/12 = 8e-4 of the impulse.
-    let impulse = |of: fn(&(f64, f64)) -> f64| -> f64 {
-        let steps = motion.time_s[..=last].windows(2).zip(motion.first_end_n[..=last].windows(2));
-        steps.map(|(t, f)| (t[1] - t[0]) * f64::midpoint(of(&f[0]), of(&f[1]))).sum()
+    let impulse = |of: fn((f64, f64)) -> f64| -> f64 {
+        let force = |step: &MotionStep| of(step.loads_n[0]);
+        let steps = motion.steps[..=last].windows(2);
+        steps.map(|s| (s[1].time_s - s[0].time_s) * f64::midpoint(force(&s[0]), force(&s[1]))).sum()
     };
     let mass_kg = scene.cask.mass_kg;
-    let along = mass_kg * motion.velocity_m_s[last].0;
+    let along = mass_kg * motion.steps[last].state[3];
     let upwards = mass_kg
-        * (motion.velocity_m_s[last].1 - motion.velocity_m_s[0].1
-            + scene.drop.gravity_m_s2 * motion.time_s[last]);
+        * (motion.steps[last].state[4] - motion.steps[0].state[4]
+            + scene.drop.gravity_m_s2 * motion.steps[last].time_s);
     assert!((impulse(|f| f.0) / along - 1.0).abs() < 8e-4);
     assert!((impulse(|f| f.1) / upwards - 1.0).abs() < 8e-4);
 }
@@ -73,16 +73,14 @@ fn the_flight_is_ballistic() {
     let scene = anf18();
     let motion = simulate(&scene);
     let (left_s, slap_s) = (motion.truth.contact_s.expect("left"), motion.truth.slap_t.expect("struck"));
-    let from = motion.time_s.partition_point(|t| *t <= left_s) - 1;
+    let from = motion.count_before(|t| t <= left_s) - 1;
     let to = just_before(&motion, slap_s);
-    let tau = motion.time_s[to] - motion.time_s[from];
-    let (p, v) = (motion.position_m[from], motion.velocity_m_s[from]);
+    let tau = motion.steps[to].time_s - motion.steps[from].time_s;
+    let ([x, z, angle, vx, vz, w, ..], then) = (motion.steps[from].state, motion.steps[to].state);
     // Tolerance: 1e-11 of 10 m/s in each of some hundred steps, most of which are far better.
-    assert!((motion.position_m[to].0 - (p.0 + v.0 * tau)).abs() < 1e-8);
-    assert!((motion.position_m[to].1 - (p.1 + v.1 * tau - 0.5 * 9.81 * tau * tau)).abs() < 1e-8);
-    assert!(
-        (motion.angle_rad[to] - (motion.angle_rad[from] + motion.turning_rad_s[from] * tau)).abs() < 1e-8
-    );
+    assert!((then[0] - (x + vx * tau)).abs() < 1e-8);
+    assert!((then[1] - (z + vz * tau - 0.5 * 9.81 * tau * tau)).abs() < 1e-8);
+    assert!((then[2] - (angle + w * tau)).abs() < 1e-8);
 }
 
 #[test]
@@ -114,7 +112,12 @@ fn friction_lies_between_smooth_and_rough_and_keeps_to_its_bound() {
     };
     let sliding = with(Contact::Coulomb(0.2));
     let left = just_before(&sliding, sliding.truth.contact_s.expect("L leaves"));
-    assert!(sliding.first_end_n[..left].iter().all(|f| f.0.abs() <= 0.2 * f.1 * (1.0 + 1e-12)));
+    assert!(
+        sliding.steps[..left]
+            .iter()
+            .map(|step| step.loads_n[0])
+            .all(|f| f.0.abs() <= 0.2 * f.1 * (1.0 + 1e-12))
+    );
     let omega = |motion: &SimulatedMotion| motion.truth.omega_rebound.expect("L leaves");
     let (smooth, rough) = (omega(&with(Contact::Smooth)), omega(&with(Contact::Rough)));
     assert!(rough < omega(&sliding) && omega(&sliding) < smooth);
@@ -154,13 +157,13 @@ fn a_steep_drop_has_no_slap_down_and_says_so() {
     let motion = simulate(&scene);
     assert!(motion.truth.k.is_some());
     assert!(motion.truth.slap_t.is_none() && motion.truth.speed.is_none() && motion.truth.flight_s.is_none());
-    assert!(motion.time_s.last().is_some_and(|t| *t <= LONGEST_S));
+    assert!(motion.steps.last().is_some_and(|step| step.time_s <= LONGEST_S));
 }
 
 #[test]
 fn the_motion_ends_as_long_after_the_slap_down_as_asked() {
     let motion = simulate(&anf18());
-    let last_s = motion.time_s.last().expect("times");
+    let last_s = motion.steps.last().expect("times").time_s;
     assert!((last_s - motion.truth.slap_t.expect("R strikes") - 0.04).abs() < 1e-12);
-    assert!(motion.time_s.is_sorted());
+    assert!(motion.steps.is_sorted_by_key(|step| step.time_s));
 }

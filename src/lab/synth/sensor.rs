@@ -1,8 +1,8 @@
 //! A simulated motion to the specific force at a point of the cask.
 
-use super::beam;
+use super::beam::{self, MOST_MODES};
 use crate::data::Axis;
-use crate::lab::data::{Scene, SceneChannel, SimulatedMotion};
+use crate::lab::data::{MotionStep, Scene, SceneChannel, SimulatedMotion};
 
 /// The hook lets go within this time, s: that of a quick-release hook, long against a sample.
 const RELEASE_S: f64 = 2e-3;
@@ -25,6 +25,7 @@ pub fn specific_force_m_s2(
     let shapes: Vec<f64> = scene
         .modes
         .iter()
+        .take(MOST_MODES)
         .map(|mode| mode.strength * beam::shape(mode.order, channel.position_m / scene.cask.length_m))
         .collect();
     let before = |time_s: f64| {
@@ -32,49 +33,49 @@ pub fn specific_force_m_s2(
         hanging * hanging_m_s2
     };
     let during = |time_s: f64| {
-        let at = Between::new(&motion.time_s, time_s);
+        let at = Between::new(&motion.steps, time_s);
         let bending_m_s2: f64 = match channel.axis {
             Axis::Axial => 0.0,
-            Axis::Transverse => {
-                shapes.iter().enumerate().map(|(i, shape)| shape * at.bending_m_s2(motion, i)).sum()
-            }
+            Axis::Transverse => shapes.iter().enumerate().map(|(i, shape)| shape * at.slope(7 + 2 * i)).sum(),
         };
-        at.rigid_m_s2(scene, motion, channel) + bending_m_s2
+        at.rigid_m_s2(scene, channel) + bending_m_s2
     };
-    times_s.iter().map(|&t| if t < 0.0 || motion.time_s.is_empty() { before(t) } else { during(t) }).collect()
+    times_s.iter().map(|&t| if t < 0.0 || motion.steps.is_empty() { before(t) } else { during(t) }).collect()
 }
 
 /// A time between two of the motion's.
 ///
 /// Velocities are interpolated by the cubic through their values and slopes at both: its slope is an acceleration whose
 /// integral is exactly the change of velocity, whatever the step.
-struct Between {
-    /// The later of the two.
-    next: usize,
+struct Between<'a> {
+    steps: [&'a MotionStep; 2],
     /// Share of the step that has passed.
     share: f64,
     step_s: f64,
 }
 
-impl Between {
-    fn new(time_s: &[f64], at_s: f64) -> Self {
-        let next = time_s.partition_point(|t| *t <= at_s).clamp(1, time_s.len().max(2) - 1);
-        let (from_s, to_s) = (time_s[next - 1], time_s[next.min(time_s.len() - 1)]);
+impl<'a> Between<'a> {
+    fn new(steps: &'a [MotionStep], at_s: f64) -> Self {
+        let next = steps.partition_point(|step| step.time_s <= at_s).clamp(1, steps.len().max(2) - 1);
+        let steps = [&steps[next - 1], &steps[next.min(steps.len() - 1)]];
+        let [from_s, to_s] = steps.map(|step| step.time_s);
         let step_s = to_s - from_s;
         let share = if step_s > 0.0 { ((at_s - from_s) / step_s).clamp(0.0, 1.0) } else { 1.0 };
-        Self { next: next.min(time_s.len() - 1), share, step_s }
+        Self { steps, share, step_s }
     }
 
-    /// Value of the cubic with `values` and `slopes` at both ends.
-    fn value(&self, values: [f64; 2], slopes: [f64; 2]) -> f64 {
+    /// Value of the cubic through quantity `i` of the state and its rates at both ends.
+    fn value(&self, i: usize) -> f64 {
+        let [values, slopes] = [self.steps.map(|step| step.state[i]), self.steps.map(|step| step.rates[i])];
         let (s, h) = (self.share, self.step_s);
         let r = 1.0 - s;
         r * r * ((1.0 + 2.0 * s) * values[0] + s * h * slopes[0])
             + s * s * ((1.0 + 2.0 * r) * values[1] - r * h * slopes[1])
     }
 
-    /// Slope of the cubic with `values` and `slopes` at both ends.
-    fn slope(&self, values: [f64; 2], slopes: [f64; 2]) -> f64 {
+    /// Its slope.
+    fn slope(&self, i: usize) -> f64 {
+        let [values, slopes] = [self.steps.map(|step| step.state[i]), self.steps.map(|step| step.rates[i])];
         let (s, r) = (self.share, 1.0 - self.share);
         if self.step_s <= 0.0 {
             return slopes[1];
@@ -83,30 +84,10 @@ impl Between {
         6.0 * s * r * mean + r * (1.0 - 3.0 * s) * slopes[0] + s * (1.0 - 3.0 * r) * slopes[1]
     }
 
-    fn pair(&self, values: &[f64]) -> [f64; 2] {
-        [values[self.next.saturating_sub(1)], values[self.next]]
-    }
-
-    /// Acceleration of the coordinate of mode `mode`, m/s².
-    fn bending_m_s2(&self, motion: &SimulatedMotion, mode: usize) -> f64 {
-        match (motion.bending_m_s.get(mode), motion.bending_m_s2.get(mode)) {
-            (Some(velocity), Some(acceleration)) => self.slope(self.pair(velocity), self.pair(acceleration)),
-            _ => 0.0,
-        }
-    }
-
     /// Specific force of the rigid body at the channel's place along its axis, m/s².
-    fn rigid_m_s2(&self, scene: &Scene, motion: &SimulatedMotion, channel: &SceneChannel) -> f64 {
-        let turning = self.pair(&motion.turning_rad_s);
-        let turning_up = self.pair(&motion.angular_acceleration_rad_s2);
-        let angle_rad = self.value(self.pair(&motion.angle_rad), turning);
-        let omega = self.value(turning, turning_up);
-        let alpha = self.slope(turning, turning_up);
-        let two = [self.next.saturating_sub(1), self.next];
-        let (velocity, acceleration) =
-            (two.map(|i| motion.velocity_m_s[i]), two.map(|i| motion.acceleration_m_s2[i]));
-        let along = self.slope(velocity.map(|v| v.0), acceleration.map(|a| a.0));
-        let up = self.slope(velocity.map(|v| v.1), acceleration.map(|a| a.1));
+    fn rigid_m_s2(&self, scene: &Scene, channel: &SceneChannel) -> f64 {
+        let (angle_rad, omega, alpha) = (self.value(2), self.value(5), self.slope(5));
+        let (along, up) = (self.slope(3), self.slope(4));
         let (sin, cos) = angle_rad.sin_cos();
         let (xi_m, eta_m) = (channel.position_m - scene.cask.cog_m, channel.offset_m);
         let (x_m, z_m) = (xi_m * cos - eta_m * sin, xi_m * sin + eta_m * cos);
@@ -161,23 +142,17 @@ mod tests {
         scene.contact = Contact::Smooth;
         let motion = simulate(&scene);
         let last = just_before(&motion, motion.truth.contact_s.expect("L leaves"));
-        let end_s = motion.time_s[last];
+        let end_s = motion.steps[last].time_s;
         let steps = 20_000_u32;
         let times_s: Vec<f64> = (0..=steps).map(|i| end_s * f64::from(i) / f64::from(steps)).collect();
         let read =
             |axis| specific_force_m_s2(&scene, &motion, &channel(axis, scene.cask.cog_m, 0.0), &times_s);
         let (across, along) = (read(Axis::Transverse), read(Axis::Axial));
-        let angle: Vec<f64> = times_s
-            .iter()
-            .map(|t| {
-                let at = Between::new(&motion.time_s, *t);
-                at.value(at.pair(&motion.angle_rad), at.pair(&motion.turning_rad_s))
-            })
-            .collect();
+        let angle: Vec<f64> = times_s.iter().map(|t| Between::new(&motion.steps, *t).value(2)).collect();
         let upwards: Vec<f64> =
             (0..angle.len()).map(|i| across[i] * angle[i].cos() + along[i] * angle[i].sin() - 9.81).collect();
         let gained = running_integral(&upwards, end_s / f64::from(steps)).last().copied().expect("samples");
-        let wanted = motion.velocity_m_s[last].1 - motion.velocity_m_s[0].1;
+        let wanted = motion.steps[last].state[4] - motion.steps[0].state[4];
         // The force has kinks, at which the trapezoid of 0.3 µs is off by less than a sample's share of it.
         assert!((gained / wanted - 1.0).abs() < 1e-6, "{gained}, not {wanted}");
     }
@@ -189,14 +164,14 @@ mod tests {
         let mut scene = anf18();
         scene.contact = Contact::Smooth;
         let motion = simulate(&scene);
-        let peak_n = motion.first_end_n.iter().map(|f| f.1).fold(0.0, f64::max);
+        let peak_n = motion.steps.iter().map(|step| step.loads_n[0].1).fold(0.0, f64::max);
         let sensor = [Axis::Transverse, Axis::Axial].map(|axis| channel(axis, scene.cask.cog_m, 0.0));
         let last = just_before(&motion, motion.truth.contact_s.expect("L leaves"));
-        for i in (1..last).filter(|i| motion.time_s[i + 1] > motion.time_s[*i]) {
-            let t = f64::midpoint(motion.time_s[i], motion.time_s[i + 1]);
+        for i in (1..last).filter(|i| motion.steps[i + 1].time_s > motion.steps[*i].time_s) {
+            let t = f64::midpoint(motion.steps[i].time_s, motion.steps[i + 1].time_s);
             let [across, along] = [0, 1].map(|n| specific_force_m_s2(&scene, &motion, &sensor[n], &[t])[0]);
             let force = across.hypot(along) * scene.cask.mass_kg;
-            let [low, high] = [i, i + 1].map(|n| motion.first_end_n[n].1);
+            let [low, high] = [i, i + 1].map(|n| motion.steps[n].loads_n[0].1);
             // A sine stands at most (ω h)²/8 of its peak above its chord; ω² h² is up to 0.1² times m/m_eff, below 4.
             assert!((force - f64::midpoint(low, high)).abs() < 5e-3 * peak_n, "at {t} s");
         }
@@ -239,9 +214,9 @@ mod tests {
         scene.modes = vec![BendingMode { order: 1, frequency_hz: 30.0, damping: 0.0, strength: 1.0 }];
         let motion = simulate(&scene);
         let left = just_before(&motion, motion.truth.contact_s.expect("L leaves"));
-        let impulse_m_s = motion.velocity_m_s[left].1 - motion.velocity_m_s[0].1;
+        let impulse_m_s = motion.steps[left].state[4] - motion.steps[0].state[4];
         let wanted = 2.0 * impulse_m_s * scene.drop.angle_rad.cos();
         // 0.25 ms: ω T = 0.05, of which cos takes 1e-3; gravity and the turn are below that.
-        assert!((motion.bending_m_s[0][left] / wanted - 1.0).abs() < 2e-3);
+        assert!((motion.steps[left].state[7] / wanted - 1.0).abs() < 2e-3);
     }
 }

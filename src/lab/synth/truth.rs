@@ -1,14 +1,14 @@
 //! The changes of contact of a simulated drop to what a perfect measurement would say of it.
 
 use super::body::{CornerMotion, State};
-use super::contact::Passage;
+use super::contact::CornerPassage;
 use crate::lab::data::{Scene, Truth};
 
 /// A change of a contact.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Event {
+pub(super) struct ContactChange {
     /// Touch or leave; `None` within a contact.
-    pub(super) passage: Option<Passage>,
+    pub(super) passage: Option<CornerPassage>,
     /// 0 is L, 1 is R.
     pub(super) end: usize,
     /// After first contact, s.
@@ -20,15 +20,18 @@ pub(super) struct Event {
 }
 
 /// Reads the truth off the events, which are in order; without any, only what the scene itself says.
-pub(super) fn truth(scene: &Scene, events: &[Event]) -> Truth {
-    let is = |e: &&Event, end: usize, passage: Passage| e.end == end && e.passage == Some(passage);
-    let leave = events.iter().find(|e| is(e, 0, Passage::Leave));
-    let strike = events.iter().find(|e| is(e, 1, Passage::Touch));
-    let before = |e: &&Event| strike.is_some_and(|s| e.time_s < s.time_s);
+pub(super) fn truth(scene: &Scene, events: &[ContactChange]) -> Truth {
+    let is =
+        |e: &&ContactChange, end: usize, passage: CornerPassage| e.end == end && e.passage == Some(passage);
+    let leave = events.iter().find(|e| is(e, 0, CornerPassage::Leave));
+    let strike = events.iter().find(|e| is(e, 1, CornerPassage::Touch));
+    let before = |e: &&ContactChange| strike.is_some_and(|s| e.time_s < s.time_s);
     let left_before = leave.filter(before).zip(strike);
-    let touches = events.iter().filter(|e| before(e) && is(e, 0, Passage::Touch)).count();
-    let leaves = events.iter().filter(|e| before(e) && is(e, 0, Passage::Leave)).count();
-    let v0 = scene.drop.impact_velocity_m_s;
+    let touches = events.iter().filter(|e| before(e) && is(e, 0, CornerPassage::Touch)).count();
+    let leaves = events.iter().filter(|e| before(e) && is(e, 0, CornerPassage::Leave)).count();
+    let (v0, cask) = (scene.drop.impact_velocity_m_s, &scene.cask);
+    let kinetic_j =
+        |y: &State| 0.5 * (cask.mass_kg * (y[3] * y[3] + y[4] * y[4]) + cask.inertia_kg_m2 * y[5] * y[5]);
     Truth {
         v0,
         // Free of the last digits of the conversion.
@@ -46,15 +49,9 @@ pub(super) fn truth(scene: &Scene, events: &[Event]) -> Truth {
         speed: strike.map(|e| e.corner.sliding_m_s.hypot(e.corner.rising_m_s)),
         omega: strike.map(|e| -e.state[5]),
         angle_hit_deg: strike.map(|e| e.state[2].to_degrees()),
-        energy_ratio: strike.map(|e| kinetic_j(scene, &e.state) / (0.5 * scene.cask.mass_kg * v0 * v0)),
+        energy_ratio: strike.map(|e| kinetic_j(&e.state) / (0.5 * cask.mass_kg * v0 * v0)),
         relands: u32::try_from(touches).unwrap_or(u32::MAX),
         // L begins on the target and leaves once more than it has come back, or not.
         first_down_at_slap: strike.is_some() && touches == leaves,
     }
-}
-
-/// Kinetic energy of the rigid body, J.
-pub(super) fn kinetic_j(scene: &Scene, y: &State) -> f64 {
-    let cask = &scene.cask;
-    0.5 * (cask.mass_kg * (y[3] * y[3] + y[4] * y[4]) + cask.inertia_kg_m2 * y[5] * y[5])
 }

@@ -1,11 +1,9 @@
 //! A record to the same with both ends continued, so that a filter need not begin and end on nothing.
 
-use super::stage::Sample;
-
 /// The samples continued by `pad` at both ends, at most by all but the end sample, and how many stand in front of them.
 ///
 /// `beyond` makes a sample outside of the end sample and the one that lies as far inside.
-pub(crate) fn continued<T: Sample>(samples: &[T], pad: usize, beyond: impl Fn(T, T) -> T) -> (Vec<T>, usize) {
+pub(crate) fn continued(samples: &[f64], pad: usize, beyond: impl Fn(f64, f64) -> f64) -> (Vec<f64>, usize) {
     let n = samples.len();
     let pad = pad.min(n.saturating_sub(1));
     if pad == 0 {
@@ -20,7 +18,7 @@ pub(crate) fn continued<T: Sample>(samples: &[T], pad: usize, beyond: impl Fn(T,
 }
 
 /// The `count` samples behind the first `head`.
-pub(crate) fn cut<T>(mut work: Vec<T>, head: usize, count: usize) -> Vec<T> {
+pub(crate) fn cut(mut work: Vec<f64>, head: usize, count: usize) -> Vec<f64> {
     work.drain(..head);
     work.truncate(count);
     work

@@ -18,14 +18,14 @@ const BLIND_DEG: f64 = 1e-9;
 const ZERO_SHARE: f64 = 1e-3;
 
 /// What the speed does at one angle.
-struct Answer {
+struct GradientAt {
     /// `None` without a slap-down.
     gradient: Option<SpeedGradient>,
     /// Whether L strikes once before R. Where it strikes again the speed jumps with k as it does with the angle.
     strikes_once: bool,
 }
 
-impl Answer {
+impl GradientAt {
     fn is_blind(&self) -> bool {
         let below = |g: &SpeedGradient| g.by_k_m_s.abs() < BLIND_SHARE * g.speed_m_s;
         self.strikes_once && self.gradient.as_ref().is_some_and(below)
@@ -41,7 +41,7 @@ pub(super) fn sensitivities(cask_file: &CaskFile, request: &StudyRequest) -> Vec
         falls.extend(ks.iter().map(|&k| Fall { body, drop, contact, k }));
     }
     let of = |fall: &Fall| {
-        let answer = |angle_deg: f64| Answer {
+        let answer = |angle_deg: f64| GradientAt {
             gradient: fall.gradient_at(angle_deg),
             strikes_once: fall.at(angle_deg).first_end_impacts == 1,
         };
@@ -51,8 +51,8 @@ pub(super) fn sensitivities(cask_file: &CaskFile, request: &StudyRequest) -> Vec
 }
 
 /// The sensitivity of one fall, its `answer` given at an angle in degrees.
-fn sensitivity(fall: &Fall, angles_deg: &[f64], answer: &(impl Fn(f64) -> Answer + Sync)) -> Sensitivity {
-    let answers: Vec<Answer> = angles_deg.par_iter().map(|&a| answer(a)).collect();
+fn sensitivity(fall: &Fall, angles_deg: &[f64], answer: &(impl Fn(f64) -> GradientAt + Sync)) -> Sensitivity {
+    let answers: Vec<GradientAt> = angles_deg.par_iter().map(|&a| answer(a)).collect();
     let each = |value: fn(&SpeedGradient) -> f64| {
         answers.iter().map(|a| a.gradient.as_ref().map_or(f64::NAN, value)).collect()
     };
@@ -75,7 +75,7 @@ fn sensitivity(fall: &Fall, angles_deg: &[f64], answer: &(impl Fn(f64) -> Answer
 }
 
 /// Angles at which ∂(speed)/∂k goes through zero; where it jumps from one sign to the other there is none.
-fn zeros(angles_deg: &[f64], answers: &[Answer], answer: &impl Fn(f64) -> Answer) -> Vec<f64> {
+fn zeros(angles_deg: &[f64], answers: &[GradientAt], answer: &impl Fn(f64) -> GradientAt) -> Vec<f64> {
     let mut zeros = Vec::new();
     // The last angle with a sign: one whose derivative is exactly zero has none.
     let mut signed: Option<(f64, bool)> = None;
@@ -127,7 +127,7 @@ mod tests {
             let by_k_m_s = by_k_m_s(angle_deg);
             let gradient = SpeedGradient { speed_m_s: 20.0, by_k_m_s, by_angle_m_s_rad: 18.0 };
             // Not a number stands for no slap-down; beyond 80° L strikes again.
-            Answer { gradient: (!by_k_m_s.is_nan()).then_some(gradient), strikes_once: angle_deg <= 80.0 }
+            GradientAt { gradient: (!by_k_m_s.is_nan()).then_some(gradient), strikes_once: angle_deg <= 80.0 }
         };
         sensitivity(&rough_rod(0.5), &steps(180, 90.0), &answer)
     }

@@ -111,12 +111,6 @@ pub(super) fn point(svg: &mut Svg, points: &Points, (x, y): (f64, f64)) {
         PointShape::Triangle => &[(0.0, -12.0), (12.0, 9.0), (-12.0, 9.0), (0.0, -12.0)],
         PointShape::Diamond => &[(0.0, -13.0), (13.0, 0.0), (0.0, 13.0), (-13.0, 0.0), (0.0, -13.0)],
         PointShape::Tip => &[(0.0, 12.0), (12.0, -9.0), (-12.0, -9.0), (0.0, 12.0)],
-        PointShape::Cross => {
-            let r = f64::from(r);
-            return [r, -r]
-                .iter()
-                .for_each(|side| svg.line(&line(6, vec![(x - r, y - side), (x + r, y + side)])));
-        }
         PointShape::Ring => return svg.circle((x, y), r, colour, Some(4)),
         PointShape::Dot => {
             svg.circle((x, y), r + 2, WHITE, None);

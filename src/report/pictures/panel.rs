@@ -8,7 +8,7 @@ pub(crate) const WIDTH: f64 = 1800.0;
 
 /// Red, green and blue, 0 to 255.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Colour(pub(super) u8, pub(super) u8, pub(super) u8);
+pub(crate) struct Colour(pub(crate) u8, pub(crate) u8, pub(crate) u8);
 
 impl std::fmt::Display for Colour {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -124,7 +124,7 @@ impl Fill {
     }
 
     /// The corners of a rectangle.
-    pub(super) fn rectangle(x: (f64, f64), y: (f64, f64)) -> Vec<(f64, f64)> {
+    pub(crate) fn rectangle(x: (f64, f64), y: (f64, f64)) -> Vec<(f64, f64)> {
         vec![(x.0, y.0), (x.0, y.1), (x.1, y.1), (x.1, y.0)]
     }
 }
@@ -139,7 +139,6 @@ pub(crate) enum PointShape {
     Tip,
     /// Around another point.
     Ring,
-    Cross,
 }
 
 impl PointShape {

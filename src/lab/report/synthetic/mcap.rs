@@ -5,12 +5,8 @@ use crate::lab::data::{SyntheticChannel, SyntheticRecording};
 use crate::report::ReportError;
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
-use prost_reflect::prost::Message as _;
 use prost_reflect::prost::encoding::{double, float, message, string};
-use prost_reflect::prost_types::field_descriptor_proto::{Label, Type};
-use prost_reflect::prost_types::{
-    DescriptorProto, FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet, Timestamp,
-};
+use prost_reflect::prost_types::Timestamp;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -21,16 +17,13 @@ const START_NS: i64 = 1_760_000_000_000_000_000;
 /// Length of a block, s: what a recorder hands on at a time.
 const BLOCK_S: f64 = 0.02;
 
-const TIMESTAMP: &str = "google/protobuf/timestamp.proto";
-
 const SCHEMA: &str = "dropcheck.AccelerationBlock";
 
-/// How the blocks are encoded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum BlockEncoding {
-    Json,
-    Protobuf,
-}
+/// The descriptor set of the block message of docs/formats.md, with the well-known Timestamp that it uses.
+const DESCRIPTORS: &[u8] = include_bytes!("acceleration_block.binpb");
+
+/// The same of JSON.
+const JSON_SCHEMA: &[u8] = include_bytes!("acceleration_block.json");
 
 /// The file as bytes.
 ///
@@ -39,16 +32,14 @@ pub(super) enum BlockEncoding {
 pub(super) fn bytes(
     recording: &SyntheticRecording,
     places: &[SyntheticPlace],
-    encoding: BlockEncoding,
+    is_json: bool,
 ) -> Result<Vec<u8>, ReportError> {
     let options = WriteOptions::new()
         .compression(Some(Compression::Zstd))
         .library(concat!("dropcheck ", env!("CARGO_PKG_VERSION")));
     let mut writer = options.create(Cursor::new(Vec::new()))?;
-    let (schema, name) = match encoding {
-        BlockEncoding::Json => (writer.add_schema(SCHEMA, "jsonschema", &json_schema()?)?, "json"),
-        BlockEncoding::Protobuf => (writer.add_schema(SCHEMA, "protobuf", &descriptors())?, "protobuf"),
-    };
+    let (encoding, name) = if is_json { ("jsonschema", "json") } else { ("protobuf", "protobuf") };
+    let schema = writer.add_schema(SCHEMA, encoding, if is_json { JSON_SCHEMA } else { DESCRIPTORS })?;
     let mut messages = Vec::new();
     for (channel, place) in recording.channels.iter().zip(places) {
         let id = writer.add_channel(schema, &format!("/daq/{}", place.name), name, &BTreeMap::new())?;
@@ -62,10 +53,7 @@ pub(super) fn bytes(
             log_time: u64::try_from(*log_ns).unwrap_or(0),
             publish_time: u64::try_from(block.timestamp.ns()).unwrap_or(0),
         };
-        let data = match encoding {
-            BlockEncoding::Json => serde_json::to_vec(block)?,
-            BlockEncoding::Protobuf => block.protobuf(),
-        };
+        let data = if is_json { serde_json::to_vec(block)? } else { block.protobuf() };
         writer.write_to_known_channel(&header, &data)?;
     }
     writer.finish()?;
@@ -135,56 +123,4 @@ impl SyntheticBlock<'_> {
         float::encode_packed(4, self.samples, &mut data);
         data
     }
-}
-
-fn json_schema() -> Result<Vec<u8>, ReportError> {
-    Ok(serde_json::to_vec(&serde_json::json!({
-        "title": SCHEMA, "type": "object",
-        "properties": {
-            "timestamp": {
-                "type": "object", "title": "time",
-                "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}}
-            },
-            "sample_rate_hz": {"type": "number"},
-            "unit": {"type": "string"},
-            "samples": {"type": "array", "items": {"type": "number"}}
-        }
-    }))?)
-}
-
-/// The descriptor set of the block message, with the well-known Timestamp that it uses.
-fn descriptors() -> Vec<u8> {
-    let field = |name: &str, number, kind: Type, label: Label| FieldDescriptorProto {
-        name: Some(name.into()),
-        number: Some(number),
-        r#type: Some(kind.into()),
-        type_name: (kind == Type::Message).then(|| ".google.protobuf.Timestamp".into()),
-        label: Some(label.into()),
-        ..FieldDescriptorProto::default()
-    };
-    let file = |name: &str, package: &str, message: &str, field| FileDescriptorProto {
-        name: Some(name.into()),
-        package: Some(package.into()),
-        syntax: Some("proto3".into()),
-        message_type: vec![DescriptorProto {
-            name: Some(message.into()),
-            field,
-            ..DescriptorProto::default()
-        }],
-        ..FileDescriptorProto::default()
-    };
-    let timestamp = vec![
-        field("seconds", 1, Type::Int64, Label::Optional),
-        field("nanos", 2, Type::Int32, Label::Optional),
-    ];
-    let block = vec![
-        field("timestamp", 1, Type::Message, Label::Optional),
-        field("sample_rate_hz", 2, Type::Double, Label::Optional),
-        field("unit", 3, Type::String, Label::Optional),
-        field("samples", 4, Type::Float, Label::Repeated),
-    ];
-    let mut of_block = file("dropcheck/acceleration_block.proto", "dropcheck", "AccelerationBlock", block);
-    of_block.dependency = vec![TIMESTAMP.into()];
-    FileDescriptorSet { file: vec![file(TIMESTAMP, "google.protobuf", "Timestamp", timestamp), of_block] }
-        .encode_to_vec()
 }

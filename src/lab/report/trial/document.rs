@@ -1,12 +1,9 @@
-//! A trial to the document that `validation.html` shows, and whose extract stands in another document; charts first.
+//! A trial to the document that `validation.html` shows, and whose extract stands in another document.
 
-use super::breaks;
-use super::failure_chart;
-use super::families::{Family, families};
-use super::reasons::reason;
+use super::failing;
+use super::pictures::from_words;
 use crate::lab::data::{Trial, TrialMap, TrialPoint};
-use crate::report::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument};
-use crate::report::medium::{Medium, Words};
+use crate::report::document::{Chapter, ChapterPart, Frame, PartContent, ReportDocument};
 use crate::report::rounding::significant;
 use crate::report::table::{ReportTable, TableCell};
 
@@ -15,154 +12,118 @@ const DIVERGED: f64 = 1e6;
 
 /// The whole document.
 pub(super) fn document(trial: &Trial) -> ReportDocument {
-    let families = families(trial);
     let slow = "This program was built without optimisation: its times say nothing.";
     let slow = (!trial.machine.is_optimised).then(|| ChapterPart::note(slow));
     let opening = Chapter::new("")
-        .with(PartContent::Figures(figures(trial, &families)))
-        .with(ChapterPart::text(extract(trial)).only(Medium::Markdown))
+        .with(PartContent::Figures(figures(trial)))
+        .with(ChapterPart::text(extract(trial)))
         .with_all(slow);
-    let mut chapters = vec![opening, Chapter::part("Speed against accuracy")];
-    chapters.extend(families.iter().map(family_chapter));
-    chapters.push(Chapter::part("Where methods fail"));
-    chapters.extend(trial.maps.iter().map(map_chapter));
-    let points = families.iter().map(|family| points(family, &family.points));
-    chapters.push(Chapter::new("All points").only(Medium::Page).with_all(points));
-    chapters.push(provenance(trial));
+    let speed = Chapter::new("Speed against accuracy").with(ChapterPart::picture(
+        "speed",
+        "Speed against accuracy",
+        "",
+    ));
+    let failures = Chapter::new("Where the program fails")
+        .with(ChapterPart::picture("failures", "Where the program fails", ""))
+        .with(maps(trial));
+    let families = trial.points.chunk_by(|a, b| a.family == b.family).map(family);
+    let chapters = [opening, speed].into_iter().chain(families).chain([failures]).collect();
     ReportDocument {
         page: Frame {
             title: "Validation of dropcheck's methods".to_owned(),
             product: "Validation of the methods",
-            version: trial.version.clone(),
-            heading: "Speed against accuracy, and where each method fails".to_owned(),
-            about: request_words(trial),
+            version: trial.version.to_owned(),
+            heading: "Speed against accuracy, and where the program fails".to_owned(),
+            about: run_words(trial),
             footer: "Errors are against truths from outside the methods: arithmetic of 106 bits, closed forms, simulated drops that share no \
                      formula with the analysis. A method is on the front where no other of its class is at least as accurate (95th percentile) \
                      and as fast, and better in one; what differs by less than 10 %, and times whose quartiles overlap, count as equal.",
-            style: include_str!("../trial.css"),
+            style: include_str!("trial.css"),
         },
         chapters,
     }
 }
 
-fn machine_words(trial: &Trial) -> String {
-    format!("{}, {} threads, {}.", trial.machine.processor, trial.machine.cores, trial.machine.system)
-}
-
-fn request_words(trial: &Trial) -> String {
-    let run = if trial.request.quick { "Quick" } else { "Full" };
-    format!("{run} run, seed {}. {}", trial.request.seed, machine_words(trial))
-}
-
-fn extract(trial: &Trial) -> String {
-    let run = if trial.request.quick { "quick" } else { "full" };
+fn run_words(trial: &Trial) -> String {
+    let (run, machine) = (trial.request.either("Quick", "Full"), &trial.machine);
+    let (seed, version) = (trial.request.seed, trial.version);
     format!(
-        "{} points of methods and classes, {} failure maps; {run} run, seed {}, version {}. {} {} Again: `{}`.",
-        trial.points.len(),
-        trial.maps.len(),
-        trial.request.seed,
-        trial.version,
-        machine_words(trial),
-        trial.peers,
-        again(trial)
+        "{run} run, seed {seed}, version {version}. {}, {} threads, {}.",
+        machine.processor, machine.cores, machine.system
     )
 }
 
-fn figures(trial: &Trial, families: &[Family]) -> Vec<[String; 3]> {
-    let defaults = trial.points.iter().filter(|p| p.is_default).count();
-    let beaten: usize = families.iter().map(|f| f.beaten().len()).sum();
-    let lines = || trial.maps.iter().flat_map(|map| map.lines.iter().map(move |line| breaks::of(map, line)));
-    let unnoticed = lines().filter(|b| b.noticed.is_some_and(|(_, not)| not > 0)).count();
-    let passing = lines().filter(|b| b.at.is_some()).count();
-    [
-        ["Methods × classes", &trial.points.len().to_string(), &format!("{} families", families.len())],
-        [
-            "Defaults on the front",
-            &format!("{} of {defaults}", defaults.saturating_sub(beaten)),
-            "the others with their reason",
-        ],
-        [
-            "Failure maps",
-            &trial.maps.len().to_string(),
-            &format!("{passing} of {} lines pass their limit", lines().count()),
-        ],
-        ["Failures without notice", &unnoticed.to_string(), "lines of methods that could have said so"],
+fn extract(trial: &Trial) -> String {
+    let (points, maps) = (trial.points.len(), trial.maps.len());
+    let (quick, seed) = (trial.request.either(" --quick", ""), trial.request.seed);
+    format!(
+        "{points} points of methods and classes, {maps} failure maps. {} Again: `dropcheck validate{quick} --seed {seed} --out validation`.",
+        run_words(trial)
+    )
+}
+
+fn figures(trial: &Trial) -> Vec<[String; 3]> {
+    let defaults = || trial.points.iter().filter(|p| p.is_default);
+    let on_front = defaults().filter(|p| p.is_on_front).count();
+    let failing_maps = trial.maps.iter().filter(|map| failing(map).next().is_some()).count();
+    let unnoticed = trial.maps.iter().filter(|map| failing(map).any(|at| !at.is_noticed)).count();
+    let figure = |name: &str, value: String, note: &str| [name.to_owned(), value, note.to_owned()];
+    vec![
+        figure("Methods × classes", trial.points.len().to_string(), "each beside its rivals"),
+        figure("Defaults on the front", format!("{on_front} of {}", defaults().count()), "of their class"),
+        figure("Failure maps", trial.maps.len().to_string(), &format!("{failing_maps} with a failure")),
+        figure("Failures without notice", unnoticed.to_string(), "maps with a size of which nothing is said"),
     ]
-    .map(|figure| figure.map(str::to_owned))
-    .to_vec()
 }
 
-/// The chart of a family, what is best in it, and whether the default is, or why it is taken all the same.
-fn family_chapter(family: &Family) -> Chapter {
-    let (beaten, never) = (family.beaten(), family.never_on_front());
-    let title = format!("Speed against accuracy: {}", family.name);
-    // The front and the default; all points are in points.csv.
-    let best: Vec<(&TrialPoint, bool)> =
-        family.points.iter().filter(|(p, on_front)| *on_front || p.is_default).copied().collect();
-    let place = if beaten.is_empty() {
-        ChapterPart::text("The default is on the front in every class.").only(Medium::Page)
-    } else {
-        let why = reason(family.name).unwrap_or("No reason is written for this.");
-        ChapterPart::text(format!("The default is off the front in: {}. {why}", beaten.join("; ")))
-    };
-    let never = (!never.is_empty())
-        .then(|| ChapterPart::note(format!("On no front, and not offered: {}.", never.join("; "))));
-    Chapter::new(family.name)
-        .below()
-        .with(ChapterPart::picture(&family.file_name(), &title, ""))
-        .with(points(family, &best).only(Medium::Markdown))
-        .with(place)
-        .with_all(never)
-}
-
-/// A point a row.
-fn points(family: &Family, points: &[(&TrialPoint, bool)]) -> ChapterPart {
+/// What is best in a family, and where the default is not; all points are in validation.json.
+fn family(points: &[TrialPoint]) -> Chapter {
+    let TrialPoint { family, error_unit, time_per, .. } = &points[0];
+    let shown: Vec<&TrialPoint> = points.iter().filter(|p| p.is_on_front || p.is_default).collect();
     let default =
-        |p: &TrialPoint| TableCell::marked(&p.method[..], if p.is_default { "default" } else { "" });
-    let quartiles = |p: &TrialPoint| p.time_quartiles_ns.map(|time_ns| significant(time_ns, 3)).join(" to ");
-    ReportTable::of(points)
+        |p: &TrialPoint| TableCell::marked(p.method.clone(), if p.is_default { "default" } else { "" });
+    let table = ReportTable::of(&shown)
         .class("many")
-        .caption(format!("{}: error {}, time of a {}", family.name, family.error_unit, family.time_per))
-        .chosen(|(p, _)| p.is_default)
-        .text(Words::or("Class", "class"), |(p, _)| &p.class[..])
-        .text(Words::or("Method", "method"), |(p, _)| default(p))
-        .number(Words::or("Median error", format!("median error, {}", family.error_unit)), |(p, _)| {
-            error_words(Some(p.median_error))
-        })
-        .number("95 %", |(p, _)| error_words(Some(p.p95_error)))
-        .number(Words::or("Time, ns", format!("ns a {}", family.time_per)), |(p, _)| {
-            significant(p.time_ns, 3)
-        })
-        .number("Quartiles, ns", |(p, _)| quartiles(p))
-        .only(Medium::Page)
-        .number("Cases", |(p, _)| p.cases.to_string())
-        .only(Medium::Page)
-        .text(Words::or("Front", "front"), |(_, on_front)| if *on_front { "yes" } else { "no" })
-        .into()
+        .chosen(|p| p.is_default)
+        .text("class", |p| &p.class[..])
+        .text("method", |p| default(p))
+        .number(format!("median error, {error_unit}"), |p| error_words(Some(p.median_error)))
+        .number("95 %", |p| error_words(Some(p.p95_error)))
+        .number(format!("ns a {time_per}"), |p| significant(p.time_ns, 3))
+        .text("front", |p| if p.is_on_front { "yes" } else { "no" });
+    let beaten = points.iter().filter(|p| p.is_default && !p.is_on_front).map(|p| &p.class[..]);
+    let beaten = beaten.collect::<Vec<_>>().join("; ");
+    let place = (!beaten.is_empty()).then(|| {
+        ChapterPart::text(format!(
+            "The default is off the front in: {beaten}. Why it is taken all the same: docs/validation.md, Methods."
+        ))
+    });
+    Chapter::new(&family[..]).below().with(table).with_all(place)
 }
 
-/// The chart of a map, and where each line breaks. One stress may have a map for each quantity.
-fn map_chapter(map: &TrialMap) -> Chapter {
-    let rows: Vec<_> = map.lines.iter().map(|line| (&line.method[..], breaks::of(map, line))).collect();
-    let limit = significant(map.limit, 2);
-    let noticed = |b: &breaks::Break| {
-        let words = b.noticed_words();
-        match b.silent {
-            0 => words.into(),
-            n => Words::or(format!("{words} · no number at {n} of {}", map.stresses.len()), words),
+/// From where on each map fails, and whether that was noticed.
+fn maps(trial: &Trial) -> ChapterPart {
+    let noticed = |map: &TrialMap| {
+        let (all, said) = (failing(map).count(), failing(map).filter(|at| at.is_noticed).count());
+        match (all, said) {
+            (0, _) => "–".to_owned(),
+            (all, said) if all == said => "yes".to_owned(),
+            (_, 0) => "NO".to_owned(),
+            (all, said) => format!("{said} of {all}"),
         }
     };
-    let passes = format!("{} passes {limit} at: {}", map.error, map.stress);
-    let table = ReportTable::of(&rows)
-        .class("whole breaks")
-        .text(Words::or("Method", "method"), |(method, _)| *method)
-        .number(Words::or(format!("Passes {limit} at"), passes), |(_, b)| b.at_words())
-        .number(Words::or("Largest error", "largest"), |(_, b)| error_words(b.worst))
-        .text(Words::or("Noticed", "noticed"), |(_, b)| noticed(b));
-    Chapter::new(format!("{}: {}", map.title, map.error))
-        .below()
-        .with(ChapterPart::picture(&failure_chart::file_name(map), &map.title, ""))
-        .with(table)
+    let worst = |map: &TrialMap| map.sizes.iter().filter_map(|at| at.worst_error).reduce(f64::max);
+    ReportTable::of(&trial.maps)
+        .class("many")
+        .text("map", |map| &map.name[..])
+        .text("what", |map| &map.what[..])
+        .text("what is off", |map| format!("{}, limit {}", map.error, significant(map.limit, 2)))
+        .number("fails from", |map| {
+            failing(map).next().map_or_else(|| "holds".to_owned(), |at| from_words(map, at))
+        })
+        .number("largest error", |map| error_words(worst(map)))
+        .text("noticed", noticed)
+        .into()
 }
 
 /// A number, or that the method diverged.
@@ -171,58 +132,5 @@ fn error_words(error: Option<f64>) -> String {
         Some(error) if error.is_nan() || error >= DIVERGED => "diverges".to_owned(),
         Some(error) => significant(error, 2),
         None => "–".to_owned(),
-    }
-}
-
-fn provenance(trial: &Trial) -> Chapter {
-    let machine = &trial.machine;
-    let optimised = if machine.is_optimised { "optimised" } else { "not optimised" };
-    let facts = vec![
-        Fact::words("Processor", format!("{}, {} threads", machine.processor, machine.cores)),
-        Fact::words("System", &machine.system[..]),
-        Fact::words("Program", format!("dropcheck {}, {optimised}", trial.version)),
-        Fact::words("Seed", trial.request.seed.to_string()),
-        Fact::words("Programs of others", &trial.peers[..]),
-        Fact::code("Again", again(trial)),
-    ];
-    let note = "The same seed and version give the same errors; times differ from run to run and from machine to machine.";
-    Chapter::new("Machine, and how to run it again")
-        .only(Medium::Page)
-        .with(ChapterPart::facts("", facts))
-        .with(ChapterPart::note(note))
-}
-
-/// The command that makes the same again.
-fn again(trial: &Trial) -> String {
-    let quick = if trial.request.quick { " --quick" } else { "" };
-    format!("dropcheck validate{quick} --seed {} --out validation", trial.request.seed)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::{charts, sample};
-    use super::*;
-    use crate::report::as_html;
-
-    #[test]
-    fn it_stands_alone_and_words_are_escaped() {
-        let mut trial = sample::trial();
-        let evil = "<img src=x onerror=alert(1)>\u{1b}[2J";
-        trial.points[0].method = evil.into();
-        trial.maps[0].title = evil.into();
-        trial.machine.processor = evil.into();
-        let page = as_html::page(&document(&trial), &charts(&trial));
-        assert!(!page.contains("<img") && !page.contains('\u{1b}'));
-        for call in ["href=", "url(", "@import", "<script", "https://"] {
-            assert!(!page.contains(call), "{call}");
-        }
-    }
-
-    #[test]
-    fn a_beaten_default_has_its_reason() {
-        let mut trial = sample::trial();
-        trial.is_on_front = vec![false, true];
-        let page = as_html::page(&document(&trial), &charts(&trial));
-        assert!(page.contains("off the front") && page.contains("keeps 13 digits"));
     }
 }

@@ -1,6 +1,6 @@
 //! The specific force at a sensor to its sampled signal: mounting, resonance, AC coupling, anti-alias filter, sampling.
 
-use super::Drive;
+use super::SensedDrop;
 use crate::data::Axis;
 use crate::lab::data::{Scene, SceneChannel};
 use std::f64::consts::{FRAC_PI_8, PI};
@@ -18,7 +18,7 @@ const BLOCK: usize = 1 << 16;
 pub(super) fn sampled(
     scene: &Scene,
     seat: &SceneChannel,
-    drive: &Drive,
+    drive: &SensedDrop,
     rate_hz: f64,
     count: usize,
 ) -> Vec<f64> {
@@ -28,7 +28,8 @@ pub(super) fn sampled(
     let factor =
         if is_filtered { OVERSAMPLING.max((POINTS_A_PERIOD * highest_hz / rate_hz).ceil()) } else { 1.0 };
     let fine_hz = factor * rate_hz;
-    let mounted = Mounted { seat, other: across(seat), drive };
+    let across = if seat.axis == Axis::Transverse { Axis::Axial } else { Axis::Transverse };
+    let mounted = Mounted { seat, other: SceneChannel { axis: across, ..seat.clone() }, drive };
     let mut filters = Filters::at_start(scene, &mounted, fine_hz);
     let stride = super::recorder::count(factor);
     let points = (count - 1) * stride + 1;
@@ -47,17 +48,11 @@ pub(super) fn sampled(
     samples
 }
 
-/// The sensor of the other axis at the same place.
-fn across(seat: &SceneChannel) -> SceneChannel {
-    let axis = if seat.axis == Axis::Transverse { Axis::Axial } else { Axis::Transverse };
-    SceneChannel { axis, ..seat.clone() }
-}
-
 /// A sensor as it sits on its block.
 struct Mounted<'a> {
     seat: &'a SceneChannel,
     other: SceneChannel,
-    drive: &'a Drive<'a>,
+    drive: &'a SensedDrop<'a>,
 }
 
 impl Mounted<'_> {

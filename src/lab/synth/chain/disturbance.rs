@@ -19,14 +19,14 @@ const CABLE_HZ: (f64, f64) = (50.0, 500.0);
 const NO_CONTACT_S: f64 = 5e-3;
 
 /// True times of the samples, 0 at first contact.
-pub(super) struct Times {
+pub(super) struct SampleTimes {
     /// The first, s.
     pub from_s: f64,
     /// True samples a second.
     pub rate_hz: f64,
 }
 
-impl Times {
+impl SampleTimes {
     #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
     fn at_s(&self, index: usize) -> f64 {
         self.from_s + index as f64 / self.rate_hz
@@ -38,7 +38,7 @@ pub(super) fn add(
     samples_m_s2: &mut [f64],
     (seed, index): (u64, usize),
     chain: &Chain,
-    times: &Times,
+    times: &SampleTimes,
     contacts_s: &[(f64, f64)],
 ) {
     let stream = |source: u64| {
@@ -50,7 +50,13 @@ pub(super) fn add(
     for (i, sample) in samples_m_s2.iter_mut().enumerate() {
         *sample += chain.offset_m_s2 + chain.zero_shift_m_s2 * (times.at_s(i) / grown_s).clamp(0.0, 1.0);
     }
-    white(samples_m_s2, chain.white_noise_m_s2, &mut stream(0));
+    if chain.white_noise_m_s2 > 0.0 {
+        let drawn = StandardNormal.sample_iter(stream(0));
+        samples_m_s2
+            .iter_mut()
+            .zip(drawn)
+            .for_each(|(sample, x): (_, f64)| *sample += chain.white_noise_m_s2 * x);
+    }
     pink(samples_m_s2, chain.pink_noise_m_s2, times.rate_hz, &mut stream(1));
     if let Some((amplitude_m_s2, frequency_hz)) = chain.hum {
         let phase = TAU * stream(2).random::<f64>();
@@ -60,15 +66,6 @@ pub(super) fn add(
     }
     if chain.cable_noise_m_s2 > 0.0 {
         cable(samples_m_s2, chain.cable_noise_m_s2, times, contacts_s, &mut stream(3));
-    }
-}
-
-fn white(samples_m_s2: &mut [f64], sigma_m_s2: f64, generator: &mut ChaCha8Rng) {
-    if sigma_m_s2 > 0.0 {
-        for sample in samples_m_s2 {
-            let drawn: f64 = StandardNormal.sample(generator);
-            *sample += sigma_m_s2 * drawn;
-        }
     }
 }
 
@@ -99,7 +96,7 @@ fn pink(samples_m_s2: &mut [f64], sigma_m_s2: f64, rate_hz: f64, generator: &mut
 fn cable(
     samples_m_s2: &mut [f64],
     amplitude_m_s2: f64,
-    times: &Times,
+    times: &SampleTimes,
     contacts_s: &[(f64, f64)],
     generator: &mut ChaCha8Rng,
 ) {

@@ -24,28 +24,12 @@ pub(super) fn converted(signal_m_s2: f64, chain: &Chain) -> f64 {
     (signal_m_s2 / step_m_s2).round().clamp(-codes, codes - 1.0) * step_m_s2
 }
 
-/// Within each span, s after the first sample, the last value before it stays.
-pub(super) fn hold(samples: &mut [f64], spans_s: &[(f64, f64)], rate_hz: f64) {
-    for range in ranges(samples.len(), spans_s, rate_hz) {
-        let held = range.start.checked_sub(1).map_or(0.0, |before| samples[before]);
-        samples[range].fill(held);
+/// Within each span, s after the first sample, the last value before it stays, or all is `lost`.
+pub(super) fn hold(samples: &mut [f64], spans_s: &[(f64, f64)], rate_hz: f64, lost: Option<f64>) {
+    for &(from_s, to_s) in spans_s {
+        let to = ceiling(to_s * rate_hz).min(samples.len());
+        let from = ceiling(from_s * rate_hz).min(to);
+        let held = from.checked_sub(1).map_or(0.0, |before| samples[before]);
+        samples[from..to].fill(lost.unwrap_or(held));
     }
-}
-
-/// What lies within a span, s after the first sample, is lost.
-pub(super) fn lose(samples: &mut [f64], spans_s: &[(f64, f64)], rate_hz: f64) {
-    for range in ranges(samples.len(), spans_s, rate_hz) {
-        samples[range].fill(f64::NAN);
-    }
-}
-
-fn ranges(
-    len: usize,
-    spans_s: &[(f64, f64)],
-    rate_hz: f64,
-) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
-    spans_s.iter().map(move |span| {
-        let to = ceiling(span.1 * rate_hz).min(len);
-        ceiling(span.0 * rate_hz).min(to)..to
-    })
 }

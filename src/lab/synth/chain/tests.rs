@@ -14,7 +14,7 @@ fn recorded(seat: SceneChannel, force: &dyn Fn(Axis, f64) -> f64) -> SyntheticCh
 
 fn through(scene: &Scene, force: &dyn Fn(Axis, f64) -> f64) -> SyntheticChannel {
     let force = |seat: &SceneChannel, times_s: &[f64]| times_s.iter().map(|&t| force(seat.axis, t)).collect();
-    let drive = Drive { force_m_s2: &force, contacts_s: vec![(0.0, 5e-3)], end_s: 0.1 };
+    let drive = SensedDrop { force_m_s2: &force, contacts_s: vec![(0.0, 5e-3)], end_s: 0.1 };
     channel(scene, &scene.channels[0], 0, &drive)
 }
 

@@ -11,7 +11,7 @@ fn added(change: impl FnOnce(&mut Chain)) -> Vec<f64> {
     let mut chain = example::channel(Axis::Transverse, 0.0, 0.0).chain;
     change(&mut chain);
     let mut samples = vec![0.0; COUNT];
-    let times = Times { from_s: -0.1, rate_hz: RATE_HZ };
+    let times = SampleTimes { from_s: -0.1, rate_hz: RATE_HZ };
     add(&mut samples, (5, 1), &chain, &times, &[(0.0, 5e-3), (0.07, 0.08)]);
     samples
 }

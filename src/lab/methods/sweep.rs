@@ -1,12 +1,13 @@
 //! A damage that grows, on several drops, through the whole program to how far off it is and whether it noticed.
 
-use super::sample::flight_s;
+use super::contest::median_and_p95;
 use crate::data::{Estimate, STANDARD_GRAVITY_M_S2, Verdict};
+use crate::ingest::Progress;
 use crate::lab::damage::{self, DamageKind};
-use crate::lab::data::{TrialLine, TrialPart, TrialRequest};
+use crate::lab::data::{TrialMap, TrialRequest, TrialSize};
 use crate::lab::drawn::{ANF_10, ANF_18, Build, ESBB, VHLW};
-use crate::lab::methods::contest::{fraction, map, middle, some_of};
 use crate::lab::plan::DropPlan;
+use crate::numerics::as_f64;
 use rayon::prelude::*;
 
 /// What is held against the truth.
@@ -25,12 +26,9 @@ const QUANTITIES: [Quantity; 2] = [
     Quantity { error: "error of k", suffix: "-k", limit: 0.035 },
 ];
 
-/// A sound plan, and the length of its flight, s.
-type PlanAndFlight = (DropPlan, f64);
-
 /// The drops that every damage is laid on: four casks, angles of 10 to 25°, k of 0.3 to 0.6, pulses of 3 to 8 ms, each with a weak mode and an
 /// offset of half a g.
-fn plans(request: &TrialRequest) -> Vec<PlanAndFlight> {
+fn plans(request: &TrialRequest) -> Vec<DropPlan> {
     let plan = |order: u64, build: Build, [angle_deg, k, pulse_ms, frequency_hz]: [f64; 4]| {
         let mut plan = DropPlan::of(build, angle_deg, k, request.seed + order);
         plan.pulse_s = 1e-3 * pulse_ms;
@@ -46,8 +44,8 @@ fn plans(request: &TrialRequest) -> Vec<PlanAndFlight> {
         plan(3, ESBB, [12.0, 0.6, 3.0, 90.0]),
         plan(4, ANF_18, [25.0, 0.45, 6.0, 100.0]),
     ];
-    let count = if request.quick { 3 } else { plans.len() };
-    plans.into_par_iter().take(count).map(|plan| (plan.clone(), flight_s(&plan))).collect()
+    let count = request.either(3, plans.len());
+    plans.into_iter().take(count).collect()
 }
 
 /// One quantity of one analysis against its truth.
@@ -78,8 +76,8 @@ impl Miss {
 }
 
 /// Slap-down speed and k of a plan's analysis, struck at this size, against the truth.
-fn misses(kind: &DamageKind, (plan, flight_s): &PlanAndFlight, size: f64) -> [Miss; 2] {
-    let (drop, recording) = kind.grown(plan, *flight_s, size);
+fn misses(kind: &DamageKind, plan: &DropPlan, size: f64) -> [Miss; 2] {
+    let (drop, recording) = kind.grown(plan, size);
     let (truth, result) = (&drop.motion.truth, drop.analyzed(&recording).map(|analysis| analysis.result));
     let passed = result.as_ref().is_some_and(|r| r.verdict == Verdict::Pass);
     let percent = truth.speed.map_or(100.0, |speed| 100.0 / speed);
@@ -87,51 +85,45 @@ fn misses(kind: &DamageKind, (plan, flight_s): &PlanAndFlight, size: f64) -> [Mi
     [Miss::of(speed, truth.speed, percent, passed), Miss::of(k, truth.k, 1.0, passed)]
 }
 
-/// Every growing damage that is done to the same to its maps.
-pub(super) fn run(of: &str, request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
-    let kinds: Vec<&DamageKind> = damage::growing().filter(|kind| kind.of == of).collect();
+/// A map of every damage that grows, and one more where k is told apart; `progress` is told the share that is done.
+pub(super) fn maps(request: &TrialRequest, progress: Progress) -> Vec<TrialMap> {
+    let kinds: Vec<&DamageKind> = damage::growing().collect();
     let plans = plans(request);
-    let mut part = TrialPart::default();
+    let mut maps = Vec::new();
     for (done, kind) in kinds.iter().enumerate() {
-        progress(fraction(done, kinds.len()));
-        let sizes = some_of(&kind.growing, request);
+        progress(as_f64(done) / as_f64(kinds.len()));
+        // The first and the last are among every third of them.
+        let sizes: Vec<f64> = kind.growing.iter().copied().step_by(request.either(3, 1)).collect();
         let of_size =
             |size: &f64| -> Vec<_> { plans.par_iter().map(|plan| misses(kind, plan, *size)).collect() };
         let misses: Vec<Vec<[Miss; 2]>> = sizes.par_iter().map(of_size).collect();
         for (i, quantity) in QUANTITIES.iter().enumerate().take(if kind.tells_k { 2 } else { 1 }) {
-            let misses: Vec<Vec<Miss>> = misses.iter().map(|of| of.iter().map(|m| m[i]).collect()).collect();
-            let name = format!("{}{}", kind.name.replace('_', "-"), quantity.suffix);
-            let words = [&name, kind.what, kind.unit, quantity.error];
-            part.maps.push(map(words, sizes.clone(), quantity.limit, lines(&misses, quantity.limit)));
+            let of_quantity =
+                |of_size: &Vec<[Miss; 2]>| of_size.iter().map(|of_drop| of_drop[i]).collect::<Vec<_>>();
+            let by_size = sizes.iter().zip(misses.iter().map(of_quantity));
+            maps.push(TrialMap {
+                name: format!("{}{}", kind.name.replace('_', "-"), quantity.suffix),
+                what: kind.what.to_owned(),
+                unit: kind.unit.to_owned(),
+                error: quantity.error.to_owned(),
+                limit: quantity.limit,
+                sizes: by_size.map(|(size, of_drops)| sized(*size, &of_drops, quantity.limit)).collect(),
+            });
         }
     }
-    progress(1.0);
-    part
+    maps
 }
 
-/// The median and the worst of the drops at each size.
-fn lines(misses: &[Vec<Miss>], limit: f64) -> Vec<TrialLine> {
-    let drops = misses.first().map_or(0, Vec::len);
-    let errors = |of: &[Miss]| of.iter().map(|miss| miss.error).collect::<Vec<_>>();
-    let mostly_noticed = |of: &[Miss]| 2 * of.iter().filter(|miss| miss.noticed).count() > of.len();
-    vec![
-        TrialLine {
-            method: format!("median of {drops} drops"),
-            errors: misses.iter().map(|of| middle(&errors(of))).collect(),
-            noticed: misses.iter().map(|of| Some(mostly_noticed(of))).collect(),
-        },
-        TrialLine {
-            method: format!("worst of {drops} drops"),
-            errors: misses.iter().map(|of| errors(of).into_iter().flatten().max_by(f64::total_cmp)).collect(),
-            noticed: misses.iter().map(|of| Some(is_noticed(of, limit))).collect(),
-        },
-    ]
-}
-
-/// Whether every drop that fails is noticed; where none fails, whether every interval holds the truth.
-fn is_noticed(misses: &[Miss], limit: f64) -> bool {
-    let failing = || misses.iter().filter(|miss| miss.fails(limit));
-    if failing().next().is_some() { failing().all(|m| m.noticed) } else { misses.iter().all(|m| m.noticed) }
+/// What the drops show at one size.
+fn sized(size: f64, misses: &[Miss], limit: f64) -> TrialSize {
+    let errors: Vec<f64> = misses.iter().filter_map(|miss| miss.error).collect();
+    let any_fails = misses.iter().any(|miss| miss.fails(limit));
+    TrialSize {
+        size,
+        worst_error: errors.iter().copied().max_by(f64::total_cmp),
+        median_error: (2 * errors.len() > misses.len()).then(|| median_and_p95(errors)[0]),
+        is_noticed: misses.iter().all(|miss| miss.noticed || (any_fails && !miss.fails(limit))),
+    }
 }
 
 #[cfg(test)]

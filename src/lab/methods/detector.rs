@@ -1,74 +1,48 @@
-//! A stretch of samples to the beginning of the pulse in it, by a method that is named.
+//! A stretch of samples to the beginning of the pulse in it, by the rivals of `first_contact`.
 
 use crate::data::{CoarseEvent, Signal};
-use crate::events::first_contact;
 use crate::events::onset::{self, FOOT, NOISE_FACTOR};
 use crate::numerics::as_f64;
 use std::f64::consts::PI;
-use std::ops::Range;
 
-/// How first contact is found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Detector {
-    /// A line through the rise from foot to shoulder, cut with zero: what `first_contact` does.
-    #[default]
-    RiseLine,
-    /// The first sample beyond 2 % of the peak, or beyond 6 standard deviations of the noise where that is more.
-    Threshold,
-    /// The change of variance before the peak that Akaike's criterion finds (Maeda 1985)   (39)
-    ChangePoint,
-    /// The half sine of any length that takes most out of the samples   (40)
-    MatchedPulse,
+/// The samples about a pulse that pushes.
+pub(super) struct PulseStretch {
+    force: Vec<f64>,
+    peak: f64,
+    noise: f64,
+    sample_rate_hz: f64,
 }
 
-impl Detector {
-    /// All, the default first.
-    pub const ALL: [Self; 4] = [Self::RiseLine, Self::Threshold, Self::ChangePoint, Self::MatchedPulse];
-
-    /// Its name for a person.
-    #[must_use]
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::RiseLine => "line through the rise",
-            Self::Threshold => "threshold",
-            Self::ChangePoint => "change point",
-            Self::MatchedPulse => "matched half sine",
-        }
-    }
-}
-
-/// First contact of L by `detector`, s; `None` where the stretch about `coarse` holds no pulse.
-#[must_use]
-pub fn first_contact_by(detector: Detector, signals: &[Signal], coarse: &CoarseEvent) -> Option<f64> {
+/// First contact of L, s, `find` giving its place in the stretch about `coarse` in samples; `None` where the stretch holds no pulse.
+pub(super) fn first_contact_by(
+    find: fn(&PulseStretch) -> Option<f64>,
+    signals: &[Signal],
+    coarse: &CoarseEvent,
+) -> Option<f64> {
     let onset::FirstPulse { signal, stretch, sign } = onset::FirstPulse::about(signals, coarse)?;
-    if detector == Detector::RiseLine {
-        return first_contact(signals, coarse).map(|contact| contact.time_s);
-    }
     let force: Vec<f64> = signal.force_m_s2.get(stretch.clone())?.iter().map(|f| sign * f).collect();
-    let level = peak_m_s2(&force)?.max(NOISE_FACTOR / FOOT * signal.noise_m_s2) * FOOT;
-    let position = match detector {
-        Detector::RiseLine | Detector::Threshold => as_f64(force.iter().position(|f| *f > level)?),
-        Detector::ChangePoint => change_point(&force)?,
-        Detector::MatchedPulse => matched_pulse(&force, signal.sample_rate_hz)?,
-    };
-    Some(signal.time_s(stretch.start) + position / signal.sample_rate_hz)
+    let peak = force.iter().copied().max_by(f64::total_cmp).filter(|peak| *peak > 0.0)?;
+    let sample_rate_hz = signal.sample_rate_hz;
+    let place = find(&PulseStretch { force, peak, noise: signal.noise_m_s2, sample_rate_hz })?;
+    Some(signal.time_s(stretch.start) + place / sample_rate_hz)
 }
 
-/// The largest force; none where nothing pushes.
-fn peak_m_s2(force: &[f64]) -> Option<f64> {
-    force.iter().copied().max_by(f64::total_cmp).filter(|peak| *peak > 0.0)
+/// The first sample beyond 2 % of the peak, or beyond 6 standard deviations of the noise where that is more.
+pub(super) fn threshold(stretch: &PulseStretch) -> Option<f64> {
+    let level = stretch.peak.max(NOISE_FACTOR / FOOT * stretch.noise) * FOOT;
+    stretch.force.iter().position(|f| *f > level).map(as_f64)
 }
 
 /// Sample at which two noises of their own variance, one before and one after, explain all up to the peak best.
 ///
-/// n ln σ₁² + (N − n) ln σ₂² → least, σ₁ over the first n of N samples, σ₂ over the rest   (39)
-fn change_point(force: &[f64]) -> Option<f64> {
+/// n ln σ₁² + (N − n) ln σ₂² → least, σ₁ over the first n of N samples, σ₂ over the rest (Maeda 1985)   (39)
+pub(super) fn change_point(stretch: &PulseStretch) -> Option<f64> {
     /// Fewest samples of a variance.
     const FEWEST: usize = 3;
     /// Variance of a record without noise over its peak's square: what single-precision samples leave.
     const FLOOR: f64 = 1e-14;
-    let peak = peak_m_s2(force)?;
-    let rise = &force[..=force.iter().position(|f| *f >= peak)?];
+    let PulseStretch { force, peak, .. } = stretch;
+    let rise = &force[..=force.iter().position(|f| f >= peak)?];
     let total = rise.len();
     let all = rise.iter().fold((0.0, 0.0), |(s, q), f| (s + f, q + f * f));
     let variance = |n: usize, (sum, square): (f64, f64)| {
@@ -91,11 +65,12 @@ fn change_point(force: &[f64]) -> Option<f64> {
 }
 
 /// Start of the half sine, in samples, that leaves the least square sum.
-fn matched_pulse(force: &[f64], sample_rate_hz: f64) -> Option<f64> {
+pub(super) fn matched_pulse(stretch: &PulseStretch) -> Option<f64> {
     /// Shortest and longest pulse sought, s, and the ratio of one length to the next.
     const LENGTHS_S: (f64, f64) = (5e-4, 0.03);
     const RATIO: f64 = 1.1;
     const FINE: i32 = 10;
+    let PulseStretch { force, sample_rate_hz, .. } = stretch;
     let mut best: Option<PulseMatch> = None;
     let mut length_s = LENGTHS_S.0;
     while length_s < LENGTHS_S.1 {
@@ -123,7 +98,7 @@ fn better(one: Option<PulseMatch>, other: Option<PulseMatch>) -> Option<PulseMat
     one.into_iter().chain(other).reduce(|one, other| if other.gained > one.gained { other } else { one })
 }
 
-/// The start from which a half sine of `length` samples takes most out of the samples, between samples by a parabola.
+/// The start from which a half sine of `length` samples takes most out of the samples.
 ///
 /// Σ f_i sin(π (i − s)/m) for every s from one running sum of f_i e^(iπ i/m); what it takes out is its square over m/2   (40)
 fn best_start(force: &[f64], length: f64) -> Option<PulseMatch> {
@@ -144,26 +119,18 @@ fn best_start(force: &[f64], length: f64) -> Option<PulseMatch> {
         let (sin, cos) = (turn * as_f64(start)).sin_cos();
         (sine[start + whole] - sine[start]) * cos - (cosine[start + whole] - cosine[start]) * sin
     };
-    let at = |Range { start, end }: Range<usize>| {
-        (start..end).max_by(|&a, &b| projection(a).total_cmp(&projection(b)))
-    };
-    let start = at(starts.clone())?;
+    let start = starts.max_by(|&a, &b| projection(a).total_cmp(&projection(b)))?;
     let top = projection(start);
-    let shift = if start > 0 && start + 1 < starts.end {
-        let (left, right) = (projection(start - 1), projection(start + 1));
-        let bend = left - 2.0 * top + right;
-        if bend < 0.0 { 0.5 * (left - right) / bend } else { 0.0 }
-    } else {
-        0.0
-    };
     let gained = top * top / (as_f64(whole) / 2.0);
-    Some(PulseMatch { gained, start: as_f64(start) + shift, length: as_f64(whole) })
+    Some(PulseMatch { gained, start: as_f64(start), length: as_f64(whole) })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::data::{Axis, End};
+
+    const RIVALS: [fn(&PulseStretch) -> Option<f64>; 3] = [threshold, change_point, matched_pulse];
 
     /// A half sine of 6 ms from `start_s` on at 20 kHz, with a ripple of 0.1 m/s² for noise.
     fn signal(start_s: f64) -> Signal {
@@ -192,29 +159,15 @@ mod tests {
     }
 
     #[test]
-    fn every_detector_finds_a_half_sine() {
+    fn every_rival_finds_a_half_sine() {
         let coarse = CoarseEvent { near_s: 0.01, spread_s: 0.025, velocity_step_m_s: 20.0 };
         for start_s in [0.020_01, 0.020_04] {
-            for detector in Detector::ALL {
-                let found = first_contact_by(detector, &[signal(start_s)], &coarse).expect("a pulse");
-                // A sample is 50 µs. The chord from 2 % to 30 % misses by 60 µs, the threshold of 2 % comes after 38 µs and a
-                // sample; the others, whose model is true here, are off by a sample.
-                let allowed_s = match detector {
-                    Detector::RiseLine => 6e-5,
-                    Detector::Threshold => 9e-5,
-                    Detector::ChangePoint | Detector::MatchedPulse => 5.1e-5,
-                };
-                assert!((found - start_s).abs() < allowed_s, "{detector:?}: {found} {start_s}");
+            // A sample is 50 µs. The threshold of 2 % comes after 38 µs and a sample; the others, whose model is true here, are off by a sample.
+            for (rival, allowed_s) in RIVALS.into_iter().zip([9e-5, 5.1e-5, 5.1e-5]) {
+                let found = first_contact_by(rival, &[signal(start_s)], &coarse).expect("a pulse");
+                assert!((found - start_s).abs() < allowed_s, "{allowed_s}: {found} {start_s}");
             }
         }
-    }
-
-    #[test]
-    fn the_default_is_what_the_program_does() {
-        let coarse = CoarseEvent { near_s: 0.01, spread_s: 0.025, velocity_step_m_s: 20.0 };
-        let signals = [signal(0.020_01)];
-        let by_default = first_contact_by(Detector::default(), &signals, &coarse);
-        assert_eq!(by_default, first_contact(&signals, &coarse).map(|c| c.time_s));
     }
 
     #[test]
@@ -222,8 +175,6 @@ mod tests {
         let coarse = CoarseEvent { near_s: 0.01, spread_s: 0.025, velocity_step_m_s: 20.0 };
         let mut silent = signal(0.02);
         silent.force_m_s2.fill(0.0);
-        for detector in Detector::ALL {
-            assert_eq!(first_contact_by(detector, &[silent.clone()], &coarse), None);
-        }
+        assert!(RIVALS.iter().all(|rival| first_contact_by(*rival, &[silent.clone()], &coarse).is_none()));
     }
 }

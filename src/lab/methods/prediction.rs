@@ -1,10 +1,10 @@
 //! The rungs of the prediction to how far off a drop on stiff ends each is, and what it costs.
 
+use super::contest::{Contest, Method};
 use crate::data::{Body, BodyModel, Contact, Drop, Rung};
 use crate::lab::chance::Chance;
-use crate::lab::data::{TrialPart, TrialRequest};
+use crate::lab::data::{TrialPoint, TrialRequest};
 use crate::lab::drawn::{ANF_10, ANF_18, Build, VHLW};
-use crate::lab::methods::contest::{Contest, Purpose, by_class};
 use crate::lab::plan::DropPlan;
 use crate::predict;
 use rayon::prelude::*;
@@ -34,13 +34,6 @@ struct PredictedClass {
 const LIMIT_K: f64 = 2e-3;
 
 const ANY: RangeInclusive<u32> = 0..=u32::MAX;
-
-/// A rung, or the highest one with every touch of L an impact: the limit of stiff ends, where the program leaves grazes out.
-#[derive(Clone, Copy, PartialEq)]
-enum Predictor {
-    By(Rung),
-    EveryTouch,
-}
 
 /// A drop on stiff ends: what a prediction is given, and the speed that it should give.
 struct StiffDrop {
@@ -80,48 +73,43 @@ const CLASSES: [PredictedClass; 6] = [
     RATTLES,
 ];
 
-fn contest() -> Contest<Predictor, StiffDrop, f64> {
+fn contest() -> Contest<StiffDrop, f64> {
+    let by_rung = |rung: Rung| {
+        Method::new(rung.words(), move |at: &StiffDrop| {
+            predict::predict_by(rung, &at.body, &at.drop, at.contact, at.k).slap_down_speed_m_s
+        })
+    };
+    // The highest rung, which is what the program takes, comes first.
+    let mut methods: Vec<_> = Rung::ALL.into_iter().rev().map(by_rung).collect();
+    // The limit of stiff ends, where the program leaves grazes out.
+    methods.push(Method::new("body, every touch an impact", |at: &StiffDrop| {
+        predict::predict_grazing(&at.body, &at.drop, at.contact, at.k, 0.0).slap_down_speed_m_s
+    }));
     Contest {
-        purpose: Purpose::of_calls("prediction", "% of the slap-down speed"),
-        methods: Rung::ALL.into_iter().map(Predictor::By).chain([Predictor::EveryTouch]).collect(),
-        default: Predictor::By(Rung::FurtherImpacts),
-        name: |predictor| match predictor {
-            Predictor::By(rung) => rung.words().to_owned(),
-            Predictor::EveryTouch => "body, every touch an impact".to_owned(),
-        },
-        run: |predictor, StiffDrop { body, drop, contact, k, .. }| {
-            let prediction = match predictor {
-                Predictor::By(rung) => predict::predict_by(rung, body, drop, *contact, *k),
-                Predictor::EveryTouch => predict::predict_grazing(body, drop, *contact, *k, 0.0),
-            };
-            prediction.slap_down_speed_m_s
-        },
+        family: "prediction",
+        error_unit: "% of the slap-down speed",
+        samples: None,
+        methods,
         error: |drop, speed_m_s| 100.0 * (speed_m_s / drop.speed_m_s - 1.0).abs(),
-        parts: |_| 1,
     }
 }
 
 /// Errors are against `synth` on stiff ends.
-pub(super) fn run(request: &TrialRequest, progress: &dyn Fn(f64)) -> TrialPart {
-    let contest = contest();
-    let part =
-        by_class(&CLASSES, progress, |class| contest.points(class.name, &drops(class, request), 1, request));
-    progress(1.0);
-    part
+pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {
+    contest().points(&CLASSES, request, |class| (class.name.to_owned(), drops(class, request)))
 }
 
 /// The drops of a class on stiff ends, with their truth; those in which R does not strike are left out.
 fn drops(class: &PredictedClass, request: &TrialRequest) -> Vec<StiffDrop> {
-    let count = if request.quick { 10 } else { 60 } * if class.touches == ANY { 1 } else { 3 };
+    let count = request.either(10, 60) * if class.touches == ANY { 1 } else { 3 };
     let mut chance = Chance::new(request.seed, 0);
-    let mut between = |(low, high): (f64, f64)| chance.even(low, high);
     let plans: Vec<DropPlan> = (0..count)
         .map(|number| {
             let build = class.builds[number % class.builds.len()];
             DropPlan {
                 pulse_s: if class.touches == ANY && class.k.1 > LIMIT_K { STIFF_S } else { RESTED_S },
                 contact: class.contact,
-                ..DropPlan::of(build, between(class.angle_deg), between(class.k), 0)
+                ..DropPlan::of(build, chance.between(class.angle_deg), chance.between(class.k), 0)
             }
         })
         .collect();

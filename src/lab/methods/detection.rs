@@ -1,0 +1,48 @@
+//! Methods of finding first contact to their errors and times.
+
+use super::contest::{Contest, Method};
+use super::detector::{change_point, first_contact_by, matched_pulse, threshold};
+use super::drops::{DropClass, NOISY, Prepared};
+use crate::data::STANDARD_GRAVITY_M_S2;
+use crate::events::first_contact;
+use crate::lab::data::{TrialPoint, TrialRequest};
+
+const CLASSES: [DropClass; 5] = [
+    DropClass {
+        name: "clean, 100 kHz",
+        make: |plan, _, _| {
+            plan.rate_hz = 1e5;
+            plan.chain.white_noise_m_s2 = 0.02 * STANDARD_GRAVITY_M_S2;
+        },
+    },
+    NOISY,
+    DropClass { name: "20 ms pulse", make: |plan, _, _| plan.pulse_s = 0.02 },
+    DropClass { name: "25 samples a pulse", make: |plan, _, _| plan.rate_hz = 25.0 / plan.pulse_s },
+    DropClass { name: "force plateau", make: |plan, _, share| plan.yield_share = Some(0.4 + 0.4 * share) },
+];
+
+fn contest() -> Contest<Prepared, f64> {
+    let rival = |name, find| {
+        Method::new(name, move |drop: &Prepared| first_contact_by(find, &drop.signals, &drop.coarse))
+    };
+    Contest {
+        family: "first contact",
+        error_unit: "% of the pulse",
+        samples: None,
+        methods: vec![
+            Method::new("line through the rise", |drop: &Prepared| {
+                Some(first_contact(&drop.signals, &drop.coarse)?.time_s)
+            }),
+            rival("threshold", threshold),
+            rival("change point", change_point),
+            rival("matched half sine", matched_pulse),
+        ],
+        error: |drop, found_s| 100.0 * (found_s - drop.contact_s).abs() / drop.drop.contact_s(),
+    }
+}
+
+pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {
+    contest().points(&CLASSES, request, |class| {
+        (class.name.to_owned(), class.prepared(request.either(12, 60), request))
+    })
+}
