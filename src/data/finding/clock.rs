@@ -72,9 +72,7 @@ impl fmt::Display for TimesApart {
 
 impl ClockFinding {
     /// The check that speaks, and how much it weighs.
-    pub(super) fn code(&self) -> (Code, Severity) {
-        (Code::Clock, Severity::Warning)
-    }
+    pub(super) const CODE: (Code, Severity) = (Code::Clock, Severity::Warning);
 
     /// What was found, its size, and what to do.
     pub(super) fn sentence(&self) -> String {

@@ -78,7 +78,7 @@ impl From<TimesFinding> for Finding {
 
 impl From<ClockFinding> for Finding {
     fn from(found: ClockFinding) -> Self {
-        let (code, severity) = found.code();
+        let (code, severity) = ClockFinding::CODE;
         let message = found.sentence();
         Self::made(What::Clock(found), code, severity, &message)
     }

@@ -2,7 +2,7 @@
 
 use super::error::TimeBaseError;
 use crate::data::{Finding, Samples, TimesFinding};
-use crate::ingest::clock::Refusal;
+use crate::ingest::clock::{Refusal, usual_step};
 use crate::numerics::as_f64;
 use std::borrow::Cow;
 
@@ -59,8 +59,8 @@ pub(super) fn ordered<'a>(
 /// column of whole seconds. Sorted they would put the end of a recording before its beginning.
 fn wrapped(times_s: &[f64]) -> Option<Refusal> {
     const WHOLE_S: [f64; 4] = [1.0, 60.0, 3600.0, 86_400.0];
-    let at = (2..times_s.len()).find(|&i| times_s[i] < times_s[i - 1])?;
-    let interval_s = times_s[at - 1] - times_s[at - 2];
+    let at = (1..times_s.len()).find(|&i| times_s[i] < times_s[i - 1])?;
+    let interval_s = usual_step(times_s);
     let (least_s, most_s) = times_s.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), t| (a.min(*t), b.max(*t)));
     let is_it = |whole_s: &f64| {
         let off_s = times_s[at - 1] - times_s[at] + interval_s - whole_s;
