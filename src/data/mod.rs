@@ -35,9 +35,11 @@ pub use cask::{
 pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, MotionCurve};
 pub use estimate::Estimate;
+pub(crate) use finding::two_units;
 pub use finding::{
-    AttributeFinding, CODES, ChannelFinding, ClockFinding, DropFinding, During, Finding, HowApart, Issue,
-    IssueCode, Jitter, RatesApart, Severity, TableFinding, TimesApart, TimesFinding, What, shortened,
+    AttributeFinding, CODES, ChannelFinding, ClockFinding, DropFinding, During, FileEnd, Finding, HowApart,
+    Issue, IssueCode, Jitter, McapFinding, RatesApart, Severity, TableFinding, TimesApart, TimesFinding,
+    What, shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};

@@ -5,6 +5,7 @@ mod channel;
 mod clock;
 mod code;
 mod drop;
+mod mcap;
 mod table;
 mod times;
 
@@ -13,6 +14,8 @@ pub use channel::{ChannelFinding, During};
 pub use clock::{ClockFinding, HowApart, RatesApart, TimesApart};
 pub use code::{CODES, IssueCode, Severity};
 pub use drop::DropFinding;
+pub(crate) use mcap::two_units;
+pub use mcap::{FileEnd, McapFinding};
 pub use table::TableFinding;
 pub use times::{Jitter, TimesFinding};
 
@@ -30,6 +33,8 @@ pub enum What {
     Times(TimesFinding),
     /// About what says when samples were taken.
     Clock(ClockFinding),
+    /// About an MCAP file, its chunks and its messages.
+    Mcap(McapFinding),
     /// About the rows of a table.
     Table(TableFinding),
     /// About the attributes of an HDF5 dataset.
@@ -81,6 +86,14 @@ impl From<ClockFinding> for Finding {
         let (code, severity) = ClockFinding::CODE;
         let message = found.sentence();
         Self::made(What::Clock(found), code, severity, &message)
+    }
+}
+
+impl From<McapFinding> for Finding {
+    fn from(found: McapFinding) -> Self {
+        let (code, severity) = found.code();
+        let message = found.sentence();
+        Self::made(What::Mcap(found), code, severity, &message)
     }
 }
 

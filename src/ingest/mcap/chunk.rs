@@ -1,257 +1,231 @@
-//! One chunk to the records in it: decompressed as it is read, its check sum tested, cut ones as far as they go.
+//! A chunk as it stands in the file to its records: unpacked whole, its check sum tested, a cut one as far as it goes.
 
-use mcap::McapError;
+use super::scanned::Counts;
+use super::topic::Part;
+use super::topics::Topics;
 use mcap::records::op;
-use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use std::io::Read;
 
 /// A record begins with its opcode (1 byte) and its length (8 bytes).
 pub(super) const RECORD_HEADER_BYTES: u64 = 9;
-/// The same, as the length of a buffer.
-pub(super) const RECORD_HEADER_LENGTH: usize = 9;
-/// Chunk header without its compression's name: times, uncompressed size, check sum, name length, compressed size.
-const FIXED_HEADER_BYTES: u64 = 8 + 8 + 8 + 4 + 4 + 8;
-/// The same, as the length of a buffer.
-const FIXED_HEADER_LENGTH: usize = 40;
 /// Longer than any name of a compression ("zstd", "lz4"); a longer one is damage.
-const LONGEST_COMPRESSION_NAME_BYTES: u64 = 64;
+const LONGEST_COMPRESSION_NAME_BYTES: usize = 64;
 /// zstd needs three bytes for a block, which unpacks to 128 KiB at most (RFC 8878): more is damage, not a claim.
 const LARGEST_EXPANSION: u64 = (128 << 10) / 3 + 1;
-/// So much is asked of the file at a time, whatever the record claims.
-const STEP_BYTES: u64 = 1 << 20;
 
-/// What a chunk was.
-#[derive(Debug)]
-pub(super) struct Ended {
-    /// The compression that it names, where its header was read.
-    pub(super) compression: Option<String>,
-    pub(super) how: ChunkEnd,
+/// Records one behind another, each its opcode and its body; ends before one that is not whole.
+pub(super) struct Records<'a>(pub(super) &'a [u8]);
+
+impl<'a> Iterator for Records<'a> {
+    type Item = (u8, &'a [u8]);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let ([opcode, length @ ..], rest) = self.0.split_first_chunk::<9>()?;
+        let (body, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
+        self.0 = rest;
+        Some((*opcode, body))
+    }
 }
 
-/// How a chunk ended.
-#[derive(Debug)]
-pub(super) enum ChunkEnd {
-    /// All of it was read and its check sum holds, or it has none.
-    Whole,
-    /// The file ends in it, after so many of its bytes.
-    Cut { bytes: u64 },
-    /// Whoever takes the records wants no more.
-    Stopped,
-    /// One of its records is larger than any may be.
-    TooLarge,
-    /// It does not decompress, or its check sum does not hold.
-    Bad { reason: String, span_ns: (u64, u64) },
-}
-
-/// Reads chunks one after the other, with the decompressors' memory kept.
-pub(super) struct Chunks {
-    reader: LinearReader,
-    record_limit: usize,
-}
-
-/// A chunk's header, as far as it is needed.
-pub(super) struct Header {
-    bytes: Vec<u8>,
+/// What a chunk says of itself.
+#[derive(Default)]
+struct ChunkHeader {
+    lasts_ns: u64,
+    uncompressed: u64,
+    /// 0 where it has none.
+    check_sum: u32,
     compression: String,
-    span_ns: (u64, u64),
-    /// What it claims to unpack to, bytes.
-    pub(super) uncompressed: u64,
-    compressed: u64,
+    /// Where its records lie in its body, packed; what is behind them is padding.
+    from: usize,
+    to: usize,
 }
 
-impl Chunks {
-    /// For records of at most `largest_record_bytes`.
-    pub(super) fn new(largest_record_bytes: u64) -> Self {
-        let record_limit = usize::try_from(largest_record_bytes).unwrap_or(usize::MAX);
-        Self { reader: fresh(record_limit), record_limit }
+/// What is wrong with a chunk.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum ChunkFault {
+    /// The file ends within it.
+    Cut,
+    /// It is damaged, and none of its messages can be trusted.
+    Bad(String),
+}
+
+/// A chunk on its way from the file to what its messages give; used again for the memory of its parts.
+#[derive(Default)]
+pub(super) struct Chunk {
+    /// Where its record begins in the file.
+    pub(super) start: u64,
+    /// How long it claims to be.
+    pub(super) claimed: u64,
+    /// As it stands in the file.
+    pub(super) body: Vec<u8>,
+    header: Option<ChunkHeader>,
+    unpacked: Vec<u8>,
+    pub(super) fault: Option<ChunkFault>,
+    /// Of its records.
+    pub(super) counts: Counts,
+    /// What its messages gave.
+    pub(super) part: Part,
+    /// How many messages cannot be used, and why the first of them cannot.
+    pub(super) unusable: Option<(u64, &'static str)>,
+}
+
+impl Chunk {
+    /// With an empty part.
+    pub(super) fn new(part: Part) -> Self {
+        Self { part, ..Self::default() }
     }
 
-    /// Reads the chunk whose body begins at `file`, claims `claimed` bytes and has `available`; `take` gets each
-    /// record and says whether it wants more.
-    pub(super) fn read(
-        &mut self,
-        file: &mut impl Read,
-        claimed: u64,
-        available: u64,
-        take: &mut dyn FnMut(u8, &[u8]) -> bool,
-    ) -> std::io::Result<Ended> {
-        let body = claimed.min(available);
-        let is_cut = claimed > available;
-        let Some(header) = header(file, body)? else {
-            let how = if is_cut {
-                ChunkEnd::Cut { bytes: body }
-            } else {
-                skip(file, body.saturating_sub(FIXED_HEADER_BYTES))?;
-                ChunkEnd::Bad { reason: "its header makes no sense".into(), span_ns: (0, 0) }
-            };
-            return Ok(Ended { compression: None, how });
+    /// Settles what the chunk says of itself, once its body is there.
+    pub(super) fn begin(&mut self) {
+        let is_cut = self.claimed > self.body.len() as u64;
+        self.header = ChunkHeader::of(&self.body, is_cut);
+        (self.counts, self.unusable) = (Counts::default(), None);
+        self.fault = match &self.header {
+            _ if is_cut => Some(ChunkFault::Cut),
+            None => Some(ChunkFault::Bad("its header makes no sense".into())),
+            Some(header) if !header.is_possible(self.body.len()) => {
+                Some(ChunkFault::Bad("its sizes contradict each other".into()))
+            }
+            Some(_) => None,
         };
-        let bad = |reason| ChunkEnd::Bad { reason, span_ns: header.span_ns };
-        let data = body - header.bytes.len() as u64;
-        let how = if is_cut || header.is_possible(body) {
-            // Bytes behind the compressed ones are padding: the reader never sees them, so no record can reach into them.
-            let fed_bytes = data.min(header.compressed);
-            let fed = self.feed(file, &header, fed_bytes, is_cut, take)?;
-            skip(file, fed.left + (data - fed_bytes))?;
-            if !fed.is_clean {
-                self.reader = fresh(self.record_limit);
-            }
-            match fed.problem {
-                None => ChunkEnd::Whole,
-                Some(Problem::Stopped) => ChunkEnd::Stopped,
-                Some(Problem::TooLarge) => ChunkEnd::TooLarge,
-                Some(_) if is_cut => ChunkEnd::Cut { bytes: fed_bytes },
-                Some(Problem::Damage(reason)) => bad(reason),
-            }
-        } else {
-            skip(file, data)?;
-            bad("its sizes contradict each other".into())
-        };
-        Ok(Ended { compression: Some(header.compression), how })
     }
 
-    /// Feeds the chunk's `bytes`, its lengths set to what is there, to the reader.
-    fn feed(
-        &mut self,
-        file: &mut impl Read,
-        header: &Header,
-        bytes: u64,
-        is_cut: bool,
-        take: &mut dyn FnMut(u8, &[u8]) -> bool,
-    ) -> std::io::Result<Fed> {
-        let mut prefix: &[u8] = &header.with_lengths(bytes, is_cut);
-        let (mut left, mut yielded) = (bytes, 0_u64);
-        let problem = loop {
-            let wanted = match self.reader.next_event() {
-                None => break None,
-                Some(Ok(LinearReadEvent::ReadRequest(wanted))) => wanted as u64,
-                Some(Ok(LinearReadEvent::Record { opcode, data })) => {
-                    yielded += RECORD_HEADER_BYTES + data.len() as u64;
-                    if !take(opcode, data) {
-                        break Some(Problem::Stopped);
-                    }
-                    continue;
-                }
-                Some(Err(error)) => break Some(header.problem(&error)),
-            };
-            if prefix.is_empty() && left == 0 {
-                let is_complete = !is_cut && yielded == header.uncompressed;
-                if is_complete {
-                    return Ok(Fed { left, is_clean: true, problem: None });
-                }
-                self.reader.notify_read(0);
-                continue;
-            }
-            let step = if prefix.is_empty() {
-                wanted.min(left).min(STEP_BYTES)
-            } else {
-                wanted.min(prefix.len() as u64)
-            };
-            let buffer = self.reader.insert(usize::try_from(step).unwrap_or(0));
-            if prefix.is_empty() {
-                file.read_exact(buffer)?;
-                left -= step;
-            } else {
-                let (now, later) = prefix.split_at(buffer.len());
-                buffer.copy_from_slice(now);
-                prefix = later;
-            }
-            self.reader.notify_read(usize::try_from(step).unwrap_or(0));
-        };
-        let problem = problem.or_else(|| is_cut.then(|| Problem::Damage("it is cut".to_owned())));
-        Ok(Fed { left, is_clean: false, problem })
-    }
-}
-
-/// What became of a chunk's bytes.
-struct Fed {
-    /// Bytes of the chunk that the reader did not ask for.
-    left: u64,
-    /// Whether the reader stands at a record's boundary again.
-    is_clean: bool,
-    problem: Option<Problem>,
-}
-
-/// Why a chunk's records end before it does.
-enum Problem {
-    Stopped,
-    TooLarge,
-    Damage(String),
-}
-
-impl Header {
-    /// Whether a chunk of `body` bytes can hold what it claims.
-    pub(super) fn is_possible(&self, body: u64) -> bool {
-        self.compressed <= body - self.bytes.len() as u64
-            && self.uncompressed <= self.compressed.saturating_mul(LARGEST_EXPANSION)
+    /// What it claims to unpack to and can, bytes.
+    pub(super) fn claim(&self) -> u64 {
+        self.header.as_ref().filter(|_| self.fault.is_none()).map_or(0, |header| header.uncompressed)
     }
 
-    /// A length that the chunk could hold is too large, any other is damage.
-    fn problem(&self, error: &McapError) -> Problem {
-        match error {
-            McapError::RecordTooLarge { len, .. } if *len <= self.uncompressed => Problem::TooLarge,
-            other => Problem::Damage(in_words(other)),
+    /// The name of its compression, where its header can be read.
+    pub(super) fn compression(&self) -> Option<&str> {
+        self.header.as_ref().map(|header| header.compression.as_str())
+    }
+
+    /// The time that its messages span, as it says, s.
+    #[allow(clippy::cast_precision_loss, reason = "a duration for a sentence")]
+    pub(super) fn lasts_s(&self) -> f64 {
+        self.header.as_ref().map_or(0.0, |header| header.lasts_ns as f64 * 1e-9)
+    }
+
+    /// Bytes of its packed records that are there.
+    pub(super) fn packed_bytes(&self) -> usize {
+        self.packed().map_or(self.body.len(), <[u8]>::len)
+    }
+
+    fn packed(&self) -> Option<&[u8]> {
+        self.header.as_ref().and_then(|header| self.body.get(header.from..header.to))
+    }
+
+    pub(super) fn is_bad(&self) -> bool {
+        matches!(self.fault, Some(ChunkFault::Bad(_)))
+    }
+
+    /// Its records, once it is unpacked, those of a damaged one as far as they came.
+    pub(super) fn records(&self) -> Records<'_> {
+        match self.compression() {
+            None => Records(&[]),
+            Some("") => Records(self.packed().unwrap_or_default()),
+            Some(_) => Records(&self.unpacked),
         }
     }
 
-    /// A chunk record's beginning with its lengths set to the `data` bytes that are there.
-    fn with_lengths(&self, data: u64, is_cut: bool) -> Vec<u8> {
-        let mut bytes = vec![op::CHUNK];
-        bytes.extend_from_slice(&(self.bytes.len() as u64 + data).to_le_bytes());
-        bytes.extend_from_slice(&self.bytes);
-        if is_cut {
-            let at = bytes.len() - 8;
-            bytes.splice(at.., data.to_le_bytes());
-            // No check sum holds for a part; the uncompressed size is unknown.
-            let sizes = RECORD_HEADER_LENGTH + 16;
-            bytes.splice(sizes..sizes + 8, u64::MAX.to_le_bytes());
-            bytes.splice(sizes + 8..sizes + 12, [0; 4]);
+    /// Unpacks and counts its records; a cut chunk unpacks to `most_of_cut` bytes at most.
+    pub(super) fn unpack(&mut self, most_of_cut: u64) {
+        self.unpacked.clear();
+        if self.is_bad() {
+            return;
         }
-        bytes
-    }
-}
-
-/// The header at `file`, `None` where `body` bytes cannot hold it.
-pub(super) fn header(file: &mut impl Read, body: u64) -> std::io::Result<Option<Header>> {
-    if body < FIXED_HEADER_BYTES {
-        skip(file, body)?;
-        return Ok(None);
-    }
-    let mut bytes = vec![0; FIXED_HEADER_LENGTH];
-    file.read_exact(&mut bytes)?;
-    let name_bytes = u64::from(u32::from_le_bytes(bytes[28..32].try_into().unwrap_or_default()));
-    if name_bytes > LONGEST_COMPRESSION_NAME_BYTES || FIXED_HEADER_BYTES + name_bytes > body {
-        return Ok(None);
-    }
-    file.take(name_bytes).read_to_end(&mut bytes)?;
-    let word =
-        |at: usize| bytes.get(at..at + 8).and_then(|word| word.try_into().ok()).map_or(0, u64::from_le_bytes);
-    let name_end = bytes.len() - 8;
-    let compression = String::from_utf8_lossy(bytes.get(32..name_end).unwrap_or_default()).into_owned();
-    let (span_ns, uncompressed, compressed) = ((word(0), word(8)), word(16), word(name_end));
-    Ok(Some(Header { bytes, compression, span_ns, uncompressed, compressed }))
-}
-
-fn fresh(record_limit: usize) -> LinearReader {
-    let options = LinearReaderOptions::default()
-        .with_skip_start_magic(true)
-        .with_skip_end_magic(true)
-        .with_validate_chunk_crcs(true)
-        .with_record_length_limit(record_limit);
-    LinearReader::new_with_options(options)
-}
-
-fn skip(file: &mut impl Read, bytes: u64) -> std::io::Result<()> {
-    std::io::copy(&mut file.take(bytes), &mut std::io::sink()).map(|_| ())
-}
-
-fn in_words(error: &McapError) -> String {
-    match error {
-        McapError::BadChunkCrc { .. } => "its check sum does not hold".into(),
-        McapError::UnsupportedCompression(name) => {
-            format!("it is compressed with {name:?}, and only zstd, lz4 and none are read")
+        let is_cut = self.fault.is_some();
+        let mut unpacked = std::mem::take(&mut self.unpacked);
+        let outcome = match (&self.header, self.packed()) {
+            (Some(header), Some(packed)) => {
+                let most = if is_cut { most_of_cut } else { header.uncompressed };
+                header.unpack(packed, most, &mut unpacked)
+            }
+            _ => Ok(()),
+        };
+        self.unpacked = unpacked;
+        let mut counts = Counts::default();
+        let mut records = self.records();
+        let bytes = records.0;
+        records.by_ref().for_each(|(opcode, body)| counts.add_unpacked(opcode, body));
+        let sound = outcome.and_then(|()| match &self.header {
+            Some(header) if !is_cut => header.check(bytes, records.0.is_empty()),
+            _ => Ok(()),
+        });
+        self.counts = counts;
+        if let (false, Err(reason)) = (is_cut, sound) {
+            self.fault = Some(ChunkFault::Bad(reason));
         }
-        McapError::UnexpectedEof | McapError::UnexpectedEoc => "a record in it is longer than it".into(),
-        other => other.to_string(),
+    }
+
+    /// Takes its messages, as long as their samples take no more than `most_held` bytes.
+    pub(super) fn take(&mut self, topics: &Topics, most_held: u64) {
+        if self.is_bad() {
+            return;
+        }
+        let mut part = std::mem::take(&mut self.part);
+        let (mut unusable, mut first) = (0, None);
+        for (_, body) in self.records().filter(|(opcode, _)| *opcode == op::MESSAGE) {
+            if let Err(why) = topics.take(&mut part, body) {
+                unusable += 1;
+                first.get_or_insert(why);
+            }
+            if part.held_bytes > most_held {
+                break;
+            }
+        }
+        self.part = part;
+        self.unusable = first.map(|why| (unusable, why));
+    }
+}
+
+impl ChunkHeader {
+    /// The header that `body` begins with, `None` where it cannot hold it.
+    fn of(body: &[u8], is_cut: bool) -> Option<Self> {
+        let word = |at: usize| body.get(at..)?.first_chunk().map(|bytes| u64::from_le_bytes(*bytes));
+        let half = |at: usize| body.get(at..)?.first_chunk().map(|bytes| u32::from_le_bytes(*bytes));
+        let name_bytes = usize::try_from(half(28)?).ok().filter(|&n| n <= LONGEST_COMPRESSION_NAME_BYTES)?;
+        let from = 32 + name_bytes + 8;
+        let compressed = usize::try_from(word(32 + name_bytes)?).unwrap_or(usize::MAX);
+        let to = from.saturating_add(compressed);
+        Some(Self {
+            lasts_ns: word(8)?.saturating_sub(word(0)?),
+            uncompressed: word(16)?,
+            check_sum: half(24)?,
+            compression: String::from_utf8_lossy(&body[32..32 + name_bytes]).into_owned(),
+            from,
+            to: if is_cut { to.min(body.len()) } else { to },
+        })
+    }
+
+    /// Whether a body of so many bytes can hold what the chunk claims.
+    fn is_possible(&self, bytes: usize) -> bool {
+        let compressed = (self.to - self.from) as u64;
+        self.to <= bytes && self.uncompressed <= compressed.saturating_mul(LARGEST_EXPANSION)
+    }
+
+    /// Unpacks `most` bytes at most, into what is empty; what is not compressed stays where it is.
+    fn unpack(&self, packed: &[u8], most: u64, into: &mut Vec<u8>) -> Result<(), String> {
+        let unpacked = match self.compression.as_str() {
+            "" => Ok(0),
+            "zstd" => zstd::stream::read::Decoder::with_buffer(packed)
+                .and_then(|decoder| decoder.take(most).read_to_end(into)),
+            "lz4" => lz4::Decoder::new(packed).and_then(|decoder| decoder.take(most).read_to_end(into)),
+            name => {
+                return Err(format!("it is compressed with {name:?}, and only zstd, lz4 and none are read"));
+            }
+        };
+        unpacked.map(|_| ()).map_err(|error| format!("it does not unpack: {error}"))
+    }
+
+    /// Whether the unpacked bytes are those that were packed.
+    fn check(&self, bytes: &[u8], ends_with_record: bool) -> Result<(), String> {
+        if bytes.len() as u64 != self.uncompressed {
+            return Err("it unpacks to more or less than it claims".into());
+        }
+        if self.check_sum != 0 && crc32fast::hash(bytes) != self.check_sum {
+            return Err("its check sum does not hold".into());
+        }
+        if ends_with_record { Ok(()) } else { Err("a record in it is longer than it".into()) }
     }
 }

@@ -276,15 +276,15 @@ impl Column {
         self.units.first().map(String::as_str)
     }
 
-    /// How the unit changes between its messages, where it does.
-    pub(super) fn unit_change(&self) -> Option<String> {
+    /// The units of its messages where it changes between them: the first, and one that is another.
+    pub(super) fn unit_change(&self) -> Option<[&str; 2]> {
         let (first, others) = self.units.split_first()?;
         let is_other = |unit: &&String| match (acceleration_unit_m_s2(first), acceleration_unit_m_s2(unit)) {
             (Some(one), Some(other)) => one.total_cmp(&other).is_ne(),
             _ => !unit.trim().eq_ignore_ascii_case(first.trim()),
         };
         let other = others.iter().find(is_other)?;
-        Some(format!("the unit changes between its messages, from {first:?} to {other:?}"))
+        Some([first, other])
     }
 
     /// What is said of its rate but by its stamps.

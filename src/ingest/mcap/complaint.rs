@@ -3,7 +3,7 @@
 use super::path;
 use super::scanned::Scanned;
 use super::topic::{Gathered, Topic};
-use crate::data::{ChannelSpec, Issue, IssueCode, Severity, Source};
+use crate::data::{ChannelSpec, Finding, McapFinding, Source, two_units};
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::time_base::TimeBaseError;
 use std::path::Path;
@@ -83,24 +83,28 @@ pub(super) fn no_base(path: &Path, spec: &ChannelSpec, problem: TimeBaseError) -
 }
 
 /// The unit changes between messages: a warning where the cask file states one.
-pub(super) fn two_units(path: &Path, spec: &ChannelSpec, change: &str) -> Result<Issue, IngestError> {
+pub(super) fn unit_change(
+    path: &Path,
+    spec: &ChannelSpec,
+    [first, other]: [&str; 2],
+) -> Result<Finding, IngestError> {
     if spec.unit.is_some() {
-        let message = format!("{change}; all samples were taken in that of the cask file");
-        return Ok(Issue::new(IssueCode::Scale, Severity::Warning, message).on(&spec.name));
+        let (first, other) = (first.to_owned(), other.to_owned());
+        return Ok(Finding::from(McapFinding::TwoUnits { first, other, source: None }).on(&spec.name));
     }
     Err(error::source(
         path,
         &spec.name,
-        format!("{}: {change}", spec.source),
+        format!("{}: {}", spec.source, two_units(first, other)),
         "cut the recording where it changes, or where only the word is wrong write `unit` in this channel of the cask file",
     ))
 }
 
 /// What the file has lost, where that may be why, else `mend`.
 fn lost(scanned: &Scanned, mend: &str) -> String {
-    match scanned.issues().first() {
-        Some(issue) => {
-            format!("{}; take the original from the logger again, or try `mcap recover`", issue.message)
+    match scanned.findings(None).first() {
+        Some(loss) => {
+            format!("{}; take the original from the logger again, or try `mcap recover`", loss.message)
         }
         None => mend.to_owned(),
     }
@@ -108,8 +112,8 @@ fn lost(scanned: &Scanned, mend: &str) -> String {
 
 /// `mend`, and what the file has lost: the topic may have begun behind it.
 fn with_loss(scanned: &Scanned, mend: String) -> String {
-    match scanned.issues().first() {
-        Some(issue) => format!("{mend}; mind that {}", issue.message),
+    match scanned.findings(None).first() {
+        Some(loss) => format!("{mend}; mind that {}", loss.message),
         None => mend,
     }
 }

@@ -3,11 +3,11 @@
 use super::column::{CLOCK_IS_SET_NS, Column, seconds_from};
 use super::extent::Extent;
 use super::path::source_text;
-use super::scan::scan;
 use super::scanned::Scanned;
 use super::topic::{Field, Gathered, Topic};
 use super::topics::Asked;
-use crate::data::{Issue, IssueCode, ListedChannel, Listing, RecordingFormat, Severity};
+use super::walk::walk;
+use crate::data::{Finding, ListedChannel, Listing, McapFinding, RecordingFormat};
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::time_base::TimeBaseError;
 use crate::ingest::{Limits, Progress};
@@ -24,13 +24,15 @@ pub(in crate::ingest) fn list(
     progress: Progress,
 ) -> Result<Listing, IngestError> {
     let bytes = std::fs::metadata(path).map_err(|source| error::io(path, source))?.len();
-    let (scanned, topics) = scan(path, limits, Asked::Everything, progress)?;
-    let unlisted = topics.unlisted();
-    let topics = topics.finish();
+    let walked = walk(path, limits, Asked::Everything, progress)?;
+    let unlisted = walked.topics.unlisted();
+    let counts = walked.scanned.counts.named(walked.topics.schema_count(), walked.topics.channel_count());
+    let (scanned, topics) = walked.finish();
     let columns = topics.iter().flat_map(|(_, gathered)| &gathered.columns);
     let zero_ns = columns.filter_map(Column::span_ns).map(|(from, _)| from).min();
-    let mut issues = scanned.issues();
-    issues.extend(topics.iter().filter_map(|(topic, gathered)| undecoded(topic, gathered)));
+    let mut issues = scanned.findings(None);
+    let undecoded = topics.iter().filter_map(|(topic, gathered)| gathered.undecoded(Some(&topic.name)));
+    issues.extend(undecoded.map(Finding::from));
     issues.extend(unlisted);
     let mut channels = Vec::new();
     for (topic, gathered) in topics {
@@ -41,7 +43,7 @@ pub(in crate::ingest) fn list(
         recording: path.display().to_string(),
         bytes,
         format: RecordingFormat::Mcap,
-        counts: scanned.counts.named(),
+        counts,
         facts: facts(&scanned, zero_ns),
         channels,
         issues,
@@ -68,23 +70,13 @@ fn facts(scanned: &Scanned, zero_ns: Option<i64>) -> BTreeMap<String, String> {
     .collect()
 }
 
-fn undecoded(topic: &Topic, gathered: &Gathered) -> Option<Issue> {
-    let Gathered { messages, malformed, first_problem, .. } = gathered;
-    first_problem.as_ref().map(|problem| {
-        let name = &topic.name;
-        let message =
-            format!("{malformed} of {messages} messages of {name} do not decode; the first: {problem}");
-        Issue::new(IssueCode::Damaged, Severity::Warning, message)
-    })
-}
-
 /// Adds a line for each field of a topic, or one that says why there is none, and what reading would refuse.
 fn listed(
     topic: &Topic,
     gathered: Gathered,
     zero_ns: Option<i64>,
     channels: &mut Vec<ListedChannel>,
-    issues: &mut Vec<Issue>,
+    issues: &mut Vec<Finding>,
 ) {
     let Gathered { messages, mut columns, .. } = gathered;
     if topic.fields.is_empty() {
@@ -98,11 +90,17 @@ fn listed(
         return;
     }
     columns.resize_with(topic.fields.len(), || Column::new(true));
-    let mut said: Vec<String> = Vec::new();
+    let (mut said_units, mut said) = (false, Vec::new());
     for (Field { path, is_array, unit }, column) in topic.fields.iter().zip(columns) {
         let Extent { samples, range, is_without_times, .. } = column.extent.clone().unwrap_or_default();
         let source = source_text(&topic.name, &path.to_string());
-        let refused = column.unit_change().map(|problem| (IssueCode::Scale, problem));
+        if let Some(units) = column.unit_change()
+            && !said_units
+        {
+            let [first, other] = units.map(str::to_owned);
+            issues.push(McapFinding::TwoUnits { first, other, source: Some(source.clone()) }.into());
+            said_units = true;
+        }
         let mut channel = ListedChannel {
             samples: Some(samples),
             messages: Some(messages),
@@ -118,11 +116,9 @@ fn listed(
         };
         channels.push(channel);
         // What holds for one field of a topic mostly holds for all.
-        for (code, problem) in refused.into_iter().chain(untimed.map(|problem| (IssueCode::Clock, problem))) {
-            if !said.contains(&problem) {
-                issues.push(Issue::new(code, Severity::Warning, format!("{source}: {problem}")));
-                said.push(problem);
-            }
+        if let Some(problem) = untimed.filter(|problem| !said.contains(problem)) {
+            said.push(problem.clone());
+            issues.push(McapFinding::NoTimes { source, problem }.into());
         }
     }
 }

@@ -6,7 +6,6 @@ use super::json::Json;
 use super::plan::{Decode, Leaf, Plan};
 use super::protobuf::{self, Protobuf};
 use super::ros_type;
-use super::scanned::ChannelInfo;
 use crate::ingest::Limits;
 use prost_reflect::MessageDescriptor;
 use std::collections::HashMap;
@@ -17,6 +16,23 @@ use std::sync::Arc;
 const ALWAYS_READ_BYTES: u64 = 256 << 10;
 /// Message encodings that are read.
 const READ: &str = "those that can be read are json, protobuf, and cdr with ros2msg";
+
+/// A schema record.
+#[derive(Debug)]
+pub(super) struct SchemaInfo {
+    pub(super) name: String,
+    pub(super) encoding: String,
+    pub(super) data: Vec<u8>,
+}
+
+/// A channel record with its schema.
+pub(super) struct ChannelInfo<'a> {
+    pub(super) topic: &'a str,
+    pub(super) message_encoding: &'a str,
+    /// 0 where it has none.
+    pub(super) schema_id: u16,
+    pub(super) schema: Option<&'a SchemaInfo>,
+}
 
 /// What is known of a channel's messages.
 #[derive(Debug, Clone)]

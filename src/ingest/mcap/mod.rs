@@ -1,9 +1,7 @@
 //! MCAP files to raw channels and listings: JSON, protobuf and ROS 2 messages, whole files and what is left of others.
 
-mod catalog;
 mod cdr;
 mod chunk;
-mod claims;
 mod column;
 mod complaint;
 mod descriptors;
@@ -19,12 +17,11 @@ mod plan;
 mod protobuf;
 mod read;
 mod ros_type;
-mod scan;
 mod scanned;
 mod summary;
 mod topic;
 mod topics;
-mod wave;
+mod walk;
 mod wire;
 
 pub(super) use list::list;

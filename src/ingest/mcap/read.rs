@@ -3,11 +3,11 @@
 use super::column::{CLOCK_IS_SET_NS, Column, Stamps, seconds_from};
 use super::complaint;
 use super::path;
-use super::scan::scan;
 use super::scanned::Scanned;
 use super::topic::{Gathered, Topic};
 use super::topics::Asked;
-use crate::data::{CaskFile, ChannelSpec, Issue, IssueCode, Severity};
+use super::walk::walk;
+use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding};
 use crate::ingest::error::IngestError;
 use crate::ingest::{Limits, Progress, RawChannel, RawRecording};
 use std::path::Path;
@@ -23,24 +23,18 @@ pub(in crate::ingest) fn read(
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
     let specs = &cask_file.channels;
-    let (scanned, topics) = scan(path, limits, Asked::Sources(specs), progress)?;
-    let mut topics = topics.finish();
+    let (scanned, mut topics) = walk(path, limits, Asked::Sources(specs), progress)?.finish();
     let chosen = chosen(path, specs, &topics, &scanned)?;
     let columns = || chosen.iter().map(|&(topic, field)| &topics[topic].1.columns[field]);
     let zero_ns = columns().filter_map(Column::span_ns).map(|(from, _)| from).min().unwrap_or(0);
     let last_ns = columns().filter_map(Column::span_ns).map(|(_, to)| to).max().unwrap_or(0);
-    let mut issues = scanned.issues();
-    for issue in issues.iter_mut().filter(|issue| issue.code == IssueCode::Truncated) {
-        let kept_s = seconds_from(last_ns, zero_ns);
-        issue.message = format!("{}; the last message kept begins at {kept_s:.6} s", issue.message);
-        issue.from_s = Some(kept_s);
-    }
+    let mut issues = scanned.findings(Some(seconds_from(last_ns, zero_ns)));
     let mut channels = Vec::with_capacity(chosen.len());
     for (position, (spec, &(topic, field))) in specs.iter().zip(&chosen).enumerate() {
         let (Topic { fields, .. }, gathered) = &mut topics[topic];
         issues.extend(message_issues(spec, gathered, &gathered.columns[field]));
         if let Some(change) = gathered.columns[field].unit_change() {
-            issues.push(complaint::two_units(path, spec, &change)?);
+            issues.push(complaint::unit_change(path, spec, change)?);
         }
         // A second channel on the same field gets its own copy.
         let column = if chosen[position + 1..].contains(&(topic, field)) {
@@ -87,29 +81,11 @@ fn chosen(
 }
 
 /// What was wrong with single messages of a channel.
-fn message_issues(spec: &ChannelSpec, gathered: &Gathered, column: &Column) -> Vec<Issue> {
-    let Gathered { messages, malformed, first_problem, .. } = gathered;
-    let mut issues = Vec::new();
-    let Stamps { good, bad } = column.stamps;
-    if bad > 0 {
-        let (severity, mixed) = if good > 0 {
-            (Severity::Warning, "; the others carry a stamp, and the two clocks may differ")
-        } else {
-            (Severity::Note, "")
-        };
-        let message = format!(
-            "{bad} of {messages} messages carry a stamp of zero or none that can be understood: their log time was taken{mixed}"
-        );
-        issues.push(Issue::new(IssueCode::LogTimeUsed, severity, message).on(&spec.name));
-    }
-    if *malformed > 0 {
-        let message = format!(
-            "{malformed} of {messages} messages do not decode and were skipped; the first: {}",
-            first_problem.as_deref().unwrap_or("unknown")
-        );
-        issues.push(Issue::new(IssueCode::Damaged, Severity::Warning, message).on(&spec.name));
-    }
-    issues
+fn message_issues(spec: &ChannelSpec, gathered: &Gathered, column: &Column) -> Vec<Finding> {
+    let (messages, Stamps { good, bad }) = (gathered.messages, column.stamps);
+    let log_time = (bad > 0).then_some(McapFinding::LogTime { count: bad, messages, beside_good: good > 0 });
+    let found = log_time.into_iter().chain(gathered.undecoded(None));
+    found.map(|finding| Finding::from(finding).on(&spec.name)).collect()
 }
 
 #[cfg(test)]

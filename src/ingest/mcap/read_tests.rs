@@ -1,7 +1,7 @@
 //! Tests of reading: encodings, compressions, sources, and files that are cut or damaged anywhere.
 
 use super::*;
-use crate::data::{Samples, Unit};
+use crate::data::{IssueCode, Samples, Severity, Unit};
 use crate::ingest::mcap::written::{
     IMU_TEXT, ZERO_NS, block_descriptors, cask_file, channel, closed, fill_json, imu, json_block, json_file,
     message, protobuf_block,

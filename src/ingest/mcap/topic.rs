@@ -5,7 +5,7 @@ use super::json;
 use super::message_type::MessageType;
 use super::path::FieldPath;
 use super::plan::{Decode, Leaf, Plan, Slots, Value};
-use super::scanned::Message;
+use crate::data::McapFinding;
 use rayon::prelude::*;
 
 /// A topic, whatever the number of channels that write on it.
@@ -41,6 +41,23 @@ impl Topic {
     }
 }
 
+/// A message of a channel.
+pub(super) struct Message<'a> {
+    pub(super) channel: u16,
+    log_time_ns: i64,
+    pub(super) data: &'a [u8],
+}
+
+impl<'a> Message<'a> {
+    /// From its record: channel, sequence (4 bytes), log time, publish time (8 bytes), data.
+    pub(super) fn parse(body: &'a [u8]) -> Option<Self> {
+        let (&channel, rest) = body.split_first_chunk()?;
+        let (&log_time, rest) = rest.get(4..)?.split_first_chunk()?;
+        let log_time_ns = i64::try_from(u64::from_le_bytes(log_time)).unwrap_or(i64::MAX);
+        Some(Self { channel: u16::from_le_bytes(channel), log_time_ns, data: rest.get(8..)? })
+    }
+}
+
 /// How to take the messages of a channel.
 #[derive(Default)]
 pub(super) struct Stream {
@@ -55,6 +72,13 @@ pub(super) struct Stream {
     pub(super) decoder: Option<Box<dyn Decode>>,
     /// Which fields of the topic, one for each target of the plan.
     pub(super) fields: Vec<usize>,
+}
+
+impl Stream {
+    /// Whether its first message that holds numbers must tell which fields there are.
+    pub(super) fn is_undecided(&self) -> bool {
+        self.decoder.is_none() && matches!(self.message_type, Some(MessageType::Json))
+    }
 }
 
 /// What the messages of a topic gave.
@@ -77,7 +101,7 @@ impl Gathered {
         self.messages += 1;
         let Some(decoder) = &stream.decoder else { return };
         slots.clear(stream.plan.wants.len());
-        if let Err(problem) = decoder.decode(&message.data, slots) {
+        if let Err(problem) = decoder.decode(message.data, slots) {
             self.malformed += 1;
             self.first_problem.get_or_insert(problem);
             return;
@@ -92,10 +116,16 @@ impl Gathered {
                 && self.leaves.is_empty()
                 && matches!(stream.message_type, Some(MessageType::Json))
             {
-                self.leaves = json::leaves(&message.data);
+                self.leaves = json::leaves(message.data);
             }
             column.take(value, time);
         }
+    }
+
+    /// That messages do not decode, where there are such; `topic` is told in a listing.
+    pub(super) fn undecoded(&self, topic: Option<&str>) -> Option<McapFinding> {
+        let (first, topic) = (self.first_problem.clone()?, topic.map(str::to_owned));
+        Some(McapFinding::Undecoded { count: self.malformed, messages: self.messages, topic, first })
     }
 
     /// Moves over what the messages that follow gave, and leaves memory for others.

@@ -1,16 +1,18 @@
-//! The channels of an MCAP file to its topics, and their messages to a column for each field that is asked for.
+//! The schemas and channels of an MCAP file to its topics, and their messages to a column for each field that is asked for.
 
+use super::chunk::Chunk;
 use super::column::Column;
 use super::json;
-use super::message_type::{MessageType, MessageTypes, implied_unit};
+use super::message_type::{ChannelInfo, MessageTypes, SchemaInfo, implied_unit};
 use super::path::{self, FieldPath};
 use super::plan::{Leaf, MOST_LEAVES, Plan};
-use super::scanned::{ChannelInfo, Message};
-use super::topic::{Gathered, Part, Stream, Topic};
-use crate::data::{ChannelSpec, Issue, IssueCode, Severity};
+use super::scanned::Losses;
+use super::topic::{Gathered, Message, Part, Stream, Topic};
+use crate::data::{ChannelSpec, Finding, McapFinding};
 use crate::ingest::Limits;
+use mcap::records::{Record, op};
 use std::collections::HashMap;
-use std::sync::{Mutex, PoisonError};
+use std::collections::hash_map::Entry;
 
 /// So many topics and fields are listed in all, each counted once more for every kilobyte of its names: a recording of hundreds of
 /// sensors has thousands, and each takes 3 kB. An HDF5 file lists as many objects.
@@ -41,22 +43,24 @@ impl Room {
     }
 }
 
-/// What a walk through a file collects.
+/// The schemas, channels and topics met so far, and how to take their messages.
 pub(super) struct Topics<'a> {
     asked: Asked<'a>,
-    pub(super) limits: Limits,
+    limits: Limits,
     types: MessageTypes,
+    /// The first of an id stands.
+    schemas: HashMap<u16, SchemaInfo>,
     /// In the order of the file.
     all: Vec<Topic>,
     by_name: HashMap<String, usize>,
     streams: Vec<Stream>,
-    by_channel: HashMap<u16, usize>,
+    /// The stream of each channel, the first of an id; `None` where its messages are not asked for.
+    by_channel: HashMap<u16, Option<usize>>,
     /// By topic, schema and encoding: a file may announce one of them under every number.
     same: HashMap<(usize, u16, String), usize>,
     room: Room,
-    taken: Part,
-    /// Emptied parts, for their memory.
-    spare: Mutex<Vec<Part>>,
+    /// Memory of the names and schemas.
+    pub(super) held_bytes: u64,
 }
 
 impl<'a> Topics<'a> {
@@ -66,33 +70,75 @@ impl<'a> Topics<'a> {
             asked,
             limits,
             types: MessageTypes::new(limits, file_bytes),
+            schemas: HashMap::new(),
             all: Vec::new(),
             by_name: HashMap::new(),
             streams: Vec::new(),
             by_channel: HashMap::new(),
             same: HashMap::new(),
             room: Room { left: MOST_LISTED, topics_out: 0, fields_out: 0 },
-            taken: Part::new(most_listed(asked, limits, 1)),
-            spare: Mutex::default(),
+            held_bytes: 0,
         }
     }
 
-    /// A channel, before its first message; once for each id.
-    pub(super) fn channel(&mut self, id: u16, info: &ChannelInfo) {
-        let Some(topic) = self.topic(info) else { return };
+    /// Takes a schema or channel that was not there before; `is_ahead` of the data, where a channel may lack its schema.
+    ///
+    /// # Errors
+    /// Why the record cannot be used.
+    pub(super) fn announce(&mut self, opcode: u8, body: &[u8], is_ahead: bool) -> Result<(), &'static str> {
+        if !matches!(opcode, op::SCHEMA | op::CHANNEL) {
+            return Ok(());
+        }
+        match mcap::parse_record(opcode, body).map_err(|_| "that does not parse")? {
+            Record::Schema { header, data } => {
+                if let Entry::Vacant(free) = self.schemas.entry(header.id) {
+                    self.held_bytes += (header.name.len() + header.encoding.len() + data.len()) as u64;
+                    let (name, encoding) = (header.name, header.encoding);
+                    free.insert(SchemaInfo { name, encoding, data: data.into_owned() });
+                }
+            }
+            Record::Channel(channel) if !self.by_channel.contains_key(&channel.id) => {
+                let is_complete = channel.schema_id == 0 || self.schemas.contains_key(&channel.schema_id);
+                if is_complete || !is_ahead {
+                    self.held_bytes += (channel.topic.len() + channel.message_encoding.len()) as u64;
+                    let stream = self.channel(&channel);
+                    self.by_channel.insert(channel.id, stream);
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The stream of a channel, before its first message; `None` where it is not asked for.
+    fn channel(&mut self, channel: &mcap::records::Channel) -> Option<usize> {
+        let schemas = std::mem::take(&mut self.schemas);
+        let info = ChannelInfo {
+            topic: &channel.topic,
+            message_encoding: &channel.message_encoding,
+            schema_id: channel.schema_id,
+            schema: schemas.get(&channel.schema_id),
+        };
+        let stream = self.stream_of(&info);
+        self.schemas = schemas;
+        stream
+    }
+
+    fn stream_of(&mut self, info: &ChannelInfo) -> Option<usize> {
+        let topic = self.topic(info)?;
         if let Asked::Sources(specs) = self.asked
             && specs.iter().all(|spec| path::field_in(&spec.source, info.topic).is_none())
         {
-            return;
+            return None;
         }
         let same = (topic, info.schema_id, info.message_encoding.to_owned());
-        let at = self.same.get(&same).copied().unwrap_or_else(|| {
+        let known = self.same.get(&same).copied();
+        Some(known.unwrap_or_else(|| {
             let stream = self.stream(topic, info);
             self.streams.push(stream);
             self.same.insert(same, self.streams.len() - 1);
             self.streams.len() - 1
-        });
-        self.by_channel.insert(id, at);
+        }))
     }
 
     /// The place of the topic that a channel writes on; `None` where there is no room to list it.
@@ -189,85 +235,87 @@ impl<'a> Topics<'a> {
         listed
     }
 
-    /// Takes a message into a part; `false` where it must be taken in turn, because the topic's fields are not known yet.
-    pub(super) fn take(&self, part: &mut Part, message: &Message) -> bool {
-        let Some(stream) = self.by_channel.get(&message.channel).and_then(|&at| self.streams.get(at)) else {
-            return true;
-        };
-        part.take(&self.all[stream.topic], stream, message);
-        stream.decoder.is_some() || stream.message_type.is_none()
+    /// Takes from an unpacked chunk what its messages need to be taken: schemas, channels, and which fields messages in JSON have.
+    pub(super) fn meet(&mut self, chunk: &Chunk, losses: &mut Losses) {
+        if chunk.counts.has_channels() {
+            for (opcode, body) in chunk.records() {
+                if let Err(why) = self.announce(opcode, body, false)
+                    && !chunk.is_bad()
+                {
+                    losses.push_records(opcode, chunk.start, 1, why);
+                }
+            }
+        }
+        if !chunk.is_bad() && self.streams.iter().any(Stream::is_undecided) {
+            let messages = chunk.records().filter(|(opcode, _)| *opcode == op::MESSAGE);
+            messages.for_each(|(_, body)| self.look_at(body));
+        }
     }
 
-    /// [`Topics::take`] of a message that may be the first to tell the fields of its topic.
-    pub(super) fn take_in_turn(&mut self, part: &mut Part, message: &Message) {
+    /// Looks at a message that may be the first to tell the fields of its topic.
+    pub(super) fn look_at(&mut self, body: &[u8]) {
         /// A tree of JSON values takes up to so many times its text: two letters become 32 bytes.
         const TREE_BYTES: u64 = 32;
-        if let Some(&at) = self.by_channel.get(&message.channel)
-            && let Some(MessageType::Json) = self.streams[at].message_type
-            && self.streams[at].decoder.is_none()
-        {
-            let mut stream = std::mem::take(&mut self.streams[at]);
-            if message.data.len() as u64 > self.limits.part_bytes() / TREE_BYTES {
-                stream.message_type = None;
-                self.all[stream.topic].unreadable = Some(format!(
-                    "its fields were not looked for: a message takes {} MiB; allow more with --max-memory",
-                    message.data.len() >> 20
-                ));
-            }
-            let leaves = json::leaves(&message.data);
+        let Some(message) = Message::parse(body) else { return };
+        let Some(&Some(at)) = self.by_channel.get(&message.channel) else { return };
+        if !self.streams[at].is_undecided() {
+            return;
+        }
+        let mut stream = std::mem::take(&mut self.streams[at]);
+        if message.data.len() as u64 > self.limits.part_bytes() / TREE_BYTES {
+            stream.message_type = None;
+            self.all[stream.topic].unreadable = Some(format!(
+                "its fields were not looked for: a message takes {} MiB; allow more with --max-memory",
+                message.data.len() >> 20
+            ));
+        } else {
+            let leaves = json::leaves(message.data);
             if !leaves.is_empty() {
                 self.prepare(&mut stream, leaves);
             }
-            self.streams[at] = stream;
         }
-        self.take(part, message);
+        self.streams[at] = stream;
     }
 
-    /// Takes a message that stands in no chunk.
-    pub(super) fn take_alone(&mut self, message: &Message) {
-        let mut taken = std::mem::take(&mut self.taken);
-        self.take_in_turn(&mut taken, message);
-        self.taken = taken;
+    /// Takes a message into a part.
+    ///
+    /// # Errors
+    /// Why it cannot be used.
+    pub(super) fn take(&self, part: &mut Part, body: &[u8]) -> Result<(), &'static str> {
+        let message = Message::parse(body).ok_or("that does not parse")?;
+        if let Some(at) = *self.by_channel.get(&message.channel).ok_or("whose channel is missing")? {
+            let stream = &self.streams[at];
+            part.take(&self.all[stream.topic], stream, &message);
+        }
+        Ok(())
     }
 
-    /// An empty part.
-    pub(super) fn part(&self) -> Part {
-        let spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        spare.unwrap_or_else(|| Part::new(most_listed(self.asked, self.limits, rayon::current_num_threads())))
+    /// An empty part, one of so many that are held at a time.
+    pub(super) fn part(&self, count: usize) -> Part {
+        let is_listed = matches!(self.asked, Asked::Everything);
+        Part::new(is_listed.then(|| self.limits.samples_bytes() / (2 * count as u64)))
     }
 
-    /// Adds a part behind what there is.
-    pub(super) fn join(&mut self, mut part: Part) {
-        self.taken.append(&mut part);
-        self.spare.get_mut().unwrap_or_else(PoisonError::into_inner).push(part);
+    pub(super) fn schema_count(&self) -> usize {
+        self.schemas.len()
     }
 
-    /// Memory that the times and samples taken so far hold.
-    pub(super) fn held_bytes(&self) -> u64 {
-        self.taken.held_bytes
+    pub(super) fn channel_count(&self) -> usize {
+        self.by_channel.len()
     }
 
     /// A note on what there was no room to list.
-    pub(super) fn unlisted(&self) -> Option<Issue> {
-        let Room { topics_out, fields_out, .. } = self.room;
-        (topics_out + fields_out > 0).then(|| {
-            let message = format!(
-                "it holds more than is listed, {MOST_LISTED} in all and {MOST_LEAVES} of a topic: {topics_out} more topics and {fields_out} more fields of the listed ones; a source that is not listed is read all the same"
-            );
-            Issue::new(IssueCode::Unlisted, Severity::Note, message)
-        })
+    pub(super) fn unlisted(&self) -> Option<Finding> {
+        let Room { topics_out: topics, fields_out: fields, .. } = self.room;
+        let (most, most_of_topic) = (MOST_LISTED, MOST_LEAVES);
+        (topics + fields > 0).then(|| McapFinding::Unlisted { most, most_of_topic, topics, fields }.into())
     }
 
     /// The topics of the file, in its order, each with what its messages gave.
-    pub(super) fn finish(self) -> Vec<(Topic, Gathered)> {
-        let mut gathered = self.taken.gathered;
+    pub(super) fn finish(self, taken: Part) -> Vec<(Topic, Gathered)> {
+        let mut gathered = taken.gathered;
         gathered.resize_with(self.all.len(), Gathered::default);
         gathered.iter_mut().flat_map(|gathered| &mut gathered.columns).for_each(Column::settle_clock);
         self.all.into_iter().zip(gathered).collect()
     }
-}
-
-/// What each of so many parts that are held at a time may hold for a listing, bytes.
-fn most_listed(asked: Asked, limits: Limits, parts: usize) -> Option<u64> {
-    matches!(asked, Asked::Everything).then(|| limits.samples_bytes() / (2 * parts as u64))
 }

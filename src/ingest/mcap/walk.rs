@@ -1,0 +1,321 @@
+//! An MCAP file to what its messages give, in the order of the file, whole or not: chunks are unpacked several at once.
+
+use super::chunk::{Chunk, ChunkFault, RECORD_HEADER_BYTES};
+use super::scanned::{Scanned, record_name};
+use super::summary::{self, Summary};
+use super::topic::{Gathered, Part, Topic};
+use super::topics::{Asked, Topics};
+use crate::data::{FileEnd, McapFinding};
+use crate::ingest::error::{self, IngestError};
+use crate::ingest::{Limits, Progress};
+use mcap::records::{Record, op};
+use rayon::prelude::*;
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+/// Larger than most chunks' share between two looks at the progress; smaller than any cache.
+const READ_BUFFER_BYTES: usize = 1 << 18;
+/// Chunks wait for one another as long as their packed bytes are fewer than this,
+const MOST_PACKED_BYTES: u64 = 16 << 20;
+/// and those that they claim to unpack to fewer than this: a larger chunk is unpacked by itself.
+const MOST_UNPACKED_BYTES: u64 = 64 << 20;
+
+/// A file that was walked through.
+pub(super) struct Walked<'a> {
+    pub(super) scanned: Scanned,
+    pub(super) topics: Topics<'a>,
+    taken: Part,
+}
+
+impl Walked<'_> {
+    /// The topics in the order of the file, each with what its messages gave.
+    pub(super) fn finish(self) -> (Scanned, Vec<(Topic, Gathered)>) {
+        (self.scanned, self.topics.finish(self.taken))
+    }
+}
+
+/// Why a walk cannot go on.
+enum Obstacle {
+    Io(std::io::Error),
+    /// A limit of so many bytes, and what passes it.
+    Limit(&'static str, u64),
+}
+
+impl From<std::io::Error> for Obstacle {
+    fn from(error: std::io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+/// Reads the file at `path` from start to end: how it is made, and what its messages gave of what is asked for.
+///
+/// # Errors
+/// Only where the file cannot be read at all, or passes a limit; damage and truncation are in the answer.
+pub(super) fn walk<'a>(
+    path: &Path,
+    limits: Limits,
+    asked: Asked<'a>,
+    progress: Progress,
+) -> Result<Walked<'a>, IngestError> {
+    let walked = File::open(path).map_err(Obstacle::from).and_then(|mut file| {
+        let length = file.metadata()?.len();
+        let summary = summary::read(&mut file, length, limits.part_bytes())?;
+        let topics = Topics::new(asked, limits, length);
+        let mut walk = Walk {
+            file: BufReader::with_capacity(READ_BUFFER_BYTES, file),
+            length,
+            at: mcap::MAGIC.len() as u64,
+            limits,
+            summary,
+            waiting: Vec::new(),
+            spare: Vec::new(),
+            claimed_bytes: 0,
+            body: Vec::new(),
+            walked: Walked { scanned: Scanned::default(), taken: topics.part(1), topics },
+        };
+        walk.run(progress)?;
+        Ok(walk.walked)
+    });
+    walked.map_err(|obstacle| match obstacle {
+        Obstacle::Io(source) => error::io(path, source),
+        Obstacle::Limit(what, limit_bytes) => limits.refusal(path, what, limit_bytes),
+    })
+}
+
+/// Where the walk through the file stands.
+struct Walk<'a> {
+    file: BufReader<File>,
+    length: u64,
+    at: u64,
+    limits: Limits,
+    summary: Option<Summary>,
+    /// Chunks that were read and not yet taken.
+    waiting: Vec<Chunk>,
+    /// Chunks that were taken, for their memory.
+    spare: Vec<Chunk>,
+    /// What all chunks so far claim to unpack to.
+    claimed_bytes: u64,
+    /// Re-used for the record at hand.
+    body: Vec<u8>,
+    walked: Walked<'a>,
+}
+
+/// Whether the walk goes on after a record.
+#[derive(PartialEq)]
+enum Next {
+    Go,
+    Stop,
+}
+
+impl Walk<'_> {
+    fn run(&mut self, progress: Progress) -> Result<(), Obstacle> {
+        for (opcode, body) in self.summary.iter().flat_map(Summary::records) {
+            // A record that does not parse here may do so where it stands in the data.
+            let _ = self.walked.topics.announce(opcode, body, true);
+        }
+        self.file.seek_relative(self.at.cast_signed())?;
+        let mut said_at = 0;
+        while self.record()? == Next::Go {
+            self.keep_within()?;
+            if self.at - said_at >= READ_BUFFER_BYTES as u64 {
+                said_at = self.at;
+                #[allow(clippy::cast_precision_loss, reason = "a fraction for a progress bar")]
+                progress(self.at as f64 / self.length as f64);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether what was read so far stays within the limits.
+    fn keep_within(&self) -> Result<(), Obstacle> {
+        let Walked { scanned, topics, taken } = &self.walked;
+        let (part, unpacked) = (self.limits.part_bytes(), self.limits.unpacked_bytes(self.length));
+        [
+            ("the samples of the channels read take", taken.held_bytes, self.limits.samples_bytes()),
+            ("its schemas and topics take", topics.held_bytes, part),
+            ("its chunks claim to unpack to", self.claimed_bytes, unpacked),
+            ("its chunks unpack to", scanned.counts.unpacked_bytes, unpacked),
+        ]
+        .into_iter()
+        .try_for_each(|(what, bytes, most)| within(what, bytes, most))
+    }
+
+    /// One record at the file's level.
+    fn record(&mut self) -> Result<Next, Obstacle> {
+        let (at, left) = (self.at, self.length.saturating_sub(self.at));
+        if left < RECORD_HEADER_BYTES {
+            self.settle()?;
+            self.walked.scanned.losses.end(FileEnd::Early { at, bytes: left, inside: "record" });
+            return Ok(Next::Stop);
+        }
+        let mut header = [0; 9];
+        self.file.read_exact(&mut header)?;
+        let [opcode, length @ ..] = header;
+        let claimed = u64::from_le_bytes(length);
+        let available = left - RECORD_HEADER_BYTES;
+        let is_known = (op::HEADER..=op::DATA_END).contains(&opcode);
+        if opcode == 0 || (claimed > available && (!is_known || self.summary.is_some())) {
+            return self.resume_after_garbage();
+        }
+        if opcode == op::CHUNK {
+            return self.chunk(claimed, available);
+        }
+        if claimed > available {
+            self.settle()?;
+            let inside = record_name(opcode);
+            self.walked.scanned.losses.end(FileEnd::Early { at, bytes: left, inside });
+            return Ok(Next::Stop);
+        }
+        self.whole_record(opcode, claimed)
+    }
+
+    /// A record other than a chunk that lies wholly in the file.
+    fn whole_record(&mut self, opcode: u8, length: u64) -> Result<Next, Obstacle> {
+        let start = self.at;
+        self.at += RECORD_HEADER_BYTES + length;
+        self.walked.scanned.counts.add(opcode);
+        if !matches!(
+            opcode,
+            op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE | op::STATISTICS | op::FOOTER
+        ) {
+            self.file.seek_relative(length.cast_signed())?;
+            return Ok(Next::Go);
+        }
+        self.settle()?;
+        within("one of its messages takes", length, self.limits.part_bytes())?;
+        self.body.clear();
+        (&mut self.file).take(length).read_to_end(&mut self.body)?;
+        if opcode == op::FOOTER {
+            return self.end_magic();
+        }
+        let (body, Walked { scanned, topics, taken }) = (&self.body, &mut self.walked);
+        let outcome = match opcode {
+            op::MESSAGE => {
+                topics.look_at(body);
+                topics.take(taken, body)
+            }
+            op::SCHEMA | op::CHANNEL => topics.announce(opcode, body, false),
+            _ => match mcap::parse_record(opcode, body) {
+                Ok(Record::Header(header)) => {
+                    (scanned.profile, scanned.library) = (header.profile, header.library);
+                    Ok(())
+                }
+                Ok(Record::Statistics(statistics)) => {
+                    scanned.claimed_messages = Some(statistics.message_count);
+                    Ok(())
+                }
+                _ => Err("that does not parse"),
+            },
+        };
+        if let Err(why) = outcome {
+            scanned.losses.push_records(opcode, start, 1, why);
+        }
+        Ok(Next::Go)
+    }
+
+    /// A chunk, which waits until there are enough to be unpacked beside one another.
+    fn chunk(&mut self, claimed: u64, available: u64) -> Result<Next, Obstacle> {
+        let part_bytes = self.limits.part_bytes();
+        within("one of its chunks takes", claimed.min(available), part_bytes)?;
+        let mut chunk = self
+            .spare
+            .pop()
+            .unwrap_or_else(|| Chunk::new(self.walked.topics.part(rayon::current_num_threads())));
+        (chunk.start, chunk.claimed) = (self.at, claimed);
+        chunk.body.clear();
+        (&mut self.file).take(claimed.min(available)).read_to_end(&mut chunk.body)?;
+        self.at += RECORD_HEADER_BYTES + claimed.min(available);
+        chunk.begin();
+        within("one of its chunks claims to unpack to", chunk.claim(), part_bytes)?;
+        self.claimed_bytes = self.claimed_bytes.saturating_add(chunk.claim());
+        self.keep_within()?;
+        let sum = |bytes: fn(&Chunk) -> u64| self.waiting.iter().chain([&chunk]).map(bytes).sum::<u64>();
+        let is_last = chunk.fault == Some(ChunkFault::Cut);
+        let is_beyond = sum(Chunk::claim) > MOST_UNPACKED_BYTES;
+        let is_full = self.waiting.len() + 1 >= rayon::current_num_threads()
+            || sum(|chunk| chunk.body.len() as u64) >= MOST_PACKED_BYTES;
+        if is_beyond {
+            self.settle()?;
+        }
+        self.waiting.push(chunk);
+        if is_full || is_last {
+            self.settle()?;
+        }
+        Ok(if is_last { Next::Stop } else { Next::Go })
+    }
+
+    /// Takes the chunks that wait: unpacks them, looks in turn at what they tell of channels, and takes their messages.
+    fn settle(&mut self) -> Result<(), Obstacle> {
+        let Self { waiting, limits, .. } = self;
+        let Walked { scanned, topics, taken } = &mut self.walked;
+        waiting.par_iter_mut().for_each(|chunk| chunk.unpack(limits.part_bytes()));
+        for chunk in &*waiting {
+            topics.meet(chunk, &mut scanned.losses);
+        }
+        let most_held = limits.samples_bytes().saturating_sub(taken.held_bytes);
+        waiting.par_iter_mut().for_each(|chunk| chunk.take(topics, most_held));
+        for mut chunk in std::mem::take(waiting) {
+            self.join(&mut chunk);
+            self.spare.push(chunk);
+            self.keep_within()?;
+        }
+        Ok(())
+    }
+
+    /// Adds what a chunk gave, or that it was lost.
+    fn join(&mut self, chunk: &mut Chunk) {
+        let Walked { scanned, taken, .. } = &mut self.walked;
+        let &mut Chunk { start: at, claimed, counts, .. } = chunk;
+        scanned.compressions.extend(chunk.compression().map(str::to_owned));
+        scanned.counts.add(op::CHUNK);
+        let messages = counts.messages();
+        match chunk.fault.take() {
+            Some(ChunkFault::Bad(reason)) => {
+                scanned.counts.unpacked_bytes += counts.unpacked_bytes;
+                let lasts_s = chunk.lasts_s();
+                scanned.losses.push(McapFinding::BadChunk { at, reason, messages, lasts_s });
+                return;
+            }
+            Some(ChunkFault::Cut) => {
+                let (never_closed, bytes) = (claimed == u64::MAX, chunk.packed_bytes() as u64);
+                scanned.losses.end(FileEnd::InChunk { at, never_closed, bytes, messages });
+            }
+            None => {}
+        }
+        scanned.counts += counts;
+        taken.append(&mut chunk.part);
+        if let Some((count, why)) = chunk.unusable {
+            scanned.losses.push_records(op::MESSAGE, at, count, why);
+        }
+    }
+
+    /// After bytes that are no record: the next chunk that the summary's index names, else the end.
+    fn resume_after_garbage(&mut self) -> Result<Next, Obstacle> {
+        self.settle()?;
+        let at = self.at;
+        let next = self.summary.as_ref().and_then(|summary| summary.next_chunk(at));
+        let to = next.unwrap_or(self.length);
+        let resumed = next.is_some();
+        self.walked.scanned.losses.push(McapFinding::Garbage { at, bytes: to - at, resumed });
+        if !resumed {
+            return Ok(Next::Stop);
+        }
+        self.file.seek_relative((to - at).cast_signed() - RECORD_HEADER_BYTES.cast_signed())?;
+        self.at = to;
+        Ok(Next::Go)
+    }
+
+    fn end_magic(&mut self) -> Result<Next, Obstacle> {
+        let mut magic = Vec::new();
+        (&mut self.file).take(mcap::MAGIC.len() as u64).read_to_end(&mut magic)?;
+        if magic != mcap::MAGIC {
+            self.walked.scanned.losses.end(FileEnd::InMagic { at: self.at });
+        }
+        Ok(Next::Stop)
+    }
+}
+
+fn within(what: &'static str, bytes: u64, most: u64) -> Result<(), Obstacle> {
+    if bytes > most { Err(Obstacle::Limit(what, most)) } else { Ok(()) }
+}
