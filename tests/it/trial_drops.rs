@@ -81,15 +81,13 @@ fn the_reconstruction_keeps_its_reference_accuracy() {
 #[test]
 fn the_march_finds_the_first_root() {
     let part = run("root");
-    assert_eq!(part.len(), 16);
+    assert_eq!(part.len(), 12);
     for found in defaults(&part) {
         // Heights of 5 m are rounded to 1e-15 m; at a slope of 0.1 m/s, the least there is, that is 1e-14 s of 0.05 s.
         assert!(found.p95_error < 100.0 * 2e-13, "{found:?}");
     }
     // A bracket over several roots ends at any of them.
     assert!(point(&part, "bisection", "steep, several roots").median_error > 1.0);
-    // φ³/6 of the angle left at the slap-down: 2° of 8°, 10° of 30°.
-    assert!(point(&part, "closed form (small angles)", "flat, 3 to 8°").p95_error < 0.1);
 }
 
 #[test]
