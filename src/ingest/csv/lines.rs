@@ -121,29 +121,28 @@ impl Lines {
 
     /// Ends the lines of `text`; how many of its bytes are left.
     fn settle(&mut self, text: &mut [u8]) -> usize {
-        /// Bytes asked at once whether any is a \r or zero, which costs less than to ask each.
-        const TOGETHER: usize = 64;
-        let mut kept = 0;
-        for from in (0..text.len()).step_by(TOGETHER) {
-            let to = text.len().min(from + TOGETHER);
-            let found = |found: u8, byte: &u8| found | u8::from(*byte == b'\r') | u8::from(*byte == 0);
-            if !self.is_behind_return && text[from..to].iter().fold(0, found) == 0 {
-                if kept < from {
-                    text.copy_within(from..to, kept);
-                }
-                kept += to - from;
-                continue;
+        let (mut at, mut kept) = (0, 0);
+        while at < text.len() {
+            if std::mem::take(&mut self.is_behind_return) && text[at] == b'\n' {
+                at += 1;
             }
-            for at in from..to {
-                let byte = text[at];
-                if byte == 0 {
+            let odd = memchr::memchr2(b'\r', 0, &text[at..]).map_or(text.len(), |found| at + found);
+            if kept < at {
+                text.copy_within(at..odd, kept);
+            }
+            kept += odd - at;
+            at = odd + 1;
+            match text.get(odd) {
+                None => {}
+                Some(0) => {
                     self.has_zeros = true;
                     return kept;
                 }
-                let is_ended = self.is_behind_return && byte == b'\n';
-                self.is_behind_return = byte == b'\r';
-                text[kept] = if self.is_behind_return { b'\n' } else { byte };
-                kept += usize::from(!is_ended);
+                Some(_) => {
+                    self.is_behind_return = true;
+                    text[kept] = b'\n';
+                    kept += 1;
+                }
             }
         }
         kept
