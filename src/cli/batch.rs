@@ -8,7 +8,7 @@ use super::progress::with_progress;
 use super::{Ending, output::CannotWrite};
 use clap::Args;
 use dropcheck::data::CaskFile;
-use dropcheck::report::{Campaign, CampaignRow};
+use dropcheck::report::{Batch, BatchRow};
 use dropcheck::{ingest, report};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -56,16 +56,16 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let mut rows = Vec::with_capacity(recordings.len());
     for (i, path) in recordings.iter().enumerate() {
         let folder = folders.as_ref().and_then(|(_, folders)| folders.get(i));
-        let failed = |complaint| CampaignRow::failed(path.display().to_string(), sentence(&complaint));
+        let failed = |complaint| BatchRow::failed(path.display().to_string(), sentence(&complaint));
         rows.push(analysed(path, &cask_file, arguments, folder).unwrap_or_else(failed));
     }
-    let campaign = Campaign::new(arguments.cask.display().to_string(), rows);
+    let campaign = Batch::new(arguments.cask.display().to_string(), rows);
     if let Some((summary, _)) = &folders {
         summary
             .write(&[(SUMMARY[0].to_owned(), campaign.json()?), (SUMMARY[1].to_owned(), campaign.csv()?)])?;
     }
     print(&campaign.table())?;
-    let outcome = |row: &CampaignRow| row.verdict.map_or(Ending::NotDone, Ending::from);
+    let outcome = |row: &BatchRow| row.verdict.map_or(Ending::NotDone, Ending::from);
     Ok(campaign.recordings.iter().map(outcome).max().unwrap_or(Ending::Clear))
 }
 
@@ -74,13 +74,13 @@ fn analysed(
     cask_file: &CaskFile,
     arguments: &Arguments,
     folder: Option<&(String, Folder)>,
-) -> miette::Result<CampaignRow> {
+) -> miette::Result<BatchRow> {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let limits = arguments.bounds.limits();
     let recording = with_progress(&name, |progress| ingest::read_within(path, cask_file, limits, progress))?;
     let mut analysis = dropcheck::analyze(&recording, cask_file);
     arguments.switched_off.in_settings(&mut analysis.result);
-    let mut row = CampaignRow::of(&analysis.result);
+    let mut row = BatchRow::of(&analysis.result);
     if let Some((name, folder)) = folder {
         folder.write(&report::files(&analysis)?)?;
         row.report = Some(format!("{name}/report.html"));
@@ -144,7 +144,7 @@ fn tell_left_out(folder: &Path, others: &[PathBuf]) {
 fn is_summary(path: &Path) -> bool {
     let mut head = Vec::new();
     let read = std::fs::File::open(path).and_then(|file| file.take(256).read_to_end(&mut head));
-    read.is_ok() && Campaign::begins(&head)
+    read.is_ok() && Batch::begins(&head)
 }
 
 /// A folder a recording, named by its stem; a second one of the same stem gets a number.
@@ -204,7 +204,7 @@ mod tests {
         let twice = [folder.path().join("b.mcap"), folder.path().to_path_buf(), folder.path().join("none")];
         assert_eq!(recordings(&twice).unwrap().len(), 3);
         // An earlier campaign's table is none, a recording of its name is one.
-        let table = Campaign::new("cask.toml".into(), Vec::new()).csv().unwrap();
+        let table = Batch::new("cask.toml".into(), Vec::new()).csv().unwrap();
         for (content, count) in [(table, 2), (b"time_s,A1\n0,1\n".to_vec(), 3)] {
             std::fs::write(folder.path().join("campaign.csv"), content).unwrap();
             assert_eq!(recordings(&[folder.path().to_path_buf()]).unwrap().len(), count);

@@ -38,8 +38,8 @@ pub use estimate::Estimate;
 pub(crate) use finding::two_units;
 pub use finding::{
     AttributeFinding, CODES, ChannelFinding, ClockFinding, DropFinding, During, FileEnd, Finding, HowApart,
-    Issue, IssueCode, Jitter, McapFinding, RatesApart, Severity, TableFinding, TimesApart, TimesFinding,
-    What, shortened,
+    IssueCode, Jitter, McapFinding, RatesApart, Severity, TableFinding, TimesApart, TimesFinding, What,
+    shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};

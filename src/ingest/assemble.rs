@@ -109,7 +109,7 @@ fn nanoseconds(time_s: f64) -> i64 {
 
 /// What one unit of the samples is worth.
 #[derive(Debug, PartialEq)]
-struct Scale {
+struct UnitScale {
     m_s2: f64,
     unit: String,
     origin: &'static str,
@@ -117,14 +117,14 @@ struct Scale {
     contradiction: Option<ChannelFinding>,
 }
 
-fn scale(path: &Path, spec: &ChannelSpec, recorded: Option<&str>) -> Result<Scale, IngestError> {
+fn scale(path: &Path, spec: &ChannelSpec, recorded: Option<&str>) -> Result<UnitScale, IngestError> {
     let recorded = recorded.map(str::trim).filter(|text| !text.is_empty());
     if let Some(unit) = spec.unit {
         let (m_s2, name) = declared(unit);
         let contradiction = recorded
             .filter(|text| !same_unit(text, name, m_s2))
             .map(|text| ChannelFinding::OtherUnit { stated: name, recorded: text.to_owned() });
-        return Ok(Scale { m_s2, unit: name.to_owned(), origin: "cask file", contradiction });
+        return Ok(UnitScale { m_s2, unit: name.to_owned(), origin: "cask file", contradiction });
     }
     let Some(text) = recorded else {
         return Err(error::source(
@@ -135,7 +135,7 @@ fn scale(path: &Path, spec: &ChannelSpec, recorded: Option<&str>) -> Result<Scal
         ));
     };
     match acceleration_unit_m_s2(text) {
-        Some(m_s2) => Ok(Scale { m_s2, unit: text.to_owned(), origin: "recording", contradiction: None }),
+        Some(m_s2) => Ok(UnitScale { m_s2, unit: text.to_owned(), origin: "recording", contradiction: None }),
         None if is_voltage(text) => Err(error::source(
             path,
             &spec.name,
@@ -200,7 +200,7 @@ mod tests {
         }
     }
 
-    fn of(unit: Option<Unit>, recorded: Option<&str>) -> Result<Scale, IngestError> {
+    fn of(unit: Option<Unit>, recorded: Option<&str>) -> Result<UnitScale, IngestError> {
         scale(Path::new("r"), &spec(unit), recorded)
     }
 

@@ -26,7 +26,7 @@ use crate::data::{CaskFile, Finding};
 use columns::{HeldColumn, Keep};
 use layout::Layout;
 use lines::Text;
-use plan::Plan;
+use plan::ColumnPlan;
 use std::path::Path;
 use table::{Refused, Table};
 use wanted::Wanted;
@@ -43,8 +43,8 @@ pub(super) fn read(
 ) -> Result<RawRecording, IngestError> {
     let text = Text::open(path, limits)?;
     let layout = Layout::of(&text).ok_or_else(|| complaint::no_table(path))?;
-    let plan = |spec| Plan::of(path, spec, cask_file.time.as_deref(), &layout);
-    let plans: Vec<Plan> = cask_file.channels.iter().map(plan).collect::<Result<_, _>>()?;
+    let plan = |spec| ColumnPlan::of(path, spec, cask_file.time.as_deref(), &layout);
+    let plans: Vec<ColumnPlan> = cask_file.channels.iter().map(plan).collect::<Result<_, _>>()?;
     let wanted = Wanted::of(&plans, &layout);
     // What is set aside is a guess from the first rows; more is taken as it comes.
     let most_rows = limits.samples_bytes() / (8 * wanted.columns.len().max(1) as u64);

@@ -23,7 +23,7 @@ pub use error::IngestError;
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
 
 use crate::data::shown;
-use crate::data::{CaskFile, Issue, Listing, Recording, RecordingFormat};
+use crate::data::{CaskFile, Finding, Listing, Recording, RecordingFormat};
 use std::path::Path;
 
 /// Called with the fraction done, 0 to 1, now and then.
@@ -48,7 +48,7 @@ pub(crate) struct RawRecording {
     /// Time zero of the channels' clock, ns since 1970, where the recording knows it.
     pub(crate) zero_unix_ns: Option<i64>,
     /// What is wrong with the file; times as in `channels`.
-    pub(crate) issues: Vec<Issue>,
+    pub(crate) issues: Vec<Finding>,
 }
 
 /// Reads and checks a cask file.

@@ -15,7 +15,7 @@ use super::text::{
 };
 use super::words::{KEPT_SENTENCE, contact_words};
 use crate::data::{
-    Analysis, CaskFile, DropResult, Estimate, FlightRegime, Issue, IssueCode, Severity, Verdict,
+    Analysis, CaskFile, DropResult, Estimate, Finding, FlightRegime, IssueCode, Severity, Verdict,
 };
 
 /// Findings that take away what the first impact would give.
@@ -214,7 +214,7 @@ fn comparison(result: &DropResult) -> Chapter {
 }
 
 /// Every finding: severity, code, channel and span, and what it says.
-pub(super) fn quality(issues: &[Issue]) -> Chapter {
+pub(super) fn quality(issues: &[Finding]) -> Chapter {
     let chapter = Chapter::new("Quality");
     if issues.is_empty() {
         return chapter.with(ChapterPart::text(Words::or("No check found anything to say.", "no findings")));

@@ -6,13 +6,13 @@ use super::records::{CsvColumn, number, records, text_cell};
 use super::rounding::{MISSING, interval, percent};
 use super::table::{ReportTable, TableCell, TableShape};
 use super::text::{Style, WIDTH, distinct, json_word, tail, verdict_word};
-use crate::data::{Comparison, DropResult, Estimate, Issue, IssueCode, Severity, Verdict};
+use crate::data::{Comparison, DropResult, Estimate, Finding, IssueCode, Severity, Verdict};
 use serde::Serialize;
 use std::path::Path;
 
 /// One recording of a campaign.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct CampaignRow {
+pub struct BatchRow {
     /// The recording, as given.
     pub recording: String,
     /// The folder of its report under `--out`.
@@ -35,11 +35,11 @@ pub struct CampaignRow {
     pub error: Option<String>,
 }
 
-impl CampaignRow {
+impl BatchRow {
     /// The row of a result.
     #[must_use]
     pub fn of(result: &DropResult) -> Self {
-        let mut grave: Vec<&Issue> =
+        let mut grave: Vec<&Finding> =
             result.quality.iter().filter(|issue| issue.severity != Severity::Note).collect();
         grave.sort_by_key(|issue| std::cmp::Reverse(issue.severity));
         let codes = distinct(grave.iter().map(|issue| issue.code));
@@ -69,7 +69,7 @@ impl CampaignRow {
 
 /// A campaign.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Campaign {
+pub struct Batch {
     /// "dropcheck.campaign/1".
     pub schema: &'static str,
     /// The program's version.
@@ -77,11 +77,11 @@ pub struct Campaign {
     /// The cask file.
     pub cask: String,
     /// One a recording, in the order given.
-    pub recordings: Vec<CampaignRow>,
+    pub recordings: Vec<BatchRow>,
 }
 
 /// The columns of `campaign.csv`.
-fn columns<'a>() -> [CsvColumn<&'a CampaignRow>; 13] {
+fn columns<'a>() -> [CsvColumn<&'a BatchRow>; 13] {
     [
         ("recording", |row| text_cell(&row.recording)),
         ("verdict", |row| row.verdict.map_or_else(|| "error".into(), |v| verdict_word(v).to_lowercase())),
@@ -99,10 +99,10 @@ fn columns<'a>() -> [CsvColumn<&'a CampaignRow>; 13] {
     ]
 }
 
-impl Campaign {
+impl Batch {
     /// A campaign of `rows` with one cask file.
     #[must_use]
-    pub fn new(cask: String, recordings: Vec<CampaignRow>) -> Self {
+    pub fn new(cask: String, recordings: Vec<BatchRow>) -> Self {
         Self { schema: "dropcheck.campaign/1", version: env!("CARGO_PKG_VERSION"), cask, recordings }
     }
 
@@ -116,11 +116,11 @@ impl Campaign {
         /// Characters of a recording's name that leave room for the other columns.
         const NAME: usize = 28;
         let folder = self.common_folder();
-        let name = |row: &CampaignRow, width: usize| {
+        let name = |row: &BatchRow, width: usize| {
             let own = folder.and_then(|folder| Path::new(&row.recording).strip_prefix(folder).ok());
             tail(&own.map_or_else(|| row.recording.clone(), |own| own.display().to_string()), width)
         };
-        let word = |row: &CampaignRow| row.verdict.map_or("ERROR", verdict_word);
+        let word = |row: &BatchRow| row.verdict.map_or("ERROR", verdict_word);
         let table = ReportTable::of(&self.recordings)
             .head("recording", |row| name(row, NAME))
             .text("verdict", word)
@@ -129,13 +129,13 @@ impl Campaign {
             .number("meas/pred", |row| {
                 row.comparison.map_or(MISSING.into(), |c| percent(c.difference_percent))
             });
-        let grave: Vec<&CampaignRow> =
+        let grave: Vec<&BatchRow> =
             self.recordings.iter().filter(|row| row.error.is_some() || !row.codes.is_empty()).collect();
-        let style = |row: &CampaignRow| match row.verdict {
+        let style = |row: &BatchRow| match row.verdict {
             Some(Verdict::Pass | Verdict::Review) if row.error.is_none() => Style::Yellow,
             _ => Style::Red,
         };
-        let why = |row: &CampaignRow| row.error.clone().unwrap_or_else(|| row.code_words().join(", "));
+        let why = |row: &BatchRow| row.error.clone().unwrap_or_else(|| row.code_words().join(", "));
         let reasons = ReportTable::of(&grave)
             .shape(TableShape::ApartItems)
             .tag("verdict", |row| TableCell::toned(style(row), word(row).to_lowercase()))
@@ -187,12 +187,12 @@ mod tests {
     use super::super::sample;
     use super::*;
 
-    fn campaign() -> Campaign {
+    fn campaign() -> Batch {
         let rows = vec![
-            CampaignRow::of(&sample::analysis().result),
-            CampaignRow::failed("=b.mcap".into(), "b.mcap is empty; record it again".into()),
+            BatchRow::of(&sample::analysis().result),
+            BatchRow::failed("=b.mcap".into(), "b.mcap is empty; record it again".into()),
         ];
-        Campaign::new("anf18.toml".into(), rows)
+        Batch::new("anf18.toml".into(), rows)
     }
 
     #[test]
@@ -208,8 +208,8 @@ mod tests {
         rows[0].recording = "of/a/test site/damaged-truncated.mcap".into();
         rows[0].codes = vec![IssueCode::EndsEarly, IssueCode::Gap];
         rows[1].recording = "of/a/test site/b.mcap".into();
-        let text = |rows: &[CampaignRow]| {
-            let table = Campaign::new("anf18.toml".into(), rows.to_vec()).table();
+        let text = |rows: &[BatchRow]| {
+            let table = Batch::new("anf18.toml".into(), rows.to_vec()).table();
             anstream::adapter::strip_str(&table).to_string()
         };
         let together = text(&rows);

@@ -38,7 +38,7 @@ mod tested;
 pub(crate) mod text;
 mod words;
 
-pub use campaign::{Campaign, CampaignRow};
+pub use campaign::{Batch, BatchRow};
 pub use json::{listing as listing_json, result as result_json};
 pub use likely::NoChannels;
 pub use listing::table as listing_table;

@@ -2,10 +2,11 @@
 
 use super::sample_reconstruction;
 use crate::data::{
-    Analysis, At, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelSpec, ChannelSummary, Comparison,
-    Contact, Coupling, Curves, Drop, DropResult, End, Estimate, Events, FilterChoice, FirstImpact, FlightFit,
-    FlightModelScore, FlightRegime, Input, Issue, IssueCode, Mode, ModelCandidate, ModelChoice, MotionCurve,
-    Plateau, Prediction, RecordingFormat, Rung, Setting, Severity, SlapDown, Source, Unit, Verdict,
+    Analysis, At, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelFinding, ChannelSpec, ChannelSummary,
+    Comparison, Contact, Coupling, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events,
+    FilterChoice, Finding, FirstImpact, FlightFit, FlightModelScore, FlightRegime, Input, Mode,
+    ModelCandidate, ModelChoice, MotionCurve, Plateau, Prediction, RecordingFormat, Rung, Setting, SlapDown,
+    Source, Unit, Verdict,
 };
 use std::f64::consts::PI;
 
@@ -40,11 +41,11 @@ pub(super) fn without_anything() -> Analysis {
     result.flight = None;
     result.predictions.clear();
     result.verdict = Verdict::Fail;
-    result.quality = vec![Issue::new(
-        IssueCode::NoImpact,
-        Severity::Error,
-        "no impact was found: no channel exceeds 5 g; check units and sources in the cask file",
-    )];
+    result.quality = vec![Finding {
+        message: "no impact was found: no channel exceeds 5 g; check units and sources in the cask file"
+            .into(),
+        ..DropFinding::NoImpact { least_m_s: 1.0, doubt: None }.into()
+    }];
     analysis.curves = Curves::default();
     analysis.start_unix_ns = None;
     analysis
@@ -167,17 +168,18 @@ fn predictions() -> Vec<Prediction> {
     .to_vec()
 }
 
-fn quality() -> Vec<Issue> {
+fn quality() -> Vec<Finding> {
+    let during = During::FirstImpact;
+    let clipped =
+        ChannelFinding::Clipped { limit_m_s2: 4903.0, samples: 42, during, lost_m_s: 0.2, takes_step: false };
     vec![
-        Issue::new(
-            IssueCode::Clipped,
-            Severity::Warning,
-            "A1 stands at ±500 g in 42 samples of the first impact; the rebound velocity may read low by up to \
-             0.2 m/s. Repeat with a range of at least 1000 g, or leave the channel out",
-        )
-        .on("A1")
-        .between(0.152_1, 0.152_4),
-        Issue::new(IssueCode::Offset, Severity::Note, "an offset of 0.31 m/s² was removed from A2").on("A2"),
+        Finding {
+            message: "A1 stands at ±500 g in 42 samples of the first impact; the rebound velocity may read low by up to \
+             0.2 m/s. Repeat with a range of at least 1000 g, or leave the channel out"
+                .into(),
+            ..clipped.on("A1").between(0.152_1, 0.152_4)
+        },
+        ChannelFinding::OffsetTakenOff { mean_m_s2: 0.31, is_large: false }.on("A2"),
     ]
 }
 

@@ -343,8 +343,7 @@ mod tests {
         let mut without_rate = listed("A1", "column", Some("g"));
         without_rate.sample_rate_hz = None;
         let mut listing = listing(vec![without_rate, unreadable("A2", Some("g"))]);
-        let doubt = crate::data::IssueCode::Clock;
-        listing.issues = vec![crate::data::Issue::new(doubt, Severity::Warning, "are they in ms?")];
+        listing.issues = vec![crate::data::ClockFinding::Refused("are they in ms?".into()).into()];
         let text = cask_file(&listing).unwrap();
         assert!(
             text.contains("#   A2: 9 of 20 cells") && text.contains("# Of the recording: are they in ms?")

@@ -1,6 +1,6 @@
 //! Words from files to words that are safe and fit the page: no control characters, wrapped, coloured by SGR codes.
 
-use crate::data::{DropResult, Issue, IssueCode, ReconstructionRung, Severity, Verdict};
+use crate::data::{DropResult, Finding, IssueCode, ReconstructionRung, Severity, Verdict};
 use std::fmt::Write;
 
 /// Each of `items` once, in the order of first appearance.
@@ -162,7 +162,7 @@ pub(super) fn json_word<T: serde::Serialize + std::fmt::Debug>(value: T) -> Stri
 }
 
 /// The span of an issue in ms, or nothing.
-pub(super) fn span_text(issue: &Issue) -> Option<String> {
+pub(super) fn span_text(issue: &Finding) -> Option<String> {
     let from = issue.from_s.filter(|t| t.is_finite())? * 1e3;
     match issue.to_s.map(|t| t * 1e3).filter(|t| t.is_finite() && *t > from) {
         Some(to) => Some(format!("{from:.2}–{to:.2} ms")),
@@ -220,7 +220,7 @@ pub(super) fn sentence(reason: &str) -> String {
 
 /// The message of the first error among `codes`, else of any error, else of a warning among `codes`: why a quantity is missing.
 pub(super) fn reason<'a>(result: &'a DropResult, codes: &[IssueCode]) -> &'a str {
-    let first = |wanted: &dyn Fn(&Issue) -> bool| result.quality.iter().find(|issue| wanted(issue));
+    let first = |wanted: &dyn Fn(&Finding) -> bool| result.quality.iter().find(|issue| wanted(issue));
     first(&|issue| codes.contains(&issue.code) && issue.severity == Severity::Error)
         .or_else(|| first(&|issue| issue.severity == Severity::Error))
         .or_else(|| first(&|issue| codes.contains(&issue.code) && issue.severity == Severity::Warning))

@@ -199,7 +199,6 @@ fn no_signature_holds_a_tuple_of_three() {
 }
 
 #[test]
-#[ignore = "not true yet: some fifty names are left"]
 fn no_type_name_stands_twice() {
     // Of each command its own words.
     let allowed = ["Arguments"];

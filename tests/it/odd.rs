@@ -4,7 +4,7 @@
 
 use crate::run::fixture;
 use crate::same::{cask, hash, hash_of, placeless, told};
-use dropcheck::data::{Channel, Issue};
+use dropcheck::data::{Channel, Finding};
 use dropcheck::ingest;
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -47,7 +47,7 @@ fn of_channel(channel: &Channel) -> String {
     )
 }
 
-fn of_issue(issue: &Issue) -> String {
+fn of_issue(issue: &Finding) -> String {
     let code = serde_json::to_value(issue.code).expect("a word");
     let channel = issue.channel.as_deref().unwrap_or("the file");
     format!("{:?} {} of {channel}: {}", issue.severity, code.as_str().unwrap_or_default(), issue.message)

@@ -39,8 +39,6 @@ pub enum What {
     Table(TableFinding),
     /// About the attributes of an HDF5 dataset.
     Attribute(AttributeFinding),
-    /// About the file, in words that a reader of one format has, or that a refusal says too.
-    Said(IssueCode, Severity, String),
 }
 
 /// One finding about a recording or a result.
@@ -62,76 +60,38 @@ pub struct Finding {
     pub to_s: Option<f64>,
 }
 
-/// As files are read, a finding is made of words.
-pub type Issue = Finding;
-
-impl From<DropFinding> for Finding {
-    fn from(found: DropFinding) -> Self {
-        let (code, severity) = found.code();
-        let message = found.sentence();
-        Self::made(What::Drop(found), code, severity, &message)
-    }
+/// A finding from what was found, for each kind that is not of one channel.
+macro_rules! finding_from {
+    ($($kind:ident of $found:ty),*) => {$(
+        impl From<$found> for Finding {
+            fn from(found: $found) -> Self {
+                let (of_kind, message) = (found.code(), found.sentence());
+                Self::made(What::$kind(found), of_kind, &message)
+            }
+        }
+    )*};
 }
 
-impl From<TimesFinding> for Finding {
-    fn from(found: TimesFinding) -> Self {
-        let (code, severity) = found.code();
-        let message = found.sentence();
-        Self::made(What::Times(found), code, severity, &message)
-    }
-}
-
-impl From<ClockFinding> for Finding {
-    fn from(found: ClockFinding) -> Self {
-        let (code, severity) = ClockFinding::CODE;
-        let message = found.sentence();
-        Self::made(What::Clock(found), code, severity, &message)
-    }
-}
-
-impl From<McapFinding> for Finding {
-    fn from(found: McapFinding) -> Self {
-        let (code, severity) = found.code();
-        let message = found.sentence();
-        Self::made(What::Mcap(found), code, severity, &message)
-    }
-}
-
-impl From<TableFinding> for Finding {
-    fn from(found: TableFinding) -> Self {
-        let (code, severity) = found.code();
-        let message = found.sentence();
-        Self::made(What::Table(found), code, severity, &message)
-    }
-}
-
-impl From<AttributeFinding> for Finding {
-    fn from(found: AttributeFinding) -> Self {
-        let (code, severity) = found.code();
-        let message = found.sentence();
-        Self::made(What::Attribute(found), code, severity, &message)
-    }
-}
+finding_from!(
+    Drop of DropFinding,
+    Times of TimesFinding,
+    Clock of ClockFinding,
+    Mcap of McapFinding,
+    Table of TableFinding,
+    Attribute of AttributeFinding
+);
 
 impl ChannelFinding {
     /// The finding, about the channel of that name.
     #[must_use]
     pub fn on(self, channel: &str) -> Finding {
-        let (code, severity) = self.code();
-        let message = self.sentence(channel);
-        Finding::made(What::Channel(self), code, severity, &message).on(channel)
+        let (of_kind, message) = (self.code(), self.sentence(channel));
+        Finding::made(What::Channel(self), of_kind, &message).on(channel)
     }
 }
 
 impl Finding {
-    /// A finding of the whole recording.
-    #[must_use]
-    pub fn new(code: IssueCode, severity: Severity, message: impl Into<String>) -> Self {
-        let message = message.into();
-        Self::made(What::Said(code, severity, message.clone()), code, severity, &message)
-    }
-
-    fn made(what: What, code: IssueCode, severity: Severity, message: &str) -> Self {
+    fn made(what: What, (code, severity): (IssueCode, Severity), message: &str) -> Self {
         let message = shortened(message).into_owned();
         Self { what, code, severity, channel: None, message, from_s: None, to_s: None }
     }

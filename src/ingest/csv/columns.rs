@@ -2,7 +2,7 @@
 
 use super::super::times::Counted;
 use super::even::Even;
-use super::rows::{Part, Sink};
+use super::rows::{RowsPart, Sink};
 use super::stamp::Stamps;
 use super::wanted::Wanted;
 use rayon::prelude::*;
@@ -105,7 +105,7 @@ impl Sink for Keep<'_> {
         if self.wanted.is_time[slot] { self.stamps.seconds(slot, cell) } else { None }
     }
 
-    fn append(&mut self, parts: &mut [Part]) {
+    fn append(&mut self, parts: &mut [RowsPart]) {
         // A table of one piece is held as it is.
         let may_keep_rule = parts.len() > 1;
         // Most of the time the system hands out the memory, a page after the other.
@@ -116,7 +116,7 @@ impl Sink for Keep<'_> {
                 }
             },
         );
-        parts.iter_mut().for_each(Part::clear);
+        parts.iter_mut().for_each(RowsPart::clear);
     }
 
     fn held_bytes(&self) -> u64 {

@@ -8,8 +8,8 @@ use super::complaint::{self, no_table, row_error};
 use super::header;
 use super::layout::Layout;
 use super::lines::Text;
-use super::plan::Plan;
-use super::rows::{self, Part, Sink};
+use super::plan::ColumnPlan;
+use super::rows::{self, RowsPart, Sink};
 use super::table::Table;
 use super::wanted::Wanted;
 use super::{Limits, Progress};
@@ -66,7 +66,7 @@ impl Sink for Survey<'_> {
         value.or((!is_time).then_some(f64::NAN))
     }
 
-    fn append(&mut self, parts: &mut [Part]) {
+    fn append(&mut self, parts: &mut [RowsPart]) {
         for part in &*parts {
             for (range, values) in self.ranges.iter_mut().zip(&part.0) {
                 for (row, &value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
@@ -77,12 +77,12 @@ impl Sink for Survey<'_> {
             }
             self.rows += part.0.first().map_or(0, Vec::len);
         }
-        let mut take = |part: &mut Part| {
-            Part(self.slots.iter().map(|&slot| std::mem::take(&mut part.0[slot])).collect())
+        let mut take = |part: &mut RowsPart| {
+            RowsPart(self.slots.iter().map(|&slot| std::mem::take(&mut part.0[slot])).collect())
         };
-        let mut kept: Vec<Part> = parts.iter_mut().map(&mut take).collect();
+        let mut kept: Vec<RowsPart> = parts.iter_mut().map(&mut take).collect();
         self.keep.append(&mut kept);
-        parts.iter_mut().for_each(Part::clear);
+        parts.iter_mut().for_each(RowsPart::clear);
     }
 
     fn held_bytes(&self) -> u64 {
@@ -147,7 +147,7 @@ pub(in super::super) fn list(
 }
 
 /// What a channel would take whose cask file says nothing but its source: the first column of numbers, on the times that were found.
-fn plan(layout: &Layout) -> Plan {
+fn plan(layout: &Layout) -> ColumnPlan {
     let time_column = layout.time_column;
     let is_numbers = |&column: &usize| layout.columns[column].is_numeric && !layout.holds_times(column);
     let mut found =
@@ -155,7 +155,7 @@ fn plan(layout: &Layout) -> Plan {
     let column =
         found.find(|column| layout.time_of(*column) == time_column).or(time_column).unwrap_or_default();
     let claims = Claims { stated: layout.preamble.statements(column), ..Claims::default() };
-    Plan { column, time_column, claims }
+    ColumnPlan { column, time_column, claims }
 }
 
 /// When the samples of every column were taken.

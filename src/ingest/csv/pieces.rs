@@ -42,13 +42,13 @@ impl Sizes {
 
 /// A stretch of the text.
 #[derive(Debug, Default)]
-pub(super) struct Batch {
+pub(super) struct TextBatch {
     pub text: Vec<u8>,
     /// Whether the text ends with it.
     pub is_last: bool,
 }
 
-impl Batch {
+impl TextBatch {
     /// Reads on behind the text held; a line that fills the batch gets twice the room.
     pub(super) fn fill(&mut self, rest: &mut impl Read, sizes: Sizes) -> std::io::Result<()> {
         let held = self.text.len();
@@ -117,7 +117,7 @@ mod tests {
     #[test]
     fn batches_are_filled_and_grow_with_their_line() {
         let mut rest: &[u8] = &[b'1'; 100];
-        let mut batch = Batch { text: b"head".to_vec(), is_last: false };
+        let mut batch = TextBatch { text: b"head".to_vec(), is_last: false };
         for (length, is_last) in [(24, false), (48, false), (96, false), (104, true)] {
             batch.fill(&mut rest, SIZES).unwrap();
             assert_eq!((batch.text.len(), batch.is_last), (length, is_last));

@@ -8,14 +8,14 @@ use crate::data::{ChannelSpec, Source};
 use std::path::Path;
 
 /// What one channel takes from the table.
-pub(super) struct Plan {
+pub(super) struct ColumnPlan {
     pub column: usize,
     pub time_column: Option<usize>,
     /// What is said of its rate apart from its times.
     pub claims: Claims,
 }
 
-impl Plan {
+impl ColumnPlan {
     /// What `spec` asks for, with the times that the cask file names for all channels.
     pub(super) fn of(
         path: &Path,

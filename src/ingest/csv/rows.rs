@@ -4,7 +4,7 @@ use super::super::{Limits, Progress};
 use super::cells::{Delimiter, bare, skip};
 use super::layout::Layout;
 use super::lines::{self, Text};
-use super::pieces::{Batch, Cut, Sizes};
+use super::pieces::{Cut, Sizes, TextBatch};
 use super::wanted::Wanted;
 use crate::data::TableFinding;
 use crate::ingest::number;
@@ -12,9 +12,9 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Some rows of the wanted columns: a list of values for each, NaN where missing.
-pub(super) struct Part(pub Vec<Vec<f64>>);
+pub(super) struct RowsPart(pub Vec<Vec<f64>>);
 
-impl Part {
+impl RowsPart {
     /// Without rows.
     fn of(wanted: &Wanted) -> Self {
         Self(vec![Vec::new(); wanted.columns.len()])
@@ -37,7 +37,7 @@ pub(super) trait Sink {
     /// The value of a cell that is no number; `None`: there is none. Asked in the order of the rows.
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64>;
     /// Takes over the rows of `parts`, which follow those taken so far in their order, and leaves them without rows.
-    fn append(&mut self, parts: &mut [Part]);
+    fn append(&mut self, parts: &mut [RowsPart]);
     /// Memory that the rows taken so far hold.
     fn held_bytes(&self) -> u64;
 }
@@ -77,9 +77,9 @@ pub(super) fn read_by(
 ) -> Result<Option<TableFinding>, RowError> {
     let mut reader = RowReader::of(layout, wanted, layout.data_line - 1);
     let head = text.head.split_off(layout.data_offset.min(text.head.len()));
-    let (mut batch, mut next) = (Batch { text: head, is_last: false }, Batch::default());
+    let (mut batch, mut next) = (TextBatch { text: head, is_last: false }, TextBatch::default());
     batch.fill(&mut text.rest, sizes).map_err(RowError::Io)?;
-    let mut parts = vec![Part::of(wanted)];
+    let mut parts = vec![RowsPart::of(wanted)];
     let mut done = 0_u64;
     loop {
         let cut = Cut::of(&batch.text, sizes);
@@ -87,7 +87,7 @@ pub(super) fn read_by(
         next.text.extend_from_slice(&batch.text[cut.end..]);
         let mut fill_next = || if batch.is_last { Ok(()) } else { next.fill(&mut text.rest, sizes) };
         let (filled, lines) = if cut.pieces.len() > 1 {
-            parts.resize_with(cut.pieces.len().max(parts.len()), || Part::of(wanted));
+            parts.resize_with(cut.pieces.len().max(parts.len()), || RowsPart::of(wanted));
             rayon::join(fill_next, || side_by_side(&batch.text, &cut.pieces, &reader, &mut parts))
         } else {
             (fill_next(), None)
@@ -97,7 +97,7 @@ pub(super) fn read_by(
             reader.line += lines;
             sizes.check(sink)?;
         } else {
-            parts.iter_mut().for_each(Part::clear);
+            parts.iter_mut().for_each(RowsPart::clear);
             for piece in &cut.pieces {
                 reader.lines(&batch.text[piece.clone()], &mut parts[0], &mut |slot, cell| {
                     sink.word(slot, cell)
@@ -131,7 +131,12 @@ pub(super) fn read_by(
 /// How many lines the pieces have; their rows in the parts of the same number.
 ///
 /// `None` where a piece holds a word or a row at fault: only row by row can tell what comes of it.
-fn side_by_side(text: &[u8], pieces: &[Range<usize>], reader: &RowReader, parts: &mut [Part]) -> Option<u64> {
+fn side_by_side(
+    text: &[u8],
+    pieces: &[Range<usize>],
+    reader: &RowReader,
+    parts: &mut [RowsPart],
+) -> Option<u64> {
     let lines = pieces.par_iter().zip(parts).map(|(piece, part)| {
         let mut own = RowReader { line: 0, values: reader.values.clone(), ..*reader };
         own.lines(&text[piece.clone()], part, &mut |_, _| None).ok().map(|()| own.line)
@@ -172,7 +177,7 @@ impl<'a> RowReader<'a> {
     }
 
     /// Whole lines into `part`.
-    fn lines(&mut self, text: &[u8], part: &mut Part, word: Word) -> Result<(), RowError> {
+    fn lines(&mut self, text: &[u8], part: &mut RowsPart, word: Word) -> Result<(), RowError> {
         let mut at = 0;
         while at < text.len() {
             self.line += 1;
@@ -265,7 +270,7 @@ impl<'a> RowReader<'a> {
         &mut self,
         text: &[u8],
         layout: &Layout,
-        part: &mut Part,
+        part: &mut RowsPart,
         word: Word,
     ) -> Result<Option<u64>, RowError> {
         if text.trim_ascii().is_empty() {

@@ -15,7 +15,7 @@ const DAY_NS: i64 = 86_400 * SECOND_NS;
 
 /// How a stamp is written; a column keeps to the kind that it begins with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum Spelling {
     Iso,
     Dated,
     OfDay,
@@ -33,7 +33,7 @@ pub(super) struct Stamps {
 #[derive(Debug, Clone, Copy)]
 struct Running {
     slot: usize,
-    kind: Kind,
+    kind: Spelling,
     /// The last date as it stands there, and its day from 1970.
     date: [i16; 3],
     day: i64,
@@ -54,7 +54,7 @@ impl Stamps {
         }
         let at_ns = self.columns[place].follow(&stamp)?;
         let zero_ns = &mut self.zeros_ns[stamp.kind as usize];
-        if stamp.kind == Kind::Iso && zero_ns.is_none() {
+        if stamp.kind == Spelling::Iso && zero_ns.is_none() {
             self.is_absolute = stamp.is_absolute;
         }
         let since_ns = at_ns.checked_sub(*zero_ns.get_or_insert(at_ns))?;
@@ -67,7 +67,7 @@ impl Stamps {
 
     /// The first stamp, ns since 1970; `None` without stamps that state their offset from UTC.
     pub(super) fn zero_unix_ns(&self) -> Option<i64> {
-        self.zeros_ns[Kind::Iso as usize].filter(|_| self.is_absolute)
+        self.zeros_ns[Spelling::Iso as usize].filter(|_| self.is_absolute)
     }
 
     /// Whether the column holds stamps.
@@ -88,15 +88,15 @@ impl Running {
             return None;
         }
         match stamp.kind {
-            Kind::Iso => Some(stamp.at_ns),
-            Kind::Dated => {
+            Spelling::Iso => Some(stamp.at_ns),
+            Spelling::Dated => {
                 if stamp.date != self.date {
                     self.day += days_between(self.date, stamp.date)?;
                     self.date = stamp.date;
                 }
                 self.day.checked_mul(DAY_NS)?.checked_add(stamp.at_ns)
             }
-            Kind::OfDay => {
+            Spelling::OfDay => {
                 // No drop lasts for half a day: a fall by more is midnight, a rise by more a row out of order there.
                 if self.last_ns - stamp.at_ns > DAY_NS / 2 {
                     self.passed_ns += DAY_NS;
@@ -117,8 +117,8 @@ pub(super) fn is_stamp(cell: &[u8]) -> bool {
 
 /// One cell.
 struct Stamp {
-    kind: Kind,
-    /// The numbers of its date as they stand there; 0 where it has none, or of [`Kind::Iso`].
+    kind: Spelling,
+    /// The numbers of its date as they stand there; 0 where it has none, or of [`Spelling::Iso`].
     date: [i16; 3],
     /// Since 1970 or midnight.
     at_ns: i64,
@@ -142,7 +142,7 @@ impl Stamp {
             Err(_) => (text.parse::<DateTime>().ok()?.to_zoned(TimeZone::UTC).ok()?.timestamp(), false),
         };
         let at_ns = i64::try_from(at.as_nanosecond()).ok()?;
-        Some(Self { kind: Kind::Iso, date: [0; 3], at_ns, is_absolute })
+        Some(Self { kind: Spelling::Iso, date: [0; 3], at_ns, is_absolute })
     }
 
     fn clock(text: &str) -> Option<Self> {
@@ -160,8 +160,8 @@ impl Stamp {
             return None;
         }
         let (kind, date) = match date.map(numbers) {
-            Some(date) => (Kind::Dated, date.filter(|date| readings(*date).iter().any(Option::is_some))?),
-            None => (Kind::OfDay, [0; 3]),
+            Some(date) => (Spelling::Dated, date.filter(|date| readings(*date).iter().any(Option::is_some))?),
+            None => (Spelling::OfDay, [0; 3]),
         };
         let at_ns = (3600 * hours + 60 * minutes + seconds) * SECOND_NS + fraction_ns(fraction)?;
         Some(Self { kind, date, at_ns, is_absolute: false })

@@ -3,7 +3,7 @@
 use super::columns::HeldColumn;
 use super::even::Even;
 use super::layout::Layout;
-use super::plan::Plan;
+use super::plan::ColumnPlan;
 use super::stamp::Stamps;
 use super::wanted::Wanted;
 use crate::data::{Finding, Samples, TableFinding};
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 /// The wanted columns of a table, with what is said of them.
 pub(super) struct Table<'a> {
     pub layout: &'a Layout,
-    pub plans: &'a [Plan],
+    pub plans: &'a [ColumnPlan],
     pub wanted: &'a Wanted,
     pub columns: Vec<HeldColumn>,
     pub stamps: Stamps,
@@ -54,7 +54,7 @@ impl Table<'_> {
 
     /// The numbers of the times in column `time` to s.
     fn scale_times(&mut self, time: usize) -> Result<(), Refused> {
-        let is_user = |plan: &Plan| plan.time_column == Some(time);
+        let is_user = |plan: &ColumnPlan| plan.time_column == Some(time);
         let plan = self.plans.iter().position(is_user).unwrap_or_default();
         let refused = |refusal| Refused { plan, refusal };
         let column = &mut self.columns[self.wanted.slot(time)];
@@ -88,7 +88,7 @@ impl Table<'_> {
         let Some(unit_s) = scale.beside(last.0 - first.0, &others) else { return Ok(None) };
         let others_s: Vec<f64> = others.iter().map(|other| other * unit_s).collect();
         let names = [time, other].map(|column| format!("{:?}", self.layout.columns[column].header));
-        let is_open = |plan: &Plan| plan.time_column == Some(time) && !plan.is_decided();
+        let is_open = |plan: &ColumnPlan| plan.time_column == Some(time) && !plan.is_decided();
         let open = self.plans.iter().position(is_open);
         let own = Clock { name: &names[0], times_s: &own_s };
         let other = Clock { name: &names[1], times_s: &others_s };
@@ -190,7 +190,7 @@ impl Table<'_> {
         // Columns of times are fitted once, however many channels use them.
         let times = columns.iter().zip(&wanted.is_time);
         let bases: Vec<Option<Base>> = times.map(|(column, is_time)| is_time.then(|| base(column))).collect();
-        let base_of = |plan: &Plan| bases[wanted.slot(plan.time_column?)].as_ref();
+        let base_of = |plan: &ColumnPlan| bases[wanted.slot(plan.time_column?)].as_ref();
         let channels = samples.into_par_iter().zip(*plans);
         channels.map(|(samples, plan)| on_base(Samples::F64(samples), base_of(plan), plan)).collect()
     }
@@ -200,7 +200,7 @@ fn base(column: &HeldColumn) -> Base<'_> {
     column.even().map_or_else(|| Base::Each(ChannelTimes::new(column.each())), Base::Even)
 }
 
-fn on_base(samples: Samples, base: Option<&Base>, plan: &Plan) -> Result<Uniform, TimeBaseError> {
+fn on_base(samples: Samples, base: Option<&Base>, plan: &ColumnPlan) -> Result<Uniform, TimeBaseError> {
     match base {
         Some(Base::Even(times)) => times.place(samples, &plan.claims),
         Some(Base::Each(times)) => times.place(samples, &plan.claims),

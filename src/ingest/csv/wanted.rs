@@ -1,7 +1,7 @@
 //! Channels with their times and witnesses to the columns that are read.
 
 use super::layout::Layout;
-use super::plan::Plan;
+use super::plan::ColumnPlan;
 
 /// Which columns to read.
 #[derive(Debug)]
@@ -18,7 +18,7 @@ pub(super) struct Wanted {
 
 impl Wanted {
     /// What channels take, and the columns that bear their times out; without times the one that counts the rows.
-    pub(super) fn of(plans: &[Plan], layout: &Layout) -> Self {
+    pub(super) fn of(plans: &[ColumnPlan], layout: &Layout) -> Self {
         let values: Vec<_> = plans.iter().map(|plan| (plan.column, plan.time_column)).collect();
         let times: Vec<usize> = plans.iter().filter_map(|plan| plan.time_column).collect();
         let counter =

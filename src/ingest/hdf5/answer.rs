@@ -122,7 +122,7 @@ pub(super) enum Storage {
     Chunked {
         shape: Vec<usize>,
         /// Those that were written; `None` where only the library can read them.
-        chunks: Option<Vec<Chunk>>,
+        chunks: Option<Vec<StoredChunk>>,
     },
     /// In other files.
     External,
@@ -132,7 +132,7 @@ pub(super) enum Storage {
 
 /// A chunk of a dataset of one or two dimensions, as it is packed in the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Chunk {
+pub(super) struct StoredChunk {
     /// Of its first value.
     pub row: usize,
     /// Of its first value.

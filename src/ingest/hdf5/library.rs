@@ -1,8 +1,8 @@
 //! An HDF5 file, through the C library, to descriptions and numbers: all that hands a file's bytes to C, in a process of its own.
 
 use super::answer::{
-    AttributeValue, Bytes, Chunk, Dataset, FRAME_NUMBERS, Filter, Object, Packing, Query, Reply, Slab,
-    Storage, receive, send,
+    AttributeValue, Bytes, Dataset, FRAME_NUMBERS, Filter, Object, Packing, Query, Reply, Slab, Storage,
+    StoredChunk, receive, send,
 };
 use super::{names, types};
 use hdf5_metno::dataset::Layout;
@@ -276,7 +276,7 @@ fn filter(filter: &hdf5_metno::filters::Filter) -> Filter {
 }
 
 /// Where the chunks lie that this program unpacks itself; `None` where only the library can.
-fn chunks(dataset: &hdf5_metno::Dataset, filters: &[Filter]) -> Option<Vec<Chunk>> {
+fn chunks(dataset: &hdf5_metno::Dataset, filters: &[Filter]) -> Option<Vec<StoredChunk>> {
     if Packing::of(filters).is_none() || dataset.ndim() > 2 || dataset.num_chunks()? > MOST_CHUNKS {
         return None;
     }
@@ -285,7 +285,7 @@ fn chunks(dataset: &hdf5_metno::Dataset, filters: &[Filter]) -> Option<Vec<Chunk
         let place = |i: usize| chunk.offset.get(i).map_or(Some(0), |&n| usize::try_from(n).ok());
         match (place(0), place(1), usize::try_from(chunk.size)) {
             (Some(row), Some(column), Ok(bytes)) if chunk.filter_mask == 0 && chunks.len() < MOST_CHUNKS => {
-                chunks.push(Chunk { row, column, at: chunk.addr, bytes });
+                chunks.push(StoredChunk { row, column, at: chunk.addr, bytes });
             }
             _ => is_whole = false,
         }

@@ -1,6 +1,6 @@
 //! The bytes of a dataset, plain or in deflated chunks, to one column or field of it, on all cores: the library works on one thread at a time.
 
-use super::answer::{Chunk, Dataset, NumberType, Packing, RecordField, Slab, Storage};
+use super::answer::{Dataset, NumberType, Packing, RecordField, Slab, Storage, StoredChunk};
 use super::column::{DatasetColumn, Place};
 use super::fault::{Fault, REPACK};
 use crate::data::Samples;
@@ -143,11 +143,11 @@ impl RecordField {
 
 impl ChunkLayout<'_> {
     /// With the pieces in which a dataset that lies in one is read.
-    fn in_one_piece(self, column: &DatasetColumn, from: u64) -> Option<(Self, Vec<Chunk>)> {
+    fn in_one_piece(self, column: &DatasetColumn, from: u64) -> Option<(Self, Vec<StoredChunk>)> {
         let (bytes, rows) = (self.value_bytes, (PIECE_BYTES / self.value_bytes).max(1));
         let stored = column.length.checked_mul(bytes)? as u64;
         let is_within = from.checked_add(stored).is_some_and(|end| end <= column.file.bytes);
-        let piece = |row: usize| Chunk {
+        let piece = |row: usize| StoredChunk {
             row,
             column: 0,
             at: from + (row * bytes) as u64,
@@ -158,12 +158,17 @@ impl ChunkLayout<'_> {
     }
 
     /// With the chunks that hold the column, in order.
-    fn in_chunks(self, dataset: &Dataset, shape: &[usize], chunks: &[Chunk]) -> Option<(Self, Vec<Chunk>)> {
+    fn in_chunks(
+        self,
+        dataset: &Dataset,
+        shape: &[usize],
+        chunks: &[StoredChunk],
+    ) -> Option<(Self, Vec<StoredChunk>)> {
         let packing = Packing::of(&dataset.filters)?;
         let (rows, columns) = (*shape.first()?, shape.get(1).copied().unwrap_or(1));
         let holds =
-            |chunk: &&Chunk| self.index.checked_sub(chunk.column).is_some_and(|first| first < columns);
-        let mut chunks: Vec<Chunk> = chunks.iter().filter(holds).cloned().collect();
+            |chunk: &&StoredChunk| self.index.checked_sub(chunk.column).is_some_and(|first| first < columns);
+        let mut chunks: Vec<StoredChunk> = chunks.iter().filter(holds).cloned().collect();
         chunks.sort_by_key(|chunk| chunk.row);
         (shape.len() <= 2).then_some((Self { rows, columns, packing, ..self }, chunks))
     }
@@ -172,7 +177,7 @@ impl ChunkLayout<'_> {
     fn unpack(
         &self,
         file: &mut File,
-        chunk: &Chunk,
+        chunk: &StoredChunk,
         packed: &mut Vec<u8>,
         bytes: &mut Vec<u8>,
     ) -> Option<()> {
@@ -196,7 +201,7 @@ impl ChunkLayout<'_> {
     }
 
     /// The chunk's share of the column out of its bytes; `None` where it is short of it.
-    fn take<T: Stored>(&self, bytes: &[u8], chunk: &Chunk, values: &mut [T::Sample]) -> Option<()> {
+    fn take<T: Stored>(&self, bytes: &[u8], chunk: &StoredChunk, values: &mut [T::Sample]) -> Option<()> {
         let (size, first) = (self.value_bytes, self.index - chunk.column);
         if bytes.len() < values.len() * self.columns * size {
             return None;

@@ -4,7 +4,7 @@ use super::plan::{
     Decode, LONGEST_PATH_BYTES, Leaf, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want,
     unix_ns,
 };
-use super::ros_type::{Field, Length, Type};
+use super::ros_type::{Length, RosField, Type};
 use crate::data::Samples;
 use re_cdr::{BigEndian, CdrReader, LittleEndian, numeric::CdrEndian};
 use std::sync::Arc;
@@ -16,14 +16,14 @@ const ENCAPSULATION_BYTES: usize = 4;
 #[derive(Debug)]
 pub(super) struct Cdr {
     plan: Plan,
-    fields: Arc<[Field]>,
+    fields: Arc<[RosField]>,
     /// So many of the fields hold all that is wanted.
     needed: usize,
 }
 
 impl Cdr {
     /// For the fields of `plan` in messages of `fields`; fields that they lack stay missing.
-    pub(super) fn new(plan: &Plan, fields: &Arc<[Field]>) -> Self {
+    pub(super) fn new(plan: &Plan, fields: &Arc<[RosField]>) -> Self {
         // What lies behind the last wanted field need not be walked through.
         let needed =
             fields.iter().rposition(|field| plan.root.field(&field.name).is_some()).map_or(0, |at| at + 1);
@@ -39,8 +39,8 @@ impl Decode for Cdr {
         let needed = self.fields.get(..self.needed).unwrap_or_default();
         let Plan { root, wants, .. } = &self.plan;
         let walked = match header {
-            [0, 0, ..] => Walk::<BigEndian>::new(body, wants, slots).fields(needed, Some(root)),
-            [0, 1, ..] => Walk::<LittleEndian>::new(body, wants, slots).fields(needed, Some(root)),
+            [0, 0, ..] => CdrWalk::<BigEndian>::new(body, wants, slots).fields(needed, Some(root)),
+            [0, 1, ..] => CdrWalk::<LittleEndian>::new(body, wants, slots).fields(needed, Some(root)),
             _ => {
                 return Err(format!(
                     "the message is in the representation {header:02x?}; plain CDR of either byte order is read"
@@ -84,18 +84,18 @@ impl From<re_cdr::Error> for Undecoded {
 }
 
 /// A walk through one message, in the order of its fields.
-struct Walk<'a, Order: CdrEndian> {
+struct CdrWalk<'a, Order: CdrEndian> {
     reader: CdrReader<'a, Order>,
     wants: &'a [Want],
     slots: &'a mut Slots,
 }
 
-impl<'a, Order: CdrEndian> Walk<'a, Order> {
+impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
     fn new(body: &'a [u8], wants: &'a [Want], slots: &'a mut Slots) -> Self {
         Self { reader: CdrReader::new(body), wants, slots }
     }
 
-    fn fields(&mut self, fields: &[Field], node: Option<&Node>) -> Result<(), Undecoded> {
+    fn fields(&mut self, fields: &[RosField], node: Option<&Node>) -> Result<(), Undecoded> {
         for field in fields {
             let child = node.and_then(|node| node.field(&field.name));
             self.value(&field.kind, child).map_err(|problem| problem.below(&field.name))?;
@@ -129,7 +129,7 @@ impl<'a, Order: CdrEndian> Walk<'a, Order> {
         }
     }
 
-    fn message(&mut self, fields: &[Field], node: Option<&Node>) -> Result<(), Undecoded> {
+    fn message(&mut self, fields: &[RosField], node: Option<&Node>) -> Result<(), Undecoded> {
         if let (Some(slot), [seconds, nanoseconds]) =
             (node.and_then(|node| node.slot(self.wants, Want::Stamp)), fields)
             && SECONDS_NAMES.contains(&seconds.name.as_str())
@@ -242,13 +242,13 @@ impl<'a, Order: CdrEndian> Walk<'a, Order> {
 }
 
 /// The numeric fields of a message type; single bytes are images and flags, no signals.
-pub(super) fn leaves(fields: &[Field]) -> Vec<Leaf> {
+pub(super) fn leaves(fields: &[RosField]) -> Vec<Leaf> {
     let mut found = Vec::new();
     descend(fields, "", &mut found);
     found
 }
 
-fn descend(fields: &[Field], path: &str, found: &mut Vec<Leaf>) {
+fn descend(fields: &[RosField], path: &str, found: &mut Vec<Leaf>) {
     if path.len() > LONGEST_PATH_BYTES {
         return;
     }
@@ -265,7 +265,7 @@ fn descend(fields: &[Field], path: &str, found: &mut Vec<Leaf>) {
     }
 }
 
-fn is_time(fields: &[Field]) -> bool {
+fn is_time(fields: &[RosField]) -> bool {
     matches!(fields, [seconds, nanoseconds]
         if SECONDS_NAMES.contains(&seconds.name.as_str()) && NANOSECONDS_NAMES.contains(&nanoseconds.name.as_str()))
 }

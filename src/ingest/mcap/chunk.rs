@@ -1,31 +1,13 @@
 //! A chunk as it stands in the file to its records: unpacked whole, its check sum tested, a cut one as far as it goes.
 
-use super::scanned::Counts;
+use super::records::{Counts, Records};
 use super::topic::Part;
-use super::topics::Topics;
-use mcap::records::op;
 use std::io::Read;
 
-/// A record begins with its opcode (1 byte) and its length (8 bytes).
-pub(super) const RECORD_HEADER_BYTES: u64 = 9;
 /// Longer than any name of a compression ("zstd", "lz4"); a longer one is damage.
 const LONGEST_COMPRESSION_NAME_BYTES: usize = 64;
 /// zstd needs three bytes for a block, which unpacks to 128 KiB at most (RFC 8878): more is damage, not a claim.
 const LARGEST_EXPANSION: u64 = (128 << 10) / 3 + 1;
-
-/// Records one behind another, each its opcode and its body; ends before one that is not whole.
-pub(super) struct Records<'a>(pub(super) &'a [u8]);
-
-impl<'a> Iterator for Records<'a> {
-    type Item = (u8, &'a [u8]);
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let ([opcode, length @ ..], rest) = self.0.split_first_chunk::<9>()?;
-        let (body, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
-        self.0 = rest;
-        Some((*opcode, body))
-    }
-}
 
 /// What a chunk says of itself.
 #[derive(Default)]
@@ -157,26 +139,6 @@ impl Chunk {
             self.fault = Some(ChunkFault::Bad(reason));
         }
     }
-
-    /// Takes its messages, as long as their samples take no more than `most_held` bytes.
-    pub(super) fn take(&mut self, topics: &Topics, most_held: u64) {
-        if self.is_bad() {
-            return;
-        }
-        let mut part = std::mem::take(&mut self.part);
-        let (mut unusable, mut first) = (0, None);
-        for (_, body) in self.records().filter(|(opcode, _)| *opcode == op::MESSAGE) {
-            if let Err(why) = topics.take(&mut part, body) {
-                unusable += 1;
-                first.get_or_insert(why);
-            }
-            if part.held_bytes > most_held {
-                break;
-            }
-        }
-        self.part = part;
-        self.unusable = first.map(|why| (unusable, why));
-    }
 }
 
 impl ChunkHeader {
@@ -208,6 +170,12 @@ impl ChunkHeader {
     fn unpack(&self, packed: &[u8], most: u64, into: &mut Vec<u8>) -> Result<(), String> {
         let unpacked = match self.compression.as_str() {
             "" => Ok(0),
+            // Right into its place where all of it is there; bulk needs no window of what came before.
+            "zstd" if most == self.uncompressed => {
+                into.reserve_exact(usize::try_from(most).unwrap_or_default());
+                zstd::bulk::Decompressor::new()
+                    .and_then(|mut unpacker| unpacker.decompress_to_buffer(packed, into))
+            }
             "zstd" => zstd::stream::read::Decoder::with_buffer(packed)
                 .and_then(|decoder| decoder.take(most).read_to_end(into)),
             "lz4" => lz4::Decoder::new(packed).and_then(|decoder| decoder.take(most).read_to_end(into)),

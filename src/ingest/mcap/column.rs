@@ -55,7 +55,7 @@ struct RawBlock {
 
 /// How many messages of a column carry what stamp.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Stamps {
+pub(super) struct StampCounts {
     /// One that was used.
     pub(super) good: u64,
     /// One that is zero or not understood.
@@ -83,7 +83,7 @@ pub(super) struct Column {
     blocks: Vec<RawBlock>,
     /// For a listing.
     pub(super) extent: Option<Extent>,
-    pub(super) stamps: Stamps,
+    pub(super) stamps: StampCounts,
     /// The units that messages state, each once, as they come.
     units: Vec<String>,
     /// The rates that messages state, each once, as they come.
@@ -110,7 +110,7 @@ impl Column {
             samples: Samples::F32(Vec::new()),
             blocks: Vec::new(),
             extent: is_listed.then(Extent::default),
-            stamps: Stamps::default(),
+            stamps: StampCounts::default(),
             units: Vec::new(),
             rates: Vec::new(),
             zero_stamp: None,
@@ -210,7 +210,7 @@ impl Column {
         if let (Some(own), Some(more)) = (&mut self.extent, &mut other.extent) {
             own.append(std::mem::take(more));
         }
-        let Stamps { good, bad } = std::mem::take(&mut other.stamps);
+        let StampCounts { good, bad } = std::mem::take(&mut other.stamps);
         self.stamps.good += good;
         self.stamps.bad += bad;
         other.units.drain(..).for_each(|unit| state(&mut self.units, unit));
@@ -237,7 +237,7 @@ impl Column {
             Some(block) => block.time_ns = 0,
             None => self.times_ns[position] = 0,
         }
-        self.stamps = Stamps { good: self.stamps.good + 1, bad: 0 };
+        self.stamps = StampCounts { good: self.stamps.good + 1, bad: 0 };
     }
 
     /// The times of the messages, since 1970.

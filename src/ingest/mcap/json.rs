@@ -42,8 +42,8 @@ impl Json {
         deserializer.end()
     }
 
-    fn root<'a>(&'a self, slots: &'a mut Slots) -> At<'a> {
-        At { node: &self.plan.root, wants: &self.plan.wants, slots }
+    fn root<'a>(&'a self, slots: &'a mut Slots) -> JsonTaker<'a> {
+        JsonTaker { node: &self.plan.root, wants: &self.plan.wants, slots }
     }
 }
 
@@ -85,15 +85,15 @@ fn without_bare_nan(text: &[u8]) -> Option<Cow<'_, [u8]>> {
 }
 
 /// A place in the text and in the tree of wanted fields.
-struct At<'a> {
+struct JsonTaker<'a> {
     node: &'a Node,
     wants: &'a [Want],
     slots: &'a mut Slots,
 }
 
-impl At<'_> {
-    fn below<'b>(&'b mut self, node: &'b Node) -> At<'b> {
-        At { node, wants: self.wants, slots: self.slots }
+impl JsonTaker<'_> {
+    fn below<'b>(&'b mut self, node: &'b Node) -> JsonTaker<'b> {
+        JsonTaker { node, wants: self.wants, slots: self.slots }
     }
 
     fn fill(&mut self, want: Want, value: Value) {
@@ -120,7 +120,7 @@ impl At<'_> {
     }
 }
 
-impl<'de> DeserializeSeed<'de> for At<'_> {
+impl<'de> DeserializeSeed<'de> for JsonTaker<'_> {
     type Value = ();
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
@@ -128,7 +128,7 @@ impl<'de> DeserializeSeed<'de> for At<'_> {
     }
 }
 
-impl<'de> Visitor<'de> for At<'_> {
+impl<'de> Visitor<'de> for JsonTaker<'_> {
     type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {

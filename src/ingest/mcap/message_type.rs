@@ -42,7 +42,7 @@ pub(super) enum MessageType {
     /// From the descriptor set.
     Protobuf(MessageDescriptor),
     /// From the `ros2msg` text.
-    Cdr(Arc<[ros_type::Field]>),
+    Cdr(Arc<[ros_type::RosField]>),
 }
 
 /// The message types of a file: each schema is taken apart once, all of them within a limit.
@@ -72,7 +72,7 @@ impl MessageTypes {
         /// What is kept of a type besides its text takes a few hundred bytes.
         const LEAST_BYTES: u64 = 256;
         /// A field of `ros2msg` is paid for by itself: two lines of text double the number of fields.
-        const FIELD_BYTES: u64 = size_of::<ros_type::Field>() as u64;
+        const FIELD_BYTES: u64 = size_of::<ros_type::RosField>() as u64;
         let key = (info.schema_id, info.message_encoding.to_owned());
         if let Some(known) = self.known.get(&key) {
             return known.clone();

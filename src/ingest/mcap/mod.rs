@@ -16,6 +16,7 @@ mod path;
 mod plan;
 mod protobuf;
 mod read;
+mod records;
 mod ros_type;
 mod scanned;
 mod summary;

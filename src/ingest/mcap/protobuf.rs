@@ -64,20 +64,20 @@ fn seconds_and_nanoseconds(message: &MessageDescriptor) -> Option<(u32, u32)> {
 /// Decodes protobuf messages by a plan.
 #[derive(Debug)]
 pub(super) struct Protobuf {
-    root: Message,
+    root: ProtobufMessage,
 }
 
 /// What to do with the fields of a message.
 #[derive(Debug, Default)]
-struct Message {
-    fields: Vec<Field>,
+struct ProtobufMessage {
+    fields: Vec<ProtobufField>,
     /// What a field without presence is worth when it is not on the wire.
     defaults: Vec<(usize, Value)>,
 }
 
 /// What to do with one field.
 #[derive(Debug)]
-struct Field {
+struct ProtobufField {
     number: u32,
     kind: Kind,
     is_list: bool,
@@ -98,9 +98,9 @@ enum Action {
         seconds: u32,
         nanoseconds: u32,
     },
-    Descend(Message),
+    Descend(ProtobufMessage),
     /// One message of a repeated one.
-    Elements(Vec<(usize, Message)>),
+    Elements(Vec<(usize, ProtobufMessage)>),
 }
 
 impl Protobuf {
@@ -110,8 +110,8 @@ impl Protobuf {
     }
 }
 
-fn compile(node: &Node, wants: &[Want], message: &MessageDescriptor) -> Message {
-    let mut compiled = Message::default();
+fn compile(node: &Node, wants: &[Want], message: &MessageDescriptor) -> ProtobufMessage {
+    let mut compiled = ProtobufMessage::default();
     for field in message.fields().filter(|field| !field.is_map()) {
         let Some(child) = node.field(field.name()).or_else(|| node.field(field.json_name())) else {
             continue;
@@ -125,7 +125,7 @@ fn compile(node: &Node, wants: &[Want], message: &MessageDescriptor) -> Message 
                 _ => {}
             }
             let (number, kind, is_list) = (field.number(), field.kind(), field.is_list());
-            compiled.fields.push(Field { number, kind, is_list, action });
+            compiled.fields.push(ProtobufField { number, kind, is_list, action });
         }
     }
     compiled
@@ -158,7 +158,7 @@ impl Decode for Protobuf {
     }
 }
 
-impl Message {
+impl ProtobufMessage {
     fn decode(&self, data: &[u8], slots: &mut Slots) -> Result<(), String> {
         for (slot, value) in &self.defaults {
             slots.set(*slot, value.clone());
@@ -204,7 +204,7 @@ fn counted(seen: &mut Vec<(u32, usize)>, number: u32) -> usize {
     0
 }
 
-impl Field {
+impl ProtobufField {
     fn numbers(&self, slot: usize, item: &Item, slots: &mut Slots) -> Result<(), String> {
         if !self.is_list {
             let value = scalar(&self.kind, item).ok_or_else(|| self.wrong_type())?;

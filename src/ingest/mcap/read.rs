@@ -1,6 +1,6 @@
 //! An MCAP file and a cask file to raw channels: only the topics that are named are decoded.
 
-use super::column::{CLOCK_IS_SET_NS, Column, Stamps, seconds_from};
+use super::column::{CLOCK_IS_SET_NS, Column, StampCounts, seconds_from};
 use super::complaint;
 use super::path;
 use super::scanned::Scanned;
@@ -82,7 +82,7 @@ fn chosen(
 
 /// What was wrong with single messages of a channel.
 fn message_issues(spec: &ChannelSpec, gathered: &Gathered, column: &Column) -> Vec<Finding> {
-    let (messages, Stamps { good, bad }) = (gathered.messages, column.stamps);
+    let (messages, StampCounts { good, bad }) = (gathered.messages, column.stamps);
     let log_time = (bad > 0).then_some(McapFinding::LogTime { count: bad, messages, beside_good: good > 0 });
     let found = log_time.into_iter().chain(gathered.undecoded(None));
     found.map(|finding| Finding::from(finding).on(&spec.name)).collect()

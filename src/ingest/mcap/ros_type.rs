@@ -13,7 +13,7 @@ pub(super) const MOST_FIELDS: usize = 20_000;
 
 /// A field of a message.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Field {
+pub(super) struct RosField {
     pub(super) name: String,
     pub(super) kind: Type,
 }
@@ -34,7 +34,7 @@ pub(super) enum Type {
     F64,
     Text,
     WideText,
-    Message(Vec<Field>),
+    Message(Vec<RosField>),
     Array(Box<Type>, Length),
 }
 
@@ -69,7 +69,7 @@ impl Type {
 ///
 /// # Errors
 /// Why the text gives no type.
-pub(super) fn parse(name: &str, text: &str, left: &mut usize) -> Result<Vec<Field>, String> {
+pub(super) fn parse(name: &str, text: &str, left: &mut usize) -> Result<Vec<RosField>, String> {
     // Neither defaults nor constants are sent, and the crate panics where one of them is a quotation mark alone.
     let text = text.replace(['"', '\''], "_");
     let schema =
@@ -95,7 +95,7 @@ impl Resolver<'_> {
         spec: &MessageSpecification,
         depth: usize,
         left: &mut usize,
-    ) -> Result<Vec<Field>, String> {
+    ) -> Result<Vec<RosField>, String> {
         if depth == 0 {
             return Err(format!("its schema nests {} in itself", spec.name));
         }
@@ -103,11 +103,11 @@ impl Resolver<'_> {
         for field in &spec.fields {
             *left = left.checked_sub(1).ok_or_else(|| "its schema has too many fields".to_owned())?;
             let kind = self.kind(&field.ty, message_package(&spec.name), depth, left)?;
-            fields.push(Field { name: field.name.clone(), kind });
+            fields.push(RosField { name: field.name.clone(), kind });
         }
         if fields.is_empty() {
             // A message of constants alone takes one byte on the wire.
-            fields.push(Field { name: "structure_needs_at_least_one_member".into(), kind: Type::U8 });
+            fields.push(RosField { name: "structure_needs_at_least_one_member".into(), kind: Type::U8 });
         }
         Ok(fields)
     }
@@ -149,8 +149,8 @@ impl Resolver<'_> {
             Some(spec) => Ok(Type::Message(self.message(spec, depth - 1, left)?)),
             // Some writers leave out what every ROS 2 installation has.
             None if name == "Time" || name == "Duration" => Ok(Type::Message(vec![
-                Field { name: "sec".into(), kind: Type::I32 },
-                Field { name: "nanosec".into(), kind: Type::U32 },
+                RosField { name: "sec".into(), kind: Type::I32 },
+                RosField { name: "nanosec".into(), kind: Type::U32 },
             ])),
             None => Err(format!("its schema uses the type {name} and does not define it")),
         }
@@ -184,7 +184,7 @@ mod tests {
         let fields = parse("my/msg/Top", text, &mut 20_000).unwrap();
         let Type::Message(header) = &fields[0].kind else { panic!() };
         assert!(matches!(&header[0].kind, Type::Message(time) if time.len() == 2));
-        assert_eq!(fields[1].kind, Type::Message(vec![Field { name: "x".into(), kind: Type::F32 }]));
+        assert_eq!(fields[1].kind, Type::Message(vec![RosField { name: "x".into(), kind: Type::F32 }]));
         assert_eq!(fields[2].kind, Type::Array(Box::new(Type::F64), Length::Fixed(9)));
         assert_eq!(fields[3].kind, Type::Array(Box::new(Type::I16), Length::Counted));
     }

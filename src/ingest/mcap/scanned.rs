@@ -1,63 +1,9 @@
 //! What a walk through an MCAP file found besides messages: counts, how it is made, and what was lost.
 
-use super::chunk::RECORD_HEADER_BYTES;
+use super::records::Counts;
 use crate::data::{FileEnd, Finding, McapFinding};
 use mcap::records::op;
-use std::collections::{BTreeMap, BTreeSet};
-
-/// How many records of each kind, by opcode.
-#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Counts {
-    of: [u64; 16],
-    /// What the records of the chunks take, unpacked.
-    pub(super) unpacked_bytes: u64,
-}
-
-impl std::ops::AddAssign for Counts {
-    fn add_assign(&mut self, other: Self) {
-        self.of.iter_mut().zip(other.of).for_each(|(own, more)| *own += more);
-        self.unpacked_bytes += other.unpacked_bytes;
-    }
-}
-
-impl Counts {
-    /// Counts one record of a chunk.
-    pub(super) fn add_unpacked(&mut self, opcode: u8, body: &[u8]) {
-        self.unpacked_bytes += RECORD_HEADER_BYTES + body.len() as u64;
-        self.add(opcode);
-    }
-
-    /// Counts one record.
-    pub(super) fn add(&mut self, opcode: u8) {
-        if let Some(count) = self.of.get_mut(usize::from(opcode)) {
-            *count += 1;
-        }
-    }
-
-    pub(super) fn messages(&self) -> u64 {
-        self.of[usize::from(op::MESSAGE)]
-    }
-
-    /// Whether schemas or channels are among them.
-    pub(super) fn has_channels(&self) -> bool {
-        self.of[usize::from(op::SCHEMA)] + self.of[usize::from(op::CHANNEL)] > 0
-    }
-
-    /// By name, as a listing shows them.
-    pub(super) fn named(&self, schemas: usize, channels: usize) -> BTreeMap<String, u64> {
-        let of = |opcode: u8| self.of[usize::from(opcode)];
-        [
-            ("messages", self.messages()),
-            ("schemas", schemas as u64),
-            ("channels", channels as u64),
-            ("chunks", of(op::CHUNK)),
-            ("attachments", of(op::ATTACHMENT)),
-            ("metadata", of(op::METADATA)),
-        ]
-        .map(|(name, count)| (name.to_owned(), count))
-        .into()
-    }
-}
+use std::collections::BTreeSet;
 
 /// What a walk found besides messages.
 #[derive(Debug, Default)]

@@ -1,6 +1,6 @@
 //! A closed MCAP file's summary section to its schemas, channels and chunk positions, before the walk begins.
 
-use super::chunk::{RECORD_HEADER_BYTES, Records};
+use super::records::{RECORD_HEADER_BYTES, Records};
 use mcap::records::{Record, op};
 use std::io::{Read, Seek, SeekFrom};
 

@@ -1,6 +1,7 @@
 //! An MCAP file to what its messages give, in the order of the file, whole or not: chunks are unpacked several at once.
 
-use super::chunk::{Chunk, ChunkFault, RECORD_HEADER_BYTES};
+use super::chunk::{Chunk, ChunkFault};
+use super::records::RECORD_HEADER_BYTES;
 use super::scanned::{Scanned, record_name};
 use super::summary::{self, Summary};
 use super::topic::{Gathered, Part, Topic};
@@ -254,7 +255,7 @@ impl Walk<'_> {
             topics.meet(chunk, &mut scanned.losses);
         }
         let most_held = limits.samples_bytes().saturating_sub(taken.held_bytes);
-        waiting.par_iter_mut().for_each(|chunk| chunk.take(topics, most_held));
+        waiting.par_iter_mut().for_each(|chunk| take(chunk, topics, most_held));
         for mut chunk in std::mem::take(waiting) {
             self.join(&mut chunk);
             self.spare.push(chunk);
@@ -318,4 +319,24 @@ impl Walk<'_> {
 
 fn within(what: &'static str, bytes: u64, most: u64) -> Result<(), Obstacle> {
     if bytes > most { Err(Obstacle::Limit(what, most)) } else { Ok(()) }
+}
+
+/// Takes the messages of a chunk, as long as their samples take no more than `most_held` bytes.
+fn take(chunk: &mut Chunk, topics: &Topics, most_held: u64) {
+    if chunk.is_bad() {
+        return;
+    }
+    let mut part = std::mem::take(&mut chunk.part);
+    let (mut unusable, mut first) = (0, None);
+    for (_, body) in chunk.records().filter(|(opcode, _)| *opcode == op::MESSAGE) {
+        if let Err(why) = topics.take(&mut part, body) {
+            unusable += 1;
+            first.get_or_insert(why);
+        }
+        if part.held_bytes > most_held {
+            break;
+        }
+    }
+    chunk.part = part;
+    chunk.unusable = first.map(|why| (unusable, why));
 }

@@ -1,7 +1,7 @@
 //! What the time base must keep: values where times are steady, places where they are not.
 
 use super::*;
-use crate::data::{Issue, IssueCode, Severity, Span};
+use crate::data::{Finding, IssueCode, Severity, Span};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use std::f64::consts::TAU;
@@ -305,7 +305,7 @@ fn a_step_that_changes_for_good_is_no_jitter_and_stamps_that_wander_are() {
 
 #[test]
 fn times_that_begin_anew_are_named_as_such() {
-    let told = |issues: &[Issue]| issues.iter().any(|issue| issue.message.contains("begin anew: "));
+    let told = |issues: &[Finding]| issues.iter().any(|issue| issue.message.contains("begin anew: "));
     // Stamps of blocks, and of single samples; then such that are late, or the same recording twice.
     let numbers = |starts_s: &[f64], is_copy: bool| -> bool {
         let count = |i: usize| if is_copy { i % 6 } else { i };

@@ -1,6 +1,6 @@
 //! Samples on a uniform base, and the blocks that come to one.
 
-use crate::data::{Issue, Samples, Span};
+use crate::data::{Finding, Samples, Span};
 
 /// Samples on a uniform base.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Uniform {
     /// RMS distance of the recorded times from the base, s; 0 where samples were not moved.
     pub time_jitter_s: f64,
     /// What was put right: duplicates, disorder, gaps, jitter (times in the clock of the times given).
-    pub issues: Vec<Issue>,
+    pub issues: Vec<Finding>,
 }
 
 /// A contiguous run of samples with its own start.

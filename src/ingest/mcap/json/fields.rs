@@ -3,7 +3,7 @@
 //! `serde_json` tells nobody where in the text it stands: to read numbers by their digits an array would have to be gone
 //! through twice. All but objects and plain arrays is left to it, and so is every text that is not as usual.
 
-use super::At;
+use super::JsonTaker;
 use crate::data::Samples;
 use crate::ingest::mcap::plan::{Value, Want};
 use crate::ingest::number;
@@ -11,7 +11,7 @@ use serde::de::{DeserializeSeed, IgnoredAny};
 use serde_json::Deserializer;
 use serde_json::value::RawValue;
 
-impl At<'_> {
+impl JsonTaker<'_> {
     /// The fields of the object that `text` holds and nothing else; whether it does.
     ///
     /// Where not, some slots may be filled already.
