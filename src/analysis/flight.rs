@@ -4,8 +4,8 @@ use super::impact::Impact;
 use super::settle;
 use super::setup::sticking;
 use crate::data::{
-    At, AxialClosure, Axis, CaskFile, Contact, DropFinding, End, Events, Finding, FlightFit, Motion,
-    Quantities, ReconstructionChoice, RivalLaw, Setup, Signal,
+    AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, DropFinding, End, Events, Finding, FlightFit,
+    Motion, Quantities, ReconstructionChoice, Setup, Signal,
 };
 use crate::motion::{self, Integrated};
 use crate::{events, fit, judge};
@@ -13,8 +13,10 @@ use crate::{events, fit, judge};
 /// What the length of a pulse is uncertain by, as a share, where its samples are clipped or missing, or only the other end shows it.
 const UNCERTAIN_PULSE: f64 = 0.1;
 
-/// Part of the way between two contact laws on which the change of the result is taken: a hundred times what friction is rounded to.
-const RIVAL_WAY: f64 = 0.1;
+/// A friction that nobody states lies between none and what sticking needs, and more than that does as much: in the middle of what 0.1 and
+/// more give, as a share of what sticking needs, and with a standard uncertainty that takes both ends in.
+const MIDDLE: f64 = 0.6;
+const U_UNKNOWN: f64 = 0.33;
 
 /// The flight, and what it says of the motion.
 pub(super) struct Flown {
@@ -48,6 +50,7 @@ pub(super) fn flown(
         slap_down.u_s = slap_down.u_s.hypot(impact.u_skew_s);
     }
     let flown = moved(impact, file, &integrated, flight, &events);
+    findings.extend(flown.as_ref().and_then(|flown| judge_open_contact(file, &integrated, flown, &events)));
     (events, flown)
 }
 
@@ -94,8 +97,7 @@ fn moved(
     events: &Events,
 ) -> Option<Flown> {
     let signals = &impact.signals;
-    let setup = setup(file, integrated, events, &flight);
-    let motion = motion::reconstruct(integrated, &flight, events, &setup)?;
+    let (setup, friction) = contact(file, integrated, &flight, events);
     let window = motion::Window {
         from_s: flight.from_s,
         to_s: flight.to_s,
@@ -109,7 +111,8 @@ fn moved(
         flight: &flight,
         events,
         setup: &setup,
-        rival_law: rival_law(file, integrated, &flight, events, setup.axial),
+        friction,
+        specs: &file.channels,
         tolerances: file.tolerances,
         // An end that the mass properties stand in for cannot test them.
         inertia_m2: (cask.is_body && impact.stand_in.is_none()).then_some(cask.inertia_kg_m2 / cask.mass_kg),
@@ -119,50 +122,59 @@ fn moved(
     };
     let reading = motion::read_channels(integrated, events, &setup);
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(integrated, flight, events, setup);
-    let (quantities, reconstruction) = fit::ladder(&measured, plain.as_ref(), reading, &moved)?;
+    let taken = fit::ladder(&measured, plain.as_ref(), reading, &moved)?;
+    let motion = motion::reconstruct(integrated, &taken.flight, &taken.events, &taken.setup)?;
+    let fit::RungTaken { quantities, choice: reconstruction, .. } = taken;
     Some(Flown { flight, setup, motion, quantities, reconstruction })
 }
 
-/// How the axial velocity is had: measured, or by the contact law of the cask file.
-fn setup(file: &CaskFile, integrated: &Integrated, events: &Events, flight: &FlightFit) -> Setup {
-    let base = sticking(file);
-    if integrated.signals.iter().any(|s| s.axis == Axis::Axial) {
-        return Setup { axial: AxialClosure::Measured, ..base };
-    }
-    let axial = match file.contact {
-        Contact::Rough => AxialClosure::Sticking,
-        Contact::Smooth => sliding(0.0),
-        Contact::Coulomb(mu) => {
-            let needed = motion::outcome(integrated, flight, events, &base).map_or(0.0, |m| m.impulse_ratio);
-            if needed.abs() <= mu { AxialClosure::Sticking } else { sliding(mu) }
-        }
-    };
-    Setup { axial, ..base }
-}
-
-/// A law near the stated one on the way to the other; what that way changes bends, and only its beginning is within the tolerance.
-fn rival_law(
+/// How the axial velocity is had: measured, or by a friction that the cask file states or leaves open.
+fn contact(
     file: &CaskFile,
     integrated: &Integrated,
     flight: &FlightFit,
     events: &Events,
-    stated: AxialClosure,
-) -> Option<RivalLaw> {
-    let held = motion::outcome(integrated, flight, events, &sticking(file))?;
-    let holds = held.impulse_ratio.max(0.0);
-    let mu = match stated {
-        AxialClosure::Measured => return None,
-        AxialClosure::Sticking => holds * (1.0 - RIVAL_WAY),
-        AxialClosure::Sliding { friction_ppm } => {
-            let mu = f64::from(friction_ppm) * 1e-6;
-            mu + RIVAL_WAY * (holds - mu)
+) -> (Setup, Option<AssumedFriction>) {
+    let sticking = sticking(file);
+    if integrated.signals.iter().any(|s| s.axis == Axis::Axial) {
+        return (Setup { axial: AxialClosure::Measured, ..sticking }, None);
+    }
+    // What sticking needs; more friction than that does nothing.
+    let needed =
+        motion::outcome(integrated, flight, events, &sticking).map_or(0.0, |motion| motion.impulse_ratio);
+    let sliding = |friction: f64| AxialClosure::Sliding { friction };
+    let share_u = file.tolerances.friction / 2.0;
+    let (axial, ratio, u) = match file.contact {
+        Contact::Rough => (AxialClosure::Sticking, needed, share_u * needed),
+        Contact::Smooth => (sliding(0.0), 0.0, share_u * needed),
+        Contact::Coulomb(mu) if mu < needed.abs() => {
+            let friction = mu * needed.signum();
+            (sliding(friction), friction, share_u * mu)
         }
+        Contact::Coulomb(mu) => {
+            let short = (needed.abs() - (1.0 - 2.0 * share_u) * mu).max(0.0);
+            (AxialClosure::Sticking, needed, short / 2.0)
+        }
+        Contact::Unknown => (sliding(MIDDLE * needed), MIDDLE * needed, U_UNKNOWN * needed),
     };
-    Some(RivalLaw { axial: sliding(mu), way: RIVAL_WAY })
+    (Setup { axial, ..sticking }, Some(AssumedFriction { ratio, u: u.abs() }))
 }
 
-/// Sliding with this friction.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to 0..=1000 before the cast")]
-fn sliding(mu: f64) -> AxialClosure {
-    AxialClosure::Sliding { friction_ppm: (mu.clamp(0.0, 1e3) * 1e6) as u32 }
+/// What the slap-down speed would be with L stuck and without friction, where nothing tells which.
+fn judge_open_contact(
+    file: &CaskFile,
+    integrated: &Integrated,
+    flown: &Flown,
+    events: &Events,
+) -> Option<Finding> {
+    let speed_m_s = |axial| {
+        let setup = Setup { axial, ..flown.setup };
+        let (x, z) = motion::outcome(integrated, &flown.flight, events, &setup)?.second_end_m_s?;
+        Some(f64::hypot(x, z))
+    };
+    let is_open = file.contact == Contact::Unknown && flown.setup.axial != AxialClosure::Measured;
+    let sticking_m_s = speed_m_s(AxialClosure::Sticking).filter(|_| is_open)?;
+    let sliding_m_s = speed_m_s(AxialClosure::Sliding { friction: 0.0 })?;
+    let taken = flown.quantities.friction;
+    Some(DropFinding::OpenContact { sticking_m_s, sliding_m_s, taken }.into())
 }

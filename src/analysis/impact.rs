@@ -32,6 +32,7 @@ impl Impact {
         let (silent, changes) =
             rayon::join(|| judge::judge_silent(&recording.channels), || events::Changes::of(recording));
         findings.extend(silent);
+        let copied = judge::judge_copies(&recording.channels);
         let event = changes
             .locate(one_end::least_step_m_s(file, recording))
             .filter(|e| e.velocity_step_m_s.abs() > drop.least_impact_m_s())?;
@@ -42,6 +43,8 @@ impl Impact {
         let reach = last_s.map_or(farthest, |last_s| farthest.until(last_s - event.near_s - event.spread_s));
         let (mut signals, found) = condition::condition(recording, &event, &reach, file.corrections);
         findings.extend(found);
+        signals.retain(|signal| copied.iter().all(|copy| copy.channel.as_ref() != Some(&signal.name)));
+        findings.extend(copied);
         let mut contact = events::first_contact(&signals, &event)?;
         if events::transverse(&signals, End::First).is_none() {
             // A bending wave takes this time from L to R, where it is seen first.
@@ -110,17 +113,17 @@ fn before(recording: &Recording, drop: &Drop, contact_s: f64) -> (Vec<RestLevel>
         rest_m_s2: fall.rest_m_s2,
         u_m_s2: fall.u_rest_m_s2,
     };
-    let best = falls.iter().min_by(|a, b| a.1.u_rest_m_s2.total_cmp(&b.1.u_rest_m_s2));
+    let across = falls.iter().filter(|(channel, _)| channel.axis == Axis::Transverse);
+    let best = across.min_by(|a, b| a.1.u_rest_m_s2.total_cmp(&b.1.u_rest_m_s2));
     (falls.iter().map(rest).collect(), best.map(|(_, fall)| fall.release_s..fall.end_s))
 }
 
-/// The free fall as each transverse channel shows it; an AC-coupled one knows neither rest nor fall.
+/// The free fall as each channel shows it; an AC-coupled one knows neither rest nor fall.
 fn free_falls<'a>(
     recording: &'a Recording,
     drop: &'a Drop,
     contact_s: f64,
 ) -> impl Iterator<Item = (&'a Channel, events::FreeFall)> {
-    let steady =
-        recording.channels.iter().filter(|c| c.axis == Axis::Transverse && c.coupling == Coupling::Dc);
+    let steady = recording.channels.iter().filter(|c| c.coupling == Coupling::Dc);
     steady.filter_map(move |c| events::free_fall(c, drop, contact_s).map(|fall| (c, fall)))
 }

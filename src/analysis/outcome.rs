@@ -8,7 +8,7 @@ use crate::data::{
     FirstImpact, Input, Prediction, Quantities, Recording, Setting, Setup, Signal, SlapDown,
 };
 use crate::numerics::reduce::peak;
-use crate::{fit, judge, motion, predict};
+use crate::{compare, fit, judge, motion, predict};
 
 /// What a recorder's anti-alias filter delays by, in samples: 1.0 to 1.7 for one of fourth order at 0.4 to 0.25 of the rate, 2.0 for one of
 /// eighth order at 0.4 (Butterworth, at low frequency).
@@ -119,7 +119,7 @@ fn result(
         k: quantities.map(|q| q.k),
         reconstruction: None,
         model: None,
-        predictions: predictions(file, quantities.map(|q| q.k.value)),
+        predictions: predictions(file, quantities),
         comparison: None,
         quality: findings,
         verdict,
@@ -131,12 +131,15 @@ fn result(
     }
 }
 
-/// Rod and body: the four borderline cases, and the cask file's contact law with the measured k.
-fn predictions(file: &CaskFile, k: Option<f64>) -> Vec<Prediction> {
+/// Rod and body: the four borderline cases, and the contact law and k of the test.
+fn predictions(file: &CaskFile, measured: Option<&Quantities>) -> Vec<Prediction> {
     let mut all = Vec::new();
     for body in predict::bodies(&file.cask) {
         all.extend(predict::borderline_cases(&body, &file.drop));
-        all.extend(k.map(|k| predict::predict(&body, &file.drop, file.contact, k.clamp(0.0, 1.0))));
+        all.extend(measured.map(|measured| {
+            let contact = compare::contact_as_measured(file.contact, measured);
+            predict::predict(&body, &file.drop, contact, measured.k.value.clamp(0.0, 1.0))
+        }));
     }
     all
 }

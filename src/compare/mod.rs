@@ -1,7 +1,7 @@
 //! Measured beside predicted: the models tried, the one taken and whether it agrees.
 
 use crate::data::{
-    Body, BodyModel, CaskFile, Comparison, Contact, Drop, LADDER_TOLERANCE_PERCENT, ModelCandidate,
+    Body, BodyModel, CaskFile, Comparison, Contact, Drop, Estimate, LADDER_TOLERANCE_PERCENT, ModelCandidate,
     ModelChoice, Prediction, Quantities, Rung,
 };
 
@@ -16,6 +16,7 @@ struct Comparing<'a> {
     rod: &'a Body,
     body: &'a Body,
     file: &'a CaskFile,
+    contact: Contact,
     measured: &'a Quantities,
     predict: PredictBy<'a>,
 }
@@ -33,7 +34,8 @@ pub fn compare(
     predict: PredictBy,
 ) -> Option<(ModelChoice, Option<Comparison>)> {
     let (rod, body) = (bodies.first()?, bodies.last()?);
-    let scene = Comparing { rod, body, file: cask_file, measured, predict };
+    let contact = contact_as_measured(cask_file.contact, measured);
+    let scene = Comparing { rod, body, file: cask_file, contact, measured, predict };
     let candidates = scene.candidates();
     // A simple model that agrees where a richer one does not agrees by luck: the richer ones must agree as well.
     let taken = (0..candidates.len())
@@ -85,12 +87,13 @@ impl Comparing<'_> {
             predicted,
             u95,
             difference_percent: difference.map(|(d, p, _)| 100.0 * d / p),
-            consistent: difference.zip(u95).is_some_and(|((d, _, m), u)| d.abs() <= m + u),
+            // E_n = |difference| / √(U₁² + U₂²) ≤ 1 (ISO 13528)
+            consistent: difference.zip(u95).is_some_and(|((d, _, m), u)| d.abs() <= m.hypot(u)),
         }
     }
 
     fn speed_m_s(&self, rung: Rung, body: &Body, drop: &Drop, k: f64) -> Option<f64> {
-        (self.predict)(rung, body, drop, self.file.contact, k.clamp(0.0, 1.0)).slap_down_speed_m_s
+        (self.predict)(rung, body, drop, self.contact, k.clamp(0.0, 1.0)).slap_down_speed_m_s
     }
 
     /// 95 % half-width of a prediction, m/s: k, what the cask file states, and the finite pulse that the impact formula leaves out.
@@ -109,16 +112,40 @@ impl Comparing<'_> {
         let faster_m_s = file.drop.impact_velocity_m_s * (1.0 + known.impact_velocity / 2.0);
         let by_velocity = change(body, &Drop { impact_velocity_m_s: faster_m_s, ..file.drop }, k);
         let by_cog = change(&Body { cog_m: body.cog_m + known.cog_m / 2.0, ..**body }, &file.drop, k);
-        // Part of the way to the other contact law.
-        let other = if file.contact == Contact::Rough { Contact::Smooth } else { Contact::Rough };
-        let by_other = (self.predict)(rung, body, &file.drop, other, k).slap_down_speed_m_s;
-        let by_law = known.friction / 2.0 * by_other.map_or(0.0, |speed| speed - base);
+        let size = |share: f64| 1.0 + share / 2.0;
+        let longer = Body { length_m: body.length_m * size(known.length), ..**body };
+        let thicker = Body { height_m: body.height_m * size(known.height), ..**body };
+        let by_size = change(&longer, &file.drop, k).hypot(change(&thicker, &file.drop, k));
+        let omega = file.drop.angular_velocity_rad_s + known.angular_velocity_rad_s / 2.0;
+        let by_turn = change(body, &Drop { angular_velocity_rad_s: omega, ..file.drop }, k);
+        let along = file.drop.horizontal_velocity_m_s + known.horizontal_velocity_m_s / 2.0;
+        let by_swing = change(body, &Drop { horizontal_velocity_m_s: along, ..file.drop }, k);
+        let by_law = self.by_friction_m_s(rung, k);
         // While the pulse of duration T lasts the cask turns by about ω T / 2 and gravity adds g T.
         let duration_s = measured.duration.value.max(0.0);
         let turn_rad = -measured.angular_velocity.value * duration_s / 2.0;
         let by_pulse = change(body, &turned(turn_rad), k).abs() + file.drop.gravity_m_s2 * duration_s;
-        let stated = by_angle.hypot(by_inertia).hypot(by_velocity).hypot(by_cog).hypot(by_law);
+        let stated = [by_angle, by_inertia, by_velocity, by_cog, by_law, by_size, by_turn, by_swing];
+        let stated = stated.into_iter().fold(0.0, f64::hypot);
         Some(2.0 * by_k.hypot(stated).hypot(by_pulse / 3.0_f64.sqrt()))
+    }
+
+    /// How a friction that is off by its standard uncertainty changes the speed, m/s; towards less, where more does nothing.
+    fn by_friction_m_s(&self, rung: Rung, k: f64) -> f64 {
+        // The lower rungs take any friction for rough.
+        let predicted =
+            |contact| (self.predict)(rung.max(Rung::Friction), self.body, &self.file.drop, contact, k);
+        let Estimate { value, u95, .. } = self.measured.friction;
+        let (taken, share) = (predicted(self.contact), self.file.tolerances.friction / 2.0);
+        let needed = taken.friction_to_stick;
+        let other = match self.file.contact {
+            Contact::Unknown => (value - u95 / 2.0).max(0.0),
+            Contact::Smooth => share * needed,
+            Contact::Rough => (1.0 - share) * needed,
+            Contact::Coulomb(mu) => (1.0 - share) * mu,
+        };
+        let other = predicted(Contact::Coulomb(other)).slap_down_speed_m_s;
+        other.zip(taken.slap_down_speed_m_s).map_or(0.0, |(other, taken)| other - taken)
     }
 
     /// How a heavier inertia changes the speed, m/s. The rod's own has none to change: it is asked as a body.
@@ -133,6 +160,15 @@ impl Comparing<'_> {
         let heavier = Body { inertia_kg_m2: body.inertia_kg_m2 * (1.0 + share), ..*body };
         let speed = |body: &Body| self.speed_m_s(rung, body, &self.file.drop, k);
         speed(&heavier).zip(speed(body)).map_or(0.0, |(heavier, as_it_is)| heavier - as_it_is)
+    }
+}
+
+/// The contact law that the prediction goes by: the stated one, else the friction that was measured.
+#[must_use]
+pub fn contact_as_measured(stated: Contact, measured: &Quantities) -> Contact {
+    match stated {
+        Contact::Unknown => Contact::Coulomb(measured.friction.value.max(0.0)),
+        stated => stated,
     }
 }
 
@@ -201,6 +237,7 @@ mod tests {
             angle: None,
             second_end_height: None,
             slip_velocity: e(0.0, "m/s"),
+            friction: e(0.6, "1"),
             budget: vec![],
         }
     }
@@ -219,13 +256,7 @@ mod tests {
                 inertia_kg_m2: 2100.0,
                 is_body: true,
             },
-            drop: Drop {
-                height_m: 9.0,
-                angle_rad: 0.26,
-                impact_velocity_m_s: 13.3,
-                impact_velocity_given: false,
-                gravity_m_s2: 9.81,
-            },
+            drop: Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, 0.26) },
             contact: Contact::Rough,
             filter: FilterChoice::Auto,
             tolerances: crate::data::Tolerances::default(),

@@ -55,6 +55,8 @@ pub enum Contact {
     Smooth,
     /// Coulomb friction with this coefficient.
     Coulomb(f64),
+    /// Nobody says: anything from smooth to rough.
+    Unknown,
 }
 
 impl std::fmt::Display for Contact {
@@ -63,6 +65,7 @@ impl std::fmt::Display for Contact {
             Self::Rough => f.write_str("rough"),
             Self::Smooth => f.write_str("smooth"),
             Self::Coulomb(coefficient) => write!(f, "{coefficient}"),
+            Self::Unknown => f.write_str("unknown"),
         }
     }
 }
@@ -162,19 +165,37 @@ pub struct Cask {
 /// The `[drop]` table with its defaults filled in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drop {
-    /// Free-fall height of the lowest point, m.
+    /// Free-fall height of the lowest point, of the centre of gravity where the cask rotates, m.
     pub height_m: f64,
     /// φ0, rad.
     pub angle_rad: f64,
-    /// Speed at first contact, m/s: √(2 g h), or as the file says.
+    /// Speed at which L strikes, m/s: √(2 g h) − ω a (3), or as the file says.
     pub impact_velocity_m_s: f64,
     /// Whether the file states that speed itself.
     pub impact_velocity_given: bool,
     /// g, m/s².
     pub gravity_m_s2: f64,
+    /// ω at first contact, rad/s: positive brings R down.
+    pub angular_velocity_rad_s: f64,
+    /// ẋ of the centre of gravity at first contact, m/s.
+    pub horizontal_velocity_m_s: f64,
 }
 
 impl Drop {
+    /// A free fall from this height at 9.81 m/s², without rotation.
+    #[must_use]
+    pub fn of_height(height_m: f64, angle_rad: f64) -> Self {
+        Self {
+            height_m,
+            angle_rad,
+            impact_velocity_m_s: (2.0 * 9.81 * height_m).sqrt(),
+            impact_velocity_given: false,
+            gravity_m_s2: 9.81,
+            angular_velocity_rad_s: 0.0,
+            horizontal_velocity_m_s: 0.0,
+        }
+    }
+
     /// v0 cos φ0, m/s: what a struck end loses across the axis at the least.
     #[must_use]
     pub fn transverse_velocity_m_s(&self) -> f64 {
@@ -218,6 +239,12 @@ pub struct ChannelSpec {
     pub time: Option<String>,
     /// How the sensor is coupled.
     pub coupling: Coupling,
+    /// 95 % half-width of this channel's scale, as a share, where the file gives it its own.
+    pub calibration: Option<f64>,
+    /// What it was calibrated with: channels of one name share the error of their scale.
+    pub reference: Option<String>,
+    /// Place off the plane of the drop, m.
+    pub lateral_m: f64,
 }
 
 /// A cask file, checked.

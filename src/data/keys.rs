@@ -112,7 +112,7 @@ pub const CASK: [Key; 7] = [
 ];
 
 /// Keys of `[drop]`.
-pub const DROP: [Key; 4] = [
+pub const DROP: [Key; 6] = [
     number("height_m", "required, but beside `impact_velocity_m_s`: then v0²/(2 g)")
         .within(1e-3, 1000.0, "in metres: from a millimetre to more than any drop tower")
         .asked("9.0", "free-fall height of the lowest point"),
@@ -131,11 +131,21 @@ pub const DROP: [Key; 4] = [
     number("gravity_m_s2", "9.81")
         .within(1.0, 3000.0, "in m/s²: the Moon's to that of a centrifuge")
         .shown("9.81", "this is the default"),
+    // Ten times what a hook that lets go of one end first gives a cask in a fall of 9 m.
+    number("angular_velocity_deg_s", "0")
+        .within(-60.0, 60.0, "in degrees a second, of the cask as the first end strikes")
+        .shown("0.0", "rotation as the first end strikes, positive brings the second end down; `height_m` is then the fall of the centre of gravity"),
+    number("horizontal_velocity_m_s", "0")
+        .within(-5.0, 5.0, "in m/s, of the centre of gravity as the first end strikes")
+        .shown("0.0", "of the centre of gravity as the first end strikes, positive towards the second end"),
 ];
 
 /// Keys of `[contact]`.
-pub const CONTACT: [Key; 1] = [Key { takes: Takes::TextOrNumber, ..text("friction", "`\"rough\"`") }
-    .shown(r#""rough""#, r#""rough" (default), "smooth" or a Coulomb coefficient such as 0.4"#)];
+pub const CONTACT: [Key; 1] = [Key { takes: Takes::TextOrNumber, ..text("friction", "`\"unknown\"`") }
+    .shown(
+        r#""unknown""#,
+        r#""rough", "smooth", a Coulomb coefficient such as 0.4, or "unknown" (default): all that lies between"#,
+    )];
 
 /// Keys of `[filter]`.
 pub const FILTER: [Key; 2] = [
@@ -144,7 +154,7 @@ pub const FILTER: [Key; 2] = [
 ];
 
 /// Keys of `[tolerance]`, each a 95 % half-width in the unit of its ending.
-pub const TOLERANCE: [Key; 9] = [
+pub const TOLERANCE: [Key; 13] = [
     number("angle_deg", "0.4").zero_or_more().shown("0.4", "drop angle"),
     number("impact_velocity_percent", "0.3").zero_or_more().shown("0.3", ""),
     number("calibration_percent", "1").zero_or_more().shown("1.0", "scale of a channel"),
@@ -152,11 +162,19 @@ pub const TOLERANCE: [Key; 9] = [
         .zero_or_more()
         .shown("2.0", "what a sensor reads of the other body axis, tilt included"),
     number("position_m", "0.01").zero_or_more().shown("0.01", "place of a sensor along the axis"),
-    number("cog_m", "0.01").zero_or_more().shown("0.01", "centre of gravity"),
-    number("inertia_percent", "2").zero_or_more().shown("2.0", ""),
-    number("friction_percent", "2")
+    number("length_m", "1 % of `length_m`")
         .zero_or_more()
-        .shown("2.0", "contact law, of the way from rough to smooth"),
+        .shown("0.05", "between the ends that strike; left out: 1 % of it"),
+    number("height_m", "1 % of `height_m`").zero_or_more().shown("0.008", "section; left out: 1 % of it"),
+    number("angular_velocity_deg_s", "1").zero_or_more().shown("1.0", "rotation as the first end strikes"),
+    number("horizontal_velocity_m_s", "0.1")
+        .zero_or_more()
+        .shown("0.1", "sideways velocity as the first end strikes"),
+    number("cog_m", "0.01").zero_or_more().shown("0.01", "centre of gravity"),
+    number("inertia_percent", "2; 10 where `inertia_kg_m2` is left out").zero_or_more().shown("2.0", ""),
+    number("friction_percent", "20")
+        .zero_or_more()
+        .shown("20.0", "of the coefficient, or of what sticking needs"),
     number("clock_percent", "0.05").zero_or_more().shown("0.05", "rate of the recorder's clock"),
 ];
 
@@ -175,7 +193,7 @@ pub const RECORDING: [Key; 1] = [text("time", "found").shown(
 )];
 
 /// Keys of `[[channel]]`.
-pub const CHANNEL: [Key; 14] = [
+pub const CHANNEL: [Key; 17] = [
     text("name", REQUIRED).asked(r#""A1""#, ""),
     text("end", REQUIRED).asked(r#""first""#, r#""first" (low, touches first) or "second""#),
     text("axis", REQUIRED)
@@ -194,6 +212,12 @@ pub const CHANNEL: [Key; 14] = [
         .shown(r#""/daq/time_s""#, "this channel's own times (CSV column, HDF5 dataset)"),
     text("coupling", "`\"dc\"`").shown(r#""dc""#, r#"or "ac", then also time_constant_s = 0.3"#),
     number("time_constant_s", "").above_zero(),
+    number("calibration_percent", "that of `[tolerance]`")
+        .within(0.0, 100.0, "half-width of the 95 % interval, in percent")
+        .shown("1.0", "this channel's own"),
+    text("reference", "–")
+        .shown(r#""amplifier 3""#, "channels of one name share the error of their calibration"),
+    number("lateral_m", "0").shown("0.0", "off the plane of the drop"),
 ];
 
 /// Keys of a source that is a table, `{ topic = …, field = … }`.

@@ -38,13 +38,13 @@ pub use estimate::Estimate;
 pub(crate) use finding::two_units;
 pub use finding::{
     AttributeFinding, CODES, ChannelFinding, ClockFinding, DropFinding, During, FileEnd, Finding, HowApart,
-    IssueCode, Jitter, McapFinding, RatesApart, Severity, TableFinding, TimesApart, TimesFinding, What,
+    IssueCode, Jitter, McapFinding, RatesApart, Severity, Slip, TableFinding, TimesApart, TimesFinding, What,
     shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};
-pub use motion::{AxialClosure, ChannelReading, Motion, MotionState, RivalLaw, Setup, StoodIn};
+pub use motion::{AssumedFriction, AxialClosure, ChannelReading, Motion, MotionState, Setup, StoodIn};
 pub use onset::Onset;
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, Quantities};
@@ -58,5 +58,5 @@ pub use study::{
     AngleCurve, Criterion, CriticalAngle, CriticalRange, MonteCarlo, PredictionRow, QuantileCurves, Regime,
     RegimeMap, Sensitivity, Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
 };
-pub use tolerances::{Corrections, Tolerances};
+pub use tolerances::{Corrections, INERTIA_OF_BLOCK, Tolerances};
 pub use unit::{STANDARD_GRAVITY_M_S2, acceleration_unit_m_s2, is_rate_of_turn};

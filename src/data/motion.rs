@@ -30,8 +30,14 @@ pub struct Setup {
     pub cog_m: f64,
     /// φ at first contact, rad.
     pub angle_rad: f64,
-    /// Speed at first contact, m/s.
+    /// Speed at which L strikes, m/s.
     pub impact_velocity_m_s: f64,
+    /// Whether that follows from the height of the fall, and so from the rotation too.
+    pub is_of_fall: bool,
+    /// ω at first contact, rad/s.
+    pub angular_velocity_rad_s: f64,
+    /// ẋ of S at first contact, m/s.
+    pub horizontal_velocity_m_s: f64,
     /// g, m/s².
     pub gravity_m_s2: f64,
     /// How the axial velocity during contact is had.
@@ -41,26 +47,26 @@ pub struct Setup {
 }
 
 /// Where the axial velocity during contact comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AxialClosure {
     /// ẋ_C = 0.
     Sticking,
-    /// A tangential force of this many millionths of the normal force.
+    /// A tangential force of so much of the normal force.
     Sliding {
-        /// μ · 10⁶; an integer so that the choice compares exactly.
-        friction_ppm: u32,
+        /// I_x / I_z: positive where it pushes towards R.
+        friction: f64,
     },
     /// From the axial channels.
     Measured,
 }
 
-/// A contact law beside the stated one.
+/// The friction of the first contact where no axial channel measures it: I_x / I_z.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RivalLaw {
-    /// What it says.
-    pub axial: AxialClosure,
-    /// How far it lies on the way from the stated law, 0, to the other one, 1: from sticking to smooth, from sliding to sticking.
-    pub way: f64,
+pub struct AssumedFriction {
+    /// As the contact law has it.
+    pub ratio: f64,
+    /// Standard uncertainty of it.
+    pub u: f64,
 }
 
 /// A channel that stands in for an end without one: another one times a number.
@@ -77,6 +83,8 @@ pub struct StoodIn {
 /// The motion between first contact and slap-down.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
+    /// As L strikes.
+    pub contact: MotionState,
     /// As L leaves the target.
     pub separation: MotionState,
     /// Vertical velocity of L's corner then, m/s.

@@ -43,6 +43,8 @@ pub struct Quantities {
     pub second_end_height: Option<Estimate>,
     /// Horizontal velocity of L's corner as it leaves, m/s: should be 0 where it sticks.
     pub slip_velocity: Estimate,
+    /// I_x / I_z of the first contact: the friction that acted.
+    pub friction: Estimate,
     /// Largest contribution first.
     pub budget: Vec<Contribution>,
 }

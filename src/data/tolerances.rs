@@ -13,28 +13,44 @@ pub struct Tolerances {
     pub cross_axis: f64,
     /// Place of a sensor along the axis, m.
     pub position_m: f64,
+    /// Length between the ends that strike, as a share of it.
+    pub length: f64,
+    /// Section, as a share of it.
+    pub height: f64,
+    /// Rotation at first contact, rad/s.
+    pub angular_velocity_rad_s: f64,
+    /// Sideways velocity at first contact, m/s.
+    pub horizontal_velocity_m_s: f64,
     /// Centre of gravity, m.
     pub cog_m: f64,
     /// Inertia, as a share of it.
     pub inertia: f64,
-    /// Contact law, as a share of the way from the stated law to the other one.
+    /// Friction of the first contact, as a share of it: of the stated coefficient, or of what sticking needs.
     pub friction: f64,
     /// Rate of the recorder's clock, as a share of it; all channels share it.
     pub clock: f64,
 }
 
+/// Inertia that is only a homogeneous block's, as a share: casks carry their mass off the even spread.
+pub const INERTIA_OF_BLOCK: f64 = 0.1;
+
 impl Default for Tolerances {
     /// Sources and sizes: docs/uncertainty.md.
     fn default() -> Self {
         Self {
-            angle_rad: 0.4 * std::f64::consts::PI / 180.0,
+            length: 0.01,
+            height: 0.01,
+            angular_velocity_rad_s: 1.0_f64.to_radians(),
+            horizontal_velocity_m_s: 0.1,
+
+            angle_rad: 0.4_f64.to_radians(),
             impact_velocity: 0.003,
             calibration: 0.01,
             cross_axis: 0.02,
             position_m: 0.01,
             cog_m: 0.01,
             inertia: 0.02,
-            friction: 0.02,
+            friction: 0.2,
             clock: 0.0005,
         }
     }

@@ -9,7 +9,7 @@ use std::ops::Range;
 const STEP: std::ops::Range<f64> = 0.5..1.5;
 /// Length of a block, s: short against a fall, long against noise and spikes.
 const BLOCK_S: f64 = 0.005;
-/// Blocks on either side that a level is taken from, 40 ms: as long as a crane's hook rings.
+/// Blocks of a level, 40 ms: as long as a crane's hook rings.
 const LEVEL: usize = 8;
 /// Blocks that a departure from the free-fall level is averaged over, 20 ms: ringing above 50 Hz has no mean over them.
 const SUSTAINED: usize = 4;
@@ -19,7 +19,11 @@ const CLEAR: f64 = 6.0;
 const TOUCH: f64 = 0.25;
 /// Noise is passed by this many of its standard deviations.
 const NOISE_FACTOR: f64 = 6.0;
-/// The record is searched this many of the cask file's fall times back, so that a wrong height is seen as such.
+/// A level this share of g cos φ off the one before the release, or so many of the levels' own scatters, is not yet the rest: the cask is
+/// still hoisted or swings.
+const UNREST: f64 = 0.02;
+const UNREST_SCATTERS: f64 = 5.0;
+/// The release is sought this many of the cask file's fall times back, so that a wrong height is seen as such.
 const REACH: f64 = 3.0;
 /// A shorter stretch than this share of the cask file's fall time is no fall: it would mean a hundredth of its height.
 const SHORTEST: f64 = 0.1;
@@ -33,7 +37,7 @@ pub struct FreeFall {
     pub end_s: f64,
     /// Rest level less free-fall level, m/s².
     pub rest_m_s2: f64,
-    /// Standard uncertainty of it, from the scatter of the blocks it is taken from, m/s².
+    /// Standard uncertainty of it, from the scatter of the levels of rest and fall, m/s².
     pub u_rest_m_s2: f64,
 }
 
@@ -49,19 +53,18 @@ pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeF
     };
     let weight_m_s2 = drop.gravity_m_s2 * lean;
     let fall_s = drop.impact_velocity_m_s / drop.gravity_m_s2;
-    let reach_s = REACH * fall_s + 0.5;
-    let from = channel.index_at(contact_s - reach_s);
-    let record = Record::new(channel, from..channel.index_at(contact_s), weight_m_s2)?;
-    let contact = (contact_s - channel.time_s(from)) * channel.sample_rate_hz;
+    let record = Record::new(channel, 0..channel.index_at(contact_s), weight_m_s2)?;
+    let contact = (contact_s - channel.time_s(0)) * channel.sample_rate_hz;
+    let from = channel.index_at(contact_s - REACH * fall_s - 0.5) / record.size;
     record
-        .steps()
+        .steps(from)
         .into_iter()
         .filter_map(|block| record.fall_from(block, contact))
         .filter(|fall| fall.length() > (SHORTEST * fall_s).max(0.05) * channel.sample_rate_hz)
         .max_by(|a, b| a.length().total_cmp(&b.length()))
         .map(|fall| FreeFall {
-            release_s: channel.time_s(from) + fall.start / channel.sample_rate_hz,
-            end_s: channel.time_s(from) + fall.end / channel.sample_rate_hz,
+            release_s: channel.time_s(0) + fall.start / channel.sample_rate_hz,
+            end_s: channel.time_s(0) + fall.end / channel.sample_rate_hz,
             rest_m_s2: fall.rest_m_s2,
             u_rest_m_s2: fall.u_rest_m_s2,
         })
@@ -95,7 +98,7 @@ impl<'a> Record<'a> {
     /// `None` where the record is shorter than two levels, or the axis lies too flat to feel the weight.
     fn new(channel: &'a Channel, samples: Range<usize>, weight_m_s2: f64) -> Option<Self> {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
-        let size = ((BLOCK_S * channel.sample_rate_hz) as usize).max(1);
+        let size = ((BLOCK_S * channel.sample_rate_hz).round() as usize).max(1);
         let mut blocks = block_means_m_s2(channel, samples.clone(), size);
         blocks.truncate(samples.len() / size);
         let is_long = blocks.len() > 2 * LEVEL + 2 && weight_m_s2 > 0.5;
@@ -114,11 +117,11 @@ impl<'a> Record<'a> {
         robust::median(&mut blocks.iter().copied().filter(|b| b.is_finite()).collect::<Vec<_>>())
     }
 
-    /// The blocks in which a level gives way to one lower by about the weight, each step once.
-    fn steps(&self) -> Vec<usize> {
+    /// The blocks after `from` in which a level gives way to one lower by about the weight, each step once.
+    fn steps(&self, from: usize) -> Vec<usize> {
         let height = |i: usize| self.level(i - LEVEL, i) - self.level(i + 1, i + 1 + LEVEL);
         let heights: Vec<(usize, f64)> =
-            (LEVEL..self.blocks.len() - LEVEL).map(|i| (i, height(i) / self.weight_m_s2)).collect();
+            (from.max(LEVEL)..self.blocks.len() - LEVEL).map(|i| (i, height(i) / self.weight_m_s2)).collect();
         heights
             .chunk_by(|a, b| STEP.contains(&a.1) == STEP.contains(&b.1))
             .filter(|run| STEP.contains(&run[0].1))
@@ -132,10 +135,13 @@ impl<'a> Record<'a> {
         let end = self.departure(step, near);
         // The level of the whole fall is better known than that of its beginning.
         let falling = self.level(step + 1, end.unwrap_or(self.blocks.len()));
-        let rest = self.level(step - LEVEL, step) - falling;
         let departure = self.departure(step, falling);
         let end = departure.map_or(contact, |block| self.touch(step, block, falling));
-        let u_rest = self.u_level(step + 2, departure.unwrap_or(self.blocks.len()).saturating_sub(1));
+        let of_fall = self.levels(step + 2..departure.unwrap_or(self.blocks.len()).saturating_sub(1));
+        let at_rest = self.calm_before(step, &of_fall);
+        let rest = robust::mean_and_rms(&at_rest).0 - falling;
+        let u_falling = self.u_mean(&of_fall, TOUCH * self.weight_m_s2);
+        let u_rest = u_falling.hypot(self.u_mean(&at_rest, robust::mean_and_rms(&of_fall).1));
         if !STEP.contains(&(rest / self.weight_m_s2)) || rest < CLEAR * u_rest {
             return None;
         }
@@ -155,18 +161,35 @@ impl<'a> Record<'a> {
         if least.is_finite() { least } else { 0.0 }
     }
 
-    /// Standard uncertainty of a level, m/s²: the scatter of such levels over the fall `from..to`, which holds noise of every colour.
-    fn u_level(&self, from: usize, to: usize) -> f64 {
-        let levels: Vec<f64> = (from..to.saturating_sub(LEVEL))
-            .step_by(LEVEL)
-            .map(|i| self.level(i, i + LEVEL))
-            .filter(|level| level.is_finite())
-            .collect();
-        // A scatter over n levels is known to 1/√(2n) of itself: the few of a short fall are given that margin twice.
-        let margin = 1.0 + (2.0 / as_f64(levels.len().max(1))).sqrt();
-        let scatter_m_s2 =
-            if levels.len() > 1 { robust::mean_and_rms(&levels).1 } else { TOUCH * self.weight_m_s2 };
-        margin * scatter_m_s2.hypot(self.converter_step() / 12.0_f64.sqrt())
+    /// Means of [`LEVEL`] blocks each, from the end of `blocks` back, m/s².
+    fn levels(&self, blocks: Range<usize>) -> Vec<f64> {
+        let blocks = self.blocks.get(blocks).unwrap_or_default();
+        blocks.rchunks_exact(LEVEL).map(|of| robust::mean_and_rms(of).0).filter(|l| l.is_finite()).collect()
+    }
+
+    /// The levels of the rest before a step, back to where the cask was not yet at rest; `of_fall` tell how levels scatter.
+    fn calm_before(&self, step: usize, of_fall: &[f64]) -> Vec<f64> {
+        let scatter_m_s2 = robust::mean_and_rms(of_fall).1.hypot(self.converter_step());
+        let most_m_s2 = (UNREST * self.weight_m_s2).max(UNREST_SCATTERS * scatter_m_s2);
+        let levels = self.levels(0..step.saturating_sub(1));
+        let Some(&last) = levels.first() else { return vec![f64::NAN] };
+        levels.into_iter().take_while(|level| (level - last).abs() <= most_m_s2).collect()
+    }
+
+    /// Standard uncertainty of the mean of levels, m/s²: of their scatter as if each knew nothing of the others, and of what their halves
+    /// differ by, which holds noise of every colour; a single level has the scatter given.
+    fn u_mean(&self, levels: &[f64], of_one_m_s2: f64) -> f64 {
+        let n = as_f64(levels.len().max(1));
+        let (earlier, later) = levels.split_at(levels.len() / 2);
+        let mean = |levels: &[f64]| robust::mean_and_rms(levels).0;
+        let (scatter_m_s2, drift_m_s2) = if levels.len() > 1 {
+            (robust::mean_and_rms(levels).1 / n.sqrt(), (mean(earlier) - mean(later)).abs() / 2.0)
+        } else {
+            (of_one_m_s2, 0.0)
+        };
+        // A scatter over n levels is known to 1/√(2n) of itself: few are given that margin twice.
+        let margin = 1.0 + (2.0 / n).sqrt();
+        margin * scatter_m_s2.max(drift_m_s2).hypot(self.converter_step() / 12.0_f64.sqrt())
     }
 
     /// The block from which on the mean over [`SUSTAINED`] blocks lies off the free-fall level; `None` where it holds to the end.
@@ -218,13 +241,7 @@ mod tests {
 
     fn drop() -> Drop {
         // 4 m/s: a fall of 0.4077 s.
-        Drop {
-            height_m: 0.8155,
-            angle_rad: 0.0,
-            impact_velocity_m_s: 4.0,
-            impact_velocity_given: false,
-            gravity_m_s2: 9.81,
-        }
+        Drop { impact_velocity_m_s: 4.0, ..Drop::of_height(0.8155, 0.0) }
     }
 
     /// Noise of ±0.5 m/s² about what `force` says at each time, for 3 s.
@@ -274,8 +291,8 @@ mod tests {
         assert!((fall.end_s - 1.9).abs() < 2.0 / RATE_HZ, "{fall:?}");
         // The medians of blocks of 50 samples of uniform noise lie within 0.2 of the truth.
         assert!((fall.rest_m_s2 - 9.81).abs() < 0.2, "{fall:?}");
-        // A median of 50 uniform samples scatters by 1/(2 √50) = 0.07; two levels of eight of them, known to a third.
-        assert!((0.02..0.08).contains(&fall.u_rest_m_s2), "{fall:?}");
+        // A mean of 50 uniform samples scatters by 0.041, one of eight such by 0.014, and the fall has nine of those; known to a half.
+        assert!((0.003..0.02).contains(&fall.u_rest_m_s2), "{fall:?}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::Basis;
 use super::inputs::Inputs;
-use crate::data::{ClosureKind, Motion};
+use crate::data::{Axis, ClosureKind, Motion, RestLevel};
 
 /// Height of R's corner above the target as it strikes: corner and target are even to some millimetres, m.
 const U_HEIGHT_M: f64 = 0.003;
@@ -19,7 +19,7 @@ pub(super) enum Observable {
     /// The angular impulse about S is Θ ω.
     Turning { u_rad_s: f64 },
     /// A channel at rest reads g cos φ.
-    Rest { channel: usize, name: String, rest_m_s2: f64, u_m_s2: f64 },
+    Rest { channel: usize, name: String, is_axial: bool, rest_m_s2: f64, u_m_s2: f64 },
     /// The fall lasts v0 / g.
     Fall { fall_s: f64 },
 }
@@ -58,18 +58,22 @@ impl Observable {
         match self {
             // z_R = 0   (33)
             Self::Height => motion.second_end_height_m,
-            // ω − ∫(a f_z − b f_x) dt m / Θ = 0   (32)
+            // Δω − ∫(a f_z − b f_x) dt m / Θ = 0   (32)
             Self::Turning { .. } => Some(
-                motion.separation.angular_velocity_rad_s - motion.angular_impulse_m2_s / inputs.inertia_m2?,
+                motion.separation.angular_velocity_rad_s
+                    - motion.contact.angular_velocity_rad_s
+                    - motion.angular_impulse_m2_s / inputs.inertia_m2?,
             ),
-            // (1 + e) f_rest − χ g sin φ = g cos φ   (34)
-            Self::Rest { channel, rest_m_s2, .. } => {
-                let (sin, cos) = setup.angle_rad.sin_cos();
+            // (1 + e) f_rest − χ g sin φ' = g cos φ' across the axis, the other way round along it; φ' before the fall   (34)
+            Self::Rest { channel, is_axial, rest_m_s2, .. } => {
+                let fall_s = -motion.contact.vertical_velocity_m_s / g;
+                let (sin, cos) = (setup.angle_rad + setup.angular_velocity_rad_s * fall_s).sin_cos();
+                let (own, other) = if *is_axial { (sin, cos) } else { (cos, sin) };
                 let (scale, cross) = (inputs.scales.get(*channel)?, inputs.crosses.get(*channel)?);
-                Some((1.0 + scale) * rest_m_s2 - cross * g * sin - g * cos)
+                Some((1.0 + scale) * rest_m_s2 - cross * g * other - g * own)
             }
-            // g t = v0   (35)
-            Self::Fall { fall_s } => Some(g * fall_s * setup.second_s - setup.impact_velocity_m_s),
+            // g t = −ż_S   (35)
+            Self::Fall { fall_s } => Some(g * fall_s * setup.second_s + motion.contact.vertical_velocity_m_s),
         }
     }
 
@@ -96,7 +100,10 @@ impl Observable {
             Self::Turning { .. } => {
                 format!("{:+.1} % of ω", 100.0 * miss / motion.separation.angular_velocity_rad_s.abs())
             }
-            Self::Rest { rest_m_s2, .. } => format!("{:+.1} % of g cos φ", 100.0 * miss / (rest_m_s2 - miss)),
+            Self::Rest { is_axial, rest_m_s2, .. } => {
+                let of = if *is_axial { "sin" } else { "cos" };
+                format!("{:+.1} % of g {of} φ", 100.0 * miss / (rest_m_s2 - miss))
+            }
             Self::Fall { fall_s } => {
                 format!("{:+.1} % of v0", 100.0 * miss / (measured.setup.gravity_m_s2 * fall_s - miss))
             }
@@ -116,8 +123,9 @@ pub(super) fn observables(measured: &Basis, motion: &Motion) -> Vec<Observable> 
     }
     for rest in measured.rests {
         if let Some(channel) = measured.signals.iter().position(|s| s.name == rest.channel) {
-            let name = rest.channel.clone();
-            all.push(Observable::Rest { channel, name, rest_m_s2: rest.rest_m_s2, u_m_s2: rest.u_m_s2 });
+            let (name, is_axial) = (rest.channel.clone(), measured.signals[channel].axis == Axis::Axial);
+            let RestLevel { rest_m_s2, u_m_s2, .. } = *rest;
+            all.push(Observable::Rest { channel, name, is_axial, rest_m_s2, u_m_s2 });
         }
     }
     if let Some(fall_s) = measured.fall_s {

@@ -1,7 +1,10 @@
 //! The uncertain inputs of the reconstruction, each with its standard uncertainty, and the reconstruction's inputs with them moved.
 
 use super::Basis;
-use crate::data::{At, AxialClosure, Axis, Events, FlightFit, MOST_LOST_M_S, Motion, Setup, Signal, StoodIn};
+use crate::data::{
+    AssumedFriction, At, AxialClosure, Axis, Events, FlightFit, MOST_LOST_M_S, Motion, MotionState, Setup,
+    Signal, StoodIn,
+};
 use crate::numerics::noise::integral_uncertainty_by;
 
 /// Error of a velocity step from a mode of which the flight shows one period, as a share of the mode's amplitude; twice the periods leave half
@@ -11,6 +14,12 @@ const RINGING_SHARE: f64 = 0.005;
 /// Standard uncertainty of the velocity that a gap in the contact took, over v0 times the gap's share of the contact. A pulse that throws L back
 /// as fast as it came changes its velocity by 2 v0: a gap of a tenth in the middle of such a half sine takes 0.1 π v0, one at its end next to none.
 const GAP_SHARE: f64 = 3.0;
+
+/// Standard uncertainty of the roll after a first contact, rad/s: edges tilted by 1 to 5° leave 20 to 180°/s, hooks let go of most casks level.
+const ROLL_RAD_S: f64 = 0.35;
+
+/// Share of cot φ that a friction reaches at most.
+const MOST_FRICTION: f64 = 0.9;
 
 /// One set of inputs.
 #[derive(Debug, Clone)]
@@ -24,8 +33,6 @@ pub(super) struct Inputs {
     pub crosses: Vec<f64>,
     /// Θ / m, m².
     pub inertia_m2: Option<f64>,
-    /// Part of the way from the stated contact law to the other one.
-    pub law_share: f64,
     /// The made-up channel of an end without one, and the channel that it is made of, whose errors it has.
     stood_in: Option<StoodIn>,
 }
@@ -36,7 +43,8 @@ pub(super) struct UncertainInput {
     pub name: String,
     /// Its standard uncertainty, as a person reads it.
     pub size: String,
-    change: Change,
+    /// More than one where channels share it.
+    changes: Vec<Change>,
 }
 
 /// An event whose time is uncertain.
@@ -69,8 +77,12 @@ enum Change {
     Event { event: Event, by_s: f64 },
     CentreOfGravity { by_m: f64 },
     Inertia { share: f64 },
-    Law { share: f64 },
+    Friction { ratio: f64, by: f64 },
     Clock { share: f64 },
+    Length { by_m: f64 },
+    Section { by_m: f64 },
+    AngularVelocity { by_rad_s: f64 },
+    HorizontalVelocity { by_m_s: f64 },
 }
 
 impl Inputs {
@@ -83,7 +95,6 @@ impl Inputs {
             scales: vec![0.0; channels],
             crosses: vec![0.0; channels],
             inertia_m2: measured.inertia_m2,
-            law_share: 0.0,
             stood_in: measured.stood_in,
         }
     }
@@ -92,8 +103,8 @@ impl Inputs {
     pub fn moved(&self, inputs: &[UncertainInput], by_u: &[f64]) -> Self {
         let mut moved = self.clone();
         for (input, &by) in inputs.iter().zip(by_u) {
-            if by != 0.0 {
-                moved.apply(self, input.change, by);
+            for change in input.changes.iter().filter(|_| by != 0.0) {
+                moved.apply(self, *change, by);
             }
         }
         moved
@@ -129,8 +140,24 @@ impl Inputs {
             }
             Change::CentreOfGravity { by_m } => self.setup.cog_m += by * by_m,
             Change::Inertia { share } => self.inertia_m2 = self.inertia_m2.map(|i| i * (1.0 + by * share)),
-            Change::Law { share } => self.law_share += by * share,
+            Change::Friction { ratio, by: u } => {
+                // A force along the axis' own slope and no other has none across it: f_η says nothing of it.
+                let most = MOST_FRICTION / self.setup.angle_rad.tan();
+                self.setup.axial = AxialClosure::Sliding { friction: (ratio + by * u).min(most) };
+            }
             Change::Clock { share } => self.setup.second_s += by * share,
+            Change::Length { by_m } => self.setup.length_m += by * by_m,
+            Change::Section { by_m } => self.setup.height_m += by * by_m,
+            Change::AngularVelocity { by_rad_s } => {
+                self.setup.angular_velocity_rad_s += by * by_rad_s;
+                if self.setup.is_of_fall {
+                    // ż_S is that of the fall: L strikes ω a more slowly   (3)
+                    let (sin, cos) = self.setup.angle_rad.sin_cos();
+                    let a_m = self.setup.cog_m * cos - self.setup.height_m / 2.0 * sin;
+                    self.setup.impact_velocity_m_s -= by * by_rad_s * a_m;
+                }
+            }
+            Change::HorizontalVelocity { by_m_s } => self.setup.horizontal_velocity_m_s += by * by_m_s,
         }
     }
 }
@@ -143,10 +170,12 @@ pub(super) fn inputs(measured: &Basis, motion: &Motion) -> Vec<UncertainInput> {
             of_channel(&mut all, measured, motion, channel);
         }
     }
+    all.extend(shared_calibrations(measured));
+    all.extend(roll(measured));
     // Half of a 95 % half-width is a standard uncertainty.
     let known = &measured.tolerances;
     let mut add = |name: &str, size: String, change: Change| {
-        all.push(UncertainInput { name: name.into(), size, change });
+        all.push(UncertainInput { name: name.into(), size, changes: vec![change] });
     };
     let by_rad = known.angle_rad / 2.0;
     add("drop angle", format!("{:.2}°", by_rad.to_degrees()), Change::Angle { by_rad });
@@ -167,11 +196,22 @@ pub(super) fn inputs(measured: &Basis, motion: &Motion) -> Vec<UncertainInput> {
         let share = known.inertia / 2.0;
         add("inertia", percent(share), Change::Inertia { share });
     }
-    if measured.rival_law.is_some() {
-        let share = known.friction / 2.0;
-        let size = format!("{:.0} % of rough to smooth", 100.0 * share);
-        add("contact law", size, Change::Law { share });
+    if let Some(AssumedFriction { ratio, u }) = measured.friction {
+        add("friction of the first contact", format!("{u:.3}"), Change::Friction { ratio, by: u });
     }
+    let by_m = known.length * measured.setup.length_m / 2.0;
+    add("length", format!("{:.0} mm", 1e3 * by_m), Change::Length { by_m });
+    let by_m = known.height * measured.setup.height_m / 2.0;
+    add("section", format!("{:.0} mm", 1e3 * by_m), Change::Section { by_m });
+    let by_rad_s = known.angular_velocity_rad_s / 2.0;
+    let size = format!("{:.2}°/s", by_rad_s.to_degrees());
+    add("rotation at first contact", size, Change::AngularVelocity { by_rad_s });
+    let by_m_s = known.horizontal_velocity_m_s / 2.0;
+    add(
+        "sideways velocity at first contact",
+        format!("{by_m_s:.3} m/s"),
+        Change::HorizontalVelocity { by_m_s },
+    );
     let share = known.clock / 2.0;
     add("recorder's clock", format!("{:.3} %", 100.0 * share), Change::Clock { share });
     all
@@ -181,6 +221,45 @@ fn percent(share: f64) -> String {
     format!("{:.2} %", 100.0 * share)
 }
 
+/// Standard uncertainty of a channel's scale.
+fn u_scale(measured: &Basis, channel: usize) -> f64 {
+    let own = measured.spec(channel).and_then(|spec| spec.calibration);
+    own.unwrap_or(measured.tolerances.calibration) / 2.0
+}
+
+/// The scales of channels that were calibrated with the same thing: one input each, since they are off together.
+fn shared_calibrations(measured: &Basis) -> Vec<UncertainInput> {
+    let mut shared: Vec<UncertainInput> = Vec::new();
+    for channel in 0..measured.flight.plateaus.len().min(measured.signals.len()) {
+        let Some(reference) = measured.spec(channel).and_then(|spec| spec.reference.as_ref()) else {
+            continue;
+        };
+        let share = u_scale(measured, channel);
+        let (name, change) = (format!("calibration by {reference}"), Change::Scale { channel, share });
+        match shared.iter_mut().find(|input| input.name == name) {
+            Some(input) => input.changes.push(change),
+            None => shared.push(UncertainInput { name, size: percent(share), changes: vec![change] }),
+        }
+    }
+    shared
+}
+
+/// The roll that a tilted edge gives the cask, where channels sit off the plane of the drop: each reads roll × place.
+fn roll(measured: &Basis) -> Option<UncertainInput> {
+    let at = |channel: usize| measured.spec(channel).map_or(0.0, |spec| spec.lateral_m);
+    let is_beside =
+        |&channel: &usize| measured.signals[channel].axis == Axis::Transverse && at(channel) != 0.0;
+    let beside = (0..measured.flight.plateaus.len().min(measured.signals.len())).filter(is_beside);
+    let step = |channel| Change::Step { channel, add_m_s: ROLL_RAD_S * at(channel) };
+    let changes: Vec<Change> = beside.map(step).collect();
+    let size = format!("{:.0}°/s", ROLL_RAD_S.to_degrees());
+    (!changes.is_empty()).then(|| UncertainInput {
+        name: "roll after the first contact".into(),
+        size,
+        changes,
+    })
+}
+
 /// Step, calibration, cross axis and position of one channel.
 fn of_channel(all: &mut Vec<UncertainInput>, measured: &Basis, motion: &Motion, channel: usize) {
     let (signal, known) = (&measured.signals[channel], &measured.tolerances);
@@ -188,7 +267,7 @@ fn of_channel(all: &mut Vec<UncertainInput>, measured: &Basis, motion: &Motion, 
         return;
     }
     let mut add = |name: &str, size: String, change: Change| {
-        all.push(UncertainInput { name: format!("{name} of {}", signal.name), size, change });
+        all.push(UncertainInput { name: format!("{name} of {}", signal.name), size, changes: vec![change] });
     };
     let is_stood_in = measured.stood_in.is_some_and(|s| s.channel == channel);
     let u_m_s =
@@ -198,10 +277,13 @@ fn of_channel(all: &mut Vec<UncertainInput>, measured: &Basis, motion: &Motion, 
         // Its sensor's errors are those of the channel that it is made of.
         return;
     }
-    let share = known.calibration / 2.0;
-    add("calibration", percent(share), Change::Scale { channel, share });
-    let (transverse_m_s, axial_m_s) = steps_of_body_m_s(measured.setup, motion);
-    let omega = motion.separation.angular_velocity_rad_s;
+    if measured.spec(channel).is_none_or(|spec| spec.reference.is_none()) {
+        let share = u_scale(measured, channel);
+        add("calibration", percent(share), Change::Scale { channel, share });
+    }
+    let (before, after) = (body_m_s(&motion.contact), body_m_s(&motion.separation));
+    let (transverse_m_s, axial_m_s) = (after.0 - before.0, after.1 - before.1);
+    let omega = motion.separation.angular_velocity_rad_s - motion.contact.angular_velocity_rad_s;
     let is_transverse = signal.axis == Axis::Transverse;
     let other_m_s = if is_transverse {
         axial_m_s
@@ -262,13 +344,9 @@ pub(super) fn has_lost_step(measured: &Basis) -> bool {
     measured.signals.iter().any(|signal| lost_m_s(measured, signal) > MOST_LOST_M_S)
 }
 
-/// Change of the body-axis velocities of S over the contact, m/s: transverse, axial.
-fn steps_of_body_m_s(setup: &Setup, motion: &Motion) -> (f64, f64) {
-    let (sin_0, cos_0) = setup.angle_rad.sin_cos();
-    let after = &motion.separation;
-    let (sin, cos) = after.angle_rad.sin_cos();
-    let transverse_m_s = after.vertical_velocity_m_s * cos - after.horizontal_velocity_m_s * sin;
-    let axial_m_s = after.horizontal_velocity_m_s * cos + after.vertical_velocity_m_s * sin;
-    let before_m_s = setup.impact_velocity_m_s;
-    (transverse_m_s + before_m_s * cos_0, axial_m_s + before_m_s * sin_0)
+/// Velocity of S along the body axes, m/s: transverse, axial.
+fn body_m_s(state: &MotionState) -> (f64, f64) {
+    let (sin, cos) = state.angle_rad.sin_cos();
+    let (along_m_s, up_m_s) = (state.horizontal_velocity_m_s, state.vertical_velocity_m_s);
+    (up_m_s * cos - along_m_s * sin, along_m_s * cos + up_m_s * sin)
 }

@@ -1,18 +1,18 @@
 //! What each rung of the reconstruction says, to the simplest one that explains the recording.
 
-use super::inputs::has_lost_step;
+use super::inputs::{Inputs, has_lost_step};
 use super::propagate::Model;
 use super::{Basis, COVERAGE, Reconstruct};
 use crate::data::{
-    Axis, ChannelReading, Closure, End, Estimate, FlightFit, MET_U, Quantities, ReconstructionCandidate,
-    ReconstructionChoice, ReconstructionRung,
+    Axis, ChannelReading, Closure, End, Estimate, Events, FlightFit, MET_U, Quantities,
+    ReconstructionCandidate, ReconstructionChoice, ReconstructionRung, Setup,
 };
 
 /// Where the closures tell lost velocity steps they test nothing, and the intervals of the joint fit are widened by this: with it they hold 19 of 20
 /// simulated drops.
 const UNTESTED: f64 = 2.0;
 
-/// The next rung is taken where it narrows an interval to less than this share.
+/// A higher rung is taken where it narrows an interval to less than this share.
 const NARROWED: f64 = 0.75;
 
 /// A rung with everything that it says.
@@ -21,8 +21,22 @@ struct RungStep {
     quantities: Quantities,
 }
 
-/// Every rung and the one taken: the simplest whose residuals are within what noise and tolerances explain, and whose answer the next one
-/// would not change by more than its interval.
+/// What the rung taken says, and the inputs that it says it with.
+pub struct RungTaken {
+    /// The numbers.
+    pub quantities: Quantities,
+    /// The rung, and the others.
+    pub choice: ReconstructionChoice,
+    /// Velocity steps as the rung has them.
+    pub flight: FlightFit,
+    /// Times as the rung has them.
+    pub events: Events,
+    /// Geometry, initial motion and friction as the rung has them.
+    pub setup: Setup,
+}
+
+/// Every rung and the one taken: the simplest whose residuals are within what noise and tolerances explain, and whose answer no higher one
+/// would change by more than its interval or know much better.
 ///
 /// `plain` is the flight fit without modes and drift. `None` where the motion cannot be had.
 #[must_use]
@@ -31,7 +45,7 @@ pub fn ladder(
     plain: Option<&FlightFit>,
     reading: Option<ChannelReading>,
     reconstruct: Reconstruct,
-) -> Option<(Quantities, ReconstructionChoice)> {
+) -> Option<RungTaken> {
     let model = Model::new(measured, reconstruct)?;
     let flight = model.by_stated_inputs()?;
     let joint = model.joint();
@@ -53,17 +67,18 @@ pub fn ladder(
     let taken = taken(&steps);
     let reason = reason(&steps, taken);
     let quantities = steps[taken].quantities.clone();
-    Some((
-        quantities,
-        ReconstructionChoice {
-            rung: steps[taken].candidate.rung,
-            reason,
-            chi_square: joint.as_ref().map(|fit| (fit.chi_square, closures.len())),
-            adjustments: joint.as_ref().map_or_else(Vec::new, |fit| model.adjustments(fit)),
-            closures,
-            candidates: steps.into_iter().map(|s| s.candidate).collect(),
-        },
-    ))
+    let rung = steps[taken].candidate.rung;
+    let fitted = joint.as_ref().filter(|_| rung == ReconstructionRung::Joint);
+    let Inputs { flight, events, setup, .. } = model.inputs_of(fitted);
+    let choice = ReconstructionChoice {
+        rung,
+        reason,
+        chi_square: joint.as_ref().map(|fit| (fit.chi_square, closures.len())),
+        adjustments: joint.as_ref().map_or_else(Vec::new, |fit| model.adjustments(fit)),
+        closures,
+        candidates: steps.into_iter().map(|s| s.candidate).collect(),
+    };
+    Some(RungTaken { quantities, choice, flight, events, setup })
 }
 
 fn step(rung: ReconstructionRung, quantities: Quantities, consistent: bool, residual: String) -> RungStep {
@@ -95,9 +110,18 @@ fn by_channels(
         let by_scale = known.calibration.hypot(known.clock) / 2.0 * (value_m_s + v0_m_s);
         left_m_s.hypot(by_scale).hypot(known.impact_velocity / 2.0 * v0_m_s)
     };
-    let speed =
-        reading.second_m_s.map(|v| Estimate::new(v.abs(), COVERAGE * u_m_s(v, second_left_m_s), "m/s"));
-    let u95_m_s = COVERAGE * u_m_s(reading.first_m_s, first_left_m_s);
+    // A sensor is not the corner, turns with the cask, and reads nothing of gravity: what that comes to is told by the planar motion.
+    let left_out_m_s = |value_m_s: f64, of: Option<Estimate>| of.map_or(0.0, |of| value_m_s - of.value);
+    let speed_left_out_m_s = reading.second_m_s.map_or(0.0, |v| left_out_m_s(v.abs(), motion.speed));
+    let first_left_out_m_s = left_out_m_s(reading.first_m_s, Some(motion.rebound_velocity));
+    let u_speed_m_s = reading.second_m_s.map_or(0.0, |v| u_m_s(v, second_left_m_s));
+    let u_first_m_s = u_m_s(reading.first_m_s, first_left_m_s);
+    let is_explained =
+        speed_left_out_m_s.abs() <= u_speed_m_s && first_left_out_m_s.abs() <= u_first_m_s && explains(plain);
+    let speed = reading
+        .second_m_s
+        .map(|v| Estimate::new(v.abs(), COVERAGE * u_speed_m_s.hypot(speed_left_out_m_s), "m/s"));
+    let u95_m_s = COVERAGE * u_first_m_s.hypot(first_left_out_m_s);
     let quantities = Quantities {
         speed,
         vertical_velocity: reading.second_m_s.and(speed).map(|s| Estimate { value: -s.value, ..s }),
@@ -105,8 +129,12 @@ fn by_channels(
         k: Estimate::new(reading.first_m_s / v0_m_s, u95_m_s / v0_m_s, "1"),
         ..motion.clone()
     };
-    let residual = format!("{:.2} m/s of ringing in the flight", first_left_m_s.max(second_left_m_s));
-    step(ReconstructionRung::Channels, quantities, explains(plain), residual)
+    let residual = format!(
+        "{:.2} m/s of ringing in the flight, {:.2} m/s of rotation and gravity left out",
+        first_left_m_s.max(second_left_m_s),
+        speed_left_out_m_s.abs().max(first_left_out_m_s.abs())
+    );
+    step(ReconstructionRung::Channels, quantities, is_explained, residual)
 }
 
 /// (b) Planar motion, each velocity step the mean over the flight.
@@ -183,13 +211,13 @@ fn worst(closures: &[Closure]) -> String {
     )
 }
 
-/// The first rung that is consistent and that the next one would neither move out of the narrower of both intervals nor know much better;
-/// else the last.
+/// The first rung that is consistent and that no higher one would move out of the narrower of both intervals or know much better; else the
+/// last.
 fn taken(steps: &[RungStep]) -> usize {
     (0..steps.len())
         .find(|&i| {
             let own = &steps[i].candidate;
-            own.consistent && steps.get(i + 1).is_none_or(|next| stays(own, &next.candidate))
+            own.consistent && steps[i + 1..].iter().all(|higher| stays(own, &higher.candidate))
         })
         .unwrap_or(steps.len() - 1)
 }
@@ -206,9 +234,9 @@ fn stays(own: &ReconstructionCandidate, next: &ReconstructionCandidate) -> bool 
 fn words(rung: ReconstructionRung) -> &'static str {
     match rung {
         ReconstructionRung::Channels => "each channel by itself",
-        ReconstructionRung::Planar => "planar motion with the mean of the flight",
-        ReconstructionRung::Flight => "planar motion with modes and drift fitted to the flight",
-        ReconstructionRung::Joint => "joint fit of all inputs within their tolerances",
+        ReconstructionRung::Planar => "the planar motion with the mean of the flight",
+        ReconstructionRung::Flight => "the planar motion with modes and drift fitted to the flight",
+        ReconstructionRung::Joint => "the joint fit of all inputs within their tolerances",
     }
 }
 
@@ -219,7 +247,7 @@ fn reason(steps: &[RungStep], taken: usize) -> String {
     if let Some(below) = taken.checked_sub(1).map(|i| &steps[i].candidate) {
         let why = if below.consistent {
             format!(
-                "it changes what the {} says by more than its interval, or knows it better by a quarter",
+                "it changes what {} says by more than its interval, or knows it better by a quarter",
                 words(below.rung)
             )
         } else {
@@ -232,7 +260,7 @@ fn reason(steps: &[RungStep], taken: usize) -> String {
         let speed =
             change(own.speed, next.speed).map_or(String::new(), |d| format!("the speed by {d:+.2} m/s and "));
         let k = change(own.k, next.k).map_or(String::new(), |d| format!("k by {d:+.3}"));
-        said = format!("{said}; the {} would change {speed}{k}, within the interval", words(next.rung));
+        said = format!("{said}; {} would change {speed}{k}, within the interval", words(next.rung));
     }
     said + "."
 }

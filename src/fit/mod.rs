@@ -5,9 +5,11 @@ mod inputs;
 mod ladder;
 mod propagate;
 
-use crate::data::{Events, FlightFit, Motion, RestLevel, RivalLaw, Setup, Signal, StoodIn, Tolerances};
+use crate::data::{
+    AssumedFriction, ChannelSpec, Events, FlightFit, Motion, RestLevel, Setup, Signal, StoodIn, Tolerances,
+};
 
-pub use ladder::ladder;
+pub use ladder::{RungTaken, ladder};
 pub use propagate::{quantities, spread_by_draws};
 
 /// Coverage factor of a 95 % interval (GUM, 6.3.3).
@@ -27,8 +29,10 @@ pub struct Basis<'a> {
     pub events: &'a Events,
     /// Geometry, initial motion and contact law.
     pub setup: &'a Setup,
-    /// A contact law that the recording does not exclude either, where no axial channel tests it.
-    pub rival_law: Option<RivalLaw>,
+    /// The friction of the first contact, where no axial channel measures it.
+    pub friction: Option<AssumedFriction>,
+    /// What the cask file says of the channels.
+    pub specs: &'a [ChannelSpec],
     /// How well the stated things are known.
     pub tolerances: Tolerances,
     /// Θ / m, m²; `None` where the cask file describes a thin rod only, which no cask is.
@@ -39,4 +43,12 @@ pub struct Basis<'a> {
     pub fall_s: Option<f64>,
     /// The channel that stands in for an end without one.
     pub stood_in: Option<StoodIn>,
+}
+
+impl Basis<'_> {
+    /// What the cask file says of a channel.
+    fn spec(&self, channel: usize) -> Option<&ChannelSpec> {
+        let name = &self.signals.get(channel)?.name;
+        self.specs.iter().find(|spec| spec.name == *name)
+    }
 }

@@ -3,13 +3,13 @@
 use super::closures::{Observable, observables};
 use super::inputs::{Inputs, UncertainInput, inputs};
 use super::{Basis, COVERAGE, Reconstruct};
-use crate::data::{Adjustment, Closure, Contribution, Estimate, Motion, Quantities, RivalLaw};
+use crate::data::{Adjustment, Closure, Contribution, Estimate, Motion, Quantities};
 use crate::numerics::prior_fit::{PriorFit, derivatives, fit};
 use nalgebra::DMatrix;
 use std::sync::{Mutex, PoisonError};
 
 /// Number of quantities followed through the propagation.
-const COUNT: usize = 12;
+const COUNT: usize = 13;
 const IMPACT: usize = 0;
 const DURATION: usize = 1;
 const REBOUND: usize = 2;
@@ -22,6 +22,7 @@ const HORIZONTAL: usize = 8;
 const ANGLE: usize = 9;
 const HEIGHT: usize = 10;
 const SLIP: usize = 11;
+const FRICTION: usize = 12;
 
 /// Slopes hold as far from where they were taken, in standard uncertainties of the inputs: a motion bends so little within them that
 /// results move by 1e-7 of themselves and intervals by 6e-4 at most (fixtures).
@@ -67,8 +68,6 @@ pub(super) struct Model<'a> {
     motion: Motion,
     inputs: Vec<UncertainInput>,
     observables: Vec<Observable>,
-    /// Change of the quantities, then of the observables, from the stated contact law to the rival one: that over a tenth of the way, times ten.
-    law: Option<(Vec<f64>, Vec<f64>)>,
     /// Slopes of the quantities and, below them, of the observables, and where they were asked for.
     known_slopes: Mutex<Vec<(Vec<f64>, DMatrix<f64>)>>,
 }
@@ -79,25 +78,15 @@ impl<'a> Model<'a> {
         let motion = reconstruct(&base.flight, &base.events, &base.setup)?;
         let inputs = inputs(measured, &motion);
         let observables = observables(measured, &motion);
-        let mut model = Self {
+        Some(Self {
             measured,
             reconstruct,
             base,
             motion,
             inputs,
             observables,
-            law: None,
             known_slopes: Mutex::default(),
-        };
-        if let Some(RivalLaw { axial, way }) = measured.rival_law {
-            let mut other = model.base.clone();
-            other.setup.axial = axial;
-            if let (Some(stated), Some(other)) = (model.read(&model.base), model.read(&other)) {
-                let less = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b) / way).collect();
-                model.law = Some((less(&other.0, &stated.0), less(&other.1, &stated.1)));
-            }
-        }
-        Some(model)
+        })
     }
 
     fn follow(&self, inputs: &Inputs) -> Option<Motion> {
@@ -111,16 +100,9 @@ impl<'a> Model<'a> {
         Some((read_off(&motion, inputs), missed.collect::<Option<_>>()?))
     }
 
-    /// The same with the inputs moved by so many standard uncertainties, the contact law among them.
+    /// The same with the inputs moved by so many standard uncertainties.
     fn moved(&self, by_u: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let moved = self.base.moved(&self.inputs, by_u);
-        let (mut values, mut left) = self.read(&moved)?;
-        if let Some(law) = &self.law {
-            let add = |(value, law): (&mut f64, &f64)| *value += moved.law_share * law;
-            values.iter_mut().zip(&law.0).for_each(add);
-            left.iter_mut().zip(&law.1).for_each(add);
-        }
-        Some((values, left))
+        self.read(&self.base.moved(&self.inputs, by_u))
     }
 
     fn values(&self, by_u: &[f64]) -> Option<Vec<f64>> {
@@ -152,6 +134,11 @@ impl<'a> Model<'a> {
 
     fn slopes_of_residuals(&self, at_u: &[f64]) -> Option<DMatrix<f64>> {
         Some(self.slopes(at_u)?.rows(COUNT, self.observables.len()).into_owned())
+    }
+
+    /// The inputs as stated, or as a fit ended with them.
+    pub fn inputs_of(&self, fit: Option<&PriorFit>) -> Inputs {
+        fit.map_or_else(|| self.base.clone(), |fit| self.base.moved(&self.inputs, &fit.unknowns))
     }
 
     /// The inputs fitted to the observables; `None` where there are none or the motion cannot be followed.
@@ -189,6 +176,7 @@ impl<'a> Model<'a> {
             angle: at_slap_down(ANGLE, "deg"),
             second_end_height: at_slap_down(HEIGHT, "m"),
             slip_velocity: estimate(SLIP, "m/s"),
+            friction: estimate(FRICTION, "1"),
             budget: self.budget(&by_datum, struck),
         })
     }
@@ -272,5 +260,6 @@ fn read_off(motion: &Motion, inputs: &Inputs) -> Vec<f64> {
     values[ANGLE] = motion.slap_down.map_or(0.0, |s| s.angle_rad.to_degrees());
     values[HEIGHT] = motion.second_end_height_m.unwrap_or(0.0);
     values[SLIP] = motion.slip_m_s;
+    values[FRICTION] = motion.impulse_ratio;
     values
 }

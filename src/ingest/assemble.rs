@@ -197,6 +197,9 @@ mod tests {
             sample_rate_hz: None,
             time: None,
             coupling: Coupling::Dc,
+            calibration: None,
+            reference: None,
+            lateral_m: 0.0,
         }
     }
 

@@ -128,7 +128,8 @@ pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError
     let drop = drop(&root.required_table("drop")?, &cask)?;
     let contact = contact(&root.table("contact")?)?;
     let filter = filter(&root.table("filter")?)?;
-    let tolerances = tolerance::tolerances(&root.table("tolerance")?)?;
+    let is_block = root.table("cask")?.value("inertia_kg_m2").is_none();
+    let tolerances = tolerance::tolerances(&root.table("tolerance")?, &cask, is_block)?;
     let corrections = tolerance::corrections(&root.table("corrections")?)?;
     let time = root.table("recording")?.text("time")?.map(|time| time.value);
     let channels = channel::channels(&root, &cask)?;
@@ -166,12 +167,11 @@ pub(crate) fn assumed(root: &Section, tables: &[&str]) -> Vec<String> {
 
 /// `[contact]`.
 pub(crate) fn contact(table: &Section) -> Result<Contact, CaskFileError> {
-    const MEND: &str =
-        "friction = \"rough\" (no sliding), \"smooth\" (no friction), or a coefficient such as 0.4";
-    let Some(value) = table.value("friction") else { return Ok(Contact::Rough) };
+    const MEND: &str = "friction = \"rough\" (no sliding), \"smooth\" (no friction), \"unknown\", or a coefficient such as 0.4";
+    let Some(value) = table.value("friction") else { return Ok(Contact::Unknown) };
     if value.get_ref().is_str() {
-        let words = [("rough", Contact::Rough), ("smooth", Contact::Smooth)];
-        return Ok(table.word("friction", &words, MEND)?.unwrap_or(Contact::Rough));
+        let words = [("rough", Contact::Rough), ("smooth", Contact::Smooth), ("unknown", Contact::Unknown)];
+        return Ok(table.word("friction", &words, MEND)?.unwrap_or(Contact::Unknown));
     }
     let coefficient = table.required_number("friction")?;
     if coefficient.value < 0.0 {

@@ -109,13 +109,7 @@ mod tests {
     }
 
     fn judged(choice: &ReconstructionChoice) -> Vec<Finding> {
-        let drop = Drop {
-            height_m: 9.0,
-            angle_rad: 0.2,
-            impact_velocity_m_s: 13.288,
-            impact_velocity_given: false,
-            gravity_m_s2: 9.81,
-        };
+        let drop = Drop { impact_velocity_m_s: 13.288, ..Drop::of_height(9.0, 0.2) };
         let events = Events { release_s: Some(0.5), fall_end_s: Some(1.0), ..Events::default() };
         judge_closures(choice, &drop, &events)
     }

@@ -161,13 +161,7 @@ mod tests {
 
     #[test]
     fn a_first_end_that_the_target_carries_is_told_from_a_zero_shift() {
-        let drop = Drop {
-            height_m: 0.5,
-            angle_rad: 0.1,
-            impact_velocity_m_s: 3.13,
-            impact_velocity_given: false,
-            gravity_m_s2: 9.81,
-        };
+        let drop = Drop { impact_velocity_m_s: 3.13, ..Drop::of_height(0.5, 0.1) };
         let is_carried =
             |first, second| supported(&[signal("A1"), signal("A2")], &flight(first, second), &drop).is_some();
         // Near the corner 8.6 m/s² of g cos φ = 9.76, and −0.43 of that where the step is.

@@ -34,13 +34,7 @@ mod tests {
     use crate::data::{At, What};
 
     fn drop(given: bool) -> Drop {
-        Drop {
-            height_m: 9.0,
-            angle_rad: 0.2,
-            impact_velocity_m_s: 13.288,
-            impact_velocity_given: given,
-            gravity_m_s2: 9.81,
-        }
+        Drop { impact_velocity_m_s: 13.288, impact_velocity_given: given, ..Drop::of_height(9.0, 0.2) }
     }
 
     fn events(release_s: Option<f64>, end_s: f64, contact_s: f64) -> Events {

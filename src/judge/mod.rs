@@ -2,6 +2,7 @@
 
 mod channels;
 mod closures;
+mod copies;
 mod coupling;
 mod fall;
 mod missing;
@@ -15,6 +16,7 @@ mod worth;
 
 pub use channels::{is_cut_off, judge_channels};
 pub use closures::{judge_closures, tells_lost_steps};
+pub use copies::judge_copies;
 pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_several_drops};
 pub use missing::{judge_no_impact, judge_no_slap_down};

@@ -139,13 +139,7 @@ mod tests {
             candidates: vec![],
             strike: None,
         };
-        let drop = Drop {
-            height_m: 9.0,
-            angle_rad,
-            impact_velocity_m_s: 13.3,
-            impact_velocity_given: false,
-            gravity_m_s2: 9.81,
-        };
+        let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, angle_rad) };
         judge_rigid(&signals, &flight, &Tolerances::default(), &drop).and_then(|i| i.channel)
     }
 

@@ -1,7 +1,9 @@
 //! Signals to the curves a person looks at: filtered force, velocity, spectrum.
 
 use super::{Integrated, Velocity};
-use crate::data::{Axis, ChannelCurve, ChannelReading, End, Events, FilterChoice, Setup, Signal};
+use crate::data::{
+    Axis, ChannelCurve, ChannelReading, End, Events, FilterChoice, MotionCurve, Setup, Signal,
+};
 use crate::numerics::filter::{CFC_DESIGN, TWO_PASS_CUTOFF, ZeroPhaseLowPass};
 use crate::numerics::quadrature::running_integral;
 use rayon::prelude::*;
@@ -16,6 +18,8 @@ const QUIET_S: f64 = 0.11;
 const CUTOFF_100_T_HZ: f64 = 200.0;
 /// A cut-off of this over the pulse's length keeps its peak within 1 % (half sine, two-pass Butterworth).
 const PULSE_CUTOFF: f64 = 3.0;
+/// Points of the motion, uniform over contact and flight: 0.1 ms over 60 ms.
+const CURVE_POINTS: u32 = 600;
 
 /// The −3 dB cut-off for the curves, Hz, and where it comes from.
 #[must_use]
@@ -68,12 +72,14 @@ pub fn channel_curves(
         .zip(smooth)
         .map(|(signal, smooth)| {
             let (from, to) = shown(signal, events);
-            // The velocity counts from first contact, where the sensor moves with −v0 along its axis (17).
-            let before_m_s = -setup.impact_velocity_m_s
-                * match signal.axis {
-                    Axis::Transverse => setup.angle_rad.cos(),
-                    Axis::Axial => setup.angle_rad.sin(),
-                };
+            // The velocity counts from first contact, where L moves with −v0 along the sensor's axis (17).
+            let (sin, cos) = setup.angle_rad.sin_cos();
+            let before_m_s = match signal.axis {
+                Axis::Transverse => {
+                    -setup.impact_velocity_m_s * cos - setup.angular_velocity_rad_s * signal.position_m
+                }
+                Axis::Axial => -setup.impact_velocity_m_s * sin + setup.horizontal_velocity_m_s * cos,
+            };
             let raw = signal.force_m_s2[from..to].to_vec();
             let velocity_m_s = running_integral(&raw, 1.0 / signal.sample_rate_hz)
                 .into_iter()
@@ -125,4 +131,36 @@ fn shown_s(signal: &Signal, events: &Events) -> (f64, f64) {
     let first_s = events.first_contact_s().unwrap_or(signal.start_s);
     let last_s = events.slap_down_s().or(events.separation_s().map(|t| t + 0.05)).unwrap_or(first_s + 0.1);
     (first_s - BEFORE_S, last_s + AFTER_S)
+}
+/// The curve on uniform times, linear between the steps it was made with.
+pub(super) fn uniform(curve: &MotionCurve) -> MotionCurve {
+    let (Some(&first_s), Some(&last_s)) = (curve.time_s.first(), curve.time_s.last()) else {
+        return MotionCurve::default();
+    };
+    let time_s: Vec<f64> = (0..=CURVE_POINTS)
+        .map(|i| first_s + (last_s - first_s) * f64::from(i) / f64::from(CURVE_POINTS))
+        .collect();
+    let places: Vec<(usize, f64)> = time_s
+        .iter()
+        .map(|&t| {
+            let next = curve.time_s.partition_point(|&u| u < t).clamp(1, curve.time_s.len() - 1);
+            let (a, b) = (curve.time_s[next - 1], curve.time_s[next]);
+            (next, if b > a { ((t - a) / (b - a)).clamp(0.0, 1.0) } else { 1.0 })
+        })
+        .collect();
+    let on = |values: &[f64]| {
+        let between =
+            |&(next, share): &(usize, f64)| values[next - 1] + share * (values[next] - values[next - 1]);
+        places.iter().map(between).collect()
+    };
+    MotionCurve {
+        angle_rad: on(&curve.angle_rad),
+        angular_velocity_rad_s: on(&curve.angular_velocity_rad_s),
+        first_end_vertical_m_s: on(&curve.first_end_vertical_m_s),
+        second_end_vertical_m_s: on(&curve.second_end_vertical_m_s),
+        second_end_horizontal_m_s: on(&curve.second_end_horizontal_m_s),
+        first_end_height_m: on(&curve.first_end_height_m),
+        second_end_height_m: on(&curve.second_end_height_m),
+        time_s,
+    }
 }

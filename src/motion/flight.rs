@@ -47,10 +47,15 @@ const CLEAR_PERIODS: f64 = 1.5;
 const CLEAR_RESIDUAL: f64 = 3.0;
 /// No cask bends more slowly, Hz.
 const LOWEST_HZ: f64 = 15.0;
+/// Modes and drift that move no velocity step by this share of the largest one, and leave no more of their own behind, are left out: a tenth
+/// of what the usual calibration leaves of it.
+const IMMATERIAL: f64 = 1e-3;
+/// What the velocities do anyway, in standard deviations of their integrated noise.
+const NOISE_LEFT: f64 = 1.5;
 /// A candidate this close in BIC to the best cannot be told from it (Kass & Raftery 1995: above 10 is very strong).
 const INDISTINCT: f64 = 10.0;
 
-/// Fits all velocities over the window, the most probable fit first; empty where it is too short or nothing can be fitted.
+/// Fits all velocities over the window, the most probable fit first, or one that does as well with less; empty where it is too short or nothing can be fitted.
 ///
 /// Velocity v_j(t) = p_j + d_j t + Σ_m e^(−ζωt)(A cos ωt + B sin ωt)   (20), modes common to all channels, their phases free or those that
 /// the contact force gives them; their number and whether there is a drift are decided by the Bayesian information criterion (21).
@@ -72,7 +77,24 @@ pub fn fit_flights(
     let mut scored: Vec<(f64, Fit)> =
         fits.into_iter().map(|f| (f.bic(&series, richest) + improbability(peaks_m_s2, &f), f)).collect();
     scored.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let suffices = |(_, fit): &&(f64, Fit)| does_as_well(&series, fit, &scored[0].1);
+    let fewest = scored.iter().filter(suffices).map(|(_, fit)| fit.parameters).min();
+    let simplest = scored.iter().position(|of| Some(of.1.parameters) == fewest && suffices(&of)).unwrap_or(0);
+    scored[..=simplest].rotate_right(1);
     (0..scored.len().min(MOST_FITS)).map(|i| described(signals, &cut, &scored, i)).collect()
+}
+
+/// Whether a fit gives the velocity steps of the best one, and leaves nothing that matters.
+fn does_as_well(series: &[Series], fit: &Fit, best: &Fit) -> bool {
+    let largest_m_s = best.series.iter().map(|f| f.plateau.abs()).fold(0.0, f64::max);
+    let material_m_s = IMMATERIAL * largest_m_s;
+    series.iter().zip(&fit.series).zip(&best.series).all(|((series, own), best)| {
+        let length_s = series.time_s.last().copied().unwrap_or(0.0);
+        let before = |f: &SeriesFit| f.plateau - f.drift * length_s / 3.0; // A drift is followed back into the contact.
+        (own.plateau - best.plateau).abs() <= material_m_s
+            && (before(own) - before(best)).abs() <= material_m_s
+            && own.residual <= material_m_s.hypot(NOISE_LEFT * series.floor)
+    })
 }
 
 /// Holds the end of the flight in `window` against its fit, for each channel   (20)

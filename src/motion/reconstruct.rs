@@ -1,6 +1,7 @@
 //! Velocity steps of the channels, a contact law and the initial motion to the planar motion of the cask.
 
 use super::Integrated;
+use super::curves::uniform;
 use super::histories::{AlongAxis, Histories};
 use crate::data::{AxialClosure, Events, FlightFit, Motion, MotionCurve, MotionState, Setup};
 
@@ -8,8 +9,6 @@ use crate::data::{AxialClosure, Events, FlightFit, Motion, MotionCurve, MotionSt
 const CONTACT_STEPS: u32 = 200;
 /// Steps over the flight, for the curves.
 const FLIGHT_STEPS: u32 = 200;
-/// Points of the curves, uniform over contact and flight: 0.1 ms over 60 ms.
-const CURVE_POINTS: u32 = 600;
 
 /// Reconstructs the motion from first contact to slap-down with its curve; `None` without two transverse channels apart or without
 /// their plateaus.
@@ -62,6 +61,7 @@ fn follow(
     let histories =
         Histories::new(integrated, fit, &line, (contact_s, separation_s))?.at_rate(setup.second_s);
     let mut body = OnTarget::start(setup, contact_s);
+    let contact = body.state;
     let recorded_s = (separation_s - contact_s) / f64::from(CONTACT_STEPS);
     let step_s = recorded_s * setup.second_s;
     record(&body.state);
@@ -69,23 +69,25 @@ fn follow(
     for i in 1..=CONTACT_STEPS {
         let time_s = contact_s + f64::from(i) * recorded_s;
         let (before, before_by) = (body.state, body.angle_by);
-        turned_rad2_s += before.angular_velocity_rad_s.powi(2) * step_s;
-        let (transverse_m_s, rotation_rad_s) = line.at(&histories, time_s, turned_rad2_s);
-        let axial_m_s = histories.axial_mean(time_s, rotation_rad_s);
-        body.advance(setup, step_s, transverse_m_s, rotation_rad_s, axial_m_s);
+        // What the rotation of the fall does to a sensor went with its offset.
+        turned_rad2_s +=
+            (before.angular_velocity_rad_s.powi(2) - contact.angular_velocity_rad_s.powi(2)) * step_s;
+        let (transverse_m_s, gained_rad_s) = line.at(&histories, time_s, turned_rad2_s);
+        let axial_m_s = histories.axial_mean(time_s, gained_rad_s);
+        body.advance(setup, step_s, transverse_m_s, gained_rad_s - setup.angular_velocity_rad_s, axial_m_s);
         angular_impulse_m2_s += turning_m2_s(setup, &before, &body.state, before_by);
         record(&body.state);
     }
     let separation = body.state;
     let (slip_m_s, rebound_m_s) = corner(setup, &separation, -setup.cog_m);
-    let impulse_ratio = separation.horizontal_velocity_m_s
-        / (separation.vertical_velocity_m_s
-            + setup.impact_velocity_m_s
+    let impulse_ratio = (separation.horizontal_velocity_m_s - contact.horizontal_velocity_m_s)
+        / (separation.vertical_velocity_m_s - contact.vertical_velocity_m_s
             + setup.gravity_m_s2 * (separation.time_s - contact_s));
     let slap_down =
         events.slap_down_s().map(|t| fly(setup, &separation, contact_s + (t - contact_s) * setup.second_s));
     let ahead_m = setup.length_m - setup.cog_m;
     Some(Motion {
+        contact,
         separation,
         rebound_m_s,
         slip_m_s,
@@ -122,39 +124,6 @@ fn turning_m2_s(setup: &Setup, before: &MotionState, after: &MotionState, before
     let along_m_s = after.horizontal_velocity_m_s - before.horizontal_velocity_m_s;
     // The arm of (3) runs from S to the corner: C lies at −arm seen from it.
     -arm_x_m * up_m_s + arm_z_m * along_m_s
-}
-
-/// The curve on uniform times, linear between the steps it was made with.
-fn uniform(curve: &MotionCurve) -> MotionCurve {
-    let (Some(&first_s), Some(&last_s)) = (curve.time_s.first(), curve.time_s.last()) else {
-        return MotionCurve::default();
-    };
-    let time_s: Vec<f64> = (0..=CURVE_POINTS)
-        .map(|i| first_s + (last_s - first_s) * f64::from(i) / f64::from(CURVE_POINTS))
-        .collect();
-    let places: Vec<(usize, f64)> = time_s
-        .iter()
-        .map(|&t| {
-            let next = curve.time_s.partition_point(|&u| u < t).clamp(1, curve.time_s.len() - 1);
-            let (a, b) = (curve.time_s[next - 1], curve.time_s[next]);
-            (next, if b > a { ((t - a) / (b - a)).clamp(0.0, 1.0) } else { 1.0 })
-        })
-        .collect();
-    let on = |values: &[f64]| {
-        let between =
-            |&(next, share): &(usize, f64)| values[next - 1] + share * (values[next] - values[next - 1]);
-        places.iter().map(between).collect()
-    };
-    MotionCurve {
-        angle_rad: on(&curve.angle_rad),
-        angular_velocity_rad_s: on(&curve.angular_velocity_rad_s),
-        first_end_vertical_m_s: on(&curve.first_end_vertical_m_s),
-        second_end_vertical_m_s: on(&curve.second_end_vertical_m_s),
-        second_end_horizontal_m_s: on(&curve.second_end_horizontal_m_s),
-        first_end_height_m: on(&curve.first_end_height_m),
-        second_end_height_m: on(&curve.second_end_height_m),
-        time_s,
-    }
 }
 
 /// Ballistic motion of S from `state` to `time_s`   (8)
@@ -205,19 +174,23 @@ struct OnTarget {
 impl OnTarget {
     fn start(setup: &Setup, time_s: f64) -> Self {
         let (sin, cos) = setup.angle_rad.sin_cos();
+        let (ahead_m, above_m) = arm_m(setup, setup.angle_rad, -setup.cog_m);
+        let (w, along_m_s) = (setup.angular_velocity_rad_s, setup.horizontal_velocity_m_s);
+        // ż_S = ż_L − ω a, a = −ahead   (3)
+        let down_m_s = ahead_m * w - setup.impact_velocity_m_s;
         let state = MotionState {
             time_s,
             angle_rad: setup.angle_rad,
-            angular_velocity_rad_s: 0.0,
-            horizontal_velocity_m_s: 0.0,
-            vertical_velocity_m_s: -setup.impact_velocity_m_s,
-            height_m: -arm_m(setup, setup.angle_rad, -setup.cog_m).1,
+            angular_velocity_rad_s: w,
+            horizontal_velocity_m_s: along_m_s,
+            vertical_velocity_m_s: down_m_s,
+            height_m: -above_m,
         };
         Self {
             state,
             angle_by: (sin, cos),
-            transverse_m_s: -setup.impact_velocity_m_s * cos,
-            axial_m_s: -setup.impact_velocity_m_s * sin,
+            transverse_m_s: down_m_s * cos - along_m_s * sin,
+            axial_m_s: down_m_s * sin + along_m_s * cos,
             last_transverse_m_s: 0.0,
             last_axial_m_s: 0.0,
         }
@@ -244,13 +217,12 @@ impl OnTarget {
         let (sin, cos) = self.angle_by;
         self.axial_m_s = match (setup.axial, axial) {
             (AxialClosure::Measured, Some((axial_m_s, position_m))) => {
-                let gained = axial_m_s - self.last_axial_m_s
-                    + mean_spin * mean_spin * (position_m - setup.cog_m) * step_s;
+                let turned = mean_spin * mean_spin - setup.angular_velocity_rad_s.powi(2);
+                let gained = axial_m_s - self.last_axial_m_s + turned * (position_m - setup.cog_m) * step_s;
                 self.last_axial_m_s = axial_m_s;
                 self.axial_m_s + gained + (mean_spin * self.transverse_m_s - g * sin_m) * step_s
             }
-            (AxialClosure::Sliding { friction_ppm }, _) => {
-                let friction = f64::from(friction_ppm) * 1e-6;
+            (AxialClosure::Sliding { friction }, _) => {
                 // f_x = μ f_z: f_ξ = f_η tan(φ + atan μ) = f_η (sin φ + μ cos φ)/(cos φ − μ sin φ)   (18)
                 let gained = gained_m_s * (sin_m + friction * cos_m) / (cos_m - friction * sin_m);
                 self.axial_m_s + gained + (mean_spin * self.transverse_m_s - g * sin_m) * step_s
@@ -351,6 +323,9 @@ mod tests {
             cog_m: 2.5,
             angle_rad: 0.25,
             impact_velocity_m_s: 13.0,
+            is_of_fall: true,
+            angular_velocity_rad_s: 0.0,
+            horizontal_velocity_m_s: 0.0,
             gravity_m_s2: 9.81,
             axial,
             second_s: 1.0,
@@ -360,7 +335,7 @@ mod tests {
 
     #[test]
     fn without_force_the_cask_falls_on() {
-        let m = motion(0.0, 0.0, AxialClosure::Sliding { friction_ppm: 0 });
+        let m = motion(0.0, 0.0, AxialClosure::Sliding { friction: 0.0 });
         let fallen_m_s = 13.0 + 9.81 * 0.006;
         assert!((m.separation.vertical_velocity_m_s + fallen_m_s).abs() < 1e-9);
         assert!(m.separation.horizontal_velocity_m_s.abs() < 1e-9);
@@ -377,7 +352,7 @@ mod tests {
     fn the_contact_laws_hold_to_the_end_of_the_contact() {
         // The trapezoid over 200 steps of 30 µs leaves 1e-4 of the velocities.
         assert!(motion(19.0, -7.0, AxialClosure::Sticking).slip_m_s.abs() < 1e-9);
-        let smooth = motion(19.0, -7.0, AxialClosure::Sliding { friction_ppm: 0 });
+        let smooth = motion(19.0, -7.0, AxialClosure::Sliding { friction: 0.0 });
         assert!(smooth.separation.horizontal_velocity_m_s.abs() < 2e-3, "{smooth:?}");
     }
 

@@ -19,7 +19,7 @@ pub fn speed_gradient(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Opt
 }
 
 fn speed_m_s<T: Differentiable>(body: &Body, drop: &Drop, contact: Contact, angle_rad: T, k: T) -> Option<T> {
-    let start = State::falling(body, angle_rad, drop.impact_velocity_m_s);
+    let start = State::falling(body, angle_rad, drop);
     let way = Way::of(body, drop, contact, Some(GRAZE_SHARE));
     let (at, _) = way.follow(strike_first_end(body, &start, contact, k).after, k).second_end?;
     let corner = at.corner(body, second_end_m(body));
@@ -33,13 +33,7 @@ mod tests {
     use crate::predict::{predict, thin_rod};
 
     fn drop(angle_rad: f64, height_m: f64) -> Drop {
-        Drop {
-            height_m,
-            angle_rad,
-            impact_velocity_m_s: (2.0 * 9.81 * height_m).sqrt(),
-            impact_velocity_given: false,
-            gravity_m_s2: 9.81,
-        }
+        Drop { impact_velocity_m_s: (2.0 * 9.81 * height_m).sqrt(), ..Drop::of_height(height_m, angle_rad) }
     }
 
     fn speed(body: &Body, drop: &Drop, contact: Contact, k: f64) -> f64 {
@@ -85,7 +79,7 @@ mod tests {
         let rod = thin_rod(1000.0, 4.75);
         for (contact, cos2) in [(Contact::Rough, 2.0_f64 / 3.0), (Contact::Smooth, 1.0 / 3.0)] {
             let start = |k: Dual64| {
-                let before = State::falling(&rod, Dual64::from_re(cos2.sqrt().acos()), 13.3);
+                let before = State::falling(&rod, Dual64::from_re(cos2.sqrt().acos()), &drop(0.0, 9.0));
                 strike_first_end(&rod, &before, contact, k).after.corner(&rod, second_end_m(&rod))
             };
             let corner = start(Dual64::from_re(0.4).derivative());

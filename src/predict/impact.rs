@@ -3,10 +3,10 @@
 use super::state::{Differentiable, State, arms_m};
 use crate::data::{Body, Contact};
 
-/// The Coulomb coefficient of a contact law: rough is friction without limit, smooth is none.
+/// The Coulomb coefficient of a contact law: rough is friction without limit, smooth is none; an unknown one is taken for rough.
 pub(super) fn coefficient(contact: Contact) -> f64 {
     match contact {
-        Contact::Rough => f64::INFINITY,
+        Contact::Rough | Contact::Unknown => f64::INFINITY,
         Contact::Smooth => 0.0,
         Contact::Coulomb(coefficient) => coefficient,
     }

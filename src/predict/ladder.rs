@@ -76,7 +76,7 @@ type ImpactLaw = fn(&Body, &State<f64>, Contact, f64) -> Struck<f64>;
 
 impl Case<'_> {
     fn start(&self) -> State<f64> {
-        State::falling(self.body, self.drop.angle_rad, self.drop.impact_velocity_m_s)
+        State::falling(self.body, self.drop.angle_rad, self.drop)
     }
 
     /// k = 0: L held on the target until R strikes; else one flight.
@@ -119,7 +119,7 @@ impl Case<'_> {
     /// \[P\] Table 2 for k = 0, rough or smooth   (11) (12)
     fn closed_form(&self, after: &State<f64>) -> Option<Held<'_>> {
         let slides = match self.contact {
-            Contact::Rough => false,
+            Contact::Rough | Contact::Unknown => false,
             Contact::Smooth => true,
             Contact::Coulomb(_) => return None,
         };
@@ -177,11 +177,8 @@ mod tests {
 
     fn drop(angle_deg: f64) -> Drop {
         Drop {
-            height_m: 9.0,
-            angle_rad: angle_deg.to_radians(),
             impact_velocity_m_s: (2.0_f64 * 9.81 * 9.0).sqrt(),
-            impact_velocity_given: false,
-            gravity_m_s2: 9.81,
+            ..Drop::of_height(9.0, angle_deg.to_radians())
         }
     }
 

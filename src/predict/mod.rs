@@ -73,7 +73,7 @@ pub fn predict(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction
 /// touch is an impact.
 #[must_use]
 pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, graze_share: f64) -> Prediction {
-    let start = State::falling(body, drop.angle_rad, drop.impact_velocity_m_s);
+    let start = State::falling(body, drop.angle_rad, drop);
     let struck = strike_first_end(body, &start, contact, k);
     let outcome = Way::of(body, drop, contact, Some(graze_share)).follow(struck.after, k);
     ladder::Case { body, drop, contact, k }.prediction(&start, &struck, &outcome)
@@ -97,13 +97,7 @@ mod tests {
     const V0_M_S: f64 = 13.288_340_754_210_061; // √(2 · 9.81 · 9)
 
     fn drop(angle_deg: f64) -> Drop {
-        Drop {
-            height_m: 9.0,
-            angle_rad: angle_deg.to_radians(),
-            impact_velocity_m_s: V0_M_S,
-            impact_velocity_given: false,
-            gravity_m_s2: 9.81,
-        }
+        Drop { impact_velocity_m_s: V0_M_S, ..Drop::of_height(9.0, angle_deg.to_radians()) }
     }
 
     fn rod(length_m: f64) -> Body {
@@ -165,7 +159,7 @@ mod tests {
         // Equation (6) as printed starts S at (l/2) cos φ0; the speed at its root is 22.5 m/s, not 25.
         let (l, g) = (5.512, 9.81);
         let d = drop(15.0);
-        let start = State::falling(&rod(l), d.angle_rad, d.impact_velocity_m_s);
+        let start = State::falling(&rod(l), d.angle_rad, &d);
         let after = strike_first_end(&rod(l), &start, Contact::Rough, 1.0).after;
         let (vz, w) = (after.vertical_velocity_m_s, after.angular_velocity_rad_s);
         let printed = |t: f64| {

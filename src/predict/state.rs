@@ -1,6 +1,6 @@
 //! A moving body to the position and velocity of its corners.
 
-use crate::data::Body;
+use crate::data::{Body, Drop};
 use num_dual::DualNum;
 
 /// A number, or one with its derivative: the same code gives the prediction and its gradient.
@@ -42,14 +42,15 @@ pub(super) fn second_end_m(body: &Body) -> f64 {
 }
 
 impl<T: Differentiable> State<T> {
-    /// Just before L strikes: falling at v0 without rotation, L on the target.
-    pub fn falling(body: &Body, angle_rad: T, impact_velocity_m_s: f64) -> Self {
+    /// Just before L strikes at v0, L on the target: ż_S = −v0 − ω a   (3)
+    pub fn falling(body: &Body, angle_rad: T, drop: &Drop) -> Self {
+        let (a, b) = arms_m(body, angle_rad, body.cog_m);
         Self {
-            height_m: arms_m(body, angle_rad, body.cog_m).1,
+            height_m: b,
             angle_rad,
-            horizontal_velocity_m_s: T::from(0.0),
-            vertical_velocity_m_s: T::from(-impact_velocity_m_s),
-            angular_velocity_rad_s: T::from(0.0),
+            horizontal_velocity_m_s: T::from(drop.horizontal_velocity_m_s),
+            vertical_velocity_m_s: a * -drop.angular_velocity_rad_s - drop.impact_velocity_m_s,
+            angular_velocity_rad_s: T::from(drop.angular_velocity_rad_s),
         }
     }
 

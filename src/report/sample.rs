@@ -263,6 +263,9 @@ pub(super) fn cask_file() -> CaskFile {
         sample_rate_hz: None,
         time: None,
         coupling: Coupling::Dc,
+        calibration: None,
+        reference: None,
+        lateral_m: 0.0,
     };
     CaskFile {
         path: "anf18.toml".into(),
@@ -277,13 +280,7 @@ pub(super) fn cask_file() -> CaskFile {
             inertia_kg_m2: 11_540.0,
             is_body: true,
         },
-        drop: Drop {
-            height_m: 9.0,
-            angle_rad: 15.0 * PI / 180.0,
-            impact_velocity_m_s: IMPACT_VELOCITY_M_S,
-            impact_velocity_given: false,
-            gravity_m_s2: 9.81,
-        },
+        drop: Drop { impact_velocity_m_s: IMPACT_VELOCITY_M_S, ..Drop::of_height(9.0, 15.0 * PI / 180.0) },
         contact: Contact::Rough,
         filter: FilterChoice::Auto,
         tolerances: crate::data::Tolerances::default(),

@@ -306,6 +306,11 @@ mod tests {
             ("calibration_percent", 100.0 * d.calibration),
             ("cross_axis_percent", 100.0 * d.cross_axis),
             ("position_m", d.position_m),
+            // Of the cask that the form shows.
+            ("length_m", d.length * 5.0),
+            ("height_m", d.height * 0.8),
+            ("angular_velocity_deg_s", d.angular_velocity_rad_s.to_degrees()),
+            ("horizontal_velocity_m_s", d.horizontal_velocity_m_s),
             ("cog_m", d.cog_m),
             ("inertia_percent", 100.0 * d.inertia),
             ("friction_percent", 100.0 * d.friction),

@@ -112,11 +112,8 @@ fn turned_over() -> [Case; 4] {
 
 fn drop_of(case: &Case) -> Drop {
     Drop {
-        height_m: case.height_m,
-        angle_rad: case.angle_deg.to_radians(),
         impact_velocity_m_s: (2.0 * 9.81 * case.height_m).sqrt(),
-        impact_velocity_given: false,
-        gravity_m_s2: 9.81,
+        ..Drop::of_height(case.height_m, case.angle_deg.to_radians())
     }
 }
 

@@ -171,7 +171,11 @@ fn with_channel(stem: &str, which: usize, folder: &Path) -> PathBuf {
     let whole = std::fs::read_to_string(fixture(&format!("{stem}.toml"))).expect("a cask file");
     let parts: Vec<&str> = whole.split("[[channel]]").collect();
     assert_eq!(parts.len(), 3, "two channels");
-    std::fs::write(&cask, [parts[0], parts[1 + which]].join("[[channel]]")).expect("a cask file");
+    std::fs::write(
+        &cask,
+        [&format!("{}[contact]\nfriction = \"rough\"\n", parts[0]), parts[1 + which]].join("[[channel]]"),
+    )
+    .expect("a cask file");
     cask
 }
 

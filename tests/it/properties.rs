@@ -51,11 +51,8 @@ fn drops() -> impl Strategy<Value = Drop> {
     let angle_deg = prop_oneof![8 => 0.0..90.0_f64, 1 => Just(0.0), 1 => Just(90.0)];
     let height_m = prop_oneof![Just(9.0), 0.05..20.0_f64];
     (angle_deg, height_m).prop_map(|(angle_deg, height_m)| Drop {
-        height_m,
-        angle_rad: angle_deg.to_radians(),
         impact_velocity_m_s: (2.0 * 9.81 * height_m).sqrt(),
-        impact_velocity_given: false,
-        gravity_m_s2: 9.81,
+        ..Drop::of_height(height_m, angle_deg.to_radians())
     })
 }
 
@@ -155,7 +152,7 @@ fn coefficient(rung: Rung, contact: Contact) -> f64 {
     match contact {
         Contact::Smooth => 0.0,
         Contact::Coulomb(coefficient) if rung >= Rung::Friction || coefficient == 0.0 => coefficient,
-        Contact::Coulomb(_) | Contact::Rough => f64::INFINITY,
+        Contact::Coulomb(_) | Contact::Rough | Contact::Unknown => f64::INFINITY,
     }
 }
 

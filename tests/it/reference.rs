@@ -40,13 +40,7 @@ fn body(value: &Value) -> Body {
 }
 
 fn drop_at(angle_deg: f64, impact_velocity_m_s: f64) -> Drop {
-    Drop {
-        height_m: 9.0,
-        angle_rad: angle_deg.to_radians(),
-        impact_velocity_m_s,
-        impact_velocity_given: true,
-        gravity_m_s2: 9.81,
-    }
+    Drop { impact_velocity_m_s, impact_velocity_given: true, ..Drop::of_height(9.0, angle_deg.to_radians()) }
 }
 
 /// A uniform thin rod.

@@ -1,6 +1,6 @@
 //! The linear propagation of the uncertainty against draws of its inputs (JCGM 101), and the ladder on a committed recording.
 
-use dropcheck::data::{AxialClosure, End, ReconstructionRung, Recording, RivalLaw, Samples, Verdict};
+use dropcheck::data::{AssumedFriction, Contact, End, ReconstructionRung, Recording, Samples, Verdict};
 use dropcheck::{ingest, stages};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -29,7 +29,8 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
         flight: result.flight.as_ref().expect("a flight"),
         events: &result.events,
         setup: &setup,
-        rival_law: Some(RivalLaw { axial: AxialClosure::Sliding { friction_ppm: 0 }, way: 1.0 }),
+        friction: Some(AssumedFriction { ratio: 0.6, u: 0.06 }),
+        specs: &file.channels,
         tolerances: file.tolerances,
         inertia_m2: Some(file.cask.inertia_kg_m2 / file.cask.mass_kg),
         rests: &[],
@@ -65,7 +66,8 @@ fn by_a_slow_clock(recording: &Recording, share: f64) -> Recording {
 
 #[test]
 fn the_clock_contributes_what_another_rate_changes() {
-    let file = ingest::cask_file(&fixture("anf18-german.toml")).expect("a cask file");
+    let mut file = ingest::cask_file(&fixture("anf18-german.toml")).expect("a cask file");
+    file.contact = Contact::Rough;
     let recording = ingest::read(&fixture("anf18-german.csv"), &file, &|_| ()).expect("a recording");
     let stated = |recording: &Recording| {
         let result = dropcheck::analyze(recording, &file).result;
@@ -158,7 +160,8 @@ fn one_end_alone_gives_its_time_with_an_interval_and_says_what_is_missing() {
 
 #[test]
 fn what_clipping_took_of_the_impact_is_had_from_the_rest_of_the_motion() {
-    let file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
+    let mut file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
+    file.contact = Contact::Rough;
     let mut recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
     let whole = dropcheck::analyze(&recording, &file).result;
     let first = recording.channels.iter_mut().find(|c| c.end == End::First).expect("a first end");

@@ -100,6 +100,8 @@ fn cases(arguments: &Arguments, file: &CaskFile) -> (Vec<Contact>, Vec<f64>) {
     match (contacts, ks) {
         (Some(contacts), Some(ks)) => (contacts, ks),
         (Some(contacts), None) => (contacts, vec![0.0, 1.0]),
+        // A prediction needs one: the borderline case that the paper found.
+        (None, Some(ks)) if file.contact == Contact::Unknown => (vec![Contact::Rough], ks),
         (None, Some(ks)) => (vec![file.contact], ks),
         (None, None) => (vec![Contact::Rough, Contact::Smooth], vec![0.0, 1.0]),
     }
@@ -135,7 +137,7 @@ fn uncertain(arguments: &Arguments, file: &CaskFile) -> Uncertain {
                 _ if arguments.contact.is_some() => None,
                 Contact::Coulomb(coefficient) => Some((coefficient, coefficient)),
                 Contact::Smooth => Some((0.0, 0.0)),
-                Contact::Rough => usual.friction,
+                Contact::Rough | Contact::Unknown => usual.friction,
             }
         }),
         angle_deg: arguments.angle_tolerance.unwrap_or(usual.angle_deg),

@@ -1,7 +1,8 @@
 //! What speaks against a single channel, with its numbers, to code, severity and sentence.
 
+use super::drop::numbers;
 use super::{IssueCode as Code, Severity};
-use crate::data::{End, STANDARD_GRAVITY_M_S2 as G};
+use crate::data::{End, Estimate, STANDARD_GRAVITY_M_S2 as G};
 
 /// What is left to know a velocity step by that a channel lost.
 const AS_FAR_AS_TOLD: &str = "k and the slap-down velocity are had only as far as the other channels and the way of the second end to the target tell them";
@@ -19,6 +20,9 @@ pub enum During {
     /// From the slap-down on.
     SlapDown,
 }
+
+/// A slap-down speed and a k, where they could be had.
+type Numbers = (Option<Estimate>, Option<Estimate>);
 
 /// A finding about one channel.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,6 +52,10 @@ pub enum ChannelFinding {
     LowRate { samples: f64, pulse_s: f64, off_percent: f64, least_hz: f64 },
     /// This share of the pulse's spectrum is left just below half the sample rate.
     Aliasing { share: f64, sample_rate_hz: f64 },
+    /// The other transverse channels and the closures speak against it, and it is left out: speed and k with it and without.
+    LeftOut { with: Numbers, without: Numbers },
+    /// The samples of another channel.
+    Copied { of: String, is_other_end: bool },
     /// Nothing but noise while other channels show the impacts.
     Dead { farthest_m_s2: f64 },
     /// Mains hum with so many harmonics beside the fundamental; `left_m_s` of velocity is not taken off.
@@ -113,6 +121,9 @@ impl ChannelFinding {
             Self::LowRate { .. } => (Code::LowRate, Warning),
             Self::Aliasing { .. } => (Code::Aliasing, Warning),
             Self::Dead { .. } => (Code::DeadChannel, Error),
+            Self::LeftOut { .. } => (Code::NotRigid, Warning),
+            Self::Copied { is_other_end: true, .. } => (Code::CopiedChannel, Error),
+            Self::Copied { .. } => (Code::CopiedChannel, Warning),
             Self::Hum { severity, .. } => (Code::Hum, severity),
             Self::Spikes { severity, .. } => (Code::Spikes, severity),
             Self::Dropout { .. } => (Code::Dropout, Warning),
@@ -194,6 +205,17 @@ impl ChannelFinding {
                 "{name} has {:.0} % of the pulse's spectrum left just below half its sample rate of {sample_rate_hz:.0} Hz: what lies above it has folded down, by about {:.0} % of the velocity step; put an anti-alias filter before the sampling, or sample faster",
                 100.0 * share,
                 50.0 * share
+            ),
+            Self::LeftOut { with, without } => format!(
+                "disagrees with the other channels and is left out: without it everything closes at {}; with it there is {}; check its sensitivity, polarity, position and cable",
+                numbers(without.0, without.1),
+                numbers(with.0, with.1)
+            ),
+            Self::Copied { of, is_other_end: false } => format!(
+                "holds the samples of {of}, one for one, and is left out: one sensor counts once; correct its `source`, or delete its table"
+            ),
+            Self::Copied { of, .. } => format!(
+                "holds the samples of {of}, one for one, which sits on the other end: correct the `source` of one of the two"
             ),
             Self::Dead { farthest_m_s2 } => {
                 let found = if *farthest_m_s2 > 0.0 {

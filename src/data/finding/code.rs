@@ -19,6 +19,8 @@ pub enum Severity {
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs, reason = "CODES says what each means")]
 pub enum IssueCode {
+    // First of its severity: what mends goes before what follows from it.
+    UsualSlip,
     Clipped,
     Gap,
     DuplicateBlocks,
@@ -33,6 +35,7 @@ pub enum IssueCode {
     Spikes,
     Dropout,
     DeadChannel,
+    CopiedChannel,
     Offset,
     ZeroShift,
     Noise,
@@ -91,6 +94,7 @@ pub const CODES: [(&str, &[(IssueCode, &str)]); 4] = [
             (IssueCode::Spikes, "one to five samples far off their neighbours"),
             (IssueCode::Dropout, "runs of equal samples entered or left by a jump"),
             (IssueCode::DeadChannel, "a channel does not move while others do"),
+            (IssueCode::CopiedChannel, "a channel holds the samples of another one"),
             (IssueCode::Offset, "an offset, or its drift, in the free fall"),
             (IssueCode::ZeroShift, "the offset changes at an impact"),
             (IssueCode::AcCoupled, "a channel coupled AC: stated and undone, or found by its droop"),
@@ -121,6 +125,7 @@ pub const CODES: [(&str, &[(IssueCode, &str)]); 4] = [
     (
         "Drop",
         &[
+            (IssueCode::UsualSlip, "with one usual slip in the cask file put right everything closes"),
             (IssueCode::NoImpact, "no channel changes its velocity as an impact does"),
             (IssueCode::SeveralDrops, "another drop in the same recording, which was not analysed"),
             (IssueCode::NoSlapDown, "the second end shows no slap-down"),
@@ -130,7 +135,7 @@ pub const CODES: [(&str, &[(IssueCode, &str)]); 4] = [
                 "the first end touches again, or something strikes the cask in the flight",
             ),
             (IssueCode::Geometry, "angle, height or the recorded fall contradict the motion"),
-            (IssueCode::Friction, "the first end slides where the cask file calls the contact rough"),
+            (IssueCode::Friction, "how the first end slides contradicts the cask file, or nothing tells it"),
             (IssueCode::RestitutionRange, "k lies outside 0 to 1"),
             (IssueCode::FlightFit, "the flight is too short, or not explained by plateau and modes"),
             (IssueCode::Disagreement, "measured and predicted lie apart beyond their intervals"),

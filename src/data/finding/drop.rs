@@ -3,6 +3,58 @@
 use super::{Finding, IssueCode as Code, Severity};
 use crate::data::{Closure, ClosureKind, Comparison, Drop, End, Estimate};
 
+/// What is usually confused in a cask file; the channels by name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Slip {
+    /// The angle was stated from the vertical.
+    AngleFromVertical,
+    /// The sources of a channel of the first end and of one of the second are exchanged.
+    Exchanged([String; 2]),
+    /// The polarity is the other one.
+    Polarity(Vec<String>),
+    /// The position was counted from the second end.
+    FromOtherEnd(Vec<String>),
+    /// The samples are in g, not in m/s².
+    UnitIsG(Vec<String>),
+    /// The samples are in m/s², not in g.
+    UnitIsMetric(Vec<String>),
+}
+
+impl Slip {
+    /// What takes it back.
+    #[must_use]
+    pub fn undone(&self) -> Self {
+        match self {
+            Self::UnitIsG(names) => Self::UnitIsMetric(names.clone()),
+            Self::UnitIsMetric(names) => Self::UnitIsG(names.clone()),
+            own => own.clone(),
+        }
+    }
+
+    /// What would be put right, and where.
+    fn words(&self) -> String {
+        let of = |names: &[String]| names.join(" and ");
+        match self {
+            Self::AngleFromVertical => {
+                "the drop angle counted from the horizontal (`angle_deg` seems to count from the vertical)"
+                    .into()
+            }
+            Self::Exchanged([first, second]) => {
+                format!("the sources of {first} and {second} exchanged (`source`)")
+            }
+            Self::Polarity(names) => format!("the polarity of {} reversed (`polarity`)", of(names)),
+            Self::FromOtherEnd(names) => {
+                format!(
+                    "the position of {} counted from the other end (`position_m` counts from the first)",
+                    of(names)
+                )
+            }
+            Self::UnitIsG(names) => format!("{} in g (`unit`)", of(names)),
+            Self::UnitIsMetric(names) => format!("{} in m/s² (`unit`)", of(names)),
+        }
+    }
+}
+
 /// A finding about the drop, its motion or its prediction.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
@@ -27,6 +79,8 @@ pub enum DropFinding {
     TurnsTheWrongWay,
     /// The axial channel has L slide on a contact that is called rough.
     Slides { slip: Estimate },
+    /// Nothing tells how L slides: the slap-down speed if it sticks and if it meets no friction, and the friction that was taken.
+    OpenContact { sticking_m_s: f64, sliding_m_s: f64, taken: Estimate },
     /// L would sink so far below where it left the target.
     Sinks { depth_m: f64 },
     /// L comes down to the target so softly that no channel shows it.
@@ -45,6 +99,8 @@ pub enum DropFinding {
     Missed { closure: Closure, is_gross: bool, drop: Drop, fall_s: f64 },
     /// All closures together are missed by more than chance.
     AllMissed { chi_square: f64, degrees: usize, closures: Vec<Closure> },
+    /// With one usual slip put right everything closes, and the numbers are these.
+    UsualSlip { slip: Slip, speed: Option<Estimate>, k: Option<Estimate>, severity: Severity },
     /// No rest before the release: nothing tests what all channels share.
     Untested,
 }
@@ -65,6 +121,7 @@ impl DropFinding {
             Self::Restitution { .. } => (Code::RestitutionRange, Error),
             Self::TurnsTheWrongWay => (Code::EndsExchanged, Error),
             Self::Slides { .. } => (Code::Friction, Warning),
+            Self::OpenContact { .. } => (Code::Friction, Note),
             Self::Sinks { .. } | Self::Settles { .. } | Self::Blow { .. } | Self::Carried { .. } => {
                 (Code::SecondContact, Warning)
             }
@@ -77,6 +134,7 @@ impl DropFinding {
                 };
                 (code, if *is_gross { Error } else { Warning })
             }
+            Self::UsualSlip { severity, .. } => (Code::UsualSlip, *severity),
             Self::Untested => (Code::Scale, Note),
         }
     }
@@ -134,6 +192,10 @@ impl DropFinding {
                 "the axial channel has the first end slide at {:+.1} ± {:.1} m/s as it leaves, the cask file calls the contact rough: check the axial channel's polarity and cross-axis sensitivity, or set `friction`",
                 slip.value, slip.u95
             ),
+            Self::OpenContact { sticking_m_s, sliding_m_s, taken } => format!(
+                "nothing tells how the first end slides: the slap-down speed would be {sticking_m_s:.2} m/s if it sticks and {sliding_m_s:.2} m/s without friction; the intervals cover what lies between ({:.2} ± {:.2} was taken), and the horizontal velocity rests on it: record an axial channel, or state `friction`",
+                taken.value, taken.u95
+            ),
             Self::Sinks { depth_m } => format!(
                 "the first end would sink {:.0} mm below where it left the target before the second end strikes: it touched again, and the flight was not free",
                 1e3 * depth_m
@@ -164,6 +226,11 @@ impl DropFinding {
                 "measured {:.2} ± {:.2} m/s and predicted {:.2} ± {:.2} m/s lie apart beyond both intervals: check contact law, angle, mass properties and scales",
                 c.measured, c.measured_u95, c.predicted, c.predicted_u95
             ),
+            Self::UsualSlip { slip, speed, k, .. } => format!(
+                "with {} everything closes, at {}: check that first; it was not taken by itself",
+                slip.words(),
+                numbers(*speed, *k)
+            ),
             Self::Missed { closure, drop, fall_s, .. } => missed(closure, drop, *fall_s),
             Self::AllMissed { chi_square, degrees, closures } => {
                 let miss = |c: &Closure| format!("{} by {} ({:.1} u)", c.name, c.miss, c.miss_in_u.abs());
@@ -176,6 +243,14 @@ impl DropFinding {
             Self::Untested => "the recording shows no rest before the release: nothing in it tests the drop height, the clock's rate or a scale error that all channels share, and little tests one of the first end alone, which k follows; they are taken as stated; record from before the release with DC-coupled sensors".into(),
         }
     }
+}
+
+/// "20.49 ± 0.11 m/s and k = 0.56 ± 0.01", as far as they are there.
+pub(super) fn numbers(speed: Option<Estimate>, k: Option<Estimate>) -> String {
+    let speed = speed.map(|v| format!("{:.2} ± {:.2} m/s", v.value, v.u95));
+    let k = k.map(|k| format!("k = {:.2} ± {:.2}", k.value, k.u95));
+    let said: Vec<String> = speed.into_iter().chain(k).collect();
+    if said.is_empty() { "no number".into() } else { said.join(" and ") }
 }
 
 fn missed(closure: &Closure, drop: &Drop, fall_s: f64) -> String {

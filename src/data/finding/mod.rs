@@ -13,7 +13,7 @@ pub use attribute::AttributeFinding;
 pub use channel::{ChannelFinding, During};
 pub use clock::{ClockFinding, HowApart, RatesApart, TimesApart};
 pub use code::{CODES, IssueCode, Severity};
-pub use drop::DropFinding;
+pub use drop::{DropFinding, Slip};
 pub(crate) use mcap::two_units;
 pub use mcap::{FileEnd, McapFinding};
 pub use table::TableFinding;

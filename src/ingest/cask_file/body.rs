@@ -116,8 +116,14 @@ pub(crate) fn drop(table: &Section, cask: &Cask) -> Result<Drop, CaskFileError> 
         (None, None) => table.required_number("height_m")?.value,
     };
     let angle = table.required_number("angle_deg")?;
-    // v0 = √(2 g h).
-    let impact_velocity_m_s = velocity.unwrap_or((2.0 * gravity_m_s2 * height_m).sqrt());
+    let angle_rad = angle.value.to_radians();
+    let angular_velocity_rad_s =
+        table.number("angular_velocity_deg_s")?.map_or(0.0, |turning| turning.value.to_radians());
+    let horizontal_velocity_m_s = table.number("horizontal_velocity_m_s")?.map_or(0.0, |along| along.value);
+    // v0 = √(2 g h) − ω a   (3)
+    let a_m = cask.cog_m * angle_rad.cos() - cask.height_m / 2.0 * angle_rad.sin();
+    let of_fall_m_s = (2.0 * gravity_m_s2 * height_m).sqrt() - angular_velocity_rad_s * a_m;
+    let impact_velocity_m_s = velocity.unwrap_or(of_fall_m_s);
     let implied = Placed { value: impact_velocity_m_s, span: table.place("height_m") };
     let what = format!("height_m gives an impact at {impact_velocity_m_s:.3} m/s");
     table.allows("impact_velocity_m_s", &implied, &what)?;
@@ -130,9 +136,11 @@ pub(crate) fn drop(table: &Section, cask: &Cask) -> Result<Drop, CaskFileError> 
     }
     Ok(Drop {
         height_m,
-        angle_rad: angle.value.to_radians(),
+        angle_rad,
         impact_velocity_given: velocity.is_some(),
         impact_velocity_m_s,
         gravity_m_s2,
+        angular_velocity_rad_s,
+        horizontal_velocity_m_s,
     })
 }

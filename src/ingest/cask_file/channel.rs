@@ -75,6 +75,9 @@ fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), 
         sample_rate_hz: table.number("sample_rate_hz")?.map(|rate| rate.value),
         time: table.text("time")?.map(|time| time.value),
         coupling: coupling(table)?,
+        calibration: table.number("calibration_percent")?.map(|percent| percent.value / 100.0),
+        reference: table.text("reference")?.map(|reference| reference.value),
+        lateral_m: table.number("lateral_m")?.map_or(0.0, |lateral| lateral.value),
     };
     Ok((spec, name.span))
 }

@@ -20,6 +20,8 @@ height_m = 9.0
 angle_deg = 15.0
 impact_velocity_m_s = 13.3
 gravity_m_s2 = 9.80
+angular_velocity_deg_s = 2
+horizontal_velocity_m_s = -0.1
 
 [contact]
 friction = 0.4
@@ -45,6 +47,9 @@ sample_rate_hz = 1e5
 time = "/daq/time_s"
 coupling = "ac"
 time_constant_s = 0.3
+calibration_percent = 0.5
+reference = "amplifier 3"
+lateral_m = 0.2
 
 [[channel]]
 name = "A2"
@@ -78,6 +83,10 @@ fn every_key_is_read() {
     );
     assert!(file.cask.is_body && file.drop.impact_velocity_given);
     assert_eq!((file.drop.impact_velocity_m_s, file.drop.gravity_m_s2), (13.3, 9.8));
+    assert_eq!(
+        (file.drop.angular_velocity_rad_s.to_degrees(), file.drop.horizontal_velocity_m_s),
+        (2.0, -0.1)
+    );
     assert_eq!((file.contact, file.filter), (Contact::Coulomb(0.4), FilterChoice::Cfc(180.0)));
     assert_eq!(file.time.as_deref(), Some("time_s"));
     let a1 = &file.channels[0];
@@ -86,6 +95,8 @@ fn every_key_is_read() {
     assert_eq!(a1.coupling, Coupling::Ac { time_constant_s: 0.3 });
     assert_eq!((a1.full_scale, a1.sample_rate_hz), (Some(2000.0), Some(1e5)));
     assert_eq!(a1.time.as_deref(), Some("/daq/time_s"));
+    assert_eq!((a1.calibration, a1.lateral_m), (Some(0.005), 0.2));
+    assert_eq!(a1.reference.as_deref(), Some("amplifier 3"));
     let a2 = &file.channels[1];
     assert_eq!(a2.source, Source::TopicField { topic: "/a.b".into(), field: "x.y".into() });
     assert_eq!((a2.unit, a2.coupling, a2.polarity), (None, Coupling::Dc, 1.0));
@@ -101,7 +112,7 @@ fn defaults_are_filled_in_and_named() {
     assert!((file.drop.impact_velocity_m_s - (2.0_f64 * 9.81 * 9.0).sqrt()).abs() < 1e-12);
     assert!((file.drop.angle_rad - std::f64::consts::FRAC_PI_6).abs() < 1e-15);
     assert!(!file.cask.is_body && !file.drop.impact_velocity_given);
-    assert_eq!((file.contact, file.filter), (Contact::Rough, FilterChoice::Auto));
+    assert_eq!((file.contact, file.filter), (Contact::Unknown, FilterChoice::Auto));
     for key in ["cask.cog_m", "drop.gravity_m_s2", "contact.friction", "filter"] {
         assert!(file.defaults.iter().any(|d| d == key), "{key}: {:?}", file.defaults);
     }
@@ -323,7 +334,7 @@ fn the_table_of_the_documentation_is_that_of_the_keys() {
                 Takes::Number(Allowed::Within(least, most, _)) => format!("{least} to {most}"),
                 _ => continue,
             };
-            let plain = meaning.replace("10⁶", "1000000").replace("10⁸", "100000000");
+            let plain = meaning.replace("10⁶", "1000000").replace('−', "-").replace("10⁸", "100000000");
             assert!(plain.contains(&range), "[{}] {name}: {meaning} without {range}", table.name);
         }
     }

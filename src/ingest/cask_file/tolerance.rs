@@ -2,18 +2,27 @@
 
 use super::CaskFileError;
 use super::section::Section;
-use crate::data::{Corrections, Tolerances};
+use crate::data::{Cask, Corrections, INERTIA_OF_BLOCK, Tolerances};
 
 /// A tolerance above this share says that nothing is known, percent.
 const LARGEST_PERCENT: f64 = 100.0;
 
-/// `[tolerance]`, with the defaults of what it leaves out.
-pub(super) fn tolerances(table: &Section) -> Result<Tolerances, CaskFileError> {
+/// `[tolerance]`, with the defaults of what it leaves out; the inertia `is_block` where the cask file leaves it to mass and size.
+pub(super) fn tolerances(table: &Section, cask: &Cask, is_block: bool) -> Result<Tolerances, CaskFileError> {
     let mut stated = Tolerances::default();
-    let as_it_stands: fn(f64) -> f64 = |value| value;
-    let percent: fn(f64) -> f64 = |percent| percent / 100.0;
+    if is_block {
+        stated.inertia = INERTIA_OF_BLOCK;
+    }
+    let as_it_stands: &dyn Fn(f64) -> f64 = &|value| value;
+    let percent: &dyn Fn(f64) -> f64 = &|percent| percent / 100.0;
+    // A section of 0 has no size to be off by.
+    let share_of = |size_m: f64| move |by_m: f64| if size_m > 0.0 { by_m / size_m } else { 0.0 };
     for (key, tolerance, in_si) in [
-        ("angle_deg", &mut stated.angle_rad, f64::to_radians as fn(f64) -> f64),
+        ("angle_deg", &mut stated.angle_rad, &f64::to_radians as &dyn Fn(f64) -> f64),
+        ("length_m", &mut stated.length, &share_of(cask.length_m)),
+        ("height_m", &mut stated.height, &share_of(cask.height_m)),
+        ("angular_velocity_deg_s", &mut stated.angular_velocity_rad_s, &f64::to_radians),
+        ("horizontal_velocity_m_s", &mut stated.horizontal_velocity_m_s, as_it_stands),
         ("impact_velocity_percent", &mut stated.impact_velocity, percent),
         ("calibration_percent", &mut stated.calibration, percent),
         ("cross_axis_percent", &mut stated.cross_axis, percent),

@@ -17,6 +17,9 @@ pub(in super::super) fn cask_file(sources: &[&str]) -> CaskFile {
         sample_rate_hz: None,
         time: None,
         coupling: Coupling::Dc,
+        calibration: None,
+        reference: None,
+        lateral_m: 0.0,
     });
     CaskFile {
         path: "box.toml".into(),
@@ -31,13 +34,7 @@ pub(in super::super) fn cask_file(sources: &[&str]) -> CaskFile {
             inertia_kg_m2: 1.0,
             is_body: false,
         },
-        drop: Drop {
-            height_m: 1.0,
-            angle_rad: 0.1,
-            impact_velocity_m_s: 4.4,
-            impact_velocity_given: false,
-            gravity_m_s2: 9.81,
-        },
+        drop: Drop { impact_velocity_m_s: 4.4, ..Drop::of_height(1.0, 0.1) },
         contact: Contact::Rough,
         filter: FilterChoice::Auto,
         tolerances: crate::data::Tolerances::default(),

@@ -204,6 +204,9 @@ pub(in crate::ingest) fn cask_file(sources: &[&str]) -> CaskFile {
         sample_rate_hz: None,
         time: None,
         coupling: Coupling::Dc,
+        calibration: None,
+        reference: None,
+        lateral_m: 0.0,
     });
     CaskFile {
         path: "cask.toml".into(),
@@ -218,13 +221,7 @@ pub(in crate::ingest) fn cask_file(sources: &[&str]) -> CaskFile {
             inertia_kg_m2: 1.0 / 12.0,
             is_body: false,
         },
-        drop: Drop {
-            height_m: 9.0,
-            angle_rad: 0.2,
-            impact_velocity_m_s: 13.3,
-            impact_velocity_given: false,
-            gravity_m_s2: 9.81,
-        },
+        drop: Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, 0.2) },
         contact: Contact::Rough,
         filter: FilterChoice::Auto,
         tolerances: crate::data::Tolerances::default(),

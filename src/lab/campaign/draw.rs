@@ -1,10 +1,10 @@
 //! Random numbers to a drop: the cask, how it falls and what its ends do, as they are and as they are stated.
 
-use crate::data::{Cask, CaskFile, Contact, Drop, End, Tolerances};
+use crate::data::{Cask, CaskFile, Contact, Drop, End};
 use crate::lab::chance::{Chance, round};
 use crate::lab::damage::{BetweenImpacts, Wish};
 use crate::lab::data::{BendingMode, Scene, SimulatedMotion, Truth, WantedImpact};
-use crate::lab::drawn::{BUILDS, DrawnDrop, GRAVITY_M_S2, cask_file, fall};
+use crate::lab::drawn::{BUILDS, DrawnDrop, GRAVITY_M_S2, cask_file, fall, tolerances};
 use crate::lab::synth;
 use std::collections::BTreeMap;
 
@@ -14,6 +14,9 @@ const OVERTONES: [f64; 3] = [1.0, 2.757, 5.404];
 /// A drop counts where it has a slap-down of this kind: k within, flight at least, s.
 const K_RANGE: (f64, f64) = (0.02, 0.98);
 const SHORTEST_FLIGHT_S: f64 = 8e-3;
+
+/// The least friction between two bodies that nobody greased.
+const LEAST_FRICTION: f64 = 0.1;
 
 /// Draws of a scene that gave no such drop, by what they lack.
 pub(super) type Redraws = BTreeMap<&'static str, u32>;
@@ -73,32 +76,38 @@ fn lacks(truth: &Truth, wish: &Wish) -> Option<&'static str> {
 
 /// One attempt: the scene as it is and the cask file, both still without channels.
 fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene, CaskFile) {
-    let tolerances = Tolerances::default();
     let mut defaults = vec!["drop.gravity_m_s2".to_owned()];
     let stated = cask(chance, &mut defaults);
+    let tolerances = tolerances(&defaults);
     let stated_drop = falls(chance, angle_deg, wish);
     let (drawn, is_said) = contact(chance);
-    let stated_contact = wish.contact.unwrap_or(drawn);
-    if stated_contact == Contact::Rough && !is_said {
+    let stated_contact = wish.contact.unwrap_or(if is_said { drawn } else { Contact::Unknown });
+    if stated_contact == Contact::Unknown {
         defaults.push("contact.friction".to_owned());
     }
     let off = if exact { 0.0 } else { 1.0 };
     let cask = Cask {
+        length_m: stated.length_m * (1.0 + off * chance.within(tolerances.length)),
+        height_m: stated.height_m * (1.0 + off * chance.within(tolerances.height)),
         cog_m: stated.cog_m + off * chance.within(tolerances.cog_m),
         inertia_kg_m2: stated.inertia_kg_m2 * (1.0 + off * chance.within(tolerances.inertia)),
         ..stated.clone()
     };
     let v0_m_s = stated_drop.impact_velocity_m_s * (1.0 + off * chance.within(tolerances.impact_velocity));
     let angle_rad = stated_drop.angle_rad + off * chance.within(tolerances.angle_rad);
+    let angular_velocity_rad_s = off * chance.within(tolerances.angular_velocity_rad_s);
+    let a_m = cask.cog_m * angle_rad.cos() - cask.height_m / 2.0 * angle_rad.sin();
     let drop = Drop {
         // The height that gives this speed, so that the fall lasts as long as it should.
         height_m: v0_m_s * v0_m_s / (2.0 * GRAVITY_M_S2),
-        impact_velocity_m_s: v0_m_s,
+        impact_velocity_m_s: v0_m_s - angular_velocity_rad_s * a_m,
         angle_rad: angle_rad.max(0.5_f64.to_radians()),
+        angular_velocity_rad_s,
+        horizontal_velocity_m_s: off * chance.within(tolerances.horizontal_velocity_m_s),
         ..stated_drop
     };
     let [first, second] = impacts(chance);
-    let share = off * chance.within(tolerances.friction);
+    let (share, friction) = (off * chance.within(tolerances.friction), chance.even(LEAST_FRICTION, 1.0));
     let mut scene = Scene {
         name: cask.name.clone(),
         seed: chance.seed(),
@@ -118,7 +127,11 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
     };
     if wish.contact.is_none() && share != 0.0 {
         let held = Scene { contact: Contact::Rough, ..scene.clone() };
-        scene.contact = loosened(stated_contact, impulse_ratio(&synth::simulate(&held)), share);
+        let holds = impulse_ratio(&synth::simulate(&held));
+        scene.contact = match stated_contact {
+            Contact::Unknown => Contact::Coulomb(friction),
+            stated => loosened(stated, holds, share),
+        };
     }
     (scene, cask_file(stated, stated_drop, stated_contact, defaults))
 }
@@ -135,17 +148,15 @@ fn impulse_ratio(motion: &SimulatedMotion) -> f64 {
     if up > 0.0 { along / up } else { 0.0 }
 }
 
-/// The contact a share of the way from one law to the other: of sticking, which takes a friction of `holds`, towards smooth; of what slides
-/// towards sticking.
+/// The contact with its friction off by a share of it; of rough and smooth ones by a share of what sticking takes, `holds`.
 fn loosened(contact: Contact, holds: f64, share: f64) -> Contact {
-    let slides = match contact {
-        Contact::Smooth => Some(0.0),
-        Contact::Coulomb(mu) if mu < holds => Some(mu),
-        _ => None,
-    };
-    // Nothing is smoother than smooth, and no corner sticks better than it sticks.
-    let mu = slides.map_or(holds * (1.0 - share.abs()), |mu| (mu + share * (holds - mu)).abs());
-    if holds > 0.0 { Contact::Coulomb(mu) } else { contact }
+    // Nothing is smoother than smooth.
+    match contact {
+        Contact::Coulomb(mu) => Contact::Coulomb(mu * (1.0 + share)),
+        Contact::Smooth if holds > 0.0 => Contact::Coulomb(holds * share.abs()),
+        Contact::Rough if holds > 0.0 => Contact::Coulomb(holds * (1.0 + share)),
+        contact => contact,
+    }
 }
 
 /// One of the casks; four in ten are stretched, one in four states its centre of gravity, one in four its inertia.
@@ -180,7 +191,7 @@ fn falls(chance: &mut Chance, angle_deg: f64, wish: &Wish) -> Drop {
     fall(height_m, angle_deg.to_radians())
 }
 
-/// The contact of L, and whether the cask file says it where it is the default.
+/// The contact of L, and whether the cask file says it: four times in ten it does not.
 fn contact(chance: &mut Chance) -> (Contact, bool) {
     let part = chance.even(0.0, 1.0);
     let contact = match part {
@@ -188,7 +199,7 @@ fn contact(chance: &mut Chance) -> (Contact, bool) {
         part if part < 0.87 => Contact::Smooth,
         _ => Contact::Coulomb(round(chance.even(0.1, 0.9), 2)),
     };
-    (contact, part < 0.4)
+    (contact, !(0.4..0.8).contains(&part))
 }
 
 /// What both ends do: pulses of 1 to 20 ms, one in four of the first with a force plateau.

@@ -196,7 +196,7 @@ fn restitution(row: &CampaignRow) -> f64 {
     row.truth.k.unwrap_or(f64::NAN)
 }
 
-const CLASSES: [(&str, Belongs); 27] = [
+const CLASSES: [(&str, Belongs); 28] = [
     ("angle below 5°", |row| angle_deg(row) < 5.0),
     ("angle 5 to 30°", |row| (5.0..=30.0).contains(&angle_deg(row))),
     ("angle above 30°", |row| angle_deg(row) > 30.0),
@@ -220,6 +220,7 @@ const CLASSES: [(&str, Belongs); 27] = [
     ("drop below 3 m", |row| row.stated.drop.height_m < 3.0),
     ("rough", |row| row.stated.contact == Contact::Rough),
     ("smooth", |row| row.stated.contact == Contact::Smooth),
+    ("unknown", |row| row.stated.contact == Contact::Unknown),
     ("Coulomb", |row| matches!(row.stated.contact, Contact::Coulomb(_))),
     ("with an axial channel", |row| row.scene.channels.iter().any(|c| c.axis == Axis::Axial)),
     ("force plateau", |row| row.scene.first_end.yield_n.is_some()),

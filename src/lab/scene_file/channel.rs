@@ -71,6 +71,9 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
         polarity: polarity(table)?,
         full_scale,
         coupling: if is_hidden { Coupling::Dc } else { coupling },
+        calibration: None,
+        reference: None,
+        lateral_m: 0.0,
         ..stated(&channel)
     };
     Ok((channel, stated))

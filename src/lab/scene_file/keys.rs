@@ -17,13 +17,15 @@ pub(super) static TABLES: [KeyTable; 8] = [
     KeyTable { name: "channel", remark: "", keys: &CHANNEL },
 ];
 
-const DROP: [Key; 6] = {
-    let [height, angle, velocity, gravity] = keys::DROP;
+const DROP: [Key; 8] = {
+    let [height, angle, velocity, gravity, turning, along] = keys::DROP;
     [
         height,
         angle.within(0.1, 89.0, "flat, both ends strike at once; upright, none slaps down"),
         velocity,
         gravity,
+        turning,
+        along,
         number("stated_height_m", "").above_zero(),
         number("stated_angle_deg", "").within(0.0, 90.0, "degrees, for the cask file"),
     ]

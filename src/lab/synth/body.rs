@@ -67,7 +67,7 @@ impl<'a> SceneBody<'a> {
                 CrushingCorner::new(scene.second_end, mass_kg, false),
             ],
             friction: match scene.contact {
-                Contact::Rough => ROUGH,
+                Contact::Rough | Contact::Unknown => ROUGH,
                 Contact::Smooth => 0.0,
                 Contact::Coulomb(coefficient) => coefficient,
             },
@@ -78,10 +78,14 @@ impl<'a> SceneBody<'a> {
 
     /// The state at first contact: L at the target, all of the body at the impact velocity.
     pub(super) fn at_first_contact(&self) -> State {
+        let drop = &self.scene.drop;
         let mut y = State::zeros();
-        y[2] = self.scene.drop.angle_rad;
-        y[4] = -self.scene.drop.impact_velocity_m_s;
-        y[1] = -self.corner(0, &y).z_m;
+        y[2] = drop.angle_rad;
+        let first = self.corner(0, &y);
+        y[1] = -first.z_m;
+        y[3] = drop.horizontal_velocity_m_s;
+        y[5] = -drop.angular_velocity_rad_s;
+        y[4] = -drop.impact_velocity_m_s - y[5] * first.x_m;
         y
     }
 

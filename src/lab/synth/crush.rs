@@ -29,7 +29,7 @@ pub fn crushable_end(
     let along = 1.0 / cask.mass_kg + up_m * up_m / cask.inertia_kg_m2;
     let sticking = crosswise / along;
     let friction = match contact {
-        Contact::Rough => sticking,
+        Contact::Rough | Contact::Unknown => sticking,
         Contact::Smooth => 0.0,
         // Friction beyond what sticking needs is not called up.
         Contact::Coulomb(coefficient) => sticking.signum() * coefficient.min(sticking.abs()),

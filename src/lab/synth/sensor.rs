@@ -20,7 +20,8 @@ pub fn specific_force_m_s2(
 ) -> Vec<f64> {
     let drop = &scene.drop;
     let release_s = -(2.0 * drop.height_m / drop.gravity_m_s2).sqrt();
-    let (sin, cos) = drop.angle_rad.sin_cos();
+    // What turns in the fall hung at another angle before it.
+    let (sin, cos) = (drop.angle_rad - drop.angular_velocity_rad_s * release_s).sin_cos();
     let hanging_m_s2 = drop.gravity_m_s2 * if channel.axis == Axis::Transverse { cos } else { sin };
     let shapes: Vec<f64> = scene
         .modes

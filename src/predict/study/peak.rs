@@ -228,11 +228,8 @@ mod tests {
         let body = crate::predict::body(&cask, crate::data::BodyModel::Body);
         let at = |angle_deg: f64| {
             let drop = crate::data::Drop {
-                height_m: 9.0,
-                angle_rad: angle_deg.to_radians(),
                 impact_velocity_m_s: 13.288,
-                impact_velocity_given: false,
-                gravity_m_s2: 9.81,
+                ..crate::data::Drop::of_height(9.0, angle_deg.to_radians())
             };
             Sample::new(angle_deg, &crate::predict::predict(&body, &drop, crate::data::Contact::Smooth, 1.0))
         };

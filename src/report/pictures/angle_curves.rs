@@ -46,7 +46,7 @@ pub(super) fn components(study: &Study, contact: Contact, name: &str) -> Picture
     let figure = match contact {
         Contact::Smooth => " ([P] Fig. 4)",
         Contact::Rough => " ([P] Fig. 5)",
-        Contact::Coulomb(_) => "",
+        Contact::Coulomb(_) | Contact::Unknown => "",
     };
     let contact = contact_words(contact);
     let many =

@@ -189,7 +189,7 @@ fn value_of(row: &PredictionRow, variable: SweepVariable) -> Option<f64> {
         SweepVariable::Friction => match row.prediction.contact {
             Contact::Coulomb(coefficient) => Some(coefficient),
             Contact::Smooth => Some(0.0),
-            Contact::Rough => None,
+            Contact::Rough | Contact::Unknown => None,
         },
         SweepVariable::Length => Some(row.length_m),
         SweepVariable::DropHeight => Some(row.drop_height_m),

@@ -74,7 +74,7 @@ pub struct Outcome {
 /// The coefficient that a contact law puts on the tangential impulse.
 pub fn friction(contact: Contact) -> f64 {
     match contact {
-        Contact::Rough => f64::INFINITY,
+        Contact::Rough | Contact::Unknown => f64::INFINITY,
         Contact::Smooth => 0.0,
         Contact::Coulomb(coefficient) => coefficient,
     }

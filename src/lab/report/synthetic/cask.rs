@@ -37,6 +37,9 @@ pub(super) fn text(file: &CaskFile, places: &[SyntheticPlace], recording_name: &
     line(text, "angle_deg", round(drop.angle_rad.to_degrees(), 9));
     given(text, "impact_velocity_m_s", drop.impact_velocity_given.then_some(drop.impact_velocity_m_s));
     given(text, "gravity_m_s2", stated("drop.gravity_m_s2", drop.gravity_m_s2));
+    let turning = Some(drop.angular_velocity_rad_s.to_degrees()).filter(|turning| *turning != 0.0);
+    given(text, "angular_velocity_deg_s", turning);
+    given(text, "horizontal_velocity_m_s", Some(drop.horizontal_velocity_m_s).filter(|along| *along != 0.0));
     if stated("contact.friction", 0.0).is_some() {
         *text += "\n[contact]\n";
         match file.contact {
