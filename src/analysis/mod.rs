@@ -1,5 +1,6 @@
 //! A recording and a cask file to everything that can be said of the drop: the order of the whole.
 
+mod again;
 mod flight;
 mod impact;
 mod measured;
@@ -23,7 +24,11 @@ use reached::Reached;
 #[must_use]
 pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     // On a thread of the pool: any other would be put to sleep and woken again for each piece of work that two threads share.
-    rayon::scope(|_| analyzed(recording, cask_file))
+    rayon::scope(|_| {
+        let mut found = again::without_one(recording, cask_file, analyzed(recording, cask_file));
+        again::name_slip(recording, cask_file, &mut found);
+        found
+    })
 }
 
 fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
