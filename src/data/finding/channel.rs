@@ -9,6 +9,9 @@ const AS_FAR_AS_TOLD: &str = "k and the slap-down velocity are had only as far a
 const ONE_TRIGGER: &str =
     "the channels' clocks are apart; record them with one trigger, or shift the channel";
 
+/// Times that a sentence lists.
+const MOST_TIMES: usize = 8;
+
 /// The part of a drop in which a channel clips.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum During {
@@ -85,6 +88,8 @@ pub enum ChannelFinding {
     OffLine { off_m_s: f64, u_m_s: f64 },
     /// No force from one time to another after first contact, and then again.
     ForceRests { from_s: f64, to_s: f64 },
+    /// Something strikes the cask in the flight, so long after first contact each; `far` of the hardest in spreads of what ringing leaves.
+    Struck { after_s: Vec<f64>, far: f64 },
     /// The channel answers before the first end is struck.
     AnswersEarly { delay_s: f64, u_s: f64, is_shifted: bool },
     /// The channel answers later than the slowest bending wave, which takes `wave_s`.
@@ -123,7 +128,9 @@ impl ChannelFinding {
             Self::OffsetLeftIn { severity, .. } => (Code::Offset, severity),
             Self::Polarity => (Code::Polarity, Error),
             Self::ZeroShift { severity, .. } => (Code::ZeroShift, severity),
-            Self::LateMismatch { .. } | Self::ForceRests { .. } => (Code::SecondContact, Warning),
+            Self::LateMismatch { .. } | Self::ForceRests { .. } | Self::Struck { .. } => {
+                (Code::SecondContact, Warning)
+            }
             Self::Unexplained { .. } => (Code::FlightFit, Warning),
             Self::OffLine { .. } => (Code::NotRigid, Warning),
             Self::AnswersEarly { .. } | Self::AnswersLate { .. } => (Code::Skew, Warning),
@@ -271,6 +278,16 @@ impl ChannelFinding {
                 1e3 * from_s,
                 1e3 * to_s
             ),
+            Self::Struck { after_s, far } => {
+                let mut times: Vec<String> = after_s.iter().map(|t| format!("{:.1}", 1e3 * t)).collect();
+                if times.len() > MOST_TIMES {
+                    times.splice(MOST_TIMES.., [format!("… {} in all", after_s.len())]);
+                }
+                format!(
+                    "{name} shows blows in the flight, at {} ms after first contact, the hardest {far:.0} times what ringing and noise leave: contents that are loose and strike the cask, or a cable; the velocity steps mix what was before with what came after, and k and the slap-down speed may be off by more than their intervals; fasten the contents, or read the speed from the film",
+                    times.join(", ")
+                )
+            }
             Self::AnswersEarly { delay_s, u_s, is_shifted } => format!(
                 "{name} answers the first impact {} before the first end is struck, which no body does: {ONE_TRIGGER}{}",
                 size_ms(*delay_s, *u_s),
