@@ -84,6 +84,8 @@ pub enum ChannelFinding {
     LateMismatch { mismatch_m_s: f64 },
     /// Plateau and modes leave too much of the flight.
     Unexplained { modes: usize, residual_m_s: f64, u_m_s: f64 },
+    /// What was fitted as a mode bends this channel's plateau alone.
+    Bend { frequency_hz: f64, size_m_s: f64 },
     /// The velocity step is off the line through the other channels' ones.
     OffLine { off_m_s: f64, u_m_s: f64 },
     /// No force from one time to another after first contact, and then again.
@@ -131,7 +133,7 @@ impl ChannelFinding {
             Self::LateMismatch { .. } | Self::ForceRests { .. } | Self::Struck { .. } => {
                 (Code::SecondContact, Warning)
             }
-            Self::Unexplained { .. } => (Code::FlightFit, Warning),
+            Self::Unexplained { .. } | Self::Bend { .. } => (Code::FlightFit, Warning),
             Self::OffLine { .. } => (Code::NotRigid, Warning),
             Self::AnswersEarly { .. } | Self::AnswersLate { .. } => (Code::Skew, Warning),
             Self::AnswersAsAWave { .. } => (Code::Skew, Note),
@@ -268,6 +270,9 @@ impl ChannelFinding {
             Self::Unexplained { modes, residual_m_s, u_m_s } => format!(
                 "the flight of {name} is not explained by a plateau and {modes} modes: {residual_m_s:.2} m/s are left, and its velocity step is known to ± {:.2} m/s",
                 2.0 * u_m_s
+            ),
+            Self::Bend { frequency_hz, size_m_s } => format!(
+                "{name} swings by {size_m_s:.2} m/s at {frequency_hz:.0} Hz in the flight, which the other end does not: a cask rings at both ends, so that is a cable that whips, a loose mount or a slow drift of the sensor, and the velocity step is known only to about as much; fasten cable and sensor"
             ),
             Self::OffLine { off_m_s, u_m_s } => format!(
                 "{name} gains {off_m_s:+.2} ± {:.2} m/s more in the first impact than the other channels have a rigid body gain there: check its scale, polarity, position and mount, or leave it out of the cask file",
