@@ -2,7 +2,7 @@
 
 use super::flight::Flown;
 use super::impact::Impact;
-use crate::data::{BodyModel, CaskFile, Comparison, Events, Finding, GRAZE_SHARE, ModelChoice};
+use crate::data::{BodyModel, CaskFile, Comparison, Events, Finding, GRAZE_SHARE, IssueCode, ModelChoice};
 use crate::{compare, judge, predict};
 
 /// What is measured beside what is predicted.
@@ -30,6 +30,10 @@ impl Measured {
         let mut is_told = judge::tells_lost_steps(reconstruction, known, impact.recorded(), contact_s);
         if !findings.iter().any(|issue| judge::invalidates(issue, is_told)) {
             findings.extend(of_motion(flown, impact, events, file));
+            // One blow is told once.
+            if findings.iter().all(|f| f.code != IssueCode::SecondContact) {
+                findings.extend(judge::judge_blows(impact.recorded(), flight, events, findings));
+            }
         }
         is_told &= !findings.iter().any(judge::contradicts_motion);
         if findings.iter().any(|issue| judge::invalidates(issue, is_told)) {

@@ -1,5 +1,6 @@
 //! What the free-flight window gave: a plateau per channel, and the modes that ring on it.
 
+use super::{Axis, End, Signal};
 use serde::Serialize;
 
 /// One damped bending mode in the flight window.
@@ -88,7 +89,28 @@ const TOLD_APART_PERIODS: f64 = 1.5;
 /// bend around whatever else the window holds, a part of the contact first of all.
 const RESOLVED: f64 = 0.5;
 
+/// A mode so many times larger at one end than at the other rings at that one alone: both ends of a free beam do alike.
+const ALONE: f64 = 10.0;
+/// No cask bends more slowly, Hz: a mode this slow stands at the edge of what is sought.
+const SLOWEST_HZ: f64 = 16.5;
+
 impl FlightFit {
+    /// Whether a mode is none, but a bend of one channel's plateau: at one end alone, and of less than a period or slower than any cask's.
+    #[must_use]
+    pub fn is_bend(&self, mode: usize, signals: &[Signal]) -> bool {
+        let frequency_hz = self.modes.get(mode).map_or(f64::INFINITY, |m| m.frequency_hz);
+        let largest_m_s = |end: End| {
+            let of_end = signals
+                .iter()
+                .zip(&self.plateaus)
+                .filter(|(s, _)| s.end == end && s.axis == Axis::Transverse);
+            of_end.filter_map(|(_, p)| p.ringing_m_s.get(mode)).map(|(a, b)| a.hypot(*b)).fold(0.0, f64::max)
+        };
+        let (first, second) = (largest_m_s(End::First), largest_m_s(End::Second));
+        let is_slow = frequency_hz < SLOWEST_HZ || frequency_hz * (self.to_s - self.from_s) < 1.0;
+        is_slow && first.max(second) > ALONE * first.min(second)
+    }
+
     /// How many periods of its slowest mode it shows; infinite without modes.
     #[must_use]
     pub fn periods(&self) -> f64 {
@@ -147,6 +169,45 @@ mod tests {
         assert!(!flight(0.049, &[30.0, 80.0]).is_told_apart());
         assert!(flight(0.051, &[30.0, 80.0]).is_told_apart());
         assert!(flight(0.001, &[]).is_told_apart(), "nothing rings");
+    }
+
+    #[test]
+    fn a_slow_swing_of_one_end_is_no_mode() {
+        let signal = |end| Signal {
+            name: "A".into(),
+            end,
+            axis: Axis::Transverse,
+            position_m: 0.0,
+            offset_m: 0.0,
+            start_s: 0.0,
+            sample_rate_hz: 1e4,
+            force_m_s2: vec![],
+            removed_offset_m_s2: 0.0,
+            u_offset_m_s2: 0.0,
+            noise_m_s2: 0.0,
+            noise_spectrum: vec![],
+            free_fall_s: 0.0,
+            clipped: vec![],
+            gaps: vec![],
+        };
+        let signals = [signal(End::First), signal(End::Second)];
+        let is_bend = |length_s: f64, frequency_hz: f64, second_m_s: f64| {
+            let plateau = |size_m_s: f64| Plateau {
+                channel: "A".into(),
+                velocity_step_m_s: 0.0,
+                u_m_s: 0.0,
+                zero_shift_m_s2: 0.0,
+                u_zero_shift_m_s2: 0.0,
+                residual_m_s: 0.0,
+                ringing_m_s: vec![(0.0, size_m_s)],
+                late_mismatch_m_s: None,
+            };
+            let plateaus = vec![plateau(1.0), plateau(second_m_s)];
+            FlightFit { plateaus, ..flight(length_s, &[frequency_hz]) }.is_bend(0, &signals)
+        };
+        assert!(is_bend(0.04, 20.0, 0.05) && is_bend(0.1, 15.0, 20.0));
+        assert!(!is_bend(0.04, 20.0, 0.2), "both ends ring");
+        assert!(!is_bend(0.06, 20.0, 0.05), "more than a period is a mode with a node there");
     }
 
     #[test]

@@ -320,7 +320,12 @@ fn u_step_m_s(measured: &Basis, channel: usize) -> f64 {
         .modes
         .iter()
         .zip(&plateau.ringing_m_s)
-        .map(|(mode, (a, b))| {
+        .enumerate()
+        .map(|(i, (mode, (a, b)))| {
+            // What is no mode bends the plateau, which may lie anywhere along it.
+            if measured.flight.is_bend(i, measured.signals) {
+                return a.hypot(*b);
+            }
             let periods = mode.frequency_hz * flight_s;
             // A mode of which the flight shows less than a period looks like a bend of the plateau.
             RINGING_SHARE * a.hypot(*b) / periods.min(periods * periods)

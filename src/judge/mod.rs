@@ -1,5 +1,6 @@
 //! Everything found on the way to findings and a verdict: what speaks against the result.
 
+mod blows;
 mod channels;
 mod closures;
 mod copies;
@@ -14,6 +15,7 @@ mod skew;
 mod strike;
 mod worth;
 
+pub use blows::judge_blows;
 pub use channels::{is_cut_off, judge_channels};
 pub use closures::{judge_closures, tells_lost_steps};
 pub use copies::judge_copies;

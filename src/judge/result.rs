@@ -27,6 +27,8 @@ const LARGE_RESIDUAL_SHORT: f64 = 0.015;
 const LARGE_MISMATCH_M_S: f64 = 0.2;
 /// A velocity step whose standard uncertainty is above this share of v0 says little: 4 ± 2.7 m/s of 13.3 m/s.
 const LARGE_U_SHARE: f64 = 0.1;
+/// A bend of one channel's plateau below this share of v0 changes the speed by less than its interval.
+const LARGE_BEND: f64 = 0.01;
 
 /// Checks the motion against what a dropped cask can do.
 #[must_use]
@@ -38,7 +40,7 @@ pub fn judge_motion(
     quantities: &Quantities,
 ) -> Vec<Finding> {
     let mut findings = signs(signals, flight);
-    findings.extend(of_flight(flight, quantities));
+    findings.extend(of_flight(signals, flight, quantities));
     let mut add = |found: DropFinding| findings.push(found.into());
     let k = quantities.k;
     let beyond = k.value + k.u95 < 0.0 || k.value - k.u95 > 1.0;
@@ -92,9 +94,10 @@ fn signs(signals: &[Signal], flight: &FlightFit) -> Vec<Finding> {
         .collect()
 }
 
-fn of_flight(flight: &FlightFit, quantities: &Quantities) -> Vec<Finding> {
+fn of_flight(signals: &[Signal], flight: &FlightFit, quantities: &Quantities) -> Vec<Finding> {
     let v0_m_s = quantities.impact_velocity.value;
     let mut findings = Vec::from_iter(unresolved(flight));
+    findings.extend(bends(flight, signals, v0_m_s));
     let shorter = quantities.flight_time.filter(|flown| flown.value < flown.u95);
     findings.extend(shorter.map(|flight_time| DropFinding::NoFlight { flight_time }.into()));
     for plateau in &flight.plateaus {
@@ -129,6 +132,19 @@ fn unresolved(flight: &FlightFit) -> Option<Finding> {
     let modes_hz = flight.modes.iter().map(|m| m.frequency_hz).collect();
     let found = DropFinding::Unresolved { flight_s: flight.to_s - flight.from_s, modes_hz };
     (!flight.resolves_modes()).then(|| Finding::from(found).between(flight.from_s, flight.to_s))
+}
+
+/// Modes that are none, each on the channel that shows it most.
+fn bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
+    let of_mode = |i: usize| {
+        let size_m_s = |p: &Plateau| p.ringing_m_s.get(i).map_or(0.0, |(a, b)| a.hypot(*b));
+        let on = flight.plateaus.iter().max_by(|a, b| size_m_s(a).total_cmp(&size_m_s(b)))?;
+        let found =
+            ChannelFinding::Bend { frequency_hz: flight.modes[i].frequency_hz, size_m_s: size_m_s(on) };
+        (size_m_s(on) > LARGE_BEND * v0_m_s && flight.is_bend(i, signals))
+            .then(|| found.on(&on.channel).between(flight.from_s, flight.to_s))
+    };
+    (0..flight.modes.len()).filter_map(of_mode).collect()
 }
 
 /// What a comparison that does not agree amounts to.

@@ -2,6 +2,7 @@
 
 pub mod damped_modes;
 pub mod filter;
+pub mod foretold;
 pub mod noise;
 pub mod prior_fit;
 pub mod projection;

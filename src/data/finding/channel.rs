@@ -10,6 +10,9 @@ const AS_FAR_AS_TOLD: &str = "k and the slap-down velocity are had only as far a
 const ONE_TRIGGER: &str =
     "the channels' clocks are apart; record them with one trigger, or shift the channel";
 
+/// Times that a sentence lists.
+const MOST_TIMES: usize = 8;
+
 /// The part of a drop in which a channel clips.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum During {
@@ -89,10 +92,14 @@ pub enum ChannelFinding {
     LateMismatch { mismatch_m_s: f64 },
     /// Plateau and modes leave too much of the flight.
     Unexplained { modes: usize, residual_m_s: f64, u_m_s: f64 },
+    /// What was fitted as a mode bends this channel's plateau alone.
+    Bend { frequency_hz: f64, size_m_s: f64 },
     /// The velocity step is off the line through the other channels' ones.
     OffLine { off_m_s: f64, u_m_s: f64 },
     /// No force from one time to another after first contact, and then again.
     ForceRests { from_s: f64, to_s: f64 },
+    /// Something strikes the cask in the flight, so long after first contact each; `far` of the hardest in spreads of what ringing leaves.
+    Struck { after_s: Vec<f64>, far: f64 },
     /// The channel answers before the first end is struck.
     AnswersEarly { delay_s: f64, u_s: f64, is_shifted: bool },
     /// The channel answers later than the slowest bending wave, which takes `wave_s`.
@@ -134,8 +141,10 @@ impl ChannelFinding {
             Self::OffsetLeftIn { severity, .. } => (Code::Offset, severity),
             Self::Polarity => (Code::Polarity, Error),
             Self::ZeroShift { severity, .. } => (Code::ZeroShift, severity),
-            Self::LateMismatch { .. } | Self::ForceRests { .. } => (Code::SecondContact, Warning),
-            Self::Unexplained { .. } => (Code::FlightFit, Warning),
+            Self::LateMismatch { .. } | Self::ForceRests { .. } | Self::Struck { .. } => {
+                (Code::SecondContact, Warning)
+            }
+            Self::Unexplained { .. } | Self::Bend { .. } => (Code::FlightFit, Warning),
             Self::OffLine { .. } => (Code::NotRigid, Warning),
             Self::AnswersEarly { .. } | Self::AnswersLate { .. } => (Code::Skew, Warning),
             Self::AnswersAsAWave { .. } => (Code::Skew, Note),
@@ -284,6 +293,9 @@ impl ChannelFinding {
                 "the flight of {name} is not explained by a plateau and {modes} modes: {residual_m_s:.2} m/s are left, and its velocity step is known to ± {:.2} m/s",
                 2.0 * u_m_s
             ),
+            Self::Bend { frequency_hz, size_m_s } => format!(
+                "{name} swings by {size_m_s:.2} m/s at {frequency_hz:.0} Hz in the flight, which the other end does not: a cask rings at both ends, so that is a cable that whips, a loose mount or a slow drift of the sensor, and the velocity step is known only to about as much; fasten cable and sensor"
+            ),
             Self::OffLine { off_m_s, u_m_s } => format!(
                 "{name} gains {off_m_s:+.2} ± {:.2} m/s more in the first impact than the other channels have a rigid body gain there: check its scale, polarity, position and mount, or leave it out of the cask file",
                 2.0 * u_m_s
@@ -293,6 +305,16 @@ impl ChannelFinding {
                 1e3 * from_s,
                 1e3 * to_s
             ),
+            Self::Struck { after_s, far } => {
+                let mut times: Vec<String> = after_s.iter().map(|t| format!("{:.1}", 1e3 * t)).collect();
+                if times.len() > MOST_TIMES {
+                    times.splice(MOST_TIMES.., [format!("… {} in all", after_s.len())]);
+                }
+                format!(
+                    "{name} shows blows in the flight, at {} ms after first contact, the hardest {far:.0} times what ringing and noise leave: contents that are loose and strike the cask, or a cable; the velocity steps mix what was before with what came after, and k and the slap-down speed may be off by more than their intervals; fasten the contents, or read the speed from the film",
+                    times.join(", ")
+                )
+            }
             Self::AnswersEarly { delay_s, u_s, is_shifted } => format!(
                 "{name} answers the first impact {} before the first end is struck, which no body does: {ONE_TRIGGER}{}",
                 size_ms(*delay_s, *u_s),

@@ -1,0 +1,199 @@
+//! A flight to the blows in it that its ringing does not foretell: loose contents that strike the cask, once or in a train.
+
+use crate::data::{ChannelFinding, Events, Finding, FlightFit, IssueCode, Signal};
+use crate::numerics::as_f64;
+use crate::numerics::foretold::{MOST_BEFORE, foretell};
+use crate::numerics::reduce::{block_means, block_of, least_step, peak};
+use std::ops::Range;
+
+/// Samples are looked at in means over this rate, Hz: a blow lasts one to some milliseconds.
+const RATE_HZ: f64 = 8_000.0;
+/// Stretches that are looked at by themselves, s: what rings at the beginning of a long flight is gone at its end, and so is what it leaves.
+const PIECE_S: f64 = 0.1;
+/// A mean so many spreads off what those before it foretell is a blow: sound drops leave 7 at the most, contents that spoil a result 12 and more.
+const LIMIT: f64 = 9.5;
+/// The spread is no less than this share of the largest mean: what is smaller changes no velocity by 1 % of v0.
+const LEAST_SPREAD: f64 = 3e-4;
+/// Least step of a converter that is told from rounding, as a share of the largest sample.
+const LEAST_STEP: f64 = 1e-9;
+/// Before the slap-down that was found may lie its foot: so long, s, and this share of the flight.
+const FOOT_S: f64 = 1e-3;
+const FOOT: f64 = 0.06;
+/// What is nearer is one blow, s.
+const APART_S: f64 = 3e-3;
+
+/// The channel that is struck hardest in the flight, with the times; `found` says which channels are disturbed there.
+#[must_use]
+pub fn judge_blows(
+    signals: &[Signal],
+    flight: &FlightFit,
+    events: &Events,
+    found: &[Finding],
+) -> Option<Finding> {
+    let contact_s = events.first_contact_s()?;
+    let foot_s = |struck_s: f64| FOOT_S + FOOT * (struck_s - flight.from_s);
+    let span_s = flight.from_s..events.slap_down_s().map_or(flight.to_s, |t| t - foot_s(t));
+    let whole = signals.iter().filter(|s| !is_disturbed(s, &span_s, found));
+    let struck = whole.map(|s| (s, blows(s, &span_s)));
+    let (signal, blows) = struck.max_by(|a, b| hardest(&a.1).total_cmp(&hardest(&b.1)))?;
+    let mut times_s: Vec<f64> = blows.iter().filter(|b| b.far > LIMIT).map(|b| b.time_s).collect();
+    let (first_s, last_s) = (*times_s.first()?, *times_s.last()?);
+    let mut before_s = f64::NEG_INFINITY;
+    times_s.retain(|&t| t - std::mem::replace(&mut before_s, t) > APART_S);
+    let after_s = times_s.iter().map(|t| t - contact_s).collect();
+    Some(ChannelFinding::Struck { after_s, far: hardest(&blows) }.on(&signal.name).between(first_s, last_s))
+}
+
+/// Whether samples are lost, clipped or spiked between two times.
+fn is_disturbed(signal: &Signal, span_s: &Range<f64>, found: &[Finding]) -> bool {
+    let touches = |spans: &[_]| signal.touches(spans, span_s.start, span_s.end);
+    let is_spiked = |f: &Finding| {
+        f.code == IssueCode::Spikes
+            && f.channel.as_ref() == Some(&signal.name)
+            && f.from_s.is_none_or(|t| t < span_s.end)
+            && f.to_s.is_none_or(|t| t > span_s.start)
+    };
+    touches(&signal.gaps) || touches(&signal.clipped) || found.iter().any(is_spiked)
+}
+
+/// A mean that is not foretold.
+struct Unforetold {
+    time_s: f64,
+    /// How far it is off, in spreads.
+    far: f64,
+}
+
+fn hardest(all: &[Unforetold]) -> f64 {
+    all.iter().map(|u| u.far).fold(0.0, f64::max)
+}
+
+/// How far each mean of a stretch is off; none where it is too short to say.
+fn blows(signal: &Signal, span_s: &Range<f64>) -> Vec<Unforetold> {
+    let from = signal.index_from(span_s.start);
+    let samples = signal.force_m_s2.get(from..signal.index_from(span_s.end)).unwrap_or_default();
+    let block = block_of(RATE_HZ, signal.sample_rate_hz);
+    let means = block_means(samples, block);
+    let rounding_m_s2 = rounding_of_means(samples, block);
+    let least_m_s2 = (LEAST_SPREAD * peak(&means)).max(f64::MIN_POSITIVE);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive ratio")]
+    let pieces = ((span_s.end - span_s.start) / PIECE_S).round().max(1.0) as usize;
+    let length = means.len().div_ceil(pieces).max(1);
+    let of_piece = |i: usize| {
+        // Each but the first begins within the one before, so that all of its own means are foretold.
+        let first = (i * length).saturating_sub(MOST_BEFORE);
+        let Some(foretold) =
+            foretell(means.get(first..means.len().min((i + 1) * length)).unwrap_or_default())
+        else {
+            return Vec::new();
+        };
+        let spread_m_s2 = foretold.spread.hypot(foretold.gain * rounding_m_s2).max(least_m_s2);
+        let time_s = |j: usize| signal.time_s(from + (first + foretold.before + j) * block);
+        let left = foretold.left.iter().enumerate();
+        left.map(|(j, left)| Unforetold { time_s: time_s(j), far: left.abs() / spread_m_s2 }).collect()
+    };
+    (0..pieces).flat_map(of_piece).collect()
+}
+
+/// Standard uncertainty of means by a converter's step q: q/√12 of each sample that differs from the one before, as those that do not have one error.
+fn rounding_of_means(samples: &[f64], block: usize) -> f64 {
+    let step = least_step(samples, LEAST_STEP * peak(samples));
+    let changes = samples.windows(2).filter(|w| (w[1] - w[0]).abs() >= step).count();
+    let independent = as_f64(block * changes) / as_f64(samples.len().max(1));
+    if step.is_finite() { step / (12.0 * independent.max(1.0)).sqrt() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{At, Axis, End, Span, What};
+    use std::f64::consts::{PI, TAU};
+
+    /// Two modes that ring from 20 ms on, noise of ± 0.5, and half sines of 2 ms at these times, s, with this peak.
+    fn signal(at_s: &[f64], peak: f64) -> Signal {
+        let noise = |i: u32| {
+            let mut hash = (u64::from(i) + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+            hash = (hash ^ (hash >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            f64::from(((hash >> 32) & 0xFFFF) as u16) / 65_536.0 - 0.5
+        };
+        let force = |i: u32| {
+            let t = f64::from(i) / 5e4;
+            let mode = |hz: f64, size: f64| size * (-0.02 * TAU * hz * t).exp() * (TAU * hz * t).sin();
+            let blow = |&from_s: &f64| {
+                let x = (t - from_s) / 2e-3;
+                if (0.0..1.0).contains(&x) { peak * (PI * x).sin() } else { 0.0 }
+            };
+            mode(80.0, 300.0) + mode(230.0, 100.0) + noise(i) + at_s.iter().map(blow).sum::<f64>()
+        };
+        Signal {
+            name: "A1".into(),
+            end: End::First,
+            axis: Axis::Transverse,
+            position_m: 0.1,
+            offset_m: 0.0,
+            start_s: 0.0,
+            sample_rate_hz: 5e4,
+            force_m_s2: (0..15_000).map(force).collect(),
+            removed_offset_m_s2: 0.0,
+            u_offset_m_s2: 0.0,
+            noise_m_s2: 0.5,
+            noise_spectrum: vec![],
+            free_fall_s: 0.0,
+            clipped: vec![],
+            gaps: vec![],
+        }
+    }
+
+    fn found(signal: &Signal, to_s: f64) -> Option<Finding> {
+        let flight = FlightFit {
+            from_s: 0.025,
+            to_s: 0.1,
+            plateaus: vec![],
+            modes: vec![],
+            drift: false,
+            candidates: vec![],
+            strike: None,
+        };
+        let events = Events {
+            first_contact: Some(At::exactly(0.02)),
+            slap_down: Some(At::exactly(to_s)),
+            ..Events::default()
+        };
+        judge_blows(std::slice::from_ref(signal), &flight, &events, &[])
+    }
+
+    #[test]
+    fn a_train_of_blows_is_told_with_its_times() {
+        for to_s in [0.1, 0.29] {
+            let finding = found(&signal(&[0.04, 0.052, 0.07], 60.0), to_s).expect("blows");
+            let What::Channel(ChannelFinding::Struck { after_s, .. }) = &finding.what else {
+                panic!("{finding:?}")
+            };
+            let are = after_s
+                .iter()
+                .zip([0.020, 0.032, 0.050])
+                .all(|(found, true_s)| (found - true_s).abs() < 2.5e-3);
+            assert!(after_s.len() == 3 && are, "{after_s:?}");
+        }
+    }
+
+    #[test]
+    fn ringing_is_no_blow_nor_is_the_foot_of_the_slap_down() {
+        assert!(found(&signal(&[], 0.0), 0.1).is_none());
+        assert!(found(&signal(&[], 0.0), 0.29).is_none());
+        assert!(found(&signal(&[0.096], 60.0), 0.1).is_none());
+    }
+
+    #[test]
+    fn a_coarse_converter_and_lost_samples_are_no_blow() {
+        let mut coarse = signal(&[], 0.0);
+        for f in &mut coarse.force_m_s2 {
+            *f = (*f / 20.0).round() * 20.0;
+        }
+        assert!(found(&coarse, 0.1).is_none() && found(&coarse, 0.29).is_none());
+        let mut lost = signal(&[], 0.0);
+        lost.force_m_s2[2500..2600].fill(0.0);
+        assert!(found(&lost, 0.1).is_some());
+        lost.gaps = vec![Span { from: 2500, to: 2600 }];
+        assert!(found(&lost, 0.1).is_none());
+    }
+}
