@@ -31,8 +31,10 @@ const SAME_STEP: f64 = 1e-9;
 /// From where the answer is seen on, s: where the force may still turn its direction; and lengths that are fitted from there on, s.
 const LATER_S: [f64; 3] = [0.4e-3, 0.8e-3, 1.6e-3];
 const LATER_LENGTHS_S: [f64; 3] = [1e-3, 2e-3, 4e-3];
-/// No delay explains those stretches better than one where it leaves less by so many variances of the noise: four standard deviations.
-const BETTER: f64 = 16.0;
+/// No delay explains those stretches better than one where it leaves less by so many variances of the noise: six standard deviations.
+const BETTER: f64 = 40.0;
+/// Longest that a force takes to turn its direction, s: L that slides back at 0.5 m/s is held within a millisecond, at 0.1 m/s within 0.4 ms.
+const TURNS_S: f64 = 7e-4;
 /// Delays tried in a fit, and between the best two of them.
 const TRIED: u32 = 120;
 const REFINED: u32 = 20;
@@ -185,7 +187,7 @@ impl<'a> Answering<'a> {
             u_s = u_s.max(taken.delay_s.abs() / 2.0);
         }
         // A clock is apart all along.
-        if taken.delay_s.abs() > 2.0 * u_s && self.has_none_later(taken.delay_s) {
+        if (2.0 * u_s..TURNS_S).contains(&taken.delay_s.abs()) && self.has_none_later(taken.delay_s) {
             u_s = taken.delay_s.abs() / 2.0;
         }
         Some((taken.delay_s, u_s))
