@@ -71,5 +71,8 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
             Some(measured) => Reached::Measured(Box::new(flown), measured),
         },
     };
+    if !matches!(reached, Reached::Measured(..)) {
+        findings.extend(judge::judge_fall_time(&findings, &file.drop, &events, &file.tolerances));
+    }
     outcome::of(recording, file, findings, outcome::Examined { impact, events, smooth, reached })
 }

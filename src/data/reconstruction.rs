@@ -66,6 +66,9 @@ pub struct RestLevel {
 /// passed, and of 2000 damaged ones four more with a wrong number.
 pub const MISSED_U: f64 = 3.5;
 
+/// Standard uncertainty of the time of a release: a hook lets go within some milliseconds, s.
+pub const U_RELEASE_S: f64 = 0.005;
+
 /// A closure missed by more standard uncertainties than this is not explained by noise and tolerances alone (95 %).
 pub const MET_U: f64 = 2.0;
 

@@ -2,14 +2,12 @@
 
 use super::Basis;
 use super::inputs::Inputs;
-use crate::data::{ClosureKind, Motion};
+use crate::data::{ClosureKind, Motion, U_RELEASE_S};
 
 /// Height of R's corner above the target as it strikes: corner and target are even to some millimetres, m.
 const U_HEIGHT_M: f64 = 0.003;
 /// Angular impulse against Θ ω, as a share of ω: so far apart are both on simulated drops whose pulse is finite and rings.
 const U_TURNING: f64 = 0.005;
-/// A hook lets go within some milliseconds, s.
-const U_RELEASE_S: f64 = 0.005;
 
 /// An observable with its standard uncertainty.
 #[derive(Debug, Clone)]
