@@ -23,11 +23,21 @@ pub(super) struct Impact {
     pub rests: Vec<RestLevel>,
     /// From the release to the first touch, s, where the record shows them.
     pub fall_s: Option<Range<f64>>,
+    /// How far the slap-down is sought, s; whether the record ends there, and whether something happens beyond that a longer flight explains.
+    pub sought_to_s: f64,
+    pub is_record_end: bool,
+    pub goes_on: bool,
 }
 
 impl Impact {
-    /// The first impact of a recording; `None` where no channel shows one.
-    pub fn find(recording: &Recording, file: &CaskFile, findings: &mut Vec<Finding>) -> Option<Self> {
+    /// The first impact of a recording, what follows it as far as the angle lets the slap-down be, or `farther`; `None` where no channel
+    /// shows one, which is then said alone.
+    pub fn find(
+        recording: &Recording,
+        file: &CaskFile,
+        farther: bool,
+        findings: &mut Vec<Finding>,
+    ) -> Option<Self> {
         let drop = &file.drop;
         let (silent, changes) =
             rayon::join(|| judge::judge_silent(&recording.channels), || events::Changes::of(recording));
@@ -35,17 +45,33 @@ impl Impact {
         let copied = judge::judge_copies(&recording.channels);
         let event = changes
             .locate(one_end::least_step_m_s(file, recording))
-            .filter(|e| e.velocity_step_m_s.abs() > drop.least_impact_m_s())?;
-        let another = changes.another_drop(&event, drop.impact_velocity_m_s / drop.gravity_m_s2);
-        findings.extend(another.map(|another| judge::judge_several_drops(&event, &another)));
-        let farthest = condition::Reach::of(&file.cask, drop);
-        let last_s = changes.last_s(&event, (drop.impact_velocity_m_s, farthest.after_s));
+            .filter(|e| e.velocity_step_m_s.abs() > drop.least_impact_m_s());
+        let Some(event) = event else {
+            findings.push(judge::judge_no_impact(findings, drop, changes.rate_hz(), None));
+            return None;
+        };
+        let usual = condition::Reach::of(&file.cask, drop);
+        let farthest = if farther { usual.longest() } else { usual };
+        let last_within_s =
+            |reach: condition::Reach| changes.last_s(&event, (drop.impact_velocity_m_s, reach.after_s));
+        let last_s = last_within_s(farthest);
+        let goes_on = last_within_s(farthest.longest()) > last_s;
         let reach = last_s.map_or(farthest, |last_s| farthest.until(last_s - event.near_s - event.spread_s));
         let (mut signals, found) = condition::condition(recording, &event, &reach, file.corrections);
-        findings.extend(found);
         signals.retain(|signal| copied.iter().all(|copy| copy.channel.as_ref() != Some(&signal.name)));
         findings.extend(copied);
-        let mut contact = events::first_contact(&signals, &event)?;
+        let Some(mut contact) = events::first_contact(&signals, &event) else {
+            findings.push(judge::judge_no_impact(findings, drop, changes.rate_hz(), Some(&event)));
+            return None;
+        };
+        findings.extend(found);
+        let another = changes.another_drop(&event, drop.impact_velocity_m_s / drop.gravity_m_s2);
+        findings.extend(another.map(|another| judge::judge_several_drops(&event, &another)));
+        // Where nothing happens any more the record was looked at as far as any flight lasts.
+        let sought = if goes_on { farthest } else { farthest.longest() };
+        let sought_to_s = event.near_s + event.spread_s + sought.after_s;
+        let ends_s = recording.channels.iter().map(|c| c.time_s(c.samples.len()));
+        let record_end_s = ends_s.fold(f64::INFINITY, f64::min);
         if events::transverse(&signals, End::First).is_none() {
             // A bending wave takes this time from L to R, where it is seen first.
             contact.u_s = contact.u_s.hypot(file.cask.length_m / BENDING_WAVE_M_S / 12.0_f64.sqrt());
@@ -53,7 +79,17 @@ impl Impact {
         let u_skew_s = align(file, &mut signals, contact.time_s, findings);
         let stand_in = with_both_ends(file, &mut signals, contact.time_s);
         let (rests, fall_s) = before(recording, drop, contact.time_s);
-        let impact = Self { signals, contact, u_skew_s, stand_in, rests, fall_s };
+        let impact = Self {
+            signals,
+            contact,
+            u_skew_s,
+            stand_in,
+            rests,
+            fall_s,
+            sought_to_s: sought_to_s.min(record_end_s),
+            is_record_end: record_end_s <= sought_to_s,
+            goes_on,
+        };
         findings.extend(judge::judge_fall(drop, &impact.events()));
         Some(impact)
     }
@@ -110,6 +146,7 @@ fn before(recording: &Recording, drop: &Drop, contact_s: f64) -> (Vec<RestLevel>
     let falls: Vec<_> = free_falls(recording, drop, contact_s).collect();
     let rest = |(channel, fall): &(&Channel, events::FreeFall)| RestLevel {
         channel: channel.name.clone(),
+        axis: channel.axis,
         rest_m_s2: fall.rest_m_s2,
         u_m_s2: fall.u_rest_m_s2,
     };

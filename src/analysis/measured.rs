@@ -53,7 +53,8 @@ fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -
     let mut found = judge::judge_motion(file, &impact.signals, flight, motion, quantities);
     found.extend(judge::judge_strike(flight, file.drop.impact_velocity_m_s));
     found.extend(judge::judge_rest(impact.recorded(), events));
-    found.extend(judge::judge_closures(reconstruction, &file.drop, events));
+    let missed = judge::judge_closures(reconstruction, &file.drop, events);
+    found.extend(judge::judge_slowed(missed, &file.drop, &impact.rests, events, &file.tolerances));
     let touched_m_s = touch_effect_m_s(file, quantities.k.value);
     found.extend(judge::judge_touch(motion, quantities, touched_m_s, file.cask.length_m));
     found

@@ -12,8 +12,9 @@ mod setup;
 
 pub use setup::sticking;
 
-use crate::data::{Analysis, CaskFile, Recording};
+use crate::data::{Analysis, CaskFile, Events, Finding, IssueCode, Recording};
 use crate::judge;
+use flight::Flown;
 use impact::Impact;
 use measured::Measured;
 use reached::Reached;
@@ -31,13 +32,37 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     })
 }
 
-fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
+/// A first impact with the events and the flight that follow it.
+struct AfterImpact {
+    impact: Impact,
+    events: Events,
+    flown: Option<Flown>,
+}
+
+/// The first impact and the flight after it, with what was found about them; `farther` as [`Impact::find`] takes it.
+fn flown(recording: &Recording, file: &CaskFile, farther: bool) -> (Vec<Finding>, Option<AfterImpact>) {
     let mut findings = recording.issues.clone();
-    let Some(impact) = Impact::find(recording, file, &mut findings) else {
-        findings.push(judge::judge_no_impact(&findings, &file.drop));
+    let struck = Impact::find(recording, file, farther, &mut findings).map(|impact| {
+        let (events, flown) = flight::flown(&impact, file, &mut findings);
+        AfterImpact { impact, events, flown }
+    });
+    (findings, struck)
+}
+
+fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
+    let (mut findings, mut found) = flown(recording, file, false);
+    // From steep angles a cask may strike later than its angle has it.
+    if findings.iter().any(|f| f.code == IssueCode::NoSlapDown)
+        && found.as_ref().is_some_and(|f| f.impact.goes_on)
+    {
+        let farther = flown(recording, file, true);
+        if farther.1.as_ref().is_some_and(|f| f.events.slap_down.is_some()) {
+            (findings, found) = farther;
+        }
+    }
+    let Some(AfterImpact { impact, events, flown }) = found else {
         return outcome::without_impact(recording, file, findings);
     };
-    let (events, flown) = flight::flown(&impact, file, &mut findings);
     judge::weigh_by_distance(&mut findings, &events);
     let (on_channels, smooth) = rayon::join(
         || judge::judge_channels(impact.recorded(), &events, file, &findings),
@@ -51,5 +76,8 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
             Some(measured) => Reached::Measured(Box::new(flown), measured),
         },
     };
+    if !matches!(reached, Reached::Measured(..)) {
+        findings.extend(judge::judge_fall_time(&findings, &file.drop, &events, &file.tolerances));
+    }
     outcome::of(recording, file, findings, outcome::Examined { impact, events, smooth, reached })
 }

@@ -9,17 +9,15 @@ const LEAST_RUN: usize = 3;
 /// Standard deviations of the noise within which samples count as standing at an extreme: noise may come after the limit.
 const NOISE_FACTOR: f64 = 6.0;
 
-/// A run counts where the slope into and out of it, times its length, exceeds this many widths of its band. Over the rounded top
-/// of any smooth pulse that product is 4 to 5: the top lies within b of its peak for 2 √(2 b / P) of phase.
-const STEEPNESS: f64 = 16.0;
+/// The flattest top that ringing rounds is taken to be one of this power of the distance from its middle; a plain one is of the second.
+const FLATTEST: i32 = 4;
+
+/// Values that differ by less than this share of the peak are the same.
+const LEAST_STEP: f64 = 1e-9;
 
 /// A limit comes after the sensor's noise and takes it off: what still has this share of it from sample to sample is a force
 /// that stays level, as of a cask that is crushed. Noise that comes after the limit is taken to be less.
 const NOISE_LEFT: f64 = 0.6;
-
-/// The smallest step between samples widens the band up to this share of the level: that of a 10-bit converter over four times the peak, of
-/// an 8-bit one over the peak.
-const STEP_OF_BAND: f64 = 8e-3;
 
 /// Runs of `force` (m/s², of `channel`, with `noise_m_s2` on it) at the stated full scale or flat at an extreme, as indices.
 ///
@@ -32,15 +30,19 @@ pub(super) fn clipped(channel: &Channel, force: &[f64], noise_m_s2: f64, quiet: 
         spans.extend(runs(force, |f| f.abs() >= 0.999 * limit_m_s2));
     }
     let (low, high) = reduce::extremes(force, 0.0);
+    let peak = high.max(-low);
+    // Where the converter's step exceeds the noise, all that lies within a step is one to it.
+    let step = Some(step(force, channel.time_jitter_s > 0.0, peak)).filter(|s| s.is_finite()).unwrap_or(0.0);
+    let band = (NOISE_FACTOR * noise_m_s2).max(step + LEAST_STEP * peak);
     for extreme in [low, high] {
-        let band = (NOISE_FACTOR * noise_m_s2).max(1e-9 * extreme.abs());
         if extreme.abs() < 4.0 * band {
             continue;
         }
         for span in runs(force, |f| (f - extreme).abs() <= band) {
             let is_known = spans.iter().any(|s: &Span| s.from < span.to && span.from < s.to);
-            let is_rail = is_flat_top(force, span, band) && !carries_noise(force, span, roughness);
-            if span.to - span.from >= LEAST_RUN && is_rail && !is_known {
+            let is_rail =
+                |span| is_flat_top(force, span, band, step) && !carries_noise(force, span, roughness);
+            if span.to - span.from >= LEAST_RUN && !is_known && is_rail(span) {
                 spans.push(span);
             }
         }
@@ -87,6 +89,21 @@ fn runs_of_pairs(firsts: &[f64], seconds: &[f64], inside: impl Fn(f64, f64) -> b
     spans
 }
 
+/// The converter's step, infinite where the samples tell none: the least distance of neighbours. Of samples that were `moved` to other times
+/// only those among equals stand where they did.
+#[allow(clippy::float_cmp, reason = "between equal samples a cubic is theirs to the bit")]
+fn step(force: &[f64], moved: bool, peak: f64) -> f64 {
+    let least = LEAST_STEP * peak;
+    if !moved {
+        return reduce::least_step(force, least);
+    }
+    let mut levels: Vec<f64> = force.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect();
+    levels.sort_unstable_by(f64::total_cmp);
+    let step = reduce::least_step(&levels, least);
+    // A limit and rest alone are no steps.
+    if step < peak / 4.0 { step } else { f64::INFINITY }
+}
+
 /// Standard deviation of the noise by the steps from sample to sample, which no slow swing adds to.
 fn roughness(quiet: &[f64]) -> f64 {
     let pairs = quiet.windows(2).step_by(robust::stride(quiet.len()));
@@ -103,25 +120,23 @@ fn carries_noise(force: &[f64], span: Span, roughness: f64) -> bool {
     count > 0 && roughness > 0.0 && (steps / count as f64 / 2.0).sqrt() > NOISE_LEFT * roughness
 }
 
-/// Whether the signal runs into the flat and out of it steeply as into a stop, and not as over a rounded top.
+/// Whether the signal runs into the flat and out of it steeply as into a stop, and not as over the flattest rounded top.
 #[allow(clippy::cast_precision_loss, reason = "a run of samples")]
-fn is_flat_top(force: &[f64], span: Span, band: f64) -> bool {
-    let level = force[span.from];
-    let near = &force[span.from.saturating_sub(50)..(span.to + 50).min(force.len())];
-    let smallest = near
-        .windows(2)
-        .map(|w| (w[1] - w[0]).abs())
-        .filter(|d| *d > 1e-9 * level.abs())
-        .fold(f64::INFINITY, f64::min);
+fn is_flat_top(force: &[f64], span: Span, band: f64, step: f64) -> bool {
     let run = span.to - span.from;
     // A quarter of the run beyond it: far enough for the slope to stand out of the noise.
     let reach = (run / 4).max(1);
-    let slope = |beyond: Option<&f64>| beyond.map_or(0.0, |f| (level - f).abs() / reach as f64);
-    let into = slope(span.from.checked_sub(reach).and_then(|i| force.get(i)));
-    let out = slope(force.get(span.to - 1 + reach));
-    let width = if smallest.is_finite() { band.max(smallest.min(STEP_OF_BAND * level.abs())) } else { band };
-    // The less steep side counts: a peak that is a kink has one steep side and still a product of 2 at most.
-    into.min(out) * run as f64 > STEEPNESS * width
+    let level = force[span.from];
+    let fallen = |beyond: &[f64]| beyond.iter().map(|f| (level - f).abs()).fold(0.0, f64::max);
+    let before = fallen(&force[span.from.saturating_sub(reach)..span.from]);
+    let after = fallen(&force[span.to..(span.to + reach).min(force.len())]);
+    let (low, high) = reduce::extremes(&force[span.from..span.to], level);
+    // What lies within the run, and half of the band at the least: a few samples of noise may lie near one another by chance.
+    let depth = (high - low + step).max(band / 2.0);
+    // A top of that depth over n samples has fallen by ((n − 1 + 2 r)/(n − 1))⁴ − 1 of it r samples farther on.
+    let wider = (run - 1 + 2 * reach) as f64 / (run - 1) as f64;
+    // The less steep side counts: a kink has one steep side.
+    before.min(after) > depth * (wider.powi(FLATTEST) - 1.0)
 }
 
 #[cfg(test)]
@@ -169,6 +184,79 @@ mod tests {
             assert!(clipped(&channel(None), &coarse, 0.0, 0).is_empty(), "{step}");
         }
         assert!(clipped(&channel(None), &pulse(1e9), 0.0, 0).is_empty());
+    }
+
+    /// Quiet, a half sine with ringing of a fifth of it and the ringing that stays, with noise of less than a step, as a converter of so
+    /// many bits over so many peaks writes it; the pulse has `length` samples.
+    fn converted(bits: i32, range: f64, length: u32, seed: u64) -> Vec<f64> {
+        use super::super::tests::noise;
+        use std::f64::consts::PI;
+        let codes = 2_f64.powi(bits - 1);
+        let step = 4000.0 * range / codes;
+        let sample = |i: u32| {
+            let x = (f64::from(i) - 200.37) / f64::from(length);
+            let half_sine = if (0.0..1.0).contains(&x) { (PI * x).sin() } else { 0.0 };
+            let ringing = 0.2 * (-0.4 * x).exp() * (2.0 * PI * (2.3 + 0.01 * f64::from(bits)) * x).sin();
+            let force = 4000.0 * (half_sine + if x > 0.0 { ringing } else { 0.0 });
+            ((force / step + 0.2 * noise(i, seed)).round()).clamp(-codes, codes - 1.0) * step
+        };
+        (0..200 + 4 * length).map(sample).collect()
+    }
+
+    #[test]
+    fn a_converter_far_above_the_peak_is_not_clipped_and_one_below_it_is() {
+        for (bits, seed) in [(10, 1), (11, 2), (12, 3)] {
+            for length in [20, 47, 110, 260, 900, 3000] {
+                let found = |range: f64| {
+                    let force = converted(bits, range, length, seed);
+                    clipped(&channel(None), &force, robust::spread(&force[..200]), 200)
+                };
+                for range in [3.0, 4.1, 5.9, 8.3, 11.7, 16.9, 23.0, 30.0] {
+                    assert!(found(range).is_empty(), "{bits} bits over {range} peaks, {length} samples");
+                }
+                // Ringing parts the flat top of the shortest.
+                for range in if length > 20 { &[0.4, 0.5, 0.8][..] } else { &[0.4] } {
+                    assert!(!found(*range).is_empty(), "{bits} bits over {range} peaks, {length} samples");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn three_samples_about_a_smooth_peak_are_no_flat_top() {
+        // The peak, samples 0.02 of the pulse apart, as flat as a second and a fourth power make it.
+        let top = |power: i32| -> Vec<f64> {
+            (-25..=25).map(|i| 4000.0 * (1.0 - (f64::from(i) / 25.0).abs().powi(power))).collect()
+        };
+        for noise_m_s2 in [0.05, 0.5, 1.1, 2.0, 5.0] {
+            for power in [2, 4] {
+                assert!(
+                    clipped(&channel(None), &top(power), noise_m_s2, 0).is_empty(),
+                    "{noise_m_s2} {power}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn samples_moved_to_other_times_keep_the_converters_steps() {
+        let moved = Channel { time_jitter_s: 1e-5, ..channel(None) };
+        // Cubics at a place that wanders between the samples, no farther than those reach.
+        let between = |force: &[f64]| -> Vec<f64> {
+            let (low, high) = reduce::extremes(force, 0.0);
+            let cubic = |(w, i): (&[f64], i32)| {
+                let x = 0.5 + 0.3 * (0.7 * f64::from(i)).sin();
+                let [before, slope, after] = [w[1] - w[0], w[2] - w[1], w[3] - w[2]];
+                let (left, right) = ((slope - before) / 2.0, (after - slope) / 2.0);
+                (w[1] + x * (slope + (x - 1.0) * (left + (x + 1.0) * (right - left) / 3.0))).clamp(low, high)
+            };
+            force.windows(4).zip(0..).map(cubic).collect()
+        };
+        for length in [110, 900] {
+            let of = |range: f64| clipped(&moved, &between(&converted(12, range, length, 4)), 0.0, 200);
+            assert!(of(10.0).is_empty() && of(25.0).is_empty(), "{length}");
+            assert!(!of(0.5).is_empty() && !of(0.8).is_empty(), "{length}");
+        }
     }
 
     #[test]

@@ -44,6 +44,12 @@ impl Reach {
         }
     }
 
+    /// The same, but as far as the longest flight to slap-down may last.
+    #[must_use]
+    pub fn longest(self) -> Self {
+        Self { after_s: LONGEST_AFTER_S, ..self }
+    }
+
     /// The same, but no farther than what rings after the last change of velocity, s after the coarse event.
     #[must_use]
     pub fn until(self, last_change_s: f64) -> Self {

@@ -1,5 +1,6 @@
 //! How the motion was had: the rungs of the reconstruction, the one taken, and what the others say.
 
+use super::cask::Axis;
 use super::estimate::Estimate;
 use serde::Serialize;
 
@@ -51,12 +52,14 @@ pub enum ClosureKind {
     Fall,
 }
 
-/// Rest before the release, as one DC-coupled transverse channel shows it.
+/// Rest before the release, as one DC-coupled channel shows it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RestLevel {
     /// The channel.
     pub channel: String,
-    /// Rest level less free-fall level, m/s²: g cos φ of a sound channel.
+    /// Along which body axis it reads.
+    pub axis: Axis,
+    /// Rest level less free-fall level, m/s²: g cos φ of a sound transverse channel, g sin φ of an axial one.
     pub rest_m_s2: f64,
     /// Standard uncertainty of it, from the levels' own scatter, m/s².
     pub u_m_s2: f64,
@@ -65,6 +68,9 @@ pub struct RestLevel {
 /// A closure missed by this many standard uncertainties is not chance: one sound drop in 2000 a closure. At 3.7 one sound drop in 2000 more
 /// passed, and of 2000 damaged ones four more with a wrong number.
 pub const MISSED_U: f64 = 3.5;
+
+/// Standard uncertainty of the time of a release: a hook lets go within some milliseconds, s.
+pub const U_RELEASE_S: f64 = 0.005;
 
 /// A closure missed by more standard uncertainties than this is not explained by noise and tolerances alone (95 %).
 pub const MET_U: f64 = 2.0;

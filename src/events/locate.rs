@@ -9,8 +9,10 @@ use std::ops::RangeInclusive;
 /// Width over which a velocity change is looked for, s: longer than any first pulse (1–20 ms), shorter than a flight.
 const WIDTH_S: f64 = 0.025;
 
-/// Blocks a width, so that its place is known to a fortieth.
+/// Blocks a width, so that its place is known to a fortieth; a slow record has fewer …
 const BLOCKS: usize = 40;
+/// … but not as few as these: a width of three samples holds a fall as well as an impact.
+const LEAST_BLOCKS: usize = 4;
 
 /// The first impact is where L's velocity change over the width first reaches this share of its largest.
 ///
@@ -40,6 +42,8 @@ struct Changing<'a> {
     channel: &'a Channel,
     /// Length of a block, s.
     block_s: f64,
+    /// Blocks a width.
+    blocks: usize,
     /// By how much the velocity changes over the width that ends with each block, m/s.
     changes_m_s: Vec<f64>,
 }
@@ -57,13 +61,19 @@ impl<'a> Changes<'a> {
         self.0.iter().find(|c| c.channel.end == End::First).or_else(|| self.0.first())
     }
 
+    /// Sample rate of the channel that the first impact is sought on, Hz.
+    #[must_use]
+    pub fn rate_hz(&self) -> Option<f64> {
+        self.struck().map(|changing| changing.channel.sample_rate_hz)
+    }
+
     /// Finds the first impact on the transverse channel of the first end (or, without one, on any transverse channel), whose velocity
     /// it changes by `least_step_m_s` at the least: v0 cos φ where L is struck.
     ///
-    /// `None` where no channel moves at all.
+    /// `None` where no channel moves at all, or the samples are too few to tell.
     #[must_use]
     pub fn locate(&self, least_step_m_s: f64) -> Option<CoarseEvent> {
-        let struck = self.struck()?;
+        let struck = self.struck().filter(|struck| struck.blocks >= LEAST_BLOCKS)?;
         let largest = reduce::peak(&struck.changes_m_s);
         let least_m_s = (SHARE * largest).min(SHARE_OF_LEAST * least_step_m_s);
         let crossing = struck.changes_m_s.iter().position(|c| c.abs() >= least_m_s && largest > 0.0)?;
@@ -110,15 +120,22 @@ impl<'a> Changing<'a> {
     fn of(channel: &'a Channel) -> Option<Self> {
         let (block_s, means) = block_means(channel)?;
         let offset = robust::median(&mut means.clone());
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a float-to-integer cast saturates"
+        )]
+        let blocks = ((WIDTH_S / block_s).round() as usize).clamp(1, BLOCKS);
         let mut sum = 0.0;
         let changes = (0..means.len()).map(|i| {
             sum += (means[i] - offset) * block_s;
-            if i >= BLOCKS {
-                sum -= (means[i - BLOCKS] - offset) * block_s;
+            if i >= blocks {
+                sum -= (means[i - blocks] - offset) * block_s;
             }
             sum
         });
-        Some(Self { channel, block_s, changes_m_s: changes.collect() })
+        let changes_m_s = changes.collect();
+        Some(Self { channel, block_s, blocks, changes_m_s })
     }
 
     /// When a block ends, s.
@@ -129,7 +146,7 @@ impl<'a> Changing<'a> {
 
     /// The event whose change of velocity becomes notable at block `crossing`.
     fn event_at(&self, crossing: usize) -> CoarseEvent {
-        let end = (crossing + BLOCKS).min(self.changes_m_s.len());
+        let end = (crossing + self.blocks).min(self.changes_m_s.len());
         let changes = &self.changes_m_s[crossing..end];
         let step = changes.iter().fold(0.0_f64, |m, &c| if c.abs() > m.abs() { c } else { m });
         CoarseEvent { near_s: self.end_s(crossing) - WIDTH_S, spread_s: WIDTH_S, velocity_step_m_s: step }
@@ -185,6 +202,34 @@ mod tests {
             time_jitter_s: 0.0,
             coupling: Coupling::Dc,
         }
+    }
+
+    /// 2 s of rest, a fall of 0.64 s and rest again at so many samples a second, between them an impact of 20 ms that takes 3 m/s more.
+    fn slow(rate_hz: f64, impact_m_s: f64) -> Channel {
+        let force = |i: u32| match f64::from(i) / rate_hz {
+            t if (2.0..2.64).contains(&t) => 0.0,
+            t if (2.64..2.66).contains(&t) => 9.81 + impact_m_s / 0.02,
+            _ => 9.81,
+        };
+        let samples =
+            Samples::F64((0..).map(force).take(channel(End::First, &[]).samples.len() / 50).collect());
+        Channel { sample_rate_hz: rate_hz, samples, ..channel(End::First, &[]) }
+    }
+
+    #[test]
+    fn the_width_of_a_slow_record_holds_no_fall() {
+        let located = |rate_hz: f64, impact_m_s: f64| {
+            let recording = recording(vec![slow(rate_hz, impact_m_s)]);
+            Changes::of(&recording).locate(6.0)
+        };
+        for rate_hz in [198.0, 400.0] {
+            let found = located(rate_hz, 9.0).expect("an impact");
+            assert!((2.6..2.66).contains(&found.near_s), "{rate_hz}: {found:?}");
+            assert!((found.velocity_step_m_s - 9.0).abs() < 2.0, "{rate_hz}: {found:?}");
+            // The fall alone changes the velocity by 0.25 m/s within the width.
+            assert!(located(rate_hz, 0.0).is_none_or(|e| e.velocity_step_m_s.abs() < 0.4), "{rate_hz}");
+        }
+        assert_eq!(located(60.0, 9.0), None);
     }
 
     fn recording(channels: Vec<Channel>) -> Recording {

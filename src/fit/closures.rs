@@ -2,14 +2,12 @@
 
 use super::Basis;
 use super::inputs::Inputs;
-use crate::data::{Axis, ClosureKind, Motion, RestLevel};
+use crate::data::{Axis, ClosureKind, Motion, RestLevel, U_RELEASE_S};
 
 /// Height of R's corner above the target as it strikes: corner and target are even to some millimetres, m.
 const U_HEIGHT_M: f64 = 0.003;
 /// Angular impulse against Θ ω, as a share of ω: so far apart are both on simulated drops whose pulse is finite and rings.
 const U_TURNING: f64 = 0.005;
-/// A hook lets go within some milliseconds, s.
-const U_RELEASE_S: f64 = 0.005;
 
 /// An observable with its standard uncertainty.
 #[derive(Debug, Clone)]
@@ -123,7 +121,7 @@ pub(super) fn observables(measured: &Basis, motion: &Motion) -> Vec<Observable> 
     }
     for rest in measured.rests {
         if let Some(channel) = measured.signals.iter().position(|s| s.name == rest.channel) {
-            let (name, is_axial) = (rest.channel.clone(), measured.signals[channel].axis == Axis::Axial);
+            let (name, is_axial) = (rest.channel.clone(), rest.axis == Axis::Axial);
             let RestLevel { rest_m_s2, u_m_s2, .. } = *rest;
             all.push(Observable::Rest { channel, name, is_axial, rest_m_s2, u_m_s2 });
         }

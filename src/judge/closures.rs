@@ -76,7 +76,8 @@ fn on_trust(choice: &ReconstructionChoice) -> Option<Finding> {
     (!shows_rest).then(|| DropFinding::Untested.into())
 }
 
-fn missed(closure: &Closure, drop: &Drop, events: &Events) -> Finding {
+/// A closure that is missed, as a finding.
+pub(super) fn missed(closure: &Closure, drop: &Drop, events: &Events) -> Finding {
     let fall_s = events.release_s.zip(events.fall_end_s).map_or(0.0, |(release_s, end_s)| end_s - release_s);
     let is_gross = closure.miss_in_u.abs() > GROSS_U;
     let found =

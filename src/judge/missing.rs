@@ -1,25 +1,65 @@
 //! What an analysis did not find to what that means: an impact, an end, a slap-down, a flight.
 
-use crate::data::{Drop, DropFinding, Finding, IssueCode, Severity};
+use crate::data::{CoarseEvent, Drop, DropFinding, Finding, IssueCode, Severity};
 
 /// A record that goes on this long after L left is not cut off before the slap-down, s: that of 5.5 m from 15° takes 65 ms.
 const LONG_ENOUGH_S: f64 = 0.3;
 
-/// No channel shows an impact; what was found so far may say why.
+/// Fewer samples than this over the longest first pulse, 25 ms, neither show an impact nor that there is none.
+const LEAST_SAMPLES: f64 = 10.0;
+const LONGEST_PULSE_S: f64 = 0.025;
+
+/// No channel shows an impact, or none a rise that begins the change of velocity at `event`; what was found so far may say why, or the rate at
+/// which the struck end is sampled.
 #[must_use]
-pub fn judge_no_impact(found: &[Finding], drop: &Drop) -> Finding {
+pub fn judge_no_impact(
+    found: &[Finding],
+    drop: &Drop,
+    rate_hz: Option<f64>,
+    event: Option<&CoarseEvent>,
+) -> Finding {
+    if let Some(rate_hz) = rate_hz.filter(|rate_hz| rate_hz * LONGEST_PULSE_S < LEAST_SAMPLES) {
+        let (samples, least_hz) = (rate_hz * LONGEST_PULSE_S, 2.0 * LEAST_SAMPLES / LONGEST_PULSE_S);
+        return DropFinding::TooSlow { rate_hz, samples, least_hz }.into();
+    }
     let is_doubt = |f: &&Finding| f.code == IssueCode::Clock && f.severity == Severity::Warning;
     let doubt = found.iter().find(is_doubt).cloned().map(Box::new);
-    DropFinding::NoImpact { least_m_s: drop.least_impact_m_s(), doubt }.into()
+    let without_rise = event.copied();
+    DropFinding::NoImpact { least_m_s: drop.least_impact_m_s(), doubt, without_rise }.into()
 }
 
-/// The second end shows no slap-down in the time that was recorded after the first one left.
+/// The second end shows no slap-down in the time that was looked at after the first one left; the record may end with that time.
 #[must_use]
-pub fn judge_no_slap_down(after_s: f64) -> Finding {
-    let found = if after_s < LONG_ENOUGH_S {
+pub fn judge_no_slap_down(after_s: f64, is_record_end: bool) -> Finding {
+    let found = if is_record_end && after_s < LONG_ENOUGH_S {
         DropFinding::EndsEarly { after_s }
     } else {
         DropFinding::NoSlapDown { after_s }
     };
     found.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_record_ends_before_the_slap_down_only_where_it_ends() {
+        let code = |after_s, is_record_end| judge_no_slap_down(after_s, is_record_end).code;
+        assert_eq!(code(0.2, true), IssueCode::EndsEarly);
+        assert_eq!(code(0.2, false), IssueCode::NoSlapDown);
+        assert_eq!(code(0.7, true), IssueCode::NoSlapDown);
+    }
+
+    #[test]
+    fn a_rate_too_low_to_show_an_impact_denies_none() {
+        let drop = Drop { impact_velocity_m_s: 6.26, ..Drop::of_height(2.0, 0.0) };
+        let of = |rate_hz| judge_no_impact(&[], &drop, Some(rate_hz), None);
+        assert_eq!((of(10.0).code, of(10.0).severity), (IssueCode::LowRate, Severity::Error));
+        assert_eq!(of(198.0).code, IssueCode::LowRate);
+        assert_eq!(of(2000.0).code, IssueCode::NoImpact);
+        let event = CoarseEvent { near_s: 1.5, spread_s: 0.025, velocity_step_m_s: -3.0 };
+        let without_rise = judge_no_impact(&[], &drop, Some(2000.0), Some(&event)).message;
+        assert!(without_rise.contains("changes by 3.0 m/s within 25 ms at 1.500 s"), "{without_rise}");
+    }
 }

@@ -20,7 +20,7 @@ pub use channels::{is_cut_off, judge_channels};
 pub use closures::{judge_closures, tells_lost_steps};
 pub use copies::judge_copies;
 pub use coupling::judge_coupling;
-pub use fall::{judge_fall, judge_several_drops};
+pub use fall::{judge_fall, judge_fall_time, judge_several_drops, judge_slowed};
 pub use missing::{judge_no_impact, judge_no_slap_down};
 pub use result::{judge_comparison, judge_motion, judge_touch};
 pub use rigid::judge_rigid;

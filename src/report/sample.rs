@@ -44,7 +44,7 @@ pub(super) fn without_anything() -> Analysis {
     result.quality = vec![Finding {
         message: "no impact was found: no channel exceeds 5 g; check units and sources in the cask file"
             .into(),
-        ..DropFinding::NoImpact { least_m_s: 1.0, doubt: None }.into()
+        ..DropFinding::NoImpact { least_m_s: 1.0, doubt: None, without_rise: None }.into()
     }];
     analysis.curves = Curves::default();
     analysis.start_unix_ns = None;

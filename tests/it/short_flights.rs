@@ -1,4 +1,4 @@
-//! Contacts that last longer than the flight after them, to results that are right or doubtful.
+//! Contacts that last longer than the flight after them, and flights far longer than the angle lets expect, to results that are right or doubtful.
 
 use dropcheck::data::Verdict;
 use dropcheck::lab::in_memory;
@@ -57,4 +57,22 @@ fn a_contact_that_was_not_over_is_no_flight() {
         let is_held = (speed.value - truth_m_s).abs() <= speed.u95;
         assert!(is_held || result.verdict != Verdict::Pass, "{drop:?}: {speed:?} for {truth_m_s}");
     }
+}
+
+#[test]
+fn a_slap_down_later_than_the_angle_lets_expect_is_found() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("scene.toml");
+    // A short cask with a wide section hardly turns when it is struck from 58°: R comes down after half a second.
+    let text = scene_text((58.0, 3.0, 0.15, &[], 0.02))
+        .replace("4466.0\nlength_m = 5.512\nheight_m = 0.792", "2218.0\nlength_m = 1.2246\nheight_m = 0.556")
+        .replace("position_m = 5.362", "position_m = 1.075");
+    std::fs::write(&path, text).expect("a temporary file");
+    let made = dropcheck::lab::scene_file::read(&path).expect("a scene");
+    let synthetic = dropcheck::lab::synthesise(&made.scene);
+    let truth_m_s = synthetic.truth.speed.expect("a slap-down");
+    let recording = in_memory::synthetic(&synthetic, &made.stated).expect("a recording");
+    let result = dropcheck::analyze(&recording, &made.stated).result;
+    let speed = result.slap_down.speed.expect("a slap-down");
+    assert!((speed.value - truth_m_s).abs() <= speed.u95, "{speed:?} for {truth_m_s}");
 }

@@ -1,7 +1,7 @@
 //! What speaks against the drop as a whole, with its numbers, to code, severity and sentence.
 
 use super::{Finding, IssueCode as Code, Severity};
-use crate::data::{Closure, ClosureKind, Comparison, Drop, End, Estimate};
+use crate::data::{Closure, ClosureKind, CoarseEvent, Comparison, Drop, End, Estimate};
 
 /// What is usually confused in a cask file; the channels by name.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -59,8 +59,10 @@ impl Slip {
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
 pub enum DropFinding {
-    /// No channel changes its velocity by so much; `doubt` is the finding on a clock that may be why.
-    NoImpact { least_m_s: f64, doubt: Option<Box<Finding>> },
+    /// No channel changes its velocity by so much, or does so `without_rise`; `doubt` is the finding on a clock that may be why.
+    NoImpact { least_m_s: f64, doubt: Option<Box<Finding>>, without_rise: Option<CoarseEvent> },
+    /// A rate that puts so few samples into 25 ms that no impact can be looked for.
+    TooSlow { rate_hz: f64, samples: f64, least_hz: f64 },
     /// No transverse channel on an end, which the mass properties may stand in for.
     MissingEnd { end: End, is_stood_in_for: bool },
     /// The recording ends so long after the separation, before a slap-down.
@@ -97,6 +99,8 @@ pub enum DropFinding {
     Disagreement { comparison: Comparison },
     /// A closure is missed by more than chance; the numbers are taken away where that `is_gross`. The recording shows a free fall of `fall_s`.
     Missed { closure: Closure, is_gross: bool, drop: Drop, fall_s: f64 },
+    /// The rest before the fall and its length say alike that something took this share of g off it, which makes another v0 of the drop height.
+    SlowedFall { share: f64, u95: f64, v0_m_s: f64, severity: Severity },
     /// All closures together are missed by more than chance.
     AllMissed { chi_square: f64, degrees: usize, closures: Vec<Closure> },
     /// With one usual slip put right everything closes, and the numbers are these.
@@ -111,6 +115,7 @@ impl DropFinding {
         use Severity::{Error, Note, Warning};
         match self {
             Self::NoImpact { .. } => (Code::NoImpact, Error),
+            Self::TooSlow { .. } => (Code::LowRate, Error),
             Self::MissingEnd { .. } => (Code::MissingChannel, Error),
             Self::EndsEarly { .. } => (Code::EndsEarly, Error),
             Self::NoSlapDown { .. } => (Code::NoSlapDown, Error),
@@ -135,6 +140,7 @@ impl DropFinding {
                 (code, if *is_gross { Error } else { Warning })
             }
             Self::UsualSlip { severity, .. } => (Code::UsualSlip, *severity),
+            Self::SlowedFall { severity, .. } => (Code::Geometry, *severity),
             Self::Untested => (Code::Scale, Note),
         }
     }
@@ -143,13 +149,23 @@ impl DropFinding {
     #[allow(clippy::too_many_lines, reason = "a list of sentences")]
     pub(super) fn sentence(&self) -> String {
         match self {
-            Self::NoImpact { least_m_s, doubt } => {
+            Self::NoImpact { least_m_s, doubt, without_rise } => {
                 let doubt = doubt.as_ref().map_or_else(String::new, |finding| {
                     let of = finding.channel.as_ref().map_or_else(String::new, |channel| format!(" of {channel}"));
                     format!("; the rate{of} is in doubt (clock), and a rate too high makes every velocity too small by as much: clear that up first")
                 });
-                format!("no impact was found: no transverse channel changes its velocity by {least_m_s:.1} m/s within 25 ms; check source, unit and that the recording covers the drop{doubt}")
+                let what = without_rise.map_or_else(
+                    || format!("no transverse channel changes its velocity by {least_m_s:.1} m/s within 25 ms"),
+                    |event| format!(
+                        "the velocity changes by {:.1} m/s within 25 ms at {:.3} s, but no rise of the force begins that",
+                        event.velocity_step_m_s.abs(), event.near_s
+                    ),
+                );
+                format!("no impact was found: {what}; check source, unit and that the recording covers the drop{doubt}")
             }
+            Self::TooSlow { rate_hz, samples, least_hz } => format!(
+                "{rate_hz:.0} Hz put {samples:.1} samples into the 25 ms that a first impact lasts at the most: whether the recording shows one cannot be told; record with {least_hz:.0} Hz and more, or check `sample_rate_hz`"
+            ),
             Self::MissingEnd { end, is_stood_in_for } => {
                 let effect = match (is_stood_in_for, end) {
                     (true, End::First) => {
@@ -240,6 +256,10 @@ impl DropFinding {
                     missed.join(", ")
                 )
             }
+            Self::SlowedFall { share, u95, v0_m_s, .. } => format!(
+                "the fall was slower than free by {:.1} ± {:.1} % of g, by what every transverse channel shows of the rest before it and by its length alike: a guide, a rope or a brake; from the stated height that makes an impact velocity of {v0_m_s:.2} m/s, by which all numbers are off: state it as `impact_velocity_m_s`, with its tolerance",
+                100.0 * share, 100.0 * u95
+            ),
             Self::Untested => "the recording shows no rest before the release: nothing in it tests the drop height, the clock's rate or a scale error that all channels share, and little tests one of the first end alone, which k follows; they are taken as stated; record from before the release with DC-coupled sensors".into(),
         }
     }

@@ -18,12 +18,25 @@ fn noise(i: usize, seed: u64) -> f64 {
 
 /// What the rest of a body answers to a half sine of 5 ms from 20 ms on: its rigid share and one mode driven by the force.
 fn answer(rate_hz: f64, contact_s: f64, rigid: f64, bending: f64, seed: u64) -> Vec<f64> {
+    driven(rate_hz, contact_s, (rigid, bending), seed, &|_| 1.0)
+}
+
+/// The same to the share of the force that `part` says, by the time since first contact.
+fn driven(
+    rate_hz: f64,
+    contact_s: f64,
+    (rigid, bending): (f64, f64),
+    seed: u64,
+    part: &dyn Fn(f64) -> f64,
+) -> Vec<f64> {
     let (omega, damping, fine) = (TAU * 70.0, 0.03, 20_u32);
     let step_s = 1.0 / (rate_hz * f64::from(fine));
     let (mut q, mut v, mut out) = (0.0, 0.0, Vec::new());
     for i in 0..8000_u32 {
         let t = f64::from(i) / rate_hz - contact_s;
-        let force = |t: f64| if (0.0..0.005).contains(&t) { 3000.0 * (PI * t / 0.005).sin() } else { 0.0 };
+        let half_sine =
+            |t: f64| if (0.0..0.005).contains(&t) { 3000.0 * (PI * t / 0.005).sin() } else { 0.0 };
+        let force = |t: f64| part(t) * half_sine(t);
         let pull = |t: f64, q: f64, v: f64| force(t) - 2.0 * damping * omega * v - omega * omega * q;
         if t > 0.06 {
             break;
@@ -81,6 +94,22 @@ fn a_late_or_early_clock_is_measured_finer_than_a_third_of_a_millisecond() {
         assert!((onset.delay_s - late_s).abs() < 1e-4, "{late_s}: {onset:?}");
         assert!(onset.u_s < 1.5e-4, "{onset:?}");
     }
+}
+
+#[test]
+fn a_force_that_turns_its_direction_at_first_is_no_clock() {
+    // While L slides back for 0.25 ms, friction takes the answer of the first end away and adds to that of the second.
+    let holds = |t: f64| 1.0 / (1.0 + ((2.5e-4 - t) / 1e-4).exp());
+    let rate_hz = 5e4;
+    let first = driven(rate_hz, 0.020_03, (1.0, 0.3), 1, &holds);
+    let held = driven(rate_hz, 0.020_03, (-0.5, 0.9), 2, &holds);
+    let slid = driven(rate_hz, 0.020_03, (0.3, 0.0), 3, &|t| 1.0 - holds(t));
+    let second = held.iter().zip(&slid).map(|(a, b)| a + b).collect();
+    let of =
+        |name, end, force| Signal { sample_rate_hz: rate_hz, noise_m_s2: 0.7, ..signal(name, end, force) };
+    let both = [of("A1", End::First, first), of("A2", End::Second, second)];
+    let onset = answers(&both, 0.020_14).pop().expect("an answer");
+    assert!(onset.delay_s.abs() <= 2.0 * onset.u_s + 3e-5, "{onset:?}");
 }
 
 #[test]

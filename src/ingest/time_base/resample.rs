@@ -2,7 +2,7 @@
 
 use super::fit::{BaseFit, whole};
 use crate::data::Samples;
-use crate::numerics::as_f64;
+use crate::numerics::{as_f64, reduce};
 
 /// Samples moved onto a base, and how far cubic and linear interpolation lie apart, in percent of the largest sample.
 pub(super) struct Resampled {
@@ -22,6 +22,10 @@ pub(super) fn resample(times_s: &[f64], samples: &Samples, fit: &BaseFit) -> Res
     let mut next_run = 1;
     let (mut at, mut sum, mut max) = (0, 0.0, 0.0_f64);
     let mut moved = Vec::with_capacity(count);
+    let (low, high) = match samples {
+        Samples::F32(v) => reduce::extremes(v, samples.get(0)),
+        Samples::F64(v) => reduce::extremes(v, samples.get(0)),
+    };
     for i in 0..count {
         let t = fit.start_s + (first_place + as_f64(i)) * fit.period_s;
         while at + 2 < times_s.len() && times_s[at + 1] <= t {
@@ -36,7 +40,8 @@ pub(super) fn resample(times_s: &[f64], samples: &Samples, fit: &BaseFit) -> Res
             continue;
         }
         let linear = linear(times_s, samples, at, t);
-        let cubic = cubic(times_s, samples, at, t).unwrap_or(linear);
+        // Beyond what was recorded a cubic would leave the flat top of a pulse that was cut off.
+        let cubic = cubic(times_s, samples, at, t).map_or(linear, |value| value.clamp(low, high));
         if linear.is_finite() {
             let difference = (cubic - linear).abs();
             sum += difference * difference;
@@ -44,7 +49,7 @@ pub(super) fn resample(times_s: &[f64], samples: &Samples, fit: &BaseFit) -> Res
         }
         moved.push(cubic);
     }
-    let largest = (0..samples.len()).map(|i| samples.get(i).abs()).fold(0.0, f64::max);
+    let largest = high.max(-low);
     let percent = if largest > 0.0 { 100.0 / largest } else { 0.0 };
     let rms = (sum / as_f64(count.max(1))).sqrt();
     let (rms_percent, max_percent) = (rms * percent, max * percent);

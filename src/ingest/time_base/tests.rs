@@ -93,6 +93,17 @@ fn disorder_and_doubles_are_put_right() {
 }
 
 #[test]
+fn a_flat_top_stays_flat_where_jitter_is_interpolated() {
+    // Cut off at 0.8: a cubic alone overshoots by a twentieth of the step into the flat.
+    let times: Vec<f64> =
+        (0..400).map(|i| (as_f64(i) + 0.3 * (TAU * as_f64(i) / 37.0).sin()) / 2000.0).collect();
+    let values: Vec<f64> = times.iter().map(|t| (TAU * 25.0 * t).sin().clamp(-0.8, 0.8)).collect();
+    let uniform = from_times(&times, f64s(&values), None).unwrap();
+    assert_eq!(codes(&uniform), [IssueCode::TimeJitter]);
+    assert!((0..uniform.samples.len()).all(|i| uniform.samples.get(i).abs() <= 0.8));
+}
+
+#[test]
 fn jitter_is_interpolated_with_its_error_known() {
     // 50 Hz at 2 kHz with a slow clock wander of 30 % of an interval: cubic error h⁴ω⁴·3/128 ≈ 1.4e-5 of the amplitude.
     let times: Vec<f64> = (0..4000)
