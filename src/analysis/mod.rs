@@ -25,11 +25,15 @@ use reached::Reached;
 #[must_use]
 pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     // On a thread of the pool: any other would be put to sleep and woken again for each piece of work that two threads share.
-    rayon::scope(|_| {
-        let mut found = again::without_one(recording, cask_file, analyzed(recording, cask_file));
-        again::name_slip(recording, cask_file, &mut found);
-        found
-    })
+    let mut found = measure(recording, cask_file);
+    rayon::scope(|_| again::name_slip(recording, cask_file, &mut found));
+    found
+}
+
+/// [`analyze`] without the search for a usual slip, which names one and changes no number.
+#[must_use]
+pub fn measure(recording: &Recording, cask_file: &CaskFile) -> Analysis {
+    rayon::scope(|_| again::without_one(recording, cask_file, analyzed(recording, cask_file)))
 }
 
 /// A first impact with the events and the flight that follow it.

@@ -15,8 +15,8 @@ const RINGING_SHARE: f64 = 0.005;
 /// as fast as it came changes its velocity by 2 v0: a gap of a tenth in the middle of such a half sine takes 0.1 π v0, one at its end next to none.
 const GAP_SHARE: f64 = 3.0;
 
-/// Standard uncertainty of the roll after a first contact, rad/s: edges tilted by 1 to 5° leave 20 to 180°/s, hooks let go of most casks level.
-const ROLL_RAD_S: f64 = 0.35;
+/// Standard uncertainty of the roll after a first contact, rad/s: edges tilted by 1 to 5° leave 20 to 180°/s.
+const ROLL_RAD_S: f64 = 1.0;
 
 /// Share of cot φ that a friction reaches at most.
 const MOST_FRICTION: f64 = 0.9;

@@ -25,6 +25,8 @@ const LARGE_RESIDUAL_M_S: f64 = 0.3;
 const LARGE_RESIDUAL_SHORT: f64 = 0.015;
 /// A velocity this far off its flight before R strikes is another contact, m/s: 1 % of a slap-down.
 const LARGE_MISMATCH_M_S: f64 = 0.2;
+/// Chance passes an E_n of 1 in one comparison of twenty, and this in one of 400.
+const CHANCE_E_N: f64 = 1.5;
 /// A velocity step whose standard uncertainty is above this share of v0 says little: 4 ± 2.7 m/s of 13.3 m/s.
 const LARGE_U_SHARE: f64 = 0.1;
 /// A bend of one channel's plateau below this share of v0 changes the speed by less than its interval.
@@ -150,5 +152,8 @@ fn bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
 /// What a comparison that does not agree amounts to.
 #[must_use]
 pub fn judge_comparison(comparison: &Comparison) -> Option<Finding> {
-    (!comparison.agrees).then(|| DropFinding::Disagreement { comparison: *comparison }.into())
+    let &Comparison { predicted, predicted_u95, measured, measured_u95, .. } = comparison;
+    let e_n = (measured - predicted).abs() / measured_u95.hypot(predicted_u95);
+    let severity = if e_n > CHANCE_E_N { Severity::Warning } else { Severity::Note };
+    (!comparison.agrees).then(|| DropFinding::Disagreement { comparison: *comparison, e_n, severity }.into())
 }

@@ -3,7 +3,7 @@
 use super::chance::Chance;
 use super::data::{Scene, SceneChannel, SimulatedMotion, SyntheticRecording};
 use super::{in_memory, synth};
-use crate::analysis::analyze;
+use crate::analysis::measure;
 use crate::data::{
     Analysis, Cask, CaskFile, ChannelSpec, Contact, Corrections, Coupling, Drop, FilterChoice,
     INERTIA_OF_BLOCK, Recording, STANDARD_GRAVITY_M_S2, Source, Tolerances, Unit,
@@ -144,6 +144,6 @@ impl DrawnDrop {
 
     /// What the program says of the recording; none where it is refused.
     pub(super) fn analyzed(&self, recording: &SyntheticRecording) -> Option<Analysis> {
-        Some(analyze(&self.read(recording)?, &self.stated))
+        Some(measure(&self.read(recording)?, &self.stated))
     }
 }

@@ -202,10 +202,10 @@ fn the_second_end_alone_gives_the_slap_down_too() {
     let answer = analyze(&fixture("anf18-json.mcap"), &with_channel("anf18-json", 1, folder.path()));
     let result = answer.json();
     let held = [
-        ("/k", "k", 0.06),
-        ("/slap_down/speed", "speed", 0.3),
-        ("/slap_down/angle", "angle_hit_deg", 3.0),
-        ("/first_impact/angular_velocity", "omega_rebound", 0.2),
+        ("/k", "k", 0.18),
+        ("/slap_down/speed", "speed", 0.8),
+        ("/slap_down/angle", "angle_hit_deg", 5.0),
+        ("/first_impact/angular_velocity", "omega_rebound", 0.6),
         ("/first_impact/duration", "contact_s", 4e-3),
     ];
     for (pointer, key, widest) in held {

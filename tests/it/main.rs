@@ -16,6 +16,7 @@ mod odd;
 mod predict_command;
 mod properties;
 mod reference;
+mod relations;
 mod run;
 mod safety;
 mod same;

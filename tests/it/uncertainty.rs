@@ -161,7 +161,8 @@ fn one_end_alone_gives_its_time_with_an_interval_and_says_what_is_missing() {
 #[test]
 fn what_clipping_took_of_the_impact_is_had_from_the_rest_of_the_motion() {
     let mut file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
-    file.contact = Contact::Rough;
+    // With a friction off by a fifth, or an inertia by a tenth, the turning says too little of a lost step.
+    (file.contact, file.tolerances.friction, file.tolerances.inertia) = (Contact::Rough, 0.02, 0.02);
     let mut recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
     let whole = dropcheck::analyze(&recording, &file).result;
     let first = recording.channels.iter_mut().find(|c| c.end == End::First).expect("a first end");

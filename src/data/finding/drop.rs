@@ -96,7 +96,7 @@ pub enum DropFinding {
     /// The flight is too short to tell its modes from one another.
     Unresolved { flight_s: f64, modes_hz: Vec<f64> },
     /// Measured and predicted lie apart.
-    Disagreement { comparison: Comparison },
+    Disagreement { comparison: Comparison, e_n: f64, severity: Severity },
     /// A closure is missed by more than chance; the numbers are taken away where that `is_gross`. The recording shows a free fall of `fall_s`.
     Missed { closure: Closure, is_gross: bool, drop: Drop, fall_s: f64 },
     /// The rest before the fall and its length say alike that something took this share of g off it, which makes another v0 of the drop height.
@@ -130,7 +130,7 @@ impl DropFinding {
             Self::Sinks { .. } | Self::Settles { .. } | Self::Blow { .. } | Self::Carried { .. } => {
                 (Code::SecondContact, Warning)
             }
-            Self::Disagreement { .. } => (Code::Disagreement, Warning),
+            Self::Disagreement { severity, .. } => (Code::Disagreement, *severity),
             Self::Missed { closure, is_gross, .. } => {
                 let code = match closure.kind {
                     ClosureKind::Height | ClosureKind::Fall => Code::Geometry,
@@ -238,8 +238,8 @@ impl DropFinding {
                     1e3 * flight_s, modes.len(), modes.join(", ")
                 )
             }
-            Self::Disagreement { comparison: c } => format!(
-                "measured {:.2} ± {:.2} m/s and predicted {:.2} ± {:.2} m/s lie apart beyond both intervals: check contact law, angle, mass properties and scales",
+            Self::Disagreement { comparison: c, e_n, .. } => format!(
+                "measured {:.2} ± {:.2} m/s and predicted {:.2} ± {:.2} m/s lie apart beyond both intervals (E_n = {e_n:.1}): check contact law, angle, mass properties and scales",
                 c.measured, c.measured_u95, c.predicted, c.predicted_u95
             ),
             Self::UsualSlip { slip, speed, k, .. } => format!(

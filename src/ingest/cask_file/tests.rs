@@ -20,8 +20,6 @@ height_m = 9.0
 angle_deg = 15.0
 impact_velocity_m_s = 13.3
 gravity_m_s2 = 9.80
-angular_velocity_deg_s = 2
-horizontal_velocity_m_s = -0.1
 
 [contact]
 friction = 0.4
@@ -47,9 +45,6 @@ sample_rate_hz = 1e5
 time = "/daq/time_s"
 coupling = "ac"
 time_constant_s = 0.3
-calibration_percent = 0.5
-reference = "amplifier 3"
-lateral_m = 0.2
 
 [[channel]]
 name = "A2"
@@ -75,7 +70,11 @@ fn told(error: &CaskFileError) -> String {
 
 #[test]
 fn every_key_is_read() {
-    let file = of(FULL).unwrap();
+    let turning = "9.80\nangular_velocity_deg_s = 2\nhorizontal_velocity_m_s = -0.1";
+    let calibrated = "0.3\ncalibration_percent = 0.5\nreference = \"amplifier 3\"\nlateral_m = 0.2";
+    let full = FULL.replace("gravity_m_s2 = 9.80", &format!("gravity_m_s2 = {turning}"));
+    let file =
+        of(&full.replace("time_constant_s = 0.3", &format!("time_constant_s = {calibrated}"))).unwrap();
     assert_eq!(file.cask.name, "ANF-18");
     assert_eq!(
         (file.cask.mass_kg, file.cask.cog_m, file.cask.inertia_kg_m2, file.cask.width_m),

@@ -9,7 +9,7 @@ mod tables;
 pub use score::csv;
 pub use tables::markdown;
 
-use crate::analysis::analyze;
+use crate::analysis::measure;
 use crate::ingest::Progress;
 use crate::lab::chance::Chance;
 pub use crate::lab::damage::DamageKind;
@@ -71,7 +71,7 @@ fn row(request: &CampaignRequest, number: SceneNumber) -> CampaignRow {
     let scene = recorded(request.seed, number, request.exact);
     let read = scene.drop.read(&scene.recording);
     let begun = Instant::now();
-    let analysis = read.map(|read| analyze(&read, &scene.drop.stated));
+    let analysis = read.map(|read| measure(&read, &scene.drop.stated));
     let analysis_s = begun.elapsed().as_secs_f64();
     CampaignRow { analysis_s, ..score::row(number, scene, analysis.as_ref()) }
 }
