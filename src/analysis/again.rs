@@ -108,13 +108,28 @@ pub(super) fn name_slip(recording: &Recording, file: &CaskFile, found: &mut Anal
     }
 }
 
-/// How much weighs what a slip may be behind: any error, or a warning on what the cask file says of the channels.
+/// How much weighs what a slip may be behind: errors of the motion and no other, or a warning on what the cask file says of the channels.
 fn severity_of_doubt(findings: &[Finding]) -> Option<Severity> {
-    use IssueCode::{Geometry, NotRigid, Scale, SensorPosition};
+    use IssueCode::{
+        EndsEarly, EndsExchanged, FlightFit, Geometry, NoImpact, NoSlapDown, NotRigid, Polarity,
+        RestitutionRange, Scale, SensorPosition,
+    };
     let is_stated = |f: &&Finding| matches!(f.code, Geometry | NotRigid | Scale | SensorPosition);
-    let is_heavy =
-        |f: &&Finding| f.severity == Severity::Error || (f.severity == Severity::Warning && is_stated(f));
-    findings.iter().filter(is_heavy).map(|f| f.severity).max()
+    let is_of_motion = |f: &Finding| {
+        let code = f.code;
+        is_stated(&f)
+            || matches!(
+                code,
+                EndsEarly | EndsExchanged | FlightFit | NoImpact | NoSlapDown | Polarity | RestitutionRange
+            )
+    };
+    let mut errors = findings.iter().filter(|f| f.severity == Severity::Error).peekable();
+    if errors.peek().is_some() {
+        // No slip gives back what a clipped or dead channel lost.
+        return errors.all(is_of_motion).then_some(Severity::Error);
+    }
+    let warns = findings.iter().filter(is_stated).any(|f| f.severity == Severity::Warning);
+    warns.then_some(Severity::Warning)
 }
 
 fn is_too_large(recording: &Recording) -> bool {

@@ -128,7 +128,6 @@ impl ChannelFinding {
             Self::LowRate { .. } => (Code::LowRate, Warning),
             Self::Aliasing { .. } => (Code::Aliasing, Warning),
             Self::Dead { .. } => (Code::DeadChannel, Error),
-            Self::LeftOut { .. } => (Code::NotRigid, Warning),
             Self::Copied { is_other_end: true, .. } => (Code::CopiedChannel, Error),
             Self::Copied { .. } => (Code::CopiedChannel, Warning),
             Self::Hum { severity, .. } => (Code::Hum, severity),
@@ -145,7 +144,7 @@ impl ChannelFinding {
                 (Code::SecondContact, Warning)
             }
             Self::Unexplained { .. } | Self::Bend { .. } => (Code::FlightFit, Warning),
-            Self::OffLine { .. } => (Code::NotRigid, Warning),
+            Self::LeftOut { .. } | Self::OffLine { .. } => (Code::NotRigid, Warning),
             Self::AnswersEarly { .. } | Self::AnswersLate { .. } => (Code::Skew, Warning),
             Self::AnswersAsAWave { .. } => (Code::Skew, Note),
             Self::OtherUnit { .. } => (Code::Scale, Note),
