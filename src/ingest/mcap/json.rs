@@ -1,16 +1,19 @@
-//! JSON messages to the wanted fields, straight from the text: samples never become a tree of values.
+//! JSON messages to the wanted fields by a walk along their text: samples never become a tree of values.
+//!
+//! `serde_json` tells nobody where in the text it stands: to read numbers by their digits an array would have to be gone
+//! through twice. All but objects and plain arrays is left to it.
 
-mod fields;
-
+use super::path::Step;
 use super::plan::{
     Decode, LONGEST_PATH_BYTES, Leaf, MOST_LEAVES, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots,
     Value, Want, unix_ns,
 };
 use crate::data::Samples;
+use crate::ingest::number;
 use serde::Deserialize;
-use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::de::IgnoredAny;
+use serde_json::Value as Tree;
 use std::borrow::Cow;
-use std::fmt;
 
 /// Messages nested deeper than this hold no signal that a person would name by a path.
 const DEEPEST: usize = 8;
@@ -27,33 +30,28 @@ impl Json {
         Self { plan: plan.clone() }
     }
 
-    fn attempt(&self, text: &[u8], slots: &mut Slots) -> Result<(), serde_json::Error> {
-        if self.root(slots).whole_object(text) {
-            return Ok(());
+    fn walk(&self, text: &[u8], slots: &mut Slots) -> Result<(), String> {
+        let mut walk = JsonWalk { wants: &self.plan.wants, slots };
+        let from = past_spaces(text, 0);
+        match walk.value(&self.plan.root, &text[from..]) {
+            Ok(used) if past_spaces(text, from + used) == text.len() => Ok(()),
+            Err(WalkFault::Value(problem)) => Err(problem),
+            // The grammar says where a text ceases to be JSON.
+            _ => match serde_json::from_slice::<IgnoredAny>(text) {
+                Err(error) => Err(error.to_string()),
+                Ok(_) => Err("one of its values is out of range, or no text".into()),
+            },
         }
-        slots.clear(self.plan.wants.len());
-        self.by_grammar(text, slots)
-    }
-
-    /// The same by `serde_json` alone, which says where a text at fault ceases to be JSON.
-    fn by_grammar(&self, text: &[u8], slots: &mut Slots) -> Result<(), serde_json::Error> {
-        let mut deserializer = serde_json::Deserializer::from_slice(text);
-        self.root(slots).deserialize(&mut deserializer)?;
-        deserializer.end()
-    }
-
-    fn root<'a>(&'a self, slots: &'a mut Slots) -> JsonTaker<'a> {
-        JsonTaker { node: &self.plan.root, wants: &self.plan.wants, slots }
     }
 }
 
 impl Decode for Json {
     fn decode(&self, data: &[u8], slots: &mut Slots) -> Result<(), String> {
-        let Err(error) = self.attempt(data, slots) else { return Ok(()) };
+        let Err(problem) = self.walk(data, slots) else { return Ok(()) };
         // Python writes NaN and Infinity, which JSON does not know.
-        let Some(repaired) = without_bare_nan(data) else { return Err(error.to_string()) };
+        let Some(repaired) = without_bare_nan(data) else { return Err(problem) };
         slots.clear(self.plan.wants.len());
-        self.attempt(&repaired, slots).map_err(|error| error.to_string())
+        self.walk(&repaired, slots)
     }
 }
 
@@ -84,152 +82,135 @@ fn without_bare_nan(text: &[u8]) -> Option<Cow<'_, [u8]>> {
     found.then_some(Cow::Owned(out))
 }
 
-/// A place in the text and in the tree of wanted fields.
-struct JsonTaker<'a> {
-    node: &'a Node,
+/// Why a walk ends before its text does.
+enum WalkFault {
+    /// The text is no JSON.
+    Grammar,
+    /// A wanted value is none that is read.
+    Value(String),
+}
+
+impl From<serde_json::Error> for WalkFault {
+    fn from(error: serde_json::Error) -> Self {
+        if error.is_data() { Self::Value(format!("in an array: {error}")) } else { Self::Grammar }
+    }
+}
+
+/// A walk along a message: what stands at a place goes into the slots of its node.
+struct JsonWalk<'a> {
     wants: &'a [Want],
     slots: &'a mut Slots,
 }
 
-impl JsonTaker<'_> {
-    fn below<'b>(&'b mut self, node: &'b Node) -> JsonTaker<'b> {
-        JsonTaker { node, wants: self.wants, slots: self.slots }
-    }
-
-    fn fill(&mut self, want: Want, value: Value) {
-        let mut slots = self.node.slots.iter().filter(|&&slot| self.wants.get(slot) == Some(&want));
-        let Some(&last) = slots.next_back() else { return };
-        for &slot in slots {
-            self.slots.set(slot, value.clone());
-        }
-        self.slots.set(last, value);
-    }
-
-    /// Whether a whole array is wanted here and none of its elements by itself.
-    fn wants_array(&self, node: &Node) -> bool {
-        node.children.is_empty() && node.slot(self.wants, Want::Numbers).is_some()
-    }
-
-    fn wants(&self, want: Want) -> bool {
-        self.node.slots.iter().any(|&slot| self.wants.get(slot) == Some(&want))
-    }
-
-    fn number(&mut self, value: f64) {
-        self.fill(Want::Numbers, Value::Number { value, is_narrow: false });
-        self.fill(Want::Stamp, Value::BadStamp);
-    }
-}
-
-impl<'de> DeserializeSeed<'de> for JsonTaker<'_> {
-    type Value = ();
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl<'de> Visitor<'de> for JsonTaker<'_> {
-    type Value = ();
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a message")
-    }
-
-    fn visit_f64<E: Error>(mut self, value: f64) -> Result<(), E> {
-        self.number(value);
-        Ok(())
-    }
-
-    #[allow(clippy::cast_precision_loss, reason = "samples beyond 2^53 do not occur")]
-    fn visit_i64<E: Error>(mut self, value: i64) -> Result<(), E> {
-        self.number(value as f64);
-        Ok(())
-    }
-
-    #[allow(clippy::cast_precision_loss, reason = "samples beyond 2^53 do not occur")]
-    fn visit_u64<E: Error>(mut self, value: u64) -> Result<(), E> {
-        self.number(value as f64);
-        Ok(())
-    }
-
-    fn visit_bool<E: Error>(self, _: bool) -> Result<(), E> {
-        Ok(())
-    }
-
-    fn visit_unit<E: Error>(mut self) -> Result<(), E> {
-        self.fill(Want::Numbers, Value::Number { value: f64::NAN, is_narrow: false });
-        Ok(())
-    }
-
-    fn visit_str<E: Error>(mut self, text: &str) -> Result<(), E> {
-        if self.wants(Want::Text) {
-            self.fill(Want::Text, Value::Text(text.to_owned()));
-        }
-        if self.wants(Want::Stamp) {
-            let stamp = text.parse::<jiff::Timestamp>().ok();
-            let ns = stamp.and_then(|stamp| i64::try_from(stamp.as_nanosecond()).ok());
-            self.fill(Want::Stamp, ns.map_or(Value::BadStamp, Value::Stamp));
-        }
-        if self.wants(Want::Numbers)
-            && let Some(value) = spelled_number(text)
-        {
-            self.number(value);
-        }
-        Ok(())
-    }
-
-    fn visit_map<A: MapAccess<'de>>(mut self, mut map: A) -> Result<(), A::Error> {
-        if self.wants(Want::Stamp) {
-            let (mut seconds, mut nanoseconds) = (None, 0);
-            while let Some(key) = map.next_key::<Cow<str>>()? {
-                if SECONDS_NAMES.contains(&&*key) {
-                    seconds = map.next_value::<Scalar>()?.whole();
-                } else if NANOSECONDS_NAMES.contains(&&*key) {
-                    nanoseconds = map.next_value::<Scalar>()?.whole().unwrap_or(0);
-                } else {
-                    map.next_value::<IgnoredAny>()?;
-                }
+impl JsonWalk<'_> {
+    /// The value at the start of `text`; how many bytes it takes.
+    fn value(&mut self, node: &Node, text: &[u8]) -> Result<usize, WalkFault> {
+        match (text.first(), node.slot(self.wants, Want::Numbers)) {
+            (Some(b'{'), _) if node.slot(self.wants, Want::Stamp).is_none() => self.object(node, text),
+            (Some(b'['), Some(slot)) => {
+                let (samples, used) = match plain_numbers(text) {
+                    Some(plain) => plain,
+                    None => first::<Vec<JsonSample>>(text).map(|(samples, used)| (numbers(samples), used))?,
+                };
+                self.array(node, slot, samples);
+                Ok(used)
             }
-            let value =
-                seconds.map_or(Value::BadStamp, |seconds| Value::Stamp(unix_ns(seconds, nanoseconds)));
-            self.fill(Want::Stamp, value);
-            return Ok(());
-        }
-        let node = self.node;
-        while let Some(key) = map.next_key::<Cow<str>>()? {
-            match node.field(&key) {
-                Some(child) => map.next_value_seed(self.below(child))?,
-                None => map.next_value::<IgnoredAny>().map(|_| ())?,
+            _ => {
+                let (value, used) = first(text)?;
+                self.take(node, &value)?;
+                Ok(used)
             }
         }
-        Ok(())
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(mut self, mut seq: A) -> Result<(), A::Error> {
-        let node = self.node;
-        if self.wants(Want::Numbers) {
-            let mut samples = Vec::new();
-            while let Some(scalar) = seq.next_element::<Scalar>()? {
-                let value = scalar.sample()?;
-                if let Some(child) = node.element(samples.len()) {
-                    self.below(child).number(value);
-                }
-                samples.push(value);
-            }
-            self.fill(Want::Numbers, Value::Array(Samples::F64(samples)));
-            return Ok(());
+    /// The fields of the object at the start of `text`; how many bytes it takes.
+    fn object(&mut self, node: &Node, text: &[u8]) -> Result<usize, WalkFault> {
+        let mut at = past_spaces(text, 1);
+        if text.get(at) == Some(&b'}') {
+            return Ok(at + 1);
         }
-        let mut index = 0;
         loop {
-            let more = match node.element(index) {
-                Some(child) => seq.next_element_seed(self.below(child))?.is_some(),
-                None => seq.next_element::<IgnoredAny>()?.is_some(),
-            };
-            if !more {
-                return Ok(());
+            let (key, used) = key(&text[at..])?;
+            at = past_spaces(text, at + used);
+            if text.get(at) != Some(&b':') {
+                return Err(WalkFault::Grammar);
             }
-            index += 1;
+            at = past_spaces(text, at + 1);
+            at += match node.field(&key) {
+                Some(child) => self.value(child, &text[at..])?,
+                None => first::<IgnoredAny>(&text[at..])?.1,
+            };
+            at = past_spaces(text, at);
+            match text.get(at) {
+                Some(b',') => at = past_spaces(text, at + 1),
+                Some(b'}') => return Ok(at + 1),
+                _ => return Err(WalkFault::Grammar),
+            }
         }
+    }
+
+    fn array(&mut self, node: &Node, slot: usize, samples: Vec<f64>) {
+        self.slots.set(slot, Value::Array(Samples::F64(samples)));
+        self.slots.pick(slot, &node.elements(self.wants));
+    }
+
+    /// A value other than a run of samples by itself: a number, words, a time, or what holds such at places of their own.
+    fn take(&mut self, node: &Node, value: &Tree) -> Result<(), WalkFault> {
+        if let Some(slot) = node.slot(self.wants, Want::Numbers) {
+            let number = match value {
+                Tree::Array(_) => {
+                    self.array(node, slot, numbers(Vec::deserialize(value)?));
+                    return Ok(());
+                }
+                Tree::Null => Some(f64::NAN),
+                Tree::String(text) => spelled_number(text),
+                other => other.as_f64(),
+            };
+            if let Some(value) = number {
+                self.slots.set(slot, Value::Number { value, is_narrow: false });
+            }
+        }
+        if let (Some(slot), Tree::String(text)) = (node.slot(self.wants, Want::Text), value) {
+            self.slots.set(slot, Value::Text(text.clone()));
+        }
+        if let (Some(slot), Some(stamp)) = (node.slot(self.wants, Want::Stamp), stamp(value)) {
+            self.slots.set(slot, stamp);
+            return Ok(());
+        }
+        for (step, child) in &node.children {
+            let below = match step {
+                Step::Name(name) => value.get(name),
+                Step::Index(index) => value.get(index),
+            };
+            below.map_or(Ok(()), |below| self.take(child, below))?;
+        }
+        Ok(())
+    }
+}
+
+/// The time that `value` is; `None` where it is nothing of the kind.
+fn stamp(value: &Tree) -> Option<Value> {
+    let part = |names: &[&str]| names.iter().find_map(|name| value.get(name)).and_then(whole);
+    let ns = match value {
+        Tree::String(text) => {
+            let stamp = text.parse::<jiff::Timestamp>().ok();
+            stamp.and_then(|stamp| i64::try_from(stamp.as_nanosecond()).ok())
+        }
+        Tree::Object(_) => {
+            part(&SECONDS_NAMES).map(|seconds| unix_ns(seconds, part(&NANOSECONDS_NAMES).unwrap_or(0)))
+        }
+        Tree::Number(_) => None,
+        _ => return None,
+    };
+    Some(ns.map_or(Value::BadStamp, Value::Stamp))
+}
+
+/// A whole number, also one in quotes: protobuf's JSON mapping writes those of 64 bits so.
+#[allow(clippy::cast_possible_truncation, reason = "a float-to-integer cast saturates")]
+fn whole(value: &Tree) -> Option<i64> {
+    match value {
+        Tree::String(text) => text.parse().ok(),
+        other => other.as_f64().map(|value| value as i64),
     }
 }
 
@@ -243,7 +224,7 @@ fn spelled_number(text: &str) -> Option<f64> {
     }
 }
 
-/// A number, or what writers put in its place: null, a word, or a 64-bit integer in quotes (protobuf's JSON mapping).
+/// A number in an array, or what writers put in its place: null, a word, one in quotes.
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "a number is expected")]
 enum Scalar<'a> {
@@ -253,33 +234,87 @@ enum Scalar<'a> {
     Missing(()),
 }
 
-impl Scalar<'_> {
-    /// A sample: null is NaN.
-    fn sample<E: Error>(&self) -> Result<f64, E> {
-        match self {
-            Self::Number(value) => Ok(*value),
-            Self::Missing(()) => Ok(f64::NAN),
-            Self::Text(text) => spelled_number(text)
-                .ok_or_else(|| E::custom(format!("{text:?} stands where a number should"))),
-        }
-    }
+/// A sample; null is NaN.
+#[derive(Deserialize)]
+#[serde(try_from = "Scalar")]
+struct JsonSample(f64);
 
-    /// A whole number.
-    #[allow(clippy::cast_possible_truncation, reason = "a float-to-integer cast saturates")]
-    fn whole(&self) -> Option<i64> {
-        match self {
-            Self::Number(value) => Some(*value as i64),
-            Self::Text(text) => text.parse().ok(),
-            Self::Missing(()) => None,
+impl TryFrom<Scalar<'_>> for JsonSample {
+    type Error = String;
+
+    fn try_from(scalar: Scalar) -> Result<Self, String> {
+        match scalar {
+            Scalar::Number(value) => Ok(Self(value)),
+            Scalar::Missing(()) => Ok(Self(f64::NAN)),
+            Scalar::Text(text) => spelled_number(&text)
+                .map(Self)
+                .ok_or_else(|| format!("{text:?} stands where a number should")),
         }
     }
 }
 
+fn numbers(samples: Vec<JsonSample>) -> Vec<f64> {
+    samples.into_iter().map(|JsonSample(value)| value).collect()
+}
+
+/// The first value of `text` and how many bytes it takes.
+fn first<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<(T, usize), WalkFault> {
+    let mut values = serde_json::Deserializer::from_slice(text).into_iter::<T>();
+    let value = values.next().ok_or(WalkFault::Grammar)??;
+    Ok((value, values.byte_offset()))
+}
+
+/// The text in quotes that `text` begins with, and how many bytes it takes.
+fn key(text: &[u8]) -> Result<(Cow<'_, str>, usize), WalkFault> {
+    let rest = text.strip_prefix(b"\"").ok_or(WalkFault::Grammar)?;
+    match rest.iter().position(|&byte| byte == b'"' || byte == b'\\' || byte < b' ') {
+        Some(length) if rest[length] == b'"' => match std::str::from_utf8(&rest[..length]) {
+            Ok(key) => Ok((Cow::Borrowed(key), length + 2)),
+            Err(_) => Err(WalkFault::Grammar),
+        },
+        // Something in it stands for something else.
+        _ => first::<String>(text).map(|(key, used)| (Cow::Owned(key), used)),
+    }
+}
+
+/// The numbers of the array that `text` begins with and how many bytes it takes; `None` where it holds anything else.
+fn plain_numbers(text: &[u8]) -> Option<(Vec<f64>, usize)> {
+    /// Characters of a number and its comma, as loggers write them; more room is taken as it is needed.
+    const USUAL: usize = 8;
+    let mut at = past_spaces(text, 1);
+    if text.get(at) == Some(&b']') {
+        return Some((Vec::new(), at + 1));
+    }
+    let mut numbers = Vec::with_capacity(text.len() / USUAL);
+    loop {
+        let (value, used) = number::leading_json(text.get(at..)?)?;
+        numbers.push(value);
+        at += used;
+        // Most writers put one space behind a comma or none, and none before it.
+        if text.get(at) != Some(&b',') {
+            at = past_spaces(text, at);
+        }
+        match text.get(at)? {
+            b',' => at = past_spaces(text, at + 1),
+            b']' => return Some((numbers, at + 1)),
+            _ => return None,
+        }
+    }
+}
+
+/// The first place from `at` on that is no space of JSON.
+fn past_spaces(text: &[u8], mut at: usize) -> usize {
+    while matches!(text.get(at), Some(b' ' | b'\t' | b'\n' | b'\r')) {
+        at += 1;
+    }
+    at
+}
+
 /// The numeric fields of one message; none where it does not parse.
 pub(super) fn leaves(message: &[u8]) -> Vec<Leaf> {
-    let value = serde_json::from_slice::<serde_json::Value>(message).ok().or_else(|| {
-        without_bare_nan(message).and_then(|text| serde_json::from_slice::<serde_json::Value>(&text).ok())
-    });
+    let value = serde_json::from_slice::<Tree>(message)
+        .ok()
+        .or_else(|| without_bare_nan(message).and_then(|text| serde_json::from_slice::<Tree>(&text).ok()));
     let mut found = Vec::new();
     if let Some(value) = value {
         // Beyond the limit the rest stays unlisted.
@@ -288,22 +323,22 @@ pub(super) fn leaves(message: &[u8]) -> Vec<Leaf> {
     found
 }
 
-fn descend(value: &serde_json::Value, path: &str, depth: usize, found: &mut Vec<Leaf>) {
+fn descend(value: &Tree, path: &str, depth: usize, found: &mut Vec<Leaf>) {
     // One more than are listed tells that there are more.
     if found.len() > MOST_LEAVES || path.len() > LONGEST_PATH_BYTES {
         return;
     }
     match value {
-        serde_json::Value::Number(_) if !path.is_empty() => {
+        Tree::Number(_) if !path.is_empty() => {
             found.push(Leaf { path: path.to_owned(), is_array: false });
         }
-        serde_json::Value::Array(elements) if !path.is_empty() => {
+        Tree::Array(elements) if !path.is_empty() => {
             let mut numbers = elements.iter().filter(|element| !element.is_null()).take(8).peekable();
-            if numbers.peek().is_some() && numbers.all(serde_json::Value::is_number) {
+            if numbers.peek().is_some() && numbers.all(Tree::is_number) {
                 found.push(Leaf { path: path.to_owned(), is_array: true });
             }
         }
-        serde_json::Value::Object(fields) if depth > 0 && !is_stamp(fields) => {
+        Tree::Object(fields) if depth > 0 && !is_stamp(fields) => {
             for (name, value) in fields {
                 let below = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
                 descend(value, &below, depth - 1, found);
@@ -313,7 +348,7 @@ fn descend(value: &serde_json::Value, path: &str, depth: usize, found: &mut Vec<
     }
 }
 
-fn is_stamp(fields: &serde_json::Map<String, serde_json::Value>) -> bool {
+fn is_stamp(fields: &serde_json::Map<String, Tree>) -> bool {
     fields.len() == 2
         && fields.keys().any(|key| SECONDS_NAMES.contains(&key.as_str()))
         && fields.keys().any(|key| NANOSECONDS_NAMES.contains(&key.as_str()))
