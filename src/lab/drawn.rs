@@ -96,7 +96,7 @@ pub(super) fn spec(channel: &SceneChannel) -> ChannelSpec {
         coupling: Coupling::Dc,
         calibration: None,
         reference: None,
-        lateral_m: 0.0,
+        lateral_m: channel.lateral_m,
     }
 }
 

@@ -1,7 +1,7 @@
 //! A few numbers to a simulated drop and its cask file, all of it true.
 
 use super::chance::Chance;
-use super::data::{BendingMode, Chain, Scene, SceneChannel, WantedImpact};
+use super::data::{BendingMode, Chain, Scene, SceneChannel, SceneExtras, WantedImpact};
 use super::drawn::{Build, DrawnDrop, cask_file, fall, spec};
 use super::synth;
 use crate::data::{Contact, End, STANDARD_GRAVITY_M_S2};
@@ -75,6 +75,7 @@ impl DropPlan {
             clock_error: 0.0,
             swapped_ends: false,
             channels: [End::First, End::Second].map(|end| self.channel(end)).into(),
+            extras: SceneExtras::default(),
             cask,
             drop,
         };

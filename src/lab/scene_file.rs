@@ -8,11 +8,11 @@ use crate::data::{Cask, CaskFile, Drop, End};
 use crate::ingest::IngestError;
 use crate::ingest::cask_file::section::{Document, Kind, Section};
 use crate::ingest::cask_file::{self, CaskFileError};
-use crate::lab::data::{BendingMode, CrushableEnd, Scene, SceneFile, WantedImpact};
+use crate::lab::data::{BendingMode, CrushableEnd, LooseMass, Scene, SceneExtras, SceneFile, WantedImpact};
 use crate::lab::drawn;
-use crate::lab::synth::crushable_end;
+use crate::lab::synth::{self, crushable_end};
 use std::path::Path;
-use values::{contradicts, flag, given, value, whole};
+use values::{contradicts, flag, given, needs, value, whole};
 
 /// The scene file.
 const SCENE_FILE: Kind = Kind { name: "the scene file", root: &keys::ROOT, tables: &keys::TABLES };
@@ -42,13 +42,21 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
     let root = document.root()?;
     let drop_table = root.required_table("drop")?;
     let cask = cask_file::cask(&root.required_table("cask")?, path)?;
-    let drop = cask_file::drop(&drop_table, &cask)?;
-    let contact = cask_file::contact(&root.table("contact")?)?;
+    let free = cask_file::drop(&drop_table, &cask)?;
+    let guided = value(&drop_table, "guided_percent")? / 100.0;
+    let drop = guided_drop(free, guided);
+    let contact_table = root.table("contact")?;
+    let contact = cask_file::contact(&contact_table)?;
     let name = root.text("name")?.map_or_else(|| cask.name.clone(), |name| name.value);
     let crushable = |end, table: Section, usual| {
         let impact = impact(&table, usual)?;
         let by_pulse = || crushable_end(&cask, &drop, contact, end, impact);
-        Ok::<_, CaskFileError>(stiffnesses(&table)?.unwrap_or_else(by_pulse))
+        needs(&table, &[("lock_up_m", "lock_up_n_m"), ("lock_up_n_m", "lock_up_m")])?;
+        Ok::<_, CaskFileError>(CrushableEnd {
+            lock_up: given(&table, "lock_up_m")?.zip(given(&table, "lock_up_n_m")?),
+            footprint: value(&table, "footprint")?,
+            ..stiffnesses(&table)?.unwrap_or_else(by_pulse)
+        })
     };
     let first_end = crushable(End::First, root.table("first_end")?, FIRST_IMPACT)?;
     let second_end = crushable(End::Second, root.table("second_end")?, SECOND_IMPACT)?;
@@ -57,32 +65,72 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
     let (channels, specs) = both.into_iter().unzip();
     let recording = root.table("recording")?;
     let rest = flag(&recording, "rest")?;
-    let fall_s = (2.0 * drop.height_m / drop.gravity_m_s2).sqrt();
-    let before_s = if rest { fall_s + AT_REST_S } else { BEFORE_S };
-    let scene = Scene {
+    let loose = root.tables("contents")?;
+    if let Some(table) = loose.get(synth::MOST_LOOSE) {
+        let mend = "two make a body that strikes at both its ends";
+        return Err(contradicts(
+            table,
+            "mass_kg",
+            "one [[contents]] more than the two that are simulated",
+            mend,
+        ));
+    }
+    let falling_speed_m_s = value(&contact_table, "falling_speed_m_s")?;
+    let extras = SceneExtras {
+        contents: loose.iter().map(loose_mass).collect::<Result<_, _>>()?,
+        falling_friction: given(&contact_table, "falling_friction")?.map(|fast| (fast, falling_speed_m_s)),
+        returning_friction: given(&contact_table, "returning_friction")?,
+        guided,
+        roll_rad_s: value(&drop_table, "roll_deg_s")?.to_radians(),
+    };
+    let mut scene = Scene {
         name,
         seed: whole(&root, "seed")?.unwrap_or(1),
         first_end,
         second_end,
         modes: root.tables("mode")?.iter().map(mode).collect::<Result<_, _>>()?,
-        before_s: given(&recording, "before_s")?.unwrap_or(before_s),
+        before_s: BEFORE_S,
         after_s: value(&recording, "after_s")?,
         rest,
         clock_error: 1e-6 * value(&recording, "clock_error_ppm")?,
         swapped_ends: flag(&recording, "swapped_ends")?,
         channels,
+        extras,
         cask: cask.clone(),
         drop,
         contact,
     };
+    let usual_s = if rest { scene.fall_s() + AT_REST_S } else { BEFORE_S };
+    scene.before_s = given(&recording, "before_s")?.unwrap_or(usual_s);
     affordable(&root, &tables, &scene)?;
     let defaults = cask_file::assumed(&root, &["cask", "drop", "contact"]);
     let stated = CaskFile {
         path: path.to_owned(),
         channels: specs,
-        ..drawn::cask_file(cask, stated_drop(&drop_table, drop)?, contact, defaults)
+        ..drawn::cask_file(cask, stated_drop(&drop_table, free)?, contact, defaults)
     };
     Ok(SceneFile { scene, stated })
+}
+
+/// The fall that guides slow down, of which the cask file does not know.
+fn guided_drop(free: Drop, guided: f64) -> Drop {
+    if free.impact_velocity_given {
+        return free;
+    }
+    let of_fall_m_s = (2.0 * free.gravity_m_s2 * free.height_m).sqrt();
+    let lost_m_s = of_fall_m_s * (1.0 - (1.0 - guided).sqrt());
+    Drop { impact_velocity_m_s: free.impact_velocity_m_s - lost_m_s, ..free }
+}
+
+fn loose_mass(table: &Section) -> Result<LooseMass, CaskFileError> {
+    Ok(LooseMass {
+        mass_kg: table.required_number("mass_kg")?.value,
+        position_m: table.required_number("position_m")?.value,
+        gap_m: value(table, "gap_m")?,
+        play_m: value(table, "play_m")?,
+        pulse_s: 1e-3 * value(table, "pulse_ms")?,
+        damping_s_m: value(table, "damping_s_m")?,
+    })
 }
 
 fn stated_drop(table: &Section, drop: Drop) -> Result<Drop, CaskFileError> {
@@ -122,7 +170,7 @@ fn stiffnesses(table: &Section) -> Result<Option<CrushableEnd>, CaskFileError> {
         let mend = "an end that unloads more softly than it loads would give energy";
         return Err(contradicts(table, "unloading_n_m", "not below loading_n_m", mend));
     }
-    Ok(Some(CrushableEnd { loading_n_m, unloading_n_m, yield_n }))
+    Ok(Some(CrushableEnd { yield_n, ..CrushableEnd::elastic(loading_n_m, unloading_n_m) }))
 }
 
 fn mode(table: &Section) -> Result<BendingMode, CaskFileError> {

@@ -65,12 +65,16 @@ pub struct Arguments {
 /// Words of --kinds that are no kind of damage.
 const ALL: &str = "all";
 const UNDAMAGED: &str = "undamaged";
+const SOUND: &str = "sound";
 
 fn kind(word: &str) -> Result<&'static str, String> {
-    let mut words = [ALL, UNDAMAGED].into_iter().chain(lab::campaign::kinds().map(|kind| kind.name));
+    let mut words = [ALL, UNDAMAGED, SOUND].into_iter().chain(lab::campaign::kinds().map(|kind| kind.name));
     words.find(|known| *known == word).ok_or_else(|| {
         let known: Vec<&str> = lab::campaign::kinds().map(|kind| kind.name).collect();
-        format!("no kind of damage; there are all, undamaged, {}", known.join(", "))
+        format!(
+            "no kind of drop; there are all, undamaged, sound (all kinds of sound drops), {}",
+            known.join(", ")
+        )
     })
 }
 
@@ -100,12 +104,13 @@ fn campaign(arguments: &Arguments, scenes: u32) -> miette::Result<Ending> {
     let document =
         arguments.into.as_deref().map(|path| MARKS.parts(path).map(|parts| (path, parts))).transpose()?;
     let has = |word| arguments.kinds.contains(&word);
-    let damages = lab::campaign::kinds().map(|kind| kind.name);
+    let is_wanted =
+        |kind: &&lab::campaign::DamageKind| has(ALL) || has(kind.name) || has(SOUND) && kind.is_sound();
     let request = CampaignRequest {
         scenes,
         seed: arguments.seed,
         undamaged: has(ALL) || has(UNDAMAGED),
-        kinds: damages.filter(|kind| has(ALL) || has(kind)).collect(),
+        kinds: lab::campaign::kinds().filter(is_wanted).map(|kind| kind.name).collect(),
         exact: arguments.exact,
     };
     let campaign = with_progress("campaign", |progress| lab::campaign::run(&request, progress));

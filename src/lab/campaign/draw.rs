@@ -3,7 +3,7 @@
 use crate::data::{Cask, CaskFile, Contact, Drop, End};
 use crate::lab::chance::{Chance, round};
 use crate::lab::damage::{BetweenImpacts, Wish};
-use crate::lab::data::{BendingMode, Scene, SimulatedMotion, Truth, WantedImpact};
+use crate::lab::data::{BendingMode, Scene, SceneExtras, SimulatedMotion, Truth, WantedImpact};
 use crate::lab::drawn::{BUILDS, DrawnDrop, GRAVITY_M_S2, cask_file, fall, tolerances};
 use crate::lab::synth;
 use std::collections::BTreeMap;
@@ -121,6 +121,7 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
         clock_error: off * chance.normal() * 2e-5,
         swapped_ends: false,
         channels: Vec::new(),
+        extras: SceneExtras::default(),
         cask,
         drop,
         contact: stated_contact,
@@ -133,18 +134,14 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
             stated => loosened(stated, holds, share),
         };
     }
-    (scene, cask_file(stated, stated_drop, stated_contact, defaults))
+    let mut stated = cask_file(stated, stated_drop, stated_contact, defaults);
+    wish.fulfil(&mut scene, &mut stated, chance);
+    (scene, stated)
 }
 
 /// I_x / I_z of the first contact.
 fn impulse_ratio(motion: &SimulatedMotion) -> f64 {
-    let end_s = motion.truth.contact_s.unwrap_or(f64::INFINITY);
-    let steps = motion.steps[..motion.count_before(|t| t <= end_s)].windows(2);
-    let (along, up) = steps.fold((0.0, 0.0), |(along, up), steps| {
-        let half_s = (steps[1].time_s - steps[0].time_s) / 2.0;
-        let [before, after] = [0, 1].map(|i| steps[i].loads_n[0]);
-        (along + half_s * (before.0 + after.0), up + half_s * (before.1 + after.1))
-    });
+    let (along, up) = motion.first_impulse_n_s();
     if up > 0.0 { along / up } else { 0.0 }
 }
 

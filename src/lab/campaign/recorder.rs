@@ -39,7 +39,7 @@ pub(super) fn equip(case: &mut DrawnDrop, wish: &Wish, exact: bool) {
 fn timed(case: &mut DrawnDrop, wish: &Wish) -> f64 {
     let truth = case.motion.truth;
     let chance = &mut case.chance;
-    let fall_s = (2.0 * case.scene.drop.height_m / case.scene.drop.gravity_m_s2).sqrt();
+    let fall_s = case.scene.fall_s();
     let shows_rest = chance.is(0.2);
     case.scene.rest = wish.rest.unwrap_or(shows_rest);
     let is_short = chance.is(0.8);

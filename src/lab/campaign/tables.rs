@@ -20,12 +20,15 @@ pub fn markdown(campaign: &Campaign) -> String {
 
 fn document(campaign: &Campaign) -> ReportDocument {
     let all = Scenes(campaign.rows.iter().collect());
-    let [undamaged, damaged] = [true, false].map(|is_sound| all.that(|row| row.damage.is_none() == is_sound));
+    let undamaged = all.that(|row| row.damage.is_none());
+    let [sound, damaged] = [true, false].map(|is_sound| all.that(|row| is_sound_drop(row) == is_sound));
+    let struck = all.that(|row| row.damage.is_some());
     let request = &campaign.request;
     let mut times_s: Vec<f64> = campaign.rows.iter().map(|row| row.analysis_s).collect();
     let summary = format!(
-        "{} undamaged and {} damaged scenes, seed {}{}; one analysis takes {} ms (median).",
+        "{} undamaged scenes, {} of sound kinds and {} damaged ones, seed {}{}; one analysis takes {} ms (median).",
         undamaged.0.len(),
+        sound.0.len() - undamaged.0.len(),
         damaged.0.len(),
         request.seed,
         if request.exact { ", what is stated exactly true" } else { "" },
@@ -37,19 +40,30 @@ fn document(campaign: &Campaign) -> ReportDocument {
         chapter("Undamaged scenes", verdicts(&undamaged));
         chapter("Errors and intervals", intervals(&undamaged));
         chapter("What keeps undamaged scenes from passing", codes(&undamaged));
-        chapter("By class", classes(&undamaged));
         chapter("Rungs of the reconstruction", ladder(&undamaged));
         chapter("Drops drawn and left out", redraws(&undamaged));
     }
-    if !damaged.0.is_empty() {
+    if !sound.0.is_empty() {
+        chapter("Sound drops, by kind", coverage(&sound_kinds(&sound)));
+        chapter(
+            "Sound drops, by class",
+            coverage(&CLASSES.map(|(name, belongs)| (name, sound.that(belongs)))),
+        );
+    }
+    if !struck.0.is_empty() {
         chapter("Damaged scenes, by kind", damages(&damaged, false));
-        chapter("Damaged scenes, by kind and size", damages(&damaged, true));
+        chapter("Kinds by size", damages(&struck, true));
     }
     if !undamaged.0.is_empty() && !damaged.0.is_empty() {
         chapter("What a stricter limit of the closures would do", limits(&undamaged, &damaged));
     }
     chapter("Passed and wrong", missed(&all));
     ReportDocument { chapters, ..ReportDocument::default() }
+}
+
+/// Whether nothing is wrong with the drop of this row.
+fn is_sound_drop(row: &CampaignRow) -> bool {
+    row.damage.is_none_or(|damage| super::kinds().any(|kind| kind.name == damage.kind && kind.is_sound()))
 }
 
 /// Some scenes of a campaign.
@@ -196,7 +210,11 @@ fn restitution(row: &CampaignRow) -> f64 {
     row.truth.k.unwrap_or(f64::NAN)
 }
 
-const CLASSES: [(&str, Belongs); 28] = [
+const CLASSES: [(&str, Belongs); 32] = [
+    ("ESBB", |row| row.scene.cask.name.starts_with("ESBB")),
+    ("ANF-10", |row| row.scene.cask.name.starts_with("ANF-10")),
+    ("ANF-18", |row| row.scene.cask.name.starts_with("ANF-18")),
+    ("VHLW", |row| row.scene.cask.name.starts_with("VHLW")),
     ("angle below 5°", |row| angle_deg(row) < 5.0),
     ("angle 5 to 30°", |row| (5.0..=30.0).contains(&angle_deg(row))),
     ("angle above 30°", |row| angle_deg(row) > 30.0),
@@ -227,16 +245,31 @@ const CLASSES: [(&str, Belongs); 28] = [
     ("rest recorded", |row| row.scene.rest),
 ];
 
-fn classes(scenes: &Scenes) -> ChapterPart {
-    let classes = CLASSES.map(|(name, belongs)| (name, scenes.that(belongs)));
-    ReportTable::of(&classes)
-        .text("class", |(name, _)| *name)
+/// The undamaged drops, those of each sound kind, and all of them.
+fn sound_kinds<'a>(sound: &Scenes<'a>) -> Vec<(&'static str, Scenes<'a>)> {
+    let of = |kind: Option<&'static str>| sound.that(|row| row.damage.map(|damage| damage.kind) == kind);
+    let mut kinds = vec![("undamaged", of(None))];
+    let named = super::kinds().filter(|kind| kind.is_sound());
+    kinds.extend(named.map(|kind| (kind.name, of(Some(kind.name)))));
+    kinds.push(("all", sound.that(|_| true)));
+    kinds
+}
+
+/// How many of each group pass, how far off they are, and how often each interval holds.
+fn coverage(groups: &[(&'static str, Scenes)]) -> ChapterPart {
+    let held = |of: &Scenes, name| of.spread(name, false).held();
+    let groups: Vec<_> = groups.iter().filter(|(_, of)| !of.0.is_empty()).collect();
+    ReportTable::of(&groups)
+        .text("drops", |(name, _)| *name)
         .number("scenes", |(_, of)| of.0.len().to_string())
         .number("pass", |(_, of)| share(of.of(Verdict::Pass).0.len(), of.0.len()))
         .number("speed: 95th, %", |(_, of)| of.spread("speed", true).error(0.95, 2))
-        .number("held", |(_, of)| of.spread("speed", true).held())
         .number("k: 95th", |(_, of)| of.spread("k", false).error(0.95, 4))
-        .number("held", |(_, of)| of.spread("k", false).held())
+        .number("held: speed", |(_, of)| held(of, "speed"))
+        .number("k", |(_, of)| held(of, "k"))
+        .number("ω", |(_, of)| held(of, "omega"))
+        .number("v_z", |(_, of)| held(of, "vertical"))
+        .number("v_x", |(_, of)| held(of, "horizontal"))
         .number("missed", |(_, of)| of.count(SceneOutcome::Missed).to_string())
         .into()
 }

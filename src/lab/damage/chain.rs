@@ -1,5 +1,6 @@
 //! A damage of sensor, cable or recorder to the measuring chain that has it.
 
+use super::super::chance::round;
 use super::super::data::Chain;
 use super::super::drawn::{DrawnDrop, unit_m_s2};
 use crate::data::{End, STANDARD_GRAVITY_M_S2};
@@ -41,6 +42,12 @@ pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
             case.scene.after_s = -case.way_s() - size * 1e-3;
         }
         "tilt" => case.scene.channels[0].chain.tilt_rad = size.to_radians(),
+        "roll" | "roll_unstated" => roll(case, size, kind == "roll"),
+        "whip" => whip(case, size),
+        "coarse" | "coarser" => coarse(case, size),
+        "filter_one" => {
+            one(case, |chain, _| chain.anti_alias_hz = chain.anti_alias_hz.map(|hz| hz.min(size)))
+        }
         "aliasing" => chains(case).for_each(|chain| chain.anti_alias_hz = None),
         _ => {}
     }
@@ -133,6 +140,35 @@ fn scale(case: &mut DrawnDrop, size: f64, all: bool) {
         }
     }
     unlimited(case);
+}
+
+/// The tilted edge of the first end leaves a roll, and sensors sit up to half a section off the plane.
+fn roll(case: &mut DrawnDrop, size: f64, is_stated: bool) {
+    case.scene.extras.roll_rad_s = case.chance.sign() * size.to_radians();
+    for (channel, spec) in case.scene.channels.iter_mut().zip(&mut case.stated.channels) {
+        channel.lateral_m = round(case.chance.even(-0.5, 0.5) * case.scene.cask.height_m, 3);
+        spec.lateral_m = if is_stated { channel.lateral_m } else { 0.0 };
+    }
+    unlimited(case);
+}
+
+/// A slow wave of `size` percent of the peak, on one channel.
+fn whip(case: &mut DrawnDrop, size: f64) {
+    let which = case.chance.index(2);
+    let wave = (size / 100.0 * case.peak_m_s2(which), case.chance.log_even(4.0, 60.0));
+    case.scene.channels[which].chain.whip = Some(wave);
+    unlimited(case);
+}
+
+/// Converters whose step is `size` percent of the peak.
+fn coarse(case: &mut DrawnDrop, size: f64) {
+    let bits = case.chance.one_of(&[10_u8, 11, 12]);
+    unlimited(case);
+    for i in 0..case.scene.channels.len() {
+        let full_scale_m_s2 = size / 100.0 * case.peak_m_s2(i) * 2_f64.powi(i32::from(bits) - 1);
+        let chain = &mut case.scene.channels[i].chain;
+        (chain.full_scale_m_s2, chain.bits) = (Some(full_scale_m_s2), Some(bits));
+    }
 }
 
 /// The second sensor of the first end shows another step than its neighbour.

@@ -13,6 +13,8 @@ pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
         "stated_smooth" | "stated_smooth_axial" => state(case, Contact::Smooth),
         "stated_cog" => cog(case, size),
         "stated_inertia" => inertia(case, size),
+        "stated_length" => length(case, size),
+        "stated_section" => section(case, size),
         _ => {}
     }
 }
@@ -60,6 +62,33 @@ fn cog(case: &mut DrawnDrop, size: f64) {
     given(case, "cask.cog_m");
     let sign = case.chance.sign();
     case.stated.cask.cog_m += sign * size;
+}
+
+/// The second end elsewhere than stated; what sits on the cask stays where it is, and on it.
+fn length(case: &mut DrawnDrop, size: f64) {
+    let drawn = factor(case, size);
+    let reach_m = case.stated.channels.iter().map(|spec| spec.position_m).fold(0.0, f64::max);
+    let cask = &mut case.stated.cask;
+    cask.length_m *= if drawn * cask.length_m < reach_m { 1.0 / drawn } else { drawn };
+    follow(case);
+}
+
+fn section(case: &mut DrawnDrop, size: f64) {
+    case.stated.cask.height_m *= factor(case, size);
+    follow(case);
+}
+
+/// What the cask file leaves out follows from the sizes that it states.
+fn follow(case: &mut DrawnDrop) {
+    let is_left = |key: &str| case.stated.defaults.iter().any(|default| default == key);
+    let (no_cog, no_inertia) = (is_left("cask.cog_m"), is_left("cask.inertia_kg_m2"));
+    let cask = &mut case.stated.cask;
+    if no_cog {
+        cask.cog_m = cask.length_m / 2.0;
+    }
+    if no_inertia {
+        cask.inertia_kg_m2 = cask.mass_kg * (cask.length_m.powi(2) + cask.height_m.powi(2)) / 12.0;
+    }
 }
 
 fn inertia(case: &mut DrawnDrop, size: f64) {

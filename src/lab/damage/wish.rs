@@ -1,6 +1,9 @@
 //! Words of the table to what a damage needs of the drop that it strikes.
 
-use crate::data::Contact;
+use super::super::chance::Chance;
+use super::super::data::Scene;
+use super::physical;
+use crate::data::{CaskFile, Contact};
 
 /// What happens between the two impacts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -19,7 +22,7 @@ pub(in super::super) enum BetweenImpacts {
 pub(in super::super) struct Wish {
     /// What happens between the impacts.
     pub flight: BetweenImpacts,
-    /// The contact of L, as it is.
+    /// The contact of L, as it is where the kind does not change it.
     pub contact: Option<Contact>,
     /// Whether there is an axial channel; `None`: as it comes.
     pub axial: Option<bool>,
@@ -29,6 +32,10 @@ pub(in super::super) struct Wish {
     pub third_channel: bool,
     /// Nothing that makes thousands of samples more than the damage needs.
     pub slow_recorder: bool,
+    /// The kind that it is for, and its size.
+    pub kind: &'static str,
+    /// See `kind`.
+    pub size: f64,
 }
 
 impl Wish {
@@ -42,11 +49,22 @@ impl Wish {
                 () if has("short_flight") => BetweenImpacts::Short,
                 () => BetweenImpacts::Free,
             },
-            contact: has("friction").then_some(Contact::Coulomb(size)),
+            contact: match () {
+                () if has("friction") => Some(Contact::Coulomb(size)),
+                () if has("stated_rough") => Some(Contact::Rough),
+                () if has("unstated") => Some(Contact::Unknown),
+                () => None,
+            },
             axial: either("axial", "no_axial"),
             rest: either("rest", "no_rest"),
             third_channel: has("third_channel"),
             slow_recorder: true,
+            ..Self::default()
         }
+    }
+
+    /// Makes a scene and what is stated of it, both still without channels, those of the kind.
+    pub(in super::super) fn fulfil(&self, scene: &mut Scene, stated: &mut CaskFile, chance: &mut Chance) {
+        physical::strike(self.kind, self.size, scene, stated, chance);
     }
 }

@@ -6,6 +6,9 @@ mod synthetic;
 mod trial;
 
 pub use campaign::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber, Scored};
-pub use scene::{BendingMode, Chain, CrushableEnd, MotionStep, Scene, SceneChannel, SimulatedMotion, Truth};
+pub use scene::{
+    BendingMode, Chain, CrushableEnd, LooseMass, MotionStep, Scene, SceneChannel, SceneExtras,
+    SimulatedMotion, Truth,
+};
 pub use synthetic::{SceneFile, SyntheticChannel, SyntheticRecording, WantedImpact};
 pub use trial::{Trial, TrialMachine, TrialMap, TrialPoint, TrialRequest, TrialSize};

@@ -11,6 +11,50 @@ pub struct CrushableEnd {
     pub unloading_n_m: f64,
     /// Force at which the end yields, N: the force stays there while it is crushed on.
     pub yield_n: Option<f64>,
+    /// Lock-up: beyond the first, m, of crush the force grows by the second, N/m, on top of that.
+    pub lock_up: Option<(f64, f64)>,
+    /// How far inward the force moves along the target as the end flattens, m for each of crush.
+    pub footprint: f64,
+}
+
+impl CrushableEnd {
+    /// An end without yield, lock-up and footprint, by its stiffnesses, N/m.
+    #[must_use]
+    pub fn elastic(loading_n_m: f64, unloading_n_m: f64) -> Self {
+        Self { loading_n_m, unloading_n_m, yield_n: None, lock_up: None, footprint: 0.0 }
+    }
+}
+
+/// A loose mass in the cask, which flies across it from pad to pad: two of them are a body that rattles at both its ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LooseMass {
+    /// Beside the cask's, kg.
+    pub mass_kg: f64,
+    /// Along the axis from the first end, m.
+    pub position_m: f64,
+    /// Way to the lower pad at first contact, m.
+    pub gap_m: f64,
+    /// Way from pad to pad, m.
+    pub play_m: f64,
+    /// Length of a blow on a pad that takes no energy, s.
+    pub pulse_s: f64,
+    /// λ of the pads' force K c (1 + λ ċ) over their crush c, s/m.
+    pub damping_s_m: f64,
+}
+
+/// What most drops are without.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SceneExtras {
+    /// Loose contents.
+    pub contents: Vec<LooseMass>,
+    /// Friction of L that falls with the sliding speed: towards the first, within the second, m/s.
+    pub falling_friction: Option<(f64, f64)>,
+    /// Friction of L from its greatest crush on.
+    pub returning_friction: Option<f64>,
+    /// Share of gravity that rails, ropes or a brake take in the fall.
+    pub guided: f64,
+    /// Roll that a tilted edge leaves, built up with the force of the first contact, rad/s.
+    pub roll_rad_s: f64,
 }
 
 /// A bending mode of the free uniform beam.
@@ -53,6 +97,8 @@ pub struct Chain {
     pub hum: Option<(f64, f64)>,
     /// Bursts of a shaken cable during each contact: amplitude, m/s².
     pub cable_noise_m_s2: f64,
+    /// Wave of a whipping cable from first contact on, which fades: amplitude, m/s², and frequency, Hz.
+    pub whip: Option<(f64, f64)>,
     /// The converter cuts off beyond ± this, m/s².
     pub full_scale_m_s2: Option<f64>,
     /// Bits of the converter over ± full scale.
@@ -88,6 +134,8 @@ pub struct SceneChannel {
     pub position_m: f64,
     /// True position across the axis, m.
     pub offset_m: f64,
+    /// True place off the plane of the drop, m.
+    pub lateral_m: f64,
     /// Unit in the recording, "g" or "m/s^2".
     pub unit: String,
     /// Samples a second.
@@ -106,6 +154,7 @@ impl SceneChannel {
             axis: Axis::Transverse,
             position_m,
             offset_m: 0.0,
+            lateral_m: 0.0,
             unit: "g".to_owned(),
             sample_rate_hz: 2e4,
             chain: Chain::perfect(),
@@ -144,6 +193,16 @@ pub struct Scene {
     pub swapped_ends: bool,
     /// The channels.
     pub channels: Vec<SceneChannel>,
+    /// What most drops are without.
+    pub extras: SceneExtras,
+}
+
+impl Scene {
+    /// From the release to first contact, s: √(2 h/(g (1 − q))), of which guides take q.
+    #[must_use]
+    pub fn fall_s(&self) -> f64 {
+        (2.0 * self.drop.height_m / (self.drop.gravity_m_s2 * (1.0 - self.extras.guided))).sqrt()
+    }
 }
 
 /// The simulated motion.
@@ -159,6 +218,18 @@ impl SimulatedMotion {
     /// How many steps lie at times that meet `is_before`, as they do from the first one on.
     pub fn count_before(&self, is_before: impl Fn(f64) -> bool) -> usize {
         self.steps.partition_point(|step| is_before(step.time_s))
+    }
+
+    /// Tangential and normal impulse of the first contact, N s.
+    #[must_use]
+    pub fn first_impulse_n_s(&self) -> (f64, f64) {
+        let end_s = self.truth.contact_s.unwrap_or(f64::INFINITY);
+        let steps = self.steps[..self.count_before(|t| t <= end_s)].windows(2);
+        steps.fold((0.0, 0.0), |(along, up), steps| {
+            let half_s = (steps[1].time_s - steps[0].time_s) / 2.0;
+            let [before, after] = [0, 1].map(|i| steps[i].loads_n[0]);
+            (along + half_s * (before.0 + after.0), up + half_s * (before.1 + after.1))
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! A `[[channel]]` table of a scene file to the channel as it is and the channel as the cask file will state it.
 
-use super::values::{contradicts, flag, given, spans_s, value, whole};
+use super::values::{flag, given, needs, spans_s, value, whole};
 use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, STANDARD_GRAVITY_M_S2, Source, Unit};
 use crate::ingest::cask_file::CaskFileError;
 use crate::ingest::cask_file::channel::{coupling, polarity};
@@ -60,6 +60,7 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
         axis: axis.unwrap_or(Axis::Transverse),
         position_m: position_m(table, "position_m", cask)?.unwrap_or_else(|| usual_position_m(cask, end)),
         offset_m: value(table, "offset_m")?,
+        lateral_m: value(table, "lateral_m")?,
         unit: unit_name.to_owned(),
         sample_rate_hz: value(table, "sample_rate_hz")?,
         chain: chain(table, coupling, full_scale.map(|limit| limit * unit_m_s2(unit_name)))?,
@@ -73,7 +74,7 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
         coupling: if is_hidden { Coupling::Dc } else { coupling },
         calibration: None,
         reference: None,
-        lateral_m: 0.0,
+        lateral_m: given(table, "stated_lateral_m")?.unwrap_or(channel.lateral_m),
         ..stated(&channel)
     };
     Ok((channel, stated))
@@ -97,15 +98,12 @@ fn position_m(table: &Section, key: &str, cask: &Cask) -> Result<Option<f64>, Ca
 }
 
 fn chain(table: &Section, coupling: Coupling, full_scale_m_s2: Option<f64>) -> Result<Chain, CaskFileError> {
-    for (key, needs) in [("resonance_damping", "resonance_hz"), ("hum_hz", "hum_g"), ("bits", "full_scale")] {
-        if table.value(key).is_some() && table.value(needs).is_none() {
-            let mend = format!("add {needs}, or delete {key}");
-            return Err(contradicts(table, key, &format!("no meaning without {needs}"), &mend));
-        }
-    }
+    needs(table, &[("resonance_damping", "resonance_hz"), ("hum_hz", "hum_g")])?;
+    needs(table, &[("whip_hz", "whip_g"), ("bits", "full_scale")])?;
     let value = |key| value(table, key);
     let in_g = |key| Ok::<_, CaskFileError>(value(key)? * STANDARD_GRAVITY_M_S2);
-    let (damping, hum_hz) = (value("resonance_damping")?, value("hum_hz")?);
+    let [damping, hum_hz, whip_hz] = ["resonance_damping", "hum_hz", "whip_hz"].map(value);
+    let (damping, hum_hz, whip_hz) = (damping?, hum_hz?, whip_hz?);
     Ok(Chain {
         tilt_rad: value("tilt_deg")?.to_radians(),
         cross_axis: value("cross_axis_percent")? / 100.0,
@@ -122,6 +120,7 @@ fn chain(table: &Section, coupling: Coupling, full_scale_m_s2: Option<f64>) -> R
         pink_noise_m_s2: in_g("pink_noise_g")?,
         hum: given(table, "hum_g")?.map(|hum_g| (hum_g * STANDARD_GRAVITY_M_S2, hum_hz)),
         cable_noise_m_s2: in_g("cable_noise_g")?,
+        whip: given(table, "whip_g")?.map(|whip_g| (whip_g * STANDARD_GRAVITY_M_S2, whip_hz)),
         full_scale_m_s2,
         bits: whole(table, "bits")?,
         dropouts_s: spans_s(table, "dropouts_s")?,

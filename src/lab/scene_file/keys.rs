@@ -3,21 +3,33 @@
 use crate::data::keys::{self, Key, KeyTable, flag, number, text};
 
 /// What stands in the file itself.
-pub(super) const ROOT: [&str; 10] =
-    ["name", "seed", "cask", "drop", "contact", "first_end", "second_end", "mode", "recording", "channel"];
+pub(super) const ROOT: [&str; 11] = [
+    "name",
+    "seed",
+    "cask",
+    "drop",
+    "contact",
+    "first_end",
+    "second_end",
+    "contents",
+    "mode",
+    "recording",
+    "channel",
+];
 
-pub(super) static TABLES: [KeyTable; 8] = [
+pub(super) static TABLES: [KeyTable; 9] = [
     KeyTable { name: "cask", remark: "", keys: &keys::CASK },
     KeyTable { name: "drop", remark: "", keys: &DROP },
-    KeyTable { name: "contact", remark: "", keys: &keys::CONTACT },
+    KeyTable { name: "contact", remark: "", keys: &CONTACT },
     KeyTable { name: "first_end", remark: "", keys: &END },
     KeyTable { name: "second_end", remark: "", keys: &END },
+    KeyTable { name: "contents", remark: "", keys: &CONTENTS },
     KeyTable { name: "mode", remark: "", keys: &MODE },
     KeyTable { name: "recording", remark: "", keys: &RECORDING },
     KeyTable { name: "channel", remark: "", keys: &CHANNEL },
 ];
 
-const DROP: [Key; 8] = {
+const DROP: [Key; 10] = {
     let [height, angle, velocity, gravity, turning, along] = keys::DROP;
     [
         height,
@@ -28,17 +40,39 @@ const DROP: [Key; 8] = {
         along,
         number("stated_height_m", "").above_zero(),
         number("stated_angle_deg", "").within(0.0, 90.0, "degrees, for the cask file"),
+        number("guided_percent", "0").within(0.0, 90.0, "the share of gravity that rails or ropes take"),
+        number("roll_deg_s", "0"),
     ]
 };
 
+const CONTACT: [Key; 4] = [
+    keys::CONTACT[0],
+    number("falling_friction", "").zero_or_more(),
+    number("falling_speed_m_s", "1").above_zero(),
+    number("returning_friction", "").zero_or_more(),
+];
+
 /// An end by its pulse, or by the stiffnesses themselves.
-const END: [Key; 6] = [
+const END: [Key; 9] = [
     number("pulse_ms", "").within(0.05, 200.0, "the length of the contact, in ms"),
     number("k", "").within(0.01, 1.0, "k is the rebound over the impact velocity of the end"),
     number("yield_share", "").within(0.01, 1.0, "share of the elastic peak at which the force stays"),
     number("loading_n_m", "").above_zero(),
     number("unloading_n_m", "").above_zero(),
     number("yield_n", "").above_zero(),
+    number("lock_up_m", "").zero_or_more(),
+    number("lock_up_n_m", "").above_zero(),
+    number("footprint", "0").within(0.0, 100.0, "m inward for each of crush"),
+];
+
+/// A blow of 2 ms, of which the pads take the half at some metres a second: timber, rubber, honeycomb.
+const CONTENTS: [Key; 6] = [
+    number("mass_kg", keys::REQUIRED).above_zero(),
+    number("position_m", keys::REQUIRED),
+    number("gap_m", "0.01").zero_or_more(),
+    number("play_m", "0.02").zero_or_more(),
+    number("pulse_ms", "2").within(0.1, 200.0, "the length of a blow, in ms"),
+    number("damping_s_m", "0.2").zero_or_more(),
 ];
 
 const MODE: [Key; 4] = [
@@ -67,12 +101,13 @@ const RECORDING: [Key; 5] = [
 const FASTEST_HZ: f64 = 5e6;
 
 /// A usual recorder and a usual piezoresistive sensor where the file is silent.
-const CHANNEL: [Key; 32] = [
+const CHANNEL: [Key; 36] = [
     text("name", keys::REQUIRED),
     text("end", keys::REQUIRED),
     text("axis", ""),
     number("position_m", ""),
     number("offset_m", "0"),
+    number("lateral_m", "0"),
     text("unit", ""),
     number("sample_rate_hz", "20000").within(100.0, FASTEST_HZ, "samples a second"),
     number("polarity", "1"),
@@ -92,12 +127,15 @@ const CHANNEL: [Key; 32] = [
     number("hum_g", "").above_zero(),
     number("hum_hz", "50").within(1.0, FASTEST_HZ, "in Hz"),
     number("cable_noise_g", "0").zero_or_more(),
+    number("whip_g", "").above_zero(),
+    number("whip_hz", "15").within(0.1, FASTEST_HZ, "in Hz"),
     number("bits", "").within(2.0, 32.0, "the bits of the converter over ± full_scale; usual are 12 to 24"),
     text("dropouts_s", "[]"),
     text("gaps_s", "[]"),
     number("skew_ms", "0"),
     off("swapped_polarity"),
     number("stated_position_m", ""),
+    number("stated_lateral_m", ""),
     text("stated_unit", ""),
     text("stated_coupling", ""),
 ];

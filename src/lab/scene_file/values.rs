@@ -74,6 +74,17 @@ fn pair(value: &DeValue) -> Option<(f64, f64)> {
     (from_s < to_s).then_some((from_s, to_s))
 }
 
+/// Refuses the first of each pair of keys where the second is left out.
+pub(super) fn needs(table: &Section, pairs: &[(&'static str, &str)]) -> Result<(), CaskFileError> {
+    for (key, other) in pairs {
+        if table.value(key).is_some() && table.value(other).is_none() {
+            let mend = format!("add {other}, or delete {key}");
+            return Err(contradicts(table, key, &format!("no meaning without {other}"), &mend));
+        }
+    }
+    Ok(())
+}
+
 /// The refusal of a key that the other keys of its table leave no meaning.
 pub(super) fn contradicts(table: &Section, key: &str, expected: &str, mend: &str) -> CaskFileError {
     let message = format!("{key} contradicts its table: {expected}");

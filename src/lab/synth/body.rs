@@ -1,13 +1,19 @@
-//! State of the cask to its rates: a rigid body in the plane with two corners, and the bending modes that ride on it.
+//! State of the cask to its rates: a rigid body in the plane with two corners, the bending modes that ride on it, and what is loose in it.
 
 use super::beam::{self, MOST_MODES};
 use super::contact::CrushingCorner;
 use crate::data::Contact;
-use crate::lab::data::Scene;
-use ode_solvers::SVector;
+use crate::lab::data::{LooseMass, Scene};
+use std::f64::consts::PI;
 
 /// x, z, φ, their rates, then q and q̇ of each bending mode; x along the target, z up, φ the inclination.
-pub(super) type State = SVector<f64, { 6 + 2 * MOST_MODES }>;
+pub(super) const CASK_STATE: usize = 6 + 2 * MOST_MODES;
+
+/// The same, then x, z and their rates of each loose mass.
+pub(super) const WHOLE_STATE: usize = CASK_STATE + 4 * MOST_LOOSE;
+
+/// Most loose masses of a scene.
+pub const MOST_LOOSE: usize = 2;
 
 /// Share of the loading's √(m/K) in which a corner that sticks loses a rest of sliding: short against any pulse.
 const HOLD_SHARE: f64 = 0.02;
@@ -40,6 +46,13 @@ pub(super) struct CornerMotion {
 
 /// The forces on both corners, N: tangential, normal.
 pub(super) type Loads = [(f64, f64); 2];
+
+/// Where a loose mass is, in body axes from S, and the force of its pads on it.
+struct Blow {
+    xi_m: f64,
+    /// Across the axis, N.
+    force_n: f64,
+}
 
 /// The cask of a scene, with the memory of its dents.
 #[derive(Debug, Clone)]
@@ -77,20 +90,49 @@ impl<'a> SceneBody<'a> {
     }
 
     /// The state at first contact: L at the target, all of the body at the impact velocity.
-    pub(super) fn at_first_contact(&self) -> State {
+    pub(super) fn at_first_contact(&self) -> [f64; WHOLE_STATE] {
         let drop = &self.scene.drop;
-        let mut y = State::zeros();
+        let mut y = [0.0; WHOLE_STATE];
         y[2] = drop.angle_rad;
         let first = self.corner(0, &y);
         y[1] = -first.z_m;
         y[3] = drop.horizontal_velocity_m_s;
         y[5] = -drop.angular_velocity_rad_s;
         y[4] = -drop.impact_velocity_m_s - y[5] * first.x_m;
+        let (sin, cos) = drop.angle_rad.sin_cos();
+        for (i, loose) in self.loose() {
+            let xi_m = loose.position_m - self.scene.cask.cog_m;
+            let (x_m, z_m) = (xi_m * cos, xi_m * sin);
+            let start = [x_m, y[1] + z_m, y[3] - y[5] * z_m, y[4] + y[5] * x_m];
+            y[i..i + 4].copy_from_slice(&start);
+        }
         y
     }
 
+    /// The loose masses, each with its place in the state.
+    fn loose(&self) -> impl Iterator<Item = (usize, &LooseMass)> {
+        (CASK_STATE..WHOLE_STATE).step_by(4).zip(&self.scene.extras.contents)
+    }
+
+    /// The blow of the pads on a loose mass at place `i` of the state.
+    fn blow(loose: &LooseMass, i: usize, y: &[f64]) -> Blow {
+        let (sin, cos) = y[2].sin_cos();
+        let [x, z, vx, vz] = [0, 1, 3, 4].map(|of| y[of]);
+        let (x_m, z_m) = (y[i] - x, y[i + 1] - z);
+        let (xi_m, eta_m) = (x_m * cos + z_m * sin, z_m * cos - x_m * sin);
+        let rising_m_s = (y[i + 3] - vz) * cos - (y[i + 2] - vx) * sin - y[5] * xi_m;
+        let stiffness_n_m = loose.mass_kg * (PI / loose.pulse_s).powi(2);
+        // A pad pushes only; this form has no step in the force as the mass meets it (Hunt & Crossley 1975).
+        let pad_n = |crush_m: f64, rate_m_s: f64| {
+            stiffness_n_m * crush_m.max(0.0) * (1.0 + loose.damping_s_m * rate_m_s).max(0.0)
+        };
+        let below_n = pad_n(-loose.gap_m - eta_m, -rising_m_s);
+        let above_n = pad_n(eta_m - (loose.play_m - loose.gap_m), rising_m_s);
+        Blow { xi_m, force_n: below_n - above_n }
+    }
+
     /// Place and motion of L (0) or R (1).
-    pub(super) fn corner(&self, end: usize, y: &State) -> CornerMotion {
+    pub(super) fn corner(&self, end: usize, y: &[f64]) -> CornerMotion {
         let cask = &self.scene.cask;
         let xi_m = if end == 0 { -cask.cog_m } else { cask.length_m - cask.cog_m };
         let eta_m = -cask.height_m / 2.0;
@@ -106,7 +148,7 @@ impl<'a> SceneBody<'a> {
     }
 
     /// What must stay above zero for the phases of both corners to last.
-    pub(super) fn watches(&self, y: &State) -> [f64; 4] {
+    pub(super) fn watches(&self, y: &[f64]) -> [f64; 4] {
         let [first, second] = [0, 1].map(|end| {
             let at = self.corner(end, y);
             self.corners[end].watches(at.height_m, at.rising_m_s)
@@ -115,7 +157,7 @@ impl<'a> SceneBody<'a> {
     }
 
     /// The forces on both corners, N.
-    pub(super) fn loads(&self, y: &State) -> Loads {
+    pub(super) fn loads(&self, y: &[f64]) -> Loads {
         if !self.corners.iter().any(CrushingCorner::touches) {
             return [(0.0, 0.0); 2];
         }
@@ -127,14 +169,30 @@ impl<'a> SceneBody<'a> {
         if self.corners[0].touches() && self.friction > 0.0 {
             let hold_n = self.hold_n(y, &at[0], &self.accelerations(y, &loads));
             // As far as Coulomb's bound lets it.
-            let bound_n = self.friction * normal_n[0];
+            let bound_n = self.friction_at(at[0].sliding_m_s) * normal_n[0];
             loads[0].0 = hold_n.clamp(-bound_n, bound_n);
         }
         loads
     }
 
+    /// The friction of L where it slides at this speed.
+    fn friction_at(&self, sliding_m_s: f64) -> f64 {
+        let extras = &self.scene.extras;
+        let returning = extras.returning_friction.filter(|_| self.corners[0].returns());
+        let held = returning.unwrap_or(self.friction);
+        extras
+            .falling_friction
+            .map_or(held, |(fast, within_m_s)| fast + (held - fast) * (-sliding_m_s.abs() / within_m_s).exp())
+    }
+
+    /// From S to where the force on an end acts, along the target, m: as the end flattens it moves inward.
+    fn arm_m(&self, end: usize, at: &CornerMotion) -> f64 {
+        let (corner, inward) = (&self.corners[end], if end == 0 { 1.0 } else { -1.0 });
+        at.x_m + inward * corner.footprint() * corner.crush_m(at.height_m)
+    }
+
     /// The tangential force on L that stops its sliding within the hold time and keeps it stopped, N.
-    fn hold_n(&self, y: &State, at: &CornerMotion, free: &[f64; 3]) -> f64 {
+    fn hold_n(&self, y: &[f64], at: &CornerMotion, free: &[f64; 3]) -> f64 {
         let cask = &self.scene.cask;
         // ẍ_C = ẍ_S − φ̈ z − φ̇² x without the force, and what one newton adds to it.
         let without_m_s2 = free[0] - free[2] * at.z_m - y[5] * y[5] * at.x_m;
@@ -143,13 +201,20 @@ impl<'a> SceneBody<'a> {
     }
 
     /// ẍ and z̈ of S, m/s², and φ̈, rad/s².
-    pub(super) fn accelerations(&self, y: &State, loads: &Loads) -> [f64; 3] {
+    pub(super) fn accelerations(&self, y: &[f64], loads: &Loads) -> [f64; 3] {
         let (mut tangential_n, mut normal_n, mut moment_n_m) = (0.0, 0.0, 0.0);
         for (end, &(t, n)) in loads.iter().enumerate().filter(|(_, load)| **load != (0.0, 0.0)) {
             let at = self.corner(end, y);
             tangential_n += t;
             normal_n += n;
-            moment_n_m += at.x_m * n - at.z_m * t;
+            moment_n_m += self.arm_m(end, &at) * n - at.z_m * t;
+        }
+        for (i, loose) in self.loose() {
+            let Blow { xi_m, force_n } = Self::blow(loose, i, y);
+            let (sin, cos) = y[2].sin_cos();
+            tangential_n += force_n * sin;
+            normal_n -= force_n * cos;
+            moment_n_m -= force_n * xi_m;
         }
         let cask = &self.scene.cask;
         [
@@ -160,8 +225,8 @@ impl<'a> SceneBody<'a> {
     }
 
     /// Rates of the state under `loads`.
-    pub(super) fn rates(&self, y: &State, loads: &Loads) -> State {
-        let mut rates = State::zeros();
+    pub(super) fn rates(&self, y: &[f64], loads: &Loads) -> [f64; WHOLE_STATE] {
+        let mut rates = [0.0; WHOLE_STATE];
         for (i, acceleration) in self.accelerations(y, loads).into_iter().enumerate() {
             rates[i] = y[3 + i];
             rates[3 + i] = acceleration;
@@ -176,6 +241,17 @@ impl<'a> SceneBody<'a> {
             rates[6 + 2 * i] = velocity_m_s;
             rates[7 + 2 * i] = beam::acceleration_m_s2(mode, drive_m_s2, q_m, velocity_m_s);
         }
+        let cask = &self.scene.cask;
+        for (i, loose) in self.loose() {
+            let Blow { xi_m, force_n } = Self::blow(loose, i, y);
+            let (along_n, up_n) = (-force_n * sin, force_n * cos);
+            let [along, up] = [along_n, up_n].map(|n| n / loose.mass_kg);
+            rates[i..i + 4].copy_from_slice(&[y[i + 2], y[i + 3], along, up - self.scene.drop.gravity_m_s2]);
+            for (q, mode) in self.scene.modes.iter().take(MOST_MODES).enumerate() {
+                let share = (xi_m + cask.cog_m) / cask.length_m;
+                rates[7 + 2 * q] -= force_n * beam::shape(mode.order, share) / cask.mass_kg;
+            }
+        }
         rates
     }
 
@@ -183,6 +259,7 @@ impl<'a> SceneBody<'a> {
     pub(super) fn fastest_rad_s(&self) -> f64 {
         let modes = self.scene.modes.iter().map(|mode| std::f64::consts::TAU * mode.frequency_hz);
         let corners = self.corners.iter().map(|c| (c.stiffness_n_m() / self.scene.cask.mass_kg).sqrt());
-        modes.chain(corners).fold(0.0, f64::max)
+        let pads = self.loose().map(|(_, loose)| PI / loose.pulse_s);
+        modes.chain(corners).chain(pads).fold(0.0, f64::max)
     }
 }

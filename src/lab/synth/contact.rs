@@ -48,7 +48,11 @@ pub(super) struct CrushingCorner {
 
 impl CrushingCorner {
     /// A corner of a body of `mass_kg` without a dent, at the target or above it.
-    pub(super) fn new(law: CrushableEnd, mass_kg: f64, touching: bool) -> Self {
+    pub(super) fn new(mut law: CrushableEnd, mass_kg: f64, touching: bool) -> Self {
+        if let Some((_, stiffness_n_m)) = law.lock_up {
+            // An end that unloads more softly than it was loaded would give energy.
+            law.unloading_n_m = law.unloading_n_m.max(law.loading_n_m + stiffness_n_m);
+        }
         let phase = if touching { Phase::Loading } else { Phase::Free };
         let damping_n_s_m = 2.0 * SETTLING_DAMPING * (law.unloading_n_m * mass_kg).sqrt();
         Self { law, phase, floor_m: 0.0, deepest_m: 0.0, peak_n: 0.0, damping_n_s_m }
@@ -64,8 +68,34 @@ impl CrushingCorner {
         match self.phase {
             Phase::Free => 0.0,
             Phase::Unloading => self.law.unloading_n_m,
-            Phase::Loading | Phase::Yielding | Phase::Settling => self.law.loading_n_m,
+            Phase::Loading | Phase::Yielding | Phase::Settling => {
+                self.law.loading_n_m + self.law.lock_up.map_or(0.0, |lock_up| lock_up.1)
+            }
         }
+    }
+
+    /// Whether it is past its greatest crush.
+    pub(super) fn returns(&self) -> bool {
+        matches!(self.phase, Phase::Unloading | Phase::Settling)
+    }
+
+    /// Its greatest crush in this contact so far, m.
+    pub(super) fn crush_m(&self, height_m: f64) -> f64 {
+        match self.phase {
+            Phase::Free => 0.0,
+            Phase::Loading | Phase::Yielding => self.floor_m - height_m,
+            Phase::Unloading | Phase::Settling => self.deepest_m,
+        }
+    }
+
+    /// How far inward its force moves, m for each of crush.
+    pub(super) fn footprint(&self) -> f64 {
+        self.law.footprint
+    }
+
+    /// The force of the material that a crush of `depth_m` has locked up, N.
+    fn locked_n(&self, depth_m: f64) -> f64 {
+        self.law.lock_up.map_or(0.0, |(from_m, stiffness_n_m)| stiffness_n_m * (depth_m - from_m).max(0.0))
     }
 
     /// The force as the phase's line has it, N; negative where the corner has left.
@@ -73,8 +103,8 @@ impl CrushingCorner {
         let depth_m = self.floor_m - height_m;
         match self.phase {
             Phase::Free => 0.0,
-            Phase::Loading => self.law.loading_n_m * depth_m,
-            Phase::Yielding => self.yield_n(),
+            Phase::Loading => self.law.loading_n_m * depth_m + self.locked_n(depth_m),
+            Phase::Yielding => self.yield_n() + self.locked_n(depth_m),
             Phase::Unloading => self.unloading_line_n(depth_m),
             Phase::Settling => self.unloading_line_n(depth_m) - self.damping_n_s_m * rising_m_s,
         }
@@ -97,7 +127,9 @@ impl CrushingCorner {
     pub(super) fn watches(&self, height_m: f64, rising_m_s: f64) -> [f64; 2] {
         match self.phase {
             Phase::Free => [height_m - self.floor_m, 1.0],
-            Phase::Loading => [-rising_m_s, self.yield_n() - self.line_n(height_m, rising_m_s)],
+            Phase::Loading => {
+                [-rising_m_s, self.yield_n() - self.law.loading_n_m * (self.floor_m - height_m)]
+            }
             Phase::Yielding => [-rising_m_s, 1.0],
             Phase::Unloading => [self.line_n(height_m, rising_m_s), rising_m_s],
             Phase::Settling => {
@@ -116,7 +148,8 @@ impl CrushingCorner {
             (Phase::Loading, 1) => self.phase = Phase::Yielding,
             (Phase::Loading | Phase::Yielding, _) => {
                 self.deepest_m = self.floor_m - height_m;
-                self.peak_n = (self.law.loading_n_m * self.deepest_m).min(self.yield_n());
+                let crushing_n = (self.law.loading_n_m * self.deepest_m).min(self.yield_n());
+                self.peak_n = crushing_n + self.locked_n(self.deepest_m);
                 self.phase = Phase::Unloading;
             }
             (Phase::Unloading | Phase::Settling, 0) => {
@@ -127,7 +160,7 @@ impl CrushingCorner {
             }
             (Phase::Unloading, _) => self.phase = Phase::Settling,
             (Phase::Settling, _) => {
-                let yielded = self.peak_n >= self.yield_n();
+                let yielded = self.law.loading_n_m * self.deepest_m >= self.yield_n();
                 self.phase = if yielded { Phase::Yielding } else { Phase::Loading };
             }
         }
@@ -139,7 +172,26 @@ impl CrushingCorner {
 mod tests {
     use super::*;
 
-    const LAW: CrushableEnd = CrushableEnd { loading_n_m: 1e6, unloading_n_m: 4e6, yield_n: Some(3e3) };
+    const LAW: CrushableEnd = CrushableEnd {
+        loading_n_m: 1e6,
+        unloading_n_m: 4e6,
+        yield_n: Some(3e3),
+        lock_up: None,
+        footprint: 0.0,
+    };
+
+    #[test]
+    fn locked_up_it_hardens_and_comes_back_no_softer() {
+        let law = CrushableEnd { lock_up: Some((4e-3, 7e6)), ..LAW };
+        let mut corner = CrushingCorner::new(law, 1000.0, true);
+        corner.switch(1, -3e-3);
+        assert!((corner.normal_n(-4e-3, 0.0) - 3e3).abs() < 1e-9);
+        // 3000 N and 1 mm of 7 N/µm; then back along 8 N/µm, the steeper of 4 and 1 + 7.
+        assert!((corner.normal_n(-5e-3, 0.0) - 1e4).abs() < 1e-9);
+        corner.switch(0, -5e-3);
+        assert!((corner.normal_n(-4.5e-3, 0.0) - 6e3).abs() < 1e-9);
+        assert!(corner.returns() && (corner.crush_m(-4.5e-3) - 5e-3).abs() < 1e-15);
+    }
 
     #[test]
     fn the_force_follows_the_loading_the_plateau_and_the_unloading() {

@@ -1,7 +1,7 @@
 //! Scenes that the tests of the simulation start from.
 
 use crate::data::{Axis, Cask, Contact, Drop, End};
-use crate::lab::data::{Chain, CrushableEnd, Scene, SceneChannel, SimulatedMotion};
+use crate::lab::data::{Chain, CrushableEnd, Scene, SceneChannel, SceneExtras, SimulatedMotion};
 
 /// The scene of `fixtures/anf18-json`: ANF-18, 9 m, 15°, rough; its stiffnesses follow `crush_for` of `fixtures/simulate.py`.
 pub(super) fn anf18() -> Scene {
@@ -11,7 +11,7 @@ pub(super) fn anf18() -> Scene {
     let effective_kg = 1.0 / (1.0 / mass_kg + arm_m * arm_m / inertia_kg_m2);
     let crush = |pulse_s: f64, k: f64| {
         let loading_n_m = effective_kg * (std::f64::consts::FRAC_PI_2 * (1.0 + k) / pulse_s).powi(2);
-        CrushableEnd { loading_n_m, unloading_n_m: loading_n_m / (k * k), yield_n: None }
+        CrushableEnd::elastic(loading_n_m, loading_n_m / (k * k))
     };
     Scene {
         name: "ANF-18".to_owned(),
@@ -37,6 +37,7 @@ pub(super) fn anf18() -> Scene {
         clock_error: 0.0,
         swapped_ends: false,
         channels: vec![],
+        extras: SceneExtras::default(),
     }
 }
 
@@ -48,6 +49,7 @@ pub(super) fn channel(axis: Axis, position_m: f64, offset_m: f64) -> SceneChanne
         axis,
         position_m,
         offset_m,
+        lateral_m: 0.0,
         unit: "m/s^2".to_owned(),
         sample_rate_hz: 1e5,
         chain: Chain::perfect(),

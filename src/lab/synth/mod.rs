@@ -13,6 +13,7 @@ mod sensor;
 mod truth;
 
 pub use beam::MOST_MODES;
+pub use body::MOST_LOOSE;
 pub use chain::record;
 pub use crush::crushable_end;
 pub use motion::simulate;

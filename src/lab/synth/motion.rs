@@ -1,10 +1,10 @@
 //! A scene to the motion of its cask, from first contact to past the slap-down.
 
-use super::body::{SceneBody, State};
+use super::body::{CASK_STATE, SceneBody, WHOLE_STATE};
 use super::contact::CornerPassage;
 use super::truth::{self, ContactChange};
 use crate::lab::data::{MotionStep, Scene, SimulatedMotion};
-use ode_solvers::{Dopri5, OutputType, System};
+use ode_solvers::{Dopri5, OutputType, SVector, System};
 use std::f64::consts::FRAC_PI_2;
 
 /// Error of one step, relative and absolute in m, rad and their rates.
@@ -35,18 +35,20 @@ struct Segment<'a> {
     watched: bool,
 }
 
-impl System<f64, State> for Segment<'_> {
-    fn system(&self, _time_s: f64, y: &State, rates: &mut State) {
-        *rates = self.body.rates(y, &self.body.loads(y));
+impl<const N: usize> System<f64, SVector<f64, N>> for Segment<'_> {
+    fn system(&self, _time_s: f64, y: &SVector<f64, N>, rates: &mut SVector<f64, N>) {
+        let y = y.as_slice();
+        rates.copy_from_slice(&self.body.rates(y, &self.body.loads(y))[..N]);
     }
 
-    fn solout(&mut self, _time_s: f64, y: &State, _rates: &State) -> bool {
+    fn solout(&mut self, _time_s: f64, y: &SVector<f64, N>, _rates: &SVector<f64, N>) -> bool {
+        let y = y.as_slice();
         self.watched && (is_upright(y) || self.body.watches(y).iter().any(|value| *value < 0.0))
     }
 }
 
 /// Past upright the upper corners would strike, which are not part of the scene.
-fn is_upright(y: &State) -> bool {
+fn is_upright(y: &[f64]) -> bool {
     y[2].abs() >= FRAC_PI_2
 }
 
@@ -60,32 +62,46 @@ pub fn simulate(scene: &Scene) -> SimulatedMotion {
 }
 
 /// [`simulate`] at a tolerance, so that its convergence can be tested.
+///
+/// The size of the state is in the integrator's norm of errors: a cask without contents has no places for them.
 fn follow(scene: &Scene, tolerance: f64) -> SimulatedMotion {
+    if scene.extras.contents.is_empty() {
+        follow_state::<CASK_STATE>(scene, tolerance)
+    } else {
+        follow_state::<WHOLE_STATE>(scene, tolerance)
+    }
+}
+
+fn follow_state<const N: usize>(scene: &Scene, tolerance: f64) -> SimulatedMotion {
     let mut body = SceneBody::new(scene);
     let mut events: Vec<ContactChange> = Vec::new();
     let (mut time_s, mut end_s) = (0.0, LONGEST_S);
-    let mut y = body.at_first_contact();
-    let mut kept_steps = vec![kept(&body, time_s, &y)];
-    while time_s < end_s && !is_upright(&y) && events.len() < MOST_SWITCHES {
+    let mut y = SVector::<f64, N>::from_column_slice(&body.at_first_contact()[..N]);
+    let mut kept_steps = vec![kept(&body, time_s, y.as_slice())];
+    while time_s < end_s && !is_upright(y.as_slice()) && events.len() < MOST_SWITCHES {
         let march = March { body: &body, tolerance };
         let (mut steps, whole) = march.over(&y, end_s - time_s, true, MOST_STEPS - kept_steps.len());
         let Some(last) = steps.pop() else { break };
         let before = steps.last().copied().unwrap_or((0.0, y));
         let change = march.first_change(&before, &last);
         let (offset_s, state) = change.map_or(last, |c| (before.0 + c.after_s, c.state));
-        kept_steps.extend(steps.iter().map(|(offset_s, state)| kept(&body, time_s + offset_s, state)));
+        let on_way = steps.iter().map(|(offset_s, state)| kept(&body, time_s + offset_s, state.as_slice()));
+        kept_steps.extend(on_way);
         (time_s, y) = (time_s + offset_s, state);
-        kept_steps.push(kept(&body, time_s, &y));
+        let now = y.as_slice();
+        kept_steps.push(kept(&body, time_s, now));
         if let Some(Fallen { watch, .. }) = change {
             let end = watch / 2;
-            let passage = body.corners[end].switch(watch % 2, body.corner(end, &y).height_m);
+            let passage = body.corners[end].switch(watch % 2, body.corner(end, now).height_m);
             // Once more, under the forces of what follows: acceleration may step.
-            kept_steps.push(kept(&body, time_s, &y));
+            kept_steps.push(kept(&body, time_s, now));
             let struck = events.iter().any(|e| e.end == 1);
             if end == 1 && passage == Some(CornerPassage::Touch) && !struck {
                 end_s = time_s + scene.after_s;
             }
-            events.push(ContactChange { passage, end, time_s, state: y, corner: body.corner(end, &y) });
+            let corner = body.corner(end, now);
+            let state = std::array::from_fn(|i| now[i]);
+            events.push(ContactChange { passage, end, time_s, state, corner });
         }
         if !whole || kept_steps.len() >= MOST_STEPS {
             break;
@@ -96,12 +112,15 @@ fn follow(scene: &Scene, tolerance: f64) -> SimulatedMotion {
 
 /// A watch that has fallen below zero.
 #[derive(Clone, Copy)]
-struct Fallen {
+struct Fallen<const N: usize> {
     /// Since the step before, s.
     after_s: f64,
     watch: usize,
-    state: State,
+    state: SVector<f64, N>,
 }
+
+/// A state and how long after another it is reached, s.
+type Reached<const N: usize> = (f64, SVector<f64, N>);
 
 /// The integrator on a body whose contacts do not change.
 struct March<'a> {
@@ -111,7 +130,13 @@ struct March<'a> {
 
 impl March<'_> {
     /// The steps after `from`, times from there, and whether the integrator came to its end or a stop.
-    fn over(&self, from: &State, span_s: f64, watched: bool, most: usize) -> (Vec<(f64, State)>, bool) {
+    fn over<const N: usize>(
+        &self,
+        from: &SVector<f64, N>,
+        span_s: f64,
+        watched: bool,
+        most: usize,
+    ) -> (Vec<Reached<N>>, bool) {
         let longest_s = LONGEST_STEP_S.min(LONGEST_STEP_RAD / self.body.fastest_rad_s());
         let mut solver = Dopri5::from_param(
             Segment { body: self.body, watched },
@@ -139,7 +164,7 @@ impl March<'_> {
     }
 
     /// The state `offset_s` after `from`.
-    fn state_at(&self, from: &State, offset_s: f64) -> State {
+    fn state_at<const N: usize>(&self, from: &SVector<f64, N>, offset_s: f64) -> SVector<f64, N> {
         if offset_s <= 0.0 {
             return *from;
         }
@@ -147,16 +172,16 @@ impl March<'_> {
     }
 
     /// The first watch to fall below zero between two steps.
-    fn first_change(&self, before: &(f64, State), after: &(f64, State)) -> Option<Fallen> {
-        let mut first: Option<Fallen> = None;
-        let fallen = self.body.watches(&after.1);
+    fn first_change<const N: usize>(&self, before: &Reached<N>, after: &Reached<N>) -> Option<Fallen<N>> {
+        let mut first: Option<Fallen<N>> = None;
+        let fallen = self.body.watches(after.1.as_slice());
         for watch in (0..fallen.len()).filter(|watch| fallen[*watch] < 0.0) {
             // The end of the bracket at which the watch has fallen is the change: the next phase begins in its own range.
             let (mut low_s, mut high_s, mut state) = (0.0, after.0 - before.0, after.1);
             for _ in 0..HALVINGS {
                 let middle_s = f64::midpoint(low_s, high_s);
                 let there = self.state_at(&before.1, middle_s);
-                if self.body.watches(&there)[watch] < 0.0 {
+                if self.body.watches(there.as_slice())[watch] < 0.0 {
                     (high_s, state) = (middle_s, there);
                 } else {
                     low_s = middle_s;
@@ -171,9 +196,11 @@ impl March<'_> {
 }
 
 /// What is written down of one time.
-fn kept(body: &SceneBody, time_s: f64, y: &State) -> MotionStep {
+fn kept(body: &SceneBody, time_s: f64, y: &[f64]) -> MotionStep {
     let loads_n = body.loads(y);
-    MotionStep { time_s, state: (*y).into(), rates: body.rates(y, &loads_n).into(), loads_n }
+    let rates = body.rates(y, &loads_n);
+    let [state, rates] = [y, &rates[..]].map(|all| std::array::from_fn(|i| all[i]));
+    MotionStep { time_s, state, rates, loads_n }
 }
 
 #[cfg(test)]

@@ -9,8 +9,8 @@ const RELEASE_S: f64 = 2e-3;
 
 /// What a perfect sensor at the channel's true position reads along its axis, m/s², at `times_s` (0 at first contact).
 ///
-/// Before first contact the cask falls freely; before its release, where the scene shows it, it hangs at rest. Bending is
-/// in the transverse axis. After the motion's end the last value stays.
+/// Before first contact the cask falls, held back by what guides it; before its release, where the scene shows it, it
+/// hangs at rest. Bending and roll are in the transverse axis. After the motion's end the last value stays.
 #[must_use]
 pub fn specific_force_m_s2(
     scene: &Scene,
@@ -19,10 +19,13 @@ pub fn specific_force_m_s2(
     times_s: &[f64],
 ) -> Vec<f64> {
     let drop = &scene.drop;
-    let release_s = -(2.0 * drop.height_m / drop.gravity_m_s2).sqrt();
+    let release_s = -scene.fall_s();
+    let weight_m_s2 = |angle_rad: f64| {
+        drop.gravity_m_s2 * if channel.axis == Axis::Transverse { angle_rad.cos() } else { angle_rad.sin() }
+    };
     // What turns in the fall hung at another angle before it.
-    let (sin, cos) = (drop.angle_rad - drop.angular_velocity_rad_s * release_s).sin_cos();
-    let hanging_m_s2 = drop.gravity_m_s2 * if channel.axis == Axis::Transverse { cos } else { sin };
+    let hanging_m_s2 = weight_m_s2(drop.angle_rad - drop.angular_velocity_rad_s * release_s);
+    let guided_m_s2 = scene.extras.guided * weight_m_s2(drop.angle_rad);
     let shapes: Vec<f64> = scene
         .modes
         .iter()
@@ -31,15 +34,21 @@ pub fn specific_force_m_s2(
         .collect();
     let before = |time_s: f64| {
         let hanging = if scene.rest { (0.5 - (time_s - release_s) / RELEASE_S).clamp(0.0, 1.0) } else { 0.0 };
-        hanging * hanging_m_s2
+        hanging * hanging_m_s2 + (1.0 - hanging) * guided_m_s2
     };
+    // Roll grows as the impulse of the first contact does, and a sensor beside the plane reads its growth.
+    let rolls = channel.axis == Axis::Transverse && scene.extras.roll_rad_s * channel.lateral_m != 0.0;
+    let roll_m_s2_n =
+        if rolls { scene.extras.roll_rad_s * channel.lateral_m / motion.first_impulse_n_s().1 } else { 0.0 };
+    let rolled_s = motion.truth.contact_s.unwrap_or(0.0);
     let during = |time_s: f64| {
         let at = Between::new(&motion.steps, time_s);
         let bending_m_s2: f64 = match channel.axis {
             Axis::Axial => 0.0,
             Axis::Transverse => shapes.iter().enumerate().map(|(i, shape)| shape * at.slope(7 + 2 * i)).sum(),
         };
-        at.rigid_m_s2(scene, channel) + bending_m_s2
+        let pressing_n = if time_s < rolled_s { at.pressing_n() } else { 0.0 };
+        at.rigid_m_s2(scene, channel) + bending_m_s2 + roll_m_s2_n * pressing_n
     };
     times_s.iter().map(|&t| if t < 0.0 || motion.steps.is_empty() { before(t) } else { during(t) }).collect()
 }
@@ -83,6 +92,12 @@ impl<'a> Between<'a> {
         }
         let mean = (values[1] - values[0]) / self.step_s;
         6.0 * s * r * mean + r * (1.0 - 3.0 * s) * slopes[0] + s * (1.0 - 3.0 * r) * slopes[1]
+    }
+
+    /// Normal force on L, N.
+    fn pressing_n(&self) -> f64 {
+        let [from_n, to_n] = self.steps.map(|step| step.loads_n[0].1);
+        from_n + self.share * (to_n - from_n)
     }
 
     /// Specific force of the rigid body at the channel's place along its axis, m/s².
@@ -132,6 +147,13 @@ mod tests {
         assert!((off + omega * omega * 0.3).abs() < 1e-9, "{off}");
         let along = read(&channel(Axis::Axial, 0.15, 0.3), 0.04);
         assert!((along + omega * omega * (0.15 - scene.cask.cog_m)).abs() < 1e-8, "{along}");
+        // Guides that take 4 % of g are read in the fall, which lasts 1/√0.96 of the free one: 1.3825 s.
+        scene.extras.guided = 0.04;
+        for (at_s, wanted) in [(-1.39, cos), (-1.36, 0.04 * cos), (-0.01, 0.04 * cos)] {
+            let held = specific_force_m_s2(&scene, &motion, &centre(Axis::Transverse), &[at_s])[0];
+            assert!((held - 9.81 * wanted).abs() < 1e-9, "{at_s}: {held}");
+        }
+        scene.extras.guided = 0.0;
         scene.rest = false;
         assert!(specific_force_m_s2(&scene, &motion, &centre(Axis::Transverse), &[-1.4])[0].abs() < 1e-12);
     }
@@ -156,6 +178,25 @@ mod tests {
         let wanted = motion.steps[last].state[4] - motion.steps[0].state[4];
         // The force has kinks, at which the trapezoid of 0.3 µs is off by less than a sample's share of it.
         assert!((gained / wanted - 1.0).abs() < 1e-6, "{gained}, not {wanted}");
+    }
+
+    #[test]
+    fn a_sensor_beside_the_plane_reads_the_roll_that_builds_up() {
+        let mut scene = anf18();
+        scene.extras.roll_rad_s = 2.0;
+        let motion = simulate(&scene);
+        let beside = SceneChannel { lateral_m: 0.3, ..channel(Axis::Transverse, 0.15, 0.0) };
+        let times_s: Vec<f64> = (0..=10_000).map(|i| 1e-6 * f64::from(i)).collect();
+        let read = |at: &SceneChannel| specific_force_m_s2(&scene, &motion, at, &times_s);
+        let more: Vec<f64> = read(&beside)
+            .iter()
+            .zip(read(&channel(Axis::Transverse, 0.15, 0.0)))
+            .map(|(a, b)| a - b)
+            .collect();
+        let gained = running_integral(&more, 1e-6);
+        // 2 rad/s × 0.3 m as L leaves, and all of it by then; the trapezoid over steps of ω h ≤ 0.1 is within 1e-3.
+        assert!((gained[10_000] / 0.6 - 1.0).abs() < 1e-3 && (gained[6_000] / 0.6 - 1.0).abs() < 1e-3);
+        assert!(more[1..5_000].iter().all(|x| *x > 0.0));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The changes of contact of a simulated drop to what a perfect measurement would say of it.
 
-use super::body::{CornerMotion, State};
+use super::body::{CASK_STATE, CornerMotion};
 use super::contact::CornerPassage;
 use crate::lab::data::{Scene, Truth};
 
@@ -14,7 +14,7 @@ pub(super) struct ContactChange {
     /// After first contact, s.
     pub(super) time_s: f64,
     /// The state there.
-    pub(super) state: State,
+    pub(super) state: [f64; CASK_STATE],
     /// The motion of that end's corner.
     pub(super) corner: CornerMotion,
 }
@@ -30,8 +30,9 @@ pub(super) fn truth(scene: &Scene, events: &[ContactChange]) -> Truth {
     let touches = events.iter().filter(|e| before(e) && is(e, 0, CornerPassage::Touch)).count();
     let leaves = events.iter().filter(|e| before(e) && is(e, 0, CornerPassage::Leave)).count();
     let (v0, cask) = (scene.drop.impact_velocity_m_s, &scene.cask);
-    let kinetic_j =
-        |y: &State| 0.5 * (cask.mass_kg * (y[3] * y[3] + y[4] * y[4]) + cask.inertia_kg_m2 * y[5] * y[5]);
+    let kinetic_j = |y: &[f64; CASK_STATE]| {
+        0.5 * (cask.mass_kg * (y[3] * y[3] + y[4] * y[4]) + cask.inertia_kg_m2 * y[5] * y[5])
+    };
     Truth {
         v0,
         // Free of the last digits of the conversion.

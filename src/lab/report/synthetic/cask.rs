@@ -62,6 +62,7 @@ fn channel(text: &mut String, spec: &ChannelSpec, place: &SyntheticPlace) {
     line(text, "unit", quoted(if spec.unit == Some(Unit::MetrePerSecondSquared) { "m/s^2" } else { "g" }));
     line(text, "position_m", spec.position_m);
     given(text, "offset_m", Some(spec.offset_m).filter(|offset_m| offset_m.abs() > 0.0));
+    given(text, "lateral_m", Some(spec.lateral_m).filter(|lateral_m| lateral_m.abs() > 0.0));
     if spec.polarity < 0.0 {
         line(text, "polarity", -1);
     }

@@ -85,7 +85,7 @@ impl Filters {
         let start_s = -scene.before_s;
         let first = force(start_s);
         let high_pass = chain.ac_time_constant_s.map(|constant_s| {
-            let release_s = -(2.0 * scene.drop.height_m / scene.drop.gravity_m_s2).sqrt();
+            let release_s = -scene.fall_s();
             let hanging = force(release_s.min(start_s) - 1.0);
             // Before the release it has long settled; since then its memory fades as e^(−t/T).
             let faded = (-(start_s - release_s).max(0.0) / constant_s).exp();

@@ -1,4 +1,4 @@
-//! A channel's seed and chain to what is added to its samples: offset, zero shift, noise, hum, a shaken cable.
+//! A channel's seed and chain to what is added to its samples: offset, zero shift, noise, hum, a cable that is shaken or whips.
 
 use crate::lab::data::Chain;
 use rand::rngs::ChaCha8Rng;
@@ -14,6 +14,9 @@ const LOWEST_HZ: f64 = 1.0;
 
 /// A shaken cable swings between these frequencies, Hz: those of the cask's bending.
 const CABLE_HZ: (f64, f64) = (50.0, 500.0);
+
+/// Damping of a whipping cable, as a share of the critical: it fades within a few waves.
+const WHIP_DAMPING: f64 = 0.1;
 
 /// The zero shift grows over this time where there is no contact to grow over, s.
 const NO_CONTACT_S: f64 = 5e-3;
@@ -62,6 +65,14 @@ pub(super) fn add(
         let phase = TAU * stream(2).random::<f64>();
         for (i, sample) in samples_m_s2.iter_mut().enumerate() {
             *sample += amplitude_m_s2 * (TAU * frequency_hz * times.at_s(i) + phase).sin();
+        }
+    }
+    if let Some((amplitude_m_s2, frequency_hz)) = chain.whip {
+        let (phase, omega) = (TAU * stream(4).random::<f64>(), TAU * frequency_hz);
+        for (i, sample) in samples_m_s2.iter_mut().enumerate().filter(|(i, _)| times.at_s(*i) >= 0.0) {
+            let angle = omega * times.at_s(i);
+            // From the phase's own value on: the contact itself sets it off.
+            *sample += amplitude_m_s2 * (-WHIP_DAMPING * angle).exp() * (angle + phase).sin();
         }
     }
     if chain.cable_noise_m_s2 > 0.0 {

@@ -65,6 +65,17 @@ fn scale_and_polarity_multiply_and_clipping_is_exact() {
 }
 
 #[test]
+fn a_cable_whips_from_first_contact_on_and_fades() {
+    let out = recorded(with(|c| c.whip = Some((100.0, 20.0))), &|_, _| 0.0).samples;
+    assert!(out[..1000].iter().all(|x| x.abs() < f32::EPSILON));
+    // Half a wave of 20 Hz later, 250 samples, it has turned and is e^(−0.1 π) of what it was.
+    for i in 1000..1750 {
+        near(out[i + 250], -f64::from(out[i]) * (-0.1 * std::f64::consts::PI).exp(), 1e-3);
+    }
+    assert!(out[1000..1500].iter().any(|x| x.abs() > 60.0));
+}
+
+#[test]
 fn the_converter_has_its_steps_and_rails() {
     // 4 bits over ± 80: steps of 10 from −80 to 70.
     let seat = with(|c| (c.full_scale_m_s2, c.bits) = (Some(80.0), Some(4)));

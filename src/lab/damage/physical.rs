@@ -1,0 +1,77 @@
+//! A kind of drop to the scene that has it: what the cask, its contents, its ends and its fall do, and what is stated of that.
+
+use super::super::chance::Chance;
+use super::super::data::{LooseMass, Scene};
+use super::super::synth;
+use crate::data::{Cask, CaskFile, Contact, Drop};
+
+/// Makes the scene one of `kind`; one that is of something else does nothing to it.
+pub(super) fn strike(kind: &str, size: f64, scene: &mut Scene, stated: &mut CaskFile, chance: &mut Chance) {
+    match kind {
+        "turning" | "turning_unstated" => {
+            let more_rad_s = chance.sign() * size.to_radians();
+            turn(&mut scene.drop, &scene.cask, more_rad_s);
+            if kind == "turning" {
+                turn(&mut stated.drop, &stated.cask, more_rad_s);
+            }
+        }
+        "swinging" | "swinging_unstated" => {
+            let more_m_s = chance.sign() * size;
+            scene.drop.horizontal_velocity_m_s += more_m_s;
+            if kind == "swinging" {
+                stated.drop.horizontal_velocity_m_s = more_m_s;
+            }
+        }
+        "guided" | "guided_rest" => {
+            scene.extras.guided = size / 100.0;
+            let of_fall_m_s = (2.0 * scene.drop.gravity_m_s2 * scene.drop.height_m).sqrt();
+            scene.drop.impact_velocity_m_s -= of_fall_m_s * (1.0 - (1.0 - scene.extras.guided).sqrt());
+        }
+        "contents" | "contents_light" => scene.extras.contents = contents(size, &scene.cask, chance),
+        "lock_up" => lock_up(size, scene),
+        "footprint" | "footprint_wide" => scene.first_end.footprint = size,
+        "friction_falls" | "rough_falls" => {
+            scene.contact = Contact::Coulomb(size);
+            scene.extras.falling_friction = Some((size * chance.even(0.3, 0.8), chance.log_even(0.3, 3.0)));
+        }
+        "friction_changes" | "rough_changes" => {
+            scene.contact = Contact::Coulomb(size);
+            scene.extras.returning_friction = Some(size * chance.even(0.3, 1.5));
+        }
+        _ => {}
+    }
+}
+
+/// The same fall of the centre of gravity, with so much more rotation.
+fn turn(drop: &mut Drop, cask: &Cask, more_rad_s: f64) {
+    // v0 = √(2 g h) − ω a.
+    let a_m = cask.cog_m * drop.angle_rad.cos() - cask.height_m / 2.0 * drop.angle_rad.sin();
+    drop.angular_velocity_rad_s += more_rad_s;
+    drop.impact_velocity_m_s -= more_rad_s * a_m;
+}
+
+/// A body of `size` percent of the cask's mass, which rattles at both its ends with a play of 2 to 60 mm.
+fn contents(size: f64, cask: &Cask, chance: &mut Chance) -> Vec<LooseMass> {
+    let play_m = chance.log_even(2e-3, 60e-3);
+    let pulse_s = chance.even(1e-3, 3e-3);
+    let loose = |(nearest, farthest)| LooseMass {
+        mass_kg: size / 200.0 * cask.mass_kg,
+        position_m: chance.even(nearest, farthest) * cask.length_m,
+        gap_m: chance.even(0.0, play_m),
+        play_m,
+        pulse_s,
+        damping_s_m: chance.even(0.05, 0.4),
+    };
+    [(0.15, 0.4), (0.6, 0.85)].map(loose).into()
+}
+
+/// A limiter that yields at half of its elastic peak and locks up at `size` percent of the crush that it would then have, four times as stiff.
+fn lock_up(size: f64, scene: &mut Scene) {
+    scene.first_end.yield_n = None;
+    let peak_n = synth::simulate(scene).steps.iter().map(|step| step.loads_n[0].1).fold(0.0, f64::max);
+    let loading_n_m = scene.first_end.loading_n_m;
+    scene.first_end.yield_n = Some(0.5 * peak_n);
+    // The work F²/2 K of the elastic end is that of half the force over (2 + 1/2) F/2 K.
+    let crush_m = 1.25 * peak_n / loading_n_m;
+    scene.first_end.lock_up = Some((size / 100.0 * crush_m, 4.0 * loading_n_m));
+}
