@@ -126,6 +126,8 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
         drop,
         contact: stated_contact,
     };
+    let mut stated = cask_file(stated, stated_drop, stated_contact, defaults);
+    wish.fulfil(&mut scene, &mut stated, chance);
     if wish.contact.is_none() && share != 0.0 {
         let held = Scene { contact: Contact::Rough, ..scene.clone() };
         let holds = impulse_ratio(&synth::simulate(&held));
@@ -134,8 +136,6 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
             stated => loosened(stated, holds, share),
         };
     }
-    let mut stated = cask_file(stated, stated_drop, stated_contact, defaults);
-    wish.fulfil(&mut scene, &mut stated, chance);
     (scene, stated)
 }
 

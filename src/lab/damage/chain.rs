@@ -45,9 +45,9 @@ pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
         "roll" | "roll_unstated" => roll(case, size, kind == "roll"),
         "whip" => whip(case, size),
         "coarse" | "coarser" => coarse(case, size),
-        "filter_one" => {
-            one(case, |chain, _| chain.anti_alias_hz = chain.anti_alias_hz.map(|hz| hz.min(size)))
-        }
+        "filter_one" => one(case, |chain, _| {
+            chain.anti_alias_hz = chain.anti_alias_hz.map(|cutoff_hz| cutoff_hz.min(size));
+        }),
         "aliasing" => chains(case).for_each(|chain| chain.anti_alias_hz = None),
         _ => {}
     }
@@ -160,9 +160,11 @@ fn whip(case: &mut DrawnDrop, size: f64) {
     unlimited(case);
 }
 
-/// Converters whose step is `size` percent of the peak.
+/// Converters of 10 to 12 bits whose step is `size` percent of the peak, and which do not clip.
 fn coarse(case: &mut DrawnDrop, size: f64) {
-    let bits = case.chance.one_of(&[10_u8, 11, 12]);
+    let has_room = |bits: &u8| size / 100.0 * 2_f64.powi(i32::from(*bits) - 1) > 1.5;
+    let bits: Vec<u8> = (10..=12).filter(has_room).collect();
+    let bits = case.chance.one_of(&bits);
     unlimited(case);
     for i in 0..case.scene.channels.len() {
         let full_scale_m_s2 = size / 100.0 * case.peak_m_s2(i) * 2_f64.powi(i32::from(bits) - 1);
