@@ -77,7 +77,7 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
     }
     let falling_speed_m_s = value(&contact_table, "falling_speed_m_s")?;
     let extras = SceneExtras {
-        contents: loose.iter().map(loose_mass).collect::<Result<_, _>>()?,
+        contents: loose.iter().map(|table| loose_mass(table, &cask)).collect::<Result<_, _>>()?,
         falling_friction: given(&contact_table, "falling_friction")?.map(|fast| (fast, falling_speed_m_s)),
         returning_friction: given(&contact_table, "returning_friction")?,
         guided,
@@ -122,12 +122,16 @@ fn guided_drop(free: Drop, guided: f64) -> Drop {
     Drop { impact_velocity_m_s: free.impact_velocity_m_s - lost_m_s, ..free }
 }
 
-fn loose_mass(table: &Section) -> Result<LooseMass, CaskFileError> {
+fn loose_mass(table: &Section, cask: &Cask) -> Result<LooseMass, CaskFileError> {
+    let (gap_m, play_m) = (value(table, "gap_m")?, value(table, "play_m")?);
+    if gap_m > play_m {
+        return Err(contradicts(table, "gap_m", "not above play_m", "the mass lies between its pads"));
+    }
     Ok(LooseMass {
         mass_kg: table.required_number("mass_kg")?.value,
-        position_m: table.required_number("position_m")?.value,
-        gap_m: value(table, "gap_m")?,
-        play_m: value(table, "play_m")?,
+        position_m: channel::position_m(table, "position_m", cask)?.unwrap_or(cask.cog_m),
+        gap_m,
+        play_m,
         pulse_s: 1e-3 * value(table, "pulse_ms")?,
         damping_s_m: value(table, "damping_s_m")?,
     })

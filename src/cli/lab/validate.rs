@@ -15,7 +15,7 @@ const AFTER_HELP: &str = "\
 Without --campaign and --scene every method is tried beside its rivals: error, time, and
 where it fails. --quick takes a minute.
 
-Undamaged scenes are U0, U1 …, damaged ones D0, D1 …: with its seed a number names the same scene for ever.
+Undamaged scenes are U0, U1 …, those of other kinds D0, D1 …: with its seed a number names the same scene for ever.
 
 Examples:
   dropcheck validate --quick --out validation
@@ -35,7 +35,7 @@ const NAMES: [&str; 2] = ["campaign.csv", "campaign.md"];
 #[command(after_help = AFTER_HELP)]
 #[command(group = clap::ArgGroup::new("what").args(["campaign", "scene"]))]
 pub struct Arguments {
-    /// Analyse N random undamaged scenes and N with one damage each
+    /// Analyse N random undamaged scenes and N of other kinds, with one damage each or none
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     campaign: Option<u32>,
     /// Write one scene of the campaign as recording, cask file and truth into --out
@@ -47,7 +47,7 @@ pub struct Arguments {
     /// Seed of everything random
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// all, undamaged, or kinds of damage, separated by commas
+    /// all, undamaged, sound (all kinds of sound drops), or kinds, separated by commas
     #[arg(long, value_name = "KINDS", default_value = "all", value_delimiter = ',', value_parser = kind, requires = "campaign")]
     kinds: Vec<&'static str>,
     /// What is stated is exactly true: no deviations within the tolerances
@@ -62,7 +62,7 @@ pub struct Arguments {
     into: Option<PathBuf>,
 }
 
-/// Words of --kinds that are no kind of damage.
+/// Words of --kinds that are no kind by themselves.
 const ALL: &str = "all";
 const UNDAMAGED: &str = "undamaged";
 const SOUND: &str = "sound";
@@ -71,10 +71,7 @@ fn kind(word: &str) -> Result<&'static str, String> {
     let mut words = [ALL, UNDAMAGED, SOUND].into_iter().chain(lab::campaign::kinds().map(|kind| kind.name));
     words.find(|known| *known == word).ok_or_else(|| {
         let known: Vec<&str> = lab::campaign::kinds().map(|kind| kind.name).collect();
-        format!(
-            "no kind of drop; there are all, undamaged, sound (all kinds of sound drops), {}",
-            known.join(", ")
-        )
+        format!("no kind of drop; there are all, undamaged, sound, {}", known.join(", "))
     })
 }
 

@@ -23,7 +23,7 @@ use score::RecordedScene;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// All kinds of damage that a campaign draws.
+/// All kinds that a campaign draws, of damage and of sound drops.
 pub fn kinds() -> impl Iterator<Item = &'static DamageKind> {
     damage::drawn()
 }
@@ -49,7 +49,7 @@ pub fn scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, Synthet
     (SceneFile { scene: drop.scene, stated: drop.stated }, recording)
 }
 
-/// The numbers of the scenes: damaged ones are counted through all kinds, those not asked for left out.
+/// The numbers of the scenes: those of a kind are counted through all kinds, those not asked for left out.
 fn numbers(request: &CampaignRequest) -> Vec<SceneNumber> {
     let undamaged = if request.undamaged { request.scenes } else { 0 };
     let is_any = damage::drawn().any(|kind| request.kinds.contains(&kind.name));
@@ -59,7 +59,7 @@ fn numbers(request: &CampaignRequest) -> Vec<SceneNumber> {
     (0..undamaged).map(SceneNumber::Undamaged).chain(damaged.map(SceneNumber::Damaged)).collect()
 }
 
-/// What is wrong with damaged scene `number`: kinds take turns, then sizes.
+/// What there is to scene D`number`: kinds take turns, then sizes.
 fn kind_and_size(number: u32) -> (&'static DamageKind, f64) {
     let kinds: Vec<&DamageKind> = damage::drawn().collect();
     let number = usize::try_from(number).unwrap_or(0);

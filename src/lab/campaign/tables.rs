@@ -50,8 +50,10 @@ fn document(campaign: &Campaign) -> ReportDocument {
             coverage(&CLASSES.map(|(name, belongs)| (name, sound.that(belongs)))),
         );
     }
-    if !struck.0.is_empty() {
+    if !damaged.0.is_empty() {
         chapter("Damaged scenes, by kind", damages(&damaged, false));
+    }
+    if !struck.0.is_empty() {
         chapter("Kinds by size", damages(&struck, true));
     }
     if !undamaged.0.is_empty() && !damaged.0.is_empty() {
@@ -263,6 +265,7 @@ fn coverage(groups: &[(&'static str, Scenes)]) -> ChapterPart {
         .text("drops", |(name, _)| *name)
         .number("scenes", |(_, of)| of.0.len().to_string())
         .number("pass", |(_, of)| share(of.of(Verdict::Pass).0.len(), of.0.len()))
+        .number("covered", |(_, of)| share(of.count(SceneOutcome::Covered), of.0.len()))
         .number("speed: 95th, %", |(_, of)| of.spread("speed", true).error(0.95, 2))
         .number("k: 95th", |(_, of)| of.spread("k", false).error(0.95, 4))
         .number("held: speed", |(_, of)| held(of, "speed"))

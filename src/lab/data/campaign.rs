@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 pub enum SceneNumber {
     /// Nothing is wrong with it: U0, U1 …
     Undamaged(u32),
-    /// One thing is wrong with it: D0, D1 …
+    /// One thing is wrong with it, or it is of a sound kind: D0, D1 …
     Damaged(u32),
 }
 
@@ -27,13 +27,13 @@ impl std::fmt::Display for SceneNumber {
 /// What a campaign is asked for.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CampaignRequest {
-    /// How many undamaged scenes, and how many damaged ones.
+    /// How many undamaged scenes, and how many of kinds.
     pub scenes: u32,
     /// Seed of everything random.
     pub seed: u64,
     /// Whether undamaged scenes are among them.
     pub undamaged: bool,
-    /// The kinds of damage, by name; none: no damaged scenes.
+    /// The kinds, by name; none: undamaged scenes alone.
     pub kinds: Vec<&'static str>,
     /// Whether what is stated is exactly true.
     pub exact: bool,

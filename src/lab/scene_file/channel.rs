@@ -87,7 +87,7 @@ fn unit(table: &Section, key: &str) -> Result<Option<Unit>, CaskFileError> {
     Ok(word.map(|is_si| if is_si { Unit::MetrePerSecondSquared } else { Unit::G }))
 }
 
-fn position_m(table: &Section, key: &str, cask: &Cask) -> Result<Option<f64>, CaskFileError> {
+pub(super) fn position_m(table: &Section, key: &str, cask: &Cask) -> Result<Option<f64>, CaskFileError> {
     match table.number(key)? {
         Some(at) if !(0.0..=cask.length_m).contains(&at.value) => {
             let (what, allowed) = (format!("{key} is {}", at.value), 0.0..=cask.length_m);

@@ -68,7 +68,7 @@ const END: [Key; 9] = [
 /// A blow of 2 ms, of which the pads take the half at some metres a second: timber, rubber, honeycomb.
 const CONTENTS: [Key; 6] = [
     number("mass_kg", keys::REQUIRED).above_zero(),
-    number("position_m", keys::REQUIRED),
+    number("position_m", ""),
     number("gap_m", "0.01").zero_or_more(),
     number("play_m", "0.02").zero_or_more(),
     number("pulse_ms", "2").within(0.1, 200.0, "the length of a blow, in ms"),

@@ -146,7 +146,7 @@ fn every_key_finds_its_place() {
 
 #[test]
 fn every_slip_is_one_message_with_its_key() {
-    let cases: [(&str, &str, &[&str]); 28] = [
+    let cases: [(&str, &str, &[&str]); 29] = [
         ("seed = 7", "seed = -7", &["seed is no whole number"]),
         ("seed = 7", "sed = 7", &["knows no table sed", "did you mean seed?"]),
         ("pulse_ms = 5.0", "pulse_ms = 500", &["pulse_ms is 500", "0.05 to 200"]),
@@ -154,6 +154,7 @@ fn every_slip_is_one_message_with_its_key() {
         ("k = 0.55", "k = 0", &["k is 0, outside"]),
         ("lock_up_m = 0.02\n", "", &["lock_up_n_m", "no meaning without lock_up_m"]),
         ("guided_percent = 4", "guided_percent = 104", &["guided_percent is 104"]),
+        ("gap_m = 0.005", "gap_m = 0.5", &["gap_m", "not above play_m"]),
         ("whip_g = 2", "whip_hz = 2", &["no meaning without whip_g"]),
         ("[[mode]]", "[[contents]]\nmass_kg = 1\nposition_m = 1\n[[mode]]", &["the two that are simulated"]),
         ("k = 0.55", "k = 0.55\nloading_n_m = 1e7", &["not beside loading_n_m"]),
