@@ -127,7 +127,7 @@ const CHANNEL: [Key; 36] = [
     number("hum_g", "").above_zero(),
     number("hum_hz", "50").within(1.0, FASTEST_HZ, "in Hz"),
     number("cable_noise_g", "0").zero_or_more(),
-    number("whip_g", "").above_zero(),
+    number("whip_g", ""),
     number("whip_hz", "15").within(0.1, FASTEST_HZ, "in Hz"),
     number("bits", "").within(2.0, 32.0, "the bits of the converter over ± full_scale; usual are 12 to 24"),
     text("dropouts_s", "[]"),

@@ -68,11 +68,9 @@ pub(super) fn add(
         }
     }
     if let Some((amplitude_m_s2, frequency_hz)) = chain.whip {
-        let (phase, omega) = (TAU * stream(4).random::<f64>(), TAU * frequency_hz);
-        for (i, sample) in samples_m_s2.iter_mut().enumerate().filter(|(i, _)| times.at_s(*i) >= 0.0) {
-            let angle = omega * times.at_s(i);
-            // From the phase's own value on: the contact itself sets it off.
-            *sample += amplitude_m_s2 * (-WHIP_DAMPING * angle).exp() * (angle + phase).sin();
+        for (i, sample) in samples_m_s2.iter_mut().enumerate() {
+            let angle = TAU * frequency_hz * times.at_s(i).max(0.0);
+            *sample += amplitude_m_s2 * (-WHIP_DAMPING * angle).exp() * angle.sin();
         }
     }
     if chain.cable_noise_m_s2 > 0.0 {
