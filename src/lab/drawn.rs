@@ -13,6 +13,9 @@ use std::path::PathBuf;
 
 pub(super) const GRAVITY_M_S2: f64 = 9.81;
 
+/// The least friction between two bodies that nobody greased.
+pub(super) const LEAST_FRICTION: f64 = 0.1;
+
 /// A cask as a block of its length and section.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Build {

@@ -4,7 +4,7 @@ use crate::data::{Cask, CaskFile, Contact, Drop, End};
 use crate::lab::chance::{Chance, round};
 use crate::lab::damage::{BetweenImpacts, Wish};
 use crate::lab::data::{BendingMode, Scene, SceneExtras, SimulatedMotion, Truth, WantedImpact};
-use crate::lab::drawn::{BUILDS, DrawnDrop, GRAVITY_M_S2, cask_file, fall, tolerances};
+use crate::lab::drawn::{BUILDS, DrawnDrop, GRAVITY_M_S2, LEAST_FRICTION, cask_file, fall, tolerances};
 use crate::lab::synth;
 use std::collections::BTreeMap;
 
@@ -14,9 +14,6 @@ const OVERTONES: [f64; 3] = [1.0, 2.757, 5.404];
 /// A drop counts where it has a slap-down of this kind: k within, flight at least, s.
 const K_RANGE: (f64, f64) = (0.02, 0.98);
 const SHORTEST_FLIGHT_S: f64 = 8e-3;
-
-/// The least friction between two bodies that nobody greased.
-const LEAST_FRICTION: f64 = 0.1;
 
 /// Draws of a scene that gave no such drop, by what they lack.
 pub(super) type Redraws = BTreeMap<&'static str, u32>;

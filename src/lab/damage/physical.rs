@@ -2,6 +2,7 @@
 
 use super::super::chance::Chance;
 use super::super::data::{LooseMass, Scene};
+use super::super::drawn::LEAST_FRICTION;
 use super::super::synth;
 use crate::data::{Cask, CaskFile, Contact, Drop};
 
@@ -32,11 +33,12 @@ pub(super) fn strike(kind: &str, size: f64, scene: &mut Scene, stated: &mut Cask
         "footprint" | "footprint_wide" => scene.first_end.footprint = size,
         "friction_falls" | "rough_falls" => {
             scene.contact = Contact::Coulomb(size);
-            scene.extras.falling_friction = Some((size * chance.even(0.3, 0.8), chance.log_even(0.3, 3.0)));
+            let fast = (size * chance.even(0.3, 0.8)).max(LEAST_FRICTION);
+            scene.extras.falling_friction = Some((fast, chance.log_even(0.3, 3.0)));
         }
         "friction_changes" | "rough_changes" => {
             scene.contact = Contact::Coulomb(size);
-            scene.extras.returning_friction = Some(size * chance.even(0.3, 1.5));
+            scene.extras.returning_friction = Some((size * chance.even(0.3, 1.5)).max(LEAST_FRICTION));
         }
         _ => {}
     }
