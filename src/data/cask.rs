@@ -181,6 +181,12 @@ pub struct Drop {
     pub horizontal_velocity_m_s: f64,
 }
 
+/// Distance a of L's corner from S along the target, m: c cos φ − (h/2) sin φ   (1)
+#[must_use]
+pub fn first_arm_m(cog_m: f64, height_m: f64, angle_rad: f64) -> f64 {
+    cog_m * angle_rad.cos() - height_m / 2.0 * angle_rad.sin()
+}
+
 impl Drop {
     /// A free fall from this height at 9.81 m/s², without rotation.
     #[must_use]

@@ -128,12 +128,11 @@ pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError
     let drop = drop(&root.required_table("drop")?, &cask)?;
     let contact = contact(&root.table("contact")?)?;
     let filter = filter(&root.table("filter")?)?;
-    let is_block = root.table("cask")?.value("inertia_kg_m2").is_none();
-    let tolerances = tolerance::tolerances(&root.table("tolerance")?, &cask, is_block)?;
+    let mut defaults = assumed(&root, &["cask", "drop", "contact", "tolerance"]);
+    let tolerances = tolerance::tolerances(&root.table("tolerance")?, &cask, &defaults)?;
     let corrections = tolerance::corrections(&root.table("corrections")?)?;
     let time = root.table("recording")?.text("time")?.map(|time| time.value);
     let channels = channel::channels(&root, &cask)?;
-    let mut defaults = assumed(&root, &["cask", "drop", "contact", "tolerance"]);
     if filter == FilterChoice::Auto {
         defaults.push("filter".into());
     }

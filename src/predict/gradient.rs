@@ -33,7 +33,7 @@ mod tests {
     use crate::predict::{predict, thin_rod};
 
     fn drop(angle_rad: f64, height_m: f64) -> Drop {
-        Drop { impact_velocity_m_s: (2.0 * 9.81 * height_m).sqrt(), ..Drop::of_height(height_m, angle_rad) }
+        Drop::of_height(height_m, angle_rad)
     }
 
     fn speed(body: &Body, drop: &Drop, contact: Contact, k: f64) -> f64 {

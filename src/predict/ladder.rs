@@ -176,10 +176,7 @@ mod tests {
     }
 
     fn drop(angle_deg: f64) -> Drop {
-        Drop {
-            impact_velocity_m_s: (2.0_f64 * 9.81 * 9.0).sqrt(),
-            ..Drop::of_height(9.0, angle_deg.to_radians())
-        }
+        Drop::of_height(9.0, angle_deg.to_radians())
     }
 
     #[test]

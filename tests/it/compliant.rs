@@ -111,10 +111,7 @@ fn turned_over() -> [Case; 4] {
 }
 
 fn drop_of(case: &Case) -> Drop {
-    Drop {
-        impact_velocity_m_s: (2.0 * 9.81 * case.height_m).sqrt(),
-        ..Drop::of_height(case.height_m, case.angle_deg.to_radians())
-    }
+    Drop::of_height(case.height_m, case.angle_deg.to_radians())
 }
 
 /// What a rung takes the body and the target for.
