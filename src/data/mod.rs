@@ -42,6 +42,7 @@ pub use finding::{
     shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
+pub use keys::LONGEST_CONTACT_S;
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};
 pub use motion::{AssumedFriction, AxialClosure, ChannelReading, Motion, MotionState, Setup, StoodIn};

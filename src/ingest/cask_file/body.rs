@@ -142,5 +142,6 @@ pub(crate) fn drop(table: &Section, cask: &Cask) -> Result<Drop, CaskFileError> 
         gravity_m_s2,
         angular_velocity_rad_s,
         horizontal_velocity_m_s,
+        contact_duration_s: 0.0,
     })
 }
