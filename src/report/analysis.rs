@@ -185,7 +185,7 @@ fn comparison(result: &DropResult) -> Chapter {
             ))
         },
         |c| {
-            let by = taken.map_or_else(String::new, |m| format!("{} with the measured k", m.rung.words()));
+            let by = taken.map_or_else(String::new, |m| format!("{}, measured k", m.rung.words()));
             let style = if c.agrees { Style::Green } else { Style::Yellow };
             let facts = vec![
                 Fact::number("measured", pair(c.measured, c.measured_u95, "m/s")),

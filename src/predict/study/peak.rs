@@ -99,18 +99,41 @@ pub(super) fn with_jumps(samples: &[Sample], at: &impl Fn(f64) -> Sample) -> Vec
     all
 }
 
-/// The largest value of one criterion over samples that hold both sides of each jump, and the bands within `band_percent` of it.
+/// The largest value of one criterion over samples that hold both sides of each jump, and the bands near it.
 ///
-/// Every hump of the samples that may reach the highest is followed between its neighbours by golden section. At a jump the
-/// value on the higher side counts: it is the supremum. At the border it is the border's; of a plateau its lowest sampled angle.
-/// A hump that lies between two samples without lifting either above its neighbours is not seen. `None` where L strikes
-/// once at no angle. A maximum whose band is narrower than `least_deg` is none that a drop can be rigged for: the next one is taken.
+/// A maximum whose band is narrower than `bands.least_deg` is none that a drop can be rigged for: the next one is taken.
 pub(super) fn peak(
     samples: &[Sample],
     criterion: usize,
     at: &impl Fn(f64) -> Sample,
-    Bands { percent, least_deg }: Bands,
+    bands: Bands,
 ) -> Option<Peak> {
+    let mut left = samples.to_vec();
+    loop {
+        let peak = highest(&left, criterion, at, bands.percent)?;
+        let own = peak.bands_deg.iter().find(|band| (band.0..=band.1).contains(&peak.angle_deg));
+        let Some(&(low_deg, high_deg)) = own.filter(|band| band.1 - band.0 < bands.least_deg) else {
+            return Some(peak);
+        };
+        // A band may lie between two samples: then the nearest one goes.
+        let off_deg = |s: &Sample| (s.angle_deg - peak.angle_deg).abs();
+        let is_left = left.iter().filter(|s| s.course.is_some());
+        let nearest_deg = is_left.map(off_deg).fold(f64::INFINITY, f64::min);
+        for sample in &mut left {
+            if (low_deg..=high_deg).contains(&sample.angle_deg) || off_deg(sample) <= nearest_deg {
+                sample.course = None;
+            }
+        }
+    }
+}
+
+/// The highest of all maxima.
+///
+/// Every hump of the samples that may reach the highest is followed between its neighbours by golden section. At a jump the
+/// value on the higher side counts: it is the supremum. At the border it is the border's; of a plateau its lowest sampled angle.
+/// A hump that lies between two samples without lifting either above its neighbours is not seen. `None` where L strikes
+/// once at no angle.
+fn highest(samples: &[Sample], criterion: usize, at: &impl Fn(f64) -> Sample, percent: f64) -> Option<Peak> {
     let value = |i: usize| samples[i].critical(criterion);
     let highest = (0..samples.len()).map(value).fold(f64::NEG_INFINITY, f64::max);
     let mut top = (f64::NAN, f64::NEG_INFINITY);
@@ -139,13 +162,6 @@ pub(super) fn peak(
     let place = marks.partition_point(|m| m.0 < angle_deg);
     marks.insert(place, (angle_deg, true));
     let bands_deg = bands(&marks, |a| at(a).critical(criterion) >= least);
-    let own = bands_deg.iter().find(|band| (band.0..=band.1).contains(&angle_deg));
-    if let Some(&(low_deg, high_deg)) = own.filter(|band| band.1 - band.0 < least_deg) {
-        let is_in = |s: &Sample| (low_deg..=high_deg).contains(&s.angle_deg);
-        let others: Vec<Sample> =
-            samples.iter().map(|s| Sample { course: s.course.filter(|_| !is_in(s)), ..*s }).collect();
-        return peak(&others, criterion, at, Bands { percent, least_deg });
-    }
     Some(Peak { angle_deg, largest, bands_deg })
 }
 
