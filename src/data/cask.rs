@@ -179,6 +179,14 @@ pub struct Drop {
     pub angular_velocity_rad_s: f64,
     /// ẋ of the centre of gravity at first contact, m/s.
     pub horizontal_velocity_m_s: f64,
+    /// How long L's first impact lasts, s: `[contact] duration_s`, or as measured; 0 is an impulse.
+    pub contact_duration_s: f64,
+}
+
+/// Distance a of L's corner from S along the target, m: c cos φ − (h/2) sin φ   (1)
+#[must_use]
+pub fn first_arm_m(cog_m: f64, height_m: f64, angle_rad: f64) -> f64 {
+    cog_m * angle_rad.cos() - height_m / 2.0 * angle_rad.sin()
 }
 
 impl Drop {
@@ -193,6 +201,7 @@ impl Drop {
             gravity_m_s2: 9.81,
             angular_velocity_rad_s: 0.0,
             horizontal_velocity_m_s: 0.0,
+            contact_duration_s: 0.0,
         }
     }
 

@@ -141,11 +141,18 @@ pub const DROP: [Key; 6] = [
 ];
 
 /// Keys of `[contact]`.
-pub const CONTACT: [Key; 1] = [Key { takes: Takes::TextOrNumber, ..text("friction", "`\"unknown\"`") }
-    .shown(
+pub const CONTACT: [Key; 2] = [
+    Key { takes: Takes::TextOrNumber, ..text("friction", "`\"unknown\"`") }.shown(
         r#""unknown""#,
         r#""rough", "smooth", a Coulomb coefficient such as 0.4, or "unknown" (default): all that lies between"#,
-    )];
+    ),
+    number("duration_s", "–")
+        .within(0.0, LONGEST_CONTACT_S, "how long the first end's impact lasts, in seconds: 20 ms are 0.02")
+        .shown("0.02", "how long the first impact lasts, for `predict`; `analyze` measures it"),
+];
+
+/// Five times the impact of a limiter; a body that turns at 5 rad/s comes down in that.
+pub const LONGEST_CONTACT_S: f64 = 0.2;
 
 /// Keys of `[filter]`.
 pub const FILTER: [Key; 2] = [

@@ -1,6 +1,6 @@
 //! The ladder of analytical models: its rungs, what each says, and how the speed answers to k and angle.
 
-use super::cask::Contact;
+use super::cask::{Contact, Drop};
 use super::prediction::Prediction;
 use serde::Serialize;
 
@@ -18,12 +18,20 @@ pub enum Rung {
     Unilateral,
     /// L's further impacts before R strikes.
     FurtherImpacts,
+    /// L's first impact takes its time: the body turns and falls while the target pushes.
+    FinitePulse,
 }
 
 impl Rung {
     /// All, simplest first.
-    pub const ALL: [Self; 5] =
-        [Self::Rod, Self::Body, Self::Friction, Self::Unilateral, Self::FurtherImpacts];
+    pub const ALL: [Self; 6] =
+        [Self::Rod, Self::Body, Self::Friction, Self::Unilateral, Self::FurtherImpacts, Self::FinitePulse];
+
+    /// Those that have something to say of a drop: the last one needs the length of the contact.
+    pub fn of(drop: &Drop) -> impl Iterator<Item = Self> {
+        let is_timed = drop.contact_duration_s > 0.0;
+        Self::ALL.into_iter().filter(move |rung| is_timed || *rung != Self::FinitePulse)
+    }
 
     /// Its name for a person.
     #[must_use]
@@ -34,6 +42,7 @@ impl Rung {
             Self::Friction => "body with friction",
             Self::Unilateral => "body, unilateral contact",
             Self::FurtherImpacts => "body, further impacts",
+            Self::FinitePulse => "body, finite pulse",
         }
     }
 
@@ -46,6 +55,7 @@ impl Rung {
             Self::Friction => "Coulomb friction: L sticks or slides",
             Self::Unilateral => "the target only pushes: L may lift off",
             Self::FurtherImpacts => "L may strike again before R",
+            Self::FinitePulse => "L's first impact takes its time",
         }
     }
 }

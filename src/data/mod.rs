@@ -30,7 +30,7 @@ pub use analysis::{
 pub use at::At;
 pub use cask::{
     Axis, BENDING_WAVE_M_S, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice,
-    GRAZE_SHARE, MOST_CHANNELS, SAMPLE_RATES_HZ, Source, Unit,
+    GRAZE_SHARE, MOST_CHANNELS, SAMPLE_RATES_HZ, Source, Unit, first_arm_m,
 };
 pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, MotionCurve};
@@ -42,6 +42,7 @@ pub use finding::{
     shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
+pub use keys::LONGEST_CONTACT_S;
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};
 pub use motion::{AssumedFriction, AxialClosure, ChannelReading, Motion, MotionState, Setup, StoodIn};
@@ -58,5 +59,5 @@ pub use study::{
     AngleCurve, Criterion, CriticalAngle, CriticalRange, MonteCarlo, PredictionRow, QuantileCurves, Regime,
     RegimeMap, Sensitivity, Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
 };
-pub use tolerances::{Corrections, INERTIA_OF_BLOCK, Tolerances};
+pub use tolerances::{Corrections, Tolerances};
 pub use unit::{STANDARD_GRAVITY_M_S2, acceleration_unit_m_s2, is_rate_of_turn};

@@ -63,6 +63,17 @@ impl std::fmt::Display for FlightRegime {
     }
 }
 
+/// Beyond this inclination the axis has stood upright before R strikes, degrees, however the cask turned.
+const UPRIGHT_DEG: f64 = 90.0;
+
+impl Prediction {
+    /// Whether the cask turns over, a somersault, before R strikes: no slap-down of a drop test.
+    #[must_use]
+    pub fn turns_over(&self) -> bool {
+        self.slap_down_angle_deg.is_some_and(|angle_deg| angle_deg.abs() >= UPRIGHT_DEG)
+    }
+}
+
 /// What one model predicts for one contact law and one k. What does not exist (no slap-down) is `None`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Prediction {

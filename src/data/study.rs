@@ -109,6 +109,8 @@ pub struct AngleCurve {
     pub energy_ratio: Vec<f64>,
     /// For k = 0 the speed by the closed form of \[P\] Table 2, m/s; NaN for k > 0.
     pub closed_form_speed_m_s: Vec<f64>,
+    /// Whether the cask turns over before R strikes, [`Prediction::turns_over`].
+    pub turns_over: Vec<bool>,
 }
 
 /// What is largest at a critical angle.

@@ -32,7 +32,7 @@ pub struct Tolerances {
 }
 
 /// Inertia that is only a homogeneous block's, as a share: casks carry their mass off the even spread.
-pub const INERTIA_OF_BLOCK: f64 = 0.1;
+const INERTIA_OF_BLOCK: f64 = 0.1;
 
 impl Default for Tolerances {
     /// Sources and sizes: docs/uncertainty.md.
@@ -42,7 +42,6 @@ impl Default for Tolerances {
             height: 0.01,
             angular_velocity_rad_s: 1.0_f64.to_radians(),
             horizontal_velocity_m_s: 0.1,
-
             angle_rad: 0.4_f64.to_radians(),
             impact_velocity: 0.003,
             calibration: 0.01,
@@ -53,6 +52,16 @@ impl Default for Tolerances {
             friction: 0.2,
             clock: 0.0005,
         }
+    }
+}
+
+impl Tolerances {
+    /// The defaults where a cask file leaves these keys out, as "table.key": an inertia may be the block's alone.
+    #[must_use]
+    pub fn of(left_out: &[String]) -> Self {
+        let usual = Self::default();
+        let is_block = left_out.iter().any(|key| key == "cask.inertia_kg_m2");
+        Self { inertia: if is_block { INERTIA_OF_BLOCK } else { usual.inertia }, ..usual }
     }
 }
 

@@ -31,8 +31,8 @@ const SAME_STEP: f64 = 1e-9;
 /// From where the answer is seen on, s: where the force may still turn its direction; and lengths that are fitted from there on, s.
 const LATER_S: [f64; 3] = [0.4e-3, 0.8e-3, 1.6e-3];
 const LATER_LENGTHS_S: [f64; 3] = [1e-3, 2e-3, 4e-3];
-/// No delay explains those stretches better than one where it leaves less by so many variances of the noise: six standard deviations.
-const BETTER: f64 = 40.0;
+/// A delay explains those stretches better than none where it leaves less by so many variances of the noise: three standard deviations.
+const BETTER: f64 = 10.0;
 /// Longest that a force takes to turn its direction, s: L that slides back at 0.5 m/s is held within a millisecond, at 0.1 m/s within 0.4 ms.
 const TURNS_S: f64 = 7e-4;
 /// Delays tried in a fit, and between the best two of them.
@@ -187,7 +187,7 @@ impl<'a> Answering<'a> {
             u_s = u_s.max(taken.delay_s.abs() / 2.0);
         }
         // A clock is apart all along.
-        if (2.0 * u_s..TURNS_S).contains(&taken.delay_s.abs()) && self.has_none_later(taken.delay_s) {
+        if (2.0 * u_s..TURNS_S).contains(&taken.delay_s.abs()) && !self.goes_on(taken.delay_s) {
             u_s = taken.delay_s.abs() / 2.0;
         }
         Some((taken.delay_s, u_s))
@@ -259,11 +259,11 @@ impl<'a> Answering<'a> {
         })
     }
 
-    /// Whether what follows the beginning of the answer has no delay rather than this one: then the force turned its direction in the beginning,
-    /// as where L slides back until it holds.
+    /// Whether what follows the beginning of the answer has this delay rather than none: else the force may have turned its direction in the
+    /// beginning, as where L slides back until it holds.
     ///
     /// What the body does by then goes on as a line.
-    fn has_none_later(&self, delay_s: f64) -> bool {
+    fn goes_on(&self, delay_s: f64) -> bool {
         const ORDERS: [usize; 3] = [0, 2, 4];
         let (signal, rate_hz) = (self.signal, self.signal.sample_rate_hz);
         let mut in_favour = 0.0;
@@ -295,7 +295,7 @@ impl<'a> Answering<'a> {
             if (without.min(with) / freedom).sqrt() > explained {
                 continue;
             }
-            in_favour += (with - without) / variance;
+            in_favour += (without - with) / variance;
         }
         in_favour > BETTER
     }

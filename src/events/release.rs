@@ -3,6 +3,7 @@
 use super::block_means_m_s2;
 use crate::data::{Axis, Channel, Drop, Samples};
 use crate::numerics::{as_f64, reduce, robust};
+use std::cell::OnceCell;
 use std::ops::Range;
 
 /// A step from rest to free fall is this share of g cos φ at least and at most: sensors on a tilted cask, a hook that gives way.
@@ -92,6 +93,8 @@ struct Record<'a> {
     size: usize,
     blocks: Vec<f64>,
     weight_m_s2: f64,
+    /// As [`Record::converter_step_m_s2`] finds it, once.
+    converter_step_m_s2: OnceCell<f64>,
 }
 
 impl<'a> Record<'a> {
@@ -102,7 +105,14 @@ impl<'a> Record<'a> {
         let mut blocks = block_means_m_s2(channel, samples.clone(), size);
         blocks.truncate(samples.len() / size);
         let is_long = blocks.len() > 2 * LEVEL + 2 && weight_m_s2 > 0.5;
-        is_long.then_some(Self { channel, samples, size, blocks, weight_m_s2 })
+        is_long.then_some(Self {
+            channel,
+            samples,
+            size,
+            blocks,
+            weight_m_s2,
+            converter_step_m_s2: OnceCell::new(),
+        })
     }
 
     /// The samples in a range counted from the record's first, cut to what there is, m/s².
@@ -150,15 +160,17 @@ impl<'a> Record<'a> {
     }
 
     /// Smallest difference of neighbouring samples, m/s²: both levels may lie half of it off where the noise is less.
-    fn converter_step(&self) -> f64 {
-        let scale = self.channel.scale_m_s2.abs();
-        let Range { start, end } = self.samples.clone();
-        let least = scale
-            * match &self.channel.samples {
-                Samples::F32(v) => reduce::least_step(&v[start..end], 1e-9 / scale),
-                Samples::F64(v) => reduce::least_step(&v[start..end], 1e-9 / scale),
-            };
-        if least.is_finite() { least } else { 0.0 }
+    fn converter_step_m_s2(&self) -> f64 {
+        *self.converter_step_m_s2.get_or_init(|| {
+            let scale = self.channel.scale_m_s2.abs();
+            let Range { start, end } = self.samples.clone();
+            let least = scale
+                * match &self.channel.samples {
+                    Samples::F32(v) => reduce::least_step(&v[start..end], 1e-9 / scale),
+                    Samples::F64(v) => reduce::least_step(&v[start..end], 1e-9 / scale),
+                };
+            if least.is_finite() { least } else { 0.0 }
+        })
     }
 
     /// Means of [`LEVEL`] blocks each, from the end of `blocks` back, m/s².
@@ -169,7 +181,7 @@ impl<'a> Record<'a> {
 
     /// The levels of the rest before a step, back to where the cask was not yet at rest; `of_fall` tell how levels scatter.
     fn calm_before(&self, step: usize, of_fall: &[f64]) -> Vec<f64> {
-        let scatter_m_s2 = robust::mean_and_rms(of_fall).1.hypot(self.converter_step());
+        let scatter_m_s2 = robust::mean_and_rms(of_fall).1.hypot(self.converter_step_m_s2());
         let most_m_s2 = (UNREST * self.weight_m_s2).max(UNREST_SCATTERS * scatter_m_s2);
         let levels = self.levels(0..step.saturating_sub(1));
         let Some(&last) = levels.first() else { return vec![f64::NAN] };
@@ -189,7 +201,7 @@ impl<'a> Record<'a> {
         };
         // A scatter over n levels is known to 1/√(2n) of itself: few are given that margin twice.
         let margin = 1.0 + (2.0 / n).sqrt();
-        margin * scatter_m_s2.max(drift_m_s2).hypot(self.converter_step() / 12.0_f64.sqrt())
+        margin * scatter_m_s2.max(drift_m_s2).hypot(self.converter_step_m_s2() / 12.0_f64.sqrt())
     }
 
     /// The block from which on the mean over [`SUSTAINED`] blocks lies off the free-fall level; `None` where it holds to the end.

@@ -3,7 +3,7 @@
 use super::Basis;
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, Events, FlightFit, MOST_LOST_M_S, Motion, MotionState, Setup,
-    Signal, StoodIn,
+    Signal, StoodIn, first_arm_m,
 };
 use crate::numerics::noise::integral_uncertainty_by;
 
@@ -152,9 +152,8 @@ impl Inputs {
                 self.setup.angular_velocity_rad_s += by * by_rad_s;
                 if self.setup.is_of_fall {
                     // ż_S is that of the fall: L strikes ω a more slowly   (3)
-                    let (sin, cos) = self.setup.angle_rad.sin_cos();
-                    let a_m = self.setup.cog_m * cos - self.setup.height_m / 2.0 * sin;
-                    self.setup.impact_velocity_m_s -= by * by_rad_s * a_m;
+                    let Setup { cog_m, height_m, angle_rad, .. } = self.setup;
+                    self.setup.impact_velocity_m_s -= by * by_rad_s * first_arm_m(cog_m, height_m, angle_rad);
                 }
             }
             Change::HorizontalVelocity { by_m_s } => self.setup.horizontal_velocity_m_s += by * by_m_s,

@@ -9,7 +9,7 @@ pub(super) mod tolerance;
 mod wording;
 
 use crate::data::keys::TABLES;
-use crate::data::{CaskFile, Contact, FilterChoice};
+use crate::data::{CaskFile, Contact, Drop, FilterChoice};
 pub(crate) use body::{cask, drop};
 pub use fault::{CaskFileError, WrongLine};
 use section::{CASK_FILE, Document, Kind, Section};
@@ -125,15 +125,16 @@ pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError
     let document = Document::new(&CASK_FILE, path, text);
     let root = document.root()?;
     let cask = cask(&root.required_table("cask")?, path)?;
-    let drop = drop(&root.required_table("drop")?, &cask)?;
-    let contact = contact(&root.table("contact")?)?;
+    let contact_table = root.table("contact")?;
+    let contact_duration_s = contact_table.number("duration_s")?.map_or(0.0, |lasts| lasts.value);
+    let drop = Drop { contact_duration_s, ..drop(&root.required_table("drop")?, &cask)? };
+    let contact = contact(&contact_table)?;
     let filter = filter(&root.table("filter")?)?;
-    let is_block = root.table("cask")?.value("inertia_kg_m2").is_none();
-    let tolerances = tolerance::tolerances(&root.table("tolerance")?, &cask, is_block)?;
+    let mut defaults = assumed(&root, &["cask", "drop", "contact", "tolerance"]);
+    let tolerances = tolerance::tolerances(&root.table("tolerance")?, &cask, &defaults)?;
     let corrections = tolerance::corrections(&root.table("corrections")?)?;
     let time = root.table("recording")?.text("time")?.map(|time| time.value);
     let channels = channel::channels(&root, &cask)?;
-    let mut defaults = assumed(&root, &["cask", "drop", "contact", "tolerance"]);
     if filter == FilterChoice::Auto {
         defaults.push("filter".into());
     }

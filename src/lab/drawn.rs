@@ -5,8 +5,8 @@ use super::data::{Scene, SceneChannel, SimulatedMotion, SyntheticRecording};
 use super::{in_memory, synth};
 use crate::analysis::measure;
 use crate::data::{
-    Analysis, Cask, CaskFile, ChannelSpec, Contact, Corrections, Coupling, Drop, FilterChoice,
-    INERTIA_OF_BLOCK, Recording, STANDARD_GRAVITY_M_S2, Source, Tolerances, Unit,
+    Analysis, Cask, CaskFile, ChannelSpec, Contact, Corrections, Coupling, Drop, FilterChoice, Recording,
+    STANDARD_GRAVITY_M_S2, Source, Tolerances, Unit,
 };
 use crate::numerics::reduce;
 use std::path::PathBuf;
@@ -49,22 +49,6 @@ impl Build {
     }
 }
 
-/// A free fall from this height.
-pub(super) fn fall(height_m: f64, angle_rad: f64) -> Drop {
-    Drop {
-        impact_velocity_m_s: (2.0 * GRAVITY_M_S2 * height_m).sqrt(),
-        gravity_m_s2: GRAVITY_M_S2,
-        ..Drop::of_height(height_m, angle_rad)
-    }
-}
-
-/// What is known of a cask whose file leaves these keys out.
-pub(super) fn tolerances(defaults: &[String]) -> Tolerances {
-    let usual = Tolerances::default();
-    let is_block = defaults.iter().any(|key| key == "cask.inertia_kg_m2");
-    Tolerances { inertia: if is_block { INERTIA_OF_BLOCK } else { usual.inertia }, ..usual }
-}
-
 /// What the cask file says of a drop, with the usual tolerances and still without channels; `defaults` are the keys that it leaves out.
 pub(super) fn cask_file(cask: Cask, drop: Drop, contact: Contact, defaults: Vec<String>) -> CaskFile {
     CaskFile {
@@ -74,7 +58,7 @@ pub(super) fn cask_file(cask: Cask, drop: Drop, contact: Contact, defaults: Vec<
         drop,
         contact,
         filter: FilterChoice::Auto,
-        tolerances: tolerances(&defaults),
+        tolerances: Tolerances::of(&defaults),
         corrections: Corrections::default(),
         time: None,
         channels: Vec::new(),

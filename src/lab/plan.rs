@@ -2,9 +2,9 @@
 
 use super::chance::Chance;
 use super::data::{BendingMode, Chain, Scene, SceneChannel, SceneExtras, WantedImpact};
-use super::drawn::{Build, DrawnDrop, cask_file, fall, spec};
+use super::drawn::{Build, DrawnDrop, cask_file, spec};
 use super::synth;
-use crate::data::{Contact, End, STANDARD_GRAVITY_M_S2};
+use crate::data::{Contact, Drop, End, STANDARD_GRAVITY_M_S2};
 
 /// A drop as a trial speaks of it.
 #[derive(Debug, Clone)]
@@ -57,7 +57,7 @@ impl DropPlan {
     /// The drop, simulated.
     pub(super) fn draw(&self) -> DrawnDrop {
         let cask = self.build.cask();
-        let drop = fall(9.0, self.angle_deg.to_radians());
+        let drop = Drop::of_height(9.0, self.angle_deg.to_radians());
         let end = |end, duration_s, restitution| {
             let wanted = WantedImpact { duration_s, restitution, yield_share: self.yield_share };
             synth::crushable_end(&cask, &drop, self.contact, end, wanted)

@@ -1,20 +1,21 @@
 //! The motion after an impact to the time at which a corner comes down to the target.
 
 use super::state::{Differentiable, State, second_end_m};
+use super::support::Support;
 use crate::data::Body;
 use crate::numerics::root::first_root;
 
 /// Heights below this at the start of a flight are the contact itself, m.
 const TOUCH_M: f64 = 1e-9;
 
-/// First time after now at which the lower corner `along_m` behind S comes down to the target, at most `last_s`.
+/// First time after now at which the lower corner `along_m` behind S comes down to `depth_m` below the target, at most `last_s`.
 ///
 /// z(τ) = z_S + ż_S τ − g τ²/2 − b(φ − ω τ), |z̈| ≤ g + ω² ρ   (8)
 fn next_touch<T: Differentiable>(
     body: &Body,
     gravity_m_s2: f64,
     state: &State<T>,
-    along_m: f64,
+    (along_m, depth_m): (f64, f64),
     last_s: f64,
 ) -> Option<T> {
     let real = state.real();
@@ -23,7 +24,7 @@ fn next_touch<T: Differentiable>(
     let found_s = first_root(
         |t| {
             let corner = real.after(t, gravity_m_s2).corner(body, along_m);
-            (corner.height_m, corner.vertical_velocity_m_s)
+            (corner.height_m + depth_m, corner.vertical_velocity_m_s)
         },
         bound_m_s2,
         last_s,
@@ -33,7 +34,7 @@ fn next_touch<T: Differentiable>(
     let time_s = T::from(found_s);
     let corner = state.after(time_s, gravity_m_s2).corner(body, along_m);
     let steep = corner.vertical_velocity_m_s.re() < -(2.0 * bound_m_s2 * TOUCH_M).sqrt();
-    Some(if steep { time_s - corner.height_m / corner.vertical_velocity_m_s } else { time_s })
+    Some(if steep { time_s - (corner.height_m + depth_m) / corner.vertical_velocity_m_s } else { time_s })
 }
 
 /// When R's corner comes down first.
@@ -43,19 +44,19 @@ pub(super) fn second_end_touches<T: Differentiable>(
     state: &State<T>,
 ) -> Option<T> {
     let along_m = second_end_m(body);
-    next_touch(body, gravity_m_s2, state, along_m, longest_s(body, gravity_m_s2, state, along_m))
+    next_touch(body, gravity_m_s2, state, (along_m, 0.0), longest_s(body, gravity_m_s2, state, along_m))
 }
 
-/// When L's corner comes down again, at most when R does.
+/// When L's corner comes down again to where the target left it, at most when R does.
 pub(super) fn first_end_touches<T: Differentiable>(
-    body: &Body,
-    gravity_m_s2: f64,
+    support: &Support,
     state: &State<T>,
     second_end_s: Option<T>,
 ) -> Option<T> {
+    let Support { body, gravity_m_s2, sunk_m, .. } = *support;
     let last_s =
         second_end_s.map_or_else(|| longest_s(body, gravity_m_s2, state, body.cog_m), |time_s| time_s.re());
-    next_touch(body, gravity_m_s2, state, body.cog_m, last_s)
+    next_touch(body, gravity_m_s2, state, (body.cog_m, sunk_m), last_s)
 }
 
 /// From here on S itself lies deeper than the corner can reach up, s.
@@ -66,19 +67,19 @@ fn longest_s<T: Differentiable>(body: &Body, gravity_m_s2: f64, state: &State<T>
     (rise_m_s + (rise_m_s * rise_m_s + 2.0 * gravity_m_s2 * height_m).sqrt()) / gravity_m_s2
 }
 
-/// Whether L, back on the target plane at the start of `span_s`, sinks deeper than `graze_m` before its end.
+/// Whether L, back where the target left it at the start of `span_s`, sinks deeper than `graze_m` before its end.
 pub(super) fn sinks<T: Differentiable>(
-    body: &Body,
-    gravity_m_s2: f64,
+    support: &Support,
     state: &State<T>,
     span_s: std::ops::Range<f64>,
     graze_m: f64,
 ) -> bool {
     const POINTS: u32 = 32;
+    let Support { body, gravity_m_s2, sunk_m, .. } = *support;
     let real = state.real();
     graze_m <= 0.0
         || (1..=POINTS).any(|i| {
             let t = span_s.start + (span_s.end - span_s.start) * f64::from(i) / f64::from(POINTS);
-            real.after(t, gravity_m_s2).corner(body, body.cog_m).height_m < -graze_m
+            real.after(t, gravity_m_s2).corner(body, body.cog_m).height_m < -sunk_m - graze_m
         })
 }

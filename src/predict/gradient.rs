@@ -1,6 +1,5 @@
 //! A prediction to how its slap-down speed answers to k and to the drop angle.
 
-use super::impact::strike_first_end;
 use super::path::Way;
 use super::state::{Differentiable, State, second_end_m};
 use crate::data::{Body, Contact, Drop, GRAZE_SHARE, SpeedGradient};
@@ -20,8 +19,7 @@ pub fn speed_gradient(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Opt
 
 fn speed_m_s<T: Differentiable>(body: &Body, drop: &Drop, contact: Contact, angle_rad: T, k: T) -> Option<T> {
     let start = State::falling(body, angle_rad, drop);
-    let way = Way::of(body, drop, contact, Some(GRAZE_SHARE));
-    let (at, _) = way.follow(strike_first_end(body, &start, contact, k).after, k).second_end?;
+    let (at, _) = Way::of(body, drop, contact, Some(GRAZE_SHARE)).from(&start, drop, k).1.second_end?;
     let corner = at.corner(body, second_end_m(body));
     Some((corner.horizontal_velocity_m_s.powi(2) + corner.vertical_velocity_m_s.powi(2)).sqrt())
 }
@@ -30,10 +28,11 @@ fn speed_m_s<T: Differentiable>(body: &Body, drop: &Drop, contact: Contact, angl
 mod tests {
     use super::*;
     use crate::data::BodyModel;
+    use crate::predict::impact::strike_first_end;
     use crate::predict::{predict, thin_rod};
 
     fn drop(angle_rad: f64, height_m: f64) -> Drop {
-        Drop { impact_velocity_m_s: (2.0 * 9.81 * height_m).sqrt(), ..Drop::of_height(height_m, angle_rad) }
+        Drop::of_height(height_m, angle_rad)
     }
 
     fn speed(body: &Body, drop: &Drop, contact: Contact, k: f64) -> f64 {

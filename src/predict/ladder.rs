@@ -38,15 +38,17 @@ pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64
         Rung::Body => Case { body, drop, contact: ideal, k }.held_or_one_flight(strike_first_end),
         Rung::Friction => Case { body, drop, contact, k }.held_or_one_flight(strike_first_end),
         Rung::Unilateral => Case { body, drop, contact, k }.unilateral(),
-        Rung::FurtherImpacts => predict(body, drop, contact, k),
+        Rung::FurtherImpacts => predict(body, &Drop { contact_duration_s: 0.0, ..*drop }, contact, k),
+        Rung::FinitePulse => predict(body, drop, contact, k),
     }
 }
 
-/// Every rung's prediction, simplest first, and the simplest that no richer one moves by more than [`LADDER_TOLERANCE_PERCENT`].
+/// Every rung's prediction, simplest first, and the simplest that no richer one moves by more than [`LADDER_TOLERANCE_PERCENT`]. The finite
+/// pulse is among them where the drop says how long it lasts.
 #[must_use]
 pub fn ladder(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Ladder {
     let mut steps: Vec<LadderStep> = Vec::with_capacity(Rung::ALL.len());
-    for rung in Rung::ALL {
+    for rung in Rung::of(drop) {
         let prediction = predict_by(rung, body, drop, contact, k);
         let below = steps.last().and_then(|step| step.prediction.slap_down_speed_m_s);
         let change_percent =
@@ -56,7 +58,7 @@ pub fn ladder(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Ladder {
     let speeds: Vec<Option<f64>> = steps.iter().map(|step| step.prediction.slap_down_speed_m_s).collect();
     let suffices = (0..steps.len())
         .find(|&i| speeds[i..].iter().all(|richer| alike(speeds[i], *richer)))
-        .map_or(Rung::FurtherImpacts, |i| steps[i].rung);
+        .map_or(Rung::FinitePulse, |i| steps[i].rung);
     // Free of the last digits of the conversion.
     let angle_deg = (drop.angle_rad.to_degrees() * 1e9).round() / 1e9;
     Ladder { angle_deg, contact, k, steps, suffices }
@@ -151,7 +153,7 @@ impl Case<'_> {
             friction_to_stick: struck.friction_to_stick,
             sticks: struck.sticks,
             regime: outcome.regime,
-            closed_form_speed_m_s: (self.k <= 0.0)
+            closed_form_speed_m_s: (self.k <= 0.0 && self.drop.contact_duration_s <= 0.0)
                 .then(|| self.closed_form(&struck.after))
                 .flatten()
                 .and_then(|held| held.at_second_end())
@@ -176,10 +178,7 @@ mod tests {
     }
 
     fn drop(angle_deg: f64) -> Drop {
-        Drop {
-            impact_velocity_m_s: (2.0_f64 * 9.81 * 9.0).sqrt(),
-            ..Drop::of_height(9.0, angle_deg.to_radians())
-        }
+        Drop::of_height(9.0, angle_deg.to_radians())
     }
 
     #[test]

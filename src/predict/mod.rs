@@ -6,6 +6,7 @@ mod held;
 mod impact;
 mod ladder;
 mod path;
+mod pulse;
 mod resting;
 mod rod;
 mod state;
@@ -17,7 +18,6 @@ pub use ladder::{ladder, predict_by};
 pub use study::{default_uncertain, study};
 
 use crate::data::{Body, BodyModel, Cask, Contact, Drop, GRAZE_SHARE, Prediction};
-use impact::strike_first_end;
 use path::Way;
 use state::State;
 
@@ -59,8 +59,8 @@ pub fn bodies(cask: &Cask) -> Vec<Body> {
     bodies
 }
 
-/// First impact, flight, further impacts of L and slap-down of `body` with restitution `k` (0 to 1), equations (1)–(13) of
-/// `docs/physics.md`: the highest rung of the ladder.
+/// First impact, flight, further impacts of L and slap-down of `body` with restitution `k` (0 to 1), equations (1)–(14) of
+/// `docs/physics.md`: the highest rung of the ladder. The first impact lasts `drop.contact_duration_s`; 0 is an impulse.
 ///
 /// L strikes again where it sinks deeper than [`GRAZE_SHARE`] of the length before R strikes. Where R never strikes the slap-down's
 /// quantities are `None`.
@@ -74,8 +74,7 @@ pub fn predict(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction
 #[must_use]
 pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, graze_share: f64) -> Prediction {
     let start = State::falling(body, drop.angle_rad, drop);
-    let struck = strike_first_end(body, &start, contact, k);
-    let outcome = Way::of(body, drop, contact, Some(graze_share)).follow(struck.after, k);
+    let (struck, outcome) = Way::of(body, drop, contact, Some(graze_share)).from(&start, drop, k);
     ladder::Case { body, drop, contact, k }.prediction(&start, &struck, &outcome)
 }
 
@@ -90,6 +89,7 @@ pub fn borderline_cases(body: &Body, drop: &Drop) -> Vec<Prediction> {
 
 #[cfg(test)]
 mod tests {
+    use super::impact::strike_first_end;
     use super::*;
     use crate::data::FlightRegime;
     use crate::numerics::root::first_root;

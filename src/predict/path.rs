@@ -1,7 +1,8 @@
 //! The motion just after L's first impact to the motion just before R strikes.
 
 use super::flight::{first_end_touches, second_end_touches, sinks};
-use super::impact::strike_first_end;
+use super::impact::{Struck, strike_first_end};
+use super::pulse::{PulseEnd, push_first_end};
 use super::resting::RestEnd;
 use super::state::{Differentiable, State, second_end_m};
 use super::support::{Hold, Support};
@@ -46,6 +47,28 @@ impl<'a> Way<'a> {
 }
 
 impl Way<'_> {
+    /// L's first impact, as long as the drop says, and the way after it.
+    pub fn from<T: Differentiable>(mut self, start: &State<T>, drop: &Drop, k: T) -> (Struck<T>, PathEnd<T>) {
+        let body = self.support.body;
+        match push_first_end(body, start, drop, self.support.contact, k) {
+            PulseEnd::Strikes(struck, time_s) => {
+                let second_end = Some((struck.after, time_s)).filter(|(at, _)| self.is_slap_down(at));
+                (struck, PathEnd { second_end, impacts: 1, regime: FlightRegime::Contact })
+            }
+            PulseEnd::Leaves(struck) => {
+                if drop.contact_duration_s > 0.0 {
+                    // How the depth answers to the start is left out: only further touches of L feel it.
+                    self.support.sunk_m = -struck.after.corner(body, body.cog_m).height_m.re();
+                }
+                let mut outcome = self.follow(struck.after, k);
+                if let Some((_, time_s)) = &mut outcome.second_end {
+                    *time_s += drop.contact_duration_s;
+                }
+                (struck, outcome)
+            }
+        }
+    }
+
     /// Follows flights, rests and further impacts of L until R strikes, or says that it does not.
     pub fn follow<T: Differentiable>(&self, after_impact: State<T>, k: T) -> PathEnd<T> {
         let (body, gravity_m_s2) = (self.support.body, self.support.gravity_m_s2);
@@ -75,7 +98,7 @@ impl Way<'_> {
             let second_s = second_end_touches(body, gravity_m_s2, &state);
             match self.strikes_again(&state, second_s) {
                 Some(time_s) if outcome.impacts < MOST_IMPACTS => {
-                    let at = state.after(time_s, gravity_m_s2).with_first_end_down(body);
+                    let at = state.after(time_s, gravity_m_s2).with_first_end_at(body, self.support.sunk_m);
                     state = strike_first_end(body, &at, self.support.contact, k).after;
                     elapsed_s += time_s;
                     outcome.impacts += 1;
@@ -126,11 +149,10 @@ impl Way<'_> {
     /// When L strikes again before R does, deeper than a graze   (9)
     fn strikes_again<T: Differentiable>(&self, state: &State<T>, second_s: Option<T>) -> Option<T> {
         let graze_m = self.graze_m?;
-        let (body, gravity_m_s2) = (self.support.body, self.support.gravity_m_s2);
-        let first_s = first_end_touches(body, gravity_m_s2, state, second_s)?;
+        let first_s = first_end_touches(&self.support, state, second_s)?;
         let Some(second_s) = second_s else { return Some(first_s) };
-        let strikes = first_s.re() < second_s.re()
-            && sinks(body, gravity_m_s2, state, first_s.re()..second_s.re(), graze_m);
+        let strikes =
+            first_s.re() < second_s.re() && sinks(&self.support, state, first_s.re()..second_s.re(), graze_m);
         strikes.then_some(first_s)
     }
 

@@ -54,7 +54,7 @@ impl Support<'_> {
         if from.angle_rad.re().cos() <= 0.0 {
             return RestEnd::Never;
         }
-        if from.angle_rad.re() <= 0.0 {
+        if from.angle_rad.re() <= self.down_rad() {
             return RestEnd::Strikes(*from, elapsed_s);
         }
         let mut at = Turning::of(self.body, from);
@@ -110,7 +110,7 @@ impl Support<'_> {
         let margins = self.margins(&there.real(), grip);
         // How the time answers to the start: only where the forces jump does that matter.
         if margins[0] <= 0.0 {
-            (there.angle_rad / there.angular_velocity_rad_s + high_s, Margin::Angle)
+            ((there.angle_rad - self.down_rad()) / there.angular_velocity_rad_s + high_s, Margin::Angle)
         } else if margins[1] <= 0.0 && (self.hold == Hold::Pushes || grip != Grip::Sticks) {
             (T::from(high_s), Margin::Lift)
         } else if grip == Grip::Sticks || high_s < LEAST_STEP_S {
@@ -130,7 +130,7 @@ mod tests {
     use crate::data::{Body, BodyModel, Contact};
 
     fn support(body: &Body, contact: Contact, hold: Hold) -> Support<'_> {
-        Support { body, gravity_m_s2: 9.81, contact, hold }
+        Support { body, gravity_m_s2: 9.81, contact, hold, sunk_m: 0.0 }
     }
 
     fn turning(body: &Body, angle_rad: f64, angular_velocity_rad_s: f64) -> State<f64> {

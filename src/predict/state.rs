@@ -81,6 +81,17 @@ impl<T: Differentiable> State<T> {
         }
     }
 
+    /// The motion after `step_s` with these slopes.
+    pub fn plus(&self, slope: &Self, step_s: T) -> Self {
+        Self {
+            height_m: self.height_m + slope.height_m * step_s,
+            angle_rad: self.angle_rad + slope.angle_rad * step_s,
+            horizontal_velocity_m_s: self.horizontal_velocity_m_s + slope.horizontal_velocity_m_s * step_s,
+            vertical_velocity_m_s: self.vertical_velocity_m_s + slope.vertical_velocity_m_s * step_s,
+            angular_velocity_rad_s: self.angular_velocity_rad_s + slope.angular_velocity_rad_s * step_s,
+        }
+    }
+
     /// The lower corner at axial distance `along_m` behind S (L: c; R: c − l).
     ///
     /// z_C = z_S − b, ẋ_C = ẋ_S − b ω, ż_C = ż_S + a ω   (3)
@@ -93,9 +104,9 @@ impl<T: Differentiable> State<T> {
         }
     }
 
-    /// The same motion with L's corner on the target to the last digit: a nanometre below it would strike again at once.
-    pub fn with_first_end_down(&self, body: &Body) -> Self {
-        Self { height_m: arms_m(body, self.angle_rad, body.cog_m).1, ..*self }
+    /// The same motion with L's corner at the depth `sunk_m` to the last digit: a nanometre below it would strike again at once.
+    pub fn with_first_end_at(&self, body: &Body, sunk_m: f64) -> Self {
+        Self { height_m: arms_m(body, self.angle_rad, body.cog_m).1 - sunk_m, ..*self }
     }
 
     /// Kinetic energy, J: m (ẋ² + ż²)/2 + Θ ω²/2   (13)

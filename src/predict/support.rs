@@ -17,6 +17,8 @@ pub(super) struct Support<'a> {
     pub gravity_m_s2: f64,
     pub contact: Contact,
     pub hold: Hold,
+    /// How far the first impact has crushed L: its corner rests so deep below the target plane, m.
+    pub sunk_m: f64,
 }
 
 /// When the target lets go of L.
@@ -66,7 +68,7 @@ pub(super) struct Forces<T> {
 
 impl<'a> Support<'a> {
     pub fn of(body: &'a Body, drop: &Drop, contact: Contact, hold: Hold) -> Self {
-        Self { body, gravity_m_s2: drop.gravity_m_s2, contact, hold }
+        Self { body, gravity_m_s2: drop.gravity_m_s2, contact, hold, sunk_m: 0.0 }
     }
 }
 
@@ -144,7 +146,7 @@ impl Support<'_> {
     pub fn state<T: Differentiable>(&self, at: &Turning<T>) -> State<T> {
         let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
         State {
-            height_m: b,
+            height_m: b - self.sunk_m,
             angle_rad: at.angle_rad,
             horizontal_velocity_m_s: at.slip_m_s + b * at.angular_velocity_rad_s,
             vertical_velocity_m_s: -a * at.angular_velocity_rad_s,
@@ -172,6 +174,11 @@ impl Support<'_> {
             .plus(&four, step_s / 6.0)
     }
 
+    /// The inclination at which R strikes while L rests, rad: l sin φ is how deep L's corner lies.
+    pub fn down_rad(&self) -> f64 {
+        (self.sunk_m / self.body.length_m).clamp(-1.0, 1.0).asin()
+    }
+
     /// What ends a stretch with one `grip`: each is positive until then.
     pub fn margins(&self, at: &Turning<f64>, grip: Grip) -> [f64; 3] {
         let forces = self.forces(at, grip);
@@ -182,7 +189,7 @@ impl Support<'_> {
             Grip::Slides { .. } => 1.0,
             Grip::Sticks | Grip::Jams => self.left_m_s2(&forces),
         };
-        [at.angle_rad, lift, hold]
+        [at.angle_rad - self.down_rad(), lift, hold]
     }
 }
 

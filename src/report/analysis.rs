@@ -13,9 +13,9 @@ use super::text::{
     Style, json_word, reason, sentence, span_text, tail, taken_mark, true_minus, verdict_sentence,
     verdict_word, yes,
 };
-use super::words::{KEPT_SENTENCE, contact_words};
+use super::words::{KEPT_SENTENCE, OVER_SENTENCE, contact_words};
 use crate::data::{
-    Analysis, CaskFile, DropResult, Estimate, Finding, FlightRegime, IssueCode, Severity, Verdict,
+    Analysis, CaskFile, DropResult, Estimate, Finding, FlightRegime, IssueCode, Prediction, Severity, Verdict,
 };
 
 /// Findings that take away what the first impact would give.
@@ -185,7 +185,7 @@ fn comparison(result: &DropResult) -> Chapter {
             ))
         },
         |c| {
-            let by = taken.map_or_else(String::new, |m| format!("{} with the measured k", m.rung.words()));
+            let by = taken.map_or_else(String::new, |m| format!("{}, measured k", m.rung.words()));
             let style = if c.agrees { Style::Green } else { Style::Yellow };
             let facts = vec![
                 Fact::number("measured", pair(c.measured, c.measured_u95, "m/s")),
@@ -249,7 +249,9 @@ fn predictions(result: &DropResult) -> Chapter {
         .number("Impacts of the first end", |p| p.first_end_impacts.to_string())
         .only(Medium::Page);
     let kept = result.predictions.iter().any(|p| p.regime == FlightRegime::Contact);
-    Chapter::new("Predictions").with(table).with_all(kept.then(|| ChapterPart::note(KEPT_SENTENCE)))
+    let over = result.predictions.iter().any(Prediction::turns_over);
+    let notes = [kept.then_some(KEPT_SENTENCE), over.then_some(OVER_SENTENCE)];
+    Chapter::new("Predictions").with(table).with_all(notes.into_iter().flatten().map(ChapterPart::note))
 }
 
 /// What each channel is worth.

@@ -203,6 +203,7 @@ fn curve(request: &StudyRequest, case: (BodyModel, Contact, f64)) -> AngleCurve 
         horizontal_velocity_m_s: of(|p| p.horizontal_velocity_m_s),
         energy_ratio: of(|p| p.energy_ratio),
         closed_form_speed_m_s: of(|p| p.closed_form_speed_m_s),
+        turns_over: vec![false; angle_deg.len()],
         angle_deg,
     }
 }

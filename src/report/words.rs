@@ -15,6 +15,11 @@ const KEPT_MARK: &str = "†";
 pub(super) const KEPT_SENTENCE: &str =
     "† the first end stays on the target until the second strikes; in all other cases it flies.";
 
+/// What marks a prediction whose cask turns over, and what that means.
+pub(super) const OVER_MARK: &str = "§";
+pub(super) const OVER_SENTENCE: &str =
+    "§ the cask turns over (a somersault) before the second end strikes: no slap-down of a drop test.";
+
 /// The mark, where it applies.
 pub(super) fn kept_mark(regime: FlightRegime) -> &'static str {
     match regime {
@@ -163,6 +168,7 @@ pub(super) fn rung_short(rung: Rung) -> &'static str {
         Rung::Friction => "friction",
         Rung::Unilateral => "unilateral",
         Rung::FurtherImpacts => "further impacts",
+        Rung::FinitePulse => "finite pulse",
     }
 }
 

@@ -41,9 +41,9 @@ fn written_pages() -> Vec<PathBuf> {
     pages
 }
 
-/// The pages beside fixtures and campaign.
-fn pages_beside() -> [PathBuf; 2] {
-    ["fixtures/README.md", "tests/campaign/README.md"].map(|name| root().join(name))
+/// The pages beside fixtures, campaign and fuzzing.
+fn pages_beside() -> [PathBuf; 3] {
+    ["fixtures/README.md", "tests/campaign/README.md", "tests/fuzz/README.md"].map(|name| root().join(name))
 }
 
 fn text(page: &Path) -> String {

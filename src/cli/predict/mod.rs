@@ -45,6 +45,9 @@ pub struct Arguments {
     /// Contact of the first end: rough, smooth or a Coulomb coefficient
     #[arg(long, value_name = "C", help_heading = CASES, allow_hyphen_values = true, value_parser = words::contact)]
     contact: Option<Contact>,
+    /// How long the first impact lasts, seconds: 20 ms are 0.02 [default: the cask file's, else an impulse]
+    #[arg(long, value_name = "S", help_heading = CASES, allow_hyphen_values = true, value_parser = words::duration)]
+    duration: Option<f64>,
     /// Sweep angle (degrees; where no VARIABLE stands), k, friction, length (m) or height (of the drop, m); several
     /// times for every combination
     #[arg(long, value_name = "[VARIABLE=]FROM:TO:STEP", help_heading = CASES, allow_hyphen_values = true, value_parser = sweep::sweep)]
@@ -81,7 +84,8 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let inputs = [arguments.cask.as_path()];
-    let file = dropcheck::ingest::cask_file(&arguments.cask)?;
+    let mut file = dropcheck::ingest::cask_file(&arguments.cask)?;
+    file.drop.contact_duration_s = arguments.duration.unwrap_or(file.drop.contact_duration_s);
     let request = request::request(arguments, &file)?;
     let names = report::study_file_names(&request);
     let names: Vec<&str> = names.iter().map(String::as_str).collect();

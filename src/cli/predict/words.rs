@@ -1,6 +1,6 @@
 //! Words behind an option to a number, a range or a contact law, each slip to a sentence that says how to mend it.
 
-use dropcheck::data::Contact;
+use dropcheck::data::{Contact, LONGEST_CONTACT_S};
 
 /// Largest half-width of angle and geometry: beyond it a draw would soon be another cask, degrees and percent.
 const LARGEST_TOLERANCE: f64 = 20.0;
@@ -41,6 +41,12 @@ pub fn angle(text: &str) -> Result<f64, String> {
 pub fn restitution(text: &str) -> Result<f64, String> {
     let range = "k lies between 0 (the first end does not rebound) and 1 (it rebounds at full speed)";
     within(text, 0.0, 1.0, range)
+}
+
+pub fn duration(text: &str) -> Result<f64, String> {
+    let range =
+        format!("the first impact lasts 0 (an impulse) to {LONGEST_CONTACT_S} seconds: 20 ms are 0.02");
+    within(text, 0.0, LONGEST_CONTACT_S, &range)
 }
 
 fn within(text: &str, least: f64, most: f64, range: &str) -> Result<f64, String> {
@@ -141,6 +147,8 @@ mod tests {
         assert_eq!((angle("0"), angle("90")), (Ok(0.0), Ok(90.0)));
         assert_eq!((restitution("0"), restitution("1")), (Ok(0.0), Ok(1.0)));
         assert_eq!(contact("0"), Ok(Contact::Coulomb(0.0)));
+        assert_eq!((duration("0"), duration("0,2")), (Ok(0.0), Ok(0.2)));
+        assert!(duration("20").unwrap_err().contains("0.02"));
         assert_eq!(contact("Rough"), Ok(Contact::Rough));
         assert_eq!((band("50"), draws("0"), draws("1000000")), (Ok(50.0), Ok(0), Ok(1_000_000)));
         assert_eq!(friction_range("0:0"), Ok((0.0, 0.0)));

@@ -2,7 +2,7 @@
 
 use super::CaskFileError;
 use super::section::{Placed, Section};
-use crate::data::{Cask, Drop};
+use crate::data::{Cask, Drop, first_arm_m};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
@@ -121,7 +121,7 @@ pub(crate) fn drop(table: &Section, cask: &Cask) -> Result<Drop, CaskFileError> 
         table.number("angular_velocity_deg_s")?.map_or(0.0, |turning| turning.value.to_radians());
     let horizontal_velocity_m_s = table.number("horizontal_velocity_m_s")?.map_or(0.0, |along| along.value);
     // v0 = √(2 g h) − ω a   (3)
-    let a_m = cask.cog_m * angle_rad.cos() - cask.height_m / 2.0 * angle_rad.sin();
+    let a_m = first_arm_m(cask.cog_m, cask.height_m, angle_rad);
     let of_fall_m_s = (2.0 * gravity_m_s2 * height_m).sqrt() - angular_velocity_rad_s * a_m;
     let impact_velocity_m_s = velocity.unwrap_or(of_fall_m_s);
     let implied = Placed { value: impact_velocity_m_s, span: table.place("height_m") };
@@ -142,5 +142,6 @@ pub(crate) fn drop(table: &Section, cask: &Cask) -> Result<Drop, CaskFileError> 
         gravity_m_s2,
         angular_velocity_rad_s,
         horizontal_velocity_m_s,
+        contact_duration_s: 0.0,
     })
 }

@@ -2,17 +2,18 @@
 
 use super::CaskFileError;
 use super::section::Section;
-use crate::data::{Cask, Corrections, INERTIA_OF_BLOCK, Tolerances};
+use crate::data::{Cask, Corrections, Tolerances};
 
 /// A tolerance above this share says that nothing is known, percent.
 const LARGEST_PERCENT: f64 = 100.0;
 
-/// `[tolerance]`, with the defaults of what it leaves out; the inertia `is_block` where the cask file leaves it to mass and size.
-pub(super) fn tolerances(table: &Section, cask: &Cask, is_block: bool) -> Result<Tolerances, CaskFileError> {
-    let mut stated = Tolerances::default();
-    if is_block {
-        stated.inertia = INERTIA_OF_BLOCK;
-    }
+/// `[tolerance]`, with the defaults of what it leaves out; `left_out` are the keys that the whole file does.
+pub(super) fn tolerances(
+    table: &Section,
+    cask: &Cask,
+    left_out: &[String],
+) -> Result<Tolerances, CaskFileError> {
+    let mut stated = Tolerances::of(left_out);
     let as_it_stands: &dyn Fn(f64) -> f64 = &|value| value;
     let percent: &dyn Fn(f64) -> f64 = &|percent| percent / 100.0;
     // A section of 0 has no size to be off by.

@@ -1,10 +1,10 @@
 //! Random numbers to a drop: the cask, how it falls and what its ends do, as they are and as they are stated.
 
-use crate::data::{Cask, CaskFile, Contact, Drop, End};
+use crate::data::{Cask, CaskFile, Contact, Drop, End, Tolerances, first_arm_m};
 use crate::lab::chance::{Chance, round};
 use crate::lab::damage::{BetweenImpacts, Wish};
 use crate::lab::data::{BendingMode, Scene, SceneExtras, SimulatedMotion, Truth, WantedImpact};
-use crate::lab::drawn::{BUILDS, DrawnDrop, GRAVITY_M_S2, LEAST_FRICTION, cask_file, fall, tolerances};
+use crate::lab::drawn::{BUILDS, DrawnDrop, GRAVITY_M_S2, LEAST_FRICTION, cask_file};
 use crate::lab::synth;
 use std::collections::BTreeMap;
 
@@ -75,7 +75,7 @@ fn lacks(truth: &Truth, wish: &Wish) -> Option<&'static str> {
 fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene, CaskFile) {
     let mut defaults = vec!["drop.gravity_m_s2".to_owned()];
     let stated = cask(chance, &mut defaults);
-    let tolerances = tolerances(&defaults);
+    let tolerances = Tolerances::of(&defaults);
     let stated_drop = falls(chance, angle_deg, wish);
     let (drawn, is_said) = contact(chance);
     let stated_contact = wish.contact.unwrap_or(if is_said { drawn } else { Contact::Unknown });
@@ -93,7 +93,7 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
     let v0_m_s = stated_drop.impact_velocity_m_s * (1.0 + off * chance.within(tolerances.impact_velocity));
     let angle_rad = stated_drop.angle_rad + off * chance.within(tolerances.angle_rad);
     let angular_velocity_rad_s = off * chance.within(tolerances.angular_velocity_rad_s);
-    let a_m = cask.cog_m * angle_rad.cos() - cask.height_m / 2.0 * angle_rad.sin();
+    let a_m = first_arm_m(cask.cog_m, cask.height_m, angle_rad);
     let drop = Drop {
         // The height that gives this speed, so that the fall lasts as long as it should.
         height_m: v0_m_s * v0_m_s / (2.0 * GRAVITY_M_S2),
@@ -182,7 +182,7 @@ fn falls(chance: &mut Chance, angle_deg: f64, wish: &Wish) -> Drop {
     // L lands again where it is thrown up little and R has a long way.
     let usual = if wish.flight == BetweenImpacts::LandsAgain { 0.2 } else { 0.7 };
     let height_m = if chance.is(usual) { 9.0 } else { round(chance.log_even(0.3, 12.0), 2) };
-    fall(height_m, angle_deg.to_radians())
+    Drop::of_height(height_m, angle_deg.to_radians())
 }
 
 /// The contact of L, and whether the cask file says it: four times in ten it does not.

@@ -4,7 +4,7 @@ use super::super::chance::Chance;
 use super::super::data::{LooseMass, Scene};
 use super::super::drawn::LEAST_FRICTION;
 use super::super::synth;
-use crate::data::{Cask, CaskFile, Contact, Drop};
+use crate::data::{Cask, CaskFile, Contact, Drop, first_arm_m};
 
 /// Makes the scene one of `kind`; one that is of something else does nothing to it.
 pub(super) fn strike(kind: &str, size: f64, scene: &mut Scene, stated: &mut CaskFile, chance: &mut Chance) {
@@ -47,7 +47,7 @@ pub(super) fn strike(kind: &str, size: f64, scene: &mut Scene, stated: &mut Cask
 /// The same fall of the centre of gravity, with so much more rotation.
 fn turn(drop: &mut Drop, cask: &Cask, more_rad_s: f64) {
     // v0 = √(2 g h) − ω a.
-    let a_m = cask.cog_m * drop.angle_rad.cos() - cask.height_m / 2.0 * drop.angle_rad.sin();
+    let a_m = first_arm_m(cask.cog_m, cask.height_m, drop.angle_rad);
     drop.angular_velocity_rad_s += more_rad_s;
     drop.impact_velocity_m_s -= more_rad_s * a_m;
 }

@@ -26,7 +26,7 @@ pub(super) fn anf18() -> Scene {
             inertia_kg_m2,
             is_body: true,
         },
-        drop: Drop { impact_velocity_m_s: (2.0 * 9.81 * 9.0_f64).sqrt(), ..Drop::of_height(9.0, angle_rad) },
+        drop: Drop::of_height(9.0, angle_rad),
         contact: Contact::Rough,
         first_end: crush(5e-3, 0.55),
         second_end: crush(4e-3, 0.3),

@@ -1,7 +1,7 @@
 //! Predictions over the angle to critical angles and their bands, for one case and over the ranges of k and friction.
 
 use super::Fall;
-use super::peak::{Peak, Sample, common, peak, with_jumps};
+use super::peak::{Bands, Peak, Sample, common, peak, with_jumps};
 use crate::data::{
     BodyModel, CaskFile, Contact, Criterion, CriticalAngle, CriticalRange, Prediction, StudyRequest,
     WorstCase,
@@ -25,7 +25,7 @@ struct Shown {
 pub(super) type AtAngles<'a> = (&'a [f64], &'a [Prediction]);
 
 /// Every criterion's critical angle for a case whose predictions are known at some angles.
-pub(super) fn critical_angles(fall: &Fall, band_percent: f64, traced: AtAngles) -> Vec<CriticalAngle> {
+pub(super) fn critical_angles(fall: &Fall, bands: Bands, traced: AtAngles) -> Vec<CriticalAngle> {
     let of = |(criterion, found): (Criterion, Shown)| {
         let none = || Peak { angle_deg: f64::NAN, largest: f64::NAN, bands_deg: Vec::new() };
         let peak = found.peak.unwrap_or_else(none);
@@ -40,7 +40,7 @@ pub(super) fn critical_angles(fall: &Fall, band_percent: f64, traced: AtAngles) 
             further_impacts: above(found.bounced, peak.largest),
         }
     };
-    Criterion::ALL.into_iter().zip(find(fall, band_percent, traced)).map(of).collect()
+    Criterion::ALL.into_iter().zip(find(fall, bands, traced)).map(of).collect()
 }
 
 /// A value of further impacts that no single one reaches.
@@ -49,7 +49,7 @@ fn above(bounced: (f64, f64), largest: f64) -> Option<(f64, f64)> {
     exceeds.then_some(bounced)
 }
 
-fn find(fall: &Fall, band_percent: f64, (angles_deg, predictions): AtAngles) -> [Shown; 3] {
+fn find(fall: &Fall, bands: Bands, (angles_deg, predictions): AtAngles) -> [Shown; 3] {
     let at = |angle_deg: f64| Sample::new(angle_deg, &fall.at(angle_deg));
     let samples: Vec<Sample> =
         angles_deg.iter().zip(predictions).map(|(&angle_deg, p)| Sample::new(angle_deg, p)).collect();
@@ -62,10 +62,8 @@ fn find(fall: &Fall, band_percent: f64, (angles_deg, predictions): AtAngles) -> 
         }
     }
     let samples = with_jumps(&samples, &at);
-    [0, 1, 2].map(|criterion| Shown {
-        peak: peak(&samples, criterion, &at, band_percent),
-        bounced: bounced[criterion],
-    })
+    [0, 1, 2]
+        .map(|criterion| Shown { peak: peak(&samples, criterion, &at, bands), bounced: bounced[criterion] })
 }
 
 /// For every body and criterion the critical angles while k and friction go through their ranges, looked for from `angles_deg`.
@@ -78,7 +76,7 @@ pub(super) fn ranges(cask_file: &CaskFile, request: &StudyRequest, angles_deg: &
         |range| spread(range, RANGE_FRICTIONS).into_iter().map(Contact::Coulomb).collect(),
     );
     let falls = super::falls(cask_file, &contacts, &ks);
-    let of = |fall: &Fall| find(fall, request.band_percent, (angles_deg, &fall.over(angles_deg)));
+    let of = |fall: &Fall| find(fall, Bands::of(request), (angles_deg, &fall.over(angles_deg)));
     let found: Vec<[Shown; 3]> = falls.par_iter().map(of).collect();
     let mut ranges = Vec::new();
     for body in super::bodies(&cask_file.cask) {
@@ -137,7 +135,7 @@ mod tests {
         let file = cask_file(height_m);
         let asked = StudyRequest { band_percent, ..request(vec![contact], vec![k], steps(180, 90.0)) };
         let fall = Fall { body: super::super::richest(&file), drop: file.drop, contact, k };
-        critical_angles(&fall, asked.band_percent, (&asked.angles_deg, &fall.over(&asked.angles_deg)))
+        critical_angles(&fall, Bands::of(&asked), (&asked.angles_deg, &fall.over(&asked.angles_deg)))
     }
 
     const VALUES: [fn(&Prediction) -> Option<f64>; 3] =
@@ -179,7 +177,7 @@ mod tests {
         let asked = request(vec![Contact::Rough], vec![1.0], steps(1800, 90.0));
         let fall = rough_rod(1.0);
         let predictions = fall.over(&asked.angles_deg);
-        let found = &critical_angles(&fall, asked.band_percent, (&asked.angles_deg, &predictions))[0];
+        let found = &critical_angles(&fall, Bands::of(&asked), (&asked.angles_deg, &predictions))[0];
         let (angle_deg, speed_m_s) = found.further_impacts.expect("a larger one");
         let there = fall.at(angle_deg);
         assert!(there.first_end_impacts > 1 && there.slap_down_speed_m_s == Some(speed_m_s));
@@ -211,6 +209,21 @@ mod tests {
         // The rough one has no such band: its speed has halved at 40°.
         let rough = &critical(0.0, Contact::Rough, 1.0, 5.0)[0];
         assert!(rough.bands_deg.iter().all(|b| b.1 < 30.0), "{rough:?}");
+    }
+
+    #[test]
+    fn a_maximum_that_no_rig_hits_is_not_critical() {
+        // The elastic smooth rod at 88.9° flies for seconds before it comes down flat: a tenth of a degree wide.
+        let fall = Fall { contact: Contact::Smooth, ..rough_rod(1.0) };
+        let mut asked = request(vec![Contact::Smooth], vec![1.0], steps(180, 90.0));
+        let mut energy = |tolerance_deg: f64| {
+            asked.uncertain.angle_deg = tolerance_deg;
+            critical_angles(&fall, Bands::of(&asked), (&asked.angles_deg, &fall.over(&asked.angles_deg)))[2]
+                .clone()
+        };
+        let (of_formula, of_rig) = (energy(0.0), energy(1.0));
+        assert!(of_formula.angle_deg > 88.0 && of_formula.largest > 1.3, "{of_formula:?}");
+        assert!(of_rig.angle_deg < 60.0 && of_rig.largest < 1.1, "{of_rig:?}");
     }
 
     #[test]
@@ -248,11 +261,8 @@ mod tests {
         assert_eq!(ranges.len(), 6);
         let falls = super::super::falls(&file, &asked.contacts, &asked.ks);
         for fall in falls {
-            let found = critical_angles(
-                &fall,
-                asked.band_percent,
-                (&asked.angles_deg, &fall.over(&asked.angles_deg)),
-            );
+            let found =
+                critical_angles(&fall, Bands::of(&asked), (&asked.angles_deg, &fall.over(&asked.angles_deg)));
             for (of_case, range) in found.iter().zip(ranges.iter().filter(|r| r.model == fall.body.model)) {
                 assert!(range.angle_deg.0 <= of_case.angle_deg && of_case.angle_deg <= range.angle_deg.1);
                 assert!(range.largest >= of_case.largest);

@@ -22,6 +22,7 @@ pub(super) fn curve(fall: &Fall, angles_deg: &[f64], predictions: &[Prediction])
         horizontal_velocity_m_s: each(|p| p.horizontal_velocity_m_s),
         energy_ratio: each(|p| p.energy_ratio),
         closed_form_speed_m_s: each(|p| p.closed_form_speed_m_s),
+        turns_over: predictions.iter().map(Prediction::turns_over).collect(),
     }
 }
 

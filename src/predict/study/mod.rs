@@ -15,6 +15,7 @@ use super::{bodies, ladder, predict, speed_gradient};
 use crate::data::{
     Body, BodyModel, CaskFile, Contact, Drop, Ladder, Prediction, SpeedGradient, Study, StudyRequest,
 };
+use peak::Bands;
 use rayon::prelude::*;
 
 /// Angles of the maps: half a degree over the quarter circle; a finer grid is thinned to it.
@@ -35,7 +36,7 @@ pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
         .zip(&traced)
         .map(|(fall, predictions)| {
             let curve = curves::curve(fall, &request.angles_deg, predictions);
-            (curve, critical::critical_angles(fall, request.band_percent, (&request.angles_deg, predictions)))
+            (curve, critical::critical_angles(fall, Bands::of(request), (&request.angles_deg, predictions)))
         })
         .unzip();
     let drawn_deg = thinned(&request.angles_deg, DRAW_ANGLES);

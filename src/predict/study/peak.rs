@@ -1,6 +1,6 @@
 //! Values over the angle to their largest one, where it is, and the bands of angles near it.
 
-use crate::data::{FlightRegime, Prediction};
+use crate::data::{FlightRegime, Prediction, StudyRequest};
 
 /// Width to which a jump is bracketed, degrees: the value moves by less than 1e-6 m/s over it.
 const JUMP_DEG: f64 = 1e-7;
@@ -13,9 +13,6 @@ const EDGE_DEG: f64 = 1e-6;
 
 /// Jumps looked for between two neighbouring angles; further ones lie within the cell's last stretch.
 const MOST_JUMPS: usize = 8;
-
-/// Inclination beyond which the axis has stood upright on R's side before R strikes, degrees.
-const UPRIGHT_DEG: f64 = -90.0;
 
 /// A value must exceed another by this share to count as larger: predictions of a plateau differ by rounding.
 const ROUNDING: f64 = 1e-12;
@@ -36,7 +33,7 @@ pub(super) struct Sample {
 impl Sample {
     pub fn new(angle_deg: f64, prediction: &Prediction) -> Self {
         let value = |found: Option<f64>| found.unwrap_or(f64::NEG_INFINITY);
-        let comes_straight = prediction.slap_down_angle_deg.is_some_and(|angle_deg| angle_deg > UPRIGHT_DEG);
+        let comes_straight = prediction.slap_down_speed_m_s.is_some() && !prediction.turns_over();
         let strikes_once = comes_straight && prediction.first_end_impacts == 1;
         Self {
             angle_deg,
@@ -52,6 +49,20 @@ impl Sample {
     /// A criterion where an angle can be critical; minus infinity where none can.
     pub fn critical(&self, criterion: usize) -> f64 {
         if self.course.is_some() { self.values[criterion] } else { f64::NEG_INFINITY }
+    }
+}
+
+/// How near to the largest the angles of a band are, percent of it, and how wide a band must be, degrees.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bands {
+    pub percent: f64,
+    pub least_deg: f64,
+}
+
+impl Bands {
+    /// As wide as the angle of a drop is known.
+    pub fn of(request: &StudyRequest) -> Self {
+        Self { percent: request.band_percent, least_deg: 2.0 * request.uncertain.angle_deg }
     }
 }
 
@@ -88,18 +99,41 @@ pub(super) fn with_jumps(samples: &[Sample], at: &impl Fn(f64) -> Sample) -> Vec
     all
 }
 
-/// The largest value of one criterion over samples that hold both sides of each jump, and the bands within `band_percent` of it.
+/// The largest value of one criterion over samples that hold both sides of each jump, and the bands near it.
+///
+/// A maximum whose band is narrower than `bands.least_deg` is none that a drop can be rigged for: the next one is taken.
+pub(super) fn peak(
+    samples: &[Sample],
+    criterion: usize,
+    at: &impl Fn(f64) -> Sample,
+    bands: Bands,
+) -> Option<Peak> {
+    let mut left = samples.to_vec();
+    loop {
+        let peak = highest(&left, criterion, at, bands.percent)?;
+        let own = peak.bands_deg.iter().find(|band| (band.0..=band.1).contains(&peak.angle_deg));
+        let Some(&(low_deg, high_deg)) = own.filter(|band| band.1 - band.0 < bands.least_deg) else {
+            return Some(peak);
+        };
+        // A band may lie between two samples: then the nearest one goes.
+        let off_deg = |s: &Sample| (s.angle_deg - peak.angle_deg).abs();
+        let is_left = left.iter().filter(|s| s.course.is_some());
+        let nearest_deg = is_left.map(off_deg).fold(f64::INFINITY, f64::min);
+        for sample in &mut left {
+            if (low_deg..=high_deg).contains(&sample.angle_deg) || off_deg(sample) <= nearest_deg {
+                sample.course = None;
+            }
+        }
+    }
+}
+
+/// The highest of all maxima.
 ///
 /// Every hump of the samples that may reach the highest is followed between its neighbours by golden section. At a jump the
 /// value on the higher side counts: it is the supremum. At the border it is the border's; of a plateau its lowest sampled angle.
 /// A hump that lies between two samples without lifting either above its neighbours is not seen. `None` where L strikes
 /// once at no angle.
-pub(super) fn peak(
-    samples: &[Sample],
-    criterion: usize,
-    at: &impl Fn(f64) -> Sample,
-    band_percent: f64,
-) -> Option<Peak> {
+fn highest(samples: &[Sample], criterion: usize, at: &impl Fn(f64) -> Sample, percent: f64) -> Option<Peak> {
     let value = |i: usize| samples[i].critical(criterion);
     let highest = (0..samples.len()).map(value).fold(f64::NEG_INFINITY, f64::max);
     let mut top = (f64::NAN, f64::NEG_INFINITY);
@@ -122,7 +156,7 @@ pub(super) fn peak(
     if largest == f64::NEG_INFINITY {
         return None;
     }
-    let least = largest - band_percent / 100.0 * largest.abs();
+    let least = largest - percent / 100.0 * largest.abs();
     let mut marks: Vec<(f64, bool)> =
         samples.iter().map(|s| (s.angle_deg, s.critical(criterion) >= least)).collect();
     let place = marks.partition_point(|m| m.0 < angle_deg);
@@ -210,7 +244,7 @@ mod tests {
             Sample { angle_deg, values: [value; 3], course }
         };
         let samples: Vec<Sample> = (0..=180).map(|i| at(f64::from(i) / 2.0)).collect();
-        peak(&with_jumps(&samples, &at), 0, &at, 1.0)
+        peak(&with_jumps(&samples, &at), 0, &at, Bands { percent: 1.0, least_deg: 0.0 })
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::super::rounding::plain;
 use super::super::words::{case_words, contact_words};
 use super::draw::{Picture, Plate};
-use super::look::{Look, angle_panel, body_words, from_zero};
+use super::look::{Look, angle_panel, apart, body_words, from_zero, pale_sentence};
 use super::panel::{COLOURS, Colour, Curve, Dash, Panel};
 use crate::data::{AngleCurve, BodyModel, Contact, Study};
 
@@ -39,7 +39,8 @@ pub(super) fn components(study: &Study, contact: Contact, name: &str) -> Picture
             let stroke = if i == 0 { 8 } else { 4 };
             Curve { stroke, ..line_of(curve, label, COLOURS[i], dash, values) }
         };
-        let mut lines: Vec<Curve> = parts.into_iter().enumerate().map(line).collect();
+        let mut lines: Vec<Curve> =
+            parts.into_iter().enumerate().flat_map(|part| apart(line(part), &curve.turns_over)).collect();
         lines.extend(held_line(curve, COLOURS[0], format!("magnitude, {HELD}")));
         lines
     });
@@ -53,8 +54,9 @@ pub(super) fn components(study: &Study, contact: Contact, name: &str) -> Picture
         if ks.len() < study.request.ks.len() { " Only the lowest and the highest k are drawn." } else { "" };
     let caption = format!(
         "Velocity of the second end just before it strikes, {contact}: absolute values of its components and its magnitude over \
-         the drop angle{figure}. {OPEN}{}{many}",
-        held_sentence(&panels)
+         the drop angle{figure}. {OPEN}{}{}{many}",
+        held_sentence(&panels),
+        pale_sentence(&panels)
     );
     Plate::new(name, format!("Components of the slap-down velocity, {contact}"), caption)
         .or(NOTHING)
@@ -66,11 +68,10 @@ pub(super) fn speeds(study: &Study, name: &str) -> Picture {
     let look = Look::of(&study.request.contacts, &study.request.ks);
     let panels = panels(study, SPEED_LABEL, |curve| {
         let Some(line) = case_line(&look, curve, &curve.speed_m_s) else { return Vec::new() };
-        if look.ks.len() > 2 {
-            return vec![line]; // the third k is dotted itself
-        }
-        let held = held_line(curve, line.colour, format!("{}, {HELD}", contact_words(curve.contact)));
-        std::iter::once(line).chain(held).collect()
+        // The third k is dotted itself.
+        let held = (look.ks.len() <= 2)
+            .then(|| held_line(curve, line.colour, format!("{}, {HELD}", contact_words(curve.contact))));
+        apart(line, &curve.turns_over).into_iter().chain(held.flatten()).collect()
     });
     let (title, figure) = if name == "smooth-rough" {
         ("Slap-down speed, smooth against rough", " ([P] Fig. 7)")
@@ -78,8 +79,9 @@ pub(super) fn speeds(study: &Study, name: &str) -> Picture {
         ("Slap-down speed", "")
     };
     let caption = format!(
-        "Magnitude of the velocity of the second end just before it strikes, over the drop angle{figure}. {OPEN}{}{}",
+        "Magnitude of the velocity of the second end just before it strikes, over the drop angle{figure}. {OPEN}{}{}{}",
         held_sentence(&panels),
+        pale_sentence(&panels),
         look.left_out()
     );
     Plate::new(name, title, caption).or(NOTHING).picture(&panels)
@@ -89,11 +91,13 @@ pub(super) fn speeds(study: &Study, name: &str) -> Picture {
 pub(super) fn energies(study: &Study, name: &str) -> Picture {
     let look = Look::of(&study.request.contacts, &study.request.ks);
     let panels = panels(study, "kinetic energy ratio", |curve| {
-        case_line(&look, curve, &curve.energy_ratio).into_iter().collect()
+        let line = case_line(&look, curve, &curve.energy_ratio);
+        line.map_or_else(Vec::new, |line| apart(line, &curve.turns_over))
     });
     let caption = format!(
         "Kinetic energy just before the slap-down over that just before the first impact ([P] Fig. 8). Above 1 the fall of the mass \
-         centre between the impacts adds more than the first impact took. {OPEN}{}",
+         centre between the impacts adds more than the first impact took. {OPEN}{}{}",
+        pale_sentence(&panels),
         look.left_out()
     );
     Plate::new(name, "Energy left for the second impact", caption).or(NOTHING).picture(&panels)
@@ -117,13 +121,15 @@ pub(super) fn sections(study: &Study, name: &str) -> Picture {
         let (stroke, opacity) = if i == 0 { (14, 0.35) } else { (4, 1.0) };
         let dash = if i == 1 { Dash::Dashed } else { Dash::Solid };
         let colour = COLOURS[if i < 2 { i } else { i % COLOURS.len() }];
-        panel.lines.push(Curve { opacity, stroke, ..line_of(curve, label, colour, dash, &curve.speed_m_s) });
+        let line = Curve { opacity, stroke, ..line_of(curve, label, colour, dash, &curve.speed_m_s) };
+        panel.lines.extend(apart(line, &curve.turns_over));
     }
     panel.height = 520;
     let caption = format!(
         "Slap-down speed over the drop angle for {} m of length and different sections in the plane of the drop, perfectly elastic smooth \
-         impact ([P] Fig. 9). {OPEN}",
-        plain(study.cask_file.cask.length_m, 4)
+         impact ([P] Fig. 9). {OPEN}{}",
+        plain(study.cask_file.cask.length_m, 4),
+        pale_sentence(std::slice::from_ref(&panel))
     );
     Plate::new(name, "The section of the cask against the thin rod", caption).or(NOTHING).picture(&[panel])
 }

@@ -2,7 +2,7 @@
 
 use super::super::rounding::plain;
 use super::super::words::contact_words;
-use super::panel::{COLOURS, Colour, Dash, Mark, Panel, PanelAxis};
+use super::panel::{COLOURS, Colour, Curve, Dash, Mark, Panel, PanelAxis};
 use crate::data::{BodyModel, Cask, Contact, StudyRequest};
 
 /// Contact laws that a picture shows: more lines than these cannot be told apart.
@@ -117,6 +117,33 @@ pub(super) fn angle_panel(request: &StudyRequest, title: String, y_label: &str) 
 pub(super) fn edges(centres: &[f64]) -> Vec<f64> {
     let inner = centres.windows(2).map(|w| f64::midpoint(w[0], w[1]));
     centres.first().copied().into_iter().chain(inner).chain(centres.last().copied()).collect()
+}
+
+/// What the pale parts of lines are.
+pub(super) const PALE: &str = " Pale: the cask turns over (a somersault) before the second end strikes.";
+
+/// A line without the points at which the cask turns over, and these as a pale one without a name.
+pub(super) fn apart(line: Curve, turns_over: &[bool]) -> Vec<Curve> {
+    let only = |wanted: bool| {
+        let of =
+            |(point, over): (&(f64, f64), &bool)| (point.0, if *over == wanted { point.1 } else { f64::NAN });
+        line.points.iter().zip(turns_over).map(of).collect()
+    };
+    let pale = turns_over.contains(&true).then(|| Curve {
+        label: None,
+        opacity: 0.3,
+        points: only(true),
+        ..line.clone()
+    });
+    let points = only(false);
+    std::iter::once(Curve { points, ..line }).chain(pale).collect()
+}
+
+/// The sentence on pale lines, where there are any.
+pub(super) fn pale_sentence(panels: &[Panel]) -> &'static str {
+    let any =
+        panels.iter().flat_map(|panel| &panel.lines).any(|line| line.label.is_none() && line.opacity < 1.0);
+    if any { PALE } else { "" }
 }
 
 /// From 0 to a little above the largest value that is drawn.

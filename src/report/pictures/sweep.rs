@@ -4,7 +4,7 @@ use super::super::rounding::plain;
 use super::super::text::distinct;
 use super::super::words::{contact_words, variable_words};
 use super::draw::{Picture, Plate};
-use super::look::{Look, body_words, spread};
+use super::look::{Look, apart, body_words, pale_sentence, spread};
 use super::panel::{COLOURS, Curve, Panel, PanelAxis};
 use crate::data::{BodyModel, Contact, PredictionRow, Study, Sweep, SweepVariable};
 
@@ -47,7 +47,8 @@ pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let fixed = if fixed.is_empty() { String::new() } else { format!(" Drawn at {}.", fixed.join(", ")) };
     let caption = format!(
         "Magnitude of the velocity of the second end just before it strikes. Where a line is broken off the second end never strikes; \
-         where the first end strikes again before it, the line may jump.{fixed}{left_out}"
+         where the first end strikes again before it, the line may jump.{}{fixed}{left_out}",
+        pale_sentence(&panels)
     );
     Plate::new(name, TITLE, caption).or(NOTHING).picture(&panels)
 }
@@ -96,11 +97,13 @@ fn curves(
         shown.sort_by(|a, b| place(a).cmp(&place(b)).then(restitution(b).total_cmp(&restitution(a))));
         for case in shown {
             let of_case = rows.iter().copied().filter(|row| case.holds(row));
-            panel.lines.push(Curve {
+            let (points, turns_over) = points(of_case, along.variable);
+            let line = Curve {
                 label: Some(case.words()).filter(|words| !words.is_empty()),
                 dash: look.dash(restitution(case)),
-                ..Curve::new(look.colour(law(case), restitution(case)), points(of_case, along.variable))
-            });
+                ..Curve::new(look.colour(law(case), restitution(case)), points)
+            };
+            panel.lines.extend(apart(line, &turns_over));
         }
         panel
     });
@@ -137,8 +140,10 @@ fn families(
         for (i, value) in values.iter().enumerate() {
             let of_line =
                 rows.iter().copied().filter(|row| case.holds(row) && is_at(row, second.variable, *value));
-            let line = Curve::new(COLOURS[i % COLOURS.len()], points(of_line, along.variable));
-            panel.lines.push(line.named(value_words(second.variable, *value)));
+            let (points, turns_over) = points(of_line, along.variable);
+            let line =
+                Curve::new(COLOURS[i % COLOURS.len()], points).named(value_words(second.variable, *value));
+            panel.lines.extend(apart(line, &turns_over));
         }
         panel
     });
@@ -201,15 +206,19 @@ fn is_at(row: &PredictionRow, variable: SweepVariable, value: f64) -> bool {
     value_of(row, variable).is_some_and(|v| (v - value).abs() <= 1e-9 * value.abs().max(1.0))
 }
 
-/// Speed over the variable, ascending; NaN where the second end never strikes.
-fn points<'a>(rows: impl Iterator<Item = &'a PredictionRow>, along: SweepVariable) -> Vec<(f64, f64)> {
-    let mut points: Vec<(f64, f64)> = rows
+/// Speed over the variable, ascending, NaN where the second end never strikes; and where the cask turns over.
+fn points<'a>(
+    rows: impl Iterator<Item = &'a PredictionRow>,
+    along: SweepVariable,
+) -> (Vec<(f64, f64)>, Vec<bool>) {
+    let mut points: Vec<((f64, f64), bool)> = rows
         .filter_map(|row| {
-            Some((value_of(row, along)?, row.prediction.slap_down_speed_m_s.unwrap_or(f64::NAN)))
+            let speed_m_s = row.prediction.slap_down_speed_m_s.unwrap_or(f64::NAN);
+            Some(((value_of(row, along)?, speed_m_s), row.prediction.turns_over()))
         })
         .collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    points
+    points.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
+    points.into_iter().unzip()
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use super::super::records::{CsvColumn, number, records};
 use crate::data::PredictionRow;
 
 /// Its columns; scripts know the first fourteen, and what follows them may grow.
-fn columns<'a>() -> [CsvColumn<&'a PredictionRow>; 19] {
+fn columns<'a>() -> [CsvColumn<&'a PredictionRow>; 20] {
     [
         ("angle_deg", |row| row.angle_deg.to_string()),
         ("model", |row| row.prediction.model.as_str().to_owned()),
@@ -26,6 +26,7 @@ fn columns<'a>() -> [CsvColumn<&'a PredictionRow>; 19] {
         ("friction_to_stick", |row| number(Some(row.prediction.friction_to_stick))),
         ("sticks", |row| row.prediction.sticks.to_string()),
         ("closed_form_speed_m_s", |row| number(row.prediction.closed_form_speed_m_s)),
+        ("turns_over", |row| row.prediction.turns_over().to_string()),
     ]
 }
 

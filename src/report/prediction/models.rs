@@ -56,6 +56,7 @@ fn many_ladders(ladders: &[Ladder]) -> ChapterPart {
                 .get(i)
                 .map_or_else(String::new, |step| optional_fixed(step.prediction.slap_down_speed_m_s, 2))
         });
+        table = table.if_any(ladders.iter().any(|ladder| ladder.steps.len() > i));
     }
     let suffices = |ladder: &Ladder| Words::or(ladder.suffices.words(), rung_short(ladder.suffices));
     table.text(Words::or("Suffices", "suffices"), suffices).into()
@@ -81,7 +82,7 @@ fn one_ladder(ladder: &Ladder) -> ChapterPart {
 
 /// Which rung suffices, and what the richer ones would change.
 fn verdict(ladder: &Ladder) -> String {
-    if ladder.suffices == Rung::FurtherImpacts {
+    if ladder.steps.last().is_some_and(|last| last.rung == ladder.suffices) {
         return "Only the last suffices: each simpler one is moved by a richer one.".to_owned();
     }
     format!(

@@ -4,7 +4,7 @@ use super::super::document::ChapterPart;
 use super::super::medium::{Medium, Words};
 use super::super::rounding::{optional, optional_fixed, plain};
 use super::super::table::{ReportTable, TableRows, TableShape};
-use super::super::words::{KEPT_SENTENCE, contact_words, kept_mark};
+use super::super::words::{KEPT_SENTENCE, OVER_MARK, OVER_SENTENCE, contact_words, kept_mark};
 use crate::data::{BodyModel, CaskFile, Contact, Prediction, PredictionRow};
 
 /// More rows than this are not shown on a terminal: three screens.
@@ -30,7 +30,8 @@ pub(in super::super) fn prediction_columns<'a, R>(
         |words: fn(&Prediction) -> String| move |row: &'a R| of(row).map_or_else(|| "…".to_owned(), words);
     let contact = move |row: &'a R| {
         let Some(p) = of(row) else { return "…".into() };
-        let words = format!("{}{}", contact_words(p.contact), kept_mark(p.regime));
+        let over = if p.turns_over() { OVER_MARK } else { "" };
+        let words = format!("{}{}{over}", contact_words(p.contact), kept_mark(p.regime));
         let again = if in_study && p.first_end_impacts > 1 { AGAIN_MARK } else { "" };
         Words::or(&words, format!("{words}{again}"))
     };
@@ -129,7 +130,11 @@ pub(super) fn title(rows: &[PredictionRow], file: &CaskFile) -> String {
         let (height, velocity) = (plain(file.drop.height_m, 5), plain(file.drop.impact_velocity_m_s, 5));
         format!("drop {height} m, impact velocity {velocity} m/s · ")
     };
-    format!("{} · {drop}g {} m/s²", file.cask.name, plain(file.drop.gravity_m_s2, 6))
+    let lasts = match file.drop.contact_duration_s {
+        lasts_s if lasts_s > 0.0 => format!(" · first impact {} ms", plain(lasts_s * 1e3, 4)),
+        _ => String::new(),
+    };
+    format!("{} · {drop}g {} m/s²{lasts}", file.cask.name, plain(file.drop.gravity_m_s2, 6))
 }
 
 /// What the marks and the dash mean, each once.
@@ -153,6 +158,7 @@ fn notes(rows: &[PredictionRow], medium: Medium, held: bool) -> Vec<String> {
         any(&|p| p.slap_down_speed_m_s.is_none())
             .then(|| "– the second end never strikes by this impact alone.".to_owned()),
         any(&|p| !kept_mark(p.regime).is_empty()).then(|| KEPT_SENTENCE.to_owned()),
+        any(&Prediction::turns_over).then(|| OVER_SENTENCE.to_owned()),
         (on_terminal && any(&|p| p.first_end_impacts > 1))
             .then(|| format!("{AGAIN_MARK} the first end strikes again before the second does.")),
         held.then(|| {

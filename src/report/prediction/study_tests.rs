@@ -43,6 +43,19 @@ fn eighty_columns_hold_it() {
 }
 
 #[test]
+fn a_somersault_is_marked_in_table_and_chart() {
+    let mut study = sample_study::study();
+    assert!(!bare(&study).contains('§'));
+    study.rows[1].prediction.slap_down_angle_deg = Some(-374.0);
+    study.curves[1].turns_over[60..70].fill(true);
+    let text = bare(&study);
+    let sentence = text.split_once("§ the cask turns over").expect("it says so").0;
+    assert_eq!(sentence.matches("rough§").count(), 1, "{text}");
+    let page = study_files(&study).unwrap().into_iter().find(|file| file.0 == "prediction.html").unwrap().1;
+    assert!(String::from_utf8(page).unwrap().contains("Pale: the cask turns over"));
+}
+
+#[test]
 fn every_block_has_its_figures() {
     let text = bare(&sample_study::study());
     for words in [

@@ -65,6 +65,8 @@ pub struct Outcome {
     pub time_s: f64,
     /// Pulses at L, the first included.
     pub touches: u32,
+    /// How long the first pulse lasts, s, and the share of its speed that L's corner leaves with; `None` where it does not spring back.
+    pub first_pulse: Option<(f64, f64)>,
     /// Whether L rested on the target at any time.
     pub rested: bool,
     /// Largest rise of the energy over what it was before, as a share of that at first contact.

@@ -65,6 +65,7 @@ struct Simulation<'a> {
     /// L can touch the target.
     touchable: bool,
     touches: u32,
+    first_pulse: Option<(f64, f64)>,
     rested: bool,
 }
 
@@ -94,6 +95,9 @@ pub fn simulate(body: &Body, drop: &Drop, law: Law, pace: Pace) -> Outcome {
         angle_rad: simulation.motion.angle_rad,
         time_s: simulation.time_s,
         touches: simulation.touches,
+        first_pulse: simulation
+            .first_pulse
+            .map(|(lasts_s, leaves_m_s)| (lasts_s, leaves_m_s / drop.impact_velocity_m_s)),
         rested: simulation.rested,
         energy_rise,
     }
@@ -119,6 +123,7 @@ impl<'a> Simulation<'a> {
             crushed_m: 0.0,
             touchable: true,
             touches: 0,
+            first_pulse: None,
             rested: false,
         };
         simulation.motion.position_m.z = -simulation.motion.height_m(simulation.first_end);
@@ -227,6 +232,8 @@ impl<'a> Simulation<'a> {
         for _ in 0..MOST_PULSE_STEPS {
             if self.motion.drifted(step_s / 2.0).height_m(self.first_end) >= left_m {
                 self.touchable = self.law.again;
+                let leaves_m_s = self.motion.velocity_at_m_s(self.first_end).z;
+                self.first_pulse.get_or_insert((self.time_s, leaves_m_s));
                 return Phase::Flight;
             }
             let (next, taken_s) = self.pulse_step(step_s, crush);
