@@ -91,11 +91,14 @@ const RESOLVED: f64 = 0.5;
 
 /// A mode so many times larger at one end than at the other rings at that one alone: both ends of a free beam do alike.
 const ALONE: f64 = 10.0;
+/// So many times larger it is none whatever the window shows: within a hundredth of its length no sensor sits on a node by chance.
+const WHOLLY_ALONE: f64 = 30.0;
 /// No cask bends more slowly, Hz: a mode this slow stands at the edge of what is sought.
 const SLOWEST_HZ: f64 = 16.5;
 
 impl FlightFit {
-    /// Whether a mode is none, but a bend of one channel's plateau: at one end alone, and of less than a period or slower than any cask's.
+    /// Whether a mode is none, but a bend of one channel's plateau: at one end alone, and of less than a period or slower than any cask's; or
+    /// wholly at one end, as a cable that whips.
     #[must_use]
     pub fn is_bend(&self, mode: usize, signals: &[Signal]) -> bool {
         let frequency_hz = self.modes.get(mode).map_or(f64::INFINITY, |m| m.frequency_hz);
@@ -108,7 +111,8 @@ impl FlightFit {
         };
         let (first, second) = (largest_m_s(End::First), largest_m_s(End::Second));
         let is_slow = frequency_hz < SLOWEST_HZ || frequency_hz * (self.to_s - self.from_s) < 1.0;
-        is_slow && first.max(second) > ALONE * first.min(second)
+        let alone = if is_slow { ALONE } else { WHOLLY_ALONE };
+        first.max(second) > alone * first.min(second)
     }
 
     /// How many periods of its slowest mode it shows; infinite without modes.
@@ -208,6 +212,7 @@ mod tests {
         assert!(is_bend(0.04, 20.0, 0.05) && is_bend(0.1, 15.0, 20.0));
         assert!(!is_bend(0.04, 20.0, 0.2), "both ends ring");
         assert!(!is_bend(0.06, 20.0, 0.05), "more than a period is a mode with a node there");
+        assert!(is_bend(0.06, 20.0, 0.005), "nothing at all at the other end");
     }
 
     #[test]
