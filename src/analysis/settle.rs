@@ -149,7 +149,8 @@ impl Search<'_> {
         let cleared_s = contact_s + (FIRST_CLEARANCE * (end_s - contact_s)).min(LONGEST_CLEARANCE_S);
         let rough_s = events::first_separation(first.signal(), contact_s, end_s).unwrap_or(cleared_s);
         // The first fit keeps well clear of the contact, which ringing may have seemed to end too soon.
-        let mut free_s = rough_s.max(cleared_s);
+        let given_s = events::impulse_given(first.signal(), contact_s, end_s);
+        let mut free_s = rough_s.max(cleared_s).max(given_s.unwrap_or(cleared_s));
         let mut left = At { time_s: rough_s, u_s: 0.1 * (rough_s - contact_s) };
         let mut flight: Option<FlightFit> = None;
         let mut others: Vec<FlightFit> = Vec::new();
@@ -176,7 +177,7 @@ impl Search<'_> {
                 let between_s = self.earliest_s.max(free_s)..self.record_end_s;
                 struck = events::slap_down(second.signal(), between_s, self.least_m_s, true);
             }
-            left = events::separation(first.signal(), contact_s, free_s).unwrap_or(left);
+            left = events::separation(first.signal(), contact_s, &(window.from_s..window.to_s)).unwrap_or(left);
             free_s = motion::clear_of_contact_s(contact_s, left.time_s);
             flight = Some(fitted);
             let fitted_to_s = std::mem::replace(&mut end_s, struck.map_or(self.record_end_s, |s| s.time_s));

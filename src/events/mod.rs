@@ -7,7 +7,7 @@ mod release;
 
 pub use answer::answers;
 pub use locate::Changes;
-pub use onset::{first_contact, first_separation, separation, slap_down};
+pub use onset::{first_contact, first_separation, impulse_given, separation, slap_down};
 pub use release::{FreeFall, free_fall};
 
 use crate::data::{Axis, Channel, End, Samples, Signal};

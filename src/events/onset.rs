@@ -12,12 +12,22 @@ const SHOULDER: f64 = 0.3;
 const TAIL: f64 = 0.05;
 /// Noise is passed by this many of its standard deviations.
 pub(crate) const NOISE_FACTOR: f64 = 6.0;
+/// What changed the velocity by this share of the pulse's step before its rise was a stage of the pulse.
+const EARLIER_STAGE: f64 = 0.02;
 /// Width of the means that R's velocity is compared by, s: two periods of an 80 Hz mode, less than a flight from 5°.
 const WIDTH_S: f64 = 0.025;
 /// The means are compared this often, s: a hundredth of the stretch in which the onset is then sought.
 const BLOCK_S: f64 = 1e-4;
 /// R strikes where its velocity change over the width reaches this share of the largest in the record.
 const SHARE: f64 = 0.5;
+/// The flight shows what the impulse comes to in the last part of the time from first contact to the slap-down …
+const LAST_PART: f64 = 0.3;
+/// … where it stays as near to that as this share of it.
+const MOST_LEFT: f64 = 0.25;
+/// What is left of the impulse near the contact's end, as a share: a half sine has so much for its last eighth …
+const LEAST_LEFT: f64 = 0.04;
+/// … and where ringing reaches as far, so much for its last fifth.
+const MOST_LEFT_AT_END: f64 = 0.1;
 /// Longest first contact looked for, s: pulses of shock-absorbed casks reach 20 ms.
 const LONGEST_CONTACT_S: f64 = 0.05;
 
@@ -26,9 +36,24 @@ const LONGEST_CONTACT_S: f64 = 0.05;
 pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
     let FirstPulse { signal, stretch, sign } = FirstPulse::about(signals, coarse)?;
     match signal.end {
-        // Before first contact nothing rings: the first rise is the one.
-        End::First => onset(signal, stretch, sign, Rise::First),
+        End::First => first_rise(signal, stretch, sign, coarse.velocity_step_m_s.abs()),
         End::Second => first_stir(signal, stretch),
+    }
+}
+
+/// The first rise of a pulse that changes the velocity by `step_m_s`: before it nothing rings. A layer that yields far below the peak and
+/// lets go again has struck before the rise that leads to it.
+fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, step_m_s: f64) -> Option<At> {
+    let mut found = onset(signal, stretch.clone(), sign, Rise::First)?;
+    loop {
+        let before = stretch.start..signal.index_from(found.time_s);
+        let gained_m_s =
+            sign * reduce::sum(signal.force_m_s2.get(before.clone())?) / signal.sample_rate_hz;
+        let earlier = onset(signal, before, sign, Rise::First).filter(|e| e.time_s < found.time_s);
+        match earlier {
+            Some(earlier) if gained_m_s > EARLIER_STAGE * step_m_s => found = earlier,
+            _ => return Some(found),
+        }
     }
 }
 
@@ -135,7 +160,10 @@ fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise
     // A rise that is steeper than the sampling, or one that bends, puts the line's zero past the crossing or far before it.
     let reach = (as_f64(high) - crossing).max(1.0);
     let position = extrapolated.clamp(crossing - reach, crossing);
-    let u_s = ((crossing - position).max(0.5) / 3.0_f64.sqrt()) / signal.sample_rate_hz;
+    // A rise that begins slowly may be a foot that another channel does not show: its upper half alone meets zero later.
+    let upper: Vec<(f64, f64)> = points.into_iter().filter(|point| point.1 >= shoulder / 2.0).collect();
+    let steep = zero_of_line(&upper).map_or(0.0, |zero| zero.min(as_f64(high)) - position);
+    let u_s = ((crossing - position).max(steep).max(0.5) / 3.0_f64.sqrt()) / signal.sample_rate_hz;
     Some(At { time_s: signal.time_s(from) + position / signal.sample_rate_hz, u_s })
 }
 
@@ -152,11 +180,80 @@ pub fn first_separation(signal: &Signal, contact_s: f64, before_s: f64) -> Optio
     Some(signal.time_s(from + end))
 }
 
-/// When L leaves the target on a signal of it free of ringing, s: going back from `free_s`, where it flies, the force leaves zero.
-///
-/// The standard uncertainty is what the force's fall from the foot to zero may hide, a fortieth of the contact, or a sample.
+/// When L has most of its impulse on a signal of it that still rings, s: no stage of the contact is left. `None` where the last part of the
+/// time to `before_s` does not tell what it comes to.
 #[must_use]
-pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<At> {
+pub fn impulse_given(signal: &Signal, contact_s: f64, before_s: f64) -> Option<f64> {
+    let flight = before_s - LAST_PART * (before_s - contact_s)..before_s;
+    let left = Left::of(signal, contact_s, &flight)?;
+    (left.in_flight() < MOST_LEFT).then(|| signal.time_s(left.from + left.below(MOST_LEFT)))
+}
+
+/// What is left of the impulse on a signal of L, as a share of it.
+struct Left {
+    /// The sample that the shares begin with, at first contact.
+    from: usize,
+    /// Up to the end of the flight.
+    shares: Vec<f64>,
+    /// Where the flight begins among them.
+    flight: usize,
+}
+
+impl Left {
+    fn of(signal: &Signal, contact_s: f64, flight_s: &std::ops::Range<f64>) -> Option<Self> {
+        let from = signal.index_from(contact_s);
+        let flight = signal.index_from(flight_s.start).checked_sub(from)?;
+        let mut shares = cumulative(signal.force_m_s2.get(from..signal.index_from(flight_s.end))?);
+        let after = shares.get(flight..).filter(|after| !after.is_empty())?;
+        let whole = reduce::sum(after) / as_f64(after.len());
+        shares.iter_mut().for_each(|given| *given = 1.0 - *given / whole);
+        (whole > 0.0).then_some(Self { from, shares, flight })
+    }
+
+    /// The largest in the flight, where nothing should be left.
+    fn in_flight(&self) -> f64 {
+        reduce::peak(&self.shares[self.flight..])
+    }
+
+    /// Where it has come below a share for good.
+    fn below(&self, share: f64) -> usize {
+        self.shares[..self.flight].iter().rposition(|left| *left > share).map_or(0, |last| last + 1)
+    }
+
+    /// Where it comes to an end, in samples: the rest of a force that falls to zero in a line goes with the square of the time to its end, and
+    /// so does, nearly, that of a half sine. Before it the time from four times a share to that share, which ringing does not reach.
+    fn end(&self) -> (f64, f64) {
+        let end_by = |share: f64| {
+            let [last, before] = [share, 4.0 * share].map(|share| as_f64(self.below(share)));
+            (last + (last - before), last - before)
+        };
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a sample count")]
+        let after = (end_by(LEAST_LEFT).0 as usize).min(self.flight);
+        end_by((1.5 * reduce::peak(&self.shares[after..])).clamp(LEAST_LEFT, MOST_LEFT_AT_END))
+    }
+}
+
+/// When L leaves the target on a signal of it free of ringing, s: going back from where it flies, the force leaves zero; where ringing keeps
+/// the force up, when the impulse has been given.
+///
+/// The standard uncertainty is what the force's fall from the foot to zero may hide, a fortieth of the contact, a sample, or half of
+/// how far force and impulse are apart.
+#[must_use]
+pub fn separation(signal: &Signal, contact_s: f64, flight_s: &std::ops::Range<f64>) -> Option<At> {
+    let by_force = last_force(signal, contact_s, flight_s.start)?;
+    let Some(left) = Left::of(signal, contact_s, flight_s) else { return Some(by_force) };
+    let (end, fall) = left.end();
+    let end_s = contact_s + end / signal.sample_rate_hz;
+    let fall_s = fall / signal.sample_rate_hz;
+    // A force that falls at once ends half of that before, one that fades out as much later.
+    if (by_force.time_s - end_s).abs() > fall_s {
+        return Some(At { time_s: end_s, u_s: by_force.u_s.max(fall_s / 3.0) });
+    }
+    Some(At { u_s: by_force.u_s.max((by_force.time_s - end_s).abs() / 2.0), ..by_force })
+}
+
+/// The same by the force alone.
+fn last_force(signal: &Signal, contact_s: f64, free_s: f64) -> Option<At> {
     let from = signal.index_from(contact_s);
     let to = signal.index_from(free_s);
     let beyond = signal.index_from(free_s + 0.5 * (free_s - contact_s));
@@ -281,7 +378,7 @@ mod tests {
     #[test]
     fn separation_is_the_end_of_the_pulse() {
         let s = [signal(End::First, 1e5, 0.020_03, 3000.0)];
-        let At { time_s, u_s } = separation(&s[0], 0.020_03, 0.04).expect("a separation");
+        let At { time_s, u_s } = separation(&s[0], 0.020_03, &(0.04..0.1)).expect("a separation");
         assert!((time_s - 0.026_03).abs() < 2.0 * u_s, "{time_s}");
         let rough_s = first_separation(&s[0], 0.020_03, 0.04).expect("a separation");
         assert!((rough_s - 0.026_03).abs() < 2.0 * u_s, "{rough_s}");
