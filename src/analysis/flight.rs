@@ -77,7 +77,9 @@ fn fitted(
         findings.push(DropFinding::ShortFlight.into());
         return None;
     }
-    events.separation = Some(At { time_s: left_s, u_s: u_s.hypot(u_pulse_s) });
+    // A seat that rings answers late as the contact begins and as it ends.
+    events.first_contact = Some(At { u_s: impact.contact.u_s.hypot(settled.seat_s), ..impact.contact });
+    events.separation = Some(At { time_s: left_s, u_s: u_s.hypot(u_pulse_s).hypot(settled.seat_s) });
     events.slap_down = settled.struck.filter(|_| shows_slap_down);
     if events.slap_down.is_none() && shows_slap_down {
         findings.push(judge::judge_no_slap_down(impact.sought_to_s - left_s, impact.is_record_end));

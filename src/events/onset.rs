@@ -1,4 +1,4 @@
-//! A pulse to its beginning and end, finer than a sample.
+//! A pulse to its beginning, finer than a sample.
 
 use super::transverse;
 use crate::data::{At, CoarseEvent, End, Signal};
@@ -8,8 +8,6 @@ use crate::numerics::{as_f64, reduce};
 pub(crate) const FOOT: f64 = 0.02;
 /// The rise is followed up to this share of the peak to extrapolate it to zero.
 const SHOULDER: f64 = 0.3;
-/// A pulse has ended where the force stays below this share of its peak.
-const TAIL: f64 = 0.05;
 /// Noise is passed by this many of its standard deviations.
 pub(crate) const NOISE_FACTOR: f64 = 6.0;
 /// What changed the velocity by this share of the pulse's step before its rise was a stage of the pulse.
@@ -20,16 +18,6 @@ const WIDTH_S: f64 = 0.025;
 const BLOCK_S: f64 = 1e-4;
 /// R strikes where its velocity change over the width reaches this share of the largest in the record.
 const SHARE: f64 = 0.5;
-/// The flight shows what the impulse comes to in the last part of the time from first contact to the slap-down …
-const LAST_PART: f64 = 0.3;
-/// … where it stays as near to that as this share of it.
-const MOST_LEFT: f64 = 0.25;
-/// What is left of the impulse near the contact's end, as a share: a half sine has so much for its last eighth …
-const LEAST_LEFT: f64 = 0.04;
-/// … and where ringing reaches as far, so much for its last fifth.
-const MOST_LEFT_AT_END: f64 = 0.1;
-/// Longest first contact looked for, s: pulses of shock-absorbed casks reach 20 ms.
-const LONGEST_CONTACT_S: f64 = 0.05;
 
 /// First contact of L and its standard uncertainty, s; on R alone when that first stirs.
 #[must_use]
@@ -47,8 +35,7 @@ fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, step_
     let mut found = onset(signal, stretch.clone(), sign, Rise::First)?;
     loop {
         let before = stretch.start..signal.index_from(found.time_s);
-        let gained_m_s =
-            sign * reduce::sum(signal.force_m_s2.get(before.clone())?) / signal.sample_rate_hz;
+        let gained_m_s = sign * reduce::sum(signal.force_m_s2.get(before.clone())?) / signal.sample_rate_hz;
         let earlier = onset(signal, before, sign, Rise::First).filter(|e| e.time_s < found.time_s);
         match earlier {
             Some(earlier) if gained_m_s > EARLIER_STAGE * step_m_s => found = earlier,
@@ -167,107 +154,6 @@ fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise
     Some(At { time_s: signal.time_s(from) + position / signal.sample_rate_hz, u_s })
 }
 
-/// When L leaves the target on a signal of it that still rings, s: the force on it first drops to the foot.
-#[must_use]
-pub fn first_separation(signal: &Signal, contact_s: f64, before_s: f64) -> Option<f64> {
-    let from = signal.index_from(contact_s);
-    let to = signal.index_from(before_s.min(contact_s + LONGEST_CONTACT_S));
-    let smooth = smoothed(signal.force_m_s2.get(from..to)?, signal.sample_rate_hz);
-    let peak = smooth.iter().fold(0.0_f64, |m, &f| m.max(f));
-    let at_peak = smooth.iter().position(|&f| f >= peak)?;
-    let tail = (TAIL * peak).max(NOISE_FACTOR * signal.noise_m_s2);
-    let end = (at_peak..smooth.len()).find(|&i| smooth[i] < tail)?;
-    Some(signal.time_s(from + end))
-}
-
-/// When L has most of its impulse on a signal of it that still rings, s: no stage of the contact is left. `None` where the last part of the
-/// time to `before_s` does not tell what it comes to.
-#[must_use]
-pub fn impulse_given(signal: &Signal, contact_s: f64, before_s: f64) -> Option<f64> {
-    let flight = before_s - LAST_PART * (before_s - contact_s)..before_s;
-    let left = Left::of(signal, contact_s, &flight)?;
-    (left.in_flight() < MOST_LEFT).then(|| signal.time_s(left.from + left.below(MOST_LEFT)))
-}
-
-/// What is left of the impulse on a signal of L, as a share of it.
-struct Left {
-    /// The sample that the shares begin with, at first contact.
-    from: usize,
-    /// Up to the end of the flight.
-    shares: Vec<f64>,
-    /// Where the flight begins among them.
-    flight: usize,
-}
-
-impl Left {
-    fn of(signal: &Signal, contact_s: f64, flight_s: &std::ops::Range<f64>) -> Option<Self> {
-        let from = signal.index_from(contact_s);
-        let flight = signal.index_from(flight_s.start).checked_sub(from)?;
-        let mut shares = cumulative(signal.force_m_s2.get(from..signal.index_from(flight_s.end))?);
-        let after = shares.get(flight..).filter(|after| !after.is_empty())?;
-        let whole = reduce::sum(after) / as_f64(after.len());
-        shares.iter_mut().for_each(|given| *given = 1.0 - *given / whole);
-        (whole > 0.0).then_some(Self { from, shares, flight })
-    }
-
-    /// The largest in the flight, where nothing should be left.
-    fn in_flight(&self) -> f64 {
-        reduce::peak(&self.shares[self.flight..])
-    }
-
-    /// Where it has come below a share for good.
-    fn below(&self, share: f64) -> usize {
-        self.shares[..self.flight].iter().rposition(|left| *left > share).map_or(0, |last| last + 1)
-    }
-
-    /// Where it comes to an end, in samples: the rest of a force that falls to zero in a line goes with the square of the time to its end, and
-    /// so does, nearly, that of a half sine. Before it the time from four times a share to that share, which ringing does not reach.
-    fn end(&self) -> (f64, f64) {
-        let end_by = |share: f64| {
-            let [last, before] = [share, 4.0 * share].map(|share| as_f64(self.below(share)));
-            (last + (last - before), last - before)
-        };
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a sample count")]
-        let after = (end_by(LEAST_LEFT).0 as usize).min(self.flight);
-        end_by((1.5 * reduce::peak(&self.shares[after..])).clamp(LEAST_LEFT, MOST_LEFT_AT_END))
-    }
-}
-
-/// When L leaves the target on a signal of it free of ringing, s: going back from where it flies, the force leaves zero; where ringing keeps
-/// the force up, when the impulse has been given.
-///
-/// The standard uncertainty is what the force's fall from the foot to zero may hide, a fortieth of the contact, a sample, or half of
-/// how far force and impulse are apart.
-#[must_use]
-pub fn separation(signal: &Signal, contact_s: f64, flight_s: &std::ops::Range<f64>) -> Option<At> {
-    let by_force = last_force(signal, contact_s, flight_s.start)?;
-    let Some(left) = Left::of(signal, contact_s, flight_s) else { return Some(by_force) };
-    let (end, fall) = left.end();
-    let end_s = contact_s + end / signal.sample_rate_hz;
-    let fall_s = fall / signal.sample_rate_hz;
-    // A force that falls at once ends half of that before, one that fades out as much later.
-    if (by_force.time_s - end_s).abs() > fall_s {
-        return Some(At { time_s: end_s, u_s: by_force.u_s.max(fall_s / 3.0) });
-    }
-    Some(At { u_s: by_force.u_s.max((by_force.time_s - end_s).abs() / 2.0), ..by_force })
-}
-
-/// The same by the force alone.
-fn last_force(signal: &Signal, contact_s: f64, free_s: f64) -> Option<At> {
-    let from = signal.index_from(contact_s);
-    let to = signal.index_from(free_s);
-    let beyond = signal.index_from(free_s + 0.5 * (free_s - contact_s));
-    let smooth = smoothed(signal.force_m_s2.get(from..beyond.max(to))?, signal.sample_rate_hz);
-    let (contact, flight) = smooth.split_at(to - from);
-    let peak = contact.iter().fold(0.0_f64, |m, &f| m.max(f));
-    let left = flight.iter().fold(0.0_f64, |m, &f| m.max(f.abs()));
-    let tail = (TAIL * peak).max(NOISE_FACTOR * signal.noise_m_s2).max(1.5 * left).min(0.5 * peak);
-    let end = contact.iter().rposition(|f| f.abs() > tail)? + 1;
-    let time_s = signal.time_s(from + end);
-    let u_s = ((time_s - contact_s) / 40.0).max(1.0 / signal.sample_rate_hz);
-    Some(At { time_s, u_s })
-}
-
 /// Sums of the velocity's samples before each whole block; one longer than there are whole blocks.
 fn velocity_sums(force: &[f64], block: usize, step_s: f64) -> Vec<f64> {
     let (mut velocity_m_s, mut sum) = (0.0, 0.0);
@@ -280,31 +166,6 @@ fn velocity_sums(force: &[f64], block: usize, step_s: f64) -> Vec<f64> {
         sum
     }));
     sums
-}
-
-/// Sums of all samples before each index; one longer than `values`.
-fn cumulative(values: &[f64]) -> Vec<f64> {
-    let mut sums = Vec::with_capacity(values.len() + 1);
-    let mut sum = 0.0;
-    sums.push(sum);
-    for v in values {
-        sum += v;
-        sums.push(sum);
-    }
-    sums
-}
-
-/// Moving mean over 0.2 ms, so that the high modes of the sensor's mount do not end a pulse.
-fn smoothed(force: &[f64], sample_rate_hz: f64) -> Vec<f64> {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
-    let half = (1e-4 * sample_rate_hz) as usize;
-    let sums = cumulative(force);
-    (0..force.len())
-        .map(|i| {
-            let (a, b) = (i.saturating_sub(half), (i + half + 1).min(force.len()));
-            (sums[b] - sums[a]) / as_f64(b - a)
-        })
-        .collect()
 }
 
 /// Where the force crosses `level` between sample `index − 1` and `index`, in samples.
@@ -375,13 +236,30 @@ mod tests {
         }
     }
 
+    /// 0.9 g over 17 ms before a half sine of 8 ms, through a sensor that ends at `limit`.
+    fn with_foot(rate: f64, limit: f64, noise_m_s2: f64) -> Signal {
+        let plain = signal(End::First, rate, 0.037, 1.0);
+        let force = |i: usize| match plain.time_s(i) {
+            t if (0.02..0.037).contains(&t) => 8.8,
+            t if (0.037..0.045).contains(&t) => (630.0 * (PI * (t - 0.037) / 0.008).sin()).min(limit),
+            _ => 0.0,
+        };
+        let force_m_s2 = (0..plain.force_m_s2.len()).map(force).collect();
+        Signal { force_m_s2, noise_m_s2, ..plain }
+    }
+
     #[test]
-    fn separation_is_the_end_of_the_pulse() {
-        let s = [signal(End::First, 1e5, 0.020_03, 3000.0)];
-        let At { time_s, u_s } = separation(&s[0], 0.020_03, &(0.04..0.1)).expect("a separation");
-        assert!((time_s - 0.026_03).abs() < 2.0 * u_s, "{time_s}");
-        let rough_s = first_separation(&s[0], 0.020_03, 0.04).expect("a separation");
-        assert!((rough_s - 0.026_03).abs() < 2.0 * u_s, "{rough_s}");
+    fn what_one_sensor_takes_for_the_foot_is_in_the_interval() {
+        let coarse = CoarseEvent { near_s: 0.015, spread_s: 0.025, velocity_step_m_s: 3.2 };
+        let seen = |signal| first_contact(&[signal], &coarse).expect("an onset");
+        let (slow, noisy) = (seen(with_foot(2e3, 412.0, 0.05)), seen(with_foot(2e4, 1e4, 1.0)));
+        let apart_s = noisy.time_s - slow.time_s;
+        assert!((0.016..0.018).contains(&apart_s), "{slow:?} {noisy:?}");
+        assert!(apart_s < 2.0 * slow.u_s.hypot(noisy.u_s), "{slow:?} {noisy:?}");
+        assert!(noisy.u_s < 1e-4, "{noisy:?}");
+        // Where the noise lets it be seen it is the contact's first stage.
+        let quiet = seen(with_foot(2e4, 1e4, 0.05));
+        assert!((quiet.time_s - 0.02).abs() < 1e-4, "{quiet:?}");
     }
 
     #[test]
