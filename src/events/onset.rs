@@ -35,12 +35,23 @@ fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, step_
     let mut found = onset(signal, stretch.clone(), sign, Rise::First)?;
     loop {
         let before = stretch.start..signal.index_from(found.time_s);
-        let gained_m_s = sign * reduce::sum(signal.force_m_s2.get(before.clone())?) / signal.sample_rate_hz;
+        let mut gained = 0.0;
+        let running = signal.force_m_s2.get(before.clone())?.iter().map(|force| {
+            gained += sign * force / signal.sample_rate_hz;
+            gained
+        });
+        let gained_m_s: Vec<f64> = running.collect();
+        let all_m_s = gained_m_s.last().copied().filter(|all_m_s| *all_m_s > EARLIER_STAGE * step_m_s);
+        let Some(all_m_s) = all_m_s else { return Some(found) };
+        let from = before.start;
         let earlier = onset(signal, before, sign, Rise::First).filter(|e| e.time_s < found.time_s);
-        match earlier {
-            Some(earlier) if gained_m_s > EARLIER_STAGE * step_m_s => found = earlier,
-            _ => return Some(found),
-        }
+        let Some(earlier) = earlier else {
+            // The noise hides where that began.
+            let begun = gained_m_s.iter().position(|gained_m_s| *gained_m_s > 0.1 * all_m_s)?;
+            let open_s = found.time_s - signal.time_s(from + begun);
+            return Some(At { u_s: found.u_s.hypot(open_s / 3.0_f64.sqrt()), ..found });
+        };
+        found = earlier;
     }
 }
 
@@ -256,7 +267,6 @@ mod tests {
         let apart_s = noisy.time_s - slow.time_s;
         assert!((0.016..0.018).contains(&apart_s), "{slow:?} {noisy:?}");
         assert!(apart_s < 2.0 * slow.u_s.hypot(noisy.u_s), "{slow:?} {noisy:?}");
-        assert!(noisy.u_s < 1e-4, "{noisy:?}");
         // Where the noise lets it be seen it is the contact's first stage.
         let quiet = seen(with_foot(2e4, 1e4, 0.05));
         assert!((quiet.time_s - 0.02).abs() < 1e-4, "{quiet:?}");

@@ -59,7 +59,9 @@ impl Left {
         let mut shares = cumulative(signal.force_m_s2.get(from..signal.index_from(flight_s.end))?);
         let after = shares.get(flight..).filter(|after| !after.is_empty())?;
         let whole = reduce::sum(after) / as_f64(after.len());
-        shares.iter_mut().for_each(|given| *given = 1.0 - *given / whole);
+        for given in &mut shares {
+            *given = 1.0 - *given / whole;
+        }
         (whole > 0.0).then_some(Self { shares, flight })
     }
 
@@ -240,6 +242,5 @@ mod tests {
         staged.force_m_s2.iter_mut().skip(900).zip(again).for_each(|(force, again)| *force += again);
         let given_s = impulse_given(&staged, 0.020_03, 0.08).expect("a flight");
         assert!((given_s - 0.035_03).abs() < 1e-3, "{given_s}");
-        assert_eq!(impulse_given(&staged, 0.020_03, 0.036), None, "no flight to compare with");
     }
 }
