@@ -46,7 +46,7 @@ pub use report::{ReportError, files};
 /// Stages one by one, for benchmarks and tests; they change without notice.
 #[doc(hidden)]
 pub mod stages {
-    pub use crate::analysis::sticking;
+    pub use crate::analysis::{measure, sticking};
     pub use crate::condition::{Reach, condition};
     pub use crate::events::Changes;
     pub use crate::fit::{Basis, ladder, quantities, spread_by_draws};

@@ -72,7 +72,14 @@ fn fitted(
     // A pulse without its peak or a part of its flanks ends where it fades out of less: a tenth of its length.
     let is_uncertain = is_made(End::First) || events::transverse(signals, End::First).is_some_and(is_cut);
     let u_pulse_s = if is_uncertain { UNCERTAIN_PULSE * (left_s - contact_s) } else { 0.0 };
-    events.separation = Some(At { time_s: left_s, u_s: u_s.hypot(u_pulse_s) });
+    let is_in_order = left_s > contact_s && settled.struck.is_none_or(|struck| struck.time_s > left_s);
+    if !is_in_order {
+        findings.push(DropFinding::ShortFlight.into());
+        return None;
+    }
+    // A seat that rings answers late as the contact begins and as it ends.
+    events.first_contact = Some(At { u_s: impact.contact.u_s.hypot(settled.seat_s), ..impact.contact });
+    events.separation = Some(At { time_s: left_s, u_s: u_s.hypot(u_pulse_s).hypot(settled.seat_s) });
     events.slap_down = settled.struck.filter(|_| shows_slap_down);
     if events.slap_down.is_none() && shows_slap_down {
         findings.push(judge::judge_no_slap_down(impact.sought_to_s - left_s, impact.is_record_end));
@@ -167,13 +174,15 @@ fn judge_open_contact(
     flown: &Flown,
     events: &Events,
 ) -> Option<Finding> {
+    if file.contact != Contact::Unknown || flown.setup.axial == AxialClosure::Measured {
+        return None;
+    }
     let speed_m_s = |axial| {
         let setup = Setup { axial, ..flown.setup };
         let (x, z) = motion::outcome(integrated, &flown.flight, events, &setup)?.second_end_m_s?;
         Some(f64::hypot(x, z))
     };
-    let is_open = file.contact == Contact::Unknown && flown.setup.axial != AxialClosure::Measured;
-    let sticking_m_s = speed_m_s(AxialClosure::Sticking).filter(|_| is_open)?;
+    let sticking_m_s = speed_m_s(AxialClosure::Sticking)?;
     let sliding_m_s = speed_m_s(AxialClosure::Sliding { friction: 0.0 })?;
     let taken = flown.quantities.friction;
     Some(DropFinding::OpenContact { sticking_m_s, sliding_m_s, taken }.into())

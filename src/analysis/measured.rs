@@ -5,6 +5,9 @@ use super::impact::Impact;
 use crate::data::{BodyModel, CaskFile, Comparison, Events, Finding, GRAZE_SHARE, IssueCode, ModelChoice};
 use crate::{compare, judge, predict};
 
+/// L falls on with more than this share of v0: what is left of it is a stage of one contact.
+const FALLS_ON: f64 = 0.1;
+
 /// What is measured beside what is predicted.
 pub(super) struct Measured {
     /// The simplest model that explains it; `None` where there is no slap-down to compare.
@@ -52,7 +55,13 @@ fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -
     let Flown { flight, motion, quantities, reconstruction, .. } = flown;
     let mut found = judge::judge_motion(file, &impact.signals, flight, motion, quantities);
     found.extend(judge::judge_strike(flight, file.drop.impact_velocity_m_s));
-    found.extend(judge::judge_rest(impact.recorded(), events));
+    // A limiter that yields in stages lets L fall on between them: what leaves the target goes up.
+    let falls_on = |rest: &Finding| {
+        let at = motion.curve.time_s.partition_point(|&t| Some(t) < rest.from_s);
+        let up_m_s = motion.curve.first_end_vertical_m_s.get(at);
+        up_m_s.is_some_and(|up_m_s| *up_m_s < -FALLS_ON * file.drop.impact_velocity_m_s)
+    };
+    found.extend(judge::judge_rest(impact.recorded(), events).filter(|rest| !falls_on(rest)));
     let missed = judge::judge_closures(reconstruction, &file.drop, events);
     found.extend(judge::judge_slowed(missed, &file.drop, &impact.rests, events, &file.tolerances));
     let touched_m_s = touch_effect_m_s(file, quantities.k.value);

@@ -33,7 +33,8 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
 /// [`analyze`] without the search for a usual slip, which names one and changes no number.
 #[must_use]
 pub fn measure(recording: &Recording, cask_file: &CaskFile) -> Analysis {
-    rayon::scope(|_| again::without_one(recording, cask_file, analyzed(recording, cask_file)))
+    let found = || analyzed(recording, cask_file, true);
+    rayon::scope(|_| again::without_one(recording, cask_file, found()))
 }
 
 /// A first impact with the events and the flight that follow it.
@@ -53,7 +54,8 @@ fn flown(recording: &Recording, file: &CaskFile, farther: bool) -> (Vec<Finding>
     (findings, struck)
 }
 
-fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
+/// The analysis, with the curves or without them and what is read off them.
+fn analyzed(recording: &Recording, file: &CaskFile, with_curves: bool) -> Analysis {
     let (mut findings, mut found) = flown(recording, file, false);
     // From steep angles a cask may strike later than its angle has it.
     if findings.iter().any(|f| f.code == IssueCode::NoSlapDown)
@@ -70,7 +72,7 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
     judge::weigh_by_distance(&mut findings, &events);
     let (on_channels, smooth) = rayon::join(
         || judge::judge_channels(impact.recorded(), &events, file, &findings),
-        || outcome::smooth(&impact.signals, &events, file),
+        || if with_curves { outcome::smooth(&impact.signals, &events, file) } else { Vec::new() },
     );
     findings.extend(on_channels);
     let reached = match flown {

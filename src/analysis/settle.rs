@@ -48,6 +48,8 @@ const BEFORE_S: f64 = 0.05;
 pub struct Settled {
     /// Separation.
     pub left: At,
+    /// How late the sensor that shows it may answer, s.
+    pub seat_s: f64,
     /// Slap-down, where there is one.
     pub struck: Option<At>,
     /// The flight between them, where it could be fitted.
@@ -89,8 +91,13 @@ pub fn settle(file: &CaskFile, integrated: &Integrated) -> Option<Settled> {
     // Where the velocities are cut off no beginning leads to a flight that explains them.
     let before_s = struck.map_or(search.record_end_s, |s| s.time_s);
     let is_hopeless = signals.iter().any(|s| judge::is_cut_off(s, contact_s, before_s));
-    for share in FIRST_ENDS.into_iter().take(if is_hopeless { 1 } else { FIRST_ENDS.len() }) {
-        let attempt = search.attempt(&mut ends, struck, share);
+    // A contact in stages may last beyond the clearance: first where its impulse has been given.
+    let given_s = events::impulse_given(ends.0.signal(), contact_s, before_s)
+        .filter(|given_s| !is_hopeless && *given_s > cleared_s(contact_s, before_s));
+    let shares = FIRST_ENDS.into_iter().take(if is_hopeless { 1 } else { FIRST_ENDS.len() });
+    let given = given_s.map(|given_s| (FIRST_ENDS[0], Some(given_s)));
+    for beginning in given.into_iter().chain(shares.map(|share| (share, None))) {
+        let attempt = search.attempt(&mut ends, struck, beginning);
         let cost = search.cost(&attempt);
         if best.as_ref().is_none_or(|(least, _)| cost < *least) {
             best = Some((cost, attempt));
@@ -105,6 +112,11 @@ pub fn settle(file: &CaskFile, integrated: &Integrated) -> Option<Settled> {
         flight.strike = motion::strike(flight, integrated, window, file.cask.cog_m);
     }
     Some(settled)
+}
+
+/// Where the first fit begins that ends at `end_s`, if nothing tells a longer contact, s.
+fn cleared_s(contact_s: f64, end_s: f64) -> f64 {
+    contact_s + (FIRST_CLEARANCE * (end_s - contact_s)).min(LONGEST_CLEARANCE_S)
 }
 
 /// What the cask turns by from first contact to separation, rad.
@@ -133,23 +145,23 @@ impl Settled {
 }
 
 impl Search<'_> {
-    /// Rounds from a first guess of the slap-down, the first fit ending at a share of the time to it; the signals of both ends are without
+    /// Rounds from a first guess of the slap-down, the first fit ending at a share of the time to it, and beginning where the impulse has been given; the signals of both ends are without
     /// the first bending mode.
     fn attempt(
         &self,
         (first, second): &mut (motion::Calmed, motion::Calmed),
         mut struck: Option<At>,
-        share: f64,
+        (share, given_s): (f64, Option<f64>),
     ) -> Settled {
         first.restore();
         let &Integrated { ref signals, contact_s, .. } = self.integrated;
         let cog_m = self.file.cask.cog_m;
         let mut end_s = contact_s + share * (struck.map_or(self.record_end_s, |s| s.time_s) - contact_s);
         // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit goes by.
-        let cleared_s = contact_s + (FIRST_CLEARANCE * (end_s - contact_s)).min(LONGEST_CLEARANCE_S);
+        let cleared_s = cleared_s(contact_s, end_s);
         let rough_s = events::first_separation(first.signal(), contact_s, end_s).unwrap_or(cleared_s);
         // The first fit keeps well clear of the contact, which ringing may have seemed to end too soon.
-        let mut free_s = rough_s.max(cleared_s);
+        let mut free_s = rough_s.max(cleared_s).max(given_s.unwrap_or(cleared_s));
         let mut left = At { time_s: rough_s, u_s: 0.1 * (rough_s - contact_s) };
         let mut flight: Option<FlightFit> = None;
         let mut others: Vec<FlightFit> = Vec::new();
@@ -184,7 +196,11 @@ impl Search<'_> {
                 break;
             }
         }
-        self.best_of(Settled { left, struck, flight, window: taken_over }, others)
+        if let Some(window) = &taken_over {
+            left = events::by_impulse(first.signal(), contact_s, left, &(window.from_s..window.to_s));
+        }
+        let seat_s = events::seat_s(first.signal(), contact_s, left.time_s);
+        self.best_of(Settled { left, seat_s, struck, flight, window: taken_over }, others)
     }
 
     /// Where a flight shows too little of its slowest mode to tell the fits apart, the first of them that the closures do not speak against.
@@ -192,8 +208,8 @@ impl Search<'_> {
         if self.cost(&settled) < 1.0 || settled.flight.as_ref().is_none_or(FlightFit::is_told_apart) {
             return settled;
         }
-        let Settled { left, struck, window, .. } = settled;
-        let with = |flight| Settled { left, struck, flight: Some(flight), window };
+        let Settled { left, seat_s, struck, window, .. } = settled;
+        let with = |flight| Settled { left, seat_s, struck, flight: Some(flight), window };
         others.into_iter().map(with).find(|other| self.cost(other) < 1.0).unwrap_or(settled)
     }
 

@@ -4,11 +4,13 @@ mod answer;
 mod locate;
 pub(crate) mod onset;
 mod release;
+mod separation;
 
 pub use answer::answers;
 pub use locate::Changes;
-pub use onset::{first_contact, first_separation, separation, slap_down};
+pub use onset::{first_contact, slap_down};
 pub use release::{FreeFall, free_fall};
+pub use separation::{by_impulse, first_separation, impulse_given, seat_s, separation};
 
 use crate::data::{Axis, Channel, End, Samples, Signal};
 use crate::numerics::reduce;

@@ -1,4 +1,4 @@
-//! A pulse to its beginning and end, finer than a sample.
+//! A pulse to its beginning, finer than a sample.
 
 use super::transverse;
 use crate::data::{At, CoarseEvent, End, Signal};
@@ -8,27 +8,50 @@ use crate::numerics::{as_f64, reduce};
 pub(crate) const FOOT: f64 = 0.02;
 /// The rise is followed up to this share of the peak to extrapolate it to zero.
 const SHOULDER: f64 = 0.3;
-/// A pulse has ended where the force stays below this share of its peak.
-const TAIL: f64 = 0.05;
 /// Noise is passed by this many of its standard deviations.
 pub(crate) const NOISE_FACTOR: f64 = 6.0;
+/// What changed the velocity by this share of the pulse's step before its rise was a stage of the pulse.
+const EARLIER_STAGE: f64 = 0.02;
 /// Width of the means that R's velocity is compared by, s: two periods of an 80 Hz mode, less than a flight from 5°.
 const WIDTH_S: f64 = 0.025;
 /// The means are compared this often, s: a hundredth of the stretch in which the onset is then sought.
 const BLOCK_S: f64 = 1e-4;
 /// R strikes where its velocity change over the width reaches this share of the largest in the record.
 const SHARE: f64 = 0.5;
-/// Longest first contact looked for, s: pulses of shock-absorbed casks reach 20 ms.
-const LONGEST_CONTACT_S: f64 = 0.05;
 
 /// First contact of L and its standard uncertainty, s; on R alone when that first stirs.
 #[must_use]
 pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
     let FirstPulse { signal, stretch, sign } = FirstPulse::about(signals, coarse)?;
     match signal.end {
-        // Before first contact nothing rings: the first rise is the one.
-        End::First => onset(signal, stretch, sign, Rise::First),
+        End::First => first_rise(signal, stretch, sign, coarse.velocity_step_m_s.abs()),
         End::Second => first_stir(signal, stretch),
+    }
+}
+
+/// The first rise of a pulse that changes the velocity by `step_m_s`: before it nothing rings. A layer that yields far below the peak and
+/// lets go again has struck before the rise that leads to it.
+fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, step_m_s: f64) -> Option<At> {
+    let mut found = onset(signal, stretch.clone(), sign, Rise::First)?;
+    loop {
+        let before = stretch.start..signal.index_from(found.time_s);
+        let mut gained = 0.0;
+        let running = signal.force_m_s2.get(before.clone())?.iter().map(|force| {
+            gained += sign * force / signal.sample_rate_hz;
+            gained
+        });
+        let gained_m_s: Vec<f64> = running.collect();
+        let all_m_s = gained_m_s.last().copied().filter(|all_m_s| *all_m_s > EARLIER_STAGE * step_m_s);
+        let Some(all_m_s) = all_m_s else { return Some(found) };
+        let from = before.start;
+        let earlier = onset(signal, before, sign, Rise::First).filter(|e| e.time_s < found.time_s);
+        let Some(earlier) = earlier else {
+            // The noise hides where that began.
+            let begun = gained_m_s.iter().position(|gained_m_s| *gained_m_s > 0.1 * all_m_s)?;
+            let open_s = found.time_s - signal.time_s(from + begun);
+            return Some(At { u_s: found.u_s.hypot(open_s / 3.0_f64.sqrt()), ..found });
+        };
+        found = earlier;
     }
 }
 
@@ -135,40 +158,11 @@ fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise
     // A rise that is steeper than the sampling, or one that bends, puts the line's zero past the crossing or far before it.
     let reach = (as_f64(high) - crossing).max(1.0);
     let position = extrapolated.clamp(crossing - reach, crossing);
-    let u_s = ((crossing - position).max(0.5) / 3.0_f64.sqrt()) / signal.sample_rate_hz;
+    // A rise that begins slowly may be a foot that another channel does not show: its upper half alone meets zero later.
+    let upper: Vec<(f64, f64)> = points.into_iter().filter(|point| point.1 >= shoulder / 2.0).collect();
+    let steep = zero_of_line(&upper).map_or(0.0, |zero| zero.min(as_f64(high)) - position);
+    let u_s = ((crossing - position).max(steep).max(0.5) / 3.0_f64.sqrt()) / signal.sample_rate_hz;
     Some(At { time_s: signal.time_s(from) + position / signal.sample_rate_hz, u_s })
-}
-
-/// When L leaves the target on a signal of it that still rings, s: the force on it first drops to the foot.
-#[must_use]
-pub fn first_separation(signal: &Signal, contact_s: f64, before_s: f64) -> Option<f64> {
-    let from = signal.index_from(contact_s);
-    let to = signal.index_from(before_s.min(contact_s + LONGEST_CONTACT_S));
-    let smooth = smoothed(signal.force_m_s2.get(from..to)?, signal.sample_rate_hz);
-    let peak = smooth.iter().fold(0.0_f64, |m, &f| m.max(f));
-    let at_peak = smooth.iter().position(|&f| f >= peak)?;
-    let tail = (TAIL * peak).max(NOISE_FACTOR * signal.noise_m_s2);
-    let end = (at_peak..smooth.len()).find(|&i| smooth[i] < tail)?;
-    Some(signal.time_s(from + end))
-}
-
-/// When L leaves the target on a signal of it free of ringing, s: going back from `free_s`, where it flies, the force leaves zero.
-///
-/// The standard uncertainty is what the force's fall from the foot to zero may hide, a fortieth of the contact, or a sample.
-#[must_use]
-pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<At> {
-    let from = signal.index_from(contact_s);
-    let to = signal.index_from(free_s);
-    let beyond = signal.index_from(free_s + 0.5 * (free_s - contact_s));
-    let smooth = smoothed(signal.force_m_s2.get(from..beyond.max(to))?, signal.sample_rate_hz);
-    let (contact, flight) = smooth.split_at(to - from);
-    let peak = contact.iter().fold(0.0_f64, |m, &f| m.max(f));
-    let left = flight.iter().fold(0.0_f64, |m, &f| m.max(f.abs()));
-    let tail = (TAIL * peak).max(NOISE_FACTOR * signal.noise_m_s2).max(1.5 * left).min(0.5 * peak);
-    let end = contact.iter().rposition(|f| f.abs() > tail)? + 1;
-    let time_s = signal.time_s(from + end);
-    let u_s = ((time_s - contact_s) / 40.0).max(1.0 / signal.sample_rate_hz);
-    Some(At { time_s, u_s })
 }
 
 /// Sums of the velocity's samples before each whole block; one longer than there are whole blocks.
@@ -183,31 +177,6 @@ fn velocity_sums(force: &[f64], block: usize, step_s: f64) -> Vec<f64> {
         sum
     }));
     sums
-}
-
-/// Sums of all samples before each index; one longer than `values`.
-fn cumulative(values: &[f64]) -> Vec<f64> {
-    let mut sums = Vec::with_capacity(values.len() + 1);
-    let mut sum = 0.0;
-    sums.push(sum);
-    for v in values {
-        sum += v;
-        sums.push(sum);
-    }
-    sums
-}
-
-/// Moving mean over 0.2 ms, so that the high modes of the sensor's mount do not end a pulse.
-fn smoothed(force: &[f64], sample_rate_hz: f64) -> Vec<f64> {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
-    let half = (1e-4 * sample_rate_hz) as usize;
-    let sums = cumulative(force);
-    (0..force.len())
-        .map(|i| {
-            let (a, b) = (i.saturating_sub(half), (i + half + 1).min(force.len()));
-            (sums[b] - sums[a]) / as_f64(b - a)
-        })
-        .collect()
 }
 
 /// Where the force crosses `level` between sample `index − 1` and `index`, in samples.
@@ -278,13 +247,29 @@ mod tests {
         }
     }
 
+    /// 0.9 g over 17 ms before a half sine of 8 ms, through a sensor that ends at `limit`.
+    fn with_foot(rate: f64, limit: f64, noise_m_s2: f64) -> Signal {
+        let plain = signal(End::First, rate, 0.037, 1.0);
+        let force = |i: usize| match plain.time_s(i) {
+            t if (0.02..0.037).contains(&t) => 8.8,
+            t if (0.037..0.045).contains(&t) => (630.0 * (PI * (t - 0.037) / 0.008).sin()).min(limit),
+            _ => 0.0,
+        };
+        let force_m_s2 = (0..plain.force_m_s2.len()).map(force).collect();
+        Signal { force_m_s2, noise_m_s2, ..plain }
+    }
+
     #[test]
-    fn separation_is_the_end_of_the_pulse() {
-        let s = [signal(End::First, 1e5, 0.020_03, 3000.0)];
-        let At { time_s, u_s } = separation(&s[0], 0.020_03, 0.04).expect("a separation");
-        assert!((time_s - 0.026_03).abs() < 2.0 * u_s, "{time_s}");
-        let rough_s = first_separation(&s[0], 0.020_03, 0.04).expect("a separation");
-        assert!((rough_s - 0.026_03).abs() < 2.0 * u_s, "{rough_s}");
+    fn what_one_sensor_takes_for_the_foot_is_in_the_interval() {
+        let coarse = CoarseEvent { near_s: 0.015, spread_s: 0.025, velocity_step_m_s: 3.2 };
+        let seen = |signal| first_contact(&[signal], &coarse).expect("an onset");
+        let (slow, noisy) = (seen(with_foot(2e3, 412.0, 0.05)), seen(with_foot(2e4, 1e4, 1.0)));
+        let apart_s = noisy.time_s - slow.time_s;
+        assert!((0.016..0.018).contains(&apart_s), "{slow:?} {noisy:?}");
+        assert!(apart_s < 2.0 * slow.u_s.hypot(noisy.u_s), "{slow:?} {noisy:?}");
+        // Where the noise lets it be seen it is the contact's first stage.
+        let quiet = seen(with_foot(2e4, 1e4, 0.05));
+        assert!((quiet.time_s - 0.02).abs() < 1e-4, "{quiet:?}");
     }
 
     #[test]

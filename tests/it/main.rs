@@ -21,6 +21,7 @@ mod run;
 mod safety;
 mod same;
 mod short_flights;
+mod stages;
 mod synth;
 mod tidy;
 mod trial;

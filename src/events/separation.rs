@@ -1,0 +1,246 @@
+//! A pulse of the first end to its end: where the force fades out, and where the impulse has been given.
+
+use super::onset::NOISE_FACTOR;
+use crate::data::{At, Signal};
+use crate::numerics::{as_f64, reduce};
+
+/// A pulse has ended where the force stays below this share of its peak.
+const TAIL: f64 = 0.05;
+/// The flight shows what the impulse comes to in the last part of the time from first contact to the slap-down …
+const LAST_PART: f64 = 0.3;
+/// … where it stays as near to that as this share of it.
+const MOST_LEFT: f64 = 0.25;
+/// What is left of the impulse near the contact's end, as a share: a half sine has so much for its last eighth …
+const LEAST_LEFT: f64 = 0.04;
+/// … and where ringing reaches as far, so much for its last fifth.
+const MOST_LEFT_AT_END: f64 = 0.1;
+/// What rings on turns its sign so often: the force of a contact does not.
+const LEAST_TURNS: usize = 2;
+/// Longest first contact looked for, s: pulses of shock-absorbed casks reach 20 ms.
+const LONGEST_CONTACT_S: f64 = 0.05;
+
+/// When L leaves the target on a signal of it that still rings, s: the force on it first drops to the foot.
+#[must_use]
+pub fn first_separation(signal: &Signal, contact_s: f64, before_s: f64) -> Option<f64> {
+    let from = signal.index_from(contact_s);
+    let to = signal.index_from(before_s.min(contact_s + LONGEST_CONTACT_S));
+    let smooth = smoothed(signal.force_m_s2.get(from..to)?, signal.sample_rate_hz);
+    let peak = smooth.iter().fold(0.0_f64, |m, &f| m.max(f));
+    let at_peak = smooth.iter().position(|&f| f >= peak)?;
+    let tail = (TAIL * peak).max(NOISE_FACTOR * signal.noise_m_s2);
+    let end = (at_peak..smooth.len()).find(|&i| smooth[i] < tail)?;
+    Some(signal.time_s(from + end))
+}
+
+/// When L has its impulse on a signal of it that still rings, s, or most of it where the ringing is strong: no stage of the contact is left then.
+/// `None` where the last part of the time to `before_s` does not tell what it comes to.
+#[must_use]
+pub fn impulse_given(signal: &Signal, contact_s: f64, before_s: f64) -> Option<f64> {
+    let flight = before_s - LAST_PART * (before_s - contact_s)..before_s;
+    let left = Left::of(signal, contact_s, &flight)?;
+    let ringing = left.in_flight();
+    let end = if ringing < MOST_LEFT_AT_END { left.end()[0] } else { as_f64(left.below(MOST_LEFT)) };
+    let end_s = end / signal.sample_rate_hz;
+    (ringing < MOST_LEFT && end_s < LONGEST_CONTACT_S).then_some(contact_s + end_s)
+}
+
+/// What is left of the impulse on a signal of L, as a share of it.
+struct Left {
+    /// From first contact up to the end of the flight.
+    shares: Vec<f64>,
+    /// Where the flight begins among them.
+    flight: usize,
+}
+
+impl Left {
+    fn of(signal: &Signal, contact_s: f64, flight_s: &std::ops::Range<f64>) -> Option<Self> {
+        let from = signal.index_from(contact_s);
+        let flight = signal.index_from(flight_s.start).checked_sub(from)?;
+        let mut shares = cumulative(signal.force_m_s2.get(from..signal.index_from(flight_s.end))?);
+        let after = shares.get(flight..).filter(|after| !after.is_empty())?;
+        let whole = reduce::sum(after) / as_f64(after.len());
+        for given in &mut shares {
+            *given = 1.0 - *given / whole;
+        }
+        (whole > 0.0).then_some(Self { shares, flight })
+    }
+
+    /// The largest in the flight, where nothing should be left.
+    fn in_flight(&self) -> f64 {
+        reduce::peak(&self.shares[self.flight..])
+    }
+
+    /// Where it has come below a share for good.
+    fn below(&self, share: f64) -> usize {
+        self.shares[..self.flight].iter().rposition(|left| *left > share).map_or(0, |last| last + 1)
+    }
+
+    /// Where it comes to an end, in samples: the rest of a force that falls to zero in a line goes with the square of the time to its end, and
+    /// so does, nearly, that of a half sine. Before it the time from four times a share to that share, which ringing does not reach.
+    fn end(&self) -> [f64; 2] {
+        let end_by = |share: f64| {
+            let [last, before] = [share, 4.0 * share].map(|share| as_f64(self.below(share)));
+            [last + (last - before), last - before]
+        };
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a sample count")]
+        let after = (end_by(LEAST_LEFT)[0] as usize).min(self.flight);
+        end_by((1.5 * reduce::peak(&self.shares[after..])).clamp(LEAST_LEFT, MOST_LEFT_AT_END))
+    }
+}
+
+/// What `by_force` says of the separation on the same signal, held against the impulse: a seat that rings on keeps the force up, but gives no
+/// more impulse.
+///
+/// How far the two are apart, over √3, is in the standard uncertainty. Where that is farther than the force takes to fall, and the force turns its
+/// sign between them, the impulse tells the end, to a third of that fall.
+#[must_use]
+pub fn by_impulse(signal: &Signal, contact_s: f64, by_force: At, flight_s: &std::ops::Range<f64>) -> At {
+    // What a long flight ends with, a touch perhaps, is not asked.
+    let flight_s = flight_s.start..flight_s.end.min(flight_s.start + LONGEST_CONTACT_S);
+    let left = Left::of(signal, contact_s, &flight_s).filter(|left| left.in_flight() < MOST_LEFT_AT_END);
+    let Some(left) = left else { return by_force };
+    let [end_s, fall_s] = left.end().map(|samples| samples / signal.sample_rate_hz);
+    let end_s = contact_s + end_s;
+    let apart_s = (by_force.time_s - end_s).abs();
+    if apart_s <= fall_s || turns(signal, end_s, by_force.time_s).1 < LEAST_TURNS {
+        return At { u_s: by_force.u_s.hypot(apart_s.min(fall_s) / 3.0_f64.sqrt()), ..by_force };
+    }
+    At { time_s: end_s, u_s: by_force.u_s.min((end_s - contact_s) / 40.0).max(fall_s / 3.0) }
+}
+
+/// The largest force between two times, m/s², and how often it turns its sign there.
+fn turns(signal: &Signal, from_s: f64, to_s: f64) -> (f64, usize) {
+    let [from, to] = [from_s, to_s].map(|time_s| signal.index_from(time_s));
+    let smooth = smoothed(signal.force_m_s2.get(from..to).unwrap_or_default(), signal.sample_rate_hz);
+    let turned = |pair: &&[f64]| (pair[0] < 0.0) != (pair[1] < 0.0);
+    (reduce::peak(&smooth), smooth.windows(2).filter(turned).count())
+}
+
+/// When L leaves the target on a signal of it free of ringing, s: going back from `free_s`, where it flies, the force leaves zero.
+///
+/// The standard uncertainty is what the force's fall from the foot to zero may hide, a fortieth of the contact, or a sample.
+#[must_use]
+pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<At> {
+    let from = signal.index_from(contact_s);
+    let to = signal.index_from(free_s);
+    let beyond = signal.index_from(free_s + 0.5 * (free_s - contact_s));
+    let smooth = smoothed(signal.force_m_s2.get(from..beyond.max(to))?, signal.sample_rate_hz);
+    let (contact, flight) = smooth.split_at(to - from);
+    let peak = contact.iter().fold(0.0_f64, |m, &f| m.max(f));
+    let left = flight.iter().fold(0.0_f64, |m, &f| m.max(f.abs()));
+    let tail = (TAIL * peak).max(NOISE_FACTOR * signal.noise_m_s2).max(1.5 * left).min(0.5 * peak);
+    let end = contact.iter().rposition(|f| f.abs() > tail)? + 1;
+    let time_s = signal.time_s(from + end);
+    let u_s = ((time_s - contact_s) / 40.0).max(1.0 / signal.sample_rate_hz);
+    Some(At { time_s, u_s })
+}
+
+/// How much later than the force a sensor may answer whose seat rings on behind the contact, s: the period of that ringing over 2π; 0 where
+/// the signal, free of the cask's own ringing, is quiet.
+#[must_use]
+pub fn seat_s(signal: &Signal, contact_s: f64, left_s: f64) -> f64 {
+    let after_s = left_s - contact_s;
+    let (contact, (after, turns)) =
+        (turns(signal, contact_s, left_s).0, turns(signal, left_s, left_s + after_s));
+    if turns < LEAST_TURNS || after < (TAIL * contact).max(NOISE_FACTOR * signal.noise_m_s2) {
+        return 0.0;
+    }
+    after_s / as_f64(turns) / std::f64::consts::PI
+}
+
+/// Sums of all samples before each index; one longer than `values`.
+fn cumulative(values: &[f64]) -> Vec<f64> {
+    let mut sums = Vec::with_capacity(values.len() + 1);
+    let mut sum = 0.0;
+    sums.push(sum);
+    for v in values {
+        sum += v;
+        sums.push(sum);
+    }
+    sums
+}
+
+/// Moving mean over 0.2 ms, so that the high modes of the sensor's mount do not end a pulse.
+fn smoothed(force: &[f64], sample_rate_hz: f64) -> Vec<f64> {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive sample count")]
+    let half = (1e-4 * sample_rate_hz) as usize;
+    let sums = cumulative(force);
+    (0..force.len())
+        .map(|i| {
+            let (a, b) = (i.saturating_sub(half), (i + half + 1).min(force.len()));
+            (sums[b] - sums[a]) / as_f64(b - a)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Axis, End};
+    use std::f64::consts::{PI, TAU};
+
+    /// A half sine of 6 ms from 20.03 ms on at 100 kHz, and behind it a seat that rings with a share of its peak.
+    fn signal(rings: f64) -> Signal {
+        let force = |i: i32| {
+            let t = f64::from(i) * 1e-5 - 0.020_03;
+            let seat =
+                |since_s: f64| 3000.0 * rings * (-30.0 * since_s).exp() * (TAU * 1500.0 * since_s).sin();
+            match t {
+                t if t < 0.0 => 0.0,
+                t if t < 0.006 => 3000.0 * (PI * t / 0.006).sin(),
+                t => seat(t - 0.006),
+            }
+        };
+        Signal {
+            name: "A".into(),
+            end: End::First,
+            axis: Axis::Transverse,
+            position_m: 0.1,
+            offset_m: 0.0,
+            start_s: 0.0,
+            sample_rate_hz: 1e5,
+            force_m_s2: (0..20_000).map(force).collect(),
+            removed_offset_m_s2: 0.0,
+            u_offset_m_s2: 0.0,
+            noise_m_s2: 0.1,
+            noise_spectrum: vec![],
+            free_fall_s: 0.25,
+            clipped: vec![],
+            gaps: vec![],
+        }
+    }
+
+    #[test]
+    fn separation_is_the_end_of_the_pulse() {
+        let quiet = signal(0.0);
+        let by_force = separation(&quiet, 0.020_03, 0.04).expect("a separation");
+        assert!((by_force.time_s - 0.026_03).abs() < 2.0 * by_force.u_s, "{by_force:?}");
+        let rough_s = first_separation(&quiet, 0.020_03, 0.04).expect("a separation");
+        assert!((rough_s - 0.026_03).abs() < 2.0 * by_force.u_s, "{rough_s}");
+        let held = by_impulse(&quiet, 0.020_03, by_force, &(0.04..0.1));
+        assert!((held.time_s - by_force.time_s).abs() < 1e-9 && held.u_s < 1.2 * by_force.u_s, "{held:?}");
+        assert!(seat_s(&quiet, 0.020_03, 0.026_03).abs() < 1e-9);
+    }
+
+    #[test]
+    fn ringing_behind_the_pulse_is_no_contact() {
+        let ringing = signal(0.3);
+        let by_force = separation(&ringing, 0.020_03, 0.06).expect("a separation");
+        assert!(by_force.time_s > 0.04, "{by_force:?}");
+        let left = by_impulse(&ringing, 0.020_03, by_force, &(0.06..0.1));
+        assert!((left.time_s - 0.026_03).abs() < 2.0 * left.u_s && left.u_s < 5e-4, "{left:?}");
+        // 1500 Hz turn by a radian in 0.106 ms.
+        let seat_s = seat_s(&ringing, 0.020_03, 0.026_03);
+        assert!((seat_s - 1.06e-4).abs() < 2e-5, "{seat_s}");
+    }
+
+    #[test]
+    fn the_impulse_is_given_after_the_last_stage() {
+        let mut staged = signal(0.0);
+        // The same pulse once more 3 ms after the first, weaker.
+        let again: Vec<f64> = staged.force_m_s2.iter().map(|force| 0.5 * force).collect();
+        staged.force_m_s2.iter_mut().skip(900).zip(again).for_each(|(force, again)| *force += again);
+        let given_s = impulse_given(&staged, 0.020_03, 0.08).expect("a flight");
+        assert!((given_s - 0.035_03).abs() < 1e-3, "{given_s}");
+    }
+}
