@@ -1,7 +1,7 @@
 //! The free fall before first contact to a channel's offset and noise.
 
 use crate::data::{ChannelFinding, Finding, Severity, Signal};
-use crate::numerics::reduce::{self, block_means, block_of};
+use crate::numerics::reduce::{self, block_means, block_of, converter_step};
 use crate::numerics::{as_f64, noise, robust};
 use std::borrow::Cow;
 
@@ -49,7 +49,8 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<F
     let block = block_of(SPECTRUM_RATE_HZ, signal.sample_rate_hz);
     let noise_spectrum = noise::spectrum(&block_means(&quiet, block), signal.sample_rate_hz / as_f64(block));
     // White noise averages out; what differs between the two halves does not.
-    let u_offset_m_s2 = (rms / as_f64(quiet.len()).sqrt()).max(wander / 2.0);
+    let u_offset_m_s2 =
+        (rms / as_f64(quiet.len()).sqrt()).max(wander / 2.0).hypot(rounding_m_s2(signal, spread_m_s2));
     let mut findings = Vec::new();
     findings.extend(offset(&signal.name, mean, take_off));
     findings.extend(drift(&signal.name, &quiet, (signal.start_s, before_s)));
@@ -67,6 +68,12 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<F
         }
     }
     findings
+}
+
+/// What a level between two steps q of a converter is off by, q/√12, where the noise is less than half a step and so does not average it out.
+fn rounding_m_s2(signal: &Signal, noise_m_s2: f64) -> f64 {
+    let step_m_s2 = converter_step(&signal.force_m_s2);
+    if noise_m_s2 < step_m_s2 / 2.0 { step_m_s2 / 12.0_f64.sqrt() } else { 0.0 }
 }
 
 /// The first `end` samples but for those that are missing.

@@ -91,17 +91,20 @@ const RESOLVED: f64 = 0.5;
 
 /// A mode so many times larger at one end than at the other rings at that one alone: both ends of a free beam do alike.
 const ALONE: f64 = 10.0;
+/// Nor with so much damping: bolted and welded steel has 0.01 to 0.03, a cable that whips is damped by the air.
+const STRONG_DAMPING: f64 = 0.08;
 /// So many times larger it is none whatever the window shows: within a hundredth of its length no sensor sits on a node by chance.
 const WHOLLY_ALONE: f64 = 30.0;
 /// No cask bends more slowly, Hz: a mode this slow stands at the edge of what is sought.
 const SLOWEST_HZ: f64 = 16.5;
 
 impl FlightFit {
-    /// Whether a mode is none, but a bend of one channel's plateau: at one end alone, and of less than a period or slower than any cask's; or
-    /// wholly at one end, as a cable that whips.
+    /// Whether a mode is none, but a bend of one channel's plateau: at one end alone, and of less than a period, slower than any cask's or
+    /// damped as none; or wholly at one end, as a cable that whips.
     #[must_use]
     pub fn is_bend(&self, mode: usize, signals: &[Signal]) -> bool {
-        let frequency_hz = self.modes.get(mode).map_or(f64::INFINITY, |m| m.frequency_hz);
+        let (frequency_hz, damping) =
+            self.modes.get(mode).map_or((f64::INFINITY, 0.0), |m| (m.frequency_hz, m.damping));
         let largest_m_s = |end: End| {
             let of_end = signals
                 .iter()
@@ -111,7 +114,7 @@ impl FlightFit {
         };
         let (first, second) = (largest_m_s(End::First), largest_m_s(End::Second));
         let is_slow = frequency_hz < SLOWEST_HZ || frequency_hz * (self.to_s - self.from_s) < 1.0;
-        let alone = if is_slow { ALONE } else { WHOLLY_ALONE };
+        let alone = if is_slow || damping > STRONG_DAMPING { ALONE } else { WHOLLY_ALONE };
         first.max(second) > alone * first.min(second)
     }
 

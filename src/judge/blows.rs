@@ -3,7 +3,7 @@
 use crate::data::{ChannelFinding, Events, Finding, FlightFit, IssueCode, Signal};
 use crate::numerics::as_f64;
 use crate::numerics::foretold::{MOST_BEFORE, foretell};
-use crate::numerics::reduce::{block_means, block_of, least_step, peak};
+use crate::numerics::reduce::{block_means, block_of, converter_step, peak};
 use std::ops::Range;
 
 /// Samples are looked at in means over this rate, Hz: a blow lasts one to some milliseconds.
@@ -14,8 +14,6 @@ const PIECE_S: f64 = 0.1;
 const LIMIT: f64 = 9.5;
 /// The spread is no less than this share of the largest mean: what is smaller changes no velocity by 1 % of v0.
 const LEAST_SPREAD: f64 = 3e-4;
-/// Least step of a converter that is told from rounding, as a share of the largest sample.
-const LEAST_STEP: f64 = 1e-9;
 /// Before the slap-down that was found may lie its foot: so long, s, and this share of the flight.
 const FOOT_S: f64 = 1e-3;
 const FOOT: f64 = 0.06;
@@ -96,10 +94,10 @@ fn blows(signal: &Signal, span_s: &Range<f64>) -> Vec<Unforetold> {
 
 /// Standard uncertainty of means by a converter's step q: q/√12 of each sample that differs from the one before, as those that do not have one error.
 fn rounding_of_means(samples: &[f64], block: usize) -> f64 {
-    let step = least_step(samples, LEAST_STEP * peak(samples));
+    let step = converter_step(samples);
     let changes = samples.windows(2).filter(|w| (w[1] - w[0]).abs() >= step).count();
     let independent = as_f64(block * changes) / as_f64(samples.len().max(1));
-    if step.is_finite() { step / (12.0 * independent.max(1.0)).sqrt() } else { 0.0 }
+    step / (12.0 * independent.max(1.0)).sqrt()
 }
 
 #[cfg(test)]

@@ -24,6 +24,9 @@ const AGREEMENT: f64 = 0.2;
 pub fn judge_coupling(signals: &[Signal], flight: &FlightFit, cask_file: &CaskFile) -> Vec<Finding> {
     let stated = cask_file.channels.iter().filter(|c| c.coupling != Coupling::Dc);
     let declared_ac: Vec<&str> = stated.map(|c| c.name.as_str()).collect();
+    if !flight.drift {
+        return Vec::new();
+    }
     let mut findings = undeclared(signals, flight, &declared_ac);
     if declared_ac.is_empty() {
         findings.extend(supported(signals, flight, &cask_file.drop));
@@ -37,8 +40,8 @@ fn supported(signals: &[Signal], flight: &FlightFit, drop: &Drop) -> Option<Find
     let transverse: Vec<&str> =
         signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| s.name.as_str()).collect();
     let of_transverse = flight.plateaus.iter().filter(|p| transverse.contains(&p.channel.as_str()));
-    let growths: Vec<Trend> = of_transverse.map(|p| Trend::of(p, 1.0)).collect();
-    let rate_hz = common_rate(&growths).filter(|_| flight.drift)?;
+    let growths: Vec<Trend> = of_transverse.map(|p| Trend::of(p, signals, 1.0)).collect();
+    let rate_hz = common_rate(&growths)?;
     let most_m_s2 = growths.iter().map(|g| g.plateau.zero_shift_m_s2).fold(0.0, f64::max);
     if !CARRIED.contains(&(most_m_s2 / (drop.gravity_m_s2 * drop.angle_rad.cos()))) {
         return None;
@@ -54,11 +57,11 @@ fn undeclared(signals: &[Signal], flight: &FlightFit, declared_ac: &[&str]) -> V
         .into_iter()
         .filter(|p| signals.iter().any(|s| s.name == p.channel))
         .filter(|p| p.velocity_step_m_s.abs() > LEAST_STEP * largest_m_s)
-        .map(|p| Trend::of(p, -1.0))
+        .map(|p| Trend::of(p, signals, -1.0))
         .collect();
     let Some(rate) = common_rate(&droops) else { return Vec::new() };
     let time_constant_s = 1.0 / rate;
-    if !flight.drift || !TIME_CONSTANTS_S.contains(&time_constant_s) {
+    if !TIME_CONSTANTS_S.contains(&time_constant_s) {
         return Vec::new();
     }
     droops
@@ -83,12 +86,14 @@ struct Trend<'a> {
 
 impl<'a> Trend<'a> {
     /// The drift that goes on as the step did (sign 1), or back from it (−1).
-    fn of(plateau: &'a Plateau, sign: f64) -> Self {
+    fn of(plateau: &'a Plateau, signals: &[Signal], sign: f64) -> Self {
         let step_m_s = plateau.velocity_step_m_s;
+        let of_plateau = signals.iter().find(|s| s.name == plateau.channel);
+        let u_offset_m_s2 = of_plateau.map_or(0.0, |s| s.u_offset_m_s2);
         Self {
             plateau,
             rate_hz: sign * plateau.zero_shift_m_s2 / step_m_s,
-            u_hz: plateau.u_zero_shift_m_s2 / step_m_s.abs(),
+            u_hz: plateau.u_zero_shift_m_s2.hypot(u_offset_m_s2) / step_m_s.abs(),
         }
     }
 }

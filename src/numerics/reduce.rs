@@ -50,6 +50,13 @@ pub fn least_step<T: Copy + Into<f64>>(samples: &[T], least: f64) -> f64 {
     smallest.into_iter().fold(f64::INFINITY, f64::min)
 }
 
+/// Step of the converter that the samples are from: the smallest change that is told from rounding; 0 where nothing changes.
+#[must_use]
+pub fn converter_step(samples: &[f64]) -> f64 {
+    let step = least_step(samples, 1e-9 * peak(samples));
+    if step.is_finite() { step } else { 0.0 }
+}
+
 /// Σ x.
 #[must_use]
 pub fn sum(values: &[f64]) -> f64 {

@@ -23,7 +23,7 @@ pub(super) fn strike(kind: &str, size: f64, scene: &mut Scene, stated: &mut Cask
                 stated.drop.horizontal_velocity_m_s = more_m_s;
             }
         }
-        "guided" | "guided_rest" => {
+        "guided" | "guided_seen" | "guided_rest" => {
             scene.extras.guided = size / 100.0;
             let of_fall_m_s = (2.0 * scene.drop.gravity_m_s2 * scene.drop.height_m).sqrt();
             scene.drop.impact_velocity_m_s -= of_fall_m_s * (1.0 - (1.0 - scene.extras.guided).sqrt());
