@@ -14,6 +14,9 @@ const COG_SHARE: f64 = 0.1;
 /// Inertia over m l² of a mass within a tenth of the length, 1/12 of its square; a homogeneous rod has 1/12.
 const LEAST_INERTIA: f64 = 1e-2 / 12.0;
 
+/// Mass over the box about a cask, kg/m³: an empty drum has 100, and a mass in tonnes makes 1 to 5 of a cask's 1000 to 5000.
+const LEAST_DENSITY_KG_M3: f64 = 5.0;
+
 /// Standard value where the file gives no gravity: the contract's default.
 const DEFAULT_GRAVITY_M_S2: f64 = 9.81;
 
@@ -53,6 +56,15 @@ pub(crate) fn cask(table: &Section, path: &Path) -> Result<Cask, CaskFileError> 
         inertia_is_possible(table, inertia, mass_kg, [length_m, height_m, cog_m])?;
     }
     let width_m = table.number("width_m")?.map(|width| width.value);
+    let box_m3 = length_m * height_m * width_m.unwrap_or(height_m);
+    if mass_kg < LEAST_DENSITY_KG_M3 * box_m3 {
+        return Err(table.wrong(
+            table.place("mass_kg"),
+            format!("no cask of this size weighs {mass_kg} kg"),
+            format!("at least {:.0}", LEAST_DENSITY_KG_M3 * box_m3),
+            "mass_kg counts in kilograms: 4.466 t are 4466; lengths count in metres",
+        ));
+    }
     let name = match table.text("name")? {
         Some(name) => name.value,
         None => {

@@ -208,6 +208,13 @@ fn what_no_cask_and_no_drop_can_be_is_refused_with_its_range() {
             assert!(message.contains(key) && message.len() < 500, "{key} = {value}: {message}");
         }
     }
+    // ANF-18 in tonnes.
+    let anf_18 = |mass: &str| {
+        of(&format!(
+            "[cask]\nmass_kg = {mass}\nlength_m = 5.512\nheight_m = 0.792\n[drop]\nheight_m = 9\nangle_deg = 15\n"
+        ))
+    };
+    assert!(anf_18("4466").is_ok() && told(&anf_18("4.466").unwrap_err()).contains("4.466 t are 4466"));
     // Each for itself is in its range, the two together are no drop.
     let text = SHORT.replace("length_m = 2", "length_m = 100").replace("height_m = 9", "height_m = 0.002");
     assert!(told(&of(&text).unwrap_err()).contains("v0²/(g l) is 4.000e-5"));
