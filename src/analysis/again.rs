@@ -55,17 +55,14 @@ pub(super) fn without_one(recording: &Recording, file: &CaskFile, found: Analysi
     if !is_doubted || spare.len() < 3 || is_too_large(recording) {
         return found;
     }
-    let without = |name: &str, with_curves| {
+    let without = |name: &&str| {
         let mut others = recording.clone();
-        others.channels.retain(|channel| channel.name != name);
+        others.channels.retain(|channel| channel.name != *name);
         others.issues.retain(|issue| issue.channel.as_deref() != Some(name));
-        analyzed(&others, file, with_curves)
-    };
-    let tried = |name: &&str| {
-        let analysis = without(name, false);
+        let analysis = analyzed(&others, file);
         (Doubt::of(&analysis), (*name).to_owned(), analysis)
     };
-    let mut tried: Vec<_> = spare.iter().map(tried).collect();
+    let mut tried: Vec<_> = spare.iter().map(without).collect();
     tried.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
     let before = Doubt::of(&found);
     let is_alone = |best: &Doubt, next: &Doubt| {
@@ -83,8 +80,7 @@ pub(super) fn without_one(recording: &Recording, file: &CaskFile, found: Analysi
     if !is_told {
         return found;
     }
-    let name = tried.swap_remove(0).1;
-    let mut better = without(&name, true);
+    let (_, name, mut better) = tried.swap_remove(0);
     let of = |analysis: &Analysis| (analysis.result.slap_down.speed, analysis.result.k);
     let finding = ChannelFinding::LeftOut { with: of(&found), without: of(&better) }.on(&name);
     add(&mut better, finding);
@@ -101,7 +97,7 @@ pub(super) fn name_slip(recording: &Recording, file: &CaskFile, found: &mut Anal
     for slip in slips(recording) {
         let mut stated = file.clone();
         put_right(&slip, &mut tried, &mut stated);
-        let analysis = analyzed(&tried, &stated, false);
+        let analysis = analyzed(&tried, &stated);
         // Every slip undoes itself.
         put_right(&slip.undone(), &mut tried, &mut stated);
         let doubt = Doubt::of(&analysis);

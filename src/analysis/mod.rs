@@ -33,8 +33,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
 /// [`analyze`] without the search for a usual slip, which names one and changes no number.
 #[must_use]
 pub fn measure(recording: &Recording, cask_file: &CaskFile) -> Analysis {
-    let found = || analyzed(recording, cask_file, true);
-    rayon::scope(|_| again::without_one(recording, cask_file, found()))
+    rayon::scope(|_| again::without_one(recording, cask_file, analyzed(recording, cask_file)))
 }
 
 /// A first impact with the events and the flight that follow it.
@@ -54,8 +53,7 @@ fn flown(recording: &Recording, file: &CaskFile, farther: bool) -> (Vec<Finding>
     (findings, struck)
 }
 
-/// The analysis, with the curves or without them and what is read off them.
-fn analyzed(recording: &Recording, file: &CaskFile, with_curves: bool) -> Analysis {
+fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
     let (mut findings, mut found) = flown(recording, file, false);
     // From steep angles a cask may strike later than its angle has it.
     if findings.iter().any(|f| f.code == IssueCode::NoSlapDown)
@@ -72,7 +70,7 @@ fn analyzed(recording: &Recording, file: &CaskFile, with_curves: bool) -> Analys
     judge::weigh_by_distance(&mut findings, &events);
     let (on_channels, smooth) = rayon::join(
         || judge::judge_channels(impact.recorded(), &events, file, &findings),
-        || if with_curves { outcome::smooth(&impact.signals, &events, file) } else { Vec::new() },
+        || outcome::smooth(&impact.signals, &events, file),
     );
     findings.extend(on_channels);
     let reached = match flown {

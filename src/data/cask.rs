@@ -189,6 +189,12 @@ pub fn first_arm_m(cog_m: f64, height_m: f64, angle_rad: f64) -> f64 {
     cog_m * angle_rad.cos() - height_m / 2.0 * angle_rad.sin()
 }
 
+/// Inertia of a homogeneous block about its centre, kg m²: m (l² + h²) / 12.
+#[must_use]
+pub fn block_inertia_kg_m2(mass_kg: f64, length_m: f64, height_m: f64) -> f64 {
+    mass_kg * (length_m * length_m + height_m * height_m) / 12.0
+}
+
 impl Drop {
     /// A free fall from this height at 9.81 m/s², without rotation.
     #[must_use]

@@ -30,7 +30,7 @@ pub use analysis::{
 pub use at::At;
 pub use cask::{
     Axis, BENDING_WAVE_M_S, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice,
-    GRAZE_SHARE, MOST_CHANNELS, SAMPLE_RATES_HZ, Source, Unit, first_arm_m,
+    GRAZE_SHARE, MOST_CHANNELS, SAMPLE_RATES_HZ, Source, Unit, block_inertia_kg_m2, first_arm_m,
 };
 pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, MotionCurve};

@@ -6,7 +6,7 @@ use super::{in_memory, synth};
 use crate::analysis::measure;
 use crate::data::{
     Analysis, Cask, CaskFile, ChannelSpec, Contact, Corrections, Coupling, Drop, FilterChoice, Recording,
-    STANDARD_GRAVITY_M_S2, Source, Tolerances, Unit,
+    STANDARD_GRAVITY_M_S2, Source, Tolerances, Unit, block_inertia_kg_m2,
 };
 use crate::numerics::reduce;
 use std::path::PathBuf;
@@ -43,7 +43,7 @@ impl Build {
             height_m,
             width_m: None,
             cog_m: length_m / 2.0,
-            inertia_kg_m2: mass_kg * (length_m * length_m + height_m * height_m) / 12.0,
+            inertia_kg_m2: block_inertia_kg_m2(mass_kg, length_m, height_m),
             is_body: true,
         }
     }

@@ -8,7 +8,9 @@ use crate::data::{Cask, CaskFile, Drop, End};
 use crate::ingest::IngestError;
 use crate::ingest::cask_file::section::{Document, Kind, Section};
 use crate::ingest::cask_file::{self, CaskFileError};
-use crate::lab::data::{BendingMode, CrushableEnd, LooseMass, Scene, SceneExtras, SceneFile, WantedImpact};
+use crate::lab::data::{
+    BendingMode, CrushableEnd, LooseMass, Scene, SceneExtras, SceneFile, WantedImpact, slowed,
+};
 use crate::lab::drawn;
 use crate::lab::synth::{self, crushable_end};
 use std::path::Path;
@@ -114,12 +116,7 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
 
 /// The fall that guides slow down, of which the cask file does not know.
 fn guided_drop(free: Drop, guided: f64) -> Drop {
-    if free.impact_velocity_given {
-        return free;
-    }
-    let of_fall_m_s = (2.0 * free.gravity_m_s2 * free.height_m).sqrt();
-    let lost_m_s = of_fall_m_s * (1.0 - (1.0 - guided).sqrt());
-    Drop { impact_velocity_m_s: free.impact_velocity_m_s - lost_m_s, ..free }
+    if free.impact_velocity_given { free } else { slowed(free, guided) }
 }
 
 fn loose_mass(table: &Section, cask: &Cask) -> Result<LooseMass, CaskFileError> {

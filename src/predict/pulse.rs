@@ -1,7 +1,7 @@
 //! A moving body and the length of L's contact to the motion as L leaves the target: a half-sine of force in place of an impulse.
 
 use super::impact::{Struck, coefficient, strike_first_end};
-use super::state::{Differentiable, State, arms_m, second_end_m};
+use super::state::{Differentiable, State, arms_m, runge_kutta, second_end_m};
 use crate::data::{Body, Contact, Drop};
 use std::f64::consts::PI;
 
@@ -62,7 +62,7 @@ impl Pulse<'_> {
         };
         // ∫ F sin(π t/T) dt = 2 F T/π
         let first_n = struck.vertical_impulse_n_s.re() * PI / (2.0 * duration_s);
-        let Some((force_n, slope)) = secant(missed, first_n, CLOSE_M_S) else {
+        let Some((force_n, slope)) = secant(missed, first_n) else {
             return PulseEnd::Leaves(struck);
         };
         // One step of Newton's carries how the force answers to the start.
@@ -85,11 +85,11 @@ impl Pulse<'_> {
 }
 
 /// The root of `missed` near `first` and its slope there; `None` where the secants do not close in on one.
-fn secant(missed: impl Fn(f64) -> f64, first: f64, close: f64) -> Option<(f64, f64)> {
+fn secant(missed: impl Fn(f64) -> f64, first: f64) -> Option<(f64, f64)> {
     let (mut low, mut high) = ((first, missed(first)), (1.02 * first, missed(1.02 * first)));
     for _ in 0..ROUNDS {
         let slope = (high.1 - low.1) / (high.0 - low.0);
-        if high.1.abs() <= close {
+        if high.1.abs() <= CLOSE_M_S {
             return (slope > 0.0).then_some((high.0, slope));
         }
         let next = high.0 - high.1 / slope;
@@ -181,15 +181,15 @@ impl Pulse<'_> {
         (a * b * normal_n / theta - a * w * w) / (b * b / theta + 1.0 / self.body.mass_kg)
     }
 
-    /// A step of Runge's and Kutta's fourth order, `(from_s, step_s)`, with F_x/F as given or F_x that holds the corner.
+    /// A step over `span_s`, from when and how long, with F_x/F as given or F_x that holds the corner.
     fn step<T: Differentiable>(
         &self,
         at: &State<T>,
         ratio: Option<f64>,
-        (from_s, step_s): (T, T),
+        span_s: (T, T),
         largest_n: T,
     ) -> State<T> {
-        let slope = |at: &State<T>, time_s: T| {
+        runge_kutta(at, span_s, |at, time_s| {
             let normal_n = self.force_n(time_s, largest_n);
             let along_n = ratio.map_or_else(|| self.holding_n(at, normal_n), |ratio| normal_n * ratio);
             let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
@@ -200,16 +200,7 @@ impl Pulse<'_> {
                 vertical_velocity_m_s: normal_n / self.body.mass_kg - self.gravity_m_s2,
                 angular_velocity_rad_s: (a * normal_n - b * along_n) / self.body.inertia_kg_m2,
             }
-        };
-        let half_s = step_s * 0.5;
-        let one = slope(at, from_s);
-        let two = slope(&at.plus(&one, half_s), from_s + half_s);
-        let three = slope(&at.plus(&two, half_s), from_s + half_s);
-        let four = slope(&at.plus(&three, step_s), from_s + step_s);
-        at.plus(&one, step_s / 6.0)
-            .plus(&two, step_s / 3.0)
-            .plus(&three, step_s / 3.0)
-            .plus(&four, step_s / 6.0)
+        })
     }
 }
 

@@ -41,6 +41,38 @@ pub(super) fn second_end_m(body: &Body) -> f64 {
     body.cog_m - body.length_m
 }
 
+/// What an integration moves by its slopes, themselves of the same shape.
+pub(super) trait Advance<T> {
+    /// It after `step_s` with these slopes.
+    fn plus(&self, slope: &Self, step_s: T) -> Self;
+}
+
+/// A step of Runge's and Kutta's fourth order, `(from_s, step_s)`.
+pub(super) fn runge_kutta<S: Advance<T>, T: Differentiable>(
+    at: &S,
+    (from_s, step_s): (T, T),
+    slope: impl Fn(&S, T) -> S,
+) -> S {
+    let half_s = step_s * 0.5;
+    let one = slope(at, from_s);
+    let two = slope(&at.plus(&one, half_s), from_s + half_s);
+    let three = slope(&at.plus(&two, half_s), from_s + half_s);
+    let four = slope(&at.plus(&three, step_s), from_s + step_s);
+    at.plus(&one, step_s / 6.0).plus(&two, step_s / 3.0).plus(&three, step_s / 3.0).plus(&four, step_s / 6.0)
+}
+
+impl<T: Differentiable> Advance<T> for State<T> {
+    fn plus(&self, slope: &Self, step_s: T) -> Self {
+        Self {
+            height_m: self.height_m + slope.height_m * step_s,
+            angle_rad: self.angle_rad + slope.angle_rad * step_s,
+            horizontal_velocity_m_s: self.horizontal_velocity_m_s + slope.horizontal_velocity_m_s * step_s,
+            vertical_velocity_m_s: self.vertical_velocity_m_s + slope.vertical_velocity_m_s * step_s,
+            angular_velocity_rad_s: self.angular_velocity_rad_s + slope.angular_velocity_rad_s * step_s,
+        }
+    }
+}
+
 impl<T: Differentiable> State<T> {
     /// Just before L strikes at v0, L on the target: ż_S = −v0 − ω a   (3)
     pub fn falling(body: &Body, angle_rad: T, drop: &Drop) -> Self {
@@ -78,17 +110,6 @@ impl<T: Differentiable> State<T> {
             angle_rad: self.angle_rad - self.angular_velocity_rad_s * time_s,
             vertical_velocity_m_s: self.vertical_velocity_m_s - time_s * gravity_m_s2,
             ..*self
-        }
-    }
-
-    /// The motion after `step_s` with these slopes.
-    pub fn plus(&self, slope: &Self, step_s: T) -> Self {
-        Self {
-            height_m: self.height_m + slope.height_m * step_s,
-            angle_rad: self.angle_rad + slope.angle_rad * step_s,
-            horizontal_velocity_m_s: self.horizontal_velocity_m_s + slope.horizontal_velocity_m_s * step_s,
-            vertical_velocity_m_s: self.vertical_velocity_m_s + slope.vertical_velocity_m_s * step_s,
-            angular_velocity_rad_s: self.angular_velocity_rad_s + slope.angular_velocity_rad_s * step_s,
         }
     }
 

@@ -1,7 +1,7 @@
 //! L on the target to the force that holds it, and to how it turns and slides: one step of its motion.
 
 use super::impact::coefficient;
-use super::state::{Differentiable, State, arms_m};
+use super::state::{Advance, Differentiable, State, arms_m, runge_kutta};
 use crate::data::{Body, Contact, Drop};
 
 /// A corner that slides slower than this, m/s, was stopped by the impact but for round-off.
@@ -154,24 +154,16 @@ impl Support<'_> {
         }
     }
 
-    /// A step of Runge's and Kutta's fourth order.
+    /// The motion a step later.
     pub fn step<T: Differentiable>(&self, at: &Turning<T>, grip: Grip, step_s: T) -> Turning<T> {
-        let slope = |at: &Turning<T>| {
+        runge_kutta(at, (T::from(0.0), step_s), |at, _| {
             let forces = self.forces(at, grip);
             Turning {
                 angle_rad: -at.angular_velocity_rad_s,
                 angular_velocity_rad_s: forces.angular_acceleration_rad_s2,
                 slip_m_s: forces.slip_rate_m_s2,
             }
-        };
-        let one = slope(at);
-        let two = slope(&at.plus(&one, step_s * 0.5));
-        let three = slope(&at.plus(&two, step_s * 0.5));
-        let four = slope(&at.plus(&three, step_s));
-        at.plus(&one, step_s / 6.0)
-            .plus(&two, step_s / 3.0)
-            .plus(&three, step_s / 3.0)
-            .plus(&four, step_s / 6.0)
+        })
     }
 
     /// The inclination at which R strikes while L rests, rad: l sin φ is how deep L's corner lies.
@@ -193,6 +185,16 @@ impl Support<'_> {
     }
 }
 
+impl<T: Differentiable> Advance<T> for Turning<T> {
+    fn plus(&self, slope: &Self, step_s: T) -> Self {
+        Self {
+            angle_rad: self.angle_rad + slope.angle_rad * step_s,
+            angular_velocity_rad_s: self.angular_velocity_rad_s + slope.angular_velocity_rad_s * step_s,
+            slip_m_s: self.slip_m_s + slope.slip_m_s * step_s,
+        }
+    }
+}
+
 impl<T: Differentiable> Turning<T> {
     pub fn of(body: &Body, state: &State<T>) -> Self {
         let slip_m_s = state.corner(body, body.cog_m).horizontal_velocity_m_s;
@@ -208,14 +210,6 @@ impl<T: Differentiable> Turning<T> {
             angle_rad: self.angle_rad.re(),
             angular_velocity_rad_s: self.angular_velocity_rad_s.re(),
             slip_m_s: self.slip_m_s.re(),
-        }
-    }
-
-    fn plus(&self, slope: &Self, step_s: T) -> Self {
-        Self {
-            angle_rad: self.angle_rad + slope.angle_rad * step_s,
-            angular_velocity_rad_s: self.angular_velocity_rad_s + slope.angular_velocity_rad_s * step_s,
-            slip_m_s: self.slip_m_s + slope.slip_m_s * step_s,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::CaskFileError;
 use super::section::{Placed, Section};
-use crate::data::{Cask, Drop, first_arm_m};
+use crate::data::{Cask, Drop, block_inertia_kg_m2, first_arm_m};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
@@ -80,14 +80,9 @@ pub(crate) fn cask(table: &Section, path: &Path) -> Result<Cask, CaskFileError> 
         cog_m,
         inertia_kg_m2: inertia
             .as_ref()
-            .map_or(homogeneous_inertia_kg_m2(mass_kg, length_m, height_m), |inertia| inertia.value),
+            .map_or(block_inertia_kg_m2(mass_kg, length_m, height_m), |inertia| inertia.value),
         is_body: height_m > 0.0 || cog.is_some() || inertia.is_some(),
     })
-}
-
-/// Θ = m (l² + h²) / 12, a homogeneous block.
-fn homogeneous_inertia_kg_m2(mass_kg: f64, length_m: f64, height_m: f64) -> f64 {
-    mass_kg * (length_m * length_m + height_m * height_m) / 12.0
 }
 
 /// Whether mass within length and section can have this inertia: at most with all of it in the corners, the centre of gravity kept; at
@@ -105,7 +100,7 @@ fn inertia_is_possible(
         return Ok(());
     }
     let four_digits = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
-    let homogeneous = four_digits(homogeneous_inertia_kg_m2(mass_kg, length_m, height_m));
+    let homogeneous = four_digits(block_inertia_kg_m2(mass_kg, length_m, height_m));
     Err(table.wrong(
         inertia.span.clone(),
         format!("no cask of this mass and size has an inertia_kg_m2 of {}", inertia.value),

@@ -1,7 +1,7 @@
 //! A kind of drop to the scene that has it: what the cask, its contents, its ends and its fall do, and what is stated of that.
 
 use super::super::chance::Chance;
-use super::super::data::{LooseMass, Scene};
+use super::super::data::{LooseMass, Scene, slowed};
 use super::super::drawn::LEAST_FRICTION;
 use super::super::synth;
 use crate::data::{Cask, CaskFile, Contact, Drop, first_arm_m};
@@ -25,8 +25,7 @@ pub(super) fn strike(kind: &str, size: f64, scene: &mut Scene, stated: &mut Cask
         }
         "guided" | "guided_seen" | "guided_rest" => {
             scene.extras.guided = size / 100.0;
-            let of_fall_m_s = (2.0 * scene.drop.gravity_m_s2 * scene.drop.height_m).sqrt();
-            scene.drop.impact_velocity_m_s -= of_fall_m_s * (1.0 - (1.0 - scene.extras.guided).sqrt());
+            scene.drop = slowed(scene.drop, scene.extras.guided);
         }
         "contents" | "contents_light" => scene.extras.contents = contents(size, &scene.cask, chance),
         "lock_up" => lock_up(size, scene),

@@ -1,7 +1,7 @@
 //! A wrong statement to the cask file that makes it.
 
 use super::super::drawn::DrawnDrop;
-use crate::data::Contact;
+use crate::data::{Contact, block_inertia_kg_m2};
 
 /// Damages what is stated by `kind`; one that is done to something else does nothing to it.
 pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
@@ -87,7 +87,7 @@ fn follow(case: &mut DrawnDrop) {
         cask.cog_m = cask.length_m / 2.0;
     }
     if no_inertia {
-        cask.inertia_kg_m2 = cask.mass_kg * (cask.length_m.powi(2) + cask.height_m.powi(2)) / 12.0;
+        cask.inertia_kg_m2 = block_inertia_kg_m2(cask.mass_kg, cask.length_m, cask.height_m);
     }
 }
 

@@ -8,7 +8,7 @@ mod trial;
 pub use campaign::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber, Scored};
 pub use scene::{
     BendingMode, Chain, CrushableEnd, LooseMass, MotionStep, Scene, SceneChannel, SceneExtras,
-    SimulatedMotion, Truth,
+    SimulatedMotion, Truth, slowed,
 };
 pub use synthetic::{SceneFile, SyntheticChannel, SyntheticRecording, WantedImpact};
 pub use trial::{Trial, TrialMachine, TrialMap, TrialPoint, TrialRequest, TrialSize};

@@ -197,6 +197,14 @@ pub struct Scene {
     pub extras: SceneExtras,
 }
 
+/// The drop where guides take `share` of g off its fall: √(2 g h) becomes √(2 (1 − q) g h).
+#[must_use]
+pub fn slowed(free: Drop, share: f64) -> Drop {
+    let of_fall_m_s = (2.0 * free.gravity_m_s2 * free.height_m).sqrt();
+    let lost_m_s = of_fall_m_s * (1.0 - (1.0 - share).sqrt());
+    Drop { impact_velocity_m_s: free.impact_velocity_m_s - lost_m_s, ..free }
+}
+
 impl Scene {
     /// From the release to first contact, s: √(2 h/(g (1 − q))), of which guides take q.
     #[must_use]

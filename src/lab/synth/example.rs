@@ -1,12 +1,12 @@
 //! Scenes that the tests of the simulation start from.
 
-use crate::data::{Axis, Cask, Contact, Drop, End};
+use crate::data::{Axis, Cask, Contact, Drop, End, block_inertia_kg_m2};
 use crate::lab::data::{Chain, CrushableEnd, Scene, SceneChannel, SceneExtras, SimulatedMotion};
 
 /// The scene of `fixtures/anf18-json`: ANF-18, 9 m, 15°, rough; its stiffnesses follow `crush_for` of `fixtures/simulate.py`.
 pub(super) fn anf18() -> Scene {
     let (mass_kg, length_m, height_m, angle_rad) = (4466.0_f64, 5.512_f64, 0.792_f64, 15.0_f64.to_radians());
-    let inertia_kg_m2 = mass_kg * (length_m * length_m + height_m * height_m) / 12.0;
+    let inertia_kg_m2 = block_inertia_kg_m2(mass_kg, length_m, height_m);
     let arm_m = length_m / 2.0 * angle_rad.cos();
     let effective_kg = 1.0 / (1.0 / mass_kg + arm_m * arm_m / inertia_kg_m2);
     let crush = |pulse_s: f64, k: f64| {
