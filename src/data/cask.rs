@@ -142,7 +142,7 @@ pub enum FilterChoice {
 }
 
 /// The `[cask]` table with its defaults filled in.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cask {
     /// The cask's name.
     pub name: String,
@@ -163,7 +163,7 @@ pub struct Cask {
 }
 
 /// The `[drop]` table with its defaults filled in.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Drop {
     /// Free-fall height of the lowest point, of the centre of gravity where the cask rotates, m.
     pub height_m: f64,

@@ -1,10 +1,11 @@
 //! A few numbers to a simulated drop and its cask file, all of it true.
 
 use super::chance::Chance;
+use super::damage::Wish;
 use super::data::{BendingMode, Chain, Scene, SceneChannel, SceneExtras, WantedImpact};
 use super::drawn::{Build, DrawnDrop, cask_file, spec};
 use super::synth;
-use crate::data::{Contact, Drop, End, STANDARD_GRAVITY_M_S2};
+use crate::data::{Axis, Contact, Drop, End, STANDARD_GRAVITY_M_S2};
 
 /// A drop as a trial speaks of it.
 #[derive(Debug, Clone)]
@@ -56,22 +57,28 @@ impl DropPlan {
 
     /// The drop, simulated.
     pub(super) fn draw(&self) -> DrawnDrop {
+        self.draw_as(&Wish::default())
+    }
+
+    /// The drop as a damage needs it, simulated.
+    pub(super) fn draw_as(&self, wish: &Wish) -> DrawnDrop {
         let cask = self.build.cask();
+        let contact = wish.contact.unwrap_or(self.contact);
         let drop = Drop::of_height(9.0, self.angle_deg.to_radians());
         let end = |end, duration_s, restitution| {
             let wanted = WantedImpact { duration_s, restitution, yield_share: self.yield_share };
-            synth::crushable_end(&cask, &drop, self.contact, end, wanted)
+            synth::crushable_end(&cask, &drop, contact, end, wanted)
         };
-        let scene = Scene {
+        let mut scene = Scene {
             name: cask.name.clone(),
             seed: self.seed,
             first_end: end(End::First, self.pulse_s, self.k),
             second_end: end(End::Second, 4e-3, 0.3),
-            contact: self.contact,
+            contact,
             modes: self.modes.clone(),
             before_s: self.before_s,
             after_s: 0.05,
-            rest: false,
+            rest: wish.rest == Some(true),
             clock_error: 0.0,
             swapped_ends: false,
             channels: [End::First, End::Second].map(|end| self.channel(end)).into(),
@@ -79,9 +86,21 @@ impl DropPlan {
             cask,
             drop,
         };
-        let mut stated = cask_file(scene.cask.clone(), drop, self.contact, Vec::new());
+        if scene.rest {
+            scene.before_s = scene.fall_s() + 0.2;
+        }
+        let beside = |name: &str, axis| {
+            let first = self.channel(End::First);
+            SceneChannel { name: name.to_owned(), axis, position_m: 3.0 * first.position_m, ..first }
+        };
+        scene.channels.extend(wish.third_channel.then(|| beside("A3", Axis::Transverse)));
+        scene.channels.extend((wish.axial == Some(true)).then(|| beside("A5", Axis::Axial)));
+        let unstated = (contact == Contact::Unknown).then(|| "contact.friction".to_owned());
+        let mut stated = cask_file(scene.cask.clone(), drop, contact, unstated.into_iter().collect());
+        let mut chance = Chance::new(self.seed, 0);
+        wish.fulfil(&mut scene, &mut stated, &mut chance);
         stated.channels = scene.channels.iter().map(spec).collect();
-        DrawnDrop { motion: synth::simulate(&scene), scene, stated, chance: Chance::new(self.seed, 0) }
+        DrawnDrop { motion: synth::simulate(&scene), scene, stated, chance }
     }
 
     /// The transverse channel 0.15 m from an end.

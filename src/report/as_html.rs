@@ -33,7 +33,7 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
                 }
                 @for chapter in &document.chapters {
                     @if let Some(words) = chapter.heading(Medium::Page).map(printable) {
-                        @if chapter.level == 2 { h2 { (words) } } @else { h3 { (words) } }
+                        h2 { (words) }
                     }
                     @for passage in chapter.shown(Medium::Page) { (self::passage(passage, pictures)) }
                 }

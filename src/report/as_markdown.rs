@@ -10,8 +10,7 @@ pub(crate) fn markdown(document: &ReportDocument, folder: Option<&str>) -> Strin
     let mut blocks = Vec::new();
     for chapter in &document.chapters {
         let heading = chapter.heading(Medium::Markdown);
-        blocks
-            .extend(heading.map(|words| format!("{} {}\n", "#".repeat(chapter.level + 1), cell_text(words))));
+        blocks.extend(heading.map(|words| format!("### {}\n", cell_text(words))));
         blocks.extend(chapter.shown(Medium::Markdown).into_iter().filter_map(|shown| passage(shown, folder)));
     }
     blocks.join("\n")

@@ -36,8 +36,6 @@ pub(crate) struct Frame {
 /// What stands below a heading; none where its words are empty.
 pub(crate) struct Chapter {
     heading: Words,
-    /// 2 below the whole, 3 below a chapter of 2.
-    pub(crate) level: usize,
     /// Where alone it is shown.
     only: Option<Medium>,
     passages: Vec<ChapterPart>,
@@ -46,12 +44,7 @@ pub(crate) struct Chapter {
 impl Chapter {
     /// Nothing yet below this heading.
     pub(crate) fn new(heading: impl Into<Words>) -> Self {
-        Self { heading: heading.into(), level: 2, only: None, passages: Vec::new() }
-    }
-
-    /// One level deeper.
-    pub(crate) fn below(self) -> Self {
-        Self { level: 3, ..self }
+        Self { heading: heading.into(), only: None, passages: Vec::new() }
     }
 
     /// On this medium alone.

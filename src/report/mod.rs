@@ -6,7 +6,7 @@ mod analysis_tests;
 pub(crate) mod as_html;
 #[cfg(feature = "lab")]
 pub(crate) mod as_markdown;
-mod as_text;
+pub(crate) mod as_text;
 mod campaign;
 mod curves_csv;
 pub(crate) mod curves_h5;

@@ -1,34 +1,42 @@
-//! `validate` without a campaign: every method beside its rivals and every damage that grows, to the page, pictures and tables.
+//! `validate` without a campaign: ways, methods and damages to what is accepted, with page, pictures and tables.
 
 use super::super::Ending;
 use super::super::output::{Folder, print, replace};
 use super::super::progress::with_progress;
 use super::document::Marks;
 use dropcheck::lab::data::{TrialMachine, TrialRequest};
-use dropcheck::lab::methods;
-use dropcheck::lab::report::{TRIAL_NAMES, trial_files, trial_markdown};
+use dropcheck::lab::methods::{self, References};
+use dropcheck::lab::report::{TRIAL_NAMES, trial_files, trial_markdown, trial_outcome};
 use dropcheck::report;
 use std::path::Path;
 
 const MARKS: Marks = Marks { begin: "<!-- trial: begin -->", end: "<!-- trial: end -->" };
 
-/// Writes the trial into the folder `out` and, by its extract, into the document `into`; prints the extract where neither is named.
-pub fn run(request: TrialRequest, out: Option<&Path>, into: Option<&Path>) -> miette::Result<Ending> {
+/// Writes the trial into the folder `out` and, by its extract, into the document `into`; ends with what is accepted, a site's own
+/// reference recordings in the folder `site` among it.
+pub fn run(
+    request: TrialRequest,
+    site: Option<&Path>,
+    out: Option<&Path>,
+    into: Option<&Path>,
+) -> miette::Result<Ending> {
     let folder = out.map(|out| Folder::checked(out, &TRIAL_NAMES, &[])).transpose()?;
     let document = into.map(|path| MARKS.parts(path).map(|parts| (path, parts))).transpose()?;
-    let trial = with_progress("trial", |progress| methods::trial(request, machine(), progress));
+    let site = site.map(References::of).transpose()?;
+    let trial =
+        with_progress("trial", |progress| methods::trial(request, machine(), site.as_ref(), progress));
     if let Some(folder) = &folder {
         folder.write(&trial_files(&trial)?)?;
-        print(&format!("Written: {}\n", report::printable(&folder.file(TRIAL_NAMES[0]))))?;
     }
     if let Some((path, (before, after))) = &document {
         let text = trial_markdown(&trial, out.map(|out| way(path, out)).as_deref());
         replace(path, format!("{before}\n{text}{after}").as_bytes())?;
     }
-    if folder.is_none() && document.is_none() {
-        print(&trial_markdown(&trial, None))?;
+    print(&trial_outcome(&trial))?;
+    if let Some(folder) = &folder {
+        print(&format!("Written: {}\n", report::printable(&folder.file(TRIAL_NAMES[0]))))?;
     }
-    Ok(Ending::Clear)
+    Ok(if trial.is_accepted() { Ending::Clear } else { Ending::NeedsALook })
 }
 
 /// What this program runs on.
@@ -36,6 +44,7 @@ fn machine() -> TrialMachine {
     TrialMachine {
         processor: processor().unwrap_or_else(|| "a processor that does not say its name".to_owned()),
         cores: std::thread::available_parallelism().map_or(1, usize::from),
+        when: jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M UTC").to_string(),
         system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
         is_optimised: !cfg!(debug_assertions),
     }

@@ -1,4 +1,4 @@
-//! `validate`: the trial of every method; or a campaign of random scenes with known truth to tables of how far off the analysis is.
+//! `validate`: the acceptance of the program; or a campaign of random scenes with known truth to tables of how far off the analysis is.
 
 use super::super::Ending;
 use super::super::output::{Folder, print, replace};
@@ -11,19 +11,25 @@ use dropcheck::lab::report::SyntheticFormat;
 use dropcheck::{lab, report};
 use std::path::{Path, PathBuf};
 
-const AFTER_HELP: &str = "\
-Without --campaign and --scene every method is tried beside its rivals: error, time, and
-where it fails. --quick takes a minute.
+const AFTER_HELP: &str = r#"Without --campaign and --scene the program is accepted on this machine, or not (exit status 1):
+speed against accuracy, what becomes of damages, and every limit beside what was found.
+--quick takes a minute. reference.toml has a table a recording:
+
+  ["drop7.mcap"]               # beside it drop7.toml, or cask = "anf18.toml"
+  verdict = "pass"
+  slap_down_speed_m_s = 20.44  # the stated interval must hold it
+  k = { value = 0.51, within = 0.02 }
 
 Undamaged scenes are U0, U1 …, those of other kinds D0, D1 …: with its seed a number names the same scene for ever.
 
 Examples:
   dropcheck validate --quick --out validation
+  dropcheck validate --quick --reference our-drops --out validation
   dropcheck validate --out docs/measured/trial --into docs/measured/trial.md
   dropcheck validate --campaign 2000
   dropcheck validate --campaign 200 --kinds undamaged,skew,hum --out campaign
   dropcheck validate --campaign 2000 --into docs/measured/campaign.md
-  dropcheck validate --scene D17 --out scene";
+  dropcheck validate --scene D17 --out scene"#;
 
 /// What the tables stand between in a document.
 const MARKS: Marks = Marks { begin: "<!-- campaign: begin -->", end: "<!-- campaign: end -->" };
@@ -44,6 +50,9 @@ pub struct Arguments {
     /// Try the methods on fewer scenes, within a minute
     #[arg(long, conflicts_with = "what")]
     quick: bool,
+    /// Folder of your own reference recordings, with their expected values in reference.toml; they are part of what is accepted
+    #[arg(long, value_name = "DIR", conflicts_with = "what")]
+    reference: Option<PathBuf>,
     /// Seed of everything random
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
@@ -91,7 +100,8 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         (_, _, Some(scenes)) => campaign(arguments, scenes),
         (_, out, None) => {
             let request = TrialRequest { quick: arguments.quick, seed: arguments.seed };
-            trial::run(request, out.as_deref(), arguments.into.as_deref())
+            let site = arguments.reference.as_deref();
+            trial::run(request, site, out.as_deref(), arguments.into.as_deref())
         }
     }
 }

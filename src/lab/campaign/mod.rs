@@ -2,11 +2,15 @@
 
 mod draw;
 mod recorder;
+mod rungs;
 mod score;
 mod statistics;
 mod tables;
 
+pub(super) use rungs::rungs;
 pub use score::csv;
+pub(super) use score::written;
+pub(super) use statistics::{half_widths_off, is_missed, quantile};
 pub use tables::markdown;
 
 use crate::analysis::measure;

@@ -6,6 +6,7 @@ use crate::data::{Analysis, Estimate, ReconstructionRung, Severity};
 use crate::lab::chance::round;
 use crate::lab::data::{Campaign, CampaignRow, Damage, SceneNumber, Scored, SyntheticRecording, Truth};
 use crate::lab::drawn::DrawnDrop;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A scene, drawn, struck by its damage and recorded.
 pub(super) struct RecordedScene {
@@ -65,13 +66,16 @@ fn quantities(truth: &Truth, times_s: (f64, Option<f64>), analysis: Option<&Anal
 /// # Errors
 /// Where the writer fails.
 pub fn csv(campaign: &Campaign) -> Result<Vec<u8>, csv::Error> {
+    let rows: Vec<Vec<Cell>> = campaign.rows.iter().map(|row| cells(campaign.request.seed, row)).collect();
+    // Not every scene has as many modes and channels: a header for each that any has.
+    let mut headers: Vec<&String> = Vec::new();
+    let mut known = BTreeSet::new();
+    headers.extend(rows.iter().flatten().map(|cell| &cell.0).filter(|header| known.insert(*header)));
     let mut writer = csv::Writer::from_writer(Vec::new());
-    for (i, row) in campaign.rows.iter().enumerate() {
-        let cells = cells(campaign.request.seed, row);
-        if i == 0 {
-            writer.write_record(cells.iter().map(|cell| cell.0.as_str()))?;
-        }
-        writer.write_record(cells.iter().map(|cell| cell.1.as_str()))?;
+    writer.write_record(&headers)?;
+    for row in &rows {
+        let row: BTreeMap<&String, &String> = row.iter().map(|cell| (&cell.0, &cell.1)).collect();
+        writer.write_record(headers.iter().map(|header| row.get(header).map_or("", |cell| cell)))?;
     }
     writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))
 }
@@ -118,66 +122,29 @@ fn cells(seed: u64, row: &CampaignRow) -> Vec<Cell> {
         cells.extend(estimate(&format!("{name}_k"), candidate.and_then(|c| c.k)));
     }
     cells.push(maybe("largest_miss_u", statistics::largest_miss_u(row)));
-    cells.extend(scene_cells(row));
+    cells.push(maybe("stated_angle_deg", Some(round(row.stated.drop.angle_rad.to_degrees(), 9))));
+    cells.push(cell("stated_contact", row.stated.contact));
+    let truth = serde_json::to_value(row.truth).unwrap_or_default();
+    let scene = serde_json::to_value(&row.scene).unwrap_or_default();
+    flatten("true", &truth, &mut cells);
+    flatten("scene", &scene, &mut cells);
     cells
 }
 
-/// The parameters of the scene, as they are and as they are stated.
-fn scene_cells(row: &CampaignRow) -> Vec<Cell> {
-    let (scene, stated, truth) = (&row.scene, &row.stated, &row.truth);
-    let mut cells = vec![
-        cell("cask", &scene.cask.name),
-        cell("mass_kg", scene.cask.mass_kg),
-        cell("length_m", scene.cask.length_m),
-        cell("height_m", scene.cask.height_m),
-        cell("cog_m", scene.cask.cog_m),
-        cell("stated_cog_m", stated.cask.cog_m),
-        cell("inertia_kg_m2", scene.cask.inertia_kg_m2),
-        cell("stated_inertia_kg_m2", stated.cask.inertia_kg_m2),
-        cell("drop_height_m", scene.drop.height_m),
-        cell("stated_drop_height_m", stated.drop.height_m),
-        cell("angle_deg", truth.angle_deg),
-        cell("stated_angle_deg", round(stated.drop.angle_rad.to_degrees(), 9)),
-        cell("contact", scene.contact),
-        cell("stated_contact", stated.contact),
-        maybe("contact_s", truth.contact_s),
-        cell("yields", yes(scene.first_end.yield_n.is_some())),
-        cell("modes", scene.modes.len()),
-    ];
-    for order in 0..3 {
-        let mode = scene.modes.get(order);
-        cells.push(maybe(&format!("mode_{}_hz", order + 1), mode.map(|m| m.frequency_hz)));
-        cells.push(maybe(&format!("mode_{}_damping", order + 1), mode.map(|m| m.damping)));
-        cells.push(maybe(&format!("mode_{}_strength", order + 1), mode.map(|m| m.strength)));
+/// A cell for each number and word of a value, under its way there: "scene.modes.0.frequency_hz".
+fn flatten(header: &str, value: &serde_json::Value, cells: &mut Vec<Cell>) {
+    let below = |key: &dyn std::fmt::Display| format!("{header}.{key}");
+    match value {
+        serde_json::Value::Object(of) => {
+            of.iter().for_each(|(key, value)| flatten(&below(key), value, cells))
+        }
+        serde_json::Value::Array(of) => {
+            of.iter().enumerate().for_each(|(i, value)| flatten(&below(&i), value, cells));
+        }
+        serde_json::Value::String(word) => cells.push(cell(header, word)),
+        serde_json::Value::Null => cells.push(cell(header, "")),
+        value => cells.push(cell(header, value)),
     }
-    cells.extend([
-        cell("relands", truth.relands),
-        cell("rest", yes(scene.rest)),
-        cell("before_s", scene.before_s),
-        cell("after_s", scene.after_s),
-        cell("clock_error_ppm", scene.clock_error * 1e6),
-        cell("channels", scene.channels.len()),
-    ]);
-    for i in 0..2 {
-        let (channel, spec) = (scene.channels.get(i), stated.channels.get(i));
-        let of = |name: &str| format!("a{}_{name}", i + 1);
-        cells.push(maybe(&of("rate_hz"), channel.map(|c| c.sample_rate_hz)));
-        cells.push(maybe(&of("position_m"), channel.map(|c| c.position_m)));
-        cells.push(maybe(&of("stated_position_m"), spec.map(|s| s.position_m)));
-        cells.push(maybe(&of("offset_m"), channel.map(|c| c.offset_m)));
-        cells.push(maybe(&of("scale"), channel.map(|c| c.chain.scale)));
-        cells.push(maybe(&of("cross_axis"), channel.map(|c| c.chain.cross_axis)));
-        cells.push(maybe(&of("anti_alias_hz"), channel.and_then(|c| c.chain.anti_alias_hz)));
-        cells.push(maybe(&of("resonance_hz"), channel.and_then(|c| c.chain.resonance).map(|r| r.0)));
-        cells.push(maybe(&of("white_noise_m_s2"), channel.map(|c| c.chain.white_noise_m_s2)));
-        cells.push(maybe(&of("pink_noise_m_s2"), channel.map(|c| c.chain.pink_noise_m_s2)));
-        cells.push(maybe(&of("full_scale_m_s2"), channel.and_then(|c| c.chain.full_scale_m_s2)));
-        cells.push(maybe(&of("stated_full_scale"), spec.and_then(|s| s.full_scale)));
-        cells.push(maybe(&of("bits"), channel.and_then(|c| c.chain.bits).map(f64::from)));
-    }
-    let axial = scene.channels.iter().any(|c| c.axis == crate::data::Axis::Axial);
-    cells.push(cell("axial_channel", yes(axial)));
-    cells
 }
 
 /// Codes of this severity, each once.
@@ -190,7 +157,7 @@ fn codes(row: &CampaignRow, severity: Severity) -> String {
 }
 
 /// A code, a rung or a verdict as the result writes it.
-pub(super) fn written(word: impl serde::Serialize) -> String {
+pub(in crate::lab) fn written(word: impl serde::Serialize) -> String {
     // An enum without data is a JSON string.
     serde_json::to_string(&word).unwrap_or_default().trim_matches('"').to_owned()
 }

@@ -32,6 +32,11 @@ pub(super) fn outcome(row: &CampaignRow) -> SceneOutcome {
     }
 }
 
+/// Whether the row passed and is wrong.
+pub(in crate::lab) fn is_missed(row: &CampaignRow) -> bool {
+    outcome(row) == SceneOutcome::Missed
+}
+
 /// By how many standard uncertainties the closure that is missed most is missed.
 pub(super) fn largest_miss_u(row: &CampaignRow) -> Option<f64> {
     row.misses_u.iter().map(|miss| miss.abs()).max_by(f64::total_cmp)
@@ -43,7 +48,7 @@ pub(super) fn scored(row: &CampaignRow, name: &str) -> Option<Scored> {
 }
 
 /// Distance from the truth in half-widths.
-pub(super) fn half_widths_off(scored: &Scored) -> Option<f64> {
+pub(in crate::lab) fn half_widths_off(scored: &Scored) -> Option<f64> {
     let (stated, truth) = scored.stated.zip(scored.truth)?;
     // No number at all is as far off as can be.
     let off = (stated.value - truth).abs() / stated.u95.max(f64::MIN_POSITIVE);
@@ -89,7 +94,7 @@ impl Spread {
     clippy::cast_sign_loss,
     reason = "an index into a list"
 )]
-pub(super) fn quantile(ascending: &[f64], share: f64) -> f64 {
+pub(in crate::lab) fn quantile(ascending: &[f64], share: f64) -> f64 {
     let Some(last) = ascending.len().checked_sub(1) else { return f64::NAN };
     let place = share * last as f64;
     let below = (place as usize).min(last);

@@ -26,10 +26,12 @@ pub struct DamageKind {
     pub sizes: Vec<f64>,
     /// What the drop must be like, in words of [`Wish::of`].
     needs: &'static str,
-    /// Whether k has a map of its own where this grows.
-    pub(super) tells_k: bool,
-    /// From harmless to gross, 13 of them; empty: does not grow.
+    /// Codes of which a finding must name at least one where it is gross; empty: nothing need tell it.
+    pub(super) told_by: Vec<&'static str>,
+    /// From harmless to gross: 13, 7, 4 or 1 of them; empty: does not grow.
     pub(super) growing: Vec<f64>,
+    /// What to measure at the site, because the recording may not tell; empty where it does.
+    pub(super) instead: &'static str,
     /// What it is, for a person.
     pub(super) what: &'static str,
 }
@@ -49,6 +51,11 @@ pub(super) fn growing() -> impl Iterator<Item = &'static DamageKind> {
     TABLE.iter().filter(|kind| !kind.growing.is_empty())
 }
 
+/// The kind of this name.
+pub(super) fn named(name: &str) -> Option<&'static DamageKind> {
+    TABLE.iter().find(|kind| kind.name == name)
+}
+
 impl DamageKind {
     /// Of cells between tabs; "-" is an empty one.
     fn of_line(line: &'static str) -> Self {
@@ -62,8 +69,9 @@ impl DamageKind {
             unit: next(),
             sizes: numbers(next()),
             needs: next(),
-            tells_k: next() == "k",
+            told_by: next().split_whitespace().collect(),
             growing: numbers(next()),
+            instead: next(),
             what: next(),
         }
     }
@@ -95,8 +103,7 @@ impl DamageKind {
     pub(super) fn grown(&self, plan: &DropPlan, size: f64) -> (DrawnDrop, SyntheticRecording) {
         let mut plan = plan.clone();
         harder::harden(self.name, &mut plan, size);
-        plan.contact = self.wish(size).contact.unwrap_or(plan.contact);
-        let mut drop = plan.draw();
+        let mut drop = plan.draw_as(&self.wish(size));
         let recording = self.strike(&mut drop, size);
         (drop, recording)
     }
@@ -118,7 +125,7 @@ mod tests {
             assert!(sizes.iter().chain(growing).all(|size| size.is_finite()), "{name}");
             assert!(sizes.windows(2).all(|pair| pair[0] < pair[1]), "{name}");
             // The quick run takes every third: it holds the first and the last.
-            assert!([0, 13].contains(&growing.len()), "{name}");
+            assert!([0, 1, 4, 7, 13].contains(&growing.len()), "{name}");
             assert!(growing.is_sorted() || growing.iter().rev().is_sorted(), "{name}");
         }
     }

@@ -17,6 +17,7 @@ pub(super) fn strike(kind: &str, case: &mut DrawnDrop, recording: &mut Synthetic
         "aliasing" => aliasing(case, recording, size),
         "g_called_m_s2" => unit(case, recording, size, Unit::MetrePerSecondSquared),
         "m_s2_called_g" => unit(case, recording, size, Unit::G),
+        "copied" => recording.channels[1].samples = recording.channels[0].samples.clone(),
         _ => {}
     }
 }

@@ -15,6 +15,8 @@ pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
         "stated_inertia" => inertia(case, size),
         "stated_length" => length(case, size),
         "stated_section" => section(case, size),
+        "stated_off" => case.stated.channels[1].position_m = case.stated.cask.length_m + 0.3,
+        "stated_one_end" => drop(case.stated.channels.remove(1)),
         _ => {}
     }
 }

@@ -11,4 +11,6 @@ pub use scene::{
     SimulatedMotion, Truth, slowed,
 };
 pub use synthetic::{SceneFile, SyntheticChannel, SyntheticRecording, WantedImpact};
-pub use trial::{Trial, TrialMachine, TrialMap, TrialPoint, TrialRequest, TrialSize};
+pub use trial::{
+    Trial, TrialDrop, TrialFate, TrialLimit, TrialMachine, TrialMap, TrialPoint, TrialRequest, TrialSize,
+};

@@ -1,9 +1,10 @@
 //! A scene for `synth`: the cask, how it is dropped and struck, what rings in it, and the measuring chain.
 
 use crate::data::{Axis, Cask, Contact, Drop, End};
+use serde::Serialize;
 
 /// A corner that crushes: bilinear force over depth, so that k < 1 comes out of the two stiffnesses.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CrushableEnd {
     /// Loading stiffness, N/m.
     pub loading_n_m: f64,
@@ -26,7 +27,7 @@ impl CrushableEnd {
 }
 
 /// A loose mass in the cask, which flies across it from pad to pad: two of them are a body that rattles at both its ends.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LooseMass {
     /// Beside the cask's, kg.
     pub mass_kg: f64,
@@ -43,7 +44,7 @@ pub struct LooseMass {
 }
 
 /// What most drops are without.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct SceneExtras {
     /// Loose contents.
     pub contents: Vec<LooseMass>,
@@ -58,7 +59,7 @@ pub struct SceneExtras {
 }
 
 /// A bending mode of the free uniform beam.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BendingMode {
     /// 1, 2 or 3: which shape.
     pub order: u8,
@@ -71,7 +72,7 @@ pub struct BendingMode {
 }
 
 /// What a sensor and its chain do to the specific force at its place.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Chain {
     /// Inclination of the sensitive axis towards the other body axis, rad.
     pub tilt_rad: f64,
@@ -122,7 +123,7 @@ impl Chain {
 }
 
 /// A channel of the scene: where it sits, how it is written, and its chain.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SceneChannel {
     /// Name.
     pub name: String,
@@ -163,7 +164,7 @@ impl SceneChannel {
 }
 
 /// A scene, checked, with its defaults filled in.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Scene {
     /// Name, for the files and the cask file.
     pub name: String,
@@ -256,7 +257,7 @@ pub struct MotionStep {
 }
 
 /// What a perfect measurement would say. Times count from first contact.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Truth {
     /// Speed at first contact, m/s.
     pub v0: f64,

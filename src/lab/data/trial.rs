@@ -1,5 +1,6 @@
 //! Methods under trial: what each costs and how far off it is, and where the program fails.
 
+use super::campaign::Campaign;
 use serde::Serialize;
 
 /// What a trial is asked for.
@@ -42,41 +43,115 @@ pub struct TrialPoint {
     pub time_ns: f64,
     /// Quartiles of that time over the repeats, ns.
     pub time_quartiles_ns: [f64; 2],
-    /// What the time is of: "sample", "call".
+    /// What the time is of: "sample", "call", "file".
     pub time_per: String,
     /// Cases the error is taken over.
     pub cases: u32,
+    /// The error of each.
+    #[serde(skip)]
+    pub errors: Vec<f64>,
+    /// Cases besides in which the method gives no number.
+    pub missing: u32,
+    /// From where on a difference matters, in `error_unit`.
+    pub matters: f64,
+    /// The median half-width that the method states of itself, in `error_unit`.
+    pub promised: Option<f64>,
+    /// The share of its intervals that hold the truth.
+    pub held: Option<f64>,
+}
+
+/// What becomes of a drop that a damage is done to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TrialFate {
+    /// The intervals of speed and k hold the truth.
+    Inside,
+    /// One of them does not, and the verdict is not "pass".
+    Warned,
+    /// A number is not given.
+    Refused,
+    /// An interval does not hold the truth, and the verdict is "pass".
+    Silent,
+}
+
+/// A drop that a damage of one size is done to.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TrialDrop {
+    /// What becomes of it.
+    pub fate: TrialFate,
+    /// The larger error of speed and k, in half-widths of its interval; none where neither is given.
+    pub half_widths_off: Option<f64>,
+    /// Whether a finding names what is wrong by one of the codes that should.
+    pub is_named: bool,
 }
 
 /// What several drops show that a damage of one size is done to.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrialSize {
     /// The size, in the map's unit.
     pub size: f64,
-    /// Median error of the drops; none where fewer than half of them give a number.
-    pub median_error: Option<f64>,
-    /// The largest error of a drop; none where no drop gives a number.
-    pub worst_error: Option<f64>,
-    /// Whether the program says of every drop beyond the limit that something is wrong, or widened its interval to hold the truth; where none
-    /// is, of every drop.
-    pub is_noticed: bool,
+    /// The same drops at every size.
+    pub drops: Vec<TrialDrop>,
 }
 
-/// How an error of the program grows with a damage.
+/// What becomes of drops as a damage grows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrialMap {
-    /// The damage and, but for the speed, the quantity: "skew-k".
+    /// The damage, as in the table of damages.
     pub name: String,
     /// A sentence: what is done.
     pub what: String,
     /// Unit of the sizes.
     pub unit: String,
-    /// What the error is, with its unit.
-    pub error: String,
-    /// Error above which the program has failed, in the error's unit.
-    pub limit: f64,
+    /// Codes of which one must be named at the gross end.
+    pub told_by: Vec<&'static str>,
+    /// What to measure at the site, because the recording may not tell.
+    pub instead: String,
     /// From harmless to gross.
     pub sizes: Vec<TrialSize>,
+}
+
+impl TrialMap {
+    /// The first size at which this becomes of a drop.
+    #[must_use]
+    pub fn first(&self, fate: TrialFate) -> Option<&TrialSize> {
+        self.sizes.iter().find(|size| size.drops.iter().any(|drop| drop.fate == fate))
+    }
+
+    /// The drops at the gross end of which no finding names what is wrong.
+    #[must_use]
+    pub fn unnamed(&self) -> usize {
+        self.sizes.last().map_or(0, |size| size.drops.iter().filter(|drop| !drop.is_named).count())
+    }
+}
+
+/// One limit of the acceptance, and what this program on this machine makes of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TrialLimit {
+    /// What is measured.
+    pub name: String,
+    /// What it is: "95th percentile of the error, %".
+    pub unit: String,
+    /// What was found; none where it could not be had, which is not accepted.
+    pub value: Option<f64>,
+    /// The least that is accepted.
+    pub least: Option<f64>,
+    /// The most that is accepted.
+    pub most: Option<f64>,
+    /// Why this much.
+    pub reason: String,
+    /// Which of several did not hold; empty where they did.
+    pub which: String,
+}
+
+impl TrialLimit {
+    /// Whether what was found lies within.
+    #[must_use]
+    pub fn is_kept(&self) -> bool {
+        let within =
+            |v: f64| self.least.is_none_or(|least| v >= least) && self.most.is_none_or(|most| v <= most);
+        self.value.is_some_and(within)
+    }
 }
 
 /// What a trial ran on.
@@ -88,6 +163,8 @@ pub struct TrialMachine {
     pub cores: usize,
     /// Operating system and architecture.
     pub system: String,
+    /// When the trial began, in universal time.
+    pub when: String,
     /// Whether the program was built with optimisation; without it times say nothing.
     pub is_optimised: bool,
 }
@@ -95,7 +172,7 @@ pub struct TrialMachine {
 /// A whole trial.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Trial {
-    /// "dropcheck.validation/2".
+    /// "dropcheck.validation/3".
     pub schema: &'static str,
     /// The program's version.
     pub version: &'static str,
@@ -105,6 +182,19 @@ pub struct Trial {
     pub machine: TrialMachine,
     /// Methods on classes, family after family.
     pub points: Vec<TrialPoint>,
-    /// Where the program fails.
+    /// What becomes of drops as each damage grows.
     pub maps: Vec<TrialMap>,
+    /// Random sound drops: how far off, and by which rung.
+    #[serde(skip)]
+    pub campaign: Campaign,
+    /// What is accepted, and what was found.
+    pub limits: Vec<TrialLimit>,
+}
+
+impl Trial {
+    /// Whether every limit is kept.
+    #[must_use]
+    pub fn is_accepted(&self) -> bool {
+        self.limits.iter().all(TrialLimit::is_kept)
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::timing::{Work, in_turn};
 use crate::lab::data::{TrialPoint, TrialRequest};
-use crate::numerics::as_f64;
+use crate::numerics::{as_f64, robust};
 use rayon::prelude::*;
 use std::hint::black_box;
 
@@ -34,6 +34,8 @@ pub(super) struct Contest<C, O> {
     pub family: &'static str,
     /// Of what the error is a share, or its unit.
     pub error_unit: &'static str,
+    /// From where on a difference between two methods matters, in `error_unit`.
+    pub matters: f64,
     /// How many samples a case has, of which one is timed; none: a call is timed.
     pub samples: Option<fn(&C) -> usize>,
     /// What the program takes where nothing is said, then its rivals.
@@ -78,6 +80,7 @@ impl<C: Sync, O> Contest<C, O> {
                 is_default: i == 0,
                 error_unit: self.error_unit.to_owned(),
                 time_per: time_per.to_owned(),
+                matters: self.matters,
                 ..measured(cases.par_iter().map(error).collect(), time_ns.map(|ns| ns / as_f64(parts)))
             }
         };
@@ -88,9 +91,61 @@ impl<C: Sync, O> Contest<C, O> {
 /// A point of the errors of cases and the quartiles of a time, its words still to be given.
 pub(super) fn measured(errors: Vec<f64>, [lower_ns, time_ns, upper_ns]: [f64; 3]) -> TrialPoint {
     let cases = u32::try_from(errors.len()).unwrap_or(u32::MAX);
-    let [median_error, p95_error] = median_and_p95(errors);
+    let [median_error, p95_error] = median_and_p95(errors.clone());
     let time_quartiles_ns = [lower_ns, upper_ns];
-    TrialPoint { median_error, p95_error, time_ns, time_quartiles_ns, cases, ..TrialPoint::default() }
+    TrialPoint { median_error, p95_error, time_ns, time_quartiles_ns, cases, errors, ..TrialPoint::default() }
+}
+
+/// What all classes together are called.
+pub const ALL_CLASSES: &str = "all";
+
+/// Points of a family with one more for each method: of all its cases, in the median of its times.
+pub(super) fn with_pooled(mut points: Vec<TrialPoint>) -> Vec<TrialPoint> {
+    let mut methods: Vec<String> = Vec::new();
+    points.iter().for_each(|p| {
+        if !methods.contains(&p.method) {
+            methods.push(p.method.clone())
+        }
+    });
+    for method in methods {
+        let of: Vec<&TrialPoint> = points.iter().filter(|p| p.method == method).collect();
+        let errors = of.iter().flat_map(|p| p.errors.iter().copied()).collect();
+        let middle = |of_point: fn(&TrialPoint) -> f64| {
+            robust::median(&mut of.iter().map(|p| of_point(p)).collect::<Vec<_>>())
+        };
+        let times_ns =
+            [middle(|p| p.time_quartiles_ns[0]), middle(|p| p.time_ns), middle(|p| p.time_quartiles_ns[1])];
+        let missing = of.iter().map(|p| p.missing).sum();
+        let stated = of.iter().filter_map(|p| p.promised.zip(p.held));
+        let (mut promised, held): (Vec<f64>, Vec<f64>) = stated.unzip();
+        let is_stated = !held.is_empty();
+        let all = TrialPoint {
+            class: ALL_CLASSES.to_owned(),
+            missing,
+            promised: is_stated.then(|| robust::median(&mut promised)),
+            held: is_stated.then(|| held.iter().sum::<f64>() / as_f64(held.len())),
+            ..measured(errors, times_ns)
+        };
+        let words = of[0].clone();
+        points.push(TrialPoint {
+            family: words.family,
+            method,
+            is_default: words.is_default,
+            error_unit: words.error_unit,
+            time_per: words.time_per,
+            matters: words.matters,
+            ..all
+        });
+    }
+    points
+}
+
+/// Largest difference of two curves over the peak of the second.
+pub(super) fn worst_of_peak(made: &[f64], truth: &[f64]) -> f64 {
+    let peak = truth.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
+    let off = made.iter().zip(truth).map(|(made, truth)| (made - truth).abs());
+    let worst = off.fold(0.0, |worst, off| if off.is_nan() { DIVERGED } else { off.max(worst) });
+    worst / peak.max(f64::MIN_POSITIVE)
 }
 
 /// Median and 95th percentile, each that of a case; what is no number counts as diverged.

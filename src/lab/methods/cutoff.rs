@@ -92,6 +92,7 @@ fn contest() -> Contest<RingingPulse, Vec<f64>> {
     Contest {
         family: "cut-off",
         error_unit: "of the pulse's peak",
+        matters: 1e-2,
         samples: Some(|record| record.samples.len()),
         methods,
         error: |_, filtered| (filtered.into_iter().fold(f64::NEG_INFINITY, f64::max) - 1.0).abs(),

@@ -1,10 +1,10 @@
 //! Methods of finding first contact to their errors and times.
 
 use super::contest::{Contest, Method};
-use super::detector::{change_point, first_contact_by, matched_pulse, threshold};
 use super::drops::{DropClass, NOISY, Prepared};
 use crate::data::STANDARD_GRAVITY_M_S2;
 use crate::events::first_contact;
+use crate::events::onset::{FOOT, FirstPulse, NOISE_FACTOR};
 use crate::lab::data::{TrialPoint, TrialRequest};
 
 const CLASSES: [DropClass; 5] = [
@@ -22,23 +22,28 @@ const CLASSES: [DropClass; 5] = [
 ];
 
 fn contest() -> Contest<Prepared, f64> {
-    let rival = |name, find| {
-        Method::new(name, move |drop: &Prepared| first_contact_by(find, &drop.signals, &drop.coarse))
-    };
     Contest {
         family: "first contact",
         error_unit: "% of the pulse",
+        matters: 1.0,
         samples: None,
         methods: vec![
             Method::new("line through the rise", |drop: &Prepared| {
                 Some(first_contact(&drop.signals, &drop.coarse)?.time_s)
             }),
-            rival("threshold", threshold),
-            rival("change point", change_point),
-            rival("matched half sine", matched_pulse),
+            Method::new("threshold", threshold),
         ],
         error: |drop, found_s| 100.0 * (found_s - drop.contact_s).abs() / drop.drop.contact_s(),
     }
+}
+
+/// The first sample beyond 2 % of the peak, or beyond 6 standard deviations of the noise where that is more.
+fn threshold(drop: &Prepared) -> Option<f64> {
+    let FirstPulse { signal, stretch, sign } = FirstPulse::about(&drop.signals, &drop.coarse)?;
+    let force = signal.force_m_s2.get(stretch.clone())?;
+    let peak = force.iter().map(|f| sign * f).max_by(f64::total_cmp)?;
+    let level = peak.max(NOISE_FACTOR / FOOT * signal.noise_m_s2) * FOOT;
+    Some(signal.time_s(stretch.start + force.iter().position(|f| sign * f > level)?))
 }
 
 pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {

@@ -1,6 +1,6 @@
 //! A class of drops and a seed to recordings, conditioned, with the truth that a method is held against.
 
-use crate::data::{CoarseEvent, STANDARD_GRAVITY_M_S2, Signal};
+use crate::data::{CaskFile, CoarseEvent, Recording, STANDARD_GRAVITY_M_S2, Signal};
 use crate::lab::chance::Chance;
 use crate::lab::data::TrialRequest;
 use crate::lab::drawn::{BUILDS, DrawnDrop};
@@ -67,11 +67,15 @@ pub(super) struct Prepared {
 impl Prepared {
     fn of(drop: DrawnDrop) -> Option<Self> {
         let written = drop.recorded();
-        let recording = drop.read(&written)?;
-        let stated = &drop.stated;
-        let coarse = events::Changes::of(&recording).locate(stated.drop.transverse_velocity_m_s())?;
-        let reach = condition::Reach::of(&stated.cask, &stated.drop);
-        let (signals, _) = condition::condition(&recording, &coarse, &reach, stated.corrections);
+        let (signals, coarse) = conditioned(&drop.read(&written)?, &drop.stated)?;
         Some(Self { contact_s: written.first_contact_s, signals, coarse, drop })
     }
+}
+
+/// The conditioned channels of a recording about the first impact, and where that lies; none without an impact.
+pub(super) fn conditioned(recording: &Recording, file: &CaskFile) -> Option<(Vec<Signal>, CoarseEvent)> {
+    let coarse = events::Changes::of(recording).locate(file.drop.transverse_velocity_m_s())?;
+    let reach = condition::Reach::of(&file.cask, &file.drop);
+    let (signals, _) = condition::condition(recording, &coarse, &reach, file.corrections);
+    Some((signals, coarse))
 }

@@ -2,8 +2,6 @@
 
 use super::contest::{Contest, Method};
 use super::filters::state_variable;
-use super::gustafsson;
-use super::reference::low_passed;
 use crate::lab::chance::Chance;
 use crate::lab::data::{TrialPoint, TrialRequest};
 use crate::numerics::as_f64;
@@ -20,8 +18,6 @@ const RECORD: usize = 20_000;
 const BEYOND: usize = 10_000;
 /// Samples of each end that is looked at, 0.25/f.
 const END: usize = 250;
-/// Samples after which the filter has forgotten all but 1e-6, 3.1/f.
-const MEMORY: usize = 3100;
 /// Three times the coefficients of a second-order section, as `scipy.signal.sosfiltfilt` continues.
 const NINE: usize = 9;
 
@@ -43,7 +39,7 @@ impl CutRecord {
             whole.iter().enumerate().map(on_slope).skip(BEYOND).take(RECORD).collect()
         };
         // The slope is a line: it passes the filter as it is, and the reference's rest at its own ends would not let it.
-        Self { samples: cut(&noise), truth: cut(&low_passed(&noise, gain())) }
+        Self { samples: cut(&noise), truth: cut(&state_variable(gain(), &noise)) }
     }
 
     /// Filtered, its ends continued by `pad` samples that `beyond` makes of the end sample and the one as far inside.
@@ -76,18 +72,14 @@ fn contest() -> Contest<CutRecord, Vec<f64>> {
     Contest {
         family: "record ends",
         error_unit: "of the filter's own noise",
+        matters: 1.0,
         samples: Some(|record| record.samples.len()),
         methods: vec![
             Method::new("even", |record: &CutRecord| {
                 Some(ZeroPhaseLowPass::with_design_hz(DESIGN, 1.0)?.apply(&record.samples))
             }),
-            // Lines go on as lines; the end sample keeps its noise.
-            Method::new("odd", |record: &CutRecord| Some(record.continued(MEMORY, |end, x| 2.0 * end - x))),
             Method::new("odd, 9 samples", |record: &CutRecord| {
                 Some(record.continued(NINE, |end, x| 2.0 * end - x))
-            }),
-            Method::new("Gustafsson", |record: &CutRecord| {
-                gustafsson::filtered(&StateVariable::new(gain(), SQRT_2), &record.samples, MEMORY)
             }),
             Method::new("none", |record: &CutRecord| Some(state_variable(gain(), &record.samples))),
         ],

@@ -128,6 +128,7 @@ fn contest() -> Contest<TrueFlight, Vec<f64>> {
     Contest {
         family: "flight fit",
         error_unit: "% of the velocity step",
+        matters: 0.1,
         samples: None,
         methods,
         error: |flight, found_m_s| flight.error_percent(&found_m_s),

@@ -12,7 +12,7 @@ const ALIKE: f64 = 1.1;
 ///
 /// A rival is better only by more than 10 %, and faster only where the quartiles of the two times do not overlap either.
 pub(super) fn mark_front(points: &mut [TrialPoint]) {
-    let rivals = |a: &TrialPoint, b: &TrialPoint| a.family == b.family && a.class == b.class;
+    let rivals = |a: &TrialPoint, b: &TrialPoint| a.cases > 0 && a.family == b.family && a.class == b.class;
     let error = |p: &TrialPoint| p.p95_error.max(ROUNDING);
     let is_faster = |a: &TrialPoint, b: &TrialPoint| {
         ALIKE * a.time_ns < b.time_ns && a.time_quartiles_ns[1] < b.time_quartiles_ns[0]
@@ -20,7 +20,8 @@ pub(super) fn mark_front(points: &mut [TrialPoint]) {
     let beats = |a: &TrialPoint, b: &TrialPoint| {
         (ALIKE * error(a) < error(b) && !is_faster(b, a)) || (error(a) <= ALIKE * error(b) && is_faster(a, b))
     };
-    let is_on_front = |p: &TrialPoint| !points.iter().any(|rival| rivals(rival, p) && beats(rival, p));
+    let is_on_front =
+        |p: &TrialPoint| p.cases > 0 && !points.iter().any(|rival| rivals(rival, p) && beats(rival, p));
     let front: Vec<bool> = points.iter().map(is_on_front).collect();
     for (point, is_on_front) in points.iter_mut().zip(front) {
         point.is_on_front = is_on_front;
@@ -33,7 +34,8 @@ mod tests {
 
     fn point(class: &str, p95_error: f64, time_ns: f64) -> TrialPoint {
         let time_quartiles_ns = [time_ns - 0.1, time_ns + 0.1];
-        TrialPoint { class: class.into(), p95_error, time_ns, time_quartiles_ns, ..TrialPoint::default() }
+        let class = class.into();
+        TrialPoint { class, p95_error, time_ns, time_quartiles_ns, cases: 1, ..TrialPoint::default() }
     }
 
     fn front(mut points: Vec<TrialPoint>) -> Vec<bool> {

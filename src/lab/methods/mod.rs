@@ -1,60 +1,78 @@
-//! Each method of the program beside its rivals: time and error against a truth; and where the program fails.
+//! Ways of working, each method beside its rivals and each damage that grows, to what is accepted: speed, accuracy, failure.
 
 mod contest;
 mod cutoff;
 mod detection;
-mod detector;
 mod drops;
 mod ends;
 mod filters;
 mod flight;
 mod front;
-mod gustafsson;
 mod integration;
+mod limits;
+mod map;
 mod prediction;
-mod reconstruction;
-mod reference;
-mod roots;
-mod sweep;
+mod references;
 pub mod timing;
+mod ways;
+
+pub use contest::ALL_CLASSES;
+pub use references::{ReferenceError, References};
+pub use ways::{READING, WAYS};
 
 use crate::ingest::Progress;
-use crate::lab::data::{Trial, TrialMachine, TrialPoint, TrialRequest};
+use crate::lab::campaign;
+use crate::lab::data::{CampaignRequest, Trial, TrialMachine, TrialPoint, TrialRequest};
 use crate::numerics::as_f64;
 
 /// Tries the methods of a family.
 type Trying = fn(&TrialRequest) -> Vec<TrialPoint>;
 
-/// The families by name, in the order in which they are shown.
-pub const FAMILIES: [(&str, Trying); 9] = [
-    ("filters", filters::points),
-    ("record-ends", ends::points),
+/// The families by name, what matters most first: the ways of working, then single methods by how much of the speed hangs on them.
+pub const FAMILIES: [(&str, Trying); 8] = [
+    ("ways", ways::points),
+    ("flight-fit", flight::points),
+    ("prediction", prediction::points),
+    ("first-contact", detection::points),
     ("integration", integration::points),
     ("cut-off", cutoff::points),
-    ("first-contact", detection::points),
-    ("flight-fit", flight::points),
-    ("reconstruction", reconstruction::points),
-    ("root", roots::points),
-    ("prediction", prediction::points),
+    ("record-ends", ends::points),
+    ("filters", filters::points),
 ];
 
-/// The whole trial; `progress` is told the share that is done.
+/// The whole trial, with a site's own reference recordings; `progress` is told the share that is done.
 #[must_use]
-pub fn trial(request: TrialRequest, machine: TrialMachine, progress: Progress) -> Trial {
+pub fn trial(
+    request: TrialRequest,
+    machine: TrialMachine,
+    site: Option<&References>,
+    progress: Progress,
+) -> Trial {
     let mut points = Vec::new();
     for (done, (_, tried)) in FAMILIES.iter().enumerate() {
-        // The maps take the other half of the time.
-        progress(0.5 * as_f64(done) / as_f64(FAMILIES.len()));
+        // Methods, the map and the campaign take a third of the time each.
+        progress(as_f64(done) / as_f64(3 * FAMILIES.len()));
         points.extend(tried(&request));
     }
-    let maps = sweep::maps(&request, &|share| progress(0.5 + 0.5 * share));
     front::mark_front(&mut points);
+    let maps = map::maps(&request, &|share| progress((1.0 + share) / 3.0));
+    let drops = CampaignRequest {
+        scenes: request.either(120, 600),
+        seed: request.seed,
+        undamaged: true,
+        kinds: Vec::new(),
+        exact: false,
+    };
+    let campaign = campaign::run(&drops, &|share| progress((2.0 + share) / 3.0));
+    let limits = limits::limits(&points, &maps, &campaign, site);
     Trial {
-        schema: "dropcheck.validation/2",
+        schema: "dropcheck.validation/3",
         version: env!("CARGO_PKG_VERSION"),
         request,
         machine,
         points,
         maps,
+        campaign,
+        limits,
     }
 }

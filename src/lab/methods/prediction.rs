@@ -1,6 +1,6 @@
 //! The rungs of the prediction to how far off a drop on stiff ends each is, and what it costs.
 
-use super::contest::{Contest, Method};
+use super::contest::{Contest, Method, with_pooled};
 use crate::data::{Body, BodyModel, Contact, Drop, Rung};
 use crate::lab::chance::Chance;
 use crate::lab::data::{TrialPoint, TrialRequest};
@@ -26,6 +26,8 @@ struct PredictedClass {
     contact: Contact,
     angle_deg: (f64, f64),
     k: (f64, f64),
+    /// Length of the contact, where it is not short.
+    pulse_s: Option<(f64, f64)>,
     /// How often L touches again before R strikes.
     touches: RangeInclusive<u32>,
 }
@@ -50,6 +52,7 @@ const BODY: PredictedClass = PredictedClass {
     contact: Contact::Rough,
     angle_deg: (5.0, 30.0),
     k: (0.1, 0.8),
+    pulse_s: None,
     touches: ANY,
 };
 const RATTLES: PredictedClass = PredictedClass {
@@ -59,9 +62,10 @@ const RATTLES: PredictedClass = PredictedClass {
     touches: 2..=u32::MAX,
     ..BODY
 };
-const CLASSES: [PredictedClass; 6] = [
+const CLASSES: [PredictedClass; 7] = [
     PredictedClass { name: "thin rod, rough", builds: &[ROD], ..BODY },
     BODY,
+    PredictedClass { name: "body, rough, contact of 5 to 25 ms", pulse_s: Some((5e-3, 0.025)), ..BODY },
     PredictedClass { name: "body, friction 0.3", contact: Contact::Coulomb(0.3), ..BODY },
     PredictedClass { name: "k to 0, rough", angle_deg: (8.0, 40.0), k: (1e-3, 1e-3), ..BODY },
     PredictedClass {
@@ -72,6 +76,9 @@ const CLASSES: [PredictedClass; 6] = [
     },
     RATTLES,
 ];
+
+/// What it is called among the ways.
+pub(super) const FAMILY: &str = "prediction, given k";
 
 fn contest() -> Contest<StiffDrop, f64> {
     let by_rung = |rung: Rung| {
@@ -86,8 +93,9 @@ fn contest() -> Contest<StiffDrop, f64> {
         predict::predict_grazing(&at.body, &at.drop, at.contact, at.k, 0.0).slap_down_speed_m_s
     }));
     Contest {
-        family: "prediction",
+        family: FAMILY,
         error_unit: "% of the slap-down speed",
+        matters: 0.1,
         samples: None,
         methods,
         error: |drop, speed_m_s| 100.0 * (speed_m_s / drop.speed_m_s - 1.0).abs(),
@@ -96,18 +104,19 @@ fn contest() -> Contest<StiffDrop, f64> {
 
 /// Errors are against `synth` on stiff ends.
 pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {
-    contest().points(&CLASSES, request, |class| (class.name.to_owned(), drops(class, request)))
+    with_pooled(contest().points(&CLASSES, request, |class| (class.name.to_owned(), drops(class, request))))
 }
 
 /// The drops of a class on stiff ends, with their truth; those in which R does not strike are left out.
 fn drops(class: &PredictedClass, request: &TrialRequest) -> Vec<StiffDrop> {
     let count = request.either(10, 60) * if class.touches == ANY { 1 } else { 3 };
     let mut chance = Chance::new(request.seed, 0);
+    let stiff_s = if class.touches == ANY && class.k.1 > LIMIT_K { STIFF_S } else { RESTED_S };
     let plans: Vec<DropPlan> = (0..count)
         .map(|number| {
             let build = class.builds[number % class.builds.len()];
             DropPlan {
-                pulse_s: if class.touches == ANY && class.k.1 > LIMIT_K { STIFF_S } else { RESTED_S },
+                pulse_s: class.pulse_s.map_or(stiff_s, |pulse_s| chance.between(pulse_s)),
                 contact: class.contact,
                 ..DropPlan::of(build, chance.between(class.angle_deg), chance.between(class.k), 0)
             }
@@ -118,7 +127,7 @@ fn drops(class: &PredictedClass, request: &TrialRequest) -> Vec<StiffDrop> {
         let truth = drawn.motion.truth;
         let drop = StiffDrop {
             body: predict::body(&drawn.scene.cask, BodyModel::Body),
-            drop: drawn.scene.drop,
+            drop: Drop { contact_duration_s: truth.contact_s?, ..drawn.scene.drop },
             contact: class.contact,
             // The k that the stiff contact gave, not the one that it was built for.
             k: truth.k.map_or(0.0, |k| if k < LIMIT_K { 0.0 } else { k.min(1.0) }),

@@ -39,7 +39,7 @@ pub fn in_turn(work: &mut [Work], quick: bool) -> Vec<[f64; 3]> {
 }
 
 /// Lower quartile, median and upper quartile; each the value of a round, none in between.
-fn quartiles(mut taken_ns: Vec<f64>) -> [f64; 3] {
+pub(super) fn quartiles(mut taken_ns: Vec<f64>) -> [f64; 3] {
     taken_ns.sort_by(f64::total_cmp);
     [1, 2, 3].map(|quarters| taken_ns[(taken_ns.len() - 1) * quarters / 4])
 }

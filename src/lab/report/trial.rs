@@ -1,19 +1,33 @@
-//! A trial of the methods to its files: page, JSON, Markdown, one picture and one map.
+//! A trial to its files: the pages that a site signs, those of single methods, JSON, Markdown, pictures and map.
 
 mod document;
 mod pictures;
 
-use crate::lab::data::{Trial, TrialMap, TrialSize};
-use crate::report::{ReportError, as_html, as_markdown, json};
+use crate::lab::data::Trial;
+use crate::report::{ReportError, as_html, as_markdown, as_text, json};
 
 /// The files of a trial; the first is where a reader begins.
-pub const TRIAL_NAMES: [&str; 5] =
-    ["validation.html", "validation.json", "validation.md", "speed.svg", "failures.svg"];
+pub const TRIAL_NAMES: [&str; 7] = [
+    "validation.html",
+    "rivals.html",
+    "validation.json",
+    "validation.md",
+    "speed.svg",
+    "failures.svg",
+    "rivals.svg",
+];
 
 /// The extract; `folder` is what leads from the document to the pictures ("" or ending in "/"), none leaves them out.
 #[must_use]
 pub fn trial_markdown(trial: &Trial, folder: Option<&str>) -> String {
-    as_markdown::markdown(&document::document(trial), folder)
+    let [signed, rivals] = [document::document(trial), document::rivals(trial)];
+    [signed, rivals].map(|document| as_markdown::markdown(&document, folder)).join("\n")
+}
+
+/// What a terminal shows at the end: the limits, and whether the program is accepted.
+#[must_use]
+pub fn trial_outcome(trial: &Trial) -> String {
+    as_text::text(&document::verdict(trial))
 }
 
 /// Every file of a trial by name, in the order of [`TRIAL_NAMES`].
@@ -21,17 +35,13 @@ pub fn trial_markdown(trial: &Trial, folder: Option<&str>) -> String {
 /// # Errors
 /// [`ReportError`] where one of them cannot be made; then none is returned.
 pub fn trial_files(trial: &Trial) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
-    let pictures = [pictures::speed(trial), pictures::failures(trial)];
-    let page = as_html::page(&document::document(trial), &pictures).into_bytes();
-    let [speed, failures] = pictures.map(|picture| picture.svg.into_bytes());
+    let pictures = [pictures::ways(trial), pictures::failures(trial), pictures::rivals(trial)];
+    let pages = [document::document(trial), document::rivals(trial)];
+    let [signed, rivals] = pages.map(|page| as_html::page(&page, &pictures).into_bytes());
+    let [speed, failures, beside] = pictures.map(|picture| picture.svg.into_bytes());
     let extract = trial_markdown(trial, Some("")).into_bytes();
-    let bytes = [page, json::pretty(trial)?, extract, speed, failures];
+    let bytes = [signed, rivals, json::pretty(trial)?, extract, speed, failures, beside];
     Ok(TRIAL_NAMES.map(str::to_owned).into_iter().zip(bytes).collect())
-}
-
-/// The sizes at which a drop is off by more than the limit or gives no number.
-fn failing(map: &TrialMap) -> impl Iterator<Item = &TrialSize> + Clone {
-    map.sizes.iter().filter(|size| size.worst_error.is_none_or(|error| error.is_nan() || error > map.limit))
 }
 
 #[cfg(test)]

@@ -1,116 +1,256 @@
-//! A trial to one picture of speed against accuracy, and one map of where the program fails.
+//! A trial to its pictures: ways of working by speed and accuracy, the map of what becomes of damages, methods beside their rivals.
 
-use super::failing;
-use crate::lab::data::{Trial, TrialMap, TrialPoint, TrialSize};
+use crate::lab::data::{Trial, TrialFate, TrialMap, TrialPoint};
+use crate::lab::methods::{ALL_CLASSES, READING, WAYS};
 use crate::numerics::as_f64;
 use crate::report::pictures::draw::{Picture, Plate};
 use crate::report::pictures::panel::{
-    ALARM, COLOURS, Colour, Fill, INK, Panel, PanelAxis, PointShape, Points, RowWords,
+    ALARM, COLOURS, Colour, Curve, Dash, Fill, GREY, INK, Mark, Panel, PanelAxis, PointShape, Points,
+    RowWords,
 };
 use crate::report::rounding;
 
-/// Height of a family's panel, and of a row of the map.
-const PANEL: u32 = 410;
-const ROW: u32 = 34;
+/// Height of a panel, and of a row of the map.
+const PANEL: u32 = 520;
+const ROW: u32 = 25;
 /// Room for the words at either side of a row.
-const SIDES: (u32, u32) = (330, 560);
-/// Errors are drawn within these: a rounding of the peak, and a method that diverged.
-const ERRORS: (f64, f64) = (1e-17, 1e3);
+const SIDES: (u32, u32) = (300, 840);
+/// How many times above and below what matters an error is drawn; what is beyond lies on the edge.
+const SPAN: f64 = 200.0;
 
-/// A panel a family: each method on each class.
-pub(super) fn speed(trial: &Trial) -> Picture {
-    let caption = "Median error over the median time of a sample or a call, each method on each class of scenes. Below and left is better. Ring: \
-                   what the program takes."
+/// Errors within what is drawn.
+fn drawn(point: &TrialPoint, error: f64) -> f64 {
+    error.clamp(point.matters / SPAN, point.matters * SPAN)
+}
+
+fn errors_of(point: &TrialPoint) -> PanelAxis {
+    let range = (0.8 * point.matters / SPAN, 1.25 * point.matters * SPAN);
+    PanelAxis::new(format!("error, 95th percentile, {}", unit(point))).logarithmic().over(Some(range))
+}
+
+/// What an axis has room for: "%" of "% of the slap-down speed".
+fn unit(point: &TrialPoint) -> &str {
+    match &point.error_unit[..] {
+        "1" => "as it is",
+        unit if unit.starts_with('%') => "%",
+        unit => unit,
+    }
+}
+
+/// The look of a method by its place among its rivals.
+fn look(index: usize, at: Vec<(f64, f64)>) -> Points {
+    Points::new(COLOURS[index % COLOURS.len()], PointShape::of(index), at)
+}
+
+/// Around what the program takes.
+fn rings(at: Vec<(f64, f64)>) -> Points {
+    Points { radius: 21, ..Points::new(INK, PointShape::Ring, at) }
+}
+
+/// Whole powers of ten around times.
+fn decades(times: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
+    let (least, most) = (times.clone().fold(f64::INFINITY, f64::min), times.fold(0.0, f64::max));
+    (10_f64.powf(least.log10().floor()), 10_f64.powf(most.log10().ceil()))
+}
+
+/// Every way of working over all classes, with a bar from its best class to its worst.
+pub(super) fn ways(trial: &Trial) -> Picture {
+    let caption = "Time from file to answer, each way timed whole on the same files; below and left is better. Mark: 95th percentile of the error \
+                   over all classes of drops, hollow where another way is as fast and as accurate; ring: what the program takes. Bar: from the \
+                   best class to the worst. The prediction is given the true k and the contact's length."
         .to_owned();
-    let families = trial.points.chunk_by(|a, b| a.family == b.family);
-    let panels: Vec<Panel> = families.map(family_panel).collect();
-    let nothing = ("There is nothing to show: no method was tried.", "No method was tried.");
-    Plate { columns: 2, ..Plate::new("speed", "Speed against accuracy", caption).or(nothing) }
+    let families: Vec<Vec<&TrialPoint>> = WAYS.iter().map(|family| pooled(trial, family)).collect();
+    // The ways of the second family are those of the first.
+    let legends = [("Ways", &families[0]), ("Prediction", &families[2])].map(|(title, ways)| {
+        let named = |(index, way): (usize, &&TrialPoint)| look(index, Vec::new()).named(&way.method[..]);
+        let levels = if title == "Ways" {
+            levels(ways, (0.0, 0.0), "what a verdict needs", "median of what is promised")
+        } else {
+            Vec::new()
+        };
+        Panel {
+            title: title.to_owned(),
+            points: ways.iter().enumerate().map(named).collect(),
+            lines: levels,
+            ..Panel::default()
+        }
+    });
+    let panels: Vec<Panel> = families.iter().filter_map(|ways| ways_panel(trial, ways)).collect();
+    let panels: Vec<Panel> =
+        if panels.is_empty() { panels } else { legends.into_iter().chain(panels).collect() };
+    let nothing = ("There is nothing to show: no way was tried.", "No way was tried.");
+    Plate { columns: 3, ..Plate::new("speed", "Speed against accuracy", caption).or(nothing) }
         .picture(&panels)
 }
 
-fn family_panel(points: &[TrialPoint]) -> Panel {
-    let at = |p: &TrialPoint| (p.time_ns.max(f64::MIN_POSITIVE), p.median_error.clamp(ERRORS.0, ERRORS.1));
-    let mut drawn: Vec<Points> = Vec::new();
+/// The ways of a family over all classes.
+fn pooled<'a>(trial: &'a Trial, family: &str) -> Vec<&'a TrialPoint> {
+    let is_pooled = |p: &&TrialPoint| p.family == family && p.class == ALL_CLASSES && p.cases > 0;
+    trial.points.iter().filter(is_pooled).collect()
+}
+
+/// What a verdict needs and what the program promises, as lines.
+fn levels(ways: &[&TrialPoint], ends: (f64, f64), needed: &str, promised: &str) -> Vec<Curve> {
+    let level = |error: f64, dash, words: &str| {
+        Curve { stroke: 3, ..Curve::new(GREY, vec![(ends.0, error), (ends.1, error)]) }
+            .broken(dash)
+            .named(words)
+    };
+    let half_width = ways.iter().find_map(|p| p.promised.filter(|_| p.is_default));
+    let needed = ways.first().map(|p| level(p.matters, Dash::Dashed, needed));
+    needed.into_iter().chain(half_width.map(|half_width| level(half_width, Dash::Dotted, promised))).collect()
+}
+
+fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
+    let first = *ways.first()?;
+    let of_family = || trial.points.iter().filter(|p| p.family == first.family);
+    let reading = of_family().find(|p| p.class == ALL_CLASSES && p.method == READING);
+    let seconds = |p: &TrialPoint| 1e-9 * p.time_ns;
+    let at = |p: &TrialPoint| (seconds(p), drawn(p, p.p95_error));
+    let ends = decades(ways.iter().copied().chain(reading).map(seconds));
+    let bar = |(index, way): (usize, &&TrialPoint)| {
+        let classes = of_family().filter(|p| p.method == way.method && p.class != ALL_CLASSES && p.cases > 0);
+        let points = classes.map(|p| (seconds(way), drawn(way, p.p95_error))).collect();
+        Curve { opacity: 0.6, ..Curve::new(COLOURS[index % COLOURS.len()], points) }
+    };
+    let lines = ways.iter().enumerate().map(bar);
+    let levels = levels(ways, ends, "", "").into_iter().map(|level| Curve { label: None, ..level });
+    let mark = |(index, way): (usize, &&TrialPoint)| Points {
+        is_hollow: !way.is_on_front,
+        ..look(index, vec![at(way)])
+    };
+    let taken = ways.iter().filter(|p| p.is_default).map(|p| at(p)).collect();
+    Some(Panel {
+        title: first.family.clone(),
+        x: PanelAxis::new("seconds").logarithmic().over(Some(ends)),
+        y: errors_of(first),
+        height: PANEL,
+        lines: lines.chain(levels).collect(),
+        points: ways.iter().enumerate().map(mark).chain([rings(taken)]).collect(),
+        marks: reading.map(|p| Mark { at: seconds(p), label: READING.to_owned() }).into_iter().collect(),
+        ..Panel::default()
+    })
+}
+
+/// A panel a family of single methods: each method on each class.
+pub(super) fn rivals(trial: &Trial) -> Picture {
+    let caption = "95th percentile of the error over the median time, each method on each class of scenes, what matters most first. Dashed: from \
+                   here on a difference matters; what lies farther off than 200 times is drawn on the edge. Ring: what the program takes."
+        .to_owned();
+    let families = trial.points.chunk_by(|a, b| a.family == b.family);
+    let families = families.filter(|points| !WAYS.contains(&&points[0].family[..]));
+    let panels: Vec<Panel> = families.map(rivals_panel).collect();
+    let nothing = ("There is nothing to show: no method was tried.", "No method was tried.");
+    Plate { columns: 2, ..Plate::new("rivals", "Methods and their rivals", caption).or(nothing) }
+        .picture(&panels)
+}
+
+fn rivals_panel(points: &[TrialPoint]) -> Panel {
+    let at = |p: &TrialPoint| (p.time_ns.max(f64::MIN_POSITIVE), drawn(p, p.p95_error));
+    let mut shown: Vec<Points> = Vec::new();
     for point in points {
-        let index = drawn.iter().position(|of| of.label.as_ref() == Some(&point.method));
+        let index = shown.iter().position(|of| of.label.as_ref() == Some(&point.method));
         let index = index.unwrap_or_else(|| {
-            let i = drawn.len();
-            let look = Points::new(COLOURS[i % COLOURS.len()], PointShape::of(i), Vec::new());
-            drawn.push(look.named(&point.method[..]));
+            let i = shown.len();
+            shown.push(look(i, Vec::new()).named(&point.method[..]));
             i
         });
-        drawn[index].at.push(at(point));
+        shown[index].at.push(at(point));
     }
     let taken = points.iter().filter(|p| p.is_default).map(at).collect();
-    drawn.push(Points { radius: 21, ..Points::new(INK, PointShape::Ring, taken) });
-    let TrialPoint { family, time_per, error_unit, .. } = &points[0];
+    shown.push(rings(taken));
+    let ends = decades(points.iter().map(|p| p.time_ns));
+    let first = &points[0];
+    let matters =
+        Curve::new(GREY, vec![(ends.0, first.matters), (ends.1, first.matters)]).broken(Dash::Dashed);
     Panel {
-        title: family.clone(),
-        x: PanelAxis::new(format!("ns a {time_per}")).logarithmic(),
-        y: PanelAxis::new(format!("error, {error_unit}")).logarithmic(),
+        title: first.family.clone(),
+        x: PanelAxis::new(format!("ns a {}", first.time_per)).logarithmic().over(Some(ends)),
+        y: errors_of(first),
         height: PANEL,
-        points: drawn,
+        lines: vec![matters],
+        points: shown,
         ..Panel::default()
     }
 }
 
-/// What becomes of the drops of one size: colour and words.
-const FATES: [(Colour, &str); 3] = [
-    (Colour(226, 238, 247), "every drop within the limit"),
-    (Colour(60, 132, 190), "beyond it or without a number, and the program says so"),
-    (ALARM, "beyond it, and the program says nothing"),
+/// What becomes of a drop: colour and words.
+const FATES: [(TrialFate, Colour, &str); 4] = [
+    (TrialFate::Inside, Colour(196, 226, 204), "inside its interval"),
+    (TrialFate::Warned, Colour(240, 190, 70), "outside, and warned of"),
+    (TrialFate::Refused, Colour(150, 156, 164), "a number refused"),
+    (TrialFate::Silent, ALARM, "outside, and silent"),
 ];
 
-/// Which of [`FATES`].
-fn fate(map: &TrialMap, at: &TrialSize) -> usize {
-    match at.worst_error {
-        Some(error) if error <= map.limit => 0,
-        _ if at.is_noticed => 1,
-        _ => 2,
-    }
-}
-
-/// A row a damage, from the harmless size to the gross one.
+/// A row a damage, from the harmless size to the gross one; in each size a stripe a drop. What is silent comes first.
 pub(super) fn failures(trial: &Trial) -> Picture {
-    let caption =
-        "A row a damage or a drop that is hard to tell, its size from harmless at the left to gross at the right; at the right of it the size \
-         from which on a drop is off by more than the limit or gives no number."
-            .to_owned();
-    let words = |map: &TrialMap| RowWords {
-        left: map.name.clone(),
-        right: failing(map).next().map_or_else(|| "holds".to_owned(), |at| from_words(map, at)),
-        is_heading: false,
-    };
-    let count = trial.maps.len();
-    let fill = |which: usize| {
-        let cells = |(row, map): (usize, &TrialMap)| -> Vec<Vec<(f64, f64)>> {
-            let top = as_f64(count - row);
-            let width = 1.0 / as_f64(map.sizes.len().max(1));
-            let of_fate = map.sizes.iter().enumerate().filter(|(_, at)| fate(map, at) == which);
-            let cell = |(i, _): (usize, &TrialSize)| {
-                Fill::rectangle((width * as_f64(i), width * as_f64(i + 1)), (top - 0.9, top - 0.1))
-            };
-            of_fate.map(cell).collect()
-        };
-        let (colour, label) = FATES[which];
-        let areas = trial.maps.iter().enumerate().flat_map(cells).collect();
+    let caption = "A row a damage, its size from harmless at the left to gross at the right, in each size a stripe a drop: whether speed and k lie \
+                   inside their intervals. At the right the size from which on a drop is silent, warned of or refused, and the largest error in \
+                   half-widths of the interval."
+        .to_owned();
+    let mut maps: Vec<&TrialMap> = trial.maps.iter().collect();
+    maps.sort_by_key(|map| std::cmp::Reverse(gravest(map)));
+    let words =
+        |map: &&TrialMap| RowWords { left: map.name.clone(), right: fate_words(map), is_heading: false };
+    let count = maps.len();
+    let fill = |(fate, colour, label): (TrialFate, Colour, &str)| {
+        let areas =
+            maps.iter().enumerate().flat_map(|(row, map)| stripes(map, fate, as_f64(count - row))).collect();
         Fill { label: Some(label.to_owned()), colour, opacity: 1.0, areas }
     };
     let panel = Panel {
         x: PanelAxis::default().over(Some((0.0, 1.0))),
-        y: PanelAxis::rows(trial.maps.iter().map(words).collect()),
+        y: PanelAxis::rows(maps.iter().map(words).collect()),
         height: ROW * u32::try_from(count).unwrap_or(0),
         sides: Some(SIDES),
-        fills: [0, 1, 2].map(fill).into(),
+        fills: FATES.map(fill).into(),
         ..Panel::default()
     };
     let nothing = ("There is nothing to show: no damage was tried.", "No damage was tried.");
     let panels: &[Panel] = if count == 0 { &[] } else { &[panel] };
-    Plate::new("failures", "Where the program fails", caption).or(nothing).picture(panels)
+    Plate::new("failures", "What becomes of damages", caption).or(nothing).picture(panels)
 }
 
-/// A size in its unit.
-pub(super) fn from_words(map: &TrialMap, at: &TrialSize) -> String {
-    format!("{} {}", rounding::plain(at.size, 2), map.unit)
+/// The worst that becomes of a drop of the map: silence before all.
+fn gravest(map: &TrialMap) -> Option<TrialFate> {
+    map.sizes.iter().flat_map(|size| &size.drops).map(|drop| drop.fate).max()
+}
+
+/// The stripes of one fate in the row that ends at `top`.
+fn stripes(map: &TrialMap, fate: TrialFate, top: f64) -> Vec<Vec<(f64, f64)>> {
+    let width = 1.0 / as_f64(map.sizes.len());
+    let of_size = |(i, size): (usize, &crate::lab::data::TrialSize)| {
+        let stripe = 0.94 * width / as_f64(size.drops.len());
+        let from = width * (as_f64(i) + 0.03);
+        let drops = size.drops.iter().enumerate().filter(|(_, drop)| drop.fate == fate);
+        let area = |(n, _)| {
+            let left = from + stripe * as_f64(n);
+            Fill::rectangle((left, left + stripe), (top - 0.92, top - 0.08))
+        };
+        drops.map(area).collect::<Vec<_>>()
+    };
+    map.sizes.iter().enumerate().flat_map(of_size).collect()
+}
+
+/// From which size on what becomes of a drop, the gravest first.
+pub(super) fn fate_words(map: &TrialMap) -> String {
+    let from = |(fate, word): (TrialFate, &str)| {
+        let size = map.first(fate)?;
+        Some(if map.unit.is_empty() {
+            word.to_owned()
+        } else {
+            format!("{word} from {}", rounding::plain(size.size, 2))
+        })
+    };
+    let named =
+        [(TrialFate::Silent, "silent"), (TrialFate::Warned, "warned"), (TrialFate::Refused, "refused")];
+    let words: Vec<String> = named.into_iter().filter_map(from).collect();
+    let words =
+        if words.is_empty() { "inside".to_owned() } else { format!("{} {}", words.join(", "), map.unit) };
+    let off = map.sizes.iter().flat_map(|size| &size.drops).filter_map(|drop| drop.half_widths_off);
+    let largest = match off.fold(0.0, f64::max) {
+        off if off > 99.0 => "> 99".to_owned(),
+        off => rounding::significant(off, 2),
+    };
+    format!("{}; {largest}", words.trim_end())
 }

@@ -1,0 +1,104 @@
+//! What was measured to what is accepted: each limit of the table beside what was found.
+
+use super::references::{self, References};
+use crate::data::Verdict;
+use crate::lab::campaign::{half_widths_off, is_missed, quantile};
+use crate::lab::data::{Campaign, TrialDrop, TrialFate, TrialLimit, TrialMap, TrialPoint};
+use crate::numerics::as_f64;
+use crate::numerics::filter::ZeroPhaseLowPass;
+use std::f64::consts::PI;
+
+/// What is measured, least, most, unit, why.
+const TABLE: &str = include_str!("../limits.tsv");
+
+/// What was found, and which of several it lies in; none where it could not be had.
+type Found = (Option<f64>, String);
+
+/// Every limit beside what was found: those of the table, then a site's own recordings.
+pub(super) fn limits(
+    points: &[TrialPoint],
+    maps: &[TrialMap],
+    campaign: &Campaign,
+    site: Option<&References>,
+) -> Vec<TrialLimit> {
+    let of_line = |line: &str| {
+        let mut cells = line.split('\t');
+        let mut next = || cells.next().unwrap_or_default().to_owned();
+        let (name, least, most) = (next(), next().parse().ok(), next().parse().ok());
+        let (value, which) = match name.split_once(": ") {
+            Some(("campaign", measured)) => of_campaign(measured, campaign),
+            Some(("map", measured)) => of_maps(measured, maps),
+            Some(("filter", "CFC 180 at 300 Hz")) => (passed_at_300_hz(), String::new()),
+            Some(("recordings", _)) => of_own_recordings(),
+            _ => (
+                points.iter().find(|p| p.is_default && is_named(p, &name)).map(|p| p.p95_error),
+                String::new(),
+            ),
+        };
+        TrialLimit { name, unit: next(), value, least, most, reason: next(), which }
+    };
+    let lines = TABLE.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
+    lines.map(of_line).chain(site.into_iter().flat_map(References::limits)).collect()
+}
+
+/// Whether a point is of the family and the class of a name such as "flight fit: calm".
+fn is_named(point: &TrialPoint, name: &str) -> bool {
+    name.strip_prefix(&point.family).and_then(|rest| rest.strip_prefix(": ")) == Some(&point.class)
+}
+
+/// Of random sound drops: the share that passes, those that are wrong, or how far off a quantity is, in half-widths.
+fn of_campaign(measured: &str, campaign: &Campaign) -> Found {
+    let rows = &campaign.rows;
+    let passed = || rows.iter().filter(|row| row.verdict == Some(Verdict::Pass));
+    match measured {
+        "pass" => (Some(100.0 * as_f64(passed().count()) / as_f64(rows.len())), String::new()),
+        "passed and wrong" => {
+            listed(rows.iter().filter(|row| is_missed(row)).map(|row| row.number.to_string()))
+        }
+        quantity => {
+            let scored = passed().flat_map(|row| &row.quantities).filter(|scored| scored.name == quantity);
+            let mut off: Vec<f64> = scored.filter_map(half_widths_off).collect();
+            off.sort_by(f64::total_cmp);
+            (Some(quantile(&off, 0.95)).filter(|off| off.is_finite()), String::new())
+        }
+    }
+}
+
+/// By how many half-widths a drop is silently off that counts: one beyond its interval may be of the one in twenty.
+const SILENT_BY: f64 = 2.0;
+
+/// Of damages: those that are silent though a recording can tell them, or of which no finding names what is wrong at the gross end.
+fn of_maps(measured: &str, maps: &[TrialMap]) -> Found {
+    let is_wrong = |drop: &TrialDrop| {
+        drop.fate == TrialFate::Silent && drop.half_widths_off.is_some_and(|off| off > SILENT_BY)
+    };
+    let is_silent = |map: &&TrialMap| {
+        map.instead.is_empty() && map.sizes.iter().flat_map(|size| &size.drops).any(is_wrong)
+    };
+    match measured {
+        "silent" => listed(maps.iter().filter(is_silent).map(|map| map.name.clone())),
+        _ => listed(maps.iter().filter(|map| map.unnamed() > 0).map(|map| map.name.clone())),
+    }
+}
+
+fn of_own_recordings() -> Found {
+    let Some(limits) = references::own() else { return (None, String::new()) };
+    let lost = limits.into_iter().filter(|limit| !limit.is_kept());
+    listed(lost.map(|limit| {
+        if limit.which.is_empty() { limit.name } else { format!("{}: {}", limit.name, limit.which) }
+    }))
+}
+
+/// How many there are, and which.
+fn listed(names: impl Iterator<Item = String>) -> Found {
+    let names: Vec<String> = names.collect();
+    (Some(as_f64(names.len())), names.join(", "))
+}
+
+/// What the filter of class 180 leaves of a sine of 300 Hz in the middle of a long record.
+fn passed_at_300_hz() -> Option<f64> {
+    const RATE_HZ: f64 = 1e5;
+    let sine: Vec<f64> = (0..40_000).map(|i| (2.0 * PI * 300.0 * f64::from(i) / RATE_HZ).sin()).collect();
+    let left = ZeroPhaseLowPass::with_cfc(180.0, RATE_HZ)?.apply(&sine);
+    Some(left[18_000..22_000].iter().fold(0.0, |most, x| x.abs().max(most)))
+}

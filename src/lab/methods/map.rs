@@ -1,0 +1,91 @@
+//! A damage that grows, on several drops, through the whole program to what becomes of each: inside its interval, warned of, refused or silent.
+
+use crate::data::{Estimate, STANDARD_GRAVITY_M_S2, Verdict};
+use crate::ingest::Progress;
+use crate::lab::campaign::written;
+use crate::lab::damage::{self, DamageKind};
+use crate::lab::data::{TrialDrop, TrialFate, TrialMap, TrialRequest, TrialSize};
+use crate::lab::drawn::{ANF_10, ANF_18, Build, ESBB, VHLW};
+use crate::lab::plan::DropPlan;
+use crate::numerics::as_f64;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The drops that every damage is laid on: four casks, angles of 10 to 25°, k of 0.3 to 0.6, pulses of 3 to 8 ms, each with a weak mode and an
+/// offset of half a g.
+fn plans(request: &TrialRequest) -> Vec<DropPlan> {
+    let plan = |order: u64, build: Build, [angle_deg, k, pulse_ms, frequency_hz]: [f64; 4]| {
+        let mut plan = DropPlan::of(build, angle_deg, k, request.seed + order);
+        plan.pulse_s = 1e-3 * pulse_ms;
+        plan.modes = vec![DropPlan::mode(1, frequency_hz)];
+        plan.modes[0].strength = 0.3;
+        plan.chain.offset_m_s2 = 0.5 * STANDARD_GRAVITY_M_S2;
+        plan
+    };
+    let plans = [
+        plan(0, ANF_18, [15.0, 0.5, 5.0, 120.0]),
+        plan(1, ANF_10, [10.0, 0.35, 4.0, 150.0]),
+        plan(2, VHLW, [20.0, 0.3, 8.0, 180.0]),
+        plan(3, ESBB, [12.0, 0.6, 3.0, 90.0]),
+        plan(4, ANF_18, [25.0, 0.45, 6.0, 100.0]),
+    ];
+    let count = request.either(3, plans.len());
+    plans.into_iter().take(count).collect()
+}
+
+/// Distance from the truth in half-widths; infinitely far where a number is given for what did not happen.
+fn off(stated: Option<Estimate>, truth: Option<f64>) -> Option<f64> {
+    let stated = stated?;
+    Some(
+        truth.map_or(f64::INFINITY, |truth| (stated.value - truth).abs() / stated.u95.max(f64::MIN_POSITIVE)),
+    )
+}
+
+/// What becomes of a plan's drop, struck at this size.
+fn drop_of(kind: &DamageKind, plan: &DropPlan, size: f64) -> TrialDrop {
+    let (drop, recording) = kind.grown(plan, size);
+    let truth = &drop.motion.truth;
+    let Some(result) = drop.analyzed(&recording).map(|analysis| analysis.result) else {
+        return TrialDrop {
+            fate: TrialFate::Refused,
+            half_widths_off: None,
+            is_named: kind.told_by.is_empty(),
+        };
+    };
+    let off = [off(result.slap_down.speed, truth.speed), off(result.k, truth.k)];
+    let worst = off.iter().flatten().copied().reduce(f64::max);
+    let fate = match (off, result.verdict) {
+        ([Some(speed), Some(k)], _) if speed.max(k) <= 1.0 => TrialFate::Inside,
+        (_, Verdict::Pass) if worst.is_some_and(|worst| worst > 1.0) => TrialFate::Silent,
+        ([Some(_), Some(_)], _) => TrialFate::Warned,
+        _ => TrialFate::Refused,
+    };
+    let is_named = kind.told_by.is_empty()
+        || result.quality.iter().any(|finding| kind.told_by.contains(&&written(finding.code)[..]));
+    TrialDrop { fate, half_widths_off: worst, is_named }
+}
+
+/// A map of every damage that grows; `progress` is told the share that is done.
+pub(super) fn maps(request: &TrialRequest, progress: Progress) -> Vec<TrialMap> {
+    let kinds: Vec<&DamageKind> = damage::growing().collect();
+    let (plans, done) = (plans(request), AtomicUsize::new(0));
+    let of_kind = |kind: &&DamageKind| {
+        // The first and the last are among every third of them.
+        let sizes = kind.growing.iter().copied().step_by(request.either(3, 1));
+        let of_size = |size: f64| {
+            let drops = plans.par_iter().map(|plan| drop_of(kind, plan, size)).collect();
+            TrialSize { size, drops }
+        };
+        let map = TrialMap {
+            name: kind.name.to_owned(),
+            what: kind.what.to_owned(),
+            unit: kind.unit.to_owned(),
+            told_by: kind.told_by.clone(),
+            instead: kind.instead.to_owned(),
+            sizes: sizes.collect::<Vec<_>>().into_par_iter().map(of_size).collect(),
+        };
+        progress(as_f64(done.fetch_add(1, Ordering::Relaxed) + 1) / as_f64(kinds.len()));
+        map
+    };
+    kinds.par_iter().map(of_kind).collect()
+}
