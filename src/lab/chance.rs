@@ -43,6 +43,12 @@ impl Chance {
         if self.is(0.5) { 1.0 } else { -1.0 }
     }
 
+    /// The factor that makes something too large or too small by `percent`.
+    pub(super) fn factor(&mut self, percent: f64) -> f64 {
+        let factor = 1.0 + percent / 100.0;
+        if self.is(0.5) { factor } else { 1.0 / factor }
+    }
+
     /// A normal deviate of a quantity whose 95 % half-width is given.
     pub(super) fn within(&mut self, half_width: f64) -> f64 {
         half_width / SIGMAS_OF_95 * self.normal()

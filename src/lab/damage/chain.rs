@@ -12,8 +12,16 @@ pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
     match kind {
         "clip_first" => clip(case, End::First, size),
         "clip_second" => clip(case, End::Second, size),
-        "gap_impact" => gap_impact(case, size),
-        "gap_flight" => gap_flight(case, size),
+        "gap_impact" => {
+            let from_s = case.scene.before_s + case.chance.even(-0.2, 0.8) * case.contact_s();
+            lose(case, from_s, size / 100.0 * case.contact_s());
+        }
+        "gap_flight" => {
+            let (contact_s, flight_s) = (case.contact_s(), case.way_s() - case.contact_s());
+            let share = case.chance.even(0.05, 0.97 - size / 100.0 * 0.9);
+            let from_s = case.scene.before_s + contact_s + share * flight_s;
+            lose(case, from_s, size / 100.0 * 0.9 * flight_s);
+        }
         "dropouts" => dropouts(case, size),
         "offset" => one(case, |chain, sign| chain.offset_m_s2 = sign * size_m_s2),
         "zero_shift" => one(case, |chain, sign| chain.zero_shift_m_s2 = sign * size_m_s2),
@@ -29,9 +37,17 @@ pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
         "polarity_second" => case.scene.channels[1].chain.swapped_polarity = true,
         "polarity_all" => chains(case).for_each(|chain| chain.swapped_polarity = true),
         "ends_exchanged" => case.scene.swapped_ends = true,
-        "scale_one" => scale(case, size, false),
-        "scale_all" | "scale_all_rest" => scale(case, size, true),
-        "not_rigid" => not_rigid(case, size),
+        "scale_one" => {
+            let which = case.chance.index(2);
+            scale(case, size, which..which + 1);
+        }
+        "scale_all" | "scale_all_rest" => {
+            // A number as for one, so that both kinds go on with the same chance.
+            case.chance.index(2);
+            scale(case, size, 0..case.scene.channels.len());
+        }
+        // The second sensor of the first end shows another step than its neighbour.
+        "not_rigid" => scale(case, size, 2..3),
         "begins_late" => {
             case.scene.before_s = -size * 1e-3;
             case.scene.rest = false;
@@ -89,25 +105,11 @@ fn clip(case: &mut DrawnDrop, end: End, size: f64) {
     case.stated.channels[which].full_scale = is_stated.then(|| limit_m_s2 / unit_m_s2(&channel.unit));
 }
 
-fn gap_impact(case: &mut DrawnDrop, size: f64) {
-    let contact_s = case.contact_s();
-    let from_s = case.scene.before_s + case.chance.even(-0.2, 0.8) * contact_s;
-    lose(case, (from_s, from_s + size / 100.0 * contact_s));
-}
-
-fn gap_flight(case: &mut DrawnDrop, size: f64) {
-    let contact_s = case.contact_s();
-    let flight_s = case.way_s() - contact_s;
-    let from_s =
-        case.scene.before_s + contact_s + case.chance.even(0.05, 0.97 - size / 100.0 * 0.9) * flight_s;
-    lose(case, (from_s, from_s + size / 100.0 * 0.9 * flight_s));
-}
-
 /// Loses a span of one channel or of all.
-fn lose(case: &mut DrawnDrop, span_s: (f64, f64)) {
+fn lose(case: &mut DrawnDrop, from_s: f64, long_s: f64) {
     let (all, which) = (case.chance.is(0.4), case.chance.index(2));
     let lost = chains(case).enumerate().filter(|(i, _)| all || *i == which);
-    lost.for_each(|(_, chain)| chain.gaps_s.push(span_s));
+    lost.for_each(|(_, chain)| chain.gaps_s.push((from_s, from_s + long_s)));
 }
 
 /// One in the contact, two in the flight.
@@ -130,15 +132,10 @@ fn low_rate(case: &mut DrawnDrop, size: f64) {
     }
 }
 
-/// One or all channels too large or too small.
-fn scale(case: &mut DrawnDrop, size: f64, all: bool) {
-    let (which, up) = (case.chance.index(2), case.chance.is(0.5));
-    let factor = if up { 1.0 + size / 100.0 } else { 1.0 / (1.0 + size / 100.0) };
-    for (i, channel) in case.scene.channels.iter_mut().enumerate() {
-        if all || i == which {
-            channel.chain.scale *= factor;
-        }
-    }
+/// Some channels too large or too small.
+fn scale(case: &mut DrawnDrop, size: f64, which: std::ops::Range<usize>) {
+    let factor = case.chance.factor(size);
+    case.scene.channels[which].iter_mut().for_each(|channel| channel.chain.scale *= factor);
     unlimited(case);
 }
 
@@ -172,11 +169,4 @@ fn coarse(case: &mut DrawnDrop, size: f64) {
         let chain = &mut case.scene.channels[i].chain;
         (chain.full_scale_m_s2, chain.bits) = (Some(full_scale_m_s2), Some(bits));
     }
-}
-
-/// The second sensor of the first end shows another step than its neighbour.
-fn not_rigid(case: &mut DrawnDrop, size: f64) {
-    let up = case.chance.is(0.5);
-    case.scene.channels[2].chain.scale *= if up { 1.0 + size / 100.0 } else { 1.0 / (1.0 + size / 100.0) };
-    unlimited(case);
 }

@@ -7,14 +7,32 @@ use crate::data::{Contact, block_inertia_kg_m2};
 pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
     match kind {
         "stated_position" => position(case, size),
-        "stated_angle" => angle(case, size),
-        "stated_height" | "stated_height_rest" => height(case, size),
+        "stated_angle" => {
+            let stated_deg = case.stated.drop.angle_rad.to_degrees();
+            let moved_deg = stated_deg + case.chance.sign() * size;
+            let moved_deg = if moved_deg > 0.0 { moved_deg } else { stated_deg + size };
+            case.stated.drop.angle_rad = moved_deg.to_radians();
+        }
+        "stated_height" | "stated_height_rest" => {
+            let drop = &mut case.stated.drop;
+            drop.height_m *= case.chance.factor(size);
+            drop.impact_velocity_m_s = (2.0 * drop.gravity_m_s2 * drop.height_m).sqrt();
+        }
         "stated_rough" | "stated_rough_axial" => state(case, Contact::Rough),
         "stated_smooth" | "stated_smooth_axial" => state(case, Contact::Smooth),
-        "stated_cog" => cog(case, size),
-        "stated_inertia" => inertia(case, size),
+        "stated_cog" => {
+            given(case, "cask.cog_m");
+            case.stated.cask.cog_m += case.chance.sign() * size;
+        }
+        "stated_inertia" => {
+            given(case, "cask.inertia_kg_m2");
+            case.stated.cask.inertia_kg_m2 *= case.chance.factor(size);
+        }
         "stated_length" => length(case, size),
-        "stated_section" => section(case, size),
+        "stated_section" => {
+            case.stated.cask.height_m *= case.chance.factor(size);
+            follow(case);
+        }
         "stated_off" => case.stated.channels[1].position_m = case.stated.cask.length_m + 0.3,
         "stated_one_end" => drop(case.stated.channels.remove(1)),
         _ => {}
@@ -26,12 +44,6 @@ fn given(case: &mut DrawnDrop, key: &str) {
     case.stated.defaults.retain(|default| default != key);
 }
 
-/// Too large or too small by `size` percent.
-fn factor(case: &mut DrawnDrop, size: f64) -> f64 {
-    let factor = 1.0 + size / 100.0;
-    if case.chance.is(0.5) { factor } else { 1.0 / factor }
-}
-
 /// One of A1 and A2 somewhere else along the cask; still on it, so that nothing but the data can tell.
 fn position(case: &mut DrawnDrop, size: f64) {
     let (which, sign) = (case.chance.index(2), case.chance.sign());
@@ -41,60 +53,28 @@ fn position(case: &mut DrawnDrop, size: f64) {
     *position_m = if (0.0..=length_m).contains(&moved_m) { moved_m } else { *position_m - sign * size };
 }
 
-fn angle(case: &mut DrawnDrop, size: f64) {
-    let stated_deg = case.stated.drop.angle_rad.to_degrees();
-    let moved_deg = stated_deg + case.chance.sign() * size;
-    let moved_deg = if moved_deg > 0.0 { moved_deg } else { stated_deg + size };
-    case.stated.drop.angle_rad = moved_deg.to_radians();
-}
-
-fn height(case: &mut DrawnDrop, size: f64) {
-    let factor = factor(case, size);
-    let drop = &mut case.stated.drop;
-    drop.height_m *= factor;
-    drop.impact_velocity_m_s = (2.0 * drop.gravity_m_s2 * drop.height_m).sqrt();
-}
-
 fn state(case: &mut DrawnDrop, contact: Contact) {
     given(case, "contact.friction");
     case.stated.contact = contact;
 }
 
-fn cog(case: &mut DrawnDrop, size: f64) {
-    given(case, "cask.cog_m");
-    let sign = case.chance.sign();
-    case.stated.cask.cog_m += sign * size;
-}
-
 /// The second end elsewhere than stated; what sits on the cask stays where it is, and on it.
 fn length(case: &mut DrawnDrop, size: f64) {
-    let drawn = factor(case, size);
+    let drawn = case.chance.factor(size);
     let reach_m = case.stated.channels.iter().map(|spec| spec.position_m).fold(0.0, f64::max);
     let cask = &mut case.stated.cask;
     cask.length_m *= if drawn * cask.length_m < reach_m { 1.0 / drawn } else { drawn };
     follow(case);
 }
 
-fn section(case: &mut DrawnDrop, size: f64) {
-    case.stated.cask.height_m *= factor(case, size);
-    follow(case);
-}
-
 /// What the cask file leaves out follows from the sizes that it states.
 fn follow(case: &mut DrawnDrop) {
     let is_left = |key: &str| case.stated.defaults.iter().any(|default| default == key);
-    let (no_cog, no_inertia) = (is_left("cask.cog_m"), is_left("cask.inertia_kg_m2"));
     let cask = &mut case.stated.cask;
-    if no_cog {
+    if is_left("cask.cog_m") {
         cask.cog_m = cask.length_m / 2.0;
     }
-    if no_inertia {
+    if is_left("cask.inertia_kg_m2") {
         cask.inertia_kg_m2 = block_inertia_kg_m2(cask.mass_kg, cask.length_m, cask.height_m);
     }
-}
-
-fn inertia(case: &mut DrawnDrop, size: f64) {
-    given(case, "cask.inertia_kg_m2");
-    let factor = factor(case, size);
-    case.stated.cask.inertia_kg_m2 *= factor;
 }
