@@ -1,12 +1,12 @@
 //! A cask, how it falls and what it carries, to the simulated drop with its cask file, and that to its recording.
 
 use super::chance::Chance;
-use super::data::{Scene, SceneChannel, SimulatedMotion, SyntheticRecording};
+use super::data::{Scene, SceneChannel, SceneExtras, SimulatedMotion, SyntheticRecording, WantedImpact};
 use super::{in_memory, synth};
 use crate::analysis::measure;
 use crate::data::{
-    Analysis, Cask, CaskFile, ChannelSpec, Contact, Corrections, Coupling, Drop, FilterChoice, Recording,
-    STANDARD_GRAVITY_M_S2, Source, Tolerances, Unit, block_inertia_kg_m2,
+    Analysis, Cask, CaskFile, ChannelSpec, Contact, Corrections, Coupling, Drop, End, FilterChoice,
+    Recording, STANDARD_GRAVITY_M_S2, Source, Tolerances, Unit, block_inertia_kg_m2,
 };
 use crate::numerics::reduce;
 use std::path::PathBuf;
@@ -46,6 +46,28 @@ impl Build {
             inertia_kg_m2: block_inertia_kg_m2(mass_kg, length_m, height_m),
             is_body: true,
         }
+    }
+}
+
+/// A cask that is dropped and whose ends do this, the first at once; nothing rings, and there are no channels yet.
+pub(super) fn scene(cask: Cask, drop: Drop, contact: Contact, impacts: [WantedImpact; 2]) -> Scene {
+    let end = |end, impact| synth::crushable_end(&cask, &drop, contact, end, impact);
+    Scene {
+        name: cask.name.clone(),
+        seed: 1,
+        first_end: end(End::First, impacts[0]),
+        second_end: end(End::Second, impacts[1]),
+        modes: Vec::new(),
+        before_s: 0.1,
+        after_s: 0.05,
+        rest: false,
+        clock_error: 0.0,
+        swapped_ends: false,
+        channels: Vec::new(),
+        extras: SceneExtras::default(),
+        cask,
+        drop,
+        contact,
     }
 }
 

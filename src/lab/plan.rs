@@ -2,8 +2,8 @@
 
 use super::chance::Chance;
 use super::damage::Wish;
-use super::data::{BendingMode, Chain, Scene, SceneChannel, SceneExtras, WantedImpact};
-use super::drawn::{Build, DrawnDrop, cask_file, spec};
+use super::data::{BendingMode, Chain, Scene, SceneChannel, WantedImpact};
+use super::drawn::{Build, DrawnDrop, cask_file, scene, spec};
 use super::synth;
 use crate::data::{Axis, Contact, Drop, End, STANDARD_GRAVITY_M_S2};
 
@@ -62,29 +62,20 @@ impl DropPlan {
 
     /// The drop as a damage needs it, simulated.
     pub(super) fn draw_as(&self, wish: &Wish) -> DrawnDrop {
-        let cask = self.build.cask();
         let contact = wish.contact.unwrap_or(self.contact);
         let drop = Drop::of_height(9.0, self.angle_deg.to_radians());
-        let end = |end, duration_s, restitution| {
-            let wanted = WantedImpact { duration_s, restitution, yield_share: self.yield_share };
-            synth::crushable_end(&cask, &drop, contact, end, wanted)
-        };
+        let impacts = [(self.pulse_s, self.k), (4e-3, 0.3)].map(|(duration_s, restitution)| WantedImpact {
+            duration_s,
+            restitution,
+            yield_share: self.yield_share,
+        });
         let mut scene = Scene {
-            name: cask.name.clone(),
             seed: self.seed,
-            first_end: end(End::First, self.pulse_s, self.k),
-            second_end: end(End::Second, 4e-3, 0.3),
-            contact,
             modes: self.modes.clone(),
             before_s: self.before_s,
-            after_s: 0.05,
             rest: wish.rest == Some(true),
-            clock_error: 0.0,
-            swapped_ends: false,
             channels: [End::First, End::Second].map(|end| self.channel(end)).into(),
-            extras: SceneExtras::default(),
-            cask,
-            drop,
+            ..scene(self.build.cask(), drop, contact, impacts)
         };
         if scene.rest {
             scene.before_s = scene.fall_s() + 0.2;

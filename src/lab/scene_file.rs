@@ -4,7 +4,7 @@ mod channel;
 mod keys;
 mod values;
 
-use crate::data::{Cask, CaskFile, Drop, End};
+use crate::data::{Cask, CaskFile, Drop};
 use crate::ingest::IngestError;
 use crate::ingest::cask_file::section::{Document, Kind, Section};
 use crate::ingest::cask_file::{self, CaskFileError};
@@ -12,7 +12,7 @@ use crate::lab::data::{
     BendingMode, CrushableEnd, LooseMass, Scene, SceneExtras, SceneFile, WantedImpact, slowed,
 };
 use crate::lab::drawn;
-use crate::lab::synth::{self, crushable_end};
+use crate::lab::synth;
 use std::path::Path;
 use values::{contradicts, flag, given, needs, value, whole};
 
@@ -23,8 +23,7 @@ const SCENE_FILE: Kind = Kind { name: "the scene file", root: &keys::ROOT, table
 const FIRST_IMPACT: WantedImpact = WantedImpact { duration_s: 6e-3, restitution: 0.5, yield_share: None };
 const SECOND_IMPACT: WantedImpact = WantedImpact { duration_s: 5e-3, restitution: 0.3, yield_share: None };
 
-/// Defaults of the record before first contact, of the fall and of hanging at rest, s.
-const BEFORE_S: f64 = 0.1;
+/// Default of hanging at rest, s.
 const AT_REST_S: f64 = 0.25;
 
 /// The most samples of a channel.
@@ -46,36 +45,20 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
     let cask = cask_file::cask(&root.required_table("cask")?, path)?;
     let free = cask_file::drop(&drop_table, &cask)?;
     let guided = value(&drop_table, "guided_percent")? / 100.0;
-    let drop = guided_drop(free, guided);
+    // Of what guides the fall the cask file does not know.
+    let drop = if free.impact_velocity_given { free } else { slowed(free, guided) };
     let contact_table = root.table("contact")?;
     let contact = cask_file::contact(&contact_table)?;
-    let name = root.text("name")?.map_or_else(|| cask.name.clone(), |name| name.value);
-    let crushable = |end, table: Section, usual| {
-        let impact = impact(&table, usual)?;
-        let by_pulse = || crushable_end(&cask, &drop, contact, end, impact);
-        needs(&table, &[("lock_up_m", "lock_up_n_m"), ("lock_up_n_m", "lock_up_m")])?;
-        Ok::<_, CaskFileError>(CrushableEnd {
-            lock_up: given(&table, "lock_up_m")?.zip(given(&table, "lock_up_n_m")?),
-            footprint: value(&table, "footprint")?,
-            ..stiffnesses(&table)?.unwrap_or_else(by_pulse)
-        })
-    };
-    let first_end = crushable(End::First, root.table("first_end")?, FIRST_IMPACT)?;
-    let second_end = crushable(End::Second, root.table("second_end")?, SECOND_IMPACT)?;
+    let (first, second) = (root.table("first_end")?, root.table("second_end")?);
+    let impacts = [impact(&first, FIRST_IMPACT)?, impact(&second, SECOND_IMPACT)?];
+    let by_pulses = drawn::scene(cask.clone(), drop, contact, impacts);
     let tables = root.tables("channel")?;
-    let both = channels(&tables, &cask)?;
-    let (channels, specs) = both.into_iter().unzip();
+    let (channels, specs) = channels(&tables, &cask)?.into_iter().unzip();
     let recording = root.table("recording")?;
-    let rest = flag(&recording, "rest")?;
     let loose = root.tables("contents")?;
     if let Some(table) = loose.get(synth::MOST_LOOSE) {
-        let mend = "two make a body that strikes at both its ends";
-        return Err(contradicts(
-            table,
-            "mass_kg",
-            "one [[contents]] more than the two that are simulated",
-            mend,
-        ));
+        let most = "one [[contents]] more than the two that are simulated";
+        return Err(contradicts(table, "mass_kg", most, "two make a body that strikes at both its ends"));
     }
     let falling_speed_m_s = value(&contact_table, "falling_speed_m_s")?;
     let extras = SceneExtras {
@@ -86,23 +69,20 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
         roll_rad_s: value(&drop_table, "roll_deg_s")?.to_radians(),
     };
     let mut scene = Scene {
-        name,
-        seed: whole(&root, "seed")?.unwrap_or(1),
-        first_end,
-        second_end,
+        name: root.text("name")?.map_or_else(|| cask.name.clone(), |name| name.value),
+        seed: whole(&root, "seed")?.unwrap_or(by_pulses.seed),
+        first_end: crushable(&first, by_pulses.first_end)?,
+        second_end: crushable(&second, by_pulses.second_end)?,
         modes: root.tables("mode")?.iter().map(mode).collect::<Result<_, _>>()?,
-        before_s: BEFORE_S,
         after_s: value(&recording, "after_s")?,
-        rest,
+        rest: flag(&recording, "rest")?,
         clock_error: 1e-6 * value(&recording, "clock_error_ppm")?,
         swapped_ends: flag(&recording, "swapped_ends")?,
         channels,
         extras,
-        cask: cask.clone(),
-        drop,
-        contact,
+        ..by_pulses
     };
-    let usual_s = if rest { scene.fall_s() + AT_REST_S } else { BEFORE_S };
+    let usual_s = if scene.rest { scene.fall_s() + AT_REST_S } else { scene.before_s };
     scene.before_s = given(&recording, "before_s")?.unwrap_or(usual_s);
     affordable(&root, &tables, &scene)?;
     let defaults = cask_file::assumed(&root, &["cask", "drop", "contact"]);
@@ -112,11 +92,6 @@ fn checked(path: &Path, text: &str) -> Result<SceneFile, CaskFileError> {
         ..drawn::cask_file(cask, stated_drop(&drop_table, free)?, contact, defaults)
     };
     Ok(SceneFile { scene, stated })
-}
-
-/// The fall that guides slow down, of which the cask file does not know.
-fn guided_drop(free: Drop, guided: f64) -> Drop {
-    if free.impact_velocity_given { free } else { slowed(free, guided) }
 }
 
 fn loose_mass(table: &Section, cask: &Cask) -> Result<LooseMass, CaskFileError> {
@@ -149,6 +124,16 @@ fn impact(table: &Section, usual: WantedImpact) -> Result<WantedImpact, CaskFile
         duration_s: given(table, "pulse_ms")?.map_or(usual.duration_s, |ms| ms * 1e-3),
         restitution: given(table, "k")?.unwrap_or(usual.restitution),
         yield_share: given(table, "yield_share")?,
+    })
+}
+
+/// The end with what the table says of it; `by_pulse` where it gives no stiffnesses.
+fn crushable(table: &Section, by_pulse: CrushableEnd) -> Result<CrushableEnd, CaskFileError> {
+    needs(table, &[("lock_up_m", "lock_up_n_m"), ("lock_up_n_m", "lock_up_m")])?;
+    Ok(CrushableEnd {
+        lock_up: given(table, "lock_up_m")?.zip(given(table, "lock_up_n_m")?),
+        footprint: value(table, "footprint")?,
+        ..stiffnesses(table)?.unwrap_or(by_pulse)
     })
 }
 

@@ -17,6 +17,23 @@ pub fn median(values: &mut [f64]) -> f64 {
     }
 }
 
+/// The value below which this share of `ascending` lies, by straight lines between them (Hyndman & Fan 1996, type 7); NaN of none.
+#[must_use]
+#[allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "an index into a list"
+)]
+pub fn quantile(ascending: &[f64], share: f64) -> f64 {
+    let Some(last) = ascending.len().checked_sub(1) else { return f64::NAN };
+    let place = share * last as f64;
+    let below = (place as usize).min(last);
+    let (low, high) = (ascending[below], ascending[(below + 1).min(last)]);
+    // Equal neighbours may be infinite.
+    if place > below as f64 { low + (place - below as f64) * (high - low) } else { low }
+}
+
 /// Most values that a spread is taken from.
 const MOST: usize = 10_000;
 

@@ -48,17 +48,9 @@ pub(super) fn channels(root: &Section, cask: &Cask) -> Result<Vec<ChannelSpec>, 
 }
 
 fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), CaskFileError> {
-    const END: &str =
-        "end = \"first\" (the low end, which touches first) or \"second\" (the one that slaps down)";
-    const AXIS: &str =
-        "axis = \"transverse\" (across the cask, in the plane of the drop) or \"axial\" (along it)";
     let name = table.required_text("name")?;
-    let end = table
-        .word("end", &[("first", End::First), ("second", End::Second)], END)?
-        .ok_or_else(|| table.missing("end", END))?;
-    let axis = table
-        .word("axis", &[("transverse", Axis::Transverse), ("axial", Axis::Axial)], AXIS)?
-        .ok_or_else(|| table.missing("axis", AXIS))?;
+    let end = end(table)?;
+    let axis = axis(table)?.ok_or_else(|| table.missing("axis", AXIS))?;
     let source = source(table)?;
     let unit = unit(table)?;
     let position_m = position_m(table, cask)?;
@@ -80,6 +72,20 @@ fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), 
         lateral_m: table.number("lateral_m")?.map_or(0.0, |lateral| lateral.value),
     };
     Ok((spec, name.span))
+}
+
+pub(crate) fn end(table: &Section) -> Result<End, CaskFileError> {
+    const END: &str =
+        "end = \"first\" (the low end, which touches first) or \"second\" (the one that slaps down)";
+    let end = table.word("end", &[("first", End::First), ("second", End::Second)], END)?;
+    end.ok_or_else(|| table.missing("end", END))
+}
+
+const AXIS: &str =
+    "axis = \"transverse\" (across the cask, in the plane of the drop) or \"axial\" (along it)";
+
+pub(crate) fn axis(table: &Section) -> Result<Option<Axis>, CaskFileError> {
+    table.word("axis", &[("transverse", Axis::Transverse), ("axial", Axis::Axial)], AXIS)
 }
 
 fn source(table: &Section) -> Result<Source, CaskFileError> {

@@ -1,10 +1,10 @@
 //! Random numbers to a drop: the cask, how it falls and what its ends do, as they are and as they are stated.
 
-use crate::data::{Cask, CaskFile, Contact, Drop, End, Tolerances, first_arm_m};
+use crate::data::{Cask, CaskFile, Contact, Drop, Tolerances, first_arm_m};
 use crate::lab::chance::{Chance, round};
 use crate::lab::damage::{BetweenImpacts, Wish};
-use crate::lab::data::{BendingMode, Scene, SceneExtras, SimulatedMotion, Truth, WantedImpact};
-use crate::lab::drawn::{BUILDS, DrawnDrop, GRAVITY_M_S2, LEAST_FRICTION, cask_file};
+use crate::lab::data::{BendingMode, Scene, SimulatedMotion, Truth, WantedImpact};
+use crate::lab::drawn::{BUILDS, DrawnDrop, GRAVITY_M_S2, LEAST_FRICTION, cask_file, scene};
 use crate::lab::synth;
 use std::collections::BTreeMap;
 
@@ -103,25 +103,15 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
         horizontal_velocity_m_s: off * chance.within(tolerances.horizontal_velocity_m_s),
         ..stated_drop
     };
-    let [first, second] = impacts(chance);
+    let impacts = impacts(chance);
     let (share, friction) = (off * chance.within(tolerances.friction), chance.even(LEAST_FRICTION, 1.0));
     let mut scene = Scene {
-        name: cask.name.clone(),
         seed: chance.seed(),
-        first_end: synth::crushable_end(&cask, &drop, stated_contact, End::First, first),
-        second_end: synth::crushable_end(&cask, &drop, stated_contact, End::Second, second),
         modes: modes(chance),
-        before_s: 0.1,
         after_s: chance.even(0.02, 0.15),
-        rest: false,
         // Quartz oscillators keep some 1e-5.
         clock_error: off * chance.normal() * 2e-5,
-        swapped_ends: false,
-        channels: Vec::new(),
-        extras: SceneExtras::default(),
-        cask,
-        drop,
-        contact: stated_contact,
+        ..scene(cask, drop, stated_contact, impacts)
     };
     let mut stated = cask_file(stated, stated_drop, stated_contact, defaults);
     wish.fulfil(&mut scene, &mut stated, chance);

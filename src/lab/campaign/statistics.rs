@@ -2,6 +2,7 @@
 
 use crate::data::{Estimate, Verdict};
 use crate::lab::data::{CampaignRow, Scored};
+pub(in crate::lab) use crate::numerics::robust::quantile;
 
 /// An error above this many half-widths on a result that passed is a miss: the interval ends half its width, which is one half-width, short of the truth.
 const MISSED_BY: f64 = 2.0;
@@ -85,23 +86,6 @@ impl Spread {
     pub(super) fn count(&self) -> usize {
         self.errors.len()
     }
-}
-
-/// The value below which this share of `ascending` lies, between its neighbours where it falls between; NaN of nothing.
-#[allow(
-    clippy::cast_precision_loss,
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "an index into a list"
-)]
-pub(in crate::lab) fn quantile(ascending: &[f64], share: f64) -> f64 {
-    let Some(last) = ascending.len().checked_sub(1) else { return f64::NAN };
-    let place = share * last as f64;
-    let below = (place as usize).min(last);
-    let above = (below + 1).min(last);
-    let (low, high) = (ascending[below], ascending[above]);
-    // Equal neighbours may be infinite.
-    if place > below as f64 { low + (place - below as f64) * (high - low) } else { low }
 }
 
 #[cfg(test)]

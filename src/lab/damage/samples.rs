@@ -35,9 +35,8 @@ fn index(case: &DrawnDrop, channel: &SyntheticChannel, since_s: f64) -> usize {
 }
 
 /// Time of sample `index` after first contact, s.
-#[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
 fn time_s(case: &DrawnDrop, channel: &SyntheticChannel, index: usize) -> f64 {
-    index as f64 / channel.sample_rate_hz - case.scene.before_s
+    channel.time_s(index) - case.scene.before_s
 }
 
 /// 1 g in the channel's unit.

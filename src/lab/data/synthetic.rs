@@ -2,6 +2,7 @@
 
 use super::scene::{Scene, Truth};
 use crate::data::CaskFile;
+use crate::numerics::as_f64;
 
 /// An end's impact, as a scene file may ask for it instead of stiffnesses.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,10 +53,9 @@ impl SyntheticChannel {
     }
 
     /// Stamp of sample `index`, s.
-    #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
     #[must_use]
     pub fn time_s(&self, index: usize) -> f64 {
-        self.start_s + index as f64 / self.sample_rate_hz
+        self.start_s + as_f64(index) / self.sample_rate_hz
     }
 }
 

@@ -5,10 +5,10 @@ mod csv;
 mod hdf5;
 mod mcap;
 mod place;
-mod truth;
 
-use crate::lab::data::{SceneFile, SyntheticRecording};
-use crate::report::ReportError;
+use crate::lab::data::{SceneFile, SyntheticRecording, Truth};
+use crate::report::{ReportError, json};
+use serde::Serialize;
 
 /// How a synthetic recording is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,12 +57,41 @@ pub fn synthetic_files(
         SyntheticFormat::McapJson => mcap::bytes(recording, &places, true)?,
         SyntheticFormat::McapProtobuf => mcap::bytes(recording, &places, false)?,
         SyntheticFormat::Hdf5 => hdf5::bytes(recording, &places)?,
-        SyntheticFormat::Csv => csv::bytes(recording, &places)?,
+        SyntheticFormat::Csv => csv::bytes(recording, &places, one_rate_hz(recording)?)?,
     };
     let [_, cask_name, truth_name] = synthetic_names(recording_name);
     let cask_file = cask::text(&scene_file.stated, &places, recording_name).into_bytes();
-    let truth = truth::bytes(recording, recording_name)?;
+    let truth = json::pretty(&TruthFile {
+        schema: "dropcheck.truth/1",
+        version: env!("CARGO_PKG_VERSION"),
+        recording: recording_name,
+        seed: recording.seed,
+        t_impact: recording.first_contact_s,
+        truth: &recording.truth,
+    })?;
     Ok(vec![(recording_name.to_owned(), bytes), (cask_name, cask_file), (truth_name, truth)])
+}
+
+/// `….truth.json`; `t_impact` counts from the recording's first sample.
+#[derive(Serialize)]
+struct TruthFile<'a> {
+    schema: &'static str,
+    version: &'static str,
+    recording: &'a str,
+    seed: u64,
+    t_impact: f64,
+    #[serde(flatten)]
+    truth: &'a Truth,
+}
+
+/// The sample rate of all channels, Hz.
+fn one_rate_hz(recording: &SyntheticRecording) -> Result<f64, SyntheticError> {
+    let mut rates_hz = recording.channels.iter().map(|c| c.sample_rate_hz);
+    let first_hz = rates_hz.next().unwrap_or(1.0);
+    match rates_hz.find(|hz| (hz - first_hz).abs() > 0.0) {
+        Some(other_hz) => Err(SyntheticError::OneRate { first_hz, other_hz }),
+        None => Ok(first_hz),
+    }
 }
 
 /// The recording as sensors write it that are mounted as the cask file states.

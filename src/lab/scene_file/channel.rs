@@ -3,7 +3,7 @@
 use super::values::{flag, given, needs, spans_s, value, whole};
 use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, STANDARD_GRAVITY_M_S2, Source, Unit};
 use crate::ingest::cask_file::CaskFileError;
-use crate::ingest::cask_file::channel::{coupling, polarity};
+use crate::ingest::cask_file::channel::{axis, coupling, end, polarity};
 use crate::ingest::cask_file::section::Section;
 use crate::lab::data::{Chain, SceneChannel};
 use crate::lab::drawn::{spec, unit_m_s2};
@@ -42,14 +42,9 @@ fn usual_position_m(cask: &Cask, end: End) -> f64 {
 
 /// The channel of one table.
 pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileError> {
-    const END: &str = "end = \"first\" (the low end) or \"second\" (the one that slaps down)";
-    const AXIS: &str =
-        "axis = \"transverse\" (across the cask, in the plane of the drop) or \"axial\" (along it)";
     const HIDDEN: &str =
         "stated_coupling = \"dc\" hides the coupling from the cask file; left out, it is stated as it is";
-    let ends = [("first", End::First), ("second", End::Second)];
-    let end = table.word("end", &ends, END)?.ok_or_else(|| table.missing("end", END))?;
-    let axis = table.word("axis", &[("transverse", Axis::Transverse), ("axial", Axis::Axial)], AXIS)?;
+    let end = end(table)?;
     let unit = unit(table, "unit")?.unwrap_or(Unit::G);
     let unit_name = if unit == Unit::G { "g" } else { "m/s^2" };
     let full_scale = given(table, "full_scale")?;
@@ -57,13 +52,13 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
     let channel = SceneChannel {
         name: table.required_text("name")?.value,
         end,
-        axis: axis.unwrap_or(Axis::Transverse),
+        axis: axis(table)?.unwrap_or(Axis::Transverse),
         position_m: position_m(table, "position_m", cask)?.unwrap_or_else(|| usual_position_m(cask, end)),
         offset_m: value(table, "offset_m")?,
         lateral_m: value(table, "lateral_m")?,
         unit: unit_name.to_owned(),
         sample_rate_hz: value(table, "sample_rate_hz")?,
-        chain: chain(table, coupling, full_scale.map(|limit| limit * unit_m_s2(unit_name)))?,
+        chain: chain(table, full_scale.map(|limit| limit * unit_m_s2(unit_name)))?,
     };
     let is_hidden = table.word("stated_coupling", &[("dc", true)], HIDDEN)?.unwrap_or(false);
     let stated = ChannelSpec {
@@ -81,10 +76,8 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
 }
 
 fn unit(table: &Section, key: &str) -> Result<Option<Unit>, CaskFileError> {
-    let words = [("g", false), ("m/s^2", true)];
-    let word =
-        table.word(key, &words, "a synthetic recording is written in \"g\" (the default) or \"m/s^2\"")?;
-    Ok(word.map(|is_si| if is_si { Unit::MetrePerSecondSquared } else { Unit::G }))
+    const UNITS: &str = "a synthetic recording is written in \"g\" (the default) or \"m/s^2\"";
+    table.word(key, &[("g", Unit::G), ("m/s^2", Unit::MetrePerSecondSquared)], UNITS)
 }
 
 pub(super) fn position_m(table: &Section, key: &str, cask: &Cask) -> Result<Option<f64>, CaskFileError> {
@@ -97,7 +90,7 @@ pub(super) fn position_m(table: &Section, key: &str, cask: &Cask) -> Result<Opti
     }
 }
 
-fn chain(table: &Section, coupling: Coupling, full_scale_m_s2: Option<f64>) -> Result<Chain, CaskFileError> {
+fn chain(table: &Section, full_scale_m_s2: Option<f64>) -> Result<Chain, CaskFileError> {
     needs(table, &[("resonance_damping", "resonance_hz"), ("hum_hz", "hum_g")])?;
     needs(table, &[("whip_hz", "whip_g"), ("bits", "full_scale")])?;
     let value = |key| value(table, key);
@@ -108,10 +101,7 @@ fn chain(table: &Section, coupling: Coupling, full_scale_m_s2: Option<f64>) -> R
         tilt_rad: value("tilt_deg")?.to_radians(),
         cross_axis: value("cross_axis_percent")? / 100.0,
         resonance: given(table, "resonance_hz")?.map(|hz| (hz, damping)),
-        ac_time_constant_s: match coupling {
-            Coupling::Dc => None,
-            Coupling::Ac { time_constant_s } => Some(time_constant_s),
-        },
+        ac_time_constant_s: given(table, "time_constant_s")?,
         anti_alias_hz: given(table, "anti_alias_hz")?,
         scale: value("scale")?,
         offset_m_s2: in_g("offset_g")?,

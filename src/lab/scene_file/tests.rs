@@ -1,7 +1,7 @@
 //! What a scene file gives, and what each slip in one is told.
 
 use super::*;
-use crate::data::{Axis, Coupling, Unit};
+use crate::data::{Axis, Coupling, End, Unit};
 use miette::Diagnostic;
 
 const SHORT: &str = "[cask]\nmass_kg = 120\nlength_m = 2.0\n[drop]\nheight_m = 9\nangle_deg = 30\n";

@@ -2,7 +2,8 @@
 
 use crate::ingest::cask_file::CaskFileError;
 use crate::ingest::cask_file::section::Section;
-use toml::de::DeValue;
+use serde::Deserialize;
+use serde::de::IntoDeserializer;
 
 /// A number; none where the key is left out.
 pub(super) fn given(table: &Section, key: &str) -> Result<Option<f64>, CaskFileError> {
@@ -46,9 +47,13 @@ pub(super) fn whole<T: std::str::FromStr>(table: &Section, key: &str) -> Result<
 /// A list of `[from, to]`, in s after the first sample.
 pub(super) fn spans_s(table: &Section, key: &str) -> Result<Vec<(f64, f64)>, CaskFileError> {
     let Some(value) = table.value(key) else { return Ok(Vec::new()) };
-    let spans =
-        value.get_ref().as_array().map(|items| items.iter().map(|item| pair(item.get_ref())).collect());
-    spans.flatten().ok_or_else(|| {
+    let spans = Vec::<Vec<f64>>::deserialize(value.clone().into_deserializer()).ok();
+    let span = |span: Vec<f64>| match span[..] {
+        [from_s, to_s] if 0.0 <= from_s && from_s < to_s && to_s.is_finite() => Some((from_s, to_s)),
+        _ => None,
+    };
+    let spans: Option<Vec<_>> = spans.and_then(|spans| spans.into_iter().map(span).collect());
+    spans.ok_or_else(|| {
         table.wrong(
             value.span(),
             format!("{key} is no list of spans"),
@@ -58,20 +63,6 @@ pub(super) fn spans_s(table: &Section, key: &str) -> Result<Vec<(f64, f64)>, Cas
             ),
         )
     })
-}
-
-fn pair(value: &DeValue) -> Option<(f64, f64)> {
-    let [from, to] = value.as_array()?.iter().collect::<Vec<_>>()[..] else { return None };
-    let seconds = |value: &DeValue| {
-        let text = match value {
-            DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str(),
-            DeValue::Float(float) => float.as_str(),
-            _ => return None,
-        };
-        text.replace('_', "").parse::<f64>().ok().filter(|s| s.is_finite() && *s >= 0.0)
-    };
-    let (from_s, to_s) = (seconds(from.get_ref())?, seconds(to.get_ref())?);
-    (from_s < to_s).then_some((from_s, to_s))
 }
 
 /// Refuses the first of each pair of keys where the second is left out.

@@ -4,6 +4,7 @@ use super::peak::{Sample, bands};
 use super::uncertain::{Draw, draw};
 use super::{Fall, richest};
 use crate::data::{CaskFile, Criterion, MonteCarlo, QuantileCurves, StudyRequest};
+use crate::numerics::robust::quantile;
 use rayon::prelude::*;
 
 /// Probabilities of the quantiles.
@@ -138,21 +139,9 @@ fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
     values
 }
 
-/// The quantiles of ascending values, by straight lines between them (Hyndman & Fan 1996, type 7); NaN of none.
+/// The quantiles of ascending values; NaN of none.
 fn quantiles_of(ascending: &[f64]) -> [f64; 5] {
-    let Some(last) = ascending.len().checked_sub(1) else { return [f64::NAN; 5] };
-    #[allow(
-        clippy::cast_precision_loss,
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "an index below 2^32"
-    )]
-    PROBABILITIES.map(|probability| {
-        let place = probability * last as f64;
-        let below = place as usize;
-        let above = ascending[(below + 1).min(last)];
-        ascending[below] + (above - ascending[below]) * place.fract()
-    })
+    PROBABILITIES.map(|probability| quantile(ascending, probability))
 }
 
 /// How many of the critical angles are nearest to each of the angles.

@@ -2,6 +2,7 @@
 
 use super::place::SyntheticPlace;
 use crate::lab::data::{SyntheticChannel, SyntheticRecording};
+use crate::numerics::as_f64;
 use crate::report::ReportError;
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
@@ -107,9 +108,7 @@ fn nanoseconds(time_s: f64) -> i64 {
 impl SyntheticBlock<'_> {
     /// When the block is whole.
     fn end_ns(&self) -> i64 {
-        #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
-        let long_s = self.samples.len() as f64 / self.sample_rate_hz;
-        self.timestamp.ns() + nanoseconds(long_s)
+        self.timestamp.ns() + nanoseconds(as_f64(self.samples.len()) / self.sample_rate_hz)
     }
 
     /// The block message on the wire, its fields numbered as in docs/formats.md.

@@ -3,6 +3,7 @@
 use super::SensedDrop;
 use crate::data::Axis;
 use crate::lab::data::{Scene, SceneChannel};
+use crate::numerics::as_f64;
 use std::f64::consts::{FRAC_PI_8, PI};
 
 /// The analog part runs on a grid this much finer than the samples, so that what lies above half their rate folds.
@@ -35,9 +36,8 @@ pub(super) fn sampled(
     let points = (count - 1) * stride + 1;
     let mut samples = Vec::with_capacity(count);
     for from in (0..points).step_by(BLOCK) {
-        #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
         let times_s: Vec<f64> =
-            (from..points.min(from + BLOCK)).map(|i| i as f64 / fine_hz - scene.before_s).collect();
+            (from..points.min(from + BLOCK)).map(|i| as_f64(i) / fine_hz - scene.before_s).collect();
         for (i, force) in (from..).zip(mounted.force_m_s2(&times_s)) {
             let signal = filters.next(force);
             if i % stride == 0 {

@@ -1,6 +1,7 @@
 //! A channel's seed and chain to what is added to its samples: offset, zero shift, noise, hum, a cable that is shaken or whips.
 
 use crate::lab::data::Chain;
+use crate::numerics::as_f64;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -30,9 +31,8 @@ pub(super) struct SampleTimes {
 }
 
 impl SampleTimes {
-    #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^52")]
     fn at_s(&self, index: usize) -> f64 {
-        self.from_s + index as f64 / self.rate_hz
+        self.from_s + as_f64(index) / self.rate_hz
     }
 }
 
@@ -86,8 +86,7 @@ fn pink(samples_m_s2: &mut [f64], sigma_m_s2: f64, rate_hz: f64, generator: &mut
     let corners_hz: Vec<f64> = std::iter::successors(Some(LOWEST_HZ), |corner_hz| Some(2.0 * corner_hz))
         .take_while(|corner_hz| *corner_hz <= 0.5 * rate_hz)
         .collect();
-    #[allow(clippy::cast_precision_loss, reason = "a few octaves")]
-    let part = sigma_m_s2 / (corners_hz.len() as f64).sqrt();
+    let part = sigma_m_s2 / as_f64(corners_hz.len()).sqrt();
     for corner_hz in corners_hz {
         // x' = a x + √(1 − a²) w keeps the variance of w; a = e^(−2π f_c/f_s).
         let kept = (-TAU * corner_hz / rate_hz).exp();
