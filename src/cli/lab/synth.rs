@@ -2,7 +2,7 @@
 
 use super::super::Ending;
 use super::super::output::{Folder, print};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use dropcheck::lab::data::{SyntheticRecording, Truth};
 use dropcheck::lab::report::SyntheticFormat;
 use dropcheck::{lab, report};
@@ -32,15 +32,11 @@ pub struct Arguments {
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Encoding of the blocks in MCAP [default: json]
-    #[arg(long)]
-    encoding: Option<Encoding>,
+    #[arg(long, value_parser = ["json", PROTOBUF])]
+    encoding: Option<String>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Encoding {
-    Json,
-    Protobuf,
-}
+const PROTOBUF: &str = "protobuf";
 
 /// Why FILE cannot be written as asked.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -55,7 +51,7 @@ enum Unwritable {
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.scene));
-    let format = format(&out, arguments.encoding)?;
+    let format = format(&out, arguments.encoding.as_deref())?;
     let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let names = lab::report::synthetic_names(&name);
     let place = match out.parent() {
@@ -85,11 +81,11 @@ fn default_out(scene: &Path) -> PathBuf {
     scene.with_file_name(name)
 }
 
-fn format(out: &Path, encoding: Option<Encoding>) -> Result<SyntheticFormat, Unwritable> {
+fn format(out: &Path, encoding: Option<&str>) -> Result<SyntheticFormat, Unwritable> {
     let path = out.display().to_string();
     let ending = out.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let format = match (ending.as_str(), encoding) {
-        ("mcap", Some(Encoding::Protobuf)) => return Ok(SyntheticFormat::McapProtobuf),
+        ("mcap", Some(PROTOBUF)) => return Ok(SyntheticFormat::McapProtobuf),
         ("mcap", _) => return Ok(SyntheticFormat::McapJson),
         ("h5" | "hdf5", _) => SyntheticFormat::Hdf5,
         ("csv", _) => SyntheticFormat::Csv,
@@ -116,9 +112,9 @@ mod tests {
     fn the_ending_tells_the_format_and_mcap_alone_has_encodings() {
         let of = |name: &str, encoding| format(Path::new(name), encoding);
         assert!(matches!(of("a.MCAP", None), Ok(SyntheticFormat::McapJson)));
-        assert!(matches!(of("a.mcap", Some(Encoding::Protobuf)), Ok(SyntheticFormat::McapProtobuf)));
+        assert!(matches!(of("a.mcap", Some(PROTOBUF)), Ok(SyntheticFormat::McapProtobuf)));
         assert!(matches!(of("a.hdf5", None), Ok(SyntheticFormat::Hdf5)));
-        assert!(matches!(of("a.csv", Some(Encoding::Json)), Err(Unwritable::Encoding { .. })));
+        assert!(matches!(of("a.csv", Some("json")), Err(Unwritable::Encoding { .. })));
         assert!(matches!(of("a.toml", None), Err(Unwritable::Ending { .. })));
         assert!(matches!(of("", None), Err(Unwritable::Ending { .. })));
     }

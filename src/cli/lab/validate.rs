@@ -77,11 +77,10 @@ const UNDAMAGED: &str = "undamaged";
 const SOUND: &str = "sound";
 
 fn kind(word: &str) -> Result<&'static str, String> {
-    let mut words = [ALL, UNDAMAGED, SOUND].into_iter().chain(lab::campaign::kinds().map(|kind| kind.name));
-    words.find(|known| *known == word).ok_or_else(|| {
-        let known: Vec<&str> = lab::campaign::kinds().map(|kind| kind.name).collect();
-        format!("no kind of drop; there are all, undamaged, sound, {}", known.join(", "))
-    })
+    let kinds = lab::campaign::kinds().map(|kind| kind.name);
+    let words: Vec<&str> = [ALL, UNDAMAGED, SOUND].into_iter().chain(kinds).collect();
+    let known = words.iter().copied().find(|known| *known == word);
+    known.ok_or_else(|| format!("no kind of drop; there are {}", words.join(", ")))
 }
 
 fn number(word: &str) -> Result<SceneNumber, String> {
@@ -123,9 +122,8 @@ fn campaign(arguments: &Arguments, scenes: u32) -> miette::Result<Ending> {
     let campaign = with_progress("campaign", |progress| lab::campaign::run(&request, progress));
     let tables = lab::campaign::markdown(&campaign);
     if let Some(folder) = &folder {
-        let csv = lab::campaign::csv(&campaign).map_err(report::ReportError::from)?;
-        let [csv_name, tables_name] = NAMES.map(str::to_owned);
-        folder.write(&[(csv_name, csv), (tables_name, tables.clone().into_bytes())])?;
+        let csv = lab::campaign::csv(&campaign)?;
+        folder.write(&[(NAMES[0].to_owned(), csv), (NAMES[1].to_owned(), tables.clone().into_bytes())])?;
     }
     if let Some((path, (before, after))) = &document {
         replace(path, format!("{before}\n{tables}{after}").as_bytes())?;
