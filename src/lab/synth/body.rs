@@ -188,7 +188,7 @@ impl<'a> SceneBody<'a> {
     /// From S to where the force on an end acts, along the target, m: as the end flattens it moves inward.
     fn arm_m(&self, end: usize, at: &CornerMotion) -> f64 {
         let (corner, inward) = (&self.corners[end], if end == 0 { 1.0 } else { -1.0 });
-        at.x_m + inward * corner.footprint() * corner.crush_m(at.height_m)
+        at.x_m + inward * corner.law.footprint * corner.crush_m(at.height_m)
     }
 
     /// The tangential force on L that stops its sliding within the hold time and keeps it stopped, N.

@@ -37,11 +37,10 @@ pub fn record(scene: &Scene, motion: &SimulatedMotion) -> SyntheticRecording {
     };
     let mut channels: Vec<SyntheticChannel> =
         seated(scene).iter().enumerate().map(|(i, seat)| channel(scene, seat, i, &drive)).collect();
-    let earliest_s = channels.iter().map(|c| c.start_s).fold(f64::INFINITY, f64::min);
+    let earliest_s = channels.iter().map(|c| c.start_s).reduce(f64::min).unwrap_or(0.0);
     for channel in &mut channels {
         channel.start_s -= earliest_s;
     }
-    let earliest_s = if earliest_s.is_finite() { earliest_s } else { 0.0 };
     SyntheticRecording {
         channels,
         // The recorder counts samples and takes its stated rate for the true one.
@@ -74,18 +73,9 @@ fn seated(scene: &Scene) -> Vec<SceneChannel> {
 
 /// Spans in which either end is pressed against the target, s.
 fn contacts_s(motion: &SimulatedMotion) -> Vec<(f64, f64)> {
-    let mut spans: Vec<(f64, f64)> = Vec::new();
-    let mut was_pressed = false;
-    for &MotionStep { time_s, loads_n, .. } in &motion.steps {
-        let is_pressed = loads_n.iter().any(|(_, normal_n)| *normal_n > 0.0);
-        match spans.last_mut() {
-            Some(span) if is_pressed && was_pressed => span.1 = time_s,
-            _ if is_pressed => spans.push((time_s, time_s)),
-            _ => {}
-        }
-        was_pressed = is_pressed;
-    }
-    spans
+    let is_pressed = |step: &MotionStep| step.loads_n.iter().any(|(_, normal_n)| *normal_n > 0.0);
+    let runs = motion.steps.chunk_by(|before, after| is_pressed(before) == is_pressed(after));
+    runs.filter(|run| is_pressed(&run[0])).map(|run| (run[0].time_s, run[run.len() - 1].time_s)).collect()
 }
 
 fn channel(scene: &Scene, seat: &SceneChannel, index: usize, drive: &SensedDrop) -> SyntheticChannel {

@@ -34,7 +34,7 @@ pub(super) enum CornerPassage {
 /// One corner: its law and its dent.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CrushingCorner {
-    law: CrushableEnd,
+    pub(super) law: CrushableEnd,
     phase: Phase,
     /// Height at which the corner meets material, m.
     floor_m: f64,
@@ -86,11 +86,6 @@ impl CrushingCorner {
             Phase::Loading | Phase::Yielding => self.floor_m - height_m,
             Phase::Unloading | Phase::Settling => self.deepest_m,
         }
-    }
-
-    /// How far inward its force moves, m for each of crush.
-    pub(super) fn footprint(&self) -> f64 {
-        self.law.footprint
     }
 
     /// The force of the material that a crush of `depth_m` has locked up, N.

@@ -173,9 +173,8 @@ impl March<'_> {
 
     /// The first watch to fall below zero between two steps.
     fn first_change<const N: usize>(&self, before: &Reached<N>, after: &Reached<N>) -> Option<Fallen<N>> {
-        let mut first: Option<Fallen<N>> = None;
         let fallen = self.body.watches(after.1.as_slice());
-        for watch in (0..fallen.len()).filter(|watch| fallen[*watch] < 0.0) {
+        let change = |watch: usize| {
             // The end of the bracket at which the watch has fallen is the change: the next phase begins in its own range.
             let (mut low_s, mut high_s, mut state) = (0.0, after.0 - before.0, after.1);
             for _ in 0..HALVINGS {
@@ -187,11 +186,10 @@ impl March<'_> {
                     low_s = middle_s;
                 }
             }
-            if first.is_none_or(|f| high_s < f.after_s) {
-                first = Some(Fallen { after_s: high_s, watch, state });
-            }
-        }
-        first
+            Fallen { after_s: high_s, watch, state }
+        };
+        let changes = (0..fallen.len()).filter(|watch| fallen[*watch] < 0.0).map(change);
+        changes.min_by(|a, b| a.after_s.total_cmp(&b.after_s))
     }
 }
 

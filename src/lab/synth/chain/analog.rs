@@ -105,17 +105,9 @@ impl Filters {
     }
 
     fn next(&mut self, force: f64) -> f64 {
-        let mut signal = force;
-        if let Some(filter) = &mut self.resonance {
-            signal = filter.next(signal);
-        }
-        if let Some(filter) = &mut self.high_pass {
-            signal = filter.next(signal);
-        }
-        for filter in self.anti_alias.iter_mut().flatten() {
-            signal = filter.next(signal);
-        }
-        signal
+        let mounted = self.resonance.iter_mut().fold(force, |signal, filter| filter.next(signal));
+        let coupled = self.high_pass.iter_mut().fold(mounted, |signal, filter| filter.next(signal));
+        self.anti_alias.iter_mut().flatten().fold(coupled, |signal, filter| filter.next(signal))
     }
 }
 

@@ -34,6 +34,11 @@ impl SampleTimes {
     fn at_s(&self, index: usize) -> f64 {
         self.from_s + as_f64(index) / self.rate_hz
     }
+
+    /// Adds to each sample what there is at its time.
+    fn add(&self, samples_m_s2: &mut [f64], mut more_m_s2: impl FnMut(f64) -> f64) {
+        samples_m_s2.iter_mut().enumerate().for_each(|(i, sample)| *sample += more_m_s2(self.at_s(i)));
+    }
 }
 
 /// Adds everything of channel `index` to its samples.
@@ -50,28 +55,23 @@ pub(super) fn add(
         generator
     };
     let grown_s = contacts_s.first().map_or(NO_CONTACT_S, |c| (c.1 - c.0).max(f64::MIN_POSITIVE));
-    for (i, sample) in samples_m_s2.iter_mut().enumerate() {
-        *sample += chain.offset_m_s2 + chain.zero_shift_m_s2 * (times.at_s(i) / grown_s).clamp(0.0, 1.0);
-    }
+    times
+        .add(samples_m_s2, |t_s| chain.offset_m_s2 + chain.zero_shift_m_s2 * (t_s / grown_s).clamp(0.0, 1.0));
     if chain.white_noise_m_s2 > 0.0 {
-        let drawn = StandardNormal.sample_iter(stream(0));
-        samples_m_s2
-            .iter_mut()
-            .zip(drawn)
-            .for_each(|(sample, x): (_, f64)| *sample += chain.white_noise_m_s2 * x);
+        let mut white = stream(0);
+        let mut normal = move || -> f64 { StandardNormal.sample(&mut white) };
+        times.add(samples_m_s2, |_| chain.white_noise_m_s2 * normal());
     }
     pink(samples_m_s2, chain.pink_noise_m_s2, times.rate_hz, &mut stream(1));
     if let Some((amplitude_m_s2, frequency_hz)) = chain.hum {
         let phase = TAU * stream(2).random::<f64>();
-        for (i, sample) in samples_m_s2.iter_mut().enumerate() {
-            *sample += amplitude_m_s2 * (TAU * frequency_hz * times.at_s(i) + phase).sin();
-        }
+        times.add(samples_m_s2, |t_s| amplitude_m_s2 * (TAU * frequency_hz * t_s + phase).sin());
     }
     if let Some((amplitude_m_s2, frequency_hz)) = chain.whip {
-        for (i, sample) in samples_m_s2.iter_mut().enumerate() {
-            let angle = TAU * frequency_hz * times.at_s(i).max(0.0);
-            *sample += amplitude_m_s2 * (-WHIP_DAMPING * angle).exp() * angle.sin();
-        }
+        times.add(samples_m_s2, |t_s| {
+            let angle = TAU * frequency_hz * t_s.max(0.0);
+            amplitude_m_s2 * (-WHIP_DAMPING * angle).exp() * angle.sin()
+        });
     }
     if chain.cable_noise_m_s2 > 0.0 {
         cable(samples_m_s2, chain.cable_noise_m_s2, times, contacts_s, &mut stream(3));
