@@ -3,7 +3,7 @@
 use crate::data::{CaskFile, Recording, RecordingFormat, Samples};
 use crate::ingest::time_base::{self, Block};
 use crate::ingest::{IngestError, RawChannel, RawRecording, assemble, error};
-use crate::lab::data::{SyntheticChannel, SyntheticRecording};
+use crate::lab::data::SyntheticRecording;
 use std::path::Path;
 
 /// What stands for the name of the file.
@@ -18,7 +18,11 @@ pub fn synthetic(recording: &SyntheticRecording, cask_file: &CaskFile) -> Result
     let mut channels = Vec::with_capacity(recording.channels.len());
     for (spec, channel) in recording.channels.iter().enumerate() {
         let Some(stated) = cask_file.channels.get(spec) else { break };
-        let (blocks, samples) = blocks(channel, stated.polarity);
+        let block = |(from, run): (usize, &[f32])| Block { start_s: channel.time_s(from), count: run.len() };
+        let blocks: Vec<Block> = channel.runs().map(block).collect();
+        // As a sensor writes them that is mounted with this polarity.
+        let mounted = |&x: &f32| if stated.polarity < 0.0 { -x } else { x };
+        let samples = channel.samples.iter().filter(|x| !x.is_nan()).map(mounted).collect();
         let uniform = time_base::from_blocks(&blocks, channel.sample_rate_hz, Samples::F32(samples));
         let uniform = uniform.map_err(|problem| {
             let mend = "record the channel over the whole drop";
@@ -28,15 +32,4 @@ pub fn synthetic(recording: &SyntheticRecording, cask_file: &CaskFile) -> Result
     }
     let raw = RawRecording { channels, zero_unix_ns: None, issues: Vec::new() };
     assemble::recording(path, RecordingFormat::Mcap, String::new(), raw, cask_file)
-}
-
-/// The runs of samples between losses, as a sensor writes them that is mounted with `polarity`.
-fn blocks(channel: &SyntheticChannel, polarity: f64) -> (Vec<Block>, Vec<f32>) {
-    let (mut blocks, mut samples) = (Vec::new(), Vec::new());
-    for (from, run) in channel.runs() {
-        let start_s = channel.time_s(from);
-        samples.extend(run.iter().map(|&x| if polarity < 0.0 { -x } else { x }));
-        blocks.push(Block { start_s, count: run.len() });
-    }
-    (blocks, samples)
 }

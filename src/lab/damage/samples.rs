@@ -136,13 +136,8 @@ fn aliasing(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64)
 fn unit(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64, unit: Unit) {
     let (only, all) = (case.chance.index(2), size > 1.5);
     for (i, channel) in recording.channels.iter_mut().enumerate() {
-        let in_g = channel.unit == "g";
         // What the samples must be multiplied by to be in the unit that is not stated.
-        let factor = match (unit, in_g) {
-            (Unit::G, true) => STANDARD_GRAVITY_M_S2,
-            (Unit::G, false) | (_, true) => 1.0,
-            (_, false) => 1.0 / STANDARD_GRAVITY_M_S2,
-        };
+        let factor = unit_m_s2(&channel.unit) / if unit == Unit::G { 1.0 } else { STANDARD_GRAVITY_M_S2 };
         if all || i == only {
             channel.samples.iter_mut().for_each(|x| *x = stored(f64::from(*x) * factor));
             if unit == Unit::G { "g" } else { "m/s^2" }.clone_into(&mut channel.unit);
