@@ -3,7 +3,7 @@
 use crate::data::{Cask, CaskFile, Contact, Drop, Tolerances, first_arm_m};
 use crate::lab::chance::{Chance, round};
 use crate::lab::damage::{BetweenImpacts, Wish};
-use crate::lab::data::{BendingMode, Scene, SimulatedMotion, Truth, WantedImpact};
+use crate::lab::data::{BendingMode, Scene, Truth, WantedImpact};
 use crate::lab::drawn::{BUILDS, DrawnDrop, GRAVITY_M_S2, LEAST_FRICTION, cask_file, scene};
 use crate::lab::synth;
 use std::collections::BTreeMap;
@@ -50,25 +50,19 @@ fn stated_angle_deg(chance: &mut Chance, wish: &Wish) -> f64 {
 
 /// What keeps a drop out of the campaign.
 fn lacks(truth: &Truth, wish: &Wish) -> Option<&'static str> {
-    let (Some(k), Some(_)) = (truth.k, truth.speed) else { return Some("no slap-down") };
-    if !(K_RANGE.0..=K_RANGE.1).contains(&k) {
-        return Some("k outside 0.02 to 0.98");
-    }
-    if wish.flight == BetweenImpacts::LandsAgain {
-        return (truth.relands == 0).then_some("no second contact");
-    }
-    if truth.first_down_at_slap {
-        return Some("first end down at slap-down");
-    }
-    if truth.relands > 0 {
-        return Some("second contact");
-    }
+    let lands_again = wish.flight == BetweenImpacts::LandsAgain;
     let is_short = truth.flight_s.is_none_or(|flight_s| flight_s < SHORTEST_FLIGHT_S);
-    match (is_short, wish.flight == BetweenImpacts::Short) {
-        (true, false) => Some("flight below 8 ms"),
-        (false, true) => Some("flight of 8 ms and more"),
-        _ => None,
-    }
+    let wants_short = wish.flight == BetweenImpacts::Short;
+    let lacks = [
+        (truth.k.is_none() || truth.speed.is_none(), "no slap-down"),
+        (!truth.k.is_some_and(|k| (K_RANGE.0..=K_RANGE.1).contains(&k)), "k outside 0.02 to 0.98"),
+        (lands_again && truth.relands == 0, "no second contact"),
+        (!lands_again && truth.first_down_at_slap, "first end down at slap-down"),
+        (!lands_again && truth.relands > 0, "second contact"),
+        (!lands_again && is_short && !wants_short, "flight below 8 ms"),
+        (!is_short && wants_short, "flight of 8 ms and more"),
+    ];
+    lacks.into_iter().find(|(does_lack, _)| *does_lack).map(|(_, lack)| lack)
 }
 
 /// One attempt: the scene as it is and the cask file, both still without channels.
@@ -117,19 +111,15 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
     wish.fulfil(&mut scene, &mut stated, chance);
     if wish.contact.is_none() && share != 0.0 {
         let held = Scene { contact: Contact::Rough, ..scene.clone() };
-        let holds = impulse_ratio(&synth::simulate(&held));
+        // I_x / I_z of the first contact.
+        let (along, up) = synth::simulate(&held).first_impulse_n_s();
+        let holds = if up > 0.0 { along / up } else { 0.0 };
         scene.contact = match stated_contact {
             Contact::Unknown => Contact::Coulomb(friction),
             stated => loosened(stated, holds, share),
         };
     }
     (scene, stated)
-}
-
-/// I_x / I_z of the first contact.
-fn impulse_ratio(motion: &SimulatedMotion) -> f64 {
-    let (along, up) = motion.first_impulse_n_s();
-    if up > 0.0 { along / up } else { 0.0 }
 }
 
 /// The contact with its friction off by a share of it; of rough and smooth ones by a share of what sticking takes, `holds`.

@@ -16,8 +16,8 @@ pub use tables::markdown;
 use crate::analysis::measure;
 use crate::ingest::Progress;
 use crate::lab::chance::Chance;
-pub use crate::lab::damage::DamageKind;
-use crate::lab::damage::{self, Wish};
+use crate::lab::damage::Wish;
+pub use crate::lab::damage::{DamageKind, drawn as kinds};
 use crate::lab::data::{
     Campaign, CampaignRequest, CampaignRow, Damage, SceneFile, SceneNumber, SyntheticRecording,
 };
@@ -26,11 +26,6 @@ use rayon::prelude::*;
 use score::RecordedScene;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
-
-/// All kinds that a campaign draws, of damage and of sound drops.
-pub fn kinds() -> impl Iterator<Item = &'static DamageKind> {
-    damage::drawn()
-}
 
 /// Runs the campaign; `progress` is told the share that is done. The same request gives the same rows but for their times.
 #[must_use]
@@ -56,8 +51,7 @@ pub fn scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, Synthet
 /// The numbers of the scenes: those of a kind are counted through all kinds, those not asked for left out.
 fn numbers(request: &CampaignRequest) -> Vec<SceneNumber> {
     let undamaged = if request.undamaged { request.scenes } else { 0 };
-    let is_any = damage::drawn().any(|kind| request.kinds.contains(&kind.name));
-    let damaged = if is_any { request.scenes } else { 0 };
+    let damaged = if request.kinds.is_empty() { 0 } else { request.scenes };
     let wanted = |number: &u32| request.kinds.contains(&kind_and_size(*number).0.name);
     let damaged = (0..u32::MAX).filter(wanted).take(usize::try_from(damaged).unwrap_or(0));
     (0..undamaged).map(SceneNumber::Undamaged).chain(damaged.map(SceneNumber::Damaged)).collect()
@@ -65,7 +59,7 @@ fn numbers(request: &CampaignRequest) -> Vec<SceneNumber> {
 
 /// What there is to scene D`number`: kinds take turns, then sizes.
 fn kind_and_size(number: u32) -> (&'static DamageKind, f64) {
-    let kinds: Vec<&DamageKind> = damage::drawn().collect();
+    let kinds: Vec<&DamageKind> = kinds().collect();
     let number = usize::try_from(number).unwrap_or(0);
     let kind = kinds[number % kinds.len()];
     (kind, kind.sizes[(number / kinds.len()) % kind.sizes.len()])

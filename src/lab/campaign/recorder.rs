@@ -53,15 +53,15 @@ fn timed(case: &mut DrawnDrop, wish: &Wish) -> f64 {
     let contact_s = truth.contact_s.unwrap_or(1e-3);
     let needed_hz = (CONTACT_SAMPLES / contact_s).max(PERIOD_SAMPLES * highest_hz);
     let fast: Vec<f64> = RATES_HZ.iter().copied().filter(|hz| *hz >= needed_hz).collect();
-    let total_s = |hz: f64, before_s: f64| if hz >= 1e5 && !case.scene.rest { before_s.min(0.08) } else { before_s } + after_contact_s;
-    let most = if wish.slow_recorder { MOST_SAMPLES / 3.0 } else { MOST_SAMPLES };
+    let (before_s, rest) = (case.scene.before_s, case.scene.rest);
+    let before_s = |hz: f64| if hz >= 1e5 && !rest { before_s.min(0.08) } else { before_s };
+    // A damage needs no thousands of samples more.
+    let most = if wish.kind.is_empty() { MOST_SAMPLES } else { MOST_SAMPLES / 3.0 };
     let affordable: Vec<f64> =
-        fast.iter().copied().filter(|hz| hz * total_s(*hz, case.scene.before_s) <= most).collect();
+        fast.iter().copied().filter(|hz| hz * (before_s(*hz) + after_contact_s) <= most).collect();
     let slowest_hz = fast.first().copied().unwrap_or(500e3);
     let rate_hz = if affordable.is_empty() { slowest_hz } else { chance.one_of(&affordable) };
-    if rate_hz >= 1e5 && !case.scene.rest {
-        case.scene.before_s = case.scene.before_s.min(0.08);
-    }
+    case.scene.before_s = before_s(rate_hz);
     rate_hz
 }
 

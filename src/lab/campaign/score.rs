@@ -6,6 +6,8 @@ use crate::data::{Analysis, Estimate, ReconstructionRung, Severity};
 use crate::lab::chance::round;
 use crate::lab::data::{Campaign, CampaignRow, Damage, SceneNumber, Scored, SyntheticRecording, Truth};
 use crate::lab::drawn::DrawnDrop;
+use crate::report::ReportError;
+use crate::report::records::finished;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A scene, drawn, struck by its damage and recorded.
@@ -65,7 +67,7 @@ fn quantities(truth: &Truth, times_s: (f64, Option<f64>), analysis: Option<&Anal
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn csv(campaign: &Campaign) -> Result<Vec<u8>, csv::Error> {
+pub fn csv(campaign: &Campaign) -> Result<Vec<u8>, ReportError> {
     let rows: Vec<Vec<Cell>> = campaign.rows.iter().map(|row| cells(campaign.request.seed, row)).collect();
     // Not every scene has as many modes and channels: a header for each that any has.
     let mut headers: Vec<&String> = Vec::new();
@@ -77,7 +79,7 @@ pub fn csv(campaign: &Campaign) -> Result<Vec<u8>, csv::Error> {
         let row: BTreeMap<&String, &String> = row.iter().map(|cell| (&cell.0, &cell.1)).collect();
         writer.write_record(headers.iter().map(|header| row.get(header).map_or("", |cell| cell)))?;
     }
-    writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))
+    finished(writer)
 }
 
 /// A cell under its header.
@@ -117,7 +119,10 @@ fn cells(seed: u64, row: &CampaignRow) -> Vec<Cell> {
     for rung in ReconstructionRung::ALL {
         let candidate = row.candidates.iter().find(|candidate| candidate.rung == rung);
         let name = written(rung);
-        cells.push(cell(&format!("{name}_consistent"), candidate.map_or("", |c| yes(c.consistent))));
+        cells.push(cell(
+            &format!("{name}_consistent"),
+            candidate.map_or("", |c| if c.consistent { "yes" } else { "no" }),
+        ));
         cells.extend(estimate(&format!("{name}_speed"), candidate.and_then(|c| c.speed)));
         cells.extend(estimate(&format!("{name}_k"), candidate.and_then(|c| c.k)));
     }
@@ -160,8 +165,4 @@ fn codes(row: &CampaignRow, severity: Severity) -> String {
 pub(in crate::lab) fn written(word: impl serde::Serialize) -> String {
     // An enum without data is a JSON string.
     serde_json::to_string(&word).unwrap_or_default().trim_matches('"').to_owned()
-}
-
-fn yes(is: bool) -> &'static str {
-    if is { "yes" } else { "no" }
 }

@@ -6,6 +6,7 @@ use super::score::written;
 use super::statistics::{SceneOutcome, Spread, outcome, quantile, scored};
 use crate::data::{Axis, Contact, Severity, Verdict};
 use crate::lab::data::{Campaign, CampaignRow};
+use crate::lab::drawn::BUILDS;
 use crate::numerics::{as_f64, robust};
 use crate::report::as_markdown;
 use crate::report::document::{Chapter, ChapterPart, ReportDocument};
@@ -48,10 +49,7 @@ fn document(campaign: &Campaign) -> ReportDocument {
     }
     if !sound.0.is_empty() {
         chapter("Sound drops, by kind", coverage(&sound_kinds(&sound)));
-        chapter(
-            "Sound drops, by class",
-            coverage(&CLASSES.map(|(name, belongs)| (name, sound.that(belongs)))),
-        );
+        chapter("Sound drops, by class", coverage(&classes(&sound)));
     }
     if !damaged.0.is_empty() {
         chapter("Damaged scenes, by kind", damages(&damaged, false));
@@ -192,39 +190,17 @@ fn codes(scenes: &Scenes) -> ChapterPart {
 /// Whether a scene belongs to a class.
 type Belongs = fn(&CampaignRow) -> bool;
 
-fn angle_deg(row: &CampaignRow) -> f64 {
-    row.truth.angle_deg
-}
+/// What scenes are classed by, its unit, where the middle class begins and ends, and the number of a scene.
+const NUMBERS: [(&str, &str, [f64; 2], fn(&CampaignRow) -> f64); 4] = [
+    ("angle", "°", [5.0, 30.0], |row| row.truth.angle_deg),
+    ("contact", " ms", [3.0, 10.0], |row| row.truth.contact_s.map_or(f64::NAN, |s| 1e3 * s)),
+    ("k", "", [0.1, 0.8], |row| row.truth.k.unwrap_or(f64::NAN)),
+    ("rate", " kHz", [10.0, 50.0], |row| {
+        row.scene.channels.first().map_or(f64::NAN, |c| c.sample_rate_hz / 1e3)
+    }),
+];
 
-fn contact_ms(row: &CampaignRow) -> f64 {
-    row.truth.contact_s.map_or(f64::NAN, |s| 1e3 * s)
-}
-
-fn rate_hz(row: &CampaignRow) -> f64 {
-    row.scene.channels.first().map_or(f64::NAN, |channel| channel.sample_rate_hz)
-}
-
-fn restitution(row: &CampaignRow) -> f64 {
-    row.truth.k.unwrap_or(f64::NAN)
-}
-
-const CLASSES: [(&str, Belongs); 26] = [
-    ("ESBB", |row| row.scene.cask.name.starts_with("ESBB")),
-    ("ANF-10", |row| row.scene.cask.name.starts_with("ANF-10")),
-    ("ANF-18", |row| row.scene.cask.name.starts_with("ANF-18")),
-    ("VHLW", |row| row.scene.cask.name.starts_with("VHLW")),
-    ("angle below 5°", |row| angle_deg(row) < 5.0),
-    ("angle 5 to 30°", |row| (5.0..=30.0).contains(&angle_deg(row))),
-    ("angle above 30°", |row| angle_deg(row) > 30.0),
-    ("contact below 3 ms", |row| contact_ms(row) < 3.0),
-    ("contact 3 to 10 ms", |row| (3.0..=10.0).contains(&contact_ms(row))),
-    ("contact above 10 ms", |row| contact_ms(row) > 10.0),
-    ("k below 0.1", |row| restitution(row) < 0.1),
-    ("k 0.1 to 0.8", |row| (0.1..=0.8).contains(&restitution(row))),
-    ("k above 0.8", |row| restitution(row) > 0.8),
-    ("rate below 10 kHz", |row| rate_hz(row) < 10e3),
-    ("rate 10 to 50 kHz", |row| (10e3..=50e3).contains(&rate_hz(row))),
-    ("rate above 50 kHz", |row| rate_hz(row) > 50e3),
+const CLASSES: [(&str, Belongs); 10] = [
     ("drop of 9 m and more", |row| row.stated.drop.height_m >= 9.0),
     ("drop of 3 to 9 m", |row| (3.0..9.0).contains(&row.stated.drop.height_m)),
     ("drop below 3 m", |row| row.stated.drop.height_m < 3.0),
@@ -237,22 +213,36 @@ const CLASSES: [(&str, Belongs); 26] = [
     ("rest recorded", |row| row.scene.rest),
 ];
 
+/// The sound drops of each cask, those with a small, middle and large number, and those of the other classes.
+fn classes<'a>(sound: &Scenes<'a>) -> Vec<(String, Scenes<'a>)> {
+    let is_of = |name: &str| sound.that(|row| row.scene.cask.name.starts_with(name));
+    let casks = BUILDS.map(|build| (build.name.to_owned(), is_of(build.name)));
+    let numbers = NUMBERS.iter().flat_map(|&(name, unit, [low, high], number)| {
+        [
+            (format!("{name} below {low}{unit}"), sound.that(|row| number(row) < low)),
+            (format!("{name} {low} to {high}{unit}"), sound.that(|row| (low..=high).contains(&number(row)))),
+            (format!("{name} above {high}{unit}"), sound.that(|row| number(row) > high)),
+        ]
+    });
+    let others = CLASSES.map(|(name, belongs)| (name.to_owned(), sound.that(belongs)));
+    casks.into_iter().chain(numbers).chain(others).collect()
+}
+
 /// The undamaged drops, those of each sound kind, and all of them.
-fn sound_kinds<'a>(sound: &Scenes<'a>) -> Vec<(&'static str, Scenes<'a>)> {
+fn sound_kinds<'a>(sound: &Scenes<'a>) -> Vec<(String, Scenes<'a>)> {
     let of = |kind: Option<&'static str>| sound.that(|row| row.damage.map(|damage| damage.kind) == kind);
-    let mut kinds = vec![("undamaged", of(None))];
     let named = super::kinds().filter(|kind| kind.is_sound());
-    kinds.extend(named.map(|kind| (kind.name, of(Some(kind.name)))));
-    kinds.push(("all", sound.that(|_| true)));
-    kinds
+    let named = named.map(|kind| (kind.name.to_owned(), of(Some(kind.name))));
+    let all = ("all".to_owned(), sound.that(|_| true));
+    std::iter::once(("undamaged".to_owned(), of(None))).chain(named).chain([all]).collect()
 }
 
 /// How many of each group pass, how far off they are, and how often each interval holds.
-fn coverage(groups: &[(&'static str, Scenes)]) -> ChapterPart {
+fn coverage(groups: &[(String, Scenes)]) -> ChapterPart {
     let held = |of: &Scenes, name| of.spread(name, false).held();
     let groups: Vec<_> = groups.iter().filter(|(_, of)| !of.0.is_empty()).collect();
     ReportTable::of(&groups)
-        .text("drops", |(name, _)| *name)
+        .text("drops", |(name, _)| &name[..])
         .number("scenes", |(_, of)| of.0.len().to_string())
         .number("pass", |(_, of)| share(of.of(Verdict::Pass).0.len(), of.0.len()))
         .number("covered", |(_, of)| share(of.count(SceneOutcome::Covered), of.0.len()))
@@ -283,18 +273,17 @@ fn redraws(scenes: &Scenes) -> ChapterPart {
 fn damages(scenes: &Scenes, by_size: bool) -> ChapterPart {
     let mut groups: Vec<(&str, String, Scenes)> = Vec::new();
     for DamageKind { name, sizes, unit, .. } in super::kinds() {
-        let of_kind = scenes.that(|row| row.damage.is_some_and(|d| d.kind == *name));
-        let shown = |sizes: String| if unit.is_empty() { String::new() } else { format!("{sizes} {unit}") };
-        if by_size {
-            groups.extend(sizes.iter().map(|size| {
-                let is_size =
-                    |row: &CampaignRow| row.damage.is_some_and(|d| d.size.to_bits() == size.to_bits());
-                (*name, shown(size.to_string()), of_kind.that(is_size))
-            }));
-        } else {
-            let largest = sizes.last().copied().unwrap_or_default();
-            groups.push((*name, shown(format!("{} to {largest}", sizes[0])), of_kind));
-        }
+        let parts = if by_size { sizes.chunks(1) } else { sizes.chunks(sizes.len()) };
+        groups.extend(parts.map(|part| {
+            let is_one =
+                |row: &CampaignRow| row.damage.is_some_and(|d| d.kind == *name && part.contains(&d.size));
+            let shown = match part {
+                _ if unit.is_empty() => String::new(),
+                [size] if by_size => format!("{size} {unit}"),
+                _ => format!("{} to {} {unit}", part[0], part[part.len() - 1]),
+            };
+            (*name, shown, scenes.that(is_one))
+        }));
     }
     groups.retain(|(.., of)| !of.0.is_empty());
     if !by_size {

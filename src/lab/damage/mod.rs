@@ -41,8 +41,8 @@ static TABLE: LazyLock<Vec<DamageKind>> = LazyLock::new(|| {
     lines.filter(|line| !line.is_empty() && !line.starts_with('#')).map(DamageKind::of_line).collect()
 });
 
-/// The kinds that the campaign draws from, in the order of its numbers.
-pub(super) fn drawn() -> impl Iterator<Item = &'static DamageKind> {
+/// The kinds that the campaign draws from, of damage and of sound drops, in the order of its numbers.
+pub fn drawn() -> impl Iterator<Item = &'static DamageKind> {
     TABLE.iter().filter(|kind| !kind.sizes.is_empty())
 }
 

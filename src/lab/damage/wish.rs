@@ -30,9 +30,7 @@ pub(in super::super) struct Wish {
     pub rest: Option<bool>,
     /// Two transverse channels on the first end.
     pub third_channel: bool,
-    /// Nothing that makes thousands of samples more than the damage needs.
-    pub slow_recorder: bool,
-    /// The kind that it is for, and its size.
+    /// The kind that it is for, and its size; empty for an undamaged drop.
     pub kind: &'static str,
     /// See `kind`.
     pub size: f64,
@@ -58,7 +56,6 @@ impl Wish {
             axial: either("axial", "no_axial"),
             rest: either("rest", "no_rest"),
             third_channel: has("third_channel"),
-            slow_recorder: true,
             ..Self::default()
         }
     }
