@@ -189,6 +189,23 @@ pub fn first_arm_m(cog_m: f64, height_m: f64, angle_rad: f64) -> f64 {
     cog_m * angle_rad.cos() - height_m / 2.0 * angle_rad.sin()
 }
 
+impl Cask {
+    /// A homogeneous block.
+    #[must_use]
+    pub fn block(name: &str, mass_kg: f64, length_m: f64, height_m: f64) -> Self {
+        Self {
+            name: name.to_owned(),
+            mass_kg,
+            length_m,
+            height_m,
+            width_m: None,
+            cog_m: length_m / 2.0,
+            inertia_kg_m2: block_inertia_kg_m2(mass_kg, length_m, height_m),
+            is_body: height_m > 0.0,
+        }
+    }
+}
+
 /// Inertia of a homogeneous block about its centre, kg m²: m (l² + h²) / 12.
 #[must_use]
 pub fn block_inertia_kg_m2(mass_kg: f64, length_m: f64, height_m: f64) -> f64 {
@@ -262,6 +279,30 @@ pub struct ChannelSpec {
     pub lateral_m: f64,
 }
 
+impl ChannelSpec {
+    /// A transverse channel on the axis, in the unit of its recording and DC-coupled, of which nothing else is stated.
+    #[must_use]
+    pub fn plain(name: &str, end: End, source: &str, position_m: f64) -> Self {
+        Self {
+            name: name.to_owned(),
+            end,
+            axis: Axis::Transverse,
+            source: Source::Path(source.to_owned()),
+            unit: None,
+            position_m,
+            offset_m: 0.0,
+            polarity: 1.0,
+            full_scale: None,
+            sample_rate_hz: None,
+            time: None,
+            coupling: Coupling::Dc,
+            calibration: None,
+            reference: None,
+            lateral_m: 0.0,
+        }
+    }
+}
+
 /// A cask file, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CaskFile {
@@ -287,4 +328,24 @@ pub struct CaskFile {
     pub channels: Vec<ChannelSpec>,
     /// Keys whose value is a default, as "table.key", so that the report can say so.
     pub defaults: Vec<String>,
+}
+
+impl CaskFile {
+    /// A file that states cask, drop and contact alone, with the usual tolerances.
+    #[must_use]
+    pub fn plain(cask: Cask, drop: Drop, contact: Contact) -> Self {
+        Self {
+            path: "cask.toml".into(),
+            sha256: String::new(),
+            cask,
+            drop,
+            contact,
+            filter: FilterChoice::Auto,
+            tolerances: Tolerances::default(),
+            corrections: Corrections::default(),
+            time: None,
+            channels: Vec::new(),
+            defaults: Vec::new(),
+        }
+    }
 }

@@ -179,28 +179,12 @@ fn is_voltage(text: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, Coupling, End, Samples, Source};
+    use crate::data::{End, Samples};
     use crate::ingest::mcap::written::cask_file;
     use crate::ingest::time_base::Uniform;
 
     pub(super) fn spec(unit: Option<Unit>) -> ChannelSpec {
-        ChannelSpec {
-            name: "A1".into(),
-            end: End::First,
-            axis: Axis::Transverse,
-            source: Source::Path("/daq/a1".into()),
-            unit,
-            position_m: 0.0,
-            offset_m: 0.0,
-            polarity: 1.0,
-            full_scale: None,
-            sample_rate_hz: None,
-            time: None,
-            coupling: Coupling::Dc,
-            calibration: None,
-            reference: None,
-            lateral_m: 0.0,
-        }
+        ChannelSpec { unit, ..ChannelSpec::plain("A1", End::First, "/daq/a1", 0.0) }
     }
 
     fn of(unit: Option<Unit>, recorded: Option<&str>) -> Result<UnitScale, IngestError> {

@@ -5,8 +5,8 @@ use super::data::{Scene, SceneChannel, SceneExtras, SimulatedMotion, SyntheticRe
 use super::{in_memory, synth};
 use crate::analysis::measure;
 use crate::data::{
-    Analysis, Cask, CaskFile, ChannelSpec, Contact, Corrections, Coupling, Drop, End, FilterChoice,
-    Recording, STANDARD_GRAVITY_M_S2, Source, Tolerances, Unit, block_inertia_kg_m2,
+    Analysis, Cask, CaskFile, ChannelSpec, Contact, Drop, End, Recording, STANDARD_GRAVITY_M_S2, Tolerances,
+    Unit,
 };
 use crate::numerics::reduce;
 use std::path::PathBuf;
@@ -35,17 +35,7 @@ pub(super) const BUILDS: [Build; 4] = [ESBB, ANF_10, ANF_18, VHLW];
 impl Build {
     /// The cask with its centre of gravity in the middle and a block's inertia.
     pub(super) fn cask(self) -> Cask {
-        let Self { name, mass_kg, length_m, section_m: height_m } = self;
-        Cask {
-            name: name.to_owned(),
-            mass_kg,
-            length_m,
-            height_m,
-            width_m: None,
-            cog_m: length_m / 2.0,
-            inertia_kg_m2: block_inertia_kg_m2(mass_kg, length_m, height_m),
-            is_body: true,
-        }
+        Cask::block(self.name, self.mass_kg, self.length_m, self.section_m)
     }
 }
 
@@ -75,37 +65,20 @@ pub(super) fn scene(cask: Cask, drop: Drop, contact: Contact, impacts: [WantedIm
 pub(super) fn cask_file(cask: Cask, drop: Drop, contact: Contact, defaults: Vec<String>) -> CaskFile {
     CaskFile {
         path: PathBuf::from("synthetic.toml"),
-        sha256: String::new(),
-        cask,
-        drop,
-        contact,
-        filter: FilterChoice::Auto,
         tolerances: Tolerances::of(&defaults),
-        corrections: Corrections::default(),
-        time: None,
-        channels: Vec::new(),
         defaults,
+        ..CaskFile::plain(cask, drop, contact)
     }
 }
 
 /// What a true cask file says of a channel.
 pub(super) fn spec(channel: &SceneChannel) -> ChannelSpec {
     ChannelSpec {
-        name: channel.name.clone(),
-        end: channel.end,
         axis: channel.axis,
-        source: Source::Path(channel.name.clone()),
         unit: Some(if channel.unit == "g" { Unit::G } else { Unit::MetrePerSecondSquared }),
-        position_m: channel.position_m,
         offset_m: channel.offset_m,
-        polarity: 1.0,
-        full_scale: None,
-        sample_rate_hz: None,
-        time: None,
-        coupling: Coupling::Dc,
-        calibration: None,
-        reference: None,
         lateral_m: channel.lateral_m,
+        ..ChannelSpec::plain(&channel.name, channel.end, &channel.name, channel.position_m)
     }
 }
 

@@ -3,10 +3,9 @@
 use super::sample_reconstruction;
 use crate::data::{
     Analysis, At, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelFinding, ChannelSpec, ChannelSummary,
-    Comparison, Contact, Coupling, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events,
-    FilterChoice, Finding, FirstImpact, FlightFit, FlightModelScore, FlightRegime, Input, Mode,
-    ModelCandidate, ModelChoice, MotionCurve, Plateau, Prediction, RecordingFormat, Rung, Setting, SlapDown,
-    Source, Unit, Verdict,
+    Comparison, Contact, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events, FilterChoice,
+    Finding, FirstImpact, FlightFit, FlightModelScore, FlightRegime, Input, Mode, ModelCandidate,
+    ModelChoice, MotionCurve, Plateau, Prediction, RecordingFormat, Rung, Setting, SlapDown, Unit, Verdict,
 };
 use std::f64::consts::PI;
 
@@ -251,21 +250,9 @@ fn settings() -> Vec<Setting> {
 
 pub(super) fn cask_file() -> CaskFile {
     let channel = |name: &str, end, source: &str, position_m| ChannelSpec {
-        name: name.into(),
-        end,
-        axis: Axis::Transverse,
-        source: Source::Path(source.into()),
         unit: Some(Unit::G),
-        position_m,
-        offset_m: 0.0,
-        polarity: 1.0,
         full_scale: Some(500.0),
-        sample_rate_hz: None,
-        time: None,
-        coupling: Coupling::Dc,
-        calibration: None,
-        reference: None,
-        lateral_m: 0.0,
+        ..ChannelSpec::plain(name, end, source, position_m)
     };
     CaskFile {
         path: "anf18.toml".into(),

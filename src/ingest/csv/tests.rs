@@ -1,47 +1,16 @@
 //! Tables as they come from loggers and spreadsheets.
 
 use super::*;
-use crate::data::{Axis, Cask, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice, IssueCode, Source};
+use crate::data::{Cask, ChannelSpec, Contact, Drop, End, IssueCode};
 
 pub(in super::super) fn cask_file(sources: &[&str]) -> CaskFile {
-    let channels = sources.iter().map(|source| ChannelSpec {
-        name: (*source).into(),
-        end: End::First,
-        axis: Axis::Transverse,
-        source: Source::Path((*source).into()),
-        unit: None,
-        position_m: 0.0,
-        offset_m: 0.0,
-        polarity: 1.0,
-        full_scale: None,
-        sample_rate_hz: None,
-        time: None,
-        coupling: Coupling::Dc,
-        calibration: None,
-        reference: None,
-        lateral_m: 0.0,
-    });
+    let channel = |source: &&str| ChannelSpec::plain(source, End::First, source, 0.0);
+    let cask = Cask { inertia_kg_m2: 1.0, ..Cask::block("box", 1.0, 1.0, 0.0) };
+    let drop = Drop { impact_velocity_m_s: 4.4, ..Drop::of_height(1.0, 0.1) };
     CaskFile {
         path: "box.toml".into(),
-        sha256: String::new(),
-        cask: Cask {
-            name: "box".into(),
-            mass_kg: 1.0,
-            length_m: 1.0,
-            height_m: 0.0,
-            width_m: None,
-            cog_m: 0.5,
-            inertia_kg_m2: 1.0,
-            is_body: false,
-        },
-        drop: Drop { impact_velocity_m_s: 4.4, ..Drop::of_height(1.0, 0.1) },
-        contact: Contact::Rough,
-        filter: FilterChoice::Auto,
-        tolerances: crate::data::Tolerances::default(),
-        corrections: crate::data::Corrections::default(),
-        time: None,
-        channels: channels.collect(),
-        defaults: Vec::new(),
+        channels: sources.iter().map(channel).collect(),
+        ..CaskFile::plain(cask, drop, Contact::Rough)
     }
 }
 

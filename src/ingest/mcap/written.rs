@@ -1,6 +1,6 @@
 //! Test recordings: small MCAP files made in memory, of every encoding and compression.
 
-use crate::data::{Axis, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice, Source};
+use crate::data::{Cask, CaskFile, ChannelSpec, Contact, Drop, End};
 use mcap::records::MessageHeader;
 use mcap::{WriteOptions, Writer};
 use prost_reflect::prost::Message as _;
@@ -191,43 +191,11 @@ pub(super) fn imu<Order: CdrEndian>(stamp_ns: i64, z: f64) -> Vec<u8> {
 
 /// A cask file whose channels have these sources.
 pub(in crate::ingest) fn cask_file(sources: &[&str]) -> CaskFile {
-    let channels = sources.iter().map(|source| ChannelSpec {
-        name: (*source).to_owned(),
-        end: End::First,
-        axis: Axis::Transverse,
-        source: Source::Path((*source).to_owned()),
-        unit: None,
-        position_m: 0.0,
-        offset_m: 0.0,
-        polarity: 1.0,
-        full_scale: None,
-        sample_rate_hz: None,
-        time: None,
-        coupling: Coupling::Dc,
-        calibration: None,
-        reference: None,
-        lateral_m: 0.0,
-    });
+    let channel = |source: &&str| ChannelSpec::plain(source, End::First, source, 0.0);
+    let cask = Cask::block("test", 1.0, 1.0, 0.0);
+    let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, 0.2) };
     CaskFile {
-        path: "cask.toml".into(),
-        sha256: String::new(),
-        cask: Cask {
-            name: "test".into(),
-            mass_kg: 1.0,
-            length_m: 1.0,
-            height_m: 0.0,
-            width_m: None,
-            cog_m: 0.5,
-            inertia_kg_m2: 1.0 / 12.0,
-            is_body: false,
-        },
-        drop: Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, 0.2) },
-        contact: Contact::Rough,
-        filter: FilterChoice::Auto,
-        tolerances: crate::data::Tolerances::default(),
-        corrections: crate::data::Corrections::default(),
-        time: None,
-        channels: channels.collect(),
-        defaults: Vec::new(),
+        channels: sources.iter().map(channel).collect(),
+        ..CaskFile::plain(cask, drop, Contact::Rough)
     }
 }

@@ -1,7 +1,7 @@
 //! Scenes that the tests of the simulation start from.
 
 use crate::data::{Axis, Cask, Contact, Drop, End, block_inertia_kg_m2};
-use crate::lab::data::{Chain, CrushableEnd, Scene, SceneChannel, SceneExtras, SimulatedMotion};
+use crate::lab::data::{CrushableEnd, Scene, SceneChannel, SceneExtras, SimulatedMotion};
 
 /// The scene of `fixtures/anf18-json`: ANF-18, 9 m, 15°, rough; its stiffnesses follow `crush_for` of `fixtures/simulate.py`.
 pub(super) fn anf18() -> Scene {
@@ -16,16 +16,7 @@ pub(super) fn anf18() -> Scene {
     Scene {
         name: "ANF-18".to_owned(),
         seed: 1,
-        cask: Cask {
-            name: "ANF-18".to_owned(),
-            mass_kg,
-            length_m,
-            height_m,
-            width_m: None,
-            cog_m: length_m / 2.0,
-            inertia_kg_m2,
-            is_body: true,
-        },
+        cask: Cask::block("ANF-18", mass_kg, length_m, height_m),
         drop: Drop::of_height(9.0, angle_rad),
         contact: Contact::Rough,
         first_end: crush(5e-3, 0.55),
@@ -44,15 +35,11 @@ pub(super) fn anf18() -> Scene {
 /// A channel with a perfect chain.
 pub(super) fn channel(axis: Axis, position_m: f64, offset_m: f64) -> SceneChannel {
     SceneChannel {
-        name: "A1".to_owned(),
-        end: End::First,
         axis,
-        position_m,
         offset_m,
-        lateral_m: 0.0,
         unit: "m/s^2".to_owned(),
         sample_rate_hz: 1e5,
-        chain: Chain::perfect(),
+        ..SceneChannel::perfect("A1", End::First, position_m)
     }
 }
 
