@@ -29,8 +29,10 @@ const MOST_SWITCHES: usize = 20_000;
 const HALVINGS: u32 = 60;
 
 /// The body between two changes of its contacts, for the integrator.
+#[derive(Clone, Copy)]
 struct Segment<'a> {
     body: &'a SceneBody<'a>,
+    tolerance: f64,
     /// Whether to stop where a contact changes or the cask stands upright.
     watched: bool,
 }
@@ -79,11 +81,11 @@ fn follow_state<const N: usize>(scene: &Scene, tolerance: f64) -> SimulatedMotio
     let mut y = SVector::<f64, N>::from_column_slice(&body.at_first_contact()[..N]);
     let mut kept_steps = vec![kept(&body, time_s, y.as_slice())];
     while time_s < end_s && !is_upright(y.as_slice()) && events.len() < MOST_SWITCHES {
-        let march = March { body: &body, tolerance };
-        let (mut steps, whole) = march.over(&y, end_s - time_s, true, MOST_STEPS - kept_steps.len());
+        let segment = Segment { body: &body, tolerance, watched: true };
+        let (mut steps, whole) = segment.over(&y, end_s - time_s, MOST_STEPS - kept_steps.len());
         let Some(last) = steps.pop() else { break };
         let before = steps.last().copied().unwrap_or((0.0, y));
-        let change = march.first_change(&before, &last);
+        let change = segment.first_change(&before, &last);
         let (offset_s, state) = change.map_or(last, |c| (before.0 + c.after_s, c.state));
         let on_way = steps.iter().map(|(offset_s, state)| kept(&body, time_s + offset_s, state.as_slice()));
         kept_steps.extend(on_way);
@@ -122,24 +124,17 @@ struct Fallen<const N: usize> {
 /// A state and how long after another it is reached, s.
 type Reached<const N: usize> = (f64, SVector<f64, N>);
 
-/// The integrator on a body whose contacts do not change.
-struct March<'a> {
-    body: &'a SceneBody<'a>,
-    tolerance: f64,
-}
-
-impl March<'_> {
+impl Segment<'_> {
     /// The steps after `from`, times from there, and whether the integrator came to its end or a stop.
     fn over<const N: usize>(
         &self,
         from: &SVector<f64, N>,
         span_s: f64,
-        watched: bool,
         most: usize,
     ) -> (Vec<Reached<N>>, bool) {
         let longest_s = LONGEST_STEP_S.min(LONGEST_STEP_RAD / self.body.fastest_rad_s());
         let mut solver = Dopri5::from_param(
-            Segment { body: self.body, watched },
+            *self,
             0.0,
             span_s,
             0.0,
@@ -168,7 +163,8 @@ impl March<'_> {
         if offset_s <= 0.0 {
             return *from;
         }
-        self.over(from, offset_s, false, MOST_STEPS).0.last().map_or(*from, |step| step.1)
+        let unwatched = Segment { watched: false, ..*self };
+        unwatched.over(from, offset_s, MOST_STEPS).0.last().map_or(*from, |step| step.1)
     }
 
     /// The first watch to fall below zero between two steps.
