@@ -87,15 +87,10 @@ fn seats(case: &mut DrawnDrop, wish: &Wish) -> Vec<SceneChannel> {
     let fourth = place("A4", End::Second, Axis::Transverse, inner);
     let axial = place("A5", End::First, Axis::Axial, near);
     let (more, most, has_axial) = (chance.is(0.1), chance.is(0.5), chance.is(0.15));
-    if more || wish.third_channel {
-        seats.push(third);
-        if most {
-            seats.push(fourth);
-        }
-    }
-    if wish.axial.unwrap_or(has_axial) {
-        seats.push(axial);
-    }
+    let more = more || wish.third_channel;
+    seats.extend(more.then_some(third));
+    seats.extend((more && most).then_some(fourth));
+    seats.extend(wish.axial.unwrap_or(has_axial).then_some(axial));
     seats
 }
 

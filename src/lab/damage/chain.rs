@@ -3,15 +3,15 @@
 use super::super::chance::round;
 use super::super::data::Chain;
 use super::super::drawn::{DrawnDrop, unit_m_s2};
-use crate::data::{End, STANDARD_GRAVITY_M_S2};
+use crate::data::STANDARD_GRAVITY_M_S2;
 use std::f64::consts::TAU;
 
 /// Damages the scene by `kind`; one that is done to something else does nothing to it.
 pub(super) fn strike(kind: &str, case: &mut DrawnDrop, size: f64) {
     let size_m_s2 = size * STANDARD_GRAVITY_M_S2;
     match kind {
-        "clip_first" => clip(case, End::First, size),
-        "clip_second" => clip(case, End::Second, size),
+        "clip_first" => clip(case, 0, size),
+        "clip_second" => clip(case, 1, size),
         "gap_impact" => {
             let from_s = case.scene.before_s + case.chance.even(-0.2, 0.8) * case.contact_s();
             lose(case, from_s, size / 100.0 * case.contact_s());
@@ -95,9 +95,8 @@ fn unlimited(case: &mut DrawnDrop) {
     }
 }
 
-/// Cuts `size` percent off the largest that a transverse channel of `end` reads; half of the cask files state the limit.
-fn clip(case: &mut DrawnDrop, end: End, size: f64) {
-    let which = usize::from(end == End::Second);
+/// Cuts `size` percent off the largest that channel `which` reads; half of the cask files state the limit.
+fn clip(case: &mut DrawnDrop, which: usize, size: f64) {
     let limit_m_s2 = (1.0 - size / 100.0) * case.peak_m_s2(which);
     let is_stated = case.chance.is(0.5);
     let channel = &mut case.scene.channels[which];

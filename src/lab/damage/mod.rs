@@ -89,11 +89,8 @@ impl DamageKind {
 
     /// Damages the drop and its cask file, then its recording.
     pub(super) fn strike(&self, drop: &mut DrawnDrop, size: f64) -> SyntheticRecording {
-        if self.of == "stated" {
-            stated::strike(self.name, drop, size);
-        } else {
-            chain::strike(self.name, drop, size);
-        }
+        stated::strike(self.name, drop, size);
+        chain::strike(self.name, drop, size);
         let mut recording = drop.recorded();
         samples::strike(self.name, drop, &mut recording, size);
         recording

@@ -4,42 +4,46 @@ use super::super::chance::Chance;
 use super::super::data::{LooseMass, Scene, slowed};
 use super::super::drawn::LEAST_FRICTION;
 use super::super::synth;
+use super::Wish;
 use crate::data::{Cask, CaskFile, Contact, Drop, first_arm_m};
 
-/// Makes the scene one of `kind`; one that is of something else does nothing to it.
-pub(super) fn strike(kind: &str, size: f64, scene: &mut Scene, stated: &mut CaskFile, chance: &mut Chance) {
-    match kind {
-        "turning" | "turning_unstated" => {
-            let more_rad_s = chance.sign() * size.to_radians();
-            turn(&mut scene.drop, &scene.cask, more_rad_s);
-            if kind == "turning" {
-                turn(&mut stated.drop, &stated.cask, more_rad_s);
+impl Wish {
+    /// Makes a scene and what is stated of it, both still without channels, those of the kind; one that is of something else does nothing.
+    pub(in super::super) fn fulfil(&self, scene: &mut Scene, stated: &mut CaskFile, chance: &mut Chance) {
+        let Self { kind, size, .. } = *self;
+        match kind {
+            "turning" | "turning_unstated" => {
+                let more_rad_s = chance.sign() * size.to_radians();
+                turn(&mut scene.drop, &scene.cask, more_rad_s);
+                if kind == "turning" {
+                    turn(&mut stated.drop, &stated.cask, more_rad_s);
+                }
             }
-        }
-        "swinging" | "swinging_unstated" => {
-            let more_m_s = chance.sign() * size;
-            scene.drop.horizontal_velocity_m_s += more_m_s;
-            if kind == "swinging" {
-                stated.drop.horizontal_velocity_m_s = more_m_s;
+            "swinging" | "swinging_unstated" => {
+                let more_m_s = chance.sign() * size;
+                scene.drop.horizontal_velocity_m_s += more_m_s;
+                if kind == "swinging" {
+                    stated.drop.horizontal_velocity_m_s = more_m_s;
+                }
             }
+            "guided" | "guided_seen" | "guided_rest" => {
+                scene.extras.guided = size / 100.0;
+                scene.drop = slowed(scene.drop, scene.extras.guided);
+            }
+            "contents" | "contents_light" => scene.extras.contents = contents(size, &scene.cask, chance),
+            "lock_up" => lock_up(size, scene),
+            "footprint" | "footprint_wide" => scene.first_end.footprint = size,
+            "friction_falls" | "rough_falls" => {
+                scene.contact = Contact::Coulomb(size);
+                let fast = (size * chance.even(0.3, 0.8)).max(LEAST_FRICTION);
+                scene.extras.falling_friction = Some((fast, chance.log_even(0.3, 3.0)));
+            }
+            "friction_changes" | "rough_changes" => {
+                scene.contact = Contact::Coulomb(size);
+                scene.extras.returning_friction = Some((size * chance.even(0.3, 1.5)).max(LEAST_FRICTION));
+            }
+            _ => {}
         }
-        "guided" | "guided_seen" | "guided_rest" => {
-            scene.extras.guided = size / 100.0;
-            scene.drop = slowed(scene.drop, scene.extras.guided);
-        }
-        "contents" | "contents_light" => scene.extras.contents = contents(size, &scene.cask, chance),
-        "lock_up" => lock_up(size, scene),
-        "footprint" | "footprint_wide" => scene.first_end.footprint = size,
-        "friction_falls" | "rough_falls" => {
-            scene.contact = Contact::Coulomb(size);
-            let fast = (size * chance.even(0.3, 0.8)).max(LEAST_FRICTION);
-            scene.extras.falling_friction = Some((fast, chance.log_even(0.3, 3.0)));
-        }
-        "friction_changes" | "rough_changes" => {
-            scene.contact = Contact::Coulomb(size);
-            scene.extras.returning_friction = Some((size * chance.even(0.3, 1.5)).max(LEAST_FRICTION));
-        }
-        _ => {}
     }
 }
 

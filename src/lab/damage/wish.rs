@@ -1,9 +1,6 @@
 //! Words of the table to what a damage needs of the drop that it strikes.
 
-use super::super::chance::Chance;
-use super::super::data::Scene;
-use super::physical;
-use crate::data::{CaskFile, Contact};
+use crate::data::Contact;
 
 /// What happens between the two impacts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -58,10 +55,5 @@ impl Wish {
             third_channel: has("third_channel"),
             ..Self::default()
         }
-    }
-
-    /// Makes a scene and what is stated of it, both still without channels, those of the kind.
-    pub(in super::super) fn fulfil(&self, scene: &mut Scene, stated: &mut CaskFile, chance: &mut Chance) {
-        physical::strike(self.kind, self.size, scene, stated, chance);
     }
 }
