@@ -127,27 +127,22 @@ fn impact(table: &Section, usual: WantedImpact) -> Result<WantedImpact, CaskFile
     })
 }
 
-/// The end with what the table says of it; `by_pulse` where it gives no stiffnesses.
+/// The end with what the table says of it: its stiffnesses, or the pulse that has made `by_pulse`.
 fn crushable(table: &Section, by_pulse: CrushableEnd) -> Result<CrushableEnd, CaskFileError> {
     needs(table, &[("lock_up_m", "lock_up_n_m"), ("lock_up_n_m", "lock_up_m")])?;
-    Ok(CrushableEnd {
+    let by_pulse = CrushableEnd {
         lock_up: given(table, "lock_up_m")?.zip(given(table, "lock_up_n_m")?),
         footprint: value(table, "footprint")?,
-        ..stiffnesses(table)?.unwrap_or(by_pulse)
-    })
-}
-
-/// The stiffnesses of an end, where the table gives them in place of a pulse.
-fn stiffnesses(table: &Section) -> Result<Option<CrushableEnd>, CaskFileError> {
+        ..by_pulse
+    };
     let any_of = |keys: &[&'static str]| keys.iter().copied().find(|key| table.value(key).is_some());
-    let loading_n_m = given(table, "loading_n_m")?;
-    let unloading_n_m = given(table, "unloading_n_m")?.or(loading_n_m);
-    let yield_n = given(table, "yield_n")?;
-    let Some((loading_n_m, unloading_n_m)) = loading_n_m.zip(unloading_n_m) else {
-        return any_of(&["unloading_n_m", "yield_n"]).map_or(Ok(None), |key| {
+    let (yield_n, unloading_n_m) = (given(table, "yield_n")?, given(table, "unloading_n_m")?);
+    let Some(loading_n_m) = given(table, "loading_n_m")? else {
+        return any_of(&["unloading_n_m", "yield_n"]).map_or(Ok(by_pulse), |key| {
             Err(contradicts(table, key, "needs loading_n_m", "give loading_n_m beside it, or pulse_ms and k"))
         });
     };
+    let unloading_n_m = unloading_n_m.unwrap_or(loading_n_m);
     if let Some(key) = any_of(&["pulse_ms", "k", "yield_share"]) {
         let mend = "give pulse_ms and k, or the stiffnesses, not both";
         return Err(contradicts(table, key, "not beside loading_n_m", mend));
@@ -156,7 +151,7 @@ fn stiffnesses(table: &Section) -> Result<Option<CrushableEnd>, CaskFileError> {
         let mend = "an end that unloads more softly than it loads would give energy";
         return Err(contradicts(table, "unloading_n_m", "not below loading_n_m", mend));
     }
-    Ok(Some(CrushableEnd { yield_n, ..CrushableEnd::elastic(loading_n_m, unloading_n_m) }))
+    Ok(CrushableEnd { loading_n_m, unloading_n_m, yield_n, ..by_pulse })
 }
 
 fn mode(table: &Section) -> Result<BendingMode, CaskFileError> {

@@ -1,7 +1,7 @@
 //! A `[[channel]]` table of a scene file to the channel as it is and the channel as the cask file will state it.
 
 use super::values::{flag, given, needs, spans_s, value, whole};
-use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, STANDARD_GRAVITY_M_S2, Source, Unit};
+use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, STANDARD_GRAVITY_M_S2, Unit};
 use crate::ingest::cask_file::CaskFileError;
 use crate::ingest::cask_file::channel::{axis, coupling, end, polarity};
 use crate::ingest::cask_file::section::Section;
@@ -21,15 +21,10 @@ pub(super) fn usual(cask: &Cask) -> Vec<Both> {
     let channel = |(name, end)| {
         let mut channel = SceneChannel::perfect(name, end, usual_position_m(cask, end));
         channel.chain.white_noise_m_s2 = WHITE_NOISE_G * STANDARD_GRAVITY_M_S2;
-        let stated = stated(&channel);
+        let stated = spec(&channel);
         (channel, stated)
     };
     [("A1", End::First), ("A2", End::Second)].map(channel).into()
-}
-
-/// What a true cask file says of a channel, its source still to be named.
-fn stated(channel: &SceneChannel) -> ChannelSpec {
-    ChannelSpec { source: Source::Path(String::new()), ..spec(channel) }
 }
 
 fn usual_position_m(cask: &Cask, end: End) -> f64 {
@@ -67,10 +62,8 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
         polarity: polarity(table)?,
         full_scale,
         coupling: if is_hidden { Coupling::Dc } else { coupling },
-        calibration: None,
-        reference: None,
         lateral_m: given(table, "stated_lateral_m")?.unwrap_or(channel.lateral_m),
-        ..stated(&channel)
+        ..spec(&channel)
     };
     Ok((channel, stated))
 }
