@@ -49,7 +49,7 @@ pub(super) fn channels(root: &Section, cask: &Cask) -> Result<Vec<ChannelSpec>, 
 
 fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), CaskFileError> {
     let name = table.required_text("name")?;
-    let end = end(table)?;
+    let end = end(table, END)?;
     let axis = axis(table)?.ok_or_else(|| table.missing("axis", AXIS))?;
     let source = source(table)?;
     let unit = unit(table)?;
@@ -74,13 +74,13 @@ fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), 
     Ok((spec, name.span))
 }
 
-pub(crate) fn end(table: &Section) -> Result<End, CaskFileError> {
-    const END: &str =
-        "end = \"first\" (the low end, which touches first) or \"second\" (the one that slaps down)";
-    let end = table.word("end", &[("first", End::First), ("second", End::Second)], END)?;
-    end.ok_or_else(|| table.missing("end", END))
+pub(crate) fn end(table: &Section, mend: &str) -> Result<End, CaskFileError> {
+    let end = table.word("end", &[("first", End::First), ("second", End::Second)], mend)?;
+    end.ok_or_else(|| table.missing("end", mend))
 }
 
+const END: &str =
+    "end = \"first\" (the low end, which touches first) or \"second\" (the one that slaps down)";
 const AXIS: &str =
     "axis = \"transverse\" (across the cask, in the plane of the drop) or \"axial\" (along it)";
 

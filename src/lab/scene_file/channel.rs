@@ -1,7 +1,7 @@
 //! A `[[channel]]` table of a scene file to the channel as it is and the channel as the cask file will state it.
 
 use super::values::{flag, given, needs, spans_s, value, whole};
-use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, STANDARD_GRAVITY_M_S2, Unit};
+use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, STANDARD_GRAVITY_M_S2, Source, Unit};
 use crate::ingest::cask_file::CaskFileError;
 use crate::ingest::cask_file::channel::{axis, coupling, end, polarity};
 use crate::ingest::cask_file::section::Section;
@@ -21,10 +21,15 @@ pub(super) fn usual(cask: &Cask) -> Vec<Both> {
     let channel = |(name, end)| {
         let mut channel = SceneChannel::perfect(name, end, usual_position_m(cask, end));
         channel.chain.white_noise_m_s2 = WHITE_NOISE_G * STANDARD_GRAVITY_M_S2;
-        let stated = spec(&channel);
+        let stated = stated(&channel);
         (channel, stated)
     };
     [("A1", End::First), ("A2", End::Second)].map(channel).into()
+}
+
+/// What a true cask file says of a channel, its source still to be named.
+fn stated(channel: &SceneChannel) -> ChannelSpec {
+    ChannelSpec { source: Source::Path(String::new()), ..spec(channel) }
 }
 
 fn usual_position_m(cask: &Cask, end: End) -> f64 {
@@ -39,7 +44,7 @@ fn usual_position_m(cask: &Cask, end: End) -> f64 {
 pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileError> {
     const HIDDEN: &str =
         "stated_coupling = \"dc\" hides the coupling from the cask file; left out, it is stated as it is";
-    let end = end(table)?;
+    let end = end(table, "end = \"first\" (the low end) or \"second\" (the one that slaps down)")?;
     let unit = unit(table, "unit")?.unwrap_or(Unit::G);
     let unit_name = if unit == Unit::G { "g" } else { "m/s^2" };
     let full_scale = given(table, "full_scale")?;
@@ -63,7 +68,7 @@ pub(super) fn channel(table: &Section, cask: &Cask) -> Result<Both, CaskFileErro
         full_scale,
         coupling: if is_hidden { Coupling::Dc } else { coupling },
         lateral_m: given(table, "stated_lateral_m")?.unwrap_or(channel.lateral_m),
-        ..spec(&channel)
+        ..stated(&channel)
     };
     Ok((channel, stated))
 }
