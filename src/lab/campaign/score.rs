@@ -141,7 +141,7 @@ fn flatten(header: &str, value: &serde_json::Value, cells: &mut Vec<Cell>) {
     let below = |key: &dyn std::fmt::Display| format!("{header}.{key}");
     match value {
         serde_json::Value::Object(of) => {
-            of.iter().for_each(|(key, value)| flatten(&below(key), value, cells))
+            of.iter().for_each(|(key, value)| flatten(&below(key), value, cells));
         }
         serde_json::Value::Array(of) => {
             of.iter().enumerate().for_each(|(i, value)| flatten(&below(&i), value, cells));

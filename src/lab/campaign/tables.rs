@@ -190,8 +190,11 @@ fn codes(scenes: &Scenes) -> ChapterPart {
 /// Whether a scene belongs to a class.
 type Belongs = fn(&CampaignRow) -> bool;
 
+/// A number of a scene.
+type Number = fn(&CampaignRow) -> f64;
+
 /// What scenes are classed by, its unit, where the middle class begins and ends, and the number of a scene.
-const NUMBERS: [(&str, &str, [f64; 2], fn(&CampaignRow) -> f64); 4] = [
+const NUMBERS: [(&str, &str, [f64; 2], Number); 4] = [
     ("angle", "°", [5.0, 30.0], |row| row.truth.angle_deg),
     ("contact", " ms", [3.0, 10.0], |row| row.truth.contact_s.map_or(f64::NAN, |s| 1e3 * s)),
     ("k", "", [0.1, 0.8], |row| row.truth.k.unwrap_or(f64::NAN)),
