@@ -14,7 +14,6 @@ pub(crate) use body::{cask, drop};
 pub use fault::{CaskFileError, WrongLine};
 use section::{CASK_FILE, Document, Kind, Section};
 use sha2::{Digest, Sha256};
-use std::fmt::Write as _;
 use std::io::Read;
 use std::path::Path;
 
@@ -27,13 +26,9 @@ const LARGEST_BYTES: u64 = 16 << 20;
 /// [`CaskFileError`], one message that shows the line.
 pub fn parse(path: &Path) -> Result<CaskFile, CaskFileError> {
     let bytes = read(path, &CASK_FILE)?;
-    let sha256 = Sha256::digest(&bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    });
     let text = text(path, &bytes, &CASK_FILE)?;
     let mut cask_file = checked(path, text)?;
-    cask_file.sha256 = sha256;
+    cask_file.sha256 = format!("{:x}", Sha256::digest(&bytes));
     Ok(cask_file)
 }
 
@@ -53,7 +48,8 @@ pub fn require_channels(cask_file: &CaskFile, recording: &Path) -> Result<(), Ca
     Err(no_cask_file(&cask_file.path, problem, &mend))
 }
 
-fn no_cask_file(path: &Path, problem: &str, mend: &str) -> CaskFileError {
+/// The refusal of a file that is no such file.
+pub(crate) fn no_cask_file(path: &Path, problem: &str, mend: &str) -> CaskFileError {
     CaskFileError::NoCaskFile {
         path: path.display().to_string(),
         problem: problem.to_owned(),

@@ -1,11 +1,10 @@
 //! A few numbers to a simulated drop and its cask file, all of it true.
 
 use super::chance::Chance;
-use super::damage::Wish;
 use super::data::{BendingMode, Chain, Scene, SceneChannel, WantedImpact};
 use super::drawn::{Build, DrawnDrop, cask_file, scene, spec};
 use super::synth;
-use crate::data::{Axis, Contact, Drop, End, STANDARD_GRAVITY_M_S2};
+use crate::data::{CaskFile, Contact, Drop, End, STANDARD_GRAVITY_M_S2};
 
 /// A drop as a trial speaks of it.
 #[derive(Debug, Clone)]
@@ -57,12 +56,11 @@ impl DropPlan {
 
     /// The drop, simulated.
     pub(super) fn draw(&self) -> DrawnDrop {
-        self.draw_as(&Wish::default())
+        self.draw_with(|_, _, _| {})
     }
 
-    /// The drop as a damage needs it, simulated.
-    pub(super) fn draw_as(&self, wish: &Wish) -> DrawnDrop {
-        let contact = wish.contact.unwrap_or(self.contact);
+    /// The drop, its scene and cask file changed before it is simulated.
+    pub(super) fn draw_with(&self, change: impl FnOnce(&mut Scene, &mut CaskFile, &mut Chance)) -> DrawnDrop {
         let drop = Drop::of_height(9.0, self.angle_deg.to_radians());
         let impacts = [(self.pulse_s, self.k), (4e-3, 0.3)].map(|(duration_s, restitution)| WantedImpact {
             duration_s,
@@ -73,23 +71,12 @@ impl DropPlan {
             seed: self.seed,
             modes: self.modes.clone(),
             before_s: self.before_s,
-            rest: wish.rest == Some(true),
             channels: [End::First, End::Second].map(|end| self.channel(end)).into(),
-            ..scene(self.build.cask(), drop, contact, impacts)
+            ..scene(self.build.cask(), drop, self.contact, impacts)
         };
-        if scene.rest {
-            scene.before_s = scene.fall_s() + 0.2;
-        }
-        let beside = |name: &str, axis| {
-            let first = self.channel(End::First);
-            SceneChannel { name: name.to_owned(), axis, position_m: 3.0 * first.position_m, ..first }
-        };
-        scene.channels.extend(wish.third_channel.then(|| beside("A3", Axis::Transverse)));
-        scene.channels.extend((wish.axial == Some(true)).then(|| beside("A5", Axis::Axial)));
-        let unstated = (contact == Contact::Unknown).then(|| "contact.friction".to_owned());
-        let mut stated = cask_file(scene.cask.clone(), drop, contact, unstated.into_iter().collect());
+        let mut stated = cask_file(scene.cask.clone(), drop, self.contact, Vec::new());
         let mut chance = Chance::new(self.seed, 0);
-        wish.fulfil(&mut scene, &mut stated, &mut chance);
+        change(&mut scene, &mut stated, &mut chance);
         stated.channels = scene.channels.iter().map(spec).collect();
         DrawnDrop { motion: synth::simulate(&scene), scene, stated, chance }
     }

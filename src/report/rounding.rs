@@ -76,7 +76,7 @@ pub(super) fn percent(value: f64) -> String {
 }
 
 /// `value` with `decimals`, a true minus sign, and no minus before a zero.
-pub(crate) fn fixed(value: f64, decimals: usize) -> String {
+pub(super) fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
         Some(digits) if digits.bytes().all(|b| b == b'0' || b == b'.') => digits.to_owned(),

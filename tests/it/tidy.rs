@@ -173,11 +173,12 @@ fn the_command_line_uses_the_public_api_only() {
 #[test]
 fn recordings_are_opened_in_one_place() {
     let owners = ["ingest", "cli", "main"];
-    let through_a_file = "curves_h5"; // the HDF5 library writes to files only
+    // The HDF5 library writes to files only; ways are timed from theirs on, and the own recordings are read like a site's.
+    let through_a_file = ["curves_h5", "ways", "references"];
     for file in rust_files(&root().join("src")) {
         let path = module_path(&file);
         let owner = path.first().is_some_and(|module| owners.contains(&module.as_str()));
-        if owner || path.last().is_some_and(|file| file == through_a_file) {
+        if owner || path.last().is_some_and(|file| through_a_file.contains(&&file[..])) {
             continue;
         }
         let code = code_of(&fs::read_to_string(&file).expect("UTF-8"));

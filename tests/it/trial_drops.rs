@@ -26,7 +26,7 @@ fn point<'a>(part: &'a [TrialPoint], method: &str, class: &str) -> &'a TrialPoin
 #[test]
 fn first_contact_is_found_and_no_rival_is_nearer() {
     let part = run("first-contact");
-    assert_eq!(part.len(), 20);
+    assert_eq!(part.len(), 10);
     for found in defaults(&part) {
         // The chord of a pulse's rise from 2 % to 30 % meets zero within 1 % of its length. 5 g of noise over the slope π peak/T of 400 g
         // add 0.4 % of the length, three times that at the 95th percentile; a rise of 25 samples a pulse is known to half a sample.
@@ -58,36 +58,44 @@ fn the_flight_fit_tells_ringing_from_the_step() {
 }
 
 #[test]
-fn the_reconstruction_keeps_its_reference_accuracy() {
-    let part = run("reconstruction");
+fn the_program_is_near_from_file_to_answer_and_what_it_leaves_out_is_not() {
+    let part = run("ways");
     for found in defaults(&part) {
         // Measured on simulated drops by another program: planar motion with the modes fitted is within 0.4 % of speed and 0.011 of k. Noise of 5 g
-        // leaves 0.055 m/s on each step; three times that on both over 16 m/s is 1.5 %, over v0 of 13.3 m/s 0.018 of k.
-        let noisy = found.class == "5 g of noise";
-        let bound = match (found.family.as_str(), noisy) {
-            ("reconstruction, speed", false) => 0.4,
-            ("reconstruction, speed", true) => 1.5,
-            (_, false) => 0.011,
-            (_, true) => 0.018,
+        // leaves 0.055 m/s on each step; three times that on both over 16 m/s is 1.5 %, over v0 of 13.3 m/s 0.018 of k. A length off by 1 % is 1 % of
+        // what turns, which is more than what strikes; of what is cut off, only the interval knows.
+        let is_speed = found.family.starts_with("speed");
+        let bound = match &found.class[..] {
+            "5 g of noise" => [1.5, 0.018],
+            "length off by 1 %" => [2.0, 0.011],
+            "clean" | "one mode, 2 to 5 periods" | "limiter, 12 to 25 ms" => [0.4, 0.011],
+            _ => continue,
         };
-        assert!(found.p95_error < bound, "{found:?}");
+        assert!(found.p95_error < bound[usize::from(!is_speed)], "{found:?}");
+        assert!(found.promised.is_some() && found.held > Some(0.9), "{found:?}");
     }
-    // Fig. 13's way leaves gravity out: -3.4 to -1.8 % without any ringing, worse with it.
-    for class in ["calm", "one mode, 2 to 5 periods", "slow mode, 0.7 to 1.2 periods", "12 ms pulse"] {
-        assert!(point(&part, "channels", class).median_error > 1.0);
+    // Fig. 13's way leaves gravity out: -3.4 to -1.8 % without any ringing, worse with it; the mean of what rings is off.
+    for class in ["clean", "one mode, 2 to 5 periods", "slow mode, 0.7 to 1.2 periods"] {
+        assert!(point(&part, "single channels (paper)", class).median_error > 1.0);
+        assert!(point(&part, "filter first, CFC 180", class).median_error > 1.0);
     }
+    assert!(point(&part, "planar alone", "one mode, 2 to 5 periods").p95_error > 1.0);
+    // Reading has a time, and says nothing.
+    assert!(
+        point(&part, "reading alone", "all").cases == 0 && !point(&part, "reading alone", "all").is_on_front
+    );
 }
 
 #[test]
-fn the_march_finds_the_first_root() {
-    let part = run("root");
-    assert_eq!(part.len(), 12);
-    for found in defaults(&part) {
-        // Heights of 5 m are rounded to 1e-15 m; at a slope of 0.1 m/s, the least there is, that is 1e-14 s of 0.05 s.
-        assert!(found.p95_error < 100.0 * 2e-13, "{found:?}");
+fn the_limits_of_methods_are_those_that_the_quick_trial_keeps() {
+    let mut points = Vec::new();
+    for (_, tried) in dropcheck::lab::methods::FAMILIES {
+        points.extend(tried(&REQUEST));
     }
-    // A bracket over several roots ends at any of them.
-    assert!(point(&part, "bisection", "steep, several roots").median_error > 1.0);
+    let kept = |point: &TrialPoint| dropcheck::lab::methods::limits_of(point);
+    let limits: Vec<_> = defaults(&points).flat_map(kept).collect();
+    assert!(limits.len() > 12, "{limits:?}");
+    assert!(limits.iter().all(dropcheck::lab::data::TrialLimit::is_kept), "{limits:?}");
 }
 
 #[test]

@@ -8,6 +8,7 @@ use dropcheck::lab::data::{TrialMachine, TrialRequest};
 use dropcheck::lab::methods::{self, References};
 use dropcheck::lab::report::{TRIAL_NAMES, trial_files, trial_markdown, trial_outcome};
 use dropcheck::report;
+use sha2::{Digest, Sha256};
 use std::path::Path;
 
 const MARKS: Marks = Marks { begin: "<!-- trial: begin -->", end: "<!-- trial: end -->" };
@@ -41,7 +42,10 @@ pub fn run(
 
 /// What this program runs on.
 fn machine() -> TrialMachine {
+    let program = std::env::current_exe().and_then(std::fs::read);
     TrialMachine {
+        program_sha256: program
+            .map_or_else(|_| String::new(), |bytes| format!("{:x}", Sha256::digest(bytes))),
         processor: processor().unwrap_or_else(|| "a processor that does not say its name".to_owned()),
         cores: std::thread::available_parallelism().map_or(1, usize::from),
         when: jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M UTC").to_string(),

@@ -1,11 +1,11 @@
-//! Drops of a campaign to tables of which rung of the reconstruction each scene takes, and what a higher one would change.
+//! Drops of a campaign to tables of which rung of the reconstruction each scene takes, and what every other would change.
 
 use super::score::written;
 use super::statistics::{Spread, quantile, scored};
 use crate::data::ReconstructionRung;
 use crate::lab::data::{Campaign, CampaignRow};
 use crate::report::document::ChapterPart;
-use crate::report::rounding::{fixed, optional_fixed};
+use crate::report::rounding::optional_fixed;
 use crate::report::table::ReportTable;
 
 /// Whether a scene belongs to a class.
@@ -23,36 +23,33 @@ const SCENES: [(&str, Belongs); 8] = [
     ("all", |_| true),
 ];
 
-/// A table of scenes by rung taken, and one of what each higher rung would change.
+/// A table of scenes by rung taken, and one of what every rung says of the drops that take one.
 pub(in crate::lab) fn rungs(campaign: &Campaign) -> [ChapterPart; 2] {
     let rows: Vec<&CampaignRow> =
         campaign.rows.iter().filter(|row| row.damage.is_none() && row.rung.is_some()).collect();
     let count =
         |belongs: Belongs, rung| rows.iter().filter(|row| belongs(row) && row.rung == Some(rung)).count();
-    let mut scenes = ReportTable::of(&SCENES).text("scene", |(name, _)| *name);
+    let drawn: Vec<_> =
+        SCENES.into_iter().filter(|(_, belongs)| rows.iter().any(|row| belongs(row))).collect();
+    let mut scenes = ReportTable::of(&drawn).text("scene", |(name, _)| *name);
     for rung in ReconstructionRung::ALL {
         scenes = scenes.number(written(rung), move |(_, belongs)| count(*belongs, rung).to_string());
     }
-    let pairs: Vec<_> = ReconstructionRung::ALL
-        .into_iter()
-        .flat_map(|taken| {
-            ReconstructionRung::ALL
-                .into_iter()
-                .filter(move |said| *said >= taken)
-                .map(move |said| (taken, said))
-        })
+    let all = || ReconstructionRung::ALL.into_iter();
+    let pairs: Vec<_> = all()
+        .flat_map(|taken| all().map(move |said| (taken, said)))
         .map(|(taken, said)| RungBeside::of(taken, said, &rows))
-        .filter(|beside| beside.speed.count() > 0)
+        .filter(|beside| beside.k.count() > 0)
         .collect();
     let beside = ReportTable::of(&pairs)
         .chosen(|pair| pair.taken == pair.said)
         .text("taken", |pair| written(pair.taken))
         .text("rung", |pair| written(pair.said))
-        .number("drops", |pair| pair.speed.count().to_string())
-        .number("speed: 95th, %", |pair| fixed(quantile(&pair.speed.errors, 0.95), 2))
-        .number("half-width, %", |pair| fixed(quantile(&pair.speed.half_widths, 0.5), 2))
+        .number("drops", |pair| pair.k.count().to_string())
+        .number("speed: 95th, %", |pair| optional_fixed(Some(quantile(&pair.speed.errors, 0.95)), 2))
+        .number("half-width, %", |pair| optional_fixed(Some(quantile(&pair.speed.half_widths, 0.5)), 2))
         .number("held", |pair| pair.speed.held())
-        .number("k: 95th", |pair| fixed(quantile(&pair.k.errors, 0.95), 4))
+        .number("k: 95th", |pair| optional_fixed(Some(quantile(&pair.k.errors, 0.95)), 4))
         .number("held", |pair| pair.k.held())
         .number("changes the speed by, half-widths: 95th", |pair| {
             optional_fixed((pair.taken != pair.said).then(|| quantile(&pair.changes, 0.95)), 2)

@@ -44,7 +44,7 @@ fn document(campaign: &Campaign) -> ReportDocument {
         chapter("What keeps undamaged scenes from passing", codes(&undamaged));
         let [taken, beside] = rungs(campaign);
         chapter("Rungs of the reconstruction", taken);
-        chapter("What a higher rung would change", beside);
+        chapter("What other rungs would change", beside);
         chapter("Drops drawn and left out", redraws(&undamaged));
     }
     if !sound.0.is_empty() {

@@ -100,7 +100,9 @@ impl DamageKind {
     pub(super) fn grown(&self, plan: &DropPlan, size: f64) -> (DrawnDrop, SyntheticRecording) {
         let mut plan = plan.clone();
         harder::harden(self.name, &mut plan, size);
-        let mut drop = plan.draw_as(&self.wish(size));
+        let wish = self.wish(size);
+        plan.contact = wish.contact.unwrap_or(plan.contact);
+        let mut drop = plan.draw_with(|scene, stated, chance| wish.equip(scene, stated, chance));
         let recording = self.strike(&mut drop, size);
         (drop, recording)
     }

@@ -1,13 +1,34 @@
 //! A kind of drop to the scene that has it: what the cask, its contents, its ends and its fall do, and what is stated of that.
 
 use super::super::chance::Chance;
-use super::super::data::{LooseMass, Scene, slowed};
-use super::super::drawn::LEAST_FRICTION;
+use super::super::data::{LooseMass, Scene, SceneChannel, slowed};
+use super::super::drawn::{LEAST_FRICTION, cask_file};
 use super::super::synth;
 use super::Wish;
-use crate::data::{Cask, CaskFile, Contact, Drop, first_arm_m};
+use crate::data::{Axis, Cask, CaskFile, Contact, Drop, first_arm_m};
 
 impl Wish {
+    /// A sound drop as the damage needs it.
+    pub(super) fn equip(&self, scene: &mut Scene, stated: &mut CaskFile, chance: &mut Chance) {
+        if self.rest == Some(true) {
+            (scene.rest, scene.before_s) = (true, scene.fall_s() + 0.2);
+        }
+        let first = scene.channels[0].clone();
+        let beside = |name: &str, axis| SceneChannel {
+            name: name.to_owned(),
+            axis,
+            position_m: 3.0 * first.position_m,
+            ..first.clone()
+        };
+        scene.channels.extend(self.third_channel.then(|| beside("A3", Axis::Transverse)));
+        scene.channels.extend((self.axial == Some(true)).then(|| beside("A5", Axis::Axial)));
+        if scene.contact == Contact::Unknown {
+            let defaults = vec!["contact.friction".to_owned()];
+            *stated = cask_file(scene.cask.clone(), scene.drop, scene.contact, defaults);
+        }
+        self.fulfil(scene, stated, chance);
+    }
+
     /// Makes a scene and what is stated of it, both still without channels, those of the kind; one that is of something else does nothing.
     pub(in super::super) fn fulfil(&self, scene: &mut Scene, stated: &mut CaskFile, chance: &mut Chance) {
         let Self { kind, size, .. } = *self;

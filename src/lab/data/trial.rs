@@ -163,6 +163,8 @@ pub struct TrialMachine {
     pub cores: usize,
     /// Operating system and architecture.
     pub system: String,
+    /// SHA-256 of the program's file; empty where it cannot be read.
+    pub program_sha256: String,
     /// When the trial began, in universal time.
     pub when: String,
     /// Whether the program was built with optimisation; without it times say nothing.

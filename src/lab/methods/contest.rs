@@ -73,7 +73,7 @@ impl<C: Sync, O> Contest<C, O> {
         };
         let point = |(i, (method, time_ns)): (usize, (&Method<C, O>, [f64; 3]))| {
             let error = |case: &C| (method.run)(case).map_or(missing, |outcome| (self.error)(case, outcome));
-            TrialPoint {
+            let words = TrialPoint {
                 family: self.family.to_owned(),
                 method: method.name.clone(),
                 class: class.to_owned(),
@@ -81,19 +81,24 @@ impl<C: Sync, O> Contest<C, O> {
                 error_unit: self.error_unit.to_owned(),
                 time_per: time_per.to_owned(),
                 matters: self.matters,
-                ..measured(cases.par_iter().map(error).collect(), time_ns.map(|ns| ns / as_f64(parts)))
-            }
+                ..TrialPoint::default()
+            };
+            measured(words, cases.par_iter().map(error).collect(), time_ns.map(|ns| ns / as_f64(parts)))
         };
         self.methods.iter().zip(times_ns).enumerate().map(point).collect()
     }
 }
 
-/// A point of the errors of cases and the quartiles of a time, its words still to be given.
-pub(super) fn measured(errors: Vec<f64>, [lower_ns, time_ns, upper_ns]: [f64; 3]) -> TrialPoint {
+/// A point with these words, of the errors of cases and the quartiles of a time.
+pub(super) fn measured(
+    words: TrialPoint,
+    errors: Vec<f64>,
+    [lower_ns, time_ns, upper_ns]: [f64; 3],
+) -> TrialPoint {
     let cases = u32::try_from(errors.len()).unwrap_or(u32::MAX);
     let [median_error, p95_error] = median_and_p95(errors.clone());
     let time_quartiles_ns = [lower_ns, upper_ns];
-    TrialPoint { median_error, p95_error, time_ns, time_quartiles_ns, cases, errors, ..TrialPoint::default() }
+    TrialPoint { median_error, p95_error, time_ns, time_quartiles_ns, cases, errors, ..words }
 }
 
 /// What all classes together are called.
@@ -101,51 +106,26 @@ pub const ALL_CLASSES: &str = "all";
 
 /// Points of a family with one more for each method: of all its cases, in the median of its times.
 pub(super) fn with_pooled(mut points: Vec<TrialPoint>) -> Vec<TrialPoint> {
-    let mut methods: Vec<String> = Vec::new();
-    points.iter().for_each(|p| {
-        if !methods.contains(&p.method) {
-            methods.push(p.method.clone())
-        }
-    });
-    for method in methods {
-        let of: Vec<&TrialPoint> = points.iter().filter(|p| p.method == method).collect();
-        let errors = of.iter().flat_map(|p| p.errors.iter().copied()).collect();
-        let middle = |of_point: fn(&TrialPoint) -> f64| {
-            robust::median(&mut of.iter().map(|p| of_point(p)).collect::<Vec<_>>())
+    let Some(class) = points.first().map(|p| p.class.clone()) else { return points };
+    let methods: Vec<TrialPoint> = points.iter().filter(|p| p.class == class).cloned().collect();
+    for words in methods {
+        let of: Vec<&TrialPoint> = points.iter().filter(|p| p.method == words.method).collect();
+        let middle = |number: fn(&TrialPoint) -> f64| {
+            robust::median(&mut of.iter().map(|p| number(p)).collect::<Vec<_>>())
+        };
+        let held: Vec<f64> = of.iter().filter_map(|p| p.held).collect();
+        let all = TrialPoint {
+            class: ALL_CLASSES.to_owned(),
+            missing: of.iter().map(|p| p.missing).sum(),
+            promised: words.promised.map(|_| middle(|p| p.promised.unwrap_or(f64::NAN))),
+            held: words.held.map(|_| held.iter().sum::<f64>() / as_f64(held.len())),
+            ..words
         };
         let times_ns =
             [middle(|p| p.time_quartiles_ns[0]), middle(|p| p.time_ns), middle(|p| p.time_quartiles_ns[1])];
-        let missing = of.iter().map(|p| p.missing).sum();
-        let stated = of.iter().filter_map(|p| p.promised.zip(p.held));
-        let (mut promised, held): (Vec<f64>, Vec<f64>) = stated.unzip();
-        let is_stated = !held.is_empty();
-        let all = TrialPoint {
-            class: ALL_CLASSES.to_owned(),
-            missing,
-            promised: is_stated.then(|| robust::median(&mut promised)),
-            held: is_stated.then(|| held.iter().sum::<f64>() / as_f64(held.len())),
-            ..measured(errors, times_ns)
-        };
-        let words = of[0].clone();
-        points.push(TrialPoint {
-            family: words.family,
-            method,
-            is_default: words.is_default,
-            error_unit: words.error_unit,
-            time_per: words.time_per,
-            matters: words.matters,
-            ..all
-        });
+        points.push(measured(all, of.iter().flat_map(|p| p.errors.iter().copied()).collect(), times_ns));
     }
     points
-}
-
-/// Largest difference of two curves over the peak of the second.
-pub(super) fn worst_of_peak(made: &[f64], truth: &[f64]) -> f64 {
-    let peak = truth.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
-    let off = made.iter().zip(truth).map(|(made, truth)| (made - truth).abs());
-    let worst = off.fold(0.0, |worst, off| if off.is_nan() { DIVERGED } else { off.max(worst) });
-    worst / peak.max(f64::MIN_POSITIVE)
 }
 
 /// Median and 95th percentile, each that of a case; what is no number counts as diverged.

@@ -1,7 +1,6 @@
 //! The ways to continue a record beyond its ends to what they do to the ends.
 
 use super::contest::{Contest, Method};
-use super::filters::state_variable;
 use crate::lab::chance::Chance;
 use crate::lab::data::{TrialPoint, TrialRequest};
 use crate::numerics::as_f64;
@@ -38,8 +37,8 @@ impl CutRecord {
             let on_slope = |(i, x): (usize, &f64)| x + slope * (as_f64(i) - 0.5 * as_f64(RECORD));
             whole.iter().enumerate().map(on_slope).skip(BEYOND).take(RECORD).collect()
         };
-        // The slope is a line: it passes the filter as it is, and the reference's rest at its own ends would not let it.
-        Self { samples: cut(&noise), truth: cut(&state_variable(gain(), &noise)) }
+        // The slope is a line: it passes the filter as it is.
+        Self { samples: cut(&noise), truth: cut(&not_continued(&noise)) }
     }
 
     /// Filtered, its ends continued by `pad` samples that `beyond` makes of the end sample and the one as far inside.
@@ -55,6 +54,13 @@ impl CutRecord {
         let square: f64 = ends.map(|i| (made[i] - self.truth[i]).powi(2)).sum();
         (square / as_f64(2 * END)).sqrt() / own_noise()
     }
+}
+
+/// Both passes, started in the steady state of the end samples.
+fn not_continued(samples: &[f64]) -> Vec<f64> {
+    let mut work = samples.to_vec();
+    forward_and_back(&StateVariable::new(gain(), SQRT_2), &mut work);
+    work
 }
 
 /// g = tan(π f/f_s).
@@ -81,7 +87,7 @@ fn contest() -> Contest<CutRecord, Vec<f64>> {
             Method::new("odd, 9 samples", |record: &CutRecord| {
                 Some(record.continued(NINE, |end, x| 2.0 * end - x))
             }),
-            Method::new("none", |record: &CutRecord| Some(state_variable(gain(), &record.samples))),
+            Method::new("none", |record: &CutRecord| Some(not_continued(&record.samples))),
         ],
         error: |record, made| record.error(&made),
     }

@@ -1,6 +1,6 @@
 """CSV recordings to slap-down speed and k as in a notebook: filter forward and back, integrate, read off.
 
-Lines of standard input name a recording and the impact velocity, m/s, between them a tab. Each gives a line: seconds from
+Lines of the file that is named say a recording and the impact velocity, m/s, between them a tab. Each gives a line: seconds from
 file to answer, speed, k; "nan" where there is none. Imports are not timed.
 """
 
@@ -25,7 +25,7 @@ def read_off(path, v0):
     return -second[foot], first[left:foot].mean() / v0
 
 
-for line in sys.stdin:
+for line in open(sys.argv[1]):
     path, v0 = line.rstrip("\n").split("\t")
     begun = time.perf_counter()
     try:

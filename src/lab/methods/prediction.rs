@@ -95,7 +95,7 @@ fn contest() -> Contest<StiffDrop, f64> {
     Contest {
         family: FAMILY,
         error_unit: "% of the slap-down speed",
-        matters: 0.1,
+        matters: 1.0,
         samples: None,
         methods,
         error: |drop, speed_m_s| 100.0 * (speed_m_s / drop.speed_m_s - 1.0).abs(),

@@ -3,6 +3,8 @@
 use crate::analysis::analyze;
 use crate::data::{DropResult, Estimate};
 use crate::ingest;
+use crate::ingest::cask_file::section::Kind;
+use crate::ingest::cask_file::{self, CaskFileError, no_cask_file};
 use crate::lab::campaign::written;
 use crate::lab::data::TrialLimit;
 use serde::Deserialize;
@@ -12,39 +14,28 @@ use std::path::{Path, PathBuf};
 /// What a folder of reference recordings holds besides them.
 const NAME: &str = "reference.toml";
 
-/// Each file of `fixtures` by its name.
+/// What stands in it.
+const FORM: &str = "a table a recording: [\"drop7.mcap\"], in it cask = \"drop7.toml\", verdict = \"pass\", findings = [\"clipped\"], \
+                    k = 0.51 or k = { value = 0.51, within = 0.02 }, slap_down_speed_m_s, angular_velocity_rad_s, flight_time_s, \
+                    impact_velocity_m_s, predicted_speed_m_s";
+
+/// Recordings of `fixtures` and their cask files by their names.
 macro_rules! fixtures {
-    ($($name:literal),* $(,)?) => {
-        [$(($name, include_bytes!(concat!("../../../fixtures/", $name)).as_slice())),*]
+    ($($stem:literal $ending:literal),*) => {
+        [$(
+            (concat!($stem, $ending), include_bytes!(concat!("../../../fixtures/", $stem, $ending)).as_slice()),
+            (concat!($stem, ".toml"), include_bytes!(concat!("../../../fixtures/", $stem, ".toml")).as_slice()),
+        )*]
     };
 }
 
-/// Small recordings that another program simulated.
-const OWN: [(&str, &[u8]); 23] = fixtures![
-    "reference.toml",
-    "anf10-plain.csv",
-    "anf10-plain.toml",
-    "anf10-protobuf.mcap",
-    "anf10-protobuf.toml",
-    "anf18-german.csv",
-    "anf18-german.toml",
-    "anf18-json.mcap",
-    "anf18-json.toml",
-    "damaged-clipped.h5",
-    "damaged-clipped.toml",
-    "damaged-ends-early.csv",
-    "damaged-ends-early.toml",
-    "damaged-gap.mcap",
-    "damaged-gap.toml",
-    "damaged-truncated.mcap",
-    "damaged-truncated.toml",
-    "damaged-zero-shift.h5",
-    "damaged-zero-shift.toml",
-    "esbb-imu.mcap",
-    "esbb-imu.toml",
-    "vhlw-rest.h5",
-    "vhlw-rest.toml",
+/// Small recordings that another program simulated, and what is expected of them.
+const OWN: [(&str, &[u8]); 22] = fixtures![
+    "anf10-plain" ".csv", "anf10-protobuf" ".mcap", "anf18-german" ".csv", "anf18-json" ".mcap",
+    "damaged-clipped" ".h5", "damaged-ends-early" ".csv", "damaged-gap" ".mcap", "damaged-truncated" ".mcap",
+    "damaged-zero-shift" ".h5", "esbb-imu" ".mcap", "vhlw-rest" ".h5"
 ];
+const OWN_EXPECTED: &str = include_str!("../../../fixtures/reference.toml");
 
 /// What is expected of a recording, as `reference.toml` says it.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -78,37 +69,16 @@ pub struct References {
     expected: BTreeMap<PathBuf, Expected>,
 }
 
-/// Why a folder of reference recordings cannot be used.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum ReferenceError {
-    /// `reference.toml` is not to be read.
-    #[error("{path} cannot be read: {problem}")]
-    #[diagnostic(help("name with --reference a folder that holds {NAME} and the recordings that it names"))]
-    Unreadable { path: String, problem: String },
-    /// It says what nobody knows.
-    #[error("{path}: {problem}")]
-    #[diagnostic(help(
-        "a table a recording: [\"drop7.mcap\"], in it cask = \"drop7.toml\", verdict = \"pass\", findings = [\"clipped\"], \
-         k = 0.51 or k = {{ value = 0.51, within = 0.02 }}, slap_down_speed_m_s, angular_velocity_rad_s, flight_time_s, \
-         impact_velocity_m_s, predicted_speed_m_s"
-    ))]
-    Wrong { path: String, problem: String },
-}
-
 impl References {
     /// Those of a folder.
     ///
     /// # Errors
     /// No `reference.toml`, one that says what nobody knows, a recording or cask file that is not there.
-    pub fn of(folder: &Path) -> Result<Self, ReferenceError> {
+    pub fn of(folder: &Path) -> Result<Self, CaskFileError> {
         let path = folder.join(NAME);
-        let shown = path.display().to_string();
-        let unreadable = |error: std::io::Error| ReferenceError::Unreadable {
-            path: shown.clone(),
-            problem: error.to_string(),
-        };
-        let wrong = |problem: String| ReferenceError::Wrong { path: shown.clone(), problem };
-        let text = std::fs::read_to_string(&path).map_err(unreadable)?;
+        let wrong = |problem: String| no_cask_file(&path, &problem, FORM);
+        let bytes = cask_file::read(&path, &Kind { name: "a reference file", root: &[], tables: &[] })?;
+        let text = String::from_utf8(bytes).map_err(|_| wrong("this is not UTF-8 text".to_owned()))?;
         let expected: BTreeMap<PathBuf, Expected> =
             toml::from_str(&text).map_err(|error| wrong(error.to_string().trim_end().to_owned()))?;
         if expected.is_empty() {
@@ -138,16 +108,31 @@ impl References {
             Ok(analyze(&recording.map_err(|error| error.to_string())?, &file).result)
         });
         let mut limits = vec![words(name, expected, analyzed.as_ref())];
-        for (quantity, expected, stated, unit) in quantities(expected) {
+        let speed_m_s = |value, u95| Estimate::new(value, u95, "m/s");
+        let result = analyzed.as_ref().ok();
+        let of = |stated: fn(&DropResult) -> Option<Estimate>| result.and_then(stated);
+        let predicted =
+            result.and_then(|r| r.comparison.as_ref()).map(|c| speed_m_s(c.predicted, c.predicted_u95));
+        for (quantity, expected, found) in [
+            ("impact_velocity_m_s", expected.impact_velocity_m_s, of(|r| r.first_impact.impact_velocity)),
+            ("k", expected.k, of(|r| r.k)),
+            (
+                "angular_velocity_rad_s",
+                expected.angular_velocity_rad_s,
+                of(|r| r.first_impact.angular_velocity),
+            ),
+            ("flight_time_s", expected.flight_time_s, of(|r| r.slap_down.flight_time)),
+            ("slap_down_speed_m_s", expected.slap_down_speed_m_s, of(|r| r.slap_down.speed)),
+            ("predicted_speed_m_s", expected.predicted_speed_m_s, predicted),
+        ] {
             let Some(expected) = expected else { continue };
-            let found = analyzed.as_ref().ok().and_then(stated);
             let (value, within) = match expected {
                 ExpectedValue::Held(value) => (value, found.map_or(f64::NAN, |found| found.u95)),
                 ExpectedValue::Near { value, within } => (value, within),
             };
             limits.push(TrialLimit {
                 name: format!("{}: {quantity}", name.display()),
-                unit: unit.to_owned(),
+                unit: found.map_or_else(String::new, |found| found.unit.to_owned()),
                 value: found.map(|found| found.value),
                 least: Some(value - within),
                 most: Some(value + within),
@@ -162,24 +147,6 @@ impl References {
 /// What the cask file of a recording is called.
 fn cask_of(name: &Path, expected: &Expected) -> PathBuf {
     expected.cask.clone().unwrap_or_else(|| name.with_extension("toml"))
-}
-
-type Stated = fn(&DropResult) -> Option<Estimate>;
-
-/// A quantity by its name, as it is expected and as it is stated.
-fn quantities(of: &Expected) -> [(&'static str, Option<ExpectedValue>, Stated, &'static str); 6] {
-    let predicted: Stated = |r| {
-        let comparison = r.comparison.as_ref()?;
-        Some(Estimate::new(comparison.predicted, comparison.predicted_u95, "m/s"))
-    };
-    [
-        ("impact_velocity_m_s", of.impact_velocity_m_s, |r| r.first_impact.impact_velocity, "m/s"),
-        ("k", of.k, |r| r.k, "1"),
-        ("angular_velocity_rad_s", of.angular_velocity_rad_s, |r| r.first_impact.angular_velocity, "rad/s"),
-        ("flight_time_s", of.flight_time_s, |r| r.slap_down.flight_time, "s"),
-        ("slap_down_speed_m_s", of.slap_down_speed_m_s, |r| r.slap_down.speed, "m/s"),
-        ("predicted_speed_m_s", of.predicted_speed_m_s, predicted, "m/s"),
-    ]
 }
 
 /// Verdict and findings, or why the recording is refused.
@@ -218,8 +185,59 @@ fn words(name: &Path, expected: &Expected, analyzed: Result<&DropResult, &String
 /// How many expected values of the program's own recordings are not given.
 pub(super) fn own() -> Option<Vec<TrialLimit>> {
     let folder = tempfile::tempdir().ok()?;
-    for (name, bytes) in OWN {
+    for (name, bytes) in OWN.into_iter().chain([(NAME, OWN_EXPECTED.as_bytes())]) {
         std::fs::write(folder.path().join(name), bytes).ok()?;
     }
     Some(References::of(folder.path()).ok()?.limits())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a folder says that holds one recording of the fixtures and this `reference.toml`.
+    fn folder(reference: &str) -> Result<Vec<TrialLimit>, String> {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        for name in ["anf10-plain.csv", "anf10-plain.toml"] {
+            let bytes = OWN.iter().find(|file| file.0 == name).expect("of our own").1;
+            std::fs::write(folder.path().join(name), bytes).expect("written");
+        }
+        std::fs::write(folder.path().join(NAME), reference).expect("written");
+        References::of(folder.path()).map(|references| references.limits()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn expected_values_are_held_against_the_interval_or_their_own_distance() {
+        let kept = |text: &str| {
+            let limits = folder(&format!("[\"anf10-plain.csv\"]\n{text}")).expect("a folder");
+            limits.iter().map(TrialLimit::is_kept).collect::<Vec<_>>()
+        };
+        // The truth of simulate.py is 13.991 m/s and 0.5073.
+        assert_eq!(kept("verdict = \"pass\"\nslap_down_speed_m_s = 13.99\nk = 0.507"), [true; 3]);
+        assert_eq!(kept("k = 0.6"), [true, false]);
+        assert_eq!(kept("k = { value = 0.6, within = 0.2 }"), [true, true]);
+        assert_eq!(kept("verdict = \"fail\""), [false]);
+        assert_eq!(kept("findings = [\"clipped\"]"), [false]);
+    }
+
+    #[test]
+    fn what_nobody_knows_is_refused_with_its_place() {
+        for (text, word) in [
+            ("", "no recording"),
+            ("[\"anf10-plain.csv\"]\nspeed = 3", "line 2"),
+            ("[\"anf10-plain.csv\"]\nk = \"half\"", "line 2"),
+            ("[\"drop.csv\"]", "no file drop.csv"),
+            ("[\"anf10-plain.csv\"]\ncask = \"x.toml\"", "no file x.toml"),
+        ] {
+            let message = folder(text).expect_err(text);
+            assert!(message.contains(word) && message.contains(NAME), "{message}");
+        }
+        assert!(References::of(Path::new("nowhere")).is_err());
+    }
+
+    #[test]
+    fn our_own_are_whole() {
+        let expected: BTreeMap<PathBuf, Expected> = toml::from_str(OWN_EXPECTED).expect("whole");
+        assert_eq!(2 * expected.len(), OWN.len());
+    }
 }

@@ -20,9 +20,8 @@ use crate::numerics::robust;
 use crate::{events, fit, ingest};
 use rayon::prelude::*;
 use std::hint::black_box;
-use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::time::Instant;
 
 /// Drops of one kind, and what is wrong with them: a row of the table of damages, and its size.
@@ -116,7 +115,9 @@ fn filter_first(class: f64, recording: &Recording, file: &CaskFile) -> Option<An
         let mut force = channel.force_m_s2(0, channel.samples.len());
         let still = force.len().min(2000);
         let offset_m_s2 = force[..still].iter().sum::<f64>() / as_f64(still);
-        force.iter_mut().for_each(|f| *f -= offset_m_s2);
+        for f in &mut force {
+            *f -= offset_m_s2;
+        }
         let smooth = ZeroPhaseLowPass::with_cfc(class, channel.sample_rate_hz)?.apply(&force);
         let velocity = running_integral(&smooth, 1.0 / channel.sample_rate_hz);
         Some((smooth, velocity))
@@ -212,7 +213,7 @@ pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {
             worked.timed(|| read(drop).and_then(|(recording, file)| way(&recording, &file)));
         }
     }
-    worked.extend(in_python(&drops));
+    worked.extend(in_python(&drops, folder.path()));
     [SPEED, K].iter().flat_map(|quantity| scored(quantity, &worked, &drops)).collect()
 }
 
@@ -263,21 +264,13 @@ fn filed(class: &WayClass, request: &TrialRequest, folder: &Path) -> Vec<FiledDr
 }
 
 /// The same work by numpy and scipy, where there is a Python that has them.
-fn in_python(drops: &[FiledDrop]) -> Option<Worked> {
-    let mut python = Command::new("python3")
-        .args(["-c", include_str!("notebook.py")])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .ok()?;
-    let mut asked = String::new();
-    for drop in drops {
-        asked += &format!("{}\t{}\n", drop.recording.display(), drop.truth.v0);
-    }
-    let mut input = python.stdin.take()?;
-    let writing = std::thread::spawn(move || input.write_all(asked.as_bytes()).is_ok());
-    let answered = python.wait_with_output().ok().filter(|_| writing.join().is_ok_and(|wrote| wrote))?;
+fn in_python(drops: &[FiledDrop], folder: &Path) -> Option<Worked> {
+    let line = |drop: &FiledDrop| format!("{}\t{}", drop.recording.display(), drop.truth.v0);
+    let list = drops.iter().map(line).collect::<Vec<_>>().join("\n");
+    let path = folder.join("drops.txt");
+    std::fs::write(&path, list).ok()?;
+    let answered =
+        Command::new("python3").args(["-c", include_str!("notebook.py")]).arg(path).output().ok()?;
     let mut worked = Worked::named("scipy, as in a notebook", false);
     for line in String::from_utf8(answered.stdout).ok()?.lines() {
         let numbers: Vec<f64> = line.split(' ').map_while(|number| number.parse().ok()).collect();
@@ -339,7 +332,7 @@ fn scored(of: &WayQuantity, worked: &[Worked], drops: &[FiledDrop]) -> Vec<Trial
                 errors.iter().zip(&half_widths).filter(|(error, half_width)| error <= half_width).count();
             let is_any = !errors.is_empty();
             let promised = is_any.then(|| robust::median(&mut half_widths)).filter(|u| u.is_finite());
-            (is_any || way.name == READING).then(|| TrialPoint {
+            let words = TrialPoint {
                 family: of.family.to_owned(),
                 method: way.name.clone(),
                 class: class.to_owned(),
@@ -350,8 +343,10 @@ fn scored(of: &WayQuantity, worked: &[Worked], drops: &[FiledDrop]) -> Vec<Trial
                 missing: u32::try_from(said.len() - errors.len()).unwrap_or(0),
                 promised,
                 held: promised.map(|_| as_f64(held) / as_f64(errors.len())),
-                ..measured(errors, quartiles(of_class().map(|i| way.times_ns[i]).collect()))
-            })
+                ..TrialPoint::default()
+            };
+            let times_ns = quartiles(of_class().map(|i| way.times_ns[i]).collect());
+            (is_any || way.name == READING).then(|| measured(words, errors, times_ns))
         })
     };
     with_pooled(CLASSES.iter().map(|class| class.drops.name).flat_map(of_class).collect())

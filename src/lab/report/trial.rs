@@ -47,50 +47,73 @@ pub fn trial_files(trial: &Trial) -> Result<Vec<(String, Vec<u8>)>, ReportError>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::data::{TrialMachine, TrialPoint, TrialRequest};
+    use crate::lab::data::{
+        Campaign, CampaignRequest, TrialDrop, TrialFate, TrialLimit, TrialMachine, TrialMap, TrialPoint,
+        TrialRequest, TrialSize,
+    };
+    use crate::lab::methods::{ALL_CLASSES, WAYS};
 
     fn trial() -> Trial {
         let point = |method: &str, is_default: bool, error: f64, time_ns: f64| TrialPoint {
-            family: "filter".into(),
+            family: WAYS[0].into(),
             method: method.into(),
-            class: "order 2".into(),
+            class: ALL_CLASSES.into(),
             is_default,
             is_on_front: is_default,
             median_error: error,
             p95_error: 2.0 * error,
-            error_unit: "of the peak".into(),
+            error_unit: "%".into(),
             time_ns,
             time_quartiles_ns: [0.9 * time_ns, 1.1 * time_ns],
-            time_per: "sample".into(),
+            time_per: "file".into(),
             cases: 3,
+            matters: 1.0,
+            ..TrialPoint::default()
         };
+        let points = [point("as taken", true, 0.1, 1.5e7), point("by hand", false, 9.0, 5e6)];
+        let k = points.iter().map(|p| TrialPoint { family: WAYS[1].into(), ..p.clone() });
+        let drop = |fate, off| TrialDrop { fate, half_widths_off: off, is_named: true };
         let size =
-            |size, error, is_noticed| TrialSize { size, median_error: error, worst_error: error, is_noticed };
+            |size, fate, off| TrialSize { size, drops: vec![drop(TrialFate::Inside, None), drop(fate, off)] };
         let map = TrialMap {
             name: "rate".into(),
             what: "Rate".into(),
             unit: "Hz".into(),
-            error: "error".into(),
-            limit: 0.01,
+            told_by: vec![],
+            instead: "with a gauge".into(),
             sizes: vec![
-                size(100.0, Some(1e-3), true),
-                size(1e3, Some(0.1), false),
-                size(1e4, Some(1e9), true),
+                size(100.0, TrialFate::Warned, Some(1.2)),
+                size(1e3, TrialFate::Silent, Some(3.2)),
+                size(1e4, TrialFate::Refused, None),
             ],
+        };
+        let limit = TrialLimit {
+            name: "held".into(),
+            unit: "%".into(),
+            value: Some(95.0),
+            least: Some(90.0),
+            most: None,
+            reason: "Because".into(),
+            which: String::new(),
         };
         let machine = TrialMachine {
             processor: "processor".into(),
             cores: 2,
             system: "linux".into(),
+            program_sha256: "0123".into(),
+            when: "2026-11-24 12:00 UTC".into(),
             is_optimised: true,
         };
+        let request = CampaignRequest { scenes: 0, seed: 1, undamaged: true, kinds: vec![], exact: false };
         Trial {
-            schema: "dropcheck.validation/2",
+            schema: "dropcheck.validation/3",
             version: "0.1.0",
             request: TrialRequest { quick: true, seed: 1 },
             machine,
-            points: vec![point("state-variable", true, 1e-14, 8.0), point("direct form", false, 1e-9, 19.0)],
+            points: points.iter().cloned().chain(k).collect(),
             maps: vec![map],
+            campaign: Campaign { request, rows: vec![] },
+            limits: vec![limit],
         }
     }
 
@@ -105,8 +128,8 @@ mod tests {
         let files = trial_files(&trial).unwrap();
         assert!(files.iter().zip(TRIAL_NAMES).all(|(file, name)| file.0 == name && !file.1.is_empty()));
         assert_eq!(trial_files(&trial).unwrap(), files);
-        let back: serde_json::Value = serde_json::from_slice(&files[1].1).unwrap();
-        assert_eq!(back["points"][1]["method"], "direct form");
+        let back: serde_json::Value = serde_json::from_slice(&files[2].1).unwrap();
+        assert_eq!(back["points"][1]["method"], "by hand");
         let nothing = Trial { points: vec![], maps: vec![], ..trial };
         assert_eq!(trial_files(&nothing).unwrap().len(), TRIAL_NAMES.len());
     }
@@ -118,6 +141,7 @@ mod tests {
         trial.points[0].method = evil.into();
         trial.maps[0].what = evil.into();
         trial.machine.processor = evil.into();
+        trial.limits[0].which = evil.into();
         let page = page(&trial);
         assert!(!page.contains("<img") && !page.contains('\u{1b}'));
         for call in ["href=", "url(", "@import", "<script", "https://"] {
@@ -126,15 +150,17 @@ mod tests {
     }
 
     #[test]
-    fn a_beaten_default_is_named_and_a_map_says_where_it_fails() {
+    fn what_is_silent_comes_with_what_to_measure_and_a_limit_that_is_not_kept_is_named() {
         let mut trial = trial();
-        trial.points[0].is_on_front = false;
-        let page = page(&trial);
-        assert!(page.contains("off the front in: order 2"));
-        assert!(
-            trial_markdown(&trial, None).contains("| 1000 Hz | diverges | 1 of 2 |"),
-            "{}",
-            trial_markdown(&trial, None)
-        );
+        let text = page(&trial);
+        assert!(text.contains("silent from 1000, warned from 100, refused from 10000 Hz"), "{text}");
+        assert!(text.contains("with a gauge") && text.contains("ACCEPTED") && !text.contains("NOT ACCEPTED"));
+        assert!(text.contains("within 0.20 % of the speed") && text.contains("No other way is as near"));
+        for value in [Some(80.0), None, Some(f64::NAN)] {
+            trial.limits[0].value = value;
+            assert!(!trial.is_accepted());
+            let outcome = trial_outcome(&trial);
+            assert!(outcome.contains("NOT ACCEPTED") && outcome.contains("Beyond: held"), "{outcome}");
+        }
     }
 }

@@ -14,7 +14,7 @@ use crate::report::rounding;
 const PANEL: u32 = 520;
 const ROW: u32 = 25;
 /// Room for the words at either side of a row.
-const SIDES: (u32, u32) = (300, 840);
+const SIDES: (u32, u32) = (560, 660);
 /// How many times above and below what matters an error is drawn; what is beyond lies on the edge.
 const SPAN: f64 = 200.0;
 
@@ -37,6 +37,11 @@ fn unit(point: &TrialPoint) -> &str {
     }
 }
 
+/// The colour of a way by its place; rungs of the prediction are not to look like ways.
+fn way_place(index: usize, way: &TrialPoint) -> usize {
+    if way.family == WAYS[2] { index + 10 } else { index }
+}
+
 /// The look of a method by its place among its rivals.
 fn look(index: usize, at: Vec<(f64, f64)>) -> Points {
     Points::new(COLOURS[index % COLOURS.len()], PointShape::of(index), at)
@@ -57,12 +62,14 @@ fn decades(times: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
 pub(super) fn ways(trial: &Trial) -> Picture {
     let caption = "Time from file to answer, each way timed whole on the same files; below and left is better. Mark: 95th percentile of the error \
                    over all classes of drops, hollow where another way is as fast and as accurate; ring: what the program takes. Bar: from the \
-                   best class to the worst. The prediction is given the true k and the contact's length."
+                   best class to the worst. The rungs of the prediction are given the true k, and timed by themselves."
         .to_owned();
     let families: Vec<Vec<&TrialPoint>> = WAYS.iter().map(|family| pooled(trial, family)).collect();
     // The ways of the second family are those of the first.
     let legends = [("Ways", &families[0]), ("Prediction", &families[2])].map(|(title, ways)| {
-        let named = |(index, way): (usize, &&TrialPoint)| look(index, Vec::new()).named(&way.method[..]);
+        let named = |(index, way): (usize, &&TrialPoint)| {
+            look(way_place(index, way), Vec::new()).named(&way.method[..])
+        };
         let levels = if title == "Ways" {
             levels(ways, (0.0, 0.0), "what a verdict needs", "median of what is promised")
         } else {
@@ -111,13 +118,13 @@ fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
     let bar = |(index, way): (usize, &&TrialPoint)| {
         let classes = of_family().filter(|p| p.method == way.method && p.class != ALL_CLASSES && p.cases > 0);
         let points = classes.map(|p| (seconds(way), drawn(way, p.p95_error))).collect();
-        Curve { opacity: 0.6, ..Curve::new(COLOURS[index % COLOURS.len()], points) }
+        Curve { opacity: 0.6, ..Curve::new(look(way_place(index, way), Vec::new()).colour, points) }
     };
     let lines = ways.iter().enumerate().map(bar);
     let levels = levels(ways, ends, "", "").into_iter().map(|level| Curve { label: None, ..level });
     let mark = |(index, way): (usize, &&TrialPoint)| Points {
         is_hollow: !way.is_on_front,
-        ..look(index, vec![at(way)])
+        ..look(way_place(index, way), vec![at(way)])
     };
     let taken = ways.iter().filter(|p| p.is_default).map(|p| at(p)).collect();
     Some(Panel {
@@ -135,7 +142,8 @@ fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
 /// A panel a family of single methods: each method on each class.
 pub(super) fn rivals(trial: &Trial) -> Picture {
     let caption = "95th percentile of the error over the median time, each method on each class of scenes, what matters most first. Dashed: from \
-                   here on a difference matters; what lies farther off than 200 times is drawn on the edge. Ring: what the program takes."
+                   here on a difference between two methods matters; what lies farther off than 200 times is drawn on the edge. Ring: what the \
+                   program takes; above the line with its rivals, the class is hard for all."
         .to_owned();
     let families = trial.points.chunk_by(|a, b| a.family == b.family);
     let families = families.filter(|points| !WAYS.contains(&&points[0].family[..]));
@@ -184,14 +192,19 @@ const FATES: [(TrialFate, Colour, &str); 4] = [
 
 /// A row a damage, from the harmless size to the gross one; in each size a stripe a drop. What is silent comes first.
 pub(super) fn failures(trial: &Trial) -> Picture {
-    let caption = "A row a damage, its size from harmless at the left to gross at the right, in each size a stripe a drop: whether speed and k lie \
-                   inside their intervals. At the right the size from which on a drop is silent, warned of or refused, and the largest error in \
-                   half-widths of the interval."
-        .to_owned();
+    let drops = trial.maps.first().and_then(|map| map.sizes.first()).map_or(0, |size| size.drops.len());
+    let caption = format!(
+        "A row a damage with its least and greatest size, from harmless at the left to gross at the right, in each size {drops} stripes, a drop each: \
+         whether speed and k lie inside their intervals. At the right the size from which on some drop is silent, warned of or refused; then the \
+         largest error, in half-widths of the interval."
+    );
     let mut maps: Vec<&TrialMap> = trial.maps.iter().collect();
     maps.sort_by_key(|map| std::cmp::Reverse(gravest(map)));
-    let words =
-        |map: &&TrialMap| RowWords { left: map.name.clone(), right: fate_words(map), is_heading: false };
+    let words = |map: &&TrialMap| RowWords {
+        left: sizes_words(map),
+        right: format!("{}; {}", fate_words(map).trim_end_matches(&map.unit).trim_end(), largest_words(map)),
+        is_heading: false,
+    };
     let count = maps.len();
     let fill = |(fate, colour, label): (TrialFate, Colour, &str)| {
         let areas =
@@ -232,25 +245,32 @@ fn stripes(map: &TrialMap, fate: TrialFate, top: f64) -> Vec<Vec<(f64, f64)>> {
     map.sizes.iter().enumerate().flat_map(of_size).collect()
 }
 
-/// From which size on what becomes of a drop, the gravest first.
+/// From which size on what becomes of some drop, the gravest first.
 pub(super) fn fate_words(map: &TrialMap) -> String {
     let from = |(fate, word): (TrialFate, &str)| {
-        let size = map.first(fate)?;
-        Some(if map.unit.is_empty() {
-            word.to_owned()
-        } else {
-            format!("{word} from {}", rounding::plain(size.size, 2))
-        })
+        let size = rounding::plain(map.first(fate)?.size, 2);
+        Some(if map.unit.is_empty() { word.to_owned() } else { format!("{word} from {size}") })
     };
     let named =
         [(TrialFate::Silent, "silent"), (TrialFate::Warned, "warned"), (TrialFate::Refused, "refused")];
     let words: Vec<String> = named.into_iter().filter_map(from).collect();
-    let words =
-        if words.is_empty() { "inside".to_owned() } else { format!("{} {}", words.join(", "), map.unit) };
+    if words.is_empty() { "inside".to_owned() } else { format!("{} {}", words.join(", "), map.unit) }
+}
+
+/// The largest error, in half-widths.
+pub(super) fn largest_words(map: &TrialMap) -> String {
     let off = map.sizes.iter().flat_map(|size| &size.drops).filter_map(|drop| drop.half_widths_off);
-    let largest = match off.fold(0.0, f64::max) {
-        off if off > 99.0 => "> 99".to_owned(),
-        off => rounding::significant(off, 2),
-    };
-    format!("{}; {largest}", words.trim_end())
+    match off.reduce(f64::max) {
+        Some(off) if off > 99.0 => "> 99".to_owned(),
+        off => rounding::optional_fixed(off, 1),
+    }
+}
+
+/// The damage with its sizes: "hum, 0.1 to 1000 g".
+fn sizes_words(map: &TrialMap) -> String {
+    let [first, last] = [map.sizes.first(), map.sizes.last()].map(|size| size.map_or(0.0, |size| size.size));
+    if map.unit.is_empty() {
+        return map.name.clone();
+    }
+    format!("{}, {} to {} {}", map.name, rounding::plain(first, 4), rounding::plain(last, 4), map.unit)
 }
