@@ -1,6 +1,8 @@
 //! A first impact to the flight after it: separation, slap-down, and the motion between them.
 
 use super::impact::Impact;
+use super::impacts::{self, Tabulated};
+use super::second::SecondImpact;
 use super::settle;
 use super::setup::sticking;
 use crate::data::{
@@ -15,8 +17,8 @@ const UNCERTAIN_PULSE: f64 = 0.1;
 
 /// A friction that nobody states lies between none and what sticking needs, and more than that does as much: in the middle of what 0.1 and
 /// more give, as a share of what sticking needs, and with a standard uncertainty that takes both ends in.
-const MIDDLE: f64 = 0.6;
-const U_UNKNOWN: f64 = 0.33;
+pub(super) const MIDDLE: f64 = 0.6;
+pub(super) const U_UNKNOWN: f64 = 0.33;
 
 /// The flight, and what it says of the motion.
 pub(super) struct Flown {
@@ -25,6 +27,7 @@ pub(super) struct Flown {
     pub motion: Motion,
     pub quantities: Quantities,
     pub reconstruction: ReconstructionChoice,
+    pub tabulated: Option<Tabulated>,
 }
 
 /// The events as far as they are found, and the flight where the motion could be had; what prevents it goes to the findings.
@@ -109,7 +112,7 @@ fn moved(
         from_s: flight.from_s,
         to_s: flight.to_s,
         drift: flight.drift,
-        angular_velocity_rad_s: motion::rotation_rad_s(signals, &flight),
+        angular_velocity_rad_s: motion::turned_rad_s(signals, &flight, file.drop.angular_velocity_rad_s),
     };
     let plain = motion::mean_of_flight(integrated, &flight, &window, setup.cog_m);
     let cask = &file.cask;
@@ -130,9 +133,12 @@ fn moved(
     let reading = motion::read_channels(integrated, events, &setup);
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(integrated, flight, events, setup);
     let taken = fit::ladder(&measured, plain.as_ref(), reading, &moved)?;
-    let motion = motion::reconstruct(integrated, &taken.flight, &taken.events, &taken.setup)?;
+    let fit::Inputs { flight: moved, events: times, setup: as_taken, .. } = &taken.taken;
+    let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
+    let second = SecondImpact::find(file, &integrated.signals, &flight, (&motion, as_taken), &measured);
+    let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref());
     let fit::RungTaken { quantities, choice: reconstruction, .. } = taken;
-    Some(Flown { flight, setup, motion, quantities, reconstruction })
+    Some(Flown { flight, setup, motion, quantities, reconstruction, tabulated })
 }
 
 /// How the axial velocity is had: measured, or by a friction that the cask file states or leaves open.

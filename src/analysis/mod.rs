@@ -3,10 +3,12 @@
 mod again;
 mod flight;
 mod impact;
+mod impacts;
 mod measured;
 pub mod one_end;
 mod outcome;
 mod reached;
+mod second;
 pub mod settle;
 mod setup;
 
@@ -77,7 +79,11 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
         None => Reached::Impact,
         Some(flown) => match Measured::of(&flown, &impact, &events, file, &mut findings) {
             None => Reached::Flown(Box::new(flown)),
-            Some(measured) => Reached::Measured(Box::new(flown), measured),
+            Some(measured) => {
+                let untold = flown.tabulated.as_ref().and_then(|t| t.untold(impact.recorded(), &events));
+                findings.extend(untold);
+                Reached::Measured(Box::new(flown), measured)
+            }
         },
     };
     if !matches!(reached, Reached::Measured(..)) {

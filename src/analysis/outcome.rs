@@ -1,11 +1,12 @@
 //! What the stages found to one [`Analysis`].
 
 use super::impact::Impact;
+use super::impacts;
 use super::reached::Reached;
 use super::setup::sticking;
 use crate::data::{
-    Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, DropResult, Estimate, Events, Finding,
-    FirstImpact, Input, Prediction, Quantities, Recording, Setting, Setup, Signal, SlapDown,
+    Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, DropResult, End, Estimate, Events, Finding,
+    FirstImpact, ImpactTable, Input, Prediction, Quantities, Recording, Setting, Setup, Signal, SlapDown,
 };
 use crate::numerics::reduce::peak;
 use crate::{compare, fit, judge, motion, predict};
@@ -57,6 +58,12 @@ pub(super) fn of(
     }
     let mut curves = Curves { channels: curves, motion: None };
     let mut result = result(recording, file, findings, (channels, events), quantities);
+    let tabulated = match &reached {
+        Reached::Measured(flown, _) => flown.tabulated.as_ref(),
+        Reached::Impact | Reached::Flown(_) => None,
+    };
+    result.impacts = impacts::of_result(file, signals, &result, tabulated);
+    result.amplification = impacts::amplification(&result);
     result.settings.splice(0..0, of_curves(file, &events, effect));
     match reached {
         Reached::Impact => {}
@@ -117,6 +124,8 @@ fn result(
             second_end_height: quantities.and_then(|q| q.second_end_height),
         },
         k: quantities.map(|q| q.k),
+        amplification: None,
+        impacts: [End::First, End::Second].map(ImpactTable::unknown),
         reconstruction: None,
         model: None,
         predictions: predictions(file, quantities),

@@ -7,6 +7,7 @@ use super::curves::Curves;
 use super::estimate::Estimate;
 use super::finding::Finding;
 use super::flight::FlightFit;
+use super::impacts::ImpactTable;
 use super::ladder::Rung;
 use super::prediction::{BodyModel, Prediction};
 use super::reconstruction::ReconstructionChoice;
@@ -220,6 +221,10 @@ pub struct DropResult {
     pub slap_down: SlapDown,
     /// Effective coefficient of restitution.
     pub k: Option<Estimate>,
+    /// Slap-down speed over impact velocity.
+    pub amplification: Option<Estimate>,
+    /// The first impact and the second, as test reports tabulate them.
+    pub impacts: [ImpactTable; 2],
     /// How the motion was had.
     pub reconstruction: Option<ReconstructionChoice>,
     /// Which analytical model explains the measurement.
