@@ -7,7 +7,7 @@ use crate::data::{
     ForceOverCrush, ImpactTable, Motion, RigidBodyDeceleration, Signal,
 };
 use crate::fit::{COVERAGE, Inputs, RungTaken};
-use crate::motion::{self, ContactCourse, Integrated, largest};
+use crate::motion::{self, ContactCourse, ForceCourse, Integrated, largest};
 
 /// Numbers of one contact, in this order.
 const COUNT: usize = 15;
@@ -26,6 +26,13 @@ const AT_COG: usize = 11;
 const AT_END: usize = 12;
 const TURNED: usize = 13;
 const RATIO: usize = 14;
+
+/// Numbers that follow the course of the force, not only what it gives in all.
+const OF_COURSE: [usize; 4] = [CRUSH, FORCE, AT_COG, AT_END];
+/// Standard uncertainty of these: so much of what other courses make of them, and of themselves for ringing as large as the velocity gained. With
+/// it the intervals hold 93 to 97 of 100 simulated drops (docs/uncertainty.md).
+const OTHER_COURSES: [(ForceCourse, f64); 2] = [(ForceCourse::Translation, 0.25), (ForceCourse::HalfSine, 0.35)];
+const RINGING_SHARE: f64 = 0.07;
 
 /// A rotation that is off the impulse of one contact at R by so many standard uncertainties is that of two, or of none.
 const MISSED_U: f64 = 3.5;
@@ -102,15 +109,15 @@ pub(super) fn tabulated(
     let mass_kg = file.cask.mass_kg;
     let stated_m2 = file.cask.inertia_kg_m2 / mass_kg;
     let mirrored = second.map(|second| (second, second.integrated()));
-    let courses = |inputs: &Inputs, by_u: &[f64]| -> Option<(Course, Option<Course>)> {
+    let courses = |inputs: &Inputs, by_u: &[f64], by: ForceCourse| -> Option<(Course, Option<Course>)> {
         let inertia_m2 = inputs.inertia_m2.unwrap_or(stated_m2);
         let (motion, states) =
             motion::with_states(integrated, &inputs.flight, &inputs.events, &inputs.setup)?;
-        let contact = ContactCourse::of(&states, &motion, &inputs.setup, inertia_m2)?;
+        let contact = ContactCourse::of((&motion, &states), &inputs.setup, inertia_m2, by)?;
         let of_second = match &mirrored {
             None => None,
             Some((second, integrated)) => {
-                let (motion, contact) = second.course(integrated, (inputs, &motion), by_u, inertia_m2)?;
+                let (motion, contact) = second.course(integrated, (inputs, &motion), by_u, (inertia_m2, by))?;
                 Some(Course { motion, contact })
             }
         };
@@ -119,7 +126,7 @@ pub(super) fn tabulated(
     let cutoff_hz = low_pass(file).1;
     let numbers = |inputs: &Inputs, by_u: &[f64]| -> Option<Vec<f64>> {
         let inertia_m2 = inputs.inertia_m2.unwrap_or(stated_m2);
-        let (first, second) = courses(inputs, by_u)?;
+        let (first, second) = courses(inputs, by_u, ForceCourse::Rotation)?;
         let [before_m2_s2, _] = first.contact.kinetic_m2_s2(inertia_m2);
         let gravity_m_s2 = inputs.setup.gravity_m_s2;
         let of = |course: &Course| {
@@ -131,8 +138,27 @@ pub(super) fn tabulated(
         Some([of(&first), second.as_ref().map(of).unwrap_or_default()].concat())
     };
     let further = second.map_or(0, SecondImpact::further);
-    let spread = taken.spread(further, &numbers)?;
-    let (first, second_course) = courses(&taken.taken, &vec![0.0; further])?;
+    let mut spread = taken.spread(further, &numbers)?;
+    let (first, second_course) = courses(&taken.taken, &vec![0.0; further], ForceCourse::Rotation)?;
+    // What else could have told the course of the force says how well that is known.
+    let mut by_others = Vec::new();
+    for (by, share) in OTHER_COURSES {
+        let (first, second) = courses(&taken.taken, &vec![0.0; further], by)?;
+        by_others.push((share, [Some(first), second].map(|c| c.map(|c| read_off(&c, stated_m2, 0.0, cutoff_hz)))));
+    }
+    let ringing_m_s = [Some(&taken.taken.flight), second.map(|s| &s.flight)]
+        .map(|f| f.map_or(0.0, |f| f.modes.iter().map(|m| m.amplitude_m_s).sum::<f64>()));
+    for end in 0..2 {
+        let Some(numbers) = spread.get_mut(end * (COUNT + 1)..(end + 1) * (COUNT + 1)) else { break };
+        let rings = RINGING_SHARE * ringing_m_s[end] / numbers[GAINED].0;
+        for i in OF_COURSE {
+            let (value, u) = numbers[i];
+            let apart = |(share, others): &(f64, [Option<Vec<f64>>; 2])| {
+                others[end].as_ref().map_or(0.0, |other| share * (other[i] - value))
+            };
+            numbers[i].1 = by_others.iter().map(apart).fold(u.hypot(rings * value), f64::hypot);
+        }
+    }
     let table = |end: End, course: &Course, numbers: &[(f64, f64)]| {
         let of = |i: usize, factor: f64, unit| {
             let (value, u) = numbers[i];

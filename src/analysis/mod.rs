@@ -15,7 +15,7 @@ mod setup;
 pub use setup::sticking;
 
 use crate::data::{Analysis, CaskFile, Events, Finding, IssueCode, Recording};
-use crate::judge;
+use crate::{ingest, judge};
 use flight::Flown;
 use impact::Impact;
 use measured::Measured;
@@ -29,6 +29,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     // On a thread of the pool: any other would be put to sleep and woken again for each piece of work that two threads share.
     let mut found = measure(recording, cask_file);
     rayon::scope(|_| again::name_slip(recording, cask_file, &mut found));
+    found.result.keys = ingest::cask_file::settings(cask_file, recording);
     found
 }
 

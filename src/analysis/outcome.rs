@@ -100,6 +100,9 @@ fn result(
     DropResult {
         schema: "dropcheck.result/1",
         version: env!("CARGO_PKG_VERSION"),
+        program: None,
+        command: Vec::new(),
+        analysed: None,
         input: Input {
             recording: recording.path.display().to_string(),
             recording_sha256: recording.sha256.clone(),
@@ -137,6 +140,8 @@ fn result(
         flight: None,
         budget: Vec::new(),
         settings: of_cask_file(file, &events),
+        keys: serde_json::Value::Null,
+        cask_text: file.text.clone(),
     }
 }
 

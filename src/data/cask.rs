@@ -269,6 +269,8 @@ pub struct CaskFile {
     pub path: PathBuf,
     /// Its SHA-256, lower-case hexadecimal.
     pub sha256: String,
+    /// Its text, byte-order mark and all; empty where it was never a file.
+    pub text: String,
     /// `[cask]`.
     pub cask: Cask,
     /// `[drop]`.

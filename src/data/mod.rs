@@ -26,7 +26,7 @@ mod unit;
 
 pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
-    ModelChoice, Setting, SlapDown, Verdict,
+    ModelChoice, Program, Setting, SlapDown, Verdict,
 };
 pub use at::At;
 pub use cask::{

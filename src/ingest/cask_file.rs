@@ -5,6 +5,7 @@ pub(crate) mod channel;
 pub(super) mod fault;
 mod range;
 pub(crate) mod section;
+mod settings;
 pub(super) mod tolerance;
 mod wording;
 
@@ -12,6 +13,7 @@ use crate::data::keys::TABLES;
 use crate::data::{CaskFile, Contact, Drop, FilterChoice};
 pub(crate) use body::{cask, drop};
 pub use fault::{CaskFileError, WrongLine};
+pub use settings::{settings, switch_off};
 use section::{CASK_FILE, Document, Kind, Section};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
@@ -26,15 +28,24 @@ const LARGEST_BYTES: u64 = 16 << 20;
 /// # Errors
 /// [`CaskFileError`], one message that shows the line.
 pub fn parse(path: &Path) -> Result<CaskFile, CaskFileError> {
-    let bytes = read(path, &CASK_FILE)?;
-    let sha256 = Sha256::digest(&bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
+    of_bytes(path, &read(path, &CASK_FILE)?)
+}
+
+/// The cask file of which this is the text, such as a result holds it; `path` is what it was called.
+///
+/// # Errors
+/// [`CaskFileError`], one message that shows the line.
+pub fn of_text(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
+    of_bytes(path, text.as_bytes())
+}
+
+fn of_bytes(path: &Path, bytes: &[u8]) -> Result<CaskFile, CaskFileError> {
+    let sha256 = Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
         let _ = write!(hex, "{byte:02x}");
         hex
     });
-    let text = text(path, &bytes, &CASK_FILE)?;
-    let mut cask_file = checked(path, text)?;
-    cask_file.sha256 = sha256;
-    Ok(cask_file)
+    let cask_file = checked(path, text(path, bytes, &CASK_FILE)?)?;
+    Ok(CaskFile { sha256, text: String::from_utf8_lossy(bytes).into_owned(), ..cask_file })
 }
 
 /// Whether the file has any channel, as `analyze` needs.
@@ -141,6 +152,7 @@ pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError
     Ok(CaskFile {
         path: path.to_owned(),
         sha256: String::new(),
+        text: String::new(),
         cask,
         drop,
         contact,

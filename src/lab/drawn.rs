@@ -54,6 +54,7 @@ pub(super) fn cask_file(cask: Cask, drop: Drop, contact: Contact, defaults: Vec<
     CaskFile {
         path: PathBuf::from("synthetic.toml"),
         sha256: String::new(),
+        text: String::new(),
         cask,
         drop,
         contact,

@@ -3,6 +3,7 @@
 use super::reconstruct::{corner, corner_height_m};
 use crate::data::{Motion, MotionState, Setup, Signal};
 use crate::numerics::filter::ZeroPhaseLowPass;
+use std::f64::consts::PI;
 
 /// What one contact does to the rigid body, by steps of equal length.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,9 +28,16 @@ pub struct ContactCourse {
 }
 
 impl ContactCourse {
-    /// From the states of a contact that `motion` ends; Θ/m in m². `None` of fewer than two states.
+    /// From the states of a contact that `motion` ends, by the one force that it is of; Θ/m in m². `None` of fewer than two states, and of a
+    /// contact that gives nothing.
     #[must_use]
-    pub fn of(states: &[MotionState], motion: &Motion, setup: &Setup, inertia_m2: f64) -> Option<Self> {
+    pub fn of(
+        (motion, measured): (&Motion, &[MotionState]),
+        setup: &Setup,
+        inertia_m2: f64,
+        by: ForceCourse,
+    ) -> Option<Self> {
+        let states = &by_one_force(measured, setup.gravity_m_s2, by)?;
         let ends = [*states.first()?, *states.last()?];
         #[allow(clippy::cast_precision_loss, reason = "some hundred steps")]
         let step_s = (ends[1].time_s - ends[0].time_s) / (states.len().checked_sub(1)? as f64);
@@ -90,6 +98,53 @@ impl ContactCourse {
         wide.resize(wide.len() + clear, 0.0);
         filter.apply(&wide)[clear..clear + course_m_s2.len()].to_vec()
     }
+}
+
+/// What tells the course of the one force of a contact: how the share grows of what it gives in all   (42)
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ForceCourse {
+    /// The rotation: the first bending mode, which rings alike at both ends, is none.
+    Rotation,
+    /// The velocity of S across the axis, which the first mode rings in most.
+    Translation,
+    /// Nothing measured but the contact's length.
+    HalfSine,
+}
+
+/// The same contact with every velocity gained in this course: one force turns and throws the cask.
+fn by_one_force(states: &[MotionState], gravity_m_s2: f64, by: ForceCourse) -> Option<Vec<MotionState>> {
+    let (first, last) = (states.first()?, states.last()?);
+    let given = |s: &MotionState| {
+        let since_s = s.time_s - first.time_s;
+        let up_m_s = s.vertical_velocity_m_s + gravity_m_s2 * since_s;
+        match by {
+            ForceCourse::Rotation => s.angular_velocity_rad_s,
+            ForceCourse::Translation => {
+                up_m_s * s.angle_rad.cos() - s.horizontal_velocity_m_s * s.angle_rad.sin()
+            }
+            ForceCourse::HalfSine => -(PI * since_s / (last.time_s - first.time_s)).cos(),
+        }
+    };
+    let (from, whole) = (given(first), given(last) - given(first));
+    let fall_m_s = |s: &MotionState| gravity_m_s2 * (s.time_s - first.time_s);
+    let up_m_s = last.vertical_velocity_m_s - first.vertical_velocity_m_s + fall_m_s(last);
+    let along_m_s = last.horizontal_velocity_m_s - first.horizontal_velocity_m_s;
+    let turned_rad_s = last.angular_velocity_rad_s - first.angular_velocity_rad_s;
+    let mut before = *first;
+    let moved = |state: &MotionState| {
+        let share = (given(state) - from) / whole;
+        let vertical_velocity_m_s = first.vertical_velocity_m_s + share * up_m_s - fall_m_s(state);
+        let mean_m_s = f64::midpoint(before.vertical_velocity_m_s, vertical_velocity_m_s);
+        before = MotionState {
+            angular_velocity_rad_s: first.angular_velocity_rad_s + share * turned_rad_s,
+            horizontal_velocity_m_s: first.horizontal_velocity_m_s + share * along_m_s,
+            vertical_velocity_m_s,
+            height_m: before.height_m + mean_m_s * (state.time_s - before.time_s),
+            ..*state
+        };
+        before
+    };
+    (whole.abs() > 0.0).then(|| states.iter().map(moved).collect())
 }
 
 /// The largest value.

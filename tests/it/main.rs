@@ -11,6 +11,7 @@ mod fixtures;
 mod golden;
 mod hdf5_room;
 mod house;
+mod impacts;
 mod layouts;
 mod odd;
 mod predict_command;

@@ -24,6 +24,7 @@ pub(in super::super) fn cask_file(sources: &[&str]) -> CaskFile {
     CaskFile {
         path: "box.toml".into(),
         sha256: String::new(),
+        text: String::new(),
         cask: Cask {
             name: "box".into(),
             mass_kg: 1.0,

@@ -211,6 +211,7 @@ pub(in crate::ingest) fn cask_file(sources: &[&str]) -> CaskFile {
     CaskFile {
         path: "cask.toml".into(),
         sha256: String::new(),
+        text: String::new(),
         cask: Cask {
             name: "test".into(),
             mass_kg: 1.0,
