@@ -31,7 +31,8 @@ const RATIO: usize = 14;
 const OF_COURSE: [usize; 4] = [CRUSH, FORCE, AT_COG, AT_END];
 /// Standard uncertainty of these: so much of what other courses make of them, and of themselves for ringing as large as the velocity gained. With
 /// it the intervals hold 93 to 97 of 100 simulated drops (docs/uncertainty.md).
-const OTHER_COURSES: [(ForceCourse, f64); 2] = [(ForceCourse::Translation, 0.25), (ForceCourse::HalfSine, 0.35)];
+const OTHER_COURSES: [(ForceCourse, f64); 2] =
+    [(ForceCourse::Translation, 0.25), (ForceCourse::HalfSine, 0.35)];
 const RINGING_SHARE: f64 = 0.07;
 
 /// A rotation that is off the impulse of one contact at R by so many standard uncertainties is that of two, or of none.
@@ -117,7 +118,8 @@ pub(super) fn tabulated(
         let of_second = match &mirrored {
             None => None,
             Some((second, integrated)) => {
-                let (motion, contact) = second.course(integrated, (inputs, &motion), by_u, (inertia_m2, by))?;
+                let (motion, contact) =
+                    second.course(integrated, (inputs, &motion), by_u, (inertia_m2, by))?;
                 Some(Course { motion, contact })
             }
         };
@@ -144,7 +146,8 @@ pub(super) fn tabulated(
     let mut by_others = Vec::new();
     for (by, share) in OTHER_COURSES {
         let (first, second) = courses(&taken.taken, &vec![0.0; further], by)?;
-        by_others.push((share, [Some(first), second].map(|c| c.map(|c| read_off(&c, stated_m2, 0.0, cutoff_hz)))));
+        by_others
+            .push((share, [Some(first), second].map(|c| c.map(|c| read_off(&c, stated_m2, 0.0, cutoff_hz)))));
     }
     let ringing_m_s = [Some(&taken.taken.flight), second.map(|s| &s.flight)]
         .map(|f| f.map_or(0.0, |f| f.modes.iter().map(|m| m.amplitude_m_s).sum::<f64>()));
@@ -187,7 +190,8 @@ pub(super) fn tabulated(
         }
     };
     let numbers_of_second = spread.get(COUNT + 1..).filter(|numbers| is_one_contact(numbers));
-    let second_table = second_course.zip(numbers_of_second).map(|(c, numbers)| table(End::Second, &c, numbers));
+    let second_table =
+        second_course.zip(numbers_of_second).map(|(c, numbers)| table(End::Second, &c, numbers));
     Some(Tabulated {
         left_s: second.map(|s| s.left.time_s),
         tables: [Some(table(End::First, &first, &spread[..=COUNT])), second_table],
@@ -267,8 +271,7 @@ fn channel_peaks(file: &CaskFile, recorded: &[Signal], between_s: [f64; 2]) -> V
         // A low-pass leaves of white noise what its share of the band is.
         let left = (2.0 * cutoff_hz * sample_s).min(1.0).sqrt();
         let noise = |left: f64| COVERAGE * left * signal.noise_m_s2.hypot(signal.u_offset_m_s2);
-        let peak =
-            |value: f64, left: f64| Estimate::new(value, (share * value).hypot(noise(left)), "m/s^2");
+        let peak = |value: f64, left: f64| Estimate::new(value, (share * value).hypot(noise(left)), "m/s^2");
         ChannelPeak {
             name: signal.name.clone(),
             filter: filter.clone(),

@@ -6,8 +6,8 @@ use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, Cask, CaskFile, Drop, Events, FlightFit, Motion, MotionState,
     Setup, Signal,
 };
-use crate::motion::{self, ContactCourse, ForceCourse, Integrated};
 use crate::fit;
+use crate::motion::{self, ContactCourse, ForceCourse, Integrated};
 
 /// A flight after the impact of R that is shorter than this share of it tells nothing of what came before.
 const LEAST_FLIGHT: f64 = 1.0;
@@ -95,7 +95,8 @@ impl SecondImpact {
             friction = Some(AssumedFriction { ratio: MIDDLE * needed, u: (U_UNKNOWN * needed).abs() });
             setup.axial = AxialClosure::Sliding { friction: MIDDLE * needed };
         }
-        let basis = fit::Basis { signals: &signals, flight: &flight, events: &times, setup: &setup, ..*measured };
+        let basis =
+            fit::Basis { signals: &signals, flight: &flight, events: &times, setup: &setup, ..*measured };
         // What either flight leaves unexplained may ring on in the other.
         let left_m_s = |of: &FlightFit, i: usize| of.plateaus.get(i).map_or(0.0, |p| p.residual_m_s);
         let u_step_m_s = |i: usize| {

@@ -171,9 +171,9 @@ impl Search<'_> {
                 from_s: free_s,
                 to_s: end_s - motion::BEFORE_SLAP_DOWN_S,
                 drift: self.file.corrections.zero_shift,
-                angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| {
-                    motion::turned_rad_s(signals, f, self.file.drop.angular_velocity_rad_s)
-                }),
+                angular_velocity_rad_s: flight
+                    .as_ref()
+                    .map_or(0.0, |f| motion::turned_rad_s(signals, f, self.file.drop.angular_velocity_rad_s)),
             };
             let drive = motion::drive(self.integrated, flight.as_ref(), left.time_s, window.from_s, cog_m);
             let mut fits = motion::fit_flights(self.integrated, &window, drive.as_ref(), cog_m).into_iter();

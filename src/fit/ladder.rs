@@ -3,11 +3,11 @@
 use super::inputs::{Inputs, UncertainInput, has_lost_step};
 use super::propagate::Model;
 use super::{Basis, COVERAGE, Reconstruct};
-use crate::numerics::prior_fit::{PriorFit, derivatives};
 use crate::data::{
-    Axis, ChannelReading, Closure, End, Estimate, FlightFit, MET_U, Quantities,
-    ReconstructionCandidate, ReconstructionChoice, ReconstructionRung,
+    Axis, ChannelReading, Closure, End, Estimate, FlightFit, MET_U, Quantities, ReconstructionCandidate,
+    ReconstructionChoice, ReconstructionRung,
 };
+use crate::numerics::prior_fit::{PriorFit, derivatives};
 
 /// Where the closures tell lost velocity steps they test nothing, and the intervals of the joint fit are widened by this: with it they hold 19 of 20
 /// simulated drops.
@@ -46,8 +46,9 @@ impl RungTaken {
         of: &(dyn Fn(&Inputs, &[f64]) -> Option<Vec<f64>> + Sync),
     ) -> Option<Vec<(f64, f64)>> {
         let count = self.inputs.len();
-        let model =
-            |by_u: &[f64]| of(&self.base.moved(&self.inputs, &by_u[..count]), by_u.get(count..).unwrap_or(&[]));
+        let model = |by_u: &[f64]| {
+            of(&self.base.moved(&self.inputs, &by_u[..count]), by_u.get(count..).unwrap_or(&[]))
+        };
         let at_u = [&self.fit.unknowns[..], &vec![0.0; further]].concat();
         let (values, slopes) = (model(&at_u)?, derivatives(&model, &at_u)?);
         let by_datum = slopes.columns(0, count) * &self.fit.response * self.widened;
@@ -101,7 +102,15 @@ pub fn ladder(
     let fit = joint.filter(|_| is_joint).unwrap_or_else(|| PriorFit::of_priors(model.inputs.len()));
     let widened = if is_joint { widened } else { 1.0 };
     let Model { base, inputs, .. } = model;
-    Some(RungTaken { quantities, choice, taken: base.moved(&inputs, &fit.unknowns), base, inputs, fit, widened })
+    Some(RungTaken {
+        quantities,
+        choice,
+        taken: base.moved(&inputs, &fit.unknowns),
+        base,
+        inputs,
+        fit,
+        widened,
+    })
 }
 
 fn step(rung: ReconstructionRung, quantities: Quantities, consistent: bool, residual: String) -> RungStep {

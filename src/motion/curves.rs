@@ -57,7 +57,8 @@ pub fn usual_filters(mass_kg: f64) -> Vec<(String, f64)> {
         let choice = FilterChoice::Cfc(class);
         (filter_name(choice), cutoff_hz(choice, mass_kg, None).0)
     });
-    let advised = [("SSG-26, 100 Hz".to_owned(), by_mass_hz / 2.0), (filter_name(FilterChoice::Auto), by_mass_hz)];
+    let advised =
+        [("SSG-26, 100 Hz".to_owned(), by_mass_hz / 2.0), (filter_name(FilterChoice::Auto), by_mass_hz)];
     advised.into_iter().chain(classes).collect()
 }
 

@@ -5,8 +5,8 @@ use crate::data::{
     Analysis, At, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelFinding, ChannelSpec, ChannelSummary,
     Comparison, Contact, Coupling, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events,
     FilterChoice, Finding, FirstImpact, FlightFit, FlightModelScore, FlightRegime, ImpactTable, Input, Mode,
-    ModelCandidate, ModelChoice, MotionCurve, Plateau, Prediction, Program, RecordingFormat, Rung, Setting, SlapDown,
-    Source, Unit, Verdict,
+    ModelCandidate, ModelChoice, MotionCurve, Plateau, Prediction, Program, RecordingFormat, Rung, Setting,
+    SlapDown, Source, Unit, Verdict,
 };
 use std::f64::consts::PI;
 
