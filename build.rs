@@ -16,7 +16,10 @@ fn main() {
         let is_told = std::env::var_os("DROPCHECK_COMMIT").is_some();
         if let Some(commit) = git(&["rev-parse", "HEAD"]).filter(|_| !is_told) {
             let is_changed = git(&["status", "--porcelain", "-uno"]).is_none_or(|files| !files.is_empty());
-            println!("cargo::rustc-env=DROPCHECK_COMMIT={commit}{}", if is_changed { "-changed" } else { "" });
+            println!(
+                "cargo::rustc-env=DROPCHECK_COMMIT={commit}{}",
+                if is_changed { "-changed" } else { "" }
+            );
         }
     }
 }

@@ -4,7 +4,7 @@ use super::impact::Impact;
 use super::impacts::{self, Tabulated};
 use super::second::SecondImpact;
 use super::settle;
-use super::setup::sticking;
+use super::setup::{MIDDLE, U_UNKNOWN, sticking};
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, DropFinding, End, Events, Finding, FlightFit,
     Motion, Quantities, ReconstructionChoice, Setup, Signal,
@@ -14,11 +14,6 @@ use crate::{events, fit, judge};
 
 /// What the length of a pulse is uncertain by, as a share, where its samples are clipped or missing, or only the other end shows it.
 const UNCERTAIN_PULSE: f64 = 0.1;
-
-/// A friction that nobody states lies between none and what sticking needs, and more than that does as much: in the middle of what 0.1 and
-/// more give, as a share of what sticking needs, and with a standard uncertainty that takes both ends in.
-pub(super) const MIDDLE: f64 = 0.6;
-pub(super) const U_UNKNOWN: f64 = 0.33;
 
 /// The flight, and what it says of the motion.
 pub(super) struct Flown {

@@ -1,7 +1,7 @@
 //! A flight that ends in a slap-down to the impact of R: the same drop in a mirror, which begins as R strikes.
 
-use super::flight::{MIDDLE, U_UNKNOWN};
 use super::settle;
+use super::setup::{MIDDLE, U_UNKNOWN};
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, Cask, CaskFile, Drop, Events, FlightFit, Motion, MotionState,
     Setup, Signal,

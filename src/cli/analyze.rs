@@ -4,7 +4,7 @@ use super::Ending;
 use super::limits::Bounds;
 use super::output::{Folder, JsonTarget, print};
 use super::progress::with_progress;
-use super::record::{self, Record};
+use super::record::{self, EarlierResult};
 use super::tuning::{awake, keep_freed_memory};
 use clap::{Args, ValueEnum};
 use dropcheck::data::{CaskFile, DropResult, RecordingFormat, Setting};
@@ -66,6 +66,12 @@ enum Correction {
 }
 
 impl SwitchedOff {
+    /// Those that an earlier command line named.
+    fn of_record(record: &EarlierResult) -> Self {
+        let without = record.switched_off().filter_map(|key| Correction::from_str(key, false).ok());
+        Self { without: without.collect() }
+    }
+
     /// Switches them off before the analysis.
     pub fn in_cask_file(&self, cask_file: &mut CaskFile) {
         let made = &mut cask_file.corrections;
@@ -99,13 +105,15 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         arguments.out.as_deref().map(|dir| Folder::checked(dir, &report::FILE_NAMES, &inputs)).transpose()?;
     let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
 
-    let earlier = arguments.from.as_deref().map(Record::read).transpose()?;
+    let earlier = arguments.from.as_deref().map(EarlierResult::read).transpose()?;
     let mut cask_file = match (&earlier, &arguments.cask) {
         (Some(earlier), _) => earlier.cask_file()?,
         // The words ask for one of both.
         (None, cask) => ingest::cask_file(cask.as_deref().unwrap_or(Path::new("")))?,
     };
-    arguments.switched_off.in_cask_file(&mut cask_file);
+    let repeated = earlier.as_ref().map(SwitchedOff::of_record);
+    let switched_off = repeated.as_ref().unwrap_or(&arguments.switched_off);
+    switched_off.in_cask_file(&mut cask_file);
     let limits = arguments.bounds.limits();
     let recording = with_progress("reading", |progress| {
         let read = || ingest::read_within(&arguments.recording, &cask_file, limits, progress);
@@ -117,7 +125,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     })?;
     keep_freed_memory();
     let mut analysis = awake(|| dropcheck::analyze(&recording, &cask_file));
-    arguments.switched_off.in_settings(&mut analysis.result);
+    switched_off.in_settings(&mut analysis.result);
     record::stamp(&mut analysis.result)?;
     let mut compared = String::new();
     if let Some(earlier) = &earlier {

@@ -10,7 +10,7 @@ use std::path::Path;
 const MOST_LINES: usize = 20;
 
 /// What an earlier result says of the run that made it.
-pub struct Record {
+pub struct EarlierResult {
     result: Value,
     name: String,
 }
@@ -31,7 +31,7 @@ pub fn stamp(result: &mut DropResult) -> miette::Result<()> {
     Ok(())
 }
 
-impl Record {
+impl EarlierResult {
     /// The record in a file that `--json` or `--out` wrote.
     pub fn read(path: &Path) -> miette::Result<Self> {
         let name = path.display().to_string();
@@ -50,12 +50,16 @@ impl Record {
         ))
     }
 
-    /// The cask file, with what was switched off on the command line.
+    /// The cask file.
     pub fn cask_file(&self) -> miette::Result<CaskFile> {
         let of = |pointer: &str| self.result.pointer(pointer).and_then(Value::as_str).unwrap_or_default();
-        let mut file = ingest::cask_file::of_text(Path::new(of("/input/cask")), of("/cask_text"))?;
-        ingest::cask_file::switch_off(&self.result["settings"], &mut file.corrections);
-        Ok(file)
+        Ok(ingest::cask_file::of_text(Path::new(of("/input/cask")), of("/cask_text"))?)
+    }
+
+    /// The corrections that were switched off on its command line, by their keys.
+    pub fn switched_off(&self) -> impl Iterator<Item = &str> {
+        let made = self.result["settings"]["corrections"].as_object().into_iter().flatten();
+        made.filter(|(_, of)| of["from"] == "command line").map(|(key, _)| key.as_str())
     }
 
     /// Gives a result that was made again the words of the first, where it is of the same recording.
@@ -82,7 +86,8 @@ impl Record {
         let more = lines.len().saturating_sub(MOST_LINES);
         lines.truncate(MOST_LINES);
         let end = if more > 0 { format!("\n  … and {more} more") } else { String::new() };
-        Ok(report::printable(&format!("Otherwise than {name}:\n  {}{end}\n", lines.join("\n  "))))
+        let lines: Vec<String> = lines.iter().map(|line| report::printable(line)).collect();
+        Ok(format!("Otherwise than {}:\n  {}{end}\n", report::printable(name), lines.join("\n  ")))
     }
 }
 

@@ -18,10 +18,11 @@ pub const MOST_CHANNELS: usize = 1000;
 pub const SAMPLE_RATES_HZ: std::ops::RangeInclusive<f64> = 1e-3..=1e8;
 
 /// An end of the cask.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum End {
     /// L: low, touches first.
+    #[default]
     First,
     /// R: high, slaps down.
     Second,

@@ -5,7 +5,7 @@ use super::estimate::Estimate;
 use serde::Serialize;
 
 /// One impact; what the recording does not give is `None`, and a finding says why.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct ImpactTable {
     /// The end that strikes.
     pub end: End,
@@ -95,25 +95,6 @@ impl ImpactTable {
     /// Nothing known of it yet.
     #[must_use]
     pub fn unknown(end: End) -> Self {
-        Self {
-            end,
-            start: None,
-            duration: None,
-            velocity_change: None,
-            impulse_x: None,
-            impulse_z: None,
-            restitution: None,
-            friction: None,
-            energy_before: None,
-            energy_absorbed: None,
-            energy_after: None,
-            energy_ratio: None,
-            absorbed_ratio: None,
-            crush: None,
-            force_peak: None,
-            rigid_body_deceleration: RigidBodyDeceleration::default(),
-            force_over_crush: ForceOverCrush::default(),
-            channels: Vec::new(),
-        }
+        Self { end, ..Self::default() }
     }
 }

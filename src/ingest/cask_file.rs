@@ -14,7 +14,7 @@ use crate::data::{CaskFile, Contact, Drop, FilterChoice};
 pub(crate) use body::{cask, drop};
 pub use fault::{CaskFileError, WrongLine};
 use section::{CASK_FILE, Document, Kind, Section};
-pub use settings::{settings, switch_off};
+pub use settings::settings;
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::io::Read;

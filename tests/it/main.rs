@@ -16,6 +16,7 @@ mod layouts;
 mod odd;
 mod predict_command;
 mod properties;
+mod record;
 mod reference;
 mod relations;
 mod run;

@@ -1,7 +1,7 @@
 //! A cask file and what its recording says to every key with its value, in the file's own units, and where that is from.
 
 use crate::data::keys::{self, Key, TABLES};
-use crate::data::{CaskFile, Contact, Corrections, Recording};
+use crate::data::{CaskFile, Contact, Recording};
 use serde_json::{Map, Value, json};
 
 /// Every key of every table, each `{"value", "from"}`; `from` is "stated", "default", "recording", or "command line" for a correction that is
@@ -45,15 +45,6 @@ pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
     };
     all.insert("channel".into(), channels.map(channel).collect());
     Value::Object(all)
-}
-
-/// The corrections that such settings have switched off on the command line, beside those of a cask file.
-pub fn switch_off(settings: &Value, made: &mut Corrections) {
-    let is_off = |key: &str| settings["corrections"][key]["from"] == "command line";
-    made.offset &= !is_off("offset");
-    made.zero_shift &= !is_off("zero_shift");
-    made.skew &= !is_off("skew");
-    made.hum &= !is_off("hum");
 }
 
 fn entries(
