@@ -1,9 +1,17 @@
 //! From simulated drops with and without limiters to how often the intervals of both impacts' numbers hold the truth.
 
+#![allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "counts of steps and of drops"
+)]
+
+use crate::run::fixture;
 use dropcheck::data::{Estimate, ImpactTable};
 use dropcheck::lab::data::{MotionStep, Scene, SceneNumber, SimulatedMotion};
 use dropcheck::lab::{campaign, in_memory, synth};
-use dropcheck::stages;
+use dropcheck::{ingest, stages};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -16,12 +24,11 @@ const GRID_S: f64 = 2e-5;
 
 /// Horizontal and vertical velocity of the lower corner of an end, and its height, by the simulation's own state.
 fn corner(scene: &Scene, step: &MotionStep, end: usize) -> [f64; 3] {
-    let [x, z, inclination, x_rate, z_rate, turning, ..] = step.state;
+    let [_, z, inclination, x_rate, z_rate, turning, ..] = step.state;
     let cask = &scene.cask;
     let ahead = if end == 0 { -cask.cog_m } else { cask.length_m - cask.cog_m };
     let (sin, cos) = inclination.sin_cos();
     let arm = [ahead * cos + cask.height_m / 2.0 * sin, ahead * sin - cask.height_m / 2.0 * cos];
-    let _ = x;
     [x_rate - turning * arm[1], z_rate + turning * arm[0], z + arm[1]]
 }
 
@@ -162,7 +169,6 @@ fn distances(seed: u64, drops: u32) -> Distances {
 
 /// What of 200 drops may lie outside by chance: of 95 % shares three standard deviations of what is there.
 fn least_held(count: usize) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "some hundred drops")]
     let n = count as f64;
     0.95 * n - 3.0 * (0.05 * 0.95 * n).sqrt()
 }
@@ -188,4 +194,38 @@ fn the_intervals_of_both_impacts_hold_the_truth() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn a_second_simulation_says_the_same_of_both_impacts() {
+    // fixtures/impacts.py, which shares no line with this program.
+    let names = [
+        "duration",
+        "velocity_change",
+        "restitution",
+        "impulse_x",
+        "impulse_z",
+        "energy_before",
+        "energy_after",
+        "energy_absorbed",
+        "crush",
+    ];
+    let truths = [
+        [0.005_826, 20.7233, 0.559_51, 24_413.6, 33_547.6, 394_303.1, 296_010.9, 100_810.4, 0.031_962],
+        [0.004_147, 26.5644, 0.299_40, -17_024.3, 34_048.5, 313_596.3, 28_670.6, 285_514.7, 0.041_460],
+    ];
+    let file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
+    let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
+    let result = dropcheck::analyze(&recording, &file).result;
+    for (table, truths) in result.impacts.iter().zip(truths) {
+        let stated = stated(table);
+        for (name, truth) in names.into_iter().zip(truths) {
+            let Estimate { value, u95, .. } = stated[name].expect(name);
+            assert!((value - truth).abs() <= u95, "{name}: {value} ± {u95}, {truth}");
+        }
+    }
+    let [speed, before] =
+        [result.slap_down.speed, result.first_impact.impact_velocity].map(|e| e.expect("told").value);
+    assert!((result.amplification.expect("told").value - speed / before).abs() < 1e-12);
+    assert!(result.impacts[1].energy_ratio.is_some_and(|r| (r.value - 0.795_318).abs() <= r.u95));
 }
