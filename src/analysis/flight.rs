@@ -131,7 +131,8 @@ fn moved(
     let fit::Inputs { flight: moved, events: times, setup: as_taken, .. } = &taken.taken;
     let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
     let second = SecondImpact::find(file, &integrated.signals, &flight, (&motion, as_taken), &measured);
-    let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref());
+    let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref())
+        .or_else(|| impacts::tabulated(file, integrated, &taken, None));
     let fit::RungTaken { quantities, choice: reconstruction, .. } = taken;
     Some(Flown { flight, setup, motion, quantities, reconstruction, tabulated })
 }

@@ -100,6 +100,14 @@ fn low_pass(file: &CaskFile) -> (String, f64) {
     (motion::filter_name(file.filter), cutoff_hz)
 }
 
+/// Both contacts as a function of the inputs.
+struct BothImpacts<'a> {
+    file: &'a CaskFile,
+    integrated: &'a Integrated<'a>,
+    second: Option<(&'a SecondImpact, Integrated<'a>)>,
+    cutoff_hz: f64,
+}
+
 /// Both impacts, as far as the motion tells them.
 pub(super) fn tabulated(
     file: &CaskFile,
@@ -107,69 +115,90 @@ pub(super) fn tabulated(
     taken: &RungTaken,
     second: Option<&SecondImpact>,
 ) -> Option<Tabulated> {
-    let mass_kg = file.cask.mass_kg;
-    let stated_m2 = file.cask.inertia_kg_m2 / mass_kg;
     let mirrored = second.map(|second| (second, second.integrated()));
-    let courses = |inputs: &Inputs, by_u: &[f64], by: ForceCourse| -> Option<(Course, Option<Course>)> {
-        let inertia_m2 = inputs.inertia_m2.unwrap_or(stated_m2);
+    let both = BothImpacts { file, integrated, second: mirrored, cutoff_hz: low_pass(file).1 };
+    let known = both.known(taken)?;
+    let (first, after) = both.courses(&taken.taken, &both.unmoved(), ForceCourse::Rotation)?;
+    let of_second = known.get(COUNT + 1..).filter(|numbers| is_one_contact(numbers));
+    Some(Tabulated {
+        left_s: second.map(|s| s.left.time_s),
+        tables: [
+            Some(both.table(End::First, &first, &known[..=COUNT])),
+            after.zip(of_second).map(|(course, numbers)| both.table(End::Second, &course, numbers)),
+        ],
+    })
+}
+
+impl BothImpacts<'_> {
+    /// The second impact's own inputs as they are.
+    fn unmoved(&self) -> Vec<f64> {
+        vec![0.0; self.second.as_ref().map_or(0, |(second, _)| second.further())]
+    }
+
+    /// Θ/m, m².
+    fn inertia_m2(&self, inputs: &Inputs) -> f64 {
+        let cask = &self.file.cask;
+        inputs.inertia_m2.unwrap_or(cask.inertia_kg_m2 / cask.mass_kg)
+    }
+
+    /// The first contact and the second.
+    fn courses(&self, inputs: &Inputs, by_u: &[f64], by: ForceCourse) -> Option<(Course, Option<Course>)> {
+        let inertia_m2 = self.inertia_m2(inputs);
         let (motion, states) =
-            motion::with_states(integrated, &inputs.flight, &inputs.events, &inputs.setup)?;
+            motion::with_states(self.integrated, &inputs.flight, &inputs.events, &inputs.setup)?;
         let contact = ContactCourse::of((&motion, &states), &inputs.setup, inertia_m2, by)?;
-        let of_second = match &mirrored {
-            None => None,
-            Some((second, integrated)) => {
-                let (motion, contact) =
-                    second.course(integrated, (inputs, &motion), by_u, (inertia_m2, by))?;
-                Some(Course { motion, contact })
-            }
-        };
-        Some((Course { motion, contact }, of_second))
-    };
-    let cutoff_hz = low_pass(file).1;
-    let numbers = |inputs: &Inputs, by_u: &[f64]| -> Option<Vec<f64>> {
-        let inertia_m2 = inputs.inertia_m2.unwrap_or(stated_m2);
-        let (first, second) = courses(inputs, by_u, ForceCourse::Rotation)?;
+        let mut after = None;
+        if let Some((second, integrated)) = &self.second {
+            let (motion, contact) = second.course(integrated, (inputs, &motion), by_u, (inertia_m2, by))?;
+            after = Some(Course { motion, contact });
+        }
+        Some((Course { motion, contact }, after))
+    }
+
+    /// The numbers of the first contact, then those of the second.
+    fn numbers(&self, inputs: &Inputs, by_u: &[f64], by: ForceCourse) -> Option<Vec<f64>> {
+        let inertia_m2 = self.inertia_m2(inputs);
+        let (first, second) = self.courses(inputs, by_u, by)?;
         let [before_m2_s2, _] = first.contact.kinetic_m2_s2(inertia_m2);
-        let gravity_m_s2 = inputs.setup.gravity_m_s2;
         let of = |course: &Course| {
-            let mut numbers = read_off(course, inertia_m2, gravity_m_s2, cutoff_hz);
+            let mut numbers = read_off(course, inertia_m2, inputs.setup.gravity_m_s2, self.cutoff_hz);
             numbers[RATIO] = numbers[BEFORE] / before_m2_s2;
             numbers.push(numbers[ABSORBED] / before_m2_s2);
             numbers
         };
         Some([of(&first), second.as_ref().map(of).unwrap_or_default()].concat())
-    };
-    let further = second.map_or(0, SecondImpact::further);
-    let mut spread = taken.spread(further, &numbers)?;
-    let (first, second_course) = courses(&taken.taken, &vec![0.0; further], ForceCourse::Rotation)?;
-    // What else could have told the course of the force says how well that is known.
-    let mut by_others = Vec::new();
-    for (by, share) in OTHER_COURSES {
-        let (first, second) = courses(&taken.taken, &vec![0.0; further], by)?;
-        by_others
-            .push((share, [Some(first), second].map(|c| c.map(|c| read_off(&c, stated_m2, 0.0, cutoff_hz)))));
     }
-    let ringing_m_s = [Some(&taken.taken.flight), second.map(|s| &s.flight)]
-        .map(|f| f.map_or(0.0, |f| f.modes.iter().map(|m| m.amplitude_m_s).sum::<f64>()));
-    for end in 0..2 {
-        let Some(numbers) = spread.get_mut(end * (COUNT + 1)..(end + 1) * (COUNT + 1)) else { break };
-        let rings = RINGING_SHARE * ringing_m_s[end] / numbers[GAINED].0;
-        for i in OF_COURSE {
-            let (value, u) = numbers[i];
-            let apart = |(share, others): &(f64, [Option<Vec<f64>>; 2])| {
-                others[end].as_ref().map_or(0.0, |other| share * (other[i] - value))
-            };
-            numbers[i].1 = by_others.iter().map(apart).fold(u.hypot(rings * value), f64::hypot);
+
+    /// These with their standard uncertainties: what else could have told the course of the force says how well that is known.
+    fn known(&self, taken: &RungTaken) -> Option<Vec<(f64, f64)>> {
+        let unmoved = self.unmoved();
+        let of = |inputs: &Inputs, by_u: &[f64]| self.numbers(inputs, by_u, ForceCourse::Rotation);
+        let mut known = taken.spread(unmoved.len(), &of)?;
+        let flights = [Some(&taken.taken.flight), self.second.as_ref().map(|(second, _)| &second.flight)];
+        for (flight, own) in flights.into_iter().flatten().zip(known.chunks_mut(COUNT + 1)) {
+            let rings_m_s: f64 = flight.modes.iter().map(|m| m.amplitude_m_s).sum();
+            let share = RINGING_SHARE * rings_m_s / own[GAINED].0;
+            OF_COURSE.into_iter().for_each(|i| own[i].1 = own[i].1.hypot(share * own[i].0));
         }
+        for (by, share) in OTHER_COURSES {
+            let others = self.numbers(&taken.taken, &unmoved, by)?;
+            for (i, (value, u)) in known.iter_mut().enumerate() {
+                if OF_COURSE.contains(&(i % (COUNT + 1))) {
+                    *u = u.hypot(share * (others[i] - *value));
+                }
+            }
+        }
+        Some(known)
     }
-    let table = |end: End, course: &Course, numbers: &[(f64, f64)]| {
+
+    fn table(&self, end: End, course: &Course, numbers: &[(f64, f64)]) -> ImpactTable {
+        let mass_kg = self.file.cask.mass_kg;
         let of = |i: usize, factor: f64, unit| {
             let (value, u) = numbers[i];
             Some(Estimate::new(factor * value, COVERAGE * factor.abs() * u, unit))
         };
         // The mirror turns round what runs along the target.
         let along = if end == End::First { 1.0 } else { -1.0 };
-        let deceleration = decelerations(file, course, [AT_COG, AT_END].map(|i| numbers[i]));
         ImpactTable {
             duration: of(DURATION, 1.0, "s"),
             velocity_change: of(GAINED, 1.0, "m/s"),
@@ -184,18 +213,11 @@ pub(super) fn tabulated(
             absorbed_ratio: of(COUNT, 1.0, "1"),
             crush: of(CRUSH, 1.0, "m"),
             force_peak: of(FORCE, mass_kg, "N"),
-            rigid_body_deceleration: deceleration,
-            force_over_crush: force_over_crush(&course.contact, mass_kg, cutoff_hz),
+            rigid_body_deceleration: decelerations(self.file, course, [AT_COG, AT_END].map(|i| numbers[i])),
+            force_over_crush: force_over_crush(&course.contact, mass_kg, self.cutoff_hz),
             ..ImpactTable::unknown(end)
         }
-    };
-    let numbers_of_second = spread.get(COUNT + 1..).filter(|numbers| is_one_contact(numbers));
-    let second_table =
-        second_course.zip(numbers_of_second).map(|(c, numbers)| table(End::Second, &c, numbers));
-    Some(Tabulated {
-        left_s: second.map(|s| s.left.time_s),
-        tables: [Some(table(End::First, &first, &spread[..=COUNT])), second_table],
-    })
+    }
 }
 
 /// Whether what turned the cask was one contact at R that a passive end can give.

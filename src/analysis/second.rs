@@ -47,6 +47,45 @@ fn mirrored(first: &Setup, motion: &Motion, axial: AxialClosure) -> Option<Setup
     })
 }
 
+/// The cask file as the mirror shows it.
+fn in_mirror(file: &CaskFile, setup: &Setup) -> CaskFile {
+    CaskFile {
+        cask: Cask { cog_m: setup.cog_m, ..file.cask.clone() },
+        drop: Drop {
+            angle_rad: setup.angle_rad,
+            impact_velocity_m_s: setup.impact_velocity_m_s,
+            impact_velocity_given: true,
+            angular_velocity_rad_s: setup.angular_velocity_rad_s,
+            horizontal_velocity_m_s: setup.horizontal_velocity_m_s,
+            ..file.drop
+        },
+        ..file.clone()
+    }
+}
+
+/// When R leaves, and the flight after it; `None` where that does not tell the velocity which the contact gave   (43)
+fn told(file: &CaskFile, integrated: &Integrated) -> Option<(At, FlightFit)> {
+    let settled = settle::settle(file, integrated)?;
+    let (left, flight) = (settled.left, settled.flight?);
+    let pulse_s = left.time_s - integrated.contact_s;
+    let most_left_m_s = MOST_LEFT * file.drop.impact_velocity_m_s;
+    let is_told = pulse_s > 0.0
+        && flight.to_s - flight.from_s > LEAST_FLIGHT * pulse_s
+        && flight.is_told_apart()
+        && flight.resolves_modes()
+        && flight.plateaus.iter().all(|p| p.residual_m_s < most_left_m_s);
+    is_told.then_some((left, flight))
+}
+
+/// How R slides as far as the channels tell: nobody states it, and it may be anything from none to what sticking needs, `needed`.
+fn sliding(signals: &[Signal], needed: f64) -> (AxialClosure, Option<AssumedFriction>) {
+    if signals.iter().any(|s| s.axis == Axis::Axial) {
+        return (AxialClosure::Measured, None);
+    }
+    let (ratio, u) = (MIDDLE * needed, (U_UNKNOWN * needed).abs());
+    (AxialClosure::Sliding { friction: ratio }, Some(AssumedFriction { ratio, u }))
+}
+
 impl SecondImpact {
     /// The impact of R after a flight with this motion, where the recording tells when R leaves the target and what velocity that gives.
     pub fn find(
@@ -61,40 +100,11 @@ impl SecondImpact {
         let mut setup = mirrored(first, motion, AxialClosure::Sticking)?;
         let signals = motion::mirrored(recorded, before, turning_rad_s, (first.length_m, first.cog_m));
         let integrated = Integrated::over(&signals, slap_down.time_s);
-        let seen = CaskFile {
-            cask: Cask { cog_m: setup.cog_m, ..file.cask.clone() },
-            drop: Drop {
-                angle_rad: setup.angle_rad,
-                impact_velocity_m_s: setup.impact_velocity_m_s,
-                impact_velocity_given: true,
-                angular_velocity_rad_s: setup.angular_velocity_rad_s,
-                horizontal_velocity_m_s: setup.horizontal_velocity_m_s,
-                ..file.drop
-            },
-            ..file.clone()
-        };
-        let settled = settle::settle(&seen, &integrated)?;
-        let (left, flight) = (settled.left, settled.flight?);
-        let pulse_s = left.time_s - slap_down.time_s;
-        let most_left_m_s = MOST_LEFT * setup.impact_velocity_m_s;
-        let is_told = pulse_s > 0.0
-            && flight.to_s - flight.from_s > LEAST_FLIGHT * pulse_s
-            && flight.is_told_apart()
-            && flight.resolves_modes()
-            && flight.plateaus.iter().all(|p| p.residual_m_s < most_left_m_s);
-        if !is_told {
-            return None;
-        }
+        let (left, flight) = told(&in_mirror(file, &setup), &integrated)?;
         let times = Events { first_contact: Some(slap_down), separation: Some(left), ..Events::default() };
-        let mut friction = None;
-        if signals.iter().any(|s| s.axis == Axis::Axial) {
-            setup.axial = AxialClosure::Measured;
-        } else {
-            // Nobody states how R slides: anything from none to what sticking needs.
-            let needed = motion::outcome(&integrated, &flight, &times, &setup)?.impulse_ratio;
-            friction = Some(AssumedFriction { ratio: MIDDLE * needed, u: (U_UNKNOWN * needed).abs() });
-            setup.axial = AxialClosure::Sliding { friction: MIDDLE * needed };
-        }
+        let needed = motion::outcome(&integrated, &flight, &times, &setup)?.impulse_ratio;
+        let (axial, friction) = sliding(&signals, needed);
+        setup.axial = axial;
         let basis =
             fit::Basis { signals: &signals, flight: &flight, events: &times, setup: &setup, ..*measured };
         // What either flight leaves unexplained may ring on in the other.
@@ -109,7 +119,7 @@ impl SecondImpact {
         };
         let along_m_s = along(&moved.separation) - along(&moved.contact);
         let across_m_s = moved.rebound_m_s + setup.impact_velocity_m_s;
-        let (axial, contact_s) = (setup.axial, slap_down.time_s);
+        let contact_s = slap_down.time_s;
         drop(integrated);
         Some(Self { contact_s, flight, left, axial, friction, u_steps_m_s, along_m_s, across_m_s, signals })
     }
