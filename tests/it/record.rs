@@ -28,7 +28,7 @@ fn a_result_alone_gives_the_same_result_again() {
     let settings = &result["settings"];
     assert_eq!(settings["drop"]["angle_deg"], serde_json::json!({"value": 15.0, "from": "stated"}));
     assert_eq!(settings["tolerance"]["angle_deg"], serde_json::json!({"value": 0.4, "from": "default"}));
-    assert_eq!(settings["channel"][0]["unit"]["from"], "recording");
+    assert_eq!(settings["channel"][0]["sample_rate_hz"]["from"], "recording");
     for (name, table) in settings.as_object().expect("tables").iter().filter(|(name, _)| *name != "channel") {
         for (key, entry) in table.as_object().expect("keys") {
             assert!(entry.get("value").is_some() && entry["from"].is_string(), "{name}.{key}");
