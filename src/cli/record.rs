@@ -79,6 +79,8 @@ impl EarlierResult {
         let mut lines = Vec::new();
         compare("", &self.result, &now, &mut lines);
         lines.retain(|line| !line.starts_with("analysed:"));
+        // What was stated otherwise is why the rest is otherwise.
+        lines.sort_by_key(|line| !line.starts_with("settings."));
         let name = &self.name;
         if lines.is_empty() {
             return Ok(format!("The same as {name}.\n"));
