@@ -178,7 +178,9 @@ impl BothImpacts<'_> {
         for (flight, own) in flights.into_iter().flatten().zip(known.chunks_mut(COUNT + 1)) {
             let rings_m_s: f64 = flight.modes.iter().map(|m| m.amplitude_m_s).sum();
             let share = RINGING_SHARE * rings_m_s / own[GAINED].0;
-            OF_COURSE.into_iter().for_each(|i| own[i].1 = own[i].1.hypot(share * own[i].0));
+            for i in OF_COURSE {
+                own[i].1 = own[i].1.hypot(share * own[i].0);
+            }
         }
         for (by, share) in OTHER_COURSES {
             let others = self.numbers(&taken.taken, &unmoved, by)?;

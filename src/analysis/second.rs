@@ -121,7 +121,7 @@ impl SecondImpact {
         let across_m_s = moved.rebound_m_s + setup.impact_velocity_m_s;
         let contact_s = slap_down.time_s;
         drop(integrated);
-        Some(Self { contact_s, flight, left, axial, friction, u_steps_m_s, along_m_s, across_m_s, signals })
+        Some(Self { signals, contact_s, flight, left, axial, friction, u_steps_m_s, along_m_s, across_m_s })
     }
 
     /// The signals with their integrals, which [`Self::course`] asks for.

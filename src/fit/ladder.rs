@@ -22,6 +22,9 @@ struct RungStep {
     quantities: Quantities,
 }
 
+/// Numbers as a function of the inputs and of further ones, such as [`RungTaken::spread`] takes it.
+pub type NumbersOf<'a> = &'a (dyn Fn(&Inputs, &[f64]) -> Option<Vec<f64>> + Sync);
+
 /// What the rung taken says, and the inputs that it says it with.
 pub struct RungTaken {
     /// The numbers.
@@ -40,11 +43,7 @@ impl RungTaken {
     /// Numbers that follow from the inputs, each with its standard uncertainty: `of` gives them for moved inputs and for as many further ones,
     /// independent of all others, in their standard uncertainties, as are asked for. `None` where it fails near the inputs taken.
     #[must_use]
-    pub fn spread(
-        &self,
-        further: usize,
-        of: &(dyn Fn(&Inputs, &[f64]) -> Option<Vec<f64>> + Sync),
-    ) -> Option<Vec<(f64, f64)>> {
+    pub fn spread(&self, further: usize, of: NumbersOf) -> Option<Vec<(f64, f64)>> {
         let count = self.inputs.len();
         let model = |by_u: &[f64]| {
             of(&self.base.moved(&self.inputs, &by_u[..count]), by_u.get(count..).unwrap_or(&[]))
