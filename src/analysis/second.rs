@@ -65,7 +65,7 @@ fn in_mirror(file: &CaskFile, setup: &Setup) -> CaskFile {
 
 /// When R leaves, and the flight after it; `None` where that does not tell the velocity which the contact gave   (43)
 fn told(file: &CaskFile, integrated: &Integrated) -> Option<(At, FlightFit)> {
-    let settled = settle::settle(file, integrated)?;
+    let settled = settle::settle_open(file, integrated)?;
     let (left, flight) = (settled.left, settled.flight?);
     let pulse_s = left.time_s - integrated.contact_s;
     let most_left_m_s = MOST_LEFT * file.drop.impact_velocity_m_s;
