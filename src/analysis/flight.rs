@@ -1,8 +1,10 @@
 //! A first impact to the flight after it: separation, slap-down, and the motion between them.
 
 use super::impact::Impact;
+use super::impacts::{self, Tabulated};
+use super::second::SecondImpact;
 use super::settle;
-use super::setup::sticking;
+use super::setup::{MIDDLE, U_UNKNOWN, sticking};
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, DropFinding, End, Events, Finding, FlightFit,
     Motion, Quantities, ReconstructionChoice, Setup, Signal,
@@ -13,11 +15,6 @@ use crate::{events, fit, judge};
 /// What the length of a pulse is uncertain by, as a share, where its samples are clipped or missing, or only the other end shows it.
 const UNCERTAIN_PULSE: f64 = 0.1;
 
-/// A friction that nobody states lies between none and what sticking needs, and more than that does as much: in the middle of what 0.1 and
-/// more give, as a share of what sticking needs, and with a standard uncertainty that takes both ends in.
-const MIDDLE: f64 = 0.6;
-const U_UNKNOWN: f64 = 0.33;
-
 /// The flight, and what it says of the motion.
 pub(super) struct Flown {
     pub flight: FlightFit,
@@ -25,6 +22,7 @@ pub(super) struct Flown {
     pub motion: Motion,
     pub quantities: Quantities,
     pub reconstruction: ReconstructionChoice,
+    pub tabulated: Option<Tabulated>,
 }
 
 /// The events as far as they are found, and the flight where the motion could be had; what prevents it goes to the findings.
@@ -109,7 +107,7 @@ fn moved(
         from_s: flight.from_s,
         to_s: flight.to_s,
         drift: flight.drift,
-        angular_velocity_rad_s: motion::rotation_rad_s(signals, &flight),
+        angular_velocity_rad_s: motion::turned_rad_s(signals, &flight, file.drop.angular_velocity_rad_s),
     };
     let plain = motion::mean_of_flight(integrated, &flight, &window, setup.cog_m);
     let cask = &file.cask;
@@ -130,9 +128,13 @@ fn moved(
     let reading = motion::read_channels(integrated, events, &setup);
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(integrated, flight, events, setup);
     let taken = fit::ladder(&measured, plain.as_ref(), reading, &moved)?;
-    let motion = motion::reconstruct(integrated, &taken.flight, &taken.events, &taken.setup)?;
+    let fit::Inputs { flight: moved, events: times, setup: as_taken, .. } = &taken.taken;
+    let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
+    let second = SecondImpact::find(file, &integrated.signals, &flight, (&motion, as_taken), &measured);
+    let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref())
+        .or_else(|| impacts::tabulated(file, integrated, &taken, None));
     let fit::RungTaken { quantities, choice: reconstruction, .. } = taken;
-    Some(Flown { flight, setup, motion, quantities, reconstruction })
+    Some(Flown { flight, setup, motion, quantities, reconstruction, tabulated })
 }
 
 /// How the axial velocity is had: measured, or by a friction that the cask file states or leaves open.

@@ -3,17 +3,19 @@
 mod again;
 mod flight;
 mod impact;
+mod impacts;
 mod measured;
 pub mod one_end;
 mod outcome;
 mod reached;
+mod second;
 pub mod settle;
 mod setup;
 
 pub use setup::sticking;
 
 use crate::data::{Analysis, CaskFile, Events, Finding, IssueCode, Recording};
-use crate::judge;
+use crate::{ingest, judge};
 use flight::Flown;
 use impact::Impact;
 use measured::Measured;
@@ -27,6 +29,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     // On a thread of the pool: any other would be put to sleep and woken again for each piece of work that two threads share.
     let mut found = measure(recording, cask_file);
     rayon::scope(|_| again::name_slip(recording, cask_file, &mut found));
+    found.result.keys = ingest::cask_file::settings(cask_file, recording);
     found
 }
 
@@ -77,7 +80,11 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
         None => Reached::Impact,
         Some(flown) => match Measured::of(&flown, &impact, &events, file, &mut findings) {
             None => Reached::Flown(Box::new(flown)),
-            Some(measured) => Reached::Measured(Box::new(flown), measured),
+            Some(measured) => {
+                let untold = flown.tabulated.as_ref().and_then(|t| t.untold(impact.recorded(), &events));
+                findings.extend(untold);
+                Reached::Measured(Box::new(flown), measured)
+            }
         },
     };
     if !matches!(reached, Reached::Measured(..)) {

@@ -1,11 +1,13 @@
 //! What the stages found to one [`Analysis`].
 
 use super::impact::Impact;
+use super::impacts;
 use super::reached::Reached;
 use super::setup::sticking;
 use crate::data::{
-    Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, DropResult, Estimate, Events, Finding,
-    FirstImpact, Input, Prediction, Quantities, Recording, Setting, Setup, Signal, SlapDown,
+    Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, Drop, DropResult, End, Estimate, Events,
+    Finding, FirstImpact, ImpactTable, Input, ModelChoice, Prediction, Quantities, Recording, Rung, Setting,
+    Setup, Signal, SlapDown,
 };
 use crate::numerics::reduce::peak;
 use crate::{compare, fit, judge, motion, predict};
@@ -57,15 +59,22 @@ pub(super) fn of(
     }
     let mut curves = Curves { channels: curves, motion: None };
     let mut result = result(recording, file, findings, (channels, events), quantities);
+    let tabulated = match &reached {
+        Reached::Measured(flown, _) => flown.tabulated.as_ref(),
+        Reached::Impact | Reached::Flown(_) => None,
+    };
+    result.impacts = impacts::of_result(file, signals, &result, tabulated);
+    result.amplification = impacts::amplification(&result);
     result.settings.splice(0..0, of_curves(file, &events, effect));
     match reached {
         Reached::Impact => {}
         Reached::Flown(flown) => result.flight = Some(flown.flight),
         Reached::Measured(flown, measured) => {
-            result.budget = flown.quantities.budget;
             result.reconstruction = Some(flown.reconstruction);
+            result.predictions = predictions(file, Some((&flown.quantities, measured.model.as_ref())));
             result.model = measured.model;
             result.comparison = measured.comparison;
+            result.budget = flown.quantities.budget;
             result.flight = Some(flown.flight);
             curves.motion = Some(flown.motion.curve);
         }
@@ -93,6 +102,9 @@ fn result(
     DropResult {
         schema: "dropcheck.result/1",
         version: env!("CARGO_PKG_VERSION"),
+        program: None,
+        command: Vec::new(),
+        analysed: None,
         input: Input {
             recording: recording.path.display().to_string(),
             recording_sha256: recording.sha256.clone(),
@@ -117,9 +129,11 @@ fn result(
             second_end_height: quantities.and_then(|q| q.second_end_height),
         },
         k: quantities.map(|q| q.k),
+        amplification: None,
+        impacts: [End::First, End::Second].map(ImpactTable::unknown),
         reconstruction: None,
         model: None,
-        predictions: predictions(file, quantities),
+        predictions: predictions(file, None),
         comparison: None,
         quality: findings,
         verdict,
@@ -128,17 +142,22 @@ fn result(
         flight: None,
         budget: Vec::new(),
         settings: of_cask_file(file, &events),
+        keys: serde_json::Value::Null,
+        cask_text: file.text.clone(),
     }
 }
 
-/// Rod and body: the four borderline cases, and the contact law and k of the test.
-fn predictions(file: &CaskFile, measured: Option<&Quantities>) -> Vec<Prediction> {
+/// Rod and body: the four borderline cases, and the contact law and k of the test, with the length of its contact where that is the model taken.
+fn predictions(file: &CaskFile, measured: Option<(&Quantities, Option<&ModelChoice>)>) -> Vec<Prediction> {
     let mut all = Vec::new();
     for body in predict::bodies(&file.cask) {
         all.extend(predict::borderline_cases(&body, &file.drop));
-        all.extend(measured.map(|measured| {
+        all.extend(measured.map(|(measured, taken)| {
             let contact = compare::contact_as_measured(file.contact, measured);
-            predict::predict(&body, &file.drop, contact, measured.k.value.clamp(0.0, 1.0))
+            let is_timed = taken.is_some_and(|m| m.rung == Rung::FinitePulse && m.name == body.model);
+            let contact_duration_s = if is_timed { measured.duration.value.max(0.0) } else { 0.0 };
+            let drop = Drop { contact_duration_s, ..file.drop };
+            predict::predict(&body, &drop, contact, measured.k.value.clamp(0.0, 1.0))
         }));
     }
     all

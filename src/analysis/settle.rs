@@ -65,20 +65,32 @@ struct Search<'a> {
     record_end_s: f64,
     earliest_s: f64,
     least_m_s: f64,
+    /// Whether R has to strike, and on the target; else a flight that is explained will do.
+    to_target: bool,
 }
 
 /// Settles separation, slap-down and flight; of several beginnings the first that explains the flight and brings R to the target, else the
 /// best. `None` without transverse channels on both ends.
 pub fn settle(file: &CaskFile, integrated: &Integrated) -> Option<Settled> {
+    settled(file, integrated, true)
+}
+
+/// The same where nothing is asked of what comes after the flight.
+pub fn settle_open(file: &CaskFile, integrated: &Integrated) -> Option<Settled> {
+    settled(file, integrated, false)
+}
+
+fn settled(file: &CaskFile, integrated: &Integrated, to_target: bool) -> Option<Settled> {
     let &Integrated { ref signals, contact_s, .. } = integrated;
     let drop = &file.drop;
-    let descent_m = file.cask.length_m * drop.angle_rad.sin();
+    let descent_m = file.cask.length_m * drop.angle_rad.sin().max(0.0);
     let search = Search {
         integrated,
         file,
         record_end_s: record_end_s(signals),
         earliest_s: contact_s + EARLIEST_SLAP_DOWN * descent_m / drop.impact_velocity_m_s,
         least_m_s: LEAST_SLAP_DOWN * drop.impact_velocity_m_s,
+        to_target,
     };
     let from_s = contact_s - BEFORE_S;
     let on =
@@ -171,7 +183,9 @@ impl Search<'_> {
                 from_s: free_s,
                 to_s: end_s - motion::BEFORE_SLAP_DOWN_S,
                 drift: self.file.corrections.zero_shift,
-                angular_velocity_rad_s: flight.as_ref().map_or(0.0, |f| motion::rotation_rad_s(signals, f)),
+                angular_velocity_rad_s: flight
+                    .as_ref()
+                    .map_or(0.0, |f| motion::turned_rad_s(signals, f, self.file.drop.angular_velocity_rad_s)),
             };
             let drive = motion::drive(self.integrated, flight.as_ref(), left.time_s, window.from_s, cog_m);
             let mut fits = motion::fit_flights(self.integrated, &window, drive.as_ref(), cog_m).into_iter();
@@ -222,6 +236,10 @@ impl Search<'_> {
         } else {
             EXPLAINED_M_S.min(EXPLAINED_SHORT * self.file.drop.impact_velocity_m_s)
         };
+        let is_resolved = |cost: f64| if flight.resolves_modes() { cost } else { cost.max(1.0) };
+        if !self.to_target {
+            return is_resolved(left_m_s / most_left_m_s);
+        }
         let moved = settled.moved(self.file, self.integrated);
         let cask = &self.file.cask;
         let turning = moved.as_ref().filter(|_| cask.is_body).map_or(0.0, |m| {
@@ -231,7 +249,7 @@ impl Search<'_> {
         let off_m = moved.and_then(|m| m.second_end_height_m).unwrap_or(cask.length_m);
         let cost = (left_m_s / most_left_m_s).max(off_m.abs() / (NEAR * cask.length_m)).max(turning / TURNED);
         // Modes that the window does not tell apart explain anything.
-        if flight.resolves_modes() { cost } else { cost.max(1.0) }
+        is_resolved(cost)
     }
 }
 

@@ -2,6 +2,11 @@
 
 use crate::data::{AxialClosure, CaskFile, Setup};
 
+/// A friction that nobody states lies between none and what sticking needs, and more than that does as much: in the middle of what 0.1 and
+/// more give, as a share of what sticking needs, and with a standard uncertainty that takes both ends in.
+pub(super) const MIDDLE: f64 = 0.6;
+pub(super) const U_UNKNOWN: f64 = 0.33;
+
 /// Geometry and initial motion of a cask file, L sticking to the target.
 #[must_use]
 pub fn sticking(cask_file: &CaskFile) -> Setup {

@@ -4,18 +4,21 @@ use super::Ending;
 use super::limits::Bounds;
 use super::output::{Folder, JsonTarget, print};
 use super::progress::with_progress;
+use super::record::{self, EarlierResult};
 use super::tuning::{awake, keep_freed_memory};
 use clap::{Args, ValueEnum};
 use dropcheck::data::{CaskFile, DropResult, RecordingFormat, Setting};
 use dropcheck::{ingest, report};
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
 const AFTER_HELP: &str = "\
 Examples:
   dropcheck analyze drop.mcap --cask cask.toml
   dropcheck analyze drop.csv --cask cask.toml --out report
   dropcheck analyze drop.h5 --cask cask.toml --json - | jq .k
-  dropcheck analyze drop.mcap --cask cask.toml --without zero_shift,hum";
+  dropcheck analyze drop.mcap --cask cask.toml --without zero_shift,hum
+  dropcheck analyze drop.mcap --from report/result.json";
 
 #[derive(Args)]
 #[command(after_help = AFTER_HELP)]
@@ -23,8 +26,11 @@ pub struct Arguments {
     /// The recording: MCAP, HDF5 or CSV, told by its content
     recording: PathBuf,
     /// The cask file (TOML); `dropcheck init` writes one to fill in
-    #[arg(long)]
-    cask: PathBuf,
+    #[arg(long, required_unless_present = "from")]
+    cask: Option<PathBuf>,
+    /// Repeat the analysis that this result.json tells of, with the cask file in it, and say what differs
+    #[arg(long, value_name = "RESULT", conflicts_with_all = ["cask", "without"])]
+    from: Option<PathBuf>,
     /// Folder for the report: report.html, result.json, curves.csv, curves.h5, curves.mcap, pictures
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -60,6 +66,12 @@ enum Correction {
 }
 
 impl SwitchedOff {
+    /// Those that an earlier command line named.
+    fn of_record(record: &EarlierResult) -> Self {
+        let without = record.switched_off().filter_map(|key| Correction::from_str(key, false).ok());
+        Self { without: without.collect() }
+    }
+
     /// Switches them off before the analysis.
     pub fn in_cask_file(&self, cask_file: &mut CaskFile) {
         let made = &mut cask_file.corrections;
@@ -87,13 +99,21 @@ impl SwitchedOff {
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
-    let inputs = [arguments.recording.as_path(), arguments.cask.as_path()];
+    let inputs = [Some(&arguments.recording), arguments.cask.as_ref(), arguments.from.as_ref()];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     let folder =
         arguments.out.as_deref().map(|dir| Folder::checked(dir, &report::FILE_NAMES, &inputs)).transpose()?;
     let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
 
-    let mut cask_file = ingest::cask_file(&arguments.cask)?;
-    arguments.switched_off.in_cask_file(&mut cask_file);
+    let earlier = arguments.from.as_deref().map(EarlierResult::read).transpose()?;
+    let mut cask_file = match (&earlier, &arguments.cask) {
+        (Some(earlier), _) => earlier.cask_file()?,
+        // The words ask for one of both.
+        (None, cask) => ingest::cask_file(cask.as_deref().unwrap_or(Path::new("")))?,
+    };
+    let repeated = earlier.as_ref().map(SwitchedOff::of_record);
+    let switched_off = repeated.as_ref().unwrap_or(&arguments.switched_off);
+    switched_off.in_cask_file(&mut cask_file);
     let limits = arguments.bounds.limits();
     let recording = with_progress("reading", |progress| {
         let read = || ingest::read_within(&arguments.recording, &cask_file, limits, progress);
@@ -105,7 +125,13 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     })?;
     keep_freed_memory();
     let mut analysis = awake(|| dropcheck::analyze(&recording, &cask_file));
-    arguments.switched_off.in_settings(&mut analysis.result);
+    switched_off.in_settings(&mut analysis.result);
+    record::stamp(&mut analysis.result)?;
+    let mut compared = String::new();
+    if let Some(earlier) = &earlier {
+        earlier.repeat(&recording, &mut analysis.result);
+        compared = earlier.differences(&analysis.result)?;
+    }
 
     if let Some(folder) = &folder {
         folder.write(&report::files(&analysis)?)?;
@@ -116,6 +142,10 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         if let Some(folder) = &folder {
             print(&format!("\nReport: {}\n", report::printable(&folder.file("report.html"))))?;
         }
+        print(&compared)?;
+    } else if !compared.is_empty() {
+        // Standard output holds the JSON alone.
+        let _ = anstream::stderr().write_all(compared.as_bytes());
     }
     Ok(analysis.result.verdict.into())
 }

@@ -5,6 +5,7 @@ use super::complaint::sentence;
 use super::limits::Bounds;
 use super::output::{Folder, print};
 use super::progress::with_progress;
+use super::record;
 use super::{Ending, output::CannotWrite};
 use clap::Args;
 use dropcheck::data::CaskFile;
@@ -80,6 +81,7 @@ fn analysed(
     let recording = with_progress(&name, |progress| ingest::read_within(path, cask_file, limits, progress))?;
     let mut analysis = dropcheck::analyze(&recording, cask_file);
     arguments.switched_off.in_settings(&mut analysis.result);
+    record::stamp(&mut analysis.result)?;
     let mut row = BatchRow::of(&analysis.result);
     if let Some((name, folder)) = folder {
         folder.write(&report::files(&analysis)?)?;

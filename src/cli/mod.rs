@@ -12,6 +12,7 @@ mod output;
 mod place;
 mod predict;
 mod progress;
+mod record;
 mod replace;
 mod tuning;
 

@@ -7,6 +7,7 @@ use super::curves::Curves;
 use super::estimate::Estimate;
 use super::finding::Finding;
 use super::flight::FlightFit;
+use super::impacts::ImpactTable;
 use super::ladder::Rung;
 use super::prediction::{BodyModel, Prediction};
 use super::reconstruction::ReconstructionChoice;
@@ -205,6 +206,32 @@ pub struct Setting {
     pub origin: String,
 }
 
+/// The program that made a result.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Program {
+    /// "dropcheck".
+    pub name: &'static str,
+    /// Its version.
+    pub version: &'static str,
+    /// The commit that it was built of, where the build was told.
+    pub commit: Option<&'static str>,
+    /// What it was built for, such as "x86_64-linux".
+    pub target: String,
+}
+
+impl Program {
+    /// This one.
+    #[must_use]
+    pub fn this() -> Self {
+        Self {
+            name: env!("CARGO_PKG_NAME"),
+            version: env!("CARGO_PKG_VERSION"),
+            commit: option_env!("DROPCHECK_COMMIT"),
+            target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
+        }
+    }
+}
+
 /// The result as `result.json` has it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DropResult {
@@ -212,6 +239,12 @@ pub struct DropResult {
     pub schema: &'static str,
     /// The program's version.
     pub version: &'static str,
+    /// Which program made it, with which words on its command line, and when (RFC 3339); where a command line did.
+    pub program: Option<Program>,
+    /// See `program`.
+    pub command: Vec<String>,
+    /// See `program`.
+    pub analysed: Option<String>,
     /// Which files went in.
     pub input: Input,
     /// The first impact.
@@ -220,6 +253,10 @@ pub struct DropResult {
     pub slap_down: SlapDown,
     /// Effective coefficient of restitution.
     pub k: Option<Estimate>,
+    /// Slap-down speed over impact velocity.
+    pub amplification: Option<Estimate>,
+    /// The first impact and the second, as test reports tabulate them.
+    pub impacts: [ImpactTable; 2],
     /// How the motion was had.
     pub reconstruction: Option<ReconstructionChoice>,
     /// Which analytical model explains the measurement.
@@ -240,8 +277,14 @@ pub struct DropResult {
     pub flight: Option<FlightFit>,
     /// What each input contributes to the uncertainty, largest first.
     pub budget: Vec<super::quantities::Contribution>,
-    /// Every setting and where it came from.
+    /// What was done with the samples and how, in words.
+    #[serde(rename = "processing")]
     pub settings: Vec<Setting>,
+    /// Every key of the cask file with its value and where that is from; null where nobody asked.
+    #[serde(rename = "settings")]
+    pub keys: serde_json::Value,
+    /// The cask file's text.
+    pub cask_text: String,
 }
 
 /// Everything one analysis found: the result, the cask file it was made with and the curves.

@@ -18,10 +18,11 @@ pub const MOST_CHANNELS: usize = 1000;
 pub const SAMPLE_RATES_HZ: std::ops::RangeInclusive<f64> = 1e-3..=1e8;
 
 /// An end of the cask.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum End {
     /// L: low, touches first.
+    #[default]
     First,
     /// R: high, slaps down.
     Second,
@@ -310,6 +311,8 @@ pub struct CaskFile {
     pub path: PathBuf,
     /// Its SHA-256, lower-case hexadecimal.
     pub sha256: String,
+    /// Its text, byte-order mark and all; empty where it was never a file.
+    pub text: String,
     /// `[cask]`.
     pub cask: Cask,
     /// `[drop]`.
@@ -337,6 +340,7 @@ impl CaskFile {
         Self {
             path: "cask.toml".into(),
             sha256: String::new(),
+            text: String::new(),
             cask,
             drop,
             contact,

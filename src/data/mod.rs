@@ -8,6 +8,7 @@ mod curves;
 mod estimate;
 mod finding;
 mod flight;
+mod impacts;
 pub(crate) mod keys;
 mod ladder;
 mod listing;
@@ -25,7 +26,7 @@ mod unit;
 
 pub use analysis::{
     Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
-    ModelChoice, Setting, SlapDown, Verdict,
+    ModelChoice, Program, Setting, SlapDown, Verdict,
 };
 pub use at::At;
 pub use cask::{
@@ -42,6 +43,7 @@ pub use finding::{
     shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
+pub use impacts::{ChannelPeak, ForceOverCrush, ImpactTable, RigidBodyDeceleration};
 pub use keys::LONGEST_CONTACT_S;
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};

@@ -21,16 +21,21 @@ const ROLL_RAD_S: f64 = 1.0;
 /// Share of cot φ that a friction reaches at most.
 const MOST_FRICTION: f64 = 0.9;
 
-/// One set of inputs.
+/// One set of inputs, as a reconstruction is followed with them.
 #[derive(Debug, Clone)]
-pub(super) struct Inputs {
+pub struct Inputs {
+    /// Velocity steps of the channels.
     pub flight: FlightFit,
+    /// Times of the events.
     pub events: Events,
+    /// Geometry, initial motion and friction.
     pub setup: Setup,
     /// By which share each channel's reading is corrected.
     pub scales: Vec<f64>,
     /// What share of the other body axis is taken off each channel.
     pub crosses: Vec<f64>,
+    /// How much farther from L each channel is, m.
+    pub places_m: Vec<f64>,
     /// Θ / m, m².
     pub inertia_m2: Option<f64>,
     /// The made-up channel of an end without one, and the channel that it is made of, whose errors it has.
@@ -39,10 +44,10 @@ pub(super) struct Inputs {
 
 /// One input that is uncertain.
 #[derive(Debug, Clone)]
-pub(super) struct UncertainInput {
-    pub name: String,
+pub struct UncertainInput {
+    pub(super) name: String,
     /// Its standard uncertainty, as a person reads it.
-    pub size: String,
+    pub(super) size: String,
     /// More than one where channels share it.
     changes: Vec<Change>,
 }
@@ -72,6 +77,7 @@ enum Change {
     Step { channel: usize, add_m_s: f64 },
     Scale { channel: usize, share: f64 },
     Cross { channel: usize, share: f64, other_m_s: f64 },
+    Place { channel: usize, by_m: f64, gained_rad_s: f64 },
     Angle { by_rad: f64 },
     ImpactVelocity { share: f64 },
     Event { event: Event, by_s: f64 },
@@ -86,7 +92,7 @@ enum Change {
 }
 
 impl Inputs {
-    pub fn new(measured: &Basis) -> Self {
+    pub(super) fn new(measured: &Basis) -> Self {
         let channels = measured.flight.plateaus.len();
         Self {
             flight: measured.flight.clone(),
@@ -94,13 +100,14 @@ impl Inputs {
             setup: *measured.setup,
             scales: vec![0.0; channels],
             crosses: vec![0.0; channels],
+            places_m: vec![0.0; channels],
             inertia_m2: measured.inertia_m2,
             stood_in: measured.stood_in,
         }
     }
 
     /// These inputs with each of `inputs` moved by so many of its standard uncertainties.
-    pub fn moved(&self, inputs: &[UncertainInput], by_u: &[f64]) -> Self {
+    pub(super) fn moved(&self, inputs: &[UncertainInput], by_u: &[f64]) -> Self {
         let mut moved = self.clone();
         for (input, &by) in inputs.iter().zip(by_u) {
             for change in input.changes.iter().filter(|_| by != 0.0) {
@@ -130,6 +137,11 @@ impl Inputs {
             Change::Cross { channel, share, other_m_s } => {
                 step(channel, -by * share * other_m_s);
                 self.crosses[channel] += by * share;
+            }
+            Change::Place { channel, by_m, gained_rad_s } => {
+                // A sensor farther from L by δ reads Ω δ = −ω δ more.
+                step(channel, by * gained_rad_s * by_m);
+                self.places_m[channel] += by * by_m;
             }
             Change::Angle { by_rad } => self.setup.angle_rad += by * by_rad,
             Change::ImpactVelocity { share } => self.setup.impact_velocity_m_s *= 1.0 + by * share,
@@ -292,15 +304,15 @@ fn of_channel(all: &mut Vec<UncertainInput>, measured: &Basis, motion: &Motion, 
     let share = known.cross_axis / 2.0;
     add("cross axis", percent(share), Change::Cross { channel, share, other_m_s });
     if is_transverse {
-        // A sensor farther from L by δ reads Ω δ = −ω δ more.
         let by_m = known.position_m / 2.0;
-        add("position", format!("{:.0} mm", 1e3 * by_m), Change::Step { channel, add_m_s: omega * by_m });
+        let place = Change::Place { channel, by_m, gained_rad_s: omega };
+        add("position", format!("{:.0} mm", 1e3 * by_m), place);
     }
 }
 
 /// Standard uncertainty of a channel's velocity step, m/s, of six parts: the plateau's fit, the modes' form, the time in the contact at which a zero
 /// shift set in, the drift of the offset since the free fall, clipping, gaps.
-fn u_step_m_s(measured: &Basis, channel: usize) -> f64 {
+pub fn u_step_m_s(measured: &Basis, channel: usize) -> f64 {
     let (signal, plateau) = (&measured.signals[channel], &measured.flight.plateaus[channel]);
     let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
     let pulse_s = measured.events.separation_s().map_or(0.0, |t| t - contact_s);

@@ -1,12 +1,13 @@
 //! What each rung of the reconstruction says, to the simplest one that explains the recording.
 
-use super::inputs::{Inputs, has_lost_step};
+use super::inputs::{Inputs, UncertainInput, has_lost_step};
 use super::propagate::Model;
 use super::{Basis, COVERAGE, Reconstruct};
 use crate::data::{
-    Axis, ChannelReading, Closure, End, Estimate, Events, FlightFit, MET_U, Quantities,
-    ReconstructionCandidate, ReconstructionChoice, ReconstructionRung, Setup,
+    Axis, ChannelReading, Closure, End, Estimate, FlightFit, MET_U, Quantities, ReconstructionCandidate,
+    ReconstructionChoice, ReconstructionRung,
 };
+use crate::numerics::prior_fit::{PriorFit, derivatives};
 
 /// Where the closures tell lost velocity steps they test nothing, and the intervals of the joint fit are widened by this: with it they hold 19 of 20
 /// simulated drops.
@@ -21,18 +22,38 @@ struct RungStep {
     quantities: Quantities,
 }
 
+/// Numbers as a function of the inputs and of further ones, such as [`RungTaken::spread`] takes it.
+pub type NumbersOf<'a> = &'a (dyn Fn(&Inputs, &[f64]) -> Option<Vec<f64>> + Sync);
+
 /// What the rung taken says, and the inputs that it says it with.
 pub struct RungTaken {
     /// The numbers.
     pub quantities: Quantities,
     /// The rung, and the others.
     pub choice: ReconstructionChoice,
-    /// Velocity steps as the rung has them.
-    pub flight: FlightFit,
-    /// Times as the rung has them.
-    pub events: Events,
-    /// Geometry, initial motion and friction as the rung has them.
-    pub setup: Setup,
+    /// The inputs as the rung has them.
+    pub taken: Inputs,
+    base: Inputs,
+    inputs: Vec<UncertainInput>,
+    fit: PriorFit,
+    widened: f64,
+}
+
+impl RungTaken {
+    /// Numbers that follow from the inputs, each with its standard uncertainty: `of` gives them for moved inputs and for as many further ones,
+    /// independent of all others, in their standard uncertainties, as are asked for. `None` where it fails near the inputs taken.
+    #[must_use]
+    pub fn spread(&self, further: usize, of: NumbersOf) -> Option<Vec<(f64, f64)>> {
+        let count = self.inputs.len();
+        let model = |by_u: &[f64]| {
+            of(&self.base.moved(&self.inputs, &by_u[..count]), by_u.get(count..).unwrap_or(&[]))
+        };
+        let at_u = [&self.fit.unknowns[..], &vec![0.0; further]].concat();
+        let (values, slopes) = (model(&at_u)?, derivatives(&model, &at_u)?);
+        let by_datum = slopes.columns(0, count) * &self.fit.response * self.widened;
+        let u = |i: usize| by_datum.row(i).norm().hypot(slopes.columns(count, further).row(i).norm());
+        Some(values.into_iter().enumerate().map(|(i, value)| (value, u(i))).collect())
+    }
 }
 
 /// Every rung and the one taken: the simplest whose residuals are within what noise and tolerances explain, and whose answer no higher one
@@ -59,8 +80,8 @@ pub fn ladder(
         steps.extend(planar(&measured, reconstruct));
     }
     steps.push(by_flight(measured, flight, &closures));
+    let (widened, why) = widened(&closures, has_lost_step(measured));
     if let Some(fit) = &joint {
-        let (widened, why) = widened(&closures, has_lost_step(measured));
         let step = |quantities| by_joint(quantities, fit.chi_square, closures.len(), (widened, why));
         steps.extend(model.propagate(fit, widened).map(step));
     }
@@ -68,8 +89,7 @@ pub fn ladder(
     let reason = reason(&steps, taken);
     let quantities = steps[taken].quantities.clone();
     let rung = steps[taken].candidate.rung;
-    let fitted = joint.as_ref().filter(|_| rung == ReconstructionRung::Joint);
-    let Inputs { flight, events, setup, .. } = model.inputs_of(fitted);
+    let is_joint = rung == ReconstructionRung::Joint;
     let choice = ReconstructionChoice {
         rung,
         reason,
@@ -78,7 +98,18 @@ pub fn ladder(
         closures,
         candidates: steps.into_iter().map(|s| s.candidate).collect(),
     };
-    Some(RungTaken { quantities, choice, flight, events, setup })
+    let fit = joint.filter(|_| is_joint).unwrap_or_else(|| PriorFit::of_priors(model.inputs.len()));
+    let widened = if is_joint { widened } else { 1.0 };
+    let Model { base, inputs, .. } = model;
+    Some(RungTaken {
+        quantities,
+        choice,
+        taken: base.moved(&inputs, &fit.unknowns),
+        base,
+        inputs,
+        fit,
+        widened,
+    })
 }
 
 fn step(rung: ReconstructionRung, quantities: Quantities, consistent: bool, residual: String) -> RungStep {

@@ -9,6 +9,7 @@ use crate::data::{
     AssumedFriction, ChannelSpec, Events, FlightFit, Motion, RestLevel, Setup, Signal, StoodIn, Tolerances,
 };
 
+pub use inputs::{Inputs, u_step_m_s};
 pub use ladder::{RungTaken, ladder};
 pub use propagate::{quantities, spread_by_draws};
 

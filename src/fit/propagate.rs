@@ -64,9 +64,9 @@ pub fn spread_by_draws(
 pub(super) struct Model<'a> {
     measured: &'a Basis<'a>,
     reconstruct: Reconstruct<'a>,
-    base: Inputs,
+    pub(super) base: Inputs,
     motion: Motion,
-    inputs: Vec<UncertainInput>,
+    pub(super) inputs: Vec<UncertainInput>,
     observables: Vec<Observable>,
     /// Slopes of the quantities and, below them, of the observables, and where they were asked for.
     known_slopes: Mutex<Vec<(Vec<f64>, DMatrix<f64>)>>,
@@ -134,11 +134,6 @@ impl<'a> Model<'a> {
 
     fn slopes_of_residuals(&self, at_u: &[f64]) -> Option<DMatrix<f64>> {
         Some(self.slopes(at_u)?.rows(COUNT, self.observables.len()).into_owned())
-    }
-
-    /// The inputs as stated, or as a fit ended with them.
-    pub fn inputs_of(&self, fit: Option<&PriorFit>) -> Inputs {
-        fit.map_or_else(|| self.base.clone(), |fit| self.base.moved(&self.inputs, &fit.unknowns))
     }
 
     /// The inputs fitted to the observables; `None` where there are none or the motion cannot be followed.

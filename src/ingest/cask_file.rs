@@ -5,6 +5,7 @@ pub(crate) mod channel;
 pub(super) mod fault;
 mod range;
 pub(crate) mod section;
+mod settings;
 pub(super) mod tolerance;
 mod wording;
 
@@ -13,6 +14,7 @@ use crate::data::{CaskFile, Contact, Drop, FilterChoice};
 pub(crate) use body::{cask, drop};
 pub use fault::{CaskFileError, WrongLine};
 use section::{CASK_FILE, Document, Kind, Section};
+pub use settings::settings;
 use sha2::{Digest, Sha256};
 use std::io::Read;
 use std::path::Path;
@@ -25,11 +27,21 @@ const LARGEST_BYTES: u64 = 16 << 20;
 /// # Errors
 /// [`CaskFileError`], one message that shows the line.
 pub fn parse(path: &Path) -> Result<CaskFile, CaskFileError> {
-    let bytes = read(path, &CASK_FILE)?;
-    let text = text(path, &bytes, &CASK_FILE)?;
-    let mut cask_file = checked(path, text)?;
-    cask_file.sha256 = format!("{:x}", Sha256::digest(&bytes));
-    Ok(cask_file)
+    of_bytes(path, &read(path, &CASK_FILE)?)
+}
+
+/// The cask file of which this is the text, such as a result holds it; `path` is what it was called.
+///
+/// # Errors
+/// [`CaskFileError`], one message that shows the line.
+pub fn of_text(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
+    of_bytes(path, text.as_bytes())
+}
+
+fn of_bytes(path: &Path, bytes: &[u8]) -> Result<CaskFile, CaskFileError> {
+    let sha256 = format!("{:x}", Sha256::digest(bytes));
+    let cask_file = checked(path, text(path, bytes, &CASK_FILE)?)?;
+    Ok(CaskFile { sha256, text: String::from_utf8_lossy(bytes).into_owned(), ..cask_file })
 }
 
 /// Whether the file has any channel, as `analyze` needs.
@@ -137,6 +149,7 @@ pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError
     Ok(CaskFile {
         path: path.to_owned(),
         sha256: String::new(),
+        text: String::new(),
         cask,
         drop,
         contact,

@@ -14,7 +14,7 @@ const BEFORE_S: f64 = 0.01;
 const AFTER_S: f64 = 0.04;
 /// Filtered before what is shown, s: the noise of a flight fit is taken from as long a stretch of free fall, at most 0.1 s.
 const QUIET_S: f64 = 0.11;
-/// IAEA advice as quoted in the field: 100–200 Hz for 100 t, scaled with (100 t / m)^(1/3); the upper end (28).
+/// IAEA SSG-26 as quoted in the field: 100–200 Hz for 100 t, scaled with (100 t / m)^(1/3); the upper end (28).
 const CUTOFF_100_T_HZ: f64 = 200.0;
 /// A cut-off of this over the pulse's length keeps its peak within 1 % (half sine, two-pass Butterworth).
 const PULSE_CUTOFF: f64 = 3.0;
@@ -37,6 +37,29 @@ pub fn cutoff_hz(choice: FilterChoice, mass_kg: f64, pulse_s: Option<f64>) -> (f
             }
         }
     }
+}
+
+/// The name of the low-pass that [`cutoff_hz`] gives without a pulse.
+#[must_use]
+pub fn filter_name(choice: FilterChoice) -> String {
+    match choice {
+        FilterChoice::Cfc(class) => format!("CFC {class}"),
+        FilterChoice::CutoffHz(hz) => format!("{hz} Hz"),
+        FilterChoice::Auto => "SSG-26, 200 Hz".to_owned(),
+    }
+}
+
+/// The low-passes that rigid-body decelerations are usually stated with, and their −3 dB frequencies, Hz   (28), (25)
+#[must_use]
+pub fn usual_filters(mass_kg: f64) -> Vec<(String, f64)> {
+    let by_mass_hz = cutoff_hz(FilterChoice::Auto, mass_kg, None).0;
+    let classes = [60.0, 180.0, 600.0].map(|class| {
+        let choice = FilterChoice::Cfc(class);
+        (filter_name(choice), cutoff_hz(choice, mass_kg, None).0)
+    });
+    let advised =
+        [("SSG-26, 100 Hz".to_owned(), by_mass_hz / 2.0), (filter_name(FilterChoice::Auto), by_mass_hz)];
+    advised.into_iter().chain(classes).collect()
 }
 
 /// The signals around the event, low-passed without phase; a cut-off that the rate cannot carry leaves them as they are.

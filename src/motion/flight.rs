@@ -216,7 +216,7 @@ fn late_mismatch_m_s(
         return None;
     }
     let plateau = flight.plateau(&signal.name)?;
-    let centrifugal_m_s2 = -whole.angular_velocity_rad_s.powi(2) * centrifugal_arm_m(signal, cog_m);
+    let centrifugal_m_s2 = centrifugal_m_s2(signal, whole, cog_m);
     let off_m_s = |length_s: f64| {
         let from_s = to_s - length_s;
         let middle_s = f64::midpoint(from_s, to_s) - flight.from_s;
@@ -240,11 +240,16 @@ fn late_mismatch_m_s(
 }
 
 /// Distance along the axis that the centrifugal force of a channel goes with, m: f_η holds −Ω² η, f_ξ holds −Ω² ξ   (14), (15)
-fn centrifugal_arm_m(signal: &Signal, cog_m: f64) -> f64 {
+pub(super) fn centrifugal_arm_m(signal: &Signal, cog_m: f64) -> f64 {
     match signal.axis {
         Axis::Transverse => signal.offset_m,
         Axis::Axial => signal.position_m - cog_m,
     }
+}
+
+fn centrifugal_m_s2(signal: &Signal, window: &Window, cog_m: f64) -> f64 {
+    let turning = window.angular_velocity_rad_s;
+    -turning * turning.abs() * centrifugal_arm_m(signal, cog_m)
 }
 
 /// A zero shift beyond this share of the peak is none: it is a contact that the window holds, or a mode slower than it.
@@ -309,8 +314,7 @@ fn series_of(
     window: &Window,
     cog_m: f64,
 ) -> Series {
-    let arm_m = centrifugal_arm_m(signal, cog_m);
-    let centrifugal_m_s2 = -window.angular_velocity_rad_s.powi(2) * arm_m;
+    let centrifugal_m_s2 = centrifugal_m_s2(signal, window, cog_m);
     let length_s = (window.to_s.min(signal.end_s()) - window.from_s).max(0.0);
     #[allow(
         clippy::cast_possible_truncation,
@@ -350,17 +354,13 @@ fn noise_floor((signal, velocity): (&Signal, &Velocity), contact_s: f64, length_
     let to_s = contact_s - CLEAR_S;
     let from_s = (to_s - length_s).max(signal.start_s);
     let guessed = signal.noise_m_s2 * (length_s / signal.sample_rate_hz).sqrt() / 4.0;
-    let points: u32 = 60;
     if to_s - from_s < 0.5 * length_s {
         return guessed;
     }
+    let points: u32 = 60;
     let bin_s = (to_s - from_s) / f64::from(points);
-    let (mut time_s, mut value) = (Vec::new(), Vec::new());
-    for i in 0..points {
-        let a = f64::from(i) * bin_s;
-        time_s.push(a);
-        value.push(velocity.mean(from_s + a, from_s + a + bin_s));
-    }
+    let time_s: Vec<f64> = (0..points).map(|i| f64::from(i) * bin_s).collect();
+    let value = time_s.iter().map(|a| velocity.mean(from_s + a, from_s + a + bin_s)).collect();
     let line = Series { time_s, value, steps_s: vec![], floor: 1e-12 };
     fit(&[line], &[], None, Form { drift: true, drive: None })
         .map_or(guessed, |f| f.series[0].residual.max(0.5 * guessed))

@@ -1,5 +1,6 @@
 //! Signals to the motion of the cask: velocity curves, flight plateaus free of ringing, the planar rigid body.
 
+mod contact;
 mod curves;
 mod flight;
 mod histories;
@@ -9,11 +10,12 @@ mod strike;
 mod thin;
 mod window;
 
-pub use curves::{channel_curves, cutoff_hz, filtered, read_channels};
+pub use contact::{ContactCourse, ForceCourse, largest, pulse};
+pub use curves::{channel_curves, cutoff_hz, filter_name, filtered, read_channels, usual_filters};
 pub use flight::{compare_late, fit_flight, fit_flights, mean_of_flight};
 pub use histories::drive;
-pub use reconstruct::{outcome, reconstruct};
-pub use ringing::{Calmed, rotation_rad_s};
+pub use reconstruct::{outcome, reconstruct, with_states};
+pub use ringing::{Calmed, mirrored, rotation_rad_s, turned_rad_s};
 pub use strike::strike;
 pub use window::{BEFORE_SLAP_DOWN_S, Window, clear_of_contact_s};
 

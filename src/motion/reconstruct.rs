@@ -47,6 +47,19 @@ pub fn outcome(integrated: &Integrated, fit: &FlightFit, events: &Events, setup:
     follow(integrated, fit, events, setup, &mut |_| ())
 }
 
+/// The same with the states of the contact, in steps of equal length.
+#[must_use]
+pub fn with_states(
+    integrated: &Integrated,
+    fit: &FlightFit,
+    events: &Events,
+    setup: &Setup,
+) -> Option<(Motion, Vec<MotionState>)> {
+    let mut states = Vec::new();
+    let motion = follow(integrated, fit, events, setup, &mut |state| states.push(*state))?;
+    Some((motion, states))
+}
+
 /// The motion over the contact, each state told to `record`, and its flight.
 fn follow(
     integrated: &Integrated,
@@ -150,13 +163,13 @@ fn arm_by_m(setup: &Setup, (sin, cos): (f64, f64), ahead_m: f64) -> (f64, f64) {
 }
 
 /// Horizontal and vertical velocity of that corner, m/s: v = v_S + φ̇ × r   (3)
-fn corner(setup: &Setup, state: &MotionState, ahead_m: f64) -> (f64, f64) {
+pub(super) fn corner(setup: &Setup, state: &MotionState, ahead_m: f64) -> (f64, f64) {
     let (x, z) = arm_m(setup, state.angle_rad, ahead_m);
     let w = state.angular_velocity_rad_s;
     (state.horizontal_velocity_m_s + w * z, state.vertical_velocity_m_s - w * x)
 }
 
-fn corner_height_m(setup: &Setup, state: &MotionState, ahead_m: f64) -> f64 {
+pub(super) fn corner_height_m(setup: &Setup, state: &MotionState, ahead_m: f64) -> f64 {
     state.height_m + arm_m(setup, state.angle_rad, ahead_m).1
 }
 

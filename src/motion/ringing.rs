@@ -1,6 +1,7 @@
 //! Signals and their flight fit to the same signals without ringing and zero shift.
 
-use crate::data::{Axis, FlightFit, Mode, Plateau, Signal};
+use super::flight::centrifugal_arm_m;
+use crate::data::{Axis, End, FlightFit, Mode, Plateau, Signal};
 use crate::numerics::damped_modes::{Oscillation, uniform_ringing};
 use std::ops::Range;
 
@@ -70,6 +71,43 @@ impl Calmed {
             *force -= cosine * z.re + sine * z.im;
         }
     }
+}
+
+/// ω of a flight whose centrifugal force its channels show beyond that of a rotation before it, which went with their offset, rad/s: the root of
+/// the difference of both squares, negative where the cask turns more slowly than before.
+#[must_use]
+pub fn turned_rad_s(signals: &[Signal], fit: &FlightFit, before_rad_s: f64) -> f64 {
+    let gained_rad_s = rotation_rad_s(signals, fit);
+    if before_rad_s == 0.0 {
+        return gained_rad_s.abs();
+    }
+    let beyond = (before_rad_s + gained_rad_s).powi(2) - before_rad_s.powi(2);
+    beyond.abs().sqrt().copysign(beyond)
+}
+
+/// The signals of a drop from its flight on as those of a drop that begins with the slap-down, seen in a mirror: R is its first end, and nothing
+/// rings or shifts in its fall, nor pulls outward while the cask turns by ω, rad/s.
+#[must_use]
+pub fn mirrored(
+    signals: &[Signal],
+    fit: &FlightFit,
+    turning_rad_s: f64,
+    (length_m, cog_m): (f64, f64),
+) -> Vec<Signal> {
+    let mirror = |signal: &Signal| {
+        let flown = signal.cut(signal.index_from(fit.from_s), usize::MAX);
+        let arm_m = centrifugal_arm_m(signal, cog_m);
+        let mut calmed = Calmed::new((flown, vec![(signal.name.clone(), 1.0)]));
+        calmed.take_off(fit, fit.from_s..f64::INFINITY);
+        let mut calm = calmed.signal;
+        let along = if signal.axis == Axis::Axial { -1.0 } else { 1.0 };
+        for force in &mut calm.force_m_s2 {
+            *force = along * (*force + turning_rad_s * turning_rad_s * arm_m);
+        }
+        let end = if signal.end == End::First { End::Second } else { End::First };
+        Signal { end, position_m: length_m - signal.position_m, ..calm }
+    };
+    signals.iter().map(mirror).collect()
 }
 
 /// ω from the plateaus of the transverse channels, rad/s: minus the slope of the velocity steps over position (16); 0 where there is none.

@@ -2,6 +2,7 @@
 
 use super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument, Tone};
 use super::grid::STANDARD_GRAVITY_M_S2;
+use super::impacts::impacts;
 use super::medium::{Medium, Words};
 use super::prediction::prediction_columns;
 use super::reconstruction::{budget, flight, reconstruction};
@@ -62,6 +63,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             summary(result, file),
             tested(file, "What was tested"),
             quantities(result),
+            impacts(result),
             comparison(result),
             quality(&result.quality).only(Medium::Page),
             curves,
@@ -283,6 +285,13 @@ fn channels(result: &DropResult) -> Chapter {
     Chapter::new("Channels").with(table)
 }
 
+/// "dropcheck 0.1.0 (0123abc), 2026-11-24T02:00:00Z".
+fn program(result: &DropResult) -> String {
+    let of = result.program.as_ref().and_then(|p| p.commit).map(|commit| format!(" ({commit})"));
+    let when = result.analysed.as_ref().map(|when| format!(", {when}"));
+    format!("dropcheck {}{}{}", result.version, of.unwrap_or_default(), when.unwrap_or_default())
+}
+
 /// Which files, which version, which settings.
 fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
     let (input, speed) = (&result.input, interval(result.slap_down.speed.as_ref()));
@@ -291,7 +300,7 @@ fn provenance(result: &DropResult, file: &CaskFile) -> Chapter {
         Fact::code("its SHA-256", &input.recording_sha256[..]),
         Fact::words("Cask file", &input.cask[..]),
         Fact::code("its SHA-256", &input.cask_sha256[..]),
-        Fact::words("Program", format!("dropcheck {}", result.version)),
+        Fact::words("Program", program(result)),
         Fact::words("Slap-down speed", format!("{speed} · result schema {}", result.schema)),
     ];
     let stated = settings::of_cask_file(file, &result.settings);

@@ -14,6 +14,7 @@ mod curves_mcap;
 #[cfg_attr(not(feature = "lab"), allow(dead_code, reason = "the pages of the laboratory use all of it"))]
 pub(crate) mod document;
 mod grid;
+mod impacts;
 pub(crate) mod json;
 mod likely;
 mod listing;

@@ -4,8 +4,9 @@ use super::sample_reconstruction;
 use crate::data::{
     Analysis, At, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelFinding, ChannelSpec, ChannelSummary,
     Comparison, Contact, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events, FilterChoice,
-    Finding, FirstImpact, FlightFit, FlightModelScore, FlightRegime, Input, Mode, ModelCandidate,
-    ModelChoice, MotionCurve, Plateau, Prediction, RecordingFormat, Rung, Setting, SlapDown, Unit, Verdict,
+    Finding, FirstImpact, FlightFit, FlightModelScore, FlightRegime, ImpactTable, Input, Mode, ModelCandidate,
+    ModelChoice, MotionCurve, Plateau, Prediction, Program, RecordingFormat, Rung, Setting, SlapDown, Unit,
+    Verdict,
 };
 use std::f64::consts::PI;
 
@@ -55,10 +56,27 @@ fn estimate(value: f64, u95: f64, unit: &'static str) -> Option<Estimate> {
     Some(Estimate::new(value, u95, unit))
 }
 
+/// The first impact with a number, and the second without any.
+fn impacts() -> [ImpactTable; 2] {
+    let first = ImpactTable {
+        crush: estimate(0.0315, 0.0008, "m"),
+        energy_absorbed: estimate(1.06e5, 2.0e4, "J"),
+        ..ImpactTable::unknown(End::First)
+    };
+    [first, ImpactTable::unknown(End::Second)]
+}
+
 fn result() -> DropResult {
     DropResult {
         schema: "dropcheck.result/1",
         version: "0.1.0",
+        program: Some(Program { commit: Some("0123abc"), ..Program::this() }),
+        command: vec!["analyze".into()],
+        analysed: Some("2026-11-24T02:00:00Z".into()),
+        amplification: Some(Estimate::new(1.55, 0.03, "1")),
+        impacts: impacts(),
+        keys: serde_json::Value::Null,
+        cask_text: "[cask]".into(),
         input: Input {
             recording: "drop-2024-06-11/anf18-test-3.mcap".into(),
             recording_sha256: "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".into(),
@@ -257,6 +275,7 @@ pub(super) fn cask_file() -> CaskFile {
     CaskFile {
         path: "anf18.toml".into(),
         sha256: "60303ae22b998861bce3b28f33eec1be758a213c86c93c076dbe9f558c11c752".into(),
+        text: String::new(),
         cask: Cask {
             name: "ANF-18".into(),
             mass_kg: 4466.0,

@@ -32,13 +32,17 @@ pub(super) fn tested(file: &CaskFile, heading: &str) -> Chapter {
     if let Some(width_m) = cask.width_m {
         of_cask.insert(3, fact("Section across that plane", "cask.width_m", plain(width_m, 6), "m"));
     }
-    let of_drop = vec![
+    let mut of_drop = vec![
         fact("Free-fall height", "drop.height_m", plain(drop.height_m, 6), "m"),
         fact("Inclination of the axis", "drop.angle_deg", plain(drop.angle_rad.to_degrees(), 6), "°"),
         fact(velocity, "drop.impact_velocity", plain(drop.impact_velocity_m_s, 5), "m/s"),
         fact("Gravity", "drop.gravity_m_s2", plain(drop.gravity_m_s2, 6), "m/s²"),
         fact("Contact of the first end", "contact.friction", contact_words(file.contact), ""),
     ];
+    if drop.contact_duration_s > 0.0 {
+        let lasts_ms = plain(1e3 * drop.contact_duration_s, 5);
+        of_drop.push(fact("First impact lasts", "contact.duration_s", lasts_ms, "ms"));
+    }
     Chapter::new(heading).only(Medium::Page).with(PartContent::Beside([
         vec![ChapterPart::facts(format!("Cask {}", cask.name), of_cask)],
         vec![ChapterPart::facts("Drop and contact", of_drop)],

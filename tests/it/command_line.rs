@@ -360,13 +360,15 @@ fn a_correction_switched_off_is_said_in_the_result() {
     };
     let off = |answer: &Answer| -> Vec<String> {
         let result = answer.json();
-        let settings = result["settings"].as_array().expect("a list").clone();
+        let settings = result["processing"].as_array().expect("a list").clone();
         let off = settings.iter().filter(|s| s["origin"] == "command line, --without");
         off.map(|s| s["name"].as_str().expect("a name").to_owned()).collect()
     };
     assert!(off(&with(&[])).is_empty());
     let answer = with(&["--without", "hum,offset", "--without", "offset"]);
     assert_eq!(off(&answer), ["correction offset", "correction hum"]);
+    assert_eq!(answer.json()["settings"]["corrections"]["hum"]["from"], "command line");
+    assert_eq!(answer.json()["settings"]["corrections"]["skew"]["from"], "default");
     // What is not taken off shows as an offset of nothing.
     assert_eq!(answer.json()["channels"][0]["offset_m_s2"], 0.0);
     assert!(with(&[]).json()["channels"][0]["offset_m_s2"] != 0.0);

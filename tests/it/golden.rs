@@ -15,6 +15,7 @@ fn analyze(stem: &str, extension: &str, more: &[&str]) -> String {
         .current_dir(root())
         .env("NO_COLOR", "1")
         .env("COLUMNS", "80")
+        .env("SOURCE_DATE_EPOCH", "0")
         .args([
             "analyze",
             &format!("fixtures/{stem}.{extension}"),

@@ -20,6 +20,7 @@ pub fn dropcheck<S: AsRef<OsStr>>(words: impl IntoIterator<Item = S>) -> Answer 
     let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_dropcheck"))
         .args(words)
         .env_remove("RUST_BACKTRACE")
+        .env("SOURCE_DATE_EPOCH", "0")
         .output()
         .expect("the program starts");
     Answer {

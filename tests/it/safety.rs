@@ -217,9 +217,15 @@ mod interrupted {
 
     type Content = Vec<(PathBuf, Vec<u8>)>;
 
+    /// In the folder around `out`, whose name is that of all: a report holds the words and the date of its run.
     fn started(stem: &str, recording: &str, out: &Path) -> Child {
+        let around = out.parent().expect("a parent");
+        fs::create_dir_all(around).expect("a folder");
+        let name = Path::new(out.file_name().expect("a name"));
         Command::new(env!("CARGO_BIN_EXE_dropcheck"))
-            .args(words(&fixture(recording), &fixture(&format!("{stem}.toml")), out))
+            .current_dir(around)
+            .env("SOURCE_DATE_EPOCH", "0")
+            .args(words(&fixture(recording), &fixture(&format!("{stem}.toml")), name))
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()
@@ -232,7 +238,7 @@ mod interrupted {
     /// The two reports, each whole, and how long the second takes.
     fn both(bench: &Bench) -> (Content, Content, Duration) {
         let reports = [ONE, OTHER].map(|(stem, recording)| {
-            let out = bench.0.path().join(stem);
+            let out = bench.0.path().join(stem).join("report");
             let begun = Instant::now();
             started(stem, recording, &out).wait().expect("a run");
             (content(&out), begun.elapsed())
@@ -278,7 +284,7 @@ mod interrupted {
         let bench = Bench::new();
         let (one, other, _) = both(&bench);
         for number in 0..3 {
-            let out = bench.0.path().join(format!("place/{number}"));
+            let out = bench.0.path().join(format!("place/{number}/report"));
             let children = [ONE, OTHER, ONE, OTHER].map(|(stem, recording)| started(stem, recording, &out));
             for mut child in children {
                 assert!(child.wait().expect("a run").code().is_some_and(|code| code < 2));

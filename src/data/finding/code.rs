@@ -55,6 +55,7 @@ pub enum IssueCode {
     SeveralDrops,
     NoSlapDown,
     SecondContact,
+    SecondImpact,
     Geometry,
     Friction,
     RestitutionRange,
@@ -133,6 +134,10 @@ pub const CODES: [(&str, &[(IssueCode, &str)]); 4] = [
             (
                 IssueCode::SecondContact,
                 "the first end touches again, or something strikes the cask in the flight",
+            ),
+            (
+                IssueCode::SecondImpact,
+                "what follows the slap-down does not tell what the second end's impact came to",
             ),
             (IssueCode::Geometry, "angle, height or the recorded fall contradict the motion"),
             (IssueCode::Friction, "how the first end slides contradicts the cask file, or nothing tells it"),

@@ -95,6 +95,8 @@ pub enum DropFinding {
     NoFlight { flight_time: Estimate },
     /// The flight is too short to tell its modes from one another.
     Unresolved { flight_s: f64, modes_hz: Vec<f64> },
+    /// The second impact is not told by what is recorded after the slap-down.
+    SecondUntold { recorded_s: f64 },
     /// Measured and predicted lie apart.
     Disagreement { comparison: Comparison, e_n: f64, severity: Severity },
     /// A closure is missed by more than chance; the numbers are taken away where that `is_gross`. The recording shows a free fall of `fall_s`.
@@ -130,6 +132,7 @@ impl DropFinding {
             Self::Sinks { .. } | Self::Settles { .. } | Self::Blow { .. } | Self::Carried { .. } => {
                 (Code::SecondContact, Warning)
             }
+            Self::SecondUntold { .. } => (Code::SecondImpact, Note),
             Self::Disagreement { severity, .. } => (Code::Disagreement, *severity),
             Self::Missed { closure, is_gross, .. } => {
                 let code = match closure.kind {
@@ -238,6 +241,10 @@ impl DropFinding {
                     1e3 * flight_s, modes.len(), modes.join(", ")
                 )
             }
+            Self::SecondUntold { recorded_s } => format!(
+                "the {:.0} ms that are recorded after the slap-down do not tell what the second end's impact came to: it may not have left the target by then, or something else strikes meanwhile; record until the cask lies still",
+                1e3 * recorded_s
+            ),
             Self::Disagreement { comparison: c, e_n, .. } => format!(
                 "measured {:.2} ± {:.2} m/s and predicted {:.2} ± {:.2} m/s lie apart beyond both intervals (E_n = {e_n:.1}): check contact law, angle, mass properties and scales",
                 c.measured, c.measured_u95, c.predicted, c.predicted_u95

@@ -7,6 +7,7 @@ fn cask_file() -> CaskFile {
     CaskFile {
         path: "a.toml".into(),
         sha256: String::new(),
+        text: String::new(),
         cask: Cask {
             name: "A".into(),
             mass_kg: 4000.0,

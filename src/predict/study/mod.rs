@@ -152,6 +152,7 @@ mod tests {
         CaskFile {
             path: "c.toml".into(),
             sha256: String::new(),
+            text: String::new(),
             cask: Cask {
                 name: "C".into(),
                 mass_kg,

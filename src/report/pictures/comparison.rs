@@ -32,12 +32,11 @@ fn rows(analysis: &Analysis) -> Vec<ComparedRow> {
     let row = |p: &Prediction| {
         let speed_m_s = p.slap_down_speed_m_s.filter(|v| v.is_finite())?;
         let own_k = measured_k.is_some_and(|k| (k - p.k).abs() < 1e-9);
-        let with_contact = own_k && p.contact == analysis.cask_file.contact;
         let u95_m_s = result
             .model
             .iter()
-            .flat_map(|m| m.candidates.iter().rev())
-            .find(|c| with_contact && c.model == p.model)
+            .flat_map(|m| &m.candidates)
+            .find(|c| own_k && c.predicted.is_some_and(|own_m_s| (own_m_s - speed_m_s).abs() < 1e-9))
             .and_then(|c| c.u95)
             .filter(|u| u.is_finite());
         let k = if own_k { format!("{} (measured)", fixed(p.k, 3)) } else { plain(p.k, 3) };

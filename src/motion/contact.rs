@@ -1,0 +1,196 @@
+//! The rigid motion over one contact to what a test report tabulates of it: force, decelerations free of ringing, crush.
+
+use super::reconstruct::{corner, corner_height_m};
+use crate::data::{Motion, MotionState, Setup, Signal};
+use crate::numerics::filter::ZeroPhaseLowPass;
+use std::f64::consts::PI;
+
+/// What one contact does to the rigid body, by steps of equal length.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactCourse {
+    /// The first and the last state of the contact.
+    pub ends: [MotionState; 2],
+    /// Vertical velocity of the struck corner as it touches, m/s, up positive.
+    pub struck_m_s: f64,
+    /// Horizontal velocity gained by S, and vertical velocity gained but for gravity, m/s: the impulse over the mass.
+    pub impulse_m_s: [f64; 2],
+    /// Vertical force of the target over the mass, m/s².
+    pub up_m_s2: Vec<f64>,
+    /// What a transverse sensor at S reads of the rigid body, m/s².
+    pub at_cog_m_s2: Vec<f64>,
+    /// The same at the struck end of the axis   (14)
+    pub at_end_m_s2: Vec<f64>,
+    /// How far the struck corner of the undeformed cask lies below where it touched, m, in the middle of each step.
+    pub crush_m: Vec<f64>,
+    /// By how much the rotation is more than the angular impulse gives it, over the inertia's share: Θ Δω/m − ∫ (32), m²/s; 0 for one contact.
+    pub turned_beyond_m2_s: f64,
+    step_s: f64,
+}
+
+impl ContactCourse {
+    /// From the states of a contact that `motion` ends, by the one force that it is of; Θ/m in m². `None` of fewer than two states, and of a
+    /// contact that gives nothing.
+    #[must_use]
+    pub fn of(
+        (motion, measured): (&Motion, &[MotionState]),
+        setup: &Setup,
+        inertia_m2: f64,
+        by: ForceCourse,
+    ) -> Option<Self> {
+        let states = &by_one_force(measured, setup.gravity_m_s2, by)?;
+        let ends = [*states.first()?, *states.last()?];
+        #[allow(clippy::cast_precision_loss, reason = "some hundred steps")]
+        let step_s = (ends[1].time_s - ends[0].time_s) / (states.len().checked_sub(1)? as f64);
+        let steps = states.windows(2).map(|pair| (pair[0], pair[1]));
+        let force = |(a, b): (MotionState, MotionState)| {
+            let along = (b.horizontal_velocity_m_s - a.horizontal_velocity_m_s) / step_s;
+            let up = (b.vertical_velocity_m_s - a.vertical_velocity_m_s) / step_s + setup.gravity_m_s2;
+            let (sin, cos) = f64::midpoint(a.angle_rad, b.angle_rad).sin_cos();
+            let turning = (b.angular_velocity_rad_s - a.angular_velocity_rad_s) / step_s;
+            let across = up * cos - along * sin;
+            [up, across, across + turning * setup.cog_m]
+        };
+        let forces: Vec<[f64; 3]> = steps.clone().map(force).collect();
+        let of = |i: usize| forces.iter().map(|f| f[i]).collect::<Vec<f64>>();
+        let height_m = |s: &MotionState| corner_height_m(setup, s, -setup.cog_m);
+        let touched_m = height_m(&ends[0]);
+        let crush_m =
+            steps.map(|(a, b)| touched_m - f64::midpoint(height_m(&a), height_m(&b))).collect::<Vec<f64>>();
+        let gained = |of: fn(&MotionState) -> f64| of(&ends[1]) - of(&ends[0]);
+        let fallen_m_s = setup.gravity_m_s2 * (ends[1].time_s - ends[0].time_s);
+        Some(Self {
+            struck_m_s: corner(setup, &ends[0], -setup.cog_m).1,
+            impulse_m_s: [
+                gained(|s| s.horizontal_velocity_m_s),
+                gained(|s| s.vertical_velocity_m_s) + fallen_m_s,
+            ],
+            up_m_s2: of(0),
+            at_cog_m_s2: of(1),
+            at_end_m_s2: of(2),
+            crush_m,
+            turned_beyond_m2_s: inertia_m2 * gained(|s| s.angular_velocity_rad_s)
+                - motion.angular_impulse_m2_s,
+            ends,
+            step_s,
+        })
+    }
+
+    /// Kinetic energy over the mass at the contact's beginning and end, m²/s²; Θ/m in m².
+    #[must_use]
+    pub fn kinetic_m2_s2(&self, inertia_m2: f64) -> [f64; 2] {
+        self.ends.map(|s| {
+            let square = s.horizontal_velocity_m_s.powi(2) + s.vertical_velocity_m_s.powi(2);
+            0.5 * (square + inertia_m2 * s.angular_velocity_rad_s.powi(2))
+        })
+    }
+
+    /// A course of forces through the zero-phase low-pass with this −3 dB cut-off, Hz, nothing before and after it; as long as it is.
+    #[must_use]
+    pub fn low_passed(&self, course_m_s2: &[f64], cutoff_hz: f64) -> Vec<f64> {
+        let Some(filter) = ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, 1.0 / self.step_s) else {
+            return course_m_s2.to_vec();
+        };
+        // Two passes have faded to 1e-3 of a pulse after a period of the cut-off.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive count")]
+        let clear = (1.0 / (cutoff_hz * self.step_s)).ceil() as usize;
+        let mut wide = vec![0.0; clear];
+        wide.extend_from_slice(course_m_s2);
+        wide.resize(wide.len() + clear, 0.0);
+        filter.apply(&wide)[clear..clear + course_m_s2.len()].to_vec()
+    }
+}
+
+/// What tells the course of the one force of a contact: how the share grows of what it gives in all   (42)
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ForceCourse {
+    /// The rotation: the first bending mode, which rings alike at both ends, is none.
+    Rotation,
+    /// The velocity of S across the axis, which the first mode rings in most.
+    Translation,
+    /// Nothing measured but the contact's length.
+    HalfSine,
+}
+
+/// The same contact with every velocity gained in this course: one force turns and throws the cask.
+fn by_one_force(states: &[MotionState], gravity_m_s2: f64, by: ForceCourse) -> Option<Vec<MotionState>> {
+    let (first, last) = (states.first()?, states.last()?);
+    let given = |s: &MotionState| {
+        let since_s = s.time_s - first.time_s;
+        let up_m_s = s.vertical_velocity_m_s + gravity_m_s2 * since_s;
+        match by {
+            ForceCourse::Rotation => s.angular_velocity_rad_s,
+            ForceCourse::Translation => {
+                up_m_s * s.angle_rad.cos() - s.horizontal_velocity_m_s * s.angle_rad.sin()
+            }
+            ForceCourse::HalfSine => -(PI * since_s / (last.time_s - first.time_s)).cos(),
+        }
+    };
+    let (from, whole) = (given(first), given(last) - given(first));
+    let fall_m_s = |s: &MotionState| gravity_m_s2 * (s.time_s - first.time_s);
+    let up_m_s = last.vertical_velocity_m_s - first.vertical_velocity_m_s + fall_m_s(last);
+    let along_m_s = last.horizontal_velocity_m_s - first.horizontal_velocity_m_s;
+    let turned_rad_s = last.angular_velocity_rad_s - first.angular_velocity_rad_s;
+    let mut before = *first;
+    let moved = |state: &MotionState| {
+        let share = (given(state) - from) / whole;
+        let vertical_velocity_m_s = first.vertical_velocity_m_s + share * up_m_s - fall_m_s(state);
+        let mean_m_s = f64::midpoint(before.vertical_velocity_m_s, vertical_velocity_m_s);
+        before = MotionState {
+            angular_velocity_rad_s: first.angular_velocity_rad_s + share * turned_rad_s,
+            horizontal_velocity_m_s: first.horizontal_velocity_m_s + share * along_m_s,
+            vertical_velocity_m_s,
+            height_m: before.height_m + mean_m_s * (state.time_s - before.time_s),
+            ..*state
+        };
+        before
+    };
+    (whole.abs() > 0.0).then(|| states.iter().map(moved).collect())
+}
+
+/// The largest value.
+#[must_use]
+pub fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(f64::NEG_INFINITY, |most, value| most.max(*value))
+}
+
+/// One channel's pulse.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChannelPulse {
+    /// The largest of either sign, m/s².
+    pub raw_m_s2: f64,
+    /// The same through the low-pass, m/s².
+    pub filtered_m_s2: f64,
+    /// When that is reached, s.
+    pub time_s: f64,
+    /// How long the filtered reading stays above a tenth of it, s.
+    pub length_s: Option<f64>,
+}
+
+/// The pulse of a channel between two times, s, and through the low-pass with this −3 dB cut-off, Hz; `None` where samples are clipped or lost.
+#[must_use]
+pub fn pulse(signal: &Signal, [from_s, to_s]: [f64; 2], cutoff_hz: f64) -> Option<ChannelPulse> {
+    if [&signal.clipped, &signal.gaps].into_iter().any(|spans| signal.touches(spans, from_s, to_s)) {
+        return None;
+    }
+    let margin_s = 6.2 / cutoff_hz;
+    let begin = signal.index_from(from_s - margin_s);
+    let wide = signal.cut(begin, signal.index_from(to_s + margin_s));
+    let filter = ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, wide.sample_rate_hz);
+    let filtered = filter.map_or_else(|| wide.force_m_s2.clone(), |f| f.apply(&wide.force_m_s2));
+    let (from, to) = (wide.index_from(from_s), wide.index_from(to_s));
+    let peak = |values: &[f64]| {
+        (from..to).max_by(|&a, &b| values[a].abs().total_cmp(&values[b].abs())).map(|i| (i, values[i]))
+    };
+    let (at, filtered_m_s2) = peak(&filtered)?;
+    let is_below = |f: &f64| *f * filtered_m_s2.signum() < 0.1 * filtered_m_s2.abs();
+    let began = filtered[..at].iter().rposition(is_below);
+    let ended = filtered[at..].iter().position(is_below);
+    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+    let length_s = began.zip(ended).map(|(b, e)| (at + e - b) as f64 / wide.sample_rate_hz);
+    Some(ChannelPulse {
+        raw_m_s2: peak(&wide.force_m_s2)?.1,
+        filtered_m_s2,
+        time_s: wide.time_s(at),
+        length_s,
+    })
+}
