@@ -4,9 +4,9 @@ use super::sample_reconstruction;
 use crate::data::{
     Analysis, At, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelFinding, ChannelSpec, ChannelSummary,
     Comparison, Contact, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events, FilterChoice,
-    Finding, FirstImpact, FlightFit, FlightModelScore, FlightRegime, ImpactTable, Input, Mode, ModelCandidate,
-    ModelChoice, MotionCurve, Plateau, Prediction, Program, RecordingFormat, Rung, Setting, SlapDown, Unit,
-    Verdict,
+    Finding, FirstImpact, FlightFit, FlightModelScore, FlightRegime, ImpactTable, Input, Mode,
+    ModelCandidate, ModelChoice, MotionCurve, Plateau, Prediction, Program, RecordingFormat, Rung, Setting,
+    SlapDown, Unit, Verdict,
 };
 use std::f64::consts::PI;
 

@@ -56,7 +56,7 @@ pub fn trial(
     front::mark_front(&mut points);
     let maps = map::maps(&request, &|share| progress((1.0 + share) / 3.0));
     let drops = CampaignRequest {
-        scenes: request.either(120, 600),
+        scenes: request.either(100, 600),
         seed: request.seed,
         undamaged: true,
         kinds: Vec::new(),
