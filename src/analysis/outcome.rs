@@ -59,10 +59,7 @@ pub(super) fn of(
     }
     let mut curves = Curves { channels: curves, motion: None };
     let mut result = result(recording, file, findings, (channels, events), quantities);
-    let tabulated = match &reached {
-        Reached::Measured(flown, _) => flown.tabulated.as_ref(),
-        Reached::Impact | Reached::Flown(_) => None,
-    };
+    let tabulated = measured.and_then(|flown| flown.tabulated.as_ref());
     result.impacts = impacts::of_result(file, signals, &result, tabulated);
     result.amplification = impacts::amplification(&result);
     result.settings.splice(0..0, of_curves(file, &events, effect));

@@ -27,9 +27,10 @@ pub(super) struct SecondImpact {
     axial: AxialClosure,
     friction: Option<AssumedFriction>,
     u_steps_m_s: Vec<f64>,
-    /// What S gains along the axis, and R across it, m/s.
+    /// What S gains along the axis, and R across it, m/s; and the rotation, rad/s.
     along_m_s: f64,
     across_m_s: f64,
+    gained_rad_s: f64,
 }
 
 /// The drop in a mirror, from the state in which R strikes; `None` where it does not.
@@ -120,8 +121,20 @@ impl SecondImpact {
         let along_m_s = along(&moved.separation) - along(&moved.contact);
         let across_m_s = moved.rebound_m_s + setup.impact_velocity_m_s;
         let contact_s = slap_down.time_s;
+        let gained_rad_s = motion::rotation_rad_s(&signals, &flight);
         drop(integrated);
-        Some(Self { signals, contact_s, flight, left, axial, friction, u_steps_m_s, along_m_s, across_m_s })
+        Some(Self {
+            signals,
+            contact_s,
+            flight,
+            left,
+            axial,
+            friction,
+            u_steps_m_s,
+            along_m_s,
+            across_m_s,
+            gained_rad_s,
+        })
     }
 
     /// The signals with their integrals, which [`Self::course`] asks for.
@@ -152,13 +165,12 @@ impl SecondImpact {
         let times =
             Events { first_contact: inputs.events.slap_down, separation: Some(left), ..Events::default() };
         let mut flight = self.flight.clone();
-        let gained_rad_s = motion::rotation_rad_s(&self.signals, &flight);
         let moved = |i: usize, plateau: &mut crate::data::Plateau| {
             let of = |all: &[f64]| all.get(i).copied().unwrap_or(0.0);
             // What a sensor in the mirror reads more for being farther from R, −ω δ, it reads less for being farther from L.
             let across = self.signals.get(i).is_some_and(|s| s.axis == Axis::Transverse);
             let by_seat_m_s = if across {
-                self.along_m_s * of(&inputs.crosses) - gained_rad_s * of(&inputs.places_m)
+                self.along_m_s * of(&inputs.crosses) - self.gained_rad_s * of(&inputs.places_m)
             } else {
                 self.across_m_s * of(&inputs.crosses)
             };
