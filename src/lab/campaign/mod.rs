@@ -10,7 +10,7 @@ mod tables;
 pub(super) use rungs::rungs;
 pub use score::csv;
 pub(super) use score::written;
-pub(super) use statistics::{half_widths_off, is_missed, quantile};
+pub(super) use statistics::{half_widths_between, half_widths_off, is_missed, quantile};
 pub use tables::markdown;
 
 use crate::analysis::measure;

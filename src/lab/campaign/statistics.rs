@@ -48,12 +48,17 @@ pub(super) fn scored(row: &CampaignRow, name: &str) -> Option<Scored> {
     row.quantities.iter().find(|scored| scored.name == name).copied()
 }
 
-/// Distance from the truth in half-widths.
+/// Distance from the truth in half-widths, where both are known.
 pub(in crate::lab) fn half_widths_off(scored: &Scored) -> Option<f64> {
     let (stated, truth) = scored.stated.zip(scored.truth)?;
+    Some(half_widths_between(stated, truth))
+}
+
+/// The same of an estimate.
+pub(in crate::lab) fn half_widths_between(stated: Estimate, truth: f64) -> f64 {
     // No number at all is as far off as can be.
     let off = (stated.value - truth).abs() / stated.u95.max(f64::MIN_POSITIVE);
-    Some(if off.is_nan() { f64::INFINITY } else { off })
+    if off.is_nan() { f64::INFINITY } else { off }
 }
 
 /// Errors, half-widths and coverage of one quantity over many scenes.

@@ -2,7 +2,7 @@
 
 use crate::data::{Estimate, STANDARD_GRAVITY_M_S2, Verdict};
 use crate::ingest::Progress;
-use crate::lab::campaign::written;
+use crate::lab::campaign::{half_widths_between, written};
 use crate::lab::damage::{self, DamageKind};
 use crate::lab::data::{TrialDrop, TrialFate, TrialMap, TrialRequest, TrialSize};
 use crate::lab::drawn::{ANF_10, ANF_18, Build, ESBB, VHLW};
@@ -36,9 +36,7 @@ fn plans(request: &TrialRequest) -> Vec<DropPlan> {
 /// Distance from the truth in half-widths; infinitely far where a number is given for what did not happen.
 fn off(stated: Option<Estimate>, truth: Option<f64>) -> Option<f64> {
     let stated = stated?;
-    Some(
-        truth.map_or(f64::INFINITY, |truth| (stated.value - truth).abs() / stated.u95.max(f64::MIN_POSITIVE)),
-    )
+    Some(truth.map_or(f64::INFINITY, |truth| half_widths_between(stated, truth)))
 }
 
 /// What becomes of a plan's drop, struck at this size.

@@ -1,6 +1,6 @@
 //! A trial to the pages that a site signs, and to the page of single methods beside their rivals.
 
-use super::pictures::{fate_words, largest_words};
+use super::pictures::{fate_words, largest_words, pooled};
 use crate::lab::campaign;
 use crate::lab::data::{Trial, TrialFate, TrialLimit, TrialMap, TrialPoint};
 use crate::lab::methods::{ALL_CLASSES, READING, WAYS};
@@ -135,11 +135,6 @@ fn silent(trial: &Trial) -> [ChapterPart; 2] {
     [ChapterPart::lead(words), table.into()]
 }
 
-/// The points of all classes together of a family of ways.
-fn pooled<'a>(trial: &'a Trial, family: &'a str) -> impl Iterator<Item = &'a TrialPoint> + Clone {
-    trial.points.iter().filter(move |p| p.family == family && p.class == ALL_CLASSES)
-}
-
 /// What follows for the user from the picture.
 fn choice(trial: &Trial) -> String {
     let of = |family: usize, method: &str| {
@@ -150,16 +145,15 @@ fn choice(trial: &Trial) -> String {
     let ms = |p: &TrialPoint| significant(1e-6 * p.time_ns, 2);
     let is_as_near = |p: &&TrialPoint| {
         !p.is_default
-            && p.cases > 0
             && p.p95_error <= 1.1 * speed.p95_error
             && of(1, &p.method).is_some_and(|k_of| k_of.p95_error <= 1.1 * k.p95_error)
     };
     let near: Vec<&str> = pooled(trial, WAYS[0]).filter(is_as_near).map(|p| &p.method[..]).collect();
     let others =
         if near.is_empty() { "No other way is".to_owned() } else { format!("Only {} is", near.join(", ")) };
-    let reading = of(0, READING).map_or_else(String::new, ms);
-    let ways = pooled(trial, WAYS[0]).filter(|p| p.cases > 0);
-    let fastest = ways.min_by(|a, b| a.time_ns.total_cmp(&b.time_ns)).unwrap_or(speed);
+    let is_reading = |p: &&TrialPoint| p.class == ALL_CLASSES && p.family == WAYS[0] && p.method == READING;
+    let reading = trial.points.iter().find(is_reading).map_or_else(String::new, ms);
+    let fastest = pooled(trial, WAYS[0]).min_by(|a, b| a.time_ns.total_cmp(&b.time_ns)).unwrap_or(speed);
     let is_beyond = |p: &&TrialPoint| {
         p.is_default && p.family == WAYS[0] && p.class != ALL_CLASSES && p.p95_error > p.matters
     };
@@ -195,7 +189,7 @@ fn by_class(trial: &Trial) -> ReportTable {
         .chosen(|row| row.class == ALL_CLASSES)
         .text("", |row| row.family.split(',').next().unwrap_or_default())
         .text("class", |row| &row.class[..]);
-    for way in pooled(trial, WAYS[0]).filter(|p| p.cases > 0) {
+    for way in pooled(trial, WAYS[0]) {
         let error = move |row: &&TrialPoint| {
             let is_so = |q: &&TrialPoint| {
                 q.family == row.family && q.class == row.class && q.method == way.method && q.cases > 0

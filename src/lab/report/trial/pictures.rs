@@ -64,7 +64,7 @@ pub(super) fn ways(trial: &Trial) -> Picture {
                    over all classes of drops, hollow where another way is as fast and as accurate; ring: what the program takes. Bar: from the \
                    best class to the worst. The rungs of the prediction are given the true k, and timed by themselves."
         .to_owned();
-    let families: Vec<Vec<&TrialPoint>> = WAYS.iter().map(|family| pooled(trial, family)).collect();
+    let families: Vec<Vec<&TrialPoint>> = WAYS.iter().map(|family| pooled(trial, family).collect()).collect();
     // The ways of the second family are those of the first.
     let legends = [("Ways", &families[0]), ("Prediction", &families[2])].map(|(title, ways)| {
         let named = |(index, way): (usize, &&TrialPoint)| {
@@ -90,10 +90,9 @@ pub(super) fn ways(trial: &Trial) -> Picture {
         .picture(&panels)
 }
 
-/// The ways of a family over all classes.
-fn pooled<'a>(trial: &'a Trial, family: &str) -> Vec<&'a TrialPoint> {
-    let is_pooled = |p: &&TrialPoint| p.family == family && p.class == ALL_CLASSES && p.cases > 0;
-    trial.points.iter().filter(is_pooled).collect()
+/// The ways of a family that say anything, over all classes.
+pub(super) fn pooled<'a>(trial: &'a Trial, family: &'a str) -> impl Iterator<Item = &'a TrialPoint> {
+    trial.points.iter().filter(move |p| p.family == family && p.class == ALL_CLASSES && p.cases > 0)
 }
 
 /// What a verdict needs and what the program promises, as lines.
