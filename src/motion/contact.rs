@@ -87,16 +87,8 @@ impl ContactCourse {
     /// A course of forces through the zero-phase low-pass with this −3 dB cut-off, Hz, nothing before and after it; as long as it is.
     #[must_use]
     pub fn low_passed(&self, course_m_s2: &[f64], cutoff_hz: f64) -> Vec<f64> {
-        let Some(filter) = ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, 1.0 / self.step_s) else {
-            return course_m_s2.to_vec();
-        };
-        // Two passes have faded to 1e-3 of a pulse after a period of the cut-off.
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive count")]
-        let clear = (1.0 / (cutoff_hz * self.step_s)).ceil() as usize;
-        let mut wide = vec![0.0; clear];
-        wide.extend_from_slice(course_m_s2);
-        wide.resize(wide.len() + clear, 0.0);
-        filter.apply(&wide)[clear..clear + course_m_s2.len()].to_vec()
+        ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, 1.0 / self.step_s)
+            .map_or_else(|| course_m_s2.to_vec(), |filter| filter.apply_to_pulse(course_m_s2))
     }
 }
 

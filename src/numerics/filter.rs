@@ -61,6 +61,16 @@ impl ZeroPhaseLowPass {
         ends::cut(work, head, samples.len())
     }
 
+    /// The same of a pulse with nothing before and after it.
+    #[must_use]
+    pub fn apply_to_pulse(&self, pulse: &[f64]) -> Vec<f64> {
+        let mut work = vec![0.0];
+        work.extend_from_slice(pulse);
+        work.resize(1 + pulse.len() + self.padding, 0.0);
+        stage::forward_and_back(&self.stage, &mut work);
+        ends::cut(work, 1, pulse.len())
+    }
+
     /// |H| of the whole (both passes) at a frequency, Hz, at the sample rate the filter was made for.
     #[must_use]
     pub fn magnitude(&self, frequency_hz: f64, sample_rate_hz: f64) -> f64 {

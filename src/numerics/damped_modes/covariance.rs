@@ -1,8 +1,9 @@
 //! Modes found to coefficients with their standard uncertainties.
 
 use super::drive::Form;
-use super::projection::{OfTimes, Projection, columns, project, rms, to_parameters};
+use super::projection::{OfTimes, Projected, Projection, columns, rms};
 use super::series::{Fit, Oscillation, Series, SeriesFit};
+use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector};
 
 /// Coefficients, uncertainties and residuals at given modes.
@@ -19,7 +20,7 @@ pub fn coefficients(series: &[Series], modes: Vec<Oscillation>, form: Form) -> O
     let mut fits = Vec::new();
     let mut lag_sum = 0.0;
     let mut parameters = 2 * modes.len();
-    for (s, (solution, residual)) in series.iter().zip(project(series, &modes, form)?) {
+    for (s, (solution, residual)) in series.iter().zip(Projected::new(series, modes.clone(), form)?.solved) {
         let fixed = 1 + usize::from(drift);
         let jumps = s.steps_s.len();
         lag_sum += lag_one(&residual);
@@ -70,8 +71,7 @@ fn uncertainties(series: &[Series], fit: &mut Fit, form: Form) -> Option<()> {
         column += block.ncols();
     }
     if !fit.modes.is_empty() {
-        let problem = Projection { series, weights, form, parameters: to_parameters(&fit.modes) };
-        let nonlinear = problem.jacobian_at(&problem.parameters)?;
+        let nonlinear = Projection::new(series, weights, form, &fit.modes).jacobian()?;
         jacobian.view_mut((0, 0), nonlinear.shape()).copy_from(&nonlinear);
     }
     let scales: Vec<f64> = jacobian.column_iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();

@@ -1,6 +1,7 @@
 //! What drove a series' modes before it begins, to the phase that they begin with.
 
 use super::series::Oscillation;
+use crate::numerics::as_f64;
 use nalgebra::Complex;
 
 /// A force of known shape and unknown size that ended before a series begins.
@@ -18,15 +19,30 @@ impl Drive {
     /// Z / |Z| at t = 0, Z = Σ impulse e^((−ζ + i) ω age): a mode at rest before, so driven, rings on as Re(Z e^((−ζ + i) ω t))   (36)
     #[must_use]
     pub fn phase(&self, mode: Oscillation) -> Complex<f64> {
-        let omega = std::f64::consts::TAU * mode.frequency_hz;
-        let rate = Complex::new(-mode.damping * omega, omega);
-        let (turn, half_turn) = ((rate * self.step_s).exp(), (rate * (self.step_s / 2.0)).exp());
-        let driven =
-            self.impulses.iter().fold(Complex::new(0.0, 0.0), |z, impulse| z * turn + half_turn * *impulse);
-        #[allow(clippy::cast_precision_loss, reason = "some hundred steps")]
-        let since_s = self.age_s - self.impulses.len() as f64 * self.step_s;
-        let value = driven * (rate * since_s).exp();
-        if value.norm() > 0.0 { value / value.norm() } else { Complex::new(1.0, 0.0) }
+        let (driven, _) = self.driven(mode);
+        if driven.norm() > 0.0 { driven / driven.norm() } else { Complex::new(1.0, 0.0) }
+    }
+
+    /// Change of ln Z with (−ζ + i) ω: the mean age of what drove the mode, s.
+    pub(super) fn age_s(&self, mode: Oscillation) -> Complex<f64> {
+        let (driven, by_rate) = self.driven(mode);
+        if driven.norm() > 0.0 { by_rate / driven } else { Complex::new(0.0, 0.0) }
+    }
+
+    /// Z, and what it changes by with (−ζ + i) ω.
+    fn driven(&self, mode: Oscillation) -> (Complex<f64>, Complex<f64>) {
+        let rate = super::ringing::rate(mode);
+        let half_s = self.step_s / 2.0;
+        let (turn, half_turn) = ((rate * self.step_s).exp(), (rate * half_s).exp());
+        let nothing = Complex::new(0.0, 0.0);
+        let step = |(z, by_rate): (Complex<f64>, Complex<f64>), impulse: &f64| {
+            let (aged, added) = (z * turn, half_turn * *impulse);
+            (aged + added, by_rate * turn + aged * self.step_s + added * half_s)
+        };
+        let (z, by_rate) = self.impulses.iter().fold((nothing, nothing), step);
+        let since_s = self.age_s - as_f64(self.impulses.len()) * self.step_s;
+        let aged = (rate * since_s).exp();
+        (z * aged, (by_rate + z * since_s) * aged)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Frequencies and dampings to the best linear coefficients, and to better frequencies and dampings (Golub & Pereyra 1973).
 
-use super::drive::{Drive, Form};
+use super::drive::Form;
 use super::ringing::Ringing;
 use super::series::{Oscillation, Series};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{Cholesky, Complex, DMatrix, DVector, Dyn, Owned};
+use std::cell::OnceCell;
 
 /// Damping ratios stay below this: above, a "mode" is a bend of the plateau.
 const MAX_DAMPING: f64 = 0.3;
@@ -113,16 +114,29 @@ impl Normal {
         }
         (solution, residual)
     }
+
+    /// What the columns do not explain of these.
+    fn unexplained(&self, slopes: DMatrix<f64>) -> DMatrix<f64> {
+        let explained = self.cholesky.solve(&self.columns.tr_mul(&slopes));
+        slopes - &self.columns * explained
+    }
 }
 
-/// Best linear coefficients of each series and what they leave; `None` where a series has fewer than two points over.
-pub(super) fn project(
-    series: &[Series],
-    modes: &[Oscillation],
-    form: Form,
-) -> Option<Vec<(DVector<f64>, DVector<f64>)>> {
-    let normals = OfTimes::new(series, |s| Normal::new(s, modes, form))?;
-    Some(series.iter().zip(normals.each()).map(|(s, normal)| normal.solve(&s.value)).collect())
+/// The linear problem at given modes, solved.
+pub(super) struct Projected {
+    modes: Vec<Oscillation>,
+    normals: OfTimes<Normal>,
+    /// Best linear coefficients of each series and what they leave.
+    pub solved: Vec<(DVector<f64>, DVector<f64>)>,
+}
+
+impl Projected {
+    /// `None` where a series has fewer than two points over.
+    pub fn new(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Self> {
+        let normals = OfTimes::new(series, |s| Normal::new(s, &modes, form))?;
+        let solved = series.iter().zip(normals.each()).map(|(s, normal)| normal.solve(&s.value)).collect();
+        Some(Self { modes, normals, solved })
+    }
 }
 
 #[allow(clippy::cast_precision_loss, reason = "a few thousand points")]
@@ -132,13 +146,15 @@ pub(super) fn rms(residual: &DVector<f64>) -> f64 {
 
 /// The variable projection problem in ln f and the logit of ζ / 0.3, residuals weighted by each series' own size.
 pub(super) struct Projection<'a> {
-    pub series: &'a [Series],
-    pub weights: Vec<f64>,
-    pub form: Form<'a>,
-    pub parameters: DVector<f64>,
+    series: &'a [Series],
+    weights: Vec<f64>,
+    form: Form<'a>,
+    parameters: DVector<f64>,
+    /// The linear problem at these parameters, once it has been asked for.
+    here: OnceCell<Option<Projected>>,
 }
 
-pub(super) fn to_parameters(modes: &[Oscillation]) -> DVector<f64> {
+fn to_parameters(modes: &[Oscillation]) -> DVector<f64> {
     DVector::from_iterator(
         2 * modes.len(),
         modes.iter().flat_map(|m| {
@@ -156,36 +172,14 @@ fn to_modes(parameters: &DVector<f64>) -> Vec<Oscillation> {
         .collect()
 }
 
-impl Projection<'_> {
-    fn residuals_at(&self, parameters: &DVector<f64>) -> Option<DVector<f64>> {
-        let modes = to_modes(parameters);
-        let mut all = Vec::new();
-        for ((_, residual), weight) in project(self.series, &modes, self.form)?.iter().zip(&self.weights) {
-            all.extend(residual.iter().map(|r| r * weight));
-        }
-        all.iter().all(|r| r.is_finite()).then(|| DVector::from_vec(all))
+impl<'a> Projection<'a> {
+    pub fn new(series: &'a [Series], weights: Vec<f64>, form: Form<'a>, modes: &[Oscillation]) -> Self {
+        Self { series, weights, form, parameters: to_parameters(modes), here: OnceCell::new() }
     }
 
-    /// ∂r/∂θ = −P⊥ ∂Φ/∂θ c, P⊥ taking off what the columns Φ explain (Kaufman 1975): exact where nothing is left.
-    pub fn jacobian_at(&self, parameters: &DVector<f64>) -> Option<DMatrix<f64>> {
-        let modes = to_modes(parameters);
-        let rows: usize = self.series.iter().map(|s| s.value.len()).sum();
-        let mut jacobian = DMatrix::zeros(rows, parameters.len());
-        let mut row = 0;
-        let projected = project(self.series, &modes, self.form)?;
-        let bases = OfTimes::new(self.series, |s| Some(columns(s, &modes, self.form).qr().q()))?;
-        let each = self.series.iter().zip(&self.weights).zip(projected).zip(bases.each());
-        for (((series, weight), (solution, _)), basis) in each {
-            let fixed = fixed_columns(series, self.form.drift);
-            let amplitudes = self.form.amplitudes(&modes, &solution.as_slice()[fixed..]);
-            for (i, (mode, amplitude)) in modes.iter().zip(amplitudes).enumerate() {
-                let slopes = self.mode_slopes(series, *mode, amplitude);
-                let unexplained = (&slopes - basis * basis.tr_mul(&slopes)) * -*weight;
-                jacobian.view_mut((row, 2 * i), unexplained.shape()).copy_from(&unexplained);
-            }
-            row += series.value.len();
-        }
-        jacobian.iter().all(|x| x.is_finite()).then_some(jacobian)
+    fn here(&self) -> Option<&Projected> {
+        let project = || Projected::new(self.series, to_modes(&self.parameters), self.form);
+        self.here.get_or_init(project).as_ref()
     }
 
     /// What a mode of these amplitudes changes by with ln f and with the logit of its damping.
@@ -195,8 +189,9 @@ impl Projection<'_> {
         // A cos + B sin = Re((A − iB) e^(iωt)); both rates of e^((−ζ + i) ω t) are t times a number.
         let size = Complex::new(a, -b);
         let rates = [Complex::new(-mode.damping * omega, omega), Complex::from(-omega * by_logit)];
-        let turns =
-            self.form.drive.map_or([Complex::from(0.0); 2], |drive| phase_rates(drive, mode, by_logit));
+        let age_s = self.form.drive.map_or(Complex::from(0.0), |drive| drive.age_s(mode));
+        // Its size is one by definition: only the phase of a driven mode goes with the rates.
+        let turns = rates.map(|rate| Complex::new(0.0, (rate * age_s).im));
         let mut slopes = DMatrix::zeros(series.time_s.len(), 2);
         for (row, (value, t)) in Ringing::new(mode, &series.time_s).zip(&series.time_s).enumerate() {
             for (column, (rate, turn)) in rates.iter().zip(turns).enumerate() {
@@ -207,19 +202,6 @@ impl Projection<'_> {
     }
 }
 
-/// Change of a driven mode's phase with ln f and the logit of its damping over the phase, by central differences.
-fn phase_rates(drive: &Drive, mode: Oscillation, by_logit: f64) -> [Complex<f64>; 2] {
-    const STEP: f64 = 1e-5;
-    let phase = drive.phase(mode);
-    let with = |frequency: f64, damping: f64| {
-        drive.phase(Oscillation {
-            frequency_hz: mode.frequency_hz * (1.0 + frequency),
-            damping: mode.damping + damping * by_logit,
-        })
-    };
-    [with(STEP, 0.0) - with(-STEP, 0.0), with(0.0, STEP) - with(0.0, -STEP)].map(|d| d / (2.0 * STEP) / phase)
-}
-
 impl LeastSquaresProblem<f64, Dyn, Dyn> for Projection<'_> {
     type ParameterStorage = Owned<f64, Dyn>;
     type ResidualStorage = Owned<f64, Dyn>;
@@ -227,6 +209,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Projection<'_> {
 
     fn set_params(&mut self, parameters: &DVector<f64>) {
         self.parameters.copy_from(parameters);
+        self.here = OnceCell::new();
     }
 
     fn params(&self) -> DVector<f64> {
@@ -234,19 +217,37 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Projection<'_> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        self.residuals_at(&self.parameters)
+        let left = self.here()?.solved.iter().zip(&self.weights);
+        let all: Vec<f64> =
+            left.flat_map(|((_, left), weight)| left.iter().map(move |r| r * weight)).collect();
+        all.iter().all(|r| r.is_finite()).then(|| DVector::from_vec(all))
     }
 
+    /// ∂r/∂θ = −P⊥ ∂Φ/∂θ c, P⊥ taking off what the columns Φ explain (Kaufman 1975): exact where nothing is left.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        self.jacobian_at(&self.parameters)
+        let Projected { modes, normals, solved } = self.here()?;
+        let rows: usize = self.series.iter().map(|s| s.value.len()).sum();
+        let mut jacobian = DMatrix::zeros(rows, self.parameters.len());
+        let mut row = 0;
+        let each = self.series.iter().zip(&self.weights).zip(solved).zip(normals.each());
+        for (((series, weight), (solution, _)), normal) in each {
+            let fixed = fixed_columns(series, self.form.drift);
+            let amplitudes = self.form.amplitudes(modes, &solution.as_slice()[fixed..]);
+            for (i, (mode, amplitude)) in modes.iter().zip(amplitudes).enumerate() {
+                let unexplained = normal.unexplained(self.mode_slopes(series, *mode, amplitude)) * -*weight;
+                jacobian.view_mut((row, 2 * i), unexplained.shape()).copy_from(&unexplained);
+            }
+            row += series.value.len();
+        }
+        jacobian.iter().all(|x| x.is_finite()).then_some(jacobian)
     }
 }
 
 pub(super) fn refine(series: &[Series], modes: &[Oscillation], form: Form) -> Option<Vec<Oscillation>> {
-    let projected = project(series, modes, form)?;
+    let projected = Projected::new(series, modes.to_vec(), form)?;
     let weight = |(s, (_, left)): (&Series, &(_, DVector<f64>))| 1.0 / rms(left).hypot(s.floor).max(1e-300);
-    let weights = series.iter().zip(&projected).map(weight).collect();
-    let problem = Projection { series, weights, form, parameters: to_parameters(modes) };
+    let weights = series.iter().zip(&projected.solved).map(weight).collect();
+    let problem = Projection::new(series, weights, form, modes);
     let (solved, report) = LevenbergMarquardt::new()
         .with_patience(20)
         .with_ftol(1e-9)
@@ -262,6 +263,7 @@ pub(super) fn refine(series: &[Series], modes: &[Oscillation], form: Form) -> Op
 
 #[cfg(test)]
 mod tests {
+    use super::super::Drive;
     use super::*;
 
     const MODES: [Oscillation; 2] = [
@@ -288,15 +290,15 @@ mod tests {
     #[track_caller]
     fn slopes_are_those_of_the_residuals(form: Form) {
         let series = series(form);
-        let parameters = to_parameters(&MODES);
-        let problem =
-            Projection { series: &series, weights: vec![1.0, 2.0], form, parameters: parameters.clone() };
-        let slopes = problem.jacobian_at(&parameters).expect("a Jacobian");
+        let mut problem = Projection::new(&series, vec![1.0, 2.0], form, &MODES);
+        let slopes = problem.jacobian().expect("a Jacobian");
+        let parameters = problem.params();
         for i in 0..parameters.len() {
-            let at = |step: f64| {
+            let mut at = |step: f64| {
                 let mut moved = parameters.clone();
                 moved[i] += step;
-                problem.residuals_at(&moved).expect("residuals")
+                problem.set_params(&moved);
+                problem.residuals().expect("residuals")
             };
             let differences = (at(1e-5) - at(-1e-5)) / 2e-5;
             // Kaufman's form is exact where nothing is left; the difference is off by h² of the third derivative, (ω t)³ ~ 1e4.

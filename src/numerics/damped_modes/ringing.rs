@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 const LONGEST_RUN: usize = 256;
 
 /// (−ζ + i) ω.
-fn rate(mode: Oscillation) -> Complex<f64> {
+pub(super) fn rate(mode: Oscillation) -> Complex<f64> {
     let omega = TAU * mode.frequency_hz;
     Complex::new(-mode.damping * omega, omega)
 }
