@@ -106,7 +106,7 @@ fn settled(file: &CaskFile, integrated: &Integrated, to_target: bool) -> Option<
     // A contact in stages may last beyond the clearance: first where its impulse has been given.
     let given_s = events::impulse_given(ends.0.signal(), contact_s, before_s)
         .filter(|given_s| !is_hopeless && *given_s > cleared_s(contact_s, before_s));
-    let shares = FIRST_ENDS.into_iter().take(if is_hopeless { 1 } else { FIRST_ENDS.len() });
+    let shares = FIRST_ENDS.into_iter().take(if is_hopeless || !to_target { 1 } else { FIRST_ENDS.len() });
     let given = given_s.map(|given_s| (FIRST_ENDS[0], Some(given_s)));
     for beginning in given.into_iter().chain(shares.map(|share| (share, None))) {
         let attempt = search.attempt(&mut ends, struck, beginning);
@@ -187,7 +187,11 @@ impl Search<'_> {
                     .as_ref()
                     .map_or(0.0, |f| motion::turned_rad_s(signals, f, self.file.drop.angular_velocity_rad_s)),
             };
-            let drive = motion::drive(self.integrated, flight.as_ref(), left.time_s, window.from_s, cog_m);
+            // After R the modes ring on from both impacts: what drove them is not one force.
+            let drive = self
+                .to_target
+                .then(|| motion::drive(self.integrated, flight.as_ref(), left.time_s, window.from_s, cog_m));
+            let drive = drive.flatten();
             let mut fits = motion::fit_flights(self.integrated, &window, drive.as_ref(), cog_m).into_iter();
             let Some(fitted) = fits.next() else { break };
             others = fits.collect();

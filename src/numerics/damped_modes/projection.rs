@@ -249,7 +249,7 @@ pub(super) fn refine(series: &[Series], modes: &[Oscillation], form: Form) -> Op
     let weights = series.iter().zip(&projected.solved).map(weight).collect();
     let problem = Projection::new(series, weights, form, modes);
     let (solved, report) = LevenbergMarquardt::new()
-        .with_patience(20)
+        .with_patience(8)
         .with_ftol(1e-9)
         .with_xtol(1e-7)
         .with_gtol(1e-9)
