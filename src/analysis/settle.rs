@@ -6,6 +6,8 @@ use crate::{events, judge};
 
 /// Separation and slap-down are found again on signals free of ringing this often; the second round moves them by less than a sample.
 const ROUNDS: usize = 3;
+/// So little does a round move both where it needs no other, s: a fiftieth of the shortest contact.
+const STILL_S: f64 = 2e-5;
 
 /// Further rounds where the last one moved the slap-down by more than [`SETTLED_S`]: its flight was fitted over the wrong stretch.
 const FURTHER_ROUNDS: usize = 3;
@@ -206,11 +208,14 @@ impl Search<'_> {
                 let between_s = self.earliest_s.max(free_s)..self.record_end_s;
                 struck = events::slap_down(second.signal(), between_s, self.least_m_s, true);
             }
+            let left_before_s = left.time_s;
             left = events::separation(first.signal(), contact_s, free_s).unwrap_or(left);
             free_s = motion::clear_of_contact_s(contact_s, left.time_s);
             flight = Some(fitted);
             let fitted_to_s = std::mem::replace(&mut end_s, struck.map_or(self.record_end_s, |s| s.time_s));
-            if round + 1 >= ROUNDS && (end_s - fitted_to_s).abs() < SETTLED_S {
+            let moved_s = (end_s - fitted_to_s).abs();
+            let is_still = round > 0 && moved_s.max((left.time_s - left_before_s).abs()) < STILL_S;
+            if is_still || (round + 1 >= ROUNDS && moved_s < SETTLED_S) {
                 break;
             }
         }

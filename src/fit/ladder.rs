@@ -7,7 +7,7 @@ use crate::data::{
     Axis, ChannelReading, Closure, End, Estimate, FlightFit, MET_U, Quantities, ReconstructionCandidate,
     ReconstructionChoice, ReconstructionRung,
 };
-use crate::numerics::prior_fit::{PriorFit, derivatives};
+use crate::numerics::prior_fit::{PriorFit, derivatives_beyond};
 
 /// Where the closures tell lost velocity steps they test nothing, and the intervals of the joint fit are widened by this: with it they hold 19 of 20
 /// simulated drops.
@@ -49,7 +49,8 @@ impl RungTaken {
             of(&self.base.moved(&self.inputs, &by_u[..count]), by_u.get(count..).unwrap_or(&[]))
         };
         let at_u = [&self.fit.unknowns[..], &vec![0.0; further]].concat();
-        let (values, slopes) = (model(&at_u)?, derivatives(&model, &at_u)?);
+        let values = model(&at_u)?;
+        let slopes = derivatives_beyond(&values, &model, &at_u)?;
         let by_datum = slopes.columns(0, count) * &self.fit.response * self.widened;
         let u = |i: usize| by_datum.row(i).norm().hypot(slopes.columns(count, further).row(i).norm());
         Some(values.into_iter().enumerate().map(|(i, value)| (value, u(i))).collect())

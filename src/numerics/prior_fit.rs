@@ -73,17 +73,26 @@ pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFi
 /// ∂r/∂q by central differences, on all cores; a column an unknown.
 #[must_use]
 pub fn derivatives(model: Residuals, at: &[f64]) -> Option<DMatrix<f64>> {
-    let column = |i: usize| {
-        let side = |step: f64| {
-            let mut moved = at.to_vec();
-            moved[i] += step;
-            model(&moved).map(DVector::from_vec)
-        };
-        Some((side(STEP)? - side(-STEP)?) / (2.0 * STEP))
-    };
-    let columns: Vec<DVector<f64>> = (0..at.len()).into_par_iter().map(column).collect::<Option<_>>()?;
+    let side = |i: usize, step: f64| stepped(model, at, i, step);
+    by_column(at.len(), &|i| Some((side(i, STEP)? - side(i, -STEP)?) / (2.0 * STEP)))
+}
+
+/// The same from one side, where the values at `at` are had already and what bends the model within a step does not matter.
+pub fn derivatives_beyond(values: &[f64], model: Residuals, at: &[f64]) -> Option<DMatrix<f64>> {
+    let before = DVector::from_column_slice(values);
+    by_column(at.len(), &|i| Some((stepped(model, at, i, STEP)? - &before) / STEP))
+}
+
+fn stepped(model: Residuals, at: &[f64], i: usize, step: f64) -> Option<DVector<f64>> {
+    let mut moved = at.to_vec();
+    moved[i] += step;
+    model(&moved).map(DVector::from_vec)
+}
+
+fn by_column(count: usize, of: &(dyn Fn(usize) -> Option<DVector<f64>> + Sync)) -> Option<DMatrix<f64>> {
+    let columns: Vec<DVector<f64>> = (0..count).into_par_iter().map(of).collect::<Option<_>>()?;
     let rows = columns.first().map_or(0, DVector::len);
-    Some(if rows == 0 { DMatrix::zeros(0, at.len()) } else { DMatrix::from_columns(&columns) })
+    Some(if rows == 0 { DMatrix::zeros(0, count) } else { DMatrix::from_columns(&columns) })
 }
 
 struct PriorProblem<'a> {
