@@ -127,10 +127,16 @@ fn moved(
     };
     let reading = motion::read_channels(integrated, events, &setup);
     let moved = |flight: &_, events: &_, setup: &_| motion::outcome(integrated, flight, events, setup);
-    let taken = fit::ladder(&measured, plain.as_ref(), reading, &moved)?;
+    // Where R strikes and leaves hangs on the inputs by so little that it need not wait for their fit.
+    let second = || {
+        let stated = motion::outcome(integrated, &flight, events, &setup)?;
+        SecondImpact::find(file, &integrated.signals, &stated, &measured)
+    };
+    let ladder = || fit::ladder(&measured, plain.as_ref(), reading, &moved);
+    let (taken, second) = rayon::join(ladder, second);
+    let taken = taken?;
     let fit::Inputs { flight: moved, events: times, setup: as_taken, .. } = &taken.taken;
     let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
-    let second = SecondImpact::find(file, &integrated.signals, &flight, (&motion, as_taken), &measured);
     let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref())
         .or_else(|| impacts::tabulated(file, integrated, &taken, None));
     let fit::RungTaken { quantities, choice: reconstruction, .. } = taken;

@@ -92,10 +92,10 @@ impl SecondImpact {
     pub fn find(
         file: &CaskFile,
         recorded: &[Signal],
-        before: &FlightFit,
-        (motion, first): (&Motion, &Setup),
+        motion: &Motion,
         measured: &fit::Basis,
     ) -> Option<Self> {
+        let (before, first) = (measured.flight, measured.setup);
         let slap_down = measured.events.slap_down?;
         let turning_rad_s = motion.separation.angular_velocity_rad_s;
         let mut setup = mirrored(first, motion, AxialClosure::Sticking)?;

@@ -50,12 +50,10 @@ impl ContactCourse {
             let across = up * cos - along * sin;
             [up, across, across + turning * setup.cog_m]
         };
-        let forces: Vec<[f64; 3]> = steps.clone().map(force).collect();
+        let forces: Vec<[f64; 3]> = steps.map(force).collect();
         let of = |i: usize| forces.iter().map(|f| f[i]).collect::<Vec<f64>>();
-        let height_m = |s: &MotionState| corner_height_m(setup, s, -setup.cog_m);
-        let touched_m = height_m(&ends[0]);
-        let crush_m =
-            steps.map(|(a, b)| touched_m - f64::midpoint(height_m(&a), height_m(&b))).collect::<Vec<f64>>();
+        let heights_m: Vec<f64> = states.iter().map(|s| corner_height_m(setup, s, -setup.cog_m)).collect();
+        let crush_m = heights_m.windows(2).map(|h| heights_m[0] - f64::midpoint(h[0], h[1])).collect();
         let gained = |of: fn(&MotionState) -> f64| of(&ends[1]) - of(&ends[0]);
         let fallen_m_s = setup.gravity_m_s2 * (ends[1].time_s - ends[0].time_s);
         Some(Self {
