@@ -29,7 +29,11 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     // On a thread of the pool: any other would be put to sleep and woken again for each piece of work that two threads share.
     let mut found = measure(recording, cask_file);
     rayon::scope(|_| again::name_slip(recording, cask_file, &mut found));
-    found.result.keys = ingest::cask_file::settings(cask_file, recording);
+    let result = &mut found.result;
+    result.keys = ingest::cask_file::settings(cask_file, recording);
+    result.observed = cask_file.observed.iter().map(|seen| judge::beside(seen, result)).collect();
+    result.quality.extend(judge::judge_observed(&result.observed));
+    result.verdict = judge::verdict(&mut result.quality);
     found
 }
 

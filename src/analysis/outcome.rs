@@ -27,7 +27,7 @@ pub(super) struct Examined {
 
 /// The result where no impact was found.
 pub(super) fn without_impact(recording: &Recording, file: &CaskFile, findings: Vec<Finding>) -> Analysis {
-    let channels: Vec<ChannelSummary> = recording.channels.iter().map(summary).collect();
+    let channels: Vec<ChannelSummary> = recording.channels.iter().map(|c| summary(c, file)).collect();
     let result = result(recording, file, findings, (channels, Events::default()), None);
     analysis(recording, file, result, Curves::default())
 }
@@ -49,7 +49,7 @@ pub(super) fn of(
     let signals = impact.recorded();
     let (effect, curves) =
         rayon::join(effect, || motion::channel_curves(signals, &smooth, &events, &sticking(file)));
-    let mut channels: Vec<ChannelSummary> = recording.channels.iter().map(summary).collect();
+    let mut channels: Vec<ChannelSummary> = recording.channels.iter().map(|c| summary(c, file)).collect();
     for ((summary, signal), curve) in channels.iter_mut().zip(signals).zip(&curves) {
         summary.offset_m_s2 = Some(signal.removed_offset_m_s2);
         summary.noise_m_s2 = Some(signal.noise_m_s2);
@@ -132,6 +132,8 @@ fn result(
         model: None,
         predictions: predictions(file, None),
         comparison: None,
+        test: file.test.clone(),
+        observed: Vec::new(),
         quality: findings,
         verdict,
         events,
@@ -246,7 +248,8 @@ fn of_cask_file(file: &CaskFile, events: &Events) -> Vec<Setting> {
     settings
 }
 
-fn summary(channel: &Channel) -> ChannelSummary {
+fn summary(channel: &Channel, file: &CaskFile) -> ChannelSummary {
+    let spec = file.channels.iter().find(|spec| spec.name == channel.name);
     ChannelSummary {
         name: channel.name.clone(),
         end: channel.end,
@@ -259,6 +262,7 @@ fn summary(channel: &Channel) -> ChannelSummary {
         noise_m_s2: None,
         peak_filtered_m_s2: None,
         peak_raw_m_s2: None,
+        sensor: spec.map(|spec| spec.sensor.clone()).unwrap_or_default(),
         clipped: Vec::new(),
     }
 }

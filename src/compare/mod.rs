@@ -232,7 +232,7 @@ fn reason(taken: &ModelCandidate, candidates: &[ModelCandidate]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Cask, Estimate, FilterChoice, FlightRegime};
+    use crate::data::{Cask, Estimate, FlightRegime};
 
     fn quantities(speed_m_s: f64) -> Quantities {
         let e = |value, unit| Estimate::new(value, 0.0, unit);
@@ -255,29 +255,21 @@ mod tests {
     }
 
     fn file() -> CaskFile {
-        CaskFile {
-            path: "c.toml".into(),
-            sha256: String::new(),
-            text: String::new(),
-            cask: Cask {
-                name: "C".into(),
-                mass_kg: 1000.0,
-                length_m: 5.0,
-                height_m: 0.6,
-                width_m: None,
-                cog_m: 2.5,
-                inertia_kg_m2: 2100.0,
-                is_body: true,
-            },
-            drop: Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, 0.26) },
-            contact: Contact::Rough,
-            filter: FilterChoice::Auto,
-            tolerances: crate::data::Tolerances::default(),
-            corrections: crate::data::Corrections::default(),
-            time: None,
-            channels: vec![],
-            defaults: vec![],
-        }
+        let cask = Cask {
+            name: "C".into(),
+            mass_kg: 1000.0,
+            length_m: 5.0,
+            height_m: 0.6,
+            width_m: None,
+            cog_m: 2.5,
+            inertia_kg_m2: 2100.0,
+            is_body: true,
+        };
+        CaskFile::plain(
+            cask,
+            Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, 0.26) },
+            Contact::Rough,
+        )
     }
 
     /// The rod says `rod_m_s`, the body 20 m/s, whatever k; each degree adds 1 m/s, so that 0.4° leave 0.4 m/s.

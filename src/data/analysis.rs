@@ -12,6 +12,7 @@ use super::ladder::Rung;
 use super::prediction::{BodyModel, Prediction};
 use super::reconstruction::ReconstructionChoice;
 use super::recording::RecordingFormat;
+use super::test_record::{ObservedBeside, SensorRecord, TestRecord};
 use serde::{Serialize, Serializer};
 
 /// The overall word on a result.
@@ -190,6 +191,9 @@ pub struct ChannelSummary {
     pub peak_filtered_m_s2: Option<f64>,
     /// Largest magnitude, unfiltered, m/s².
     pub peak_raw_m_s2: Option<f64>,
+    /// Which sensor it is, as the cask file states it.
+    #[serde(flatten)]
+    pub sensor: SensorRecord,
     /// Samples at a limit, as index spans.
     #[serde(skip)]
     pub clipped: Vec<Span>,
@@ -265,6 +269,10 @@ pub struct DropResult {
     pub predictions: Vec<Prediction>,
     /// Measured beside predicted.
     pub comparison: Option<Comparison>,
+    /// Who tested what, where and when.
+    pub test: TestRecord,
+    /// What was seen otherwise, beside the result.
+    pub observed: Vec<ObservedBeside>,
     /// Every finding, errors first.
     pub quality: Vec<Finding>,
     /// The overall word.

@@ -1,5 +1,6 @@
 //! The cask file, checked: the cask, the drop, the contact, the filter and the channels.
 
+use super::test_record::{Observed, SensorRecord, TestRecord};
 use super::tolerances::{Corrections, Tolerances};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -278,6 +279,8 @@ pub struct ChannelSpec {
     pub reference: Option<String>,
     /// Place off the plane of the drop, m.
     pub lateral_m: f64,
+    /// Which sensor it is.
+    pub sensor: SensorRecord,
 }
 
 impl ChannelSpec {
@@ -300,6 +303,7 @@ impl ChannelSpec {
             calibration: None,
             reference: None,
             lateral_m: 0.0,
+            sensor: SensorRecord::default(),
         }
     }
 }
@@ -329,6 +333,10 @@ pub struct CaskFile {
     pub time: Option<String>,
     /// `[[channel]]`, in the file's order.
     pub channels: Vec<ChannelSpec>,
+    /// `[test]`.
+    pub test: TestRecord,
+    /// `[observed]`.
+    pub observed: Vec<Observed>,
     /// Keys whose value is a default, as "table.key", so that the report can say so.
     pub defaults: Vec<String>,
 }
@@ -349,6 +357,8 @@ impl CaskFile {
             corrections: Corrections::default(),
             time: None,
             channels: Vec::new(),
+            test: TestRecord::default(),
+            observed: Vec::new(),
             defaults: Vec::new(),
         }
     }

@@ -15,6 +15,14 @@ pub enum Takes {
     TextOrTable,
     /// true or false.
     Flag,
+    /// A date or a date and a time of TOML, without quotes.
+    Date,
+    /// A list of texts.
+    Texts,
+    /// A table of the user's own names.
+    Table,
+    /// A value with its interval: { value = …, u95 = …, by = "…" }.
+    Observation,
     /// A number.
     Number(Allowed),
 }
@@ -67,7 +75,8 @@ pub const FILL_IN: &str = "FILL IN";
 pub const REQUIRED: &str = "required";
 
 /// The tables of a cask file, in the order of the form; `source` stands within a channel.
-pub static TABLES: [KeyTable; 9] = [
+pub static TABLES: [KeyTable; 12] = [
+    KeyTable { name: "test", remark: "for the head of the report; changes no number", keys: &TEST },
     KeyTable { name: "cask", remark: "", keys: &CASK },
     KeyTable { name: "drop", remark: "", keys: &DROP },
     KeyTable { name: "contact", remark: "", keys: &CONTACT },
@@ -83,8 +92,53 @@ pub static TABLES: [KeyTable; 9] = [
     },
     KeyTable { name: "corrections", remark: "all are made; false leaves one out", keys: &CORRECTIONS },
     KeyTable { name: "recording", remark: "", keys: &RECORDING },
+    KeyTable {
+        name: "observed",
+        remark: "what was seen otherwise, held against the result",
+        keys: &OBSERVED,
+    },
     KeyTable { name: "channel", remark: "", keys: &CHANNEL },
     KeyTable { name: "source", remark: "", keys: &SOURCE },
+    KeyTable { name: "observation", remark: "", keys: &OBSERVATION },
+];
+
+/// Keys of `[test]`.
+pub const TEST: [Key; 13] = [
+    text("id", "–").shown(r#""SD-2026-014""#, "number of the test"),
+    text("title", "–").shown(r#""Slap-down at 15°""#, ""),
+    text("place", "–").shown(r#""Drop tower""#, ""),
+    text("operator", "–").shown(r#""J. Doe""#, "who carried it out"),
+    text("customer", "–").shown(r#""Customer""#, ""),
+    text("specimen", "–").shown(r#""Model 1:2, No. 3""#, "what was dropped"),
+    text("target", "–").shown(r#""IAEA target, 1000 t""#, "onto what"),
+    text("remarks", "–").shown(r#""second drop of this model""#, ""),
+    Key { takes: Takes::Date, ..text("date", "–") }.shown("2026-11-22T09:40:00+01:00", "without quotes"),
+    number("temperature_c", "–")
+        .within(-100.0, 200.0, "of the specimen, in °C")
+        .shown("12.5", "of the specimen"),
+    Key { takes: Takes::Texts, ..text("photos", "–") }
+        .shown(r#"["before.jpg"]"#, "PNG or JPEG in the folder of this file"),
+    Key { takes: Takes::Texts, ..text("signatures", "–") }
+        .shown(r#"["Test engineer", "Reviewer"]"#, "lines to sign"),
+    Key { takes: Takes::Table, ..text("more", "–") }
+        .shown(r#"{ "Drop rig" = "Hall 3" }"#, "anything else, printed as it stands"),
+];
+
+/// Keys of `[observed]`.
+pub const OBSERVED: [Key; 6] = [
+    observation("slap_down_speed_m_s", "{ value = 20.4, u95 = 0.3, by = \"video\" }"),
+    observation("k", "{ value = 0.55, u95 = 0.05 }"),
+    observation("angular_velocity_rad_s", "{ value = 4.6, u95 = 0.1 }"),
+    observation("angle_deg", "{ value = 1.0, u95 = 0.5 }"),
+    observation("flight_time_s", "{ value = 0.056, u95 = 0.001 }"),
+    observation("impact_velocity_m_s", "{ value = 13.25, u95 = 0.05 }"),
+];
+
+/// Keys of an observation.
+pub const OBSERVATION: [Key; 3] = [
+    number("value", REQUIRED).shown("20.4", ""),
+    number("u95", REQUIRED).above_zero().shown("0.3", "half-width of its 95 % interval"),
+    text("by", "–").shown(r#""video, 5000 frames/s""#, ""),
 ];
 
 /// Keys of `[cask]`.
@@ -200,7 +254,7 @@ pub const RECORDING: [Key; 1] = [text("time", "found").shown(
 )];
 
 /// Keys of `[[channel]]`.
-pub const CHANNEL: [Key; 17] = [
+pub const CHANNEL: [Key; 20] = [
     text("name", REQUIRED).asked(r#""A1""#, ""),
     text("end", REQUIRED).asked(r#""first""#, r#""first" (low, touches first) or "second""#),
     text("axis", REQUIRED)
@@ -225,6 +279,9 @@ pub const CHANNEL: [Key; 17] = [
     text("reference", "–")
         .shown(r#""amplifier 3""#, "channels of one name share the error of their calibration"),
     number("lateral_m", "0").shown("0.0", "off the plane of the drop"),
+    text("serial", "–").shown(r#""A-20311""#, "of the sensor, for the report"),
+    text("certificate", "–").shown(r#""K-2026-118""#, "of its calibration"),
+    Key { takes: Takes::Date, ..text("calibrated", "–") }.shown("2026-03-02", "without quotes"),
 ];
 
 /// Keys of a source that is a table, `{ topic = …, field = … }`.
@@ -235,6 +292,10 @@ pub const SOURCE: [Key; 2] = [
 
 pub(crate) const fn text(name: &'static str, default: &'static str) -> Key {
     Key { name, takes: Takes::Text, default, example: "", remark: "", is_asked: false }
+}
+
+const fn observation(name: &'static str, example: &'static str) -> Key {
+    Key { takes: Takes::Observation, ..text(name, "–") }.shown(example, "")
 }
 
 pub(crate) const fn number(name: &'static str, default: &'static str) -> Key {

@@ -21,6 +21,7 @@ mod recording;
 pub(crate) mod shown;
 mod signal;
 mod study;
+mod test_record;
 mod tolerances;
 mod unit;
 
@@ -61,5 +62,6 @@ pub use study::{
     AngleCurve, Criterion, CriticalAngle, CriticalRange, MonteCarlo, PredictionRow, QuantileCurves, Regime,
     RegimeMap, Sensitivity, Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
 };
+pub use test_record::{Observed, ObservedBeside, Photo, SensorRecord, TestRecord};
 pub use tolerances::{Corrections, Tolerances};
 pub use unit::{STANDARD_GRAVITY_M_S2, acceleration_unit_m_s2, is_rate_of_turn};

@@ -4,8 +4,10 @@ mod body;
 pub(crate) mod channel;
 pub(super) mod fault;
 mod range;
+mod record;
 pub(crate) mod section;
 mod settings;
+mod texts;
 pub(super) mod tolerance;
 mod wording;
 
@@ -27,20 +29,20 @@ const LARGEST_BYTES: u64 = 16 << 20;
 /// # Errors
 /// [`CaskFileError`], one message that shows the line.
 pub fn parse(path: &Path) -> Result<CaskFile, CaskFileError> {
-    of_bytes(path, &read(path, &CASK_FILE)?)
+    of_bytes(path, &read(path, &CASK_FILE)?, Some(path.parent().unwrap_or(Path::new(""))))
 }
 
-/// The cask file of which this is the text, such as a result holds it; `path` is what it was called.
+/// The cask file of which this is the text, such as a result holds it; `path` is what it was called. Its photographs are not looked for.
 ///
 /// # Errors
 /// [`CaskFileError`], one message that shows the line.
 pub fn of_text(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
-    of_bytes(path, text.as_bytes())
+    of_bytes(path, text.as_bytes(), None)
 }
 
-fn of_bytes(path: &Path, bytes: &[u8]) -> Result<CaskFile, CaskFileError> {
+fn of_bytes(path: &Path, bytes: &[u8], photos: Option<&Path>) -> Result<CaskFile, CaskFileError> {
     let sha256 = format!("{:x}", Sha256::digest(bytes));
-    let cask_file = checked(path, text(path, bytes, &CASK_FILE)?)?;
+    let cask_file = checked(path, text(path, bytes, &CASK_FILE)?, photos)?;
     Ok(CaskFile { sha256, text: String::from_utf8_lossy(bytes).into_owned(), ..cask_file })
 }
 
@@ -129,7 +131,8 @@ pub(crate) fn text<'a>(path: &Path, bytes: &'a [u8], kind: &Kind) -> Result<&'a 
     Ok(text)
 }
 
-pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
+/// The checked file of this text; its photographs are looked for in the folder `photos`, if any.
+pub(super) fn checked(path: &Path, text: &str, photos: Option<&Path>) -> Result<CaskFile, CaskFileError> {
     let document = Document::new(&CASK_FILE, path, text);
     let root = document.root()?;
     let cask = cask(&root.required_table("cask")?, path)?;
@@ -143,6 +146,8 @@ pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError
     let corrections = tolerance::corrections(&root.table("corrections")?)?;
     let time = root.table("recording")?.text("time")?.map(|time| time.value);
     let channels = channel::channels(&root, &cask)?;
+    let test = record::test(&root.table("test")?, photos)?;
+    let observed = record::observed(&root.table("observed")?)?;
     if filter == FilterChoice::Auto {
         defaults.push("filter".into());
     }
@@ -158,6 +163,8 @@ pub(super) fn checked(path: &Path, text: &str) -> Result<CaskFile, CaskFileError
         corrections,
         time,
         channels,
+        test,
+        observed,
         defaults,
     })
 }

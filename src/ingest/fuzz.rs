@@ -40,7 +40,7 @@ fn cask_of(sources: &[&str]) -> CaskFile {
     };
     let head = "[cask]\nname = 'c'\nmass_kg = 1\nlength_m = 1\n[drop]\nheight_m = 1\nangle_deg = 1\n";
     let text = head.to_owned() + &sources.iter().map(channel).collect::<String>();
-    cask_file::checked(Path::new("c"), &text).expect("a sound cask file")
+    cask_file::checked(Path::new("c"), &text, None).expect("a sound cask file")
 }
 
 fn in_file(bytes: &[u8], read: impl FnOnce(&Path)) {

@@ -22,7 +22,7 @@ pub use copies::judge_copies;
 pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_fall_time, judge_several_drops, judge_slowed};
 pub use missing::{judge_no_impact, judge_no_slap_down};
-pub use result::{judge_comparison, judge_motion, judge_touch};
+pub use result::{beside, judge_comparison, judge_motion, judge_observed, judge_touch};
 pub use rigid::judge_rigid;
 pub use silent::judge_silent;
 pub use skew::judge_skew;

@@ -1,8 +1,8 @@
 //! A reconstructed motion to what speaks against it.
 
 use crate::data::{
-    Axis, CaskFile, ChannelFinding, Comparison, Contact, DropFinding, End, Finding, FlightFit, GRAZE_SHARE,
-    Motion, Plateau, Quantities, Severity, Signal,
+    Axis, CaskFile, ChannelFinding, Comparison, Contact, DropFinding, DropResult, End, Estimate, Finding,
+    FlightFit, GRAZE_SHARE, Motion, Observed, ObservedBeside, Plateau, Quantities, Severity, Signal,
 };
 
 /// k this far outside 0 to 1 is an error whatever its interval.
@@ -147,6 +147,37 @@ fn bends(flight: &FlightFit, signals: &[Signal], v0_m_s: f64) -> Vec<Finding> {
             .then(|| found.on(&on.channel).between(flight.from_s, flight.to_s))
     };
     (0..flight.modes.len()).filter_map(of_mode).collect()
+}
+
+/// What was observed otherwise beside the same of a result.
+#[must_use]
+pub fn beside(seen: &Observed, result: &DropResult) -> ObservedBeside {
+    let (first, second) = (&result.first_impact, &result.slap_down);
+    let (of, unit) = match seen.name {
+        "slap_down_speed_m_s" => (second.speed, "m/s"),
+        "angular_velocity_rad_s" => (first.angular_velocity, "rad/s"),
+        "angle_deg" => (second.angle, "deg"),
+        "flight_time_s" => (second.flight_time, "s"),
+        "impact_velocity_m_s" => (first.impact_velocity, "m/s"),
+        _ => (result.k, "1"),
+    };
+    ObservedBeside {
+        name: seen.name,
+        observed: Estimate::new(seen.value, seen.u95, unit),
+        by: seen.by.clone(),
+        result: of,
+        e_n: of.map(|of| (of.value - seen.value) / of.u95.hypot(seen.u95)),
+    }
+}
+
+/// What was observed otherwise and lies apart from the result, which chance alone makes a warning once in three hundred.
+pub fn judge_observed(observed: &[ObservedBeside]) -> impl Iterator<Item = Finding> {
+    let apart = |beside: &ObservedBeside| {
+        let e_n = beside.e_n.map(f64::abs).filter(|e_n| *e_n > 1.0)?;
+        let severity = if e_n > CHANCE_E_N { Severity::Warning } else { Severity::Note };
+        Some(DropFinding::ObservedApart { beside: beside.clone(), e_n, severity }.into())
+    };
+    observed.iter().filter_map(apart)
 }
 
 /// What a comparison that does not agree amounts to.

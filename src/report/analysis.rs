@@ -6,6 +6,7 @@ use super::impacts::impacts;
 use super::medium::{Medium, Words};
 use super::prediction::prediction_columns;
 use super::reconstruction::{budget, flight, reconstruction};
+use super::record;
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
 use super::settings;
 use super::table::{ReportTable, TableCell, TableShape};
@@ -16,7 +17,8 @@ use super::text::{
 };
 use super::words::{KEPT_SENTENCE, OVER_SENTENCE, contact_words};
 use crate::data::{
-    Analysis, CaskFile, DropResult, Estimate, Finding, FlightRegime, IssueCode, Prediction, Severity, Verdict,
+    Analysis, CaskFile, DropResult, Estimate, Finding, FlightRegime, IssueCode, Prediction, Severity,
+    TestRecord, Verdict,
 };
 
 /// Findings that take away what the first impact would give.
@@ -61,10 +63,14 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
         },
         chapters: vec![
             summary(result, file),
-            tested(file, "What was tested"),
+            record::head(&result.test),
+            tested(file, "What was tested")
+                .with(ChapterPart::picture("setup", "", ""))
+                .with(record::sensors(file)),
             quantities(result),
             impacts(result),
             comparison(result),
+            record::observed(&result.observed),
             quality(&result.quality).only(Medium::Page),
             curves,
             reconstruction(result),
@@ -74,8 +80,16 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             channels(result),
             quality(&result.quality).only(Medium::Terminal),
             provenance(result, file),
+            record::photographs(&result.test),
+            signed(&result.test),
         ],
     }
+}
+
+/// Lines to sign, where the cask file names who does.
+fn signed(test: &TestRecord) -> Chapter {
+    let chapter = Chapter::new("Signatures").only(Medium::Page);
+    if test.signatures.is_empty() { chapter } else { chapter.with(record::signatures(&test.signatures)) }
 }
 
 /// What was dropped, the verdict, and the four numbers that a reader looks for first.
@@ -106,6 +120,7 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
     Chapter::new("")
         .with(ChapterPart::title(what).only(Medium::Terminal))
         .with(ChapterPart::line(files).only(Medium::Terminal))
+        .with_all(record::line(&result.test))
         .with(PartContent::Banner(
             Tone(style, verdict_word(result.verdict).to_owned()),
             verdict_sentence(result),

@@ -5,6 +5,7 @@ use super::medium::{Medium, Words};
 use super::pictures::draw::Picture;
 use super::table::{CellKind, ReportColumn, ReportTable, TableCell};
 use super::text::{capital, printable};
+use base64::prelude::{BASE64_STANDARD as STANDARD, Engine};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("report.css");
@@ -20,7 +21,7 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 // Whatever a file smuggled in could neither run nor call out.
-                meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'";
+                meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:";
                 meta name="generator" content=(generator);
                 title { (printable(title)) }
                 style { (PreEscaped(STYLE)) (PreEscaped(style)) }
@@ -62,6 +63,15 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
                 figure aria-label=(printable(&picture.alt)) class=[class(room)] {
                     (PreEscaped(&picture.svg))
                     figcaption { strong { (printable(&picture.title)) ". " } (printable(&picture.caption)) }
+                }
+            }
+        },
+        PartContent::Photographs(photos) => html! {
+            @for photo in photos {
+                @let words = printable(&photo.name);
+                figure class="photo" {
+                    img alt=(words) src=(format!("data:{};base64,{}", photo.media_type, STANDARD.encode(&photo.bytes)));
+                    figcaption { (words) }
                 }
             }
         },

@@ -28,6 +28,7 @@ fn passage(passage: &ChapterPart, folder: Option<&str>) -> Option<String> {
         PartContent::Banner(..)
         | PartContent::Figures(_)
         | PartContent::Facts(..)
+        | PartContent::Photographs(_)
         | PartContent::List(_)
         | PartContent::Beside(_) => None,
     }

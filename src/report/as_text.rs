@@ -48,7 +48,10 @@ fn passage(passage: &ChapterPart) -> String {
             .filter(|passage| passage.is_shown(Medium::Terminal))
             .map(self::passage)
             .collect(),
-        PartContent::Figures(_) | PartContent::Picture(..) | PartContent::List(_) => String::new(),
+        PartContent::Figures(_)
+        | PartContent::Picture(..)
+        | PartContent::Photographs(_)
+        | PartContent::List(_) => String::new(),
     }
 }
 

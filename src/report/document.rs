@@ -4,6 +4,7 @@ use super::medium::{Medium, Words};
 use super::rounding::MISSING;
 use super::table::{CellKind, ReportTable, TableRows};
 use super::text::Style;
+use crate::data::Photo;
 
 /// What is read from its first line to its last.
 #[derive(Default)]
@@ -97,6 +98,8 @@ pub(crate) enum PartContent {
     ReportTable(ReportTable),
     /// The picture of this name, and what it shows in a few words; its room on paper as a class of the style.
     Picture(String, String, &'static str),
+    /// Photographs of the test.
+    Photographs(Vec<Photo>),
     /// Sentences one below the other.
     List(Vec<&'static str>),
     /// Two columns where there is room.
@@ -167,8 +170,13 @@ impl ChapterPart {
 
     /// Whether this medium shows it.
     pub(crate) fn is_shown(&self, medium: Medium) -> bool {
-        let is_drawn =
-            matches!(self.content, PartContent::Figures(_) | PartContent::Picture(..) | PartContent::List(_));
+        let is_drawn = matches!(
+            self.content,
+            PartContent::Figures(_)
+                | PartContent::Picture(..)
+                | PartContent::Photographs(_)
+                | PartContent::List(_)
+        );
         self.only.is_none_or(|only| only == medium) && !(is_drawn && medium == Medium::Terminal)
     }
 }

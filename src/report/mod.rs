@@ -23,6 +23,7 @@ pub(crate) mod medium;
 pub(crate) mod pictures;
 mod prediction;
 mod reconstruction;
+pub(crate) mod record;
 pub(crate) mod records;
 pub(crate) mod rounding;
 #[cfg(test)]
@@ -93,12 +94,13 @@ pub fn table(analysis: &Analysis) -> String {
 }
 
 /// The names of the files of a report, in the order of [`files`].
-pub const FILE_NAMES: [&str; 10] = [
+pub const FILE_NAMES: [&str; 11] = [
     "report.html",
     "result.json",
     "curves.csv",
     "curves.h5",
     "curves.mcap",
+    "setup.svg",
     "accelerations.svg",
     "velocities.svg",
     "motion.svg",
@@ -136,7 +138,7 @@ mod tests {
     #[test]
     fn an_analysis_without_a_single_curve_still_makes_a_report() {
         let files = files(&sample::without_anything()).unwrap();
-        assert_eq!(files.len(), 10);
+        assert_eq!(files.len(), FILE_NAMES.len());
     }
 
     #[test]

@@ -3,10 +3,10 @@
 use super::sample_reconstruction;
 use crate::data::{
     Analysis, At, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelFinding, ChannelSpec, ChannelSummary,
-    Comparison, Contact, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events, FilterChoice,
-    Finding, FirstImpact, FlightFit, FlightModelScore, FlightRegime, ImpactTable, Input, Mode,
-    ModelCandidate, ModelChoice, MotionCurve, Plateau, Prediction, Program, RecordingFormat, Rung, Setting,
-    SlapDown, Unit, Verdict,
+    Comparison, Contact, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events, Finding,
+    FirstImpact, FlightFit, FlightModelScore, FlightRegime, ImpactTable, Input, Mode, ModelCandidate,
+    ModelChoice, MotionCurve, Plateau, Prediction, Program, RecordingFormat, Rung, Setting, SlapDown, Unit,
+    Verdict,
 };
 use std::f64::consts::PI;
 
@@ -75,6 +75,8 @@ fn result() -> DropResult {
         analysed: Some("2026-11-24T02:00:00Z".into()),
         amplification: Some(Estimate::new(1.55, 0.03, "1")),
         impacts: impacts(),
+        test: crate::data::TestRecord::default(),
+        observed: Vec::new(),
         keys: serde_json::Value::Null,
         cask_text: "[cask]".into(),
         input: Input {
@@ -213,6 +215,7 @@ fn summary(name: &str, end: End, source: &str) -> ChannelSummary {
         noise_m_s2: Some(4.2),
         peak_filtered_m_s2: Some(4_930.0),
         peak_raw_m_s2: Some(6_210.0),
+        sensor: crate::data::SensorRecord::default(),
         clipped: Vec::new(),
     }
 }
@@ -272,26 +275,20 @@ pub(super) fn cask_file() -> CaskFile {
         full_scale: Some(500.0),
         ..ChannelSpec::plain(name, end, source, position_m)
     };
+    let cask = Cask {
+        name: "ANF-18".into(),
+        mass_kg: 4466.0,
+        length_m: 5.512,
+        height_m: 0.792,
+        width_m: Some(0.96),
+        cog_m: 2.756,
+        inertia_kg_m2: 11_540.0,
+        is_body: true,
+    };
+    let drop = Drop { impact_velocity_m_s: IMPACT_VELOCITY_M_S, ..Drop::of_height(9.0, 15.0 * PI / 180.0) };
     CaskFile {
         path: "anf18.toml".into(),
         sha256: "60303ae22b998861bce3b28f33eec1be758a213c86c93c076dbe9f558c11c752".into(),
-        text: String::new(),
-        cask: Cask {
-            name: "ANF-18".into(),
-            mass_kg: 4466.0,
-            length_m: 5.512,
-            height_m: 0.792,
-            width_m: Some(0.96),
-            cog_m: 2.756,
-            inertia_kg_m2: 11_540.0,
-            is_body: true,
-        },
-        drop: Drop { impact_velocity_m_s: IMPACT_VELOCITY_M_S, ..Drop::of_height(9.0, 15.0 * PI / 180.0) },
-        contact: Contact::Rough,
-        filter: FilterChoice::Auto,
-        tolerances: crate::data::Tolerances::default(),
-        corrections: crate::data::Corrections::default(),
-        time: None,
         channels: vec![
             channel("A1", End::First, "/daq/a1.samples", 0.15),
             channel("A2", End::Second, "/daq/a2.samples", 5.362),
@@ -302,6 +299,7 @@ pub(super) fn cask_file() -> CaskFile {
             // The sample states the tolerance of its angle, and no other.
             .chain(super::settings::TOLERANCES[1..].iter().map(|t| format!("tolerance.{}", t.key)))
             .collect(),
+        ..CaskFile::plain(cask, drop, Contact::Rough)
     }
 }
 

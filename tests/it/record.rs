@@ -1,7 +1,7 @@
 //! From a result alone to the same result again, and to what differs.
 
 use crate::command_line::at_fault;
-use crate::run::{dropcheck, fixture};
+use crate::run::{analyze, dropcheck, fixture};
 use std::fs;
 use std::path::Path;
 
@@ -44,4 +44,46 @@ fn a_result_alone_gives_the_same_result_again() {
         answer.stdout
     );
     at_fault(&with(["--from".as_ref(), cask.as_os_str(), "".as_ref(), "".as_ref()], &second), &["not JSON"]);
+}
+
+#[test]
+fn what_is_said_of_the_test_stands_in_the_record_and_what_was_seen_is_held_against_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let stated = std::fs::read_to_string(fixture("anf18-json.toml")).expect("a cask file");
+    let sensor = "[[channel]]\nserial = \"A-20311\"\ncertificate = \"K-118\"\ncalibrated = 2026-03-02\n";
+    let with = |test: &str| {
+        let cask = folder.path().join("c.toml");
+        std::fs::write(&cask, format!("{test}\n{}", stated.replacen("[[channel]]", sensor, 1)))
+            .expect("room");
+        analyze(&fixture("anf18-json.mcap"), &cask)
+    };
+    // A PNG of one pixel, by another writer.
+    let pixel = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x01\0\0\0\x01\x08\x02\0\0\0\x90wS\xde\0\0\0\x0cIDATx\x9cc\xf8\xcf\xc0\0\0\x03\x01\x01\0\xc9\xfe\x92\xef\0\0\0\0IEND\xaeB`\x82";
+    std::fs::write(folder.path().join("before.png"), pixel).expect("room");
+    std::fs::write(folder.path().join("words.png"), "no picture").expect("room");
+    let test = "[test]\nid = \"SD-14\"\ndate = 2026-11-22T09:40:00+01:00\nphotos = [\"before.png\"]\n[test.more]\nHook = 4\n";
+    // 20.62 ± 0.40 m/s: (20.62 − 20.4)/√(0.40² + 0.30²) = 0.45; k 0.551 ± 0.040: (0.551 − 0.7)/√(0.040² + 0.030²) = −3.0.
+    let seen = "[observed]\nslap_down_speed_m_s = { value = 20.4, u95 = 0.3, by = \"video\" }\nk = { value = 0.7, u95 = 0.03 }\n";
+    let result = with(&format!("{test}{seen}")).json();
+    assert_eq!(result["test"]["id"], "SD-14");
+    assert_eq!(result["test"]["date"], "2026-11-22T09:40:00+01:00");
+    assert_eq!(result["test"]["more"]["Hook"], "4");
+    assert_eq!(result["test"]["photos"][0], "before.png");
+    assert_eq!(result["settings"]["test"]["date"]["from"], "stated");
+    assert_eq!(result["channels"][0]["calibrated"], "2026-03-02");
+    assert!((result["observed"][0]["e_n"].as_f64().expect("both known") - 0.45).abs() < 0.02);
+    assert!((result["observed"][1]["e_n"].as_f64().expect("both known") + 3.0).abs() < 0.1);
+    assert_eq!((&result["verdict"], &result["quality"][0]["code"]), (&"review".into(), &"observed".into()));
+    for (wrong, named) in [
+        ("[test]\nphotos = [\"none.jpg\"]\n", "none.jpg cannot be read"),
+        ("[test]\nphotos = [\"words.png\"]\n", "neither PNG nor JPEG"),
+        ("[test]\nphotos = [\".\"]\n", ". cannot be read"),
+        ("[test]\ndate = \"2026-11-22\"\n", "write year, month and day without quotes"),
+        ("[test]\nsignatures = \"Reviewer\"\n", "a list of texts"),
+        ("[test.more]\nHook = true\n", "a text or a number"),
+        ("[observed]\nk = 0.5\n", "add the half-width of its 95 % interval"),
+        ("[observed]\nspeed = { value = 1.0, u95 = 0.1 }\n", "knows no key speed"),
+    ] {
+        at_fault(&with(wrong), &[named]);
+    }
 }

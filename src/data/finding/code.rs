@@ -60,6 +60,7 @@ pub enum IssueCode {
     Friction,
     RestitutionRange,
     Disagreement,
+    Observed,
     FlightFit,
     MissingChannel,
 }
@@ -144,6 +145,10 @@ pub const CODES: [(&str, &[(IssueCode, &str)]); 4] = [
             (IssueCode::RestitutionRange, "k lies outside 0 to 1"),
             (IssueCode::FlightFit, "the flight is too short, or not explained by plateau and modes"),
             (IssueCode::Disagreement, "measured and predicted lie apart beyond their intervals"),
+            (
+                IssueCode::Observed,
+                "the result and what was observed otherwise lie apart beyond their intervals",
+            ),
         ],
     ),
 ];

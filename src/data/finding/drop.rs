@@ -1,7 +1,8 @@
 //! What speaks against the drop as a whole, with its numbers, to code, severity and sentence.
 
 use super::{Finding, IssueCode as Code, Severity};
-use crate::data::{Closure, ClosureKind, CoarseEvent, Comparison, Drop, End, Estimate};
+use crate::data::shown::digits;
+use crate::data::{Closure, ClosureKind, CoarseEvent, Comparison, Drop, End, Estimate, ObservedBeside};
 
 /// What is usually confused in a cask file; the channels by name.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -99,6 +100,8 @@ pub enum DropFinding {
     SecondUntold { recorded_s: f64 },
     /// Measured and predicted lie apart.
     Disagreement { comparison: Comparison, e_n: f64, severity: Severity },
+    /// What was seen otherwise lies apart from the result.
+    ObservedApart { beside: ObservedBeside, e_n: f64, severity: Severity },
     /// A closure is missed by more than chance; the numbers are taken away where that `is_gross`. The recording shows a free fall of `fall_s`.
     Missed { closure: Closure, is_gross: bool, drop: Drop, fall_s: f64 },
     /// The rest before the fall and its length say alike that something took this share of g off it, which makes another v0 of the drop height.
@@ -134,6 +137,7 @@ impl DropFinding {
             }
             Self::SecondUntold { .. } => (Code::SecondImpact, Note),
             Self::Disagreement { severity, .. } => (Code::Disagreement, *severity),
+            Self::ObservedApart { severity, .. } => (Code::Observed, *severity),
             Self::Missed { closure, is_gross, .. } => {
                 let code = match closure.kind {
                     ClosureKind::Height | ClosureKind::Fall => Code::Geometry,
@@ -249,6 +253,13 @@ impl DropFinding {
                 "measured {:.2} ± {:.2} m/s and predicted {:.2} ± {:.2} m/s lie apart beyond both intervals (E_n = {e_n:.1}): check contact law, angle, mass properties and scales",
                 c.measured, c.measured_u95, c.predicted, c.predicted_u95
             ),
+            Self::ObservedApart { beside, e_n, .. } => format!(
+                "{} is {} here and was observed{} as {}: they lie apart beyond both intervals (E_n = {e_n:.1}); check what was observed, and the cask file",
+                beside.name,
+                beside.result.as_ref().map_or_else(String::new, plus_minus),
+                beside.by.as_ref().map_or_else(String::new, |by| format!(" by {by}")),
+                plus_minus(&beside.observed)
+            ),
             Self::UsualSlip { slip, speed, k, .. } => format!(
                 "with {} everything closes, at {}: check that first; it was not taken by itself",
                 slip.words(),
@@ -270,6 +281,11 @@ impl DropFinding {
             Self::Untested => "the recording shows no rest before the release: nothing in it tests the drop height, the clock's rate or a scale error that all channels share, and little tests one of the first end alone, which k follows; they are taken as stated; record from before the release with DC-coupled sensors".into(),
         }
     }
+}
+
+/// "20.62 ± 0.40".
+fn plus_minus(estimate: &Estimate) -> String {
+    format!("{} ± {}", digits(estimate.value, 4), digits(estimate.u95, 2))
 }
 
 /// "20.49 ± 0.11 m/s and k = 0.56 ± 0.01", as far as they are there.

@@ -2,7 +2,7 @@
 
 use super::CaskFileError;
 use super::section::Section;
-use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, Source, Unit};
+use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, SensorRecord, Source, Unit};
 use std::ops::Range;
 
 const UNITS: &str = "unit = \"g\", \"m/s^2\", or \"V\" or \"mV\" with sensitivity in mV per g; left out: what the recording says";
@@ -70,6 +70,11 @@ fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), 
         calibration: table.number("calibration_percent")?.map(|percent| percent.value / 100.0),
         reference: table.text("reference")?.map(|reference| reference.value),
         lateral_m: table.number("lateral_m")?.map_or(0.0, |lateral| lateral.value),
+        sensor: SensorRecord {
+            serial: table.text("serial")?.map(|serial| serial.value),
+            certificate: table.text("certificate")?.map(|certificate| certificate.value),
+            calibrated: table.date("calibrated")?,
+        },
     };
     Ok((spec, name.span))
 }

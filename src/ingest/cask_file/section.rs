@@ -20,12 +20,26 @@ pub(crate) struct Kind {
 /// The cask file.
 pub(crate) const CASK_FILE: Kind = Kind {
     name: THE_CASK_FILE,
-    root: &["cask", "drop", "contact", "tolerance", "corrections", "filter", "recording", "channel"],
+    root: &[
+        "cask",
+        "drop",
+        "contact",
+        "tolerance",
+        "corrections",
+        "filter",
+        "recording",
+        "channel",
+        "test",
+        "observed",
+    ],
     tables: &keys::TABLES,
 };
 
 /// The tables of which a file may have any number.
 const LISTS: [&str; 2] = ["channel", "mode"];
+
+/// The table whose keys are the user's own.
+const OWN_NAMES: &str = "more";
 
 /// A table as a person finds it in a file.
 fn titled(name: &str) -> String {
@@ -33,6 +47,8 @@ fn titled(name: &str) -> String {
         "" => "the file".into(),
         name if LISTS.contains(&name) => format!("[[{name}]]"),
         "source" => "source = { … }".into(),
+        "observation" => "{ value = …, u95 = … }".into(),
+        "more" => "[test.more]".into(),
         name => format!("[{name}]"),
     }
 }
@@ -55,7 +71,7 @@ pub(crate) struct Placed<T> {
 pub(crate) struct Section<'a> {
     document: &'a Document<'a>,
     name: &'static str,
-    table: DeTable<'a>,
+    pub(super) table: DeTable<'a>,
     span: Range<usize>,
 }
 
@@ -79,6 +95,9 @@ impl<'a> Document<'a> {
         span: Range<usize>,
     ) -> Result<Section<'a>, CaskFileError> {
         let section = Section { document: self, name, table, span };
+        if name == OWN_NAMES {
+            return Ok(section);
+        }
         match section.table.keys().find(|key| !section.keys().contains(&key.get_ref().as_ref())) {
             Some(key) => Err(section.unknown_key(key)),
             None => Ok(section),
@@ -194,7 +213,7 @@ impl<'a> Section<'a> {
         let tables = self.document.kind.tables;
         let others: Vec<String> = tables
             .iter()
-            .filter(|table| ![self.name, "source"].contains(&table.name))
+            .filter(|table| ![self.name, "source", "observation"].contains(&table.name))
             .filter(|table| table.keys.iter().any(|key| key.name == word))
             .map(|table| titled(table.name))
             .collect();
@@ -213,11 +232,22 @@ impl<'a> Section<'a> {
 
     /// The table `key`; an empty one where there is none.
     pub(crate) fn table(&self, key: &'static str) -> Result<Section<'a>, CaskFileError> {
+        self.table_as(key, key)
+    }
+
+    /// The same, whose keys are those of the table `name`.
+    pub(super) fn table_as(&self, key: &str, name: &'static str) -> Result<Section<'a>, CaskFileError> {
         let Some(value) = self.value(key) else {
-            return Ok(Section { document: self.document, name: key, table: DeTable::new(), span: 0..0 });
+            return Ok(Section { document: self.document, name, table: DeTable::new(), span: 0..0 });
         };
         match value.get_ref() {
-            DeValue::Table(table) => self.document.section(key, table.clone(), value.span()),
+            DeValue::Table(table) => self.document.section(name, table.clone(), value.span()),
+            _ if name != key => Err(self.wrong(
+                value.span(),
+                format!("{key} is {}, not a value with its interval", described(value.get_ref())),
+                "{ value = …, u95 = … }".into(),
+                &format!("add the half-width of its 95 % interval: {}", self.example(key)),
+            )),
             _ => Err(self.wrong(
                 value.span(),
                 format!("{key} is {}, not a table", described(value.get_ref())),
@@ -294,75 +324,5 @@ impl<'a> Section<'a> {
         };
         let message = format!("{key} is {}, not a number", described(value.get_ref()));
         Err(self.wrong(value.span(), message, "a number".into(), &mend))
-    }
-
-    /// A word or name, not empty.
-    pub(crate) fn text(&self, key: &str) -> Result<Option<Placed<String>>, CaskFileError> {
-        self.text_such_as(key, &self.example(key))
-    }
-
-    /// The same; `such_as` is what to write in place of what `dropcheck init` leaves to be filled in.
-    fn text_such_as(&self, key: &str, such_as: &str) -> Result<Option<Placed<String>>, CaskFileError> {
-        let Some(value) = self.value(key) else { return Ok(None) };
-        match value.get_ref() {
-            DeValue::String(text) if text == FILL_IN => Err(self.unfilled(key, such_as)),
-            DeValue::String(text) if !text.trim().is_empty() => {
-                Ok(Some(Placed { value: text.to_string(), span: value.span() }))
-            }
-            DeValue::String(_) => Err(self.wrong(
-                value.span(),
-                format!("{key} is empty"),
-                "a name".into(),
-                &format!("write a name between the quotes, or delete {key}"),
-            )),
-            other => Err(self.wrong(
-                value.span(),
-                format!("{key} is {}, not a text", described(other)),
-                "a text in quotes".into(),
-                &format!("put it in quotes: {key} = \"…\""),
-            )),
-        }
-    }
-
-    pub(crate) fn required_text(&self, key: &str) -> Result<Placed<String>, CaskFileError> {
-        self.text(key)?.ok_or_else(|| self.without(key))
-    }
-
-    /// That a key is missing, with a line such as it could have.
-    pub(super) fn without(&self, key: &str) -> CaskFileError {
-        self.missing(key, &format!("add a line such as {}", self.example(key)))
-    }
-
-    /// A line that the key could have.
-    fn example(&self, key: &str) -> String {
-        format!("{key} = {}", self.row(key).map_or("…", |row| row.example))
-    }
-
-    /// That the form of `dropcheck init` was left as it is here.
-    fn unfilled(&self, key: &str, such_as: &str) -> CaskFileError {
-        let message = format!("{key} is \"{FILL_IN}\": what it is only you know");
-        let label = "this line is still to be filled in".to_owned();
-        self.wrong(self.place(key), message, label, &format!("write what it is, such as {such_as}"))
-    }
-
-    /// One of a few words.
-    pub(crate) fn word<T: Copy>(
-        &self,
-        key: &str,
-        words: &[(&str, T)],
-        mend: &str,
-    ) -> Result<Option<T>, CaskFileError> {
-        let Some(text) = self.text_such_as(key, mend)? else { return Ok(None) };
-        if let Some((_, value)) = words.iter().find(|(word, _)| *word == text.value) {
-            return Ok(Some(*value));
-        }
-        let known: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
-        let quoted: Vec<String> = known.iter().map(|word| format!("\"{word}\"")).collect();
-        let mend = match nearest(&text.value.to_lowercase(), &known) {
-            Some(near) => format!("did you mean \"{near}\"? {mend}"),
-            None => mend.to_owned(),
-        };
-        let message = format!("{key} cannot be \"{}\"", text.value);
-        Err(self.wrong(text.span, message, quoted.join(" or "), &mend))
     }
 }

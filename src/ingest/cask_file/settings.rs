@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
     let stated: toml::Table = file.text.trim_start_matches('\u{feff}').parse().unwrap_or_default();
     let of = |table: &str| stated.get(table).and_then(toml::Value::as_table);
-    let single = TABLES.iter().filter(|table| !["channel", "source"].contains(&table.name));
+    let single = TABLES.iter().filter(|table| !["channel", "source", "observation"].contains(&table.name));
     let mut all: Map<String, Value> = single
         .map(|table| {
             let default = |key: &Key| (default(file, table.name, key.name), "default");
@@ -54,7 +54,11 @@ fn entries(
 ) -> Value {
     let entry = |key: &Key| {
         let own = stated.and_then(|table| table.get(key.name));
-        let (value, from) = match own.map(|own| serde_json::to_value(own).unwrap_or_default()) {
+        let plain = |own: &toml::Value| match own {
+            toml::Value::Datetime(when) => json!(when.to_string()),
+            own => serde_json::to_value(own).unwrap_or_default(),
+        };
+        let (value, from) = match own.map(plain) {
             Some(own) => (own, "stated"),
             None => default(key),
         };

@@ -77,7 +77,7 @@ mod tests {
     const CASK: &str = "[cask]\nmass_kg = 1000\nlength_m = 5\n[drop]\nheight_m = 9\nangle_deg = 15\n";
 
     fn parsed(more: &str) -> Result<crate::data::CaskFile, String> {
-        checked(Path::new("c.toml"), &format!("{CASK}{more}")).map_err(|e| e.to_string())
+        checked(Path::new("c.toml"), &format!("{CASK}{more}"), None).map_err(|e| e.to_string())
     }
 
     #[test]

@@ -1,32 +1,20 @@
 //! Made-up channels to what `worth` says of them.
 
 use super::*;
-use crate::data::{At, Cask, Contact, Corrections, Drop, FilterChoice, IssueCode, Tolerances};
+use crate::data::{At, Cask, Contact, Drop, IssueCode};
 
 fn cask_file() -> CaskFile {
-    CaskFile {
-        path: "a.toml".into(),
-        sha256: String::new(),
-        text: String::new(),
-        cask: Cask {
-            name: "A".into(),
-            mass_kg: 4000.0,
-            length_m: 5.0,
-            height_m: 0.0,
-            width_m: None,
-            cog_m: 2.5,
-            inertia_kg_m2: 8000.0,
-            is_body: false,
-        },
-        drop: Drop { impact_velocity_m_s: 13.29, ..Drop::of_height(9.0, 0.25) },
-        contact: Contact::Rough,
-        filter: FilterChoice::Auto,
-        tolerances: Tolerances::default(),
-        corrections: Corrections::default(),
-        time: None,
-        channels: vec![],
-        defaults: vec![],
-    }
+    let cask = Cask {
+        name: "A".into(),
+        mass_kg: 4000.0,
+        length_m: 5.0,
+        height_m: 0.0,
+        width_m: None,
+        cog_m: 2.5,
+        inertia_kg_m2: 8000.0,
+        is_body: false,
+    };
+    CaskFile::plain(cask, Drop { impact_velocity_m_s: 13.29, ..Drop::of_height(9.0, 0.25) }, Contact::Rough)
 }
 
 /// A half sine of 5 ms from 20 ms on at 10 kHz; white noise of 1 m/s² is said, none is there.

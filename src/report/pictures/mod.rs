@@ -1,4 +1,4 @@
-//! An analysis to its five pictures, a study to its charts, as SVG text.
+//! An analysis to its six pictures, a study to its charts, as SVG text.
 
 mod angle_curves;
 mod axes;
@@ -14,6 +14,7 @@ mod monte_carlo;
 pub(crate) mod panel;
 mod regimes;
 mod sensitivity;
+mod setup;
 mod study;
 mod svg;
 mod sweep;
@@ -23,9 +24,10 @@ pub(super) use study::{draw_study, names as study_names};
 use crate::data::Analysis;
 use draw::Picture;
 
-/// Accelerations, velocities, motion, spectra and comparison; one that has nothing to show says so.
+/// Set-up, accelerations, velocities, motion, spectra and comparison; one that has nothing to show says so.
 pub(super) fn draw(analysis: &Analysis) -> Vec<Picture> {
     vec![
+        setup::picture(&analysis.cask_file),
         curves::accelerations(analysis),
         curves::velocities(analysis),
         curves::motion(analysis),
@@ -68,12 +70,12 @@ mod tests {
         }
         analysis.curves.channels[1].velocity_m_s.fill(f64::NAN);
         let pictures = draw(&analysis);
-        assert!(!pictures[0].svg.contains("-2147483648") && !pictures[1].svg.contains("-2147483648"));
+        assert!(!pictures[1].svg.contains("-2147483648") && !pictures[2].svg.contains("-2147483648"));
     }
 
     #[test]
     fn nothing_is_said_to_be_nothing() {
         let pictures = draw(&sample::without_anything());
-        assert!(pictures.iter().all(|p| p.svg.contains("nothing to show")));
+        assert!(pictures[1..].iter().all(|p| p.svg.contains("nothing to show")));
     }
 }

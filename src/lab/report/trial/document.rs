@@ -6,6 +6,7 @@ use crate::lab::data::{Trial, TrialFate, TrialLimit, TrialMap, TrialPoint};
 use crate::lab::methods::{ALL_CLASSES, READING, WAYS};
 use crate::report::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument, Tone};
 use crate::report::medium::Medium;
+use crate::report::record;
 use crate::report::rounding::{optional_fixed, plain, significant};
 use crate::report::table::{ReportTable, TableCell, TableShape};
 use crate::report::text::Style;
@@ -33,7 +34,7 @@ pub(super) fn document(trial: &Trial) -> ReportDocument {
         Chapter::new("What is accepted")
             .with(ChapterPart::lead(LIMITS))
             .with(limits(&trial.limits))
-            .with(signatures().only(Medium::Page)),
+            .with(record::signatures(&["Carried out", "Checked"]).only(Medium::Page)),
     ];
     ReportDocument {
         page: frame(trial, "Acceptance of dropcheck on this machine", ACCEPTANCE_FOOT),
@@ -228,17 +229,6 @@ fn limits(limits: &[TrialLimit]) -> ReportTable {
         .soft("", |limit| held(limit))
         .text("why", |limit| why(limit))
         .shape(TableShape::Items)
-        .into()
-}
-
-/// Lines for a pen.
-fn signatures() -> ChapterPart {
-    ReportTable::of(&["Carried out", "Checked"])
-        .class("signatures")
-        .head("", |who| *who)
-        .text("name", |_| "")
-        .text("date", |_| "")
-        .text("signature", |_| "")
         .into()
 }
 

@@ -1,0 +1,97 @@
+//! What a cask file says of the test itself: who, what, where, when, and what was seen otherwise.
+
+use super::estimate::Estimate;
+use serde::{Serialize, Serializer};
+use std::sync::Arc;
+
+/// `[test]`: what stands at the head of a test report and changes no number.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct TestRecord {
+    /// The test's number.
+    pub id: Option<String>,
+    /// What the test is called.
+    pub title: Option<String>,
+    /// Where.
+    pub place: Option<String>,
+    /// By whom.
+    pub operator: Option<String>,
+    /// For whom.
+    pub customer: Option<String>,
+    /// What was dropped.
+    pub specimen: Option<String>,
+    /// Onto what.
+    pub target: Option<String>,
+    /// Anything else.
+    pub remarks: Option<String>,
+    /// A date, or date and time, as RFC 3339 writes it.
+    pub date: Option<String>,
+    /// Of the specimen, °C.
+    pub temperature_c: Option<f64>,
+    /// Photographs, by the names of their files.
+    pub photos: Vec<Photo>,
+    /// Who signs.
+    pub signatures: Vec<String>,
+    /// `[test.more]`: names and words of the user's own.
+    #[serde(serialize_with = "as_object")]
+    pub more: Vec<(String, String)>,
+}
+
+fn as_object<S: Serializer>(pairs: &[(String, String)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.iter().map(|(key, words)| (key, words)))
+}
+
+/// A sensor, as its papers name it.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+pub struct SensorRecord {
+    /// Its serial number.
+    pub serial: Option<String>,
+    /// The certificate of its calibration.
+    pub certificate: Option<String>,
+    /// When it was calibrated.
+    pub calibrated: Option<String>,
+}
+
+/// A photograph of the test; a JSON holds the name of its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Photo {
+    /// The file, as the cask file names it.
+    pub name: String,
+    /// "image/png" or "image/jpeg".
+    pub media_type: &'static str,
+    /// The file's bytes; empty where only the name is known.
+    pub bytes: Arc<[u8]>,
+}
+
+impl Serialize for Photo {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.name)
+    }
+}
+
+/// A quantity of `[observed]`, such as a video gives it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observed {
+    /// Its key.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Half-width of its 95 % interval.
+    pub u95: f64,
+    /// By what it was seen.
+    pub by: Option<String>,
+}
+
+/// An observed quantity beside the same of the result.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ObservedBeside {
+    /// The key in `[observed]`.
+    pub name: &'static str,
+    /// What was seen.
+    pub observed: Estimate,
+    /// By what.
+    pub by: Option<String>,
+    /// The result; `None` where it has none.
+    pub result: Option<Estimate>,
+    /// E_n = (result − observed) / √(U² + U²) of both half-widths (ISO 13528); within ±1 they agree.
+    pub e_n: Option<f64>,
+}

@@ -1,0 +1,99 @@
+//! What a cask file says of the test to the head of its report, its sensors, its photographs and its lines to sign.
+
+use super::document::{Chapter, ChapterPart, Fact, PartContent};
+use super::medium::Medium;
+use super::rounding::{MISSING, interval, optional_fixed, plain};
+use super::table::{ReportTable, TableShape};
+use super::text::json_word;
+use crate::data::{CaskFile, ChannelSpec, ObservedBeside, TestRecord};
+
+/// Who tested what, where and when; nothing where the cask file does not say.
+pub(super) fn head(test: &TestRecord) -> Chapter {
+    let temperature = test.temperature_c.map(|t| format!("{} °C", plain(t, 4)));
+    let words = [
+        ("Test", &test.id),
+        ("Title", &test.title),
+        ("Date", &test.date),
+        ("Place", &test.place),
+        ("Carried out by", &test.operator),
+        ("Customer", &test.customer),
+        ("Specimen", &test.specimen),
+        ("Its temperature", &temperature),
+        ("Target", &test.target),
+        ("Remarks", &test.remarks),
+    ];
+    let stated = words.into_iter().filter_map(|(name, words)| Some(Fact::words(name, words.clone()?)));
+    let facts: Vec<Fact> =
+        stated.chain(test.more.iter().map(|(name, words)| Fact::words(name, words))).collect();
+    let chapter = Chapter::new("The test").only(Medium::Page);
+    if facts.is_empty() { chapter } else { chapter.with(ChapterPart::facts("", facts)) }
+}
+
+/// The test's number, title, place and date in a line, as far as they are stated.
+pub(super) fn line(test: &TestRecord) -> Option<ChapterPart> {
+    let words: Vec<&str> =
+        [&test.id, &test.title, &test.place, &test.date].into_iter().flatten().map(|w| &w[..]).collect();
+    (!words.is_empty()).then(|| ChapterPart::line(words.join(" · ")).only(Medium::Terminal))
+}
+
+/// What was seen otherwise beside the result.
+pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
+    let chapter = Chapter::new("Observed otherwise");
+    if all.is_empty() {
+        return chapter;
+    }
+    let agrees = |seen: &ObservedBeside| match seen.e_n {
+        None => MISSING,
+        Some(e_n) if e_n.abs() <= 1.0 => "yes",
+        Some(_) => "no",
+    };
+    let table = ReportTable::of(all)
+        .class("")
+        .caption("E_n: the difference over both half-widths together; within ±1 they agree.")
+        .code("Quantity", |seen| seen.name)
+        .number("Observed", |seen| interval(Some(&seen.observed)))
+        .text("By", |seen| seen.by.as_deref().unwrap_or(MISSING))
+        .only(Medium::Page)
+        .number("Result", |seen| interval(seen.result.as_ref()))
+        .number("E_n", |seen| optional_fixed(seen.e_n, 2))
+        .text("Agree", agrees);
+    chapter.with(table)
+}
+
+/// Which sensor stands where, in which direction it reads, and by which papers.
+pub(super) fn sensors(file: &CaskFile) -> ChapterPart {
+    let words = |stated: &Option<String>| stated.clone().unwrap_or_else(|| MISSING.to_owned());
+    let calibration = |spec: &ChannelSpec| spec.calibration.unwrap_or(file.tolerances.calibration);
+    ReportTable::of(&file.channels)
+        .class("")
+        .caption("Sensors: places from the first end along the axis and off it, the sign of a reading away from the target or towards the second end.")
+        .shape(TableShape::Items)
+        .head("Channel", |s| &s.name[..])
+        .text("End, axis", |s| format!("{}, {}", json_word(s.end), json_word(s.axis)))
+        .number("Place, m", |s| plain(s.position_m, 5))
+        .number("Off axis, m", |s| plain(s.offset_m, 5))
+        .text("Sign", |s| if s.polarity < 0.0 { "−" } else { "+" })
+        .text("Serial", |s| words(&s.sensor.serial))
+        .text("Certificate", |s| words(&s.sensor.certificate))
+        .text("Calibrated", |s| words(&s.sensor.calibrated))
+        .number("Calibration ± 95 %", |s| format!("{} %", plain(100.0 * calibration(s), 3)))
+        .into()
+}
+
+/// The photographs that the cask file names.
+pub(super) fn photographs(test: &TestRecord) -> Chapter {
+    let chapter = Chapter::new("Photographs").only(Medium::Page);
+    let shown: Vec<_> = test.photos.iter().filter(|photo| !photo.bytes.is_empty()).cloned().collect();
+    if shown.is_empty() { chapter } else { chapter.with(PartContent::Photographs(shown)) }
+}
+
+/// Lines for a pen.
+pub(crate) fn signatures<S: AsRef<str>>(who: &[S]) -> ChapterPart {
+    ReportTable::of(who)
+        .class("signatures")
+        .head("", |who| who.as_ref().to_owned())
+        .text("name", |_| "")
+        .text("date", |_| "")
+        .text("signature", |_| "")
+        .into()
+}
