@@ -173,9 +173,9 @@ fn report_files(bencher: Bencher, samples: usize) {
 #[divan::bench(args = SIZES)]
 fn report_table_and_json(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
-    bencher
-        .counter(items(samples))
-        .bench(|| (report::table(&m.analysis), report::result_json(&m.analysis.result).expect("a result")));
+    bencher.counter(items(samples)).bench(|| {
+        (report::table(&m.analysis, 80), report::result_json(&m.analysis.result).expect("a result"))
+    });
 }
 
 #[divan::bench(args = KINDS, consts = SIZES, sample_count = 5)]

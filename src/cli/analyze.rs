@@ -2,7 +2,7 @@
 
 use super::Ending;
 use super::limits::Bounds;
-use super::output::{Folder, JsonTarget, print};
+use super::output::{Folder, JsonTarget, columns, print};
 use super::progress::with_progress;
 use super::record::{self, EarlierResult};
 use super::tuning::{awake, keep_freed_memory};
@@ -26,16 +26,16 @@ pub struct Arguments {
     /// The recording: MCAP, HDF5 or CSV, told by its content
     recording: PathBuf,
     /// The cask file (TOML); `dropcheck init` writes one to fill in
-    #[arg(long, required_unless_present = "from")]
+    #[arg(short, long, required_unless_present = "from")]
     cask: Option<PathBuf>,
     /// Repeat the analysis that this result.json tells of, with the cask file in it, and say what differs
     #[arg(long, value_name = "RESULT", conflicts_with_all = ["cask", "without"])]
     from: Option<PathBuf>,
     /// Folder for the report: report.html, result.json, curves.csv, curves.h5, curves.mcap, pictures
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Write the result as JSON to a file; with - to standard output, and nothing else there
-    #[arg(long, value_name = "FILE|-")]
+    #[arg(short, long, value_name = "FILE|-")]
     json: Option<PathBuf>,
     #[command(flatten)]
     switched_off: SwitchedOff,
@@ -138,7 +138,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     }
     json.write(|| report::result_json(&analysis.result))?;
     if !json.is_standard_output() {
-        print(&report::table(&analysis))?;
+        print(&report::table(&analysis, columns()))?;
         if let Some(folder) = &folder {
             print(&format!("\nReport: {}\n", report::printable(&folder.file("report.html"))))?;
         }

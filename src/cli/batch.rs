@@ -3,7 +3,7 @@
 use super::analyze::SwitchedOff;
 use super::complaint::sentence;
 use super::limits::Bounds;
-use super::output::{Folder, print};
+use super::output::{Folder, columns, print};
 use super::progress::with_progress;
 use super::record;
 use super::{Ending, output::CannotWrite};
@@ -27,10 +27,10 @@ pub struct Arguments {
     #[arg(required = true, value_name = "PATHS")]
     paths: Vec<PathBuf>,
     /// The cask file (TOML) of all of them
-    #[arg(long)]
+    #[arg(short, long)]
     cask: PathBuf,
     /// Folder for campaign.csv, campaign.json and one report a recording
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
     switched_off: SwitchedOff,
@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         summary
             .write(&[(SUMMARY[0].to_owned(), campaign.json()?), (SUMMARY[1].to_owned(), campaign.csv()?)])?;
     }
-    print(&campaign.table())?;
+    print(&campaign.table(columns()))?;
     let outcome = |row: &BatchRow| row.verdict.map_or(Ending::NotDone, Ending::from);
     Ok(campaign.recordings.iter().map(outcome).max().unwrap_or(Ending::Clear))
 }

@@ -2,7 +2,7 @@
 
 use super::Ending;
 use super::limits::Bounds;
-use super::output::{JsonTarget, print};
+use super::output::{JsonTarget, columns, print};
 use super::progress::with_progress;
 use clap::Args;
 use dropcheck::{ingest, report};
@@ -13,7 +13,7 @@ pub struct Arguments {
     /// The recording: MCAP, HDF5 or CSV, told by its content
     recording: PathBuf,
     /// Write the listing as JSON to a file; with - to standard output, and nothing else there
-    #[arg(long, value_name = "FILE|-")]
+    #[arg(short, long, value_name = "FILE|-")]
     json: Option<PathBuf>,
     #[command(flatten)]
     bounds: Bounds,
@@ -26,7 +26,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     })?;
     json.write(|| report::listing_json(&listing))?;
     if !json.is_standard_output() {
-        print(&report::listing_table(&listing))?;
+        print(&report::listing_table(&listing, columns()))?;
     }
     let sound = listing.issues.iter().all(|issue| issue.severity == dropcheck::data::Severity::Note);
     Ok(if sound { Ending::Clear } else { Ending::NeedsALook })

@@ -3,6 +3,7 @@
 mod analyze;
 mod batch;
 mod complaint;
+mod help;
 mod init;
 mod inspect;
 #[cfg(feature = "lab")]
@@ -19,7 +20,7 @@ mod tuning;
 pub use complaint::complain;
 
 use clap::{Parser, Subcommand};
-use dropcheck::data::Verdict;
+use dropcheck::data::{Program, Verdict};
 use std::process::ExitCode;
 
 fn after_help() -> String {
@@ -37,9 +38,15 @@ look at the data's quality or the comparison; 2 not done, one message says why."
     )
 }
 
+/// "0.2.0 (0123abc)": the commit as far as the build was told.
+fn version() -> &'static str {
+    let Program { version, commit, .. } = Program::this();
+    commit.map_or(version, |commit| format!("{version} ({commit})").leak())
+}
+
 /// What accelerometers on both ends of a dropped cask say about its slap-down.
 #[derive(Parser)]
-#[command(name = "dropcheck", version, after_help = after_help(), max_term_width = 100)]
+#[command(name = "dropcheck", version = version(), after_help = after_help(), max_term_width = 100)]
 pub struct CommandLine {
     #[command(subcommand)]
     pub command: Command,
@@ -63,6 +70,10 @@ pub enum Command {
     /// Measure speed against accuracy of every method and where each fails; or the analysis on random scenes
     #[cfg(feature = "lab")]
     Validate(lab::validate::Arguments),
+    /// Write what a shell completes the command line by
+    Completions(help::CompletionArguments),
+    /// Write the manual pages
+    Man(help::ManArguments),
 }
 
 /// How a command that ran to its end ended; its number is the exit status.
@@ -103,6 +114,8 @@ pub fn run(command: &Command) -> miette::Result<Ending> {
         Command::Synth(arguments) => lab::synth::run(arguments),
         #[cfg(feature = "lab")]
         Command::Validate(arguments) => lab::validate::run(arguments),
+        Command::Completions(arguments) => help::completions(arguments),
+        Command::Man(arguments) => help::man(arguments),
     }
 }
 

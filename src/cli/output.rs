@@ -195,6 +195,12 @@ pub fn print(text: &str) -> Result<(), CannotWrite> {
     settled(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
+/// Columns that tables may take: those of the terminal, 80 where there is none.
+pub fn columns() -> usize {
+    let of_terminal = terminal_size::terminal_size_of(io::stdout()).map(|(width, _)| usize::from(width.0));
+    of_terminal.map_or(80, |width| width.clamp(60, 200))
+}
+
 /// Writes bytes to standard output as they are.
 pub fn print_plain(bytes: &[u8]) -> Result<(), CannotWrite> {
     let mut out = io::stdout().lock();

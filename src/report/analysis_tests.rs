@@ -6,7 +6,7 @@ use super::{as_html, as_text, pictures, sample};
 use crate::data::Analysis;
 
 fn text_of(analysis: &Analysis) -> String {
-    as_text::text(&document(analysis))
+    as_text::text(&document(analysis), WIDTH)
 }
 
 fn bare(text: &str) -> String {

@@ -1,21 +1,22 @@
-//! A document to the text that a terminal shows, 80 columns wide, with SGR colours that the caller strips where none are read.
+//! A document to the text that a terminal of so many columns shows, with SGR colours that the caller strips where none are read.
 
 use super::document::{ChapterPart, Fact, PartContent, ReportDocument, SentenceRole, Tone};
 use super::medium::Medium;
 use super::rounding::MISSING;
 use super::table::{ReportColumn, ReportTable, TableShape};
-use super::text::{Style, WIDTH, lines, printable, styled, styled_lines, wrap};
-use comfy_table::{CellAlignment, ContentArrangement, TableStyle};
+use super::text::{Style, lines, printable, styled, styled_lines, wrap};
+use comfy_table::ColumnConstraint::LowerBoundary;
+use comfy_table::{CellAlignment, ContentArrangement, TableStyle, Width};
 
 /// Columns that a name takes, and its value.
 const FACT_WIDTH: usize = 22;
 
-/// The whole document.
-pub(crate) fn text(document: &ReportDocument) -> String {
+/// The whole document, in lines of at most `width` columns.
+pub(crate) fn text(document: &ReportDocument, width: usize) -> String {
     let mut out = String::new();
     for chapter in &document.chapters {
         out.extend(chapter.heading(Medium::Terminal).map(heading));
-        out.extend(chapter.shown(Medium::Terminal).into_iter().map(passage));
+        out.extend(chapter.shown(Medium::Terminal).into_iter().map(|part| passage(part, width)));
     }
     out
 }
@@ -24,29 +25,31 @@ fn heading(words: &str) -> String {
     format!("\n{}\n", styled(Style::Bold, &printable(words)))
 }
 
-fn passage(passage: &ChapterPart) -> String {
+fn passage(passage: &ChapterPart, width: usize) -> String {
     match &passage.content {
         PartContent::Sentence(role, words) => {
             let words = words.on(Medium::Terminal);
             match role {
-                SentenceRole::Title => styled_lines(Style::Bold, &wrap(words, WIDTH, 0)),
-                SentenceRole::Line => wrap(words, WIDTH, 0),
-                SentenceRole::Lead | SentenceRole::Text | SentenceRole::Note => wrap(words, WIDTH, 2),
+                SentenceRole::Title => styled_lines(Style::Bold, &wrap(words, width, 0)),
+                SentenceRole::Line => wrap(words, width, 0),
+                SentenceRole::Lead | SentenceRole::Text | SentenceRole::Note => wrap(words, width, 2),
             }
         }
         PartContent::Banner(Tone(style, word), sentence) => {
-            format!("\n{}  {sentence}\n", styled(*style, word))
+            let indent = word.chars().count() + 2;
+            let words = wrap(sentence, width, indent);
+            format!("\n{}{}", styled(*style, word), &words[word.len().min(indent)..])
         }
         PartContent::Facts(caption, facts) => {
             let head = if caption.is_empty() { String::new() } else { heading(caption) };
-            head + &lines(facts.iter().map(fact))
+            head + &lines(facts.iter().map(|of| fact(of, width)))
         }
-        PartContent::ReportTable(table) => self::table(table),
+        PartContent::ReportTable(table) => self::table(table, width),
         PartContent::Beside(columns) => columns
             .iter()
             .flatten()
             .filter(|passage| passage.is_shown(Medium::Terminal))
-            .map(self::passage)
+            .map(|part| self::passage(part, width))
             .collect(),
         PartContent::Figures(_)
         | PartContent::Picture(..)
@@ -55,27 +58,34 @@ fn passage(passage: &ChapterPart) -> String {
     }
 }
 
-fn fact(fact: &Fact) -> String {
+fn fact(fact: &Fact, width: usize) -> String {
     let words = fact.shown_note();
-    let note = if words.is_empty() { String::new() } else { styled(fact.note.0, words) };
-    let line = format!("  {:<FACT_WIDTH$}{:<FACT_WIDTH$}{note}", fact.name, fact.value);
-    line.trim_end().to_owned()
+    let line = format!("  {:<FACT_WIDTH$}{:<FACT_WIDTH$}", fact.name, fact.value);
+    if words.is_empty() {
+        return line.trim_end().to_owned();
+    }
+    let note = styled(fact.note.0, words);
+    // What has no room beside the value stands below it.
+    let is_beside = line.chars().count() + words.chars().count() <= width;
+    if is_beside { line + &note } else { format!("{}\n      {note}", line.trim_end()) }
 }
 
-fn table(table: &ReportTable) -> String {
+fn table(table: &ReportTable, width: usize) -> String {
     let columns = table.shown(Medium::Terminal);
     let (rows, left_out) = table.rows(Medium::Terminal);
     let mut out = match &table.shape {
-        TableShape::Columns => lines(aligned(&columns, rows, 2, WIDTH).concat()),
+        TableShape::Columns => lines(aligned(&columns, rows, 2, width).concat()),
         TableShape::Fitting => {
-            lines(aligned(&columns, rows, if fits(&columns, rows) { 2 } else { 1 }, WIDTH).concat())
+            lines(aligned(&columns, rows, if fits(&columns, rows, width) { 2 } else { 1 }, width).concat())
         }
-        TableShape::Groups(names) => grouped(&columns, rows, names, WIDTH),
-        TableShape::Items => (0..rows).map(|row| item(&columns, row)).collect(),
-        TableShape::ApartItems => (0..rows).flat_map(|row| ["\n".to_owned(), item(&columns, row)]).collect(),
+        TableShape::Groups(names) => grouped(&columns, rows, names, width),
+        TableShape::Items => (0..rows).map(|row| item(&columns, row, width)).collect(),
+        TableShape::ApartItems => {
+            (0..rows).flat_map(|row| ["\n".to_owned(), item(&columns, row, width)]).collect()
+        }
     };
     if let Some(sentence) = left_out {
-        out += &wrap(&sentence, WIDTH, 2);
+        out += &wrap(&sentence, width, 2);
     }
     out
 }
@@ -86,13 +96,13 @@ fn cell(column: &ReportColumn, row: usize) -> String {
 }
 
 /// Whether columns two apart are narrower than the terminal.
-fn fits(columns: &[&ReportColumn], rows: usize) -> bool {
+fn fits(columns: &[&ReportColumn], rows: usize, most: usize) -> bool {
     let width = |text: &str| text.lines().map(|line| line.chars().count()).max().unwrap_or(0);
     let widest = |column: &&ReportColumn| {
         let cells = (0..rows).map(|row| width(&cell(column, row)));
         cells.chain([width(column.head.on(Medium::Terminal))]).max().unwrap_or(0)
     };
-    columns.iter().map(|column| widest(column) + 2).sum::<usize>() <= WIDTH - 2
+    columns.iter().map(|column| widest(column) + 2).sum::<usize>() <= most - 2
 }
 
 /// The lines of the heads, and those of each row, the columns `gap` apart; cells too wide are wrapped.
@@ -108,10 +118,17 @@ fn aligned(columns: &[&ReportColumn], rows: usize, gap: u16, width: usize) -> Ve
     for i in 0..rows {
         table.add_row(row(columns.iter().map(|column| cell(column, i)).collect()));
     }
+    let is_narrow = !fits(columns, rows, width);
     for (i, set) in table.column_iter_mut().enumerate() {
         set.set_padding((0, if i == 0 { 0 } else { gap }));
         if i > 0 && columns[i - 1].is_number() {
             set.set_cell_alignment(CellAlignment::Right);
+        }
+        if i > 0 && is_narrow && columns[i - 1].is_number() {
+            // A number that goes on in the next line is another one.
+            let longest = (0..rows).map(|row| cell(columns[i - 1], row).chars().count()).max().unwrap_or(0);
+            let most = (width / 2).min(longest + usize::from(gap));
+            set.set_constraint(LowerBoundary(Width::Fixed(u16::try_from(most).unwrap_or(40))));
         }
     }
     let mut found: Vec<Vec<String>> = Vec::new();
@@ -143,13 +160,13 @@ fn grouped(columns: &[&ReportColumn], rows: usize, names: &[String], width: usiz
 }
 
 /// The first cell in its colour, those that are not missing beside it, the last one below.
-fn item(columns: &[&ReportColumn], row: usize) -> String {
+fn item(columns: &[&ReportColumn], row: usize, width: usize) -> String {
     let [first, middle @ .., last] = columns else { return String::new() };
     let style = first.cells[row].style.unwrap_or(Style::Bold);
     let place: Vec<String> =
         middle.iter().map(|column| cell(column, row)).filter(|words| words != MISSING).collect();
     let head = format!("  {}  {}\n", styled(style, &cell(first, row)), place.join(" · "));
-    head + &wrap(&cell(last, row), WIDTH, 6)
+    head + &wrap(&cell(last, row), width, 6)
 }
 
 #[cfg(test)]
@@ -163,9 +180,12 @@ mod tests {
             .text("name", |r| r.0)
             .text("words", |r| &r.1[..])
             .number("number", |r| r.2);
-        let text = table(&rows.into());
-        assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
-        assert_eq!(text.matches("word").count(), 41);
+        let rows: ReportTable = rows.into();
+        for width in [60, 80, 200] {
+            let text = table(&rows, width);
+            assert!(text.lines().all(|line| line.chars().count() <= width), "{text}");
+            assert_eq!(text.matches("word").count(), 41);
+        }
     }
 
     #[test]
@@ -178,7 +198,7 @@ mod tests {
             .number("samples", |_| "200000")
             .into();
         let names = names.map(str::to_owned);
-        for width in [60, WIDTH] {
+        for width in [60, 80] {
             let text = grouped(&table.shown(Medium::Terminal), fields.len(), &names, width);
             assert!(text.lines().all(|line| line.chars().count() <= width), "{text}");
             let at = |part: &str| text.lines().position(|line| line.trim_start().starts_with(part));

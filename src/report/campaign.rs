@@ -5,7 +5,7 @@ use super::document::{Chapter, ChapterPart, ReportDocument};
 use super::records::{CsvColumn, number, records, text_cell};
 use super::rounding::{MISSING, interval, percent};
 use super::table::{ReportTable, TableCell, TableShape};
-use super::text::{Style, WIDTH, distinct, json_word, tail, verdict_word};
+use super::text::{Style, distinct, json_word, tail, verdict_word};
 use crate::data::{Comparison, DropResult, Estimate, Finding, IssueCode, Severity, Verdict};
 use serde::Serialize;
 use std::path::Path;
@@ -106,15 +106,15 @@ impl Batch {
         Self { schema: "dropcheck.campaign/1", version: env!("CARGO_PKG_VERSION"), cask, recordings }
     }
 
-    /// The table, 80 columns wide; below it what was found, and reasons of failures.
+    /// The table, `width` columns wide; below it what was found, and reasons of failures.
     #[must_use]
-    pub fn table(&self) -> String {
-        super::as_text::text(&self.document())
+    pub fn table(&self, width: usize) -> String {
+        super::as_text::text(&self.document(width), width)
     }
 
-    fn document(&self) -> ReportDocument {
-        /// Characters of a recording's name that leave room for the other columns.
-        const NAME: usize = 28;
+    fn document(&self, columns: usize) -> ReportDocument {
+        // A recording's name leaves room for the other columns.
+        let room = columns - 52;
         let folder = self.common_folder();
         let name = |row: &BatchRow, width: usize| {
             let own = folder.and_then(|folder| Path::new(&row.recording).strip_prefix(folder).ok());
@@ -122,7 +122,7 @@ impl Batch {
         };
         let word = |row: &BatchRow| row.verdict.map_or("ERROR", verdict_word);
         let table = ReportTable::of(&self.recordings)
-            .head("recording", |row| name(row, NAME))
+            .head("recording", |row| name(row, room))
             .text("verdict", word)
             .text("speed m/s", |row| interval(row.slap_down_speed.as_ref()).replace(" m/s", ""))
             .text("k", |row| interval(row.k.as_ref()))
@@ -139,10 +139,10 @@ impl Batch {
         let reasons = ReportTable::of(&grave)
             .shape(TableShape::ApartItems)
             .tag("verdict", |row| TableCell::toned(style(row), word(row).to_lowercase()))
-            .head("recording", |row| name(row, WIDTH - 10))
+            .head("recording", |row| name(row, columns - 10))
             .text("why", |row| why(row));
-        let place =
-            folder.map(|folder| format!("recordings in {}", tail(&folder.display().to_string(), WIDTH - 14)));
+        let place = folder
+            .map(|folder| format!("recordings in {}", tail(&folder.display().to_string(), columns - 14)));
         let chapter = Chapter::new("")
             .with(ChapterPart::title(&self.cask[..]))
             .with_all(place.map(ChapterPart::line))
@@ -185,6 +185,7 @@ impl Batch {
 #[cfg(test)]
 mod tests {
     use super::super::sample;
+    use super::super::text::WIDTH;
     use super::*;
 
     fn campaign() -> Batch {
@@ -197,7 +198,7 @@ mod tests {
 
     #[test]
     fn a_failed_recording_is_a_row_with_its_reason() {
-        let text = anstream::adapter::strip_str(&campaign().table()).to_string();
+        let text = anstream::adapter::strip_str(&campaign().table(WIDTH)).to_string();
         assert!(text.contains("ERROR") && text.contains("record it again"));
         assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
     }
@@ -209,7 +210,7 @@ mod tests {
         rows[0].codes = vec![IssueCode::EndsEarly, IssueCode::Gap];
         rows[1].recording = "of/a/test site/b.mcap".into();
         let text = |rows: &[BatchRow]| {
-            let table = Batch::new("anf18.toml".into(), rows.to_vec()).table();
+            let table = Batch::new("anf18.toml".into(), rows.to_vec()).table(WIDTH);
             anstream::adapter::strip_str(&table).to_string()
         };
         let together = text(&rows);

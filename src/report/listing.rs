@@ -10,8 +10,8 @@ use crate::data::{ListedChannel, Listing};
 
 /// The table, with SGR colours that the caller strips where no terminal shows it.
 #[must_use]
-pub fn table(listing: &Listing) -> String {
-    super::as_text::text(&document(listing))
+pub fn table(listing: &Listing, width: usize) -> String {
+    super::as_text::text(&document(listing), width)
 }
 
 fn document(listing: &Listing) -> ReportDocument {
@@ -181,7 +181,7 @@ pub(super) mod tests {
                 listed(&format!("/cask/second_end/imu_{sensor}.linear_acceleration.{axis}"), "number", None)
             })
         });
-        let text = anstream::adapter::strip_str(&table(&listing(sources.concat()))).to_string();
+        let text = anstream::adapter::strip_str(&table(&listing(sources.concat()), WIDTH)).to_string();
         assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
         let at = |part: &str| text.lines().position(|line| line.trim_start().starts_with(part)).unwrap();
         let topic = at("/cask/second_end/imu_upper");
@@ -203,9 +203,9 @@ pub(super) mod tests {
         none.unreadable = Some("sensor_msgs/msg/Image holds no number per sample".into());
         let listing =
             listing(vec![listed("/imu_first.linear_acceleration.z", "number", Some("m/s^2")), none]);
-        let text = anstream::adapter::strip_str(&table(&listing)).to_string();
+        let text = anstream::adapter::strip_str(&table(&listing, WIDTH)).to_string();
         assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
         assert!(text.contains("200000") && text.contains("100 kHz") && text.contains("cannot be read"));
-        assert!(!table(&listing).contains("\u{1b}[2J"));
+        assert!(!table(&listing, WIDTH).contains("\u{1b}[2J"));
     }
 }

@@ -87,10 +87,10 @@ fn spectrum(curve: &ChannelCurve) -> (Vec<f64>, Vec<f64>) {
     magnitude(&curve.raw_m_s2, sample_rate_hz)
 }
 
-/// The table of an analysis, with SGR colours that the caller strips where no terminal shows it.
+/// The table of an analysis in lines of at most `width` columns, with SGR colours that the caller strips where no terminal shows it.
 #[must_use]
-pub fn table(analysis: &Analysis) -> String {
-    as_text::text(&analysis::document(analysis))
+pub fn table(analysis: &Analysis, width: usize) -> String {
+    as_text::text(&analysis::document(analysis), width)
 }
 
 /// The names of the files of a report, in the order of [`files`].

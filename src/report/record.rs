@@ -36,6 +36,18 @@ pub(super) fn line(test: &TestRecord) -> Option<ChapterPart> {
     (!words.is_empty()).then(|| ChapterPart::line(words.join(" · ")).only(Medium::Terminal))
 }
 
+/// What a key of `[observed]` is called.
+fn words(key: &str) -> &str {
+    match key {
+        "slap_down_speed_m_s" => "slap-down speed",
+        "angular_velocity_rad_s" => "angular velocity",
+        "angle_deg" => "angle at slap-down",
+        "flight_time_s" => "flight time",
+        "impact_velocity_m_s" => "impact velocity",
+        key => key,
+    }
+}
+
 /// What was seen otherwise beside the result.
 pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
     let chapter = Chapter::new("Observed otherwise");
@@ -50,7 +62,7 @@ pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
     let table = ReportTable::of(all)
         .class("")
         .caption("E_n: the difference over both half-widths together; within ±1 they agree.")
-        .code("Quantity", |seen| seen.name)
+        .head("Quantity", |seen| words(seen.name))
         .number("Observed", |seen| interval(Some(&seen.observed)))
         .text("By", |seen| seen.by.as_deref().unwrap_or(MISSING))
         .only(Medium::Page)
@@ -62,7 +74,7 @@ pub(super) fn observed(all: &[ObservedBeside]) -> Chapter {
 
 /// Which sensor stands where, in which direction it reads, and by which papers.
 pub(super) fn sensors(file: &CaskFile) -> ChapterPart {
-    let words = |stated: &Option<String>| stated.clone().unwrap_or_else(|| MISSING.to_owned());
+    let stated = |words: &Option<String>| words.clone().unwrap_or_else(|| MISSING.to_owned());
     let calibration = |spec: &ChannelSpec| spec.calibration.unwrap_or(file.tolerances.calibration);
     ReportTable::of(&file.channels)
         .class("")
@@ -73,9 +85,9 @@ pub(super) fn sensors(file: &CaskFile) -> ChapterPart {
         .number("Place, m", |s| plain(s.position_m, 5))
         .number("Off axis, m", |s| plain(s.offset_m, 5))
         .text("Sign", |s| if s.polarity < 0.0 { "−" } else { "+" })
-        .text("Serial", |s| words(&s.sensor.serial))
-        .text("Certificate", |s| words(&s.sensor.certificate))
-        .text("Calibrated", |s| words(&s.sensor.calibrated))
+        .text("Serial", |s| stated(&s.sensor.serial))
+        .text("Certificate", |s| stated(&s.sensor.certificate))
+        .text("Calibrated", |s| stated(&s.sensor.calibrated))
         .number("Calibration ± 95 %", |s| format!("{} %", plain(100.0 * calibration(s), 3)))
         .into()
 }

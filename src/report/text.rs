@@ -35,7 +35,8 @@ pub(super) fn styled_lines(style: Style, text: &str) -> String {
     lines(text.lines().map(|line| styled(style, line)))
 }
 
-/// Width of every table, columns: the smallest terminal in use.
+/// Columns of a terminal of which nothing is known.
+#[cfg(test)]
 pub(super) const WIDTH: usize = 80;
 
 /// An SGR colour (ECMA-48, 8.3.117); whoever prints strips it where no terminal reads it.

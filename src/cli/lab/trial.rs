@@ -1,7 +1,7 @@
 //! `validate` without a campaign: ways, methods and damages to what is accepted, with page, pictures and tables.
 
 use super::super::Ending;
-use super::super::output::{Folder, print, replace};
+use super::super::output::{Folder, columns, print, replace};
 use super::super::progress::with_progress;
 use super::document::Marks;
 use dropcheck::lab::data::{TrialMachine, TrialRequest};
@@ -33,7 +33,7 @@ pub fn run(
         let text = trial_markdown(&trial, out.map(|out| way(path, out)).as_deref());
         replace(path, format!("{before}\n{text}{after}").as_bytes())?;
     }
-    print(&trial_outcome(&trial))?;
+    print(&trial_outcome(&trial, columns()))?;
     if let Some(folder) = &folder {
         print(&format!("Written: {}\n", report::printable(&folder.file(TRIAL_NAMES[0]))))?;
     }

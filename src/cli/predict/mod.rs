@@ -5,7 +5,7 @@ mod sweep;
 mod words;
 
 use super::Ending;
-use super::output::{Folder, JsonTarget, print};
+use super::output::{Folder, JsonTarget, columns, print};
 use clap::Args;
 use dropcheck::data::{Contact, Sweep};
 use dropcheck::report;
@@ -34,7 +34,7 @@ const OUTPUT: &str = "Output";
 #[command(after_help = AFTER_HELP)]
 pub struct Arguments {
     /// The cask file (TOML); it needs no [[channel]]
-    #[arg(long)]
+    #[arg(short, long)]
     cask: PathBuf,
     /// Inclination at first contact, 0 to 90 degrees [default: the cask file's]
     #[arg(long, value_name = "DEG", help_heading = CASES, allow_hyphen_values = true, value_parser = words::angle)]
@@ -75,10 +75,10 @@ pub struct Arguments {
     #[arg(long, value_name = "N", help_heading = CRITICAL)]
     seed: Option<u64>,
     /// Folder for prediction.html, prediction.json, prediction.csv and the pictures
-    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
+    #[arg(short, long, value_name = "DIR", help_heading = OUTPUT)]
     out: Option<PathBuf>,
     /// Write the predictions as JSON to a file; with - to standard output, and nothing else there
-    #[arg(long, value_name = "FILE|-", help_heading = OUTPUT)]
+    #[arg(short, long, value_name = "FILE|-", help_heading = OUTPUT)]
     json: Option<PathBuf>,
 }
 
@@ -99,7 +99,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     }
     json.write(|| report::study_json(&study))?;
     if !json.is_standard_output() {
-        print(&report::study_table(&study))?;
+        print(&report::study_table(&study, columns()))?;
         if let Some(folder) = &folder {
             print(&format!("\nReport: {}\n", report::printable(&folder.file("prediction.html"))))?;
         }

@@ -26,8 +26,8 @@ pub fn trial_markdown(trial: &Trial, folder: Option<&str>) -> String {
 
 /// What a terminal shows at the end: the limits, and whether the program is accepted.
 #[must_use]
-pub fn trial_outcome(trial: &Trial) -> String {
-    as_text::text(&document::verdict(trial))
+pub fn trial_outcome(trial: &Trial, width: usize) -> String {
+    as_text::text(&document::verdict(trial), width)
 }
 
 /// Every file of a trial by name, in the order of [`TRIAL_NAMES`].
@@ -159,7 +159,7 @@ mod tests {
         for value in [Some(80.0), None, Some(f64::NAN)] {
             trial.limits[0].value = value;
             assert!(!trial.is_accepted());
-            let outcome = trial_outcome(&trial);
+            let outcome = trial_outcome(&trial, 80);
             assert!(outcome.contains("NOT ACCEPTED") && outcome.contains("Beyond: held"), "{outcome}");
         }
     }

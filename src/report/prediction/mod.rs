@@ -27,8 +27,8 @@ pub fn study_file_names(request: &StudyRequest) -> Vec<String> {
 
 /// The whole of a study for the terminal.
 #[must_use]
-pub fn study_table(study: &Study) -> String {
-    as_text::text(&study::document(study))
+pub fn study_table(study: &Study, width: usize) -> String {
+    as_text::text(&study::document(study), width)
 }
 
 /// Every file of a study by name, in the order in which a reader meets them.

@@ -9,7 +9,7 @@ use crate::data::{BodyModel, Rung, Study, Sweep, SweepVariable};
 use crate::report::pictures::study_names;
 
 fn bare(study: &Study) -> String {
-    anstream::adapter::strip_str(&study_table(study)).to_string()
+    anstream::adapter::strip_str(&study_table(study, WIDTH)).to_string()
 }
 
 /// One contact law and one k at one angle.
@@ -136,7 +136,7 @@ fn the_closed_form_stands_beside_the_flying_value() {
 fn names_from_files_cannot_colour_the_terminal() {
     let mut study = sample_study::study();
     study.cask_file.cask.name = "\u{1b}[31mX".into();
-    assert!(!study_table(&study).contains("\u{1b}[31m"));
+    assert!(!study_table(&study, WIDTH).contains("\u{1b}[31m"));
 }
 
 #[test]

@@ -1,0 +1,42 @@
+//! The command line to what a shell completes it by, and to its manual pages.
+
+use super::output::print_plain;
+use super::{CommandLine, Ending};
+use clap::{Args, CommandFactory};
+use clap_complete::Shell;
+use miette::{IntoDiagnostic, WrapErr};
+use std::path::PathBuf;
+
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  dropcheck completions bash > ~/.local/share/bash-completion/completions/dropcheck
+  dropcheck completions fish > ~/.config/fish/completions/dropcheck.fish
+  dropcheck completions powershell >> $PROFILE")]
+pub struct CompletionArguments {
+    /// The shell
+    shell: Shell,
+}
+
+#[derive(Args)]
+pub struct ManArguments {
+    /// Folder for the pages, dropcheck.1 and one a command
+    dir: PathBuf,
+}
+
+/// Prints the completions of a shell.
+pub fn completions(arguments: &CompletionArguments) -> miette::Result<Ending> {
+    let mut out = Vec::new();
+    clap_complete::generate(arguments.shell, &mut CommandLine::command(), "dropcheck", &mut out);
+    print_plain(&out)?;
+    Ok(Ending::Clear)
+}
+
+/// Writes the manual pages.
+pub fn man(arguments: &ManArguments) -> miette::Result<Ending> {
+    std::fs::create_dir_all(&arguments.dir)
+        .and_then(|()| clap_mangen::generate_to(CommandLine::command(), &arguments.dir))
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{}: the pages cannot be written there", arguments.dir.display()))?;
+    Ok(Ending::Clear)
+}
