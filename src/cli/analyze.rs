@@ -3,6 +3,7 @@
 use super::Ending;
 use super::limits::Bounds;
 use super::output::{Folder, JsonTarget, columns, print};
+use super::pdf;
 use super::progress::with_progress;
 use super::record::{self, EarlierResult};
 use super::tuning::{awake, keep_freed_memory};
@@ -37,10 +38,23 @@ pub struct Arguments {
     /// Write the result as JSON to a file; with - to standard output, and nothing else there
     #[arg(short, long, value_name = "FILE|-")]
     json: Option<PathBuf>,
+    /// Also report.pdf, printed by an installed Chromium, Chrome or Edge
+    #[arg(long, requires = "out")]
+    pdf: bool,
+    /// Separators of curves.csv: en (comma, decimal point) or de (semicolon, decimal comma)
+    #[arg(long, value_name = "LOCALE", default_value = "en", requires = "out")]
+    csv_locale: CsvLocale,
     #[command(flatten)]
     switched_off: SwitchedOff,
     #[command(flatten)]
     bounds: Bounds,
+}
+
+/// How a table separates cells and decimals.
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum CsvLocale {
+    En,
+    De,
 }
 
 /// Corrections of the samples that the command line forbids, whatever the cask file says.
@@ -98,11 +112,17 @@ impl SwitchedOff {
     }
 }
 
+/// A sentence for whoever watches, beside the output.
+fn complain_softly(sentence: &str) {
+    // Who has closed standard error does not want to know.
+    let _ = writeln!(anstream::stderr(), "{}", report::printable(sentence));
+}
+
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let inputs = [Some(&arguments.recording), arguments.cask.as_ref(), arguments.from.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
-    let folder =
-        arguments.out.as_deref().map(|dir| Folder::checked(dir, &report::FILE_NAMES, &inputs)).transpose()?;
+    let names = [&report::FILE_NAMES[..], &[pdf::NAME]].concat();
+    let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, &names, &inputs)).transpose()?;
     let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
 
     let earlier = arguments.from.as_deref().map(EarlierResult::read).transpose()?;
@@ -134,7 +154,27 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     }
 
     if let Some(folder) = &folder {
-        folder.write(&report::files(&analysis)?)?;
+        let mut files = report::files(&analysis)?;
+        if arguments.csv_locale == CsvLocale::De {
+            for (_, bytes) in files.iter_mut().filter(|(name, _)| name == "curves.csv") {
+                *bytes = report::in_german(bytes)?;
+            }
+        }
+        let printed = arguments.pdf.then(|| pdf::printed(&files[0].1)).transpose();
+        match printed {
+            Ok(printed) => files.extend(printed.map(|bytes| (pdf::NAME.to_owned(), bytes))),
+            Err(why) => {
+                complain_softly(&format!("There is no {}: {why}. Open report.html and print it.", pdf::NAME))
+            }
+        }
+        folder.write(&files)?;
+        let is_new = files.iter().any(|(name, _)| name == pdf::NAME);
+        if !is_new && Path::new(&folder.file(pdf::NAME)).exists() {
+            complain_softly(&format!(
+                "{} is of an earlier run; --pdf writes it anew.",
+                folder.file(pdf::NAME)
+            ));
+        }
     }
     json.write(|| report::result_json(&analysis.result))?;
     if !json.is_standard_output() {

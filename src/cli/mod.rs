@@ -10,6 +10,7 @@ mod inspect;
 mod lab;
 mod limits;
 mod output;
+mod pdf;
 mod place;
 mod predict;
 mod progress;

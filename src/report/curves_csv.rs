@@ -34,6 +34,22 @@ pub(super) fn bytes(curves: &Curves) -> Result<Vec<u8>, ReportError> {
     finished(writer)
 }
 
+/// A CSV of this program as a German spreadsheet reads it: semicolons between cells, decimal commas.
+///
+/// # Errors
+/// [`ReportError::Csv`] where the writer fails.
+pub fn in_german(table: &[u8]) -> Result<Vec<u8>, ReportError> {
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(table);
+    let mut writer = csv::WriterBuilder::new().delimiter(b';').from_writer(Vec::new());
+    for (i, row) in reader.records().enumerate() {
+        let is_head = i == 0;
+        writer.write_record(
+            row?.iter().map(|cell| if is_head { cell.to_owned() } else { cell.replace('.', ",") }),
+        )?;
+    }
+    finished(writer)
+}
+
 /// One column beside the time.
 struct CurveColumn<'a> {
     header: String,
@@ -92,6 +108,12 @@ mod tests {
         assert_eq!(header, ["time_s", "A1_raw_g", "A1_filtered_g", "A1_velocity_m_s", "A2_raw_g"]);
         assert!(rows[0].iter().any(|name| name == "vertical_velocity_first_m_s"));
         assert_eq!(rows.len(), 2001);
+    }
+
+    #[test]
+    fn a_german_table_has_decimal_commas_and_the_same_heads() {
+        let german = in_german(b"time_s,\"A,1.0_raw_g\"\n0.5,-1.25e-3\n1.0,\n").unwrap();
+        assert_eq!(String::from_utf8(german).unwrap(), "time_s;A,1.0_raw_g\n0,5;-1,25e-3\n1,0;\n");
     }
 
     #[test]

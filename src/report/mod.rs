@@ -16,6 +16,7 @@ pub(crate) mod document;
 mod grid;
 mod impacts;
 pub(crate) mod json;
+mod latex;
 mod likely;
 mod listing;
 #[cfg_attr(not(feature = "lab"), allow(dead_code, reason = "the pages of the laboratory use all of it"))]
@@ -41,6 +42,7 @@ pub(crate) mod text;
 mod words;
 
 pub use campaign::{Batch, BatchRow};
+pub use curves_csv::in_german;
 pub use json::{listing as listing_json, result as result_json};
 pub use likely::NoChannels;
 pub use listing::table as listing_table;
@@ -94,9 +96,10 @@ pub fn table(analysis: &Analysis, width: usize) -> String {
 }
 
 /// The names of the files of a report, in the order of [`files`].
-pub const FILE_NAMES: [&str; 11] = [
+pub const FILE_NAMES: [&str; 12] = [
     "report.html",
     "result.json",
+    "results.tex",
     "curves.csv",
     "curves.h5",
     "curves.mcap",
@@ -119,7 +122,8 @@ pub fn files(analysis: &Analysis) -> Result<Vec<(String, Vec<u8>)>, ReportError>
         || (curves_h5::bytes(analysis), curves_csv::bytes(&analysis.curves), pictures::draw(analysis)),
     );
     let page = as_html::page(&analysis::document(analysis), &pictures).into_bytes();
-    let bytes = [page, json::result(&analysis.result)?, curves_csv?, curves_h5?, curves_mcap?];
+    let (result, table) = (json::result(&analysis.result)?, latex::table(&analysis.result));
+    let bytes = [page, result, table, curves_csv?, curves_h5?, curves_mcap?];
     let bytes = bytes.into_iter().chain(pictures.into_iter().map(|picture| picture.svg.into_bytes()));
     Ok(FILE_NAMES.map(str::to_owned).into_iter().zip(bytes).collect())
 }

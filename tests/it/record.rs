@@ -87,3 +87,67 @@ fn what_is_said_of_the_test_stands_in_the_record_and_what_was_seen_is_held_again
         at_fault(&with(wrong), &[named]);
     }
 }
+
+#[test]
+fn a_report_goes_to_paper_and_to_other_programs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("report");
+    let (recording, cask) = (fixture("anf18-json.mcap"), fixture("anf18-json.toml"));
+    let with = |path: &str, more: &[&str]| {
+        std::process::Command::new(env!("CARGO_BIN_EXE_dropcheck"))
+            .env("PATH", path)
+            .arg("analyze")
+            .arg(&recording)
+            .arg("-c")
+            .arg(&cask)
+            .arg("-o")
+            .arg(&out)
+            .args(more)
+            .output()
+            .expect("the program")
+    };
+    let without = with("/none", &["--pdf", "--csv-locale", "de"]);
+    assert_eq!(without.status.code(), Some(0));
+    assert!(String::from_utf8_lossy(&without.stderr).contains("no Chromium, Chrome or Edge was found"));
+    assert!(!out.join("report.pdf").exists());
+    let curves = fs::read_to_string(out.join("curves.csv")).expect("curves");
+    assert!(
+        curves.starts_with("time_s;A1_raw_g;")
+            && curves.lines().nth(1).is_some_and(|row| row.contains("0,0"))
+    );
+    let table = fs::read_to_string(out.join("results.tex")).expect("a table");
+    assert!(table.contains("Slap-down speed & $20.62 \\pm 0.40$ m/s \\\\"), "{table}");
+    let path = std::env::var("PATH").unwrap_or_default();
+    if std::env::split_paths(&path).all(|folder| !folder.join("chromium").is_file()) {
+        println!("skipped: no chromium to print with");
+        return;
+    }
+    let printed = with(&path, &["--pdf"]);
+    assert_eq!(String::from_utf8_lossy(&printed.stderr), "");
+    let pdf = fs::read(out.join("report.pdf")).expect("a PDF");
+    assert!(pdf.starts_with(b"%PDF-"));
+    let again = with(&path, &[]);
+    assert!(String::from_utf8_lossy(&again.stderr).contains("of an earlier run"));
+    assert!(fs::read(out.join("report.pdf")).is_ok_and(|kept| kept == pdf), "nothing is lost");
+}
+
+#[test]
+fn a_shell_completes_and_man_has_pages() {
+    for (shell, mark) in [
+        ("bash", "complete -F"),
+        ("zsh", "#compdef"),
+        ("fish", "complete -c"),
+        ("powershell", "Register-ArgumentCompleter"),
+    ] {
+        let answer = dropcheck(["completions", shell]);
+        assert!(
+            answer.stdout.contains(mark) && answer.stdout.contains("csv-locale"),
+            "{shell}: {}",
+            answer.stderr
+        );
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    assert_eq!(dropcheck(["man".as_ref(), folder.path().as_os_str()]).status, 0);
+    let page = fs::read_to_string(folder.path().join("dropcheck-analyze.1")).expect("a page");
+    assert!(page.contains(".TH") && page.contains("csv\\-locale"));
+}

@@ -1,0 +1,88 @@
+//! A page to a PDF, by a browser that is installed.
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// The report as PDF.
+pub const NAME: &str = "report.pdf";
+
+/// What the browsers are called that print without a window, in the order in which they are tried.
+const BROWSERS: [&str; 8] = [
+    "chromium",
+    "chromium-browser",
+    "google-chrome",
+    "google-chrome-stable",
+    "chrome",
+    "microsoft-edge",
+    "microsoft-edge-stable",
+    "msedge",
+];
+
+/// Where they are installed without standing on the path.
+const PLACES: [&str; 5] = [
+    "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
+    "/Applications/Chromium.app/Contents/MacOS/Chromium",
+    "/Applications/Microsoft Edge.app/Contents/MacOS/Microsoft Edge",
+    r"C:\Program Files\Google\Chrome\Application\chrome.exe",
+    r"C:\Program Files (x86)\Microsoft\Edge\Application\msedge.exe",
+];
+
+/// A browser that prints a report of megabytes takes some seconds; after these it hangs.
+const LONGEST: Duration = Duration::from_secs(60);
+
+/// Prints a page; the error is a sentence on why there is no PDF.
+pub fn printed(page: &[u8]) -> Result<Vec<u8>, String> {
+    let browser = browser().ok_or("no Chromium, Chrome or Edge was found")?;
+    let name = browser.display().to_string();
+    let failed = |what: &dyn std::fmt::Display| format!("{name} did not print it: {what}");
+    let folder = tempfile::Builder::new().prefix("dropcheck-pdf-").tempdir().map_err(|e| failed(&e))?;
+    let [html, pdf] = ["report.html", NAME].map(|name| folder.path().join(name));
+    std::fs::write(&html, page).map_err(|e| failed(&e))?;
+    let child = Command::new(&browser)
+        .args(["--headless", "--disable-gpu", "--no-first-run", "--no-pdf-header-footer"])
+        .args(without_sandbox(folder.path()))
+        .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
+        .arg(format!("--print-to-pdf={}", pdf.display()))
+        .arg(&html)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .map_err(|e| failed(&e))?;
+    ended(child).map_err(|e| failed(&e))?;
+    std::fs::read(&pdf).map_err(|e| failed(&e))
+}
+
+fn browser() -> Option<PathBuf> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let on_path = std::env::split_paths(&path).flat_map(|folder| {
+        BROWSERS.map(|name| folder.join(name).with_extension(std::env::consts::EXE_EXTENSION))
+    });
+    on_path.chain(PLACES.map(PathBuf::from)).find(|browser| browser.is_file())
+}
+
+/// Chromium refuses to run as root unless told that the page is trusted: this one is our own, and runs no script.
+#[cfg(unix)]
+fn without_sandbox(own: &Path) -> Option<&'static str> {
+    use std::os::unix::fs::MetadataExt;
+    std::fs::metadata(own).is_ok_and(|folder| folder.uid() == 0).then_some("--no-sandbox")
+}
+
+#[cfg(not(unix))]
+fn without_sandbox(_: &Path) -> Option<&'static str> {
+    None
+}
+
+fn ended(mut child: Child) -> std::io::Result<()> {
+    let begun = Instant::now();
+    while child.try_wait()?.is_none() {
+        if begun.elapsed() > LONGEST {
+            child.kill()?;
+            child.wait()?;
+            return Err(std::io::Error::other("it did not end within a minute"));
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    Ok(())
+}

@@ -1,0 +1,57 @@
+//! A result to a table for LaTeX: what a paper or a test report quotes of it.
+
+use super::rounding::{MISSING, interval};
+use crate::data::{DropResult, Estimate};
+
+/// `results.tex`: a `tabular` of two columns, to be taken in with `\input`; needs no package.
+pub(super) fn table(result: &DropResult) -> Vec<u8> {
+    let (first, second) = (&result.first_impact, &result.slap_down);
+    let rows = [
+        ("Impact velocity", first.impact_velocity),
+        ("Duration of the first contact", first.duration),
+        ("Rebound velocity", first.rebound_velocity),
+        ("Angular velocity after the first impact", first.angular_velocity),
+        ("Coefficient of restitution $k$", result.k),
+        ("Flight time", second.flight_time),
+        ("Angle at slap-down", second.angle),
+        ("Slap-down speed", second.speed),
+        ("Vertical velocity at slap-down", second.vertical_velocity),
+        ("Horizontal velocity at slap-down", second.horizontal_velocity),
+        ("Slap-down speed over impact velocity", result.amplification),
+    ];
+    let lines: String =
+        rows.iter().map(|(name, value)| format!("{name} & {} \\\\\n", cell(value.as_ref()))).collect();
+    let head = format!(
+        "% dropcheck {}, SHA-256 of the recording: {}",
+        result.version, result.input.recording_sha256
+    );
+    format!("{head}\n\\begin{{tabular}}{{lr}}\n\\hline\nQuantity & Value $\\pm$ 95\\,\\% \\\\\n\\hline\n{lines}\\hline\n\\end{{tabular}}\n")
+        .into_bytes()
+}
+
+/// "$20.62 \pm 0.40$ m/s".
+fn cell(value: Option<&Estimate>) -> String {
+    let words = interval(value);
+    if words == MISSING {
+        return "--".to_owned();
+    }
+    let number_ends = words.char_indices().rev().find(|(_, c)| c.is_ascii_digit()).map_or(0, |(i, _)| i + 1);
+    let (number, unit) = words.split_at(number_ends);
+    let number = number.replace('−', "-").replace('±', "\\pm");
+    let unit = unit.trim().replace('°', "$^\\circ$");
+    format!("${number}$ {unit}").trim_end().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_is_mathematics_and_its_unit_is_not() {
+        let of = |value, u95, unit| cell(Some(&Estimate::new(value, u95, unit)));
+        assert_eq!(of(-20.553, 0.51, "m/s"), "$-20.55 \\pm 0.51$ m/s");
+        assert_eq!(of(-4.98, 0.37, "deg"), "$-4.98 \\pm 0.37$ $^\\circ$");
+        assert_eq!(of(0.5507, 0.04, "1"), "$0.551 \\pm 0.040$");
+        assert_eq!(cell(None), "--");
+    }
+}
