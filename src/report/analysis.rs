@@ -5,7 +5,7 @@ use super::grid::STANDARD_GRAVITY_M_S2;
 use super::impacts::impacts;
 use super::medium::{Medium, Words};
 use super::prediction::prediction_columns;
-use super::reconstruction::{budget, flight, reconstruction};
+use super::reconstruction::{budget, defaults_that_weigh, flight, reconstruction};
 use super::record;
 use super::rounding::{MISSING, interval, optional, optional_fixed, pair, percent, plain};
 use super::settings;
@@ -86,6 +86,10 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     }
 }
 
+/// What no reader of the first page should miss.
+const NO_REFERENCE: &str = "The verdict is on the data of this recording, not on the cask. The intervals were tested on simulated drops of known \
+                            truth; no recording with a certified slap-down velocity was at hand.";
+
 /// Lines to sign, where the cask file names who does.
 fn signed(test: &TestRecord) -> Chapter {
     let chapter = Chapter::new("Signatures").only(Medium::Page);
@@ -126,6 +130,8 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
             verdict_sentence(result),
         ))
         .with(PartContent::Figures(figures(result)))
+        .with_all(defaults_that_weigh(result, file).map(ChapterPart::text))
+        .with(ChapterPart::note(NO_REFERENCE).only(Medium::Page))
 }
 
 fn figures(result: &DropResult) -> Vec<[String; 3]> {

@@ -26,7 +26,7 @@ fn eighty_columns_hold_it() {
 fn the_figures_are_there() {
     let text = bare(&text_of(&sample::analysis()));
     for words in
-        ["REVIEW", "20.56 ± 0.11 m/s", "0.559 ± 0.010", "+0.3 %", "within both intervals", "clipped · A1"]
+        ["LOOK AT", "20.56 ± 0.11 m/s", "0.559 ± 0.010", "+0.3 %", "within both intervals", "clipped · A1"]
     {
         assert!(text.contains(words), "{words} is missing in\n{text}");
     }
@@ -38,7 +38,7 @@ fn the_figures_are_there() {
 #[test]
 fn a_missing_quantity_says_why() {
     let text = bare(&text_of(&sample::without_anything()));
-    assert!(text.contains("FAIL"));
+    assert!(text.contains("NOT TO BE USED"));
     assert!(text.contains("– could not be had: no impact was found"), "{text}");
 }
 
@@ -74,7 +74,7 @@ fn it_stands_alone() {
 fn it_says_what_the_result_says() {
     let page = made(&sample::analysis());
     for words in [
-        "REVIEW",
+        "LOOK AT",
         "20.56 ± 0.11 m/s",
         "0.559 ± 0.010",
         "clipped",
@@ -110,5 +110,5 @@ fn words_from_files_are_escaped() {
 #[test]
 fn what_is_missing_is_explained() {
     let page = made(&sample::without_anything());
-    assert!(page.contains("FAIL") && page.contains("no impact was found"));
+    assert!(page.contains("NOT TO BE USED") && page.contains("no impact was found"));
 }

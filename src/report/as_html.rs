@@ -4,7 +4,7 @@ use super::document::{ChapterPart, Fact, Frame, PartContent, ReportDocument, Sen
 use super::medium::{Medium, Words};
 use super::pictures::draw::Picture;
 use super::table::{CellKind, ReportColumn, ReportTable, TableCell};
-use super::text::{capital, printable};
+use super::text::{Style, capital, printable};
 use base64::prelude::{BASE64_STANDARD as STANDARD, Engine};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -48,8 +48,8 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
 fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
     match &passage.content {
         PartContent::Sentence(role, words) => sentence(*role, words),
-        PartContent::Banner(Tone(_, word), sentence) => html! {
-            div class=(format!("banner {}", word.to_lowercase())) role="status" { strong { (word) } span { (printable(sentence)) } }
+        PartContent::Banner(Tone(style, word), sentence) => html! {
+            div class=(format!("banner {}", banner_class(*style))) role="status" { strong { (word) } span { (printable(sentence)) } }
         },
         PartContent::Figures(figures) => html! {
             dl class="figures" { @for [name, value, detail] in figures {
@@ -83,6 +83,15 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
                 (self::passage(passage, pictures))
             } } } }
         },
+    }
+}
+
+/// The colours of a banner.
+fn banner_class(style: Style) -> &'static str {
+    match style {
+        Style::Green => "pass",
+        Style::Red => "fail",
+        _ => "review",
     }
 }
 

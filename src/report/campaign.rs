@@ -84,7 +84,7 @@ pub struct Batch {
 fn columns<'a>() -> [CsvColumn<&'a BatchRow>; 13] {
     [
         ("recording", |row| text_cell(&row.recording)),
-        ("verdict", |row| row.verdict.map_or_else(|| "error".into(), |v| verdict_word(v).to_lowercase())),
+        ("verdict", |row| row.verdict.map_or_else(|| "error".into(), json_word)),
         ("slap_down_speed_m_s", |row| number(row.slap_down_speed.map(|e| e.value))),
         ("slap_down_speed_u95_m_s", |row| number(row.slap_down_speed.map(|e| e.u95))),
         ("k", |row| number(row.k.map(|e| e.value))),
@@ -215,8 +215,8 @@ mod tests {
         };
         let together = text(&rows);
         assert!(together.contains("recordings in of/a/test site\n"), "{together}");
-        assert!(together.contains("\n  damaged-truncated.mcap  REVIEW"), "{together}");
-        assert!(together.contains("review  damaged-truncated.mcap\n      ends_early, gap\n"), "{together}");
+        assert!(together.contains("\n  damaged-truncated.mcap  LOOK AT"), "{together}");
+        assert!(together.contains("look at  damaged-truncated.mcap\n      ends_early, gap\n"), "{together}");
         rows[1].recording = "b.mcap".into();
         assert!(!text(&rows).contains("recordings in"));
     }

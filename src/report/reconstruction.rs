@@ -3,7 +3,7 @@
 use super::document::{Chapter, ChapterPart, PartContent};
 use super::medium::Medium;
 use super::rounding::{MISSING, fixed, interval, optional_fixed, significant};
-use super::settings::{TOLERANCES, is_default};
+use super::settings::{TOLERANCES, to_state};
 use super::table::{ReportTable, TableCell};
 use super::text::{rung_words, sentence, taken_mark, true_minus, yes};
 use crate::data::{CaskFile, Contribution, DropResult, FlightFit, ReconstructionChoice, ReconstructionRung};
@@ -183,6 +183,23 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
         .with_all((!is_planar).then(|| ChapterPart::note(single)))
 }
 
+/// Which defaults carry more than a tenth of the variance of the speed, or of k where there is no speed, and what to state in their place.
+pub(super) fn defaults_that_weigh(result: &DropResult, file: &CaskFile) -> Option<String> {
+    const WEIGHS: f64 = 0.1;
+    let square =
+        |c: &Contribution| result.slap_down.speed.map_or(c.k, |_| c.speed_m_s).map_or(0.0, |x| x * x);
+    let sum: f64 = result.budget.iter().map(square).sum();
+    let weighty = result.budget.iter().filter(|c| square(c) > WEIGHS * sum);
+    let named: Vec<String> = weighty
+        .filter_map(|c| {
+            let key = to_state(file, &c.input)?;
+            Some(format!("{} ({:.0} % of the variance; state `{key}`)", c.input, 100.0 * square(c) / sum))
+        })
+        .collect();
+    (!named.is_empty())
+        .then(|| format!("The interval rests on defaults that nobody stated: {}.", named.join(", ")))
+}
+
 /// Which input weighs most, in the speed and in k.
 fn largest(budget: &[Contribution]) -> String {
     let share = |of: &dyn Fn(&Contribution) -> Option<f64>| -> Option<String> {
@@ -206,7 +223,7 @@ fn known_from(input: &str, result: &DropResult, file: &CaskFile) -> TableCell {
         result.reconstruction.as_ref().is_some_and(|r| r.closures.iter().any(|c| c.name == input));
     match TOLERANCES.iter().find(|t| t.is_of(input)) {
         _ if is_closure => "closure".into(),
-        Some(t) if is_default(file, t.key) => TableCell::marked("", "default"),
+        Some(_) if to_state(file, input).is_some() => TableCell::marked("", "default"),
         Some(_) => "cask file".into(),
         None if input.is_empty() => MISSING.into(),
         None => "recording".into(),

@@ -1,7 +1,7 @@
 //! A cask file's tolerances and corrections to lines of the settings.
 
 use super::rounding::plain;
-use crate::data::{CaskFile, Setting, Tolerances};
+use crate::data::{CaskFile, Contact, Setting, Tolerances};
 
 /// A tolerance of the cask file.
 pub(super) struct Tolerance {
@@ -29,21 +29,39 @@ impl Tolerance {
 }
 
 /// All of them, in the cask file's order.
-pub(super) const TOLERANCES: [Tolerance; 9] = [
+pub(super) const TOLERANCES: [Tolerance; 13] = [
     Tolerance::new("angle_deg", "drop angle", "°", |t| t.angle_rad.to_degrees()),
     Tolerance::new("impact_velocity_percent", "impact velocity", " %", |t| 100.0 * t.impact_velocity),
     Tolerance::new("calibration_percent", "calibration of a channel", " %", |t| 100.0 * t.calibration),
     Tolerance::new("cross_axis_percent", "cross axis of a channel", " %", |t| 100.0 * t.cross_axis),
     Tolerance::new("position_m", "position of a sensor", " mm", |t| 1e3 * t.position_m),
+    Tolerance::new("length_m", "length", " %", |t| 100.0 * t.length),
+    Tolerance::new("height_m", "section", " %", |t| 100.0 * t.height),
+    Tolerance::new("angular_velocity_deg_s", "rotation at first contact", "°/s", |t| {
+        t.angular_velocity_rad_s.to_degrees()
+    }),
+    Tolerance::new("horizontal_velocity_m_s", "sideways velocity at first contact", " m/s", |t| {
+        t.horizontal_velocity_m_s
+    }),
     Tolerance::new("cog_m", "centre of gravity", " mm", |t| 1e3 * t.cog_m),
     Tolerance::new("inertia_percent", "inertia", " %", |t| 100.0 * t.inertia),
-    Tolerance::new("friction_percent", "contact law", " % of rough to smooth", |t| 100.0 * t.friction),
+    Tolerance::new("friction_percent", "friction of the first contact", " %", |t| 100.0 * t.friction),
     Tolerance::new("clock_percent", "recorder's clock", " %", |t| 100.0 * t.clock),
 ];
 
 /// Whether the cask file leaves this key of `[tolerance]` to its default.
 pub(super) fn is_default(file: &CaskFile, key: &str) -> bool {
     file.defaults.iter().any(|d| d.strip_prefix("tolerance.") == Some(key))
+}
+
+/// The key to state in place of a default that an input of the budget rests on; `None` where it rests on none.
+pub(super) fn to_state(file: &CaskFile, input: &str) -> Option<String> {
+    let own = TOLERANCES.iter().find(|tolerance| tolerance.is_of(input))?;
+    // Nobody knows a part of a friction that nobody states.
+    if own.key == "friction_percent" && file.contact == Contact::Unknown {
+        return Some("[contact] friction".to_owned());
+    }
+    is_default(file, own.key).then(|| format!("[tolerance] {}", own.key))
 }
 
 /// The tolerances, and the corrections that are switched off; without what `said` says already.
@@ -79,7 +97,7 @@ mod tests {
         assert_eq!(said("tolerance of drop angle").origin, "cask file");
         assert_eq!(said("tolerance of position of a sensor").value, "± 10 mm (95 %)");
         assert_eq!(said("tolerance of inertia").origin, "default");
-        assert_eq!(settings.len(), 9);
+        assert_eq!(settings.len(), 13);
     }
 
     #[test]

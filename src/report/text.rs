@@ -122,9 +122,9 @@ pub(super) fn tail(text: &str, width: usize) -> String {
 /// The verdict as one capital word.
 pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
     match verdict {
-        Verdict::Pass => "PASS",
-        Verdict::Review => "REVIEW",
-        Verdict::Fail => "FAIL",
+        Verdict::Pass => "DATA SOUND",
+        Verdict::Review => "LOOK AT",
+        Verdict::Fail => "NOT TO BE USED",
     }
 }
 
@@ -133,8 +133,8 @@ pub(super) fn verdict_sentence(result: &DropResult) -> String {
     let count = |severity| result.quality.iter().filter(|i| i.severity == severity).count();
     let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
     match result.verdict {
-        Verdict::Pass => "Nothing speaks against the result.".into(),
-        Verdict::Review if warnings == 0 => "The result needs a person's look.".into(),
+        Verdict::Pass => "Nothing speaks against this recording and its result.".into(),
+        Verdict::Review if warnings == 0 => "The data need a person's look.".into(),
         Verdict::Review if warnings == 1 => "One warning needs a person's look.".into(),
         Verdict::Review => format!("{warnings} warnings need a person's look."),
         Verdict::Fail if errors == 0 => "A quantity could not be had from this recording.".into(),

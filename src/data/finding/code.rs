@@ -19,8 +19,12 @@ pub enum Severity {
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs, reason = "CODES says what each means")]
 pub enum IssueCode {
-    // First of its severity: what mends goes before what follows from it.
+    // First of their severity: what mends goes before what follows from it.
     UsualSlip,
+    MissingChannel,
+    EndsExchanged,
+    Polarity,
+    SensorPosition,
     Clipped,
     Gap,
     DuplicateBlocks,
@@ -43,11 +47,8 @@ pub enum IssueCode {
     LowRate,
     Aliasing,
     AcCoupled,
-    Polarity,
-    EndsExchanged,
     Scale,
     NotRigid,
-    SensorPosition,
     Skew,
     BeginsLate,
     EndsEarly,
@@ -62,7 +63,6 @@ pub enum IssueCode {
     Disagreement,
     Observed,
     FlightFit,
-    MissingChannel,
 }
 
 /// Every check with what a finding of it means, by what it speaks of: docs/quality.md is made of it.
