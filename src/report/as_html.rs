@@ -7,8 +7,12 @@ use super::table::{CellKind, ReportColumn, ReportTable, TableCell};
 use super::text::{Style, capital, printable};
 use base64::prelude::{BASE64_STANDARD as STANDARD, Engine};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use sha2::{Digest, Sha256};
 
 const STYLE: &str = include_str!("report.css");
+/// uPlot 1.6.32 (MIT) with its style, and what makes the figures of it.
+const UPLOT_STYLE: &str = include_str!("live/uplot-1.6.32.min.css");
+const SCRIPTS: [&str; 2] = [include_str!("live/uplot-1.6.32.min.js"), include_str!("live/live.js")];
 
 /// The page with these pictures.
 pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
@@ -21,10 +25,10 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 // Whatever a file smuggled in could neither run nor call out.
-                meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:";
+                meta http-equiv="Content-Security-Policy" content=(policy(pictures));
                 meta name="generator" content=(generator);
                 title { (printable(title)) }
-                style { (PreEscaped(STYLE)) (PreEscaped(style)) }
+                style { (PreEscaped(STYLE)) (PreEscaped(style)) @if is_live(pictures) { (PreEscaped(UPLOT_STYLE)) } }
             }
             body { main {
                 header {
@@ -39,6 +43,7 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
                     @for passage in chapter.shown(Medium::Page) { (self::passage(passage, pictures)) }
                 }
                 footer { (footer) }
+                @if is_live(pictures) { @for script in SCRIPTS { script { (PreEscaped(script)) } } }
             } }
         }
     }
@@ -60,8 +65,12 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
         PartContent::ReportTable(table) => self::table(table),
         PartContent::Picture(name, _, room) => html! {
             @for picture in pictures.iter().filter(|picture| picture.name == *name) {
-                figure aria-label=(printable(&picture.alt)) class=[class(room)] {
+                @let live = (!picture.live.is_empty()).then(|| format!("live-{name}"));
+                figure aria-label=(printable(&picture.alt)) class=[class(room)] data-live=[&live] {
                     (PreEscaped(&picture.svg))
+                    @if let Some(id) = &live {
+                        script type="application/json" id=(id) { (PreEscaped(&picture.live)) }
+                    }
                     figcaption { strong { (printable(&picture.title)) ". " } (printable(&picture.caption)) }
                 }
             }
@@ -84,6 +93,19 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
             } } } }
         },
     }
+}
+
+/// Whether any picture is to be zoomed.
+fn is_live(pictures: &[Picture]) -> bool {
+    pictures.iter().any(|picture| !picture.live.is_empty())
+}
+
+/// Nothing from elsewhere, and no script but these very ones.
+fn policy(pictures: &[Picture]) -> String {
+    let hash = |script: &&str| format!(" 'sha256-{}'", STANDARD.encode(Sha256::digest(script)));
+    let scripts: String = SCRIPTS.iter().filter(|_| is_live(pictures)).map(hash).collect();
+    let own = if scripts.is_empty() { String::new() } else { format!("; script-src{scripts}") };
+    format!("default-src 'none'; style-src 'unsafe-inline'; img-src data:{own}")
 }
 
 /// The colours of a banner.

@@ -96,7 +96,7 @@ pub fn table(analysis: &Analysis, width: usize) -> String {
 }
 
 /// The names of the files of a report, in the order of [`files`].
-pub const FILE_NAMES: [&str; 12] = [
+pub const FILE_NAMES: [&str; 14] = [
     "report.html",
     "result.json",
     "results.tex",
@@ -105,7 +105,9 @@ pub const FILE_NAMES: [&str; 12] = [
     "curves.mcap",
     "setup.svg",
     "accelerations.svg",
+    "impacts.svg",
     "velocities.svg",
+    "fit.svg",
     "motion.svg",
     "spectra.svg",
     "comparison.svg",

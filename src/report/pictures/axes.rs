@@ -7,6 +7,8 @@ use super::svg::{Anchor, Svg};
 use std::ops::Range;
 
 /// Height of a row of the marks' words.
+/// Of so many units of x a line keeps the lowest and the highest point: a pixel and a half of the page, 0.3 mm of paper.
+const COLUMN: f64 = 3.0;
 const MARK_ROW: f64 = 34.0;
 /// Room for the ticks and the label of the axes.
 const LEFT: f64 = 130.0;
@@ -142,7 +144,9 @@ impl PlotFrame<'_> {
         let (faint, bold): (Vec<&Curve>, Vec<&Curve>) =
             self.panel.lines.iter().partition(|line| line.opacity < 0.5);
         for line in faint.into_iter().chain(bold) {
-            for points in runs(line.points.iter().map(|at| self.place(*at))) {
+            let narrow = line.points.iter().map(|at| self.place(*at)).map(|(x, y)| (x / COLUMN, y));
+            for run in runs(narrow) {
+                let points = run.into_iter().map(|(x, y)| (x * COLUMN, y)).collect();
                 svg.line(&Curve { points, label: None, ..*line });
             }
         }

@@ -39,8 +39,49 @@ pub(super) fn accelerations(analysis: &Analysis) -> Picture {
         "Specific force at both ends over time, offset removed: unfiltered (faint) and filtered (bold), 1 g = 9.80665 m/s². \
          A decelerating end reads positive on its transverse axis.{filter}"
     );
-    Plate::new("accelerations", "Deceleration of both ends", caption).picture(&panels)
+    Plate::new("accelerations", "Deceleration of both ends", caption).live().picture(&panels)
 }
+
+/// What both contacts show, each in a panel of its own.
+pub(super) fn impacts(analysis: &Analysis) -> Picture {
+    let (events, clock) = (&analysis.result.events, EventClock::of(analysis));
+    let impact = |title: &str, from: Option<f64>, to: Option<f64>| {
+        let lines = from.map_or_else(Vec::new, |from| {
+            let to = to.unwrap_or(from + LONGEST_S) + BESIDE_S;
+            let shown = |curve: &ChannelCurve| {
+                let at = |t: f64| curve.time_s.partition_point(|s| *s < t);
+                at(from - BESIDE_S)..at(to)
+            };
+            let of = |(i, curve): (usize, &ChannelCurve)| {
+                let part = shown(curve);
+                let line = |values: &[f64], what: &str| {
+                    let points = clock.points(
+                        &curve.time_s[part.clone()],
+                        &values[part.clone()],
+                        1.0 / STANDARD_GRAVITY_M_S2,
+                    );
+                    Curve::new(COLOURS[i % COLOURS.len()], points).named(format!("{} {what}", curve.channel))
+                };
+                let raw = line(&curve.raw_m_s2, "unfiltered");
+                [Curve { opacity: 0.4, stroke: 2, ..raw }, line(&curve.filtered_m_s2, "filtered")]
+            };
+            analysis.curves.channels.iter().enumerate().flat_map(of).collect()
+        });
+        clock.panel(analysis, title, "deceleration, g", lines)
+    };
+    let panels = [
+        impact("First impact", events.first_contact_s(), events.separation_s()),
+        impact("Second impact", events.slap_down_s(), None),
+    ];
+    let caption =
+        "Specific force of every channel about both impacts, unfiltered (faint) and filtered (bold)."
+            .to_owned();
+    Plate::new("impacts", "Both impacts", caption).live().picture(&panels)
+}
+
+/// Beside an impact so much is shown, s, and of one whose end nothing tells.
+const BESIDE_S: f64 = 3e-3;
+const LONGEST_S: f64 = 0.02;
 
 /// The velocity of both ends, from the sensors and as the rigid body moves.
 pub(super) fn velocities(analysis: &Analysis) -> Picture {
@@ -69,7 +110,7 @@ pub(super) fn velocities(analysis: &Analysis) -> Picture {
     let caption = "Velocity over time. Above: each sensor's unfiltered signal integrated along its axis, gravity left out between \
                    the contacts. Below: the ends of the rigid body that all channels share, up positive."
         .to_owned();
-    Plate::new("velocities", "Velocity of both ends", caption).picture(&panels)
+    Plate::new("velocities", "Velocity of both ends", caption).live().picture(&panels)
 }
 
 /// Heights of both ends and the inclination.
@@ -91,7 +132,7 @@ pub(super) fn motion(analysis: &Analysis) -> Picture {
     let caption = "The rigid body's motion from just before first contact to the slap-down: height of the corner of each end that \
                    touches the target, and inclination of the axis above the horizontal."
         .to_owned();
-    Plate::new("motion", "Motion of the cask", caption).picture(&panels)
+    Plate::new("motion", "Motion of the cask", caption).live().picture(&panels)
 }
 
 /// The amplitude spectra of all channels up to half the sample rate.
@@ -127,24 +168,24 @@ pub(super) fn spectra(analysis: &Analysis) -> Picture {
 }
 
 /// The time axis: from first contact where it is known.
-struct EventClock {
+pub(super) struct EventClock {
     zero_s: f64,
     label: &'static str,
 }
 
 impl EventClock {
-    fn of(analysis: &Analysis) -> Self {
+    pub(super) fn of(analysis: &Analysis) -> Self {
         match analysis.result.events.first_contact_s().filter(|t| t.is_finite()) {
             Some(zero_s) => Self { zero_s, label: TIME_LABEL },
             None => Self { zero_s: 0.0, label: RECORD_TIME_LABEL },
         }
     }
 
-    fn points(&self, time_s: &[f64], values: &[f64], factor: f64) -> Vec<(f64, f64)> {
+    pub(super) fn points(&self, time_s: &[f64], values: &[f64], factor: f64) -> Vec<(f64, f64)> {
         time_s.iter().zip(values).map(|(t, v)| ((t - self.zero_s) * 1e3, v * factor)).collect()
     }
 
-    fn panel(&self, analysis: &Analysis, title: &str, y_label: &str, lines: Vec<Curve>) -> Panel {
+    pub(super) fn panel(&self, analysis: &Analysis, title: &str, y_label: &str, lines: Vec<Curve>) -> Panel {
         let marks = named_events(&analysis.result.events)
             .into_iter()
             .filter_map(|(label, at)| {

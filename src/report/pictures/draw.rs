@@ -1,8 +1,8 @@
 //! Panels to the SVG text of a picture.
 
-use super::axes;
 use super::panel::{AxisScale, Panel, WIDTH};
 use super::svg::{Anchor, Svg};
+use super::{axes, live};
 
 /// One picture.
 pub(crate) struct Picture {
@@ -16,6 +16,8 @@ pub(crate) struct Picture {
     pub(crate) caption: String,
     /// The drawing.
     pub(crate) svg: String,
+    /// Its numbers as JSON, for pages that draw it again to be zoomed; empty where they don't.
+    pub(crate) live: String,
 }
 
 /// What a picture is called, and what it says where it is empty.
@@ -27,6 +29,8 @@ pub(crate) struct Plate {
     pub(crate) nothing: (&'static str, &'static str),
     /// Panels beside one another.
     pub(crate) columns: usize,
+    /// Whether a page may draw it again to be zoomed.
+    pub(crate) is_live: bool,
 }
 
 impl Plate {
@@ -34,7 +38,7 @@ impl Plate {
     pub(crate) fn new(name: &str, title: impl Into<String>, caption: String) -> Self {
         let nothing =
             ("There is nothing to show: see the findings.", "The recording did not yield this picture.");
-        Self { name: name.to_owned(), title: title.into(), caption, nothing, columns: 1 }
+        Self { name: name.to_owned(), title: title.into(), caption, nothing, columns: 1, is_live: false }
     }
 
     /// With another sentence and caption of the empty picture.
@@ -42,18 +46,24 @@ impl Plate {
         Self { nothing, ..self }
     }
 
+    /// To be zoomed on a page.
+    pub(crate) fn live(self) -> Self {
+        Self { is_live: true, ..self }
+    }
+
     /// The picture of those panels that have something to show.
     pub(crate) fn picture(self, panels: &[Panel]) -> Picture {
-        let Self { name, title, caption, nothing, columns } = self;
+        let Self { name, title, caption, nothing, columns, is_live } = self;
         let panels: Vec<&Panel> = panels.iter().filter(|panel| panel.has_points()).collect();
         if panels.is_empty() {
             let (svg, alt) = (empty(nothing.0, &title), format!("{title}: nothing to show."));
-            return Picture { name, title, alt, caption: nothing.1.to_owned(), svg };
+            return Picture { name, title, alt, caption: nothing.1.to_owned(), svg, live: String::new() };
         }
         let svg = drawing(&panels, columns, &title);
         let rows: Vec<String> = panels.iter().flat_map(|panel| spoken(panel)).collect();
         let alt = format!("{title}. {}", if rows.is_empty() { caption.clone() } else { rows.join("; ") });
-        Picture { name, title, alt, caption, svg }
+        let live = if is_live { live::numbers(&panels) } else { String::new() };
+        Picture { name, title, alt, caption, svg, live }
     }
 }
 

@@ -1,4 +1,4 @@
-//! An analysis to its six pictures, a study to its charts, as SVG text.
+//! An analysis to its pictures, a study to its charts, as SVG text.
 
 mod angle_curves;
 mod axes;
@@ -7,7 +7,9 @@ mod critical;
 mod curves;
 mod decimate;
 pub(crate) mod draw;
+mod fit;
 mod legend;
+mod live;
 mod look;
 mod monte_carlo;
 #[cfg_attr(not(feature = "lab"), allow(dead_code, reason = "the pages of the laboratory use all of it"))]
@@ -29,7 +31,9 @@ pub(super) fn draw(analysis: &Analysis) -> Vec<Picture> {
     vec![
         setup::picture(&analysis.cask_file),
         curves::accelerations(analysis),
+        curves::impacts(analysis),
         curves::velocities(analysis),
+        fit::picture(analysis),
         curves::motion(analysis),
         curves::spectra(analysis),
         comparison::picture(analysis),

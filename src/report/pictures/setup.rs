@@ -80,6 +80,7 @@ pub(super) fn picture(file: &CaskFile) -> Picture {
                   polarity included. S: centre of gravity."
             .to_owned(),
         svg: svg.finished((WIDTH, ground + 70.0), &title),
+        live: String::new(),
     }
 }
 
