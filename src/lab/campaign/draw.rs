@@ -6,7 +6,6 @@ use crate::lab::damage::{BetweenImpacts, Wish};
 use crate::lab::data::{BendingMode, Scene, Truth, WantedImpact};
 use crate::lab::drawn::{BUILDS, DrawnDrop, GRAVITY_M_S2, LEAST_FRICTION, cask_file, scene};
 use crate::lab::synth;
-use std::collections::BTreeMap;
 
 /// Bending frequencies of a free uniform beam over its first.
 const OVERTONES: [f64; 3] = [1.0, 2.757, 5.404];
@@ -15,25 +14,20 @@ const OVERTONES: [f64; 3] = [1.0, 2.757, 5.404];
 const K_RANGE: (f64, f64) = (0.02, 0.98);
 const SHORTEST_FLIGHT_S: f64 = 8e-3;
 
-/// Draws of a scene that gave no such drop, by what they lack.
-pub(super) type Redraws = BTreeMap<&'static str, u32>;
-
 /// The angle is drawn again only after so many attempts with it: else the flat drops would be the ones left out.
 const ATTEMPTS: u32 = 300;
 
-/// Draws until there is a drop as wished, and counts the others by what they lack.
-pub(super) fn drawn(mut chance: Chance, wish: &Wish, exact: bool) -> (DrawnDrop, Redraws) {
-    let mut redraws = Redraws::new();
+/// Draws until there is a drop as wished.
+pub(super) fn drawn(mut chance: Chance, wish: &Wish, exact: bool) -> DrawnDrop {
     let mut angle_deg = stated_angle_deg(&mut chance, wish);
     let mut attempt = 0_u32;
     loop {
         attempt += 1;
         let (scene, stated) = drop(&mut chance, angle_deg, wish, exact);
         let motion = synth::simulate(&scene);
-        let Some(lack) = lacks(&motion.truth, wish) else {
-            return (DrawnDrop { scene, stated, motion, chance }, redraws);
-        };
-        *redraws.entry(lack).or_insert(0) += 1;
+        if is_as_wished(&motion.truth, wish) {
+            return DrawnDrop { scene, stated, motion, chance };
+        }
         if wish.flight != BetweenImpacts::Free || attempt.is_multiple_of(ATTEMPTS) {
             angle_deg = stated_angle_deg(&mut chance, wish);
         }
@@ -48,21 +42,20 @@ fn stated_angle_deg(chance: &mut Chance, wish: &Wish) -> f64 {
     round(if chance.is(0.8) { chance.even(5.0, 30.0) } else { chance.even(2.0, 60.0) }, 1)
 }
 
-/// What keeps a drop out of the campaign.
-fn lacks(truth: &Truth, wish: &Wish) -> Option<&'static str> {
-    let lands_again = wish.flight == BetweenImpacts::LandsAgain;
+/// Whether the drop is one that the campaign takes.
+fn is_as_wished(truth: &Truth, wish: &Wish) -> bool {
     let is_short = truth.flight_s.is_none_or(|flight_s| flight_s < SHORTEST_FLIGHT_S);
-    let wants_short = wish.flight == BetweenImpacts::Short;
-    let lacks = [
-        (truth.k.is_none() || truth.speed.is_none(), "no slap-down"),
-        (!truth.k.is_some_and(|k| (K_RANGE.0..=K_RANGE.1).contains(&k)), "k outside 0.02 to 0.98"),
-        (lands_again && truth.relands == 0, "no second contact"),
-        (!lands_again && truth.first_down_at_slap, "first end down at slap-down"),
-        (!lands_again && truth.relands > 0, "second contact"),
-        (!lands_again && is_short && !wants_short, "flight below 8 ms"),
-        (!is_short && wants_short, "flight of 8 ms and more"),
-    ];
-    lacks.into_iter().find(|(does_lack, _)| *does_lack).map(|(_, lack)| lack)
+    let is_between = match wish.flight {
+        BetweenImpacts::LandsAgain => truth.relands > 0,
+        _ => truth.relands == 0 && !truth.first_down_at_slap,
+    };
+    let is_as_long = match wish.flight {
+        BetweenImpacts::LandsAgain => true,
+        BetweenImpacts::Short => is_short,
+        BetweenImpacts::Free => !is_short,
+    };
+    let is_struck = truth.speed.is_some() && truth.k.is_some_and(|k| (K_RANGE.0..=K_RANGE.1).contains(&k));
+    is_struck && is_between && is_as_long
 }
 
 /// One attempt: the scene as it is and the cask file, both still without channels.

@@ -81,12 +81,12 @@ fn recorded(seed: u64, number: SceneNumber, exact: bool) -> RecordedScene {
         SceneNumber::Damaged(number) => (2 * u64::from(number) + 1, Some(kind_and_size(number))),
     };
     let wish = struck.map_or_else(Wish::default, |(kind, size)| kind.wish(size));
-    let (mut drop, redraws) = draw::drawn(Chance::new(seed, stream), &wish, exact);
+    let mut drop = draw::drawn(Chance::new(seed, stream), &wish, exact);
     recorder::equip(&mut drop, &wish, exact);
     let recording = struck.map(|(kind, size)| kind.strike(&mut drop, size));
     let recording = recording.unwrap_or_else(|| drop.recorded());
     let damage = struck.map(|(kind, size)| Damage { kind: kind.name, size, unit: kind.unit });
-    RecordedScene { drop, redraws, damage, recording }
+    RecordedScene { drop, damage, recording }
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! An analysis beside its truth to a row, and rows to CSV.
 
-use super::draw::Redraws;
 use super::statistics;
 use crate::data::{Analysis, Estimate, ReconstructionRung, Severity};
 use crate::lab::chance::round;
@@ -13,14 +12,13 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A scene, drawn, struck by its damage and recorded.
 pub(super) struct RecordedScene {
     pub drop: DrawnDrop,
-    pub redraws: Redraws,
     pub damage: Option<Damage>,
     pub recording: SyntheticRecording,
 }
 
 /// The row of a scene, without the time that its analysis took; no analysis: the recording was refused.
 pub(super) fn row(number: SceneNumber, scene: RecordedScene, analysis: Option<&Analysis>) -> CampaignRow {
-    let RecordedScene { drop, redraws, damage, recording } = scene;
+    let RecordedScene { drop, damage, recording } = scene;
     let truth = drop.motion.truth;
     let first_contact_s = recording.first_contact_s;
     let slap_down_s = truth.slap_t.map(|t| first_contact_s + t * (1.0 + drop.scene.clock_error));
@@ -39,7 +37,6 @@ pub(super) fn row(number: SceneNumber, scene: RecordedScene, analysis: Option<&A
         scene: drop.scene,
         stated: drop.stated,
         analysis_s: 0.0,
-        redraws,
     }
 }
 

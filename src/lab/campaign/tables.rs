@@ -2,9 +2,8 @@
 
 use super::DamageKind;
 use super::rungs::rungs;
-use super::score::written;
 use super::statistics::{SceneOutcome, Spread, outcome, quantile, scored};
-use crate::data::{Axis, Contact, Severity, Verdict};
+use crate::data::Verdict;
 use crate::lab::data::{Campaign, CampaignRow};
 use crate::lab::drawn::BUILDS;
 use crate::numerics::{as_f64, robust};
@@ -12,7 +11,6 @@ use crate::report::as_markdown;
 use crate::report::document::{Chapter, ChapterPart, ReportDocument};
 use crate::report::rounding::optional_fixed;
 use crate::report::table::ReportTable;
-use std::collections::{BTreeMap, BTreeSet};
 
 /// The whole as Markdown.
 #[must_use]
@@ -24,7 +22,6 @@ fn document(campaign: &Campaign) -> ReportDocument {
     let all = Scenes(campaign.rows.iter().collect());
     let undamaged = all.that(|row| row.damage.is_none());
     let [sound, damaged] = [true, false].map(|is_sound| all.that(|row| is_sound_drop(row) == is_sound));
-    let struck = all.that(|row| row.damage.is_some());
     let request = &campaign.request;
     let mut times_s: Vec<f64> = campaign.rows.iter().map(|row| row.analysis_s).collect();
     let summary = format!(
@@ -41,21 +38,16 @@ fn document(campaign: &Campaign) -> ReportDocument {
     if !undamaged.0.is_empty() {
         chapter("Undamaged scenes", verdicts(&undamaged));
         chapter("Errors and intervals", intervals(&undamaged));
-        chapter("What keeps undamaged scenes from passing", codes(&undamaged));
         let [taken, beside] = rungs(campaign);
         chapter("Rungs of the reconstruction", taken);
         chapter("What other rungs would change", beside);
-        chapter("Drops drawn and left out", redraws(&undamaged));
     }
     if !sound.0.is_empty() {
         chapter("Sound drops, by kind", coverage(&sound_kinds(&sound)));
         chapter("Sound drops, by class", coverage(&classes(&sound)));
     }
     if !damaged.0.is_empty() {
-        chapter("Damaged scenes, by kind", damages(&damaged, false));
-    }
-    if !struck.0.is_empty() {
-        chapter("Kinds by size", damages(&struck, true));
+        chapter("Damaged scenes, by kind", damages(&damaged));
     }
     chapter("Passed and wrong", missed(&all));
     ReportDocument { chapters, ..ReportDocument::default() }
@@ -162,34 +154,6 @@ fn intervals(scenes: &Scenes) -> ChapterPart {
         .into()
 }
 
-fn codes(scenes: &Scenes) -> ChapterPart {
-    let mut counts: BTreeMap<(Severity, String), [usize; 3]> = BTreeMap::new();
-    for row in &scenes.0 {
-        let grave = row.findings.iter().filter(|finding| finding.1 != Severity::Note);
-        let codes: BTreeSet<_> = grave.map(|finding| (finding.1, written(finding.0))).collect();
-        let is_alone = codes.len() == 1;
-        let is_held = outcome(row) == SceneOutcome::Covered;
-        for code in codes {
-            let count = counts.entry(code).or_default();
-            for (count, is_so) in count.iter_mut().zip([true, is_alone, is_held]) {
-                *count += usize::from(is_so);
-            }
-        }
-    }
-    let mut counts: Vec<_> = counts.into_iter().collect();
-    counts.sort_by_key(|(_, count)| std::cmp::Reverse(count[0]));
-    ReportTable::of(&counts)
-        .code("finding", |((_, code), _)| &code[..])
-        .text("severity", |((severity, _), _)| if *severity == Severity::Error { "error" } else { "warning" })
-        .number("scenes", |(_, [all, ..])| all.to_string())
-        .number("alone", |(_, [_, alone, _])| alone.to_string())
-        .number("numbers hold all the same", |(_, [.., held])| held.to_string())
-        .into()
-}
-
-/// Whether a scene belongs to a class.
-type Belongs = fn(&CampaignRow) -> bool;
-
 /// A number of a scene.
 type Number = fn(&CampaignRow) -> f64;
 
@@ -203,20 +167,7 @@ const NUMBERS: [(&str, &str, [f64; 2], Number); 4] = [
     }),
 ];
 
-const CLASSES: [(&str, Belongs); 10] = [
-    ("drop of 9 m and more", |row| row.stated.drop.height_m >= 9.0),
-    ("drop of 3 to 9 m", |row| (3.0..9.0).contains(&row.stated.drop.height_m)),
-    ("drop below 3 m", |row| row.stated.drop.height_m < 3.0),
-    ("rough", |row| row.stated.contact == Contact::Rough),
-    ("smooth", |row| row.stated.contact == Contact::Smooth),
-    ("unknown", |row| row.stated.contact == Contact::Unknown),
-    ("Coulomb", |row| matches!(row.stated.contact, Contact::Coulomb(_))),
-    ("with an axial channel", |row| row.scene.channels.iter().any(|c| c.axis == Axis::Axial)),
-    ("force plateau", |row| row.scene.first_end.yield_n.is_some()),
-    ("rest recorded", |row| row.scene.rest),
-];
-
-/// The sound drops of each cask, those with a small, middle and large number, and those of the other classes.
+/// The sound drops of each cask, and those with a small, middle and large number.
 fn classes<'a>(sound: &Scenes<'a>) -> Vec<(String, Scenes<'a>)> {
     let is_of = |name: &str| sound.that(|row| row.scene.cask.name.starts_with(name));
     let casks = BUILDS.map(|build| (build.name.to_owned(), is_of(build.name)));
@@ -227,8 +178,7 @@ fn classes<'a>(sound: &Scenes<'a>) -> Vec<(String, Scenes<'a>)> {
             (format!("{name} above {high}{unit}"), sound.that(|row| number(row) > high)),
         ]
     });
-    let others = CLASSES.map(|(name, belongs)| (name.to_owned(), sound.that(belongs)));
-    casks.into_iter().chain(numbers).chain(others).collect()
+    casks.into_iter().chain(numbers).collect()
 }
 
 /// The undamaged drops, those of each sound kind, and all of them.
@@ -260,41 +210,14 @@ fn coverage(groups: &[(String, Scenes)]) -> ChapterPart {
         .into()
 }
 
-fn redraws(scenes: &Scenes) -> ChapterPart {
-    let mut counts: BTreeMap<&str, u32> = BTreeMap::new();
-    for (reason, count) in scenes.0.iter().flat_map(|row| &row.redraws) {
-        *counts.entry(reason).or_default() += count;
-    }
-    let counts: Vec<_> = counts.into_iter().collect();
-    ReportTable::of(&counts)
-        .text("reason", |(reason, _)| *reason)
-        .number("draws", |(_, count)| count.to_string())
-        .into()
-}
-
-/// The outcomes of every kind of damage, in the order of the kinds, or of every size of it.
-fn damages(scenes: &Scenes, by_size: bool) -> ChapterPart {
-    let mut groups: Vec<(&str, String, Scenes)> = Vec::new();
-    for DamageKind { name, sizes, unit, .. } in super::kinds() {
-        let parts = if by_size { sizes.chunks(1) } else { sizes.chunks(sizes.len()) };
-        groups.extend(parts.map(|part| {
-            let is_one =
-                |row: &CampaignRow| row.damage.is_some_and(|d| d.kind == *name && part.contains(&d.size));
-            let shown = match part {
-                _ if unit.is_empty() => String::new(),
-                [size] if by_size => format!("{size} {unit}"),
-                _ => format!("{} to {} {unit}", part[0], part[part.len() - 1]),
-            };
-            (*name, shown, scenes.that(is_one))
-        }));
-    }
-    groups.retain(|(.., of)| !of.0.is_empty());
-    if !by_size {
-        groups.push(("all", String::new(), scenes.that(|_| true)));
-    }
+/// The outcomes of every kind of damage, in the order of the kinds.
+fn damages(scenes: &Scenes) -> ChapterPart {
+    let of = |kind: &DamageKind| scenes.that(|row| row.damage.is_some_and(|damage| damage.kind == kind.name));
+    let mut groups: Vec<(&str, Scenes)> = super::kinds().map(|kind| (kind.name, of(kind))).collect();
+    groups.retain(|(_, of)| !of.0.is_empty());
+    groups.push(("all", scenes.that(|_| true)));
     ReportTable::of(&groups)
-        .text("damage", |(kind, ..)| *kind)
-        .number("size", |(_, size, _)| &size[..])
+        .text("damage", |(kind, _)| *kind)
         .number("scenes", |(.., of)| of.0.len().to_string())
         .number("right", |(.., of)| of.count(SceneOutcome::Right).to_string())
         .number("covered", |(.., of)| of.count(SceneOutcome::Covered).to_string())

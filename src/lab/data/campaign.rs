@@ -4,7 +4,6 @@ use super::scene::{Scene, Truth};
 use crate::data::{
     CaskFile, Estimate, IssueCode, ReconstructionCandidate, ReconstructionRung, Severity, Verdict,
 };
-use std::collections::BTreeMap;
 
 /// Which scene of a campaign: with its seed it names the same drop for ever.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -88,8 +87,6 @@ pub struct CampaignRow {
     pub misses_u: Vec<f64>,
     /// How long the analysis took, s.
     pub analysis_s: f64,
-    /// Draws before this one that gave no such drop, by reason.
-    pub redraws: BTreeMap<&'static str, u32>,
 }
 
 /// A campaign, done.

@@ -14,7 +14,7 @@ use crate::report::rounding;
 const PANEL: u32 = 520;
 const ROW: u32 = 25;
 /// Room for the words at either side of a row.
-const SIDES: (u32, u32) = (680, 620);
+const SIDES: (u32, u32) = (760, 620);
 /// How many times above and below what matters an error is drawn; what is beyond lies on the edge.
 const SPAN: f64 = 200.0;
 
