@@ -151,3 +151,37 @@ fn a_shell_completes_and_man_has_pages() {
     let page = fs::read_to_string(folder.path().join("dropcheck-analyze.1")).expect("a page");
     assert!(page.contains(".TH") && page.contains("csv\\-locale"));
 }
+
+#[test]
+fn the_page_works_in_a_browser() {
+    let has_tools = std::process::Command::new("python3")
+        .args([
+            "-c",
+            "import axe_core_python, selenium, shutil, sys; sys.exit(not shutil.which('chromedriver'))",
+        ])
+        .output();
+    if !has_tools.is_ok_and(|answer| answer.status.success()) {
+        println!("skipped: tests/browser/page.py needs chromedriver, selenium and axe-core-python");
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("report");
+    let cask = fixture("anf18-json.toml");
+    dropcheck([
+        "analyze".as_ref(),
+        fixture("anf18-json.mcap").as_os_str(),
+        "-c".as_ref(),
+        cask.as_os_str(),
+        "-o".as_ref(),
+        out.as_os_str(),
+    ]);
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/browser/page.py");
+    let checked = std::process::Command::new("python3").arg(script).arg(out.join("report.html")).output();
+    let checked = checked.expect("python");
+    assert!(
+        checked.status.success(),
+        "{}{}",
+        String::from_utf8_lossy(&checked.stdout),
+        String::from_utf8_lossy(&checked.stderr)
+    );
+}
