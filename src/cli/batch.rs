@@ -20,6 +20,9 @@ const RECORDING_ENDINGS: [&str; 5] = ["mcap", "h5", "hdf5", "hdf", "csv"];
 /// What the campaign's folder holds beside the reports.
 const SUMMARY: [&str; 2] = ["campaign.json", "campaign.csv"];
 
+/// What every line of a shard says it is: `campaign.schema`.
+pub const SHARD_SCHEMA: &str = "dropcheck.batch-shard/1";
+
 #[derive(Args)]
 #[command(after_help = "Example:\n  dropcheck batch tests/*.mcap --cask cask.toml --out campaign")]
 pub struct Arguments {
@@ -68,6 +71,12 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     print(&campaign.table(columns()))?;
     let outcome = |row: &BatchRow| row.verdict.map_or(Ending::NotDone, Ending::from);
     Ok(campaign.recordings.iter().map(outcome).max().unwrap_or(Ending::Clear))
+}
+
+/// The campaign's files of all its shards.
+pub fn merge(shards: &[PathBuf], out: &Path) -> miette::Result<Ending> {
+    let _ = out;
+    Err(miette::miette!("{} and {} others: shards of `batch` cannot be merged yet", shards[0].display(), shards.len() - 1))
 }
 
 fn analysed(
