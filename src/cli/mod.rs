@@ -17,6 +17,7 @@ mod predict;
 mod progress;
 mod record;
 mod replace;
+mod shard;
 mod tuning;
 
 pub use complaint::complain;
