@@ -182,16 +182,11 @@ fn open_record(arguments: &Arguments, plan: &Plan, inputs: &[&Path]) -> miette::
     let own = plan.own();
     let is_own = |line: &Value| {
         let number = usize::try_from(line["campaign"]["number"].as_u64()?).ok()?;
-        let is_same =
-            own.binary_search(&number).is_ok() && line["campaign"].to_string() == sorted(&plan.place(number));
-        is_same.then_some(number)
+        own.binary_search(&number).ok()?;
+        let place: Value = serde_json::from_str(&plan.place(number)).ok()?;
+        (line["campaign"] == place).then_some(number)
     };
     Record::open(&path, arguments.resume, inputs, is_own).map(Some)
-}
-
-/// JSON with its keys in one order.
-fn sorted(json: &str) -> String {
-    serde_json::from_str::<Value>(json).unwrap_or_default().to_string()
 }
 
 /// Whether an earlier line says what this run would find: the same bytes went in, and its report is there.
@@ -230,11 +225,9 @@ fn line(plan: &Plan, number: usize, arguments: &Arguments) -> String {
 
 fn analysed(plan: &Plan, test: &PlannedTest, arguments: &Arguments) -> miette::Result<DropResult> {
     let Some(cask) = &test.cask else {
-        return Err(miette::miette!(
-            help = "put {NAME}.toml beside it, or name one by --cask or in the manifest",
-            "{} has no cask file",
-            test.shown
-        ));
+        let beside = test.recording.with_extension("toml");
+        let mend = format!("put {} beside it, or name one by --cask or in the manifest", beside.display());
+        return Err(miette::miette!(help = mend, "{} has no cask file", test.shown));
     };
     let inputs = [test.recording.as_path(), cask];
     let folder = arguments
@@ -257,12 +250,11 @@ fn analysed(plan: &Plan, test: &PlannedTest, arguments: &Arguments) -> miette::R
 /// The words that would analyse this recording alone, whatever part of the campaign a run did, and where to.
 fn words(plan: &Plan, test: &PlannedTest, arguments: &Arguments) -> Vec<String> {
     let mut words = vec!["batch".to_owned()];
-    match &arguments.manifest {
-        Some(_) => words.extend(["--manifest".to_owned(), plan.source.clone()]),
-        None => {
-            words.push(test.shown.clone());
-            words.extend(test.cask_shown.iter().flat_map(|cask| ["--cask".to_owned(), cask.clone()]));
-        }
+    if arguments.manifest.is_some() {
+        words.extend(["--manifest".to_owned(), plan.source.clone()]);
+    } else {
+        words.push(test.shown.clone());
+        words.extend(test.cask_shown.iter().flat_map(|cask| ["--cask".to_owned(), cask.clone()]));
     }
     let without = arguments.switched_off.words();
     if !without.is_empty() {

@@ -145,7 +145,7 @@ fn point(line: &Value) -> DropPoint {
     DropPoint {
         number: u32::try_from(index + 1).unwrap_or(u32::MAX),
         cask: value("cask", "name").as_str().unwrap_or_default().to_owned(),
-        series: Value::from_iter(series.into_iter().cloned()).to_string(),
+        series: series.into_iter().cloned().collect::<Value>().to_string(),
         angle_deg: value("drop", "angle_deg").as_f64(),
         date: value("test", "date").as_str().map(str::to_owned),
         peaks_m_s2: [0, 1].map(peak),
@@ -290,7 +290,9 @@ pub(super) mod tests {
 
     pub(super) fn campaign(lines: &[Value]) -> Batch {
         let mut campaign = Batch::new("runs.csv".into());
-        lines.iter().for_each(|line| campaign.add(line));
+        for line in lines {
+            campaign.add(line);
+        }
         campaign
     }
 

@@ -70,18 +70,17 @@ fn test(cells: &[(&str, &str)], folder: &Path, cask: Option<&Path>) -> Option<Pl
         |name| cells.iter().find(|(head, cell)| *head == name && !cell.is_empty()).map(|(_, cell)| *cell);
     let shown = cell(RECORDING)?.to_owned();
     let recording = folder.join(&shown);
-    let (cask_shown, cask) = match cell(CASK) {
-        Some(own) => (Some(own.to_owned()), Some(folder.join(own))),
-        None => {
-            let found = cask_of(&recording, cask);
-            let shown = |found: &PathBuf| {
-                let is_beside = Some(found.as_path()) != cask;
-                if is_beside { Path::new(&shown).with_extension("toml") } else { found.clone() }
-                    .display()
-                    .to_string()
-            };
-            (found.as_ref().map(shown), found)
-        }
+    let (cask_shown, cask) = if let Some(own) = cell(CASK) {
+        (Some(own.to_owned()), Some(folder.join(own)))
+    } else {
+        let found = cask_of(&recording, cask);
+        let shown = |found: &PathBuf| {
+            let is_beside = Some(found.as_path()) != cask;
+            if is_beside { Path::new(&shown).with_extension("toml") } else { found.clone() }
+                .display()
+                .to_string()
+        };
+        (found.as_ref().map(shown), found)
     };
     let mut test = PlannedTest {
         id: cell(ID).map_or_else(|| stem(&recording), str::to_owned),
@@ -147,7 +146,9 @@ pub fn template(folder: &Path) -> miette::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let fault = |error: csv::Error| miette::miette!("the manifest could not be written: {error}");
     writer.write_record([ID, RECORDING, CASK, "drop.angle_deg", "test.date"]).map_err(fault)?;
-    for recording in in_folder(folder)? {
+    // A shell makes the file first into which the manifest goes.
+    let is_empty = |path: &PathBuf| std::fs::metadata(path).is_ok_and(|file| file.len() == 0);
+    for recording in in_folder(folder)?.into_iter().filter(|path| !is_empty(path)) {
         let cask = cask_of(&recording, None).map(|cask| cask.display().to_string());
         let words = [stem(&recording), recording.display().to_string(), cask.unwrap_or_default()];
         writer.write_record(words.iter().map(String::as_str).chain(["", ""])).map_err(fault)?;

@@ -50,19 +50,14 @@ impl Plan {
     /// What the words ask for.
     pub fn of(arguments: &Arguments) -> miette::Result<Self> {
         let cask = arguments.cask.as_deref();
-        let (mut tests, source) = match &arguments.manifest {
-            Some(path) => {
-                // Other machines may have it in another place.
-                let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                (manifest::read(path, cask)?, name)
-            }
-            None => {
-                let source = cask.map_or_else(
-                    || "cask files beside the recordings".to_owned(),
-                    |c| c.display().to_string(),
-                );
-                (of_paths(&arguments.paths, cask)?, source)
-            }
+        let shown = |path: &Path| path.display().to_string();
+        let (mut tests, source) = if let Some(path) = &arguments.manifest {
+            // Other machines may have it in another place.
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            (manifest::read(path, cask)?, name)
+        } else {
+            let source = cask.map_or_else(|| "cask files beside the recordings".to_owned(), shown);
+            (of_paths(&arguments.paths, cask)?, source)
         };
         name_apart(&mut tests);
         let mut hash = Sha256::new();

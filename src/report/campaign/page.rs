@@ -8,6 +8,7 @@ use crate::report::json::in_a_line;
 use crate::report::rounding::{MISSING, fixed, interval, pair, percent, plain, significant};
 use crate::report::table::{ReportTable, TableCell};
 use crate::report::text::{Style, verdict_word};
+use std::collections::BTreeSet;
 
 /// g, m/s².
 const G_M_S2: f64 = 9.806_65;
@@ -22,10 +23,9 @@ pub(super) fn document(batch: &Batch, series: &[Series]) -> ReportDocument {
     let (pass, review, fail) =
         (count(Some(Verdict::Pass)), count(Some(Verdict::Review)), count(Some(Verdict::Fail)));
     let failed = count(None);
-    let angles: usize = series
-        .iter()
-        .map(|s| s.pools.iter().filter(|p| p.quantity == PooledQuantity::K && p.angle_deg.is_some()).count())
-        .sum();
+    let angles =
+        series.iter().flat_map(|series| &series.pools).filter_map(|pool| pool.angle_deg.map(f64::to_bits));
+    let angles = angles.collect::<BTreeSet<u64>>().len();
     let worst = if fail + failed > 0 {
         Style::Red
     } else if review > 0 {
@@ -201,9 +201,9 @@ fn recordings(batch: &Batch, series: &[Series]) -> Chapter {
         .class("many sortable")
         .head("test", linked)
         .text("verdict", tag)
-        .text("cask", |row| row.at.cask.clone())
+        .soft("cask", |row| row.at.cask.clone())
         .number("angle °", |row| row.at.angle_deg.map_or(MISSING.to_owned(), |angle| plain(angle, 4)))
-        .text("date", |row| row.at.date.as_deref().map_or("", |date| date.get(..10).unwrap_or(date)))
+        .soft("date", |row| row.at.date.as_deref().map_or("", |date| date.get(..10).unwrap_or(date)))
         .number("speed m/s", |row| interval(row.slap_down_speed.as_ref()).replace(" m/s", ""))
         .number("k", |row| interval(row.k.as_ref()))
         .number("measured / predicted", |row| {

@@ -33,10 +33,9 @@ impl Series<'_> {
         self.draw(&mut panel, |row| PooledQuantity::Speed.of(row), |row| self.angle(row));
         panel.marks = self.marks();
         let mut ratio = self.panel("Measured over predicted", "ratio");
-        let one = panel.lines.iter().flat_map(|line| &line.points).map(|point| (point.0, 1.0));
-        let one: Vec<(f64, f64)> = one.collect();
-        let ends = [one.first(), one.last()].into_iter().flatten().copied().collect();
-        ratio.lines.push(Curve::new(GREY, ends));
+        if let Some((from, to)) = ratio.x.range {
+            ratio.lines.push(Curve::new(GREY, vec![(from, 1.0), (to, 1.0)]));
+        }
         self.draw(&mut ratio, relative, |row| self.angle(row));
         let k = self.k.map_or_else(String::new, |[low, high]| {
             format!(", k from {} to {}", plain(low, 3), plain(high, 3))
@@ -60,6 +59,7 @@ impl Series<'_> {
             ..self.panel("Over the test number", "k")
         };
         self.draw(&mut over_number, k, |row| Some(row.at.number.into()));
+        with_air(&mut over_number);
         let first = self.rows.iter().filter_map(|row| date(row)).min();
         let label = first.map_or_else(String::new, |first| format!("days since {first}"));
         let mut over_date = Panel { x: PanelAxis::new(label), ..self.panel("Over the test date", "k") };
@@ -68,6 +68,7 @@ impl Series<'_> {
             Some(f64::from(since.get_days()))
         };
         self.draw(&mut over_date, k, days);
+        with_air(&mut over_date);
         let caption = "The coefficient of restitution with its 95 % interval. Hollow: not to be used. Ringed: falls out of its repeats."
             .to_owned();
         Plate::new(name, format!("{}: restitution", self.name), caption).or(NOTHING).picture(&[
@@ -138,6 +139,13 @@ impl Series<'_> {
         let out = self.rows.iter().filter(|row| self.falls_out(row));
         out.filter_map(|row| Some(Mark { at: self.angle(row)?, label: row.id.clone() })).collect()
     }
+}
+
+/// Room beside the first and the last point.
+fn with_air(panel: &mut Panel) {
+    let std::ops::Range { start, end } = panel.x_range();
+    let air = 0.03 * (end - start).max(1.0);
+    panel.x.range = Some((start - air, end + air)).filter(|(from, to)| from.is_finite() && to.is_finite());
 }
 
 fn relative(row: &BatchRow) -> Option<Estimate> {

@@ -76,7 +76,7 @@ pub(super) struct Series<'a> {
     pub(super) rows: Vec<&'a BatchRow>,
     pub(super) pools: Vec<Pool<'a>>,
     pub(super) curves: Vec<PredictedCurve>,
-    /// Lowest and highest k measured.
+    /// Lowest and highest k measured, but for what falls out.
     pub(super) k: Option<[f64; 2]>,
 }
 
@@ -126,7 +126,9 @@ impl<'a> Series<'a> {
         }
         for series in &mut series {
             series.pools = pools(&series.rows);
-            series.k = ends(series.usable().filter_map(|row| Some(row.k?.value)));
+            series.k = ends(
+                series.usable().filter(|row| !series.falls_out(row)).filter_map(|row| Some(row.k?.value)),
+            );
             if let (Some(k), Some([from, to])) =
                 (series.k, ends(series.rows.iter().filter_map(|row| row.at.angle_deg)))
             {

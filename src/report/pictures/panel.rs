@@ -285,7 +285,7 @@ impl Panel {
     }
 
     /// Ends of the horizontal axis.
-    pub(super) fn x_range(&self) -> Range<f64> {
+    pub(crate) fn x_range(&self) -> Range<f64> {
         self.x.around(self.drawn().map(|p| p.0), 0.0)
     }
 
