@@ -1,6 +1,6 @@
 //! The shards of a campaign to all of its lines; one that is missing, doubled, cut, foreign or of another version is named.
 
-use super::record::Lines;
+use super::record::LineFiles;
 use dropcheck::report::Batch;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -15,8 +15,8 @@ const COMMON: [(&str, &str); 5] = [
 ];
 
 /// The lines of all shards, and the campaign that they make.
-pub fn all(shards: &[PathBuf]) -> miette::Result<(Lines, Batch)> {
-    let mut lines = Lines::default();
+pub fn all(shards: &[PathBuf]) -> miette::Result<(LineFiles, Batch)> {
+    let mut lines = LineFiles::default();
     let mut first: Option<Value> = None;
     // Of each test in which shard it is.
     let mut homes: Vec<Option<usize>> = Vec::new();
@@ -63,7 +63,7 @@ pub fn all(shards: &[PathBuf]) -> miette::Result<(Lines, Batch)> {
 }
 
 /// Names the shards of which something is missing.
-fn complete(shards: &[PathBuf], homes: &[Option<usize>], lines: &Lines) -> miette::Result<()> {
+fn complete(shards: &[PathBuf], homes: &[Option<usize>], lines: &LineFiles) -> miette::Result<()> {
     let Some(missing) = homes.iter().position(Option::is_none) else { return Ok(()) };
     let count = homes.iter().filter(|home| home.is_none()).count();
     // Any line says into how many parts its campaign was cut.

@@ -1,7 +1,7 @@
 //! A campaign and its lines once more to `campaign.csv` and `campaign.json`, a line at a time, and to its page with the pictures.
 
 use super::columns::{self, Columns};
-use super::series::{PoolRecord, Series};
+use super::series::{DropSeries, PoolRecord};
 use super::{Batch, BatchRow, PredictedCurve, head, page};
 use crate::data::Program;
 use crate::report::json::{in_a_line, pretty};
@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 /// A campaign all of whose lines are known, with what the model predicts for its casks.
 pub struct CampaignFiles<'a> {
     batch: &'a Batch,
-    series: Vec<Series<'a>>,
+    series: Vec<DropSeries<'a>>,
 }
 
 /// A row of `campaign.json`.
@@ -42,7 +42,7 @@ impl<'a> CampaignFiles<'a> {
         batch: &'a Batch,
         predicted: impl Fn(&BatchRow, [f64; 2], [f64; 2]) -> Vec<PredictedCurve>,
     ) -> Self {
-        Self { batch, series: Series::all(&batch.rows, predicted) }
+        Self { batch, series: DropSeries::all(&batch.rows, predicted) }
     }
 
     /// The first line of `campaign.csv`.
@@ -80,7 +80,7 @@ impl<'a> CampaignFiles<'a> {
             program,
             cask: &self.batch.source,
             count: self.batch.rows.len(),
-            pools: self.series.iter().flat_map(Series::records).collect(),
+            pools: self.series.iter().flat_map(DropSeries::records).collect(),
         };
         let text =
             String::from_utf8_lossy(&pretty(&head)?).trim_end().trim_end_matches('}').trim_end().to_owned();

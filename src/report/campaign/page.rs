@@ -1,6 +1,6 @@
 //! A campaign to the document of its page: what falls out first, then a chapter a cask, then every recording with a link to its report.
 
-use super::series::{Pool, PooledQuantity, Series, scatter_words};
+use super::series::{DropSeries, Pool, PooledQuantity, scatter_words};
 use super::{Batch, BatchRow, MOST_ROWS, compared};
 use crate::data::{Program, Verdict};
 use crate::report::document::{Chapter, ChapterPart, Frame, PartContent, ReportDocument, Tone};
@@ -18,7 +18,7 @@ const REPEATS: &str = "Mean of the repeats that do not fall out, weighted with 1
                        stated intervals says whether it is as large as they say; where repeats share most of what is uncertain it is smaller.";
 
 /// The page.
-pub(super) fn document(batch: &Batch, series: &[Series]) -> ReportDocument {
+pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
     let count = |verdict| batch.rows.iter().filter(|row| row.verdict == verdict).count();
     let (pass, review, fail) =
         (count(Some(Verdict::Pass)), count(Some(Verdict::Review)), count(Some(Verdict::Fail)));
@@ -80,7 +80,7 @@ struct Oddity<'a> {
 }
 
 /// Points that fall out of their repeats, or lie outside both intervals of measurement and prediction.
-fn apart(series: &[Series]) -> Chapter {
+fn apart(series: &[DropSeries]) -> Chapter {
     let mut found: Vec<Oddity> = Vec::new();
     for (series, pool) in series.iter().flat_map(|series| series.pools.iter().map(move |pool| (series, pool)))
     {
@@ -122,7 +122,7 @@ fn apart(series: &[Series]) -> Chapter {
     if found.is_empty() { chapter.with(ChapterPart::text("None.")) } else { chapter.with(table) }
 }
 
-fn of_series(series: &Series, number: usize) -> Chapter {
+fn of_series(series: &DropSeries, number: usize) -> Chapter {
     let pool = |pool: &Pool| {
         let angle = pool.angle_deg.map_or_else(|| "all".to_owned(), |angle| format!("{}°", plain(angle, 4)));
         format!("{} at {angle}", quantity_words(pool.quantity))
@@ -148,11 +148,11 @@ fn of_series(series: &Series, number: usize) -> Chapter {
         .text("scatter is", word);
     Chapter::new(series.name.clone())
         .with(ChapterPart::picture(
-            &Series::name_of(number, "speed"),
+            &DropSeries::name_of(number, "speed"),
             "slap-down speed over the drop angle",
             "",
         ))
-        .with(ChapterPart::picture(&Series::name_of(number, "k"), "restitution", ""))
+        .with(ChapterPart::picture(&DropSeries::name_of(number, "k"), "restitution", ""))
         .with(repeats)
         .with(ChapterPart::note(REPEATS))
 }
@@ -177,7 +177,7 @@ fn encoded(path: &str) -> String {
         .collect()
 }
 
-fn recordings(batch: &Batch, series: &[Series]) -> Chapter {
+fn recordings(batch: &Batch, series: &[DropSeries]) -> Chapter {
     let e_n = |row: &BatchRow, quantity| {
         let member = series.iter().find_map(|series| series.member(row, quantity));
         member.and_then(|member| member.e_n).map_or_else(|| MISSING.to_owned(), |e_n| fixed(e_n, 2))

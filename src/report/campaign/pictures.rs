@@ -1,7 +1,7 @@
 //! A series to its pictures: slap-down speed on the predicted curves, measured over predicted, and k over angle, date and number.
 
 use super::BatchRow;
-use super::series::{PooledQuantity, PredictedCurve, Series, is_usable};
+use super::series::{DropSeries, PooledQuantity, PredictedCurve, is_usable};
 use crate::data::{BodyModel, Estimate};
 use crate::report::pictures::draw::{Picture, Plate};
 use crate::report::pictures::panel::{
@@ -15,7 +15,7 @@ const BESIDE_DEG: f64 = 0.16;
 
 const NOTHING: (&str, &str) = ("There is nothing to show.", "No recording of this cask gave a number.");
 
-impl Series<'_> {
+impl DropSeries<'_> {
     /// Its pictures; `number` tells their files from those of other series.
     pub(super) fn pictures(&self, number: usize) -> Vec<Picture> {
         vec![self.speeds(&Self::name_of(number, "speed")), self.ks(&Self::name_of(number, "k"))]

@@ -71,7 +71,7 @@ pub(super) struct Pool<'a> {
 }
 
 /// The drops of one cask from one height.
-pub(super) struct Series<'a> {
+pub(super) struct DropSeries<'a> {
     pub(super) name: String,
     pub(super) rows: Vec<&'a BatchRow>,
     pub(super) pools: Vec<Pool<'a>>,
@@ -106,7 +106,7 @@ struct RepeatRecord {
     falls_out: bool,
 }
 
-impl<'a> Series<'a> {
+impl<'a> DropSeries<'a> {
     /// All series, in the order in which their casks come; `predicted` gives the curves of a row's cask over these k and angles.
     pub(super) fn all(
         rows: &'a [BatchRow],
