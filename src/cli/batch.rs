@@ -102,7 +102,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         .jobs
         .map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
     let mut batch = Batch::new(plan.source.clone());
-    let progress = CountedProgress::of(own.len());
+    let mut progress = CountedProgress::of(own.len());
     keep_freed_memory();
     // What is done already is read by one thread beside the others, since the record grows meanwhile.
     let earlier = record.as_ref().map(|record| record.lines().clone()).unwrap_or_default();
@@ -127,7 +127,6 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
             Ok(())
         },
     )?;
-    progress.end();
     if let Some(record) = &mut record {
         record.finish()?;
         if let Some(out) = arguments.out.as_deref().filter(|_| plan.is_whole()) {

@@ -252,7 +252,7 @@ fn what_cannot_be_meant_is_refused_before_the_work() {
         .expect("a manifest");
     let answer = series.batch("--out @.");
     assert!(
-        answer.status == 2 && answer.stderr.contains("where a report of this campaign would go"),
+        answer.status == 2 && answer.stderr.contains("lies where a report of this campaign would go"),
         "{}",
         answer.stderr
     );

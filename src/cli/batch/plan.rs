@@ -91,27 +91,21 @@ impl CampaignPlan {
     /// Refuses a folder for the reports in which a recording would be overwritten.
     pub fn spares_recordings(&self, out: &Path) -> miette::Result<()> {
         let real = |path: &Path| std::fs::canonicalize(path).ok();
-        let Some(out) = real(out) else { return Ok(()) };
-        let folders: HashSet<&str> = self.tests.iter().map(|test| test.folder.as_str()).collect();
-        for test in &self.tests {
-            for input in [Some(&test.recording), test.cask.as_ref()].into_iter().flatten() {
-                let Some(parent) = input.parent().and_then(|parent| {
-                    real(if parent.as_os_str().is_empty() { Path::new(".") } else { parent })
-                }) else {
-                    continue;
-                };
-                let name = parent.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
-                if parent.parent() == Some(&out) && folders.contains(&*name) {
-                    return Err(miette::miette!(
-                        help = "choose another --out: no command alters its input",
-                        "{} lies in {}, where a report of this campaign would go",
-                        input.display(),
-                        parent.display()
-                    ));
-                }
-            }
+        let folders: HashSet<PathBuf> =
+            self.tests.iter().filter_map(|test| real(&out.join(&test.folder))).collect();
+        let inputs = self.tests.iter().flat_map(|test| [Some(&test.recording), test.cask.as_ref()]).flatten();
+        let is_within = |input: &&PathBuf| {
+            let parent = real(input).and_then(|input| Some(input.parent()?.to_path_buf()));
+            parent.is_some_and(|parent| folders.contains(&parent))
+        };
+        match inputs.filter(|_| !folders.is_empty()).find(is_within) {
+            None => Ok(()),
+            Some(input) => Err(miette::miette!(
+                help = "choose another --out: no command alters its input",
+                "{} lies where a report of this campaign would go",
+                input.display()
+            )),
         }
-        Ok(())
     }
 }
 

@@ -71,18 +71,10 @@ impl LineFiles {
 
     /// Hands over all lines by number.
     pub fn each(&self, mut take: impl FnMut(&[u8]) -> miette::Result<()>) -> miette::Result<()> {
-        let open = |path: &PathBuf| {
-            File::open(path).into_diagnostic().wrap_err_with(|| format!("{} cannot be read", path.display()))
-        };
-        let mut files: Vec<File> = self.files.iter().map(open).collect::<Result<_, _>>()?;
-        let mut line = Vec::new();
-        for place in self.places.values() {
-            let file = &mut files[place.file];
-            line.resize(place.length, 0);
-            let read = file.seek(SeekFrom::Start(place.from)).and_then(|_| file.read_exact(&mut line));
-            read.into_diagnostic()
-                .wrap_err_with(|| format!("{} was changed", self.files[place.file].display()))?;
-            take(&line)?;
+        for number in self.numbers() {
+            let line =
+                self.text(number).ok_or_else(|| miette::miette!("the lines were changed meanwhile"))?;
+            take(line.as_bytes())?;
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 use super::BatchRow;
 use crate::data::{BodyModel, Contact, Estimate, Verdict};
 use crate::numerics::pooled::{Pooled, ScatterWord, apart, pooled};
-use serde::Serialize;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 /// How far beyond the angles of the tests the predicted curves go, degrees.
@@ -80,32 +80,6 @@ pub(super) struct DropSeries<'a> {
     pub(super) k: Option<[f64; 2]>,
 }
 
-/// A pool as `campaign.json` has it.
-#[derive(Serialize)]
-pub(super) struct PoolRecord {
-    cask: String,
-    angle_deg: Option<f64>,
-    quantity: &'static str,
-    unit: &'static str,
-    /// Repeats that do not fall out.
-    count: usize,
-    mean: f64,
-    u95: f64,
-    scatter: Option<f64>,
-    chi_square: f64,
-    degrees: usize,
-    scatter_is: Option<&'static str>,
-    repeats: Vec<RepeatRecord>,
-}
-
-/// A repeat in it.
-#[derive(Serialize)]
-struct RepeatRecord {
-    id: String,
-    e_n: Option<f64>,
-    falls_out: bool,
-}
-
 impl<'a> DropSeries<'a> {
     /// All series, in the order in which their casks come; `predicted` gives the curves of a row's cask over these k and angles.
     pub(super) fn all(
@@ -157,26 +131,18 @@ impl<'a> DropSeries<'a> {
             .any(|quantity| self.member(row, *quantity).is_some_and(|member| member.is_out))
     }
 
-    /// The pools for `campaign.json`.
-    pub(super) fn records(&self) -> Vec<PoolRecord> {
-        let repeat = |member: &PoolMember| RepeatRecord {
-            id: member.row.id.clone(),
-            e_n: member.e_n,
-            falls_out: member.is_out,
-        };
-        let record = |pool: &Pool| PoolRecord {
-            cask: self.name.clone(),
-            angle_deg: pool.angle_deg,
-            quantity: pool.quantity.name(),
-            unit: pool.quantity.unit(),
-            count: pool.pooled.count,
-            mean: pool.pooled.mean,
-            u95: pool.pooled.u95,
-            scatter: Some(pool.pooled.scatter).filter(|scatter| scatter.is_finite()),
-            chi_square: pool.pooled.chi_square,
-            degrees: pool.pooled.count - 1,
-            scatter_is: pool.pooled.word().map(scatter_words),
-            repeats: pool.members.iter().map(repeat).collect(),
+    /// The pools as `campaign.json` has them.
+    pub(super) fn records(&self) -> Vec<Value> {
+        let repeat = |m: &PoolMember| json!({"id": m.row.id, "e_n": m.e_n, "falls_out": m.is_out});
+        let record = |pool: &Pool| {
+            let Pooled { count, mean, u95, scatter, chi_square } = pool.pooled;
+            json!({
+                "cask": self.name, "angle_deg": pool.angle_deg, "quantity": pool.quantity.name(),
+                "unit": pool.quantity.unit(), "count": count, "mean": mean, "u95": u95, "scatter": scatter,
+                "chi_square": chi_square, "degrees": count - 1,
+                "scatter_is": pool.pooled.word().map(scatter_words),
+                "repeats": pool.members.iter().map(repeat).collect::<Vec<_>>(),
+            })
         };
         self.pools.iter().map(record).collect()
     }
