@@ -71,11 +71,14 @@ function chart(box, panel, key) {
   root.tabIndex = 0;
   root.setAttribute("role", "img");
   root.setAttribute("aria-label", `${panel.title}: plus and minus zoom, arrows pan, 0 shows the whole`);
+  // The wheel is the page's until the chart was clicked or Ctrl is held.
   u.over.addEventListener("wheel", (e) => {
+    if (!e.ctrlKey && document.activeElement !== root) return;
     e.preventDefault();
     zoom(u, e.deltaY < 0 ? 0.8 : 1.25, u.posToVal(e.offsetX, "x"));
   }, { passive: false });
   u.over.addEventListener("mousedown", (e) => {
+    root.focus({ preventScroll: true });
     if (!e.shiftKey && e.button !== 1) return;
     e.preventDefault();
     e.stopImmediatePropagation();
