@@ -26,7 +26,7 @@ pub(super) fn picture(analysis: &Analysis) -> Picture {
     let filter = &analysis.result.impacts[0].rigid_body_deceleration.filter;
     let caption = format!(
         "Vertical force of the target, the stated mass times the acceleration of S through the low-pass {filter}, over how far the corner of \
-         the undeformed cask is below where it touched. The area is what the contact takes."
+         the undeformed cask is below where it touched. The area within is about what the contact takes."
     );
     Plate::new("crush", "Force over crush", caption).picture(&[panel])
 }
