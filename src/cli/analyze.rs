@@ -170,7 +170,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         match printed {
             Ok(printed) => files.extend(printed.map(|bytes| (pdf::NAME.to_owned(), bytes))),
             Err(why) => {
-                complain_softly(&format!("There is no {}: {why}. Open report.html and print it.", pdf::NAME))
+                complain_softly(&format!("There is no {}: {why}. Open report.html and print it.", pdf::NAME));
             }
         }
         folder.write(&files)?;

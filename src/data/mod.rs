@@ -59,8 +59,9 @@ pub use reconstruction::{
 pub use recording::{Recording, RecordingFormat};
 pub use signal::{CoarseEvent, MOST_LOST_M_S, Signal};
 pub use study::{
-    AngleCurve, Criterion, CriticalAngle, CriticalRange, MonteCarlo, PredictionRow, QuantileCurves, Regime,
-    RegimeMap, Sensitivity, Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
+    AngleCurve, BodyPath, Criterion, CriticalAngle, CriticalRange, MonteCarlo, Pose, PredictionRow,
+    QuantileCurves, Regime, RegimeMap, Sensitivity, Study, StudyRequest, Sweep, SweepVariable, Uncertain,
+    WorstCase,
 };
 pub use test_record::{Observed, ObservedBeside, Photo, SensorRecord, TestRecord};
 pub use tolerances::{Corrections, Tolerances};

@@ -47,7 +47,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     let (result, file) = (&analysis.result, &analysis.cask_file);
     let name = &file.cask.name;
     let mut curves = Chapter::new("Curves").only(Medium::Page);
-    for name in ["accelerations", "impacts", "velocities", "fit", "motion", "spectra"] {
+    for name in ["accelerations", "impacts", "crush", "velocities", "fit", "motion", "spectra"] {
         curves = curves.with(ChapterPart::picture(name, name, ""));
     }
     ReportDocument {

@@ -36,7 +36,7 @@ pub(super) fn accelerations(analysis: &Analysis) -> Picture {
         .find(|setting| setting.name.starts_with("low-pass"))
         .map_or_else(String::new, |setting| format!(" Filter: {}.", setting.value));
     let caption = format!(
-        "Specific force at both ends over time, offset removed: unfiltered (faint) and filtered (bold), 1 g = 9.80665 m/s². \
+        "As Fig. 12 of the paper: specific force at both ends over time, offset removed: unfiltered (faint) and filtered (bold), 1 g = 9.80665 m/s². \
          A decelerating end reads positive on its transverse axis.{filter}"
     );
     Plate::new("accelerations", "Deceleration of both ends", caption).live().picture(&panels)
@@ -107,7 +107,7 @@ pub(super) fn velocities(analysis: &Analysis) -> Picture {
         ];
         panels.push(clock.panel(analysis, "Of the rigid body", "velocity, m/s", lines));
     }
-    let caption = "Velocity over time. Above: each sensor's unfiltered signal integrated along its axis, gravity left out between \
+    let caption = "As Fig. 13 of the paper: velocity over time. Above: each sensor's unfiltered signal integrated along its axis, gravity left out between \
                    the contacts. Below: the ends of the rigid body that all channels share, up positive."
         .to_owned();
     Plate::new("velocities", "Velocity of both ends", caption).live().picture(&panels)
