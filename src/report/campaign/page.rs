@@ -1,14 +1,14 @@
 //! A campaign to the document of its page: what falls out first, then a chapter a cask, then every recording with a link to its report.
 
-use super::series::{DropSeries, Pool, PooledQuantity, scatter_words};
+use super::series::{DropSeries, Pool, PooledQuantity, RowPlace, scatter_words};
 use super::{Batch, BatchRow, MOST_ROWS, compared};
 use crate::data::{Program, Verdict};
 use crate::report::document::{Chapter, ChapterPart, Frame, PartContent, ReportDocument, Tone};
 use crate::report::json::in_a_line;
-use crate::report::rounding::{MISSING, fixed, interval, pair, percent, plain, significant};
+use crate::report::rounding::{MISSING, fixed, interval, optional_fixed, pair, percent, plain, significant};
 use crate::report::table::{ReportTable, TableCell};
 use crate::report::text::{Style, verdict_word};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// g, m/s².
 const G_M_S2: f64 = 9.806_65;
@@ -169,9 +169,11 @@ fn encoded(path: &str) -> String {
 }
 
 fn recordings(batch: &Batch, series: &[DropSeries]) -> Chapter {
-    let e_n = |row: &BatchRow, quantity| {
-        let member = series.iter().find_map(|series| series.member(row, quantity));
-        member.and_then(|member| member.e_n).map_or_else(|| MISSING.to_owned(), |e_n| fixed(e_n, 2))
+    let places: HashMap<u32, RowPlace> =
+        series.iter().flat_map(|s| s.rows.iter().map(|row| (row.at.number, s.place(row)))).collect();
+    let e_n = |row: &BatchRow, quantity: PooledQuantity| {
+        let e_n = places.get(&row.at.number).and_then(|place| place.e_n[quantity as usize]);
+        optional_fixed(e_n, 2)
     };
     let both = |values: [Option<f64>; 2], factor: f64| {
         let word = |value: Option<f64>| {
@@ -188,7 +190,8 @@ fn recordings(batch: &Batch, series: &[DropSeries]) -> Chapter {
         };
         TableCell::toned(style, word.to_lowercase())
     };
-    let table = ReportTable::of(&batch.rows)
+    let shown = &batch.rows[..batch.rows.len().min(MOST_ROWS)];
+    let table = ReportTable::of(shown)
         .class("many sortable")
         .head("test", linked)
         .text("verdict", tag)
@@ -204,9 +207,11 @@ fn recordings(batch: &Batch, series: &[DropSeries]) -> Chapter {
         .number("E_n of speed", |row| e_n(row, PooledQuantity::Speed))
         .number("peaks g", |row| both(row.at.peaks_m_s2, G_M_S2))
         .number("energies kJ", |row| both(row.at.energies_j, 1e3))
-        .text("findings", |row| row.error.clone().unwrap_or_else(|| row.codes.join(", ")))
-        .most(MOST_ROWS, MOST_ROWS, "campaign.csv has all of them");
+        .text("findings", |row| row.error.clone().unwrap_or_else(|| row.codes.join(", ")));
+    let more = (shown.len() < batch.rows.len())
+        .then(|| ChapterPart::note(format!("The first {MOST_ROWS}: campaign.csv has all of them.")));
     Chapter::new("Recordings")
+        .with_all(more)
         .with(table)
         .with(ChapterPart::note(
             "E_n against the other repeats at the angle; within ±1 they agree. Peaks: largest deceleration of the struck end of the rigid \

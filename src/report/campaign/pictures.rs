@@ -10,9 +10,6 @@ use crate::report::pictures::panel::{
 use crate::report::rounding::plain;
 use crate::report::words::contact_words;
 
-/// Repeats at one angle stand beside one another, so far apart, degrees.
-const BESIDE_DEG: f64 = 0.16;
-
 const NOTHING: (&str, &str) = ("There is nothing to show.", "No recording of this cask gave a number.");
 
 impl DropSeries<'_> {
@@ -92,16 +89,7 @@ impl DropSeries<'_> {
 
     /// The angle at which a row is drawn: its own, and a little beside its repeats.
     fn angle(&self, row: &BatchRow) -> Option<f64> {
-        let own = row.at.angle_deg?;
-        let is_repeat =
-            |other: &&&BatchRow| other.at.angle_deg.is_some_and(|angle| (angle - own).abs() < 1e-6);
-        let repeats: Vec<u32> = self.rows.iter().filter(is_repeat).map(|row| row.at.number).collect();
-        let place = repeats.iter().position(|number| *number == row.at.number).unwrap_or(0);
-        let count = |count: usize| f64::from(u32::try_from(count).unwrap_or(u32::MAX));
-        Some(
-            own + BESIDE_DEG.min(2.0 / count(repeats.len()))
-                * (count(place) - (count(repeats.len()) - 1.0) / 2.0),
-        )
+        Some(row.at.angle_deg? + self.place(row).beside_deg)
     }
 
     /// Adds the rows with their intervals.
