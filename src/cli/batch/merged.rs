@@ -42,7 +42,7 @@ pub fn all(shards: &[PathBuf]) -> miette::Result<(LineFiles, Batch)> {
                     let (path, other) = (path.display(), shards[0].display());
                     let problem =
                         format!("{path} {words} than {other} ({key} {}, there {})", own[key], first[key]);
-                    return Err(refused("merge shards of one manifest and one version only", problem));
+                    return Err(refused("merge shards of one manifest and one version only", &problem));
                 }
             }
             match homes.get_mut(number) {
@@ -93,13 +93,13 @@ fn complete(shards: &[PathBuf], homes: &[Option<usize>], lines: &LineFiles) -> m
     ))
 }
 
-fn refused(mend: &'static str, problem: String) -> miette::Report {
+fn refused(mend: &'static str, problem: &str) -> miette::Report {
     miette::miette!(help = mend, "{problem}")
 }
 
 fn cut(path: &Path, line: usize) -> miette::Report {
     let mend = "the run was stopped, or the file was not copied whole: run that shard again with --resume";
-    refused(mend, format!("{}, line {line}: no whole line of a shard", path.display()))
+    refused(mend, &format!("{}, line {line}: no whole line of a shard", path.display()))
 }
 
 fn doubled(path: &Path, other: &Path, line: &Value) -> miette::Report {
@@ -107,5 +107,5 @@ fn doubled(path: &Path, other: &Path, line: &Value) -> miette::Report {
     let (path, other) = (path.display(), other.display());
     let problem =
         format!("{path} repeats {id} of shard {}/{}, which is in {other} already", shard[0], shard[1]);
-    refused("name each shard once", problem)
+    refused("name each shard once", &problem)
 }
