@@ -1,7 +1,9 @@
 //! Finished bytes to files, whole or not at all, and to standard output; checked before the work begins.
 
 use super::place;
-use super::replace::{OWN_PREFIX, Stopped, parent_of, replace_set, staging_in, sync_folder, write_whole};
+use super::replace::{
+    OWN_PREFIX, Stopped, parent_of, replace_set, staged_beside, staging_in, sync_folder, write_whole,
+};
 use dropcheck::report::ReportError;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Write};
@@ -187,6 +189,21 @@ fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     write_whole(&staged, bytes)?;
     fs::rename(&staged, path)?;
     sync_folder(parent)
+}
+
+/// As [`replace`], by a function that writes piece by piece: what is large is never whole in memory.
+pub fn replace_by(
+    path: &Path,
+    write: impl FnOnce(&mut dyn FnMut(&[u8]) -> miette::Result<()>) -> miette::Result<()>,
+) -> miette::Result<()> {
+    let failed = |source: io::Error| CannotWrite::Failed { path: shown(path), source: bare(&source) };
+    let (staged, file) = staged_beside(path).map_err(failed)?;
+    let mut writer = io::BufWriter::new(file);
+    write(&mut |bytes| Ok(writer.write_all(bytes).map_err(failed)?))?;
+    let written = writer.into_inner().map_err(io::IntoInnerError::into_error);
+    written.and_then(|file| file.sync_all()).map_err(failed)?;
+    fs::rename(&staged, path).and_then(|()| sync_folder(parent_of(path))).map_err(failed)?;
+    Ok(())
 }
 
 /// Writes to standard output with colours where a terminal shows them; a reader that left early is no error.

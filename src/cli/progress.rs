@@ -1,7 +1,9 @@
 //! Long work to a bar on standard error, where that is a terminal.
 
 use dropcheck::ingest::Progress;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use std::io::{IsTerminal, Write};
+use std::time::{Duration, Instant};
 
 /// Parts of the bar; finer than a terminal shows.
 const PARTS: u32 = 1000;
@@ -23,4 +25,44 @@ pub fn with_progress<T>(what: &str, work: impl FnOnce(Progress) -> T) -> T {
     });
     bar.finish_and_clear();
     done
+}
+
+/// So often a line of a log says how far the work is.
+const EACH: Duration = Duration::from_secs(10);
+
+/// "12 of 60, 3 minutes left" on standard error: a bar on a terminal, a line now and then in a log.
+pub struct CountedProgress {
+    bar: ProgressBar,
+    told: Instant,
+}
+
+impl CountedProgress {
+    /// Of so many steps.
+    pub fn of(count: usize) -> Self {
+        let bar = ProgressBar::new(count as u64);
+        if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left") {
+            bar.set_style(style);
+        }
+        Self { bar, told: Instant::now() }
+    }
+
+    /// One more is done.
+    pub fn step(&mut self) {
+        self.bar.inc(1);
+        let (done, all) = (self.bar.position(), self.bar.length().unwrap_or_default());
+        if !std::io::stderr().is_terminal() && (done == all || self.told.elapsed() >= EACH) {
+            self.told = Instant::now();
+            let left = HumanDuration(self.bar.elapsed().div_f64(as_f64(done)).mul_f64(as_f64(all - done)));
+            // There is no one left to tell where standard error is closed.
+            let _ = writeln!(anstream::stderr(), "{done} of {all}, {left} left");
+        }
+        if done == all {
+            self.bar.finish_and_clear();
+        }
+    }
+}
+
+#[allow(clippy::cast_precision_loss, reason = "counts of recordings")]
+fn as_f64(count: u64) -> f64 {
+    count as f64
 }
