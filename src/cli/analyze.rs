@@ -8,7 +8,7 @@ use super::progress::with_progress;
 use super::record::{self, EarlierResult};
 use super::tuning::{awake, keep_freed_memory};
 use clap::{Args, ValueEnum};
-use dropcheck::data::{CaskFile, DropResult, RecordingFormat, Setting};
+use dropcheck::data::{Analysis, CaskFile, DropResult, HeldSamples, RecordingFormat, Setting};
 use dropcheck::{ingest, report};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -118,6 +118,28 @@ fn complain_softly(sentence: &str) {
     let _ = writeln!(anstream::stderr(), "{}", report::printable(sentence));
 }
 
+/// What the words ask for, of samples in memory where there are any; written nowhere, and its words and date not yet stated.
+pub fn analysis(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::Result<Analysis> {
+    let mut cask_file = ingest::cask_file(arguments.cask.as_deref().unwrap_or(Path::new("")))?;
+    arguments.switched_off.in_cask_file(&mut cask_file);
+    let limits = arguments.bounds.limits();
+    let recording = match held {
+        Some(held) => ingest::read_arrays(held, &cask_file)?,
+        None => ingest::read_within(&arguments.recording, &cask_file, limits, &|_| ())?,
+    };
+    let mut analysis = dropcheck::analyze(&recording, &cask_file);
+    arguments.switched_off.in_settings(&mut analysis.result);
+    Ok(analysis)
+}
+
+/// Writes the report of an analysis into `folder`, as `--out` does.
+pub fn write(analysis: &Analysis, folder: &Path) -> miette::Result<()> {
+    let input = &analysis.result.input;
+    let inputs = [Path::new(&input.recording), Path::new(&input.cask)];
+    let folder = Folder::checked(folder, &report::FILE_NAMES, &inputs)?;
+    Ok(folder.write(&report::files(analysis)?)?)
+}
+
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let inputs = [Some(&arguments.recording), arguments.cask.as_ref(), arguments.from.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
@@ -140,7 +162,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         match ingest::format(&arguments.recording)? {
             // Its chunks are taken in waves, which end in what one thread does alone; the other formats keep all threads at work.
             RecordingFormat::Mcap => awake(read),
-            RecordingFormat::Hdf5 | RecordingFormat::Csv => read(),
+            RecordingFormat::Hdf5 | RecordingFormat::Csv | RecordingFormat::Samples => read(),
         }
     })?;
     keep_freed_memory();

@@ -4,7 +4,9 @@ use dropcheck::data::{CaskFile, DropResult, Program, Recording};
 use dropcheck::{ingest, report};
 use miette::{IntoDiagnostic, WrapErr};
 use serde_json::Value;
+use std::ffi::OsString;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 /// Lines on what differs, at most.
 const MOST_LINES: usize = 20;
@@ -15,10 +17,25 @@ pub struct EarlierResult {
     name: String,
 }
 
+/// The words behind the program's name. Under an interpreter they are not those of the process.
+static WORDS: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Takes down the words of the command that runs.
+pub fn begin(words: &[OsString]) {
+    let words = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    *WORDS.lock().unwrap_or_else(PoisonError::into_inner) = words;
+}
+
 /// Writes down which program ran, with which words and when; `SOURCE_DATE_EPOCH` stands for now where it is set.
 pub fn stamp(result: &mut DropResult) -> miette::Result<()> {
+    let words = WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    stamp_with(result, words)
+}
+
+/// As [`stamp`], with the words of a command that would make the same result; none where there is none.
+pub fn stamp_with(result: &mut DropResult, words: Vec<String>) -> miette::Result<()> {
     result.program = Some(Program::this());
-    result.command = std::env::args().skip(1).collect();
+    result.command = words;
     let now = match std::env::var("SOURCE_DATE_EPOCH") {
         Ok(seconds) => {
             let words = || format!("SOURCE_DATE_EPOCH is \"{seconds}\", not a number of seconds since 1970");
