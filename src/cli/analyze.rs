@@ -133,6 +133,9 @@ pub fn analysis(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::
 }
 
 /// Writes the report of an analysis into `folder`, as `--out` does.
+///
+/// # Errors
+/// As the command: the folder is another program's, or cannot be written.
 pub fn write(analysis: &Analysis, folder: &Path) -> miette::Result<()> {
     let input = &analysis.result.input;
     let inputs = [Path::new(&input.recording), Path::new(&input.cask)];
@@ -186,7 +189,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         match printed {
             Ok(printed) => files.extend(printed.map(|bytes| (pdf::NAME.to_owned(), bytes))),
             Err(why) => {
-                complain_softly(&format!("There is no {}: {why}. Open report.html and print it.", pdf::NAME))
+                complain_softly(&format!("There is no {}: {why}. Open report.html and print it.", pdf::NAME));
             }
         }
         folder.write(&files)?;

@@ -27,6 +27,7 @@ fn drawn(report: &Report) -> String {
 }
 
 /// What [`complain`] prints where there is no terminal, for another program to show.
+#[must_use]
 pub fn message(report: &Report) -> String {
     in_lines(&told(report))
 }

@@ -102,6 +102,7 @@ impl From<Verdict> for Ending {
 }
 
 /// Runs the command that the words behind the program's name are, and returns its exit status.
+#[must_use]
 pub fn main(words: &[OsString]) -> u8 {
     let named = std::iter::once("dropcheck".into()).chain(words.iter().cloned());
     let ended = CommandLine::try_parse_from(named).map(|line| {

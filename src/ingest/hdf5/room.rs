@@ -227,19 +227,19 @@ impl Link {
             Some(ProcessEnd::With(status)) if status.code().is_some_and(|code| code != 0) => {
                 unstarted(&io::Error::other(format!("{status}")))
             }
-            ended => Self::fault(ended),
+            ended => Self::fault(ended.as_ref()),
         }
     }
 
     /// Ends the process and says why it could not go on.
     fn end(&mut self) -> Fault {
-        Self::fault(self.process.take().map(Watched::end))
+        Self::fault(self.process.take().map(Watched::end).as_ref())
     }
 
-    fn fault(ended: Option<ProcessEnd>) -> Fault {
+    fn fault(ended: Option<&ProcessEnd>) -> Fault {
         let problem = match ended {
             Some(ProcessEnd::Silent) => format!("gave no sign of life for {} s", PATIENCE.as_secs()),
-            Some(ProcessEnd::With(status)) => ending(status),
+            Some(ProcessEnd::With(status)) => ending(*status),
             Some(ProcessEnd::ByReader) | None => "gave no answer that can be read".into(),
         };
         Fault::new(

@@ -38,7 +38,9 @@ fn of_line(line: &Curve, from: f64, column: f64) -> Value {
         if let Some((begins, _)) = run.first().filter(|_| i > 0) {
             put(begins - 0.5, Value::Null);
         }
-        run.iter().for_each(|p| put(p.0, json!(to_digits(p.1, 4))));
+        for p in run {
+            put(p.0, json!(to_digits(p.1, 4)));
+        }
     }
     let pieces = line.dash.pieces();
     json!({

@@ -86,7 +86,7 @@ pub(super) fn picture(file: &CaskFile) -> Picture {
 
 /// One sensor: its place, its positive direction, its name; `before` others stand beside it.
 fn sensor(svg: &mut Svg, place: &OnCask, spec: &ChannelSpec, section_m: f64, before: usize) {
-    let colour = COLOURS[if spec.axis == Axis::Transverse { 0 } else { 1 }];
+    let colour = COLOURS[usize::from(spec.axis != Axis::Transverse)];
     let at = place.of(spec.position_m, section_m / 2.0 + spec.offset_m);
     let direction = match spec.axis {
         Axis::Transverse => (0.0, spec.polarity),

@@ -11,11 +11,10 @@ Samples of any other reader come as arrays, named as the cask file names its sou
 
     from nptdms import TdmsFile
 
-    group = TdmsFile.read("drop.tdms")["daq"]
-    result = dropcheck.analyze(
-        {c.name: dropcheck.Samples(c[:], rate_hz=1 / c.properties["wf_increment"], unit="g") for c in group.channels()},
-        "cask.toml",
-    )
+    channels = TdmsFile.read("drop.tdms")["daq"].channels()
+    rate_hz = 1 / channels[0].properties["wf_increment"]
+    held = {channel.name: dropcheck.Samples(channel[:], rate_hz=rate_hz, unit="g") for channel in channels}
+    result = dropcheck.analyze(held, "cask.toml")
 
 Whatever is at fault with a file or its content raises `dropcheck.Error` with the one message of the command.
 """
@@ -128,10 +127,10 @@ def predict(
     draws: int | None = None,
     seed: int | None = None,
 ) -> Answer:
-    """Predicts the slap-down by the analytical model: `.predictions`, and the critical angles with what uncertainty makes of them.
+    """Predicts the slap-down by the analytical model: `.predictions`, and what else `predict --json` says.
 
-    Without `k` and `contact` ("rough", "smooth" or a Coulomb coefficient) the four borderline cases; `sweep` is "5:45:5" or
-    "k=0:1:0.1", or several of them. The cask file needs no channel.
+    Without `k` and `contact` ("rough", "smooth" or a Coulomb coefficient) the four borderline cases; `sweep` is "5:45:5"
+    or "k=0:1:0.1", or several of them. The cask file needs no channel.
     """
     words = ["predict", "--cask", _path(cask), "--json", "-"]
     numbers = {"angle": angle_deg, "k": k, "duration": duration_s, "draws": draws, "seed": seed}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -64,7 +65,10 @@ class Quantity(Record):
     unit: str
 
     def __repr__(self) -> str:
-        return f"{self.value:.6g} ± {self.u95:.2g} {self.unit}"
+        # Two digits of the interval.
+        digits = max(0, 1 - math.floor(math.log10(self.u95))) if self.u95 > 0 else 6
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return f"{self.value:.{digits}f} ± {self.u95:.{digits}f}{unit}"
 
 
 class FirstImpact(Record):
@@ -197,7 +201,7 @@ class Result(Answer):
 
     @property
     def motion(self) -> dict[str, NDArray[np.float64]]:
-        """The motion of the rigid body as in curves.csv, such as `angle_rad` over `time_s`; empty where it could not be had."""
+        """The motion of the rigid body by the names of curves.csv, such as `angle_rad` over `time_s`; empty where there is none."""
         return dict(self._analysis.motion())
 
     def curves_frame(self) -> pandas.DataFrame:
