@@ -30,7 +30,7 @@ const RATIO: usize = 14;
 /// Numbers that follow the course of the force, not only what it gives in all.
 const OF_COURSE: [usize; 4] = [CRUSH, FORCE, AT_COG, AT_END];
 /// Standard uncertainty of these: so much of what other courses make of them, and of themselves for ringing as large as the velocity gained. With
-/// it the intervals hold 93 to 97 of 100 simulated drops (docs/uncertainty.md).
+/// it the intervals of 200 simulated drops hold what docs/uncertainty.md says.
 const OTHER_COURSES: [(ForceCourse, f64); 2] =
     [(ForceCourse::Translation, 0.25), (ForceCourse::HalfSine, 0.35)];
 const RINGING_SHARE: f64 = 0.07;
