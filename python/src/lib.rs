@@ -92,9 +92,10 @@ impl Analysed {
     /// The motion of the rigid body, array by array as in `curves.csv`.
     fn motion<'py>(&self, py: Python<'py>) -> Vec<(&'static str, Array<'py>)> {
         let Some(motion) = &self.0.curves.motion else { return Vec::new() };
+        let angle_deg = motion.angle_rad.iter().map(|angle| angle.to_degrees()).collect();
         let arrays = [
             ("time_s", &motion.time_s),
-            ("angle_rad", &motion.angle_rad),
+            ("angle_deg", &angle_deg),
             ("angular_velocity_rad_s", &motion.angular_velocity_rad_s),
             ("vertical_velocity_first_m_s", &motion.first_end_vertical_m_s),
             ("vertical_velocity_second_m_s", &motion.second_end_vertical_m_s),

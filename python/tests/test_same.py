@@ -53,8 +53,8 @@ def test_curves_are_arrays() -> None:
     assert np.array_equal(table.loc["A1"]["raw_m_s2"], curves["A1"])
     assert np.array_equal(result.to_xarray()["A1.velocity_m_s"], curves["A1.velocity_m_s"])
     motion = result.motion
-    assert motion["angle_rad"].shape == motion["time_s"].shape
-    assert np.degrees(motion["angle_rad"][0]) == pytest.approx(15, abs=1)
+    assert motion["angle_deg"].shape == motion["time_s"].shape
+    assert motion["angle_deg"][0] == pytest.approx(15, abs=1)
 
 
 def test_a_report_is_that_of_the_command(tmp_path: Path, command: Command) -> None:

@@ -57,8 +57,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             version: result.version.to_owned(),
             heading: format!("{name}: slap-down drop test"),
             about: result.input.recording.clone(),
-            footer: "An interval holds the value with 95 % probability. Times count from the recording's first sample unless an axis says \
-                     otherwise. Body axes: axial from the first end to the second, transverse away from the target.",
+            footer: "An interval holds the value with 95 % probability. Times count from the recording's first sample. Body axes: axial from the first end to the second, transverse away from the target.",
             style: "",
             ..Frame::default()
         },

@@ -201,7 +201,7 @@ class Result(Answer):
 
     @property
     def motion(self) -> dict[str, NDArray[np.float64]]:
-        """The motion of the rigid body by the names of curves.csv, such as `angle_rad` over `time_s`; empty where there is none."""
+        """The motion of the rigid body by the names of curves.csv, such as `angle_deg` over `time_s`; empty where there is none."""
         return dict(self._analysis.motion())
 
     def curves_frame(self) -> pandas.DataFrame:
