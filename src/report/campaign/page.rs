@@ -26,12 +26,10 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
     let angles =
         series.iter().flat_map(|series| &series.pools).filter_map(|pool| pool.angle_deg.map(f64::to_bits));
     let angles = angles.collect::<BTreeSet<u64>>().len();
-    let worst = if fail + failed > 0 {
-        Style::Red
-    } else if review > 0 {
-        Style::Yellow
-    } else {
-        Style::Green
+    let worst = match (fail + failed, review) {
+        (0, 0) => Style::Green,
+        (0, _) => Style::Yellow,
+        _ => Style::Red,
     };
     let banner = Tone(worst, format!("{pass} of {}", batch.rows.len()));
     let words =
@@ -89,18 +87,11 @@ fn apart(series: &[DropSeries]) -> Chapter {
             let (name, own) =
                 (quantity_words(pool.quantity), interval(pool.quantity.of(member.row).as_ref()));
             let place = format!("{} at {}°", series.name, plain(pool.angle_deg.unwrap_or_default(), 4));
-            let why = if pool.members.len() == 2 {
-                format!(
-                    "{name} {own}: the two repeats of {place} contradict each other, E_n = {}",
-                    fixed(e_n, 1)
-                )
-            } else {
-                format!(
-                    "{name} {own} falls out of the {} other repeats of {place}, E_n = {}",
-                    pool.members.len() - 1,
-                    fixed(e_n, 1)
-                )
+            let against = match pool.members.len() {
+                2 => "contradicts the other repeat".to_owned(),
+                count => format!("falls out of the {} other repeats", count - 1),
             };
+            let why = format!("{name} {own} {against} of {place}, E_n = {}", fixed(e_n, 1));
             found.push(Oddity { row: member.row, size: e_n.abs(), why });
         }
     }
