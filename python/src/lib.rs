@@ -144,7 +144,7 @@ fn analyze(py: Python, words: Vec<OsString>, given: Option<Vec<(String, Given)>>
 
 /// The JSON of `predict`.
 #[pyfunction]
-fn predict<'py>(py: Python<'py>, words: Vec<OsString>) -> PyResult<Bound<'py, PyBytes>> {
+fn predict(py: Python<'_>, words: Vec<OsString>) -> PyResult<Bound<'_, PyBytes>> {
     apart(py, || command::prediction(&words)).map(|json| PyBytes::new(py, &json))
 }
 

@@ -26,7 +26,7 @@ fn drawn(report: &Report) -> String {
     }
 }
 
-/// What [`complain`] prints where there is no terminal, for another program to show.
+/// The complaint as it is printed where there is no terminal, for another program to show.
 #[must_use]
 pub fn message(report: &Report) -> String {
     in_lines(&told(report))
