@@ -86,6 +86,12 @@ impl SwitchedOff {
         Self { without: without.collect() }
     }
 
+    /// Their keys.
+    pub fn words(&self) -> Vec<String> {
+        let values = self.without.iter().filter_map(Correction::to_possible_value);
+        values.map(|value| value.get_name().to_owned()).collect()
+    }
+
     /// Switches them off before the analysis.
     pub fn in_cask_file(&self, cask_file: &mut CaskFile) {
         let made = &mut cask_file.corrections;
@@ -146,7 +152,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     keep_freed_memory();
     let mut analysis = awake(|| dropcheck::analyze(&recording, &cask_file));
     switched_off.in_settings(&mut analysis.result);
-    record::stamp(&mut analysis.result)?;
+    record::stamp(&mut analysis.result, std::env::args().skip(1).collect())?;
     let mut compared = String::new();
     if let Some(earlier) = &earlier {
         earlier.repeat(&recording, &mut analysis.result);

@@ -1,175 +1,278 @@
-//! `batch`: a campaign of recordings with one cask file to one table; a recording that fails does not stop the others.
+//! `batch`: a campaign of recordings to a report each, a line each, and one picture of all; one that fails does not stop the others.
 
+mod campaign;
+mod manifest;
+mod merged;
+mod paths;
+mod plan;
+mod record;
+mod work;
+
+pub use manifest::template;
+pub use plan::SHARD_SCHEMA;
+
+use super::Ending;
 use super::analyze::SwitchedOff;
 use super::complaint::sentence;
 use super::limits::Bounds;
-use super::output::{Folder, columns, print};
-use super::progress::with_progress;
-use super::record;
-use super::{Ending, output::CannotWrite};
+use super::output::{Folder, columns, print, print_plain};
+use super::progress::CountedProgress;
+use super::record::stamp;
+use super::tuning::keep_freed_memory;
 use clap::Args;
-use dropcheck::data::CaskFile;
-use dropcheck::report::{Batch, BatchRow};
+use dropcheck::data::DropResult;
+use dropcheck::report::Batch;
 use dropcheck::{ingest, report};
-use std::io::{Read, Write};
+use plan::{Plan, PlannedTest};
+use record::Record;
+use serde_json::{Value, json};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
-/// What a file of a folder is named where it is taken for a recording.
-const RECORDING_ENDINGS: [&str; 5] = ["mcap", "h5", "hdf5", "hdf", "csv"];
+const AFTER_HELP: &str = "\
+A NAME.toml beside NAME.mcap goes before --cask. A manifest is a CSV with the columns recording, cask and id;
+columns named like a key of the cask file (drop.angle_deg, channel.A1.polarity) override it, others are carried along.
 
-/// What the campaign's folder holds beside the reports.
-const SUMMARY: [&str; 2] = ["campaign.json", "campaign.csv"];
+Examples:
+  dropcheck batch tests/*.mcap --cask cask.toml --out campaign
+  dropcheck init tests > runs.csv
+  dropcheck batch --manifest runs.csv --out campaign --resume
+  dropcheck batch --manifest runs.csv --shard 0/3 --jsonl shard-0.jsonl
+  dropcheck merge shard-*.jsonl --out campaign";
 
 #[derive(Args)]
-#[command(after_help = "Example:\n  dropcheck batch tests/*.mcap --cask cask.toml --out campaign")]
+#[command(after_help = AFTER_HELP)]
 pub struct Arguments {
-    /// Recordings, each counted once; of a folder every .mcap, .h5, .hdf5, .hdf and .csv file in it
-    #[arg(required = true, value_name = "PATHS")]
+    /// Recordings, folders of them, and patterns; each counted once
+    #[arg(required_unless_present = "manifest", conflicts_with = "manifest", value_name = "PATHS")]
     paths: Vec<PathBuf>,
-    /// The cask file (TOML) of all of them
+    /// A table (CSV) of the recordings with their cask files; paths in it are relative to it
+    #[arg(short, long, value_name = "FILE")]
+    manifest: Option<PathBuf>,
+    /// The cask file (TOML) of those that have none of their own
     #[arg(short, long)]
-    cask: PathBuf,
-    /// Folder for campaign.csv, campaign.json and one report a recording
+    cask: Option<PathBuf>,
+    /// Folder for campaign.html, campaign.csv, campaign.json and one report a recording
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// One line a recording: its result, or {"id", "exit", "error"}; with - to standard output, and nothing else there
+    #[arg(long, value_name = "FILE|-")]
+    jsonl: Option<PathBuf>,
+    /// Only each N-th recording from number I on, from 0; `dropcheck merge` puts the parts together
+    #[arg(long, value_name = "I/N", value_parser = shard, default_value = "0/1", hide_default_value = true)]
+    shard: (usize, usize),
+    /// Go on with what an earlier run of the same words has left: what is done is not done again
+    #[arg(long)]
+    resume: bool,
+    /// Recordings at a time, each on one core [default: all cores]
+    #[arg(short = 'J', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Exit status 0 also where results want a look; 2 stays for what could not be analysed
+    #[arg(long)]
+    exit_zero: bool,
     #[command(flatten)]
     switched_off: SwitchedOff,
     #[command(flatten)]
     bounds: Bounds,
 }
 
+fn shard(text: &str) -> Result<(usize, usize), String> {
+    let parts =
+        text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
+    parts
+        .filter(|(i, n)| i < n)
+        .ok_or_else(|| "I/N with I from 0 to N - 1, such as 0/3, 1/3 and 2/3".to_owned())
+}
+
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
-    let recordings = recordings(&arguments.paths)?;
-    let mut inputs: Vec<&Path> = recordings.iter().map(PathBuf::as_path).collect();
-    inputs.push(&arguments.cask);
-    let folders = match &arguments.out {
-        Some(out) => {
-            let summary = Folder::checked(out, &SUMMARY, &inputs)?;
-            Some((summary, report_folders(out, &recordings, &inputs)?))
+    let plan = Plan::of(arguments)?;
+    let inputs: Vec<&Path> = arguments.manifest.iter().chain(&arguments.cask).map(PathBuf::as_path).collect();
+    if let Some(out) = &arguments.out {
+        Folder::checked(out, &plan::SUMMARY[..3], &inputs)?;
+        plan.spares_recordings(out)?;
+    }
+    let mut record = open_record(arguments, &plan, &inputs)?;
+    let to_standard_output = arguments.jsonl.as_deref() == Some(Path::new("-"));
+    let own = plan.own();
+    let jobs = arguments
+        .jobs
+        .map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
+    let mut batch = Batch::new(plan.source.clone());
+    let progress = CountedProgress::of(own.len());
+    keep_freed_memory();
+    // What is done already is read by one thread beside the others, since the record grows meanwhile.
+    let earlier = record.as_ref().map(|record| record.lines().clone()).unwrap_or_default();
+    work::each(
+        &own,
+        jobs,
+        |number| {
+            let test = &plan.tests[number];
+            let kept = earlier.text(number).filter(|line| is_done(line, test, arguments));
+            let is_new = kept.is_none();
+            MadeLine { text: kept.unwrap_or_else(|| line(&plan, number, arguments)), is_new }
+        },
+        |number, MadeLine { text, is_new }| {
+            if let Some(record) = record.as_mut().filter(|_| is_new) {
+                record.put(number, text.as_bytes())?;
+            }
+            if to_standard_output {
+                print_plain(text.as_bytes())?;
+            }
+            batch.add(&serde_json::from_str(&text).unwrap_or_default());
+            progress.step();
+            Ok(())
+        },
+    )?;
+    progress.end();
+    if let Some(record) = &mut record {
+        record.finish()?;
+        if let Some(out) = arguments.out.as_deref().filter(|_| plan.is_whole()) {
+            campaign::write(out, &batch, record.lines(), &inputs)?;
         }
-        None => None,
-    };
-    let mut cask_file = ingest::cask_file(&arguments.cask)?;
-    arguments.switched_off.in_cask_file(&mut cask_file);
-    if let Some(first) = recordings.first() {
-        ingest::cask_file::require_channels(&cask_file, first)?;
     }
-    let mut rows = Vec::with_capacity(recordings.len());
-    for (i, path) in recordings.iter().enumerate() {
-        let folder = folders.as_ref().and_then(|(_, folders)| folders.get(i));
-        let failed = |complaint| BatchRow::failed(path.display().to_string(), sentence(&complaint));
-        rows.push(analysed(path, &cask_file, arguments, folder).unwrap_or_else(failed));
+    if !to_standard_output {
+        print(&batch.table(columns()))?;
+        tell(arguments, &plan)?;
     }
-    let campaign = Batch::new(arguments.cask.display().to_string(), rows);
-    if let Some((summary, _)) = &folders {
-        summary
-            .write(&[(SUMMARY[0].to_owned(), campaign.json()?), (SUMMARY[1].to_owned(), campaign.csv()?)])?;
-    }
-    print(&campaign.table(columns()))?;
-    let outcome = |row: &BatchRow| row.verdict.map_or(Ending::NotDone, Ending::from);
-    Ok(campaign.recordings.iter().map(outcome).max().unwrap_or(Ending::Clear))
+    Ok(campaign::ending(&batch).or_zero(arguments.exit_zero))
 }
 
-fn analysed(
-    path: &Path,
-    cask_file: &CaskFile,
-    arguments: &Arguments,
-    folder: Option<&(String, Folder)>,
-) -> miette::Result<BatchRow> {
-    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    let limits = arguments.bounds.limits();
-    let recording = with_progress(&name, |progress| ingest::read_within(path, cask_file, limits, progress))?;
-    let mut analysis = dropcheck::analyze(&recording, cask_file);
-    arguments.switched_off.in_settings(&mut analysis.result);
-    record::stamp(&mut analysis.result)?;
-    let mut row = BatchRow::of(&analysis.result);
-    if let Some((name, folder)) = folder {
-        folder.write(&report::files(&analysis)?)?;
-        row.report = Some(format!("{name}/report.html"));
+/// Where the files are.
+fn tell(arguments: &Arguments, plan: &Plan) -> miette::Result<()> {
+    match &arguments.out {
+        Some(out) if plan.is_whole() => {
+            let page = out.join("campaign.html").display().to_string();
+            Ok(print(&format!("\nCampaign: {}\n", report::printable(&page)))?)
+        }
+        _ if !plan.is_whole() => Ok(print(&format!(
+            "\nShard {}/{}: {} of {} recordings; `dropcheck merge` makes the campaign of all shards.\n",
+            plan.shard.0,
+            plan.shard.1,
+            plan.own().len(),
+            plan.tests.len()
+        ))?),
+        _ => Ok(()),
     }
-    Ok(row)
 }
 
-/// The recordings, folders replaced by the files in them, by name.
-fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
-    let mut recordings = Vec::new();
-    for path in paths {
-        if !path.is_dir() {
-            recordings.push(path.clone());
-            continue;
+/// A line that was made, or that an earlier run has made.
+struct MadeLine {
+    text: String,
+    is_new: bool,
+}
+
+/// The file that holds the lines: that of `--jsonl`, else one in `--out`.
+fn open_record(arguments: &Arguments, plan: &Plan, inputs: &[&Path]) -> miette::Result<Option<Record>> {
+    let of_jsonl = arguments.jsonl.clone().filter(|path| path != Path::new("-"));
+    let path = match (of_jsonl, &arguments.out) {
+        (Some(path), _) => path,
+        (None, Some(out)) => {
+            let made = std::fs::create_dir_all(out);
+            made.map_err(|source| miette::miette!("{} cannot be made: {source}", out.display()))?;
+            out.join(plan.record_name())
         }
-        let entries = std::fs::read_dir(path)
-            .map_err(|source| miette::miette!("the folder {} cannot be read: {source}", path.display()))?;
-        let mut files: Vec<PathBuf> =
-            entries.filter_map(|entry| entry.ok().map(|e| e.path())).filter(|p| p.is_file()).collect();
-        files.sort();
-        let (found, others): (Vec<PathBuf>, Vec<PathBuf>) =
-            files.into_iter().filter(|p| !is_summary(p)).partition(|p| has_ending(p));
-        tell_left_out(path, &others);
-        if found.is_empty() {
+        (None, None) if arguments.resume => {
             return Err(miette::miette!(
-                help = "name the recordings themselves: their content, not their name, tells the format",
-                "the folder {} holds no .mcap, .h5, .hdf5, .hdf or .csv file",
-                path.display()
+                help = "name the --out or the --jsonl FILE of the run that is to go on",
+                "--resume does not know what is done"
             ));
         }
-        recordings.extend(found);
-    }
-    // One named twice, or once by itself and once by its folder, is one test all the same.
-    let mut seen = std::collections::HashSet::new();
-    recordings.retain(|path| std::fs::canonicalize(path).map_or(true, |real| seen.insert(real)));
-    Ok(recordings)
+        (None, None) => return Ok(None),
+    };
+    let own = plan.own();
+    let is_own = |line: &Value| {
+        let number = usize::try_from(line["campaign"]["number"].as_u64()?).ok()?;
+        own.binary_search(&number).ok()?;
+        let place: Value = serde_json::from_str(&plan.place(number)).ok()?;
+        (line["campaign"] == place).then_some(number)
+    };
+    Record::open(&path, arguments.resume, inputs, is_own).map(Some)
 }
 
-fn has_ending(path: &Path) -> bool {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    ending.is_some_and(|ending| RECORDING_ENDINGS.contains(&ending.as_str()))
+/// Whether an earlier line says what this run would find: the same bytes went in, and its report is there.
+fn is_done(line: &str, test: &PlannedTest, arguments: &Arguments) -> bool {
+    let Some(cask) = &test.cask else { return false };
+    let line: Value = serde_json::from_str(line).unwrap_or_default();
+    let input = &line["input"];
+    let is_there = || {
+        arguments.out.as_ref().is_none_or(|out| out.join(&test.folder).join(report::FILE_NAMES[0]).is_file())
+    };
+    let cask_sha256 = || ingest::cask_file::with_columns(cask, &test.stated).ok().map(|file| file.sha256);
+    let recording_sha256 = || ingest::sha256(&test.recording).ok();
+    line["verdict"].is_string()
+        && is_there()
+        && cask_sha256().is_some_and(|own| input["cask_sha256"] == own)
+        && recording_sha256().is_some_and(|own| input["recording_sha256"] == own)
 }
 
-/// Says on standard error which files of a folder were not taken for recordings, by their endings; cask files and truths lie beside them.
-fn tell_left_out(folder: &Path, others: &[PathBuf]) {
-    let endings = others.iter().filter_map(|path| path.extension()?.to_str());
-    let mut endings: Vec<&str> = endings.filter(|ending| !["toml", "json"].contains(ending)).collect();
-    endings.sort_unstable();
-    endings.dedup();
-    if !endings.is_empty() {
-        let (folder, endings) = (folder.display().to_string(), endings.join(", ."));
-        let words = format!(
-            "files of {folder} that end in .{endings} were left out; name a recording among them itself"
-        );
-        // There is no one left to tell where standard error is closed.
-        let _ = writeln!(anstream::stderr(), "note: {}", report::printable(&words));
-    }
-}
-
-/// Whether a file is the table of an earlier campaign; a recording may have its name.
-fn is_summary(path: &Path) -> bool {
-    let mut head = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| file.take(256).read_to_end(&mut head));
-    read.is_ok() && Batch::begins(&head)
-}
-
-/// A folder a recording, named by its stem; a second one of the same stem gets a number.
-fn report_folders(
-    out: &Path,
-    recordings: &[PathBuf],
-    inputs: &[&Path],
-) -> Result<Vec<(String, Folder)>, CannotWrite> {
-    let mut folders: Vec<(String, Folder)> = Vec::new();
-    for path in recordings {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        // "...csv" has the stem "..", which is a way out of the folder and no name.
-        let stem = if stem.trim_matches('.').is_empty() { "recording".to_owned() } else { stem };
-        let mut name = stem.clone();
-        let mut number = 2;
-        while SUMMARY.contains(&name.as_str()) || folders.iter().any(|(taken, _)| *taken == name) {
-            name = format!("{stem}-{number}");
-            number += 1;
+/// The line of one test: its result, or why there is none.
+fn line(plan: &Plan, number: usize, arguments: &Arguments) -> String {
+    let test = &plan.tests[number];
+    let head = format!("{{\"campaign\":{},\"id\":{},", plan.place(number), json!(test.id));
+    // A fault of the program costs a row too.
+    let made = catch_unwind(AssertUnwindSafe(|| analysed(plan, test, arguments)));
+    let made = made.unwrap_or_else(|_| {
+        Err(miette::miette!("{}: the program has a fault here; please report it", test.shown))
+    });
+    match made.and_then(|result| Ok(report::in_a_line(&result)?)) {
+        Ok(result) => format!("{head}{}\n", &result[1..]),
+        Err(complaint) => {
+            let failed = json!({"exit": 2, "error": sentence(&complaint)});
+            format!("{head}{}\n", &report::in_a_line(&failed).unwrap_or_default()[1..])
         }
-        let folder = Folder::checked(&out.join(&name), &report::FILE_NAMES, inputs)?;
-        folders.push((name, folder));
     }
-    Ok(folders)
+}
+
+fn analysed(plan: &Plan, test: &PlannedTest, arguments: &Arguments) -> miette::Result<DropResult> {
+    let Some(cask) = &test.cask else {
+        let beside = test.recording.with_extension("toml");
+        let mend = format!("put {} beside it, or name one by --cask or in the manifest", beside.display());
+        return Err(miette::miette!(help = mend, "{} has no cask file", test.shown));
+    };
+    let inputs = [test.recording.as_path(), cask];
+    let folder = arguments
+        .out
+        .as_ref()
+        .map(|out| Folder::checked(&out.join(&test.folder), &report::FILE_NAMES, &inputs));
+    let folder = folder.transpose()?;
+    let mut cask_file = ingest::cask_file::with_columns(cask, &test.stated)?;
+    arguments.switched_off.in_cask_file(&mut cask_file);
+    let recording = ingest::read_within(&test.recording, &cask_file, arguments.bounds.limits(), &|_| ())?;
+    let mut analysis = dropcheck::analyze(&recording, &cask_file);
+    arguments.switched_off.in_settings(&mut analysis.result);
+    stamp(&mut analysis.result, words(plan, test, arguments))?;
+    if let Some(folder) = folder {
+        folder.write(&report::files(&analysis)?)?;
+    }
+    Ok(analysis.result)
+}
+
+/// The words that would analyse this recording alone, whatever part of the campaign a run did, and where to.
+fn words(plan: &Plan, test: &PlannedTest, arguments: &Arguments) -> Vec<String> {
+    let mut words = vec!["batch".to_owned()];
+    if arguments.manifest.is_some() {
+        words.extend(["--manifest".to_owned(), plan.source.clone()]);
+    } else {
+        words.push(test.shown.clone());
+        words.extend(test.cask_shown.iter().flat_map(|cask| ["--cask".to_owned(), cask.clone()]));
+    }
+    let without = arguments.switched_off.words();
+    if !without.is_empty() {
+        words.extend(["--without".to_owned(), without.join(",")]);
+    }
+    words
+}
+
+/// The campaign's files of all its shards.
+pub fn merge(shards: &[PathBuf], out: &Path) -> miette::Result<Ending> {
+    let inputs: Vec<&Path> = shards.iter().map(PathBuf::as_path).collect();
+    Folder::checked(out, &plan::SUMMARY[..3], &inputs)?;
+    let (lines, batch) = merged::all(shards)?;
+    campaign::write(out, &batch, &lines, &inputs)?;
+    print(&batch.table(columns()))?;
+    let page = out.join("campaign.html").display().to_string();
+    print(&format!("\nCampaign: {}\n", report::printable(&page)))?;
+    Ok(campaign::ending(&batch))
 }
 
 #[cfg(test)]
@@ -177,41 +280,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equal_stems_get_folders_of_their_own() {
-        let out = tempfile::tempdir().unwrap();
-        let recordings = ["a/t1.mcap", "b/t1.h5", "b/t2.csv"].map(PathBuf::from);
-        let folders = report_folders(out.path(), &recordings, &[]).unwrap();
-        let names: Vec<&str> = folders.iter().map(|(name, _)| name.as_str()).collect();
-        assert_eq!(names, ["t1", "t1-2", "t2"]);
-    }
-
-    #[test]
-    fn a_recordings_name_leads_nowhere_else() {
-        let out = tempfile::tempdir().unwrap();
-        let recordings = ["...csv", "..mcap", "a/campaign.json.h5", "b/../..."].map(PathBuf::from);
-        let folders = report_folders(out.path(), &recordings, &[]).unwrap();
-        let names: Vec<&str> = folders.iter().map(|(name, _)| name.as_str()).collect();
-        assert_eq!(names, ["recording", "recording-2", "campaign.json-2", "recording-3"]);
-    }
-
-    #[test]
-    fn a_folder_stands_for_the_recordings_in_it() {
-        let folder = tempfile::tempdir().unwrap();
-        for name in ["b.mcap", "a.CSV", "notes.txt"] {
-            std::fs::write(folder.path().join(name), "x").unwrap();
+    fn a_shard_is_counted_from_nought() {
+        assert_eq!(shard("2/3"), Ok((2, 3)));
+        for text in ["3/3", "1", "-1/3", "0/0", "a/b"] {
+            assert!(shard(text).is_err(), "{text}");
         }
-        let found = recordings(&[folder.path().to_path_buf()]).unwrap();
-        let names: Vec<_> = found.iter().map(|p| p.file_name().unwrap().to_str().unwrap()).collect();
-        assert_eq!(names, ["a.CSV", "b.mcap"]);
-        let twice = [folder.path().join("b.mcap"), folder.path().to_path_buf(), folder.path().join("none")];
-        assert_eq!(recordings(&twice).unwrap().len(), 3);
-        // An earlier campaign's table is none, a recording of its name is one.
-        let table = Batch::new("cask.toml".into(), Vec::new()).csv().unwrap();
-        for (content, count) in [(table, 2), (b"time_s,A1\n0,1\n".to_vec(), 3)] {
-            std::fs::write(folder.path().join("campaign.csv"), content).unwrap();
-            assert_eq!(recordings(&[folder.path().to_path_buf()]).unwrap().len(), count);
-        }
-        let empty = tempfile::tempdir().unwrap();
-        assert!(recordings(&[empty.path().to_path_buf()]).is_err());
     }
 }

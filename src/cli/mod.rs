@@ -9,6 +9,7 @@ mod inspect;
 #[cfg(feature = "lab")]
 mod lab;
 mod limits;
+mod merge;
 mod output;
 mod pdf;
 mod place;
@@ -16,6 +17,7 @@ mod predict;
 mod progress;
 mod record;
 mod replace;
+mod shard;
 mod tuning;
 
 pub use complaint::complain;
@@ -59,6 +61,8 @@ pub enum Command {
     Analyze(analyze::Arguments),
     /// Analyse a campaign of recordings into one table
     Batch(batch::Arguments),
+    /// Put the shards of a campaign together: the files that one run would have written
+    Merge(merge::Arguments),
     /// Predict the slap-down by the analytical model, without a recording
     Predict(predict::Arguments),
     /// List what a recording holds: sources, rates, units, gaps
@@ -88,6 +92,13 @@ pub enum Ending {
     NotDone,
 }
 
+impl Ending {
+    /// With `--exit-zero` results that want a look end as those that do not.
+    pub fn or_zero(self, exit_zero: bool) -> Self {
+        if exit_zero && self == Self::NeedsALook { Self::Clear } else { self }
+    }
+}
+
 impl From<Verdict> for Ending {
     fn from(verdict: Verdict) -> Self {
         match verdict {
@@ -108,6 +119,7 @@ pub fn run(command: &Command) -> miette::Result<Ending> {
     match command {
         Command::Analyze(arguments) => analyze::run(arguments),
         Command::Batch(arguments) => batch::run(arguments),
+        Command::Merge(arguments) => merge::run(arguments),
         Command::Predict(arguments) => predict::run(arguments),
         Command::Inspect(arguments) => inspect::run(arguments),
         Command::Init(arguments) => init::run(arguments),

@@ -189,6 +189,23 @@ fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     sync_folder(parent)
 }
 
+/// As [`replace`], by a function that writes piece by piece: what is large is never whole in memory.
+pub fn replace_by(
+    path: &Path,
+    write: impl FnOnce(&mut dyn FnMut(&[u8]) -> miette::Result<()>) -> miette::Result<()>,
+) -> miette::Result<()> {
+    let failed = |source: io::Error| CannotWrite::Failed { path: shown(path), source: bare(&source) };
+    let parent = parent_of(path);
+    let staging = staging_in(parent).map_err(failed)?;
+    let staged = staging.path().join("table");
+    let mut writer = io::BufWriter::new(File::create_new(&staged).map_err(failed)?);
+    write(&mut |bytes| Ok(writer.write_all(bytes).map_err(failed)?))?;
+    let written = writer.into_inner().map_err(io::IntoInnerError::into_error);
+    written.and_then(|file| file.sync_all()).map_err(failed)?;
+    fs::rename(&staged, path).and_then(|()| sync_folder(parent)).map_err(failed)?;
+    Ok(())
+}
+
 /// Writes to standard output with colours where a terminal shows them; a reader that left early is no error.
 pub fn print(text: &str) -> Result<(), CannotWrite> {
     let mut out = anstream::stdout().lock();

@@ -16,9 +16,9 @@ pub struct EarlierResult {
 }
 
 /// Writes down which program ran, with which words and when; `SOURCE_DATE_EPOCH` stands for now where it is set.
-pub fn stamp(result: &mut DropResult) -> miette::Result<()> {
+pub fn stamp(result: &mut DropResult, command: Vec<String>) -> miette::Result<()> {
     result.program = Some(Program::this());
-    result.command = std::env::args().skip(1).collect();
+    result.command = command;
     let now = match std::env::var("SOURCE_DATE_EPOCH") {
         Ok(seconds) => {
             let words = || format!("SOURCE_DATE_EPOCH is \"{seconds}\", not a number of seconds since 1970");

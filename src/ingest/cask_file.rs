@@ -3,6 +3,7 @@
 mod body;
 pub(crate) mod channel;
 pub(super) mod fault;
+mod overrides;
 mod range;
 mod record;
 pub(crate) mod section;
@@ -15,6 +16,7 @@ use crate::data::keys::TABLES;
 use crate::data::{CaskFile, Contact, Drop, FilterChoice};
 pub(crate) use body::{cask, drop};
 pub use fault::{CaskFileError, WrongLine};
+pub use overrides::{key_of_column, with_columns};
 use section::{CASK_FILE, Document, Kind, Section};
 pub use settings::settings;
 use sha2::{Digest, Sha256};

@@ -97,6 +97,14 @@ pub fn read_within(
     assemble::recording(path, format, sha256, raw, cask_file)
 }
 
+/// The SHA-256 of a file, as results have it.
+///
+/// # Errors
+/// [`IngestError`] where it cannot be read.
+pub fn sha256(path: &Path) -> Result<String, IngestError> {
+    unchanged::sha256(path, &std::sync::atomic::AtomicBool::new(false))
+}
+
 /// Lists what the recording at `path` holds.
 ///
 /// # Errors

@@ -95,7 +95,7 @@ fn at_rest(path: &Path) -> Result<Identity, IngestError> {
 ///
 /// # Errors
 /// [`IngestError::Io`] where it cannot be read.
-fn sha256(path: &Path, is_needless: &AtomicBool) -> Result<String, IngestError> {
+pub(super) fn sha256(path: &Path, is_needless: &AtomicBool) -> Result<String, IngestError> {
     let mut file = std::fs::File::open(path).map_err(|source| error::io(path, source))?;
     let mut hasher = Sha256::new();
     let mut buffer = vec![0; 1 << 16];

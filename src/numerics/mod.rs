@@ -4,6 +4,7 @@ pub mod damped_modes;
 pub mod filter;
 pub mod foretold;
 pub mod noise;
+pub mod pooled;
 pub mod prior_fit;
 pub mod projection;
 pub mod quadrature;

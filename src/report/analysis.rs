@@ -60,6 +60,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             footer: "An interval holds the value with 95 % probability. Times count from the recording's first sample unless an axis says \
                      otherwise. Body axes: axial from the first end to the second, transverse away from the target.",
             style: "",
+            ..Frame::default()
         },
         chapters: vec![
             summary(result, file),

@@ -16,7 +16,8 @@ const SCRIPTS: [&str; 2] = [include_str!("live/uplot-1.6.32.min.js"), include_st
 
 /// The page with these pictures.
 pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
-    let Frame { title, product, version, heading, about, footer, style } = &document.page;
+    let Frame { title, product, version, heading, about, footer, style, data, .. } = &document.page;
+    let scripts = scripts(document, pictures);
     let generator = format!("dropcheck {version}");
     html! {
         (DOCTYPE)
@@ -25,7 +26,7 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 // Whatever a file smuggled in could neither run nor call out.
-                meta http-equiv="Content-Security-Policy" content=(policy(pictures));
+                meta http-equiv="Content-Security-Policy" content=(policy(&scripts));
                 meta name="generator" content=(generator);
                 title { (printable(title)) }
                 style { (PreEscaped(STYLE)) (PreEscaped(style)) @if is_live(pictures) { (PreEscaped(UPLOT_STYLE)) } }
@@ -43,7 +44,8 @@ pub(crate) fn page(document: &ReportDocument, pictures: &[Picture]) -> String {
                     @for passage in chapter.shown(Medium::Page) { (self::passage(passage, pictures)) }
                 }
                 footer { (footer) }
-                @if is_live(pictures) { @for script in SCRIPTS { script { (PreEscaped(script)) } } }
+                @if !data.is_empty() { script type="application/json" id="data" { (PreEscaped(data)) } }
+                @for script in &scripts { script { (PreEscaped(script)) } }
             } }
         }
     }
@@ -100,11 +102,18 @@ fn is_live(pictures: &[Picture]) -> bool {
     pictures.iter().any(|picture| !picture.live.is_empty())
 }
 
+/// What runs in the page.
+fn scripts(document: &ReportDocument, pictures: &[Picture]) -> Vec<&'static str> {
+    let live = if is_live(pictures) { &SCRIPTS[..] } else { &[] };
+    let own = Some(document.page.script).filter(|script| !script.is_empty());
+    live.iter().copied().chain(own).collect()
+}
+
 /// Nothing from elsewhere, and no script but these very ones.
-fn policy(pictures: &[Picture]) -> String {
+fn policy(scripts: &[&str]) -> String {
     let hash = |script: &&str| format!(" 'sha256-{}'", STANDARD.encode(Sha256::digest(script)));
-    let scripts: String = SCRIPTS.iter().filter(|_| is_live(pictures)).map(hash).collect();
-    let own = if scripts.is_empty() { String::new() } else { format!("; script-src{scripts}") };
+    let hashes: String = scripts.iter().map(hash).collect();
+    let own = if hashes.is_empty() { String::new() } else { format!("; script-src{hashes}") };
     format!("default-src 'none'; style-src 'unsafe-inline'; img-src data:{own}")
 }
 
@@ -170,8 +179,8 @@ fn table(table: &ReportTable) -> Markup {
 
 fn cell(kind: CellKind, cell: &TableCell) -> Markup {
     let text = printable(cell.words.on(Medium::Page));
-    let words =
-        html! { (text) @if !cell.mark.is_empty() { @if !text.is_empty() { " " } (default_mark(cell.mark)) } };
+    let shown = html! { @if cell.link.is_empty() { (text) } @else { a href=(cell.link) { (text) } } };
+    let words = html! { (shown) @if !cell.mark.is_empty() { @if !text.is_empty() { " " } (default_mark(cell.mark)) } };
     match kind {
         CellKind::Head => html! { th scope="row" { (words) } },
         CellKind::Text => html! { td { (words) } },

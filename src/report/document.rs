@@ -32,6 +32,9 @@ pub(crate) struct Frame {
     pub(crate) footer: &'static str,
     /// Style besides that of all pages.
     pub(crate) style: &'static str,
+    /// What runs in the page, and the JSON that it reads; nothing where they are empty.
+    pub(crate) script: &'static str,
+    pub(crate) data: String,
 }
 
 /// What stands below a heading; none where its words are empty.

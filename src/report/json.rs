@@ -22,19 +22,30 @@ pub fn listing(listing: &Listing) -> Result<Vec<u8>, ReportError> {
 
 /// Two spaces of indentation and a line feed at the end.
 pub(crate) fn pretty<T: serde::Serialize>(value: &T) -> Result<Vec<u8>, ReportError> {
-    let mut text = serde_json::to_string_pretty(value)?;
-    if text.contains(steers) {
-        text = text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
-            if steers(c) {
-                let _ = write!(out, "\\u{:04x}", u32::from(c));
-            } else {
-                out.push(c);
-            }
-            out
-        });
+    Ok((bare(serde_json::to_string_pretty(value)?) + "\n").into_bytes())
+}
+
+/// The JSON of anything in a single line, without its end.
+///
+/// # Errors
+/// [`ReportError::Json`] where the writer fails.
+pub fn in_a_line<T: serde::Serialize>(value: &T) -> Result<String, ReportError> {
+    Ok(bare(serde_json::to_string(value)?))
+}
+
+/// JSON with those characters escaped that a terminal would obey.
+fn bare(text: String) -> String {
+    if !text.contains(steers) {
+        return text;
     }
-    text.push('\n');
-    Ok(text.into_bytes())
+    text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
+        if steers(c) {
+            let _ = write!(out, "\\u{:04x}", u32::from(c));
+        } else {
+            out.push(c);
+        }
+        out
+    })
 }
 
 /// Whether JSON may hold it bare and a terminal would obey it: controls beyond ASCII, line ends and directions of Unicode.

@@ -41,9 +41,9 @@ mod tested;
 pub(crate) mod text;
 mod words;
 
-pub use campaign::{Batch, BatchRow};
+pub use campaign::{Batch, BatchRow, CampaignFiles, PredictedCurve};
 pub use curves_csv::in_german;
-pub use json::{listing as listing_json, result as result_json};
+pub use json::{in_a_line, listing as listing_json, result as result_json};
 pub use likely::NoChannels;
 pub use listing::table as listing_table;
 pub use prediction::{study_file_names, study_files, study_json, study_table};

@@ -77,6 +77,8 @@ pub(crate) struct TableCell {
     /// A word set off from the others, such as "default".
     pub(crate) mark: &'static str,
     pub(crate) style: Option<Style>,
+    /// Where the words lead on a page; nowhere where it is empty.
+    pub(crate) link: String,
 }
 
 impl<T: Into<Words>> From<T> for TableCell {
@@ -89,6 +91,11 @@ impl TableCell {
     /// Words with one that is set off.
     pub(crate) fn marked(words: impl Into<Words>, mark: &'static str) -> Self {
         Self { mark, ..words.into().into() }
+    }
+
+    /// Words that lead somewhere.
+    pub(crate) fn linked(words: impl Into<Words>, link: String) -> Self {
+        Self { link, ..words.into().into() }
     }
 
     /// Words in a colour.

@@ -1,5 +1,6 @@
 //! From the built program, the sources and the fixtures to the promises that hold across modules.
 
+mod batch;
 mod campaign;
 mod command_line;
 mod compliant;

@@ -102,17 +102,17 @@ pub(crate) struct Fill {
 
 impl Fill {
     /// Areas that the legend does not name.
-    pub(super) fn new(colour: Colour, opacity: f64, areas: Vec<Vec<(f64, f64)>>) -> Self {
+    pub(crate) fn new(colour: Colour, opacity: f64, areas: Vec<Vec<(f64, f64)>>) -> Self {
         Self { label: None, colour, opacity, areas }
     }
 
     /// With its name in the legend.
-    pub(super) fn named(self, label: impl Into<String>) -> Self {
+    pub(crate) fn named(self, label: impl Into<String>) -> Self {
         Self { label: Some(label.into()), ..self }
     }
 
     /// The area between `low` and `high` over `x`, open where either is missing.
-    pub(super) fn between(x: &[f64], low: &[f64], high: &[f64]) -> Vec<Vec<(f64, f64)>> {
+    pub(crate) fn between(x: &[f64], low: &[f64], high: &[f64]) -> Vec<Vec<(f64, f64)>> {
         let points: Vec<(f64, [f64; 2])> =
             x.iter().zip(low.iter().zip(high)).map(|(x, (low, high))| (*x, [*low, *high])).collect();
         let is_open = |(_, ends): &(f64, [f64; 2])| !ends.iter().all(|end| end.is_finite());
@@ -285,7 +285,7 @@ impl Panel {
     }
 
     /// Ends of the horizontal axis.
-    pub(super) fn x_range(&self) -> Range<f64> {
+    pub(crate) fn x_range(&self) -> Range<f64> {
         self.x.around(self.drawn().map(|p| p.0), 0.0)
     }
 

@@ -52,6 +52,7 @@ pub(super) fn document(study: &Study) -> ReportDocument {
                      the second end slaps down. Vertical velocities are positive up. [P]: the BAM paper on slap-down impacts of packagings \
                      (PATRAM).",
             style: include_str!("../prediction.css"),
+            ..Frame::default()
         },
         chapters: vec![
             Chapter::new("").with(PartContent::Figures(figures(study))),

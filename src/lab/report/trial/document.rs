@@ -76,6 +76,7 @@ fn frame(trial: &Trial, heading: &str, footer: &'static str) -> Frame {
         about: trial.machine.when.clone(),
         footer,
         style: include_str!("trial.css"),
+        ..Frame::default()
     }
 }
 

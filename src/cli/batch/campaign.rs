@@ -1,0 +1,76 @@
+//! The lines of a campaign to its files: page and pictures at once, the two tables a line at a time.
+
+use super::super::Ending;
+use super::super::output::{Folder, replace_by};
+use super::plan::SUMMARY;
+use super::record::Lines;
+use dropcheck::data::{BodyModel, CaskFile, Contact, Drop};
+use dropcheck::report::{Batch, BatchRow, CampaignFiles, PredictedCurve};
+use dropcheck::{ingest, predict};
+use serde_json::Value;
+use std::path::Path;
+
+/// Angles of a predicted curve.
+const ANGLES: u32 = 100;
+
+/// Writes the files of a campaign of which these are all lines.
+pub fn write(out: &Path, batch: &Batch, lines: &Lines, inputs: &[&Path]) -> miette::Result<()> {
+    let folder = Folder::checked(out, &SUMMARY[..3], inputs)?;
+    let numbers: Vec<usize> = lines.numbers().collect();
+    let cask_file = |row: &BatchRow| {
+        let place = batch.rows.iter().position(|other| std::ptr::eq(other, row))?;
+        let line = lines.line(*numbers.get(place)?)?;
+        ingest::cask_file::of_text(Path::new(""), line["cask_text"].as_str()?).ok()
+    };
+    let files = CampaignFiles::new(batch, |row, ks, angles_deg| {
+        cask_file(row).map_or_else(Vec::new, |cask_file| curves(&cask_file, ks, angles_deg))
+    });
+    folder.write(&files.page())?;
+    replace_by(&out.join(SUMMARY[1]), |put| {
+        put(&files.csv_head()?)?;
+        lines.each(|line| put(&files.csv_row(&value(line))?))
+    })?;
+    replace_by(&out.join(SUMMARY[0]), |put| {
+        put(&files.json_head()?)?;
+        let mut between = "";
+        lines.each(|line| {
+            put(between.as_bytes())?;
+            between = CampaignFiles::JSON_BETWEEN;
+            put(&files.json_row(&value(line))?)
+        })?;
+        put(CampaignFiles::JSON_END.as_bytes())
+    })
+}
+
+/// A line that was read before.
+fn value(line: &[u8]) -> Value {
+    serde_json::from_slice(line).unwrap_or_default()
+}
+
+/// Rod and body, rough and smooth, for the lowest and the highest k.
+fn curves(cask_file: &CaskFile, ks: [f64; 2], [from, to]: [f64; 2]) -> Vec<PredictedCurve> {
+    let mut curves = Vec::new();
+    for body in predict::bodies(&cask_file.cask) {
+        for contact in [Contact::Rough, Contact::Smooth] {
+            for k in ks {
+                let at = |i: u32| {
+                    let angle_deg = from + (to - from) * f64::from(i) / f64::from(ANGLES);
+                    let drop = Drop { angle_rad: angle_deg.to_radians(), ..cask_file.drop };
+                    (
+                        angle_deg,
+                        predict::predict(&body, &drop, contact, k).slap_down_speed_m_s.unwrap_or(f64::NAN),
+                    )
+                };
+                let model: BodyModel = body.model;
+                curves.push(PredictedCurve { model, contact, k, points: (0..=ANGLES).map(at).collect() });
+            }
+        }
+    }
+    curves
+}
+
+/// How a campaign ends: as its worst recording.
+pub fn ending(batch: &Batch) -> Ending {
+    let outcome = |row: &BatchRow| row.verdict.map_or(Ending::NotDone, Ending::from);
+    batch.rows.iter().map(outcome).max().unwrap_or(Ending::Clear)
+}

@@ -1,0 +1,193 @@
+//! A manifest, a CSV with a row a recording, to the tests that it lists; and a folder of recordings to a manifest to fill in.
+
+use super::paths::{in_folder, stem};
+use super::plan::{PlannedTest, cask_of};
+use dropcheck::ingest::cask_file::key_of_column;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// What the columns of a manifest are named that say what to analyse.
+const ID: &str = "id";
+const RECORDING: &str = "recording";
+const CASK: &str = "cask";
+
+/// The tests of a manifest; `cask` is the cask file of rows that name none and have none beside their recording.
+pub fn read(path: &Path, cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>> {
+    let name = path.display();
+    let bytes = std::fs::read(path)
+        .map_err(|source| miette::miette!("{name}: the manifest cannot be read: {source}"))?;
+    let text = std::str::from_utf8(&bytes).map_err(|_| {
+        miette::miette!(
+            help = "save it as CSV UTF-8, which every spreadsheet offers",
+            "{name} is no text in UTF-8"
+        )
+    })?;
+    let text = text.trim_start_matches('\u{feff}');
+    let mut reader =
+        csv::ReaderBuilder::new().delimiter(delimiter(text)).flexible(true).from_reader(text.as_bytes());
+    let fault = |error: csv::Error| miette::miette!("{name}: {error}");
+    let heads: Vec<String> =
+        reader.headers().map_err(fault)?.iter().map(|head| head.trim().to_owned()).collect();
+    check(&heads, path)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let (mut tests, mut lines) = (Vec::new(), HashMap::new());
+    for row in reader.records() {
+        let row = row.map_err(fault)?;
+        let line = row.position().map_or(0, csv::Position::line);
+        if row.iter().all(|cell| cell.trim().is_empty()) {
+            continue;
+        }
+        if row.len() > heads.len() {
+            return Err(miette::miette!(
+                help = "put quotes around a cell that holds a comma",
+                "{name}, line {line}: {} cells, and there are {} columns",
+                row.len(),
+                heads.len()
+            ));
+        }
+        let cells: Vec<(&str, &str)> =
+            heads.iter().map(String::as_str).zip(row.iter().map(str::trim)).collect();
+        let test = test(&cells, folder, cask)
+            .ok_or_else(|| miette::miette!("{name}, line {line}: the cell of `recording` is empty"))?;
+        let has_id = cells.iter().any(|(head, cell)| *head == ID && !cell.is_empty());
+        if let Some(first) = lines.insert(test.id.clone(), line).filter(|_| has_id) {
+            return Err(miette::miette!(
+                help = "give each row an id of its own, or leave the column out",
+                "{name}, line {line}: the id {} stands in line {first} too",
+                test.id
+            ));
+        }
+        tests.push(test);
+    }
+    if tests.is_empty() {
+        return Err(miette::miette!(help = "write one row a recording", "{name} lists no recording"));
+    }
+    Ok(tests)
+}
+
+fn test(cells: &[(&str, &str)], folder: &Path, cask: Option<&Path>) -> Option<PlannedTest> {
+    let cell =
+        |name| cells.iter().find(|(head, cell)| *head == name && !cell.is_empty()).map(|(_, cell)| *cell);
+    let shown = cell(RECORDING)?.to_owned();
+    let recording = folder.join(&shown);
+    let (cask_shown, cask) = if let Some(own) = cell(CASK) {
+        (Some(own.to_owned()), Some(folder.join(own)))
+    } else {
+        let found = cask_of(&recording, cask);
+        let shown = |found: &PathBuf| {
+            let is_beside = Some(found.as_path()) != cask;
+            if is_beside { Path::new(&shown).with_extension("toml") } else { found.clone() }
+                .display()
+                .to_string()
+        };
+        (found.as_ref().map(shown), found)
+    };
+    let mut test = PlannedTest {
+        id: cell(ID).map_or_else(|| stem(&recording), str::to_owned),
+        cask_shown,
+        cask,
+        shown,
+        recording,
+        ..PlannedTest::default()
+    };
+    for (head, cell) in
+        cells.iter().filter(|(head, cell)| ![ID, RECORDING, CASK].contains(head) && !cell.is_empty())
+    {
+        let is_key = key_of_column(head).is_ok_and(|key| key.is_some());
+        let pairs = if is_key { &mut test.stated } else { &mut test.carried };
+        pairs.push(((*head).to_owned(), (*cell).to_owned()));
+    }
+    Some(test)
+}
+
+/// Refuses heads that cannot be meant.
+fn check(heads: &[String], path: &Path) -> miette::Result<()> {
+    let name = path.display();
+    if !heads.iter().any(|head| head == RECORDING) {
+        return Err(miette::miette!(
+            help = "the first line names the columns: id, recording, cask, and what you like; `dropcheck init FOLDER` writes one",
+            "{name}, line 1: there is no column `recording`"
+        ));
+    }
+    for (i, head) in heads.iter().enumerate() {
+        if !head.is_empty() && heads[..i].contains(head) {
+            return Err(miette::miette!(
+                help = "rename one of them",
+                "{name}, line 1: two columns are named {head}"
+            ));
+        }
+        key_of_column(head).map_err(|problem| {
+            miette::miette!(
+                help = "a column that is only to be carried into the tables needs a name without that table's word and a point",
+                "{name}, line 1: {problem}"
+            )
+        })?;
+    }
+    Ok(())
+}
+
+/// What separates the cells: what the first line has most of.
+fn delimiter(text: &str) -> u8 {
+    let first = text.lines().next().unwrap_or_default();
+    let count = |delimiter: &u8| first.bytes().filter(|byte| byte == delimiter).count();
+    [b'\t', b';', b','].into_iter().max_by_key(count).unwrap_or(b',')
+}
+
+/// Whether a file that begins so has the heads of a manifest.
+pub fn begins(head: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(head);
+    let first = text.trim_start_matches('\u{feff}').lines().next().unwrap_or_default();
+    let heads = |name: &str| first.split(['\t', ';', ',']).any(|head| head.trim_matches(['"', ' ']) == name);
+    heads(RECORDING) && (heads(ID) || heads(CASK))
+}
+
+/// A manifest of the recordings of a folder, each with the cask file beside it, and a column for what differs most.
+pub fn template(folder: &Path) -> miette::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let fault = |error: csv::Error| miette::miette!("the manifest could not be written: {error}");
+    writer.write_record([ID, RECORDING, CASK, "drop.angle_deg", "test.date"]).map_err(fault)?;
+    // A shell makes the file first into which the manifest goes.
+    let is_empty = |path: &PathBuf| std::fs::metadata(path).is_ok_and(|file| file.len() == 0);
+    for recording in in_folder(folder)?.into_iter().filter(|path| !is_empty(path)) {
+        let cask = cask_of(&recording, None).map(|cask| cask.display().to_string());
+        let words = [stem(&recording), recording.display().to_string(), cask.unwrap_or_default()];
+        writer.write_record(words.iter().map(String::as_str).chain(["", ""])).map_err(fault)?;
+    }
+    writer.into_inner().map_err(|error| fault(error.into_error().into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Result<Vec<PlannedTest>, String> {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), text).unwrap();
+        read(file.path(), None).map_err(|report| report.to_string())
+    }
+
+    #[test]
+    fn a_spreadsheets_manifest_is_read() {
+        let tests = of("\u{feff}recording;cask;drop.angle_deg;Halle\r\na.mcap;c.toml;12,5;3\r\n;;;\r\nx/b.h5;c.toml;;\r\n").unwrap();
+        assert_eq!(tests.len(), 2);
+        assert_eq!(tests[0].stated, [("drop.angle_deg".to_owned(), "12,5".to_owned())]);
+        assert_eq!(tests[0].carried, [("Halle".to_owned(), "3".to_owned())]);
+        assert_eq!((tests[1].id.as_str(), tests[1].stated.len()), ("b", 0));
+    }
+
+    #[test]
+    fn what_cannot_be_meant_is_named_with_its_line() {
+        for (text, part) in [
+            ("file,cask\na,b\n", "line 1: there is no column `recording`"),
+            ("recording,drop.angel_deg\na,5\n", "did you mean drop.angle_deg?"),
+            ("id,recording\n1,a\n1,b\n", "line 3: the id 1 stands in line 2 too"),
+            ("id,recording\n1,\n", "line 2: the cell of `recording` is empty"),
+            ("id,recording\n1,a,b\n", "line 2: 3 cells"),
+            ("recording,recording\na,b\n", "two columns are named recording"),
+            ("recording\n", "lists no recording"),
+        ] {
+            let error = of(text).unwrap_err();
+            assert!(error.contains(part), "{error}");
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! The shards of a campaign to all of its lines; one that is missing, doubled, cut, foreign or of another version is named.
+
+use super::record::Lines;
+use dropcheck::report::Batch;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// What shards must have in common: key of `campaign`, and what another value means.
+const COMMON: [(&str, &str); 5] = [
+    ("version", "is of another version of dropcheck"),
+    ("commit", "is of another build of dropcheck"),
+    ("schema", "is of another campaign"),
+    ("of", "is of another campaign, or of another state of its manifest or cask file"),
+    ("count", "is of another campaign"),
+];
+
+/// The lines of all shards, and the campaign that they make.
+pub fn all(shards: &[PathBuf]) -> miette::Result<(Lines, Batch)> {
+    let mut lines = Lines::default();
+    let mut first: Option<Value> = None;
+    // Of each test in which shard it is.
+    let mut homes: Vec<Option<usize>> = Vec::new();
+    for (file, path) in shards.iter().enumerate() {
+        let mut found = 0;
+        lines.add(path, |count, bytes| {
+            let line: Value = serde_json::from_slice(bytes).unwrap_or_default();
+            let own = &line["campaign"];
+            let number = own["number"].as_u64().and_then(|number| usize::try_from(number).ok());
+            let Some(number) = number.filter(|_| bytes.ends_with(b"\n")) else {
+                return Err(cut(path, count));
+            };
+            let first = first.get_or_insert_with(|| {
+                homes.resize(
+                    own["count"].as_u64().map_or(0, |count| usize::try_from(count).unwrap_or(0)),
+                    None,
+                );
+                own.clone()
+            });
+            for (key, words) in COMMON {
+                if own[key] != first[key] {
+                    return Err(foreign(path, &shards[0], (words, key), (&own[key], &first[key])));
+                }
+            }
+            match homes.get_mut(number) {
+                Some(home @ None) => *home = Some(file),
+                Some(Some(home)) => return Err(doubled(path, &shards[*home], &line)),
+                None => return Err(cut(path, count)),
+            }
+            found += 1;
+            Ok(Some(number))
+        })?;
+        if found == 0 {
+            return Err(super::super::shard::no_shard(path));
+        }
+    }
+    complete(shards, &homes, &lines)?;
+    let mut batch = Batch::new(first.unwrap_or_default()["source"].as_str().unwrap_or_default().to_owned());
+    lines.each(|line| {
+        batch.add(&serde_json::from_slice(line).unwrap_or_default());
+        Ok(())
+    })?;
+    Ok((lines, batch))
+}
+
+/// Names the shards of which something is missing.
+fn complete(shards: &[PathBuf], homes: &[Option<usize>], lines: &Lines) -> miette::Result<()> {
+    let Some(missing) = homes.iter().position(Option::is_none) else { return Ok(()) };
+    let count = homes.iter().filter(|home| home.is_none()).count();
+    // Any line says into how many parts its campaign was cut.
+    let parts =
+        lines.numbers().next().and_then(|number| lines.line(number)?["campaign"]["shard"][1].as_u64());
+    let parts = parts.map_or(1, |parts| usize::try_from(parts).unwrap_or(1)).max(1);
+    let (own, all) = (missing % parts, (missing % parts..homes.len()).step_by(parts));
+    let lost = all.clone().filter(|number| homes[*number].is_none()).count();
+    let home = all.clone().find_map(|number| homes[number]);
+    let what = match home {
+        None => format!("shard {own}/{parts} is missing"),
+        Some(file) => format!(
+            "{} is cut: {lost} of the {} recordings of shard {own}/{parts} are not in it",
+            shards[file].display(),
+            all.count()
+        ),
+    };
+    Err(miette::miette!(
+        help = "run that shard again, with --resume what is done is not done again; then name all shards",
+        "{what}; {count} of {} recordings are in no shard, the first is number {} of the campaign",
+        homes.len(),
+        missing + 1
+    ))
+}
+
+fn cut(path: &Path, line: usize) -> miette::Report {
+    miette::miette!(
+        help = "the run was stopped, or the file was not copied whole: run that shard again with --resume",
+        "{}, line {line}: no whole line of a shard",
+        path.display()
+    )
+}
+
+fn doubled(path: &Path, other: &Path, line: &Value) -> miette::Report {
+    let id = line["id"].as_str().unwrap_or_default();
+    let shard = &line["campaign"]["shard"];
+    miette::miette!(
+        help = "name each shard once",
+        "{} repeats {id} of shard {}/{}, which is in {} already",
+        path.display(),
+        shard[0],
+        shard[1],
+        other.display()
+    )
+}
+
+fn foreign(
+    path: &Path,
+    first: &Path,
+    (words, key): (&str, &str),
+    (own, of_first): (&Value, &Value),
+) -> miette::Report {
+    let told = if key == "of" { String::new() } else { format!(" ({own}, there {of_first})") };
+    miette::miette!(
+        help = "merge shards of one manifest and one version only",
+        "{} {words} than {}{told}",
+        path.display(),
+        first.display()
+    )
+}

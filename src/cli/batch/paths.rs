@@ -1,0 +1,123 @@
+//! Paths, folders and patterns to the recordings that they stand for.
+
+use dropcheck::report;
+use dropcheck::report::Batch;
+use std::collections::HashSet;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+
+/// What a file of a folder is named where it is taken for a recording.
+const RECORDING_ENDINGS: [&str; 5] = ["mcap", "h5", "hdf5", "hdf", "csv"];
+
+/// The recordings, folders replaced by the files in them, by name, and patterns by what they match.
+pub fn recordings(paths: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
+    let mut recordings = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            recordings.extend(in_folder(path)?);
+        } else if is_pattern(path) {
+            let pattern = path.display().to_string();
+            let found =
+                glob::glob(&pattern).map_err(|fault| miette::miette!("{pattern} is no pattern: {fault}"))?;
+            let before = recordings.len();
+            recordings.extend(found.flatten().filter(|path| path.is_file() && !is_summary(path)));
+            if recordings.len() == before {
+                return Err(miette::miette!("no file is named like {pattern}"));
+            }
+        } else {
+            recordings.push(path.clone());
+        }
+    }
+    // One named twice, or once by itself and once by its folder, is one test all the same.
+    let mut seen = HashSet::new();
+    recordings.retain(|path| std::fs::canonicalize(path).map_or(true, |real| seen.insert(real)));
+    Ok(recordings)
+}
+
+/// Whether no shell has replaced it yet.
+fn is_pattern(path: &Path) -> bool {
+    path.to_string_lossy().contains(['*', '?', '[']) && std::fs::symlink_metadata(path).is_err()
+}
+
+/// The recordings of a folder by their endings, by name.
+pub fn in_folder(path: &Path) -> miette::Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(path)
+        .map_err(|source| miette::miette!("the folder {} cannot be read: {source}", path.display()))?;
+    let mut files: Vec<PathBuf> =
+        entries.filter_map(|entry| entry.ok().map(|e| e.path())).filter(|p| p.is_file()).collect();
+    files.sort();
+    let (found, others): (Vec<PathBuf>, Vec<PathBuf>) =
+        files.into_iter().filter(|p| !is_summary(p)).partition(|p| has_ending(p));
+    tell_left_out(path, &others);
+    if found.is_empty() {
+        return Err(miette::miette!(
+            help = "name the recordings themselves: their content, not their name, tells the format",
+            "the folder {} holds no .mcap, .h5, .hdf5, .hdf or .csv file",
+            path.display()
+        ));
+    }
+    Ok(found)
+}
+
+/// A recording's name without its folder and ending.
+pub fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn has_ending(path: &Path) -> bool {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    ending.is_some_and(|ending| RECORDING_ENDINGS.contains(&ending.as_str()))
+}
+
+/// Says on standard error which files of a folder were not taken for recordings, by their endings; cask files and truths lie beside them.
+fn tell_left_out(folder: &Path, others: &[PathBuf]) {
+    let endings = others.iter().filter_map(|path| path.extension()?.to_str());
+    let mut endings: Vec<&str> =
+        endings.filter(|ending| !["toml", "json", "jsonl"].contains(ending)).collect();
+    endings.sort_unstable();
+    endings.dedup();
+    if !endings.is_empty() {
+        let (folder, endings) = (folder.display().to_string(), endings.join(", ."));
+        let words = format!(
+            "files of {folder} that end in .{endings} were left out; name a recording among them itself"
+        );
+        // There is no one left to tell where standard error is closed.
+        let _ = writeln!(anstream::stderr(), "note: {}", report::printable(&words));
+    }
+}
+
+/// Whether a file is a manifest or the table of an earlier campaign; a recording may have its name.
+fn is_summary(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(256).read_to_end(&mut head));
+    read.is_ok() && (Batch::begins(&head) || super::manifest::begins(&head))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_stands_for_the_recordings_in_it() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["b.mcap", "a.CSV", "notes.txt"] {
+            std::fs::write(folder.path().join(name), "x").unwrap();
+        }
+        let found = recordings(&[folder.path().to_path_buf()]).unwrap();
+        let names: Vec<_> = found.iter().map(|p| p.file_name().unwrap().to_str().unwrap()).collect();
+        assert_eq!(names, ["a.CSV", "b.mcap"]);
+        let twice = [folder.path().join("b.mcap"), folder.path().to_path_buf(), folder.path().join("none")];
+        assert_eq!(recordings(&twice).unwrap().len(), 3);
+        assert_eq!(recordings(&[folder.path().join("*.mcap")]).unwrap().len(), 1);
+        assert!(recordings(&[folder.path().join("*.none")]).is_err());
+        // An earlier campaign's table and a manifest are none, a recording of its name is one.
+        let table = Batch::default().csv_head();
+        let manifest = b"id,recording,cask\na,b,c\n".to_vec();
+        for (content, count) in [(table, 2), (manifest, 2), (b"time_s,A1\n0,1\n".to_vec(), 3)] {
+            std::fs::write(folder.path().join("campaign.csv"), content).unwrap();
+            assert_eq!(recordings(&[folder.path().to_path_buf()]).unwrap().len(), count);
+        }
+        let empty = tempfile::tempdir().unwrap();
+        assert!(recordings(&[empty.path().to_path_buf()]).is_err());
+    }
+}

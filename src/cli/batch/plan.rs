@@ -1,0 +1,203 @@
+//! A manifest, or paths and a cask file, to what is to be analysed: one entry a recording, in the order in which the campaign has them.
+
+use super::Arguments;
+use super::manifest;
+use super::paths::{recordings, stem};
+use dropcheck::data::Program;
+use serde_json::json;
+use sha2::{Digest, Sha256};
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
+
+/// What every line of a shard says it is: `campaign.schema`.
+pub const SHARD_SCHEMA: &str = "dropcheck.batch-shard/1";
+
+/// Files of the campaign's folder that no report's folder may be named like.
+pub const SUMMARY: [&str; 4] = ["campaign.json", "campaign.csv", "campaign.html", "results.jsonl"];
+
+/// One recording to analyse.
+#[derive(Debug, Default, PartialEq)]
+pub struct PlannedTest {
+    /// Its name in the campaign, alone of its kind.
+    pub id: String,
+    /// The recording as the manifest or the command line names it, and where it is.
+    pub shown: String,
+    pub recording: PathBuf,
+    /// Its cask file likewise; none where there is none beside it and `--cask` names none.
+    pub cask_shown: Option<String>,
+    pub cask: Option<PathBuf>,
+    /// Keys of the cask file with other values.
+    pub stated: Vec<(String, String)>,
+    /// Columns that are only carried into the tables.
+    pub carried: Vec<(String, String)>,
+    /// The folder of its report.
+    pub folder: String,
+}
+
+/// The whole campaign, of which a run may do a part.
+#[derive(Debug)]
+pub struct Plan {
+    /// The manifest or the cask file.
+    pub source: String,
+    pub tests: Vec<PlannedTest>,
+    /// A hash of all that says what is to be done: shards of one campaign have the same.
+    of: String,
+    /// The part of this run: every so many-th from a first.
+    pub shard: (usize, usize),
+}
+
+impl Plan {
+    /// What the words ask for.
+    pub fn of(arguments: &Arguments) -> miette::Result<Self> {
+        let cask = arguments.cask.as_deref();
+        let shown = |path: &Path| path.display().to_string();
+        let (mut tests, source) = if let Some(path) = &arguments.manifest {
+            // Other machines may have it in another place.
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            (manifest::read(path, cask)?, name)
+        } else {
+            let source = cask.map_or_else(|| "cask files beside the recordings".to_owned(), shown);
+            (of_paths(&arguments.paths, cask)?, source)
+        };
+        name_apart(&mut tests);
+        let mut hash = Sha256::new();
+        hash.update(cask.and_then(|cask| std::fs::read(cask).ok()).unwrap_or_default());
+        hash.update(arguments.switched_off.words().join(","));
+        for test in &tests {
+            hash.update(json!([test.id, test.shown, test.cask_shown, test.stated, test.carried]).to_string());
+        }
+        Ok(Self { source, tests, of: format!("{:x}", hash.finalize()), shard: arguments.shard })
+    }
+
+    /// The numbers of the tests that are this run's.
+    pub fn own(&self) -> Vec<usize> {
+        (self.shard.0..self.tests.len()).step_by(self.shard.1).collect()
+    }
+
+    /// Whether this run does all of it.
+    pub fn is_whole(&self) -> bool {
+        self.shard.1 == 1
+    }
+
+    /// The name of the record in `--out`.
+    pub fn record_name(&self) -> String {
+        if self.is_whole() {
+            SUMMARY[3].to_owned()
+        } else {
+            format!("results-{}-of-{}.jsonl", self.shard.0, self.shard.1)
+        }
+    }
+
+    /// What a line says of its place in the campaign, as JSON.
+    pub fn place(&self, number: usize) -> String {
+        let test = &self.tests[number];
+        let object = |pairs: &[(String, String)]| pairs.iter().cloned().collect::<BTreeMap<String, String>>();
+        let Program { version, commit, .. } = Program::this();
+        let place = json!({
+            "of": self.of, "source": self.source, "version": version, "commit": commit,
+            "number": number, "count": self.tests.len(), "shard": [self.shard.0, self.shard.1],
+            "recording": test.shown, "cask": test.cask_shown, "report": test.folder,
+            "stated": object(&test.stated), "carried": object(&test.carried),
+        });
+        // The schema first: by it the file is known.
+        format!("{{\"schema\":\"{SHARD_SCHEMA}\",{}", &place.to_string()[1..])
+    }
+
+    /// Refuses a folder for the reports in which a recording would be overwritten.
+    pub fn spares_recordings(&self, out: &Path) -> miette::Result<()> {
+        let real = |path: &Path| std::fs::canonicalize(path).ok();
+        let Some(out) = real(out) else { return Ok(()) };
+        let folders: HashSet<&str> = self.tests.iter().map(|test| test.folder.as_str()).collect();
+        for test in &self.tests {
+            for input in [Some(&test.recording), test.cask.as_ref()].into_iter().flatten() {
+                let Some(parent) = input.parent().and_then(|parent| {
+                    real(if parent.as_os_str().is_empty() { Path::new(".") } else { parent })
+                }) else {
+                    continue;
+                };
+                let name = parent.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
+                if parent.parent() == Some(&out) && folders.contains(&*name) {
+                    return Err(miette::miette!(
+                        help = "choose another --out: no command alters its input",
+                        "{} lies in {}, where a report of this campaign would go",
+                        input.display(),
+                        parent.display()
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn of_paths(paths: &[PathBuf], cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>> {
+    let test = |recording: PathBuf| {
+        let cask = cask_of(&recording, cask);
+        PlannedTest {
+            id: stem(&recording),
+            shown: recording.display().to_string(),
+            cask_shown: cask.as_ref().map(|cask| cask.display().to_string()),
+            cask,
+            recording,
+            ..PlannedTest::default()
+        }
+    };
+    Ok(recordings(paths)?.into_iter().map(test).collect())
+}
+
+/// The cask file beside a recording, else that of the command line.
+pub fn cask_of(recording: &Path, cask: Option<&Path>) -> Option<PathBuf> {
+    let beside = recording.with_extension("toml");
+    if beside.is_file() { Some(beside) } else { cask.map(Path::to_path_buf) }
+}
+
+/// Gives equal names a number, and each test a folder that leads nowhere else.
+fn name_apart(tests: &mut [PlannedTest]) {
+    let mut ids: HashSet<String> = HashSet::new();
+    let mut folders: HashSet<String> = SUMMARY.iter().map(|name| (*name).to_owned()).collect();
+    for test in tests {
+        test.id = free(&test.id, &ids);
+        ids.insert(test.id.clone());
+        let plain: String = test
+            .id
+            .chars()
+            .map(|c| if c.is_control() || "/\\:*?\"<>|".contains(c) { '_' } else { c })
+            .collect();
+        // "..." is a way out of the folder and no name, and ".x" is hidden.
+        let plain = plain.trim_matches(['.', ' ']);
+        // Where capitals are no difference two folders would be one.
+        let name = free(if plain.is_empty() { "recording" } else { plain }, &folders);
+        folders.insert(name.to_lowercase());
+        test.folder = name;
+    }
+}
+
+/// The name, or the name with the first number with which it is not taken.
+fn free(name: &str, taken: &HashSet<String>) -> String {
+    let is_free = |name: &String| !taken.contains(name) && !taken.contains(&name.to_lowercase());
+    let numbered = (2..).map(|number| format!("{name}-{number}"));
+    std::iter::once(name.to_owned()).chain(numbered).find(is_free).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folders(ids: &[&str]) -> Vec<String> {
+        let mut tests: Vec<PlannedTest> =
+            ids.iter().map(|id| PlannedTest { id: (*id).into(), ..PlannedTest::default() }).collect();
+        name_apart(&mut tests);
+        tests.into_iter().map(|test| test.folder).collect()
+    }
+
+    #[test]
+    fn equal_names_get_folders_of_their_own() {
+        assert_eq!(folders(&["t1", "t1", "T1", "t2"]), ["t1", "t1-2", "T1-3", "t2"]);
+    }
+
+    #[test]
+    fn a_name_leads_nowhere_else() {
+        let found = folders(&["..", "...", "campaign.json", "a/../b", "SD/1:2"]);
+        assert_eq!(found, ["recording", "recording-2", "campaign.json-2", "a_.._b", "SD_1_2"]);
+    }
+}

@@ -1,0 +1,235 @@
+//! Lines of results to a file that grows by one line at a time, and such files to the lines in them: what is done stays done.
+
+use super::super::output::{CannotWrite, JsonTarget};
+use super::super::replace::{OWN_PREFIX, parent_of};
+use super::super::shard;
+use miette::{IntoDiagnostic, WrapErr};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// Where a line is: which file, from which byte, how many.
+#[derive(Debug, Clone, Copy)]
+pub struct LinePlace {
+    file: usize,
+    from: u64,
+    length: usize,
+}
+
+/// Lines of one or several files by the numbers of their tests.
+#[derive(Debug, Default, Clone)]
+pub struct Lines {
+    files: Vec<PathBuf>,
+    places: BTreeMap<usize, LinePlace>,
+}
+
+impl Lines {
+    /// The lines of a file, each handed to `take` with its number from 1, which says of which test it is; the last may be no whole one.
+    pub fn add(
+        &mut self,
+        path: &Path,
+        mut take: impl FnMut(usize, &[u8]) -> miette::Result<Option<usize>>,
+    ) -> miette::Result<()> {
+        let words = || format!("{} cannot be read", path.display());
+        let mut reader = BufReader::new(File::open(path).into_diagnostic().wrap_err_with(words)?);
+        let (mut from, mut line, mut count) = (0, Vec::new(), 0);
+        self.files.push(path.to_path_buf());
+        loop {
+            line.clear();
+            let length = reader.read_until(b'\n', &mut line).into_diagnostic().wrap_err_with(words)?;
+            if length == 0 {
+                return Ok(());
+            }
+            count += 1;
+            if let Some(number) = take(count, &line)? {
+                self.places.insert(number, LinePlace { file: self.files.len() - 1, from, length });
+            }
+            from += length as u64;
+        }
+    }
+
+    /// The numbers of the tests that have a line.
+    pub fn numbers(&self) -> impl Iterator<Item = usize> {
+        self.places.keys().copied()
+    }
+
+    /// The line of a test, with its end.
+    pub fn text(&self, number: usize) -> Option<String> {
+        let place = self.places.get(&number)?;
+        let mut file = File::open(&self.files[place.file]).ok()?;
+        file.seek(SeekFrom::Start(place.from)).ok()?;
+        let mut line = vec![0; place.length];
+        file.read_exact(&mut line).ok()?;
+        String::from_utf8(line).ok()
+    }
+
+    /// What the line of a test says.
+    pub fn line(&self, number: usize) -> Option<Value> {
+        serde_json::from_str(&self.text(number)?).ok()
+    }
+
+    /// Hands over all lines by number.
+    pub fn each(&self, mut take: impl FnMut(&[u8]) -> miette::Result<()>) -> miette::Result<()> {
+        let open = |path: &PathBuf| {
+            File::open(path).into_diagnostic().wrap_err_with(|| format!("{} cannot be read", path.display()))
+        };
+        let mut files: Vec<File> = self.files.iter().map(open).collect::<Result<_, _>>()?;
+        let mut line = Vec::new();
+        for place in self.places.values() {
+            let file = &mut files[place.file];
+            line.resize(place.length, 0);
+            let read = file.seek(SeekFrom::Start(place.from)).and_then(|_| file.read_exact(&mut line));
+            read.into_diagnostic()
+                .wrap_err_with(|| format!("{} was changed", self.files[place.file].display()))?;
+            take(&line)?;
+        }
+        Ok(())
+    }
+}
+
+/// A file of results that this run writes.
+#[derive(Debug)]
+pub struct Record {
+    path: PathBuf,
+    file: File,
+    end: u64,
+    lines: Lines,
+    /// Whether its lines stand by number, each once, and nothing else.
+    is_in_order: bool,
+}
+
+impl Record {
+    /// Begins the file, or goes on with what is there: `is_own` says of which test of this campaign a line is.
+    pub fn open(
+        path: &Path,
+        resume: bool,
+        inputs: &[&Path],
+        is_own: impl Fn(&Value) -> Option<usize>,
+    ) -> miette::Result<Self> {
+        // What is no record of this program is looked at as any target is.
+        if !shard::is_own(path) {
+            JsonTarget::checked(Some(path), inputs)?;
+        }
+        let words = || format!("{} cannot be written", path.display());
+        let file = OpenOptions::new().read(true).append(true).create(true).open(path);
+        let file = file.into_diagnostic().wrap_err_with(words)?;
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            return Err(miette::miette!(
+                help = "wait for it, or end it",
+                "another run is writing {}",
+                path.display()
+            ));
+        }
+        let mut record =
+            Self { path: path.to_path_buf(), file, end: 0, lines: Lines::default(), is_in_order: true };
+        if resume {
+            record.take_over(is_own)?;
+        }
+        record.file.set_len(record.end).into_diagnostic().wrap_err_with(words)?;
+        Ok(record)
+    }
+
+    fn take_over(&mut self, is_own: impl Fn(&Value) -> Option<usize>) -> miette::Result<()> {
+        let (mut end, mut last, mut is_in_order) = (0, None, true);
+        self.lines.add(&self.path, |_, line| {
+            // The run was stopped in the middle of the last one.
+            if !line.ends_with(b"\n") {
+                return Ok(None);
+            }
+            end += line.len() as u64;
+            let number = serde_json::from_slice(line).ok().and_then(|line: Value| is_own(&line));
+            is_in_order &= number.is_some() && number > last;
+            last = number;
+            Ok(number)
+        })?;
+        (self.end, self.is_in_order) = (end, is_in_order);
+        Ok(())
+    }
+
+    /// What is in it.
+    pub fn lines(&self) -> &Lines {
+        &self.lines
+    }
+
+    /// Writes one line at its end.
+    pub fn put(&mut self, number: usize, line: &[u8]) -> miette::Result<()> {
+        self.file
+            .write_all(line)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("{} could not be written", self.path.display()))?;
+        if self.lines.files.is_empty() {
+            self.lines.files.push(self.path.clone());
+        }
+        self.is_in_order &= self.lines.places.last_key_value().is_none_or(|(last, _)| *last < number);
+        self.lines.places.insert(number, LinePlace { file: 0, from: self.end, length: line.len() });
+        self.end += line.len() as u64;
+        Ok(())
+    }
+
+    /// Puts the lines in order, where a run that was stopped has left them in another.
+    pub fn finish(&mut self) -> miette::Result<()> {
+        if self.is_in_order {
+            return Ok(());
+        }
+        let failed = |source| CannotWrite::Failed { path: self.path.display().to_string(), source };
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(OWN_PREFIX);
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let staged = builder.tempfile_in(parent_of(&self.path)).map_err(failed)?;
+        let mut sorted = Lines { files: vec![self.path.clone()], places: BTreeMap::new() };
+        let (mut writer, mut from, mut numbers) = (BufWriter::new(staged.as_file()), 0, self.lines.numbers());
+        self.lines.each(|line| {
+            if let Some(number) = numbers.next() {
+                sorted.places.insert(number, LinePlace { file: 0, from, length: line.len() });
+            }
+            from += line.len() as u64;
+            Ok(writer.write_all(line).map_err(failed)?)
+        })?;
+        writer.flush().and_then(|()| staged.as_file().sync_all()).map_err(failed)?;
+        drop(writer);
+        drop(numbers);
+        staged.persist(&self.path).map_err(|error| failed(error.error))?;
+        self.lines = sorted;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(number: usize, words: &str) -> Vec<u8> {
+        format!("{{\"campaign\":{{\"schema\":\"dropcheck.x/1\"}},\"n\":{number},\"w\":\"{words}\"}}\n")
+            .into_bytes()
+    }
+
+    fn own(line: &Value) -> Option<usize> {
+        line["n"].as_u64().and_then(|n| usize::try_from(n).ok())
+    }
+
+    #[test]
+    fn a_torn_end_is_cut_off_and_lines_come_back_in_order() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("results.jsonl");
+        let mut record = Record::open(&path, false, &[], own).unwrap();
+        for number in [0, 3] {
+            record.put(number, &line(number, "first")).unwrap();
+        }
+        assert!(Record::open(&path, true, &[], own).is_err(), "two runs write one file");
+        drop(record);
+        let mut file = OpenOptions::new().append(true).open(&path).unwrap();
+        file.write_all(&line(1, "torn")[..20]).unwrap();
+        let mut record = Record::open(&path, true, &[], own).unwrap();
+        assert!(record.lines().line(3).is_some() && record.lines().line(1).is_none());
+        for number in [1, 2, 3] {
+            record.put(number, &line(number, "again")).unwrap();
+        }
+        record.finish().unwrap();
+        let expected = [line(0, "first"), line(1, "again"), line(2, "again"), line(3, "again")].concat();
+        assert_eq!(std::fs::read(&path).unwrap(), expected);
+        assert_eq!(record.lines().line(2).unwrap()["w"], "again");
+    }
+}

@@ -1,0 +1,34 @@
+//! A file of lines, as `--jsonl` writes it, to what its lines are of.
+
+use serde_json::Value;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+
+/// How every line begins that `--jsonl` writes: the key `campaign` comes first, its `schema` first in it.
+const MARK: &[u8] = b"{\"campaign\":{\"schema\":\"dropcheck.";
+
+/// Whether a file holds such lines; the first may have been cut short.
+pub fn is_own(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(MARK.len() as u64).read_to_end(&mut head));
+    read.is_ok() && MARK.starts_with(&head)
+}
+
+/// `campaign.schema` of the first line.
+pub fn schema(path: &Path) -> miette::Result<String> {
+    let unread = |source| miette::miette!("{} cannot be read: {source}", path.display());
+    let mut line = Vec::new();
+    BufReader::new(File::open(path).map_err(unread)?).read_until(b'\n', &mut line).map_err(unread)?;
+    let first: Value = serde_json::from_slice(&line).unwrap_or_default();
+    first["campaign"]["schema"].as_str().map(str::to_owned).ok_or_else(|| no_shard(path))
+}
+
+/// The refusal of a file that no `--jsonl` of this program wrote.
+pub fn no_shard(path: &Path) -> miette::Report {
+    miette::miette!(
+        help = "name what `batch --jsonl FILE` or `validate --campaign N --jsonl FILE` wrote; a run that was stopped goes on with --resume",
+        "{} is no shard of a campaign: its first line does not say of which",
+        path.display()
+    )
+}

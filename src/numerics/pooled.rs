@@ -1,0 +1,150 @@
+//! Repeats of one quantity, each with its interval, to their mean and scatter, and to those that do not fit among the others.
+
+/// Half-width of a 95 % interval over its standard uncertainty.
+const COVERAGE: f64 = 1.96;
+
+/// What repeats say together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pooled {
+    /// How many.
+    pub count: usize,
+    /// Mean, weighted with 1/u².
+    pub mean: f64,
+    /// Root mean square of the half-widths: what repeats share, such as a calibration, no mean makes smaller.
+    pub u95: f64,
+    /// Standard deviation of the repeats about their mean, n − 1; NaN of one.
+    pub scatter: f64,
+    /// Σ ((x − mean) / u)² with u = u95 / 1.96, of n − 1 degrees of freedom where the intervals are independent.
+    pub chi_square: f64,
+}
+
+/// How a scatter stands beside what the intervals foretell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ScatterWord {
+    /// χ² below its 5 % quantile.
+    Smaller,
+    /// Between.
+    AsStated,
+    /// χ² above its 95 % quantile.
+    Larger,
+}
+
+/// E_n = (a − b) / √(U_a² + U_b²) of values with half-widths (ISO 13528): within ±1 they agree.
+#[must_use]
+pub fn e_n(a: (f64, f64), b: (f64, f64)) -> f64 {
+    (a.0 - b.0) / a.1.hypot(b.1)
+}
+
+/// The pool of (value, half-width); `None` of nothing. Half-widths are above 0.
+#[must_use]
+#[allow(clippy::cast_precision_loss, reason = "repeats are few")]
+pub fn pooled(values: &[(f64, f64)]) -> Option<Pooled> {
+    let count = values.len() as f64;
+    let (mean, _) = mean(values)?;
+    let square = |of: &dyn Fn(&(f64, f64)) -> f64| values.iter().map(|value| of(value).powi(2)).sum::<f64>();
+    Some(Pooled {
+        count: values.len(),
+        mean,
+        u95: (square(&|value| value.1) / count).sqrt(),
+        scatter: (square(&|value| value.0 - mean) / (count - 1.0)).sqrt(),
+        chi_square: square(&|value| COVERAGE * (value.0 - mean) / value.1),
+    })
+}
+
+/// Mean weighted with 1/u², and its half-width if the values are independent.
+fn mean(values: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let weight: f64 = values.iter().map(|value| value.1.powi(-2)).sum();
+    let sum: f64 = values.iter().map(|value| value.0 * value.1.powi(-2)).sum();
+    (weight > 0.0).then(|| (sum / weight, weight.sqrt().recip()))
+}
+
+impl Pooled {
+    /// Whether the repeats scatter as their intervals say; `None` of one.
+    #[must_use]
+    pub fn word(&self) -> Option<ScatterWord> {
+        let degrees = self.count.checked_sub(1).filter(|degrees| *degrees > 0)?;
+        Some(if self.chi_square > chi_square_quantile(degrees, 1.645) {
+            ScatterWord::Larger
+        } else if self.chi_square < chi_square_quantile(degrees, -1.645) {
+            ScatterWord::Smaller
+        } else {
+            ScatterWord::AsStated
+        })
+    }
+}
+
+/// The quantile of χ² at the normal quantile `z` (Wilson and Hilferty 1931): within 1 % of it from three degrees of freedom on.
+#[allow(clippy::cast_precision_loss, reason = "repeats are few")]
+fn chi_square_quantile(degrees: usize, z: f64) -> f64 {
+    let nu = degrees as f64;
+    let share = 2.0 / (9.0 * nu);
+    nu * (1.0 - share + z * share.sqrt()).max(0.0).powi(3)
+}
+
+/// E_n of each value against the mean of the others, and whether it falls out of them.
+///
+/// The one with the largest |E_n| above 1 is taken out, then the others are looked at again, as long as three are left (largest consistent
+/// subset, Cox 2007): one wrong value does not make the right ones look wrong. Of two that contradict each other both fall out.
+#[must_use]
+pub fn apart(values: &[(f64, f64)]) -> Vec<(Option<f64>, bool)> {
+    let mut kept: Vec<usize> = (0..values.len()).collect();
+    let against = |i: usize, kept: &[usize]| {
+        let others: Vec<(f64, f64)> = kept.iter().filter(|j| **j != i).map(|j| values[*j]).collect();
+        mean(&others).map(|others| e_n(values[i], others))
+    };
+    let mut out = vec![false; values.len()];
+    while kept.len() > 2 {
+        let size = |i: &usize| against(*i, &kept).map_or(0.0, f64::abs);
+        let Some(worst) = kept.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b))) else { break };
+        if size(&worst) <= 1.0 {
+            break;
+        }
+        out[worst] = true;
+        kept.retain(|i| *i != worst);
+    }
+    let two_differ = kept.len() == 2 && against(kept[0], &kept).is_some_and(|e_n| e_n.abs() > 1.0);
+    (0..values.len())
+        .map(|i| {
+            let e_n = against(i, &kept);
+            (e_n, out[i] || two_differ && kept.contains(&i))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pool_is_its_textbook_values() {
+        let pool = pooled(&[(1.0, 0.196), (1.2, 0.196), (1.1, 0.196)]).unwrap();
+        assert!((pool.mean - 1.1).abs() < 1e-12 && (pool.u95 - 0.196).abs() < 1e-12);
+        // u = 0.1: (1² + 1² + 0²).
+        assert!((pool.chi_square - 2.0).abs() < 1e-12 && (pool.scatter - 0.1).abs() < 1e-12);
+        assert_eq!(pool.word(), Some(ScatterWord::AsStated));
+        assert_eq!(pooled(&[(1.0, 0.1)]).unwrap().word(), None);
+        assert_eq!(pooled(&[]), None);
+        let far = pooled(&[(1.0, 0.1), (2.0, 0.1), (3.0, 0.1)]).unwrap();
+        assert_eq!(far.word(), Some(ScatterWord::Larger));
+        let near = pooled(&[(1.0, 0.1), (1.0001, 0.1), (1.0, 0.1), (1.0, 0.1)]).unwrap();
+        assert_eq!(near.word(), Some(ScatterWord::Smaller));
+    }
+
+    #[test]
+    fn quantiles_are_those_of_tables() {
+        for (degrees, expected) in [(3, 7.815), (10, 18.307), (30, 43.773)] {
+            assert!((chi_square_quantile(degrees, 1.645) / expected - 1.0).abs() < 0.01);
+        }
+    }
+
+    #[test]
+    fn one_wrong_value_is_named_and_the_right_ones_are_not() {
+        let found = apart(&[(1.0, 0.1), (1.02, 0.1), (1.6, 0.1), (0.99, 0.1)]);
+        assert_eq!(found.iter().map(|(_, is_out)| *is_out).collect::<Vec<_>>(), [false, false, true, false]);
+        assert!(found[2].0.unwrap() > 4.0 && found[0].0.unwrap().abs() < 0.2);
+        assert!(apart(&[(1.0, 0.1), (2.0, 0.1)]).iter().all(|(_, is_out)| *is_out));
+        assert!(apart(&[(1.0, 0.1), (1.1, 0.1)]).iter().all(|(_, is_out)| !is_out));
+        assert_eq!(apart(&[(1.0, 0.1)]), [(None, false)]);
+        assert!((e_n((1.0, 0.3), (2.0, 0.4)) + 2.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,181 @@
+//! A series to its pictures: slap-down speed on the predicted curves, measured over predicted, and k over angle, date and number.
+
+use super::BatchRow;
+use super::series::{PooledQuantity, PredictedCurve, Series, is_usable};
+use crate::data::{BodyModel, Estimate};
+use crate::report::pictures::draw::{Picture, Plate};
+use crate::report::pictures::panel::{
+    ALARM, COLOURS, Colour, Curve, Fill, GREY, INK, Mark, Panel, PanelAxis, PointShape, Points,
+};
+use crate::report::rounding::plain;
+use crate::report::words::contact_words;
+
+/// Repeats at one angle stand beside one another, so far apart, degrees.
+const BESIDE_DEG: f64 = 0.16;
+
+const NOTHING: (&str, &str) = ("There is nothing to show.", "No recording of this cask gave a number.");
+
+impl Series<'_> {
+    /// Its pictures; `number` tells their files from those of other series.
+    pub(super) fn pictures(&self, number: usize) -> Vec<Picture> {
+        vec![self.speeds(&Self::name_of(number, "speed")), self.ks(&Self::name_of(number, "k"))]
+    }
+
+    /// The name of a picture of the series with this number.
+    pub(super) fn name_of(number: usize, what: &str) -> String {
+        format!("campaign-{what}-{number}")
+    }
+
+    fn speeds(&self, name: &str) -> Picture {
+        let mut panel = self.panel("Slap-down speed", "slap-down speed, m/s");
+        panel.height = 620;
+        (panel.fills, panel.lines) = predicted(&self.curves);
+        self.draw(&mut panel, |row| PooledQuantity::Speed.of(row), |row| self.angle(row));
+        panel.marks = self.marks();
+        let mut ratio = self.panel("Measured over predicted", "ratio");
+        if let Some((from, to)) = ratio.x.range {
+            ratio.lines.push(Curve::new(GREY, vec![(from, 1.0), (to, 1.0)]));
+        }
+        self.draw(&mut ratio, relative, |row| self.angle(row));
+        let k = self.k.map_or_else(String::new, |[low, high]| {
+            format!(", k from {} to {}", plain(low, 3), plain(high, 3))
+        });
+        let caption = format!(
+            "Above: measured with 95 % intervals over the stated drop angle; repeats stand beside one another. Bands: the analytical model \
+             over the measured range of k{k}. Below: measured over predicted with each drop's own k. Hollow: not to be used. Ringed: falls \
+             out of its repeats."
+        );
+        Plate::new(name, format!("{}: slap-down speed over the drop angle", self.name), caption)
+            .or(NOTHING)
+            .picture(&[panel, ratio])
+    }
+
+    fn ks(&self, name: &str) -> Picture {
+        let k = |row: &BatchRow| PooledQuantity::K.of(row);
+        let mut over_angle = self.panel("Over the drop angle", "k");
+        self.draw(&mut over_angle, k, |row| self.angle(row));
+        let mut over_number = Panel {
+            x: PanelAxis::new("test number in the campaign"),
+            ..self.panel("Over the test number", "k")
+        };
+        self.draw(&mut over_number, k, |row| Some(row.at.number.into()));
+        with_air(&mut over_number);
+        let first = self.rows.iter().filter_map(|row| date(row)).min();
+        let label = first.map_or_else(String::new, |first| format!("days since {first}"));
+        let mut over_date = Panel { x: PanelAxis::new(label), ..self.panel("Over the test date", "k") };
+        let days = |row: &BatchRow| {
+            let since = date(row)?.since(first?).ok()?;
+            Some(f64::from(since.get_days()))
+        };
+        self.draw(&mut over_date, k, days);
+        with_air(&mut over_date);
+        let caption = "The coefficient of restitution with its 95 % interval. Hollow: not to be used. Ringed: falls out of its repeats."
+            .to_owned();
+        Plate::new(name, format!("{}: restitution", self.name), caption).or(NOTHING).picture(&[
+            over_angle,
+            over_date,
+            over_number,
+        ])
+    }
+
+    fn panel(&self, title: &str, y: &str) -> Panel {
+        let ends =
+            self.curves.first().and_then(|curve| Some((curve.points.first()?.0, curve.points.last()?.0)));
+        Panel {
+            title: title.to_owned(),
+            x: PanelAxis::new("drop angle, °").over(ends),
+            y: PanelAxis::new(y),
+            height: 330,
+            ..Panel::default()
+        }
+    }
+
+    /// The angle at which a row is drawn: its own, and a little beside its repeats.
+    fn angle(&self, row: &BatchRow) -> Option<f64> {
+        let own = row.at.angle_deg?;
+        let is_repeat =
+            |other: &&&BatchRow| other.at.angle_deg.is_some_and(|angle| (angle - own).abs() < 1e-6);
+        let repeats: Vec<u32> = self.rows.iter().filter(is_repeat).map(|row| row.at.number).collect();
+        let place = repeats.iter().position(|number| *number == row.at.number).unwrap_or(0);
+        let count = |count: usize| f64::from(u32::try_from(count).unwrap_or(u32::MAX));
+        Some(
+            own + BESIDE_DEG.min(2.0 / count(repeats.len()))
+                * (count(place) - (count(repeats.len()) - 1.0) / 2.0),
+        )
+    }
+
+    /// Adds the rows with their intervals.
+    fn draw(
+        &self,
+        panel: &mut Panel,
+        y: impl Fn(&BatchRow) -> Option<Estimate>,
+        x: impl Fn(&BatchRow) -> Option<f64>,
+    ) {
+        let mut looks = [
+            Points { radius: 7, ..Points::new(INK, PointShape::Dot, Vec::new()) }.named("measured"),
+            Points { radius: 7, is_hollow: true, ..Points::new(GREY, PointShape::Dot, Vec::new()) },
+            Points { radius: 15, ..Points::new(ALARM, PointShape::Ring, Vec::new()) },
+        ];
+        for row in &self.rows {
+            let (Some(estimate), Some(x)) = (y(row).filter(|e| e.value.is_finite()), x(row)) else {
+                continue;
+            };
+            let at = (x, estimate.value);
+            let colour = if is_usable(row) { INK } else { GREY };
+            if estimate.u95.is_finite() {
+                let ends = vec![(x, estimate.value - estimate.u95), (x, estimate.value + estimate.u95)];
+                panel.lines.push(Curve { stroke: 3, ..Curve::new(colour, ends) });
+            }
+            looks[usize::from(!is_usable(row))].at.push(at);
+            if self.falls_out(row) {
+                looks[2].at.push(at);
+            }
+        }
+        panel.points.extend(looks.into_iter().filter(|points| !points.at.is_empty()));
+    }
+
+    /// The names of those that fall out.
+    fn marks(&self) -> Vec<Mark> {
+        let out = self.rows.iter().filter(|row| self.falls_out(row));
+        out.filter_map(|row| Some(Mark { at: self.angle(row)?, label: row.id.clone() })).collect()
+    }
+}
+
+/// Room beside the first and the last point.
+fn with_air(panel: &mut Panel) {
+    let std::ops::Range { start, end } = panel.x_range();
+    let air = 0.03 * (end - start).max(1.0);
+    panel.x.range = Some((start - air, end + air)).filter(|(from, to)| from.is_finite() && to.is_finite());
+}
+
+fn relative(row: &BatchRow) -> Option<Estimate> {
+    let comparison = row.comparison?;
+    let ratio = comparison.measured / comparison.predicted;
+    let share = (comparison.measured_u95 / comparison.measured)
+        .hypot(comparison.predicted_u95 / comparison.predicted);
+    Some(Estimate::new(ratio, ratio * share, "1"))
+}
+
+/// The day of a test.
+fn date(row: &BatchRow) -> Option<jiff::civil::Date> {
+    row.at.date.as_deref()?.get(..10)?.parse().ok()
+}
+
+/// A band for each body and contact law between the curves of its lowest and highest k.
+fn predicted(curves: &[PredictedCurve]) -> (Vec<Fill>, Vec<Curve>) {
+    let (mut fills, mut lines) = (Vec::new(), Vec::new());
+    let is_same = |a: &PredictedCurve, b: &PredictedCurve| a.model == b.model && a.contact == b.contact;
+    for (i, group) in curves.chunk_by(is_same).enumerate() {
+        let colour: Colour = COLOURS[i % COLOURS.len()];
+        let body = if group[0].model == BodyModel::Rod { "rod" } else { "body" };
+        let label = format!("{body}, {}", contact_words(group[0].contact));
+        let line = |curve: &PredictedCurve| Curve { stroke: 2, ..Curve::new(colour, curve.points.clone()) };
+        lines.extend(group.iter().map(line));
+        let (Some(low), Some(high)) = (group.first(), group.last()) else { continue };
+        let values =
+            |curve: &PredictedCurve| -> Vec<f64> { curve.points.iter().map(|point| point.1).collect() };
+        let angles: Vec<f64> = low.points.iter().map(|point| point.0).collect();
+        fills.push(Fill::new(colour, 0.16, Fill::between(&angles, &values(low), &values(high))).named(label));
+    }
+    (fills, lines)
+}

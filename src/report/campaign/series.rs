@@ -1,0 +1,247 @@
+//! Rows of a campaign to series, the drops of one cask from one height, and these to pools: repeats at one angle, and all angles.
+
+use super::BatchRow;
+use crate::data::{BodyModel, Contact, Estimate, Verdict};
+use crate::numerics::pooled::{Pooled, ScatterWord, apart, pooled};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// How far beyond the angles of the tests the predicted curves go, degrees.
+const BEYOND_DEG: f64 = 5.0;
+
+/// The predicted slap-down speed over the angle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PredictedCurve {
+    /// Rod or body.
+    pub model: BodyModel,
+    /// The contact law.
+    pub contact: Contact,
+    /// Coefficient of restitution.
+    pub k: f64,
+    /// Angle, degrees, and speed, m/s.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// A quantity that repeats have in common.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum PooledQuantity {
+    K,
+    Speed,
+}
+
+impl PooledQuantity {
+    const ALL: [Self; 2] = [Self::K, Self::Speed];
+
+    pub(super) fn of(self, row: &BatchRow) -> Option<Estimate> {
+        match self {
+            Self::K => row.k,
+            Self::Speed => row.slap_down_speed,
+        }
+    }
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::K => "k",
+            Self::Speed => "slap_down_speed",
+        }
+    }
+
+    pub(super) fn unit(self) -> &'static str {
+        match self {
+            Self::K => "1",
+            Self::Speed => "m/s",
+        }
+    }
+}
+
+/// A row among its repeats: E_n against the others, and whether it falls out of them.
+pub(super) struct PoolMember<'a> {
+    pub(super) row: &'a BatchRow,
+    pub(super) e_n: Option<f64>,
+    pub(super) is_out: bool,
+}
+
+/// One quantity of the sound drops at one angle, or at all.
+pub(super) struct Pool<'a> {
+    pub(super) angle_deg: Option<f64>,
+    pub(super) quantity: PooledQuantity,
+    pub(super) members: Vec<PoolMember<'a>>,
+    /// Of those that do not fall out.
+    pub(super) pooled: Pooled,
+}
+
+/// The drops of one cask from one height.
+pub(super) struct Series<'a> {
+    pub(super) name: String,
+    pub(super) rows: Vec<&'a BatchRow>,
+    pub(super) pools: Vec<Pool<'a>>,
+    pub(super) curves: Vec<PredictedCurve>,
+    /// Lowest and highest k measured, but for what falls out.
+    pub(super) k: Option<[f64; 2]>,
+}
+
+/// A pool as `campaign.json` has it.
+#[derive(Serialize)]
+pub(super) struct PoolRecord {
+    cask: String,
+    angle_deg: Option<f64>,
+    quantity: &'static str,
+    unit: &'static str,
+    /// Repeats that do not fall out.
+    count: usize,
+    mean: f64,
+    u95: f64,
+    scatter: Option<f64>,
+    chi_square: f64,
+    degrees: usize,
+    scatter_is: Option<&'static str>,
+    repeats: Vec<RepeatRecord>,
+}
+
+/// A repeat in it.
+#[derive(Serialize)]
+struct RepeatRecord {
+    id: String,
+    e_n: Option<f64>,
+    falls_out: bool,
+}
+
+impl<'a> Series<'a> {
+    /// All series, in the order in which their casks come; `predicted` gives the curves of a row's cask over these k and angles.
+    pub(super) fn all(
+        rows: &'a [BatchRow],
+        predicted: impl Fn(&BatchRow, [f64; 2], [f64; 2]) -> Vec<PredictedCurve>,
+    ) -> Vec<Self> {
+        let mut series: Vec<Self> = Vec::new();
+        let mut places: BTreeMap<&str, usize> = BTreeMap::new();
+        for row in rows.iter().filter(|row| row.verdict.is_some()) {
+            let place = *places.entry(&row.at.series).or_insert(series.len());
+            if place == series.len() {
+                let same = series.iter().filter(|other| other.rows[0].at.cask == row.at.cask).count();
+                let name =
+                    if same == 0 { row.at.cask.clone() } else { format!("{} ({})", row.at.cask, same + 1) };
+                series.push(Self { name, rows: Vec::new(), pools: Vec::new(), curves: Vec::new(), k: None });
+            }
+            series[place].rows.push(row);
+        }
+        for series in &mut series {
+            series.pools = pools(&series.rows);
+            series.k = ends(
+                series.usable().filter(|row| !series.falls_out(row)).filter_map(|row| Some(row.k?.value)),
+            );
+            if let (Some(k), Some([from, to])) =
+                (series.k, ends(series.rows.iter().filter_map(|row| row.at.angle_deg)))
+            {
+                let angles = [(from - BEYOND_DEG).max(0.5), (to + BEYOND_DEG).min(90.0)];
+                series.curves = predicted(series.rows[0], k.map(|k| k.clamp(0.0, 1.0)), angles);
+            }
+        }
+        series
+    }
+
+    /// Those whose numbers may be used.
+    pub(super) fn usable(&self) -> impl Iterator<Item = &'a BatchRow> {
+        self.rows.iter().copied().filter(|row| is_usable(row))
+    }
+
+    /// The place of a row among its repeats at its angle.
+    pub(super) fn member(&self, row: &BatchRow, quantity: PooledQuantity) -> Option<&PoolMember<'a>> {
+        let own = self.pools.iter().filter(|pool| pool.quantity == quantity && pool.angle_deg.is_some());
+        own.flat_map(|pool| &pool.members).find(|member| member.row.at.number == row.at.number)
+    }
+
+    /// Whether a row falls out of its repeats in any quantity.
+    pub(super) fn falls_out(&self, row: &BatchRow) -> bool {
+        PooledQuantity::ALL
+            .iter()
+            .any(|quantity| self.member(row, *quantity).is_some_and(|member| member.is_out))
+    }
+
+    /// The pools for `campaign.json`.
+    pub(super) fn records(&self) -> Vec<PoolRecord> {
+        let repeat = |member: &PoolMember| RepeatRecord {
+            id: member.row.id.clone(),
+            e_n: member.e_n,
+            falls_out: member.is_out,
+        };
+        let record = |pool: &Pool| PoolRecord {
+            cask: self.name.clone(),
+            angle_deg: pool.angle_deg,
+            quantity: pool.quantity.name(),
+            unit: pool.quantity.unit(),
+            count: pool.pooled.count,
+            mean: pool.pooled.mean,
+            u95: pool.pooled.u95,
+            scatter: Some(pool.pooled.scatter).filter(|scatter| scatter.is_finite()),
+            chi_square: pool.pooled.chi_square,
+            degrees: pool.pooled.count - 1,
+            scatter_is: pool.pooled.word().map(scatter_words),
+            repeats: pool.members.iter().map(repeat).collect(),
+        };
+        self.pools.iter().map(record).collect()
+    }
+}
+
+/// What a scatter is beside the stated intervals.
+pub(super) fn scatter_words(word: ScatterWord) -> &'static str {
+    match word {
+        ScatterWord::Smaller => "smaller than stated",
+        ScatterWord::AsStated => "as stated",
+        ScatterWord::Larger => "larger than stated",
+    }
+}
+
+/// A verdict of "fail" says that the numbers are not to be used.
+pub(super) fn is_usable(row: &BatchRow) -> bool {
+    row.verdict.is_some_and(|verdict| verdict != Verdict::Fail)
+}
+
+/// Both quantities at every angle, and k of all angles.
+fn pools<'a>(rows: &[&'a BatchRow]) -> Vec<Pool<'a>> {
+    let mut by_angle: BTreeMap<i64, Vec<&'a BatchRow>> = BTreeMap::new();
+    for row in rows {
+        #[allow(clippy::cast_possible_truncation, reason = "0 to 90 degrees in millionths")]
+        let angle = row.at.angle_deg.map(|angle| (angle * 1e6).round() as i64);
+        if let Some(angle) = angle {
+            by_angle.entry(angle).or_default().push(row);
+        }
+    }
+    let of_angle = by_angle.values().flat_map(|rows| {
+        PooledQuantity::ALL.iter().filter_map(|quantity| pool(rows[0].at.angle_deg, *quantity, rows))
+    });
+    let mut pools: Vec<Pool> = of_angle.collect();
+    if by_angle.len() > 1 {
+        // What falls out of its repeats does not enter the mean over the angles.
+        let out: Vec<u32> = pools
+            .iter()
+            .flat_map(|pool| &pool.members)
+            .filter(|m| m.is_out)
+            .map(|m| m.row.at.number)
+            .collect();
+        let left: Vec<&BatchRow> = rows.iter().copied().filter(|row| !out.contains(&row.at.number)).collect();
+        pools.extend(pool(None, PooledQuantity::K, &left));
+    }
+    pools
+}
+
+fn pool<'a>(angle_deg: Option<f64>, quantity: PooledQuantity, rows: &[&'a BatchRow]) -> Option<Pool<'a>> {
+    let measured = |row: &&'a BatchRow| {
+        let estimate = quantity.of(row).filter(|e| e.value.is_finite() && e.u95.is_finite() && e.u95 > 0.0);
+        estimate.filter(|_| is_usable(row)).map(|e| (*row, (e.value, e.u95)))
+    };
+    let (rows, values): (Vec<&BatchRow>, Vec<(f64, f64)>) = rows.iter().filter_map(measured).unzip();
+    let found = apart(&values);
+    let kept: Vec<(f64, f64)> =
+        values.iter().zip(&found).filter(|(_, (_, is_out))| !is_out).map(|(value, _)| *value).collect();
+    // Of two that contradict each other neither is the better one.
+    let pooled = pooled(if kept.is_empty() { &values } else { &kept })?;
+    let members = rows.into_iter().zip(found).map(|(row, (e_n, is_out))| PoolMember { row, e_n, is_out });
+    Some(Pool { angle_deg, quantity, members: members.collect(), pooled })
+}
+
+/// The lowest and the highest.
+fn ends(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    values.filter(|value| value.is_finite()).fold(None, |ends, value| {
+        Some(ends.map_or([value, value], |[low, high]: [f64; 2]| [low.min(value), high.max(value)]))
+    })
+}
