@@ -19,6 +19,7 @@ use super::limits::Bounds;
 use super::output::{Folder, columns, print, print_plain};
 use super::progress::CountedProgress;
 use super::record::stamp;
+use super::shard::part;
 use super::tuning::keep_freed_memory;
 use clap::Args;
 use dropcheck::data::DropResult;
@@ -61,7 +62,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE|-")]
     jsonl: Option<PathBuf>,
     /// Only each N-th recording from number I on, from 0; `dropcheck merge` puts the parts together
-    #[arg(long, value_name = "I/N", value_parser = shard, default_value = "0/1", hide_default_value = true)]
+    #[arg(long, value_name = "I/N", value_parser = part, default_value = "0/1", hide_default_value = true)]
     shard: (usize, usize),
     /// Go on with what an earlier run of the same words has left: what is done is not done again
     #[arg(long)]
@@ -76,14 +77,6 @@ pub struct Arguments {
     switched_off: SwitchedOff,
     #[command(flatten)]
     bounds: Bounds,
-}
-
-fn shard(text: &str) -> Result<(usize, usize), String> {
-    let parts =
-        text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
-    parts
-        .filter(|(i, n)| i < n)
-        .ok_or_else(|| "I/N with I from 0 to N - 1, such as 0/3, 1/3 and 2/3".to_owned())
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
@@ -280,17 +273,4 @@ pub fn merge(shards: &[PathBuf], out: &Path) -> miette::Result<Ending> {
     let page = out.join("campaign.html").display().to_string();
     print(&format!("\nCampaign: {}\n", report::printable(&page)))?;
     Ok(campaign::ending(&batch))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_shard_is_counted_from_nought() {
-        assert_eq!(shard("2/3"), Ok((2, 3)));
-        for text in ["3/3", "1", "-1/3", "0/0", "a/b"] {
-            assert!(shard(text).is_err(), "{text}");
-        }
-    }
 }

@@ -23,6 +23,8 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let (shards, out) = (&arguments.shards[..], arguments.out.as_path());
     let ending = match schema(&shards[0])?.as_str() {
         batch::SHARD_SCHEMA => batch::merge(shards, out)?,
+        #[cfg(feature = "lab")]
+        dropcheck::lab::campaign::SCHEMA => super::lab::campaign::merge(shards, out)?,
         _ => return Err(no_shard(&shards[0])),
     };
     Ok(ending.or_zero(arguments.exit_zero))

@@ -32,3 +32,25 @@ pub fn no_shard(path: &Path) -> miette::Report {
         path.display()
     )
 }
+
+/// "I/N": part I, from 0, of N.
+pub fn part(text: &str) -> Result<(usize, usize), String> {
+    let parts =
+        text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
+    parts
+        .filter(|(i, n)| i < n)
+        .ok_or_else(|| "I/N with I from 0 to N - 1, such as 0/3, 1/3 and 2/3".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shard_is_counted_from_nought() {
+        assert_eq!(part("2/3"), Ok((2, 3)));
+        for text in ["3/3", "1", "-1/3", "0/0", "a/b"] {
+            assert!(part(text).is_err(), "{text}");
+        }
+    }
+}

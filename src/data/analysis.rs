@@ -13,10 +13,10 @@ use super::prediction::{BodyModel, Prediction};
 use super::reconstruction::ReconstructionChoice;
 use super::recording::RecordingFormat;
 use super::test_record::{ObservedBeside, SensorRecord, TestRecord};
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// The overall word on a result.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// Nothing speaks against it.

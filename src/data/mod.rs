@@ -8,6 +8,7 @@ mod curves;
 mod estimate;
 mod finding;
 mod flight;
+mod held;
 mod impacts;
 pub(crate) mod keys;
 mod ladder;
@@ -44,6 +45,7 @@ pub use finding::{
     shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
+pub use held::HeldSamples;
 pub use impacts::{ChannelPeak, ForceOverCrush, ImpactTable, RigidBodyDeceleration};
 pub use keys::LONGEST_CONTACT_S;
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};

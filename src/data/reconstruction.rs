@@ -2,10 +2,10 @@
 
 use super::cask::Axis;
 use super::estimate::Estimate;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A rung of the reconstruction, simplest first   (29)
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ReconstructionRung {
     /// Each channel integrated by itself and read off at the events, gravity left out between the impacts: \[P\] Fig. 13.

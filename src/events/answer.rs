@@ -285,7 +285,7 @@ impl<'a> Answering<'a> {
                 let step_s = as_f64(block) / rate_hz;
                 let mut regressors = cause.regressors(&ORDERS, begin_s - delay_s, step_s, count);
                 regressors.extend([vec![1.0; count], (0..count).map(as_f64).collect()]);
-                residual_square(&values, &regressors)
+                residual_square(&values, regressors)
             };
             let (without, with) = (left(0.0), left(delay_s));
             let freedom = as_f64(count - ORDERS.len() - 2);
@@ -312,7 +312,7 @@ impl<'a> Answering<'a> {
 
 /// Sum of squares that the cause's integrals leave of `values`, taken from `from_s` on, `step_s` apart.
 fn left(values: &[f64], from_s: f64, step_s: f64, cause: &Cause, orders: &[usize]) -> f64 {
-    residual_square(values, &cause.regressors(orders, from_s, step_s, values.len()))
+    residual_square(values, cause.regressors(orders, from_s, step_s, values.len()))
 }
 
 /// Root mean square over `count` of the values, the others being next to zero.

@@ -1,5 +1,6 @@
 //! The rigid motion over one contact to what a test report tabulates of it: force, decelerations free of ringing, crush.
 
+use super::curves::low_passed;
 use super::reconstruct::{corner, corner_height_m};
 use crate::data::{Motion, MotionState, Setup, Signal};
 use crate::numerics::filter::ZeroPhaseLowPass;
@@ -82,11 +83,13 @@ impl ContactCourse {
         })
     }
 
-    /// A course of forces through the zero-phase low-pass with this −3 dB cut-off, Hz, nothing before and after it; as long as it is.
+    /// Courses of forces through the zero-phase low-pass with this −3 dB cut-off, Hz, nothing before and after them; as long as they are.
     #[must_use]
-    pub fn low_passed(&self, course_m_s2: &[f64], cutoff_hz: f64) -> Vec<f64> {
-        ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, 1.0 / self.step_s)
-            .map_or_else(|| course_m_s2.to_vec(), |filter| filter.apply_to_pulse(course_m_s2))
+    pub fn low_passed<const N: usize>(&self, courses_m_s2: [&[f64]; N], cutoff_hz: f64) -> [Vec<f64>; N] {
+        match ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, 1.0 / self.step_s) {
+            Some(filter) => filter.apply_to_pulses(courses_m_s2),
+            None => courses_m_s2.map(<[f64]>::to_vec),
+        }
     }
 }
 
@@ -156,22 +159,29 @@ pub struct ChannelPulse {
     pub length_s: Option<f64>,
 }
 
-/// The pulse of a channel between two times, s, and through the low-pass with this −3 dB cut-off, Hz; `None` where samples are clipped or lost.
+/// The pulse of each channel between two times, s, and through the low-pass with this −3 dB cut-off, Hz; `None` where samples are clipped or
+/// lost.
 #[must_use]
-pub fn pulse(signal: &Signal, [from_s, to_s]: [f64; 2], cutoff_hz: f64) -> Option<ChannelPulse> {
-    if [&signal.clipped, &signal.gaps].into_iter().any(|spans| signal.touches(spans, from_s, to_s)) {
-        return None;
-    }
+pub fn pulses(signals: &[Signal], between_s: [f64; 2], cutoff_hz: f64) -> Vec<Option<ChannelPulse>> {
+    let [from_s, to_s] = between_s;
     let margin_s = 6.2 / cutoff_hz;
-    let begin = signal.index_from(from_s - margin_s);
-    let wide = signal.cut(begin, signal.index_from(to_s + margin_s));
-    let filter = ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, wide.sample_rate_hz);
-    let filtered = filter.map_or_else(|| wide.force_m_s2.clone(), |f| f.apply(&wide.force_m_s2));
+    let is_whole =
+        |s: &Signal| ![&s.clipped, &s.gaps].into_iter().any(|spans| s.touches(spans, from_s, to_s));
+    let wide = |s: &Signal| s.cut(s.index_from(from_s - margin_s), s.index_from(to_s + margin_s));
+    let wide: Vec<Signal> = signals.iter().map(wide).collect();
+    let parts: Vec<(&Signal, &[f64])> = wide.iter().map(|s| (s, &s.force_m_s2[..])).collect();
+    let filtered = low_passed(&parts, cutoff_hz);
+    let all = signals.iter().zip(wide.iter().zip(&filtered));
+    all.map(|(signal, (wide, filtered))| pulse(wide, filtered, between_s).filter(|_| is_whole(signal)))
+        .collect()
+}
+
+fn pulse(wide: &Signal, filtered: &[f64], [from_s, to_s]: [f64; 2]) -> Option<ChannelPulse> {
     let (from, to) = (wide.index_from(from_s), wide.index_from(to_s));
     let peak = |values: &[f64]| {
         (from..to).max_by(|&a, &b| values[a].abs().total_cmp(&values[b].abs())).map(|i| (i, values[i]))
     };
-    let (at, filtered_m_s2) = peak(&filtered)?;
+    let (at, filtered_m_s2) = peak(filtered)?;
     let is_below = |f: &f64| *f * filtered_m_s2.signum() < 0.1 * filtered_m_s2.abs();
     let began = filtered[..at].iter().rposition(is_below);
     let ended = filtered[at..].iter().position(is_below);

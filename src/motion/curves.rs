@@ -65,21 +65,37 @@ pub fn usual_filters(mass_kg: f64) -> Vec<(String, f64)> {
 /// The signals around the event, low-passed without phase; a cut-off that the rate cannot carry leaves them as they are.
 #[must_use]
 pub fn filtered(signals: &[Signal], events: &Events, cutoff_hz: f64) -> Vec<Signal> {
-    signals
-        .par_iter()
-        .map(|signal| {
-            let (first_s, last_s) = shown_s(signal, events);
-            // What lies beyond the margin reaches past it with 1e-12 of its size.
-            let margin_s = 6.2 / cutoff_hz;
-            let from = signal.index_from(first_s - QUIET_S - margin_s);
-            let to = signal.index_from(last_s + margin_s).max(from);
-            let force_m_s2 = match ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, signal.sample_rate_hz) {
-                Some(filter) => filter.apply(&signal.force_m_s2[from..to]),
-                None => signal.force_m_s2[from..to].to_vec(),
+    let around = |signal: &Signal| {
+        let (first_s, last_s) = shown_s(signal, events);
+        // What lies beyond the margin reaches past it with 1e-12 of its size.
+        let margin_s = 6.2 / cutoff_hz;
+        let from = signal.index_from(first_s - QUIET_S - margin_s);
+        (from, signal.index_from(last_s + margin_s).max(from))
+    };
+    let around: Vec<(usize, usize)> = signals.iter().map(around).collect();
+    let parts =
+        signals.iter().zip(&around).map(|(signal, &(from, to))| (signal, &signal.force_m_s2[from..to]));
+    let smooth = low_passed(&parts.collect::<Vec<_>>(), cutoff_hz);
+    let cut = |((signal, (from, _)), smooth): ((&Signal, (usize, usize)), _)| signal.cut_with(from, smooth);
+    signals.iter().zip(around).zip(smooth).map(cut).collect()
+}
+
+/// Parts of signals through the zero-phase low-pass with this −3 dB cut-off, Hz; those whose rate cannot carry it as they are.
+pub(super) fn low_passed(parts: &[(&Signal, &[f64])], cutoff_hz: f64) -> Vec<Vec<f64>> {
+    let filter = |signal: &Signal| ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, signal.sample_rate_hz);
+    let filters: Vec<Option<ZeroPhaseLowPass>> = parts.iter().map(|(signal, _)| filter(signal)).collect();
+    match filters.first() {
+        Some(Some(filter)) if filters.iter().all(|other| other.as_ref() == Some(filter)) => {
+            filter.apply_each(&parts.iter().map(|(_, part)| *part).collect::<Vec<_>>())
+        }
+        _ => {
+            let each = |(filter, (_, part)): (&Option<ZeroPhaseLowPass>, &(_, &[f64]))| match filter {
+                Some(filter) => filter.apply(part),
+                None => part.to_vec(),
             };
-            signal.cut_with(from, force_m_s2)
-        })
-        .collect()
+            filters.iter().zip(parts).map(each).collect()
+        }
+    }
 }
 
 /// Curves of all channels over the event.

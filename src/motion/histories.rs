@@ -159,7 +159,9 @@ impl<'a> Histories<'a> {
         let step = position as usize;
         let (a, b) =
             (self.bending_m_s(index, step), self.bending_m_s(index, (step + 1).min(usize::from(STEPS))));
-        let bending_m_s = a + position.fract() * (b - a);
+        // Not `fract`, which is a call where the processor may be any.
+        #[allow(clippy::cast_precision_loss, reason = "a step of the grid")]
+        let bending_m_s = a + (position - step as f64) * (b - a);
         self.second_s
             * (self.velocities[index].at(time_s) - bending_m_s + share * self.corrections_m_s[index])
     }

@@ -56,19 +56,32 @@ impl ZeroPhaseLowPass {
     /// The filtered samples; both ends are mirrored for the filter's own memory.
     #[must_use]
     pub fn apply(&self, samples: &[f64]) -> Vec<f64> {
-        let (mut work, head) = ends::continued(samples, self.padding, |_, x| x);
-        stage::forward_and_back(&self.stage, &mut work);
-        ends::cut(work, head, samples.len())
+        self.apply_each(&[samples]).pop().unwrap_or_default()
     }
 
-    /// The same of a pulse with nothing before and after it.
+    /// The same of several series, which take little longer than one where they are of one length.
     #[must_use]
-    pub fn apply_to_pulse(&self, pulse: &[f64]) -> Vec<f64> {
-        let mut work = vec![0.0];
-        work.extend_from_slice(pulse);
-        work.resize(1 + pulse.len() + self.padding, 0.0);
-        stage::forward_and_back(&self.stage, &mut work);
-        ends::cut(work, 1, pulse.len())
+    pub fn apply_each(&self, all: &[&[f64]]) -> Vec<Vec<f64>> {
+        let continued = |samples: &&[f64]| ends::continued(samples, self.padding, |_, x| x);
+        let (mut work, heads): (Vec<_>, Vec<_>) = all.iter().map(continued).unzip();
+        stage::each_forward_and_back(&self.stage, &mut work);
+        work.into_iter()
+            .zip(heads)
+            .zip(all)
+            .map(|((work, head), own)| ends::cut(work, head, own.len()))
+            .collect()
+    }
+
+    /// The same of pulses with nothing before and after them.
+    #[must_use]
+    pub fn apply_to_pulses<const N: usize>(&self, pulses: [&[f64]; N]) -> [Vec<f64>; N] {
+        let mut work = pulses.map(|pulse| {
+            let after = std::iter::repeat_n(&0.0, self.padding);
+            std::iter::once(&0.0).chain(pulse).chain(after).copied().collect::<Vec<f64>>()
+        });
+        stage::each_forward_and_back(&self.stage, &mut work);
+        let mut counts = pulses.iter().map(|pulse| pulse.len());
+        work.map(|work| ends::cut(work, 1, counts.next().unwrap_or_default()))
     }
 
     /// |H| of the whole (both passes) at a frequency, Hz, at the sample rate the filter was made for.

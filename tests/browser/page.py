@@ -93,12 +93,16 @@ def main(page):
     axe = Axe().run(driver, options={"runOnly": ["color-contrast"]})
     held("contrast of WCAG AA", not axe["violations"], [n["html"] for v in axe["violations"] for n in v["nodes"]][:3])
 
-    for size in (375, 768):
+    for size in (375, 768, 900):
         driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                {"width": size, "height": 800, "deviceScaleFactor": 1, "mobile": True})
         time.sleep(0.3)
         wide = driver.execute_script("return document.documentElement.scrollWidth")
         held(f"nothing wider than {size} px", wide <= size, wide)
+        if size > 820:
+            beyond = driver.execute_script(
+                "return [...document.querySelectorAll('table')].filter((t) => t.getBoundingClientRect().right > innerWidth).length")
+            held(f"no table beyond {size} px", beyond == 0, beyond)
     driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
     driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": "dark"}]})
     axe = Axe().run(driver, options={"runOnly": ["color-contrast"]})

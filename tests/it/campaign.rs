@@ -1,40 +1,50 @@
-//! From a small campaign to tables and scenes that say the same again, and to what counts as missed.
+//! From a small campaign to tables, lines and scenes that say the same again, in parts too, and to what counts as missed.
 
 use crate::run::{analyze, dropcheck, number};
-use dropcheck::data::{Estimate, IssueCode, ReconstructionCandidate, ReconstructionRung, Severity, Verdict};
-use dropcheck::lab::campaign::{self, DamageKind};
-use dropcheck::lab::data::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber};
+use dropcheck::data::{ReconstructionRung, Verdict};
+use dropcheck::lab::campaign::{self, DamageKind, Tally};
+use dropcheck::lab::data::{
+    Campaign, CampaignRequest, CampaignRow, Damage, RungSaid, SceneNumber, Scored, Stated,
+};
 use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 /// Cheap kinds: they make no longer records.
 const KINDS: [&str; 3] = ["gap_flight", "polarity_first", "stated_angle"];
 
 fn run(scenes: u32, seed: u64, exact: bool) -> Campaign {
-    let request = CampaignRequest { scenes, seed, undamaged: true, kinds: KINDS.to_vec(), exact };
-    campaign::run(&request, &|_| {})
+    let kinds = ["undamaged"].into_iter().chain(KINDS).map(str::to_owned).collect();
+    campaign::run(&CampaignRequest { scenes, seed, kinds, exact }, &|_| {})
+}
+
+/// The CSV of all rows.
+fn csv(campaign: &Campaign) -> Vec<u8> {
+    let lines = campaign.rows.iter().enumerate();
+    lines.flat_map(|(i, row)| campaign::csv(row, i == 0).expect("the CSV is written")).collect()
 }
 
 /// The cells of the CSV, a map a scene.
 fn cells(campaign: &Campaign) -> Vec<BTreeMap<String, String>> {
-    let bytes = campaign::csv(campaign).expect("the CSV is written");
+    let bytes = csv(campaign);
     csv::Reader::from_reader(&bytes[..]).deserialize().map(|row| row.expect("a whole row")).collect()
 }
 
 #[test]
 fn a_seed_gives_the_same_campaign_and_another_seed_another() {
     let campaign = run(3, 7, false);
-    let numbers: Vec<String> = campaign.rows.iter().map(|row| row.number.to_string()).collect();
+    let numbers: Vec<String> = campaign.rows.iter().map(|row| row.scene.to_string()).collect();
     assert_eq!(numbers[..3], ["U0", "U1", "U2"]);
-    assert!(campaign.rows[3..].iter().all(|row| matches!(row.number, SceneNumber::Damaged(_))));
-    let csv = |campaign: &Campaign| campaign::csv(campaign).expect("the CSV is written");
+    assert!(campaign.rows[3..].iter().all(|row| matches!(row.scene, SceneNumber::Damaged(_))));
     assert_eq!(csv(&campaign), csv(&run(3, 7, false)));
     assert_ne!(csv(&campaign), csv(&run(3, 8, false)));
 }
 
 #[test]
 fn what_is_stated_differs_from_what_is_by_the_tolerances_and_with_exact_not_at_all() {
-    for (exact, row) in [(false, &run(1, 3, false).rows[0]), (true, &run(1, 3, true).rows[0])] {
-        let (scene, stated) = (&row.scene, &row.stated);
+    for exact in [false, true] {
+        let (file, _) = campaign::scene(3, SceneNumber::Undamaged(0), exact);
+        let (scene, stated) = (&file.scene, &file.stated);
         let tolerances = stated.tolerances;
         let off = [
             (scene.drop.angle_rad - stated.drop.angle_rad) / tolerances.angle_rad,
@@ -58,19 +68,19 @@ fn what_is_stated_differs_from_what_is_by_the_tolerances_and_with_exact_not_at_a
 fn a_scene_in_files_gives_what_the_campaign_has_of_it() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let campaign = run(2, 5, false);
-    assert_eq!(campaign.rows[2].damage.map(|damage| damage.kind), Some("gap_flight"));
+    assert_eq!(campaign.rows[2].damage.as_ref().map(|damage| &damage.kind[..]), Some("gap_flight"));
     for row in &campaign.rows {
-        let out = folder.path().join(row.number.to_string());
-        let words = ["validate", "--seed", "5", "--scene", &row.number.to_string(), "--out"];
+        let out = folder.path().join(row.scene.to_string());
+        let words = ["validate", "--seed", "5", "--scene", &row.scene.to_string(), "--out"];
         let answer = dropcheck(words.iter().map(Into::into).chain([out.as_os_str().to_owned()]));
         assert_eq!(answer.status, 0, "{}", answer.stderr);
-        let file = |ending| out.join(format!("{}.{ending}", row.number));
+        let file = |ending| out.join(format!("{}.{ending}", row.scene));
         let result = analyze(&file("mcap"), &file("toml")).json();
         assert_eq!(result["verdict"], format!("{:?}", row.verdict.expect("read")).to_lowercase());
-        for (pointer, i) in [("/slap_down/speed/value", 0), ("/k/value", 1)] {
-            let stated = row.quantities[i].stated.map(|e| e.value);
+        for (pointer, name) in [("/slap_down/speed/value", "speed"), ("/k/value", "k")] {
+            let stated = row.quantities[name].stated.map(|e| e.value);
             let Some((from_file, in_memory)) = number(&result, pointer).zip(stated) else {
-                assert_eq!((number(&result, pointer), stated), (None, None), "{} {pointer}", row.number);
+                assert_eq!((number(&result, pointer), stated), (None, None), "{} {pointer}", row.scene);
                 continue;
             };
             // Stamps in whole nanoseconds, angles in nine decimals of a degree, written and read.
@@ -83,10 +93,10 @@ fn a_scene_in_files_gives_what_the_campaign_has_of_it() {
 fn judged(row: &CampaignRow, verdict: Verdict, off: Option<(f64, f64)>) -> CampaignRow {
     let mut row = row.clone();
     row.verdict = Some(verdict);
-    for (i, off) in [off.map(|o| o.0), off.map(|o| o.1)].into_iter().enumerate() {
-        let scored = &mut row.quantities[i];
+    for (name, off) in [("speed", off.map(|o| o.0)), ("k", off.map(|o| o.1))] {
+        let scored: &mut Scored = row.quantities.get_mut(name).expect("scored");
         let truth = scored.truth.expect("every undamaged scene has a truth");
-        scored.stated = off.map(|off| Estimate::new(truth + 0.25 * off, 0.25, "1"));
+        scored.stated = off.map(|off| Stated { value: truth + 0.25 * off, u95: 0.25 });
     }
     row
 }
@@ -109,42 +119,133 @@ fn a_pass_whose_interval_ends_half_its_width_short_of_the_truth_is_missed() {
     }
 }
 
-fn candidate(rung: ReconstructionRung, k: Option<Estimate>) -> ReconstructionCandidate {
-    ReconstructionCandidate { rung, speed: None, k, consistent: true, residual: String::new() }
-}
-
 #[test]
-fn the_tables_have_every_kind_and_size_and_count_what_is_missed() {
-    let mut campaign = run(1, 2, true);
+fn the_tables_have_every_kind_and_count_what_is_missed() {
+    let campaign = run(1, 2, true);
     let sound = campaign.rows[0].clone();
-    campaign.rows.clear();
+    let mut tally = Tally::new(campaign.request);
     for &DamageKind { name: kind, ref sizes, unit, .. } in campaign::kinds() {
         for &size in sizes {
             let mut row = judged(&sound, Verdict::Pass, Some((if kind == "skew" { 2.5 } else { 0.0 }, 0.0)));
-            row.damage = Some(Damage { kind, size, unit });
-            campaign.rows.push(row);
+            row.damage = Some(Damage { kind: kind.to_owned(), size, unit: unit.to_owned() });
+            tally.add(&row);
         }
     }
     let mut reviewed = judged(&sound, Verdict::Review, Some((0.0, 0.0)));
-    reviewed.findings = vec![(IssueCode::Geometry, Severity::Warning)];
-    let says = |u95| Some(Estimate::new(sound.truth.k.expect("a truth") + 0.02, u95, "1"));
-    reviewed.candidates = vec![candidate(ReconstructionRung::Planar, says(0.01))];
-    reviewed.rung = Some(ReconstructionRung::Planar);
-    campaign.rows.push(reviewed.clone());
-    reviewed.candidates = vec![candidate(ReconstructionRung::Planar, says(0.03))];
-    campaign.rows.push(reviewed);
-    let tables = campaign::markdown(&campaign);
-    for &DamageKind { name: kind, ref sizes, unit, .. } in campaign::kinds() {
-        let outcome = if kind == "skew" { "0 | 0 | 0 | 1 | 200.0" } else { "1 | 0 | 0 | 0 | 0.0" };
-        for size in sizes {
-            let size = if unit.is_empty() { String::new() } else { format!("{size} {unit}") };
-            let line = format!("| {kind} | {size} | 1 | {outcome} |");
-            assert!(tables.contains(&line), "no {line:?} in\n{tables}");
-        }
+    let truth = sound.quantities["k"].truth.expect("a truth");
+    for u95 in [0.01, 0.03] {
+        let k = Some(Stated { value: truth + 0.02, u95 });
+        let rung = ReconstructionRung::Planar;
+        reviewed.rungs = vec![RungSaid { rung, consistent: true, speed: None, k }];
+        reviewed.rung = Some(rung);
+        tally.add(&reviewed);
     }
-    assert!(tables.contains("| `geometry` | warning | 2 | 2 | 2 |"), "{tables}");
+    let tables = campaign::markdown(&tally);
+    for &DamageKind { name: kind, ref sizes, .. } in campaign::kinds() {
+        let n = sizes.len();
+        let outcome = if kind == "skew" {
+            format!("0 | 0 | 0 | {n} | 200.0")
+        } else {
+            format!("{n} | 0 | 0 | 0 | 0.0")
+        };
+        let of_damaged = format!("| {kind} | {n} | {outcome} |");
+        let of_sound = format!("| {kind} | {n} | 100.0 % | 0.0 % |");
+        assert!(tables.contains(&of_damaged) || tables.contains(&of_sound), "no {kind:?} in\n{tables}");
+    }
+    assert!(tables.contains("| review | 2 | 100.0 % | 2 | 0 |"), "{tables}");
     // Both are off by 0.02; one interval of two holds that.
     assert!(tables.contains("| planar | planar | 2 | – | – | – | 0.0200 | 50.0 % | – |"), "{tables}");
+}
+
+/// `validate --campaign` of the cheap kinds with these words, in a folder.
+fn validate(folder: &Path, words: &[&str]) -> crate::run::Answer {
+    let kinds = format!("undamaged,{}", KINDS.join(","));
+    let usual = ["validate", "--campaign", "3", "--seed", "9", "--kinds", &kinds];
+    let paths = words.iter().map(|word| match word.strip_prefix('@') {
+        Some(name) => folder.join(name).into_os_string(),
+        None => (*word).into(),
+    });
+    dropcheck(usual.iter().map(Into::into).chain(paths))
+}
+
+/// `merge` of these files into the folder "merged".
+fn merge(folder: &Path, names: &[&str]) -> crate::run::Answer {
+    let paths = names.iter().map(|name| folder.join(name).into_os_string());
+    dropcheck(["merge".into()].into_iter().chain(paths).chain(["--out".into(), folder.join("merged").into()]))
+}
+
+/// The campaign's two files.
+fn both(folder: PathBuf) -> [Vec<u8>; 2] {
+    ["campaign.csv", "campaign.md"].map(|name| fs::read(folder.join(name)).expect(name))
+}
+
+#[test]
+fn shards_merged_are_one_run_and_a_shard_that_is_none_is_named() {
+    let place = tempfile::tempdir().expect("a temporary folder");
+    let folder = place.path();
+    assert_eq!(validate(folder, &["--out", "@whole", "--jsonl", "@whole.jsonl"]).status, 0);
+    for i in 0..3 {
+        let answer = validate(folder, &["--shard", &format!("{i}/3"), "--jsonl", &format!("@{i}.jsonl")]);
+        assert_eq!(
+            (answer.status, answer.stdout.contains(&format!("Shard {i}/3"))),
+            (0, true),
+            "{}",
+            answer.stderr
+        );
+    }
+    // In any order.
+    let merged = merge(folder, &["2.jsonl", "0.jsonl", "1.jsonl"]);
+    assert_eq!(merged.status, 0, "{}", merged.stderr);
+    assert!(both(folder.join("merged")) == both(folder.join("whole")));
+    let text = fs::read_to_string(folder.join("1.jsonl")).expect("a shard");
+    assert_eq!(text.lines().count(), 2);
+    let other = |name: &str, text: &str| fs::write(folder.join(name), text).expect("a temporary file");
+    other("cut.jsonl", &text[..text.len() - 20]);
+    other("short.jsonl", &text[..=text.find('\n').expect("a line")]);
+    other("long.jsonl", &format!("{text}{}\n", text.lines().next().expect("a line")));
+    other("swapped.jsonl", &text.lines().rev().map(|line| format!("{line}\n")).collect::<String>());
+    other("foreign.jsonl", &text.replace("\"seed\":9", "\"seed\":8"));
+    other("version.jsonl", &text.replace("\"version\":\"", "\"version\":\"9"));
+    other("empty.jsonl", "");
+    for (file, wanted) in [
+        (None, "shard 1/3 is missing"),
+        (Some("0.jsonl"), "is shard 0/3 once more"),
+        (Some("cut.jsonl"), "cut.jsonl is cut: there is no whole line 2"),
+        (Some("short.jsonl"), "short.jsonl is cut: there is no whole line 2"),
+        (Some("long.jsonl"), "line 3, is one too many"),
+        (Some("swapped.jsonl"), "line 1, stands where another scene is due"),
+        (Some("foreign.jsonl"), "is of another campaign"),
+        (Some("version.jsonl"), "was written by another version"),
+        (Some("empty.jsonl"), "is no shard"),
+        (Some("whole/campaign.csv"), "campaign.csv is no shard"),
+    ] {
+        let answer = merge(folder, &["0.jsonl", "2.jsonl"].into_iter().chain(file).collect::<Vec<_>>());
+        let words = answer.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(answer.status, 2, "{file:?}");
+        assert!(words.contains(wanted), "{file:?}: {words}");
+        assert!(both(folder.join("merged")) == both(folder.join("whole")), "what was there is unchanged");
+    }
+}
+
+#[test]
+fn a_campaign_that_was_stopped_goes_on() {
+    let place = tempfile::tempdir().expect("a temporary folder");
+    let folder = place.path();
+    assert_eq!(validate(folder, &["--out", "@whole", "--jsonl", "@whole.jsonl"]).status, 0);
+    let text = fs::read_to_string(folder.join("whole.jsonl")).expect("lines");
+    assert!(text.lines().all(|line| line.starts_with("{\"campaign\":{\"schema\":\"dropcheck.scenes/1\"")));
+    for end in [0, 100, text.find('\n').expect("a line") + 1, text.len() / 2, text.len()] {
+        fs::write(folder.join("on.jsonl"), &text[..end]).expect("a temporary file");
+        let answer = validate(folder, &["--out", "@on", "--jsonl", "@on.jsonl", "--resume"]);
+        assert_eq!(answer.status, 0, "{}", answer.stderr);
+        assert_eq!(fs::read_to_string(folder.join("on.jsonl")).expect("lines"), text);
+        assert!(both(folder.join("on")) == both(folder.join("whole")));
+    }
+    let answer = validate(folder, &["--jsonl", "@on.jsonl", "--resume", "--exact"]);
+    assert_eq!((answer.status, answer.stderr.contains("another campaign")), (2, true), "{}", answer.stderr);
+    assert_eq!(fs::read_to_string(folder.join("on.jsonl")).expect("lines"), text);
+    let to_standard_output = validate(folder, &["--jsonl", "-"]);
+    assert_eq!((to_standard_output.status, to_standard_output.stdout), (0, text));
 }
 
 #[test]
@@ -155,6 +256,9 @@ fn words_that_name_nothing_are_refused_with_what_there_is() {
         (&["validate", "--campaign", "0"], "1..=1000000"),
         (&["validate", "--scene", "17", "--out", "x"], "D and a number"),
         (&["validate", "--scene", "D1"], "--out"),
+        (&["validate", "--campaign", "1", "--shard", "0/2"], "--jsonl"),
+        (&["validate", "--campaign", "1", "--shard", "2/2", "--jsonl", "-"], "0/3, 1/3"),
+        (&["validate", "--shard", "0/2", "--jsonl", "-"], "--campaign"),
     ] {
         let answer = dropcheck(words);
         assert_eq!(answer.status, 2, "{words:?}");

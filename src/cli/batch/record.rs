@@ -1,4 +1,4 @@
-//! LineFiles of results to a file that grows by one line at a time, and such files to the lines in them: what is done stays done.
+//! Lines of results to a file that grows by one line at a time, and such files to the lines in them: what is done stays done.
 
 use super::super::output::{JsonTarget, replace_by};
 use super::super::shard;
@@ -17,7 +17,7 @@ pub struct LinePlace {
     length: usize,
 }
 
-/// LineFiles of one or several files by the numbers of their tests.
+/// Lines of one or several files by the numbers of their tests.
 #[derive(Debug, Default, Clone)]
 pub struct LineFiles {
     files: Vec<PathBuf>,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError, mpsc};
 
-/// LineFiles that may be ready before the one that is waited for, for each job: more would be held in memory.
+/// Lines that may be ready before the one that is waited for, for each job: more would be held in memory.
 const AHEAD: usize = 4;
 
 /// Makes the lines of `numbers` by `make` on `jobs` threads, one core each, and hands them to `take` in the order of `numbers`.

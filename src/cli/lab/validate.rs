@@ -1,12 +1,11 @@
 //! `validate`: the acceptance of the program; or a campaign of random scenes with known truth to tables of how far off the analysis is.
 
 use super::super::Ending;
-use super::super::output::{Folder, print, replace};
-use super::super::progress::with_progress;
-use super::document::Marks;
-use super::trial;
+use super::super::output::{Folder, print};
+use super::super::shard;
+use super::{campaign, trial};
 use clap::Args;
-use dropcheck::lab::data::{CampaignRequest, SceneNumber, TrialRequest};
+use dropcheck::lab::data::{SceneNumber, TrialRequest};
 use dropcheck::lab::report::SyntheticFormat;
 use dropcheck::{lab, report};
 use std::path::{Path, PathBuf};
@@ -29,13 +28,9 @@ Examples:
   dropcheck validate --campaign 2000
   dropcheck validate --campaign 200 --kinds undamaged,skew,hum --out campaign
   dropcheck validate --campaign 2000 --into docs/measured/campaign.md
+  dropcheck validate --campaign 100000 --shard 0/8 --jsonl shard-0.jsonl   # and 1/8 … elsewhere; then
+  dropcheck merge shard-*.jsonl --out campaign
   dropcheck validate --scene D17 --out scene"#;
-
-/// What the tables stand between in a document.
-const MARKS: Marks = Marks { begin: "<!-- campaign: begin -->", end: "<!-- campaign: end -->" };
-
-/// Files of a campaign's folder.
-const NAMES: [&str; 2] = ["campaign.csv", "campaign.md"];
 
 #[derive(Args)]
 #[command(after_help = AFTER_HELP)]
@@ -45,7 +40,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     campaign: Option<u32>,
     /// Write one scene of the campaign as recording, cask file and truth into --out
-    #[arg(long, value_name = "NUMBER", value_parser = number, requires = "out")]
+    #[arg(long, value_name = "NUMBER", requires = "out")]
     scene: Option<SceneNumber>,
     /// Try the methods on fewer scenes, within a minute
     #[arg(long, conflicts_with = "what")]
@@ -55,83 +50,49 @@ pub struct Arguments {
     reference: Option<PathBuf>,
     /// Seed of everything random
     #[arg(long, value_name = "S", default_value_t = 1)]
-    seed: u64,
+    pub seed: u64,
     /// all, undamaged, sound (all kinds of sound drops), or kinds, separated by commas
     #[arg(long, value_name = "KINDS", default_value = "all", value_delimiter = ',', value_parser = kind, requires = "campaign")]
-    kinds: Vec<&'static str>,
+    pub kinds: Vec<&'static str>,
     /// What is stated is exactly true: no deviations within the tolerances
     #[arg(long, requires = "what")]
-    exact: bool,
+    pub exact: bool,
     /// Folder for the page, pictures and tables of the trial, for campaign.csv and campaign.md, or for the files of the scene
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub out: Option<PathBuf>,
     /// Document in which the result replaces what stands between the lines `<!-- trial: begin -->` and `<!-- trial: end -->`, or of a
     /// campaign between `<!-- campaign: begin -->` and `<!-- campaign: end -->`
     #[arg(long, value_name = "FILE", conflicts_with = "scene")]
-    into: Option<PathBuf>,
+    pub into: Option<PathBuf>,
+    /// One line a scene: what was found beside the truth; with - to standard output, and nothing else there
+    #[arg(long, value_name = "FILE|-", requires = "campaign")]
+    pub jsonl: Option<PathBuf>,
+    /// Only each N-th scene from number I on, from 0; `dropcheck merge` puts the parts together
+    #[arg(long, value_name = "I/N", value_parser = shard::part, default_value = "0/1", hide_default_value = true,
+        requires = "jsonl", conflicts_with_all = ["out", "into"])]
+    pub shard: (usize, usize),
+    /// Go on with the lines of --jsonl that an earlier run of the same words has left
+    #[arg(long, requires = "jsonl")]
+    pub resume: bool,
 }
-
-/// Words of --kinds that are no kind by themselves.
-const ALL: &str = "all";
-const UNDAMAGED: &str = "undamaged";
-const SOUND: &str = "sound";
 
 fn kind(word: &str) -> Result<&'static str, String> {
     let kinds = lab::campaign::kinds().map(|kind| kind.name);
-    let words: Vec<&str> = [ALL, UNDAMAGED, SOUND].into_iter().chain(kinds).collect();
+    let words: Vec<&str> = lab::campaign::WORDS.into_iter().chain(kinds).collect();
     let known = words.iter().copied().find(|known| *known == word);
     known.ok_or_else(|| format!("no kind of drop; there are {}", words.join(", ")))
-}
-
-fn number(word: &str) -> Result<SceneNumber, String> {
-    let parsed =
-        |digits: &str| digits.parse().map_err(|_| format!("no number behind its letter in {word:?}"));
-    match word.split_at_checked(1) {
-        Some(("U" | "u", digits)) => parsed(digits).map(SceneNumber::Undamaged),
-        Some(("D" | "d", digits)) => parsed(digits).map(SceneNumber::Damaged),
-        _ => Err("U and a number for an undamaged scene, D and a number for a damaged one".to_owned()),
-    }
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     match (arguments.scene, &arguments.out, arguments.campaign) {
         (Some(number), Some(out), _) => one(arguments, number, out),
-        (_, _, Some(scenes)) => campaign(arguments, scenes),
+        (_, _, Some(scenes)) => campaign::run(arguments, scenes),
         (_, out, None) => {
             let request = TrialRequest { quick: arguments.quick, seed: arguments.seed };
             let site = arguments.reference.as_deref();
             trial::run(request, site, out.as_deref(), arguments.into.as_deref())
         }
     }
-}
-
-fn campaign(arguments: &Arguments, scenes: u32) -> miette::Result<Ending> {
-    let folder = arguments.out.as_deref().map(|out| Folder::checked(out, &NAMES, &[])).transpose()?;
-    let document =
-        arguments.into.as_deref().map(|path| MARKS.parts(path).map(|parts| (path, parts))).transpose()?;
-    let has = |word| arguments.kinds.contains(&word);
-    let is_wanted =
-        |kind: &&lab::campaign::DamageKind| has(ALL) || has(kind.name) || has(SOUND) && kind.is_sound();
-    let request = CampaignRequest {
-        scenes,
-        seed: arguments.seed,
-        undamaged: has(ALL) || has(UNDAMAGED),
-        kinds: lab::campaign::kinds().filter(is_wanted).map(|kind| kind.name).collect(),
-        exact: arguments.exact,
-    };
-    let campaign = with_progress("campaign", |progress| lab::campaign::run(&request, progress));
-    let tables = lab::campaign::markdown(&campaign);
-    if let Some(folder) = &folder {
-        let csv = lab::campaign::csv(&campaign)?;
-        folder.write(&[(NAMES[0].to_owned(), csv), (NAMES[1].to_owned(), tables.clone().into_bytes())])?;
-    }
-    if let Some((path, (before, after))) = &document {
-        replace(path, format!("{before}\n{tables}{after}").as_bytes())?;
-    }
-    if folder.is_none() && document.is_none() {
-        print(&tables)?;
-    }
-    Ok(Ending::Clear)
 }
 
 /// Writes the files of one scene.
@@ -145,18 +106,4 @@ fn one(arguments: &Arguments, number: SceneNumber, out: &Path) -> miette::Result
     let files = names.each_ref().map(|name| report::printable(&folder.file(name)));
     print(&format!("Written: {}\n", files.join(", ")))?;
     Ok(Ending::Clear)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_scene_is_named_by_a_letter_and_a_number() {
-        assert_eq!(number("U0"), Ok(SceneNumber::Undamaged(0)));
-        assert_eq!(number("d17"), Ok(SceneNumber::Damaged(17)));
-        for word in ["", "17", "Ux", "ü3", "D-1"] {
-            assert!(number(word).is_err(), "{word}");
-        }
-    }
 }

@@ -1,17 +1,21 @@
 //! A number of random scenes with known truth, through everything, to how far off the analysis is and how often it says so.
 
 mod draw;
+mod lines;
 mod recorder;
 mod rungs;
 mod score;
 mod statistics;
 mod tables;
+mod tally;
 
-pub(super) use rungs::rungs;
+pub use lines::{SCHEMA, ScenePlace, line, read};
 pub use score::csv;
 pub(super) use score::written;
 pub(super) use statistics::{half_widths_between, half_widths_off, is_missed, quantile};
 pub use tables::markdown;
+pub(super) use tables::rungs;
+pub use tally::Tally;
 
 use crate::analysis::measure;
 use crate::ingest::Progress;
@@ -19,26 +23,51 @@ use crate::lab::chance::Chance;
 use crate::lab::damage::Wish;
 pub use crate::lab::damage::{DamageKind, drawn as kinds};
 use crate::lab::data::{
-    Campaign, CampaignRequest, CampaignRow, Damage, SceneFile, SceneNumber, SyntheticRecording,
+    Campaign, CampaignRequest, CampaignRow, CampaignShard, Damage, SceneFile, SceneNumber, SyntheticRecording,
 };
 use crate::numerics::as_f64;
 use rayon::prelude::*;
 use score::RecordedScene;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
+use std::convert::Infallible;
 
-/// Runs the campaign; `progress` is told the share that is done. The same request gives the same rows but for their times.
+/// Words for several kinds: every drop, those that are not damaged, those of sound kinds.
+pub const WORDS: [&str; 3] = ["all", "undamaged", "sound"];
+
+/// Scenes that are worked on before the first of them is handed over, for each thread: at their end some wait for the last.
+const BLOCK: usize = 64;
+
+/// Runs the campaign; `progress` is told the share that is done. The same request gives the same rows.
 #[must_use]
 pub fn run(request: &CampaignRequest, progress: Progress) -> Campaign {
-    let numbers = numbers(request);
-    let done = AtomicUsize::new(0);
-    let each = |number: &SceneNumber| {
-        let row = row(request, *number);
-        progress(as_f64(done.fetch_add(1, Ordering::Relaxed) + 1) / as_f64(numbers.len()));
-        row
+    let (count, mut rows) = (count(request), Vec::new());
+    let take = |_, row| {
+        rows.push(row);
+        progress(as_f64(rows.len()) / as_f64(count));
+        Ok::<(), Infallible>(())
     };
-    let rows = numbers.par_iter().map(each).collect();
+    let Ok(()) = each(request, CampaignShard::WHOLE, 0, take);
     Campaign { request: request.clone(), rows }
+}
+
+/// Runs the scenes of a shard but for the first `done`, and hands over each with its number in the campaign, in their order.
+///
+/// # Errors
+/// The first that `take` returns.
+pub fn each<E>(
+    request: &CampaignRequest,
+    shard: CampaignShard,
+    done: usize,
+    mut take: impl FnMut(usize, CampaignRow) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut own = numbers(request).enumerate().skip(shard.index).step_by(shard.count).skip(done);
+    loop {
+        let block: Vec<_> = own.by_ref().take(BLOCK * rayon::current_num_threads()).collect();
+        if block.is_empty() {
+            return Ok(());
+        }
+        let rows: Vec<_> = block.into_par_iter().map(|(i, number)| (i, row(request, number))).collect();
+        rows.into_iter().try_for_each(|(i, row)| take(i, row))?;
+    }
 }
 
 /// One scene as `synth` writes it: the scene with what is stated of it, and its recording.
@@ -48,13 +77,29 @@ pub fn scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, Synthet
     (SceneFile { scene: drop.scene, stated: drop.stated }, recording)
 }
 
+/// How many scenes there are.
+#[must_use]
+pub fn count(request: &CampaignRequest) -> usize {
+    let has = |is: bool| if is { usize::try_from(request.scenes).unwrap_or(usize::MAX) } else { 0 };
+    has(is_wanted(request, None)) + has(kinds().any(|kind| is_wanted(request, Some(kind))))
+}
+
+/// Whether drops of a kind are asked for, or undamaged ones.
+fn is_wanted(request: &CampaignRequest, kind: Option<&DamageKind>) -> bool {
+    let has = |word: &str| request.kinds.iter().any(|own| own == word);
+    let [all, undamaged, sound] = WORDS;
+    has(all) || kind.map_or_else(|| has(undamaged), |kind| has(kind.name) || has(sound) && kind.is_sound())
+}
+
 /// The numbers of the scenes: those of a kind are counted through all kinds, those not asked for left out.
-fn numbers(request: &CampaignRequest) -> Vec<SceneNumber> {
-    let undamaged = if request.undamaged { request.scenes } else { 0 };
-    let damaged = if request.kinds.is_empty() { 0 } else { request.scenes };
-    let wanted = |number: &u32| request.kinds.contains(&kind_and_size(*number).0.name);
-    let damaged = (0..u32::MAX).filter(wanted).take(usize::try_from(damaged).unwrap_or(0));
-    (0..undamaged).map(SceneNumber::Undamaged).chain(damaged.map(SceneNumber::Damaged)).collect()
+fn numbers(request: &CampaignRequest) -> impl Iterator<Item = SceneNumber> {
+    let wanted: Vec<bool> = kinds().map(|kind| is_wanted(request, Some(kind))).collect();
+    let undamaged = if is_wanted(request, None) { request.scenes } else { 0 };
+    let damaged = if wanted.contains(&true) { request.scenes } else { 0 };
+    let damaged = (0..u32::MAX)
+        .filter(move |number| wanted[*number as usize % wanted.len()])
+        .take(usize::try_from(damaged).unwrap_or(0));
+    (0..undamaged).map(SceneNumber::Undamaged).chain(damaged.map(SceneNumber::Damaged))
 }
 
 /// What there is to scene D`number`: kinds take turns, then sizes.
@@ -68,10 +113,8 @@ fn kind_and_size(number: u32) -> (&'static DamageKind, f64) {
 fn row(request: &CampaignRequest, number: SceneNumber) -> CampaignRow {
     let scene = recorded(request.seed, number, request.exact);
     let read = scene.drop.read(&scene.recording);
-    let begun = Instant::now();
     let analysis = read.map(|read| measure(&read, &scene.drop.stated));
-    let analysis_s = begun.elapsed().as_secs_f64();
-    CampaignRow { analysis_s, ..score::row(number, scene, analysis.as_ref()) }
+    score::row(number, scene, analysis.as_ref())
 }
 
 fn recorded(seed: u64, number: SceneNumber, exact: bool) -> RecordedScene {
@@ -85,7 +128,8 @@ fn recorded(seed: u64, number: SceneNumber, exact: bool) -> RecordedScene {
     recorder::equip(&mut drop, &wish, exact);
     let recording = struck.map(|(kind, size)| kind.strike(&mut drop, size));
     let recording = recording.unwrap_or_else(|| drop.recorded());
-    let damage = struck.map(|(kind, size)| Damage { kind: kind.name, size, unit: kind.unit });
+    let damage =
+        struck.map(|(kind, size)| Damage { kind: kind.name.to_owned(), size, unit: kind.unit.to_owned() });
     RecordedScene { drop, damage, recording }
 }
 
@@ -101,5 +145,14 @@ mod tests {
             .map(|number| (kind_and_size(number).0.name, kind_and_size(number).1.to_bits()))
             .collect();
         assert_eq!(seen.len(), kinds().map(|kind| kind.sizes.len()).sum::<usize>());
+    }
+
+    #[test]
+    fn shards_hold_every_scene_once() {
+        for words in [&["all"][..], &["undamaged"], &["skew", "hum"], &["sound"]] {
+            let kinds = words.iter().map(|word| (*word).to_owned()).collect();
+            let request = CampaignRequest { scenes: 7, seed: 1, kinds, exact: false };
+            assert_eq!(numbers(&request).count(), count(&request), "{words:?}");
+        }
     }
 }

@@ -1,93 +1,101 @@
 //! Drops of a campaign to tables of which rung of the reconstruction each scene takes, and what every other would change.
 
 use super::score::written;
-use super::statistics::{Spread, quantile, scored};
+use super::statistics::{Magnitudes, Spread};
 use crate::data::ReconstructionRung;
-use crate::lab::data::{Campaign, CampaignRow};
+use crate::lab::data::{CampaignRow, Stated};
 use crate::report::document::ChapterPart;
 use crate::report::rounding::optional_fixed;
 use crate::report::table::ReportTable;
+use std::collections::BTreeMap;
 
 /// Whether a scene belongs to a class.
 type Belongs = fn(&CampaignRow) -> bool;
 
 /// What in a scene asks for a higher rung, or is none of the rungs' business.
 const SCENES: [(&str, Belongs); 8] = [
-    ("no mode", |row| row.scene.modes.is_empty()),
-    ("one mode", |row| row.scene.modes.len() == 1),
-    ("two modes", |row| row.scene.modes.len() == 2),
-    ("three modes", |row| row.scene.modes.len() == 3),
-    ("force plateau", |row| row.scene.first_end.yield_n.is_some()),
-    ("rest recorded", |row| row.scene.rest),
-    ("contact above 10 ms", |row| row.truth.contact_s.is_some_and(|s| s > 0.01)),
+    ("no mode", |row| row.facts.modes == 0),
+    ("one mode", |row| row.facts.modes == 1),
+    ("two modes", |row| row.facts.modes == 2),
+    ("three modes", |row| row.facts.modes == 3),
+    ("force plateau", |row| row.facts.yields),
+    ("rest recorded", |row| row.facts.rest),
+    ("contact above 10 ms", |row| {
+        row.quantities.get("duration").and_then(|s| s.truth).is_some_and(|s| s > 0.01)
+    }),
     ("all", |_| true),
 ];
 
-/// A table of scenes by rung taken, and one of what every rung says of the drops that take one.
-pub(in crate::lab) fn rungs(campaign: &Campaign) -> [ChapterPart; 2] {
-    let rows: Vec<&CampaignRow> =
-        campaign.rows.iter().filter(|row| row.damage.is_none() && row.rung.is_some()).collect();
-    let count =
-        |belongs: Belongs, rung| rows.iter().filter(|row| belongs(row) && row.rung == Some(rung)).count();
-    let drawn: Vec<_> =
-        SCENES.into_iter().filter(|(_, belongs)| rows.iter().any(|row| belongs(row))).collect();
-    let mut scenes = ReportTable::of(&drawn).text("scene", |(name, _)| *name);
-    for rung in ReconstructionRung::ALL {
-        scenes = scenes.number(written(rung), move |(_, belongs)| count(*belongs, rung).to_string());
-    }
-    let all = || ReconstructionRung::ALL.into_iter();
-    let pairs: Vec<_> = all()
-        .flat_map(|taken| all().map(move |said| (taken, said)))
-        .map(|(taken, said)| RungBeside::of(taken, said, &rows))
-        .filter(|beside| beside.k.count() > 0)
-        .collect();
-    let beside = ReportTable::of(&pairs)
-        .chosen(|pair| pair.taken == pair.said)
-        .text("taken", |pair| written(pair.taken))
-        .text("rung", |pair| written(pair.said))
-        .number("drops", |pair| pair.k.count().to_string())
-        .number("speed: 95th, %", |pair| optional_fixed(Some(quantile(&pair.speed.errors, 0.95)), 2))
-        .number("half-width, %", |pair| optional_fixed(Some(quantile(&pair.speed.half_widths, 0.5)), 2))
-        .number("held", |pair| pair.speed.held())
-        .number("k: 95th", |pair| optional_fixed(Some(quantile(&pair.k.errors, 0.95)), 4))
-        .number("held", |pair| pair.k.held())
-        .number("changes the speed by, half-widths: 95th", |pair| {
-            optional_fixed((pair.taken != pair.said).then(|| quantile(&pair.changes, 0.95)), 2)
-        });
-    [scenes.into(), beside.into()]
+/// Undamaged drops, counted by the rung taken.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct RungTally {
+    /// By class of scenes and rung.
+    counts: BTreeMap<(usize, ReconstructionRung), usize>,
+    /// By the rung taken and another one.
+    beside: BTreeMap<(ReconstructionRung, ReconstructionRung), RungBeside>,
 }
 
 /// What a rung says of the drops for which another was taken.
+#[derive(Debug, Clone, Default, PartialEq)]
 struct RungBeside {
-    taken: ReconstructionRung,
-    said: ReconstructionRung,
     speed: Spread,
     k: Spread,
-    /// By how many of the taken one's half-widths it would change the speed, ascending.
-    changes: Vec<f64>,
+    /// By how many of the taken one's half-widths it would change the speed.
+    changes: Spread,
 }
 
-impl RungBeside {
-    fn of(taken: ReconstructionRung, said: ReconstructionRung, rows: &[&CampaignRow]) -> Self {
-        let of = |row: &CampaignRow| row.candidates.iter().find(|c| c.rung == said).cloned();
-        let had: Vec<_> = rows
-            .iter()
-            .filter(|row| row.rung == Some(taken))
-            .filter_map(|row| Some((*row, of(row)?)))
-            .collect();
-        let change = |(row, candidate): &(&CampaignRow, _)| {
-            let candidate: &crate::data::ReconstructionCandidate = candidate;
-            let (stated, said) = scored(row, "speed")?.stated.zip(candidate.speed)?;
-            Some((said.value - stated.value).abs() / stated.u95)
-        };
-        let mut changes: Vec<f64> = had.iter().filter_map(change).collect();
-        changes.sort_by(f64::total_cmp);
-        Self {
-            taken,
-            said,
-            speed: Spread::of(had.iter().filter_map(|(row, c)| c.speed.zip(row.truth.speed)), true),
-            k: Spread::of(had.iter().filter_map(|(row, c)| c.k.zip(row.truth.k)), false),
-            changes,
+impl RungTally {
+    /// Counts a scene, where it is undamaged and has a motion.
+    pub(super) fn add(&mut self, row: &CampaignRow) {
+        let Some(taken) = row.rung.filter(|_| row.damage.is_none()) else { return };
+        for (i, _) in SCENES.iter().enumerate().filter(|(_, (_, belongs))| belongs(row)) {
+            *self.counts.entry((i, taken)).or_default() += 1;
         }
+        let scored = |name: &str| row.quantities.get(name);
+        let truth = |name: &str| scored(name).and_then(|scored| scored.truth);
+        for said in &row.rungs {
+            let beside = self.beside.entry((taken, said.rung)).or_default();
+            let mut add =
+                |spread: fn(&mut RungBeside) -> &mut Spread, pair: Option<(Stated, f64)>, relative| {
+                    if let Some(pair) = pair {
+                        spread(beside).add(pair, relative);
+                    }
+                };
+            add(|b| &mut b.speed, said.speed.zip(truth("speed")), true);
+            add(|b| &mut b.k, said.k.zip(truth("k")), false);
+            let stated = scored("speed").and_then(|scored| scored.stated);
+            let change =
+                stated.zip(said.speed).map(|(stated, said)| (said.value - stated.value) / stated.u95);
+            add(|b| &mut b.changes, change.map(|value| (Stated { value, u95: 0.0 }, 0.0)), false);
+        }
+    }
+
+    /// A table of scenes by rung taken, and one of what every rung says of the drops that take one.
+    pub(super) fn tables(&self) -> [ChapterPart; 2] {
+        let count = |place, rung| self.counts.get(&(place, rung)).copied().unwrap_or(0);
+        let is_drawn =
+            |place: &usize| ReconstructionRung::ALL.into_iter().any(|rung| count(*place, rung) > 0);
+        let drawn: Vec<usize> = (0..SCENES.len()).filter(is_drawn).collect();
+        let mut scenes = ReportTable::of(&drawn).text("scene", |place| SCENES[*place].0);
+        for rung in ReconstructionRung::ALL {
+            scenes = scenes.number(written(rung), move |place| count(*place, rung).to_string());
+        }
+        let pairs: Vec<_> = self.beside.iter().filter(|(_, beside)| beside.k.count() > 0).collect();
+        let fixed = |of: &Magnitudes, share, decimals| optional_fixed(Some(of.quantile(share)), decimals);
+        let beside = ReportTable::of(&pairs)
+            .chosen(|((taken, said), _)| taken == said)
+            .text("taken", |((taken, _), _)| written(taken))
+            .text("rung", |((_, said), _)| written(said))
+            .number("drops", |(_, beside)| beside.k.count().to_string())
+            .number("speed: 95th, %", |(_, beside)| fixed(&beside.speed.errors, 0.95, 2))
+            .number("half-width, %", |(_, beside)| fixed(&beside.speed.half_widths, 0.5, 2))
+            .number("held", |(_, beside)| beside.speed.held())
+            .number("k: 95th", |(_, beside)| fixed(&beside.k.errors, 0.95, 4))
+            .number("held", |(_, beside)| beside.k.held())
+            .number("changes the speed by, half-widths: 95th", |((taken, said), beside)| {
+                let change = (taken != said).then(|| beside.changes.errors.quantile(0.95));
+                optional_fixed(change, 2)
+            });
+        [scenes.into(), beside.into()]
     }
 }

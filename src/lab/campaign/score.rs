@@ -1,13 +1,15 @@
-//! An analysis beside its truth to a row, and rows to CSV.
+//! An analysis beside its truth to a row, and a row to a line of CSV.
 
 use super::statistics;
 use crate::data::{Analysis, Estimate, ReconstructionRung, Severity};
 use crate::lab::chance::round;
-use crate::lab::data::{Campaign, CampaignRow, Damage, SceneNumber, Scored, SyntheticRecording, Truth};
+use crate::lab::data::{
+    CampaignRow, Damage, RungSaid, SceneFacts, SceneNumber, Scored, Stated, SyntheticRecording, Truth,
+};
 use crate::lab::drawn::DrawnDrop;
 use crate::report::ReportError;
 use crate::report::records::finished;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// A scene, drawn, struck by its damage and recorded.
 pub(super) struct RecordedScene {
@@ -16,37 +18,57 @@ pub(super) struct RecordedScene {
     pub recording: SyntheticRecording,
 }
 
-/// The row of a scene, without the time that its analysis took; no analysis: the recording was refused.
-pub(super) fn row(number: SceneNumber, scene: RecordedScene, analysis: Option<&Analysis>) -> CampaignRow {
-    let RecordedScene { drop, damage, recording } = scene;
+/// The row of a scene; no analysis: the recording was refused.
+pub(super) fn row(scene: SceneNumber, recorded: RecordedScene, analysis: Option<&Analysis>) -> CampaignRow {
+    let RecordedScene { drop, damage, recording } = recorded;
     let truth = drop.motion.truth;
     let first_contact_s = recording.first_contact_s;
     let slap_down_s = truth.slap_t.map(|t| first_contact_s + t * (1.0 + drop.scene.clock_error));
     let result = analysis.map(|a| &a.result);
     let choice = result.and_then(|r| r.reconstruction.as_ref());
+    let misses_u = choice.into_iter().flat_map(|c| &c.closures).map(|c| c.miss_in_u.abs());
+    let rungs = choice.into_iter().flat_map(|choice| &choice.candidates).map(|c| RungSaid {
+        rung: c.rung,
+        consistent: c.consistent,
+        speed: c.speed.map(Stated::from),
+        k: c.k.map(Stated::from),
+    });
     CampaignRow {
-        number,
+        scene,
         damage,
         verdict: result.map(|r| r.verdict),
-        findings: result.into_iter().flat_map(|r| &r.quality).map(|i| (i.code, i.severity)).collect(),
+        errors: codes(analysis, Severity::Error),
+        warnings: codes(analysis, Severity::Warning),
         quantities: quantities(&truth, (first_contact_s, slap_down_s), analysis),
         rung: choice.map(|choice| choice.rung),
-        candidates: choice.map_or_else(Vec::new, |choice| choice.candidates.clone()),
-        misses_u: choice.into_iter().flat_map(|c| &c.closures).map(|c| c.miss_in_u).collect(),
-        truth,
-        scene: drop.scene,
-        stated: drop.stated,
-        analysis_s: 0.0,
+        rungs: rungs.collect(),
+        largest_miss_u: misses_u.max_by(f64::total_cmp),
+        facts: SceneFacts {
+            cask: drop.scene.cask.name,
+            angle_deg: truth.angle_deg,
+            rate_hz: drop.scene.channels.first().map_or(0.0, |channel| channel.sample_rate_hz),
+            modes: drop.scene.modes.len(),
+            yields: drop.scene.first_end.yield_n.is_some(),
+            rest: drop.scene.rest,
+            stated_angle_deg: round(drop.stated.drop.angle_rad.to_degrees(), 9),
+            stated_contact: drop.stated.contact.to_string(),
+        },
     }
 }
 
-/// What is scored, in this order; the times of first contact and slap-down count from the first sample, s.
-fn quantities(truth: &Truth, times_s: (f64, Option<f64>), analysis: Option<&Analysis>) -> Vec<Scored> {
+/// What is scored, by name; the times of first contact and slap-down count from the first sample, s.
+fn quantities(
+    truth: &Truth,
+    times_s: (f64, Option<f64>),
+    analysis: Option<&Analysis>,
+) -> BTreeMap<String, Scored> {
     let result = analysis.map(|a| &a.result);
     let first_impact = result.map(|r| &r.first_impact);
     let slap_down = result.map(|r| &r.slap_down);
-    let scored = |name, stated: Option<Estimate>, truth| Scored { name, stated, truth };
-    vec![
+    let scored = |name: &str, stated: Option<Estimate>, truth| {
+        (name.to_owned(), Scored { stated: stated.map(Stated::from), truth })
+    };
+    BTreeMap::from([
         scored("speed", slap_down.and_then(|s| s.speed), truth.speed),
         scored("k", result.and_then(|r| r.k), truth.k),
         scored("vertical", slap_down.and_then(|s| s.vertical_velocity), truth.vz),
@@ -57,25 +79,30 @@ fn quantities(truth: &Truth, times_s: (f64, Option<f64>), analysis: Option<&Anal
         scored("duration", first_impact.and_then(|f| f.duration), truth.contact_s),
         scored("contact_time", first_impact.and_then(|f| f.time), Some(times_s.0)),
         scored("slap_down_time", slap_down.and_then(|s| s.time), times_s.1),
-    ]
+    ])
 }
 
-/// The rows as CSV, one a scene; times of the analysis are left out, so that the same campaign gives the same bytes.
+/// Codes of this severity, each once.
+fn codes(analysis: Option<&Analysis>, severity: Severity) -> Vec<String> {
+    let findings = analysis.into_iter().flat_map(|a| &a.result.quality);
+    let mut names: Vec<String> =
+        findings.filter(|f| f.severity == severity).map(|f| written(f.code)).collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
+/// The row as a line of CSV, below the line of its headers where that is wanted: they are the same for every row.
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn csv(campaign: &Campaign) -> Result<Vec<u8>, ReportError> {
-    let rows: Vec<Vec<Cell>> = campaign.rows.iter().map(|row| cells(campaign.request.seed, row)).collect();
-    // Not every scene has as many modes and channels: a header for each that any has.
-    let mut headers: Vec<&String> = Vec::new();
-    let mut known = BTreeSet::new();
-    headers.extend(rows.iter().flatten().map(|cell| &cell.0).filter(|header| known.insert(*header)));
+pub fn csv(row: &CampaignRow, with_headers: bool) -> Result<Vec<u8>, ReportError> {
+    let cells = cells(row);
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(&headers)?;
-    for row in &rows {
-        let row: BTreeMap<&String, &String> = row.iter().map(|cell| (&cell.0, &cell.1)).collect();
-        writer.write_record(headers.iter().map(|header| row.get(header).map_or("", |cell| cell)))?;
+    if with_headers {
+        writer.write_record(cells.iter().map(|cell| &cell.0))?;
     }
+    writer.write_record(cells.iter().map(|cell| &cell.1))?;
     finished(writer)
 }
 
@@ -91,71 +118,51 @@ fn maybe(header: &str, value: Option<f64>) -> Cell {
 }
 
 /// A value and its half-width.
-fn estimate(header: &str, estimate: Option<Estimate>) -> [Cell; 2] {
-    [maybe(header, estimate.map(|e| e.value)), maybe(&format!("{header}_u95"), estimate.map(|e| e.u95))]
+fn pair(header: &str, stated: Option<Stated>) -> [Cell; 2] {
+    [maybe(header, stated.map(|e| e.value)), maybe(&format!("{header}_u95"), stated.map(|e| e.u95))]
 }
 
-fn cells(seed: u64, row: &CampaignRow) -> Vec<Cell> {
+fn cells(row: &CampaignRow) -> Vec<Cell> {
+    let (damage, facts) = (row.damage.as_ref(), &row.facts);
     let mut cells = vec![
-        cell("scene", row.number),
-        cell("seed", seed),
-        cell("kind", row.damage.map_or("none", |damage| damage.kind)),
-        maybe("size", row.damage.map(|damage| damage.size)),
-        cell("size_unit", row.damage.map_or("", |damage| damage.unit)),
+        cell("scene", row.scene),
+        cell("kind", damage.map_or("none", |damage| &damage.kind)),
+        maybe("size", damage.map(|damage| damage.size)),
+        cell("size_unit", damage.map_or("", |damage| &damage.unit)),
         cell("verdict", row.verdict.map_or_else(|| "refused".to_owned(), written)),
         cell("outcome", format!("{:?}", statistics::outcome(row)).to_lowercase()),
-        cell("errors", codes(row, Severity::Error)),
-        cell("warnings", codes(row, Severity::Warning)),
+        cell("errors", row.errors.join(" ")),
+        cell("warnings", row.warnings.join(" ")),
     ];
-    for scored in &row.quantities {
-        cells.extend(estimate(scored.name, scored.stated));
-        cells.push(maybe(&format!("{}_true", scored.name), scored.truth));
-        cells.push(maybe(&format!("{}_off", scored.name), statistics::half_widths_off(scored)));
+    for (name, ..) in statistics::QUANTITIES {
+        let scored = row.quantities.get(name);
+        cells.extend(pair(name, scored.and_then(|scored| scored.stated)));
+        cells.push(maybe(&format!("{name}_true"), scored.and_then(|scored| scored.truth)));
+        cells.push(maybe(&format!("{name}_off"), scored.and_then(statistics::half_widths_off)));
     }
     cells.push(cell("rung", row.rung.map_or_else(String::new, written)));
     for rung in ReconstructionRung::ALL {
-        let candidate = row.candidates.iter().find(|candidate| candidate.rung == rung);
+        let said = row.rungs.iter().find(|said| said.rung == rung);
         let name = written(rung);
         cells.push(cell(
             &format!("{name}_consistent"),
-            candidate.map_or("", |c| if c.consistent { "yes" } else { "no" }),
+            said.map_or("", |said| if said.consistent { "yes" } else { "no" }),
         ));
-        cells.extend(estimate(&format!("{name}_speed"), candidate.and_then(|c| c.speed)));
-        cells.extend(estimate(&format!("{name}_k"), candidate.and_then(|c| c.k)));
+        cells.extend(pair(&format!("{name}_speed"), said.and_then(|said| said.speed)));
+        cells.extend(pair(&format!("{name}_k"), said.and_then(|said| said.k)));
     }
-    cells.push(maybe("largest_miss_u", statistics::largest_miss_u(row)));
-    cells.push(maybe("stated_angle_deg", Some(round(row.stated.drop.angle_rad.to_degrees(), 9))));
-    cells.push(cell("stated_contact", row.stated.contact));
-    let truth = serde_json::to_value(row.truth).unwrap_or_default();
-    let scene = serde_json::to_value(&row.scene).unwrap_or_default();
-    flatten("true", &truth, &mut cells);
-    flatten("scene", &scene, &mut cells);
+    cells.extend([
+        maybe("largest_miss_u", row.largest_miss_u),
+        cell("cask", &facts.cask),
+        cell("angle_true_deg", facts.angle_deg),
+        cell("rate_hz", facts.rate_hz),
+        cell("modes", facts.modes),
+        cell("yields", facts.yields),
+        cell("rest", facts.rest),
+        cell("stated_angle_deg", facts.stated_angle_deg),
+        cell("stated_contact", &facts.stated_contact),
+    ]);
     cells
-}
-
-/// A cell for each number and word of a value, under its way there: "scene.modes.0.frequency_hz".
-fn flatten(header: &str, value: &serde_json::Value, cells: &mut Vec<Cell>) {
-    let below = |key: &dyn std::fmt::Display| format!("{header}.{key}");
-    match value {
-        serde_json::Value::Object(of) => {
-            of.iter().for_each(|(key, value)| flatten(&below(key), value, cells));
-        }
-        serde_json::Value::Array(of) => {
-            of.iter().enumerate().for_each(|(i, value)| flatten(&below(&i), value, cells));
-        }
-        serde_json::Value::String(word) => cells.push(cell(header, word)),
-        serde_json::Value::Null => cells.push(cell(header, "")),
-        value => cells.push(cell(header, value)),
-    }
-}
-
-/// Codes of this severity, each once.
-fn codes(row: &CampaignRow, severity: Severity) -> String {
-    let mut names: Vec<String> =
-        row.findings.iter().filter(|f| f.1 == severity).map(|f| written(f.0)).collect();
-    names.sort();
-    names.dedup();
-    names.join(" ")
 }
 
 /// A code, a rung or a verdict as the result writes it.

@@ -1,11 +1,26 @@
-//! Rows to shares, quantiles and classes of right and wrong.
+//! Rows to shares, quantiles and classes of right and wrong, which add up exactly in whatever order and parts they are counted.
 
-use crate::data::{Estimate, Verdict};
-use crate::lab::data::{CampaignRow, Scored};
+use crate::data::Verdict;
+use crate::lab::data::{CampaignRow, Scored, Stated};
 pub(in crate::lab) use crate::numerics::robust::quantile;
+use std::collections::BTreeMap;
 
 /// An error above this many half-widths on a result that passed is a miss: the interval ends half its width, which is one half-width, short of the truth.
 const MISSED_BY: f64 = 2.0;
+
+/// Names, as they are scored and as they are shown; whether in percent of the truth; decimals.
+pub(super) const QUANTITIES: [(&str, &str, bool, usize); 10] = [
+    ("speed", "slap-down speed, %", true, 2),
+    ("k", "k", false, 4),
+    ("vertical", "vertical velocity, m/s", false, 3),
+    ("horizontal", "horizontal velocity, m/s", false, 3),
+    ("omega", "ω after the impact, %", true, 2),
+    ("flight", "flight time, %", true, 2),
+    ("angle", "angle at slap-down, °", false, 3),
+    ("duration", "duration of the first contact, %", true, 2),
+    ("contact_time", "time of the first contact, s", false, 6),
+    ("slap_down_time", "time of the slap-down, s", false, 6),
+];
 
 /// What became of a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -22,7 +37,7 @@ pub(super) enum SceneOutcome {
 
 /// What became of the scene of this row, by speed and k.
 pub(super) fn outcome(row: &CampaignRow) -> SceneOutcome {
-    let off = [scored(row, "speed"), scored(row, "k")].map(|scored| scored.and_then(|s| half_widths_off(&s)));
+    let off = ["speed", "k"].map(|name| row.quantities.get(name).and_then(half_widths_off));
     let worst = off.iter().flatten().fold(0.0_f64, |worst, off| worst.max(*off));
     let has_both = off.iter().all(Option::is_some);
     match row.verdict {
@@ -38,64 +53,162 @@ pub(in crate::lab) fn is_missed(row: &CampaignRow) -> bool {
     outcome(row) == SceneOutcome::Missed
 }
 
-/// By how many standard uncertainties the closure that is missed most is missed.
-pub(super) fn largest_miss_u(row: &CampaignRow) -> Option<f64> {
-    row.misses_u.iter().map(|miss| miss.abs()).max_by(f64::total_cmp)
-}
-
-/// The quantity of this name.
-pub(super) fn scored(row: &CampaignRow, name: &str) -> Option<Scored> {
-    row.quantities.iter().find(|scored| scored.name == name).copied()
-}
-
 /// Distance from the truth in half-widths, where both are known.
 pub(in crate::lab) fn half_widths_off(scored: &Scored) -> Option<f64> {
     let (stated, truth) = scored.stated.zip(scored.truth)?;
     Some(half_widths_between(stated, truth))
 }
 
-/// The same of an estimate.
-pub(in crate::lab) fn half_widths_between(stated: Estimate, truth: f64) -> f64 {
+/// The same of a statement.
+pub(in crate::lab) fn half_widths_between(stated: Stated, truth: f64) -> f64 {
     // No number at all is as far off as can be.
     let off = (stated.value - truth).abs() / stated.u95.max(f64::MIN_POSITIVE);
     if off.is_nan() { f64::INFINITY } else { off }
 }
 
+/// Magnitudes counted in bins a five-hundredth of themselves wide: what is read off is right to a thousandth, and of however many there are
+/// some thousand counts are kept.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Magnitudes {
+    bins: BTreeMap<u32, u32>,
+    count: usize,
+    largest: f64,
+}
+
+/// Bits of a number that are left out of its bin: all but sign, exponent and nine of its fraction.
+const BITS_LEFT_OUT: u32 = 43;
+
+impl Magnitudes {
+    fn add(&mut self, value: f64) {
+        let value = if value.is_nan() { f64::INFINITY } else { value.abs() };
+        // Bits of positive numbers are in their order.
+        let bin = u32::try_from(value.to_bits() >> BITS_LEFT_OUT).unwrap_or(u32::MAX);
+        *self.bins.entry(bin).or_default() += 1;
+        self.count += 1;
+        self.largest = self.largest.max(value);
+    }
+
+    /// The value below which this share lies; the largest is known as it is. NaN of none.
+    #[allow(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "an index into a list"
+    )]
+    pub(super) fn quantile(&self, share: f64) -> f64 {
+        let Some(last) = self.count.checked_sub(1) else { return f64::NAN };
+        let place = share * last as f64;
+        let below = (place as usize).min(last);
+        let (low, high) = (self.at(below), self.at((below + 1).min(last)));
+        // Equal neighbours may be infinite.
+        if place > below as f64 && low < high { low + (place - below as f64) * (high - low) } else { low }
+    }
+
+    /// The value of this rank: the middle of its bin.
+    fn at(&self, rank: usize) -> f64 {
+        if rank + 1 == self.count {
+            return self.largest;
+        }
+        let mut seen = 0;
+        let bin = self.bins.iter().find(|(_, count)| {
+            seen += **count as usize;
+            seen > rank
+        });
+        let middle = |bin: &u32| f64::from_bits((2 * u64::from(*bin) + 1) << (BITS_LEFT_OUT - 1));
+        bin.map_or(f64::NAN, |(bin, _)| middle(bin).min(self.largest))
+    }
+}
+
 /// Errors, half-widths and coverage of one quantity over many scenes.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Spread {
-    /// Magnitudes of the errors, ascending.
-    pub errors: Vec<f64>,
-    /// Half-widths, ascending.
-    pub half_widths: Vec<f64>,
+    /// Magnitudes of the errors.
+    pub errors: Magnitudes,
+    /// Half-widths.
+    pub half_widths: Magnitudes,
     /// How many intervals hold the truth.
     pub held: usize,
 }
 
 impl Spread {
-    /// Of pairs of statement and truth; `relative`: in percent of the truth.
-    pub(super) fn of(pairs: impl Iterator<Item = (Estimate, f64)>, relative: bool) -> Self {
-        let mut spread = Self { errors: Vec::new(), half_widths: Vec::new(), held: 0 };
-        for (stated, truth) in pairs {
-            let scale = if relative { 100.0 / truth.abs().max(f64::MIN_POSITIVE) } else { 1.0 };
-            let off = (stated.value - truth).abs();
-            spread.held += usize::from(off <= stated.u95);
-            spread.errors.push(scale * off);
-            spread.half_widths.push(scale * stated.u95);
-        }
-        spread.errors.sort_by(f64::total_cmp);
-        spread.half_widths.sort_by(f64::total_cmp);
-        spread
+    /// Counts one statement beside its truth; `relative`: in percent of the truth.
+    pub(super) fn add(&mut self, (stated, truth): (Stated, f64), relative: bool) {
+        let scale = if relative { 100.0 / truth.abs().max(f64::MIN_POSITIVE) } else { 1.0 };
+        let off = (stated.value - truth).abs();
+        self.held += usize::from(off <= stated.u95);
+        self.errors.add(scale * off);
+        self.half_widths.add(scale * stated.u95);
     }
 
     /// How many statements there are.
     pub(super) fn count(&self) -> usize {
-        self.errors.len()
+        self.errors.count
+    }
+}
+
+/// Some scenes of a campaign, counted.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct SceneGroup {
+    /// By verdict, none where the recording was refused, and outcome.
+    counts: BTreeMap<(Option<u8>, SceneOutcome), usize>,
+    /// In the order of [`QUANTITIES`].
+    spreads: Vec<Spread>,
+}
+
+/// A verdict by its place.
+fn rank(verdict: Verdict) -> u8 {
+    match verdict {
+        Verdict::Pass => 0,
+        Verdict::Review => 1,
+        Verdict::Fail => 2,
+    }
+}
+
+impl SceneGroup {
+    /// Counts a scene, and of its quantities so many.
+    pub(super) fn add(&mut self, row: &CampaignRow, quantities: usize) {
+        *self.counts.entry((row.verdict.map(rank), outcome(row))).or_default() += 1;
+        self.spreads.resize(quantities, Spread::default());
+        for (spread, (name, _, relative, _)) in self.spreads.iter_mut().zip(QUANTITIES) {
+            let scored = row.quantities.get(name);
+            if let Some(pair) = scored.and_then(|scored| scored.stated.zip(scored.truth)) {
+                spread.add(pair, relative);
+            }
+        }
+    }
+
+    /// How many scenes there are.
+    pub(super) fn len(&self) -> usize {
+        self.counts.values().sum()
+    }
+
+    /// How many have this verdict; and of these the outcomes.
+    pub(super) fn of(&self, verdict: Verdict) -> Self {
+        let own = self.counts.iter().filter(|((own, _), _)| *own == Some(rank(verdict)));
+        Self { counts: own.map(|(key, count)| (*key, *count)).collect(), spreads: Vec::new() }
+    }
+
+    /// How many have this outcome.
+    pub(super) fn count(&self, wanted: SceneOutcome) -> usize {
+        self.counts.iter().filter(|((_, outcome), _)| *outcome == wanted).map(|(_, count)| count).sum()
+    }
+
+    /// What is counted of a quantity.
+    pub(super) fn spread(&self, name: &str) -> Spread {
+        let place = QUANTITIES.iter().position(|(own, ..)| *own == name);
+        place.and_then(|place| self.spreads.get(place)).cloned().unwrap_or_default()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn counted(values: impl IntoIterator<Item = f64>) -> Magnitudes {
+        let mut all = Magnitudes::default();
+        values.into_iter().for_each(|value| all.add(value));
+        all
+    }
 
     #[test]
     fn quantiles_lie_between_their_neighbours() {
@@ -107,18 +220,32 @@ mod tests {
     }
 
     #[test]
+    fn counted_quantiles_are_right_to_a_thousandth_whatever_the_order() {
+        let values: Vec<f64> = (0..997).map(|i| f64::from(i * i % 997).powi(3) / 1e6).collect();
+        let mut ascending = values.clone();
+        ascending.sort_by(f64::total_cmp);
+        let counted_values = counted(values.iter().copied());
+        assert_eq!(counted_values, counted(values.iter().rev().copied()));
+        for share in [0.05, 0.5, 0.95, 0.999] {
+            let exact = quantile(&ascending, share);
+            // Half a bin: 2^-10 of the value.
+            assert!((counted_values.quantile(share) / exact - 1.0).abs() < 1e-3, "{share}");
+        }
+        assert_eq!(counted_values.quantile(1.0).to_bits(), ascending[996].to_bits());
+        assert!(Magnitudes::default().quantile(0.5).is_nan());
+        assert!(counted([f64::NAN, f64::INFINITY, 1.0]).quantile(0.9).is_infinite());
+        assert!(counted([0.0, 0.0, 0.0]).quantile(0.5) < 1e-300);
+    }
+
+    #[test]
     fn a_statement_is_held_against_its_own_half_width() {
         let off = |value, u95| {
-            half_widths_off(&Scored {
-                name: "k",
-                stated: Some(Estimate::new(value, u95, "1")),
-                truth: Some(0.5),
-            })
-            .expect("both known")
+            let stated = Some(Stated { value, u95 });
+            half_widths_off(&Scored { stated, truth: Some(0.5) }).expect("both known")
         };
         assert!((off(0.53, 0.02) - 1.5).abs() < 1e-9);
         assert!(off(f64::NAN, 0.02).is_infinite());
         assert!(off(0.5, 0.0).abs() < 1e-15);
-        assert!(half_widths_off(&Scored { name: "k", stated: None, truth: Some(0.5) }).is_none());
+        assert!(half_widths_off(&Scored { stated: None, truth: Some(0.5) }).is_none());
     }
 }

@@ -1,9 +1,8 @@
 //! A campaign of random scenes with known truth: what is asked for, and a row for each scene.
 
-use super::scene::{Scene, Truth};
-use crate::data::{
-    CaskFile, Estimate, IssueCode, ReconstructionCandidate, ReconstructionRung, Severity, Verdict,
-};
+use crate::data::{Estimate, ReconstructionRung, Verdict};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::collections::BTreeMap;
 
 /// Which scene of a campaign: with its seed it names the same drop for ever.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -23,70 +22,158 @@ impl std::fmt::Display for SceneNumber {
     }
 }
 
+impl std::str::FromStr for SceneNumber {
+    type Err = String;
+
+    fn from_str(word: &str) -> Result<Self, String> {
+        let parsed =
+            |digits: &str| digits.parse().map_err(|_| format!("no number behind its letter in {word:?}"));
+        match word.split_at_checked(1) {
+            Some(("U" | "u", digits)) => parsed(digits).map(Self::Undamaged),
+            Some(("D" | "d", digits)) => parsed(digits).map(Self::Damaged),
+            _ => Err("U and a number for an undamaged scene, D and a number for a damaged one".to_owned()),
+        }
+    }
+}
+
+impl Serialize for SceneNumber {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for SceneNumber {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+    }
+}
+
 /// What a campaign is asked for.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CampaignRequest {
     /// How many undamaged scenes, and how many of kinds.
     pub scenes: u32,
     /// Seed of everything random.
     pub seed: u64,
-    /// Whether undamaged scenes are among them.
-    pub undamaged: bool,
-    /// The kinds, by name; none: undamaged scenes alone.
-    pub kinds: Vec<&'static str>,
+    /// Kinds by name, or words for several: "all", "undamaged", "sound".
+    pub kinds: Vec<String>,
     /// Whether what is stated is exactly true.
     pub exact: bool,
 }
 
+/// A part of a campaign: of `count` parts the one that holds scene `index`, and every `count`-th after it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CampaignShard {
+    /// Which, from 0.
+    pub index: usize,
+    /// Of how many.
+    pub count: usize,
+}
+
+impl CampaignShard {
+    /// All of it.
+    pub const WHOLE: Self = Self { index: 0, count: 1 };
+}
+
 /// What is wrong with a scene.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Damage {
     /// The kind, by name.
-    pub kind: &'static str,
+    pub kind: String,
     /// How large, in `unit`.
     pub size: f64,
     /// Unit of the size; empty where a kind has one size only.
-    pub unit: &'static str,
+    pub unit: String,
+}
+
+/// A value with the half-width of its 95 % interval.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Stated {
+    /// The value; what is no number is null where it is written.
+    #[serde(deserialize_with = "number")]
+    pub value: f64,
+    /// The half-width.
+    #[serde(deserialize_with = "number")]
+    pub u95: f64,
+}
+
+impl From<Estimate> for Stated {
+    fn from(Estimate { value, u95, .. }: Estimate) -> Self {
+        Self { value, u95 }
+    }
+}
+
+fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
 
 /// A measured quantity beside its truth.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scored {
-    /// What it is: "speed".
-    pub name: &'static str,
     /// As the analysis states it.
-    pub stated: Option<Estimate>,
+    pub stated: Option<Stated>,
     /// As it was, in the same unit.
+    #[serde(rename = "true")]
     pub truth: Option<f64>,
 }
 
-/// One scene of a campaign.
-#[derive(Debug, Clone, PartialEq)]
+/// What one rung of the reconstruction says.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RungSaid {
+    /// Which.
+    pub rung: ReconstructionRung,
+    /// Whether its residuals are within what noise and tolerances explain.
+    pub consistent: bool,
+    /// Slap-down speed by it, m/s.
+    pub speed: Option<Stated>,
+    /// k by it.
+    pub k: Option<Stated>,
+}
+
+/// What scenes are classed by: the rest of a scene comes again by its number.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SceneFacts {
+    /// The cask, by name.
+    pub cask: String,
+    /// True inclination at first contact, degrees.
+    pub angle_deg: f64,
+    /// Rate of the first channel, Hz.
+    pub rate_hz: f64,
+    /// Bending modes.
+    pub modes: usize,
+    /// Whether the first end's force has a plateau.
+    pub yields: bool,
+    /// Whether the record shows the rest before the release.
+    pub rest: bool,
+    /// Inclination as the cask file states it, degrees.
+    pub stated_angle_deg: f64,
+    /// Contact as the cask file states it.
+    pub stated_contact: String,
+}
+
+/// One scene of a campaign: what a line of it says.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CampaignRow {
     /// Which.
-    pub number: SceneNumber,
+    pub scene: SceneNumber,
     /// What is wrong with it.
     pub damage: Option<Damage>,
-    /// The scene as it was.
-    pub scene: Scene,
-    /// The cask file as it was stated.
-    pub stated: CaskFile,
-    /// What a perfect measurement would say.
-    pub truth: Truth,
     /// The word of the analysis; none where the recording is refused.
     pub verdict: Option<Verdict>,
-    /// Every finding.
-    pub findings: Vec<(IssueCode, Severity)>,
-    /// The quantities, in the same order in every row.
-    pub quantities: Vec<Scored>,
+    /// Codes of the errors, each once.
+    pub errors: Vec<String>,
+    /// Codes of the warnings, each once.
+    pub warnings: Vec<String>,
+    /// The quantities, by name.
+    pub quantities: BTreeMap<String, Scored>,
     /// The rung of the reconstruction taken.
     pub rung: Option<ReconstructionRung>,
     /// What each rung says.
-    pub candidates: Vec<ReconstructionCandidate>,
-    /// By how many standard uncertainties each closure is missed.
-    pub misses_u: Vec<f64>,
-    /// How long the analysis took, s.
-    pub analysis_s: f64,
+    pub rungs: Vec<RungSaid>,
+    /// By how many standard uncertainties the closure is missed that is missed most.
+    pub largest_miss_u: Option<f64>,
+    /// What it is classed by.
+    pub facts: SceneFacts,
 }
 
 /// A campaign, done.
@@ -96,4 +183,25 @@ pub struct Campaign {
     pub request: CampaignRequest,
     /// The scenes, undamaged first, each in the order of their numbers.
     pub rows: Vec<CampaignRow>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_is_named_by_a_letter_and_a_number() {
+        assert_eq!("U0".parse(), Ok(SceneNumber::Undamaged(0)));
+        assert_eq!("d17".parse(), Ok(SceneNumber::Damaged(17)));
+        for word in ["", "17", "Ux", "ü3", "D-1"] {
+            assert!(word.parse::<SceneNumber>().is_err(), "{word}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_stays_none() {
+        let said = Stated { value: f64::NAN, u95: 0.1 };
+        let text = serde_json::to_string(&said).expect("JSON");
+        assert!(serde_json::from_str::<Stated>(&text).expect("JSON").value.is_nan(), "{text}");
+    }
 }

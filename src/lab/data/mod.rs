@@ -5,7 +5,10 @@ mod scene;
 mod synthetic;
 mod trial;
 
-pub use campaign::{Campaign, CampaignRequest, CampaignRow, Damage, SceneNumber, Scored};
+pub use campaign::{
+    Campaign, CampaignRequest, CampaignRow, CampaignShard, Damage, RungSaid, SceneFacts, SceneNumber, Scored,
+    Stated,
+};
 pub use scene::{
     BendingMode, Chain, CrushableEnd, LooseMass, MotionStep, Scene, SceneChannel, SceneExtras,
     SimulatedMotion, Truth, slowed,

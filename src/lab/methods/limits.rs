@@ -78,10 +78,10 @@ fn of_campaign(measured: &str, campaign: &Campaign) -> Found {
     match measured {
         "pass" => (Some(100.0 * as_f64(passed().count()) / as_f64(rows.len())), String::new()),
         "passed and wrong" => {
-            listed(rows.iter().filter(|row| is_missed(row)).map(|row| row.number.to_string()))
+            listed(rows.iter().filter(|row| is_missed(row)).map(|row| row.scene.to_string()))
         }
         quantity => {
-            let scored = passed().flat_map(|row| &row.quantities).filter(|scored| scored.name == quantity);
+            let scored = passed().filter_map(|row| row.quantities.get(quantity));
             let mut off: Vec<f64> = scored.filter_map(half_widths_off).collect();
             off.sort_by(f64::total_cmp);
             (Some(quantile(&off, 0.95)).filter(|off| off.is_finite()), String::new())

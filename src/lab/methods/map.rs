@@ -36,7 +36,7 @@ fn plans(request: &TrialRequest) -> Vec<DropPlan> {
 /// Distance from the truth in half-widths; infinitely far where a number is given for what did not happen.
 fn off(stated: Option<Estimate>, truth: Option<f64>) -> Option<f64> {
     let stated = stated?;
-    Some(truth.map_or(f64::INFINITY, |truth| half_widths_between(stated, truth)))
+    Some(truth.map_or(f64::INFINITY, |truth| half_widths_between(stated.into(), truth)))
 }
 
 /// What becomes of a plan's drop, struck at this size.

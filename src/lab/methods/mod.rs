@@ -58,8 +58,7 @@ pub fn trial(
     let drops = CampaignRequest {
         scenes: request.either(100, 600),
         seed: request.seed,
-        undamaged: true,
-        kinds: Vec::new(),
+        kinds: vec!["undamaged".to_owned()],
         exact: false,
     };
     let campaign = campaign::run(&drops, &|share| progress((2.0 + share) / 3.0));

@@ -104,7 +104,7 @@ mod tests {
             when: "2026-11-24 12:00 UTC".into(),
             is_optimised: true,
         };
-        let request = CampaignRequest { scenes: 0, seed: 1, undamaged: true, kinds: vec![], exact: false };
+        let request = CampaignRequest { scenes: 0, seed: 1, kinds: vec![], exact: false };
         Trial {
             schema: "dropcheck.validation/3",
             version: "0.1.0",

@@ -19,7 +19,10 @@ impl Drive {
     /// Z / |Z| at t = 0, Z = Σ impulse e^((−ζ + i) ω age): a mode at rest before, so driven, rings on as Re(Z e^((−ζ + i) ω t))   (36)
     #[must_use]
     pub fn phase(&self, mode: Oscillation) -> Complex<f64> {
-        let (driven, _) = self.driven(mode);
+        let [turn, half_turn, aged] = self.turns(mode);
+        let z =
+            self.impulses.iter().fold(Complex::new(0.0, 0.0), |z, impulse| z * turn + half_turn * *impulse);
+        let driven = z * aged;
         if driven.norm() > 0.0 { driven / driven.norm() } else { Complex::new(1.0, 0.0) }
     }
 
@@ -31,18 +34,26 @@ impl Drive {
 
     /// Z, and what it changes by with (−ζ + i) ω.
     fn driven(&self, mode: Oscillation) -> (Complex<f64>, Complex<f64>) {
-        let rate = super::ringing::rate(mode);
+        let [turn, half_turn, aged] = self.turns(mode);
         let half_s = self.step_s / 2.0;
-        let (turn, half_turn) = ((rate * self.step_s).exp(), (rate * half_s).exp());
         let nothing = Complex::new(0.0, 0.0);
         let step = |(z, by_rate): (Complex<f64>, Complex<f64>), impulse: &f64| {
             let (aged, added) = (z * turn, half_turn * *impulse);
             (aged + added, by_rate * turn + aged * self.step_s + added * half_s)
         };
         let (z, by_rate) = self.impulses.iter().fold((nothing, nothing), step);
-        let since_s = self.age_s - as_f64(self.impulses.len()) * self.step_s;
-        let aged = (rate * since_s).exp();
-        (z * aged, (by_rate + z * since_s) * aged)
+        (z * aged, (by_rate + z * self.since_s()) * aged)
+    }
+
+    /// How long before t = 0 it ended, s.
+    fn since_s(&self) -> f64 {
+        self.age_s - as_f64(self.impulses.len()) * self.step_s
+    }
+
+    /// What a mode does in a step, in half of one, and from the end of the force on.
+    fn turns(&self, mode: Oscillation) -> [Complex<f64>; 3] {
+        let rate = super::ringing::rate(mode);
+        [self.step_s, self.step_s / 2.0, self.since_s()].map(|time_s| (rate * time_s).exp())
     }
 }
 

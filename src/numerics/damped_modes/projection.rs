@@ -57,15 +57,21 @@ pub(super) struct OfTimes<T> {
 impl<T> OfTimes<T> {
     /// By `make`, from the first series of each times; `None` where that is.
     pub(super) fn new(series: &[Series], make: impl Fn(&Series) -> Option<T>) -> Option<Self> {
+        let OfTimes { made, places } = OfTimes::of(series, make);
+        Some(Self { made: made.into_iter().collect::<Option<_>>()?, places })
+    }
+
+    /// The same by what always makes one.
+    pub(super) fn of(series: &[Series], make: impl Fn(&Series) -> T) -> Self {
         let (mut made, mut places) = (Vec::new(), Vec::new());
         for (i, own) in series.iter().enumerate() {
             let before = i.checked_sub(1).map(|i| &series[i]);
             if before.is_none_or(|b| b.time_s != own.time_s || b.steps_s != own.steps_s) {
-                made.push(make(own)?);
+                made.push(make(own));
             }
             places.push(made.len() - 1);
         }
-        Some(Self { made, places })
+        Self { made, places }
     }
 
     /// That of each series.
@@ -73,14 +79,13 @@ impl<T> OfTimes<T> {
         self.places.iter().map(|&place| &self.made[place])
     }
 
-    /// What comes of this and `other`, which hangs on the times of the same series.
-    pub(super) fn with<U, V>(
-        &self,
-        other: &OfTimes<U>,
-        make: impl Fn(&T, &U) -> Option<V>,
-    ) -> Option<OfTimes<V>> {
-        let made = self.made.iter().zip(&other.made).map(|(own, other)| make(own, other));
-        Some(OfTimes { made: made.collect::<Option<_>>()?, places: self.places.clone() })
+    /// That of each times, beside the series that share them.
+    pub(super) fn groups<'a>(
+        &'a self,
+        series: &'a [Series],
+    ) -> impl Iterator<Item = (&'a T, Vec<&'a Series>)> {
+        let of = |place: usize| series.iter().zip(&self.places).filter(move |(_, own)| **own == place);
+        self.made.iter().enumerate().map(move |(place, made)| (made, of(place).map(|(s, _)| s).collect()))
     }
 }
 

@@ -2,20 +2,30 @@
 
 use super::drive::{Drive, Form};
 use super::projection::{OfTimes, columns, mode_columns};
+use super::ringing::even_ringing;
 use super::series::{Oscillation, Series};
 use crate::numerics::as_f64;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, MatrixView, U1};
 
-/// One more mode as it is tried: its columns, and their products with one another.
-struct Seed {
-    mode: Oscillation,
-    columns: OfTimes<(DMatrix<f64>, DMatrix<f64>)>,
-}
+/// From so many rows on a product of matrices is the fast one; others are filled up with zeros.
+const FAST_COLUMNS: usize = 8;
+
+/// What each column of a mode has along those known so far.
+type Known<'a> = MatrixView<'a, f64, Dyn, Dyn, U1, Dyn>;
 
 /// The modes that are tried in a band: steps of 7 % and three dampings. Made once for all fits of the same series and drive.
 pub struct Seeds {
     band_hz: (f64, f64),
-    seeds: Vec<Seed>,
+    modes: Vec<Oscillation>,
+    tried: OfTimes<Tried>,
+}
+
+/// The modes at the same times.
+struct Tried {
+    /// Columns of one mode after the other.
+    columns: DMatrix<f64>,
+    /// Products of each mode's columns: of the first with itself, of both, of the last with itself.
+    products: Vec<[f64; 3]>,
 }
 
 impl Seeds {
@@ -23,26 +33,46 @@ impl Seeds {
     #[must_use]
     pub fn new(series: &[Series], band_hz: (f64, f64), drive: Option<&Drive>) -> Self {
         let form = Form { drift: false, drive };
-        let mut seeds = Vec::new();
+        let mut modes = Vec::new();
         let mut frequency_hz = band_hz.0;
         while frequency_hz <= band_hz.1 {
-            for damping in [0.005, 0.03, 0.1] {
-                let mode = Oscillation { frequency_hz, damping };
-                let columns = OfTimes::new(series, |s| {
-                    let columns = mode_columns(s, mode, form);
-                    let products = columns.tr_mul(&columns);
-                    Some((columns, products))
-                });
-                seeds.extend(columns.map(|columns| Seed { mode, columns }));
-            }
+            modes.extend([0.005, 0.03, 0.1].map(|damping| Oscillation { frequency_hz, damping }));
             frequency_hz *= 1.07;
         }
-        Self { band_hz, seeds }
+        let tried = OfTimes::of(series, |s| Tried::new(s, &modes, form));
+        Self { band_hz, modes, tried }
     }
 
     /// Whether a mode lies in the band or close to it.
     pub(super) fn is_near(&self, mode: &Oscillation) -> bool {
         (0.8 * self.band_hz.0..1.25 * self.band_hz.1).contains(&mode.frequency_hz)
+    }
+}
+
+impl Tried {
+    fn new(series: &Series, modes: &[Oscillation], form: Form) -> Self {
+        let width = form.width();
+        let mut columns = DMatrix::zeros(series.time_s.len(), width * modes.len());
+        for (i, mode) in modes.iter().enumerate() {
+            let mut own = columns.columns_mut(width * i, width);
+            let Some(ringing) = even_ringing(*mode, &series.time_s) else {
+                own.copy_from(&mode_columns(series, *mode, form));
+                continue;
+            };
+            let phase = form.drive.map(|drive| drive.phase(*mode));
+            for (row, value) in ringing.into_iter().enumerate() {
+                own[(row, 0)] = phase.map_or(value.re, |phase| (phase * value).re);
+                if phase.is_none() {
+                    own[(row, 1)] = value.im;
+                }
+            }
+        }
+        let products = |i: usize| {
+            let (first, last) = (columns.column(width * i), columns.column(width * (i + 1) - 1));
+            [first.norm_squared(), first.dot(&last), last.norm_squared()]
+        };
+        let products = (0..modes.len()).map(products).collect();
+        Self { columns, products }
     }
 }
 
@@ -53,35 +83,59 @@ pub(super) fn best_seed(
     seeds: &Seeds,
     form: Form,
 ) -> Option<Oscillation> {
-    let bases = OfTimes::new(series, |s| basis(s, start, form))?;
-    let rest = |(s, basis): (&Series, &DMatrix<f64>)| {
-        let value = DVector::from_column_slice(&s.value);
-        &value - basis * basis.tr_mul(&value)
-    };
-    let rests: Vec<DVector<f64>> = series.iter().zip(bases.each()).map(rest).collect();
+    let width = form.width();
+    let mut scores = vec![0.0; seeds.modes.len()];
+    for (tried, series) in seeds.tried.groups(series) {
+        let basis = basis(series.first()?, start, form)?;
+        let count = basis.ncols();
+        let rest = |own: &Series| {
+            let value = DVector::from_column_slice(&own.value);
+            &value - &basis * basis.tr_mul(&value)
+        };
+        let rests: Vec<DVector<f64>> = series.iter().map(|own| rest(own)).collect();
+        // Along what the modes known so far explain, and along what they leave: one product for all seeds.
+        let mut beside = DMatrix::zeros(basis.nrows(), (count + rests.len()).max(FAST_COLUMNS));
+        beside.columns_mut(0, count).copy_from(&basis);
+        rests.iter().enumerate().for_each(|(j, rest)| beside.set_column(count + j, rest));
+        let along = beside.transpose() * &tried.columns;
+        for (i, score) in scores.iter_mut().enumerate() {
+            let own = along.columns(width * i, width);
+            let factor = factor(tried.products[i], &own.rows(0, count));
+            for (j, (series, rest)) in series.iter().zip(&rests).enumerate() {
+                let along = [own[(count + j, 0)], own[(count + j, width - 1)]];
+                *score += factor.map_or(f64::NAN, |factor| {
+                    let left = rest.norm_squared() - explained(factor, along);
+                    (left.max(0.0) / as_f64(rest.len()) + series.floor.powi(2)).ln()
+                });
+            }
+        }
+    }
     // Two modes at one place are one mode and a singular fit.
     let is_free =
-        |seed: &&Seed| start.iter().all(|m| (m.frequency_hz / seed.mode.frequency_hz).ln().abs() >= 0.05);
-    let score = |seed: &Seed| -> Option<f64> {
-        let free = seed.columns.with(&bases, |(columns, products), basis| {
-            // What the modes known so far explain is taken off, so that a further mode costs two columns.
-            let known = basis.tr_mul(columns);
-            (products - known.tr_mul(&known)).cholesky()
-        })?;
-        let parts = series.iter().zip(&rests).zip(seed.columns.each()).zip(free.each());
-        Some(
-            parts
-                .map(|(((series, rest), (columns, _)), free)| {
-                    let along = columns.tr_mul(rest);
-                    let explained = along.dot(&free.solve(&along));
-                    let left = (rest.norm_squared() - explained).max(0.0) / as_f64(rest.len());
-                    (left + series.floor.powi(2)).ln()
-                })
-                .sum(),
-        )
-    };
-    let scored = seeds.seeds.iter().filter(is_free).filter_map(|seed| Some((score(seed)?, seed.mode)));
-    scored.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, mode)| mode)
+        |seed: &Oscillation| start.iter().all(|m| (m.frequency_hz / seed.frequency_hz).ln().abs() >= 0.05);
+    let scored = seeds.modes.iter().zip(scores).filter(|(mode, score)| is_free(mode) && !score.is_nan());
+    scored.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(mode, _)| *mode)
+}
+
+/// The Cholesky factor of the products of a mode's columns, less what the `known` ones explain of them; `None` where that is all. Of a single
+/// column there is no second row: what is divided by infinity.
+fn factor([own, both, other]: [f64; 3], known: &Known) -> Option<[f64; 3]> {
+    let first = known.column(0);
+    let size = Some(own - first.norm_squared()).filter(|size| *size > 0.0)?.sqrt();
+    if known.ncols() == 1 {
+        return Some([size, 0.0, f64::INFINITY]);
+    }
+    let last = known.column(1);
+    let shared = (both - first.dot(&last)) / size;
+    let left = other - last.norm_squared() - shared * shared;
+    (left > 0.0).then(|| [size, shared, left.sqrt()])
+}
+
+/// Square of what a mode explains of a rest that has this along its columns.
+fn explained([size, shared, left]: [f64; 3], along: [f64; 2]) -> f64 {
+    let first = along[0] / size;
+    let second = (along[1] - shared * first) / left;
+    first * first + second * second
 }
 
 /// An orthonormal basis of what the modes known so far explain; `None` where one mode more would leave fewer than two points over.
