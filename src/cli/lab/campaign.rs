@@ -39,7 +39,7 @@ pub fn run(arguments: &Arguments, scenes: u32) -> miette::Result<Ending> {
     keep_freed_memory();
     let tables = tabled(&request, arguments.out.as_deref(), |take| {
         let own = place.count.saturating_sub(index).div_ceil(count);
-        let progress = CountedProgress::of(own);
+        let mut progress = CountedProgress::of(own);
         let mut done = 0;
         if let Some(file) = &mut file {
             done = file.take_over(&place, |row| {
@@ -60,7 +60,6 @@ pub fn run(arguments: &Arguments, scenes: u32) -> miette::Result<Ending> {
             let read = campaign::read(line.as_bytes());
             read.map_or(Ok(()), |(_, row)| take(&row))
         })?;
-        progress.end();
         Ok(())
     })?;
     if let Some((path, (before, after))) = &document {

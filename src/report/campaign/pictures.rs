@@ -35,7 +35,7 @@ impl DropSeries<'_> {
         }
         self.draw(&mut ratio, relative, |row| self.angle(row));
         let k = self.k.map_or_else(String::new, |[low, high]| {
-            format!(", k from {} to {}", plain(low, 3), plain(high, 3))
+            format!(", from {} to {}", plain(low, 3), plain(high, 3))
         });
         let caption = format!(
             "Above: measured with 95 % intervals over the stated drop angle; repeats stand beside one another. Bands: the analytical model \
