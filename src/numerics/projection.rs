@@ -17,10 +17,10 @@ pub fn residual_square(values: &[f64], regressors: Vec<Vec<f64>>) -> f64 {
     let mut basis: Vec<Vec<f64>> = Vec::with_capacity(regressors.len());
     for mut column in regressors {
         let before = dot(&column, &column);
-        basis.iter().for_each(|unit| take_off(&mut column, unit));
+        take_all_off(&mut column, &basis);
         let mut after = dot(&column, &column);
         if after < NEARLY_ALL * before {
-            basis.iter().for_each(|unit| take_off(&mut column, unit));
+            take_all_off(&mut column, &basis);
             after = dot(&column, &column);
         }
         if after > 0.0 && after > DEPENDENT * DEPENDENT * before {
@@ -33,6 +33,12 @@ pub fn residual_square(values: &[f64], regressors: Vec<Vec<f64>>) -> f64 {
         }
     }
     dot(&left, &left)
+}
+
+fn take_all_off(values: &mut [f64], basis: &[Vec<f64>]) {
+    for unit in basis {
+        take_off(values, unit);
+    }
 }
 
 fn take_off(values: &mut [f64], unit: &[f64]) {

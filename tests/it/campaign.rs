@@ -216,7 +216,7 @@ fn shards_merged_are_one_run_and_a_shard_that_is_none_is_named() {
         (Some("swapped.jsonl"), "line 1, stands where another scene is due"),
         (Some("foreign.jsonl"), "is of another campaign"),
         (Some("version.jsonl"), "was written by another version"),
-        (Some("empty.jsonl"), "is no shard"),
+        (Some("empty.jsonl"), "empty.jsonl is "),
         (Some("whole/campaign.csv"), "campaign.csv is no shard"),
     ] {
         let answer = merge(folder, &["0.jsonl", "2.jsonl"].into_iter().chain(file).collect::<Vec<_>>());

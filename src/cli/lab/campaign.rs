@@ -3,10 +3,11 @@
 use super::super::Ending;
 use super::super::output::{CannotWrite, Folder, print, print_plain, replace, replace_by};
 use super::super::progress::CountedProgress;
+use super::super::shard;
 use super::super::tuning::keep_freed_memory;
 use super::document::Marks;
 use super::shards::{SceneLines, Shards};
-use super::validate::Arguments;
+use clap::Args;
 use dropcheck::lab::campaign::{self, ScenePlace, Tally};
 use dropcheck::lab::data::{CampaignRequest, CampaignRow, CampaignShard};
 use miette::IntoDiagnostic;
@@ -21,23 +22,36 @@ const NAMES: [&str; 2] = ["campaign.csv", "campaign.md"];
 /// Where rows go, one after the other.
 type Take<'a> = &'a mut dyn FnMut(&CampaignRow) -> miette::Result<()>;
 
-/// Draws `scenes` of each and writes what is asked for.
-pub fn run(arguments: &Arguments, scenes: u32) -> miette::Result<Ending> {
-    let request = CampaignRequest {
-        scenes,
-        seed: arguments.seed,
-        kinds: words(&arguments.kinds),
-        exact: arguments.exact,
-    };
-    let (index, count) = arguments.shard;
-    let place = ScenePlace::first(&request, CampaignShard { index, count });
-    let document =
-        arguments.into.as_deref().map(|path| MARKS.parts(path).map(|parts| (path, parts))).transpose()?;
-    let to_standard_output = arguments.jsonl.as_deref() == Some(Path::new("-"));
-    let file = arguments.jsonl.as_deref().filter(|_| !to_standard_output);
-    let mut file = file.map(|path| SceneLines::open(path, arguments.resume)).transpose()?;
+/// In which parts a campaign is done.
+#[derive(Args)]
+pub struct Parts {
+    /// One line a scene: what was found beside the truth; with - to standard output, and nothing else there
+    #[arg(long, value_name = "FILE|-", requires = "campaign")]
+    jsonl: Option<PathBuf>,
+    /// Only each N-th scene from number I on, from 0; `dropcheck merge` puts the parts together
+    #[arg(long, value_name = "I/N", value_parser = shard::part, default_value = "0/1", hide_default_value = true,
+        requires = "jsonl", conflicts_with_all = ["out", "into"])]
+    shard: (usize, usize),
+    /// Go on with the lines of --jsonl that an earlier run of the same words has left
+    #[arg(long, requires = "jsonl")]
+    resume: bool,
+}
+
+/// Draws the scenes and writes what is asked for: lines, the files of the folder `out`, the tables in the document `into`.
+pub fn run(
+    request: &CampaignRequest,
+    parts: &Parts,
+    out: Option<&Path>,
+    into: Option<&Path>,
+) -> miette::Result<Ending> {
+    let (index, count) = parts.shard;
+    let place = ScenePlace::first(request, CampaignShard { index, count });
+    let document = into.map(|path| MARKS.parts(path).map(|around| (path, around))).transpose()?;
+    let to_standard_output = parts.jsonl.as_deref() == Some(Path::new("-"));
+    let file = parts.jsonl.as_deref().filter(|_| !to_standard_output);
+    let mut file = file.map(|path| SceneLines::open(path, parts.resume)).transpose()?;
     keep_freed_memory();
-    let tables = tabled(&request, arguments.out.as_deref(), |take| {
+    let tables = tabled(request, out, |take| {
         let own = place.count.saturating_sub(index).div_ceil(count);
         let mut progress = CountedProgress::of(own);
         let mut done = 0;
@@ -47,7 +61,7 @@ pub fn run(arguments: &Arguments, scenes: u32) -> miette::Result<Ending> {
                 take(row)
             })?;
         }
-        campaign::each(&request, CampaignShard { index, count }, done, |number, row| {
+        campaign::each(request, CampaignShard { index, count }, done, |number, row| {
             let line = campaign::line(&place.at(number), &row).into_diagnostic()?;
             if let Some(file) = &mut file {
                 file.put(line.as_bytes())?;
@@ -67,7 +81,7 @@ pub fn run(arguments: &Arguments, scenes: u32) -> miette::Result<Ending> {
     }
     if count > 1 && !to_standard_output {
         print(&format!("Shard {index}/{count}; `dropcheck merge` makes the tables of all shards.\n"))?;
-    } else if arguments.out.is_none() && document.is_none() && !to_standard_output {
+    } else if out.is_none() && document.is_none() && !to_standard_output {
         print(&tables)?;
     }
     Ok(Ending::Clear)
@@ -115,7 +129,7 @@ fn tabled(
 }
 
 /// The words for kinds in one order and each once, so that shards of the same campaign say the same.
-fn words(kinds: &[&'static str]) -> Vec<String> {
+pub fn words(kinds: &[&'static str]) -> Vec<String> {
     let mut words: Vec<String> = kinds.iter().map(|word| (*word).to_owned()).collect();
     words.sort();
     words.dedup();

@@ -7,7 +7,7 @@ use dropcheck::lab::data::{CampaignRequest, CampaignRow, CampaignShard};
 use miette::{IntoDiagnostic, WrapErr};
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 
 /// A file of lines in the order of their scenes that this run writes.
@@ -46,29 +46,12 @@ impl SceneLines {
     ) -> miette::Result<usize> {
         let mut lines = LineReader::open(&self.path)?;
         let mut done = 0;
-        let mut end = 0;
-        while let Some(line) = lines.next()? {
-            if !line.ends_with(b"\n") {
-                break;
-            }
-            let due = place.at(place.number + done * place.shard[1]);
-            match campaign::read(line) {
-                Some((own, row)) if own == due => take(&row)?,
-                own => {
-                    let words = own.and_then(|(own, _)| own.differs(&due)).unwrap_or("is out of its order");
-                    return Err(miette::miette!(
-                        help = "repeat the words of the run that is to go on, or write to another file",
-                        "{}, line {}, {words}",
-                        self.path.display(),
-                        lines.count
-                    ));
-                }
-            }
+        while let Some(row) = lines.row(&place.at(place.number + done * place.shard[1]))? {
+            take(&row)?;
             done += 1;
-            end += line.len() as u64;
         }
-        let cut = self.file.set_len(end).and_then(|()| self.file.seek(SeekFrom::End(0)));
-        cut.into_diagnostic().wrap_err_with(|| format!("{} cannot be written", self.path.display()))?;
+        let cut = self.file.set_len(lines.whole_bytes).into_diagnostic();
+        cut.wrap_err_with(|| format!("{} cannot be written", self.path.display()))?;
         Ok(done)
     }
 
@@ -83,26 +66,48 @@ impl SceneLines {
 struct LineReader {
     path: PathBuf,
     reader: BufReader<File>,
-    line: Vec<u8>,
-    /// Lines that were read.
+    /// Lines that were read, and how long the rows among them are.
     count: usize,
+    whole_bytes: u64,
 }
 
 impl LineReader {
     fn open(path: &Path) -> miette::Result<Self> {
         let file = File::open(path).into_diagnostic();
         let file = file.wrap_err_with(|| format!("{} cannot be read", path.display()))?;
-        Ok(Self { path: path.to_path_buf(), reader: BufReader::new(file), line: Vec::new(), count: 0 })
+        Ok(Self { path: path.to_path_buf(), reader: BufReader::new(file), count: 0, whole_bytes: 0 })
     }
 
-    fn next(&mut self) -> miette::Result<Option<&[u8]>> {
-        self.line.clear();
-        let read = self.reader.read_until(b'\n', &mut self.line).into_diagnostic();
-        let length = read.wrap_err_with(|| format!("{} cannot be read", self.path.display()))?;
+    /// The next line, with its end; empty where there is none.
+    fn next(&mut self) -> miette::Result<Vec<u8>> {
+        let mut line = Vec::new();
+        let read = self.reader.read_until(b'\n', &mut line).into_diagnostic();
+        read.wrap_err_with(|| format!("{} cannot be read", self.path.display()))?;
         self.count += 1;
-        Ok((length > 0).then_some(&self.line[..]))
+        Ok(line)
+    }
+
+    /// The row of the next line, which has to be that of the scene that is `due`; `None` where the file ends or its last line is torn.
+    fn row(&mut self, due: &ScenePlace) -> miette::Result<Option<CampaignRow>> {
+        let line = self.next()?;
+        if !line.ends_with(b"\n") {
+            return Ok(None);
+        }
+        self.whole_bytes += line.len() as u64;
+        match campaign::read(&line) {
+            Some((own, row)) if own == *due => Ok(Some(row)),
+            Some((own, _)) => Err(self.refused(own.differs(due).unwrap_or(DISORDER))),
+            None => Err(self.refused("is no line of a campaign")),
+        }
+    }
+
+    fn refused(&self, words: &str) -> miette::Report {
+        let help = "run that shard again, by the same words and program as the others";
+        miette::miette!(help = help, "{}, line {}, {words}", self.path.display(), self.count)
     }
 }
+
+const DISORDER: &str = "stands where another scene is due: lines are doubled or missing";
 
 /// The shards of one campaign.
 pub struct Shards {
@@ -116,32 +121,19 @@ impl Shards {
         let mut shards: Option<Self> = None;
         for path in paths {
             let mut lines = LineReader::open(path)?;
-            let line = lines.next()?.ok_or_else(|| shard::no_shard(path))?;
-            let Some((own, _)) = campaign::read(line) else {
-                return Err(if shard::is_own(path) { cut(path, 1) } else { shard::no_shard(path) });
+            let Some((own, _)) = campaign::read(&lines.next()?) else {
+                let is_cut = shard::is_own(path) && lines.reader.fill_buf().is_ok_and(<[u8]>::is_empty);
+                return Err(if is_cut { cut(path, 1) } else { shard::no_shard(path) });
             };
             let this = ScenePlace::first(&own.of, CampaignShard { index: own.shard[0], count: own.shard[1] });
             let all = shards.get_or_insert_with(|| Self { first: this.at(0), files: BTreeMap::new() });
             if let Some(words) = own.differs(&all.first) {
-                return Err(miette::miette!(
-                    help = "merge shards of one campaign, with the program that wrote them",
-                    "{} {words}{}",
-                    path.display(),
-                    all.files
-                        .values()
-                        .next()
-                        .map_or(String::new(), |other| { format!(", beside {}", other.path.display()) })
-                ));
+                return Err(lines.refused(words));
             }
             if let Some(other) = all.files.insert(own.shard[0], LineReader::open(path)?) {
-                return Err(miette::miette!(
-                    help = "name each shard once",
-                    "{} is shard {}/{} once more, which {} is already",
-                    path.display(),
-                    own.shard[0],
-                    own.shard[1],
-                    other.path.display()
-                ));
+                let words =
+                    format!("is shard {}/{} once more: {}", own.shard[0], own.shard[1], other.path.display());
+                return Err(lines.refused(&words));
             }
         }
         let shards = shards.ok_or_else(|| miette::miette!("no shard is named"))?;
@@ -166,31 +158,12 @@ impl Shards {
         for number in 0..self.first.count {
             let due = self.first.at(number);
             let Some(file) = self.files.get_mut(&(number % parts)) else { continue };
-            let read = file.next()?.map(campaign::read);
-            match read.flatten() {
-                Some((own, row)) if own == due => take(&row)?,
-                Some((own, _)) => {
-                    let words = own
-                        .differs(&due)
-                        .unwrap_or("stands where another scene is due: lines are doubled or missing");
-                    return Err(miette::miette!(
-                        help = "run that shard again",
-                        "{}, line {}, {words}",
-                        file.path.display(),
-                        file.count
-                    ));
-                }
-                None => return Err(cut(&file.path, file.count)),
-            }
+            let row = file.row(&due)?.ok_or_else(|| cut(&file.path, file.count))?;
+            take(&row)?;
         }
         for file in self.files.values_mut() {
-            if file.next()?.is_some() {
-                return Err(miette::miette!(
-                    help = "run that shard again",
-                    "{}, line {}, is one too many: its shard ends before",
-                    file.path.display(),
-                    file.count
-                ));
+            if !file.next()?.is_empty() {
+                return Err(file.refused("is one too many: its shard ends before"));
             }
         }
         Ok(())

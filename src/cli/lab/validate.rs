@@ -2,10 +2,9 @@
 
 use super::super::Ending;
 use super::super::output::{Folder, print};
-use super::super::shard;
 use super::{campaign, trial};
 use clap::Args;
-use dropcheck::lab::data::{SceneNumber, TrialRequest};
+use dropcheck::lab::data::{CampaignRequest, SceneNumber, TrialRequest};
 use dropcheck::lab::report::SyntheticFormat;
 use dropcheck::{lab, report};
 use std::path::{Path, PathBuf};
@@ -50,30 +49,22 @@ pub struct Arguments {
     reference: Option<PathBuf>,
     /// Seed of everything random
     #[arg(long, value_name = "S", default_value_t = 1)]
-    pub seed: u64,
+    seed: u64,
     /// all, undamaged, sound (all kinds of sound drops), or kinds, separated by commas
     #[arg(long, value_name = "KINDS", default_value = "all", value_delimiter = ',', value_parser = kind, requires = "campaign")]
-    pub kinds: Vec<&'static str>,
+    kinds: Vec<&'static str>,
     /// What is stated is exactly true: no deviations within the tolerances
     #[arg(long, requires = "what")]
-    pub exact: bool,
+    exact: bool,
     /// Folder for the page, pictures and tables of the trial, for campaign.csv and campaign.md, or for the files of the scene
     #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    out: Option<PathBuf>,
     /// Document in which the result replaces what stands between the lines `<!-- trial: begin -->` and `<!-- trial: end -->`, or of a
     /// campaign between `<!-- campaign: begin -->` and `<!-- campaign: end -->`
     #[arg(long, value_name = "FILE", conflicts_with = "scene")]
-    pub into: Option<PathBuf>,
-    /// One line a scene: what was found beside the truth; with - to standard output, and nothing else there
-    #[arg(long, value_name = "FILE|-", requires = "campaign")]
-    pub jsonl: Option<PathBuf>,
-    /// Only each N-th scene from number I on, from 0; `dropcheck merge` puts the parts together
-    #[arg(long, value_name = "I/N", value_parser = shard::part, default_value = "0/1", hide_default_value = true,
-        requires = "jsonl", conflicts_with_all = ["out", "into"])]
-    pub shard: (usize, usize),
-    /// Go on with the lines of --jsonl that an earlier run of the same words has left
-    #[arg(long, requires = "jsonl")]
-    pub resume: bool,
+    into: Option<PathBuf>,
+    #[command(flatten)]
+    parts: campaign::Parts,
 }
 
 fn kind(word: &str) -> Result<&'static str, String> {
@@ -86,7 +77,11 @@ fn kind(word: &str) -> Result<&'static str, String> {
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     match (arguments.scene, &arguments.out, arguments.campaign) {
         (Some(number), Some(out), _) => one(arguments, number, out),
-        (_, _, Some(scenes)) => campaign::run(arguments, scenes),
+        (_, out, Some(scenes)) => {
+            let kinds = campaign::words(&arguments.kinds);
+            let request = CampaignRequest { scenes, seed: arguments.seed, kinds, exact: arguments.exact };
+            campaign::run(&request, &arguments.parts, out.as_deref(), arguments.into.as_deref())
+        }
         (_, out, None) => {
             let request = TrialRequest { quick: arguments.quick, seed: arguments.seed };
             let site = arguments.reference.as_deref();

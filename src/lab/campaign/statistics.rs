@@ -206,7 +206,9 @@ mod tests {
 
     fn counted(values: impl IntoIterator<Item = f64>) -> Magnitudes {
         let mut all = Magnitudes::default();
-        values.into_iter().for_each(|value| all.add(value));
+        for value in values {
+            all.add(value);
+        }
         all
     }
 

@@ -20,7 +20,9 @@ pub fn markdown(tally: &Tally) -> String {
 /// A table of scenes by the rung of the reconstruction taken, and one of what every rung says of the drops that take one.
 pub(in crate::lab) fn rungs(campaign: &Campaign) -> [ChapterPart; 2] {
     let mut tally = Tally::new(campaign.request.clone());
-    campaign.rows.iter().for_each(|row| tally.add(row));
+    for row in &campaign.rows {
+        tally.add(row);
+    }
     tally.rungs.tables()
 }
 
@@ -193,7 +195,7 @@ fn missed(tally: &Tally) -> Vec<ChapterPart> {
         |row: &CampaignRow, name, decimals| optional_fixed(scored(row, name).and_then(|s| s.truth), decimals);
     let table = ReportTable::of(&tally.missed)
         .text("scene", |row| row.scene.to_string())
-        .text("damage", |row| damage(row))
+        .text("damage", damage)
         .number("speed", |row| stated(row, "speed", 3))
         .number("true", |row| truth(row, "speed", 3))
         .number("k", |row| stated(row, "k", 4))

@@ -59,7 +59,9 @@ const LANES: usize = 4;
 pub(crate) fn each_forward_and_back(stage: &StateVariable, all: &mut [Vec<f64>]) {
     all.par_chunks_mut(LANES).for_each(|some| match some {
         [first, others @ ..] if others.iter().any(|series| series.len() != first.len()) => {
-            some.iter_mut().for_each(|series| forward_and_back(stage, series));
+            for series in some {
+                forward_and_back(stage, series);
+            }
         }
         [one] => forward_and_back(stage, one),
         [_, _] => beside_forward_and_back::<2>(stage, some),
@@ -71,11 +73,15 @@ pub(crate) fn each_forward_and_back(stage: &StateVariable, all: &mut [Vec<f64>])
 fn beside_forward_and_back<const N: usize>(stage: &StateVariable, some: &mut [Vec<f64>]) {
     let mut rows = vec![[0.0; N]; some.first().map_or(0, Vec::len)];
     for (lane, series) in some.iter().enumerate() {
-        rows.iter_mut().zip(series).for_each(|(row, x)| row[lane] = *x);
+        for (row, x) in rows.iter_mut().zip(series) {
+            row[lane] = *x;
+        }
     }
     rows_forward_and_back(stage, &mut rows);
     for (lane, series) in some.iter_mut().enumerate() {
-        series.iter_mut().zip(&rows).for_each(|(x, row)| *x = row[lane]);
+        for (x, row) in series.iter_mut().zip(&rows) {
+            *x = row[lane];
+        }
     }
 }
 
@@ -92,7 +98,9 @@ mod tests {
             let mut together: Vec<Vec<f64>> = (0..).zip(lengths).map(|(i, n)| series(i, *n)).collect();
             let mut alone = together.clone();
             each_forward_and_back(&stage, &mut together);
-            alone.iter_mut().for_each(|series| forward_and_back(&stage, series));
+            for series in &mut alone {
+                forward_and_back(&stage, series);
+            }
             assert_eq!(together, alone, "{lengths:?}");
         }
     }

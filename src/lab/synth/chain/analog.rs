@@ -35,11 +35,17 @@ pub(super) fn sampled(
     let stride = super::recorder::count(factor);
     let points = (count - 1) * stride + 1;
     let mut samples = Vec::with_capacity(count);
+    let (mut signal, mut still_at) = (0.0, None);
     for from in (0..points).step_by(BLOCK) {
         let times_s: Vec<f64> =
             (from..points.min(from + BLOCK)).map(|i| as_f64(i) / fine_hz - scene.before_s).collect();
         for (i, force) in (from..).zip(mounted.force_m_s2(&times_s)) {
-            let signal = filters.next(force);
+            // What hangs or falls gives the same number again and again: a step that moves no filter moves none the next time.
+            if still_at != Some(force) {
+                let before = filters.states();
+                signal = filters.next(force);
+                still_at = (filters.states() == before).then_some(force);
+            }
             if i % stride == 0 {
                 samples.push(signal);
             }
@@ -102,6 +108,15 @@ impl Filters {
             high_pass,
             anti_alias,
         }
+    }
+
+    /// What they remember, to the bit.
+    fn states(&self) -> [u64; 7] {
+        let of = |filter: Option<&SecondOrder>| filter.map_or([0.0; 2], |filter| [filter.band, filter.low]);
+        let pair = self.anti_alias.as_ref();
+        let [[a, b], [c, d], [e, f]] =
+            [self.resonance.as_ref(), pair.map(|p| &p[0]), pair.map(|p| &p[1])].map(of);
+        [a, b, c, d, e, f, self.high_pass.as_ref().map_or(0.0, |filter| filter.low)].map(f64::to_bits)
     }
 
     fn next(&mut self, force: f64) -> f64 {
