@@ -19,7 +19,11 @@
 //!
 //! A recording and a cask file pass through stages in the order that `analysis` alone knows; a stage imports only `data` and `numerics`.
 
+// The command line names what it uses as another program would: its files stand in `cli`, and know nothing that is not public.
+extern crate self as dropcheck;
+
 mod analysis;
+mod cli;
 mod compare;
 mod condition;
 pub mod data;
@@ -42,6 +46,14 @@ pub use analysis::analyze;
 pub use ingest::{IngestError, cask_file, read, read_hdf5_with, serve_hdf5};
 pub use predict::{predict, study};
 pub use report::{ReportError, files};
+
+/// The command line, for the program and for another that takes its words; it changes without notice.
+#[doc(hidden)]
+pub mod command {
+    #[cfg(feature = "lab")]
+    pub use crate::cli::synthetic;
+    pub use crate::cli::{analysis, listing, main, message, prediction, write};
+}
 
 /// Stages one by one, for benchmarks and tests; they change without notice.
 #[doc(hidden)]

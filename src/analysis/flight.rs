@@ -138,7 +138,8 @@ fn moved(
     let fit::Inputs { flight: moved, events: times, setup: as_taken, .. } = &taken.taken;
     let motion = motion::reconstruct(integrated, moved, times, as_taken)?;
     let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref())
-        .or_else(|| impacts::tabulated(file, integrated, &taken, None));
+        .or_else(|| impacts::tabulated(file, integrated, &taken, None))
+        .map(|t| if impact.stand_in.is_some() { t.without_course() } else { t });
     let fit::RungTaken { quantities, choice: reconstruction, .. } = taken;
     Some(Flown { flight, setup, motion, quantities, reconstruction, tabulated })
 }

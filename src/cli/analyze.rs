@@ -8,7 +8,7 @@ use super::progress::with_progress;
 use super::record::{self, EarlierResult};
 use super::tuning::{awake, keep_freed_memory};
 use clap::{Args, ValueEnum};
-use dropcheck::data::{CaskFile, DropResult, RecordingFormat, Setting};
+use dropcheck::data::{Analysis, CaskFile, DropResult, HeldSamples, RecordingFormat, Setting};
 use dropcheck::{ingest, report};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -124,6 +124,31 @@ fn complain_softly(sentence: &str) {
     let _ = writeln!(anstream::stderr(), "{}", report::printable(sentence));
 }
 
+/// What the words ask for, of samples in memory where there are any; written nowhere, and its words and date not yet stated.
+pub fn analysis(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::Result<Analysis> {
+    let mut cask_file = ingest::cask_file(arguments.cask.as_deref().unwrap_or(Path::new("")))?;
+    arguments.switched_off.in_cask_file(&mut cask_file);
+    let limits = arguments.bounds.limits();
+    let recording = match held {
+        Some(held) => ingest::read_arrays(held, &cask_file)?,
+        None => ingest::read_within(&arguments.recording, &cask_file, limits, &|_| ())?,
+    };
+    let mut analysis = dropcheck::analyze(&recording, &cask_file);
+    arguments.switched_off.in_settings(&mut analysis.result);
+    Ok(analysis)
+}
+
+/// Writes the report of an analysis into `folder`, as `--out` does.
+///
+/// # Errors
+/// As the command: the folder is another program's, or cannot be written.
+pub fn write(analysis: &Analysis, folder: &Path) -> miette::Result<()> {
+    let input = &analysis.result.input;
+    let inputs = [Path::new(&input.recording), Path::new(&input.cask)];
+    let folder = Folder::checked(folder, &report::FILE_NAMES, &inputs)?;
+    Ok(folder.write(&report::files(analysis)?)?)
+}
+
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let inputs = [Some(&arguments.recording), arguments.cask.as_ref(), arguments.from.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
@@ -146,13 +171,13 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         match ingest::format(&arguments.recording)? {
             // Its chunks are taken in waves, which end in what one thread does alone; the other formats keep all threads at work.
             RecordingFormat::Mcap => awake(read),
-            RecordingFormat::Hdf5 | RecordingFormat::Csv => read(),
+            RecordingFormat::Hdf5 | RecordingFormat::Csv | RecordingFormat::Samples => read(),
         }
     })?;
     keep_freed_memory();
     let mut analysis = awake(|| dropcheck::analyze(&recording, &cask_file));
     switched_off.in_settings(&mut analysis.result);
-    record::stamp(&mut analysis.result, std::env::args().skip(1).collect())?;
+    record::stamp(&mut analysis.result, record::words())?;
     let mut compared = String::new();
     if let Some(earlier) = &earlier {
         earlier.repeat(&recording, &mut analysis.result);
@@ -170,7 +195,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         match printed {
             Ok(printed) => files.extend(printed.map(|bytes| (pdf::NAME.to_owned(), bytes))),
             Err(why) => {
-                complain_softly(&format!("There is no {}: {why}. Open report.html and print it.", pdf::NAME))
+                complain_softly(&format!("There is no {}: {why}. Open report.html and print it.", pdf::NAME));
             }
         }
         folder.write(&files)?;

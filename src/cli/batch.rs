@@ -5,6 +5,7 @@ mod manifest;
 mod merged;
 mod paths;
 mod plan;
+mod planned;
 mod record;
 mod work;
 
@@ -24,8 +25,9 @@ use clap::Args;
 use dropcheck::data::DropResult;
 use dropcheck::report::Batch;
 use dropcheck::{ingest, report};
-use plan::{Plan, PlannedTest};
-use record::Record;
+use plan::CampaignPlan;
+use planned::PlannedTest;
+use record::LineRecord;
 use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -78,7 +80,9 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
-    let plan = Plan::of(arguments)?;
+    let (manifest, cask) = (arguments.manifest.as_deref(), arguments.cask.as_deref());
+    let mut plan = CampaignPlan::of(&arguments.paths, manifest, cask, &arguments.switched_off.words())?;
+    plan.shard = arguments.shard;
     let inputs: Vec<&Path> = arguments.manifest.iter().chain(&arguments.cask).map(PathBuf::as_path).collect();
     if let Some(out) = &arguments.out {
         Folder::checked(out, &plan::SUMMARY[..3], &inputs)?;
@@ -91,7 +95,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         .jobs
         .map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
     let mut batch = Batch::new(plan.source.clone());
-    let progress = CountedProgress::of(own.len());
+    let mut progress = CountedProgress::of(own.len());
     keep_freed_memory();
     // What is done already is read by one thread beside the others, since the record grows meanwhile.
     let earlier = record.as_ref().map(|record| record.lines().clone()).unwrap_or_default();
@@ -116,7 +120,6 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
             Ok(())
         },
     )?;
-    progress.end();
     if let Some(record) = &mut record {
         record.finish()?;
         if let Some(out) = arguments.out.as_deref().filter(|_| plan.is_whole()) {
@@ -131,7 +134,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
 }
 
 /// Where the files are.
-fn tell(arguments: &Arguments, plan: &Plan) -> miette::Result<()> {
+fn tell(arguments: &Arguments, plan: &CampaignPlan) -> miette::Result<()> {
     match &arguments.out {
         Some(out) if plan.is_whole() => {
             let page = out.join("campaign.html").display().to_string();
@@ -155,7 +158,11 @@ struct MadeLine {
 }
 
 /// The file that holds the lines: that of `--jsonl`, else one in `--out`.
-fn open_record(arguments: &Arguments, plan: &Plan, inputs: &[&Path]) -> miette::Result<Option<Record>> {
+fn open_record(
+    arguments: &Arguments,
+    plan: &CampaignPlan,
+    inputs: &[&Path],
+) -> miette::Result<Option<LineRecord>> {
     let of_jsonl = arguments.jsonl.clone().filter(|path| path != Path::new("-"));
     let path = match (of_jsonl, &arguments.out) {
         (Some(path), _) => path,
@@ -179,7 +186,7 @@ fn open_record(arguments: &Arguments, plan: &Plan, inputs: &[&Path]) -> miette::
         let place: Value = serde_json::from_str(&plan.place(number)).ok()?;
         (line["campaign"] == place).then_some(number)
     };
-    Record::open(&path, arguments.resume, inputs, is_own).map(Some)
+    LineRecord::open(&path, arguments.resume, inputs, is_own).map(Some)
 }
 
 /// Whether an earlier line says what this run would find: the same bytes went in, and its report is there.
@@ -199,7 +206,7 @@ fn is_done(line: &str, test: &PlannedTest, arguments: &Arguments) -> bool {
 }
 
 /// The line of one test: its result, or why there is none.
-fn line(plan: &Plan, number: usize, arguments: &Arguments) -> String {
+fn line(plan: &CampaignPlan, number: usize, arguments: &Arguments) -> String {
     let test = &plan.tests[number];
     let head = format!("{{\"campaign\":{},\"id\":{},", plan.place(number), json!(test.id));
     // A fault of the program costs a row too.
@@ -216,7 +223,7 @@ fn line(plan: &Plan, number: usize, arguments: &Arguments) -> String {
     }
 }
 
-fn analysed(plan: &Plan, test: &PlannedTest, arguments: &Arguments) -> miette::Result<DropResult> {
+fn analysed(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> miette::Result<DropResult> {
     let Some(cask) = &test.cask else {
         let beside = test.recording.with_extension("toml");
         let mend = format!("put {} beside it, or name one by --cask or in the manifest", beside.display());
@@ -241,7 +248,7 @@ fn analysed(plan: &Plan, test: &PlannedTest, arguments: &Arguments) -> miette::R
 }
 
 /// The words that would analyse this recording alone, whatever part of the campaign a run did, and where to.
-fn words(plan: &Plan, test: &PlannedTest, arguments: &Arguments) -> Vec<String> {
+fn words(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> Vec<String> {
     let mut words = vec!["batch".to_owned()];
     if arguments.manifest.is_some() {
         words.extend(["--manifest".to_owned(), plan.source.clone()]);

@@ -13,9 +13,8 @@ pub fn complain(report: &Report) {
     let drawn = std::io::stderr().is_terminal().then(|| drawn(report));
     let fits = |text: &String| text.lines().all(|line| line.len() <= 4 * LONGEST_LINE);
     let text = drawn.filter(fits).unwrap_or_else(|| told(report));
-    let lines: Vec<String> = text.lines().map(|line| printable(&shortened(line))).collect();
     // There is no one left to tell where standard error is closed.
-    let _ = writeln!(anstream::stderr(), "\u{1b}[1;31merror\u{1b}[0m: {}", lines.join("\n").trim());
+    let _ = writeln!(anstream::stderr(), "\u{1b}[1;31merror\u{1b}[0m: {}", in_lines(&text));
 }
 
 fn drawn(report: &Report) -> String {
@@ -25,6 +24,18 @@ fn drawn(report: &Report) -> String {
         Ok(()) => text.trim_start().trim_start_matches('×').to_owned(),
         Err(_) => told(report),
     }
+}
+
+/// The complaint as it is printed where there is no terminal, for another program to show.
+#[must_use]
+pub fn message(report: &Report) -> String {
+    in_lines(&told(report))
+}
+
+/// Without what would steer a terminal, and of each line what a person reads.
+fn in_lines(text: &str) -> String {
+    let lines: Vec<String> = text.lines().map(|line| printable(&shortened(line))).collect();
+    lines.join("\n").trim().to_owned()
 }
 
 /// The message, the lines at fault and the remedy, without drawing.

@@ -2,6 +2,7 @@
 
 mod analyze;
 mod batch;
+mod called;
 mod complaint;
 mod help;
 mod init;
@@ -20,11 +21,14 @@ mod replace;
 mod shard;
 mod tuning;
 
-pub use complaint::complain;
+#[cfg(feature = "lab")]
+pub use called::synthetic;
+pub use called::{analysis, listing, prediction, write};
+pub use complaint::message;
 
 use clap::{Parser, Subcommand};
 use dropcheck::data::{Program, Verdict};
-use std::process::ExitCode;
+use std::ffi::OsString;
 
 fn after_help() -> String {
     let synth = if cfg!(feature = "lab") { "\n  dropcheck synth scene.toml --out drop.mcap" } else { "" };
@@ -108,14 +112,29 @@ impl From<Verdict> for Ending {
     }
 }
 
-impl From<Ending> for ExitCode {
-    fn from(outcome: Ending) -> Self {
-        Self::from(outcome as u8)
+/// Runs the command that the words behind the program's name are, and returns its exit status.
+#[must_use]
+pub fn main(words: &[OsString]) -> u8 {
+    let named = std::iter::once("dropcheck".into()).chain(words.iter().cloned());
+    let ended = CommandLine::try_parse_from(named).map(|line| {
+        record::begin(words);
+        run(&line.command)
+    });
+    match ended {
+        Ok(Ok(ending)) => ending as u8,
+        Ok(Err(complaint)) => {
+            complaint::complain(&complaint);
+            2
+        }
+        Err(asked_for_help_or_wrong) => {
+            // There is no one left to tell where the output is closed.
+            let _ = asked_for_help_or_wrong.print();
+            u8::try_from(asked_for_help_or_wrong.exit_code()).unwrap_or(2)
+        }
     }
 }
 
-/// Runs one command.
-pub fn run(command: &Command) -> miette::Result<Ending> {
+fn run(command: &Command) -> miette::Result<Ending> {
     match command {
         Command::Analyze(arguments) => analyze::run(arguments),
         Command::Batch(arguments) => batch::run(arguments),

@@ -1,7 +1,9 @@
 //! Finished bytes to files, whole or not at all, and to standard output; checked before the work begins.
 
 use super::place;
-use super::replace::{OWN_PREFIX, Stopped, parent_of, replace_set, staging_in, sync_folder, write_whole};
+use super::replace::{
+    OWN_PREFIX, Stopped, parent_of, replace_set, staged_beside, staging_in, sync_folder, write_whole,
+};
 use dropcheck::report::ReportError;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Write};
@@ -195,14 +197,12 @@ pub fn replace_by(
     write: impl FnOnce(&mut dyn FnMut(&[u8]) -> miette::Result<()>) -> miette::Result<()>,
 ) -> miette::Result<()> {
     let failed = |source: io::Error| CannotWrite::Failed { path: shown(path), source: bare(&source) };
-    let parent = parent_of(path);
-    let staging = staging_in(parent).map_err(failed)?;
-    let staged = staging.path().join("table");
-    let mut writer = io::BufWriter::new(File::create_new(&staged).map_err(failed)?);
+    let (staged, file) = staged_beside(path).map_err(failed)?;
+    let mut writer = io::BufWriter::new(file);
     write(&mut |bytes| Ok(writer.write_all(bytes).map_err(failed)?))?;
     let written = writer.into_inner().map_err(io::IntoInnerError::into_error);
     written.and_then(|file| file.sync_all()).map_err(failed)?;
-    fs::rename(&staged, path).and_then(|()| sync_folder(parent)).map_err(failed)?;
+    fs::rename(&staged, path).and_then(|()| sync_folder(parent_of(path))).map_err(failed)?;
     Ok(())
 }
 

@@ -29,7 +29,7 @@ const PLACES: [&str; 5] = [
 ];
 
 /// A browser that prints a report of megabytes takes some seconds; after these it hangs.
-const LONGEST: Duration = Duration::from_secs(60);
+const LONGEST: Duration = Duration::from_mins(1);
 
 /// Prints a page; the error is a sentence on why there is no PDF.
 pub fn printed(page: &[u8]) -> Result<Vec<u8>, String> {

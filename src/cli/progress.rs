@@ -3,7 +3,6 @@
 use dropcheck::ingest::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
-use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 /// Parts of the bar; finer than a terminal shows.
@@ -34,7 +33,7 @@ const EACH: Duration = Duration::from_secs(10);
 /// "12 of 60, 3 minutes left" on standard error: a bar on a terminal, a line now and then in a log.
 pub struct CountedProgress {
     bar: ProgressBar,
-    told: Mutex<Instant>,
+    told: Instant,
 }
 
 impl CountedProgress {
@@ -44,36 +43,26 @@ impl CountedProgress {
         if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left") {
             bar.set_style(style);
         }
-        bar.tick();
-        Self { bar, told: Mutex::new(Instant::now()) }
+        Self { bar, told: Instant::now() }
     }
 
     /// One more is done.
-    pub fn step(&self) {
+    pub fn step(&mut self) {
         self.bar.inc(1);
-        let mut told = self.told.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let (done, all) = (self.bar.position(), self.bar.length().unwrap_or_default());
-        if std::io::stderr().is_terminal() || told.elapsed() < EACH && done < all {
-            return;
+        if !std::io::stderr().is_terminal() && (done == all || self.told.elapsed() >= EACH) {
+            self.told = Instant::now();
+            let left = HumanDuration(self.bar.elapsed().div_f64(as_f64(done)).mul_f64(as_f64(all - done)));
+            // There is no one left to tell where standard error is closed.
+            let _ = writeln!(anstream::stderr(), "{done} of {all}, {left} left");
         }
-        *told = Instant::now();
-        let time = if done < all {
-            format!("{} left", HumanDuration(self.left(done, all)))
-        } else {
-            format!("in {}", HumanDuration(self.bar.elapsed()))
-        };
-        // There is no one left to tell where standard error is closed.
-        let _ = writeln!(anstream::stderr(), "{done} of {all}, {time}");
+        if done == all {
+            self.bar.finish_and_clear();
+        }
     }
+}
 
-    /// The time left where each takes as long as those before it.
-    fn left(&self, done: u64, all: u64) -> Duration {
-        #[allow(clippy::cast_precision_loss, reason = "counts of recordings")]
-        self.bar.elapsed().mul_f64((all - done) as f64 / done.max(1) as f64)
-    }
-
-    /// The work is over.
-    pub fn end(&self) {
-        self.bar.finish_and_clear();
-    }
+#[allow(clippy::cast_precision_loss, reason = "counts of recordings")]
+fn as_f64(count: u64) -> f64 {
+    count as f64
 }

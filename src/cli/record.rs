@@ -4,7 +4,9 @@ use dropcheck::data::{CaskFile, DropResult, Program, Recording};
 use dropcheck::{ingest, report};
 use miette::{IntoDiagnostic, WrapErr};
 use serde_json::Value;
+use std::ffi::OsString;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 /// Lines on what differs, at most.
 const MOST_LINES: usize = 20;
@@ -13,6 +15,20 @@ const MOST_LINES: usize = 20;
 pub struct EarlierResult {
     result: Value,
     name: String,
+}
+
+/// The words behind the program's name. Under an interpreter they are not those of the process.
+static WORDS: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Takes down the words of the command that runs.
+pub fn begin(words: &[OsString]) {
+    let words = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    *WORDS.lock().unwrap_or_else(PoisonError::into_inner) = words;
+}
+
+/// The words taken down.
+pub fn words() -> Vec<String> {
+    WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
 /// Writes down which program ran, with which words and when; `SOURCE_DATE_EPOCH` stands for now where it is set.

@@ -127,6 +127,16 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.sync_all()
 }
 
+/// A file beside `path`, to be filled and given its name: always the same one, so that what a killed run left is written over.
+pub fn staged_beside(path: &Path) -> io::Result<(PathBuf, File)> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let staged = parent_of(path).join(format!("{OWN_PREFIX}{name}"));
+    match fs::remove_file(&staged) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => Err(source),
+        _ => File::create_new(&staged).map(|file| (staged, file)),
+    }
+}
+
 /// Makes names durable; a system that cannot open a folder has its own way.
 pub fn sync_folder(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }

@@ -12,7 +12,7 @@ const U_INERTIA_DEFAULT: f64 = 0.05;
 pub type PredictBy<'a> = &'a dyn Fn(Rung, &Body, &Drop, Contact, f64) -> Prediction;
 
 /// Standard uncertainty of what a pulse of finite length changes, as a share of it: simulated limiters with other shapes than a half-sine, that
-/// harden, yield or spring back at once, lie up to 5 % off it where L sticks and 17 % where it slides (docs/physics.md).
+/// harden, yield or spring back at once, lie up to 5 % off it where L sticks and 17 % where it slides.
 const U_PULSE_SHAPE: f64 = 0.1;
 
 /// What a rung is asked: the rod and the richest body, the cask file, the drop with its contact's length, and what was measured.

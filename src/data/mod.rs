@@ -8,6 +8,7 @@ mod curves;
 mod estimate;
 mod finding;
 mod flight;
+mod held;
 mod impacts;
 pub(crate) mod keys;
 mod ladder;
@@ -44,6 +45,7 @@ pub use finding::{
     shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
+pub use held::HeldSamples;
 pub use impacts::{ChannelPeak, ForceOverCrush, ImpactTable, RigidBodyDeceleration};
 pub use keys::LONGEST_CONTACT_S;
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
@@ -59,8 +61,9 @@ pub use reconstruction::{
 pub use recording::{Recording, RecordingFormat};
 pub use signal::{CoarseEvent, MOST_LOST_M_S, Signal};
 pub use study::{
-    AngleCurve, Criterion, CriticalAngle, CriticalRange, MonteCarlo, PredictionRow, QuantileCurves, Regime,
-    RegimeMap, Sensitivity, Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
+    AngleCurve, BodyPath, Criterion, CriticalAngle, CriticalRange, MonteCarlo, Pose, PredictionRow,
+    QuantileCurves, Regime, RegimeMap, Sensitivity, Study, StudyRequest, Sweep, SweepVariable, Uncertain,
+    WorstCase,
 };
 pub use test_record::{Observed, ObservedBeside, Photo, SensorRecord, TestRecord};
 pub use tolerances::{Corrections, Tolerances};

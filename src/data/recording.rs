@@ -17,6 +17,9 @@ pub enum RecordingFormat {
     /// Delimited text.
     #[serde(rename = "CSV")]
     Csv,
+    /// None: samples in memory.
+    #[serde(rename = "samples")]
+    Samples,
 }
 
 /// The channels that a cask file names, read from a recording.

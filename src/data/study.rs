@@ -2,7 +2,7 @@
 
 use super::cask::{CaskFile, Contact};
 use super::ladder::Ladder;
-use super::prediction::{BodyModel, Prediction};
+use super::prediction::{Body, BodyModel, Prediction};
 use serde::Serialize;
 
 /// What a sweep varies.
@@ -111,6 +111,32 @@ pub struct AngleCurve {
     pub closed_form_speed_m_s: Vec<f64>,
     /// Whether the cask turns over before R strikes, [`Prediction::turns_over`].
     pub turns_over: Vec<bool>,
+}
+
+/// Where a body is at a time after first contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// Time since first contact, s.
+    pub time_s: f64,
+    /// S along the target from where L touched, m, positive towards R.
+    pub along_m: f64,
+    /// S above the target, m.
+    pub height_m: f64,
+    /// Inclination of the axis above the horizontal, rad.
+    pub angle_rad: f64,
+}
+
+/// Where a body is from first contact to the slap-down (\[P\] Figs. 2 and 3).
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyPath {
+    /// What moves.
+    pub body: Body,
+    /// The contact law.
+    pub contact: Contact,
+    /// Coefficient of restitution.
+    pub k: f64,
+    /// The first as L touches, the last as R does.
+    pub poses: Vec<Pose>,
 }
 
 /// What is largest at a critical angle.
@@ -293,6 +319,8 @@ pub struct Study {
     pub request: StudyRequest,
     /// The predictions asked for.
     pub rows: Vec<PredictionRow>,
+    /// The richest body's way at the angle of the request, for two contact laws and k each where it is one flight or L is held.
+    pub paths: Vec<BodyPath>,
     /// The ladder for every contact law and k, at the angle of the request.
     pub ladders: Vec<Ladder>,
     /// Over the angle: every body, contact law and k of the request.

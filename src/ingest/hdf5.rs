@@ -17,6 +17,7 @@ mod types;
 mod wall;
 
 pub(super) use list::list;
+pub use room::Hdf5Program;
 #[cfg(any(test, fuzzing))]
 pub(super) use room::answer_by;
 pub(super) use room::use_program;
@@ -44,15 +45,18 @@ pub(super) fn serve(program: &Path) -> Option<ExitCode> {
     if words.next().is_none_or(|word| word != room::WORD) {
         #[cfg(unix)]
         begin_without_variables(program);
-        use_program(program);
+        use_program(Hdf5Program { path: program.to_owned(), ..Hdf5Program::default() });
         return None;
     }
     let path = words.next()?;
-    let path = Path::new(&path);
+    Some(if take_apart(Path::new(&path)) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Closes this process in and answers on standard output what standard input asks of the file at `path`; whether it could.
+pub(super) fn take_apart(path: &Path) -> bool {
     let mut wall = wall::Wall::around(path);
     let mut grant = |bytes, held_bytes| wall.grant(bytes, held_bytes);
-    let answered = library::answer(path, &mut stdin().lock(), &mut BufWriter::new(stdout()), &mut grant);
-    Some(if answered.is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    library::answer(path, &mut stdin().lock(), &mut BufWriter::new(stdout()), &mut grant).is_ok()
 }
 
 /// Starts the program anew where variables are set by which the C library, which writes the curves of a report in this process, would

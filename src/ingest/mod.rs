@@ -1,5 +1,6 @@
 //! Recording files and cask files to channels and settings: SI units, one time base a channel, what was missing.
 
+mod arrays;
 pub(crate) mod assemble;
 pub mod cask_file;
 pub(crate) mod clock;
@@ -19,7 +20,9 @@ mod times;
 mod unchanged;
 mod vocabulary;
 
+pub use arrays::read_arrays;
 pub use error::IngestError;
+pub use hdf5::Hdf5Program;
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
 
 use crate::data::shown;
@@ -91,7 +94,10 @@ pub fn read_within(
     // On a thread of the pool, which need not be put to sleep for each piece that two threads share.
     let (raw, sha256) = unchanged::hashed(path, || match format {
         RecordingFormat::Mcap => rayon::scope(|_| mcap::read(path, cask_file, limits, progress)),
-        RecordingFormat::Csv => rayon::scope(|_| csv::read(path, cask_file, limits, progress)),
+        // No file is told as `Samples`.
+        RecordingFormat::Csv | RecordingFormat::Samples => {
+            rayon::scope(|_| csv::read(path, cask_file, limits, progress))
+        }
         RecordingFormat::Hdf5 => rayon::scope(|_| hdf5::read(path, cask_file, limits, progress)),
     })?;
     assemble::recording(path, format, sha256, raw, cask_file)
@@ -121,7 +127,7 @@ pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Li
     match detect::format(path)? {
         RecordingFormat::Mcap => mcap::list(path, limits, progress),
         RecordingFormat::Hdf5 => hdf5::list(path, limits, progress),
-        RecordingFormat::Csv => csv::list(path, limits, progress),
+        RecordingFormat::Csv | RecordingFormat::Samples => csv::list(path, limits, progress),
     }
 }
 
@@ -141,5 +147,17 @@ pub fn serve_hdf5() -> Option<std::process::ExitCode> {
 
 /// Names the program that is started to take HDF5 files apart: one that calls [`serve_hdf5`] first, as `dropcheck` does. The first stays.
 pub fn read_hdf5_with(program: &Path) {
+    read_hdf5_by(Hdf5Program { path: program.to_owned(), ..Hdf5Program::default() });
+}
+
+/// As [`read_hdf5_with`] for a program that needs words and variables of its own, and calls [`take_hdf5_apart`].
+pub fn read_hdf5_by(program: Hdf5Program) {
     hdf5::use_program(program);
+}
+
+/// For a process that was started by [`read_hdf5_by`]: closes it in, then answers what the reader asks of the file at `path`, and says
+/// whether it could; then the process is to end.
+#[must_use]
+pub fn take_hdf5_apart(path: &Path) -> bool {
+    hdf5::take_apart(path)
 }

@@ -106,10 +106,15 @@ pub(super) fn sha256(path: &Path, is_needless: &AtomicBool) -> Result<String, In
         }
         hasher.update(&buffer[..read]);
     }
-    Ok(hasher.finalize().iter().fold(String::with_capacity(64), |mut hex, byte| {
+    Ok(hexadecimal(hasher))
+}
+
+/// What was hashed, lower-case hexadecimal.
+pub(super) fn hexadecimal(hasher: Sha256) -> String {
+    hasher.finalize().iter().fold(String::with_capacity(64), |mut hex, byte| {
         let _ = write!(hex, "{byte:02x}");
         hex
-    }))
+    })
 }
 
 #[cfg(test)]

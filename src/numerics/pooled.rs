@@ -87,28 +87,37 @@ fn chi_square_quantile(degrees: usize, z: f64) -> f64 {
 /// subset, Cox 2007): one wrong value does not make the right ones look wrong. Of two that contradict each other both fall out.
 #[must_use]
 pub fn apart(values: &[(f64, f64)]) -> Vec<(Option<f64>, bool)> {
-    let mut kept: Vec<usize> = (0..values.len()).collect();
-    let against = |i: usize, kept: &[usize]| {
-        let others: Vec<(f64, f64)> = kept.iter().filter(|j| **j != i).map(|j| values[*j]).collect();
-        mean(&others).map(|others| e_n(values[i], others))
+    let weight = |i: usize| values[i].1.powi(-2);
+    // Sums over those that are kept: without one of them, its share is taken off.
+    let (mut weights, mut sum) = (0.0, 0.0);
+    for (i, value) in values.iter().enumerate() {
+        weights += weight(i);
+        sum += weight(i) * value.0;
+    }
+    let mut is_out = vec![false; values.len()];
+    let mut left = values.len();
+    let against = |i: usize, is_out: bool, weights: f64, sum: f64| {
+        let own = if is_out { 0.0 } else { weight(i) };
+        let others = weights - own;
+        e_n(values[i], ((sum - own * values[i].0) / others, others.sqrt().recip()))
     };
-    let mut out = vec![false; values.len()];
-    while kept.len() > 2 {
-        let size = |i: &usize| against(*i, &kept).map_or(0.0, f64::abs);
-        let Some(worst) = kept.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b))) else { break };
-        if size(&worst) <= 1.0 {
+    while left > 2 {
+        let kept = (0..values.len()).filter(|i| !is_out[*i]);
+        let sizes = kept.map(|i| (i, against(i, false, weights, sum).abs()));
+        let Some((worst, size)) = sizes.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
+        if size <= 1.0 {
             break;
         }
-        out[worst] = true;
-        kept.retain(|i| *i != worst);
+        is_out[worst] = true;
+        left -= 1;
+        weights -= weight(worst);
+        sum -= weight(worst) * values[worst].0;
     }
-    let two_differ = kept.len() == 2 && against(kept[0], &kept).is_some_and(|e_n| e_n.abs() > 1.0);
-    (0..values.len())
-        .map(|i| {
-            let e_n = against(i, &kept);
-            (e_n, out[i] || two_differ && kept.contains(&i))
-        })
-        .collect()
+    let found = (0..values.len()).map(|i| {
+        let e_n = (values.len() > 1).then(|| against(i, is_out[i], weights, sum));
+        (e_n, is_out[i] || left == 2 && e_n.is_some_and(|e_n| e_n.abs() > 1.0))
+    });
+    found.collect()
 }
 
 #[cfg(test)]

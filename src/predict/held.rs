@@ -45,10 +45,15 @@ impl Held<'_> {
         })
     }
 
-    /// How long that takes, s: ∫ dφ/ω, with φ = φ0 (1 − u²) so that a start from rest is no pole. Not finite where it never comes.
+    /// How long that takes, s. Not finite where it never comes.
     pub fn time_s(&self) -> f64 {
+        self.at_share(1.0).1
+    }
+
+    /// The inclination φ = φ0 (1 − u²), rad, and when it is reached, s: ∫ dφ/ω, over u so that a start from rest is no pole.
+    pub fn at_share(&self, u: f64) -> (f64, f64) {
         let angle_rad = self.start.angle_rad;
         let rate_s = |u: f64| 2.0 * angle_rad * u / self.spin_rad_s(angle_rad * (1.0 - u * u));
-        simpson(rate_s, STILL, 1.0, 64)
+        (angle_rad * (1.0 - u * u), if u > STILL { simpson(rate_s, STILL, u, 64) } else { 0.0 })
     }
 }

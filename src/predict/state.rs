@@ -91,6 +91,11 @@ impl<T: Differentiable> State<T> {
         Self { angle_rad: self.angle_rad + angle_rad, ..*self }
     }
 
+    /// Horizontal and vertical distance from L's lower corner to S, m   (1)
+    pub fn arms_m(&self, body: &Body) -> (T, T) {
+        arms_m(body, self.angle_rad, body.cog_m)
+    }
+
     /// The motion without its derivatives.
     pub fn real(&self) -> State<f64> {
         State {

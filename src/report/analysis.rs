@@ -47,7 +47,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     let (result, file) = (&analysis.result, &analysis.cask_file);
     let name = &file.cask.name;
     let mut curves = Chapter::new("Curves").only(Medium::Page);
-    for name in ["accelerations", "impacts", "velocities", "fit", "motion", "spectra"] {
+    for name in ["accelerations", "impacts", "crush", "velocities", "fit", "motion", "spectra"] {
         curves = curves.with(ChapterPart::picture(name, name, ""));
     }
     ReportDocument {
@@ -57,8 +57,7 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             version: result.version.to_owned(),
             heading: format!("{name}: slap-down drop test"),
             about: result.input.recording.clone(),
-            footer: "An interval holds the value with 95 % probability. Times count from the recording's first sample unless an axis says \
-                     otherwise. Body axes: axial from the first end to the second, transverse away from the target.",
+            footer: "An interval holds the value with 95 % probability. Times count from the recording's first sample. Body axes: axial from the first end to the second, transverse away from the target.",
             style: "",
             ..Frame::default()
         },
@@ -122,6 +121,7 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
         Verdict::Review => Style::Yellow,
         Verdict::Fail => Style::Red,
     };
+    let why = result.slap_down.speed.is_none().then(|| reason(result, &SLAP_DOWN_CODES));
     Chapter::new("")
         .with(ChapterPart::title(what).only(Medium::Terminal))
         .with(ChapterPart::line(files).only(Medium::Terminal))
@@ -131,20 +131,20 @@ fn summary(result: &DropResult, file: &CaskFile) -> Chapter {
             verdict_sentence(result),
         ))
         .with(PartContent::Figures(figures(result)))
+        .with_all(why.map(|why| ChapterPart::text(sentence(why)).only(Medium::Page)))
         .with_all(defaults_that_weigh(result, file).map(ChapterPart::text))
         .with(ChapterPart::note(NO_REFERENCE).only(Medium::Page))
 }
 
 fn figures(result: &DropResult) -> Vec<[String; 3]> {
     let speed = result.slap_down.speed.as_ref();
-    let why = if speed.is_none() { reason(result, &SLAP_DOWN_CODES) } else { "" };
     let model = result.model.as_ref().map_or("no model taken", |m| m.rung.words());
     let compared = result.comparison.as_ref();
     let figure = |name: &str, value: Option<String>, detail: String| {
         [name.to_owned(), value.unwrap_or_else(|| MISSING.to_owned()), detail]
     };
     vec![
-        figure("Slap-down speed, measured", Some(interval(speed)), why.to_owned()),
+        figure("Slap-down speed, measured", Some(interval(speed)), String::new()),
         figure(
             "Slap-down speed, predicted",
             compared.map(|c| pair(c.predicted, c.predicted_u95, "m/s")),

@@ -56,7 +56,7 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
     match &passage.content {
         PartContent::Sentence(role, words) => sentence(*role, words),
         PartContent::Banner(Tone(style, word), sentence) => html! {
-            div class=(format!("banner {}", banner_class(*style))) role="status" { strong { (word) } span { (printable(sentence)) } }
+            div class=(format!("banner {}", banner_class(*style))) role="status" { strong { (word) } span { (prose(sentence)) } }
         },
         PartContent::Figures(figures) => html! {
             dl class="figures" { @for [name, value, detail] in figures {
@@ -138,7 +138,13 @@ fn sentence(role: SentenceRole, words: &Words) -> Markup {
         SentenceRole::Lead => "lead",
         SentenceRole::Note => "note",
     };
-    html! { p class=[class(name)] { (printable(words.on(Medium::Page))) } }
+    html! { p class=[class(name)] { (prose(words.on(Medium::Page))) } }
+}
+
+/// A sentence; what stands between backticks in it is a key or a word of the command line.
+fn prose(words: &str) -> Markup {
+    let words = printable(words);
+    html! { @for (i, part) in words.split('`').enumerate() { @if i % 2 == 1 { code { (part) } } @else { (part) } } }
 }
 
 fn facts(caption: &str, facts: &[Fact]) -> Markup {
@@ -179,7 +185,7 @@ fn table(table: &ReportTable) -> Markup {
 
 fn cell(kind: CellKind, cell: &TableCell) -> Markup {
     let text = printable(cell.words.on(Medium::Page));
-    let shown = html! { @if cell.link.is_empty() { (text) } @else { a href=(cell.link) { (text) } } };
+    let shown = html! { @if cell.link.is_empty() { (prose(&text)) } @else { a href=(cell.link) { (text) } } };
     let words = html! { (shown) @if !cell.mark.is_empty() { @if !text.is_empty() { " " } (default_mark(cell.mark)) } };
     match kind {
         CellKind::Head => html! { th scope="row" { (words) } },

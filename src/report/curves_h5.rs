@@ -56,12 +56,13 @@ fn write(file: &File, analysis: &Analysis) -> Result<(), ReportError> {
     }
     if let Some(motion) = &analysis.curves.motion {
         let group = file.create_group("motion")?;
-        for CurveSeries { name, values, .. } in motion_series(motion) {
-            let (name, unit) = [("_rad_s", "rad/s"), ("_m_s", "m/s"), ("_rad", "rad"), ("_m", "m")]
+        for CurveSeries { name, values, factor } in motion_series(motion) {
+            let values: Vec<f64> = values.iter().map(|value| value * factor).collect();
+            let (name, unit) = [("_rad_s", "rad/s"), ("_m_s", "m/s"), ("_deg", "deg"), ("_m", "m")]
                 .iter()
                 .find_map(|(suffix, unit)| name.strip_suffix(suffix).map(|name| (name, *unit)))
                 .unwrap_or((name, "1"));
-            dataset(&group, name, values, unit, &motion.time_s)?;
+            dataset(&group, name, &values, unit, &motion.time_s)?;
         }
     }
     events(file, analysis)

@@ -23,15 +23,15 @@ pub(super) fn channel_series(curve: &ChannelCurve) -> [CurveSeries<'_>; 3] {
 /// What a table shows of the motion.
 pub(super) fn motion_series(motion: &MotionCurve) -> [CurveSeries<'_>; 7] {
     [
-        ("angle_rad", &motion.angle_rad),
-        ("angular_velocity_rad_s", &motion.angular_velocity_rad_s),
-        ("vertical_velocity_first_m_s", &motion.first_end_vertical_m_s),
-        ("vertical_velocity_second_m_s", &motion.second_end_vertical_m_s),
-        ("horizontal_velocity_second_m_s", &motion.second_end_horizontal_m_s),
-        ("height_first_m", &motion.first_end_height_m),
-        ("height_second_m", &motion.second_end_height_m),
+        ("angle_deg", &motion.angle_rad, 180.0 / std::f64::consts::PI),
+        ("angular_velocity_rad_s", &motion.angular_velocity_rad_s, 1.0),
+        ("vertical_velocity_first_m_s", &motion.first_end_vertical_m_s, 1.0),
+        ("vertical_velocity_second_m_s", &motion.second_end_vertical_m_s, 1.0),
+        ("horizontal_velocity_second_m_s", &motion.second_end_horizontal_m_s, 1.0),
+        ("height_first_m", &motion.first_end_height_m, 1.0),
+        ("height_second_m", &motion.second_end_height_m, 1.0),
     ]
-    .map(|(name, values)| CurveSeries { name, values, factor: 1.0 })
+    .map(|(name, values, factor)| CurveSeries { name, values, factor })
 }
 
 /// The events by name, s; `None` where one was not found.

@@ -5,6 +5,7 @@ use super::grid::STANDARD_GRAVITY_M_S2;
 use super::medium::Medium;
 use super::rounding::{MISSING, fixed, interval, pair, plain};
 use super::table::ReportTable;
+use super::text::distinct;
 use crate::data::{ChannelPeak, DropResult, End, Estimate, ImpactTable, IssueCode, RigidBodyDeceleration};
 
 /// A number of an impact: its name, unit and factor to it, and whether a terminal shows it.
@@ -91,8 +92,7 @@ fn filter_words(result: &DropResult) -> String {
             plain(peak.cutoff_hz, 4)
         )
     });
-    let mut above: Vec<&str> = peaks().filter(|p| p.is_above_raw).map(|p| p.name.as_str()).collect();
-    above.dedup();
+    let above = distinct(peaks().filter(|p| p.is_above_raw).map(|p| p.name.as_str()));
     if above.is_empty() {
         return low_pass;
     }

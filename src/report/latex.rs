@@ -19,8 +19,8 @@ pub(super) fn table(result: &DropResult) -> Vec<u8> {
         ("Horizontal velocity at slap-down", second.horizontal_velocity),
         ("Slap-down speed over impact velocity", result.amplification),
     ];
-    let lines: String =
-        rows.iter().map(|(name, value)| format!("{name} & {} \\\\\n", cell(value.as_ref()))).collect();
+    let line = |(name, value): &(_, Option<Estimate>)| format!("{name} & {} \\\\\n", cell(value.as_ref()));
+    let lines = rows.iter().map(line).collect::<Vec<String>>().concat();
     let head = format!(
         "% dropcheck {}, SHA-256 of the recording: {}",
         result.version, result.input.recording_sha256

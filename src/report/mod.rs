@@ -96,7 +96,7 @@ pub fn table(analysis: &Analysis, width: usize) -> String {
 }
 
 /// The names of the files of a report, in the order of [`files`].
-pub const FILE_NAMES: [&str; 14] = [
+pub const FILE_NAMES: [&str; 15] = [
     "report.html",
     "result.json",
     "results.tex",
@@ -106,6 +106,7 @@ pub const FILE_NAMES: [&str; 14] = [
     "setup.svg",
     "accelerations.svg",
     "impacts.svg",
+    "crush.svg",
     "velocities.svg",
     "fit.svg",
     "motion.svg",

@@ -2,9 +2,9 @@
 
 use super::sample;
 use crate::data::{
-    AngleCurve, BodyModel, Contact, Criterion, CriticalAngle, CriticalRange, FlightRegime, Ladder,
-    LadderStep, MonteCarlo, Prediction, PredictionRow, QuantileCurves, Regime, RegimeMap, Rung, Sensitivity,
-    Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
+    AngleCurve, Body, BodyModel, BodyPath, Contact, Criterion, CriticalAngle, CriticalRange, FlightRegime,
+    Ladder, LadderStep, MonteCarlo, Pose, Prediction, PredictionRow, QuantileCurves, Regime, RegimeMap, Rung,
+    Sensitivity, Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
 };
 
 const MODELS: [BodyModel; 2] = [BodyModel::Rod, BodyModel::Body];
@@ -57,6 +57,7 @@ pub(super) fn without_slap_down() -> Study {
             values.fill(f64::NAN);
         }
     }
+    study.paths.clear();
     study.critical.clear();
     study.ranges.clear();
     study.monte_carlo.quantiles.clear();
@@ -124,6 +125,7 @@ fn of(request: StudyRequest) -> Study {
     Study {
         cask_file: sample::cask_file(),
         rows,
+        paths: cases[cases.len() / 2..].iter().map(|case| path(*case)).collect(),
         ladders: cases[..cases.len() / 2].iter().map(|case| ladder(&request, *case)).collect(),
         curves: cases.iter().map(|case| curve(&request, *case)).collect(),
         sections: [0.0, 0.01, 0.5, 0.6, 0.792].map(section).into(),
@@ -134,6 +136,24 @@ fn of(request: StudyRequest) -> Study {
         maps: request.contacts.iter().map(|contact| map(&request, *contact)).collect(),
         request,
     }
+}
+
+fn path((model, contact, k): (BodyModel, Contact, f64)) -> BodyPath {
+    let pose = |share: f64| Pose {
+        time_s: 0.06 * share,
+        along_m: 2.7 + 0.2 * share,
+        height_m: 0.7 - 0.5 * share,
+        angle_rad: 0.26 - 0.3 * share,
+    };
+    let body = Body {
+        model,
+        mass_kg: 4466.0,
+        length_m: 5.512,
+        height_m: 0.792,
+        cog_m: 2.756,
+        inertia_kg_m2: 11_540.7,
+    };
+    BodyPath { body, contact, k, poses: [0.0, 0.5, 1.0].map(pose).into() }
 }
 
 /// The speed of a curve with a hump at 12°; for k = 0 it ends at 70°.

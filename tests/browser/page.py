@@ -1,13 +1,15 @@
 """Open a report in a real browser and hold it to what a page has to do.
 
-    python3 tests/browser/page.py report.html [dark]
+    python3 tests/browser/page.py report.html
 
-Needs Chromium with its driver, and selenium and axe-core-python from PyPI. Prints one line a check; the first that
-fails ends it with status 1.
+Needs Chromium with its driver, pdftotext, and selenium and axe-core-python from PyPI. Prints one line a check; the
+first that fails ends it with status 1.
 """
 
+import base64
 import re
 import shutil
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -36,6 +38,20 @@ def held(what, is_so, found=""):
 
 def scale(driver, chart):
     return driver.execute_script("const {min, max} = arguments[0].chart.scales.x; return [min, max]", chart)
+
+
+def printed(driver):
+    """The page on A4: so many sheets, none that ends with a heading or a caption whose rows stand on the next."""
+    heads = driver.execute_script("return [...document.querySelectorAll('h2, caption')].map((e) => e.textContent)")
+    pdf = driver.execute_cdp_cmd("Page.printToPDF", {"preferCSSPageSize": True, "printBackground": True})["data"]
+    command = ["pdftotext", "-layout", "-", "-"]
+    text = subprocess.run(command, input=base64.b64decode(pdf), capture_output=True, check=True).stdout.decode()
+    sheets = [[line.strip() for line in sheet.splitlines() if line.strip()] for sheet in text.split("\f")]
+    sheets = [sheet for sheet in sheets if sheet]
+    held("so many sheets of A4", 4 <= len(sheets) <= 14, len(sheets))
+    heads = [" ".join(head.split()) for head in heads]
+    ends = [" ".join(sheet[-1].split()) for sheet in sheets]
+    held("no heading at the foot of a sheet", not [e for e in ends if any(e and h.endswith(e) for h in heads)], ends)
 
 
 def main(page):
@@ -67,19 +83,32 @@ def main(page):
     chart.send_keys(Keys.ARROW_RIGHT)
     held("an arrow pans", scale(driver, chart)[0] > near[0])
 
+    def words():
+        return chart.find_element(By.CSS_SELECTOR, ".u-legend").text
+
+    before = words()
+    chart.send_keys(Keys.SHIFT + Keys.ARROW_RIGHT + Keys.ARROW_RIGHT)
+    held("a key moves the cursor", words() != before, words().replace("\n", " "))
+
     axe = Axe().run(driver, options={"runOnly": ["color-contrast"]})
     held("contrast of WCAG AA", not axe["violations"], [n["html"] for v in axe["violations"] for n in v["nodes"]][:3])
 
-    for size in (375, 768):
+    for size in (375, 768, 900):
         driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                {"width": size, "height": 800, "deviceScaleFactor": 1, "mobile": True})
         time.sleep(0.3)
         wide = driver.execute_script("return document.documentElement.scrollWidth")
         held(f"nothing wider than {size} px", wide <= size, wide)
+        if size > 820:
+            beyond = driver.execute_script(
+                "return [...document.querySelectorAll('table')].filter((t) => t.getBoundingClientRect().right > innerWidth).length")
+            held(f"no table beyond {size} px", beyond == 0, beyond)
     driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
     driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": "dark"}]})
     axe = Axe().run(driver, options={"runOnly": ["color-contrast"]})
     held("contrast in the dark", not axe["violations"], [n["html"] for v in axe["violations"] for n in v["nodes"]][:3])
+    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+    printed(driver)
     driver.quit()
 
 

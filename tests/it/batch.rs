@@ -252,7 +252,7 @@ fn what_cannot_be_meant_is_refused_before_the_work() {
         .expect("a manifest");
     let answer = series.batch("--out @.");
     assert!(
-        answer.status == 2 && answer.stderr.contains("where a report of this campaign would go"),
+        answer.status == 2 && answer.stderr.contains("lies where a report of this campaign would go"),
         "{}",
         answer.stderr
     );
@@ -300,18 +300,86 @@ fn what_is_done_is_not_done_again_unless_its_bytes_are_others() {
     assert_eq!(lines(&series.path("full/results.jsonl")).len(), 7);
 }
 
+/// Whether python3 has these modules.
+fn has_modules(modules: &str) -> bool {
+    let status =
+        Command::new("python3").args(["-c", &format!("import {modules}")]).stderr(Stdio::null()).status();
+    let has = status.is_ok_and(|status| status.success());
+    if !has {
+        println!("left out: python3 has no {modules}");
+    }
+    has
+}
+
+fn script(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(name)
+}
+
+#[test]
+fn sixty_recordings_of_three_casks_give_back_what_they_were_made_with() {
+    if !has_modules("csv") {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let (series, out) = (folder.path().join("series"), folder.path().join("out"));
+    let program = env!("CARGO_BIN_EXE_dropcheck").as_ref();
+    let made = Command::new("python3")
+        .args([script("series/make.py").as_os_str(), program, series.as_os_str()])
+        .output();
+    assert!(made.expect("python3 starts").status.success());
+    let manifest = series.join("runs.csv");
+    let words =
+        ["batch".as_ref(), "--manifest".as_ref(), manifest.as_os_str(), "--out".as_ref(), out.as_os_str()];
+    assert_eq!(dropcheck(words).status, 2);
+    let (campaign, truth) = (read_json(&out.join("campaign.json")), read_json(&series.join("truth.json")));
+    let rows = campaign["recordings"].as_array().expect("rows");
+    let broken = rows.iter().filter(|row| row["exit"] == 2).map(|row| row["id"].clone());
+    let mut expected = truth["broken"].as_array().expect("names").clone();
+    expected.sort_by_key(|id| rows.iter().position(|row| row["id"] == *id));
+    assert_eq!((rows.len(), broken.collect::<Vec<_>>()), (60, expected));
+    let pools = campaign["pools"].as_array().expect("pools");
+    for (cask, k) in truth["k"].as_object().expect("casks") {
+        let pool =
+            pools.iter().find(|pool| pool["cask"] == *cask && pool["angle_deg"].is_null()).expect("a pool");
+        let number = |key: &str| pool[key].as_f64().expect("a number");
+        let off = number("mean") - k.as_f64().expect("a number");
+        assert!(off.abs() < number("u95"), "{cask}: {off}");
+        // The drops scatter by 0.01, the measurement adds its own to that: between both and what is stated.
+        let scatter = truth["scatter"].as_f64().expect("a number");
+        assert!((0.7 * scatter..2.0 * scatter).contains(&number("scatter")), "{pool}");
+    }
+    let repeats =
+        pools.iter().filter(|pool| pool["quantity"] == "k").flat_map(|pool| pool["repeats"].as_array());
+    let size = |repeat: &&Value| repeat["e_n"].as_f64().unwrap_or_default().abs();
+    let farthest = repeats.flatten().max_by(|a, b| size(a).total_cmp(&size(b))).expect("repeats");
+    assert!(farthest["id"] == truth["outlier"] && farthest["falls_out"] == true, "{farthest}");
+    let page = fs::read_to_string(out.join("campaign.html")).expect("a page");
+    assert!(page.contains("ANF-18-15-2</a></th><td>k 0.71"), "the page names the drop that is otherwise");
+}
+
 #[test]
 fn pandas_and_duckdb_read_the_tables_without_effort() {
-    let ready = Command::new("python3").args(["-c", "import pandas, duckdb"]).stderr(Stdio::null()).status();
-    if !ready.is_ok_and(|status| status.success()) {
-        println!("left out: pandas and duckdb are not installed for python3");
+    if !has_modules("pandas, duckdb") {
         return;
     }
     let series = Series::new();
     series.batch("--out @full --jsonl @all.jsonl");
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/series/read.py");
-    let read =
-        Command::new("python3").arg(script).arg(series.path("full")).arg(series.path("all.jsonl")).output();
+    let mut read = Command::new("python3");
+    read.arg(script("series/read.py")).arg(series.path("full"));
+    let read = read.arg(series.path("all.jsonl")).output();
     let read = read.expect("python3 starts");
     assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
+}
+
+#[test]
+fn the_recipes_write_what_a_local_run_writes() {
+    if !has_modules("csv") {
+        return;
+    }
+    let series = Series::new();
+    let mut engines = Command::new("python3");
+    engines.arg(script("scale/engines.py")).arg(env!("CARGO_BIN_EXE_dropcheck")).arg(series.path("runs.csv"));
+    let answer = engines.output().expect("python3 starts");
+    println!("{}", String::from_utf8_lossy(&answer.stdout));
+    assert!(answer.status.success(), "{}", String::from_utf8_lossy(&answer.stderr));
 }

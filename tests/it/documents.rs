@@ -41,9 +41,16 @@ fn written_pages() -> Vec<PathBuf> {
     pages
 }
 
-/// The pages beside fixtures, campaign and fuzzing.
-fn pages_beside() -> [PathBuf; 3] {
-    ["fixtures/README.md", "tests/campaign/README.md", "tests/fuzz/README.md"].map(|name| root().join(name))
+/// The pages beside fixtures, campaign, fuzzing, module and packages.
+fn pages_beside() -> [PathBuf; 5] {
+    [
+        "fixtures/README.md",
+        "tests/campaign/README.md",
+        "tests/fuzz/README.md",
+        "python/README.md",
+        "packaging/RELEASING.md",
+    ]
+    .map(|name| root().join(name))
 }
 
 fn text(page: &Path) -> String {

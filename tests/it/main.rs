@@ -1,7 +1,12 @@
 //! From the built program, the sources and the fixtures to the promises that hold across modules.
 
+mod arrays;
 mod batch;
 mod campaign;
+/// The command line once more, where it can name nothing but what every program can.
+#[allow(dead_code, unused_imports, reason = "it is only compiled")]
+#[path = "../../src/cli/mod.rs"]
+mod cli;
 mod command_line;
 mod compliant;
 mod csv_times;

@@ -157,11 +157,13 @@ fn the_page_works_in_a_browser() {
     let has_tools = std::process::Command::new("python3")
         .args([
             "-c",
-            "import axe_core_python, selenium, shutil, sys; sys.exit(not shutil.which('chromedriver'))",
+            "import axe_core_python, selenium, shutil, sys; sys.exit(not all(map(shutil.which, ('chromedriver', 'pdftotext'))))",
         ])
         .output();
     if !has_tools.is_ok_and(|answer| answer.status.success()) {
-        println!("skipped: tests/browser/page.py needs chromedriver, selenium and axe-core-python");
+        println!(
+            "skipped: tests/browser/page.py needs chromedriver, pdftotext, selenium and axe-core-python"
+        );
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");

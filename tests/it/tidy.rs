@@ -166,6 +166,7 @@ fn the_command_line_uses_the_public_api_only() {
             "{} uses {private:?} by `crate::`; take it from `dropcheck::`",
             file.display()
         );
+        // What is public is what the compiler shows it in `main.rs` of these tests.
         assert!(!text.contains("#[path"), "{} includes another module's file", file.display());
     }
 }

@@ -27,6 +27,6 @@ assert table["error"].notna().sum() == (table["exit"] == 2).sum() > 0
 rows = duckdb.sql(f"""select id, k from read_csv('{campaign / "campaign.csv"}') where k is not null order by id""").fetchall()
 known = table[table["k"].notna()].sort_values("id")
 assert [row[0] for row in rows] == list(known["id"]) and all(abs(a[1] - b) < 1e-12 for a, b in zip(rows, known["k"]))
-count, = duckdb.sql(f"""select count(slap_down.speed.value) from read_json('{lines}')""").fetchone()
+(count,), = duckdb.sql(f"""select count(slap_down.speed.value) from read_json('{lines}')""").fetchall()
 assert count == len(known), (count, len(known))
 print("read by pandas and DuckDB:", len(table), "rows,", len(table.columns), "columns")

@@ -3,7 +3,7 @@
 use super::super::Ending;
 use super::super::output::{Folder, replace_by};
 use super::plan::SUMMARY;
-use super::record::Lines;
+use super::record::LineFiles;
 use dropcheck::data::{BodyModel, CaskFile, Contact, Drop};
 use dropcheck::report::{Batch, BatchRow, CampaignFiles, PredictedCurve};
 use dropcheck::{ingest, predict};
@@ -14,7 +14,7 @@ use std::path::Path;
 const ANGLES: u32 = 100;
 
 /// Writes the files of a campaign of which these are all lines.
-pub fn write(out: &Path, batch: &Batch, lines: &Lines, inputs: &[&Path]) -> miette::Result<()> {
+pub fn write(out: &Path, batch: &Batch, lines: &LineFiles, inputs: &[&Path]) -> miette::Result<()> {
     let folder = Folder::checked(out, &SUMMARY[..3], inputs)?;
     let numbers: Vec<usize> = lines.numbers().collect();
     let cask_file = |row: &BatchRow| {

@@ -1,7 +1,7 @@
 //! A manifest, a CSV with a row a recording, to the tests that it lists; and a folder of recordings to a manifest to fill in.
 
 use super::paths::{in_folder, stem};
-use super::plan::{PlannedTest, cask_of};
+use super::planned::{PlannedTest, cask_of};
 use dropcheck::ingest::cask_file::key_of_column;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -131,14 +131,6 @@ fn delimiter(text: &str) -> u8 {
     let first = text.lines().next().unwrap_or_default();
     let count = |delimiter: &u8| first.bytes().filter(|byte| byte == delimiter).count();
     [b'\t', b';', b','].into_iter().max_by_key(count).unwrap_or(b',')
-}
-
-/// Whether a file that begins so has the heads of a manifest.
-pub fn begins(head: &[u8]) -> bool {
-    let text = String::from_utf8_lossy(head);
-    let first = text.trim_start_matches('\u{feff}').lines().next().unwrap_or_default();
-    let heads = |name: &str| first.split(['\t', ';', ',']).any(|head| head.trim_matches(['"', ' ']) == name);
-    heads(RECORDING) && (heads(ID) || heads(CASK))
 }
 
 /// A manifest of the recordings of a folder, each with the cask file beside it, and a column for what differs most.

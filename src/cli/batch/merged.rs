@@ -1,6 +1,6 @@
 //! The shards of a campaign to all of its lines; one that is missing, doubled, cut, foreign or of another version is named.
 
-use super::record::Lines;
+use super::record::LineFiles;
 use dropcheck::report::Batch;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -14,9 +14,12 @@ const COMMON: [(&str, &str); 5] = [
     ("count", "is of another campaign"),
 ];
 
+/// No campaign has more recordings: a shard that claims so is none.
+const MOST: u64 = 100_000_000;
+
 /// The lines of all shards, and the campaign that they make.
-pub fn all(shards: &[PathBuf]) -> miette::Result<(Lines, Batch)> {
-    let mut lines = Lines::default();
+pub fn all(shards: &[PathBuf]) -> miette::Result<(LineFiles, Batch)> {
+    let mut lines = LineFiles::default();
     let mut first: Option<Value> = None;
     // Of each test in which shard it is.
     let mut homes: Vec<Option<usize>> = Vec::new();
@@ -30,15 +33,16 @@ pub fn all(shards: &[PathBuf]) -> miette::Result<(Lines, Batch)> {
                 return Err(cut(path, count));
             };
             let first = first.get_or_insert_with(|| {
-                homes.resize(
-                    own["count"].as_u64().map_or(0, |count| usize::try_from(count).unwrap_or(0)),
-                    None,
-                );
+                let count = own["count"].as_u64().filter(|count| *count <= MOST).unwrap_or(0);
+                homes.resize(usize::try_from(count).unwrap_or(0), None);
                 own.clone()
             });
             for (key, words) in COMMON {
                 if own[key] != first[key] {
-                    return Err(foreign(path, &shards[0], (words, key), (&own[key], &first[key])));
+                    let (path, other) = (path.display(), shards[0].display());
+                    let problem =
+                        format!("{path} {words} than {other} ({key} {}, there {})", own[key], first[key]);
+                    return Err(refused("merge shards of one manifest and one version only", &problem));
                 }
             }
             match homes.get_mut(number) {
@@ -63,7 +67,7 @@ pub fn all(shards: &[PathBuf]) -> miette::Result<(Lines, Batch)> {
 }
 
 /// Names the shards of which something is missing.
-fn complete(shards: &[PathBuf], homes: &[Option<usize>], lines: &Lines) -> miette::Result<()> {
+fn complete(shards: &[PathBuf], homes: &[Option<usize>], lines: &LineFiles) -> miette::Result<()> {
     let Some(missing) = homes.iter().position(Option::is_none) else { return Ok(()) };
     let count = homes.iter().filter(|home| home.is_none()).count();
     // Any line says into how many parts its campaign was cut.
@@ -89,38 +93,19 @@ fn complete(shards: &[PathBuf], homes: &[Option<usize>], lines: &Lines) -> miett
     ))
 }
 
+fn refused(mend: &'static str, problem: &str) -> miette::Report {
+    miette::miette!(help = mend, "{problem}")
+}
+
 fn cut(path: &Path, line: usize) -> miette::Report {
-    miette::miette!(
-        help = "the run was stopped, or the file was not copied whole: run that shard again with --resume",
-        "{}, line {line}: no whole line of a shard",
-        path.display()
-    )
+    let mend = "the run was stopped, or the file was not copied whole: run that shard again with --resume";
+    refused(mend, &format!("{}, line {line}: no whole line of a shard", path.display()))
 }
 
 fn doubled(path: &Path, other: &Path, line: &Value) -> miette::Report {
-    let id = line["id"].as_str().unwrap_or_default();
-    let shard = &line["campaign"]["shard"];
-    miette::miette!(
-        help = "name each shard once",
-        "{} repeats {id} of shard {}/{}, which is in {} already",
-        path.display(),
-        shard[0],
-        shard[1],
-        other.display()
-    )
-}
-
-fn foreign(
-    path: &Path,
-    first: &Path,
-    (words, key): (&str, &str),
-    (own, of_first): (&Value, &Value),
-) -> miette::Report {
-    let told = if key == "of" { String::new() } else { format!(" ({own}, there {of_first})") };
-    miette::miette!(
-        help = "merge shards of one manifest and one version only",
-        "{} {words} than {}{told}",
-        path.display(),
-        first.display()
-    )
+    let (id, shard) = (line["id"].as_str().unwrap_or_default(), &line["campaign"]["shard"]);
+    let (path, other) = (path.display(), other.display());
+    let problem =
+        format!("{path} repeats {id} of shard {}/{}, which is in {other} already", shard[0], shard[1]);
+    refused("name each shard once", &problem)
 }

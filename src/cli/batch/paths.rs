@@ -90,7 +90,15 @@ fn tell_left_out(folder: &Path, others: &[PathBuf]) {
 fn is_summary(path: &Path) -> bool {
     let mut head = Vec::new();
     let read = std::fs::File::open(path).and_then(|file| file.take(256).read_to_end(&mut head));
-    read.is_ok() && (Batch::begins(&head) || super::manifest::begins(&head))
+    read.is_ok() && (Batch::begins(&head) || begins_manifest(&head))
+}
+
+/// Whether a file that begins so has the heads of a manifest.
+fn begins_manifest(head: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(head);
+    let first = text.trim_start_matches('\u{feff}').lines().next().unwrap_or_default();
+    let heads = |name: &str| first.split(['\t', ';', ',']).any(|head| head.trim_matches(['"', ' ']) == name);
+    heads("recording") && (heads("id") || heads("cask"))
 }
 
 #[cfg(test)]
@@ -111,7 +119,7 @@ mod tests {
         assert_eq!(recordings(&[folder.path().join("*.mcap")]).unwrap().len(), 1);
         assert!(recordings(&[folder.path().join("*.none")]).is_err());
         // An earlier campaign's table and a manifest are none, a recording of its name is one.
-        let table = Batch::default().csv_head();
+        let table = Batch::default().csv_head().unwrap();
         let manifest = b"id,recording,cask\na,b,c\n".to_vec();
         for (content, count) in [(table, 2), (manifest, 2), (b"time_s,A1\n0,1\n".to_vec(), 3)] {
             std::fs::write(folder.path().join("campaign.csv"), content).unwrap();

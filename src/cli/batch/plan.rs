@@ -1,8 +1,8 @@
 //! A manifest, or paths and a cask file, to what is to be analysed: one entry a recording, in the order in which the campaign has them.
 
-use super::Arguments;
 use super::manifest;
 use super::paths::{recordings, stem};
+use super::planned::{PlannedTest, cask_of};
 use dropcheck::data::Program;
 use serde_json::json;
 use sha2::{Digest, Sha256};
@@ -15,28 +15,9 @@ pub const SHARD_SCHEMA: &str = "dropcheck.batch-shard/1";
 /// Files of the campaign's folder that no report's folder may be named like.
 pub const SUMMARY: [&str; 4] = ["campaign.json", "campaign.csv", "campaign.html", "results.jsonl"];
 
-/// One recording to analyse.
-#[derive(Debug, Default, PartialEq)]
-pub struct PlannedTest {
-    /// Its name in the campaign, alone of its kind.
-    pub id: String,
-    /// The recording as the manifest or the command line names it, and where it is.
-    pub shown: String,
-    pub recording: PathBuf,
-    /// Its cask file likewise; none where there is none beside it and `--cask` names none.
-    pub cask_shown: Option<String>,
-    pub cask: Option<PathBuf>,
-    /// Keys of the cask file with other values.
-    pub stated: Vec<(String, String)>,
-    /// Columns that are only carried into the tables.
-    pub carried: Vec<(String, String)>,
-    /// The folder of its report.
-    pub folder: String,
-}
-
 /// The whole campaign, of which a run may do a part.
 #[derive(Debug)]
-pub struct Plan {
+pub struct CampaignPlan {
     /// The manifest or the cask file.
     pub source: String,
     pub tests: Vec<PlannedTest>,
@@ -46,27 +27,31 @@ pub struct Plan {
     pub shard: (usize, usize),
 }
 
-impl Plan {
-    /// What the words ask for.
-    pub fn of(arguments: &Arguments) -> miette::Result<Self> {
-        let cask = arguments.cask.as_deref();
+impl CampaignPlan {
+    /// Of a manifest, or of paths, with the cask file of those that have none, and the corrections that are switched off.
+    pub fn of(
+        paths: &[PathBuf],
+        manifest: Option<&Path>,
+        cask: Option<&Path>,
+        without: &[String],
+    ) -> miette::Result<Self> {
         let shown = |path: &Path| path.display().to_string();
-        let (mut tests, source) = if let Some(path) = &arguments.manifest {
+        let (mut tests, source) = if let Some(path) = manifest {
             // Other machines may have it in another place.
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             (manifest::read(path, cask)?, name)
         } else {
             let source = cask.map_or_else(|| "cask files beside the recordings".to_owned(), shown);
-            (of_paths(&arguments.paths, cask)?, source)
+            (of_paths(paths, cask)?, source)
         };
         name_apart(&mut tests);
         let mut hash = Sha256::new();
         hash.update(cask.and_then(|cask| std::fs::read(cask).ok()).unwrap_or_default());
-        hash.update(arguments.switched_off.words().join(","));
+        hash.update(without.join(","));
         for test in &tests {
             hash.update(json!([test.id, test.shown, test.cask_shown, test.stated, test.carried]).to_string());
         }
-        Ok(Self { source, tests, of: format!("{:x}", hash.finalize()), shard: arguments.shard })
+        Ok(Self { source, tests, of: format!("{:x}", hash.finalize()), shard: (0, 1) })
     }
 
     /// The numbers of the tests that are this run's.
@@ -106,27 +91,21 @@ impl Plan {
     /// Refuses a folder for the reports in which a recording would be overwritten.
     pub fn spares_recordings(&self, out: &Path) -> miette::Result<()> {
         let real = |path: &Path| std::fs::canonicalize(path).ok();
-        let Some(out) = real(out) else { return Ok(()) };
-        let folders: HashSet<&str> = self.tests.iter().map(|test| test.folder.as_str()).collect();
-        for test in &self.tests {
-            for input in [Some(&test.recording), test.cask.as_ref()].into_iter().flatten() {
-                let Some(parent) = input.parent().and_then(|parent| {
-                    real(if parent.as_os_str().is_empty() { Path::new(".") } else { parent })
-                }) else {
-                    continue;
-                };
-                let name = parent.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
-                if parent.parent() == Some(&out) && folders.contains(&*name) {
-                    return Err(miette::miette!(
-                        help = "choose another --out: no command alters its input",
-                        "{} lies in {}, where a report of this campaign would go",
-                        input.display(),
-                        parent.display()
-                    ));
-                }
-            }
+        let folders: HashSet<PathBuf> =
+            self.tests.iter().filter_map(|test| real(&out.join(&test.folder))).collect();
+        let inputs = self.tests.iter().flat_map(|test| [Some(&test.recording), test.cask.as_ref()]).flatten();
+        let is_within = |input: &&PathBuf| {
+            let parent = real(input).and_then(|input| Some(input.parent()?.to_path_buf()));
+            parent.is_some_and(|parent| folders.contains(&parent))
+        };
+        match inputs.filter(|_| !folders.is_empty()).find(is_within) {
+            None => Ok(()),
+            Some(input) => Err(miette::miette!(
+                help = "choose another --out: no command alters its input",
+                "{} lies where a report of this campaign would go",
+                input.display()
+            )),
         }
-        Ok(())
     }
 }
 
@@ -143,12 +122,6 @@ fn of_paths(paths: &[PathBuf], cask: Option<&Path>) -> miette::Result<Vec<Planne
         }
     };
     Ok(recordings(paths)?.into_iter().map(test).collect())
-}
-
-/// The cask file beside a recording, else that of the command line.
-pub fn cask_of(recording: &Path, cask: Option<&Path>) -> Option<PathBuf> {
-    let beside = recording.with_extension("toml");
-    if beside.is_file() { Some(beside) } else { cask.map(Path::to_path_buf) }
 }
 
 /// Gives equal names a number, and each test a folder that leads nowhere else.

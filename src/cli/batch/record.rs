@@ -1,13 +1,12 @@
 //! Lines of results to a file that grows by one line at a time, and such files to the lines in them: what is done stays done.
 
-use super::super::output::{CannotWrite, JsonTarget};
-use super::super::replace::{OWN_PREFIX, parent_of};
+use super::super::output::{JsonTarget, replace_by};
 use super::super::shard;
 use miette::{IntoDiagnostic, WrapErr};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Where a line is: which file, from which byte, how many.
@@ -20,12 +19,12 @@ pub struct LinePlace {
 
 /// Lines of one or several files by the numbers of their tests.
 #[derive(Debug, Default, Clone)]
-pub struct Lines {
+pub struct LineFiles {
     files: Vec<PathBuf>,
     places: BTreeMap<usize, LinePlace>,
 }
 
-impl Lines {
+impl LineFiles {
     /// The lines of a file, each handed to `take` with its number from 1, which says of which test it is; the last may be no whole one.
     pub fn add(
         &mut self,
@@ -72,18 +71,10 @@ impl Lines {
 
     /// Hands over all lines by number.
     pub fn each(&self, mut take: impl FnMut(&[u8]) -> miette::Result<()>) -> miette::Result<()> {
-        let open = |path: &PathBuf| {
-            File::open(path).into_diagnostic().wrap_err_with(|| format!("{} cannot be read", path.display()))
-        };
-        let mut files: Vec<File> = self.files.iter().map(open).collect::<Result<_, _>>()?;
-        let mut line = Vec::new();
-        for place in self.places.values() {
-            let file = &mut files[place.file];
-            line.resize(place.length, 0);
-            let read = file.seek(SeekFrom::Start(place.from)).and_then(|_| file.read_exact(&mut line));
-            read.into_diagnostic()
-                .wrap_err_with(|| format!("{} was changed", self.files[place.file].display()))?;
-            take(&line)?;
+        for number in self.numbers() {
+            let line =
+                self.text(number).ok_or_else(|| miette::miette!("the lines were changed meanwhile"))?;
+            take(line.as_bytes())?;
         }
         Ok(())
     }
@@ -91,16 +82,16 @@ impl Lines {
 
 /// A file of results that this run writes.
 #[derive(Debug)]
-pub struct Record {
+pub struct LineRecord {
     path: PathBuf,
     file: File,
     end: u64,
-    lines: Lines,
+    lines: LineFiles,
     /// Whether its lines stand by number, each once, and nothing else.
     is_in_order: bool,
 }
 
-impl Record {
+impl LineRecord {
     /// Begins the file, or goes on with what is there: `is_own` says of which test of this campaign a line is.
     pub fn open(
         path: &Path,
@@ -123,7 +114,7 @@ impl Record {
             ));
         }
         let mut record =
-            Self { path: path.to_path_buf(), file, end: 0, lines: Lines::default(), is_in_order: true };
+            Self { path: path.to_path_buf(), file, end: 0, lines: LineFiles::default(), is_in_order: true };
         if resume {
             record.take_over(is_own)?;
         }
@@ -149,7 +140,7 @@ impl Record {
     }
 
     /// What is in it.
-    pub fn lines(&self) -> &Lines {
+    pub fn lines(&self) -> &LineFiles {
         &self.lines
     }
 
@@ -173,25 +164,18 @@ impl Record {
         if self.is_in_order {
             return Ok(());
         }
-        let failed = |source| CannotWrite::Failed { path: self.path.display().to_string(), source };
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(OWN_PREFIX);
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let staged = builder.tempfile_in(parent_of(&self.path)).map_err(failed)?;
-        let mut sorted = Lines { files: vec![self.path.clone()], places: BTreeMap::new() };
-        let (mut writer, mut from, mut numbers) = (BufWriter::new(staged.as_file()), 0, self.lines.numbers());
-        self.lines.each(|line| {
-            if let Some(number) = numbers.next() {
-                sorted.places.insert(number, LinePlace { file: 0, from, length: line.len() });
-            }
-            from += line.len() as u64;
-            Ok(writer.write_all(line).map_err(failed)?)
+        let mut sorted = LineFiles { files: vec![self.path.clone()], places: BTreeMap::new() };
+        let (mut from, mut numbers) = (0, self.lines.numbers());
+        replace_by(&self.path, |put| {
+            self.lines.each(|line| {
+                if let Some(number) = numbers.next() {
+                    sorted.places.insert(number, LinePlace { file: 0, from, length: line.len() });
+                }
+                from += line.len() as u64;
+                put(line)
+            })
         })?;
-        writer.flush().and_then(|()| staged.as_file().sync_all()).map_err(failed)?;
-        drop(writer);
         drop(numbers);
-        staged.persist(&self.path).map_err(|error| failed(error.error))?;
         self.lines = sorted;
         Ok(())
     }
@@ -214,15 +198,15 @@ mod tests {
     fn a_torn_end_is_cut_off_and_lines_come_back_in_order() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("results.jsonl");
-        let mut record = Record::open(&path, false, &[], own).unwrap();
+        let mut record = LineRecord::open(&path, false, &[], own).unwrap();
         for number in [0, 3] {
             record.put(number, &line(number, "first")).unwrap();
         }
-        assert!(Record::open(&path, true, &[], own).is_err(), "two runs write one file");
+        assert!(LineRecord::open(&path, true, &[], own).is_err(), "two runs write one file");
         drop(record);
         let mut file = OpenOptions::new().append(true).open(&path).unwrap();
         file.write_all(&line(1, "torn")[..20]).unwrap();
-        let mut record = Record::open(&path, true, &[], own).unwrap();
+        let mut record = LineRecord::open(&path, true, &[], own).unwrap();
         assert!(record.lines().line(3).is_some() && record.lines().line(1).is_none());
         for number in [1, 2, 3] {
             record.put(number, &line(number, "again")).unwrap();

@@ -53,7 +53,7 @@ pub fn run(
     keep_freed_memory();
     let tables = tabled(request, out, |take| {
         let own = place.count.saturating_sub(index).div_ceil(count);
-        let progress = CountedProgress::of(own);
+        let mut progress = CountedProgress::of(own);
         let mut done = 0;
         if let Some(file) = &mut file {
             done = file.take_over(&place, |row| {
@@ -74,7 +74,6 @@ pub fn run(
             let read = campaign::read(line.as_bytes());
             read.map_or(Ok(()), |(_, row)| take(&row))
         })?;
-        progress.end();
         Ok(())
     })?;
     if let Some((path, (before, after))) = &document {

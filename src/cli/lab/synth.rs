@@ -50,6 +50,14 @@ enum Unwritable {
 }
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
+    let (files, recording) = written(arguments)?;
+    let files = files.each_ref().map(|file| report::printable(&file.display().to_string()));
+    print(&format!("Written: {}\n{}", files.join(", "), summary(&recording)))?;
+    Ok(Ending::Clear)
+}
+
+/// Makes the recording and writes its files: recording, cask file, truth.
+pub fn written(arguments: &Arguments) -> miette::Result<([PathBuf; 3], SyntheticRecording)> {
     let out = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.scene));
     let format = format(&out, arguments.encoding.as_deref())?;
     let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -68,11 +76,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     }
     let recording = lab::synthesise(&scene_file.scene);
     folder.write(&lab::report::synthetic_files(&scene_file, &recording, &name, format)?)?;
-
-    let files =
-        names.each_ref().map(|name| report::printable(&out.with_file_name(name).display().to_string()));
-    print(&format!("Written: {}\n{}", files.join(", "), summary(&recording)))?;
-    Ok(Ending::Clear)
+    Ok((names.map(|name| out.with_file_name(name)), recording))
 }
 
 fn default_out(scene: &Path) -> PathBuf {

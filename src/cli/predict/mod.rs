@@ -7,7 +7,7 @@ mod words;
 use super::Ending;
 use super::output::{Folder, JsonTarget, columns, print};
 use clap::Args;
-use dropcheck::data::{Contact, Sweep};
+use dropcheck::data::{CaskFile, Contact, StudyRequest, Sweep};
 use dropcheck::report;
 use std::path::PathBuf;
 
@@ -82,11 +82,17 @@ pub struct Arguments {
     json: Option<PathBuf>,
 }
 
-pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
-    let inputs = [arguments.cask.as_path()];
+/// The cask file that is named, and what is asked of it.
+pub fn asked(arguments: &Arguments) -> miette::Result<(CaskFile, StudyRequest)> {
     let mut file = dropcheck::ingest::cask_file(&arguments.cask)?;
     file.drop.contact_duration_s = arguments.duration.unwrap_or(file.drop.contact_duration_s);
     let request = request::request(arguments, &file)?;
+    Ok((file, request))
+}
+
+pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
+    let inputs = [arguments.cask.as_path()];
+    let (file, request) = asked(arguments)?;
     let names = report::study_file_names(&request);
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, &names, &inputs)).transpose()?;

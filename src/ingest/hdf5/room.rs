@@ -17,6 +17,7 @@ use crate::data::Samples;
 use crate::ingest::Limits;
 use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::HashMap;
+use std::ffi::OsString;
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
@@ -32,12 +33,22 @@ pub(super) const NO_PLUGINS: (&str, &str) = ("HDF5_PLUGIN_PRELOAD", "::");
 /// All that is noted of a file. Ten thousand datasets with their attributes take 5 MB.
 const MOST_NOTED_BYTES: usize = 128 << 20;
 
-/// The program that is started.
-static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+/// How the process is started that takes HDF5 files apart.
+#[derive(Debug, Clone, Default)]
+pub struct Hdf5Program {
+    /// The program.
+    pub path: PathBuf,
+    /// Its words before `__hdf5` and the recording.
+    pub words: Vec<OsString>,
+    /// Variables that it needs in an environment that is else empty, such as the places of its libraries.
+    pub variables: Vec<(OsString, OsString)>,
+}
+
+static PROGRAM: OnceLock<Hdf5Program> = OnceLock::new();
 
 /// Names the program that takes HDF5 files apart when started with [`WORD`]; the first name stays.
-pub(in super::super) fn use_program(program: &Path) {
-    let _ = PROGRAM.set(program.to_owned());
+pub(in super::super) fn use_program(program: Hdf5Program) {
+    let _ = PROGRAM.set(program);
 }
 
 /// An open file, and what is known of it.
@@ -66,7 +77,7 @@ impl File {
         let (user_block, library) = match link.answer() {
             Ok((Reply::Opened { user_block, library }, _)) => (user_block, library),
             Ok((Reply::Refused(words), _)) => return Err(fault(fault::of_words(&words))),
-            _ => return Err(fault(link.end())),
+            _ => return Err(fault(link.end_before_answer())),
         };
         Ok(Rc::new(Self {
             path: path.to_owned(),
@@ -210,11 +221,25 @@ impl Link {
         }
     }
 
+    /// As [`Self::end`] where there was no answer at all: the library breaks off by a signal, a program that is none for it by a status.
+    fn end_before_answer(&mut self) -> Fault {
+        match self.process.take().map(Watched::end) {
+            Some(ProcessEnd::With(status)) if status.code().is_some_and(|code| code != 0) => {
+                unstarted(&io::Error::other(format!("{status}")))
+            }
+            ended => Self::fault(ended.as_ref()),
+        }
+    }
+
     /// Ends the process and says why it could not go on.
     fn end(&mut self) -> Fault {
-        let problem = match self.process.take().map(Watched::end) {
+        Self::fault(self.process.take().map(Watched::end).as_ref())
+    }
+
+    fn fault(ended: Option<&ProcessEnd>) -> Fault {
+        let problem = match ended {
             Some(ProcessEnd::Silent) => format!("gave no sign of life for {} s", PATIENCE.as_secs()),
-            Some(ProcessEnd::With(status)) => ending(status),
+            Some(ProcessEnd::With(status)) => ending(*status),
             Some(ProcessEnd::ByReader) | None => "gave no answer that can be read".into(),
         };
         Fault::new(
@@ -237,10 +262,11 @@ impl Link {
     #[cfg_attr(any(test, fuzzing), allow(dead_code, reason = "tests have the library on a thread"))]
     fn by_process(path: &Path) -> io::Result<Self> {
         let program = PROGRAM.get().ok_or(io::ErrorKind::NotFound)?;
-        let mut command = Command::new(program);
+        let mut command = Command::new(&program.path);
         // No plugin path, no other driver or connector; and plugins that lie in the usual folder are off too.
         let path = if cfg!(unix) { path.canonicalize()? } else { std::path::absolute(path)? };
-        command.arg(WORD).arg(path).env_clear().env(NO_PLUGINS.0, NO_PLUGINS.1);
+        command.args(&program.words).arg(WORD).arg(path);
+        command.env_clear().envs(program.variables.iter().cloned()).env(NO_PLUGINS.0, NO_PLUGINS.1);
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         #[cfg(unix)]
         command.current_dir("/");
@@ -255,13 +281,13 @@ fn unstarted(refusal: &io::Error) -> Fault {
     let what = match PROGRAM.get() {
         Some(program) => {
             let why = crate::ingest::shown::bare(refusal);
-            format!("{} could not be started: {why}", program.display())
+            format!("{} could not be started for it: {why}", program.path.display())
         }
         None => "no program was named for it".into(),
     };
     Fault::new(
         format!("HDF5 is read by a process of its own, and {what}"),
-        "a program that uses this library names it: dropcheck::read_hdf5_with(program)",
+        "a program that uses this library names it: dropcheck::read_hdf5_with(program), in Python dropcheck.read_hdf5_with(python)",
     )
 }
 

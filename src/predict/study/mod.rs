@@ -4,6 +4,7 @@ mod critical;
 mod curves;
 mod monte_carlo;
 mod peak;
+mod poses;
 mod regimes;
 mod rows;
 mod sensitivity;
@@ -13,7 +14,8 @@ pub use uncertain::default_uncertain;
 
 use super::{bodies, ladder, predict, speed_gradient};
 use crate::data::{
-    Body, BodyModel, CaskFile, Contact, Drop, Ladder, Prediction, SpeedGradient, Study, StudyRequest,
+    Body, BodyModel, BodyPath, CaskFile, Contact, Drop, Ladder, Prediction, SpeedGradient, Study,
+    StudyRequest,
 };
 use peak::Bands;
 use rayon::prelude::*;
@@ -43,6 +45,7 @@ pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
     let mapped_deg = thinned(&request.angles_deg, MAP_ANGLES);
     Study {
         rows: rows::rows(cask_file, request),
+        paths: paths(&falls, request.angle_deg),
         ladders: ladders(cask_file, request),
         curves,
         sections: curves::sections(cask_file, &request.angles_deg),
@@ -92,6 +95,14 @@ fn falls(cask_file: &CaskFile, contacts: &[Contact], ks: &[f64]) -> Vec<Fall> {
         }
     }
     falls
+}
+
+/// Paths of the richest body drawn at the most: two contact laws with two k each.
+const MOST_PATHS: usize = 4;
+
+fn paths(falls: &[Fall], angle_deg: f64) -> Vec<BodyPath> {
+    let of_richest = |fall: &&Fall| falls.last().is_some_and(|last| last.body.model == fall.body.model);
+    falls.iter().filter(of_richest).filter_map(|fall| poses::path(fall, angle_deg)).take(MOST_PATHS).collect()
 }
 
 /// The body where the cask file describes one, else the rod.

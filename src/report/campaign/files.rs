@@ -1,39 +1,18 @@
 //! A campaign and its lines once more to `campaign.csv` and `campaign.json`, a line at a time, and to its page with the pictures.
 
-use super::columns::{self, Columns};
-use super::series::{PoolRecord, Series};
+use super::columns;
+use super::series::DropSeries;
 use super::{Batch, BatchRow, PredictedCurve, head, page};
 use crate::data::Program;
 use crate::report::json::{in_a_line, pretty};
 use crate::report::records::{finished, text_cell};
 use crate::report::{ReportError, as_html};
-use serde::Serialize;
-use serde_json::Value;
-use std::collections::BTreeMap;
+use serde_json::{Value, json};
 
 /// A campaign all of whose lines are known, with what the model predicts for its casks.
 pub struct CampaignFiles<'a> {
     batch: &'a Batch,
-    series: Vec<Series<'a>>,
-}
-
-/// A row of `campaign.json`.
-#[derive(Serialize)]
-struct JsonRow<'a> {
-    #[serde(flatten)]
-    row: &'a BatchRow,
-    columns: BTreeMap<&'a str, &'a Value>,
-}
-
-/// What `campaign.json` begins with.
-#[derive(Serialize)]
-struct JsonHead<'a> {
-    schema: &'static str,
-    version: &'static str,
-    program: Program,
-    cask: &'a str,
-    count: usize,
-    pools: Vec<PoolRecord>,
+    series: Vec<DropSeries<'a>>,
 }
 
 impl<'a> CampaignFiles<'a> {
@@ -42,7 +21,7 @@ impl<'a> CampaignFiles<'a> {
         batch: &'a Batch,
         predicted: impl Fn(&BatchRow, [f64; 2], [f64; 2]) -> Vec<PredictedCurve>,
     ) -> Self {
-        Self { batch, series: Series::all(&batch.rows, predicted) }
+        Self { batch, series: DropSeries::all(&batch.rows, predicted) }
     }
 
     /// The first line of `campaign.csv`.
@@ -74,17 +53,15 @@ impl<'a> CampaignFiles<'a> {
     /// [`ReportError::Json`] where the writer fails.
     pub fn json_head(&self) -> Result<Vec<u8>, ReportError> {
         let program = Program::this();
-        let head = JsonHead {
-            schema: "dropcheck.campaign/1",
-            version: program.version,
-            program,
-            cask: &self.batch.source,
-            count: self.batch.rows.len(),
-            pools: self.series.iter().flat_map(Series::records).collect(),
-        };
-        let text =
-            String::from_utf8_lossy(&pretty(&head)?).trim_end().trim_end_matches('}').trim_end().to_owned();
-        Ok((text + ",\n  \"recordings\": [\n    ").into_bytes())
+        let pools: Vec<Value> = self.series.iter().flat_map(DropSeries::records).collect();
+        let head = json!({
+            "cask": self.batch.source, "count": self.batch.rows.len(), "pools": pools,
+            "program": program, "version": program.version,
+        });
+        let text = String::from_utf8_lossy(&pretty(&head)?).into_owned();
+        let inner = text.trim_start_matches("{\n").trim_end().trim_end_matches("\n}");
+        let schema = "  \"schema\": \"dropcheck.campaign/1\"";
+        Ok(format!("{{\n{schema},\n{inner},\n  \"recordings\": [\n    ").into_bytes())
     }
 
     /// What stands between two rows of `campaign.json`, and behind the last.
@@ -97,9 +74,9 @@ impl<'a> CampaignFiles<'a> {
     /// # Errors
     /// [`ReportError::Json`] where the writer fails.
     pub fn json_row(&self, line: &Value) -> Result<Vec<u8>, ReportError> {
-        let (row, own): (_, Columns) = (BatchRow::of(line), columns::of(line));
-        let columns = own.iter().map(|((_, name), value)| (name.as_str(), value)).collect();
-        Ok(in_a_line(&JsonRow { row: &row, columns })?.into_bytes())
+        let mut row = serde_json::to_value(BatchRow::of(line))?;
+        row["columns"] = columns::of(line).into_iter().map(|((_, name), value)| (name, value)).collect();
+        Ok(in_a_line(&row)?.into_bytes())
     }
 
     /// `campaign.html` and its pictures.

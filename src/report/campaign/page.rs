@@ -1,14 +1,14 @@
 //! A campaign to the document of its page: what falls out first, then a chapter a cask, then every recording with a link to its report.
 
-use super::series::{Pool, PooledQuantity, Series, scatter_words};
+use super::series::{DropSeries, Pool, PooledQuantity, RowPlace, scatter_words};
 use super::{Batch, BatchRow, MOST_ROWS, compared};
 use crate::data::{Program, Verdict};
 use crate::report::document::{Chapter, ChapterPart, Frame, PartContent, ReportDocument, Tone};
 use crate::report::json::in_a_line;
-use crate::report::rounding::{MISSING, fixed, interval, pair, percent, plain, significant};
+use crate::report::rounding::{MISSING, fixed, interval, optional_fixed, pair, percent, plain, significant};
 use crate::report::table::{ReportTable, TableCell};
 use crate::report::text::{Style, verdict_word};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// g, m/s².
 const G_M_S2: f64 = 9.806_65;
@@ -18,7 +18,7 @@ const REPEATS: &str = "Mean of the repeats that do not fall out, weighted with 1
                        stated intervals says whether it is as large as they say; where repeats share most of what is uncertain it is smaller.";
 
 /// The page.
-pub(super) fn document(batch: &Batch, series: &[Series]) -> ReportDocument {
+pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
     let count = |verdict| batch.rows.iter().filter(|row| row.verdict == verdict).count();
     let (pass, review, fail) =
         (count(Some(Verdict::Pass)), count(Some(Verdict::Review)), count(Some(Verdict::Fail)));
@@ -26,12 +26,10 @@ pub(super) fn document(batch: &Batch, series: &[Series]) -> ReportDocument {
     let angles =
         series.iter().flat_map(|series| &series.pools).filter_map(|pool| pool.angle_deg.map(f64::to_bits));
     let angles = angles.collect::<BTreeSet<u64>>().len();
-    let worst = if fail + failed > 0 {
-        Style::Red
-    } else if review > 0 {
-        Style::Yellow
-    } else {
-        Style::Green
+    let worst = match (fail + failed, review) {
+        (0, 0) => Style::Green,
+        (0, _) => Style::Yellow,
+        _ => Style::Red,
     };
     let banner = Tone(worst, format!("{pass} of {}", batch.rows.len()));
     let words =
@@ -80,7 +78,7 @@ struct Oddity<'a> {
 }
 
 /// Points that fall out of their repeats, or lie outside both intervals of measurement and prediction.
-fn apart(series: &[Series]) -> Chapter {
+fn apart(series: &[DropSeries]) -> Chapter {
     let mut found: Vec<Oddity> = Vec::new();
     for (series, pool) in series.iter().flat_map(|series| series.pools.iter().map(move |pool| (series, pool)))
     {
@@ -89,18 +87,11 @@ fn apart(series: &[Series]) -> Chapter {
             let (name, own) =
                 (quantity_words(pool.quantity), interval(pool.quantity.of(member.row).as_ref()));
             let place = format!("{} at {}°", series.name, plain(pool.angle_deg.unwrap_or_default(), 4));
-            let why = if pool.members.len() == 2 {
-                format!(
-                    "{name} {own}: the two repeats of {place} contradict each other, E_n = {}",
-                    fixed(e_n, 1)
-                )
-            } else {
-                format!(
-                    "{name} {own} falls out of the {} other repeats of {place}, E_n = {}",
-                    pool.members.len() - 1,
-                    fixed(e_n, 1)
-                )
+            let against = match pool.members.len() {
+                2 => "contradicts the other repeat".to_owned(),
+                count => format!("falls out of the {} other repeats", count - 1),
             };
+            let why = format!("{name} {own} {against} of {place}, E_n = {}", fixed(e_n, 1));
             found.push(Oddity { row: member.row, size: e_n.abs(), why });
         }
     }
@@ -122,7 +113,7 @@ fn apart(series: &[Series]) -> Chapter {
     if found.is_empty() { chapter.with(ChapterPart::text("None.")) } else { chapter.with(table) }
 }
 
-fn of_series(series: &Series, number: usize) -> Chapter {
+fn of_series(series: &DropSeries, number: usize) -> Chapter {
     let pool = |pool: &Pool| {
         let angle = pool.angle_deg.map_or_else(|| "all".to_owned(), |angle| format!("{}°", plain(angle, 4)));
         format!("{} at {angle}", quantity_words(pool.quantity))
@@ -148,11 +139,11 @@ fn of_series(series: &Series, number: usize) -> Chapter {
         .text("scatter is", word);
     Chapter::new(series.name.clone())
         .with(ChapterPart::picture(
-            &Series::name_of(number, "speed"),
+            &DropSeries::name_of(number, "speed"),
             "slap-down speed over the drop angle",
             "",
         ))
-        .with(ChapterPart::picture(&Series::name_of(number, "k"), "restitution", ""))
+        .with(ChapterPart::picture(&DropSeries::name_of(number, "k"), "restitution", ""))
         .with(repeats)
         .with(ChapterPart::note(REPEATS))
 }
@@ -177,10 +168,12 @@ fn encoded(path: &str) -> String {
         .collect()
 }
 
-fn recordings(batch: &Batch, series: &[Series]) -> Chapter {
-    let e_n = |row: &BatchRow, quantity| {
-        let member = series.iter().find_map(|series| series.member(row, quantity));
-        member.and_then(|member| member.e_n).map_or_else(|| MISSING.to_owned(), |e_n| fixed(e_n, 2))
+fn recordings(batch: &Batch, series: &[DropSeries]) -> Chapter {
+    let places: HashMap<u32, RowPlace> =
+        series.iter().flat_map(|s| s.rows.iter().map(|row| (row.at.number, s.place(row)))).collect();
+    let e_n = |row: &BatchRow, quantity: PooledQuantity| {
+        let e_n = places.get(&row.at.number).and_then(|place| place.e_n[quantity as usize]);
+        optional_fixed(e_n, 2)
     };
     let both = |values: [Option<f64>; 2], factor: f64| {
         let word = |value: Option<f64>| {
@@ -197,7 +190,8 @@ fn recordings(batch: &Batch, series: &[Series]) -> Chapter {
         };
         TableCell::toned(style, word.to_lowercase())
     };
-    let table = ReportTable::of(&batch.rows)
+    let shown = &batch.rows[..batch.rows.len().min(MOST_ROWS)];
+    let table = ReportTable::of(shown)
         .class("many sortable")
         .head("test", linked)
         .text("verdict", tag)
@@ -213,9 +207,11 @@ fn recordings(batch: &Batch, series: &[Series]) -> Chapter {
         .number("E_n of speed", |row| e_n(row, PooledQuantity::Speed))
         .number("peaks g", |row| both(row.at.peaks_m_s2, G_M_S2))
         .number("energies kJ", |row| both(row.at.energies_j, 1e3))
-        .text("findings", |row| row.error.clone().unwrap_or_else(|| row.codes.join(", ")))
-        .most(MOST_ROWS, MOST_ROWS, "campaign.csv has all of them");
+        .text("findings", |row| row.error.clone().unwrap_or_else(|| row.codes.join(", ")));
+    let more = (shown.len() < batch.rows.len())
+        .then(|| ChapterPart::note(format!("The first {MOST_ROWS}: campaign.csv has all of them.")));
     Chapter::new("Recordings")
+        .with_all(more)
         .with(table)
         .with(ChapterPart::note(
             "E_n against the other repeats at the angle; within ±1 they agree. Peaks: largest deceleration of the struck end of the rigid \

@@ -1,7 +1,7 @@
 //! A series to its pictures: slap-down speed on the predicted curves, measured over predicted, and k over angle, date and number.
 
 use super::BatchRow;
-use super::series::{PooledQuantity, PredictedCurve, Series, is_usable};
+use super::series::{DropSeries, PooledQuantity, PredictedCurve, is_usable};
 use crate::data::{BodyModel, Estimate};
 use crate::report::pictures::draw::{Picture, Plate};
 use crate::report::pictures::panel::{
@@ -10,12 +10,9 @@ use crate::report::pictures::panel::{
 use crate::report::rounding::plain;
 use crate::report::words::contact_words;
 
-/// Repeats at one angle stand beside one another, so far apart, degrees.
-const BESIDE_DEG: f64 = 0.16;
-
 const NOTHING: (&str, &str) = ("There is nothing to show.", "No recording of this cask gave a number.");
 
-impl Series<'_> {
+impl DropSeries<'_> {
     /// Its pictures; `number` tells their files from those of other series.
     pub(super) fn pictures(&self, number: usize) -> Vec<Picture> {
         vec![self.speeds(&Self::name_of(number, "speed")), self.ks(&Self::name_of(number, "k"))]
@@ -38,7 +35,7 @@ impl Series<'_> {
         }
         self.draw(&mut ratio, relative, |row| self.angle(row));
         let k = self.k.map_or_else(String::new, |[low, high]| {
-            format!(", k from {} to {}", plain(low, 3), plain(high, 3))
+            format!(", from {} to {}", plain(low, 3), plain(high, 3))
         });
         let caption = format!(
             "Above: measured with 95 % intervals over the stated drop angle; repeats stand beside one another. Bands: the analytical model \
@@ -92,16 +89,7 @@ impl Series<'_> {
 
     /// The angle at which a row is drawn: its own, and a little beside its repeats.
     fn angle(&self, row: &BatchRow) -> Option<f64> {
-        let own = row.at.angle_deg?;
-        let is_repeat =
-            |other: &&&BatchRow| other.at.angle_deg.is_some_and(|angle| (angle - own).abs() < 1e-6);
-        let repeats: Vec<u32> = self.rows.iter().filter(is_repeat).map(|row| row.at.number).collect();
-        let place = repeats.iter().position(|number| *number == row.at.number).unwrap_or(0);
-        let count = |count: usize| f64::from(u32::try_from(count).unwrap_or(u32::MAX));
-        Some(
-            own + BESIDE_DEG.min(2.0 / count(repeats.len()))
-                * (count(place) - (count(repeats.len()) - 1.0) / 2.0),
-        )
+        Some(row.at.angle_deg? + self.place(row).beside_deg)
     }
 
     /// Adds the rows with their intervals.

@@ -2,9 +2,10 @@
 
 use super::BatchRow;
 use crate::data::{BodyModel, Contact, Estimate, Verdict};
+use crate::numerics::as_f64;
 use crate::numerics::pooled::{Pooled, ScatterWord, apart, pooled};
-use serde::Serialize;
-use std::collections::BTreeMap;
+use serde_json::{Value, json};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// How far beyond the angles of the tests the predicted curves go, degrees.
 const BEYOND_DEG: f64 = 5.0;
@@ -70,43 +71,32 @@ pub(super) struct Pool<'a> {
     pub(super) pooled: Pooled,
 }
 
+/// Where a row stands among its repeats at its angle.
+#[derive(Clone, Copy, Default)]
+pub(super) struct RowPlace {
+    /// E_n of k and of the speed against the others.
+    pub(super) e_n: [Option<f64>; 2],
+    pub(super) is_out: bool,
+    /// How far beside its angle it is drawn, degrees.
+    pub(super) beside_deg: f64,
+}
+
+/// Repeats at one angle stand beside one another, so far apart, degrees.
+const BESIDE_DEG: f64 = 0.16;
+
 /// The drops of one cask from one height.
-pub(super) struct Series<'a> {
+#[derive(Default)]
+pub(super) struct DropSeries<'a> {
     pub(super) name: String,
     pub(super) rows: Vec<&'a BatchRow>,
     pub(super) pools: Vec<Pool<'a>>,
     pub(super) curves: Vec<PredictedCurve>,
+    places: HashMap<u32, RowPlace>,
     /// Lowest and highest k measured, but for what falls out.
     pub(super) k: Option<[f64; 2]>,
 }
 
-/// A pool as `campaign.json` has it.
-#[derive(Serialize)]
-pub(super) struct PoolRecord {
-    cask: String,
-    angle_deg: Option<f64>,
-    quantity: &'static str,
-    unit: &'static str,
-    /// Repeats that do not fall out.
-    count: usize,
-    mean: f64,
-    u95: f64,
-    scatter: Option<f64>,
-    chi_square: f64,
-    degrees: usize,
-    scatter_is: Option<&'static str>,
-    repeats: Vec<RepeatRecord>,
-}
-
-/// A repeat in it.
-#[derive(Serialize)]
-struct RepeatRecord {
-    id: String,
-    e_n: Option<f64>,
-    falls_out: bool,
-}
-
-impl<'a> Series<'a> {
+impl<'a> DropSeries<'a> {
     /// All series, in the order in which their casks come; `predicted` gives the curves of a row's cask over these k and angles.
     pub(super) fn all(
         rows: &'a [BatchRow],
@@ -120,12 +110,13 @@ impl<'a> Series<'a> {
                 let same = series.iter().filter(|other| other.rows[0].at.cask == row.at.cask).count();
                 let name =
                     if same == 0 { row.at.cask.clone() } else { format!("{} ({})", row.at.cask, same + 1) };
-                series.push(Self { name, rows: Vec::new(), pools: Vec::new(), curves: Vec::new(), k: None });
+                series.push(Self { name, ..Self::default() });
             }
             series[place].rows.push(row);
         }
         for series in &mut series {
             series.pools = pools(&series.rows);
+            series.set_places();
             series.k = ends(
                 series.usable().filter(|row| !series.falls_out(row)).filter_map(|row| Some(row.k?.value)),
             );
@@ -144,39 +135,51 @@ impl<'a> Series<'a> {
         self.rows.iter().copied().filter(|row| is_usable(row))
     }
 
-    /// The place of a row among its repeats at its angle.
-    pub(super) fn member(&self, row: &BatchRow, quantity: PooledQuantity) -> Option<&PoolMember<'a>> {
-        let own = self.pools.iter().filter(|pool| pool.quantity == quantity && pool.angle_deg.is_some());
-        own.flat_map(|pool| &pool.members).find(|member| member.row.at.number == row.at.number)
+    /// The place of a row among its repeats.
+    pub(super) fn place(&self, row: &BatchRow) -> RowPlace {
+        self.places.get(&row.at.number).copied().unwrap_or_default()
     }
 
     /// Whether a row falls out of its repeats in any quantity.
     pub(super) fn falls_out(&self, row: &BatchRow) -> bool {
-        PooledQuantity::ALL
-            .iter()
-            .any(|quantity| self.member(row, *quantity).is_some_and(|member| member.is_out))
+        self.place(row).is_out
     }
 
-    /// The pools for `campaign.json`.
-    pub(super) fn records(&self) -> Vec<PoolRecord> {
-        let repeat = |member: &PoolMember| RepeatRecord {
-            id: member.row.id.clone(),
-            e_n: member.e_n,
-            falls_out: member.is_out,
-        };
-        let record = |pool: &Pool| PoolRecord {
-            cask: self.name.clone(),
-            angle_deg: pool.angle_deg,
-            quantity: pool.quantity.name(),
-            unit: pool.quantity.unit(),
-            count: pool.pooled.count,
-            mean: pool.pooled.mean,
-            u95: pool.pooled.u95,
-            scatter: Some(pool.pooled.scatter).filter(|scatter| scatter.is_finite()),
-            chi_square: pool.pooled.chi_square,
-            degrees: pool.pooled.count - 1,
-            scatter_is: pool.pooled.word().map(scatter_words),
-            repeats: pool.members.iter().map(repeat).collect(),
+    /// Gives each row its place.
+    fn set_places(&mut self) {
+        let mut repeats: BTreeMap<u64, Vec<u32>> = BTreeMap::new();
+        for row in &self.rows {
+            let angle = row.at.angle_deg.unwrap_or_default();
+            repeats.entry(angle.to_bits()).or_default().push(row.at.number);
+        }
+        for numbers in repeats.into_values() {
+            let count = as_f64(numbers.len());
+            for (i, number) in numbers.into_iter().enumerate() {
+                let beside_deg = BESIDE_DEG.min(2.0 / count) * (as_f64(i) - (count - 1.0) / 2.0);
+                self.places.insert(number, RowPlace { beside_deg, ..RowPlace::default() });
+            }
+        }
+        for pool in self.pools.iter().filter(|pool| pool.angle_deg.is_some()) {
+            for member in &pool.members {
+                let place = self.places.entry(member.row.at.number).or_default();
+                place.e_n[pool.quantity as usize] = member.e_n;
+                place.is_out |= member.is_out;
+            }
+        }
+    }
+
+    /// The pools as `campaign.json` has them.
+    pub(super) fn records(&self) -> Vec<Value> {
+        let repeat = |m: &PoolMember| json!({"id": m.row.id, "e_n": m.e_n, "falls_out": m.is_out});
+        let record = |pool: &Pool| {
+            let Pooled { count, mean, u95, scatter, chi_square } = pool.pooled;
+            json!({
+                "cask": self.name, "angle_deg": pool.angle_deg, "quantity": pool.quantity.name(),
+                "unit": pool.quantity.unit(), "count": count, "mean": mean, "u95": u95, "scatter": scatter,
+                "chi_square": chi_square, "degrees": count - 1,
+                "scatter_is": pool.pooled.word().map(scatter_words),
+                "repeats": pool.members.iter().map(repeat).collect::<Vec<_>>(),
+            })
         };
         self.pools.iter().map(record).collect()
     }
@@ -212,7 +215,7 @@ fn pools<'a>(rows: &[&'a BatchRow]) -> Vec<Pool<'a>> {
     let mut pools: Vec<Pool> = of_angle.collect();
     if by_angle.len() > 1 {
         // What falls out of its repeats does not enter the mean over the angles.
-        let out: Vec<u32> = pools
+        let out: HashSet<u32> = pools
             .iter()
             .flat_map(|pool| &pool.members)
             .filter(|m| m.is_out)

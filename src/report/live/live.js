@@ -70,12 +70,15 @@ function chart(box, panel, key) {
   root.chart = u;
   root.tabIndex = 0;
   root.setAttribute("role", "img");
-  root.setAttribute("aria-label", `${panel.title}: plus and minus zoom, arrows pan, 0 shows the whole`);
+  root.setAttribute("aria-label", `${panel.title}: plus and minus zoom, arrows pan, with Shift they move the cursor, 0 shows the whole`);
+  // The wheel is the page's until the chart was clicked or Ctrl is held.
   u.over.addEventListener("wheel", (e) => {
+    if (!e.ctrlKey && document.activeElement !== root) return;
     e.preventDefault();
     zoom(u, e.deltaY < 0 ? 0.8 : 1.25, u.posToVal(e.offsetX, "x"));
   }, { passive: false });
   u.over.addEventListener("mousedown", (e) => {
+    root.focus({ preventScroll: true });
     if (!e.shiftKey && e.button !== 1) return;
     e.preventDefault();
     e.stopImmediatePropagation();
@@ -87,7 +90,9 @@ function chart(box, panel, key) {
   }, true);
   root.addEventListener("keydown", (e) => {
     const { min, max } = u.scales.x, step = (max - min) / 5;
-    const to = { "+": () => zoom(u, 0.6), "-": () => zoom(u, 1 / 0.6), "0": () => whole(u),
+    const beside = (by) => u.setCursor({ left: Math.max(0, u.cursor.left + by * u.over.clientWidth / 100), top: 5 });
+    const to = e.shiftKey && e.key.startsWith("Arrow") ? () => beside(e.key === "ArrowLeft" ? -1 : 1)
+      : { "+": () => zoom(u, 0.6), "-": () => zoom(u, 1 / 0.6), "0": () => whole(u),
       ArrowLeft: () => u.setScale("x", { min: min - step, max: max - step }),
       ArrowRight: () => u.setScale("x", { min: min + step, max: max + step }) }[e.key];
     if (to) { e.preventDefault(); to(); }

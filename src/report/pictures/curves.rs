@@ -7,18 +7,16 @@ use super::draw::{Picture, Plate};
 use super::panel::{COLOURS, Colour, Curve, Dash, Mark, Panel, PanelAxis};
 use crate::data::{Analysis, Axis, ChannelCurve, End};
 
-const TIME_LABEL: &str = "time from first contact, ms";
-const RECORD_TIME_LABEL: &str = "time from the recording's first sample, ms";
+const TIME_LABEL: &str = "time from the recording's first sample, ms";
 
 /// The deceleration of both ends, unfiltered and filtered.
 pub(super) fn accelerations(analysis: &Analysis) -> Picture {
-    let clock = EventClock::of(analysis);
     let panels: Vec<Panel> = [(End::First, "First end"), (End::Second, "Second end")]
         .into_iter()
         .map(|(end, title)| {
             let mut lines = Vec::new();
             for EndCurve { curve, colour, axis } in curves_of(analysis, end) {
-                let in_g = |values: &[f64]| clock.points(&curve.time_s, values, 1.0 / STANDARD_GRAVITY_M_S2);
+                let in_g = |values: &[f64]| points(&curve.time_s, values, 1.0 / STANDARD_GRAVITY_M_S2);
                 let raw =
                     Curve::new(colour, in_g(&curve.raw_m_s2)).named(format!("{} unfiltered", curve.channel));
                 let (dash, note) = axis_look(axis);
@@ -26,7 +24,7 @@ pub(super) fn accelerations(analysis: &Analysis) -> Picture {
                 lines.push(Curve { opacity: 0.32, stroke: 2, ..raw });
                 lines.push(Curve::new(colour, in_g(&curve.filtered_m_s2)).named(label).broken(dash));
             }
-            clock.panel(analysis, title, "deceleration, g", lines)
+            panel(analysis, title, "deceleration, g", lines)
         })
         .collect();
     let filter = analysis
@@ -36,7 +34,7 @@ pub(super) fn accelerations(analysis: &Analysis) -> Picture {
         .find(|setting| setting.name.starts_with("low-pass"))
         .map_or_else(String::new, |setting| format!(" Filter: {}.", setting.value));
     let caption = format!(
-        "Specific force at both ends over time, offset removed: unfiltered (faint) and filtered (bold), 1 g = 9.80665 m/s². \
+        "As Fig. 12 of the paper: specific force at both ends over time, offset removed: unfiltered (faint) and filtered (bold), 1 g = 9.80665 m/s². \
          A decelerating end reads positive on its transverse axis.{filter}"
     );
     Plate::new("accelerations", "Deceleration of both ends", caption).live().picture(&panels)
@@ -44,7 +42,7 @@ pub(super) fn accelerations(analysis: &Analysis) -> Picture {
 
 /// What both contacts show, each in a panel of its own.
 pub(super) fn impacts(analysis: &Analysis) -> Picture {
-    let (events, clock) = (&analysis.result.events, EventClock::of(analysis));
+    let events = &analysis.result.events;
     let impact = |title: &str, from: Option<f64>, to: Option<f64>| {
         let lines = from.map_or_else(Vec::new, |from| {
             let to = to.unwrap_or(from + LONGEST_S) + BESIDE_S;
@@ -55,7 +53,7 @@ pub(super) fn impacts(analysis: &Analysis) -> Picture {
             let of = |(i, curve): (usize, &ChannelCurve)| {
                 let part = shown(curve);
                 let line = |values: &[f64], what: &str| {
-                    let points = clock.points(
+                    let points = points(
                         &curve.time_s[part.clone()],
                         &values[part.clone()],
                         1.0 / STANDARD_GRAVITY_M_S2,
@@ -67,7 +65,7 @@ pub(super) fn impacts(analysis: &Analysis) -> Picture {
             };
             analysis.curves.channels.iter().enumerate().flat_map(of).collect()
         });
-        clock.panel(analysis, title, "deceleration, g", lines)
+        panel(analysis, title, "deceleration, g", lines)
     };
     let panels = [
         impact("First impact", events.first_contact_s(), events.separation_s()),
@@ -85,29 +83,28 @@ const LONGEST_S: f64 = 0.02;
 
 /// The velocity of both ends, from the sensors and as the rigid body moves.
 pub(super) fn velocities(analysis: &Analysis) -> Picture {
-    let clock = EventClock::of(analysis);
     let mut sensors = Vec::new();
     for end in [End::First, End::Second] {
         for EndCurve { curve, colour, axis } in curves_of(analysis, end) {
             let (dash, note) = axis_look(axis);
             let label = format!("{} ({} end{note})", curve.channel, json_word(end));
-            let points = clock.points(&curve.time_s, &curve.velocity_m_s, 1.0);
+            let points = points(&curve.time_s, &curve.velocity_m_s, 1.0);
             sensors.push(Curve::new(colour, points).named(label).broken(dash));
         }
     }
-    let mut panels = vec![clock.panel(analysis, "Along the sensors", "velocity, m/s", sensors)];
+    let mut panels = vec![panel(analysis, "Along the sensors", "velocity, m/s", sensors)];
     if let Some(motion) = &analysis.curves.motion {
         let line = |label: &str, colour: usize, dash, values: &[f64]| {
-            Curve::new(COLOURS[colour], clock.points(&motion.time_s, values, 1.0)).named(label).broken(dash)
+            Curve::new(COLOURS[colour], points(&motion.time_s, values, 1.0)).named(label).broken(dash)
         };
         let lines = vec![
             line("first end, vertical", 0, Dash::Solid, &motion.first_end_vertical_m_s),
             line("second end, vertical", 1, Dash::Solid, &motion.second_end_vertical_m_s),
             line("second end, horizontal", 1, Dash::Dashed, &motion.second_end_horizontal_m_s),
         ];
-        panels.push(clock.panel(analysis, "Of the rigid body", "velocity, m/s", lines));
+        panels.push(panel(analysis, "Of the rigid body", "velocity, m/s", lines));
     }
-    let caption = "Velocity over time. Above: each sensor's unfiltered signal integrated along its axis, gravity left out between \
+    let caption = "As Fig. 13 of the paper: velocity over time. Above: each sensor's unfiltered signal integrated along its axis, gravity left out between \
                    the contacts. Below: the ends of the rigid body that all channels share, up positive."
         .to_owned();
     Plate::new("velocities", "Velocity of both ends", caption).live().picture(&panels)
@@ -115,19 +112,18 @@ pub(super) fn velocities(analysis: &Analysis) -> Picture {
 
 /// Heights of both ends and the inclination.
 pub(super) fn motion(analysis: &Analysis) -> Picture {
-    let clock = EventClock::of(analysis);
     let mut panels = Vec::new();
     if let Some(motion) = &analysis.curves.motion {
         let line = |colour: usize, values: &[f64], factor: f64| {
-            Curve::new(COLOURS[colour], clock.points(&motion.time_s, values, factor))
+            Curve::new(COLOURS[colour], points(&motion.time_s, values, factor))
         };
         let heights = vec![
             line(0, &motion.first_end_height_m, 1.0).named("first end"),
             line(1, &motion.second_end_height_m, 1.0).named("second end"),
         ];
-        panels.push(clock.panel(analysis, "Height above the target", "height, m", heights));
+        panels.push(panel(analysis, "Height above the target", "height, m", heights));
         let angle = vec![line(2, &motion.angle_rad, 180.0 / std::f64::consts::PI)];
-        panels.push(clock.panel(analysis, "Inclination of the axis", "angle, °", angle));
+        panels.push(panel(analysis, "Inclination of the axis", "angle, °", angle));
     }
     let caption = "The rigid body's motion from just before first contact to the slap-down: height of the corner of each end that \
                    touches the target, and inclination of the axis above the horizontal."
@@ -167,46 +163,33 @@ pub(super) fn spectra(analysis: &Analysis) -> Picture {
     Plate::new("spectra", "Spectra", caption).picture(&[panel])
 }
 
-/// The time axis: from first contact where it is known.
-pub(super) struct EventClock {
-    zero_s: f64,
-    label: &'static str,
+/// Values over the time that results and files count, from the recording's first sample, in ms.
+pub(super) fn points(time_s: &[f64], values: &[f64], factor: f64) -> Vec<(f64, f64)> {
+    time_s.iter().zip(values).map(|(t, v)| (t * 1e3, v * factor)).collect()
 }
 
-impl EventClock {
-    pub(super) fn of(analysis: &Analysis) -> Self {
-        match analysis.result.events.first_contact_s().filter(|t| t.is_finite()) {
-            Some(zero_s) => Self { zero_s, label: TIME_LABEL },
-            None => Self { zero_s: 0.0, label: RECORD_TIME_LABEL },
-        }
-    }
-
-    pub(super) fn points(&self, time_s: &[f64], values: &[f64], factor: f64) -> Vec<(f64, f64)> {
-        time_s.iter().zip(values).map(|(t, v)| ((t - self.zero_s) * 1e3, v * factor)).collect()
-    }
-
-    pub(super) fn panel(&self, analysis: &Analysis, title: &str, y_label: &str, lines: Vec<Curve>) -> Panel {
-        let marks = named_events(&analysis.result.events)
-            .into_iter()
-            .filter_map(|(label, at)| {
-                let at = (at.filter(|t| t.is_finite())? - self.zero_s) * 1e3;
-                // An event a hair beyond the curve, as the slap-down that ends the motion, is marked at its end.
-                let (from, to) = ends(&lines)?;
-                let slack = 0.01 * (to - from);
-                let shown = (from - slack..=to + slack).contains(&at);
-                let at = at.clamp(from, to);
-                shown.then(|| Mark { at, label: label.into() })
-            })
-            .collect();
-        Panel {
-            title: title.to_owned(),
-            x: PanelAxis::new(self.label),
-            y: PanelAxis::new(y_label),
-            height: 350,
-            lines,
-            marks,
-            ..Panel::default()
-        }
+/// Lines over that time, with the events that they reach.
+pub(super) fn panel(analysis: &Analysis, title: &str, y_label: &str, lines: Vec<Curve>) -> Panel {
+    let marks = named_events(&analysis.result.events)
+        .into_iter()
+        .filter_map(|(label, at)| {
+            let at = at.filter(|t| t.is_finite())? * 1e3;
+            // An event a hair beyond the curve, as the slap-down that ends the motion, is marked at its end.
+            let (from, to) = ends(&lines)?;
+            let slack = 0.01 * (to - from);
+            let shown = (from - slack..=to + slack).contains(&at);
+            let at = at.clamp(from, to);
+            shown.then(|| Mark { at, label: label.into() })
+        })
+        .collect();
+    Panel {
+        title: title.to_owned(),
+        x: PanelAxis::new(TIME_LABEL),
+        y: PanelAxis::new(y_label),
+        height: 350,
+        lines,
+        marks,
+        ..Panel::default()
     }
 }
 

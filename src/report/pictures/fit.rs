@@ -1,5 +1,6 @@
 //! The flight fit that decides to its picture: what was measured, plateaus with their modes, and what they leave.
 
+use super::curves::{panel, points};
 use super::draw::{Picture, Plate};
 use super::panel::{Curve, Dash};
 use crate::data::{Analysis, Axis, ChannelCurve, FlightFit};
@@ -9,7 +10,6 @@ const STEPS: u32 = 400;
 
 /// Velocities around the window of the fit, the fit on them, and the difference.
 pub(super) fn picture(analysis: &Analysis) -> Picture {
-    let clock = super::curves::EventClock::of(analysis);
     let mut lines = Vec::new();
     let mut left = Vec::new();
     for (i, curve) in analysis.curves.channels.iter().enumerate() {
@@ -19,7 +19,7 @@ pub(super) fn picture(analysis: &Analysis) -> Picture {
         let colour = super::panel::COLOURS[i % super::panel::COLOURS.len()];
         let measured: Vec<f64> = fit.time_s.iter().map(|t| at(curve, *t)).collect();
         let named = |what: &str| format!("{} {what}", curve.channel);
-        let of = |values: &[f64]| Curve::new(colour, clock.points(&fit.time_s, values, 1.0));
+        let of = |values: &[f64]| Curve::new(colour, points(&fit.time_s, values, 1.0));
         lines.push(Curve { opacity: 0.45, stroke: 6, ..of(&measured) }.named(named("measured")));
         lines.push(Curve { stroke: 2, ..of(&fit.ringing) }.named(named("fit")));
         lines.push(Curve { stroke: 2, ..of(&fit.plateau) }.named(named("plateau")).broken(Dash::Dashed));
@@ -27,8 +27,8 @@ pub(super) fn picture(analysis: &Analysis) -> Picture {
         left.push(of(&off).named(&curve.channel[..]));
     }
     let panels = [
-        clock.panel(analysis, "Fit of the flight", "velocity, m/s", lines),
-        clock.panel(analysis, "What the fit leaves", "residual, m/s", left),
+        panel(analysis, "Fit of the flight", "velocity, m/s", lines),
+        panel(analysis, "What the fit leaves", "residual, m/s", left),
     ];
     let caption = "The window of the flight that k and speed rest on. Above: each velocity as measured, the plateau with its modes \
                    fitted to it, and the plateau alone (with its drift). Below: measured minus fitted."

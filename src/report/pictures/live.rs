@@ -1,5 +1,6 @@
 //! Panels to the numbers that a page's own script draws again, to be zoomed.
 
+use super::super::text::printable;
 use super::decimate::runs;
 use super::panel::{Curve, Panel};
 use crate::data::shown::to_digits;
@@ -38,11 +39,13 @@ fn of_line(line: &Curve, from: f64, column: f64) -> Value {
         if let Some((begins, _)) = run.first().filter(|_| i > 0) {
             put(begins - 0.5, Value::Null);
         }
-        run.iter().for_each(|p| put(p.0, json!(to_digits(p.1, 4))));
+        for p in run {
+            put(p.0, json!(to_digits(p.1, 4)));
+        }
     }
-    let pieces = line.dash.pieces();
+    let (pieces, label) = (line.dash.pieces(), line.label.as_deref().map(printable));
     json!({
-        "label": line.label, "color": line.colour.to_string(), "opacity": line.opacity, "dash": pieces,
+        "label": label, "color": line.colour.to_string(), "opacity": line.opacity, "dash": pieces,
         "width": f64::from(line.stroke) / 2.0, "x0": from, "dx": column / PARTS, "x": steps, "y": y
     })
 }

@@ -4,6 +4,7 @@ mod angle_curves;
 mod axes;
 mod comparison;
 mod critical;
+mod crush;
 mod curves;
 mod decimate;
 pub(crate) mod draw;
@@ -14,6 +15,7 @@ mod look;
 mod monte_carlo;
 #[cfg_attr(not(feature = "lab"), allow(dead_code, reason = "the pages of the laboratory use all of it"))]
 pub(crate) mod panel;
+mod positions;
 mod regimes;
 mod sensitivity;
 mod setup;
@@ -26,12 +28,13 @@ pub(super) use study::{draw_study, names as study_names};
 use crate::data::Analysis;
 use draw::Picture;
 
-/// Set-up, accelerations, velocities, motion, spectra and comparison; one that has nothing to show says so.
+/// Set-up, curves of both impacts, velocities, motion, spectra and comparison; one that has nothing to show says so.
 pub(super) fn draw(analysis: &Analysis) -> Vec<Picture> {
     vec![
         setup::picture(&analysis.cask_file),
         curves::accelerations(analysis),
         curves::impacts(analysis),
+        crush::picture(analysis),
         curves::velocities(analysis),
         fit::picture(analysis),
         curves::motion(analysis),

@@ -3,7 +3,7 @@
 use super::draw::Picture;
 use super::panel::{COLOURS, Colour, Curve, INK, WIDTH};
 use super::svg::{Anchor, Svg};
-use crate::data::{Axis, CaskFile, ChannelSpec, End};
+use crate::data::{Axis, CaskFile, ChannelSpec};
 use crate::report::rounding::plain;
 
 /// Room around the cask, and its height at the most, in units of the drawing.
@@ -86,7 +86,7 @@ pub(super) fn picture(file: &CaskFile) -> Picture {
 
 /// One sensor: its place, its positive direction, its name; `before` others stand beside it.
 fn sensor(svg: &mut Svg, place: &OnCask, spec: &ChannelSpec, section_m: f64, before: usize) {
-    let colour = COLOURS[if spec.axis == Axis::Transverse { 0 } else { 1 }];
+    let colour = COLOURS[usize::from(spec.axis != Axis::Transverse)];
     let at = place.of(spec.position_m, section_m / 2.0 + spec.offset_m);
     let direction = match spec.axis {
         Axis::Transverse => (0.0, spec.polarity),
@@ -100,9 +100,8 @@ fn sensor(svg: &mut Svg, place: &OnCask, spec: &ChannelSpec, section_m: f64, bef
     for points in [vec![at, tip], vec![barb(0.6), tip, barb(-0.6)]] {
         svg.line(&Curve::new(colour, points));
     }
-    // Towards the middle of the cask, where there is room.
-    let inward = if spec.end == End::First { 1.0 } else { -1.0 };
+    // Below the sensor, and below the names of those beside it.
     #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
-    let beside = place.beyond(at, (inward, 0.0), 36.0 + 60.0 * before as f64);
-    svg.word(&spec.name, (beside.0, beside.1 + 4.0), Anchor::Middle);
+    let below = 28.0 + 26.0 * before as f64;
+    svg.word(&spec.name, (at.0, at.1 + below), Anchor::Middle);
 }

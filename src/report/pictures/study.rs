@@ -4,7 +4,7 @@ use super::super::rounding::plain;
 use super::super::text::distinct;
 use super::draw::Picture;
 use super::look::MOST_CONTACTS;
-use super::{angle_curves, critical, monte_carlo, regimes, sensitivity, sweep};
+use super::{angle_curves, critical, monte_carlo, positions, regimes, sensitivity, sweep};
 use crate::data::{Contact, Study, StudyRequest};
 use rayon::prelude::*;
 
@@ -30,6 +30,7 @@ fn charts(request: &StudyRequest) -> Vec<StudyChart> {
         name: components_name(contact),
         draw: Box::new(move |study, name| angle_curves::components(study, contact, name)),
     }));
+    charts.push(chart("positions", positions::picture));
     charts.push(chart("energy-ratio", angle_curves::energies));
     charts.push(chart("section", angle_curves::sections));
     charts.push(chart("critical-angles", critical::picture));
@@ -76,6 +77,7 @@ mod tests {
                 "smooth-rough",
                 "components-rough",
                 "components-smooth",
+                "positions",
                 "energy-ratio",
                 "section",
                 "critical-angles",

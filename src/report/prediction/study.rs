@@ -4,6 +4,7 @@ use super::super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, Rep
 use super::super::medium::{Medium, Words};
 use super::super::pictures::study_names;
 use super::super::rounding::{MISSING, fixed, plain};
+use super::super::table::ReportTable;
 use super::super::tested::tested;
 use super::super::words::{
     bands_words, case_words, contact_words, criterion_value, degrees, nearest, range_words, variable_words,
@@ -69,6 +70,7 @@ pub(super) fn document(study: &Study) -> ReportDocument {
             ladders(study),
             sensitivities(study),
             Chapter::new("Regimes").with(ChapterPart::picture("regimes", "", "")),
+            of_the_paper(),
             Chapter::new("Limits").with(PartContent::List(LIMITS.to_vec())),
             Chapter::new("All predictions").with_all(at_end),
             provenance(study),
@@ -79,7 +81,7 @@ pub(super) fn document(study: &Study) -> ReportDocument {
 /// The pictures over the angle, in the order of their files.
 fn over_the_angle(request: &StudyRequest) -> Chapter {
     let is_wanted = |name: &String| {
-        ["smooth-rough", "speeds", "energy-ratio", "section"].contains(&name.as_str())
+        ["smooth-rough", "speeds", "positions", "energy-ratio", "section"].contains(&name.as_str())
             || name.starts_with("components-")
     };
     let names = study_names(request).into_iter().filter(is_wanted);
@@ -163,6 +165,35 @@ fn sweep_words(sweep: &Sweep) -> String {
         (Some(from), Some(to)) => format!("{}, {} values", range_words((*from, *to)), sweep.values.len()),
         _ => MISSING.to_owned(),
     }
+}
+
+/// Figures and tables of the paper, the file here that shows the same, and what it holds.
+const OF_THE_PAPER: [[&str; 3]; 9] = [
+    ["Figs. 2, 3", "positions.svg", "the body from first contact to slap-down"],
+    [
+        "Fig. 4",
+        "components-smooth.svg",
+        "components and magnitude of the slap-down velocity, without friction",
+    ],
+    ["Fig. 5", "components-rough.svg", "the same where the first end does not slide"],
+    ["Fig. 7", "smooth-rough.svg", "slap-down speeds of both"],
+    ["Fig. 8", "energy-ratio.svg", "kinetic energy before the slap-down over that before the first impact"],
+    ["Fig. 9", "section.svg", "slap-down speed for sections of the body"],
+    [
+        "Tables 1, 2",
+        "prediction.csv",
+        "velocities after the first impact and at the slap-down, k = 0 by the closed form too",
+    ],
+    ["Figs. 12, 13", "accelerations.svg, velocities.svg", "what a drop test measured: dropcheck analyze"],
+    ["Table 3", "comparison.svg", "measured beside predicted: dropcheck analyze"],
+];
+
+fn of_the_paper() -> Chapter {
+    let table = ReportTable::of(&OF_THE_PAPER)
+        .head("[P]", |row| row[0])
+        .code("File", |row| row[1])
+        .text("Shows", |row| row[2]);
+    Chapter::new("Figures and tables of the paper").only(Medium::Page).with(table)
 }
 
 /// Which file, which version.

@@ -1,0 +1,67 @@
+//! The words of another program to what a command says of them, which it hands back in place of writing it.
+
+use super::{Command, CommandLine, analyze, predict, record};
+use clap::Parser;
+use dropcheck::data::{Analysis, HeldSamples};
+use dropcheck::{ingest, report};
+use std::ffi::OsString;
+use std::path::Path;
+#[cfg(feature = "lab")]
+use std::path::PathBuf;
+
+pub use super::analyze::write;
+
+fn command(words: &[OsString]) -> miette::Result<Command> {
+    let named = std::iter::once("dropcheck".into()).chain(words.iter().cloned());
+    let line = CommandLine::try_parse_from(named);
+    line.map(|line| line.command).map_err(|wrong| {
+        // clap begins with its own "error: ", and tells a person at a terminal where to read on.
+        let text = wrong.to_string();
+        let text = text.strip_prefix("error: ").unwrap_or(&text);
+        miette::miette!("{}", text.split("\n\nFor more information").next().unwrap_or_default())
+    })
+}
+
+fn not(what: &str) -> miette::Report {
+    miette::miette!("the words are not those of `{what}`")
+}
+
+/// What `analyze` says to these words, of `held` in place of a file where there are samples: of those no command line makes the same.
+///
+/// # Errors
+/// What the command complains of.
+pub fn analysis(words: &[OsString], held: Option<&[HeldSamples]>) -> miette::Result<Analysis> {
+    let Command::Analyze(arguments) = command(words)? else { return Err(not("analyze")) };
+    let mut analysis = analyze::analysis(&arguments, held)?;
+    let words = words.iter().map(|word| word.to_string_lossy().into_owned());
+    record::stamp(&mut analysis.result, words.filter(|_| held.is_none()).collect())?;
+    Ok(analysis)
+}
+
+/// The JSON of `predict`.
+///
+/// # Errors
+/// What the command complains of.
+pub fn prediction(words: &[OsString]) -> miette::Result<Vec<u8>> {
+    let Command::Predict(arguments) = command(words)? else { return Err(not("predict")) };
+    let (file, request) = predict::asked(&arguments)?;
+    Ok(report::study_json(&dropcheck::predict::study(&file, &request))?)
+}
+
+/// The JSON of `inspect`.
+///
+/// # Errors
+/// What the command complains of.
+pub fn listing(recording: &Path) -> miette::Result<Vec<u8>> {
+    Ok(report::listing_json(&ingest::list(recording, &|_| ())?)?)
+}
+
+/// Writes what `synth` makes of these words: recording, cask file, truth.
+///
+/// # Errors
+/// What the command complains of.
+#[cfg(feature = "lab")]
+pub fn synthetic(words: &[OsString]) -> miette::Result<[PathBuf; 3]> {
+    let Command::Synth(arguments) = command(words)? else { return Err(not("synth")) };
+    Ok(super::lab::synth::written(&arguments)?.0)
+}

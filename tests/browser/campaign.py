@@ -1,0 +1,59 @@
+"""Open the page of a campaign in a real browser: sort its table, filter it, compare two of its rows.
+
+    python3 tests/browser/campaign.py campaign.html
+
+Needs Chromium with its driver, and selenium from PyPI. Prints one line a check; the first that fails ends it with status 1.
+"""
+
+import sys
+import time
+from pathlib import Path
+
+from page import browser, held
+from selenium.webdriver.common.by import By
+
+
+def main(page):
+    driver = browser()
+    driver.get(page.resolve().as_uri())
+    time.sleep(0.3)
+    held("no error on the console", not driver.get_log("browser"))
+    held("no request", driver.execute_script("return performance.getEntriesByType('resource').length") == 0)
+    table = driver.find_element(By.CSS_SELECTOR, "table.sortable")
+    heads = [head.text for head in table.find_elements(By.CSS_SELECTOR, "thead th")]
+    column = next(i for i, head in enumerate(heads) if head.startswith("speed"))
+
+    def cells():
+        rows = table.find_elements(By.CSS_SELECTOR, "tbody tr")
+        return [row.find_elements(By.CSS_SELECTOR, "th, td")[column].text for row in rows if row.is_displayed()]
+
+    def numbers():
+        return [float(text.split(" ")[0]) for text in cells() if text != "–"]
+
+    button = table.find_elements(By.CSS_SELECTOR, "thead button")[column]
+    button.click()
+    up = numbers()
+    held("a head sorts its column up", up == sorted(up) and ("–" not in cells() or cells()[-1] == "–"), up[:3])
+    button.click()
+    held("and down", numbers() == sorted(up, reverse=True))
+    box = driver.find_element(By.CSS_SELECTOR, ".filter input")
+    box.send_keys("sound")
+    held("words filter rows", 0 < len(cells()) <= len(up), len(cells()))
+    picks = [p for p in table.find_elements(By.CSS_SELECTOR, ".pick input") if p.is_displayed()]
+    picks[0].click()
+    picks[1].click()
+    compared = driver.find_element(By.CSS_SELECTOR, "div + table caption, div > table caption")
+    held("two marked rows are compared", "E_n" in compared.text, compared.text[:40])
+    rows = driver.find_elements(By.CSS_SELECTOR, "div > table tbody tr")
+    held("quantity by quantity", any(row.text.startswith("slap down speed") for row in rows), len(rows))
+    for size in (375, 768):
+        driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                               {"width": size, "height": 800, "deviceScaleFactor": 1, "mobile": True})
+        time.sleep(0.3)
+        wide = driver.execute_script("return document.documentElement.scrollWidth")
+        held(f"nothing wider than {size} px", wide <= size, wide)
+    driver.quit()
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
