@@ -349,7 +349,7 @@ fn sixty_recordings_of_three_casks_give_back_what_they_were_made_with() {
         assert!((0.7 * scatter..2.0 * scatter).contains(&number("scatter")), "{pool}");
     }
     let repeats =
-        pools.iter().filter(|pool| pool["quantity"] == "k").flat_map(|pool| pool["repeats"].as_array());
+        pools.iter().filter(|pool| pool["quantity"] == "k").filter_map(|pool| pool["repeats"].as_array());
     let size = |repeat: &&Value| repeat["e_n"].as_f64().unwrap_or_default().abs();
     let farthest = repeats.flatten().max_by(|a, b| size(a).total_cmp(&size(b))).expect("repeats");
     assert!(farthest["id"] == truth["outlier"] && farthest["falls_out"] == true, "{farthest}");
