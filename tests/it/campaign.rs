@@ -175,7 +175,7 @@ fn merge(folder: &Path, names: &[&str]) -> crate::run::Answer {
 }
 
 /// The campaign's two files.
-fn both(folder: PathBuf) -> [Vec<u8>; 2] {
+fn both(folder: &Path) -> [Vec<u8>; 2] {
     ["campaign.csv", "campaign.md"].map(|name| fs::read(folder.join(name)).expect(name))
 }
 
@@ -196,14 +196,14 @@ fn shards_merged_are_one_run_and_a_shard_that_is_none_is_named() {
     // In any order.
     let merged = merge(folder, &["2.jsonl", "0.jsonl", "1.jsonl"]);
     assert_eq!(merged.status, 0, "{}", merged.stderr);
-    assert!(both(folder.join("merged")) == both(folder.join("whole")));
+    assert!(both(&folder.join("merged")) == both(&folder.join("whole")));
     let text = fs::read_to_string(folder.join("1.jsonl")).expect("a shard");
     assert_eq!(text.lines().count(), 2);
     let other = |name: &str, text: &str| fs::write(folder.join(name), text).expect("a temporary file");
     other("cut.jsonl", &text[..text.len() - 20]);
     other("short.jsonl", &text[..=text.find('\n').expect("a line")]);
     other("long.jsonl", &format!("{text}{}\n", text.lines().next().expect("a line")));
-    other("swapped.jsonl", &text.lines().rev().map(|line| format!("{line}\n")).collect::<String>());
+    other("swapped.jsonl", &(text.lines().rev().collect::<Vec<_>>().join("\n") + "\n"));
     other("foreign.jsonl", &text.replace("\"seed\":9", "\"seed\":8"));
     other("version.jsonl", &text.replace("\"version\":\"", "\"version\":\"9"));
     other("empty.jsonl", "");
@@ -223,7 +223,7 @@ fn shards_merged_are_one_run_and_a_shard_that_is_none_is_named() {
         let words = answer.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
         assert_eq!(answer.status, 2, "{file:?}");
         assert!(words.contains(wanted), "{file:?}: {words}");
-        assert!(both(folder.join("merged")) == both(folder.join("whole")), "what was there is unchanged");
+        assert!(both(&folder.join("merged")) == both(&folder.join("whole")), "what was there is unchanged");
     }
 }
 
@@ -239,7 +239,7 @@ fn a_campaign_that_was_stopped_goes_on() {
         let answer = validate(folder, &["--out", "@on", "--jsonl", "@on.jsonl", "--resume"]);
         assert_eq!(answer.status, 0, "{}", answer.stderr);
         assert_eq!(fs::read_to_string(folder.join("on.jsonl")).expect("lines"), text);
-        assert!(both(folder.join("on")) == both(folder.join("whole")));
+        assert!(both(&folder.join("on")) == both(&folder.join("whole")));
     }
     let answer = validate(folder, &["--jsonl", "@on.jsonl", "--resume", "--exact"]);
     assert_eq!((answer.status, answer.stderr.contains("another campaign")), (2, true), "{}", answer.stderr);
