@@ -8,7 +8,7 @@ use dropcheck::lab::data::{
 };
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Cheap kinds: they make no longer records.
 const KINDS: [&str; 3] = ["gap_flight", "polarity_first", "stated_angle"];

@@ -25,11 +25,7 @@ pub fn write(out: &Path, batch: &Batch, lines: &LineFiles, inputs: &[&Path]) -> 
     let files = CampaignFiles::new(batch, |row, ks, angles_deg| {
         cask_file(row).map_or_else(Vec::new, |cask_file| curves(&cask_file, ks, angles_deg))
     });
-    folder.write(&files.page())?;
-    replace_by(&out.join(SUMMARY[1]), |put| {
-        put(&files.csv_head()?)?;
-        lines.each(|line| put(&files.csv_row(&value(line))?))
-    })?;
+    // First the file by which the folder is known for a campaign's: a run that is stopped here can go on.
     replace_by(&out.join(SUMMARY[0]), |put| {
         put(&files.json_head()?)?;
         let mut between = "";
@@ -39,7 +35,12 @@ pub fn write(out: &Path, batch: &Batch, lines: &LineFiles, inputs: &[&Path]) -> 
             put(&files.json_row(&value(line))?)
         })?;
         put(CampaignFiles::JSON_END.as_bytes())
-    })
+    })?;
+    replace_by(&out.join(SUMMARY[1]), |put| {
+        put(&files.csv_head()?)?;
+        lines.each(|line| put(&files.csv_row(&value(line))?))
+    })?;
+    Ok(folder.write(&files.page())?)
 }
 
 /// A line that was read before.

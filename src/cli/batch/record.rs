@@ -8,6 +8,11 @@ use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// How often, and after how long, a record that another run holds is tried again.
+const TRIES: u32 = 20;
+const AGAIN: Duration = Duration::from_millis(100);
 
 /// Where a line is: which file, from which byte, how many.
 #[derive(Debug, Clone, Copy)]
@@ -106,7 +111,13 @@ impl LineRecord {
         let words = || format!("{} cannot be written", path.display());
         let file = OpenOptions::new().read(true).append(true).create(true).open(path);
         let file = file.into_diagnostic().wrap_err_with(words)?;
-        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+        // What a killed run had begun to start may hold it for a moment longer.
+        let is_held = || matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+        let waits = || {
+            std::thread::sleep(AGAIN);
+            is_held()
+        };
+        if is_held() && (0..TRIES).all(|_| waits()) {
             return Err(miette::miette!(
                 help = "wait for it, or end it",
                 "another run is writing {}",
