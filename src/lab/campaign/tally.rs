@@ -1,4 +1,4 @@
-//! Rows, one after the other, to what the tables say of them: memory stays the same, however many there are.
+//! Rows, one after the other, to what the tables say of them.
 
 use super::rungs::RungTally;
 use super::statistics::{SceneGroup, SceneOutcome, outcome};
