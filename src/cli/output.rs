@@ -107,6 +107,12 @@ impl Folder {
         }
     }
 
+    /// Makes the folder, and those it lies in.
+    pub fn make(&self) -> Result<(), CannotWrite> {
+        let failed = |source: io::Error| CannotWrite::Failed { path: shown(&self.path), source: bare(&source) };
+        fs::create_dir_all(&self.path).map_err(failed)
+    }
+
     /// The path of one of its files, as a person reads it.
     pub fn file(&self, name: &str) -> String {
         shown(&self.path.join(name))

@@ -25,6 +25,7 @@ pub fn write(out: &Path, batch: &Batch, lines: &LineFiles, inputs: &[&Path]) -> 
     let files = CampaignFiles::new(batch, |row, ks, angles_deg| {
         cask_file(row).map_or_else(Vec::new, |cask_file| curves(&cask_file, ks, angles_deg))
     });
+    folder.make()?;
     // First the file by which the folder is known for a campaign's: a run that is stopped here can go on.
     replace_by(&out.join(SUMMARY[0]), |put| {
         put(&files.json_head()?)?;
