@@ -3,7 +3,7 @@
 use super::second::SecondImpact;
 use super::settle;
 use crate::data::{
-    BENDING_WAVE_M_S, CaskFile, ChannelPeak, DropFinding, DropResult, End, Estimate, Events, Finding,
+    Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, DropFinding, DropResult, End, Estimate, Events, Finding,
     ForceOverCrush, ImpactTable, Motion, RigidBodyDeceleration, Signal,
 };
 use crate::fit::{COVERAGE, Inputs, RungTaken};
@@ -88,8 +88,9 @@ pub(super) fn of_result(
     let told = |i: usize| measured.and_then(|m| m.tables[i].clone());
     let stretches_s = stretches_s(&result.events, measured.and_then(|m| m.left_s), file.cask.length_m);
     let with = |table: Option<ImpactTable>, end: End, start: Option<Estimate>, stretch: Option<[f64; 2]>| {
-        let channels = stretch.map_or_else(Vec::new, |s| channel_peaks(file, recorded, s));
-        ImpactTable { start, channels, ..table.unwrap_or_else(|| ImpactTable::unknown(end)) }
+        let table = table.unwrap_or_else(|| ImpactTable::unknown(end));
+        let channels = stretch.map_or_else(Vec::new, |s| channel_peaks(file, recorded, s, &table));
+        ImpactTable { start, channels, ..table }
     };
     let [of_first, of_second] = stretches_s;
     let table = with(told(0), End::First, first.time, of_first);
@@ -293,17 +294,50 @@ fn force_over_crush(contact: &ContactCourse, mass_kg: f64, cutoff_hz: f64) -> Fo
     }
 }
 
-/// The pulse of each channel between two times, s, through the low-pass of this cask.
-fn channel_peaks(file: &CaskFile, recorded: &[Signal], between_s: [f64; 2]) -> Vec<ChannelPeak> {
+/// The pulse of each channel between two times, s, through the low-pass of this cask; `table` has the rest of that impact.
+fn channel_peaks(
+    file: &CaskFile,
+    recorded: &[Signal],
+    between_s: [f64; 2],
+    table: &ImpactTable,
+) -> Vec<ChannelPeak> {
     let (filter, cutoff_hz) = low_pass(file);
-    let of = |(signal, pulse): (&Signal, Option<motion::ChannelPulse>)| {
-        let own = file.channels.iter().find(|spec| spec.name == signal.name).and_then(|s| s.calibration);
-        let share = own.unwrap_or(file.tolerances.calibration).hypot(file.tolerances.cross_axis);
+    let pulses = motion::pulses(recorded, between_s, cutoff_hz);
+    let spec = |signal: &Signal| file.channels.iter().find(|spec| spec.name == signal.name);
+    let axis = |signal: &Signal| spec(signal).map_or(Axis::Transverse, |spec| spec.axis);
+    let largest_m_s2 = |is_of: &dyn Fn(Axis) -> bool| {
+        let of = recorded.iter().zip(&pulses).filter(|(signal, _)| is_of(axis(signal)));
+        of.filter_map(|(_, pulse)| Some((*pulse)?.raw_m_s2.abs())).fold(0.0, f64::max)
+    };
+    // Along the axis: what is read there, else that of S by the force and the friction, else at most the same times tan φ0 and a friction of 1.
+    let (sin, cos) = file.drop.angle_rad.sin_cos();
+    let by_force = table.force_peak.zip(table.friction).map(|(force, friction)| {
+        force.value / file.cask.mass_kg * (sin + (friction.value.abs() + friction.u95).min(1.0) * cos)
+    });
+    let read = largest_m_s2(&|axis| axis == Axis::Axial);
+    let axial_m_s2 = if read > 0.0 {
+        read
+    } else {
+        by_force.unwrap_or_else(|| largest_m_s2(&|_| true) * (sin + cos) / cos.max(GRAZING_COS))
+    };
+    let of = |(signal, pulse): (&Signal, &Option<motion::ChannelPulse>)| {
+        let calibration = spec(signal).and_then(|s| s.calibration).unwrap_or(file.tolerances.calibration);
+        let aside_m_s2 = match axis(signal) {
+            Axis::Transverse => axial_m_s2,
+            Axis::Axial => largest_m_s2(&|axis| axis == Axis::Transverse),
+        };
+        let crossed_m_s2 = file.tolerances.cross_axis * aside_m_s2;
         let sample_s = 1.0 / signal.sample_rate_hz;
         // A low-pass leaves of white noise what its share of the band is.
         let left = (2.0 * cutoff_hz * sample_s).min(1.0).sqrt();
         let noise = |left: f64| COVERAGE * left * signal.noise_m_s2.hypot(signal.u_offset_m_s2);
-        let peak = |value: f64, left: f64| Estimate::new(value, (share * value).hypot(noise(left)), "m/s^2");
+        let peak = |value: f64, left: f64| {
+            Estimate::new(value, (calibration * value).hypot(crossed_m_s2).hypot(noise(left)), "m/s^2")
+        };
+        let length = |[length_s, by_level]: [f64; 2]| {
+            let level_m_s2 = (0.1 * crossed_m_s2).hypot(noise(left));
+            Estimate::new(length_s, (2.0 * sample_s).hypot(by_level * level_m_s2), "s")
+        };
         ChannelPeak {
             name: signal.name.clone(),
             filter: filter.clone(),
@@ -312,10 +346,10 @@ fn channel_peaks(file: &CaskFile, recorded: &[Signal], between_s: [f64; 2]) -> V
             peak_filtered: pulse.map(|p| peak(p.filtered_m_s2, left)),
             is_above_raw: pulse.is_some_and(|p| p.filtered_m_s2.abs() > p.raw_m_s2.abs()),
             time: pulse.map(|p| Estimate::new(p.time_s, sample_s, "s")),
-            pulse_length: pulse.and_then(|p| p.length_s).map(|s| Estimate::new(s, 2.0 * sample_s, "s")),
+            pulse_length: pulse.and_then(|p| p.length_s).map(length),
         }
     };
-    recorded.iter().zip(motion::pulses(recorded, between_s, cutoff_hz)).map(of).collect()
+    recorded.iter().zip(&pulses).map(of).collect()
 }
 
 /// The stretch of each impact in which its pulses are sought, s: a bending wave takes its time to the other end.
@@ -330,6 +364,9 @@ fn stretches_s(events: &Events, second_left_s: Option<f64>, length_m: f64) -> [O
         stretch(struck_s, second_left_s, f64::INFINITY),
     ]
 }
+
+/// Beyond this inclination nothing is said of the axial force by a transverse one: cos φ0.
+const GRAZING_COS: f64 = 0.1;
 
 /// Where nothing tells when an end leaves, its pulse is sought for so long, s.
 const LONGEST_S: f64 = 0.025;

@@ -109,7 +109,8 @@ impl Folder {
 
     /// Makes the folder, and those it lies in.
     pub fn make(&self) -> Result<(), CannotWrite> {
-        let failed = |source: io::Error| CannotWrite::Failed { path: shown(&self.path), source: bare(&source) };
+        let failed =
+            |source: io::Error| CannotWrite::Failed { path: shown(&self.path), source: bare(&source) };
         fs::create_dir_all(&self.path).map_err(failed)
     }
 

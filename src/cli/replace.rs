@@ -1,5 +1,6 @@
 //! A set of finished files into a folder: all of them or none, whatever interrupts it, and nobody else's touched.
 
+use rayon::prelude::*;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -143,9 +144,9 @@ pub fn sync_folder(folder: &Path) -> io::Result<()> {
 }
 
 fn fill(staging: &Path, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
-    for (name, bytes) in files {
-        write_whole(&staging.join(name), bytes).map_err(at(&folder.join(name)))?;
-    }
+    files.par_iter().try_for_each(|(name, bytes)| {
+        write_whole(&staging.join(name), bytes).map_err(at(&folder.join(name)))
+    })?;
     sync_folder(staging).map_err(at(folder))
 }
 

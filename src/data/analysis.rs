@@ -15,8 +15,8 @@ use super::recording::RecordingFormat;
 use super::test_record::{ObservedBeside, SensorRecord, TestRecord};
 use serde::{Deserialize, Serialize, Serializer};
 
-/// The overall word on a result.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+/// The overall word on a result, in the order of their gravity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// Nothing speaks against it.

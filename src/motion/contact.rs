@@ -155,8 +155,8 @@ pub struct ChannelPulse {
     pub filtered_m_s2: f64,
     /// When that is reached, s.
     pub time_s: f64,
-    /// How long the filtered reading stays above a tenth of it, s.
-    pub length_s: Option<f64>,
+    /// How long the filtered reading stays above a tenth of it, s, and by how much that changes with the level, s/(m/s²).
+    pub length_s: Option<[f64; 2]>,
 }
 
 /// The pulse of each channel between two times, s, and through the low-pass with this −3 dB cut-off, Hz; `None` where samples are clipped or
@@ -182,11 +182,20 @@ fn pulse(wide: &Signal, filtered: &[f64], [from_s, to_s]: [f64; 2]) -> Option<Ch
         (from..to).max_by(|&a, &b| values[a].abs().total_cmp(&values[b].abs())).map(|i| (i, values[i]))
     };
     let (at, filtered_m_s2) = peak(filtered)?;
-    let is_below = |f: &f64| *f * filtered_m_s2.signum() < 0.1 * filtered_m_s2.abs();
-    let began = filtered[..at].iter().rposition(is_below);
-    let ended = filtered[at..].iter().position(is_below);
-    #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
-    let length_s = began.zip(ended).map(|(b, e)| (at + e - b) as f64 / wide.sample_rate_hz);
+    let level_m_s2 = 0.1 * filtered_m_s2.abs();
+    let above = |i: usize| filtered[i] * filtered_m_s2.signum() - level_m_s2;
+    // On a line from a sample below the level to its neighbour above: when, in samples, and how much later a higher level is passed.
+    let passed = |below: usize, beside: usize| {
+        #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
+        let (from, step) = (below as f64, beside as f64 - below as f64);
+        let rise_m_s2 = above(beside) - above(below);
+        [from - step * above(below) / rise_m_s2, step / rise_m_s2]
+    };
+    let began = (0..at).rev().find(|&i| above(i) < 0.0).map(|i| passed(i, i + 1));
+    let ended = (at..filtered.len()).find(|&i| above(i) < 0.0).map(|i| passed(i, i - 1));
+    let length_s = began.zip(ended).map(|(began, ended)| {
+        [(ended[0] - began[0]) / wide.sample_rate_hz, began[1].hypot(ended[1]) / wide.sample_rate_hz]
+    });
     Some(ChannelPulse {
         raw_m_s2: peak(&wide.force_m_s2)?.1,
         filtered_m_s2,

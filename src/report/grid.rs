@@ -84,43 +84,62 @@ pub(super) fn common_time_s(curves: &Curves) -> Vec<f64> {
     (0..rows as usize).map(|i| finest[0] + (i as f64 - before) * step).collect()
 }
 
-/// A curve on a uniform grid, read between its points on a line.
-pub(super) struct Reader<'a> {
+/// The grid of a curve's points.
+pub(super) struct Grid {
     start_s: f64,
     step_s: f64,
-    values: &'a [f64],
+    last: f64,
 }
 
-impl<'a> Reader<'a> {
-    /// A reader of `values` at `time_s`; `None` where there is no grid.
-    pub(super) fn new(time_s: &'a [f64], values: &'a [f64]) -> Option<Self> {
-        Some(Self { start_s: *time_s.first()?, step_s: step_s(time_s)?, values })
+/// A place on a grid: behind which point, and which part of a step.
+#[derive(Clone, Copy)]
+pub(super) struct GridPlace {
+    below: usize,
+    weight: f64,
+}
+
+impl Grid {
+    /// The grid of these times; `None` where they are none.
+    #[allow(clippy::cast_precision_loss, reason = "lengths stay below 2^52")]
+    pub(super) fn new(time_s: &[f64]) -> Option<Self> {
+        Some(Self { start_s: *time_s.first()?, step_s: step_s(time_s)?, last: (time_s.len() - 1) as f64 })
     }
 
-    /// The value at `time_s`; `None` outside the curve or where it is not finite.
+    /// The place of `time_s`; `None` outside the curve.
     #[allow(
         clippy::cast_precision_loss,
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "the place is checked against the length before the cast"
     )]
-    pub(super) fn at(&self, time_s: f64) -> Option<f64> {
+    pub(super) fn place(&self, time_s: f64) -> Option<GridPlace> {
         /// Places that differ from a grid point by less are on it: the rounding of times, in steps.
         const ON_GRID: f64 = 1e-3;
         let place = (time_s - self.start_s) / self.step_s;
-        let last = self.values.len().checked_sub(1)? as f64;
-        if !(place > -ON_GRID && place < last + ON_GRID) {
+        if !(place > -ON_GRID && place < self.last + ON_GRID) {
             return None;
         }
-        let place = place.clamp(0.0, last);
-        let below = place.floor();
-        let weight = place - below;
-        let value = if weight < ON_GRID {
-            *self.values.get(below as usize)?
+        let place = place.clamp(0.0, self.last);
+        let below = place as usize;
+        let weight = place - below as f64;
+        Some(if weight < ON_GRID {
+            GridPlace { below, weight: 0.0 }
         } else if weight > 1.0 - ON_GRID {
-            *self.values.get(below as usize + 1)?
+            GridPlace { below: below + 1, weight: 0.0 }
         } else {
-            self.values.get(below as usize)? * (1.0 - weight) + self.values.get(below as usize + 1)? * weight
+            GridPlace { below, weight }
+        })
+    }
+}
+
+impl GridPlace {
+    /// The value there, between two points on a line; `None` where it is not finite.
+    pub(super) fn of(self, values: &[f64]) -> Option<f64> {
+        let below = *values.get(self.below)?;
+        let value = if self.weight > 0.0 {
+            below * (1.0 - self.weight) + values.get(self.below + 1)? * self.weight
+        } else {
+            below
         };
         value.is_finite().then_some(value)
     }
@@ -160,12 +179,13 @@ mod tests {
     }
 
     #[test]
-    fn a_reader_is_silent_outside_its_curve() {
+    fn a_grid_has_no_place_outside_its_curve() {
         let curve = curve(1.0, 0.1, 11);
-        let reader = Reader::new(&curve.time_s, &curve.velocity_m_s).unwrap();
-        assert_eq!(reader.at(0.99), None);
-        assert_eq!(reader.at(2.01), None);
+        let grid = Grid::new(&curve.time_s).unwrap();
+        let at = |time_s| grid.place(time_s)?.of(&curve.velocity_m_s);
+        assert_eq!(at(0.99), None);
+        assert_eq!(at(2.01), None);
         // A line is read exactly but for round-off.
-        assert!((reader.at(1.234).unwrap() - 2.468).abs() < 1e-12);
+        assert!((at(1.234).unwrap() - 2.468).abs() < 1e-12);
     }
 }

@@ -120,9 +120,9 @@ pub const FILE_NAMES: [&str; 15] = [
 /// [`ReportError`] where one of them cannot be made; then none is returned.
 pub fn files(analysis: &Analysis) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     // curves.mcap takes as long as all the others together.
-    let (curves_mcap, (curves_h5, curves_csv, pictures)) = rayon::join(
-        || curves_mcap::bytes(analysis),
-        || (curves_h5::bytes(analysis), curves_csv::bytes(&analysis.curves), pictures::draw(analysis)),
+    let ((curves_mcap, curves_csv), (curves_h5, pictures)) = rayon::join(
+        || rayon::join(|| curves_mcap::bytes(analysis), || curves_csv::bytes(&analysis.curves)),
+        || rayon::join(|| curves_h5::bytes(analysis), || pictures::draw(analysis)),
     );
     let page = as_html::page(&analysis::document(analysis), &pictures).into_bytes();
     let (result, table) = (json::result(&analysis.result)?, latex::table(&analysis.result));

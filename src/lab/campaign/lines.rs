@@ -68,18 +68,11 @@ impl ScenePlace {
     }
 }
 
-#[derive(Serialize)]
-struct Written<'a> {
-    campaign: &'a ScenePlace,
+#[derive(Serialize, Deserialize)]
+struct Line<P, R> {
+    campaign: P,
     #[serde(flatten)]
-    row: &'a CampaignRow,
-}
-
-#[derive(Deserialize)]
-struct Read {
-    campaign: ScenePlace,
-    #[serde(flatten)]
-    row: CampaignRow,
+    row: R,
 }
 
 /// The line, with its end.
@@ -87,12 +80,12 @@ struct Read {
 /// # Errors
 /// Where the writer fails.
 pub fn line(campaign: &ScenePlace, row: &CampaignRow) -> serde_json::Result<String> {
-    Ok(serde_json::to_string(&Written { campaign, row })? + "\n")
+    Ok(serde_json::to_string(&Line { campaign, row })? + "\n")
 }
 
 /// What a line says; `None` where it is no whole one.
 #[must_use]
 pub fn read(line: &[u8]) -> Option<(ScenePlace, CampaignRow)> {
-    let Read { campaign, row } = serde_json::from_slice(line.strip_suffix(b"\n")?).ok()?;
+    let Line { campaign, row } = serde_json::from_slice(line.strip_suffix(b"\n")?).ok()?;
     Some((campaign, row))
 }

@@ -1,7 +1,7 @@
 //! Drops of a campaign to tables of which rung of the reconstruction each scene takes, and what every other would change.
 
 use super::score::written;
-use super::statistics::{Magnitudes, Spread};
+use super::statistics::Spread;
 use crate::data::ReconstructionRung;
 use crate::lab::data::{CampaignRow, Stated};
 use crate::report::document::ChapterPart;
@@ -55,18 +55,12 @@ impl RungTally {
         let truth = |name: &str| scored(name).and_then(|scored| scored.truth);
         for said in &row.rungs {
             let beside = self.beside.entry((taken, said.rung)).or_default();
-            let mut add =
-                |spread: fn(&mut RungBeside) -> &mut Spread, pair: Option<(Stated, f64)>, relative| {
-                    if let Some(pair) = pair {
-                        spread(beside).add(pair, relative);
-                    }
-                };
-            add(|b| &mut b.speed, said.speed.zip(truth("speed")), true);
-            add(|b| &mut b.k, said.k.zip(truth("k")), false);
+            beside.speed.add(said.speed.zip(truth("speed")), true);
+            beside.k.add(said.k.zip(truth("k")), false);
             let stated = scored("speed").and_then(|scored| scored.stated);
             let change =
                 stated.zip(said.speed).map(|(stated, said)| (said.value - stated.value) / stated.u95);
-            add(|b| &mut b.changes, change.map(|value| (Stated { value, u95: 0.0 }, 0.0)), false);
+            beside.changes.add(change.map(|value| (Stated { value, u95: 0.0 }, 0.0)), false);
         }
     }
 
@@ -81,16 +75,17 @@ impl RungTally {
             scenes = scenes.number(written(rung), move |place| count(*place, rung).to_string());
         }
         let pairs: Vec<_> = self.beside.iter().filter(|(_, beside)| beside.k.count() > 0).collect();
-        let fixed = |of: &Magnitudes, share, decimals| optional_fixed(Some(of.quantile(share)), decimals);
         let beside = ReportTable::of(&pairs)
             .chosen(|((taken, said), _)| taken == said)
             .text("taken", |((taken, _), _)| written(taken))
             .text("rung", |((_, said), _)| written(said))
             .number("drops", |(_, beside)| beside.k.count().to_string())
-            .number("speed: 95th, %", |(_, beside)| fixed(&beside.speed.errors, 0.95, 2))
-            .number("half-width, %", |(_, beside)| fixed(&beside.speed.half_widths, 0.5, 2))
+            .number("speed: 95th, %", |(_, beside)| beside.speed.error(0.95, 2))
+            .number("half-width, %", |(_, beside)| {
+                optional_fixed(Some(beside.speed.half_widths.quantile(0.5)), 2)
+            })
             .number("held", |(_, beside)| beside.speed.held())
-            .number("k: 95th", |(_, beside)| fixed(&beside.k.errors, 0.95, 4))
+            .number("k: 95th", |(_, beside)| beside.k.error(0.95, 4))
             .number("held", |(_, beside)| beside.k.held())
             .number("changes the speed by, half-widths: 95th", |((taken, said), beside)| {
                 let change = (taken != said).then(|| beside.changes.errors.quantile(0.95));

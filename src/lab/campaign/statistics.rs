@@ -131,8 +131,9 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    /// Counts one statement beside its truth; `relative`: in percent of the truth.
-    pub(super) fn add(&mut self, (stated, truth): (Stated, f64), relative: bool) {
+    /// Counts one statement beside its truth, where there are both; `relative`: in percent of the truth.
+    pub(super) fn add(&mut self, both: Option<(Stated, f64)>, relative: bool) {
+        let Some((stated, truth)) = both else { return };
         let scale = if relative { 100.0 / truth.abs().max(f64::MIN_POSITIVE) } else { 1.0 };
         let off = (stated.value - truth).abs();
         self.held += usize::from(off <= stated.u95);
@@ -150,30 +151,19 @@ impl Spread {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct SceneGroup {
     /// By verdict, none where the recording was refused, and outcome.
-    counts: BTreeMap<(Option<u8>, SceneOutcome), usize>,
+    counts: BTreeMap<(Option<Verdict>, SceneOutcome), usize>,
     /// In the order of [`QUANTITIES`].
     spreads: Vec<Spread>,
-}
-
-/// A verdict by its place.
-fn rank(verdict: Verdict) -> u8 {
-    match verdict {
-        Verdict::Pass => 0,
-        Verdict::Review => 1,
-        Verdict::Fail => 2,
-    }
 }
 
 impl SceneGroup {
     /// Counts a scene, and of its quantities so many.
     pub(super) fn add(&mut self, row: &CampaignRow, quantities: usize) {
-        *self.counts.entry((row.verdict.map(rank), outcome(row))).or_default() += 1;
+        *self.counts.entry((row.verdict, outcome(row))).or_default() += 1;
         self.spreads.resize(quantities, Spread::default());
         for (spread, (name, _, relative, _)) in self.spreads.iter_mut().zip(QUANTITIES) {
             let scored = row.quantities.get(name);
-            if let Some(pair) = scored.and_then(|scored| scored.stated.zip(scored.truth)) {
-                spread.add(pair, relative);
-            }
+            spread.add(scored.and_then(|scored| scored.stated.zip(scored.truth)), relative);
         }
     }
 
@@ -184,7 +174,7 @@ impl SceneGroup {
 
     /// How many have this verdict; and of these the outcomes.
     pub(super) fn of(&self, verdict: Verdict) -> Self {
-        let own = self.counts.iter().filter(|((own, _), _)| *own == Some(rank(verdict)));
+        let own = self.counts.iter().filter(|((own, _), _)| *own == Some(verdict));
         Self { counts: own.map(|(key, count)| (*key, *count)).collect(), spreads: Vec::new() }
     }
 

@@ -70,7 +70,7 @@ fn share(part: usize, of: usize) -> String {
 
 impl Spread {
     /// The error that this share of the scenes stays below.
-    fn error(&self, share: f64, decimals: usize) -> String {
+    pub(super) fn error(&self, share: f64, decimals: usize) -> String {
         number(self.errors.quantile(share), decimals)
     }
 

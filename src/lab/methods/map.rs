@@ -1,6 +1,6 @@
 //! A damage that grows, on several drops, through the whole program to what becomes of each: inside its interval, warned of, refused or silent.
 
-use crate::data::{Estimate, STANDARD_GRAVITY_M_S2, Verdict};
+use crate::data::{STANDARD_GRAVITY_M_S2, Verdict};
 use crate::ingest::Progress;
 use crate::lab::campaign::{half_widths_between, written};
 use crate::lab::damage::{self, DamageKind};
@@ -33,12 +33,6 @@ fn plans(request: &TrialRequest) -> Vec<DropPlan> {
     plans.into_iter().take(count).collect()
 }
 
-/// Distance from the truth in half-widths; infinitely far where a number is given for what did not happen.
-fn off(stated: Option<Estimate>, truth: Option<f64>) -> Option<f64> {
-    let stated = stated?;
-    Some(truth.map_or(f64::INFINITY, |truth| half_widths_between(stated.into(), truth)))
-}
-
 /// What becomes of a plan's drop, struck at this size.
 fn drop_of(kind: &DamageKind, plan: &DropPlan, size: f64) -> TrialDrop {
     let (drop, recording) = kind.grown(plan, size);
@@ -50,7 +44,9 @@ fn drop_of(kind: &DamageKind, plan: &DropPlan, size: f64) -> TrialDrop {
             is_named: kind.told_by.is_empty(),
         };
     };
-    let off = [off(result.slap_down.speed, truth.speed), off(result.k, truth.k)];
+    // Infinitely far where a number is given for what did not happen.
+    let off = [(result.slap_down.speed, truth.speed), (result.k, truth.k)]
+        .map(|(stated, truth)| Some(half_widths_between(stated?.into(), truth.unwrap_or(f64::INFINITY))));
     let worst = off.iter().flatten().copied().reduce(f64::max);
     let fate = match (off, result.verdict) {
         ([Some(speed), Some(k)], _) if speed.max(k) <= 1.0 => TrialFate::Inside,

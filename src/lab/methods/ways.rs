@@ -6,8 +6,8 @@ use super::prediction;
 use super::timing::quartiles;
 use crate::analysis::{analyze, settle, sticking};
 use crate::data::{
-    AssumedFriction, Axis, CaskFile, End, Estimate, Events, ReconstructionCandidate, ReconstructionRung,
-    Recording,
+    AssumedFriction, Axis, CaskFile, DropResult, End, Estimate, Events, ReconstructionCandidate,
+    ReconstructionRung, Recording,
 };
 use crate::lab::damage;
 use crate::lab::data::{SceneFile, TrialPoint, TrialRequest, Truth};
@@ -25,32 +25,21 @@ use std::process::Command;
 use std::time::Instant;
 
 /// Drops of one kind, and what is wrong with them: a row of the table of damages, and its size.
-struct WayClass {
-    drops: DropClass,
-    struck: Option<(&'static str, f64)>,
-}
+type WayClass = (DropClass, Option<(&'static str, f64)>);
 
 const CLASSES: [WayClass; 7] = [
-    WayClass { drops: DropClass { name: "clean", ..CALM }, struck: None },
-    WayClass { drops: NOISY, struck: None },
-    WayClass { drops: ONE_MODE, struck: None },
-    WayClass { drops: SLOW_MODE, struck: None },
-    WayClass {
-        drops: DropClass {
-            name: "limiter, 12 to 25 ms",
-            make: |plan, _, share| {
-                plan.pulse_s = 0.012 + 0.013 * share;
-                plan.yield_share = Some(0.7);
-            },
-        },
-        struck: None,
-    },
-    WayClass { drops: DropClass { name: "clipped by 10 %", ..ONE_MODE }, struck: Some(("clip_first", 10.0)) },
-    WayClass {
-        drops: DropClass { name: "length off by 1 %", ..ONE_MODE },
-        struck: Some(("stated_length", 1.0)),
-    },
+    (DropClass { name: "clean", ..CALM }, None),
+    (NOISY, None),
+    (ONE_MODE, None),
+    (SLOW_MODE, None),
+    (LIMITER, None),
+    (DropClass { name: "clipped by 10 %", ..ONE_MODE }, Some(("clip_first", 10.0))),
+    (DropClass { name: "length off by 1 %", ..ONE_MODE }, Some(("stated_length", 1.0))),
 ];
+const LIMITER: DropClass = DropClass {
+    name: "limiter, 12 to 25 ms",
+    make: |plan, _, share| (plan.pulse_s, plan.yield_share) = (0.012 + 0.013 * share, Some(0.7)),
+};
 
 /// Samples a second, and the record before first contact, s: what loggers at test sites write.
 const RATE_HZ: f64 = 1e5;
@@ -64,6 +53,10 @@ struct Answer {
 }
 
 impl Answer {
+    fn of(result: &DropResult) -> Self {
+        Self { speed: result.slap_down.speed, k: result.k }
+    }
+
     /// Numbers, in m/s and 1, without an interval.
     fn bare(speed_m_s: Option<f64>, k: Option<f64>) -> Self {
         let bare = |value| Estimate::new(value, f64::NAN, "");
@@ -87,13 +80,7 @@ const TAKEN: &str = "dropcheck, as taken";
 /// Ways of working with a recording that is read.
 fn ways() -> Vec<(&'static str, Working)> {
     let mut ways: Vec<(&'static str, Working)> = vec![
-        (
-            TAKEN,
-            Box::new(|recording, file| {
-                let result = analyze(recording, file).result;
-                Some(Answer { speed: result.slap_down.speed, k: result.k })
-            }),
-        ),
+        (TAKEN, Box::new(|recording, file| Some(Answer::of(&analyze(recording, file).result)))),
         ("filter first, CFC 60", Box::new(|recording, file| filter_first(60.0, recording, file))),
         ("filter first, CFC 180", Box::new(|recording, file| filter_first(180.0, recording, file))),
     ];
@@ -240,25 +227,25 @@ fn read(drop: &FiledDrop) -> Option<(Recording, CaskFile)> {
 }
 
 /// The drops of a class as files in a folder; those in which R does not strike are left out.
-fn filed(class: &WayClass, request: &TrialRequest, folder: &Path) -> Vec<FiledDrop> {
-    let plans = class.drops.plans(request.either(6, 30), request);
+fn filed((class, struck): &WayClass, request: &TrialRequest, folder: &Path) -> Vec<FiledDrop> {
+    let plans = class.plans(request.either(6, 30), request);
     let filed = |(number, plan): (usize, &crate::lab::plan::DropPlan)| {
         let mut plan = plan.clone();
         (plan.rate_hz, plan.before_s) = (RATE_HZ, plan.before_s + BEFORE_S);
         let mut drop = plan.draw();
-        let kind = class.struck.and_then(|(name, size)| Some((damage::named(name)?, size)));
+        let kind = struck.and_then(|(name, size)| Some((damage::named(name)?, size)));
         let recording = kind.map(|(kind, size)| kind.strike(&mut drop, size));
         let recording = recording.unwrap_or_else(|| drop.recorded());
         let truth = drop.motion.truth;
         let scene = SceneFile { scene: drop.scene, stated: drop.stated };
-        let name = format!("{} {number}.csv", class.drops.name.replace(['%', ','], ""));
+        let name = format!("{} {number}.csv", class.name.replace(['%', ','], ""));
         let files = synthetic_files(&scene, &recording, &name, SyntheticFormat::Csv).ok()?;
         let [recording, cask, _] = <[_; 3]>::try_from(files).ok()?.map(|(name, bytes)| {
             let path = folder.join(name);
             std::fs::write(&path, bytes).ok().map(|()| path)
         });
         truth.speed?;
-        Some(FiledDrop { class: class.drops.name, truth, recording: recording?, cask: cask? })
+        Some(FiledDrop { class: class.name, truth, recording: recording?, cask: cask? })
     };
     plans.par_iter().enumerate().filter_map(filed).collect()
 }
@@ -349,5 +336,5 @@ fn scored(of: &WayQuantity, worked: &[Worked], drops: &[FiledDrop]) -> Vec<Trial
             (is_any || way.name == READING).then(|| measured(words, errors, times_ns))
         })
     };
-    with_pooled(CLASSES.iter().map(|class| class.drops.name).flat_map(of_class).collect())
+    with_pooled(CLASSES.iter().map(|(class, _)| class.name).flat_map(of_class).collect())
 }

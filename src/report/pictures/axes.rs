@@ -37,10 +37,10 @@ fn bottom(panel: &Panel) -> f64 {
 /// Rows that the words of the marks take, so that none writes over its neighbour.
 fn mark_rows(panel: &Panel, width: f64) -> Vec<usize> {
     let mut ends: Vec<f64> = Vec::new();
-    let range = panel.x_range();
+    let along = along(&panel.x, &panel.x_range());
     let row = |mark: &Mark| {
         let half = width_of(&mark.label, 7.0) + 8.0;
-        let at = along(&panel.x, &range, mark.at) * (width - LEFT);
+        let at = along(mark.at) * (width - LEFT);
         let row = ends.iter().position(|end| at - half > *end).unwrap_or(ends.len());
         ends.resize(ends.len().max(row + 1), 0.0);
         ends[row] = at + half;
@@ -49,10 +49,10 @@ fn mark_rows(panel: &Panel, width: f64) -> Vec<usize> {
     panel.marks.iter().map(row).collect()
 }
 
-/// How far along its axis a value lies, 0 to 1; not finite where the axis has no place for it.
-fn along(axis: &PanelAxis, range: &Range<f64>, value: f64) -> f64 {
+/// From a value to how far along its axis it lies, 0 to 1; not finite where the axis has no place for it.
+fn along<'a>(axis: &'a PanelAxis, range: &Range<f64>) -> impl Fn(f64) -> f64 + use<'a> {
     let (from, to) = (axis.place(range.start), axis.place(range.end));
-    (axis.place(value) - from) / (to - from)
+    move |value| (axis.place(value) - from) / (to - from)
 }
 
 /// The rectangle between the axes, its corner at (0, 0).
@@ -77,7 +77,7 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
         frame.grid(svg);
         svg.within((frame.width, frame.height), |svg| frame.curves(svg));
         for points in &panel.points {
-            let places = points.at.iter().map(|at| frame.place(*at));
+            let places = points.at.iter().copied().map(frame.place());
             places.filter(|(x, y)| x.is_finite() && y.is_finite()).for_each(|at| point(svg, points, at));
         }
         frame.rows(svg, left);
@@ -98,9 +98,10 @@ pub(super) fn draw(svg: &mut Svg, panel: &Panel, width: f64) {
 }
 
 impl PlotFrame<'_> {
-    fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
-        let up = along(&self.panel.y, &self.y, y);
-        (along(&self.panel.x, &self.x, x) * self.width, (1.0 - up) * self.height)
+    /// From a point to its place in the rectangle.
+    fn place(&self) -> impl Fn((f64, f64)) -> (f64, f64) {
+        let (along_x, along_y) = (along(&self.panel.x, &self.x), along(&self.panel.y, &self.y));
+        move |(x, y)| (along_x(x) * self.width, (1.0 - along_y(y)) * self.height)
     }
 
     /// The lines at the ticks, their numbers, and the axes.
@@ -109,8 +110,9 @@ impl PlotFrame<'_> {
         let line = |opacity, points| Curve { opacity, stroke: 1, ..Curve::new(GREY, points) };
         let x = ticks(&panel.x, &self.x, if width < WIDTH / 2.0 { 8 } else { 14 });
         let y = ticks(&panel.y, &self.y, 8);
-        let across = |value: f64| (along(&panel.x, &self.x, value) * width).round();
-        let up = |value: f64| ((1.0 - along(&panel.y, &self.y, value)) * height).round();
+        let (along_x, along_y) = (along(&panel.x, &self.x), along(&panel.y, &self.y));
+        let across = |value: f64| (along_x(value) * width).round();
+        let up = |value: f64| ((1.0 - along_y(value)) * height).round();
         for (ticks, opacity) in [(&x.fine, 0.10), (&x.bold, 0.28)] {
             for at in ticks.iter().map(|v| across(*v)) {
                 svg.line(&line(opacity, vec![(at, 0.0), (at, height)]));
@@ -137,14 +139,14 @@ impl PlotFrame<'_> {
     fn curves(&self, svg: &mut Svg) {
         for fill in &self.panel.fills {
             for area in &fill.areas {
-                let corners: Vec<(f64, f64)> = area.iter().map(|at| self.place(*at)).collect();
+                let corners: Vec<(f64, f64)> = area.iter().copied().map(self.place()).collect();
                 svg.area(&corners, fill.colour, fill.opacity);
             }
         }
         let (faint, bold): (Vec<&Curve>, Vec<&Curve>) =
             self.panel.lines.iter().partition(|line| line.opacity < 0.5);
         for line in faint.into_iter().chain(bold) {
-            let narrow = line.points.iter().map(|at| self.place(*at)).map(|(x, y)| (x / COLUMN, y));
+            let narrow = line.points.iter().copied().map(self.place()).map(|(x, y)| (x / COLUMN, y));
             for run in runs(narrow) {
                 let points = run.into_iter().map(|(x, y)| (x * COLUMN, y)).collect();
                 svg.line(&Curve { points, label: None, ..*line });
@@ -157,7 +159,7 @@ impl PlotFrame<'_> {
         let AxisScale::Rows(rows) = &self.panel.y.scale else { return };
         let mut row_y = self.y.end - 0.5;
         for row in rows {
-            let (_, y) = self.place((self.x.start, row_y));
+            let (_, y) = self.place()((self.x.start, row_y));
             if row.is_heading {
                 let bold = "font-size=\"24\" font-weight=\"bold\"";
                 svg.words(&row.left, (20.0 - left, y), Anchor::Start, bold);
@@ -174,7 +176,7 @@ impl PlotFrame<'_> {
         if !(self.x.start..=self.x.end).contains(&mark.at) {
             return;
         }
-        let (x, _) = self.place((mark.at, self.y.end));
+        let (x, _) = self.place()((mark.at, self.y.end));
         let top = -MARK_ROW * row as f64;
         let dashed = Curve { opacity: 0.55, stroke: 2, ..Curve::new(INK, vec![(x, top), (x, self.height)]) };
         svg.line(&dashed.broken(Dash::Marked));

@@ -27,20 +27,22 @@ pub(super) use study::{draw_study, names as study_names};
 
 use crate::data::Analysis;
 use draw::Picture;
+use rayon::prelude::*;
 
 /// Set-up, curves of both impacts, velocities, motion, spectra and comparison; one that has nothing to show says so.
 pub(super) fn draw(analysis: &Analysis) -> Vec<Picture> {
-    vec![
-        setup::picture(&analysis.cask_file),
-        curves::accelerations(analysis),
-        curves::impacts(analysis),
-        crush::picture(analysis),
-        curves::velocities(analysis),
-        fit::picture(analysis),
-        curves::motion(analysis),
-        curves::spectra(analysis),
-        comparison::picture(analysis),
-    ]
+    let all: [fn(&Analysis) -> Picture; 9] = [
+        |analysis| setup::picture(&analysis.cask_file),
+        curves::accelerations,
+        curves::impacts,
+        crush::picture,
+        curves::velocities,
+        fit::picture,
+        curves::motion,
+        curves::spectra,
+        comparison::picture,
+    ];
+    all.par_iter().map(|picture| picture(analysis)).collect()
 }
 
 #[cfg(test)]

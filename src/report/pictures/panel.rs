@@ -236,7 +236,17 @@ impl PanelAxis {
 
     /// The value as a place along the axis.
     pub(super) fn place(&self, value: f64) -> f64 {
-        if self.is_logarithmic() { value.log10() } else { value }
+        /// A function of its own, else the compiler takes the logarithm of each value of a linear axis too, and throws it away.
+        #[inline(never)]
+        fn power(value: f64) -> f64 {
+            value.log10()
+        }
+        if self.is_logarithmic() { power(value) } else { value }
+    }
+
+    /// Whether it has a place for the value.
+    fn holds(&self, value: f64) -> bool {
+        value.is_finite() && (value > 0.0 || !self.is_logarithmic())
     }
 
     /// Smallest and largest of what it shows, with some air around it.
@@ -296,6 +306,6 @@ impl Panel {
 
     /// Whether the axes know a place for it.
     pub(super) fn drawable(&self, (x, y): (f64, f64)) -> bool {
-        self.x.place(x).is_finite() && self.y.place(y).is_finite()
+        self.x.holds(x) && self.y.holds(y)
     }
 }
