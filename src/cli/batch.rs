@@ -19,7 +19,7 @@ use super::limits::Bounds;
 use super::output::{Folder, columns, print, print_plain};
 use super::progress::CountedProgress;
 use super::record::stamp;
-use super::shard::part;
+use super::shard::{holds_some, part};
 use super::tuning::keep_freed_memory;
 use clap::Args;
 use dropcheck::data::DropResult;
@@ -83,6 +83,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let (manifest, cask) = (arguments.manifest.as_deref(), arguments.cask.as_deref());
     let mut plan = CampaignPlan::of(&arguments.paths, manifest, cask, &arguments.switched_off.words())?;
     plan.shard = arguments.shard;
+    holds_some(arguments.shard, plan.tests.len())?;
     let inputs: Vec<&Path> = arguments.manifest.iter().chain(&arguments.cask).map(PathBuf::as_path).collect();
     if let Some(out) = &arguments.out {
         Folder::checked(out, &plan::SUMMARY[..3], &inputs)?;
@@ -95,7 +96,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         .jobs
         .map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
     let mut batch = Batch::new(plan.source.clone());
-    let mut progress = CountedProgress::of(own.len());
+    let mut progress = CountedProgress::of(own.len(), record.is_some());
     keep_freed_memory();
     // What is done already is read by one thread beside the others, since the record grows meanwhile.
     let earlier = record.as_ref().map(|record| record.lines().clone()).unwrap_or_default();

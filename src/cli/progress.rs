@@ -37,12 +37,13 @@ pub struct CountedProgress {
 }
 
 impl CountedProgress {
-    /// Of so many steps.
-    pub fn of(count: usize) -> Self {
+    /// Of so many steps; whether a run that is stopped leaves what it has `kept`.
+    pub fn of(count: usize, kept: bool) -> Self {
         let bar = ProgressBar::new(count as u64);
-        if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left") {
+        if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left{msg}") {
             bar.set_style(style);
         }
+        bar.set_message(if kept { "; after Ctrl-C --resume goes on" } else { "" });
         Self { bar, told: Instant::now() }
     }
 

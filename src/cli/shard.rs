@@ -42,6 +42,18 @@ pub fn part(text: &str) -> Result<(usize, usize), String> {
         .ok_or_else(|| "I/N with I from 0 to N - 1, such as 0/3, 1/3 and 2/3".to_owned())
 }
 
+/// Refuses a shard that holds nothing of so many: its file would be empty, and like one that was cut.
+pub fn holds_some((index, count): (usize, usize), all: usize) -> miette::Result<()> {
+    if index < all.max(1) {
+        return Ok(());
+    }
+    let help = format!(
+        "take --shard I/{} at most; what the other shards wrote can be merged without it",
+        all.max(1)
+    );
+    Err(miette::miette!(help = help, "shard {index}/{count} holds none of {all}"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -240,6 +240,7 @@ fn what_cannot_be_meant_is_refused_before_the_work() {
         ("--resume", "--resume does not know what is done"),
         ("--shard 3/3", "from 0 to N - 1"),
         ("--jobs 0", "0"),
+        ("--shard 7/9 --jsonl @s7.jsonl", "take --shard I/7 at most"),
         ("--jsonl @vhlw-rest.toml", "was not written by dropcheck"),
         ("--jsonl @runs.csv", "would overwrite"),
     ] {

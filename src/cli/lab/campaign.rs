@@ -4,7 +4,6 @@ use super::super::Ending;
 use super::super::output::{CannotWrite, Folder, print, print_plain, replace, replace_by};
 use super::super::progress::CountedProgress;
 use super::super::shard;
-use super::super::tuning::keep_freed_memory;
 use super::document::Marks;
 use super::shards::{SceneLines, Shards};
 use clap::Args;
@@ -46,14 +45,14 @@ pub fn run(
 ) -> miette::Result<Ending> {
     let (index, count) = parts.shard;
     let place = ScenePlace::first(request, CampaignShard { index, count });
+    shard::holds_some(parts.shard, place.count)?;
     let document = into.map(|path| MARKS.parts(path).map(|around| (path, around))).transpose()?;
     let to_standard_output = parts.jsonl.as_deref() == Some(Path::new("-"));
     let file = parts.jsonl.as_deref().filter(|_| !to_standard_output);
     let mut file = file.map(|path| SceneLines::open(path, parts.resume)).transpose()?;
-    keep_freed_memory();
     let tables = tabled(request, out, |take| {
         let own = place.count.saturating_sub(index).div_ceil(count);
-        let mut progress = CountedProgress::of(own);
+        let mut progress = CountedProgress::of(own, file.is_some());
         let mut done = 0;
         if let Some(file) = &mut file {
             done = file.take_over(&place, |row| {

@@ -69,7 +69,7 @@ impl ScenePlace {
 }
 
 #[derive(Serialize, Deserialize)]
-struct Line<P, R> {
+struct PlacedRow<P, R> {
     campaign: P,
     #[serde(flatten)]
     row: R,
@@ -80,12 +80,12 @@ struct Line<P, R> {
 /// # Errors
 /// Where the writer fails.
 pub fn line(campaign: &ScenePlace, row: &CampaignRow) -> serde_json::Result<String> {
-    Ok(serde_json::to_string(&Line { campaign, row })? + "\n")
+    Ok(serde_json::to_string(&PlacedRow { campaign, row })? + "\n")
 }
 
 /// What a line says; `None` where it is no whole one.
 #[must_use]
 pub fn read(line: &[u8]) -> Option<(ScenePlace, CampaignRow)> {
-    let Line { campaign, row } = serde_json::from_slice(line.strip_suffix(b"\n")?).ok()?;
+    let PlacedRow { campaign, row } = serde_json::from_slice(line.strip_suffix(b"\n")?).ok()?;
     Some((campaign, row))
 }

@@ -58,6 +58,28 @@ pub(super) fn of(line: &Value) -> Columns {
                 .map(|value| ((RESULT, name.to_owned()), value.clone())),
         );
     }
+    for seen in line["observed"].as_array().into_iter().flatten() {
+        let name = format!("observed_{}", seen["name"].as_str().unwrap_or_default());
+        let of = |end: &str, from: &str| {
+            seen.pointer(from)
+                .filter(|v| v.is_number())
+                .map(|v| ((RESULT, format!("{name}{end}")), v.clone()))
+        };
+        let cells = [of("", "/observed/value"), of("_u95", "/observed/u95"), of("_e_n", "/e_n")];
+        columns.extend(cells.into_iter().flatten());
+    }
+    // The borderlines: rod and body, rough and smooth, k of 0 and 1.
+    for case in line["predictions"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter(|case| is_cell(&case["slap_down_speed_m_s"]))
+    {
+        let words = [&case["model"], &case["contact"]].map(|word| word.as_str().unwrap_or_default());
+        let name =
+            format!("borderline_{}_{}_k{}_m_s", words[0], words[1], case["k"].as_f64().unwrap_or(f64::NAN));
+        columns.insert((RESULT, name), case["slap_down_speed_m_s"].clone());
+    }
     for (table, keys) in objects(&line["settings"]) {
         let channels = keys.as_array().into_iter().flatten();
         let named = channels

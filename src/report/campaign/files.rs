@@ -145,9 +145,12 @@ mod tests {
             ("'=b.mcap".into(), "error".into(), "2".into())
         );
         assert_eq!((cell(0, "hall"), cell(0, "no")), ("'=3".into(), "-3".into()));
-        for name in
-            ["slap_down_flight_time_s", "slap_down_flight_time_u95_s", "first_impact_impact_velocity_m_s"]
-        {
+        for name in [
+            "slap_down_flight_time_s",
+            "slap_down_flight_time_u95_s",
+            "first_impact_impact_velocity_m_s",
+            "borderline_rod_rough_k1_m_s",
+        ] {
             assert!(cell(0, name).parse::<f64>().is_ok(), "{name}");
         }
     }
