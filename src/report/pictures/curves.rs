@@ -170,12 +170,13 @@ pub(super) fn points(time_s: &[f64], values: &[f64], factor: f64) -> Vec<(f64, f
 
 /// Lines over that time, with the events that they reach.
 pub(super) fn panel(analysis: &Analysis, title: &str, y_label: &str, lines: Vec<Curve>) -> Panel {
+    let ends = ends(&lines);
     let marks = named_events(&analysis.result.events)
         .into_iter()
         .filter_map(|(label, at)| {
             let at = at.filter(|t| t.is_finite())? * 1e3;
             // An event a hair beyond the curve, as the slap-down that ends the motion, is marked at its end.
-            let (from, to) = ends(&lines)?;
+            let (from, to) = ends?;
             let slack = 0.01 * (to - from);
             let shown = (from - slack..=to + slack).contains(&at);
             let at = at.clamp(from, to);
@@ -184,7 +185,7 @@ pub(super) fn panel(analysis: &Analysis, title: &str, y_label: &str, lines: Vec<
         .collect();
     Panel {
         title: title.to_owned(),
-        x: PanelAxis::new(TIME_LABEL),
+        x: PanelAxis::new(TIME_LABEL).over(ends),
         y: PanelAxis::new(y_label),
         height: 350,
         lines,
