@@ -54,7 +54,10 @@ function chart(box, panel, key) {
       ctx.moveTo(x, bbox.top);
       ctx.lineTo(x, bbox.top + bbox.height);
       ctx.stroke();
-      ctx.fillText(label, x, bbox.top + (10 + 14 * (i % 2)) * devicePixelRatio);
+      // A word at the edge stays inside.
+      const half = ctx.measureText(label).width / 2;
+      const middle = Math.min(Math.max(x, bbox.left + half), bbox.left + bbox.width - half);
+      ctx.fillText(label, middle, bbox.top + (10 + 14 * (i % 2)) * devicePixelRatio);
     }
     ctx.restore();
   };
