@@ -1,14 +1,25 @@
 //! Uniform samples to the magnitude of their Fourier integral.
 
 use rustfft::{Fft, FftPlanner, num_complex::Complex};
-use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
 
-/// Plans are kept: the sines that one is made of cost more than to use it once.
-static PLANS: LazyLock<Mutex<FftPlanner<f64>>> = LazyLock::new(|| Mutex::new(FftPlanner::new()));
+/// The last plans are kept, each with its length: the sines that one is made of cost more than to use it once.
+static PLANS: Mutex<VecDeque<Arc<dyn Fft<f64>>>> = Mutex::new(VecDeque::new());
+
+/// So many: the channels of a recording have a few lengths, those of a campaign's recordings each its own, and a planner would keep all.
+const MOST_PLANS: usize = 16;
 
 /// The forward transform of `count` values.
 pub(super) fn forward(count: usize) -> Arc<dyn Fft<f64>> {
-    PLANS.lock().unwrap_or_else(PoisonError::into_inner).plan_fft_forward(count)
+    let mut plans = PLANS.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(plan) = plans.iter().find(|plan| plan.len() == count) {
+        return Arc::clone(plan);
+    }
+    plans.truncate(MOST_PLANS - 1);
+    let plan = FftPlanner::new().plan_fft_forward(count);
+    plans.push_front(Arc::clone(&plan));
+    plan
 }
 
 /// Frequencies (Hz) and |∫ x e^{−iωt} dt| up to half the sample rate; padded with zeros to the next power of two.
@@ -33,6 +44,14 @@ pub fn magnitude(samples: &[f64], sample_rate_hz: f64) -> (Vec<f64>, Vec<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn few_plans_are_kept() {
+        for count in 1000..1100 {
+            assert_eq!(forward(count).len(), count);
+        }
+        assert!(PLANS.lock().is_ok_and(|plans| plans.len() <= MOST_PLANS));
+    }
 
     #[test]
     fn the_zero_frequency_is_the_area() {
