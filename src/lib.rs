@@ -30,6 +30,8 @@ pub mod data;
 mod events;
 mod fit;
 #[doc(hidden)]
+pub mod in_order;
+#[doc(hidden)]
 pub mod ingest;
 mod judge;
 #[cfg(feature = "lab")]

@@ -7,7 +7,6 @@ mod paths;
 mod plan;
 mod planned;
 mod record;
-mod work;
 
 pub use manifest::template;
 pub use plan::SHARD_SCHEMA;
@@ -24,7 +23,7 @@ use super::tuning::keep_freed_memory;
 use clap::Args;
 use dropcheck::data::DropResult;
 use dropcheck::report::Batch;
-use dropcheck::{ingest, report};
+use dropcheck::{in_order, ingest, report};
 use plan::CampaignPlan;
 use planned::PlannedTest;
 use record::LineRecord;
@@ -100,7 +99,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     keep_freed_memory();
     // What is done already is read by one thread beside the others, since the record grows meanwhile.
     let earlier = record.as_ref().map(|record| record.lines().clone()).unwrap_or_default();
-    work::each(
+    in_order::each(
         &own,
         jobs,
         |number| {
@@ -118,7 +117,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
             }
             batch.add(&serde_json::from_str(&text).unwrap_or_default());
             progress.step();
-            Ok(())
+            Ok::<(), miette::Report>(())
         },
     )?;
     if let Some(record) = &mut record {

@@ -18,6 +18,7 @@ pub(super) use tables::rungs;
 pub use tally::Tally;
 
 use crate::analysis::measure;
+use crate::in_order;
 use crate::ingest::Progress;
 use crate::lab::chance::Chance;
 use crate::lab::damage::Wish;
@@ -26,15 +27,14 @@ use crate::lab::data::{
     Campaign, CampaignRequest, CampaignRow, CampaignShard, Damage, SceneFile, SceneNumber, SyntheticRecording,
 };
 use crate::numerics::as_f64;
-use rayon::prelude::*;
 use score::RecordedScene;
 use std::convert::Infallible;
 
 /// Words for several kinds: every drop, those that are not damaged, those of sound kinds.
 pub const WORDS: [&str; 3] = ["all", "undamaged", "sound"];
 
-/// Scenes that are worked on before the first of them is handed over, for each thread: at their end some wait for the last.
-const BLOCK: usize = 64;
+/// Scenes that are numbered at a time; at their end some threads wait for the last.
+const BLOCK: usize = 4096;
 
 /// Runs the campaign; `progress` is told the share that is done. The same request gives the same rows.
 #[must_use]
@@ -61,12 +61,12 @@ pub fn each<E>(
 ) -> Result<(), E> {
     let mut own = numbers(request).enumerate().skip(shard.index).step_by(shard.count).skip(done);
     loop {
-        let block: Vec<_> = own.by_ref().take(BLOCK * rayon::current_num_threads()).collect();
+        let block: Vec<_> = own.by_ref().take(BLOCK).collect();
         if block.is_empty() {
             return Ok(());
         }
-        let rows: Vec<_> = block.into_par_iter().map(|(i, number)| (i, row(request, number))).collect();
-        rows.into_iter().try_for_each(|(i, row)| take(i, row))?;
+        let jobs = rayon::current_num_threads();
+        in_order::each(&block, jobs, |(_, number)| row(request, number), |(i, _), row| take(i, row))?;
     }
 }
 

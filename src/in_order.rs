@@ -1,36 +1,37 @@
-//! Numbers of tests to their lines: each on one of so many threads, handed over in order, so many ahead at most.
+//! Pieces of work to what is made of them: each on one of so many threads, handed over in order, so many ahead at most.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError, mpsc};
 
-/// Lines that may be ready before the one that is waited for, for each job: more would be held in memory.
+/// Pieces that may be ready before the one that is waited for, for each job: more would be held in memory.
 const AHEAD: usize = 4;
 
-/// Makes the lines of `numbers` by `make` on `jobs` threads, one core each, and hands them to `take` in the order of `numbers`.
+/// Makes something of each of `pieces` by `make` on `jobs` threads, one core each, and hands it to `take` in their order.
 ///
 /// # Errors
 /// The first of `take`; what is being made then is ended, and no more begun.
-pub fn each<T: Send>(
-    numbers: &[usize],
+pub fn each<P: Copy + Sync, T: Send, E>(
+    pieces: &[P],
     jobs: usize,
-    make: impl Fn(usize) -> T + Sync,
-    mut take: impl FnMut(usize, T) -> miette::Result<()>,
-) -> miette::Result<()> {
+    make: impl Fn(P) -> T + Sync,
+    mut take: impl FnMut(P, T) -> Result<(), E>,
+) -> Result<(), E> {
     let (next, taken, moved) = (AtomicUsize::new(0), Mutex::new(0_usize), Condvar::new());
     let (sender, receiver) = mpsc::channel();
     let work = || {
-        // What an analysis shares among threads stays on this one: recordings are what is shared here.
+        // What a piece shares among threads stays on this one: pieces are what is shared here. A thread that waits for another would begin a
+        // second piece in the middle of the first, and hold both.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
         let sender = sender.clone();
         loop {
             let place = next.fetch_add(1, Ordering::Relaxed);
-            let Some(&number) = numbers.get(place) else { return };
+            let Some(&piece) = pieces.get(place) else { return };
             let lead = taken.lock().unwrap_or_else(PoisonError::into_inner);
             drop(moved.wait_while(lead, |taken| place >= taken.saturating_add(AHEAD * jobs)));
             let made = match &pool {
-                Ok(pool) => pool.install(|| make(number)),
-                Err(_) => make(number),
+                Ok(pool) => pool.install(|| make(piece)),
+                Err(_) => make(piece),
             };
             if sender.send((place, made)).is_err() {
                 return;
@@ -42,11 +43,11 @@ pub fn each<T: Send>(
         moved.notify_all();
     };
     std::thread::scope(|scope| {
-        for _ in 0..jobs.min(numbers.len()) {
+        for _ in 0..jobs.min(pieces.len()) {
             scope.spawn(work);
         }
         let mut ready = BTreeMap::new();
-        for (place, &number) in numbers.iter().enumerate() {
+        for (place, &piece) in pieces.iter().enumerate() {
             let made = loop {
                 if let Some(made) = ready.remove(&place) {
                     break made;
@@ -55,8 +56,8 @@ pub fn each<T: Send>(
                 let Ok((place, made)) = receiver.recv() else { return Ok(()) };
                 ready.insert(place, made);
             };
-            if let Err(fault) = take(number, made) {
-                next.store(numbers.len(), Ordering::Relaxed);
+            if let Err(fault) = take(piece, made) {
+                next.store(pieces.len(), Ordering::Relaxed);
                 end(usize::MAX);
                 return Err(fault);
             }
@@ -90,7 +91,7 @@ mod tests {
                 |number, made| {
                     assert_eq!(number, made);
                     found.push(number);
-                    Ok(())
+                    Ok::<(), miette::Report>(())
                 },
             )
             .unwrap();
