@@ -157,6 +157,19 @@ fn the_tables_have_every_kind_and_count_what_is_missed() {
     assert!(tables.contains("| planar | planar | 2 | – | – | – | 0.0200 | 50.0 % | – |"), "{tables}");
 }
 
+#[test]
+fn a_stretched_cask_is_among_those_of_its_name() {
+    let campaign = run(1, 2, true);
+    let mut tally = Tally::new(campaign.request);
+    for cask in ["ESBB", "ESBB-var", "VHLW-var"] {
+        let mut row = campaign.rows[0].clone();
+        row.facts.cask = cask.to_owned();
+        tally.add(&row);
+    }
+    let tables = campaign::markdown(&tally);
+    assert!(tables.contains("| ESBB | 2 |") && tables.contains("| VHLW | 1 |"), "{tables}");
+}
+
 /// `validate --campaign` of the cheap kinds with these words, in a folder.
 fn validate(folder: &Path, words: &[&str]) -> crate::run::Answer {
     let kinds = format!("undamaged,{}", KINDS.join(","));

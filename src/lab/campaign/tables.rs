@@ -29,14 +29,13 @@ pub(in crate::lab) fn rungs(campaign: &Campaign) -> [ChapterPart; 2] {
 fn document(tally: &Tally) -> ReportDocument {
     let [undamaged, sound, damaged] =
         [GroupKey::Undamaged, GroupKey::Sound, GroupKey::Damaged].map(|key| tally.group(&key));
-    let request = &tally.request;
     let summary = format!(
         "{} undamaged scenes, {} of sound kinds and {} damaged ones, seed {}{}.",
         undamaged.len(),
         sound.len() - undamaged.len(),
         damaged.len(),
-        request.seed,
-        if request.exact { ", what is stated exactly true" } else { "" },
+        tally.request.seed,
+        if tally.request.exact { ", what is stated exactly true" } else { "" },
     );
     let mut chapters = vec![Chapter::new("").with(ChapterPart::text(summary))];
     let mut chapter = |heading: &str, table| chapters.push(Chapter::new(heading).with(table));
@@ -114,15 +113,11 @@ fn intervals(passed: &SceneGroup, all: &SceneGroup) -> ChapterPart {
 
 /// The sound drops of each cask, and those with a small, middle and large number.
 fn classes(tally: &Tally) -> Vec<(String, SceneGroup)> {
-    let casks =
-        BUILDS.map(|build| (build.name.to_owned(), tally.group(&GroupKey::Cask(build.name.to_owned()))));
+    let casks = BUILDS.map(|build| (build.name.to_owned(), tally.group(&GroupKey::Cask(build.name))));
     let numbers = NUMBERS.iter().flat_map(|&(name, unit, [low, high], _)| {
-        let words = [
-            format!("{name} below {low}{unit}"),
-            format!("{name} {low} to {high}{unit}"),
-            format!("{name} above {high}{unit}"),
-        ];
-        words.into_iter().enumerate().map(move |(class, words)| (words, GroupKey::Class(name, class)))
+        let between = [format!("below {low}"), format!("{low} to {high}"), format!("above {high}")];
+        let named = between.map(|between| format!("{name} {between}{unit}"));
+        named.into_iter().enumerate().map(move |(class, named)| (named, GroupKey::Class(name, class)))
     });
     casks.into_iter().chain(numbers.map(|(words, key)| (words, tally.group(&key)))).collect()
 }

@@ -4,6 +4,7 @@ use super::rungs::RungTally;
 use super::statistics::{SceneGroup, SceneOutcome, outcome};
 use crate::data::Verdict;
 use crate::lab::data::{CampaignRequest, CampaignRow};
+use crate::lab::drawn::BUILDS;
 use std::collections::BTreeMap;
 
 /// Scenes that passed and are wrong are listed up to this many.
@@ -23,8 +24,8 @@ pub(super) enum GroupKey {
     Sound,
     /// Of them those of a kind; "undamaged" those of none.
     SoundKind(String),
-    /// Of them those of a cask.
-    Cask(String),
+    /// Of them those of a cask, stretched ones among them.
+    Cask(&'static str),
     /// Of them those whose number of this name is small (0), middle (1) or large (2).
     Class(&'static str, usize),
     /// Drops with something wrong.
@@ -67,7 +68,9 @@ fn groups(row: &CampaignRow) -> Vec<GroupKey> {
         (!number.is_nan()).then_some(GroupKey::Class(name, class))
     });
     let mut groups: Vec<GroupKey> = classes.collect();
-    groups.extend([GroupKey::Sound, GroupKey::SoundKind(kind), GroupKey::Cask(row.facts.cask.clone())]);
+    groups.extend([GroupKey::Sound, GroupKey::SoundKind(kind)]);
+    let cask = BUILDS.iter().map(|build| build.name).find(|name| row.facts.cask.starts_with(name));
+    groups.extend(cask.map(GroupKey::Cask));
     if row.damage.is_none() {
         groups.push(GroupKey::Undamaged);
         groups.extend((row.verdict == Some(Verdict::Pass)).then_some(GroupKey::Passed));
