@@ -113,8 +113,15 @@ fn velocity_steps_m_s(scene: &Scene, contact_s: f64) -> Vec<f64> {
 }
 
 fn contest() -> Contest<TrueFlight, Vec<f64>> {
-    let rivals = ["mean", "line", "1 mode", "2 modes", "3 modes"].into_iter().enumerate().map(|(i, name)| {
-        Method::new(name, move |flight: &TrueFlight| flight.fitted(i == 1, i.saturating_sub(1)))
+    let shapes = [
+        ("mean", false, 0),
+        ("line", true, 0),
+        ("1 mode", false, 1),
+        ("2 modes", false, 2),
+        ("3 modes", false, 3),
+    ];
+    let rivals = shapes.map(|(name, drift, modes)| {
+        Method::new(name, move |flight: &TrueFlight| flight.fitted(drift, modes))
     });
     let mut methods = vec![Method::new("most probable (BIC)", TrueFlight::most_probable)];
     methods.extend(rivals);
