@@ -303,28 +303,27 @@ fn channel_peaks(
 ) -> Vec<ChannelPeak> {
     let (filter, cutoff_hz) = low_pass(file);
     let pulses = motion::pulses(recorded, between_s, cutoff_hz);
-    let spec = |signal: &Signal| file.channels.iter().find(|spec| spec.name == signal.name);
-    let axis = |signal: &Signal| spec(signal).map_or(Axis::Transverse, |spec| spec.axis);
-    let largest_m_s2 = |is_of: &dyn Fn(Axis) -> bool| {
-        let of = recorded.iter().zip(&pulses).filter(|(signal, _)| is_of(axis(signal)));
-        of.filter_map(|(_, pulse)| Some((*pulse)?.raw_m_s2.abs())).fold(0.0, f64::max)
+    let largest_m_s2 = |axis: Axis| {
+        let of_axis = recorded.iter().zip(&pulses).filter(|(signal, _)| signal.axis == axis);
+        of_axis.filter_map(|(_, pulse)| Some((*pulse)?.raw_m_s2.abs())).fold(0.0, f64::max)
     };
+    let [transverse_m_s2, read_m_s2] = [Axis::Transverse, Axis::Axial].map(largest_m_s2);
     // Along the axis: what is read there, else that of S by the force and the friction, else at most the same times tan φ0 and a friction of 1.
     let (sin, cos) = file.drop.angle_rad.sin_cos();
     let by_force = table.force_peak.zip(table.friction).map(|(force, friction)| {
         force.value / file.cask.mass_kg * (sin + (friction.value.abs() + friction.u95).min(1.0) * cos)
     });
-    let read = largest_m_s2(&|axis| axis == Axis::Axial);
-    let axial_m_s2 = if read > 0.0 {
-        read
+    let axial_m_s2 = if read_m_s2 > 0.0 {
+        read_m_s2
     } else {
-        by_force.unwrap_or_else(|| largest_m_s2(&|_| true) * (sin + cos) / cos.max(GRAZING_COS))
+        by_force.unwrap_or(transverse_m_s2 * (sin + cos) / cos.max(GRAZING_COS))
     };
     let of = |(signal, pulse): (&Signal, &Option<motion::ChannelPulse>)| {
-        let calibration = spec(signal).and_then(|s| s.calibration).unwrap_or(file.tolerances.calibration);
-        let aside_m_s2 = match axis(signal) {
+        let own = file.channels.iter().find(|spec| spec.name == signal.name).and_then(|s| s.calibration);
+        let calibration = own.unwrap_or(file.tolerances.calibration);
+        let aside_m_s2 = match signal.axis {
             Axis::Transverse => axial_m_s2,
-            Axis::Axial => largest_m_s2(&|axis| axis == Axis::Transverse),
+            Axis::Axial => transverse_m_s2,
         };
         let crossed_m_s2 = file.tolerances.cross_axis * aside_m_s2;
         let sample_s = 1.0 / signal.sample_rate_hz;
@@ -334,9 +333,9 @@ fn channel_peaks(
         let peak = |value: f64, left: f64| {
             Estimate::new(value, (calibration * value).hypot(crossed_m_s2).hypot(noise(left)), "m/s^2")
         };
-        let length = |[length_s, by_level]: [f64; 2]| {
+        let length = |length: motion::PulseLength| {
             let level_m_s2 = (0.1 * crossed_m_s2).hypot(noise(left));
-            Estimate::new(length_s, (2.0 * sample_s).hypot(by_level * level_m_s2), "s")
+            Estimate::new(length.length_s, (2.0 * sample_s).hypot(length.by_level * level_m_s2), "s")
         };
         ChannelPeak {
             name: signal.name.clone(),
@@ -346,7 +345,7 @@ fn channel_peaks(
             peak_filtered: pulse.map(|p| peak(p.filtered_m_s2, left)),
             is_above_raw: pulse.is_some_and(|p| p.filtered_m_s2.abs() > p.raw_m_s2.abs()),
             time: pulse.map(|p| Estimate::new(p.time_s, sample_s, "s")),
-            pulse_length: pulse.and_then(|p| p.length_s).map(length),
+            pulse_length: pulse.and_then(|p| p.length).map(length),
         }
     };
     recorded.iter().zip(&pulses).map(of).collect()

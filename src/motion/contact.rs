@@ -155,8 +155,17 @@ pub struct ChannelPulse {
     pub filtered_m_s2: f64,
     /// When that is reached, s.
     pub time_s: f64,
-    /// How long the filtered reading stays above a tenth of it, s, and by how much that changes with the level, s/(m/s²).
-    pub length_s: Option<[f64; 2]>,
+    /// How long the filtered reading stays above a tenth of it.
+    pub length: Option<PulseLength>,
+}
+
+/// How long a reading stays above a level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PulseLength {
+    /// s.
+    pub length_s: f64,
+    /// By how much that changes with the level, both ends apart, s/(m/s²).
+    pub by_level: f64,
 }
 
 /// The pulse of each channel between two times, s, and through the low-pass with this −3 dB cut-off, Hz; `None` where samples are clipped or
@@ -193,13 +202,9 @@ fn pulse(wide: &Signal, filtered: &[f64], [from_s, to_s]: [f64; 2]) -> Option<Ch
     };
     let began = (0..at).rev().find(|&i| above(i) < 0.0).map(|i| passed(i, i + 1));
     let ended = (at..filtered.len()).find(|&i| above(i) < 0.0).map(|i| passed(i, i - 1));
-    let length_s = began.zip(ended).map(|(began, ended)| {
-        [(ended[0] - began[0]) / wide.sample_rate_hz, began[1].hypot(ended[1]) / wide.sample_rate_hz]
+    let length = began.zip(ended).map(|(began, ended)| PulseLength {
+        length_s: (ended[0] - began[0]) / wide.sample_rate_hz,
+        by_level: began[1].hypot(ended[1]) / wide.sample_rate_hz,
     });
-    Some(ChannelPulse {
-        raw_m_s2: peak(&wide.force_m_s2)?.1,
-        filtered_m_s2,
-        time_s: wide.time_s(at),
-        length_s,
-    })
+    Some(ChannelPulse { raw_m_s2: peak(&wide.force_m_s2)?.1, filtered_m_s2, time_s: wide.time_s(at), length })
 }

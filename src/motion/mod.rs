@@ -10,7 +10,7 @@ mod strike;
 mod thin;
 mod window;
 
-pub use contact::{ChannelPulse, ContactCourse, ForceCourse, largest, pulses};
+pub use contact::{ChannelPulse, ContactCourse, ForceCourse, PulseLength, largest, pulses};
 pub use curves::{channel_curves, cutoff_hz, filter_name, filtered, read_channels, usual_filters};
 pub use flight::{compare_late, fit_flight, fit_flights, mean_of_flight};
 pub use histories::drive;
