@@ -109,9 +109,7 @@ impl Folder {
 
     /// Makes the folder, and those it lies in.
     pub fn make(&self) -> Result<(), CannotWrite> {
-        let failed =
-            |source: io::Error| CannotWrite::Failed { path: shown(&self.path), source: bare(&source) };
-        fs::create_dir_all(&self.path).map_err(failed)
+        fs::create_dir_all(&self.path).map_err(failed(&self.path))
     }
 
     /// The path of one of its files, as a person reads it.
@@ -121,10 +119,7 @@ impl Folder {
 
     /// Writes every file beside its place and puts them there only when all are complete.
     pub fn write(&self, files: &[(String, Vec<u8>)]) -> Result<(), CannotWrite> {
-        replace_set(&self.path, files).map_err(|Stopped { path, source }| CannotWrite::Failed {
-            path: shown(&path),
-            source: bare(&source),
-        })
+        replace_set(&self.path, files).map_err(|Stopped { path, source }| failed(&path)(source))
     }
 }
 
@@ -181,9 +176,13 @@ impl JsonTarget {
     }
 }
 
+fn failed(path: &Path) -> impl Fn(io::Error) -> CannotWrite + '_ {
+    move |source| CannotWrite::Failed { path: shown(path), source: bare(&source) }
+}
+
 /// Writes a file, or replaces one that was there, whole or not at all.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), CannotWrite> {
-    write_file(path, bytes).map_err(|source| CannotWrite::Failed { path: shown(path), source: bare(&source) })
+    write_file(path, bytes).map_err(failed(path))
 }
 
 fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
@@ -203,13 +202,12 @@ pub fn replace_by(
     path: &Path,
     write: impl FnOnce(&mut dyn FnMut(&[u8]) -> miette::Result<()>) -> miette::Result<()>,
 ) -> miette::Result<()> {
-    let failed = |source: io::Error| CannotWrite::Failed { path: shown(path), source: bare(&source) };
-    let (staged, file) = staged_beside(path).map_err(failed)?;
+    let (staged, file) = staged_beside(path).map_err(failed(path))?;
     let mut writer = io::BufWriter::new(file);
-    write(&mut |bytes| Ok(writer.write_all(bytes).map_err(failed)?))?;
+    write(&mut |bytes| Ok(writer.write_all(bytes).map_err(failed(path))?))?;
     let written = writer.into_inner().map_err(io::IntoInnerError::into_error);
-    written.and_then(|file| file.sync_all()).map_err(failed)?;
-    fs::rename(&staged, path).and_then(|()| sync_folder(parent_of(path))).map_err(failed)?;
+    written.and_then(|file| file.sync_all()).map_err(failed(path))?;
+    fs::rename(&staged, path).and_then(|()| sync_folder(parent_of(path))).map_err(failed(path))?;
     Ok(())
 }
 

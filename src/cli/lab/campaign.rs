@@ -1,7 +1,7 @@
 //! `validate --campaign`: random scenes, one after the other, to lines, a CSV and tables; and the shards of a campaign to the same.
 
 use super::super::Ending;
-use super::super::output::{CannotWrite, Folder, print, print_plain, replace, replace_by};
+use super::super::output::{Folder, print, print_plain, replace, replace_by};
 use super::super::progress::CountedProgress;
 use super::super::shard;
 use super::document::Marks;
@@ -112,9 +112,7 @@ fn tabled(
         })?;
         return Ok(campaign::markdown(&tally));
     };
-    Folder::checked(out, &NAMES, &[])?;
-    let failed = |source| CannotWrite::Failed { path: out.display().to_string(), source };
-    std::fs::create_dir_all(out).map_err(failed)?;
+    Folder::checked(out, &NAMES, &[])?.make()?;
     let mut is_first = true;
     replace_by(&out.join(NAMES[0]), |write| {
         work(&mut |row| {
