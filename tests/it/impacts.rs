@@ -8,7 +8,7 @@
 )]
 
 use crate::run::fixture;
-use dropcheck::data::{ChannelPeak, Estimate, ImpactTable};
+use dropcheck::data::{BENDING_WAVE_M_S, ChannelPeak, Estimate, ImpactTable};
 use dropcheck::lab::data::{MotionStep, Scene, SceneNumber, SimulatedMotion};
 use dropcheck::lab::{campaign, in_memory, synth};
 use dropcheck::{ingest, stages};
@@ -131,9 +131,6 @@ fn stated(table: &ImpactTable) -> BTreeMap<&'static str, Option<Estimate>> {
     ])
 }
 
-/// A bending wave takes its time to the other end, m/s: what is read of an impact lasts so much longer there.
-const WAVE_M_S: f64 = 1000.0;
-
 /// Of each channel what is stated of its pulse in the impact of `end`, and what a perfect sensor would read, by name.
 fn channel_pulses(
     scene: &Scene,
@@ -146,7 +143,7 @@ fn channel_pulses(
     let [start, next] = [end, end + 1].map(|i| seconds(tables.get(i)?.start).map(|s| s - scene.before_s));
     let Some(touch_s) = start else { return Vec::new() };
     let left_s = seconds(tables[end].duration)
-        .map_or(touch_s + 0.025, |s| touch_s + s + scene.cask.length_m / WAVE_M_S);
+        .map_or(touch_s + 0.025, |s| touch_s + s + scene.cask.length_m / BENDING_WAVE_M_S);
     let ends_s = motion.truth.slap_t.map_or(f64::INFINITY, |s| s + scene.after_s);
     let until_s = left_s.min(next.unwrap_or(f64::INFINITY)).min(ends_s);
     // Two peaks of opposite signs may be equally large.

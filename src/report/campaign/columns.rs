@@ -47,38 +47,27 @@ pub(super) fn of(line: &Value) -> Columns {
     if !notes.is_empty() {
         columns.insert((RESULT, "notes".to_owned()), notes.into_iter().collect::<Vec<_>>().join(" ").into());
     }
+    let mut put = |name: String, value: Option<&Value>| {
+        columns.extend(value.filter(|value| is_cell(value)).map(|value| ((RESULT, name), value.clone())));
+    };
     for (name, from) in [
         ("predicted_u95_m_s", "/comparison/predicted_u95"),
         ("rung", "/reconstruction/rung"),
         ("model_rung", "/model/rung"),
     ] {
-        columns.extend(
-            line.pointer(from)
-                .filter(|value| is_cell(value))
-                .map(|value| ((RESULT, name.to_owned()), value.clone())),
-        );
+        put(name.to_owned(), line.pointer(from));
     }
     for seen in line["observed"].as_array().into_iter().flatten() {
         let name = format!("observed_{}", seen["name"].as_str().unwrap_or_default());
-        let of = |end: &str, from: &str| {
-            seen.pointer(from)
-                .filter(|v| v.is_number())
-                .map(|v| ((RESULT, format!("{name}{end}")), v.clone()))
-        };
-        let cells = [of("", "/observed/value"), of("_u95", "/observed/u95"), of("_e_n", "/e_n")];
-        columns.extend(cells.into_iter().flatten());
+        for (end, from) in [("", "/observed/value"), ("_u95", "/observed/u95"), ("_e_n", "/e_n")] {
+            put(format!("{name}{end}"), seen.pointer(from));
+        }
     }
     // The borderlines: rod and body, rough and smooth, k of 0 and 1.
-    for case in line["predictions"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter(|case| is_cell(&case["slap_down_speed_m_s"]))
-    {
-        let words = [&case["model"], &case["contact"]].map(|word| word.as_str().unwrap_or_default());
-        let name =
-            format!("borderline_{}_{}_k{}_m_s", words[0], words[1], case["k"].as_f64().unwrap_or(f64::NAN));
-        columns.insert((RESULT, name), case["slap_down_speed_m_s"].clone());
+    for case in line["predictions"].as_array().into_iter().flatten() {
+        let [model, contact] = ["model", "contact"].map(|key| case[key].as_str().unwrap_or_default());
+        let name = format!("borderline_{model}_{contact}_k{}_m_s", case["k"].as_f64().unwrap_or(f64::NAN));
+        put(name, case.get("slap_down_speed_m_s"));
     }
     for (table, keys) in objects(&line["settings"]) {
         let channels = keys.as_array().into_iter().flatten();
