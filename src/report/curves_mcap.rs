@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::io::Cursor;
 
-/// Level of zstd: at the library's own, 3, the file is no smaller, and writing it takes a third longer.
+/// Level of zstd: at the library's own, 3, the file of the fixtures' ANF-18 at 1e5 samples is 2 % larger.
 const ZSTD_LEVEL: u32 = 1;
 
 /// The file as bytes; `log_time` is absolute where the recording's start is known, else from 0.
