@@ -24,7 +24,10 @@ pub(super) fn drawn(mut chance: Chance, wish: &Wish, exact: bool) -> DrawnDrop {
     loop {
         attempt += 1;
         let (scene, stated) = drop(&mut chance, angle_deg, wish, exact);
-        let motion = synth::simulate(&scene);
+        let motion = match wish.flight {
+            BetweenImpacts::LandsAgain => synth::simulate(&scene),
+            _ => synth::simulate_one_flight(&scene),
+        };
         if is_as_wished(&motion.truth, wish) {
             return DrawnDrop { scene, stated, motion, chance };
         }
@@ -105,7 +108,7 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
     if wish.contact.is_none() && share != 0.0 {
         let held = Scene { contact: Contact::Rough, ..scene.clone() };
         // I_x / I_z of the first contact.
-        let (along, up) = synth::simulate(&held).first_impulse_n_s();
+        let (along, up) = synth::simulate_one_flight(&held).first_impulse_n_s();
         let holds = if up > 0.0 { along / up } else { 0.0 };
         scene.contact = match stated_contact {
             Contact::Unknown => Contact::Coulomb(friction),

@@ -16,7 +16,7 @@ pub use beam::MOST_MODES;
 pub use body::MOST_LOOSE;
 pub use chain::record;
 pub use crush::crushable_end;
-pub use motion::simulate;
+pub use motion::{simulate, simulate_one_flight};
 pub use sensor::specific_force_m_s2;
 
 #[cfg(test)]

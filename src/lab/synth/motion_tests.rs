@@ -136,7 +136,8 @@ fn a_finer_tolerance_changes_nothing() {
         scene.contact = contact;
         scene.drop.angle_rad = f64::to_radians(degrees);
         scene.first_end.unloading_n_m = scene.first_end.loading_n_m / (k * k);
-        let (coarse, fine) = (follow(&scene, TOLERANCE).truth, follow(&scene, TOLERANCE / 2.0).truth);
+        let [coarse, fine] =
+            [TOLERANCE, TOLERANCE / 2.0].map(|tolerance| follow(&scene, tolerance, usize::MAX).truth);
         for (a, b) in [(coarse.k, fine.k), (coarse.speed, fine.speed), (coarse.slap_t, fine.slap_t)] {
             let (a, b) = (a.expect("an event"), b.expect("an event"));
             assert!((a / b - 1.0).abs() < 1e-6, "k {k} at {degrees}°: {a}, {b}");
@@ -233,4 +234,17 @@ fn friction_changes_at_the_greatest_crush_and_falls_with_the_speed() {
     assert!(falling.iter().all(|(_, ratio)| (0.1..=0.2).contains(ratio)));
     // It begins at rest and slides by metres a second at the end.
     assert!(falling[0].1 > 0.19 && falling[falling.len() - 1].1 < 0.15);
+}
+
+#[test]
+fn one_flight_ends_where_the_first_end_comes_back() {
+    let mut scene = anf18();
+    assert_eq!(simulate_one_flight(&scene), simulate(&scene));
+    // L leaves at a fiftieth of its speed, and is back long before R has come down from 60°.
+    scene.drop.angle_rad = f64::to_radians(60.0);
+    scene.first_end.unloading_n_m = scene.first_end.loading_n_m / 0.02_f64.powi(2);
+    let (whole, one) = (simulate(&scene), simulate_one_flight(&scene));
+    assert!(whole.truth.relands > 0 && whole.truth.slap_t.is_some(), "{:?}", whole.truth);
+    assert!(one.truth.slap_t.is_none() && one.truth.k == whole.truth.k);
+    assert_eq!(one.steps, whole.steps[..one.steps.len()]);
 }
