@@ -48,17 +48,14 @@ fn stated_angle_deg(chance: &mut Chance, wish: &Wish) -> f64 {
 /// Whether the drop is one that the campaign takes.
 fn is_as_wished(truth: &Truth, wish: &Wish) -> bool {
     let is_short = truth.flight_s.is_none_or(|flight_s| flight_s < SHORTEST_FLIGHT_S);
+    let is_once = truth.relands == 0 && !truth.first_down_at_slap;
     let is_between = match wish.flight {
         BetweenImpacts::LandsAgain => truth.relands > 0,
-        _ => truth.relands == 0 && !truth.first_down_at_slap,
-    };
-    let is_as_long = match wish.flight {
-        BetweenImpacts::LandsAgain => true,
-        BetweenImpacts::Short => is_short,
-        BetweenImpacts::Free => !is_short,
+        BetweenImpacts::Short => is_once && is_short,
+        BetweenImpacts::Free => is_once && !is_short,
     };
     let is_struck = truth.speed.is_some() && truth.k.is_some_and(|k| (K_RANGE.0..=K_RANGE.1).contains(&k));
-    is_struck && is_between && is_as_long
+    is_struck && is_between
 }
 
 /// One attempt: the scene as it is and the cask file, both still without channels.

@@ -40,28 +40,25 @@ fn timed(case: &mut DrawnDrop, wish: &Wish) -> f64 {
     let truth = case.motion.truth;
     let chance = &mut case.chance;
     let fall_s = case.scene.fall_s();
-    let shows_rest = chance.is(0.2);
-    case.scene.rest = wish.rest.unwrap_or(shows_rest);
+    let rest = wish.rest.unwrap_or(chance.is(0.2));
     let is_short = chance.is(0.8);
-    case.scene.before_s = if case.scene.rest {
+    let drawn_s = if rest {
         fall_s + chance.even(0.1, 0.4)
     } else {
         chance.even(0.05, if is_short { 0.3_f64.min(0.95 * fall_s) } else { 0.95 * fall_s })
     };
-    let after_contact_s = truth.slap_t.unwrap_or(0.0) + case.scene.after_s;
+    let end_s = truth.slap_t.unwrap_or(0.0) + case.scene.after_s;
     let highest_hz = case.scene.modes.iter().map(|mode| mode.frequency_hz).fold(0.0, f64::max);
-    let contact_s = truth.contact_s.unwrap_or(1e-3);
-    let needed_hz = (CONTACT_SAMPLES / contact_s).max(PERIOD_SAMPLES * highest_hz);
+    let needed_hz = (CONTACT_SAMPLES / truth.contact_s.unwrap_or(1e-3)).max(PERIOD_SAMPLES * highest_hz);
     let fast: Vec<f64> = RATES_HZ.iter().copied().filter(|hz| *hz >= needed_hz).collect();
-    let (before_s, rest) = (case.scene.before_s, case.scene.rest);
-    let before_s = |hz: f64| if hz >= 1e5 && !rest { before_s.min(0.08) } else { before_s };
+    let before_s = |hz: f64| if hz >= 1e5 && !rest { drawn_s.min(0.08) } else { drawn_s };
     // A damage needs no thousands of samples more.
     let most = if wish.kind.is_empty() { MOST_SAMPLES } else { MOST_SAMPLES / 3.0 };
     let affordable: Vec<f64> =
-        fast.iter().copied().filter(|hz| hz * (before_s(*hz) + after_contact_s) <= most).collect();
+        fast.iter().copied().filter(|hz| hz * (before_s(*hz) + end_s) <= most).collect();
     let slowest_hz = fast.first().copied().unwrap_or(500e3);
     let rate_hz = if affordable.is_empty() { slowest_hz } else { chance.one_of(&affordable) };
-    case.scene.before_s = before_s(rate_hz);
+    (case.scene.rest, case.scene.before_s) = (rest, before_s(rate_hz));
     rate_hz
 }
 
@@ -77,8 +74,7 @@ fn seats(case: &mut DrawnDrop, wish: &Wish) -> Vec<SceneChannel> {
         let offset_m = if is_off_axis { aside_m } else { 0.0 };
         SceneChannel { axis, offset_m, ..SceneChannel::perfect(name, end, round(position_m, 3)) }
     };
-    let near = (0.05, 0.4);
-    let inner = (0.4, 0.3 * cask.length_m);
+    let (near, inner) = ((0.05, 0.4), (0.4, 0.3 * cask.length_m));
     let mut seats = vec![
         place("A1", End::First, Axis::Transverse, near),
         place("A2", End::Second, Axis::Transverse, near),
@@ -86,8 +82,7 @@ fn seats(case: &mut DrawnDrop, wish: &Wish) -> Vec<SceneChannel> {
     let third = place("A3", End::First, Axis::Transverse, inner);
     let fourth = place("A4", End::Second, Axis::Transverse, inner);
     let axial = place("A5", End::First, Axis::Axial, near);
-    let (more, most, has_axial) = (chance.is(0.1), chance.is(0.5), chance.is(0.15));
-    let more = more || wish.third_channel;
+    let (more, most, has_axial) = (chance.is(0.1) || wish.third_channel, chance.is(0.5), chance.is(0.15));
     seats.extend(more.then_some(third));
     seats.extend((more && most).then_some(fourth));
     seats.extend(wish.axial.unwrap_or(has_axial).then_some(axial));
