@@ -26,8 +26,7 @@ pub(super) fn equip(case: &mut DrawnDrop, wish: &Wish, exact: bool) {
     let chain = chain(&mut case.chance, rate_hz);
     let unit = if case.chance.is(0.8) { "g" } else { "m/s^2" };
     for seat in seats {
-        let seat =
-            SceneChannel { unit: unit.to_owned(), sample_rate_hz: rate_hz, chain: chain.clone(), ..seat };
+        let seat = SceneChannel { unit: unit.into(), sample_rate_hz: rate_hz, chain: chain.clone(), ..seat };
         case.stated.channels.push(spec(&seat));
         let channel = mounted(case, seat, exact);
         case.scene.channels.push(channel);

@@ -87,16 +87,19 @@ fn follow_state<const N: usize>(scene: &Scene, tolerance: f64, most: usize) -> S
     let mut events: Vec<ContactChange> = Vec::new();
     let (mut time_s, mut end_s, mut returns) = (0.0, LONGEST_S, 0);
     let mut y = SVector::<f64, N>::from_column_slice(&body.at_first_contact()[..N]);
-    let mut kept_steps = vec![kept(&body, time_s, y.as_slice())];
+    // Room for the most: of it only what is written to takes memory, where a vector that grows leaves holes of all sizes behind.
+    let mut kept_steps = Vec::with_capacity(MOST_STEPS);
+    kept_steps.push(kept(&body, time_s, y.as_slice()));
     while time_s < end_s && !is_upright(y.as_slice()) && events.len() < MOST_SWITCHES {
         let segment = Segment { body: &body, tolerance, watched: true };
-        let (mut steps, whole) = segment.over(&y, end_s - time_s, MOST_STEPS - kept_steps.len());
-        let Some(last) = steps.pop() else { break };
-        let before = steps.last().copied().unwrap_or((0.0, y));
+        let (solver, whole) = segment.over(&y, end_s - time_s, MOST_STEPS - kept_steps.len());
+        let Some(one_before) = solver.x_out().len().checked_sub(2) else { break };
+        let step = |i: usize| (solver.x_out()[i], solver.y_out()[i]);
+        let [before, last] = [one_before, one_before + 1].map(step);
         let change = segment.first_change(&before, &last);
         let (offset_s, state) = change.map_or(last, |c| (before.0 + c.after_s, c.state));
-        let on_way = steps.iter().map(|(offset_s, state)| kept(&body, time_s + offset_s, state.as_slice()));
-        kept_steps.extend(on_way);
+        let on_way = (1..=one_before).map(step);
+        kept_steps.extend(on_way.map(|(offset_s, state)| kept(&body, time_s + offset_s, state.as_slice())));
         (time_s, y) = (time_s + offset_s, state);
         let now = y.as_slice();
         kept_steps.push(kept(&body, time_s, now));
@@ -134,13 +137,13 @@ struct Fallen<const N: usize> {
 type Reached<const N: usize> = (f64, SVector<f64, N>);
 
 impl Segment<'_> {
-    /// The steps after `from`, times from there, and whether the integrator came to its end or a stop.
+    /// The integrator with its steps from `from` on, times from there, and whether it came to its end or a stop.
     fn over<const N: usize>(
         &self,
         from: &SVector<f64, N>,
         span_s: f64,
         most: usize,
-    ) -> (Vec<Reached<N>>, bool) {
+    ) -> (Dopri5<f64, SVector<f64, N>, Self>, bool) {
         let longest_s = LONGEST_STEP_S.min(LONGEST_STEP_RAD / self.body.fastest_rad_s());
         let mut solver = Dopri5::from_param(
             *self,
@@ -162,9 +165,8 @@ impl Segment<'_> {
             u32::MAX,
             OutputType::Sparse,
         );
-        let whole = solver.integrate().is_ok();
-        let steps = solver.x_out().iter().copied().zip(solver.y_out().iter().copied()).skip(1).collect();
-        (steps, whole)
+        let is_whole = solver.integrate().is_ok();
+        (solver, is_whole)
     }
 
     /// The state `offset_s` after `from`.
@@ -173,7 +175,7 @@ impl Segment<'_> {
             return *from;
         }
         let unwatched = Segment { watched: false, ..*self };
-        unwatched.over(from, offset_s, MOST_STEPS).0.last().map_or(*from, |step| step.1)
+        unwatched.over(from, offset_s, MOST_STEPS).0.y_out().last().copied().unwrap_or(*from)
     }
 
     /// The first watch to fall below zero between two steps.
