@@ -60,7 +60,7 @@ pub(super) fn of(line: &Value) -> Columns {
     for seen in line["observed"].as_array().into_iter().flatten() {
         let name = format!("observed_{}", seen["name"].as_str().unwrap_or_default());
         for (end, from) in [("", "/observed/value"), ("_u95", "/observed/u95"), ("_e_n", "/e_n")] {
-            put(format!("{name}{end}"), seen.pointer(from));
+            put(format!("{name}{end}"), seen.pointer(from).filter(|value| value.is_number()));
         }
     }
     // The borderlines: rod and body, rough and smooth, k of 0 and 1.
