@@ -1,227 +1,198 @@
-//! Signals and the plateaus of the flight to the integrated channels during contact, and the line over their positions.
+//! Signals and the plateaus of the flight to what the channels say over the contact: the line over their positions, free of ringing.
 
 use super::{Integrated, Velocity};
 use crate::data::{Axis, FlightFit, Mode, Signal};
+use crate::numerics::as_f64;
 use crate::numerics::damped_modes::Drive;
 use nalgebra::Complex;
+use std::f64::consts::{PI, TAU};
 
-/// Steps over the contact in which the ringing is followed: a twentieth of a period of 400 Hz in 20 ms.
-const STEPS: u16 = 160;
-/// Rounds in which the shape of the force is freed of ringing: the second moves the ringing by a percent of itself.
-const ROUNDS: usize = 2;
+/// Steps over the contact: 200 over 20 ms leave the trapezoid's error below 4e-5 of the velocities, and are a twenty-fifth of a period of 400 Hz.
+pub(super) const STEPS: usize = 200;
 /// A mode that answered more strongly by this factor while it was driven than as L left is not known well enough to follow back.
 const MOST_DECLINE: f64 = 5.0;
 
-/// Least-squares line over the transverse channels: value at S and slope along the axis.
+/// ∫f_η of S, m/s; Ω = φ̇, rad/s; and the mean over the axial channels of ∫f_ξ, m/s: each a sum over the channels.
+type Sums = [f64; 3];
+
+/// How much each channel counts in the [`Sums`]: the transverse ones by the least-squares line over their positions, its value at S and its
+/// slope along the axis   (16), the axial ones by their mean.
 pub(super) struct AlongAxis {
-    positions_m: Vec<f64>,
-    offsets_m: Vec<f64>,
-    channels: Vec<usize>,
-    mean_m: f64,
-    square_m2: f64,
+    weights: Vec<Sums>,
+    /// What ∫Ω² dt since contact adds to the first two, m and 1: f_η holds −Ω² η   (14)
+    turned_m: [f64; 2],
+    /// Mean place of the axial channels: from L and off the axis, m; `None` without any.
+    axial_m: Option<[f64; 2]>,
 }
 
 impl AlongAxis {
     pub fn through(signals: &[Signal], cog_m: f64) -> Option<Self> {
-        let channels: Vec<usize> =
-            (0..signals.len()).filter(|&i| signals[i].axis == Axis::Transverse).collect();
-        let positions_m: Vec<f64> = channels.iter().map(|&i| signals[i].position_m - cog_m).collect();
-        let offsets_m = channels.iter().map(|&i| signals[i].offset_m).collect();
-        #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
-        let mean_m = positions_m.iter().sum::<f64>() / positions_m.len().max(1) as f64;
-        let square_m2: f64 = positions_m.iter().map(|x| (x - mean_m).powi(2)).sum();
-        (square_m2 > 1e-6).then_some(Self { positions_m, offsets_m, channels, mean_m, square_m2 })
+        let on = |axis: Axis| signals.iter().filter(move |s| s.axis == axis);
+        let mean = |axis: Axis, of: fn(&Signal) -> f64| {
+            on(axis).map(of).sum::<f64>() / as_f64(on(axis).count().max(1))
+        };
+        let mean_m = mean(Axis::Transverse, |s| s.position_m) - cog_m;
+        let beside_m = |s: &Signal| s.position_m - cog_m - mean_m;
+        let square_m2: f64 = on(Axis::Transverse).map(|s| beside_m(s).powi(2)).sum();
+        let one_of = |axis: Axis| 1.0 / as_f64(on(axis).count().max(1));
+        let weights = |s: &Signal| match s.axis {
+            Axis::Transverse => {
+                let slope = beside_m(s) / square_m2;
+                [one_of(Axis::Transverse) - slope * mean_m, slope, 0.0]
+            }
+            Axis::Axial => [0.0, 0.0, one_of(Axis::Axial)],
+        };
+        let weights: Vec<Sums> = signals.iter().map(weights).collect();
+        let turned_m = [0, 1].map(|i| signals.iter().zip(&weights).map(|(s, w)| w[i] * s.offset_m).sum());
+        let axial_m = (on(Axis::Axial).next().is_some())
+            .then(|| [mean(Axis::Axial, |s| s.position_m), mean(Axis::Axial, |s| s.offset_m)]);
+        (square_m2 > 1e-6).then_some(Self { weights, turned_m, axial_m })
     }
 
-    /// ∫f_η of S, m/s, and Ω = φ̇, rad/s, at a time, given ∫Ω² dt since contact: f_η holds −Ω² η   (16)
-    pub fn at(&self, histories: &Histories, time_s: f64, turned_rad2_s: f64) -> (f64, f64) {
-        let (mut sum, mut moment) = (0.0, 0.0);
-        for ((&i, offset_m), position_m) in self.channels.iter().zip(&self.offsets_m).zip(&self.positions_m) {
-            let value = histories.at(i, time_s) + turned_rad2_s * offset_m;
-            sum += value;
-            moment += (position_m - self.mean_m) * value;
-        }
-        let slope = moment / self.square_m2;
-        #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
-        let mean = sum / self.channels.len() as f64;
-        (mean - slope * self.mean_m, slope)
+    /// The sums over the channels of what each of them has.
+    fn sums(&self, of_channels: impl Iterator<Item = f64>) -> Sums {
+        self.weights
+            .iter()
+            .zip(of_channels)
+            .fold([0.0; 3], |sums, (weights, value)| [0, 1, 2].map(|i| sums[i] + weights[i] * value))
     }
 }
 
-/// The integrated channels over the contact, led to the plateaus of the flight.
+/// What the channels say over the contact at [`STEPS`] + 1 times of equal distance, led to the plateaus of the flight, ringing led out in
+/// proportion to time.
 pub(super) struct Histories<'a> {
-    velocities: &'a [Velocity],
-    corrections_m_s: Vec<f64>,
-    axial: Vec<(usize, f64, f64)>,
-    contact_s: f64,
-    length_s: f64,
-    /// How long a second of the recorder's clock lasts, s.
-    second_s: f64,
-    /// Ringing of each channel over the contact on a grid of [`STEPS`], m/s.
-    bending: Vec<Vec<f64>>,
+    line: &'a AlongAxis,
+    sums: Vec<Sums>,
 }
 
 impl<'a> Histories<'a> {
     pub fn new(
-        Integrated { signals, velocities, .. }: &'a Integrated,
+        Integrated { signals, velocities, .. }: &Integrated,
         fit: &FlightFit,
-        line: &AlongAxis,
+        line: &'a AlongAxis,
         (contact_s, separation_s): (f64, f64),
     ) -> Option<Self> {
         let length_s = separation_s - contact_s;
         if length_s <= 0.0 {
             return None;
         }
-        let mut corrections_m_s = Vec::new();
-        for (signal, velocity) in signals.iter().zip(velocities) {
+        let mut sums = vec![[0.0; 3]; STEPS + 1];
+        for ((signal, velocity), weights) in signals.iter().zip(velocities).zip(&line.weights) {
             let plateau = fit.plateau(&signal.name)?;
             // A zero shift sets in somewhere in the contact: half of it is taken to have acted.
             let before_s = fit.from_s - separation_s + length_s / 2.0;
             let plateau_m_s = plateau.velocity_step_m_s - plateau.zero_shift_m_s2 * before_s;
-            corrections_m_s.push(plateau_m_s - velocity.at(separation_s));
+            velocity.add_even((contact_s, length_s / as_f64(STEPS)), plateau_m_s, *weights, &mut sums);
         }
-        let axial = (0..signals.len())
-            .filter(|&i| signals[i].axis == Axis::Axial)
-            .map(|i| (i, signals[i].position_m, signals[i].offset_m))
-            .collect();
-        let mut histories = Self {
-            velocities,
-            corrections_m_s,
-            axial,
-            contact_s,
-            length_s,
-            second_s: 1.0,
-            bending: Vec::new(),
-        };
-        histories.take_off_bending(fit, line);
+        let mut histories = Self { line, sums };
+        histories.take_off_bending(fit, length_s, separation_s - fit.from_s);
         Some(histories)
     }
 
     /// The same where a second of the recorder's clock lasts so long: every integral is as much longer.
-    pub fn at_rate(self, second_s: f64) -> Self {
-        Self { second_s, ..self }
+    pub fn at_rate(mut self, second_s: f64) -> Self {
+        for sums in &mut self.sums {
+            *sums = sums.map(|sum| second_s * sum);
+        }
+        self
     }
 
-    /// Finds what rings in each channel during the contact, and leaves the corrections what that does not explain.
+    /// Takes off what rings in the channels during the contact, in the size that it has as L leaves, `left_s` from the fit's beginning.
     ///
-    /// The modes start from rest and are driven by the contact force, whose shape the rotation tells once it is free of ringing; until then
-    /// a half sine stands for it.
-    fn take_off_bending(&mut self, fit: &FlightFit, line: &AlongAxis) {
+    /// The modes start from rest and are driven by the contact force, whose shape the rotation tells once it is free of ringing; before that
+    /// a half sine stands for it. What so moves the ringing by a percent of itself is not sought again.
+    fn take_off_bending(&mut self, fit: &FlightFit, length_s: f64, left_s: f64) {
         if fit.modes.is_empty() {
             return;
         }
-        for round in 0..ROUNDS {
-            let turning =
-                if round == 0 { half_sine(self.turning_at(line, STEPS)) } else { self.turning_rad_s(line) };
-            let driven: Vec<Vec<Complex<f64>>> = fit
-                .modes
-                .iter()
-                .map(|mode| driven(mode, &turning, self.length_s / f64::from(STEPS)))
-                .collect();
-            let before: Vec<f64> =
-                (0..self.velocities.len()).map(|i| self.bending_m_s(i, usize::from(STEPS))).collect();
-            let left_s = self.contact_s + self.length_s - fit.from_s;
-            self.bending = fit
-                .plateaus
-                .iter()
-                .map(|plateau| bending(&fit.modes, &plateau.ringing_m_s, &driven, left_s))
-                .collect();
-            for (i, before) in before.into_iter().enumerate() {
-                self.corrections_m_s[i] += self.bending_m_s(i, usize::from(STEPS)) - before;
-            }
+        let step_s = length_s / as_f64(STEPS);
+        let ringing = self.ringing(fit, &driven(&fit.modes, &half_sine(), step_s), left_s);
+        let turning: Vec<f64> =
+            self.sums.iter().zip(&ringing).map(|(sums, ringing)| sums[1] - ringing[1]).collect();
+        let ringing = self.ringing(fit, &driven(&fit.modes, &turning, step_s), left_s);
+        for (sums, ringing) in self.sums.iter_mut().zip(ringing) {
+            *sums = [0, 1, 2].map(|i| sums[i] - ringing[i]);
         }
     }
 
-    /// Ω on the grid, rad/s.
-    fn turning_rad_s(&self, line: &AlongAxis) -> Vec<f64> {
-        (0..=STEPS).map(|i| self.turning_at(line, i)).collect()
+    /// What the modes add to the sums where they are so driven, but for a line that leads to what they do as L leaves.
+    fn ringing(&self, fit: &FlightFit, driven: &[Vec<Complex<f64>>], left_s: f64) -> Vec<Sums> {
+        let mut all = vec![[0.0; 3]; STEPS + 1];
+        for (m, (mode, driven)) in fit.modes.iter().zip(driven).enumerate() {
+            let aged = (rate(mode) * left_s).exp();
+            let last = driven[STEPS];
+            let largest = driven.iter().map(Complex::norm_sqr).fold(0.0, f64::max);
+            if last.norm_sqr() * MOST_DECLINE * MOST_DECLINE < largest || largest <= 0.0 {
+                continue;
+            }
+            // A mode's shape is real: what does not fit the phase is left to the line.
+            let size = |(a, b): (f64, f64)| (Complex::new(a, -b) * aged * last.conj()).re / last.norm_sqr();
+            let sizes =
+                self.line.sums(fit.plateaus.iter().map(|p| p.ringing_m_s.get(m).map_or(0.0, |of| size(*of))));
+            for (i, (sums, z)) in all.iter_mut().zip(driven).enumerate() {
+                let beside = z.re - last.re * (as_f64(i) / as_f64(STEPS));
+                *sums = [0, 1, 2].map(|i| sums[i] + sizes[i] * beside);
+            }
+        }
+        all
     }
 
-    /// Ω at a step of the grid, rad/s.
-    fn turning_at(&self, line: &AlongAxis, step: u16) -> f64 {
-        line.at(self, self.grid_s(step), 0.0).1
+    /// ∫f_η of S, m/s, and Ω, rad/s, at a step, given ∫Ω² dt since contact   (16)
+    pub fn at(&self, step: usize, turned_rad2_s: f64) -> (f64, f64) {
+        let [across_m_s, turning_rad_s, _] = self.sums[step];
+        let [of_across, of_turning] = self.line.turned_m.map(|m| turned_rad2_s * m);
+        (across_m_s + of_across, turning_rad_s + of_turning)
     }
 
-    fn grid_s(&self, step: u16) -> f64 {
-        self.contact_s + self.length_s * f64::from(step) / f64::from(STEPS)
-    }
-
-    /// Ringing of a channel at a step of the grid, m/s.
-    fn bending_m_s(&self, index: usize, step: usize) -> f64 {
-        self.bending.get(index).and_then(|b| b.get(step)).copied().unwrap_or(0.0)
-    }
-
-    /// ∫f of a channel from before contact to a recorded time, ringing led out in proportion to time, m/s.
-    pub fn at(&self, index: usize, time_s: f64) -> f64 {
-        let share = ((time_s - self.contact_s) / self.length_s).clamp(0.0, 1.0);
-        let position = share * f64::from(STEPS);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and STEPS")]
-        let step = position as usize;
-        let (a, b) =
-            (self.bending_m_s(index, step), self.bending_m_s(index, (step + 1).min(usize::from(STEPS))));
-        // Not `fract`, which is a call where the processor may be any.
-        #[allow(clippy::cast_precision_loss, reason = "a step of the grid")]
-        let bending_m_s = a + (position - step as f64) * (b - a);
-        self.second_s
-            * (self.velocities[index].at(time_s) - bending_m_s + share * self.corrections_m_s[index])
+    /// Ω at every step, rad/s.
+    fn turning_rad_s(&self) -> Vec<f64> {
+        self.sums.iter().map(|sums| sums[1]).collect()
     }
 
     /// Mean over the axial channels of ∫f_ξ of their place on the axis, m/s, and their mean position, m; `None` without any.
     ///
     /// f_ξ holds −Ω̇ η (15), so ∫f_ξ + Ω η is what a sensor on the axis would give.
-    pub fn axial_mean(&self, time_s: f64, rotation_rad_s: f64) -> Option<(f64, f64)> {
-        #[allow(clippy::cast_precision_loss, reason = "a handful of channels")]
-        let n = self.axial.len() as f64;
-        let sums = self.axial.iter().fold((0.0, 0.0), |(v, x), &(i, position_m, offset_m)| {
-            (v + self.at(i, time_s) + rotation_rad_s * offset_m, x + position_m)
+    pub fn axial_mean(&self, step: usize, rotation_rad_s: f64) -> Option<(f64, f64)> {
+        let [position_m, offset_m] = self.line.axial_m?;
+        Some((self.sums[step][2] + rotation_rad_s * offset_m, position_m))
+    }
+}
+
+impl Velocity {
+    /// Adds to each of the `sums` its `weights` times the velocity at times of equal distance, led to `end_m_s` at the last of them.
+    fn add_even(&self, (from_s, step_s): (f64, f64), end_m_s: f64, weights: Sums, sums: &mut [Sums]) {
+        let last = as_f64(sums.len() - 1);
+        let missing_m_s = end_m_s - self.at(from_s + last * step_s);
+        for (i, sums) in sums.iter_mut().enumerate() {
+            let value = self.at(from_s + as_f64(i) * step_s) + missing_m_s * (as_f64(i) / last);
+            *sums = [0, 1, 2].map(|i| sums[i] + weights[i] * value);
+        }
+    }
+}
+
+/// The shape of the rotation over the contact under a half sine of force.
+fn half_sine() -> Vec<f64> {
+    (0..=STEPS).map(|i| (1.0 - (PI * as_f64(i) / as_f64(STEPS)).cos()) / 2.0).collect()
+}
+
+/// (−ζ + i) ω.
+fn rate(mode: &Mode) -> Complex<f64> {
+    let omega = TAU * mode.frequency_hz;
+    Complex::new(-mode.damping * omega, omega)
+}
+
+/// Z(t) = ∫ f(τ) e^((−ζ + i) ω (t − τ)) dτ from rest: modes driven by the shape of the contact force, −dΩ/dt   (36)
+fn driven(modes: &[Mode], turning_rad_s: &[f64], step_s: f64) -> Vec<Vec<Complex<f64>>> {
+    let of = |mode: &Mode| {
+        let (turn, half_turn) = ((rate(mode) * step_s).exp(), (rate(mode) * (step_s / 2.0)).exp());
+        let mut value = Complex::new(0.0, 0.0);
+        let steps = turning_rad_s.windows(2).map(|pair| {
+            value = value * turn + half_turn * (pair[0] - pair[1]);
+            value
         });
-        (n > 0.0).then_some((sums.0 / n, sums.1 / n))
-    }
-}
-
-/// The rotation over the contact under a half sine of force, on the grid, that ends at `end_rad_s`.
-fn half_sine(end_rad_s: f64) -> Vec<f64> {
-    let share = |i: u16| f64::from(i) / f64::from(STEPS);
-    (0..=STEPS).map(|i| end_rad_s * (1.0 - (std::f64::consts::PI * share(i)).cos()) / 2.0).collect()
-}
-
-/// Z(t) = ∫ f(τ) e^((−ζ + i) ω (t − τ)) dτ from rest: a mode driven by the shape of the contact force, −dΩ/dt   (36)
-fn driven(mode: &Mode, turning_rad_s: &[f64], step_s: f64) -> Vec<Complex<f64>> {
-    let omega = std::f64::consts::TAU * mode.frequency_hz;
-    let rate = Complex::new(-mode.damping * omega, omega);
-    let (turn, half_turn) = ((rate * step_s).exp(), (rate * (step_s / 2.0)).exp());
-    let mut value = Complex::new(0.0, 0.0);
-    let mut values = vec![value];
-    for pair in turning_rad_s.windows(2) {
-        value = value * turn + half_turn * (pair[0] - pair[1]);
-        values.push(value);
-    }
-    values
-}
-
-/// Velocity of one channel's ringing over the contact, m/s: each mode as it is driven, in the size that it has as L leaves.
-fn bending(
-    modes: &[Mode],
-    amplitudes_m_s: &[(f64, f64)],
-    driven: &[Vec<Complex<f64>>],
-    left_s: f64,
-) -> Vec<f64> {
-    let mut sum = vec![0.0; usize::from(STEPS) + 1];
-    for ((mode, &(a, b)), driven) in modes.iter().zip(amplitudes_m_s).zip(driven) {
-        let omega = std::f64::consts::TAU * mode.frequency_hz;
-        let as_left = Complex::new(a, -b) * (Complex::new(-mode.damping * omega, omega) * left_s).exp();
-        let largest = driven.iter().map(Complex::norm_sqr).fold(0.0, f64::max);
-        let last = driven[usize::from(STEPS)];
-        if last.norm_sqr() * MOST_DECLINE * MOST_DECLINE < largest || largest <= 0.0 {
-            continue;
-        }
-        // A mode's shape is real: what does not fit the phase is left to the correction.
-        let size = (as_left * last.conj()).re / last.norm_sqr();
-        for (sum, z) in sum.iter_mut().zip(driven) {
-            *sum += size * z.re;
-        }
-    }
-    sum
+        std::iter::once(Complex::new(0.0, 0.0)).chain(steps).collect()
+    };
+    modes.iter().map(of).collect()
 }
 
 /// The shape of the contact force between first contact and separation at `left_s`, for modes that ring from `from_s` on: that of the rotation freed
@@ -237,13 +208,13 @@ pub fn drive(
     let contact_s = integrated.contact_s;
     let line = AlongAxis::through(&integrated.signals, cog_m)?;
     let turning = match fit {
-        Some(fit) => Histories::new(integrated, fit, &line, (contact_s, left_s))?.turning_rad_s(&line),
-        None if left_s > contact_s => half_sine(-1.0),
+        Some(fit) => Histories::new(integrated, fit, &line, (contact_s, left_s))?.turning_rad_s(),
+        None if left_s > contact_s => half_sine().into_iter().map(|share| -share).collect(),
         None => return None,
     };
     Some(Drive {
         age_s: from_s - contact_s,
-        step_s: (left_s - contact_s) / f64::from(STEPS),
+        step_s: (left_s - contact_s) / as_f64(STEPS),
         impulses: turning.windows(2).map(|pair| pair[0] - pair[1]).collect(),
     })
 }
