@@ -52,6 +52,13 @@ pub struct UncertainInput {
     changes: Vec<Change>,
 }
 
+impl UncertainInput {
+    /// Whether any move of it makes another motion than none: friction that is moved is that of a cask that slides.
+    pub(super) fn jumps(&self) -> bool {
+        self.changes.iter().any(|change| matches!(change, Change::Friction { .. }))
+    }
+}
+
 /// An event whose time is uncertain.
 #[derive(Debug, Clone, Copy)]
 enum Event {

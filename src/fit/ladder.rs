@@ -7,7 +7,7 @@ use crate::data::{
     Axis, ChannelReading, Closure, End, Estimate, FlightFit, MET_U, Quantities, ReconstructionCandidate,
     ReconstructionChoice, ReconstructionRung,
 };
-use crate::numerics::prior_fit::{PriorFit, derivatives_beyond};
+use crate::numerics::prior_fit::{PriorFit, derivatives};
 
 /// Where the closures tell lost velocity steps they test nothing, and the intervals of the joint fit are widened by this: with it they hold 19 of 20
 /// simulated drops.
@@ -50,7 +50,8 @@ impl RungTaken {
         };
         let at_u = [&self.fit.unknowns[..], &vec![0.0; further]].concat();
         let values = model(&at_u)?;
-        let slopes = derivatives_beyond(&values, &model, &at_u)?;
+        let slopes =
+            derivatives(&values, &model, &at_u, &|i| self.inputs.get(i).is_some_and(UncertainInput::jumps))?;
         let by_datum = slopes.columns(0, count) * &self.fit.response * self.widened;
         let u = |i: usize| by_datum.row(i).norm().hypot(slopes.columns(count, further).row(i).norm());
         Some(values.into_iter().enumerate().map(|(i, value)| (value, u(i))).collect())

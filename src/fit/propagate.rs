@@ -123,7 +123,7 @@ impl<'a> Model<'a> {
             return Some(slopes.clone());
         }
         let both = |by_u: &[f64]| self.moved(by_u).map(|(values, left)| [values, left].concat());
-        let slopes = derivatives(&both, at_u)?;
+        let slopes = derivatives(&both(at_u)?, &both, at_u, &|i| self.inputs[i].jumps())?;
         known().push((at_u.to_vec(), slopes.clone()));
         Some(slopes)
     }

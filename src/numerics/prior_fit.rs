@@ -70,29 +70,28 @@ pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFi
     })
 }
 
-/// ∂r/∂q by central differences, on all cores; a column an unknown.
+/// ∂r/∂q by differences from the values at `at`, on all cores; a column an unknown. Where an unknown `jumps`, any move of it changes more than
+/// its size says: its differences are those between both sides.
 #[must_use]
-pub fn derivatives(model: Residuals, at: &[f64]) -> Option<DMatrix<f64>> {
-    let side = |i: usize, step: f64| stepped(model, at, i, step);
-    by_column(at.len(), &|i| Some((side(i, STEP)? - side(i, -STEP)?) / (2.0 * STEP)))
-}
-
-/// The same from one side, where the values at `at` are had already and what bends the model within a step does not matter.
-pub fn derivatives_beyond(values: &[f64], model: Residuals, at: &[f64]) -> Option<DMatrix<f64>> {
+pub fn derivatives(
+    values: &[f64],
+    model: Residuals,
+    at: &[f64],
+    jumps: &(dyn Fn(usize) -> bool + Sync),
+) -> Option<DMatrix<f64>> {
     let before = DVector::from_column_slice(values);
-    by_column(at.len(), &|i| Some((stepped(model, at, i, STEP)? - &before) / STEP))
-}
-
-fn stepped(model: Residuals, at: &[f64], i: usize, step: f64) -> Option<DVector<f64>> {
-    let mut moved = at.to_vec();
-    moved[i] += step;
-    model(&moved).map(DVector::from_vec)
-}
-
-fn by_column(count: usize, of: &(dyn Fn(usize) -> Option<DVector<f64>> + Sync)) -> Option<DMatrix<f64>> {
-    let columns: Vec<DVector<f64>> = (0..count).into_par_iter().map(of).collect::<Option<_>>()?;
+    let beside = |i: usize, step: f64| {
+        let mut moved = at.to_vec();
+        moved[i] += step;
+        model(&moved).map(DVector::from_vec)
+    };
+    let of = |i: usize| {
+        let after = beside(i, STEP)?;
+        Some(if jumps(i) { (after - beside(i, -STEP)?) / (2.0 * STEP) } else { (after - &before) / STEP })
+    };
+    let columns: Vec<DVector<f64>> = (0..at.len()).into_par_iter().map(of).collect::<Option<_>>()?;
     let rows = columns.first().map_or(0, DVector::len);
-    Some(if rows == 0 { DMatrix::zeros(0, count) } else { DMatrix::from_columns(&columns) })
+    Some(if rows == 0 { DMatrix::zeros(0, at.len()) } else { DMatrix::from_columns(&columns) })
 }
 
 struct PriorProblem<'a> {
@@ -137,7 +136,7 @@ mod tests {
     use super::*;
 
     fn by_differences(count: usize, residuals: Residuals) -> Option<PriorFit> {
-        fit(count, residuals, &|at| derivatives(residuals, at))
+        fit(count, residuals, &|at| derivatives(&residuals(at)?, residuals, at, &|_| false))
     }
 
     #[test]
