@@ -24,7 +24,7 @@ const MODEL_SHARE: f64 = 0.005;
 const LENGTHS_S: [f64; 7] = [0.4e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3, 3e-3, 4e-3];
 /// Longest first contact whose peak is looked at, s.
 const CONTACT_S: f64 = 0.02;
-/// A stretch is fitted in so many means of neighbouring samples or a few more: over the longest 50 to a period of 450 Hz.
+/// A stretch is fitted in so many means of neighbouring samples at the most: over the longest 50 to a period of 450 Hz.
 const POINTS: usize = 160;
 /// Steps that differ by less than this share are the same: over a fit of [`POINTS`] it stays below a millionth of one.
 const SAME_STEP: f64 = 1e-9;
@@ -205,7 +205,7 @@ impl<'a> Answering<'a> {
         if to - self.seen < ORDERS.len() + 4 {
             return None;
         }
-        let block = ((to - from) / POINTS).max(1);
+        let block = (to - from).div_ceil(POINTS);
         let values = block_means(self.signal.force_m_s2.get(from..to)?, block);
         // As long in time where the other channel has another rate.
         let of_cause = samples(as_f64(block) * self.cause.sample_rate_hz / rate_hz).max(1);
