@@ -12,6 +12,9 @@ pub const CFC_DESIGN: f64 = 2.0775;
 /// −3 dB frequency of two passes of a second-order Butterworth over its design frequency: (√2 − 1)^(1/4).
 pub const TWO_PASS_CUTOFF: f64 = 0.802_243_262_923_150_2;
 
+/// Paddings after which nothing is left of a sample: 1e-18 of it.
+const FORGOTTEN: usize = 3;
+
 /// Two passes of a second-order Butterworth low-pass in trapezoidal state-variable form.
 ///
 /// g = tan(π f / f_s), R = 1/√2; the state-variable form keeps its round-off near 1e-15 of the peak where direct forms
@@ -64,7 +67,7 @@ impl ZeroPhaseLowPass {
     pub fn apply_each(&self, all: &[&[f64]]) -> Vec<Vec<f64>> {
         let continued = |samples: &&[f64]| ends::continued(samples, self.padding, |_, x| x);
         let (mut work, heads): (Vec<_>, Vec<_>) = all.iter().map(continued).unzip();
-        stage::each_forward_and_back(&self.stage, &mut work);
+        stage::each_forward_and_back(&self.stage, FORGOTTEN * self.padding, &mut work);
         work.into_iter()
             .zip(heads)
             .zip(all)
@@ -79,7 +82,7 @@ impl ZeroPhaseLowPass {
             let after = std::iter::repeat_n(&0.0, self.padding);
             std::iter::once(&0.0).chain(pulse).chain(after).copied().collect::<Vec<f64>>()
         });
-        stage::each_forward_and_back(&self.stage, &mut work);
+        stage::each_forward_and_back(&self.stage, FORGOTTEN * self.padding, &mut work);
         let mut counts = pulses.iter().map(|pulse| pulse.len());
         work.map(|work| ends::cut(work, 1, counts.next().unwrap_or_default()))
     }
