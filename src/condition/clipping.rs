@@ -2,6 +2,7 @@
 
 use crate::data::{Channel, Span};
 use crate::numerics::{reduce, robust};
+use std::cell::LazyCell;
 
 /// Fewest samples at an extreme that make a flat top.
 const LEAST_RUN: usize = 3;
@@ -32,8 +33,11 @@ pub(super) fn clipped(channel: &Channel, force: &[f64], noise_m_s2: f64, quiet: 
     let (low, high) = reduce::extremes(force, 0.0);
     let peak = high.max(-low);
     // Where the converter's step exceeds the noise, all that lies within a step is one to it.
-    let step = Some(step(force, channel.time_jitter_s > 0.0, peak)).filter(|s| s.is_finite()).unwrap_or(0.0);
-    let band = (NOISE_FACTOR * noise_m_s2).max(step + LEAST_STEP * peak);
+    let moved = channel.time_jitter_s > 0.0;
+    let step = LazyCell::new(|| Some(step(force, moved, peak)).filter(|s| s.is_finite()).unwrap_or(0.0));
+    let (noise, least) = (NOISE_FACTOR * noise_m_s2, LEAST_STEP * peak);
+    let is_noise = !moved && reduce::least_step_beyond(force, least, noise - least) == 0.0;
+    let band = if is_noise { noise } else { noise.max(*step + least) };
     for extreme in [low, high] {
         if extreme.abs() < 4.0 * band {
             continue;
@@ -41,7 +45,7 @@ pub(super) fn clipped(channel: &Channel, force: &[f64], noise_m_s2: f64, quiet: 
         for span in runs(force, |f| (f - extreme).abs() <= band) {
             let is_known = spans.iter().any(|s: &Span| s.from < span.to && span.from < s.to);
             let is_rail =
-                |span| is_flat_top(force, span, band, step) && !carries_noise(force, span, roughness);
+                |span| is_flat_top(force, span, band, *step) && !carries_noise(force, span, roughness);
             if span.to - span.from >= LEAST_RUN && !is_known && is_rail(span) {
                 spans.push(span);
             }

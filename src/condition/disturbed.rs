@@ -23,8 +23,8 @@ const LEAST_QUIET_RUN: usize = 8;
 const MOST_REPEATED: f64 = 0.09;
 
 /// The height above which something is a disturbance, m/s².
-fn height(signal: &Signal, noise_m_s2: f64) -> f64 {
-    (SHARE_OF_PEAK * reduce::peak(&signal.force_m_s2)).max(NOISE_FACTOR * noise_m_s2)
+fn height(peak_m_s2: f64, noise_m_s2: f64) -> f64 {
+    (SHARE_OF_PEAK * peak_m_s2).max(NOISE_FACTOR * noise_m_s2)
 }
 
 fn is_lost(signal: &Signal, index: usize) -> bool {
@@ -34,7 +34,7 @@ fn is_lost(signal: &Signal, index: usize) -> bool {
 /// Spikes of one to five samples with what they hold together; nothing is repaired.
 pub(super) fn spikes(signal: &Signal, velocity_step_m_s: f64) -> Option<Finding> {
     let force = &signal.force_m_s2;
-    let height = height(signal, signal.noise_m_s2);
+    let height = height(reduce::peak(force), signal.noise_m_s2);
     let most_m_s = SHARE_OF_STEP * velocity_step_m_s.abs();
     let (mut found, mut held_m_s) = (Vec::new(), 0.0);
     // Few samples stand out of the one before: what costs more is asked after that.
@@ -75,10 +75,16 @@ fn area(force: &[f64], i: usize, width: usize, height: f64) -> Option<f64> {
 
 /// Runs of equal samples that no converter gives, marked as gaps and set to 0, and said so.
 pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64) -> Option<Finding> {
-    let height = height(signal, noise_m_s2);
     let end = signal.index_from(before_s);
     let force = &signal.force_m_s2;
+    #[allow(clippy::float_cmp, reason = "a dropout repeats a sample to the bit")]
+    let equal: Vec<Span> =
+        runs_of_steps(force, |a, b| a == b).into_iter().filter(|s| s.to + 1 - s.from >= LEAST_RUN).collect();
+    if equal.is_empty() {
+        return None;
+    }
     let (low, high) = reduce::extremes(force, 0.0);
+    let height = height(high.max(-low), noise_m_s2);
     let quiet = force.get(..end).unwrap_or_default();
     #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
     let repeated = {
@@ -88,19 +94,16 @@ pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64)
     };
     let is_noisy = quiet.len() > 50 && repeated < MOST_REPEATED;
     let jump = |a: usize, b: usize| force.get(a).zip(force.get(b)).map_or(0.0, |(x, y)| (x - y).abs());
-    #[allow(clippy::float_cmp, reason = "a dropout repeats a sample to the bit")]
-    let equal = runs_of_steps(force, |a, b| a == b);
     let dropouts: Vec<Span> = equal
         .into_iter()
         .map(|steps| (steps.from, steps.to + 1))
-        .filter(|&(from, to)| to - from >= LEAST_RUN)
         .filter(|&(from, to)| {
             let jumps =
                 from.checked_sub(1).is_some_and(|i| jump(i, from) > height) || jump(to - 1, to) > height;
             let least = if is_noisy { LEAST_QUIET_RUN } else { usize::MAX };
             #[allow(clippy::float_cmp, reason = "a limit repeats to the bit")]
             let at_limit = (force[from] == low || force[from] == high) && force[from] != 0.0;
-            (to - from >= least || to - from >= LEAST_RUN && jumps) && !at_limit && !is_lost(signal, from)
+            (to - from >= least || jumps) && !at_limit && !is_lost(signal, from)
         })
         .map(|(from, to)| Span { from, to })
         .collect();

@@ -1,7 +1,7 @@
 //! The free fall before first contact to a channel's offset and noise.
 
 use crate::data::{ChannelFinding, Finding, Severity, Signal};
-use crate::numerics::reduce::{self, block_means, block_of, converter_step};
+use crate::numerics::reduce::{self, block_means, block_of};
 use crate::numerics::{as_f64, noise, robust};
 use std::borrow::Cow;
 
@@ -72,8 +72,8 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<F
 
 /// What a level between two steps q of a converter is off by, q/√12, where the noise is less than half a step and so does not average it out.
 fn rounding_m_s2(signal: &Signal, noise_m_s2: f64) -> f64 {
-    let step_m_s2 = converter_step(&signal.force_m_s2);
-    if noise_m_s2 < step_m_s2 / 2.0 { step_m_s2 / 12.0_f64.sqrt() } else { 0.0 }
+    let force = &signal.force_m_s2;
+    reduce::least_step_beyond(force, 1e-9 * reduce::peak(force), 2.0 * noise_m_s2) / 12.0_f64.sqrt()
 }
 
 /// The first `end` samples but for those that are missing.

@@ -50,11 +50,21 @@ pub fn least_step<T: Copy + Into<f64>>(samples: &[T], least: f64) -> f64 {
     smallest.into_iter().fold(f64::INFINITY, f64::min)
 }
 
+/// [`least_step`], or 0 where there is none or it is no more than `limit`, which the first samples often tell.
+#[must_use]
+pub fn least_step_beyond(samples: &[f64], least: f64, limit: f64) -> f64 {
+    const FIRST: usize = 4096;
+    let within = |samples: &[f64]| least_step(samples, least);
+    if within(&samples[..samples.len().min(FIRST)]) <= limit {
+        return 0.0;
+    }
+    Some(within(samples)).filter(|step| *step > limit && step.is_finite()).unwrap_or(0.0)
+}
+
 /// Step of the converter that the samples are from: the smallest change that is told from rounding; 0 where nothing changes.
 #[must_use]
 pub fn converter_step(samples: &[f64]) -> f64 {
-    let step = least_step(samples, 1e-9 * peak(samples));
-    if step.is_finite() { step } else { 0.0 }
+    least_step_beyond(samples, 1e-9 * peak(samples), 0.0)
 }
 
 /// Σ x.
