@@ -1,5 +1,6 @@
 //! What the stages found to one [`Analysis`].
 
+use super::flight::Flown;
 use super::impact::Impact;
 use super::impacts;
 use super::reached::Reached;
@@ -7,7 +8,7 @@ use super::setup::sticking;
 use crate::data::{
     Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, Drop, DropResult, End, Estimate, Events,
     Finding, FirstImpact, ImpactTable, Input, ModelChoice, Prediction, Quantities, Recording, Rung, Setting,
-    Setup, Signal, SlapDown,
+    Signal, SlapDown,
 };
 use crate::numerics::reduce::peak;
 use crate::{compare, fit, judge, motion, predict};
@@ -45,7 +46,7 @@ pub(super) fn of(
         Reached::Impact | Reached::Flown(_) => None,
     };
     let quantities = measured.map(|flown| &flown.quantities);
-    let effect = || filter_effect(&smooth, &events, file, &measured?.setup, quantities?);
+    let effect = || filter_effect(&smooth, &events, file, measured?);
     let signals = impact.recorded();
     let (effect, curves) =
         rayon::join(effect, || motion::channel_curves(signals, &smooth, &events, &sticking(file)));
@@ -178,19 +179,17 @@ fn filter_effect(
     smooth: &[Signal],
     events: &Events,
     file: &CaskFile,
-    setup: &Setup,
-    quantities: &Quantities,
+    Flown { setup, quantities, flight, .. }: &Flown,
 ) -> Option<String> {
     let speed = quantities.speed?;
-    let (contact_s, left_s) = (events.first_contact?.time_s, events.separation?.time_s);
     let window = motion::Window {
-        from_s: motion::clear_of_contact_s(contact_s, left_s),
-        to_s: events.slap_down?.time_s - motion::BEFORE_SLAP_DOWN_S,
+        from_s: flight.from_s,
+        to_s: flight.to_s,
         drift: file.corrections.zero_shift,
         angular_velocity_rad_s: quantities.angular_velocity.value,
     };
-    let integrated = motion::Integrated::over(smooth, contact_s);
-    let flight = motion::fit_flight(&integrated, &window, None, setup.cog_m)?;
+    let integrated = motion::Integrated::over(smooth, events.first_contact?.time_s);
+    let flight = motion::with_modes(&integrated, flight, &window, setup.cog_m)?;
     let motion = motion::outcome(&integrated, &flight, events, setup)?;
     let (horizontal_m_s, vertical_m_s) = motion.second_end_m_s?;
     Some(format!(

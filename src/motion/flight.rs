@@ -3,7 +3,7 @@
 use super::{Integrated, Velocity, Window};
 use crate::data::{Axis, FlightFit, FlightModelScore, Mode, Plateau, Signal};
 use crate::numerics::damped_modes::{
-    Drive, Fit, Form, Oscillation, Seeds, Series, SeriesFit, fit, uniform_ringing,
+    Drive, Fit, Form, Oscillation, Seeds, Series, SeriesFit, describe, fit, uniform_ringing,
 };
 use crate::numerics::noise::integral_uncertainty_by;
 use crate::numerics::robust;
@@ -181,15 +181,26 @@ pub fn mean_of_flight(
     window: &Window,
     cog_m: f64,
 ) -> Option<FlightFit> {
+    with_modes(integrated, &FlightFit { modes: Vec::new(), drift: false, ..best.clone() }, window, cog_m)
+}
+
+/// The same window and the same modes, in the sizes that they have in these signals.
+#[must_use]
+pub fn with_modes(
+    integrated: &Integrated,
+    best: &FlightFit,
+    window: &Window,
+    cog_m: f64,
+) -> Option<FlightFit> {
     let window = Window { from_s: best.from_s, to_s: best.to_s, ..*window };
     let series = series(integrated, &window, cog_m);
-    let mean = fit(&series, &[], None, Form::FREE)?;
-    Some(FlightFit {
-        plateaus: plateaus(&integrated.signals, &mean, &[&mean]),
-        modes: Vec::new(),
-        drift: false,
-        ..best.clone()
-    })
+    let again = describe(&series, oscillations(best), Form { drift: best.drift, drive: None })?;
+    Some(FlightFit { plateaus: plateaus(&integrated.signals, &again, &[&again]), ..best.clone() })
+}
+
+/// The modes of a fit.
+pub(super) fn oscillations(fit: &FlightFit) -> Vec<Oscillation> {
+    fit.modes.iter().map(|m| Oscillation { frequency_hz: m.frequency_hz, damping: m.damping }).collect()
 }
 
 /// Mean of a channel's modes over a stretch counted from the flight window's start, m/s.

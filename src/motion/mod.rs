@@ -12,7 +12,7 @@ mod window;
 
 pub use contact::{ChannelPulse, ContactCourse, ForceCourse, PulseLength, largest, pulses};
 pub use curves::{channel_curves, cutoff_hz, filter_name, filtered, read_channels, usual_filters};
-pub use flight::{compare_late, fit_flight, fit_flights, mean_of_flight};
+pub use flight::{compare_late, fit_flight, fit_flights, mean_of_flight, with_modes};
 pub use histories::drive;
 pub use reconstruct::{outcome, reconstruct, with_states};
 pub use ringing::{Calmed, mirrored, rotation_rad_s, turned_rad_s};

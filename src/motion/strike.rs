@@ -1,10 +1,9 @@
 //! A flight to the blow that the cask took in it, where one explains it better than ringing does.
 
-use super::flight::series;
+use super::flight::{oscillations, series};
 use super::{Integrated, Window};
 use crate::data::{Axis, FlightFit, Strike};
-use crate::numerics::damped_modes::{Form, Oscillation, Series, coefficients, fit};
-use rayon::prelude::*;
+use crate::numerics::damped_modes::{Form, Steps, fit};
 
 /// Places tried over the flight, and about the best of them.
 const PLACES: u32 = 24;
@@ -26,41 +25,35 @@ pub fn strike(flight: &FlightFit, integrated: &Integrated, window: &Window, cog_
     if series.iter().any(|s| !s.steps_s.is_empty() || s.value.len() < FEWEST) {
         return None;
     }
-    let mut strongest: Vec<_> = flight.modes.iter().collect();
-    strongest.sort_by(|a, b| b.amplitude_m_s.total_cmp(&a.amplitude_m_s));
-    let modes: Vec<Oscillation> =
-        strongest.iter().map(|m| Oscillation { frequency_hz: m.frequency_hz, damping: m.damping }).collect();
+    let mut strongest = flight.clone();
+    strongest.modes.sort_by(|a, b| b.amplitude_m_s.total_cmp(&a.amplitude_m_s));
+    let modes = oscillations(&strongest);
     let taken = fit(&series, &modes, None, Form { drift: flight.drift, drive: None })?;
     let length_s = window.to_s - window.from_s;
-    let with_step = |form: (usize, bool), after_s: f64| {
-        let (kept, drift) = form;
-        let stepped: Vec<Series> =
-            series.iter().map(|s| Series { steps_s: vec![after_s], ..s.clone() }).collect();
-        let fit = coefficients(&stepped, modes[..kept].to_vec(), Form { drift, drive: None })?;
-        Some((fit.bic(&stepped, taken.correlation), form, after_s, fit))
-    };
-    let best = |places: Vec<((usize, bool), f64)>| {
-        let tried = places.into_par_iter().filter_map(|(form, after_s)| with_step(form, after_s));
-        tried.min_by(|a, b| a.0.total_cmp(&b.0))
-    };
     let share = |i: u32| FIRST_PART + (1.0 - FIRST_PART - LAST_PART) * f64::from(i) / f64::from(PLACES);
     let drifts = if flight.drift { &[false, true][..] } else { &[false] };
     let forms = (0..=modes.len()).flat_map(|kept| drifts.iter().map(move |&drift| (kept, drift)));
-    let coarse = forms.flat_map(|form| (0..=PLACES).map(move |i| (form, share(i) * length_s)));
-    let (_, form, about_s, _) = best(coarse.collect())?;
+    let beside =
+        |(kept, drift): (usize, bool)| Steps::new(&series, &modes[..kept], Form { drift, drive: None });
+    let steps: Vec<Steps> = forms.filter_map(beside).collect();
+    let least = |a: &(f64, f64, usize), b: &(f64, f64, usize)| a.0.total_cmp(&b.0);
+    let with_step =
+        |form: usize, after_s: f64| Some((steps[form].bic(after_s, taken.correlation)?, after_s, form));
+    let coarse = (0..steps.len()).flat_map(|form| (0..=PLACES).map(move |i| (form, share(i) * length_s)));
+    let (_, about_s, form) = coarse.filter_map(|(form, after_s)| with_step(form, after_s)).min_by(least)?;
     let step_s = length_s / f64::from(PLACES);
-    let fine =
-        (0..=REFINED).map(|i| (form, about_s + step_s * (2.0 * f64::from(i) / f64::from(REFINED) - 1.0)));
-    let (bic, _, after_s, found) = best(fine.collect())?;
+    let fine = (0..=REFINED).map(|i| about_s + step_s * (2.0 * f64::from(i) / f64::from(REFINED) - 1.0));
+    let (bic, after_s, _) = fine.filter_map(|after_s| with_step(form, after_s)).min_by(least)?;
     if !(share(0)..=share(PLACES)).contains(&(after_s / length_s)) {
         return None;
     }
-    let of_transverse =
-        integrated.signals.iter().zip(&found.series).filter(|(s, _)| s.axis == Axis::Transverse);
-    let steps_m_s = of_transverse.filter_map(|(_, f)| f.jumps.first());
+    let jumps = steps[form].at(after_s)?;
+    let of_transverse = integrated.signals.iter().zip(jumps).filter(|(s, _)| s.axis == Axis::Transverse);
     Some(Strike {
         time_s: window.from_s + after_s,
-        step_m_s: steps_m_s.copied().max_by(|a, b| a.abs().total_cmp(&b.abs()))?,
+        step_m_s: of_transverse
+            .map(|(_, (jump_m_s, _))| jump_m_s)
+            .max_by(|a, b| a.abs().total_cmp(&b.abs()))?,
         gain: taken.bic(&series, taken.correlation) - bic,
     })
 }

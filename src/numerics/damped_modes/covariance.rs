@@ -6,16 +6,16 @@ use super::series::{Fit, Oscillation, Series, SeriesFit};
 use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector};
 
-/// Coefficients, uncertainties and residuals at given modes.
-pub(super) fn describe(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
+/// Coefficients, uncertainties and residuals at given modes; `None` where a series has fewer than two points over.
+#[must_use]
+pub fn describe(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
     let mut fit = coefficients(series, modes, form)?;
     uncertainties(series, &mut fit, form)?;
     Some(fit)
 }
 
 /// Coefficients and residuals at given modes; the uncertainties are left at 0.
-#[must_use]
-pub fn coefficients(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
+fn coefficients(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
     let drift = form.drift;
     let mut fits = Vec::new();
     let mut lag_sum = 0.0;

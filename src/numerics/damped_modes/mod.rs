@@ -6,9 +6,9 @@ mod projection;
 mod ringing;
 mod seeds;
 mod series;
+mod steps;
 
-pub use covariance::coefficients;
-use covariance::describe;
+pub use covariance::describe;
 use projection::refine;
 use seeds::best_seed;
 
@@ -16,6 +16,7 @@ pub use drive::{Drive, Form};
 pub use ringing::uniform_ringing;
 pub use seeds::Seeds;
 pub use series::{Fit, Oscillation, Series, SeriesFit};
+pub use steps::Steps;
 
 /// A mode damped more than this is none: bolted and welded structures have 0.5 to 8 %, and an oscillation that dies within a
 /// period can stand for anything.

@@ -74,6 +74,11 @@ impl<T> OfTimes<T> {
         Self { made, places }
     }
 
+    /// What each becomes.
+    pub(super) fn map<U>(self, of: impl Fn(T) -> U) -> OfTimes<U> {
+        OfTimes { made: self.made.into_iter().map(of).collect(), places: self.places }
+    }
+
     /// That of each series.
     pub(super) fn each(&self) -> impl Iterator<Item = &T> {
         self.places.iter().map(|&place| &self.made[place])

@@ -139,7 +139,7 @@ fn explained([size, shared, left]: [f64; 3], along: [f64; 2]) -> f64 {
 }
 
 /// An orthonormal basis of what the modes known so far explain; `None` where one mode more would leave fewer than two points over.
-fn basis(series: &Series, start: &[Oscillation], form: Form) -> Option<DMatrix<f64>> {
+pub(super) fn basis(series: &Series, start: &[Oscillation], form: Form) -> Option<DMatrix<f64>> {
     let matrix = columns(series, start, form);
     (matrix.nrows() >= matrix.ncols() + form.width() + 2).then(|| matrix.qr().q())
 }
