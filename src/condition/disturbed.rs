@@ -77,9 +77,7 @@ fn area(force: &[f64], i: usize, width: usize, height: f64) -> Option<f64> {
 pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64) -> Option<Finding> {
     let end = signal.index_from(before_s);
     let force = &signal.force_m_s2;
-    #[allow(clippy::float_cmp, reason = "a dropout repeats a sample to the bit")]
-    let equal: Vec<Span> =
-        runs_of_steps(force, |a, b| a == b).into_iter().filter(|s| s.to + 1 - s.from >= LEAST_RUN).collect();
+    let equal = repeats(force);
     if equal.is_empty() {
         return None;
     }
@@ -118,6 +116,22 @@ pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64)
     signal.gaps.sort_by_key(|gap| gap.from);
     let found = ChannelFinding::Dropout { stretches, samples, most_m_s };
     Some(found.on(&signal.name).between(signal.time_s(first.from), signal.time_s(last.to)))
+}
+
+/// Runs of [`LEAST_RUN`] equal samples and more, from the first step between them to behind the last: each holds a step in so many less one, so
+/// that the others are not asked.
+fn repeats(force: &[f64]) -> Vec<Span> {
+    #[allow(clippy::float_cmp, reason = "a dropout repeats a sample to the bit")]
+    let repeats = |&i: &usize| force.get(i).zip(force.get(i + 1)).is_some_and(|(a, b)| a == b);
+    let mut found: Vec<Span> = Vec::new();
+    for i in (0..force.len()).step_by(LEAST_RUN - 1) {
+        if repeats(&i) && found.last().is_none_or(|before| i >= before.to) {
+            let from = (0..i).rev().take_while(repeats).last().unwrap_or(i);
+            let to = (i..).take_while(repeats).last().map_or(i, |last| last + 1);
+            found.extend((to + 1 - from >= LEAST_RUN).then_some(Span { from, to }));
+        }
+    }
+    found
 }
 
 /// What a straight bridge over a span holds, against 0, m/s.
