@@ -1,9 +1,10 @@
 //! The free-flight window to plateaus, drift and as many damped modes as the data call for.
 
+use super::ringing::oscillation;
 use super::{Integrated, Velocity, Window};
 use crate::data::{Axis, FlightFit, FlightModelScore, Mode, Plateau, Signal};
 use crate::numerics::damped_modes::{
-    Drive, Fit, Form, Oscillation, Seeds, Series, SeriesFit, describe, fit, uniform_ringing,
+    Drive, Fit, Form, Oscillation, Seeds, Series, SeriesFit, fit, uniform_ringing,
 };
 use crate::numerics::noise::integral_uncertainty_by;
 use crate::numerics::robust;
@@ -173,43 +174,12 @@ fn described(signals: &[Signal], window: &Window, scored: &[(f64, Fit)], taken: 
     }
 }
 
-/// The same window with each velocity step the mean over it: no mode, no drift. The candidates stay those of the best fit.
-#[must_use]
-pub fn mean_of_flight(
-    integrated: &Integrated,
-    best: &FlightFit,
-    window: &Window,
-    cog_m: f64,
-) -> Option<FlightFit> {
-    with_modes(integrated, &FlightFit { modes: Vec::new(), drift: false, ..best.clone() }, window, cog_m)
-}
-
-/// The same window and the same modes, in the sizes that they have in these signals.
-#[must_use]
-pub fn with_modes(
-    integrated: &Integrated,
-    best: &FlightFit,
-    window: &Window,
-    cog_m: f64,
-) -> Option<FlightFit> {
-    let window = Window { from_s: best.from_s, to_s: best.to_s, ..*window };
-    let series = series(integrated, &window, cog_m);
-    let again = describe(&series, oscillations(best), Form { drift: best.drift, drive: None })?;
-    Some(FlightFit { plateaus: plateaus(&integrated.signals, &again, &[&again]), ..best.clone() })
-}
-
-/// The modes of a fit.
-pub(super) fn oscillations(fit: &FlightFit) -> Vec<Oscillation> {
-    fit.modes.iter().map(|m| Oscillation { frequency_hz: m.frequency_hz, damping: m.damping }).collect()
-}
-
 /// Mean of a channel's modes over a stretch counted from the flight window's start, m/s.
 fn mean_ringing_m_s(flight: &FlightFit, plateau: &Plateau, after_s: std::ops::Range<f64>) -> f64 {
     let points: u16 = 40;
     let step_s = (after_s.end - after_s.start) / f64::from(points);
     let of_mode = |(m, &(a, b)): (&Mode, &(f64, f64))| {
-        let mode = Oscillation { frequency_hz: m.frequency_hz, damping: m.damping };
-        let ringing = uniform_ringing(mode, after_s.start + step_s / 2.0, step_s);
+        let ringing = uniform_ringing(oscillation(m), after_s.start + step_s / 2.0, step_s);
         ringing.take(usize::from(points)).map(|z| (a * z.re + b * z.im) / f64::from(points)).sum::<f64>()
     };
     flight.modes.iter().zip(&plateau.ringing_m_s).map(of_mode).sum()
@@ -388,7 +358,7 @@ fn mode(fit: &Fit, index: usize) -> Mode {
 }
 
 /// Plateaus of the best fit; what candidates that cannot be told from it say otherwise adds to their uncertainty.
-fn plateaus(signals: &[Signal], best: &Fit, rivals: &[&Fit]) -> Vec<Plateau> {
+pub(super) fn plateaus(signals: &[Signal], best: &Fit, rivals: &[&Fit]) -> Vec<Plateau> {
     signals
         .iter()
         .enumerate()

@@ -9,6 +9,11 @@ use std::ops::Range;
 /// nothing of it there, and an error of its damping would be blown up likewise.
 const MOST_GROWTH: f64 = 1.6;
 
+/// A mode by its frequency and damping alone.
+pub(super) fn oscillation(mode: &Mode) -> Oscillation {
+    Oscillation { frequency_hz: mode.frequency_hz, damping: mode.damping }
+}
+
 /// A sum of signals from which ringing and zero shift can be taken off, and again with another fit.
 pub struct Calmed {
     signal: Signal,
@@ -65,8 +70,7 @@ impl Calmed {
         let known_from = calm.index_from(begin_s - MOST_GROWTH / decay.max(f64::MIN_POSITIVE)).max(from);
         let tau_s = calm.time_s(known_from) - begin_s;
         let (cosine, sine) = (omega * b - decay * a, -omega * a - decay * b);
-        let mode = Oscillation { frequency_hz: mode.frequency_hz, damping: mode.damping };
-        let ringing = uniform_ringing(mode, tau_s, 1.0 / calm.sample_rate_hz);
+        let ringing = uniform_ringing(oscillation(mode), tau_s, 1.0 / calm.sample_rate_hz);
         for (force, z) in calm.force_m_s2.iter_mut().take(to).skip(known_from).zip(ringing) {
             *force -= cosine * z.re + sine * z.im;
         }

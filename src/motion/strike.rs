@@ -1,9 +1,10 @@
 //! A flight to the blow that the cask took in it, where one explains it better than ringing does.
 
-use super::flight::{oscillations, series};
+use super::flight::series;
+use super::ringing::oscillation;
 use super::{Integrated, Window};
 use crate::data::{Axis, FlightFit, Strike};
-use crate::numerics::damped_modes::{Form, Steps, fit};
+use crate::numerics::damped_modes::{CommonStep, Form, Oscillation, fit};
 
 /// Places tried over the flight, and about the best of them.
 const PLACES: u32 = 24;
@@ -25,17 +26,17 @@ pub fn strike(flight: &FlightFit, integrated: &Integrated, window: &Window, cog_
     if series.iter().any(|s| !s.steps_s.is_empty() || s.value.len() < FEWEST) {
         return None;
     }
-    let mut strongest = flight.clone();
-    strongest.modes.sort_by(|a, b| b.amplitude_m_s.total_cmp(&a.amplitude_m_s));
-    let modes = oscillations(&strongest);
+    let mut strongest: Vec<_> = flight.modes.iter().collect();
+    strongest.sort_by(|a, b| b.amplitude_m_s.total_cmp(&a.amplitude_m_s));
+    let modes: Vec<Oscillation> = strongest.into_iter().map(oscillation).collect();
     let taken = fit(&series, &modes, None, Form { drift: flight.drift, drive: None })?;
     let length_s = window.to_s - window.from_s;
     let share = |i: u32| FIRST_PART + (1.0 - FIRST_PART - LAST_PART) * f64::from(i) / f64::from(PLACES);
     let drifts = if flight.drift { &[false, true][..] } else { &[false] };
     let forms = (0..=modes.len()).flat_map(|kept| drifts.iter().map(move |&drift| (kept, drift)));
     let beside =
-        |(kept, drift): (usize, bool)| Steps::new(&series, &modes[..kept], Form { drift, drive: None });
-    let steps: Vec<Steps> = forms.filter_map(beside).collect();
+        |(kept, drift): (usize, bool)| CommonStep::new(&series, &modes[..kept], Form { drift, drive: None });
+    let steps: Vec<CommonStep> = forms.filter_map(beside).collect();
     let least = |a: &(f64, f64, usize), b: &(f64, f64, usize)| a.0.total_cmp(&b.0);
     let with_step =
         |form: usize, after_s: f64| Some((steps[form].bic(after_s, taken.correlation)?, after_s, form));

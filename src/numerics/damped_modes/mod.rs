@@ -1,22 +1,22 @@
 //! Noisy series to plateau, drift and damped modes that ring on them, by variable projection.
 
+mod common_step;
 mod covariance;
 mod drive;
 mod projection;
 mod ringing;
 mod seeds;
 mod series;
-mod steps;
 
 pub use covariance::describe;
 use projection::refine;
 use seeds::best_seed;
 
+pub use common_step::CommonStep;
 pub use drive::{Drive, Form};
 pub use ringing::uniform_ringing;
 pub use seeds::Seeds;
 pub use series::{Fit, Oscillation, Series, SeriesFit};
-pub use steps::Steps;
 
 /// A mode damped more than this is none: bolted and welded structures have 0.5 to 8 %, and an oscillation that dies within a
 /// period can stand for anything.

@@ -9,7 +9,7 @@ use crate::numerics::as_f64;
 use nalgebra::{DMatrix, DVector};
 
 /// Series beside known modes, ready to be asked for a step at any time.
-pub struct Steps<'a> {
+pub struct CommonStep<'a> {
     series: &'a [Series],
     without: Fit,
     /// Sums over the points from each one on, of the basis of the modes and of what they leave of each series.
@@ -29,7 +29,7 @@ fn sums_behind(columns: DMatrix<f64>) -> DMatrix<f64> {
     sums
 }
 
-impl<'a> Steps<'a> {
+impl<'a> CommonStep<'a> {
     /// `None` where the series have too few points for one step more.
     #[must_use]
     pub fn new(series: &'a [Series], modes: &[Oscillation], form: Form) -> Option<Self> {
