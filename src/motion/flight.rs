@@ -1,6 +1,5 @@
 //! The free-flight window to plateaus, drift and as many damped modes as the data call for.
 
-use super::ringing::oscillation;
 use super::{Integrated, Velocity, Window};
 use crate::data::{Axis, FlightFit, FlightModelScore, Mode, Plateau, Signal};
 use crate::numerics::damped_modes::{
@@ -172,6 +171,11 @@ fn described(signals: &[Signal], window: &Window, scored: &[(f64, Fit)], taken: 
             .collect(),
         strike: None,
     }
+}
+
+/// A mode by its frequency and damping alone.
+pub(super) fn oscillation(mode: &Mode) -> Oscillation {
+    Oscillation { frequency_hz: mode.frequency_hz, damping: mode.damping }
 }
 
 /// Mean of a channel's modes over a stretch counted from the flight window's start, m/s.

@@ -1,7 +1,6 @@
 //! A flight fit to the same window again: without its modes, or with them in other signals.
 
-use super::flight::{plateaus, series};
-use super::ringing::oscillation;
+use super::flight::{oscillation, plateaus, series};
 use super::{Integrated, Window};
 use crate::data::FlightFit;
 use crate::numerics::damped_modes::{Form, describe};

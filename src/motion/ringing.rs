@@ -1,18 +1,13 @@
 //! Signals and their flight fit to the same signals without ringing and zero shift.
 
-use super::flight::centrifugal_arm_m;
+use super::flight::{centrifugal_arm_m, oscillation};
 use crate::data::{Axis, End, FlightFit, Mode, Plateau, Signal};
-use crate::numerics::damped_modes::{Oscillation, uniform_ringing};
+use crate::numerics::damped_modes::uniform_ringing;
 use std::ops::Range;
 
 /// A mode that would have been this much larger at the time asked for (e^1.6, fivefold) is not followed back to it: the fit knows
 /// nothing of it there, and an error of its damping would be blown up likewise.
 const MOST_GROWTH: f64 = 1.6;
-
-/// A mode by its frequency and damping alone.
-pub(super) fn oscillation(mode: &Mode) -> Oscillation {
-    Oscillation { frequency_hz: mode.frequency_hz, damping: mode.damping }
-}
 
 /// A sum of signals from which ringing and zero shift can be taken off, and again with another fit.
 pub struct Calmed {

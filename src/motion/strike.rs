@@ -1,7 +1,6 @@
 //! A flight to the blow that the cask took in it, where one explains it better than ringing does.
 
-use super::flight::series;
-use super::ringing::oscillation;
+use super::flight::{oscillation, series};
 use super::{Integrated, Window};
 use crate::data::{Axis, FlightFit, Strike};
 use crate::numerics::damped_modes::{CommonStep, Form, Oscillation, fit};
