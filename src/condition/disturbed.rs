@@ -127,7 +127,7 @@ fn repeats(force: &[f64]) -> Vec<Span> {
     for i in (0..force.len()).step_by(LEAST_RUN - 1) {
         if repeats(&i) && found.last().is_none_or(|before| i >= before.to) {
             let from = (0..i).rev().take_while(repeats).last().unwrap_or(i);
-            let to = (i..).take_while(repeats).last().map_or(i, |last| last + 1);
+            let to = (i..force.len()).take_while(repeats).last().map_or(i, |last| last + 1);
             found.extend((to + 1 - from >= LEAST_RUN).then_some(Span { from, to }));
         }
     }

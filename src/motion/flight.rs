@@ -347,8 +347,7 @@ fn noise_floor((signal, velocity): (&Signal, &Velocity), contact_s: f64, length_
     let time_s: Vec<f64> = (0..points).map(|i| f64::from(i) * bin_s).collect();
     let value = time_s.iter().map(|a| velocity.mean(from_s + a, from_s + a + bin_s)).collect();
     let line = Series { time_s, value, steps_s: vec![], floor: 1e-12 };
-    fit(&[line], &[], None, Form { drift: true, drive: None })
-        .map_or(guessed, |f| f.series[0].residual.max(0.5 * guessed))
+    fit(&[line], &[], None, Form::free(true)).map_or(guessed, |f| f.series[0].residual.max(0.5 * guessed))
 }
 
 fn mode(fit: &Fit, index: usize) -> Mode {

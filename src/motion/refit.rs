@@ -26,10 +26,6 @@ pub fn with_modes(
 ) -> Option<FlightFit> {
     let window = Window { from_s: best.from_s, to_s: best.to_s, ..*window };
     let series = series(integrated, &window, cog_m);
-    let again = describe(
-        &series,
-        best.modes.iter().map(oscillation).collect(),
-        Form { drift: best.drift, drive: None },
-    )?;
+    let again = describe(&series, best.modes.iter().map(oscillation).collect(), Form::free(best.drift))?;
     Some(FlightFit { plateaus: plateaus(&integrated.signals, &again, &[&again]), ..best.clone() })
 }

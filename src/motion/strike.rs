@@ -28,13 +28,12 @@ pub fn strike(flight: &FlightFit, integrated: &Integrated, window: &Window, cog_
     let mut strongest: Vec<_> = flight.modes.iter().collect();
     strongest.sort_by(|a, b| b.amplitude_m_s.total_cmp(&a.amplitude_m_s));
     let modes: Vec<Oscillation> = strongest.into_iter().map(oscillation).collect();
-    let taken = fit(&series, &modes, None, Form { drift: flight.drift, drive: None })?;
+    let taken = fit(&series, &modes, None, Form::free(flight.drift))?;
     let length_s = window.to_s - window.from_s;
     let share = |i: u32| FIRST_PART + (1.0 - FIRST_PART - LAST_PART) * f64::from(i) / f64::from(PLACES);
     let drifts = if flight.drift { &[false, true][..] } else { &[false] };
     let forms = (0..=modes.len()).flat_map(|kept| drifts.iter().map(move |&drift| (kept, drift)));
-    let beside =
-        |(kept, drift): (usize, bool)| CommonStep::new(&series, &modes[..kept], Form { drift, drive: None });
+    let beside = |(kept, drift): (usize, bool)| CommonStep::new(&series, &modes[..kept], Form::free(drift));
     let steps: Vec<CommonStep> = forms.filter_map(beside).collect();
     let least = |a: &(f64, f64, usize), b: &(f64, f64, usize)| a.0.total_cmp(&b.0);
     let with_step =

@@ -66,12 +66,12 @@ impl TrueFlight {
     /// A plateau, with drift or with so many damped modes, sought one after another   (20)
     fn fitted(&self, drift: bool, modes: usize) -> Option<Vec<f64>> {
         let series: Vec<Series> = self.drop.signals.iter().map(|s| self.series(s)).collect();
-        let mut fitted = fit(&series, &[], None, Form { drift, drive: None })?;
+        let mut fitted = fit(&series, &[], None, Form::free(drift))?;
         if modes > 0 {
             let lowest_hz = LEAST_PERIODS / (self.window.to_s - self.window.from_s);
             let seeds = Seeds::new(&series, (lowest_hz, HIGHEST_HZ), None);
             for _ in 0..modes {
-                fitted = fit(&series, &fitted.modes, Some(&seeds), Form::FREE)?;
+                fitted = fit(&series, &fitted.modes, Some(&seeds), Form::free(false))?;
             }
         }
         Some(fitted.series.iter().map(|s| s.plateau).collect())

@@ -67,8 +67,11 @@ pub struct Form<'a> {
 }
 
 impl Form<'_> {
-    /// No drift, free phases.
-    pub const FREE: Form<'static> = Form { drift: false, drive: None };
+    /// Free phases.
+    #[must_use]
+    pub const fn free(drift: bool) -> Form<'static> {
+        Form { drift, drive: None }
+    }
 
     /// Unknowns that a mode adds to a series.
     #[must_use]

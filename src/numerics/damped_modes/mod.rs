@@ -82,8 +82,8 @@ mod tests {
     fn one_mode_is_found_and_taken_off() {
         let truth = [Oscillation { frequency_hz: 62.0, damping: 0.02 }];
         let series = ringing(&truth, 0.0);
-        let fit =
-            fit(&series, &[], Some(&Seeds::new(&series, (20.0, 600.0), None)), Form::FREE).expect("a fit");
+        let fit = fit(&series, &[], Some(&Seeds::new(&series, (20.0, 600.0), None)), Form::free(false))
+            .expect("a fit");
         assert!((fit.modes[0].frequency_hz - 62.0).abs() < 0.05, "{fit:?}");
         // The disturbance has 6e-4 RMS over 240 points: 1e-4 is three of its standard errors.
         assert!((fit.series[0].plateau - 20.0).abs() < 2e-4, "{}", fit.series[0].plateau);
@@ -99,11 +99,11 @@ mod tests {
         ];
         for (truth, expected) in [(&two[..0], 0), (&two[..1], 1), (&two[..2], 2)] {
             let series = ringing(truth, 0.0);
-            let mut fits = vec![fit(&series, &[], None, Form::FREE).expect("a line")];
+            let mut fits = vec![fit(&series, &[], None, Form::free(false)).expect("a line")];
             while fits.len() < 4 {
                 let start = fits[fits.len() - 1].modes.clone();
                 let Some(next) =
-                    fit(&series, &start, Some(&Seeds::new(&series, (20.0, 600.0), None)), Form::FREE)
+                    fit(&series, &start, Some(&Seeds::new(&series, (20.0, 600.0), None)), Form::free(false))
                 else {
                     break;
                 };
@@ -126,8 +126,8 @@ mod tests {
             *v += if *t > 0.03 { 1.5 } else { 0.0 };
         }
         series[0].steps_s = vec![0.03];
-        let fit =
-            fit(&series, &[], Some(&Seeds::new(&series, (20.0, 600.0), None)), Form::FREE).expect("a fit");
+        let fit = fit(&series, &[], Some(&Seeds::new(&series, (20.0, 600.0), None)), Form::free(false))
+            .expect("a fit");
         assert!((fit.series[0].jumps[0] - 1.5).abs() < 1e-3);
         assert!((fit.series[0].plateau - 20.0).abs() < 1e-3);
     }
@@ -136,6 +136,6 @@ mod tests {
     fn too_few_points_are_no_fit() {
         let series =
             vec![Series { time_s: vec![0.0, 1.0], value: vec![1.0, 1.0], steps_s: vec![], floor: 1.0 }];
-        assert!(fit(&series, &[], None, Form::FREE).is_none());
+        assert!(fit(&series, &[], None, Form::free(false)).is_none());
     }
 }

@@ -319,7 +319,7 @@ mod tests {
 
     #[test]
     fn slopes_are_those_of_free_modes() {
-        slopes_are_those_of_the_residuals(Form::FREE);
+        slopes_are_those_of_the_residuals(Form::free(false));
     }
 
     #[test]
