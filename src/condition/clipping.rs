@@ -37,7 +37,7 @@ pub(super) fn clipped(channel: &Channel, force: &[f64], noise_m_s2: f64, quiet: 
     let step = LazyCell::new(|| Some(step(force, moved, peak)).filter(|s| s.is_finite()).unwrap_or(0.0));
     let (noise, least) = (NOISE_FACTOR * noise_m_s2, LEAST_STEP * peak);
     let is_noise = !moved && reduce::least_step_beyond(force, least, noise - least) == 0.0;
-    let band = if is_noise { noise } else { noise.max(*step + least) };
+    let band = noise.max(least + if is_noise { 0.0 } else { *step });
     for extreme in [low, high] {
         if extreme.abs() < 4.0 * band {
             continue;
