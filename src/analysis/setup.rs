@@ -1,6 +1,6 @@
 //! A cask file to geometry and initial motion.
 
-use crate::data::{AxialClosure, CaskFile, Setup};
+use crate::data::{AxialClosure, CONTACT_STEPS, CaskFile, Setup};
 
 /// A friction that nobody states lies between none and what sticking needs, and more than that does as much: in the middle of what 0.1 and
 /// more give, as a share of what sticking needs, and with a standard uncertainty that takes both ends in.
@@ -22,5 +22,6 @@ pub fn sticking(cask_file: &CaskFile) -> Setup {
         gravity_m_s2: cask_file.drop.gravity_m_s2,
         axial: AxialClosure::Sticking,
         second_s: 1.0,
+        contact_steps: CONTACT_STEPS,
     }
 }

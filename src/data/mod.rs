@@ -50,7 +50,9 @@ pub use impacts::{ChannelPeak, ForceOverCrush, ImpactTable, RigidBodyDeceleratio
 pub use keys::LONGEST_CONTACT_S;
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
 pub use listing::{ListedChannel, Listing};
-pub use motion::{AssumedFriction, AxialClosure, ChannelReading, Motion, MotionState, Setup, StoodIn};
+pub use motion::{
+    AssumedFriction, AxialClosure, CONTACT_STEPS, ChannelReading, Motion, MotionState, Setup, StoodIn,
+};
 pub use onset::Onset;
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
 pub use quantities::{Contribution, Quantities};

@@ -45,13 +45,16 @@ impl RungTaken {
     #[must_use]
     pub fn spread(&self, further: usize, of: NumbersOf) -> Option<Vec<(f64, f64)>> {
         let count = self.inputs.len();
-        let model = |by_u: &[f64]| {
-            of(&self.base.moved(&self.inputs, &by_u[..count]), by_u.get(count..).unwrap_or(&[]))
+        let model = |base: &Inputs, by_u: &[f64]| {
+            of(&base.moved(&self.inputs, &by_u[..count]), by_u.get(count..).unwrap_or(&[]))
         };
         let at_u = [&self.fit.unknowns[..], &vec![0.0; further]].concat();
-        let values = model(&at_u)?;
-        let slopes =
-            derivatives(&values, &model, &at_u, &|i| self.inputs.get(i).is_some_and(UncertainInput::jumps))?;
+        let values = model(&self.base, &at_u)?;
+        let base = self.base.for_slopes();
+        let beside = |by_u: &[f64]| model(&base, by_u);
+        let slopes = derivatives(&beside(&at_u)?, &beside, &at_u, &|i| {
+            self.inputs.get(i).is_some_and(UncertainInput::jumps)
+        })?;
         let by_datum = slopes.columns(0, count) * &self.fit.response * self.widened;
         let u = |i: usize| by_datum.row(i).norm().hypot(slopes.columns(count, further).row(i).norm());
         Some(values.into_iter().enumerate().map(|(i, value)| (value, u(i))).collect())

@@ -122,7 +122,10 @@ impl<'a> Model<'a> {
         if let Some((_, slopes)) = known().iter().find(|known| apart_u(&known.0) <= NEAR_U) {
             return Some(slopes.clone());
         }
-        let both = |by_u: &[f64]| self.moved(by_u).map(|(values, left)| [values, left].concat());
+        let base = self.base.for_slopes();
+        let both = |by_u: &[f64]| {
+            self.read(&base.moved(&self.inputs, by_u)).map(|(values, left)| [values, left].concat())
+        };
         let slopes = derivatives(&both(at_u)?, &both, at_u, &|i| self.inputs[i].jumps())?;
         known().push((at_u.to_vec(), slopes.clone()));
         Some(slopes)

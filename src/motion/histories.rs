@@ -1,14 +1,12 @@
 //! Signals and the plateaus of the flight to what the channels say over the contact: the line over their positions, free of ringing.
 
 use super::{Integrated, Velocity};
-use crate::data::{Axis, FlightFit, Mode, Signal};
+use crate::data::{Axis, CONTACT_STEPS, FlightFit, Mode, Signal};
 use crate::numerics::as_f64;
 use crate::numerics::damped_modes::Drive;
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// Steps over the contact: 200 over 20 ms leave the trapezoid's error below 4e-5 of the velocities, and are a twenty-fifth of a period of 400 Hz.
-pub(super) const STEPS: usize = 200;
 /// A mode that answered more strongly by this factor while it was driven than as L left is not known well enough to follow back.
 const MOST_DECLINE: f64 = 5.0;
 
@@ -58,8 +56,8 @@ impl AlongAxis {
     }
 }
 
-/// What the channels say over the contact at [`STEPS`] + 1 times of equal distance, led to the plateaus of the flight, ringing led out in
-/// proportion to time.
+/// What the channels say over the contact at times of equal distance from its beginning to its end, led to the plateaus of the flight, ringing led out
+/// in proportion to time.
 pub(super) struct Histories<'a> {
     line: &'a AlongAxis,
     sums: Vec<Sums>,
@@ -71,18 +69,19 @@ impl<'a> Histories<'a> {
         fit: &FlightFit,
         line: &'a AlongAxis,
         (contact_s, separation_s): (f64, f64),
+        steps: usize,
     ) -> Option<Self> {
         let length_s = separation_s - contact_s;
         if length_s <= 0.0 {
             return None;
         }
-        let mut sums = vec![[0.0; 3]; STEPS + 1];
+        let mut sums = vec![[0.0; 3]; steps + 1];
         for ((signal, velocity), weights) in signals.iter().zip(velocities).zip(&line.weights) {
             let plateau = fit.plateau(&signal.name)?;
             // A zero shift sets in somewhere in the contact: half of it is taken to have acted.
             let before_s = fit.from_s - separation_s + length_s / 2.0;
             let plateau_m_s = plateau.velocity_step_m_s - plateau.zero_shift_m_s2 * before_s;
-            velocity.add_even((contact_s, length_s / as_f64(STEPS)), plateau_m_s, *weights, &mut sums);
+            velocity.add_even((contact_s, length_s / as_f64(steps)), plateau_m_s, *weights, &mut sums);
         }
         let mut histories = Self { line, sums };
         histories.take_off_bending(fit, length_s, separation_s - fit.from_s);
@@ -105,8 +104,9 @@ impl<'a> Histories<'a> {
         if fit.modes.is_empty() {
             return;
         }
-        let step_s = length_s / as_f64(STEPS);
-        let ringing = self.ringing(fit, &driven(&fit.modes, &half_sine(), step_s), left_s);
+        let steps = self.sums.len() - 1;
+        let step_s = length_s / as_f64(steps);
+        let ringing = self.ringing(fit, &driven(&fit.modes, &half_sine(steps), step_s), left_s);
         let turning: Vec<f64> =
             self.sums.iter().zip(&ringing).map(|(sums, ringing)| sums[1] - ringing[1]).collect();
         let ringing = self.ringing(fit, &driven(&fit.modes, &turning, step_s), left_s);
@@ -117,10 +117,11 @@ impl<'a> Histories<'a> {
 
     /// What the modes add to the sums where they are so driven, but for a line that leads to what they do as L leaves.
     fn ringing(&self, fit: &FlightFit, driven: &[Vec<Complex<f64>>], left_s: f64) -> Vec<Sums> {
-        let mut all = vec![[0.0; 3]; STEPS + 1];
+        let steps = self.sums.len() - 1;
+        let mut all = vec![[0.0; 3]; steps + 1];
         for (m, (mode, driven)) in fit.modes.iter().zip(driven).enumerate() {
             let aged = (rate(mode) * left_s).exp();
-            let last = driven[STEPS];
+            let last = driven[steps];
             let largest = driven.iter().map(Complex::norm_sqr).fold(0.0, f64::max);
             if last.norm_sqr() * MOST_DECLINE * MOST_DECLINE < largest || largest <= 0.0 {
                 continue;
@@ -130,7 +131,7 @@ impl<'a> Histories<'a> {
             let sizes =
                 self.line.sums(fit.plateaus.iter().map(|p| p.ringing_m_s.get(m).map_or(0.0, |of| size(*of))));
             for (i, (sums, z)) in all.iter_mut().zip(driven).enumerate() {
-                let beside = z.re - last.re * (as_f64(i) / as_f64(STEPS));
+                let beside = z.re - last.re * (as_f64(i) / as_f64(steps));
                 *sums = [0, 1, 2].map(|i| sums[i] + sizes[i] * beside);
             }
         }
@@ -171,8 +172,8 @@ impl Velocity {
 }
 
 /// The shape of the rotation over the contact under a half sine of force.
-fn half_sine() -> Vec<f64> {
-    (0..=STEPS).map(|i| (1.0 - (PI * as_f64(i) / as_f64(STEPS)).cos()) / 2.0).collect()
+fn half_sine(steps: usize) -> Vec<f64> {
+    (0..=steps).map(|i| (1.0 - (PI * as_f64(i) / as_f64(steps)).cos()) / 2.0).collect()
 }
 
 /// (−ζ + i) ω.
@@ -208,13 +209,15 @@ pub fn drive(
     let contact_s = integrated.contact_s;
     let line = AlongAxis::through(&integrated.signals, cog_m)?;
     let turning = match fit {
-        Some(fit) => Histories::new(integrated, fit, &line, (contact_s, left_s))?.turning_rad_s(),
-        None if left_s > contact_s => half_sine().into_iter().map(|share| -share).collect(),
+        Some(fit) => {
+            Histories::new(integrated, fit, &line, (contact_s, left_s), CONTACT_STEPS)?.turning_rad_s()
+        }
+        None if left_s > contact_s => half_sine(CONTACT_STEPS).into_iter().map(|share| -share).collect(),
         None => return None,
     };
     Some(Drive {
         age_s: from_s - contact_s,
-        step_s: (left_s - contact_s) / as_f64(STEPS),
+        step_s: (left_s - contact_s) / as_f64(CONTACT_STEPS),
         impulses: turning.windows(2).map(|pair| pair[0] - pair[1]).collect(),
     })
 }

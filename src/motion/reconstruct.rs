@@ -2,7 +2,7 @@
 
 use super::Integrated;
 use super::curves::uniform;
-use super::histories::{AlongAxis, Histories, STEPS};
+use super::histories::{AlongAxis, Histories};
 use crate::data::{AxialClosure, Events, FlightFit, Motion, MotionCurve, MotionState, Setup};
 use crate::numerics::as_f64;
 
@@ -70,14 +70,14 @@ fn follow(
     let contact_s = events.first_contact_s()?;
     let separation_s = events.separation_s()?;
     let line = AlongAxis::through(&integrated.signals, setup.cog_m)?;
-    let histories =
-        Histories::new(integrated, fit, &line, (contact_s, separation_s))?.at_rate(setup.second_s);
+    let histories = Histories::new(integrated, fit, &line, (contact_s, separation_s), setup.contact_steps)?
+        .at_rate(setup.second_s);
     let mut body = OnTarget::start(setup, contact_s);
     let contact = body.state;
-    let step_s = (separation_s - contact_s) / as_f64(STEPS) * setup.second_s;
+    let step_s = (separation_s - contact_s) / as_f64(setup.contact_steps) * setup.second_s;
     record(&body.state);
     let (mut turned_rad2_s, mut angular_impulse_m2_s) = (0.0, 0.0);
-    for i in 1..=STEPS {
+    for i in 1..=setup.contact_steps {
         let before = body.state;
         // What the rotation of the fall does to a sensor went with its offset.
         turned_rad2_s +=
@@ -275,7 +275,7 @@ fn push(curve: &mut MotionCurve, setup: &Setup, state: &MotionState) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{At, Axis, End, Mode, Plateau, Signal};
+    use crate::data::{At, Axis, CONTACT_STEPS, End, Mode, Plateau, Signal};
 
     /// A half sine of 6 ms from 10 ms on whose area is `step_m_s`, at 100 kHz over 80 ms.
     fn signal(name: &str, end: End, position_m: f64, step_m_s: f64) -> Signal {
@@ -341,6 +341,7 @@ mod tests {
             gravity_m_s2: 9.81,
             axial,
             second_s: 1.0,
+            contact_steps: CONTACT_STEPS,
         };
         reconstruct(&Integrated::over(&signals, 0.01), &fit, &events, &setup).expect("two channels apart")
     }
