@@ -124,8 +124,10 @@ fn repeats(force: &[f64]) -> Vec<Span> {
     #[allow(clippy::float_cmp, reason = "a dropout repeats a sample to the bit")]
     let repeats = |&i: &usize| force.get(i).zip(force.get(i + 1)).is_some_and(|(a, b)| a == b);
     let mut found: Vec<Span> = Vec::new();
+    // Few of the steps asked have another beside them: without that the processor guesses wrong at each coarse converter's repeat.
+    let is_run = |i: usize| repeats(&i) & (repeats(&(i + 1)) | (i > 0 && repeats(&(i - 1))));
     for i in (0..force.len()).step_by(LEAST_RUN - 1) {
-        if repeats(&i) && found.last().is_none_or(|before| i >= before.to) {
+        if is_run(i) && found.last().is_none_or(|before| i >= before.to) {
             let from = (0..i).rev().take_while(repeats).last().unwrap_or(i);
             let to = (i..force.len()).take_while(repeats).last().map_or(i, |last| last + 1);
             found.extend((to + 1 - from >= LEAST_RUN).then_some(Span { from, to }));
