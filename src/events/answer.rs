@@ -25,7 +25,7 @@ const LENGTHS_S: [f64; 7] = [0.4e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3, 3e-3, 4e-3];
 /// Longest first contact whose peak is looked at, s.
 const CONTACT_S: f64 = 0.02;
 /// A stretch is fitted in so many means of neighbouring samples at the most: over the longest 50 to a period of 450 Hz.
-const POINTS: usize = 160;
+const POINTS: usize = 80;
 /// Steps that differ by less than this share are the same: over a fit of [`POINTS`] it stays below a millionth of one.
 const SAME_STEP: f64 = 1e-9;
 /// From where the answer is seen on, s: where the force may still turn its direction; and lengths that are fitted from there on, s.
@@ -36,7 +36,7 @@ const BETTER: f64 = 10.0;
 /// Longest that a force takes to turn its direction, s: L that slides back at 0.5 m/s is held within a millisecond, at 0.1 m/s within 0.4 ms.
 const TURNS_S: f64 = 7e-4;
 /// Delays tried in a fit, and between the best two of them.
-const TRIED: u32 = 120;
+const TRIED: u32 = 80;
 const REFINED: u32 = 20;
 
 /// The delay of every transverse channel's answer against the struck end's channel.
