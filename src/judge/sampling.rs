@@ -102,8 +102,8 @@ fn content(signal: &Signal, pulse_s: (f64, f64)) -> Option<BandContent> {
         force[i] *= weight;
         force[count - 1 - i] *= weight;
     }
-    // Zeros behind the stretch only make the lines of its spectrum denser.
-    force.resize(count.max(256) * 2, 0.0);
+    // Zeros behind a short stretch only make the lines of its spectrum denser.
+    force.resize(count.max(512), 0.0);
     let (frequency_hz, size) = magnitude(&force, signal.sample_rate_hz);
     let band = &size[frequency_hz.partition_point(|f| *f < BAND * signal.sample_rate_hz)..];
     Some(BandContent {
