@@ -74,7 +74,12 @@ struct Search<'a> {
 /// Settles separation, slap-down and flight; of several beginnings the first that explains the flight and brings R to the target, else the
 /// best. `None` without transverse channels on both ends.
 pub fn settle(file: &CaskFile, integrated: &Integrated) -> Option<Settled> {
-    settled(file, integrated, true)
+    let mut settled = settled(file, integrated, true)?;
+    if let (Some(flight), Some(window)) = (&mut settled.flight, &settled.window) {
+        motion::compare_late(flight, integrated, window, file.cask.cog_m);
+        flight.strike = motion::strike(flight, integrated, window, file.cask.cog_m);
+    }
+    Some(settled)
 }
 
 /// The same where nothing is asked of what comes after the flight.
@@ -120,12 +125,7 @@ fn settled(file: &CaskFile, integrated: &Integrated, to_target: bool) -> Option<
             break;
         }
     }
-    let mut settled = best?.1;
-    if let (Some(flight), Some(window)) = (&mut settled.flight, &settled.window) {
-        motion::compare_late(flight, integrated, window, file.cask.cog_m);
-        flight.strike = motion::strike(flight, integrated, window, file.cask.cog_m);
-    }
-    Some(settled)
+    best.map(|(_, settled)| settled)
 }
 
 /// Where the first fit begins that ends at `end_s`, if nothing tells a longer contact, s.
