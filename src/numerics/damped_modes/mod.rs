@@ -29,7 +29,7 @@ const MOST_DAMPING: f64 = 0.15;
 pub fn fit(series: &[Series], start: &[Oscillation], seeds: Option<&Seeds>, form: Form) -> Option<Fit> {
     let mut modes = start.to_vec();
     if let Some(seeds) = seeds {
-        modes.push(best_seed(series, start, seeds, form)?);
+        modes.push(best_seed(start, seeds, form)?);
     }
     if !modes.is_empty() {
         let refined = refine(series, &modes, form);

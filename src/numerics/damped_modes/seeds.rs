@@ -4,11 +4,14 @@ use super::drive::{Drive, Form};
 use super::projection::{OfTimes, columns, mode_columns};
 use super::ringing::even_ringing;
 use super::series::{Oscillation, Series};
-use crate::numerics::as_f64;
+use crate::numerics::{as_f64, reduce};
 use nalgebra::{DMatrix, DVector, Dyn, MatrixView, U1};
 
 /// From so many rows on a product of matrices is the fast one; others are filled up with zeros.
 const FAST_COLUMNS: usize = 8;
+
+/// Series of so many points and more are sought in with means of two: a period that spans five points spans more than two of them.
+const LONG: usize = 100;
 
 /// What each column of a mode has along those known so far.
 type Known<'a> = MatrixView<'a, f64, Dyn, Dyn, U1, Dyn>;
@@ -17,6 +20,7 @@ type Known<'a> = MatrixView<'a, f64, Dyn, Dyn, U1, Dyn>;
 pub struct Seeds {
     band_hz: (f64, f64),
     modes: Vec<Oscillation>,
+    series: Vec<Series>,
     tried: OfTimes<Tried>,
 }
 
@@ -39,8 +43,9 @@ impl Seeds {
             modes.extend([0.005, 0.03, 0.1].map(|damping| Oscillation { frequency_hz, damping }));
             frequency_hz *= 1.07;
         }
-        let tried = OfTimes::of(series, |s| Tried::new(s, &modes, form));
-        Self { band_hz, modes, tried }
+        let series: Vec<Series> = series.iter().map(coarse).collect();
+        let tried = OfTimes::of(&series, |s| Tried::new(s, &modes, form));
+        Self { band_hz, modes, series, tried }
     }
 
     /// Whether a mode lies in the band or close to it.
@@ -76,16 +81,20 @@ impl Tried {
     }
 }
 
+/// A long series in means of two neighbours.
+fn coarse(series: &Series) -> Series {
+    if series.value.len() < LONG {
+        return series.clone();
+    }
+    let means = |values: &[f64]| reduce::block_means(values, 2);
+    Series { time_s: means(&series.time_s), value: means(&series.value), ..series.clone() }
+}
+
 /// The seed that, added to `start`, leaves least.
-pub(super) fn best_seed(
-    series: &[Series],
-    start: &[Oscillation],
-    seeds: &Seeds,
-    form: Form,
-) -> Option<Oscillation> {
+pub(super) fn best_seed(start: &[Oscillation], seeds: &Seeds, form: Form) -> Option<Oscillation> {
     let width = form.width();
     let mut scores = vec![0.0; seeds.modes.len()];
-    for (tried, series) in seeds.tried.groups(series) {
+    for (tried, series) in seeds.tried.groups(&seeds.series) {
         let basis = basis(series.first()?, start, form)?;
         let count = basis.ncols();
         let rest = |own: &Series| {
