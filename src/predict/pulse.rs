@@ -7,9 +7,9 @@ use std::f64::consts::PI;
 
 /// Steps of the integration: sixteen times as many move the vertical speed of R by less than 1e-4.
 const STEPS: u32 = 16;
-/// Rounds of the search for the force, and the rebound that ends it, m/s.
+/// Rounds of the search for the force, and the rebound that ends it, m/s: a step of Newton's follows it.
 const ROUNDS: usize = 30;
-const CLOSE_M_S: f64 = 1e-9;
+const CLOSE_M_S: f64 = 1e-5;
 /// A corner slower than this does not slide, m/s.
 const STOPPED_M_S: f64 = 1e-9;
 
