@@ -118,7 +118,7 @@ fn low_pass(file: &CaskFile) -> (String, f64) {
 struct BothImpacts<'a> {
     file: &'a CaskFile,
     integrated: &'a Integrated<'a>,
-    second: Option<(&'a SecondImpact, Integrated<'a>)>,
+    second: Option<&'a SecondImpact>,
     cutoff_hz: f64,
 }
 
@@ -129,8 +129,7 @@ pub(super) fn tabulated(
     taken: &RungTaken,
     second: Option<&SecondImpact>,
 ) -> Option<Tabulated> {
-    let mirrored = second.map(|second| (second, second.integrated()));
-    let both = BothImpacts { file, integrated, second: mirrored, cutoff_hz: low_pass(file).1 };
+    let both = BothImpacts { file, integrated, second, cutoff_hz: low_pass(file).1 };
     let known = both.known(taken)?;
     let (first, after) = both.courses(&taken.taken, &both.unmoved(), ForceCourse::Rotation)?;
     let of_second = known.get(COUNT + 1..).filter(|numbers| is_one_contact(numbers));
@@ -146,7 +145,7 @@ pub(super) fn tabulated(
 impl BothImpacts<'_> {
     /// The second impact's own inputs as they are.
     fn unmoved(&self) -> Vec<f64> {
-        vec![0.0; self.second.as_ref().map_or(0, |(second, _)| second.further())]
+        vec![0.0; self.second.map_or(0, SecondImpact::further)]
     }
 
     /// Θ/m, m².
@@ -162,8 +161,8 @@ impl BothImpacts<'_> {
             motion::with_states(self.integrated, &inputs.flight, &inputs.events, &inputs.setup)?;
         let contact = ContactCourse::of((&motion, &states), &inputs.setup, inertia_m2, by)?;
         let mut after = None;
-        if let Some((second, integrated)) = &self.second {
-            let (motion, contact) = second.course(integrated, (inputs, &motion), by_u, (inertia_m2, by))?;
+        if let Some(second) = self.second {
+            let (motion, contact) = second.course((inputs, &motion), by_u, (inertia_m2, by))?;
             after = Some(Course { motion, contact });
         }
         Some((Course { motion, contact }, after))
@@ -188,7 +187,7 @@ impl BothImpacts<'_> {
         let unmoved = self.unmoved();
         let of = |inputs: &Inputs, by_u: &[f64]| self.numbers(inputs, by_u, ForceCourse::Rotation);
         let mut known = taken.spread(unmoved.len(), &of)?;
-        let flights = [Some(&taken.taken.flight), self.second.as_ref().map(|(second, _)| &second.flight)];
+        let flights = [Some(&taken.taken.flight), self.second.map(|second| &second.flight)];
         for (flight, own) in flights.into_iter().flatten().zip(known.chunks_mut(COUNT + 1)) {
             let rings_m_s: f64 = flight.modes.iter().map(|m| m.amplitude_m_s).sum();
             let share = RINGING_SHARE * rings_m_s / own[GAINED].0;

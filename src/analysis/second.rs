@@ -19,8 +19,8 @@ const STEPS: f64 = 2.0;
 
 /// The impact of R, seen in a mirror: what strikes is its first end.
 pub(super) struct SecondImpact {
-    signals: Vec<Signal>,
-    contact_s: f64,
+    /// What its own channels read, in a mirror.
+    integrated: Integrated<'static>,
     pub flight: FlightFit,
     /// When R leaves.
     pub left: At,
@@ -100,7 +100,7 @@ impl SecondImpact {
         let turning_rad_s = motion.separation.angular_velocity_rad_s;
         let mut setup = mirrored(first, motion, AxialClosure::Sticking)?;
         let signals = motion::mirrored(recorded, before, turning_rad_s, (first.length_m, first.cog_m));
-        let integrated = Integrated::over(&signals, slap_down.time_s);
+        let integrated = Integrated::over(&signals, slap_down.time_s).into_owned();
         let (left, flight) = told(&in_mirror(file, &setup), &integrated)?;
         let times = Events { first_contact: Some(slap_down), separation: Some(left), ..Events::default() };
         let needed = motion::outcome(&integrated, &flight, &times, &setup)?.impulse_ratio;
@@ -120,12 +120,9 @@ impl SecondImpact {
         };
         let along_m_s = along(&moved.separation) - along(&moved.contact);
         let across_m_s = moved.rebound_m_s + setup.impact_velocity_m_s;
-        let contact_s = slap_down.time_s;
         let gained_rad_s = motion::rotation_rad_s(&signals, &flight);
-        drop(integrated);
         Some(Self {
-            signals,
-            contact_s,
+            integrated,
             flight,
             left,
             axial,
@@ -137,11 +134,6 @@ impl SecondImpact {
         })
     }
 
-    /// The signals with their integrals, which [`Self::course`] asks for.
-    pub fn integrated(&self) -> Integrated<'_> {
-        Integrated::over(&self.signals, self.contact_s)
-    }
-
     /// How many uncertain inputs it has beside those of the first impact and the flight.
     pub fn further(&self) -> usize {
         self.u_steps_m_s.len() + 2
@@ -150,7 +142,6 @@ impl SecondImpact {
     /// The contact of R after a first impact with these inputs and this motion; its further inputs moved by so many standard uncertainties.
     pub fn course(
         &self,
-        integrated: &Integrated,
         (inputs, first): (&fit::Inputs, &Motion),
         by_u: &[f64],
         (inertia_m2, by): (f64, ForceCourse),
@@ -168,7 +159,7 @@ impl SecondImpact {
         let moved = |i: usize, plateau: &mut crate::data::Plateau| {
             let of = |all: &[f64]| all.get(i).copied().unwrap_or(0.0);
             // What a sensor in the mirror reads more for being farther from R, −ω δ, it reads less for being farther from L.
-            let across = self.signals.get(i).is_some_and(|s| s.axis == Axis::Transverse);
+            let across = self.integrated.signals.get(i).is_some_and(|s| s.axis == Axis::Transverse);
             let by_seat_m_s = if across {
                 self.along_m_s * of(&inputs.crosses) - self.gained_rad_s * of(&inputs.places_m)
             } else {
@@ -179,7 +170,7 @@ impl SecondImpact {
                 + of(steps) * of(&self.u_steps_m_s);
         };
         flight.plateaus.iter_mut().enumerate().for_each(|(i, plateau)| moved(i, plateau));
-        let (motion, states) = motion::with_states(integrated, &flight, &times, &setup)?;
+        let (motion, states) = motion::with_states(&self.integrated, &flight, &times, &setup)?;
         let course = ContactCourse::of((&motion, &states), &setup, inertia_m2, by)?;
         Some((motion, course))
     }

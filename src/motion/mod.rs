@@ -55,6 +55,12 @@ impl<'a> Integrated<'a> {
         Self { signals, contact_s, velocities, peaks_m_s2 }
     }
 
+    /// The same with signals of its own.
+    #[must_use]
+    pub fn into_owned(self) -> Integrated<'static> {
+        Integrated { signals: Cow::Owned(self.signals.into_owned()), ..self }
+    }
+
     /// Each signal with its velocity.
     fn each(&self) -> impl IndexedParallelIterator<Item = (&Signal, &Velocity)> {
         self.signals.par_iter().zip(&self.velocities)
