@@ -108,7 +108,7 @@ fn condition_channels(bencher: Bencher, samples: usize) {
 #[divan::bench(args = SIZES)]
 fn low_pass(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
-    bencher.counter(m.conditioned()).bench(|| stages::filtered(&m.signals, &m.events, 299.0));
+    bencher.counter(m.conditioned()).bench(|| stages::filtered(&m.signals, 299.0));
 }
 
 #[divan::bench(args = SIZES)]

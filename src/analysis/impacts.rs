@@ -325,16 +325,16 @@ fn channel_peaks(
             Axis::Axial => transverse_m_s2,
         };
         let crossed_m_s2 = file.tolerances.cross_axis * aside_m_s2;
-        let sample_s = 1.0 / signal.sample_rate_hz;
         // A low-pass leaves of white noise what its share of the band is.
-        let left = (2.0 * cutoff_hz * sample_s).min(1.0).sqrt();
+        let left = (2.0 * cutoff_hz / signal.sample_rate_hz).min(1.0).sqrt();
         let noise = |left: f64| COVERAGE * left * signal.noise_m_s2.hypot(signal.u_offset_m_s2);
         let peak = |value: f64, left: f64| {
             Estimate::new(value, (calibration * value).hypot(crossed_m_s2).hypot(noise(left)), "m/s^2")
         };
-        let length = |length: motion::PulseLength| {
+        let length = |pulse: motion::ChannelPulse| {
+            let motion::PulseLength { length_s, by_level } = pulse.length?;
             let level_m_s2 = (0.1 * crossed_m_s2).hypot(noise(left));
-            Estimate::new(length.length_s, (2.0 * sample_s).hypot(length.by_level * level_m_s2), "s")
+            Some(Estimate::new(length_s, (2.0 * pulse.sample_s).hypot(by_level * level_m_s2), "s"))
         };
         ChannelPeak {
             name: signal.name.clone(),
@@ -343,8 +343,8 @@ fn channel_peaks(
             peak_raw: pulse.map(|p| peak(p.raw_m_s2, 1.0)),
             peak_filtered: pulse.map(|p| peak(p.filtered_m_s2, left)),
             is_above_raw: pulse.is_some_and(|p| p.filtered_m_s2.abs() > p.raw_m_s2.abs()),
-            time: pulse.map(|p| Estimate::new(p.time_s, sample_s, "s")),
-            pulse_length: pulse.and_then(|p| p.length).map(length),
+            time: pulse.map(|p| Estimate::new(p.time_s, p.sample_s, "s")),
+            pulse_length: pulse.and_then(length),
         }
     };
     recorded.iter().zip(&pulses).map(of).collect()

@@ -75,9 +75,9 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
         return outcome::without_impact(recording, file, findings);
     };
     judge::weigh_by_distance(&mut findings, &events);
-    let (on_channels, smooth) = rayon::join(
+    let (on_channels, shown) = rayon::join(
         || judge::judge_channels(impact.recorded(), &events, file, &findings),
-        || outcome::smooth(&impact.signals, &events, file),
+        || outcome::ShownSignals::of(&impact.signals, &events, file),
     );
     findings.extend(on_channels);
     let reached = match flown {
@@ -94,5 +94,5 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
     if !matches!(reached, Reached::Measured(..)) {
         findings.extend(judge::judge_fall_time(&findings, &file.drop, &events, &file.tolerances));
     }
-    outcome::of(recording, file, findings, outcome::Examined { impact, events, smooth, reached })
+    outcome::of(recording, file, findings, outcome::Examined { impact, events, shown, reached })
 }

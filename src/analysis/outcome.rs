@@ -7,8 +7,8 @@ use super::reached::Reached;
 use super::setup::sticking;
 use crate::data::{
     Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, Drop, DropResult, End, Estimate, Events,
-    Finding, FirstImpact, ImpactTable, Input, ModelChoice, Prediction, Quantities, Recording, Rung, Setting,
-    Signal, SlapDown,
+    Finding, FirstImpact, ImpactTable, Input, LazyCurves, ModelChoice, Prediction, Quantities, Recording,
+    Rung, Setting, Signal, SlapDown,
 };
 use crate::numerics::reduce::peak;
 use crate::{compare, fit, judge, motion, predict};
@@ -21,8 +21,7 @@ const CHAIN_DELAY_SAMPLES: f64 = 2.0;
 pub(super) struct Examined {
     pub impact: Impact,
     pub events: Events,
-    /// The signals as the curves' low-pass leaves them.
-    pub smooth: Vec<Signal>,
+    pub shown: ShownSignals,
     pub reached: Reached,
 }
 
@@ -30,7 +29,7 @@ pub(super) struct Examined {
 pub(super) fn without_impact(recording: &Recording, file: &CaskFile, findings: Vec<Finding>) -> Analysis {
     let channels: Vec<ChannelSummary> = recording.channels.iter().map(|c| summary(c, file)).collect();
     let result = result(recording, file, findings, (channels, Events::default()), None);
-    analysis(recording, file, result, Curves::default())
+    analysis(recording, file, result, Curves::default)
 }
 
 /// The result from the first impact on, as far as the analysis came.
@@ -40,25 +39,25 @@ pub(super) fn of(
     findings: Vec<Finding>,
     found: Examined,
 ) -> Analysis {
-    let Examined { impact, events, smooth, reached } = found;
+    let Examined { impact, events, shown, reached } = found;
     let measured = match &reached {
         Reached::Measured(flown, _) => Some(flown),
         Reached::Impact | Reached::Flown(_) => None,
     };
     let quantities = measured.map(|flown| &flown.quantities);
-    let effect = || filter_effect(&smooth, &events, file, measured?);
+    let effect = measured.and_then(|flown| filter_effect(&shown.smooth, &events, file, flown));
     let signals = impact.recorded();
-    let (effect, curves) =
-        rayon::join(effect, || motion::channel_curves(signals, &smooth, &events, &sticking(file)));
+    let recorded = signals.len();
     let mut channels: Vec<ChannelSummary> = recording.channels.iter().map(|c| summary(c, file)).collect();
-    for ((summary, signal), curve) in channels.iter_mut().zip(signals).zip(&curves) {
+    for ((summary, signal), smooth) in channels.iter_mut().zip(signals).zip(&shown.smooth) {
+        let peak = |of: &Signal| peak(&of.force_m_s2[motion::shown(of, &events)]);
         summary.offset_m_s2 = Some(signal.removed_offset_m_s2);
         summary.noise_m_s2 = Some(signal.noise_m_s2);
-        summary.peak_raw_m_s2 = Some(peak(&curve.raw_m_s2));
-        summary.peak_filtered_m_s2 = Some(peak(&curve.filtered_m_s2));
+        summary.peak_raw_m_s2 = Some(peak(signal));
+        summary.peak_filtered_m_s2 = Some(peak(smooth));
         summary.clipped.clone_from(&signal.clipped);
     }
-    let mut curves = Curves { channels: curves, motion: None };
+    let mut motion = None;
     let mut result = result(recording, file, findings, (channels, events), quantities);
     let tabulated = measured.and_then(|flown| flown.tabulated.as_ref());
     result.impacts = impacts::of_result(file, signals, &result, tabulated);
@@ -74,13 +73,23 @@ pub(super) fn of(
             result.comparison = measured.comparison;
             result.budget = flown.quantities.budget;
             result.flight = Some(flown.flight);
-            curves.motion = Some(flown.motion.curve);
+            motion = Some(flown.motion.curve);
         }
     }
-    analysis(recording, file, result, curves)
+    let ShownSignals { mut signals, .. } = shown;
+    signals.truncate(recorded);
+    let (setup, (cutoff_hz, _)) = (sticking(file), cutoff(&events, file));
+    let channels = move || motion::channel_curves(&signals, &events, cutoff_hz, &setup);
+    analysis(recording, file, result, move || Curves { channels: channels(), motion })
 }
 
-fn analysis(recording: &Recording, file: &CaskFile, result: DropResult, curves: Curves) -> Analysis {
+fn analysis(
+    recording: &Recording,
+    file: &CaskFile,
+    result: DropResult,
+    curves: impl FnOnce() -> Curves + Send + 'static,
+) -> Analysis {
+    let curves = LazyCurves::new(Box::new(curves));
     Analysis { result, cask_file: file.clone(), curves, start_unix_ns: recording.start_unix_ns }
 }
 
@@ -163,9 +172,19 @@ fn predictions(file: &CaskFile, measured: Option<(&Quantities, Option<&ModelChoi
     all
 }
 
-/// The signals as the curves' low-pass leaves them.
-pub(super) fn smooth(signals: &[Signal], events: &Events, file: &CaskFile) -> Vec<Signal> {
-    motion::filtered(signals, events, cutoff(events, file).0)
+/// The signals over what the curves show.
+pub(super) struct ShownSignals {
+    signals: Vec<Signal>,
+    /// As the curves' low-pass leaves them.
+    smooth: Vec<Signal>,
+}
+
+impl ShownSignals {
+    pub fn of(signals: &[Signal], events: &Events, file: &CaskFile) -> Self {
+        let (cutoff_hz, _) = cutoff(events, file);
+        let signals = motion::around(signals, events, cutoff_hz);
+        Self { smooth: motion::filtered(&signals, cutoff_hz), signals }
+    }
 }
 
 fn cutoff(events: &Events, file: &CaskFile) -> (f64, &'static str) {

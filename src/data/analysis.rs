@@ -3,7 +3,7 @@
 use super::at::At;
 use super::cask::CaskFile;
 use super::channel::Span;
-use super::curves::Curves;
+use super::curves::LazyCurves;
 use super::estimate::Estimate;
 use super::finding::Finding;
 use super::flight::FlightFit;
@@ -296,14 +296,14 @@ pub struct DropResult {
 }
 
 /// Everything one analysis found: the result, the cask file it was made with and the curves.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Analysis {
     /// The result.
     pub result: DropResult,
     /// The cask file.
     pub cask_file: CaskFile,
     /// The curves.
-    pub curves: Curves,
+    pub curves: LazyCurves,
     /// Absolute time of the recording's first sample, ns since 1970, where the recording knows it.
     pub start_unix_ns: Option<i64>,
 }

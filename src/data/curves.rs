@@ -1,5 +1,10 @@
 //! Curves a person looks at: accelerations, velocities, the motion of the cask.
 
+use std::sync::LazyLock;
+
+/// Curves that are made where somebody asks for them: a campaign of thousands of drops does not.
+pub type LazyCurves = LazyLock<Curves, Box<dyn FnOnce() -> Curves + Send>>;
+
 /// Curves of one channel over the event window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelCurve {

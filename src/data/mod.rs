@@ -36,7 +36,7 @@ pub use cask::{
     GRAZE_SHARE, MOST_CHANNELS, SAMPLE_RATES_HZ, Source, Unit, block_inertia_kg_m2, first_arm_m,
 };
 pub use channel::{Channel, Samples, Span};
-pub use curves::{ChannelCurve, Curves, MotionCurve};
+pub use curves::{ChannelCurve, Curves, LazyCurves, MotionCurve};
 pub use estimate::Estimate;
 pub(crate) use finding::two_units;
 pub use finding::{

@@ -1,6 +1,6 @@
 //! The rigid motion over one contact to what a test report tabulates of it: force, decelerations free of ringing, crush.
 
-use super::curves::low_passed;
+use super::curves::{REACH, filtered};
 use super::reconstruct::{corner, corner_height_m};
 use crate::data::{Motion, MotionState, Setup, Signal};
 use crate::numerics::filter::ZeroPhaseLowPass;
@@ -155,6 +155,8 @@ pub struct ChannelPulse {
     pub filtered_m_s2: f64,
     /// When that is reached, s.
     pub time_s: f64,
+    /// From one time of that reading to the next, s.
+    pub sample_s: f64,
     /// How long the filtered reading stays above a tenth of it.
     pub length: Option<PulseLength>,
 }
@@ -173,24 +175,23 @@ pub struct PulseLength {
 #[must_use]
 pub fn pulses(signals: &[Signal], between_s: [f64; 2], cutoff_hz: f64) -> Vec<Option<ChannelPulse>> {
     let [from_s, to_s] = between_s;
-    let margin_s = 6.2 / cutoff_hz;
+    let margin_s = REACH / cutoff_hz;
     let is_whole =
         |s: &Signal| ![&s.clipped, &s.gaps].into_iter().any(|spans| s.touches(spans, from_s, to_s));
     let wide = |s: &Signal| s.cut(s.index_from(from_s - margin_s), s.index_from(to_s + margin_s));
     let wide: Vec<Signal> = signals.iter().map(wide).collect();
-    let parts: Vec<(&Signal, &[f64])> = wide.iter().map(|s| (s, &s.force_m_s2[..])).collect();
-    let filtered = low_passed(&parts, cutoff_hz);
-    let all = signals.iter().zip(wide.iter().zip(&filtered));
-    all.map(|(signal, (wide, filtered))| pulse(wide, filtered, between_s).filter(|_| is_whole(signal)))
-        .collect()
+    let all = signals.iter().zip(wide.iter().zip(filtered(&wide, cutoff_hz)));
+    all.map(|(signal, (wide, smooth))| pulse(wide, &smooth, between_s).filter(|_| is_whole(signal))).collect()
 }
 
-fn pulse(wide: &Signal, filtered: &[f64], [from_s, to_s]: [f64; 2]) -> Option<ChannelPulse> {
-    let (from, to) = (wide.index_from(from_s), wide.index_from(to_s));
-    let peak = |values: &[f64]| {
-        (from..to).max_by(|&a, &b| values[a].abs().total_cmp(&values[b].abs())).map(|i| (i, values[i]))
+fn pulse(wide: &Signal, smooth: &Signal, [from_s, to_s]: [f64; 2]) -> Option<ChannelPulse> {
+    let peak = |of: &Signal| {
+        let values = &of.force_m_s2;
+        let within = of.index_from(from_s)..of.index_from(to_s);
+        within.max_by(|&a, &b| values[a].abs().total_cmp(&values[b].abs())).map(|i| (i, values[i]))
     };
-    let (at, filtered_m_s2) = peak(filtered)?;
+    let (at, filtered_m_s2) = peak(smooth)?;
+    let (filtered, sample_s) = (&smooth.force_m_s2, 1.0 / smooth.sample_rate_hz);
     let level_m_s2 = 0.1 * filtered_m_s2.abs();
     let above = |i: usize| filtered[i] * filtered_m_s2.signum() - level_m_s2;
     // On a line from a sample below the level to its neighbour above: when, in samples, and how much later a higher level is passed.
@@ -203,8 +204,8 @@ fn pulse(wide: &Signal, filtered: &[f64], [from_s, to_s]: [f64; 2]) -> Option<Ch
     let began = (0..at).rev().find(|&i| above(i) < 0.0).map(|i| passed(i, i + 1));
     let ended = (at..filtered.len()).find(|&i| above(i) < 0.0).map(|i| passed(i, i - 1));
     let length = began.zip(ended).map(|(began, ended)| PulseLength {
-        length_s: (ended[0] - began[0]) / wide.sample_rate_hz,
-        by_level: began[1].hypot(ended[1]) / wide.sample_rate_hz,
+        length_s: (ended[0] - began[0]) * sample_s,
+        by_level: began[1].hypot(ended[1]) * sample_s,
     });
-    Some(ChannelPulse { raw_m_s2: peak(&wide.force_m_s2)?.1, filtered_m_s2, time_s: wide.time_s(at), length })
+    Some(ChannelPulse { raw_m_s2: peak(wide)?.1, filtered_m_s2, time_s: smooth.time_s(at), sample_s, length })
 }

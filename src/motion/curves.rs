@@ -1,5 +1,6 @@
 //! Signals to the curves a person looks at: filtered force, velocity, spectrum.
 
+use super::thin::thinned;
 use super::{Integrated, Velocity};
 use crate::data::{
     Axis, ChannelCurve, ChannelReading, End, Events, FilterChoice, MotionCurve, Setup, Signal,
@@ -7,13 +8,16 @@ use crate::data::{
 use crate::numerics::filter::{CFC_DESIGN, TWO_PASS_CUTOFF, ZeroPhaseLowPass};
 use crate::numerics::quadrature::running_integral;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Shown before first contact, s.
 const BEFORE_S: f64 = 0.01;
 /// Shown after the last event, s: the slap-down pulse and some ringing.
 const AFTER_S: f64 = 0.04;
-/// Filtered before what is shown, s: the noise of a flight fit is taken from as long a stretch of free fall, at most 0.1 s.
-const QUIET_S: f64 = 0.11;
+/// A low-pass with −3 dB at f reaches so many times 1/f: beyond that 1e-12 of a sample is left.
+pub(super) const REACH: f64 = 6.2;
+/// A rate of so many times the cut-off is enough for what a low-pass leaves: means that come down to it take 2e-4 of what is at the cut-off.
+const RATE_OVER_CUTOFF: f64 = 100.0;
 /// IAEA SSG-26 as quoted in the field: 100–200 Hz for 100 t, scaled with (100 t / m)^(1/3); the upper end (28).
 const CUTOFF_100_T_HZ: f64 = 200.0;
 /// A cut-off of this over the pulse's length keeps its peak within 1 % (half sine, two-pass Butterworth).
@@ -62,55 +66,57 @@ pub fn usual_filters(mass_kg: f64) -> Vec<(String, f64)> {
     advised.into_iter().chain(classes).collect()
 }
 
-/// The signals around the event, low-passed without phase; a cut-off that the rate cannot carry leaves them as they are.
+/// The signals over what is shown, and as far around it as a low-pass with this −3 dB cut-off, Hz, reaches.
 #[must_use]
-pub fn filtered(signals: &[Signal], events: &Events, cutoff_hz: f64) -> Vec<Signal> {
-    let around = |signal: &Signal| {
+pub fn around(signals: &[Signal], events: &Events, cutoff_hz: f64) -> Vec<Signal> {
+    let cut = |signal: &Signal| {
         let (first_s, last_s) = shown_s(signal, events);
-        // What lies beyond the margin reaches past it with 1e-12 of its size.
-        let margin_s = 6.2 / cutoff_hz;
-        let from = signal.index_from(first_s - QUIET_S - margin_s);
-        (from, signal.index_from(last_s + margin_s).max(from))
+        let margin_s = REACH / cutoff_hz;
+        let from = signal.index_from(first_s - margin_s);
+        signal.cut(from, signal.index_from(last_s + margin_s).max(from))
     };
-    let around: Vec<(usize, usize)> = signals.iter().map(around).collect();
-    let parts =
-        signals.iter().zip(&around).map(|(signal, &(from, to))| (signal, &signal.force_m_s2[from..to]));
-    let smooth = low_passed(&parts.collect::<Vec<_>>(), cutoff_hz);
-    let cut = |((signal, (from, _)), smooth): ((&Signal, (usize, usize)), _)| signal.cut_with(from, smooth);
-    signals.iter().zip(around).zip(smooth).map(cut).collect()
+    signals.iter().map(cut).collect()
 }
 
-/// Parts of signals through the zero-phase low-pass with this −3 dB cut-off, Hz; those whose rate cannot carry it as they are.
-pub(super) fn low_passed(parts: &[(&Signal, &[f64])], cutoff_hz: f64) -> Vec<Vec<f64>> {
+/// The signals low-passed without phase, at a rate that is enough for that; a cut-off that the rate cannot carry leaves them as they are.
+#[must_use]
+pub fn filtered(signals: &[Signal], cutoff_hz: f64) -> Vec<Signal> {
+    let signals = thinned(signals, RATE_OVER_CUTOFF * cutoff_hz);
+    let smooth = low_passed(&signals, cutoff_hz);
+    signals.iter().zip(smooth).map(|(signal, smooth)| signal.cut_with(0, smooth)).collect()
+}
+
+/// The samples of signals through the zero-phase low-pass with this −3 dB cut-off, Hz; those whose rate cannot carry it as they are.
+fn low_passed(signals: &[Signal], cutoff_hz: f64) -> Vec<Vec<f64>> {
     let filter = |signal: &Signal| ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, signal.sample_rate_hz);
-    let filters: Vec<Option<ZeroPhaseLowPass>> = parts.iter().map(|(signal, _)| filter(signal)).collect();
+    let filters: Vec<Option<ZeroPhaseLowPass>> = signals.iter().map(filter).collect();
     match filters.first() {
         Some(Some(filter)) if filters.iter().all(|other| other.as_ref() == Some(filter)) => {
-            filter.apply_each(&parts.iter().map(|(_, part)| *part).collect::<Vec<_>>())
+            filter.apply_each(&signals.iter().map(|s| &s.force_m_s2[..]).collect::<Vec<_>>())
         }
         _ => {
-            let each = |(filter, (_, part)): (&Option<ZeroPhaseLowPass>, &(_, &[f64]))| match filter {
-                Some(filter) => filter.apply(part),
-                None => part.to_vec(),
+            let each = |(filter, signal): (&Option<ZeroPhaseLowPass>, &Signal)| match filter {
+                Some(filter) => filter.apply(&signal.force_m_s2),
+                None => signal.force_m_s2.clone(),
             };
-            filters.iter().zip(parts).map(each).collect()
+            filters.iter().zip(signals).map(each).collect()
         }
     }
 }
 
-/// Curves of all channels over the event.
+/// Curves over the event, of signals with what lies [`around`] it.
 #[must_use]
 pub fn channel_curves(
     signals: &[Signal],
-    smooth: &[Signal],
     events: &Events,
+    cutoff_hz: f64,
     setup: &Setup,
 ) -> Vec<ChannelCurve> {
     signals
         .par_iter()
-        .zip(smooth)
+        .zip(low_passed(signals, cutoff_hz))
         .map(|(signal, smooth)| {
-            let (from, to) = shown(signal, events);
+            let Range { start: from, end: to } = shown(signal, events);
             // The velocity counts from first contact, where L moves with −v0 along the sensor's axis (17).
             let (sin, cos) = setup.angle_rad.sin_cos();
             let before_m_s = match signal.axis {
@@ -128,7 +134,7 @@ pub fn channel_curves(
                 channel: signal.name.clone(),
                 time_s: (from..to).map(|i| signal.time_s(i)).collect(),
                 raw_m_s2: raw,
-                filtered_m_s2: overlap(smooth, signal.time_s(from), to - from),
+                filtered_m_s2: smooth[from..to].to_vec(),
                 velocity_m_s,
             }
         })
@@ -151,18 +157,12 @@ pub fn read_channels(integrated: &Integrated, events: &Events, setup: &Setup) ->
     })
 }
 
-/// `count` samples from `time_s` on, 0 where there are none.
-fn overlap(signal: &Signal, time_s: f64, count: usize) -> Vec<f64> {
-    let from = signal.index_from(time_s);
-    let inside = signal.force_m_s2[from..].iter().copied();
-    inside.chain(std::iter::repeat(0.0)).take(count).collect()
-}
-
-/// Index range that is shown.
-fn shown(signal: &Signal, events: &Events) -> (usize, usize) {
+/// The samples that are shown.
+#[must_use]
+pub fn shown(signal: &Signal, events: &Events) -> Range<usize> {
     let (first_s, last_s) = shown_s(signal, events);
     let from = signal.index_from(first_s);
-    (from, signal.index_from(last_s).max(from))
+    from..signal.index_from(last_s).max(from)
 }
 
 /// Time range that is shown, s.

@@ -12,7 +12,9 @@ mod thin;
 mod window;
 
 pub use contact::{ChannelPulse, ContactCourse, ForceCourse, PulseLength, largest, pulses};
-pub use curves::{channel_curves, cutoff_hz, filter_name, filtered, read_channels, usual_filters};
+pub use curves::{
+    around, channel_curves, cutoff_hz, filter_name, filtered, read_channels, shown, usual_filters,
+};
 pub use flight::{compare_late, fit_flight, fit_flights};
 pub use histories::drive;
 pub use reconstruct::{outcome, reconstruct, with_states};
@@ -45,7 +47,7 @@ impl<'a> Integrated<'a> {
     /// Integrals of whole signals, 0 shortly before first contact; where all are whole, of means at 100 kHz at the least.
     #[must_use]
     pub fn over(signals: &'a [Signal], contact_s: f64) -> Self {
-        let signals = thin::thinned(signals);
+        let signals = thin::thinned(signals, 0.0);
         let of = |s: &Signal| {
             let mut velocity = Velocity::of(s, contact_s - BEFORE_S, f64::INFINITY);
             velocity.count_from(contact_s - MARGIN_S);

@@ -4,9 +4,9 @@ use super::sample_reconstruction;
 use crate::data::{
     Analysis, At, Axis, BodyModel, Cask, CaskFile, ChannelCurve, ChannelFinding, ChannelSpec, ChannelSummary,
     Comparison, Contact, Curves, Drop, DropFinding, DropResult, During, End, Estimate, Events, Finding,
-    FirstImpact, FlightFit, FlightModelScore, FlightRegime, ImpactTable, Input, Mode, ModelCandidate,
-    ModelChoice, MotionCurve, Plateau, Prediction, Program, RecordingFormat, Rung, Setting, SlapDown, Unit,
-    Verdict,
+    FirstImpact, FlightFit, FlightModelScore, FlightRegime, ImpactTable, Input, LazyCurves, Mode,
+    ModelCandidate, ModelChoice, MotionCurve, Plateau, Prediction, Program, RecordingFormat, Rung, Setting,
+    SlapDown, Unit, Verdict,
 };
 use std::f64::consts::PI;
 
@@ -21,7 +21,7 @@ pub(super) fn analysis() -> Analysis {
     Analysis {
         result: result(),
         cask_file: cask_file(),
-        curves: curves(),
+        curves: LazyCurves::new(Box::new(curves)),
         start_unix_ns: Some(1_700_000_000_000_000_000),
     }
 }
@@ -46,7 +46,7 @@ pub(super) fn without_anything() -> Analysis {
             .into(),
         ..DropFinding::NoImpact { least_m_s: 1.0, doubt: None, without_rise: None }.into()
     }];
-    analysis.curves = Curves::default();
+    *analysis.curves = Curves::default();
     analysis.start_unix_ns = None;
     analysis
 }
