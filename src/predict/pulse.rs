@@ -119,8 +119,10 @@ impl Pulse<'_> {
             while time_s.re() < until_s {
                 let (next, taken_s) = self.stretch(&at, time_s, T::from(until_s) - time_s, force_n);
                 let reached = |state: &State<T>| state.corner(self.body, along_m).height_m;
-                let (above, below) = (reached(&at), reached(&next));
-                if has_second_end && below.re() <= 0.0 && above.re() > 0.0 {
+                let heights = has_second_end.then(|| (reached(&at), reached(&next)));
+                if let Some((above, below)) =
+                    heights.filter(|(above, below)| below.re() <= 0.0 && above.re() > 0.0)
+                {
                     let taken_s = taken_s * above / (above - below);
                     let near = self.stretch(&at, time_s, taken_s, force_n).0.corner(self.body, along_m);
                     let taken_s = taken_s - near.height_m / near.vertical_velocity_m_s;
@@ -141,16 +143,17 @@ impl Pulse<'_> {
         longest_s: T,
         force_n: T,
     ) -> (State<T>, T) {
-        let slip_m_s = self.slip_m_s(at);
         let ratio = self.grip(at, self.force_n(time_s + longest_s * 0.5, force_n));
-        let next = self.step(at, ratio, (time_s, longest_s), force_n);
-        let later_m_s = self.slip_m_s(&next);
-        let was_sliding = slip_m_s.re().abs() >= STOPPED_M_S;
-        if ratio.is_some() && !(was_sliding && later_m_s.re() * slip_m_s.re() < 0.0) {
-            return (next, longest_s);
+        let (mut next, mut taken_s) = (self.step(at, ratio, (time_s, longest_s), force_n), longest_s);
+        if ratio.is_some() {
+            let (slip_m_s, later_m_s) = (self.slip_m_s(at), self.slip_m_s(&next));
+            let was_sliding = slip_m_s.re().abs() >= STOPPED_M_S;
+            if !(was_sliding && later_m_s.re() * slip_m_s.re() < 0.0) {
+                return (next, longest_s);
+            }
+            taken_s = longest_s * slip_m_s / (slip_m_s - later_m_s);
+            next = self.step(at, ratio, (time_s, taken_s), force_n);
         }
-        let taken_s = if ratio.is_some() { longest_s * slip_m_s / (slip_m_s - later_m_s) } else { longest_s };
-        let next = self.step(at, ratio, (time_s, taken_s), force_n);
         let left_m_s = self.slip_m_s(&next);
         (State { horizontal_velocity_m_s: next.horizontal_velocity_m_s - left_m_s, ..next }, taken_s)
     }
