@@ -13,8 +13,8 @@ const LOUD: f64 = 50.0;
 const SHARE: f64 = 1e-3;
 /// The spread is that of the quietest of this many stretches: ringing after the impact is no noise.
 const STRETCHES: usize = 20;
-/// Samples of a stretch that its spread is taken from: known to 3 %.
-const SAMPLED: usize = 1000;
+/// Samples of a stretch that its spread is taken from: known to 5 %.
+const SAMPLED: usize = 500;
 
 /// How far a channel goes from its median, m/s², and how far its samples spread where it is quietest, m/s².
 struct Excursion {
