@@ -18,9 +18,6 @@ const GAP_SHARE: f64 = 3.0;
 /// Standard uncertainty of the roll after a first contact, rad/s: edges tilted by 1 to 5° leave 20 to 180°/s.
 const ROLL_RAD_S: f64 = 1.0;
 
-/// Steps over the contact that slopes are taken with: with four times as many no half-width of a fixture moves by more than 6e-4 of itself.
-const SLOPE_STEPS: usize = 50;
-
 /// Share of cot φ that a friction reaches at most.
 const MOST_FRICTION: f64 = 0.9;
 
@@ -116,9 +113,9 @@ impl Inputs {
         }
     }
 
-    /// The same inputs, for slopes.
-    pub(super) fn for_slopes(&self) -> Self {
-        Self { setup: Setup { contact_steps: SLOPE_STEPS, ..self.setup }, ..self.clone() }
+    /// The same inputs, the contact followed in so many steps.
+    pub(super) fn in_steps(&self, contact_steps: usize) -> Self {
+        Self { setup: Setup { contact_steps, ..self.setup }, ..self.clone() }
     }
 
     /// These inputs with each of `inputs` moved by so many of its standard uncertainties.
