@@ -9,7 +9,9 @@ fn main() -> ExitCode {
     }
     let words: Vec<OsString> = std::env::args_os().skip(1).collect();
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
-    if words.first().is_some_and(|word| word == "validate") && words.iter().any(|word| word == "--campaign") {
+    if words.first().is_some_and(|word| word == "validate")
+        && words.iter().any(|word| word.to_string_lossy().starts_with("--campaign"))
+    {
         again_with_memory_given_back(&words);
     }
     ExitCode::from(dropcheck::command::main(&words))
