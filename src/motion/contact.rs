@@ -1,6 +1,6 @@
 //! The rigid motion over one contact to what a test report tabulates of it: force, decelerations free of ringing, crush.
 
-use super::curves::{REACH, filtered};
+use super::curves::{cut_wide, filtered};
 use super::reconstruct::{corner, corner_height_m};
 use crate::data::{Motion, MotionState, Setup, Signal};
 use crate::numerics::filter::ZeroPhaseLowPass;
@@ -175,11 +175,9 @@ pub struct PulseLength {
 #[must_use]
 pub fn pulses(signals: &[Signal], between_s: [f64; 2], cutoff_hz: f64) -> Vec<Option<ChannelPulse>> {
     let [from_s, to_s] = between_s;
-    let margin_s = REACH / cutoff_hz;
     let is_whole =
         |s: &Signal| ![&s.clipped, &s.gaps].into_iter().any(|spans| s.touches(spans, from_s, to_s));
-    let wide = |s: &Signal| s.cut(s.index_from(from_s - margin_s), s.index_from(to_s + margin_s));
-    let wide: Vec<Signal> = signals.iter().map(wide).collect();
+    let wide: Vec<Signal> = signals.iter().map(|s| cut_wide(s, (from_s, to_s), cutoff_hz)).collect();
     let all = signals.iter().zip(wide.iter().zip(filtered(&wide, cutoff_hz)));
     all.map(|(signal, (wide, smooth))| pulse(wide, &smooth, between_s).filter(|_| is_whole(signal))).collect()
 }

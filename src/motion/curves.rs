@@ -15,7 +15,7 @@ const BEFORE_S: f64 = 0.01;
 /// Shown after the last event, s: the slap-down pulse and some ringing.
 const AFTER_S: f64 = 0.04;
 /// A low-pass with −3 dB at f reaches so many times 1/f: beyond that 1e-12 of a sample is left.
-pub(super) const REACH: f64 = 6.2;
+const REACH: f64 = 6.2;
 /// A rate of so many times the cut-off is enough for what a low-pass leaves: means that come down to it take 2e-4 of what is at the cut-off.
 const RATE_OVER_CUTOFF: f64 = 100.0;
 /// IAEA SSG-26 as quoted in the field: 100–200 Hz for 100 t, scaled with (100 t / m)^(1/3); the upper end (28).
@@ -69,13 +69,13 @@ pub fn usual_filters(mass_kg: f64) -> Vec<(String, f64)> {
 /// The signals over what is shown, and as far around it as a low-pass with this −3 dB cut-off, Hz, reaches.
 #[must_use]
 pub fn around(signals: &[Signal], events: &Events, cutoff_hz: f64) -> Vec<Signal> {
-    let cut = |signal: &Signal| {
-        let (first_s, last_s) = shown_s(signal, events);
-        let margin_s = REACH / cutoff_hz;
-        let from = signal.index_from(first_s - margin_s);
-        signal.cut(from, signal.index_from(last_s + margin_s).max(from))
-    };
-    signals.iter().map(cut).collect()
+    signals.iter().map(|signal| cut_wide(signal, shown_s(signal, events), cutoff_hz)).collect()
+}
+
+/// A signal between two times, s, and as far around them as a low-pass with this −3 dB cut-off, Hz, reaches.
+pub(super) fn cut_wide(signal: &Signal, (from_s, to_s): (f64, f64), cutoff_hz: f64) -> Signal {
+    let margin_s = REACH / cutoff_hz;
+    signal.cut(signal.index_from(from_s - margin_s), signal.index_from(to_s + margin_s))
 }
 
 /// The signals low-passed without phase, at a rate that is enough for that; a cut-off that the rate cannot carry leaves them as they are.
