@@ -1,67 +1,71 @@
 //! Pieces of work to what is made of them: each on one of so many threads, handed over in order, so many ahead at most.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError, mpsc};
 
 /// Pieces that may be ready before the one that is waited for, for each job: more would be held in memory.
 const AHEAD: usize = 4;
 
+/// Told in place of how many are taken where no more are.
+const ENDED: usize = usize::MAX;
+
 /// Makes something of each of `pieces` by `make` on `jobs` threads, one core each, and hands it to `take` in their order.
 ///
 /// # Errors
 /// The first of `take`; what is being made then is ended, and no more begun.
-pub fn each<P: Copy + Sync, T: Send, E>(
-    pieces: &[P],
+pub fn each<P: Copy + Send + Sync, T: Send, E>(
+    pieces: impl Iterator<Item = P> + Send,
     jobs: usize,
     make: impl Fn(P) -> T + Sync,
     mut take: impl FnMut(P, T) -> Result<(), E>,
 ) -> Result<(), E> {
-    let (next, taken, moved) = (AtomicUsize::new(0), Mutex::new(0_usize), Condvar::new());
+    let threads = pieces.size_hint().1.map_or(jobs, |most| jobs.min(most));
+    let (next, taken, moved) = (Mutex::new(pieces.enumerate()), Mutex::new(0_usize), Condvar::new());
     let (sender, receiver) = mpsc::channel();
-    let work = || {
+    let work = |sender: mpsc::Sender<_>| {
         // What a piece shares among threads stays on this one: pieces are what is shared here. A thread that waits for another would begin a
         // second piece in the middle of the first, and hold both.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-        let sender = sender.clone();
         loop {
-            let place = next.fetch_add(1, Ordering::Relaxed);
-            let Some(&piece) = pieces.get(place) else { return };
+            let Some((place, piece)) = next.lock().unwrap_or_else(PoisonError::into_inner).next() else {
+                return;
+            };
             let lead = taken.lock().unwrap_or_else(PoisonError::into_inner);
-            drop(moved.wait_while(lead, |taken| place >= taken.saturating_add(AHEAD * jobs)));
+            let lead = moved.wait_while(lead, |taken| place >= taken.saturating_add(AHEAD * jobs));
+            if *lead.unwrap_or_else(PoisonError::into_inner) == ENDED {
+                return;
+            }
             let made = match &pool {
                 Ok(pool) => pool.install(|| make(piece)),
                 Err(_) => make(piece),
             };
-            if sender.send((place, made)).is_err() {
+            if sender.send((place, piece, made)).is_err() {
                 return;
             }
         }
     };
-    let end = |at: usize| {
-        *taken.lock().unwrap_or_else(PoisonError::into_inner) = at;
+    let tell = |now: usize| {
+        *taken.lock().unwrap_or_else(PoisonError::into_inner) = now;
         moved.notify_all();
     };
     std::thread::scope(|scope| {
-        for _ in 0..jobs.min(pieces.len()) {
-            scope.spawn(work);
+        for _ in 0..threads {
+            let (work, sender) = (&work, sender.clone());
+            scope.spawn(move || work(sender));
         }
-        let mut ready = BTreeMap::new();
-        for (place, &piece) in pieces.iter().enumerate() {
-            let made = loop {
-                if let Some(made) = ready.remove(&place) {
-                    break made;
+        // The threads hold the others, so that there is an end to what they send.
+        drop(sender);
+        let (mut ready, mut count) = (BTreeMap::new(), 0);
+        for (place, piece, made) in receiver {
+            ready.insert(place, (piece, made));
+            while let Some((piece, made)) = ready.remove(&count) {
+                if let Err(fault) = take(piece, made) {
+                    tell(ENDED);
+                    return Err(fault);
                 }
-                // The threads end when all is made, so that there is always one that sends.
-                let Ok((place, made)) = receiver.recv() else { return Ok(()) };
-                ready.insert(place, made);
-            };
-            if let Err(fault) = take(piece, made) {
-                next.store(pieces.len(), Ordering::Relaxed);
-                end(usize::MAX);
-                return Err(fault);
+                count += 1;
+                tell(count);
             }
-            end(place + 1);
         }
         Ok(())
     })
@@ -70,6 +74,7 @@ pub fn each<P: Copy + Sync, T: Send, E>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     #[test]
     fn lines_come_in_order_and_few_are_ahead() {
@@ -78,7 +83,7 @@ mod tests {
             let made = AtomicUsize::new(0);
             let mut found = Vec::new();
             each(
-                &numbers,
+                numbers.iter().copied(),
                 jobs,
                 |number| {
                     made.fetch_add(1, Ordering::SeqCst);
@@ -102,10 +107,9 @@ mod tests {
     #[test]
     fn what_cannot_be_taken_ends_the_work() {
         let made = AtomicUsize::new(0);
-        let numbers: Vec<usize> = (0..1000).collect();
         let make = |_| made.fetch_add(1, Ordering::SeqCst);
         let ended = each(
-            &numbers,
+            0..1000,
             2,
             make,
             |number, _| if number < 5 { Ok(()) } else { Err(miette::miette!("full")) },

@@ -100,7 +100,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     // What is done already is read by one thread beside the others, since the record grows meanwhile.
     let earlier = record.as_ref().map(|record| record.lines().clone()).unwrap_or_default();
     in_order::each(
-        &own,
+        own.into_iter(),
         jobs,
         |number| {
             let test = &plan.tests[number];

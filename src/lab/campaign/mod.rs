@@ -33,9 +33,6 @@ use std::convert::Infallible;
 /// Words for several kinds: every drop, those that are not damaged, those of sound kinds.
 pub const WORDS: [&str; 3] = ["all", "undamaged", "sound"];
 
-/// Scenes that are numbered at a time; at their end some threads wait for the last.
-const BLOCK: usize = 4096;
-
 /// Runs the campaign; `progress` is told the share that is done. The same request gives the same rows.
 #[must_use]
 pub fn run(request: &CampaignRequest, progress: Progress) -> Campaign {
@@ -59,15 +56,9 @@ pub fn each<E>(
     done: usize,
     mut take: impl FnMut(usize, CampaignRow) -> Result<(), E>,
 ) -> Result<(), E> {
-    let mut own = numbers(request).enumerate().skip(shard.index).step_by(shard.count).skip(done);
-    loop {
-        let block: Vec<_> = own.by_ref().take(BLOCK).collect();
-        if block.is_empty() {
-            return Ok(());
-        }
-        let jobs = rayon::current_num_threads();
-        in_order::each(&block, jobs, |(_, number)| row(request, number), |(i, _), row| take(i, row))?;
-    }
+    let own = numbers(request).enumerate().skip(shard.index).step_by(shard.count).skip(done);
+    let jobs = rayon::current_num_threads();
+    in_order::each(own, jobs, |(_, number)| row(request, number), |(i, _), row| take(i, row))
 }
 
 /// One scene as `synth` writes it: the scene with what is stated of it, and its recording.
