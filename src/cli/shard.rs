@@ -1,9 +1,16 @@
 //! A file of lines, as `--jsonl` writes it, to what its lines are of.
 
+use super::output::JsonTarget;
+use miette::{IntoDiagnostic, WrapErr};
 use serde_json::Value;
-use std::fs::File;
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
+use std::time::Duration;
+
+/// How often, and after how long, a file that another run holds is tried again.
+const TRIES: u32 = 20;
+const AGAIN: Duration = Duration::from_millis(100);
 
 /// How every line begins that `--jsonl` writes: the key `campaign` comes first, its `schema` first in it.
 const MARK: &[u8] = b"{\"campaign\":{\"schema\":\"dropcheck.";
@@ -13,6 +20,26 @@ pub fn is_own(path: &Path) -> bool {
     let mut head = Vec::new();
     let read = File::open(path).and_then(|file| file.take(MARK.len() as u64).read_to_end(&mut head));
     read.is_ok() && MARK.starts_with(&head)
+}
+
+/// The file for this run to write lines at its end, and for no other meanwhile; what is none of this program is looked at as any target is.
+pub fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
+    if !is_own(path) {
+        JsonTarget::checked(Some(path), inputs)?;
+    }
+    let file = OpenOptions::new().read(true).append(true).create(true).open(path).into_diagnostic();
+    let file = file.wrap_err_with(|| format!("{} cannot be written", path.display()))?;
+    // What a killed run had begun to start may hold it for a moment longer.
+    let is_held = || matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+    let waits = || {
+        std::thread::sleep(AGAIN);
+        is_held()
+    };
+    if is_held() && (0..TRIES).all(|_| waits()) {
+        let help = "wait for it, or end it";
+        return Err(miette::miette!(help = help, "another run is writing {}", path.display()));
+    }
+    Ok(file)
 }
 
 /// `campaign.schema` of the first line.

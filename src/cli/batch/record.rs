@@ -1,18 +1,13 @@
 //! Lines of results to a file that grows by one line at a time, and such files to the lines in them: what is done stays done.
 
-use super::super::output::{JsonTarget, replace_by};
+use super::super::output::replace_by;
 use super::super::shard;
 use miette::{IntoDiagnostic, WrapErr};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-/// How often, and after how long, a record that another run holds is tried again.
-const TRIES: u32 = 20;
-const AGAIN: Duration = Duration::from_millis(100);
 
 /// Where a line is: which file, from which byte, how many.
 #[derive(Debug, Clone, Copy)]
@@ -104,32 +99,14 @@ impl LineRecord {
         inputs: &[&Path],
         is_own: impl Fn(&Value) -> Option<usize>,
     ) -> miette::Result<Self> {
-        // What is no record of this program is looked at as any target is.
-        if !shard::is_own(path) {
-            JsonTarget::checked(Some(path), inputs)?;
-        }
-        let words = || format!("{} cannot be written", path.display());
-        let file = OpenOptions::new().read(true).append(true).create(true).open(path);
-        let file = file.into_diagnostic().wrap_err_with(words)?;
-        // What a killed run had begun to start may hold it for a moment longer.
-        let is_held = || matches!(file.try_lock(), Err(TryLockError::WouldBlock));
-        let waits = || {
-            std::thread::sleep(AGAIN);
-            is_held()
-        };
-        if is_held() && (0..TRIES).all(|_| waits()) {
-            return Err(miette::miette!(
-                help = "wait for it, or end it",
-                "another run is writing {}",
-                path.display()
-            ));
-        }
+        let file = shard::held(path, inputs)?;
         let mut record =
             Self { path: path.to_path_buf(), file, end: 0, lines: LineFiles::default(), is_in_order: true };
         if resume {
             record.take_over(is_own)?;
         }
-        record.file.set_len(record.end).into_diagnostic().wrap_err_with(words)?;
+        let cut = record.file.set_len(record.end).into_diagnostic();
+        cut.wrap_err_with(|| format!("{} cannot be written", path.display()))?;
         Ok(record)
     }
 
@@ -195,6 +172,7 @@ impl LineRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs::OpenOptions;
 
     fn line(number: usize, words: &str) -> Vec<u8> {
         format!("{{\"campaign\":{{\"schema\":\"dropcheck.x/1\"}},\"n\":{number},\"w\":\"{words}\"}}\n")

@@ -1,12 +1,11 @@
 //! Lines of scenes to a file that grows, and such files to the rows in them; a shard that is missing, doubled, cut or foreign is named.
 
-use super::super::output::JsonTarget;
 use super::super::shard;
 use dropcheck::lab::campaign::{self, ScenePlace};
 use dropcheck::lab::data::{CampaignRequest, CampaignRow, CampaignShard};
 use miette::{IntoDiagnostic, WrapErr};
 use std::collections::BTreeMap;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 
@@ -19,21 +18,10 @@ pub struct SceneLines {
 impl SceneLines {
     /// Begins the file, or with `resume` goes on with the lines that are there.
     pub fn open(path: &Path, resume: bool) -> miette::Result<Self> {
-        if !shard::is_own(path) {
-            JsonTarget::checked(Some(path), &[])?;
-        }
-        let words = || format!("{} cannot be written", path.display());
-        let file = OpenOptions::new().read(true).append(true).create(true).open(path);
-        let file = file.into_diagnostic().wrap_err_with(words)?;
-        if let Err(TryLockError::WouldBlock) = file.try_lock() {
-            return Err(miette::miette!(
-                help = "wait for it, or end it",
-                "another run is writing {}",
-                path.display()
-            ));
-        }
+        let file = shard::held(path, &[])?;
         if !resume {
-            file.set_len(0).into_diagnostic().wrap_err_with(words)?;
+            let emptied = file.set_len(0).into_diagnostic();
+            emptied.wrap_err_with(|| format!("{} cannot be written", path.display()))?;
         }
         Ok(Self { path: path.to_path_buf(), file })
     }
