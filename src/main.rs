@@ -23,7 +23,7 @@ fn main() -> ExitCode {
 fn again_with_memory_given_back(words: &[OsString]) {
     use std::os::unix::process::CommandExt;
     const NAME: &str = "GLIBC_TUNABLES";
-    const LIMITS: &str = "glibc.malloc.mmap_threshold=262144:glibc.malloc.trim_threshold=1048576";
+    const LIMITS: &str = "glibc.malloc.mmap_threshold=65536:glibc.malloc.trim_threshold=262144";
     if std::env::var_os(NAME).is_none()
         && let Ok(program) = std::env::current_exe()
     {
