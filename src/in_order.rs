@@ -1,6 +1,7 @@
 //! Pieces of work to what is made of them: each on one of so many threads, handed over in order, so many ahead at most.
 
 use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Condvar, Mutex, PoisonError, mpsc};
 
 /// Pieces that may be ready before the one that is waited for, for each job: more would be held in memory.
@@ -35,10 +36,10 @@ pub fn each<P: Copy + Send + Sync, T: Send, E>(
             if *lead.unwrap_or_else(PoisonError::into_inner) == ENDED {
                 return;
             }
-            let made = match &pool {
+            let made = catch_unwind(AssertUnwindSafe(|| match &pool {
                 Ok(pool) => pool.install(|| make(piece)),
                 Err(_) => make(piece),
-            };
+            }));
             if sender.send((place, piece, made)).is_err() {
                 return;
             }
@@ -59,6 +60,11 @@ pub fn each<P: Copy + Send + Sync, T: Send, E>(
         for (place, piece, made) in receiver {
             ready.insert(place, (piece, made));
             while let Some((piece, made)) = ready.remove(&count) {
+                // The other threads wait for this piece.
+                let made = made.unwrap_or_else(|fault| {
+                    tell(ENDED);
+                    resume_unwind(fault)
+                });
                 if let Err(fault) = take(piece, made) {
                     tell(ENDED);
                     return Err(fault);
@@ -115,5 +121,11 @@ mod tests {
             |number, _| if number < 5 { Ok(()) } else { Err(miette::miette!("full")) },
         );
         assert!(ended.is_err() && made.load(Ordering::SeqCst) < 50);
+    }
+
+    #[test]
+    fn a_fault_ends_the_work_of_all_threads() {
+        let run = || each(0..1000, 2, |number| assert!(number != 7), |_, ()| Ok::<(), ()>(()));
+        assert!(catch_unwind(run).is_err());
     }
 }
