@@ -42,6 +42,11 @@ pub fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
     Ok(file)
 }
 
+/// Leaves so many bytes of a file of lines that this run holds.
+pub fn keep(file: &File, path: &Path, bytes: u64) -> miette::Result<()> {
+    file.set_len(bytes).into_diagnostic().wrap_err_with(|| format!("{} cannot be written", path.display()))
+}
+
 /// `campaign.schema` of the first line.
 pub fn schema(path: &Path) -> miette::Result<String> {
     let unread = |source| miette::miette!("{} cannot be read: {source}", path.display());

@@ -105,8 +105,7 @@ impl LineRecord {
         if resume {
             record.take_over(is_own)?;
         }
-        let cut = record.file.set_len(record.end).into_diagnostic();
-        cut.wrap_err_with(|| format!("{} cannot be written", path.display()))?;
+        shard::keep(&record.file, path, record.end)?;
         Ok(record)
     }
 

@@ -20,8 +20,7 @@ impl SceneLines {
     pub fn open(path: &Path, resume: bool) -> miette::Result<Self> {
         let file = shard::held(path, &[])?;
         if !resume {
-            let emptied = file.set_len(0).into_diagnostic();
-            emptied.wrap_err_with(|| format!("{} cannot be written", path.display()))?;
+            shard::keep(&file, path, 0)?;
         }
         Ok(Self { path: path.to_path_buf(), file })
     }
@@ -38,8 +37,7 @@ impl SceneLines {
             take(&row)?;
             done += 1;
         }
-        let cut = self.file.set_len(lines.whole_bytes).into_diagnostic();
-        cut.wrap_err_with(|| format!("{} cannot be written", self.path.display()))?;
+        shard::keep(&self.file, &self.path, lines.whole_bytes)?;
         Ok(done)
     }
 
