@@ -15,7 +15,7 @@ HEAD = """# dropcheck for Python
 
 One wheel, one extension: the module `dropcheck` and the command of the same name. It needs numpy; pandas and xarray
 only for the tables named after them. A wheel is a file of a release (`pip install dropcheck-*.whl`), or made of the
-sources: `pip install ./python` in the repository, with a Rust toolchain and cmake. Linux with glibc 2.28 or newer.
+sources: `pip install ./python` in the repository, with a Rust toolchain. Linux with glibc 2.28 or newer.
 
 *This page is written by `python/page.py` from the docstrings; an executed example is
 [examples/campaign.ipynb](../examples/campaign.ipynb).*
