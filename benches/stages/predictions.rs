@@ -1,4 +1,4 @@
-//! A cask of the paper to the throughput of the analytical prediction: every rung, the gradient, a sweep and a whole study.
+//! A cask of the paper to the throughput of the analytical prediction: every rung, a sweep and a whole study.
 
 use crate::recordings::{self, Kind};
 use divan::counter::ItemsCount;
@@ -70,17 +70,6 @@ fn prediction_by_rung(bencher: Bencher, case: &Case) {
     bencher.counter(ItemsCount::new(drops.len())).bench_local(|| {
         for drop in &drops {
             black_box(predict::predict_by(case.rung, black_box(&body), drop, case.contact, case.k));
-        }
-    });
-}
-
-#[divan::bench(args = [0.5, 0.0])]
-fn prediction_gradient(bencher: Bencher, k: f64) {
-    let file = anf18();
-    let (body, drops) = (body(&file), drops(&file));
-    bencher.counter(ItemsCount::new(drops.len())).bench_local(|| {
-        for drop in &drops {
-            black_box(predict::speed_gradient(black_box(&body), drop, Contact::Rough, k));
         }
     });
 }

@@ -203,3 +203,23 @@ pub(super) fn uniform(curve: &MotionCurve) -> MotionCurve {
         time_s,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn the_default_cutoff_keeps_the_peak_of_a_short_pulse() {
+        // A half sine of 1 ms between two silences.
+        let sine =
+            |i: u32| if (5000..5100).contains(&i) { (PI * f64::from(i - 5000) / 100.0).sin() } else { 0.0 };
+        let pulse: Vec<f64> = (0..10_100).map(sine).collect();
+        let peak = |choice| {
+            let filter = ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz(choice, 4.5e3, Some(1e-3)).0, 1e5);
+            filter.expect("below Nyquist").apply(&pulse).into_iter().fold(0.0, f64::max)
+        };
+        assert!((peak(FilterChoice::Auto) - 1.0_f64).abs() < 0.01, "{}", peak(FilterChoice::Auto));
+        assert!(peak(FilterChoice::Cfc(60.0)) < 0.9);
+    }
+}

@@ -70,7 +70,7 @@ impl<'a> Integrated<'a> {
 }
 
 /// Running integral of a signal over a stretch of its record.
-pub(crate) struct Velocity {
+struct Velocity {
     start_s: f64,
     sample_rate_hz: f64,
     values_m_s: Vec<f64>,
@@ -78,7 +78,7 @@ pub(crate) struct Velocity {
 
 impl Velocity {
     /// From just before `from_s`, where it is 0, to just after `to_s`.
-    pub fn of(signal: &Signal, from_s: f64, to_s: f64) -> Self {
+    fn of(signal: &Signal, from_s: f64, to_s: f64) -> Self {
         let from = signal.index_from(from_s).saturating_sub(1);
         let to = (signal.index_from(to_s) + 2).min(signal.force_m_s2.len()).max(from);
         Self {
@@ -104,7 +104,7 @@ impl Velocity {
     }
 
     /// Velocity at a time, m/s, linear between samples and constant beyond the ends.
-    pub fn at(&self, time_s: f64) -> f64 {
+    fn at(&self, time_s: f64) -> f64 {
         let Some(last) = self.values_m_s.len().checked_sub(1) else { return 0.0 };
         let position = (time_s - self.start_s) * self.sample_rate_hz;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked against 0 first")]
@@ -116,7 +116,7 @@ impl Velocity {
     }
 
     /// Mean velocity between two times, m/s: of the samples there, or the value in the middle where there are none.
-    pub fn mean(&self, from_s: f64, to_s: f64) -> f64 {
+    fn mean(&self, from_s: f64, to_s: f64) -> f64 {
         let from = self.index_from(from_s);
         let inside = &self.values_m_s[from..self.index_from(to_s).max(from)];
         if inside.is_empty() {

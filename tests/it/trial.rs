@@ -1,65 +1,86 @@
-//! The filter, the ends of a record and the cut-off to their errors, held by bounds that theory gives.
+//! The quick trial's accuracy figures, seeded, to the bounds that keep a change from losing accuracy. Times are not looked at.
 
 use dropcheck::lab::data::{TrialPoint, TrialRequest};
-use dropcheck::lab::methods::FAMILIES;
-use dropcheck::stages::ZeroPhaseLowPass;
-use std::f64::consts::{PI, SQRT_2};
 
-fn points(family: &str) -> Vec<TrialPoint> {
-    let family = FAMILIES.iter().find(|known| known.0 == family).expect("a family of that name");
-    family.1(&TrialRequest { quick: true, seed: 1 })
+const REQUEST: TrialRequest = TrialRequest { quick: true, seed: 1 };
+
+fn run(name: &str) -> Vec<TrialPoint> {
+    let mut families = dropcheck::lab::methods::FAMILIES.into_iter();
+    families.find(|family| family.0 == name).expect("a family of that name").1(&REQUEST)
 }
 
-fn point<'a>(points: &'a [TrialPoint], method: &str, class: &str) -> &'a TrialPoint {
-    points.iter().find(|p| p.method == method && p.class == class).expect(class)
+/// The default's points, one a class.
+fn defaults(part: &[TrialPoint]) -> impl Iterator<Item = &TrialPoint> {
+    part.iter().filter(|p| p.is_default)
+}
+
+fn point<'a>(part: &'a [TrialPoint], method: &str, class: &str) -> &'a TrialPoint {
+    part.iter().find(|p| p.method == method && p.class == class).expect("a point")
 }
 
 #[test]
-fn the_filter_keeps_thirteen_digits_of_sines() {
-    for design in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5] {
-        let filter =
-            ZeroPhaseLowPass::with_design_hz(design, 1.0).expect("a design frequency below the rate's half");
-        // e^(−R 2π f t) = 1e-16 after 5.9 / (R f), R = sin 45°; half as much again where the frequency axis is warped.
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of samples")]
-        let silence = (9.0 * SQRT_2 / design) as u32;
-        let gain = (PI * design).tan();
-        // |H|² = 1/(1 + (tan(π f/f_s)/g)⁴) of both passes together.
-        let sines = [1.0 / 3.0, 1.0, 3.0].map(|times: f64| {
-            let share = times * design;
-            (share, 1.0 / (1.0 + ((PI * share).tan() / gain).powi(4)))
-        });
-        let sum = |i: u32, left: bool| -> f64 {
-            // Turns are taken off before the multiplication.
-            let sine = |share: f64| (2.0 * PI * (share * f64::from(i)).fract() + 1.0).sin();
-            sines.iter().map(|(share, kept)| if left { kept * sine(*share) } else { sine(*share) }).sum()
+fn the_program_is_near_from_file_to_answer_and_what_it_leaves_out_is_not() {
+    let part = run("ways");
+    for found in defaults(&part) {
+        // Measured on simulated drops by another program: planar motion with the modes fitted is within 0.4 % of speed and 0.011 of k. Noise of 5 g
+        // leaves 0.055 m/s on each step; three times that on both over 16 m/s is 1.5 %, over v0 of 13.3 m/s 0.018 of k. A length off by 1 % is 1 % of
+        // what turns, which is more than what strikes; of what is cut off, only the interval knows.
+        let is_speed = found.family.starts_with("speed");
+        let bound = match &found.class[..] {
+            "5 g of noise" => [1.5, 0.018],
+            "length off by 1 %" => [2.0, 0.011],
+            "clean" | "one mode, 2 to 5 periods" | "limiter, 12 to 25 ms" => [0.4, 0.011],
+            _ => continue,
         };
-        let count = 3 * silence;
-        let filtered = filter.apply(&(0..count).map(|i| sum(i, false)).collect::<Vec<_>>());
-        let off = |i: u32| (filtered[i as usize] - sum(i, true)).abs();
-        let worst = (silence..2 * silence).map(off).fold(0.0, f64::max);
-        // Round-off grows as the root of the samples in the memory, 3.1e5 at 1e-5: 560 · 1.1e-16 in each of two passes. A product of up to
-        // 115 turns is rounded by 7e-15 of one: 4.5e-14 of each of three sines.
-        assert!(worst < 3e-13, "f/fs = {design:e}: {worst:e}");
+        assert!(found.p95_error < bound[usize::from(!is_speed)], "{found:?}");
+        assert!(found.promised.is_some() && found.held > Some(0.9), "{found:?}");
     }
+    // Fig. 13's way leaves gravity out: -3.4 to -1.8 % without any ringing, worse with it; the mean of what rings is off.
+    for class in ["clean", "one mode, 2 to 5 periods", "slow mode, 0.7 to 1.2 periods"] {
+        assert!(point(&part, "single channels (paper)", class).median_error > 1.0);
+        assert!(point(&part, "filter first, CFC 180", class).median_error > 1.0);
+    }
+    assert!(point(&part, "planar alone", "one mode, 2 to 5 periods").p95_error > 1.0);
+    // Reading has a time, and says nothing.
+    assert!(
+        point(&part, "reading alone", "all").cases == 0 && !point(&part, "reading alone", "all").is_on_front
+    );
 }
 
 #[test]
-fn even_reflection_leaves_the_filters_own_noise_at_the_ends() {
-    let points = points("record-ends");
-    let even = point(&points, "even", "noise");
-    // What an end adds is noise of about the filter's own size; over a quarter of 1/f it is one normal value at each end.
-    assert!(even.median_error < 1.0 && even.p95_error < 2.5, "{} {}", even.median_error, even.p95_error);
-    // Odd reflection pins the end sample: noise of 1/√(2 · 0.833 f/f_s) = 24.5 of the filter's own, one normal value at each end:
-    // their root mean square has a median of 0.83 of that, and the pin is let go over the quarter of 1/f.
-    let odd = point(&points, "odd, 9 samples", "noise").median_error;
-    assert!((4.0..25.0).contains(&odd), "{odd}");
+fn the_limits_of_ways_are_those_that_the_quick_trial_keeps() {
+    let mut points = Vec::new();
+    for (_, tried) in dropcheck::lab::methods::FAMILIES {
+        points.extend(tried(&REQUEST));
+    }
+    let kept = |point: &TrialPoint| dropcheck::lab::methods::limits_of(point);
+    let limits: Vec<_> = defaults(&points).flat_map(kept).collect();
+    assert!(limits.len() == 11, "{limits:?}");
+    assert!(limits.iter().all(dropcheck::lab::data::TrialLimit::is_kept), "{limits:?}");
 }
 
 #[test]
-fn the_default_cutoff_keeps_the_peak_of_any_pulse() {
-    let points = points("cut-off");
-    let of = |method| point(&points, method, "4.5 t, pulse of 1 ms alone").p95_error;
-    // 3/T keeps a half sine's peak within 1 %   (28)
-    assert!(of("larger of mass and pulse") < 0.01, "{:e}", of("larger of mass and pulse"));
-    assert!(of("CFC 60") > 0.1);
+fn the_highest_rung_of_the_prediction_meets_the_simulation() {
+    let part = run("prediction");
+    let highest = |class| point(&part, "body, further impacts", class).median_error;
+    for class in ["thin rod, rough", "body, rough", "body, friction 0.3"] {
+        // A contact of 50 µs turns the cask by 3e-4 rad and gives it 5e-4 m/s; together below 0.05 % of the speed.
+        assert!(highest(class) < 0.05, "{class}: {}", highest(class));
+    }
+    // Twenty times as long a contact where L lands again; every touch is an impact to a stiff end, and a graze none to the program.
+    let stiff = point(&part, "body, every touch an impact", "first end lands once more, rough");
+    assert!(stiff.median_error < 1.0, "{stiff:?}");
+    // What each rung adds is missed by percents on the rung below.
+    for (rung, class) in [
+        ("rod", "body, rough"),
+        ("body", "body, friction 0.3"),
+        ("body with friction", "k to 0, rough"),
+        ("body, unilateral contact", "first end rattles, rough"),
+    ] {
+        assert!(point(&part, rung, class).median_error > 1.0, "{rung}, {class}");
+    }
+    // Grazes shallower than 1 % of the length are no impacts to the program: L sinks by 55 mm at most, and what it falls with by that,
+    // √(2 · 9.81 · 0.055) = 1 m/s, is at most a tenth of R's speed.
+    assert!(highest("k to 0, rough") < 10.0);
+    assert!(highest("k to 0, rough") < point(&part, "body with friction", "k to 0, rough").median_error);
 }

@@ -1,5 +1,6 @@
 //! A document and two lines in it to what stands before the one and behind the other.
 
+use dropcheck::ingest::bytes_of;
 use std::path::Path;
 
 /// The lines between which a command writes.
@@ -11,7 +12,8 @@ pub struct Marks {
 impl Marks {
     /// What stands before and after the place in a document, the lines that mark it included.
     pub fn parts(&self, path: &Path) -> miette::Result<(String, String)> {
-        let text = std::fs::read_to_string(path)
+        let text = bytes_of(path, 16)
+            .and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other))
             .map_err(|source| miette::miette!("{} cannot be read: {source}", path.display()))?;
         let found = text.find(self.begin).map(|at| at + self.begin.len()).zip(text.find(self.end));
         match found.filter(|(begin, end)| begin <= end) {

@@ -1,6 +1,7 @@
 //! Lines of scenes to a file that grows, and such files to the rows in them; a shard that is missing, doubled, cut or foreign is named.
 
 use super::super::shard;
+use dropcheck::ingest::opened;
 use dropcheck::lab::campaign::{self, ScenePlace};
 use dropcheck::lab::data::{CampaignRequest, CampaignRow, CampaignShard};
 use miette::{IntoDiagnostic, WrapErr};
@@ -59,7 +60,7 @@ struct LineReader {
 
 impl LineReader {
     fn open(path: &Path) -> miette::Result<Self> {
-        let file = File::open(path).into_diagnostic();
+        let file = opened(path).into_diagnostic();
         let file = file.wrap_err_with(|| format!("{} cannot be read", path.display()))?;
         Ok(Self { path: path.to_path_buf(), reader: BufReader::new(file), count: 0, whole_bytes: 0 })
     }
@@ -67,7 +68,7 @@ impl LineReader {
     /// The next line, with its end; empty where there is none.
     fn next(&mut self) -> miette::Result<Vec<u8>> {
         let mut line = Vec::new();
-        let read = self.reader.read_until(b'\n', &mut line).into_diagnostic();
+        let read = shard::next_line(&mut self.reader, &mut line).into_diagnostic();
         read.wrap_err_with(|| format!("{} cannot be read", self.path.display()))?;
         self.count += 1;
         Ok(line)

@@ -1,4 +1,4 @@
-//! `validate` without a campaign: ways, methods and damages to what is accepted, with page, pictures and tables.
+//! `validate` without a campaign: ways of working and damages to what is accepted, with page and pictures.
 
 use super::super::Ending;
 use super::super::output::{Folder, columns, print, replace};
@@ -7,14 +7,13 @@ use super::document::Marks;
 use dropcheck::lab::data::{TrialMachine, TrialRequest};
 use dropcheck::lab::methods::{self, References};
 use dropcheck::lab::report::{TRIAL_NAMES, trial_files, trial_markdown, trial_outcome};
-use dropcheck::report;
-use sha2::{Digest, Sha256};
+use dropcheck::{ingest, report};
 use std::path::Path;
 
 const MARKS: Marks = Marks { begin: "<!-- trial: begin -->", end: "<!-- trial: end -->" };
 
-/// Writes the trial into the folder `out` and, by its extract, into the document `into`; ends with what is accepted, a site's own
-/// reference recordings in the folder `site` among it.
+/// Writes the trial into the folder `out` and, by its extract, into the document `into`; ends with what is
+/// accepted, a site's own reference recordings in the folder `site` among it.
 pub fn run(
     request: TrialRequest,
     site: Option<&Path>,
@@ -42,10 +41,9 @@ pub fn run(
 
 /// What this program runs on.
 fn machine() -> TrialMachine {
-    let program = std::env::current_exe().and_then(std::fs::read);
+    let program = std::env::current_exe().ok().and_then(|program| ingest::sha256(&program).ok());
     TrialMachine {
-        program_sha256: program
-            .map_or_else(|_| String::new(), |bytes| format!("{:x}", Sha256::digest(bytes))),
+        program_sha256: program.unwrap_or_default(),
         processor: processor().unwrap_or_else(|| "a processor that does not say its name".to_owned()),
         cores: std::thread::available_parallelism().map_or(1, usize::from),
         when: jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M UTC").to_string(),
@@ -63,7 +61,8 @@ fn processor() -> Option<String> {
     told.or_else(|| std::env::var("PROCESSOR_IDENTIFIER").ok()).filter(|name| !name.is_empty())
 }
 
-/// What leads from a document to a folder, for references: relative where the folder lies below the document's own.
+/// What leads from a document to a folder, for references: relative where the folder lies below the
+/// document's own.
 fn way(document: &Path, folder: &Path) -> String {
     let below = document.parent().and_then(|own| folder.strip_prefix(own).ok()).unwrap_or(folder);
     let words: Vec<String> =

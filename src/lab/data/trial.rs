@@ -1,4 +1,4 @@
-//! Methods under trial: what each costs and how far off it is, and where the program fails.
+//! Ways of working under trial: what each costs and how far off it is, and where the program fails.
 
 use super::campaign::Campaign;
 use serde::Serialize;
@@ -23,7 +23,7 @@ impl TrialRequest {
 /// One method on one class of scenes: its error against the truth beside its time.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct TrialPoint {
-    /// What the method is for: "filter", "integration".
+    /// What the method is for: "k, from file to answer".
     pub family: String,
     /// The method, by its public name.
     pub method: String,
@@ -37,13 +37,13 @@ pub struct TrialPoint {
     pub median_error: f64,
     /// 95th percentile of the error, in `error_unit`.
     pub p95_error: f64,
-    /// Of what the error is a share, or its unit: "of the peak", "%".
+    /// Of what the error is a share, or its unit: "% of the slap-down speed".
     pub error_unit: String,
     /// Median time of a `time_per`, ns.
     pub time_ns: f64,
     /// Quartiles of that time over the repeats, ns.
     pub time_quartiles_ns: [f64; 2],
-    /// What the time is of: "sample", "call", "file".
+    /// What the time is of: "call", "file".
     pub time_per: String,
     /// Cases the error is taken over.
     pub cases: u32,

@@ -1,9 +1,9 @@
-//! A class of drops and a seed to recordings, conditioned, with the truth that a method is held against.
+//! A class of drops and a seed to plans of drops, and a recording to its conditioned channels.
 
 use crate::data::{CaskFile, CoarseEvent, Recording, STANDARD_GRAVITY_M_S2, Signal};
 use crate::lab::chance::Chance;
 use crate::lab::data::TrialRequest;
-use crate::lab::drawn::{BUILDS, DrawnDrop};
+use crate::lab::drawn::BUILDS;
 use crate::lab::plan::DropPlan;
 use crate::{condition, events};
 use rayon::prelude::*;
@@ -48,28 +48,6 @@ impl DropClass {
         };
         (0..count).into_par_iter().map(plan).collect()
     }
-
-    /// Their recordings, read and conditioned; a drop without an impact is left out.
-    pub(super) fn prepared(&self, count: u64, request: &TrialRequest) -> Vec<Prepared> {
-        self.plans(count, request).par_iter().filter_map(|plan| Prepared::of(plan.draw())).collect()
-    }
-}
-
-/// A recording up to where first contact is sought.
-pub(super) struct Prepared {
-    pub drop: DrawnDrop,
-    pub signals: Vec<Signal>,
-    pub coarse: CoarseEvent,
-    /// True first contact, s from the first sample.
-    pub contact_s: f64,
-}
-
-impl Prepared {
-    fn of(drop: DrawnDrop) -> Option<Self> {
-        let written = drop.recorded();
-        let (signals, coarse) = conditioned(&drop.read(&written)?, &drop.stated)?;
-        Some(Self { contact_s: written.first_contact_s, signals, coarse, drop })
-    }
 }
 
 /// The conditioned channels of a recording about the first impact, and where that lies; none without an impact.
@@ -79,3 +57,6 @@ pub(super) fn conditioned(recording: &Recording, file: &CaskFile) -> Option<(Vec
     let (signals, _) = condition::condition(recording, &coarse, &reach, file.corrections);
     Some((signals, coarse))
 }
+
+#[cfg(test)]
+mod tests;

@@ -7,12 +7,14 @@ const ROUNDING: f64 = 1e-15;
 /// Two errors or two times whose ratio is below this are alike: another seed, another run moves them as much.
 const ALIKE: f64 = 1.1;
 
-/// Marks the points on the front: no other of their family and class is at least as accurate (95th percentile) and at least as fast, and
-/// better in one of the two.
+/// Marks the points on the front: no other of their family and class is at least as accurate (95th
+/// percentile) and at least as fast, and better in one of the two.
 ///
-/// A rival is better only by more than 10 %, and faster only where the quartiles of the two times do not overlap either.
+/// Another is better only by more than 10 %, and faster only where the quartiles of the two times do not
+/// overlap either.
 pub(super) fn mark_front(points: &mut [TrialPoint]) {
-    let rivals = |a: &TrialPoint, b: &TrialPoint| a.cases > 0 && a.family == b.family && a.class == b.class;
+    let is_beside =
+        |a: &TrialPoint, b: &TrialPoint| a.cases > 0 && a.family == b.family && a.class == b.class;
     let error = |p: &TrialPoint| p.p95_error.max(ROUNDING);
     let is_faster = |a: &TrialPoint, b: &TrialPoint| {
         ALIKE * a.time_ns < b.time_ns && a.time_quartiles_ns[1] < b.time_quartiles_ns[0]
@@ -21,7 +23,7 @@ pub(super) fn mark_front(points: &mut [TrialPoint]) {
         (ALIKE * error(a) < error(b) && !is_faster(b, a)) || (error(a) <= ALIKE * error(b) && is_faster(a, b))
     };
     let is_on_front =
-        |p: &TrialPoint| p.cases > 0 && !points.iter().any(|rival| rivals(rival, p) && beats(rival, p));
+        |p: &TrialPoint| p.cases > 0 && !points.iter().any(|other| is_beside(other, p) && beats(other, p));
     let front: Vec<bool> = points.iter().map(is_on_front).collect();
     for (point, is_on_front) in points.iter_mut().zip(front) {
         point.is_on_front = is_on_front;

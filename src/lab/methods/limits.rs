@@ -1,6 +1,6 @@
 //! What was measured to what is accepted: each limit of the table beside what was found.
 
-use super::contest::ALL_CLASSES;
+use super::points::ALL_CLASSES;
 use super::references::{self, References};
 use crate::data::Verdict;
 use crate::lab::campaign::{half_widths_off, is_missed, quantile};
@@ -66,7 +66,7 @@ fn table() -> impl Iterator<Item = TrialLimit> {
     TABLE.lines().filter(|line| !line.is_empty() && !line.starts_with('#')).map(of_line)
 }
 
-/// Whether a point is of the family and the class of a name such as "flight fit: calm".
+/// Whether a point is of the family and the class of a name such as "prediction, given k: body, rough".
 fn is_named(point: &TrialPoint, name: &str) -> bool {
     name.strip_prefix(&point.family).and_then(|rest| rest.strip_prefix(": ")) == Some(&point.class)
 }

@@ -1,43 +1,29 @@
-//! Ways of working, each method beside its rivals and each damage that grows, to what is accepted: speed, accuracy, failure.
+//! Whole ways of working and damages that grow to what is accepted: speed, accuracy, failure.
 
-mod contest;
-mod cutoff;
-mod detection;
 mod drops;
-mod ends;
-mod flight;
 mod front;
 mod limits;
 mod map;
+mod points;
 mod prediction;
 mod references;
-pub mod timing;
 mod ways;
 
-pub use contest::ALL_CLASSES;
 pub use limits::limits_of;
+pub use points::{ALL_CLASSES, READING};
 pub use references::References;
-pub use ways::{READING, WAYS};
+pub use ways::WAYS;
 
 use crate::ingest::Progress;
 use crate::lab::campaign;
 use crate::lab::data::{CampaignRequest, Trial, TrialMachine, TrialPoint, TrialRequest};
 use crate::numerics::as_f64;
 
-/// Tries the methods of a family.
+/// Tries the ways of a family.
 type Trying = fn(&TrialRequest) -> Vec<TrialPoint>;
 
-/// The families by name, what matters most first: the ways of working, then single methods by how much hangs on them.
-///
-/// Forms of the filter, rules of integration and root finders are not among them: in double precision no rival is off by what matters.
-pub const FAMILIES: [(&str, Trying); 6] = [
-    ("ways", ways::points),
-    ("flight-fit", flight::points),
-    ("prediction", prediction::points),
-    ("first-contact", detection::points),
-    ("cut-off", cutoff::points),
-    ("record-ends", ends::points),
-];
+/// The families by name: the ways of working with a recording, and the rungs of the prediction.
+pub const FAMILIES: [(&str, Trying); 2] = [("ways", ways::points), ("prediction", prediction::points)];
 
 /// The whole trial, with a site's own reference recordings; `progress` is told the share that is done.
 #[must_use]
@@ -49,7 +35,7 @@ pub fn trial(
 ) -> Trial {
     let mut points = Vec::new();
     for (done, (_, tried)) in FAMILIES.iter().enumerate() {
-        // Methods, the map and the campaign take a third of the time each.
+        // Ways, the map and the campaign take a third of the time each.
         progress(as_f64(done) / as_f64(3 * FAMILIES.len()));
         points.extend(tried(&request));
     }

@@ -1,6 +1,6 @@
 //! The rungs of the prediction to how far off a drop on stiff ends each is, and what it costs.
 
-use super::contest::{Contest, Method, with_pooled};
+use super::points::{Answer, KnownDrop, SPEED, WayQuantity, Worked, scored};
 use crate::data::{Body, BodyModel, Contact, Drop, Rung};
 use crate::lab::chance::Chance;
 use crate::lab::data::{TrialPoint, TrialRequest};
@@ -8,6 +8,7 @@ use crate::lab::drawn::{ANF_10, ANF_18, Build, VHLW};
 use crate::lab::plan::DropPlan;
 use crate::predict;
 use rayon::prelude::*;
+use std::hint::black_box;
 use std::ops::RangeInclusive;
 
 /// Length of a stiff contact, s: the cask turns by 3e-4 of a radian in it and gains 5e-4 m/s by gravity.
@@ -37,13 +38,13 @@ const LIMIT_K: f64 = 2e-3;
 
 const ANY: RangeInclusive<u32> = 0..=u32::MAX;
 
-/// A drop on stiff ends: what a prediction is given, and the speed that it should give.
+/// A drop on stiff ends: what a prediction is given, and what happened.
 struct StiffDrop {
     body: Body,
     drop: Drop,
     contact: Contact,
     k: f64,
-    speed_m_s: f64,
+    known: KnownDrop,
 }
 
 const BODY: PredictedClass = PredictedClass {
@@ -80,31 +81,43 @@ const CLASSES: [PredictedClass; 7] = [
 /// What it is called among the ways.
 pub(super) const FAMILY: &str = "prediction, given k";
 
-fn contest() -> Contest<StiffDrop, f64> {
-    let by_rung = |rung: Rung| {
-        Method::new(rung.words(), move |at: &StiffDrop| {
+/// Errors are against `synth` on stiff ends.
+const QUANTITY: WayQuantity = WayQuantity { family: FAMILY, time_per: "call", ..SPEED };
+
+/// Calls of a rung that are timed together: the shortest takes no longer than the clock.
+const CALLS: u32 = 20;
+
+type Predicting = Box<dyn Fn(&StiffDrop) -> Option<f64>>;
+
+/// The rungs, the highest first, which is what the program takes; last the limit of stiff ends, where the program leaves grazes out.
+fn rungs() -> Vec<(&'static str, Predicting)> {
+    let by_rung = |rung: Rung| -> (&'static str, Predicting) {
+        let predicting = move |at: &StiffDrop| {
             predict::predict_by(rung, &at.body, &at.drop, at.contact, at.k).slap_down_speed_m_s
-        })
+        };
+        (rung.words(), Box::new(predicting))
     };
-    // The highest rung, which is what the program takes, comes first.
-    let mut methods: Vec<_> = Rung::ALL.into_iter().rev().map(by_rung).collect();
-    // The limit of stiff ends, where the program leaves grazes out.
-    methods.push(Method::new("body, every touch an impact", |at: &StiffDrop| {
+    let every_touch = |at: &StiffDrop| {
         predict::predict_grazing(&at.body, &at.drop, at.contact, at.k, 0.0).slap_down_speed_m_s
-    }));
-    Contest {
-        family: FAMILY,
-        error_unit: "% of the slap-down speed",
-        matters: 1.0,
-        samples: None,
-        methods,
-        error: |drop, speed_m_s| 100.0 * (speed_m_s / drop.speed_m_s - 1.0).abs(),
-    }
+    };
+    let mut rungs: Vec<_> = Rung::ALL.into_iter().rev().map(by_rung).collect();
+    rungs.push(("body, every touch an impact", Box::new(every_touch)));
+    rungs
 }
 
-/// Errors are against `synth` on stiff ends.
+/// The points of all rungs by class; a drop of which a rung gives no speed is missing there.
 pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {
-    with_pooled(contest().points(&CLASSES, request, |class| (class.name.to_owned(), drops(class, request))))
+    let (drops, rungs): (Vec<StiffDrop>, _) =
+        (CLASSES.iter().flat_map(|class| drops(class, request)).collect(), rungs());
+    let mut worked: Vec<Worked> =
+        rungs.iter().enumerate().map(|(i, (name, _))| Worked::named(name, i == 0)).collect();
+    for drop in &drops {
+        for (worked, (_, predicting)) in worked.iter_mut().zip(&rungs) {
+            worked.timed(CALLS, || Some(Answer::bare(predicting(black_box(drop)), None)));
+        }
+    }
+    let known: Vec<KnownDrop> = drops.iter().map(|drop| drop.known).collect();
+    scored(&QUANTITY, &worked, &known)
 }
 
 /// The drops of a class on stiff ends, with their truth; those in which R does not strike are left out.
@@ -131,8 +144,9 @@ fn drops(class: &PredictedClass, request: &TrialRequest) -> Vec<StiffDrop> {
             contact: class.contact,
             // The k that the stiff contact gave, not the one that it was built for.
             k: truth.k.map_or(0.0, |k| if k < LIMIT_K { 0.0 } else { k.min(1.0) }),
-            speed_m_s: truth.speed?,
+            known: KnownDrop { class: class.name, truth },
         };
+        truth.speed?;
         class.touches.contains(&truth.relands).then_some(drop)
     };
     plans.par_iter().filter_map(stiff).collect()

@@ -1,28 +1,24 @@
 //! Recordings in files to points of how far off each way of working with them is, timed whole from file to answer.
 
-use super::contest::{measured, with_pooled};
 use super::drops::{CALM, DropClass, NOISY, ONE_MODE, SLOW_MODE, conditioned};
+use super::points::{Answer, K, KnownDrop, READING, SPEED, Worked, scored};
 use super::prediction;
-use super::timing::quartiles;
 use crate::analysis::{analyze, settle, sticking};
 use crate::data::{
-    AssumedFriction, Axis, CaskFile, DropResult, End, Estimate, Events, ReconstructionCandidate,
-    ReconstructionRung, Recording,
+    AssumedFriction, Axis, CaskFile, End, Events, ReconstructionCandidate, ReconstructionRung, Recording,
 };
 use crate::lab::damage;
-use crate::lab::data::{SceneFile, TrialPoint, TrialRequest, Truth};
+use crate::lab::data::{SceneFile, TrialPoint, TrialRequest};
 use crate::lab::report::{SyntheticFormat, synthetic_files};
 use crate::motion::{self, Integrated};
 use crate::numerics::as_f64;
 use crate::numerics::filter::ZeroPhaseLowPass;
 use crate::numerics::quadrature::running_integral;
-use crate::numerics::robust;
 use crate::{events, fit, ingest};
 use rayon::prelude::*;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Instant;
 
 /// Drops of one kind, and what is wrong with them: a row of the table of damages, and its size.
 type WayClass = (DropClass, Option<(&'static str, f64)>);
@@ -45,29 +41,9 @@ const LIMITER: DropClass = DropClass {
 const RATE_HZ: f64 = 1e5;
 const BEFORE_S: f64 = 0.4;
 
-/// What a way says of a drop.
-#[derive(Clone, Copy, Default)]
-struct Answer {
-    speed: Option<Estimate>,
-    k: Option<Estimate>,
-}
-
-impl Answer {
-    fn of(result: &DropResult) -> Self {
-        Self { speed: result.slap_down.speed, k: result.k }
-    }
-
-    /// Numbers, in m/s and 1, without an interval.
-    fn bare(speed_m_s: Option<f64>, k: Option<f64>) -> Self {
-        let bare = |value| Estimate::new(value, f64::NAN, "");
-        Self { speed: speed_m_s.map(bare), k: k.map(bare) }
-    }
-}
-
 /// A drop as its files hold it.
 struct FiledDrop {
-    class: &'static str,
-    truth: Truth,
+    known: KnownDrop,
     recording: PathBuf,
     cask: PathBuf,
 }
@@ -176,14 +152,6 @@ fn alone(rung: ReconstructionRung, recording: &Recording, file: &CaskFile) -> Op
     }
 }
 
-/// What a way says of every drop, and how long it takes for each, ns.
-struct Worked {
-    name: String,
-    is_default: bool,
-    answers: Vec<Answer>,
-    times_ns: Vec<f64>,
-}
-
 /// The points of all ways, by quantity and class; what is no answer is wholly off. Reading alone has a time and no answer.
 pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {
     let Ok(folder) = tempfile::tempdir() else { return Vec::new() };
@@ -195,30 +163,14 @@ pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {
     for drop in &drops {
         // Each way has its turn on a file, after one that nobody times.
         black_box(read(drop));
-        worked[0].timed(|| read(drop).map(|_| Answer::default()));
+        worked[0].timed(1, || read(drop).map(|_| Answer::default()));
         for (worked, (_, way)) in worked[1..].iter_mut().zip(&ways) {
-            worked.timed(|| read(drop).and_then(|(recording, file)| way(&recording, &file)));
+            worked.timed(1, || read(drop).and_then(|(recording, file)| way(&recording, &file)));
         }
     }
     worked.extend(in_python(&drops, folder.path()));
-    [SPEED, K].iter().flat_map(|quantity| scored(quantity, &worked, &drops)).collect()
-}
-
-/// What a reading alone is called.
-pub const READING: &str = "reading alone";
-
-impl Worked {
-    fn named(name: &str, is_default: bool) -> Self {
-        Self { name: name.to_owned(), is_default, answers: Vec::new(), times_ns: Vec::new() }
-    }
-
-    /// One answer more; no answer is an empty one.
-    fn timed(&mut self, work: impl FnOnce() -> Option<Answer>) {
-        let begun = Instant::now();
-        let answer = black_box(work()).unwrap_or_default();
-        self.times_ns.push(1e9 * begun.elapsed().as_secs_f64());
-        self.answers.push(answer);
-    }
+    let known: Vec<KnownDrop> = drops.iter().map(|drop| drop.known).collect();
+    [SPEED, K].iter().flat_map(|quantity| scored(quantity, &worked, &known)).collect()
 }
 
 fn read(drop: &FiledDrop) -> Option<(Recording, CaskFile)> {
@@ -245,14 +197,15 @@ fn filed((class, struck): &WayClass, request: &TrialRequest, folder: &Path) -> V
             std::fs::write(&path, bytes).ok().map(|()| path)
         });
         truth.speed?;
-        Some(FiledDrop { class: class.name, truth, recording: recording?, cask: cask? })
+        let known = KnownDrop { class: class.name, truth };
+        Some(FiledDrop { known, recording: recording?, cask: cask? })
     };
     plans.par_iter().enumerate().filter_map(filed).collect()
 }
 
 /// The same work by numpy and scipy, where there is a Python that has them.
 fn in_python(drops: &[FiledDrop], folder: &Path) -> Option<Worked> {
-    let line = |drop: &FiledDrop| format!("{}\t{}", drop.recording.display(), drop.truth.v0);
+    let line = |drop: &FiledDrop| format!("{}\t{}", drop.recording.display(), drop.known.truth.v0);
     let list = drops.iter().map(line).collect::<Vec<_>>().join("\n");
     let path = folder.join("drops.txt");
     std::fs::write(&path, list).ok()?;
@@ -269,72 +222,5 @@ fn in_python(drops: &[FiledDrop], folder: &Path) -> Option<Worked> {
     (worked.answers.len() == drops.len()).then_some(worked)
 }
 
-/// What is held against the truth.
-struct WayQuantity {
-    family: &'static str,
-    unit: &'static str,
-    /// What a verdict needs.
-    matters: f64,
-    stated: fn(&Answer) -> Option<Estimate>,
-    truth: fn(&Truth) -> Option<f64>,
-    /// What the truth is divided by, of itself.
-    scale: fn(f64) -> f64,
-}
-
 /// The families of what is worked from file to answer, and of the prediction for itself.
 pub const WAYS: [&str; 3] = [SPEED.family, K.family, prediction::FAMILY];
-
-const SPEED: WayQuantity = WayQuantity {
-    family: "speed, from file to answer",
-    unit: "% of the slap-down speed",
-    matters: 1.0,
-    stated: |answer| answer.speed,
-    truth: |truth| truth.speed,
-    scale: |speed_m_s| 100.0 / speed_m_s,
-};
-
-const K: WayQuantity = WayQuantity {
-    family: "k, from file to answer",
-    unit: "1",
-    matters: 0.01,
-    stated: |answer| answer.k,
-    truth: |truth| truth.k,
-    scale: |_| 1.0,
-};
-
-/// A point a way and class, and one of all classes; a way that never says anything of the quantity is none for it.
-fn scored(of: &WayQuantity, worked: &[Worked], drops: &[FiledDrop]) -> Vec<TrialPoint> {
-    let off = |stated: Option<Estimate>, truth: &Truth| {
-        let (stated, truth) = stated.zip((of.truth)(truth))?;
-        let scale = (of.scale)(truth);
-        Some((scale * (stated.value - truth).abs(), scale * stated.u95))
-    };
-    let of_class = |class: &'static str| {
-        worked.iter().filter_map(move |way| {
-            let of_class = || (0..drops.len()).filter(|&i| drops[i].class == class);
-            let said: Vec<_> =
-                of_class().map(|i| off((of.stated)(&way.answers[i]), &drops[i].truth)).collect();
-            let (errors, mut half_widths): (Vec<f64>, Vec<f64>) = said.iter().flatten().copied().unzip();
-            let held =
-                errors.iter().zip(&half_widths).filter(|(error, half_width)| error <= half_width).count();
-            let is_any = !errors.is_empty();
-            let promised = is_any.then(|| robust::median(&mut half_widths)).filter(|u| u.is_finite());
-            let words = TrialPoint {
-                family: of.family.to_owned(),
-                method: way.name.clone(),
-                class: class.to_owned(),
-                is_default: way.is_default,
-                error_unit: of.unit.to_owned(),
-                time_per: "file".to_owned(),
-                matters: of.matters,
-                missing: u32::try_from(said.len() - errors.len()).unwrap_or(0),
-                promised,
-                held: promised.map(|_| as_f64(held) / as_f64(errors.len())),
-                ..TrialPoint::default()
-            };
-            let times_ns = quartiles(of_class().map(|i| way.times_ns[i]).collect());
-            (is_any || way.name == READING).then(|| measured(words, errors, times_ns))
-        })
-    };
-    with_pooled(CLASSES.iter().map(|(class, _)| class.name).flat_map(of_class).collect())
-}

@@ -1,4 +1,4 @@
-//! A trial to its files: the pages that a site signs, those of single methods, JSON, Markdown, pictures and map.
+//! A trial to its files: the pages that a site signs, JSON, Markdown, pictures and map.
 
 mod document;
 mod pictures;
@@ -7,21 +7,13 @@ use crate::lab::data::Trial;
 use crate::report::{ReportError, as_html, as_markdown, as_text, json};
 
 /// The files of a trial; the first is where a reader begins.
-pub const TRIAL_NAMES: [&str; 7] = [
-    "validation.html",
-    "rivals.html",
-    "validation.json",
-    "validation.md",
-    "speed.svg",
-    "failures.svg",
-    "rivals.svg",
-];
+pub const TRIAL_NAMES: [&str; 5] =
+    ["validation.html", "validation.json", "validation.md", "speed.svg", "failures.svg"];
 
 /// The extract; `folder` is what leads from the document to the pictures ("" or ending in "/"), none leaves them out.
 #[must_use]
 pub fn trial_markdown(trial: &Trial, folder: Option<&str>) -> String {
-    let [signed, rivals] = [document::document(trial), document::rivals(trial)];
-    [signed, rivals].map(|document| as_markdown::markdown(&document, folder)).join("\n")
+    as_markdown::markdown(&document::document(trial), folder)
 }
 
 /// What a terminal shows at the end: the limits, and whether the program is accepted.
@@ -35,12 +27,11 @@ pub fn trial_outcome(trial: &Trial, width: usize) -> String {
 /// # Errors
 /// [`ReportError`] where one of them cannot be made; then none is returned.
 pub fn trial_files(trial: &Trial) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
-    let pictures = [pictures::ways(trial), pictures::failures(trial), pictures::rivals(trial)];
-    let pages = [document::document(trial), document::rivals(trial)];
-    let [signed, rivals] = pages.map(|page| as_html::page(&page, &pictures).into_bytes());
-    let [speed, failures, beside] = pictures.map(|picture| picture.svg.into_bytes());
+    let pictures = [pictures::ways(trial), pictures::failures(trial)];
+    let page = as_html::page(&document::document(trial), &pictures).into_bytes();
+    let [speed, failures] = pictures.map(|picture| picture.svg.into_bytes());
     let extract = trial_markdown(trial, Some("")).into_bytes();
-    let bytes = [signed, rivals, json::pretty(trial)?, extract, speed, failures, beside];
+    let bytes = [page, json::pretty(trial)?, extract, speed, failures];
     Ok(TRIAL_NAMES.map(str::to_owned).into_iter().zip(bytes).collect())
 }
 
@@ -128,7 +119,7 @@ mod tests {
         let files = trial_files(&trial).unwrap();
         assert!(files.iter().zip(TRIAL_NAMES).all(|(file, name)| file.0 == name && !file.1.is_empty()));
         assert_eq!(trial_files(&trial).unwrap(), files);
-        let back: serde_json::Value = serde_json::from_slice(&files[2].1).unwrap();
+        let back: serde_json::Value = serde_json::from_slice(&files[1].1).unwrap();
         assert_eq!(back["points"][1]["method"], "by hand");
         let nothing = Trial { points: vec![], maps: vec![], ..trial };
         assert_eq!(trial_files(&nothing).unwrap().len(), TRIAL_NAMES.len());

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 /// A second-order low-pass with gain 1 at frequency 0: two trapezoidal integrators (26).
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct StateVariable {
+pub(super) struct StateVariable {
     /// g (g + 2R) / (1 + g (g + 2R)).
     decay: f64,
     /// g / (1 + g (g + 2R)).
@@ -15,13 +15,13 @@ pub(crate) struct StateVariable {
 
 impl StateVariable {
     /// By g = tan(π f/f_s) and 2R.
-    pub(crate) fn new(g: f64, damping: f64) -> Self {
+    pub(super) fn new(g: f64, damping: f64) -> Self {
         let first = 1.0 / (1.0 + g * (g + damping));
         Self { decay: g * (g + damping) * first, second: g * first, third: g * g * first }
     }
 
     /// Rows of samples, one a series, in the given order through it, from and to the states of its integrators.
-    pub(crate) fn run<'a, const N: usize>(
+    pub(super) fn run<'a, const N: usize>(
         &self,
         rows: impl Iterator<Item = &'a mut [f64; N]>,
         [band, low]: &mut [[f64; N]; 2],
@@ -41,7 +41,7 @@ impl StateVariable {
 }
 
 /// All samples forward, then all back; each way started in the steady state of its first sample.
-pub(crate) fn forward_and_back(stage: &StateVariable, samples: &mut [f64]) {
+pub(super) fn forward_and_back(stage: &StateVariable, samples: &mut [f64]) {
     rows_forward_and_back(stage, samples.as_chunks_mut::<1>().0);
 }
 
@@ -60,7 +60,7 @@ const STRETCHES: usize = 2;
 
 /// The same of each series; those of one length take little longer together than one of them, and long ones less for being cut in stretches that
 /// begin and end `memory` samples farther out than what they are for.
-pub(crate) fn each_forward_and_back(stage: &StateVariable, memory: usize, all: &mut [Vec<f64>]) {
+pub(super) fn each_forward_and_back(stage: &StateVariable, memory: usize, all: &mut [Vec<f64>]) {
     let count = all.first().map_or(0, Vec::len);
     if all.iter().any(|series| series.len() != count) {
         all.par_iter_mut().for_each(|series| forward_and_back(stage, series));

@@ -1,4 +1,4 @@
-//! A trial to the pages that a site signs, and to the page of single methods beside their rivals.
+//! A trial to the pages that a site signs.
 
 use super::pictures::{fate_words, largest_words, pooled};
 use crate::lab::campaign;
@@ -37,10 +37,21 @@ pub(super) fn document(trial: &Trial) -> ReportDocument {
             .with(record::signatures(&["Carried out", "Checked"]).only(Medium::Page)),
     ];
     ReportDocument {
-        page: frame(trial, "Acceptance of dropcheck on this machine", ACCEPTANCE_FOOT),
+        page: Frame {
+            title: HEADING.to_owned(),
+            product: "Validation",
+            version: trial.version.to_owned(),
+            heading: HEADING.to_owned(),
+            about: trial.machine.when.clone(),
+            footer: ACCEPTANCE_FOOT,
+            style: include_str!("trial.css"),
+            ..Frame::default()
+        },
         chapters,
     }
 }
+
+const HEADING: &str = "Acceptance of dropcheck on this machine";
 
 const RUNGS: &str = "The rungs of the reconstruction read single channels, planar motion, the flight with its modes, or fit all inputs jointly. Random \
                      sound drops whose stated values are off within their tolerances (in the picture they are exact): what each scene, of which a \
@@ -57,27 +68,6 @@ const ACCEPTANCE_FOOT: &str = "Errors are against truths from outside the method
 pub(super) fn verdict(trial: &Trial) -> ReportDocument {
     let chapters = vec![Chapter::new("What is accepted").with(limits(&trial.limits)), banner(trial)];
     ReportDocument { chapters, ..ReportDocument::default() }
-}
-
-/// The page of single methods.
-pub(super) fn rivals(trial: &Trial) -> ReportDocument {
-    let picture = ChapterPart::picture("rivals", "Methods and their rivals", "");
-    let chapters =
-        vec![Chapter::new("").with(picture).with(ChapterPart::note("All points: validation.json."))];
-    ReportDocument { page: frame(trial, "Single methods beside their rivals", ACCEPTANCE_FOOT), chapters }
-}
-
-fn frame(trial: &Trial, heading: &str, footer: &'static str) -> Frame {
-    Frame {
-        title: heading.to_owned(),
-        product: "Validation",
-        version: trial.version.to_owned(),
-        heading: heading.to_owned(),
-        about: trial.machine.when.clone(),
-        footer,
-        style: include_str!("trial.css"),
-        ..Frame::default()
-    }
 }
 
 /// Accepted or not.

@@ -1,4 +1,4 @@
-//! A trial to its pictures: ways of working by speed and accuracy, the map of what becomes of damages, methods beside their rivals.
+//! A trial to its pictures: ways of working by speed and accuracy, the map of what becomes of damages.
 
 use crate::lab::data::{Trial, TrialFate, TrialMap, TrialPoint};
 use crate::lab::methods::{ALL_CLASSES, READING, WAYS};
@@ -30,11 +30,7 @@ fn errors_of(point: &TrialPoint) -> PanelAxis {
 
 /// What an axis has room for: "%" of "% of the slap-down speed".
 fn unit(point: &TrialPoint) -> &str {
-    match &point.error_unit[..] {
-        "1" => "as it is",
-        unit if unit.starts_with('%') => "%",
-        unit => unit,
-    }
+    if point.error_unit.starts_with('%') { "%" } else { "as it is" }
 }
 
 /// The colour of a way by its place; rungs of the prediction are not to look like ways.
@@ -42,7 +38,7 @@ fn way_place(index: usize, way: &TrialPoint) -> usize {
     if way.family == WAYS[2] { index + 10 } else { index }
 }
 
-/// The look of a method by its place among its rivals.
+/// The look of a way by its place among the others.
 fn look(index: usize, at: Vec<(f64, f64)>) -> Points {
     Points::new(COLOURS[index % COLOURS.len()], PointShape::of(index), at)
 }
@@ -136,49 +132,6 @@ fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
         marks: reading.map(|p| Mark { at: seconds(p), label: READING.to_owned() }).into_iter().collect(),
         ..Panel::default()
     })
-}
-
-/// A panel a family of single methods: each method on each class.
-pub(super) fn rivals(trial: &Trial) -> Picture {
-    let caption = "95th percentile of the error over the median time, each method on each class of scenes, what matters most first. Dashed: from \
-                   here on a difference between two methods matters; what lies farther off than 200 times is drawn on the edge. Ring: what the \
-                   program takes; above the line with its rivals, the class is hard for all."
-        .to_owned();
-    let families = trial.points.chunk_by(|a, b| a.family == b.family);
-    let families = families.filter(|points| !WAYS.contains(&&points[0].family[..]));
-    let panels: Vec<Panel> = families.map(rivals_panel).collect();
-    let nothing = ("There is nothing to show: no method was tried.", "No method was tried.");
-    Plate { columns: 2, ..Plate::new("rivals", "Methods and their rivals", caption).or(nothing) }
-        .picture(&panels)
-}
-
-fn rivals_panel(points: &[TrialPoint]) -> Panel {
-    let at = |p: &TrialPoint| (p.time_ns.max(f64::MIN_POSITIVE), drawn(p, p.p95_error));
-    let mut shown: Vec<Points> = Vec::new();
-    for point in points {
-        let index = shown.iter().position(|of| of.label.as_ref() == Some(&point.method));
-        let index = index.unwrap_or_else(|| {
-            let i = shown.len();
-            shown.push(look(i, Vec::new()).named(&point.method[..]));
-            i
-        });
-        shown[index].at.push(at(point));
-    }
-    let taken = points.iter().filter(|p| p.is_default).map(at).collect();
-    shown.push(rings(taken));
-    let ends = decades(points.iter().map(|p| p.time_ns));
-    let first = &points[0];
-    let matters =
-        Curve::new(GREY, vec![(ends.0, first.matters), (ends.1, first.matters)]).broken(Dash::Dashed);
-    Panel {
-        title: first.family.clone(),
-        x: PanelAxis::new(format!("ns a {}", first.time_per)).logarithmic().over(Some(ends)),
-        y: errors_of(first),
-        height: PANEL,
-        lines: vec![matters],
-        points: shown,
-        ..Panel::default()
-    }
 }
 
 /// What becomes of a drop: colour and words.

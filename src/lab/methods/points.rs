@@ -1,0 +1,210 @@
+//! What each way says of drops whose truth is known, and how long it takes, to points of the trial.
+
+use crate::data::{DropResult, Estimate};
+use crate::lab::data::{TrialPoint, Truth};
+use crate::numerics::{as_f64, robust};
+use std::hint::black_box;
+use std::time::Instant;
+
+/// What stands for an error that is no number or beyond all bounds: the way diverged.
+const DIVERGED: f64 = 1e9;
+
+/// What all classes together are called.
+pub const ALL_CLASSES: &str = "all";
+
+/// What a reading alone is called.
+pub const READING: &str = "reading alone";
+
+/// A drop of a class, and what happened.
+#[derive(Clone, Copy)]
+pub(super) struct KnownDrop {
+    pub class: &'static str,
+    pub truth: Truth,
+}
+
+/// What a way says of a drop.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Answer {
+    pub speed: Option<Estimate>,
+    pub k: Option<Estimate>,
+}
+
+impl Answer {
+    pub(super) fn of(result: &DropResult) -> Self {
+        Self { speed: result.slap_down.speed, k: result.k }
+    }
+
+    /// Numbers, in m/s and 1, without an interval.
+    pub(super) fn bare(speed_m_s: Option<f64>, k: Option<f64>) -> Self {
+        let bare = |value| Estimate::new(value, f64::NAN, "");
+        Self { speed: speed_m_s.map(bare), k: k.map(bare) }
+    }
+}
+
+/// What a way says of every drop, and how long it takes for each, ns.
+pub(super) struct Worked {
+    pub name: String,
+    /// Whether it is what the program takes.
+    pub is_default: bool,
+    pub answers: Vec<Answer>,
+    pub times_ns: Vec<f64>,
+}
+
+impl Worked {
+    pub(super) fn named(name: &str, is_default: bool) -> Self {
+        Self { name: name.to_owned(), is_default, answers: Vec::new(), times_ns: Vec::new() }
+    }
+
+    /// One answer more, of so many calls that are timed together; no answer is an empty one.
+    pub(super) fn timed(&mut self, calls: u32, mut work: impl FnMut() -> Option<Answer>) {
+        let begun = Instant::now();
+        for _ in 1..calls {
+            black_box(work());
+        }
+        let answer = black_box(work()).unwrap_or_default();
+        self.times_ns.push(1e9 * begun.elapsed().as_secs_f64() / f64::from(calls));
+        self.answers.push(answer);
+    }
+}
+
+/// What is held against the truth.
+#[derive(Clone, Copy)]
+pub(super) struct WayQuantity {
+    pub family: &'static str,
+    pub unit: &'static str,
+    pub time_per: &'static str,
+    /// What a verdict needs.
+    pub matters: f64,
+    pub stated: fn(&Answer) -> Option<Estimate>,
+    pub truth: fn(&Truth) -> Option<f64>,
+    /// What the truth is divided by, of itself.
+    pub scale: fn(f64) -> f64,
+}
+
+pub(super) const SPEED: WayQuantity = WayQuantity {
+    family: "speed, from file to answer",
+    unit: "% of the slap-down speed",
+    time_per: "file",
+    matters: 1.0,
+    stated: |answer| answer.speed,
+    truth: |truth| truth.speed,
+    scale: |speed_m_s| 100.0 / speed_m_s,
+};
+
+pub(super) const K: WayQuantity = WayQuantity {
+    family: "k, from file to answer",
+    unit: "1",
+    time_per: "file",
+    matters: 0.01,
+    stated: |answer| answer.k,
+    truth: |truth| truth.k,
+    scale: |_| 1.0,
+};
+
+/// A point a way and class, and one of all classes; a way that never says anything of the quantity is none
+/// for it. The drops of a class stand together.
+pub(super) fn scored(of: &WayQuantity, worked: &[Worked], drops: &[KnownDrop]) -> Vec<TrialPoint> {
+    let off = |stated: Option<Estimate>, truth: &Truth| {
+        let (stated, truth) = stated.zip((of.truth)(truth))?;
+        let scale = (of.scale)(truth);
+        Some((scale * (stated.value - truth).abs(), scale * stated.u95))
+    };
+    let of_class = |class: &'static str| {
+        worked.iter().filter_map(move |way| {
+            let of_class = || (0..drops.len()).filter(|&i| drops[i].class == class);
+            let said: Vec<_> =
+                of_class().map(|i| off((of.stated)(&way.answers[i]), &drops[i].truth)).collect();
+            let (errors, mut half_widths): (Vec<f64>, Vec<f64>) = said.iter().flatten().copied().unzip();
+            let held =
+                errors.iter().zip(&half_widths).filter(|(error, half_width)| error <= half_width).count();
+            let is_any = !errors.is_empty();
+            let promised = is_any.then(|| robust::median(&mut half_widths)).filter(|u| u.is_finite());
+            let words = TrialPoint {
+                family: of.family.to_owned(),
+                method: way.name.clone(),
+                class: class.to_owned(),
+                is_default: way.is_default,
+                error_unit: of.unit.to_owned(),
+                time_per: of.time_per.to_owned(),
+                matters: of.matters,
+                missing: u32::try_from(said.len() - errors.len()).unwrap_or(0),
+                promised,
+                held: promised.map(|_| as_f64(held) / as_f64(errors.len())),
+                ..TrialPoint::default()
+            };
+            let times_ns = quartiles(of_class().map(|i| way.times_ns[i]).collect());
+            (is_any || way.name == READING).then(|| measured(words, errors, times_ns))
+        })
+    };
+    let mut classes: Vec<&'static str> = drops.iter().map(|drop| drop.class).collect();
+    classes.dedup();
+    with_pooled(classes.into_iter().flat_map(of_class).collect())
+}
+
+/// A point with these words, of the errors of drops and the quartiles of a time.
+fn measured(words: TrialPoint, errors: Vec<f64>, [lower_ns, time_ns, upper_ns]: [f64; 3]) -> TrialPoint {
+    let cases = u32::try_from(errors.len()).unwrap_or(u32::MAX);
+    let [median_error, p95_error] = median_and_p95(errors.clone());
+    let time_quartiles_ns = [lower_ns, upper_ns];
+    TrialPoint { median_error, p95_error, time_ns, time_quartiles_ns, cases, errors, ..words }
+}
+
+/// Points of a family with one more for each way: of all its drops, in the median of its times.
+fn with_pooled(mut points: Vec<TrialPoint>) -> Vec<TrialPoint> {
+    let Some(class) = points.first().map(|p| p.class.clone()) else { return points };
+    let methods: Vec<TrialPoint> = points.iter().filter(|p| p.class == class).cloned().collect();
+    for words in methods {
+        let of: Vec<&TrialPoint> = points.iter().filter(|p| p.method == words.method).collect();
+        let middle = |number: fn(&TrialPoint) -> f64| {
+            robust::median(&mut of.iter().map(|p| number(p)).collect::<Vec<_>>())
+        };
+        let held: Vec<f64> = of.iter().filter_map(|p| p.held).collect();
+        let all = TrialPoint {
+            class: ALL_CLASSES.to_owned(),
+            missing: of.iter().map(|p| p.missing).sum(),
+            promised: words.promised.map(|_| middle(|p| p.promised.unwrap_or(f64::NAN))),
+            held: words.held.map(|_| held.iter().sum::<f64>() / as_f64(held.len())),
+            ..words
+        };
+        let times_ns =
+            [middle(|p| p.time_quartiles_ns[0]), middle(|p| p.time_ns), middle(|p| p.time_quartiles_ns[1])];
+        points.push(measured(all, of.iter().flat_map(|p| p.errors.iter().copied()).collect(), times_ns));
+    }
+    points
+}
+
+/// Median and 95th percentile, each that of a drop; what is no number counts as diverged.
+fn median_and_p95(mut errors: Vec<f64>) -> [f64; 2] {
+    for error in &mut errors {
+        *error = if error.is_nan() { DIVERGED } else { error.abs().min(DIVERGED) };
+    }
+    errors.sort_by(f64::total_cmp);
+    let Some(last) = errors.len().checked_sub(1) else { return [DIVERGED; 2] };
+    [errors[last / 2], errors[(95 * last).div_ceil(100)]]
+}
+
+/// Lower quartile, median and upper quartile; each the value of a drop, none in between.
+fn quartiles(mut taken_ns: Vec<f64>) -> [f64; 3] {
+    taken_ns.sort_by(f64::total_cmp);
+    [1, 2, 3].map(|quarters| taken_ns[(taken_ns.len() - 1) * quarters / 4])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_values_of_drops() {
+        let bits = |values: [f64; 2]| values.map(f64::to_bits);
+        assert_eq!(bits(median_and_p95(vec![3.0, -1.0, 2.0])), bits([2.0, 3.0]));
+        assert_eq!(bits(median_and_p95(vec![f64::NAN, 1.0])), bits([1.0, DIVERGED]));
+    }
+
+    #[test]
+    fn quartiles_are_those_of_drops() {
+        assert_eq!(
+            quartiles(vec![5.0, 1.0, 3.0, 2.0, 4.0]).map(f64::to_bits),
+            [2.0_f64, 3.0, 4.0].map(f64::to_bits)
+        );
+    }
+}
