@@ -1,4 +1,4 @@
-//! A study of the drop angle: sweeps, curves, critical angles, Monte Carlo, sensitivities and the map of the regimes.
+//! A study of the drop angle: sweeps, curves, critical angles, Monte Carlo and sensitivities.
 
 use super::cask::{CaskFile, Contact};
 use super::ladder::Ladder;
@@ -276,40 +276,6 @@ pub struct Sensitivity {
     pub blind_bands_deg: Vec<(f64, f64)>,
 }
 
-/// What happens at one angle and k.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Regime {
-    /// One flight until R strikes; for k = 0 contact kept all the way: \[P\] Tables 1 and 2 hold.
-    ClosedForm,
-    /// k = 0 and the contact would need a pull: L lifts off, Table 2's closed form for k = 0 does not hold.
-    LiftOff,
-    /// L strikes again before R.
-    FurtherImpacts,
-    /// R never strikes.
-    NoSlapDown,
-}
-
-impl Regime {
-    /// All, in the order of a legend.
-    pub const ALL: [Self; 4] = [Self::ClosedForm, Self::LiftOff, Self::FurtherImpacts, Self::NoSlapDown];
-}
-
-/// The regimes over angle and k for one body and contact law.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RegimeMap {
-    /// Rod or body.
-    pub model: BodyModel,
-    /// The contact law.
-    pub contact: Contact,
-    /// Inclinations, degrees.
-    pub angle_deg: Vec<f64>,
-    /// Coefficients of restitution, ascending from 0.
-    pub k: Vec<f64>,
-    /// `regimes[i][j]` at `k[i]`, `angle_deg[j]`.
-    pub regimes: Vec<Vec<Regime>>,
-}
-
 /// Everything that a study found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
@@ -335,6 +301,4 @@ pub struct Study {
     pub monte_carlo: MonteCarlo,
     /// For the richest body: every contact law, and k = 0.1, 0.5 and 0.9 or those of the request.
     pub sensitivities: Vec<Sensitivity>,
-    /// For the richest body and every contact law.
-    pub maps: Vec<RegimeMap>,
 }

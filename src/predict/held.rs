@@ -12,7 +12,7 @@ pub(super) struct Held<'a> {
     pub body: &'a Body,
     pub gravity_m_s2: f64,
     pub slides: bool,
-    pub start: State<f64>,
+    pub start: State,
 }
 
 impl Held<'_> {
@@ -28,7 +28,7 @@ impl Held<'_> {
     }
 
     /// Motion just before R strikes, the axis flat; `None` where it stands or turns the other way.
-    pub fn at_second_end(&self) -> Option<State<f64>> {
+    pub fn at_second_end(&self) -> Option<State> {
         let start = &self.start;
         let stands = start.angular_velocity_rad_s < STILL && start.angle_rad > 0.0;
         if start.angular_velocity_rad_s < 0.0 || stands {

@@ -74,10 +74,10 @@ fn alike(one: Option<f64>, other: Option<f64>) -> bool {
 }
 
 /// An impact law: body, motion before, contact law and k to the motion after.
-type ImpactLaw = fn(&Body, &State<f64>, Contact, f64) -> Struck<f64>;
+type ImpactLaw = fn(&Body, &State, Contact, f64) -> Struck;
 
 impl Case<'_> {
-    fn start(&self) -> State<f64> {
+    fn start(&self) -> State {
         State::falling(self.body, self.drop.angle_rad, self.drop)
     }
 
@@ -97,12 +97,12 @@ impl Case<'_> {
         self.prediction(&start, &struck, &outcome)
     }
 
-    fn one_flight(&self, struck: &Struck<f64>) -> PathEnd<f64> {
+    fn one_flight(&self, struck: &Struck) -> PathEnd {
         Way::of(self.body, self.drop, self.contact, None).follow(struck.after, self.k)
     }
 
     /// L held on the target: \[P\] Table 2 for rough and smooth, step by step for the friction between them.
-    fn held(&self, after: &State<f64>) -> PathEnd<f64> {
+    fn held(&self, after: &State) -> PathEnd {
         let second_end = match self.contact {
             Contact::Coulomb(_) => {
                 match Support::of(self.body, self.drop, self.contact, Hold::Pulls).rest(after) {
@@ -119,7 +119,7 @@ impl Case<'_> {
     }
 
     /// \[P\] Table 2 for k = 0, rough or smooth   (11) (12)
-    fn closed_form(&self, after: &State<f64>) -> Option<Held<'_>> {
+    fn closed_form(&self, after: &State) -> Option<Held<'_>> {
         let slides = match self.contact {
             Contact::Rough | Contact::Unknown => false,
             Contact::Smooth => true,
@@ -128,13 +128,13 @@ impl Case<'_> {
         Some(Held { body: self.body, gravity_m_s2: self.drop.gravity_m_s2, slides, start: *after })
     }
 
-    fn second_end_speed_m_s(&self, state: &State<f64>) -> f64 {
+    fn second_end_speed_m_s(&self, state: &State) -> f64 {
         let corner = state.corner(self.body, second_end_m(self.body));
         corner.horizontal_velocity_m_s.hypot(corner.vertical_velocity_m_s)
     }
 
     /// What is told of a way that began with `start` and its first impact.
-    pub fn prediction(&self, start: &State<f64>, struck: &Struck<f64>, outcome: &PathEnd<f64>) -> Prediction {
+    pub fn prediction(&self, start: &State, struck: &Struck, outcome: &PathEnd) -> Prediction {
         let at = outcome.second_end.as_ref().map(|(state, _)| state);
         let corner = at.map(|state| state.corner(self.body, second_end_m(self.body)));
         Prediction {

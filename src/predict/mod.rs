@@ -1,7 +1,6 @@
 //! A body, a drop, a contact law and k to rebound, flight and slap-down: the analytical prediction.
 
 mod flight;
-mod gradient;
 mod held;
 mod impact;
 mod ladder;
@@ -13,7 +12,6 @@ mod state;
 mod study;
 mod support;
 
-pub use gradient::speed_gradient;
 pub use ladder::{ladder, predict_by};
 pub use study::{default_uncertain, study};
 

@@ -4,7 +4,7 @@ use super::flight::{first_end_touches, second_end_touches, sinks};
 use super::impact::{Struck, strike_first_end};
 use super::pulse::{PulseEnd, push_first_end};
 use super::resting::RestEnd;
-use super::state::{Differentiable, State, second_end_m};
+use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
 use crate::data::{Body, Contact, Drop, FlightRegime};
 
@@ -29,9 +29,9 @@ pub(super) struct Way<'a> {
 }
 
 /// How the way ends.
-pub(super) struct PathEnd<T> {
+pub(super) struct PathEnd {
     /// The motion just before R strikes, and the time since the first impact, s.
-    pub second_end: Option<(State<T>, T)>,
+    pub second_end: Option<(State, f64)>,
     pub impacts: u32,
     pub regime: FlightRegime,
 }
@@ -48,7 +48,7 @@ impl<'a> Way<'a> {
 
 impl Way<'_> {
     /// L's first impact, as long as the drop says, and the way after it.
-    pub fn from<T: Differentiable>(mut self, start: &State<T>, drop: &Drop, k: T) -> (Struck<T>, PathEnd<T>) {
+    pub fn from(mut self, start: &State, drop: &Drop, k: f64) -> (Struck, PathEnd) {
         let body = self.support.body;
         match push_first_end(body, start, drop, self.support.contact, k) {
             PulseEnd::Strikes(struck, time_s) => {
@@ -57,8 +57,7 @@ impl Way<'_> {
             }
             PulseEnd::Leaves(struck) => {
                 if drop.contact_duration_s > 0.0 {
-                    // How the depth answers to the start is left out: only further touches of L feel it.
-                    self.support.sunk_m = -struck.after.corner(body, body.cog_m).height_m.re();
+                    self.support.sunk_m = -struck.after.corner(body, body.cog_m).height_m;
                 }
                 let mut outcome = self.follow(struck.after, k);
                 if let Some((_, time_s)) = &mut outcome.second_end {
@@ -70,23 +69,23 @@ impl Way<'_> {
     }
 
     /// Follows flights, rests and further impacts of L until R strikes, or says that it does not.
-    pub fn follow<T: Differentiable>(&self, after_impact: State<T>, k: T) -> PathEnd<T> {
+    pub fn follow(&self, after_impact: State, k: f64) -> PathEnd {
         let (body, gravity_m_s2) = (self.support.body, self.support.gravity_m_s2);
         let mut state = after_impact;
-        let mut elapsed_s = T::from(0.0);
+        let mut elapsed_s = 0.0;
         let mut outcome = PathEnd { second_end: None, impacts: 1, regime: FlightRegime::Free };
         loop {
             if self.rests(&state) {
                 let (end, held) = self.rest(&state);
                 match end {
                     RestEnd::Strikes(at, time_s) => {
-                        let whole = held && outcome.impacts == 1 && elapsed_s.re() == 0.0;
+                        let whole = held && outcome.impacts == 1 && elapsed_s == 0.0;
                         outcome.regime = if whole { FlightRegime::Contact } else { FlightRegime::Mixed };
                         outcome.second_end = Some((at, elapsed_s + time_s));
                         return outcome;
                     }
                     RestEnd::LiftsOff(at, time_s) => {
-                        if time_s.re() > 0.0 {
+                        if time_s > 0.0 {
                             outcome.regime = FlightRegime::Mixed;
                         }
                         state = at;
@@ -120,21 +119,21 @@ impl Way<'_> {
     }
 
     /// Whether the last impact left L on the target. Even with k = 0 stopping its sliding may throw a rough corner up.
-    fn rests<T: Differentiable>(&self, state: &State<T>) -> bool {
+    fn rests(&self, state: &State) -> bool {
         let body = self.support.body;
-        state.corner(body, body.cog_m).vertical_velocity_m_s.re() < REST_M_S * self.gravity_share().sqrt()
+        state.corner(body, body.cog_m).vertical_velocity_m_s < REST_M_S * self.gravity_share().sqrt()
     }
 
     /// L on the target until R strikes or the target would have to pull. L then flies, the limit k → 0, unless it sinks deeper than
     /// a graze: then it has not left the target at all and slides on until it rises by itself.
     /// The flag says whether the contact law held L all the time.
-    fn rest<T: Differentiable>(&self, from: &State<T>) -> (RestEnd<T>, bool) {
+    fn rest(&self, from: &State) -> (RestEnd, bool) {
         let end = self.support.rest(from);
         let RestEnd::LiftsOff(at, time_s) = end else { return (end, true) };
         let second_s = second_end_touches(self.support.body, self.support.gravity_m_s2, &at);
         if self
             .strikes_again(&at, second_s)
-            .is_none_or(|again_s| again_s.re() > LET_GO_S / self.gravity_share().sqrt())
+            .is_none_or(|again_s| again_s > LET_GO_S / self.gravity_share().sqrt())
         {
             return (RestEnd::LiftsOff(at, time_s), true);
         }
@@ -147,19 +146,18 @@ impl Way<'_> {
     }
 
     /// When L strikes again before R does, deeper than a graze   (9)
-    fn strikes_again<T: Differentiable>(&self, state: &State<T>, second_s: Option<T>) -> Option<T> {
+    fn strikes_again(&self, state: &State, second_s: Option<f64>) -> Option<f64> {
         let graze_m = self.graze_m?;
         let first_s = first_end_touches(&self.support, state, second_s)?;
         let Some(second_s) = second_s else { return Some(first_s) };
-        let strikes =
-            first_s.re() < second_s.re() && sinks(&self.support, state, first_s.re()..second_s.re(), graze_m);
+        let strikes = first_s < second_s && sinks(&self.support, state, first_s..second_s, graze_m);
         strikes.then_some(first_s)
     }
 
     /// R at the target but with the axis past the vertical is the other side of the cask.
-    fn is_slap_down<T: Differentiable>(&self, at: &State<T>) -> bool {
+    fn is_slap_down(&self, at: &State) -> bool {
         let body = self.support.body;
         let corner = at.corner(body, second_end_m(body));
-        at.angle_rad.re().cos() > 0.0 && corner.vertical_velocity_m_s.re() < 0.0
+        at.angle_rad.cos() > 0.0 && corner.vertical_velocity_m_s < 0.0
     }
 }

@@ -1,24 +1,24 @@
 //! A moving body and the length of L's contact to the motion as L leaves the target: a half-sine of force in place of an impulse.
 
 use super::impact::{Struck, coefficient, strike_first_end};
-use super::state::{Differentiable, State, arms_m, runge_kutta, second_end_m};
+use super::state::{State, arms_m, runge_kutta, second_end_m};
 use crate::data::{Body, Contact, Drop};
 use std::f64::consts::PI;
 
 /// Steps of the integration: sixteen times as many move the vertical speed of R by less than 1e-4.
 const STEPS: u32 = 16;
-/// Rounds of the search for the force, and the rebound that ends it, m/s: a step of Newton's follows it.
+/// Rounds of the search for the force, and the rebound that ends it, m/s: one more secant follows it.
 const ROUNDS: usize = 30;
 const CLOSE_M_S: f64 = 1e-5;
 /// A corner slower than this does not slide, m/s.
 const STOPPED_M_S: f64 = 1e-9;
 
 /// How a pulse ends.
-pub(super) enum PulseEnd<T> {
+pub(super) enum PulseEnd {
     /// L leaves the target.
-    Leaves(Struck<T>),
+    Leaves(Struck),
     /// R strikes while L is still pressed on: the motion then, and the time since first contact.
-    Strikes(Struck<T>, T),
+    Strikes(Struck, f64),
 }
 
 /// A half-sine of force on L's corner.
@@ -34,16 +34,10 @@ struct Pulse<'a> {
 ///
 /// The arms a, b turn with the body, gravity acts, and friction holds the corner or slides it, moment by moment. Where no such force is found the
 /// impulse stands.
-pub(super) fn push_first_end<T: Differentiable>(
-    body: &Body,
-    before: &State<T>,
-    drop: &Drop,
-    contact: Contact,
-    k: T,
-) -> PulseEnd<T> {
+pub(super) fn push_first_end(body: &Body, before: &State, drop: &Drop, contact: Contact, k: f64) -> PulseEnd {
     let struck = strike_first_end(body, before, contact, k);
     let duration_s = drop.contact_duration_s;
-    if duration_s <= 0.0 || struck.vertical_impulse_n_s.re() <= 0.0 {
+    if duration_s <= 0.0 || struck.vertical_impulse_n_s <= 0.0 {
         return PulseEnd::Leaves(struck);
     }
     let friction = coefficient(contact);
@@ -52,24 +46,21 @@ pub(super) fn push_first_end<T: Differentiable>(
 
 impl Pulse<'_> {
     /// The pulse that lets L's corner go as fast as `struck` does.
-    fn push<T: Differentiable>(&self, before: &State<T>, struck: Struck<T>) -> PulseEnd<T> {
+    fn push(&self, before: &State, struck: Struck) -> PulseEnd {
         let Self { body, gravity_m_s2, duration_s, .. } = *self;
         let leaves_m_s = struck.after.corner(body, body.cog_m).vertical_velocity_m_s;
         let start = self.stopped(before);
         let missed = |force_n: f64| {
-            let left = self.end(&start.real(), force_n, false).0;
-            left.corner(body, body.cog_m).vertical_velocity_m_s - leaves_m_s.re()
+            let left = self.end(&start, force_n, false).0;
+            left.corner(body, body.cog_m).vertical_velocity_m_s - leaves_m_s
         };
         // ∫ F sin(π t/T) dt = 2 F T/π
-        let first_n = struck.vertical_impulse_n_s.re() * PI / (2.0 * duration_s);
-        let Some((force_n, slope)) = secant(missed, first_n) else {
+        let first_n = struck.vertical_impulse_n_s * PI / (2.0 * duration_s);
+        let Some(force_n) = secant(missed, first_n) else {
             return PulseEnd::Leaves(struck);
         };
-        // One step of Newton's carries how the force answers to the start.
-        let left = self.end(&start, T::from(force_n), false).0;
-        let miss_m_s = left.corner(body, body.cog_m).vertical_velocity_m_s - leaves_m_s;
-        let (left, time_s) = self.end(&start, -miss_m_s / slope + force_n, true);
-        let momentum = |after: T, before: T| (after - before) * body.mass_kg;
+        let (left, time_s) = self.end(&start, force_n, true);
+        let momentum = |after: f64, before: f64| (after - before) * body.mass_kg;
         let fallen_m_s = time_s * gravity_m_s2;
         let pushed = Struck {
             horizontal_impulse_n_s: momentum(left.horizontal_velocity_m_s, before.horizontal_velocity_m_s),
@@ -80,19 +71,19 @@ impl Pulse<'_> {
             after: left,
             ..struck
         };
-        if time_s.re() < duration_s { PulseEnd::Strikes(pushed, time_s) } else { PulseEnd::Leaves(pushed) }
+        if time_s < duration_s { PulseEnd::Strikes(pushed, time_s) } else { PulseEnd::Leaves(pushed) }
     }
 }
 
-/// The root of `missed` near `first` and its slope there; `None` where the secants do not close in on one.
-fn secant(missed: impl Fn(f64) -> f64, first: f64) -> Option<(f64, f64)> {
+/// The root of `missed` near `first`; `None` where the secants do not close in on one.
+fn secant(missed: impl Fn(f64) -> f64, first: f64) -> Option<f64> {
     let (mut low, mut high) = ((first, missed(first)), (1.02 * first, missed(1.02 * first)));
     for _ in 0..ROUNDS {
         let slope = (high.1 - low.1) / (high.0 - low.0);
-        if high.1.abs() <= CLOSE_M_S {
-            return (slope > 0.0).then_some((high.0, slope));
-        }
         let next = high.0 - high.1 / slope;
+        if high.1.abs() <= CLOSE_M_S {
+            return (slope > 0.0).then_some(next);
+        }
         if !(0.0..100.0 * first).contains(&next) {
             return None;
         }
@@ -103,26 +94,24 @@ fn secant(missed: impl Fn(f64) -> f64, first: f64) -> Option<(f64, f64)> {
 
 impl Pulse<'_> {
     /// Friction without limit stops the corner before the normal force has done anything.
-    fn stopped<T: Differentiable>(&self, before: &State<T>) -> State<T> {
+    fn stopped(&self, before: &State) -> State {
         if self.friction.is_finite() {
             return *before;
         }
-        strike_first_end(self.body, before, Contact::Rough, T::from(-1.0)).after
+        strike_first_end(self.body, before, Contact::Rough, -1.0).after
     }
 
     /// The motion at the end of the pulse, or as R comes down before it where it can, and when that is.
-    fn end<T: Differentiable>(&self, start: &State<T>, force_n: T, has_second_end: bool) -> (State<T>, T) {
+    fn end(&self, start: &State, force_n: f64, has_second_end: bool) -> (State, f64) {
         let (step_s, along_m) = (self.duration_s / f64::from(self.steps), second_end_m(self.body));
-        let (mut at, mut time_s) = (*start, T::from(0.0));
+        let (mut at, mut time_s) = (*start, 0.0);
         for i in 1..=self.steps {
             let until_s = f64::from(i) * step_s;
-            while time_s.re() < until_s {
-                let (next, taken_s) = self.stretch(&at, time_s, T::from(until_s) - time_s, force_n);
-                let reached = |state: &State<T>| state.corner(self.body, along_m).height_m;
+            while time_s < until_s {
+                let (next, taken_s) = self.stretch(&at, time_s, until_s - time_s, force_n);
+                let reached = |state: &State| state.corner(self.body, along_m).height_m;
                 let heights = has_second_end.then(|| (reached(&at), reached(&next)));
-                if let Some((above, below)) =
-                    heights.filter(|(above, below)| below.re() <= 0.0 && above.re() > 0.0)
-                {
+                if let Some((above, below)) = heights.filter(|(above, below)| *below <= 0.0 && *above > 0.0) {
                     let taken_s = taken_s * above / (above - below);
                     let near = self.stretch(&at, time_s, taken_s, force_n).0.corner(self.body, along_m);
                     let taken_s = taken_s - near.height_m / near.vertical_velocity_m_s;
@@ -132,23 +121,17 @@ impl Pulse<'_> {
                 (at, time_s) = (next, time_s + taken_s);
             }
         }
-        (at, T::from(self.duration_s))
+        (at, self.duration_s)
     }
 
     /// A step of at most `longest_s` with one grip: it ends where the sliding stops. Also the time taken.
-    fn stretch<T: Differentiable>(
-        &self,
-        at: &State<T>,
-        time_s: T,
-        longest_s: T,
-        force_n: T,
-    ) -> (State<T>, T) {
+    fn stretch(&self, at: &State, time_s: f64, longest_s: f64, force_n: f64) -> (State, f64) {
         let ratio = self.grip(at, self.force_n(time_s + longest_s * 0.5, force_n));
         let (mut next, mut taken_s) = (self.step(at, ratio, (time_s, longest_s), force_n), longest_s);
         if ratio.is_some() {
             let (slip_m_s, later_m_s) = (self.slip_m_s(at), self.slip_m_s(&next));
-            let was_sliding = slip_m_s.re().abs() >= STOPPED_M_S;
-            if !(was_sliding && later_m_s.re() * slip_m_s.re() < 0.0) {
+            let was_sliding = slip_m_s.abs() >= STOPPED_M_S;
+            if !(was_sliding && later_m_s * slip_m_s < 0.0) {
                 return (next, longest_s);
             }
             taken_s = longest_s * slip_m_s / (slip_m_s - later_m_s);
@@ -158,26 +141,26 @@ impl Pulse<'_> {
         (State { horizontal_velocity_m_s: next.horizontal_velocity_m_s - left_m_s, ..next }, taken_s)
     }
 
-    fn slip_m_s<T: Differentiable>(&self, at: &State<T>) -> T {
+    fn slip_m_s(&self, at: &State) -> f64 {
         at.corner(self.body, self.body.cog_m).horizontal_velocity_m_s
     }
 
-    fn force_n<T: Differentiable>(&self, time_s: T, largest_n: T) -> T {
+    fn force_n(&self, time_s: f64, largest_n: f64) -> f64 {
         (time_s * (PI / self.duration_s)).sin() * largest_n
     }
 
     /// F_x/F of a corner that slides, with `normal_n` on it; `None` where it sticks.
-    fn grip<T: Differentiable>(&self, at: &State<T>, normal_n: T) -> Option<f64> {
-        let slip_m_s = self.slip_m_s(at).re();
+    fn grip(&self, at: &State, normal_n: f64) -> Option<f64> {
+        let slip_m_s = self.slip_m_s(at);
         if slip_m_s.abs() >= STOPPED_M_S {
             return Some(-self.friction * slip_m_s.signum());
         }
-        let needed_n = self.holding_n(at, normal_n).re();
-        (needed_n.abs() > self.friction * normal_n.re()).then(|| self.friction * needed_n.signum())
+        let needed_n = self.holding_n(at, normal_n);
+        (needed_n.abs() > self.friction * normal_n).then(|| self.friction * needed_n.signum())
     }
 
     /// F_x that keeps the corner where it is, ẍ_C = F_x n_xx + a ω² − a b F/Θ = 0, n_xx = 1/m + b²/Θ.
-    fn holding_n<T: Differentiable>(&self, at: &State<T>, normal_n: T) -> T {
+    fn holding_n(&self, at: &State, normal_n: f64) -> f64 {
         let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
         let theta = self.body.inertia_kg_m2;
         let w = at.angular_velocity_rad_s;
@@ -185,13 +168,7 @@ impl Pulse<'_> {
     }
 
     /// A step over `span_s`, from when and how long, with F_x/F as given or F_x that holds the corner.
-    fn step<T: Differentiable>(
-        &self,
-        at: &State<T>,
-        ratio: Option<f64>,
-        span_s: (T, T),
-        largest_n: T,
-    ) -> State<T> {
+    fn step(&self, at: &State, ratio: Option<f64>, span_s: (f64, f64), largest_n: f64) -> State {
         runge_kutta(at, span_s, |at, time_s| {
             let normal_n = self.force_n(time_s, largest_n);
             let along_n = ratio.map_or_else(|| self.holding_n(at, normal_n), |ratio| normal_n * ratio);
@@ -256,8 +233,7 @@ mod tests {
                     };
                     let (few, many) = (end(STEPS), end(16 * STEPS));
                     none += u32::from(few == struck().after);
-                    let r =
-                        |state: &State<f64>| state.corner(&body, second_end_m(&body)).vertical_velocity_m_s;
+                    let r = |state: &State| state.corner(&body, second_end_m(&body)).vertical_velocity_m_s;
                     let off = (r(&few) / r(&many) - 1.0).abs();
                     assert!(duration_s > 0.1 || off < 1e-4, "{contact} {angle_deg}° {k} {duration_s}: {off}");
                 }

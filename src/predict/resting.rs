@@ -1,7 +1,7 @@
 //! L on the target to where R strikes or L lifts off: pivoting, or sliding against friction.
 
 use super::impact::strike_first_end;
-use super::state::{Differentiable, State};
+use super::state::State;
 use super::support::{Grip, Hold, Support, Turning};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -18,11 +18,11 @@ const LONGEST: f64 = 40.0;
 const STILL: f64 = 1e-9;
 
 /// How a rest of L on the target ends.
-pub(super) enum RestEnd<T> {
+pub(super) enum RestEnd {
     /// R strikes: the motion then, and the time since the start, s.
-    Strikes(State<T>, T),
+    Strikes(State, f64),
     /// L lifts off.
-    LiftsOff(State<T>, T),
+    LiftsOff(State, f64),
     /// The body stands, or turns over the other way.
     Never,
 }
@@ -39,8 +39,8 @@ enum Margin {
 
 impl Support<'_> {
     /// Follows L's rest on the target to its end. Whole turns that the body made in flight do not count.
-    pub fn rest<T: Differentiable>(&self, from: &State<T>) -> RestEnd<T> {
-        let turns_rad = TAU * (from.angle_rad.re() / TAU).round();
+    pub fn rest(&self, from: &State) -> RestEnd {
+        let turns_rad = TAU * (from.angle_rad / TAU).round();
         match self.rest_within_a_turn(&from.turned(-turns_rad)) {
             RestEnd::Strikes(at, time_s) => RestEnd::Strikes(at.turned(turns_rad), time_s),
             RestEnd::LiftsOff(at, time_s) => RestEnd::LiftsOff(at.turned(turns_rad), time_s),
@@ -49,35 +49,35 @@ impl Support<'_> {
     }
 
     /// Past the vertical L does not bring R down on this side.
-    fn rest_within_a_turn<T: Differentiable>(&self, from: &State<T>) -> RestEnd<T> {
-        let mut elapsed_s = T::from(0.0);
-        if from.angle_rad.re().cos() <= 0.0 {
+    fn rest_within_a_turn(&self, from: &State) -> RestEnd {
+        let mut elapsed_s = 0.0;
+        if from.angle_rad.cos() <= 0.0 {
             return RestEnd::Never;
         }
-        if from.angle_rad.re() <= self.down_rad() {
+        if from.angle_rad <= self.down_rad() {
             return RestEnd::Strikes(*from, elapsed_s);
         }
         let mut at = Turning::of(self.body, from);
         let unit_s = (self.body.length_m / self.gravity_m_s2).sqrt();
-        while elapsed_s.re() < LONGEST * unit_s && at.angle_rad.re() < FRAC_PI_2 {
-            let (grip, forces) = self.grip(&at.real());
+        while elapsed_s < LONGEST * unit_s && at.angle_rad < FRAC_PI_2 {
+            let (grip, forces) = self.grip(&at);
             if grip == Grip::Jams {
-                let struck = strike_first_end(self.body, &self.state(&at), self.contact, T::from(0.0));
+                let struck = strike_first_end(self.body, &self.state(&at), self.contact, 0.0);
                 at = Turning::of(self.body, &struck.after);
                 continue;
             }
             if self.hold != Hold::Pulls && forces.normal_m_s2 <= 0.0 {
                 // What lifts off at once moves as the impact left it.
-                let lifted = if elapsed_s.re() == 0.0 { *from } else { self.state(&at) };
+                let lifted = if elapsed_s == 0.0 { *from } else { self.state(&at) };
                 return RestEnd::LiftsOff(lifted, elapsed_s);
             }
-            let turning_rad_s = at.angular_velocity_rad_s.re().abs();
+            let turning_rad_s = at.angular_velocity_rad_s.abs();
             if turning_rad_s < STILL && forces.angular_acceleration_rad_s2.abs() < STILL {
                 return RestEnd::Never;
             }
             let step_s = (STEP / turning_rad_s).min(STEP * unit_s);
-            let next = self.step(&at, grip, T::from(step_s));
-            if self.margins(&next.real(), grip).iter().all(|margin| *margin > 0.0) {
+            let next = self.step(&at, grip, step_s);
+            if self.margins(&next, grip).iter().all(|margin| *margin > 0.0) {
                 at = next;
                 elapsed_s += step_s;
                 continue;
@@ -88,7 +88,7 @@ impl Support<'_> {
             match ended {
                 Margin::Angle => return RestEnd::Strikes(self.state(&at), elapsed_s),
                 Margin::Lift => return RestEnd::LiftsOff(self.state(&at), elapsed_s),
-                Margin::Hold if grip != Grip::Sticks => at.slip_m_s = T::from(0.0),
+                Margin::Hold if grip != Grip::Sticks => at.slip_m_s = 0.0,
                 Margin::Hold => {}
             }
         }
@@ -96,25 +96,23 @@ impl Support<'_> {
     }
 
     /// The time within a step of `step_s` at which the first margin is used up, and which one.
-    fn until_used_up<T: Differentiable>(&self, at: &Turning<T>, grip: Grip, step_s: f64) -> (T, Margin) {
-        let real = at.real();
+    fn until_used_up(&self, at: &Turning, grip: Grip, step_s: f64) -> (f64, Margin) {
         let (mut low_s, mut high_s) = (0.0, step_s);
         // 2^-24 of a step is a nanosecond. A step of Newton's takes the angle and the sliding from there to their end; where the lift or
         // the hold of friction ends no force jumps, and what follows is off by the square of it.
         for _ in 0..24 {
             let mid_s = f64::midpoint(low_s, high_s);
-            let margins = self.margins(&self.step(&real, grip, mid_s), grip);
+            let margins = self.margins(&self.step(at, grip, mid_s), grip);
             if margins.iter().all(|margin| *margin > 0.0) { low_s = mid_s } else { high_s = mid_s }
         }
-        let there = self.step(at, grip, T::from(high_s));
-        let margins = self.margins(&there.real(), grip);
-        // How the time answers to the start: only where the forces jump does that matter.
+        let there = self.step(at, grip, high_s);
+        let margins = self.margins(&there, grip);
         if margins[0] <= 0.0 {
             ((there.angle_rad - self.down_rad()) / there.angular_velocity_rad_s + high_s, Margin::Angle)
         } else if margins[1] <= 0.0 && (self.hold == Hold::Pushes || grip != Grip::Sticks) {
-            (T::from(high_s), Margin::Lift)
+            (high_s, Margin::Lift)
         } else if grip == Grip::Sticks || high_s < LEAST_STEP_S {
-            (T::from(high_s.max(LEAST_STEP_S)), Margin::Hold)
+            (high_s.max(LEAST_STEP_S), Margin::Hold)
         } else {
             let rate_m_s2 = self.forces(&there, grip).slip_rate_m_s2;
             (-there.slip_m_s / rate_m_s2 + high_s, Margin::Hold)
@@ -133,7 +131,7 @@ mod tests {
         Support { body, gravity_m_s2: 9.81, contact, hold, sunk_m: 0.0 }
     }
 
-    fn turning(body: &Body, angle_rad: f64, angular_velocity_rad_s: f64) -> State<f64> {
+    fn turning(body: &Body, angle_rad: f64, angular_velocity_rad_s: f64) -> State {
         support(body, Contact::Rough, Hold::Pushes).state(&Turning {
             angle_rad,
             angular_velocity_rad_s,
@@ -141,7 +139,7 @@ mod tests {
         })
     }
 
-    fn second_end(end: &RestEnd<f64>) -> (State<f64>, f64) {
+    fn second_end(end: &RestEnd) -> (State, f64) {
         match end {
             RestEnd::Strikes(state, time_s) => (*state, *time_s),
             RestEnd::LiftsOff(..) => panic!("L lifts off"),
@@ -186,8 +184,7 @@ mod tests {
     fn friction_takes_what_the_sliding_costs() {
         let body = Body { height_m: 0.6, ..thin_rod(1000.0, 5.0) };
         let start = turning(&body, 0.9, 0.5);
-        let energy_j =
-            |state: &State<f64>| state.kinetic_energy_j(&body) + body.mass_kg * 9.81 * state.height_m;
+        let energy_j = |state: &State| state.kinetic_energy_j(&body) + body.mass_kg * 9.81 * state.height_m;
         let with = |contact| second_end(&support(&body, contact, Hold::Pulls).rest(&start)).0;
         let before_j = energy_j(&start);
         for contact in [Contact::Rough, Contact::Smooth] {

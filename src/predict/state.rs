@@ -1,37 +1,31 @@
 //! A moving body to the position and velocity of its corners.
 
 use crate::data::{Body, Drop};
-use num_dual::DualNum;
-
-/// A number, or one with its derivative: the same code gives the prediction and its gradient.
-pub(super) trait Differentiable: DualNum<Primitive = f64> + Copy {}
-
-impl<T: DualNum<Primitive = f64> + Copy> Differentiable for T {}
 
 /// Plane motion of a body: position and velocity of the centre of gravity, inclination, ω = −φ̇.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct State<T> {
-    pub height_m: T,
-    pub angle_rad: T,
-    pub horizontal_velocity_m_s: T,
-    pub vertical_velocity_m_s: T,
-    pub angular_velocity_rad_s: T,
+pub(super) struct State {
+    pub height_m: f64,
+    pub angle_rad: f64,
+    pub horizontal_velocity_m_s: f64,
+    pub vertical_velocity_m_s: f64,
+    pub angular_velocity_rad_s: f64,
 }
 
 /// A corner of the lower side: its height and its velocity.
-pub(super) struct Corner<T> {
-    pub height_m: T,
-    pub horizontal_velocity_m_s: T,
-    pub vertical_velocity_m_s: T,
+pub(super) struct Corner {
+    pub height_m: f64,
+    pub horizontal_velocity_m_s: f64,
+    pub vertical_velocity_m_s: f64,
 }
 
 /// Horizontal and vertical distance a, b from a corner at axial distance `along_m` behind S to S, m.
 ///
 /// a = c cos φ − (h/2) sin φ, b = c sin φ + (h/2) cos φ   (1)
-pub(super) fn arms_m<T: Differentiable>(body: &Body, angle_rad: T, along_m: f64) -> (T, T) {
+pub(super) fn arms_m(body: &Body, angle_rad: f64, along_m: f64) -> (f64, f64) {
     let (sin, cos) = angle_rad.sin_cos();
     // The cosine of a right angle is 6e-17 in doubles: enough to topple a rod that stands.
-    let cos = if cos.re().abs() < f64::EPSILON { cos - cos.re() } else { cos };
+    let cos = if cos.abs() < f64::EPSILON { 0.0 } else { cos };
     let half_m = body.height_m / 2.0;
     (cos * along_m - sin * half_m, sin * along_m + cos * half_m)
 }
@@ -42,16 +36,16 @@ pub(super) fn second_end_m(body: &Body) -> f64 {
 }
 
 /// What an integration moves by its slopes, themselves of the same shape.
-pub(super) trait Advance<T> {
+pub(super) trait Advance {
     /// It after `step_s` with these slopes.
-    fn plus(&self, slope: &Self, step_s: T) -> Self;
+    fn plus(&self, slope: &Self, step_s: f64) -> Self;
 }
 
 /// A step of Runge's and Kutta's fourth order, `(from_s, step_s)`.
-pub(super) fn runge_kutta<S: Advance<T>, T: Differentiable>(
+pub(super) fn runge_kutta<S: Advance>(
     at: &S,
-    (from_s, step_s): (T, T),
-    slope: impl Fn(&S, T) -> S,
+    (from_s, step_s): (f64, f64),
+    slope: impl Fn(&S, f64) -> S,
 ) -> S {
     let half_s = step_s * 0.5;
     let one = slope(at, from_s);
@@ -61,8 +55,8 @@ pub(super) fn runge_kutta<S: Advance<T>, T: Differentiable>(
     at.plus(&one, step_s / 6.0).plus(&two, step_s / 3.0).plus(&three, step_s / 3.0).plus(&four, step_s / 6.0)
 }
 
-impl<T: Differentiable> Advance<T> for State<T> {
-    fn plus(&self, slope: &Self, step_s: T) -> Self {
+impl Advance for State {
+    fn plus(&self, slope: &Self, step_s: f64) -> Self {
         Self {
             height_m: self.height_m + slope.height_m * step_s,
             angle_rad: self.angle_rad + slope.angle_rad * step_s,
@@ -73,16 +67,16 @@ impl<T: Differentiable> Advance<T> for State<T> {
     }
 }
 
-impl<T: Differentiable> State<T> {
+impl State {
     /// Just before L strikes at v0, L on the target: ż_S = −v0 − ω a   (3)
-    pub fn falling(body: &Body, angle_rad: T, drop: &Drop) -> Self {
+    pub fn falling(body: &Body, angle_rad: f64, drop: &Drop) -> Self {
         let (a, b) = arms_m(body, angle_rad, body.cog_m);
         Self {
             height_m: b,
             angle_rad,
-            horizontal_velocity_m_s: T::from(drop.horizontal_velocity_m_s),
+            horizontal_velocity_m_s: drop.horizontal_velocity_m_s,
             vertical_velocity_m_s: a * -drop.angular_velocity_rad_s - drop.impact_velocity_m_s,
-            angular_velocity_rad_s: T::from(drop.angular_velocity_rad_s),
+            angular_velocity_rad_s: drop.angular_velocity_rad_s,
         }
     }
 
@@ -92,23 +86,12 @@ impl<T: Differentiable> State<T> {
     }
 
     /// Horizontal and vertical distance from L's lower corner to S, m   (1)
-    pub fn arms_m(&self, body: &Body) -> (T, T) {
+    pub fn arms_m(&self, body: &Body) -> (f64, f64) {
         arms_m(body, self.angle_rad, body.cog_m)
     }
 
-    /// The motion without its derivatives.
-    pub fn real(&self) -> State<f64> {
-        State {
-            height_m: self.height_m.re(),
-            angle_rad: self.angle_rad.re(),
-            horizontal_velocity_m_s: self.horizontal_velocity_m_s.re(),
-            vertical_velocity_m_s: self.vertical_velocity_m_s.re(),
-            angular_velocity_rad_s: self.angular_velocity_rad_s.re(),
-        }
-    }
-
     /// Ballistic flight for `time_s`: ẋ, ω constant, ż = ż − g τ   (8)
-    pub fn after(&self, time_s: T, gravity_m_s2: f64) -> Self {
+    pub fn after(&self, time_s: f64, gravity_m_s2: f64) -> Self {
         Self {
             height_m: self.height_m + self.vertical_velocity_m_s * time_s
                 - time_s * time_s * (gravity_m_s2 / 2.0),
@@ -121,7 +104,7 @@ impl<T: Differentiable> State<T> {
     /// The lower corner at axial distance `along_m` behind S (L: c; R: c − l).
     ///
     /// z_C = z_S − b, ẋ_C = ẋ_S − b ω, ż_C = ż_S + a ω   (3)
-    pub fn corner(&self, body: &Body, along_m: f64) -> Corner<T> {
+    pub fn corner(&self, body: &Body, along_m: f64) -> Corner {
         let (a, b) = arms_m(body, self.angle_rad, along_m);
         Corner {
             height_m: self.height_m - b,
@@ -136,7 +119,7 @@ impl<T: Differentiable> State<T> {
     }
 
     /// Kinetic energy, J: m (ẋ² + ż²)/2 + Θ ω²/2   (13)
-    pub fn kinetic_energy_j(&self, body: &Body) -> T {
+    pub fn kinetic_energy_j(&self, body: &Body) -> f64 {
         let v2 = self.horizontal_velocity_m_s.powi(2) + self.vertical_velocity_m_s.powi(2);
         (v2 * body.mass_kg + self.angular_velocity_rad_s.powi(2) * body.inertia_kg_m2) * 0.5
     }

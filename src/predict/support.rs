@@ -1,7 +1,7 @@
 //! L on the target to the force that holds it, and to how it turns and slides: one step of its motion.
 
 use super::impact::coefficient;
-use super::state::{Advance, Differentiable, State, arms_m, runge_kutta};
+use super::state::{Advance, State, arms_m, runge_kutta};
 use crate::data::{Body, Contact, Drop};
 
 /// A corner that slides slower than this, m/s, was stopped by the impact but for round-off.
@@ -34,10 +34,10 @@ pub(super) enum Hold {
 
 /// Inclination, ω and the sliding velocity of L's corner.
 #[derive(Clone, Copy)]
-pub(super) struct Turning<T> {
-    pub angle_rad: T,
-    pub angular_velocity_rad_s: T,
-    pub slip_m_s: T,
+pub(super) struct Turning {
+    pub angle_rad: f64,
+    pub angular_velocity_rad_s: f64,
+    pub slip_m_s: f64,
 }
 
 /// How the corner meets the target.
@@ -55,15 +55,15 @@ pub(super) enum Grip {
 
 /// What the target does and what follows.
 #[allow(clippy::struct_field_names, reason = "the fields end in their units")]
-pub(super) struct Forces<T> {
+pub(super) struct Forces {
     /// N/m, m/s².
-    pub normal_m_s2: T,
+    pub normal_m_s2: f64,
     /// ω̇, rad/s².
-    pub angular_acceleration_rad_s2: T,
+    pub angular_acceleration_rad_s2: f64,
     /// ẍ_C, m/s².
-    pub slip_rate_m_s2: T,
+    pub slip_rate_m_s2: f64,
     /// What friction must give for the corner not to slide, T/m = b ω̇ − a ω², m/s².
-    held_m_s2: T,
+    held_m_s2: f64,
 }
 
 impl<'a> Support<'a> {
@@ -75,7 +75,7 @@ impl<'a> Support<'a> {
 impl Support<'_> {
     /// With z̈_C = 0: N/m = g − a ω̇ − b ω²   (10); stuck, ẍ_C = 0: ω̇ = a g/(r² + a² + b²); sliding, T = r_T N:
     /// ω̇ = (a − r_T b)(g − b ω²)/(r² + a (a − r_T b)), ẍ_C = r_T N/m − b ω̇ + a ω².
-    pub fn forces<T: Differentiable>(&self, at: &Turning<T>, grip: Grip) -> Forces<T> {
+    pub fn forces(&self, at: &Turning, grip: Grip) -> Forces {
         let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
         let r2 = self.body.inertia_kg_m2 / self.body.mass_kg;
         let w2 = at.angular_velocity_rad_s.powi(2);
@@ -89,7 +89,7 @@ impl Support<'_> {
         let normal_m_s2 = -(a * spin + b * w2) + self.gravity_m_s2;
         let slip_rate_m_s2 = match grip {
             Grip::Slides { ratio, .. } => normal_m_s2 * ratio - b * spin + a * w2,
-            Grip::Sticks | Grip::Jams => T::from(0.0),
+            Grip::Sticks | Grip::Jams => 0.0,
         };
         Forces {
             normal_m_s2,
@@ -104,7 +104,7 @@ impl Support<'_> {
     }
 
     /// How much friction N leaves over beside that which holds a stuck corner, m/s².
-    fn left_m_s2(&self, stuck: &Forces<f64>) -> f64 {
+    fn left_m_s2(&self, stuck: &Forces) -> f64 {
         let normal = match self.hold {
             Hold::Pulls => stuck.normal_m_s2.abs(),
             Hold::Pushes | Hold::Yields => stuck.normal_m_s2,
@@ -118,7 +118,7 @@ impl Support<'_> {
     }
 
     /// Whether the corner sticks, and against what it slides if not; with the forces that then act.
-    pub fn grip(&self, at: &Turning<f64>) -> (Grip, Forces<f64>) {
+    pub fn grip(&self, at: &Turning) -> (Grip, Forces) {
         let slides = |grip| (grip, self.forces(at, grip));
         let arms_m = || arms_m(self.body, at.angle_rad, self.body.cog_m);
         if at.slip_m_s == 0.0 {
@@ -137,13 +137,13 @@ impl Support<'_> {
     }
 
     /// T/N of a corner `b` below S that slides `way`; a target that pulls turns its sign. N has the sign of g − b ω².
-    fn ratio(&self, at: &Turning<f64>, b: f64, way: f64) -> f64 {
+    fn ratio(&self, at: &Turning, b: f64, way: f64) -> f64 {
         let pushes = self.gravity_m_s2 - b * at.angular_velocity_rad_s.powi(2);
         -self.friction() * way * if self.hold == Hold::Pulls { pushes.signum() } else { 1.0 }
     }
 
     /// The motion of the body with L's corner on the target   (3)
-    pub fn state<T: Differentiable>(&self, at: &Turning<T>) -> State<T> {
+    pub fn state(&self, at: &Turning) -> State {
         let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
         State {
             height_m: b - self.sunk_m,
@@ -155,8 +155,8 @@ impl Support<'_> {
     }
 
     /// The motion a step later.
-    pub fn step<T: Differentiable>(&self, at: &Turning<T>, grip: Grip, step_s: T) -> Turning<T> {
-        runge_kutta(at, (T::from(0.0), step_s), |at, _| {
+    pub fn step(&self, at: &Turning, grip: Grip, step_s: f64) -> Turning {
+        runge_kutta(at, (0.0, step_s), |at, _| {
             let forces = self.forces(at, grip);
             Turning {
                 angle_rad: -at.angular_velocity_rad_s,
@@ -172,7 +172,7 @@ impl Support<'_> {
     }
 
     /// What ends a stretch with one `grip`: each is positive until then.
-    pub fn margins(&self, at: &Turning<f64>, grip: Grip) -> [f64; 3] {
+    pub fn margins(&self, at: &Turning, grip: Grip) -> [f64; 3] {
         let forces = self.forces(at, grip);
         let lift = if self.hold == Hold::Pulls { 1.0 } else { forces.normal_m_s2 };
         let hold = match grip {
@@ -185,8 +185,8 @@ impl Support<'_> {
     }
 }
 
-impl<T: Differentiable> Advance<T> for Turning<T> {
-    fn plus(&self, slope: &Self, step_s: T) -> Self {
+impl Advance for Turning {
+    fn plus(&self, slope: &Self, step_s: f64) -> Self {
         Self {
             angle_rad: self.angle_rad + slope.angle_rad * step_s,
             angular_velocity_rad_s: self.angular_velocity_rad_s + slope.angular_velocity_rad_s * step_s,
@@ -195,21 +195,13 @@ impl<T: Differentiable> Advance<T> for Turning<T> {
     }
 }
 
-impl<T: Differentiable> Turning<T> {
-    pub fn of(body: &Body, state: &State<T>) -> Self {
+impl Turning {
+    pub fn of(body: &Body, state: &State) -> Self {
         let slip_m_s = state.corner(body, body.cog_m).horizontal_velocity_m_s;
         Self {
             angle_rad: state.angle_rad,
             angular_velocity_rad_s: state.angular_velocity_rad_s,
-            slip_m_s: if slip_m_s.re().abs() < STOPPED_M_S { T::from(0.0) } else { slip_m_s },
-        }
-    }
-
-    pub fn real(&self) -> Turning<f64> {
-        Turning {
-            angle_rad: self.angle_rad.re(),
-            angular_velocity_rad_s: self.angular_velocity_rad_s.re(),
-            slip_m_s: self.slip_m_s.re(),
+            slip_m_s: if slip_m_s.abs() < STOPPED_M_S { 0.0 } else { slip_m_s },
         }
     }
 }

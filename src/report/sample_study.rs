@@ -3,8 +3,8 @@
 use super::sample;
 use crate::data::{
     AngleCurve, Body, BodyModel, BodyPath, Contact, Criterion, CriticalAngle, CriticalRange, FlightRegime,
-    Ladder, LadderStep, MonteCarlo, Pose, Prediction, PredictionRow, QuantileCurves, Regime, RegimeMap, Rung,
-    Sensitivity, Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
+    Ladder, LadderStep, MonteCarlo, Pose, Prediction, PredictionRow, QuantileCurves, Rung, Sensitivity,
+    Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
 };
 
 const MODELS: [BodyModel; 2] = [BodyModel::Rod, BodyModel::Body];
@@ -133,7 +133,6 @@ fn of(request: StudyRequest) -> Study {
         ranges: MODELS.into_iter().flat_map(|model| Criterion::ALL.map(|c| range(model, c))).collect(),
         monte_carlo: monte_carlo(&request),
         sensitivities: sensitivities(&request),
-        maps: request.contacts.iter().map(|contact| map(&request, *contact)).collect(),
         request,
     }
 }
@@ -302,21 +301,4 @@ fn sensitivities(request: &StudyRequest) -> Vec<Sensitivity> {
         .zip(0_u32..)
         .map(|((i, contact, k), place)| one(*contact, k, if i == 0 { 35.3 } else { 54.7 } + f64::from(place)))
         .collect()
-}
-
-fn map(request: &StudyRequest, contact: Contact) -> RegimeMap {
-    let k: Vec<f64> = (0..=100).map(|i| f64::from(i) / 100.0).collect();
-    let cell = |k: f64, angle: f64| match (k > 0.0, angle) {
-        (false, angle) if angle < 40.0 => Regime::LiftOff,
-        (true, angle) if angle > 88.0 - 20.0 * (1.0 - k) => Regime::NoSlapDown,
-        (true, angle) if angle > 75.0 - 30.0 * k => Regime::FurtherImpacts,
-        _ => Regime::ClosedForm,
-    };
-    RegimeMap {
-        model: BodyModel::Body,
-        contact,
-        regimes: k.iter().map(|k| request.angles_deg.iter().map(|a| cell(*k, *a)).collect()).collect(),
-        angle_deg: request.angles_deg.clone(),
-        k,
-    }
 }

@@ -84,7 +84,7 @@ pub struct Arguments {
 
 /// The cask file that is named, and what is asked of it.
 pub fn asked(arguments: &Arguments) -> miette::Result<(CaskFile, StudyRequest)> {
-    let mut file = dropcheck::ingest::cask_file(&arguments.cask)?;
+    let mut file = dropcheck::ingest::cask_file::parse(&arguments.cask)?;
     file.drop.contact_duration_s = arguments.duration.unwrap_or(file.drop.contact_duration_s);
     let request = request::request(arguments, &file)?;
     Ok((file, request))

@@ -3,8 +3,7 @@
 use super::Fall;
 use super::peak::{Bands, Peak, Sample, common, peak, with_jumps};
 use crate::data::{
-    BodyModel, CaskFile, Contact, Criterion, CriticalAngle, CriticalRange, Prediction, StudyRequest,
-    WorstCase,
+    Body, CaskFile, Contact, Criterion, CriticalAngle, CriticalRange, Prediction, StudyRequest, WorstCase,
 };
 use rayon::prelude::*;
 
@@ -12,23 +11,23 @@ use rayon::prelude::*;
 const RANGE_KS: u32 = 11;
 const RANGE_FRICTIONS: u32 = 7;
 
-/// What one case shows of one criterion.
-#[derive(Debug, Clone)]
-struct Shown {
-    /// Where it is largest; `None` if L strikes once before R at no angle.
-    peak: Option<Peak>,
-    /// Angle and size of the largest value at which L strikes again before R; minus infinity if it never does.
-    bounced: (f64, f64),
-}
-
 /// Angles, degrees, and the predictions there.
 pub(super) type AtAngles<'a> = (&'a [f64], &'a [Prediction]);
 
 /// Every criterion's critical angle for a case whose predictions are known at some angles.
-pub(super) fn critical_angles(fall: &Fall, bands: Bands, traced: AtAngles) -> Vec<CriticalAngle> {
-    let of = |(criterion, found): (Criterion, Shown)| {
+pub(super) fn critical_angles(
+    fall: &Fall,
+    bands: Bands,
+    (angles_deg, predictions): AtAngles,
+) -> Vec<CriticalAngle> {
+    let at = |angle_deg: f64| Sample::new(angle_deg, &fall.at(angle_deg));
+    let traced: Vec<Sample> =
+        angles_deg.iter().zip(predictions).map(|(&angle_deg, p)| Sample::new(angle_deg, p)).collect();
+    let samples = with_jumps(&traced, &at);
+    let of = |(index, criterion): (usize, Criterion)| {
         let none = || Peak { angle_deg: f64::NAN, largest: f64::NAN, bands_deg: Vec::new() };
-        let peak = found.peak.unwrap_or_else(none);
+        let peak = peak(&samples, index, &at, bands).unwrap_or_else(none);
+        let bounced = traced.iter().filter(|s| s.course.is_none() && s.values[index].is_finite());
         CriticalAngle {
             model: fall.body.model,
             contact: fall.contact,
@@ -37,33 +36,16 @@ pub(super) fn critical_angles(fall: &Fall, bands: Bands, traced: AtAngles) -> Ve
             angle_deg: peak.angle_deg,
             largest: peak.largest,
             bands_deg: peak.bands_deg,
-            further_impacts: above(found.bounced, peak.largest),
+            further_impacts: highest(bounced.map(|s| (s.angle_deg, s.values[index])), peak.largest),
         }
     };
-    Criterion::ALL.into_iter().zip(find(fall, bands, traced)).map(of).collect()
+    Criterion::ALL.into_iter().enumerate().map(of).collect()
 }
 
-/// A value of further impacts that no single one reaches.
-fn above(bounced: (f64, f64), largest: f64) -> Option<(f64, f64)> {
-    let exceeds = if largest.is_nan() { bounced.1.is_finite() } else { bounced.1 > largest };
-    exceeds.then_some(bounced)
-}
-
-fn find(fall: &Fall, bands: Bands, (angles_deg, predictions): AtAngles) -> [Shown; 3] {
-    let at = |angle_deg: f64| Sample::new(angle_deg, &fall.at(angle_deg));
-    let samples: Vec<Sample> =
-        angles_deg.iter().zip(predictions).map(|(&angle_deg, p)| Sample::new(angle_deg, p)).collect();
-    let mut bounced = [(f64::NAN, f64::NEG_INFINITY); 3];
-    for sample in samples.iter().filter(|s| s.course.is_none()) {
-        for (top, &value) in bounced.iter_mut().zip(&sample.values) {
-            if value > top.1 {
-                *top = (sample.angle_deg, value);
-            }
-        }
-    }
-    let samples = with_jumps(&samples, &at);
-    [0, 1, 2]
-        .map(|criterion| Shown { peak: peak(&samples, criterion, &at, bands), bounced: bounced[criterion] })
+/// The highest of some angles' values, where no single impact reaches it: above `largest`, or that is none.
+fn highest(values: impl Iterator<Item = (f64, f64)>, largest: f64) -> Option<(f64, f64)> {
+    let highest = values.reduce(|top, next| if next.1 > top.1 { next } else { top });
+    highest.filter(|top| largest.is_nan() || top.1 > largest)
 }
 
 /// For every body and criterion the critical angles while k and friction go through their ranges, looked for from `angles_deg`.
@@ -75,44 +57,40 @@ pub(super) fn ranges(cask_file: &CaskFile, request: &StudyRequest, angles_deg: &
         || request.contacts.clone(),
         |range| spread(range, RANGE_FRICTIONS).into_iter().map(Contact::Coulomb).collect(),
     );
-    let falls = super::falls(cask_file, &contacts, &ks);
-    let of = |fall: &Fall| find(fall, Bands::of(request), (angles_deg, &fall.over(angles_deg)));
-    let found: Vec<[Shown; 3]> = falls.par_iter().map(of).collect();
-    let mut ranges = Vec::new();
-    for body in super::bodies(&cask_file.cask) {
-        for (index, criterion) in Criterion::ALL.into_iter().enumerate() {
-            let of_body = falls.iter().zip(&found).filter(|(fall, _)| fall.body.model == body.model);
-            let cases: Vec<(&Fall, &Shown)> = of_body.map(|(fall, found)| (fall, &found[index])).collect();
-            ranges.extend(range(body.model, criterion, &cases));
-        }
-    }
-    ranges
+    let bodies = super::bodies(&cask_file.cask);
+    let falls = super::falls(&bodies, cask_file.drop, &contacts, &ks);
+    let of = |fall: &Fall| critical_angles(fall, Bands::of(request), (angles_deg, &fall.over(angles_deg)));
+    let found: Vec<CriticalAngle> = falls.par_iter().flat_map(of).collect();
+    let of_body = |body: &Body| {
+        let model = body.model;
+        Criterion::ALL.map(|criterion| {
+            found.iter().filter(|c| (c.model, c.criterion) == (model, criterion)).collect::<Vec<_>>()
+        })
+    };
+    bodies.iter().flat_map(of_body).filter_map(|cases| range(&cases)).collect()
 }
 
-fn range(model: BodyModel, criterion: Criterion, cases: &[(&Fall, &Shown)]) -> Option<CriticalRange> {
-    let mut peaks = cases.iter().filter_map(|(fall, found)| found.peak.as_ref().map(|peak| (fall, peak)));
-    let (fall, first) = peaks.next()?;
+fn range(cases: &[&CriticalAngle]) -> Option<CriticalRange> {
+    let mut peaks = cases.iter().filter(|case| case.angle_deg.is_finite());
+    let at = |c: &CriticalAngle| WorstCase { angle_deg: c.angle_deg, contact: c.contact, k: c.k };
+    let first = peaks.next()?;
     let mut range = CriticalRange {
-        model,
-        criterion,
+        model: first.model,
+        criterion: first.criterion,
         angle_deg: (first.angle_deg, first.angle_deg),
         largest: first.largest,
-        worst: WorstCase { angle_deg: first.angle_deg, contact: fall.contact, k: fall.k },
+        worst: at(first),
         common_bands_deg: first.bands_deg.clone(),
         further_impacts: None,
     };
-    for (fall, peak) in peaks {
-        range.angle_deg = (range.angle_deg.0.min(peak.angle_deg), range.angle_deg.1.max(peak.angle_deg));
-        if peak.largest > range.largest {
-            range.largest = peak.largest;
-            range.worst = WorstCase { angle_deg: peak.angle_deg, contact: fall.contact, k: fall.k };
+    for case in peaks {
+        range.angle_deg = (range.angle_deg.0.min(case.angle_deg), range.angle_deg.1.max(case.angle_deg));
+        if case.largest > range.largest {
+            (range.largest, range.worst) = (case.largest, at(case));
         }
-        range.common_bands_deg = common(&range.common_bands_deg, &peak.bands_deg);
+        range.common_bands_deg = common(&range.common_bands_deg, &case.bands_deg);
     }
-    let bounced = cases.iter().map(|(_, found)| found.bounced);
-    let highest =
-        bounced.fold((f64::NAN, f64::NEG_INFINITY), |top, next| if next.1 > top.1 { next } else { top });
-    range.further_impacts = above(highest, range.largest);
+    range.further_impacts = highest(cases.iter().filter_map(|case| case.further_impacts), range.largest);
     Some(range)
 }
 
@@ -259,7 +237,8 @@ mod tests {
         asked.uncertain = uncertain((0.2, 0.4), 1);
         let ranges = ranges(&file, &asked, &asked.angles_deg);
         assert_eq!(ranges.len(), 6);
-        let falls = super::super::falls(&file, &asked.contacts, &asked.ks);
+        let falls =
+            super::super::falls(&super::super::bodies(&file.cask), file.drop, &asked.contacts, &asked.ks);
         for fall in falls {
             let found =
                 critical_angles(&fall, Bands::of(&asked), (&asked.angles_deg, &fall.over(&asked.angles_deg)));

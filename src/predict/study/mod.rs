@@ -1,27 +1,22 @@
-//! A cask file and a request to rows, curves, critical angles, Monte Carlo, sensitivities and the map of the regimes.
+//! A cask file and a request to rows, curves, critical angles, Monte Carlo and sensitivities.
 
 mod critical;
 mod curves;
 mod monte_carlo;
 mod peak;
 mod poses;
-mod regimes;
 mod rows;
 mod sensitivity;
 mod uncertain;
 
 pub use uncertain::default_uncertain;
 
-use super::{bodies, ladder, predict, speed_gradient};
+use super::{bodies, ladder, predict};
 use crate::data::{
-    Body, BodyModel, BodyPath, CaskFile, Contact, Drop, Ladder, Prediction, SpeedGradient, Study,
-    StudyRequest,
+    Body, BodyModel, BodyPath, CaskFile, Contact, Drop, Ladder, Prediction, Study, StudyRequest,
 };
 use peak::Bands;
 use rayon::prelude::*;
-
-/// Angles of the maps: half a degree over the quarter circle; a finer grid is thinned to it.
-const MAP_ANGLES: usize = 181;
 
 /// Angles of Monte Carlo and of the critical ranges: one degree, as narrow as the angle of a drop is known.
 const DRAW_ANGLES: usize = 91;
@@ -31,7 +26,7 @@ const DRAW_ANGLES: usize = 91;
 /// The seed fixes the draws bit by bit; the predictions made of them differ between machines in the last bits of the sine only.
 #[must_use]
 pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
-    let falls = falls(cask_file, &request.contacts, &request.ks);
+    let falls = falls(&bodies(&cask_file.cask), cask_file.drop, &request.contacts, &request.ks);
     let traced: Vec<Vec<Prediction>> = falls.par_iter().map(|fall| fall.over(&request.angles_deg)).collect();
     let (curves, critical): (Vec<_>, Vec<_>) = falls
         .par_iter()
@@ -42,7 +37,6 @@ pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
         })
         .unzip();
     let drawn_deg = thinned(&request.angles_deg, DRAW_ANGLES);
-    let mapped_deg = thinned(&request.angles_deg, MAP_ANGLES);
     Study {
         rows: rows::rows(cask_file, request),
         paths: paths(&falls, request.angle_deg),
@@ -53,7 +47,6 @@ pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
         ranges: critical::ranges(cask_file, request, &drawn_deg),
         monte_carlo: monte_carlo::monte_carlo(cask_file, request, &drawn_deg),
         sensitivities: sensitivity::sensitivities(cask_file, request),
-        maps: regimes::maps(cask_file, &request.contacts, &mapped_deg),
         cask_file: cask_file.clone(),
         request: request.clone(),
     }
@@ -80,18 +73,14 @@ impl Fall {
     fn over(&self, angles_deg: &[f64]) -> Vec<Prediction> {
         angles_deg.par_iter().map(|&angle_deg| self.at(angle_deg)).collect()
     }
-
-    fn gradient_at(&self, angle_deg: f64) -> Option<SpeedGradient> {
-        speed_gradient(&self.body, &self.drop_at(angle_deg), self.contact, self.k)
-    }
 }
 
 /// Every body with every contact law and k, in this order.
-fn falls(cask_file: &CaskFile, contacts: &[Contact], ks: &[f64]) -> Vec<Fall> {
+fn falls(bodies: &[Body], drop: Drop, contacts: &[Contact], ks: &[f64]) -> Vec<Fall> {
     let mut falls = Vec::new();
-    for body in bodies(&cask_file.cask) {
+    for &body in bodies {
         for &contact in contacts {
-            falls.extend(ks.iter().map(|&k| Fall { body, drop: cask_file.drop, contact, k }));
+            falls.extend(ks.iter().map(|&k| Fall { body, drop, contact, k }));
         }
     }
     falls
@@ -238,7 +227,6 @@ mod tests {
             assert_eq!(found.critical.len(), bodies * 2 * 3 * 3);
             assert_eq!(found.ranges.len(), bodies * 3);
             assert_eq!(found.sensitivities.len(), 2 * 3);
-            assert_eq!(found.maps.len(), 2);
         }
     }
 

@@ -1,66 +1,48 @@
 //! The sweeps of a request to one prediction for every combination of their values.
 
 use super::super::bodies;
-use super::{Fall, raised, resized};
-use crate::data::{CaskFile, Contact, PredictionRow, StudyRequest, SweepVariable};
+use super::{Fall, falls, raised, resized};
+use crate::data::{Body, CaskFile, Contact, PredictionRow, StudyRequest, SweepVariable};
 use rayon::prelude::*;
-
-/// What the sweeps have set at one point of their grid.
-#[derive(Debug, Clone, Copy, Default)]
-struct Point {
-    angle_deg: Option<f64>,
-    k: Option<f64>,
-    friction: Option<f64>,
-    length_m: Option<f64>,
-    drop_height_m: Option<f64>,
-}
-
-impl Point {
-    fn with(self, variable: SweepVariable, value: f64) -> Self {
-        let value = Some(value);
-        match variable {
-            SweepVariable::Angle => Self { angle_deg: value, ..self },
-            SweepVariable::K => Self { k: value, ..self },
-            SweepVariable::Friction => Self { friction: value, ..self },
-            SweepVariable::Length => Self { length_m: value, ..self },
-            SweepVariable::DropHeight => Self { drop_height_m: value, ..self },
-        }
-    }
-}
 
 /// Rows of the product of all sweeps, the first outermost; within it of every body, contact law and k that is not swept.
 pub(super) fn rows(cask_file: &CaskFile, request: &StudyRequest) -> Vec<PredictionRow> {
-    let mut points = vec![Point::default()];
+    let mut points: Vec<Vec<(SweepVariable, f64)>> = vec![Vec::new()];
     for sweep in &request.sweeps {
-        let with_each = |point: &Point| {
-            let point = *point;
-            sweep.values.iter().map(move |&value| point.with(sweep.variable, value))
+        let with_each = |point: &Vec<_>| {
+            let point = point.clone();
+            let with = move |&value: &f64| [&point[..], &[(sweep.variable, value)]].concat();
+            sweep.values.iter().map(with)
         };
         points = points.iter().flat_map(with_each).collect();
     }
     points.par_iter().flat_map(|point| rows_at(point, cask_file, request)).collect()
 }
 
-fn rows_at(point: &Point, cask_file: &CaskFile, request: &StudyRequest) -> Vec<PredictionRow> {
-    let contacts = point.friction.map_or_else(|| request.contacts.clone(), |mu| vec![Contact::Coulomb(mu)]);
-    let ks = point.k.map_or_else(|| request.ks.clone(), |k| vec![k]);
-    let angle_deg = point.angle_deg.unwrap_or(request.angle_deg);
-    let drop = point.drop_height_m.map_or(cask_file.drop, |height_m| raised(&cask_file.drop, height_m));
-    let mut rows = Vec::new();
-    for body in bodies(&cask_file.cask) {
-        let body = point.length_m.map_or(body, |length_m| resized(&body, length_m, body.height_m));
-        for &contact in &contacts {
-            for &k in &ks {
-                rows.push(PredictionRow {
-                    angle_deg,
-                    length_m: body.length_m,
-                    drop_height_m: drop.height_m,
-                    prediction: Fall { body, drop, contact, k }.at(angle_deg),
-                });
-            }
-        }
-    }
-    rows
+fn rows_at(
+    point: &[(SweepVariable, f64)],
+    cask_file: &CaskFile,
+    request: &StudyRequest,
+) -> Vec<PredictionRow> {
+    let swept = |wanted| point.iter().find(|(variable, _)| *variable == wanted).map(|(_, value)| *value);
+    let angle_deg = swept(SweepVariable::Angle).unwrap_or(request.angle_deg);
+    let contacts = swept(SweepVariable::Friction).map(|friction| vec![Contact::Coulomb(friction)]);
+    let ks = swept(SweepVariable::K).map(|k| vec![k]);
+    let height_m = swept(SweepVariable::DropHeight);
+    let drop = height_m.map_or(cask_file.drop, |height_m| raised(&cask_file.drop, height_m));
+    let sized = |body: Body| match swept(SweepVariable::Length) {
+        Some(length_m) => resized(&body, length_m, body.height_m),
+        None => body,
+    };
+    let bodies: Vec<Body> = bodies(&cask_file.cask).into_iter().map(sized).collect();
+    let contacts = contacts.as_ref().unwrap_or(&request.contacts);
+    let row = |fall: Fall| PredictionRow {
+        angle_deg,
+        length_m: fall.body.length_m,
+        drop_height_m: drop.height_m,
+        prediction: fall.at(angle_deg),
+    };
+    falls(&bodies, drop, contacts, ks.as_ref().unwrap_or(&request.ks)).into_iter().map(row).collect()
 }
 
 #[cfg(test)]

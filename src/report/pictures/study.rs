@@ -4,7 +4,7 @@ use super::super::rounding::plain;
 use super::super::text::distinct;
 use super::draw::Picture;
 use super::look::MOST_CONTACTS;
-use super::{angle_curves, critical, monte_carlo, positions, regimes, sensitivity, sweep};
+use super::{angle_curves, critical, monte_carlo, positions, sensitivity, sweep};
 use crate::data::{Contact, Study, StudyRequest};
 use rayon::prelude::*;
 
@@ -36,7 +36,6 @@ fn charts(request: &StudyRequest) -> Vec<StudyChart> {
     charts.push(chart("critical-angles", critical::picture));
     charts.extend((request.uncertain.draws > 0).then(|| chart("monte-carlo", monte_carlo::picture)));
     charts.push(chart("sensitivity", sensitivity::picture));
-    charts.push(chart("regimes", regimes::picture));
     charts.extend((!request.sweeps.is_empty()).then(|| chart("sweep", sweep::picture)));
     charts
 }
@@ -82,8 +81,7 @@ mod tests {
                 "section",
                 "critical-angles",
                 "monte-carlo",
-                "sensitivity",
-                "regimes"
+                "sensitivity"
             ]
         );
         request.contacts = vec![Contact::Coulomb(0.3), Contact::Coulomb(0.3), Contact::Rough];
@@ -122,9 +120,7 @@ mod tests {
 
     #[test]
     fn without_a_slap_down_pictures_say_so() {
-        let pictures = draw_study(&sample_study::without_slap_down());
-        let silent = |name: &str| name != "regimes";
-        for picture in pictures.iter().filter(|p| silent(&p.name)) {
+        for picture in draw_study(&sample_study::without_slap_down()) {
             assert!(picture.svg.contains("nothing to show"), "{}", picture.name);
         }
     }

@@ -23,7 +23,6 @@ pub fn study_json(study: &Study) -> Result<Vec<u8>, ReportError> {
         ("critical_ranges", entries(&study.ranges)?),
         ("monte_carlo", to_vec(&study.monte_carlo)?),
         ("sensitivities", entries(&study.sensitivities)?),
-        ("regime_maps", entries(&study.maps)?),
     ];
     let members = members.map(|(key, value)| [format!("  \"{key}\": ").as_bytes(), &value].concat());
     Ok([b"{\n", &members.join(&b",\n"[..])[..], b"\n}\n"].concat())
@@ -62,7 +61,6 @@ mod tests {
             study.request.angles_deg.len()
         );
         assert_eq!(json["sensitivities"].as_array().unwrap().len(), study.sensitivities.len());
-        assert_eq!(json["regime_maps"][0]["regimes"][0][0], "lift_off");
     }
 
     #[test]

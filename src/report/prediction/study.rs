@@ -69,7 +69,6 @@ pub(super) fn document(study: &Study) -> ReportDocument {
             monte_carlo(study),
             ladders(study),
             sensitivities(study),
-            Chapter::new("Regimes").with(ChapterPart::picture("regimes", "", "")),
             of_the_paper(),
             Chapter::new("Limits").with(PartContent::List(LIMITS.to_vec())),
             Chapter::new("All predictions").with_all(at_end),
