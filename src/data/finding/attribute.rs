@@ -3,12 +3,16 @@
 use super::{IssueCode as Code, Severity};
 
 /// A finding about the unit, scale or offset of a dataset.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is, the variant's words the rest")]
 pub enum AttributeFinding {
     /// A group states another value than what stands nearer to the samples, each as `scale = 0.5`; harmless where its value does nothing.
+    #[error(
+        "the group {group} states {stated}; nearer to the samples stands {nearer}, which was taken: one of the two is wrong, or the group's is for other datasets; correct the wrong one in a copy, or delete that of the group where each dataset has its own"
+    )]
     GroupDiffers { group: String, stated: String, nearer: String, is_harmless: bool },
     /// Reading would refuse them: the problem and its remedy.
+    #[error("{0}")]
     Refused(String),
 }
 
@@ -18,16 +22,6 @@ impl AttributeFinding {
         match self {
             Self::GroupDiffers { is_harmless: true, .. } => (Code::Scale, Severity::Note),
             Self::GroupDiffers { .. } | Self::Refused(_) => (Code::Scale, Severity::Warning),
-        }
-    }
-
-    /// What was found, its size, and what to do.
-    pub(super) fn sentence(&self) -> String {
-        match self {
-            Self::GroupDiffers { group, stated, nearer, .. } => format!(
-                "the group {group} states {stated}; nearer to the samples stands {nearer}, which was taken: one of the two is wrong, or the group's is for other datasets; correct the wrong one in a copy, or delete that of the group where each dataset has its own"
-            ),
-            Self::Refused(words) => words.clone(),
         }
     }
 }

@@ -1,51 +1,83 @@
 //! What was found of an MCAP file, its chunks and its messages, with its numbers, to code, severity and sentence.
 
 use super::{IssueCode as Code, Severity};
+use crate::data::shown::digits;
 
 /// A finding about an MCAP file.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
 pub enum McapFinding {
     /// The file ends before its time; the last message kept begins at `kept_s`.
+    #[error("{end}{}", .kept_s.map(|s| format!("; the last message kept begins at {s:.6} s")).unwrap_or_default())]
     Truncated { end: FileEnd, kept_s: Option<f64> },
     /// A chunk fails its check sum or does not unpack.
+    #[error(
+        "the chunk at byte {at} is damaged ({reason}) and was left out: at least {messages} messages over {lasts_s:.6} s"
+    )]
     BadChunk { at: u64, reason: String, messages: u64, lasts_s: f64 },
     /// Bytes that are no record.
+    #[error("at byte {at} stands no MCAP record: {bytes} bytes were skipped, {}", if *.resumed { "reading went on at the next chunk of the file's index" } else { "up to the end of the file" })]
     Garbage { at: u64, bytes: u64, resumed: bool },
     /// Damage that is not told place by place.
+    #[error("{places} more places of the file are damaged and were left out")]
     MoreDamage { places: u64 },
     /// Records whose body does not parse, or messages that belong to no channel; kind and place of the first.
+    #[error("{count} records were skipped, the first a {kind} at byte {at} {why}")]
     BadRecords { count: u64, kind: &'static str, at: u64, why: &'static str },
     /// The file's statistics count other messages than there are.
+    #[error("the file's statistics count {claimed} messages, {found} were found")]
     OtherCount { claimed: u64, found: u64 },
     /// Messages that do not decode; in a listing with their topic.
+    #[error("{count} of {messages} messages {}; the first: {first}", undecoded(.topic.as_deref()))]
     Undecoded { count: u64, messages: u64, topic: Option<String>, first: String },
     /// Messages whose stamp is of no use, beside others whose stamp is or not.
+    #[error("{count} of {messages} messages carry a stamp of zero or none that can be understood: their log time was taken{}", if *.beside_good { "; the others carry a stamp, and the two clocks may differ" } else { "" })]
     LogTime { count: u64, messages: u64, beside_good: bool },
-    /// A unit that changes between messages, where the cask file states one; in a listing with its source.
-    TwoUnits { first: String, other: String, source: Option<String> },
+    /// Log times that run at another pace than the stamps, by so much of it.
+    #[error("the stamps of its messages and their log times disagree: the log times run at a pace that differs by {} %; the stamps were taken, and every velocity goes with them: `time = \"log_time\"` in the cask file takes the other", digits(*.percent, 2))]
+    LogDrift { percent: f64 },
+    /// Bytes of the data that are not those that the writer summed up.
+    #[error(
+        "the check sum of its data does not hold: bytes were changed after it was written, and nothing tells which samples are as they were: take the original from the logger again"
+    )]
+    DataChanged,
+    /// The same of the summary.
+    #[error(
+        "the check sum of its summary does not hold: bytes were changed after it was written; the summary was left out, the data were read"
+    )]
+    SummaryChanged,
+    /// A unit that changes between messages, where the cask file states one; in a listing with its source (`r#`: a text, not an error).
+    #[error("{}", changed_unit(.source.as_deref(), &two_units(.first, .other)))]
+    TwoUnits { first: String, other: String, r#source: Option<String> },
     /// What reading would say of a source's times.
-    NoTimes { source: String, problem: String },
+    #[error("{source}: {problem}")]
+    NoTimes { r#source: String, problem: String },
     /// What a listing has no room for.
+    #[error(
+        "it holds more than is listed, {most} in all and {most_of_topic} of a topic: {topics} more topics and {fields} more fields of the listed ones; a source that is not listed is read all the same"
+    )]
     Unlisted { most: usize, most_of_topic: usize, topics: usize, fields: usize },
 }
 
 /// Where a file ends that was cut or never closed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
 pub enum FileEnd {
     /// At a record's boundary or within a record, before the footer.
+    #[error("{}", ends_early(*.at, *.bytes, .inside))]
     Early { at: u64, bytes: u64, inside: &'static str },
     /// Within a chunk.
+    #[error("{} the chunk at byte {at}: {}, and what followed is lost", chunk_end(*.never_closed), kept_of_chunk(*.messages, *.bytes))]
     InChunk { at: u64, never_closed: bool, bytes: u64, messages: u64 },
     /// Behind the footer, within the closing magic.
+    #[error("the file ends at byte {at} within its closing mark; all records before it were read")]
     InMagic { at: u64 },
 }
 
 impl McapFinding {
     /// The check that speaks, and how much it weighs.
     pub(super) fn code(&self) -> (Code, Severity) {
-        use Severity::{Note, Warning};
+        use Severity::{Error, Note, Warning};
         match self {
             Self::Truncated { .. } => (Code::Truncated, Warning),
             Self::BadChunk { .. }
@@ -53,68 +85,14 @@ impl McapFinding {
             | Self::MoreDamage { .. }
             | Self::BadRecords { .. }
             | Self::OtherCount { .. }
+            | Self::SummaryChanged
             | Self::Undecoded { .. } => (Code::Damaged, Warning),
             Self::LogTime { beside_good: true, .. } => (Code::LogTimeUsed, Warning),
             Self::LogTime { .. } => (Code::LogTimeUsed, Note),
+            Self::LogDrift { .. } | Self::NoTimes { .. } => (Code::Clock, Warning),
+            Self::DataChanged => (Code::Damaged, Error),
             Self::TwoUnits { .. } => (Code::Scale, Warning),
-            Self::NoTimes { .. } => (Code::Clock, Warning),
             Self::Unlisted { .. } => (Code::Unlisted, Note),
-        }
-    }
-
-    /// What was found, its size, and what to do.
-    pub(super) fn sentence(&self) -> String {
-        match self {
-            Self::Truncated { end, kept_s: None } => end.sentence(),
-            Self::Truncated { end, kept_s: Some(kept_s) } => {
-                format!("{}; the last message kept begins at {kept_s:.6} s", end.sentence())
-            }
-            Self::BadChunk { at, reason, messages, lasts_s } => format!(
-                "the chunk at byte {at} is damaged ({reason}) and was left out: at least {messages} messages over {lasts_s:.6} s"
-            ),
-            Self::Garbage { at, bytes, resumed } => {
-                let next = if *resumed {
-                    "reading went on at the next chunk of the file's index"
-                } else {
-                    "up to the end of the file"
-                };
-                format!("at byte {at} stands no MCAP record: {bytes} bytes were skipped, {next}")
-            }
-            Self::MoreDamage { places } => {
-                format!("{places} more places of the file are damaged and were left out")
-            }
-            Self::BadRecords { count, kind, at, why } => {
-                format!("{count} records were skipped, the first a {kind} at byte {at} {why}")
-            }
-            Self::OtherCount { claimed, found } => {
-                format!("the file's statistics count {claimed} messages, {found} were found")
-            }
-            Self::Undecoded { count, messages, topic: Some(topic), first } => {
-                format!("{count} of {messages} messages of {topic} do not decode; the first: {first}")
-            }
-            Self::Undecoded { count, messages, topic: None, first } => {
-                format!("{count} of {messages} messages do not decode and were skipped; the first: {first}")
-            }
-            Self::LogTime { count, messages, beside_good } => {
-                let mixed = if *beside_good {
-                    "; the others carry a stamp, and the two clocks may differ"
-                } else {
-                    ""
-                };
-                format!(
-                    "{count} of {messages} messages carry a stamp of zero or none that can be understood: their log time was taken{mixed}"
-                )
-            }
-            Self::TwoUnits { first, other, source: Some(source) } => {
-                format!("{source}: {}", two_units(first, other))
-            }
-            Self::TwoUnits { first, other, source: None } => {
-                format!("{}; all samples were taken in that of the cask file", two_units(first, other))
-            }
-            Self::NoTimes { source, problem } => format!("{source}: {problem}"),
-            Self::Unlisted { most, most_of_topic, topics, fields } => format!(
-                "it holds more than is listed, {most} in all and {most_of_topic} of a topic: {topics} more topics and {fields} more fields of the listed ones; a source that is not listed is read all the same"
-            ),
         }
     }
 }
@@ -124,33 +102,41 @@ pub(crate) fn two_units(first: &str, other: &str) -> String {
     format!("the unit changes between its messages, from {first:?} to {other:?}")
 }
 
-impl FileEnd {
-    fn sentence(self) -> String {
-        match self {
-            Self::Early { at, bytes: 0, .. } => format!(
-                "the file was never closed: it ends at byte {at} without its footer; every whole message before was read, what was not yet written is lost"
-            ),
-            Self::Early { at, bytes, inside } => format!(
-                "the file ends in the middle of a {inside} at byte {at}: its last {bytes} bytes could not be used, and what followed is lost"
-            ),
-            Self::InChunk { at, never_closed, bytes, messages } => {
-                let how = if never_closed {
-                    "the file's writer was stopped before it closed"
-                } else {
-                    "the file ends in the middle of"
-                };
-                let kept = if messages == 0 {
-                    "no whole message is in it".to_owned()
-                } else {
-                    format!(
-                        "{messages} whole messages in it were kept without a check sum, the rest of its {bytes} bytes could not be used"
-                    )
-                };
-                format!("{how} the chunk at byte {at}: {kept}, and what followed is lost")
-            }
-            Self::InMagic { at } => {
-                format!("the file ends at byte {at} within its closing mark; all records before it were read")
-            }
-        }
+fn undecoded(topic: Option<&str>) -> String {
+    topic.map_or("do not decode and were skipped".into(), |topic| format!("of {topic} do not decode"))
+}
+
+fn changed_unit(source: Option<&str>, change: &str) -> String {
+    match source {
+        Some(source) => format!("{source}: {change}"),
+        None => format!("{change}; all samples were taken in that of the cask file"),
+    }
+}
+
+fn ends_early(at: u64, bytes: u64, inside: &str) -> String {
+    match bytes {
+        0 => format!(
+            "the file was never closed: it ends at byte {at} without its footer; every whole message before was read, what was not yet written is lost"
+        ),
+        _ => format!(
+            "the file ends in the middle of a {inside} at byte {at}: its last {bytes} bytes could not be used, and what followed is lost"
+        ),
+    }
+}
+
+fn chunk_end(never_closed: bool) -> &'static str {
+    if never_closed {
+        "the file's writer was stopped before it closed"
+    } else {
+        "the file ends in the middle of"
+    }
+}
+
+fn kept_of_chunk(messages: u64, bytes: u64) -> String {
+    match messages {
+        0 => "no whole message is in it".into(),
+        _ => format!(
+            "{messages} whole messages in it were kept without a check sum, the rest of its {bytes} bytes could not be used"
+        ),
     }
 }

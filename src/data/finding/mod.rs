@@ -6,6 +6,7 @@ mod clock;
 mod code;
 mod drop;
 mod mcap;
+mod slip;
 mod table;
 mod times;
 
@@ -13,9 +14,10 @@ pub use attribute::AttributeFinding;
 pub use channel::{ChannelFinding, During};
 pub use clock::{ClockFinding, HowApart, RatesApart, TimesApart};
 pub use code::{CODES, IssueCode, Severity};
-pub use drop::{DropFinding, Slip};
+pub use drop::DropFinding;
 pub(crate) use mcap::two_units;
 pub use mcap::{FileEnd, McapFinding};
+pub use slip::{Cure, Slip};
 pub use table::TableFinding;
 pub use times::{Jitter, TimesFinding};
 
@@ -65,7 +67,7 @@ macro_rules! finding_from {
     ($($kind:ident of $found:ty),*) => {$(
         impl From<$found> for Finding {
             fn from(found: $found) -> Self {
-                let (of_kind, message) = (found.code(), found.sentence());
+                let (of_kind, message) = (found.code(), found.to_string());
                 Self::made(What::$kind(found), of_kind, &message)
             }
         }

@@ -3,16 +3,28 @@
 use super::{IssueCode as Code, Severity};
 
 /// A finding about the rows of a table.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is, the variant's words the rest")]
 pub enum TableFinding {
     /// The last line ends in the middle.
+    #[error(
+        "line {line}, the last, ends in the middle and was dropped: the file was cut off while it was written or copied"
+    )]
     CutLine { line: u64 },
     /// Zero bytes from a line on.
+    #[error(
+        "from line {line} on stand zero bytes, as where a logger was not closed or a copy failed: the rows before are whole, what follows was not read; where rows stand behind, copy the file again"
+    )]
     ZeroBytes { line: u64 },
     /// More samples are stated above the table than it has rows.
+    #[error(
+        "the lines above the table state {stated} samples, and it has {rows} rows: what is missing was lost, or the file was cut off; samples lost amid the rows would make all behind them early"
+    )]
     RowsMissing { stated: u64, rows: usize },
     /// A column that counts the rows jumps, first behind a row (from 1) and its count.
+    #[error(
+        "the column {header:?} counts the rows, and {lost} of them are missing, the first {count} behind row {row} of the table; the others were taken as one after another: write time = {header:?} under [recording] of the cask file, which keeps their places"
+    )]
     CounterJumps { header: String, lost: f64, count: f64, row: usize },
 }
 
@@ -22,27 +34,6 @@ impl TableFinding {
         match self {
             Self::CounterJumps { .. } => (Code::Gap, Severity::Warning),
             _ => (Code::Truncated, Severity::Warning),
-        }
-    }
-
-    /// What was found, its size, and what to do.
-    pub(super) fn sentence(&self) -> String {
-        match self {
-            Self::CutLine { line } => format!(
-                "line {line}, the last, ends in the middle and was dropped: the file was cut off while it was written or copied"
-            ),
-            Self::ZeroBytes { line } => format!(
-                "from line {line} on stand zero bytes, as where a logger was not closed or a copy failed: the rows before are whole, what \
-                 follows was not read; where rows stand behind, copy the file again"
-            ),
-            Self::RowsMissing { stated, rows } => format!(
-                "the lines above the table state {stated} samples, and it has {rows} rows: what is missing was lost, or the file was cut off; \
-                 samples lost amid the rows would make all behind them early"
-            ),
-            Self::CounterJumps { header, lost, count, row } => format!(
-                "the column {header:?} counts the rows, and {lost} of them are missing, the first {count} behind row {row} of the table; the \
-                 others were taken as one after another: write time = {header:?} under [recording] of the cask file, which keeps their places"
-            ),
         }
     }
 }
