@@ -120,14 +120,34 @@ pub enum Source {
         topic: String,
         /// The dotted field path.
         field: String,
+        /// The number of the MCAP channel, where several write on the topic.
+        channel: Option<u16>,
     },
+}
+
+/// Which rows of a table, or messages of a topic, are those of one sensor.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct RowsOf {
+    /// The column, field or dataset that names the sensor.
+    pub column: String,
+    /// What stands there in its rows.
+    pub is: String,
+}
+
+impl std::fmt::Display for RowsOf {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "where = {{ column = {:?}, is = {:?} }}", self.column, self.is)
+    }
 }
 
 impl std::fmt::Display for Source {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Path(path) => f.write_str(path),
-            Self::TopicField { topic, field } => write!(f, "{topic} · {field}"),
+            Self::TopicField { topic, field, channel: None } => write!(f, "{topic} · {field}"),
+            Self::TopicField { topic, field, channel: Some(channel) } => {
+                write!(f, "{topic} · {field} of channel {channel}")
+            }
         }
     }
 }
@@ -269,7 +289,9 @@ pub struct ChannelSpec {
     pub full_scale: Option<f64>,
     /// Overrides what the recording says, Hz.
     pub sample_rate_hz: Option<f64>,
-    /// This channel's own times: a CSV column or an HDF5 dataset.
+    /// Which rows of the source are this sensor's, where it holds those of several.
+    pub rows: Option<RowsOf>,
+    /// This channel's own times: a CSV column, an HDF5 dataset, a field of the messages.
     pub time: Option<String>,
     /// How the sensor is coupled.
     pub coupling: Coupling,
@@ -298,6 +320,7 @@ impl ChannelSpec {
             polarity: 1.0,
             full_scale: None,
             sample_rate_hz: None,
+            rows: None,
             time: None,
             coupling: Coupling::Dc,
             calibration: None,
@@ -342,6 +365,12 @@ pub struct CaskFile {
 }
 
 impl CaskFile {
+    /// The times that the file names for a channel: its own, else those of the recording.
+    #[must_use]
+    pub fn time_of<'a>(&'a self, spec: &'a ChannelSpec) -> Option<&'a str> {
+        spec.time.as_deref().or(self.time.as_deref())
+    }
+
     /// A file that states cask, drop and contact alone, with the usual tolerances.
     #[must_use]
     pub fn plain(cask: Cask, drop: Drop, contact: Contact) -> Self {

@@ -2,6 +2,12 @@
 
 use super::cask::{Axis, Coupling, End};
 
+/// Whether a sample is a value: finite, and none of what stands for an overrange (9.9E+37) or no number (9.91E+37) in SCPI 1999.0, 7.2.1.4.
+#[must_use]
+pub(crate) fn is_number(sample: f64) -> bool {
+    sample.abs() < 9.89e37
+}
+
 /// Samples as the recording stores them: f32 stays f32 until it is worked on.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Samples {
@@ -56,8 +62,8 @@ impl Samples {
     /// How many are no numbers.
     pub(crate) fn missing(&self) -> usize {
         match self {
-            Self::F32(v) => v.iter().filter(|x| !x.is_finite()).count(),
-            Self::F64(v) => v.iter().filter(|x| !x.is_finite()).count(),
+            Self::F32(v) => v.iter().filter(|x| !is_number(f64::from(**x))).count(),
+            Self::F64(v) => v.iter().filter(|x| !is_number(**x)).count(),
         }
     }
 
@@ -67,6 +73,14 @@ impl Samples {
         match self {
             Self::F32(v) => v.iter_mut().for_each(|x| *x = f(f64::from(*x)) as f32),
             Self::F64(v) => v.iter_mut().for_each(|x| *x = f(*x)),
+        }
+    }
+
+    /// Keeps the first `count` of them.
+    pub(crate) fn truncate(&mut self, count: usize) {
+        match self {
+            Self::F32(v) => v.truncate(count),
+            Self::F64(v) => v.truncate(count),
         }
     }
 
@@ -133,6 +147,8 @@ pub struct Channel {
     pub unit: String,
     /// Where that unit comes from: "cask file" or "recording".
     pub unit_origin: &'static str,
+    /// Whether the recording itself says that unit.
+    pub is_unit_recorded: bool,
     /// The cask file's clipping limit, in `unit` (of either sign).
     pub full_scale: Option<f64>,
     /// Stretches without samples; there `samples` is NaN.

@@ -40,6 +40,18 @@ pub enum Allowed {
     Within(f64, f64, &'static str),
 }
 
+impl Allowed {
+    /// Whether a number is among them.
+    pub(crate) fn holds(self, number: f64) -> bool {
+        match self {
+            Self::Any => true,
+            Self::FromZero => number >= 0.0,
+            Self::AboveZero => number > 0.0,
+            Self::Within(least, most, _) => (least..=most).contains(&number),
+        }
+    }
+}
+
 /// A key of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Key {
@@ -74,8 +86,11 @@ pub const FILL_IN: &str = "FILL IN";
 /// The default of a key that must be there.
 pub const REQUIRED: &str = "required";
 
-/// The tables of a cask file, in the order of the form; `source` stands within a channel.
-pub static TABLES: [KeyTable; 12] = [
+/// Tables that stand as the value of a key: no line of a file begins them.
+pub const INNER_TABLES: [&str; 3] = ["source", "where", "observation"];
+
+/// The tables of a cask file, in the order of the form.
+pub static TABLES: [KeyTable; 13] = [
     KeyTable { name: "test", remark: "for the head of the report; changes no number", keys: &TEST },
     KeyTable { name: "cask", remark: "", keys: &CASK },
     KeyTable { name: "drop", remark: "", keys: &DROP },
@@ -99,6 +114,7 @@ pub static TABLES: [KeyTable; 12] = [
     },
     KeyTable { name: "channel", remark: "", keys: &CHANNEL },
     KeyTable { name: "source", remark: "", keys: &SOURCE },
+    KeyTable { name: "where", remark: "", keys: &WHERE },
     KeyTable { name: "observation", remark: "", keys: &OBSERVATION },
 ];
 
@@ -151,7 +167,7 @@ pub const CASK: [Key; 7] = [
         .within(1e-3, 1e6, "a model of a gram to more than any cask, in kg")
         .asked("4466.0", ""),
     number("length_m", REQUIRED)
-        .within(0.01, 100.0, "a model of a centimetre to more than any cask, in metres")
+        .within(0.01, 100.0, "a model of a centimetre to more than any cask, in metres: 5512 mm are 5.512")
         .asked("5.512", "along the axis, between the two ends that strike"),
     number("height_m", "0")
         .zero_or_more()
@@ -168,7 +184,7 @@ pub const CASK: [Key; 7] = [
 /// Keys of `[drop]`.
 pub const DROP: [Key; 6] = [
     number("height_m", "required, but beside `impact_velocity_m_s`: then v0²/(2 g)")
-        .within(1e-3, 1000.0, "in metres: from a millimetre to more than any drop tower")
+        .within(1e-3, 1000.0, "in metres: from a millimetre to more than any drop tower; 9000 mm are 9")
         .asked("9.0", "free-fall height of the lowest point"),
     number("angle_deg", REQUIRED)
         .within(
@@ -250,11 +266,11 @@ pub const CORRECTIONS: [Key; 4] = [
 /// Keys of `[recording]`.
 pub const RECORDING: [Key; 1] = [text("time", "found").shown(
     r#""time_s""#,
-    "CSV column or HDF5 dataset with the times, where they are not found by themselves",
+    "CSV column, HDF5 dataset or field of messages with the times, where they are not found by themselves",
 )];
 
 /// Keys of `[[channel]]`.
-pub const CHANNEL: [Key; 20] = [
+pub const CHANNEL: [Key; 21] = [
     text("name", REQUIRED).asked(r#""A1""#, ""),
     text("end", REQUIRED).asked(r#""first""#, r#""first" (low, touches first) or "second""#),
     text("axis", REQUIRED)
@@ -270,7 +286,11 @@ pub const CHANNEL: [Key; 20] = [
         .within(*SAMPLE_RATES_HZ.start(), *SAMPLE_RATES_HZ.end(), "samples a second, in Hz")
         .shown("100000.0", "overrides what the recording says"),
     text("time", "`[recording] time`")
-        .shown(r#""/daq/time_s""#, "this channel's own times (CSV column, HDF5 dataset)"),
+        .shown(r#""/daq/time_s""#, "this channel's own times (CSV column, HDF5 dataset, field of messages)"),
+    Key { takes: Takes::Table, ..text("where", "–") }.shown(
+        r#"{ column = "Sensor", is = "left" }"#,
+        "its rows, where the source holds those of several sensors",
+    ),
     text("coupling", "`\"dc\"`").shown(r#""dc""#, r#"or "ac", then also time_constant_s = 0.3"#),
     number("time_constant_s", "").above_zero(),
     number("calibration_percent", "that of `[tolerance]`")
@@ -285,9 +305,18 @@ pub const CHANNEL: [Key; 20] = [
 ];
 
 /// Keys of a source that is a table, `{ topic = …, field = … }`.
-pub const SOURCE: [Key; 2] = [
+pub const SOURCE: [Key; 3] = [
     text("topic", REQUIRED).shown(r#""/imu""#, ""),
     text("field", REQUIRED).shown(r#""linear_acceleration.z""#, ""),
+    number("channel", "the only one")
+        .within(0.0, 65_535.0, "the number of one of the MCAP channels that write on the topic")
+        .shown("3", ""),
+];
+
+/// Keys of `where = { column = …, is = … }`.
+pub const WHERE: [Key; 2] = [
+    text("column", REQUIRED).shown(r#""Sensor""#, ""),
+    Key { takes: Takes::TextOrNumber, ..text("is", REQUIRED) }.shown(r#""left""#, ""),
 ];
 
 pub(crate) const fn text(name: &'static str, default: &'static str) -> Key {

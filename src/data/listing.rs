@@ -1,5 +1,6 @@
 //! What a recording holds, before any cask file is known: the answer of `inspect`.
 
+use super::cask::RowsOf;
 use super::finding::Finding;
 use super::recording::RecordingFormat;
 use serde::Serialize;
@@ -10,6 +11,9 @@ use std::collections::BTreeMap;
 pub struct ListedChannel {
     /// What to write as `source` in a cask file.
     pub source: String,
+    /// Which rows of it these are, where it holds those of several sensors: what to write as `where`.
+    #[serde(rename = "where", skip_serializing_if = "Option::is_none")]
+    pub rows: Option<RowsOf>,
     /// What it is: "number", "array", "dataset", "column", "topic" (nothing numeric could be decoded).
     pub kind: String,
     /// Number of samples (numbers), where it is known.
@@ -39,6 +43,7 @@ impl ListedChannel {
     pub(crate) fn named(source: &str, kind: &str) -> Self {
         Self {
             source: source.to_owned(),
+            rows: None,
             kind: kind.to_owned(),
             samples: None,
             messages: None,

@@ -33,22 +33,23 @@ pub use analysis::{
 pub use at::At;
 pub use cask::{
     Axis, BENDING_WAVE_M_S, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice,
-    GRAZE_SHARE, MOST_CHANNELS, SAMPLE_RATES_HZ, Source, Unit, block_inertia_kg_m2, first_arm_m,
+    GRAZE_SHARE, MOST_CHANNELS, RowsOf, SAMPLE_RATES_HZ, Source, Unit, block_inertia_kg_m2, first_arm_m,
 };
+pub(crate) use channel::is_number;
 pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, LazyCurves, MotionCurve};
 pub use estimate::Estimate;
 pub(crate) use finding::two_units;
 pub use finding::{
-    AttributeFinding, CODES, ChannelFinding, ClockFinding, DropFinding, During, FileEnd, Finding, HowApart,
-    IssueCode, Jitter, McapFinding, RatesApart, Severity, Slip, TableFinding, TimesApart, TimesFinding, What,
-    shortened,
+    AttributeFinding, CODES, ChannelFinding, ClockFinding, Cure, DropFinding, During, FileEnd, Finding,
+    HowApart, IssueCode, Jitter, McapFinding, RatesApart, Severity, Slip, TableFinding, TimesApart,
+    TimesFinding, What, shortened,
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
 pub use held::HeldSamples;
 pub use impacts::{ChannelPeak, ForceOverCrush, ImpactTable, RigidBodyDeceleration};
 pub use keys::LONGEST_CONTACT_S;
-pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung, SpeedGradient};
+pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung};
 pub use listing::{ListedChannel, Listing};
 pub use motion::{
     AssumedFriction, AxialClosure, CONTACT_STEPS, ChannelReading, Motion, MotionState, Setup, StoodIn,
@@ -64,8 +65,7 @@ pub use recording::{Recording, RecordingFormat};
 pub use signal::{CoarseEvent, MOST_LOST_M_S, Signal};
 pub use study::{
     AngleCurve, BodyPath, Criterion, CriticalAngle, CriticalRange, MonteCarlo, Pose, PredictionRow,
-    QuantileCurves, Regime, RegimeMap, Sensitivity, Study, StudyRequest, Sweep, SweepVariable, Uncertain,
-    WorstCase,
+    QuantileCurves, Sensitivity, Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
 };
 pub use test_record::{Observed, ObservedBeside, Photo, SensorRecord, TestRecord};
 pub use tolerances::{Corrections, Tolerances};

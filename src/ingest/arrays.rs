@@ -24,6 +24,13 @@ pub fn read_arrays(held: &[HeldSamples], cask_file: &CaskFile) -> Result<Recordi
     for (spec, held) in chosen(held, cask_file)?.into_iter().enumerate() {
         let stated = &cask_file.channels[spec];
         let refused = |refusal| error::refused(path, &stated.name, refusal);
+        if let Some(rows) = &stated.rows {
+            let problem = format!("{rows} picks rows of a file, and these are samples in memory");
+            return Err(refused(Refusal::new(
+                problem,
+                "take `where` out, and hand over the samples of this sensor alone",
+            )));
+        }
         let claims = Claims {
             cask_hz: stated.sample_rate_hz,
             are_times_named: false,
@@ -91,5 +98,5 @@ fn sha256(held: &[HeldSamples]) -> String {
         ));
         values.iter().chain(times_s).for_each(|value| hasher.update(value.to_le_bytes()));
     }
-    hexadecimal(hasher)
+    hexadecimal(&hasher.finalize())
 }

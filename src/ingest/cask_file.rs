@@ -12,6 +12,7 @@ mod texts;
 pub(super) mod tolerance;
 mod wording;
 
+use super::opened::bytes_of;
 use crate::data::keys::TABLES;
 use crate::data::{CaskFile, Contact, Drop, FilterChoice};
 pub(crate) use body::{cask, drop};
@@ -20,18 +21,35 @@ pub use overrides::{key_of_column, with_columns};
 use section::{CASK_FILE, Document, Kind, Section};
 pub use settings::settings;
 use sha2::{Digest, Sha256};
-use std::io::Read;
 use std::path::Path;
 
 /// A larger file is no cask file: a thousand channels take 300 kB.
-const LARGEST_BYTES: u64 = 16 << 20;
+const LARGEST_MIB: u64 = 16;
 
-/// Reads and checks the cask file at `path`; channels may be missing altogether, as `predict` needs none.
+/// Reads and checks the cask file at `path`; channels may be missing altogether, as `predict` needs none. Of its photographs only the
+/// beginnings are looked at: [`with_photos`] reads them.
 ///
 /// # Errors
 /// [`CaskFileError`], one message that shows the line.
 pub fn parse(path: &Path) -> Result<CaskFile, CaskFileError> {
     of_bytes(path, &read(path, &CASK_FILE)?, Some(path.parent().unwrap_or(Path::new(""))))
+}
+
+/// The cask file with its photographs, for a page.
+///
+/// # Errors
+/// [`CaskFileError`] where one is no longer as it was.
+pub fn with_photos(mut file: CaskFile) -> Result<CaskFile, CaskFileError> {
+    let folder = file.path.parent().unwrap_or(Path::new("")).to_owned();
+    // One whose kind is not known was never looked for.
+    for photo in file.test.photos.iter_mut().filter(|photo| !photo.media_type.is_empty()) {
+        let path = folder.join(&photo.name);
+        let bytes = bytes_of(&path, record::LARGEST_PHOTO_MIB);
+        let io =
+            |refusal| CaskFileError::Io { path: path.display().to_string(), kind: "the photograph", refusal };
+        photo.bytes = bytes.map_err(io)?.into();
+    }
+    Ok(file)
 }
 
 /// The cask file of which this is the text, such as a result holds it; `path` is what it was called. Its photographs are not looked for.
@@ -43,7 +61,7 @@ pub fn of_text(path: &Path, text: &str) -> Result<CaskFile, CaskFileError> {
 }
 
 fn of_bytes(path: &Path, bytes: &[u8], photos: Option<&Path>) -> Result<CaskFile, CaskFileError> {
-    let sha256 = format!("{:x}", Sha256::digest(bytes));
+    let sha256 = super::unchanged::hexadecimal(&Sha256::digest(bytes));
     let cask_file = checked(path, text(path, bytes, &CASK_FILE)?, photos)?;
     Ok(CaskFile { sha256, text: String::from_utf8_lossy(bytes).into_owned(), ..cask_file })
 }
@@ -75,27 +93,11 @@ pub(crate) fn no_cask_file(path: &Path, problem: &str, mend: &str) -> CaskFileEr
 
 /// The bytes of a file of this kind.
 pub(crate) fn read(path: &Path, kind: &Kind) -> Result<Vec<u8>, CaskFileError> {
-    let io = |refusal| CaskFileError::Io { path: path.display().to_string(), kind: kind.name, refusal };
-    let metadata = std::fs::metadata(path).map_err(io)?;
-    if metadata.is_dir() {
-        let problem = format!("this is a directory, not {}", kind.name);
-        return Err(no_cask_file(path, &problem, "name the TOML file in it"));
-    }
-    if !metadata.is_file() {
-        let problem = format!("this is a pipe or a device, not {}", kind.name);
-        return Err(no_cask_file(path, &problem, "save it to a file first, and name that"));
-    }
-    // A file may grow while it is read.
-    let mut bytes = Vec::new();
-    let mut file = std::fs::File::open(path).map_err(io)?.take(LARGEST_BYTES + 1);
-    if metadata.len() > LARGEST_BYTES || file.read_to_end(&mut bytes).map_err(io)? as u64 > LARGEST_BYTES {
-        return Err(no_cask_file(
-            path,
-            &format!("more than {} MiB are too many for {}", LARGEST_BYTES >> 20, kind.name),
-            order(kind),
-        ));
-    }
-    Ok(bytes)
+    bytes_of(path, LARGEST_MIB).map_err(|refusal| CaskFileError::Io {
+        path: path.display().to_string(),
+        kind: kind.name,
+        refusal,
+    })
 }
 
 /// Where the TOML file stands on the command line.

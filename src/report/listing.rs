@@ -60,7 +60,10 @@ fn sources(channels: &[ListedChannel]) -> Vec<ChapterPart> {
     let known = |words: Option<String>| words.unwrap_or_else(|| MISSING.to_owned());
     let seconds = |t: Option<f64>| known(t.map(|t| format!("{} s", plain(t, 3))));
     let mut table: ReportTable = ReportTable::of(channels)
-        .head("source", |c| if is_long { format!("  {}", split(&c.source).1) } else { c.source.clone() })
+        .head("source", |c| {
+            let rows = c.rows.as_ref().map_or_else(String::new, |rows| format!(" ({rows})"));
+            if is_long { format!("  {}{rows}", split(&c.source).1) } else { c.source.clone() + &rows }
+        })
         .number("samples", |c| known(c.samples.or(c.messages).map(|n| n.to_string())))
         .number("rate", |c| known(c.sample_rate_hz.map(rate)))
         .text("unit", |c| known(c.unit.clone()))
@@ -94,6 +97,9 @@ fn sources(channels: &[ListedChannel]) -> Vec<ChapterPart> {
 
 /// A source as the topic or group that others share, and the rest of its path with the mark that joins them.
 fn split(source: &str) -> (&str, &str) {
+    if source.starts_with('{') {
+        return ("of several MCAP channels on one topic", source);
+    }
     let name = source.rfind('/').map_or(0, |slash| slash + 1);
     match source[name..].find('.') {
         Some(dot) => source.split_at(name + dot),
@@ -147,6 +153,7 @@ pub(super) mod tests {
     pub(in super::super) fn listed(source: &str, kind: &str, unit: Option<&str>) -> ListedChannel {
         ListedChannel {
             source: source.into(),
+            rows: None,
             kind: kind.into(),
             samples: Some(200_000),
             messages: Some(200),

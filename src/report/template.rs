@@ -63,8 +63,8 @@ fn head(listing: &Listing) -> String {
         &mut out,
         format_args!("# Lengths in m, mass in kg, angles in degrees. A line behind # is optional.\n"),
     );
-    let time =
-        listing.channels.iter().find(|c| is_time(&c.source) && c.kind != "number" && c.kind != "array");
+    let is_clock = |c: &&ListedChannel| is_time(&c.source) && c.samples != Some(1);
+    let time = listing.channels.iter().filter(is_clock).find(|c| c.kind != "number" && c.kind != "array");
     for table in TABLES.iter().take_while(|table| table.name != "channel") {
         let mark = if table.keys.iter().any(|key| key.is_asked) { "" } else { "# " };
         entry(&mut out, &format!("{mark}[{}]", table.name), table.remark);
@@ -131,6 +131,16 @@ fn channel(out: &mut String, index: usize, listed: &ListedChannel) {
             }
             // They stand beside the unit and the coupling that need them.
             "sensitivity" | "time_constant_s" => {}
+            "where" if let Some(rows) = &listed.rows => {
+                line(
+                    out,
+                    format_args!(
+                        "where = {{ column = {}, is = {} }}",
+                        quoted(&rows.column),
+                        quoted(&rows.is)
+                    ),
+                );
+            }
             _ => key_line(out, key),
         }
     }
@@ -176,8 +186,10 @@ fn source_value(source: &str) -> String {
     let table = format!("source = {source}").parse::<toml::Table>().ok().and_then(|t| {
         let table = t.get("source")?.as_table()?;
         let (topic, field) = (table.get("topic")?.as_str()?, table.get("field")?.as_str()?);
-        (t.len() == 1 && table.len() == 2)
-            .then(|| format!("{{ topic = {}, field = {} }}", quoted(topic), quoted(field)))
+        let channel = table.get("channel").and_then(toml::Value::as_integer);
+        let channel = channel.map_or_else(String::new, |channel| format!(", channel = {channel}"));
+        (t.len() == 1 && table.len() <= 3)
+            .then(|| format!("{{ topic = {}, field = {}{channel} }}", quoted(topic), quoted(field)))
     });
     table.unwrap_or_else(|| quoted(source))
 }

@@ -2,8 +2,11 @@
 
 use super::CaskFileError;
 use super::section::Section;
-use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, SensorRecord, Source, Unit};
+use crate::data::{
+    Axis, Cask, ChannelSpec, Coupling, End, MOST_CHANNELS, RowsOf, SensorRecord, Source, Unit,
+};
 use std::ops::Range;
+use toml::de::DeValue;
 
 const UNITS: &str = "unit = \"g\", \"m/s^2\", or \"V\" or \"mV\" with sensitivity in mV per g; left out: what the recording says";
 
@@ -30,7 +33,8 @@ pub(super) fn channels(root: &Section, cask: &Cask) -> Result<Vec<ChannelSpec>, 
                 "name each channel as the test's documents do, each name once",
             ));
         }
-        if let Some(first) = channels.iter().position(|other| other.source == channel.source) {
+        let is_read = |other: &ChannelSpec| other.source == channel.source && other.rows == channel.rows;
+        if let Some(first) = channels.iter().position(is_read) {
             return Err(table.wrong(
                 table.place("source"),
                 format!(
@@ -65,6 +69,7 @@ fn channel(table: &Section, cask: &Cask) -> Result<(ChannelSpec, Range<usize>), 
         polarity: polarity(table)?,
         full_scale: table.number("full_scale")?.map(|limit| limit.value),
         sample_rate_hz: table.number("sample_rate_hz")?.map(|rate| rate.value),
+        rows: rows(table)?,
         time: table.text("time")?.map(|time| time.value),
         coupling: coupling(table)?,
         calibration: table.number("calibration_percent")?.map(|percent| percent.value / 100.0),
@@ -103,7 +108,26 @@ fn source(table: &Section) -> Result<Source, CaskFileError> {
     Ok(Source::TopicField {
         topic: parts.required_text("topic")?.value,
         field: parts.required_text("field")?.value,
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "the key's row bounds it"
+        )]
+        channel: parts.number("channel")?.map(|channel| channel.value as u16),
     })
+}
+
+fn rows(table: &Section) -> Result<Option<RowsOf>, CaskFileError> {
+    if table.value("where").is_none() {
+        return Ok(None);
+    }
+    let parts = table.table("where")?;
+    let column = parts.required_text("column")?.value;
+    let is = match parts.value("is").map(toml::Spanned::get_ref) {
+        Some(DeValue::Integer(number)) => number.as_str().to_owned(),
+        _ => parts.required_text("is")?.value,
+    };
+    Ok(Some(RowsOf { column, is }))
 }
 
 fn unit(table: &Section) -> Result<Option<Unit>, CaskFileError> {

@@ -2,13 +2,10 @@
 
 use super::{CASK_FILE, CaskFileError, no_cask_file, of_bytes, read, text};
 use crate::data::CaskFile;
-use crate::data::keys::{CHANNEL, Key, TABLES, Takes};
+use crate::data::keys::{CHANNEL, INNER_TABLES, Key, TABLES, Takes};
 use std::path::Path;
 use std::str::FromStr;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
-
-/// Tables that no column names by their own word.
-const NOT_NAMED: [&str; 3] = ["channel", "source", "observation"];
 
 /// The key that a column is named like: `drop.angle_deg`, or `channel.A1.polarity` of the channel A1. `None`: it is named like no table.
 ///
@@ -18,7 +15,7 @@ pub fn key_of_column(column: &str) -> Result<Option<&'static Key>, String> {
     let Some((table, name)) = column.split_once('.') else { return Ok(None) };
     let (keys, name) = match table {
         "channel" => (&CHANNEL[..], name.rsplit_once('.').map_or("", |(_, key)| key)),
-        _ => match TABLES.iter().find(|known| known.name == table && !NOT_NAMED.contains(&table)) {
+        _ => match TABLES.iter().find(|known| known.name == table && !INNER_TABLES.contains(&table)) {
             Some(known) => (known.keys, name),
             None => return Ok(None),
         },

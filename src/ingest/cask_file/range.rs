@@ -12,59 +12,33 @@ type Stated = Result<Option<Placed<f64>>, CaskFileError>;
 impl Section<'_> {
     /// A number within what its row allows.
     pub(crate) fn number(&self, key: &str) -> Stated {
-        match self.row(key).map(|row| row.takes) {
-            Some(Takes::Number(Allowed::FromZero)) => self.not_negative(key),
-            Some(Takes::Number(Allowed::AboveZero)) => self.positive(key),
-            _ => {
-                let number = self.finite(key)?;
-                if let Some(number) = &number {
-                    self.allows(key, number, &format!("{key} is {}", short(number.value)))?;
-                }
-                Ok(number)
-            }
+        let number = self.finite(key)?;
+        if let Some(number) = &number {
+            self.allows(key, number, &format!("{key} is {}", short(number.value)))?;
         }
+        Ok(number)
     }
 
     /// Whether the range of `key` holds `number`, of which the refusal says `what`.
     pub(super) fn allows(&self, key: &str, number: &Placed<f64>, what: &str) -> Result<(), CaskFileError> {
-        match self.row(key).map(|row| row.takes) {
-            Some(Takes::Number(Allowed::Within(least, most, why)))
-                if !(least..=most).contains(&number.value) =>
-            {
-                let allowed = format!("{} to {}", short(least), short(most));
+        let Some(Takes::Number(allowed)) = self.row(key).map(|row| row.takes) else { return Ok(()) };
+        let check = format!("check the value{}", unit_of(key));
+        let (must, expected, mend) = match allowed {
+            _ if allowed.holds(number.value) => return Ok(()),
+            Allowed::Within(least, most, why) => {
                 let degrees = if key.ends_with("_deg") { " degrees" } else { "" };
-                let message = format!("{what}, outside {allowed}");
-                Err(self.wrong(number.span.clone(), message, allowed + degrees, why))
+                let range = format!("{} to {}", short(least), short(most));
+                (format!(", outside {range}"), range + degrees, why)
             }
-            _ => Ok(()),
-        }
+            Allowed::FromZero => (": it must not be below 0".into(), "0 or more".into(), &check[..]),
+            _ => (": it must be above 0".into(), "a number above 0".into(), &check[..]),
+        };
+        Err(self.wrong(number.span.clone(), format!("{what}{must}"), expected, mend))
     }
 
     /// The same of a key that must be there.
     pub(crate) fn required_number(&self, key: &str) -> Result<Placed<f64>, CaskFileError> {
         self.number(key)?.ok_or_else(|| self.without(key))
-    }
-
-    /// A number above 0.
-    fn positive(&self, key: &str) -> Stated {
-        self.bounded(key, |number| number > 0.0, ["be above 0", "a number above 0"])
-    }
-
-    /// A number of 0 or above.
-    fn not_negative(&self, key: &str) -> Stated {
-        self.bounded(key, |number| number >= 0.0, ["not be below 0", "0 or more"])
-    }
-
-    fn bounded(&self, key: &str, is_allowed: fn(f64) -> bool, [must, expected]: [&str; 2]) -> Stated {
-        match self.finite(key)? {
-            Some(number) if !is_allowed(number.value) => Err(self.wrong(
-                number.span,
-                format!("{key} is {}: it must {must}", number.value),
-                expected.into(),
-                &format!("check the value{}", unit_of(key)),
-            )),
-            number => Ok(number),
-        }
     }
 
     /// The refusal of `what`, which lies outside `range`.

@@ -46,7 +46,7 @@ fn titled(name: &str) -> String {
     match name {
         "" => "the file".into(),
         name if LISTS.contains(&name) => format!("[[{name}]]"),
-        "source" => "source = { … }".into(),
+        name @ ("source" | "where") => format!("{name} = {{ … }}"),
         "observation" => "{ value = …, u95 = … }".into(),
         "more" => "[test.more]".into(),
         name => format!("[{name}]"),
@@ -213,7 +213,7 @@ impl<'a> Section<'a> {
         let tables = self.document.kind.tables;
         let others: Vec<String> = tables
             .iter()
-            .filter(|table| ![self.name, "source", "observation"].contains(&table.name))
+            .filter(|table| table.name != self.name && !keys::INNER_TABLES.contains(&table.name))
             .filter(|table| table.keys.iter().any(|key| key.name == word))
             .map(|table| titled(table.name))
             .collect();
