@@ -160,8 +160,11 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let mut cask_file = match (&earlier, &arguments.cask) {
         (Some(earlier), _) => earlier.cask_file()?,
         // The words ask for one of both.
-        (None, cask) => ingest::cask_file(cask.as_deref().unwrap_or(Path::new("")))?,
+        (None, cask) => ingest::cask_file::parse(cask.as_deref().unwrap_or(Path::new("")))?,
     };
+    if folder.is_some() {
+        cask_file = ingest::cask_file::with_photos(cask_file)?;
+    }
     let repeated = earlier.as_ref().map(SwitchedOff::of_record);
     let switched_off = repeated.as_ref().unwrap_or(&arguments.switched_off);
     switched_off.in_cask_file(&mut cask_file);

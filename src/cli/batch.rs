@@ -22,6 +22,7 @@ use super::shard::{holds_some, part};
 use super::tuning::keep_freed_memory;
 use clap::Args;
 use dropcheck::data::DropResult;
+use dropcheck::ingest::bytes_of;
 use dropcheck::report::Batch;
 use dropcheck::{in_order, ingest, report};
 use plan::CampaignPlan;
@@ -184,7 +185,7 @@ fn open_record(
         let number = usize::try_from(line["campaign"]["number"].as_u64()?).ok()?;
         own.binary_search(&number).ok()?;
         let place: Value = serde_json::from_str(&plan.place(number)).ok()?;
-        (line["campaign"] == place).then_some(number)
+        (line["campaign"] == place && report::impossible(line).is_none()).then_some(number)
     };
     LineRecord::open(&path, arguments.resume, inputs, is_own).map(Some)
 }
@@ -194,8 +195,14 @@ fn is_done(line: &str, test: &PlannedTest, arguments: &Arguments) -> bool {
     let Some(cask) = &test.cask else { return false };
     let line: Value = serde_json::from_str(line).unwrap_or_default();
     let input = &line["input"];
+    // The report beside it says the same.
     let is_there = || {
-        arguments.out.as_ref().is_none_or(|out| out.join(&test.folder).join(report::FILE_NAMES[0]).is_file())
+        let Some(folder) = arguments.out.as_ref().map(|out| out.join(&test.folder)) else { return true };
+        let result = bytes_of(&folder.join("result.json"), 16).unwrap_or_default();
+        let result: Value = serde_json::from_slice(&result).unwrap_or_default();
+        let mut said = line.as_object().into_iter().flatten();
+        folder.join(report::FILE_NAMES[0]).is_file()
+            && said.all(|(key, said)| ["campaign", "id"].contains(&&key[..]) || result[key] == *said)
     };
     let cask_sha256 = || ingest::cask_file::with_columns(cask, &test.stated).ok().map(|file| file.sha256);
     let recording_sha256 = || ingest::sha256(&test.recording).ok();
@@ -217,10 +224,27 @@ fn line(plan: &CampaignPlan, number: usize, arguments: &Arguments) -> String {
     match made.and_then(|result| Ok(report::in_a_line(&result)?)) {
         Ok(result) => format!("{head}{}\n", &result[1..]),
         Err(complaint) => {
-            let failed = json!({"exit": 2, "error": sentence(&complaint)});
+            let error = untold(test, arguments).unwrap_or_else(|| sentence(&complaint));
+            let failed = json!({"exit": 2, "error": error});
             format!("{head}{}\n", &report::in_a_line(&failed).unwrap_or_default()[1..])
         }
     }
+}
+
+/// Why there is no result, without a word of what stands in a file outside the folder of the manifest, or of the recording: a manifest that
+/// was sent may name any file, and a folder hold links to any. `None` where both files lie there.
+fn untold(test: &PlannedTest, arguments: &Arguments) -> Option<String> {
+    let folder = arguments.manifest.as_ref().unwrap_or(&test.recording).parent();
+    let folder = folder.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = std::fs::canonicalize(folder).ok()?;
+    let cask = test.cask.as_ref().filter(|cask| arguments.cask.as_ref() != Some(*cask));
+    let mut files = [Some(&test.recording), cask].into_iter().flatten();
+    files.find(|file| std::fs::canonicalize(file).is_ok_and(|file| !file.starts_with(&folder)))?;
+    let (recording, cask) = (&test.shown, test.cask_shown.as_deref().unwrap_or("FILE"));
+    Some(report::printable(&format!(
+        "{recording} or its cask file lies in another folder, so that what is wrong with it is not written here; \
+         `dropcheck analyze {recording} --cask {cask}` says it"
+    )))
 }
 
 fn analysed(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> miette::Result<DropResult> {
@@ -236,6 +260,9 @@ fn analysed(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> m
         .map(|out| Folder::checked(&out.join(&test.folder), &report::FILE_NAMES, &inputs));
     let folder = folder.transpose()?;
     let mut cask_file = ingest::cask_file::with_columns(cask, &test.stated)?;
+    if folder.is_some() {
+        cask_file = ingest::cask_file::with_photos(cask_file)?;
+    }
     arguments.switched_off.in_cask_file(&mut cask_file);
     let recording = ingest::read_within(&test.recording, &cask_file, arguments.bounds.limits(), &|_| ())?;
     let mut analysis = dropcheck::analyze(&recording, &cask_file);

@@ -4,8 +4,9 @@ use super::place;
 use super::replace::{
     OWN_PREFIX, Stopped, parent_of, replace_set, staged_beside, staging_in, sync_folder, write_whole,
 };
+use dropcheck::ingest::opened;
 use dropcheck::report::ReportError;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -257,7 +258,7 @@ fn is_json(name: &str) -> bool {
 
 fn is_own_json(path: &Path) -> bool {
     let mut head = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(SCHEMA_MARK_WITHIN).read_to_end(&mut head));
+    let read = opened(path).and_then(|file| file.take(SCHEMA_MARK_WITHIN).read_to_end(&mut head));
     read.is_ok() && String::from_utf8_lossy(&head).contains(SCHEMA_MARK)
 }
 

@@ -1,6 +1,7 @@
 //! A result to the record of the run that made it, and such a record to the same run again and what differs.
 
-use dropcheck::data::{CaskFile, DropResult, Program, Recording};
+use dropcheck::data::{CaskFile, DropResult, Program, Recording, shortened};
+use dropcheck::ingest::bytes_of;
 use dropcheck::{ingest, report};
 use miette::{IntoDiagnostic, WrapErr};
 use serde_json::Value;
@@ -51,10 +52,8 @@ impl EarlierResult {
     /// The record in a file that `--json` or `--out` wrote.
     pub fn read(path: &Path) -> miette::Result<Self> {
         let name = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("{name} cannot be read"))?;
-        let result: Value = serde_json::from_str(&text)
+        let text = bytes_of(path, 16).into_diagnostic().wrap_err_with(|| format!("{name} cannot be read"))?;
+        let result: Value = serde_json::from_slice(&text)
             .into_diagnostic()
             .wrap_err_with(|| format!("{name} is no result of dropcheck: it is not JSON"))?;
         if result["schema"] == "dropcheck.result/1" && result["cask_text"].is_string() {
@@ -104,7 +103,7 @@ impl EarlierResult {
         let more = lines.len().saturating_sub(MOST_LINES);
         lines.truncate(MOST_LINES);
         let end = if more > 0 { format!("\n  … and {more} more") } else { String::new() };
-        let lines: Vec<String> = lines.iter().map(|line| report::printable(line)).collect();
+        let lines: Vec<String> = lines.iter().map(|line| report::printable(&shortened(line))).collect();
         Ok(format!("Otherwise than {}:\n  {}{end}\n", report::printable(name), lines.join("\n  ")))
     }
 }

@@ -1,10 +1,11 @@
 //! A file of lines, as `--jsonl` writes it, to what its lines are of.
 
 use super::output::JsonTarget;
+use dropcheck::ingest::opened;
 use miette::{IntoDiagnostic, WrapErr};
 use serde_json::Value;
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 use std::time::Duration;
 
@@ -18,17 +19,21 @@ const MARK: &[u8] = b"{\"campaign\":{\"schema\":\"dropcheck.";
 /// Whether a file holds such lines; the first may have been cut short.
 pub fn is_own(path: &Path) -> bool {
     let mut head = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(MARK.len() as u64).read_to_end(&mut head));
+    let read = opened(path).and_then(|file| file.take(MARK.len() as u64).read_to_end(&mut head));
     read.is_ok() && MARK.starts_with(&head)
 }
 
 /// The file for this run to write lines at its end, and for no other meanwhile; what is none of this program is looked at as any target is.
 pub fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
-    if !is_own(path) {
+    if path.is_symlink() || !is_own(path) {
         JsonTarget::checked(Some(path), inputs)?;
     }
     let file = OpenOptions::new().read(true).append(true).create(true).open(path).into_diagnostic();
     let file = file.wrap_err_with(|| format!("{} cannot be written", path.display()))?;
+    if !file.metadata().is_ok_and(|there| there.is_file()) {
+        let help = "name a file; --jsonl - writes to standard output";
+        return Err(miette::miette!(help = help, "{} is a pipe or a device", path.display()));
+    }
     // What a killed run had begun to start may hold it for a moment longer.
     let is_held = || matches!(file.try_lock(), Err(TryLockError::WouldBlock));
     let waits = || {
@@ -42,6 +47,17 @@ pub fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
     Ok(file)
 }
 
+/// A longer line is none of a result.
+const MOST_LINE_BYTES: u64 = 32 << 20;
+
+/// Puts the next line into `line`, with its end, and says how long it is: 0 where there is none.
+pub fn next_line(reader: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<usize> {
+    line.clear();
+    let length = reader.take(MOST_LINE_BYTES).read_until(b'\n', line)?;
+    let is_whole = (length as u64) < MOST_LINE_BYTES;
+    is_whole.then_some(length).ok_or_else(|| io::Error::other("one of its lines has more than 32 MiB"))
+}
+
 /// Leaves so many bytes of a file of lines that this run holds.
 pub fn keep(file: &File, path: &Path, bytes: u64) -> miette::Result<()> {
     file.set_len(bytes).into_diagnostic().wrap_err_with(|| format!("{} cannot be written", path.display()))
@@ -51,7 +67,7 @@ pub fn keep(file: &File, path: &Path, bytes: u64) -> miette::Result<()> {
 pub fn schema(path: &Path) -> miette::Result<String> {
     let unread = |source| miette::miette!("{} cannot be read: {source}", path.display());
     let mut line = Vec::new();
-    BufReader::new(File::open(path).map_err(unread)?).read_until(b'\n', &mut line).map_err(unread)?;
+    next_line(&mut BufReader::new(opened(path).map_err(unread)?), &mut line).map_err(unread)?;
     let first: Value = serde_json::from_slice(&line).unwrap_or_default();
     first["campaign"]["schema"].as_str().map(str::to_owned).ok_or_else(|| no_shard(path))
 }

@@ -1,4 +1,4 @@
-//! Work to the same work with threads awake and memory kept: what the machine gains by, measured in docs/performance.md.
+//! Work to the same work with threads awake and memory kept: what the machine gains by, measured in docs/measured/performance.md.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 

@@ -1,7 +1,8 @@
 //! A file's first bytes to its format, whatever its name.
 
 use super::error::{self, IngestError};
-use super::strangers;
+use super::number;
+use super::{opened, strangers};
 use crate::data::RecordingFormat;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -18,15 +19,11 @@ const FORMATS: &str = "dropcheck reads MCAP, HDF5 and delimited text (CSV)";
 /// # Errors
 /// A directory, an unreadable, empty or unknown file, each by its own message.
 pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
-    // Asked before opening, which would wait for a pipe's writer.
     let metadata = std::fs::metadata(path).map_err(|source| error::io(path, source))?;
     if metadata.is_dir() {
         return Err(IngestError::Directory { path: path.display().to_string() });
     }
-    if !metadata.is_file() {
-        return Err(IngestError::NotAFile { path: path.display().to_string() });
-    }
-    let mut file = File::open(path).map_err(|source| error::io(path, source))?;
+    let mut file = opened(path).map_err(|source| error::io(path, source))?;
     let mut head = Vec::new();
     (&mut file).take(HEAD_BYTES).read_to_end(&mut head).map_err(|source| error::io(path, source))?;
     if head.is_empty() {
@@ -117,7 +114,10 @@ fn numeric_row(line: &str, delimiter: char) -> Option<usize> {
     } else {
         line.split(delimiter).map(|cell| cell.trim().trim_matches('"')).collect()
     };
-    let is_number = |cell: &str| cell.replace(',', ".").replace('−', "-").parse::<f64>().is_ok();
+    let is_number = |cell: &str| {
+        let cell = cell.replace(',', ".");
+        number::of_cell(cell.as_bytes(), b'.').is_some() || cell.parse::<f64>().is_ok()
+    };
     let numbers = cells.iter().filter(|cell| is_number(cell)).count();
     let all_numbers = numbers > 0 && cells.iter().all(|cell| cell.is_empty() || is_number(cell));
     // Prose has blanks and commas too: there a row must be numbers throughout, or else numbers and words in clear columns.
@@ -238,7 +238,7 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn a_device_is_no_file() {
-        assert!(matches!(format(Path::new("/dev/null")), Err(IngestError::NotAFile { .. })));
+        assert!(matches!(format(Path::new("/dev/null")), Err(IngestError::Io { .. })));
     }
 
     #[test]

@@ -21,13 +21,6 @@ pub enum IngestError {
         /// Its reason.
         refusal: std::io::Error,
     },
-    /// A pipe or a device stands where a file should.
-    #[error("{path}: this is a pipe or a device, not a file: a recording is read in more than one pass")]
-    #[diagnostic(help("save it to a file first, and name that"))]
-    NotAFile {
-        /// The path.
-        path: String,
-    },
     /// A directory stands where a file should.
     #[error("{path}: this is a directory, not a recording")]
     #[diagnostic(help("name one recording file; `dropcheck batch` takes several"))]

@@ -37,6 +37,11 @@ impl Limits {
         self.memory_bytes / 4
     }
 
+    /// What a chunk of HDF5 may be larger than its dataset: 64 MiB as usual. Recorders reserve a mebibyte or a few.
+    pub(super) fn idle_bytes(self) -> u64 {
+        self.memory_bytes / 64
+    }
+
     /// All that a file of `file_bytes` unpacks to: recordings pack a hundredfold at most, those of sensors that all stand still
     /// somewhat more, a bomb a thousandfold and more. Bytes made of nothing but records cost 5 ns each, and become eight bytes of
     /// samples at most: a file of a few kilobytes, 32 MiB as usual, costs less than a second and 300 MB.

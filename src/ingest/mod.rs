@@ -13,6 +13,7 @@ mod hdf5;
 mod limits;
 mod mcap;
 mod number;
+mod opened;
 mod statement;
 mod strangers;
 pub mod time_base;
@@ -24,6 +25,8 @@ pub use arrays::read_arrays;
 pub use error::IngestError;
 pub use hdf5::Hdf5Program;
 pub use limits::{LEAST_MEMORY_BYTES, Limits};
+pub use opened::{bytes_of, opened};
+pub use unchanged::hexadecimal;
 
 use crate::data::shown;
 use crate::data::{CaskFile, Finding, Listing, Recording, RecordingFormat};
@@ -54,12 +57,12 @@ pub(crate) struct RawRecording {
     pub(crate) issues: Vec<Finding>,
 }
 
-/// Reads and checks a cask file.
+/// Reads and checks a cask file, its photographs with it.
 ///
 /// # Errors
 /// One diagnostic that shows the line.
 pub fn cask_file(path: &Path) -> Result<CaskFile, IngestError> {
-    Ok(cask_file::parse(path)?)
+    Ok(cask_file::with_photos(cask_file::parse(path)?)?)
 }
 
 /// The format of the recording at `path`, told by its content.
@@ -139,9 +142,10 @@ pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Li
 /// `HDF5_…` are set, by which the library would load code, the program is started anew without them (Unix).
 #[must_use]
 pub fn serve_hdf5() -> Option<std::process::ExitCode> {
-    // The running program itself, also after a newer one took its place.
+    // On Linux the running program itself, also after a newer one took its place; elsewhere anybody may have put a file there.
     let own = Path::new("/proc/self/exe");
-    let program = if own.exists() { Ok(own.to_owned()) } else { std::env::current_exe() };
+    let is_own = cfg!(target_os = "linux") && own.exists();
+    let program = if is_own { Ok(own.to_owned()) } else { std::env::current_exe() };
     hdf5::serve(&program.unwrap_or_default())
 }
 

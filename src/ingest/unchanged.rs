@@ -1,6 +1,7 @@
 //! A file to what is read of it, with the SHA-256 of the very bytes that were read.
 
 use super::error::{self, IngestError};
+use super::opened;
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::fs::Metadata;
@@ -96,7 +97,7 @@ fn at_rest(path: &Path) -> Result<Identity, IngestError> {
 /// # Errors
 /// [`IngestError::Io`] where it cannot be read.
 pub(super) fn sha256(path: &Path, is_needless: &AtomicBool) -> Result<String, IngestError> {
-    let mut file = std::fs::File::open(path).map_err(|source| error::io(path, source))?;
+    let mut file = opened(path).map_err(|source| error::io(path, source))?;
     let mut hasher = Sha256::new();
     let mut buffer = vec![0; 1 << 16];
     while !is_needless.load(Ordering::Relaxed) {
@@ -106,12 +107,13 @@ pub(super) fn sha256(path: &Path, is_needless: &AtomicBool) -> Result<String, In
         }
         hasher.update(&buffer[..read]);
     }
-    Ok(hexadecimal(hasher))
+    Ok(hexadecimal(&hasher.finalize()))
 }
 
-/// What was hashed, lower-case hexadecimal.
-pub(super) fn hexadecimal(hasher: Sha256) -> String {
-    hasher.finalize().iter().fold(String::with_capacity(64), |mut hex, byte| {
+/// A hash as results have it, lower-case hexadecimal.
+#[must_use]
+pub fn hexadecimal(hash: &[u8]) -> String {
+    hash.iter().fold(String::with_capacity(64), |mut hex, byte| {
         let _ = write!(hex, "{byte:02x}");
         hex
     })
@@ -168,7 +170,7 @@ mod tests {
                     fs::read(&path).map_err(|source| error::io(&path, source))
                 };
                 match hashed(&path, read) {
-                    Ok((bytes, found)) => assert_eq!(found, format!("{:x}", Sha256::digest(&bytes))),
+                    Ok((bytes, found)) => assert_eq!(found, hexadecimal(&Sha256::digest(&bytes))),
                     Err(error) => assert!(error.to_string().contains("changed while"), "{error}"),
                 }
             }

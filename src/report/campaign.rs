@@ -15,6 +15,8 @@ use super::records::{CsvColumn, number, text_cell};
 use super::rounding::{MISSING, interval, percent};
 use super::table::{ReportTable, TableCell, TableShape};
 use super::text::{Style, distinct, tail, verdict_word};
+use crate::data::keys::{CHANNEL, TABLES, Takes};
+use crate::data::shown::short;
 use crate::data::{Comparison, Estimate, Verdict};
 use columns::NamedQuantity;
 use serde::Serialize;
@@ -25,6 +27,8 @@ use std::path::Path;
 /// Rows that a page and a terminal show at most: more are for a program to read.
 const MOST_ROWS: usize = 2000;
 const MOST_LINES: usize = 200;
+/// Casks that a page has a chapter and pictures of; `campaign.json` pools all.
+const MOST_SERIES: usize = 100;
 
 /// One recording of a campaign.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -63,6 +67,35 @@ pub struct BatchRow {
     quantities: Vec<NamedQuantity>,
 }
 
+/// The name of a test as the name of a folder that leads nowhere else.
+#[must_use]
+pub fn folder_name(test: &str) -> String {
+    let is_plain = |c: char| !c.is_control() && !"/\\:*?\"<>|".contains(c);
+    let plain: String = test.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+    // "..." is a way out of the folder and no name, and ".x" is hidden.
+    let plain = plain.trim_matches(['.', ' ']);
+    if plain.is_empty() { "recording".to_owned() } else { plain.to_owned() }
+}
+
+/// The first number among a line's settings that no cask file may state, with its place: no run of this program wrote it.
+#[must_use]
+pub fn impossible(line: &Value) -> Option<String> {
+    for (name, stated) in line["settings"].as_object().into_iter().flatten() {
+        let channels = stated.as_array().map_or(std::slice::from_ref(stated), Vec::as_slice);
+        let keys = TABLES.iter().find(|table| *name == table.name).map_or(&CHANNEL[..], |table| table.keys);
+        for (stated, key) in channels.iter().flat_map(|stated| keys.iter().map(move |key| (stated, key))) {
+            let number = stated[key.name]["value"].as_f64();
+            if let (Takes::Number(allowed), Some(number)) = (key.takes, number)
+                && !allowed.holds(number)
+            {
+                let (key, number) = (key.name, short(number));
+                return Some(format!("settings.{name}.{key} is {number}, which no cask file may state"));
+            }
+        }
+    }
+    None
+}
+
 /// What pictures and pools need of a drop.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct DropPoint {
@@ -95,6 +128,8 @@ impl BatchRow {
             Some(_) => Some(Verdict::Fail),
             None => None,
         };
+        // What is no folder of a campaign would be a link to elsewhere in its page.
+        let folder = text("/campaign/report").filter(|folder| folder_name(folder) == *folder);
         let codes = |severity| {
             let all = line["quality"].as_array().into_iter().flatten();
             all.filter(move |found| found["severity"] == severity).filter_map(|found| found["code"].as_str())
@@ -104,7 +139,7 @@ impl BatchRow {
             id: text("/id").unwrap_or_default(),
             recording: text("/campaign/recording").unwrap_or_default(),
             cask: text("/campaign/cask"),
-            report: verdict.and(text("/campaign/report")).map(|folder| format!("{folder}/report.html")),
+            report: verdict.and(folder).map(|folder| format!("{folder}/report.html")),
             exit: verdict.map_or(2, |verdict| u8::from(verdict != Verdict::Pass)),
             verdict,
             slap_down_speed: quantity("/slap_down/speed", "m/s"),
@@ -204,6 +239,12 @@ impl Batch {
         let is_head = |name: &str| head().iter().any(|column| column.0 == name);
         let new = columns::of(line).into_keys().filter(|column| !is_head(&column.1));
         self.columns.extend(new);
+    }
+
+    /// The number of columns of `campaign.csv`.
+    #[must_use]
+    pub fn column_count(&self) -> usize {
+        head().len() + self.columns.len()
     }
 
     /// The table, `width` columns wide; below it what was found, and reasons of failures.

@@ -28,7 +28,8 @@ pub(crate) fn through_a_file(
     let failed = |source| ReportError::Scratch { folder: std::env::temp_dir().display().to_string(), source };
     let folder = scratch::folder().map_err(failed)?;
     let path = folder.path().join(scratch::FILE_NAME);
-    let file = File::create(&path)?;
+    // As every version of the library reads it, and without the times of writing that newer ones add.
+    let file = File::with_options().with_fapl(|access| access.libver_earliest()).create(&path)?;
     fill(&file)?;
     file.close()?;
     std::fs::read(&path).map_err(failed)

@@ -41,7 +41,7 @@ mod tested;
 pub(crate) mod text;
 mod words;
 
-pub use campaign::{Batch, BatchRow, CampaignFiles, PredictedCurve};
+pub use campaign::{Batch, BatchRow, CampaignFiles, PredictedCurve, folder_name, impossible};
 pub use curves_csv::in_german;
 pub use json::{in_a_line, listing as listing_json, result as result_json};
 pub use likely::NoChannels;

@@ -20,7 +20,7 @@ struct Made {
 fn made(fill: impl FnOnce(&File) -> hdf5_metno::Result<()>) -> Made {
     let folder = tempfile::tempdir().unwrap();
     let (path, written) = (folder.path().join("r.h5"), folder.path().join("written.h5"));
-    let file = File::create(&written).unwrap();
+    let file = File::with_options().with_fapl(|access| access.libver_earliest()).create(&written).unwrap();
     fill(&file).unwrap();
     file.close().unwrap();
     // A program that another test starts meanwhile inherits the library's lock on the file, but not that of a copy.
@@ -154,15 +154,15 @@ fn nothing_but_the_recording_is_read() {
 }
 
 #[test]
-fn what_only_a_newer_library_stores_is_named() {
-    let cask = fixture("vhlw-rest.toml");
-    let folder = tempfile::tempdir().unwrap();
-    let text = std::fs::read_to_string(cask).unwrap().replace("/daq/A1", "/a");
-    let cask = folder.path().join("cask.toml");
-    std::fs::write(&cask, text).unwrap();
-    let answer = crate::run::analyze(&fixture("stored-by-hdf5-2.h5"), &cask);
-    assert_eq!(answer.status, 2);
-    assert!(answer.stderr.contains("only HDF5 2.0 and newer store it"), "{}", answer.stderr);
+fn what_only_hdf5_2_stores_is_read() {
+    let listing = dropcheck([
+        "inspect".as_ref(),
+        fixture("stored-by-hdf5-2.h5").as_os_str(),
+        "--json".as_ref(),
+        "-".as_ref(),
+    ]);
+    let channel = &listing.json()["channels"][0];
+    assert!(channel["samples"] == 100 && channel["range"].is_array(), "{channel}");
 }
 
 /// A file whose samples are packed by a filter that this program does not have.
@@ -269,4 +269,31 @@ fn no_file_is_opened_but_the_recording() {
     let (_, walled) = reader.split_once("seccomp(").expect("a wall");
     let opened: Vec<&str> = walled.lines().filter(opens).collect();
     assert!(opened.len() == 1 && opened[0].contains("vhlw-rest.h5"), "{opened:?}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_missing_wall_is_told_and_no_soft_link_followed_without_it() {
+    if Command::new("strace").arg("-V").output().is_err() {
+        assert!(std::env::var_os("CI").is_none(), "strace is not installed");
+        return;
+    }
+    let made = made(|file| {
+        samples(file, "a")?;
+        file.link_external("other.h5", "/x", "e")?;
+        file.link_soft("/e", "s")
+    });
+    let trace = made.folder.path().join("trace");
+    let mut strace = Command::new("strace");
+    strace.args(["-f", "-e", "trace=open,openat,landlock_create_ruleset"]);
+    strace.args(["-e", "inject=landlock_create_ruleset:error=ENOSYS", "-o"]).arg(&trace);
+    let inspect = ["inspect".as_ref(), made.path.as_os_str(), "--json".as_ref(), "-".as_ref()];
+    let answer = strace.arg(env!("CARGO_BIN_EXE_dropcheck")).args(inspect).output().expect("strace runs");
+    let told = String::from_utf8(answer.stdout).unwrap();
+    assert!(
+        told.contains("which this system keeps from no other file") && told.contains("a soft link"),
+        "{told}"
+    );
+    assert!(!std::fs::read_to_string(&trace).unwrap().contains("other.h5"));
+    assert!(!made.inspect().stdout.contains("keeps from no other file"));
 }

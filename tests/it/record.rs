@@ -77,7 +77,7 @@ fn what_is_said_of_the_test_stands_in_the_record_and_what_was_seen_is_held_again
     for (wrong, named) in [
         ("[test]\nphotos = [\"none.jpg\"]\n", "none.jpg cannot be read"),
         ("[test]\nphotos = [\"words.png\"]\n", "neither PNG nor JPEG"),
-        ("[test]\nphotos = [\".\"]\n", ". cannot be read"),
+        ("[test]\nphotos = [\".\"]\n", ". is not the name of a file"),
         ("[test]\ndate = \"2026-11-22\"\n", "write year, month and day without quotes"),
         ("[test]\nsignatures = \"Reviewer\"\n", "a list of texts"),
         ("[test.more]\nHook = true\n", "a text or a number"),

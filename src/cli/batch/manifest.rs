@@ -2,8 +2,8 @@
 
 use super::paths::{in_folder, stem};
 use super::planned::{PlannedTest, cask_of};
-use dropcheck::ingest::cask_file::key_of_column;
-use std::collections::HashMap;
+use dropcheck::ingest::{bytes_of, cask_file::key_of_column};
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// What the columns of a manifest are named that say what to analyse.
@@ -14,7 +14,7 @@ const CASK: &str = "cask";
 /// The tests of a manifest; `cask` is the cask file of rows that name none and have none beside their recording.
 pub fn read(path: &Path, cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>> {
     let name = path.display();
-    let bytes = std::fs::read(path)
+    let bytes = bytes_of(path, 64)
         .map_err(|source| miette::miette!("{name}: the manifest cannot be read: {source}"))?;
     let text = std::str::from_utf8(&bytes).map_err(|_| {
         miette::miette!(
@@ -109,8 +109,9 @@ fn check(heads: &[String], path: &Path) -> miette::Result<()> {
             "{name}, line 1: there is no column `recording`"
         ));
     }
-    for (i, head) in heads.iter().enumerate() {
-        if !head.is_empty() && heads[..i].contains(head) {
+    let mut before = HashSet::new();
+    for head in heads {
+        if !head.is_empty() && !before.insert(head) {
             return Err(miette::miette!(
                 help = "rename one of them",
                 "{name}, line 1: two columns are named {head}"

@@ -4,9 +4,11 @@ use super::manifest;
 use super::paths::{recordings, stem};
 use super::planned::{PlannedTest, cask_of};
 use dropcheck::data::Program;
+use dropcheck::ingest::{bytes_of, hexadecimal};
+use dropcheck::report::folder_name;
 use serde_json::json;
 use sha2::{Digest, Sha256};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// What every line of a shard says it is: `campaign.schema`.
@@ -46,12 +48,12 @@ impl CampaignPlan {
         };
         name_apart(&mut tests);
         let mut hash = Sha256::new();
-        hash.update(cask.and_then(|cask| std::fs::read(cask).ok()).unwrap_or_default());
+        hash.update(cask.and_then(|cask| bytes_of(cask, 16).ok()).unwrap_or_default());
         hash.update(without.join(","));
         for test in &tests {
             hash.update(json!([test.id, test.shown, test.cask_shown, test.stated, test.carried]).to_string());
         }
-        Ok(Self { source, tests, of: format!("{:x}", hash.finalize()), shard: (0, 1) })
+        Ok(Self { source, tests, of: hexadecimal(&hash.finalize()), shard: (0, 1) })
     }
 
     /// The numbers of the tests that are this run's.
@@ -128,28 +130,26 @@ fn of_paths(paths: &[PathBuf], cask: Option<&Path>) -> miette::Result<Vec<Planne
 fn name_apart(tests: &mut [PlannedTest]) {
     let mut ids: HashSet<String> = HashSet::new();
     let mut folders: HashSet<String> = SUMMARY.iter().map(|name| (*name).to_owned()).collect();
+    let [mut of_ids, mut of_folders] = [HashMap::new(), HashMap::new()];
     for test in tests {
-        test.id = free(&test.id, &ids);
+        test.id = free(&test.id, &ids, &mut of_ids);
         ids.insert(test.id.clone());
-        let plain: String = test
-            .id
-            .chars()
-            .map(|c| if c.is_control() || "/\\:*?\"<>|".contains(c) { '_' } else { c })
-            .collect();
-        // "..." is a way out of the folder and no name, and ".x" is hidden.
-        let plain = plain.trim_matches(['.', ' ']);
         // Where capitals are no difference two folders would be one.
-        let name = free(if plain.is_empty() { "recording" } else { plain }, &folders);
-        folders.insert(name.to_lowercase());
-        test.folder = name;
+        test.folder = free(&folder_name(&test.id), &folders, &mut of_folders);
+        folders.insert(test.folder.to_lowercase());
     }
 }
 
-/// The name, or the name with the first number with which it is not taken.
-fn free(name: &str, taken: &HashSet<String>) -> String {
-    let is_free = |name: &String| !taken.contains(name) && !taken.contains(&name.to_lowercase());
-    let numbered = (2..).map(|number| format!("{name}-{number}"));
-    std::iter::once(name.to_owned()).chain(numbered).find(is_free).unwrap_or_default()
+/// The name, or the name with the first number with which it is not taken; `tried` has the last number of each name.
+fn free(name: &str, taken: &HashSet<String>, tried: &mut HashMap<String, u64>) -> String {
+    let tried = tried.entry(name.to_owned()).or_default();
+    loop {
+        *tried += 1;
+        let numbered = if *tried == 1 { name.to_owned() } else { format!("{name}-{tried}") };
+        if !taken.contains(&numbered) && !taken.contains(&numbered.to_lowercase()) {
+            return numbered;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -166,6 +166,13 @@ mod tests {
     #[test]
     fn equal_names_get_folders_of_their_own() {
         assert_eq!(folders(&["t1", "t1", "T1", "t2"]), ["t1", "t1-2", "T1-3", "t2"]);
+    }
+
+    #[test]
+    fn a_hundred_thousand_equal_names_are_numbered_at_once() {
+        let names = vec!["drop"; 100_000];
+        assert_eq!(folders(&names).last().map(String::as_str), Some("drop-100000"));
+        assert_eq!(folders(&["a", "a-2", "a", "a", "a-2"]), ["a", "a-2", "a-3", "a-4", "a-2-2"]);
     }
 
     #[test]

@@ -2,11 +2,12 @@
 
 use super::super::output::replace_by;
 use super::super::shard;
+use dropcheck::ingest::opened;
 use miette::{IntoDiagnostic, WrapErr};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::io::{BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Where a line is: which file, from which byte, how many.
@@ -25,24 +26,23 @@ pub struct LineFiles {
 }
 
 impl LineFiles {
-    /// The lines of a file, each handed to `take` with its number from 1, which says of which test it is; the last may be no whole one.
+    /// The lines of a file, each handed to `take` with those before it and its number from 1, which says of which test it is; the last may be no whole one.
     pub fn add(
         &mut self,
         path: &Path,
-        mut take: impl FnMut(usize, &[u8]) -> miette::Result<Option<usize>>,
+        mut take: impl FnMut(&Self, usize, &[u8]) -> miette::Result<Option<usize>>,
     ) -> miette::Result<()> {
         let words = || format!("{} cannot be read", path.display());
-        let mut reader = BufReader::new(File::open(path).into_diagnostic().wrap_err_with(words)?);
+        let mut reader = BufReader::new(opened(path).into_diagnostic().wrap_err_with(words)?);
         let (mut from, mut line, mut count) = (0, Vec::new(), 0);
         self.files.push(path.to_path_buf());
         loop {
-            line.clear();
-            let length = reader.read_until(b'\n', &mut line).into_diagnostic().wrap_err_with(words)?;
+            let length = shard::next_line(&mut reader, &mut line).into_diagnostic().wrap_err_with(words)?;
             if length == 0 {
                 return Ok(());
             }
             count += 1;
-            if let Some(number) = take(count, &line)? {
+            if let Some(number) = take(self, count, &line)? {
                 self.places.insert(number, LinePlace { file: self.files.len() - 1, from, length });
             }
             from += length as u64;
@@ -52,6 +52,11 @@ impl LineFiles {
     /// The numbers of the tests that have a line.
     pub fn numbers(&self) -> impl Iterator<Item = usize> {
         self.places.keys().copied()
+    }
+
+    /// Which of the files has the line of a test.
+    pub fn home(&self, number: usize) -> Option<usize> {
+        self.places.get(&number).map(|place| place.file)
     }
 
     /// The line of a test, with its end.
@@ -111,7 +116,7 @@ impl LineRecord {
 
     fn take_over(&mut self, is_own: impl Fn(&Value) -> Option<usize>) -> miette::Result<()> {
         let (mut end, mut last, mut is_in_order) = (0, None, true);
-        self.lines.add(&self.path, |_, line| {
+        self.lines.add(&self.path, |_, _, line| {
             // The run was stopped in the middle of the last one.
             if !line.ends_with(b"\n") {
                 return Ok(None);

@@ -22,36 +22,20 @@ const AGAIN: &str = "copy the file from the logger again";
 const BAD_SUM: &str = "a check sum does not fit: the data are damaged";
 
 /// Part of the library's words, what they mean, and what to do.
-const MEANINGS: [(&str, &str, &str); 9] = [
-    (
-        "truncated file",
-        "the file was not closed or is cut off",
-        "copy it from the logger again; what is missing cannot be had back",
-    ),
-    (
-        "already open for write",
-        "the program that wrote the file never closed it",
-        "in a copy of the file, run `h5clear -s FILE` and try again; what was written last may be missing",
-    ),
+#[rustfmt::skip]
+const MEANINGS: [(&str, &str, &str); 8] = [
+    ("truncated file", "the file was not closed or is cut off",
+     "copy it from the logger again; what is missing cannot be had back"),
+    ("already open for write", "the program that wrote the file never closed it",
+     "in a copy of the file, run `h5clear -s FILE` and try again; what was written last may be missing"),
     ("file signature not found", "the file is not HDF5, or its beginning is damaged", AGAIN),
-    (
-        "unable to lock file",
-        "another program has the file open for writing",
-        "close that program, or read a copy",
-    ),
+    ("unable to lock file", "another program has the file open for writing",
+     "close that program, or read a copy"),
     ("required filter", "the data are compressed by a filter that is not built in", REPACK),
     ("checksum", BAD_SUM, AGAIN),
     ("data error detected by fletcher32", BAD_SUM, AGAIN),
-    (
-        "filter returned failure",
-        "a block of it cannot be unpacked: the data are damaged or their filter is not built in",
-        "copy the file from the logger again, or repack it with gzip: `h5repack -f GZIP=1 IN OUT`",
-    ),
-    (
-        "bad version number for layout message",
-        "it is stored as only HDF5 2.0 and newer store it, and versions up to 1.14 are read",
-        "write it anew for older versions: h5py.File(NAME, \"w\", libver=(\"earliest\", \"v114\")), or `h5repack --high=4 IN OUT`",
-    ),
+    ("filter returned failure", "a block of it cannot be unpacked: the data are damaged or their filter is not built in",
+     "copy the file from the logger again, or repack it with gzip: `h5repack -f GZIP=1 IN OUT`"),
 ];
 
 impl Fault {

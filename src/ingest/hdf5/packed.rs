@@ -4,6 +4,7 @@ use super::answer::{Dataset, NumberType, Packing, RecordField, Slab, Storage, St
 use super::column::{DatasetColumn, Place};
 use super::fault::{Fault, REPACK};
 use crate::data::Samples;
+use crate::ingest::Limits;
 use libdeflater::Decompressor;
 use rayon::prelude::*;
 use std::fs::File;
@@ -107,6 +108,7 @@ fn values<T: Stored>(column: &DatasetColumn) -> Option<Vec<T::Sample>> {
         .par_chunks_mut(layout.rows)
         .zip(&chunks)
         .enumerate()
+        .with_min_len(layout.least_in_turn(chunks.len(), file.limits))
         .map_init(
             || (File::open(path).ok(), Vec::new(), Vec::new()),
             |(file, packed, bytes), (i, (values, chunk))| {
@@ -171,6 +173,16 @@ impl ChunkLayout<'_> {
         let mut chunks: Vec<StoredChunk> = chunks.iter().filter(holds).cloned().collect();
         chunks.sort_by_key(|chunk| chunk.row);
         (shape.len() <= 2).then_some((Self { rows, columns, packing, ..self }, chunks))
+    }
+
+    /// How many of `count` chunks one thread at least unpacks in turn: those beside one another take half of what one may, however many
+    /// cores there are.
+    fn least_in_turn(&self, count: usize, limits: Limits) -> usize {
+        let bytes = self.rows.saturating_mul(self.columns).saturating_mul(self.value_bytes) as u64;
+        // Half of that, for each is held packed and unpacked.
+        let beside = limits.part_bytes() / bytes.saturating_mul(4).max(1);
+        let beside = usize::try_from(beside).unwrap_or(usize::MAX).max(1);
+        if beside < rayon::current_num_threads() { count.div_ceil(beside) } else { 1 }
     }
 
     /// The bytes of a chunk as they were before they were deflated.
@@ -252,7 +264,6 @@ fn unshuffled(bytes: &[u8], size: usize) -> Vec<u8> {
 mod tests {
     use super::super::{find, room};
     use super::*;
-    use crate::ingest::Limits;
     use crate::ingest::hdf5::answer::Slab;
     use std::path::Path;
 

@@ -16,9 +16,9 @@ const SELDOM: Duration = Duration::from_secs(1);
 
 /// A process that is ended where it is silent for too long, and where nobody holds this any more.
 pub(super) struct Watched {
-    /// How long it may be silent from now on.
-    allowed: Sender<Duration>,
-    told: Cell<Instant>,
+    /// How long it may be silent from now on; `None` while nothing is asked of it.
+    allowed: Sender<Option<Duration>>,
+    told: Cell<Option<Instant>>,
     watch: JoinHandle<ProcessEnd>,
 }
 
@@ -35,20 +35,22 @@ pub(super) enum ProcessEnd {
 impl Watched {
     pub(super) fn of(child: Child) -> Self {
         let (allowed, heard) = channel();
-        Self {
-            allowed,
-            told: Cell::new(Instant::now()),
-            watch: std::thread::spawn(move || watch(child, &heard)),
-        }
+        Self { allowed, told: Cell::new(None), watch: std::thread::spawn(move || watch(child, &heard)) }
     }
 
     /// It may be silent for as long as reading `bytes` takes.
     pub(super) fn wait_for(&self, bytes: u64) {
-        if bytes > 0 || self.told.get().elapsed() > SELDOM {
-            self.told.set(Instant::now());
+        if bytes > 0 || self.told.get().is_none_or(|told| told.elapsed() > SELDOM) {
+            self.told.set(Some(Instant::now()));
             // It ended already where nobody hears this.
-            let _ = self.allowed.send(PATIENCE + Duration::from_secs(bytes / SLOWEST_BYTES_PER_S));
+            let _ = self.allowed.send(Some(PATIENCE + Duration::from_secs(bytes / SLOWEST_BYTES_PER_S)));
         }
+    }
+
+    /// It has answered all that it was asked: it may be silent until the next request, however long the reader is busy.
+    pub(super) fn rest(&self) {
+        self.told.set(None);
+        let _ = self.allowed.send(None);
     }
 
     /// Ends it.
@@ -59,11 +61,15 @@ impl Watched {
 }
 
 /// Ends the process when it was silent for too long, or the reader needs it no more.
-fn watch(mut child: Child, allowed: &Receiver<Duration>) -> ProcessEnd {
-    let mut patience = PATIENCE;
+fn watch(mut child: Child, allowed: &Receiver<Option<Duration>>) -> ProcessEnd {
+    let mut patience = Some(PATIENCE);
     let ended = loop {
-        match allowed.recv_timeout(patience) {
-            Ok(longer) => patience = longer,
+        let heard = match patience {
+            Some(patience) => allowed.recv_timeout(patience),
+            None => allowed.recv().map_err(|_| RecvTimeoutError::Disconnected),
+        };
+        match heard {
+            Ok(next) => patience = next,
             Err(RecvTimeoutError::Timeout) => break ProcessEnd::Silent,
             Err(RecvTimeoutError::Disconnected) => break own_end(&mut child),
         }

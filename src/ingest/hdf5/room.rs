@@ -58,6 +58,8 @@ pub(super) struct File {
     pub user_block: u64,
     /// The library's version.
     pub library: (u8, u8, u8),
+    /// Whether the system keeps the process from every other file.
+    pub is_walled: bool,
     pub limits: Limits,
     link: RefCell<Link>,
     known: RefCell<HashMap<String, Rc<Object>>>,
@@ -74,8 +76,8 @@ impl File {
     pub(super) fn open(path: &Path, limits: Limits) -> Result<Rc<Self>, IngestError> {
         let fault = |fault: Fault| fault::of_file(path, fault);
         let mut link = Link::to(path).map_err(|refusal| fault(unstarted(&refusal)))?;
-        let (user_block, library) = match link.answer() {
-            Ok((Reply::Opened { user_block, library }, _)) => (user_block, library),
+        let (user_block, library, is_walled) = match link.answer() {
+            Ok((Reply::Opened { user_block, library, is_walled }, _)) => (user_block, library, is_walled),
             Ok((Reply::Refused(words), _)) => return Err(fault(fault::of_words(&words))),
             _ => return Err(fault(link.end_before_answer())),
         };
@@ -84,6 +86,7 @@ impl File {
             bytes: std::fs::metadata(path).map_or(0, |metadata| metadata.len()),
             user_block,
             library,
+            is_walled,
             limits,
             link: RefCell::new(link),
             known: RefCell::default(),
@@ -210,7 +213,10 @@ impl Link {
     /// An answer and its length in bytes.
     fn answer(&mut self) -> io::Result<(Reply, usize)> {
         let answer = receive(&mut self.from)?;
-        self.wait_for(0);
+        match (&self.process, &answer.0) {
+            (Some(process), Reply::Done | Reply::Opened { .. }) => process.rest(),
+            _ => self.wait_for(0),
+        }
         Ok(answer)
     }
 

@@ -14,14 +14,16 @@ const BYTES_PER_S: u64 = 20_000_000;
 /// What the process has been granted.
 pub(super) struct Wall {
     asked_bytes: u64,
+    /// Whether the system keeps it from all other files and calls.
+    pub is_whole: bool,
 }
 
 impl Wall {
     /// Closes this process in: from now on it can read `recording`, what it has open, and nothing else; for good.
     pub(super) fn around(recording: &Path) -> Self {
-        let wall = Self { asked_bytes: 0 };
+        let mut wall = Self { asked_bytes: 0, is_whole: false };
         wall.limit(0);
-        reach::nothing_but(recording);
+        wall.is_whole = reach::nothing_but(recording);
         wall
     }
 
@@ -55,7 +57,7 @@ impl Wall {
 mod reach {
     use landlock::{
         ABI, Access, AccessFs, AccessNet, PathBeneath, PathFd, Ruleset, RulesetAttr, RulesetCreatedAttr,
-        RulesetError, Scope,
+        RulesetError, RulesetStatus, Scope,
     };
     use seccompiler::{
         BpfProgram, Error, SeccompAction, SeccompCmpArgLen, SeccompCmpOp, SeccompCondition, SeccompFilter,
@@ -100,14 +102,15 @@ mod reach {
     #[cfg(not(target_arch = "x86_64"))]
     const OLD_CALLS: [i64; 0] = [];
 
-    /// A kernel that knows one of the two walls only, or none, leaves the other, or the limits alone.
-    pub(super) fn nothing_but(recording: &Path) {
-        let _ = files(recording);
-        let _ = calls().map(|program| seccompiler::apply_filter(&program));
+    /// Whether both walls stand: a kernel that knows one of them only, or none, leaves the other, or the limits alone.
+    pub(super) fn nothing_but(recording: &Path) -> bool {
+        let are_files_shut = files(recording).is_ok_and(|ruleset| ruleset != RulesetStatus::NotEnforced);
+        let are_calls_shut = calls().is_ok_and(|program| seccompiler::apply_filter(&program).is_ok());
+        are_files_shut && are_calls_shut
     }
 
     /// No file but the recording, no network, no other process.
-    fn files(recording: &Path) -> Result<(), RulesetError> {
+    fn files(recording: &Path) -> Result<RulesetStatus, RulesetError> {
         let newest = ABI::V6;
         let rules = Ruleset::default()
             .handle_access(AccessFs::from_all(newest))?
@@ -118,7 +121,7 @@ mod reach {
             Ok(opened) => rules.add_rule(PathBeneath::new(opened, AccessFs::ReadFile))?,
             Err(_) => rules,
         };
-        rules.restrict_self().map(drop)
+        rules.restrict_self().map(|restricted| restricted.ruleset)
     }
 
     /// No call but these; every other fails as if it were not permitted.
@@ -149,5 +152,7 @@ mod reach {
 #[cfg(not(target_os = "linux"))]
 mod reach {
     /// Such a system gives no wall that a process builds around itself without rights: docs/dependencies.md.
-    pub(super) fn nothing_but(_: &std::path::Path) {}
+    pub(super) fn nothing_but(_: &std::path::Path) -> bool {
+        false
+    }
 }

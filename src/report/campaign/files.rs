@@ -2,7 +2,7 @@
 
 use super::columns;
 use super::series::DropSeries;
-use super::{Batch, BatchRow, PredictedCurve, head, page};
+use super::{Batch, BatchRow, MOST_SERIES, PredictedCurve, head, page};
 use crate::data::Program;
 use crate::report::json::{in_a_line, pretty};
 use crate::report::records::{finished, text_cell};
@@ -82,8 +82,8 @@ impl<'a> CampaignFiles<'a> {
     /// `campaign.html` and its pictures.
     #[must_use]
     pub fn page(&self) -> Vec<(String, Vec<u8>)> {
-        let pictures: Vec<_> =
-            self.series.iter().enumerate().flat_map(|(i, series)| series.pictures(i + 1)).collect();
+        let drawn = self.series.iter().take(MOST_SERIES);
+        let pictures: Vec<_> = drawn.enumerate().flat_map(|(i, series)| series.pictures(i + 1)).collect();
         let page = as_html::page(&page::document(self.batch, &self.series), &pictures);
         let drawn =
             pictures.into_iter().map(|picture| (format!("{}.svg", picture.name), picture.svg.into_bytes()));

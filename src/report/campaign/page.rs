@@ -1,7 +1,7 @@
 //! A campaign to the document of its page: what falls out first, then a chapter a cask, then every recording with a link to its report.
 
 use super::series::{DropSeries, Pool, PooledQuantity, RowPlace, scatter_words};
-use super::{Batch, BatchRow, MOST_ROWS, compared};
+use super::{Batch, BatchRow, MOST_ROWS, MOST_SERIES, compared};
 use crate::data::{Program, Verdict};
 use crate::report::document::{Chapter, ChapterPart, Frame, PartContent, ReportDocument, Tone};
 use crate::report::json::in_a_line;
@@ -36,7 +36,10 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
         format!("sound; {review} to look at, {fail} not to be used, {failed} that could not be analysed.");
     let mut chapters = vec![Chapter::new("").with(PartContent::Banner(banner, words)), apart(series)];
     chapters.extend(both(batch));
-    chapters.extend(series.iter().enumerate().map(|(i, series)| of_series(series, i + 1)));
+    chapters.extend(series.iter().take(MOST_SERIES).enumerate().map(|(i, series)| of_series(series, i + 1)));
+    let more =
+        format!("The first {MOST_SERIES} of {} casks: campaign.json has the pools of all.", series.len());
+    chapters.extend((series.len() > MOST_SERIES).then(|| Chapter::new("").with(ChapterPart::note(more))));
     chapters.push(recordings(batch, series));
     ReportDocument {
         page: Frame {

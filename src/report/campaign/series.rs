@@ -1,6 +1,6 @@
 //! Rows of a campaign to series, the drops of one cask from one height, and these to pools: repeats at one angle, and all angles.
 
-use super::BatchRow;
+use super::{BatchRow, MOST_SERIES};
 use crate::data::{BodyModel, Contact, Estimate, Verdict};
 use crate::numerics::as_f64;
 use crate::numerics::pooled::{Pooled, ScatterWord, apart, pooled};
@@ -104,24 +104,25 @@ impl<'a> DropSeries<'a> {
     ) -> Vec<Self> {
         let mut series: Vec<Self> = Vec::new();
         let mut places: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut named: HashMap<&str, usize> = HashMap::new();
         for row in rows.iter().filter(|row| row.verdict.is_some()) {
             let place = *places.entry(&row.at.series).or_insert(series.len());
             if place == series.len() {
-                let same = series.iter().filter(|other| other.rows[0].at.cask == row.at.cask).count();
-                let name =
-                    if same == 0 { row.at.cask.clone() } else { format!("{} ({})", row.at.cask, same + 1) };
+                let same = named.entry(&row.at.cask).or_default();
+                *same += 1;
+                let name = if *same == 1 { row.at.cask.clone() } else { format!("{} ({same})", row.at.cask) };
                 series.push(Self { name, ..Self::default() });
             }
             series[place].rows.push(row);
         }
-        for series in &mut series {
+        for (number, series) in series.iter_mut().enumerate() {
             series.pools = pools(&series.rows);
             series.set_places();
             series.k = ends(
                 series.usable().filter(|row| !series.falls_out(row)).filter_map(|row| Some(row.k?.value)),
             );
-            if let (Some(k), Some([from, to])) =
-                (series.k, ends(series.rows.iter().filter_map(|row| row.at.angle_deg)))
+            if let (Some(k), Some([from, to]), 0..MOST_SERIES) =
+                (series.k, ends(series.rows.iter().filter_map(|row| row.at.angle_deg)), number)
             {
                 let angles = [(from - BEYOND_DEG).max(0.5), (to + BEYOND_DEG).min(90.0)];
                 series.curves = predicted(series.rows[0], k.map(|k| k.clamp(0.0, 1.0)), angles);
