@@ -7,6 +7,7 @@ use crate::data::{
     CaskFile, Channel, ChannelFinding, ChannelSpec, Finding, Recording, RecordingFormat, SAMPLE_RATES_HZ,
     STANDARD_GRAVITY_M_S2, Unit, acceleration_unit_m_s2,
 };
+use crate::numerics::as_f64;
 use std::path::Path;
 
 /// The recording: times from the earliest first sample, every channel with its unit and scale.
@@ -28,6 +29,7 @@ pub(crate) fn recording(
         let Some(spec) = cask_file.channels.get(raw_channel.spec) else { continue };
         channels.push(channel(path, spec, raw_channel, first_s, &mut issues)?);
     }
+    overlap(path, &channels)?;
     Ok(Recording {
         path: path.to_owned(),
         sha256,
@@ -36,6 +38,28 @@ pub(crate) fn recording(
         start_unix_ns: raw.zero_unix_ns.map(|zero_ns| zero_ns.saturating_add(nanoseconds(first_s))),
         issues,
     })
+}
+
+/// Refuses channels of which two share no time at all: their clocks are apart, and nothing tells by how much.
+fn overlap(path: &Path, channels: &[Channel]) -> Result<(), IngestError> {
+    let end_s = |channel: &Channel| channel.start_s + as_f64(channel.samples.len()) / channel.sample_rate_hz;
+    let Some(first) = channels.iter().min_by(|a, b| end_s(a).total_cmp(&end_s(b))) else { return Ok(()) };
+    let Some(late) = channels.iter().find(|channel| channel.start_s > end_s(first)) else { return Ok(()) };
+    let s = |time_s: f64| shown::digits(time_s, 6);
+    Err(error::source(
+        path,
+        &late.name,
+        format!(
+            "it begins at {} s and {} ends at {} s: by their times the two share no moment, so that their clocks are {} s apart or they are of \
+             different recordings",
+            s(late.start_s),
+            first.name,
+            s(end_s(first)),
+            s(late.start_s - first.start_s)
+        ),
+        "check the clocks of both; name times that they share (`time`; of MCAP messages also `time = \"log_time\"`), or take one of the \
+         two out",
+    ))
 }
 
 fn channel(
@@ -70,7 +94,7 @@ fn channel(
         ));
     }
     let scale = scale(path, spec, raw.unit.as_deref())?;
-    issues.extend(scale.contradiction.map(|found| found.on(&spec.name)));
+    issues.extend(scale.contradiction.clone().map(|found| found.on(&spec.name)));
     issues.extend(raw.uniform.issues.into_iter().map(|issue| shifted(issue, first_s).on(&spec.name)));
     Ok(Channel {
         name: spec.name.clone(),
@@ -85,6 +109,7 @@ fn channel(
         scale_m_s2: scale.m_s2 * spec.polarity,
         unit: scale.unit,
         unit_origin: scale.origin,
+        is_unit_recorded: raw.unit.is_some() && scale.contradiction.is_none(),
         full_scale: spec.full_scale,
         gaps: raw.uniform.gaps,
         time_jitter_s: raw.uniform.time_jitter_s,
@@ -287,7 +312,7 @@ mod tests {
             spec,
             uniform: Uniform {
                 start_s,
-                sample_rate_hz: 1000.0,
+                sample_rate_hz: 1.0,
                 samples: Samples::F64(vec![1.0, 2.0]),
                 gaps: Vec::new(),
                 time_jitter_s: 0.0,
@@ -301,6 +326,13 @@ mod tests {
         let mut cask_file = cask_file(&["/a.x", "/b.x"]);
         cask_file.channels[1].polarity = -1.0;
         let channels = vec![raw(0, 2.5), raw(1, 2.0)];
+        let apart = RawRecording {
+            channels: vec![raw(0, 39.0), raw(1, 2.0)],
+            zero_unix_ns: None,
+            issues: Vec::new(),
+        };
+        let refused = recording(Path::new("r"), RecordingFormat::Mcap, "ab".into(), apart, &cask_file);
+        assert!(refused.unwrap_err().to_string().contains("37 s apart"));
         let raw =
             RawRecording { channels, zero_unix_ns: Some(1_700_000_000_000_000_000), issues: Vec::new() };
         let path = Path::new("r");

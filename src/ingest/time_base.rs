@@ -17,6 +17,7 @@ pub use blocks::from_blocks;
 pub use error::TimeBaseError;
 use error::check_rate;
 pub(super) use pieces::BlockContent;
+pub(super) use stamps::line;
 pub use uniform::{Block, Uniform};
 
 use super::clock::{self, Claims, Taken};

@@ -8,6 +8,13 @@ use crate::numerics::robust;
 /// Units of time that a recorder may have left out, with seconds a unit.
 const UNITS: [(&str, f64); 4] = [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
 
+/// A unit of spreadsheets alone, which count from 1900.
+const DAY: (&str, f64) = ("days", 86_400.0);
+
+/// 1954 to 2119 as they count, and rows a day that at so many a second are no seconds since a start.
+const SHEET_DAYS: std::ops::Range<f64> = 2e4..8e4;
+const LEAST_A_DAY: f64 = 1e6;
+
 /// 1990-01-01 and 2100-01-01, s since 1970: no recorder counts the time since then by chance.
 const EPOCH_S: (f64, f64) = (631_152_000.0, 4_102_444_800.0);
 
@@ -25,6 +32,11 @@ const ALIKE: f64 = 0.1;
 
 /// Times of a second column without a unit are in the one in which they run as long as the first to this factor: other units are farther.
 const NEAR: f64 = 3.0;
+
+/// Seconds since 1970 that a number is by its size alone, in s, ms, µs or ns.
+pub(super) fn since_1970_s(number: f64) -> Option<f64> {
+    UNITS.iter().map(|unit| number * unit.1).find(|time_s| (EPOCH_S.0..EPOCH_S.1).contains(time_s))
+}
 
 /// What the numbers in a column of times count.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -147,6 +159,45 @@ pub(super) fn seconds_by(
     }
 }
 
+/// Whether numbers rise as times do: nine of ten do not fall behind the one before, and they get on.
+pub(super) fn rise(numbers: &[f64]) -> bool {
+    let rising = numbers.windows(2).filter(|pair| pair[0] <= pair[1]).count();
+    let pairs = numbers.len().saturating_sub(1);
+    pairs > 0 && 10 * rising >= 9 * pairs && numbers[0] < numbers[pairs]
+}
+
+/// Numbers that messages carry as their times.
+pub(super) struct SentTicks<'a> {
+    /// One a message.
+    pub each: &'a [f64],
+    /// Samples of a message, in the mean.
+    pub samples_each: f64,
+    /// From the first log time to the last, s.
+    pub logged_s: f64,
+}
+
+impl SentTicks<'_> {
+    /// Seconds a unit: as [`seconds_a_unit`], and where nothing states it the unit in which they run as long as the log times do.
+    ///
+    /// # Errors
+    /// As there.
+    pub(super) fn seconds_a_unit(
+        &self,
+        scale: Scale,
+        carrier: Carrier,
+        stated_hz: Option<f64>,
+    ) -> Result<f64, Refusal> {
+        let counted = || {
+            let counted = Counted::of(self.each)?;
+            Some(Counted { rate: counted.rate * self.samples_each, ..counted })
+        };
+        let is_open = scale == Scale::Open && counted().is_some_and(|counted| counted.since_1970().is_none());
+        let logged = Some(self.logged_s).filter(|s| is_open && *s > 0.0);
+        let as_logged = logged.and_then(|logged_s| scale.beside(logged_s, self.each));
+        as_logged.map_or_else(|| seconds_by(scale, carrier, counted, stated_hz), Ok)
+    }
+}
+
 /// What bare numbers say of the time that they count.
 pub(super) struct Counted {
     pub first: f64,
@@ -192,8 +243,12 @@ impl Counted {
         if let Some(unit_s) = self.since_1970() {
             return Ok(unit_s);
         }
+        let are_days = SHEET_DAYS.contains(&self.first) && self.rate > LEAST_A_DAY;
+        if are_days && stated_hz.is_none() {
+            return Err(self.doubt(carrier, &[&DAY]));
+        }
         if let Some(stated_hz) = stated_hz {
-            let found = UNITS.iter().find(|(_, unit_s)| self.is_at(*unit_s, stated_hz));
+            let found = UNITS.iter().chain([&DAY]).find(|(_, unit_s)| self.is_at(*unit_s, stated_hz));
             // A counter of the samples, with what is missing left out of it.
             let else_s = if self.is_counter { stated_hz.recip() } else { 1.0 };
             return Ok(found.map_or(else_s, |unit| unit.1));

@@ -2,13 +2,13 @@
 
 use super::error::{TimeBaseError, check_rate};
 use super::fit::{FILL_FACTOR, FILL_FLOOR};
-use super::order::{is_same, restart, restarted};
+use super::order::{is_same, no_mixture};
 use super::pieces::{BlockContent, Piece, pieces};
 use super::stamps::{Intervals, ROUND_OFF, StampCut, line};
 use super::uniform::{Block, Uniform};
 use super::{fit, missing};
 use crate::data::{Finding, Samples, Span, TimesFinding};
-use crate::ingest::clock::RATE_TOLERANCE;
+use crate::ingest::clock::{RATE_TOLERANCE, Refusal};
 use crate::numerics::{as_f64, robust};
 
 /// What sorting and doubles came to.
@@ -45,8 +45,6 @@ pub fn from_blocks(blocks: &[Block], rate_hz: f64, samples: Samples) -> Result<U
 pub(in crate::ingest) struct Laid {
     /// Those that are kept, in the order of their stamps.
     pieces: Vec<Piece>,
-    /// The stamps of all blocks, in the order of the file, s.
-    starts_s: Vec<f64>,
     /// Time of the first sample, s.
     pub(in crate::ingest) start_s: f64,
     /// Hz.
@@ -69,8 +67,7 @@ pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &BlockContent) -> Res
     let mut pieces = pieces(blocks);
     pieces.retain(|piece| !piece.samples.is_empty());
     let (mut issues, mut doubles) = (Vec::new(), Doubles::default());
-    let starts_s: Vec<f64> = pieces.iter().map(|piece| piece.start_s).collect();
-    sort(&mut pieces, &mut issues);
+    sort(&mut pieces, &mut issues, content)?;
     drop_doubles(&mut pieces, rate_hz, &mut doubles, content);
     let present: usize = pieces.iter().map(|piece| piece.samples.len()).sum();
     if present < 2 {
@@ -91,7 +88,7 @@ pub(super) fn lay(blocks: &[Block], rate_hz: f64, content: &BlockContent) -> Res
         }
         end = end.max(piece.end());
     }
-    Ok(Laid { pieces, starts_s, start_s, sample_rate_hz, gaps, doubles, issues })
+    Ok(Laid { pieces, start_s, sample_rate_hz, gaps, doubles, issues })
 }
 
 impl Laid {
@@ -109,7 +106,7 @@ impl Laid {
 /// The samples at their places; of a block less what of it is already there.
 fn filled(laid: Laid, held: Samples) -> Uniform {
     let count = laid.count();
-    let Laid { pieces, starts_s, start_s, sample_rate_hz, gaps, mut doubles, mut issues } = laid;
+    let Laid { pieces, start_s, sample_rate_hz, gaps, mut doubles, mut issues } = laid;
     let (mut stretches, mut end) = (Vec::with_capacity(pieces.len()), 0_usize);
     for piece in &pieces {
         let overlap = end.saturating_sub(piece.place).min(piece.samples.len());
@@ -140,20 +137,31 @@ fn filled(laid: Laid, held: Samples) -> Uniform {
         let found = TimesFinding::BlocksTwice { count, different };
         issues.push(Finding::from(found).between(from_s, to_s));
     }
-    let restart = restart(&starts_s).filter(|_| doubles.different > 0);
-    issues.extend(restart.map(|at| restarted(&starts_s, at)));
     missing::push_gaps(&gaps, &mut issues);
     let lost: usize = gaps.iter().map(|gap| gap.lost).sum();
     let gaps = missing::mark(&mut samples, lost, |i| start_s + as_f64(i) / sample_rate_hz, &mut issues);
     Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues }
 }
 
-fn sort(pieces: &mut [Piece], issues: &mut Vec<Finding>) {
-    let Some(first) = (1..pieces.len()).find(|&i| pieces[i].start_s < pieces[i - 1].start_s) else { return };
+fn sort(pieces: &mut [Piece], issues: &mut Vec<Finding>, content: &BlockContent) -> Result<(), Refusal> {
+    let Some(first) = (1..pieces.len()).find(|&i| pieces[i].start_s < pieces[i - 1].start_s) else {
+        return Ok(());
+    };
+    let starts_s: Vec<f64> = pieces.iter().map(|piece| piece.start_s).collect();
+    let mut order: Vec<usize> = (0..pieces.len()).collect();
+    order.sort_by(|&a, &b| starts_s[a].total_cmp(&starts_s[b]));
+    let is_copy = |a: usize, b: usize| {
+        let (one, other) = (&pieces[a], &pieces[b]);
+        starts_s[a].total_cmp(&starts_s[b]).is_eq()
+            && one.samples.len() == other.samples.len()
+            && content.are_same(one, other)
+    };
+    no_mixture(&starts_s, order.into_iter(), is_copy)?;
     let count = pieces.windows(2).filter(|w| w[1].start_s < w[0].start_s).count();
     let (from_s, to_s) = (pieces[first].start_s, pieces[first - 1].start_s);
     issues.push(Finding::from(TimesFinding::BlocksBackward { count }).between(from_s, to_s));
     pieces.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
+    Ok(())
 }
 
 /// Drops blocks that start where the one before does.

@@ -8,7 +8,8 @@ use super::error::TimeBaseError;
 use super::missing;
 use super::uniform::Uniform;
 use crate::data::{Finding, Samples, TimesFinding};
-use crate::ingest::clock::{Claims, RATE_TOLERANCE, of_times};
+use crate::ingest::clock::{Claims, RATE_TOLERANCE, Refusal, of_times};
+use crate::ingest::shown::digits;
 use crate::numerics::{as_f64, robust};
 
 /// Fewer changes make two whole steps at most, which agree with any jitter: nothing would show that they are even.
@@ -54,6 +55,7 @@ pub(super) fn place(
     let changes: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] > times_s[i - 1]).collect();
     let mut steps_s: Vec<f64> = changes.iter().map(|&i| times_s[i] - times_s[i - 1]).collect();
     let step_s = if steps_s.is_empty() { 0.0 } else { robust::median(&mut steps_s) };
+    no_rows_of_sensors(&changes, step_s, times_s.len(), claims)?;
     let told = (changes.len() >= LEAST_CHANGES).then(|| Steps::of(times_s, &changes));
     let steps = told.filter(|steps| steps.uncertainty <= UNKNOWN && steps.off_s <= UNEVEN_STEPS * step_s);
     if steps.is_none() && claims.is_empty() {
@@ -78,6 +80,35 @@ pub(super) fn place(
     issues.extend(taken.issues);
     let gaps = missing::mark(&mut samples, 0, |i| start_s + as_f64(i) / sample_rate_hz, &mut issues);
     Ok(Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
+}
+
+/// Refuses times of which each stands exactly two, three or four times, as on rows of so many sensors, unless a rate that is stated
+/// shows that their clock is coarse.
+fn no_rows_of_sensors(changes: &[usize], step_s: f64, count: usize, claims: &Claims) -> Result<(), Refusal> {
+    const SENSORS: std::ops::RangeInclusive<usize> = 2..=4;
+    /// Of so many times all but one: a row may be lost here and there.
+    const ALL_BUT_ONE_OF: usize = 20;
+    let rows = count.div_ceil(changes.len() + 1);
+    let others = changes.windows(2).filter(|pair| pair[1] - pair[0] != rows).count();
+    if !SENSORS.contains(&rows) || changes.len() < LEAST_CHANGES || ALL_BUT_ONE_OF * others > changes.len() {
+        return Ok(());
+    }
+    let rate_hz = as_f64(rows) / step_s;
+    let stated_hz = claims.cask_hz.or(claims.stated.first().map(|stated| stated.rate_hz));
+    if stated_hz.is_some_and(|stated_hz| (stated_hz / rate_hz - 1.0).abs() <= UNKNOWN) {
+        return Ok(());
+    }
+    Err(Refusal::new(
+        format!(
+            "each of its times stands exactly {rows} times: on rows of {rows} sensors, or by a clock that is cut to {} s",
+            digits(step_s, 3)
+        ),
+        format!(
+            "where the rows are of several sensors name the one that is meant: where = {{ column = …, is = … }}; where they are samples \
+             one after another write sample_rate_hz = {}",
+            digits(rate_hz, 6)
+        ),
+    ))
 }
 
 impl Steps {

@@ -1,7 +1,7 @@
 //! Samples with gaps to samples with NaN in them, and the findings that say so.
 
 use super::fit::{BaseFit, Run};
-use crate::data::{Finding, Samples, Span, TimesFinding};
+use crate::data::{Finding, Samples, Span, TimesFinding, is_number};
 
 /// Up to this many gaps get a finding each; more are summed up in one.
 const GAPS_TOLD_SINGLY: usize = 5;
@@ -26,7 +26,7 @@ pub(super) fn spread(samples: &Samples, fit: &BaseFit) -> Samples {
     samples.spread(fit.places(samples.len()), &stretches)
 }
 
-/// Turns infinite samples into NaN and says how many are no numbers beside the `lost` ones between blocks. The spans.
+/// Turns infinite samples and those over the range into NaN and says how many are no numbers beside the `lost` ones between blocks. The spans.
 pub(super) fn mark(
     samples: &mut Samples,
     lost: usize,
@@ -37,7 +37,7 @@ pub(super) fn mark(
     if count == 0 {
         return Vec::new();
     }
-    samples.change(|x| if x.is_finite() { x } else { f64::NAN });
+    samples.change(|x| if is_number(x) { x } else { f64::NAN });
     let spans = spans(samples);
     if let ([first, ..], [.., last]) = (&spans[..], &spans[..])
         && count > lost
@@ -82,4 +82,23 @@ pub(super) fn push_gaps(gaps: &[Gap], issues: &mut Vec<Finding>) {
     let over_s = widest.to_s - widest.from_s;
     let found = TimesFinding::Gaps { lost, gaps: gaps.len(), longest: widest.lost, over_s };
     issues.push(Finding::from(found).between(widest.from_s, widest.to_s));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::as_f64;
+
+    #[test]
+    fn overrange_marks_of_instruments_are_missing_samples() {
+        let marks = [1.0, 9.9e37, -2.0, -9.91e37, 9.999_999_99e37, 3.0, f64::INFINITY];
+        #[allow(clippy::cast_possible_truncation, reason = "as an f32 holds them")]
+        let single = Samples::F32(marks.map(|mark| mark as f32).to_vec());
+        for mut samples in [Samples::F64(marks.to_vec()), single] {
+            let mut issues = Vec::new();
+            let gaps = mark(&mut samples, 0, as_f64, &mut issues);
+            let gaps: Vec<_> = gaps.iter().map(|gap| (gap.from, gap.to)).collect();
+            assert_eq!((gaps, issues.len()), (vec![(1, 2), (3, 5), (6, 7)], 1));
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use super::error::TimeBaseError;
 use crate::data::{Finding, Samples, TimesFinding};
 use crate::ingest::clock::{Refusal, usual_step};
+use crate::ingest::shown::short;
 use crate::numerics::as_f64;
 use std::borrow::Cow;
 
@@ -52,7 +53,7 @@ pub(super) fn ordered<'a>(
     if let Some(refusal) = wrapped(times_s) {
         return Err(refusal.into());
     }
-    Ok(taken.sorted(issues).without_doubles(issues))
+    Ok(taken.sorted(issues)?.without_doubles(issues))
 }
 
 /// Times that count within each second, minute, hour or day, and fall back by one of it less an interval: `999.95, 0, 0.05` in ms, beside a
@@ -76,52 +77,68 @@ fn wrapped(times_s: &[f64]) -> Option<Refusal> {
     ))
 }
 
-/// Where times in the order of the file begin anew and run once more over those before; late ones and parts that are swapped do not.
-pub(super) fn restart(times_s: &[f64]) -> Option<usize> {
-    /// So many lie before the last of the first run.
-    const OVER: usize = 3;
-    let mut backward = (1..times_s.len()).filter(|&i| times_s[i] < times_s[i - 1]);
-    let (at, None) = (backward.next()?, backward.next()) else { return None };
-    let is_over = times_s.get(at + OVER - 1).is_some_and(|time_s| *time_s < times_s[at - 1]);
-    (at >= OVER && is_over && times_s[0] < times_s[times_s.len() - 1]).then_some(at)
-}
-
-/// A warning that says so.
-pub(super) fn restarted(times_s: &[f64], at: usize) -> Finding {
-    let (rise_to_s, next_s) = (times_s[at - 1], times_s[at]);
-    Finding::from(TimesFinding::Restarted { count: at, rise_to_s, next_s }).between(next_s, rise_to_s)
+/// Refuses times, in the order of the file, that begin anew and run once more over those before, or that mostly do not rise: samples of
+/// several recordings or sensors are never one signal. A few late ones do no harm, nor do parts that are swapped or written twice;
+/// `order` is that of the times, `is_copy` tells what was written twice.
+pub(super) fn no_mixture(
+    times_s: &[f64],
+    order: impl Iterator<Item = usize>,
+    is_copy: impl Fn(usize, usize) -> bool,
+) -> Result<(), Refusal> {
+    /// Of so many times one may fall behind the one before, and so many of a few.
+    const RISING_OF: usize = 10;
+    const FEW: usize = 8;
+    /// Changes from one run of rising times to another, in the order of time, that a late one makes, and one more.
+    const CHANGES: usize = 4;
+    let backward: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] < times_s[i - 1]).collect();
+    let Some(&first) = backward.first() else { return Ok(()) };
+    let (mut last, mut changes) = (None, 0);
+    for next in order {
+        if last.is_some_and(|last| is_copy(last, next)) {
+            continue;
+        }
+        let run = |at: usize| backward.partition_point(|start| *start <= at);
+        changes += usize::from(last.is_some_and(|last| run(last) != run(next)));
+        last = Some(next);
+    }
+    let count = backward.len();
+    let place =
+        format!("behind number {first}, from {} s to {} s", short(times_s[first - 1]), short(times_s[first]));
+    if count > FEW && RISING_OF * count > times_s.len() {
+        return Err(Refusal::new(
+            format!(
+                "{count} of its {} times fall back, first {place}: those of several sensors, or none",
+                times_s.len()
+            ),
+            "name another source of times (`time`), or the rows of one sensor (`where`); or write sample_rate_hz and take the times out",
+        ));
+    }
+    if changes > CHANGES * count {
+        return Err(Refusal::new(
+            format!(
+                "its times begin anew {count} time(s), first {place}: {} recordings follow one another, or the clock was set back, and \
+                 samples of all would lie on the same times",
+                count + 1
+            ),
+            "cut it there in a copy, and name the file that holds the recording of the drop",
+        ));
+    }
+    Ok(())
 }
 
 impl Ordered<'_> {
-    fn sorted(self, issues: &mut Vec<Finding>) -> Self {
+    fn sorted(self, issues: &mut Vec<Finding>) -> Result<Self, Refusal> {
         let times_s = &self.times_s;
         let backward: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] < times_s[i - 1]).collect();
-        let Some(&first) = backward.first() else { return self };
+        let Some(&first) = backward.first() else { return Ok(self) };
+        let mut order: Vec<usize> = (0..times_s.len()).collect();
+        order.sort_by(|&a, &b| times_s[a].total_cmp(&times_s[b]));
+        let is_copy = |a: usize, b: usize| times_s[a].total_cmp(&times_s[b]).is_eq() && self.is_same(a, b);
+        no_mixture(times_s, order.iter().copied(), is_copy)?;
         let (from_s, to_s) = (times_s[first - 1], times_s[first]);
         let found = TimesFinding::Backward { count: backward.len(), from_s, to_s };
         issues.push(Finding::from(found).between(to_s, from_s));
-        let mut order: Vec<usize> = (0..times_s.len()).collect();
-        order.sort_by(|&a, &b| times_s[a].total_cmp(&times_s[b]));
-        let restart = restart(times_s).filter(|&at| self.are_mixed(&order, at));
-        issues.extend(restart.map(|at| restarted(times_s, at)));
-        self.picked(&order)
-    }
-
-    /// Whether samples from `at` on lie among those before, in the order of their times; rows that were written twice do not, nor do a few
-    /// runs that were swapped.
-    fn are_mixed(&self, order: &[usize], at: usize) -> bool {
-        /// Changes from one part to the other that two runs out of place make.
-        const SWAPPED: usize = 4;
-        let is_copy =
-            |a: usize, b: usize| self.times_s[a].total_cmp(&self.times_s[b]).is_eq() && self.is_same(a, b);
-        let (mut last, mut changes) = (order[0], 0);
-        for &next in &order[1..] {
-            if !is_copy(last, next) {
-                changes += usize::from((last < at) != (next < at));
-                last = next;
-            }
-        }
-        changes > SWAPPED
+        Ok(self.picked(&order))
     }
 
     /// Drops rows whose time equals the one before.

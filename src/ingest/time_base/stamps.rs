@@ -176,7 +176,7 @@ fn mean_hz<'a>(intervals: impl Iterator<Item = &'a Interval>) -> f64 {
 }
 
 /// The middle of points, and the slope of the line through them that is nearest in y.
-pub(super) fn line(points: &[(f64, f64)]) -> ((f64, f64), f64) {
+pub(in crate::ingest) fn line(points: &[(f64, f64)]) -> ((f64, f64), f64) {
     let n = as_f64(points.len());
     let mean_x = points.iter().map(|point| point.0).sum::<f64>() / n;
     let mean_y = points.iter().map(|point| point.1).sum::<f64>() / n;
