@@ -89,7 +89,7 @@ fn number(bytes: &[u8]) {
     }
     let _ = number::leading_json(bytes);
     let _ = number::is_missing(bytes);
-    let _ = number::is_grouped(&String::from_utf8_lossy(bytes));
+    let _ = number::is_grouped(&String::from_utf8_lossy(bytes), Some(b'.'));
 }
 
 fn times(bytes: &[u8]) {

@@ -11,12 +11,16 @@ use std::sync::Arc;
 
 /// A serialised message begins with two bytes of representation and two of options.
 const ENCAPSULATION_BYTES: usize = 4;
+/// What a letter of wide text may take.
+const WIDE_BYTES: [usize; 2] = [2, 4];
 
 /// Decodes CDR messages by a plan.
 #[derive(Debug)]
 pub(super) struct Cdr {
     plan: Plan,
     fields: Arc<[RosField]>,
+    /// Whether a string of wide letters stands among them.
+    has_wide_text: bool,
     /// So many of the fields hold all that is wanted.
     needed: usize,
 }
@@ -27,7 +31,8 @@ impl Cdr {
         // What lies behind the last wanted field need not be walked through.
         let needed =
             fields.iter().rposition(|field| plan.root.field(&field.name).is_some()).map_or(0, |at| at + 1);
-        Self { plan: plan.clone(), fields: fields.clone(), needed }
+        let has_wide_text = fields[..needed].iter().any(|field| field.kind.has_wide_text());
+        Self { plan: plan.clone(), fields: fields.clone(), has_wide_text, needed }
     }
 }
 
@@ -36,17 +41,36 @@ impl Decode for Cdr {
         let (header, body) = data
             .split_at_checked(ENCAPSULATION_BYTES)
             .ok_or_else(|| "the message is shorter than its CDR header".to_owned())?;
-        let needed = self.fields.get(..self.needed).unwrap_or_default();
+        match header {
+            [0, 0, ..] => self.walk::<BigEndian>(body, slots),
+            [0, 1, ..] => self.walk::<LittleEndian>(body, slots),
+            _ => Err(format!(
+                "the message is in the representation {header:02x?}; plain CDR of either byte order is read"
+            )),
+        }
+    }
+}
+
+impl Cdr {
+    fn walk<Order: CdrEndian>(&self, body: &[u8], slots: &mut Slots) -> Result<(), String> {
         let Plan { root, wants, .. } = &self.plan;
-        let walked = match header {
-            [0, 0, ..] => CdrWalk::<BigEndian>::new(body, wants, slots).fields(needed, Some(root)),
-            [0, 1, ..] => CdrWalk::<LittleEndian>::new(body, wants, slots).fields(needed, Some(root)),
-            _ => {
-                return Err(format!(
-                    "the message is in the representation {header:02x?}; plain CDR of either byte order is read"
-                ));
-            }
-        };
+        let mut wide_bytes = WIDE_BYTES[0];
+        if self.has_wide_text {
+            // Writers differ in what a wide letter takes; the right width leaves nothing of the message but what aligns its end.
+            let end = |bytes: usize| {
+                let mut walk = CdrWalk::<Order>::new(body, wants, slots, bytes);
+                let is_whole = walk.fields(&self.fields, None).is_ok();
+                let end = walk.reader.position();
+                (is_whole && body.len() - end < ENCAPSULATION_BYTES).then_some((bytes, end))
+            };
+            let fitting: Vec<(usize, usize)> = WIDE_BYTES.into_iter().filter_map(end).collect();
+            let (first, is_one) = (fitting.first(), fitting.windows(2).all(|pair| pair[0].1 == pair[1].1));
+            (wide_bytes, _) = *first.filter(|_| is_one).ok_or(
+                "a wstring stands before the numbers, and the message does not tell whether its letters take 2 or 4 bytes",
+            )?;
+        }
+        let needed = self.fields.get(..self.needed).unwrap_or_default();
+        let walked = CdrWalk::<Order>::new(body, wants, slots, wide_bytes).fields(needed, Some(root));
         walked.map_err(|problem| problem.to_string())
     }
 }
@@ -88,11 +112,13 @@ struct CdrWalk<'a, Order: CdrEndian> {
     reader: CdrReader<'a, Order>,
     wants: &'a [Want],
     slots: &'a mut Slots,
+    /// Of a letter of wide text.
+    wide_bytes: usize,
 }
 
 impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
-    fn new(body: &'a [u8], wants: &'a [Want], slots: &'a mut Slots) -> Self {
-        Self { reader: CdrReader::new(body), wants, slots }
+    fn new(body: &'a [u8], wants: &'a [Want], slots: &'a mut Slots, wide_bytes: usize) -> Self {
+        Self { reader: CdrReader::new(body), wants, slots, wide_bytes }
     }
 
     fn fields(&mut self, fields: &[RosField], node: Option<&Node>) -> Result<(), Undecoded> {
@@ -108,13 +134,13 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
             Type::Text => {
                 let text = self.text()?;
                 if let Some(slot) = node.and_then(|node| node.slot(self.wants, Want::Text)) {
-                    self.slots.set(slot, Value::Text(String::from_utf8_lossy(text).into_owned()));
+                    self.slots.set_text(slot, text);
                 }
                 Ok(())
             }
             Type::WideText => {
                 let units = self.reader.read_u32()? as usize;
-                self.reader.read_bytes(units.saturating_mul(2))?;
+                self.reader.read_bytes(units.saturating_mul(self.wide_bytes))?;
                 Ok(())
             }
             Type::Message(fields) => self.message(fields, node),
@@ -257,10 +283,13 @@ fn descend(fields: &[RosField], path: &str, found: &mut Vec<Leaf>) {
         match &field.kind {
             Type::Message(inner) if !is_time(inner) => descend(inner, &below, found),
             Type::Array(element, _) if element.bytes().is_some_and(|bytes| bytes > 1) => {
-                found.push(Leaf { path: below, is_array: true });
+                found.push(Leaf { path: below, is_array: true, is_signal: true });
             }
-            Type::Message(_) | Type::Array(..) | Type::Text | Type::WideText | Type::U8 => {}
-            _ => found.push(Leaf { path: below, is_array: false }),
+            Type::Message(_) | Type::Array(..) | Type::WideText => {}
+            kind => {
+                let is_signal = !matches!(kind, Type::Text | Type::U8);
+                found.push(Leaf { path: below, is_array: false, is_signal });
+            }
         }
     }
 }

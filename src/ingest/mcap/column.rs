@@ -1,14 +1,15 @@
-//! What the messages of one topic gave for one field, to uniform samples.
+//! What the messages of one topic gave for one field, message by message.
 
 use super::extent::Extent;
 use super::numbers::{append, push};
-use super::plan::{StatedRate, Value};
+use super::plan::{Beside, StatedRate, Value};
 use crate::data::{Samples, acceleration_unit_m_s2};
-use crate::ingest::clock::{Claims, Refusal};
-use crate::ingest::shown;
-use crate::ingest::statement::Statement;
-use crate::ingest::time_base::{self, Block, BlockContent, PREFIX, TimeBaseError, Uniform};
-use crate::ingest::vocabulary::Meaning;
+use crate::ingest::clock::Refusal;
+use crate::ingest::time_base::PREFIX;
+use crate::ingest::times::Scale;
+
+mod based;
+mod settled;
 
 /// Where a message's time comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,18 +28,18 @@ pub(super) struct MessageTime {
     /// Since 1970.
     ns: i64,
     origin: TimeOrigin,
+    log_ns: i64,
 }
 
 impl MessageTime {
     /// From a message's stamp or else from its log time.
-    pub(super) fn of(stamp: &Value, log_time_ns: i64) -> Self {
-        match stamp {
-            Value::Stamp(0) | Value::BadStamp => {
-                Self { ns: log_time_ns, origin: TimeOrigin::LogTimeForBadStamp }
-            }
-            Value::Stamp(ns) => Self { ns: *ns, origin: TimeOrigin::Stamp },
-            _ => Self { ns: log_time_ns, origin: TimeOrigin::LogTime },
-        }
+    pub(super) fn of(stamp: &Value, log_ns: i64) -> Self {
+        let (ns, origin) = match stamp {
+            Value::Stamp(0) | Value::BadStamp => (log_ns, TimeOrigin::LogTimeForBadStamp),
+            Value::Stamp(ns) => (*ns, TimeOrigin::Stamp),
+            _ => (log_ns, TimeOrigin::LogTime),
+        };
+        Self { ns, origin, log_ns }
     }
 }
 
@@ -90,7 +91,29 @@ pub(super) struct Column {
     rates: Vec<StatedRate>,
     /// Which sample or block came last with a stamp of exactly zero.
     zero_stamp: Option<usize>,
+    /// Numbers that are the times of messages, where these carry such.
+    ticks: Option<SentTimes>,
+    /// Some of the messages, by their place, with their log times in ns.
+    logged: Vec<(usize, i64)>,
+    /// The place of the next that is kept.
+    next_logged: usize,
+    /// What messages say of the samples that is not done here.
+    refused: Option<Refusal>,
 }
+
+/// Numbers that messages carry as their times.
+#[derive(Debug, Clone)]
+struct SentTimes {
+    /// Their field.
+    field: String,
+    /// What they count, as far as the field's name says it.
+    scale: Scale,
+    /// One a message, NaN where it carries none.
+    each: Vec<f64>,
+}
+
+/// Of so many messages the log times are kept: enough to tell how they run against the stamps.
+const MOST_LOGGED: usize = 512;
 
 /// Of what messages state so many are kept that differ: two tell that they change.
 const MOST_STATED: usize = 4;
@@ -114,11 +137,15 @@ impl Column {
             units: Vec::new(),
             rates: Vec::new(),
             zero_stamp: None,
+            ticks: None,
+            logged: Vec::new(),
+            next_logged: 0,
+            refused: None,
         }
     }
 
-    /// Takes what one message gave.
-    pub(super) fn take(&mut self, value: Value, time: MessageTime) {
+    /// Takes what one message gave; `tick` is the number that is its time, where it carries one.
+    pub(super) fn take(&mut self, value: Value, time: MessageTime, tick: Option<(f64, &Beside)>) {
         let count = match &value {
             Value::Number { .. } => 1,
             Value::Array(samples) => samples.len(),
@@ -154,6 +181,43 @@ impl Column {
             }
             TimeOrigin::LogTime => {}
         }
+        let place = self.len() - 1;
+        if let Some((tick, beside)) = tick {
+            let (field, scale) = (&beside.field, beside.scale());
+            let ticks =
+                self.ticks.get_or_insert_with(|| SentTimes { field: field.clone(), scale, each: Vec::new() });
+            ticks.each.resize(place, f64::NAN);
+            ticks.each.push(tick);
+        }
+        if place >= self.next_logged {
+            self.log(place, time.log_ns);
+            self.next_logged = place + 1 + place / (MOST_LOGGED / 2);
+        }
+    }
+
+    /// Notes when a message was logged; of many the earlier ones are thinned.
+    fn log(&mut self, place: usize, log_ns: i64) {
+        if self.logged.len() >= MOST_LOGGED {
+            let mut number = 0_usize;
+            self.logged.retain(|_| {
+                number += 1;
+                number % 2 == 1
+            });
+        }
+        self.logged.push((place, log_ns));
+    }
+
+    /// Whether all is done that its messages say of the samples.
+    ///
+    /// # Errors
+    /// What is not.
+    pub(super) fn heeded(&self) -> Result<(), Refusal> {
+        self.refused.clone().map_or(Ok(()), Err)
+    }
+
+    /// Takes that messages say what is not done here.
+    pub(super) fn refuse(&mut self, refusal: Refusal) {
+        self.refused.get_or_insert(refusal);
     }
 
     /// Takes a unit that a message states.
@@ -210,6 +274,16 @@ impl Column {
         if let (Some(own), Some(more)) = (&mut self.extent, &mut other.extent) {
             own.append(std::mem::take(more));
         }
+        if let Some(more) = other.ticks.take() {
+            let ticks = self.ticks.get_or_insert_with(|| SentTimes { each: Vec::new(), ..more.clone() });
+            ticks.each.resize(before, f64::NAN);
+            ticks.each.extend(more.each);
+        }
+        for (place, log_ns) in other.logged.drain(..) {
+            self.log(before + place, log_ns);
+        }
+        self.next_logged = self.next_logged.max(before + std::mem::take(&mut other.next_logged));
+        self.refused = self.refused.take().or(other.refused.take());
         let StampCounts { good, bad } = std::mem::take(&mut other.stamps);
         self.stamps.good += good;
         self.stamps.bad += bad;
@@ -222,7 +296,8 @@ impl Column {
         if let (false, Some(extent)) = (self.is_empty(), &mut self.extent) {
             let kept = Extent { digests: Vec::new(), is_without_times: true, ..std::mem::take(extent) };
             let (units, rates) = (std::mem::take(&mut self.units), std::mem::take(&mut self.rates));
-            *self = Self { extent: Some(kept), units, rates, ..Self::new(true) };
+            let refused = self.refused.take();
+            *self = Self { extent: Some(kept), units, rates, refused, ..Self::new(true) };
         }
     }
 
@@ -255,6 +330,11 @@ impl Column {
         self.len() == 0
     }
 
+    /// Whether its messages hold samples, be they refused.
+    pub(super) fn is_there(&self) -> bool {
+        !self.is_empty() || self.refused.is_some()
+    }
+
     /// Memory of its times and samples.
     pub(super) fn held_bytes(&self) -> u64 {
         let (narrow, wide) = match &self.samples {
@@ -285,75 +365,6 @@ impl Column {
         };
         let other = others.iter().find(is_other)?;
         Some([first, other])
-    }
-
-    /// What is said of its rate but by its stamps.
-    fn claims(&self, cask_hz: Option<f64>) -> Result<Claims, Refusal> {
-        let is_rate = |rate: &StatedRate| rate.hz.is_finite() && rate.hz > 0.0;
-        if let (None, Some(StatedRate { name, hz, .. })) =
-            (cask_hz, self.rates.iter().find(|rate| !is_rate(rate)))
-        {
-            return Err(Refusal::new(
-                format!("its messages state a sample rate of {} Hz ({name})", shown::short(*hz)),
-                "write the true `sample_rate_hz` in this channel of the cask file: it overrides the recording",
-            ));
-        }
-        let nearest = self.rates.iter().map(|rate| rate.level).min().unwrap_or(0);
-        let mut rates: Vec<&StatedRate> = self.rates.iter().collect();
-        rates.sort_by_key(|rate| rate.level);
-        let statement = |rate: &StatedRate| {
-            let stated = Statement::of(rate.name, &rate.hz.to_string(), Meaning::Rate(1.0));
-            stated.map(|stated| stated.at(rate.level - nearest))
-        };
-        let stated = rates.into_iter().filter_map(statement).collect();
-        Ok(Claims { cask_hz, stated, ..Claims::default() })
-    }
-
-    /// Its blocks, times counted from `zero_ns`.
-    fn blocks_from(&self, zero_ns: i64) -> Vec<Block> {
-        let block =
-            |block: &RawBlock| Block { start_s: seconds_from(block.time_ns, zero_ns), count: block.count };
-        self.blocks.iter().map(block).collect()
-    }
-
-    /// The samples on a uniform base, times counted from `zero_ns`; `cask_hz` overrides what the messages say.
-    ///
-    /// # Errors
-    /// Rate or times that give no base.
-    pub(super) fn uniform(self, zero_ns: i64, cask_hz: Option<f64>) -> Result<Uniform, TimeBaseError> {
-        if self.blocks.is_empty() {
-            // A rate in messages of single numbers is that of something else, such as blocks beside them.
-            let times_s: Vec<f64> =
-                self.times_ns.iter().map(|&time_ns| seconds_from(time_ns, zero_ns)).collect();
-            return time_base::from_times(&times_s, self.samples, cask_hz);
-        }
-        let claims = self.claims(cask_hz)?;
-        time_base::place_blocks(&self.blocks_from(zero_ns), &claims, self.samples)
-    }
-
-    /// As [`Column::uniform`] as far as a listing shows it, which holds no samples of blocks.
-    ///
-    /// # Errors
-    /// As that.
-    pub(super) fn timing(self, zero_ns: i64) -> Result<Timing, TimeBaseError> {
-        let Some(extent) = self.extent.as_ref().filter(|_| !self.blocks.is_empty()) else {
-            let uniform = self.uniform(zero_ns, None)?;
-            let (count, gaps) = (uniform.samples.len(), uniform.gaps.len());
-            return Ok(Timing {
-                start_s: uniform.start_s,
-                sample_rate_hz: uniform.sample_rate_hz,
-                count,
-                gaps,
-            });
-        };
-        let content = BlockContent { samples: &self.samples, digests: Some(&extent.digests) };
-        let laid = time_base::lay_blocks(&self.blocks_from(zero_ns), &self.claims(None)?, &content)?;
-        Ok(Timing {
-            start_s: laid.start_s,
-            sample_rate_hz: laid.sample_rate_hz,
-            count: laid.count(),
-            gaps: laid.gap_count() + extent.holes,
-        })
     }
 }
 

@@ -11,7 +11,7 @@ fn number(value: f64) -> Value {
 }
 
 fn stamp(ns: i64) -> MessageTime {
-    MessageTime { ns, origin: TimeOrigin::Stamp }
+    MessageTime { ns, origin: TimeOrigin::Stamp, log_ns: ns }
 }
 
 /// What the messages `range` of a topic give: numbers, blocks from `blocks_from` on.
@@ -22,7 +22,7 @@ fn take(column: &mut Column, range: std::ops::Range<i64>, blocks_from: i64) {
         #[allow(clippy::cast_precision_loss, reason = "a handful")]
         let value = 0.1 * i as f64;
         let value = if i < blocks_from { number(value) } else { block(&[value, f64::NAN, -value]) };
-        column.take(value, MessageTime { ns: i, origin });
+        column.take(value, MessageTime { ns: i, origin, log_ns: i }, None);
     }
 }
 
@@ -44,9 +44,9 @@ fn a_column_in_two_parts_is_the_column_in_one() {
 #[test]
 fn numbers_beside_arrays_are_blocks_of_one() {
     let mut column = Column::new(false);
-    column.take(number(1.0), stamp(0));
-    column.take(block(&[2.0, 3.0]), stamp(1));
-    column.take(number(4.0), stamp(2));
+    column.take(number(1.0), stamp(0), None);
+    column.take(block(&[2.0, 3.0]), stamp(1), None);
+    column.take(number(4.0), stamp(2), None);
     let lengths: Vec<usize> = column.blocks.iter().map(|block| block.count).collect();
     assert_eq!((lengths, column.samples), (vec![1, 2, 1], Samples::F64(vec![1.0, 2.0, 3.0, 4.0])));
 }
@@ -56,8 +56,8 @@ fn a_clock_that_starts_at_zero_is_no_missing_stamp() {
     let column = |step_ns: i64| {
         let mut column = Column::new(false);
         let zero = MessageTime::of(&Value::Stamp(0), 1_700_000_000_000_000_000);
-        column.take(block(&[1.0, 2.0]), zero);
-        column.take(block(&[3.0, 4.0]), stamp(step_ns));
+        column.take(block(&[1.0, 2.0]), zero, None);
+        column.take(block(&[3.0, 4.0]), stamp(step_ns), None);
         column.settle_clock();
         column
     };
@@ -70,7 +70,7 @@ fn a_clock_that_starts_at_zero_is_no_missing_stamp() {
 #[test]
 fn a_zero_stamp_falls_back_to_the_log_time() {
     let of = |stamp| MessageTime::of(&stamp, 7);
-    assert_eq!(of(Value::Stamp(0)), MessageTime { ns: 7, origin: TimeOrigin::LogTimeForBadStamp });
-    assert_eq!(of(Value::Stamp(3)), stamp(3));
-    assert_eq!(of(Value::Missing), MessageTime { ns: 7, origin: TimeOrigin::LogTime });
+    assert_eq!(of(Value::Stamp(0)), MessageTime { ns: 7, origin: TimeOrigin::LogTimeForBadStamp, log_ns: 7 });
+    assert_eq!(of(Value::Stamp(3)), MessageTime { log_ns: 7, ..stamp(3) });
+    assert_eq!(of(Value::Missing), MessageTime { ns: 7, origin: TimeOrigin::LogTime, log_ns: 7 });
 }

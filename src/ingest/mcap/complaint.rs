@@ -2,10 +2,11 @@
 
 use super::path;
 use super::scanned::Scanned;
-use super::topic::{Gathered, Topic};
-use crate::data::{ChannelSpec, Finding, McapFinding, Source, two_units};
+use super::topic::{Channels, Gathered, Topic};
+use crate::data::{ChannelSpec, Finding, McapFinding, RowsOf, Source, two_units};
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::time_base::TimeBaseError;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// No topic of the file fits the source.
@@ -36,13 +37,65 @@ pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scann
     fault(format!("the recording has no topic for the source {}", spec.source), mend)
 }
 
+/// Several channels or sensors gave what the source names, by their numbers and rows, or none the ones that are asked for.
+pub(super) fn several(
+    path: &Path,
+    spec: &ChannelSpec,
+    topic: &str,
+    (numbers, rows): (BTreeSet<u16>, Vec<&RowsOf>),
+) -> IngestError {
+    /// More no longer fit a terminal's few lines.
+    const HANDFUL: usize = 8;
+    let listed = |words: Vec<String>| {
+        let more = if words.len() > HANDFUL { " …" } else { "" };
+        words.into_iter().take(HANDFUL).collect::<Vec<_>>().join(", ") + more
+    };
+    let source = &spec.source;
+    let field = path::field_in(source, topic).unwrap_or_default();
+    let asked = match (source, &spec.rows) {
+        (_, Some(rows)) => format!("{source} has no messages {rows} alone"),
+        (Source::TopicField { channel: Some(_), .. }, _) => format!("there are no samples of {source} alone"),
+        _ => format!("{source} holds the samples of several sensors, which are never one signal"),
+    };
+    let channels = listed(numbers.iter().map(|number| format!("channel = {number}")).collect());
+    if numbers.len() > 1 {
+        return error::source(
+            path,
+            &spec.name,
+            format!("{asked}: {} MCAP channels write on the topic {topic}", numbers.len()),
+            format!(
+                "name one: source = {{ topic = {topic:?}, field = \"{field}\", channel = … }} with one of {channels}"
+            ),
+        );
+    }
+    let mend = match rows[..] {
+        [] => format!("its messages name no sensor: take `where` out, or name one of {channels}"),
+        _ => format!(
+            "name one in this [[channel]]: {}",
+            listed(rows.iter().map(ToString::to_string).collect())
+        ),
+    };
+    error::source(path, &spec.name, asked, mend)
+}
+
+/// The field that is named as the time is in no message.
+pub(super) fn no_named_time(path: &Path, spec: &ChannelSpec, time: &str) -> IngestError {
+    error::source(
+        path,
+        &spec.name,
+        format!("no message of {} holds a time that rises in the field {time:?}", spec.source),
+        "name the field of its messages that holds their time, `time = \"log_time\"` for the time of logging, or take `time` out",
+    )
+}
+
 /// The topic is there, and gave no samples.
 pub(super) fn no_samples(
     path: &Path,
     spec: &ChannelSpec,
-    (topic, gathered): &(Topic, Gathered),
+    (topic, channels): &Channels,
     scanned: &Scanned,
 ) -> IngestError {
+    let gathered = &channels[0].1;
     let fault = |problem: String, mend: &str| error::source(path, &spec.name, problem, mend);
     let Topic { name, leaves, unreadable, .. } = topic;
     let Gathered { messages, malformed, first_problem, leaves: seen, .. } = gathered;
@@ -50,7 +103,7 @@ pub(super) fn no_samples(
     if let Some(reason) = unreadable {
         return fault(
             format!("the topic {name} cannot be read: {reason}"),
-            "convert the recording, or record it again, with one of these encodings",
+            "convert the recording, or record it again, in a form that is read",
         );
     }
     if *messages == 0 {
@@ -63,7 +116,13 @@ pub(super) fn no_samples(
             "check that the source names the samples, and that the topic's schema is the one its messages were written with",
         );
     }
-    let there: Vec<String> = leaves.iter().chain(seen).map(|leaf| leaf.path.clone()).collect();
+    let signals = leaves.iter().chain(seen).filter(|leaf| leaf.is_signal);
+    let mut there: Vec<String> = Vec::new();
+    for leaf in signals {
+        if !there.contains(&leaf.path) {
+            there.push(leaf.path.clone());
+        }
+    }
     if there.contains(&field) {
         return fault(
             format!("the field {field} holds no samples in any of the {messages} messages of {name}"),

@@ -4,13 +4,14 @@ use super::cdr::{self, Cdr};
 use super::descriptors;
 use super::json::{self, Json};
 use super::path::FieldPath;
-use super::plan::{Decode, Leaf, Plan, Slots};
+use super::plan::{AskedField, Decode, Leaf, Plan, Slots};
 use super::protobuf::{self, Protobuf};
 use super::ros_type;
 
 /// Decodes every leaf of a message.
 fn decode<D: Decode>(leaves: &[Leaf], decoder: impl FnOnce(&Plan) -> D, message: &[u8]) {
-    let plan = Plan::new(&leaves.iter().filter_map(|leaf| FieldPath::parse(&leaf.path)).collect::<Vec<_>>());
+    let asked = leaves.iter().filter_map(|leaf| FieldPath::parse(&leaf.path)).map(AskedField::plain);
+    let plan = Plan::new(&asked.collect::<Vec<_>>(), leaves);
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     let _ = decoder(&plan).decode(message, &mut slots);

@@ -10,6 +10,9 @@ use super::plan::{
 };
 use crate::data::Samples;
 use crate::ingest::number;
+use jiff::Timestamp;
+use jiff::civil::DateTime;
+use jiff::tz::TimeZone;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::Value as Tree;
@@ -136,7 +139,7 @@ impl JsonWalk<'_> {
                 return Err(WalkFault::Grammar);
             }
             at = past_spaces(text, at + 1);
-            at += match node.field(&key) {
+            at += match node.field(&key).or_else(|| node.below(&key)) {
                 Some(child) => self.value(child, &text[at..])?,
                 None => first::<IgnoredAny>(&text[at..])?.1,
             };
@@ -171,7 +174,7 @@ impl JsonWalk<'_> {
             }
         }
         if let (Some(slot), Tree::String(text)) = (node.slot(self.wants, Want::Text), value) {
-            self.slots.set(slot, Value::Text(text.clone()));
+            self.slots.set_text(slot, text.as_bytes());
         }
         if let (Some(slot), Some(stamp)) = (node.slot(self.wants, Want::Stamp), stamp(value)) {
             self.slots.set(slot, stamp);
@@ -193,13 +196,14 @@ fn stamp(value: &Tree) -> Option<Value> {
     let part = |names: &[&str]| names.iter().find_map(|name| value.get(name)).and_then(whole);
     let ns = match value {
         Tree::String(text) => {
-            let stamp = text.parse::<jiff::Timestamp>().ok();
+            // Without an offset from UTC differences are as good.
+            let utc = || TimeZone::UTC.to_timestamp(text.parse::<DateTime>().ok()?).ok();
+            let stamp = text.parse::<Timestamp>().ok().or_else(utc);
             stamp.and_then(|stamp| i64::try_from(stamp.as_nanosecond()).ok())
         }
         Tree::Object(_) => {
             part(&SECONDS_NAMES).map(|seconds| unix_ns(seconds, part(&NANOSECONDS_NAMES).unwrap_or(0)))
         }
-        Tree::Number(_) => None,
         _ => return None,
     };
     Some(ns.map_or(Value::BadStamp, Value::Stamp))
@@ -323,6 +327,18 @@ pub(super) fn leaves(message: &[u8]) -> Vec<Leaf> {
     found
 }
 
+/// Whether a message holds a list of records, each with numbers: none of its fields is a signal.
+pub(super) fn holds_records(message: &[u8]) -> bool {
+    fn has_records(value: &Tree, depth: usize) -> bool {
+        match value {
+            Tree::Array(elements) => elements.iter().take(8).any(Tree::is_object),
+            Tree::Object(fields) => depth > 0 && fields.values().any(|value| has_records(value, depth - 1)),
+            _ => false,
+        }
+    }
+    serde_json::from_slice(message).is_ok_and(|value| has_records(&value, DEEPEST))
+}
+
 fn descend(value: &Tree, path: &str, depth: usize, found: &mut Vec<Leaf>) {
     // One more than are listed tells that there are more.
     if found.len() > MOST_LEAVES || path.len() > LONGEST_PATH_BYTES {
@@ -330,12 +346,15 @@ fn descend(value: &Tree, path: &str, depth: usize, found: &mut Vec<Leaf>) {
     }
     match value {
         Tree::Number(_) if !path.is_empty() => {
-            found.push(Leaf { path: path.to_owned(), is_array: false });
+            found.push(Leaf { path: path.to_owned(), is_array: false, is_signal: true });
+        }
+        Tree::String(_) if !path.is_empty() => {
+            found.push(Leaf { path: path.to_owned(), is_array: false, is_signal: false });
         }
         Tree::Array(elements) if !path.is_empty() => {
             let mut numbers = elements.iter().filter(|element| !element.is_null()).take(8).peekable();
             if numbers.peek().is_some() && numbers.all(Tree::is_number) {
-                found.push(Leaf { path: path.to_owned(), is_array: true });
+                found.push(Leaf { path: path.to_owned(), is_array: true, is_signal: true });
             }
         }
         Tree::Object(fields) if depth > 0 && !is_stamp(fields) => {

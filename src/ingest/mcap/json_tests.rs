@@ -2,17 +2,18 @@
 
 use super::*;
 use crate::ingest::mcap::path::FieldPath;
+use crate::ingest::mcap::plan::AskedField;
 use proptest::prelude::*;
 
 fn decoded(field: &str, text: &str) -> Result<(Value, Value, Option<f64>, Option<String>), String> {
-    let plan = Plan::new(&[FieldPath::parse(field).unwrap()]);
+    let plan = Plan::new(&[AskedField::plain(FieldPath::parse(field).unwrap())], &[]);
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     Json::new(&plan).decode(text.as_bytes(), &mut slots)?;
     let target = &plan.targets[0];
     let (stamp, rate, unit) = (
         slots.stamp(target),
-        slots.rates(target).next().map(|rate| rate.hz),
+        slots.rates(target).next().map(|rate| rate.value),
         slots.unit(target).map(String::from),
     );
     Ok((slots.samples(target), stamp, rate, unit))
@@ -48,7 +49,8 @@ fn null_and_bare_nan_are_nan_and_words_are_an_error() {
 
 #[test]
 fn one_element_and_the_whole_array_can_both_be_wanted() {
-    let plan = Plan::new(&["s[1]", "s"].map(|field| FieldPath::parse(field).unwrap()));
+    let plan =
+        Plan::new(&["s[1]", "s"].map(|field| AskedField::plain(FieldPath::parse(field).unwrap())), &[]);
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     Json::new(&plan).decode(br#"{"s":[7,8]}"#, &mut slots).unwrap();
@@ -59,14 +61,20 @@ fn one_element_and_the_whole_array_can_both_be_wanted() {
 #[test]
 fn leaves_are_the_numbers_without_the_stamp() {
     let text = br#"{"timestamp":{"sec":1,"nsec":2},"a":{"b":1},"s":[1.5,null],"w":"x","o":[{"p":1}]}"#;
-    let paths: Vec<(String, bool)> =
-        leaves(text).into_iter().map(|leaf| (leaf.path, leaf.is_array)).collect();
+    let paths: Vec<(String, bool)> = leaves(text)
+        .into_iter()
+        .filter(|leaf| leaf.is_signal)
+        .map(|leaf| (leaf.path, leaf.is_array))
+        .collect();
     assert_eq!(paths, [("a.b".to_owned(), false), ("s".to_owned(), true)]);
 }
 
 /// What the walk along the text and a tree of all its values make of the same message.
 fn both(text: &str) -> (Option<String>, Option<String>) {
-    let plan = Plan::new(&["s", "a.b", "s2[1]"].map(|field| FieldPath::parse(field).unwrap()));
+    let plan = Plan::new(
+        &["s", "a.b", "s2[1]"].map(|field| AskedField::plain(FieldPath::parse(field).unwrap())),
+        &[],
+    );
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     let walked = Json::new(&plan).walk(text.as_bytes(), &mut slots).ok();

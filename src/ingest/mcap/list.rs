@@ -4,7 +4,7 @@ use super::column::{CLOCK_IS_SET_NS, Column, seconds_from};
 use super::extent::Extent;
 use super::path::source_text;
 use super::scanned::Scanned;
-use super::topic::{Field, Gathered, Topic};
+use super::topic::{Channels, Field, Gathered, Sensor, Topic};
 use super::topics::Asked;
 use super::walk::walk;
 use crate::data::{Finding, ListedChannel, Listing, McapFinding, RecordingFormat};
@@ -27,16 +27,29 @@ pub(in crate::ingest) fn list(
     let walked = walk(path, limits, Asked::Everything, progress)?;
     let unlisted = walked.topics.unlisted();
     let counts = walked.scanned.counts.named(walked.topics.schema_count(), walked.topics.channel_count());
-    let (scanned, topics) = walked.finish();
-    let columns = topics.iter().flat_map(|(_, gathered)| &gathered.columns);
-    let zero_ns = columns.filter_map(Column::span_ns).map(|(from, _)| from).min();
+    let (scanned, mut topics) = walked.finish();
     let mut issues = scanned.findings(None);
-    let undecoded = topics.iter().filter_map(|(topic, gathered)| gathered.undecoded(Some(&topic.name)));
-    issues.extend(undecoded.map(Finding::from));
+    for (topic, gathered) in each(&mut topics) {
+        issues.extend(gathered.undecoded(Some(&topic.name)).map(Finding::from));
+        for sensor in &mut gathered.sensors {
+            for (field, column) in topic.fields.iter().zip(&mut sensor.columns) {
+                let source = source_text(&topic.name, &field.path.to_string());
+                if let Err(refusal) = column.settle_ticks(&source, None) {
+                    column.refuse(refusal);
+                }
+            }
+        }
+    }
+    let columns = each(&mut topics).flat_map(|(_, gathered)| gathered.columns());
+    let zero_ns = columns.filter_map(Column::span_ns).map(|(from, _)| from).min();
     issues.extend(unlisted);
     let mut channels = Vec::new();
-    for (topic, gathered) in topics {
-        listed(&topic, gathered, zero_ns, &mut channels, &mut issues);
+    for (topic, gathered) in &mut topics {
+        let is_one = gathered.len() == 1;
+        for (number, gathered) in gathered {
+            let number = Some(*number).filter(|_| !is_one);
+            listed((topic, number), std::mem::take(gathered), zero_ns, &mut channels, &mut issues);
+        }
     }
     Ok(Listing {
         schema: "dropcheck.inspect/1",
@@ -70,15 +83,24 @@ fn facts(scanned: &Scanned, zero_ns: Option<i64>) -> BTreeMap<String, String> {
     .collect()
 }
 
-/// Adds a line for each field of a topic, or one that says why there is none, and what reading would refuse.
+/// Each channel with its topic.
+fn each(topics: &mut [Channels]) -> impl Iterator<Item = (&Topic, &mut Gathered)> {
+    topics.iter_mut().flat_map(|(topic, channels)| {
+        let topic = &*topic;
+        channels.iter_mut().map(move |(_, gathered)| (topic, gathered))
+    })
+}
+
+/// Adds a line for each field of a topic and each sensor, or one that says why there is none, and what reading would refuse; `number` is
+/// that of the channel, where several write on the topic.
 fn listed(
-    topic: &Topic,
+    (topic, number): (&Topic, Option<u16>),
     gathered: Gathered,
     zero_ns: Option<i64>,
     channels: &mut Vec<ListedChannel>,
     issues: &mut Vec<Finding>,
 ) {
-    let Gathered { messages, mut columns, .. } = gathered;
+    let Gathered { messages, mut sensors, .. } = gathered;
     if topic.fields.is_empty() {
         let none = || (messages > 0).then(|| "its messages hold no numbers".to_owned());
         channels.push(ListedChannel {
@@ -89,11 +111,24 @@ fn listed(
         });
         return;
     }
-    columns.resize_with(topic.fields.len(), || Column::new(true));
+    if sensors.is_empty() {
+        sensors.push(Sensor { rows: None, columns: Vec::new() });
+    }
+    let has_several = sensors.len() > 1;
     let (mut said_units, mut said) = (false, Vec::new());
-    for (Field { path, is_array, unit }, column) in topic.fields.iter().zip(columns) {
+    let columns = sensors.into_iter().flat_map(|Sensor { rows, mut columns }| {
+        columns.resize_with(topic.fields.len(), || Column::new(true));
+        let fields = topic.fields.iter().zip(columns);
+        fields.map(move |(field, column)| (rows.clone().filter(|_| has_several), field, column))
+    });
+    for (rows, Field { path, is_array, unit }, column) in columns {
         let Extent { samples, range, is_without_times, .. } = column.extent.clone().unwrap_or_default();
-        let source = source_text(&topic.name, &path.to_string());
+        let source = match number {
+            Some(number) => {
+                format!("{{ topic = {:?}, field = \"{path}\", channel = {number} }}", topic.name)
+            }
+            None => source_text(&topic.name, &path.to_string()),
+        };
         if let Some(units) = column.unit_change()
             && !said_units
         {
@@ -101,7 +136,12 @@ fn listed(
             issues.push(McapFinding::TwoUnits { first, other, source: Some(source.clone()) }.into());
             said_units = true;
         }
+        if let Some(drift) = column.log_drift().filter(|drift| !said.contains(&drift.message)) {
+            said.push(drift.message.clone());
+            issues.push(drift.on(&source));
+        }
         let mut channel = ListedChannel {
+            rows,
             samples: Some(samples),
             messages: Some(messages),
             unit: column.unit().or(*unit).map(str::to_owned),
@@ -128,6 +168,7 @@ fn listed(
 /// # Errors
 /// Why it would refuse them; too few samples are no fault of a recording.
 fn timed(channel: &mut ListedChannel, column: Column, zero_ns: Option<i64>) -> Result<(), TimeBaseError> {
+    column.heeded()?;
     let (Some((first_ns, _)), Some(zero_ns)) = (column.span_ns(), zero_ns) else { return Ok(()) };
     channel.start_s = Some(seconds_from(first_ns, zero_ns));
     let timing = match column.timing(zero_ns) {

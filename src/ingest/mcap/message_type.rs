@@ -127,6 +127,16 @@ impl MessageType {
         }
     }
 
+    /// The unit that the type of the messages, or of one within them, fixes for a field.
+    pub(super) fn implied_unit(&self, schema_name: &str, field: &str) -> Option<&'static str> {
+        let own = unit_of_type(schema_name, field);
+        let Self::Cdr(fields) = self else { return own };
+        // A message may hold another with its own meaning: `imu` of the type sensor_msgs/Imu.
+        let (outer, rest) = field.split_once('.')?;
+        let inner = fields.iter().find(|field| field.name == outer);
+        own.or_else(|| unit_of_type(inner?.type_name.as_deref()?, rest))
+    }
+
     /// A decoder for the fields of `plan`.
     pub(super) fn decoder(&self, plan: &Plan) -> Box<dyn Decode> {
         match self {
@@ -137,9 +147,9 @@ impl MessageType {
     }
 }
 
-/// The unit that a message type fixes for a field: ROS messages are in SI units (REP 103).
-pub(super) fn implied_unit(schema_name: &str, field: &str) -> Option<&'static str> {
-    let (package, name) = (schema_name.split('/').next()?, schema_name.rsplit('/').next()?);
+/// The unit that the message type of a field's own message fixes for it: ROS messages are in SI units (REP 103).
+fn unit_of_type(type_name: &str, field: &str) -> Option<&'static str> {
+    let (package, name) = (type_name.split('/').next()?, type_name.rsplit('/').next()?);
     let is_accel = package == "geometry_msgs" && name.starts_with("Accel");
     let is_imu = package == "sensor_msgs" && name == "Imu";
     let has = |step: &str| field.split('.').any(|part| part == step);
@@ -168,7 +178,7 @@ mod tests {
             ("sensor_msgs/msg/Imu", "orientation.w", None),
             ("my_msgs/msg/Imu", "linear_acceleration.z", None),
         ] {
-            assert_eq!(implied_unit(schema, field), unit, "{schema} {field}");
+            assert_eq!(unit_of_type(schema, field), unit, "{schema} {field}");
         }
     }
 }

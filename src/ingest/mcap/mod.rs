@@ -1,5 +1,6 @@
 //! MCAP files to raw channels and listings: JSON, protobuf and ROS 2 messages, whole files and what is left of others.
 
+mod beside;
 mod cdr;
 mod chunk;
 mod column;
@@ -14,12 +15,14 @@ mod message_type;
 mod numbers;
 mod path;
 mod plan;
+mod planning;
 mod protobuf;
 mod read;
 mod records;
 mod ros_type;
 mod scanned;
 mod summary;
+mod summed;
 mod topic;
 mod topics;
 mod walk;

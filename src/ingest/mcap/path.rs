@@ -47,6 +47,14 @@ impl FieldPath {
         Self(steps)
     }
 
+    /// The name of the field.
+    pub(super) fn last_name(&self) -> Option<&str> {
+        self.0
+            .iter()
+            .rev()
+            .find_map(|step| if let Step::Name(name) = step { Some(name.as_str()) } else { None })
+    }
+
     /// The messages that enclose the field, the nearest first.
     pub(super) fn enclosing(&self) -> impl Iterator<Item = Self> + '_ {
         (0..self.0.len())
@@ -72,7 +80,7 @@ impl fmt::Display for FieldPath {
 /// The field that `source` means if it means `topic`, with or without the leading slash; `None` where it means another.
 pub(super) fn field_in(source: &Source, topic: &str) -> Option<FieldPath> {
     match source {
-        Source::TopicField { topic: wanted, field } => {
+        Source::TopicField { topic: wanted, field, .. } => {
             (bare(wanted) == bare(topic)).then(|| FieldPath::parse(field)).flatten()
         }
         Source::Path(path) => {
@@ -119,7 +127,7 @@ mod tests {
         assert_eq!(field_in(&source, "/a.b").unwrap().0, [name("c")]);
         assert_eq!(field_in(&source, "/a.b.c"), None);
         assert_eq!(field_in(&source, "/b"), None);
-        let apart = Source::TopicField { topic: "/a.b".into(), field: "c".into() };
+        let apart = Source::TopicField { topic: "/a.b".into(), field: "c".into(), channel: None };
         assert_eq!(field_in(&apart, "/a"), None);
         assert_eq!(field_in(&apart, "/a.b").unwrap().0, [name("c")]);
     }

@@ -2,9 +2,13 @@
 
 use super::path::{FieldPath, Step};
 use crate::data::Samples;
+use crate::ingest::statement::Statement;
+use crate::ingest::times::Scale;
+use crate::ingest::vocabulary::Meaning;
+use std::sync::Arc;
 
 /// Names under which a message states the time of its first sample; nanoseconds follow as a structure.
-const STAMP_NAMES: [&[&str]; 3] = [&["timestamp"], &["header", "stamp"], &["stamp"]];
+pub(super) const STAMP_NAMES: [&[&str]; 3] = [&["timestamp"], &["header", "stamp"], &["stamp"]];
 /// Names under which a message states the rate of its samples, Hz.
 pub(super) const RATE_NAMES: [&str; 8] = [
     "sample_rate_hz",
@@ -18,7 +22,7 @@ pub(super) const RATE_NAMES: [&str; 8] = [
     "sampleRate",
 ];
 /// Names under which a message states their unit.
-const UNIT_NAMES: [&str; 2] = ["unit", "units"];
+pub(super) const UNIT_NAMES: [&str; 2] = ["unit", "units"];
 /// Names of the whole seconds of a time.
 pub(super) const SECONDS_NAMES: [&str; 4] = ["sec", "seconds", "secs", "s"];
 /// Names of the nanoseconds of a time.
@@ -51,6 +55,11 @@ impl Node {
             .iter()
             .find(|(step, _)| matches!(step, Step::Name(own) if own == name))
             .map(|(_, node)| node)
+    }
+
+    /// The field that a key with dots means, whose path reads like that of a field within others.
+    pub(super) fn below(&self, key: &str) -> Option<&Self> {
+        if key.contains('.') { key.split('.').try_fold(self, |node, name| node.field(name)) } else { None }
     }
 
     /// The child element `index`.
@@ -87,26 +96,115 @@ impl Node {
     }
 }
 
+/// What a field says of the samples beside it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Says {
+    /// Their time, as a number that counts so.
+    Time(Scale),
+    /// By what they are to be multiplied.
+    Scale,
+    /// What is to be added to them.
+    Offset,
+    /// A conversion that is not made here.
+    Conversion,
+    /// How many numbers of the array are samples.
+    Count,
+    /// How many signals stand in the array by turns.
+    Turns,
+    /// Which sensor they are of.
+    Sensor,
+    /// Their rate or interval.
+    Rate(Meaning),
+    /// The unit of a rate.
+    Unit,
+}
+
+/// A field that says something of the samples beside it.
+#[derive(Debug, Clone)]
+pub(super) struct Beside {
+    pub(super) slot: usize,
+    pub(super) says: Says,
+    /// Its path in the message.
+    pub(super) field: String,
+}
+
+impl Beside {
+    /// What numbers in it count, where it is a time.
+    pub(super) fn scale(&self) -> Scale {
+        if let Says::Time(scale) = self.says { scale } else { Scale::Open }
+    }
+}
+
 /// The slots that belong to one wanted field, each list by preference.
 #[derive(Debug, Clone)]
 pub(super) struct Target {
     /// Its samples.
     pub(super) value: usize,
-    stamps: Vec<usize>,
+    pub(super) stamps: Vec<usize>,
     /// Slots with what they state, those of a message one after another.
-    rates: Vec<(usize, StatedRate)>,
-    units: Vec<usize>,
+    pub(super) rates: Vec<SlotOfRate>,
+    pub(super) units: Vec<usize>,
+    /// What else stands beside its samples, the nearest first.
+    pub(super) beside: Vec<Beside>,
 }
 
-/// A rate that a message states.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A field that is asked for, with what the cask file says of it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct AskedField {
+    pub(super) path: FieldPath,
+    /// The fields that may be its time, where the cask file names it; none for the log time.
+    pub(super) times: Option<Vec<FieldPath>>,
+    /// The field that says which sensor a message is of, where the cask file names it.
+    pub(super) sensor: Option<FieldPath>,
+}
+
+impl AskedField {
+    /// Whether the field at `path` may say which sensor a message is of: the one that the cask file names, be it by its last name.
+    pub(super) fn may_be_sensor(&self, path: &FieldPath) -> bool {
+        self.sensor.as_ref().is_none_or(|named| named.0.len() == 1 && named.last_name() == path.last_name())
+    }
+
+    /// Of which nothing more is said.
+    pub(super) fn plain(path: FieldPath) -> Self {
+        Self { path, times: None, sensor: None }
+    }
+}
+
+/// A slot that may hold a rate or an interval, and that of the unit beside it.
+#[derive(Debug, Clone)]
+pub(super) struct SlotOfRate {
+    pub(super) number: usize,
+    pub(super) unit: Option<usize>,
+    pub(super) stated: StatedRate,
+}
+
+/// A rate or an interval that a message states.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct StatedRate {
     /// Of its field.
-    pub(super) name: &'static str,
+    pub(super) name: Arc<str>,
+    pub(super) meaning: Meaning,
     /// How many messages lie between that field and the samples.
     pub(super) level: usize,
-    /// As it stands there.
-    pub(super) hz: f64,
+    /// As it stands there, with the unit beside it.
+    pub(super) value: f64,
+    pub(super) unit: Option<Arc<str>>,
+}
+
+impl StatedRate {
+    /// As a statement; an interval without a unit is in the one in which it agrees with the rate at which the samples came, `told_hz`, and
+    /// in seconds where it does in none.
+    pub(super) fn statement(&self, told_hz: f64) -> Option<Statement> {
+        /// Units are a thousandfold apart.
+        const ALIKE: f64 = 0.1;
+        let of =
+            |unit: &str| Statement::of(&self.name, format!("{} {unit}", self.value).trim(), self.meaning);
+        let is_bare = self.unit.is_none() && self.meaning == Meaning::Interval(1.0);
+        let is_told = |stated: &Statement| (stated.rate_hz / told_hz - 1.0).abs() < ALIKE;
+        let as_told = || ["s", "ms", "us", "ns"].into_iter().filter_map(of).find(is_told);
+        let told = if is_bare { as_told() } else { None };
+        told.or_else(|| of(self.unit.as_deref().unwrap_or_default()))
+    }
 }
 
 /// Everything to fetch from the messages of one channel.
@@ -120,33 +218,8 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// The plan for `fields`.
-    pub(super) fn new(fields: &[FieldPath]) -> Self {
-        let mut plan = Self::default();
-        for field in fields {
-            let value = plan.slot(field, Want::Numbers);
-            if let Some((Step::Index(_), array)) = field.0.split_last() {
-                // An element is taken from its array once that is read.
-                plan.slot(&FieldPath(array.to_vec()), Want::Numbers);
-            }
-            let mut target = Target { value, stamps: Vec::new(), rates: Vec::new(), units: Vec::new() };
-            for (level, message) in field.enclosing().enumerate() {
-                for names in STAMP_NAMES {
-                    let path = names.iter().fold(message.clone(), |path, name| path.then(name));
-                    target.stamps.push(plan.slot(&path, Want::Stamp));
-                }
-                target.rates.extend(RATE_NAMES.map(|name| {
-                    let stated = StatedRate { name, level, hz: f64::NAN };
-                    (plan.slot(&message.then(name), Want::Numbers), stated)
-                }));
-                target.units.extend(UNIT_NAMES.map(|name| plan.slot(&message.then(name), Want::Text)));
-            }
-            plan.targets.push(target);
-        }
-        plan
-    }
-
-    fn slot(&mut self, path: &FieldPath, want: Want) -> usize {
+    /// The slot of a field.
+    pub(super) fn slot(&mut self, path: &FieldPath, want: Want) -> usize {
         let node = self.root.at(path);
         let wants = &self.wants;
         if let Some(slot) = node.slots.iter().copied().find(|&slot| wants.get(slot) == Some(&want)) {
@@ -174,13 +247,15 @@ pub(super) enum Value {
     /// A time that could not be understood.
     BadStamp,
     /// Words.
-    Text(String),
+    Text(Arc<str>),
 }
 
 /// What a message gave, slot by slot.
 #[derive(Debug, Default)]
 pub(super) struct Slots {
     pub(super) values: Vec<Value>,
+    /// Words of earlier messages: most say the same again.
+    words: Vec<Arc<str>>,
 }
 
 impl Slots {
@@ -195,6 +270,20 @@ impl Slots {
         if let Some(place) = self.values.get_mut(slot) {
             *place = value;
         }
+    }
+
+    /// Fills one with words.
+    pub(super) fn set_text(&mut self, slot: usize, text: &[u8]) {
+        /// More words that differ change with every message.
+        const MOST_WORDS: usize = 8;
+        let known = self.words.iter().find(|known| known.as_bytes() == text).cloned();
+        let words = known.unwrap_or_else(|| {
+            let new: Arc<str> = String::from_utf8_lossy(text).into();
+            self.words.truncate(MOST_WORDS - 1);
+            self.words.insert(0, new.clone());
+            new
+        });
+        self.set(slot, Value::Text(words));
     }
 
     /// Fills the slots of single elements from the array in `array_slot`.
@@ -213,9 +302,13 @@ impl Slots {
         }
     }
 
-    /// Takes the samples of `target` out of their slot.
+    /// The samples of `target`, an array out of its slot; a number may say something of others.
     pub(super) fn samples(&mut self, target: &Target) -> Value {
-        self.values.get_mut(target.value).map(std::mem::take).unwrap_or_default()
+        match self.values.get_mut(target.value) {
+            Some(number @ Value::Number { .. }) => number.clone(),
+            Some(value) => std::mem::take(value),
+            None => Value::Missing,
+        }
     }
 
     /// The stamp that stands nearest to the field of `target`; `Missing` where none does.
@@ -225,16 +318,20 @@ impl Slots {
 
     /// The rates that the message states for the field of `target`, the nearest first, whatever their values.
     pub(super) fn rates<'a>(&'a self, target: &'a Target) -> impl Iterator<Item = StatedRate> + 'a {
-        target.rates.iter().filter_map(|&(slot, stated)| match self.values.get(slot) {
-            Some(Value::Number { value, .. }) => Some(StatedRate { hz: *value, ..stated }),
-            _ => None,
+        target.rates.iter().filter_map(|rate| {
+            let Some(Value::Number { value, .. }) = self.values.get(rate.number) else { return None };
+            let unit = match rate.unit.and_then(|slot| self.values.get(slot)) {
+                Some(Value::Text(unit)) => Some(unit.clone()),
+                _ => None,
+            };
+            Some(StatedRate { value: *value, unit, ..rate.stated.clone() })
         })
     }
 
     /// The unit stated nearest to the field of `target`.
     pub(super) fn unit(&self, target: &Target) -> Option<&str> {
         target.units.iter().find_map(|&slot| match self.values.get(slot) {
-            Some(Value::Text(text)) if !text.trim().is_empty() => Some(text.as_str()),
+            Some(Value::Text(text)) if !text.trim().is_empty() => Some(&**text),
             _ => None,
         })
     }
@@ -266,11 +363,16 @@ pub(super) struct Leaf {
     pub(super) path: String,
     /// Whether it is an array.
     pub(super) is_array: bool,
+    /// Whether it may be a signal; words and single bytes are none, though they may say something of one.
+    pub(super) is_signal: bool,
 }
 
 impl Leaf {
-    /// Whether it is the rate or the covariance of other fields rather than a signal.
+    /// Whether it is words, a byte, the rate or the covariance of other fields rather than a signal.
     pub(super) fn is_about_others(&self) -> bool {
+        if !self.is_signal {
+            return true;
+        }
         let last = self.path.rsplit('.').next().unwrap_or_default();
         RATE_NAMES.contains(&last) || last.ends_with("covariance")
     }

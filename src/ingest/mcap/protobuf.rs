@@ -35,7 +35,10 @@ fn descend(message: &MessageDescriptor, path: &str, depth: usize, left: &mut usi
                 descend(&inner, &below, depth - 1, left, found);
             }
             kind if is_number(&kind) && !field.is_map() => {
-                found.push(Leaf { path: below, is_array: field.is_list() });
+                found.push(Leaf { path: below, is_array: field.is_list(), is_signal: true });
+            }
+            Kind::String if !field.is_list() => {
+                found.push(Leaf { path: below, is_array: false, is_signal: false });
             }
             _ => {}
         }
@@ -170,7 +173,7 @@ impl ProtobufMessage {
             match (&field.action, item) {
                 (Action::Numbers { slot, .. }, item) => field.numbers(*slot, &item, slots)?,
                 (Action::Text { slot }, Item::Bytes(bytes)) => {
-                    slots.set(*slot, Value::Text(String::from_utf8_lossy(bytes).into_owned()));
+                    slots.set_text(*slot, bytes);
                 }
                 (Action::Stamp { slot, seconds, nanoseconds }, Item::Bytes(bytes)) => {
                     slots.set(*slot, Value::Stamp(stamp_ns(bytes, *seconds, *nanoseconds)?));

@@ -3,6 +3,7 @@
 use super::*;
 use crate::ingest::mcap::descriptors::message_type;
 use crate::ingest::mcap::path::FieldPath;
+use crate::ingest::mcap::plan::AskedField;
 use crate::ingest::mcap::written::{ZERO_NS, block_descriptors, protobuf_block};
 use prost_reflect::prost::Message as _;
 use prost_reflect::prost_types::field_descriptor_proto::Type;
@@ -16,14 +17,14 @@ fn decoded(
     data: &[u8],
 ) -> Result<(Value, Value, Option<f64>, Option<String>), String> {
     let message = message_type("dropcheck.AccelerationBlock", &block_descriptors(is_packed))?;
-    let plan = Plan::new(&[FieldPath::parse(field).unwrap()]);
+    let plan = Plan::new(&[AskedField::plain(FieldPath::parse(field).unwrap())], &[]);
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     Protobuf::new(&plan, &message).decode(data, &mut slots)?;
     let target = &plan.targets[0];
     let (stamp, rate, unit) = (
         slots.stamp(target),
-        slots.rates(target).next().map(|rate| rate.hz),
+        slots.rates(target).next().map(|rate| rate.value),
         slots.unit(target).map(String::from),
     );
     Ok((slots.samples(target), stamp, rate, unit))

@@ -4,11 +4,11 @@ use super::column::{CLOCK_IS_SET_NS, Column, StampCounts, seconds_from};
 use super::complaint;
 use super::path;
 use super::scanned::Scanned;
-use super::topic::{Gathered, Topic};
-use super::topics::Asked;
+use super::topic::{Channels, Gathered, Sensor};
+use super::topics::{Asked, LOG_TIME};
 use super::walk::walk;
-use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding};
-use crate::ingest::error::IngestError;
+use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, RowsOf, Source};
+use crate::ingest::error::{self, IngestError};
 use crate::ingest::{Limits, Progress, RawChannel, RawRecording};
 use std::path::Path;
 
@@ -23,26 +23,37 @@ pub(in crate::ingest) fn read(
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
     let specs = &cask_file.channels;
-    let (scanned, mut topics) = walk(path, limits, Asked::Sources(specs), progress)?.finish();
+    let (scanned, mut topics) = walk(path, limits, Asked::Sources(cask_file), progress)?.finish();
     let chosen = chosen(path, specs, &topics, &scanned)?;
-    let columns = || chosen.iter().map(|&(topic, field)| &topics[topic].1.columns[field]);
+    for (spec, place) in specs.iter().zip(&chosen) {
+        let column = place.column_mut(&mut topics);
+        let settled = column.settle_ticks(&spec.source.to_string(), spec.sample_rate_hz);
+        settled.map_err(|refusal| error::refused(path, &spec.name, refusal))?;
+        if let Some(time) =
+            cask_file.time_of(spec).filter(|time| *time != LOG_TIME && column.stamps.good == 0)
+        {
+            return Err(complaint::no_named_time(path, spec, time));
+        }
+    }
+    let columns = || chosen.iter().map(|place| place.column(&topics));
     let zero_ns = columns().filter_map(Column::span_ns).map(|(from, _)| from).min().unwrap_or(0);
     let last_ns = columns().filter_map(Column::span_ns).map(|(_, to)| to).max().unwrap_or(0);
     let mut issues = scanned.findings(Some(seconds_from(last_ns, zero_ns)));
     let mut channels = Vec::with_capacity(chosen.len());
-    for (position, (spec, &(topic, field))) in specs.iter().zip(&chosen).enumerate() {
-        let (Topic { fields, .. }, gathered) = &mut topics[topic];
-        issues.extend(message_issues(spec, gathered, &gathered.columns[field]));
-        if let Some(change) = gathered.columns[field].unit_change() {
+    for (position, (spec, place)) in specs.iter().zip(&chosen).enumerate() {
+        let (topic, told) = &topics[place.topic];
+        let column = place.column(&topics);
+        issues.extend(message_issues(spec, &told[place.channel].1, column));
+        if let Some(change) = column.unit_change() {
             issues.push(complaint::unit_change(path, spec, change)?);
         }
+        let unit = column.unit().or(topic.fields[place.field].unit).map(str::to_owned);
         // A second channel on the same field gets its own copy.
-        let column = if chosen[position + 1..].contains(&(topic, field)) {
-            gathered.columns[field].clone()
+        let column = if chosen[position + 1..].contains(place) {
+            column.clone()
         } else {
-            std::mem::replace(&mut gathered.columns[field], Column::new(false))
+            std::mem::replace(place.column_mut(&mut topics), Column::new(false))
         };
-        let unit = column.unit().or(fields[field].unit).map(str::to_owned);
         let uniform = column
             .uniform(zero_ns, spec.sample_rate_hz)
             .map_err(|problem| complaint::no_base(path, spec, problem))?;
@@ -51,41 +62,100 @@ pub(in crate::ingest) fn read(
     Ok(RawRecording { channels, zero_unix_ns: (zero_ns >= CLOCK_IS_SET_NS).then_some(zero_ns), issues })
 }
 
-/// Which topic and which of its fields each channel means: of the longest topic that gave samples, else of the longest.
+/// Which samples a channel of the cask file means, by the places of their topic, channel, sensor and field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct ChosenColumn {
+    topic: usize,
+    channel: usize,
+    sensor: usize,
+    field: usize,
+}
+
+impl ChosenColumn {
+    fn column<'a>(&self, topics: &'a [Channels]) -> &'a Column {
+        &topics[self.topic].1[self.channel].1.sensors[self.sensor].columns[self.field]
+    }
+
+    fn column_mut<'a>(&self, topics: &'a mut [Channels]) -> &'a mut Column {
+        &mut topics[self.topic].1[self.channel].1.sensors[self.sensor].columns[self.field]
+    }
+}
+
+/// The samples that each channel means: of the longest topic that gave some.
 fn chosen(
     path: &Path,
     specs: &[ChannelSpec],
-    topics: &[(Topic, Gathered)],
+    topics: &[Channels],
     scanned: &Scanned,
-) -> Result<Vec<(usize, usize)>, IngestError> {
-    let has_samples = |topic: usize, field: usize| {
-        topics[topic].1.columns.get(field).is_some_and(|column| !column.is_empty())
-    };
+) -> Result<Vec<ChosenColumn>, IngestError> {
     let meant = |spec: &ChannelSpec| {
-        let place = |(at, (topic, _)): (usize, &(Topic, Gathered))| {
+        let field = |(at, (topic, _)): (usize, &Channels)| {
             let path = path::field_in(&spec.source, &topic.name)?;
             Some((at, topic.fields.iter().position(|field| field.path == path)?))
         };
-        let rank = |&(topic, field): &(usize, usize)| (has_samples(topic, field), topics[topic].0.name.len());
-        let places = topics.iter().enumerate().filter_map(place);
-        match places.max_by_key(rank) {
-            Some((topic, field)) if has_samples(topic, field) => Ok((topic, field)),
-            Some((topic, _)) => Err(complaint::no_samples(path, spec, &topics[topic], scanned)),
-            None => {
-                let names: Vec<String> = topics.iter().map(|(topic, _)| topic.name.clone()).collect();
-                Err(complaint::no_topic(path, spec, &names, scanned))
+        let fields: Vec<(usize, usize)> = topics.iter().enumerate().filter_map(field).collect();
+        let Some(&(longest, _)) = fields.iter().max_by_key(|(topic, _)| topics[*topic].0.name.len()) else {
+            let names: Vec<String> = topics.iter().map(|(topic, _)| topic.name.clone()).collect();
+            return Err(complaint::no_topic(path, spec, &names, scanned));
+        };
+        let places = fields.iter().flat_map(|&(topic, field)| with_samples(topics, topic, field));
+        let mut all: Vec<ChosenColumn> = places.collect();
+        let most = all.iter().map(|place| topics[place.topic].0.name.len()).max();
+        all.retain(|place| Some(topics[place.topic].0.name.len()) == most);
+        let picked: Vec<ChosenColumn> =
+            all.iter().copied().filter(|place| is_picked(spec, topics, place)).collect();
+        match (&picked[..], &all[..]) {
+            ([one], _) => Ok(*one),
+            (_, []) => Err(complaint::no_samples(path, spec, &topics[longest], scanned)),
+            (several, all) => {
+                let open = if several.is_empty() { all } else { several };
+                let numbers = open.iter().map(|place| topics[place.topic].1[place.channel].0);
+                let rows = open.iter().filter_map(|place| rows_of(topics, place));
+                Err(complaint::several(
+                    path,
+                    spec,
+                    &topics[longest].0.name,
+                    (numbers.collect(), rows.collect()),
+                ))
             }
         }
     };
     specs.iter().map(meant).collect()
 }
 
+/// Where a field of a topic has samples.
+fn with_samples(topics: &[Channels], topic: usize, field: usize) -> impl Iterator<Item = ChosenColumn> {
+    let channels = topics[topic].1.iter().enumerate();
+    let sensors = channels.flat_map(|(channel, (_, gathered))| {
+        gathered.sensors.iter().enumerate().map(move |(sensor, told)| (channel, sensor, told))
+    });
+    let has_samples = move |told: &Sensor| told.columns.get(field).is_some_and(Column::is_there);
+    let found = sensors.filter(move |(.., told)| has_samples(told));
+    found.map(move |(channel, sensor, _)| ChosenColumn { topic, channel, sensor, field })
+}
+
+fn rows_of<'a>(topics: &'a [Channels], place: &ChosenColumn) -> Option<&'a RowsOf> {
+    topics[place.topic].1[place.channel].1.sensors[place.sensor].rows.as_ref()
+}
+
+/// Whether a channel may mean these samples by the number of an MCAP channel and the sensor that it states.
+fn is_picked(spec: &ChannelSpec, topics: &[Channels], place: &ChosenColumn) -> bool {
+    let number = topics[place.topic].1[place.channel].0;
+    let is_channel = match &spec.source {
+        Source::TopicField { channel: Some(channel), .. } => *channel == number,
+        _ => true,
+    };
+    let is_row = |wanted: &RowsOf| rows_of(topics, place).is_some_and(|rows| rows.is == wanted.is);
+    is_channel && spec.rows.as_ref().is_none_or(is_row)
+}
+
 /// What was wrong with single messages of a channel.
 fn message_issues(spec: &ChannelSpec, gathered: &Gathered, column: &Column) -> Vec<Finding> {
     let (messages, StampCounts { good, bad }) = (gathered.messages, column.stamps);
     let log_time = (bad > 0).then_some(McapFinding::LogTime { count: bad, messages, beside_good: good > 0 });
-    let found = log_time.into_iter().chain(gathered.undecoded(None));
-    found.map(|finding| Finding::from(finding).on(&spec.name)).collect()
+    let found = log_time.into_iter().chain(gathered.undecoded(None)).map(Finding::from);
+    let drift = column.log_drift().filter(|_| spec.sample_rate_hz.is_none());
+    found.chain(drift).map(|finding| finding.on(&spec.name)).collect()
 }
 
 #[cfg(test)]

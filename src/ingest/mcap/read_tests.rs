@@ -226,7 +226,10 @@ fn a_declared_rate_overrides_and_a_zero_rate_is_an_error() {
     });
     let mut cask_file = cask_file(&["/daq/a1.samples"]);
     let error = read_bytes(&bytes, &cask_file).unwrap_err();
-    assert!(error.contains("0 Hz") && error.contains("sample_rate_hz"), "{error}");
+    assert!(
+        error.contains("sample_rate_hz = 0, which is no rate") && error.contains("sample_rate_hz"),
+        "{error}"
+    );
     cask_file.channels[0].sample_rate_hz = Some(250.0);
     cask_file.channels[0].unit = Some(Unit::G);
     let raw = read_bytes(&bytes, &cask_file).unwrap();

@@ -49,24 +49,28 @@ impl Counts {
     }
 
     pub(super) fn messages(&self) -> u64 {
-        self.of[usize::from(op::MESSAGE)]
+        self.of(op::MESSAGE)
+    }
+
+    /// How many records of a kind.
+    pub(super) fn of(&self, opcode: u8) -> u64 {
+        self.of[usize::from(opcode)]
     }
 
     /// Whether schemas or channels are among them.
     pub(super) fn has_channels(&self) -> bool {
-        self.of[usize::from(op::SCHEMA)] + self.of[usize::from(op::CHANNEL)] > 0
+        self.of(op::SCHEMA) + self.of(op::CHANNEL) > 0
     }
 
     /// By name, as a listing shows them.
     pub(super) fn named(&self, schemas: usize, channels: usize) -> BTreeMap<String, u64> {
-        let of = |opcode: u8| self.of[usize::from(opcode)];
         [
             ("messages", self.messages()),
             ("schemas", schemas as u64),
             ("channels", channels as u64),
-            ("chunks", of(op::CHUNK)),
-            ("attachments", of(op::ATTACHMENT)),
-            ("metadata", of(op::METADATA)),
+            ("chunks", self.of(op::CHUNK)),
+            ("attachments", self.of(op::ATTACHMENT)),
+            ("metadata", self.of(op::METADATA)),
         ]
         .map(|(name, count)| (name.to_owned(), count))
         .into()

@@ -15,7 +15,15 @@ pub(super) const MOST_FIELDS: usize = 20_000;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct RosField {
     pub(super) name: String,
+    /// The name of its message type, where it is a message.
+    pub(super) type_name: Option<String>,
     pub(super) kind: Type,
+}
+
+impl RosField {
+    fn plain(name: &str, kind: Type) -> Self {
+        Self { name: name.to_owned(), type_name: None, kind }
+    }
 }
 
 /// What stands in a field.
@@ -59,6 +67,16 @@ impl Type {
         }
     }
 
+    /// Whether text of wide letters stands in it.
+    pub(super) fn has_wide_text(&self) -> bool {
+        match self {
+            Self::WideText => true,
+            Self::Message(fields) => fields.iter().any(|field| field.kind.has_wide_text()),
+            Self::Array(element, _) => element.has_wide_text(),
+            _ => false,
+        }
+    }
+
     /// Whether f32 holds every value of it.
     pub(super) fn is_narrow(&self) -> bool {
         matches!(self, Self::U8 | Self::I8 | Self::U16 | Self::I16 | Self::F32)
@@ -71,7 +89,8 @@ impl Type {
 /// Why the text gives no type.
 pub(super) fn parse(name: &str, text: &str, left: &mut usize) -> Result<Vec<RosField>, String> {
     // Neither defaults nor constants are sent, and the crate panics where one of them is a quotation mark alone.
-    let text = text.replace(['"', '\''], "_");
+    // It leaves out a definition at the end that has no line: one without fields.
+    let text = text.replace(['"', '\''], "_") + "\n#\n";
     let schema =
         MessageSchema::parse(name, &text).map_err(|error| format!("its schema does not parse: {error:#}"))?;
     let mut resolver = Resolver { of_package: HashMap::new(), of_any: HashMap::new() };
@@ -103,11 +122,15 @@ impl Resolver<'_> {
         for field in &spec.fields {
             *left = left.checked_sub(1).ok_or_else(|| "its schema has too many fields".to_owned())?;
             let kind = self.kind(&field.ty, message_package(&spec.name), depth, left)?;
-            fields.push(RosField { name: field.name.clone(), kind });
+            let type_name = match &field.ty {
+                Parsed::Complex(ComplexType::Absolute { package, name }) => Some(format!("{package}/{name}")),
+                _ => None,
+            };
+            fields.push(RosField { name: field.name.clone(), type_name, kind });
         }
         if fields.is_empty() {
             // A message of constants alone takes one byte on the wire.
-            fields.push(RosField { name: "structure_needs_at_least_one_member".into(), kind: Type::U8 });
+            fields.push(RosField::plain("structure_needs_at_least_one_member", Type::U8));
         }
         Ok(fields)
     }
@@ -149,8 +172,8 @@ impl Resolver<'_> {
             Some(spec) => Ok(Type::Message(self.message(spec, depth - 1, left)?)),
             // Some writers leave out what every ROS 2 installation has.
             None if name == "Time" || name == "Duration" => Ok(Type::Message(vec![
-                RosField { name: "sec".into(), kind: Type::I32 },
-                RosField { name: "nanosec".into(), kind: Type::U32 },
+                RosField::plain("sec", Type::I32),
+                RosField::plain("nanosec", Type::U32),
             ])),
             None => Err(format!("its schema uses the type {name} and does not define it")),
         }
@@ -184,7 +207,7 @@ mod tests {
         let fields = parse("my/msg/Top", text, &mut 20_000).unwrap();
         let Type::Message(header) = &fields[0].kind else { panic!() };
         assert!(matches!(&header[0].kind, Type::Message(time) if time.len() == 2));
-        assert_eq!(fields[1].kind, Type::Message(vec![RosField { name: "x".into(), kind: Type::F32 }]));
+        assert_eq!(fields[1].kind, Type::Message(vec![RosField::plain("x", Type::F32)]));
         assert_eq!(fields[2].kind, Type::Array(Box::new(Type::F64), Length::Fixed(9)));
         assert_eq!(fields[3].kind, Type::Array(Box::new(Type::I16), Length::Counted));
     }

@@ -42,6 +42,11 @@ impl Losses {
         }
     }
 
+    /// Whether nothing was lost so far.
+    pub(super) fn is_empty(&self) -> bool {
+        self.first.is_empty() && self.bad_records == 0
+    }
+
     /// Takes `count` records whose body does not parse, or messages that belong to no channel.
     pub(super) fn push_records(&mut self, opcode: u8, at: u64, count: u64, why: &'static str) {
         self.bad_records += count;

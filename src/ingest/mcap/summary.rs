@@ -13,7 +13,23 @@ pub(super) struct Summary {
     bytes: Vec<u8>,
     /// Where chunks begin, ascending.
     chunk_starts: Vec<u64>,
+    /// The record that ends the data, where it stands right before the summary or the footer.
+    pub(super) data_end: Option<DataEnd>,
+    /// Whether its check sum fails; then nothing of it is believed.
+    pub(super) is_changed: bool,
 }
+
+/// The record that ends the data.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct DataEnd {
+    /// Where it begins.
+    pub(super) at: u64,
+    /// The check sum of all before it; 0 where it states none.
+    pub(super) check_sum: u32,
+}
+
+/// Its opcode and length, and a check sum.
+const DATA_END_BYTES: u64 = RECORD_HEADER_BYTES + 4;
 
 impl Summary {
     /// The first chunk that begins after byte `at`.
@@ -43,10 +59,21 @@ pub(super) fn read(
     file.read_to_end(&mut footer)?;
     let mut summary = None;
     if let Some(start) = summary_start(&footer) {
-        let Summary { bytes, chunk_starts } = summary.insert(Summary::default());
-        if (magic_bytes..end).contains(&start) {
+        let Summary { bytes, chunk_starts, data_end, is_changed } = summary.insert(Summary::default());
+        let has_summary = (magic_bytes..end).contains(&start);
+        *data_end = data_end_before(file, if has_summary { start } else { end })?;
+        if has_summary {
             file.seek(SeekFrom::Start(start))?;
-            file.take((end - start).min(most_bytes)).read_to_end(bytes)?;
+            (&mut *file).take((end - start).min(most_bytes)).read_to_end(bytes)?;
+            // The sum is of the summary and of the footer up to itself.
+            let stated = footer[25..].first_chunk().map_or(0, |sum| u32::from_le_bytes(*sum));
+            let mut sum = crc32fast::Hasher::new();
+            sum.update(bytes);
+            sum.update(&footer[..25]);
+            *is_changed = stated != 0 && bytes.len() as u64 == end - start && sum.finalize() != stated;
+            if *is_changed {
+                bytes.clear();
+            }
         }
         chunk_starts.extend(Records(bytes).filter_map(|(opcode, body)| {
             match (opcode == op::CHUNK_INDEX).then(|| mcap::parse_record(opcode, body))? {
@@ -58,6 +85,16 @@ pub(super) fn read(
     }
     file.rewind()?;
     Ok(summary)
+}
+
+/// The record that ends the data, if it ends at `end`.
+fn data_end_before(file: &mut (impl Read + Seek), end: u64) -> std::io::Result<Option<DataEnd>> {
+    let Some(at) = end.checked_sub(DATA_END_BYTES) else { return Ok(None) };
+    file.seek(SeekFrom::Start(at))?;
+    let mut record = Vec::new();
+    file.take(DATA_END_BYTES).read_to_end(&mut record)?;
+    let sum = record.strip_prefix(&[op::DATA_END, 4, 0, 0, 0, 0, 0, 0, 0]).and_then(<[u8]>::first_chunk);
+    Ok(sum.map(|sum| DataEnd { at, check_sum: u32::from_le_bytes(*sum) }))
 }
 
 /// Where the summary section starts (0: there is none), `None` where `footer` is no footer.

@@ -4,9 +4,10 @@ use super::column::{Column, MessageTime};
 use super::json;
 use super::message_type::MessageType;
 use super::path::FieldPath;
-use super::plan::{Decode, Leaf, Plan, Slots, Value};
-use crate::data::McapFinding;
+use super::plan::{Beside, Decode, Leaf, Plan, Slots, Value};
+use crate::data::{McapFinding, RowsOf};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// A topic, whatever the number of channels that write on it.
 pub(super) struct Topic {
@@ -81,7 +82,21 @@ impl Stream {
     }
 }
 
-/// What the messages of a topic gave.
+/// What the messages of one sensor gave.
+pub(super) struct Sensor {
+    /// The sensor and where the messages name it.
+    pub(super) rows: Option<RowsOf>,
+    /// One for each field of the topic.
+    pub(super) columns: Vec<Column>,
+}
+
+/// Sensors of one channel that are told apart; what further ones gave lies with the last.
+const MOST_SENSORS: usize = 64;
+
+/// A topic with its channels, by their numbers, and what their messages gave.
+pub(super) type Channels = (Topic, Vec<(u16, Gathered)>);
+
+/// What the messages of a channel gave.
 #[derive(Default)]
 pub(super) struct Gathered {
     pub(super) messages: u64,
@@ -89,36 +104,42 @@ pub(super) struct Gathered {
     pub(super) malformed: u64,
     /// Why the first of them does not.
     pub(super) first_problem: Option<String>,
-    /// One for each field of the topic.
-    pub(super) columns: Vec<Column>,
+    /// What each sensor gave that the messages name, or all of them together where they name none.
+    pub(super) sensors: Vec<Sensor>,
     /// The numeric fields of a message in JSON that lacks one that is asked for.
     pub(super) leaves: Vec<Leaf>,
 }
 
 impl Gathered {
     /// Takes a message.
-    fn take(&mut self, stream: &Stream, message: &Message, slots: &mut Slots) {
+    fn take(&mut self, stream: &Stream, message: &Message, slots: &mut Slots, is_listed: bool) {
         self.messages += 1;
         let Some(decoder) = &stream.decoder else { return };
         slots.clear(stream.plan.wants.len());
         if let Err(problem) = decoder.decode(message.data, slots) {
             self.malformed += 1;
+            let is_packed = message.data.starts_with(&[0x28, 0xb5, 0x2f, 0xfd]);
+            let problem = if is_packed { PACKED_ALONE.to_owned() } else { problem };
             self.first_problem.get_or_insert(problem);
             return;
         }
         for (target, &field) in stream.plan.targets.iter().zip(&stream.fields) {
-            let Some(column) = self.columns.get_mut(field) else { continue };
+            let value = slots.samples(target);
+            let said = slots.beside(target);
+            let column = column_of(&mut self.sensors, said.sensor.as_ref(), field, is_listed);
             slots.unit(target).into_iter().for_each(|unit| column.state_unit(unit));
             slots.rates(target).for_each(|rate| column.state_rate(rate));
             let time = MessageTime::of(&slots.stamp(target), message.log_time_ns);
-            let value = slots.samples(target);
             if value == Value::Missing
                 && self.leaves.is_empty()
                 && matches!(stream.message_type, Some(MessageType::Json))
             {
                 self.leaves = json::leaves(message.data);
             }
-            column.take(value, time);
+            match said.applied(value) {
+                Ok(value) => column.take(value, time, said.tick),
+                Err(refusal) => column.refuse(refusal),
+            }
         }
     }
 
@@ -137,18 +158,65 @@ impl Gathered {
         if self.leaves.is_empty() {
             self.leaves = std::mem::take(&mut other.leaves);
         }
-        let known = self.columns.len().min(other.columns.len());
-        self.columns.iter_mut().zip(&mut other.columns).for_each(|(own, more)| own.append(more));
-        self.columns.extend(other.columns.drain(known..));
+        for more in &mut other.sensors {
+            match self.sensors.iter_mut().find(|own| own.rows == more.rows) {
+                Some(own) => {
+                    let known = own.columns.len().min(more.columns.len());
+                    own.columns.iter_mut().zip(&mut more.columns).for_each(|(own, more)| own.append(more));
+                    own.columns.extend(more.columns.drain(known..));
+                }
+                None => {
+                    self.sensors
+                        .push(Sensor { rows: more.rows.clone(), columns: std::mem::take(&mut more.columns) });
+                }
+            }
+        }
+    }
+
+    /// The columns of all sensors.
+    pub(super) fn columns(&self) -> impl Iterator<Item = &Column> {
+        self.sensors.iter().flat_map(|sensor| &sensor.columns)
+    }
+
+    /// The columns of all sensors.
+    pub(super) fn columns_mut(&mut self) -> impl Iterator<Item = &mut Column> {
+        self.sensors.iter_mut().flat_map(|sensor| &mut sensor.columns)
     }
 }
+
+/// The column of a field, of the sensor that a message names.
+fn column_of<'a>(
+    sensors: &'a mut Vec<Sensor>,
+    named: Option<&(Cow<str>, &Beside)>,
+    field: usize,
+    is_listed: bool,
+) -> &'a mut Column {
+    let is_it = |sensor: &Sensor| sensor.rows.as_ref().map(|rows| &*rows.is) == named.map(|(is, _)| &**is);
+    let at = sensors.iter().position(is_it).unwrap_or_else(|| {
+        if sensors.len() < MOST_SENSORS {
+            let rows = named
+                .map(|(is, beside)| RowsOf { column: beside.field.clone(), is: is.clone().into_owned() });
+            sensors.push(Sensor { rows, columns: Vec::new() });
+        }
+        sensors.len() - 1
+    });
+    let columns = &mut sensors[at].columns;
+    if columns.len() <= field {
+        columns.resize_with(field + 1, || Column::new(is_listed));
+    }
+    &mut columns[field]
+}
+
+/// Why messages do not decode that are packed one by one.
+const PACKED_ALONE: &str = "each message is packed by itself with zstd, as `ros2 bag record --compression-mode message` does, which is not read: \
+     unpack them with `ros2 bag convert`";
 
 /// What some of the messages of a file gave, as those of a chunk.
 #[derive(Default)]
 pub(super) struct Part {
-    /// By topic, as far as one had a message.
+    /// By the channel's place in the file, as far as one had a message.
     pub(super) gathered: Vec<Gathered>,
-    /// The topics with a message: a file may have thousands, and chunks of a message each.
+    /// The channels with a message: a file may have thousands, and chunks of a message each.
     touched: Vec<usize>,
     slots: Slots,
     /// So many bytes of times may be held for a listing; `None` where samples are read, which have a limit of their own.
@@ -163,20 +231,16 @@ impl Part {
         Self { most_listed_bytes, ..Self::default() }
     }
 
-    /// Takes a message of the `stream` on the `topic`.
-    pub(super) fn take(&mut self, topic: &Topic, stream: &Stream, message: &Message) {
-        self.make_room(stream.topic + 1);
-        let gathered = &mut self.gathered[stream.topic];
+    /// Takes a message of the channel at `place`.
+    pub(super) fn take(&mut self, place: usize, stream: &Stream, message: &Message) {
+        self.make_room(place + 1);
+        let gathered = &mut self.gathered[place];
         if gathered.messages == 0 {
-            self.touched.push(stream.topic);
+            self.touched.push(place);
         }
-        if gathered.columns.len() < topic.fields.len() {
-            let is_listed = self.most_listed_bytes.is_some();
-            gathered.columns.resize_with(topic.fields.len(), || Column::new(is_listed));
-        }
-        let held = |gathered: &Gathered| gathered.columns.iter().map(Column::held_bytes).sum::<u64>();
+        let held = |gathered: &Gathered| gathered.columns().map(Column::held_bytes).sum::<u64>();
         let before = held(gathered);
-        gathered.take(stream, message, &mut self.slots);
+        gathered.take(stream, message, &mut self.slots, self.most_listed_bytes.is_some());
         self.held_bytes = (self.held_bytes + held(gathered)).saturating_sub(before);
         self.keep_within();
     }
@@ -205,17 +269,14 @@ impl Part {
     /// Lists a file that holds more times than there is memory for without them.
     fn keep_within(&mut self) {
         if self.most_listed_bytes.is_some_and(|most| self.held_bytes > most) {
-            self.gathered
-                .iter_mut()
-                .flat_map(|gathered| &mut gathered.columns)
-                .for_each(Column::forget_times);
+            self.gathered.iter_mut().flat_map(Gathered::columns_mut).for_each(Column::forget_times);
             self.held_bytes = 0;
         }
     }
 
-    fn make_room(&mut self, topics: usize) {
-        if self.gathered.len() < topics {
-            self.gathered.resize_with(topics, Gathered::default);
+    fn make_room(&mut self, channels: usize) {
+        if self.gathered.len() < channels {
+            self.gathered.resize_with(channels, Gathered::default);
         }
     }
 }

@@ -3,12 +3,12 @@
 use super::chunk::Chunk;
 use super::column::Column;
 use super::json;
-use super::message_type::{ChannelInfo, MessageTypes, SchemaInfo, implied_unit};
+use super::message_type::{ChannelInfo, MessageTypes, SchemaInfo};
 use super::path::{self, FieldPath};
-use super::plan::{Leaf, MOST_LEAVES, Plan};
+use super::plan::{AskedField, Leaf, MOST_LEAVES, Plan};
 use super::scanned::Losses;
-use super::topic::{Gathered, Message, Part, Stream, Topic};
-use crate::data::{ChannelSpec, Finding, McapFinding};
+use super::topic::{Channels, Gathered, Message, Part, Stream, Topic};
+use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, Source};
 use crate::ingest::Limits;
 use mcap::records::{Record, op};
 use std::collections::HashMap;
@@ -18,11 +18,18 @@ use std::collections::hash_map::Entry;
 /// sensors has thousands, and each takes 3 kB. An HDF5 file lists as many objects.
 const MOST_LISTED: usize = 10_000;
 
+/// The word by which a cask file takes the log times instead of the messages' own.
+pub(super) const LOG_TIME: &str = "log_time";
+
+/// Why a topic of such messages cannot be read.
+pub(super) const LISTS_OF_RECORDS: &str =
+    "its messages hold lists of records: a message a record is read, or an array of numbers for each field";
+
 /// What is asked of a file.
 #[derive(Clone, Copy)]
 pub(super) enum Asked<'a> {
-    /// The fields that these sources name.
-    Sources(&'a [ChannelSpec]),
+    /// The fields that the channels of a cask file name.
+    Sources(&'a CaskFile),
     /// Every numeric field, for a listing.
     Everything,
 }
@@ -54,8 +61,10 @@ pub(super) struct Topics<'a> {
     all: Vec<Topic>,
     by_name: HashMap<String, usize>,
     streams: Vec<Stream>,
-    /// The stream of each channel, the first of an id; `None` where its messages are not asked for.
-    by_channel: HashMap<u16, Option<usize>>,
+    /// The stream of each channel, the first of an id, and its place in the file; `None` where its messages are not asked for.
+    by_channel: HashMap<u16, Option<(usize, usize)>>,
+    /// The topic and the number of each channel that is asked for, in the order of the file.
+    channels: Vec<(usize, u16)>,
     /// By topic, schema and encoding: a file may announce one of them under every number.
     same: HashMap<(usize, u16, String), usize>,
     room: Room,
@@ -75,6 +84,7 @@ impl<'a> Topics<'a> {
             by_name: HashMap::new(),
             streams: Vec::new(),
             by_channel: HashMap::new(),
+            channels: Vec::new(),
             same: HashMap::new(),
             room: Room { left: MOST_LISTED, topics_out: 0, fields_out: 0 },
             held_bytes: 0,
@@ -102,7 +112,9 @@ impl<'a> Topics<'a> {
                 if is_complete || !is_ahead {
                     self.held_bytes += (channel.topic.len() + channel.message_encoding.len()) as u64;
                     let stream = self.channel(&channel);
-                    self.by_channel.insert(channel.id, stream);
+                    let placed = stream.map(|stream| (stream, self.channels.len()));
+                    self.channels.extend(stream.map(|stream| (self.streams[stream].topic, channel.id)));
+                    self.by_channel.insert(channel.id, placed);
                 }
             }
             _ => {}
@@ -126,8 +138,8 @@ impl<'a> Topics<'a> {
 
     fn stream_of(&mut self, info: &ChannelInfo) -> Option<usize> {
         let topic = self.topic(info)?;
-        if let Asked::Sources(specs) = self.asked
-            && specs.iter().all(|spec| path::field_in(&spec.source, info.topic).is_none())
+        if let Asked::Sources(file) = self.asked
+            && file.channels.iter().all(|spec| path::field_in(&spec.source, info.topic).is_none())
         {
             return None;
         }
@@ -172,16 +184,16 @@ impl<'a> Topics<'a> {
         match self.types.of(info) {
             Err(reason) => {
                 self.all[topic].unreadable = Some(reason);
-                for (path, _) in self.asked_of(topic) {
-                    self.all[topic].field(&path, false, None);
+                for (asked, _) in self.asked_of(topic) {
+                    self.all[topic].field(&asked.path, false, None);
                 }
             }
             Ok(message_type) => {
                 let leaves = message_type.leaves();
                 stream.message_type = Some(message_type);
                 // A message in JSON tells its fields itself.
-                if leaves.is_some() || matches!(self.asked, Asked::Sources(_)) {
-                    self.prepare(&mut stream, leaves.unwrap_or_default());
+                if let Some(leaves) = leaves {
+                    self.prepare(&mut stream, leaves);
                 }
             }
         }
@@ -191,33 +203,52 @@ impl<'a> Topics<'a> {
     /// Settles which fields of messages with such `leaves` are taken.
     fn prepare(&mut self, stream: &mut Stream, leaves: Vec<Leaf>) {
         let Some(message_type) = &stream.message_type else { return };
-        let fields: Vec<(FieldPath, bool)> = match self.asked {
+        let fields: Vec<(AskedField, bool)> = match self.asked {
             Asked::Sources(_) => self.asked_of(stream.topic),
             Asked::Everything => self.listed(stream.topic, &leaves),
         };
         let topic = &mut self.all[stream.topic];
-        topic.leaves.extend(leaves);
-        let mut paths = Vec::with_capacity(fields.len());
-        for (path, is_array) in fields {
-            let at = topic.field(&path, is_array, implied_unit(&stream.schema_name, &path.to_string()));
+        let mut taken = Vec::with_capacity(fields.len());
+        for (asked, is_array) in fields {
+            let unit = message_type.implied_unit(&stream.schema_name, &asked.path.to_string());
+            let at = topic.field(&asked.path, is_array, unit);
             if !stream.fields.contains(&at) {
                 stream.fields.push(at);
-                paths.push(path);
+                taken.push(asked);
             }
         }
-        stream.plan = Plan::new(&paths);
+        stream.plan = Plan::new(&taken, &leaves);
+        topic.leaves.extend(leaves);
         stream.decoder = Some(message_type.decoder(&stream.plan));
     }
 
     /// The fields of a topic that sources name, none of them known to be an array.
-    fn asked_of(&self, topic: usize) -> Vec<(FieldPath, bool)> {
-        let Asked::Sources(specs) = self.asked else { return Vec::new() };
+    fn asked_of(&self, topic: usize) -> Vec<(AskedField, bool)> {
+        let Asked::Sources(file) = self.asked else { return Vec::new() };
         let name = &self.all[topic].name;
-        specs.iter().filter_map(|spec| Some((path::field_in(&spec.source, name)?, false))).collect()
+        let within = |field: &str| {
+            let whole = path::field_in(&Source::Path(field.to_owned()), name);
+            whole.or_else(|| FieldPath::parse(field.trim_start_matches('/')))
+        };
+        let asked = |spec: &ChannelSpec| {
+            let path = path::field_in(&spec.source, name)?;
+            let beside = |field: &str| {
+                let own = within(field)?;
+                let nearer = path.enclosing().map(|message| FieldPath([message.0, own.0.clone()].concat()));
+                Some(nearer.collect())
+            };
+            let times = file.time_of(spec).map(|time| match time {
+                LOG_TIME => Vec::new(),
+                time => beside(time).unwrap_or_default(),
+            });
+            let sensor = spec.rows.as_ref().and_then(|rows| within(&rows.column));
+            Some((AskedField { path, times, sensor }, false))
+        };
+        file.channels.iter().filter_map(asked).collect()
     }
 
     /// The leaves of a topic that there is room to list, and whether they are arrays.
-    fn listed(&mut self, topic: usize, leaves: &[Leaf]) -> Vec<(FieldPath, bool)> {
+    fn listed(&mut self, topic: usize, leaves: &[Leaf]) -> Vec<(AskedField, bool)> {
         let Topic { name, encoding, fields, .. } = &self.all[topic];
         let mut listed = Vec::new();
         for leaf in leaves.iter().filter(|leaf| !leaf.is_about_others()) {
@@ -227,7 +258,7 @@ impl<'a> Topics<'a> {
             let is_first = listed.is_empty() && fields.is_empty();
             let name_bytes = name.len() + encoding.len() + leaf.path.len();
             if is_known || is_first || (listed.len() < MOST_LEAVES && self.room.takes(name_bytes)) {
-                listed.push((path, leaf.is_array));
+                listed.push((AskedField::plain(path), leaf.is_array));
             } else {
                 self.room.fields_out += 1;
             }
@@ -257,20 +288,26 @@ impl<'a> Topics<'a> {
         /// A tree of JSON values takes up to so many times its text: two letters become 32 bytes.
         const TREE_BYTES: u64 = 32;
         let Some(message) = Message::parse(body) else { return };
-        let Some(&Some(at)) = self.by_channel.get(&message.channel) else { return };
+        let Some(&Some((at, _))) = self.by_channel.get(&message.channel) else { return };
         if !self.streams[at].is_undecided() {
             return;
         }
         let mut stream = std::mem::take(&mut self.streams[at]);
-        if message.data.len() as u64 > self.limits.part_bytes() / TREE_BYTES {
+        let is_asked = matches!(self.asked, Asked::Sources(_));
+        let is_large = message.data.len() as u64 > self.limits.part_bytes() / TREE_BYTES;
+        if is_large && !is_asked {
             stream.message_type = None;
             self.all[stream.topic].unreadable = Some(format!(
                 "its fields were not looked for: a message takes {} MiB; allow more with --max-memory",
                 message.data.len() >> 20
             ));
         } else {
-            let leaves = json::leaves(message.data);
-            if !leaves.is_empty() {
+            let leaves = if is_large { Vec::new() } else { json::leaves(message.data) };
+            let has_signals = leaves.iter().any(|leaf| leaf.is_signal);
+            if !has_signals && json::holds_records(message.data) {
+                self.all[stream.topic].unreadable = Some(LISTS_OF_RECORDS.into());
+            }
+            if has_signals || is_asked {
                 self.prepare(&mut stream, leaves);
             }
         }
@@ -283,9 +320,8 @@ impl<'a> Topics<'a> {
     /// Why it cannot be used.
     pub(super) fn take(&self, part: &mut Part, body: &[u8]) -> Result<(), &'static str> {
         let message = Message::parse(body).ok_or("that does not parse")?;
-        if let Some(at) = *self.by_channel.get(&message.channel).ok_or("whose channel is missing")? {
-            let stream = &self.streams[at];
-            part.take(&self.all[stream.topic], stream, &message);
+        if let Some((at, place)) = *self.by_channel.get(&message.channel).ok_or("whose channel is missing")? {
+            part.take(place, &self.streams[at], &message);
         }
         Ok(())
     }
@@ -311,11 +347,18 @@ impl<'a> Topics<'a> {
         (topics + fields > 0).then(|| McapFinding::Unlisted { most, most_of_topic, topics, fields }.into())
     }
 
-    /// The topics of the file, in its order, each with what its messages gave.
-    pub(super) fn finish(self, taken: Part) -> Vec<(Topic, Gathered)> {
-        let mut gathered = taken.gathered;
-        gathered.resize_with(self.all.len(), Gathered::default);
-        gathered.iter_mut().flat_map(|gathered| &mut gathered.columns).for_each(Column::settle_clock);
-        self.all.into_iter().zip(gathered).collect()
+    /// The topics of the file, in its order, each with its channels and what their messages gave, one at least.
+    pub(super) fn finish(self, taken: Part) -> Vec<Channels> {
+        let mut topics: Vec<_> = self.all.into_iter().map(|topic| (topic, Vec::new())).collect();
+        for ((topic, number), mut gathered) in self.channels.into_iter().zip(taken.gathered) {
+            gathered.columns_mut().for_each(Column::settle_clock);
+            if gathered.messages > 0 {
+                topics[topic].1.push((number, gathered));
+            }
+        }
+        for (_, channels) in topics.iter_mut().filter(|(_, channels)| channels.is_empty()) {
+            channels.push((0, Gathered::default()));
+        }
+        topics
     }
 }

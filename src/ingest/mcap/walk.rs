@@ -4,7 +4,8 @@ use super::chunk::{Chunk, ChunkFault};
 use super::records::RECORD_HEADER_BYTES;
 use super::scanned::{Scanned, record_name};
 use super::summary::{self, Summary};
-use super::topic::{Gathered, Part, Topic};
+use super::summed::Summed;
+use super::topic::{Channels, Part};
 use super::topics::{Asked, Topics};
 use crate::data::{FileEnd, McapFinding};
 use crate::ingest::error::{self, IngestError};
@@ -31,7 +32,7 @@ pub(super) struct Walked<'a> {
 
 impl Walked<'_> {
     /// The topics in the order of the file, each with what its messages gave.
-    pub(super) fn finish(self) -> (Scanned, Vec<(Topic, Gathered)>) {
+    pub(super) fn finish(self) -> (Scanned, Vec<Channels>) {
         (self.scanned, self.topics.finish(self.taken))
     }
 }
@@ -64,7 +65,7 @@ pub(super) fn walk<'a>(
         let summary = summary::read(&mut file, length, limits.part_bytes())?;
         let topics = Topics::new(asked, limits, length);
         let mut walk = Walk {
-            file: BufReader::with_capacity(READ_BUFFER_BYTES, file),
+            file: BufReader::with_capacity(READ_BUFFER_BYTES, Summed::of(file, summary.as_ref())),
             length,
             at: mcap::MAGIC.len() as u64,
             limits,
@@ -86,7 +87,7 @@ pub(super) fn walk<'a>(
 
 /// Where the walk through the file stands.
 struct Walk<'a> {
-    file: BufReader<File>,
+    file: BufReader<Summed>,
     length: u64,
     at: u64,
     limits: Limits,
@@ -115,7 +116,10 @@ impl Walk<'_> {
             // A record that does not parse here may do so where it stands in the data.
             let _ = self.walked.topics.announce(opcode, body, true);
         }
-        self.file.seek_relative(self.at.cast_signed())?;
+        if self.summary.as_ref().is_some_and(|summary| summary.is_changed) {
+            self.walked.scanned.losses.push(McapFinding::SummaryChanged);
+        }
+        self.skip(self.at)?;
         let mut said_at = 0;
         while self.record()? == Next::Go {
             self.keep_within()?;
@@ -125,7 +129,28 @@ impl Walk<'_> {
                 progress(self.at as f64 / self.length as f64);
             }
         }
+        // What was told by its place is in the sum as well.
+        let losses = &mut self.walked.scanned.losses;
+        if self.file.get_ref().is_changed() && losses.is_empty() {
+            losses.push(McapFinding::DataChanged);
+        }
         Ok(())
+    }
+
+    /// Leaves out so many bytes, which are read where they are summed up.
+    fn skip(&mut self, bytes: u64) -> Result<(), Obstacle> {
+        if self.file.get_ref().sum.is_some() {
+            std::io::copy(&mut (&mut self.file).take(bytes), &mut std::io::sink())?;
+        } else {
+            self.file.seek_relative(bytes.cast_signed())?;
+        }
+        Ok(())
+    }
+
+    /// Whether the walk stands behind the data: what looks like a message there is none.
+    fn is_behind_data(&self) -> bool {
+        let data_end = self.summary.as_ref().and_then(|summary| summary.data_end);
+        data_end.is_some_and(|end| self.at > end.at)
     }
 
     /// Whether what was read so far stays within the limits.
@@ -159,7 +184,7 @@ impl Walk<'_> {
         if opcode == 0 || (claimed > available && (!is_known || self.summary.is_some())) {
             return self.resume_after_garbage();
         }
-        if opcode == op::CHUNK {
+        if opcode == op::CHUNK && !self.is_behind_data() {
             return self.chunk(claimed, available);
         }
         if claimed > available {
@@ -173,14 +198,15 @@ impl Walk<'_> {
 
     /// A record other than a chunk that lies wholly in the file.
     fn whole_record(&mut self, opcode: u8, length: u64) -> Result<Next, Obstacle> {
-        let start = self.at;
+        let (start, is_behind_data) = (self.at, self.is_behind_data());
         self.at += RECORD_HEADER_BYTES + length;
-        self.walked.scanned.counts.add(opcode);
-        if !matches!(
-            opcode,
-            op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE | op::STATISTICS | op::FOOTER
-        ) {
-            self.file.seek_relative(length.cast_signed())?;
+        let is_data =
+            matches!(opcode, op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE) && !is_behind_data;
+        if !is_behind_data {
+            self.walked.scanned.counts.add(opcode);
+        }
+        if !is_data && !matches!(opcode, op::STATISTICS | op::FOOTER) {
+            self.skip(length)?;
             return Ok(Next::Go);
         }
         self.settle()?;
@@ -217,6 +243,8 @@ impl Walk<'_> {
 
     /// A chunk, which waits until there are enough to be unpacked beside one another.
     fn chunk(&mut self, claimed: u64, available: u64) -> Result<Next, Obstacle> {
+        // Each has a sum of its own, and that of all is not right by every writer that goes back to a chunk's length.
+        self.file.get_mut().sum = None;
         let part_bytes = self.limits.part_bytes();
         within("one of its chunks takes", claimed.min(available), part_bytes)?;
         let mut chunk = self

@@ -1,0 +1,91 @@
+//! What a column's messages gave, and what they say of its rate, to samples on a uniform base.
+
+use super::{Column, RawBlock, StatedRate, Timing, seconds_from};
+use crate::ingest::clock::{Claims, Refusal};
+use crate::ingest::shown;
+use crate::ingest::time_base::{self, Block, BlockContent, TimeBaseError, Uniform};
+
+impl Column {
+    /// The rate at which its samples came by the times of its messages, Hz.
+    #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^53")]
+    fn told_hz(&self) -> f64 {
+        let before_last = self.blocks.iter().rev().skip(1).map(|block| block.count).sum::<usize>();
+        self.span_ns().map_or(f64::NAN, |(from_ns, to_ns)| before_last as f64 / seconds_from(to_ns, from_ns))
+    }
+
+    /// What is said of its rate but by its stamps.
+    fn claims(&self, cask_hz: Option<f64>) -> Result<Claims, Refusal> {
+        let told_hz = self.told_hz();
+        if let (None, Some(rate)) =
+            (cask_hz, self.rates.iter().find(|rate| rate.statement(told_hz).is_none()))
+        {
+            let (value, unit) = (shown::short(rate.value), rate.unit.as_deref().unwrap_or_default());
+            return Err(Refusal::new(
+                format!(
+                    "its messages state {} = {}, which is no rate or interval",
+                    rate.name,
+                    format!("{value} {unit}").trim()
+                ),
+                "write the true `sample_rate_hz` in this channel of the cask file: it overrides the recording",
+            ));
+        }
+        let nearest = self.rates.iter().map(|rate| rate.level).min().unwrap_or(0);
+        let mut rates: Vec<&StatedRate> = self.rates.iter().collect();
+        rates.sort_by_key(|rate| rate.level);
+        let statement = |rate: &StatedRate| Some(rate.statement(told_hz)?.at(rate.level - nearest));
+        let stated = rates.into_iter().filter_map(statement).collect();
+        Ok(Claims { cask_hz, stated, ..Claims::default() })
+    }
+
+    /// Its blocks, times counted from `zero_ns`.
+    fn blocks_from(&self, zero_ns: i64) -> Vec<Block> {
+        let block =
+            |block: &RawBlock| Block { start_s: seconds_from(block.time_ns, zero_ns), count: block.count };
+        self.blocks.iter().map(block).collect()
+    }
+
+    /// The samples on a uniform base, times counted from `zero_ns`; `cask_hz` overrides what the messages say.
+    ///
+    /// # Errors
+    /// Rate or times that give no base.
+    pub(in super::super) fn uniform(
+        self,
+        zero_ns: i64,
+        cask_hz: Option<f64>,
+    ) -> Result<Uniform, TimeBaseError> {
+        self.heeded()?;
+        if self.blocks.is_empty() {
+            // A rate in messages of single numbers is that of something else, such as blocks beside them.
+            let times_s: Vec<f64> =
+                self.times_ns.iter().map(|&time_ns| seconds_from(time_ns, zero_ns)).collect();
+            return time_base::from_times(&times_s, self.samples, cask_hz);
+        }
+        let claims = self.claims(cask_hz)?;
+        time_base::place_blocks(&self.blocks_from(zero_ns), &claims, self.samples)
+    }
+
+    /// As [`Column::uniform`] as far as a listing shows it, which holds no samples of blocks.
+    ///
+    /// # Errors
+    /// As that.
+    pub(in super::super) fn timing(self, zero_ns: i64) -> Result<Timing, TimeBaseError> {
+        let Some(extent) = self.extent.as_ref().filter(|_| !self.blocks.is_empty()) else {
+            let uniform = self.uniform(zero_ns, None)?;
+            let (count, gaps) = (uniform.samples.len(), uniform.gaps.len());
+            return Ok(Timing {
+                start_s: uniform.start_s,
+                sample_rate_hz: uniform.sample_rate_hz,
+                count,
+                gaps,
+            });
+        };
+        let content = BlockContent { samples: &self.samples, digests: Some(&extent.digests) };
+        let laid = time_base::lay_blocks(&self.blocks_from(zero_ns), &self.claims(None)?, &content)?;
+        Ok(Timing {
+            start_s: laid.start_s,
+            sample_rate_hz: laid.sample_rate_hz,
+            count: laid.count(),
+            gaps: laid.gap_count() + extent.holes,
+        })
+    }
+}

@@ -1,0 +1,73 @@
+//! Numbers that messages carry as their times to ns, and log times to how their pace differs from that of the stamps.
+
+use super::{Column, SentTimes, StampCounts, seconds_from};
+use crate::data::{Finding, McapFinding};
+use crate::ingest::clock::{RATE_TOLERANCE, Refusal};
+use crate::ingest::time_base;
+use crate::ingest::times::{self, Carrier, SentTicks};
+
+impl Column {
+    /// Takes the numbers that messages carry for their times, in ns, where they rise as times do; `source` names what they are the times of.
+    ///
+    /// # Errors
+    /// Nothing says their unit.
+    pub(in super::super) fn settle_ticks(
+        &mut self,
+        source: &str,
+        cask_hz: Option<f64>,
+    ) -> Result<(), Refusal> {
+        let Some(SentTimes { field, scale, mut each }) = self.ticks.take() else { return Ok(()) };
+        let (Some((from_ns, to_ns)), count) = (self.span_ns(), self.len()) else { return Ok(()) };
+        each.resize(count, f64::NAN);
+        if !times::rise(&each) {
+            self.stamps.bad = count as u64;
+            return Ok(());
+        }
+        let samples = self.extent.as_ref().map_or(self.samples.len() as u64, |extent| extent.samples);
+        #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^53")]
+        let ticks = SentTicks {
+            each: &each,
+            samples_each: samples as f64 / count as f64,
+            logged_s: seconds_from(to_ns, from_ns),
+        };
+        let stated = || Some(self.rates.first()?.statement(f64::NAN)?.rate_hz);
+        let stated_hz = cask_hz.or_else(stated);
+        let place = format!("the field {field} beside {source}");
+        let unit_ns = (ticks.seconds_a_unit(scale, Carrier::Field(&place), stated_hz)? * 1e9).round();
+        #[allow(clippy::cast_possible_truncation, reason = "a float-to-integer cast saturates")]
+        let ns = |tick: f64| {
+            // Whole and rest apart: nanoseconds since 1970 are more than a double holds.
+            let rest = ((tick - tick.trunc()) * unit_ns).round() as i64;
+            (tick as i64).saturating_mul(unit_ns as i64).saturating_add(rest)
+        };
+        self.times_ns.iter_mut().zip(&each).for_each(|(time_ns, tick)| *time_ns = ns(*tick));
+        self.blocks.iter_mut().zip(&each).for_each(|(block, tick)| block.time_ns = ns(*tick));
+        self.stamps = StampCounts { good: count as u64, bad: 0 };
+        Ok(())
+    }
+
+    /// That the log times of its messages run at another pace than their stamps.
+    #[allow(clippy::float_cmp, reason = "slopes of the same numbers")]
+    pub(in super::super) fn log_drift(&self) -> Option<Finding> {
+        /// Fewer messages tell no pace.
+        const FEWEST: usize = 16;
+        let &(_, log_from_ns) = self.logged.first().filter(|_| self.stamps.good == self.len() as u64)?;
+        let at_ns =
+            |place: usize| self.blocks.get(place).map_or_else(|| self.times_ns[place], |block| block.time_ns);
+        let from_ns = at_ns(self.logged[0].0);
+        let late = |&(place, log_ns): &(usize, i64)| {
+            let stamp_s = seconds_from(at_ns(place), from_ns);
+            (stamp_s, seconds_from(log_ns, log_from_ns) - stamp_s)
+        };
+        let points: Vec<(f64, f64)> = self.logged.iter().map(late).collect();
+        let ((mean_s, mean_late_s), slope) = time_base::line(&points);
+        let off = |&(s, late_s): &(f64, f64)| (late_s - mean_late_s - slope * (s - mean_s)).abs();
+        let scatter_s = points.iter().map(off).fold(0.0, f64::max);
+        let span_s = points.iter().fold(0.0_f64, |m, point| m.max(point.0.abs()));
+        // What was converted later was logged at any pace.
+        let is_told = points.len() >= FEWEST
+            && (RATE_TOLERANCE..0.5).contains(&slope.abs())
+            && slope.abs() * span_s > 3.0 * scatter_s;
+        is_told.then(|| McapFinding::LogDrift { percent: 100.0 * slope }.into())
+    }
+}

@@ -1,0 +1,174 @@
+//! Fields that are asked for, and what a message type holds beside them, to the plan of everything to fetch.
+
+use super::path::{FieldPath, Step};
+use super::plan::{
+    AskedField, Beside, Leaf, Plan, RATE_NAMES, STAMP_NAMES, Says, SlotOfRate, StatedRate, Target,
+    UNIT_NAMES, Want,
+};
+use crate::ingest::hdf5::names::{AttributeRole, role};
+use crate::ingest::times::Scale;
+use crate::ingest::vocabulary::{self, Meaning};
+
+/// So many fields are heeded for one signal: no message says more of its samples.
+const MOST_BESIDE: usize = 32;
+/// So many fields of a message type are heeded: no sensor's message says more of its samples.
+const MOST_TELLING: usize = 64;
+
+impl Plan {
+    /// The plan for what is asked of messages with such `leaves`, as far as these are known.
+    pub(super) fn new(asked: &[AskedField], leaves: &[Leaf]) -> Self {
+        let (mut plan, telling) = (Self::default(), Telling::among(leaves));
+        for asked in asked {
+            let field = &asked.path;
+            let value = plan.slot(field, Want::Numbers);
+            if let Some((Step::Index(_), array)) = field.0.split_last() {
+                // An element is taken from its array once that is read.
+                plan.slot(&FieldPath(array.to_vec()), Want::Numbers);
+            }
+            let mut target = Target {
+                value,
+                stamps: Vec::new(),
+                rates: Vec::new(),
+                units: Vec::new(),
+                beside: Vec::new(),
+            };
+            target.sensor(&mut plan, asked.sensor.as_ref());
+            for path in asked.times.iter().flatten() {
+                target.time(&mut plan, path);
+            }
+            for (level, message) in field.enclosing().enumerate() {
+                for names in STAMP_NAMES.iter().filter(|_| asked.times.is_none()) {
+                    target.time(&mut plan, &names.iter().fold(message.clone(), |path, name| path.then(name)));
+                }
+                target.others(&mut plan, (&message, level), asked, &telling);
+                for name in RATE_NAMES {
+                    target.rate(&mut plan, &message.then(name), (Meaning::Rate(1.0), level), &telling);
+                }
+                target.units.extend(UNIT_NAMES.map(|name| plan.slot(&message.then(name), Want::Text)));
+            }
+            plan.targets.push(target);
+        }
+        plan
+    }
+}
+
+impl Target {
+    fn say(&mut self, plan: &mut Plan, path: &FieldPath, (want, says): (Want, Says)) {
+        let slot = plan.slot(path, want);
+        let is_new = self.beside.iter().all(|known| (known.slot, known.says) != (slot, says));
+        if is_new && self.beside.len() < MOST_BESIDE {
+            self.beside.push(Beside { slot, says, field: path.to_string() });
+        }
+    }
+
+    /// Takes the field at `path` for their time, be it a structure, words or a number.
+    pub(super) fn time(&mut self, plan: &mut Plan, path: &FieldPath) {
+        let scale = path.last_name().map_or(Scale::Open, |name| Scale::of(name, None));
+        self.stamps.push(plan.slot(path, Want::Stamp));
+        self.say(plan, path, (Want::Numbers, Says::Time(scale)));
+    }
+
+    /// Takes the field at `path` for the name or number of their sensor.
+    pub(super) fn sensor(&mut self, plan: &mut Plan, path: Option<&FieldPath>) {
+        for (path, want) in
+            path.into_iter().flat_map(|path| [Want::Text, Want::Numbers].map(|want| (path, want)))
+        {
+            self.say(plan, path, (want, Says::Sensor));
+        }
+    }
+
+    /// Takes the field at `path` for their rate or interval, in the unit that may stand beside it: `sample_rate_unit`.
+    pub(super) fn rate(
+        &mut self,
+        plan: &mut Plan,
+        path: &FieldPath,
+        (meaning, level): (Meaning, usize),
+        telling: &[Telling],
+    ) {
+        let name = path.last_name().unwrap_or_default();
+        let is_unit = |other: &&Telling| {
+            let unit = other.path.last_name().and_then(|unit| unit.strip_prefix(name));
+            other.says == Says::Unit
+                && other.path.enclosing().next() == path.enclosing().next()
+                && matches!(unit, Some("_unit" | "_units"))
+        };
+        let unit = telling.iter().find(is_unit).map(|unit| plan.slot(&unit.path, Want::Text));
+        let stated = StatedRate { name: name.into(), meaning, level, value: f64::NAN, unit: None };
+        self.rates.push(SlotOfRate { number: plan.slot(path, Want::Numbers), unit, stated });
+    }
+
+    /// Takes the fields of a message that encloses the samples, so many `level`s above them, that say something of them.
+    pub(super) fn others(
+        &mut self,
+        plan: &mut Plan,
+        (message, level): (&FieldPath, usize),
+        asked: &AskedField,
+        telling: &[Telling],
+    ) {
+        for Telling { path, says, .. } in
+            telling.iter().filter(|t| t.message == *message && t.path != asked.path)
+        {
+            match says {
+                Says::Sensor if asked.may_be_sensor(path) => self.sensor(plan, Some(path)),
+                Says::Time(_) if asked.times.is_none() => self.time(plan, path),
+                Says::Rate(meaning) => self.rate(plan, path, (*meaning, level), telling),
+                Says::Sensor | Says::Time(_) | Says::Unit => {}
+                says => self.say(plan, path, (Want::Numbers, *says)),
+            }
+        }
+    }
+}
+
+/// A field that says something of the samples in a message.
+pub(super) struct Telling {
+    message: FieldPath,
+    path: FieldPath,
+    says: Says,
+}
+
+impl Telling {
+    /// Those among the leaves of a message type, the first of them.
+    pub(super) fn among(leaves: &[Leaf]) -> Vec<Self> {
+        leaves.iter().filter(|leaf| !leaf.is_array).filter_map(Self::of).take(MOST_TELLING).collect()
+    }
+
+    fn of(leaf: &Leaf) -> Option<Self> {
+        let path = FieldPath::parse(&leaf.path)?;
+        let (Step::Name(name), mut message) = path.0.split_last()? else { return None };
+        let mut says = Says::of(name, leaf.is_signal);
+        match message.split_last() {
+            Some((Step::Name(header), outer)) if header == "header" => message = outer,
+            // `std_msgs/MultiArrayLayout`, which stands beside its array.
+            Some((Step::Name(layout), outer)) if layout == "layout" && name == "data_offset" => {
+                let size = [Step::Name("dim".into()), Step::Index(1), Step::Name("size".into())];
+                let path = FieldPath([message, &size].concat());
+                return Some(Self { message: FieldPath(outer.to_vec()), path, says: Says::Turns });
+            }
+            _ => {}
+        }
+        // The stamp of a header is known by its name.
+        says = says.filter(|says| !matches!(says, Says::Time(_)) || message.len() + 1 == path.0.len());
+        Some(Self { message: FieldPath(message.to_vec()), says: says?, path })
+    }
+}
+
+impl Says {
+    /// What a field of this name says; words and single bytes are no signal.
+    fn of(name: &str, is_signal: bool) -> Option<Self> {
+        Some(match (role(name, 1), vocabulary::meaning(name)) {
+            _ if vocabulary::is_sensor(name) => Self::Sensor,
+            _ if !is_signal && (name.ends_with("_unit") || name.ends_with("_units")) => Self::Unit,
+            _ if is_signal && vocabulary::is_named_time(name) && !STAMP_NAMES.contains(&&[name][..]) => {
+                Self::Time(Scale::Open)
+            }
+            // Outside of NWB nothing defines it.
+            _ if ["gain", "conversion"].contains(&name) => Self::Conversion,
+            (Some(AttributeRole::Scale), _) => Self::Scale,
+            (Some(AttributeRole::Offset), _) => Self::Offset,
+            (Some(AttributeRole::Conversion), _) => Self::Conversion,
+            (_, Some(Meaning::Count)) => Self::Count,
+            (_, Some(meaning)) if !RATE_NAMES.contains(&name) => Self::Rate(meaning),
+            _ => return None,
+        })
+    }
+}
