@@ -9,10 +9,12 @@ mod fault;
 mod find;
 mod library;
 mod list;
-mod names;
+pub(super) mod names;
 mod packed;
 mod patience;
 mod room;
+mod sensors;
+mod starts;
 mod types;
 mod wall;
 
@@ -31,6 +33,8 @@ use clocks::Clocks;
 use column::DatasetColumn;
 use fault::Fault;
 use room::File;
+use starts::Start;
+use std::collections::HashMap;
 #[cfg(unix)]
 use std::ffi::OsString;
 use std::io::{BufWriter, stdin, stdout};
@@ -55,8 +59,9 @@ pub(super) fn serve(program: &Path) -> Option<ExitCode> {
 /// Closes this process in and answers on standard output what standard input asks of the file at `path`; whether it could.
 pub(super) fn take_apart(path: &Path) -> bool {
     let mut wall = wall::Wall::around(path);
+    let is_whole = wall.is_whole;
     let mut grant = |bytes, held_bytes| wall.grant(bytes, held_bytes);
-    library::answer(path, &mut stdin().lock(), &mut BufWriter::new(stdout()), &mut grant).is_ok()
+    library::answer(path, &mut stdin().lock(), &mut BufWriter::new(stdout()), is_whole, &mut grant).is_ok()
 }
 
 /// Starts the program anew where variables are set by which the C library, which writes the curves of a report in this process, would
@@ -92,23 +97,30 @@ pub(super) fn read(
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
     let file = File::open(path, limits)?;
-    let mut room = MemoryTaken { file: &file, held_bytes: 0, clocks: Clocks::default() };
+    let clocks = Clocks::default();
+    let mut room = MemoryTaken { file: &file, held_bytes: 0, unpacked_bytes: HashMap::new(), clocks };
     let count = cask_file.channels.len().max(1);
-    let mut channels = Vec::with_capacity(count);
+    let (mut channels, mut starts) = (Vec::with_capacity(count), Vec::new());
     for (index, spec) in cask_file.channels.iter().enumerate() {
         let channel = read_channel(&mut room, spec, cask_file.time.as_deref());
         // A library that broke off gives no answers, which is not what is wrong with the channel.
         file.whole()?;
-        channels.push(RawChannel { spec: index, ..channel? });
+        let (channel, start) = channel?;
+        channels.push(RawChannel { spec: index, ..channel });
+        starts.push((spec.source.to_string(), start));
+        let refused = |fault: Fault| error::source(path, &spec.name, fault.to_string(), fault.remedy);
+        starts::require_common(&starts).map_err(refused)?;
         progress(as_f64(index + 1) / as_f64(count));
     }
     Ok(RawRecording { channels, zero_unix_ns: None, issues: Vec::new() })
 }
 
-/// What of the memory is taken.
+/// What of the memory is taken, and what is unpacked for it.
 struct MemoryTaken<'a> {
     file: &'a Rc<File>,
     held_bytes: u64,
+    /// Of all chunks of each dataset.
+    unpacked_bytes: HashMap<String, u64>,
     clocks: Clocks,
 }
 
@@ -117,13 +129,15 @@ impl MemoryTaken<'_> {
     fn take(&mut self, column: &DatasetColumn) -> Result<(), IngestError> {
         let File { limits, path, .. } = &**self.file;
         self.held_bytes = self.held_bytes.saturating_add(column.held_bytes());
+        let (source, unpacked) = (&column.source, limits.unpacked_bytes(self.file.bytes));
+        self.unpacked_bytes.insert(column.path.clone(), column.dataset.unpacked_bytes());
+        let unpacked_bytes = self.unpacked_bytes.values().fold(0, |all: u64, own| all.saturating_add(*own));
+        let idle_bytes = column.dataset.idle_bytes();
         let bounds = [
-            (column.part_bytes(), limits.part_bytes(), format!("a block of {} takes", column.source)),
-            (
-                self.held_bytes,
-                limits.unpacked_bytes(self.file.bytes),
-                "the samples of the channels read unpack to".into(),
-            ),
+            (column.part_bytes(), limits.part_bytes(), format!("a block of {source} takes")),
+            (idle_bytes, limits.idle_bytes(), format!("a chunk of {source} is wider than its dataset by")),
+            (self.held_bytes, unpacked, "the samples of the channels read unpack to".into()),
+            (unpacked_bytes, unpacked, format!("the chunks of {source} and of those before unpack to")),
             (self.held_bytes, limits.samples_bytes(), "the samples of the channels read take".into()),
         ];
         let passed = bounds.iter().find(|(bytes, most, _)| bytes > most);
@@ -143,7 +157,7 @@ fn read_channel(
     room: &mut MemoryTaken,
     spec: &ChannelSpec,
     time: Option<&str>,
-) -> Result<RawChannel, IngestError> {
+) -> Result<(RawChannel, Start), IngestError> {
     let path = &room.file.path;
     let refused = |fault: Fault| error::source(path, &spec.name, fault.to_string(), fault.remedy);
     let Source::Path(source) = &spec.source else {
@@ -156,7 +170,8 @@ fn read_channel(
     room.take(&column)?;
     let channel =
         DatasetChannel::of(column, spec.sample_rate_hz, spec.time.as_deref().or(time), &mut room.clocks);
-    let channel = channel.map_err(refused)?;
+    let mut channel = channel.map_err(refused)?;
+    channel.pick(spec.rows.as_ref(), |ids| room.has_for_a_while(ids)).map_err(refused)?;
     channel.times.first().map_or(Ok(()), |time| room.take(time))?;
     let samples = channel.samples().map_err(refused)?;
     let based = channel.on_base(samples, |other| room.has_for_a_while(other)).map_err(refused)?;
@@ -165,11 +180,13 @@ fn read_channel(
     match attributes.two_units {
         // The cask file's goes before all.
         Some(two) if spec.unit.is_none() => Err(refused(Fault::from(two).at(source))),
-        _ => Ok(RawChannel { spec: 0, uniform, unit: attributes.unit }),
+        _ => Ok((RawChannel { spec: 0, uniform, unit: attributes.unit }, based.start)),
     }
 }
 
 #[cfg(test)]
 mod layout_tests;
+#[cfg(test)]
+mod said_tests;
 #[cfg(test)]
 mod tests;

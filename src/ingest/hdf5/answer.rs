@@ -49,6 +49,8 @@ pub(super) enum Reply {
     Opened {
         user_block: u64,
         library: (u8, u8, u8),
+        /// Whether the system keeps the process from every other file.
+        is_walled: bool,
     },
     /// What stands at a path.
     Found(String, Object),
@@ -67,7 +69,7 @@ pub(super) enum Object {
     Nothing,
     Group {
         attributes: Vec<(String, AttributeValue)>,
-        /// Members that are named as times.
+        /// Members that are named as times, or as what tells sensors apart.
         times: Vec<String>,
     },
     Dataset(Dataset),
@@ -248,6 +250,25 @@ impl Dataset {
         let shape = if shape.is_empty() { "scalar".into() } else { shape.join(" × ") };
         let filters = self.filters.iter().map(ToString::to_string).collect::<Vec<_>>().join(" + ");
         [kind, shape, filters].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+    }
+
+    /// All that its chunks unpack to, bytes.
+    pub(super) fn unpacked_bytes(&self) -> u64 {
+        self.bytes(|whole, chunk| whole.div_ceil(chunk).saturating_mul(chunk))
+    }
+
+    /// What lies beyond its edges in one chunk, bytes: nobody needs it, and an extensible dataset may have any amount of it.
+    pub(super) fn idle_bytes(&self) -> u64 {
+        self.bytes(|_, chunk| chunk).saturating_sub(self.bytes(usize::min))
+    }
+
+    /// The product of what a size and that of a chunk make along every dimension, in bytes; 0 where there are no chunks.
+    fn bytes(&self, along: fn(usize, usize) -> usize) -> u64 {
+        let (Storage::Chunked { shape: chunk, .. }, Some(whole)) = (&self.storage, &self.shape) else {
+            return 0;
+        };
+        let sizes = whole.iter().zip(chunk).map(|(&whole, &chunk)| along(whole, chunk) as u64);
+        sizes.fold(self.value_bytes, u64::saturating_mul)
     }
 
     /// Whether its parts fit together and into a file of `file_bytes`.

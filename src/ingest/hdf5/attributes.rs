@@ -3,9 +3,10 @@
 use super::answer::{AttributeValue as Held, Object, decoded};
 use super::column::DatasetColumn;
 use super::names::{self, AttributeRole};
+use super::starts::{self, start_s};
 use crate::data::{AttributeFinding, Finding, Samples, acceleration_unit_m_s2};
 use crate::ingest::clock::Refusal;
-use crate::ingest::statement::Statement;
+use crate::ingest::statement::{Statement, number_and_unit};
 use crate::ingest::vocabulary::Meaning;
 
 /// What the recording says of a column.
@@ -18,7 +19,7 @@ pub(super) struct Attributes {
     pub unit: Option<String>,
     /// Two units that one place states.
     pub two_units: Option<Refusal>,
-    pub start_s: Option<f64>,
+    pub start: starts::Start,
     pub scale: Option<f64>,
     pub offset: Option<f64>,
     /// Stored values that stand for a missing sample.
@@ -28,8 +29,10 @@ pub(super) struct Attributes {
 }
 
 /// What one attribute says of a column.
+#[derive(Clone)]
 struct Said {
     name: String,
+    role: Option<AttributeRole>,
     /// The dataset or group that bears it.
     place: String,
     /// 0 of the dataset, 1 of its group, and so on up to the root.
@@ -46,15 +49,13 @@ impl Attributes {
     pub(super) fn of(column: &DatasetColumn) -> Result<Self, Refusal> {
         let said = said(column);
         let attributes = Self::of_said(&said, column)?;
-        let conversions = said.iter().filter(|said| said.role() == Some(AttributeRole::Conversion));
-        let conversions: Vec<String> = conversions.map(Said::shown).collect();
-        let is_converted = attributes.scale.or(attributes.offset).is_some();
-        if column.number.is_whole() && !is_converted && !conversions.is_empty() {
+        let are_counts = column.number.is_whole();
+        let undone = said.iter().filter(|said| said.is_undone(are_counts));
+        let undone: Vec<String> = undone.map(Said::shown).collect();
+        if attributes.scale.is_none() && !undone.is_empty() {
+            let what = if are_counts { "whole numbers are counts of the recorder," } else { "numbers are" };
             return Err(Refusal::new(
-                format!(
-                    "its whole numbers are counts of the recorder, to be converted by {}, which is not done here",
-                    conversions.join(", ")
-                ),
+                format!("its {what} to be converted by {}, which is not done here", undone.join(", ")),
                 "write attributes scale, offset and unit to the dataset in a copy: value = raw · scale + offset; scale = 1 where the numbers \
                  are converted already",
             ));
@@ -73,9 +74,9 @@ impl Attributes {
     }
 
     fn of_said(said: &[Said], column: &DatasetColumn) -> Result<Self, Refusal> {
-        use AttributeRole::{Fill, Offset, Scale, Start, Unit};
+        use AttributeRole::{Fill, Offset, OpenStart, Scale, Start, Unit};
         let mut all = Self::default();
-        let with = |role: AttributeRole| said.iter().filter(move |said| said.role() == Some(role));
+        let with = |role: AttributeRole| said.iter().filter(move |said| said.role == Some(role));
         let numbers = |role: AttributeRole| -> Result<Vec<(f64, &Said)>, Refusal> {
             with(role).filter_map(|said| Some(said.number(column).transpose()?.map(|x| (x, said)))).collect()
         };
@@ -83,7 +84,14 @@ impl Attributes {
         // A scale of 1 and an offset of 0 do nothing: they are what a writer puts where each dataset has its own.
         all.scale = all.nearest(numbers(Scale)?, is_same, |far| is_alike(*far, 1.0))?;
         all.offset = all.nearest(numbers(Offset)?, is_same, |far| is_alike(*far, 0.0))?;
-        all.start_s = numbers(Start)?.first().map(|start| start.0);
+        let own = said.iter().filter(|said| said.name == "start_time_s").take(1);
+        let others = said.iter().filter(|said| matches!(said.role, Some(Start | OpenStart)));
+        let starts: Vec<&Said> = if own.clone().count() > 0 { own.collect() } else { others.collect() };
+        for said in starts {
+            let at_s =
+                said.value.as_deref().and_then(|text| start_s(&said.name, text, said.role == Some(Start)));
+            all.start.note(at_s, said.shown());
+        }
         let units =
             with(Unit).filter_map(|said| Some((said.value.clone().filter(|unit| !unit.is_empty())?, said)));
         // A wrong unit is off by a factor of three and more, which no drop height or geometry bears.
@@ -188,6 +196,7 @@ fn said(column: &DatasetColumn) -> Vec<Said> {
         };
         all.extend(attributes.iter().map(|(name, held)| Said {
             name: name.clone(),
+            role: names::role(name, distance),
             place: path.to_owned(),
             distance,
             value: column.own_of(held),
@@ -195,33 +204,54 @@ fn said(column: &DatasetColumn) -> Vec<Said> {
         let Some((above, _)) = place.rsplit_once('/') else { break };
         (place, distance) = (above, distance + 1);
     }
+    // No place states the units of more than 64.
+    let units: Vec<Said> =
+        all.iter().filter(|said| names::ends_in_unit(&said.name)).take(64).cloned().collect();
+    for said in all.iter_mut().filter(|said| said.takes_unit()) {
+        let is_its = |unit: &&Said| {
+            (unit.distance, true) == (said.distance, names::is_unit_of(&unit.name, &said.name))
+        };
+        let unit = units.iter().find(is_its).and_then(|unit| unit.value.as_deref()).unwrap_or_default();
+        said.value = said.value.take().map(|value| format!("{value} {unit}").trim_end().to_owned());
+    }
     let is_interval = |said: &Said| matches!(names::rate_meaning(&said.name), Some(Meaning::Interval(_)));
     all.sort_by_key(|said| (said.distance, is_interval(said)));
     all
 }
 
 impl DatasetColumn {
-    /// The column's value of an attribute: that of its index where there is one a column, else the only one, as which several count that
-    /// are the same.
+    /// The column's value of an attribute: that of its index where there is one a column, else the only one.
     fn own_of(&self, held: &Held) -> Option<String> {
-        let mut values: Vec<String> = match held {
-            Held::Numbers(numbers) => numbers.iter().map(ToString::to_string).collect(),
+        let place = |count| if count == 1 { Some(0) } else { (count == self.columns).then_some(self.index) };
+        match held {
+            Held::Numbers(numbers) => Some(numbers[place(numbers.len())?].to_string()),
             Held::Texts(texts) => {
-                texts.iter().map(|text| decoded(text).trim_end_matches('\0').trim().to_owned()).collect()
+                Some(decoded(&texts[place(texts.len())?]).trim_end_matches('\0').trim().to_owned())
             }
-            Held::Other => Vec::new(),
-        };
-        match self.index {
-            index if values.len() == self.columns && index < values.len() => Some(values.swap_remove(index)),
-            _ if values.windows(2).all(|pair| pair[0] == pair[1]) => values.pop(),
-            _ => None,
+            Held::Other => None,
         }
     }
 }
 
 impl Said {
-    fn role(&self) -> Option<AttributeRole> {
-        names::role(&self.name, self.distance)
+    /// Whether it is a rate, an interval or a start that is a bare number.
+    fn takes_unit(&self) -> bool {
+        (names::rate_meaning(&self.name).is_some() || self.role == Some(AttributeRole::OpenStart))
+            && self.value.as_ref().is_some_and(|value| value.parse::<f64>().is_ok())
+    }
+
+    /// Whether it is a conversion that is to be done and is not: a factor of 1 and an offset of 0 do nothing, and of samples that are no
+    /// counts it is a number, or several, and no date.
+    fn is_undone(&self, are_counts: bool) -> bool {
+        use AttributeRole::{Conversion, CountsConversion};
+        let is_idle = |(number, unit): (&str, &str)| {
+            matches!(number.parse(), Ok(0.0 | 1.0)) || !are_counts && unit.starts_with(['-', '/', '.', ':'])
+        };
+        match (self.role, self.value.as_deref().map(number_and_unit)) {
+            (Some(Conversion), Some(Some(number))) => !is_idle(number),
+            (Some(Conversion), None) => true,
+            (role, _) => are_counts && matches!(role, Some(Conversion | CountsConversion)),
+        }
     }
 
     /// `scale = 0.5`.
@@ -229,15 +259,17 @@ impl Said {
         format!("{} = {}", self.name, self.value.as_deref().unwrap_or("[different values]"))
     }
 
-    /// The number; `None` where a name that is not of the CF conventions holds a word, as in `scale = linear`.
+    /// The number; `None` where a name that is of no convention holds a word, as in `scale = linear`.
     ///
     /// # Errors
     /// It is no finite number: `scale_factor = 1,05`.
     fn number(&self, column: &DatasetColumn) -> Result<Option<f64>, Refusal> {
         let text = self.value.as_deref().unwrap_or_default();
+        let is_word =
+            text.starts_with(char::is_alphabetic) && ["scale", "offset"].contains(&self.name.as_str());
         match text.parse::<f64>() {
             Ok(number) if number.is_finite() => return Ok(Some(number)),
-            Err(_) if text.starts_with(char::is_alphabetic) && !self.name.contains('_') => return Ok(None),
+            Err(_) if is_word => return Ok(None),
             _ => {}
         }
         let count = column.columns;

@@ -5,7 +5,9 @@ use super::clocks::{self, Clocks};
 use super::column::DatasetColumn;
 use super::fault::Fault;
 use super::find;
-use crate::data::Samples;
+use super::sensors::RecordSensors;
+use super::starts::{LATEST_S, Start};
+use crate::data::{RowsOf, Samples};
 use crate::ingest::clock::Claims;
 use crate::ingest::time_base::{self, ChannelTimes, TimeBaseError, Uniform};
 
@@ -17,6 +19,8 @@ pub(super) struct DatasetChannel {
     pub claims: Claims,
     /// The times to take, and behind them all others beside the samples.
     pub times: Vec<DatasetColumn>,
+    /// Which of its samples are taken, where it holds those of several sensors.
+    rows: Option<Vec<usize>>,
 }
 
 /// Samples on one base.
@@ -24,6 +28,8 @@ pub(super) struct Based {
     pub uniform: Uniform,
     /// The first and the last of their times, s, where they have times.
     pub span_s: Option<(f64, f64)>,
+    /// What is said of its start.
+    pub start: Start,
 }
 
 impl DatasetChannel {
@@ -39,15 +45,37 @@ impl DatasetChannel {
     ) -> Result<Self, Fault> {
         let mut attributes =
             Attributes::of(&column).map_err(|refusal| Fault::from(refusal).at(&column.source))?;
+        if let Some(since_s) = &mut attributes.start.since_s {
+            *since_s -= *clocks.zero_s.get_or_insert(*since_s);
+        }
         let mut times = clocks.of(&column);
         if let Some(name) = time {
-            let named = named_times(&column, name)?;
+            let named = named_beside(&column, name)?;
             times.retain(|other| other.source != named.source);
             times.insert(0, named);
         }
         let stated = std::mem::take(&mut attributes.stated);
         let claims = Claims { cask_hz, are_times_named: time.is_some(), stated };
-        Ok(Self { column, attributes, claims, times })
+        Ok(Self { column, attributes, claims, times, rows: None })
+    }
+
+    /// Takes the samples of one sensor alone.
+    ///
+    /// # Errors
+    /// None is picked of several, or none that is there.
+    pub(super) fn pick(
+        &mut self,
+        picked: Option<&RowsOf>,
+        mut may_read: impl FnMut(&DatasetColumn) -> bool,
+    ) -> Result<(), Fault> {
+        let named = picked.map(|picked| named_beside(&self.column, &picked.column)).transpose()?;
+        let beside = named.map_or_else(|| clocks::sensors_beside(&self.column), |named| vec![named]);
+        let mut beside = beside.iter().filter(|ids| ids.length == self.column.length && may_read(ids));
+        let sensors = beside.find_map(|ids| RecordSensors::by(ids, picked.is_some()));
+        let sensors = sensors.or_else(|| picked.map(|_| RecordSensors::default()));
+        let rows = sensors.map(|sensors| sensors.rows(picked)).transpose();
+        self.rows = rows.map_err(|fault| fault.at(&self.column.source))?;
+        Ok(())
     }
 
     /// Its numbers, scaled.
@@ -55,7 +83,11 @@ impl DatasetChannel {
     /// # Errors
     /// They cannot be read.
     pub(super) fn samples(&self) -> Result<Samples, Fault> {
-        Ok(self.attributes.scaled(self.column.samples()?))
+        let samples = self.attributes.scaled(self.column.samples()?);
+        Ok(match &self.rows {
+            Some(rows) => samples.picked(rows),
+            None => samples,
+        })
     }
 
     /// Whether the recording says nothing of its clock.
@@ -73,36 +105,60 @@ impl DatasetChannel {
         samples: Samples,
         mut may_read: impl FnMut(&DatasetColumn) -> bool,
     ) -> Result<Based, Fault> {
-        let Some((time, others)) = self.times.split_first() else { return self.by_rate(samples) };
         let at = |fault: Fault| fault.at(&self.column.source);
         // A rate that is stated tells the unit of times that state none.
         let stated_hz = self.claims.cask_hz.or(self.claims.stated.first().map(|stated| stated.rate_hz));
-        let times_s = clocks::seconds(time, stated_hz).map_err(at)?;
-        let placed = ChannelTimes::new(&times_s).place(samples, &self.claims);
-        let mut uniform = placed.map_err(|error| at(refused(error)))?;
-        // A rate that bears the times out decides between them and others.
-        let is_decided = !self.claims.is_empty() || self.claims.are_times_named;
-        for other in others.iter().filter(|other| may_read(other)) {
-            let told =
-                clocks::witness((time, &times_s), other, is_decided).map_err(|refusal| at(refusal.into()))?;
-            uniform.issues.extend(told);
+        let (mut others, mut unfit) = (self.times.iter(), None);
+        while let Some(time) = others.next() {
+            if unfit.is_some() && !may_read(time) {
+                continue;
+            }
+            let mut counted = clocks::counted(time).map_err(at)?;
+            if let Some(rows) = self.rows.as_ref().filter(|_| counted.0.len() == self.column.length) {
+                counted.0 = rows.iter().map(|row| counted.0[*row]).collect();
+            }
+            let why = clocks::why_unfit(time, &counted).filter(|_| !self.claims.are_times_named);
+            if why.is_some() {
+                unfit = unfit.or(why);
+                continue;
+            }
+            let mut times_s = clocks::seconds(time, counted, stated_hz).map_err(at)?;
+            // They count from 1970 themselves, or from what is said of the start.
+            let start =
+                Some(&self.attributes.start).filter(|_| times_s.first().is_none_or(|t| *t < LATEST_S));
+            let start = start.cloned().unwrap_or_default();
+            if let Some(since_s) = start.since_s {
+                for t in &mut times_s {
+                    *t += since_s;
+                }
+            }
+            let placed = ChannelTimes::new(&times_s).place(samples, &self.claims);
+            let mut uniform = placed.map_err(|error| at(refused(error)))?;
+            // A rate that bears the times out decides between them and others.
+            let is_decided = !self.claims.is_empty() || self.claims.are_times_named;
+            for other in others.filter(|other| self.rows.is_none() && may_read(other)) {
+                let told = clocks::witness((time, &times_s), other, is_decided);
+                uniform.issues.extend(told.map_err(|refusal| at(refusal.into()))?);
+            }
+            return Ok(Based { uniform, span_s: Some(clocks::span_s(&times_s)), start });
         }
-        Ok(Based { uniform, span_s: Some(clocks::span_s(&times_s)) })
+        self.by_rate(samples, unfit)
     }
 
-    fn by_rate(&self, samples: Samples) -> Result<Based, Fault> {
-        let Attributes { no_rate, start_s, .. } = &self.attributes;
+    fn by_rate(&self, samples: Samples, unfit: Option<String>) -> Result<Based, Fault> {
+        let Attributes { no_rate, start, .. } = &self.attributes;
         let unclear = no_rate.clone().filter(|_| self.claims.cask_hz.is_none());
-        let nothing = || format!("no attribute sample_rate_hz, and {}", clocks::why_none(&self.column));
+        let none = || unfit.unwrap_or_else(|| clocks::why_none(&self.column));
+        let nothing = || format!("no attribute sample_rate_hz, and {}", none());
         let placed = match unclear.or_else(|| self.claims.is_empty().then(nothing)) {
             Some(why) => Err(Fault::new(
                 format!("nothing says when its samples were taken: {why}"),
                 "give sample_rate_hz in this channel of the cask file, or time = \"/path/of/times\"",
             )),
-            None => time_base::from_claims(start_s.unwrap_or(0.0), &self.claims, samples).map_err(refused),
+            None => time_base::from_claims(start.first_s(), &self.claims, samples).map_err(refused),
         };
         let uniform = placed.map_err(|fault| fault.at(&self.column.source))?;
-        Ok(Based { uniform, span_s: None })
+        Ok(Based { uniform, span_s: None, start: start.clone() })
     }
 }
 
@@ -110,8 +166,8 @@ fn refused(error: TimeBaseError) -> Fault {
     error.refusal("check the dataset of times (`time` in the cask file), or give sample_rate_hz").into()
 }
 
-/// The times that a cask file names; a bare name is looked for beside the samples first, in their own records before all.
-fn named_times(column: &DatasetColumn, name: &str) -> Result<DatasetColumn, Fault> {
+/// What a cask file names; a bare name is looked for beside the samples first, in their own records before all.
+fn named_beside(column: &DatasetColumn, name: &str) -> Result<DatasetColumn, Fault> {
     let records = column.is_field().then(|| format!("{}.{name}", column.path));
     let mut beside = records.into_iter().chain([format!("{}/{name}", column.group())]);
     let found = beside.find_map(|source| find::find(&column.file, &source).ok()?);

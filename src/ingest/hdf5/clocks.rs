@@ -20,17 +20,26 @@ const MOST_TIMES: usize = 64;
 pub(super) struct Clocks {
     place: Option<String>,
     times: Vec<DatasetColumn>,
+    /// The first start that is stated, s since 1970: others count from it, which keeps their digits.
+    pub zero_s: Option<f64>,
 }
 
 impl Clocks {
-    /// The times of a channel, likeliest first: fields of the same records, else datasets beside it, that have a usual name and as many values.
+    /// The times of a channel, likeliest first: fields of the same records or columns beside it, else datasets,
+    /// that have a usual name and as many values.
     pub(super) fn of(&mut self, column: &DatasetColumn) -> Vec<DatasetColumn> {
         let is_apart =
             |times: &&DatasetColumn| times.length == column.length && times.source != column.source;
-        let records = column.is_field().then(|| format!("{}.", column.path));
-        for place in records.into_iter().chain([format!("{}/", column.group())]) {
+        let index = column.names().iter().position(|name| names::is_time(name));
+        let named = index.map(|index| find::find(&column.file, &format!("{}[{index}]", column.path)));
+        if let Some(Ok(Some(times))) = named
+            && times.source != column.source
+        {
+            return vec![times];
+        }
+        for place in places(column) {
             if self.place.as_ref() != Some(&place) {
-                let named = sources(&place, column).into_iter();
+                let named = sources(&place, column, names::is_time).into_iter();
                 self.times = named.filter_map(|source| find::find(&column.file, &source).ok()?).collect();
                 self.place = Some(place);
             }
@@ -43,9 +52,22 @@ impl Clocks {
     }
 }
 
+/// Where what is beside a channel stands: in the same records, and in its group.
+fn places(column: &DatasetColumn) -> impl Iterator<Item = String> {
+    let records = column.is_field().then(|| format!("{}.", column.path));
+    records.into_iter().chain([format!("{}/", column.group())])
+}
+
+/// What says of which sensor each sample of a channel is, by its name.
+pub(super) fn sensors_beside(column: &DatasetColumn) -> Vec<DatasetColumn> {
+    let named = places(column).flat_map(|place| sources(&place, column, names::is_sensor));
+    let found = named.filter_map(|source| find::find(&column.file, &source).ok()?);
+    found.filter(|ids| ids.length == column.length).collect()
+}
+
 /// Why a channel has no times: what is named as times beside it, and is none of its own.
 pub(super) fn why_none(column: &DatasetColumn) -> String {
-    let sources = sources(&format!("{}/", column.group()), column);
+    let sources = sources(&format!("{}/", column.group()), column, names::is_time);
     let others = sources.iter().filter(|source| **source != column.source);
     let mut reasons = others.filter_map(|source| match find::find(&column.file, source) {
         Ok(times) => Some(format!("{source} holds {} times for {} samples", times?.length, column.length)),
@@ -54,32 +76,46 @@ pub(super) fn why_none(column: &DatasetColumn) -> String {
     reasons.next().unwrap_or_else(|| "no dataset of times beside it".into())
 }
 
-/// What is named as times in a group (`/daq/`) or in records (`/daq/table.`), likeliest first.
-fn sources(place: &str, column: &DatasetColumn) -> Vec<String> {
+/// What is named so in a group (`/daq/`) or in records (`/daq/table.`), likeliest first; what MATLAB's cells hold is named by chance.
+fn sources(place: &str, column: &DatasetColumn, is_named: fn(&str) -> bool) -> Vec<String> {
     let path = place.trim_end_matches(['/', '.']);
     let mut names = match &*column.file.object(if path.is_empty() { "/" } else { path }) {
-        Object::Group { times, .. } => times.clone(),
+        Object::Group { times, .. } if !path.ends_with("/#refs#") => times.clone(),
         Object::Dataset(dataset) => dataset.fields.iter().map(|field| decoded(&field.name)).collect(),
         _ => Vec::new(),
     };
-    names.retain(|name| names::is_time(name));
+    names.retain(|name| is_named(name));
     names.sort_by_key(|name| FIRST_NAMES.iter().position(|first| first == name).unwrap_or(FIRST_NAMES.len()));
     names.into_iter().take(MOST_TIMES).map(|name| format!("{place}{name}")).collect()
 }
 
 /// The numbers of a column of times, with its own scale and offset, and what a unit of them is.
-fn counted(times: &DatasetColumn) -> Result<(Vec<f64>, Scale), Fault> {
+pub(super) fn counted(times: &DatasetColumn) -> Result<(Vec<f64>, Scale), Fault> {
     let own = Attributes::own(times).map_err(|refusal| Fault::from(refusal).at(&times.source))?;
     let numbers = own.scaled(Samples::F64(times.samples()?.into_f64())).into_f64();
     Ok((numbers, Scale::of(&times.bare_name(), own.unit.as_deref())))
 }
 
+/// Why numbers that are named as times are none.
+pub(super) fn why_unfit(times: &DatasetColumn, (numbers, scale): &(Vec<f64>, Scale)) -> Option<String> {
+    let (falls, steps) = (numbers.windows(2).filter(|pair| pair[1] < pair[0]).count(), numbers.len() - 1);
+    let what = match scale {
+        Scale::Unknown => "is in a unit that is none of time".into(),
+        _ if 10 * falls > steps => format!("falls in {falls} of {steps} steps, as no times do"),
+        _ => return None,
+    };
+    Some(format!("{} {what}", times.source))
+}
+
 /// The times of a column in seconds; a rate that is stated tells units apart where nothing else does.
 ///
 /// # Errors
-/// They cannot be read, or nothing tells their unit.
-pub(super) fn seconds(times: &DatasetColumn, stated_hz: Option<f64>) -> Result<Vec<f64>, Fault> {
-    let (mut numbers, scale) = counted(times)?;
+/// Nothing tells their unit.
+pub(super) fn seconds(
+    times: &DatasetColumn,
+    (mut numbers, scale): (Vec<f64>, Scale),
+    stated_hz: Option<f64>,
+) -> Result<Vec<f64>, Fault> {
     let source = &times.source;
     let carrier = if times.is_field() { Carrier::Field(source) } else { Carrier::Dataset(source) };
     let unit_s = seconds_a_unit(scale, carrier, &numbers, stated_hz)?;

@@ -1,6 +1,7 @@
 //! A column, row or field of a dataset with what of it a channel is.
 
-use super::answer::{Dataset, NumberType, RecordField, Storage, decoded};
+use super::answer::{AttributeValue::Texts, Dataset, NumberType, RecordField, Storage, decoded};
+use super::names::{self, AttributeRole::Columns};
 use super::room::File;
 use std::rc::Rc;
 
@@ -48,12 +49,24 @@ impl DatasetColumn {
         }
     }
 
+    /// The names of the columns of its dataset, where an attribute lists them.
+    pub(super) fn names(&self) -> Vec<String> {
+        let listed = self.dataset.attributes.iter().find_map(|(name, held)| match held {
+            Texts(texts) if names::role(name, 0) == Some(Columns) => Some(texts),
+            _ => None,
+        });
+        let texts =
+            listed.filter(|texts| self.columns > 1 && texts.len() == self.columns).into_iter().flatten();
+        texts.map(|text| decoded(text).trim_end_matches('\0').trim().to_owned()).collect()
+    }
+
     /// The last part of its name, which may tell its unit.
     pub(super) fn bare_name(&self) -> String {
-        match &self.place {
-            Place::Field(field) => decoded(&field.name),
-            _ => self.path.rsplit('/').next().unwrap_or_default().to_owned(),
+        if let Place::Field(field) = &self.place {
+            return decoded(&field.name);
         }
+        let of_dataset = self.path.rsplit('/').next().unwrap_or_default();
+        self.names().into_iter().nth(self.index).unwrap_or_else(|| of_dataset.to_owned())
     }
 
     /// Whether it is a field of records.

@@ -8,13 +8,14 @@ use super::{names, types};
 use hdf5_metno::dataset::Layout;
 use hdf5_metno::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenUnicode};
 use hdf5_metno::{
-    Attribute, File, H5Type, Hyperslab, LinkType, Location, LocationType, Selection, SliceOrIndex,
+    Container, File, H5Type, Hyperslab, IndexType, IterationOrder, LinkType, Location, LocationToken,
+    LocationType, Selection, SliceOrIndex,
 };
 use std::collections::{BTreeMap, HashMap};
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-/// Groups deeper than this are not followed: links may form circles.
+/// Groups deeper than this are not followed.
 const DEEPEST: usize = 32;
 /// At most so many objects are walked, for the same reason.
 pub(super) const MOST_OBJECTS: usize = 10_000;
@@ -27,12 +28,20 @@ const TEXT_BYTES: usize = 256;
 /// More chunks than this are the library's to find: a table of them would take as long as it spares.
 const MOST_CHUNKS: usize = 1 << 20;
 
+/// What numbers stand for that are none.
+const MATLAB_OTHER: &[u8] = b"text or cells of MATLAB";
+
+/// No group has more datasets of one value that say something of samples.
+const MOST_ONES: usize = 64;
+
 const ELSEWHERE: &str = "a link into another file, which is not followed";
 const UNNAMED: &str =
     "its name is not UTF-8, and the HDF5 library is asked by names in UTF-8: rename it in a copy";
 
-/// The names in a group, and whether what bears it is a link into another file.
-type Members = BTreeMap<String, bool>;
+const SOFT: &str = "a soft link, which is followed only where the system keeps the library from other files: name what it leads to";
+
+/// The names in a group, and what bears each.
+type Members = BTreeMap<String, LinkType>;
 
 /// A file as the library has it open.
 struct Opened<'a> {
@@ -40,6 +49,10 @@ struct Opened<'a> {
     /// Told how many bytes come next, and how many are held at a time.
     grant: &'a mut dyn FnMut(u64, u64),
     members: HashMap<String, Members>,
+    /// Whether the system keeps this process from every other file.
+    is_walled: bool,
+    /// The groups that were walked through: links may form circles.
+    walked: Vec<LocationToken>,
 }
 
 /// Answers what is asked about the file at `path` until nobody asks any more.
@@ -50,6 +63,7 @@ pub(super) fn answer(
     path: &Path,
     from: &mut impl Read,
     to: &mut impl Write,
+    is_walled: bool,
     grant: &mut dyn FnMut(u64, u64),
 ) -> io::Result<()> {
     hdf5_metno::silence_errors(true);
@@ -60,16 +74,20 @@ pub(super) fn answer(
             return to.flush();
         }
     };
-    send(to, &Reply::Opened { user_block: file.userblock(), library: hdf5_metno::library_version() })?;
+    let (user_block, library) = (file.userblock(), hdf5_metno::library_version());
+    send(to, &Reply::Opened { user_block, library, is_walled })?;
     to.flush()?;
-    let mut opened = Opened { file, grant, members: HashMap::new() };
+    let mut opened = Opened { file, grant, members: HashMap::new(), is_walled, walked: Vec::new() };
     while let Ok((request, _)) = receive(from) {
         match request {
             Query::Look(path) => {
-                let object = opened.object(&path);
+                let object = opened.object_with_values(&path);
                 send(to, &Reply::Found(path, object))?;
             }
-            Query::Walk => opened.walk("", 0, &mut 0, to)?,
+            Query::Walk => {
+                opened.walked.clear();
+                opened.walk("", 0, &mut 0, to)?;
+            }
             Query::Read { path, is_wide, slab } => opened.read(&path, is_wide, slab, to)?,
         }
         send(to, &Reply::Done)?;
@@ -90,18 +108,24 @@ fn words(error: &hdf5_metno::Error) -> Vec<Bytes> {
 }
 
 impl Opened<'_> {
+    /// Each group once, by the first name that is no soft link: those lead to what is walked through anyway.
     fn walk(&mut self, group: &str, depth: usize, count: &mut usize, to: &mut impl Write) -> io::Result<()> {
-        let names: Vec<String> = self.members(group).keys().cloned().collect();
-        for name in names {
+        let place = if group.is_empty() { self.file.loc_info() } else { self.file.loc_info_by_name(group) };
+        self.walked.extend(place.map(|place| place.token));
+        for (name, link) in self.members(group).clone() {
+            let (path, is_hard) = (format!("{group}/{name}"), link == LinkType::Hard);
+            let place = is_hard.then(|| self.file.loc_info_by_name(&path));
+            if place.is_some_and(|place| place.is_ok_and(|place| self.walked.contains(&place.token))) {
+                continue;
+            }
             if *count >= MOST_OBJECTS {
                 break;
             }
             *count += 1;
-            let path = format!("{group}/{name}");
-            let object = self.object(&path);
+            let object = self.object_with_values(&path);
             let is_group = matches!(object, Object::Group { .. });
             send(to, &Reply::Found(path.clone(), object))?;
-            if is_group && depth < DEEPEST {
+            if is_hard && is_group && depth < DEEPEST {
                 self.walk(&path, depth + 1, count, to)?;
             }
         }
@@ -112,10 +136,11 @@ impl Opened<'_> {
     fn object(&mut self, path: &str) -> Object {
         let mut group = String::new();
         for name in path.split('/').filter(|name| !name.is_empty()) {
-            match self.members(&group).get(name) {
+            match self.members(&group).get(name).copied() {
                 None => return Object::Nothing,
-                Some(true) => return Object::NotFollowed(ELSEWHERE.into()),
-                Some(false) => group = format!("{group}/{name}"),
+                Some(LinkType::External) => return Object::NotFollowed(ELSEWHERE.into()),
+                Some(LinkType::Soft) if !self.is_walled => return Object::NotFollowed(SOFT.into()),
+                Some(_) => group = format!("{group}/{name}"),
             }
         }
         self.opened(path).unwrap_or_else(|error| {
@@ -150,21 +175,49 @@ impl Opened<'_> {
         }
     }
 
+    /// What stands at a path, a group with the datasets of one value in it: attributes of it, as MATLAB writes all numbers. Their own stand
+    /// behind their name: `Fs_unit`.
+    fn object_with_values(&mut self, path: &str) -> Object {
+        let mut object = self.object(path);
+        let group = path.trim_end_matches('/');
+        // What MATLAB's cells hold is named by chance.
+        if let Object::Group { attributes, .. } = &mut object
+            && !group.ends_with("/#refs#")
+        {
+            let names = self.members(group).keys().filter(|name| names::is_read(name)).take(MOST_ONES);
+            for name in names.cloned().collect::<Vec<String>>() {
+                let path = format!("{group}/{name}");
+                if let Object::Dataset(told) = self.object(&path)
+                    && told.type_name != MATLAB_OTHER
+                    && told.shape.is_some_and(|shape| shape.iter().all(|n| *n == 1))
+                    && let Some(held) = self.file.dataset(&path).ok().and_then(|dataset| value(&dataset))
+                {
+                    let inner =
+                        told.attributes.into_iter().map(|(inner, held)| (format!("{name}_{inner}"), held));
+                    attributes.extend(inner.chain([(name.clone(), held)]));
+                }
+            }
+        }
+        object
+    }
+
     fn times_in(&mut self, group: &str) -> Vec<String> {
-        self.members(group).keys().filter(|name| names::is_time(name)).cloned().collect()
+        self.members(group)
+            .keys()
+            .filter(|name| names::is_time(name) || names::is_sensor(name))
+            .cloned()
+            .collect()
     }
 
     /// The members of a group, named by its path without a slash at its end.
     fn members(&mut self, group: &str) -> &Members {
         let Self { file, members, .. } = self;
         members.entry(group.to_owned()).or_insert_with(|| {
-            let listed = file.group(if group.is_empty() { "/" } else { group }).and_then(|group| {
-                group.iter_visit_default(Members::new(), |_, name, link, members| {
-                    members.insert(name.to_owned(), link.link_type == LinkType::External);
-                    true
-                })
-            });
-            listed.unwrap_or_default()
+            let links = file
+                .group(if group.is_empty() { "/" } else { group })
+                .and_then(|group| group.links(IndexType::Name, IterationOrder::Native));
+            let links = links.unwrap_or_default().into_iter();
+            links.map(|(name, link)| (name, link.link_type)).collect()
         })
     }
 
@@ -200,7 +253,7 @@ impl Opened<'_> {
         let step = chunks.saturating_mul(chunk[along]);
         let bytes = |values: usize| values.saturating_mul(size_of::<T>()) as u64;
         let in_chunk = chunk.iter().fold(1_usize, |all, &n| all.saturating_mul(n));
-        let beside = if is_picked { width } else { *chunk.get(1 - along).unwrap_or(&1) };
+        let beside = width.max(*chunk.get(1 - along).unwrap_or(&1));
         let unpacked = bytes(shape[along].saturating_mul(beside));
         (self.grant)(unpacked, bytes(in_chunk).saturating_add(bytes(step.saturating_mul(width))));
         for from in (0..shape[along]).step_by(step) {
@@ -253,6 +306,12 @@ fn described(dataset: &hdf5_metno::Dataset) -> hdf5_metno::Result<Dataset> {
     told.filters = made.get_filters()?.iter().map(filter).collect();
     told.stored_bytes = dataset.storage_size();
     told.attributes = attributes_of(dataset);
+    let is_class = |(name, _): &&(String, AttributeValue)| name == names::MATLAB_CLASS;
+    if let Some((_, AttributeValue::Texts(class))) = told.attributes.iter().find(is_class)
+        && let b"char" | b"cell" = &class.concat()[..]
+    {
+        (told.type_name, told.number) = (MATLAB_OTHER.to_vec(), None);
+    }
     told.storage = match made.get_chunk()? {
         Some(shape) => Storage::Chunked { shape, chunks: chunks(dataset, &told.filters) },
         None if dataset.layout() == Layout::Compact => Storage::Compact,
@@ -300,14 +359,14 @@ fn attributes_of(place: &Location) -> Vec<(String, AttributeValue)> {
     let names = place.attr_names().unwrap_or_default().into_iter().map(String::into_bytes);
     let names = names.filter_map(|name| String::from_utf8(name).ok()).filter(|name| names::is_read(name));
     let held = names.filter_map(|name| {
-        let value = value(&place.attr(&name).ok()?)?;
-        Some((name, value))
+        let attribute = place.attr(&name).ok()?;
+        Some((name, value(&attribute)?))
     });
     held.collect()
 }
 
 /// What an attribute holds; `None` where that is too much.
-fn value(attribute: &Attribute) -> Option<AttributeValue> {
+fn value(attribute: &Container) -> Option<AttributeValue> {
     let dtype = attribute.dtype().ok()?;
     if attribute.size() > MOST_VALUES || dtype.size().saturating_mul(attribute.size()) > MOST_BYTES {
         return None;
@@ -317,14 +376,22 @@ fn value(attribute: &Attribute) -> Option<AttributeValue> {
         Ok(TypeDescriptor::VarLenAscii) => texts::<VarLenAscii>(attribute, VarLenAscii::as_bytes),
         Ok(TypeDescriptor::FixedAscii(_)) => texts(attribute, FixedAscii::<TEXT_BYTES>::as_bytes),
         Ok(TypeDescriptor::FixedUnicode(_)) => texts(attribute, FixedUnicode::<TEXT_BYTES>::as_bytes),
-        _ => attribute.read_raw::<f64>().ok().map(AttributeValue::Numbers),
+        _ => attribute.read_raw().ok().map(|all| AttributeValue::Numbers(joined(all))),
     };
     Some(texts.unwrap_or(AttributeValue::Other))
 }
 
 /// Texts as the bytes that they are: the wrapper's own way to `str` does not look whether they are UTF-8.
-fn texts<T: H5Type>(attribute: &Attribute, bytes: fn(&T) -> &[u8]) -> Option<AttributeValue> {
+fn texts<T: H5Type>(attribute: &Container, bytes: fn(&T) -> &[u8]) -> Option<AttributeValue> {
     let texts = attribute.read_raw::<T>().ok()?;
     let cut = |text: &T| bytes(text).iter().take(TEXT_BYTES).copied().collect();
-    Some(AttributeValue::Texts(texts.iter().map(cut).collect()))
+    Some(AttributeValue::Texts(joined(texts.iter().map(cut).collect())))
+}
+
+/// One value in place of several that are the same, so that nobody goes through them for every column.
+fn joined<T: PartialEq>(mut values: Vec<T>) -> Vec<T> {
+    if values.windows(2).all(|two| two[0] == two[1]) {
+        values.truncate(1);
+    }
+    values
 }

@@ -2,11 +2,13 @@
 
 use super::answer::Object;
 use super::channel::DatasetChannel;
-use super::clocks::Clocks;
+use super::clocks::{self, Clocks};
 use super::column::DatasetColumn;
 use super::fault::{self, Fault};
 use super::find;
 use super::room::File;
+use super::sensors::RecordSensors;
+use super::starts::{self, Start};
 use crate::data::{
     AttributeFinding, ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, Samples,
 };
@@ -23,11 +25,15 @@ const MOST_SAMPLES: usize = 20_000_000;
 /// So many values are read in all: names may stand for one large dataset many times over.
 const MOST_VALUES: u64 = 1 << 30;
 
+const UNGUARDED: &str = ", which this system keeps from no other file or call: read files of strangers elsewhere (docs/dependencies.md)";
+
 /// A list as it grows, and what it may still cost.
 struct Lister {
     limits: Limits,
     values_left: u64,
     clocks: Clocks,
+    /// What is said of the starts of channels that have a clock.
+    starts: Vec<(String, Start)>,
     listing: Listing,
     /// Links to what is not there or not followed; they stand behind the channels.
     broken: Vec<ListedChannel>,
@@ -49,24 +55,28 @@ pub(in super::super) fn list(
 
 fn list_objects(file: &Rc<File>, progress: Progress) -> Listing {
     let (major, minor, patch) = file.library;
+    let guard = if file.is_walled { "" } else { UNGUARDED };
     let listing = Listing {
         schema: "dropcheck.inspect/1",
         recording: file.path.display().to_string(),
         bytes: file.bytes,
         format: RecordingFormat::Hdf5,
         counts: BTreeMap::from(["groups", "datasets"].map(|counted| (counted.to_owned(), 0))),
-        facts: BTreeMap::from([("read with".into(), format!("HDF5 library {major}.{minor}.{patch}"))]),
+        facts: BTreeMap::from([("read with".into(), format!("HDF5 library {major}.{minor}.{patch}{guard}"))]),
         channels: Vec::new(),
         issues: Vec::new(),
     };
     // No number takes fewer than four bytes once it is unpacked and turned.
     let values_left = MOST_VALUES.min(file.limits.unpacked_bytes(file.bytes) / 4);
-    let (clocks, broken) = (Clocks::default(), Vec::new());
-    let mut lister = Lister { limits: file.limits, values_left, clocks, listing, broken };
+    let (clocks, starts, broken) = (Clocks::default(), Vec::new(), Vec::new());
+    let mut lister = Lister { limits: file.limits, values_left, clocks, starts, listing, broken };
     let objects = file.walk();
     for (number, (path, object)) in objects.iter().enumerate() {
         lister.add(file, path, object);
         progress(as_f64(number + 1) / as_f64(objects.len()));
+    }
+    if let Err(fault) = starts::require_common(&lister.starts) {
+        lister.listing.issues.push(ClockFinding::Refused(format!("{fault}: {}", fault.remedy)).into());
     }
     let Lister { mut listing, broken, .. } = lister;
     listing.channels.extend(broken);
@@ -92,7 +102,7 @@ impl Lister {
                     return;
                 }
                 match find::channels(file, dataset, path, find::MOST_LISTED) {
-                    Ok(channels) => channels.into_iter().for_each(|column| self.list(column)),
+                    Ok(channels) => channels.iter().for_each(|column| self.list(column)),
                     Err(fault) => self.listing.channels.push(ListedChannel {
                         encoding: dataset.described(),
                         unreadable: Some(fault.listed()),
@@ -121,12 +131,19 @@ impl Lister {
         *self.listing.counts.entry(counted.to_owned()).or_default() += 1;
     }
 
-    fn list(&mut self, column: DatasetColumn) {
-        let mut listed = ListedChannel::named(&column.source, column.kind_name());
-        if let Err(fault) = self.fill(column, &mut listed) {
-            listed.unreadable = Some(fault.listed());
+    fn list(&mut self, column: &DatasetColumn) {
+        let beside: Vec<DatasetColumn> = clocks::sensors_beside(column);
+        let sensors =
+            beside.iter().filter(|ids| self.pays_for(ids)).find_map(|ids| RecordSensors::by(ids, false));
+        let all = sensors.map_or_else(|| vec![None], |sensors| sensors.all.into_iter().map(Some).collect());
+        for rows in all {
+            let mut listed =
+                ListedChannel { rows, ..ListedChannel::named(&column.source, column.kind_name()) };
+            if let Err(fault) = self.fill(column.clone(), &mut listed) {
+                listed.unreadable = Some(fault.listed());
+            }
+            self.listing.channels.push(listed);
         }
-        self.listing.channels.push(listed);
     }
 
     /// What reading would take of a column into `listed`; where it would refuse the clock, the refusal stands in its place.
@@ -134,14 +151,19 @@ impl Lister {
         let source = &listed.source.clone();
         listed.samples = Some(column.length as u64);
         listed.encoding = column.dataset.described();
-        let channel = match DatasetChannel::of(column, None, None, &mut self.clocks) {
+        let mut channel = match DatasetChannel::of(column, None, None, &mut self.clocks) {
             Ok(channel) => channel,
+            // What holds one value is no channel.
+            Err(_) if listed.samples == Some(1) => return Ok(()),
             Err(fault) => {
                 self.doubt(source, &fault, AttributeFinding::Refused);
                 return Ok(());
             }
         };
-        let DatasetChannel { column, attributes, claims, times } = &channel;
+        if let Some(rows) = &listed.rows {
+            channel.pick(Some(rows), |ids| self.pays_for(ids))?;
+        }
+        let DatasetChannel { column, attributes, claims, times, .. } = &channel;
         listed.encoding += &attributes.scaling();
         listed.unit.clone_from(&attributes.unit);
         if let Some(two) = &attributes.two_units {
@@ -154,18 +176,20 @@ impl Lister {
             return Ok(());
         }
         let samples = channel.samples()?;
-        listed.range = range(&samples);
-        if channel.has_no_clock() || column.length < 2 {
+        let count = samples.len();
+        (listed.range, listed.samples) = (range(&samples), Some(count as u64));
+        if channel.has_no_clock() || count < 2 {
             return Ok(());
         }
         match channel.on_base(samples, |other| self.pays_for(other)) {
             Err(fault) => self.doubt(source, &fault, ClockFinding::Refused),
             Ok(based) => {
                 let uniform = based.uniform;
-                let even_s = as_f64(column.length - 1) / uniform.sample_rate_hz;
+                let even_s = as_f64(count - 1) / uniform.sample_rate_hz;
                 let (first_s, last_s) = based.span_s.unwrap_or((uniform.start_s, f64::NAN));
                 listed.sample_rate_hz = Some(uniform.sample_rate_hz);
                 listed.start_s = Some(first_s);
+                self.starts.push((source.clone(), based.start));
                 listed.duration_s = Some(based.span_s.map_or(even_s, |_| last_s - first_s));
                 let has_gap = uniform.issues.iter().any(|issue| issue.code == IssueCode::Gap);
                 listed.gaps = based.span_s.map(|_| if has_gap { uniform.gaps.len() as u64 } else { 0 });
@@ -178,8 +202,10 @@ impl Lister {
     /// Whether a column may be read; it is then paid for.
     fn pays_for(&mut self, column: &DatasetColumn) -> bool {
         let values = (column.length as u64).saturating_mul(column.columns as u64);
+        let values = values.max(column.dataset.unpacked_bytes() / column.dataset.value_bytes.max(1));
         let pays = column.held_bytes() <= self.limits.samples_bytes()
             && column.part_bytes() <= self.limits.part_bytes()
+            && column.dataset.idle_bytes() <= self.limits.idle_bytes()
             && values <= self.values_left;
         if pays {
             self.values_left -= values;

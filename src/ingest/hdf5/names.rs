@@ -4,44 +4,64 @@ use crate::ingest::vocabulary::{self, Meaning};
 
 /// What an attribute says of samples, apart from their rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum AttributeRole {
+pub(in crate::ingest) enum AttributeRole {
     Unit,
+    /// When the first of them was taken, in s or what the name says.
     Start,
+    /// The same in a unit that stands beside it.
+    OpenStart,
     Scale,
     Offset,
     /// A stored value that stands for a missing sample.
     Fill,
+    /// What each column holds.
+    Columns,
     /// How counts become volts or g in the recorder's own program; nothing here does it.
     Conversion,
+    /// The same where the samples are whole numbers, else plain facts of the recorder.
+    CountsConversion,
 }
 
-/// `scale_factor`, `add_offset`, `_FillValue` and `missing_value` are those of the CF conventions of netCDF.
-const ROLES: [(&str, AttributeRole); 9] = [
-    ("unit", AttributeRole::Unit),
-    ("units", AttributeRole::Unit),
-    ("start_time_s", AttributeRole::Start),
-    ("scale", AttributeRole::Scale),
-    ("scale_factor", AttributeRole::Scale),
-    ("offset", AttributeRole::Offset),
-    ("add_offset", AttributeRole::Offset),
-    ("_FillValue", AttributeRole::Fill),
-    ("missing_value", AttributeRole::Fill),
+/// Names, so written as [`plain`] has them. Scale factor, add offset, fill and missing value are those of the CF conventions of netCDF,
+/// conversion is that of NWB, unit string that of LabVIEW. Other names hold parts of the last: `calibration_date`, `trigger_slope`.
+const ROLES: [(&str, AttributeRole); 8] = [
+    ("t0 startingtime wfstartoffset", AttributeRole::Start),
+    ("starttime timestart starttimestamp wfstarttime x0 xorg", AttributeRole::OpenStart),
+    ("unit units unitstring physicalunit", AttributeRole::Unit),
+    ("scale scalefactor conversion", AttributeRole::Scale),
+    ("offset addoffset", AttributeRole::Offset),
+    ("fillvalue missingvalue", AttributeRole::Fill),
+    ("columns columnnames channelnames", AttributeRole::Columns),
+    (
+        "cal calib calibration coeffs coefficient coefficients factor slope multiplier",
+        AttributeRole::Conversion,
+    ),
 ];
 
-/// Parts of the names of conversions, in lower case without what parts their words: `binToVoltFactor` of Elsys' TPC5 is one.
-const CONVERSIONS: [&str; 6] = ["tovolt", "tophysical", "conversion", "perbit", "percount", "lsb"];
+/// Parts of the names of conversions (`binToVoltFactor` of Elsys' TPC5 is one), and of those of counts on a dataset itself: on a group
+/// they may be of anything.
+const CONVERSIONS: [(&str, AttributeRole); 2] = [
+    (
+        "tovolt tophysical conversion perbit percount lsb gain calfactor calibrationfactor scalingfactor",
+        AttributeRole::Conversion,
+    ),
+    ("range slope factor resolution", AttributeRole::CountsConversion),
+];
 
-/// The same on a dataset itself; on a group they may be of anything.
-const OWN_CONVERSIONS: [&str; 5] = ["range", "gain", "slope", "factor", "resolution"];
+/// In lower case without what parts its words.
+fn plain(name: &str) -> String {
+    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
 
 /// What an attribute of this name says, `distance` groups above the samples.
-pub(super) fn role(name: &str, distance: usize) -> Option<AttributeRole> {
-    if let Some((_, role)) = ROLES.iter().find(|(known, _)| *known == name) {
-        return Some(*role);
-    }
-    let plain: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
-    let own = OWN_CONVERSIONS.iter().filter(|_| distance == 0);
-    CONVERSIONS.iter().chain(own).any(|part| plain.contains(part)).then_some(AttributeRole::Conversion)
+pub(in crate::ingest) fn role(name: &str, distance: usize) -> Option<AttributeRole> {
+    let [whole, bare] = [name, vocabulary::split(name).0].map(plain);
+    let is_in = |names: &str, name: &str| names.split(' ').any(|known| known == name);
+    let has_part = |parts: &str| parts.split(' ').any(|part| whole.contains(part));
+    let known = ROLES.iter().find(|(names, _)| is_in(names, &whole));
+    let part = CONVERSIONS[..2 - distance.min(1)].iter().find(|(parts, _)| has_part(parts));
+    let start = ROLES[..2].iter().any(|(names, _)| is_in(names, &bare)).then_some(AttributeRole::Start);
+    known.map(|known| known.1).or(start).or(part.map(|part| part.1))
 }
 
 /// Whether an attribute of this name states a rate or an interval.
@@ -49,13 +69,38 @@ pub(super) fn rate_meaning(name: &str) -> Option<Meaning> {
     vocabulary::meaning(name).filter(|meaning| *meaning != Meaning::Count)
 }
 
-/// Whether an attribute of this name says something of samples.
-pub(super) fn is_read(name: &str) -> bool {
-    role(name, 0).is_some() || rate_meaning(name).is_some()
+/// Whether an attribute of this name states a unit, of the samples or of another attribute.
+pub(super) fn ends_in_unit(name: &str) -> bool {
+    plain(name).trim_end_matches('s').ends_with("unit")
 }
 
-/// Whether a dataset or field of this name is one of times.
+/// Whether `unit` names the unit of what `name` names: `sample_rate_unit` that of `sample_rate`, `XUnits` that of `XInc` and `XOrg`.
+pub(super) fn is_unit_of(unit: &str, name: &str) -> bool {
+    let (unit, name) = (plain(unit), plain(name));
+    let bare = unit.trim_end_matches('s').trim_end_matches("unit");
+    bare == name || bare.len() == 1 && ["0", "inc", "org"].contains(&name.replace(bare, "").as_str())
+}
+
+/// The attribute by which MATLAB says what a dataset of numbers stands for.
+pub(super) const MATLAB_CLASS: &str = "MATLAB_class";
+
+/// Whether an attribute of this name says something of samples; NWB has the rate as `rate` of `starting_time`.
+pub(super) fn is_read(name: &str) -> bool {
+    ends_in_unit(name)
+        || ["rate", MATLAB_CLASS].contains(&name)
+        || role(name, 0).is_some()
+        || rate_meaning(name).is_some()
+}
+
+/// Whether a dataset or field of this name is one of times; `axis1` is the index of a pandas frame.
 pub(super) fn is_time(name: &str) -> bool {
     let last = name.rsplit_once('.').map_or(name, |(_, last)| last);
-    vocabulary::is_time(vocabulary::split(last).0)
+    last == "axis1" || vocabulary::is_time(vocabulary::split(last).0)
+}
+
+/// Whether a dataset or field of this name says of which sensor each sample is.
+pub(super) fn is_sensor(name: &str) -> bool {
+    const NAMES: &str = "sensor sensorid sensorno device deviceid node nodeid channel channelid id";
+    let last = plain(name.rsplit('.').next().unwrap_or_default());
+    NAMES.split(' ').any(|known| known == last)
 }

@@ -315,3 +315,48 @@ fn the_nearest_attribute_is_taken_and_another_one_is_told_or_refused() {
         assert_eq!(listing.issues.len(), 1, "{own:?}: {:?}", listing.issues);
     }
 }
+
+#[test]
+fn chunks_far_wider_than_their_dataset_are_refused_and_small_ones_read() {
+    let wide = |columns: usize, rows: usize| {
+        made(|file| {
+            let builder = file.new_dataset::<f32>().deflate(9).chunk((rows, columns)).shape((12, 1..));
+            let dataset = builder.create("a")?;
+            dataset.resize((12, 1))?;
+            number(&dataset, "fs", 1000.0)?;
+            let samples: Vec<[f32; 1]> = (0..12_u8).map(|i| [f32::from(i)]).collect();
+            dataset.write_raw(samples.as_flattened())
+        })
+    };
+    let limits = Limits::of_memory(64 << 20);
+    let read =
+        |made: &Made| read(&made.path, &cask_file(&["/a"]), limits, &|_| {}).map(|raw| raw.channels.len());
+    assert_eq!(read(&wide(1000, 12)).unwrap(), 1);
+    let told = |made: &Made| read(made).unwrap_err().to_string();
+    let one = told(&wide(100_000, 12));
+    assert!(one.contains("a chunk of /a is wider than its dataset by more than 1 MiB"), "{one}");
+    // Each is small enough, together they unpack to more than such a file can.
+    let many = told(&wide(200_000, 1));
+    assert!(many.contains("the chunks of /a and of those before unpack to more than"), "{many}");
+}
+
+#[test]
+fn a_circle_of_groups_is_walked_through_once_and_an_attribute_looked_at_once() {
+    let made = made(|file| {
+        let dataset = file.new_dataset_builder().with_data(&[1.0_f32, 2.0, 3.0]).create("x")?;
+        number(&dataset, "fs", 1000.0)?;
+        file.new_attr_builder()
+            .with_data(&vec!["g".parse::<VarLenUnicode>().unwrap(); 4000])
+            .create("unit")?;
+        file.create_group("g")?;
+        file.link_hard("g", "h")?;
+        file.link_soft("g", "e")?;
+        file.link_hard("/", "g/a")?;
+        file.link_hard("/", "b")
+    });
+    let listing = list(&made.path, Limits::default(), &|_| {}).unwrap();
+    let sources: Vec<&str> = listing.channels.iter().map(|channel| &channel.source[..]).collect();
+    assert_eq!((sources, listing.channels[0].unit.as_deref()), (vec!["/x"], Some("g")));
+    let deep = read(&made.path, &cask_file(&["/b/g/a/h/a/x"]), Limits::default(), &|_| {}).unwrap();
+    assert_eq!(values(&deep.channels[0]), [1.0, 2.0, 3.0]);
+}

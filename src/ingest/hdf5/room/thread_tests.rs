@@ -19,6 +19,6 @@ pub(super) fn link(path: &Path) -> io::Result<Link> {
     }
     let ((mut requests, to), (from, mut answers)) = (io::pipe()?, io::pipe()?);
     let path = path.to_owned();
-    std::thread::spawn(move || library::answer(&path, &mut requests, &mut answers, &mut |_, _| {}));
+    std::thread::spawn(move || library::answer(&path, &mut requests, &mut answers, true, &mut |_, _| {}));
     Ok(Link { to: Box::new(BufWriter::new(to)), from: Box::new(BufReader::new(from)), process: None })
 }
