@@ -13,6 +13,7 @@ mod pieces;
 mod plan;
 mod preamble;
 mod rows;
+mod sensors;
 mod stamp;
 mod table;
 mod time_column;
@@ -42,7 +43,7 @@ pub(super) fn read(
     progress: Progress,
 ) -> Result<RawRecording, IngestError> {
     let text = Text::open(path, limits)?;
-    let layout = Layout::of(&text).ok_or_else(|| complaint::no_table(path))?;
+    let layout = Layout::of(&text).ok_or_else(|| complaint::no_table(path, &text))?;
     let plan = |spec| ColumnPlan::of(path, spec, cask_file.time.as_deref(), &layout);
     let plans: Vec<ColumnPlan> = cask_file.channels.iter().map(plan).collect::<Result<_, _>>()?;
     let wanted = Wanted::of(&plans, &layout);
@@ -61,10 +62,10 @@ pub(super) fn read(
     let refused = |refused: Refused| error::refused(path, name(refused.plan), refused.refusal);
     issues.extend(table.settle_times().map_err(refused)?);
     issues.extend(table.counter_jumps());
-    table.drop_untimed();
+    let own_rows = table.own_rows().map_err(refused)?;
     let rows = table.rows();
     let mut channels = Vec::with_capacity(plans.len());
-    for (spec, uniform) in table.uniforms().into_iter().enumerate() {
+    for (spec, uniform) in table.uniforms(&own_rows).into_iter().enumerate() {
         let uniform = uniform.map_err(|error| complaint::time_error(path, name(spec), error))?;
         channels.push(RawChannel { spec, uniform, unit: layout.columns[plans[spec].column].unit.clone() });
     }

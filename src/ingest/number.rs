@@ -171,30 +171,38 @@ pub(super) fn of_cell(cell: &[u8], decimal: u8) -> Option<f64> {
     match cell.strip_prefix("−".as_bytes()) {
         Some([b'-' | b'+', ..]) => None,
         Some(magnitude) => whole(magnitude).map(|value| -value),
-        None => whole(cell),
+        None => whole(cell).or_else(|| {
+            // Fortran's double precision, "1.25D-04", always with a sign.
+            let at = cell.windows(2).position(|pair| matches!(pair, [b'D' | b'd', b'-' | b'+']))?;
+            whole(&[&cell[..at], b"e", &cell[at + 1..]].concat())
+        }),
     }
 }
 
 /// What stands for no value, after a sign and "#": of spreadsheets, of C libraries, of loggers whose converter ran over its range.
 #[rustfmt::skip]
-const MISSING: [&str; 33] = [
+const MISSING: [&str; 36] = [
     "nan", "nan(ind)", "inf", "infinity", "∞", "null", "none", "na", "n/a", "nv", "novalue", "no value", "-", "--",
     "value!", "wert!", "div/0!", "num!", "zahl!", "ref!", "bezug!", "name?", "null!", "1.#qnan", "1.#ind", "1.#inf",
     "ol", "ovl", "ovld", "over", "overload", "overrange", "overflow",
+    "err", "error", "n.a.",
 ];
 
-/// Whether a cell says that there is no value: `-`, `NaN`, `#N/A`, `-OVL`.
+/// Whether a cell says that there is no value: `-`, `NaN`, `#N/A`, `-OVL`, `######`, `>400`.
 pub(super) fn is_missing(cell: &[u8]) -> bool {
-    let bare = cell.strip_prefix(b"#").unwrap_or(cell);
+    let unmarked = |cell: &[u8]| cell.iter().take_while(|byte| matches!(byte, b'#' | b'*')).count();
+    let bare = &cell[unmarked(cell)..];
     let bare = if let [b'-' | b'+', rest @ ..] = bare { rest } else { bare };
-    let bare = bare.strip_prefix(b"#").unwrap_or(bare);
-    bare.is_empty() || MISSING.iter().any(|word| bare.eq_ignore_ascii_case(word.as_bytes()))
+    let bare = &bare[unmarked(bare)..];
+    bare.is_empty()
+        || matches!(bare, [b'<' | b'>', b'0'..=b'9' | b'-' | b'.', ..])
+        || MISSING.iter().any(|word| bare.eq_ignore_ascii_case(word.as_bytes()))
 }
 
 /// Whether a cell is a number whose thousands are marked too, such as "1.234,5", "1,234,567" or "12'345.6".
 ///
-/// One mark alone is not taken for that of thousands: "1,234" may be a decimal fraction.
-pub(super) fn is_grouped(cell: &str) -> bool {
+/// One mark alone is not taken for that of thousands, "1,234" may be a decimal fraction, but where it is not the known decimal mark.
+pub(super) fn is_grouped(cell: &str, decimal: Option<u8>) -> bool {
     let digits = cell.trim().trim_start_matches(['-', '+']);
     let mut groups = digits.split(['.', ',', '\'', '’', ' ', '\u{a0}', '\u{202f}']);
     let marks: Vec<char> = digits.chars().filter(|c| !c.is_ascii_digit()).collect();
@@ -206,7 +214,9 @@ pub(super) fn is_grouped(cell: &str) -> bool {
     let whole = if has_fraction { &rest[..rest.len().saturating_sub(1)] } else { &rest[..] };
     // An unknown mark leaves a group that is not of three.
     is_first
-        && (marks.len() > 1 || !matches!(last, '.' | ','))
+        && (marks.len() > 1
+            || !matches!(last, '.' | ',')
+            || decimal.is_some_and(|mark| *last != char::from(mark)))
         && thousands.windows(2).all(|pair| pair[0] == pair[1])
         && whole.iter().all(|group| group.len() == 3)
         && rest.iter().all(|group| is_digits(group))
@@ -271,7 +281,9 @@ mod tests {
 
     #[test]
     fn words_are_no_numbers() {
-        for (text, value) in [("−1.5", -1.5), (" −2e3 ", -2e3), ("−.5", -0.5)] {
+        for (text, value) in
+            [("−1.5", -1.5), (" −2e3 ", -2e3), ("−.5", -0.5), ("1.5D+02", 150.0), ("-2.d-1", -0.2)]
+        {
             assert_eq!(of_cell(text.as_bytes(), b'.'), Some(value), "{text}");
         }
         for text in [
@@ -289,6 +301,9 @@ mod tests {
             "1,5",
             "12a",
             "0x10",
+            "1D5",
+            "1.5D-",
+            "3D-2D",
             "1e",
             "--1",
             "20.11.2026",
@@ -297,8 +312,9 @@ mod tests {
         }
         for cell in ["1.234,5", "-1,234.5", "1,234,567", "12'345.67", "1 234", "1.234.567,0", "1\u{a0}234,5"]
         {
-            assert!(is_grouped(cell), "{cell}");
+            assert!(is_grouped(cell, None), "{cell}");
         }
+        assert!(is_grouped("-15,892", Some(b'.')) && !is_grouped("15.892", Some(b'.')));
         for cell in [
             "1,234",
             "1.5",
@@ -313,13 +329,30 @@ mod tests {
             "OVL",
             "x 1",
         ] {
-            assert!(!is_grouped(cell), "{cell}");
+            assert!(!is_grouped(cell, None), "{cell}");
         }
-        for cell in ["", "-", "--", "---", "NaN", "-nan(ind)", "+Inf", "#N/A", "#OVERFLOW", "-1.#IND", "-∞"]
-        {
+        for cell in [
+            "",
+            "-",
+            "--",
+            "---",
+            "NaN",
+            "-nan(ind)",
+            "+Inf",
+            "#N/A",
+            "#OVERFLOW",
+            "-1.#IND",
+            "-∞",
+            "******",
+            "####",
+            "ERR",
+            ">400",
+            "<-400",
+            "N.A.",
+        ] {
             assert!(is_missing(cell.as_bytes()), "{cell}");
         }
-        for cell in ["ok", "1", "nano", "–", "----"] {
+        for cell in ["ok", "1", "nano", "–", "----", "*1", "#2", ">x"] {
             assert!(!is_missing(cell.as_bytes()), "{cell}");
         }
     }

@@ -4,29 +4,18 @@ const EXPORT: &str = "export the channels from the program that wrote it as CSV,
 const UNPACK: &str = "unpack it first, and name the file that was in it";
 
 /// Where a mark stands, its bytes, what the file is, and what to do with it.
+#[rustfmt::skip]
 const MARKS: [(usize, &[u8], &str, &str); 32] = [
     (0, b"#ROSBAG", "a ROS 1 bag", "convert it to MCAP: `mcap convert in.bag out.mcap`"),
-    (
-        0,
-        b"SQLite format 3",
-        "a SQLite file, perhaps a ROS 2 bag",
-        "convert it to MCAP: `ros2 bag convert` or `mcap convert`",
-    ),
+    (0, b"SQLite format 3", "a SQLite file, perhaps a ROS 2 bag",
+     "convert it to MCAP: `ros2 bag convert` or `mcap convert`"),
     (0, b"TDSm", "a TDMS file", EXPORT),
-    (
-        0,
-        b"TDSh",
-        "the index of a TDMS file",
-        "name the file beside it that holds the samples, exported as CSV or HDF5",
-    ),
+    (0, b"TDSh", "the index of a TDMS file",
+     "name the file beside it that holds the samples, exported as CSV or HDF5"),
     (0, b"MDF ", "an ASAM MDF file", "export it as HDF5 or CSV"),
     (0, b"UnFinMF", "an unfinalised ASAM MDF file", "finalise it and export it as HDF5 or CSV"),
-    (
-        0,
-        b"MATLAB 5.0",
-        "a MATLAB file before version 7.3",
-        "save it with -v7.3, which is HDF5, or export CSV",
-    ),
+    (0, b"MATLAB 5.0", "a MATLAB file before version 7.3",
+     "save it with -v7.3, which is HDF5, or export CSV"),
     (0, b"PK\x03\x04", "a ZIP archive or an office document", "unpack it, or save the sheet as CSV"),
     (0, b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "an office document (.xls, .doc)", "save the sheet as CSV"),
     (0, b"%PDF", "a PDF document", EXPORT),
@@ -40,34 +29,18 @@ const MARKS: [(usize, &[u8], &str, &str); 32] = [
     (0, b"ARROW1\0", "an Arrow file", EXPORT),
     (0, b"FEA1\0", "a Feather file", EXPORT),
     (0, b"\x93NUMPY", "a NumPy array", "save the channels as HDF5 or CSV"),
-    (
-        0,
-        b"CDF\x01",
-        "a netCDF file before version 4",
-        "convert it to version 4, which is HDF5: `nccopy -k nc4 IN OUT`",
-    ),
-    (
-        0,
-        b"CDF\x02",
-        "a netCDF file before version 4",
-        "convert it to version 4, which is HDF5: `nccopy -k nc4 IN OUT`",
-    ),
-    (
-        8,
-        b"WAVE",
-        "a WAV sound file",
-        "export the channels as CSV or HDF5, with their unit: a WAV file states none",
-    ),
+    (0, b"CDF\x01", "a netCDF file before version 4",
+     "convert it to version 4, which is HDF5: `nccopy -k nc4 IN OUT`"),
+    (0, b"CDF\x02", "a netCDF file before version 4",
+     "convert it to version 4, which is HDF5: `nccopy -k nc4 IN OUT`"),
+    (8, b"WAVE", "a WAV sound file",
+     "export the channels as CSV or HDF5, with their unit: a WAV file states none"),
     (0, b"\x1A\x45\xDF\xA3", "an EBML file, such as .ide of an enDAQ or Slam Stick recorder", EXPORT),
     (0, b"|CF,", "an imc FAMOS file", EXPORT),
     (0, b"|CB,", "an imc FAMOS file", EXPORT),
     (0, b"DIAEXTENDED HEADER", "the header of a DIAdem file", EXPORT),
-    (
-        0,
-        b"\x89MCAP0\n",
-        "an MCAP file that lost bytes in a copy made in text mode",
-        "copy it from the logger again, in binary mode",
-    ),
+    (0, b"\x89MCAP0\n", "an MCAP file that lost bytes in a copy made in text mode",
+     "copy it from the logger again, in binary mode"),
     (0, b"\x89PNG", "a picture", EXPORT),
     (0, b"\xFF\xD8\xFF", "a picture", EXPORT),
     (0, b"{\\rtf", "a text document (RTF)", EXPORT),
@@ -117,6 +90,12 @@ fn sheet(head: &[u8]) -> Option<(&'static str, &'static str)> {
     let number = second.split_whitespace().next().unwrap_or_default().trim_end_matches('b');
     if first == "-1" && (1..=4).contains(&number.len()) && number.bytes().all(|byte| byte.is_ascii_digit()) {
         return Some(("a universal file (UFF)", EXPORT));
+    }
+    if first.starts_with("Test object number") || text.contains("\nName of the channel") {
+        return Some((
+            "a channel file of ISO-MME (ISO/TS 13499)",
+            "export the channels as CSV, one column each with its unit, or as HDF5",
+        ));
     }
     if first.starts_with(['-', '#']) && first.contains("EV5") {
         return Some((

@@ -1,103 +1,89 @@
 //! The words by which recordings name times, rates, intervals and units to what they mean; the one list of them.
 
-/// Words that head times, without their unit, in lower case.
-const TIMES: [&str; 32] = [
-    "time",
-    "t",
-    "zeit",
-    "times",
-    "timestamp",
-    "timestamps",
-    "time stamp",
-    "zeitstempel",
-    "messzeit",
-    "abtastzeit",
-    "uhrzeit",
-    "elapsed",
-    "elapsed time",
-    "relative time",
-    "relative zeit",
-    "rel. time",
-    "rel. zeit",
-    "datetime",
-    "date/time",
-    "date time",
-    // LabVIEW's name for the times of its measurement files.
-    "x_value",
-    "sec",
-    "seconds",
-    "ms",
-    "msec",
-    "us",
-    "µs",
-    "usec",
-    "ns",
-    "temps",
-    "tempo",
-    "tiempo",
+/// Words that head times, without their unit, in lower case; `X_Value` is that of LabVIEW's files, `__time` that of PlotJuggler's.
+#[rustfmt::skip]
+const TIMES: [&str; 34] = [
+    "time", "__time", "t", "zeit", "times", "timestamp", "timestamps", "time stamp", "zeitstempel",
+    "messzeit", "abtastzeit", "uhrzeit", "elapsed", "elapsed time", "relative time", "relative zeit",
+    "rel. time", "rel. zeit", "datetime", "date/time", "date time", "x_value", "sec", "secs", "seconds",
+    "ms", "msec", "us", "µs", "usec", "ns", "temps", "tempo", "tiempo",
 ];
 
 /// Names of the axis of a plot: times where a unit of time stands beside it, else one axis of an accelerometer.
 const AXES: [&str; 6] = ["x", "x-achse", "x-axis", "x achse", "x axis", "x_axis"];
 
 /// Names of a rate, in lower case without what parts their words: `Sample Rate` and `sample_rate` are `samplerate`.
-const RATES: [&str; 9] = [
-    "samplerate",
-    "samplingrate",
-    "samplingfrequency",
-    "samplefrequency",
-    "fs",
-    "scanrate",
-    "abtastrate",
-    "abtastfrequenz",
-    "samplingfrequenz",
+#[rustfmt::skip]
+const RATES: [&str; 10] = [
+    // `startingtimerate` is what NWB has beside the time of the first sample.
+    "startingtimerate", "samplerate", "samplingrate", "samplingfrequency", "samplefrequency", "fs", "scanrate", "abtastrate",
+    "abtastfrequenz", "samplingfrequenz",
 ];
 
 /// Names of the interval between samples, as [`RATES`]; `wfincrement` is that of LabVIEW's waveforms.
-const INTERVALS: [&str; 9] = [
-    "dt",
-    "deltat",
-    "wfincrement",
-    "sampleinterval",
-    "samplinginterval",
-    "sampleperiod",
-    "samplingperiod",
-    "abtastintervall",
-    "abtastperiode",
+#[rustfmt::skip]
+const INTERVALS: [&str; 11] = [
+    // `xinc` is Keysight's, with its unit beside it.
+    "xinc", "hresolution", "dt", "deltat", "wfincrement", "sampleinterval", "samplinginterval", "sampleperiod",
+    "samplingperiod", "abtastintervall", "abtastperiode",
 ];
 
 /// Names of the number of samples, as [`RATES`]; LabVIEW writes `Samples`.
+#[rustfmt::skip]
 const COUNTS: [&str; 10] = [
-    "samples",
-    "numberofsamples",
-    "no.ofsamples",
-    "samplecount",
-    "samplesperchannel",
-    "recordlength",
-    "numberofpoints",
-    "anzahlwerte",
-    "anzahlmesswerte",
-    "anzahlabtastwerte",
+    "samples", "numberofsamples", "no.ofsamples", "samplecount", "samplesperchannel", "recordlength",
+    "numberofpoints", "anzahlwerte", "anzahlmesswerte", "anzahlabtastwerte",
 ];
 
 /// Names of a column that counts the rows, as [`RATES`].
-const COUNTERS: [&str; 12] =
-    ["sample", "samples", "sampleno", "samplenr", "index", "idx", "n", "no", "nr", "#", "count", "counter"];
+#[rustfmt::skip]
+const COUNTERS: [&str; 12] = [
+    "sample", "samples", "sampleno", "samplenr", "index", "idx", "n", "no", "nr", "#", "count", "counter",
+];
+
+/// Names of the sensor that a message or a row is of, as [`RATES`].
+#[rustfmt::skip]
+const SENSORS: [&str; 12] = [
+    "frameid", "sensor", "sensorid", "sensorname", "sensornumber", "sensorno", "device", "deviceid", "devicename",
+    "node", "nodeid", "serialnumber",
+];
+
+/// Names that say so of a row of a table; in messages they name much else.
+#[rustfmt::skip]
+const SENSORS_OF_ROWS: [&str; 14] = [
+    "id", "name", "module", "moduleid", "channel", "channelid", "channelname", "location", "source", "topic", "mac",
+    "kanal", "knoten", "messstelle",
+];
+
+/// First words of lines above a table that name its columns, or hold their units, in exports of oscilloscopes and crash recorders.
+const NAMES: [&str; 2] = ["tracename", "channelname"];
+const UNITS: [&str; 5] = ["vunit", "unit", "units", "engineeringunit", "yunitlabel"];
+
+/// First words of lines that sum up a table, as [`RATES`].
+#[rustfmt::skip]
+const SUMMARIES: [&str; 16] = [
+    "sum", "summe", "total", "mean", "average", "mittelwert", "mittel", "min", "minimum", "max", "maximum", "std", "rms",
+    "end", "ende", "eof",
+];
 
 /// Names that in capitals mean something else: FS is a full scale, DT a dead time, `delta_T` a temperature.
 const SYMBOLS: [&str; 3] = ["fs", "dt", "deltat"];
 
 /// Units of time, in lower case, with seconds a unit.
-const TIME_UNITS: [(&[&str], f64); 6] = [
+const TIME_UNITS: [(&[&str], f64); 7] = [
     (&["s", "sec", "secs", "second", "seconds", "sek", "sekunde", "sekunden"], 1.0),
     (&["ms", "msec", "msecs", "millis", "millisecond", "milliseconds", "millisekunden"], 1e-3),
     (
         &["us", "µs", "μs", "usec", "µsec", "μsec", "micros", "microsecond", "microseconds", "mikrosekunden"],
         1e-6,
     ),
-    (&["ns", "nsec", "nanos", "nanosecond", "nanoseconds", "nanosekunden"], 1e-9),
+    (
+        &["ns", "nsec", "nsecs", "nanosec", "nanosecs", "nanos", "nanosecond", "nanoseconds", "nanosekunden"],
+        1e-9,
+    ),
     (&["min", "minute", "minutes", "minuten"], 60.0),
     (&["h", "hour", "hours", "std", "stunden"], 3600.0),
+    (&["days", "tage"], 86_400.0),
 ];
 
 /// Units of a rate, in lower case, with Hz a unit.
@@ -192,10 +178,48 @@ pub(super) fn is_time(bare: &str) -> bool {
     TIMES.contains(&bare.to_lowercase().as_str())
 }
 
+/// Whether a name is one of times, with a unit or without; a unit alone is none.
+pub(super) fn is_named_time(name: &str) -> bool {
+    is_time(split(name).0) && time_unit_s(name).is_none()
+}
+
+/// Whether a field or column of that name says which sensor its message or row is of.
+pub(super) fn is_sensor(name: &str) -> bool {
+    SENSORS.contains(&joined(name).as_str())
+}
+
+/// Whether a column of that name says which sensor its row is of: `Kanal`, `field.header.frame_id`.
+pub(super) fn is_sensor_of_rows(name: &str) -> bool {
+    is_sensor(name) || SENSORS_OF_ROWS.contains(&joined(name).as_str()) || joined(name).ends_with("frameid")
+}
+
+/// Whether a name without its unit is one of a sensor's own times in a message of ROS: `field.header.stamp`.
+pub(super) fn is_stamp(bare: &str) -> bool {
+    bare.replace(['/', '_'], ".").ends_with("header.stamp")
+}
+
+/// Whether a line that begins so names the columns of a table.
+pub(super) fn titles_names(cell: &str) -> bool {
+    NAMES.contains(&joined(cell).as_str())
+}
+
+/// Whether a line that begins so holds the units of the columns of a table.
+pub(super) fn titles_units(cell: &str) -> bool {
+    UNITS.contains(&joined(cell).as_str())
+}
+
+/// Whether a line that begins so sums up a table.
+pub(super) fn is_summary(cell: &str) -> bool {
+    SUMMARIES.contains(&joined(cell).trim_end_matches(':'))
+}
+
 /// Whether a column of that name counts the rows.
 pub(super) fn is_counter(name: &str) -> bool {
-    let bare = name.trim().to_lowercase().replace([' ', '_', '-', '.'], "");
-    COUNTERS.contains(&bare.as_str())
+    COUNTERS.contains(&joined(name).as_str())
+}
+
+fn joined(name: &str) -> String {
+    name.trim().to_lowercase().replace([' ', '_', '-', '.'], "")
 }
 
 /// Whether a name without its unit is one of an axis.

@@ -3,6 +3,7 @@
 use super::super::times::Counted;
 use super::even::Even;
 use super::rows::{RowsPart, Sink};
+use super::sensors;
 use super::stamp::Stamps;
 use super::wanted::Wanted;
 use rayon::prelude::*;
@@ -99,6 +100,9 @@ impl<'a> Keep<'a> {
 
 impl Sink for Keep<'_> {
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
+        if self.wanted.is_sensor[slot] {
+            return Some(sensors::value(cell, b'.'));
+        }
         if self.wanted.is_witness[slot] {
             return Some(self.other_stamps.seconds(slot, cell).unwrap_or(f64::NAN));
         }

@@ -6,6 +6,7 @@ use super::super::error::{self, IngestError};
 use super::super::number;
 use super::super::time_base::TimeBaseError;
 use super::layout::Layout;
+use super::lines::{Line, Text};
 use super::rows::RowError;
 use super::wanted::Wanted;
 use std::path::Path;
@@ -21,12 +22,25 @@ pub(super) fn of_rows(path: &Path, refusal: Refusal) -> IngestError {
 }
 
 /// No table at all.
-pub(super) fn no_table(path: &Path) -> IngestError {
+pub(super) fn no_table(path: &Path, text: &Text) -> IngestError {
+    let lines = text.lines();
+    let inside = |line: &str| Some(line.trim().strip_prefix('"')?.strip_suffix('"')?.to_owned());
+    let is_quoted = |line: &&Line| {
+        inside(&line.text).is_some_and(|line| !line.contains('"') && line.contains([';', ',', '\t']))
+    };
+    let (problem, mend) = if 2 * lines.iter().filter(is_quoted).count() > lines.len() {
+        ("each line stands in quotes as a whole, so that it is one cell", "take the quotes out in a copy")
+    } else {
+        (
+            "no rows of numbers were found",
+            "export one row a sample with comma, semicolon or tab between the columns",
+        )
+    };
     IngestError::Content {
         path: path.display().to_string(),
         place: "the first 64 KiB".into(),
-        problem: "no rows of numbers were found".into(),
-        mend: "export one row a sample with comma, semicolon or tab between the columns".into(),
+        problem: problem.into(),
+        mend: mend.into(),
     }
 }
 
@@ -63,7 +77,7 @@ pub(super) fn row_error(
              correct the cell in a copy, or name another column of times"
                 .to_owned(),
         ),
-        RowError::Word { line, slot, cell } if number::is_grouped(&cell) => (
+        RowError::Word { line, slot, cell } if number::is_grouped(&cell, Some(layout.dialect.decimal)) => (
             line,
             format!("column {:?} holds {cell:?}, a number whose thousands are marked too", headed(slot)),
             "only a decimal mark is read: export the table again without thousands separators".to_owned(),

@@ -39,6 +39,8 @@ pub(super) struct Judged {
     pub is_stamped: Vec<bool>,
     /// Columns without a single value or word.
     pub is_empty: Vec<bool>,
+    /// Whether the first column is empty but for a word in one of ten rows at most.
+    begins_empty: bool,
 }
 
 impl Dialect {
@@ -86,7 +88,7 @@ impl Dialect {
                     score += 1;
                     values[column] += 1;
                     stamps[column] += usize::from(stamp::is_stamp(cell.as_bytes()));
-                } else if number::is_grouped(cell) {
+                } else if number::is_grouped(cell, None) {
                     // A number too, though it is not read: other delimiters would cut it to pieces that are.
                     score += 1;
                 } else if number::of_cell(cell.as_bytes(), if self.decimal == b',' { b'.' } else { b',' })
@@ -107,14 +109,25 @@ impl Dialect {
         let is_numeric: Vec<bool> = (0..columns).map(|c| 2 * values[c] > filled(c)).collect();
         let is_stamped = (0..columns).map(|c| 2 * stamps[c] > filled(c)).collect();
         let is_empty = (0..columns).map(|c| rows.iter().all(|cells| cells[c].is_empty())).collect();
-        is_numeric.contains(&true).then_some(Judged { score, columns, is_numeric, is_stamped, is_empty })
+        let begins_empty = 10 * filled(0) < rows.len();
+        is_numeric.contains(&true).then_some(Judged {
+            score,
+            columns,
+            is_numeric,
+            is_stamped,
+            is_empty,
+            begins_empty,
+        })
     }
 
     /// Whether a line is a row: as many cells, numbers (or nothing) in the columns of numbers, and more numbers than not.
     ///
     /// Stamps count only where there is nothing else: one that cannot be read makes a line no header.
     pub(super) fn is_row(self, cells: &[&str], judged: &Judged) -> bool {
-        if cells.len() != judged.columns {
+        // Oscilloscopes leave the first column to the words of facts above.
+        let is_fact =
+            judged.begins_empty && cells.first().is_some_and(|cell| !cell.is_empty() && !self.is_value(cell));
+        if cells.len() != judged.columns || is_fact {
             return false;
         }
         let is_plain = |c: usize| judged.is_numeric[c] && !judged.is_stamped[c];

@@ -31,13 +31,27 @@ pub(super) struct Header {
     pub line: usize,
     cells: Vec<String>,
     units: Option<Vec<String>>,
+    /// Seconds from a row to the next.
+    pub interval: Option<String>,
 }
 
 /// The header above the rows, with the row of units where there is one.
 pub(super) fn header(above: &[Line], delimiter: Delimiter, judged: &Judged) -> Option<Header> {
     let filled = (0..above.len()).rev().filter(|&line| !above[line].text.trim().is_empty());
-    let nearest: Vec<(usize, Vec<String>)> =
-        filled.take(MOST_LINES).map(|line| (line, header_cells(&above[line].text, delimiter))).collect();
+    let cells = |line: usize| (line, header_cells(&above[line].text, delimiter));
+    let mut nearest: Vec<(usize, Vec<String>)> = filled.clone().take(MOST_LINES).map(cells).collect();
+    // Rigol's oscilloscopes head "X,CH1,Start,Increment", and below "Sequence,Volt,-0.05,1e-6" stand fewer cells.
+    let mut interval = None;
+    if let [(_, units), (_, names), ..] = &mut nearest[..]
+        && let Some(at) = names.windows(2).position(|pair| pair[0] == "Start" && pair[1] == "Increment")
+    {
+        interval = units.get(at + 1).cloned();
+        names.truncate(at);
+        units.truncate(at);
+    }
+    let titled = |is: fn(&str) -> bool| filled.clone().map(cells).find(|(_, cells)| is(&cells[0]));
+    let of_title = titled(vocabulary::titles_units).filter(|(_, cells)| is_units(&cells[1..]));
+    let of_title = of_title.map(|(_, cells)| [vec![String::new()], cells[1..].to_vec()].concat());
     let fitting = |cells: &[String]| fitting(cells.to_vec(), judged);
     let is_names = |cells: &[String]| is_names(cells, judged.columns);
     for pair in nearest.windows(2) {
@@ -45,17 +59,36 @@ pub(super) fn header(above: &[Line], delimiter: Delimiter, judged: &Judged) -> O
         if is_units(units)
             && is_names(names)
             && !is_units(names)
-            && let (Some(units), Some(cells)) = (fitting(units), fitting(names))
+            && let (Some(mut units), Some(cells)) = (fitting(units), fitting(names))
         {
-            return Some(Header { line: *line, cells, units: Some(units) });
+            if vocabulary::titles_units(&units[0]) {
+                units[0].clear();
+            }
+            return Some(Header { line: *line, cells, units: Some(units), interval });
         }
     }
     // A line that does not fit is no reason to take one above it, unless it is a remark.
     let named = nearest.iter().find(|(_, cells)| is_names(cells));
-    let found = named.into_iter().chain(nearest.first());
-    found
-        .into_iter()
-        .find_map(|(line, cells)| Some(Header { line: *line, cells: fitting(cells)?, units: None }))
+    let titled = titled(vocabulary::titles_names);
+    let mut found = titled.iter().chain(named).chain(nearest.first());
+    found.find_map(|(line, cells)| {
+        Some(Header { line: *line, cells: fitting(cells)?, units: of_title.clone(), interval: None })
+    })
+}
+
+/// Why the line that looks most like a header is none.
+pub(super) fn unfit(above: &[Line], delimiter: Delimiter, columns: usize) -> Option<String> {
+    let filled = above.iter().enumerate().rev().filter(|(_, line)| !line.text.trim().is_empty());
+    let mut named = filled.take(MOST_LINES).map(|(at, line)| (at, header_cells(&line.text, delimiter)));
+    let (at, cells) = named.find(|(_, cells)| cells.len() > 1 && is_names(cells, columns))?;
+    let is_twofold = delimiter.0 == b',' && columns == 2 * cells.len();
+    let twofold = ": the comma is the decimal mark too; export it again with semicolons between the cells";
+    Some(format!(
+        "line {} has {} cells, the rows {columns}{}",
+        at + 1,
+        cells.len(),
+        if is_twofold { twofold } else { "" }
+    ))
 }
 
 /// Whether cells may name columns: no "Minimum;1,5;-5", no "Kommentar: von Hand", no "Bemerkung;;".
@@ -90,7 +123,8 @@ fn fitting(mut cells: Vec<String>, judged: &Judged) -> Option<Vec<String>> {
 
 /// A header's cells, without the mark of a comment before them.
 pub(super) fn header_cells(line: &str, delimiter: Delimiter) -> Vec<String> {
-    let line = line.trim_start_matches(['#', '%']).trim_start_matches(' ');
+    let is_mark = |c: char| matches!(c, '#' | '%') || (c == ';' && delimiter.0 != b';');
+    let line = line.trim_start_matches(is_mark).trim_start_matches(' ').trim_start_matches("Headers,");
     delimiter.cells(line).into_iter().map(|cell| cell.replace("\"\"", "\"")).collect()
 }
 
@@ -115,7 +149,7 @@ pub(super) fn columns(header: Option<&Header>, judged: &Judged, example: &[&str]
             let row_unit = row_unit.map(|unit| unit.trim_matches(['[', ']', '(', ')']).to_owned());
             TableColumn {
                 name: name.to_owned(),
-                unit: row_unit.or_else(|| own_unit.map(str::to_owned)).filter(|unit| !unit.is_empty()),
+                unit: row_unit.filter(|unit| !unit.is_empty()).or_else(|| own_unit.map(str::to_owned)),
                 header: header_text,
                 is_numeric: judged.is_numeric[index],
                 is_stamped: judged.is_stamped[index],

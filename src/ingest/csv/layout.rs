@@ -4,6 +4,7 @@ use super::dialect::Dialect;
 use super::header::{self, TableColumn};
 use super::lines::Text;
 use super::preamble::{self, Preamble};
+use super::sensors::{self, Sensors};
 use super::{stamp, time_column};
 use crate::ingest::times::Scale;
 use crate::ingest::{number, vocabulary};
@@ -17,6 +18,8 @@ pub(super) struct Layout {
     pub columns: Vec<TableColumn>,
     /// Line of the header, from 1; 0 without one.
     pub header_line: u64,
+    /// Why a line that looks like a header is none.
+    pub unfit: Option<String>,
     /// Lines before the header (or the rows).
     pub preamble_lines: u64,
     /// Line of the first row, from 1.
@@ -25,8 +28,11 @@ pub(super) struct Layout {
     pub data_offset: usize,
     /// The column of times, where one was found.
     pub time_column: Option<usize>,
+    nanoseconds: Option<usize>,
     /// Columns that are certain to hold times, that one and others.
     sure_times: Vec<usize>,
+    /// Columns that name the sensor of each row.
+    pub sensors: Vec<Sensors>,
     /// What else is stated above the rows.
     pub preamble: Preamble,
     mean_row_bytes: usize,
@@ -54,24 +60,38 @@ impl Layout {
         while columns.len() > 1 && columns.last().is_some_and(|c| c.header.is_empty() && !c.is_numeric) {
             columns.pop();
         }
+        let is_nameless = header.is_none() || columns[0].header.is_empty();
+        for (index, column) in columns.iter_mut().enumerate().filter(|(_, column)| column.header.is_empty()) {
+            column.header = (index + 1).to_string();
+        }
+        let above = header.as_ref().map_or(first, |header| header.line);
+        let interval = header.as_ref().and_then(|header| header.interval.as_deref());
+        let preamble = Preamble::of(&lines[..first], delimiter, interval);
         let times = time_column::find(
             &columns,
-            header.is_none() && is_first_rising(&rows, dialect.decimal),
+            is_nameless && is_first_rising(&rows, dialect.decimal),
             dialect.decimal,
             |column| rows.iter().filter_map(move |cells| cells.get(column).copied()),
         );
+        let is_time = |column| times.taken == Some(column) || times.sure.contains(&column);
+        let sensors = sensors::find(&columns, is_time, &rows);
         let last = &lines[lines.len() - 1];
         let row_bytes = (last.offset + last.text.len() + 1).saturating_sub(lines[first].offset);
-        let above = header.as_ref().map_or(first, |header| header.line);
         Some(Self {
             dialect,
+            unfit: header
+                .is_none()
+                .then(|| header::unfit(&lines[..first], delimiter, judged.columns))
+                .flatten(),
             header_line: header.as_ref().map_or(0, |header| header.line as u64 + 1),
             preamble_lines: above as u64,
             data_line: first as u64 + 1,
             data_offset: lines[first].offset,
             time_column: times.taken,
+            nanoseconds: times.nanoseconds,
             sure_times: times.sure,
-            preamble: Preamble::of(&lines[..above.max(begin)], delimiter),
+            sensors,
+            preamble,
             mean_row_bytes: (row_bytes / rows.len()).max(2),
             columns,
         })
@@ -87,7 +107,12 @@ impl Layout {
 
     /// Whether a column is certain to hold times.
     pub(super) fn holds_times(&self, column: usize) -> bool {
-        self.sure_times.contains(&column)
+        self.sure_times.contains(&column) || self.nanoseconds == Some(column)
+    }
+
+    /// The column to be added to that of times, which holds whole seconds.
+    pub(super) fn nanoseconds(&self, time: usize) -> Option<usize> {
+        self.nanoseconds.filter(|_| self.time_column == Some(time))
     }
 
     /// The other columns of times, which have to bear out those of column `time`; each with whether other columns stand between.
@@ -102,6 +127,17 @@ impl Layout {
             .collect()
     }
 
+    /// A column, none of `taken`, by which the rows are of several sensors, with these; `own` is the column and word that tell one apart.
+    pub(super) fn mixed(&self, own: Option<(usize, &str)>, taken: &[usize]) -> Option<(&str, Vec<&str>)> {
+        let by = own.and_then(|(column, is)| Some((self.sensors.iter().find(|it| it.column == column)?, is)));
+        let open = self
+            .sensors
+            .iter()
+            .filter(|it| !taken.contains(&it.column) && own.is_none_or(|own| own.0 != it.column));
+        let mut named = open.map(|it| (self.columns[it.column].header.as_str(), it.named(by)));
+        named.find(|(_, named)| named.len() > 1)
+    }
+
     /// The column that by its header counts the rows.
     pub(super) fn counter(&self) -> Option<usize> {
         let is_it = |column: &TableColumn| column.is_numeric && vocabulary::is_counter(&column.name);
@@ -111,11 +147,14 @@ impl Layout {
     /// The columns whose header, or header without unit, is `wanted`.
     pub(super) fn find(&self, wanted: &str) -> Vec<usize> {
         let wanted = wanted.trim();
-        let matching = |of: fn(&TableColumn) -> &str| -> Vec<usize> {
-            (0..self.columns.len()).filter(|&i| of(&self.columns[i]) == wanted).collect()
+        let matching = |is: fn(&TableColumn, &str) -> bool| -> Vec<usize> {
+            (0..self.columns.len()).filter(|&i| is(&self.columns[i], wanted)).collect()
         };
-        let exact = matching(|column| &column.header);
-        if exact.is_empty() { matching(|column| &column.name) } else { exact }
+        // A column of another name may be called by its number.
+        let number = wanted.parse().ok().filter(|number| (1..=self.columns.len()).contains(number));
+        let found = [matching(|it, wanted| it.header == wanted), matching(|it, wanted| it.name == wanted)];
+        let found = found.into_iter().find(|found| !found.is_empty());
+        found.unwrap_or_else(|| number.map(|number| number - 1).into_iter().collect())
     }
 
     /// Every header.
@@ -136,10 +175,7 @@ impl Layout {
 }
 
 fn is_first_rising(rows: &[Vec<&str>], decimal: u8) -> bool {
-    let firsts: Option<Vec<f64>> = rows
-        .iter()
-        .filter(|cells| !matches!(cells[..], [] | [""]))
-        .map(|cells| cells.first().and_then(|cell| number::of_cell(cell.as_bytes(), decimal)))
-        .collect();
-    firsts.is_some_and(|firsts| firsts.len() > 1 && firsts.windows(2).all(|w| w[0] < w[1]))
+    let first = |cells: &Vec<&str>| cells.first().and_then(|cell| number::of_cell(cell.as_bytes(), decimal));
+    let firsts: Vec<f64> = rows.iter().filter_map(first).collect();
+    firsts.len() > 1 && firsts.windows(2).all(|pair| pair[0] < pair[1])
 }

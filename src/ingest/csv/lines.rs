@@ -90,11 +90,13 @@ impl Text {
     }
 }
 
-/// A text as it is read, up to its first zero byte; \r\n and \r alone are turned into \n.
+/// A text as it is read, up to its first zero byte; \r\n, \n\r and \r alone are turned into \n.
 pub(super) struct Lines {
     source: Box<dyn Read + Send>,
     /// Whether a \r came last: a \n that follows belongs to it.
     is_behind_return: bool,
+    /// Whether a \n of its own came last: a \r that follows belongs to it.
+    is_behind_feed: bool,
     /// Whether a zero byte ended the text.
     pub has_zeros: bool,
 }
@@ -116,28 +118,31 @@ impl Read for Lines {
 impl Lines {
     /// The text that `source` gives.
     pub(super) fn of(source: Box<dyn Read + Send>) -> Self {
-        Self { source, is_behind_return: false, has_zeros: false }
+        Self { source, is_behind_return: false, is_behind_feed: false, has_zeros: false }
     }
 
     /// Ends the lines of `text`; how many of its bytes are left.
     fn settle(&mut self, text: &mut [u8]) -> usize {
         let (mut at, mut kept) = (0, 0);
+        let was_behind_feed = std::mem::take(&mut self.is_behind_feed);
         while at < text.len() {
             if std::mem::take(&mut self.is_behind_return) && text[at] == b'\n' {
                 at += 1;
             }
             let odd = memchr::memchr2(b'\r', 0, &text[at..]).map_or(text.len(), |found| at + found);
+            let is_behind_feed = if odd > at { text[odd - 1] == b'\n' } else { odd == 0 && was_behind_feed };
             if kept < at {
                 text.copy_within(at..odd, kept);
             }
             kept += odd - at;
             at = odd + 1;
             match text.get(odd) {
-                None => {}
+                None => self.is_behind_feed = is_behind_feed,
                 Some(0) => {
                     self.has_zeros = true;
                     return kept;
                 }
+                Some(_) if is_behind_feed => {}
                 Some(_) => {
                     self.is_behind_return = true;
                     text[kept] = b'\n';
@@ -187,6 +192,8 @@ mod tests {
                 (b"\r\n\r\n\r\r\n", b"\n\n\n\n", false),
                 (b"a\nb\r", b"a\nb\n", false),
                 (b"a\r\n1\0\0\nb", b"a\n1", true),
+                (b"a\n\rb\n\r\n\rc\n\r", b"a\nb\n\nc\n", false),
+                (b"a\n\r\nb\r\n\rc", b"a\n\nb\n\nc", false),
                 (b"\0", b"", true),
                 (&[b'x'; 300], &[b'x'; 300], false),
             ] {

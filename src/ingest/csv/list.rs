@@ -5,20 +5,23 @@ use super::super::error::IngestError;
 use super::super::{number, shown};
 use super::columns::{HeldColumn, Keep};
 use super::complaint::{self, no_table, row_error};
-use super::header;
+use super::header::TableColumn;
 use super::layout::Layout;
 use super::lines::Text;
 use super::plan::ColumnPlan;
 use super::rows::{self, RowsPart, Sink};
+use super::sensors;
 use super::table::Table;
 use super::wanted::Wanted;
 use super::{Limits, Progress};
-use crate::data::{ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat};
+use crate::data::{
+    ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, RowsOf, is_number,
+};
 use crate::ingest::time_base::TimeBaseError;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// What is known of a column after one pass.
+/// What is known of a column, or of its rows of one sensor, after one pass.
 #[derive(Debug, Clone, Default)]
 struct Range {
     words: u64,
@@ -26,6 +29,23 @@ struct Range {
     word: Option<String>,
     /// The smallest and the largest number.
     numbers: Option<(f64, f64)>,
+    /// How many numbers, in how many stretches of rows.
+    count: usize,
+    stretches: usize,
+    /// Rows of the first and the last.
+    first: usize,
+    last: usize,
+}
+
+impl Range {
+    fn take(&mut self, row: usize, number: f64) {
+        let (smallest, largest) = self.numbers.unwrap_or((number, number));
+        self.first = if self.numbers.is_none() { row } else { self.first };
+        self.stretches += usize::from(self.numbers.is_none() || row > self.last + 1);
+        self.numbers = Some((smallest.min(number), largest.max(number)));
+        self.count += 1;
+        self.last = row;
+    }
 }
 
 /// Keeps the columns that one channel would take, and of all columns what they hold.
@@ -34,7 +54,10 @@ pub(super) struct Survey<'a> {
     keep: Keep<'a>,
     /// The places among all columns of those that are kept.
     slots: Vec<usize>,
-    ranges: Vec<Range>,
+    /// The slot of the column that names sensors, and what stands for each of them.
+    sensors: Option<(usize, Vec<f64>)>,
+    /// Of each column, of each sensor.
+    ranges: Vec<Vec<Range>>,
     rows: usize,
     /// Rows up to the last that holds a number.
     filled: usize,
@@ -42,11 +65,16 @@ pub(super) struct Survey<'a> {
 
 impl<'a> Survey<'a> {
     /// Before the first row; `all` are read, and `kept` of them kept.
-    pub(super) fn of(all: &Wanted, kept: &'a Wanted) -> Self {
+    pub(super) fn of(layout: &Layout, all: &Wanted, kept: &'a Wanted) -> Self {
+        let value = |name: &&str| sensors::value(name.as_bytes(), layout.dialect.decimal);
+        let sensors = layout.sensors.first();
+        let sensors = sensors.map(|it| (all.slot(it.column), it.named(None).iter().map(value).collect()));
+        let count = sensors.as_ref().map_or(1, |(_, sensors): &(usize, Vec<f64>)| sensors.len());
         Self {
+            sensors,
             keep: Keep::new(kept, vec![HeldColumn::default(); kept.columns.len()]),
             slots: kept.columns.iter().map(|&column| all.slot(column)).collect(),
-            ranges: vec![Range::default(); all.columns.len()],
+            ranges: vec![vec![Range::default(); count]; all.columns.len()],
             rows: 0,
             filled: 0,
         }
@@ -59,7 +87,7 @@ impl Sink for Survey<'_> {
         let value = kept.and_then(|kept| self.keep.word(kept, cell));
         let is_time = kept.is_some_and(|kept| self.keep.is_time(kept));
         if !is_time && value.is_none_or(f64::is_nan) {
-            let range = &mut self.ranges[slot];
+            let range = &mut self.ranges[slot][0];
             range.words += 1;
             range.word.get_or_insert_with(|| rows::shown(cell));
         }
@@ -68,11 +96,15 @@ impl Sink for Survey<'_> {
 
     fn append(&mut self, parts: &mut [RowsPart]) {
         for part in &*parts {
-            for (range, values) in self.ranges.iter_mut().zip(&part.0) {
-                for (row, &value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
-                    let (smallest, largest) = range.numbers.unwrap_or((value, value));
-                    range.numbers = Some((smallest.min(value), largest.max(value)));
+            for (ranges, values) in self.ranges.iter_mut().zip(&part.0) {
+                for (row, &value) in values.iter().enumerate().filter(|(_, value)| is_number(**value)) {
                     self.filled = self.filled.max(self.rows + row + 1);
+                    let sensor = self.sensors.as_ref().map_or(Some(0), |(slot, sensors)| {
+                        sensors.iter().position(|own| own.total_cmp(&part.0[*slot][row]).is_eq())
+                    });
+                    if let Some(sensor) = sensor {
+                        ranges[sensor].take(self.rows + row, value);
+                    }
                 }
             }
             self.rows += part.0.first().map_or(0, Vec::len);
@@ -101,7 +133,7 @@ pub(in super::super) fn list(
 ) -> Result<Listing, IngestError> {
     let text = Text::open(path, limits)?;
     let (bytes, encoding) = (text.bytes, text.encoding);
-    let layout = Layout::of(&text).ok_or_else(|| no_table(path))?;
+    let layout = Layout::of(&text).ok_or_else(|| no_table(path, &text))?;
     let time_column = layout.time_column;
     // Other columns of times are none's: a pair of columns may end before others.
     let is_timed = |column: usize| !layout.holds_times(column);
@@ -112,7 +144,7 @@ pub(in super::super) fn list(
     let all = Wanted::new(&values, &[]);
     let plans = [plan(&layout)];
     let kept = Wanted::of(&plans, &layout);
-    let mut survey = Survey::of(&all, &kept);
+    let mut survey = Survey::of(&layout, &all, &kept);
     let ending = rows::read(text, &layout, &all, &mut survey, (limits, progress))
         .map_err(|error| row_error(path, limits, (&layout, &all), error))?;
     let Survey { keep: Keep { columns, stamps, .. }, ranges, filled: rows, .. } = survey;
@@ -123,13 +155,23 @@ pub(in super::super) fn list(
         ListedClock::default()
     });
     issues.extend(layout.preamble.of_rows(rows, clock.samples));
-    let channels = layout
-        .columns
-        .iter()
-        .enumerate()
-        .filter(|(index, _)| Some(*index) != time_column)
-        .map(|(index, column)| listed(column, &ranges[index], &clock, rows as u64))
-        .collect();
+    let mut channels = Vec::new();
+    for (index, column) in layout.columns.iter().enumerate().filter(|(index, _)| Some(*index) != time_column)
+    {
+        let sensors = layout.sensors.first().filter(|it| it.column != index && column.is_numeric);
+        let Some(sensors) = sensors else {
+            let is_it = layout.sensors.first().is_some_and(|it| it.column == index);
+            let unreadable = is_it.then(|| "tells the rows of several sensors apart".to_owned());
+            let listed = listed(column, &ranges[index], 0, &clock, rows);
+            channels.push(if is_it { ListedChannel { unreadable, range: None, ..listed } } else { listed });
+            continue;
+        };
+        for (sensor, is) in sensors.named(None).into_iter().enumerate() {
+            let rows_of = RowsOf { column: layout.columns[sensors.column].header.clone(), is: is.to_owned() };
+            let listed = listed(column, &ranges[index], sensor, &clock, rows);
+            channels.push(ListedChannel { rows: Some(rows_of), ..listed });
+        }
+    }
     Ok(Listing {
         schema: "dropcheck.inspect/1",
         recording: path.display().to_string(),
@@ -149,13 +191,17 @@ pub(in super::super) fn list(
 /// What a channel would take whose cask file says nothing but its source: the first column of numbers, on the times that were found.
 fn plan(layout: &Layout) -> ColumnPlan {
     let time_column = layout.time_column;
-    let is_numbers = |&column: &usize| layout.columns[column].is_numeric && !layout.holds_times(column);
+    let sensors = layout.sensors.first();
+    let is_taken =
+        |column: usize| layout.holds_times(column) || sensors.is_some_and(|it| it.column == column);
+    let is_numbers = |&column: &usize| layout.columns[column].is_numeric && !is_taken(column);
     let mut found =
         (0..layout.columns.len()).filter(is_numbers).filter(|column| Some(*column) != time_column);
     let column =
         found.find(|column| layout.time_of(*column) == time_column).or(time_column).unwrap_or_default();
     let claims = Claims { stated: layout.preamble.statements(column), ..Claims::default() };
-    ColumnPlan { column, time_column, claims }
+    let rows = sensors.map(|it| (it.column, it.named(None)[0].to_owned()));
+    ColumnPlan { column, time_column, rows, start_s: 0.0, claims }
 }
 
 /// When the samples of every column were taken.
@@ -165,6 +211,8 @@ struct ListedClock {
     start_s: Option<f64>,
     duration_s: Option<f64>,
     gaps: Option<u64>,
+    first_s: f64,
+    times_s: Vec<f64>,
     /// With those that times show to be missing.
     samples: usize,
 }
@@ -180,7 +228,7 @@ impl ListedClock {
             return Ok(Self::default());
         }
         issues.extend(table.settle_times().map_err(|refused| refused.refusal)?);
-        table.drop_untimed();
+        let own_rows = table.own_rows().map_err(|refused| refused.refusal)?;
         let slot = |column: usize| table.wanted.slot(column);
         let times = plan.time_column.map(|time| table.columns[slot(time)].values().into_owned());
         let (first_s, last_s) = times
@@ -189,14 +237,10 @@ impl ListedClock {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &t| (a.min(t), b.max(t)));
         if plan.time_column != Some(plan.column) {
             // A value that is missing is no gap of the times.
-            let at = slot(plan.column);
-            table.columns[at]
-                .each_mut()
-                .iter_mut()
-                .filter(|value| value.is_nan())
-                .for_each(|value| *value = 0.0);
+            let column = &mut table.columns[table.wanted.slot(plan.column)];
+            column.each_mut().iter_mut().filter(|value| !is_number(**value)).for_each(|value| *value = 0.0);
         }
-        let uniform = match table.uniforms().remove(0) {
+        let uniform = match table.uniforms(&own_rows).remove(0) {
             Err(TimeBaseError::TooFew { .. }) => return Ok(Self::default()),
             uniform => uniform.map_err(|error| error.refusal(complaint::TIMES_REMEDY))?,
         };
@@ -214,17 +258,34 @@ impl ListedClock {
             duration_s: Some(if times.is_some() { last_s - first_s } else { of_rate }),
             gaps: times.is_some().then_some(if has_gaps { uniform.gaps.len() as u64 } else { 0 }),
             samples: count,
+            first_s,
+            times_s: times.unwrap_or_default(),
         })
     }
 }
 
-fn listed(column: &header::TableColumn, range: &Range, clock: &ListedClock, rows: u64) -> ListedChannel {
-    let is_empty = range.numbers.is_none();
+/// A column of `ranges`, its rows of one sensor; where those of other sensors or topics lie between, on the clock of its own.
+#[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
+fn listed(
+    column: &TableColumn,
+    ranges: &[Range],
+    sensor: usize,
+    clock: &ListedClock,
+    rows: usize,
+) -> ListedChannel {
+    let (range, own) = (&ranges[0], &ranges[sensor]);
+    let is_empty = own.numbers.is_none();
+    let lie_between = sensors::lie_between(own.count, own.last + 1 - own.first, own.stretches);
+    let is_apart = !is_empty && (column.is_numeric && ranges.len() > 1 || lie_between);
+    let time_s = |row: usize| clock.times_s.get(row).filter(|_| is_apart).copied();
+    let (first_s, last_s) = (time_s(own.first), time_s(own.last));
+    let duration_s = first_s.zip(last_s).map(|(first_s, last_s)| last_s - first_s);
+    let own_hz = duration_s.filter(|span_s| *span_s > 0.0).map(|span_s| (own.count - 1) as f64 / span_s);
     let unreadable = if column.is_stamped {
         Some("date-time stamps or clock times".to_owned())
     } else if let Some(word) = &range.word {
         let count = if is_empty { "its".to_owned() } else { format!("{} of {rows}", range.words) };
-        let reason = if number::is_grouped(word) {
+        let reason = if number::is_grouped(word, None) {
             ": the thousands are marked too, and only a decimal mark is read"
         } else {
             ""
@@ -237,15 +298,16 @@ fn listed(column: &header::TableColumn, range: &Range, clock: &ListedClock, rows
     };
     ListedChannel {
         source: column.header.clone(),
+        rows: None,
         kind: "column".into(),
-        samples: Some(rows),
+        samples: Some(if is_apart { own.count } else { rows } as u64),
         messages: None,
-        sample_rate_hz: clock.sample_rate_hz,
+        sample_rate_hz: own_hz.or(clock.sample_rate_hz),
         unit: column.unit.clone(),
-        start_s: clock.start_s,
-        duration_s: clock.duration_s,
-        gaps: clock.gaps,
-        range: range.numbers.filter(|_| !column.is_stamped),
+        start_s: first_s.map(|first_s| first_s - clock.first_s).or(clock.start_s),
+        duration_s: duration_s.or(clock.duration_s),
+        gaps: clock.gaps.filter(|_| !is_apart),
+        range: own.numbers.filter(|_| !column.is_stamped),
         encoding: "text".into(),
         unreadable,
     }
@@ -263,7 +325,8 @@ fn facts(layout: &Layout, encoding: &str) -> BTreeMap<String, String> {
     let header = if layout.header_line > 0 {
         format!("line {}", layout.header_line)
     } else {
-        "none: columns count 1, 2, …".to_owned()
+        let unfit = layout.unfit.as_ref().map_or(String::new(), |unfit| format!(" ({unfit})"));
+        format!("none: columns count 1, 2, …{unfit}")
     };
     let time = layout
         .time_column
@@ -282,5 +345,6 @@ fn none_found(layout: &Layout) -> String {
     let stated = layout.preamble.statements(usize::MAX);
     let stated =
         stated.first().map(|stated| format!("; {} states {} Hz", stated.place, shown::hz(stated.rate_hz)));
-    format!("none found{}", stated.unwrap_or_default())
+    let like = super::plan::no_times(layout).map(|why| format!(": {why}"));
+    format!("none found{}{}", like.unwrap_or_default(), stated.unwrap_or_default())
 }

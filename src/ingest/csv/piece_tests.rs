@@ -46,7 +46,7 @@ fn told(rows: &[u8], ahead: usize, sizes: Sizes, layout: &Layout) -> [String; 2]
         }
         Err(error) => format!("{error:?}"),
     };
-    let mut survey = Survey::of(&wanted, &wanted);
+    let mut survey = Survey::of(layout, &wanted, &wanted);
     let end = read_by(input(rows, ahead), (layout, &wanted), &mut survey, sizes, &|_| ());
     [kept, end.map_or_else(|error| format!("{error:?}"), |end| format!("{end:?} {survey:?}"))]
 }

@@ -1,16 +1,22 @@
 //! A channel of the cask file to what it takes from the table.
 
-use super::super::clock::Claims;
+use super::super::clock::{Claims, Refusal};
 use super::super::error::{self, IngestError};
+use super::super::times::Scale;
+use super::header::TableColumn;
 use super::layout::Layout;
 use super::time_column;
-use crate::data::{ChannelSpec, Source};
+use crate::data::{ChannelSpec, RowsOf, Source};
 use std::path::Path;
 
 /// What one channel takes from the table.
 pub(super) struct ColumnPlan {
     pub column: usize,
     pub time_column: Option<usize>,
+    /// The column and the word that tell its rows from those of other sensors.
+    pub rows: Option<(usize, String)>,
+    /// When it begins where no times say it, s.
+    pub start_s: f64,
     /// What is said of its rate apart from its times.
     pub claims: Claims,
 }
@@ -37,6 +43,23 @@ impl ColumnPlan {
             Some(name) => Some(find(path, spec, name, layout)?),
             None => layout.time_of(column),
         };
+        let of_rows =
+            |rows: &RowsOf| Ok::<_, IngestError>((find(path, spec, &rows.column, layout)?, rows.is.clone()));
+        let rows = spec.rows.as_ref().map(of_rows).transpose()?;
+        let taken = [Some(column), time_column].into_iter().flatten().collect::<Vec<_>>();
+        let own = rows.as_ref().map(|(column, is)| (*column, is.as_str()));
+        if let Some((header, named)) = layout.mixed(own, &taken) {
+            let choice = RowsOf { column: header.to_owned(), is: named[0].to_owned() };
+            return Err(error::source(
+                path,
+                &spec.name,
+                format!("its rows are of several sensors: the column {header:?} holds {}", listed(&named)),
+                match own {
+                    None => format!("take those of one: {choice}"),
+                    Some(_) => "write the rows of each sensor into a file of its own".into(),
+                },
+            ));
+        }
         let claims = Claims {
             cask_hz: spec.sample_rate_hz,
             are_times_named: named.is_some(),
@@ -46,11 +69,14 @@ impl ColumnPlan {
             return Err(error::source(
                 path,
                 &spec.name,
-                no_times(layout),
+                match no_times(layout) {
+                    Some(why) => format!("no column of times was found: {why}"),
+                    None => format!("no column of times was found among {}", layout.names().join(", ")),
+                },
                 "name it under [recording]: time = \"…\", or give this channel sample_rate_hz",
             ));
         }
-        Ok(Self { column, time_column, claims })
+        Ok(Self { column, time_column, rows, start_s: layout.preamble.start_s(column), claims })
     }
 
     /// Whether the cask file says what to go by: a rate, or which column holds the times.
@@ -70,8 +96,9 @@ fn find(path: &Path, spec: &ChannelSpec, wanted: &str, layout: &Layout) -> Resul
             if layout.header_line > 0 {
                 format!("no column is headed {wanted:?} (the header is line {})", layout.header_line)
             } else {
+                let unfit = layout.unfit.as_ref().map_or(String::new(), |unfit| format!(" ({unfit})"));
                 format!(
-                    "there is no column {wanted:?}: the table has no header of {} cells, as its rows have; its columns count 1, 2, …",
+                    "there is no column {wanted:?}: the table has no header of {} cells, as its rows have{unfit}; its columns count 1, 2, …",
                     layout.columns.len()
                 )
             },
@@ -86,16 +113,35 @@ fn find(path: &Path, spec: &ChannelSpec, wanted: &str, layout: &Layout) -> Resul
     }
 }
 
+/// No row is of the sensor `is`.
+pub(super) fn no_such_sensor(layout: &Layout, column: usize, is: &str) -> Refusal {
+    let named = layout.sensors.iter().find(|it| it.column == column).map_or(Vec::new(), |it| it.named(None));
+    let holds = if named.is_empty() { String::new() } else { format!(", which holds {}", listed(&named)) };
+    Refusal::new(
+        format!("no row has {is:?} in the column {:?}{holds}", layout.columns[column].header),
+        "write a word that stands there: where = { column = …, is = … }",
+    )
+}
+
+/// The first words of several.
+fn listed(words: &[&str]) -> String {
+    const HANDFUL: usize = 8;
+    words[..words.len().min(HANDFUL)].join(", ") + if words.len() > HANDFUL { ", …" } else { "" }
+}
+
 /// That no column holds times, with the one that looks most like it.
-fn no_times(layout: &Layout) -> String {
-    let headed = layout.columns.iter().find(|column| time_column::is_headed(column));
-    match headed.filter(|column| !column.is_numeric && !column.example.is_empty()) {
-        Some(column) => {
-            format!(
-                "no column of times was found: {:?} holds {:?}, which is no time known here",
-                column.header, column.example
-            )
-        }
-        None => format!("no column of times was found among {}", layout.names().join(", ")),
+pub(super) fn no_times(layout: &Layout) -> Option<String> {
+    let is_like = |(at, column): &(usize, &TableColumn)| {
+        time_column::is_headed(column) && layout.time_column != Some(*at)
+    };
+    let (_, column) = layout.columns.iter().enumerate().find(is_like)?;
+    let TableColumn { header, example, .. } = column;
+    match &column.unit {
+        _ if !column.is_numeric && example.is_empty() => None,
+        _ if !column.is_numeric => Some(format!("{header:?} holds {example:?}, which is no time known here")),
+        Some(unit) if time_column::scale(column) == Scale::Unknown => Some(format!(
+            "{header:?} is in {unit}, which is none of time known here ([s], [ms], [µs] and [ns] are)"
+        )),
+        _ => Some(format!("{header:?} does not rise from row to row")),
     }
 }

@@ -19,6 +19,8 @@ pub(super) struct Preamble {
     rates: Vec<Statement>,
     /// Of each column, by the cells of LabVIEW's `Delta_X`.
     intervals: Vec<Option<Statement>>,
+    /// When each column begins, s, by the cells of LabVIEW's `X0`.
+    starts_s: Vec<f64>,
 }
 
 /// How many lines the header of a measurement file of LabVIEW has; 0 in others.
@@ -30,22 +32,32 @@ pub(super) fn labview_lines(lines: &[Line]) -> usize {
 }
 
 impl Preamble {
-    /// Of the lines above the header.
-    pub(super) fn of(above: &[Line], delimiter: Delimiter) -> Self {
-        let mut preamble = Self { intervals: labview_rates(above, delimiter), ..Self::default() };
+    /// Of the lines above the header, and the `interval` in s that it states itself.
+    pub(super) fn of(above: &[Line], delimiter: Delimiter, interval: Option<&str>) -> Self {
+        let interval = interval.and_then(|text| Statement::of("Increment", text, Meaning::Interval(1.0)));
+        let rates = interval.into_iter().map(|stated| stated.at(1)).collect();
+        let starts = labview_cells(above, delimiter, "X0");
+        let starts_s = starts.iter().map(|cell| cell.replace(',', ".").parse().unwrap_or(0.0)).collect();
+        let intervals = labview_rates(above, delimiter);
+        let mut preamble = Self { rates, intervals, starts_s, counts: Vec::new() };
         for line in above {
             let Some((name, value)) = entry(&line.text, delimiter) else { continue };
             let Some((number, unit)) = number_and_unit(&value) else { continue };
             match meaning(&name) {
                 Some(Meaning::Count) => preamble.counts.extend(number.parse::<u64>()),
-                // A bare number may be in Hz or kHz, in s or ms.
-                Some(meaning) if !unit.is_empty() || ends_in_unit(&name) => {
+                // A bare number may be in Hz or kHz, in s or ms; that of Yokogawa's oscilloscopes is in s.
+                Some(meaning) if !unit.is_empty() || ends_in_unit(&name) || name == "HResolution" => {
                     preamble.rates.extend(Statement::of(&name, &value, meaning).map(|stated| stated.at(1)));
                 }
                 _ => {}
             }
         }
         preamble
+    }
+
+    /// When a column without times begins, s.
+    pub(super) fn start_s(&self, column: usize) -> f64 {
+        self.starts_s.get(column).copied().unwrap_or_default()
     }
 
     /// What is stated of the rate of a column; of all columns by `Delta_X` where the column has none of its own.
@@ -66,19 +78,24 @@ impl Preamble {
     }
 }
 
+fn labview_cells(lines: &[Line], delimiter: Delimiter, name: &str) -> Vec<String> {
+    let mut cells = lines.iter().rev().map(|line| header_cells(&line.text, delimiter));
+    cells.find(|cells| cells.first().is_some_and(|first| first == name)).unwrap_or_default()
+}
+
 /// The rate that each cell of `Delta_X` states, which stands above the rows of LabVIEW's files.
 fn labview_rates(lines: &[Line], delimiter: Delimiter) -> Vec<Option<Statement>> {
-    let cells_of = |name: &str| {
-        let cells = lines.iter().rev().map(|line| header_cells(&line.text, delimiter));
-        cells.into_iter().find(|cells| cells.first().is_some_and(|first| first == name)).unwrap_or_default()
-    };
-    let dimensions = cells_of("X_Dimension");
+    let dimensions = labview_cells(lines, delimiter, "X_Dimension");
     let is_time = |cell: usize| {
         let dimension = dimensions.get(cell).or(dimensions.last());
         dimension.is_none_or(|dimension| ["", "Time", "X_Dimension"].contains(&dimension.as_str()))
     };
     let rate = |cell: &String| Statement::of("Delta_X", &cell.replace(',', "."), Meaning::Interval(1.0));
-    cells_of("Delta_X").iter().enumerate().map(|(i, cell)| rate(cell).filter(|_| is_time(i))).collect()
+    labview_cells(lines, delimiter, "Delta_X")
+        .iter()
+        .enumerate()
+        .map(|(i, cell)| rate(cell).filter(|_| is_time(i)))
+        .collect()
 }
 
 /// `Sample rate [Hz]: 50000`, `Abtastrate;50;kHz` or `dt = 20 us` to its name and "50000 Hz", "50 kHz", "20 us"; `None` where several

@@ -7,7 +7,7 @@ use super::lines::{self, Text};
 use super::pieces::{Cut, Sizes, TextBatch};
 use super::wanted::Wanted;
 use crate::data::TableFinding;
-use crate::ingest::number;
+use crate::ingest::{number, vocabulary};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -158,6 +158,8 @@ struct RowReader<'a> {
     is_dense: bool,
     /// Whether a line without any value is a sample that is missing: no times tell that it is.
     keeps_empty: bool,
+    /// Whether the first column holds numbers or times.
+    begins_in_number: bool,
     values: Vec<f64>,
     line: u64,
 }
@@ -171,6 +173,7 @@ impl<'a> RowReader<'a> {
             wanted,
             is_dense: wanted.columns.iter().copied().eq(0..wanted.columns.len()),
             keeps_empty: !wanted.is_time.contains(&true),
+            begins_in_number: layout.columns[0].is_numeric,
             values: vec![f64::NAN; wanted.columns.len()],
             line,
         }
@@ -184,6 +187,8 @@ impl<'a> RowReader<'a> {
             if let Some(next) = self.plain_line(text, at) {
                 part.push(&self.values);
                 at = next;
+            } else if self.is_remark(text, at) {
+                at = skip(text, at, |byte| byte != b'\n') + 1;
             } else {
                 let next = self.any_line(text, at, word)?;
                 if !self.is_blank() {
@@ -237,6 +242,18 @@ impl<'a> RowReader<'a> {
         }
     }
 
+    /// Whether the line at `at` is no row: where a number should begin it stands a remark, a sum, or the Ctrl-Z that ends a text of DOS.
+    fn is_remark(&self, text: &[u8], at: usize) -> bool {
+        if !self.begins_in_number || matches!(text[at], b'0'..=b'9' | b'-' | b'+' | b'.' | b' ' | b'\n') {
+            return false;
+        }
+        let cell = bare(&text[at..self.delimiter.end(text, at)]);
+        match cell.first() {
+            Some(b'#' | b'%' | b';' | b'\x1A') => !number::is_missing(cell),
+            _ => vocabulary::is_summary(&lines::text(cell)),
+        }
+    }
+
     /// Whether the line is no row: it holds no value, and times tell whether one is missing.
     fn is_blank(&self) -> bool {
         !self.keeps_empty && self.values.iter().all(|value| value.is_nan())
@@ -273,7 +290,7 @@ impl<'a> RowReader<'a> {
         part: &mut RowsPart,
         word: Word,
     ) -> Result<Option<u64>, RowError> {
-        if text.trim_ascii().is_empty() {
+        if text.trim_ascii().is_empty() || self.is_remark(text, 0) {
             return Ok(None);
         }
         let is_short = self.delimiter.cells(&lines::text(text)).len() < layout.columns.len();

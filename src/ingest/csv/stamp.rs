@@ -3,12 +3,13 @@
 //! | kind | examples |
 //! |---|---|
 //! | ISO 8601 | `2026-11-20T12:34:56.789Z`, `2026-11-20 12:34:56,789` |
-//! | date and time | `20.11.2026 12:34:56,789`, `11/20/2026 12:34:56.789`, `2026/11/20 12:34:56 PM` |
-//! | time of day | `12:34:56.789`, `7:04:05 p.m.` |
+//! | date and time | `20.11.2026 12:34:56,789`, `11/20/2026 12:34:56.789`, `2026/11/20 12:34:56 PM`, `20-Nov-2026 12:34:56.789` |
+//! | time of day | `12:34:56.789`, `12:34:56:789`, `7:04:05 p.m.`, `0 days 12:34:56.789` |
 
 use jiff::Timestamp;
 use jiff::civil::{Date, DateTime};
 use jiff::tz::TimeZone;
+use std::borrow::Cow;
 
 const SECOND_NS: i64 = 1_000_000_000;
 const DAY_NS: i64 = 86_400 * SECOND_NS;
@@ -139,7 +140,7 @@ impl Stamp {
         let text = text.replace(',', ".");
         let (at, is_absolute) = match text.parse::<Timestamp>() {
             Ok(stamp) => (stamp, true),
-            Err(_) => (text.parse::<DateTime>().ok()?.to_zoned(TimeZone::UTC).ok()?.timestamp(), false),
+            Err(_) => (TimeZone::UTC.to_timestamp(text.parse::<DateTime>().ok()?).ok()?, false),
         };
         let at_ns = i64::try_from(at.as_nanosecond()).ok()?;
         Some(Self { kind: Spelling::Iso, date: [0; 3], at_ns, is_absolute })
@@ -153,7 +154,15 @@ impl Stamp {
         };
         let (hours, rest) = clock.split_once(':')?;
         let (minutes, seconds) = rest.split_once(':')?;
-        let (seconds, fraction) = seconds.split_once(['.', ',']).unwrap_or((seconds, "0"));
+        // "12:050.25" counts ms behind the last colon.
+        let is_ms = |ms: &str| ms.find(['.', ',']).unwrap_or(ms.len()) == 3;
+        let (seconds, fraction) = match seconds.split_once(':').filter(|(_, ms)| is_ms(ms)) {
+            Some((seconds, ms)) => (seconds, Cow::Owned(ms.replace(['.', ','], ""))),
+            None => seconds.split_once(['.', ',']).map_or((seconds, "0".into()), |(s, f)| (s, f.into())),
+        };
+        // pandas counts "0 days 00:00:00.1".
+        let days = date.and_then(|date| date.strip_suffix(" days").or_else(|| date.strip_suffix(" day")));
+        let (date, days) = days.map_or(Some((date, 0)), |days| Some((None, whole(days, 3)?)))?;
         let (hours, minutes, seconds) =
             (of_day(whole(hours, 3)?, half)?, whole(minutes, 2)?, whole(seconds, 2)?);
         if seconds > 59 || minutes > 59 || (date.is_some() && hours > 23) {
@@ -163,7 +172,8 @@ impl Stamp {
             Some(date) => (Spelling::Dated, date.filter(|date| readings(*date).iter().any(Option::is_some))?),
             None => (Spelling::OfDay, [0; 3]),
         };
-        let at_ns = (3600 * hours + 60 * minutes + seconds) * SECOND_NS + fraction_ns(fraction)?;
+        let at_ns =
+            (3600 * (24 * days + hours) + 60 * minutes + seconds) * SECOND_NS + fraction_ns(&fraction)?;
         Some(Self { kind, date, at_ns, is_absolute: false })
     }
 }
@@ -202,9 +212,19 @@ fn fraction_ns(digits: &str) -> Option<i64> {
 /// The three numbers of a date.
 fn numbers(date: &str) -> Option<[i16; 3]> {
     let mark = date.chars().find(|c| matches!(c, '.' | '/' | '-'))?;
-    let mut parts = date.split(mark).map(|part| whole(part, 4).and_then(|n| i16::try_from(n).ok()));
+    let number = |part: &str| whole(part, 4).and_then(|n| i16::try_from(n).ok()).or_else(|| month(part));
+    let mut parts = date.split(mark).map(number);
     let numbers = [parts.next()??, parts.next()??, parts.next()??];
     parts.next().is_none().then_some(numbers)
+}
+
+/// "Mar" or "März" to 3.
+fn month(name: &str) -> Option<i16> {
+    const MONTHS: [&str; 12] =
+        ["jan", "feb", "mar mär", "apr", "may mai", "jun", "jul", "aug", "sep", "oct okt", "nov", "dec dez"];
+    let start: String = name.to_lowercase().chars().take(3).collect();
+    let place = MONTHS.iter().position(|month| start.chars().count() == 3 && month.contains(&start))?;
+    i16::try_from(place + 1).ok()
 }
 
 /// A date as day first and as month first; the year leads where it is told by its size.
@@ -311,6 +331,8 @@ mod tests {
             "12:34:56.7x",
             ":34:56",
             "1:2:3:4",
+            "10:11:12:05",
+            "20-Foo-2026 1:02:03",
             "13:34:56 PM",
             "34:56.5 AM",
             "PM",
@@ -334,9 +356,20 @@ mod tests {
             "7:04:05am",
             "20.11.2026, 12:00:00",
             "20-11-2026 1:02:03",
+            "20-Nov-2026 1:02:03.5",
+            "0 days 00:00:00.000125",
+            "10:11:12:050",
+            "10:11:12:050.125",
             "2026-11-20T12:00Z",
         ] {
             assert!(is_stamp(cell.as_bytes()), "{cell}");
+        }
+        for (cells, later_s) in [
+            (["10:11:12:999.500", "10:11:13:000.250"], 0.000_75),
+            (["0 days 23:59:59.5", "1 days 00:00:00.25"], 0.75),
+            (["31-Mar-2026 23:59:59.5", "01-Apr-2026 00:00:00.25"], 0.75),
+        ] {
+            assert!((seconds(&cells)[1].unwrap() - later_s).abs() < 1e-12, "{cells:?}");
         }
         let cut = seconds(&["00:00:00", "00:00:00,1234567899"])[1].unwrap();
         assert!((cut - 0.123_456_789).abs() < 1e-15, "{cut}");

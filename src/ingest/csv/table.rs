@@ -3,7 +3,8 @@
 use super::columns::HeldColumn;
 use super::even::Even;
 use super::layout::Layout;
-use super::plan::ColumnPlan;
+use super::plan::{self, ColumnPlan};
+use super::sensors;
 use super::stamp::Stamps;
 use super::wanted::Wanted;
 use crate::data::{Finding, Samples, TableFinding};
@@ -57,7 +58,17 @@ impl Table<'_> {
         let is_user = |plan: &ColumnPlan| plan.time_column == Some(time);
         let plan = self.plans.iter().position(is_user).unwrap_or_default();
         let refused = |refusal| Refused { plan, refusal };
+        let rest = self
+            .layout
+            .nanoseconds(time)
+            .map(|rest| self.columns[self.wanted.slot(rest)].values().into_owned());
         let column = &mut self.columns[self.wanted.slot(time)];
+        if let Some(nanoseconds) = rest {
+            let seconds = column.each_mut();
+            // Seconds since 1970 leave no room for a nanosecond.
+            let zero_s = 1e5 * (seconds.first().unwrap_or(&0.0) / 1e5).floor();
+            seconds.iter_mut().zip(nanoseconds).for_each(|(s, ns)| *s = *s - zero_s + 1e-9 * ns);
+        }
         let header = self.layout.columns[time].header.as_str();
         if !self.stamps.are_in(self.wanted.slot(time)) {
             let mut users = self.plans.iter().filter(|plan| is_user(plan));
@@ -66,7 +77,9 @@ impl Table<'_> {
             let unit_s = times::seconds_by(scale, Carrier::Column(header), || column.counted(), stated_hz);
             column.scale(unit_s.map_err(refused)?);
         }
-        begins_anew(column.each()).map_or(Ok(()), |row| {
+        // Each of several sensors may have a clock of its own.
+        let fall = begins_anew(column.each()).filter(|_| self.plans.iter().all(|plan| plan.rows.is_none()));
+        fall.map_or(Ok(()), |row| {
             let problem = format!(
                 "the times in column {header:?} fall back to where they began at line {}, as below rows of extremes (minimum, maximum) or at \
                  the beginning of another record",
@@ -141,37 +154,49 @@ impl Table<'_> {
         Ok(())
     }
 
-    /// Leaves rows without a time out of the times and of what they time: in `Time;A1;Time;A2` one pair may end before the other.
-    pub(super) fn drop_untimed(&mut self) {
-        let Self { plans, wanted, columns: held, .. } = self;
-        let mut is_kept: Vec<Option<Vec<bool>>> = vec![None; held.len()];
-        for slot in (0..held.len()).filter(|&slot| wanted.is_time[slot]) {
-            let times = held[slot].each();
-            if times.iter().any(|time| time.is_nan()) {
-                is_kept[slot] = Some(times.iter().map(|time| !time.is_nan()).collect());
-            }
+    /// For each channel, which rows are its samples where not all are: those with a time, as in `Time;A1;Time;A2` one pair may end before the
+    /// other, of its own sensor, and with a value where each topic has rows of its own.
+    ///
+    /// # Errors
+    /// No row is of the sensor that the cask file names.
+    pub(super) fn own_rows(&self) -> Result<Vec<Option<Vec<bool>>>, Refused> {
+        let of_plan =
+            |(plan, of): (usize, &ColumnPlan)| self.rows_of(of).map_err(|refusal| Refused { plan, refusal });
+        self.plans.iter().enumerate().map(of_plan).collect()
+    }
+
+    fn rows_of(&self, plan: &ColumnPlan) -> Result<Option<Vec<bool>>, Refusal> {
+        let held = |column: usize| &self.columns[self.wanted.slot(column)];
+        let has_none = |column: usize| held(column).each().iter().filter(|value| value.is_nan()).count() > 0;
+        let lacks_times = plan.time_column.is_some_and(has_none);
+        let lacks_values = has_none(plan.column) && plan.time_column != Some(plan.column);
+        if plan.rows.is_none() && !lacks_times && !lacks_values {
+            return Ok(None);
         }
-        let retain = |column: &mut HeldColumn, is_kept: &[bool]| {
-            let mut rows = is_kept.iter();
-            column.each_mut().retain(|_| rows.next().copied().unwrap_or(true));
+        let times = plan.time_column.map(|time| held(time).values());
+        let mut is_own: Vec<bool> = match &times {
+            Some(times) => times.iter().map(|time| !time.is_nan()).collect(),
+            None => vec![true; held(plan.column).len()],
         };
-        for plan in *plans {
-            let clock = plan.time_column.and_then(|time| is_kept[wanted.slot(time)].as_ref());
-            if let Some(is_kept) = clock
-                && !wanted.is_time[wanted.slot(plan.column)]
-            {
-                retain(&mut held[wanted.slot(plan.column)], is_kept);
+        if let Some((column, is)) = &plan.rows {
+            let own = sensors::value(is.trim().as_bytes(), self.layout.dialect.decimal);
+            let ids = held(*column).values();
+            is_own.iter_mut().zip(&*ids).for_each(|(is_own, id)| *is_own &= id.total_cmp(&own).is_eq());
+            if !is_own.contains(&true) {
+                return Err(plan::no_such_sensor(self.layout, *column, is));
             }
         }
-        for (column, is_kept) in held.iter_mut().zip(&is_kept) {
-            if let Some(is_kept) = is_kept {
-                retain(column, is_kept);
-            }
+        let values = held(plan.column).values();
+        if lacks_values && times.is_some() && is_sparse(&values, &is_own) {
+            is_own.iter_mut().zip(&*values).for_each(|(is_own, value)| *is_own &= !value.is_nan());
         }
+        Ok(Some(is_own))
     }
 
     /// The samples of each channel on their base, for which they are taken out of the table.
-    pub(super) fn uniforms(&mut self) -> Vec<Result<Uniform, TimeBaseError>> {
+    ///
+    /// `own_rows` are those of [`Self::own_rows`].
+    pub(super) fn uniforms(&mut self, own_rows: &[Option<Vec<bool>>]) -> Vec<Result<Uniform, TimeBaseError>> {
         let Self { plans, wanted, columns, .. } = self;
         let mut uses = vec![0_usize; columns.len()];
         for column in plans.iter().flat_map(|plan| [Some(plan.column), plan.time_column]).flatten() {
@@ -191,8 +216,15 @@ impl Table<'_> {
         let times = columns.iter().zip(&wanted.is_time);
         let bases: Vec<Option<Base>> = times.map(|(column, is_time)| is_time.then(|| base(column))).collect();
         let base_of = |plan: &ColumnPlan| bases[wanted.slot(plan.time_column?)].as_ref();
-        let channels = samples.into_par_iter().zip(*plans);
-        channels.map(|(samples, plan)| on_base(Samples::F64(samples), base_of(plan), plan)).collect()
+        let times_of = |plan: &ColumnPlan| Some(columns[wanted.slot(plan.time_column?)].values());
+        let channels = samples.into_par_iter().zip(*plans).zip(own_rows);
+        let uniform = |((samples, plan), is_own): ((Vec<f64>, &ColumnPlan), &Option<Vec<bool>>)| {
+            let Some(is_own) = is_own else { return on_base(Samples::F64(samples), base_of(plan), plan) };
+            let times = times_of(plan).map(|times| picked(&times, is_own));
+            let base = times.as_deref().map(|times| Base::Each(ChannelTimes::new(times)));
+            on_base(Samples::F64(picked(&samples, is_own)), base.as_ref(), plan)
+        };
+        channels.map(uniform).collect()
     }
 }
 
@@ -204,8 +236,25 @@ fn on_base(samples: Samples, base: Option<&Base>, plan: &ColumnPlan) -> Result<U
     match base {
         Some(Base::Even(times)) => times.place(samples, &plan.claims),
         Some(Base::Each(times)) => times.place(samples, &plan.claims),
-        None => time_base::from_claims(0.0, &plan.claims, samples),
+        None => time_base::from_claims(plan.start_s, &plan.claims, samples),
     }
+}
+
+fn picked(values: &[f64], is_own: &[bool]) -> Vec<f64> {
+    values.iter().zip(is_own).filter(|(_, is_own)| **is_own).map(|(value, _)| *value).collect()
+}
+
+/// Whether rows without a value are those of other topics, and no samples that are missing.
+fn is_sparse(values: &[f64], is_own: &[bool]) -> bool {
+    let values = picked(values, is_own);
+    let is_value = |value: &f64| !value.is_nan();
+    let ends = values.iter().position(is_value).zip(values.iter().rposition(is_value));
+    // A channel that begins late or ends early has no row of another's.
+    ends.is_some_and(|(first, last)| {
+        let inside = &values[first..=last];
+        let stretches = 1 + inside.windows(2).filter(|pair| pair[0].is_nan() && !pair[1].is_nan()).count();
+        sensors::lie_between(inside.iter().copied().filter(is_value).count(), inside.len(), stretches)
+    })
 }
 
 /// Where times, within the first four rows, fall back to the first of them.

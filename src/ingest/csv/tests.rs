@@ -1,7 +1,7 @@
 //! Tables as they come from loggers and spreadsheets.
 
 use super::*;
-use crate::data::{Cask, ChannelSpec, Contact, Drop, End, IssueCode};
+use crate::data::{Cask, ChannelSpec, Contact, Drop, End, IssueCode, RowsOf};
 
 pub(in super::super) fn cask_file(sources: &[&str]) -> CaskFile {
     let channel = |source: &&str| ChannelSpec::plain(source, End::First, source, 0.0);
@@ -188,4 +188,207 @@ fn a_table_is_listed() {
     assert!((a1.sample_rate_hz.unwrap() - 1000.0).abs() < 1e-6, "{:?}", a1.sample_rate_hz);
     assert_eq!((a1.gaps, a1.duration_s), (Some(1), Some(0.005)));
     assert!(listing.channels[1].unreadable.is_some() && listing.channels[2].unreadable.is_some());
+}
+
+/// A table of so many rows: the lines of a header, and what stands in row `i`.
+fn table(header: &str, rows: u32, row: impl Fn(u32) -> String) -> Vec<u8> {
+    (header.to_owned() + &(0..rows).map(row).collect::<String>()).into_bytes()
+}
+
+/// `cask_file` for one source, of the sensor that `is` in a column.
+fn of_sensor(source: &str, column: &str, is: &str) -> CaskFile {
+    let mut cask_file = cask_file(&[source]);
+    cask_file.channels[0].rows = Some(RowsOf { column: column.into(), is: is.into() });
+    cask_file
+}
+
+#[test]
+fn rows_of_several_sensors_are_never_one_signal() {
+    for (header, words) in [
+        ("t,Sensor,A1\n", ["left", "right"]),
+        ("t,Device ID,A1\n", ["17", "4"]),
+        ("t,remark,A1\n", ["oben", "unten"]),
+    ] {
+        let row = |i: u32| format!("{},{},{}\n", f64::from(i / 2) / 8000.0, words[i as usize % 2], i % 2 + 5);
+        let text = table(header, 80, row);
+        let column = header.split(',').nth(1).unwrap();
+        let message = told(&read_bytes(&text, &cask_file(&["A1"])).unwrap_err());
+        let line = format!("where = {{ column = {column:?}, is = {:?} }}", words[0]);
+        assert!(message.contains("of several sensors") && message.contains(&line), "{message}");
+        for (place, is) in words.iter().enumerate() {
+            let read = read_bytes(&text, &of_sensor("A1", column, is)).unwrap();
+            assert_eq!(values(&read, 0), vec![if place == 0 { 5.0 } else { 6.0 }; 40], "{is}");
+            assert!((read.channels[0].uniform.sample_rate_hz - 8000.0).abs() < 1e-6);
+            assert!(read.channels[0].uniform.issues.is_empty());
+        }
+        let message = told(&read_bytes(&text, &of_sensor("A1", column, "none of them")).unwrap_err());
+        assert!(message.contains(&format!("which holds {}, {}", words[0], words[1])), "{message}");
+    }
+}
+
+#[test]
+fn states_constants_and_counters_name_no_sensor() {
+    let state = |i: u32| if (30..50).contains(&i) { "TRIG" } else { "OK" };
+    let row = |i: u32| format!("{},{},{i},7,box,{i}\n", f64::from(i) / 8000.0, state(i));
+    let text = table("t,state,id,node,name,A1\n", 80, row);
+    assert_eq!(values(&read_bytes(&text, &cask_file(&["A1"])).unwrap(), 0).len(), 80);
+}
+
+#[test]
+fn a_second_column_that_still_mixes_rows_is_told() {
+    let row = |i: u32| format!("{},{},{},{i}\n", f64::from(i / 4), ["a", "b"][i as usize % 2], i / 2 % 2);
+    let text = table("t,device,channel,A1\n", 80, row);
+    let message = told(&read_bytes(&text, &of_sensor("A1", "device", "a")).unwrap_err());
+    assert!(message.contains("\"channel\" holds 0, 1") && message.contains("a file of its own"), "{message}");
+}
+
+#[test]
+fn rows_of_other_topics_are_no_samples() {
+    for (phase, decimal) in [(0.5, "."), (0.1, "."), (0.9, ",")] {
+        let row = |i: u32| {
+            let time = format!("{:.6}", (f64::from(i / 2) + phase * f64::from(i % 2)) / 8000.0);
+            let cells = if i.is_multiple_of(2) { format!("{i};") } else { format!(";{i}") };
+            format!("{};{cells}\n", time.replace('.', decimal))
+        };
+        let read = read_bytes(&table("__time;/a/x;/b/x\n", 100, row), &cask_file(&["/b/x", "/a/x"])).unwrap();
+        for channel in &read.channels {
+            let uniform = &channel.uniform;
+            assert!(
+                (uniform.sample_rate_hz - 8000.0).abs() < 1.0 && uniform.samples.len() == 50,
+                "{uniform:?}"
+            );
+            assert!(uniform.issues.is_empty(), "{uniform:?}");
+        }
+    }
+    // A few empty cells, and a channel that ends early, are samples that are missing.
+    let row = |i: u32| {
+        format!(
+            "{};{};{}\n",
+            f64::from(i) / 1e3,
+            if i.is_multiple_of(9) && i < 90 { "" } else { "1" },
+            if i < 60 { "2" } else { "" }
+        )
+    };
+    let read = read_bytes(&table("t;A1;A2\n", 200, row), &cask_file(&["A1", "A2"])).unwrap();
+    let missing = |channel: usize| values(&read, channel).iter().filter(|value| value.is_nan()).count();
+    assert_eq!((missing(0), missing(1), values(&read, 1).len()), (10, 140, 200));
+}
+
+#[test]
+fn what_is_no_time_is_none() {
+    let noise = |i: u32| 20.0 + f64::from(i * 7919 % 13);
+    for (header, why) in [("A1,T\n", "\"T\" does not rise"), ("A1,T [degC]\n", "is in degC")] {
+        let text = table(header, 60, |i| format!("{i},{}\n", noise(i)));
+        let message = told(&read_bytes(&text, &cask_file(&["A1"])).unwrap_err());
+        assert!(message.contains(why) && message.contains("sample_rate_hz"), "{message}");
+        let mut stated = cask_file(&["A1"]);
+        stated.channels[0].sample_rate_hz = Some(8000.0);
+        let read = read_bytes(&text, &stated).unwrap();
+        assert!(values(&read, 0).windows(2).all(|pair| pair[0] < pair[1]) && read.issues.is_empty());
+    }
+}
+
+#[test]
+fn the_stamp_of_the_sensor_goes_before_the_time_of_receipt() {
+    let at = |i: u32| 1_700_000_000_000_000_000_u64 + 125_000 * u64::from(i);
+    for (header, cells) in [
+        (
+            "%time,field.header.stamp,A1\n",
+            (|received, ns| format!("{received},{ns}")) as fn(u64, u64) -> String,
+        ),
+        ("rosbag_timestamp,header.stamp.secs,header.stamp.nsecs,A1\n", |received, ns| {
+            format!("{received},{},{}", ns / 1_000_000_000, ns % 1_000_000_000)
+        }),
+        ("sec,nanosec,A1\n", |_, ns| format!("{},{}", ns / 1_000_000_000, ns % 1_000_000_000)),
+    ] {
+        let row = |i: u32| {
+            format!("{},{i}\n", cells(at(i) + 40_000 * u64::from(i * 7919 % 13), at(i) + 999_990_000))
+        };
+        let read =
+            read_bytes(&table(header, 200, row), &cask_file(&["A1"])).map_err(|error| told(&error)).unwrap();
+        let uniform = &read.channels[0].uniform;
+        assert!((uniform.sample_rate_hz - 8000.0).abs() < 1.0, "{header}: {uniform:?}");
+    }
+}
+
+#[test]
+fn facts_of_oscilloscopes_stand_above_the_rows() {
+    let texts = [
+        "\"Model Name\",\"S1\"\n\"TraceName\",\"A1\",\"A2\"\n\"BlockSize\",60,60\n\"VUnit\",\"g\",\"g\"\n\"HResolution\",1.25E-04,1.25E-04\n\n",
+        "X,A1,A2,Start,Increment,\nSequence,g,g,-5.0e-02,1.25e-04\n",
+        "Zeit,A1,A2\nEngineering Unit,g,g\nISO Channel Code,11,12\n",
+    ];
+    for (place, header) in texts.into_iter().enumerate() {
+        let row = |i: u32| match place {
+            0 => format!(",{i},-{i}\n"),
+            1 => format!("{i},{i},-{i},\n"),
+            _ => format!("{},{i},-{i}\n", f64::from(i) / 8000.0),
+        };
+        let read = read_bytes(&table(header, 60, row), &cask_file(&["A1", "A2"]))
+            .map_err(|error| told(&error))
+            .unwrap();
+        assert_eq!((values(&read, 0)[7], values(&read, 1)[7]), (7.0, -7.0), "{header}");
+        for channel in &read.channels {
+            assert_eq!(channel.unit.as_deref(), Some("g"), "{header}");
+            assert!((channel.uniform.sample_rate_hz - 8000.0).abs() < 1e-6, "{header}");
+        }
+    }
+}
+
+#[test]
+fn remarks_and_sums_are_no_rows() {
+    let rows = |i: u32| format!("{},{i}\n", f64::from(i) / 8000.0);
+    for (header, end) in [
+        (";Title, logger\n;Headers, time,A1\n", ";shutdown: switched off\n"),
+        ("time,A1\n", "# the end"),
+        ("time,A1\n", "Sum,1770\n"),
+        ("time,A1\n", "\u{1a}"),
+        (",A1\n", "Mittelwert,29.5\n"),
+    ] {
+        let mut text = table(header, 60, rows);
+        text.extend_from_slice(end.as_bytes());
+        let read = read_bytes(&text, &cask_file(&["A1"])).map_err(|error| told(&error)).unwrap();
+        assert_eq!((values(&read, 0).len(), read.issues.len()), (60, 0), "{end:?}: {:?}", read.issues);
+    }
+    let mut numbered = cask_file(&["A1"]);
+    numbered.time = Some("1".into());
+    assert_eq!(values(&read_bytes(&table(",A1\n", 60, rows), &numbered).unwrap(), 0).len(), 60);
+}
+
+#[test]
+fn tables_that_cannot_be_read_say_why() {
+    for (text, parts) in [
+        ("\"t;A1\"\n\"0;1,5\"\n\"1;2,5\"\n", &["stands in quotes as a whole"][..]),
+        (
+            "t,A1\n0,00,1,25\n0,01,1,75\n0,02,1,50\n",
+            &["line 1 has 2 cells, the rows 4", "comma is the decimal mark too"],
+        ),
+        ("t;A1\n0.1;39\n0.2;15,892\n0.3;1.5\n0.4;1.25\n", &["15,892", "thousands"]),
+        ("t,A1\n45234.50000000,1\n45234.50000001,2\n45234.50000002,1\n", &["are they in days", "[days]"]),
+    ] {
+        let message = told(&read_bytes(text.as_bytes(), &cask_file(&["A1"])).unwrap_err());
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+}
+
+#[test]
+fn a_long_table_is_listed_by_sensor() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("r.csv");
+    // The right one is sampled half as often.
+    let row = |i: u32| {
+        let right =
+            if i.is_multiple_of(2) { format!("{},right,-{i}\n", f64::from(i) / 1e3) } else { String::new() };
+        format!("{},left,{i}\n{right}", f64::from(i) / 1e3)
+    };
+    std::fs::write(&path, table("t,Sensor,A1\n", 61, row)).unwrap();
+    let listing = list(&path, Limits::default(), &|_| {}).unwrap();
+    let told: Vec<_> = listing.channels[1..]
+        .iter()
+        .map(|it| (it.rows.as_ref().unwrap().is.as_str(), it.samples, it.range))
+        .collect();
+    assert_eq!(told, [("left", Some(61), Some((0.0, 60.0))), ("right", Some(31), Some((-60.0, 0.0)))]);
+    let rates: Vec<f64> = listing.channels[1..].iter().filter_map(|it| it.sample_rate_hz).collect();
+    assert!((rates[0] - 1000.0).abs() < 1e-6 && (rates[1] - 500.0).abs() < 1e-6, "{rates:?}");
+    assert!(listing.channels[0].unreadable.is_some());
 }

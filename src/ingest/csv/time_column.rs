@@ -15,6 +15,8 @@ pub(super) fn scale(column: &TableColumn) -> Scale {
 pub(super) struct Found {
     /// Of several the first whose times rise with every row; where none does, the one whose times rise most often.
     pub taken: Option<usize>,
+    /// What is to be added to it where it holds whole seconds.
+    pub nanoseconds: Option<usize>,
     /// All that a name, a unit or stamps show to be times.
     pub sure: Vec<usize>,
 }
@@ -27,33 +29,47 @@ pub(super) fn find<'a, Cells: Iterator<Item = &'a str>>(
     cells: impl Fn(usize) -> Cells,
 ) -> Found {
     let bare: Vec<String> = columns.iter().map(bare_name).collect();
+    let all = || 0..columns.len();
+    // Beside times of receipt, the sensor's own; those of several topics are none of all.
+    let is_stamp = |i: &usize| vocabulary::is_stamp(&bare[*i]);
+    let mut stamps = bare.iter().filter(|bare| vocabulary::is_stamp(bare));
+    let has_stamp = stamps.next().is_some_and(|first| stamps.all(|other| other == first));
     let is_named = |i: &usize| is_named(&columns[*i], &bare[*i]);
     let begins_so = |i: &usize| begins_so(&bare[*i]);
-    let all = || 0..columns.len();
-    let mut found: Vec<usize> = Vec::new();
+    let mut found: Vec<(usize, Vec<f64>)> = Vec::new();
     let ranked = all()
         .filter(is_named)
         .chain(all().filter(begins_so))
         .chain(all().filter(|&i| columns[i].is_stamped))
         .chain((is_first_rising && columns.len() > 1).then_some(0));
-    for i in ranked {
-        // Words are no times, whatever they are headed.
-        if columns[i].is_numeric && !found.contains(&i) {
-            found.push(i);
+    for i in ranked.filter(|i| !has_stamp || is_stamp(i)) {
+        // Words are no times, nor is what has another unit or falls in more than one row of ten, whatever they are headed.
+        if columns[i].is_numeric && scale(&columns[i]) != Scale::Unknown && found.iter().all(|it| it.0 != i) {
+            let times = times(cells(i), decimal);
+            found.extend((10 * steps(&times, f64::gt) <= times.len().max(20)).then_some((i, times)));
         }
+    }
+    let is_in = |i: usize, unit_s: f64| scale(&columns[i]) == Scale::Known(unit_s);
+    // `sec` and `nanosec` are names and units at once.
+    let is_both = |i: usize| vocabulary::time_unit_s(&bare[i]).is_some();
+    let rest = |seconds: usize| {
+        let is_below = |j: usize| !times(cells(j), decimal).iter().any(|n| *n < 0.0 || *n >= 1e9);
+        let is_beside = |j: usize| bare[j] == bare[seconds] || (is_both(seconds) && is_both(j));
+        all().find(|&j| is_in(j, 1e-9) && is_beside(j) && is_below(j))
+    };
+    let mut whole =
+        found.iter().filter(|(i, times)| is_in(*i, 1.0) && !times.iter().any(|t| t.fract().abs() > 0.0));
+    if let Some((seconds, rest)) = whole.find_map(|(i, _)| Some((*i, rest(*i)?))) {
+        return Found { taken: Some(seconds), nanoseconds: Some(rest), sure: vec![seconds] };
     }
     let is_known = |i: &usize| matches!(scale(&columns[*i]), Scale::Known(_));
     let is_sure = |i: &usize| is_named(i) || (begins_so(i) && is_known(i)) || columns[*i].is_stamped;
-    let sure = found.iter().copied().filter(is_sure).collect();
-    if found.len() < 2 {
-        return Found { taken: found.first().copied(), sure };
-    }
-    let rises: Vec<(usize, usize)> = found.iter().map(|&i| rises(cells(i), decimal)).collect();
+    let sure = found.iter().map(|it| it.0).filter(is_sure).collect();
     // Nine of ten: as where the time base takes times for coarse.
-    let is_fine = |(rises, pairs): &(usize, usize)| 10 * rises >= 9 * pairs;
-    let finest = rises.iter().map(|(rises, _)| *rises).max();
-    let place = rises.iter().position(is_fine).or_else(|| rises.iter().position(|(r, _)| Some(*r) == finest));
-    Found { taken: place.map(|place| found[place]), sure }
+    let is_fine = |(_, times): &&(usize, Vec<f64>)| 10 * (steps(times, f64::lt) + 1) >= 9 * times.len();
+    let finest = found.iter().rev().max_by_key(|(_, times)| steps(times, f64::lt));
+    let taken = found.iter().find(is_fine).or(finest).map(|it| it.0);
+    Found { taken, nanoseconds: None, sure }
 }
 
 /// Whether a column is headed as one of times.
@@ -63,7 +79,9 @@ pub(super) fn is_headed(column: &TableColumn) -> bool {
 }
 
 fn is_named(column: &TableColumn, bare: &str) -> bool {
-    vocabulary::is_time(bare) || (vocabulary::is_axis(bare) && matches!(scale(column), Scale::Known(_)))
+    vocabulary::is_time(bare)
+        || vocabulary::is_stamp(bare)
+        || (vocabulary::is_axis(bare) && matches!(scale(column), Scale::Known(_)))
 }
 
 fn bare_name(column: &TableColumn) -> String {
@@ -74,14 +92,16 @@ fn begins_so(name: &str) -> bool {
     name.starts_with("time") || name.starts_with("zeit")
 }
 
-/// How many of the cells are later than the one before, and how many have one before.
-fn rises<'a>(cells: impl Iterator<Item = &'a str>, decimal: u8) -> (usize, usize) {
+/// The times in cells, those of stamps from the first; NaN where a cell holds none.
+fn times<'a>(cells: impl Iterator<Item = &'a str>, decimal: u8) -> Vec<f64> {
     let mut stamps = Stamps::default();
-    let times: Vec<Option<f64>> = cells
-        .map(|cell| number::of_cell(cell.as_bytes(), decimal).or_else(|| stamps.seconds(0, cell.as_bytes())))
-        .collect();
-    let rises = |pair: &&[Option<f64>]| pair[0].zip(pair[1]).is_some_and(|(one, next)| one < next);
-    (times.windows(2).filter(rises).count(), times.len().saturating_sub(1))
+    let mut time = |cell: &[u8]| number::of_cell(cell, decimal).or_else(|| stamps.seconds(0, cell));
+    cells.map(|cell| time(cell.as_bytes()).unwrap_or(f64::NAN)).collect()
+}
+
+/// How many steps from a time to the next go so.
+fn steps(times: &[f64], go: fn(&f64, &f64) -> bool) -> usize {
+    times.windows(2).filter(|pair| go(&pair[0], &pair[1])).count()
 }
 
 #[cfg(test)]

@@ -12,6 +12,8 @@ pub(super) struct Wanted {
     pub is_time: Vec<bool>,
     /// For each slot, whether it only bears times out: its words are no fault.
     pub is_witness: Vec<bool>,
+    /// For each slot, whether it names the sensors of rows.
+    pub is_sensor: Vec<bool>,
     /// For each slot, that of the times of its values.
     clocks: Vec<Option<usize>>,
 }
@@ -24,7 +26,12 @@ impl Wanted {
         let counter =
             layout.counter().filter(|column| times.is_empty() && !values.contains(&(*column, None)));
         let of_times = times.iter().flat_map(|&time| layout.witnesses(time)).map(|(column, _)| column);
-        Self::new(&values, &of_times.chain(counter).collect::<Vec<_>>())
+        let rest = times.iter().filter_map(|&time| layout.nanoseconds(time));
+        let sensors: Vec<usize> = plans.iter().filter_map(|plan| Some(plan.rows.as_ref()?.0)).collect();
+        let beside = of_times.chain(rest).chain(counter).chain(sensors.iter().copied());
+        let mut wanted = Self::new(&values, &beside.collect::<Vec<_>>());
+        wanted.is_sensor = wanted.columns.iter().map(|column| sensors.contains(column)).collect();
+        wanted
     }
 
     /// The columns of values, each with that of its times, and those that bear times out.
@@ -39,7 +46,8 @@ impl Wanted {
         let is_witness = columns.iter().map(|c| !times.contains(c) && !is_value(c)).collect();
         let clock = |column: &usize| values.iter().find(|(own, _)| own == column).and_then(|(_, time)| *time);
         let clocks = columns.iter().map(|column| columns.binary_search(&clock(column)?).ok()).collect();
-        Self { columns, is_time, is_witness, clocks }
+        let is_sensor = vec![false; columns.len()];
+        Self { columns, is_time, is_witness, is_sensor, clocks }
     }
 
     /// The slot of a wanted column.
