@@ -2,8 +2,8 @@
 
 use super::{one_end, settle};
 use crate::data::{
-    At, Axis, BENDING_WAVE_M_S, CaskFile, Channel, Coupling, Drop, End, Events, Finding, Recording,
-    RestLevel, Severity, Signal,
+    At, Axis, BENDING_WAVE_M_S, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop, End, Events,
+    Finding, Recording, RestLevel, Severity, Signal, What,
 };
 use crate::{condition, events, judge};
 use one_end::StandIn;
@@ -57,7 +57,10 @@ impl Impact {
         let last_s = last_within_s(farthest);
         let goes_on = last_within_s(farthest.longest()) > last_s;
         let reach = last_s.map_or(farthest, |last_s| farthest.until(last_s - event.near_s - event.spread_s));
-        let (mut signals, found) = condition::condition(recording, &event, &reach, file.corrections);
+        let (mut signals, mut found) = condition::condition(recording, &event, &reach, file.corrections);
+        if let Some(nearer) = nearer(&event, &signals, &found) {
+            (signals, found) = condition::condition(recording, &nearer, &reach, file.corrections);
+        }
         signals.retain(|signal| copied.iter().all(|copy| copy.channel.as_ref() != Some(&signal.name)));
         findings.extend(copied);
         let Some(mut contact) = events::first_contact(&signals, &event) else {
@@ -108,6 +111,17 @@ impl Impact {
     pub fn recorded(&self) -> &[Signal] {
         &self.signals[..self.signals.len() - usize::from(self.stand_in.is_some())]
     }
+}
+
+/// The coarse event from where a channel first answers on, where too little free fall for an offset lies before it: it begins up to its
+/// width before the contact, and a short free fall lies between for the most part.
+fn nearer(event: &CoarseEvent, signals: &[Signal], found: &[Finding]) -> Option<CoarseEvent> {
+    let is_short = |f: &Finding| matches!(f.what, What::Channel(ChannelFinding::ShortFreeFall { .. }));
+    let contact = found.iter().any(is_short).then(|| events::first_contact(signals, event))??;
+    let answers = events::answers(signals, contact.time_s);
+    let early_s = answers.iter().map(|answer| answer.delay_s).fold(0.0, f64::min);
+    let near_s = (contact.time_s + early_s - contact.u_s).max(event.near_s);
+    Some(CoarseEvent { near_s, spread_s: (event.near_s + event.spread_s - near_s).max(0.0), ..*event })
 }
 
 /// Adds the signal that stands in for an end without one, made for the angle that the cask has in the middle of the contact.

@@ -11,6 +11,7 @@ mod reached;
 mod second;
 pub mod settle;
 mod setup;
+mod slips;
 
 pub use setup::sticking;
 
@@ -28,7 +29,7 @@ use reached::Reached;
 pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
     // On a thread of the pool: any other would be put to sleep and woken again for each piece of work that two threads share.
     let mut found = measure(recording, cask_file);
-    rayon::scope(|_| again::name_slip(recording, cask_file, &mut found));
+    rayon::scope(|_| slips::name_slip(recording, cask_file, &mut found));
     let result = &mut found.result;
     result.keys = ingest::cask_file::settings(cask_file, recording);
     result.observed = cask_file.observed.iter().map(|seen| judge::beside(seen, result)).collect();

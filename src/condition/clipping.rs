@@ -162,6 +162,7 @@ mod tests {
             scale_m_s2: 9.806_65,
             unit: "g".into(),
             unit_origin: "cask file",
+            is_unit_recorded: false,
             full_scale,
             gaps: vec![],
             time_jitter_s: 0.0,

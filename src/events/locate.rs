@@ -197,6 +197,7 @@ mod tests {
             scale_m_s2: 1.0,
             unit: "m/s^2".into(),
             unit_origin: "cask file",
+            is_unit_recorded: false,
             full_scale: None,
             gaps: vec![],
             time_jitter_s: 0.0,

@@ -2,7 +2,7 @@
 
 mod answer;
 mod locate;
-pub(crate) mod onset;
+mod onset;
 mod release;
 mod separation;
 

@@ -5,11 +5,11 @@ use crate::data::{At, CoarseEvent, End, Signal};
 use crate::numerics::{as_f64, reduce};
 
 /// A pulse begins where its rise leaves this share of its peak behind, or the noise where that is more.
-pub(crate) const FOOT: f64 = 0.02;
+const FOOT: f64 = 0.02;
 /// The rise is followed up to this share of the peak to extrapolate it to zero.
 const SHOULDER: f64 = 0.3;
 /// Noise is passed by this many of its standard deviations.
-pub(crate) const NOISE_FACTOR: f64 = 6.0;
+pub(super) const NOISE_FACTOR: f64 = 6.0;
 /// What changed the velocity by this share of the pulse's step before its rise was a stage of the pulse.
 const EARLIER_STAGE: f64 = 0.02;
 /// Width of the means that R's velocity is compared by, s: two periods of an 80 Hz mode, less than a flight from 5°.
@@ -66,7 +66,7 @@ fn first_stir(signal: &Signal, stretch: std::ops::Range<usize>) -> Option<At> {
 }
 
 /// Where first contact is sought.
-pub(crate) struct FirstPulse<'a> {
+struct FirstPulse<'a> {
     /// The signal.
     pub signal: &'a Signal,
     /// The samples among which it lies.

@@ -84,6 +84,7 @@ mod tests {
             scale_m_s2: 9.806_65,
             unit: "g".into(),
             unit_origin: "cask file",
+            is_unit_recorded: false,
             full_scale: None,
             gaps: vec![],
             time_jitter_s: 0.0,

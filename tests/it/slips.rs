@@ -1,0 +1,197 @@
+//! A set-up stated wrongly to the slip that is named, and recordings that no slip explains to none.
+
+use crate::run::fixture;
+use dropcheck::data::{Axis, CaskFile, Channel, Finding, IssueCode, Recording, Samples, Verdict};
+use dropcheck::{analyze, ingest};
+use std::mem::swap;
+use std::path::Path;
+
+const G_M_S2: f64 = 9.806_65;
+
+type Change = fn(&mut Recording, &mut CaskFile);
+
+/// Two channels without rest, in a table without words for their unit.
+fn read() -> (Recording, CaskFile) {
+    ingest::read_hdf5_with(Path::new(env!("CARGO_BIN_EXE_dropcheck")));
+    let [recording, cask] = ["anf18-german.csv", "anf18-german.toml"].map(fixture);
+    let file = ingest::cask_file(&cask).expect("a cask file");
+    let mut recording = ingest::read(&recording, &file, &|_| ()).expect("a recording");
+    recording.channels.iter_mut().for_each(|c| c.is_unit_recorded = false);
+    (recording, file)
+}
+
+fn each(channel: &mut Channel, change: impl Fn(usize, &Samples) -> f64) {
+    let samples = &channel.samples;
+    channel.samples = Samples::F64((0..samples.len()).map(|i| change(i, samples)).collect());
+}
+
+/// One channel later, or earlier, by so many seconds: what its file said of its start was not read.
+fn moved(channel: &mut Channel, late_s: f64) {
+    channel.start_s += late_s;
+}
+
+fn exchange(recording: &mut Recording) {
+    let [first, second] = &mut recording.channels[..] else { panic!("two channels") };
+    swap(&mut first.samples, &mut second.samples);
+}
+
+fn cures(change: Change) -> (Vec<Finding>, Verdict) {
+    let (mut recording, mut file) = read();
+    change(&mut recording, &mut file);
+    let result = analyze(&recording, &file).result;
+    (result.quality, result.verdict)
+}
+
+#[test]
+fn a_usual_slip_is_named_first() {
+    let slips: [(&str, Change); 13] = [
+        ("`polarity` of A2 reversed", |r, _| r.channels[1].scale_m_s2 *= -1.0),
+        ("`source` of A1 and A2 exchanged everything", |r, _| exchange(r)),
+        ("`drop.angle_deg` counted from the horizontal", |_, f| {
+            f.drop.angle_rad = std::f64::consts::FRAC_PI_2 - f.drop.angle_rad;
+        }),
+        ("`drop.angle_deg` in rad", |_, f| f.drop.angle_rad = f.drop.angle_rad.to_radians()),
+        ("`drop.height_m` in cm", |_, f| {
+            f.drop.height_m *= 100.0;
+            f.drop.impact_velocity_m_s *= 10.0;
+        }),
+        ("`drop.height_m` in ft", |_, f| {
+            f.drop.height_m /= 0.3048;
+            f.drop.impact_velocity_m_s /= 0.3048_f64.sqrt();
+        }),
+        ("`[cask]` in ft and `position_m` of A1 and A2 in ft", |r, f| {
+            f.cask.length_m /= 0.3048;
+            f.cask.height_m /= 0.3048;
+            f.cask.cog_m /= 0.3048;
+            f.cask.inertia_kg_m2 /= 0.3048_f64.powi(2);
+            r.channels.iter_mut().for_each(|c| c.position_m /= 0.3048);
+        }),
+        ("`sample_rate_hz` of A1 and A2 halved", |r, f| {
+            f.time = None;
+            for (channel, spec) in r.channels.iter_mut().zip(&mut f.channels) {
+                channel.sample_rate_hz *= 2.0;
+                spec.time = None;
+                spec.sample_rate_hz = Some(channel.sample_rate_hz);
+            }
+        }),
+        ("`source` of A1 and A2 exchanged and `polarity` of A1 reversed", |r, _| {
+            exchange(r);
+            r.channels[0].scale_m_s2 *= -1.0;
+        }),
+        ("`source` of A1 and A2 exchanged and `polarity` of A1 and A2 reversed", |r, _| {
+            exchange(r);
+            r.channels.iter_mut().for_each(|c| c.scale_m_s2 *= -1.0);
+        }),
+        ("`unit` of A1 and A2 taken as m/s²", |r, _| {
+            // Stated with a full scale, at which the samples then seem to be cut off.
+            for channel in &mut r.channels {
+                each(channel, |i, samples| samples.get(i) * G_M_S2);
+                channel.full_scale = Some(500.0);
+            }
+        }),
+        ("`unit` of A1 and A2 taken as g", |r, _| {
+            for channel in &mut r.channels {
+                channel.scale_m_s2 = 1.0;
+                channel.unit = "m/s^2".into();
+            }
+        }),
+        ("`position_m` of A2 counted from the other end", |r, f| {
+            r.channels[1].position_m = f.cask.length_m - r.channels[1].position_m;
+        }),
+    ];
+    for (named, slip) in slips {
+        let (findings, verdict) = cures(slip);
+        let first = findings.first().expect("a finding");
+        assert!(first.message.contains(named), "{named}: {}", first.message);
+        assert!(!first.message.contains("; with"), "one alone: {}", first.message);
+        assert_ne!(verdict, Verdict::Pass, "{named}: it is never taken by itself");
+    }
+}
+
+#[test]
+fn what_no_single_slip_explains_or_the_file_contradicts_names_none() {
+    let changes: [(&str, Change); 10] = [
+        ("10 ms early", |r, _| moved(&mut r.channels[1], -0.01)),
+        ("20 ms early", |r, _| moved(&mut r.channels[1], -0.02)),
+        ("20 ms late", |r, _| moved(&mut r.channels[1], 0.02)),
+        ("50 ms late", |r, _| moved(&mut r.channels[1], 0.05)),
+        ("an angle 6° off", |_, f| f.drop.angle_rad += 6_f64.to_radians()),
+        ("two polarities and the vertical", |r, f| {
+            r.channels[1].scale_m_s2 *= -1.0;
+            f.drop.angle_rad = std::f64::consts::FRAC_PI_2 - f.drop.angle_rad;
+        }),
+        ("ends exchanged and one in another unit", |r, _| {
+            exchange(r);
+            r.channels[0].scale_m_s2 /= G_M_S2;
+        }),
+        ("a scale of 0.7", |r, _| r.channels[0].scale_m_s2 *= 0.7),
+        ("a unit that the recording states too", |r, _| {
+            for channel in &mut r.channels {
+                each(channel, |i, samples| samples.get(i) * G_M_S2);
+                channel.is_unit_recorded = true;
+            }
+        }),
+        ("a rate that named times bear out", |r, f| {
+            for (channel, spec) in r.channels.iter_mut().zip(&mut f.channels) {
+                channel.sample_rate_hz *= 2.0;
+                spec.time = Some("t".into());
+                spec.sample_rate_hz = Some(channel.sample_rate_hz);
+            }
+        }),
+    ];
+    for (name, change) in changes {
+        let named = cures(change).0.into_iter().find(|f| f.code == IssueCode::UsualSlip);
+        assert!(named.is_none(), "{name}: {}", named.expect("some").message);
+    }
+}
+
+#[test]
+fn the_angle_that_would_close_is_said() {
+    let (findings, _) = cures(|_, f| f.drop.angle_rad += 3_f64.to_radians());
+    let (_, file) = read();
+    let said = format!("a drop angle of {:.0}", file.drop.angle_rad.to_degrees());
+    let geometry: Vec<&str> =
+        findings.iter().filter(|f| f.code == IssueCode::Geometry).map(|f| f.message.as_str()).collect();
+    assert!(geometry.iter().any(|message| message.contains(&said)), "{geometry:?}");
+}
+
+#[test]
+fn the_axes_of_an_end_are_told_apart() {
+    ingest::read_hdf5_with(Path::new(env!("CARGO_BIN_EXE_dropcheck")));
+    let [recording, cask] = ["vhlw-rest.h5", "vhlw-rest.toml"].map(fixture);
+    let file = ingest::cask_file(&cask).expect("a cask file");
+    let mut recording = ingest::read(&recording, &file, &|_| ()).expect("a recording");
+    let axial = recording.channels.iter().position(|c| c.axis == Axis::Axial).expect("an axial channel");
+    let end = recording.channels[axial].end;
+    let is_beside = |c: &Channel| c.axis == Axis::Transverse && c.end == end;
+    let beside = recording.channels.iter().position(is_beside).expect("one of its end");
+    let names = [beside.min(axial), beside.max(axial)].map(|i| recording.channels[i].name.clone());
+    let [one, other] = recording.channels.get_disjoint_mut([axial, beside]).expect("two channels");
+    swap(&mut one.samples, &mut other.samples);
+    let found = analyze(&recording, &file).result.quality;
+    let said = format!("`source` of {} and {} exchanged", names[0], names[1]);
+    assert!(found[0].message.contains(&said), "{}", found[0].message);
+}
+
+#[test]
+fn the_free_fall_is_the_one_that_is_recorded() {
+    for (left_s, is_short) in [(0.004, true), (0.03, false)] {
+        let (mut recording, file) = read();
+        let contact_s = analyze(&recording, &file).result.first_impact.time.expect("a contact").value;
+        for channel in &mut recording.channels {
+            let from = channel.index_at(contact_s - left_s);
+            channel.start_s = channel.time_s(from);
+            let samples = (from..channel.samples.len()).map(|i| channel.samples.get(i)).collect();
+            channel.samples = Samples::F64(samples);
+        }
+        let found = analyze(&recording, &file).result.quality;
+        let late: Vec<&str> =
+            found.iter().filter(|f| f.code == IssueCode::BeginsLate).map(|f| f.message.as_str()).collect();
+        assert_eq!(!late.is_empty(), is_short, "{late:?}");
+        assert!(
+            late.iter()
+                .all(|message| message.contains(" 4.0 ms of free fall") || message.contains(" 3.9 ms")),
+            "{late:?}"
+        );
+    }
+}
