@@ -91,14 +91,3 @@ pub struct Ladder {
 
 /// A rung suffices where no richer one moves the slap-down speed by more than this, percent: a tenth of the 1 % that a test resolves.
 pub const LADDER_TOLERANCE_PERCENT: f64 = 0.1;
-
-/// How the slap-down speed answers to k and to the angle.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct SpeedGradient {
-    /// Slap-down speed, m/s.
-    pub speed_m_s: f64,
-    /// ∂(speed)/∂k, m/s.
-    pub by_k_m_s: f64,
-    /// ∂(speed)/∂φ0, m/s per radian.
-    pub by_angle_m_s_rad: f64,
-}

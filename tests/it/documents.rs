@@ -195,3 +195,15 @@ fn every_field_of_the_result_is_documented() {
     found.retain(|key| !chapter.contains(&format!("\"{key}\"")));
     assert!(found.is_empty(), "docs/formats.md, result.json, does not name {found:?}");
 }
+
+#[test]
+fn the_page_of_dependencies_names_every_direct_crate() {
+    let manifest: toml::Table = text(&root().join("Cargo.toml")).parse().unwrap();
+    let page = text(&root().join("docs/dependencies.md"));
+    let targets = manifest["target"].as_table().unwrap().values().map(|target| &target["dependencies"]);
+    for crates in [&manifest["dependencies"], &manifest["dev-dependencies"]].into_iter().chain(targets) {
+        for name in crates.as_table().unwrap().keys() {
+            assert!(page.contains(&format!("`{name}`")), "docs/dependencies.md does not name {name}");
+        }
+    }
+}

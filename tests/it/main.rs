@@ -2,6 +2,7 @@
 
 mod arrays;
 mod batch;
+mod bounds;
 mod campaign;
 /// The command line once more, where it can name nothing but what every program can.
 #[allow(dead_code, unused_imports, reason = "it is only compiled")]
@@ -12,6 +13,7 @@ mod compliant;
 mod csv_times;
 mod damage;
 mod documents;
+mod filter;
 mod first_minutes;
 mod fixtures;
 mod golden;
@@ -29,9 +31,9 @@ mod run;
 mod safety;
 mod same;
 mod short_flights;
+mod slips;
 mod stages;
 mod synth;
 mod tidy;
 mod trial;
-mod trial_drops;
 mod uncertainty;

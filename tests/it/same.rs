@@ -62,7 +62,7 @@ pub fn told(error: &IngestError) -> String {
 
 /// The text without names of folders, versions and hashes.
 pub fn placeless(text: &str, recording: &Path, cask: &Path) -> String {
-    let elsewhere = ["recording", "recording_sha256", "cask", "cask_sha256", "version"];
+    let elsewhere = ["recording", "recording_sha256", "cask", "cask_sha256", "version", "read with"];
     let blanked = |line: &str| {
         let key = line.trim_start().split_once("\": \"").map(|(key, _)| key.trim_start_matches('"'));
         let end = if line.ends_with(',') { "," } else { "" };
@@ -78,7 +78,7 @@ pub fn placeless(text: &str, recording: &Path, cask: &Path) -> String {
 
 /// Sixteen digits that stand for a text.
 pub fn hash(text: &str) -> String {
-    format!("{:x}", Sha256::digest(text))[..16].to_owned()
+    dropcheck::ingest::hexadecimal(&Sha256::digest(text))[..16].to_owned()
 }
 
 /// What the sines and powers of this machine give, in sixteen digits.
