@@ -8,6 +8,9 @@ const USUAL_MEMORY_BYTES: u64 = 4 << 30;
 /// Less leaves no room for the reader itself.
 pub const LEAST_MEMORY_BYTES: u64 = 64 << 20;
 
+/// Different names or numbers of sensors in one table, dataset or channel: more values count something.
+pub(super) const MOST_SENSORS: usize = 64;
+
 /// Largest sizes that are believed of a file; all grow with the memory that is allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {

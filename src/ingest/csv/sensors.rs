@@ -1,6 +1,7 @@
 //! The first rows of a long table to the columns that name the sensor of each row.
 
 use super::header::TableColumn;
+use crate::ingest::limits::MOST_SENSORS;
 use crate::ingest::{number, vocabulary};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -12,8 +13,6 @@ pub(super) struct Sensors {
     cells: Vec<String>,
 }
 
-/// Different sensors of one table at most; more values count something.
-const MOST: usize = 64;
 /// Words change at least once in so many rows where they name sensors; those of a state stay longer.
 const ROWS_A_CHANGE: usize = 16;
 
@@ -62,7 +61,7 @@ pub(super) fn find(
         // Numbers that never fall count; a word that does not return may still be a sensor's.
         let is_so =
             (is_named && !is_numeric) || (returns && (*is_numeric || ROWS_A_CHANGE * changes >= ids.len()));
-        let counts = (2..=MOST).contains(&different.len()) && 2 * different.len() <= ids.len();
+        let counts = (2..=MOST_SENSORS).contains(&different.len()) && 2 * different.len() <= ids.len();
         (is_so && counts && 2 * ids.len() >= cells.len()).then_some(Sensors { column, cells })
     };
     (0..columns.len()).filter_map(of_column).collect()

@@ -100,7 +100,5 @@ pub(super) fn is_time(name: &str) -> bool {
 
 /// Whether a dataset or field of this name says of which sensor each sample is.
 pub(super) fn is_sensor(name: &str) -> bool {
-    const NAMES: &str = "sensor sensorid sensorno device deviceid node nodeid channel channelid id";
-    let last = plain(name.rsplit('.').next().unwrap_or_default());
-    NAMES.split(' ').any(|known| known == last)
+    vocabulary::is_sensor_of_rows(name.rsplit('.').next().unwrap_or_default())
 }

@@ -3,9 +3,7 @@
 use super::column::DatasetColumn;
 use super::fault::Fault;
 use crate::data::RowsOf;
-
-/// More different values are no sensors.
-const MOST_SENSORS: usize = 64;
+use crate::ingest::limits::MOST_SENSORS;
 
 /// The sensors of which a column holds samples.
 #[derive(Default)]
@@ -48,7 +46,9 @@ impl RecordSensors {
         }
         let (Some(first), ids) = (self.all.first(), self.all.iter().map(|one| one.is.as_str())) else {
             return Err(Fault::new(
-                "what is to pick its samples holds no whole number for each, or more than 64 different ones",
+                format!(
+                    "what is to pick its samples holds no whole number for each, or more than {MOST_SENSORS} different ones"
+                ),
                 "pick them by another field or dataset, or take `where` out",
             ));
         };

@@ -163,6 +163,30 @@ fn sensors_of_one_topic_stay_apart_and_are_picked_by_name() {
 }
 
 #[test]
+fn more_sensors_than_are_told_apart_give_none() {
+    let sensors = |count: u64| {
+        let bytes = closed(WriteOptions::new().chunk_size(Some(64)), |writer| {
+            let id = channel(writer, "/x", "json", ("", "", b""));
+            for i in 0..4 * count {
+                let text = format!("{{\"a\":{i},\"sensor\":{}}}", i % count);
+                message(writer, id, ZERO_NS + i64::try_from(i).unwrap() * 1_000_000, text.as_bytes());
+            }
+        });
+        let mut cask = cask_file(&["/x.a"]);
+        let of = |cask: &CaskFile| told(&bytes, cask).map(|told| told.1);
+        let asked = of(&cask).unwrap_err();
+        cask.channels[0].rows = Some(RowsOf { column: "sensor".into(), is: "3".into() });
+        (asked, of(&cask))
+    };
+    let (asked, picked) = sensors(64);
+    assert!(asked.contains("where") && picked == Ok(vec![3.0, 67.0, 131.0]), "{asked}");
+    let (asked, picked) = sensors(65);
+    for refused in [asked, picked.unwrap_err()] {
+        assert!(refused.contains("more than 64 sensors"), "{refused}");
+    }
+}
+
+#[test]
 fn a_file_without_chunks_shows_by_its_sums_that_a_digit_was_changed() {
     let sound = closed(WriteOptions::new().use_chunks(false), |writer| {
         let id = channel(writer, "/x", "json", ("", "", b""));

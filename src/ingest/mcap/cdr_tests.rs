@@ -9,7 +9,7 @@ use re_cdr::CdrWriter;
 
 fn decoded(text: &str, field: &str, data: &[u8]) -> Result<(Value, Value), String> {
     let fields = ros_type::parse("my/msg/Top", text, &mut 20_000)?;
-    let plan = Plan::new(&[AskedField::plain(FieldPath::parse(field).unwrap())], &[]);
+    let plan = Plan::new(&[AskedField::plain(FieldPath::parse(field).unwrap())], &[], |_| true);
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     Cdr::new(&plan, &fields.into()).decode(data, &mut slots)?;

@@ -11,7 +11,7 @@ use super::ros_type;
 /// Decodes every leaf of a message.
 fn decode<D: Decode>(leaves: &[Leaf], decoder: impl FnOnce(&Plan) -> D, message: &[u8]) {
     let asked = leaves.iter().filter_map(|leaf| FieldPath::parse(&leaf.path)).map(AskedField::plain);
-    let plan = Plan::new(&asked.collect::<Vec<_>>(), leaves);
+    let plan = Plan::new(&asked.collect::<Vec<_>>(), leaves, |_| true);
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     let _ = decoder(&plan).decode(message, &mut slots);

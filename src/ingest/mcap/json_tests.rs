@@ -6,7 +6,7 @@ use crate::ingest::mcap::plan::AskedField;
 use proptest::prelude::*;
 
 fn decoded(field: &str, text: &str) -> Result<(Value, Value, Option<f64>, Option<String>), String> {
-    let plan = Plan::new(&[AskedField::plain(FieldPath::parse(field).unwrap())], &[]);
+    let plan = Plan::new(&[AskedField::plain(FieldPath::parse(field).unwrap())], &[], |_| true);
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     Json::new(&plan).decode(text.as_bytes(), &mut slots)?;
@@ -49,8 +49,11 @@ fn null_and_bare_nan_are_nan_and_words_are_an_error() {
 
 #[test]
 fn one_element_and_the_whole_array_can_both_be_wanted() {
-    let plan =
-        Plan::new(&["s[1]", "s"].map(|field| AskedField::plain(FieldPath::parse(field).unwrap())), &[]);
+    let plan = Plan::new(
+        &["s[1]", "s"].map(|field| AskedField::plain(FieldPath::parse(field).unwrap())),
+        &[],
+        |_| true,
+    );
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     Json::new(&plan).decode(br#"{"s":[7,8]}"#, &mut slots).unwrap();
@@ -74,6 +77,7 @@ fn both(text: &str) -> (Option<String>, Option<String>) {
     let plan = Plan::new(
         &["s", "a.b", "s2[1]"].map(|field| AskedField::plain(FieldPath::parse(field).unwrap())),
         &[],
+        |_| true,
     );
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());

@@ -3,6 +3,7 @@
 use super::cdr::{self, Cdr};
 use super::descriptors;
 use super::json::Json;
+use super::path::FieldPath;
 use super::plan::{Decode, Leaf, Plan};
 use super::protobuf::{self, Protobuf};
 use super::ros_type;
@@ -124,6 +125,14 @@ impl MessageType {
             Self::Json => None,
             Self::Protobuf(message) => Some(protobuf::leaves(message)),
             Self::Cdr(fields) => Some(cdr::leaves(fields)),
+        }
+    }
+
+    /// Whether a message may have the field at `path`, as far as its schema rules out others.
+    pub(super) fn has(&self, path: &FieldPath) -> bool {
+        match self {
+            Self::Cdr(fields) => ros_type::has(fields, &path.0),
+            Self::Json | Self::Protobuf(_) => true,
         }
     }
 

@@ -15,8 +15,9 @@ const MOST_BESIDE: usize = 32;
 const MOST_TELLING: usize = 64;
 
 impl Plan {
-    /// The plan for what is asked of messages with such `leaves`, as far as these are known.
-    pub(super) fn new(asked: &[AskedField], leaves: &[Leaf]) -> Self {
+    /// The plan for what is asked of messages with such `leaves`, as far as these are known; other fields are looked for in each message,
+    /// but for those that none of them `has`.
+    pub(super) fn new(asked: &[AskedField], leaves: &[Leaf], has: impl Fn(&FieldPath) -> bool) -> Self {
         let (mut plan, telling) = (Self::default(), Telling::among(leaves));
         for asked in asked {
             let field = &asked.path;
@@ -37,14 +38,18 @@ impl Plan {
                 target.time(&mut plan, path);
             }
             for (level, message) in field.enclosing().enumerate() {
-                for names in STAMP_NAMES.iter().filter(|_| asked.times.is_none()) {
-                    target.time(&mut plan, &names.iter().fold(message.clone(), |path, name| path.then(name)));
+                let named = |name: &str| Some(message.then(name)).filter(&has);
+                let stamp =
+                    |names: &&[&str]| names.iter().fold(message.clone(), |path, name| path.then(name));
+                for path in STAMP_NAMES.iter().filter(|_| asked.times.is_none()).map(stamp).filter(&has) {
+                    target.time(&mut plan, &path);
                 }
                 target.others(&mut plan, (&message, level), asked, &telling);
-                for name in RATE_NAMES {
-                    target.rate(&mut plan, &message.then(name), (Meaning::Rate(1.0), level), &telling);
+                for path in RATE_NAMES.into_iter().filter_map(named) {
+                    target.rate(&mut plan, &path, (Meaning::Rate(1.0), level), &telling);
                 }
-                target.units.extend(UNIT_NAMES.map(|name| plan.slot(&message.then(name), Want::Text)));
+                let units = UNIT_NAMES.into_iter().filter_map(named);
+                target.units.extend(units.map(|path| plan.slot(&path, Want::Text)));
             }
             plan.targets.push(target);
         }

@@ -17,7 +17,7 @@ fn decoded(
     data: &[u8],
 ) -> Result<(Value, Value, Option<f64>, Option<String>), String> {
     let message = message_type("dropcheck.AccelerationBlock", &block_descriptors(is_packed))?;
-    let plan = Plan::new(&[AskedField::plain(FieldPath::parse(field).unwrap())], &[]);
+    let plan = Plan::new(&[AskedField::plain(FieldPath::parse(field).unwrap())], &[], |_| true);
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     Protobuf::new(&plan, &message).decode(data, &mut slots)?;

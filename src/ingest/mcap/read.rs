@@ -109,6 +109,13 @@ fn chosen(
             (_, []) => Err(complaint::no_samples(path, spec, &topics[longest], scanned)),
             (several, all) => {
                 let open = if several.is_empty() { all } else { several };
+                // None to pick of those that are all refused.
+                if let [first, ..] = open
+                    && open.iter().all(|place| place.column(topics).heeded().is_err())
+                {
+                    let heeded = first.column(topics).heeded();
+                    heeded.map_err(|refusal| error::refused(path, &spec.name, refusal))?;
+                }
                 let numbers = open.iter().map(|place| topics[place.topic].1[place.channel].0);
                 let rows = open.iter().filter_map(|place| rows_of(topics, place));
                 Err(complaint::several(

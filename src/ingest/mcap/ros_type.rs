@@ -1,5 +1,6 @@
 //! A schema's `ros2msg` text to a tree of types, every named type put in its place.
 
+use super::path::Step;
 use re_ros_msg::MessageSchema;
 use re_ros_msg::message_spec::{
     ArraySize, BuiltInType, ComplexType, MessageSpecification, Type as Parsed, message_package,
@@ -46,6 +47,13 @@ pub(super) enum Type {
     Array(Box<Type>, Length),
 }
 
+/// Whether one of `fields` or what lies below it is at `path`.
+pub(super) fn has(fields: &[RosField], path: &[Step]) -> bool {
+    let [Step::Name(name), below @ ..] = path else { return false };
+    let mut kinds = fields.iter().filter(|field| field.name == *name).map(|field| &field.kind);
+    kinds.any(|kind| kind.has(below))
+}
+
 /// How many elements an array has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Length {
@@ -56,6 +64,16 @@ pub(super) enum Length {
 }
 
 impl Type {
+    /// Whether something is at `path` in it.
+    fn has(&self, path: &[Step]) -> bool {
+        match (self, path) {
+            (_, []) => true,
+            (Self::Message(fields), path) => has(fields, path),
+            (Self::Array(element, _), [Step::Index(_), below @ ..]) => element.has(below),
+            _ => false,
+        }
+    }
+
     /// Bytes of a number, which are its alignment too; `None` for what is no number.
     pub(super) fn bytes(&self) -> Option<usize> {
         match self {

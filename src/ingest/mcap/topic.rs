@@ -6,6 +6,8 @@ use super::message_type::MessageType;
 use super::path::FieldPath;
 use super::plan::{Beside, Decode, Leaf, Plan, Slots, Value};
 use crate::data::{McapFinding, RowsOf};
+use crate::ingest::clock::Refusal;
+use crate::ingest::limits::MOST_SENSORS;
 use rayon::prelude::*;
 use std::borrow::Cow;
 
@@ -90,9 +92,6 @@ pub(super) struct Sensor {
     pub(super) columns: Vec<Column>,
 }
 
-/// Sensors of one channel that are told apart; what further ones gave lies with the last.
-const MOST_SENSORS: usize = 64;
-
 /// A topic with its channels, by their numbers, and what their messages gave.
 pub(super) type Channels = (Topic, Vec<(u16, Gathered)>);
 
@@ -106,6 +105,8 @@ pub(super) struct Gathered {
     pub(super) first_problem: Option<String>,
     /// What each sensor gave that the messages name, or all of them together where they name none.
     pub(super) sensors: Vec<Sensor>,
+    /// Whether they name more than are told apart; what further ones gave lies with the last.
+    has_further: bool,
     /// The numeric fields of a message in JSON that lacks one that is asked for.
     pub(super) leaves: Vec<Leaf>,
 }
@@ -126,16 +127,16 @@ impl Gathered {
         for (target, &field) in stream.plan.targets.iter().zip(&stream.fields) {
             let value = slots.samples(target);
             let said = slots.beside(target);
-            let column = column_of(&mut self.sensors, said.sensor.as_ref(), field, is_listed);
-            slots.unit(target).into_iter().for_each(|unit| column.state_unit(unit));
-            slots.rates(target).for_each(|rate| column.state_rate(rate));
-            let time = MessageTime::of(&slots.stamp(target), message.log_time_ns);
             if value == Value::Missing
                 && self.leaves.is_empty()
                 && matches!(stream.message_type, Some(MessageType::Json))
             {
                 self.leaves = json::leaves(message.data);
             }
+            let column = self.column_of(said.sensor.as_ref(), field, is_listed);
+            slots.unit(target).into_iter().for_each(|unit| column.state_unit(unit));
+            slots.rates(target).for_each(|rate| column.state_rate(rate));
+            let time = MessageTime::of(&slots.stamp(target), message.log_time_ns);
             match said.applied(value) {
                 Ok(value) => column.take(value, time, said.tick),
                 Err(refusal) => column.refuse(refusal),
@@ -158,17 +159,61 @@ impl Gathered {
         if self.leaves.is_empty() {
             self.leaves = std::mem::take(&mut other.leaves);
         }
+        self.has_further |= other.has_further;
         for more in &mut other.sensors {
-            match self.sensors.iter_mut().find(|own| own.rows == more.rows) {
-                Some(own) => {
-                    let known = own.columns.len().min(more.columns.len());
-                    own.columns.iter_mut().zip(&mut more.columns).for_each(|(own, more)| own.append(more));
-                    own.columns.extend(more.columns.drain(known..));
-                }
-                None => {
-                    self.sensors
-                        .push(Sensor { rows: more.rows.clone(), columns: std::mem::take(&mut more.columns) });
-                }
+            let at = self.sensor(|own| *own == more.rows, || more.rows.clone());
+            let own = &mut self.sensors[at];
+            let known = own.columns.len().min(more.columns.len());
+            own.columns.iter_mut().zip(&mut more.columns).for_each(|(own, more)| own.append(more));
+            own.columns.extend(more.columns.drain(known..));
+        }
+    }
+
+    /// The place of the sensor that `is_it`, which is added where it is not there yet.
+    fn sensor(
+        &mut self,
+        is_it: impl Fn(&Option<RowsOf>) -> bool,
+        rows: impl FnOnce() -> Option<RowsOf>,
+    ) -> usize {
+        if let Some(at) = self.sensors.iter().position(|sensor| is_it(&sensor.rows)) {
+            return at;
+        }
+        if self.sensors.len() < MOST_SENSORS {
+            self.sensors.push(Sensor { rows: rows(), columns: Vec::new() });
+        } else {
+            self.has_further = true;
+        }
+        self.sensors.len() - 1
+    }
+
+    /// The column of a field, of the sensor that a message names.
+    fn column_of(
+        &mut self,
+        named: Option<&(Cow<str>, &Beside)>,
+        field: usize,
+        is_listed: bool,
+    ) -> &mut Column {
+        let is_it = |rows: &Option<RowsOf>| rows.as_ref().map(|rows| &*rows.is) == named.map(|(is, _)| &**is);
+        let rows =
+            |(is, beside): &(Cow<str>, &Beside)| RowsOf { column: beside.field.clone(), is: is.to_string() };
+        let at = self.sensor(is_it, || named.map(rows));
+        let columns = &mut self.sensors[at].columns;
+        if columns.len() <= field {
+            columns.resize_with(field + 1, || Column::new(is_listed));
+        }
+        &mut columns[field]
+    }
+
+    /// Settles, after the last message, what only all of them tell.
+    pub(super) fn settle(&mut self) {
+        let has_further = self.has_further;
+        for column in self.columns_mut() {
+            column.settle_clock();
+            if has_further {
+                column.refuse(Refusal::new(
+                    format!("its messages name more than {MOST_SENSORS} sensors, which are not told apart"),
+                    "have the recorder write a channel for each sensor",
+                ));
             }
         }
     }
@@ -182,29 +227,6 @@ impl Gathered {
     pub(super) fn columns_mut(&mut self) -> impl Iterator<Item = &mut Column> {
         self.sensors.iter_mut().flat_map(|sensor| &mut sensor.columns)
     }
-}
-
-/// The column of a field, of the sensor that a message names.
-fn column_of<'a>(
-    sensors: &'a mut Vec<Sensor>,
-    named: Option<&(Cow<str>, &Beside)>,
-    field: usize,
-    is_listed: bool,
-) -> &'a mut Column {
-    let is_it = |sensor: &Sensor| sensor.rows.as_ref().map(|rows| &*rows.is) == named.map(|(is, _)| &**is);
-    let at = sensors.iter().position(is_it).unwrap_or_else(|| {
-        if sensors.len() < MOST_SENSORS {
-            let rows = named
-                .map(|(is, beside)| RowsOf { column: beside.field.clone(), is: is.clone().into_owned() });
-            sensors.push(Sensor { rows, columns: Vec::new() });
-        }
-        sensors.len() - 1
-    });
-    let columns = &mut sensors[at].columns;
-    if columns.len() <= field {
-        columns.resize_with(field + 1, || Column::new(is_listed));
-    }
-    &mut columns[field]
 }
 
 /// Why messages do not decode that are packed one by one.

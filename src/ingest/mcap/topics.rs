@@ -1,7 +1,6 @@
 //! The schemas and channels of an MCAP file to its topics, and their messages to a column for each field that is asked for.
 
 use super::chunk::Chunk;
-use super::column::Column;
 use super::json;
 use super::message_type::{ChannelInfo, MessageTypes, SchemaInfo};
 use super::path::{self, FieldPath};
@@ -217,7 +216,7 @@ impl<'a> Topics<'a> {
                 taken.push(asked);
             }
         }
-        stream.plan = Plan::new(&taken, &leaves);
+        stream.plan = Plan::new(&taken, &leaves, |path| message_type.has(path));
         topic.leaves.extend(leaves);
         stream.decoder = Some(message_type.decoder(&stream.plan));
     }
@@ -351,7 +350,7 @@ impl<'a> Topics<'a> {
     pub(super) fn finish(self, taken: Part) -> Vec<Channels> {
         let mut topics: Vec<_> = self.all.into_iter().map(|topic| (topic, Vec::new())).collect();
         for ((topic, number), mut gathered) in self.channels.into_iter().zip(taken.gathered) {
-            gathered.columns_mut().for_each(Column::settle_clock);
+            gathered.settle();
             if gathered.messages > 0 {
                 topics[topic].1.push((number, gathered));
             }
