@@ -2,11 +2,9 @@
 
 mod campaign;
 mod manifest;
-mod merged;
 mod paths;
 mod plan;
 mod planned;
-mod record;
 
 pub use manifest::template;
 pub use plan::SHARD_SCHEMA;
@@ -15,10 +13,10 @@ use super::Ending;
 use super::analyze::SwitchedOff;
 use super::complaint::sentence;
 use super::limits::Bounds;
+use super::lines::{self, LineRecord, holds_some, part};
 use super::output::{Folder, columns, print, print_plain};
 use super::progress::CountedProgress;
 use super::record::stamp;
-use super::shard::{holds_some, part};
 use super::tuning::keep_freed_memory;
 use clap::Args;
 use dropcheck::data::DropResult;
@@ -27,7 +25,6 @@ use dropcheck::report::Batch;
 use dropcheck::{in_order, ingest, report};
 use plan::CampaignPlan;
 use planned::PlannedTest;
-use record::LineRecord;
 use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -187,7 +184,7 @@ fn open_record(
         let place: Value = serde_json::from_str(&plan.place(number)).ok()?;
         (line["campaign"] == place && report::impossible(line).is_none()).then_some(number)
     };
-    LineRecord::open(&path, arguments.resume, inputs, is_own).map(Some)
+    LineRecord::open(&path, arguments.resume, inputs, |line| Ok(is_own(line))).map(Some)
 }
 
 /// Whether an earlier line says what this run would find: the same bytes went in, and its report is there.
@@ -294,7 +291,12 @@ fn words(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> Vec<
 pub fn merge(shards: &[PathBuf], out: &Path) -> miette::Result<Ending> {
     let inputs: Vec<&Path> = shards.iter().map(PathBuf::as_path).collect();
     Folder::checked(out, &plan::SUMMARY[..3], &inputs)?;
-    let (lines, batch) = merged::all(shards)?;
+    let (lines, first) = lines::merged(shards, report::impossible)?;
+    let mut batch = Batch::new(first["source"].as_str().unwrap_or_default().to_owned());
+    lines.each(|line| {
+        batch.add(&serde_json::from_slice(line).unwrap_or_default());
+        Ok(())
+    })?;
     campaign::write(out, &batch, &lines, &inputs)?;
     print(&batch.table(columns()))?;
     let page = out.join("campaign.html").display().to_string();

@@ -1,6 +1,6 @@
 //! `merge`: the shards of a campaign, as `--jsonl` wrote them on any machines, to the files that one run would have written.
 
-use super::shard::{no_shard, schema};
+use super::lines::{no_shard, schema};
 use super::{Ending, batch};
 use clap::Args;
 use std::path::PathBuf;

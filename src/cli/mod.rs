@@ -10,6 +10,7 @@ mod inspect;
 #[cfg(feature = "lab")]
 mod lab;
 mod limits;
+mod lines;
 mod merge;
 mod output;
 mod pdf;
@@ -18,7 +19,6 @@ mod predict;
 mod progress;
 mod record;
 mod replace;
-mod shard;
 mod tuning;
 
 #[cfg(feature = "lab")]

@@ -217,7 +217,7 @@ fn a_shard_that_is_missing_doubled_cut_foreign_or_of_another_version_is_named() 
         (vec![s0, s2], vec!["shard 1/3 is missing", "2 of 7"]),
         (vec![s0, s1, s2, s1], vec!["s1.jsonl repeats T2 of shard 1/3"]),
         (vec![s0, "cut.jsonl", s2], vec!["cut.jsonl, line 2", "--resume"]),
-        (vec![s0, "short.jsonl", s2], vec!["short.jsonl is cut: 1 of the 2 recordings of shard 1/3"]),
+        (vec![s0, "short.jsonl", s2], vec!["short.jsonl is cut: 1 of the 2 lines of shard 1/3"]),
         (vec![s0, "old.jsonl", s2], vec!["old.jsonl is of another version", "0.0.9"]),
         (vec![s0, "foreign.jsonl", s2], vec!["foreign.jsonl is of another campaign, or of another state"]),
         (vec![s0, "empty.jsonl", s2], vec!["empty.jsonl is no shard"]),

@@ -1,9 +1,9 @@
 //! The lines of a campaign to its files: page and pictures at once, the two tables a line at a time.
 
 use super::super::Ending;
+use super::super::lines::LineFiles;
 use super::super::output::{Folder, replace_by};
 use super::plan::SUMMARY;
-use super::record::LineFiles;
 use dropcheck::data::{BodyModel, CaskFile, Contact, Drop};
 use dropcheck::report::{Batch, BatchRow, CampaignFiles, PredictedCurve};
 use dropcheck::{ingest, predict};

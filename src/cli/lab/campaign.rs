@@ -1,15 +1,15 @@
 //! `validate --campaign`: random scenes, one after the other, to lines, a CSV and tables; and the shards of a campaign to the same.
 
 use super::super::Ending;
+use super::super::lines::{self, LineRecord};
 use super::super::output::{Folder, print, print_plain, replace, replace_by};
 use super::super::progress::CountedProgress;
-use super::super::shard;
 use super::document::Marks;
-use super::shards::{SceneLines, Shards};
 use clap::Args;
 use dropcheck::lab::campaign::{self, ScenePlace, Tally};
 use dropcheck::lab::data::{CampaignRequest, CampaignRow, CampaignShard};
 use miette::IntoDiagnostic;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// What the tables stand between in a document.
@@ -28,7 +28,7 @@ pub struct Parts {
     #[arg(long, value_name = "FILE|-", requires = "campaign")]
     jsonl: Option<PathBuf>,
     /// Only each N-th scene from number I on, from 0; `dropcheck merge` puts the parts together
-    #[arg(long, value_name = "I/N", value_parser = shard::part, default_value = "0/1", hide_default_value = true,
+    #[arg(long, value_name = "I/N", value_parser = lines::part, default_value = "0/1", hide_default_value = true,
         requires = "jsonl", conflicts_with_all = ["out", "into"])]
     shard: (usize, usize),
     /// Go on with the lines of --jsonl that an earlier run of the same words has left
@@ -45,35 +45,38 @@ pub fn run(
 ) -> miette::Result<Ending> {
     let (index, count) = parts.shard;
     let place = ScenePlace::first(request, CampaignShard { index, count });
-    shard::holds_some(parts.shard, place.count)?;
+    lines::holds_some(parts.shard, place.count)?;
     let document = into.map(|path| MARKS.parts(path).map(|around| (path, around))).transpose()?;
     let to_standard_output = parts.jsonl.as_deref() == Some(Path::new("-"));
     let file = parts.jsonl.as_deref().filter(|_| !to_standard_output);
-    let mut file = file.map(|path| SceneLines::open(path, parts.resume)).transpose()?;
+    let open =
+        |path| LineRecord::open(path, parts.resume, &[], |line| own_number(&place, path, line).map(Some));
+    let mut file = file.map(open).transpose()?;
     let tables = tabled(request, out, |take| {
         let own = place.count.saturating_sub(index).div_ceil(count);
         let mut progress = CountedProgress::of(own, file.is_some());
         let mut done = 0;
-        if let Some(file) = &mut file {
-            done = file.take_over(&place, |row| {
-                progress.step();
-                take(row)
-            })?;
+        let earlier = file.as_ref().map(|file| file.lines().clone()).unwrap_or_default();
+        while let Some(row) =
+            earlier.text(index + done * count).and_then(|line| campaign::read(line.as_bytes()))
+        {
+            progress.step();
+            take(&row)?;
+            done += 1;
         }
         campaign::each(request, CampaignShard { index, count }, done, |number, row| {
             let line = campaign::line(&place.at(number), &row).into_diagnostic()?;
             if let Some(file) = &mut file {
-                file.put(line.as_bytes())?;
+                file.put(number, line.as_bytes())?;
             }
             if to_standard_output {
                 print_plain(line.as_bytes())?;
             }
             progress.step();
             // As it is written, so that a merge of shards counts the same numbers.
-            let read = campaign::read(line.as_bytes());
-            read.map_or(Ok(()), |(_, row)| take(&row))
+            campaign::read(line.as_bytes()).map_or(Ok(()), |row| take(&row))
         })?;
-        Ok(())
+        file.as_mut().map_or(Ok(()), LineRecord::finish)
     })?;
     if let Some((path, (before, after))) = &document {
         replace(path, format!("{before}\n{tables}{after}").as_bytes())?;
@@ -88,14 +91,34 @@ pub fn run(
 
 /// The campaign's files of all its shards.
 pub fn merge(paths: &[PathBuf], out: &Path) -> miette::Result<Ending> {
-    let shards = Shards::open(paths)?;
-    let request = shards.request().clone();
-    tabled(&request, Some(out), |take| shards.each(take))?;
+    let is_none = |line: &Value| {
+        let row = serde_json::from_value::<CampaignRow>(line.clone());
+        row.is_err().then(|| "is no line of a campaign".to_owned())
+    };
+    let (lines, first) = lines::merged(paths, is_none)?;
+    let request: CampaignRequest = serde_json::from_value(first["of"].clone()).into_diagnostic()?;
+    tabled(&request, Some(out), |take| {
+        lines.each(|line| campaign::read(line).map_or(Ok(()), |row| take(&row)))
+    })?;
     print(&format!(
         "Written: {}\n",
         dropcheck::report::printable(&out.join(NAMES[1]).display().to_string())
     ))?;
     Ok(Ending::Clear)
+}
+
+/// The number of a line that an earlier run of the same words has left in the file at `path`.
+fn own_number(place: &ScenePlace, path: &Path, line: &Value) -> miette::Result<usize> {
+    let number = line["campaign"]["number"].as_u64().and_then(|number| usize::try_from(number).ok());
+    let is_own =
+        |number: &usize| serde_json::to_value(place.at(*number)).is_ok_and(|own| line["campaign"] == own);
+    number.filter(is_own).ok_or_else(|| {
+        miette::miette!(
+            help = "name another file, or leave out --resume to begin anew",
+            "{} holds lines of another campaign, or of another build of dropcheck",
+            path.display()
+        )
+    })
 }
 
 /// The tables of all rows that `work` hands over, in a folder beside the rows as CSV where one is named.

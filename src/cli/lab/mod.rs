@@ -2,7 +2,6 @@
 
 pub mod campaign;
 mod document;
-mod shards;
 pub mod synth;
 mod trial;
 pub mod validate;

@@ -2,13 +2,13 @@
 
 use crate::data::Program;
 use crate::lab::data::{CampaignRequest, CampaignRow, CampaignShard};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 /// What the first key of every line names.
 pub const SCHEMA: &str = "dropcheck.scenes/1";
 
 /// Of which campaign a line is, and where in it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct ScenePlace {
     /// [`SCHEMA`].
     pub schema: String,
@@ -48,31 +48,13 @@ impl ScenePlace {
         let parts = self.shard[1];
         Self { number, shard: [number % parts.max(1), parts], ..self.clone() }
     }
-
-    /// The words for what makes this line one that cannot stand beside `other`; `None` where it can.
-    #[must_use]
-    pub fn differs(&self, other: &Self) -> Option<&'static str> {
-        let is_whole = self.shard[0] < self.shard[1];
-        if self.schema != other.schema {
-            Some("is of another kind of campaign")
-        } else if self.version != other.version {
-            Some("was written by another version of dropcheck")
-        } else if self.commit != other.commit {
-            Some("was written by another build of dropcheck")
-        } else if self.of != other.of || self.count != other.count || self.shard[1] != other.shard[1] {
-            Some("is of another campaign, or of one cut into another number of shards")
-        } else {
-            (!is_whole || *self != other.at(self.number))
-                .then_some("names a shard that does not hold its scene")
-        }
-    }
 }
 
-#[derive(Serialize, Deserialize)]
-struct PlacedRow<P, R> {
-    campaign: P,
+#[derive(Serialize)]
+struct PlacedRow<'a> {
+    campaign: &'a ScenePlace,
     #[serde(flatten)]
-    row: R,
+    row: &'a CampaignRow,
 }
 
 /// The line, with its end.
@@ -85,7 +67,6 @@ pub fn line(campaign: &ScenePlace, row: &CampaignRow) -> serde_json::Result<Stri
 
 /// What a line says; `None` where it is no whole one.
 #[must_use]
-pub fn read(line: &[u8]) -> Option<(ScenePlace, CampaignRow)> {
-    let PlacedRow { campaign, row } = serde_json::from_slice(line.strip_suffix(b"\n")?).ok()?;
-    Some((campaign, row))
+pub fn read(line: &[u8]) -> Option<CampaignRow> {
+    serde_json::from_slice(line.strip_suffix(b"\n")?).ok()
 }

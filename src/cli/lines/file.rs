@@ -1,14 +1,14 @@
-//! Lines of results to a file that grows by one line at a time, and such files to the lines in them: what is done stays done.
+//! Lines of JSON to a file that grows by one line at a time, and such files to the lines in them: what is done stays done.
 
-use super::super::output::replace_by;
-use super::super::shard;
+use super::super::output::{JsonTarget, replace_by};
 use dropcheck::ingest::opened;
 use miette::{IntoDiagnostic, WrapErr};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom, Write};
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Where a line is: which file, from which byte, how many.
 #[derive(Debug, Clone, Copy)]
@@ -18,7 +18,7 @@ pub struct LinePlace {
     length: usize,
 }
 
-/// Lines of one or several files by the numbers of their tests.
+/// Lines of one or several files by their numbers in the campaign.
 #[derive(Debug, Default, Clone)]
 pub struct LineFiles {
     files: Vec<PathBuf>,
@@ -26,7 +26,7 @@ pub struct LineFiles {
 }
 
 impl LineFiles {
-    /// The lines of a file, each handed to `take` with those before it and its number from 1, which says of which test it is; the last may be no whole one.
+    /// The lines of a file, each handed to `take` with those before it and its number from 1, which says its number in the campaign; the last may be no whole one.
     pub fn add(
         &mut self,
         path: &Path,
@@ -37,7 +37,7 @@ impl LineFiles {
         let (mut from, mut line, mut count) = (0, Vec::new(), 0);
         self.files.push(path.to_path_buf());
         loop {
-            let length = shard::next_line(&mut reader, &mut line).into_diagnostic().wrap_err_with(words)?;
+            let length = next_line(&mut reader, &mut line).into_diagnostic().wrap_err_with(words)?;
             if length == 0 {
                 return Ok(());
             }
@@ -49,17 +49,17 @@ impl LineFiles {
         }
     }
 
-    /// The numbers of the tests that have a line.
+    /// The numbers that have a line.
     pub fn numbers(&self) -> impl Iterator<Item = usize> {
         self.places.keys().copied()
     }
 
-    /// Which of the files has the line of a test.
+    /// Which of the files has a line.
     pub fn home(&self, number: usize) -> Option<usize> {
         self.places.get(&number).map(|place| place.file)
     }
 
-    /// The line of a test, with its end.
+    /// A line, with its end.
     pub fn text(&self, number: usize) -> Option<String> {
         let place = self.places.get(&number)?;
         let mut file = File::open(&self.files[place.file]).ok()?;
@@ -69,7 +69,7 @@ impl LineFiles {
         String::from_utf8(line).ok()
     }
 
-    /// What the line of a test says.
+    /// What a line says.
     pub fn line(&self, number: usize) -> Option<Value> {
         serde_json::from_str(&self.text(number)?).ok()
     }
@@ -85,7 +85,7 @@ impl LineFiles {
     }
 }
 
-/// A file of results that this run writes.
+/// A file of lines that this run writes.
 #[derive(Debug)]
 pub struct LineRecord {
     path: PathBuf,
@@ -97,24 +97,25 @@ pub struct LineRecord {
 }
 
 impl LineRecord {
-    /// Begins the file, or goes on with what is there: `is_own` says of which test of this campaign a line is.
+    /// Begins the file, or goes on with what is there: `is_own` says its number in this campaign; `None` for a line that is to be made anew.
     pub fn open(
         path: &Path,
         resume: bool,
         inputs: &[&Path],
-        is_own: impl Fn(&Value) -> Option<usize>,
+        is_own: impl Fn(&Value) -> miette::Result<Option<usize>>,
     ) -> miette::Result<Self> {
-        let file = shard::held(path, inputs)?;
+        let file = held(path, inputs)?;
         let mut record =
             Self { path: path.to_path_buf(), file, end: 0, lines: LineFiles::default(), is_in_order: true };
         if resume {
             record.take_over(is_own)?;
         }
-        shard::keep(&record.file, path, record.end)?;
+        let kept = record.file.set_len(record.end).into_diagnostic();
+        kept.wrap_err_with(|| format!("{} cannot be written", path.display()))?;
         Ok(record)
     }
 
-    fn take_over(&mut self, is_own: impl Fn(&Value) -> Option<usize>) -> miette::Result<()> {
+    fn take_over(&mut self, is_own: impl Fn(&Value) -> miette::Result<Option<usize>>) -> miette::Result<()> {
         let (mut end, mut last, mut is_in_order) = (0, None, true);
         self.lines.add(&self.path, |_, _, line| {
             // The run was stopped in the middle of the last one.
@@ -122,7 +123,7 @@ impl LineRecord {
                 return Ok(None);
             }
             end += line.len() as u64;
-            let number = serde_json::from_slice(line).ok().and_then(|line: Value| is_own(&line));
+            let number = is_own(&serde_json::from_slice(line).unwrap_or_default())?;
             is_in_order &= number.is_some() && number > last;
             last = number;
             Ok(number)
@@ -173,18 +174,67 @@ impl LineRecord {
     }
 }
 
+/// How often, and after how long, a file that another run holds is tried again.
+const TRIES: u32 = 20;
+const AGAIN: Duration = Duration::from_millis(100);
+
+/// How every line begins that `--jsonl` writes: the key `campaign` comes first, its `schema` first in it.
+const MARK: &[u8] = b"{\"campaign\":{\"schema\":\"dropcheck.";
+
+/// Whether a file holds such lines; the first may have been cut short.
+pub fn is_own(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = opened(path).and_then(|file| file.take(MARK.len() as u64).read_to_end(&mut head));
+    read.is_ok() && MARK.starts_with(&head)
+}
+
+/// The file for this run to write lines at its end, and for no other meanwhile; what is none of this program is looked at as any target is.
+fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
+    if path.is_symlink() || !is_own(path) {
+        JsonTarget::checked(Some(path), inputs)?;
+    }
+    let file = OpenOptions::new().read(true).append(true).create(true).open(path).into_diagnostic();
+    let file = file.wrap_err_with(|| format!("{} cannot be written", path.display()))?;
+    if !file.metadata().is_ok_and(|there| there.is_file()) {
+        let help = "name a file; --jsonl - writes to standard output";
+        return Err(miette::miette!(help = help, "{} is a pipe or a device", path.display()));
+    }
+    // What a killed run had begun to start may hold it for a moment longer.
+    let is_held = || matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+    let waits = || {
+        std::thread::sleep(AGAIN);
+        is_held()
+    };
+    if is_held() && (0..TRIES).all(|_| waits()) {
+        let help = "wait for it, or end it";
+        return Err(miette::miette!(help = help, "another run is writing {}", path.display()));
+    }
+    Ok(file)
+}
+
+/// A longer line is none of a result.
+const MOST_LINE_BYTES: u64 = 32 << 20;
+
+/// Puts the next line into `line`, with its end, and says how long it is: 0 where there is none.
+pub(super) fn next_line(reader: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<usize> {
+    line.clear();
+    let length = reader.take(MOST_LINE_BYTES).read_until(b'\n', line)?;
+    let is_whole = (length as u64) < MOST_LINE_BYTES;
+    is_whole.then_some(length).ok_or_else(|| io::Error::other("one of its lines has more than 32 MiB"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::fs::OpenOptions;
 
     fn line(number: usize, words: &str) -> Vec<u8> {
         format!("{{\"campaign\":{{\"schema\":\"dropcheck.x/1\"}},\"n\":{number},\"w\":\"{words}\"}}\n")
             .into_bytes()
     }
 
-    fn own(line: &Value) -> Option<usize> {
-        line["n"].as_u64().and_then(|n| usize::try_from(n).ok())
+    #[allow(clippy::unnecessary_wraps, reason = "as it is asked for")]
+    fn own(line: &Value) -> miette::Result<Option<usize>> {
+        Ok(line["n"].as_u64().and_then(|n| usize::try_from(n).ok()))
     }
 
     #[test]

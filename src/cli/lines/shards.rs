@@ -1,9 +1,9 @@
 //! The shards of a campaign to all of its lines; one that is missing, doubled, cut, foreign or of another version is named.
 
-use super::record::LineFiles;
-use dropcheck::report;
-use dropcheck::report::Batch;
+use super::file::{LineFiles, next_line};
+use dropcheck::ingest::opened;
 use serde_json::Value;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// What shards must have in common: key of `campaign`, and what another value means.
@@ -15,25 +15,28 @@ const COMMON: [(&str, &str); 5] = [
     ("count", "is of another campaign"),
 ];
 
-/// The lines of all shards, and the campaign that they make.
-pub fn all(shards: &[PathBuf]) -> miette::Result<(LineFiles, Batch)> {
+/// The lines of all shards, and what the first of them says of the campaign; `problem` says what makes a line one of none.
+pub fn merged(
+    shards: &[PathBuf],
+    problem: impl Fn(&Value) -> Option<String>,
+) -> miette::Result<(LineFiles, Value)> {
     let mut lines = LineFiles::default();
     let mut first: Option<Value> = None;
     // As many as the first line claims.
     let mut all = 0;
     for path in shards {
-        let mut found = 0;
+        schema(path)?;
         lines.add(path, |before, count, bytes| {
             let line: Value = serde_json::from_slice(bytes).unwrap_or_default();
-            if let Some(problem) = report::impossible(&line) {
-                let mend = "run that recording again: the line was changed, or its disk is damaged";
-                return Err(refused(mend, &format!("{}, line {count}: {problem}", path.display())));
-            }
             let own = &line["campaign"];
             let number = own["number"].as_u64().and_then(|number| usize::try_from(number).ok());
             let Some(number) = number.filter(|_| bytes.ends_with(b"\n")) else {
                 return Err(cut(path, count));
             };
+            if let Some(problem) = problem(&line) {
+                let mend = "run it again: the line was changed, or its disk is damaged";
+                return Err(refused(mend, &format!("{}, line {count}: {problem}", path.display())));
+            }
             let first = first.get_or_insert_with(|| {
                 all = own["count"].as_u64().and_then(|n| usize::try_from(n).ok()).unwrap_or(0);
                 own.clone()
@@ -46,24 +49,15 @@ pub fn all(shards: &[PathBuf]) -> miette::Result<(LineFiles, Batch)> {
                     return Err(refused("merge shards of one manifest and one version only", &problem));
                 }
             }
-            found += 1;
             match before.home(number) {
                 Some(home) => Err(doubled(path, &shards[home], &line)),
                 None if number >= all => Err(cut(path, count)),
                 None => Ok(Some(number)),
             }
         })?;
-        if found == 0 {
-            return Err(super::super::shard::no_shard(path));
-        }
     }
     complete(shards, all, &lines)?;
-    let mut batch = Batch::new(first.unwrap_or_default()["source"].as_str().unwrap_or_default().to_owned());
-    lines.each(|line| {
-        batch.add(&serde_json::from_slice(line).unwrap_or_default());
-        Ok(())
-    })?;
-    Ok((lines, batch))
+    Ok((lines, first.unwrap_or_default()))
 }
 
 /// Names the shards of which something is missing.
@@ -84,13 +78,13 @@ fn complete(shards: &[PathBuf], all: usize, lines: &LineFiles) -> miette::Result
     let what = match of_part.first().and_then(|number| lines.home(*number)) {
         None => format!("shard {own}/{parts} is missing"),
         Some(file) => format!(
-            "{} is cut: {lost} of the {of_own} recordings of shard {own}/{parts} are not in it",
+            "{} is cut: {lost} of the {of_own} lines of shard {own}/{parts} are not in it",
             shards[file].display()
         ),
     };
     Err(miette::miette!(
         help = "run that shard again, with --resume what is done is not done again; then name all shards",
-        "{what}; {count} of {} recordings are in no shard, the first is number {} of the campaign",
+        "{what}; {count} of {} lines are in no shard, the first is number {} of the campaign",
         all,
         missing + 1
     ))
@@ -106,9 +100,62 @@ fn cut(path: &Path, line: usize) -> miette::Report {
 }
 
 fn doubled(path: &Path, other: &Path, line: &Value) -> miette::Report {
-    let (id, shard) = (line["id"].as_str().unwrap_or_default(), &line["campaign"]["shard"]);
+    let id = ["id", "scene"].iter().find_map(|key| line[key].as_str()).unwrap_or_default();
+    let shard = &line["campaign"]["shard"];
     let (path, other) = (path.display(), other.display());
     let problem =
         format!("{path} repeats {id} of shard {}/{}, which is in {other} already", shard[0], shard[1]);
     refused("name each shard once", &problem)
+}
+
+/// `campaign.schema` of the first line.
+pub fn schema(path: &Path) -> miette::Result<String> {
+    let unread = |source| miette::miette!("{} cannot be read: {source}", path.display());
+    let mut line = Vec::new();
+    next_line(&mut BufReader::new(opened(path).map_err(unread)?), &mut line).map_err(unread)?;
+    let first: Value = serde_json::from_slice(&line).unwrap_or_default();
+    first["campaign"]["schema"].as_str().map(str::to_owned).ok_or_else(|| no_shard(path))
+}
+
+/// The refusal of a file that no `--jsonl` of this program wrote.
+pub fn no_shard(path: &Path) -> miette::Report {
+    miette::miette!(
+        help = "name what `batch --jsonl FILE` or `validate --campaign N --jsonl FILE` wrote; a run that was stopped goes on with --resume",
+        "{} is no shard of a campaign: its first line does not say of which",
+        path.display()
+    )
+}
+
+/// "I/N": part I, from 0, of N.
+pub fn part(text: &str) -> Result<(usize, usize), String> {
+    let parts =
+        text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
+    parts
+        .filter(|(i, n)| i < n)
+        .ok_or_else(|| "I/N with I from 0 to N - 1, such as 0/3, 1/3 and 2/3".to_owned())
+}
+
+/// Refuses a shard that holds nothing of so many: its file would be empty, and like one that was cut.
+pub fn holds_some((index, count): (usize, usize), all: usize) -> miette::Result<()> {
+    if index < all.max(1) {
+        return Ok(());
+    }
+    let help = format!(
+        "take --shard I/{} at most; what the other shards wrote can be merged without it",
+        all.max(1)
+    );
+    Err(miette::miette!(help = help, "shard {index}/{count} holds none of {all}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shard_is_counted_from_nought() {
+        assert_eq!(part("2/3"), Ok((2, 3)));
+        for text in ["3/3", "1", "-1/3", "0/0", "a/b"] {
+            assert!(part(text).is_err(), "{text}");
+        }
+    }
 }
