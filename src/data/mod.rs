@@ -64,8 +64,8 @@ pub use reconstruction::{
 pub use recording::{Recording, RecordingFormat};
 pub use signal::{CoarseEvent, MOST_LOST_M_S, Signal};
 pub use study::{
-    AngleCurve, BodyPath, Criterion, CriticalAngle, CriticalRange, MonteCarlo, Pose, PredictionRow,
-    QuantileCurves, Sensitivity, Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
+    AngleCurve, BodyPath, Criterion, CriticalAngle, MonteCarlo, Pose, PredictionRow, QuantileCurves, Study,
+    StudyRequest, Sweep, SweepVariable, Uncertain,
 };
 pub use test_record::{Observed, ObservedBeside, Photo, SensorRecord, TestRecord};
 pub use tolerances::{Corrections, Tolerances};

@@ -1,4 +1,4 @@
-//! A study of the drop angle: sweeps, curves, critical angles, Monte Carlo and sensitivities.
+//! A study of the drop angle: sweeps, curves, critical angles and Monte Carlo.
 
 use super::cask::{CaskFile, Contact};
 use super::ladder::Ladder;
@@ -179,36 +179,6 @@ pub struct CriticalAngle {
     pub further_impacts: Option<(f64, f64)>,
 }
 
-/// Where a criterion is largest while k and friction go through their ranges, all else as stated; L strikes once before R.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CriticalRange {
-    /// Rod or body.
-    pub model: BodyModel,
-    /// What is largest.
-    pub criterion: Criterion,
-    /// Lowest and highest critical angle over the ranges, degrees.
-    pub angle_deg: (f64, f64),
-    /// The largest value over angle, k and friction: the worst case.
-    pub largest: f64,
-    /// Where that is.
-    pub worst: WorstCase,
-    /// Angles that lie in the band of every k and friction in the ranges, degrees.
-    pub common_bands_deg: Vec<(f64, f64)>,
-    /// Angle, degrees, and size of a still larger value among the angles tried at which L strikes again before R.
-    pub further_impacts: Option<(f64, f64)>,
-}
-
-/// The case with the largest value of all.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct WorstCase {
-    /// Inclination, degrees.
-    pub angle_deg: f64,
-    /// The contact law.
-    pub contact: Contact,
-    /// Coefficient of restitution.
-    pub k: f64,
-}
-
 /// Quantiles over the draws, one entry an angle; NaN where fewer than half of the draws have a slap-down.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct QuantileCurves {
@@ -255,27 +225,6 @@ pub struct MonteCarlo {
     pub quantiles: Vec<QuantileCurves>,
 }
 
-/// The gradient of the slap-down speed over the angle for one body, contact law and k; NaN where R never strikes.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Sensitivity {
-    /// Rod or body.
-    pub model: BodyModel,
-    /// The contact law.
-    pub contact: Contact,
-    /// Coefficient of restitution.
-    pub k: f64,
-    /// Inclinations, degrees.
-    pub angle_deg: Vec<f64>,
-    /// ∂(speed)/∂k, m/s.
-    pub by_k_m_s: Vec<f64>,
-    /// ∂(speed)/∂φ0, m/s per degree.
-    pub by_angle_m_s_deg: Vec<f64>,
-    /// Angles at which ∂(speed)/∂k goes through zero, L striking once before R: there k cannot be told from the speed, degrees.
-    pub blind_angles_deg: Vec<f64>,
-    /// Where 1 % of slap-down speed is more than 0.1 in k, L striking once before R, degrees.
-    pub blind_bands_deg: Vec<(f64, f64)>,
-}
-
 /// Everything that a study found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
@@ -295,10 +244,6 @@ pub struct Study {
     pub sections: Vec<AngleCurve>,
     /// For every curve and criterion.
     pub critical: Vec<CriticalAngle>,
-    /// For every body and criterion, over the ranges of k and friction.
-    pub ranges: Vec<CriticalRange>,
     /// What the uncertain inputs make of it.
     pub monte_carlo: MonteCarlo,
-    /// For the richest body: every contact law, and k = 0.1, 0.5 and 0.9 or those of the request.
-    pub sensitivities: Vec<Sensitivity>,
 }

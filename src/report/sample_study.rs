@@ -2,9 +2,9 @@
 
 use super::sample;
 use crate::data::{
-    AngleCurve, Body, BodyModel, BodyPath, Contact, Criterion, CriticalAngle, CriticalRange, FlightRegime,
-    Ladder, LadderStep, MonteCarlo, Pose, Prediction, PredictionRow, QuantileCurves, Rung, Sensitivity,
-    Study, StudyRequest, Sweep, SweepVariable, Uncertain, WorstCase,
+    AngleCurve, Body, BodyModel, BodyPath, Contact, Criterion, CriticalAngle, FlightRegime, Ladder,
+    LadderStep, MonteCarlo, Pose, Prediction, PredictionRow, QuantileCurves, Rung, Study, StudyRequest,
+    Sweep, SweepVariable, Uncertain,
 };
 
 const MODELS: [BodyModel; 2] = [BodyModel::Rod, BodyModel::Body];
@@ -59,15 +59,8 @@ pub(super) fn without_slap_down() -> Study {
     }
     study.paths.clear();
     study.critical.clear();
-    study.ranges.clear();
     study.monte_carlo.quantiles.clear();
     study.monte_carlo.no_slap_down.fill(1.0);
-    for s in &mut study.sensitivities {
-        s.by_k_m_s.fill(f64::NAN);
-        s.by_angle_m_s_deg.fill(f64::NAN);
-        s.blind_angles_deg.clear();
-        s.blind_bands_deg.clear();
-    }
     study
 }
 
@@ -130,9 +123,7 @@ fn of(request: StudyRequest) -> Study {
         curves: cases.iter().map(|case| curve(&request, *case)).collect(),
         sections: [0.0, 0.01, 0.5, 0.6, 0.792].map(section).into(),
         critical: cases.iter().flat_map(|case| Criterion::ALL.map(|c| critical(*case, c))).collect(),
-        ranges: MODELS.into_iter().flat_map(|model| Criterion::ALL.map(|c| range(model, c))).collect(),
         monte_carlo: monte_carlo(&request),
-        sensitivities: sensitivities(&request),
         request,
     }
 }
@@ -234,18 +225,6 @@ fn critical((model, contact, k): (BodyModel, Contact, f64), criterion: Criterion
     CriticalAngle { model, contact, k, criterion, angle_deg: 12.0, largest, bands_deg, further_impacts }
 }
 
-fn range(model: BodyModel, criterion: Criterion) -> CriticalRange {
-    CriticalRange {
-        model,
-        criterion,
-        angle_deg: (0.5, 17.5),
-        largest: if criterion == Criterion::EnergyRatio { 1.031 } else { 25.0 },
-        worst: WorstCase { angle_deg: 12.0, contact: Contact::Rough, k: 1.0 },
-        common_bands_deg: vec![(3.5, 24.2)],
-        further_impacts: (criterion == Criterion::Speed).then_some((89.0, 30.2)),
-    }
-}
-
 fn monte_carlo(request: &StudyRequest) -> MonteCarlo {
     let angle_deg = request.angles_deg.clone();
     let speeds: Vec<f64> = angle_deg
@@ -278,27 +257,4 @@ fn monte_carlo(request: &StudyRequest) -> MonteCarlo {
         angle_deg,
         quantiles: quantiles.into(),
     }
-}
-
-fn sensitivities(request: &StudyRequest) -> Vec<Sensitivity> {
-    let angle_deg = &request.angles_deg;
-    let one = |contact, k: f64, blind: f64| Sensitivity {
-        model: BodyModel::Body,
-        contact,
-        k,
-        angle_deg: angle_deg.clone(),
-        by_k_m_s: angle_deg
-            .iter()
-            .map(|a| if *a > 80.0 { f64::NAN } else { 6.0 * (1.0 - a / blind) })
-            .collect(),
-        by_angle_m_s_deg: angle_deg.iter().map(|a| 0.2 - 0.01 * a * (1.0 + k)).collect(),
-        blind_angles_deg: vec![blind],
-        blind_bands_deg: vec![(blind - 4.0, blind + 6.0)],
-    };
-    let contacts = request.contacts.iter().enumerate();
-    contacts
-        .flat_map(|(i, contact)| [(i, contact, 0.1), (i, contact, 0.5), (i, contact, 0.9)])
-        .zip(0_u32..)
-        .map(|((i, contact, k), place)| one(*contact, k, if i == 0 { 35.3 } else { 54.7 } + f64::from(place)))
-        .collect()
 }

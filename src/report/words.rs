@@ -1,7 +1,7 @@
 //! Contact laws, criteria, bands and inputs of a study to the words that table, page and pictures share.
 
 use super::rounding::{MISSING, fixed, plain};
-use crate::data::{Contact, Criterion, FlightRegime, Rung, StudyRequest, SweepVariable, Uncertain};
+use crate::data::{Contact, Criterion, FlightRegime, Rung, SweepVariable, Uncertain};
 
 /// Rows of a table of cases on a terminal and on a page, and where all are.
 pub(super) const MOST_ROWS: usize = 16;
@@ -111,13 +111,6 @@ pub(super) fn band_around_words(bands_deg: &[(f64, f64)], angle_deg: f64) -> Str
     format!("{}{dots}", bands_words(&[*nearest]))
 }
 
-/// Angles in a row, the first of many and an ellipsis.
-pub(super) fn angles_words(angles_deg: &[f64], most: usize) -> String {
-    let shown: Vec<(f64, f64)> = angles_deg.iter().take(most).map(|a| (*a, *a)).collect();
-    let dots = if angles_deg.len() > most { ", …" } else { "" };
-    format!("{}{dots}", bands_words(&shown))
-}
-
 /// What a sweep varies, with its unit.
 pub(super) fn variable_words(variable: SweepVariable) -> &'static str {
     match variable {
@@ -172,22 +165,6 @@ pub(super) fn rung_short(rung: Rung) -> &'static str {
     }
 }
 
-/// Whether anything goes through a range: else the critical ranges only repeat the one critical angle.
-pub(super) fn has_ranges(request: &StudyRequest) -> bool {
-    let wide = |(from, to): (f64, f64)| from < to;
-    wide(request.uncertain.k) || request.uncertain.friction.map_or(request.contacts.len() > 1, wide)
-}
-
-/// The k and friction that the ranges of the critical angles go through.
-pub(super) fn through_words(request: &StudyRequest) -> String {
-    let k = range_words(request.uncertain.k);
-    if let Some(friction) = request.uncertain.friction {
-        return format!("k {k} and μ {}", range_words(friction));
-    }
-    let contacts: Vec<String> = request.contacts.iter().map(|c| contact_words(*c)).collect();
-    format!("k {k}, {}", contacts.join(", "))
-}
-
 /// The value at the angle nearest to `at_deg`.
 pub(super) fn nearest(angles_deg: &[f64], values: &[f64], at_deg: f64) -> Option<f64> {
     let off = |angle: &f64| (angle - at_deg).abs();
@@ -210,7 +187,6 @@ mod tests {
         assert_eq!(widest_bands_words(&bands, 4), "1–2, 5–9, 20, 30–40");
         assert_eq!(band_around_words(&bands, 6.0), "5–9, …");
         assert_eq!(band_around_words(&bands[..1], 6.0), "1–2");
-        assert_eq!(angles_words(&[1.0, 2.0, 3.0], 2), "1, 2, …");
     }
 
     #[test]

@@ -197,7 +197,7 @@ fn a_line_is_held_against_what_a_cask_file_may_state() {
     // A count that is claimed takes no memory, and a report elsewhere is no link.
     let mut line = sound.clone();
     line["campaign"]["count"] = 1_000_000_000_000_u64.into();
-    at_fault(&merged(&bench, &[line]), &["999999999999 of 1000000000000 recordings"]);
+    at_fault(&merged(&bench, &[line]), &["999999999999 of 1000000000000 lines"]);
     for report in ["//evil.example/x", "/etc/passwd", "../../x", "\\\\evil.example\\x", "a/b", "", "."] {
         let mut line = sound.clone();
         line["campaign"]["report"] = report.into();

@@ -1,15 +1,8 @@
-//! Predictions over the angle to critical angles and their bands, for one case and over the ranges of k and friction.
+//! Predictions over the angle to critical angles and their bands.
 
 use super::Fall;
-use super::peak::{Bands, Peak, Sample, common, peak, with_jumps};
-use crate::data::{
-    Body, CaskFile, Contact, Criterion, CriticalAngle, CriticalRange, Prediction, StudyRequest, WorstCase,
-};
-use rayon::prelude::*;
-
-/// Values of k and of the Coulomb coefficient over their ranges: 0.1 of k and a sixth of the friction apart.
-const RANGE_KS: u32 = 11;
-const RANGE_FRICTIONS: u32 = 7;
+use super::peak::{Bands, Peak, Sample, peak, with_jumps};
+use crate::data::{Criterion, CriticalAngle, Prediction};
 
 /// Angles, degrees, and the predictions there.
 pub(super) type AtAngles<'a> = (&'a [f64], &'a [Prediction]);
@@ -48,66 +41,12 @@ fn highest(values: impl Iterator<Item = (f64, f64)>, largest: f64) -> Option<(f6
     highest.filter(|top| largest.is_nan() || top.1 > largest)
 }
 
-/// For every body and criterion the critical angles while k and friction go through their ranges, looked for from `angles_deg`.
-///
-/// Cases in which L strikes once before R at no angle have no critical angle and are left out.
-pub(super) fn ranges(cask_file: &CaskFile, request: &StudyRequest, angles_deg: &[f64]) -> Vec<CriticalRange> {
-    let ks = spread(request.uncertain.k, RANGE_KS);
-    let contacts: Vec<Contact> = request.uncertain.friction.map_or_else(
-        || request.contacts.clone(),
-        |range| spread(range, RANGE_FRICTIONS).into_iter().map(Contact::Coulomb).collect(),
-    );
-    let bodies = super::bodies(&cask_file.cask);
-    let falls = super::falls(&bodies, cask_file.drop, &contacts, &ks);
-    let of = |fall: &Fall| critical_angles(fall, Bands::of(request), (angles_deg, &fall.over(angles_deg)));
-    let found: Vec<CriticalAngle> = falls.par_iter().flat_map(of).collect();
-    let of_body = |body: &Body| {
-        let model = body.model;
-        Criterion::ALL.map(|criterion| {
-            found.iter().filter(|c| (c.model, c.criterion) == (model, criterion)).collect::<Vec<_>>()
-        })
-    };
-    bodies.iter().flat_map(of_body).filter_map(|cases| range(&cases)).collect()
-}
-
-fn range(cases: &[&CriticalAngle]) -> Option<CriticalRange> {
-    let mut peaks = cases.iter().filter(|case| case.angle_deg.is_finite());
-    let at = |c: &CriticalAngle| WorstCase { angle_deg: c.angle_deg, contact: c.contact, k: c.k };
-    let first = peaks.next()?;
-    let mut range = CriticalRange {
-        model: first.model,
-        criterion: first.criterion,
-        angle_deg: (first.angle_deg, first.angle_deg),
-        largest: first.largest,
-        worst: at(first),
-        common_bands_deg: first.bands_deg.clone(),
-        further_impacts: None,
-    };
-    for case in peaks {
-        range.angle_deg = (range.angle_deg.0.min(case.angle_deg), range.angle_deg.1.max(case.angle_deg));
-        if case.largest > range.largest {
-            (range.largest, range.worst) = (case.largest, at(case));
-        }
-        range.common_bands_deg = common(&range.common_bands_deg, &case.bands_deg);
-    }
-    range.further_impacts = highest(cases.iter().filter_map(|case| case.further_impacts), range.largest);
-    Some(range)
-}
-
-/// `count` values from one end of the range to the other, both included; one where the range is a point.
-fn spread((low, high): (f64, f64), count: u32) -> Vec<f64> {
-    if low >= high {
-        return vec![low];
-    }
-    let at = |i: u32| low + (high - low) * f64::from(i) / f64::from(count - 1);
-    (0..count).map(at).collect()
-}
-
 #[cfg(test)]
 #[allow(clippy::float_cmp, reason = "values that are handed through, not computed")]
 mod tests {
-    use super::super::tests::{V0_M_S, cask_file, request, rough_rod, steps, uncertain};
+    use super::super::tests::{V0_M_S, cask_file, request, rough_rod, steps};
     use super::*;
+    use crate::data::{Contact, StudyRequest};
 
     fn critical(height_m: f64, contact: Contact, k: f64, band_percent: f64) -> Vec<CriticalAngle> {
         let file = cask_file(height_m);
@@ -227,45 +166,5 @@ mod tests {
                 assert!(value(high_deg + 1e-3) < 0.98 * found.largest || high_deg == 90.0);
             }
         }
-    }
-
-    #[test]
-    fn ranges_hold_every_case_in_them() {
-        let file = cask_file(0.792);
-        let contacts = vec![Contact::Rough, Contact::Smooth];
-        let mut asked = request(contacts, vec![0.2, 0.4], steps(90, 45.0));
-        asked.uncertain = uncertain((0.2, 0.4), 1);
-        let ranges = ranges(&file, &asked, &asked.angles_deg);
-        assert_eq!(ranges.len(), 6);
-        let falls =
-            super::super::falls(&super::super::bodies(&file.cask), file.drop, &asked.contacts, &asked.ks);
-        for fall in falls {
-            let found =
-                critical_angles(&fall, Bands::of(&asked), (&asked.angles_deg, &fall.over(&asked.angles_deg)));
-            for (of_case, range) in found.iter().zip(ranges.iter().filter(|r| r.model == fall.body.model)) {
-                assert!(range.angle_deg.0 <= of_case.angle_deg && of_case.angle_deg <= range.angle_deg.1);
-                assert!(range.largest >= of_case.largest);
-                for band in &range.common_bands_deg {
-                    assert!(of_case.bands_deg.iter().any(|b| b.0 <= band.0 && band.1 <= b.1), "{range:?}");
-                }
-            }
-        }
-        // The speed grows with k at these angles: the worst case is the highest k.
-        assert!(ranges.iter().filter(|r| r.criterion == Criterion::Speed).all(|r| r.worst.k == 0.4));
-    }
-
-    #[test]
-    fn a_range_of_friction_takes_the_place_of_the_contact_law() {
-        let mut asked = request(vec![Contact::Rough], vec![0.5], steps(45, 45.0));
-        asked.uncertain = crate::data::Uncertain { friction: Some((0.0, 0.3)), ..uncertain((0.5, 0.5), 1) };
-        let found = &ranges(&cask_file(0.0), &asked, &asked.angles_deg)[0];
-        // Less friction leaves more speed to the rod.
-        assert_eq!((found.worst.contact, found.worst.k), (Contact::Coulomb(0.0), 0.5));
-    }
-
-    #[test]
-    fn a_range_is_spread_with_its_ends() {
-        assert_eq!(spread((0.0, 1.0), 5), [0.0, 0.25, 0.5, 0.75, 1.0]);
-        assert_eq!(spread((0.3, 0.3), 5), [0.3]);
     }
 }

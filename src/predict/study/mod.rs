@@ -1,4 +1,4 @@
-//! A cask file and a request to rows, curves, critical angles, Monte Carlo and sensitivities.
+//! A cask file and a request to rows, curves, critical angles and Monte Carlo.
 
 mod critical;
 mod curves;
@@ -6,7 +6,6 @@ mod monte_carlo;
 mod peak;
 mod poses;
 mod rows;
-mod sensitivity;
 mod uncertain;
 
 pub use uncertain::default_uncertain;
@@ -18,7 +17,7 @@ use crate::data::{
 use peak::Bands;
 use rayon::prelude::*;
 
-/// Angles of Monte Carlo and of the critical ranges: one degree, as narrow as the angle of a drop is known.
+/// Angles of Monte Carlo: one degree, as narrow as the angle of a drop is known.
 const DRAW_ANGLES: usize = 91;
 
 /// All that a study of the drop angle holds, on all cores; the same for any number of them.
@@ -44,9 +43,7 @@ pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
         curves,
         sections: curves::sections(cask_file, &request.angles_deg),
         critical: critical.into_iter().flatten().collect(),
-        ranges: critical::ranges(cask_file, request, &drawn_deg),
         monte_carlo: monte_carlo::monte_carlo(cask_file, request, &drawn_deg),
-        sensitivities: sensitivity::sensitivities(cask_file, request),
         cask_file: cask_file.clone(),
         request: request.clone(),
     }
@@ -225,8 +222,6 @@ mod tests {
             assert_eq!(found.curves.len(), bodies * 2 * 3);
             assert_eq!(found.sections.len(), sections);
             assert_eq!(found.critical.len(), bodies * 2 * 3 * 3);
-            assert_eq!(found.ranges.len(), bodies * 3);
-            assert_eq!(found.sensitivities.len(), 2 * 3);
         }
     }
 
@@ -234,7 +229,6 @@ mod tests {
     fn a_study_of_no_angle_is_empty_and_no_fault() {
         let found = study(&cask_file(0.0), &request(vec![Contact::Rough], vec![0.5], vec![]));
         assert!(found.critical.iter().all(|c| c.angle_deg.is_nan() && c.bands_deg.is_empty()));
-        assert!(found.ranges.is_empty());
         assert!(found.monte_carlo.quantiles[0].q50.is_empty());
     }
 

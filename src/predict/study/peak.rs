@@ -220,16 +220,6 @@ pub(super) fn bands(marks: &[(f64, bool)], holds: impl Fn(f64) -> bool) -> Vec<(
     found
 }
 
-/// What lies in a stretch of both lists.
-pub(super) fn common(first: &[(f64, f64)], second: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let overlap = |a: &(f64, f64), b: &(f64, f64)| (a.0.max(b.0), a.1.min(b.1));
-    let with_all = |a: &(f64, f64)| {
-        let a = *a;
-        second.iter().map(move |b| overlap(&a, b))
-    };
-    first.iter().flat_map(with_all).filter(|band| band.0 <= band.1).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -357,13 +347,5 @@ mod tests {
         assert_eq!((found.angle_deg, found.largest), (30.5, 30.2));
         let found = peak_of(|_| (10.0, FREE)).expect("a peak");
         assert_eq!((found.angle_deg, found.bands_deg.as_slice()), (0.0, &[(0.0, 90.0)][..]));
-    }
-
-    #[test]
-    fn common_bands_are_what_lies_in_both() {
-        let first = [(0.0, 10.0), (20.0, 30.0), (40.0, 50.0)];
-        let second = [(5.0, 25.0), (45.0, 46.0)];
-        assert_eq!(common(&first, &second), [(5.0, 10.0), (20.0, 25.0), (45.0, 46.0)]);
-        assert!(common(&first, &[]).is_empty());
     }
 }

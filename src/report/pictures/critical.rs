@@ -1,11 +1,11 @@
 //! Critical angles to one picture: a row a case, a bar for its band and a dot for where it is largest.
 
 use super::super::rounding::{MISSING, plain};
-use super::super::words::{case_words, criterion_value, criterion_words, degrees, has_ranges};
+use super::super::words::{case_words, criterion_value, criterion_words, degrees};
 use super::draw::{Picture, Plate};
 use super::look::{Look, angle_axis, angle_panel};
 use super::panel::{COLOURS, Colour, Curve, Fill, Panel, PanelAxis, PointShape, Points, RowWords};
-use crate::data::{Criterion, CriticalAngle, CriticalRange, Study};
+use crate::data::{Criterion, CriticalAngle, Study};
 
 const NOTHING: (&str, &str) =
     ("There is nothing to show: no case has a slap-down.", "No case of this study has a critical angle.");
@@ -34,15 +34,12 @@ pub(super) fn picture(study: &Study, name: &str) -> Picture {
 }
 
 fn caption(study: &Study, look: &Look, rows: &[CriticalRow]) -> String {
-    let ranges = " Grey: over the ranges of k and friction; the line joins the lowest and the highest critical angle, the bar is what \
-                  lies in every band.";
     let rings = " Rings: angles at which the first end strikes again and the value is larger still; it jumps there from angle to angle.";
     let said = |is_so: bool, words| if is_so { words } else { "" };
     format!(
         "Dots: the drop angle at which each quantity is largest while the first end strikes once, with the value at the right. \
-         Bars: the angles within {} % of it.{}{} Dashed: {}°.{}{}",
+         Bars: the angles within {} % of it.{} Dashed: {}°.{}{}",
         plain(study.request.band_percent, 3),
-        said(has_ranges(&study.request), ranges),
         said(rows.iter().any(|row| row.larger_deg.is_some()), rings),
         plain(study.request.angle_deg, 4),
         look.left_out(),
@@ -59,9 +56,7 @@ fn rows(study: &Study, look: &Look) -> Vec<CriticalRow> {
             c.criterion == criterion && look.shows(c.contact, c.k) && is_of_body
         };
         let cases = study.critical.iter().filter(is_drawn).map(|c| case(c, look));
-        let wide = has_ranges(&study.request);
-        let ranges = study.ranges.iter().filter(|range| wide && range.criterion == criterion);
-        let group: Vec<CriticalRow> = cases.chain(ranges.map(range_case)).collect();
+        let group: Vec<CriticalRow> = cases.collect();
         if !group.is_empty() {
             let left = format!("Largest {}", criterion_words(criterion));
             let words = RowWords { left, right: String::new(), is_heading: true };
@@ -100,18 +95,6 @@ fn value_words(criterion: Criterion, largest: f64, angle_deg: f64) -> String {
         return MISSING.to_owned();
     }
     format!("{} at {}°", criterion_value(criterion, largest), degrees(angle_deg))
-}
-
-fn range_case(r: &CriticalRange) -> CriticalRow {
-    let left = format!("{}, all k and friction", r.model.as_str());
-    let right = value_words(r.criterion, r.largest, r.worst.angle_deg);
-    CriticalRow {
-        words: RowWords { left, right, is_heading: false },
-        colour: COLOURS[6],
-        angle_deg: r.angle_deg,
-        bands_deg: r.common_bands_deg.clone(),
-        larger_deg: r.further_impacts.map(|at| at.0),
-    }
 }
 
 fn panel(study: &Study, rows: &[CriticalRow]) -> Panel {

@@ -16,7 +16,6 @@ mod monte_carlo;
 #[cfg_attr(not(feature = "lab"), allow(dead_code, reason = "the pages of the laboratory use all of it"))]
 pub(crate) mod panel;
 mod positions;
-mod sensitivity;
 mod setup;
 mod study;
 mod svg;

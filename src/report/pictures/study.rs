@@ -4,7 +4,7 @@ use super::super::rounding::plain;
 use super::super::text::distinct;
 use super::draw::Picture;
 use super::look::MOST_CONTACTS;
-use super::{angle_curves, critical, monte_carlo, positions, sensitivity, sweep};
+use super::{angle_curves, critical, monte_carlo, positions, sweep};
 use crate::data::{Contact, Study, StudyRequest};
 use rayon::prelude::*;
 
@@ -35,7 +35,6 @@ fn charts(request: &StudyRequest) -> Vec<StudyChart> {
     charts.push(chart("section", angle_curves::sections));
     charts.push(chart("critical-angles", critical::picture));
     charts.extend((request.uncertain.draws > 0).then(|| chart("monte-carlo", monte_carlo::picture)));
-    charts.push(chart("sensitivity", sensitivity::picture));
     charts.extend((!request.sweeps.is_empty()).then(|| chart("sweep", sweep::picture)));
     charts
 }
@@ -80,8 +79,7 @@ mod tests {
                 "energy-ratio",
                 "section",
                 "critical-angles",
-                "monte-carlo",
-                "sensitivity"
+                "monte-carlo"
             ]
         );
         request.contacts = vec![Contact::Coulomb(0.3), Contact::Coulomb(0.3), Contact::Rough];

@@ -1,16 +1,15 @@
-//! Critical angles of a study, over ranges and under uncertain inputs, to chapters.
+//! Critical angles of a study, as stated and under uncertain inputs, to chapters.
 
 use super::super::document::{Chapter, ChapterPart};
 use super::super::medium::{Medium, Words};
 use super::super::rounding::{MISSING, fixed, plain};
 use super::super::table::{ReportTable, TableShape};
 use super::super::words::{
-    MOST_ON_PAGE, MOST_ROWS, OTHERS, band_around_words, bands_words, case_words, contact_words,
-    criterion_short, criterion_value, criterion_words, degrees, has_ranges, nearest, through_words,
-    uncertain_words, widest_bands_words,
+    MOST_ON_PAGE, MOST_ROWS, OTHERS, band_around_words, bands_words, contact_words, criterion_short,
+    criterion_value, criterion_words, degrees, nearest, uncertain_words, widest_bands_words,
 };
 
-use crate::data::{BodyModel, Criterion, CriticalAngle, CriticalRange, MonteCarlo, QuantileCurves, Study};
+use crate::data::{BodyModel, Criterion, CriticalAngle, MonteCarlo, QuantileCurves, Study};
 
 /// A value of the criterion, with the unit left to the head of its column.
 fn bare(criterion: Criterion, value: f64) -> String {
@@ -68,11 +67,9 @@ pub(super) fn critical(study: &Study) -> Chapter {
 
 /// Where the speed is larger still, as the first end strikes again before the second.
 fn larger_sentence(study: &Study) -> Option<String> {
-    let larger = study.ranges.iter().filter(|r| r.criterion == Criterion::Speed);
-    let larger = larger.filter_map(|r| r.further_impacts.map(|at| (r.model, at)));
     let of_cases = study.critical.iter().filter(|c| c.criterion == Criterion::Speed);
     let of_cases = of_cases.filter_map(|c| c.further_impacts.map(|at| (c.model, at)));
-    let all: Vec<(BodyModel, (f64, f64))> = larger.chain(of_cases).collect();
+    let all: Vec<(BodyModel, (f64, f64))> = of_cases.collect();
     let most = |model: BodyModel| {
         let of_model = all.iter().filter(|found| found.0 == model).map(|found| found.1);
         let (angle_deg, speed) = of_model.max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -85,32 +82,6 @@ fn larger_sentence(study: &Study) -> Option<String> {
             words.join(", ")
         )
     })
-}
-
-/// Critical angles over the ranges of k and friction.
-pub(super) fn ranges(study: &Study) -> Chapter {
-    let chapter = Chapter::new(format!("Over {}", through_words(&study.request)));
-    if study.ranges.is_empty() || !has_ranges(&study.request) {
-        return chapter;
-    }
-    let worst = |r: &CriticalRange| {
-        format!("{}°, {}", degrees(r.worst.angle_deg), case_words(r.worst.contact, r.worst.k))
-    };
-    let table = ReportTable::of(&study.ranges)
-        .caption("All else as stated. Every band: the angles that lie in the band of every one of the cases.")
-        .shape(TableShape::Fitting)
-        .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
-        .text(Words::or("Model", "model"), |r| r.model.as_str())
-        .text(Words::or("Largest", "largest"), |r| {
-            Words::or(criterion_words(r.criterion), criterion_short(r.criterion))
-        })
-        .text(Words::or("Critical angle, °", "critical °"), |r| bands_words(&[r.angle_deg]))
-        .text(Words::or("Worst case", "worst"), |r| criterion_value(r.criterion, r.largest))
-        .text(Words::or("Where", "at"), worst)
-        .text(Words::or("Every band, °", "every band °"), |r| {
-            Words::or(bands_words(&r.common_bands_deg), widest_bands_words(&r.common_bands_deg, 2))
-        });
-    chapter.with(table)
 }
 
 /// Whether any draw had a slap-down; where none was asked for there is none.

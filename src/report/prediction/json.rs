@@ -20,9 +20,7 @@ pub fn study_json(study: &Study) -> Result<Vec<u8>, ReportError> {
         ("input", to_vec(&input)?),
         ("ladders", entries(&study.ladders)?),
         ("critical_angles", entries(&study.critical)?),
-        ("critical_ranges", entries(&study.ranges)?),
         ("monte_carlo", to_vec(&study.monte_carlo)?),
-        ("sensitivities", entries(&study.sensitivities)?),
     ];
     let members = members.map(|(key, value)| [format!("  \"{key}\": ").as_bytes(), &value].concat());
     Ok([b"{\n", &members.join(&b",\n"[..])[..], b"\n}\n"].concat())
@@ -55,22 +53,20 @@ mod tests {
         assert_eq!(json["predictions"][0]["angle_deg"], 15.0);
         assert_eq!(json["ladders"][0]["steps"][0]["rung"], "rod");
         assert_eq!(json["critical_angles"][0]["criterion"], "speed");
-        assert_eq!(json["critical_ranges"][0]["worst"]["contact"], "rough");
         assert_eq!(
             json["monte_carlo"]["quantiles"][0]["q50"].as_array().unwrap().len(),
             study.request.angles_deg.len()
         );
-        assert_eq!(json["sensitivities"].as_array().unwrap().len(), study.sensitivities.len());
     }
 
     #[test]
     fn what_is_not_a_number_is_null() {
         let mut study = sample_study::study();
         study.rows[1].prediction.slap_down_speed_m_s = None;
-        study.sensitivities[0].by_k_m_s[3] = f64::NAN;
+        study.monte_carlo.quantiles[0].q50[3] = f64::NAN;
         let json = read(&study_json(&study).unwrap());
         assert!(json["predictions"][1]["slap_down_speed_m_s"].is_null());
-        assert!(json["sensitivities"][0]["by_k_m_s"][3].is_null());
+        assert!(json["monte_carlo"]["quantiles"][0]["q50"][3].is_null());
     }
 
     #[test]

@@ -1,16 +1,13 @@
-//! The ladder of models and the sensitivities of a study to chapters.
+//! The ladder of models to a chapter.
 
 use super::super::document::{Chapter, ChapterPart};
 use super::super::medium::{Medium, Words};
 use super::super::rounding::{MISSING, optional_fixed, percent, plain};
 use super::super::table::{ReportTable, TableShape};
 use super::super::text::capital;
-use super::super::words::{
-    MOST_ON_PAGE, MOST_ROWS, OTHERS, angles_words, bands_words, case_words, contact_words, degrees, nearest,
-    rung_short, widest_bands_words,
-};
+use super::super::words::{MOST_ON_PAGE, MOST_ROWS, OTHERS, case_words, contact_words, degrees, rung_short};
 
-use crate::data::{LADDER_TOLERANCE_PERCENT, Ladder, Rung, Sensitivity, Study};
+use crate::data::{LADDER_TOLERANCE_PERCENT, Ladder, Rung, Study};
 
 /// Every rung's speed, and which suffices.
 pub(super) fn ladders(study: &Study) -> Chapter {
@@ -90,38 +87,4 @@ fn verdict(ladder: &Ladder) -> String {
         ladder.suffices.words(),
         plain(LADDER_TOLERANCE_PERCENT, 3)
     )
-}
-
-/// Gradients at the angle asked for, and where the speed does not tell k.
-pub(super) fn sensitivities(study: &Study) -> Chapter {
-    let at = study.request.angle_deg;
-    let here = |s: &Sensitivity, values: &[f64], decimals| {
-        optional_fixed(nearest(&s.angle_deg, values, at), decimals)
-    };
-    let table = ReportTable::of(&study.sensitivities)
-        .caption("Gradient of the slap-down speed.")
-        .shape(TableShape::Fitting)
-        .most(MOST_ROWS, MOST_ON_PAGE, OTHERS)
-        .text(Words::or("Model", "model"), |s| s.model.as_str())
-        .soft(Words::or("Contact", "contact"), |s| contact_words(s.contact))
-        .number("k", |s| plain(s.k, 3))
-        .number(Words::or("∂v/∂k, m/s", "dv/dk\nm/s"), |s| here(s, &s.by_k_m_s, 2))
-        .number(Words::or("∂v/∂φ, m/s per °", "dv/dφ\nm/s per °"), |s| {
-            here(s, &s.by_angle_m_s_deg, 3)
-        })
-        .text(Words::or("Blind angle, °", "blind °"), |s| {
-            let angles = &s.blind_angles_deg;
-            Words::or(angles_words(angles, angles.len()), angles_words(angles, 2))
-        })
-        .text(Words::or("k poorly told, °", "poorly told °"), |s| {
-            Words::or(bands_words(&s.blind_bands_deg), widest_bands_words(&s.blind_bands_deg, 2))
-        });
-    let note = ChapterPart::note(
-        "blind: dv/dk is nil there. Poorly told: 1 % of the speed is more than 0.1 in k. There k must come from the \
-         rebound, the rotation or the flight time.",
-    );
-    let found = (!study.sensitivities.is_empty()).then(|| [table.into(), note]);
-    Chapter::new(format!("Sensitivity at {}°, and where the speed does not tell k", degrees(at)))
-        .with_all(found.into_iter().flatten())
-        .with(ChapterPart::picture("sensitivity", "", ""))
 }

@@ -9,8 +9,8 @@ use super::super::tested::tested;
 use super::super::words::{
     bands_words, case_words, contact_words, criterion_value, degrees, nearest, range_words, variable_words,
 };
-use super::critical::{critical, has_quantiles, monte_carlo, ranges};
-use super::models::{ladders, sensitivities};
+use super::critical::{critical, has_quantiles, monte_carlo};
+use super::models::ladders;
 use super::rows::{predictions, title};
 use crate::data::{Criterion, Study, StudyRequest, Sweep};
 
@@ -64,11 +64,9 @@ pub(super) fn document(study: &Study) -> ReportDocument {
                 .with_all(ahead)
                 .with(ChapterPart::picture("sweep", "", "")),
             critical(study),
-            ranges(study),
             over_the_angle(&study.request),
             monte_carlo(study),
             ladders(study),
-            sensitivities(study),
             of_the_paper(),
             Chapter::new("Limits").with(PartContent::List(LIMITS.to_vec())),
             Chapter::new("All predictions").with_all(at_end),

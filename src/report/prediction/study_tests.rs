@@ -63,15 +63,12 @@ fn every_block_has_its_figures() {
         "Critical angles",
         "12 (3.5–28)",
         "12 (0–24.2, …)",
-        "Over k 0 to 1 and μ 0.2 to 0.6",
-        "12°, rough, k = 1",
         "Monte Carlo, 2000 draws of the body",
         "12° (4.5–19.5)",
         "seed 1",
         "At 15°: ",
         "suffices: the simplest that no richer one moves by more than 0.1 %",
-        "35.3",
-        "rod 30.20 m/s at 89°",
+        "rod 30.10 m/s at 86°",
     ] {
         assert!(text.contains(words), "{words} is missing in\n{text}");
     }
@@ -84,15 +81,6 @@ fn one_case_shows_every_rung() {
         assert!(text.contains(rung_short(rung)) && text.contains(rung.adds()), "{text}");
     }
     assert!(text.contains("−8.0 %") && text.contains("The model \"body\" suffices"), "{text}");
-}
-
-#[test]
-fn ranges_that_are_points_are_not_repeated() {
-    let mut study = single();
-    assert!(bare(&study).contains("every band"));
-    study.request.uncertain.k = (0.5, 0.5);
-    study.request.uncertain.friction = None;
-    assert!(!bare(&study).contains("every band"));
 }
 
 #[test]
@@ -193,7 +181,7 @@ fn a_long_sweep_points_to_the_csv() {
     assert!(study.rows.len() > MOST_ON_PAGE);
     assert!(page.contains(&format!("{} more", study.rows.len() - MOST_ON_PAGE)));
     assert!(page.contains("prediction.csv"));
-    assert!(page.find("All predictions") > page.find("Sensitivity"));
+    assert!(page.find("All predictions") > page.find("Monte Carlo"));
 }
 
 #[test]
