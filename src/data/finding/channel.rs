@@ -35,7 +35,7 @@ pub enum ChannelFinding {
     #[error("stands at its limit of {:.0} g for {samples} samples {}. Use a sensor or range with more head-room", .limit_m_s2 / G, cut_off(*.during, *.lost_m_s, *.takes_step))]
     Clipped { limit_m_s2: f64, samples: usize, during: During, lost_m_s: f64, takes_step: bool },
     /// Samples of the first impact are missing, and with them the velocity step, which a slap-down may tell.
-    #[error("lost samples during the first impact, and with them its velocity step: {}", if *.shows_slap_down { AS_FAR_AS_TOLD } else { "no slap-down tells what it was" })]
+    #[error("lacks samples of the first impact (missing, or one value repeated), and with them its velocity step: {}", if *.shows_slap_down { AS_FAR_AS_TOLD } else { "no slap-down tells what it was" })]
     LostStep { shows_slap_down: bool },
     /// Noise makes the velocity uncertain over a stretch of `length_s`.
     #[error("({:.2} g before the impact) alone makes its velocity uncertain by ± {:.2} m/s over {:.0} ms, which is in the intervals: record more of the free fall, use a more sensitive range, or look for a loose cable", .noise_m_s2 / G, 2.0 * .u_m_s, 1e3 * .length_s)]
@@ -101,7 +101,7 @@ pub enum ChannelFinding {
     Spikes { count: usize, held_m_s: f64, severity: Severity },
     /// Stretches of samples that repeat to the bit.
     #[error(
-        "repeats itself to the bit in {stretches} stretches of {samples} samples together: a connector or the recorder dropped out; they are taken for lost (the longest would hold about {most_m_s:.2} m/s): fasten cable and connectors"
+        "repeats itself to the bit in {stretches} stretches of {samples} samples together: a connector or the recorder dropped out, or a driver writes each value several times; they are taken for lost (the longest would hold about {most_m_s:.2} m/s): fasten cable and connectors, or record each value once"
     )]
     Dropout { stretches: usize, samples: usize, most_m_s: f64 },
     /// AC coupling that the cask file states, undone.

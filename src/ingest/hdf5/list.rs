@@ -11,6 +11,7 @@ use super::sensors::RecordSensors;
 use super::starts::{self, Start};
 use crate::data::{
     AttributeFinding, ClockFinding, Finding, IssueCode, ListedChannel, Listing, RecordingFormat, Samples,
+    is_number,
 };
 use crate::ingest::{IngestError, Limits, Progress};
 use crate::numerics::as_f64;
@@ -222,7 +223,7 @@ impl Lister {
 
 fn range(samples: &Samples) -> Option<(f64, f64)> {
     let (mut smallest, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for value in (0..samples.len()).map(|i| samples.get(i)).filter(|value| value.is_finite()) {
+    for value in (0..samples.len()).map(|i| samples.get(i)).filter(|value| is_number(*value)) {
         smallest = smallest.min(value);
         largest = largest.max(value);
     }

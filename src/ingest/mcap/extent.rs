@@ -1,15 +1,15 @@
 //! Samples as they come to what a listing shows of them: how many, their range, and what stands for those of a block.
 
 use super::plan::Value;
-use crate::data::Samples;
+use crate::data::{Samples, is_number};
 
 /// What a listing shows of samples, which it does not keep of blocks.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Extent {
     pub(super) samples: u64,
-    /// The least and the largest that is finite.
+    /// The least and the largest that is a number.
     pub(super) range: Option<(f64, f64)>,
-    /// Stretches of blocks that are not finite.
+    /// Stretches of blocks that are none.
     pub(super) holes: usize,
     /// A number for the samples of each block.
     pub(super) digests: Vec<u64>,
@@ -41,11 +41,11 @@ impl Extent {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for value in samples {
             digest = (digest ^ value.to_bits()).wrapping_mul(PRIME);
-            if value.is_finite() {
+            if is_number(value) {
                 (low, high) = (low.min(value), high.max(value));
             }
-            self.holes += usize::from(is_block && was_finite && !value.is_finite());
-            was_finite = value.is_finite();
+            self.holes += usize::from(is_block && was_finite && !is_number(value));
+            was_finite = is_number(value);
         }
         if low <= high {
             self.widen((low, high));

@@ -58,6 +58,19 @@ fn every_signal_of_an_imu_and_of_a_protobuf_block_is_listed() {
 }
 
 #[test]
+fn a_mark_of_an_overrange_is_no_value_of_the_range() {
+    let bytes = closed(WriteOptions::new(), |writer| {
+        let id = channel(writer, "/x", "json", ("", "", b""));
+        for (log_ns, value) in (ZERO_NS..).step_by(1_000_000).zip(["1", "9.9e37", "-2", "3"]) {
+            message(writer, id, log_ns, format!("{{\"a\":{value},\"b\":[{value}]}}").as_bytes());
+        }
+    });
+    for listed in listing(&bytes).channels {
+        assert_eq!(listed.range, Some((-2.0, 3.0)), "{listed:?}");
+    }
+}
+
+#[test]
 fn a_clock_that_starts_at_zero_is_kept_and_one_lone_zero_falls_back() {
     let of = |stamps_ns: &[i64]| {
         let bytes = closed(WriteOptions::new(), |writer| {
