@@ -19,9 +19,6 @@
 //!
 //! A recording and a cask file pass through stages in the order that `analysis` alone knows; a stage imports only `data` and `numerics`.
 
-// The command line names what it uses as another program would: its files stand in `cli`, and know nothing that is not public.
-extern crate self as dropcheck;
-
 mod analysis;
 mod cli;
 mod compare;

@@ -7,9 +7,9 @@ use super::pdf;
 use super::progress::with_progress;
 use super::record::{self, EarlierResult};
 use super::tuning::{awake, keep_freed_memory};
+use crate::data::{Analysis, CaskFile, DropResult, HeldSamples, RecordingFormat, Setting};
+use crate::{ingest, report};
 use clap::{Args, ValueEnum};
-use dropcheck::data::{Analysis, CaskFile, DropResult, HeldSamples, RecordingFormat, Setting};
-use dropcheck::{ingest, report};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -133,7 +133,7 @@ pub fn analysis(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::
         Some(held) => ingest::read_arrays(held, &cask_file)?,
         None => ingest::read_within(&arguments.recording, &cask_file, limits, &|_| ())?,
     };
-    let mut analysis = dropcheck::analyze(&recording, &cask_file);
+    let mut analysis = crate::analyze(&recording, &cask_file);
     arguments.switched_off.in_settings(&mut analysis.result);
     Ok(analysis)
 }
@@ -178,7 +178,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         }
     })?;
     keep_freed_memory();
-    let mut analysis = awake(|| dropcheck::analyze(&recording, &cask_file));
+    let mut analysis = awake(|| crate::analyze(&recording, &cask_file));
     switched_off.in_settings(&mut analysis.result);
     record::stamp(&mut analysis.result, record::words())?;
     let mut compared = String::new();

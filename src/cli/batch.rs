@@ -18,11 +18,11 @@ use super::output::{Folder, columns, print, print_plain};
 use super::progress::CountedProgress;
 use super::record::stamp;
 use super::tuning::keep_freed_memory;
+use crate::data::DropResult;
+use crate::ingest::bytes_of;
+use crate::report::Batch;
+use crate::{in_order, ingest, report};
 use clap::Args;
-use dropcheck::data::DropResult;
-use dropcheck::ingest::bytes_of;
-use dropcheck::report::Batch;
-use dropcheck::{in_order, ingest, report};
 use plan::CampaignPlan;
 use planned::PlannedTest;
 use serde_json::{Value, json};
@@ -262,7 +262,7 @@ fn analysed(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> m
     }
     arguments.switched_off.in_cask_file(&mut cask_file);
     let recording = ingest::read_within(&test.recording, &cask_file, arguments.bounds.limits(), &|_| ())?;
-    let mut analysis = dropcheck::analyze(&recording, &cask_file);
+    let mut analysis = crate::analyze(&recording, &cask_file);
     arguments.switched_off.in_settings(&mut analysis.result);
     stamp(&mut analysis.result, words(plan, test, arguments))?;
     if let Some(folder) = folder {

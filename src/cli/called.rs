@@ -1,9 +1,9 @@
 //! The words of another program to what a command says of them, which it hands back in place of writing it.
 
 use super::{Command, CommandLine, analyze, predict, record};
+use crate::data::{Analysis, HeldSamples};
+use crate::{ingest, report};
 use clap::Parser;
-use dropcheck::data::{Analysis, HeldSamples};
-use dropcheck::{ingest, report};
 use std::ffi::OsString;
 use std::path::Path;
 #[cfg(feature = "lab")]
@@ -45,7 +45,7 @@ pub fn analysis(words: &[OsString], held: Option<&[HeldSamples]>) -> miette::Res
 pub fn prediction(words: &[OsString]) -> miette::Result<Vec<u8>> {
     let Command::Predict(arguments) = command(words)? else { return Err(not("predict")) };
     let (file, request) = predict::asked(&arguments)?;
-    Ok(report::study_json(&dropcheck::predict::study(&file, &request))?)
+    Ok(report::study_json(&crate::predict::study(&file, &request))?)
 }
 
 /// The JSON of `inspect`.

@@ -1,7 +1,7 @@
 //! An error to words on standard error: drawn under the line at fault on a terminal, told in plain sentences elsewhere.
 
-use dropcheck::data::shortened;
-use dropcheck::report::printable;
+use crate::data::shortened;
+use crate::report::printable;
 use miette::{GraphicalReportHandler, GraphicalTheme, Report};
 use std::io::{IsTerminal, Write};
 

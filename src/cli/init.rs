@@ -5,8 +5,8 @@ use super::batch::template;
 use super::limits::Bounds;
 use super::output::print_plain;
 use super::progress::with_progress;
+use crate::{ingest, report};
 use clap::Args;
-use dropcheck::{ingest, report};
 use std::path::PathBuf;
 
 #[derive(Args)]

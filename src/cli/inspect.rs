@@ -4,8 +4,8 @@ use super::Ending;
 use super::limits::Bounds;
 use super::output::{JsonTarget, columns, print};
 use super::progress::with_progress;
+use crate::{ingest, report};
 use clap::Args;
-use dropcheck::{ingest, report};
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -28,6 +28,6 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     if !json.is_standard_output() {
         print(&report::listing_table(&listing, columns()))?;
     }
-    let sound = listing.issues.iter().all(|issue| issue.severity == dropcheck::data::Severity::Note);
+    let sound = listing.issues.iter().all(|issue| issue.severity == crate::data::Severity::Note);
     Ok(if sound { Ending::Clear } else { Ending::NeedsALook })
 }

@@ -1,7 +1,7 @@
 //! `--max-memory`: a size as a person writes it to the limits within which a recording is read.
 
+use crate::ingest::{LEAST_MEMORY_BYTES, Limits};
 use clap::Args;
-use dropcheck::ingest::{LEAST_MEMORY_BYTES, Limits};
 
 /// How much memory reading may take.
 #[derive(Args)]

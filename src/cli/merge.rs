@@ -24,7 +24,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let ending = match schema(&shards[0])?.as_str() {
         batch::SHARD_SCHEMA => batch::merge(shards, out)?,
         #[cfg(feature = "lab")]
-        dropcheck::lab::campaign::SCHEMA => super::lab::campaign::merge(shards, out)?,
+        crate::lab::campaign::SCHEMA => super::lab::campaign::merge(shards, out)?,
         _ => return Err(no_shard(&shards[0])),
     };
     Ok(ending.or_zero(arguments.exit_zero))

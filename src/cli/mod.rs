@@ -26,8 +26,8 @@ pub use called::synthetic;
 pub use called::{analysis, listing, prediction, write};
 pub use complaint::message;
 
+use crate::data::{Program, Verdict};
 use clap::{Parser, Subcommand};
-use dropcheck::data::{Program, Verdict};
 use std::ffi::OsString;
 
 fn after_help() -> String {

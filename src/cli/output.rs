@@ -4,8 +4,8 @@ use super::place;
 use super::replace::{
     OWN_PREFIX, Stopped, parent_of, replace_set, staged_beside, staging_in, sync_folder, write_whole,
 };
-use dropcheck::ingest::opened;
-use dropcheck::report::ReportError;
+use crate::ingest::opened;
+use crate::report::ReportError;
 use std::fs;
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};

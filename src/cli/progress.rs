@@ -1,6 +1,6 @@
 //! Long work to a bar on standard error, where that is a terminal.
 
-use dropcheck::ingest::Progress;
+use crate::ingest::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -14,7 +14,7 @@ pub fn with_progress<T>(what: &str, work: impl FnOnce(Progress) -> T) -> T {
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent} %") {
         bar.set_style(style);
     }
-    bar.set_message(dropcheck::report::printable(what));
+    bar.set_message(crate::report::printable(what));
     let done = work(&|fraction: f64| {
         #[allow(
             clippy::cast_possible_truncation,

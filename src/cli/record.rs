@@ -1,8 +1,8 @@
 //! A result to the record of the run that made it, and such a record to the same run again and what differs.
 
-use dropcheck::data::{CaskFile, DropResult, Program, Recording, shortened};
-use dropcheck::ingest::bytes_of;
-use dropcheck::{ingest, report};
+use crate::data::{CaskFile, DropResult, Program, Recording, shortened};
+use crate::ingest::bytes_of;
+use crate::{ingest, report};
 use miette::{IntoDiagnostic, WrapErr};
 use serde_json::Value;
 use std::ffi::OsString;

@@ -4,10 +4,6 @@ mod arrays;
 mod batch;
 mod bounds;
 mod campaign;
-/// The command line once more, where it can name nothing but what every program can.
-#[allow(dead_code, unused_imports, reason = "it is only compiled")]
-#[path = "../../src/cli/mod.rs"]
-mod cli;
 mod command_line;
 mod compliant;
 mod csv_times;

@@ -4,9 +4,9 @@ use super::super::Ending;
 use super::super::lines::LineFiles;
 use super::super::output::{Folder, replace_by};
 use super::plan::SUMMARY;
-use dropcheck::data::{BodyModel, CaskFile, Contact, Drop};
-use dropcheck::report::{Batch, BatchRow, CampaignFiles, PredictedCurve};
-use dropcheck::{ingest, predict};
+use crate::data::{BodyModel, CaskFile, Contact, Drop};
+use crate::report::{Batch, BatchRow, CampaignFiles, PredictedCurve};
+use crate::{ingest, predict};
 use serde_json::Value;
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 
 use super::paths::{in_folder, stem};
 use super::planned::{PlannedTest, cask_of};
-use dropcheck::ingest::{bytes_of, cask_file::key_of_column};
+use crate::ingest::{bytes_of, cask_file::key_of_column};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 

@@ -1,7 +1,7 @@
 //! Paths, folders and patterns to the recordings that they stand for.
 
-use dropcheck::report;
-use dropcheck::report::Batch;
+use crate::report;
+use crate::report::Batch;
 use std::collections::HashSet;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};

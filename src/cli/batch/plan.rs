@@ -3,9 +3,9 @@
 use super::manifest;
 use super::paths::{recordings, stem};
 use super::planned::{PlannedTest, cask_of};
-use dropcheck::data::Program;
-use dropcheck::ingest::{bytes_of, hexadecimal};
-use dropcheck::report::folder_name;
+use crate::data::Program;
+use crate::ingest::{bytes_of, hexadecimal};
+use crate::report::folder_name;
 use serde_json::json;
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, HashMap, HashSet};

@@ -5,9 +5,9 @@ use super::super::lines::{self, LineRecord};
 use super::super::output::{Folder, print, print_plain, replace, replace_by};
 use super::super::progress::CountedProgress;
 use super::document::Marks;
+use crate::lab::campaign::{self, ScenePlace, Tally};
+use crate::lab::data::{CampaignRequest, CampaignRow, CampaignShard};
 use clap::Args;
-use dropcheck::lab::campaign::{self, ScenePlace, Tally};
-use dropcheck::lab::data::{CampaignRequest, CampaignRow, CampaignShard};
 use miette::IntoDiagnostic;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -100,10 +100,7 @@ pub fn merge(paths: &[PathBuf], out: &Path) -> miette::Result<Ending> {
     tabled(&request, Some(out), |take| {
         lines.each(|line| campaign::read(line).map_or(Ok(()), |row| take(&row)))
     })?;
-    print(&format!(
-        "Written: {}\n",
-        dropcheck::report::printable(&out.join(NAMES[1]).display().to_string())
-    ))?;
+    print(&format!("Written: {}\n", crate::report::printable(&out.join(NAMES[1]).display().to_string())))?;
     Ok(Ending::Clear)
 }
 

@@ -1,6 +1,6 @@
 //! A document and two lines in it to what stands before the one and behind the other.
 
-use dropcheck::ingest::bytes_of;
+use crate::ingest::bytes_of;
 use std::path::Path;
 
 /// The lines between which a command writes.

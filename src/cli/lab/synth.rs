@@ -2,10 +2,10 @@
 
 use super::super::Ending;
 use super::super::output::{Folder, print};
+use crate::lab::data::{SyntheticRecording, Truth};
+use crate::lab::report::SyntheticFormat;
+use crate::{lab, report};
 use clap::Args;
-use dropcheck::lab::data::{SyntheticRecording, Truth};
-use dropcheck::lab::report::SyntheticFormat;
-use dropcheck::{lab, report};
 use std::path::{Path, PathBuf};
 
 const AFTER_HELP: &str = "\

@@ -4,10 +4,10 @@ use super::super::Ending;
 use super::super::output::{Folder, columns, print, replace};
 use super::super::progress::with_progress;
 use super::document::Marks;
-use dropcheck::lab::data::{TrialMachine, TrialRequest};
-use dropcheck::lab::methods::{self, References};
-use dropcheck::lab::report::{TRIAL_NAMES, trial_files, trial_markdown, trial_outcome};
-use dropcheck::{ingest, report};
+use crate::lab::data::{TrialMachine, TrialRequest};
+use crate::lab::methods::{self, References};
+use crate::lab::report::{TRIAL_NAMES, trial_files, trial_markdown, trial_outcome};
+use crate::{ingest, report};
 use std::path::Path;
 
 const MARKS: Marks = Marks { begin: "<!-- trial: begin -->", end: "<!-- trial: end -->" };

@@ -3,10 +3,10 @@
 use super::super::Ending;
 use super::super::output::{Folder, print};
 use super::{campaign, trial};
+use crate::lab::data::{CampaignRequest, SceneNumber, TrialRequest};
+use crate::lab::report::SyntheticFormat;
+use crate::{lab, report};
 use clap::Args;
-use dropcheck::lab::data::{CampaignRequest, SceneNumber, TrialRequest};
-use dropcheck::lab::report::SyntheticFormat;
-use dropcheck::{lab, report};
 use std::path::{Path, PathBuf};
 
 const AFTER_HELP: &str = r#"Without --campaign and --scene the program is accepted on this machine, or not (exit status 1):

@@ -1,7 +1,7 @@
 //! Lines of JSON to a file that grows by one line at a time, and such files to the lines in them: what is done stays done.
 
 use super::super::output::{JsonTarget, replace_by};
-use dropcheck::ingest::opened;
+use crate::ingest::opened;
 use miette::{IntoDiagnostic, WrapErr};
 use serde_json::Value;
 use std::collections::BTreeMap;

@@ -1,7 +1,7 @@
 //! The shards of a campaign to all of its lines; one that is missing, doubled, cut, foreign or of another version is named.
 
 use super::file::{LineFiles, next_line};
-use dropcheck::ingest::opened;
+use crate::ingest::opened;
 use serde_json::Value;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};

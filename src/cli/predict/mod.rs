@@ -6,9 +6,9 @@ mod words;
 
 use super::Ending;
 use super::output::{Folder, JsonTarget, columns, print};
+use crate::data::{CaskFile, Contact, StudyRequest, Sweep};
+use crate::report;
 use clap::Args;
-use dropcheck::data::{CaskFile, Contact, StudyRequest, Sweep};
-use dropcheck::report;
 use std::path::PathBuf;
 
 const AFTER_HELP: &str = "\
@@ -84,7 +84,7 @@ pub struct Arguments {
 
 /// The cask file that is named, and what is asked of it.
 pub fn asked(arguments: &Arguments) -> miette::Result<(CaskFile, StudyRequest)> {
-    let mut file = dropcheck::ingest::cask_file::parse(&arguments.cask)?;
+    let mut file = crate::ingest::cask_file::parse(&arguments.cask)?;
     file.drop.contact_duration_s = arguments.duration.unwrap_or(file.drop.contact_duration_s);
     let request = request::request(arguments, &file)?;
     Ok((file, request))
@@ -98,7 +98,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let folder = arguments.out.as_deref().map(|dir| Folder::checked(dir, &names, &inputs)).transpose()?;
     let json = JsonTarget::checked(arguments.json.as_deref(), &inputs)?;
 
-    let study = dropcheck::predict::study(&file, &request);
+    let study = crate::predict::study(&file, &request);
 
     if let Some(folder) = &folder {
         folder.write(&report::study_files(&study)?)?;

@@ -2,8 +2,8 @@
 
 use super::Arguments;
 use super::sweep::{MOST_PREDICTIONS, name, rounded};
-use dropcheck::data::{CaskFile, Contact, StudyRequest, Sweep, SweepVariable, Uncertain};
-use dropcheck::predict;
+use crate::data::{CaskFile, Contact, StudyRequest, Sweep, SweepVariable, Uncertain};
+use crate::predict;
 
 /// Curves are drawn at least this finely: half a degree is finer than a drop can be rigged.
 const CURVE_STEP_DEG: f64 = 0.5;
@@ -197,7 +197,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("cask.toml");
         std::fs::write(&path, CASK).unwrap();
-        dropcheck::ingest::cask_file(&path).unwrap()
+        crate::ingest::cask_file(&path).unwrap()
     }
 
     fn asked(options: &str) -> miette::Result<StudyRequest> {

@@ -1,7 +1,7 @@
 //! `[VARIABLE=]FROM:TO:STEP` to the values of a sweep.
 
 use super::words::{ascending, number};
-use dropcheck::data::{Sweep, SweepVariable};
+use crate::data::{Sweep, SweepVariable};
 
 /// Predictions of one run, and so values of one sweep: a table of more is read by no one and fills hundreds of megabytes.
 pub const MOST_PREDICTIONS: usize = 200_000;
