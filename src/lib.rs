@@ -27,8 +27,6 @@ pub mod data;
 mod events;
 mod fit;
 #[doc(hidden)]
-pub mod in_order;
-#[doc(hidden)]
 pub mod ingest;
 mod judge;
 #[cfg(feature = "lab")]
@@ -36,6 +34,8 @@ mod judge;
 pub mod lab;
 mod motion;
 mod numerics;
+#[doc(hidden)]
+pub mod ordered_parallel;
 #[doc(hidden)]
 pub mod predict;
 #[doc(hidden)]

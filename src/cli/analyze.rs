@@ -5,8 +5,8 @@ use super::limits::Bounds;
 use super::output::{Folder, JsonTarget, columns, print};
 use super::pdf;
 use super::progress::with_progress;
-use super::record::{self, EarlierResult};
-use super::tuning::{awake, keep_freed_memory};
+use super::rerun::{self, EarlierResult};
+use super::tuning::{keep_freed_memory, keep_threads_awake};
 use crate::data::{Analysis, CaskFile, DropResult, HeldSamples, RecordingFormat, Setting};
 use crate::{ingest, report};
 use clap::{Args, ValueEnum};
@@ -173,14 +173,14 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         let read = || ingest::read_within(&arguments.recording, &cask_file, limits, progress);
         match ingest::format(&arguments.recording)? {
             // Its chunks are taken in waves, which end in what one thread does alone; the other formats keep all threads at work.
-            RecordingFormat::Mcap => awake(read),
+            RecordingFormat::Mcap => keep_threads_awake(read),
             RecordingFormat::Hdf5 | RecordingFormat::Csv | RecordingFormat::Samples => read(),
         }
     })?;
     keep_freed_memory();
-    let mut analysis = awake(|| crate::analyze(&recording, &cask_file));
+    let mut analysis = keep_threads_awake(|| crate::analyze(&recording, &cask_file));
     switched_off.in_settings(&mut analysis.result);
-    record::stamp(&mut analysis.result, record::words())?;
+    rerun::stamp(&mut analysis.result, rerun::words())?;
     let mut compared = String::new();
     if let Some(earlier) = &earlier {
         earlier.repeat(&recording, &mut analysis.result);

@@ -16,12 +16,12 @@ use super::limits::Bounds;
 use super::lines::{self, LineRecord, holds_some, part};
 use super::output::{Folder, columns, print, print_plain};
 use super::progress::CountedProgress;
-use super::record::stamp;
+use super::rerun::stamp;
 use super::tuning::keep_freed_memory;
 use crate::data::DropResult;
 use crate::ingest::bytes_of;
 use crate::report::Batch;
-use crate::{in_order, ingest, report};
+use crate::{ingest, ordered_parallel, report};
 use clap::Args;
 use plan::CampaignPlan;
 use planned::PlannedTest;
@@ -97,7 +97,7 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     keep_freed_memory();
     // What is done already is read by one thread beside the others, since the record grows meanwhile.
     let earlier = record.as_ref().map(|record| record.lines().clone()).unwrap_or_default();
-    in_order::each(
+    ordered_parallel::each(
         own.into_iter(),
         jobs,
         |number| {

@@ -2,8 +2,8 @@
 
 mod analyze;
 mod batch;
-mod called;
 mod complaint;
+mod embedded;
 mod help;
 mod init;
 mod inspect;
@@ -14,17 +14,17 @@ mod lines;
 mod merge;
 mod output;
 mod pdf;
-mod place;
 mod predict;
 mod progress;
-mod record;
+mod protected_folders;
 mod replace;
+mod rerun;
 mod tuning;
 
-#[cfg(feature = "lab")]
-pub use called::synthetic;
-pub use called::{analysis, listing, prediction, write};
 pub use complaint::message;
+#[cfg(feature = "lab")]
+pub use embedded::synthetic;
+pub use embedded::{analysis, listing, prediction, write};
 
 use crate::data::{Program, Verdict};
 use clap::{Parser, Subcommand};
@@ -117,7 +117,7 @@ impl From<Verdict> for Ending {
 pub fn main(words: &[OsString]) -> u8 {
     let named = std::iter::once("dropcheck".into()).chain(words.iter().cloned());
     let ended = CommandLine::try_parse_from(named).map(|line| {
-        record::begin(words);
+        rerun::begin(words);
         run(&line.command)
     });
     match ended {

@@ -1,6 +1,6 @@
 //! Finished bytes to files, whole or not at all, and to standard output; checked before the work begins.
 
-use super::place;
+use super::protected_folders::is_protected;
 use super::replace::{
     OWN_PREFIX, Stopped, parent_of, replace_set, staged_beside, staging_in, sync_folder, write_whole,
 };
@@ -77,7 +77,7 @@ impl Folder {
         if fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink()) {
             return Err(CannotWrite::Link { path: shown(path) });
         }
-        if place::is_shared(path) {
+        if is_protected(path) {
             return Err(CannotWrite::Shared { path: shown(path) });
         }
         let mut standing = path;

@@ -21,7 +21,7 @@ impl Drop for Then<'_> {
 ///
 /// An analysis shares pieces of a tenth of a millisecond upwards. A thread that has gone to sleep in between takes as long to wake, on a
 /// virtual machine up to two milliseconds. Those that look out give way to any other process. Of works at one time the first has them look out.
-pub fn awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+pub fn keep_threads_awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     if IS_TAKEN.swap(true, Ordering::AcqRel) {
         return rayon::scope(|_| work());
     }
@@ -79,7 +79,7 @@ mod tests {
     fn nested_pieces_all_end() {
         let _alone = ALONE.lock();
         for _ in 0..200 {
-            assert_eq!(awake(|| shared(4)), 6 * 4_u64.pow(4));
+            assert_eq!(keep_threads_awake(|| shared(4)), 6 * 4_u64.pow(4));
         }
     }
 
@@ -87,9 +87,12 @@ mod tests {
     fn a_panic_lets_threads_sleep_again() {
         let _alone = ALONE.lock();
         for _ in 0..20 {
-            assert!(catch_unwind(AssertUnwindSafe(|| awake(|| panic!("as it is meant to")))).is_err());
+            assert!(
+                catch_unwind(AssertUnwindSafe(|| keep_threads_awake(|| panic!("as it is meant to"))))
+                    .is_err()
+            );
         }
-        assert_eq!(awake(|| shared(1)), 24);
+        assert_eq!(keep_threads_awake(|| shared(1)), 24);
     }
 
     #[test]
@@ -97,7 +100,7 @@ mod tests {
         let _alone = ALONE.lock();
         for _ in 0..100 {
             let both = std::thread::scope(|scope| {
-                let works = [(); 3].map(|()| scope.spawn(|| awake(|| shared(3))));
+                let works = [(); 3].map(|()| scope.spawn(|| keep_threads_awake(|| shared(3))));
                 works.map(|work| work.join().unwrap_or(0))
             });
             assert_eq!(both, [6 * 4_u64.pow(3); 3]);

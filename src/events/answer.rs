@@ -9,18 +9,18 @@ use crate::numerics::reduce::{block_means, peak};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// An answer below this share of the struck end's peak is none: the sensor sits near the centre of percussion.
+/// A response below this share of the struck end's peak is not used: the sensor sits near the centre of percussion.
 const LEAST_SHARE: f64 = 0.02;
-/// … and below this many standard deviations of its noise.
+/// A response below this many standard deviations of its noise is not used.
 const LEAST_NOISE: f64 = 10.0;
-/// The answer is seen where it first passes this many standard deviations.
+/// The response is seen where it first passes this many standard deviations.
 const SEEN_NOISE: f64 = 6.0;
-/// Answers are sought this long before first contact and after the contact, s: clocks and bending waves.
+/// Responses are sought this long before first contact and after the contact, s: clocks and bending waves.
 const BEFORE_S: f64 = 8e-3;
 const AFTER_S: f64 = 6e-3;
-/// What the expansion in integrals leaves of an answer, as a share of its RMS: modes up to 450 Hz over a millisecond.
+/// What the expansion in integrals leaves of a response, as a share of its RMS: modes up to 450 Hz over a millisecond.
 const MODEL_SHARE: f64 = 0.005;
-/// Lengths after the answer is seen that are fitted, s: short ones hold few modes, long ones stand out of the noise.
+/// Lengths after the response is seen that are fitted, s: short ones hold few modes, long ones stand out of the noise.
 const LENGTHS_S: [f64; 7] = [0.4e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3, 3e-3, 4e-3];
 /// Longest first contact whose peak is looked at, s.
 const CONTACT_S: f64 = 0.02;

@@ -2,7 +2,7 @@
 
 use crate::data::{ChannelFinding, Events, Finding, FlightFit, IssueCode, Signal};
 use crate::numerics::as_f64;
-use crate::numerics::foretold::{MOST_BEFORE, foretell};
+use crate::numerics::linear_prediction::{MOST_BEFORE, predict_linearly};
 use crate::numerics::reduce::{block_means, block_of, converter_step, peak};
 use std::ops::Range;
 
@@ -10,14 +10,14 @@ use std::ops::Range;
 const RATE_HZ: f64 = 8_000.0;
 /// Stretches that are looked at by themselves, s: what rings at the beginning of a long flight is gone at its end, and so is what it leaves.
 const PIECE_S: f64 = 0.1;
-/// A mean so many spreads off what those before it foretell is a blow: sound drops leave 7 at the most, contents that spoil a result 12 and more.
+/// A mean so many spreads off its prediction is a blow: sound drops leave 7 at the most, contents that spoil a result 12 and more.
 const LIMIT: f64 = 9.5;
 /// The spread is no less than this share of the largest mean: what is smaller changes no velocity by 1 % of v0.
 const LEAST_SPREAD: f64 = 3e-4;
 /// Before the slap-down that was found may lie its foot: so long, s, and this share of the flight.
 const FOOT_S: f64 = 1e-3;
 const FOOT: f64 = 0.06;
-/// What is nearer is one blow, s.
+/// Blows closer together than this are one, s.
 const APART_S: f64 = 3e-3;
 
 /// The channel that is struck hardest in the flight, with the times; `found` says which channels are disturbed there.
@@ -54,7 +54,7 @@ fn is_disturbed(signal: &Signal, span_s: &Range<f64>, found: &[Finding]) -> bool
     touches(&signal.gaps) || touches(&signal.clipped) || found.iter().any(is_spiked)
 }
 
-/// A mean that is not foretold.
+/// A mean far from its prediction.
 struct Unforetold {
     time_s: f64,
     /// How far it is off, in spreads.
@@ -80,7 +80,7 @@ fn blows(signal: &Signal, span_s: &Range<f64>) -> Vec<Unforetold> {
         // Each but the first begins within the one before, so that all of its own means are foretold.
         let first = (i * length).saturating_sub(MOST_BEFORE);
         let Some(foretold) =
-            foretell(means.get(first..means.len().min((i + 1) * length)).unwrap_or_default())
+            predict_linearly(means.get(first..means.len().min((i + 1) * length)).unwrap_or_default())
         else {
             return Vec::new();
         };

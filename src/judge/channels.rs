@@ -1,6 +1,6 @@
 //! Signals and events to what speaks against single channels.
 
-use super::{sampling, worth};
+use super::{channel_checks, sampling};
 use crate::data::{CaskFile, ChannelFinding, During, Events, Finding, IssueCode, MOST_LOST_M_S, Signal};
 use std::ops::Range;
 
@@ -25,7 +25,7 @@ pub fn judge_channels(
     let disturbed: Vec<&str> =
         found.iter().filter(|i| is_disturbance(i.code)).filter_map(|i| i.channel.as_deref()).collect();
     findings.extend(sampling::judge_sampling(signals, events, &disturbed));
-    findings.extend(worth::judge_worth(signals, events, cask_file));
+    findings.extend(channel_checks::judge_by_themselves(signals, events, cask_file));
     findings
 }
 

@@ -1,6 +1,7 @@
 //! Everything found on the way to findings and a verdict: what speaks against the result.
 
 mod blows;
+mod channel_checks;
 mod channels;
 mod closures;
 mod copies;
@@ -13,7 +14,6 @@ mod sampling;
 mod silent;
 mod skew;
 mod strike;
-mod worth;
 
 pub use blows::judge_blows;
 pub use channels::{is_cut_off, judge_channels};

@@ -1,6 +1,6 @@
 //! Signals to the curves a person looks at: filtered force, velocity, spectrum.
 
-use super::thin::thinned;
+use super::decimate::decimated;
 use super::{Integrated, Velocity};
 use crate::data::{
     Axis, ChannelCurve, ChannelReading, End, Events, FilterChoice, MotionCurve, Setup, Signal,
@@ -81,7 +81,7 @@ pub(super) fn cut_wide(signal: &Signal, (from_s, to_s): (f64, f64), cutoff_hz: f
 /// The signals low-passed without phase, at a rate that is enough for that; a cut-off that the rate cannot carry leaves them as they are.
 #[must_use]
 pub fn filtered(signals: &[Signal], cutoff_hz: f64) -> Vec<Signal> {
-    let signals = thinned(signals, RATE_OVER_CUTOFF * cutoff_hz);
+    let signals = decimated(signals, RATE_OVER_CUTOFF * cutoff_hz);
     let smooth = low_passed(&signals, cutoff_hz);
     signals.iter().zip(smooth).map(|(signal, smooth)| signal.cut_with(0, smooth)).collect()
 }

@@ -2,13 +2,13 @@
 
 mod contact;
 mod curves;
+mod decimate;
 mod flight;
 mod histories;
 mod reconstruct;
 mod refit;
 mod ringing;
 mod strike;
-mod thin;
 mod window;
 
 pub use contact::{ChannelPulse, ContactCourse, ForceCourse, PulseLength, largest, pulses};
@@ -47,7 +47,7 @@ impl<'a> Integrated<'a> {
     /// Integrals of whole signals, 0 shortly before first contact; where all are whole, of means at 100 kHz at the least.
     #[must_use]
     pub fn over(signals: &'a [Signal], contact_s: f64) -> Self {
-        let signals = thin::thinned(signals, 0.0);
+        let signals = decimate::decimated(signals, 0.0);
         let of = |s: &Signal| {
             let mut velocity = Velocity::of(s, contact_s - BEFORE_S, f64::INFINITY);
             velocity.count_from(contact_s - MARGIN_S);

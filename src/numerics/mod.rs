@@ -2,7 +2,7 @@
 
 pub mod damped_modes;
 pub mod filter;
-pub mod foretold;
+pub mod linear_prediction;
 pub mod noise;
 pub mod pooled;
 pub mod prior_fit;

@@ -1,5 +1,6 @@
 //! An analysis to bytes: table, JSON, HTML, pictures, curves. Nothing here writes a report's file.
 
+mod acceleration_sources;
 mod analysis;
 #[cfg(test)]
 mod analysis_tests;
@@ -17,7 +18,6 @@ mod grid;
 mod impacts;
 pub(crate) mod json;
 mod latex;
-mod likely;
 mod listing;
 #[cfg_attr(not(feature = "lab"), allow(dead_code, reason = "the pages of the laboratory use all of it"))]
 pub(crate) mod medium;
@@ -41,10 +41,10 @@ mod tested;
 pub(crate) mod text;
 mod words;
 
+pub use acceleration_sources::NoChannels;
 pub use campaign::{Batch, BatchRow, CampaignFiles, PredictedCurve, folder_name, impossible};
 pub use curves_csv::in_german;
 pub use json::{in_a_line, listing as listing_json, result as result_json};
-pub use likely::NoChannels;
 pub use listing::table as listing_table;
 pub use prediction::{study_file_names, study_files, study_json, study_table};
 pub use template::cask_file as cask_file_template;

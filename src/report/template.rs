@@ -1,6 +1,6 @@
 //! What a recording holds to a commented cask file to fill in.
 
-use super::likely::{self, NoChannels, VOLTAGES, has_word, is_time};
+use super::acceleration_sources::{self, NoChannels, VOLTAGES, has_word, is_time};
 use super::text::{is_hidden, line, printable};
 use crate::data::keys::{CHANNEL, FILL_IN, Key, TABLES, Takes};
 use crate::data::{ListedChannel, Listing, MOST_CHANNELS, Severity, acceleration_unit_m_s2};
@@ -12,11 +12,11 @@ use std::fmt::Write;
 /// # Errors
 /// [`NoChannels`] where nothing that looks like an acceleration can be read.
 pub fn cask_file(listing: &Listing) -> Result<String, NoChannels> {
-    let mut taken = likely::accelerations(listing);
+    let mut taken = acceleration_sources::accelerations(listing);
     let beyond = taken.len().saturating_sub(MOST_CHANNELS);
     taken.truncate(MOST_CHANNELS);
     if taken.is_empty() {
-        return Err(likely::none(listing));
+        return Err(acceleration_sources::none(listing));
     }
     let mut out = head(listing);
     for issue in listing.issues.iter().filter(|issue| issue.severity != Severity::Note) {
@@ -38,7 +38,7 @@ pub fn cask_file(listing: &Listing) -> Result<String, NoChannels> {
     if !unreadable.is_empty() {
         out.push_str("\n# Also in the recording, but it cannot be read:\n");
         for listed in unreadable {
-            line(&mut out, format_args!("#   {}", printable(&likely::reason(listed))));
+            line(&mut out, format_args!("#   {}", printable(&acceleration_sources::reason(listed))));
         }
     }
     if !other.is_empty() {

@@ -15,10 +15,10 @@ const STAGES: [&str; 9] =
 /// What a top-level module may use besides itself; `None` for a module that has no place in the layers yet.
 fn allowed(module: &str) -> Option<Vec<&'static str>> {
     match module {
-        "data" | "numerics" | "in_order" => Some(vec![]),
+        "data" | "numerics" | "ordered_parallel" => Some(vec![]),
         // The order of the whole, and all of the product, which uses nothing of it.
         "analysis" => Some([&STAGES[..], &["data", "numerics"]].concat()),
-        "lab" => Some([&STAGES[..], &["data", "numerics", "analysis", "in_order"]].concat()),
+        "lab" => Some([&STAGES[..], &["data", "numerics", "analysis", "ordered_parallel"]].concat()),
         stage if STAGES.contains(&stage) => Some(vec!["data", "numerics"]),
         _ => None,
     }

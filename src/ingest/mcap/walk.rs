@@ -18,9 +18,9 @@ use std::path::Path;
 
 /// Larger than most chunks' share between two looks at the progress; smaller than any cache.
 const READ_BUFFER_BYTES: usize = 1 << 18;
-/// Chunks wait for one another as long as their packed bytes are fewer than this,
+/// At most so many packed bytes are unpacked as one batch of chunks.
 const MOST_PACKED_BYTES: u64 = 16 << 20;
-/// and those that they claim to unpack to fewer than this: a larger chunk is unpacked by itself.
+/// The chunks of a batch unpack to at most so many bytes, by their own word; a larger chunk is a batch by itself.
 const MOST_UNPACKED_BYTES: u64 = 64 << 20;
 
 /// A file that was walked through.

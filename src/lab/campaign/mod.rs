@@ -18,7 +18,6 @@ pub(super) use tables::rungs;
 pub use tally::Tally;
 
 use crate::analysis::measure;
-use crate::in_order;
 use crate::ingest::Progress;
 use crate::lab::chance::Chance;
 use crate::lab::damage::Wish;
@@ -27,6 +26,7 @@ use crate::lab::data::{
     Campaign, CampaignRequest, CampaignRow, CampaignShard, Damage, SceneFile, SceneNumber, SyntheticRecording,
 };
 use crate::numerics::as_f64;
+use crate::ordered_parallel;
 use score::RecordedScene;
 use std::convert::Infallible;
 
@@ -58,7 +58,7 @@ pub fn each<E>(
 ) -> Result<(), E> {
     let own = numbers(request).enumerate().skip(shard.index).step_by(shard.count).skip(done);
     let jobs = rayon::current_num_threads();
-    in_order::each(own, jobs, |(_, number)| row(request, number), |(i, _), row| take(i, row))
+    ordered_parallel::each(own, jobs, |(_, number)| row(request, number), |(i, _), row| take(i, row))
 }
 
 /// One scene as `synth` writes it: the scene with what is stated of it, and its recording.

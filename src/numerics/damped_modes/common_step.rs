@@ -1,8 +1,8 @@
-//! What a step of all series at one time explains of what known modes leave of them.
+//! How much of what known modes leave of several series a common step at one time explains.
 
 use super::covariance::describe;
 use super::drive::Form;
-use super::projection::OfTimes;
+use super::projection::SharedByTimes;
 use super::seeds::basis;
 use super::series::{Fit, Oscillation, Series};
 use crate::numerics::as_f64;
@@ -13,7 +13,7 @@ pub struct CommonStep<'a> {
     series: &'a [Series],
     without: Fit,
     /// Sums over the points from each one on, of the basis of the modes and of what they leave of each series.
-    behind: OfTimes<DMatrix<f64>>,
+    behind: SharedByTimes<DMatrix<f64>>,
     left_behind: Vec<DVector<f64>>,
 }
 
@@ -33,7 +33,7 @@ impl<'a> CommonStep<'a> {
     /// `None` where the series have too few points for one step more.
     #[must_use]
     pub fn new(series: &'a [Series], modes: &[Oscillation], form: Form) -> Option<Self> {
-        let bases = OfTimes::new(series, |s| basis(s, modes, form))?;
+        let bases = SharedByTimes::new(series, |s| basis(s, modes, form))?;
         let left = |(s, basis): (&Series, &DMatrix<f64>)| {
             let value = DVector::from_column_slice(&s.value);
             let left = &value - basis * basis.tr_mul(&value);

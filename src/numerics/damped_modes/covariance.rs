@@ -1,7 +1,7 @@
 //! Modes found to coefficients with their standard uncertainties.
 
 use super::drive::Form;
-use super::projection::{OfTimes, Projected, Projection, columns, rms};
+use super::projection::{Projected, Projection, SharedByTimes, columns, rms};
 use super::series::{Fit, Oscillation, Series, SeriesFit};
 use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector};
@@ -62,7 +62,7 @@ fn uncertainties(series: &[Series], fit: &mut Fit, form: Form) -> Option<()> {
         series.iter().zip(&fit.series).map(|(s, f)| 1.0 / f.residual.hypot(s.floor).max(1e-300)).collect();
     let (mut row, mut column) = (0, 2 * fit.modes.len());
     let mut places = Vec::new();
-    let blocks = OfTimes::new(series, |s| Some(columns(s, &fit.modes, form)))?;
+    let blocks = SharedByTimes::new(series, |s| Some(columns(s, &fit.modes, form)))?;
     for (block, weight) in blocks.each().zip(&weights) {
         let block = block * *weight;
         jacobian.view_mut((row, column), block.shape()).copy_from(&block);

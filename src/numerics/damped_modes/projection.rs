@@ -48,16 +48,16 @@ fn fixed_columns(series: &Series, drift: bool) -> usize {
     1 + usize::from(drift) + series.steps_s.len()
 }
 
-/// Something that hangs on the times of a series alone, one for all neighbours that share them.
-pub(super) struct OfTimes<T> {
+/// A value that depends on the times of a series alone: neighbouring series with the same times share it.
+pub(super) struct SharedByTimes<T> {
     made: Vec<T>,
     places: Vec<usize>,
 }
 
-impl<T> OfTimes<T> {
-    /// By `make`, from the first series of each times; `None` where that is.
+impl<T> SharedByTimes<T> {
+    /// Calls `make` with the first series of each set of times; `None` where `make` gives none.
     pub(super) fn new(series: &[Series], make: impl Fn(&Series) -> Option<T>) -> Option<Self> {
-        let OfTimes { made, places } = OfTimes::of(series, make);
+        let SharedByTimes { made, places } = SharedByTimes::of(series, make);
         Some(Self { made: made.into_iter().collect::<Option<_>>()?, places })
     }
 
@@ -75,8 +75,8 @@ impl<T> OfTimes<T> {
     }
 
     /// What each becomes.
-    pub(super) fn map<U>(self, of: impl Fn(T) -> U) -> OfTimes<U> {
-        OfTimes { made: self.made.into_iter().map(of).collect(), places: self.places }
+    pub(super) fn map<U>(self, of: impl Fn(T) -> U) -> SharedByTimes<U> {
+        SharedByTimes { made: self.made.into_iter().map(of).collect(), places: self.places }
     }
 
     /// That of each series.
@@ -135,7 +135,7 @@ impl Normal {
 /// The linear problem at given modes, solved.
 pub(super) struct Projected {
     modes: Vec<Oscillation>,
-    normals: OfTimes<Normal>,
+    normals: SharedByTimes<Normal>,
     /// Best linear coefficients of each series and what they leave.
     pub solved: Vec<(DVector<f64>, DVector<f64>)>,
 }
@@ -143,7 +143,7 @@ pub(super) struct Projected {
 impl Projected {
     /// `None` where a series has fewer than two points over.
     pub fn new(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Self> {
-        let normals = OfTimes::new(series, |s| Normal::new(s, &modes, form))?;
+        let normals = SharedByTimes::new(series, |s| Normal::new(s, &modes, form))?;
         let solved = series.iter().zip(normals.each()).map(|(s, normal)| normal.solve(&s.value)).collect();
         Some(Self { modes, normals, solved })
     }

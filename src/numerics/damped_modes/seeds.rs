@@ -1,7 +1,7 @@
 //! A further mode sought among many that are tried.
 
 use super::drive::{Drive, Form};
-use super::projection::{OfTimes, columns, mode_columns};
+use super::projection::{SharedByTimes, columns, mode_columns};
 use super::ringing::even_ringing;
 use super::series::{Oscillation, Series};
 use crate::numerics::{as_f64, reduce};
@@ -21,7 +21,7 @@ pub struct Seeds {
     band_hz: (f64, f64),
     modes: Vec<Oscillation>,
     series: Vec<Series>,
-    tried: OfTimes<Tried>,
+    tried: SharedByTimes<Tried>,
 }
 
 /// The modes at the same times.
@@ -44,7 +44,7 @@ impl Seeds {
             frequency_hz *= 1.07;
         }
         let series: Vec<Series> = series.iter().map(coarse).collect();
-        let tried = OfTimes::of(&series, |s| Tried::new(s, &modes, form));
+        let tried = SharedByTimes::of(&series, |s| Tried::new(s, &modes, form));
         Self { band_hz, modes, series, tried }
     }
 

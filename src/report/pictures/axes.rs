@@ -6,9 +6,10 @@ use super::panel::{AxisScale, Curve, Dash, GREY, INK, Mark, Panel, PanelAxis, WI
 use super::svg::{Anchor, Svg};
 use std::ops::Range;
 
-/// Height of a row of the marks' words.
-/// Of so many units of x a line keeps the lowest and the highest point: a pixel and a half of the page, 0.3 mm of paper.
+/// A line keeps the lowest and the highest point of each column so many units wide: a pixel and a half of the page, 0.3 mm
+/// of paper.
 const COLUMN: f64 = 3.0;
+/// Height of a row of the marks' words.
 const MARK_ROW: f64 = 34.0;
 /// Room for the ticks and the label of the axes.
 const LEFT: f64 = 130.0;

@@ -15,7 +15,7 @@ const FEWEST: usize = 64;
 /// Means of as many neighbouring samples of each signal as leave it [`ENOUGH_HZ`], and this rate, Hz: their sum, which is the velocity, is that of the samples   (27b)
 ///
 /// All signals as they are where one of them is clipped or has gaps: both are told to the sample.
-pub(super) fn thinned(signals: &[Signal], least_hz: f64) -> Cow<'_, [Signal]> {
+pub(super) fn decimated(signals: &[Signal], least_hz: f64) -> Cow<'_, [Signal]> {
     let block = |s: &Signal| block_of(least_hz.max(ENOUGH_HZ), s.sample_rate_hz);
     let is_whole = |s: &Signal| s.clipped.is_empty() && s.gaps.is_empty();
     if signals.iter().all(is_whole) && signals.iter().any(|s| block(s) > 1) {
@@ -110,18 +110,18 @@ mod tests {
         let whole = signal(|_| 0.0);
         let at = |sample_rate_hz: f64| Signal { sample_rate_hz, ..whole.clone() };
         let span = vec![Span { from: 3, to: 5 }];
-        let is_thinned = |signals: &[Signal]| matches!(thinned(signals, 0.0), Cow::Owned(_));
-        assert!(is_thinned(&[whole.clone(), at(2e5), at(1e4)]));
-        assert!(!is_thinned(&[at(1.9e5), at(1e4)]));
-        assert!(!is_thinned(&[whole.clone(), Signal { clipped: span.clone(), ..whole.clone() }]));
-        assert!(!is_thinned(&[whole.clone(), Signal { gaps: span, ..whole }]));
+        let is_decimated = |signals: &[Signal]| matches!(decimated(signals, 0.0), Cow::Owned(_));
+        assert!(is_decimated(&[whole.clone(), at(2e5), at(1e4)]));
+        assert!(!is_decimated(&[at(1.9e5), at(1e4)]));
+        assert!(!is_decimated(&[whole.clone(), Signal { clipped: span.clone(), ..whole.clone() }]));
+        assert!(!is_decimated(&[whole.clone(), Signal { gaps: span, ..whole }]));
     }
 
     #[test]
     fn means_hold_slow_noise_and_less_of_fast_noise() {
         let slow = signal(|t| 2.0_f64.sqrt() * (2.0 * PI * 60.0 * t).sin());
         let fast = signal(|t| 2.0_f64.sqrt() * (2.0 * PI * 1e5 * (t + 1e-6)).sin());
-        let noise = |signal: Signal| thinned(&[signal], 0.0)[0].noise_m_s2;
+        let noise = |signal: Signal| decimated(&[signal], 0.0)[0].noise_m_s2;
         assert!((noise(slow.clone()) - 1.0).abs() < 0.01);
         // A period is five samples.
         assert!(noise(fast) < 1e-6);

@@ -53,7 +53,7 @@ fn found(signals: &[Signal]) -> Vec<(IssueCode, Option<String>)> {
         slap_down: Some(At::exactly(0.09)),
         ..Events::default()
     };
-    judge_worth(signals, &events, &cask_file()).into_iter().map(|i| (i.code, i.channel)).collect()
+    judge_by_themselves(signals, &events, &cask_file()).into_iter().map(|i| (i.code, i.channel)).collect()
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn noise_that_moves_the_velocity_is_named() {
             slap_down: Some(At::exactly(0.09)),
             ..Events::default()
         };
-        judge_worth(noisy, &events, &cask_file()).first().map(|i| (i.code, i.severity))
+        judge_by_themselves(noisy, &events, &cask_file()).first().map(|i| (i.code, i.severity))
     };
     noisy[0].noise_spectrum = vec![(10.0, 0.04), (5000.0, 0.04)];
     assert_eq!(severity(&noisy), None);
@@ -107,7 +107,7 @@ fn a_record_that_begins_in_the_impact_is_named() {
         let mut events =
             Events { first_contact: Some(At::exactly(late[0].start_s.max(0.02))), ..Events::default() };
         events.separation = Some(At::exactly(0.025));
-        let findings = judge_worth(&late, &events, &cask_file());
+        let findings = judge_by_themselves(&late, &events, &cask_file());
         assert_eq!(findings.iter().filter(|i| i.severity == Severity::Error).count(), wanted, "{findings:?}");
     }
 }

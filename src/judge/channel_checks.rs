@@ -8,24 +8,24 @@ use crate::numerics::reduce;
 
 /// Standard uncertainty of the velocity from noise alone that leaves little of a result, as a share of v0: ± 10 %.
 const MOST_NOISE: f64 = 0.05;
-/// … and that is worth a note: as much as everything else that the interval carries.
+/// Noise that deserves a note: as much as everything else that the interval carries.
 const NOTABLE_NOISE: f64 = 0.005;
 /// Longest integration that noise is held against, s: contact and the window of the flight's fit.
 const LONGEST_S: f64 = 0.1;
 /// A sensor sits on the cask within this, m: its bolt and the tape's hook.
 const SLACK_M: f64 = 0.05;
-/// A record that begins with this share of the first peak begins in the impact.
+/// A recording whose first sample exceeds this share of the first peak began during the impact.
 const UNDER_WAY: f64 = 0.1;
 /// Factors between units that are taken for one another: g and m/s², V and mV.
 const UNITS: [(f64, &str); 2] = [(STANDARD_GRAVITY_M_S2, "g and m/s²"), (1000.0, "V and mV, or g and mg")];
 /// Two measuring chains of one kind and unit have the same noise within this share.
 const ALIKE: f64 = 0.2;
-/// Peaks of two channels in one unit differ by less than this factor: noise of 9.8 times and peaks of more than 9.8 / 3 times those of another
-/// channel are g taken for m/s².
+/// Taking g for m/s² scales noise and peaks by 9.8. Two channels in the same unit whose peaks differ by less than this
+/// factor are not suspected: peaks of 9.8 / 3 times another's, with 9.8 times its noise, are.
 const PEAKS: f64 = 3.0;
 
 /// Checks of each channel by itself and against the others, beside those of its samples over the impact.
-pub(super) fn judge_worth(signals: &[Signal], events: &Events, cask_file: &CaskFile) -> Vec<Finding> {
+pub(super) fn judge_by_themselves(signals: &[Signal], events: &Events, cask_file: &CaskFile) -> Vec<Finding> {
     let mut findings = places(signals, cask_file);
     for signal in signals {
         findings.extend(noisy(signal, events, cask_file.drop.impact_velocity_m_s));

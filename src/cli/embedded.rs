@@ -1,6 +1,6 @@
-//! The words of another program to what a command says of them, which it hands back in place of writing it.
+//! Entry points for another program (the Python module): a command line to its result, which is returned instead of printed.
 
-use super::{Command, CommandLine, analyze, predict, record};
+use super::{Command, CommandLine, analyze, predict, rerun};
 use crate::data::{Analysis, HeldSamples};
 use crate::{ingest, report};
 use clap::Parser;
@@ -26,7 +26,8 @@ fn not(what: &str) -> miette::Report {
     miette::miette!("the words are not those of `{what}`")
 }
 
-/// What `analyze` says to these words, of `held` in place of a file where there are samples: of those no command line makes the same.
+/// The analysis that this command line asks for. `held` replaces the recording by samples in memory; the result then
+/// states no command to run it again, since none makes the same.
 ///
 /// # Errors
 /// What the command complains of.
@@ -34,7 +35,7 @@ pub fn analysis(words: &[OsString], held: Option<&[HeldSamples]>) -> miette::Res
     let Command::Analyze(arguments) = command(words)? else { return Err(not("analyze")) };
     let mut analysis = analyze::analysis(&arguments, held)?;
     let words = words.iter().map(|word| word.to_string_lossy().into_owned());
-    record::stamp(&mut analysis.result, words.filter(|_| held.is_none()).collect())?;
+    rerun::stamp(&mut analysis.result, words.filter(|_| held.is_none()).collect())?;
     Ok(analysis)
 }
 

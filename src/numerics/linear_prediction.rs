@@ -1,9 +1,9 @@
-//! A series to how far each of its values lies off what the values before it foretell.
+//! A series to the difference between each value and the one predicted linearly from the values before it (a robust fit).
 
 use super::{as_f64, reduce, robust};
 use nalgebra::{DMatrix, DVector};
 
-/// Values before it that one is foretold by at the most: an offset and three damped sines need seven, noise and filters on them more.
+/// Values before it that one is predicted from at the most: an offset and three damped sines need seven, noise and filters on them more.
 pub const MOST_BEFORE: usize = 12;
 /// Values of the series to each of these at the least, so that few of them are not fitted to the noise.
 const VALUES_EACH: usize = 8;
@@ -18,10 +18,10 @@ const RIDGE: f64 = 1e-12;
 
 /// What a series leaves of itself.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Foretold {
+pub struct LinearPrediction {
     /// How many values at its beginning have too few before them.
     pub before: usize,
-    /// Each other value less what is foretold.
+    /// Each other value less its prediction.
     pub left: Vec<f64>,
     /// Standard deviation of that by the median, for as many unknowns as were fitted.
     pub spread: f64,
@@ -31,7 +31,7 @@ pub struct Foretold {
 
 /// x_i = c + Σ_k a_k x_(i−k) + e_i   (21c), c and a by least squares in which wild e_i count little; `None` for too short a series.
 #[must_use]
-pub fn foretell(values: &[f64]) -> Option<Foretold> {
+pub fn predict_linearly(values: &[f64]) -> Option<LinearPrediction> {
     let before = (values.len() / VALUES_EACH).min(MOST_BEFORE);
     if before < LEAST_BEFORE {
         return None;
@@ -61,7 +61,7 @@ pub fn foretell(values: &[f64]) -> Option<Foretold> {
         }
     }
     let gain = (1.0 + solved.iter().skip(1).map(|a| a * a).sum::<f64>()).sqrt();
-    Some(Foretold { before, left, spread, gain })
+    Some(LinearPrediction { before, left, spread, gain })
 }
 
 /// The shares of the columns that leave least of the target, each row by its weight.
@@ -101,14 +101,14 @@ mod tests {
         3.0 + mode(80.0, 200.0) + mode(310.0, 90.0) + noise(i)
     }
 
-    fn largest(found: &Foretold) -> (usize, f64) {
+    fn largest(found: &LinearPrediction) -> (usize, f64) {
         let far = found.left.iter().map(|l| l.abs() / found.spread).enumerate();
         far.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, far)| (i + found.before, far)).expect("a value")
     }
 
     #[test]
     fn damped_sines_foretell_themselves() {
-        let found = foretell(&(0..480).map(ringing).collect::<Vec<_>>()).expect("long enough");
+        let found = predict_linearly(&(0..480).map(ringing).collect::<Vec<_>>()).expect("long enough");
         // Noise of 0.29 and what the twelve values before carry of it; of 468 normal values the largest is 3 spreads off.
         assert!(found.spread < 0.29 * found.gain && found.spread > 0.25, "{found:?}");
         assert!(largest(&found).1 < 5.0, "{:?}", largest(&found));
@@ -121,14 +121,14 @@ mod tests {
             if (200..216).contains(&i) { 30.0 * (f64::from(i - 200) * TAU / 32.0).sin() } else { 0.0 }
         };
         let values: Vec<f64> = (0..480).map(|i| ringing(i) + blow(i)).collect();
-        let (at, far) = largest(&foretell(&values).expect("long enough"));
+        let (at, far) = largest(&predict_linearly(&values).expect("long enough"));
         assert!((199..219).contains(&at) && far > 9.0, "{at} {far}");
     }
 
     #[test]
     fn neither_too_few_values_nor_none_that_differ_are_a_fault() {
-        assert!(foretell(&[1.0; 31]).is_none());
-        let flat = foretell(&[1.0; 200]).expect("long enough");
+        assert!(predict_linearly(&[1.0; 31]).is_none());
+        let flat = predict_linearly(&[1.0; 200]).expect("long enough");
         assert!(flat.left.iter().all(|l| l.abs() < 1e-6), "{flat:?}");
     }
 }

@@ -9,7 +9,7 @@ const SYSTEM: &str =
 const CROSSROADS: &str = "/dev /home /media /mnt /opt /root /run /srv /var /usr/local /Users";
 
 /// Whether the files of a report in `folder`, which exists, would mix with a system's or lie about in the user's home.
-pub fn is_shared(folder: &Path) -> bool {
+pub fn is_protected(folder: &Path) -> bool {
     let Ok(real) = folder.canonicalize() else { return false };
     let home = std::env::home_dir().and_then(|home| home.canonicalize().ok());
     real.parent().is_none()
@@ -23,12 +23,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn systems_folders_are_shared_and_a_folder_of_its_own_is_not() {
+    fn systems_folders_are_protected_and_a_folder_of_its_own_is_not() {
         for folder in ["/", "/usr", "/usr/bin", "/etc", "/bin", "/usr/bin/..", "/dev", "/home", "/var"] {
-            assert!(!Path::new(folder).exists() || is_shared(Path::new(folder)), "{folder}");
+            assert!(!Path::new(folder).exists() || is_protected(Path::new(folder)), "{folder}");
         }
-        assert!(std::env::home_dir().is_none_or(|home| !home.exists() || is_shared(&home)));
+        assert!(std::env::home_dir().is_none_or(|home| !home.exists() || is_protected(&home)));
         let own = tempfile::tempdir().unwrap();
-        assert!(!is_shared(own.path()) && !is_shared(&own.path().join("none")));
+        assert!(!is_protected(own.path()) && !is_protected(&own.path().join("none")));
     }
 }
