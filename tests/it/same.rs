@@ -5,6 +5,7 @@
 //! did, bless at the commit before it. Every scene is held with `cargo test --release --test it same -- --ignored`.
 
 use crate::run::{analyze, dropcheck, fixture};
+use crate::stored::stored;
 use dropcheck::ingest::{self, IngestError};
 use dropcheck::lab::data::SceneNumber;
 use dropcheck::lab::report::SyntheticFormat;
@@ -237,11 +238,10 @@ fn the_corpus() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut all = Vec::new();
     for target in ["csv", "mcap", "cask", "scene"] {
-        let entries = fs::read_dir(fixture("corpus").join(target)).expect("a corpus").flatten();
-        let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
-        paths.sort();
-        for path in paths {
-            let name = format!("{target}/{}", path.file_name().expect("a name").to_string_lossy());
+        fs::create_dir(folder.path().join(target)).expect("a temporary folder");
+        for (name, bytes) in stored(&format!("corpus/{target}.jsonl")) {
+            let path = folder.path().join(&name);
+            fs::write(&path, bytes).expect("a temporary file");
             let cask = folder.path().join("cask.toml");
             all.push(match target {
                 "cask" => said(name, &fixture("anf18-json.mcap"), &path),
