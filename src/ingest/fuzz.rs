@@ -67,7 +67,7 @@ fn messages(bytes: &[u8]) {
 
 /// Bytes as what the process answers that takes an HDF5 file apart; packed datasets are read from a sound file.
 fn answer(bytes: &[u8]) {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/vhlw-rest.h5"));
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/examples/vhlw-rest.h5"));
     let limits = Limits::of_memory(0);
     hdf5::answer_by(bytes);
     let _ = hdf5::list(path, limits, &|_| ());

@@ -2,7 +2,7 @@
 //!
 //! `BLESS=1 cargo test --test it -- odd::` writes the outcomes anew; read the difference before committing it.
 
-use crate::run::fixture;
+use crate::run::fixtures;
 use crate::same::{cask, hash, hash_of, placeless, told};
 use crate::stored::stored;
 use dropcheck::data::{Channel, Finding};
@@ -135,7 +135,7 @@ fn unpacked(packed: &[u8]) -> Vec<u8> {
 #[test]
 fn odd_files_are_read_or_refused_as_written_down() {
     ingest::read_hdf5_with(Path::new(env!("CARGO_BIN_EXE_dropcheck")));
-    let cases = fs::read_to_string(fixture("odd/cases.toml")).expect("cases");
+    let cases = fs::read_to_string(fixtures().join("odd/cases.toml")).expect("cases");
     let Cases { case: cases } = toml::from_str(&cases).expect("cases as told at their head");
     let files: BTreeMap<String, Vec<u8>> = STORES.into_iter().flat_map(stored).collect();
     let asked: BTreeSet<&String> = cases.iter().map(|case| &case.file).collect();
@@ -144,7 +144,7 @@ fn odd_files_are_read_or_refused_as_written_down() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut earlier = String::new();
     let found: String = cases.iter().map(|case| outcome(case, &files, folder.path(), &mut earlier)).collect();
-    let path = fixture("odd/outcomes.txt");
+    let path = fixtures().join("odd/outcomes.txt");
     if std::env::var_os("BLESS").is_some() {
         fs::write(&path, &found).expect("fixtures/odd can be written");
     }

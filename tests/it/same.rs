@@ -4,7 +4,7 @@
 //! tables anew and keeps the whole answers in the target folder: a later run shows against them what differs in each. To see what a change
 //! did, bless at the commit before it. Every scene is held with `cargo test --release --test it same -- --ignored`.
 
-use crate::run::{analyze, dropcheck, fixture};
+use crate::run::{analyze, dropcheck, fixture, fixtures};
 use crate::stored::stored;
 use dropcheck::ingest::{self, IngestError};
 use dropcheck::lab::data::SceneNumber;
@@ -187,8 +187,9 @@ fn hold(table: &str, said: &[Said]) {
 #[test]
 fn the_fixtures_by_the_program() {
     let mut names: Vec<PathBuf> =
-        fs::read_dir(fixture(".")).expect("fixtures").flatten().map(|e| e.path()).collect();
-    names.sort();
+        fs::read_dir(fixture(".")).expect("examples").flatten().map(|e| e.path()).collect();
+    names.push(fixtures().join("reference/stored-by-hdf5-2.h5"));
+    names.sort_by(|a, b| a.file_name().cmp(&b.file_name()));
     let is_recording =
         |path: &&PathBuf| path.extension().is_some_and(|e| ["mcap", "h5", "csv"].iter().any(|r| e == *r));
     let said: Vec<Said> = names
