@@ -19,7 +19,7 @@ PROGRAM = ROOT / "target/release/dropcheck"
 
 
 def made(folder, count):
-    scene = (ROOT / "fixtures/scene-anf18.toml").read_text().replace("sample_rate_hz = 25000", "sample_rate_hz = 500000")
+    scene = (ROOT / "fixtures/examples/scene-anf18.toml").read_text().replace("sample_rate_hz = 25000", "sample_rate_hz = 500000")
     (folder / "drop.scene.toml").write_text(scene)
     first = folder / "drop.mcap"
     subprocess.run([PROGRAM, "synth", folder / "drop.scene.toml", "--encoding", "protobuf", "--out", first],

@@ -1,7 +1,7 @@
 """From recordings of growing size to a chart and a table: how dropcheck's time and memory grow with samples, channels and file size.
 
     cargo build --release
-    pip install -r fixtures/requirements.txt matplotlib
+    pip install -r fixtures/reference/requirements.txt matplotlib
     python3 benches/growth.py                  # docs/growth.svg and a table, some minutes
     python3 benches/growth.py --large 4e9      # also two files of 4 GB with 64 channels, two of them analysed
 
@@ -48,7 +48,7 @@ def write_hdf5(path, count, others, seed=5):
 
 def write_mcap(path, count, others, block=10_000, seed=5):
     """The same as protobuf blocks in chunks of 4 MiB with zstd, the channels in turn."""
-    sys.path.insert(0, str(whole.ROOT / "fixtures"))
+    sys.path.insert(0, str(whole.ROOT / "fixtures/reference"))
     import formats
     import numpy as np
 

@@ -1,7 +1,7 @@
 """From recordings of 1e5 to 1e7 samples a channel to a table of time and memory: dropcheck beside a numpy script.
 
     cargo build --release
-    pip install -r fixtures/requirements.txt pandas mcap-protobuf-support
+    pip install -r fixtures/reference/requirements.txt pandas mcap-protobuf-support
     python3 benches/whole_process.py                     # all sizes, five rounds, files kept in target/whole_process
     python3 benches/whole_process.py --sizes 1e6 --rounds 9 --out
 
@@ -73,7 +73,7 @@ def peer(path):
 
 def make(folder, count):
     """One drop of the fixtures' ANF-18 in the middle of `count` samples, in every format; kept for the next run."""
-    sys.path.insert(0, str(ROOT / "fixtures"))
+    sys.path.insert(0, str(ROOT / "fixtures/reference"))
     import formats
     import numpy as np
     from generate import ANF18, scene

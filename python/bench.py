@@ -15,7 +15,7 @@ from time import perf_counter
 import dropcheck
 import numpy as np
 
-SCENE = Path(__file__).resolve().parents[1] / "fixtures" / "scene-anf18.toml"
+SCENE = Path(__file__).resolve().parents[1] / "fixtures" / "examples" / "scene-anf18.toml"
 SAMPLES = 100_000
 ROUNDS = 15
 

@@ -1,4 +1,4 @@
-"""What every test needs: the fixtures, and the command that the wheel installed."""
+"""What every test needs: the examples, and the command that the wheel installed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-FIXTURES = ROOT / "fixtures"
+EXAMPLES = ROOT / "fixtures" / "examples"
 Command = Callable[..., subprocess.CompletedProcess[bytes]]
 
 

@@ -11,7 +11,7 @@ import dropcheck
 import nptdms
 import numpy as np
 import pytest
-from conftest import FIXTURES
+from conftest import EXAMPLES
 from dropcheck import Samples
 from numpy.typing import NDArray
 
@@ -46,7 +46,7 @@ RATE
 def samples(tmp_path_factory: pytest.TempPathFactory) -> dict[str, NDArray[np.float64]]:
     """Both channels of a drop, g, at `RATE_HZ`."""
     path = tmp_path_factory.mktemp("drop") / "drop.csv"
-    scene = (FIXTURES / "scene-anf18.toml").read_text()
+    scene = (EXAMPLES / "scene-anf18.toml").read_text()
     (path.parent / "scene.toml").write_text(scene)
     dropcheck.synth(path.parent / "scene.toml", path)
     table = np.genfromtxt(path, delimiter=",", names=True)

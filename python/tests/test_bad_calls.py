@@ -10,13 +10,13 @@ from typing import Any
 import dropcheck
 import numpy as np
 import pytest
-from conftest import FIXTURES
+from conftest import EXAMPLES
 from dropcheck import Samples
 
-RECORDING, CASK = FIXTURES / "anf10-plain.csv", FIXTURES / "anf10-plain.toml"
+RECORDING, CASK = EXAMPLES / "anf10-plain.csv", EXAMPLES / "anf10-plain.toml"
 GOOD = Samples(np.zeros(100), rate_hz=1e4, unit="g")
 
-NO_PATHS: list[Any] = [None, 5, 1.5, [], {"x": 1}.items(), object(), (), b"\xff\xfe", "", "\0", "none.mcap", FIXTURES, "-", "-x"]
+NO_PATHS: list[Any] = [None, 5, 1.5, [], {"x": 1}.items(), object(), (), b"\xff\xfe", "", "\0", "none.mcap", EXAMPLES, "-", "-x"]
 NO_NUMBERS: list[Any] = ["text", "0.5", None, b"1", [1], {}, 1j, True, float("nan"), float("inf"), -1, 10**400, 0]
 NO_ARRAYS: list[Any] = [None, "text", 5, [], [1.0], [[1.0, 2.0]], [1j], ["a"], [None], np.zeros((3, 3)), [True, False], object(),
                         np.array(["2026-01-01"], dtype="M8[s]"), [1.0, [2.0]], np.full(9, np.nan), np.zeros(0), {}, np.ma.masked_invalid([np.nan] * 5)]  # fmt: skip
@@ -46,7 +46,7 @@ CALLS: list[Callable[[], object]] = [
     lambda: dropcheck.analyze(RECORDING, RECORDING),
     lambda: Samples(np.zeros(9), 1e4),  # type: ignore[call-arg]
     lambda: Samples(np.zeros(9), unit=5),  # type: ignore[arg-type]
-    lambda: dropcheck.synth(FIXTURES / "scene-anf18.toml", "drop.txt"),
+    lambda: dropcheck.synth(EXAMPLES / "scene-anf18.toml", "drop.txt"),
     lambda: dropcheck.analyze(RECORDING, CASK).write("/etc"),
 ]
 

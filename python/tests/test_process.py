@@ -14,9 +14,9 @@ import dropcheck
 import h5py
 import numpy as np
 import pytest
-from conftest import FIXTURES, Command
+from conftest import EXAMPLES, Command
 
-RECORDING, CASK = FIXTURES / "vhlw-rest.h5", FIXTURES / "vhlw-rest.toml"
+RECORDING, CASK = EXAMPLES / "vhlw-rest.h5", EXAMPLES / "vhlw-rest.toml"
 
 
 def test_beside_h5py(tmp_path: Path) -> None:

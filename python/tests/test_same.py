@@ -11,9 +11,9 @@ from pathlib import Path
 import dropcheck
 import numpy as np
 import pytest
-from conftest import FIXTURES, Command
+from conftest import EXAMPLES, Command
 
-RECORDINGS = sorted(p for p in FIXTURES.iterdir() if p.suffix in {".mcap", ".h5", ".csv"} and p.with_suffix(".toml").exists())
+RECORDINGS = sorted(p for p in EXAMPLES.iterdir() if p.suffix in {".mcap", ".h5", ".csv"} and p.with_suffix(".toml").exists())
 
 
 @pytest.mark.parametrize("recording", RECORDINGS, ids=lambda path: path.name)
@@ -27,8 +27,8 @@ def test_a_result_is_the_commands_json(recording: Path, command: Command) -> Non
 
 
 def test_the_fields_of_a_result() -> None:
-    result = dropcheck.analyze(FIXTURES / "anf18-json.mcap", str(FIXTURES / "anf18-json.toml"))
-    truth = json.loads((FIXTURES / "anf18-json.truth.json").read_text())
+    result = dropcheck.analyze(EXAMPLES / "anf18-json.mcap", str(EXAMPLES / "anf18-json.toml"))
+    truth = json.loads((EXAMPLES.parent / "reference" / "anf18-json.truth.json").read_text())
     speed, k = result.slap_down.speed, result.k
     assert result.verdict == "pass" and speed is not None and k is not None
     assert abs(speed.value - truth["speed"]) < speed.u95 and speed.unit == "m/s"
@@ -45,7 +45,7 @@ def test_the_fields_of_a_result() -> None:
 
 
 def test_curves_are_arrays() -> None:
-    result = dropcheck.analyze(FIXTURES / "anf18-json.mcap", FIXTURES / "anf18-json.toml")
+    result = dropcheck.analyze(EXAMPLES / "anf18-json.mcap", EXAMPLES / "anf18-json.toml")
     curves, table = result.curves, result.curves_frame()
     assert {"A1", "A1.time_s", "A1.filtered_m_s2", "A1.velocity_m_s"} <= curves.keys()
     for name, curve in curves.items():
@@ -58,7 +58,7 @@ def test_curves_are_arrays() -> None:
 
 
 def test_a_report_is_that_of_the_command(tmp_path: Path, command: Command) -> None:
-    recording, cask = FIXTURES / "vhlw-rest.h5", FIXTURES / "vhlw-rest.toml"
+    recording, cask = EXAMPLES / "vhlw-rest.h5", EXAMPLES / "vhlw-rest.toml"
     dropcheck.analyze(recording, cask).write(tmp_path / "module")
     command("analyze", recording, "--cask", cask, "--out", tmp_path / "command")
     names = sorted(path.name for path in (tmp_path / "command").iterdir())
@@ -72,7 +72,7 @@ def test_a_report_is_that_of_the_command(tmp_path: Path, command: Command) -> No
 
 
 def test_predictions_and_listings_are_the_commands(command: Command) -> None:
-    cask, recording = FIXTURES / "anf18-json.toml", FIXTURES / "vhlw-rest.h5"
+    cask, recording = EXAMPLES / "anf18-json.toml", EXAMPLES / "vhlw-rest.h5"
     said = command("predict", "--cask", cask, "--json", "-").stdout
     assert dropcheck.predict(cask).to_json().encode() == said
     said = command("predict", "--cask", cask, "--angle", 20, "--contact", 0.4, "--sweep", "k=0:1:0.5", "--json", "-").stdout
@@ -85,7 +85,7 @@ def test_predictions_and_listings_are_the_commands(command: Command) -> None:
 
 
 def test_a_synthetic_recording_is_the_commands(tmp_path: Path, command: Command) -> None:
-    scene = FIXTURES / "scene-anf18.toml"
+    scene = EXAMPLES / "scene-anf18.toml"
     made = dropcheck.synth(scene, tmp_path / "module.csv", seed=7)
     command("synth", scene, "--out", tmp_path / "command.csv", "--seed", 7)
     assert (tmp_path / "module.csv").read_bytes() == (tmp_path / "command.csv").read_bytes()
@@ -94,7 +94,7 @@ def test_a_synthetic_recording_is_the_commands(tmp_path: Path, command: Command)
 
 
 def test_the_command_runs_in_the_module(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    recording, cask = str(FIXTURES / "anf18-json.mcap"), str(FIXTURES / "anf18-json.toml")
+    recording, cask = str(EXAMPLES / "anf18-json.mcap"), str(EXAMPLES / "anf18-json.toml")
     assert dropcheck.main(["inspect", recording]) == 0
     assert "a1" in capfd.readouterr().out
     assert dropcheck.main(["analyze", str(tmp_path / "none"), "--cask", cask]) == 2

@@ -1,4 +1,4 @@
-//! Bytes to each decoder, by the name of its folder in `fixtures/corpus`: `tests/fuzz` looks for harmful ones, the tests below replay
+//! Bytes to each decoder, by the name of its file in `fixtures/corpus`: `tests/fuzz` looks for harmful ones, the tests below replay
 //! what it kept.
 
 use super::{Limits, cask_file, csv, hdf5, mcap, number, time_base};
@@ -67,7 +67,7 @@ fn messages(bytes: &[u8]) {
 
 /// Bytes as what the process answers that takes an HDF5 file apart; packed datasets are read from a sound file.
 fn answer(bytes: &[u8]) {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/vhlw-rest.h5"));
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/examples/vhlw-rest.h5"));
     let limits = Limits::of_memory(0);
     hdf5::answer_by(bytes);
     let _ = hdf5::list(path, limits, &|_| ());
@@ -101,8 +101,14 @@ fn times(bytes: &[u8]) {
     let _ = time_base::from_blocks(&blocks, rate_hz, Samples::F32([1.0, f32::NAN, 3.0].repeat(blocks.len())));
 }
 
+/// Reads what is kept; the integration tests read it by the same file.
+#[cfg(test)]
+#[path = "../../tests/it/stored.rs"]
+mod stored;
+
 #[cfg(test)]
 mod tests {
+    use super::stored::stored;
     use super::*;
     use rand::rngs::ChaCha8Rng;
     use rand::{RngExt, SeedableRng};
@@ -117,11 +123,7 @@ mod tests {
     #[test]
     fn stored_inputs_and_their_mutants_do_no_harm() {
         for (target, decode) in TARGETS {
-            let folder = format!("{}/fixtures/corpus/{target}", env!("CARGO_MANIFEST_DIR"));
-            let mut paths: Vec<_> =
-                std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-            paths.sort();
-            let stored: Vec<Vec<u8>> = paths.iter().map(|path| std::fs::read(path).unwrap()).collect();
+            let stored: Vec<Vec<u8>> = stored(&format!("corpus/{target}.jsonl")).into_values().collect();
             let mut chance = ChaCha8Rng::seed_from_u64(1);
             let mutants = (0..MUTANTS).map(|_| mutant(&stored, &mut chance));
             for input in stored.iter().cloned().chain(mutants) {

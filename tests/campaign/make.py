@@ -14,7 +14,7 @@ import numpy as np
 from damages import KINDS, damage
 from scenes import draw_drop, record
 
-import formats  # from fixtures/, which `scenes` puts on the path
+import formats  # from fixtures/reference/, which `scenes` puts on the path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "fixtures"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "fixtures/reference"))
 from simulate import G0, Mode, Motion, Scene, crush_for, sensor, simulate  # noqa: E402
 
 GRAVITY_M_S2 = 9.81

@@ -177,7 +177,7 @@ fn a_cask_file_beside_a_recording_goes_before_that_of_the_words() {
     let casks: Vec<&str> =
         rows["recordings"].as_array().expect("rows").iter().filter_map(|row| row["cask"].as_str()).collect();
     assert!(
-        casks[0].ends_with("fixtures/anf18-json.toml")
+        casks[0].ends_with("fixtures/examples/anf18-json.toml")
             && casks[1] == series.path("damaged-gap.toml").to_string_lossy()
     );
 }

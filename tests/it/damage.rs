@@ -1,6 +1,6 @@
 //! From every fixture, damaged in every way that files get damaged, to a result that is right, doubtful or refused.
 
-use crate::run::{dropcheck, fixture, number, read_json};
+use crate::run::{dropcheck, fixture, number, read_json, truth};
 use dropcheck::{ingest, report};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -55,7 +55,7 @@ struct Subject {
 
 impl Subject {
     fn of(stem: &'static str) -> Self {
-        let truth = read_json(&fixture(&format!("{stem}.truth.json")));
+        let truth = truth(stem);
         let path = fixture(truth["recording"].as_str().expect("the recording's name"));
         let sound = in_child(&path, stem).expect("a sound fixture");
         Self { stem, bytes: std::fs::read(path).expect("a fixture"), sound, truth }

@@ -147,17 +147,17 @@ fn links_lead_somewhere() {
 #[test]
 fn what_the_pages_show_is_what_the_program_says() {
     let page = text(&root().join("README.md"));
-    let shown = answer(&page, "dropcheck analyze fixtures/anf18-json.mcap");
+    let shown = answer(&page, "dropcheck analyze fixtures/examples/anf18-json.mcap");
     let golden = text(&root().join("tests/golden/anf18-json.txt"));
     assert!(golden.starts_with(shown), "README.md shows another table than tests/golden/anf18-json.txt");
 
-    let words = "predict --cask fixtures/anf18-json.toml --k 0.5 --contact 0.4 --k-range 0.3:0.7 --friction-range 0.2:0.6";
+    let words = "predict --cask fixtures/examples/anf18-json.toml --k 0.5 --contact 0.4 --k-range 0.3:0.7 --friction-range 0.2:0.6";
     let page = text(&root().join("docs/predicting.md"));
     let shown = answer(&page, &format!("dropcheck {words}"));
-    let cask = root().join("fixtures/anf18-json.toml");
+    let cask = root().join("fixtures/examples/anf18-json.toml");
     let words: Vec<String> = words
         .split(' ')
-        .map(|word| word.replace("fixtures/anf18-json.toml", &cask.to_string_lossy()))
+        .map(|word| word.replace("fixtures/examples/anf18-json.toml", &cask.to_string_lossy()))
         .collect();
     let said = dropcheck(&words).stdout;
     assert!(said.starts_with(shown), "docs/predicting.md shows another table than the program:\n{said}");

@@ -1,6 +1,6 @@
 //! From each fixture to how far its analysis lies from the truth, and to what it says of damage.
 
-use crate::run::{Answer, analyze, fixture, number, read_json};
+use crate::run::{Answer, analyze, fixture, fixtures, number, truth};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ const BEYOND: f64 = 1.5;
 
 /// A fixture's answer, its result and its truth.
 fn run(stem: &str) -> (Answer, Value, Value) {
-    let truth = read_json(&fixture(&format!("{stem}.truth.json")));
+    let truth = truth(stem);
     let recording = truth["recording"].as_str().expect("the recording's name");
     let answer = analyze(&fixture(recording), &fixture(&format!("{stem}.toml")));
     let result = answer.json();
@@ -122,7 +122,7 @@ fn a_clipped_channel_is_named_and_does_not_pass() {
 
 #[test]
 fn a_gap_in_the_flight_is_named() {
-    let truth = read_json(&fixture("damaged-gap.truth.json"));
+    let truth = truth("damaged-gap");
     let result = damaged("damaged-gap", &["gap"]);
     // The impact itself is whole: where a speed is given, it holds the truth.
     if number(&result, "/slap_down/speed/value").is_some() {
@@ -132,7 +132,7 @@ fn a_gap_in_the_flight_is_named() {
 
 #[test]
 fn a_zero_shift_is_named_and_does_not_bend_the_result() {
-    let truth = read_json(&fixture("damaged-zero-shift.truth.json"));
+    let truth = truth("damaged-zero-shift");
     let result = damaged("damaged-zero-shift", &["zero_shift"]);
     near(&result, "/slap_down/speed", number(&truth, "/speed").expect("speed"), f64::INFINITY);
 }
@@ -141,7 +141,7 @@ fn a_zero_shift_is_named_and_does_not_bend_the_result() {
 fn a_truncated_file_yields_its_whole_messages() {
     let result = damaged("damaged-truncated", &["truncated"]);
     assert_ne!(result["verdict"], "pass");
-    let truth = read_json(&fixture("damaged-truncated.truth.json"));
+    let truth = truth("damaged-truncated");
     let speed = number(&truth, "/speed").expect("speed");
     near(&result, "/slap_down/speed", speed, SPEED * speed);
 }
@@ -156,7 +156,7 @@ fn a_record_that_ends_in_the_flight_has_no_slap_down() {
 #[test]
 fn every_fixture_is_tested() {
     let source = include_str!("fixtures.rs");
-    let folder = fixture("");
+    let folder = fixtures().join("reference");
     for entry in std::fs::read_dir(&folder).expect("fixtures").flatten() {
         let name = entry.file_name().to_string_lossy().into_owned();
         if let Some(stem) = name.strip_suffix(".truth.json") {
@@ -181,7 +181,7 @@ fn with_channel(stem: &str, which: usize, folder: &Path) -> PathBuf {
 
 #[test]
 fn one_end_alone_gives_the_first_impact_and_its_restitution() {
-    let truth = read_json(&fixture("anf18-json.truth.json"));
+    let truth = truth("anf18-json");
     let folder = tempfile::tempdir().expect("a folder");
     let answer = analyze(&fixture("anf18-json.mcap"), &with_channel("anf18-json", 0, folder.path()));
     let result = answer.json();
@@ -197,7 +197,7 @@ fn one_end_alone_gives_the_first_impact_and_its_restitution() {
 
 #[test]
 fn the_second_end_alone_gives_the_slap_down_too() {
-    let truth = read_json(&fixture("anf18-json.truth.json"));
+    let truth = truth("anf18-json");
     let folder = tempfile::tempdir().expect("a folder");
     let answer = analyze(&fixture("anf18-json.mcap"), &with_channel("anf18-json", 1, folder.path()));
     let result = answer.json();

@@ -18,9 +18,9 @@ fn analyze(stem: &str, extension: &str, more: &[&str]) -> String {
         .env("SOURCE_DATE_EPOCH", "0")
         .args([
             "analyze",
-            &format!("fixtures/{stem}.{extension}"),
+            &format!("fixtures/examples/{stem}.{extension}"),
             "--cask",
-            &format!("fixtures/{stem}.toml"),
+            &format!("fixtures/examples/{stem}.toml"),
         ])
         .args(more)
         .output()

@@ -1,6 +1,6 @@
 //! From HDF5 files that do harm, or say what is no UTF-8, to one message or what they mean, and nothing of any other file.
 
-use crate::run::{Answer, dropcheck, fixture};
+use crate::run::{Answer, dropcheck, fixture, fixtures};
 use hdf5_metno::types::{FixedAscii, FixedUnicode, VarLenAscii, VarLenUnicode};
 use hdf5_metno::{File, H5Type};
 use rand::rngs::ChaCha8Rng;
@@ -157,7 +157,7 @@ fn nothing_but_the_recording_is_read() {
 fn what_only_hdf5_2_stores_is_read() {
     let listing = dropcheck([
         "inspect".as_ref(),
-        fixture("stored-by-hdf5-2.h5").as_os_str(),
+        fixtures().join("reference/stored-by-hdf5-2.h5").as_os_str(),
         "--json".as_ref(),
         "-".as_ref(),
     ]);

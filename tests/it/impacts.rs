@@ -246,7 +246,7 @@ fn the_intervals_of_both_impacts_hold_the_truth() {
 
 #[test]
 fn a_second_simulation_says_the_same_of_both_impacts() {
-    // fixtures/impacts.py, which shares no line with this program.
+    // fixtures/reference/impacts.py, which shares no line with this program.
     let names = [
         "duration",
         "velocity_change",

@@ -29,6 +29,7 @@ mod same;
 mod short_flights;
 mod slips;
 mod stages;
+mod stored;
 mod synth;
 mod tidy;
 mod trial;

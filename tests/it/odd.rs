@@ -1,16 +1,20 @@
 //! From odd files, each with what a cask file asks of it, to what reading and listing say: the words of `fixtures/odd/outcomes.txt`.
 //!
-//! `BLESS=1 cargo test --test it odd` writes the outcomes anew; read the difference before committing it.
+//! `BLESS=1 cargo test --test it -- odd::` writes the outcomes anew; read the difference before committing it.
 
-use crate::run::fixture;
+use crate::run::fixtures;
 use crate::same::{cask, hash, hash_of, placeless, told};
+use crate::stored::stored;
 use dropcheck::data::{Channel, Finding};
 use dropcheck::ingest;
 use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+/// Where the odd files are stored: the small ones of each reader, and the large ones of all.
+const STORES: [&str; 4] = ["odd/csv.jsonl", "odd/hdf5.jsonl", "odd/mcap.jsonl", "odd/large.jsonl"];
 /// Listed sources that are shown; a hash stands for the others.
 const LISTED: usize = 6;
 /// Letters of a line that are shown; a hash stands for the others.
@@ -87,17 +91,15 @@ fn listing(recording: &Path) -> Vec<String> {
 }
 
 /// A case's outcome: a line of what is asked, the answers indented below.
-fn outcome(case: &Case, folder: &Path, earlier: &mut String) -> String {
-    let stored = fixture("odd").join(&case.file);
-    let recording = match case.file.strip_suffix(".gz") {
-        None => stored,
-        Some(name) => {
-            let packed = fs::read(&stored).unwrap_or_else(|error| panic!("{}: {error}", stored.display()));
-            let path = folder.join(name.rsplit('/').next().unwrap_or(name));
-            fs::write(&path, unpacked(&packed)).expect("a temporary file");
-            path
-        }
+fn outcome(case: &Case, files: &BTreeMap<String, Vec<u8>>, folder: &Path, earlier: &mut String) -> String {
+    let bytes = files.get(&case.file).unwrap_or_else(|| panic!("{} is not stored", case.file));
+    let name = case.file.rsplit('/').next().unwrap_or(&case.file);
+    let (name, bytes) = match name.strip_suffix(".gz") {
+        None => (name, bytes.clone()),
+        Some(name) => (name, unpacked(bytes)),
     };
+    let recording = folder.join(name);
+    fs::write(&recording, bytes).expect("a temporary file");
     let time = case
         .time
         .as_ref()
@@ -133,12 +135,16 @@ fn unpacked(packed: &[u8]) -> Vec<u8> {
 #[test]
 fn odd_files_are_read_or_refused_as_written_down() {
     ingest::read_hdf5_with(Path::new(env!("CARGO_BIN_EXE_dropcheck")));
-    let cases = fs::read_to_string(fixture("odd/cases.toml")).expect("cases");
+    let cases = fs::read_to_string(fixtures().join("odd/cases.toml")).expect("cases");
     let Cases { case: cases } = toml::from_str(&cases).expect("cases as told at their head");
+    let files: BTreeMap<String, Vec<u8>> = STORES.into_iter().flat_map(stored).collect();
+    let asked: BTreeSet<&String> = cases.iter().map(|case| &case.file).collect();
+    let unasked: Vec<&String> = files.keys().filter(|name| !asked.contains(name)).collect();
+    assert!(unasked.is_empty(), "odd/cases.toml asks nothing of {unasked:?}");
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut earlier = String::new();
-    let found: String = cases.iter().map(|case| outcome(case, folder.path(), &mut earlier)).collect();
-    let path = fixture("odd/outcomes.txt");
+    let found: String = cases.iter().map(|case| outcome(case, &files, folder.path(), &mut earlier)).collect();
+    let path = fixtures().join("odd/outcomes.txt");
     if std::env::var_os("BLESS").is_some() {
         fs::write(&path, &found).expect("fixtures/odd can be written");
     }

@@ -1,6 +1,6 @@
 //! From the reference values of independent programs to their distance from what the library says.
 
-use crate::run::{dropcheck, fixture, number, read_json};
+use crate::run::{dropcheck, fixtures, number, read_json};
 use dropcheck::data::{Body, BodyModel, Contact, Drop};
 use dropcheck::predict::predict;
 use dropcheck::stages::ZeroPhaseLowPass;
@@ -144,7 +144,7 @@ const TABLE_3: [[&str; 4]; 4] = [
 #[test]
 fn table_3_stands_beside_what_was_measured() {
     let speed = |stem: &str, model: &str, contact: &str, k: &str| {
-        let cask = fixture(&format!("paper/{stem}.toml"));
+        let cask = fixtures().join(format!("paper/{stem}.toml"));
         let words = ["predict", "--contact", contact, "--k", k, "--draws", "0", "--json", "-", "--cask"];
         let told = dropcheck(words.map(Into::into).into_iter().chain([cask.into_os_string()])).json();
         let row = list(&told, "predictions").iter().find(|row| row["model"] == model).cloned();

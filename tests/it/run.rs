@@ -51,9 +51,19 @@ impl Answer {
     }
 }
 
-/// A file of the fixtures.
+/// The folder of all fixtures.
+pub fn fixtures() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures")
+}
+
+/// An example of the fixtures: a recording, its cask file or a scene.
 pub fn fixture(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
+    fixtures().join("examples").join(name)
+}
+
+/// What the simulation knows of the example of that stem.
+pub fn truth(stem: &str) -> Value {
+    read_json(&fixtures().join(format!("reference/{stem}.truth.json")))
 }
 
 /// A JSON file below the project's root.

@@ -4,7 +4,8 @@
 //! tables anew and keeps the whole answers in the target folder: a later run shows against them what differs in each. To see what a change
 //! did, bless at the commit before it. Every scene is held with `cargo test --release --test it same -- --ignored`.
 
-use crate::run::{analyze, dropcheck, fixture};
+use crate::run::{analyze, dropcheck, fixture, fixtures};
+use crate::stored::stored;
 use dropcheck::ingest::{self, IngestError};
 use dropcheck::lab::data::SceneNumber;
 use dropcheck::lab::report::SyntheticFormat;
@@ -186,8 +187,9 @@ fn hold(table: &str, said: &[Said]) {
 #[test]
 fn the_fixtures_by_the_program() {
     let mut names: Vec<PathBuf> =
-        fs::read_dir(fixture(".")).expect("fixtures").flatten().map(|e| e.path()).collect();
-    names.sort();
+        fs::read_dir(fixture(".")).expect("examples").flatten().map(|e| e.path()).collect();
+    names.push(fixtures().join("reference/stored-by-hdf5-2.h5"));
+    names.sort_by(|a, b| a.file_name().cmp(&b.file_name()));
     let is_recording =
         |path: &&PathBuf| path.extension().is_some_and(|e| ["mcap", "h5", "csv"].iter().any(|r| e == *r));
     let said: Vec<Said> = names
@@ -237,11 +239,10 @@ fn the_corpus() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut all = Vec::new();
     for target in ["csv", "mcap", "cask", "scene"] {
-        let entries = fs::read_dir(fixture("corpus").join(target)).expect("a corpus").flatten();
-        let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
-        paths.sort();
-        for path in paths {
-            let name = format!("{target}/{}", path.file_name().expect("a name").to_string_lossy());
+        fs::create_dir(folder.path().join(target)).expect("a temporary folder");
+        for (name, bytes) in stored(&format!("corpus/{target}.jsonl")) {
+            let path = folder.path().join(&name);
+            fs::write(&path, bytes).expect("a temporary file");
             let cask = folder.path().join("cask.toml");
             all.push(match target {
                 "cask" => said(name, &fixture("anf18-json.mcap"), &path),

@@ -1,18 +1,14 @@
 //! The linear propagation of the uncertainty against draws of its inputs (JCGM 101), and the ladder on a committed recording.
 
+use crate::run::{fixture, truth};
 use dropcheck::data::{AssumedFriction, Contact, End, ReconstructionRung, Recording, Samples, Verdict};
 use dropcheck::{ingest, stages};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
-use std::path::Path;
 
 /// Draws: the standard deviation of 4000 is known to 1/√8000 = 1.1 %.
 const DRAWS: usize = 4000;
-
-fn fixture(name: &str) -> std::path::PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
-}
 
 #[test]
 fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
@@ -96,9 +92,7 @@ fn the_clock_contributes_what_another_rate_changes() {
 fn a_rate_off_by_less_than_the_stated_tolerance_leaves_the_truth_in_its_interval() {
     let mut file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
     let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
-    let truth: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(fixture("anf18-json.truth.json")).expect("a truth"))
-            .expect("JSON");
+    let truth = truth("anf18-json");
     // Off by a share, with a stated tolerance in percent: whether the intervals of k and speed hold the truth.
     let mut holds = |share: f64, clock_percent: f64| {
         file.tolerances.clock = clock_percent / 100.0;
@@ -173,9 +167,7 @@ fn what_clipping_took_of_the_impact_is_had_from_the_rest_of_the_motion() {
     }
     let cut = dropcheck::analyze(&recording, &file).result;
     assert_eq!(cut.verdict, Verdict::Fail, "a step is lost");
-    let truth: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(fixture("anf18-json.truth.json")).expect("a truth"))
-            .expect("JSON");
+    let truth = truth("anf18-json");
     let stated = [(cut.k, whole.k, "k"), (cut.slap_down.speed, whole.slap_down.speed, "speed")];
     for (cut, whole, key) in stated {
         let (cut, whole) = (cut.expect(key), whole.expect(key));

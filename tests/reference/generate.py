@@ -1,6 +1,6 @@
 """From independent programs (compliant simulation, scipy) to the reference values that the tests compare with.
 
-`python3 tests/reference/generate.py`, with the packages of `fixtures/requirements.txt`, rewrites the JSON files here.
+`python3 tests/reference/generate.py`, with the packages of `fixtures/reference/requirements.txt`, rewrites the JSON files here.
 """
 
 import json
@@ -13,7 +13,7 @@ from scipy import signal
 from scipy.integrate import quad
 
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parent.parent / "fixtures"))
+sys.path.insert(0, str(HERE.parent.parent / "fixtures/reference"))
 sys.dont_write_bytecode = True
 
 from simulate import Scene, crush_for, simulate  # noqa: E402

@@ -19,12 +19,12 @@ const FORM: &str = "a table a recording: [\"drop7.mcap\"], in it cask = \"drop7.
                     k = 0.51 or k = { value = 0.51, within = 0.02 }, slap_down_speed_m_s, angular_velocity_rad_s, flight_time_s, \
                     impact_velocity_m_s, predicted_speed_m_s";
 
-/// Recordings of `fixtures` and their cask files by their names.
+/// Recordings of `fixtures/examples` and their cask files by their names.
 macro_rules! fixtures {
     ($($stem:literal $ending:literal),*) => {
         [$(
-            (concat!($stem, $ending), include_bytes!(concat!("../../../fixtures/", $stem, $ending)).as_slice()),
-            (concat!($stem, ".toml"), include_bytes!(concat!("../../../fixtures/", $stem, ".toml")).as_slice()),
+            (concat!($stem, $ending), include_bytes!(concat!("../../../fixtures/examples/", $stem, $ending)).as_slice()),
+            (concat!($stem, ".toml"), include_bytes!(concat!("../../../fixtures/examples/", $stem, ".toml")).as_slice()),
         )*]
     };
 }
@@ -35,7 +35,7 @@ const OWN: [(&str, &[u8]); 22] = fixtures![
     "damaged-clipped" ".h5", "damaged-ends-early" ".csv", "damaged-gap" ".mcap", "damaged-truncated" ".mcap",
     "damaged-zero-shift" ".h5", "esbb-imu" ".mcap", "vhlw-rest" ".h5"
 ];
-const OWN_EXPECTED: &str = include_str!("../../../fixtures/reference.toml");
+const OWN_EXPECTED: &str = include_str!("../../../fixtures/examples/reference.toml");
 
 /// What is expected of a recording, as `reference.toml` says it.
 #[derive(Debug, Clone, Default, Deserialize)]

@@ -15,7 +15,7 @@ fn energy_j(scene: &Scene, motion: &SimulatedMotion, i: usize) -> f64 {
 
 #[test]
 fn the_fixture_simulated_in_another_language_is_met() {
-    // fixtures/anf18-json.truth.json, by fixed steps in Python.
+    // fixtures/reference/anf18-json.truth.json, by fixed steps in Python.
     let truth = simulate(&anf18()).truth;
     let near = |name: &str, value: Option<f64>, wanted: f64| {
         let value = value.expect(name);
