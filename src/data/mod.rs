@@ -27,8 +27,8 @@ mod tolerances;
 mod unit;
 
 pub use analysis::{
-    Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
-    ModelChoice, Program, Setting, SlapDown, Verdict,
+    Analysis, ChannelSummary, Comparison, DropResult, Events, Input, ModelCandidate, ModelChoice, Program,
+    Setting, Verdict,
 };
 pub use at::At;
 pub use cask::{
@@ -56,7 +56,7 @@ pub use motion::{
 };
 pub use onset::Onset;
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
-pub use quantities::{Contribution, Quantities};
+pub use quantities::{Contribution, FirstImpact, Quantities, SlapDown};
 pub use reconstruction::{
     Adjustment, Closure, ClosureKind, MET_U, MISSED_U, ReconstructionCandidate, ReconstructionChoice,
     ReconstructionRung, RestLevel, U_RELEASE_S,
