@@ -47,7 +47,7 @@ pub use finding::{
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
 pub use held::HeldSamples;
-pub use impacts::{ChannelPeak, ForceOverCrush, ImpactTable, RigidBodyDeceleration};
+pub use impacts::{ChannelPeak, ForceOverCrush, ImpactNumbers, ImpactTable, RigidBodyDeceleration};
 pub use keys::LONGEST_CONTACT_S;
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung};
 pub use listing::{ListedChannel, Listing};

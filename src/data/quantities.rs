@@ -63,6 +63,7 @@ macro_rules! named_numbers {
         }
     };
 }
+pub(super) use named_numbers;
 
 /// Declares the quantities once: those of the first impact, those of the slap-down, which are missing where there is none, and those that
 /// the result states beside both. The first two are parts of the result too, there with the time of the event.
