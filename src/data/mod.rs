@@ -15,6 +15,7 @@ mod ladder;
 mod listing;
 mod motion;
 mod onset;
+pub(crate) mod planar;
 mod prediction;
 mod quantities;
 mod reconstruction;
@@ -33,7 +34,7 @@ pub use analysis::{
 pub use at::At;
 pub use cask::{
     Axis, BENDING_WAVE_M_S, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice,
-    GRAZE_SHARE, MOST_CHANNELS, RowsOf, SAMPLE_RATES_HZ, Source, Unit, block_inertia_kg_m2, first_arm_m,
+    GRAZE_SHARE, MOST_CHANNELS, RowsOf, SAMPLE_RATES_HZ, Source, Unit, block_inertia_kg_m2,
 };
 pub(crate) use channel::is_number;
 pub use channel::{Channel, Samples, Span};
