@@ -6,8 +6,8 @@ use super::second::SecondImpact;
 use super::settle;
 use super::setup::{MIDDLE, U_UNKNOWN, sticking};
 use crate::data::{
-    AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, DropFinding, End, Events, Finding, FlightFit,
-    Motion, Quantities, ReconstructionChoice, Setup, Signal,
+    AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, Contribution, DropFinding, End, Events,
+    Finding, FlightFit, Motion, Quantities, ReconstructionChoice, Setup, Signal,
 };
 use crate::motion::{self, Integrated};
 use crate::{events, fit, judge};
@@ -21,6 +21,7 @@ pub(super) struct Flown {
     pub setup: Setup,
     pub motion: Motion,
     pub quantities: Quantities,
+    pub budget: Vec<Contribution>,
     pub reconstruction: ReconstructionChoice,
     pub tabulated: Option<Tabulated>,
 }
@@ -140,8 +141,8 @@ fn moved(
     let tabulated = impacts::tabulated(file, integrated, &taken, second.as_ref())
         .or_else(|| impacts::tabulated(file, integrated, &taken, None))
         .map(|t| if impact.stand_in.is_some() { t.without_course() } else { t });
-    let fit::RungTaken { quantities, choice: reconstruction, .. } = taken;
-    Some(Flown { flight, setup, motion, quantities, reconstruction, tabulated })
+    let fit::RungTaken { quantities, budget, choice: reconstruction, .. } = taken;
+    Some(Flown { flight, setup, motion, quantities, budget, reconstruction, tabulated })
 }
 
 /// How the axial velocity is had: measured, or by a friction that the cask file states or leaves open.

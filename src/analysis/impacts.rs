@@ -4,32 +4,12 @@ use super::second::SecondImpact;
 use super::settle;
 use crate::data::{
     Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, DropFinding, DropResult, End, Estimate, Events, Finding,
-    ForceOverCrush, ImpactTable, Motion, RigidBodyDeceleration, Signal,
+    ForceOverCrush, ImpactNumbers, ImpactTable, Motion, RigidBodyDeceleration, Signal,
 };
 use crate::fit::{COVERAGE, Inputs, RungTaken};
 use crate::motion::{self, ContactCourse, ForceCourse, Integrated, largest};
 
-/// Numbers of one contact, in this order.
-const COUNT: usize = 15;
-const DURATION: usize = 0;
-const GAINED: usize = 1;
-const IMPULSE_X: usize = 2;
-const IMPULSE_Z: usize = 3;
-const RESTITUTION: usize = 4;
-const FRICTION: usize = 5;
-const BEFORE: usize = 6;
-const AFTER: usize = 7;
-const ABSORBED: usize = 8;
-const CRUSH: usize = 9;
-const FORCE: usize = 10;
-const AT_COG: usize = 11;
-const AT_END: usize = 12;
-const TURNED: usize = 13;
-const RATIO: usize = 14;
-
-/// Numbers that follow the course of the force, not only what it gives in all.
-const OF_COURSE: [usize; 4] = [CRUSH, FORCE, AT_COG, AT_END];
-/// Standard uncertainty of these: so much of what other courses make of them, and of themselves for ringing as large as the velocity gained. With
+/// Standard uncertainty of the numbers that follow the course of the force: so much of what other courses make of them, and of themselves for ringing as large as the velocity gained. With
 /// it the intervals of 200 simulated drops hold what docs/uncertainty.md says.
 const OTHER_COURSES: [(ForceCourse, f64); 2] =
     [(ForceCourse::Translation, 0.25), (ForceCourse::HalfSine, 0.35)];
@@ -62,8 +42,10 @@ impl Tabulated {
     pub fn without_course(mut self) -> Self {
         for table in self.tables.iter_mut().flatten() {
             let deceleration = &mut table.rigid_body_deceleration;
-            (table.crush, table.force_peak, deceleration.at_cog, deceleration.at_struck_end) =
-                (None, None, None, None);
+            (deceleration.at_cog, deceleration.at_struck_end) = (None, None);
+            for number in table.numbers.of_course() {
+                *number = None;
+            }
             deceleration.others.clear();
             table.force_over_crush = ForceOverCrush::default();
         }
@@ -95,7 +77,10 @@ pub(super) fn of_result(
     let [of_first, of_second] = stretches_s;
     let table = with(told(0), End::First, first.time, of_first);
     [
-        ImpactTable { restitution: result.k, duration: first.duration, ..table },
+        ImpactTable {
+            numbers: ImpactNumbers { restitution: result.k, duration: first.duration, ..table.numbers },
+            ..table
+        },
         with(told(1), End::Second, second.time, of_second),
     ]
 }
@@ -132,11 +117,11 @@ pub(super) fn tabulated(
     let both = BothImpacts { file, integrated, second, cutoff_hz: low_pass(file).1 };
     let known = both.known(taken)?;
     let (first, after) = both.courses(&taken.taken, &both.unmoved(), ForceCourse::Rotation)?;
-    let of_second = known.get(COUNT + 1..).filter(|numbers| is_one_contact(numbers));
+    let of_second = known.get(1).filter(|numbers| is_one_contact(numbers));
     Some(Tabulated {
         left_s: second.map(|s| s.left.time_s),
         tables: [
-            Some(both.table(End::First, &first, &known[..=COUNT])),
+            Some(both.table(End::First, &first, known.first()?)),
             after.zip(of_second).map(|(course, numbers)| both.table(End::Second, &course, numbers)),
         ],
     })
@@ -169,66 +154,63 @@ impl BothImpacts<'_> {
     }
 
     /// The numbers of the first contact, then those of the second.
-    fn numbers(&self, inputs: &Inputs, by_u: &[f64], by: ForceCourse) -> Option<Vec<f64>> {
+    fn numbers(&self, inputs: &Inputs, by_u: &[f64], by: ForceCourse) -> Option<Vec<ImpactNumbers<f64>>> {
         let inertia_m2 = self.inertia_m2(inputs);
         let (first, second) = self.courses(inputs, by_u, by)?;
         let [before_m2_s2, _] = first.contact.kinetic_m2_s2(inertia_m2);
-        let of = |course: &Course| {
-            let mut numbers = read_off(course, inertia_m2, inputs.setup.gravity_m_s2, self.cutoff_hz);
-            numbers[RATIO] = numbers[BEFORE] / before_m2_s2;
-            numbers.push(numbers[ABSORBED] / before_m2_s2);
-            numbers
+        let numbers = |course: &Course| {
+            let read = read_off(course, inertia_m2, inputs.setup.gravity_m_s2, self.cutoff_hz);
+            ImpactNumbers {
+                energy_ratio: read.energy_before / before_m2_s2,
+                absorbed_ratio: read.energy_absorbed / before_m2_s2,
+                ..read
+            }
         };
-        Some([of(&first), second.as_ref().map(of).unwrap_or_default()].concat())
+        Some([Some(&first), second.as_ref()].into_iter().flatten().map(numbers).collect())
     }
 
     /// These with their standard uncertainties: what else could have told the course of the force says how well that is known.
-    fn known(&self, taken: &RungTaken) -> Option<Vec<(f64, f64)>> {
+    fn known(&self, taken: &RungTaken) -> Option<Vec<ImpactNumbers<(f64, f64)>>> {
         let unmoved = self.unmoved();
-        let of = |inputs: &Inputs, by_u: &[f64]| self.numbers(inputs, by_u, ForceCourse::Rotation);
-        let mut known = taken.spread(unmoved.len(), &of)?;
+        let flat = |inputs: &Inputs, by_u: &[f64]| {
+            let numbers = self.numbers(inputs, by_u, ForceCourse::Rotation)?;
+            Some(numbers.into_iter().flat_map(ImpactNumbers::into_array).collect())
+        };
+        let spread = taken.spread(unmoved.len(), &flat)?;
+        let by_name = |contact: &[(f64, f64)]| ImpactNumbers::from_fn(|i| contact[i]);
+        let mut known: Vec<_> = spread.chunks_exact(ImpactNumbers::COUNT).map(by_name).collect();
         let flights = [Some(&taken.taken.flight), self.second.map(|second| &second.flight)];
-        for (flight, own) in flights.into_iter().flatten().zip(known.chunks_mut(COUNT + 1)) {
+        for (flight, own) in flights.into_iter().flatten().zip(&mut known) {
             let rings_m_s: f64 = flight.modes.iter().map(|m| m.amplitude_m_s).sum();
-            let share = RINGING_SHARE * rings_m_s / own[GAINED].0;
-            for i in OF_COURSE {
-                own[i].1 = own[i].1.hypot(share * own[i].0);
+            let share = RINGING_SHARE * rings_m_s / own.velocity_change.0;
+            for (value, u) in own.of_course() {
+                *u = u.hypot(share * *value);
             }
         }
         for (by, share) in OTHER_COURSES {
             let others = self.numbers(&taken.taken, &unmoved, by)?;
-            for (i, (value, u)) in known.iter_mut().enumerate() {
-                if OF_COURSE.contains(&(i % (COUNT + 1))) {
-                    *u = u.hypot(share * (others[i] - *value));
+            for (own, mut other) in known.iter_mut().zip(others) {
+                for ((value, u), other) in own.of_course().into_iter().zip(other.of_course()) {
+                    *u = u.hypot(share * (*other - *value));
                 }
             }
         }
         Some(known)
     }
 
-    fn table(&self, end: End, course: &Course, numbers: &[(f64, f64)]) -> ImpactTable {
+    fn table(&self, end: End, course: &Course, known: &ImpactNumbers<(f64, f64)>) -> ImpactTable {
         let mass_kg = self.file.cask.mass_kg;
-        let of = |i: usize, factor: f64, unit| {
-            let (value, u) = numbers[i];
-            Some(Estimate::new(factor * value, COVERAGE * factor.abs() * u, unit))
-        };
+        let mut numbers = known.zip(ImpactNumbers::UNITS).map(|((value, u), unit)| {
+            let factor = if matches!(unit, "N s" | "J" | "N") { mass_kg } else { 1.0 };
+            Some(Estimate::new(factor * value, COVERAGE * factor * u, unit))
+        });
         // The mirror turns round what runs along the target.
-        let along = if end == End::First { 1.0 } else { -1.0 };
+        for along in [&mut numbers.impulse_x, &mut numbers.friction].into_iter().flatten() {
+            along.value *= if end == End::First { 1.0 } else { -1.0 };
+        }
         ImpactTable {
-            duration: of(DURATION, 1.0, "s"),
-            velocity_change: of(GAINED, 1.0, "m/s"),
-            impulse_x: of(IMPULSE_X, along * mass_kg, "N s"),
-            impulse_z: of(IMPULSE_Z, mass_kg, "N s"),
-            restitution: of(RESTITUTION, 1.0, "1"),
-            friction: of(FRICTION, along, "1"),
-            energy_before: of(BEFORE, mass_kg, "J"),
-            energy_absorbed: of(ABSORBED, mass_kg, "J"),
-            energy_after: of(AFTER, mass_kg, "J"),
-            energy_ratio: of(RATIO, 1.0, "1"),
-            absorbed_ratio: of(COUNT, 1.0, "1"),
-            crush: of(CRUSH, 1.0, "m"),
-            force_peak: of(FORCE, mass_kg, "N"),
-            rigid_body_deceleration: decelerations(self.file, course, [AT_COG, AT_END].map(|i| numbers[i])),
+            numbers,
+            rigid_body_deceleration: decelerations(self.file, course, [known.at_cog, known.at_struck_end]),
             force_over_crush: force_over_crush(&course.contact, mass_kg, self.cutoff_hz),
             ..ImpactTable::unknown(end)
         }
@@ -236,37 +218,40 @@ impl BothImpacts<'_> {
 }
 
 /// Whether what turned the cask was one contact at R that a passive end can give.
-fn is_one_contact(numbers: &[(f64, f64)]) -> bool {
-    numbers.len() > COUNT
-        && numbers[TURNED].0.abs() <= MISSED_U * numbers[TURNED].1
-        && RESTITUTION_RANGE.contains(&numbers[RESTITUTION].0)
-        && numbers[DURATION].0 > 0.0
+fn is_one_contact(numbers: &ImpactNumbers<(f64, f64)>) -> bool {
+    let (turned, u) = numbers.turned_beyond;
+    turned.abs() <= MISSED_U * u
+        && RESTITUTION_RANGE.contains(&numbers.restitution.0)
+        && numbers.duration.0 > 0.0
 }
 
-/// The numbers of one contact, all over the mass where it belongs to them.
-fn read_off(course: &Course, inertia_m2: f64, gravity_m_s2: f64, cutoff_hz: f64) -> Vec<f64> {
+/// The numbers of one contact, all over the mass where it belongs to them; the ratios need the first contact too, and are 0 here.
+fn read_off(course: &Course, inertia_m2: f64, gravity_m_s2: f64, cutoff_hz: f64) -> ImpactNumbers<f64> {
     let Course { motion, contact } = course;
-    let [along_m_s, up_m_s] = contact.impulse_m_s;
-    let [before, after] = contact.kinetic_m2_s2(inertia_m2);
+    let [impulse_x, impulse_z] = contact.impulse_m_s;
+    let [energy_before, energy_after] = contact.kinetic_m2_s2(inertia_m2);
     let [begin, end] = &contact.ends;
     let courses = [&contact.up_m_s2[..], &contact.at_cog_m_s2, &contact.at_end_m_s2];
-    let [force, at_cog, at_end] = contact.low_passed(courses, cutoff_hz).map(|course| largest(&course));
-    let mut numbers = vec![0.0; COUNT];
-    numbers[DURATION] = end.time_s - begin.time_s;
-    numbers[GAINED] = motion.rebound_m_s - contact.struck_m_s;
-    numbers[IMPULSE_X] = along_m_s;
-    numbers[IMPULSE_Z] = up_m_s;
-    numbers[RESTITUTION] = -motion.rebound_m_s / contact.struck_m_s;
-    numbers[FRICTION] = along_m_s / up_m_s;
-    numbers[BEFORE] = before;
-    numbers[AFTER] = after;
-    numbers[ABSORBED] = before - after + gravity_m_s2 * (begin.height_m - end.height_m);
-    numbers[CRUSH] = largest(&contact.crush_m);
-    numbers[FORCE] = force;
-    numbers[AT_COG] = at_cog;
-    numbers[AT_END] = at_end;
-    numbers[TURNED] = contact.turned_beyond_m2_s;
-    numbers
+    let [force_peak, at_cog, at_struck_end] =
+        contact.low_passed(courses, cutoff_hz).map(|course| largest(&course));
+    ImpactNumbers {
+        duration: end.time_s - begin.time_s,
+        velocity_change: motion.rebound_m_s - contact.struck_m_s,
+        impulse_x,
+        impulse_z,
+        restitution: -motion.rebound_m_s / contact.struck_m_s,
+        friction: impulse_x / impulse_z,
+        energy_before,
+        energy_absorbed: energy_before - energy_after + gravity_m_s2 * (begin.height_m - end.height_m),
+        energy_after,
+        energy_ratio: 0.0,
+        absorbed_ratio: 0.0,
+        crush: largest(&contact.crush_m),
+        force_peak,
+        at_cog,
+        at_struck_end,
+        turned_beyond: contact.turned_beyond_m2_s,
+    }
 }
 
 /// The decelerations through the low-pass of this cask, each with its u, and beside them through the usual others, known as well.
@@ -309,7 +294,7 @@ fn channel_peaks(
     let [transverse_m_s2, read_m_s2] = [Axis::Transverse, Axis::Axial].map(largest_m_s2);
     // Along the axis: what is read there, else that of S by the force and the friction, else at most the same times tan φ0 and a friction of 1.
     let (sin, cos) = file.drop.angle_rad.sin_cos();
-    let by_force = table.force_peak.zip(table.friction).map(|(force, friction)| {
+    let by_force = table.numbers.force_peak.zip(table.numbers.friction).map(|(force, friction)| {
         force.value / file.cask.mass_kg * (sin + (friction.value.abs() + friction.u95).min(1.0) * cos)
     });
     let axial_m_s2 = if read_m_s2 > 0.0 {

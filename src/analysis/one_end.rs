@@ -1,7 +1,8 @@
 //! The channels of one end to what the cask's mass properties say of the other one, where that has none.
 
+use crate::data::planar::arms_m;
 use crate::data::{
-    Axis, Body, BodyModel, Cask, CaskFile, Contact, Drop, End, FlightFit, Recording, Signal, StoodIn,
+    Axis, BodyModel, Cask, CaskFile, Contact, Drop, End, FlightFit, Recording, Signal, StoodIn,
 };
 use crate::predict;
 
@@ -142,11 +143,12 @@ fn step_ratio(
 ) -> Option<f64> {
     let body = predict::body(cask, BodyModel::Body);
     let mean = Drop { angle_rad: drop.angle_rad - MEAN_TURN * turned_rad, ..*drop };
-    let (a_m, b_m) = arms_m(&body, mean.angle_rad);
+    let arms_m = |angle_rad: f64| arms_m(angle_rad.sin_cos(), body.cog_m, body.height_m);
+    let (a_m, b_m) = arms_m(mean.angle_rad);
     let held = predict::predict(&body, &mean, Contact::Rough, 1.0).impulse_ratio;
     let obeyed = predict::predict(&body, &mean, law, 1.0).impulse_ratio;
     // What sticks to the end has the impulse along the target of the angle at the end: I_x = m ω b
-    let left_by = arms_m(&body, drop.angle_rad - turned_rad).1 / b_m;
+    let left_by = arms_m(drop.angle_rad - turned_rad).1 / b_m;
     let impulse_ratio = if (obeyed - held).abs() < 1e-9 {
         held * left_by * (1.0 - off)
     } else {
@@ -159,11 +161,4 @@ fn step_ratio(
     let step = |x_m: f64| of_s - omega_per_m * (x_m - cask.cog_m);
     let over = step(over_m);
     (over.abs() > 0.1 * of_s.abs()).then(|| step(at_m) / over)
-}
-
-/// Arms a and b of L's corner about S, along the target and above it, m   (3)
-fn arms_m(body: &Body, angle_rad: f64) -> (f64, f64) {
-    let (sin, cos) = angle_rad.sin_cos();
-    let half_m = body.height_m / 2.0;
-    (body.cog_m * cos - half_m * sin, body.cog_m * sin + half_m * cos)
 }

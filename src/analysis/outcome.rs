@@ -71,7 +71,7 @@ pub(super) fn of(
             result.predictions = predictions(file, Some((&flown.quantities, measured.model.as_ref())));
             result.model = measured.model;
             result.comparison = measured.comparison;
-            result.budget = flown.quantities.budget;
+            result.budget = flown.budget;
             result.flight = Some(flown.flight);
             motion = Some(flown.motion.curve);
         }
@@ -119,22 +119,8 @@ fn result(
             cask: file.path.display().to_string(),
             cask_sha256: file.sha256.clone(),
         },
-        first_impact: FirstImpact {
-            time: events.first_contact.map(time),
-            impact_velocity: quantities.map(|q| q.impact_velocity),
-            duration: quantities.map(|q| q.duration),
-            rebound_velocity: quantities.map(|q| q.rebound_velocity),
-            angular_velocity: quantities.map(|q| q.angular_velocity),
-        },
-        slap_down: SlapDown {
-            time: events.slap_down.map(time),
-            flight_time: quantities.and_then(|q| q.flight_time),
-            speed: quantities.and_then(|q| q.speed),
-            vertical_velocity: quantities.and_then(|q| q.vertical_velocity),
-            horizontal_velocity: quantities.and_then(|q| q.horizontal_velocity),
-            angle: quantities.and_then(|q| q.angle),
-            second_end_height: quantities.and_then(|q| q.second_end_height),
-        },
+        first_impact: FirstImpact::new(events.first_contact.map(time), quantities),
+        slap_down: SlapDown::new(events.slap_down.map(time), quantities),
         k: quantities.map(|q| q.k),
         amplification: None,
         impacts: [End::First, End::Second].map(ImpactTable::unknown),

@@ -71,6 +71,23 @@ struct Search<'a> {
     to_target: bool,
 }
 
+/// The signals of both ends, free of ringing as far as it is known.
+type Ends = (motion::Calmed, motion::Calmed);
+
+/// What one round of the search hands to the next.
+struct Attempt {
+    left: At,
+    struck: Option<At>,
+    /// Where the next fit begins, clear of the contact, s.
+    free_s: f64,
+    /// Where the flight ends, s.
+    end_s: f64,
+    /// The last fit of the flight, and what it was fitted over.
+    fitted: Option<(FlightFit, motion::Window)>,
+    /// The other fits over that, the best first.
+    others: Vec<FlightFit>,
+}
+
 /// Settles separation, slap-down and flight; of several beginnings the first that explains the flight and brings R to the target, else the
 /// best. `None` without transverse channels on both ends.
 pub fn settle(file: &CaskFile, integrated: &Integrated) -> Option<Settled> {
@@ -159,71 +176,99 @@ impl Settled {
 }
 
 impl Search<'_> {
-    /// Rounds from a first guess of the slap-down, the first fit ending at a share of the time to it, and beginning where the impulse has been given; the signals of both ends are without
-    /// the first bending mode.
-    fn attempt(
-        &self,
-        (first, second): &mut (motion::Calmed, motion::Calmed),
-        mut struck: Option<At>,
-        (share, given_s): (f64, Option<f64>),
-    ) -> Settled {
-        first.restore();
-        let &Integrated { ref signals, contact_s, .. } = self.integrated;
-        let cog_m = self.file.cask.cog_m;
-        let mut end_s = contact_s + share * (struck.map_or(self.record_end_s, |s| s.time_s) - contact_s);
-        // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit goes by.
-        let cleared_s = cleared_s(contact_s, end_s);
-        let rough_s = events::first_separation(first.signal(), contact_s, end_s).unwrap_or(cleared_s);
-        // The first fit keeps well clear of the contact, which ringing may have seemed to end too soon.
-        let mut free_s = rough_s.max(cleared_s).max(given_s.unwrap_or(cleared_s));
-        let mut left = At { time_s: rough_s, u_s: 0.1 * (rough_s - contact_s) };
-        let mut flight: Option<FlightFit> = None;
-        let mut others: Vec<FlightFit> = Vec::new();
-        let mut taken_over = None;
+    /// Rounds from a first guess of the slap-down, the first fit ending at a share of the time to it, and beginning where the impulse has been
+    /// given; the signals of both ends are without the first bending mode.
+    fn attempt(&self, ends: &mut Ends, struck: Option<At>, beginning: (f64, Option<f64>)) -> Settled {
+        ends.0.restore();
+        let mut attempt = self.begin(ends, struck, beginning);
         for round in 0..ROUNDS + FURTHER_ROUNDS {
-            let window = motion::Window {
-                from_s: free_s,
-                to_s: end_s - motion::BEFORE_SLAP_DOWN_S,
-                drift: self.file.corrections.zero_shift,
-                angular_velocity_rad_s: flight
-                    .as_ref()
-                    .map_or(0.0, |f| motion::turned_rad_s(signals, f, self.file.drop.angular_velocity_rad_s)),
-            };
-            // After R the modes ring on from both impacts: what drove them is not one force.
-            let drive = self
-                .to_target
-                .then(|| motion::drive(self.integrated, flight.as_ref(), left.time_s, window.from_s, cog_m));
-            let drive = drive.flatten();
-            let mut fits = motion::fit_flights(self.integrated, &window, drive.as_ref(), cog_m).into_iter();
-            let Some(fitted) = fits.next() else { break };
-            others = fits.collect();
-            let beyond_s = struck.map_or(self.record_end_s, |s| s.time_s).max(end_s) + BEYOND_S;
-            rayon::join(
-                || first.take_off(&fitted, contact_s..beyond_s),
-                || second.take_off(&fitted, contact_s..beyond_s),
-            );
-            taken_over = Some(window);
-            // A flight that is explained well has no slap-down hidden in its ringing; one that is not may show what is none.
-            if is_explained(&fitted) {
-                let between_s = self.earliest_s.max(free_s)..self.record_end_s;
-                struck = events::slap_down(second.signal(), between_s, self.least_m_s, true);
-            }
-            let left_before_s = left.time_s;
-            left = events::separation(first.signal(), contact_s, free_s).unwrap_or(left);
-            free_s = motion::clear_of_contact_s(contact_s, left.time_s);
-            flight = Some(fitted);
-            let fitted_to_s = std::mem::replace(&mut end_s, struck.map_or(self.record_end_s, |s| s.time_s));
-            let moved_s = (end_s - fitted_to_s).abs();
-            let is_still = round > 0 && moved_s.max((left.time_s - left_before_s).abs()) < STILL_S;
-            if is_still || (round + 1 >= ROUNDS && moved_s < SETTLED_S) {
+            let (window, fits) = self.fit(&attempt);
+            let mut fits = fits.into_iter();
+            let Some(flight) = fits.next() else { break };
+            self.take_ringing_off(ends, &attempt, &flight);
+            let (left_s, end_s) = (attempt.left.time_s, attempt.end_s);
+            self.seek_anew(ends, &mut attempt, is_explained(&flight));
+            attempt = Attempt { fitted: Some((flight, window)), others: fits.collect(), ..attempt };
+            let (left_by_s, end_by_s) = ((attempt.left.time_s - left_s).abs(), (attempt.end_s - end_s).abs());
+            let is_still = round > 0 && end_by_s.max(left_by_s) < STILL_S;
+            if is_still || (round + 1 >= ROUNDS && end_by_s < SETTLED_S) {
                 break;
             }
         }
-        if let Some(window) = &taken_over {
+        self.conclude(ends, attempt)
+    }
+
+    /// Where R strikes; where nothing shows that, where the record ends, s.
+    fn flight_end_s(&self, struck: Option<At>) -> f64 {
+        struck.map_or(self.record_end_s, |s| s.time_s)
+    }
+
+    /// What the first round goes by.
+    fn begin(&self, (first, _): &Ends, struck: Option<At>, (share, given_s): (f64, Option<f64>)) -> Attempt {
+        let contact_s = self.integrated.contact_s;
+        let end_s = contact_s + share * (self.flight_end_s(struck) - contact_s);
+        // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit goes by.
+        let cleared_s = cleared_s(contact_s, end_s);
+        let rough_s = events::first_separation(first.signal(), contact_s, end_s).unwrap_or(cleared_s);
+        Attempt {
+            left: At { time_s: rough_s, u_s: 0.1 * (rough_s - contact_s) },
+            struck,
+            // The first fit keeps well clear of the contact, which ringing may have seemed to end too soon.
+            free_s: rough_s.max(cleared_s).max(given_s.unwrap_or(cleared_s)),
+            end_s,
+            fitted: None,
+            others: Vec::new(),
+        }
+    }
+
+    /// The fits of the flight over what is clear of both contacts, the best first, and that window.
+    fn fit(&self, attempt: &Attempt) -> (motion::Window, Vec<FlightFit>) {
+        let (signals, cog_m) = (&self.integrated.signals, self.file.cask.cog_m);
+        let before = attempt.fitted.as_ref().map(|(flight, _)| flight);
+        let window = motion::Window {
+            from_s: attempt.free_s,
+            to_s: attempt.end_s - motion::BEFORE_SLAP_DOWN_S,
+            drift: self.file.corrections.zero_shift,
+            angular_velocity_rad_s: before
+                .map_or(0.0, |f| motion::turned_rad_s(signals, f, self.file.drop.angular_velocity_rad_s)),
+        };
+        // After R the modes ring on from both impacts: what drove them is not one force.
+        let drive = self
+            .to_target
+            .then(|| motion::drive(self.integrated, before, attempt.left.time_s, window.from_s, cog_m));
+        (window, motion::fit_flights(self.integrated, &window, drive.flatten().as_ref(), cog_m))
+    }
+
+    /// Takes off the signals of both ends what rings in the flight.
+    fn take_ringing_off(&self, (first, second): &mut Ends, attempt: &Attempt, flight: &FlightFit) {
+        let beyond_s = self.flight_end_s(attempt.struck).max(attempt.end_s) + BEYOND_S;
+        let over_s = self.integrated.contact_s..beyond_s;
+        rayon::join(|| first.take_off(flight, over_s.clone()), || second.take_off(flight, over_s.clone()));
+    }
+
+    /// Seeks slap-down and separation on signals free of ringing.
+    fn seek_anew(&self, (first, second): &Ends, attempt: &mut Attempt, is_explained: bool) {
+        let contact_s = self.integrated.contact_s;
+        // A flight that is explained well has no slap-down hidden in its ringing; one that is not may show what is none.
+        if is_explained {
+            let between_s = self.earliest_s.max(attempt.free_s)..self.record_end_s;
+            attempt.struck = events::slap_down(second.signal(), between_s, self.least_m_s, true);
+        }
+        attempt.left = events::separation(first.signal(), contact_s, attempt.free_s).unwrap_or(attempt.left);
+        attempt.free_s = motion::clear_of_contact_s(contact_s, attempt.left.time_s);
+        attempt.end_s = self.flight_end_s(attempt.struck);
+    }
+
+    /// What the last round ended with, the separation by the impulse.
+    fn conclude(&self, (first, _): &Ends, attempt: Attempt) -> Settled {
+        let Attempt { mut left, struck, fitted, others, .. } = attempt;
+        let contact_s = self.integrated.contact_s;
+        let (flight, window) = fitted.unzip();
+        if let Some(window) = &window {
             left = events::by_impulse(first.signal(), contact_s, left, &(window.from_s..window.to_s));
         }
         let seat_s = events::seat_s(first.signal(), contact_s, left.time_s);
-        self.best_of(Settled { left, seat_s, struck, flight, window: taken_over }, others)
+        self.best_of(Settled { left, seat_s, struck, flight, window }, others)
     }
 
     /// Where a flight shows too little of its slowest mode to tell the fits apart, the first of them that the closures do not speak against.

@@ -235,22 +235,14 @@ mod tests {
     use crate::data::{Cask, Estimate, FlightRegime};
 
     fn quantities(speed_m_s: f64) -> Quantities {
-        let e = |value, unit| Estimate::new(value, 0.0, unit);
+        let exactly = |value, unit| Estimate::new(value, 0.0, unit);
         Quantities {
-            impact_velocity: e(13.3, "m/s"),
-            duration: e(0.005, "s"),
-            rebound_velocity: e(6.65, "m/s"),
-            angular_velocity: e(5.0, "rad/s"),
-            k: e(0.5, "1"),
-            flight_time: None,
+            impact_velocity: exactly(13.3, "m/s"),
+            duration: exactly(0.005, "s"),
+            k: exactly(0.5, "1"),
             speed: Some(Estimate::new(speed_m_s, 0.2, "m/s")),
-            vertical_velocity: None,
-            horizontal_velocity: None,
-            angle: None,
-            second_end_height: None,
-            slip_velocity: e(0.0, "m/s"),
-            friction: e(0.6, "1"),
-            budget: vec![],
+            friction: exactly(0.6, "1"),
+            ..Quantities::UNITS.map(|unit| exactly(0.0, unit))
         }
     }
 

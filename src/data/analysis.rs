@@ -10,6 +10,7 @@ use super::flight::FlightFit;
 use super::impacts::ImpactTable;
 use super::ladder::Rung;
 use super::prediction::{BodyModel, Prediction};
+use super::quantities::{Contribution, FirstImpact, SlapDown};
 use super::reconstruction::ReconstructionChoice;
 use super::recording::RecordingFormat;
 use super::test_record::{ObservedBeside, SensorRecord, TestRecord};
@@ -40,40 +41,6 @@ pub struct Input {
     pub cask: String,
     /// Its SHA-256.
     pub cask_sha256: String,
-}
-
-/// The first impact.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct FirstImpact {
-    /// First contact of L, s from the recording's first sample.
-    pub time: Option<Estimate>,
-    /// Speed at first contact, m/s.
-    pub impact_velocity: Option<Estimate>,
-    /// From first contact to separation, s.
-    pub duration: Option<Estimate>,
-    /// Vertical velocity of L as it leaves the target, positive up, m/s.
-    pub rebound_velocity: Option<Estimate>,
-    /// ω after the impact, rad/s.
-    pub angular_velocity: Option<Estimate>,
-}
-
-/// The slap-down of R.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct SlapDown {
-    /// First contact of R, s from the recording's first sample.
-    pub time: Option<Estimate>,
-    /// From separation of L to slap-down, s.
-    pub flight_time: Option<Estimate>,
-    /// Magnitude of R's velocity just before it strikes, m/s.
-    pub speed: Option<Estimate>,
-    /// Its vertical part, negative down, m/s.
-    pub vertical_velocity: Option<Estimate>,
-    /// Its horizontal part, m/s.
-    pub horizontal_velocity: Option<Estimate>,
-    /// Inclination of the axis at slap-down, degrees.
-    pub angle: Option<Estimate>,
-    /// Height of R's corner above the target then, m: 0 within its interval where angle, height and scales fit the recording.
-    pub second_end_height: Option<Estimate>,
 }
 
 /// How one analytical model stands against the measurement.
@@ -284,7 +251,7 @@ pub struct DropResult {
     /// The fit of the free-flight window.
     pub flight: Option<FlightFit>,
     /// What each input contributes to the uncertainty, largest first.
-    pub budget: Vec<super::quantities::Contribution>,
+    pub budget: Vec<Contribution>,
     /// What was done with the samples and how, in words.
     #[serde(rename = "processing")]
     pub settings: Vec<Setting>,

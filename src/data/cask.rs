@@ -205,12 +205,6 @@ pub struct Drop {
     pub contact_duration_s: f64,
 }
 
-/// Distance a of L's corner from S along the target, m: c cos φ − (h/2) sin φ   (1)
-#[must_use]
-pub fn first_arm_m(cog_m: f64, height_m: f64, angle_rad: f64) -> f64 {
-    cog_m * angle_rad.cos() - height_m / 2.0 * angle_rad.sin()
-}
-
 impl Cask {
     /// A homogeneous block.
     #[must_use]

@@ -2,7 +2,58 @@
 
 use super::cask::End;
 use super::estimate::Estimate;
+use super::quantities::named_numbers;
 use serde::Serialize;
+
+named_numbers! {
+    /// The numbers of one impact.
+    #[derive(Default, Serialize)]
+    pub struct ImpactNumbers<T = Option<Estimate>> {
+        /// Until the end leaves, s.
+        duration: "s",
+        /// Vertical velocity that its corner gains, m/s.
+        velocity_change: "m/s",
+        /// Impulse of the target along itself, positive towards R, N s: the stated mass times the change of velocity of S.
+        impulse_x: "N s",
+        /// Impulse of the target upwards, N s.
+        impulse_z: "N s",
+        /// Vertical velocity of the corner as it leaves over that with which it struck.
+        restitution: "1",
+        /// `impulse_x` over `impulse_z`.
+        friction: "1",
+        /// Kinetic energy of the rigid body before, J.
+        energy_before: "J",
+        /// What the contact takes, J: kinetic energy before less that after, and what S comes down.
+        energy_absorbed: "J",
+        /// Kinetic energy after, J.
+        energy_after: "J",
+        /// `energy_before` over that of the first impact   (13)
+        energy_ratio: "1",
+        /// `energy_absorbed` over `energy_before` of the first impact.
+        absorbed_ratio: "1",
+        /// How far the corner of the undeformed cask goes below where it touched, m.
+        crush: "m",
+        /// Largest vertical force, N, low-passed as the decelerations: the stated mass times that of S.
+        force_peak: "N",
+        /// Largest deceleration of the rigid body at S, m/s²; `rigid_body_deceleration` has it beside its low-pass.
+        #[serde(skip)]
+        at_cog: "m/s^2",
+        /// Largest deceleration at the end that strikes, m/s², likewise.
+        #[serde(skip)]
+        at_struck_end: "m/s^2",
+        /// By how much the rotation is more than the angular impulse of one contact gives it, over the mass, m²/s: tells one contact from two.
+        #[serde(skip)]
+        turned_beyond: "m^2/s",
+    }
+    may_be_missing {}
+}
+
+impl<T> ImpactNumbers<T> {
+    /// The numbers that follow the course of the force, not only what it gives in all.
+    pub fn of_course(&mut self) -> [&mut T; 4] {
+        [&mut self.crush, &mut self.force_peak, &mut self.at_cog, &mut self.at_struck_end]
+    }
+}
 
 /// One impact; what the recording does not give is `None`, and a finding says why.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -11,32 +62,9 @@ pub struct ImpactTable {
     pub end: End,
     /// When it touches, s from the recording's first sample.
     pub start: Option<Estimate>,
-    /// Until it leaves, s.
-    pub duration: Option<Estimate>,
-    /// Vertical velocity that its corner gains, m/s.
-    pub velocity_change: Option<Estimate>,
-    /// Impulse of the target along itself, positive towards R, N s: the stated mass times the change of velocity of S.
-    pub impulse_x: Option<Estimate>,
-    /// Impulse of the target upwards, N s.
-    pub impulse_z: Option<Estimate>,
-    /// Vertical velocity of the corner as it leaves over that with which it struck.
-    pub restitution: Option<Estimate>,
-    /// `impulse_x` over `impulse_z`.
-    pub friction: Option<Estimate>,
-    /// Kinetic energy of the rigid body before, J.
-    pub energy_before: Option<Estimate>,
-    /// What the contact takes, J: kinetic energy before less that after, and what S comes down.
-    pub energy_absorbed: Option<Estimate>,
-    /// Kinetic energy after, J.
-    pub energy_after: Option<Estimate>,
-    /// `energy_before` over that of the first impact   (13)
-    pub energy_ratio: Option<Estimate>,
-    /// `energy_absorbed` over `energy_before` of the first impact.
-    pub absorbed_ratio: Option<Estimate>,
-    /// How far the corner of the undeformed cask goes below where it touched, m.
-    pub crush: Option<Estimate>,
-    /// Largest vertical force, N, low-passed as the decelerations: the stated mass times that of S.
-    pub force_peak: Option<Estimate>,
+    /// Its numbers.
+    #[serde(flatten)]
+    pub numbers: ImpactNumbers,
     /// Largest decelerations of the rigid body.
     pub rigid_body_deceleration: RigidBodyDeceleration,
     /// Vertical force over crush, from touching to leaving, low-passed likewise.

@@ -15,6 +15,7 @@ mod ladder;
 mod listing;
 mod motion;
 mod onset;
+pub(crate) mod planar;
 mod prediction;
 mod quantities;
 mod reconstruction;
@@ -27,13 +28,13 @@ mod tolerances;
 mod unit;
 
 pub use analysis::{
-    Analysis, ChannelSummary, Comparison, DropResult, Events, FirstImpact, Input, ModelCandidate,
-    ModelChoice, Program, Setting, SlapDown, Verdict,
+    Analysis, ChannelSummary, Comparison, DropResult, Events, Input, ModelCandidate, ModelChoice, Program,
+    Setting, Verdict,
 };
 pub use at::At;
 pub use cask::{
     Axis, BENDING_WAVE_M_S, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice,
-    GRAZE_SHARE, MOST_CHANNELS, RowsOf, SAMPLE_RATES_HZ, Source, Unit, block_inertia_kg_m2, first_arm_m,
+    GRAZE_SHARE, MOST_CHANNELS, RowsOf, SAMPLE_RATES_HZ, Source, Unit, block_inertia_kg_m2,
 };
 pub(crate) use channel::is_number;
 pub use channel::{Channel, Samples, Span};
@@ -47,7 +48,7 @@ pub use finding::{
 };
 pub use flight::{FlightFit, FlightModelScore, Mode, Plateau, Strike};
 pub use held::HeldSamples;
-pub use impacts::{ChannelPeak, ForceOverCrush, ImpactTable, RigidBodyDeceleration};
+pub use impacts::{ChannelPeak, ForceOverCrush, ImpactNumbers, ImpactTable, RigidBodyDeceleration};
 pub use keys::LONGEST_CONTACT_S;
 pub use ladder::{LADDER_TOLERANCE_PERCENT, Ladder, LadderStep, Rung};
 pub use listing::{ListedChannel, Listing};
@@ -56,7 +57,7 @@ pub use motion::{
 };
 pub use onset::Onset;
 pub use prediction::{Body, BodyModel, FlightRegime, Prediction};
-pub use quantities::{Contribution, Quantities};
+pub use quantities::{Contribution, FirstImpact, Quantities, SlapDown};
 pub use reconstruction::{
     Adjustment, Closure, ClosureKind, MET_U, MISSED_U, ReconstructionCandidate, ReconstructionChoice,
     ReconstructionRung, RestLevel, U_RELEASE_S,

@@ -1,7 +1,167 @@
-//! The quantities of interest with their intervals, and what each input contributes to them.
+//! The quantities of interest by name, as numbers or with their intervals, to what the result says of the first impact and the slap-down.
 
 use super::estimate::Estimate;
 use serde::Serialize;
+
+/// Declares numbers by their names, each with its unit: a struct over any type, and the way to and from a flat array, which linear algebra
+/// wants, in the order of declaration. A number of `may_be_missing` is an `Option`.
+macro_rules! named_numbers {
+    (
+        $(#[$about:meta])*
+        pub struct $name:ident<T = $default:ty> { $($(#[$field_about:meta])* $field:ident: $unit:literal,)* }
+        may_be_missing { $($(#[$optional_about:meta])* $optional:ident: $optional_unit:literal,)* }
+    ) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $name<T = $default> {
+            $($(#[$field_about])* pub $field: T,)*
+            $($(#[$optional_about])* pub $optional: Option<T>,)*
+        }
+
+        impl $name<&'static str> {
+            /// The unit of each number.
+            pub const UNITS: Self = Self { $($field: $unit,)* $($optional: Some($optional_unit),)* };
+        }
+
+        impl $name<f64> {
+            /// How many numbers there are.
+            pub const COUNT: usize = [$($unit,)* $($optional_unit,)*].len();
+
+            /// The numbers in the order of declaration, 0 for a missing one.
+            #[must_use]
+            pub fn into_array(self) -> [f64; Self::COUNT] {
+                [$(self.$field,)* $(self.$optional.unwrap_or_default(),)*]
+            }
+        }
+
+        impl<T> $name<T> {
+            /// The numbers by their places in the order of declaration; none is missing.
+            #[must_use]
+            pub fn from_fn(mut number: impl FnMut(usize) -> T) -> Self {
+                let mut count = 0;
+                let mut next = || {
+                    count += 1;
+                    number(count - 1)
+                };
+                Self { $($field: next(),)* $($optional: Some(next()),)* }
+            }
+
+            /// Each number by itself to another.
+            #[must_use]
+            pub fn map<U>(self, mut change: impl FnMut(T) -> U) -> $name<U> {
+                $name { $($field: change(self.$field),)* $($optional: self.$optional.map(&mut change),)* }
+            }
+
+            /// Each number beside that of the same name; missing where either is.
+            #[must_use]
+            pub fn zip<U>(self, others: $name<U>) -> $name<(T, U)> {
+                $name {
+                    $($field: (self.$field, others.$field),)*
+                    $($optional: self.$optional.zip(others.$optional),)*
+                }
+            }
+        }
+    };
+}
+pub(super) use named_numbers;
+
+/// Declares the quantities once: those of the first impact, those of the slap-down, which are missing where there is none, and those that
+/// the result states beside both. The first two are parts of the result too, there with the time of the event.
+macro_rules! quantities {
+    (
+        $(#[$first_about:meta])*
+        FirstImpact {
+            $(#[$contact_about:meta])* time,
+            $($(#[$first_field:meta])* $first:ident: $first_unit:literal,)*
+        }
+        $(#[$second_about:meta])*
+        SlapDown {
+            $(#[$strike_about:meta])* time,
+            $($(#[$second_field:meta])* $second:ident: $second_unit:literal,)*
+        }
+        beside { $($(#[$beside_about:meta])* $beside:ident: $beside_unit:literal,)* }
+    ) => {
+        named_numbers! {
+            /// Everything that is read off the reconstructed motion.
+            pub struct Quantities<T = Estimate> {
+                $($(#[$first_field])* $first: $first_unit,)*
+                $($(#[$beside_about])* $beside: $beside_unit,)*
+            }
+            may_be_missing { $($(#[$second_field])* $second: $second_unit,)* }
+        }
+
+        $(#[$first_about])*
+        #[derive(Debug, Clone, PartialEq, Default, Serialize)]
+        pub struct FirstImpact {
+            $(#[$contact_about])* pub time: Option<Estimate>,
+            $($(#[$first_field])* pub $first: Option<Estimate>,)*
+        }
+
+        $(#[$second_about])*
+        #[derive(Debug, Clone, PartialEq, Default, Serialize)]
+        pub struct SlapDown {
+            $(#[$strike_about])* pub time: Option<Estimate>,
+            $($(#[$second_field])* pub $second: Option<Estimate>,)*
+        }
+
+        impl FirstImpact {
+            /// The first impact at a time, with its quantities where they are measured.
+            #[must_use]
+            pub fn new(time: Option<Estimate>, measured: Option<&Quantities>) -> Self {
+                Self { time, $($first: measured.map(|all| all.$first),)* }
+            }
+        }
+
+        impl SlapDown {
+            /// The slap-down at a time, with its quantities where they are measured.
+            #[must_use]
+            pub fn new(time: Option<Estimate>, measured: Option<&Quantities>) -> Self {
+                Self { time, $($second: measured.and_then(|all| all.$second),)* }
+            }
+        }
+    };
+}
+
+quantities! {
+    /// The first impact.
+    FirstImpact {
+        /// First contact of L, s from the recording's first sample.
+        time,
+        /// Speed at first contact, m/s.
+        impact_velocity: "m/s",
+        /// From first contact to separation, s.
+        duration: "s",
+        /// Vertical velocity of L as it leaves the target, positive up, m/s   (22)
+        rebound_velocity: "m/s",
+        /// ω after the impact, rad/s.
+        angular_velocity: "rad/s",
+    }
+    /// The slap-down of R.
+    SlapDown {
+        /// First contact of R, s from the recording's first sample.
+        time,
+        /// From separation of L to slap-down, s.
+        flight_time: "s",
+        /// Magnitude of R's velocity just before it strikes, m/s   (24)
+        speed: "m/s",
+        /// Its vertical part, negative down, m/s.
+        vertical_velocity: "m/s",
+        /// Its horizontal part, m/s.
+        horizontal_velocity: "m/s",
+        /// Inclination of the axis at slap-down, degrees.
+        angle: "deg",
+        /// Height of R's corner above the target then, m: 0 within its interval where angle, height and scales fit the recording.
+        second_end_height: "m",
+    }
+    beside {
+        /// Restitution: −ż_L after the first impact over ż_L before   (23)
+        k: "1",
+        /// Horizontal velocity of L's corner as it leaves, m/s: 0 within its interval where it sticks.
+        slip_velocity: "m/s",
+        /// I_x / I_z of the first contact: the friction that acted.
+        friction: "1",
+    }
+}
 
 /// What one input contributes to the uncertainty of the two headline quantities.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -14,37 +174,4 @@ pub struct Contribution {
     pub speed_m_s: Option<f64>,
     /// Change of k by it.
     pub k: Option<f64>,
-}
-
-/// Everything that is read off the reconstructed motion.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Quantities {
-    /// Speed at first contact, m/s.
-    pub impact_velocity: Estimate,
-    /// First contact to separation, s.
-    pub duration: Estimate,
-    /// Vertical velocity of L as it leaves, m/s.
-    pub rebound_velocity: Estimate,
-    /// ω after the impact, rad/s.
-    pub angular_velocity: Estimate,
-    /// −ż_L after over ż_L before.
-    pub k: Estimate,
-    /// Separation to slap-down, s.
-    pub flight_time: Option<Estimate>,
-    /// Speed of R just before it strikes, m/s.
-    pub speed: Option<Estimate>,
-    /// Its vertical part, m/s.
-    pub vertical_velocity: Option<Estimate>,
-    /// Its horizontal part, m/s.
-    pub horizontal_velocity: Option<Estimate>,
-    /// Inclination then, degrees.
-    pub angle: Option<Estimate>,
-    /// Height of R's corner then, m: should be 0 within its interval.
-    pub second_end_height: Option<Estimate>,
-    /// Horizontal velocity of L's corner as it leaves, m/s: should be 0 where it sticks.
-    pub slip_velocity: Estimate,
-    /// I_x / I_z of the first contact: the friction that acted.
-    pub friction: Estimate,
-    /// Largest contribution first.
-    pub budget: Vec<Contribution>,
 }

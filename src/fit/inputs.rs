@@ -1,9 +1,10 @@
 //! The uncertain inputs of the reconstruction, each with its standard uncertainty, and the reconstruction's inputs with them moved.
 
 use super::Basis;
+use crate::data::planar::first_arm_m;
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, Events, FlightFit, MOST_LOST_M_S, Motion, MotionState, Setup,
-    Signal, StoodIn, first_arm_m,
+    Signal, StoodIn,
 };
 use crate::numerics::noise::integral_uncertainty_by;
 

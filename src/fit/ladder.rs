@@ -1,11 +1,11 @@
 //! What each rung of the reconstruction says, to the simplest one that explains the recording.
 
 use super::inputs::{Inputs, UncertainInput, has_lost_step};
-use super::propagate::Model;
+use super::propagate::{Model, Propagated};
 use super::{Basis, COVERAGE, Reconstruct};
 use crate::data::{
-    Axis, ChannelReading, Closure, End, Estimate, FlightFit, MET_U, Quantities, ReconstructionCandidate,
-    ReconstructionChoice, ReconstructionRung,
+    Axis, ChannelReading, Closure, Contribution, End, Estimate, FlightFit, MET_U, Quantities,
+    ReconstructionCandidate, ReconstructionChoice, ReconstructionRung,
 };
 use crate::numerics::prior_fit::{PriorFit, derivatives};
 
@@ -23,7 +23,7 @@ const SPREAD_STEPS: usize = 100;
 /// A rung with everything that it says.
 struct RungStep {
     candidate: ReconstructionCandidate,
-    quantities: Quantities,
+    propagated: Propagated,
 }
 
 /// Numbers as a function of the inputs and of further ones, such as [`RungTaken::spread`] takes it.
@@ -33,6 +33,8 @@ pub type NumbersOf<'a> = &'a (dyn Fn(&Inputs, &[f64]) -> Option<Vec<f64>> + Sync
 pub struct RungTaken {
     /// The numbers.
     pub quantities: Quantities,
+    /// What each input contributes to their uncertainty, largest first.
+    pub budget: Vec<Contribution>,
     /// The rung, and the others.
     pub choice: ReconstructionChoice,
     /// The inputs as the rung has them.
@@ -91,12 +93,11 @@ pub fn ladder(
     steps.push(by_flight(measured, flight, &closures));
     let (widened, why) = widened(&closures, has_lost_step(measured));
     if let Some(fit) = &joint {
-        let step = |quantities| by_joint(quantities, fit.chi_square, closures.len(), (widened, why));
+        let step = |propagated| by_joint(propagated, fit.chi_square, closures.len(), (widened, why));
         steps.extend(model.propagate(fit, widened).map(step));
     }
     let taken = taken(&steps);
     let reason = reason(&steps, taken);
-    let quantities = steps[taken].quantities.clone();
     let rung = steps[taken].candidate.rung;
     let is_joint = rung == ReconstructionRung::Joint;
     let choice = ReconstructionChoice {
@@ -105,13 +106,15 @@ pub fn ladder(
         chi_square: joint.as_ref().map(|fit| (fit.chi_square, closures.len())),
         adjustments: joint.as_ref().map_or_else(Vec::new, |fit| model.adjustments(fit)),
         closures,
-        candidates: steps.into_iter().map(|s| s.candidate).collect(),
+        candidates: steps.iter().map(|s| s.candidate.clone()).collect(),
     };
+    let Propagated { quantities, budget } = steps.swap_remove(taken).propagated;
     let fit = joint.filter(|_| is_joint).unwrap_or_else(|| PriorFit::of_priors(model.inputs.len()));
     let widened = if is_joint { widened } else { 1.0 };
     let Model { base, inputs, .. } = model;
     Some(RungTaken {
         quantities,
+        budget,
         choice,
         taken: base.moved(&inputs, &fit.unknowns),
         base,
@@ -121,15 +124,12 @@ pub fn ladder(
     })
 }
 
-fn step(rung: ReconstructionRung, quantities: Quantities, consistent: bool, residual: String) -> RungStep {
-    let candidate = ReconstructionCandidate {
-        rung,
-        speed: quantities.speed,
-        k: Some(quantities.k),
-        consistent,
-        residual,
-    };
-    RungStep { candidate, quantities }
+fn step(rung: ReconstructionRung, propagated: Propagated, consistent: bool, residual: String) -> RungStep {
+    let Quantities { speed, k, .. } = propagated.quantities;
+    RungStep {
+        candidate: ReconstructionCandidate { rung, speed, k: Some(k), consistent, residual },
+        propagated,
+    }
 }
 
 /// (a) Speed and k as [P] reads them off the velocity curves of single channels; the other quantities are the planar motion's.
@@ -137,8 +137,9 @@ fn by_channels(
     measured: &Basis,
     plain: &FlightFit,
     reading: ChannelReading,
-    motion: &Quantities,
+    by_motion: &Propagated,
 ) -> RungStep {
+    let motion = by_motion.quantities;
     let left_m_s = |end: End| {
         let signals = measured.signals.iter().filter(|s| s.axis == Axis::Transverse && s.end == end);
         signals.filter_map(|s| plain.plateau(&s.name)).map(|p| p.residual_m_s).fold(0.0, f64::max)
@@ -167,29 +168,30 @@ fn by_channels(
         vertical_velocity: reading.second_m_s.and(speed).map(|s| Estimate { value: -s.value, ..s }),
         rebound_velocity: Estimate::new(reading.first_m_s, u95_m_s, "m/s"),
         k: Estimate::new(reading.first_m_s / v0_m_s, u95_m_s / v0_m_s, "1"),
-        ..motion.clone()
+        ..motion
     };
+    let propagated = Propagated { quantities, budget: by_motion.budget.clone() };
     let residual = format!(
         "{:.2} m/s of ringing in the flight, {:.2} m/s of rotation and gravity left out",
         first_left_m_s.max(second_left_m_s),
         speed_left_out_m_s.abs().max(first_left_out_m_s.abs())
     );
-    step(ReconstructionRung::Channels, quantities, is_explained, residual)
+    step(ReconstructionRung::Channels, propagated, is_explained, residual)
 }
 
 /// (b) Planar motion, each velocity step the mean over the flight.
 fn planar(measured: &Basis, reconstruct: Reconstruct) -> Option<RungStep> {
     let model = Model::new(measured, reconstruct)?;
-    let quantities = model.by_stated_inputs()?;
+    let propagated = model.by_stated_inputs()?;
     let closures = model.closures(None);
     let left_m_s = most_left_m_s(measured.flight);
     let consistent = explains(measured.flight) && meets(&closures) && !has_lost_step(measured);
     let residual = format!("{left_m_s:.2} m/s about the mean of the flight; {}", worst(&closures));
-    Some(step(ReconstructionRung::Planar, quantities, consistent, residual))
+    Some(step(ReconstructionRung::Planar, propagated, consistent, residual))
 }
 
 /// (c) The flight fitted with modes and drift.
-fn by_flight(measured: &Basis, quantities: Quantities, closures: &[Closure]) -> RungStep {
+fn by_flight(measured: &Basis, propagated: Propagated, closures: &[Closure]) -> RungStep {
     let left_m_s = most_left_m_s(measured.flight);
     let what = match (measured.flight.modes.len(), measured.flight.drift) {
         (0, false) => "no mode, no drift".to_owned(),
@@ -200,7 +202,7 @@ fn by_flight(measured: &Basis, quantities: Quantities, closures: &[Closure]) -> 
     let residual = format!("{left_m_s:.3} m/s about {what}; {}", worst(closures));
     // A lost step is so uncertain that no closure counts as missed, however wrong the step is: the closures then say nothing.
     let consistent = meets(closures) && !has_lost_step(measured);
-    step(ReconstructionRung::Flight, quantities, consistent, residual)
+    step(ReconstructionRung::Flight, propagated, consistent, residual)
 }
 
 /// How much wider the intervals of a joint fit are, and why: data that contradict one another by more than chance (Birge 1932)   (31b), or
@@ -216,7 +218,7 @@ fn widened(closures: &[Closure], has_lost_step: bool) -> (f64, &'static str) {
 
 /// (d) Everything fitted within its tolerance.
 fn by_joint(
-    quantities: Quantities,
+    propagated: Propagated,
     chi_square: f64,
     degrees: usize,
     (widened, why): (f64, &'static str),
@@ -226,7 +228,7 @@ fn by_joint(
     if widened > 1.0 {
         residual = format!("{residual}, intervals widened {widened:.1} times: {why}");
     }
-    step(ReconstructionRung::Joint, quantities, true, residual)
+    step(ReconstructionRung::Joint, propagated, true, residual)
 }
 
 /// The largest residual of the channels, m/s.

@@ -8,22 +8,6 @@ use crate::numerics::prior_fit::{PriorFit, derivatives, fit};
 use nalgebra::DMatrix;
 use std::sync::{Mutex, PoisonError};
 
-/// Number of quantities followed through the propagation.
-const COUNT: usize = 13;
-const IMPACT: usize = 0;
-const DURATION: usize = 1;
-const REBOUND: usize = 2;
-const ROTATION: usize = 3;
-const K: usize = 4;
-const FLIGHT: usize = 5;
-const SPEED: usize = 6;
-const VERTICAL: usize = 7;
-const HORIZONTAL: usize = 8;
-const ANGLE: usize = 9;
-const HEIGHT: usize = 10;
-const SLIP: usize = 11;
-const FRICTION: usize = 12;
-
 /// Slopes hold as far from where they were taken, in standard uncertainties of the inputs: a motion bends so little within them that
 /// results move by 1e-7 of themselves and intervals by 6e-4 at most (fixtures).
 const NEAR_U: f64 = 0.1;
@@ -39,7 +23,14 @@ const NOTABLE_MOVE: f64 = 0.05;
 /// cannot be had.
 #[must_use]
 pub fn quantities(measured: &Basis, reconstruct: Reconstruct) -> Option<Quantities> {
-    Model::new(measured, reconstruct)?.by_stated_inputs()
+    Some(Model::new(measured, reconstruct)?.by_stated_inputs()?.quantities)
+}
+
+/// The quantities, and what each datum contributes to their uncertainty.
+pub(super) struct Propagated {
+    pub quantities: Quantities,
+    /// Largest contribution first.
+    pub budget: Vec<Contribution>,
 }
 
 /// Standard deviations of speed, m/s, and k over the given draws of the inputs, each a list of standard normal deviates that is repeated
@@ -55,7 +46,7 @@ pub fn spread_by_draws(
     while let Some(draw) = draws(model.inputs.len()) {
         let values = model.values(&draw)?;
         n += 1.0;
-        for (i, value) in [values[SPEED], values[K]].into_iter().enumerate() {
+        for (i, value) in [values.speed.unwrap_or_default(), values.k].into_iter().enumerate() {
             sums[2 * i] += value;
             sums[2 * i + 1] += value * value;
         }
@@ -98,18 +89,18 @@ impl<'a> Model<'a> {
     }
 
     /// The quantities, and the observables' misses, each over its own standard uncertainty.
-    fn read(&self, inputs: &Inputs) -> Option<(Vec<f64>, Vec<f64>)> {
+    fn read(&self, inputs: &Inputs) -> Option<(Quantities<f64>, Vec<f64>)> {
         let motion = self.follow(inputs)?;
         let missed = self.observables.iter().map(|o| o.residual(self.measured, inputs, &motion));
         Some((read_off(&motion, inputs), missed.collect::<Option<_>>()?))
     }
 
     /// The same with the inputs moved by so many standard uncertainties.
-    fn moved(&self, by_u: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+    fn moved(&self, by_u: &[f64]) -> Option<(Quantities<f64>, Vec<f64>)> {
         self.read(&self.base.moved(&self.inputs, by_u))
     }
 
-    fn values(&self, by_u: &[f64]) -> Option<Vec<f64>> {
+    fn values(&self, by_u: &[f64]) -> Option<Quantities<f64>> {
         self.moved(by_u).map(|(values, _)| values)
     }
 
@@ -128,7 +119,8 @@ impl<'a> Model<'a> {
         }
         let base = self.base.in_steps(SLOPE_STEPS);
         let both = |by_u: &[f64]| {
-            self.read(&base.moved(&self.inputs, by_u)).map(|(values, left)| [values, left].concat())
+            let (values, left) = self.read(&base.moved(&self.inputs, by_u))?;
+            Some([&values.into_array()[..], &left].concat())
         };
         let slopes = derivatives(&both(at_u)?, &both, at_u, &|i| self.inputs[i].jumps())?;
         known().push((at_u.to_vec(), slopes.clone()));
@@ -136,11 +128,11 @@ impl<'a> Model<'a> {
     }
 
     fn slopes_of_quantities(&self, at_u: &[f64]) -> Option<DMatrix<f64>> {
-        Some(self.slopes(at_u)?.rows(0, COUNT).into_owned())
+        Some(self.slopes(at_u)?.rows(0, Quantities::COUNT).into_owned())
     }
 
     fn slopes_of_residuals(&self, at_u: &[f64]) -> Option<DMatrix<f64>> {
-        Some(self.slopes(at_u)?.rows(COUNT, self.observables.len()).into_owned())
+        Some(self.slopes(at_u)?.rows(Quantities::COUNT, self.observables.len()).into_owned())
     }
 
     /// The inputs fitted to the observables; `None` where there are none or the motion cannot be followed.
@@ -152,49 +144,35 @@ impl<'a> Model<'a> {
     }
 
     /// The quantities by the inputs as they are stated.
-    pub fn by_stated_inputs(&self) -> Option<Quantities> {
+    pub fn by_stated_inputs(&self) -> Option<Propagated> {
         self.propagate(&PriorFit::of_priors(self.inputs.len()), 1.0)
     }
 
     /// The quantities at the inputs that a fit ended with, the contribution of each datum to their uncertainty widened by a factor.
-    pub fn propagate(&self, fit: &PriorFit, widened: f64) -> Option<Quantities> {
+    pub fn propagate(&self, fit: &PriorFit, widened: f64) -> Option<Propagated> {
         let values = self.values(&fit.unknowns)?;
         let slopes = self.slopes_of_quantities(&fit.unknowns)?;
         // Each datum moves the unknowns by its column of the response, and they the quantities.
         let by_datum = slopes * &fit.response * widened;
-        let struck = self.measured.events.slap_down_s().is_some();
-        let estimate = |i: usize, unit| Estimate::new(values[i], COVERAGE * by_datum.row(i).norm(), unit);
-        let at_slap_down = |i: usize, unit| struck.then(|| estimate(i, unit));
-        Some(Quantities {
-            impact_velocity: estimate(IMPACT, "m/s"),
-            duration: estimate(DURATION, "s"),
-            rebound_velocity: estimate(REBOUND, "m/s"),
-            angular_velocity: estimate(ROTATION, "rad/s"),
-            k: estimate(K, "1"),
-            flight_time: at_slap_down(FLIGHT, "s"),
-            speed: at_slap_down(SPEED, "m/s"),
-            vertical_velocity: at_slap_down(VERTICAL, "m/s"),
-            horizontal_velocity: at_slap_down(HORIZONTAL, "m/s"),
-            angle: at_slap_down(ANGLE, "deg"),
-            second_end_height: at_slap_down(HEIGHT, "m"),
-            slip_velocity: estimate(SLIP, "m/s"),
-            friction: estimate(FRICTION, "1"),
-            budget: self.budget(&by_datum, struck),
-        })
+        let u = Quantities::from_fn(|row| by_datum.row(row).norm());
+        let quantities = values
+            .zip(u)
+            .zip(Quantities::UNITS)
+            .map(|((value, u), unit)| Estimate::new(value, COVERAGE * u, unit));
+        Some(Propagated { quantities, budget: self.budget(&by_datum, values.speed.is_some()) })
     }
 
     /// One line a datum: the inputs, then the observables; largest first.
-    fn budget(&self, by_datum: &DMatrix<f64>, struck: bool) -> Vec<Contribution> {
+    fn budget(&self, by_datum: &DMatrix<f64>, strikes: bool) -> Vec<Contribution> {
         let inputs = self.inputs.iter().map(|i| (i.name.clone(), i.size.clone()));
         let own = |o: &Observable| (o.name(), o.words(self.measured, &self.motion, 1.0).replace('+', ""));
         let names = inputs.chain(self.observables.iter().map(own));
         let mut budget: Vec<Contribution> = names
             .zip(by_datum.column_iter())
-            .map(|((input, standard_uncertainty), column)| Contribution {
-                input,
-                standard_uncertainty,
-                speed_m_s: struck.then(|| column[SPEED].abs()),
-                k: Some(column[K].abs()),
+            .map(|((input, standard_uncertainty), column)| {
+                let change = Quantities::from_fn(|row| column[row].abs());
+                let speed_m_s = change.speed.filter(|_| strikes);
+                Contribution { input, standard_uncertainty, speed_m_s, k: Some(change.k) }
             })
             .collect();
         budget.sort_by(|a, b| {
@@ -245,23 +223,23 @@ impl<'a> Model<'a> {
     }
 }
 
-/// Rebound ż_L as L leaves (22), k = −ż_L after over ż_L before (23), speed = |v_R| (24), and the rest.
-fn read_off(motion: &Motion, inputs: &Inputs) -> Vec<f64> {
+/// The quantities of a motion: rebound ż_L as L leaves (22), k = −ż_L after over ż_L before (23), speed = |v_R| (24), and the rest.
+fn read_off(motion: &Motion, inputs: &Inputs) -> Quantities<f64> {
     let contact_s = inputs.events.first_contact_s().unwrap_or(f64::NAN);
-    let (horizontal, vertical) = motion.second_end_m_s.unwrap_or((0.0, 0.0));
-    let mut values = vec![0.0; COUNT];
-    values[IMPACT] = inputs.setup.impact_velocity_m_s;
-    values[DURATION] = motion.separation.time_s - contact_s;
-    values[REBOUND] = motion.rebound_m_s;
-    values[ROTATION] = motion.separation.angular_velocity_rad_s;
-    values[K] = motion.rebound_m_s / inputs.setup.impact_velocity_m_s;
-    values[FLIGHT] = motion.slap_down.map_or(0.0, |s| s.time_s - motion.separation.time_s);
-    values[SPEED] = horizontal.hypot(vertical);
-    values[VERTICAL] = vertical;
-    values[HORIZONTAL] = horizontal;
-    values[ANGLE] = motion.slap_down.map_or(0.0, |s| s.angle_rad.to_degrees());
-    values[HEIGHT] = motion.second_end_height_m.unwrap_or(0.0);
-    values[SLIP] = motion.slip_m_s;
-    values[FRICTION] = motion.impulse_ratio;
-    values
+    let Motion { separation, slap_down, second_end_m_s, .. } = motion;
+    Quantities {
+        impact_velocity: inputs.setup.impact_velocity_m_s,
+        duration: separation.time_s - contact_s,
+        rebound_velocity: motion.rebound_m_s,
+        angular_velocity: separation.angular_velocity_rad_s,
+        k: motion.rebound_m_s / inputs.setup.impact_velocity_m_s,
+        slip_velocity: motion.slip_m_s,
+        friction: motion.impulse_ratio,
+        flight_time: slap_down.map(|s| s.time_s - separation.time_s),
+        speed: second_end_m_s.map(|(horizontal_m_s, vertical_m_s)| horizontal_m_s.hypot(vertical_m_s)),
+        vertical_velocity: second_end_m_s.map(|(_, vertical_m_s)| vertical_m_s),
+        horizontal_velocity: second_end_m_s.map(|(horizontal_m_s, _)| horizontal_m_s),
+        angle: slap_down.map(|s| s.angle_rad.to_degrees()),
+        second_end_height: motion.second_end_height_m,
+    }
 }

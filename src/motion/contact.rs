@@ -53,12 +53,12 @@ impl ContactCourse {
         };
         let forces: Vec<[f64; 3]> = steps.map(force).collect();
         let of = |i: usize| forces.iter().map(|f| f[i]).collect::<Vec<f64>>();
-        let heights_m: Vec<f64> = states.iter().map(|s| corner_height_m(setup, s, -setup.cog_m)).collect();
+        let heights_m: Vec<f64> = states.iter().map(|s| corner_height_m(setup, s, setup.cog_m)).collect();
         let crush_m = heights_m.windows(2).map(|h| heights_m[0] - f64::midpoint(h[0], h[1])).collect();
         let gained = |of: fn(&MotionState) -> f64| of(&ends[1]) - of(&ends[0]);
         let fallen_m_s = setup.gravity_m_s2 * (ends[1].time_s - ends[0].time_s);
         Some(Self {
-            struck_m_s: corner(setup, &ends[0], -setup.cog_m).1,
+            struck_m_s: corner(setup, &ends[0], setup.cog_m).1,
             impulse_m_s: [
                 gained(|s| s.horizontal_velocity_m_s),
                 gained(|s| s.vertical_velocity_m_s) + fallen_m_s,

@@ -3,7 +3,7 @@
 use super::Integrated;
 use super::curves::uniform;
 use super::histories::{AlongAxis, Histories};
-use crate::data::{AxialClosure, Events, FlightFit, Motion, MotionCurve, MotionState, Setup};
+use crate::data::{AxialClosure, Events, FlightFit, Motion, MotionCurve, MotionState, Setup, planar};
 use crate::numerics::as_f64;
 
 /// Steps over the flight, for the curves.
@@ -30,10 +30,10 @@ pub fn reconstruct(
         let share = f64::from(i) / f64::from(FLIGHT_STEPS);
         fly(setup, &separation, separation.time_s + (end_s - separation.time_s) * share)
     });
-    let left_m = corner_height_m(setup, &separation, -setup.cog_m).min(0.0);
+    let left_m = corner_height_m(setup, &separation, setup.cog_m).min(0.0);
     for state in flight {
         record(&state);
-        let above_m = corner_height_m(setup, &state, -setup.cog_m) - left_m;
+        let above_m = corner_height_m(setup, &state, setup.cog_m) - left_m;
         motion.lowest_first_end_m = motion.lowest_first_end_m.min(above_m);
     }
     motion.curve = uniform(&curve);
@@ -90,13 +90,13 @@ fn follow(
         record(&body.state);
     }
     let separation = body.state;
-    let (slip_m_s, rebound_m_s) = corner(setup, &separation, -setup.cog_m);
+    let (slip_m_s, rebound_m_s) = corner(setup, &separation, setup.cog_m);
     let impulse_ratio = (separation.horizontal_velocity_m_s - contact.horizontal_velocity_m_s)
         / (separation.vertical_velocity_m_s - contact.vertical_velocity_m_s
             + setup.gravity_m_s2 * (separation.time_s - contact_s));
     let slap_down =
         events.slap_down_s().map(|t| fly(setup, &separation, contact_s + (t - contact_s) * setup.second_s));
-    let ahead_m = setup.length_m - setup.cog_m;
+    let behind_m = setup.cog_m - setup.length_m;
     Some(Motion {
         contact,
         separation,
@@ -105,8 +105,8 @@ fn follow(
         impulse_ratio,
         angular_impulse_m2_s,
         slap_down,
-        second_end_m_s: slap_down.map(|s| corner(setup, &s, ahead_m)),
-        second_end_height_m: slap_down.map(|s| corner_height_m(setup, &s, ahead_m)),
+        second_end_m_s: slap_down.map(|s| corner(setup, &s, behind_m)),
+        second_end_height_m: slap_down.map(|s| corner_height_m(setup, &s, behind_m)),
         lowest_first_end_m: f64::INFINITY,
         curve: MotionCurve::default(),
     })
@@ -126,14 +126,13 @@ fn turned((sin, cos): (f64, f64), by_rad: f64) -> (f64, f64) {
     (sin * c + cos * s, cos * c - sin * s)
 }
 
-/// Angular impulse about S over mass in one step of the contact, m²/s: ∫(a f_z − b f_x) dt with the arms of (3)   (32)
+/// Angular impulse about S over mass in one step of the contact, m²/s: ∫(a f_z − b f_x) dt with the arms of (1)   (32)
 fn turning_m2_s(setup: &Setup, before: &MotionState, after: &MotionState, middle: (f64, f64)) -> f64 {
-    let (arm_x_m, arm_z_m) = arm_by_m(setup, middle, -setup.cog_m);
+    let (a_m, b_m) = planar::arms_m(middle, setup.cog_m, setup.height_m);
     let up_m_s = after.vertical_velocity_m_s - before.vertical_velocity_m_s
         + setup.gravity_m_s2 * (after.time_s - before.time_s);
     let along_m_s = after.horizontal_velocity_m_s - before.horizontal_velocity_m_s;
-    // The arm of (3) runs from S to the corner: C lies at −arm seen from it.
-    -arm_x_m * up_m_s + arm_z_m * along_m_s
+    a_m * up_m_s - b_m * along_m_s
 }
 
 /// Ballistic motion of S from `state` to `time_s`   (8)
@@ -148,26 +147,16 @@ fn fly(setup: &Setup, state: &MotionState, time_s: f64) -> MotionState {
     }
 }
 
-/// Distance of the lower corner at axial distance `ahead_m` before S from S, m: horizontal and vertical.
-fn arm_m(setup: &Setup, angle_rad: f64, ahead_m: f64) -> (f64, f64) {
-    arm_by_m(setup, angle_rad.sin_cos(), ahead_m)
+/// Horizontal and vertical velocity of the lower corner `behind_m` behind S, m/s   (3)
+pub(super) fn corner(setup: &Setup, state: &MotionState, behind_m: f64) -> (f64, f64) {
+    let arms = planar::arms_m(state.angle_rad.sin_cos(), behind_m, setup.height_m);
+    let cog_m_s = (state.horizontal_velocity_m_s, state.vertical_velocity_m_s);
+    planar::corner_m_s(cog_m_s, state.angular_velocity_rad_s, arms)
 }
 
-/// The same by sine and cosine of the inclination.
-fn arm_by_m(setup: &Setup, (sin, cos): (f64, f64), ahead_m: f64) -> (f64, f64) {
-    let half = setup.height_m / 2.0;
-    (ahead_m * cos + half * sin, ahead_m * sin - half * cos)
-}
-
-/// Horizontal and vertical velocity of that corner, m/s: v = v_S + φ̇ × r   (3)
-pub(super) fn corner(setup: &Setup, state: &MotionState, ahead_m: f64) -> (f64, f64) {
-    let (x, z) = arm_m(setup, state.angle_rad, ahead_m);
-    let w = state.angular_velocity_rad_s;
-    (state.horizontal_velocity_m_s + w * z, state.vertical_velocity_m_s - w * x)
-}
-
-pub(super) fn corner_height_m(setup: &Setup, state: &MotionState, ahead_m: f64) -> f64 {
-    state.height_m + arm_m(setup, state.angle_rad, ahead_m).1
+/// Height of that corner over the target, m: z_C = z_S − b.
+pub(super) fn corner_height_m(setup: &Setup, state: &MotionState, behind_m: f64) -> f64 {
+    state.height_m - planar::arms_m(state.angle_rad.sin_cos(), behind_m, setup.height_m).1
 }
 
 /// The body while L is on the target.
@@ -184,17 +173,16 @@ struct OnTarget {
 impl OnTarget {
     fn start(setup: &Setup, time_s: f64) -> Self {
         let (sin, cos) = setup.angle_rad.sin_cos();
-        let (ahead_m, above_m) = arm_m(setup, setup.angle_rad, -setup.cog_m);
+        let (a_m, b_m) = planar::arms_m((sin, cos), setup.cog_m, setup.height_m);
         let (w, along_m_s) = (setup.angular_velocity_rad_s, setup.horizontal_velocity_m_s);
-        // ż_S = ż_L − ω a, a = −ahead   (3)
-        let down_m_s = ahead_m * w - setup.impact_velocity_m_s;
+        let down_m_s = planar::falling_m_s(setup.impact_velocity_m_s, w, a_m);
         let state = MotionState {
             time_s,
             angle_rad: setup.angle_rad,
             angular_velocity_rad_s: w,
             horizontal_velocity_m_s: along_m_s,
             vertical_velocity_m_s: down_m_s,
-            height_m: -above_m,
+            height_m: b_m,
         };
         Self {
             state,
@@ -238,10 +226,10 @@ impl OnTarget {
                 let gained = gained_m_s * (sin_m + friction * cos_m) / (cos_m - friction * sin_m);
                 self.axial_m_s + gained + (mean_spin * self.transverse_m_s - g * sin_m) * step_s
             }
-            // ẋ_C = 0: v_ξ cos φ = v_η sin φ − Ω (c sin φ + (h/2) cos φ)   (18)
+            // ẋ_C = 0: v_ξ cos φ = v_η sin φ − Ω b   (18)
             _ => {
-                let arm = setup.cog_m * sin + setup.height_m / 2.0 * cos;
-                (self.transverse_m_s * sin - rotation_rad_s * arm) / cos
+                let (_, b_m) = planar::arms_m(self.angle_by, setup.cog_m, setup.height_m);
+                (self.transverse_m_s * sin - rotation_rad_s * b_m) / cos
             }
         };
         let vertical_m_s = self.axial_m_s * sin + self.transverse_m_s * cos;
@@ -260,16 +248,16 @@ impl OnTarget {
 
 /// Adds a state to the curve.
 fn push(curve: &mut MotionCurve, setup: &Setup, state: &MotionState) {
-    let ahead_m = setup.length_m - setup.cog_m;
-    let second = corner(setup, state, ahead_m);
+    let behind_m = setup.cog_m - setup.length_m;
+    let second = corner(setup, state, behind_m);
     curve.time_s.push(state.time_s);
     curve.angle_rad.push(state.angle_rad);
     curve.angular_velocity_rad_s.push(state.angular_velocity_rad_s);
-    curve.first_end_vertical_m_s.push(corner(setup, state, -setup.cog_m).1);
+    curve.first_end_vertical_m_s.push(corner(setup, state, setup.cog_m).1);
     curve.second_end_vertical_m_s.push(second.1);
     curve.second_end_horizontal_m_s.push(second.0);
-    curve.first_end_height_m.push(corner_height_m(setup, state, -setup.cog_m));
-    curve.second_end_height_m.push(corner_height_m(setup, state, ahead_m));
+    curve.first_end_height_m.push(corner_height_m(setup, state, setup.cog_m));
+    curve.second_end_height_m.push(corner_height_m(setup, state, behind_m));
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A moving body to the position and velocity of its corners.
 
-use crate::data::{Body, Drop};
+use crate::data::{Body, Drop, planar};
 
 /// Plane motion of a body: position and velocity of the centre of gravity, inclination, ω = −φ̇.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,15 +19,12 @@ pub(super) struct Corner {
     pub vertical_velocity_m_s: f64,
 }
 
-/// Horizontal and vertical distance a, b from a corner at axial distance `along_m` behind S to S, m.
-///
-/// a = c cos φ − (h/2) sin φ, b = c sin φ + (h/2) cos φ   (1)
+/// Horizontal and vertical distance a, b from a corner at axial distance `along_m` behind S to S, m   (1)
 pub(super) fn arms_m(body: &Body, angle_rad: f64, along_m: f64) -> (f64, f64) {
     let (sin, cos) = angle_rad.sin_cos();
     // The cosine of a right angle is 6e-17 in doubles: enough to topple a rod that stands.
     let cos = if cos.abs() < f64::EPSILON { 0.0 } else { cos };
-    let half_m = body.height_m / 2.0;
-    (cos * along_m - sin * half_m, sin * along_m + cos * half_m)
+    planar::arms_m((sin, cos), along_m, body.height_m)
 }
 
 /// Distance of R behind S along the axis, m: negative, R lies ahead.
@@ -75,7 +72,11 @@ impl State {
             height_m: b,
             angle_rad,
             horizontal_velocity_m_s: drop.horizontal_velocity_m_s,
-            vertical_velocity_m_s: a * -drop.angular_velocity_rad_s - drop.impact_velocity_m_s,
+            vertical_velocity_m_s: planar::falling_m_s(
+                drop.impact_velocity_m_s,
+                drop.angular_velocity_rad_s,
+                a,
+            ),
             angular_velocity_rad_s: drop.angular_velocity_rad_s,
         }
     }
@@ -101,16 +102,13 @@ impl State {
         }
     }
 
-    /// The lower corner at axial distance `along_m` behind S (L: c; R: c − l).
-    ///
-    /// z_C = z_S − b, ẋ_C = ẋ_S − b ω, ż_C = ż_S + a ω   (3)
+    /// The lower corner at axial distance `along_m` behind S (L: c; R: c − l)   (3)
     pub fn corner(&self, body: &Body, along_m: f64) -> Corner {
-        let (a, b) = arms_m(body, self.angle_rad, along_m);
-        Corner {
-            height_m: self.height_m - b,
-            horizontal_velocity_m_s: self.horizontal_velocity_m_s - b * self.angular_velocity_rad_s,
-            vertical_velocity_m_s: self.vertical_velocity_m_s + a * self.angular_velocity_rad_s,
-        }
+        let arms = arms_m(body, self.angle_rad, along_m);
+        let cog_m_s = (self.horizontal_velocity_m_s, self.vertical_velocity_m_s);
+        let (horizontal_velocity_m_s, vertical_velocity_m_s) =
+            planar::corner_m_s(cog_m_s, self.angular_velocity_rad_s, arms);
+        Corner { height_m: self.height_m - arms.1, horizontal_velocity_m_s, vertical_velocity_m_s }
     }
 
     /// The same motion with L's corner at the depth `sunk_m` to the last digit: a nanometre below it would strike again at once.

@@ -37,19 +37,19 @@ const G: f64 = 1.0 / STANDARD_GRAVITY_M_S2;
 
 const ROWS: [ImpactRow; 16] = [
     ImpactRow::new("start", "ms", 1e3, false, |i| i.start),
-    ImpactRow::new("duration", "ms", 1e3, true, |i| i.duration),
-    ImpactRow::new("velocity change of the end", "m/s", 1.0, true, |i| i.velocity_change),
-    ImpactRow::new("restitution", "", 1.0, true, |i| i.restitution),
-    ImpactRow::new("impulse upwards", "kN s", 1e-3, true, |i| i.impulse_z),
-    ImpactRow::new("impulse along the target", "kN s", 1e-3, false, |i| i.impulse_x),
-    ImpactRow::new("friction, one over the other", "", 1.0, false, |i| i.friction),
-    ImpactRow::new("kinetic energy before", "kJ", 1e-3, true, |i| i.energy_before),
-    ImpactRow::new("energy taken", "kJ", 1e-3, true, |i| i.energy_absorbed),
-    ImpactRow::new("kinetic energy after", "kJ", 1e-3, false, |i| i.energy_after),
-    ImpactRow::new("before, over that of the first", "", 1.0, false, |i| i.energy_ratio),
-    ImpactRow::new("taken, over that of the first", "", 1.0, true, |i| i.absorbed_ratio),
-    ImpactRow::new("crush", "mm", 1e3, true, |i| i.crush),
-    ImpactRow::new("largest force", "MN", 1e-6, true, |i| i.force_peak),
+    ImpactRow::new("duration", "ms", 1e3, true, |i| i.numbers.duration),
+    ImpactRow::new("velocity change of the end", "m/s", 1.0, true, |i| i.numbers.velocity_change),
+    ImpactRow::new("restitution", "", 1.0, true, |i| i.numbers.restitution),
+    ImpactRow::new("impulse upwards", "kN s", 1e-3, true, |i| i.numbers.impulse_z),
+    ImpactRow::new("impulse along the target", "kN s", 1e-3, false, |i| i.numbers.impulse_x),
+    ImpactRow::new("friction, one over the other", "", 1.0, false, |i| i.numbers.friction),
+    ImpactRow::new("kinetic energy before", "kJ", 1e-3, true, |i| i.numbers.energy_before),
+    ImpactRow::new("energy taken", "kJ", 1e-3, true, |i| i.numbers.energy_absorbed),
+    ImpactRow::new("kinetic energy after", "kJ", 1e-3, false, |i| i.numbers.energy_after),
+    ImpactRow::new("before, over that of the first", "", 1.0, false, |i| i.numbers.energy_ratio),
+    ImpactRow::new("taken, over that of the first", "", 1.0, true, |i| i.numbers.absorbed_ratio),
+    ImpactRow::new("crush", "mm", 1e3, true, |i| i.numbers.crush),
+    ImpactRow::new("largest force", "MN", 1e-6, true, |i| i.numbers.force_peak),
     ImpactRow::new("deceleration of the body at S", "g", G, true, |i| i.rigid_body_deceleration.at_cog),
     ImpactRow::new("the same at the end", "g", G, true, |i| i.rigid_body_deceleration.at_struck_end),
 ];
@@ -62,7 +62,7 @@ fn scaled(estimate: Option<Estimate>, factor: f64, unit: &'static str) -> String
 pub(super) fn impacts(result: &DropResult) -> Chapter {
     let chapter = Chapter::new("Both impacts, ± 95 %");
     let [first, second] = &result.impacts;
-    if first.crush.is_none() && result.impacts.iter().all(|i| i.channels.is_empty()) {
+    if first.numbers.crush.is_none() && result.impacts.iter().all(|i| i.channels.is_empty()) {
         return chapter;
     }
     let short: Vec<&ImpactRow> = ROWS.iter().filter(|row| row.is_short).collect();
@@ -72,7 +72,7 @@ pub(super) fn impacts(result: &DropResult) -> Chapter {
         .number("second end", |row| row.words(second));
     let facts = result.impacts.iter().map(of_one).collect::<Vec<_>>();
     let missing = result.quality.iter().find(|f| f.code == IssueCode::SecondImpact);
-    let why = missing.filter(|_| second.crush.is_none());
+    let why = missing.filter(|_| second.numbers.crush.is_none());
     let why = why.map(|f| ChapterPart::note(format!("{MISSING} could not be had: {}", f.message)));
     chapter
         .with(ChapterPart::from(table).only(Medium::Terminal))
@@ -102,7 +102,7 @@ fn filter_words(result: &DropResult) -> String {
 /// What is left for the second end, measured beside predicted as Fig. 8 of [P] has it, and the amplification.
 fn energy_words(result: &DropResult) -> Option<String> {
     let amplified = interval(Some(&result.amplification?));
-    let left = result.impacts[1].energy_ratio.map(|ratio| {
+    let left = result.impacts[1].numbers.energy_ratio.map(|ratio| {
         let predicted = result.predictions.last().and_then(|p| p.energy_ratio);
         let beside = predicted.map_or_else(String::new, |p| format!(", predicted {}", fixed(p, 3)));
         format!(

@@ -58,12 +58,10 @@ fn estimate(value: f64, u95: f64, unit: &'static str) -> Option<Estimate> {
 
 /// The first impact with a number, and the second without any.
 fn impacts() -> [ImpactTable; 2] {
-    let first = ImpactTable {
-        crush: estimate(0.0315, 0.0008, "m"),
-        energy_absorbed: estimate(1.06e5, 2.0e4, "J"),
-        ..ImpactTable::unknown(End::First)
-    };
-    [first, ImpactTable::unknown(End::Second)]
+    let [mut first, second] = [End::First, End::Second].map(ImpactTable::unknown);
+    first.numbers.crush = estimate(0.0315, 0.0008, "m");
+    first.numbers.energy_absorbed = estimate(1.06e5, 2.0e4, "J");
+    [first, second]
 }
 
 fn result() -> DropResult {

@@ -180,7 +180,9 @@ fn types(code: &str) -> Vec<String> {
         let line = line.trim_start();
         ["struct ", "enum ", "trait "].iter().find_map(|word| line.strip_prefix(word))
     });
-    declared.map(|rest| rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()).collect()
+    let names = declared.map(|rest| rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect());
+    // The name of a type that a macro declares stands where the macro is used.
+    names.filter(|name: &String| !name.is_empty()).collect()
 }
 
 #[test]

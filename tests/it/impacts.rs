@@ -113,19 +113,19 @@ fn truth(
 fn stated(table: &ImpactTable) -> BTreeMap<&'static str, Option<Estimate>> {
     let deceleration = &table.rigid_body_deceleration;
     BTreeMap::from([
-        ("duration", table.duration),
-        ("velocity_change", table.velocity_change),
-        ("impulse_x", table.impulse_x),
-        ("impulse_z", table.impulse_z),
-        ("restitution", table.restitution),
-        ("friction", table.friction),
-        ("energy_before", table.energy_before),
-        ("energy_absorbed", table.energy_absorbed),
-        ("energy_after", table.energy_after),
-        ("energy_ratio", table.energy_ratio),
-        ("absorbed_ratio", table.absorbed_ratio),
-        ("crush", table.crush),
-        ("force_peak", table.force_peak),
+        ("duration", table.numbers.duration),
+        ("velocity_change", table.numbers.velocity_change),
+        ("impulse_x", table.numbers.impulse_x),
+        ("impulse_z", table.numbers.impulse_z),
+        ("restitution", table.numbers.restitution),
+        ("friction", table.numbers.friction),
+        ("energy_before", table.numbers.energy_before),
+        ("energy_absorbed", table.numbers.energy_absorbed),
+        ("energy_after", table.numbers.energy_after),
+        ("energy_ratio", table.numbers.energy_ratio),
+        ("absorbed_ratio", table.numbers.absorbed_ratio),
+        ("crush", table.numbers.crush),
+        ("force_peak", table.numbers.force_peak),
         ("at_cog", deceleration.at_cog),
         ("at_struck_end", deceleration.at_struck_end),
     ])
@@ -142,7 +142,7 @@ fn channel_pulses(
     let seconds = |estimate: Option<Estimate>| estimate.map(|e| e.value / (1.0 + scene.clock_error));
     let [start, next] = [end, end + 1].map(|i| seconds(tables.get(i)?.start).map(|s| s - scene.before_s));
     let Some(touch_s) = start else { return Vec::new() };
-    let left_s = seconds(tables[end].duration)
+    let left_s = seconds(tables[end].numbers.duration)
         .map_or(touch_s + 0.025, |s| touch_s + s + scene.cask.length_m / BENDING_WAVE_M_S);
     let ends_s = motion.truth.slap_t.map_or(f64::INFINITY, |s| s + scene.after_s);
     let until_s = left_s.min(next.unwrap_or(f64::INFINITY)).min(ends_s);
@@ -194,7 +194,7 @@ fn distances(seed: u64, drops: u32) -> Distances {
                 found.push(((end, is_limited, "untrue"), [0.0, 0.0]));
                 continue;
             };
-            if table.crush.is_none() {
+            if table.numbers.crush.is_none() {
                 found.push(((end, is_limited, "untold"), [0.0, 0.0]));
             }
             let of_impact = stated(table).into_iter().map(|(name, estimate)| (name, estimate, truth[name]));
@@ -275,5 +275,5 @@ fn a_second_simulation_says_the_same_of_both_impacts() {
     let [speed, before] =
         [result.slap_down.speed, result.first_impact.impact_velocity].map(|e| e.expect("told").value);
     assert!((result.amplification.expect("told").value - speed / before).abs() < 1e-12);
-    assert!(result.impacts[1].energy_ratio.is_some_and(|r| (r.value - 0.795_318).abs() <= r.u95));
+    assert!(result.impacts[1].numbers.energy_ratio.is_some_and(|r| (r.value - 0.795_318).abs() <= r.u95));
 }

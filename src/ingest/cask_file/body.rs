@@ -2,7 +2,8 @@
 
 use super::CaskFileError;
 use super::section::{Placed, Section};
-use crate::data::{Cask, Drop, block_inertia_kg_m2, first_arm_m};
+use crate::data::planar::first_arm_m;
+use crate::data::{Cask, Drop, block_inertia_kg_m2};
 use std::ops::RangeInclusive;
 use std::path::Path;
 

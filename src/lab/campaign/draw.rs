@@ -1,6 +1,7 @@
 //! Random numbers to a drop: the cask, how it falls and what its ends do, as they are and as they are stated.
 
-use crate::data::{Cask, CaskFile, Contact, Drop, Tolerances, first_arm_m};
+use crate::data::planar::first_arm_m;
+use crate::data::{Cask, CaskFile, Contact, Drop, Tolerances};
 use crate::lab::chance::{Chance, round};
 use crate::lab::damage::{BetweenImpacts, Wish};
 use crate::lab::data::{BendingMode, Scene, Truth, WantedImpact};

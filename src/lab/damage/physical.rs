@@ -5,7 +5,8 @@ use super::super::data::{LooseMass, Scene, SceneChannel, slowed};
 use super::super::drawn::{LEAST_FRICTION, cask_file};
 use super::super::synth;
 use super::Wish;
-use crate::data::{Axis, Cask, CaskFile, Contact, Drop, first_arm_m};
+use crate::data::planar::first_arm_m;
+use crate::data::{Axis, Cask, CaskFile, Contact, Drop};
 
 impl Wish {
     /// A sound drop as the damage needs it.
