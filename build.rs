@@ -1,4 +1,5 @@
-//! The commit of the sources to `DROPCHECK_COMMIT`, which results name; for a release alone, or every commit would build all anew.
+//! The commit of the sources to `DROPCHECK_COMMIT`, which results name; for a release alone, or every commit
+//! would build all anew.
 
 use std::process::Command;
 

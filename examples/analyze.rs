@@ -1,6 +1,8 @@
-//! The six names of the library: a recording and a cask file to a report, and what the model says of the same drop.
+//! The six names of the library: a recording and a cask file to a report, and what the model says of the same
+//! drop.
 //!
-//! `cargo run --example analyze -- fixtures/examples/anf18-json.mcap fixtures/examples/anf18-json.toml out/example`
+//! `cargo run --example analyze -- fixtures/examples/anf18-json.mcap fixtures/examples/anf18-json.toml
+//! out/example`
 
 use dropcheck::data::{Body, BodyModel, Contact, StudyRequest, Uncertain};
 use std::path::Path;

@@ -1,8 +1,10 @@
-//! dropcheck: what accelerometers on both ends of a dropped cask say about its slap-down, and whether to believe it.
+//! dropcheck: what accelerometers on both ends of a dropped cask say about its slap-down, and whether to
+//! believe it.
 //!
-//! A library user calls six names: [`cask_file()`] and [`read`] for what a test left behind, [`analyze`] for everything that can be said of it,
-//! [`predict()`] and [`study`] for what the analytical model says, and [`files`] for the report; [`data`] has what passes between them. A
-//! program of its own calls [`serve_hdf5`] first in `main`, or names one that does by [`read_hdf5_with`].
+//! A library user calls six names: [`cask_file()`] and [`read`] for what a test left behind, [`analyze`] for
+//! everything that can be said of it, [`predict()`] and [`study`] for what the analytical model says, and
+//! [`files`] for the report; [`data`] has what passes between them. A program of its own calls [`serve_hdf5`]
+//! first in `main`, or names one that does by [`read_hdf5_with`].
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -17,7 +19,8 @@
 //! # }
 //! ```
 //!
-//! A recording and a cask file pass through stages in the order that `analysis` alone knows; a stage imports only `data` and `numerics`.
+//! A recording and a cask file pass through stages in the order that `analysis` alone knows; a stage imports
+//! only `data` and `numerics`.
 
 mod analysis;
 mod cli;
@@ -60,7 +63,7 @@ pub mod stages {
     pub use crate::analysis::{measure, sticking};
     pub use crate::condition::{Reach, condition};
     pub use crate::events::Changes;
-    pub use crate::fit::{Basis, ladder, quantities, spread_by_draws};
+    pub use crate::fit::{FitData, ladder, quantities, spread_by_draws};
     pub use crate::motion::{Integrated, Window, filtered, fit_flight, outcome, reconstruct};
     pub use crate::numerics::filter::ZeroPhaseLowPass;
     pub use crate::numerics::spectrum::magnitude;

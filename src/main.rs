@@ -17,8 +17,9 @@ fn main() -> ExitCode {
     ExitCode::from(dropcheck::command::main(&words))
 }
 
-/// Starts this program in its own place with limits above which glibc gives freed pieces back to the system: without them a campaign of
-/// scenes leaves more and more holes of all sizes (docs/scale.md). Returns where they are set already or it cannot be started.
+/// Starts this program in its own place with limits above which glibc gives freed pieces back to the system:
+/// without them a campaign of scenes leaves more and more holes of all sizes (docs/scale.md). Returns where
+/// they are set already or it cannot be started.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 fn again_with_memory_given_back(words: &[OsString]) {
     use std::os::unix::process::CommandExt;

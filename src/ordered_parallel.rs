@@ -1,4 +1,5 @@
-//! Pieces of work to what is made of them: each on one of so many threads, handed over in order, so many ahead at most.
+//! Pieces of work to what is made of them: each on one of so many threads, handed over in order, so many
+//! ahead at most.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -10,7 +11,8 @@ const AHEAD: usize = 4;
 /// Told in place of how many are taken where no more are.
 const ENDED: usize = usize::MAX;
 
-/// Makes something of each of `pieces` by `make` on `jobs` threads, one core each, and hands it to `take` in their order.
+/// Makes something of each of `pieces` by `make` on `jobs` threads, one core each, and hands it to `take` in
+/// their order.
 ///
 /// # Errors
 /// The first of `take`; what is being made then is ended, and no more begun.
@@ -24,8 +26,8 @@ pub fn each<P: Copy + Send + Sync, T: Send, E>(
     let (next, taken, moved) = (Mutex::new(pieces.enumerate()), Mutex::new(0_usize), Condvar::new());
     let (sender, receiver) = mpsc::channel();
     let work = |sender: mpsc::Sender<_>| {
-        // What a piece shares among threads stays on this one: pieces are what is shared here. A thread that waits for another would begin a
-        // second piece in the middle of the first, and hold both.
+        // What a piece shares among threads stays on this one: pieces are what is shared here. A thread that
+        // waits for another would begin a second piece in the middle of the first, and hold both.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
         loop {
             let Some((place, piece)) = next.lock().unwrap_or_else(PoisonError::into_inner).next() else {

@@ -138,7 +138,7 @@ fn reconstruct(bencher: Bencher, samples: usize) {
 #[divan::bench(args = SIZES)]
 fn quantities(bencher: Bencher, samples: usize) {
     let m = Middle::new(samples);
-    let measured = stages::Basis {
+    let measured = stages::FitData {
         signals: &m.signals,
         flight: &m.flight,
         events: &m.events,

@@ -1,4 +1,5 @@
-//! Two sensors on a cask that slaps down, in closed form, to recordings of every format in a folder of their own.
+//! Two sensors on a cask that slaps down, in closed form, to recordings of every format in a folder of their
+//! own.
 
 use dropcheck::data::CaskFile;
 use dropcheck::ingest;
@@ -71,10 +72,12 @@ pub fn cask_file(kind: Kind) -> CaskFile {
     ingest::cask_file(file.path()).expect("the bench's own cask file")
 }
 
-/// Half-sine pulses at both ends with free flight between, a mode of 62 Hz that rings after each, and noise; in g.
+/// Half-sine pulses at both ends with free flight between, a mode of 62 Hz that rings after each, and noise;
+/// in g.
 #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "a test signal")]
 fn drop_g(samples: usize) -> [Vec<f32>; 2] {
-    // Contact in the middle, 6 ms long; slap-down 70 ms later. A rod that keeps half of its speed: 21 m/s at L, −10 m/s at R.
+    // Contact in the middle, 6 ms long; slap-down 70 ms later. A rod that keeps half of its speed: 21 m/s at
+    // L, −10 m/s at R.
     let contact_s = samples as f64 / RATE_HZ / 2.0;
     let pulse = |t: f64, length_s: f64, step_m_s: f64| {
         let inside = (0.0..length_s).contains(&t);

@@ -24,7 +24,8 @@ pyo3::create_exception!(
 /// The exit status of a Rust program that broke off.
 const BROKE_OFF: u8 = 101;
 
-/// The threads that share the work, and the process that they belong to: a forked one has none of its parent's.
+/// The threads that share the work, and the process that they belong to: a forked one has none of its
+/// parent's.
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
 fn pool() -> Result<Arc<ThreadPool>, miette::Report> {

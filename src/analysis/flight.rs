@@ -1,9 +1,9 @@
 //! A first impact to the flight after it: separation, slap-down, and the motion between them.
 
+use super::flight_search;
 use super::impact::Impact;
 use super::impacts::{self, Tabulated};
-use super::second::SecondImpact;
-use super::settle;
+use super::second_impact::SecondImpact;
 use super::setup::{MIDDLE, U_UNKNOWN, sticking};
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, CaskFile, Contact, Contribution, DropFinding, End, Events,
@@ -12,7 +12,8 @@ use crate::data::{
 use crate::motion::{self, Integrated};
 use crate::{events, fit, judge};
 
-/// What the length of a pulse is uncertain by, as a share, where its samples are clipped or missing, or only the other end shows it.
+/// What the length of a pulse is uncertain by, as a share, where its samples are clipped or missing, or only
+/// the other end shows it.
 const UNCERTAIN_PULSE: f64 = 0.1;
 
 /// The flight, and what it says of the motion.
@@ -26,7 +27,8 @@ pub(super) struct Flown {
     pub tabulated: Option<Tabulated>,
 }
 
-/// The events as far as they are found, and the flight where the motion could be had; what prevents it goes to the findings.
+/// The events as far as they are found, and the flight where the motion could be had; what prevents it goes
+/// to the findings.
 pub(super) fn flown(
     impact: &Impact,
     file: &CaskFile,
@@ -61,29 +63,30 @@ fn fitted(
     events: &mut Events,
     findings: &mut Vec<Finding>,
 ) -> Option<FlightFit> {
-    let settled = settle::settle(file, integrated)?;
+    let found = flight_search::find(file, integrated)?;
     let signals: &[Signal] = &integrated.signals;
     let is_made = |end| impact.stand_in.as_ref().is_some_and(|s| s.end == end);
     let shows_slap_down = !is_made(End::Second);
     let contact_s = impact.contact.time_s;
-    let At { time_s: left_s, u_s } = settled.left;
+    let At { time_s: left_s, u_s } = found.separation;
     let is_cut = |s: &Signal| [&s.clipped, &s.gaps].iter().any(|spans| s.touches(spans, contact_s, left_s));
-    // A pulse without its peak or a part of its flanks ends where it fades out of less: a tenth of its length.
+    // A pulse without its peak or a part of its flanks ends where it fades out of less: a tenth of its
+    // length.
     let is_uncertain = is_made(End::First) || events::transverse(signals, End::First).is_some_and(is_cut);
     let u_pulse_s = if is_uncertain { UNCERTAIN_PULSE * (left_s - contact_s) } else { 0.0 };
-    let is_in_order = left_s > contact_s && settled.struck.is_none_or(|struck| struck.time_s > left_s);
+    let is_in_order = left_s > contact_s && found.slap_down.is_none_or(|struck| struck.time_s > left_s);
     if !is_in_order {
         findings.push(DropFinding::ShortFlight.into());
         return None;
     }
     // A seat that rings answers late as the contact begins and as it ends.
-    events.first_contact = Some(At { u_s: impact.contact.u_s.hypot(settled.seat_s), ..impact.contact });
-    events.separation = Some(At { time_s: left_s, u_s: u_s.hypot(u_pulse_s).hypot(settled.seat_s) });
-    events.slap_down = settled.struck.filter(|_| shows_slap_down);
+    events.first_contact = Some(At { u_s: impact.contact.u_s.hypot(found.seat_s), ..impact.contact });
+    events.separation = Some(At { time_s: left_s, u_s: u_s.hypot(u_pulse_s).hypot(found.seat_s) });
+    events.slap_down = found.slap_down.filter(|_| shows_slap_down);
     if events.slap_down.is_none() && shows_slap_down {
         findings.push(judge::judge_no_slap_down(impact.sought_to_s - left_s, impact.is_record_end));
     }
-    let flight = settled.flight.filter(|flight| impact.stand_in.is_none() || flight.is_told_apart());
+    let flight = found.flight.filter(|flight| impact.stand_in.is_none() || flight.is_told_apart());
     let Some(mut flight) = flight else {
         findings.push(DropFinding::ShortFlight.into());
         return None;
@@ -112,7 +115,7 @@ fn moved(
     };
     let plain = motion::mean_of_flight(integrated, &flight, &window, setup.cog_m);
     let cask = &file.cask;
-    let measured = fit::Basis {
+    let measured = fit::FitData {
         signals,
         flight: &flight,
         events,

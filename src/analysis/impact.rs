@@ -1,12 +1,13 @@
-//! A recording to its first impact: the conditioned signals, when L touches, and what the time before it shows.
+//! A recording to its first impact: the conditioned signals, when L touches, and what the time before it
+//! shows.
 
-use super::{one_end, settle};
+use super::{flight_search, missing_end};
 use crate::data::{
     At, Axis, BENDING_WAVE_M_S, CaskFile, Channel, ChannelFinding, CoarseEvent, Coupling, Drop, End, Events,
-    Finding, Recording, RestLevel, Severity, Signal, What,
+    Finding, FindingKind, Recording, RestLevel, Severity, Signal,
 };
 use crate::{condition, events, judge};
-use one_end::StandIn;
+use missing_end::StandIn;
 use std::ops::Range;
 
 /// The first impact, and what the analysis of it goes by.
@@ -15,7 +16,7 @@ pub(super) struct Impact {
     pub signals: Vec<Signal>,
     /// First contact of L.
     pub contact: At,
-    /// What a delay between channels leaves open of R's times, as a standard uncertainty, s.
+    /// Standard uncertainty of R's times that an unexplained delay between channels causes, s.
     pub u_skew_s: f64,
     /// The end without a transverse channel of its own.
     pub stand_in: Option<StandIn>,
@@ -23,15 +24,16 @@ pub(super) struct Impact {
     pub rests: Vec<RestLevel>,
     /// From the release to the first touch, s, where the record shows them.
     pub fall_s: Option<Range<f64>>,
-    /// How far the slap-down is sought, s; whether the record ends there, and whether something happens beyond that a longer flight explains.
+    /// How far the slap-down is sought, s; whether the record ends there, and whether something happens
+    /// beyond that a longer flight explains.
     pub sought_to_s: f64,
     pub is_record_end: bool,
     pub goes_on: bool,
 }
 
 impl Impact {
-    /// The first impact of a recording, what follows it as far as the angle lets the slap-down be, or `farther`; `None` where no channel
-    /// shows one, which is then said alone.
+    /// Finds the first impact and cuts the recording after the latest slap-down that the angle allows, or
+    /// `farther`. `None` if no channel shows an impact; that is then the only finding.
     pub fn find(
         recording: &Recording,
         file: &CaskFile,
@@ -44,7 +46,7 @@ impl Impact {
         findings.extend(silent);
         let copied = judge::judge_copies(&recording.channels);
         let event = changes
-            .locate(one_end::least_step_m_s(file, recording))
+            .locate(missing_end::least_step_m_s(file, recording))
             .filter(|e| e.velocity_step_m_s.abs() > drop.least_impact_m_s());
         let Some(event) = event else {
             findings.push(judge::judge_no_impact(findings, drop, changes.rate_hz(), None));
@@ -113,10 +115,11 @@ impl Impact {
     }
 }
 
-/// The coarse event from where a channel first answers on, where too little free fall for an offset lies before it: it begins up to its
-/// width before the contact, and a short free fall lies between for the most part.
+/// The coarse event from where a channel first answers on, where too little free fall for an offset lies
+/// before it: it begins up to its width before the contact, and a short free fall lies between for the most
+/// part.
 fn nearer(event: &CoarseEvent, signals: &[Signal], found: &[Finding]) -> Option<CoarseEvent> {
-    let is_short = |f: &Finding| matches!(f.what, What::Channel(ChannelFinding::ShortFreeFall { .. }));
+    let is_short = |f: &Finding| matches!(f.what, FindingKind::Channel(ChannelFinding::ShortFreeFall { .. }));
     let contact = found.iter().any(is_short).then(|| events::first_contact(signals, event))??;
     let answers = events::answers(signals, contact.time_s);
     let early_s = answers.iter().map(|answer| answer.delay_s).fold(0.0, f64::min);
@@ -124,16 +127,17 @@ fn nearer(event: &CoarseEvent, signals: &[Signal], found: &[Finding]) -> Option<
     Some(CoarseEvent { near_s, spread_s: (event.near_s + event.spread_s - near_s).max(0.0), ..*event })
 }
 
-/// Adds the signal that stands in for an end without one, made for the angle that the cask has in the middle of the contact.
+/// Adds the signal that stands in for an end without one, made for the angle that the cask has in the middle
+/// of the contact.
 fn with_both_ends(file: &CaskFile, signals: &mut Vec<Signal>, contact_s: f64) -> Option<StandIn> {
-    let mut stand_in = one_end::stand_in(file, signals, contact_s)?;
-    let turned_rad = settle::turned_rad(file, signals, contact_s).unwrap_or(0.0);
+    let mut stand_in = missing_end::stand_in(file, signals, contact_s)?;
+    let turned_rad = flight_search::turned_rad(file, signals, contact_s).unwrap_or(0.0);
     stand_in.turn(file, signals, turned_rad);
     Some(stand_in)
 }
 
-/// Shifts channels whose clock is apart back, if that correction may be made; returns what a delay that a bending wave explains as well
-/// leaves open of R's times, as a standard uncertainty, s.
+/// Shifts channels whose clock is apart back, if that correction may be made; returns what a delay that a
+/// bending wave explains as well leaves open of R's times, as a standard uncertainty, s.
 fn align(file: &CaskFile, signals: &mut [Signal], contact_s: f64, findings: &mut Vec<Finding>) -> f64 {
     let onsets = events::answers(signals, contact_s);
     let mut u_skew_s = 0.0_f64;

@@ -1,7 +1,7 @@
 //! The motion over both contacts to what test reports tabulate of them, each number with its interval.
 
-use super::second::SecondImpact;
-use super::settle;
+use super::flight_search;
+use super::second_impact::SecondImpact;
 use crate::data::{
     Axis, BENDING_WAVE_M_S, CaskFile, ChannelPeak, DropFinding, DropResult, End, Estimate, Events, Finding,
     ForceOverCrush, ImpactNumbers, ImpactTable, Motion, RigidBodyDeceleration, Signal,
@@ -9,13 +9,15 @@ use crate::data::{
 use crate::fit::{COVERAGE, Inputs, RungTaken};
 use crate::motion::{self, ContactCourse, ForceCourse, Integrated, largest};
 
-/// Standard uncertainty of the numbers that follow the course of the force: so much of what other courses make of them, and of themselves for ringing as large as the velocity gained. With
-/// it the intervals of 200 simulated drops hold what docs/uncertainty.md says.
+/// Standard uncertainty of the numbers that follow the course of the force: so much of what other courses
+/// make of them, and of themselves for ringing as large as the velocity gained. With it the intervals of 200
+/// simulated drops hold what docs/uncertainty.md says.
 const OTHER_COURSES: [(ForceCourse, f64); 2] =
     [(ForceCourse::Translation, 0.25), (ForceCourse::HalfSine, 0.35)];
 const RINGING_SHARE: f64 = 0.07;
 
-/// A rotation that is off the impulse of one contact at R by so many standard uncertainties is that of two, or of none.
+/// A rotation that is off the impulse of one contact at R by so many standard uncertainties is that of two,
+/// or of none.
 const MISSED_U: f64 = 3.5;
 /// No end is thrown back faster than it came, nor drawn in.
 const RESTITUTION_RANGE: std::ops::RangeInclusive<f64> = -0.1..=1.1;
@@ -37,8 +39,9 @@ pub(super) struct Tabulated {
 }
 
 impl Tabulated {
-    /// Without what follows the course of the force: with the channels of one end alone, nothing tells how the cask bends while the contact
-    /// lasts. Of the fixture ANF-18 without its A2 the crush would be off by 1.5 half-widths.
+    /// Without what follows the course of the force: with the channels of one end alone, nothing tells how
+    /// the cask bends while the contact lasts. Of the fixture ANF-18 without its A2 the crush would be off by
+    /// 1.5 half-widths.
     pub fn without_course(mut self) -> Self {
         for table in self.tables.iter_mut().flatten() {
             let deceleration = &mut table.rigid_body_deceleration;
@@ -55,11 +58,14 @@ impl Tabulated {
     /// The finding where the motion tells the first impact alone, though there is another.
     pub fn untold(&self, recorded: &[Signal], events: &Events) -> Option<Finding> {
         let struck_s = events.slap_down_s().filter(|_| self.tables[1].is_none())?;
-        Some(DropFinding::SecondUntold { recorded_s: settle::record_end_s(recorded) - struck_s }.into())
+        Some(
+            DropFinding::SecondUntold { recorded_s: flight_search::record_end_s(recorded) - struck_s }.into(),
+        )
     }
 }
 
-/// Both impacts, with what each channel reads of them; the motion's part where it may be stated, beside the quantities stated already.
+/// Both impacts, with what each channel reads of them; the motion's part where it may be stated, beside the
+/// quantities stated already.
 pub(super) fn of_result(
     file: &CaskFile,
     recorded: &[Signal],
@@ -169,7 +175,8 @@ impl BothImpacts<'_> {
         Some([Some(&first), second.as_ref()].into_iter().flatten().map(numbers).collect())
     }
 
-    /// These with their standard uncertainties: what else could have told the course of the force says how well that is known.
+    /// These with their standard uncertainties: what else could have told the course of the force says how
+    /// well that is known.
     fn known(&self, taken: &RungTaken) -> Option<Vec<ImpactNumbers<(f64, f64)>>> {
         let unmoved = self.unmoved();
         let flat = |inputs: &Inputs, by_u: &[f64]| {
@@ -225,7 +232,8 @@ fn is_one_contact(numbers: &ImpactNumbers<(f64, f64)>) -> bool {
         && numbers.duration.0 > 0.0
 }
 
-/// The numbers of one contact, all over the mass where it belongs to them; the ratios need the first contact too, and are 0 here.
+/// The numbers of one contact, all over the mass where it belongs to them; the ratios need the first contact
+/// too, and are 0 here.
 fn read_off(course: &Course, inertia_m2: f64, gravity_m_s2: f64, cutoff_hz: f64) -> ImpactNumbers<f64> {
     let Course { motion, contact } = course;
     let [impulse_x, impulse_z] = contact.impulse_m_s;
@@ -254,7 +262,8 @@ fn read_off(course: &Course, inertia_m2: f64, gravity_m_s2: f64, cutoff_hz: f64)
     }
 }
 
-/// The decelerations through the low-pass of this cask, each with its u, and beside them through the usual others, known as well.
+/// The decelerations through the low-pass of this cask, each with its u, and beside them through the usual
+/// others, known as well.
 fn decelerations(file: &CaskFile, course: &Course, taken: [(f64, f64); 2]) -> RigidBodyDeceleration {
     let contact = &course.contact;
     let through = |(filter, cutoff_hz): (String, f64)| {
@@ -278,7 +287,8 @@ fn force_over_crush(contact: &ContactCourse, mass_kg: f64, cutoff_hz: f64) -> Fo
     }
 }
 
-/// The pulse of each channel between two times, s, through the low-pass of this cask; `table` has the rest of that impact.
+/// The pulse of each channel between two times, s, through the low-pass of this cask; `table` has the rest of
+/// that impact.
 fn channel_peaks(
     file: &CaskFile,
     recorded: &[Signal],
@@ -292,7 +302,8 @@ fn channel_peaks(
         of_axis.filter_map(|(_, pulse)| Some((*pulse)?.raw_m_s2.abs())).fold(0.0, f64::max)
     };
     let [transverse_m_s2, read_m_s2] = [Axis::Transverse, Axis::Axial].map(largest_m_s2);
-    // Along the axis: what is read there, else that of S by the force and the friction, else at most the same times tan φ0 and a friction of 1.
+    // Along the axis: what is read there, else that of S by the force and the friction, else at most the same
+    // times tan φ0 and a friction of 1.
     let (sin, cos) = file.drop.angle_rad.sin_cos();
     let by_force = table.numbers.force_peak.zip(table.numbers.friction).map(|(force, friction)| {
         force.value / file.cask.mass_kg * (sin + (friction.value.abs() + friction.u95).min(1.0) * cos)
@@ -335,7 +346,8 @@ fn channel_peaks(
     recorded.iter().zip(&pulses).map(of).collect()
 }
 
-/// The stretch of each impact in which its pulses are sought, s: a bending wave takes its time to the other end.
+/// The stretch of each impact in which its pulses are sought, s: a bending wave takes its time to the other
+/// end.
 fn stretches_s(events: &Events, second_left_s: Option<f64>, length_m: f64) -> [Option<[f64; 2]>; 2] {
     let wave_s = length_m / BENDING_WAVE_M_S;
     let stretch = |from: Option<f64>, to: Option<f64>, most_s: f64| {

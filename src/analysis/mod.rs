@@ -1,15 +1,15 @@
 //! A recording and a cask file to everything that can be said of the drop: the order of the whole.
 
-mod again;
+mod comparison;
 mod flight;
+pub mod flight_search;
 mod impact;
 mod impacts;
-mod measured;
-pub mod one_end;
-mod outcome;
-mod reached;
-mod second;
-pub mod settle;
+pub mod missing_end;
+mod progress;
+mod result;
+mod second_impact;
+mod second_look;
 mod setup;
 mod slips;
 
@@ -17,17 +17,19 @@ pub use setup::sticking;
 
 use crate::data::{Analysis, CaskFile, Events, Finding, IssueCode, Recording};
 use crate::{ingest, judge};
+use comparison::Measured;
 use flight::Flown;
 use impact::Impact;
-use measured::Measured;
-use reached::Reached;
+use progress::Reached;
 
 /// From a recording and a cask file to everything that can be said of the drop.
 ///
-/// What cannot be had is null in the result, with an issue that says why; the verdict says whether to believe the rest.
+/// What cannot be had is null in the result, with an issue that says why; the verdict says whether to believe
+/// the rest.
 #[must_use]
 pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
-    // On a thread of the pool: any other would be put to sleep and woken again for each piece of work that two threads share.
+    // On a thread of the pool: any other would be put to sleep and woken again for each piece of work that
+    // two threads share.
     let mut found = measure(recording, cask_file);
     rayon::scope(|_| slips::name_slip(recording, cask_file, &mut found));
     let result = &mut found.result;
@@ -41,7 +43,7 @@ pub fn analyze(recording: &Recording, cask_file: &CaskFile) -> Analysis {
 /// [`analyze`] without the search for a usual slip, which names one and changes no number.
 #[must_use]
 pub fn measure(recording: &Recording, cask_file: &CaskFile) -> Analysis {
-    rayon::scope(|_| again::without_one(recording, cask_file, analyzed(recording, cask_file)))
+    rayon::scope(|_| second_look::leave_one_out(recording, cask_file, analyzed(recording, cask_file)))
 }
 
 /// A first impact with the events and the flight that follow it.
@@ -51,7 +53,8 @@ struct AfterImpact {
     flown: Option<Flown>,
 }
 
-/// The first impact and the flight after it, with what was found about them; `farther` as [`Impact::find`] takes it.
+/// The first impact and the flight after it, with what was found about them; `farther` as [`Impact::find`]
+/// takes it.
 fn flown(recording: &Recording, file: &CaskFile, farther: bool) -> (Vec<Finding>, Option<AfterImpact>) {
     let mut findings = recording.issues.clone();
     let struck = Impact::find(recording, file, farther, &mut findings).map(|impact| {
@@ -73,12 +76,12 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
         }
     }
     let Some(AfterImpact { impact, events, flown }) = found else {
-        return outcome::without_impact(recording, file, findings);
+        return result::without_impact(recording, file, findings);
     };
     judge::weigh_by_distance(&mut findings, &events);
     let (on_channels, shown) = rayon::join(
         || judge::judge_channels(impact.recorded(), &events, file, &findings),
-        || outcome::ShownSignals::of(&impact.signals, &events, file),
+        || result::ShownSignals::of(&impact.signals, &events, file),
     );
     findings.extend(on_channels);
     let reached = match flown {
@@ -95,5 +98,5 @@ fn analyzed(recording: &Recording, file: &CaskFile) -> Analysis {
     if !matches!(reached, Reached::Measured(..)) {
         findings.extend(judge::judge_fall_time(&findings, &file.drop, &events, &file.tolerances));
     }
-    outcome::of(recording, file, findings, outcome::Examined { impact, events, shown, reached })
+    result::of(recording, file, findings, result::Examined { impact, events, shown, reached })
 }

@@ -2,8 +2,9 @@
 
 use crate::data::{AxialClosure, CONTACT_STEPS, CaskFile, Setup};
 
-/// A friction that nobody states lies between none and what sticking needs, and more than that does as much: in the middle of what 0.1 and
-/// more give, as a share of what sticking needs, and with a standard uncertainty that takes both ends in.
+/// A friction that nobody states lies between none and what sticking needs, and more than that does as much:
+/// in the middle of what 0.1 and more give, as a share of what sticking needs, and with a standard
+/// uncertainty that takes both ends in.
 pub(super) const MIDDLE: f64 = 0.6;
 pub(super) const U_UNKNOWN: f64 = 0.33;
 

@@ -1,33 +1,37 @@
-//! An analysis that something speaks against to the usual slip in the cask file, or the angle, with which everything closes.
+//! An analysis that something speaks against to the usual slip in the cask file, or the angle, with which
+//! everything closes.
 
-use super::again::{CLEARLY, Doubt, add, closes, is_too_large};
 use super::analyzed;
+use super::second_look::{CLEARLY, Doubt, add, closes, is_too_large};
 use crate::data::{
-    Analysis, Axis, CaskFile, Channel, ChannelFinding, ClosureKind, Cure, DropFinding, Finding, IssueCode,
-    MISSED_U, Recording, RecordingFormat, STANDARD_GRAVITY_M_S2 as G, Severity, Slip, What,
+    Analysis, Axis, CaskFile, Channel, ChannelFinding, ClosureKind, Cure, DropFinding, Finding, FindingKind,
+    IssueCode, MISSED_U, Recording, RecordingFormat, STANDARD_GRAVITY_M_S2 as G, Severity, Slip,
 };
 use crate::judge;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
-/// k of a cure: no crushed end rebounds otherwise, and two slips of which one is put right often come to another.
+/// k of a cure: no crushed end rebounds otherwise, and two slips of which one is put right often come to
+/// another.
 const LIKELY_K: RangeInclusive<f64> = 0.02..=0.98;
-/// 95 % half-widths that a cure has at the most, of k and of the speed as a share: sound drops have 0.067 and all but one 0.05
-/// (docs/validation.md), two slips of which one is put right up to 0.3 and more.
+/// 95 % half-widths that a cure has at the most, of k and of the speed as a share: sound drops have 0.067 and
+/// all but one 0.05 (docs/validation.md), two slips of which one is put right up to 0.3 and more.
 const MOST_U95_K: f64 = 0.08;
 const MOST_U95_SPEED: f64 = 0.06;
 /// Units of length that a number in metres may be in.
 const LENGTHS_M: [(&str, f64); 3] = [("in cm", 0.01), ("in mm", 1e-3), ("in ft", 0.3048)];
 /// The least drop height and length of a cask that a unit of length is tried for, m.
 const LEAST_M: f64 = 0.1;
-/// More velocity than a cask can lose in its impacts, in v0: what is cut off beyond it was never there, and the unit is wrong.
+/// More velocity than a cask can lose in its impacts, in v0: what is cut off beyond it was never there, and
+/// the unit is wrong.
 const MOST_LOST: f64 = 3.0;
 /// The first step of the search for an angle, rad, how many there are, and when its closure is met, in u.
 const STEP_RAD: f64 = 0.01;
 const STEPS: usize = 4;
 const MET: f64 = 0.3;
 
-/// Adds the usual slip with which everything closes, where an error stands, or else the angle with which it does.
+/// Adds the usual slip with which everything closes, where an error stands, or else the angle with which it
+/// does.
 pub(super) fn name_slip(recording: &Recording, file: &CaskFile, found: &mut Analysis) {
     let doubt = severity_of_doubt(&found.result.quality, file.drop.impact_velocity_m_s);
     let Some(severity) = doubt.filter(|_| !is_too_large(recording)) else { return };
@@ -59,7 +63,8 @@ pub(super) fn name_slip(recording: &Recording, file: &CaskFile, found: &mut Anal
     }
 }
 
-/// Whether all closes, at a k and with intervals that a sound drop has, and nothing is left that speaks of more than this slip.
+/// Whether all closes, at a k and with intervals that a sound drop has, and nothing is left that speaks of
+/// more than this slip.
 fn is_cured(analysis: &Analysis) -> bool {
     let result = &analysis.result;
     let (Some(k), Some(speed)) = (result.k, result.slap_down.speed) else { return false };
@@ -74,14 +79,15 @@ fn is_stated(finding: &Finding) -> bool {
     matches!(finding.code, Geometry | NotRigid | Scale | SensorPosition)
 }
 
-/// How much weighs what a slip may be behind: errors of the motion and no other, or a warning on what the cask file says of the channels.
+/// How much weighs what a slip may be behind: errors of the motion and no other, or a warning on what the
+/// cask file says of the channels.
 fn severity_of_doubt(findings: &[Finding], v0_m_s: f64) -> Option<Severity> {
     use IssueCode::{EndsEarly, EndsExchanged, FlightFit, NoImpact, NoSlapDown, Polarity, RestitutionRange};
     let is_of_motion = |f: &Finding| match f.code {
         EndsEarly | EndsExchanged | FlightFit | NoImpact | NoSlapDown | Polarity | RestitutionRange => true,
         _ => {
             is_stated(f)
-                || matches!(f.what, What::Channel(ChannelFinding::Clipped { lost_m_s, .. }) if lost_m_s > MOST_LOST * v0_m_s)
+                || matches!(f.what, FindingKind::Channel(ChannelFinding::Clipped { lost_m_s, .. }) if lost_m_s > MOST_LOST * v0_m_s)
         }
     };
     let mut errors = findings.iter().filter(|f| f.severity == Severity::Error).peekable();
@@ -190,7 +196,8 @@ fn put_right(slip: &Slip, recording: &mut Recording, file: &mut CaskFile) {
     }
 }
 
-/// The samples of two channels change places, and what the cask file says of each channel stays, its polarity too.
+/// The samples of two channels change places, and what the cask file says of each channel stays, its polarity
+/// too.
 fn exchange<'a>(mut both: impl Iterator<Item = &'a mut Channel>) {
     let (Some(one), Some(other)) = (both.next(), both.next()) else { return };
     std::mem::swap(one, other);
@@ -205,7 +212,8 @@ fn exchange<'a>(mut both: impl Iterator<Item = &'a mut Channel>) {
     }
 }
 
-/// The angle with which R meets the target as it strikes and everything else closes, by the secant, where that closure is missed, degrees.
+/// The angle with which R meets the target as it strikes and everything else closes, by the secant, where
+/// that closure is missed, degrees.
 fn closing_angle_deg(recording: &Recording, file: &CaskFile, found: &Analysis) -> Option<f64> {
     let miss = |analysis: &Analysis| {
         let closures = &analysis.result.reconstruction.as_ref()?.closures;

@@ -124,7 +124,8 @@ fn complain_softly(sentence: &str) {
     let _ = writeln!(anstream::stderr(), "{}", report::printable(sentence));
 }
 
-/// What the words ask for, of samples in memory where there are any; written nowhere, and its words and date not yet stated.
+/// What the words ask for, of samples in memory where there are any; written nowhere, and its words and date
+/// not yet stated.
 pub fn analysis(arguments: &Arguments, held: Option<&[HeldSamples]>) -> miette::Result<Analysis> {
     let mut cask_file = ingest::cask_file(arguments.cask.as_deref().unwrap_or(Path::new("")))?;
     arguments.switched_off.in_cask_file(&mut cask_file);
@@ -172,7 +173,8 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let recording = with_progress("reading", |progress| {
         let read = || ingest::read_within(&arguments.recording, &cask_file, limits, progress);
         match ingest::format(&arguments.recording)? {
-            // Its chunks are taken in waves, which end in what one thread does alone; the other formats keep all threads at work.
+            // Its chunks are taken in waves, which end in what one thread does alone; the other formats keep
+            // all threads at work.
             RecordingFormat::Mcap => keep_threads_awake(read),
             RecordingFormat::Hdf5 | RecordingFormat::Csv | RecordingFormat::Samples => read(),
         }

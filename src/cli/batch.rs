@@ -1,4 +1,5 @@
-//! `batch`: a campaign of recordings to a report each, a line each, and one picture of all; one that fails does not stop the others.
+//! `batch`: a campaign of recordings to a report each, a line each, and one picture of all; one that fails
+//! does not stop the others.
 
 mod campaign;
 mod manifest;
@@ -55,7 +56,8 @@ pub struct Arguments {
     /// Folder for campaign.html, campaign.csv, campaign.json and one report a recording
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// One line a recording: its result, or {"id", "exit", "error"}; with - to standard output, and nothing else there
+    /// One line a recording: its result, or {"id", "exit", "error"}; with - to standard output, and nothing
+    /// else there
     #[arg(long, value_name = "FILE|-")]
     jsonl: Option<PathBuf>,
     /// Only each N-th recording from number I on, from 0; `dropcheck merge` puts the parts together
@@ -228,8 +230,9 @@ fn line(plan: &CampaignPlan, number: usize, arguments: &Arguments) -> String {
     }
 }
 
-/// Why there is no result, without a word of what stands in a file outside the folder of the manifest, or of the recording: a manifest that
-/// was sent may name any file, and a folder hold links to any. `None` where both files lie there.
+/// Why there is no result, without a word of what stands in a file outside the folder of the manifest, or of
+/// the recording: a manifest that was sent may name any file, and a folder hold links to any. `None` where
+/// both files lie there.
 fn untold(test: &PlannedTest, arguments: &Arguments) -> Option<String> {
     let folder = arguments.manifest.as_ref().unwrap_or(&test.recording).parent();
     let folder = folder.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

@@ -1,11 +1,13 @@
-//! An error to words on standard error: drawn under the line at fault on a terminal, told in plain sentences elsewhere.
+//! An error to words on standard error: drawn under the line at fault on a terminal, told in plain sentences
+//! elsewhere.
 
 use crate::data::shortened;
 use crate::report::printable;
 use miette::{GraphicalReportHandler, GraphicalTheme, Report};
 use std::io::{IsTerminal, Write};
 
-/// A longer line is not drawn but told, and of the line at fault so much is shown before and behind its place.
+/// A longer line is not drawn but told, and of the line at fault so much is shown before and behind its
+/// place.
 const LONGEST_LINE: usize = 400;
 
 /// Prints `report`; nothing in it can steer the terminal, and no line of a file fills it.

@@ -1,4 +1,5 @@
-//! Entry points for another program (the Python module): a command line to its result, which is returned instead of printed.
+//! Entry points for another program (the Python module): a command line to its result, which is returned
+//! instead of printed.
 
 use super::{Command, CommandLine, analyze, predict, rerun};
 use crate::data::{Analysis, HeldSamples};
@@ -26,8 +27,8 @@ fn not(what: &str) -> miette::Report {
     miette::miette!("the words are not those of `{what}`")
 }
 
-/// The analysis that this command line asks for. `held` replaces the recording by samples in memory; the result then
-/// states no command to run it again, since none makes the same.
+/// The analysis that this command line asks for. `held` replaces the recording by samples in memory; the
+/// result then states no command to run it again, since none makes the same.
 ///
 /// # Errors
 /// What the command complains of.

@@ -1,4 +1,5 @@
-//! `merge`: the shards of a campaign, as `--jsonl` wrote them on any machines, to the files that one run would have written.
+//! `merge`: the shards of a campaign, as `--jsonl` wrote them on any machines, to the files that one run
+//! would have written.
 
 use super::lines::{no_shard, schema};
 use super::{Ending, batch};

@@ -67,8 +67,9 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// Checks that files of these `names` can be written in `path`: that it is a folder or can become one, writable, and
-    /// that none of them is an input or another program's. The first of `names` that ends in ".json" tells whose they are.
+    /// Checks that files of these `names` can be written in `path`: that it is a folder or can become one,
+    /// writable, and that none of them is an input or another program's. The first of `names` that ends in
+    /// ".json" tells whose they are.
     pub fn checked(path: &Path, names: &[&str], inputs: &[&Path]) -> Result<Self, CannotWrite> {
         if path.as_os_str().is_empty() {
             return Err(CannotWrite::NoFolder { path: "\"\"".into() });

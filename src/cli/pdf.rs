@@ -62,7 +62,8 @@ fn browser() -> Option<PathBuf> {
     on_path.chain(PLACES.map(PathBuf::from)).find(|browser| browser.is_file())
 }
 
-/// Chromium refuses to run as root unless told that the page is trusted: this one is our own, and runs no script.
+/// Chromium refuses to run as root unless told that the page is trusted: this one is our own, and runs no
+/// script.
 #[cfg(unix)]
 fn without_sandbox(own: &Path) -> Option<&'static str> {
     use std::os::unix::fs::MetadataExt;

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 /// Parts of the bar; finer than a terminal shows.
 const PARTS: u32 = 1000;
 
-/// Does `work`, which tells its progress from 0 to 1, beside a bar that hides itself where standard error is no terminal.
+/// Does `work`, which tells its progress from 0 to 1, beside a bar that hides itself where standard error is
+/// no terminal.
 pub fn with_progress<T>(what: &str, work: impl FnOnce(Progress) -> T) -> T {
     let bar = ProgressBar::new(u64::from(PARTS));
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent} %") {

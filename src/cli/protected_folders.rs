@@ -8,7 +8,8 @@ const SYSTEM: &str =
 /// What holds other folders: one of its own below is a place.
 const CROSSROADS: &str = "/dev /home /media /mnt /opt /root /run /srv /var /usr/local /Users";
 
-/// Whether the files of a report in `folder`, which exists, would mix with a system's or lie about in the user's home.
+/// Whether the files of a report in `folder`, which exists, would mix with a system's or lie about in the
+/// user's home.
 pub fn is_protected(folder: &Path) -> bool {
     let Ok(real) = folder.canonicalize() else { return false };
     let home = std::env::home_dir().and_then(|home| home.canonicalize().ok());

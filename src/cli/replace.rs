@@ -1,4 +1,5 @@
-//! A set of finished files into a folder: all of them or none, whatever interrupts it, and nobody else's touched.
+//! A set of finished files into a folder: all of them or none, whatever interrupts it, and nobody else's
+//! touched.
 
 use rayon::prelude::*;
 use std::fs::{self, File};
@@ -25,8 +26,9 @@ fn at(path: &Path) -> impl FnOnce(io::Error) -> Stopped + '_ {
 
 /// Writes `files` to `folder`, which need not exist.
 ///
-/// A folder that holds plain files only is exchanged for a complete one in a single step of the file system. Where that
-/// cannot be, complete files are moved one by one; a run that is stopped between two of them is made good by the next.
+/// A folder that holds plain files only is exchanged for a complete one in a single step of the file system.
+/// Where that cannot be, complete files are moved one by one; a run that is stopped between two of them is
+/// made good by the next.
 pub fn replace_set(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Stopped> {
     // "." has no parent by its name, and would wait for its own lock.
     let folder = &std::path::absolute(folder).map_err(at(folder))?;
@@ -84,7 +86,8 @@ impl Turn {
     }
 }
 
-/// Removes a left-over folder with those of its files that were this program's or still have a name elsewhere.
+/// Removes a left-over folder with those of its files that were this program's or still have a name
+/// elsewhere.
 fn clear(stale: &Path, files: &[(String, Vec<u8>)]) {
     for entry in fs::read_dir(stale).into_iter().flatten().flatten() {
         let is_own = files.iter().any(|(name, _)| entry.file_name() == name.as_str());
@@ -128,7 +131,8 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.sync_all()
 }
 
-/// A file beside `path`, to be filled and given its name: always the same one, so that what a killed run left is written over.
+/// A file beside `path`, to be filled and given its name: always the same one, so that what a killed run left
+/// is written over.
 pub fn staged_beside(path: &Path) -> io::Result<(PathBuf, File)> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let staged = parent_of(path).join(format!("{OWN_PREFIX}{name}"));

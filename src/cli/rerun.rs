@@ -32,7 +32,8 @@ pub fn words() -> Vec<String> {
     WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
-/// Writes down which program ran, with which words and when; `SOURCE_DATE_EPOCH` stands for now where it is set.
+/// Writes down which program ran, with which words and when; `SOURCE_DATE_EPOCH` stands for now where it is
+/// set.
 pub fn stamp(result: &mut DropResult, command: Vec<String>) -> miette::Result<()> {
     result.program = Some(Program::this());
     result.command = command;

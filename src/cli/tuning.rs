@@ -1,4 +1,5 @@
-//! Work to the same work with threads awake and memory kept: what the machine gains by, measured in docs/measured/performance.md.
+//! Work to the same work with threads awake and memory kept: what the machine gains by, measured in
+//! docs/measured/performance.md.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -19,8 +20,9 @@ impl Drop for Then<'_> {
 
 /// Does `work` on a thread of the pool while others look out for what it shares with them.
 ///
-/// An analysis shares pieces of a tenth of a millisecond upwards. A thread that has gone to sleep in between takes as long to wake, on a
-/// virtual machine up to two milliseconds. Those that look out give way to any other process. Of works at one time the first has them look out.
+/// An analysis shares pieces of a tenth of a millisecond upwards. A thread that has gone to sleep in between
+/// takes as long to wake, on a virtual machine up to two milliseconds. Those that look out give way to any
+/// other process. Of works at one time the first has them look out.
 pub fn keep_threads_awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     if IS_TAKEN.swap(true, Ordering::AcqRel) {
         return rayon::scope(|_| work());
@@ -43,7 +45,8 @@ pub fn keep_threads_awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
                 }
             }
         });
-        // A thread that took a piece of the work before it looks out would look out in the middle of that piece, and never end it.
+        // A thread that took a piece of the work before it looks out would look out in the middle of that
+        // piece, and never end it.
         while awake.load(Ordering::Acquire) < MOST.min(rayon::current_num_threads() - 1) {
             std::thread::yield_now();
         }
@@ -52,8 +55,9 @@ pub fn keep_threads_awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     })
 }
 
-/// Lets the many pieces of an analysis take their memory from those before them. glibc gives freed pieces above a limit back to the
-/// system, and each page of the next one is fetched anew; the limit rises to the size of a piece when that is freed, up to 32 MiB.
+/// Lets the many pieces of an analysis take their memory from those before them. glibc gives freed pieces
+/// above a limit back to the system, and each page of the next one is fetched anew; the limit rises to the
+/// size of a piece when that is freed, up to 32 MiB.
 pub fn keep_freed_memory() {
     const PIECE_BYTES: usize = 31 << 20;
     drop(std::hint::black_box(Vec::<u8>::with_capacity(PIECE_BYTES)));

@@ -5,17 +5,20 @@ use crate::data::{
     ModelChoice, Prediction, Quantities, Rung,
 };
 
-/// Standard uncertainty of an inertia that is only the uniform body's: casks carry their mass off the even spread (5 %).
+/// Standard uncertainty of an inertia that is only the uniform body's: casks carry their mass off the even
+/// spread (5 %).
 const U_INERTIA_DEFAULT: f64 = 0.05;
 
 /// A rung of the analytical models as a function, such as `predict::predict_by`.
 pub type PredictBy<'a> = &'a dyn Fn(Rung, &Body, &Drop, Contact, f64) -> Prediction;
 
-/// Standard uncertainty of what a pulse of finite length changes, as a share of it: simulated limiters with other shapes than a half-sine, that
-/// harden, yield or spring back at once, lie up to 5 % off it where L sticks and 17 % where it slides.
+/// Standard uncertainty of what a pulse of finite length changes, as a share of it: simulated limiters with
+/// other shapes than a half-sine, that harden, yield or spring back at once, lie up to 5 % off it where L
+/// sticks and 17 % where it slides.
 const U_PULSE_SHAPE: f64 = 0.1;
 
-/// What a rung is asked: the rod and the richest body, the cask file, the drop with its contact's length, and what was measured.
+/// What a rung is asked: the rod and the richest body, the cask file, the drop with its contact's length, and
+/// what was measured.
 struct Comparing<'a> {
     rod: &'a Body,
     body: &'a Body,
@@ -28,9 +31,10 @@ struct Comparing<'a> {
 
 /// Holds every rung's prediction with the measured k against the measured slap-down speed, simplest first.
 ///
-/// `bodies` are the rod and, where the cask file describes one, the body. Rod and body are always held against it, a higher rung where it changes the
-/// speed; the finite pulse has the measured duration. Returns the choice and, where both speeds exist, the comparison with the model taken. The
-/// simplest model wins whose own and all richer predictions agree, none of them further from it than the measured speed is known.
+/// `bodies` are the rod and, where the cask file describes one, the body. Rod and body are always held
+/// against it, a higher rung where it changes the speed; the finite pulse has the measured duration. Returns
+/// the choice and, where both speeds exist, the comparison with the model taken. The simplest model wins
+/// whose own and all richer predictions agree, none of them further from it than the measured speed is known.
 #[must_use]
 pub fn compare(
     bodies: &[Body],
@@ -43,8 +47,9 @@ pub fn compare(
     let drop = Drop { contact_duration_s: measured.duration.value.max(0.0), ..cask_file.drop };
     let scene = Comparing { rod, body, file: cask_file, drop, contact, measured, predict };
     let candidates = scene.candidates();
-    // A simple model that agrees where a richer one does not agrees by luck: the richer ones must agree as well. What all of them take from the
-    // same uncertain inputs moves them together; a test can tell them apart by what it measures.
+    // A simple model that agrees where a richer one does not agrees by luck: the richer ones must agree as
+    // well. What all of them take from the same uncertain inputs moves them together; a test can tell them
+    // apart by what it measures.
     let told_m_s = measured.speed.map_or(0.0, |speed| speed.u95);
     let suffices = |i: usize| {
         let moved =
@@ -109,7 +114,8 @@ impl Comparing<'_> {
         (self.predict)(rung, body, drop, self.contact, k.clamp(0.0, 1.0)).slap_down_speed_m_s
     }
 
-    /// 95 % half-width of a prediction, m/s: k, what the cask file states, and the shape of a pulse of finite length.
+    /// 95 % half-width of a prediction, m/s: k, what the cask file states, and the shape of a pulse of finite
+    /// length.
     fn uncertainty_m_s(&self, rung: Rung) -> Option<f64> {
         let Self { body, file, drop, measured, .. } = self;
         let k = measured.k.value.clamp(0.0, 1.0);
@@ -142,7 +148,8 @@ impl Comparing<'_> {
         Some(2.0 * by_k.hypot(stated).hypot(by_pulse))
     }
 
-    /// How a friction that is off by its standard uncertainty changes the speed, m/s; towards less, where more does nothing.
+    /// How a friction that is off by its standard uncertainty changes the speed, m/s; towards less, where
+    /// more does nothing.
     fn by_friction_m_s(&self, rung: Rung, k: f64) -> f64 {
         // The lower rungs take any friction for rough.
         let predicted = |contact| (self.predict)(rung.max(Rung::Friction), self.body, &self.drop, contact, k);
@@ -264,7 +271,8 @@ mod tests {
         )
     }
 
-    /// The rod says `rod_m_s`, the body 20 m/s, whatever k; each degree adds 1 m/s, so that 0.4° leave 0.4 m/s.
+    /// The rod says `rod_m_s`, the body 20 m/s, whatever k; each degree adds 1 m/s, so that 0.4° leave 0.4
+    /// m/s.
     fn choice(measured_m_s: f64, rod_m_s: f64) -> (BodyModel, bool) {
         let predict = |rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64| Prediction {
             model: body.model,
@@ -307,7 +315,8 @@ mod tests {
 
     #[test]
     fn a_rod_that_a_richer_body_moves_by_more_than_is_measured_is_not_taken() {
-        // Both lie within 0.45 m/s, √(0.2² + 0.4²), of what was measured, but 0.3 m/s from each other; that is known to 0.2 m/s.
+        // Both lie within 0.45 m/s, √(0.2² + 0.4²), of what was measured, but 0.3 m/s from each other; that
+        // is known to 0.2 m/s.
         assert_eq!(choice(20.2, 20.3), (BodyModel::Body, true));
     }
 

@@ -7,20 +7,24 @@ use std::cell::LazyCell;
 /// Fewest samples at an extreme that make a flat top.
 const LEAST_RUN: usize = 3;
 
-/// Standard deviations of the noise within which samples count as standing at an extreme: noise may come after the limit.
+/// Standard deviations of the noise within which samples count as standing at an extreme: noise may come
+/// after the limit.
 const NOISE_FACTOR: f64 = 6.0;
 
-/// The flattest top that ringing rounds is taken to be one of this power of the distance from its middle; a plain one is of the second.
+/// The flattest top that ringing rounds is taken to be one of this power of the distance from its middle; a
+/// plain one is of the second.
 const FLATTEST: i32 = 4;
 
 /// Values that differ by less than this share of the peak are the same.
 const LEAST_STEP: f64 = 1e-9;
 
-/// A limit comes after the sensor's noise and takes it off: what still has this share of it from sample to sample is a force
-/// that stays level, as of a cask that is crushed. Noise that comes after the limit is taken to be less.
+/// A limit comes after the sensor's noise and takes it off: what still has this share of it from sample to
+/// sample is a force that stays level, as of a cask that is crushed. Noise that comes after the limit is
+/// taken to be less.
 const NOISE_LEFT: f64 = 0.6;
 
-/// Runs of `force` (m/s², of `channel`, with `noise_m_s2` on it) at the stated full scale or flat at an extreme, as indices.
+/// Runs of `force` (m/s², of `channel`, with `noise_m_s2` on it) at the stated full scale or flat at an
+/// extreme, as indices.
 ///
 /// The first `quiet` samples lie before the impact.
 pub(super) fn clipped(channel: &Channel, force: &[f64], noise_m_s2: f64, quiet: usize) -> Vec<Span> {
@@ -93,8 +97,8 @@ fn runs_of_pairs(firsts: &[f64], seconds: &[f64], inside: impl Fn(f64, f64) -> b
     spans
 }
 
-/// The converter's step, infinite where the samples tell none: the least distance of neighbours. Of samples that were `moved` to other times
-/// only those among equals stand where they did.
+/// The converter's step, infinite where the samples tell none: the least distance of neighbours. Of samples
+/// that were `moved` to other times only those among equals stand where they did.
 #[allow(clippy::float_cmp, reason = "between equal samples a cubic is theirs to the bit")]
 fn step(force: &[f64], moved: bool, peak: f64) -> f64 {
     let least = LEAST_STEP * peak;
@@ -124,7 +128,8 @@ fn carries_noise(force: &[f64], span: Span, roughness: f64) -> bool {
     count > 0 && roughness > 0.0 && (steps / count as f64 / 2.0).sqrt() > NOISE_LEFT * roughness
 }
 
-/// Whether the signal runs into the flat and out of it steeply as into a stop, and not as over the flattest rounded top.
+/// Whether the signal runs into the flat and out of it steeply as into a stop, and not as over the flattest
+/// rounded top.
 #[allow(clippy::cast_precision_loss, reason = "a run of samples")]
 fn is_flat_top(force: &[f64], span: Span, band: f64, step: f64) -> bool {
     let run = span.to - span.from;
@@ -135,9 +140,11 @@ fn is_flat_top(force: &[f64], span: Span, band: f64, step: f64) -> bool {
     let before = fallen(&force[span.from.saturating_sub(reach)..span.from]);
     let after = fallen(&force[span.to..(span.to + reach).min(force.len())]);
     let (low, high) = reduce::extremes(&force[span.from..span.to], level);
-    // What lies within the run, and half of the band at the least: a few samples of noise may lie near one another by chance.
+    // What lies within the run, and half of the band at the least: a few samples of noise may lie near one
+    // another by chance.
     let depth = (high - low + step).max(band / 2.0);
-    // A top of that depth over n samples has fallen by ((n − 1 + 2 r)/(n − 1))⁴ − 1 of it r samples farther on.
+    // A top of that depth over n samples has fallen by ((n − 1 + 2 r)/(n − 1))⁴ − 1 of it r samples farther
+    // on.
     let wider = (run - 1 + 2 * reach) as f64 / (run - 1) as f64;
     // The less steep side counts: a kink has one steep side.
     before.min(after) > depth * (wider.powi(FLATTEST) - 1.0)
@@ -191,8 +198,8 @@ mod tests {
         assert!(clipped(&channel(None), &pulse(1e9), 0.0, 0).is_empty());
     }
 
-    /// Quiet, a half sine with ringing of a fifth of it and the ringing that stays, with noise of less than a step, as a converter of so
-    /// many bits over so many peaks writes it; the pulse has `length` samples.
+    /// Quiet, a half sine with ringing of a fifth of it and the ringing that stays, with noise of less than a
+    /// step, as a converter of so many bits over so many peaks writes it; the pulse has `length` samples.
     fn converted(bits: i32, range: f64, length: u32, seed: u64) -> Vec<f64> {
         use super::super::tests::noise;
         use std::f64::consts::PI;

@@ -8,17 +8,20 @@ use crate::numerics::reduce;
 const SHARE_OF_PEAK: f64 = 0.05;
 /// … and by this many standard deviations of the noise.
 const NOISE_FACTOR: f64 = 20.0;
-/// The two neighbours on either side of a spike agree within this share of its height: those of a pulse's peak do not.
+/// The two neighbours on either side of a spike agree within this share of its height: those of a pulse's
+/// peak do not.
 const AGREEMENT: f64 = 0.3;
 /// Longest spike, in samples: a contact that breaks for longer is a dropout or a burst.
 const LONGEST_SPIKE: usize = 5;
-/// A spike holds at most this share of the impact's velocity change: what holds more is a pulse sampled too slowly.
+/// A spike holds at most this share of the impact's velocity change: what holds more is a pulse sampled too
+/// slowly.
 const SHARE_OF_STEP: f64 = 0.1;
 /// Spikes that together add less are a note, m/s: 0.1 % of a slap-down.
 const SMALL_M_S: f64 = 0.02;
 /// Fewest equal samples in a row after a jump that are a dropout.
 const LEAST_RUN: usize = 5;
-/// Fewest without a jump, where noise keeps samples from repeating: with 9 % of them equal to the last, 5 in 10⁸ runs are as long.
+/// Fewest without a jump, where noise keeps samples from repeating: with 9 % of them equal to the last, 5 in
+/// 10⁸ runs are as long.
 const LEAST_QUIET_RUN: usize = 8;
 const MOST_REPEATED: f64 = 0.09;
 
@@ -118,13 +121,14 @@ pub(super) fn mark_dropouts(signal: &mut Signal, noise_m_s2: f64, before_s: f64)
     Some(found.on(&signal.name).between(signal.time_s(first.from), signal.time_s(last.to)))
 }
 
-/// Runs of [`LEAST_RUN`] equal samples and more, from the first step between them to behind the last: each holds a step in so many less one, so
-/// that the others are not asked.
+/// Runs of [`LEAST_RUN`] equal samples and more, from the first step between them to behind the last: each
+/// holds a step in so many less one, so that the others are not asked.
 fn repeats(force: &[f64]) -> Vec<Span> {
     #[allow(clippy::float_cmp, reason = "a dropout repeats a sample to the bit")]
     let repeats = |&i: &usize| force.get(i).zip(force.get(i + 1)).is_some_and(|(a, b)| a == b);
     let mut found: Vec<Span> = Vec::new();
-    // Few of the steps asked have another beside them: without that the processor guesses wrong at each coarse converter's repeat.
+    // Few of the steps asked have another beside them: without that the processor guesses wrong at each
+    // coarse converter's repeat.
     let is_run = |i: usize| repeats(&i) & (repeats(&(i + 1)) | (i > 0 && repeats(&(i - 1))));
     for i in (0..force.len()).step_by(LEAST_RUN - 1) {
         if is_run(i) && found.last().is_none_or(|before| i >= before.to) {
@@ -148,7 +152,7 @@ fn bridged_m_s(signal: &Signal, span: Span) -> f64 {
 mod tests {
     use super::super::tests::{noise, signal};
     use super::*;
-    use crate::data::What;
+    use crate::data::FindingKind;
 
     /// 50 ms of free fall and a half sine of 40 ms at 10 kHz, noise of 1 m/s².
     fn pulse() -> Signal {
@@ -178,7 +182,8 @@ mod tests {
                 *f += 900.0;
             }
             let finding = spikes(&spiky, 20.0).expect("a spike");
-            let What::Channel(ChannelFinding::Spikes { count: 1, held_m_s: held, .. }) = finding.what else {
+            let FindingKind::Channel(ChannelFinding::Spikes { count: 1, held_m_s: held, .. }) = finding.what
+            else {
                 panic!("{finding:?}")
             };
             // 900 m/s² for 0.1 ms a sample, noise of 1 m/s² on it.

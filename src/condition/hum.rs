@@ -16,7 +16,8 @@ const HARMONICS: u32 = 7;
 const LEAST_PERIODS: f64 = 2.5;
 /// A line stands out by this many of its standard uncertainties …
 const SURE: f64 = 6.0;
-/// … and by this factor over what is found as far beside it as the stretch resolves: noise that is not white has such lines too.
+/// … and by this factor over what is found as far beside it as the stretch resolves: noise that is not white
+/// has such lines too.
 const OVER_NEIGHBOURS: f64 = 4.0;
 /// Velocity that hum may leave before a person should look, m/s: 0.2 % of a slap-down.
 const MOST_LEFT_M_S: f64 = 0.05;
@@ -133,14 +134,16 @@ fn take(samples: &mut [f64], line: &Sinusoid, sample_rate_hz: f64) {
     }
 }
 
-/// Swing of velocity that the lines' uncertainties leave at the end of the event, m/s, twice the standard uncertainty.
+/// Swing of velocity that the lines' uncertainties leave at the end of the event, m/s, twice the standard
+/// uncertainty.
 fn left_m_s(lines: &[Sinusoid], length_s: f64, swing: &impl Fn(&Sinusoid, f64) -> f64) -> f64 {
     let ahead_s = length_s / 2.0 + AHEAD_S;
     lines
         .iter()
         .map(|line| {
             let u = line.u_amplitude;
-            // The frequency of a sinusoid in white noise is known to √6/π of u_A/(A T) (Rife & Boorstyn 1974).
+            // The frequency of a sinusoid in white noise is known to √6/π of u_A/(A T) (Rife & Boorstyn
+            // 1974).
             let u_frequency_hz = 6.0_f64.sqrt() / PI * u / (line.amplitude() * length_s);
             let drifted = line.amplitude() * (TAU * u_frequency_hz * ahead_s).min(2.0);
             2.0 * swing(line, u.hypot(drifted))
@@ -152,7 +155,7 @@ fn left_m_s(lines: &[Sinusoid], length_s: f64, swing: &impl Fn(&Sinusoid, f64) -
 mod tests {
     use super::super::tests::{noise, signal};
     use super::*;
-    use crate::data::What;
+    use crate::data::FindingKind;
 
     /// 0.2 s of free fall and 0.1 s after it at 10 kHz, noise of 2 m/s², with this beside it.
     fn channel(beside: impl Fn(f64) -> f64, seed: u64) -> Signal {
@@ -170,7 +173,8 @@ mod tests {
             let clean = channel(|_| 0.0, 3);
             let finding = treat(&mut humming, 0.2, true).expect("10 m/s² of hum");
             assert_eq!(finding.severity, Severity::Note, "{finding:?}");
-            // u_A = 2 √(2/2000) = 0.063; u_f = 0.78 · 0.063/(10 · 0.2) = 25 mHz: 0.31 m/s² at 0.2 s from the middle.
+            // u_A = 2 √(2/2000) = 0.063; u_f = 0.78 · 0.063/(10 · 0.2) = 25 mHz: 0.31 m/s² at 0.2 s from the
+            // middle.
             let off = humming.force_m_s2.iter().zip(&clean.force_m_s2).map(|(a, b)| (a - b).abs());
             assert!(off.fold(0.0, f64::max) < 3.0 * (0.063 + 0.31), "{frequency_hz}");
         }
@@ -182,8 +186,11 @@ mod tests {
         let mut humming = channel(both, 4);
         let before = humming.clone();
         let finding = treat(&mut humming, 0.2, false).expect("hum");
-        let is_as_found = |what: &What| {
-            matches!(what, What::Channel(ChannelFinding::Hum { harmonics: 1, is_taken_off: false, .. }))
+        let is_as_found = |what: &FindingKind| {
+            matches!(
+                what,
+                FindingKind::Channel(ChannelFinding::Hum { harmonics: 1, is_taken_off: false, .. })
+            )
         };
         assert!(is_as_found(&finding.what), "{finding:?}");
         // 2 · 10/(2π 50) + 2 · 5/(2π 150) = 0.074 m/s.

@@ -11,10 +11,12 @@ use crate::data::{
 use crate::numerics::robust;
 use rayon::prelude::*;
 
-/// Free fall used for the offset, s: long against noise and hum, short against any free fall from above 0.4 m.
+/// Free fall used for the offset, s: long against noise and hum, short against any free fall from above 0.4
+/// m.
 const BEFORE_S: f64 = 0.25;
 
-/// The farthest that signals reach after the coarse event, s: the longest flight to slap-down (steep drops) and its pulse.
+/// The farthest that signals reach after the coarse event, s: the longest flight to slap-down (steep drops)
+/// and its pulse.
 const LONGEST_AFTER_S: f64 = 1.6;
 
 /// The least that they reach, s: a flat drop's slap-down and what rings after it.
@@ -57,7 +59,8 @@ impl Reach {
     }
 }
 
-/// Cuts every channel to the window of the event, removes offset and hum as `corrections` allow, marks what is clipped or missing.
+/// Cuts every channel to the window of the event, removes offset and hum as `corrections` allow, marks what
+/// is clipped or missing.
 ///
 /// Returns the signals in the order of the channels and what was found about them.
 #[must_use]
@@ -182,7 +185,8 @@ mod tests {
 
     #[test]
     fn an_ac_coupled_step_is_put_back() {
-        // y = e^(−t/T) is what a high-pass makes of a step; the inverse gives 1 back to the trapezoid's h²/12 T².
+        // y = e^(−t/T) is what a high-pass makes of a step; the inverse gives 1 back to the trapezoid's h²/12
+        // T².
         let (rate, constant) = (10_000.0, 0.3);
         let mut y: Vec<f64> = (0..5000).map(|i| (-f64::from(i) / rate / constant).exp()).collect();
         y[0] = 1.0;

@@ -5,22 +5,27 @@ use crate::numerics::reduce::{self, block_means, block_of};
 use crate::numerics::{as_f64, noise, robust};
 use std::borrow::Cow;
 
-/// Least free fall an offset is taken from, s: a period of 50 Hz hum is 20 ms, and half of it still bounds an offset.
+/// Least free fall an offset is taken from, s: a period of 50 Hz hum is 20 ms, and half of it still bounds an
+/// offset.
 const LEAST_S: f64 = 0.01;
 
-/// Offsets above this are worth a warning, m/s²: 5 g is past what any accelerometer's data sheet allows as bias.
+/// Offsets above this are worth a warning, m/s²: 5 g is past what any accelerometer's data sheet allows as
+/// bias.
 const LARGE_M_S2: f64 = 50.0;
 
 /// Offsets above this are worth a note, m/s².
 const NOTABLE_M_S2: f64 = 0.98;
 
-/// Samples this many spreads off the median are disturbances, not offset: none of a million of normal noise is.
+/// Samples this many spreads off the median are disturbances, not offset: none of a million of normal noise
+/// is.
 const WILD: f64 = 8.0;
 
-/// The spectrum is that of means at about this rate, Hz: an integral over milliseconds holds nothing above a few hundred.
+/// The spectrum is that of means at about this rate, Hz: an integral over milliseconds holds nothing above a
+/// few hundred.
 const SPECTRUM_RATE_HZ: f64 = 8000.0;
 
-/// A slope counts beyond this many of its standard uncertainties from eight means: noise of 1/f is ten times as steep as white noise.
+/// A slope counts beyond this many of its standard uncertainties from eight means: noise of 1/f is ten times
+/// as steep as white noise.
 const SURE: f64 = 15.0;
 const BLOCKS: usize = 8;
 
@@ -30,7 +35,8 @@ const AHEAD_S: f64 = 0.06;
 /// Velocity that a drift or an offset left may add before it is worth a warning, m/s: 0.2 % of a slap-down.
 const SMALL_M_S: f64 = 0.05;
 
-/// Notes the mean before `before_s`, its uncertainty and the noise in the signal, and takes the mean off if `take_off`.
+/// Notes the mean before `before_s`, its uncertainty and the noise in the signal, and takes the mean off if
+/// `take_off`.
 pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<Finding> {
     let end = signal.index_from(before_s);
     let length_s = before_s - signal.start_s;
@@ -70,7 +76,8 @@ pub(super) fn treat(signal: &mut Signal, before_s: f64, take_off: bool) -> Vec<F
     findings
 }
 
-/// What a level between two steps q of a converter is off by, q/√12, where the noise is less than half a step and so does not average it out.
+/// What a level between two steps q of a converter is off by, q/√12, where the noise is less than half a step
+/// and so does not average it out.
 fn rounding_m_s2(signal: &Signal, noise_m_s2: f64) -> f64 {
     let force = &signal.force_m_s2;
     reduce::least_step_beyond(force, 1e-9 * reduce::peak(force), 2.0 * noise_m_s2) / 12.0_f64.sqrt()
@@ -154,7 +161,7 @@ fn drift(name: &str, quiet: &[f64], (from_s, to_s): (f64, f64)) -> Option<Findin
 mod tests {
     use super::super::tests::{noise, signal};
     use super::*;
-    use crate::data::What;
+    use crate::data::FindingKind;
 
     /// 0.2 s of free fall and 0.1 s after it at 10 kHz: an offset of 3 m/s², noise of 2 m/s², and a slope.
     fn channel(slope: f64, seed: u64) -> Signal {
@@ -181,7 +188,8 @@ mod tests {
         let findings = treat(&mut left, 0.2, false);
         assert_eq!(left.force_m_s2, before);
         assert!(left.removed_offset_m_s2.abs() < 1e-300);
-        let What::Channel(ChannelFinding::OffsetLeftIn { adds_m_s, severity, .. }) = findings[0].what else {
+        let FindingKind::Channel(ChannelFinding::OffsetLeftIn { adds_m_s, severity, .. }) = findings[0].what
+        else {
             panic!("{findings:?}")
         };
         // 3 m/s² over 60 ms.
@@ -193,7 +201,7 @@ mod tests {
         // 49 m/s³, known to 2/√2000 · √12/0.2 = 0.8, adds 49 · 0.06 · 0.13 = 0.38 m/s.
         let drifting = treat(&mut channel(49.0, 2), 0.2, true);
         assert!(
-            drifting.iter().any(|f| matches!(f.what, What::Channel(ChannelFinding::Drift { slope_m_s3, .. }) if slope_m_s3 > 0.0)),
+            drifting.iter().any(|f| matches!(f.what, FindingKind::Channel(ChannelFinding::Drift { slope_m_s3, .. }) if slope_m_s3 > 0.0)),
             "{drifting:?}"
         );
         for seed in 0..50 {
@@ -205,7 +213,7 @@ mod tests {
     #[test]
     fn a_record_without_free_fall_begins_late() {
         let findings = treat(&mut channel(0.0, 1), 0.005, true);
-        assert_eq!(findings[0].what, What::Channel(ChannelFinding::ShortFreeFall { length_s: 0.005 }));
+        assert_eq!(findings[0].what, FindingKind::Channel(ChannelFinding::ShortFreeFall { length_s: 0.005 }));
     }
 
     #[test]
@@ -215,6 +223,6 @@ mod tests {
         slow.sample_rate_hz = 20.0;
         let findings = treat(&mut slow, 0.25, true);
         let few = ChannelFinding::FewSamples { length_s: 0.25, samples: 5, sample_rate_hz: 20.0 };
-        assert_eq!(findings[0].what, What::Channel(few));
+        assert_eq!(findings[0].what, FindingKind::Channel(few));
     }
 }

@@ -210,7 +210,8 @@ pub struct DropResult {
     pub schema: &'static str,
     /// The program's version.
     pub version: &'static str,
-    /// Which program made it, with which words on its command line, and when (RFC 3339); where a command line did.
+    /// Which program made it, with which words on its command line, and when (RFC 3339); where a command line
+    /// did.
     pub program: Option<Program>,
     /// See `program`.
     pub command: Vec<String>,

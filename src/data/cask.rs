@@ -7,15 +7,17 @@ use std::path::PathBuf;
 
 /// L may sink this share of the length below where it left before that counts as another impact   (9)
 ///
-/// After k → 0 the free corner of a thin rod sinks by some millimetres while R comes down (11 mm for 5.5 m at 15°, 42 mm
-/// at 45°, 0.5 m at 60°): less than the first impact has crushed off it, so there is nothing left to strike.
+/// After k → 0 the free corner of a thin rod sinks by some millimetres while R comes down (11 mm for 5.5 m at
+/// 15°, 42 mm at 45°, 0.5 m at 60°): less than the first impact has crushed off it, so there is nothing left
+/// to strike.
 pub const GRAZE_SHARE: f64 = 0.01;
 
 /// More channels than any drop test has, and `init` gives each a table of twenty lines.
 pub const MOST_CHANNELS: usize = 1000;
 
-/// Sample rates that are believed, Hz: the fastest transient recorders take 10⁸ samples a second, and below one in a quarter of an
-/// hour no drop is seen. Spans of time, as those of filters and windows, become counts of samples by it.
+/// Sample rates that are believed, Hz: the fastest transient recorders take 10⁸ samples a second, and below
+/// one in a quarter of an hour no drop is seen. Spans of time, as those of filters and windows, become counts
+/// of samples by it.
 pub const SAMPLE_RATES_HZ: std::ops::RangeInclusive<f64> = 1e-3..=1e8;
 
 /// An end of the cask.
@@ -109,7 +111,8 @@ pub enum Unit {
     },
 }
 
-/// Where a channel's samples are: as written, and for MCAP the topic and field apart where the file gave them so.
+/// Where a channel's samples are: as written, and for MCAP the topic and field apart where the file gave them
+/// so.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Source {
     /// `"/topic.field.field"`, `"/group/dataset[2]"` or a CSV header.
@@ -180,7 +183,8 @@ pub struct Cask {
     pub cog_m: f64,
     /// Inertia about the centre of gravity, kg m²; m (l² + h²)/12 where the file is silent.
     pub inertia_kg_m2: f64,
-    /// Whether the file gives any of `height_m` (above 0), `cog_m`, `inertia_kg_m2`: then the body is predicted beside the rod.
+    /// Whether the file gives any of `height_m` (above 0), `cog_m`, `inertia_kg_m2`: then the body is
+    /// predicted beside the rod.
     pub is_body: bool,
 }
 
@@ -257,7 +261,8 @@ impl Drop {
     }
 }
 
-/// The slowest that bending runs along a cask, m/s: a 5 ms pulse in one that bends at 50 Hz takes its length in 5 ms.
+/// The slowest that bending runs along a cask, m/s: a 5 ms pulse in one that bends at 50 Hz takes its length
+/// in 5 ms.
 pub const BENDING_WAVE_M_S: f64 = 1000.0;
 
 /// One `[[channel]]` table.
@@ -300,7 +305,8 @@ pub struct ChannelSpec {
 }
 
 impl ChannelSpec {
-    /// A transverse channel on the axis, in the unit of its recording and DC-coupled, of which nothing else is stated.
+    /// A transverse channel on the axis, in the unit of its recording and DC-coupled, of which nothing else
+    /// is stated.
     #[must_use]
     pub fn plain(name: &str, end: End, source: &str, position_m: f64) -> Self {
         Self {

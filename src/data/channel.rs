@@ -2,7 +2,8 @@
 
 use super::cask::{Axis, Coupling, End};
 
-/// Whether a sample is a value: finite, and none of what stands for an overrange (9.9E+37) or no number (9.91E+37) in SCPI 1999.0, 7.2.1.4.
+/// Whether a sample is a value: finite, and none of what stands for an overrange (9.9E+37) or no number
+/// (9.91E+37) in SCPI 1999.0, 7.2.1.4.
 #[must_use]
 pub(crate) fn is_number(sample: f64) -> bool {
     sample.abs() < 9.89e37
@@ -119,8 +120,8 @@ pub struct Span {
 
 /// One channel as read: uniform in time, samples in the recording's own unit, polarity not yet applied.
 ///
-/// Sample i was taken at `start_s + i / sample_rate_hz`; its specific force along the sensor's axis, positive on the body
-/// axis, is `samples[i] · scale_m_s2`. Missing samples are NaN and listed in `gaps`.
+/// Sample i was taken at `start_s + i / sample_rate_hz`; its specific force along the sensor's axis, positive
+/// on the body axis, is `samples[i] · scale_m_s2`. Missing samples are NaN and listed in `gaps`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
     /// The cask file's name of it.

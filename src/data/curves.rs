@@ -16,7 +16,8 @@ pub struct ChannelCurve {
     pub raw_m_s2: Vec<f64>,
     /// The same, filtered without phase, m/s².
     pub filtered_m_s2: Vec<f64>,
-    /// Velocity along the sensor's axis, integrated from the unfiltered force with gravity left out between contacts (Fig. 13), m/s.
+    /// Velocity along the sensor's axis, integrated from the unfiltered force with gravity left out between
+    /// contacts (Fig. 13), m/s.
     pub velocity_m_s: Vec<f64>,
 }
 

@@ -19,11 +19,13 @@ pub struct Mode {
 pub struct Plateau {
     /// The channel's name.
     pub channel: String,
-    /// Integral of specific force from before first contact to the reference time, ringing and drift removed, m/s.
+    /// Integral of specific force from before first contact to the reference time, ringing and drift removed,
+    /// m/s.
     pub velocity_step_m_s: f64,
     /// Standard uncertainty of it, m/s.
     pub u_m_s: f64,
-    /// Change of the channel's offset from before the impact to the flight, m/s²; 0 where none was called for.
+    /// Change of the channel's offset from before the impact to the flight, m/s²; 0 where none was called
+    /// for.
     pub zero_shift_m_s2: f64,
     /// Standard uncertainty of it, m/s².
     pub u_zero_shift_m_s2: f64,
@@ -31,7 +33,8 @@ pub struct Plateau {
     pub residual_m_s: f64,
     /// Cosine and sine amplitude of each mode at the window's start, m/s.
     pub ringing_m_s: Vec<(f64, f64)>,
-    /// Mean velocity just before the flight ends less what the fit says of it, m/s, where the flight is long enough to tell.
+    /// Mean velocity just before the flight ends less what the fit says of it, m/s, where the flight is long
+    /// enough to tell.
     pub late_mismatch_m_s: Option<f64>,
 }
 
@@ -44,7 +47,8 @@ pub struct FlightModelScore {
     pub drift: bool,
     /// Whether the contact force gives the modes their phases; else they are free.
     pub driven: bool,
-    /// Whether it is the fit taken: the one of the lowest criterion, or where the motion speaks against that one the next.
+    /// Whether it is the fit taken: the one of the lowest criterion, or where the motion speaks against that
+    /// one the next.
     pub taken: bool,
     /// Bayesian information criterion; lower is better.
     pub bic: f64,
@@ -85,22 +89,26 @@ pub struct Strike {
 /// Fits of a flight with fewer periods of its slowest mode may differ by much and leave the same.
 const TOLD_APART_PERIODS: f64 = 1.5;
 
-/// Modes nearer to one another than this over the window's length are one mode to it: half the width of its spectral lines. Two of them
-/// bend around whatever else the window holds, a part of the contact first of all.
+/// Modes nearer to one another than this over the window's length are one mode to it: half the width of its
+/// spectral lines. Two of them bend around whatever else the window holds, a part of the contact first of
+/// all.
 const RESOLVED: f64 = 0.5;
 
-/// A mode so many times larger at one end than at the other rings at that one alone: both ends of a free beam do alike.
+/// A mode so many times larger at one end than at the other rings at that one alone: both ends of a free beam
+/// do alike.
 const ALONE: f64 = 10.0;
-/// Nor with so much damping: bolted and welded steel has 0.01 to 0.03, a cable that whips is damped by the air.
+/// Nor with so much damping: bolted and welded steel has 0.01 to 0.03, a cable that whips is damped by the
+/// air.
 const STRONG_DAMPING: f64 = 0.08;
-/// So many times larger it is none whatever the window shows: within a hundredth of its length no sensor sits on a node by chance.
+/// So many times larger it is none whatever the window shows: within a hundredth of its length no sensor sits
+/// on a node by chance.
 const WHOLLY_ALONE: f64 = 30.0;
 /// No cask bends more slowly, Hz: a mode this slow stands at the edge of what is sought.
 const SLOWEST_HZ: f64 = 16.5;
 
 impl FlightFit {
-    /// Whether a mode is none, but a bend of one channel's plateau: at one end alone, and of less than a period, slower than any cask's or
-    /// damped as none; or wholly at one end, as a cable that whips.
+    /// Whether a mode is none, but a bend of one channel's plateau: at one end alone, and of less than a
+    /// period, slower than any cask's or damped as none; or wholly at one end, as a cable that whips.
     #[must_use]
     pub fn is_bend(&self, mode: usize, signals: &[Signal]) -> bool {
         let (frequency_hz, damping) =
@@ -125,7 +133,8 @@ impl FlightFit {
         lowest_hz * (self.to_s - self.from_s)
     }
 
-    /// Whether the window tells its modes from one another, or shows a period of each, so that they ring whatever they are called.
+    /// Whether the window tells its modes from one another, or shows a period of each, so that they ring
+    /// whatever they are called.
     ///
     /// Neighbours lie apart by half of 1/T, and there is a period of the fastest for each pair of modes.
     #[must_use]

@@ -13,7 +13,8 @@ named_numbers! {
         duration: "s",
         /// Vertical velocity that its corner gains, m/s.
         velocity_change: "m/s",
-        /// Impulse of the target along itself, positive towards R, N s: the stated mass times the change of velocity of S.
+        /// Impulse of the target along itself, positive towards R, N s: the stated mass times the change of
+        /// velocity of S.
         impulse_x: "N s",
         /// Impulse of the target upwards, N s.
         impulse_z: "N s",
@@ -35,13 +36,15 @@ named_numbers! {
         crush: "m",
         /// Largest vertical force, N, low-passed as the decelerations: the stated mass times that of S.
         force_peak: "N",
-        /// Largest deceleration of the rigid body at S, m/s²; `rigid_body_deceleration` has it beside its low-pass.
+        /// Largest deceleration of the rigid body at S, m/s²; `rigid_body_deceleration` has it beside its
+        /// low-pass.
         #[serde(skip)]
         at_cog: "m/s^2",
         /// Largest deceleration at the end that strikes, m/s², likewise.
         #[serde(skip)]
         at_struck_end: "m/s^2",
-        /// By how much the rotation is more than the angular impulse of one contact gives it, over the mass, m²/s: tells one contact from two.
+        /// By how much the rotation is more than the angular impulse of one contact gives it, over the mass,
+        /// m²/s: tells one contact from two.
         #[serde(skip)]
         turned_beyond: "m^2/s",
     }

@@ -80,7 +80,8 @@ pub struct KeyTable {
     pub keys: &'static [Key],
 }
 
-/// What the form that `init` writes has in place of a text that only the user knows; no key takes it for a value.
+/// What the form that `init` writes has in place of a text that only the user knows; no key takes it for a
+/// value.
 pub const FILL_IN: &str = "FILL IN";
 
 /// The default of a key that must be there.
@@ -159,8 +160,8 @@ pub const OBSERVATION: [Key; 3] = [
 
 /// Keys of `[cask]`.
 ///
-/// What a cask and a drop may be: models of a centimetre and a gram to more than any cask there is. Within it `predict` ends in a second,
-/// and no product of two keys leaves the numbers that a double holds.
+/// What a cask and a drop may be: models of a centimetre and a gram to more than any cask there is. Within it
+/// `predict` ends in a second, and no product of two keys leaves the numbers that a double holds.
 pub const CASK: [Key; 7] = [
     text("name", "the file's name").shown(r#""CASK""#, "the cask's name; left out: the file's"),
     number("mass_kg", REQUIRED)
@@ -193,7 +194,8 @@ pub const DROP: [Key; 6] = [
             "the inclination of the cask's axis above the horizontal before the drop, in degrees; the first end is the low one",
         )
         .asked("15.0", "inclination of the axis above the horizontal"),
-    // From below the velocity of the least drop to above that of the highest; beyond, a body turns thousands of times in flight.
+    // From below the velocity of the least drop to above that of the highest; beyond, a body turns thousands
+    // of times in flight.
     number("impact_velocity_m_s", "√(2 g h)")
         .within(0.01, 200.0, "in m/s: no drop of a cask is slower or faster; check the value and its unit")
         .shown("13.3", "overrides √(2 g h)"),

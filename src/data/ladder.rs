@@ -4,11 +4,13 @@ use super::cask::{Contact, Drop};
 use super::prediction::Prediction;
 use serde::Serialize;
 
-/// The models, simplest first; each adds one thing to the one below and agrees with it where that thing is absent.
+/// The models, simplest first; each adds one thing to the one below and agrees with it where that thing is
+/// absent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rung {
-    /// The thin uniform rod of the paper: Table 1, one flight for k > 0, the closed form of Table 2 for k = 0.
+    /// The thin uniform rod of the paper: Table 1, one flight for k > 0, the closed form of Table 2 for k =
+    /// 0.
     Rod,
     /// Section, centre of gravity and inertia of the body.
     Body,
@@ -70,7 +72,8 @@ pub struct LadderStep {
     /// What it predicts.
     #[serde(flatten)]
     pub prediction: Prediction,
-    /// Change of the slap-down speed against the rung below, percent; `None` for the first and where either has no slap-down.
+    /// Change of the slap-down speed against the rung below, percent; `None` for the first and where either
+    /// has no slap-down.
     pub change_percent: Option<f64>,
 }
 
@@ -89,5 +92,6 @@ pub struct Ladder {
     pub suffices: Rung,
 }
 
-/// A rung suffices where no richer one moves the slap-down speed by more than this, percent: a tenth of the 1 % that a test resolves.
+/// A rung suffices where no richer one moves the slap-down speed by more than this, percent: a tenth of the 1
+/// % that a test resolves.
 pub const LADDER_TOLERANCE_PERCENT: f64 = 0.1;

@@ -19,10 +19,12 @@ pub struct MotionState {
     pub height_m: f64,
 }
 
-/// Steps over the contact: 200 over 20 ms leave the trapezoid's error below 4e-5 of the velocities, and are a twenty-fifth of a period of 400 Hz.
+/// Steps over the contact: 200 over 20 ms leave the trapezoid's error below 4e-5 of the velocities, and are a
+/// twenty-fifth of a period of 400 Hz.
 pub const CONTACT_STEPS: usize = 200;
 
-/// What the reconstruction needs beside the signals: geometry, initial motion and how the axial velocity is had.
+/// What the reconstruction needs beside the signals: geometry, initial motion and how the axial velocity is
+/// had.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setup {
     /// Length l, m.
@@ -106,7 +108,8 @@ pub struct Motion {
     pub second_end_m_s: Option<(f64, f64)>,
     /// Height of R's corner then, m: 0 but for errors of angle, velocity and time.
     pub second_end_height_m: Option<f64>,
-    /// Lowest height of L's corner between separation and slap-down over where it left, m; infinite where no curve was asked for.
+    /// Lowest height of L's corner between separation and slap-down over where it left, m; infinite where no
+    /// curve was asked for.
     pub lowest_first_end_m: f64,
     /// The motion over time.
     pub curve: MotionCurve,

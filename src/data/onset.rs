@@ -7,7 +7,8 @@ use serde::Serialize;
 pub struct Onset {
     /// The channel's name.
     pub channel: String,
-    /// Its answer less first contact on the first end, s: 0 for a rigid body and one clock, negative if stamped early.
+    /// Its answer less first contact on the first end, s: 0 for a rigid body and one clock, negative if
+    /// stamped early.
     pub delay_s: f64,
     /// Standard uncertainty of it, s.
     pub u_s: f64,

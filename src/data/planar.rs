@@ -1,7 +1,8 @@
-//! The inclination and the turning of a rigid cask in its plane to where a corner of its lower side lies, and how fast it moves.
+//! The inclination and the turning of a rigid cask in its plane to where a corner of its lower side lies, and
+//! how fast it moves.
 
-/// Arms a and b, m: how far S lies ahead of a lower corner along the target, and above it. The corner lies `behind_m` behind S along the axis:
-/// c for L, c − l for R.
+/// Arms a and b, m: how far S lies ahead of a lower corner along the target, and above it. The corner lies
+/// `behind_m` behind S along the axis: c for L, c − l for R.
 ///
 /// a = c cos φ − (h/2) sin φ, b = c sin φ + (h/2) cos φ   (1)
 #[must_use]
@@ -10,7 +11,8 @@ pub fn arms_m((sin, cos): (f64, f64), behind_m: f64, height_m: f64) -> (f64, f64
     (behind_m * cos - half_m * sin, behind_m * sin + half_m * cos)
 }
 
-/// Horizontal and vertical velocity of a corner with these arms, m/s, where S moves with `cog_m_s` and the cask turns with ω = −φ̇.
+/// Horizontal and vertical velocity of a corner with these arms, m/s, where S moves with `cog_m_s` and the
+/// cask turns with ω = −φ̇.
 ///
 /// ẋ_C = ẋ_S − b ω, ż_C = ż_S + a ω   (3)
 #[must_use]

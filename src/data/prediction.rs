@@ -107,6 +107,7 @@ pub struct Prediction {
     pub sticks: bool,
     /// What L does between the impacts.
     pub regime: FlightRegime,
-    /// For k = 0 the speed with L held on the target whatever the force, \[P\] Table 2, m/s   (11) (12); `None` for k > 0.
+    /// For k = 0 the speed with L held on the target whatever the force, \[P\] Table 2, m/s   (11) (12);
+    /// `None` for k > 0.
     pub closed_form_speed_m_s: Option<f64>,
 }

@@ -1,10 +1,12 @@
-//! The quantities of interest by name, as numbers or with their intervals, to what the result says of the first impact and the slap-down.
+//! The quantities of interest by name, as numbers or with their intervals, to what the result says of the
+//! first impact and the slap-down.
 
 use super::estimate::Estimate;
 use serde::Serialize;
 
-/// Declares numbers by their names, each with its unit: a struct over any type, and the way to and from a flat array, which linear algebra
-/// wants, in the order of declaration. A number of `may_be_missing` is an `Option`.
+/// Declares numbers by their names, each with its unit: a struct over any type, and the way to and from a
+/// flat array, which linear algebra wants, in the order of declaration. A number of `may_be_missing` is an
+/// `Option`.
 macro_rules! named_numbers {
     (
         $(#[$about:meta])*
@@ -65,8 +67,9 @@ macro_rules! named_numbers {
 }
 pub(super) use named_numbers;
 
-/// Declares the quantities once: those of the first impact, those of the slap-down, which are missing where there is none, and those that
-/// the result states beside both. The first two are parts of the result too, there with the time of the event.
+/// Declares the quantities once: those of the first impact, those of the slap-down, which are missing where
+/// there is none, and those that the result states beside both. The first two are parts of the result too,
+/// there with the time of the event.
 macro_rules! quantities {
     (
         $(#[$first_about:meta])*
@@ -150,7 +153,8 @@ quantities! {
         horizontal_velocity: "m/s",
         /// Inclination of the axis at slap-down, degrees.
         angle: "deg",
-        /// Height of R's corner above the target then, m: 0 within its interval where angle, height and scales fit the recording.
+        /// Height of R's corner above the target then, m: 0 within its interval where angle, height and
+        /// scales fit the recording.
         second_end_height: "m",
     }
     beside {

@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ReconstructionRung {
-    /// Each channel integrated by itself and read off at the events, gravity left out between the impacts: \[P\] Fig. 13.
+    /// Each channel integrated by itself and read off at the events, gravity left out between the impacts:
+    /// \[P\] Fig. 13.
     Channels,
     /// Planar motion with gravity, each velocity step the mean over the flight.
     Planar,
@@ -44,7 +45,8 @@ pub struct ReconstructionCandidate {
 pub enum ClosureKind {
     /// R's corner is on the target when it strikes: angle, velocities, times.
     Height,
-    /// The impulse of the first impact turns the cask: the channels against each other and against the mass properties.
+    /// The impulse of the first impact turns the cask: the channels against each other and against the mass
+    /// properties.
     Turning,
     /// A channel at rest reads gravity: its scale.
     Rest,
@@ -65,14 +67,15 @@ pub struct RestLevel {
     pub u_m_s2: f64,
 }
 
-/// A closure missed by this many standard uncertainties is not chance: one sound drop in 2000 a closure. At 3.7 one sound drop in 2000 more
-/// passed, and of 2000 damaged ones four more with a wrong number.
+/// A closure missed by this many standard uncertainties is not chance: one sound drop in 2000 a closure. At
+/// 3.7 one sound drop in 2000 more passed, and of 2000 damaged ones four more with a wrong number.
 pub const MISSED_U: f64 = 3.5;
 
 /// Standard uncertainty of the time of a release: a hook lets go within some milliseconds, s.
 pub const U_RELEASE_S: f64 = 0.005;
 
-/// A closure missed by more standard uncertainties than this is not explained by noise and tolerances alone (95 %).
+/// A closure missed by more standard uncertainties than this is not explained by noise and tolerances alone
+/// (95 %).
 pub const MET_U: f64 = 2.0;
 
 /// One observable that the motion must meet beside the velocity steps, and how far it is off.

@@ -3,7 +3,8 @@
 use super::cask::{Axis, End};
 use super::channel::Span;
 
-/// Velocity that clipping may cut off before the slap-down and leave a step to measure, m/s: 2 % of a 9 m fall's.
+/// Velocity that clipping may cut off before the slap-down and leave a step to measure, m/s: 2 % of a 9 m
+/// fall's.
 pub const MOST_LOST_M_S: f64 = 0.27;
 
 /// A channel around the event: specific force on the body axis with its offset removed, unfiltered.
@@ -33,7 +34,8 @@ pub struct Signal {
     pub u_offset_m_s2: f64,
     /// RMS of the noise before first contact, m/s².
     pub noise_m_s2: f64,
-    /// One-sided spectral density of that noise: bins of frequency, Hz, and (m/s²)²/Hz; empty where too little was recorded.
+    /// One-sided spectral density of that noise: bins of frequency, Hz, and (m/s²)²/Hz; empty where too
+    /// little was recorded.
     pub noise_spectrum: Vec<(f64, f64)>,
     /// Length of the free fall that offset and noise were taken from, s; 0 where there was too little.
     pub free_fall_s: f64,
@@ -102,7 +104,8 @@ impl Signal {
         }
     }
 
-    /// Velocity that clipping between two times has cut off, m/s, estimated by a cubic over each flat top: (ṡ_in + ṡ_out) T² / 12.
+    /// Velocity that clipping between two times has cut off, m/s, estimated by a cubic over each flat top:
+    /// (ṡ_in + ṡ_out) T² / 12.
     #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
     pub fn lost_to_clipping_m_s(&self, from_s: f64, to_s: f64) -> f64 {

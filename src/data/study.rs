@@ -156,9 +156,11 @@ impl Criterion {
     pub const ALL: [Self; 3] = [Self::Speed, Self::VerticalSpeed, Self::EnergyRatio];
 }
 
-/// Where a criterion is largest for one body, contact law and k among the drops in which L strikes once before R; NaN if there is none.
+/// Where a criterion is largest for one body, contact law and k among the drops in which L strikes once
+/// before R; NaN if there is none.
 ///
-/// Where L strikes again the outcome hangs on every bounce and jumps from angle to angle: no angle can be called critical there.
+/// Where L strikes again the outcome hangs on every bounce and jumps from angle to angle: no angle can be
+/// called critical there.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CriticalAngle {
     /// Rod or body.
@@ -173,9 +175,11 @@ pub struct CriticalAngle {
     pub angle_deg: f64,
     /// How large, in the criterion's unit.
     pub largest: f64,
-    /// Angles at which it is within the chosen percentage of that, degrees; more than one where the curve has several humps.
+    /// Angles at which it is within the chosen percentage of that, degrees; more than one where the curve has
+    /// several humps.
     pub bands_deg: Vec<(f64, f64)>,
-    /// Angle, degrees, and size of a still larger value among the angles tried at which L strikes again before R.
+    /// Angle, degrees, and size of a still larger value among the angles tried at which L strikes again
+    /// before R.
     pub further_impacts: Option<(f64, f64)>,
 }
 
@@ -194,7 +198,8 @@ pub struct QuantileCurves {
     pub q75: Vec<f64>,
     /// 97.5 %.
     pub q975: Vec<f64>,
-    /// Share of the draws whose value at this nominal angle lies, with one impact of L, within the band of that draw's own largest.
+    /// Share of the draws whose value at this nominal angle lies, with one impact of L, within the band of
+    /// that draw's own largest.
     pub in_band: Vec<f64>,
     /// 2.5, 25, 50, 75 and 97.5 % quantile of the critical angle over the draws, degrees.
     pub critical_angle_deg: [f64; 5],
@@ -234,13 +239,15 @@ pub struct Study {
     pub request: StudyRequest,
     /// The predictions asked for.
     pub rows: Vec<PredictionRow>,
-    /// The richest body's way at the angle of the request, for two contact laws and k each where it is one flight or L is held.
+    /// The richest body's way at the angle of the request, for two contact laws and k each where it is one
+    /// flight or L is held.
     pub paths: Vec<BodyPath>,
     /// The ladder for every contact law and k, at the angle of the request.
     pub ladders: Vec<Ladder>,
     /// Over the angle: every body, contact law and k of the request.
     pub curves: Vec<AngleCurve>,
-    /// Over the angle, smooth and k = 1: the cask's length with a section of 0, 10, 500 and 600 mm and its own (\[P\] Fig. 9).
+    /// Over the angle, smooth and k = 1: the cask's length with a section of 0, 10, 500 and 600 mm and its
+    /// own (\[P\] Fig. 9).
     pub sections: Vec<AngleCurve>,
     /// For every curve and criterion.
     pub critical: Vec<CriticalAngle>,

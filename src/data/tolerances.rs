@@ -56,7 +56,8 @@ impl Default for Tolerances {
 }
 
 impl Tolerances {
-    /// The defaults where a cask file leaves these keys out, as "table.key": an inertia may be the block's alone.
+    /// The defaults where a cask file leaves these keys out, as "table.key": an inertia may be the block's
+    /// alone.
     #[must_use]
     pub fn of(left_out: &[String]) -> Self {
         let usual = Self::default();

@@ -9,7 +9,8 @@ use crate::numerics::reduce::{block_means, peak};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// A response below this share of the struck end's peak is not used: the sensor sits near the centre of percussion.
+/// A response below this share of the struck end's peak is not used: the sensor sits near the centre of
+/// percussion.
 const LEAST_SHARE: f64 = 0.02;
 /// A response below this many standard deviations of its noise is not used.
 const LEAST_NOISE: f64 = 10.0;
@@ -18,22 +19,29 @@ const SEEN_NOISE: f64 = 6.0;
 /// Responses are sought this long before first contact and after the contact, s: clocks and bending waves.
 const BEFORE_S: f64 = 8e-3;
 const AFTER_S: f64 = 6e-3;
-/// What the expansion in integrals leaves of a response, as a share of its RMS: modes up to 450 Hz over a millisecond.
+/// What the expansion in integrals leaves of a response, as a share of its RMS: modes up to 450 Hz over a
+/// millisecond.
 const MODEL_SHARE: f64 = 0.005;
-/// Lengths after the response is seen that are fitted, s: short ones hold few modes, long ones stand out of the noise.
+/// Lengths after the response is seen that are fitted, s: short ones hold few modes, long ones stand out of
+/// the noise.
 const LENGTHS_S: [f64; 7] = [0.4e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3, 3e-3, 4e-3];
 /// Longest first contact whose peak is looked at, s.
 const CONTACT_S: f64 = 0.02;
-/// A stretch is fitted in so many means of neighbouring samples at the most: over the longest 50 to a period of 450 Hz.
+/// A stretch is fitted in so many means of neighbouring samples at the most: over the longest 50 to a period
+/// of 450 Hz.
 const POINTS: usize = 80;
-/// Steps that differ by less than this share are the same: over a fit of [`POINTS`] it stays below a millionth of one.
+/// Steps that differ by less than this share are the same: over a fit of [`POINTS`] it stays below a
+/// millionth of one.
 const SAME_STEP: f64 = 1e-9;
-/// From where the answer is seen on, s: where the force may still turn its direction; and lengths that are fitted from there on, s.
+/// From where the answer is seen on, s: where the force may still turn its direction; and lengths that are
+/// fitted from there on, s.
 const LATER_S: [f64; 3] = [0.4e-3, 0.8e-3, 1.6e-3];
 const LATER_LENGTHS_S: [f64; 3] = [1e-3, 2e-3, 4e-3];
-/// A delay explains those stretches better than none where it leaves less by so many variances of the noise: three standard deviations.
+/// A delay explains those stretches better than none where it leaves less by so many variances of the noise:
+/// three standard deviations.
 const BETTER: f64 = 10.0;
-/// Longest that a force takes to turn its direction, s: L that slides back at 0.5 m/s is held within a millisecond, at 0.1 m/s within 0.4 ms.
+/// Longest that a force takes to turn its direction, s: L that slides back at 0.5 m/s is held within a
+/// millisecond, at 0.1 m/s within 0.4 ms.
 const TURNS_S: f64 = 7e-4;
 /// Delays tried in a fit, and between the best two of them.
 const TRIED: u32 = 80;
@@ -41,9 +49,9 @@ const REFINED: u32 = 20;
 
 /// The delay of every transverse channel's answer against the struck end's channel.
 ///
-/// Rigid body and bending answer a force F as a F + b ∫∫F + c ∫∫∫∫F + … from the same moment on   (Q1). The struck end's
-/// channel stands for F; the delay is the one at which its integrals explain the other channel best. Channels that hardly
-/// answer are left out.
+/// Rigid body and bending answer a force F as a F + b ∫∫F + c ∫∫∫∫F + … from the same moment on   (Q1). The
+/// struck end's channel stands for F; the delay is the one at which its integrals explain the other channel
+/// best. Channels that hardly answer are left out.
 #[must_use]
 pub fn answers(signals: &[Signal], contact_s: f64) -> Vec<Onset> {
     let Some(struck) = transverse(signals, End::First) else { return Vec::new() };
@@ -107,7 +115,8 @@ impl Cause {
         }
     }
 
-    /// The integrals of these orders at `count` times from `from_s` on, `step_s` apart, linear between samples.
+    /// The integrals of these orders at `count` times from `from_s` on, `step_s` apart, linear between
+    /// samples.
     fn regressors(&self, orders: &[usize], from_s: f64, step_s: f64, count: usize) -> Vec<Vec<f64>> {
         let first = (from_s - self.start_s) * self.sample_rate_hz;
         let step = step_s * self.sample_rate_hz;
@@ -171,7 +180,8 @@ impl<'a> Answering<'a> {
         (is_whole && seen > from).then_some(Self { signal, cause, seen, noise })
     }
 
-    /// The delay by the shortest stretch that tells it well; by how much longer stretches say otherwise is in its uncertainty.
+    /// The delay by the shortest stretch that tells it well; by how much longer stretches say otherwise is in
+    /// its uncertainty.
     fn delay(&self) -> Option<(f64, f64)> {
         let fits: Vec<Delay> = LENGTHS_S.par_iter().filter_map(|&length_s| self.fit(length_s)).collect();
         let fine_s = 5e-5_f64.max(0.5 / self.signal.sample_rate_hz);
@@ -182,7 +192,8 @@ impl<'a> Answering<'a> {
         let comparable = fits.iter().filter(|fit| fit.u_s < 4.0 * taken.u_s + fine_s);
         let apart_s = comparable.map(|fit| (fit.delay_s - taken.delay_s).abs()).fold(0.0, f64::max);
         let mut u_s = taken.u_s.max(apart_s / 2.0);
-        // An answer that begins below the noise looks late: where none does as well, the delay is not told from it.
+        // An answer that begins below the noise looks late: where none does as well, the delay is not told
+        // from it.
         if self.needs_no_delay(taken.delay_s) {
             u_s = u_s.max(taken.delay_s.abs() / 2.0);
         }
@@ -193,7 +204,8 @@ impl<'a> Answering<'a> {
         Some((taken.delay_s, u_s))
     }
 
-    /// The best delay over a stretch that ends `length_s` after the answer is seen; `None` where nothing fits it.
+    /// The best delay over a stretch that ends `length_s` after the answer is seen; `None` where nothing fits
+    /// it.
     fn fit(&self, length_s: f64) -> Option<Delay> {
         const ORDERS: [usize; 3] = [0, 2, 4];
         let rate_hz = self.signal.sample_rate_hz;
@@ -228,7 +240,8 @@ impl<'a> Answering<'a> {
         if (least / freedom).sqrt() > (2.0 * noise).hypot(model) {
             return None;
         }
-        // Twice the standard uncertainty where the sum of squares has grown by four variances, or what the model may leave.
+        // Twice the standard uncertainty where the sum of squares has grown by four variances, or what the
+        // model may leave.
         let variance = (least / freedom).max(noise.powi(2));
         let limit = least + 4.0 * variance + model.powi(2) * answered / 4.0;
         let mut as_good = coarse.iter().filter(|c| c.1 <= limit).map(|c| c.0);
@@ -237,7 +250,8 @@ impl<'a> Answering<'a> {
         Some(Delay { delay_s, u_s: ((last_s - first_s) / 4.0).max(step_s / 4.0) })
     }
 
-    /// Whether rigid body, bending and its damping explain some stretch from first contact on without any delay.
+    /// Whether rigid body, bending and its damping explain some stretch from first contact on without any
+    /// delay.
     fn needs_no_delay(&self, delay_s: f64) -> bool {
         const ORDERS: [usize; 5] = [0, 1, 2, 3, 4];
         let signal = self.signal;
@@ -259,8 +273,8 @@ impl<'a> Answering<'a> {
         })
     }
 
-    /// Whether what follows the beginning of the answer has this delay rather than none: else the force may have turned its direction in the
-    /// beginning, as where L slides back until it holds.
+    /// Whether what follows the beginning of the answer has this delay rather than none: else the force may
+    /// have turned its direction in the beginning, as where L slides back until it holds.
     ///
     /// What the body does by then goes on as a line.
     fn goes_on(&self, delay_s: f64) -> bool {

@@ -6,7 +6,8 @@ use crate::numerics::{reduce, robust};
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
 
-/// Width over which a velocity change is looked for, s: longer than any first pulse (1–20 ms), shorter than a flight.
+/// Width over which a velocity change is looked for, s: longer than any first pulse (1–20 ms), shorter than a
+/// flight.
 const WIDTH_S: f64 = 0.025;
 
 /// Blocks a width, so that its place is known to a fortieth; a slow record has fewer …
@@ -16,25 +17,29 @@ const LEAST_BLOCKS: usize = 4;
 
 /// The first impact is where L's velocity change over the width first reaches this share of its largest.
 ///
-/// At the first impact L changes by (1 + k) v0 cos φ, later by less; spikes and the release change it by far less.
+/// At the first impact L changes by (1 + k) v0 cos φ, later by less; spikes and the release change it by far
+/// less.
 const SHARE: f64 = 0.4;
 
-/// A change of this share of the least that the first impact can make is the first impact too, however large a later one is.
+/// A change of this share of the least that the first impact can make is the first impact too, however large
+/// a later one is.
 const SHARE_OF_LEAST: f64 = 0.5;
 
-/// A change of this share of the largest one may be the slap-down, which is sought as the first to reach half of it …
+/// A change of this share of the largest one may be the slap-down, which is sought as the first to reach half
+/// of it …
 const LAST_SHARE: f64 = 0.3;
 /// … and so may a change of this share of v0: no slap-down makes less than 0.08 v0.
 const LAST_SHARE_OF_FALL: f64 = 0.06;
 
-/// A change like the first impact's this long after it is another drop, in falls of v0/g: by then a body that left the target with 0.7 v0 has
-/// come down twice, and strikes a third time with half of v0 at most.
+/// A change like the first impact's this long after it is another drop, in falls of v0/g: by then a body that
+/// left the target with 0.7 v0 has come down twice, and strikes a third time with half of v0 at most.
 const APART_FALLS: f64 = 2.5;
-/// A change is like the first impact's within these factors: drops of one height at any of the usual angles and k. A pulled cable makes a larger
-/// change, lifting or setting down the cask a smaller one.
+/// A change is like the first impact's within these factors: drops of one height at any of the usual angles
+/// and k. A pulled cable makes a larger change, lifting or setting down the cask a smaller one.
 const ALIKE: RangeInclusive<f64> = 0.6..=1.7;
 
-/// How the velocity of each transverse channel changes over the whole record: first impact and further drops are found on it.
+/// How the velocity of each transverse channel changes over the whole record: first impact and further drops
+/// are found on it.
 pub struct Changes<'a>(Vec<Changing<'a>>);
 
 /// One channel's changes of velocity.
@@ -67,8 +72,8 @@ impl<'a> Changes<'a> {
         self.struck().map(|changing| changing.channel.sample_rate_hz)
     }
 
-    /// Finds the first impact on the transverse channel of the first end (or, without one, on any transverse channel), whose velocity
-    /// it changes by `least_step_m_s` at the least: v0 cos φ where L is struck.
+    /// Finds the first impact on the transverse channel of the first end (or, without one, on any transverse
+    /// channel), whose velocity it changes by `least_step_m_s` at the least: v0 cos φ where L is struck.
     ///
     /// `None` where no channel moves at all, or the samples are too few to tell.
     #[must_use]
@@ -80,7 +85,8 @@ impl<'a> Changes<'a> {
         Some(struck.event_at(crossing))
     }
 
-    /// The first impact of another drop in the same recording, long after the one at `event`; `fall_s` is how long a drop falls, s.
+    /// The first impact of another drop in the same recording, long after the one at `event`; `fall_s` is how
+    /// long a drop falls, s.
     #[must_use]
     pub fn another_drop(&self, event: &CoarseEvent, fall_s: f64) -> Option<CoarseEvent> {
         let struck = self.struck()?;
@@ -99,8 +105,8 @@ impl<'a> Changes<'a> {
         ALIKE.contains(&share(&found.velocity_step_m_s)).then_some(found)
     }
 
-    /// The last time within `after_s` of the event at which some transverse channel changes its velocity by a notable share of its
-    /// largest change there, s: what lies far beyond it needs no fine work.
+    /// The last time within `after_s` of the event at which some transverse channel changes its velocity by a
+    /// notable share of its largest change there, s: what lies far beyond it needs no fine work.
     #[must_use]
     pub fn last_s(&self, event: &CoarseEvent, (v0_m_s, after_s): (f64, f64)) -> Option<f64> {
         let of_channel = |changing: &Changing| {
@@ -153,7 +159,8 @@ impl<'a> Changing<'a> {
     }
 }
 
-/// Length of a block, s, and the mean force of each, m/s²; missing samples count as the block's others, a missing block as the last.
+/// Length of a block, s, and the mean force of each, m/s²; missing samples count as the block's others, a
+/// missing block as the last.
 #[allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -178,7 +185,8 @@ mod tests {
     use super::*;
     use crate::data::{Coupling, RecordingFormat, Samples};
 
-    /// A channel of 6 s at 10 kHz that is struck at the given times, s, by pulses of 5 ms that change its velocity by so much, m/s.
+    /// A channel of 6 s at 10 kHz that is struck at the given times, s, by pulses of 5 ms that change its
+    /// velocity by so much, m/s.
     fn channel(end: End, struck: &[(f64, f64)]) -> Channel {
         let force = |i: i32| {
             let at = |&&(from_s, _): &&(f64, f64)| (from_s..from_s + 5e-3).contains(&(f64::from(i) * 1e-4));
@@ -205,7 +213,8 @@ mod tests {
         }
     }
 
-    /// 2 s of rest, a fall of 0.64 s and rest again at so many samples a second, between them an impact of 20 ms that takes 3 m/s more.
+    /// 2 s of rest, a fall of 0.64 s and rest again at so many samples a second, between them an impact of 20
+    /// ms that takes 3 m/s more.
     fn slow(rate_hz: f64, impact_m_s: f64) -> Channel {
         let force = |i: u32| match f64::from(i) / rate_hz {
             t if (2.0..2.64).contains(&t) => 0.0,
@@ -271,7 +280,8 @@ mod tests {
         let changes = Changes::of(&recording);
         let event = changes.locate(v0_m_s).expect("an impact");
         let last_s = changes.last_s(&event, (v0_m_s, 1.0)).expect("a change");
-        // The slap-down of 1.1 m/s lies within the width that ends there; 0.4 m/s is none, and 1.9 s lies beyond what is asked for.
+        // The slap-down of 1.1 m/s lies within the width that ends there; 0.4 m/s is none, and 1.9 s lies
+        // beyond what is asked for.
         assert!((1.005..1.0051 + WIDTH_S).contains(&last_s), "{last_s}");
     }
 }

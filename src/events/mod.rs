@@ -16,16 +16,19 @@ use crate::data::{Axis, Channel, End, Samples, Signal};
 use crate::numerics::reduce;
 use std::ops::Range;
 
-/// Slope of the first bending mode of a free uniform beam at its end over its value there, times the length (Blevins 1979).
+/// Slope of the first bending mode of a free uniform beam at its end over its value there, times the length
+/// (Blevins 1979).
 const END_SLOPE: f64 = 4.65;
-/// A sensor so far in that the mode reads less than this share of its end's is near a node: it cancels nothing.
+/// A sensor so far in that the mode reads less than this share of its end's is near a node: it cancels
+/// nothing.
 const LEAST_SHAPE: f64 = 0.2;
 
-/// The transverse signal nearest to an end from a time on, without the first bending mode, which both ends of a beam ring with alike: the other end's
-/// signal taken off it in the ratio of the mode's shape at both. Impacts stay, and those of the other end turn their sign.
+/// The transverse signal nearest to an end from a time on, without the first bending mode, which both ends of
+/// a beam ring with alike: the other end's signal taken off it in the ratio of the mode's shape at both.
+/// Impacts stay, and those of the other end turn their sign.
 ///
-/// The signal as it is where the other end has none of the same times, or where one of both sits near a node. Returned with what it is
-/// the sum of: signals by name, each with its weight.
+/// The signal as it is where the other end has none of the same times, or where one of both sits near a node.
+/// Returned with what it is the sum of: signals by name, each with its weight.
 #[must_use]
 pub fn without_first_mode(
     signals: &[Signal],

@@ -12,7 +12,8 @@ const SHOULDER: f64 = 0.3;
 pub(super) const NOISE_FACTOR: f64 = 6.0;
 /// What changed the velocity by this share of the pulse's step before its rise was a stage of the pulse.
 const EARLIER_STAGE: f64 = 0.02;
-/// Width of the means that R's velocity is compared by, s: two periods of an 80 Hz mode, less than a flight from 5°.
+/// Width of the means that R's velocity is compared by, s: two periods of an 80 Hz mode, less than a flight
+/// from 5°.
 const WIDTH_S: f64 = 0.025;
 /// The means are compared this often, s: a hundredth of the stretch in which the onset is then sought.
 const BLOCK_S: f64 = 1e-4;
@@ -29,8 +30,8 @@ pub fn first_contact(signals: &[Signal], coarse: &CoarseEvent) -> Option<At> {
     }
 }
 
-/// The first rise of a pulse that changes the velocity by `step_m_s`: before it nothing rings. A layer that yields far below the peak and
-/// lets go again has struck before the rise that leads to it.
+/// The first rise of a pulse that changes the velocity by `step_m_s`: before it nothing rings. A layer that
+/// yields far below the peak and lets go again has struck before the rise that leads to it.
 fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, step_m_s: f64) -> Option<At> {
     let mut found = onset(signal, stretch.clone(), sign, Rise::First)?;
     loop {
@@ -55,8 +56,8 @@ fn first_rise(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, step_
     }
 }
 
-/// When a signal first leaves its noise, to either side, and its standard uncertainty, s: the far end answers by bending first, which may go
-/// against the rigid body's turning.
+/// When a signal first leaves its noise, to either side, and its standard uncertainty, s: the far end answers
+/// by bending first, which may go against the rigid body's turning.
 fn first_stir(signal: &Signal, stretch: std::ops::Range<usize>) -> Option<At> {
     let from = stretch.start;
     let force = signal.force_m_s2.get(stretch)?;
@@ -85,11 +86,12 @@ impl<'a> FirstPulse<'a> {
     }
 }
 
-/// First contact of R on its signal between two times and its standard uncertainty, s; `None` where the record holds none.
+/// First contact of R on its signal between two times and its standard uncertainty, s; `None` where the
+/// record holds none.
 ///
-/// Ringing has no mean over 25 ms, R striking the target has: the means before and after each time are compared, and the
-/// largest difference, if above `least_change_m_s`, is the slap-down. On signals that still ring the rise is sought backwards
-/// from the pulse's peak; free of ringing the first rise is taken.
+/// Ringing has no mean over 25 ms, R striking the target has: the means before and after each time are
+/// compared, and the largest difference, if above `least_change_m_s`, is the slap-down. On signals that still
+/// ring the rise is sought backwards from the pulse's peak; free of ringing the first rise is taken.
 #[must_use]
 pub fn slap_down(
     signal: &Signal,
@@ -133,7 +135,8 @@ enum Rise {
     BeforePeak,
 }
 
-/// Where the pulse in a stretch of samples leaves zero: a line through its rise from foot to shoulder, cut with zero.
+/// Where the pulse in a stretch of samples leaves zero: a line through its rise from foot to shoulder, cut
+/// with zero.
 fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise) -> Option<At> {
     let from = stretch.start;
     let force = signal.force_m_s2.get(stretch)?;
@@ -155,10 +158,12 @@ fn onset(signal: &Signal, stretch: std::ops::Range<usize>, sign: f64, rise: Rise
     let crossing = interpolated(force, low, sign * foot);
     let points: Vec<(f64, f64)> = (low..=high).map(|i| (as_f64(i), sign * force[i])).collect();
     let extrapolated = zero_of_line(&points).unwrap_or(crossing);
-    // A rise that is steeper than the sampling, or one that bends, puts the line's zero past the crossing or far before it.
+    // A rise that is steeper than the sampling, or one that bends, puts the line's zero past the crossing or
+    // far before it.
     let reach = (as_f64(high) - crossing).max(1.0);
     let position = extrapolated.clamp(crossing - reach, crossing);
-    // A rise that begins slowly may be a foot that another channel does not show: its upper half alone meets zero later.
+    // A rise that begins slowly may be a foot that another channel does not show: its upper half alone meets
+    // zero later.
     let upper: Vec<(f64, f64)> = points.into_iter().filter(|point| point.1 >= shoulder / 2.0).collect();
     let steep = zero_of_line(&upper).map_or(0.0, |zero| zero.min(as_f64(high)) - position);
     let u_s = ((crossing - position).max(steep).max(0.5) / 3.0_f64.sqrt()) / signal.sample_rate_hz;

@@ -1,4 +1,5 @@
-//! The record before the first impact to the free fall: the moment of release and the first touch that ends it.
+//! The record before the first impact to the free fall: the moment of release and the first touch that ends
+//! it.
 
 use super::block_means_m_s2;
 use crate::data::{Axis, Channel, Drop, Samples};
@@ -6,27 +7,32 @@ use crate::numerics::{as_f64, reduce, robust};
 use std::cell::OnceCell;
 use std::ops::Range;
 
-/// A step from rest to free fall is this share of g cos φ at least and at most: sensors on a tilted cask, a hook that gives way.
+/// A step from rest to free fall is this share of g cos φ at least and at most: sensors on a tilted cask, a
+/// hook that gives way.
 const STEP: std::ops::Range<f64> = 0.5..1.5;
 /// Length of a block, s: short against a fall, long against noise and spikes.
 const BLOCK_S: f64 = 0.005;
 /// Blocks of a level, 40 ms: as long as a crane's hook rings.
 const LEVEL: usize = 8;
-/// Blocks that a departure from the free-fall level is averaged over, 20 ms: ringing above 50 Hz has no mean over them.
+/// Blocks that a departure from the free-fall level is averaged over, 20 ms: ringing above 50 Hz has no mean
+/// over them.
 const SUSTAINED: usize = 4;
 /// A step is one where it is this many of its standard uncertainties: noise of 1/f makes steps by itself.
 const CLEAR: f64 = 6.0;
-/// Departure that ends a fall, as a share of g cos φ: far above the drag of a cask, below any touch that carries its weight.
+/// Departure that ends a fall, as a share of g cos φ: far above the drag of a cask, below any touch that
+/// carries its weight.
 const TOUCH: f64 = 0.25;
 /// Noise is passed by this many of its standard deviations.
 const NOISE_FACTOR: f64 = 6.0;
-/// A level this share of g cos φ off the one before the release, or so many of the levels' own scatters, is not yet the rest: the cask is
-/// still hoisted or swings.
+/// A level this share of g cos φ off the one before the release, or so many of the levels' own scatters, is
+/// not yet the rest: the cask is still hoisted or swings.
 const UNREST: f64 = 0.02;
 const UNREST_SCATTERS: f64 = 5.0;
-/// The release is sought this many of the cask file's fall times back, so that a wrong height is seen as such.
+/// The release is sought this many of the cask file's fall times back, so that a wrong height is seen as
+/// such.
 const REACH: f64 = 3.0;
-/// A shorter stretch than this share of the cask file's fall time is no fall: it would mean a hundredth of its height.
+/// A shorter stretch than this share of the cask file's fall time is no fall: it would mean a hundredth of
+/// its height.
 const SHORTEST: f64 = 0.1;
 
 /// A free fall with rest before it, as one channel shows it.
@@ -34,7 +40,8 @@ const SHORTEST: f64 = 0.1;
 pub struct FreeFall {
     /// Half-way down the step from rest to free fall, s from the recording's first sample.
     pub release_s: f64,
-    /// First touch: the first sustained departure from the free-fall level, or first contact, s from the recording's first sample.
+    /// First touch: the first sustained departure from the free-fall level, or first contact, s from the
+    /// recording's first sample.
     pub end_s: f64,
     /// Rest level less free-fall level, m/s².
     pub rest_m_s2: f64,
@@ -42,10 +49,11 @@ pub struct FreeFall {
     pub u_rest_m_s2: f64,
 }
 
-/// The longest free fall before `contact_s` that begins with a step from rest, +g cos φ, to a level that then stays.
+/// The longest free fall before `contact_s` that begins with a step from rest, +g cos φ, to a level that then
+/// stays.
 ///
-/// It may end before `contact_s`, where water, a guide or a soft layer is touched ahead of the impact. `None` where the record
-/// does not reach back to the rest, or shows no such step (an AC-coupled sensor).
+/// It may end before `contact_s`, where water, a guide or a soft layer is touched ahead of the impact. `None`
+/// where the record does not reach back to the rest, or shows no such step (an AC-coupled sensor).
 #[must_use]
 pub fn free_fall(channel: &Channel, drop: &Drop, contact_s: f64) -> Option<FreeFall> {
     let lean = match channel.axis {
@@ -86,7 +94,8 @@ impl SampledFall {
     }
 }
 
-/// The samples before first contact and the means of their blocks: a median would stand on a coarse converter's steps.
+/// The samples before first contact and the means of their blocks: a median would stand on a coarse
+/// converter's steps.
 struct Record<'a> {
     channel: &'a Channel,
     samples: Range<usize>,
@@ -159,7 +168,8 @@ impl<'a> Record<'a> {
         Some(SampledFall { start, end, rest_m_s2: rest, u_rest_m_s2: u_rest })
     }
 
-    /// Smallest difference of neighbouring samples, m/s²: both levels may lie half of it off where the noise is less.
+    /// Smallest difference of neighbouring samples, m/s²: both levels may lie half of it off where the noise
+    /// is less.
     fn converter_step_m_s2(&self) -> f64 {
         *self.converter_step_m_s2.get_or_init(|| {
             let scale = self.channel.scale_m_s2.abs();
@@ -179,7 +189,8 @@ impl<'a> Record<'a> {
         blocks.rchunks_exact(LEVEL).map(|of| robust::mean_and_rms(of).0).filter(|l| l.is_finite()).collect()
     }
 
-    /// The levels of the rest before a step, back to where the cask was not yet at rest; `of_fall` tell how levels scatter.
+    /// The levels of the rest before a step, back to where the cask was not yet at rest; `of_fall` tell how
+    /// levels scatter.
     fn calm_before(&self, step: usize, of_fall: &[f64]) -> Vec<f64> {
         let scatter_m_s2 = robust::mean_and_rms(of_fall).1.hypot(self.converter_step_m_s2());
         let most_m_s2 = (UNREST * self.weight_m_s2).max(UNREST_SCATTERS * scatter_m_s2);
@@ -188,8 +199,9 @@ impl<'a> Record<'a> {
         levels.into_iter().take_while(|level| (level - last).abs() <= most_m_s2).collect()
     }
 
-    /// Standard uncertainty of the mean of levels, m/s²: of their scatter as if each knew nothing of the others, and of what their halves
-    /// differ by, which holds noise of every colour; a single level has the scatter given.
+    /// Standard uncertainty of the mean of levels, m/s²: of their scatter as if each knew nothing of the
+    /// others, and of what their halves differ by, which holds noise of every colour; a single level has the
+    /// scatter given.
     fn u_mean(&self, levels: &[f64], of_one_m_s2: f64) -> f64 {
         let n = as_f64(levels.len().max(1));
         let (earlier, later) = levels.split_at(levels.len() / 2);
@@ -204,7 +216,8 @@ impl<'a> Record<'a> {
         margin * scatter_m_s2.max(drift_m_s2).hypot(self.converter_step_m_s2() / 12.0_f64.sqrt())
     }
 
-    /// The block from which on the mean over [`SUSTAINED`] blocks lies off the free-fall level; `None` where it holds to the end.
+    /// The block from which on the mean over [`SUSTAINED`] blocks lies off the free-fall level; `None` where
+    /// it holds to the end.
     fn departure(&self, step: usize, falling: f64) -> Option<usize> {
         let after = self.blocks.get(step + SUSTAINED..)?;
         let off = |b: &f64| if b.is_finite() { b - falling } else { 0.0 };
@@ -286,7 +299,8 @@ mod tests {
         }
     }
 
-    /// Rest to 1.5 s, fall to 1.9 s, then 2 g that decay until a hard stop at 2.1 s; all on an offset of 6 m/s².
+    /// Rest to 1.5 s, fall to 1.9 s, then 2 g that decay until a hard stop at 2.1 s; all on an offset of 6
+    /// m/s².
     fn soft_entry(t: f64) -> f64 {
         6.0 + match t {
             t if t < 1.5 => 9.81,
@@ -304,7 +318,8 @@ mod tests {
         assert!((fall.end_s - 1.9).abs() < 2.0 / RATE_HZ, "{fall:?}");
         // The medians of blocks of 50 samples of uniform noise lie within 0.2 of the truth.
         assert!((fall.rest_m_s2 - 9.81).abs() < 0.2, "{fall:?}");
-        // A mean of 50 uniform samples scatters by 0.041, one of eight such by 0.014, and the fall has nine of those; known to a half.
+        // A mean of 50 uniform samples scatters by 0.041, one of eight such by 0.014, and the fall has nine
+        // of those; known to a half.
         assert!((0.003..0.02).contains(&fall.u_rest_m_s2), "{fall:?}");
     }
 

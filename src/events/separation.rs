@@ -6,11 +6,13 @@ use crate::numerics::{as_f64, reduce};
 
 /// A pulse has ended where the force stays below this share of its peak.
 const TAIL: f64 = 0.05;
-/// The flight shows what the impulse comes to in the last part of the time from first contact to the slap-down …
+/// The flight shows what the impulse comes to in the last part of the time from first contact to the
+/// slap-down …
 const LAST_PART: f64 = 0.3;
 /// … where it stays as near to that as this share of it.
 const MOST_LEFT: f64 = 0.25;
-/// What is left of the impulse near the contact's end, as a share: a half sine has so much for its last eighth …
+/// What is left of the impulse near the contact's end, as a share: a half sine has so much for its last
+/// eighth …
 const LEAST_LEFT: f64 = 0.04;
 /// … and where ringing reaches as far, so much for its last fifth.
 const MOST_LEFT_AT_END: f64 = 0.1;
@@ -32,8 +34,9 @@ pub fn first_separation(signal: &Signal, contact_s: f64, before_s: f64) -> Optio
     Some(signal.time_s(from + end))
 }
 
-/// When L has its impulse on a signal of it that still rings, s, or most of it where the ringing is strong: no stage of the contact is left then.
-/// `None` where the last part of the time to `before_s` does not tell what it comes to.
+/// When L has its impulse on a signal of it that still rings, s, or most of it where the ringing is strong:
+/// no stage of the contact is left then. `None` where the last part of the time to `before_s` does not tell
+/// what it comes to.
 #[must_use]
 pub fn impulse_given(signal: &Signal, contact_s: f64, before_s: f64) -> Option<f64> {
     let flight = before_s - LAST_PART * (before_s - contact_s)..before_s;
@@ -75,8 +78,9 @@ impl Left {
         self.shares[..self.flight].iter().rposition(|left| *left > share).map_or(0, |last| last + 1)
     }
 
-    /// Where it comes to an end, in samples: the rest of a force that falls to zero in a line goes with the square of the time to its end, and
-    /// so does, nearly, that of a half sine. Before it the time from four times a share to that share, which ringing does not reach.
+    /// Where it comes to an end, in samples: the rest of a force that falls to zero in a line goes with the
+    /// square of the time to its end, and so does, nearly, that of a half sine. Before it the time from four
+    /// times a share to that share, which ringing does not reach.
     fn end(&self) -> [f64; 2] {
         let end_by = |share: f64| {
             let [last, before] = [share, 4.0 * share].map(|share| as_f64(self.below(share)));
@@ -88,11 +92,12 @@ impl Left {
     }
 }
 
-/// What `by_force` says of the separation on the same signal, held against the impulse: a seat that rings on keeps the force up, but gives no
-/// more impulse.
+/// What `by_force` says of the separation on the same signal, held against the impulse: a seat that rings on
+/// keeps the force up, but gives no more impulse.
 ///
-/// How far the two are apart, over √3, is in the standard uncertainty. Where that is farther than the force takes to fall, and the force turns its
-/// sign between them, the impulse tells the end, to a third of that fall.
+/// How far the two are apart, over √3, is in the standard uncertainty. Where that is farther than the force
+/// takes to fall, and the force turns its sign between them, the impulse tells the end, to a third of that
+/// fall.
 #[must_use]
 pub fn by_impulse(signal: &Signal, contact_s: f64, by_force: At, flight_s: &std::ops::Range<f64>) -> At {
     // What a long flight ends with, a touch perhaps, is not asked.
@@ -116,9 +121,11 @@ fn turns(signal: &Signal, from_s: f64, to_s: f64) -> (f64, usize) {
     (reduce::peak(&smooth), smooth.windows(2).filter(turned).count())
 }
 
-/// When L leaves the target on a signal of it free of ringing, s: going back from `free_s`, where it flies, the force leaves zero.
+/// When L leaves the target on a signal of it free of ringing, s: going back from `free_s`, where it flies,
+/// the force leaves zero.
 ///
-/// The standard uncertainty is what the force's fall from the foot to zero may hide, a fortieth of the contact, or a sample.
+/// The standard uncertainty is what the force's fall from the foot to zero may hide, a fortieth of the
+/// contact, or a sample.
 #[must_use]
 pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<At> {
     let from = signal.index_from(contact_s);
@@ -135,8 +142,8 @@ pub fn separation(signal: &Signal, contact_s: f64, free_s: f64) -> Option<At> {
     Some(At { time_s, u_s })
 }
 
-/// How much later than the force a sensor may answer whose seat rings on behind the contact, s: the period of that ringing over 2π; 0 where
-/// the signal, free of the cask's own ringing, is quiet.
+/// How much later than the force a sensor may answer whose seat rings on behind the contact, s: the period of
+/// that ringing over 2π; 0 where the signal, free of the cask's own ringing, is quiet.
 #[must_use]
 pub fn seat_s(signal: &Signal, contact_s: f64, left_s: f64) -> f64 {
     let after_s = left_s - contact_s;
@@ -179,7 +186,8 @@ mod tests {
     use crate::data::{Axis, End};
     use std::f64::consts::{PI, TAU};
 
-    /// A half sine of 6 ms from 20.03 ms on at 100 kHz, and behind it a seat that rings with a share of its peak.
+    /// A half sine of 6 ms from 20.03 ms on at 100 kHz, and behind it a seat that rings with a share of its
+    /// peak.
     fn signal(rings: f64) -> Signal {
         let force = |i: i32| {
             let t = f64::from(i) * 1e-5 - 0.020_03;

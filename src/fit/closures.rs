@@ -1,12 +1,13 @@
 //! What the motion must meet beside the velocity steps, and by how much given inputs miss it.
 
-use super::Basis;
+use super::FitData;
 use super::inputs::Inputs;
 use crate::data::{Axis, ClosureKind, Motion, RestLevel, U_RELEASE_S};
 
 /// Height of R's corner above the target as it strikes: corner and target are even to some millimetres, m.
 const U_HEIGHT_M: f64 = 0.003;
-/// Angular impulse against Θ ω, as a share of ω: so far apart are both on simulated drops whose pulse is finite and rings.
+/// Angular impulse against Θ ω, as a share of ω: so far apart are both on simulated drops whose pulse is
+/// finite and rings.
 const U_TURNING: f64 = 0.005;
 
 /// An observable with its standard uncertainty.
@@ -49,7 +50,8 @@ impl Observable {
         }
     }
 
-    /// By how much the motion misses it, in the unit of [`Self::u`]; `None` where the motion does not show it.
+    /// By how much the motion misses it, in the unit of [`Self::u`]; `None` where the motion does not show
+    /// it.
     fn miss(&self, inputs: &Inputs, motion: &Motion) -> Option<f64> {
         let setup = &inputs.setup;
         let g = setup.gravity_m_s2;
@@ -62,7 +64,8 @@ impl Observable {
                     - motion.contact.angular_velocity_rad_s
                     - motion.angular_impulse_m2_s / inputs.inertia_m2?,
             ),
-            // (1 + e) f_rest − χ g sin φ' = g cos φ' across the axis, the other way round along it; φ' before the fall   (34)
+            // (1 + e) f_rest − χ g sin φ' = g cos φ' across the axis, the other way round along it; φ' before
+            // the fall   (34)
             Self::Rest { channel, is_axial, rest_m_s2, .. } => {
                 let fall_s = -motion.contact.vertical_velocity_m_s / g;
                 let (sin, cos) = (setup.angle_rad + setup.angular_velocity_rad_s * fall_s).sin_cos();
@@ -76,7 +79,7 @@ impl Observable {
     }
 
     /// Its own standard uncertainty.
-    fn u(&self, measured: &Basis) -> f64 {
+    fn u(&self, measured: &FitData) -> f64 {
         match self {
             Self::Height => U_HEIGHT_M,
             Self::Turning { u_rad_s } => *u_rad_s,
@@ -86,12 +89,12 @@ impl Observable {
     }
 
     /// The miss over its own standard uncertainty.
-    pub fn residual(&self, measured: &Basis, inputs: &Inputs, motion: &Motion) -> Option<f64> {
+    pub fn residual(&self, measured: &FitData, inputs: &Inputs, motion: &Motion) -> Option<f64> {
         self.miss(inputs, motion).map(|miss| miss / self.u(measured))
     }
 
     /// A miss of `residual` own standard uncertainties as a person reads it.
-    pub fn words(&self, measured: &Basis, motion: &Motion, residual: f64) -> String {
+    pub fn words(&self, measured: &FitData, motion: &Motion, residual: f64) -> String {
         let miss = residual * self.u(measured);
         match self {
             Self::Height => format!("{:+.0} mm", 1e3 * miss),
@@ -110,7 +113,7 @@ impl Observable {
 }
 
 /// The observables that this recording has.
-pub(super) fn observables(measured: &Basis, motion: &Motion) -> Vec<Observable> {
+pub(super) fn observables(measured: &FitData, motion: &Motion) -> Vec<Observable> {
     let mut all = Vec::new();
     if motion.second_end_height_m.is_some() {
         all.push(Observable::Height);

@@ -1,6 +1,7 @@
-//! The uncertain inputs of the reconstruction, each with its standard uncertainty, and the reconstruction's inputs with them moved.
+//! The uncertain inputs of the reconstruction, each with its standard uncertainty, and the reconstruction's
+//! inputs with them moved.
 
-use super::Basis;
+use super::FitData;
 use crate::data::planar::first_arm_m;
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, Events, FlightFit, MOST_LOST_M_S, Motion, MotionState, Setup,
@@ -8,12 +9,14 @@ use crate::data::{
 };
 use crate::numerics::noise::integral_uncertainty_by;
 
-/// Error of a velocity step from a mode of which the flight shows one period, as a share of the mode's amplitude; twice the periods leave half
-/// of it. On simulated drops a window of one period leaves half a percent, one of half a period two percent (docs/uncertainty.md).
+/// Error of a velocity step from a mode of which the flight shows one period, as a share of the mode's
+/// amplitude; twice the periods leave half of it. On simulated drops a window of one period leaves half a
+/// percent, one of half a period two percent (docs/uncertainty.md).
 const RINGING_SHARE: f64 = 0.005;
 
-/// Standard uncertainty of the velocity that a gap in the contact took, over v0 times the gap's share of the contact. A pulse that throws L back
-/// as fast as it came changes its velocity by 2 v0: a gap of a tenth in the middle of such a half sine takes 0.1 π v0, one at its end next to none.
+/// Standard uncertainty of the velocity that a gap in the contact took, over v0 times the gap's share of the
+/// contact. A pulse that throws L back as fast as it came changes its velocity by 2 v0: a gap of a tenth in
+/// the middle of such a half sine takes 0.1 π v0, one at its end next to none.
 const GAP_SHARE: f64 = 3.0;
 
 /// Standard uncertainty of the roll after a first contact, rad/s: edges tilted by 1 to 5° leave 20 to 180°/s.
@@ -39,7 +42,8 @@ pub struct Inputs {
     pub places_m: Vec<f64>,
     /// Θ / m, m².
     pub inertia_m2: Option<f64>,
-    /// The made-up channel of an end without one, and the channel that it is made of, whose errors it has.
+    /// The channel that stands in for an end without one, and the channel it is derived from: their errors
+    /// are equal.
     stood_in: Option<StoodIn>,
 }
 
@@ -50,13 +54,14 @@ pub struct UncertainInput {
     /// Its standard uncertainty, as a person reads it.
     pub(super) size: String,
     /// More than one where channels share it.
-    changes: Vec<Change>,
+    changes: Vec<InputShift>,
 }
 
 impl UncertainInput {
-    /// Whether any move of it makes another motion than none: friction that is moved is that of a cask that slides.
+    /// Whether the motion is discontinuous in this input, so that it has no derivative at zero: any change of
+    /// the friction lets a cask that sticks slide.
     pub(super) fn jumps(&self) -> bool {
-        self.changes.iter().any(|change| matches!(change, Change::Friction { .. }))
+        self.changes.iter().any(|change| matches!(change, InputShift::Friction { .. }))
     }
 }
 
@@ -81,7 +86,7 @@ impl Event {
 
 /// What a positive standard uncertainty does.
 #[derive(Debug, Clone, Copy)]
-enum Change {
+enum InputShift {
     Step { channel: usize, add_m_s: f64 },
     Scale { channel: usize, share: f64 },
     Cross { channel: usize, share: f64, other_m_s: f64 },
@@ -100,7 +105,7 @@ enum Change {
 }
 
 impl Inputs {
-    pub(super) fn new(measured: &Basis) -> Self {
+    pub(super) fn new(measured: &FitData) -> Self {
         let channels = measured.flight.plateaus.len();
         Self {
             flight: measured.flight.clone(),
@@ -130,7 +135,7 @@ impl Inputs {
         moved
     }
 
-    fn apply(&mut self, base: &Self, change: Change, by: f64) {
+    fn apply(&mut self, base: &Self, change: InputShift, by: f64) {
         let stood_in = self.stood_in;
         let mut step = |channel: usize, add_m_s: f64| {
             let other = stood_in.filter(|s| s.by == channel).map(|s| (s.channel, s.share * add_m_s));
@@ -141,39 +146,41 @@ impl Inputs {
             }
         };
         match change {
-            Change::Step { channel, add_m_s } => step(channel, by * add_m_s),
-            Change::Scale { channel, share } => {
+            InputShift::Step { channel, add_m_s } => step(channel, by * add_m_s),
+            InputShift::Scale { channel, share } => {
                 let value = base.flight.plateaus.get(channel).map_or(0.0, |p| p.velocity_step_m_s);
                 step(channel, by * share * value);
                 self.scales[channel] += by * share;
             }
-            Change::Cross { channel, share, other_m_s } => {
+            InputShift::Cross { channel, share, other_m_s } => {
                 step(channel, -by * share * other_m_s);
                 self.crosses[channel] += by * share;
             }
-            Change::Place { channel, by_m, gained_rad_s } => {
+            InputShift::Place { channel, by_m, gained_rad_s } => {
                 // A sensor farther from L by δ reads Ω δ = −ω δ more.
                 step(channel, by * gained_rad_s * by_m);
                 self.places_m[channel] += by * by_m;
             }
-            Change::Angle { by_rad } => self.setup.angle_rad += by * by_rad,
-            Change::ImpactVelocity { share } => self.setup.impact_velocity_m_s *= 1.0 + by * share,
-            Change::Event { event, by_s } => {
+            InputShift::Angle { by_rad } => self.setup.angle_rad += by * by_rad,
+            InputShift::ImpactVelocity { share } => self.setup.impact_velocity_m_s *= 1.0 + by * share,
+            InputShift::Event { event, by_s } => {
                 if let Some(at) = event.of(&mut self.events) {
                     at.time_s += by * by_s;
                 }
             }
-            Change::CentreOfGravity { by_m } => self.setup.cog_m += by * by_m,
-            Change::Inertia { share } => self.inertia_m2 = self.inertia_m2.map(|i| i * (1.0 + by * share)),
-            Change::Friction { ratio, by: u } => {
+            InputShift::CentreOfGravity { by_m } => self.setup.cog_m += by * by_m,
+            InputShift::Inertia { share } => {
+                self.inertia_m2 = self.inertia_m2.map(|i| i * (1.0 + by * share));
+            }
+            InputShift::Friction { ratio, by: u } => {
                 // A force along the axis' own slope and no other has none across it: f_η says nothing of it.
                 let most = MOST_FRICTION / self.setup.angle_rad.tan();
                 self.setup.axial = AxialClosure::Sliding { friction: (ratio + by * u).min(most) };
             }
-            Change::Clock { share } => self.setup.second_s += by * share,
-            Change::Length { by_m } => self.setup.length_m += by * by_m,
-            Change::Section { by_m } => self.setup.height_m += by * by_m,
-            Change::AngularVelocity { by_rad_s } => {
+            InputShift::Clock { share } => self.setup.second_s += by * share,
+            InputShift::Length { by_m } => self.setup.length_m += by * by_m,
+            InputShift::Section { by_m } => self.setup.height_m += by * by_m,
+            InputShift::AngularVelocity { by_rad_s } => {
                 self.setup.angular_velocity_rad_s += by * by_rad_s;
                 if self.setup.is_of_fall {
                     // ż_S is that of the fall: L strikes ω a more slowly   (3)
@@ -181,13 +188,13 @@ impl Inputs {
                     self.setup.impact_velocity_m_s -= by * by_rad_s * first_arm_m(cog_m, height_m, angle_rad);
                 }
             }
-            Change::HorizontalVelocity { by_m_s } => self.setup.horizontal_velocity_m_s += by * by_m_s,
+            InputShift::HorizontalVelocity { by_m_s } => self.setup.horizontal_velocity_m_s += by * by_m_s,
         }
     }
 }
 
 /// Every input that is uncertain, with its size; `motion` is the one that the stated inputs give.
-pub(super) fn inputs(measured: &Basis, motion: &Motion) -> Vec<UncertainInput> {
+pub(super) fn inputs(measured: &FitData, motion: &Motion) -> Vec<UncertainInput> {
     let mut all = Vec::new();
     for (channel, signal) in measured.signals.iter().enumerate() {
         if signal.axis == Axis::Transverse || measured.setup.axial == AxialClosure::Measured {
@@ -198,13 +205,13 @@ pub(super) fn inputs(measured: &Basis, motion: &Motion) -> Vec<UncertainInput> {
     all.extend(roll(measured));
     // Half of a 95 % half-width is a standard uncertainty.
     let known = &measured.tolerances;
-    let mut add = |name: &str, size: String, change: Change| {
+    let mut add = |name: &str, size: String, change: InputShift| {
         all.push(UncertainInput { name: name.into(), size, changes: vec![change] });
     };
     let by_rad = known.angle_rad / 2.0;
-    add("drop angle", format!("{:.2}°", by_rad.to_degrees()), Change::Angle { by_rad });
+    add("drop angle", format!("{:.2}°", by_rad.to_degrees()), InputShift::Angle { by_rad });
     let share = known.impact_velocity / 2.0;
-    add("impact velocity", percent(share), Change::ImpactVelocity { share });
+    add("impact velocity", percent(share), InputShift::ImpactVelocity { share });
     let events = measured.events;
     for (event, at, name) in [
         (Event::FirstContact, events.first_contact, "time of first contact"),
@@ -212,32 +219,32 @@ pub(super) fn inputs(measured: &Basis, motion: &Motion) -> Vec<UncertainInput> {
         (Event::SlapDown, events.slap_down, "time of slap-down"),
     ] {
         let by_s = at.map_or(0.0, |at| at.u_s);
-        add(name, format!("{:.3} ms", 1e3 * by_s), Change::Event { event, by_s });
+        add(name, format!("{:.3} ms", 1e3 * by_s), InputShift::Event { event, by_s });
     }
     let by_m = known.cog_m / 2.0;
-    add("centre of gravity", format!("{:.0} mm", 1e3 * by_m), Change::CentreOfGravity { by_m });
+    add("centre of gravity", format!("{:.0} mm", 1e3 * by_m), InputShift::CentreOfGravity { by_m });
     if measured.inertia_m2.is_some() {
         let share = known.inertia / 2.0;
-        add("inertia", percent(share), Change::Inertia { share });
+        add("inertia", percent(share), InputShift::Inertia { share });
     }
     if let Some(AssumedFriction { ratio, u }) = measured.friction {
-        add("friction of the first contact", format!("{u:.3}"), Change::Friction { ratio, by: u });
+        add("friction of the first contact", format!("{u:.3}"), InputShift::Friction { ratio, by: u });
     }
     let by_m = known.length * measured.setup.length_m / 2.0;
-    add("length", format!("{:.0} mm", 1e3 * by_m), Change::Length { by_m });
+    add("length", format!("{:.0} mm", 1e3 * by_m), InputShift::Length { by_m });
     let by_m = known.height * measured.setup.height_m / 2.0;
-    add("section", format!("{:.0} mm", 1e3 * by_m), Change::Section { by_m });
+    add("section", format!("{:.0} mm", 1e3 * by_m), InputShift::Section { by_m });
     let by_rad_s = known.angular_velocity_rad_s / 2.0;
     let size = format!("{:.2}°/s", by_rad_s.to_degrees());
-    add("rotation at first contact", size, Change::AngularVelocity { by_rad_s });
+    add("rotation at first contact", size, InputShift::AngularVelocity { by_rad_s });
     let by_m_s = known.horizontal_velocity_m_s / 2.0;
     add(
         "sideways velocity at first contact",
         format!("{by_m_s:.3} m/s"),
-        Change::HorizontalVelocity { by_m_s },
+        InputShift::HorizontalVelocity { by_m_s },
     );
     let share = known.clock / 2.0;
-    add("recorder's clock", format!("{:.3} %", 100.0 * share), Change::Clock { share });
+    add("recorder's clock", format!("{:.3} %", 100.0 * share), InputShift::Clock { share });
     all
 }
 
@@ -246,20 +253,21 @@ fn percent(share: f64) -> String {
 }
 
 /// Standard uncertainty of a channel's scale.
-fn u_scale(measured: &Basis, channel: usize) -> f64 {
+fn u_scale(measured: &FitData, channel: usize) -> f64 {
     let own = measured.spec(channel).and_then(|spec| spec.calibration);
     own.unwrap_or(measured.tolerances.calibration) / 2.0
 }
 
-/// The scales of channels that were calibrated with the same thing: one input each, since they are off together.
-fn shared_calibrations(measured: &Basis) -> Vec<UncertainInput> {
+/// The scales of channels that were calibrated with the same thing: one input each, since they are off
+/// together.
+fn shared_calibrations(measured: &FitData) -> Vec<UncertainInput> {
     let mut shared: Vec<UncertainInput> = Vec::new();
     for channel in 0..measured.flight.plateaus.len().min(measured.signals.len()) {
         let Some(reference) = measured.spec(channel).and_then(|spec| spec.reference.as_ref()) else {
             continue;
         };
         let share = u_scale(measured, channel);
-        let (name, change) = (format!("calibration by {reference}"), Change::Scale { channel, share });
+        let (name, change) = (format!("calibration by {reference}"), InputShift::Scale { channel, share });
         match shared.iter_mut().find(|input| input.name == name) {
             Some(input) => input.changes.push(change),
             None => shared.push(UncertainInput { name, size: percent(share), changes: vec![change] }),
@@ -268,14 +276,15 @@ fn shared_calibrations(measured: &Basis) -> Vec<UncertainInput> {
     shared
 }
 
-/// The roll that a tilted edge gives the cask, where channels sit off the plane of the drop: each reads roll × place.
-fn roll(measured: &Basis) -> Option<UncertainInput> {
+/// The roll that a tilted edge gives the cask, where channels sit off the plane of the drop: each reads roll
+/// × place.
+fn roll(measured: &FitData) -> Option<UncertainInput> {
     let at = |channel: usize| measured.spec(channel).map_or(0.0, |spec| spec.lateral_m);
     let is_beside =
         |&channel: &usize| measured.signals[channel].axis == Axis::Transverse && at(channel) != 0.0;
     let beside = (0..measured.flight.plateaus.len().min(measured.signals.len())).filter(is_beside);
-    let step = |channel| Change::Step { channel, add_m_s: ROLL_RAD_S * at(channel) };
-    let changes: Vec<Change> = beside.map(step).collect();
+    let step = |channel| InputShift::Step { channel, add_m_s: ROLL_RAD_S * at(channel) };
+    let changes: Vec<InputShift> = beside.map(step).collect();
     let size = format!("{:.0}°/s", ROLL_RAD_S.to_degrees());
     (!changes.is_empty()).then(|| UncertainInput {
         name: "roll after the first contact".into(),
@@ -285,25 +294,25 @@ fn roll(measured: &Basis) -> Option<UncertainInput> {
 }
 
 /// Step, calibration, cross axis and position of one channel.
-fn of_channel(all: &mut Vec<UncertainInput>, measured: &Basis, motion: &Motion, channel: usize) {
+fn of_channel(all: &mut Vec<UncertainInput>, measured: &FitData, motion: &Motion, channel: usize) {
     let (signal, known) = (&measured.signals[channel], &measured.tolerances);
     if channel >= measured.flight.plateaus.len() {
         return;
     }
-    let mut add = |name: &str, size: String, change: Change| {
+    let mut add = |name: &str, size: String, change: InputShift| {
         all.push(UncertainInput { name: format!("{name} of {}", signal.name), size, changes: vec![change] });
     };
     let is_stood_in = measured.stood_in.is_some_and(|s| s.channel == channel);
     let u_m_s =
         if is_stood_in { measured.flight.plateaus[channel].u_m_s } else { u_step_m_s(measured, channel) };
-    add("velocity step", format!("{u_m_s:.3} m/s"), Change::Step { channel, add_m_s: u_m_s });
+    add("velocity step", format!("{u_m_s:.3} m/s"), InputShift::Step { channel, add_m_s: u_m_s });
     if is_stood_in {
         // Its sensor's errors are those of the channel that it is made of.
         return;
     }
     if measured.spec(channel).is_none_or(|spec| spec.reference.is_none()) {
         let share = u_scale(measured, channel);
-        add("calibration", percent(share), Change::Scale { channel, share });
+        add("calibration", percent(share), InputShift::Scale { channel, share });
     }
     let (before, after) = (body_m_s(&motion.contact), body_m_s(&motion.separation));
     let (transverse_m_s, axial_m_s) = (after.0 - before.0, after.1 - before.1);
@@ -315,17 +324,18 @@ fn of_channel(all: &mut Vec<UncertainInput>, measured: &Basis, motion: &Motion, 
         transverse_m_s - omega * (signal.position_m - measured.setup.cog_m)
     };
     let share = known.cross_axis / 2.0;
-    add("cross axis", percent(share), Change::Cross { channel, share, other_m_s });
+    add("cross axis", percent(share), InputShift::Cross { channel, share, other_m_s });
     if is_transverse {
         let by_m = known.position_m / 2.0;
-        let place = Change::Place { channel, by_m, gained_rad_s: omega };
+        let place = InputShift::Place { channel, by_m, gained_rad_s: omega };
         add("position", format!("{:.0} mm", 1e3 * by_m), place);
     }
 }
 
-/// Standard uncertainty of a channel's velocity step, m/s, of six parts: the plateau's fit, the modes' form, the time in the contact at which a zero
-/// shift set in, the drift of the offset since the free fall, clipping, gaps.
-pub fn u_step_m_s(measured: &Basis, channel: usize) -> f64 {
+/// Standard uncertainty of a channel's velocity step, m/s, of six parts: the plateau's fit, the modes' form,
+/// the time in the contact at which a zero shift set in, the drift of the offset since the free fall,
+/// clipping, gaps.
+pub fn u_step_m_s(measured: &FitData, channel: usize) -> f64 {
     let (signal, plateau) = (&measured.signals[channel], &measured.flight.plateaus[channel]);
     let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
     let pulse_s = measured.events.separation_s().map_or(0.0, |t| t - contact_s);
@@ -359,7 +369,7 @@ pub fn u_step_m_s(measured: &Basis, channel: usize) -> f64 {
 }
 
 /// Velocity that clipping, or a gap in the contact, may have taken from a channel's step, m/s.
-fn lost_m_s(measured: &Basis, signal: &Signal) -> f64 {
+fn lost_m_s(measured: &FitData, signal: &Signal) -> f64 {
     let contact_s = measured.events.first_contact_s().unwrap_or(0.0);
     let left_s = measured.events.separation_s().unwrap_or(contact_s);
     let clipped_m_s = signal.lost_to_clipping_m_s(contact_s, measured.flight.to_s);
@@ -368,8 +378,9 @@ fn lost_m_s(measured: &Basis, signal: &Signal) -> f64 {
     clipped_m_s.hypot(gap_m_s)
 }
 
-/// Whether a channel has lost its velocity step to clipping or a gap: a closure then tells the step, and tests nothing.
-pub(super) fn has_lost_step(measured: &Basis) -> bool {
+/// Whether a channel has lost its velocity step to clipping or a gap: a closure then tells the step, and
+/// tests nothing.
+pub(super) fn has_lost_step(measured: &FitData) -> bool {
     measured.signals.iter().any(|signal| lost_m_s(measured, signal) > MOST_LOST_M_S)
 }
 

@@ -2,22 +2,22 @@
 
 use super::inputs::{Inputs, UncertainInput, has_lost_step};
 use super::propagate::{Model, Propagated};
-use super::{Basis, COVERAGE, Reconstruct};
+use super::{COVERAGE, FitData, Reconstruct};
 use crate::data::{
     Axis, ChannelReading, Closure, Contribution, End, Estimate, FlightFit, MET_U, Quantities,
     ReconstructionCandidate, ReconstructionChoice, ReconstructionRung,
 };
 use crate::numerics::prior_fit::{PriorFit, derivatives};
 
-/// Where the closures tell lost velocity steps they test nothing, and the intervals of the joint fit are widened by this: with it they hold 19 of 20
-/// simulated drops.
+/// Where the closures tell lost velocity steps they test nothing, and the intervals of the joint fit are
+/// widened by this: with it they hold 19 of 20 simulated drops.
 const UNTESTED: f64 = 2.0;
 
 /// A higher rung is taken where it narrows an interval to less than this share.
 const NARROWED: f64 = 0.75;
 
-/// Steps over the contact that the slopes of further numbers are taken with, the largest force among them: with twice as many no half-width of a
-/// fixture moves by more than 0.4 % of itself.
+/// Steps over the contact that the slopes of further numbers are taken with, the largest force among them:
+/// with twice as many no half-width of a fixture moves by more than 0.4 % of itself.
 const SPREAD_STEPS: usize = 100;
 
 /// A rung with everything that it says.
@@ -46,8 +46,9 @@ pub struct RungTaken {
 }
 
 impl RungTaken {
-    /// Numbers that follow from the inputs, each with its standard uncertainty: `of` gives them for moved inputs and for as many further ones,
-    /// independent of all others, in their standard uncertainties, as are asked for. `None` where it fails near the inputs taken.
+    /// Numbers that follow from the inputs, each with its standard uncertainty: `of` gives them for moved
+    /// inputs and for as many further ones, independent of all others, in their standard uncertainties, as
+    /// are asked for. `None` where it fails near the inputs taken.
     #[must_use]
     pub fn spread(&self, further: usize, of: NumbersOf) -> Option<Vec<(f64, f64)>> {
         let count = self.inputs.len();
@@ -67,13 +68,13 @@ impl RungTaken {
     }
 }
 
-/// Every rung and the one taken: the simplest whose residuals are within what noise and tolerances explain, and whose answer no higher one
-/// would change by more than its interval or know much better.
+/// Every rung and the one taken: the simplest whose residuals are within what noise and tolerances explain,
+/// and whose answer no higher one would change by more than its interval or know much better.
 ///
 /// `plain` is the flight fit without modes and drift. `None` where the motion cannot be had.
 #[must_use]
 pub fn ladder(
-    measured: &Basis,
+    measured: &FitData,
     plain: Option<&FlightFit>,
     reading: Option<ChannelReading>,
     reconstruct: Reconstruct,
@@ -87,7 +88,7 @@ pub fn ladder(
         steps.push(by_channels(measured, plain, reading, &flight));
     }
     if let Some(plain) = plain {
-        let measured = Basis { flight: plain, ..*measured };
+        let measured = FitData { flight: plain, ..*measured };
         steps.extend(planar(&measured, reconstruct));
     }
     steps.push(by_flight(measured, flight, &closures));
@@ -132,9 +133,10 @@ fn step(rung: ReconstructionRung, propagated: Propagated, consistent: bool, resi
     }
 }
 
-/// (a) Speed and k as [P] reads them off the velocity curves of single channels; the other quantities are the planar motion's.
+/// (a) Speed and k as [P] reads them off the velocity curves of single channels; the other quantities are the
+/// planar motion's.
 fn by_channels(
-    measured: &Basis,
+    measured: &FitData,
     plain: &FlightFit,
     reading: ChannelReading,
     by_motion: &Propagated,
@@ -151,7 +153,8 @@ fn by_channels(
         let by_scale = known.calibration.hypot(known.clock) / 2.0 * (value_m_s + v0_m_s);
         left_m_s.hypot(by_scale).hypot(known.impact_velocity / 2.0 * v0_m_s)
     };
-    // A sensor is not the corner, turns with the cask, and reads nothing of gravity: what that comes to is told by the planar motion.
+    // A sensor is not the corner, turns with the cask, and reads nothing of gravity: what that comes to is
+    // told by the planar motion.
     let left_out_m_s = |value_m_s: f64, of: Option<Estimate>| of.map_or(0.0, |of| value_m_s - of.value);
     let speed_left_out_m_s = reading.second_m_s.map_or(0.0, |v| left_out_m_s(v.abs(), motion.speed));
     let first_left_out_m_s = left_out_m_s(reading.first_m_s, Some(motion.rebound_velocity));
@@ -180,7 +183,7 @@ fn by_channels(
 }
 
 /// (b) Planar motion, each velocity step the mean over the flight.
-fn planar(measured: &Basis, reconstruct: Reconstruct) -> Option<RungStep> {
+fn planar(measured: &FitData, reconstruct: Reconstruct) -> Option<RungStep> {
     let model = Model::new(measured, reconstruct)?;
     let propagated = model.by_stated_inputs()?;
     let closures = model.closures(None);
@@ -191,7 +194,7 @@ fn planar(measured: &Basis, reconstruct: Reconstruct) -> Option<RungStep> {
 }
 
 /// (c) The flight fitted with modes and drift.
-fn by_flight(measured: &Basis, propagated: Propagated, closures: &[Closure]) -> RungStep {
+fn by_flight(measured: &FitData, propagated: Propagated, closures: &[Closure]) -> RungStep {
     let left_m_s = most_left_m_s(measured.flight);
     let what = match (measured.flight.modes.len(), measured.flight.drift) {
         (0, false) => "no mode, no drift".to_owned(),
@@ -200,13 +203,14 @@ fn by_flight(measured: &Basis, propagated: Propagated, closures: &[Closure]) -> 
         }
     };
     let residual = format!("{left_m_s:.3} m/s about {what}; {}", worst(closures));
-    // A lost step is so uncertain that no closure counts as missed, however wrong the step is: the closures then say nothing.
+    // A lost step is so uncertain that no closure counts as missed, however wrong the step is: the closures
+    // then say nothing.
     let consistent = meets(closures) && !has_lost_step(measured);
     step(ReconstructionRung::Flight, propagated, consistent, residual)
 }
 
-/// How much wider the intervals of a joint fit are, and why: data that contradict one another by more than chance (Birge 1932)   (31b), or
-/// closures that are spent on a lost step.
+/// How much wider the intervals of a joint fit are, and why: data that contradict one another by more than
+/// chance (Birge 1932)   (31b), or closures that are spent on a lost step.
 fn widened(closures: &[Closure], has_lost_step: bool) -> (f64, &'static str) {
     let by_misses = closures.iter().map(|c| c.miss_in_u.abs() / MET_U).fold(1.0, f64::max);
     if has_lost_step && by_misses < UNTESTED {
@@ -253,8 +257,8 @@ fn worst(closures: &[Closure]) -> String {
     )
 }
 
-/// The first rung that is consistent and that no higher one would move out of the narrower of both intervals or know much better; else the
-/// last.
+/// The first rung that is consistent and that no higher one would move out of the narrower of both intervals
+/// or know much better; else the last.
 fn taken(steps: &[RungStep]) -> usize {
     (0..steps.len())
         .find(|&i| {

@@ -1,4 +1,5 @@
-//! A motion that depends on uncertain inputs to k and the other unknowns, each with its interval, on every rung of the reconstruction.
+//! A motion that depends on uncertain inputs to k and the other unknowns, each with its interval, on every
+//! rung of the reconstruction.
 
 mod closures;
 mod inputs;
@@ -21,7 +22,7 @@ pub type Reconstruct<'a> = &'a (dyn Fn(&FlightFit, &Events, &Setup) -> Option<Mo
 
 /// What the propagation starts from.
 #[derive(Debug, Clone, Copy)]
-pub struct Basis<'a> {
+pub struct FitData<'a> {
     /// The conditioned channels.
     pub signals: &'a [Signal],
     /// The flight fit.
@@ -46,7 +47,7 @@ pub struct Basis<'a> {
     pub stood_in: Option<StoodIn>,
 }
 
-impl Basis<'_> {
+impl FitData<'_> {
     /// What the cask file says of a channel.
     fn spec(&self, channel: usize) -> Option<&ChannelSpec> {
         let name = &self.signals.get(channel)?.name;

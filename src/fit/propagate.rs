@@ -1,28 +1,29 @@
-//! A motion with its uncertain inputs to quantities with intervals, with or without the observables that it must meet.
+//! A motion with its uncertain inputs to quantities with intervals, with or without the observables that it
+//! must meet.
 
 use super::closures::{Observable, observables};
 use super::inputs::{Inputs, UncertainInput, inputs};
-use super::{Basis, COVERAGE, Reconstruct};
+use super::{COVERAGE, FitData, Reconstruct};
 use crate::data::{Adjustment, Closure, Contribution, Estimate, Motion, Quantities};
 use crate::numerics::prior_fit::{PriorFit, derivatives, fit};
 use nalgebra::DMatrix;
 use std::sync::{Mutex, PoisonError};
 
-/// Slopes hold as far from where they were taken, in standard uncertainties of the inputs: a motion bends so little within them that
-/// results move by 1e-7 of themselves and intervals by 6e-4 at most (fixtures).
+/// Slopes hold as far from where they were taken, in standard uncertainties of the inputs: a motion bends so
+/// little within them that results move by 1e-7 of themselves and intervals by 6e-4 at most (fixtures).
 const NEAR_U: f64 = 0.1;
 
-/// Steps over the contact that slopes are taken with: with four times as many no half-width of a fixture's quantities moves by more than 1e-3 of
-/// itself.
+/// Steps over the contact that slopes are taken with: with four times as many no half-width of a fixture's
+/// quantities moves by more than 1e-3 of itself.
 const SLOPE_STEPS: usize = 50;
 
 /// Moves below this many standard uncertainties are not worth a line.
 const NOTABLE_MOVE: f64 = 0.05;
 
-/// Reads the quantities off the motion and propagates the inputs' standard uncertainties to them (GUM, 5.1.2); `None` where the motion
-/// cannot be had.
+/// Reads the quantities off the motion and propagates the inputs' standard uncertainties to them (GUM,
+/// 5.1.2); `None` where the motion cannot be had.
 #[must_use]
-pub fn quantities(measured: &Basis, reconstruct: Reconstruct) -> Option<Quantities> {
+pub fn quantities(measured: &FitData, reconstruct: Reconstruct) -> Option<Quantities> {
     Some(Model::new(measured, reconstruct)?.by_stated_inputs()?.quantities)
 }
 
@@ -33,11 +34,12 @@ pub(super) struct Propagated {
     pub budget: Vec<Contribution>,
 }
 
-/// Standard deviations of speed, m/s, and k over the given draws of the inputs, each a list of standard normal deviates that is repeated
-/// over the inputs: what the linear propagation is checked against (JCGM 101).
+/// Standard deviations of speed, m/s, and k over the given draws of the inputs, each a list of standard
+/// normal deviates that is repeated over the inputs: what the linear propagation is checked against (JCGM
+/// 101).
 #[must_use]
 pub fn spread_by_draws(
-    measured: &Basis,
+    measured: &FitData,
     reconstruct: Reconstruct,
     draws: &mut dyn FnMut(usize) -> Option<Vec<f64>>,
 ) -> Option<(f64, f64)> {
@@ -57,7 +59,7 @@ pub fn spread_by_draws(
 
 /// The reconstruction as a function of its inputs' moves.
 pub(super) struct Model<'a> {
-    measured: &'a Basis<'a>,
+    measured: &'a FitData<'a>,
     reconstruct: Reconstruct<'a>,
     pub(super) base: Inputs,
     motion: Motion,
@@ -68,7 +70,7 @@ pub(super) struct Model<'a> {
 }
 
 impl<'a> Model<'a> {
-    pub fn new(measured: &'a Basis, reconstruct: Reconstruct<'a>) -> Option<Self> {
+    pub fn new(measured: &'a FitData, reconstruct: Reconstruct<'a>) -> Option<Self> {
         let base = Inputs::new(measured);
         let motion = reconstruct(&base.flight, &base.events, &base.setup)?;
         let inputs = inputs(measured, &motion);
@@ -108,8 +110,8 @@ impl<'a> Model<'a> {
         self.moved(by_u).map(|(_, left)| left)
     }
 
-    /// The slopes of [`Self::values`] and, below them, of [`Self::residuals`]. One motion gives both; slopes at inputs near by that were made
-    /// before are given again.
+    /// The slopes of [`Self::values`] and, below them, of [`Self::residuals`]. One motion gives both; slopes
+    /// at inputs near by that were made before are given again.
     fn slopes(&self, at_u: &[f64]) -> Option<DMatrix<f64>> {
         let known = || self.known_slopes.lock().unwrap_or_else(PoisonError::into_inner);
         let apart_u =
@@ -148,7 +150,8 @@ impl<'a> Model<'a> {
         self.propagate(&PriorFit::of_priors(self.inputs.len()), 1.0)
     }
 
-    /// The quantities at the inputs that a fit ended with, the contribution of each datum to their uncertainty widened by a factor.
+    /// The quantities at the inputs that a fit ended with, the contribution of each datum to their
+    /// uncertainty widened by a factor.
     pub fn propagate(&self, fit: &PriorFit, widened: f64) -> Option<Propagated> {
         let values = self.values(&fit.unknowns)?;
         let slopes = self.slopes_of_quantities(&fit.unknowns)?;
@@ -182,7 +185,8 @@ impl<'a> Model<'a> {
         budget
     }
 
-    /// By how much the stated inputs miss each observable, over the uncertainty that all inputs give it, and how much of the miss a fit leaves.
+    /// By how much the stated inputs miss each observable, over the uncertainty that all inputs give it, and
+    /// how much of the miss a fit leaves.
     pub fn closures(&self, fit: Option<&PriorFit>) -> Vec<Closure> {
         let start = vec![0.0; self.inputs.len()];
         let (Some(misses), Some(slopes)) = (self.residuals(&start), self.slopes_of_residuals(&start)) else {
@@ -223,7 +227,8 @@ impl<'a> Model<'a> {
     }
 }
 
-/// The quantities of a motion: rebound ż_L as L leaves (22), k = −ż_L after over ż_L before (23), speed = |v_R| (24), and the rest.
+/// The quantities of a motion: rebound ż_L as L leaves (22), k = −ż_L after over ż_L before (23), speed =
+/// |v_R| (24), and the rest.
 fn read_off(motion: &Motion, inputs: &Inputs) -> Quantities<f64> {
     let contact_s = inputs.events.first_contact_s().unwrap_or(f64::NAN);
     let Motion { separation, slap_down, second_end_m_s, .. } = motion;

@@ -1,4 +1,5 @@
-//! Samples in memory to the channels that a cask file names, on the same time base and in the same units as those of a file.
+//! Samples in memory to the channels that a cask file names, on the same time base and in the same units as
+//! those of a file.
 
 use super::clock::{Claims, Refusal};
 use super::error::{self, IngestError};
@@ -64,7 +65,8 @@ fn no_rate(held: &HeldSamples) -> Refusal {
     )
 }
 
-/// The samples of each channel: all by their `source`, else all by their `name`, for a mixture could take one sensor for another.
+/// The samples of each channel: all by their `source`, else all by their `name`, for a mixture could take one
+/// sensor for another.
 fn chosen<'a>(held: &'a [HeldSamples], cask_file: &CaskFile) -> Result<Vec<&'a HeldSamples>, IngestError> {
     let by = |key: &str| held.iter().find(|held| held.name == key);
     let channels = &cask_file.channels;

@@ -26,8 +26,8 @@ use std::path::Path;
 /// A larger file is no cask file: a thousand channels take 300 kB.
 const LARGEST_MIB: u64 = 16;
 
-/// Reads and checks the cask file at `path`; channels may be missing altogether, as `predict` needs none. Of its photographs only the
-/// beginnings are looked at: [`with_photos`] reads them.
+/// Reads and checks the cask file at `path`; channels may be missing altogether, as `predict` needs none. Of
+/// its photographs only the beginnings are looked at: [`with_photos`] reads them.
 ///
 /// # Errors
 /// [`CaskFileError`], one message that shows the line.
@@ -52,7 +52,8 @@ pub fn with_photos(mut file: CaskFile) -> Result<CaskFile, CaskFileError> {
     Ok(file)
 }
 
-/// The cask file of which this is the text, such as a result holds it; `path` is what it was called. Its photographs are not looked for.
+/// The cask file of which this is the text, such as a result holds it; `path` is what it was called. Its
+/// photographs are not looked for.
 ///
 /// # Errors
 /// [`CaskFileError`], one message that shows the line.

@@ -1,6 +1,8 @@
-//! What a cask file, the recorded times and the recording's own words say of a rate to the one that is taken, or to a refusal.
+//! What a cask file, the recorded times and the recording's own words say of a rate to the one that is taken,
+//! or to a refusal.
 //!
-//! A rate is stated, borne out by times, or asked for; it is never guessed. Readers collect [`Claims`]; only this file compares rates:
+//! A rate is stated, borne out by times, or asked for; it is never guessed. Readers collect [`Claims`]; only
+//! this file compares rates:
 //!
 //! | cask file | times | other statements | outcome |
 //! |---|---|---|---|
@@ -19,7 +21,8 @@ use super::statement::Statement;
 use crate::data::{ClockFinding, Finding, HowApart, RatesApart, TimesApart};
 use crate::numerics::robust;
 
-/// A rate off by more than this part of itself is told: oscillators keep 1e-4, and every velocity is off by as much.
+/// A rate off by more than this part of itself is told: oscillators keep 1e-4, and every velocity is off by
+/// as much.
 pub(super) const RATE_TOLERANCE: f64 = 1e-3;
 
 /// Rates further apart than this are no two clocks: one of the statements is wrong, and nothing tells which.
@@ -105,7 +108,8 @@ impl Claims {
     /// The rate by the table above; `times` is what the recorded times tell, where they tell one.
     ///
     /// # Errors
-    /// [`Refusal`] where nothing states a rate, or two that contradict each other have nothing between them to decide.
+    /// [`Refusal`] where nothing states a rate, or two that contradict each other have nothing between them
+    /// to decide.
     pub(super) fn weigh(&self, times: Option<&Statement>) -> Result<Taken, Refusal> {
         let cask_file = self.cask_hz.map(|rate_hz| Statement {
             place: "sample_rate_hz of the cask file".into(),
@@ -169,8 +173,9 @@ pub(super) struct Clock<'a> {
 }
 
 impl Clock<'_> {
-    /// Whether another column of times bears these out: from the first row to the last, and at the row where they are farthest apart, by
-    /// 0.1 % of the record and a row of each. A warning where it does not; `is_start_shared` where both count from the same event.
+    /// Whether another column of times bears these out: from the first row to the last, and at the row where
+    /// they are farthest apart, by 0.1 % of the record and a row of each. A warning where it does not;
+    /// `is_start_shared` where both count from the same event.
     ///
     /// # Errors
     /// [`Refusal`] beyond 1 % of the record, unless the cask file says which times to take (`is_decided`).
@@ -231,7 +236,8 @@ impl Clock<'_> {
     }
 }
 
-/// The usual step from a time to a later one: their interval, or what they are cut to where that is longer; 0 without any.
+/// The usual step from a time to a later one: their interval, or what they are cut to where that is longer; 0
+/// without any.
 pub(super) fn usual_step(times: &[f64]) -> f64 {
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).filter(|d| *d > 0.0).collect();
     if steps.is_empty() { 0.0 } else { robust::median(&mut steps) }
@@ -245,7 +251,8 @@ mod tests {
         Statement { place: format!("fs = {rate_hz}"), rate_hz, rounding: 0.0, distance }
     }
 
-    /// Cask file, whether it names the times, statements, times: the rate taken with the number of warnings, or a part of the refusal.
+    /// Cask file, whether it names the times, statements, times: the rate taken with the number of warnings,
+    /// or a part of the refusal.
     type Row<'a> = (Option<f64>, bool, &'a [Statement], Option<Statement>, Result<(f64, usize), &'a str>);
 
     #[test]

@@ -1,4 +1,5 @@
-//! Delimited text to the channels that a cask file names, whatever its delimiter, decimal mark, encoding and preamble.
+//! Delimited text to the channels that a cask file names, whatever its delimiter, decimal mark, encoding and
+//! preamble.
 
 mod cells;
 mod columns;

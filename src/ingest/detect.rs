@@ -45,7 +45,8 @@ pub(super) fn format(path: &Path) -> Result<RecordingFormat, IngestError> {
     Err(stranger(path, &head))
 }
 
-/// A text in UTF-16: whether the lower byte of each letter stands first, by its mark or by the zero bytes between plain letters.
+/// A text in UTF-16: whether the lower byte of each letter stands first, by its mark or by the zero bytes
+/// between plain letters.
 pub(super) fn wide_text(head: &[u8]) -> Option<bool> {
     /// Bytes that are looked at, and the least that tell.
     const LOOKED_AT: usize = 256;
@@ -72,7 +73,8 @@ fn is_plain(byte: u8) -> bool {
     matches!(byte, b'\t' | b'\n' | b'\r' | b' '..=b'~')
 }
 
-/// Whether the HDF5 signature stands at 0, 512, 1024, 2048 …: a user block may come first (HDF5 format specification, II.A).
+/// Whether the HDF5 signature stands at 0, 512, 1024, 2048 …: a user block may come first (HDF5 format
+/// specification, II.A).
 fn has_hdf5_signature(file: &mut File, length: u64) -> std::io::Result<bool> {
     let mut at = 0;
     while at + 8 <= length {
@@ -120,7 +122,8 @@ fn numeric_row(line: &str, delimiter: char) -> Option<usize> {
     };
     let numbers = cells.iter().filter(|cell| is_number(cell)).count();
     let all_numbers = numbers > 0 && cells.iter().all(|cell| cell.is_empty() || is_number(cell));
-    // Prose has blanks and commas too: there a row must be numbers throughout, or else numbers and words in clear columns.
+    // Prose has blanks and commas too: there a row must be numbers throughout, or else numbers and words in
+    // clear columns.
     if all_numbers || (numbers > 0 && cells.len() >= 2 && delimiter != ' ') {
         Some(cells.len())
     } else {

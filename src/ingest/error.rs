@@ -117,11 +117,13 @@ pub(super) fn alike(one: &str, other: &str) -> f64 {
     strsim::jaro_winkler(&one, &other)
 }
 
-/// "did you mean …" with the names in `there` that are nearest to `wanted`, or what there is, cut to a handful.
+/// "did you mean …" with the names in `there` that are nearest to `wanted`, or what there is, cut to a
+/// handful.
 pub(super) fn near_names(path: &Path, wanted: &str, what: &str, there: &[String]) -> String {
     /// More than this many names no longer fit a terminal's few lines.
     const HANDFUL: usize = 6;
-    /// Below this similarity (0 to 1) a name is no misspelling but another word; `strsim`'s own examples of typing slips lie above 0.8.
+    /// Below this similarity (0 to 1) a name is no misspelling but another word; `strsim`'s own examples of
+    /// typing slips lie above 0.8.
     const ALIKE: f64 = 0.75;
     if there.is_empty() {
         return format!("the recording holds no {what}");

@@ -1,5 +1,5 @@
-//! Bytes to each decoder, by the name of its file in `fixtures/corpus`: `tests/fuzz` looks for harmful ones, the tests below replay
-//! what it kept.
+//! Bytes to each decoder, by the name of its file in `fixtures/corpus`: `tests/fuzz` looks for harmful ones,
+//! the tests below replay what it kept.
 
 use super::{Limits, cask_file, csv, hdf5, mcap, number, time_base};
 use crate::data::{CaskFile, Samples};
@@ -65,7 +65,8 @@ fn messages(bytes: &[u8]) {
     });
 }
 
-/// Bytes as what the process answers that takes an HDF5 file apart; packed datasets are read from a sound file.
+/// Bytes as what the process answers that takes an HDF5 file apart; packed datasets are read from a sound
+/// file.
 fn answer(bytes: &[u8]) {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/examples/vhlw-rest.h5"));
     let limits = Limits::of_memory(0);

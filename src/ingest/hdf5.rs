@@ -1,4 +1,5 @@
-//! HDF5 datasets and columns to the channels that a cask file names, with their attributes and their own times.
+//! HDF5 datasets and columns to the channels that a cask file names, with their attributes and their own
+//! times.
 
 mod answer;
 mod attributes;
@@ -42,8 +43,8 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::rc::Rc;
 
-/// Where this process was started to take an HDF5 file apart: does so until nobody asks any more. Else `program` is noted as the one to
-/// be started for it.
+/// Where this process was started to take an HDF5 file apart: does so until nobody asks any more. Else
+/// `program` is noted as the one to be started for it.
 pub(super) fn serve(program: &Path) -> Option<ExitCode> {
     let mut words = std::env::args_os().skip(1);
     if words.next().is_none_or(|word| word != room::WORD) {
@@ -56,7 +57,8 @@ pub(super) fn serve(program: &Path) -> Option<ExitCode> {
     Some(if take_apart(Path::new(&path)) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Closes this process in and answers on standard output what standard input asks of the file at `path`; whether it could.
+/// Closes this process in and answers on standard output what standard input asks of the file at `path`;
+/// whether it could.
 pub(super) fn take_apart(path: &Path) -> bool {
     let mut wall = wall::Wall::around(path);
     let is_whole = wall.is_whole;
@@ -64,8 +66,9 @@ pub(super) fn take_apart(path: &Path) -> bool {
     library::answer(path, &mut stdin().lock(), &mut BufWriter::new(stdout()), is_whole, &mut grant).is_ok()
 }
 
-/// Starts the program anew where variables are set by which the C library, which writes the curves of a report in this process, would
-/// load code or take another driver: `HDF5_PLUGIN_PATH`, `HDF5_VOL_CONNECTOR`, `HDF5_DRIVER` and the like.
+/// Starts the program anew where variables are set by which the C library, which writes the curves of a
+/// report in this process, would load code or take another driver: `HDF5_PLUGIN_PATH`, `HDF5_VOL_CONNECTOR`,
+/// `HDF5_DRIVER` and the like.
 #[cfg(unix)]
 fn begin_without_variables(program: &Path) {
     use std::os::unix::process::CommandExt;

@@ -40,20 +40,23 @@ impl Limits {
         self.memory_bytes / 4
     }
 
-    /// What a chunk of HDF5 may be larger than its dataset: 64 MiB as usual. Recorders reserve a mebibyte or a few.
+    /// What a chunk of HDF5 may be larger than its dataset: 64 MiB as usual. Recorders reserve a mebibyte or
+    /// a few.
     pub(super) fn idle_bytes(self) -> u64 {
         self.memory_bytes / 64
     }
 
-    /// All that a file of `file_bytes` unpacks to: recordings pack a hundredfold at most, those of sensors that all stand still
-    /// somewhat more, a bomb a thousandfold and more. Bytes made of nothing but records cost 5 ns each, and become eight bytes of
-    /// samples at most: a file of a few kilobytes, 32 MiB as usual, costs less than a second and 300 MB.
+    /// All that a file of `file_bytes` unpacks to: recordings pack a hundredfold at most, those of sensors
+    /// that all stand still somewhat more, a bomb a thousandfold and more. Bytes made of nothing but records
+    /// cost 5 ns each, and become eight bytes of samples at most: a file of a few kilobytes, 32 MiB as usual,
+    /// costs less than a second and 300 MB.
     pub(super) fn unpacked_bytes(self, file_bytes: u64) -> u64 {
         const TIGHTEST_RECORDING: u64 = 256;
         file_bytes.saturating_mul(TIGHTEST_RECORDING).saturating_add(self.memory_bytes / 128)
     }
 
-    /// Schemas that are taken apart in a file of `file_bytes`, 4 MiB more than it: a taken-apart one takes forty times its text.
+    /// Schemas that are taken apart in a file of `file_bytes`, 4 MiB more than it: a taken-apart one takes
+    /// forty times its text.
     pub(super) fn schemas_bytes(self, file_bytes: u64) -> u64 {
         file_bytes.saturating_add(self.memory_bytes / 1024)
     }

@@ -1,4 +1,5 @@
-//! Recording files and cask files to channels and settings: SI units, one time base a channel, what was missing.
+//! Recording files and cask files to channels and settings: SI units, one time base a channel, what was
+//! missing.
 
 mod arrays;
 pub(crate) mod assemble;
@@ -35,7 +36,8 @@ use std::path::Path;
 /// Called with the fraction done, 0 to 1, now and then.
 pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
 
-/// What a format's reader hands over for one `[[channel]]`: uniform samples, still in the recording's unit and clock.
+/// What a format's reader hands over for one `[[channel]]`: uniform samples, still in the recording's unit
+/// and clock.
 #[derive(Debug)]
 pub(crate) struct RawChannel {
     /// Index into `CaskFile::channels`.
@@ -134,33 +136,38 @@ pub fn list_within(path: &Path, limits: Limits, progress: Progress) -> Result<Li
     }
 }
 
-/// To be called first in `main` of a program that reads HDF5 by this library: where the program was started again to take a file apart it
-/// does so, and `main` ends with what is returned; else the program is noted as the one to be started.
+/// To be called first in `main` of a program that reads HDF5 by this library: where the program was started
+/// again to take a file apart it does so, and `main` ends with what is returned; else the program is noted as
+/// the one to be started.
 ///
-/// The C library for HDF5 breaks off, loops or worse on files that are damaged or made to do harm, so it works in a process of its own
-/// that can reach nothing but the recording. A program with another `main` names one that calls this: [`read_hdf5_with`]. Where variables
-/// `HDF5_…` are set, by which the library would load code, the program is started anew without them (Unix).
+/// The C library for HDF5 breaks off, loops or worse on files that are damaged or made to do harm, so it
+/// works in a process of its own that can reach nothing but the recording. A program with another `main`
+/// names one that calls this: [`read_hdf5_with`]. Where variables `HDF5_…` are set, by which the library
+/// would load code, the program is started anew without them (Unix).
 #[must_use]
 pub fn serve_hdf5() -> Option<std::process::ExitCode> {
-    // On Linux the running program itself, also after a newer one took its place; elsewhere anybody may have put a file there.
+    // On Linux the running program itself, also after a newer one took its place; elsewhere anybody may have
+    // put a file there.
     let own = Path::new("/proc/self/exe");
     let is_own = cfg!(target_os = "linux") && own.exists();
     let program = if is_own { Ok(own.to_owned()) } else { std::env::current_exe() };
     hdf5::serve(&program.unwrap_or_default())
 }
 
-/// Names the program that is started to take HDF5 files apart: one that calls [`serve_hdf5`] first, as `dropcheck` does. The first stays.
+/// Names the program that is started to take HDF5 files apart: one that calls [`serve_hdf5`] first, as
+/// `dropcheck` does. The first stays.
 pub fn read_hdf5_with(program: &Path) {
     read_hdf5_by(Hdf5Program { path: program.to_owned(), ..Hdf5Program::default() });
 }
 
-/// As [`read_hdf5_with`] for a program that needs words and variables of its own, and calls [`take_hdf5_apart`].
+/// As [`read_hdf5_with`] for a program that needs words and variables of its own, and calls
+/// [`take_hdf5_apart`].
 pub fn read_hdf5_by(program: Hdf5Program) {
     hdf5::use_program(program);
 }
 
-/// For a process that was started by [`read_hdf5_by`]: closes it in, then answers what the reader asks of the file at `path`, and says
-/// whether it could; then the process is to end.
+/// For a process that was started by [`read_hdf5_by`]: closes it in, then answers what the reader asks of the
+/// file at `path`, and says whether it could; then the process is to end.
 #[must_use]
 pub fn take_hdf5_apart(path: &Path) -> bool {
     hdf5::take_apart(path)

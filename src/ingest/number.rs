@@ -8,13 +8,15 @@ const POWERS: [f64; 23] = [
 
 /// The number at the start of `text` and how many bytes it takes; `None` where none starts there.
 ///
-/// Exact: up to 2⁵³ and 10²² one division or product rounds correctly (Clinger 1990); longer numbers go to the library.
+/// Exact: up to 2⁵³ and 10²² one division or product rounds correctly (Clinger 1990); longer numbers go to
+/// the library.
 #[inline]
 pub(super) fn leading(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
     Leading::of(text, decimal).map(|number| (number.value, number.used))
 }
 
-/// The same of a number as JSON writes it: finite, digits on both sides of the mark, no zero before others, no plus.
+/// The same of a number as JSON writes it: finite, digits on both sides of the mark, no zero before others,
+/// no plus.
 #[inline]
 pub(super) fn leading_json(text: &[u8]) -> Option<(f64, usize)> {
     let number = Leading::of(text, b'.')?;
@@ -104,14 +106,16 @@ fn as_f64(mantissa: u64) -> f64 {
 
 /// Appends the digits at `at` to `mantissa`, up to four at a time; where they end.
 ///
-/// Jumps on their count, not sums of it: the processor foresees it in a column and begins the next number at once.
+/// Jumps on their count, not sums of it: the processor foresees it in a column and begins the next number at
+/// once.
 #[inline]
 fn digits(text: &[u8], mut at: usize, mantissa: &mut u64) -> usize {
     let mut append = |scale: u64, digits: u32| {
         *mantissa = mantissa.wrapping_mul(scale).wrapping_add(u64::from(digits));
     };
     while let Some(four) = text.get(at..).and_then(<[u8]>::first_chunk::<4>) {
-        // Each byte less "0": adding 0x76 sets the highest bit of all but digits; a carry reaches later bytes only.
+        // Each byte less "0": adding 0x76 sets the highest bit of all but digits; a carry reaches later bytes
+        // only.
         let bytes = u32::from_le_bytes(*four) ^ 0x3030_3030;
         let others = (bytes.wrapping_add(0x7676_7676) | bytes) & 0x8080_8080;
         if others == 0 {
@@ -179,7 +183,8 @@ pub(super) fn of_cell(cell: &[u8], decimal: u8) -> Option<f64> {
     }
 }
 
-/// What stands for no value, after a sign and "#": of spreadsheets, of C libraries, of loggers whose converter ran over its range.
+/// What stands for no value, after a sign and "#": of spreadsheets, of C libraries, of loggers whose
+/// converter ran over its range.
 #[rustfmt::skip]
 const MISSING: [&str; 36] = [
     "nan", "nan(ind)", "inf", "infinity", "∞", "null", "none", "na", "n/a", "nv", "novalue", "no value", "-", "--",
@@ -201,7 +206,8 @@ pub(super) fn is_missing(cell: &[u8]) -> bool {
 
 /// Whether a cell is a number whose thousands are marked too, such as "1.234,5", "1,234,567" or "12'345.6".
 ///
-/// One mark alone is not taken for that of thousands, "1,234" may be a decimal fraction, but where it is not the known decimal mark.
+/// One mark alone is not taken for that of thousands, "1,234" may be a decimal fraction, but where it is not
+/// the known decimal mark.
 pub(super) fn is_grouped(cell: &str, decimal: Option<u8>) -> bool {
     let digits = cell.trim().trim_start_matches(['-', '+']);
     let mut groups = digits.split(['.', ',', '\'', '’', ' ', '\u{a0}', '\u{202f}']);

@@ -5,7 +5,8 @@ use super::vocabulary::{Meaning, rate_unit_hz, time_unit_s};
 /// A number of at least so many digits may be rounded; one of fewer is taken as it stands.
 const ROUNDED_DIGITS: usize = 3;
 
-/// Printed with at least so many decimals, as C and LabVIEW do unasked, a number may be rounded however few digits it has.
+/// Printed with at least so many decimals, as C and LabVIEW do unasked, a number may be rounded however few
+/// digits it has.
 const PRINTED_DECIMALS: i32 = 6;
 
 /// A rate that something says.
@@ -17,14 +18,14 @@ pub(super) struct Statement {
     pub rate_hz: f64,
     /// How far it may be off for its last digit is rounded, as a part of itself.
     pub rounding: f64,
-    /// How far from the samples it stands: 0 is said of them alone, such as the attribute of a dataset; 1 and more of all that a group or a
-    /// file holds, which may have other rates.
+    /// How far from the samples it stands: 0 is said of them alone, such as the attribute of a dataset; 1 and
+    /// more of all that a group or a file holds, which may have other rates.
     pub distance: usize,
 }
 
 impl Statement {
-    /// `name = 50 kHz` or `name = 2e-5` of the samples alone; without a unit in so many Hz or s as `meaning` says. `None` where it is no
-    /// rate above zero.
+    /// `name = 50 kHz` or `name = 2e-5` of the samples alone; without a unit in so many Hz or s as `meaning`
+    /// says. `None` where it is no rate above zero.
     pub(super) fn of(name: &str, text: &str, meaning: Meaning) -> Option<Self> {
         let (number, unit) = number_and_unit(text)?;
         let value: f64 = number.parse().ok()?;

@@ -61,8 +61,8 @@ pub(super) fn named(head: &[u8]) -> Option<(&'static str, &'static str)> {
         .or_else(|| sheet(head))
 }
 
-/// A matrix of version 4: five whole numbers of four bytes for type, rows, columns, imaginary part and length of the name, which follows
-/// with a zero byte (MathWorks, MAT-file format, appendix on level 4).
+/// A matrix of version 4: five whole numbers of four bytes for type, rows, columns, imaginary part and length
+/// of the name, which follows with a zero byte (MathWorks, MAT-file format, appendix on level 4).
 fn is_matlab_4(head: &[u8]) -> bool {
     let (words, _) = head.as_chunks::<4>();
     let [kind, rows, columns, imaginary, length, ..] = words else { return false };
@@ -86,7 +86,8 @@ fn sheet(head: &[u8]) -> Option<(&'static str, &'static str)> {
     let text = String::from_utf8_lossy(head);
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
     let (first, second) = (lines.next()?, lines.next().unwrap_or_default());
-    // `-1` opens a data set, whose number follows: 58 holds samples, wrapped over lines; `58b` holds them in binary.
+    // `-1` opens a data set, whose number follows: 58 holds samples, wrapped over lines; `58b` holds them in
+    // binary.
     let number = second.split_whitespace().next().unwrap_or_default().trim_end_matches('b');
     if first == "-1" && (1..=4).contains(&number.len()) && number.bytes().all(|byte| byte.is_ascii_digit()) {
         return Some(("a universal file (UFF)", EXPORT));

@@ -27,11 +27,13 @@ use fit::BaseFit;
 use order::Ordered;
 use std::sync::OnceLock;
 
-/// Times that lie nearer to the base than this part of the sample interval (RMS) leave their samples where they are: at
-/// 2 % a sine of a tenth of the sample rate is off by 1 % of itself at most, a tenth of what its sampling costs.
+/// Times that lie nearer to the base than this part of the sample interval (RMS) leave their samples where
+/// they are: at 2 % a sine of a tenth of the sample rate is off by 1 % of itself at most, a tenth of what its
+/// sampling costs.
 const STEADY_PART: f64 = 0.02;
 
-/// What rounding is believed to do to the rate of times at most, as a part of it: three times in whole hundredths of a second tell none.
+/// What rounding is believed to do to the rate of times at most, as a part of it: three times in whole
+/// hundredths of a second tell none.
 const MOST_ROUNDING: f64 = 1e-2;
 
 /// Times that several channels may share; what they say of a base is found once.
@@ -48,7 +50,8 @@ impl<'a> ChannelTimes<'a> {
         Self { each_s: times_s, rise: order::rise(times_s), fit: OnceLock::new() }
     }
 
-    /// Samples with a time each on a uniform base: sorted, doubles dropped, gaps NaN, real jitter interpolated.
+    /// Samples with a time each on a uniform base: sorted, doubles dropped, gaps NaN, real jitter
+    /// interpolated.
     ///
     /// The rate is the one that [`Claims::weigh`] takes; gaps are counted at the times' own rate.
     ///

@@ -1,4 +1,5 @@
-//! Numbers in a column or dataset of times to seconds: by the unit that is stated, by 1970, or by a rate that is stated.
+//! Numbers in a column or dataset of times to seconds: by the unit that is stated, by 1970, or by a rate that
+//! is stated.
 
 use super::clock::Refusal;
 use super::shown;
@@ -18,10 +19,12 @@ const LEAST_A_DAY: f64 = 1e6;
 /// 1990-01-01 and 2100-01-01, s since 1970: no recorder counts the time since then by chance.
 const EPOCH_S: (f64, f64) = (631_152_000.0, 4_102_444_800.0);
 
-/// Rates at which impacts are recorded, Hz: from pulses of 10 ms at ten samples each to the fastest transient recorders.
+/// Rates at which impacts are recorded, Hz: from pulses of 10 ms at ten samples each to the fastest transient
+/// recorders.
 const USUAL_HZ: (f64, f64) = (1e3, 5e6);
 
-/// The least rate of times that count ms, µs or ns since 1970, Hz: a counter of ns since its start looks like µs since 1970 at a thousandth of its rate.
+/// The least rate of times that count ms, µs or ns since 1970, Hz: a counter of ns since its start looks like
+/// µs since 1970 at a thousandth of its rate.
 const LEAST_EPOCH_HZ: f64 = 100.0;
 
 /// Less than any contact with its flight, s: so short a record is of another unit.
@@ -30,7 +33,8 @@ const SHORTEST_S: f64 = 0.02;
 /// A stated rate tells units apart, which are thousandfold, by this part of itself.
 const ALIKE: f64 = 0.1;
 
-/// Times of a second column without a unit are in the one in which they run as long as the first to this factor: other units are farther.
+/// Times of a second column without a unit are in the one in which they run as long as the first to this
+/// factor: other units are farther.
 const NEAR: f64 = 3.0;
 
 /// Seconds since 1970 that a number is by its size alone, in s, ms, µs or ns.
@@ -67,7 +71,8 @@ impl Scale {
         }
     }
 
-    /// Seconds a unit of a second column of times, beside first times that run for `span_s`; `None` where it counts rows or something else.
+    /// Seconds a unit of a second column of times, beside first times that run for `span_s`; `None` where it
+    /// counts rows or something else.
     pub(super) fn beside(self, span_s: f64, others: &[f64]) -> Option<f64> {
         match self {
             Self::Known(unit_s) => Some(unit_s),
@@ -114,8 +119,8 @@ impl Carrier<'_> {
 /// Seconds a unit of `times` that count `scale`, in channels whose rate is stated or not.
 ///
 /// # Errors
-/// [`Refusal`] where the unit is none of time, where name and unit contradict each other, and where none is stated and the times are a
-/// usual recording in ms, µs or ns but not in s.
+/// [`Refusal`] where the unit is none of time, where name and unit contradict each other, and where none is
+/// stated and the times are a usual recording in ms, µs or ns but not in s.
 pub(super) fn seconds_a_unit(
     scale: Scale,
     carrier: Carrier,
@@ -177,7 +182,8 @@ pub(super) struct SentTicks<'a> {
 }
 
 impl SentTicks<'_> {
-    /// Seconds a unit: as [`seconds_a_unit`], and where nothing states it the unit in which they run as long as the log times do.
+    /// Seconds a unit: as [`seconds_a_unit`], and where nothing states it the unit in which they run as long
+    /// as the log times do.
     ///
     /// # Errors
     /// As there.

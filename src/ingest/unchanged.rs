@@ -10,8 +10,9 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
 
-/// A change leaves the times of a file as they were where the one before lies less than a tick of the system's clock back: ten
-/// milliseconds at most. As git does for its index, a file is looked at when its times are older than that.
+/// A change leaves the times of a file as they were where the one before lies less than a tick of the
+/// system's clock back: ten milliseconds at most. As git does for its index, a file is looked at when its
+/// times are older than that.
 const TICKS: Duration = Duration::from_millis(20);
 /// A file whose times are young at each of so many looks, one second long, is being written.
 const MOST_LOOKS: usize = 50;
@@ -55,7 +56,8 @@ type Identity = (u64, u64, u64, (i64, i64), (i64, i64));
 #[cfg(not(unix))]
 type Identity = (u64, Option<SystemTime>);
 
-/// Device, number, length, and the times of the last change of content and of anything; with the later of the two times.
+/// Device, number, length, and the times of the last change of content and of anything; with the later of the
+/// two times.
 #[cfg(unix)]
 fn identity(file: &Metadata) -> (Identity, Option<SystemTime>) {
     use std::os::unix::fs::MetadataExt;

@@ -1,6 +1,8 @@
-//! The words by which recordings name times, rates, intervals and units to what they mean; the one list of them.
+//! The words by which recordings name times, rates, intervals and units to what they mean; the one list of
+//! them.
 
-/// Words that head times, without their unit, in lower case; `X_Value` is that of LabVIEW's files, `__time` that of PlotJuggler's.
+/// Words that head times, without their unit, in lower case; `X_Value` is that of LabVIEW's files, `__time`
+/// that of PlotJuggler's.
 #[rustfmt::skip]
 const TIMES: [&str; 34] = [
     "time", "__time", "t", "zeit", "times", "timestamp", "timestamps", "time stamp", "zeitstempel",
@@ -9,10 +11,12 @@ const TIMES: [&str; 34] = [
     "ms", "msec", "us", "µs", "usec", "ns", "temps", "tempo", "tiempo",
 ];
 
-/// Names of the axis of a plot: times where a unit of time stands beside it, else one axis of an accelerometer.
+/// Names of the axis of a plot: times where a unit of time stands beside it, else one axis of an
+/// accelerometer.
 const AXES: [&str; 6] = ["x", "x-achse", "x-axis", "x achse", "x axis", "x_axis"];
 
-/// Names of a rate, in lower case without what parts their words: `Sample Rate` and `sample_rate` are `samplerate`.
+/// Names of a rate, in lower case without what parts their words: `Sample Rate` and `sample_rate` are
+/// `samplerate`.
 #[rustfmt::skip]
 const RATES: [&str; 10] = [
     // `startingtimerate` is what NWB has beside the time of the first sample.
@@ -55,7 +59,8 @@ const SENSORS_OF_ROWS: [&str; 14] = [
     "kanal", "knoten", "messstelle",
 ];
 
-/// First words of lines above a table that name its columns, or hold their units, in exports of oscilloscopes and crash recorders.
+/// First words of lines above a table that name its columns, or hold their units, in exports of oscilloscopes
+/// and crash recorders.
 const NAMES: [&str; 2] = ["tracename", "channelname"];
 const UNITS: [&str; 5] = ["vunit", "unit", "units", "engineeringunit", "yunitlabel"];
 
@@ -93,7 +98,8 @@ const RATE_UNITS: [(&[&str], f64); 3] = [
     (&["mhz", "ms/s", "msa/s", "msps"], 1e6),
 ];
 
-/// Units of what else a recorder may hold, in lower case; those of accelerations are in [`crate::data::acceleration_unit_m_s2`].
+/// Units of what else a recorder may hold, in lower case; those of accelerations are in
+/// [`crate::data::acceleration_unit_m_s2`].
 const OTHER_UNITS: [&str; 58] = [
     "v", "volt", "volts", "mv", "µv", "uv", "n", "kn", "lbf", "°c", "°c/10", "degc", "c", "°f", "k", "bar",
     "mbar", "pa", "hpa", "kpa", "mpa", "psi", "%", "-", "–", "1", "mm", "cm", "m", "km", "in", "ft", "m/s",
@@ -112,7 +118,8 @@ pub(super) enum Meaning {
     Count,
 }
 
-/// The meaning of a name, whatever its case and what parts its words; a unit may stand behind it: `Sample Rate kHz`, `dt_us`.
+/// The meaning of a name, whatever its case and what parts its words; a unit may stand behind it: `Sample
+/// Rate kHz`, `dt_us`.
 pub(super) fn meaning(name: &str) -> Option<Meaning> {
     let parted: Vec<&str> = name.split(['_', ' ', '-']).filter(|word| !word.is_empty()).collect();
     let bare = parted.concat().to_lowercase();

@@ -1,4 +1,5 @@
-//! A flight to the blows in it that its ringing does not foretell: loose contents that strike the cask, once or in a train.
+//! A flight to the blows in it that its ringing does not foretell: loose contents that strike the cask, once
+//! or in a train.
 
 use crate::data::{ChannelFinding, Events, Finding, FlightFit, IssueCode, Signal};
 use crate::numerics::as_f64;
@@ -8,11 +9,14 @@ use std::ops::Range;
 
 /// Samples are looked at in means over this rate, Hz: a blow lasts one to some milliseconds.
 const RATE_HZ: f64 = 8_000.0;
-/// Stretches that are looked at by themselves, s: what rings at the beginning of a long flight is gone at its end, and so is what it leaves.
+/// Stretches that are looked at by themselves, s: what rings at the beginning of a long flight is gone at its
+/// end, and so is what it leaves.
 const PIECE_S: f64 = 0.1;
-/// A mean so many spreads off its prediction is a blow: sound drops leave 7 at the most, contents that spoil a result 12 and more.
+/// A mean so many spreads off its prediction is a blow: sound drops leave 7 at the most, contents that spoil
+/// a result 12 and more.
 const LIMIT: f64 = 9.5;
-/// The spread is no less than this share of the largest mean: what is smaller changes no velocity by 1 % of v0.
+/// The spread is no less than this share of the largest mean: what is smaller changes no velocity by 1 % of
+/// v0.
 const LEAST_SPREAD: f64 = 3e-4;
 /// Before the slap-down that was found may lie its foot: so long, s, and this share of the flight.
 const FOOT_S: f64 = 1e-3;
@@ -20,7 +24,8 @@ const FOOT: f64 = 0.06;
 /// Blows closer together than this are one, s.
 const APART_S: f64 = 3e-3;
 
-/// The channel that is struck hardest in the flight, with the times; `found` says which channels are disturbed there.
+/// The channel that is struck hardest in the flight, with the times; `found` says which channels are
+/// disturbed there.
 #[must_use]
 pub fn judge_blows(
     signals: &[Signal],
@@ -92,7 +97,8 @@ fn blows(signal: &Signal, span_s: &Range<f64>) -> Vec<Unforetold> {
     (0..pieces).flat_map(of_piece).collect()
 }
 
-/// Standard uncertainty of means by a converter's step q: q/√12 of each sample that differs from the one before, as those that do not have one error.
+/// Standard uncertainty of means by a converter's step q: q/√12 of each sample that differs from the one
+/// before, as those that do not have one error.
 fn rounding_of_means(samples: &[f64], block: usize) -> f64 {
     let step = converter_step(samples);
     let changes = samples.windows(2).filter(|w| (w[1] - w[0]).abs() >= step).count();
@@ -103,10 +109,11 @@ fn rounding_of_means(samples: &[f64], block: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{At, Axis, End, Span, What};
+    use crate::data::{At, Axis, End, FindingKind, Span};
     use std::f64::consts::{PI, TAU};
 
-    /// Two modes that ring from 20 ms on, noise of ± 0.5, and half sines of 2 ms at these times, s, with this peak.
+    /// Two modes that ring from 20 ms on, noise of ± 0.5, and half sines of 2 ms at these times, s, with this
+    /// peak.
     fn signal(at_s: &[f64], peak: f64) -> Signal {
         let noise = |i: u32| {
             let mut hash = (u64::from(i) + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -163,7 +170,7 @@ mod tests {
     fn a_train_of_blows_is_told_with_its_times() {
         for to_s in [0.1, 0.29] {
             let finding = found(&signal(&[0.04, 0.052, 0.07], 60.0), to_s).expect("blows");
-            let What::Channel(ChannelFinding::Struck { after_s, .. }) = &finding.what else {
+            let FindingKind::Channel(ChannelFinding::Struck { after_s, .. }) = &finding.what else {
                 panic!("{finding:?}")
             };
             let are = after_s

@@ -6,7 +6,8 @@ use crate::data::{
 use crate::numerics::noise::integral_uncertainty_by;
 use crate::numerics::reduce;
 
-/// Standard uncertainty of the velocity from noise alone that leaves little of a result, as a share of v0: ± 10 %.
+/// Standard uncertainty of the velocity from noise alone that leaves little of a result, as a share of v0: ±
+/// 10 %.
 const MOST_NOISE: f64 = 0.05;
 /// Noise that deserves a note: as much as everything else that the interval carries.
 const NOTABLE_NOISE: f64 = 0.005;
@@ -20,8 +21,8 @@ const UNDER_WAY: f64 = 0.1;
 const UNITS: [(f64, &str); 2] = [(STANDARD_GRAVITY_M_S2, "g and m/s²"), (1000.0, "V and mV, or g and mg")];
 /// Two measuring chains of one kind and unit have the same noise within this share.
 const ALIKE: f64 = 0.2;
-/// Taking g for m/s² scales noise and peaks by 9.8. Two channels in the same unit whose peaks differ by less than this
-/// factor are not suspected: peaks of 9.8 / 3 times another's, with 9.8 times its noise, are.
+/// Taking g for m/s² scales noise and peaks by 9.8. Two channels in the same unit whose peaks differ by less
+/// than this factor are not suspected: peaks of 9.8 / 3 times another's, with 9.8 times its noise, are.
 const PEAKS: f64 = 3.0;
 
 /// Checks of each channel by itself and against the others, beside those of its samples over the impact.

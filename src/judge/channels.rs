@@ -4,7 +4,8 @@ use super::{channel_checks, sampling};
 use crate::data::{CaskFile, ChannelFinding, During, Events, Finding, IssueCode, MOST_LOST_M_S, Signal};
 use std::ops::Range;
 
-/// Checks each channel over the event: clipped, lost, sampled too slowly, noisy, in the wrong place. `found` is what is known of them already.
+/// Checks each channel over the event: clipped, lost, sampled too slowly, noisy, in the wrong place. `found`
+/// is what is known of them already.
 #[must_use]
 pub fn judge_channels(
     signals: &[Signal],

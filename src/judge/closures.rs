@@ -5,12 +5,14 @@ use crate::data::{
     ReconstructionChoice, ReconstructionRung, Signal,
 };
 
-/// A closure that is missed by this many standard uncertainties takes the numbers away: angle, height or a scale is not as stated.
+/// A closure that is missed by this many standard uncertainties takes the numbers away: angle, height or a
+/// scale is not as stated.
 const GROSS_U: f64 = 12.0;
 
 /// A gap within this time of the first contact may hide the contact, s.
 const CONTACT_S: f64 = 1e-3;
-/// 95 % half-widths beyond which a number says nothing: k ± 0.25 spans half of 0 to 1; of a speed, as a share, 20 ± 3 m/s.
+/// 95 % half-widths beyond which a number says nothing: k ± 0.25 spans half of 0 to 1; of a speed, as a
+/// share, 20 ± 3 m/s.
 const MOST_U95_K: f64 = 0.25;
 const MOST_U95_SPEED: f64 = 0.15;
 
@@ -26,11 +28,11 @@ pub fn judge_closures(choice: &ReconstructionChoice, drop: &Drop, events: &Event
     findings
 }
 
-/// Whether the closures tell the velocity steps that channels lost to clipping or gaps: R's height at the slap-down tells the step of one end,
-/// rotation against impulse that of the other.
+/// Whether the closures tell the velocity steps that channels lost to clipping or gaps: R's height at the
+/// slap-down tells the step of one end, rotation against impulse that of the other.
 ///
-/// A gap at the first contact hides the time that both closures count from. A closure that is missed though the lost steps are free to move
-/// says that more is wrong than the steps.
+/// A gap at the first contact hides the time that both closures count from. A closure that is missed though
+/// the lost steps are free to move says that more is wrong than the steps.
 #[must_use]
 pub fn tells_lost_steps(
     choice: &ReconstructionChoice,
@@ -70,7 +72,8 @@ fn most_chi_square(degrees: usize) -> f64 {
     n * (1.0 - share + 3.31 * share.sqrt()).powi(3)
 }
 
-/// A recording without rest or fall: no closure tests drop height, clock or a scale error common to all channels.
+/// A recording without rest or fall: no closure tests drop height, clock or a scale error common to all
+/// channels.
 fn on_trust(choice: &ReconstructionChoice) -> Option<Finding> {
     let shows_rest = choice.closures.iter().any(|c| matches!(c.kind, ClosureKind::Rest | ClosureKind::Fall));
     (!shows_rest).then(|| DropFinding::Untested.into())

@@ -2,7 +2,8 @@
 
 use crate::data::{Channel, ChannelFinding, Finding, Samples};
 
-/// Names each channel that holds the samples of one before it: a sensor that is told twice counts once, and two ends never read the same.
+/// Names each channel that holds the samples of one before it: a sensor that is told twice counts once, and
+/// two ends never read the same.
 #[must_use]
 pub fn judge_copies(channels: &[Channel]) -> Vec<Finding> {
     let copy = |at: usize| {
@@ -14,7 +15,8 @@ pub fn judge_copies(channels: &[Channel]) -> Vec<Finding> {
     (1..channels.len()).filter_map(copy).collect()
 }
 
-/// Whether both hold the same samples, and more than one value; two sensors differ within the first of them by their noise.
+/// Whether both hold the same samples, and more than one value; two sensors differ within the first of them
+/// by their noise.
 fn is_same(one: &Samples, other: &Samples) -> bool {
     let is_copy = one.len() == other.len()
         && match (one, other) {

@@ -1,25 +1,29 @@
-//! The drifts of the channels in the flight to what drives them all: an AC coupling that nobody stated, or a target that L rests on.
+//! The drifts of the channels in the flight to what drives them all: an AC coupling that nobody stated, or a
+//! target that L rests on.
 
 use crate::data::{
     Axis, CaskFile, ChannelFinding, Coupling, Drop, DropFinding, Finding, FlightFit, Plateau, Signal,
 };
 
-/// Time constants looked for, s: shorter ones leave no step to measure, longer ones lose less than 2 % of it in 50 ms
-/// and are within what noise of 1/f looks like.
+/// Time constants looked for, s: shorter ones leave no step to measure, longer ones lose less than 2 % of it
+/// in 50 ms and are within what noise of 1/f looks like.
 const TIME_CONSTANTS_S: std::ops::RangeInclusive<f64> = 0.03..=2.5;
 /// A step smaller than this share of the largest has no droop of its own to tell.
 const LEAST_STEP: f64 = 0.1;
 /// A droop counts beyond this many of its standard uncertainties.
 const SURE: f64 = 4.0;
-/// What the channel nearest to L reads over g cos φ where the target carries L: less farther from the corner, and as the cask turns.
+/// What the channel nearest to L reads over g cos φ where the target carries L: less farther from the corner,
+/// and as the cask turns.
 const CARRIED: std::ops::RangeInclusive<f64> = 0.5..=1.25;
-/// Droops over steps agree within this share of their mean beside their uncertainties: ringing that the fit leaves.
+/// Droops over steps agree within this share of their mean beside their uncertainties: ringing that the fit
+/// leaves.
 const AGREEMENT: f64 = 0.2;
 
 /// Holds the drifts of the channels called DC against what one high-pass makes of their steps.
 ///
-/// After a step s a first-order high-pass reads −s/T, s being what is left of the step: drift over step is −1/T on every
-/// channel   (Q4). A zero shift of one channel knows nothing of the step of another, so one channel alone tells nothing.
+/// After a step s a first-order high-pass reads −s/T, s being what is left of the step: drift over step is
+/// −1/T on every channel   (Q4). A zero shift of one channel knows nothing of the step of another, so one
+/// channel alone tells nothing.
 #[must_use]
 pub fn judge_coupling(signals: &[Signal], flight: &FlightFit, cask_file: &CaskFile) -> Vec<Finding> {
     let stated = cask_file.channels.iter().filter(|c| c.coupling != Coupling::Dc);
@@ -34,8 +38,9 @@ pub fn judge_coupling(signals: &[Signal], flight: &FlightFit, cask_file: &CaskFi
     findings
 }
 
-/// A push at L's corner accelerates every transverse channel in the proportion of its velocity step (38). Where the push carries the corner, a
-/// sensor there reads g cos φ: the first end rests on the target, or bounces there.
+/// A push at L's corner accelerates every transverse channel in the proportion of its velocity step (38).
+/// Where the push carries the corner, a sensor there reads g cos φ: the first end rests on the target, or
+/// bounces there.
 fn supported(signals: &[Signal], flight: &FlightFit, drop: &Drop) -> Option<Finding> {
     let transverse: Vec<&str> =
         signals.iter().filter(|s| s.axis == Axis::Transverse).map(|s| s.name.as_str()).collect();
@@ -98,7 +103,8 @@ impl<'a> Trend<'a> {
     }
 }
 
-/// The rate where two trends and more tell the same, each by itself beyond doubt, as 3.2 Hz ± 0.1 Hz of A1 and 3.3 Hz ± 0.1 Hz of A2; Hz.
+/// The rate where two trends and more tell the same, each by itself beyond doubt, as 3.2 Hz ± 0.1 Hz of A1
+/// and 3.3 Hz ± 0.1 Hz of A2; Hz.
 fn common_rate(trends: &[Trend]) -> Option<f64> {
     let is_sure = trends.iter().all(|t| t.rate_hz > SURE * t.u_hz);
     if trends.len() < 2 || !is_sure {
@@ -114,7 +120,7 @@ fn common_rate(trends: &[Trend]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, End, What};
+    use crate::data::{Axis, End, FindingKind};
 
     fn signal(name: &str) -> Signal {
         Signal {
@@ -159,7 +165,7 @@ mod tests {
         }
     }
 
-    fn found(first: (f64, f64), second: (f64, f64), stated: &[&str]) -> Vec<What> {
+    fn found(first: (f64, f64), second: (f64, f64), stated: &[&str]) -> Vec<FindingKind> {
         let findings = undeclared(&[signal("A1"), signal("A2")], &flight(first, second), stated);
         findings.into_iter().map(|f| f.what).collect()
     }
@@ -182,7 +188,7 @@ mod tests {
         // T = 0.3 s: 19/0.3 and −7/0.3, less what has drooped already.
         let both = found((19.0, -61.0), (-7.0, 23.0), &[]);
         assert_eq!(both.len(), 2);
-        let What::Channel(ChannelFinding::AcUnstated { time_constant_s, .. }) = both[0] else {
+        let FindingKind::Channel(ChannelFinding::AcUnstated { time_constant_s, .. }) = both[0] else {
             panic!("{both:?}")
         };
         assert!((time_constant_s - 0.31).abs() < 5e-3, "{both:?}");

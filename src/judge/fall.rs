@@ -2,16 +2,16 @@
 
 use super::closures;
 use crate::data::{
-    Axis, Closure, ClosureKind, CoarseEvent, Drop, DropFinding, Events, Finding, MISSED_U, RestLevel,
-    Tolerances, U_RELEASE_S, What,
+    Axis, Closure, ClosureKind, CoarseEvent, Drop, DropFinding, Events, Finding, FindingKind, MISSED_U,
+    RestLevel, Tolerances, U_RELEASE_S,
 };
 use crate::numerics::as_f64;
 
 /// A first touch this share of the fall time before first contact is another event, not a late onset.
 const MOST_LAG: f64 = 0.02;
 
-/// A fall longer than free by this many standard uncertainties is no chance beside rest levels that say the same; a scale error of all channels
-/// leaves its length as it is.
+/// A fall longer than free by this many standard uncertainties is no chance beside rest levels that say the
+/// same; a scale error of all channels leaves its length as it is.
 const CLEAR_FALL: f64 = 3.0;
 
 /// Checks the fall, where the recording shows it from its release on.
@@ -24,7 +24,8 @@ pub fn judge_fall(drop: &Drop, events: &Events) -> Option<Finding> {
     (contact_s - end_s > MOST_LAG * expected_s).then(|| Finding::from(found).between(end_s, contact_s))
 }
 
-/// Holds the length of the recorded fall against v0 where no motion could be had that does so with everything else   (35)
+/// Holds the length of the recorded fall against v0 where no motion could be had that does so with everything
+/// else   (35)
 #[must_use]
 pub fn judge_fall_time(
     found: &[Finding],
@@ -32,7 +33,7 @@ pub fn judge_fall_time(
     events: &Events,
     tolerances: &Tolerances,
 ) -> Option<Finding> {
-    let is_of_fall = |f: &Finding| matches!(&f.what, What::Drop(DropFinding::Missed { closure, .. }) if closure.kind == ClosureKind::Fall);
+    let is_of_fall = |f: &Finding| matches!(&f.what, FindingKind::Drop(DropFinding::Missed { closure, .. }) if closure.kind == ClosureKind::Fall);
     let fallen_m_s = drop.gravity_m_s2 * (events.fall_end_s? - events.release_s?);
     let v0_m_s = drop.impact_velocity_m_s;
     // Half of a 95 % half-width is a standard uncertainty.
@@ -52,11 +53,11 @@ pub fn judge_fall_time(
         .then(|| closures::missed(&closure, drop, events))
 }
 
-/// The closures' findings, in which one of a fall slower than free takes the place of those on the rest levels and on the fall's length where
-/// it explains them all.
+/// The closures' findings, in which one of a fall slower than free takes the place of those on the rest
+/// levels and on the fall's length where it explains them all.
 ///
-/// What takes the share q of g off the fall, a guide, a rope or a brake, leaves (1 − q) g cos φ of every step from rest to fall, and the
-/// time √(2 h / (1 − q) g).
+/// What takes the share q of g off the fall, a guide, a rope or a brake, leaves (1 − q) g cos φ of every step
+/// from rest to fall, and the time √(2 h / (1 − q) g).
 #[must_use]
 pub fn judge_slowed(
     mut found: Vec<Finding>,
@@ -65,7 +66,7 @@ pub fn judge_slowed(
     events: &Events,
     tolerances: &Tolerances,
 ) -> Vec<Finding> {
-    let is_explained = |f: &Finding| matches!(&f.what, What::Drop(DropFinding::Missed { closure, .. }) if matches!(closure.kind, ClosureKind::Rest | ClosureKind::Fall));
+    let is_explained = |f: &Finding| matches!(&f.what, FindingKind::Drop(DropFinding::Missed { closure, .. }) if matches!(closure.kind, ClosureKind::Rest | ClosureKind::Fall));
     let severity = found.iter().filter(|f| is_explained(f)).map(|f| f.severity).max();
     let slowed = slowed_share(drop, rests, events, tolerances);
     if let (Some(severity), Some((share, u))) = (severity, slowed) {
@@ -76,7 +77,8 @@ pub fn judge_slowed(
     found
 }
 
-/// The share of g that a fall lacks, with its standard uncertainty, where all rest levels and the length of the fall say so alike.
+/// The share of g that a fall lacks, with its standard uncertainty, where all rest levels and the length of
+/// the fall say so alike.
 fn slowed_share(
     drop: &Drop,
     rests: &[RestLevel],
@@ -128,7 +130,7 @@ pub fn judge_several_drops(event: &CoarseEvent, another: &CoarseEvent) -> Findin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{At, What};
+    use crate::data::{At, FindingKind};
 
     fn drop(given: bool) -> Drop {
         Drop { impact_velocity_m_s: 13.288, impact_velocity_given: given, ..Drop::of_height(9.0, 0.2) }
@@ -207,7 +209,7 @@ mod tests {
     #[test]
     fn a_touch_before_the_impact_is_named() {
         let found = judge_fall(&drop(false), &events(Some(0.5), 1.86, 2.0)).expect("a touch");
-        assert_eq!(found.what, What::Drop(DropFinding::SoftTouch { end_s: 1.86, contact_s: 2.0 }));
+        assert_eq!(found.what, FindingKind::Drop(DropFinding::SoftTouch { end_s: 1.86, contact_s: 2.0 }));
         assert!(found.message.contains("140 ms before"), "{}", found.message);
     }
 }

@@ -2,15 +2,17 @@
 
 use crate::data::{CoarseEvent, Drop, DropFinding, Finding, IssueCode, Severity};
 
-/// A record that goes on this long after L left is not cut off before the slap-down, s: that of 5.5 m from 15° takes 65 ms.
+/// A record that goes on this long after L left is not cut off before the slap-down, s: that of 5.5 m from
+/// 15° takes 65 ms.
 const LONG_ENOUGH_S: f64 = 0.3;
 
-/// Fewer samples than this over the longest first pulse, 25 ms, neither show an impact nor that there is none.
+/// Fewer samples than this over the longest first pulse, 25 ms, neither show an impact nor that there is
+/// none.
 const LEAST_SAMPLES: f64 = 10.0;
 const LONGEST_PULSE_S: f64 = 0.025;
 
-/// No channel shows an impact, or none a rise that begins the change of velocity at `event`; what was found so far may say why, or the rate at
-/// which the struck end is sampled.
+/// No channel shows an impact, or none a rise that begins the change of velocity at `event`; what was found
+/// so far may say why, or the rate at which the struck end is sampled.
 #[must_use]
 pub fn judge_no_impact(
     found: &[Finding],
@@ -28,7 +30,8 @@ pub fn judge_no_impact(
     DropFinding::NoImpact { least_m_s: drop.least_impact_m_s(), doubt, without_rise }.into()
 }
 
-/// The second end shows no slap-down in the time that was looked at after the first one left; the record may end with that time.
+/// The second end shows no slap-down in the time that was looked at after the first one left; the record may
+/// end with that time.
 #[must_use]
 pub fn judge_no_slap_down(after_s: f64, is_record_end: bool) -> Finding {
     let found = if is_record_end && after_s < LONG_ENOUGH_S {

@@ -7,13 +7,13 @@ mod closures;
 mod copies;
 mod coupling;
 mod fall;
+mod late_blow;
 mod missing;
 mod result;
 mod rigid;
 mod sampling;
 mod silent;
 mod skew;
-mod strike;
 
 pub use blows::judge_blows;
 pub use channels::{is_cut_off, judge_channels};
@@ -21,12 +21,12 @@ pub use closures::{judge_closures, tells_lost_steps};
 pub use copies::judge_copies;
 pub use coupling::judge_coupling;
 pub use fall::{judge_fall, judge_fall_time, judge_several_drops, judge_slowed};
+pub use late_blow::{judge_late_blow, judge_rest};
 pub use missing::{judge_no_impact, judge_no_slap_down};
 pub use result::{beside, judge_comparison, judge_motion, judge_observed, judge_touch};
 pub use rigid::judge_rigid;
 pub use silent::judge_silent;
 pub use skew::judge_skew;
-pub use strike::{judge_rest, judge_strike};
 
 use crate::data::{Axis, End, Events, Finding, IssueCode, Severity, Signal, Verdict};
 
@@ -64,8 +64,8 @@ pub fn weigh_by_distance(findings: &mut [Finding], events: &Events) {
     }
 }
 
-/// Whether a finding takes away what was read off the motion; a missing slap-down leaves the first impact as it is, and a velocity step that
-/// a channel lost may be one that `is_told` by the rest of the motion.
+/// Whether a finding takes away what was read off the motion; a missing slap-down leaves the first impact as
+/// it is, and a velocity step that a channel lost may be one that `is_told` by the rest of the motion.
 #[must_use]
 pub fn invalidates(finding: &Finding, is_told: bool) -> bool {
     let is_kept = match finding.code {
@@ -76,7 +76,8 @@ pub fn invalidates(finding: &Finding, is_told: bool) -> bool {
     finding.severity == Severity::Error && !is_kept
 }
 
-/// Whether a finding says that the motion is not the one that was reconstructed: then the motion tells no velocity step either.
+/// Whether a finding says that the motion is not the one that was reconstructed: then the motion tells no
+/// velocity step either.
 #[must_use]
 pub fn contradicts_motion(finding: &Finding) -> bool {
     let is_of_motion = matches!(
@@ -86,7 +87,8 @@ pub fn contradicts_motion(finding: &Finding) -> bool {
     is_of_motion && finding.severity != Severity::Note
 }
 
-/// Sorts the findings, errors first, and says what they amount to: any error fails, any warning asks for a review.
+/// Sorts the findings, errors first, and says what they amount to: any error fails, any warning asks for a
+/// review.
 #[must_use]
 pub fn verdict(findings: &mut [Finding]) -> Verdict {
     findings.sort_by(|a, b| b.severity.cmp(&a.severity).then(a.code.cmp(&b.code)));

@@ -7,21 +7,23 @@ use crate::data::{
 
 /// k this far outside 0 to 1 is an error whatever its interval.
 const FAR_OUTSIDE: f64 = 0.25;
-/// Zero shifts whose effect on the velocity over the contact is below this are a note, m/s: 0.5 % of a slap-down.
+/// Zero shifts whose effect on the velocity over the contact is below this are a note, m/s: 0.5 % of a
+/// slap-down.
 const SMALL_SHIFT_M_S: f64 = 0.1;
-/// The same in a flight that does not show a period of each mode, where a drift is a part of the mode as well as of the sensor, m/s.
+/// The same in a flight that does not show a period of each mode, where a drift is a part of the mode as well
+/// as of the sensor, m/s.
 const SMALL_BEND_M_S: f64 = 0.5;
 /// Velocity gained late in a flight beyond this share of v0 is another contact.
 const LATE_SHARE: f64 = 0.03;
 /// Sliding below this is sticking, m/s: 5 % cross-axis sensitivity of a 13 m/s step.
 const SMALL_SLIP_M_S: f64 = 0.65;
-/// L is on the target again where it is this share of the cask's length below the place it left: 5 mm of 5 m, to which corner and target are
-/// even.
+/// L is on the target again where it is this share of the cask's length below the place it left: 5 mm of 5 m,
+/// to which corner and target are even.
 const TOUCHED_SHARE: f64 = 0.001;
 /// A flight fit that leaves more than this RMS has not explained the channel, m/s: 1.5 % of a slap-down.
 const LARGE_RESIDUAL_M_S: f64 = 0.3;
-/// The same limit as a share of v0 for a flight too short to tell its modes apart: three modes may fit a flight that still holds a part of
-/// the contact.
+/// The same limit as a share of v0 for a flight too short to tell its modes apart: three modes may fit a
+/// flight that still holds a part of the contact.
 const LARGE_RESIDUAL_SHORT: f64 = 0.015;
 /// A velocity this far off its flight before R strikes is another contact, m/s: 1 % of a slap-down.
 const LARGE_MISMATCH_M_S: f64 = 0.2;
@@ -70,9 +72,11 @@ pub fn judge_motion(
     findings
 }
 
-/// Touches of L that the flight leaves out: `effect_m_s` is what they change of the slap-down speed by the prediction with the measured k.
+/// Touches of L that the flight leaves out: `effect_m_s` is what they change of the slap-down speed by the
+/// prediction with the measured k.
 ///
-/// A touch so slow that it shows in no channel still carries the cask: L rests on the target, or lands as R strikes.
+/// A touch so slow that it shows in no channel still carries the cask: L rests on the target, or lands as R
+/// strikes.
 #[must_use]
 pub fn judge_touch(
     motion: &Motion,
@@ -170,7 +174,8 @@ pub fn beside(seen: &Observed, result: &DropResult) -> ObservedBeside {
     }
 }
 
-/// What was observed otherwise and lies apart from the result, which chance alone makes a warning once in three hundred.
+/// What was observed otherwise and lies apart from the result, which chance alone makes a warning once in
+/// three hundred.
 pub fn judge_observed(observed: &[ObservedBeside]) -> impl Iterator<Item = Finding> {
     let apart = |beside: &ObservedBeside| {
         let e_n = beside.e_n.map(f64::abs).filter(|e_n| *e_n > 1.0)?;

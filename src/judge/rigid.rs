@@ -2,10 +2,11 @@
 
 use crate::data::{Axis, ChannelFinding, Drop, Finding, FlightFit, Signal, Tolerances};
 
-/// A velocity step this many standard uncertainties off the line through the other channels' steps speaks against one rigid body: of three or
-/// four channels chance puts the farthest one nearer.
+/// A velocity step this many standard uncertainties off the line through the other channels' steps speaks
+/// against one rigid body: of three or four channels chance puts the farthest one nearer.
 const SURE: f64 = 4.0;
-/// The step must be this far off too, m/s: 0.5 % of a slap-down, which a mode that was not fitted leaves of a step.
+/// The step must be this far off too, m/s: 0.5 % of a slap-down, which a mode that was not fitted leaves of a
+/// step.
 const LEAST_M_S: f64 = 0.1;
 
 /// One channel's step: position, m, step and its standard uncertainty, m/s.
@@ -18,7 +19,8 @@ struct Reading<'a> {
 
 /// Holds the velocity steps against the line over positions that a rigid body gives   (16)
 ///
-/// Each channel is held against the line through the others; the one farthest off, in its uncertainties, is named.
+/// Each channel is held against the line through the others; the one farthest off, in its uncertainties, is
+/// named.
 #[must_use]
 pub fn judge_rigid(
     signals: &[Signal],
@@ -59,8 +61,8 @@ pub fn judge_rigid(
         .then(|| found.on(worst.name).between(flight.from_s, flight.to_s))
 }
 
-/// By how much the step changes along the cask between the outermost channels, rad/s: at 6 rad/s a sensor 10 mm off its stated place reads
-/// 0.06 m/s more or less.
+/// By how much the step changes along the cask between the outermost channels, rad/s: at 6 rad/s a sensor 10
+/// mm off its stated place reads 0.06 m/s more or less.
 fn turning_rad_s(signals: &[Signal], flight: &FlightFit) -> f64 {
     let mut steps: Vec<(f64, f64)> = signals
         .iter()
@@ -72,7 +74,8 @@ fn turning_rad_s(signals: &[Signal], flight: &FlightFit) -> f64 {
     ends.map_or(0.0, |(a, b)| ((b.1 - a.1) / (b.0 - a.0)).abs())
 }
 
-/// Least-squares line through steps at a position and its standard uncertainty; `None` without two places a millimetre apart.
+/// Least-squares line through steps at a position and its standard uncertainty; `None` without two places a
+/// millimetre apart.
 fn line(steps: &[&Reading], position_m: f64) -> Option<(f64, f64)> {
     let weight = |s: &Reading| 1.0 / (s.u_m_s * s.u_m_s).max(1e-12);
     let total: f64 = steps.iter().map(|s| weight(s)).sum();
@@ -155,7 +158,8 @@ mod tests {
     #[test]
     fn a_steep_drop_lets_cross_axes_read_what_the_rebound_throws_along_the_axis() {
         let places_m = [0.2, 1.0, 4.0, 4.8];
-        // 1 % of 20 tan 37° = 15 m/s is 0.15 m/s a channel, of 20 tan 15° = 5 m/s a third: 0.6 m/s is 2.5 u at 37° and 4.6 u at 15°.
+        // 1 % of 20 tan 37° = 15 m/s is 0.15 m/s a channel, of 20 tan 15° = 5 m/s a third: 0.6 m/s is 2.5 u
+        // at 37° and 4.6 u at 15°.
         assert_eq!(named_at(0.64, 0.6, &places_m), None);
         assert_eq!(named_at(0.26, 0.6, &places_m), Some("A2".into()));
         assert_eq!(named_at(0.64, 3.0, &places_m), Some("A2".into()));

@@ -7,19 +7,23 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// Fewest samples over a first pulse for its area to be right within 1 %: the trapezoid over a half sine of N is off by π²/12 N².
+/// Fewest samples over a first pulse for its area to be right within 1 %: the trapezoid over a half sine of N
+/// is off by π²/12 N².
 const LEAST_SAMPLES: f64 = 10.0;
-/// Shares of its peak at which the pulse's width is taken, and of a half sine's length that lies above each: 1 − 2 asin(share)/π.
-/// A force plateau is as wide at half its height as at its foot, a pulse that goes over into ringing is not: the less counts.
+/// Shares of its peak at which the pulse's width is taken, and of a half sine's length that lies above each:
+/// 1 − 2 asin(share)/π. A force plateau is as wide at half its height as at its foot, a pulse that goes over
+/// into ringing is not: the less counts.
 const FLANKS: [(f64, f64); 2] = [(0.15, 0.904), (0.5, 2.0 / 3.0)];
-/// The pulse is the first run past the flank that reaches this share of the stretch's peak: ringing after it may be higher.
+/// The pulse is the first run past the flank that reaches this share of the stretch's peak: ringing after it
+/// may be higher.
 const REACHED: f64 = 0.5;
 /// The flank stands this many standard deviations of the noise above zero.
 const NOISE_FACTOR: f64 = 6.0;
-/// Frequencies from this share of the sample rate up to half of it hold nothing if a filter stood before the sampling.
+/// Frequencies from this share of the sample rate up to half of it hold nothing if a filter stood before the
+/// sampling.
 const BAND: f64 = 0.4;
-/// Content there over the largest of the spectrum: 0.05 folds to 2.5 % of the velocity step. Drawn pulses of 25 samples and more
-/// that end in a jump (k = 0.02) reach 0.026, pulses of 5 samples begin at 0.14.
+/// Content there over the largest of the spectrum: 0.05 folds to 2.5 % of the velocity step. Drawn pulses of
+/// 25 samples and more that end in a jump (k = 0.02) reach 0.026, pulses of 5 samples begin at 0.14.
 const MOST_CONTENT: f64 = 0.05;
 /// Content of less than this many times the noise in the band is noise.
 const OVER_NOISE: f64 = 3.0;
@@ -48,7 +52,8 @@ pub(super) fn judge_sampling(signals: &[Signal], events: &Events, disturbed: &[&
     findings
 }
 
-/// Where the force of the first pulse passes the lower flank and falls below it, and the length of a half sine as wide, s.
+/// Where the force of the first pulse passes the lower flank and falls below it, and the length of a half
+/// sine as wide, s.
 fn pulse(signal: &Signal, contact_s: Range<f64>) -> Option<((f64, f64), f64)> {
     let from = signal.index_from(contact_s.start).saturating_sub(1);
     let force = signal.force_m_s2.get(from..)?;

@@ -4,8 +4,8 @@ use crate::data::{Channel, ChannelFinding, Finding, Samples};
 use crate::numerics::{reduce, robust};
 use rayon::prelude::*;
 
-/// A channel that never leaves its own spread by more than this says nothing: 10⁷ samples of normal noise stay within 5.5,
-/// a sine within 1.4.
+/// A channel that never leaves its own spread by more than this says nothing: 10⁷ samples of normal noise
+/// stay within 5.5, a sine within 1.4.
 const SILENT: f64 = 8.0;
 /// Another channel that leaves its spread by this shows that there was something to say.
 const LOUD: f64 = 50.0;

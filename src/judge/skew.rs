@@ -2,12 +2,14 @@
 
 use crate::data::{BENDING_WAVE_M_S, Cask, ChannelFinding, Finding, Onset, Signal};
 
-/// A delay of up to this many samples beside its uncertainty counts as none: first contact itself lies between two samples.
+/// A delay of up to this many samples beside its uncertainty counts as none: first contact itself lies
+/// between two samples.
 const SAMPLES: f64 = 1.5;
 /// A late answer that a wave could explain is worth a note beyond this, s.
 const NOTABLE_S: f64 = 3e-4;
 
-/// Holds a delay against what a body can do: answer at once, or as late as a bending wave, never before it is struck.
+/// Holds a delay against what a body can do: answer at once, or as late as a bending wave, never before it is
+/// struck.
 #[must_use]
 pub fn judge_skew(onset: &Onset, signals: &[Signal], cask: &Cask, is_shifted: bool) -> Option<Finding> {
     let &Onset { delay_s, u_s, .. } = onset;

@@ -4,7 +4,8 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 
-/// Standard deviations in the half-width that holds 95 % of a normal distribution, as the analysis takes them.
+/// Standard deviations in the half-width that holds 95 % of a normal distribution, as the analysis takes
+/// them.
 const SIGMAS_OF_95: f64 = 2.0;
 
 /// The random numbers of one scene or case.
@@ -78,7 +79,8 @@ impl Chance {
 
 /// Rounded to this many decimal places, as a person states it.
 pub(super) fn round(value: f64, places: i32) -> f64 {
-    // Dividing by a power of ten gives the nearest number to the decimal one; multiplying by its inverse does not.
+    // Dividing by a power of ten gives the nearest number to the decimal one; multiplying by its inverse does
+    // not.
     let scale = 10_f64.powi(places);
     (value * scale).round() / scale
 }

@@ -1,4 +1,5 @@
-//! A cask, how it falls and what it carries, to the simulated drop with its cask file, and that to its recording.
+//! A cask, how it falls and what it carries, to the simulated drop with its cask file, and that to its
+//! recording.
 
 use super::chance::Chance;
 use super::data::{Scene, SceneChannel, SceneExtras, SimulatedMotion, SyntheticRecording, WantedImpact};
@@ -39,7 +40,8 @@ impl Build {
     }
 }
 
-/// A cask that is dropped and whose ends do this, the first at once; nothing rings, and there are no channels yet.
+/// A cask that is dropped and whose ends do this, the first at once; nothing rings, and there are no channels
+/// yet.
 pub(super) fn scene(cask: Cask, drop: Drop, contact: Contact, impacts: [WantedImpact; 2]) -> Scene {
     let end = |end, impact| synth::crushable_end(&cask, &drop, contact, end, impact);
     Scene {
@@ -61,7 +63,8 @@ pub(super) fn scene(cask: Cask, drop: Drop, contact: Contact, impacts: [WantedIm
     }
 }
 
-/// What the cask file says of a drop, with the usual tolerances and still without channels; `defaults` are the keys that it leaves out.
+/// What the cask file says of a drop, with the usual tolerances and still without channels; `defaults` are
+/// the keys that it leaves out.
 pub(super) fn cask_file(cask: Cask, drop: Drop, contact: Contact, defaults: Vec<String>) -> CaskFile {
     CaskFile {
         path: PathBuf::from("synthetic.toml"),

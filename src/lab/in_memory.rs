@@ -9,7 +9,8 @@ use std::path::Path;
 /// What stands for the name of the file.
 const NAME: &str = "synthetic";
 
-/// The channels of `recording`, in the order of the cask file's, as from its MCAP file: runs of NaN were never written.
+/// The channels of `recording`, in the order of the cask file's, as from its MCAP file: runs of NaN were
+/// never written.
 ///
 /// # Errors
 /// A channel without a number, as for a file.

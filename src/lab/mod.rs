@@ -1,4 +1,5 @@
-//! The laboratory: scenes with a known truth, through everything, to how far off the analysis is and what other methods would do.
+//! The laboratory: scenes with a known truth, through everything, to how far off the analysis is and what
+//! other methods would do.
 //!
 //! It is no part of the product: it may use anything of it, and of the program only the command line uses it.
 

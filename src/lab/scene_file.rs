@@ -1,4 +1,5 @@
-//! A scene file (TOML) to a checked scene and the cask file to go with it, or to one diagnostic that shows the line.
+//! A scene file (TOML) to a checked scene and the cask file to go with it, or to one diagnostic that shows
+//! the line.
 
 mod channel;
 mod keys;

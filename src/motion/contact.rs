@@ -1,4 +1,5 @@
-//! The rigid motion over one contact to what a test report tabulates of it: force, decelerations free of ringing, crush.
+//! The rigid motion over one contact to what a test report tabulates of it: force, decelerations free of
+//! ringing, crush.
 
 use super::curves::{cut_wide, filtered};
 use super::reconstruct::{corner, corner_height_m};
@@ -13,7 +14,8 @@ pub struct ContactCourse {
     pub ends: [MotionState; 2],
     /// Vertical velocity of the struck corner as it touches, m/s, up positive.
     pub struck_m_s: f64,
-    /// Horizontal velocity gained by S, and vertical velocity gained but for gravity, m/s: the impulse over the mass.
+    /// Horizontal velocity gained by S, and vertical velocity gained but for gravity, m/s: the impulse over
+    /// the mass.
     pub impulse_m_s: [f64; 2],
     /// Vertical force of the target over the mass, m/s².
     pub up_m_s2: Vec<f64>,
@@ -21,16 +23,18 @@ pub struct ContactCourse {
     pub at_cog_m_s2: Vec<f64>,
     /// The same at the struck end of the axis   (14)
     pub at_end_m_s2: Vec<f64>,
-    /// How far the struck corner of the undeformed cask lies below where it touched, m, in the middle of each step.
+    /// How far the struck corner of the undeformed cask lies below where it touched, m, in the middle of each
+    /// step.
     pub crush_m: Vec<f64>,
-    /// By how much the rotation is more than the angular impulse gives it, over the inertia's share: Θ Δω/m − ∫ (32), m²/s; 0 for one contact.
+    /// By how much the rotation is more than the angular impulse gives it, over the inertia's share: Θ Δω/m −
+    /// ∫ (32), m²/s; 0 for one contact.
     pub turned_beyond_m2_s: f64,
     step_s: f64,
 }
 
 impl ContactCourse {
-    /// From the states of a contact that `motion` ends, by the one force that it is of; Θ/m in m². `None` of fewer than two states, and of a
-    /// contact that gives nothing.
+    /// From the states of a contact that `motion` ends, by the one force that it is of; Θ/m in m². `None` of
+    /// fewer than two states, and of a contact that gives nothing.
     #[must_use]
     pub fn of(
         (motion, measured): (&Motion, &[MotionState]),
@@ -83,7 +87,8 @@ impl ContactCourse {
         })
     }
 
-    /// Courses of forces through the zero-phase low-pass with this −3 dB cut-off, Hz, nothing before and after them; as long as they are.
+    /// Courses of forces through the zero-phase low-pass with this −3 dB cut-off, Hz, nothing before and
+    /// after them; as long as they are.
     #[must_use]
     pub fn low_passed<const N: usize>(&self, courses_m_s2: [&[f64]; N], cutoff_hz: f64) -> [Vec<f64>; N] {
         match ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, 1.0 / self.step_s) {
@@ -170,8 +175,8 @@ pub struct PulseLength {
     pub by_level: f64,
 }
 
-/// The pulse of each channel between two times, s, and through the low-pass with this −3 dB cut-off, Hz; `None` where samples are clipped or
-/// lost.
+/// The pulse of each channel between two times, s, and through the low-pass with this −3 dB cut-off, Hz;
+/// `None` where samples are clipped or lost.
 #[must_use]
 pub fn pulses(signals: &[Signal], between_s: [f64; 2], cutoff_hz: f64) -> Vec<Option<ChannelPulse>> {
     let [from_s, to_s] = between_s;
@@ -192,7 +197,8 @@ fn pulse(wide: &Signal, smooth: &Signal, [from_s, to_s]: [f64; 2]) -> Option<Cha
     let (filtered, sample_s) = (&smooth.force_m_s2, 1.0 / smooth.sample_rate_hz);
     let level_m_s2 = 0.1 * filtered_m_s2.abs();
     let above = |i: usize| filtered[i] * filtered_m_s2.signum() - level_m_s2;
-    // On a line from a sample below the level to its neighbour above: when, in samples, and how much later a higher level is passed.
+    // On a line from a sample below the level to its neighbour above: when, in samples, and how much later a
+    // higher level is passed.
     let passed = |below: usize, beside: usize| {
         #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
         let (from, step) = (below as f64, beside as f64 - below as f64);

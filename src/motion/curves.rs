@@ -16,9 +16,11 @@ const BEFORE_S: f64 = 0.01;
 const AFTER_S: f64 = 0.04;
 /// A low-pass with −3 dB at f reaches so many times 1/f: beyond that 1e-12 of a sample is left.
 const REACH: f64 = 6.2;
-/// A rate of so many times the cut-off is enough for what a low-pass leaves: means that come down to it take 2e-4 of what is at the cut-off.
+/// A rate of so many times the cut-off is enough for what a low-pass leaves: means that come down to it take
+/// 2e-4 of what is at the cut-off.
 const RATE_OVER_CUTOFF: f64 = 100.0;
-/// IAEA SSG-26 as quoted in the field: 100–200 Hz for 100 t, scaled with (100 t / m)^(1/3); the upper end (28).
+/// IAEA SSG-26 as quoted in the field: 100–200 Hz for 100 t, scaled with (100 t / m)^(1/3); the upper end
+/// (28).
 const CUTOFF_100_T_HZ: f64 = 200.0;
 /// A cut-off of this over the pulse's length keeps its peak within 1 % (half sine, two-pass Butterworth).
 const PULSE_CUTOFF: f64 = 3.0;
@@ -53,7 +55,8 @@ pub fn filter_name(choice: FilterChoice) -> String {
     }
 }
 
-/// The low-passes that rigid-body decelerations are usually stated with, and their −3 dB frequencies, Hz   (28), (25)
+/// The low-passes that rigid-body decelerations are usually stated with, and their −3 dB frequencies,
+/// Hz   (28), (25)
 #[must_use]
 pub fn usual_filters(mass_kg: f64) -> Vec<(String, f64)> {
     let by_mass_hz = cutoff_hz(FilterChoice::Auto, mass_kg, None).0;
@@ -78,7 +81,8 @@ pub(super) fn cut_wide(signal: &Signal, (from_s, to_s): (f64, f64), cutoff_hz: f
     signal.cut(signal.index_from(from_s - margin_s), signal.index_from(to_s + margin_s))
 }
 
-/// The signals low-passed without phase, at a rate that is enough for that; a cut-off that the rate cannot carry leaves them as they are.
+/// The signals low-passed without phase, at a rate that is enough for that; a cut-off that the rate cannot
+/// carry leaves them as they are.
 #[must_use]
 pub fn filtered(signals: &[Signal], cutoff_hz: f64) -> Vec<Signal> {
     let signals = decimated(signals, RATE_OVER_CUTOFF * cutoff_hz);
@@ -86,7 +90,8 @@ pub fn filtered(signals: &[Signal], cutoff_hz: f64) -> Vec<Signal> {
     signals.iter().zip(smooth).map(|(signal, smooth)| signal.cut_with(0, smooth)).collect()
 }
 
-/// The samples of signals through the zero-phase low-pass with this −3 dB cut-off, Hz; those whose rate cannot carry it as they are.
+/// The samples of signals through the zero-phase low-pass with this −3 dB cut-off, Hz; those whose rate
+/// cannot carry it as they are.
 fn low_passed(signals: &[Signal], cutoff_hz: f64) -> Vec<Vec<f64>> {
     let filter = |signal: &Signal| ZeroPhaseLowPass::with_cutoff_hz(cutoff_hz, signal.sample_rate_hz);
     let filters: Vec<Option<ZeroPhaseLowPass>> = signals.iter().map(filter).collect();
@@ -141,8 +146,9 @@ pub fn channel_curves(
         .collect()
 }
 
-/// The channels by themselves, as \[P\] Fig. 13 has them: −v0 + ∫f dt from first contact, gravity left out between the impacts, read off
-/// as L leaves and as R strikes. `None` without a transverse channel on each end or without first contact and separation.
+/// The channels by themselves, as \[P\] Fig. 13 has them: −v0 + ∫f dt from first contact, gravity left out
+/// between the impacts, read off as L leaves and as R strikes. `None` without a transverse channel on each
+/// end or without first contact and separation.
 #[must_use]
 pub fn read_channels(integrated: &Integrated, events: &Events, setup: &Setup) -> Option<ChannelReading> {
     let left_s = events.separation_s()?;

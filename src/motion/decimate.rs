@@ -5,14 +5,15 @@ use crate::numerics::reduce::{block_means, block_of};
 use crate::numerics::{as_f64, robust};
 use std::borrow::Cow;
 
-/// Rate that the motion is taken from at the least, Hz: a pulse with a kink in it is integrated to below 1e-6 of its area there
-/// (docs/validation.md), and the modes of a cask lie below 2 kHz.
+/// Rate that the motion is taken from at the least, Hz: a pulse with a kink in it is integrated to below 1e-6
+/// of its area there (docs/validation.md), and the modes of a cask lie below 2 kHz.
 const ENOUGH_HZ: f64 = 1e5;
 
 /// Fewest means of the free fall that noise is taken from.
 const FEWEST: usize = 64;
 
-/// Means of as many neighbouring samples of each signal as leave it [`ENOUGH_HZ`], and this rate, Hz: their sum, which is the velocity, is that of the samples   (27b)
+/// Means of as many neighbouring samples of each signal as leave it [`ENOUGH_HZ`], and this rate, Hz: their
+/// sum, which is the velocity, is that of the samples   (27b)
 ///
 /// All signals as they are where one of them is clipped or has gaps: both are told to the sample.
 pub(super) fn decimated(signals: &[Signal], least_hz: f64) -> Cow<'_, [Signal]> {
@@ -98,7 +99,8 @@ mod tests {
             let time_s = 0.0495 + f64::from(i) * 1e-4;
             let exact_m_s = area_m_s * (1.0 - phase(time_s).cos()) / 2.0;
             let off = (integrated.velocities[0].at(time_s) - exact_m_s) / area_m_s;
-            // Between two means the velocity is a line: T²/8 of the slope's change, 8e-6 of the area at the most.
+            // Between two means the velocity is a line: T²/8 of the slope's change, 8e-6 of the area at the
+            // most.
             assert!(off.abs() < 1e-5, "{time_s}: {off}");
         }
         let off = integrated.velocities[0].at(0.06) / area_m_s - 1.0;

@@ -21,17 +21,20 @@ pub(super) const LONGEST_S: f64 = 0.1;
 pub(super) const CLEAR_S: f64 = 5e-3;
 /// Least noise of a velocity, as a share of its range in the window: linearity of the best sensors.
 const LEAST_FLOOR: f64 = 1e-3;
-/// Stretches before the end of a long flight that are compared with the fit, s: two periods of 100 Hz, and a shorter one for what
-/// happens shortly before the slap-down, in which a mode that is not fitted well leaves more …
+/// Stretch before the end of a long flight that is compared with the fit, s: two periods of 100 Hz.
 const LATE_S: f64 = 0.02;
+/// A shorter stretch that is compared too, s, for what happens shortly before the slap-down.
 const LAST_S: f64 = 0.004;
-/// … of which this share counts.
+/// This share of a deviation over the shorter stretch counts: a mode that is fitted poorly leaves more there.
 const LAST_SHARE: f64 = 0.5;
-/// An offset from a quarter of a second knows that of the next half to so many of its standard uncertainties (noise of 1/f).
+/// An offset from a quarter of a second knows that of the next half to so many of its standard uncertainties
+/// (noise of 1/f).
 const DRIFT_FACTOR: f64 = 3.5;
-/// Share of the centrifugal force that a sensor may read more or less: 2 % of cross axis, and ω to 1.5 %, which counts twice.
+/// Share of the centrifugal force that a sensor may read more or less: 2 % of cross axis, and ω to 1.5 %,
+/// which counts twice.
 const TURNED_SHARE: f64 = 0.05;
-/// Largest zero shift as a share of the channel's peak: data sheets of shock accelerometers give up to a few percent of full scale.
+/// Largest zero shift as a share of the channel's peak: data sheets of shock accelerometers give up to a few
+/// percent of full scale.
 const MOST_ZERO_SHIFT: f64 = 0.1;
 /// Lowest frequency sought: this many periods in the window.
 const LEAST_PERIODS: f64 = 0.6;
@@ -39,7 +42,8 @@ const LEAST_PERIODS: f64 = 0.6;
 const LEAST_DRIVEN_PERIODS: f64 = 0.2;
 /// Usual zero shift as a share of the channel's peak (data sheets of shock accelerometers).
 const USUAL_ZERO_SHIFT: f64 = 0.005;
-/// −2 ln of the odds that a sound channel shifts at all, one in e^10: a shift must show beyond doubt before it is taken off.
+/// −2 ln of the odds that a sound channel shifts at all, one in e^10: a shift must show beyond doubt before
+/// it is taken off.
 const DRIFT_ODDS: f64 = 20.0;
 /// A mode seen for so many periods has its phase from the flight …
 const CLEAR_PERIODS: f64 = 1.5;
@@ -47,18 +51,21 @@ const CLEAR_PERIODS: f64 = 1.5;
 const CLEAR_RESIDUAL: f64 = 3.0;
 /// No cask bends more slowly, Hz.
 const LOWEST_HZ: f64 = 15.0;
-/// Modes and drift that move no velocity step by this share of the largest one, and leave no more of their own behind, are left out: a tenth
-/// of what the usual calibration leaves of it.
+/// Modes and drift that move no velocity step by this share of the largest one, and leave no more of their
+/// own behind, are left out: a tenth of what the usual calibration leaves of it.
 const IMMATERIAL: f64 = 1e-3;
 /// What the velocities do anyway, in standard deviations of their integrated noise.
 const NOISE_LEFT: f64 = 1.5;
-/// A candidate this close in BIC to the best cannot be told from it (Kass & Raftery 1995: above 10 is very strong).
+/// A candidate this close in BIC to the best cannot be told from it (Kass & Raftery 1995: above 10 is very
+/// strong).
 const INDISTINCT: f64 = 10.0;
 
-/// Fits all velocities over the window, the most probable fit first, or one that does as well with less; empty where it is too short or nothing can be fitted.
+/// Fits all velocities over the window, the most probable fit first, or one that does as well with less;
+/// empty where it is too short or nothing can be fitted.
 ///
-/// Velocity v_j(t) = p_j + d_j t + Σ_m e^(−ζωt)(A cos ωt + B sin ωt)   (20), modes common to all channels, their phases free or those that
-/// the contact force gives them; their number and whether there is a drift are decided by the Bayesian information criterion (21).
+/// Velocity v_j(t) = p_j + d_j t + Σ_m e^(−ζωt)(A cos ωt + B sin ωt)   (20), modes common to all channels,
+/// their phases free or those that the contact force gives them; their number and whether there is a drift
+/// are decided by the Bayesian information criterion (21).
 #[must_use]
 pub fn fit_flights(
     integrated: &Integrated,
@@ -117,7 +124,8 @@ pub fn fit_flight(
     fit_flights(integrated, window, drive, cog_m).into_iter().next()
 }
 
-/// Every number of modes with and without drift, in free phases, and in driven ones where the free ones are not clear.
+/// Every number of modes with and without drift, in free phases, and in driven ones where the free ones are
+/// not clear.
 fn candidates(series: &[Series], window: &Window, drive: Option<&Drive>) -> Vec<Fit> {
     let length_s = window.to_s - window.from_s;
     let fewest = series.iter().map(|s| s.value.len()).min().unwrap_or(0);
@@ -224,7 +232,8 @@ fn late_mismatch_m_s(
     Some(mismatch_m_s.signum() * (mismatch_m_s.abs() - drifted_m_s).max(0.0))
 }
 
-/// Distance along the axis that the centrifugal force of a channel goes with, m: f_η holds −Ω² η, f_ξ holds −Ω² ξ   (14), (15)
+/// Distance along the axis that the centrifugal force of a channel goes with, m: f_η holds −Ω² η, f_ξ holds
+/// −Ω² ξ   (14), (15)
 pub(super) fn centrifugal_arm_m(signal: &Signal, cog_m: f64) -> f64 {
     match signal.axis {
         Axis::Transverse => signal.offset_m,
@@ -237,19 +246,22 @@ fn centrifugal_m_s2(signal: &Signal, window: &Window, cog_m: f64) -> f64 {
     -turning * turning.abs() * centrifugal_arm_m(signal, cog_m)
 }
 
-/// A zero shift beyond this share of the peak is none: it is a contact that the window holds, or a mode slower than it.
+/// A zero shift beyond this share of the peak is none: it is a contact that the window holds, or a mode
+/// slower than it.
 fn has_plausible_drift(peaks_m_s2: &[f64], fit: &Fit) -> bool {
     peaks_m_s2.iter().zip(&fit.series).all(|(peak, series)| series.drift.abs() < MOST_ZERO_SHIFT * peak)
 }
 
-/// Whether a fit leaves the noise only and saw each of its modes for long enough to know its phase from the flight alone.
+/// Whether a fit leaves the noise only and saw each of its modes for long enough to know its phase from the
+/// flight alone.
 fn is_clear(series: &[Series], fit: &Fit, length_s: f64) -> bool {
     let lowest_hz = fit.modes.iter().map(|m| m.frequency_hz).fold(f64::INFINITY, f64::min);
     let is_noise = |(s, f): (&Series, &SeriesFit)| f.residual < CLEAR_RESIDUAL * s.floor;
     lowest_hz * length_s > CLEAR_PERIODS && series.iter().zip(&fit.series).all(is_noise)
 }
 
-/// −2 ln of how probable a fit's zero shifts are: each normal with [`USUAL_ZERO_SHIFT`] of its channel's peak, and none where none is called for.
+/// −2 ln of how probable a fit's zero shifts are: each normal with [`USUAL_ZERO_SHIFT`] of its channel's
+/// peak, and none where none is called for.
 fn improbability(peaks_m_s2: &[f64], fit: &Fit) -> f64 {
     let share = |(peak, series): (&f64, &SeriesFit)| (series.drift / (USUAL_ZERO_SHIFT * peak)).powi(2);
     let shifts: f64 = peaks_m_s2.iter().zip(&fit.series).map(share).sum();
@@ -274,7 +286,8 @@ fn chain(series: &[Series], seeds: &Seeds, form: Form) -> Vec<Fit> {
     fits
 }
 
-/// A mode larger than what the series themselves do, or a plateau no better known than their range, is a singular fit.
+/// A mode larger than what the series themselves do, or a plateau no better known than their range, is a
+/// singular fit.
 fn is_sound(series: &[Series], fit: &Fit) -> bool {
     series.iter().zip(&fit.series).all(|(s, f)| {
         let range = range(&s.value);
@@ -360,7 +373,8 @@ fn mode(fit: &Fit, index: usize) -> Mode {
     }
 }
 
-/// Plateaus of the best fit; what candidates that cannot be told from it say otherwise adds to their uncertainty.
+/// Plateaus of the best fit; what candidates that cannot be told from it say otherwise adds to their
+/// uncertainty.
 pub(super) fn plateaus(signals: &[Signal], best: &Fit, rivals: &[&Fit]) -> Vec<Plateau> {
     signals
         .iter()

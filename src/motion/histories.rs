@@ -1,4 +1,5 @@
-//! Signals and the plateaus of the flight to what the channels say over the contact: the line over their positions, free of ringing.
+//! Signals and the plateaus of the flight to what the channels say over the contact: the line over their
+//! positions, free of ringing.
 
 use super::{Integrated, Velocity};
 use crate::data::{Axis, CONTACT_STEPS, FlightFit, Mode, Signal};
@@ -7,14 +8,16 @@ use crate::numerics::damped_modes::Drive;
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// A mode that answered more strongly by this factor while it was driven than as L left is not known well enough to follow back.
+/// A mode that answered more strongly by this factor while it was driven than as L left is not known well
+/// enough to follow back.
 const MOST_DECLINE: f64 = 5.0;
 
-/// ∫f_η of S, m/s; Ω = φ̇, rad/s; and the mean over the axial channels of ∫f_ξ, m/s: each a sum over the channels.
+/// ∫f_η of S, m/s; Ω = φ̇, rad/s; and the mean over the axial channels of ∫f_ξ, m/s: each a sum over the
+/// channels.
 type Sums = [f64; 3];
 
-/// How much each channel counts in the [`Sums`]: the transverse ones by the least-squares line over their positions, its value at S and its
-/// slope along the axis   (16), the axial ones by their mean.
+/// How much each channel counts in the [`Sums`]: the transverse ones by the least-squares line over their
+/// positions, its value at S and its slope along the axis   (16), the axial ones by their mean.
 pub(super) struct AlongAxis {
     weights: Vec<Sums>,
     /// What ∫Ω² dt since contact adds to the first two, m and 1: f_η holds −Ω² η   (14)
@@ -56,8 +59,8 @@ impl AlongAxis {
     }
 }
 
-/// What the channels say over the contact at times of equal distance from its beginning to its end, led to the plateaus of the flight, ringing led out
-/// in proportion to time.
+/// What the channels say over the contact at times of equal distance from its beginning to its end, led to
+/// the plateaus of the flight, ringing led out in proportion to time.
 pub(super) struct Histories<'a> {
     line: &'a AlongAxis,
     sums: Vec<Sums>,
@@ -96,10 +99,12 @@ impl<'a> Histories<'a> {
         self
     }
 
-    /// Takes off what rings in the channels during the contact, in the size that it has as L leaves, `left_s` from the fit's beginning.
+    /// Takes off what rings in the channels during the contact, in the size that it has as L leaves, `left_s`
+    /// from the fit's beginning.
     ///
-    /// The modes start from rest and are driven by the contact force, whose shape the rotation tells once it is free of ringing; before that
-    /// a half sine stands for it. What so moves the ringing by a percent of itself is not sought again.
+    /// The modes start from rest and are driven by the contact force, whose shape the rotation tells once it
+    /// is free of ringing; before that a half sine stands for it. What so moves the ringing by a percent of
+    /// itself is not sought again.
     fn take_off_bending(&mut self, fit: &FlightFit, length_s: f64, left_s: f64) {
         if fit.modes.is_empty() {
             return;
@@ -115,7 +120,8 @@ impl<'a> Histories<'a> {
         }
     }
 
-    /// What the modes add to the sums where they are so driven, but for a line that leads to what they do as L leaves.
+    /// What the modes add to the sums where they are so driven, but for a line that leads to what they do as
+    /// L leaves.
     fn ringing(&self, fit: &FlightFit, driven: &[Vec<Complex<f64>>], left_s: f64) -> Vec<Sums> {
         let steps = self.sums.len() - 1;
         let mut all = vec![[0.0; 3]; steps + 1];
@@ -150,7 +156,8 @@ impl<'a> Histories<'a> {
         self.sums.iter().map(|sums| sums[1]).collect()
     }
 
-    /// Mean over the axial channels of ∫f_ξ of their place on the axis, m/s, and their mean position, m; `None` without any.
+    /// Mean over the axial channels of ∫f_ξ of their place on the axis, m/s, and their mean position, m;
+    /// `None` without any.
     ///
     /// f_ξ holds −Ω̇ η (15), so ∫f_ξ + Ω η is what a sensor on the axis would give.
     pub fn axial_mean(&self, step: usize, rotation_rad_s: f64) -> Option<(f64, f64)> {
@@ -160,7 +167,8 @@ impl<'a> Histories<'a> {
 }
 
 impl Velocity {
-    /// Adds to each of the `sums` its `weights` times the velocity at times of equal distance, led to `end_m_s` at the last of them.
+    /// Adds to each of the `sums` its `weights` times the velocity at times of equal distance, led to
+    /// `end_m_s` at the last of them.
     fn add_even(&self, (from_s, step_s): (f64, f64), end_m_s: f64, weights: Sums, sums: &mut [Sums]) {
         let last = as_f64(sums.len() - 1);
         let missing_m_s = end_m_s - self.at(from_s + last * step_s);
@@ -182,7 +190,8 @@ fn rate(mode: &Mode) -> Complex<f64> {
     Complex::new(-mode.damping * omega, omega)
 }
 
-/// Z(t) = ∫ f(τ) e^((−ζ + i) ω (t − τ)) dτ from rest: modes driven by the shape of the contact force, −dΩ/dt   (36)
+/// Z(t) = ∫ f(τ) e^((−ζ + i) ω (t − τ)) dτ from rest: modes driven by the shape of the contact force,
+/// −dΩ/dt   (36)
 fn driven(modes: &[Mode], turning_rad_s: &[f64], step_s: f64) -> Vec<Vec<Complex<f64>>> {
     let of = |mode: &Mode| {
         let (turn, half_turn) = ((rate(mode) * step_s).exp(), (rate(mode) * (step_s / 2.0)).exp());
@@ -196,8 +205,9 @@ fn driven(modes: &[Mode], turning_rad_s: &[f64], step_s: f64) -> Vec<Vec<Complex
     modes.iter().map(of).collect()
 }
 
-/// The shape of the contact force between first contact and separation at `left_s`, for modes that ring from `from_s` on: that of the rotation freed
-/// of an earlier fit's ringing, or a half sine where there is none. `None` without two transverse channels apart.
+/// The shape of the contact force between first contact and separation at `left_s`, for modes that ring from
+/// `from_s` on: that of the rotation freed of an earlier fit's ringing, or a half sine where there is none.
+/// `None` without two transverse channels apart.
 #[must_use]
 pub fn drive(
     integrated: &Integrated,

@@ -1,14 +1,15 @@
-//! Signals to the motion of the cask: velocity curves, flight plateaus free of ringing, the planar rigid body.
+//! Signals to the motion of the cask: velocity curves, flight plateaus free of ringing, the planar rigid
+//! body.
 
 mod contact;
 mod curves;
 mod decimate;
 mod flight;
 mod histories;
+mod late_blow;
 mod reconstruct;
 mod refit;
 mod ringing;
-mod strike;
 mod window;
 
 pub use contact::{ChannelPulse, ContactCourse, ForceCourse, PulseLength, largest, pulses};
@@ -17,10 +18,10 @@ pub use curves::{
 };
 pub use flight::{compare_late, fit_flight, fit_flights};
 pub use histories::drive;
+pub use late_blow::strike;
 pub use reconstruct::{outcome, reconstruct, with_states};
 pub use refit::{mean_of_flight, with_modes};
-pub use ringing::{Calmed, mirrored, rotation_rad_s, turned_rad_s};
-pub use strike::strike;
+pub use ringing::{RingingRemoved, mirrored, rotation_rad_s, turned_rad_s};
 pub use window::{BEFORE_SLAP_DOWN_S, Window, clear_of_contact_s};
 
 use crate::data::Signal;
@@ -31,10 +32,12 @@ use std::borrow::Cow;
 
 /// Velocities count from so long before first contact, s: it may be moved within its uncertainty.
 const MARGIN_S: f64 = 2e-3;
-/// They are followed from so long before it, s: the longest flight window and what keeps its like before first contact clear of that.
+/// Signals are integrated from this long before contact, s: the longest flight window and its clearance on
+/// both sides.
 const BEFORE_S: f64 = flight::LONGEST_S + 2.0 * flight::CLEAR_S;
 
-/// Signals with their running integrals, which every flight fit and every reconstruction of the same drop asks for again.
+/// Signals with their running integrals, which every flight fit and every reconstruction of the same drop
+/// asks for again.
 pub struct Integrated<'a> {
     /// As given, or means of their samples at a rate that the motion needs.
     pub(crate) signals: Cow<'a, [Signal]>,
@@ -44,7 +47,8 @@ pub struct Integrated<'a> {
 }
 
 impl<'a> Integrated<'a> {
-    /// Integrals of whole signals, 0 shortly before first contact; where all are whole, of means at 100 kHz at the least.
+    /// Integrals of whole signals, 0 shortly before first contact; where all are whole, of means at 100 kHz
+    /// at the least.
     #[must_use]
     pub fn over(signals: &'a [Signal], contact_s: f64) -> Self {
         let signals = decimate::decimated(signals, 0.0);
@@ -115,7 +119,8 @@ impl Velocity {
         self.values_m_s[index] + share * (self.values_m_s[next] - self.values_m_s[index])
     }
 
-    /// Mean velocity between two times, m/s: of the samples there, or the value in the middle where there are none.
+    /// Mean velocity between two times, m/s: of the samples there, or the value in the middle where there are
+    /// none.
     fn mean(&self, from_s: f64, to_s: f64) -> f64 {
         let from = self.index_from(from_s);
         let inside = &self.values_m_s[from..self.index_from(to_s).max(from)];

@@ -9,11 +9,11 @@ use crate::numerics::as_f64;
 /// Steps over the flight, for the curves.
 const FLIGHT_STEPS: u32 = 200;
 
-/// Reconstructs the motion from first contact to slap-down with its curve; `None` without two transverse channels apart or without
-/// their plateaus.
+/// Reconstructs the motion from first contact to slap-down with its curve; `None` without two transverse
+/// channels apart or without their plateaus.
 ///
-/// During contact the channels give ∫f_η of S and Ω by a line over their positions (16); v̇_η = f_η − g cos φ − Ω v_ξ (17);
-/// v_ξ comes from the contact law or the axial channels (18). Afterwards S flies freely (8).
+/// During contact the channels give ∫f_η of S and Ω by a line over their positions (16); v̇_η = f_η − g cos φ
+/// − Ω v_ξ (17); v_ξ comes from the contact law or the axial channels (18). Afterwards S flies freely (8).
 #[must_use]
 pub fn reconstruct(
     integrated: &Integrated,
@@ -112,8 +112,8 @@ fn follow(
     })
 }
 
-/// Sine and cosine of an angle that lies `by_rad` beyond that of the given ones; exact to rounding, and quick for the small steps of a
-/// contact.
+/// Sine and cosine of an angle that lies `by_rad` beyond that of the given ones; exact to rounding, and quick
+/// for the small steps of a contact.
 fn turned((sin, cos): (f64, f64), by_rad: f64) -> (f64, f64) {
     // Below 0.01 the next terms of both series are less than 1e-16.
     let square = by_rad * by_rad;
@@ -126,7 +126,8 @@ fn turned((sin, cos): (f64, f64), by_rad: f64) -> (f64, f64) {
     (sin * c + cos * s, cos * c - sin * s)
 }
 
-/// Angular impulse about S over mass in one step of the contact, m²/s: ∫(a f_z − b f_x) dt with the arms of (1)   (32)
+/// Angular impulse about S over mass in one step of the contact, m²/s: ∫(a f_z − b f_x) dt with the arms of
+/// (1)   (32)
 fn turning_m2_s(setup: &Setup, before: &MotionState, after: &MotionState, middle: (f64, f64)) -> f64 {
     let (a_m, b_m) = planar::arms_m(middle, setup.cog_m, setup.height_m);
     let up_m_s = after.vertical_velocity_m_s - before.vertical_velocity_m_s
@@ -194,8 +195,8 @@ impl OnTarget {
         }
     }
 
-    /// One step, given ∫f_η of S and Ω at its end, and for a measured axial velocity ∫f_ξ and where it was measured; sine and cosine of the
-    /// inclination in its middle.
+    /// One step, given ∫f_η of S and Ω at its end, and for a measured axial velocity ∫f_ξ and where it was
+    /// measured; sine and cosine of the inclination in its middle.
     fn advance(
         &mut self,
         setup: &Setup,

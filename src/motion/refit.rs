@@ -5,7 +5,8 @@ use super::{Integrated, Window};
 use crate::data::FlightFit;
 use crate::numerics::damped_modes::{Form, describe};
 
-/// The same window with each velocity step the mean over it: no mode, no drift. The candidates stay those of the best fit.
+/// The same window with each velocity step the mean over it: no mode, no drift. The candidates stay those of
+/// the best fit.
 #[must_use]
 pub fn mean_of_flight(
     integrated: &Integrated,

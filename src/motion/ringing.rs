@@ -5,19 +5,19 @@ use crate::data::{Axis, End, FlightFit, Mode, Plateau, Signal};
 use crate::numerics::damped_modes::uniform_ringing;
 use std::ops::Range;
 
-/// A mode that would have been this much larger at the time asked for (e^1.6, fivefold) is not followed back to it: the fit knows
-/// nothing of it there, and an error of its damping would be blown up likewise.
+/// A mode that would have been this much larger at the time asked for (e^1.6, fivefold) is not followed back
+/// to it: the fit knows nothing of it there, and an error of its damping would be blown up likewise.
 const MOST_GROWTH: f64 = 1.6;
 
 /// A sum of signals from which ringing and zero shift can be taken off, and again with another fit.
-pub struct Calmed {
+pub struct RingingRemoved {
     signal: Signal,
     parts: Vec<(String, f64)>,
     /// The samples from an index on as they were before.
     before: (usize, Vec<f64>),
 }
 
-impl Calmed {
+impl RingingRemoved {
     /// The sum and what it is made of: signals by name, each with its weight.
     #[must_use]
     pub fn new((signal, parts): (Signal, Vec<(String, f64)>)) -> Self {
@@ -72,8 +72,9 @@ impl Calmed {
     }
 }
 
-/// ω of a flight whose centrifugal force its channels show beyond that of a rotation before it, which went with their offset, rad/s: the root of
-/// the difference of both squares, negative where the cask turns more slowly than before.
+/// ω of a flight whose centrifugal force its channels show beyond that of a rotation before it, which went
+/// with their offset, rad/s: the root of the difference of both squares, negative where the cask turns more
+/// slowly than before.
 #[must_use]
 pub fn turned_rad_s(signals: &[Signal], fit: &FlightFit, before_rad_s: f64) -> f64 {
     let gained_rad_s = rotation_rad_s(signals, fit);
@@ -84,8 +85,9 @@ pub fn turned_rad_s(signals: &[Signal], fit: &FlightFit, before_rad_s: f64) -> f
     beyond.abs().sqrt().copysign(beyond)
 }
 
-/// The signals of a drop from its flight on as those of a drop that begins with the slap-down, seen in a mirror: R is its first end, and nothing
-/// rings or shifts in its fall, nor pulls outward while the cask turns by ω, rad/s.
+/// The signals of a drop from its flight on as those of a drop that begins with the slap-down, seen in a
+/// mirror: R is its first end, and nothing rings or shifts in its fall, nor pulls outward while the cask
+/// turns by ω, rad/s.
 #[must_use]
 pub fn mirrored(
     signals: &[Signal],
@@ -96,7 +98,7 @@ pub fn mirrored(
     let mirror = |signal: &Signal| {
         let flown = signal.cut(signal.index_from(fit.from_s), usize::MAX);
         let arm_m = centrifugal_arm_m(signal, cog_m);
-        let mut calmed = Calmed::new((flown, vec![(signal.name.clone(), 1.0)]));
+        let mut calmed = RingingRemoved::new((flown, vec![(signal.name.clone(), 1.0)]));
         calmed.take_off(fit, fit.from_s..f64::INFINITY);
         let mut calm = calmed.signal;
         let along = if signal.axis == Axis::Axial { -1.0 } else { 1.0 };
@@ -109,7 +111,8 @@ pub fn mirrored(
     signals.iter().map(mirror).collect()
 }
 
-/// ω from the plateaus of the transverse channels, rad/s: minus the slope of the velocity steps over position (16); 0 where there is none.
+/// ω from the plateaus of the transverse channels, rad/s: minus the slope of the velocity steps over position
+/// (16); 0 where there is none.
 #[must_use]
 pub fn rotation_rad_s(signals: &[Signal], fit: &FlightFit) -> f64 {
     let points: Vec<(f64, f64)> = signals

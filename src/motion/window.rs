@@ -21,6 +21,7 @@ pub struct Window {
     pub to_s: f64,
     /// Whether a change of the offset may be fitted.
     pub drift: bool,
-    /// ω of the flight where it is known already, rad/s: its centrifugal force is taken off, put back where it is negative; else 0.
+    /// ω of the flight where it is known already, rad/s: its centrifugal force is taken off, put back where
+    /// it is negative; else 0.
     pub angular_velocity_rad_s: f64,
 }

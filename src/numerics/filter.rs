@@ -17,8 +17,8 @@ const FORGOTTEN: usize = 3;
 
 /// Two passes of a second-order Butterworth low-pass in trapezoidal state-variable form.
 ///
-/// g = tan(π f / f_s), R = 1/√2; the state-variable form keeps its round-off near 1e-15 of the peak where direct forms
-/// lose all digits as f/f_s → 0 (Zavalishin 2012, chapter 4).   (26)
+/// g = tan(π f / f_s), R = 1/√2; the state-variable form keeps its round-off near 1e-15 of the peak where
+/// direct forms lose all digits as f/f_s → 0 (Zavalishin 2012, chapter 4).   (26)
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZeroPhaseLowPass {
     gain: f64,
@@ -27,7 +27,8 @@ pub struct ZeroPhaseLowPass {
 }
 
 impl ZeroPhaseLowPass {
-    /// By the design frequency of one pass, Hz, at a sample rate, Hz; `None` where it is not below half the rate.
+    /// By the design frequency of one pass, Hz, at a sample rate, Hz; `None` where it is not below half the
+    /// rate.
     #[must_use]
     pub fn with_design_hz(design_hz: f64, sample_rate_hz: f64) -> Option<Self> {
         if !(design_hz > 0.0 && design_hz < 0.5 * sample_rate_hz) {
@@ -123,7 +124,8 @@ mod tests {
         let filter = ZeroPhaseLowPass::with_cfc(60.0, 20_000.0).expect("below Nyquist");
         let line: Vec<f64> = (0..5000).map(|i| 3.0 + 0.01 * f64::from(i)).collect();
         let out = filter.apply(&line);
-        // The mirror makes a kink of a line's end; after the filter's memory 1e-6 of the slope's own size in it is left.
+        // The mirror makes a kink of a line's end; after the filter's memory 1e-6 of the slope's own size in
+        // it is left.
         let memory = filter.padding;
         let inside = memory..line.len() - memory;
         assert!(line[inside.clone()].iter().zip(&out[inside]).all(|(a, b)| (a - b).abs() < 1e-4));
@@ -142,7 +144,8 @@ mod tests {
     #[test]
     fn mirrored_ends_leave_the_filters_own_noise_there() {
         use crate::numerics::robust::spread;
-        // Uniform noise from a multiplicative congruence, and of its middle the same without what stands beside it.
+        // Uniform noise from a multiplicative congruence, and of its middle the same without what stands
+        // beside it.
         let mut state = 1_u64;
         let mut noise = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -158,7 +161,8 @@ mod tests {
             let square: f64 = ends.map(|i| (cut[i] - truth[from + i]).powi(2)).sum();
             (square / 500.0).sqrt()
         };
-        // What an end adds is noise of about the filter's own size; over a quarter of 1/f it is one normal value at each end.
+        // What an end adds is noise of about the filter's own size; over a quarter of 1/f it is one normal
+        // value at each end.
         for from in (7000..13_000).step_by(500) {
             assert!(off(from) < 2.5 * own, "{from}: {} of {own}", off(from));
         }

@@ -1,19 +1,24 @@
-//! A series to the difference between each value and the one predicted linearly from the values before it (a robust fit).
+//! A series to the difference between each value and the one predicted linearly from the values before it (a
+//! robust fit).
 
 use super::{as_f64, reduce, robust};
 use nalgebra::{DMatrix, DVector};
 
-/// Values before it that one is predicted from at the most: an offset and three damped sines need seven, noise and filters on them more.
+/// Values before it that one is predicted from at the most: an offset and three damped sines need seven,
+/// noise and filters on them more.
 pub const MOST_BEFORE: usize = 12;
 /// Values of the series to each of these at the least, so that few of them are not fitted to the noise.
 const VALUES_EACH: usize = 8;
 /// Fewest of them worth a try: an offset and one damped sine, and noise.
 const LEAST_BEFORE: usize = 4;
-/// Rounds of the robust fit: the largest of what is left over its spread moves by less than 2 % in a further one.
+/// Rounds of the robust fit: the largest of what is left over its spread moves by less than 2 % in a further
+/// one.
 const ROUNDS: usize = 8;
-/// A value so many spreads off counts half (Cauchy's weight, 95 % as sharp as least squares on normal noise; Holland & Welsch 1977).
+/// A value so many spreads off counts half (Cauchy's weight, 95 % as sharp as least squares on normal noise;
+/// Holland & Welsch 1977).
 const HALF_AT: f64 = 2.385;
-/// What keeps the fit of a series without any noise regular, as a share of its largest square: noise a millionth of the series.
+/// What keeps the fit of a series without any noise regular, as a share of its largest square: noise a
+/// millionth of the series.
 const RIDGE: f64 = 1e-12;
 
 /// What a series leaves of itself.
@@ -29,7 +34,8 @@ pub struct LinearPrediction {
     pub gain: f64,
 }
 
-/// x_i = c + Σ_k a_k x_(i−k) + e_i   (21c), c and a by least squares in which wild e_i count little; `None` for too short a series.
+/// x_i = c + Σ_k a_k x_(i−k) + e_i   (21c), c and a by least squares in which wild e_i count little; `None`
+/// for too short a series.
 #[must_use]
 pub fn predict_linearly(values: &[f64]) -> Option<LinearPrediction> {
     let before = (values.len() / VALUES_EACH).min(MOST_BEFORE);
@@ -109,7 +115,8 @@ mod tests {
     #[test]
     fn damped_sines_foretell_themselves() {
         let found = predict_linearly(&(0..480).map(ringing).collect::<Vec<_>>()).expect("long enough");
-        // Noise of 0.29 and what the twelve values before carry of it; of 468 normal values the largest is 3 spreads off.
+        // Noise of 0.29 and what the twelve values before carry of it; of 468 normal values the largest is 3
+        // spreads off.
         assert!(found.spread < 0.29 * found.gain && found.spread > 0.25, "{found:?}");
         assert!(largest(&found).1 < 5.0, "{:?}", largest(&found));
     }

@@ -11,16 +11,20 @@ const FIRST_LINE: usize = 3;
 /// Lines averaged into the first bin; from there on each bin is as wide as this share of its frequency.
 const FIRST_BIN_LINES: usize = 4;
 const BIN_SHARE: f64 = 0.25;
-/// The lowest bins rise towards low frequencies if they stand this factor above those three octaves up; 1/f gives 8, white noise 1 ± 0.3.
+/// The lowest bins rise towards low frequencies if they stand this factor above those three octaves up; 1/f
+/// gives 8, white noise 1 ± 0.3.
 const RISES: f64 = 3.0;
-/// Frequencies a decade at which the integral is taken, and the share of the lowest frequency that matters at which it begins: of white noise and
-/// of 1/f they give the uncertainty within 3e-4 of itself, of noise that rises with frequency within 2 %.
+/// Frequencies a decade at which the integral is taken, and the share of the lowest frequency that matters at
+/// which it begins: of white noise and of 1/f they give the uncertainty within 3e-4 of itself, of noise that
+/// rises with frequency within 2 %.
 const STEPS_A_DECADE: f64 = 100.0;
 const LOWEST_SHARE: f64 = 1e-2;
 
-/// One-sided power spectral density of the samples less their mean: bins of (frequency in Hz, unit²/Hz), ascending.
+/// One-sided power spectral density of the samples less their mean: bins of (frequency in Hz, unit²/Hz),
+/// ascending.
 ///
-/// Mean of sine tapers, averaged over lines into bins that widen with frequency. Empty for fewer than 32 samples.
+/// Mean of sine tapers, averaged over lines into bins that widen with frequency. Empty for fewer than 32
+/// samples.
 #[must_use]
 #[allow(clippy::cast_precision_loss, reason = "sample counts stay below 2^52")]
 pub fn spectrum(quiet: &[f64], sample_rate_hz: f64) -> Vec<(f64, f64)> {
@@ -59,17 +63,20 @@ pub fn spectrum(quiet: &[f64], sample_rate_hz: f64) -> Vec<(f64, f64)> {
     bins
 }
 
-/// Standard uncertainty of ∫ noise dt over `integrate_s`, less that time × the noise's mean over the `mean_s` just before it.
+/// Standard uncertainty of ∫ noise dt over `integrate_s`, less that time × the noise's mean over the `mean_s`
+/// just before it.
 ///
-/// u² = ∫ S(f) |H(f)|² df, H = (e^(iωT) − 1)/(iω) − T (1 − e^(−iωT0))/(iωT0)   (Q3). `spectrum` as [`spectrum`] gives it;
-/// between its bins the density is a power of the frequency, below them it is flat, or 1/f where it rises. 0 for an empty one.
+/// u² = ∫ S(f) |H(f)|² df, H = (e^(iωT) − 1)/(iω) − T (1 − e^(−iωT0))/(iωT0)   (Q3). `spectrum` as
+/// [`spectrum`] gives it; between its bins the density is a power of the frequency, below them it is flat, or
+/// 1/f where it rises. 0 for an empty one.
 #[must_use]
 pub fn integral_uncertainty_by(spectrum: &[(f64, f64)], mean_s: f64, integrate_s: f64) -> f64 {
     let (Some(&lowest), Some(&highest)) = (spectrum.first(), spectrum.last()) else { return 0.0 };
     if !(mean_s > 0.0 && integrate_s > 0.0) {
         return 0.0;
     }
-    // A power law through the two lowest bins would follow their scatter: both together are held against those three octaves up.
+    // A power law through the two lowest bins would follow their scatter: both together are held against
+    // those three octaves up.
     let mean = |bins: &[(f64, f64)], power: i32| {
         bins.iter().map(|b| b.1 * b.0.powi(power)).sum::<f64>()
             / f64::from(u32::try_from(bins.len()).unwrap_or(1))
@@ -121,7 +128,8 @@ mod tests {
 
     const RATE_HZ: f64 = 2000.0;
 
-    /// White noise of variance 1, or with `pink` that of first-order low-passes an octave apart: 1/f above 1 Hz.
+    /// White noise of variance 1, or with `pink` that of first-order low-passes an octave apart: 1/f above 1
+    /// Hz.
     fn noise(count: usize, pink: bool, generator: &mut ChaCha8Rng) -> Vec<f64> {
         let mut draw = || -> f64 { StandardNormal.sample(generator) };
         if !pink {
@@ -139,7 +147,8 @@ mod tests {
         sum
     }
 
-    /// Mean squares over many draws of 0.25 s and the 0.06 s after it: what the spectrum says and what really was.
+    /// Mean squares over many draws of 0.25 s and the 0.06 s after it: what the spectrum says and what really
+    /// was.
     fn squares(pink: bool) -> (f64, f64) {
         let (before, after, draws) = (500, 120, 400_u32);
         let mut generator = ChaCha8Rng::seed_from_u64(7);
@@ -167,7 +176,8 @@ mod tests {
     #[test]
     fn white_noise_adds_what_the_closed_form_says() {
         let (said, was) = squares(false);
-        // u² = σ²/f_s (T + T²/T0); 400 squares of a normal variable are known to 7 %, the spectra's mean to 0.45/√400.
+        // u² = σ²/f_s (T + T²/T0); 400 squares of a normal variable are known to 7 %, the spectra's mean to
+        // 0.45/√400.
         let expected = (0.06 + 0.06_f64.powi(2) / 0.25) / RATE_HZ;
         assert!((was / expected - 1.0).abs() < 0.21, "{was} {expected}");
         assert!((said / expected - 1.0).abs() < 0.07, "{said} {expected}");
@@ -176,7 +186,8 @@ mod tests {
     #[test]
     fn noise_that_falls_with_frequency_adds_more_and_is_not_taken_for_white() {
         let (said, was) = squares(true);
-        // 7 % by the draws; the tapers smear three lines to either side, over which the mean of 1/f is up to twice its middle.
+        // 7 % by the draws; the tapers smear three lines to either side, over which the mean of 1/f is up to
+        // twice its middle.
         assert!(said / was > 0.8 && said / was < 2.0, "{said} {was}");
         // White noise of the same variance (10) would add (0.06 + 0.0144) · 10 / 2000: far less.
         assert!(said > 3.0 * 10.0 * 0.0744 / RATE_HZ, "{said}");
@@ -188,7 +199,8 @@ mod tests {
         let quiet = noise(20_000, false, &mut generator);
         let bins = spectrum(&quiet, RATE_HZ);
         assert!(bins.windows(2).all(|w| w[1].0 > w[0].0) && bins.len() < 60, "{}", bins.len());
-        // 2 σ²/f_s = 1e-3 in the high bins, which average hundreds of lines of 2 degrees of freedom and more: ± 15 % is 3 σ.
+        // 2 σ²/f_s = 1e-3 in the high bins, which average hundreds of lines of 2 degrees of freedom and more:
+        // ± 15 % is 3 σ.
         assert!(bins.iter().filter(|b| b.0 > 100.0).all(|b| (b.1 / 1e-3 - 1.0).abs() < 0.15));
         assert!(spectrum(&quiet[..10], RATE_HZ).is_empty());
         assert!(integral_uncertainty(&quiet[..10], RATE_HZ, 0.06).abs() < 1e-300);

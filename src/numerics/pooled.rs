@@ -1,4 +1,5 @@
-//! Repeats of one quantity, each with its interval, to their mean and scatter, and to those that do not fit among the others.
+//! Repeats of one quantity, each with its interval, to their mean and scatter, and to those that do not fit
+//! among the others.
 
 /// Half-width of a 95 % interval over its standard uncertainty.
 const COVERAGE: f64 = 1.96;
@@ -14,7 +15,8 @@ pub struct Pooled {
     pub u95: f64,
     /// Standard deviation of the repeats about their mean, n − 1; NaN of one.
     pub scatter: f64,
-    /// Σ ((x − mean) / u)² with u = u95 / 1.96, of n − 1 degrees of freedom where the intervals are independent.
+    /// Σ ((x − mean) / u)² with u = u95 / 1.96, of n − 1 degrees of freedom where the intervals are
+    /// independent.
     pub chi_square: f64,
 }
 
@@ -73,7 +75,8 @@ impl Pooled {
     }
 }
 
-/// The quantile of χ² at the normal quantile `z` (Wilson and Hilferty 1931): within 1 % of it from three degrees of freedom on.
+/// The quantile of χ² at the normal quantile `z` (Wilson and Hilferty 1931): within 1 % of it from three
+/// degrees of freedom on.
 #[allow(clippy::cast_precision_loss, reason = "repeats are few")]
 fn chi_square_quantile(degrees: usize, z: f64) -> f64 {
     let nu = degrees as f64;
@@ -83,8 +86,9 @@ fn chi_square_quantile(degrees: usize, z: f64) -> f64 {
 
 /// E_n of each value against the mean of the others, and whether it falls out of them.
 ///
-/// The one with the largest |E_n| above 1 is taken out, then the others are looked at again, as long as three are left (largest consistent
-/// subset, Cox 2007): one wrong value does not make the right ones look wrong. Of two that contradict each other both fall out.
+/// The one with the largest |E_n| above 1 is taken out, then the others are looked at again, as long as three
+/// are left (largest consistent subset, Cox 2007): one wrong value does not make the right ones look wrong.
+/// Of two that contradict each other both fall out.
 #[must_use]
 pub fn apart(values: &[(f64, f64)]) -> Vec<(Option<f64>, bool)> {
     let weight = |i: usize| values[i].1.powi(-2);

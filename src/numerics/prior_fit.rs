@@ -1,13 +1,16 @@
-//! Unknowns with unit normal priors and observations of unit uncertainty to the most probable unknowns and what each datum tells of them.
+//! Unknowns with unit normal priors and observations of unit uncertainty to the most probable unknowns and
+//! what each datum tells of them.
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, storage::Owned};
 use rayon::prelude::*;
 
-/// Step of the derivatives, in prior standard deviations: the models are smooth over that, and the change stands far above their round-off.
+/// Step of the derivatives, in prior standard deviations: the models are smooth over that, and the change
+/// stands far above their round-off.
 const STEP: f64 = 0.05;
 
-/// Residuals of the observations at given unknowns, each over its standard uncertainty; `None` where the model fails there.
+/// Residuals of the observations at given unknowns, each over its standard uncertainty; `None` where the
+/// model fails there.
 pub type Residuals<'a> = &'a (dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync);
 
 /// Their derivatives there, such as [`derivatives`] gives them.
@@ -22,7 +25,8 @@ pub struct PriorFit {
     pub left: Vec<f64>,
     /// Σ q² + Σ r², with as many degrees of freedom as there are observations.
     pub chi_square: f64,
-    /// How each datum, first the priors and then the observations, moves each unknown: a row an unknown, unit steps.
+    /// How each datum, first the priors and then the observations, moves each unknown: a row an unknown, unit
+    /// steps.
     pub response: DMatrix<f64>,
 }
 
@@ -45,7 +49,8 @@ impl PriorFit {
     }
 }
 
-/// Minimises Σ q_i² + Σ r_j(q)²   (30) by Levenberg and Marquardt; `None` where the model fails at the start or the normal matrix is singular.
+/// Minimises Σ q_i² + Σ r_j(q)²   (30) by Levenberg and Marquardt; `None` where the model fails at the start
+/// or the normal matrix is singular.
 #[must_use]
 pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFit> {
     let start = DVector::zeros(count);
@@ -70,8 +75,8 @@ pub fn fit(count: usize, residuals: Residuals, slopes: Slopes) -> Option<PriorFi
     })
 }
 
-/// ∂r/∂q by differences from the values at `at`, on all cores; a column an unknown. Where an unknown `jumps`, any move of it changes more than
-/// its size says: its differences are those between both sides.
+/// ∂r/∂q by differences from the values at `at`, on all cores; a column an unknown. Where an unknown `jumps`,
+/// any move of it changes more than its size says: its differences are those between both sides.
 #[must_use]
 pub fn derivatives(
     values: &[f64],

@@ -5,10 +5,12 @@ use super::reduce::dot;
 /// A regressor that keeps less than this share of itself beside the others says nothing of its own.
 const DEPENDENT: f64 = 1e-9;
 
-/// Where less than this share of a square is left, what was taken off is taken off again: the rounding of it is no longer small beside the rest.
+/// Where less than this share of a square is left, what was taken off is taken off again: the rounding of it
+/// is no longer small beside the rest.
 const NEARLY_ALL: f64 = 1e-4;
 
-/// Sum of squares that `values` keep after their least-squares fit by `regressors` (each as long as `values`).
+/// Sum of squares that `values` keep after their least-squares fit by `regressors` (each as long as
+/// `values`).
 ///
 /// Modified Gram-Schmidt; regressors that are zero or depend on the others are left out.
 #[must_use]

@@ -1,8 +1,10 @@
 //! Samples or a function to integrals.
 
-/// Running integral of uniform samples by the trapezoid with end correction; entry 0 is 0, same length as `samples`.
+/// Running integral of uniform samples by the trapezoid with end correction; entry 0 is 0, same length as
+/// `samples`.
 ///
-/// V_n = h (f_0/2 + f_1 + … + f_n/2) − h²/12 (f′_n − f′_0)   (27), the slopes by central differences, one-sided at the ends.
+/// V_n = h (f_0/2 + f_1 + … + f_n/2) − h²/12 (f′_n − f′_0)   (27), the slopes by central differences,
+/// one-sided at the ends.
 #[must_use]
 pub fn running_integral(samples: &[f64], step: f64) -> Vec<f64> {
     const TOGETHER: usize = 8;
@@ -53,7 +55,8 @@ mod tests {
 
     #[test]
     fn a_half_sine_integrates_to_its_area_along_the_way() {
-        // 10 ms half sine at 10 kHz: the plain trapezoid is off by 1e-4 of the area on the way, the corrected by h⁴.
+        // 10 ms half sine at 10 kHz: the plain trapezoid is off by 1e-4 of the area on the way, the corrected
+        // by h⁴.
         let (n, step) = (101, 1e-4);
         let pulse: Vec<f64> = (0..n).map(|i| (PI * f64::from(i) / 100.0).sin()).collect();
         let running = running_integral(&pulse, step);

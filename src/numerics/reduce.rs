@@ -1,4 +1,5 @@
-//! Samples to sums, means and extremes, in as many partial results as a processor works on at once: a single one waits for each step.
+//! Samples to sums, means and extremes, in as many partial results as a processor works on at once: a single
+//! one waits for each step.
 
 const LANES: usize = 8;
 
@@ -50,7 +51,8 @@ pub fn least_step<T: Copy + Into<f64>>(samples: &[T], least: f64) -> f64 {
     smallest.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// [`least_step`], or 0 where there is none or it is no more than `limit`, which the first samples often tell.
+/// [`least_step`], or 0 where there is none or it is no more than `limit`, which the first samples often
+/// tell.
 #[must_use]
 pub fn least_step_beyond(samples: &[f64], least: f64, limit: f64) -> f64 {
     const FIRST: usize = 4096;
@@ -61,7 +63,8 @@ pub fn least_step_beyond(samples: &[f64], least: f64, limit: f64) -> f64 {
     Some(within(samples)).filter(|step| *step > limit && step.is_finite()).unwrap_or(0.0)
 }
 
-/// Step of the converter that the samples are from: the smallest change that is told from rounding; 0 where nothing changes.
+/// Step of the converter that the samples are from: the smallest change that is told from rounding; 0 where
+/// nothing changes.
 #[must_use]
 pub fn converter_step(samples: &[f64]) -> f64 {
     least_step_beyond(samples, 1e-9 * peak(samples), 0.0)

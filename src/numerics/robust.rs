@@ -17,7 +17,8 @@ pub fn median(values: &mut [f64]) -> f64 {
     }
 }
 
-/// The value below which this share of `ascending` lies, by straight lines between them (Hyndman & Fan 1996, type 7); NaN of none.
+/// The value below which this share of `ascending` lies, by straight lines between them (Hyndman & Fan 1996,
+/// type 7); NaN of none.
 #[must_use]
 #[allow(
     clippy::cast_precision_loss,
@@ -48,7 +49,8 @@ pub fn stride(count: usize) -> usize {
     (count / MOST).max(1)
 }
 
-/// Standard deviation of Gaussian noise from the median distance to the median (factor 1.4826; Hampel 1974), of many values by a sample.
+/// Standard deviation of Gaussian noise from the median distance to the median (factor 1.4826; Hampel 1974),
+/// of many values by a sample.
 #[must_use]
 pub fn spread(values: &[f64]) -> f64 {
     centre_and_spread(values).1

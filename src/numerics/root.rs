@@ -1,9 +1,11 @@
 //! A function to its first root.
 
-/// First t in `0..=last` at which a function with |f″| ≤ `bound` comes down to zero, its value and slope given by `f`.
+/// First t in `0..=last` at which a function with |f″| ≤ `bound` comes down to zero, its value and slope
+/// given by `f`.
 ///
-/// From a point with value z and slope v it cannot reach zero before z + v s − bound s²/2 = 0: steps of that s approach
-/// the first root from the left and never pass it. A start within `touch` of zero and rising is left first.
+/// From a point with value z and slope v it cannot reach zero before z + v s − bound s²/2 = 0: steps of that
+/// s approach the first root from the left and never pass it. A start within `touch` of zero and rising is
+/// left first.
 pub fn first_root(f: impl Fn(f64) -> (f64, f64), bound: f64, last: f64, touch: f64) -> Option<f64> {
     let mut t = 0.0;
     // Each step gains at least √(2 touch / bound); the cap only guards against a wrong bound.

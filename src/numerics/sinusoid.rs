@@ -63,7 +63,8 @@ pub fn fit(samples: &[f64], sample_rate_hz: f64, frequency_hz: f64) -> Option<Si
     Some(Sinusoid { frequency_hz, cosine: found[0], sine: found[1], u_amplitude })
 }
 
-/// The strongest sinusoid between two frequencies: eleven of them are tried, then eleven between the neighbours of the best.
+/// The strongest sinusoid between two frequencies: eleven of them are tried, then eleven between the
+/// neighbours of the best.
 #[must_use]
 pub fn strongest(samples: &[f64], sample_rate_hz: f64, (low_hz, high_hz): (f64, f64)) -> Option<Sinusoid> {
     let best = |low: f64, high: f64, steps: u32| {

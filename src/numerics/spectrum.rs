@@ -4,10 +4,12 @@ use rustfft::{Fft, FftPlanner, num_complex::Complex};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The last plans are kept, each with its length: the sines that one is made of cost more than to use it once.
+/// The last plans are kept, each with its length: the sines that one is made of cost more than to use it
+/// once.
 static PLANS: Mutex<VecDeque<Arc<dyn Fft<f64>>>> = Mutex::new(VecDeque::new());
 
-/// So many: the channels of a recording have a few lengths, those of a campaign's recordings each its own, and a planner would keep all.
+/// So many: the channels of a recording have a few lengths, those of a campaign's recordings each its own,
+/// and a planner would keep all.
 const MOST_PLANS: usize = 16;
 
 /// The forward transform of `count` values.
@@ -22,7 +24,8 @@ pub(super) fn forward(count: usize) -> Arc<dyn Fft<f64>> {
     plan
 }
 
-/// Frequencies (Hz) and |∫ x e^{−iωt} dt| up to half the sample rate; padded with zeros to the next power of two.
+/// Frequencies (Hz) and |∫ x e^{−iωt} dt| up to half the sample rate; padded with zeros to the next power of
+/// two.
 ///
 /// The unit of the magnitude is that of `samples` times seconds.
 #[must_use]

@@ -8,7 +8,8 @@ use crate::numerics::root::first_root;
 /// Heights below this at the start of a flight are the contact itself, m.
 const TOUCH_M: f64 = 1e-9;
 
-/// First time after now at which the lower corner `along_m` behind S comes down to `depth_m` below the target, at most `last_s`.
+/// First time after now at which the lower corner `along_m` behind S comes down to `depth_m` below the
+/// target, at most `last_s`.
 ///
 /// z(τ) = z_S + ż_S τ − g τ²/2 − b(φ − ω τ), |z̈| ≤ g + ω² ρ   (8)
 fn next_touch(
@@ -56,7 +57,8 @@ fn longest_s(body: &Body, gravity_m_s2: f64, state: &State, along_m: f64) -> f64
     (rise_m_s + (rise_m_s * rise_m_s + 2.0 * gravity_m_s2 * height_m).sqrt()) / gravity_m_s2
 }
 
-/// Whether L, back where the target left it at the start of `span_s`, sinks deeper than `graze_m` before its end.
+/// Whether L, back where the target left it at the start of `span_s`, sinks deeper than `graze_m` before its
+/// end.
 pub(super) fn sinks(support: &Support, state: &State, span_s: std::ops::Range<f64>, graze_m: f64) -> bool {
     const POINTS: u32 = 32;
     let Support { body, gravity_m_s2, sunk_m, .. } = *support;

@@ -1,13 +1,16 @@
-//! L held on the target whatever the force to the motion just before R strikes: the closed forms of \[P\] Table 2 for k = 0.
+//! L held on the target whatever the force to the motion just before R strikes: the closed forms of \[P\]
+//! Table 2 for k = 0.
 
 use super::state::{State, arms_m};
 use crate::data::Body;
 use crate::numerics::quadrature::simpson;
 
-/// Where the time integral begins, share of the way: at rest its integrand is 0/0. Also the ω, rad/s, below which it never ends.
+/// Where the time integral begins, share of the way: at rest its integrand is 0/0. Also the ω, rad/s, below
+/// which it never ends.
 const STILL: f64 = 1e-9;
 
-/// A body that turns about L's corner, stuck or sliding without friction, from the motion just after L's impact.
+/// A body that turns about L's corner, stuck or sliding without friction, from the motion just after L's
+/// impact.
 pub(super) struct Held<'a> {
     pub body: &'a Body,
     pub gravity_m_s2: f64,
@@ -16,7 +19,8 @@ pub(super) struct Held<'a> {
 }
 
 impl Held<'_> {
-    /// Pivoting: (Θ + m (a² + b²)) ω² grows by 2 m g Δz_S   (11); sliding without friction: (Θ + m a²) ω² does   (12)
+    /// Pivoting: (Θ + m (a² + b²)) ω² grows by 2 m g Δz_S   (11); sliding without friction: (Θ + m a²) ω²
+    /// does   (12)
     fn spin_rad_s(&self, angle_rad: f64) -> f64 {
         let (m, theta) = (self.body.mass_kg, self.body.inertia_kg_m2);
         let arms = |angle_rad: f64| arms_m(self.body, angle_rad, self.body.cog_m);
@@ -50,7 +54,8 @@ impl Held<'_> {
         self.at_share(1.0).1
     }
 
-    /// The inclination φ = φ0 (1 − u²), rad, and when it is reached, s: ∫ dφ/ω, over u so that a start from rest is no pole.
+    /// The inclination φ = φ0 (1 − u²), rad, and when it is reached, s: ∫ dφ/ω, over u so that a start from
+    /// rest is no pole.
     pub fn at_share(&self, u: f64) -> (f64, f64) {
         let angle_rad = self.start.angle_rad;
         let rate_s = |u: f64| 2.0 * angle_rad * u / self.spin_rad_s(angle_rad * (1.0 - u * u));

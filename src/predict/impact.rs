@@ -3,7 +3,8 @@
 use super::state::{State, arms_m};
 use crate::data::{Body, Contact};
 
-/// The Coulomb coefficient of a contact law: rough is friction without limit, smooth is none; an unknown one is taken for rough.
+/// The Coulomb coefficient of a contact law: rough is friction without limit, smooth is none; an unknown one
+/// is taken for rough.
 pub(super) fn coefficient(contact: Contact) -> f64 {
     match contact {
         Contact::Rough | Contact::Unknown => f64::INFINITY,
@@ -45,7 +46,8 @@ struct ContactPoint {
 }
 
 impl ContactPoint {
-    /// L's corner, per unit mass and impulse: n_xx = (1 + b²/r²)/m, n_zz = (1 + a²/r²)/m, n_xz = a b/(r² m), r² = Θ/m   (2) (3)
+    /// L's corner, per unit mass and impulse: n_xx = (1 + b²/r²)/m, n_zz = (1 + a²/r²)/m, n_xz = a b/(r² m),
+    /// r² = Θ/m   (2) (3)
     fn new(body: &Body, before: &State, a: f64, b: f64) -> Self {
         let (m, theta) = (body.mass_kg, body.inertia_kg_m2);
         let w = before.angular_velocity_rad_s;
@@ -58,7 +60,8 @@ impl ContactPoint {
         }
     }
 
-    /// dI_x/dI_z once the corner does not slide: what sticking needs, or the friction there is; and whether it sticks   (6)
+    /// dI_x/dI_z once the corner does not slide: what sticking needs, or the friction there is; and whether
+    /// it sticks   (6)
     fn ratio_from_rest(&self, friction: f64) -> (f64, bool) {
         let needed = self.n_xz / self.n_xx;
         if needed.abs() <= friction { (needed, true) } else { (friction * needed.signum(), false) }
@@ -83,9 +86,9 @@ impl ContactPoint {
 
 /// The motion just after L's corner strikes with restitution `k`.
 ///
-/// I_x = m Δẋ, I_z = m Δż, Θ Δω = a I_z − b I_x   (2). While the corner slides I_x = ± μ I_z against the sliding; where it stops it sticks
-/// if friction suffices. The normal force gives back k² of the work that it took (Stronge 1990); without sliding before
-/// the impact that is ż_C' = −k ż_C   (3)–(6).
+/// I_x = m Δẋ, I_z = m Δż, Θ Δω = a I_z − b I_x   (2). While the corner slides I_x = ± μ I_z against the
+/// sliding; where it stops it sticks if friction suffices. The normal force gives back k² of the work that it
+/// took (Stronge 1990); without sliding before the impact that is ż_C' = −k ż_C   (3)–(6).
 pub(super) fn strike_first_end(body: &Body, before: &State, contact: Contact, k: f64) -> Struck {
     let (a, b) = arms_m(body, before.angle_rad, body.cog_m);
     let mut point = ContactPoint::new(body, before, a, b);
@@ -127,7 +130,8 @@ fn normal_rate(point: &ContactPoint, stretch: &Stretch) -> f64 {
 
 /// I_z in the first and in the last stretch.
 ///
-/// ż_C grows linearly with I_z; the work ∫ ż_C dI_z is −C at the end of the compression and −(1 − k²) C at the end.
+/// ż_C grows linearly with I_z; the work ∫ ż_C dI_z is −C at the end of the compression and −(1 − k²) C at
+/// the end.
 fn normal_impulses(point: &ContactPoint, first: Option<&Stretch>, last: &Stretch, k: f64) -> (f64, f64) {
     let rate = normal_rate(point, last);
     let Some((length, first_rate)) =
@@ -231,7 +235,8 @@ mod tests {
             let before = moving(angle, (x, z, w));
             prop_assume!(before.corner(&body, 2.3).vertical_velocity_m_s < -0.1);
             let struck = strike_first_end(&body, &before, Contact::Rough, k);
-            // Where stopping the sliding lifts the corner off, friction proportional to the normal force cannot stop it.
+            // Where stopping the sliding lifts the corner off, friction proportional to the normal force
+            // cannot stop it.
             prop_assume!(struck.vertical_impulse_n_s > 0.1 * body.mass_kg);
             let rough = struck.after;
             let much = strike_first_end(&body, &before, Contact::Coulomb(1e12), k).after;
@@ -252,7 +257,8 @@ mod tests {
     }
     #[test]
     fn just_after_the_impact_k_is_blind_where_the_literature_says() {
-        // The vertical velocity of R just after the impact: k v0 − ω2 l cos φ with (7) has no k at cos² φ = 2/3 rough, 1/3 smooth.
+        // The vertical velocity of R just after the impact: k v0 − ω2 l cos φ with (7) has no k at cos² φ =
+        // 2/3 rough, 1/3 smooth.
         let rod = crate::predict::thin_rod(1000.0, 4.75);
         for (contact, cos2) in [(Contact::Rough, 2.0_f64 / 3.0), (Contact::Smooth, 1.0 / 3.0)] {
             let before = moving(cos2.sqrt().acos(), (0.0, -13.3, 0.0));

@@ -22,7 +22,8 @@ pub(super) struct Case<'a> {
 
 /// What `rung` says; [`predict`] is the highest one.
 ///
-/// The rungs below Coulomb friction take any friction for rough. For k = 0 those below the unilateral contact hold L on the target.
+/// The rungs below Coulomb friction take any friction for rough. For k = 0 those below the unilateral contact
+/// hold L on the target.
 #[must_use]
 pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction {
     let ideal = match contact {
@@ -43,8 +44,8 @@ pub fn predict_by(rung: Rung, body: &Body, drop: &Drop, contact: Contact, k: f64
     }
 }
 
-/// Every rung's prediction, simplest first, and the simplest that no richer one moves by more than [`LADDER_TOLERANCE_PERCENT`]. The finite
-/// pulse is among them where the drop says how long it lasts.
+/// Every rung's prediction, simplest first, and the simplest that no richer one moves by more than
+/// [`LADDER_TOLERANCE_PERCENT`]. The finite pulse is among them where the drop says how long it lasts.
 #[must_use]
 pub fn ladder(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Ladder {
     let mut steps: Vec<LadderStep> = Vec::with_capacity(Rung::ALL.len());
@@ -222,7 +223,8 @@ mod tests {
 
     #[test]
     fn steep_drops_with_little_rebound_come_down_after_all() {
-        // L comes to rest on the target; the body topples over it unless it stands beyond its balance (81.8°).
+        // L comes to rest on the target; the body topples over it unless it stands beyond its balance
+        // (81.8°).
         for angle_deg in [60.0, 70.0, 80.0] {
             assert!(predict(&anf18(), &drop(angle_deg), Contact::Rough, 0.0).slap_down_speed_m_s.is_some());
         }

@@ -57,18 +57,19 @@ pub fn bodies(cask: &Cask) -> Vec<Body> {
     bodies
 }
 
-/// First impact, flight, further impacts of L and slap-down of `body` with restitution `k` (0 to 1), equations (1)–(14) of
-/// `docs/physics.md`: the highest rung of the ladder. The first impact lasts `drop.contact_duration_s`; 0 is an impulse.
+/// First impact, flight, further impacts of L and slap-down of `body` with restitution `k` (0 to 1),
+/// equations (1)–(14) of `docs/physics.md`: the highest rung of the ladder. The first impact lasts
+/// `drop.contact_duration_s`; 0 is an impulse.
 ///
-/// L strikes again where it sinks deeper than [`GRAZE_SHARE`] of the length before R strikes. Where R never strikes the slap-down's
-/// quantities are `None`.
+/// L strikes again where it sinks deeper than [`GRAZE_SHARE`] of the length before R strikes. Where R never
+/// strikes the slap-down's quantities are `None`.
 #[must_use]
 pub fn predict(body: &Body, drop: &Drop, contact: Contact, k: f64) -> Prediction {
     predict_grazing(body, drop, contact, k, GRAZE_SHARE)
 }
 
-/// [`predict`] with L's further impacts counted from a sinking of `graze_share` of the length: 0 is the rigid limit, in which every
-/// touch is an impact.
+/// [`predict`] with L's further impacts counted from a sinking of `graze_share` of the length: 0 is the rigid
+/// limit, in which every touch is an impact.
 #[must_use]
 pub fn predict_grazing(body: &Body, drop: &Drop, contact: Contact, k: f64, graze_share: f64) -> Prediction {
     let start = State::falling(body, drop.angle_rad, drop);
@@ -141,7 +142,8 @@ mod tests {
 
     #[test]
     fn table_3_is_met_with_the_sine_of_equation_6() {
-        // Root and speed by an independent program (scipy brentq) to four digits; the paper prints 25 for each.
+        // Root and speed by an independent program (scipy brentq) to four digits; the paper prints 25 for
+        // each.
         for (length_m, expected) in [(4.538, 24.9351), (4.725, 24.9548), (5.512, 25.0376)] {
             let found = speed(&rod(length_m), 15.0, Contact::Rough, 1.0);
             assert!((found - expected).abs() < 5e-5, "{found} {expected}");
@@ -214,7 +216,8 @@ mod tests {
             // [P] reads 1 to 1.05 off its figure "up to nearly 40°"; the smooth rod reaches 1.059.
             assert!((0..=38).all(|a| (0.9999..1.06).contains(&ratio(f64::from(a), contact, 1.0))));
         }
-        // [P] reads 70 to 80 % off it for k = 0 up to 30°; there the rough rod keeps 69.4 %, the smooth one at most 82.3 %.
+        // [P] reads 70 to 80 % off it for k = 0 up to 30°; there the rough rod keeps 69.4 %, the smooth one
+        // at most 82.3 %.
         assert!((0..30).all(|a| (0.70..0.78).contains(&ratio(f64::from(a), Contact::Rough, 0.0))));
         assert!((0..=30).all(|a| (0.74..0.825).contains(&ratio(f64::from(a), Contact::Smooth, 0.0))));
     }

@@ -8,13 +8,16 @@ use super::state::{State, second_end_m};
 use super::support::{Hold, Support};
 use crate::data::{Body, Contact, Drop, FlightRegime};
 
-/// More impacts of L than this before R strikes count as bouncing without end: with k ≤ 0.96 the last rebound is below [`REST_M_S`].
+/// More impacts of L than this before R strikes count as bouncing without end: with k ≤ 0.96 the last rebound
+/// is below [`REST_M_S`].
 const MOST_IMPACTS: u32 = 300;
 
-/// A rebound slower than this, m/s, is a rest on Earth: it lifts L by 5 nm. Another gravity's lifts it as high.
+/// A rebound slower than this, m/s, is a rest on Earth: it lifts L by 5 nm. Another gravity's lifts it as
+/// high.
 const REST_M_S: f64 = 3e-4;
 
-/// L that touches the target again sooner than this, s, has not left it on Earth: gravity moves a free corner by 5 nm.
+/// L that touches the target again sooner than this, s, has not left it on Earth: gravity moves a free corner
+/// by 5 nm.
 const LET_GO_S: f64 = 3e-5;
 
 /// Gravity for which the two hold, m/s²: the default of a cask file.
@@ -37,7 +40,8 @@ pub(super) struct PathEnd {
 }
 
 impl<'a> Way<'a> {
-    /// `graze_share` is the share of the length that L must sink to strike again; `None`: further impacts are left out.
+    /// `graze_share` is the share of the length that L must sink to strike again; `None`: further impacts are
+    /// left out.
     pub fn of(body: &'a Body, drop: &Drop, contact: Contact, graze_share: Option<f64>) -> Self {
         Self {
             support: Support::of(body, drop, contact, Hold::Pushes),
@@ -118,15 +122,16 @@ impl Way<'_> {
         self.support.gravity_m_s2 / EARTH_M_S2
     }
 
-    /// Whether the last impact left L on the target. Even with k = 0 stopping its sliding may throw a rough corner up.
+    /// Whether the last impact left L on the target. Even with k = 0 stopping its sliding may throw a rough
+    /// corner up.
     fn rests(&self, state: &State) -> bool {
         let body = self.support.body;
         state.corner(body, body.cog_m).vertical_velocity_m_s < REST_M_S * self.gravity_share().sqrt()
     }
 
-    /// L on the target until R strikes or the target would have to pull. L then flies, the limit k → 0, unless it sinks deeper than
-    /// a graze: then it has not left the target at all and slides on until it rises by itself.
-    /// The flag says whether the contact law held L all the time.
+    /// L on the target until R strikes or the target would have to pull. L then flies, the limit k → 0,
+    /// unless it sinks deeper than a graze: then it has not left the target at all and slides on until it
+    /// rises by itself. The flag says whether the contact law held L all the time.
     fn rest(&self, from: &State) -> (RestEnd, bool) {
         let end = self.support.rest(from);
         let RestEnd::LiftsOff(at, time_s) = end else { return (end, true) };

@@ -1,4 +1,5 @@
-//! A moving body and the length of L's contact to the motion as L leaves the target: a half-sine of force in place of an impulse.
+//! A moving body and the length of L's contact to the motion as L leaves the target: a half-sine of force in
+//! place of an impulse.
 
 use super::impact::{Struck, coefficient, strike_first_end};
 use super::state::{State, arms_m, runge_kutta, second_end_m};
@@ -30,10 +31,11 @@ struct Pulse<'a> {
     steps: u32,
 }
 
-/// L pushed for `drop.contact_duration_s` by F sin(π t/T), F such that its corner leaves as fast as after the impulse   (41)
+/// L pushed for `drop.contact_duration_s` by F sin(π t/T), F such that its corner leaves as fast as after the
+/// impulse   (41)
 ///
-/// The arms a, b turn with the body, gravity acts, and friction holds the corner or slides it, moment by moment. Where no such force is found the
-/// impulse stands.
+/// The arms a, b turn with the body, gravity acts, and friction holds the corner or slides it, moment by
+/// moment. Where no such force is found the impulse stands.
 pub(super) fn push_first_end(body: &Body, before: &State, drop: &Drop, contact: Contact, k: f64) -> PulseEnd {
     let struck = strike_first_end(body, before, contact, k);
     let duration_s = drop.contact_duration_s;

@@ -5,13 +5,15 @@ use super::state::State;
 use super::support::{Grip, Hold, Support, Turning};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Turn within one step of the integration, rad, and its longest time in √(l/g), in which a body turns from rest: 15 ms for 5.5 m on
-/// Earth, where it needs a tenth of a second for its first degrees. Runge's and Kutta's fourth order leaves 3e-9 of the speed.
+/// Turn within one step of the integration, rad, and its longest time in √(l/g), in which a body turns from
+/// rest: 15 ms for 5.5 m on Earth, where it needs a tenth of a second for its first degrees. Runge's and
+/// Kutta's fourth order leaves 3e-9 of the speed.
 const STEP: f64 = 0.02;
-/// Shortest step, s: on the border between sticking and sliding round-off would otherwise stop the clock; a µm/s of sliding.
+/// Shortest step, s: on the border between sticking and sliding round-off would otherwise stop the clock; a
+/// µm/s of sliding.
 const LEAST_STEP_S: f64 = 1e-6;
-/// A body that has not come down in this time stands, in √(l/g), 30 s for 5.5 m: tens of times what it takes to topple from 1°
-/// beside the balance.
+/// A body that has not come down in this time stands, in √(l/g), 30 s for 5.5 m: tens of times what it takes
+/// to topple from 1° beside the balance.
 const LONGEST: f64 = 40.0;
 
 /// Turning slower than this, rad/s and rad/s², is round-off: the body stands.
@@ -98,8 +100,9 @@ impl Support<'_> {
     /// The time within a step of `step_s` at which the first margin is used up, and which one.
     fn until_used_up(&self, at: &Turning, grip: Grip, step_s: f64) -> (f64, Margin) {
         let (mut low_s, mut high_s) = (0.0, step_s);
-        // 2^-24 of a step is a nanosecond. A step of Newton's takes the angle and the sliding from there to their end; where the lift or
-        // the hold of friction ends no force jumps, and what follows is off by the square of it.
+        // 2^-24 of a step is a nanosecond. A step of Newton's takes the angle and the sliding from there to
+        // their end; where the lift or the hold of friction ends no force jumps, and what follows is off by
+        // the square of it.
         for _ in 0..24 {
             let mid_s = f64::midpoint(low_s, high_s);
             let margins = self.margins(&self.step(at, grip, mid_s), grip);
@@ -191,7 +194,8 @@ mod tests {
             assert!((energy_j(&with(contact)) / before_j - 1.0).abs() < 3e-9);
         }
         let lost_j = before_j - energy_j(&with(Contact::Coulomb(0.2)));
-        // Less than μ times the greatest force, twice the weight here, over the way of the corner, at most 2 m.
+        // Less than μ times the greatest force, twice the weight here, over the way of the corner, at most 2
+        // m.
         assert!(lost_j > 1.0 && lost_j < 0.2 * 2.0 * body.mass_kg * 9.81 * 2.0, "{lost_j}");
     }
 

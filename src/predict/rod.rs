@@ -4,9 +4,11 @@ use super::impact::{Struck, strike_first_end};
 use super::state::{State, arms_m};
 use crate::data::{Body, Contact};
 
-/// \[P\] Table 1, with ż_S2 of the smooth impact put right: a rod that falls at v0 without rotation, rough or smooth   (7)
+/// \[P\] Table 1, with ż_S2 of the smooth impact put right: a rod that falls at v0 without rotation, rough or
+/// smooth   (7)
 ///
-/// `body` is a thin uniform rod; any friction counts as rough. One that turns or moves sideways as it strikes is none of \[P\]'s (2).
+/// `body` is a thin uniform rod; any friction counts as rough. One that turns or moves sideways as it strikes
+/// is none of \[P\]'s (2).
 pub(super) fn table_1(body: &Body, before: &State, contact: Contact, k: f64) -> Struck {
     if before.angular_velocity_rad_s != 0.0 || before.horizontal_velocity_m_s != 0.0 {
         return strike_first_end(body, before, contact, k);

@@ -111,7 +111,8 @@ impl State {
         Corner { height_m: self.height_m - arms.1, horizontal_velocity_m_s, vertical_velocity_m_s }
     }
 
-    /// The same motion with L's corner at the depth `sunk_m` to the last digit: a nanometre below it would strike again at once.
+    /// The same motion with L's corner at the depth `sunk_m` to the last digit: a nanometre below it would
+    /// strike again at once.
     pub fn with_first_end_at(&self, body: &Body, sunk_m: f64) -> Self {
         Self { height_m: arms_m(body, self.angle_rad, body.cog_m).1 - sunk_m, ..*self }
     }

@@ -7,7 +7,8 @@ use crate::data::{Body, Contact, Drop};
 /// A corner that slides slower than this, m/s, was stopped by the impact but for round-off.
 const STOPPED_M_S: f64 = 1e-9;
 
-/// Rough contact while L rests: with more friction the normal force of a sliding corner falls below a millionth of the weight.
+/// Rough contact while L rests: with more friction the normal force of a sliding corner falls below a
+/// millionth of the weight.
 const ROUGH: f64 = 1e6;
 
 /// The target L rests on, and what holds it there.
@@ -73,8 +74,8 @@ impl<'a> Support<'a> {
 }
 
 impl Support<'_> {
-    /// With z̈_C = 0: N/m = g − a ω̇ − b ω²   (10); stuck, ẍ_C = 0: ω̇ = a g/(r² + a² + b²); sliding, T = r_T N:
-    /// ω̇ = (a − r_T b)(g − b ω²)/(r² + a (a − r_T b)), ẍ_C = r_T N/m − b ω̇ + a ω².
+    /// With z̈_C = 0: N/m = g − a ω̇ − b ω²   (10); stuck, ẍ_C = 0: ω̇ = a g/(r² + a² + b²); sliding, T = r_T
+    /// N: ω̇ = (a − r_T b)(g − b ω²)/(r² + a (a − r_T b)), ẍ_C = r_T N/m − b ω̇ + a ω².
     pub fn forces(&self, at: &Turning, grip: Grip) -> Forces {
         let (a, b) = arms_m(self.body, at.angle_rad, self.body.cog_m);
         let r2 = self.body.inertia_kg_m2 / self.body.mass_kg;
@@ -136,7 +137,8 @@ impl Support<'_> {
         slides(if r2 + a * (a - ratio * b) <= 1e-9 * r2 { Grip::Jams } else { Grip::Slides { way, ratio } })
     }
 
-    /// T/N of a corner `b` below S that slides `way`; a target that pulls turns its sign. N has the sign of g − b ω².
+    /// T/N of a corner `b` below S that slides `way`; a target that pulls turns its sign. N has the sign of g
+    /// − b ω².
     fn ratio(&self, at: &Turning, b: f64, way: f64) -> f64 {
         let pushes = self.gravity_m_s2 - b * at.angular_velocity_rad_s.powi(2);
         -self.friction() * way * if self.hold == Hold::Pulls { pushes.signum() } else { 1.0 }

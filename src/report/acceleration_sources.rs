@@ -33,8 +33,8 @@ pub struct NoChannels {
     mend: String,
 }
 
-/// The sources that look like accelerations and can be read: by unit or name where any does, else all that are numbers; none where
-/// those that do look so cannot be read.
+/// The sources that look like accelerations and can be read: by unit or name where any does, else all that
+/// are numbers; none where those that do look so cannot be read.
 pub(super) fn accelerations(listing: &Listing) -> Vec<&ListedChannel> {
     let numeric: Vec<&ListedChannel> =
         candidates(listing).filter(|c| c.unreadable.is_none() && c.kind != "topic").collect();

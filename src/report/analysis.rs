@@ -42,7 +42,8 @@ const SLAP_DOWN_CODES: [IssueCode; 8] = [
     IssueCode::Truncated,
 ];
 
-/// The whole document. A terminal has the findings last, where the eye rests; a page has them with the results.
+/// The whole document. A terminal has the findings last, where the eye rests; a page has them with the
+/// results.
 pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     let (result, file) = (&analysis.result, &analysis.cask_file);
     let name = &file.cask.name;
@@ -198,7 +199,8 @@ fn estimates(result: &DropResult, caption: &str, facts: Vec<Fact>, codes: &[Issu
     [ChapterPart::facts(caption, facts)].into_iter().chain(is_missing.then(why)).collect()
 }
 
-/// The measured speed beside the predicted one, the model taken and why, and all that were held against the measurement.
+/// The measured speed beside the predicted one, the model taken and why, and all that were held against the
+/// measurement.
 fn comparison(result: &DropResult) -> Chapter {
     let taken = result.model.as_ref();
     let compared = result.comparison.as_ref().map_or_else(

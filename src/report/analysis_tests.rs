@@ -65,7 +65,8 @@ fn it_stands_alone() {
         ["src=", "href=", "url(", "@import", "<script src", "http://", "https://", "fetch(", "XMLHttp"]
     {
         let hits = page.matches(call).count();
-        // The only addresses are the name of the SVG vocabulary, and that of the library of the charts in its head.
+        // The only addresses are the name of the SVG vocabulary, and that of the library of the charts in its
+        // head.
         let allowed = match call {
             "http://" => page.matches("http://www.w3.org/2000/svg").count(),
             "https://" => 1,

@@ -5,7 +5,8 @@ use super::medium::Medium;
 use super::table::{CellKind, ReportTable, TableCell};
 use super::text::printable;
 
-/// The Markdown; `folder` is what leads from the other document to the pictures ("" or ending in "/"), none leaves them out.
+/// The Markdown; `folder` is what leads from the other document to the pictures ("" or ending in "/"), none
+/// leaves them out.
 pub(crate) fn markdown(document: &ReportDocument, folder: Option<&str>) -> String {
     let mut blocks = Vec::new();
     for chapter in &document.chapters {

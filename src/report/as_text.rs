@@ -1,4 +1,5 @@
-//! A document to the text that a terminal of so many columns shows, with SGR colours that the caller strips where none are read.
+//! A document to the text that a terminal of so many columns shows, with SGR colours that the caller strips
+//! where none are read.
 
 use super::document::{ChapterPart, Fact, PartContent, ReportDocument, SentenceRole, Tone};
 use super::medium::Medium;
@@ -107,7 +108,8 @@ fn fits(columns: &[&ReportColumn], rows: usize, most: usize) -> bool {
 
 /// The lines of the heads, and those of each row, the columns `gap` apart; cells too wide are wrapped.
 fn aligned(columns: &[&ReportColumn], rows: usize, gap: u16, width: usize) -> Vec<Vec<String>> {
-    /// Stands in a column of its own where a row begins, and is taken off again: a row may have several lines.
+    /// Stands in a column of its own where a row begins, and is taken off again: a row may have several
+    /// lines.
     const BEGINS: char = '•';
     let mut table = comfy_table::Table::new();
     table.load_style(TableStyle::new());

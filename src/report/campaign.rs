@@ -1,4 +1,5 @@
-//! Lines of results to a campaign: its table, CSV, JSON and page; a recording that failed is a row with its reason.
+//! Lines of results to a campaign: its table, CSV, JSON and page; a recording that failed is a row with its
+//! reason.
 
 mod columns;
 mod compared;
@@ -77,7 +78,8 @@ pub fn folder_name(test: &str) -> String {
     if plain.is_empty() { "recording".to_owned() } else { plain.to_owned() }
 }
 
-/// The first number among a line's settings that no cask file may state, with its place: no run of this program wrote it.
+/// The first number among a line's settings that no cask file may state, with its place: no run of this
+/// program wrote it.
 #[must_use]
 pub fn impossible(line: &Value) -> Option<String> {
     for (name, stated) in line["settings"].as_object().into_iter().flatten() {

@@ -18,7 +18,8 @@ pub(super) fn bytes(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
     through_a_file(|file| write(file, analysis))
 }
 
-/// What `fill` writes, as bytes. The library writes only to files, so a scratch file in the system's temporary folder carries them.
+/// What `fill` writes, as bytes. The library writes only to files, so a scratch file in the system's
+/// temporary folder carries them.
 ///
 /// # Errors
 /// [`ReportError::Hdf5`] where the library fails, [`ReportError::Scratch`] where the temporary folder does.
@@ -113,7 +114,8 @@ pub(crate) fn text(place: &Location, name: &str, value: &str) -> Result<(), Repo
     Ok(())
 }
 
-/// A link name that HDF5 takes: no slash, not a dot, not taken; the group's attribute `name` has the channel's own.
+/// A link name that HDF5 takes: no slash, not a dot, not taken; the group's attribute `name` has the
+/// channel's own.
 fn link_name(parent: &Group, name: &str, index: usize) -> String {
     let name: String =
         name.chars().map(|c| if c == '/' || c == '\0' || c.is_control() { '_' } else { c }).collect();

@@ -65,7 +65,8 @@ struct CurvesFile {
 }
 
 impl CurvesFile {
-    /// A channel of JSON messages with a time stamp and these fields; a schema that is there already serves again.
+    /// A channel of JSON messages with a time stamp and these fields; a schema that is there already serves
+    /// again.
     fn channel(&mut self, name: &str, topic: &str, fields: &[&str]) -> Result<u16, ReportError> {
         let mut properties = serde_json::Map::new();
         properties.insert(

@@ -1,4 +1,5 @@
-//! What a person is to read to a document of chapters: tables, facts and sentences, each once for every medium.
+//! What a person is to read to a document of chapters: tables, facts and sentences, each once for every
+//! medium.
 
 use super::medium::{Medium, Words};
 use super::rounding::MISSING;

@@ -77,7 +77,8 @@ pub(super) fn common_time_s(curves: &Curves) -> Vec<f64> {
     let before = ((finest[0] - from) / step).round();
     let rows = before + 1.0 + ((to - finest[0]) / step).round();
     let held: usize = times().map(<[f64]>::len).sum();
-    // Curves that lie far apart would ask for rows that hold nothing: then the finest channel's own times serve.
+    // Curves that lie far apart would ask for rows that hold nothing: then the finest channel's own times
+    // serve.
     if !(rows.is_finite() && rows <= 4.0 * held as f64 + 4.0) {
         return finest.to_vec();
     }

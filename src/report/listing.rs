@@ -48,7 +48,8 @@ fn counted(name: &str, count: u64) -> String {
 /// Columns that are said in one sentence where all sources share what they hold.
 const SHARED: [&str; 3] = ["start", "length", "gaps"];
 
-/// Sources up to this many columns leave room for the rest of the table; longer ones stand under their topic or group.
+/// Sources up to this many columns leave room for the rest of the table; longer ones stand under their topic
+/// or group.
 const WIDEST_SOURCE: usize = 32;
 
 fn sources(channels: &[ListedChannel]) -> Vec<ChapterPart> {

@@ -79,7 +79,8 @@ pub enum ReportError {
     },
 }
 
-/// Frequencies, Hz, and magnitude |∫ f e^(−iωt) dt|, m/s, of a channel's unfiltered force over what is shown of it.
+/// Frequencies, Hz, and magnitude |∫ f e^(−iωt) dt|, m/s, of a channel's unfiltered force over what is shown
+/// of it.
 fn spectrum(curve: &ChannelCurve) -> (Vec<f64>, Vec<f64>) {
     let (Some(first_s), Some(last_s)) = (curve.time_s.first(), curve.time_s.last()) else {
         return (Vec::new(), Vec::new());
@@ -89,7 +90,8 @@ fn spectrum(curve: &ChannelCurve) -> (Vec<f64>, Vec<f64>) {
     magnitude(&curve.raw_m_s2, sample_rate_hz)
 }
 
-/// The table of an analysis in lines of at most `width` columns, with SGR colours that the caller strips where no terminal shows it.
+/// The table of an analysis in lines of at most `width` columns, with SGR colours that the caller strips
+/// where no terminal shows it.
 #[must_use]
 pub fn table(analysis: &Analysis, width: usize) -> String {
     as_text::text(&analysis::document(analysis), width)

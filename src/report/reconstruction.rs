@@ -183,7 +183,8 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
         .with_all((!is_planar).then(|| ChapterPart::note(single)))
 }
 
-/// Which defaults carry more than a tenth of the variance of the speed, or of k where there is no speed, and what to state in their place.
+/// Which defaults carry more than a tenth of the variance of the speed, or of k where there is no speed, and
+/// what to state in their place.
 pub(super) fn defaults_that_weigh(result: &DropResult, file: &CaskFile) -> Option<String> {
     const WEIGHS: f64 = 0.1;
     let square =

@@ -1,4 +1,5 @@
-//! What a cask file says of the test to the head of its report, its sensors, its photographs and its lines to sign.
+//! What a cask file says of the test to the head of its report, its sensors, its photographs and its lines to
+//! sign.
 
 use super::document::{Chapter, ChapterPart, Fact, PartContent};
 use super::medium::Medium;

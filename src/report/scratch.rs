@@ -1,4 +1,5 @@
-//! A folder in the system's temporary one for a file on its way to bytes; what killed runs left there is cleared away.
+//! A folder in the system's temporary one for a file on its way to bytes; what killed runs left there is
+//! cleared away.
 
 use std::fs;
 use std::path::Path;
@@ -24,7 +25,8 @@ pub(super) fn folder() -> std::io::Result<TempDir> {
     Ok(folder)
 }
 
-/// Removes the folders beside `own` that are of the same owner, no links, not touched for so long, and hold nothing but the file.
+/// Removes the folders beside `own` that are of the same owner, no links, not touched for so long, and hold
+/// nothing but the file.
 #[cfg(unix)]
 fn clear(own: &Path, stale: Duration) {
     use std::os::unix::fs::MetadataExt;

@@ -22,7 +22,8 @@ impl Tolerance {
         Self { key, name, unit, value }
     }
 
-    /// Whether the budget calls one of its inputs so: "calibration of A2" is of the "calibration of a channel".
+    /// Whether the budget calls one of its inputs so: "calibration of A2" is of the "calibration of a
+    /// channel".
     pub(super) fn is_of(&self, input: &str) -> bool {
         input.starts_with(self.name.split(" a ").next().unwrap_or(self.name))
     }
@@ -54,7 +55,8 @@ pub(super) fn is_default(file: &CaskFile, key: &str) -> bool {
     file.defaults.iter().any(|d| d.strip_prefix("tolerance.") == Some(key))
 }
 
-/// The key to state in place of a default that an input of the budget rests on; `None` where it rests on none.
+/// The key to state in place of a default that an input of the budget rests on; `None` where it rests on
+/// none.
 pub(super) fn to_state(file: &CaskFile, input: &str) -> Option<String> {
     let own = TOLERANCES.iter().find(|tolerance| tolerance.is_of(input))?;
     // Nobody knows a part of a friction that nobody states.

@@ -6,8 +6,8 @@ use crate::data::keys::{CHANNEL, FILL_IN, Key, TABLES, Takes};
 use crate::data::{ListedChannel, Listing, MOST_CHANNELS, Severity, acceleration_unit_m_s2};
 use std::fmt::Write;
 
-/// The cask file, valid TOML; in place of what only the user knows stands nan or "FILL IN": a likely value, forgotten, would pass for a
-/// known one.
+/// The cask file, valid TOML; in place of what only the user knows stands nan or "FILL IN": a likely value,
+/// forgotten, would pass for a known one.
 ///
 /// # Errors
 /// [`NoChannels`] where nothing that looks like an acceleration can be read.

@@ -1,4 +1,5 @@
-//! Words from files to words that are safe and fit the page: no control characters, wrapped, coloured by SGR codes.
+//! Words from files to words that are safe and fit the page: no control characters, wrapped, coloured by SGR
+//! codes.
 
 use crate::data::{DropResult, Finding, IssueCode, ReconstructionRung, Severity, Verdict};
 use std::fmt::Write;
@@ -84,7 +85,8 @@ pub(super) fn is_hidden(c: char) -> bool {
     turns || c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')
 }
 
-/// `text` broken between words to `width` columns, each line behind `indent` spaces; a longer word stays whole.
+/// `text` broken between words to `width` columns, each line behind `indent` spaces; a longer word stays
+/// whole.
 pub(super) fn wrap(text: &str, width: usize, indent: usize) -> String {
     let room = width.saturating_sub(indent).max(10);
     let mut broken: Vec<String> = Vec::new();
@@ -108,7 +110,8 @@ pub(super) fn wrap(text: &str, width: usize, indent: usize) -> String {
     lines(broken.into_iter().map(|line| format!("{pad}{line}")))
 }
 
-/// The last `width` characters of `text`, behind an ellipsis where some are left out: the end of a path tells most.
+/// The last `width` characters of `text`, behind an ellipsis where some are left out: the end of a path tells
+/// most.
 pub(super) fn tail(text: &str, width: usize) -> String {
     let text = printable(text);
     let length = text.chars().count();
@@ -219,7 +222,8 @@ pub(super) fn sentence(reason: &str) -> String {
     if words.is_empty() { words } else { words + "." }
 }
 
-/// The message of the first error among `codes`, else of any error, else of a warning among `codes`: why a quantity is missing.
+/// The message of the first error among `codes`, else of any error, else of a warning among `codes`: why a
+/// quantity is missing.
 pub(super) fn reason<'a>(result: &'a DropResult, codes: &[IssueCode]) -> &'a str {
     let first = |wanted: &dyn Fn(&Finding) -> bool| result.quality.iter().find(|issue| wanted(issue));
     first(&|issue| codes.contains(&issue.code) && issue.severity == Severity::Error)

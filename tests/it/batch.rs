@@ -1,4 +1,5 @@
-//! From a manifest of fixtures to the campaign: tables, shards and what is wrong with them, runs that are stopped and go on.
+//! From a manifest of fixtures to the campaign: tables, shards and what is wrong with them, runs that are
+//! stopped and go on.
 
 use crate::run::{Answer, dropcheck, fixture, read_json};
 use serde_json::Value;

@@ -1,4 +1,5 @@
-//! From small inputs that claim much, never end, or lead elsewhere, to one refusal, or to a result that is as if they did not.
+//! From small inputs that claim much, never end, or lead elsewhere, to one refusal, or to a result that is as
+//! if they did not.
 
 use crate::command_line::{Bench, at_fault};
 use crate::run::{Answer, dropcheck, fixture, read_json};
@@ -23,7 +24,8 @@ fn run(bench: &Bench, words: &str) -> Answer {
     dropcheck(words.split_whitespace().map(own))
 }
 
-/// A bench with a sound recording, `r.mcap`, its cask file, `r.toml`, and one with these photographs, `p.toml`.
+/// A bench with a sound recording, `r.mcap`, its cask file, `r.toml`, and one with these photographs,
+/// `p.toml`.
 fn bench(photos: &[&str]) -> Bench {
     let bench = Bench::new();
     let cask = fs::read_to_string(fixture("anf18-json.toml")).expect("a cask file");

@@ -1,4 +1,5 @@
-//! From a small campaign to tables, lines and scenes that say the same again, in parts too, and to what counts as missed.
+//! From a small campaign to tables, lines and scenes that say the same again, in parts too, and to what
+//! counts as missed.
 
 use crate::run::{analyze, dropcheck, number};
 use dropcheck::data::{ReconstructionRung, Verdict};

@@ -1,4 +1,5 @@
-//! From what a person types, and from files that are at fault, to exit status, messages and a clean standard output.
+//! From what a person types, and from files that are at fault, to exit status, messages and a clean standard
+//! output.
 
 use crate::run::{Answer, analyze, dropcheck, fixture};
 use std::fs;
@@ -28,7 +29,8 @@ fn cask_with(bench: &Bench, stem: &str, from: &str, to: &str) -> PathBuf {
     bench.put("cask.toml", text.replace(from, to))
 }
 
-/// One message on standard error that holds every one of `words`; exit 2, nothing on standard output, nobody panicked.
+/// One message on standard error that holds every one of `words`; exit 2, nothing on standard output, nobody
+/// panicked.
 #[track_caller]
 pub fn at_fault(answer: &Answer, words: &[&str]) {
     let Answer { status, stdout, stderr } = answer;

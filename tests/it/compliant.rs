@@ -1,8 +1,9 @@
 //! From the predictions to their distance from a simulated contact, over angle, k, friction and bodies.
 //!
-//! The simulation is run at a pace and at half of it. What is left is of first order in the pace (gravity and rotation while a pulse
-//! lasts, the depth of the crush, the speed below which a touch is rest, the step at rest), so that twice the second less the
-//! first is the limit, and their difference says whether it has been reached.
+//! The simulation is run at a pace and at half of it. What is left is of first order in the pace (gravity and
+//! rotation while a pulse lasts, the depth of the crush, the speed below which a touch is rest, the step at
+//! rest), so that twice the second less the first is the limit, and their difference says whether it has been
+//! reached.
 
 pub mod rigid;
 mod setting;
@@ -14,19 +15,23 @@ use rayon::prelude::*;
 use setting::{End, Law, Outcome, Pace, friction};
 use simulation::simulate;
 
-/// g T of the pulse is 5e-6 m/s, ω T 3e-6, the crush 4 µm: so little that several touches do not make 0.1 % of it.
+/// g T of the pulse is 5e-6 m/s, ω T 3e-6, the crush 4 µm: so little that several touches do not make 0.1 %
+/// of it.
 const PACE: Pace = Pace { loading_s: 5e-7, rest_m_s: 2e-3, rest_step_s: 2e-5 };
 
 /// A case is decided where the two paces agree this well, as a share of the speed.
 const CONVERGED: f64 = 5e-4;
 
-/// How far a prediction may be from the limit of the simulation, as a share of the speed and of the flight time.
+/// How far a prediction may be from the limit of the simulation, as a share of the speed and of the flight
+/// time.
 const AGREES: f64 = 1e-3;
 
-/// R comes down on this side of the vertical or on that: nearer to it than this cosine the simulation does not decide.
+/// R comes down on this side of the vertical or on that: nearer to it than this cosine the simulation does
+/// not decide.
 const NEAR_VERTICAL: f64 = 0.02;
 
-/// Energy may rise by the leapfrog's own error, (ω dt)²/8 = 1e-6 of what the contact stores, and by as much at rest.
+/// Energy may rise by the leapfrog's own error, (ω dt)²/8 = 1e-6 of what the contact stores, and by as much
+/// at rest.
 const ENERGY_RISE: f64 = 1e-5;
 
 const ANGLES_DEG: [f64; 9] = [2.0, 5.0, 10.0, 15.0, 25.0, 35.0, 45.0, 60.0, 75.0];
@@ -91,7 +96,8 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// Bodies that turn over and come to rest on L beyond the vertical: R strikes after a whole turn, or on the other side.
+/// Bodies that turn over and come to rest on L beyond the vertical: R strikes after a whole turn, or on the
+/// other side.
 fn turned_over() -> [Case; 4] {
     let case = |[length_m, height_m, cog_m, inertia_kg_m2]: [f64; 4],
                 [height, angle_deg, friction, k]: [f64; 4]| Case {
@@ -253,15 +259,17 @@ fn lift_off_is_the_limit_of_a_simulated_contact() {
     agrees_over_the_grid(Rung::Unilateral, NEARLY_ALL);
 }
 
-/// Left open are rough ends at rest that would have to be pulled to stick and yet sink when let go: their hops grow out of nothing,
-/// so that no limit exists. So are a few elastic drops whose last digits five impacts have used up.
+/// Left open are rough ends at rest that would have to be pulled to stick and yet sink when let go: their
+/// hops grow out of nothing, so that no limit exists. So are a few elastic drops whose last digits five
+/// impacts have used up.
 #[test]
 fn further_impacts_are_the_limit_of_a_simulated_contact() {
     agrees_over_the_grid(Rung::FurtherImpacts, 0.97);
 }
 
-/// A half-sine of the simulated length in place of its pulse, which grows as a quarter sine and springs back k times as fast. Left is a
-/// tenth of what the length changes where L sticks all the way, a third where it slides; and 0.1 and 0.3 % of the speed.
+/// A half-sine of the simulated length in place of its pulse, which grows as a quarter sine and springs back
+/// k times as fast. Left is a tenth of what the length changes where L sticks all the way, a third where it
+/// slides; and 0.1 and 0.3 % of the speed.
 #[test]
 fn a_pulse_of_finite_length_is_that_of_a_soft_contact() {
     let (mut compared, mut most_changed) = (0, 0.0_f64);

@@ -1,4 +1,5 @@
-//! From times as loggers write them (clocks, coarse steps, milliseconds) to the numbers that plain seconds give, or to a question.
+//! From times as loggers write them (clocks, coarse steps, milliseconds) to the numbers that plain seconds
+//! give, or to a question.
 
 use crate::run::{Answer, analyze, dropcheck, fixture, number};
 use serde_json::Value;
@@ -128,7 +129,8 @@ fn clock_times_give_the_numbers_of_seconds() {
         ("dd.mm.yyyy HH:MM:SS,f", ';', "Zeit", &|i| format!("{} {}", day(i), of_day(i, ','))),
     ] {
         let path = drop.table(header, mark, time);
-        // A clock of microseconds: 1e-6 s over the shortest time, the contact of 6 ms, halved by its many samples.
+        // A clock of microseconds: 1e-6 s over the shortest time, the contact of 6 ms, halved by its many
+        // samples.
         agrees(what, &drop.analyzed(&path), &plain, 1e-4);
         let form = dropcheck(["init".as_ref(), path.as_os_str()]);
         assert_eq!(form.status, 0, "{what}: {}", form.stderr);

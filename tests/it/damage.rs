@@ -1,4 +1,5 @@
-//! From every fixture, damaged in every way that files get damaged, to a result that is right, doubtful or refused.
+//! From every fixture, damaged in every way that files get damaged, to a result that is right, doubtful or
+//! refused.
 
 use crate::run::{dropcheck, fixture, number, read_json, truth};
 use dropcheck::{ingest, report};
@@ -13,7 +14,8 @@ use std::time::{Duration, Instant};
 /// So many damages of each fixture where nobody asks for more by `DROPCHECK_DAMAGES`: a few seconds in all.
 const USUAL_DAMAGES: usize = 5;
 
-/// How far beyond its 95 % interval a value under "pass" may lie, in half-widths: 1.5 is 3 standard uncertainties.
+/// How far beyond its 95 % interval a value under "pass" may lie, in half-widths: 1.5 is 3 standard
+/// uncertainties.
 const BEYOND: f64 = 1.5;
 
 /// Longer than any sound fixture takes in the slowest profile, a thousandfold: a busy machine is no hang.

@@ -1,4 +1,5 @@
-//! From the pages that a person wrote to their budget: words, length of lines, links that lead somewhere, answers that are the program's.
+//! From the pages that a person wrote to their budget: words, length of lines, links that lead somewhere,
+//! answers that are the program's.
 
 use crate::run::{analyze, dropcheck, fixture};
 use serde_json::Value;

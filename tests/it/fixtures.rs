@@ -4,11 +4,13 @@ use crate::run::{Answer, analyze, fixture, fixtures, number, truth};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Largest error of speed of an undamaged recording, relative: what a person may rely on, by the aims of this project.
-/// The simulated scenes leave 0.4 % with the ringing fitted; the rest of the 1 % is for the pulse's own length.
+/// Largest error of speed of an undamaged recording, relative: what a person may rely on, by the aims of this
+/// project. The simulated scenes leave 0.4 % with the ringing fitted; the rest of the 1 % is for the pulse's
+/// own length.
 const SPEED: f64 = 0.01;
 
-/// Largest error of k: a rod's speed at small angles changes by v0/2 per unit of k, so 0.03 is 0.2 m/s, 1 % of the speed.
+/// Largest error of k: a rod's speed at small angles changes by v0/2 per unit of k, so 0.03 is 0.2 m/s, 1 %
+/// of the speed.
 const RESTITUTION: f64 = 0.03;
 
 /// How far beyond its 95 % interval a value may lie, in half-widths: 1.5 is 3 standard uncertainties.
@@ -61,7 +63,8 @@ fn sound(stem: &str) {
     assert_eq!(answer.status, 0);
 }
 
-/// A damaged fixture: any number that is given holds the truth, or the verdict is not "pass"; the damage is named.
+/// A damaged fixture: any number that is given holds the truth, or the verdict is not "pass"; the damage is
+/// named.
 #[track_caller]
 fn damaged(stem: &str, named: &[&str]) -> Value {
     let (answer, result, truth) = run(stem);

@@ -1,4 +1,5 @@
-//! From HDF5 files that do harm, or say what is no UTF-8, to one message or what they mean, and nothing of any other file.
+//! From HDF5 files that do harm, or say what is no UTF-8, to one message or what they mean, and nothing of
+//! any other file.
 
 use crate::run::{Answer, dropcheck, fixture, fixtures};
 use hdf5_metno::types::{FixedAscii, FixedUnicode, VarLenAscii, VarLenUnicode};
@@ -23,7 +24,8 @@ fn made(fill: impl FnOnce(&File) -> hdf5_metno::Result<()>) -> Made {
     let file = File::with_options().with_fapl(|access| access.libver_earliest()).create(&written).unwrap();
     fill(&file).unwrap();
     file.close().unwrap();
-    // A program that another test starts meanwhile inherits the library's lock on the file, but not that of a copy.
+    // A program that another test starts meanwhile inherits the library's lock on the file, but not that of a
+    // copy.
     std::fs::copy(written, &path).unwrap();
     Made { folder, path }
 }
@@ -226,7 +228,8 @@ fn no_plugin_runs() {
     assert!(report.join("curves.h5").exists() && !ran.exists());
 }
 
-/// Where Linux lets a process be traced: the files that are opened after the program of the C library has begun.
+/// Where Linux lets a process be traced: the files that are opened after the program of the C library has
+/// begun.
 #[cfg(target_os = "linux")]
 #[test]
 fn no_file_is_opened_but_the_recording() {

@@ -1,4 +1,5 @@
-//! From the source text to circles between files, tuples in signatures and type names that stand twice: holds what `docs/architecture.md` says.
+//! From the source text to circles between files, tuples in signatures and type names that stand twice: holds
+//! what `docs/architecture.md` says.
 
 use crate::tidy::{code_of, module_path, root, rust_files};
 use std::collections::{BTreeMap, BTreeSet};

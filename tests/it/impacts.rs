@@ -1,4 +1,5 @@
-//! From simulated drops with and without limiters to how often the intervals of both impacts' numbers hold the truth.
+//! From simulated drops with and without limiters to how often the intervals of both impacts' numbers hold
+//! the truth.
 
 #![allow(
     clippy::cast_precision_loss,
@@ -22,7 +23,8 @@ const LIMITER_S: f64 = 0.012;
 /// The truth's grid, s: a hundredth of the shortest pulse.
 const GRID_S: f64 = 2e-5;
 
-/// Horizontal and vertical velocity of the lower corner of an end, and its height, by the simulation's own state.
+/// Horizontal and vertical velocity of the lower corner of an end, and its height, by the simulation's own
+/// state.
 fn corner(scene: &Scene, step: &MotionStep, end: usize) -> [f64; 3] {
     let [_, z, inclination, x_rate, z_rate, turning, ..] = step.state;
     let cask = &scene.cask;
@@ -32,7 +34,8 @@ fn corner(scene: &Scene, step: &MotionStep, end: usize) -> [f64; 3] {
     [x_rate - turning * arm[1], z_rate + turning * arm[0], z + arm[1]]
 }
 
-/// What a perfect measurement would tabulate of the impact of an end; `None` where it does not leave within the simulation.
+/// What a perfect measurement would tabulate of the impact of an end; `None` where it does not leave within
+/// the simulation.
 fn truth(
     scene: &Scene,
     motion: &SimulatedMotion,
@@ -131,14 +134,16 @@ fn stated(table: &ImpactTable) -> BTreeMap<&'static str, Option<Estimate>> {
     ])
 }
 
-/// Of each channel what is stated of its pulse in the impact of `end`, and what a perfect sensor would read, by name.
+/// Of each channel what is stated of its pulse in the impact of `end`, and what a perfect sensor would read,
+/// by name.
 fn channel_pulses(
     scene: &Scene,
     motion: &SimulatedMotion,
     end: usize,
     tables: &[ImpactTable; 2],
 ) -> Vec<(&'static str, Option<Estimate>, f64)> {
-    // The stretch that the program states, by the simulation's clock: which pulse of a ringing cask is whose is a matter of words.
+    // The stretch that the program states, by the simulation's clock: which pulse of a ringing cask is whose
+    // is a matter of words.
     let seconds = |estimate: Option<Estimate>| estimate.map(|e| e.value / (1.0 + scene.clock_error));
     let [start, next] = [end, end + 1].map(|i| seconds(tables.get(i)?.start).map(|s| s - scene.before_s));
     let Some(touch_s) = start else { return Vec::new() };

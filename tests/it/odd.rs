@@ -1,6 +1,8 @@
-//! From odd files, each with what a cask file asks of it, to what reading and listing say: the words of `fixtures/odd/outcomes.txt`.
+//! From odd files, each with what a cask file asks of it, to what reading and listing say: the words of
+//! `fixtures/odd/outcomes.txt`.
 //!
-//! `BLESS=1 cargo test --test it -- odd::` writes the outcomes anew; read the difference before committing it.
+//! `BLESS=1 cargo test --test it -- odd::` writes the outcomes anew; read the difference before committing
+//! it.
 
 use crate::run::fixtures;
 use crate::same::{cask, hash, hash_of, placeless, told};

@@ -139,7 +139,8 @@ fn limits_of_angle_restitution_and_friction_are_predicted() {
     // [P] Table 3, by an independent program to four digits.
     assert!((speed("--k 1 --contact rough") - 25.0376).abs() < 5e-5);
     assert!(speed("--k 0 --contact rough") < speed("--k 1 --contact rough"));
-    // μ = 0 is smooth, μ above what sticking needs (0.624 for the rod at 15°) is rough: the same numbers, bit for bit.
+    // μ = 0 is smooth, μ above what sticking needs (0.624 for the rod at 15°) is rough: the same numbers, bit
+    // for bit.
     for (coefficient, law) in [("0", "smooth"), ("0.7", "rough")] {
         let by = |contact: &str| speed(&format!("--k 0.5 --contact {contact}")).to_bits();
         assert_eq!(by(coefficient), by(law), "{coefficient} {law}");

@@ -1,4 +1,5 @@
-//! From any body, angle, k and friction to what every prediction must obey: finite numbers, momentum, energy, and the rung below.
+//! From any body, angle, k and friction to what every prediction must obey: finite numbers, momentum, energy,
+//! and the rung below.
 
 use crate::compliant::rigid::{Motion, Point, Vector};
 use dropcheck::data::{Body, BodyModel, Contact, Drop, FlightRegime, GRAZE_SHARE, Prediction, Rung};
@@ -9,14 +10,16 @@ use proptest::test_runner::{Config, RngSeed};
 /// Round-off of a chain of a hundred operations, as a share of the quantity's scale.
 const ROUND_OFF: f64 = 1e-12;
 
-/// A rest on the target is integrated in steps of 0.01 rad by a method of fourth order: 1e-8, and a hundred times that for a body that
-/// turns slowly at first or about an end far from its centre.
+/// A rest on the target is integrated in steps of 0.01 rad by a method of fourth order: 1e-8, and a hundred
+/// times that for a body that turns slowly at first or about an end far from its centre.
 const INTEGRATED: f64 = 1e-6;
 
-/// Friction this large is rough, but where a held end passes through N = 0: there it slips, and may go on with T alone.
+/// Friction this large is rough, but where a held end passes through N = 0: there it slips, and may go on
+/// with T alone.
 const LARGE: f64 = 1e6;
 
-/// The slap-down time is a root found to 1e-12 of its scale or so, and velocities change by g and ω² l times that.
+/// The slap-down time is a root found to 1e-12 of its scale or so, and velocities change by g and ω² l times
+/// that.
 const ROOT: f64 = 1e-9;
 
 /// A thin uniform rod of the length and mass of `body`.
@@ -53,7 +56,8 @@ fn drops() -> impl Strategy<Value = Drop> {
     (angle_deg, height_m).prop_map(|(angle_deg, height_m)| Drop::of_height(height_m, angle_deg.to_radians()))
 }
 
-/// k with its ends. A rebound below 0.3 mm/s counts as rest, whatever the rung: k below that of the slowest drop is left out.
+/// k with its ends. A rebound below 0.3 mm/s counts as rest, whatever the rung: k below that of the slowest
+/// drop is left out.
 fn restitutions() -> impl Strategy<Value = f64> {
     prop_oneof![6 => 1e-3..1.0_f64, 2 => Just(0.0), 1 => Just(1.0), 1 => 1e-3..1e-2_f64]
 }
@@ -87,11 +91,12 @@ fn numbers(prediction: &Prediction) -> Vec<(&'static str, f64)> {
     .collect()
 }
 
-/// A held body that starts near its balance crawls at first, rad/s, and its time is a quadrature over almost a pole: it is taken to
-/// this share, and from slower starts not at all.
+/// A held body that starts near its balance crawls at first, rad/s, and its time is a quadrature over almost
+/// a pole: it is taken to this share, and from slower starts not at all.
 const CRAWL: (f64, f64) = (1e-2, 1e-3);
 
-/// Where two predictions for the same drop differ by more than `share` of each quantity's size (at least 1 in its unit).
+/// Where two predictions for the same drop differ by more than `share` of each quantity's size (at least 1 in
+/// its unit).
 fn difference(a: &Prediction, b: &Prediction, share: f64) -> Option<String> {
     let (a_numbers, b_numbers) = (numbers(a), numbers(b));
     let same = a_numbers.len() == b_numbers.len()
@@ -216,7 +221,8 @@ proptest! {
         }
     }
 
-    /// Back from R along the flight to the first impact: its impulses obey momentum, friction and restitution.
+    /// Back from R along the flight to the first impact: its impulses obey momentum, friction and
+    /// restitution.
     #[test]
     fn the_first_impact_balances(body in bodies(), drop in drops(), contact in contacts(), k in 1e-3..=1.0_f64) {
         for rung in [Rung::Rod, Rung::Body, Rung::Friction, Rung::Unilateral] {

@@ -62,7 +62,8 @@ fn what_is_said_of_the_test_stands_in_the_record_and_what_was_seen_is_held_again
     std::fs::write(folder.path().join("before.png"), pixel).expect("room");
     std::fs::write(folder.path().join("words.png"), "no picture").expect("room");
     let test = "[test]\nid = \"SD-14\"\ndate = 2026-11-22T09:40:00+01:00\nphotos = [\"before.png\"]\n[test.more]\nHook = 4\n";
-    // 20.62 ± 0.40 m/s: (20.62 − 20.4)/√(0.40² + 0.30²) = 0.45; k 0.551 ± 0.040: (0.551 − 0.7)/√(0.040² + 0.030²) = −3.0.
+    // 20.62 ± 0.40 m/s: (20.62 − 20.4)/√(0.40² + 0.30²) = 0.45; k 0.551 ± 0.040: (0.551 − 0.7)/√(0.040² +
+    // 0.030²) = −3.0.
     let seen = "[observed]\nslap_down_speed_m_s = { value = 20.4, u95 = 0.3, by = \"video\" }\nk = { value = 0.7, u95 = 0.03 }\n";
     let result = with(&format!("{test}{seen}")).json();
     assert_eq!(result["test"]["id"], "SD-14");

@@ -55,8 +55,8 @@ fn rod(length_m: f64) -> Body {
     }
 }
 
-/// The simulation's pulse of 4 µs leaves it 6e-5 of the speed from the limit of no duration, and the times late by at most
-/// two pulses; 2e-4 of the impact velocity (and 20 µs) is three times that.
+/// The simulation's pulse of 4 µs leaves it 6e-5 of the speed from the limit of no duration, and the times
+/// late by at most two pulses; 2e-4 of the impact velocity (and 20 µs) is three times that.
 #[test]
 fn predictions_agree_with_the_simulated_impact() {
     let file = reference("predictions.json");
@@ -87,14 +87,16 @@ fn predictions_agree_with_the_simulated_impact() {
             number(case, "/slap_down/horizontal_m_s"),
             tolerance_m_s,
         );
-        // Two pulses and 2e-4 of a flight of at most 0.5 s: the time is the height over the speeds compared above.
+        // Two pulses and 2e-4 of a flight of at most 0.5 s: the time is the height over the speeds compared
+        // above.
         near("time", told.flight_time_s, number(case, "/slap_down/after_first_impact_s"), 2e-5 + 2e-4 * 0.5);
         compared += 1;
     }
     assert!(compared > 250, "only {compared} cases compared");
 }
 
-/// Slap-down speed of an elastic, rough rod by equation (6) with `first_term_m` for the height of S, bisected in time.
+/// Slap-down speed of an elastic, rough rod by equation (6) with `first_term_m` for the height of S, bisected
+/// in time.
 fn speed_by_equation_6(length_m: f64, v0: f64, first_term_m: f64) -> f64 {
     let (angle, half) = (15.0_f64.to_radians(), length_m / 2.0);
     let omega = 3.0 * v0 * angle.cos() / length_m;
@@ -109,8 +111,9 @@ fn speed_by_equation_6(length_m: f64, v0: f64, first_term_m: f64) -> f64 {
     (vx + omega * half * turned.sin()).hypot(vz - 9.81 * above - omega * half * turned.cos())
 }
 
-/// Table 3 is met by the library and by equation (6) with the sine; with the cosine, as printed, ANF-18 has 22.5 m/s.
-/// The reference is extrapolated to a pulse of no duration: what is left is the simulation's step, below 1e-5 of the speed.
+/// Table 3 is met by the library and by equation (6) with the sine; with the cosine, as printed, ANF-18 has
+/// 22.5 m/s. The reference is extrapolated to a pulse of no duration: what is left is the simulation's step,
+/// below 1e-5 of the speed.
 #[test]
 fn table_3_is_met_with_the_sine_and_not_with_the_cosine() {
     let v0 = (2.0_f64 * 9.81 * 9.0).sqrt();
@@ -140,7 +143,8 @@ const TABLE_3: [[&str; 4]; 4] = [
     ["vhlw", "≈ 20", "→ 0", "rough, k = 0: 20"],
 ];
 
-/// Table 3 as the program predicts it beside the measured column: `docs/measured/table-3.md` is what it says, and `BLESS=1` writes it anew.
+/// Table 3 as the program predicts it beside the measured column: `docs/measured/table-3.md` is what it says,
+/// and `BLESS=1` writes it anew.
 #[test]
 fn table_3_stands_beside_what_was_measured() {
     let speed = |stem: &str, model: &str, contact: &str, k: &str| {
@@ -149,7 +153,8 @@ fn table_3_stands_beside_what_was_measured() {
         let told = dropcheck(words.map(Into::into).into_iter().chain([cask.into_os_string()])).json();
         let row = list(&told, "predictions").iter().find(|row| row["model"] == model).cloned();
         let row = row.unwrap_or_else(|| panic!("no {model} in {told}"));
-        // The paper's k = 0 holds the end on the target; where that would need a pull the program's speed is that of the flight.
+        // The paper's k = 0 holds the end on the target; where that would need a pull the program's speed is
+        // that of the flight.
         let kept = number(&row, "/closed_form_speed_m_s").filter(|_| model == "rod");
         kept.or_else(|| number(&row, "/slap_down_speed_m_s")).expect("a slap-down")
     };
@@ -196,8 +201,8 @@ fn sampled(seconds: f64, rate_hz: f64, shape: impl Fn(f64) -> f64) -> Vec<f64> {
     times.take_while(|t| *t < seconds - 0.5 / rate_hz).map(shape).collect()
 }
 
-/// The reference (sections in direct form) rounds at 1e-8 of the peak at the lowest cut-off over the rate; ends lie 70 ms away,
-/// 39 time constants of the slowest filter.
+/// The reference (sections in direct form) rounds at 1e-8 of the peak at the lowest cut-off over the rate;
+/// ends lie 70 ms away, 39 time constants of the slowest filter.
 #[test]
 fn filters_agree_with_scipy() {
     use std::f64::consts::TAU;
@@ -228,8 +233,9 @@ fn filters_agree_with_scipy() {
     }
 }
 
-/// 32768 samples at 40960 Hz put every reference frequency on a bin (1.25 Hz apart). A kink between two samples costs at
-/// most dt²/8 of its change of slope; the shapes change slope by 1.3e6 and 1.9e5 m/s³ in all.
+/// 32768 samples at 40960 Hz put every reference frequency on a bin (1.25 Hz apart). A kink between two
+/// samples costs at most dt²/8 of its change of slope; the shapes change slope by 1.3e6 and 1.9e5 m/s³ in
+/// all.
 #[test]
 fn spectra_agree_with_the_integral() {
     use std::f64::consts::{PI, TAU};

@@ -1,4 +1,5 @@
-//! A recording and its cask file changed in ways that mean nothing, or known things, to a result that does not change, or changes so.
+//! A recording and its cask file changed in ways that mean nothing, or known things, to a result that does
+//! not change, or changes so.
 
 use crate::run::fixture;
 use dropcheck::data::{CaskFile, Channel, DropResult, Recording, Samples, Verdict};

@@ -1,4 +1,5 @@
-//! From names and sizes made to harm, full disks and killed runs to reports that are whole, clean and in their place.
+//! From names and sizes made to harm, full disks and killed runs to reports that are whole, clean and in
+//! their place.
 
 use crate::command_line::{Bench, at_fault};
 use crate::run::{dropcheck, fixture};
@@ -222,7 +223,8 @@ mod interrupted {
 
     type Content = Vec<(PathBuf, Vec<u8>)>;
 
-    /// In the folder around `out`, whose name is that of all: a report holds the words and the date of its run.
+    /// In the folder around `out`, whose name is that of all: a report holds the words and the date of its
+    /// run.
     fn started(stem: &str, recording: &str, out: &Path) -> Child {
         let around = out.parent().expect("a parent");
         fs::create_dir_all(around).expect("a folder");
@@ -261,7 +263,8 @@ mod interrupted {
         let runs = std::env::var("DROPCHECK_KILLS").ok().and_then(|text| text.parse().ok()).unwrap_or(12_u32);
         let (mut kept, mut replaced) = (0, 0);
         for run in 0..runs {
-            // The last report is replaced, not removed: a note whose other name is gone would be kept where a killed run left it.
+            // The last report is replaced, not removed: a note whose other name is gone would be kept where a
+            // killed run left it.
             started(ONE.0, ONE.1, &out).wait().expect("a run");
             fs::write(out.join("notes.txt"), "mine").expect("a note");
             let mut child = started(OTHER.0, OTHER.1, &out);
@@ -305,7 +308,8 @@ mod interrupted {
         let out = bench.0.path().join("place/report");
         started(ONE.0, ONE.1, &out).wait().expect("a run");
         let old = content(&out);
-        // A limit on the size of a file is what a full disk is to whoever writes; the HDF5 library has its own scratch file.
+        // A limit on the size of a file is what a full disk is to whoever writes; the HDF5 library has its
+        // own scratch file.
         for blocks in [1, 16, 60, 200] {
             let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
             let answer = Command::new("sh")

@@ -1,8 +1,10 @@
-//! From fixtures, corpus and six hundred scenes to what the program says of each: the same as when `tests/same` was written.
+//! From fixtures, corpus and six hundred scenes to what the program says of each: the same as when
+//! `tests/same` was written.
 //!
-//! A change that moves code and no result passes; one that changes results shows which. `BLESS=1 cargo test --test it same` writes the
-//! tables anew and keeps the whole answers in the target folder: a later run shows against them what differs in each. To see what a change
-//! did, bless at the commit before it. Every scene is held with `cargo test --release --test it same -- --ignored`.
+//! A change that moves code and no result passes; one that changes results shows which. `BLESS=1 cargo test
+//! --test it same` writes the tables anew and keeps the whole answers in the target folder: a later run shows
+//! against them what differs in each. To see what a change did, bless at the commit before it. Every scene is
+//! held with `cargo test --release --test it same -- --ignored`.
 
 use crate::run::{analyze, dropcheck, fixture, fixtures};
 use crate::stored::stored;
@@ -28,8 +30,8 @@ const OTHER_MACHINE: f64 = 1e-6;
 /// Lines of a table that a failure shows.
 const SHOWN: usize = 12;
 
-/// What the program says of one recording, without the search for a usual slip: that takes fifteen more analyses of each damaged scene, and the
-/// fixtures hold it.
+/// What the program says of one recording, without the search for a usual slip: that takes fifteen more
+/// analyses of each damaged scene, and the fixtures hold it.
 pub struct Said {
     /// Names the recording.
     pub name: String,

@@ -1,4 +1,5 @@
-//! Contacts that last longer than the flight after them, and flights far longer than the angle lets expect, to results that are right or doubtful.
+//! Contacts that last longer than the flight after them, and flights far longer than the angle lets expect,
+//! to results that are right or doubtful.
 
 use dropcheck::data::Verdict;
 use dropcheck::lab::in_memory;
@@ -6,7 +7,8 @@ use dropcheck::lab::in_memory;
 /// Angle, °; pulse of L, ms; its k; frequencies of the modes, Hz; damping.
 type Drop<'a> = (f64, f64, f64, &'a [f64], f64);
 
-/// Drawn at random from angles of 3 to 9°, pulses of 6 to 20 ms and modes from 28 Hz on; each once passed with a speed 10 to 15 % off.
+/// Drawn at random from angles of 3 to 9°, pulses of 6 to 20 ms and modes from 28 Hz on; each once passed
+/// with a speed 10 to 15 % off.
 const DROPS: [Drop; 6] = [
     (3.070, 12.504, 0.699, &[48.315], 0.042),
     (4.296, 15.353, 0.669, &[35.766], 0.008),
@@ -63,7 +65,8 @@ fn a_contact_that_was_not_over_is_no_flight() {
 fn a_slap_down_later_than_the_angle_lets_expect_is_found() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("scene.toml");
-    // A short cask with a wide section hardly turns when it is struck from 58°: R comes down after half a second.
+    // A short cask with a wide section hardly turns when it is struck from 58°: R comes down after half a
+    // second.
     let text = scene_text((58.0, 3.0, 0.15, &[], 0.02))
         .replace("4466.0\nlength_m = 5.512\nheight_m = 0.792", "2218.0\nlength_m = 1.2246\nheight_m = 0.556")
         .replace("position_m = 5.362", "position_m = 1.075");

@@ -1,4 +1,5 @@
-//! Forces of one and of several humps, and sensors that ring behind them, to contacts that begin and end where the force does.
+//! Forces of one and of several humps, and sensors that ring behind them, to contacts that begin and end
+//! where the force does.
 
 use crate::run::fixture;
 use dropcheck::data::{CaskFile, Contact, DropResult, Estimate, Recording, Samples, Verdict};
@@ -27,8 +28,8 @@ struct Simulated {
     k: f64,
 }
 
-/// A rigid body that falls on a smooth target: a given force at its first end, then a free flight, then a pulse of 4 ms at its second end. The
-/// recording is the fixture's with these samples.
+/// A rigid body that falls on a smooth target: a given force at its first end, then a free flight, then a
+/// pulse of 4 ms at its second end. The recording is the fixture's with these samples.
 fn simulated(humps: Humps, rings: f64) -> (Recording, CaskFile, Simulated) {
     let mut file = ingest::cask_file(&fixture("anf18-german.toml")).expect("a cask file");
     let mut recording = ingest::read(&fixture("anf18-german.csv"), &file, &|_| ()).expect("a recording");
@@ -133,7 +134,8 @@ fn no_event_comes_before_the_one_that_leads_to_it() {
     let (mut recording, mut file, _) = simulated(&[(0.0, 5.0, 1.0)], 0.0);
     file.drop.impact_velocity_m_s = 4.0;
     file.drop.impact_velocity_given = true;
-    // A body that falls flat into water and far below on a stop, its second end 0.7 ms before the first, one sensor slow, the other fast.
+    // A body that falls flat into water and far below on a stop, its second end 0.7 ms before the first, one
+    // sensor slow, the other fast.
     let read = |t_s: f64| match t_s {
         t if t < 0.5 => 9.81,
         t if t < 0.91 => 0.0,

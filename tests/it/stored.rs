@@ -1,4 +1,5 @@
-//! From a packed file of `fixtures`, JSON lines, to the bytes of its cases by their names: what `fixtures/cases.py` writes.
+//! From a packed file of `fixtures`, JSON lines, to the bytes of its cases by their names: what
+//! `fixtures/cases.py` writes.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;

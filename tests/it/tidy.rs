@@ -1,4 +1,5 @@
-//! From the source text to who uses whom: holds the layers of `docs/architecture.md`, the length and the first line of files.
+//! From the source text to who uses whom: holds the layers of `docs/architecture.md`, the length and the
+//! first line of files.
 
 use dropcheck::data::CODES;
 use std::collections::BTreeSet;
@@ -172,7 +173,8 @@ fn the_command_line_uses_no_stage_of_the_analysis() {
 #[test]
 fn recordings_are_opened_in_one_place() {
     let owners = ["ingest", "cli", "main"];
-    // The HDF5 library writes to files only; ways are timed from theirs on, and the own recordings are read like a site's.
+    // The HDF5 library writes to files only; ways are timed from theirs on, and the own recordings are read
+    // like a site's.
     let through_a_file = ["curves_h5", "ways", "references"];
     for file in rust_files(&root().join("src")) {
         let path = module_path(&file);
@@ -207,6 +209,23 @@ fn files_are_short_and_say_what_they_do() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Characters of a line of comment; one with the number of an equation at its end may be longer.
+const WIDEST_COMMENT: usize = 110;
+
+#[test]
+fn comments_fit_a_window() {
+    let mut wide = Vec::new();
+    for file in ["src", "tests", "benches", "examples"].map(|name| rust_files(&root().join(name))).concat() {
+        let text = fs::read_to_string(&file).expect("UTF-8");
+        let is_wide = |line: &&str| {
+            let is_comment = line.trim_start().starts_with("//") && !line.contains("   (");
+            is_comment && !line.contains("//! |") && line.chars().count() > WIDEST_COMMENT
+        };
+        wide.extend(text.lines().filter(is_wide).map(|line| format!("{}: {line}", file.display())));
+    }
+    assert!(wide.is_empty(), "{}", wide.join("\n"));
 }
 
 #[test]

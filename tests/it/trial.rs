@@ -1,4 +1,5 @@
-//! The quick trial's accuracy figures, seeded, to the bounds that keep a change from losing accuracy. Times are not looked at.
+//! The quick trial's accuracy figures, seeded, to the bounds that keep a change from losing accuracy. Times
+//! are not looked at.
 
 use dropcheck::lab::data::{TrialPoint, TrialRequest};
 
@@ -22,9 +23,10 @@ fn point<'a>(part: &'a [TrialPoint], method: &str, class: &str) -> &'a TrialPoin
 fn the_program_is_near_from_file_to_answer_and_what_it_leaves_out_is_not() {
     let part = run("ways");
     for found in defaults(&part) {
-        // Measured on simulated drops by another program: planar motion with the modes fitted is within 0.4 % of speed and 0.011 of k. Noise of 5 g
-        // leaves 0.055 m/s on each step; three times that on both over 16 m/s is 1.5 %, over v0 of 13.3 m/s 0.018 of k. A length off by 1 % is 1 % of
-        // what turns, which is more than what strikes; of what is cut off, only the interval knows.
+        // Measured on simulated drops by another program: planar motion with the modes fitted is within 0.4 %
+        // of speed and 0.011 of k. Noise of 5 g leaves 0.055 m/s on each step; three times that on both over
+        // 16 m/s is 1.5 %, over v0 of 13.3 m/s 0.018 of k. A length off by 1 % is 1 % of what turns, which is
+        // more than what strikes; of what is cut off, only the interval knows.
         let is_speed = found.family.starts_with("speed");
         let bound = match &found.class[..] {
             "5 g of noise" => [1.5, 0.018],
@@ -35,7 +37,8 @@ fn the_program_is_near_from_file_to_answer_and_what_it_leaves_out_is_not() {
         assert!(found.p95_error < bound[usize::from(!is_speed)], "{found:?}");
         assert!(found.promised.is_some() && found.held > Some(0.9), "{found:?}");
     }
-    // Fig. 13's way leaves gravity out: -3.4 to -1.8 % without any ringing, worse with it; the mean of what rings is off.
+    // Fig. 13's way leaves gravity out: -3.4 to -1.8 % without any ringing, worse with it; the mean of what
+    // rings is off.
     for class in ["clean", "one mode, 2 to 5 periods", "slow mode, 0.7 to 1.2 periods"] {
         assert!(point(&part, "single channels (paper)", class).median_error > 1.0);
         assert!(point(&part, "filter first, CFC 180", class).median_error > 1.0);
@@ -64,10 +67,12 @@ fn the_highest_rung_of_the_prediction_meets_the_simulation() {
     let part = run("prediction");
     let highest = |class| point(&part, "body, further impacts", class).median_error;
     for class in ["thin rod, rough", "body, rough", "body, friction 0.3"] {
-        // A contact of 50 µs turns the cask by 3e-4 rad and gives it 5e-4 m/s; together below 0.05 % of the speed.
+        // A contact of 50 µs turns the cask by 3e-4 rad and gives it 5e-4 m/s; together below 0.05 % of the
+        // speed.
         assert!(highest(class) < 0.05, "{class}: {}", highest(class));
     }
-    // Twenty times as long a contact where L lands again; every touch is an impact to a stiff end, and a graze none to the program.
+    // Twenty times as long a contact where L lands again; every touch is an impact to a stiff end, and a
+    // graze none to the program.
     let stiff = point(&part, "body, every touch an impact", "first end lands once more, rough");
     assert!(stiff.median_error < 1.0, "{stiff:?}");
     // What each rung adds is missed by percents on the rung below.
@@ -79,8 +84,8 @@ fn the_highest_rung_of_the_prediction_meets_the_simulation() {
     ] {
         assert!(point(&part, rung, class).median_error > 1.0, "{rung}, {class}");
     }
-    // Grazes shallower than 1 % of the length are no impacts to the program: L sinks by 55 mm at most, and what it falls with by that,
-    // √(2 · 9.81 · 0.055) = 1 m/s, is at most a tenth of R's speed.
+    // Grazes shallower than 1 % of the length are no impacts to the program: L sinks by 55 mm at most, and
+    // what it falls with by that, √(2 · 9.81 · 0.055) = 1 m/s, is at most a tenth of R's speed.
     assert!(highest("k to 0, rough") < 10.0);
     assert!(highest("k to 0, rough") < point(&part, "body with friction", "k to 0, rough").median_error);
 }

@@ -1,4 +1,5 @@
-//! The linear propagation of the uncertainty against draws of its inputs (JCGM 101), and the ladder on a committed recording.
+//! The linear propagation of the uncertainty against draws of its inputs (JCGM 101), and the ladder on a
+//! committed recording.
 
 use crate::run::{fixture, truth};
 use dropcheck::data::{AssumedFriction, Contact, End, ReconstructionRung, Recording, Samples, Verdict};
@@ -20,7 +21,7 @@ fn the_linear_propagation_agrees_with_draws_of_the_inputs() {
     let reach = stages::Reach::of(&file.cask, &file.drop);
     let (signals, _) = stages::condition(&recording, &event, &reach, file.corrections);
     let setup = stages::sticking(&file);
-    let measured = stages::Basis {
+    let measured = stages::FitData {
         signals: &signals,
         flight: result.flight.as_ref().expect("a flight"),
         events: &result.events,
@@ -75,7 +76,8 @@ fn the_clock_contributes_what_another_rate_changes() {
     assert_eq!(clock.standard_uncertainty, "0.025 %");
     let u = file.tolerances.clock / 2.0;
     let k_by_clock = clock.k.expect("k");
-    // All that L gains in the contact is in proportion to it: k v0 + v0. That the cask turns by as much more meanwhile adds 1e-3 of it.
+    // All that L gains in the contact is in proportion to it: k v0 + v0. That the cask turns by as much more
+    // meanwhile adds 1e-3 of it.
     assert!((k_by_clock / ((1.0 + k.value) * u) - 1.0).abs() < 2e-3, "{k_by_clock}");
     let share = 0.02;
     let ((k_slow, slow, _), (k_fast, fast, _)) =
@@ -83,7 +85,8 @@ fn the_clock_contributes_what_another_rate_changes() {
     for (slow, fast, by_clock) in [(k_slow, k_fast, clock.k), (slow, fast, clock.speed_m_s)] {
         let (change, expected) =
             ((slow.value - fast.value).abs() * u / (2.0 * share), by_clock.expect("a share"));
-        // At another rate an event lies on another part of a sample: 0.1 ms of fall are 1 mm/s of 260, and 4e-5 of 0.054.
+        // At another rate an event lies on another part of a sample: 0.1 ms of fall are 1 mm/s of 260, and
+        // 4e-5 of 0.054.
         assert!((change / expected - 1.0).abs() < 0.02, "{change} by rates, {expected} by slopes");
     }
 }
@@ -93,7 +96,8 @@ fn a_rate_off_by_less_than_the_stated_tolerance_leaves_the_truth_in_its_interval
     let mut file = ingest::cask_file(&fixture("anf18-json.toml")).expect("a cask file");
     let recording = ingest::read(&fixture("anf18-json.mcap"), &file, &|_| ()).expect("a recording");
     let truth = truth("anf18-json");
-    // Off by a share, with a stated tolerance in percent: whether the intervals of k and speed hold the truth.
+    // Off by a share, with a stated tolerance in percent: whether the intervals of k and speed hold the
+    // truth.
     let mut holds = |share: f64, clock_percent: f64| {
         file.tolerances.clock = clock_percent / 100.0;
         let result = dropcheck::analyze(&by_a_slow_clock(&recording, share), &file).result;

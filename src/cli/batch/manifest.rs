@@ -1,4 +1,5 @@
-//! A manifest, a CSV with a row a recording, to the tests that it lists; and a folder of recordings to a manifest to fill in.
+//! A manifest, a CSV with a row a recording, to the tests that it lists; and a folder of recordings to a
+//! manifest to fill in.
 
 use super::paths::{in_folder, stem};
 use super::planned::{PlannedTest, cask_of};
@@ -11,7 +12,8 @@ const ID: &str = "id";
 const RECORDING: &str = "recording";
 const CASK: &str = "cask";
 
-/// The tests of a manifest; `cask` is the cask file of rows that name none and have none beside their recording.
+/// The tests of a manifest; `cask` is the cask file of rows that name none and have none beside their
+/// recording.
 pub fn read(path: &Path, cask: Option<&Path>) -> miette::Result<Vec<PlannedTest>> {
     let name = path.display();
     let bytes = bytes_of(path, 64)
@@ -134,7 +136,8 @@ fn delimiter(text: &str) -> u8 {
     [b'\t', b';', b','].into_iter().max_by_key(count).unwrap_or(b',')
 }
 
-/// A manifest of the recordings of a folder, each with the cask file beside it, and a column for what differs most.
+/// A manifest of the recordings of a folder, each with the cask file beside it, and a column for what differs
+/// most.
 pub fn template(folder: &Path) -> miette::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let fault = |error: csv::Error| miette::miette!("the manifest could not be written: {error}");

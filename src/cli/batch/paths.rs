@@ -69,7 +69,8 @@ fn has_ending(path: &Path) -> bool {
     ending.is_some_and(|ending| RECORDING_ENDINGS.contains(&ending.as_str()))
 }
 
-/// Says on standard error which files of a folder were not taken for recordings, by their endings; cask files and truths lie beside them.
+/// Says on standard error which files of a folder were not taken for recordings, by their endings; cask files
+/// and truths lie beside them.
 fn tell_left_out(folder: &Path, others: &[PathBuf]) {
     let endings = others.iter().filter_map(|path| path.extension()?.to_str());
     let mut endings: Vec<&str> =

@@ -1,4 +1,5 @@
-//! A manifest, or paths and a cask file, to what is to be analysed: one entry a recording, in the order in which the campaign has them.
+//! A manifest, or paths and a cask file, to what is to be analysed: one entry a recording, in the order in
+//! which the campaign has them.
 
 use super::manifest;
 use super::paths::{recordings, stem};
@@ -30,7 +31,8 @@ pub struct CampaignPlan {
 }
 
 impl CampaignPlan {
-    /// Of a manifest, or of paths, with the cask file of those that have none, and the corrections that are switched off.
+    /// Of a manifest, or of paths, with the cask file of those that have none, and the corrections that are
+    /// switched off.
     pub fn of(
         paths: &[PathBuf],
         manifest: Option<&Path>,
@@ -140,7 +142,8 @@ fn name_apart(tests: &mut [PlannedTest]) {
     }
 }
 
-/// The name, or the name with the first number with which it is not taken; `tried` has the last number of each name.
+/// The name, or the name with the first number with which it is not taken; `tried` has the last number of
+/// each name.
 fn free(name: &str, taken: &HashSet<String>, tried: &mut HashMap<String, u64>) -> String {
     let tried = tried.entry(name.to_owned()).or_default();
     loop {

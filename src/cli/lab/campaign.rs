@@ -1,4 +1,5 @@
-//! `validate --campaign`: random scenes, one after the other, to lines, a CSV and tables; and the shards of a campaign to the same.
+//! `validate --campaign`: random scenes, one after the other, to lines, a CSV and tables; and the shards of a
+//! campaign to the same.
 
 use super::super::Ending;
 use super::super::lines::{self, LineRecord};
@@ -36,7 +37,8 @@ pub struct Parts {
     resume: bool,
 }
 
-/// Draws the scenes and writes what is asked for: lines, the files of the folder `out`, the tables in the document `into`.
+/// Draws the scenes and writes what is asked for: lines, the files of the folder `out`, the tables in the
+/// document `into`.
 pub fn run(
     request: &CampaignRequest,
     parts: &Parts,

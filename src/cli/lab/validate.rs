@@ -1,4 +1,5 @@
-//! `validate`: the acceptance of the program; or a campaign of random scenes with known truth to tables of how far off the analysis is.
+//! `validate`: the acceptance of the program; or a campaign of random scenes with known truth to tables of
+//! how far off the analysis is.
 
 use super::super::Ending;
 use super::super::output::{Folder, print};
@@ -44,7 +45,8 @@ pub struct Arguments {
     /// Try the ways of working on fewer scenes, within a minute
     #[arg(long, conflicts_with = "what")]
     quick: bool,
-    /// Folder of your own reference recordings, with their expected values in reference.toml; they are part of what is accepted
+    /// Folder of your own reference recordings, with their expected values in reference.toml; they are part
+    /// of what is accepted
     #[arg(long, value_name = "DIR", conflicts_with = "what")]
     reference: Option<PathBuf>,
     /// Seed of everything random
@@ -56,11 +58,12 @@ pub struct Arguments {
     /// What is stated is exactly true: no deviations within the tolerances
     #[arg(long, requires = "what")]
     exact: bool,
-    /// Folder for the page, pictures and tables of the trial, for campaign.csv and campaign.md, or for the files of the scene
+    /// Folder for the page, pictures and tables of the trial, for campaign.csv and campaign.md, or for the
+    /// files of the scene
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Document in which the result replaces what stands between the lines `<!-- trial: begin -->` and `<!-- trial: end -->`, or of a
-    /// campaign between `<!-- campaign: begin -->` and `<!-- campaign: end -->`
+    /// Document in which the result replaces what stands between the lines `<!-- trial: begin -->` and `<!--
+    /// trial: end -->`, or of a campaign between `<!-- campaign: begin -->` and `<!-- campaign: end -->`
     #[arg(long, value_name = "FILE", conflicts_with = "scene")]
     into: Option<PathBuf>,
     #[command(flatten)]

@@ -1,4 +1,5 @@
-//! Lines of JSON to a file that grows by one line at a time, and such files to the lines in them: what is done stays done.
+//! Lines of JSON to a file that grows by one line at a time, and such files to the lines in them: what is
+//! done stays done.
 
 use super::super::output::{JsonTarget, replace_by};
 use crate::ingest::opened;
@@ -26,7 +27,8 @@ pub struct LineFiles {
 }
 
 impl LineFiles {
-    /// The lines of a file, each handed to `take` with those before it and its number from 1, which says its number in the campaign; the last may be no whole one.
+    /// The lines of a file, each handed to `take` with those before it and its number from 1, which says its
+    /// number in the campaign; the last may be no whole one.
     pub fn add(
         &mut self,
         path: &Path,
@@ -97,7 +99,8 @@ pub struct LineRecord {
 }
 
 impl LineRecord {
-    /// Begins the file, or goes on with what is there: `is_own` says its number in this campaign; `None` for a line that is to be made anew.
+    /// Begins the file, or goes on with what is there: `is_own` says its number in this campaign; `None` for
+    /// a line that is to be made anew.
     pub fn open(
         path: &Path,
         resume: bool,
@@ -188,7 +191,8 @@ pub fn is_own(path: &Path) -> bool {
     read.is_ok() && MARK.starts_with(&head)
 }
 
-/// The file for this run to write lines at its end, and for no other meanwhile; what is none of this program is looked at as any target is.
+/// The file for this run to write lines at its end, and for no other meanwhile; what is none of this program
+/// is looked at as any target is.
 fn held(path: &Path, inputs: &[&Path]) -> miette::Result<File> {
     if path.is_symlink() || !is_own(path) {
         JsonTarget::checked(Some(path), inputs)?;

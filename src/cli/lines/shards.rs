@@ -1,4 +1,5 @@
-//! The shards of a campaign to all of its lines; one that is missing, doubled, cut, foreign or of another version is named.
+//! The shards of a campaign to all of its lines; one that is missing, doubled, cut, foreign or of another
+//! version is named.
 
 use super::file::{LineFiles, next_line};
 use crate::ingest::opened;
@@ -15,7 +16,8 @@ const COMMON: [(&str, &str); 5] = [
     ("count", "is of another campaign"),
 ];
 
-/// The lines of all shards, and what the first of them says of the campaign; `problem` says what makes a line one of none.
+/// The lines of all shards, and what the first of them says of the campaign; `problem` says what makes a line
+/// one of none.
 pub fn merged(
     shards: &[PathBuf],
     problem: impl Fn(&Value) -> Option<String>,

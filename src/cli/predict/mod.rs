@@ -1,4 +1,5 @@
-//! `predict`: the analytical prediction at one angle or over sweeps, and the critical angles, to a table and a report.
+//! `predict`: the analytical prediction at one angle or over sweeps, and the critical angles, to a table and
+//! a report.
 
 mod request;
 mod sweep;
@@ -48,8 +49,8 @@ pub struct Arguments {
     /// How long the first impact lasts, seconds: 20 ms are 0.02 [default: the cask file's, else an impulse]
     #[arg(long, value_name = "S", help_heading = CASES, allow_hyphen_values = true, value_parser = words::duration)]
     duration: Option<f64>,
-    /// Sweep angle (degrees; where no VARIABLE stands), k, friction, length (m) or height (of the drop, m); several
-    /// times for every combination
+    /// Sweep angle (degrees; where no VARIABLE stands), k, friction, length (m) or height (of the drop, m);
+    /// several times for every combination
     #[arg(long, value_name = "[VARIABLE=]FROM:TO:STEP", help_heading = CASES, allow_hyphen_values = true, value_parser = sweep::sweep)]
     sweep: Vec<Sweep>,
     /// An angle is critical where the slap-down comes within this of its largest, percent
@@ -58,14 +59,15 @@ pub struct Arguments {
     /// Range of k, such as 0.3:0.7 [default: --k or its sweep, else 0:1]
     #[arg(long, value_name = "FROM:TO", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::restitution_range)]
     k_range: Option<(f64, f64)>,
-    /// Range of the Coulomb coefficient, such as 0.2:0.6 [default: --contact or its sweep, else the cask file's]
+    /// Range of the Coulomb coefficient, such as 0.2:0.6 [default: --contact or its sweep, else the cask
+    /// file's]
     #[arg(long, value_name = "FROM:TO", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::friction_range)]
     friction_range: Option<(f64, f64)>,
     /// Tolerance of the angle, degrees [default: 1]
     #[arg(long, value_name = "DEG", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::angle_tolerance)]
     angle_tolerance: Option<f64>,
-    /// Tolerance of length, section and centre of gravity, percent (the last of the length) [default: 0.5, and 1 for
-    /// the centre of gravity]
+    /// Tolerance of length, section and centre of gravity, percent (the last of the length) [default: 0.5,
+    /// and 1 for the centre of gravity]
     #[arg(long, value_name = "PERCENT", help_heading = CRITICAL, allow_hyphen_values = true, value_parser = words::geometry_tolerance)]
     geometry_tolerance: Option<f64>,
     /// Casks and drops that Monte Carlo draws; 0 for none

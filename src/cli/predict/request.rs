@@ -107,7 +107,8 @@ fn cases(arguments: &Arguments, file: &CaskFile) -> (Vec<Contact>, Vec<f64>) {
     }
 }
 
-/// The angles of a sweep that is more than a few points, those between filled in to half a degree; else 0 to 90°.
+/// The angles of a sweep that is more than a few points, those between filled in to half a degree; else 0 to
+/// 90°.
 fn curve_angles_deg(swept: Option<&[f64]>) -> Vec<f64> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to 1800 before the cast")]
     let evenly = |from: f64, to: f64, steps: f64| -> Vec<f64> {

@@ -3,7 +3,8 @@
 use super::words::{ascending, number};
 use crate::data::{Sweep, SweepVariable};
 
-/// Predictions of one run, and so values of one sweep: a table of more is read by no one and fills hundreds of megabytes.
+/// Predictions of one run, and so values of one sweep: a table of more is read by no one and fills hundreds
+/// of megabytes.
 pub const MOST_PREDICTIONS: usize = 200_000;
 
 /// Below this similarity (Jaro–Winkler, 0 to 1) a word is another word rather than a misspelling.

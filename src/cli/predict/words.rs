@@ -1,8 +1,10 @@
-//! Words behind an option to a number, a range or a contact law, each slip to a sentence that says how to mend it.
+//! Words behind an option to a number, a range or a contact law, each slip to a sentence that says how to
+//! mend it.
 
 use crate::data::{Contact, LONGEST_CONTACT_S};
 
-/// Largest half-width of angle and geometry: beyond it a draw would soon be another cask, degrees and percent.
+/// Largest half-width of angle and geometry: beyond it a draw would soon be another cask, degrees and
+/// percent.
 const LARGEST_TOLERANCE: f64 = 20.0;
 
 /// A million draws take minutes and move no quantile that a person reads.

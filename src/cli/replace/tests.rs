@@ -130,7 +130,8 @@ fn a_reader_sees_one_set_or_the_other() {
             let Ok(handle) = File::open(&folder) else { panic!("the folder is gone for a moment") };
             let through = format!("/proc/self/fd/{}", std::os::fd::AsRawFd::as_raw_fd(&handle));
             let found = contents(Path::new(&through));
-            // A set that was replaced in the meantime is on its way out: what is left of it is of one set too.
+            // A set that was replaced in the meantime is on its way out: what is left of it is of one set
+            // too.
             let mut kinds: Vec<&String> = found.iter().filter(|content| !content.is_empty()).collect();
             kinds.dedup();
             assert!(kinds.len() <= 1, "{found:?}");

@@ -6,7 +6,8 @@ use super::{IssueCode as Code, Severity};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is, the variant's words the rest")]
 pub enum AttributeFinding {
-    /// A group states another value than what stands nearer to the samples, each as `scale = 0.5`; harmless where its value does nothing.
+    /// A group states another value than what stands nearer to the samples, each as `scale = 0.5`; harmless
+    /// where its value does nothing.
     #[error(
         "the group {group} states {stated}; nearer to the samples stands {nearer}, which was taken: one of the two is wrong, or the group's is for other datasets; correct the wrong one in a copy, or delete that of the group where each dataset has its own"
     )]

@@ -75,7 +75,8 @@ pub enum ChannelFinding {
     /// This share of the pulse's spectrum is left just below half the sample rate.
     #[error("has {:.0} % of the pulse's spectrum left just below half its sample rate of {sample_rate_hz:.0} Hz: what lies above it has folded down, by about {:.0} % of the velocity step; put an anti-alias filter before the sampling, or sample faster", 100.0 * .share, 50.0 * .share)]
     Aliasing { share: f64, sample_rate_hz: f64 },
-    /// The other transverse channels and the closures speak against it, and it is left out: speed and k with it and without.
+    /// The other transverse channels and the closures speak against it, and it is left out: speed and k with
+    /// it and without.
     #[error("disagrees with the other channels and is left out: without it everything closes at {}; with it there is {}; check its sensitivity, polarity, position and cable", numbers(.without.0, .without.1), numbers(.with.0, .with.1))]
     LeftOut { with: Numbers, without: Numbers },
     /// The samples of another channel.
@@ -146,7 +147,8 @@ pub enum ChannelFinding {
     /// No force from one time to another after first contact, and then again.
     #[error("feels no force from {:.1} to {:.1} ms after first contact, and then again: the first end left the target and was struck once more, or something strikes the cask; k, rotation and flight are those after it", 1e3 * .from_s, 1e3 * .to_s)]
     ForceRests { from_s: f64, to_s: f64 },
-    /// Something strikes the cask in the flight, so long after first contact each; `far` of the hardest in spreads of what ringing leaves.
+    /// Something strikes the cask in the flight, so long after first contact each; `far` of the hardest in
+    /// spreads of what ringing leaves.
     #[error("shows blows in the flight, at {} ms after first contact, the hardest {far:.0} times what ringing and noise leave: contents that are loose and strike the cask, or a cable; the velocity steps mix what was before with what came after, and k and the slap-down speed may be off by more than their intervals; fasten the contents, or read the speed from the film", times_ms(.after_s))]
     Struck { after_s: Vec<f64>, far: f64 },
     /// The channel answers before the first end is struck.

@@ -1,4 +1,5 @@
-//! What speaks against the rate or the times that a recording is read by, with its numbers, to code, severity and sentence.
+//! What speaks against the rate or the times that a recording is read by, with its numbers, to code, severity
+//! and sentence.
 
 use super::{IssueCode as Code, Severity};
 use crate::data::shown::{digits, hz};

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-/// How much an issue weighs: a note informs, a warning asks for a person's look, an error takes a quantity away.
+/// How much an issue weighs: a note informs, a warning asks for a person's look, an error takes a quantity
+/// away.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {

@@ -8,7 +8,8 @@ use crate::data::{Closure, ClosureKind, CoarseEvent, Comparison, Drop, End, Esti
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "a field's name says what it is and its unit, the variant's words the rest")]
 pub enum DropFinding {
-    /// No channel changes its velocity by so much, or does so `without_rise`; `doubt` is the finding on a clock that may be why.
+    /// No channel changes its velocity by so much, or does so `without_rise`; `doubt` is the finding on a
+    /// clock that may be why.
     #[error("no impact was found: {}; check source, unit and that the recording covers the drop{}", what_was_seen(*.least_m_s, *.without_rise), doubt_of_rate(.doubt.as_deref()))]
     NoImpact { least_m_s: f64, doubt: Option<Box<Finding>>, without_rise: Option<CoarseEvent> },
     /// A rate that puts so few samples into 25 ms that no impact can be looked for.
@@ -47,7 +48,8 @@ pub enum DropFinding {
     /// The axial channel has L slide on a contact that is called rough.
     #[error("the axial channel has the first end slide at {:+.1} ± {:.1} m/s as it leaves, the cask file calls the contact rough: check the axial channel's polarity and cross-axis sensitivity, or set `friction`", .slip.value, .slip.u95)]
     Slides { slip: Estimate },
-    /// Nothing tells how L slides: the slap-down speed if it sticks and if it meets no friction, and the friction that was taken.
+    /// Nothing tells how L slides: the slap-down speed if it sticks and if it meets no friction, and the
+    /// friction that was taken.
     #[error("nothing tells how the first end slides: the slap-down speed would be {sticking_m_s:.2} m/s if it sticks and {sliding_m_s:.2} m/s without friction; the intervals cover what lies between ({:.2} ± {:.2} was taken), and the horizontal velocity rests on it: record an axial channel, or state `friction`", .taken.value, .taken.u95)]
     OpenContact { sticking_m_s: f64, sliding_m_s: f64, taken: Estimate },
     /// L would sink so far below where it left the target.
@@ -79,10 +81,12 @@ pub enum DropFinding {
     /// What was seen otherwise lies apart from the result.
     #[error("{} is {} here and was observed{} as {}: they lie apart beyond both intervals (E_n = {e_n:.1}); check what was observed, and the cask file", .beside.name, .beside.result.as_ref().map_or_else(String::new, plus_minus), .beside.by.as_ref().map_or_else(String::new, |by| format!(" by {by}")), plus_minus(&.beside.observed))]
     ObservedApart { beside: ObservedBeside, e_n: f64, severity: Severity },
-    /// A closure is missed by more than chance; the numbers are taken away where that `is_gross`. The recording shows a free fall of `fall_s`.
+    /// A closure is missed by more than chance; the numbers are taken away where that `is_gross`. The
+    /// recording shows a free fall of `fall_s`.
     #[error("{}", missed(.closure, .drop, *.fall_s))]
     Missed { closure: Closure, is_gross: bool, drop: Drop, fall_s: f64 },
-    /// The rest before the fall and its length say alike that something took this share of g off it, which makes another v0 of the drop height.
+    /// The rest before the fall and its length say alike that something took this share of g off it, which
+    /// makes another v0 of the drop height.
     #[error("the fall was slower than free by {:.1} ± {:.1} % of g, by what every transverse channel shows of the rest before it and by its length alike: a guide, a rope or a brake; from the stated height that makes an impact velocity of {v0_m_s:.2} m/s, by which all numbers are off: state it as `impact_velocity_m_s`, with its tolerance", 100.0 * .share, 100.0 * .u95)]
     SlowedFall { share: f64, u95: f64, v0_m_s: f64, severity: Severity },
     /// All closures together are missed by more than chance.

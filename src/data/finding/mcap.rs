@@ -1,4 +1,5 @@
-//! What was found of an MCAP file, its chunks and its messages, with its numbers, to code, severity and sentence.
+//! What was found of an MCAP file, its chunks and its messages, with its numbers, to code, severity and
+//! sentence.
 
 use super::{IssueCode as Code, Severity};
 use crate::data::shown::digits;
@@ -46,7 +47,8 @@ pub enum McapFinding {
         "the check sum of its summary does not hold: bytes were changed after it was written; the summary was left out, the data were read"
     )]
     SummaryChanged,
-    /// A unit that changes between messages, where the cask file states one; in a listing with its source (`r#`: a text, not an error).
+    /// A unit that changes between messages, where the cask file states one; in a listing with its source
+    /// (`r#`: a text, not an error).
     #[error("{}", changed_unit(.source.as_deref(), &two_units(.first, .other)))]
     TwoUnits { first: String, other: String, r#source: Option<String> },
     /// What reading would say of a source's times.

@@ -26,7 +26,7 @@ use std::borrow::Cow;
 
 /// What was found: the check's numbers. Code, severity and sentence are made of them here alone.
 #[derive(Debug, Clone, PartialEq)]
-pub enum What {
+pub enum FindingKind {
     /// About one channel.
     Channel(ChannelFinding),
     /// About the drop, its motion or its prediction.
@@ -47,7 +47,7 @@ pub enum What {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
     /// What it is, with its numbers.
-    pub what: What,
+    pub what: FindingKind,
     /// Which check speaks.
     pub code: IssueCode,
     /// How much it weighs; far from the event less than what was found would by itself.
@@ -68,7 +68,7 @@ macro_rules! finding_from {
         impl From<$found> for Finding {
             fn from(found: $found) -> Self {
                 let (of_kind, message) = (found.code(), found.to_string());
-                Self::made(What::$kind(found), of_kind, &message)
+                Self::made(FindingKind::$kind(found), of_kind, &message)
             }
         }
     )*};
@@ -88,12 +88,12 @@ impl ChannelFinding {
     #[must_use]
     pub fn on(self, channel: &str) -> Finding {
         let (of_kind, message) = (self.code(), self.sentence(channel));
-        Finding::made(What::Channel(self), of_kind, &message).on(channel)
+        Finding::made(FindingKind::Channel(self), of_kind, &message).on(channel)
     }
 }
 
 impl Finding {
-    fn made(what: What, (code, severity): (IssueCode, Severity), message: &str) -> Self {
+    fn made(what: FindingKind, (code, severity): (IssueCode, Severity), message: &str) -> Self {
         let message = shortened(message).into_owned();
         Self { what, code, severity, channel: None, message, from_s: None, to_s: None }
     }
@@ -132,7 +132,8 @@ impl Serialize for Finding {
     }
 }
 
-/// A message with its middle left out where it quotes more of a file than a person reads: 600 characters are eight lines.
+/// A message with its middle left out where it quotes more of a file than a person reads: 600 characters are
+/// eight lines.
 #[must_use]
 pub fn shortened(message: &str) -> Cow<'_, str> {
     const MOST_BYTES: usize = 600;

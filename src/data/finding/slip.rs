@@ -3,7 +3,8 @@
 use super::drop::numbers;
 use crate::data::Estimate;
 
-/// What a key of the cask file says amiss: a number x where `from` + `by` x is meant, or the sources of two channels.
+/// What a key of the cask file says amiss: a number x where `from` + `by` x is meant, or the sources of two
+/// channels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Slip {
     /// The key, with its table where that is no channel's; `[cask]` for all lengths there.

@@ -29,7 +29,8 @@ pub enum TimesFinding {
     /// Times off an even base, onto which the samples were interpolated.
     #[error("{0}")]
     Jitter(Jitter),
-    /// Times coarser than the samples, which tell the rate by when they change; `off_s` where they do so unevenly.
+    /// Times coarser than the samples, which tell the rate by when they change; `off_s` where they do so
+    /// unevenly.
     #[error("the times are cut to {step} s, about {} samples each; the samples were taken as evenly spaced at {} Hz, a rate that is uncertain by {} %, and the channel's start is known to {step} s only{}{}",
         digits(.step_s * .rate_hz, 3), digits(*.rate_hz, 6), digits(100.0 * .uncertainty, 2), uneven_steps(*.off_s),
         if *.is_sure { "" } else { "; give sample_rate_hz for this channel" }, step = digits(*.step_s, 3))]
@@ -47,7 +48,8 @@ pub enum TimesFinding {
     /// Blocks shorter than all others by less than their stamps tell.
     #[error("{count} block(s) hold fewer samples than all others, {lacking} at most, and the stamps, off by up to {:.3} ms, do not tell whether samples are missing there; the blocks were joined", 1e3 * .off_s)]
     ShortBlocks { count: usize, lacking: f64, off_s: f64 },
-    /// Stamps of blocks that are cut, and agree with the stated rate; if they were exact they might tell another.
+    /// Stamps of blocks that are cut, and agree with the stated rate; if they were exact they might tell
+    /// another.
     #[error("the blocks' stamps are cut to {cut_s} s and agree with {rate_hz:.6} Hz, which was taken{}; blocks that follow one another were joined",
         .if_exact_hz.map(|hz| format!(", but would tell {hz:.6} Hz if they were exact")).unwrap_or_default())]
     StampsCut { cut_s: f64, rate_hz: f64, if_exact_hz: Option<f64> },
@@ -81,7 +83,8 @@ pub struct Jitter {
 }
 
 impl Jitter {
-    /// In intervals: late stamps, with a gap or two that they make up, stay below; a clock 2 % off for a thousand samples is beyond.
+    /// In intervals: late stamps, with a gap or two that they make up, stay below; a clock 2 % off for a
+    /// thousand samples is beyond.
     const MOST_LATE: f64 = 2.0;
 
     fn is_late(&self) -> bool {

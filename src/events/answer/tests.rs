@@ -16,7 +16,8 @@ fn noise(i: usize, seed: u64) -> f64 {
     (0..4).map(hash).sum::<f64>() * 3.0_f64.sqrt()
 }
 
-/// What the rest of a body answers to a half sine of 5 ms from 20 ms on: its rigid share and one mode driven by the force.
+/// What the rest of a body answers to a half sine of 5 ms from 20 ms on: its rigid share and one mode driven
+/// by the force.
 fn answer(rate_hz: f64, contact_s: f64, rigid: f64, bending: f64, seed: u64) -> Vec<f64> {
     driven(rate_hz, contact_s, (rigid, bending), seed, &|_| 1.0)
 }
@@ -98,7 +99,8 @@ fn a_late_or_early_clock_is_measured_finer_than_a_third_of_a_millisecond() {
 
 #[test]
 fn a_force_that_turns_its_direction_at_first_is_no_clock() {
-    // While L slides back for 0.25 ms, friction takes the answer of the first end away and adds to that of the second.
+    // While L slides back for 0.25 ms, friction takes the answer of the first end away and adds to that of
+    // the second.
     let holds = |t: f64| 1.0 / (1.0 + ((2.5e-4 - t) / 1e-4).exp());
     let rate_hz = 5e4;
     let first = driven(rate_hz, 0.020_03, (1.0, 0.3), 1, &holds);

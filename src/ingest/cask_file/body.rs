@@ -7,15 +7,16 @@ use crate::data::{Cask, Drop, block_inertia_kg_m2};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// v0²/(g l), 2 h/l for a fall: below, the body settles in thousands of touches rather than strikes, and above it turns for hundreds of
-/// times its fall. 9 m are 3 for 5.5 m, 0.3 m are 0.1.
+/// v0²/(g l), 2 h/l for a fall: below, the body settles in thousands of touches rather than strikes, and
+/// above it turns for hundreds of times its fall. 9 m are 3 for 5.5 m, 0.3 m are 0.1.
 const IMPACTS: RangeInclusive<f64> = 5e-2..=5e3;
 /// A centre of gravity nearer to an end than this share of the length would have nearly the whole mass there.
 const COG_SHARE: f64 = 0.1;
 /// Inertia over m l² of a mass within a tenth of the length, 1/12 of its square; a homogeneous rod has 1/12.
 const LEAST_INERTIA: f64 = 1e-2 / 12.0;
 
-/// Mass over the box about a cask, kg/m³: an empty drum has 100, and a mass in tonnes makes 1 to 5 of a cask's 1000 to 5000.
+/// Mass over the box about a cask, kg/m³: an empty drum has 100, and a mass in tonnes makes 1 to 5 of a
+/// cask's 1000 to 5000.
 const LEAST_DENSITY_KG_M3: f64 = 5.0;
 
 /// Standard value where the file gives no gravity: the contract's default.
@@ -86,8 +87,8 @@ pub(crate) fn cask(table: &Section, path: &Path) -> Result<Cask, CaskFileError> 
     })
 }
 
-/// Whether mass within length and section can have this inertia: at most with all of it in the corners, the centre of gravity kept; at
-/// least with all of it in a tenth of the length.
+/// Whether mass within length and section can have this inertia: at most with all of it in the corners, the
+/// centre of gravity kept; at least with all of it in a tenth of the length.
 fn inertia_is_possible(
     table: &Section,
     inertia: &Placed<f64>,

@@ -7,7 +7,8 @@ use std::path::Path;
 use std::str::FromStr;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
-/// The key that a column is named like: `drop.angle_deg`, or `channel.A1.polarity` of the channel A1. `None`: it is named like no table.
+/// The key that a column is named like: `drop.angle_deg`, or `channel.A1.polarity` of the channel A1. `None`:
+/// it is named like no table.
 ///
 /// # Errors
 /// A sentence where it is named like a table, and like none of its keys.
@@ -31,7 +32,8 @@ pub fn key_of_column(column: &str) -> Result<Option<&'static Key>, String> {
     Err(format!("{column} is no key of the cask file; did you mean {example}?"))
 }
 
-/// Reads and checks the cask file at `path` with these columns' values in place of its own; its text is then the changed one.
+/// Reads and checks the cask file at `path` with these columns' values in place of its own; its text is then
+/// the changed one.
 ///
 /// # Errors
 /// [`CaskFileError`], of the file or of a value.

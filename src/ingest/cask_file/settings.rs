@@ -1,11 +1,13 @@
-//! A cask file and what its recording says to every key with its value, in the file's own units, and where that is from.
+//! A cask file and what its recording says to every key with its value, in the file's own units, and where
+//! that is from.
 
 use crate::data::keys::{self, Key, TABLES};
 use crate::data::{CaskFile, Contact, Recording};
 use serde_json::{Map, Value, json};
 
-/// Every key of every table, each `{"value", "from"}`; `from` is "stated", "default", "recording", or "command line" for a correction that is
-/// switched off there. `channel` is a list. What has no value is null.
+/// Every key of every table, each `{"value", "from"}`; `from` is "stated", "default", "recording", or
+/// "command line" for a correction that is switched off there. `channel` is a list. What has no value is
+/// null.
 #[must_use]
 pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
     let stated: toml::Table = file.text.trim_start_matches('\u{feff}').parse().unwrap_or_default();

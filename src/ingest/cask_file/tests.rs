@@ -162,7 +162,8 @@ fn slips_in_tables_and_numbers_are_told_with_line_and_remedy() {
 
 #[test]
 fn an_inertia_about_an_end_is_refused_and_the_largest_possible_is_not() {
-    // l = 2 m, c = 1 m, no section: all mass at the two ends has m c (l − c) = 120 kg m², about an end m l²/3 = 160.
+    // l = 2 m, c = 1 m, no section: all mass at the two ends has m c (l − c) = 120 kg m², about an end m l²/3
+    // = 160.
     let with = |value: &str| of(&SHORT.replace("[drop]", &format!("inertia_kg_m2 = {value}\n[drop]")));
     assert!((with("120").unwrap().cask.inertia_kg_m2 - 120.0).abs() < 1e-12);
     let message = told(&with("160").unwrap_err());

@@ -1,4 +1,5 @@
-//! A text, a date or a list of a cask or scene file to itself, or to the diagnostic that says what it is instead.
+//! A text, a date or a list of a cask or scene file to itself, or to the diagnostic that says what it is
+//! instead.
 
 use super::CaskFileError;
 use super::section::{Placed, Section};

@@ -20,7 +20,8 @@ impl Delimiter {
         if self.is_run() { skip(text, at, |byte| self.is(byte)) } else { at }
     }
 
-    /// Where the cell at `at` ends: its delimiter, line break, or the text's end. In quotes, `"a;b""c"`, a delimiter is text.
+    /// Where the cell at `at` ends: its delimiter, line break, or the text's end. In quotes, `"a;b""c"`, a
+    /// delimiter is text.
     pub(super) fn end(self, text: &[u8], at: usize) -> usize {
         let mut at = skip(text, at, |byte| byte == b' ' && !self.is_run());
         while text.get(at) == Some(&b'"') {

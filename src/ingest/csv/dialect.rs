@@ -48,7 +48,8 @@ impl Dialect {
         Self { delimiter: Delimiter(delimiter), decimal }
     }
 
-    /// The dialect under which the last of `lines` hold most numbers and fewest words, with what they say under it.
+    /// The dialect under which the last of `lines` hold most numbers and fewest words, with what they say
+    /// under it.
     pub(super) fn likeliest(lines: &[Line]) -> Option<(Self, Judged)> {
         let filled = lines.iter().rev().filter(|line| !line.text.trim().is_empty());
         let lines: Vec<&Line> = filled.take(JUDGED_LINES).collect();
@@ -120,7 +121,8 @@ impl Dialect {
         })
     }
 
-    /// Whether a line is a row: as many cells, numbers (or nothing) in the columns of numbers, and more numbers than not.
+    /// Whether a line is a row: as many cells, numbers (or nothing) in the columns of numbers, and more
+    /// numbers than not.
     ///
     /// Stamps count only where there is nothing else: one that cannot be read makes a line no header.
     pub(super) fn is_row(self, cells: &[&str], judged: &Judged) -> bool {

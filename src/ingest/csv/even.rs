@@ -1,13 +1,15 @@
 //! Times that keep to a rule to their base, without holding each.
 //!
-//! At 1e7 samples 70 of 244 MiB and a tenth of the reading are the times of a recorder that writes such, as most do.
+//! At 1e7 samples 70 of 244 MiB and a tenth of the reading are the times of a recorder that writes such, as
+//! most do.
 
 use super::super::clock::{self, Claims};
 use super::super::time_base::{self, TimeBaseError, Uniform};
 use super::super::times::Counted;
 use crate::data::Samples;
 
-/// Times whose digits stand on an even grid, (first + i·step) / divisor · scale: most recorders write such, and they need no memory.
+/// Times whose digits stand on an even grid, (first + i·step) / divisor · scale: most recorders write such,
+/// and they need no memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Even {
     first: i64,
@@ -24,7 +26,8 @@ pub(super) struct Even {
 const EXACT: i64 = 1 << 53;
 
 impl Even {
-    /// The rule of the first two values, read with as few decimals as they have, where they rise; it counts none of them yet.
+    /// The rule of the first two values, read with as few decimals as they have, where they rise; it counts
+    /// none of them yet.
     pub(super) fn of(values: &[f64]) -> Option<Self> {
         /// Decimals of picoseconds in s.
         const MOST_DECIMALS: i32 = 12;

@@ -40,7 +40,8 @@ pub(super) fn header(above: &[Line], delimiter: Delimiter, judged: &Judged) -> O
     let filled = (0..above.len()).rev().filter(|&line| !above[line].text.trim().is_empty());
     let cells = |line: usize| (line, header_cells(&above[line].text, delimiter));
     let mut nearest: Vec<(usize, Vec<String>)> = filled.clone().take(MOST_LINES).map(cells).collect();
-    // Rigol's oscilloscopes head "X,CH1,Start,Increment", and below "Sequence,Volt,-0.05,1e-6" stand fewer cells.
+    // Rigol's oscilloscopes head "X,CH1,Start,Increment", and below "Sequence,Volt,-0.05,1e-6" stand fewer
+    // cells.
     let mut interval = None;
     if let [(_, units), (_, names), ..] = &mut nearest[..]
         && let Some(at) = names.windows(2).position(|pair| pair[0] == "Start" && pair[1] == "Increment")
@@ -109,13 +110,15 @@ fn is_units(cells: &[String]) -> bool {
 
 /// The cells of a header if they are as many as the columns.
 fn fitting(mut cells: Vec<String>, judged: &Judged) -> Option<Vec<String>> {
-    // A delimiter may end the header and not the rows; LabVIEW heads a column of remarks that rows without one leave out.
+    // A delimiter may end the header and not the rows; LabVIEW heads a column of remarks that rows without
+    // one leave out.
     while cells.len() > judged.columns
         && cells.last().is_some_and(|cell| cell.is_empty() || (cells.len() > 2 && cell == "Comment"))
     {
         cells.pop();
     }
-    // Delimiters may end the rows and not the header; one short of a column of numbers would head the wrong ones.
+    // Delimiters may end the rows and not the header; one short of a column of numbers would head the wrong
+    // ones.
     let spare = judged.is_empty.iter().rev().take_while(|is_empty| **is_empty).count();
     let spare = spare.max(usize::from(judged.is_numeric.last() == Some(&false)));
     (cells.len() <= judged.columns && cells.len() + spare >= judged.columns).then_some(cells)

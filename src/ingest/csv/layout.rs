@@ -115,7 +115,8 @@ impl Layout {
         self.nanoseconds.filter(|_| self.time_column == Some(time))
     }
 
-    /// The other columns of times, which have to bear out those of column `time`; each with whether other columns stand between.
+    /// The other columns of times, which have to bear out those of column `time`; each with whether other
+    /// columns stand between.
     ///
     /// One of the same header with columns between is the clock of those.
     pub(super) fn witnesses(&self, time: usize) -> Vec<(usize, bool)> {
@@ -127,7 +128,8 @@ impl Layout {
             .collect()
     }
 
-    /// A column, none of `taken`, by which the rows are of several sensors, with these; `own` is the column and word that tell one apart.
+    /// A column, none of `taken`, by which the rows are of several sensors, with these; `own` is the column
+    /// and word that tell one apart.
     pub(super) fn mixed(&self, own: Option<(usize, &str)>, taken: &[usize]) -> Option<(&str, Vec<&str>)> {
         let by = own.and_then(|(column, is)| Some((self.sensors.iter().find(|it| it.column == column)?, is)));
         let open = self

@@ -1,4 +1,5 @@
-//! The bytes of a text file to lines in an encoding whose digits and delimiters are ASCII, each ended by \n alone.
+//! The bytes of a text file to lines in an encoding whose digits and delimiters are ASCII, each ended by \n
+//! alone.
 
 use super::super::Limits;
 use super::super::detect;

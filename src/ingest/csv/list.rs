@@ -188,7 +188,8 @@ pub(in super::super) fn list(
     })
 }
 
-/// What a channel would take whose cask file says nothing but its source: the first column of numbers, on the times that were found.
+/// What a channel would take whose cask file says nothing but its source: the first column of numbers, on the
+/// times that were found.
 fn plan(layout: &Layout) -> ColumnPlan {
     let time_column = layout.time_column;
     let sensors = layout.sensors.first();
@@ -264,7 +265,8 @@ impl ListedClock {
     }
 }
 
-/// A column of `ranges`, its rows of one sensor; where those of other sensors or topics lie between, on the clock of its own.
+/// A column of `ranges`, its rows of one sensor; where those of other sensors or topics lie between, on the
+/// clock of its own.
 #[allow(clippy::cast_precision_loss, reason = "row counts stay below 2^52")]
 fn listed(
     column: &TableColumn,

@@ -1,4 +1,5 @@
-//! A text as it is read to batches of it, and a batch to pieces of whole lines that threads take side by side.
+//! A text as it is read to batches of it, and a batch to pieces of whole lines that threads take side by
+//! side.
 
 use super::super::Limits;
 use std::io::Read;
@@ -26,7 +27,8 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
-    /// Sizes within `limits` for a text of so many bytes; one thread or a short text gets batches of one piece.
+    /// Sizes within `limits` for a text of so many bytes; one thread or a short text gets batches of one
+    /// piece.
     pub(super) fn of(limits: Limits, text_bytes: u64) -> Self {
         let line_bytes = usize::try_from(limits.line_bytes()).unwrap_or(usize::MAX);
         let piece_bytes = PIECE_BYTES.min(line_bytes);

@@ -60,7 +60,8 @@ impl Preamble {
         self.starts_s.get(column).copied().unwrap_or_default()
     }
 
-    /// What is stated of the rate of a column; of all columns by `Delta_X` where the column has none of its own.
+    /// What is stated of the rate of a column; of all columns by `Delta_X` where the column has none of its
+    /// own.
     pub(super) fn statements(&self, column: usize) -> Vec<Statement> {
         let own = self.intervals.get(column).cloned().flatten();
         let mut stated =
@@ -70,7 +71,8 @@ impl Preamble {
         stated
     }
 
-    /// A warning where fewer rows are there than every count that is stated, also with the samples between that times show to be missing.
+    /// A warning where fewer rows are there than every count that is stated, also with the samples between
+    /// that times show to be missing.
     pub(super) fn of_rows(&self, rows: usize, with_missing: usize) -> Option<Finding> {
         let stated = *self.counts.iter().min()?;
         let is_short = (rows.max(with_missing) as u64) < stated;
@@ -98,8 +100,8 @@ fn labview_rates(lines: &[Line], delimiter: Delimiter) -> Vec<Option<Statement>>
         .collect()
 }
 
-/// `Sample rate [Hz]: 50000`, `Abtastrate;50;kHz` or `dt = 20 us` to its name and "50000 Hz", "50 kHz", "20 us"; `None` where several
-/// numbers differ, as those of several channels.
+/// `Sample rate [Hz]: 50000`, `Abtastrate;50;kHz` or `dt = 20 us` to its name and "50000 Hz", "50 kHz", "20
+/// us"; `None` where several numbers differ, as those of several channels.
 fn entry(line: &str, delimiter: Delimiter) -> Option<(String, String)> {
     let cells = if delimiter.is_run() { vec![line.to_owned()] } else { header_cells(line, delimiter) };
     let (first, rest) = cells.split_first()?;

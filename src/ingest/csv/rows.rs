@@ -36,7 +36,8 @@ impl RowsPart {
 pub(super) trait Sink {
     /// The value of a cell that is no number; `None`: there is none. Asked in the order of the rows.
     fn word(&mut self, slot: usize, cell: &[u8]) -> Option<f64>;
-    /// Takes over the rows of `parts`, which follow those taken so far in their order, and leaves them without rows.
+    /// Takes over the rows of `parts`, which follow those taken so far in their order, and leaves them
+    /// without rows.
     fn append(&mut self, parts: &mut [RowsPart]);
     /// Memory that the rows taken so far hold.
     fn held_bytes(&self) -> u64;
@@ -67,7 +68,8 @@ pub(super) fn read(
     read_by(text, (layout, wanted), sink, sizes, progress)
 }
 
-/// The same by pieces and batches of any size; the sizes leave the rows, the error and the ending as they are.
+/// The same by pieces and batches of any size; the sizes leave the rows, the error and the ending as they
+/// are.
 pub(super) fn read_by(
     mut text: Text,
     (layout, wanted): (&Layout, &Wanted),
@@ -200,7 +202,8 @@ impl<'a> RowReader<'a> {
         Ok(())
     }
 
-    /// The values of a line that begins with the wanted columns, all of them numbers with nothing around them; where the next line begins.
+    /// The values of a line that begins with the wanted columns, all of them numbers with nothing around
+    /// them; where the next line begins.
     fn plain_line(&mut self, text: &[u8], mut at: usize) -> Option<usize> {
         let last = self.values.len().checked_sub(1)?;
         if !self.is_dense || self.delimiter.is_run() {
@@ -242,7 +245,8 @@ impl<'a> RowReader<'a> {
         }
     }
 
-    /// Whether the line at `at` is no row: where a number should begin it stands a remark, a sum, or the Ctrl-Z that ends a text of DOS.
+    /// Whether the line at `at` is no row: where a number should begin it stands a remark, a sum, or the
+    /// Ctrl-Z that ends a text of DOS.
     fn is_remark(&self, text: &[u8], at: usize) -> bool {
         if !self.begins_in_number || matches!(text[at], b'0'..=b'9' | b'-' | b'+' | b'.' | b' ' | b'\n') {
             return false;

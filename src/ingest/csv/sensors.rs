@@ -29,8 +29,8 @@ pub(super) fn value(cell: &[u8], decimal: u8) -> f64 {
     })
 }
 
-/// Whether rows in which a channel has no value are those of other topics: of `all` from its first value to its last many are, and the
-/// `count` of its own lie among them in many stretches.
+/// Whether rows in which a channel has no value are those of other topics: of `all` from its first value to
+/// its last many are, and the `count` of its own lie among them in many stretches.
 pub(super) fn lie_between(count: usize, all: usize, stretches: usize) -> bool {
     let others = all - count;
     others >= LEAST_OTHERS && 16 * others > all && 8 * stretches > count.min(others)

@@ -45,7 +45,8 @@ struct Running {
 }
 
 impl Stamps {
-    /// Seconds from the first stamp seen; `None` where `cell` is no stamp, or of another kind than the others in its column, `slot`.
+    /// Seconds from the first stamp seen; `None` where `cell` is no stamp, or of another kind than the others
+    /// in its column, `slot`.
     pub(super) fn seconds(&mut self, slot: usize, cell: &[u8]) -> Option<f64> {
         let stamp = Stamp::of(cell)?;
         let place = self.columns.iter().position(|column| column.slot == slot);
@@ -98,7 +99,8 @@ impl Running {
                 self.day.checked_mul(DAY_NS)?.checked_add(stamp.at_ns)
             }
             Spelling::OfDay => {
-                // No drop lasts for half a day: a fall by more is midnight, a rise by more a row out of order there.
+                // No drop lasts for half a day: a fall by more is midnight, a rise by more a row out of order
+                // there.
                 if self.last_ns - stamp.at_ns > DAY_NS / 2 {
                     self.passed_ns += DAY_NS;
                 } else if stamp.at_ns - self.last_ns > DAY_NS / 2 && self.passed_ns > 0 {
@@ -236,7 +238,8 @@ fn readings([a, b, c]: [i16; 3]) -> [Option<Date>; 2] {
     if a > 31 { [date(a, b, c); 2] } else { [date(c, b, a), date(c, a, b)] }
 }
 
-/// Days from one date of a column to another: whether day or month stands first, their order makes neighbours of neighbours.
+/// Days from one date of a column to another: whether day or month stands first, their order makes neighbours
+/// of neighbours.
 fn days_between(from: [i16; 3], to: [i16; 3]) -> Option<i64> {
     let both = readings(from).into_iter().zip(readings(to));
     both.filter_map(|(from, to)| Some(day(to?) - day(from?))).min_by_key(|days| days.abs())

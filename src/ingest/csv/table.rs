@@ -36,7 +36,8 @@ enum Base<'a> {
 }
 
 impl Table<'_> {
-    /// Turns the times into s, and compares them with other columns of times; warnings where those do not bear them out.
+    /// Turns the times into s, and compares them with other columns of times; warnings where those do not
+    /// bear them out.
     pub(super) fn settle_times(&mut self) -> Result<Vec<Finding>, Refused> {
         let mut issues = Vec::new();
         let mut clocks: Vec<usize> = self.plans.iter().filter_map(|plan| plan.time_column).collect();
@@ -89,8 +90,8 @@ impl Table<'_> {
         })
     }
 
-    /// What the times in column `other` say of those in column `time`; columns that they may be the clock of stand between where they are
-    /// `apart`.
+    /// What the times in column `other` say of those in column `time`; columns that they may be the clock of
+    /// stand between where they are `apart`.
     fn borne_out(&self, time: usize, other: usize, is_apart: bool) -> Result<Option<Finding>, Refused> {
         let [own_s, others] = [time, other].map(|column| self.columns[self.wanted.slot(column)].values());
         let slot = self.wanted.slot(other);
@@ -154,8 +155,9 @@ impl Table<'_> {
         Ok(())
     }
 
-    /// For each channel, which rows are its samples where not all are: those with a time, as in `Time;A1;Time;A2` one pair may end before the
-    /// other, of its own sensor, and with a value where each topic has rows of its own.
+    /// For each channel, which rows are its samples where not all are: those with a time, as in
+    /// `Time;A1;Time;A2` one pair may end before the other, of its own sensor, and with a value where each
+    /// topic has rows of its own.
     ///
     /// # Errors
     /// No row is of the sensor that the cask file names.

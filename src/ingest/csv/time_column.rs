@@ -10,10 +10,12 @@ pub(super) fn scale(column: &TableColumn) -> Scale {
     if column.is_stamped { Scale::Known(1.0) } else { Scale::of(&column.name, column.unit.as_deref()) }
 }
 
-/// The columns of times: by their headers, by their stamps, or the first of a table without header where it rises.
+/// The columns of times: by their headers, by their stamps, or the first of a table without header where it
+/// rises.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Found {
-    /// Of several the first whose times rise with every row; where none does, the one whose times rise most often.
+    /// Of several the first whose times rise with every row; where none does, the one whose times rise most
+    /// often.
     pub taken: Option<usize>,
     /// What is to be added to it where it holds whole seconds.
     pub nanoseconds: Option<usize>,
@@ -43,7 +45,8 @@ pub(super) fn find<'a, Cells: Iterator<Item = &'a str>>(
         .chain(all().filter(|&i| columns[i].is_stamped))
         .chain((is_first_rising && columns.len() > 1).then_some(0));
     for i in ranked.filter(|i| !has_stamp || is_stamp(i)) {
-        // Words are no times, nor is what has another unit or falls in more than one row of ten, whatever they are headed.
+        // Words are no times, nor is what has another unit or falls in more than one row of ten, whatever
+        // they are headed.
         if columns[i].is_numeric && scale(&columns[i]) != Scale::Unknown && found.iter().all(|it| it.0 != i) {
             let times = times(cells(i), decimal);
             found.extend((10 * steps(&times, f64::gt) <= times.len().max(20)).then_some((i, times)));

@@ -19,7 +19,8 @@ pub(super) struct Wanted {
 }
 
 impl Wanted {
-    /// What channels take, and the columns that bear their times out; without times the one that counts the rows.
+    /// What channels take, and the columns that bear their times out; without times the one that counts the
+    /// rows.
     pub(super) fn of(plans: &[ColumnPlan], layout: &Layout) -> Self {
         let values: Vec<_> = plans.iter().map(|plan| (plan.column, plan.time_column)).collect();
         let times: Vec<usize> = plans.iter().filter_map(|plan| plan.time_column).collect();

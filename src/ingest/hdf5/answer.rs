@@ -1,8 +1,9 @@
-//! What goes between this program and the process that takes an HDF5 file apart: requests and answers, each in a frame.
+//! What goes between this program and the process that takes an HDF5 file apart: requests and answers, each
+//! in a frame.
 //!
-//! A frame is its length (four bytes, lowest first) and so many bytes of `postcard`. What a file says comes over as bytes: the other process
-//! may have been taken over by the file, so nothing in an answer is believed before [`Dataset::is_sane`] and the reader held it against
-//! the file.
+//! A frame is its length (four bytes, lowest first) and so many bytes of `postcard`. What a file says comes
+//! over as bytes: the other process may have been taken over by the file, so nothing in an answer is believed
+//! before [`Dataset::is_sane`] and the reader held it against the file.
 
 use encoding_rs::WINDOWS_1252;
 use serde::de::DeserializeOwned;
@@ -257,12 +258,14 @@ impl Dataset {
         self.bytes(|whole, chunk| whole.div_ceil(chunk).saturating_mul(chunk))
     }
 
-    /// What lies beyond its edges in one chunk, bytes: nobody needs it, and an extensible dataset may have any amount of it.
+    /// What lies beyond its edges in one chunk, bytes: nobody needs it, and an extensible dataset may have
+    /// any amount of it.
     pub(super) fn idle_bytes(&self) -> u64 {
         self.bytes(|_, chunk| chunk).saturating_sub(self.bytes(usize::min))
     }
 
-    /// The product of what a size and that of a chunk make along every dimension, in bytes; 0 where there are no chunks.
+    /// The product of what a size and that of a chunk make along every dimension, in bytes; 0 where there are
+    /// no chunks.
     fn bytes(&self, along: fn(usize, usize) -> usize) -> u64 {
         let (Storage::Chunked { shape: chunk, .. }, Some(whole)) = (&self.storage, &self.shape) else {
             return 0;

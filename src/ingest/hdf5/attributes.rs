@@ -1,4 +1,5 @@
-//! The attributes of a column and of the groups above it to rates, unit, start, scale and offset: the nearest of each.
+//! The attributes of a column and of the groups above it to rates, unit, start, scale and offset: the nearest
+//! of each.
 
 use super::answer::{AttributeValue as Held, Object, decoded};
 use super::column::DatasetColumn;
@@ -45,7 +46,8 @@ impl Attributes {
     /// The nearest of each, from the dataset up to the root.
     ///
     /// # Errors
-    /// A scale or offset is no number or stands twice in one place, or whole numbers are to be converted otherwise.
+    /// A scale or offset is no number or stands twice in one place, or whole numbers are to be converted
+    /// otherwise.
     pub(super) fn of(column: &DatasetColumn) -> Result<Self, Refusal> {
         let said = said(column);
         let attributes = Self::of_said(&said, column)?;
@@ -81,7 +83,8 @@ impl Attributes {
             with(role).filter_map(|said| Some(said.number(column).transpose()?.map(|x| (x, said)))).collect()
         };
         let is_same = |near: &f64, far: &f64| is_alike(*near, *far);
-        // A scale of 1 and an offset of 0 do nothing: they are what a writer puts where each dataset has its own.
+        // A scale of 1 and an offset of 0 do nothing: they are what a writer puts where each dataset has its
+        // own.
         all.scale = all.nearest(numbers(Scale)?, is_same, |far| is_alike(*far, 1.0))?;
         all.offset = all.nearest(numbers(Offset)?, is_same, |far| is_alike(*far, 0.0))?;
         let own = said.iter().filter(|said| said.name == "start_time_s").take(1);
@@ -126,9 +129,11 @@ impl Attributes {
         Ok(all)
     }
 
-    /// The nearest of some values; one finding where another farther off differs, a note where that can do no harm unseen.
+    /// The nearest of some values; one finding where another farther off differs, a note where that can do no
+    /// harm unseen.
     ///
-    /// What a group states may be for other datasets. But nothing in a recording shows a scale that is some percent off, and k goes with it.
+    /// What a group states may be for other datasets. But nothing in a recording shows a scale that is some
+    /// percent off, and k goes with it.
     ///
     /// # Errors
     /// Two of one place differ.
@@ -182,7 +187,8 @@ impl Attributes {
     }
 }
 
-/// All that attributes say of a column, nearest first, of one place rates before intervals: an interval is rounded more often.
+/// All that attributes say of a column, nearest first, of one place rates before intervals: an interval is
+/// rounded more often.
 fn said(column: &DatasetColumn) -> Vec<Said> {
     let mut all = Vec::new();
     let (mut place, mut distance) = (column.path.as_str(), 0);
@@ -240,8 +246,8 @@ impl Said {
             && self.value.as_ref().is_some_and(|value| value.parse::<f64>().is_ok())
     }
 
-    /// Whether it is a conversion that is to be done and is not: a factor of 1 and an offset of 0 do nothing, and of samples that are no
-    /// counts it is a number, or several, and no date.
+    /// Whether it is a conversion that is to be done and is not: a factor of 1 and an offset of 0 do nothing,
+    /// and of samples that are no counts it is a number, or several, and no date.
     fn is_undone(&self, are_counts: bool) -> bool {
         use AttributeRole::{Conversion, CountsConversion};
         let is_idle = |(number, unit): (&str, &str)| {

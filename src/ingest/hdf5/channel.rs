@@ -1,4 +1,5 @@
-//! A source to a channel as it is taken: its column, what is said of it, its times, its samples on one base. Reading and listing share it.
+//! A source to a channel as it is taken: its column, what is said of it, its times, its samples on one base.
+//! Reading and listing share it.
 
 use super::attributes::Attributes;
 use super::clocks::{self, Clocks};
@@ -33,7 +34,8 @@ pub(super) struct Based {
 }
 
 impl DatasetChannel {
-    /// With the times of the name that the cask file gives, else those beside the samples that have a usual one; `cask_hz` is its rate.
+    /// With the times of the name that the cask file gives, else those beside the samples that have a usual
+    /// one; `cask_hz` is its rate.
     ///
     /// # Errors
     /// Attributes that contradict each other, times that are none.
@@ -95,8 +97,8 @@ impl DatasetChannel {
         self.times.is_empty() && self.claims.is_empty() && self.attributes.no_rate.is_none()
     }
 
-    /// Its samples at their times, or at the rate that is stated; of others beside the times those are held against them for which
-    /// `may_read` has room.
+    /// Its samples at their times, or at the rate that is stated; of others beside the times those are held
+    /// against them for which `may_read` has room.
     ///
     /// # Errors
     /// Nothing says when the samples were taken, or what does contradicts itself.
@@ -166,7 +168,8 @@ fn refused(error: TimeBaseError) -> Fault {
     error.refusal("check the dataset of times (`time` in the cask file), or give sample_rate_hz").into()
 }
 
-/// What a cask file names; a bare name is looked for beside the samples first, in their own records before all.
+/// What a cask file names; a bare name is looked for beside the samples first, in their own records before
+/// all.
 fn named_beside(column: &DatasetColumn, name: &str) -> Result<DatasetColumn, Fault> {
     let records = column.is_field().then(|| format!("{}.{name}", column.path));
     let mut beside = records.into_iter().chain([format!("{}/{name}", column.group())]);

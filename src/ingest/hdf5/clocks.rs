@@ -15,7 +15,8 @@ const FIRST_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "T
 /// No recording has more times beside a channel; each costs a look through the channels of its dataset.
 const MOST_TIMES: usize = 64;
 
-/// The times in the group or the records that were asked for last, by their names: channels come in the order of the file.
+/// The times in the group or the records that were asked for last, by their names: channels come in the order
+/// of the file.
 #[derive(Default)]
 pub(super) struct Clocks {
     place: Option<String>,
@@ -25,8 +26,8 @@ pub(super) struct Clocks {
 }
 
 impl Clocks {
-    /// The times of a channel, likeliest first: fields of the same records or columns beside it, else datasets,
-    /// that have a usual name and as many values.
+    /// The times of a channel, likeliest first: fields of the same records or columns beside it, else
+    /// datasets, that have a usual name and as many values.
     pub(super) fn of(&mut self, column: &DatasetColumn) -> Vec<DatasetColumn> {
         let is_apart =
             |times: &&DatasetColumn| times.length == column.length && times.source != column.source;
@@ -76,7 +77,8 @@ pub(super) fn why_none(column: &DatasetColumn) -> String {
     reasons.next().unwrap_or_else(|| "no dataset of times beside it".into())
 }
 
-/// What is named so in a group (`/daq/`) or in records (`/daq/table.`), likeliest first; what MATLAB's cells hold is named by chance.
+/// What is named so in a group (`/daq/`) or in records (`/daq/table.`), likeliest first; what MATLAB's cells
+/// hold is named by chance.
 fn sources(place: &str, column: &DatasetColumn, is_named: fn(&str) -> bool) -> Vec<String> {
     let path = place.trim_end_matches(['/', '.']);
     let mut names = match &*column.file.object(if path.is_empty() { "/" } else { path }) {
@@ -128,7 +130,8 @@ pub(super) fn seconds(
     Ok(numbers)
 }
 
-/// Whether other times beside a channel bear out those that were taken, in seconds; what is no time by its unit says nothing.
+/// Whether other times beside a channel bear out those that were taken, in seconds; what is no time by its
+/// unit says nothing.
 ///
 /// # Errors
 /// They are far apart, and nothing decides between them.

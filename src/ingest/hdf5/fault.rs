@@ -9,7 +9,8 @@ use std::path::Path;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{place}{problem}")]
 pub(super) struct Fault {
-    /// What it is about with what parts it from the problem, "/a " or "/a: "; empty where that is said elsewhere.
+    /// What it is about with what parts it from the problem, "/a " or "/a: "; empty where that is said
+    /// elsewhere.
     place: String,
     pub problem: String,
     pub remedy: String,
@@ -53,7 +54,8 @@ impl Fault {
         if self.place.is_empty() { Self { place: format!("{name}: "), ..self } } else { self }
     }
 
-    /// What a listing says of what it is about: the problem, and the command that cures it where there is one.
+    /// What a listing says of what it is about: the problem, and the command that cures it where there is
+    /// one.
     pub(super) fn listed(self) -> String {
         if self.remedy.contains("h5repack") {
             format!("{}: {}", self.problem, self.remedy)

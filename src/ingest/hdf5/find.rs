@@ -7,11 +7,13 @@ use super::room::File;
 use crate::ingest::error;
 use std::rc::Rc;
 
-/// No filter that is built in packs tighter (deflate: 1032 : 1), so that a dataset that claims more was damaged or never written.
+/// No filter that is built in packs tighter (deflate: 1032 : 1), so that a dataset that claims more was
+/// damaged or never written.
 const TIGHTEST_PACKING: u64 = 1100;
 
-/// The paths at which the dataset of a source may stand, likeliest first, and where the source means one of its fields: `/a.b[2]` may be a
-/// dataset of this name, column 2 of `/a.b`, or number 2 in field `b` of the records `/a`.
+/// The paths at which the dataset of a source may stand, likeliest first, and where the source means one of
+/// its fields: `/a.b[2]` may be a dataset of this name, column 2 of `/a.b`, or number 2 in field `b` of the
+/// records `/a`.
 fn places(source: &str) -> impl Iterator<Item = &str> {
     let is_number = |index: &&str| index.bytes().all(|digit| digit.is_ascii_digit());
     let indexed = source.strip_suffix(']').and_then(|source| source.rsplit_once('['));
@@ -20,8 +22,8 @@ fn places(source: &str) -> impl Iterator<Item = &str> {
     Some(source).into_iter().chain((bare.len() < source.len()).then_some(bare)).chain(fields)
 }
 
-/// The channel that `source` names: `/group/dataset`, `/group/dataset[2]` of a two-dimensional one, `/group/dataset.field` of records;
-/// `None` where nothing stands there.
+/// The channel that `source` names: `/group/dataset`, `/group/dataset[2]` of a two-dimensional one,
+/// `/group/dataset.field` of records; `None` where nothing stands there.
 ///
 /// # Errors
 /// What stands there is no channel of numbers.
@@ -92,17 +94,19 @@ pub(super) fn no_dataset(object: &Object, path: &str) -> Option<Fault> {
     }
 }
 
-/// More rows than this are samples, not channels: no recorder of these tests has so many, and so few samples are no record of a drop.
+/// More rows than this are samples, not channels: no recorder of these tests has so many, and so few samples
+/// are no record of a drop.
 const MOST_ROWS: usize = 64;
-/// Rows are channels where they are so many times longer than there are of them: a record has more samples than channels.
+/// Rows are channels where they are so many times longer than there are of them: a record has more samples
+/// than channels.
 const LONGER: usize = 8;
 /// Channels of one dataset that are looked through for a source.
 const MOST_NAMED: usize = 4096;
 /// Channels of one dataset that are listed: one with more columns is an image rather than a table.
 pub(super) const MOST_LISTED: usize = 256;
 
-/// The channels that a dataset holds: itself, its columns or rows, or the first numbers in the fields of its records; one at least, and
-/// `most` at most.
+/// The channels that a dataset holds: itself, its columns or rows, or the first numbers in the fields of its
+/// records; one at least, and `most` at most.
 ///
 /// # Errors
 /// It holds no numbers in one or two dimensions, none that are read, or more columns than that.
@@ -162,7 +166,8 @@ pub(super) fn channels(
     Ok(dataset.fields.iter().flat_map(of_field).take(most).collect())
 }
 
-/// What is not in the recording, or packed by what is not read. A file that was sent may name any other on this machine, and any filter.
+/// What is not in the recording, or packed by what is not read. A file that was sent may name any other on
+/// this machine, and any filter.
 fn refuse_unread(dataset: &Dataset, name: &str) -> Result<(), Fault> {
     let filter = dataset.filters.iter().find_map(|filter| match filter {
         Filter::Other(what) => Some(what),

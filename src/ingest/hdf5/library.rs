@@ -1,4 +1,5 @@
-//! An HDF5 file, through the C library, to descriptions and numbers: all that hands a file's bytes to C, in a process of its own.
+//! An HDF5 file, through the C library, to descriptions and numbers: all that hands a file's bytes to C, in a
+//! process of its own.
 
 use super::answer::{
     AttributeValue, Bytes, Dataset, FRAME_NUMBERS, Filter, Object, Packing, Query, Reply, Slab, Storage,
@@ -175,8 +176,8 @@ impl Opened<'_> {
         }
     }
 
-    /// What stands at a path, a group with the datasets of one value in it: attributes of it, as MATLAB writes all numbers. Their own stand
-    /// behind their name: `Fs_unit`.
+    /// What stands at a path, a group with the datasets of one value in it: attributes of it, as MATLAB
+    /// writes all numbers. Their own stand behind their name: `Fs_unit`.
     fn object_with_values(&mut self, path: &str) -> Object {
         let mut object = self.object(path);
         let group = path.trim_end_matches('/');
@@ -275,7 +276,8 @@ impl Opened<'_> {
     }
 }
 
-/// A dataset without its numbers. Where they lie outside the file that is all that is asked of it: the library would open the others.
+/// A dataset without its numbers. Where they lie outside the file that is all that is asked of it: the
+/// library would open the others.
 fn described(dataset: &hdf5_metno::Dataset) -> hdf5_metno::Result<Dataset> {
     let made = dataset.create_plist()?;
     let dtype = dataset.dtype()?;

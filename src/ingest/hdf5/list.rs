@@ -147,7 +147,8 @@ impl Lister {
         }
     }
 
-    /// What reading would take of a column into `listed`; where it would refuse the clock, the refusal stands in its place.
+    /// What reading would take of a column into `listed`; where it would refuse the clock, the refusal stands
+    /// in its place.
     fn fill(&mut self, column: DatasetColumn, listed: &mut ListedChannel) -> Result<(), Fault> {
         let source = &listed.source.clone();
         listed.samples = Some(column.length as u64);

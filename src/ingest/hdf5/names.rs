@@ -22,8 +22,9 @@ pub(in crate::ingest) enum AttributeRole {
     CountsConversion,
 }
 
-/// Names, so written as [`plain`] has them. Scale factor, add offset, fill and missing value are those of the CF conventions of netCDF,
-/// conversion is that of NWB, unit string that of LabVIEW. Other names hold parts of the last: `calibration_date`, `trigger_slope`.
+/// Names, so written as [`plain`] has them. Scale factor, add offset, fill and missing value are those of the
+/// CF conventions of netCDF, conversion is that of NWB, unit string that of LabVIEW. Other names hold parts
+/// of the last: `calibration_date`, `trigger_slope`.
 const ROLES: [(&str, AttributeRole); 8] = [
     ("t0 startingtime wfstartoffset", AttributeRole::Start),
     ("starttime timestart starttimestamp wfstarttime x0 xorg", AttributeRole::OpenStart),
@@ -38,8 +39,8 @@ const ROLES: [(&str, AttributeRole); 8] = [
     ),
 ];
 
-/// Parts of the names of conversions (`binToVoltFactor` of Elsys' TPC5 is one), and of those of counts on a dataset itself: on a group
-/// they may be of anything.
+/// Parts of the names of conversions (`binToVoltFactor` of Elsys' TPC5 is one), and of those of counts on a
+/// dataset itself: on a group they may be of anything.
 const CONVERSIONS: [(&str, AttributeRole); 2] = [
     (
         "tovolt tophysical conversion perbit percount lsb gain calfactor calibrationfactor scalingfactor",
@@ -74,7 +75,8 @@ pub(super) fn ends_in_unit(name: &str) -> bool {
     plain(name).trim_end_matches('s').ends_with("unit")
 }
 
-/// Whether `unit` names the unit of what `name` names: `sample_rate_unit` that of `sample_rate`, `XUnits` that of `XInc` and `XOrg`.
+/// Whether `unit` names the unit of what `name` names: `sample_rate_unit` that of `sample_rate`, `XUnits`
+/// that of `XInc` and `XOrg`.
 pub(super) fn is_unit_of(unit: &str, name: &str) -> bool {
     let (unit, name) = (plain(unit), plain(name));
     let bare = unit.trim_end_matches('s').trim_end_matches("unit");
@@ -84,7 +86,8 @@ pub(super) fn is_unit_of(unit: &str, name: &str) -> bool {
 /// The attribute by which MATLAB says what a dataset of numbers stands for.
 pub(super) const MATLAB_CLASS: &str = "MATLAB_class";
 
-/// Whether an attribute of this name says something of samples; NWB has the rate as `rate` of `starting_time`.
+/// Whether an attribute of this name says something of samples; NWB has the rate as `rate` of
+/// `starting_time`.
 pub(super) fn is_read(name: &str) -> bool {
     ends_in_unit(name)
         || ["rate", MATLAB_CLASS].contains(&name)

@@ -1,4 +1,5 @@
-//! The bytes of a dataset, plain or in deflated chunks, to one column or field of it, on all cores: the library works on one thread at a time.
+//! The bytes of a dataset, plain or in deflated chunks, to one column or field of it, on all cores: the
+//! library works on one thread at a time.
 
 use super::answer::{Dataset, NumberType, Packing, RecordField, Slab, Storage, StoredChunk};
 use super::column::{DatasetColumn, Place};
@@ -31,9 +32,9 @@ macro_rules! stored {
             }
         })*
 
-        /// The numbers of a column, or of a field of records; `None` where the library must read them: other filters, types or byte
-        /// orders, chunks that were never written, damage. For records the library would need a type made for them, which only its unsafe
-        /// part can have.
+        /// The numbers of a column, or of a field of records; `None` where the library must read them: other
+        /// filters, types or byte orders, chunks that were never written, damage. For records the library
+        /// would need a type made for them, which only its unsafe part can have.
         fn numbers(column: &DatasetColumn) -> Option<Samples> {
             match column.number {
                 $(NumberType::$name => values::<$number>(column).map(Samples::$samples)),*
@@ -93,7 +94,8 @@ fn values<T: Stored>(column: &DatasetColumn) -> Option<Vec<T::Sample>> {
     let value_bytes = usize::try_from(dataset.value_bytes).ok().filter(|bytes| *bytes > 0)?;
     let layout = ChunkLayout { rows: 0, columns: 1, value_bytes, packing: Packing::Plain, field, index };
     let (layout, chunks) = match &dataset.storage {
-        // Addresses count from behind a user block in some versions of the library and from the file's start in others.
+        // Addresses count from behind a user block in some versions of the library and from the file's start
+        // in others.
         _ if file.user_block != 0 => return None,
         Storage::Contiguous(from) => layout.in_one_piece(column, (*from)?)?,
         Storage::Chunked { shape, chunks } => layout.in_chunks(dataset, shape, chunks.as_ref()?)?,
@@ -175,8 +177,8 @@ impl ChunkLayout<'_> {
         (shape.len() <= 2).then_some((Self { rows, columns, packing, ..self }, chunks))
     }
 
-    /// How many of `count` chunks one thread at least unpacks in turn: those beside one another take half of what one may, however many
-    /// cores there are.
+    /// How many of `count` chunks one thread at least unpacks in turn: those beside one another take half of
+    /// what one may, however many cores there are.
     fn least_in_turn(&self, count: usize, limits: Limits) -> usize {
         let bytes = self.rows.saturating_mul(self.columns).saturating_mul(self.value_bytes) as u64;
         // Half of that, for each is held packed and unpacked.
@@ -252,7 +254,8 @@ impl ChunkLayout<'_> {
     }
 }
 
-/// Bytes as they were before they were shuffled as values of so many bytes; what is left behind the last value stays.
+/// Bytes as they were before they were shuffled as values of so many bytes; what is left behind the last
+/// value stays.
 fn unshuffled(bytes: &[u8], size: usize) -> Vec<u8> {
     let count = bytes.len() / size;
     let (values, rest) = bytes.split_at(count * size);

@@ -1,4 +1,5 @@
-//! A process to one that is ended where it is silent for too long: a share may hang, and not all systems limit processor time.
+//! A process to one that is ended where it is silent for too long: a share may hang, and not all systems
+//! limit processor time.
 
 use std::cell::Cell;
 use std::process::{Child, ExitStatus};
@@ -6,8 +7,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Longest silence beside the time that reading takes. A call that touches only names, shapes and attributes ends within milliseconds
-/// from a disk, within a second from a share on a slow line.
+/// Longest silence beside the time that reading takes. A call that touches only names, shapes and attributes
+/// ends within milliseconds from a disk, within a second from a share on a slow line.
 pub(super) const PATIENCE: Duration = Duration::from_secs(20);
 /// What the slowest medium in use gives, a stick on USB 1.1.
 const SLOWEST_BYTES_PER_S: u64 = 1_000_000;
@@ -47,7 +48,8 @@ impl Watched {
         }
     }
 
-    /// It has answered all that it was asked: it may be silent until the next request, however long the reader is busy.
+    /// It has answered all that it was asked: it may be silent until the next request, however long the
+    /// reader is busy.
     pub(super) fn rest(&self) {
         self.told.set(None);
         let _ = self.allowed.send(None);

@@ -1,7 +1,7 @@
 //! An HDF5 file to what stands in it, by way of a process that holds the C library and can do nothing else.
 //!
-//! The library crashes, loops and takes memory without bound on files that are damaged or made to do harm. Where it does, that process
-//! ends, and the recording is refused; this one goes on.
+//! The library crashes, loops and takes memory without bound on files that are damaged or made to do harm.
+//! Where it does, that process ends, and the recording is refused; this one goes on.
 
 #[cfg(any(test, fuzzing))]
 mod thread_tests;
@@ -227,7 +227,8 @@ impl Link {
         }
     }
 
-    /// As [`Self::end`] where there was no answer at all: the library breaks off by a signal, a program that is none for it by a status.
+    /// As [`Self::end`] where there was no answer at all: the library breaks off by a signal, a program that
+    /// is none for it by a status.
     fn end_before_answer(&mut self) -> Fault {
         match self.process.take().map(Watched::end) {
             Some(ProcessEnd::With(status)) if status.code().is_some_and(|code| code != 0) => {

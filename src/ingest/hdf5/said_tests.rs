@@ -7,7 +7,8 @@ use crate::ingest::csv::tests::cask_file;
 use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{Group, Location};
 
-/// Attributes by name and value; those of a group whose name begins with a slash are datasets of one value in it.
+/// Attributes by name and value; those of a group whose name begins with a slash are datasets of one value in
+/// it.
 type Words<'a> = &'a [(&'a str, &'a str)];
 
 const RATE: (&str, &str) = ("fs", "1000");

@@ -1,4 +1,5 @@
-//! What says of which sensor each sample is to the samples of one sensor, or to a refusal that names them all.
+//! What says of which sensor each sample is to the samples of one sensor, or to a refusal that names them
+//! all.
 
 use super::column::DatasetColumn;
 use super::fault::Fault;
@@ -15,7 +16,8 @@ pub(super) struct RecordSensors {
 }
 
 impl RecordSensors {
-    /// By the ids in a column; `None` where they are no whole numbers, or not of several sensors by turns and not picked for them.
+    /// By the ids in a column; `None` where they are no whole numbers, or not of several sensors by turns and
+    /// not picked for them.
     pub(super) fn by(ids: &DatasetColumn, are_picked: bool) -> Option<Self> {
         let each = ids.samples().ok()?.into_f64();
         let (mut seen, mut runs): (Vec<f64>, usize) = (Vec::new(), 0);

@@ -1,4 +1,5 @@
-//! What a recording says of the start of each channel to seconds, or to why two channels have no common clock.
+//! What a recording says of the start of each channel to seconds, or to why two channels have no common
+//! clock.
 
 use super::fault::Fault;
 use crate::ingest::statement::number_and_unit;
@@ -36,8 +37,8 @@ impl Start {
     }
 }
 
-/// The time of a first sample, s after something or since 1970: in the unit that stands beside it or in the name, else by its size; in s
-/// where `is_in_s`. `None` where nothing tells its unit.
+/// The time of a first sample, s after something or since 1970: in the unit that stands beside it or in the
+/// name, else by its size; in s where `is_in_s`. `None` where nothing tells its unit.
 pub(super) fn start_s(name: &str, text: &str, is_in_s: bool) -> Option<f64> {
     let number = number_and_unit(text).filter(|(_, unit)| unit.is_empty() || time_unit_s(unit).is_some());
     let Some((number, unit)) = number else {
@@ -50,8 +51,8 @@ pub(super) fn start_s(name: &str, text: &str, is_in_s: bool) -> Option<f64> {
     unit_s.map(|unit_s| number * unit_s).or(since_1970_s(number)).or(is_known.then_some(number))
 }
 
-/// Refuses sources that are to be taken together where their starts differ, and one is not understood or does not count from 1970 as
-/// another does.
+/// Refuses sources that are to be taken together where their starts differ, and one is not understood or does
+/// not count from 1970 as another does.
 ///
 /// # Errors
 /// There are such.

@@ -72,8 +72,9 @@ pub(super) fn name(dtype: &Datatype) -> Bytes {
     .into_bytes()
 }
 
-/// The fields of numbers; none where the type is no record, or none whose layout in the file the library tells: fields that differ in
-/// byte order, and references, texts and lists of varying length, which take other room in the file than in memory.
+/// The fields of numbers; none where the type is no record, or none whose layout in the file the library
+/// tells: fields that differ in byte order, and references, texts and lists of varying length, which take
+/// other room in the file than in memory.
 pub(super) fn fields(dtype: &Datatype) -> Vec<RecordField> {
     let mut fields = Vec::new();
     let is_big_endian = match dtype.byte_order() {
@@ -115,7 +116,8 @@ struct Outer<'a> {
 impl Outer<'_> {
     fn add(&self, compound: CompoundType, fields: &mut Vec<RecordField>) {
         for inner in compound.fields {
-            // The wrapper makes text of names of any bytes; they are bytes again before anybody looks at them.
+            // The wrapper makes text of names of any bytes; they are bytes again before anybody looks at
+            // them.
             let name = [self.name, &inner.name.into_bytes()].concat();
             let from = self.from.saturating_add(inner.offset);
             let (base, count) = match inner.ty {

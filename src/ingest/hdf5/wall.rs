@@ -1,14 +1,18 @@
 //! A process to one that can do nothing but take one HDF5 file apart: what it may reach, hold and spend.
 //!
-//! The C library reads bytes that anybody may have made, and mistakes in it are found every year (docs/dependencies.md).
+//! The C library reads bytes that anybody may have made, and mistakes in it are found every year
+//! (docs/dependencies.md).
 
 use std::path::Path;
 
-/// Memory for the program, the library and what it notes of a file, bytes. An empty file takes 60 MB of addresses, 10 000 datasets 20 more.
+/// Memory for the program, the library and what it notes of a file, bytes. An empty file takes 60 MB of
+/// addresses, 10 000 datasets 20 more.
 const LEAST_MEMORY_BYTES: u64 = 192 << 20;
-/// Processor time that opening and describing a file may take, s: 10 000 datasets with attributes take less than half of one.
+/// Processor time that opening and describing a file may take, s: 10 000 datasets with attributes take less
+/// than half of one.
 const LEAST_SECONDS: u64 = 2;
-/// What the library unpacks and hands over within a second on the slowest machine in use: a tenth of what was measured.
+/// What the library unpacks and hands over within a second on the slowest machine in use: a tenth of what was
+/// measured.
 const BYTES_PER_S: u64 = 20_000_000;
 
 /// What the process has been granted.
@@ -19,7 +23,8 @@ pub(super) struct Wall {
 }
 
 impl Wall {
-    /// Closes this process in: from now on it can read `recording`, what it has open, and nothing else; for good.
+    /// Closes this process in: from now on it can read `recording`, what it has open, and nothing else; for
+    /// good.
     pub(super) fn around(recording: &Path) -> Self {
         let mut wall = Self { asked_bytes: 0, is_whole: false };
         wall.limit(0);
@@ -102,7 +107,8 @@ mod reach {
     #[cfg(not(target_arch = "x86_64"))]
     const OLD_CALLS: [i64; 0] = [];
 
-    /// Whether both walls stand: a kernel that knows one of them only, or none, leaves the other, or the limits alone.
+    /// Whether both walls stand: a kernel that knows one of them only, or none, leaves the other, or the
+    /// limits alone.
     pub(super) fn nothing_but(recording: &Path) -> bool {
         let are_files_shut = files(recording).is_ok_and(|ruleset| ruleset != RulesetStatus::NotEnforced);
         let are_calls_shut = calls().is_ok_and(|program| seccompiler::apply_filter(&program).is_ok());

@@ -1,4 +1,5 @@
-//! Tests of what messages say of their samples: of files of one topic in JSON, what reading gives or why it refuses.
+//! Tests of what messages say of their samples: of files of one topic in JSON, what reading gives or why it
+//! refuses.
 
 use super::super::list::list;
 use super::super::read::read;
@@ -8,7 +9,8 @@ use crate::ingest::{Limits, RawRecording};
 use mcap::WriteOptions;
 use miette::Diagnostic;
 
-/// Forty messages 1 ms apart on a clock of 1970, logged 3 % slower; `fields` stand beside `"a"`, the number of the message.
+/// Forty messages 1 ms apart on a clock of 1970, logged 3 % slower; `fields` stand beside `"a"`, the number
+/// of the message.
 fn file(publishers: u16, fields: impl Fn(i64) -> String) -> Vec<u8> {
     closed(WriteOptions::new(), |writer| {
         let publisher = |i: u16| [("publisher".to_owned(), i.to_string())].into();

@@ -56,7 +56,8 @@ impl Cdr {
         let Plan { root, wants, .. } = &self.plan;
         let mut wide_bytes = WIDE_BYTES[0];
         if self.has_wide_text {
-            // Writers differ in what a wide letter takes; the right width leaves nothing of the message but what aligns its end.
+            // Writers differ in what a wide letter takes; the right width leaves nothing of the message but
+            // what aligns its end.
             let end = |bytes: usize| {
                 let mut walk = CdrWalk::<Order>::new(body, wants, slots, bytes);
                 let is_whole = walk.fields(&self.fields, None).is_ok();

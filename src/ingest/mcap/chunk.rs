@@ -1,4 +1,5 @@
-//! A chunk as it stands in the file to its records: unpacked whole, its check sum tested, a cut one as far as it goes.
+//! A chunk as it stands in the file to its records: unpacked whole, its check sum tested, a cut one as far as
+//! it goes.
 
 use super::records::{Counts, Records};
 use super::topic::Part;
@@ -6,7 +7,8 @@ use std::io::Read;
 
 /// Longer than any name of a compression ("zstd", "lz4"); a longer one is damage.
 const LONGEST_COMPRESSION_NAME_BYTES: usize = 64;
-/// zstd needs three bytes for a block, which unpacks to 128 KiB at most (RFC 8878): more is damage, not a claim.
+/// zstd needs three bytes for a block, which unpacks to 128 KiB at most (RFC 8878): more is damage, not a
+/// claim.
 const LARGEST_EXPANSION: u64 = (128 << 10) / 3 + 1;
 
 /// What a chunk says of itself.

@@ -232,7 +232,8 @@ impl Column {
         state(&mut self.rates, rate);
     }
 
-    /// Whether all samples so far are held, and those of one more block are: for a listing the first of them will do.
+    /// Whether all samples so far are held, and those of one more block are: for a listing the first of them
+    /// will do.
     fn is_prefix(&self) -> bool {
         let held = self.samples.len();
         self.extent.as_ref().is_none_or(|extent| held < PREFIX && held as u64 == extent.samples)
@@ -253,7 +254,8 @@ impl Column {
         }
     }
 
-    /// Moves over what another column took of the messages that follow; that one is as new, but for the memory it has.
+    /// Moves over what another column took of the messages that follow; that one is as new, but for the
+    /// memory it has.
     pub(super) fn append(&mut self, other: &mut Self) {
         let before = self.len();
         self.zero_stamp = other.zero_stamp.take().map(|position| before + position).or(self.zero_stamp);
@@ -301,7 +303,8 @@ impl Column {
         }
     }
 
-    /// Takes a single stamp of zero for a time where the other stamps show a clock that counts from its own start.
+    /// Takes a single stamp of zero for a time where the other stamps show a clock that counts from its own
+    /// start.
     pub(super) fn settle_clock(&mut self) {
         let (1, Some(position)) = (self.stamps.bad, self.zero_stamp) else { return };
         let is_own_clock = |(at, time_ns): (usize, i64)| at == position || time_ns.abs() < CLOCK_IS_SET_NS;

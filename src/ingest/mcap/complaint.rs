@@ -37,7 +37,8 @@ pub(super) fn no_topic(path: &Path, spec: &ChannelSpec, topics: &[String], scann
     fault(format!("the recording has no topic for the source {}", spec.source), mend)
 }
 
-/// Several channels or sensors gave what the source names, by their numbers and rows, or none the ones that are asked for.
+/// Several channels or sensors gave what the source names, by their numbers and rows, or none the ones that
+/// are asked for.
 pub(super) fn several(
     path: &Path,
     spec: &ChannelSpec,

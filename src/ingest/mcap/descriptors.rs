@@ -1,4 +1,5 @@
-//! A protobuf schema's serialised descriptor set to the message type that it names, without what numbers do not need.
+//! A protobuf schema's serialised descriptor set to the message type that it names, without what numbers do
+//! not need.
 
 use prost_reflect::prost::Message as _;
 use prost_reflect::prost_types::{
@@ -7,7 +8,8 @@ use prost_reflect::prost_types::{
 };
 use prost_reflect::{DescriptorPool, MessageDescriptor};
 
-/// What the names of imported files take where each file of a set is made to import all others, bytes: those of five hundred files.
+/// What the names of imported files take where each file of a set is made to import all others, bytes: those
+/// of five hundred files.
 const MOST_NAMES_BYTES: usize = 16 << 20;
 
 /// The message type that `schema_name` names in a serialised descriptor set.
@@ -31,8 +33,9 @@ pub(super) fn message_type(schema_name: &str, descriptor_set: &[u8]) -> Result<M
         .ok_or_else(|| format!("its schema's descriptor set holds no message {schema_name:?}"))
 }
 
-/// Lets every file import all others where one imports another for its importers too (`import public`): the library that links the types
-/// follows such imports anew for each way that leads to them, and for ever where a file leads to itself.
+/// Lets every file import all others where one imports another for its importers too (`import public`): the
+/// library that links the types follows such imports anew for each way that leads to them, and for ever where
+/// a file leads to itself.
 fn publish(set: &mut FileDescriptorSet) -> Result<(), String> {
     if set.file.iter().all(|file| file.public_dependency.is_empty()) {
         return Ok(());
@@ -51,7 +54,8 @@ fn publish(set: &mut FileDescriptorSet) -> Result<(), String> {
     Ok(())
 }
 
-/// Takes away comments, services, extensions and options: only which fields are maps or packed matters to the wire.
+/// Takes away comments, services, extensions and options: only which fields are maps or packed matters to the
+/// wire.
 fn simplify(file: &mut FileDescriptorProto) {
     file.options = None;
     file.source_code_info = None;

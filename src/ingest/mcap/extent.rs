@@ -1,4 +1,5 @@
-//! Samples as they come to what a listing shows of them: how many, their range, and what stands for those of a block.
+//! Samples as they come to what a listing shows of them: how many, their range, and what stands for those of
+//! a block.
 
 use super::plan::Value;
 use crate::data::{Samples, is_number};

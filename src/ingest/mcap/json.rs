@@ -1,7 +1,7 @@
 //! JSON messages to the wanted fields by a walk along their text: samples never become a tree of values.
 //!
-//! `serde_json` tells nobody where in the text it stands: to read numbers by their digits an array would have to be gone
-//! through twice. All but objects and plain arrays is left to it.
+//! `serde_json` tells nobody where in the text it stands: to read numbers by their digits an array would have
+//! to be gone through twice. All but objects and plain arrays is left to it.
 
 use super::path::Step;
 use super::plan::{
@@ -157,7 +157,8 @@ impl JsonWalk<'_> {
         self.slots.pick(slot, &node.elements(self.wants));
     }
 
-    /// A value other than a run of samples by itself: a number, words, a time, or what holds such at places of their own.
+    /// A value other than a run of samples by itself: a number, words, a time, or what holds such at places
+    /// of their own.
     fn take(&mut self, node: &Node, value: &Tree) -> Result<(), WalkFault> {
         if let Some(slot) = node.slot(self.wants, Want::Numbers) {
             let number = match value {
@@ -281,7 +282,8 @@ fn key(text: &[u8]) -> Result<(Cow<'_, str>, usize), WalkFault> {
     }
 }
 
-/// The numbers of the array that `text` begins with and how many bytes it takes; `None` where it holds anything else.
+/// The numbers of the array that `text` begins with and how many bytes it takes; `None` where it holds
+/// anything else.
 fn plain_numbers(text: &[u8]) -> Option<(Vec<f64>, usize)> {
     /// Characters of a number and its comma, as loggers write them; more room is taken as it is needed.
     const USUAL: usize = 8;

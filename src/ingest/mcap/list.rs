@@ -91,8 +91,8 @@ fn each(topics: &mut [Channels]) -> impl Iterator<Item = (&Topic, &mut Gathered)
     })
 }
 
-/// Adds a line for each field of a topic and each sensor, or one that says why there is none, and what reading would refuse; `number` is
-/// that of the channel, where several write on the topic.
+/// Adds a line for each field of a topic and each sensor, or one that says why there is none, and what
+/// reading would refuse; `number` is that of the channel, where several write on the topic.
 fn listed(
     (topic, number): (&Topic, Option<u16>),
     gathered: Gathered,

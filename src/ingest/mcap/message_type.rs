@@ -12,8 +12,8 @@ use prost_reflect::MessageDescriptor;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A schema is larger than this and the file only to do harm: those of sensors take tens of kilobytes, and each byte of one that is
-/// no schema takes five hundred as it is taken apart.
+/// A schema is larger than this and the file only to do harm: those of sensors take tens of kilobytes, and
+/// each byte of one that is no schema takes five hundred as it is taken apart.
 const ALWAYS_READ_BYTES: u64 = 256 << 10;
 /// Message encodings that are read.
 const READ: &str = "those that can be read are json, protobuf, and cdr with ros2msg";
@@ -156,7 +156,8 @@ impl MessageType {
     }
 }
 
-/// The unit that the message type of a field's own message fixes for it: ROS messages are in SI units (REP 103).
+/// The unit that the message type of a field's own message fixes for it: ROS messages are in SI units (REP
+/// 103).
 fn unit_of_type(type_name: &str, field: &str) -> Option<&'static str> {
     let (package, name) = (type_name.split('/').next()?, type_name.rsplit('/').next()?);
     let is_accel = package == "geometry_msgs" && name.starts_with("Accel");

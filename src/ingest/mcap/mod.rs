@@ -1,4 +1,5 @@
-//! MCAP files to raw channels and listings: JSON, protobuf and ROS 2 messages, whole files and what is left of others.
+//! MCAP files to raw channels and listings: JSON, protobuf and ROS 2 messages, whole files and what is left
+//! of others.
 
 mod beside;
 mod cdr;

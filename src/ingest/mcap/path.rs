@@ -77,7 +77,8 @@ impl fmt::Display for FieldPath {
     }
 }
 
-/// The field that `source` means if it means `topic`, with or without the leading slash; `None` where it means another.
+/// The field that `source` means if it means `topic`, with or without the leading slash; `None` where it
+/// means another.
 pub(super) fn field_in(source: &Source, topic: &str) -> Option<FieldPath> {
     match source {
         Source::TopicField { topic: wanted, field, .. } => {

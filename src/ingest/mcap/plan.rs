@@ -1,4 +1,5 @@
-//! Wanted fields of a message type to one tree of everything to fetch: the samples, their stamp, rate and unit.
+//! Wanted fields of a message type to one tree of everything to fetch: the samples, their stamp, rate and
+//! unit.
 
 use super::path::{FieldPath, Step};
 use crate::data::Samples;
@@ -159,7 +160,8 @@ pub(super) struct AskedField {
 }
 
 impl AskedField {
-    /// Whether the field at `path` may say which sensor a message is of: the one that the cask file names, be it by its last name.
+    /// Whether the field at `path` may say which sensor a message is of: the one that the cask file names, be
+    /// it by its last name.
     pub(super) fn may_be_sensor(&self, path: &FieldPath) -> bool {
         self.sensor.as_ref().is_none_or(|named| named.0.len() == 1 && named.last_name() == path.last_name())
     }
@@ -192,8 +194,8 @@ pub(super) struct StatedRate {
 }
 
 impl StatedRate {
-    /// As a statement; an interval without a unit is in the one in which it agrees with the rate at which the samples came, `told_hz`, and
-    /// in seconds where it does in none.
+    /// As a statement; an interval without a unit is in the one in which it agrees with the rate at which the
+    /// samples came, `told_hz`, and in seconds where it does in none.
     pub(super) fn statement(&self, told_hz: f64) -> Option<Statement> {
         /// Units are a thousandfold apart.
         const ALIKE: f64 = 0.1;

@@ -15,8 +15,8 @@ const MOST_BESIDE: usize = 32;
 const MOST_TELLING: usize = 64;
 
 impl Plan {
-    /// The plan for what is asked of messages with such `leaves`, as far as these are known; other fields are looked for in each message,
-    /// but for those that none of them `has`.
+    /// The plan for what is asked of messages with such `leaves`, as far as these are known; other fields are
+    /// looked for in each message, but for those that none of them `has`.
     pub(super) fn new(asked: &[AskedField], leaves: &[Leaf], has: impl Fn(&FieldPath) -> bool) -> Self {
         let (mut plan, telling) = (Self::default(), Telling::among(leaves));
         for asked in asked {
@@ -82,7 +82,8 @@ impl Target {
         }
     }
 
-    /// Takes the field at `path` for their rate or interval, in the unit that may stand beside it: `sample_rate_unit`.
+    /// Takes the field at `path` for their rate or interval, in the unit that may stand beside it:
+    /// `sample_rate_unit`.
     pub(super) fn rate(
         &mut self,
         plan: &mut Plan,
@@ -102,7 +103,8 @@ impl Target {
         self.rates.push(SlotOfRate { number: plan.slot(path, Want::Numbers), unit, stated });
     }
 
-    /// Takes the fields of a message that encloses the samples, so many `level`s above them, that say something of them.
+    /// Takes the fields of a message that encloses the samples, so many `level`s above them, that say
+    /// something of them.
     pub(super) fn others(
         &mut self,
         plan: &mut Plan,

@@ -270,7 +270,8 @@ fn messages_that_do_not_decode_are_counted_and_left_out() {
     assert!(raw.issues[0].message.contains("1 of 11"), "{}", raw.issues[0].message);
 }
 
-/// Cut at any byte, a file gives what it holds and says that it is cut, or an error: it never panics and never passes in silence.
+/// Cut at any byte, a file gives what it holds and says that it is cut, or an error: it never panics and
+/// never passes in silence.
 #[test]
 fn a_file_cut_at_any_byte_says_so_and_keeps_whole_messages() {
     for options in [

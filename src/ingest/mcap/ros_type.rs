@@ -106,8 +106,8 @@ impl Type {
 /// # Errors
 /// Why the text gives no type.
 pub(super) fn parse(name: &str, text: &str, left: &mut usize) -> Result<Vec<RosField>, String> {
-    // Neither defaults nor constants are sent, and the crate panics where one of them is a quotation mark alone.
-    // It leaves out a definition at the end that has no line: one without fields.
+    // Neither defaults nor constants are sent, and the crate panics where one of them is a quotation mark
+    // alone. It leaves out a definition at the end that has no line: one without fields.
     let text = text.replace(['"', '\''], "_") + "\n#\n";
     let schema =
         MessageSchema::parse(name, &text).map_err(|error| format!("its schema does not parse: {error:#}"))?;

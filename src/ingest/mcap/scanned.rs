@@ -61,7 +61,8 @@ impl Losses {
 }
 
 impl Scanned {
-    /// What was lost, bad records and what is too much to tell summed up; the last message kept begins at `last_kept_s`.
+    /// What was lost, bad records and what is too much to tell summed up; the last message kept begins at
+    /// `last_kept_s`.
     pub(super) fn findings(&self, last_kept_s: Option<f64>) -> Vec<Finding> {
         let Losses { first, more, bad_records, first_bad_record } = &self.losses;
         let mut found = first.clone();

@@ -7,7 +7,8 @@ use std::io::{Read, Seek, SeekFrom};
 /// Footer: opcode and length, two offsets and a check sum, then the magic.
 const FOOTER_BYTES: u64 = RECORD_HEADER_BYTES + 8 + 8 + 4 + 8;
 
-/// What the summary section tells: it lets messages be taken whose channel stands in a damaged chunk, and goes on after damage.
+/// What the summary section tells: it lets messages be taken whose channel stands in a damaged chunk, and
+/// goes on after damage.
 #[derive(Debug, Default)]
 pub(super) struct Summary {
     bytes: Vec<u8>,
@@ -43,8 +44,8 @@ impl Summary {
     }
 }
 
-/// The summary of `file`, empty where it is closed without one, `None` where it is not closed; the file is left at its start.
-/// What lies beyond `most_bytes` is left to the walk.
+/// The summary of `file`, empty where it is closed without one, `None` where it is not closed; the file is
+/// left at its start. What lies beyond `most_bytes` is left to the walk.
 pub(super) fn read(
     file: &mut (impl Read + Seek),
     length: u64,

@@ -241,7 +241,8 @@ pub(super) struct Part {
     /// The channels with a message: a file may have thousands, and chunks of a message each.
     touched: Vec<usize>,
     slots: Slots,
-    /// So many bytes of times may be held for a listing; `None` where samples are read, which have a limit of their own.
+    /// So many bytes of times may be held for a listing; `None` where samples are read, which have a limit of
+    /// their own.
     most_listed_bytes: Option<u64>,
     /// Memory of times and samples.
     pub(super) held_bytes: u64,

@@ -1,4 +1,5 @@
-//! The schemas and channels of an MCAP file to its topics, and their messages to a column for each field that is asked for.
+//! The schemas and channels of an MCAP file to its topics, and their messages to a column for each field that
+//! is asked for.
 
 use super::chunk::Chunk;
 use super::json;
@@ -13,8 +14,8 @@ use mcap::records::{Record, op};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-/// So many topics and fields are listed in all, each counted once more for every kilobyte of its names: a recording of hundreds of
-/// sensors has thousands, and each takes 3 kB. An HDF5 file lists as many objects.
+/// So many topics and fields are listed in all, each counted once more for every kilobyte of its names: a
+/// recording of hundreds of sensors has thousands, and each takes 3 kB. An HDF5 file lists as many objects.
 const MOST_LISTED: usize = 10_000;
 
 /// The word by which a cask file takes the log times instead of the messages' own.
@@ -60,7 +61,8 @@ pub(super) struct Topics<'a> {
     all: Vec<Topic>,
     by_name: HashMap<String, usize>,
     streams: Vec<Stream>,
-    /// The stream of each channel, the first of an id, and its place in the file; `None` where its messages are not asked for.
+    /// The stream of each channel, the first of an id, and its place in the file; `None` where its messages
+    /// are not asked for.
     by_channel: HashMap<u16, Option<(usize, usize)>>,
     /// The topic and the number of each channel that is asked for, in the order of the file.
     channels: Vec<(usize, u16)>,
@@ -90,7 +92,8 @@ impl<'a> Topics<'a> {
         }
     }
 
-    /// Takes a schema or channel that was not there before; `is_ahead` of the data, where a channel may lack its schema.
+    /// Takes a schema or channel that was not there before; `is_ahead` of the data, where a channel may lack
+    /// its schema.
     ///
     /// # Errors
     /// Why the record cannot be used.
@@ -265,7 +268,8 @@ impl<'a> Topics<'a> {
         listed
     }
 
-    /// Takes from an unpacked chunk what its messages need to be taken: schemas, channels, and which fields messages in JSON have.
+    /// Takes from an unpacked chunk what its messages need to be taken: schemas, channels, and which fields
+    /// messages in JSON have.
     pub(super) fn meet(&mut self, chunk: &Chunk, losses: &mut Losses) {
         if chunk.counts.has_channels() {
             for (opcode, body) in chunk.records() {
@@ -346,7 +350,8 @@ impl<'a> Topics<'a> {
         (topics + fields > 0).then(|| McapFinding::Unlisted { most, most_of_topic, topics, fields }.into())
     }
 
-    /// The topics of the file, in its order, each with its channels and what their messages gave, one at least.
+    /// The topics of the file, in its order, each with its channels and what their messages gave, one at
+    /// least.
     pub(super) fn finish(self, taken: Part) -> Vec<Channels> {
         let mut topics: Vec<_> = self.all.into_iter().map(|topic| (topic, Vec::new())).collect();
         for ((topic, number), mut gathered) in self.channels.into_iter().zip(taken.gathered) {

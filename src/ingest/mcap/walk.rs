@@ -1,4 +1,5 @@
-//! An MCAP file to what its messages give, in the order of the file, whole or not: chunks are unpacked several at once.
+//! An MCAP file to what its messages give, in the order of the file, whole or not: chunks are unpacked
+//! several at once.
 
 use super::chunk::{Chunk, ChunkFault};
 use super::records::RECORD_HEADER_BYTES;
@@ -20,7 +21,8 @@ use std::path::Path;
 const READ_BUFFER_BYTES: usize = 1 << 18;
 /// At most so many packed bytes are unpacked as one batch of chunks.
 const MOST_PACKED_BYTES: u64 = 16 << 20;
-/// The chunks of a batch unpack to at most so many bytes, by their own word; a larger chunk is a batch by itself.
+/// The chunks of a batch unpack to at most so many bytes, by their own word; a larger chunk is a batch by
+/// itself.
 const MOST_UNPACKED_BYTES: u64 = 64 << 20;
 
 /// A file that was walked through.
@@ -50,7 +52,8 @@ impl From<std::io::Error> for Obstacle {
     }
 }
 
-/// Reads the file at `path` from start to end: how it is made, and what its messages gave of what is asked for.
+/// Reads the file at `path` from start to end: how it is made, and what its messages gave of what is asked
+/// for.
 ///
 /// # Errors
 /// Only where the file cannot be read at all, or passes a limit; damage and truncation are in the answer.
@@ -243,7 +246,8 @@ impl Walk<'_> {
 
     /// A chunk, which waits until there are enough to be unpacked beside one another.
     fn chunk(&mut self, claimed: u64, available: u64) -> Result<Next, Obstacle> {
-        // Each has a sum of its own, and that of all is not right by every writer that goes back to a chunk's length.
+        // Each has a sum of its own, and that of all is not right by every writer that goes back to a chunk's
+        // length.
         self.file.get_mut().sum = None;
         let part_bytes = self.limits.part_bytes();
         within("one of its chunks takes", claimed.min(available), part_bytes)?;
@@ -274,7 +278,8 @@ impl Walk<'_> {
         Ok(if is_last { Next::Stop } else { Next::Go })
     }
 
-    /// Takes the chunks that wait: unpacks them, looks in turn at what they tell of channels, and takes their messages.
+    /// Takes the chunks that wait: unpacks them, looks in turn at what they tell of channels, and takes their
+    /// messages.
     fn settle(&mut self) -> Result<(), Obstacle> {
         let Self { waiting, limits, .. } = self;
         let Walked { scanned, topics, taken } = &mut self.walked;

@@ -67,7 +67,8 @@ pub(super) fn fill_json(writer: &mut MemoryWriter) {
     }
 }
 
-/// The descriptor set of the contract's block, its samples packed or not, with a nested message and 64-bit counts.
+/// The descriptor set of the contract's block, its samples packed or not, with a nested message and 64-bit
+/// counts.
 pub(super) fn block_descriptors(is_packed: bool) -> Vec<u8> {
     let field = |name: &str, number, kind: Type, type_name: Option<&str>, is_list| FieldDescriptorProto {
         name: Some(name.into()),

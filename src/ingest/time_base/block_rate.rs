@@ -1,4 +1,5 @@
-//! What is claimed of a channel's rate, and the stamps of its blocks, to the rate at which the blocks are laid.
+//! What is claimed of a channel's rate, and the stamps of its blocks, to the rate at which the blocks are
+//! laid.
 
 use super::blocks::{self, Laid};
 use super::error::{TimeBaseError, check_rate};
@@ -10,16 +11,18 @@ use crate::ingest::clock::{Claims, RATE_TOLERANCE, Refusal};
 use crate::ingest::shown;
 use crate::ingest::statement::Statement;
 
-/// A rate this far from that of a few stamps is worth a warning: every velocity is off by as much, and a stamp 1 ms late in blocks of 0.2 s
-/// stays below.
+/// A rate this far from that of a few stamps is worth a warning: every velocity is off by as much, and a
+/// stamp 1 ms late in blocks of 0.2 s stays below.
 const FEW_APART: f64 = 5e-3;
 
-/// From one block of so many on that carries the stamp of the one before the stamps are too coarse, rather than blocks sent again.
+/// From one block of so many on that carries the stamp of the one before the stamps are too coarse, rather
+/// than blocks sent again.
 const SHARED_OF: usize = 10;
 /// Fewer may as well be sent again, corrected.
 const LEAST_SHARED: usize = 3;
 
-/// Of so many samples the first blocks of a channel are kept where its samples are not: enough to tell whether they overlap.
+/// Of so many samples the first blocks of a channel are kept where its samples are not: enough to tell
+/// whether they overlap.
 pub(in crate::ingest) const PREFIX: usize = 1 << 16;
 
 /// The rate of a channel in blocks.
@@ -89,8 +92,8 @@ fn rate(blocks: &[Block], claims: &Claims, content: &BlockContent) -> Result<Blo
     }
     let is_borne_out =
         |own: &Statement| (nearest_hz / own.rate_hz - 1.0).abs() <= RATE_TOLERANCE.max(own.rounding);
-    // Blocks stay where the stamps have them while these bear a statement out; at another rate steady stamps would leave a gap behind every
-    // block, or let each cover the next.
+    // Blocks stay where the stamps have them while these bear a statement out; at another rate steady stamps
+    // would leave a gap behind every block, or let each cover the next.
     let laid_hz = own.filter(|own| !is_borne_out(own)).map_or(nearest_hz, |own| own.rate_hz);
     Ok(BlockRate { laid_hz, stated_hz: claims.cask_hz.filter(|hz| hz.total_cmp(&laid_hz).is_ne()), issues })
 }
@@ -114,7 +117,8 @@ fn alone(blocks: &[Block], told: Option<Told>) -> Result<f64, Refusal> {
     Err(Refusal::new(problem, REMEDY))
 }
 
-/// Refuses blocks of which many carry the stamp of the one before though their samples differ: nothing tells where one is lost.
+/// Refuses blocks of which many carry the stamp of the one before though their samples differ: nothing tells
+/// where one is lost.
 fn no_shared_stamps(blocks: &[Block], content: &BlockContent) -> Result<(), Refusal> {
     let pieces = pieces(blocks);
     let is_shared = |pair: &&[Piece]| {

@@ -27,8 +27,9 @@ impl Doubles {
     }
 }
 
-/// Blocks on a uniform base at a rate in Hz, their `samples` one after another. Stamps decide where a block lies, to the nearest sample;
-/// samples are not moved between. Blocks that follow one another stay where they are.
+/// Blocks on a uniform base at a rate in Hz, their `samples` one after another. Stamps decide where a block
+/// lies, to the nearest sample; samples are not moved between. Blocks that follow one another stay where they
+/// are.
 ///
 /// # Errors
 /// [`TimeBaseError`] where stamps or rate make no record.
@@ -184,8 +185,9 @@ const JUDGED_STAMPS: usize = 8;
 
 /// By how many samples a stamp may miss the end of the block before and still follow it without a gap.
 ///
-/// Half a sample for stamps of the sampling clock. Stamps of a computer's clock jitter by many samples; then six times the median
-/// miss (four standard deviations of a normal law are 5.9 medians), but less than half a block, since whole blocks get lost.
+/// Half a sample for stamps of the sampling clock. Stamps of a computer's clock jitter by many samples; then
+/// six times the median miss (four standard deviations of a normal law are 5.9 medians), but less than half a
+/// block, since whole blocks get lost.
 fn stamp_tolerance(stamps: &Intervals, rate_hz: f64, cut: Option<StampCut>) -> f64 {
     // Two stamps that are cut to a millisecond are up to that nearer or farther than their blocks.
     let cut_samples = cut.map_or(0.0, |cut| cut.unit_s * rate_hz * (1.0 + ROUND_OFF));
@@ -199,7 +201,8 @@ fn stamp_tolerance(stamps: &Intervals, rate_hz: f64, cut: Option<StampCut>) -> f
     if median <= 0.5 { 0.5 } else { (6.0 * median).max(cut_samples).min(half_block) }
 }
 
-/// A warning where blocks are shorter than nine of ten others by no more than what stamps leave open: samples may be missing behind them.
+/// A warning where blocks are shorter than nine of ten others by no more than what stamps leave open: samples
+/// may be missing behind them.
 fn hidden_loss(stamps: &Intervals, rate_hz: f64, tolerance: f64) -> Option<Finding> {
     let mut lengths: Vec<f64> = stamps.0.iter().map(|interval| interval.length).collect();
     let usual = robust::median(&mut lengths);

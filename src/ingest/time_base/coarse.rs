@@ -1,8 +1,10 @@
-//! Times coarser than the sample interval, such as stamps of whole milliseconds at 10 kHz, to a rate and how well they tell it.
+//! Times coarser than the sample interval, such as stamps of whole milliseconds at 10 kHz, to a rate and how
+//! well they tell it.
 //!
-//! A sample whose stamp is later than the one before it was taken within one interval of that stamp. All lines through these
-//! changes that keep to this are as good as one another: the middle one's slope is the period, half of their spread its
-//! uncertainty. A line through all samples would be off by about (step / record)², 1 % for ten steps (docs/formats.md).
+//! A sample whose stamp is later than the one before it was taken within one interval of that stamp. All
+//! lines through these changes that keep to this are as good as one another: the middle one's slope is the
+//! period, half of their spread its uncertainty. A line through all samples would be off by about (step /
+//! record)², 1 % for ten steps (docs/formats.md).
 
 use super::error::TimeBaseError;
 use super::missing;
@@ -12,11 +14,13 @@ use crate::ingest::clock::{Claims, RATE_TOLERANCE, Refusal, of_times};
 use crate::ingest::shown::digits;
 use crate::numerics::{as_f64, robust};
 
-/// Fewer changes make two whole steps at most, which agree with any jitter: nothing would show that they are even.
+/// Fewer changes make two whole steps at most, which agree with any jitter: nothing would show that they are
+/// even.
 const LEAST_CHANGES: usize = 4;
 
-/// A rate more uncertain than this, as a part of itself, makes a warning. Every velocity is off by as much; it is the part by which
-/// a declared rate may contradict the times, and a tenth of what the intervals hold for each channel's calibration.
+/// A rate more uncertain than this, as a part of itself, makes a warning. Every velocity is off by as much;
+/// it is the part by which a declared rate may contradict the times, and a tenth of what the intervals hold
+/// for each channel's calibration.
 const UNSURE: f64 = RATE_TOLERANCE;
 
 /// A rate more uncertain than this is none: what the intervals hold for the calibration no longer covers it.
@@ -82,8 +86,8 @@ pub(super) fn place(
     Ok(Uniform { start_s, sample_rate_hz, samples, gaps, time_jitter_s: 0.0, issues })
 }
 
-/// Refuses times of which each stands exactly two, three or four times, as on rows of so many sensors, unless a rate that is stated
-/// shows that their clock is coarse.
+/// Refuses times of which each stands exactly two, three or four times, as on rows of so many sensors, unless
+/// a rate that is stated shows that their clock is coarse.
 fn no_rows_of_sensors(changes: &[usize], step_s: f64, count: usize, claims: &Claims) -> Result<(), Refusal> {
     const SENSORS: std::ops::RangeInclusive<usize> = 2..=4;
     /// Of so many times all but one: a row may be lost here and there.
@@ -154,7 +158,8 @@ impl Steps {
     }
 }
 
-/// Time of sample 0 at a rate that is declared beside coarse times, which change by `step_s` and tell the `steps`, and what is said of it.
+/// Time of sample 0 at a rate that is declared beside coarse times, which change by `step_s` and tell the
+/// `steps`, and what is said of it.
 fn at_rate(
     times_s: &[f64],
     changes: &[usize],
@@ -168,7 +173,8 @@ fn at_rate(
     let period_s = 1.0 / rate_hz;
     let points = changes.iter().map(|&i| (as_f64(i), times_s[i] - times_s[0]));
     let (lowest_s, width_s) = range(points, period_s);
-    // Each change lies within one interval of its sample, and the rate may be off by its tolerance; more is samples lost or another rate.
+    // Each change lies within one interval of its sample, and the rate may be off by its tolerance; more is
+    // samples lost or another rate.
     let length_s = times_s[times_s.len() - 1] - times_s[0];
     let is_uneven = steps.is_some_and(|steps| !steps.is_even);
     let is_off = is_uneven || width_s > (1.0 + ROUND_OFF) / rate_hz + RATE_TOLERANCE * length_s;
@@ -335,7 +341,8 @@ mod tests {
         assert!(matches!(placed(&lost, None), Err(TimeBaseError::TooCoarse { .. })));
         let stated = placed(&lost, Some(20_000.0)).unwrap();
         assert_eq!(only(&stated).0, Severity::Warning, "{}", only(&stated).1);
-        // Few samples of a step of 1000, and too few steps to tell a rate: what is declared cannot explain them either.
+        // Few samples of a step of 1000, and too few steps to tell a rate: what is declared cannot explain
+        // them either.
         for (step_s, count, lost_from) in [(0.05, 9000, 3000), (0.1, 7000, 4500)] {
             let mut lost = cut(20_000.0, step_s, 0.013, count);
             lost.drain(lost_from..lost_from + 40);

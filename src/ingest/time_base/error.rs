@@ -36,7 +36,8 @@ pub enum TimeBaseError {
         /// The value, s.
         time_s: f64,
     },
-    /// Times repeat so often, and change so seldom or unevenly, that they do not tell when a sample was taken.
+    /// Times repeat so often, and change so seldom or unevenly, that they do not tell when a sample was
+    /// taken.
     #[error(
         "the times are cut to {} s: {count} samples share {} times that are too few or too uneven to tell their rate; \
          give sample_rate_hz for this channel",

@@ -65,12 +65,14 @@ impl BaseFit {
     }
 }
 
-/// Least and largest period of parts of the times, s, where they come apart by more than both parts' scatter: two rates, and no jitter.
+/// Least and largest period of parts of the times, s, where they come apart by more than both parts' scatter:
+/// two rates, and no jitter.
 pub(super) fn two_periods(times_s: &[f64]) -> Option<(f64, f64)> {
     const PARTS: usize = 16;
     /// Of fewer times a late one tilts the line.
     const FEWEST: usize = 16;
-    /// In RMS distances of both parts' times from their lines: stamps that walk at random come apart by 8, and by 18 at most in 1200 records.
+    /// In RMS distances of both parts' times from their lines: stamps that walk at random come apart by 8,
+    /// and by 18 at most in 1200 records.
     const APART: f64 = 20.0;
     let count = FEWEST.max(times_s.len() / PARTS);
     let parts = times_s.chunks_exact(count).filter_map(|part| BaseFit::new(part).ok());
@@ -158,7 +160,8 @@ fn runs(times_s: &[f64], period_s: f64) -> Result<Vec<Run>, TimeBaseError> {
     Ok(runs)
 }
 
-/// Whether a slightly long interval is made good by its neighbours: then a stamp came late, and nothing is missing.
+/// Whether a slightly long interval is made good by its neighbours: then a stamp came late, and nothing is
+/// missing.
 fn is_jitter(times_s: &[f64], at: usize, period_s: f64) -> bool {
     let interval_s = times_s[at + 1] - times_s[at];
     let (from, to) = (at.saturating_sub(2), (at + 3).min(times_s.len() - 1));
@@ -166,7 +169,8 @@ fn is_jitter(times_s: &[f64], at: usize, period_s: f64) -> bool {
     interval_s < 2.5 * period_s && to - from > 1 && times_s[to] - times_s[from] < expected * period_s
 }
 
-/// Start and period of the base nearest to the times: least squares of t over place, on what is left after a first line, so that round-off stays below 1e-9 of a sample.
+/// Start and period of the base nearest to the times: least squares of t over place, on what is left after a
+/// first line, so that round-off stays below 1e-9 of a sample.
 fn line_of_runs(times_s: &[f64], runs: &[Run]) -> (f64, f64) {
     let last = times_s.len() - 1;
     let last_place = runs.last().map_or(last, |run| run.place + (last - run.first));
@@ -203,7 +207,8 @@ fn residual(times_s: &[f64], runs: &[Run], start_s: f64, period_s: f64) -> (f64,
 /// Sums that do not wait for one another.
 const LANES: usize = 4;
 
-/// Has `add` add each time and its place on the base to the sums of its lane; the sums of the parts that threads took side by side.
+/// Has `add` add each time and its place on the base to the sums of its lane; the sums of the parts that
+/// threads took side by side.
 fn over_places<const N: usize>(
     times_s: &[f64],
     runs: &[Run],
@@ -233,9 +238,11 @@ fn over_places<const N: usize>(
     parts.into_par_iter().map(of_part).collect()
 }
 
-/// What the times are rounded to: a power of ten (printed times), single precision, or the f64 they are held in.
+/// What the times are rounded to: a power of ten (printed times), single precision, or the f64 they are held
+/// in.
 ///
-/// Stretches of neighbours are looked at: times taken at a stride may all be round although those between are not.
+/// Stretches of neighbours are looked at: times taken at a stride may all be round although those between are
+/// not.
 fn resolution_s(times_s: &[f64], period_s: f64) -> f64 {
     const STRETCH: usize = 300;
     let last = times_s.len().saturating_sub(STRETCH);

@@ -26,7 +26,8 @@ pub(super) fn spread(samples: &Samples, fit: &BaseFit) -> Samples {
     samples.spread(fit.places(samples.len()), &stretches)
 }
 
-/// Turns infinite samples and those over the range into NaN and says how many are no numbers beside the `lost` ones between blocks. The spans.
+/// Turns infinite samples and those over the range into NaN and says how many are no numbers beside the
+/// `lost` ones between blocks. The spans.
 pub(super) fn mark(
     samples: &mut Samples,
     lost: usize,

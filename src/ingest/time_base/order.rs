@@ -11,15 +11,17 @@ use std::borrow::Cow;
 pub(super) struct Ordered<'a> {
     pub times_s: Cow<'a, [f64]>,
     pub samples: Samples,
-    /// Whether many are equal to the one before although the samples differ: the times are coarser than the interval.
+    /// Whether many are equal to the one before although the samples differ: the times are coarser than the
+    /// interval.
     pub is_coarse: bool,
 }
 
-/// From so many rows a time on they are too coarse even where the samples are equal, as those of a dead channel: a file may have been
-/// written twice, but not three times.
+/// From so many rows a time on they are too coarse even where the samples are equal, as those of a dead
+/// channel: a file may have been written twice, but not three times.
 const COARSE_ROWS: f64 = 2.5;
 
-/// From this part of repeated times with different samples on, the times are too coarse rather than rows doubled.
+/// From this part of repeated times with different samples on, the times are too coarse rather than rows
+/// doubled.
 const COARSE_PART: f64 = 0.1;
 
 /// Whether each time is finite and later than the one before.
@@ -56,8 +58,9 @@ pub(super) fn ordered<'a>(
     Ok(taken.sorted(issues)?.without_doubles(issues))
 }
 
-/// Times that count within each second, minute, hour or day, and fall back by one of it less an interval: `999.95, 0, 0.05` in ms, beside a
-/// column of whole seconds. Sorted they would put the end of a recording before its beginning.
+/// Times that count within each second, minute, hour or day, and fall back by one of it less an interval:
+/// `999.95, 0, 0.05` in ms, beside a column of whole seconds. Sorted they would put the end of a recording
+/// before its beginning.
 fn wrapped(times_s: &[f64]) -> Option<Refusal> {
     const WHOLE_S: [f64; 4] = [1.0, 60.0, 3600.0, 86_400.0];
     let at = (1..times_s.len()).find(|&i| times_s[i] < times_s[i - 1])?;
@@ -77,9 +80,10 @@ fn wrapped(times_s: &[f64]) -> Option<Refusal> {
     ))
 }
 
-/// Refuses times, in the order of the file, that begin anew and run once more over those before, or that mostly do not rise: samples of
-/// several recordings or sensors are never one signal. A few late ones do no harm, nor do parts that are swapped or written twice;
-/// `order` is that of the times, `is_copy` tells what was written twice.
+/// Refuses times, in the order of the file, that begin anew and run once more over those before, or that
+/// mostly do not rise: samples of several recordings or sensors are never one signal. A few late ones do no
+/// harm, nor do parts that are swapped or written twice; `order` is that of the times, `is_copy` tells what
+/// was written twice.
 pub(super) fn no_mixture(
     times_s: &[f64],
     order: impl Iterator<Item = usize>,
@@ -88,7 +92,8 @@ pub(super) fn no_mixture(
     /// Of so many times one may fall behind the one before, and so many of a few.
     const RISING_OF: usize = 10;
     const FEW: usize = 8;
-    /// Changes from one run of rising times to another, in the order of time, that a late one makes, and one more.
+    /// Changes from one run of rising times to another, in the order of time, that a late one makes, and one
+    /// more.
     const CHANGES: usize = 4;
     let backward: Vec<usize> = (1..times_s.len()).filter(|&i| times_s[i] < times_s[i - 1]).collect();
     let Some(&first) = backward.first() else { return Ok(()) };

@@ -61,7 +61,8 @@ impl BlockContent<'_> {
             && (0..count).all(|i| is_same(self.samples.get(one + i), self.samples.get(other + i)))
     }
 
-    /// Whether the first blocks end, at a rate, with the samples that the next begins with: windows that overlap.
+    /// Whether the first blocks end, at a rate, with the samples that the next begins with: windows that
+    /// overlap.
     pub(super) fn overlaps(&self, blocks: &[Block], rate_hz: f64) -> bool {
         const LOOKED_AT: usize = 8;
         let mut end = 0;

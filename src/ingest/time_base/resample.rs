@@ -4,7 +4,8 @@ use super::fit::{BaseFit, whole};
 use crate::data::Samples;
 use crate::numerics::{as_f64, reduce};
 
-/// Samples moved onto a base, and how far cubic and linear interpolation lie apart, in percent of the largest sample.
+/// Samples moved onto a base, and how far cubic and linear interpolation lie apart, in percent of the largest
+/// sample.
 pub(super) struct Resampled {
     pub start_s: f64,
     pub samples: Samples,
@@ -12,7 +13,8 @@ pub(super) struct Resampled {
     pub max_percent: f64,
 }
 
-/// The samples at the places of the base that the record covers, NaN in gaps; a place half a period beyond an end holds its value.
+/// The samples at the places of the base that the record covers, NaN in gaps; a place half a period beyond an
+/// end holds its value.
 pub(super) fn resample(times_s: &[f64], samples: &Samples, fit: &BaseFit) -> Resampled {
     let last = times_s.len() - 1;
     let place = |t: f64| (t - fit.start_s) / fit.period_s;
@@ -74,7 +76,8 @@ fn linear(times_s: &[f64], samples: &Samples, at: usize, t: f64) -> f64 {
     a + part * (b - a)
 }
 
-/// Lagrange's cubic through the two samples on either side; `None` at ends and where neighbours are missing or too unevenly spaced.
+/// Lagrange's cubic through the two samples on either side; `None` at ends and where neighbours are missing
+/// or too unevenly spaced.
 fn cubic(times_s: &[f64], samples: &Samples, at: usize, t: f64) -> Option<f64> {
     let from = at.checked_sub(1)?;
     let x: &[f64; 4] = times_s.get(from..from + 4)?.try_into().ok()?;

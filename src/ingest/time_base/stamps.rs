@@ -11,7 +11,8 @@ pub(super) const ROUND_OFF: f64 = 1e-4;
 /// Fewer intervals differ where samples are lost here and there.
 const SHOWN: usize = 3;
 
-/// How far, in cuts, the stamps may lie about even ones: one, and what the slope of a line through a few tens of them leaves.
+/// How far, in cuts, the stamps may lie about even ones: one, and what the slope of a line through a few tens
+/// of them leaves.
 const WIDEST: f64 = 1.5;
 
 /// Fewer intervals between blocks agree by chance.
@@ -69,8 +70,9 @@ impl Intervals {
         robust::median(&mut self.0.iter().map(|interval| interval.length / interval.s).collect::<Vec<_>>())
     }
 
-    /// The rate of the blocks that follow one another: the one that is claimed where half of them follow exactly at it, for those behind
-    /// which samples are lost look like another. `None` where one in ten does not follow, as where a writer hurries after its samples.
+    /// The rate of the blocks that follow one another: the one that is claimed where half of them follow
+    /// exactly at it, for those behind which samples are lost look like another. `None` where one in ten does
+    /// not follow, as where a writer hurries after its samples.
     pub(super) fn told(&self, claimed_hz: Option<f64>) -> Option<Told> {
         let usual_hz = self.usual_hz();
         let is_gap = |interval: &Interval| interval.is_apart(usual_hz);
@@ -95,7 +97,8 @@ impl Intervals {
         Some(Told { rate_hz, uncertainty, is_few: self.0.len() < ENOUGH })
     }
 
-    /// The rate of a line through the stamps, which follow one another as at about `mean_hz` or leave a gap between.
+    /// The rate of a line through the stamps, which follow one another as at about `mean_hz` or leave a gap
+    /// between.
     fn line_hz(&self, mean_hz: f64, is_gap: impl Fn(&Interval) -> bool) -> f64 {
         let (mut place, mut time_s) = (0.0, 0.0);
         let mut points = vec![(0.0, 0.0)];
@@ -109,8 +112,9 @@ impl Intervals {
 
     /// What stamps are cut to, where that shows at a rate in Hz.
     ///
-    /// Stamps of whole milliseconds may be exact. Where they are cut, some intervals between blocks differ from the usual, by no more than
-    /// one cut, and what they differ by does not add up: samples that are lost do, and a rate that is another.
+    /// Stamps of whole milliseconds may be exact. Where they are cut, some intervals between blocks differ
+    /// from the usual, by no more than one cut, and what they differ by does not add up: samples that are
+    /// lost do, and a rate that is another.
     pub(super) fn cut(&self, rate_hz: f64) -> Option<StampCut> {
         let (unit_s, usual_hz) = (self.unit_s(rate_hz)?, self.usual_hz());
         let is_uneven = |interval: &&Interval| {

@@ -27,7 +27,8 @@ fn steady_times_leave_samples_alone() {
 
 #[test]
 fn times_rounded_in_print_do_not_shift_a_long_record() {
-    // 30 kHz printed to 1e-6 s: intervals of 33 and 34 µs. The last of 1e5 samples must lie within the rounding.
+    // 30 kHz printed to 1e-6 s: intervals of 33 and 34 µs. The last of 1e5 samples must lie within the
+    // rounding.
     for digits in [1e6, 1e7] {
         let times: Vec<f64> =
             (0..100_000).map(|i| (as_f64(i) / 30_000.0 * digits).round() / digits).collect();
@@ -105,7 +106,8 @@ fn a_flat_top_stays_flat_where_jitter_is_interpolated() {
 
 #[test]
 fn jitter_is_interpolated_with_its_error_known() {
-    // 50 Hz at 2 kHz with a slow clock wander of 30 % of an interval: cubic error h⁴ω⁴·3/128 ≈ 1.4e-5 of the amplitude.
+    // 50 Hz at 2 kHz with a slow clock wander of 30 % of an interval: cubic error h⁴ω⁴·3/128 ≈ 1.4e-5 of the
+    // amplitude.
     let times: Vec<f64> = (0..4000)
         .map(|i| {
             (as_f64(i) + 0.3 * (TAU * as_f64(i) / 311.0).sin() + 1e-4 * (as_f64(i) * 0.7).sin()) / 2000.0
@@ -255,7 +257,8 @@ fn blocks_that_make_no_record_say_why() {
 
 #[test]
 fn even_stretches_do_not_hide_jitter() {
-    // Every thousandth time is a multiple of 2 ms to 1e-3 of it; the ones between jitter by 21 % of the interval RMS.
+    // Every thousandth time is a multiple of 2 ms to 1e-3 of it; the ones between jitter by 21 % of the
+    // interval RMS.
     let times: Vec<f64> =
         (0..100_000).map(|i| (as_f64(i) + 0.3 * (TAU * as_f64(i) / 500.0).sin()) * 2e-6).collect();
     let uniform = from_times(&times, f64s(&vec![0.0; 100_000]), None).unwrap();
@@ -297,8 +300,8 @@ fn a_step_that_changes_for_good_is_no_jitter_and_stamps_that_wander_are() {
     assert!(!told(1480, &|i| as_f64(i) + 1e-4 * as_f64(i.saturating_sub(146))));
     let mut chance = ChaCha8Rng::seed_from_u64(7);
     let mut chance = move || chance.random_range(-1.0..1.0);
-    // Stamps early or late by up to 0.3 of an interval, each by itself or each beside the one before; a recorder that goes on at another
-    // phase after each pause.
+    // Stamps early or late by up to 0.3 of an interval, each by itself or each beside the one before; a
+    // recorder that goes on at another phase after each pause.
     for count in [200, 1480, 6000] {
         let each: Vec<f64> = (0..count).map(|_| 0.3 * chance()).collect();
         assert!(!told(count, &|i| as_f64(i) + each[i]));

@@ -64,7 +64,8 @@ fn sound_channels_are_not_mentioned() {
 #[test]
 fn noise_that_moves_the_velocity_is_named() {
     let mut noisy = pair();
-    // White: u² = S/2 (T + T²/T0) = S · 0.0472 s: 0.043 m/s for 0.04, below 0.5 % of 13.29; 0.22 for 1, a note; 0.69 for 10, above 3 %.
+    // White: u² = S/2 (T + T²/T0) = S · 0.0472 s: 0.043 m/s for 0.04, below 0.5 % of 13.29; 0.22 for 1, a
+    // note; 0.69 for 10, above 3 %.
     let severity = |noisy: &[Signal]| {
         let events = Events {
             first_contact: Some(At::exactly(0.02)),

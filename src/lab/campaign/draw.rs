@@ -15,7 +15,8 @@ const OVERTONES: [f64; 3] = [1.0, 2.757, 5.404];
 const K_RANGE: (f64, f64) = (0.02, 0.98);
 const SHORTEST_FLIGHT_S: f64 = 8e-3;
 
-/// The angle is drawn again only after so many attempts with it: else the flat drops would be the ones left out.
+/// The angle is drawn again only after so many attempts with it: else the flat drops would be the ones left
+/// out.
 const ATTEMPTS: u32 = 300;
 
 /// Draws until there is a drop as wished.
@@ -116,7 +117,8 @@ fn drop(chance: &mut Chance, angle_deg: f64, wish: &Wish, exact: bool) -> (Scene
     (scene, stated)
 }
 
-/// The contact with its friction off by a share of it; of rough and smooth ones by a share of what sticking takes, `holds`.
+/// The contact with its friction off by a share of it; of rough and smooth ones by a share of what sticking
+/// takes, `holds`.
 fn loosened(contact: Contact, holds: f64, share: f64) -> Contact {
     // Nothing is smoother than smooth.
     match contact {
@@ -127,7 +129,8 @@ fn loosened(contact: Contact, holds: f64, share: f64) -> Contact {
     }
 }
 
-/// One of the casks; four in ten are stretched, one in four states its centre of gravity, one in four its inertia.
+/// One of the casks; four in ten are stretched, one in four states its centre of gravity, one in four its
+/// inertia.
 fn cask(chance: &mut Chance, defaults: &mut Vec<String>) -> Cask {
     let mut build = chance.one_of(&BUILDS);
     let mut name = build.name.to_owned();

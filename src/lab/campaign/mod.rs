@@ -1,4 +1,5 @@
-//! A number of random scenes with known truth, through everything, to how far off the analysis is and how often it says so.
+//! A number of random scenes with known truth, through everything, to how far off the analysis is and how
+//! often it says so.
 
 mod draw;
 mod lines;
@@ -46,7 +47,8 @@ pub fn run(request: &CampaignRequest, progress: Progress) -> Campaign {
     Campaign { request: request.clone(), rows }
 }
 
-/// Runs the scenes of a shard but for the first `done`, and hands over each with its number in the campaign, in their order.
+/// Runs the scenes of a shard but for the first `done`, and hands over each with its number in the campaign,
+/// in their order.
 ///
 /// # Errors
 /// The first that `take` returns.

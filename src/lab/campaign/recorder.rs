@@ -1,4 +1,5 @@
-//! A drop to its sensors and recorder, sound and of the kind that drop tests use, as they are and as they are stated.
+//! A drop to its sensors and recorder, sound and of the kind that drop tests use, as they are and as they are
+//! stated.
 
 use crate::data::{Axis, End, STANDARD_GRAVITY_M_S2, Tolerances};
 use crate::lab::chance::{Chance, round};
@@ -16,7 +17,8 @@ const PERIOD_SAMPLES: f64 = 15.0;
 /// Most samples of a channel, where a slower recorder would do.
 const MOST_SAMPLES: f64 = 1.2e5;
 
-/// A resonance is simulated up to this rate; faster recorders look at sensors that resonate beyond their band.
+/// A resonance is simulated up to this rate; faster recorders look at sensors that resonate beyond their
+/// band.
 const RESONANT_HZ: f64 = 50e3;
 
 /// Puts sensors on the cask and a recorder behind them.
@@ -121,7 +123,8 @@ fn mounted(case: &mut DrawnDrop, seat: SceneChannel, exact: bool) -> SceneChanne
     }
 }
 
-/// Gives every channel a converter that its peak fills to a share; half of the cask files state the full scale.
+/// Gives every channel a converter that its peak fills to a share; half of the cask files state the full
+/// scale.
 fn converters(case: &mut DrawnDrop) {
     let bits = case.chance.one_of(&[16_u8, 18, 20, 24]);
     let is_stated = case.chance.is(0.5);

@@ -1,4 +1,5 @@
-//! Drops of a campaign to tables of which rung of the reconstruction each scene takes, and what every other would change.
+//! Drops of a campaign to tables of which rung of the reconstruction each scene takes, and what every other
+//! would change.
 
 use super::score::written;
 use super::statistics::Spread;

@@ -92,7 +92,8 @@ fn codes(analysis: Option<&Analysis>, severity: Severity) -> Vec<String> {
     names
 }
 
-/// The row as a line of CSV, below the line of its headers where that is wanted: they are the same for every row.
+/// The row as a line of CSV, below the line of its headers where that is wanted: they are the same for every
+/// row.
 ///
 /// # Errors
 /// Where the writer fails.

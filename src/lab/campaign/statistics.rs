@@ -1,11 +1,13 @@
-//! Rows to shares, quantiles and classes of right and wrong, which add up exactly in whatever order and parts they are counted.
+//! Rows to shares, quantiles and classes of right and wrong, which add up exactly in whatever order and parts
+//! they are counted.
 
 use crate::data::Verdict;
 use crate::lab::data::{CampaignRow, Scored, Stated};
 pub(in crate::lab) use crate::numerics::robust::quantile;
 use std::collections::BTreeMap;
 
-/// An error above this many half-widths on a result that passed is a miss: the interval ends half its width, which is one half-width, short of the truth.
+/// An error above this many half-widths on a result that passed is a miss: the interval ends half its width,
+/// which is one half-width, short of the truth.
 const MISSED_BY: f64 = 2.0;
 
 /// Names, as they are scored and as they are shown; whether in percent of the truth; decimals.
@@ -66,8 +68,8 @@ pub(in crate::lab) fn half_widths_between(stated: Stated, truth: f64) -> f64 {
     if off.is_nan() { f64::INFINITY } else { off }
 }
 
-/// Magnitudes counted in bins a five-hundredth of themselves wide: what is read off is right to a thousandth, and of however many there are
-/// some thousand counts are kept.
+/// Magnitudes counted in bins a five-hundredth of themselves wide: what is read off is right to a thousandth,
+/// and of however many there are some thousand counts are kept.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Magnitudes {
     bins: BTreeMap<u32, u32>,

@@ -1,4 +1,5 @@
-//! A campaign to the document that says how far off the analysis is, how often its intervals hold, and how often it says so.
+//! A campaign to the document that says how far off the analysis is, how often its intervals hold, and how
+//! often it says so.
 
 use super::statistics::{QUANTITIES, SceneGroup, SceneOutcome, Spread};
 use super::tally::{GroupKey, NUMBERS, Tally};
@@ -17,7 +18,8 @@ pub fn markdown(tally: &Tally) -> String {
     as_markdown::markdown(&document(tally), None)
 }
 
-/// A table of scenes by the rung of the reconstruction taken, and one of what every rung says of the drops that take one.
+/// A table of scenes by the rung of the reconstruction taken, and one of what every rung says of the drops
+/// that take one.
 pub(in crate::lab) fn rungs(campaign: &Campaign) -> [ChapterPart; 2] {
     let mut tally = Tally::new(campaign.request.clone());
     for row in &campaign.rows {

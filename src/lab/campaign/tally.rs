@@ -10,7 +10,8 @@ use std::collections::BTreeMap;
 /// Scenes that passed and are wrong are listed up to this many.
 const MOST_LISTED: usize = 1000;
 
-/// Quantities that are counted of all groups; of [`GroupKey::Undamaged`] and [`GroupKey::Passed`] all ten are.
+/// Quantities that are counted of all groups; of [`GroupKey::Undamaged`] and [`GroupKey::Passed`] all ten
+/// are.
 const USUAL_QUANTITIES: usize = 5;
 
 /// What a scene belongs to.

@@ -1,4 +1,5 @@
-//! The table of damages to drops that have them: at a size that the campaign draws, or at one that grows until the analysis fails.
+//! The table of damages to drops that have them: at a size that the campaign draws, or at one that grows
+//! until the analysis fails.
 
 mod chain;
 mod harder;
@@ -13,10 +14,11 @@ use super::plan::DropPlan;
 use std::sync::LazyLock;
 pub(super) use wish::{BetweenImpacts, Wish};
 
-/// A row of `damages.tsv`: one thing that may be wrong with a recording or its cask file, or that makes a drop hard to tell.
+/// A row of `damages.tsv`: one thing that may be wrong with a recording or its cask file, or that makes a
+/// drop hard to tell.
 pub struct DamageKind {
-    /// What it is done to: "chain", "samples" or what is "stated"; "flight": of such a drop; "drop": of a drop that grows harder; "sound": no
-    /// damage, but a drop as there are some, which should pass.
+    /// What it is done to: "chain", "samples" or what is "stated"; "flight": of such a drop; "drop": of a
+    /// drop that grows harder; "sound": no damage, but a drop as there are some, which should pass.
     of: &'static str,
     /// Its name.
     pub name: &'static str,

@@ -1,4 +1,5 @@
-//! A kind of drop to the scene that has it: what the cask, its contents, its ends and its fall do, and what is stated of that.
+//! A kind of drop to the scene that has it: what the cask, its contents, its ends and its fall do, and what
+//! is stated of that.
 
 use super::super::chance::Chance;
 use super::super::data::{LooseMass, Scene, SceneChannel, slowed};
@@ -30,7 +31,8 @@ impl Wish {
         self.fulfil(scene, stated, chance);
     }
 
-    /// Makes a scene and what is stated of it, both still without channels, those of the kind; one that is of something else does nothing.
+    /// Makes a scene and what is stated of it, both still without channels, those of the kind; one that is of
+    /// something else does nothing.
     pub(in super::super) fn fulfil(&self, scene: &mut Scene, stated: &mut CaskFile, chance: &mut Chance) {
         let Self { kind, size, .. } = *self;
         match kind {
@@ -92,7 +94,8 @@ fn contents(size: f64, cask: &Cask, chance: &mut Chance) -> Vec<LooseMass> {
     [(0.15, 0.4), (0.6, 0.85)].map(loose).into()
 }
 
-/// A limiter that yields at half of its elastic peak and locks up at `size` percent of the crush that it would then have, four times as stiff.
+/// A limiter that yields at half of its elastic peak and locks up at `size` percent of the crush that it
+/// would then have, four times as stiff.
 fn lock_up(size: f64, scene: &mut Scene) {
     scene.first_end.yield_n = None;
     let peak_n = synth::simulate(scene).steps.iter().map(|step| step.loads_n[0].1).fold(0.0, f64::max);

@@ -112,7 +112,8 @@ fn spikes(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
     }
 }
 
-/// The structure rings between half and three times the sample rate after both impacts, and no filter takes it off.
+/// The structure rings between half and three times the sample rate after both impacts, and no filter takes
+/// it off.
 fn aliasing(case: &mut DrawnDrop, recording: &mut SyntheticRecording, size: f64) {
     /// Ringing of a bolted structure at tens of kilohertz fades within this, s.
     const FADES_S: f64 = 3e-3;

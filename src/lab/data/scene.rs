@@ -26,7 +26,8 @@ impl CrushableEnd {
     }
 }
 
-/// A loose mass in the cask, which flies across it from pad to pad: two of them are a body that rattles at both its ends.
+/// A loose mass in the cask, which flies across it from pad to pad: two of them are a body that rattles at
+/// both its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LooseMass {
     /// Beside the cask's, kg.
@@ -186,7 +187,8 @@ pub struct Scene {
     pub before_s: f64,
     /// Record after the slap-down, s.
     pub after_s: f64,
-    /// Whether the record shows the cask hanging at rest before its release, where `before_s` reaches that far.
+    /// Whether the record shows the cask hanging at rest before its release, where `before_s` reaches that
+    /// far.
     pub rest: bool,
     /// The recorder's clock: true rate over stated rate, minus one.
     pub clock_error: f64,
@@ -247,8 +249,8 @@ impl SimulatedMotion {
 pub struct MotionStep {
     /// Since first contact, s.
     pub time_s: f64,
-    /// 0 to 2: x and z of S, m, and the inclination, rad; 3 to 5: their rates; then the coordinate of each bending mode, m, and its rate,
-    /// both before its strength.
+    /// 0 to 2: x and z of S, m, and the inclination, rad; 3 to 5: their rates; then the coordinate of each
+    /// bending mode, m, and its rate, both before its strength.
     pub state: [f64; 12],
     /// The rate of each of these.
     pub rates: [f64; 12],

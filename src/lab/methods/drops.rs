@@ -50,7 +50,8 @@ impl DropClass {
     }
 }
 
-/// The conditioned channels of a recording about the first impact, and where that lies; none without an impact.
+/// The conditioned channels of a recording about the first impact, and where that lies; none without an
+/// impact.
 pub(super) fn conditioned(recording: &Recording, file: &CaskFile) -> Option<(Vec<Signal>, CoarseEvent)> {
     let coarse = events::Changes::of(recording).locate(file.drop.transverse_velocity_m_s())?;
     let reach = condition::Reach::of(&file.cask, &file.drop);

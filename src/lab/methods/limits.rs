@@ -71,7 +71,8 @@ fn is_named(point: &TrialPoint, name: &str) -> bool {
     name.strip_prefix(&point.family).and_then(|rest| rest.strip_prefix(": ")) == Some(&point.class)
 }
 
-/// Of random sound drops: the share that passes, those that are wrong, or how far off a quantity is, in half-widths.
+/// Of random sound drops: the share that passes, those that are wrong, or how far off a quantity is, in
+/// half-widths.
 fn of_campaign(measured: &str, campaign: &Campaign) -> Found {
     let rows = &campaign.rows;
     let passed = || rows.iter().filter(|row| row.verdict == Some(Verdict::Pass));
@@ -89,10 +90,12 @@ fn of_campaign(measured: &str, campaign: &Campaign) -> Found {
     }
 }
 
-/// By how many half-widths a drop is silently off that counts: one beyond its interval may be of the one in twenty.
+/// By how many half-widths a drop is silently off that counts: one beyond its interval may be of the one in
+/// twenty.
 const SILENT_BY: f64 = 2.0;
 
-/// Of damages: those that are silent though a recording can tell them, or of which no finding names what is wrong at the gross end.
+/// Of damages: those that are silent though a recording can tell them, or of which no finding names what is
+/// wrong at the gross end.
 fn of_maps(measured: &str, maps: &[TrialMap]) -> Found {
     let is_wrong = |drop: &TrialDrop| {
         drop.fate == TrialFate::Silent && drop.half_widths_off.is_some_and(|off| off > SILENT_BY)

@@ -1,4 +1,5 @@
-//! A damage that grows, on several drops, through the whole program to what becomes of each: inside its interval, warned of, refused or silent.
+//! A damage that grows, on several drops, through the whole program to what becomes of each: inside its
+//! interval, warned of, refused or silent.
 
 use crate::data::{STANDARD_GRAVITY_M_S2, Verdict};
 use crate::ingest::Progress;
@@ -11,8 +12,8 @@ use crate::numerics::as_f64;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The drops that every damage is laid on: four casks, angles of 10 to 25°, k of 0.3 to 0.6, pulses of 3 to 8 ms, each with a weak mode and an
-/// offset of half a g.
+/// The drops that every damage is laid on: four casks, angles of 10 to 25°, k of 0.3 to 0.6, pulses of 3 to 8
+/// ms, each with a weak mode and an offset of half a g.
 fn plans(request: &TrialRequest) -> Vec<DropPlan> {
     let plan = |order: u64, build: Build, [angle_deg, k, pulse_ms, frequency_hz]: [f64; 4]| {
         let mut plan = DropPlan::of(build, angle_deg, k, request.seed + order);

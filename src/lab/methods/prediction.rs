@@ -14,7 +14,8 @@ use std::ops::RangeInclusive;
 /// Length of a stiff contact, s: the cask turns by 3e-4 of a radian in it and gains 5e-4 m/s by gravity.
 const STIFF_S: f64 = 5e-5;
 
-/// The same where L may come to rest on it, which has to be stepped as finely as a contact: longer, and as much further off.
+/// The same where L may come to rest on it, which has to be stepped as finely as a contact: longer, and as
+/// much further off.
 const RESTED_S: f64 = 1e-3;
 
 /// A thin rod of the length of ANF-18.
@@ -89,7 +90,8 @@ const CALLS: u32 = 20;
 
 type Predicting = Box<dyn Fn(&StiffDrop) -> Option<f64>>;
 
-/// The rungs, the highest first, which is what the program takes; last the limit of stiff ends, where the program leaves grazes out.
+/// The rungs, the highest first, which is what the program takes; last the limit of stiff ends, where the
+/// program leaves grazes out.
 fn rungs() -> Vec<(&'static str, Predicting)> {
     let by_rung = |rung: Rung| -> (&'static str, Predicting) {
         let predicting = move |at: &StiffDrop| {

@@ -1,9 +1,10 @@
-//! Recordings in files to points of how far off each way of working with them is, timed whole from file to answer.
+//! Recordings in files to points of how far off each way of working with them is, timed whole from file to
+//! answer.
 
 use super::drops::{CALM, DropClass, NOISY, ONE_MODE, SLOW_MODE, conditioned};
 use super::points::{Answer, K, KnownDrop, READING, SPEED, Worked, scored};
 use super::prediction;
-use crate::analysis::{analyze, settle, sticking};
+use crate::analysis::{analyze, flight_search, sticking};
 use crate::data::{
     AssumedFriction, Axis, CaskFile, End, Events, ReconstructionCandidate, ReconstructionRung, Recording,
 };
@@ -69,8 +70,8 @@ fn ways() -> Vec<(&'static str, Working)> {
     ways
 }
 
-/// As one reads it off filtered curves: both channels filtered, integrated, the speed at the foot of the second's highest pulse, the rebound
-/// as the first's mean between its own and that foot.
+/// As one reads it off filtered curves: both channels filtered, integrated, the speed at the foot of the
+/// second's highest pulse, the rebound as the first's mean between its own and that foot.
 fn filter_first(class: f64, recording: &Recording, file: &CaskFile) -> Option<Answer> {
     let v0_m_s = file.drop.impact_velocity_m_s;
     let of = |end: End| {
@@ -101,14 +102,14 @@ fn alone(rung: ReconstructionRung, recording: &Recording, file: &CaskFile) -> Op
     let (signals, coarse) = conditioned(recording, file)?;
     let contact = events::first_contact(&signals, &coarse)?;
     let integrated = Integrated::over(&signals, contact.time_s);
-    let settled = settle::settle(file, &integrated)?;
+    let found = flight_search::find(file, &integrated)?;
     let events = Events {
         first_contact: Some(contact),
-        separation: Some(settled.left),
-        slap_down: settled.struck,
+        separation: Some(found.separation),
+        slap_down: found.slap_down,
         ..Events::default()
     };
-    let (setup, flight) = (sticking(file), settled.flight?);
+    let (setup, flight) = (sticking(file), found.flight?);
     let plain = || {
         let window = motion::Window {
             from_s: flight.from_s,
@@ -132,7 +133,7 @@ fn alone(rung: ReconstructionRung, recording: &Recording, file: &CaskFile) -> Op
         ReconstructionRung::Joint => {
             let ratio = moved(&flight, &events, &setup)?.impulse_ratio;
             let u = file.tolerances.friction / 2.0 * ratio.abs();
-            let basis = fit::Basis {
+            let basis = fit::FitData {
                 signals: &signals,
                 flight: &flight,
                 events: &events,
@@ -152,7 +153,8 @@ fn alone(rung: ReconstructionRung, recording: &Recording, file: &CaskFile) -> Op
     }
 }
 
-/// The points of all ways, by quantity and class; what is no answer is wholly off. Reading alone has a time and no answer.
+/// The points of all ways, by quantity and class; what is no answer is wholly off. Reading alone has a time
+/// and no answer.
 pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {
     let Ok(folder) = tempfile::tempdir() else { return Vec::new() };
     let drops: Vec<FiledDrop> =

@@ -10,7 +10,8 @@ use crate::report::{ReportError, as_html, as_markdown, as_text, json};
 pub const TRIAL_NAMES: [&str; 5] =
     ["validation.html", "validation.json", "validation.md", "speed.svg", "failures.svg"];
 
-/// The extract; `folder` is what leads from the document to the pictures ("" or ending in "/"), none leaves them out.
+/// The extract; `folder` is what leads from the document to the pictures ("" or ending in "/"), none leaves
+/// them out.
 #[must_use]
 pub fn trial_markdown(trial: &Trial, folder: Option<&str>) -> String {
     as_markdown::markdown(&document::document(trial), folder)

@@ -1,4 +1,5 @@
-//! A `[[channel]]` table of a scene file to the channel as it is and the channel as the cask file will state it.
+//! A `[[channel]]` table of a scene file to the channel as it is and the channel as the cask file will state
+//! it.
 
 use super::values::{flag, given, needs, spans_s, value, whole};
 use crate::data::{Axis, Cask, ChannelSpec, Coupling, End, STANDARD_GRAVITY_M_S2, Source, Unit};

@@ -1,4 +1,5 @@
-//! Values of scene files, numbers with their defaults, yes or no, whole numbers and spans of time, to themselves or to diagnostics.
+//! Values of scene files, numbers with their defaults, yes or no, whole numbers and spans of time, to
+//! themselves or to diagnostics.
 
 use crate::ingest::cask_file::CaskFileError;
 use crate::ingest::cask_file::section::Section;

@@ -9,7 +9,8 @@ pub const MOST_MODES: usize = 3;
 const WAVE_NUMBERS: [f64; MOST_MODES] =
     [4.730_040_744_862_704, 7.853_204_624_095_838, 10.995_607_838_001_671];
 
-/// Deflection of the mode at `share` of the length; ±2 at the ends, mean square 1, so that its modal mass is the body's.
+/// Deflection of the mode at `share` of the length; ±2 at the ends, mean square 1, so that its modal mass is
+/// the body's.
 ///
 /// An order beyond the shapes there are takes the last one.
 pub(super) fn shape(order: u8, share: f64) -> f64 {
@@ -21,7 +22,8 @@ pub(super) fn shape(order: u8, share: f64) -> f64 {
 
 /// q̈ = F/m − 2 ζ ω q̇ − ω² q: acceleration of the mode's coordinate, m/s², `drive_m_s2` being F/m.
 ///
-/// The modes ride on the rigid motion and do not act back on the contact, so that k stays a property of the ends.
+/// The modes ride on the rigid motion and do not act back on the contact, so that k stays a property of the
+/// ends.
 pub(super) fn acceleration_m_s2(mode: &BendingMode, drive_m_s2: f64, q_m: f64, velocity_m_s: f64) -> f64 {
     let omega = std::f64::consts::TAU * mode.frequency_hz;
     drive_m_s2 - 2.0 * mode.damping * omega * velocity_m_s - omega * omega * q_m

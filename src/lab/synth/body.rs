@@ -1,4 +1,5 @@
-//! State of the cask to its rates: a rigid body in the plane with two corners, the bending modes that ride on it, and what is loose in it.
+//! State of the cask to its rates: a rigid body in the plane with two corners, the bending modes that ride on
+//! it, and what is loose in it.
 
 use super::beam::{self, MOST_MODES};
 use super::contact::CrushingCorner;
@@ -15,18 +16,22 @@ pub(super) const WHOLE_STATE: usize = CASK_STATE + 4 * MOST_LOOSE;
 /// Most loose masses of a scene.
 pub const MOST_LOOSE: usize = 2;
 
-/// Share of the loading's √(m/K) in which a corner that sticks loses a rest of sliding: short against any pulse.
+/// Share of the loading's √(m/K) in which a corner that sticks loses a rest of sliding: short against any
+/// pulse.
 const HOLD_SHARE: f64 = 0.02;
 
-/// Friction of a rough corner: far above the 1 or so that sticking needs, yet nothing holds it where nothing presses.
+/// Friction of a rough corner: far above the 1 or so that sticking needs, yet nothing holds it where nothing
+/// presses.
 ///
 /// Held without a bound, a corner that comes back would be thrown off by the hold itself, again and again.
 const ROUGH: f64 = 100.0;
 
-/// Greatest friction at R: there, both ends may be down, and two corners that stick would fight over one body.
+/// Greatest friction at R: there, both ends may be down, and two corners that stick would fight over one
+/// body.
 const SECOND_END_FRICTION: f64 = 0.5;
 
-/// Sliding speed over which the friction of R turns its sign, m/s: small against the metres a second of a slap-down.
+/// Sliding speed over which the friction of R turns its sign, m/s: small against the metres a second of a
+/// slap-down.
 const REVERSAL_M_S: f64 = 0.2;
 
 /// A corner's place relative to S and its motion.

@@ -1,7 +1,7 @@
 //! The specific force at each sensor to what its recorder writes: the measuring chain, element by element.
 //!
-//! In order: tilt and cross axis, resonance, AC coupling, anti-alias filter, sampling by the recorder's clock, offset, zero
-//! shift, noise, hum, cable, scale and polarity, converter, dropouts, gaps, stamps.
+//! In order: tilt and cross axis, resonance, AC coupling, anti-alias filter, sampling by the recorder's
+//! clock, offset, zero shift, noise, hum, cable, scale and polarity, converter, dropouts, gaps, stamps.
 
 mod analog;
 mod disturbance;
@@ -50,7 +50,8 @@ pub fn record(scene: &Scene, motion: &SimulatedMotion) -> SyntheticRecording {
     }
 }
 
-/// The channels where they truly sit: with exchanged ends each hangs on the cable of its partner on the other end.
+/// The channels where they truly sit: with exchanged ends each hangs on the cable of its partner on the other
+/// end.
 fn seated(scene: &Scene) -> Vec<SceneChannel> {
     let mut seats = scene.channels.clone();
     if !scene.swapped_ends {

@@ -2,7 +2,8 @@
 
 use crate::lab::data::CrushableEnd;
 
-/// Damping of a corner that settles in its dent, as a share of the critical: it rests after some twenty cycles.
+/// Damping of a corner that settles in its dent, as a share of the critical: it rests after some twenty
+/// cycles.
 const SETTLING_DAMPING: f64 = 0.05;
 
 /// What a corner is doing; the force law is smooth within each.
@@ -63,7 +64,8 @@ impl CrushingCorner {
         self.phase != Phase::Free
     }
 
-    /// The stiffness that sets the time of what goes on, N/m; a corner that settles is left to the error control.
+    /// The stiffness that sets the time of what goes on, N/m; a corner that settles is left to the error
+    /// control.
     pub(super) fn stiffness_n_m(&self) -> f64 {
         match self.phase {
             Phase::Free => 0.0,

@@ -6,8 +6,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// The end whose impact is `pulse`: K = m_eff (π/2 (1 + k)/T)², K_u = K/k².
 ///
-/// m_eff is the mass that the corner of `end` shows the target: of L at the drop angle under `contact`; of R with the
-/// axis flat and sliding freely. The turn of the body and gravity during the pulse are left out.
+/// m_eff is the mass that the corner of `end` shows the target: of L at the drop angle under `contact`; of R
+/// with the axis flat and sliding freely. The turn of the body and gravity during the pulse are left out.
 #[must_use]
 pub fn crushable_end(
     cask: &Cask,
@@ -23,7 +23,8 @@ pub fn crushable_end(
     let (sin, cos) = angle_rad.sin_cos();
     let across_m = reach_m * cos - cask.height_m / 2.0 * sin;
     let up_m = reach_m * sin + cask.height_m / 2.0 * cos;
-    // What a newton does to the corner: upwards and along the target by a normal one, along the target by a tangential one.
+    // What a newton does to the corner: upwards and along the target by a normal one, along the target by a
+    // tangential one.
     let upwards = 1.0 / cask.mass_kg + across_m * across_m / cask.inertia_kg_m2;
     let crosswise = across_m * up_m / cask.inertia_kg_m2;
     let along = 1.0 / cask.mass_kg + up_m * up_m / cask.inertia_kg_m2;
@@ -57,7 +58,8 @@ mod tests {
             let pulse = WantedImpact { duration_s: 2e-4, restitution: 0.4, yield_share: None };
             scene.first_end = crushable_end(&scene.cask, &scene.drop, contact, End::First, pulse);
             let truth = simulate(&scene).truth;
-            // Left out: the turn within the pulse, φ̇ T = 1e-3 rad on arms of m, and g T = 2e-3 m/s of 13.3 m/s.
+            // Left out: the turn within the pulse, φ̇ T = 1e-3 rad on arms of m, and g T = 2e-3 m/s of 13.3
+            // m/s.
             let contact_s = truth.contact_s.expect("L leaves");
             let k = truth.k.expect("L leaves");
             assert!((contact_s / 2e-4 - 1.0).abs() < 5e-3, "{contact}: {contact_s} s");

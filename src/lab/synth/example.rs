@@ -3,7 +3,8 @@
 use crate::data::{Axis, Cask, Contact, Drop, End, block_inertia_kg_m2};
 use crate::lab::data::{CrushableEnd, Scene, SceneChannel, SceneExtras, SimulatedMotion};
 
-/// The scene of `fixtures/examples/anf18-json`: ANF-18, 9 m, 15°, rough; its stiffnesses follow `crush_for` of `fixtures/reference/simulate.py`.
+/// The scene of `fixtures/examples/anf18-json`: ANF-18, 9 m, 15°, rough; its stiffnesses follow `crush_for`
+/// of `fixtures/reference/simulate.py`.
 pub(super) fn anf18() -> Scene {
     let (mass_kg, length_m, height_m, angle_rad) = (4466.0_f64, 5.512_f64, 0.792_f64, 15.0_f64.to_radians());
     let inertia_kg_m2 = block_inertia_kg_m2(mass_kg, length_m, height_m);

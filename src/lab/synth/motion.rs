@@ -15,7 +15,8 @@ const TOLERANCE: f64 = 1e-11;
 /// Longest step in the flight, s: a graze that it could overlook is g step²/8 = 0.3 µm deep.
 const LONGEST_STEP_S: f64 = 5e-4;
 
-/// Longest step times the greatest angular frequency: acceleration interpolated between steps is then within 1e-5.
+/// Longest step times the greatest angular frequency: acceleration interpolated between steps is then within
+/// 1e-5.
 const LONGEST_STEP_RAD: f64 = 0.1;
 
 /// The motion is followed no longer than this when R does not strike, s.
@@ -56,14 +57,15 @@ fn is_upright(y: &[f64]) -> bool {
 
 /// Follows the drop from first contact to `after_s` past the slap-down.
 ///
-/// Where R does not strike, the motion ends with the cask upright or after 3 s. Bending modes beyond [`super::MOST_MODES`]
-/// are left out. The result is the same to the bit at every run.
+/// Where R does not strike, the motion ends with the cask upright or after 3 s. Bending modes beyond
+/// [`super::MOST_MODES`] are left out. The result is the same to the bit at every run.
 #[must_use]
 pub fn simulate(scene: &Scene) -> SimulatedMotion {
     follow(scene, TOLERANCE, usize::MAX)
 }
 
-/// [`simulate`] for who wants no drop whose L comes back before R strikes: such a one ends there, without a slap-down.
+/// [`simulate`] for who wants no drop whose L comes back before R strikes: such a one ends there, without a
+/// slap-down.
 ///
 /// A cask that stands on L while its contents rattle takes hundreds of thousands of steps to tell nothing.
 #[must_use]
@@ -71,9 +73,11 @@ pub fn simulate_one_flight(scene: &Scene) -> SimulatedMotion {
     follow(scene, TOLERANCE, 0)
 }
 
-/// [`simulate`] at a tolerance, so that its convergence can be tested, and while L comes back so often at `most`.
+/// [`simulate`] at a tolerance, so that its convergence can be tested, and while L comes back so often at
+/// `most`.
 ///
-/// The size of the state is in the integrator's norm of errors: a cask without contents has no places for them.
+/// The size of the state is in the integrator's norm of errors: a cask without contents has no places for
+/// them.
 fn follow(scene: &Scene, tolerance: f64, most: usize) -> SimulatedMotion {
     if scene.extras.contents.is_empty() {
         follow_state::<CASK_STATE>(scene, tolerance, most)
@@ -87,7 +91,8 @@ fn follow_state<const N: usize>(scene: &Scene, tolerance: f64, most: usize) -> S
     let mut events: Vec<ContactChange> = Vec::new();
     let (mut time_s, mut end_s, mut returns) = (0.0, LONGEST_S, 0);
     let mut y = SVector::<f64, N>::from_column_slice(&body.at_first_contact()[..N]);
-    // Room for the most: of it only what is written to takes memory, where a vector that grows leaves holes of all sizes behind.
+    // Room for the most: of it only what is written to takes memory, where a vector that grows leaves holes
+    // of all sizes behind.
     let mut kept_steps = Vec::with_capacity(MOST_STEPS);
     kept_steps.push(kept(&body, time_s, y.as_slice()));
     while time_s < end_s && !is_upright(y.as_slice()) && events.len() < MOST_SWITCHES {
@@ -137,7 +142,8 @@ struct Fallen<const N: usize> {
 type Reached<const N: usize> = (f64, SVector<f64, N>);
 
 impl Segment<'_> {
-    /// The integrator with its steps from `from` on, times from there, and whether it came to its end or a stop.
+    /// The integrator with its steps from `from` on, times from there, and whether it came to its end or a
+    /// stop.
     fn over<const N: usize>(
         &self,
         from: &SVector<f64, N>,
@@ -182,7 +188,8 @@ impl Segment<'_> {
     fn first_change<const N: usize>(&self, before: &Reached<N>, after: &Reached<N>) -> Option<Fallen<N>> {
         let fallen = self.body.watches(after.1.as_slice());
         let change = |watch: usize| {
-            // The end of the bracket at which the watch has fallen is the change: the next phase begins in its own range.
+            // The end of the bracket at which the watch has fallen is the change: the next phase begins in
+            // its own range.
             let (mut low_s, mut high_s, mut state) = (0.0, after.0 - before.0, after.1);
             for _ in 0..HALVINGS {
                 let middle_s = f64::midpoint(low_s, high_s);

@@ -207,8 +207,8 @@ fn a_footprint_takes_its_arm_off_the_turning() {
     let a_m = scene.cask.cog_m * cos - scene.cask.height_m / 2.0 * sin;
     let impulse_n_s = scene.cask.mass_kg * (after.state[4] - motion.steps[0].state[4] + 9.81 * after.time_s);
     let lost_n_m_s = a_m * impulse_n_s + scene.cask.inertia_kg_m2 * after.state[5];
-    // ∫ N s dt with s = f δ on the way in, δ = δ0 sin ωt, and f δ0 on the way out: f K δ0² (π/4 + k)/ω. The arm itself changes by
-    // s/a = 0.8 %, and by the turn within the pulse by half a millimetre of s = 22 mm.
+    // ∫ N s dt with s = f δ on the way in, δ = δ0 sin ωt, and f δ0 on the way out: f K δ0² (π/4 + k)/ω. The
+    // arm itself changes by s/a = 0.8 %, and by the turn within the pulse by half a millimetre of s = 22 mm.
     let omega = std::f64::consts::FRAC_PI_2 * (1.0 + k) / pulse_s;
     let deepest_m = scene.drop.impact_velocity_m_s / omega;
     let wanted = footprint * end.loading_n_m * deepest_m.powi(2) * (std::f64::consts::FRAC_PI_4 + k) / omega;

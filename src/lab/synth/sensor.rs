@@ -7,10 +7,12 @@ use crate::lab::data::{MotionStep, Scene, SceneChannel, SimulatedMotion};
 /// The hook lets go within this time, s: that of a quick-release hook, long against a sample.
 const RELEASE_S: f64 = 2e-3;
 
-/// What a perfect sensor at the channel's true position reads along its axis, m/s², at `times_s` (0 at first contact).
+/// What a perfect sensor at the channel's true position reads along its axis, m/s², at `times_s` (0 at first
+/// contact).
 ///
-/// Before first contact the cask falls, held back by what guides it; before its release, where the scene shows it, it
-/// hangs at rest. Bending and roll are in the transverse axis. After the motion's end the last value stays.
+/// Before first contact the cask falls, held back by what guides it; before its release, where the scene
+/// shows it, it hangs at rest. Bending and roll are in the transverse axis. After the motion's end the last
+/// value stays.
 #[must_use]
 pub fn specific_force_m_s2(
     scene: &Scene,
@@ -55,8 +57,8 @@ pub fn specific_force_m_s2(
 
 /// A time between two of the motion's.
 ///
-/// Velocities are interpolated by the cubic through their values and slopes at both: its slope is an acceleration whose
-/// integral is exactly the change of velocity, whatever the step.
+/// Velocities are interpolated by the cubic through their values and slopes at both: its slope is an
+/// acceleration whose integral is exactly the change of velocity, whatever the step.
 struct Between<'a> {
     steps: [&'a MotionStep; 2],
     /// Share of the step that has passed.
@@ -194,15 +196,16 @@ mod tests {
             .map(|(a, b)| a - b)
             .collect();
         let gained = running_integral(&more, 1e-6);
-        // 2 rad/s × 0.3 m as L leaves, and all of it by then; the trapezoid over steps of ω h ≤ 0.1 is within 1e-3.
+        // 2 rad/s × 0.3 m as L leaves, and all of it by then; the trapezoid over steps of ω h ≤ 0.1 is within
+        // 1e-3.
         assert!((gained[10_000] / 0.6 - 1.0).abs() < 1e-3 && (gained[6_000] / 0.6 - 1.0).abs() < 1e-3);
         assert!(more[1..5_000].iter().all(|x| *x > 0.0));
     }
 
     #[test]
     fn between_steps_it_follows_the_force() {
-        // Smooth, without bending: what a sensor on S reads, times the mass, is the normal force, which has no kink
-        // within a phase.
+        // Smooth, without bending: what a sensor on S reads, times the mass, is the normal force, which has
+        // no kink within a phase.
         let mut scene = anf18();
         scene.contact = Contact::Smooth;
         let motion = simulate(&scene);
@@ -214,7 +217,8 @@ mod tests {
             let [across, along] = [0, 1].map(|n| specific_force_m_s2(&scene, &motion, &sensor[n], &[t])[0]);
             let force = across.hypot(along) * scene.cask.mass_kg;
             let [low, high] = [i, i + 1].map(|n| motion.steps[n].loads_n[0].1);
-            // A sine stands at most (ω h)²/8 of its peak above its chord; ω² h² is up to 0.1² times m/m_eff, below 4.
+            // A sine stands at most (ω h)²/8 of its peak above its chord; ω² h² is up to 0.1² times m/m_eff,
+            // below 4.
             assert!((force - f64::midpoint(low, high)).abs() < 5e-3 * peak_n, "at {t} s");
         }
     }

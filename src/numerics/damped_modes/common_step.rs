@@ -12,7 +12,8 @@ use nalgebra::{DMatrix, DVector};
 pub struct CommonStep<'a> {
     series: &'a [Series],
     without: Fit,
-    /// Sums over the points from each one on, of the basis of the modes and of what they leave of each series.
+    /// Sums over the points from each one on, of the basis of the modes and of what they leave of each
+    /// series.
     behind: SharedByTimes<DMatrix<f64>>,
     left_behind: Vec<DVector<f64>>,
 }
@@ -44,7 +45,8 @@ impl<'a> CommonStep<'a> {
         Some(Self { series, without, behind: bases.map(sums_behind), left_behind })
     }
 
-    /// The step of each series after a time, and by how much it lowers the sum of squares; `None` where the modes are all there is.
+    /// The step of each series after a time, and by how much it lowers the sum of squares; `None` where the
+    /// modes are all there is.
     #[must_use]
     pub fn at(&self, after_s: f64) -> Option<Vec<(f64, f64)>> {
         let each = self.series.iter().zip(self.behind.each()).zip(&self.left_behind);

@@ -6,7 +6,8 @@ use super::series::{Fit, Oscillation, Series, SeriesFit};
 use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector};
 
-/// Coefficients, uncertainties and residuals at given modes; `None` where a series has fewer than two points over.
+/// Coefficients, uncertainties and residuals at given modes; `None` where a series has fewer than two points
+/// over.
 #[must_use]
 pub fn describe(series: &[Series], modes: Vec<Oscillation>, form: Form) -> Option<Fit> {
     let mut fit = coefficients(series, modes, form)?;

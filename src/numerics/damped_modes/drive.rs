@@ -16,7 +16,8 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Z / |Z| at t = 0, Z = Σ impulse e^((−ζ + i) ω age): a mode at rest before, so driven, rings on as Re(Z e^((−ζ + i) ω t))   (36)
+    /// Z / |Z| at t = 0, Z = Σ impulse e^((−ζ + i) ω age): a mode at rest before, so driven, rings on as Re(Z
+    /// e^((−ζ + i) ω t))   (36)
     #[must_use]
     pub fn phase(&self, mode: Oscillation) -> Complex<f64> {
         let [turn, half_turn, aged] = self.turns(mode);
@@ -100,7 +101,8 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// A mode struck by a half sine of 5 ms that ended 1 ms before the series: ∫ F(τ) e^(−ζω(t−τ)) cos ω(t−τ) dτ, summed finely.
+    /// A mode struck by a half sine of 5 ms that ended 1 ms before the series: ∫ F(τ) e^(−ζω(t−τ)) cos ω(t−τ)
+    /// dτ, summed finely.
     fn struck(mode: Oscillation, t_s: f64) -> f64 {
         let (omega, steps) = (TAU * mode.frequency_hz, 2000);
         (0..steps)
@@ -131,7 +133,8 @@ mod tests {
         let fit =
             fit(&series, &[], Some(&Seeds::new(&series, (20.0, 600.0), Some(&drive))), form).expect("a fit");
         assert!((fit.modes[0].frequency_hz - 31.0).abs() < 0.1, "{fit:?}");
-        // The grids of drive and truth differ by (ωh)²/24 = 1e-6 of the amplitude, which a window this short blows up a hundredfold.
+        // The grids of drive and truth differ by (ωh)²/24 = 1e-6 of the amplitude, which a window this short
+        // blows up a hundredfold.
         assert!((fit.series[0].plateau - 20.0).abs() < 2e-3, "{fit:?}");
         assert!((fit.series[1].plateau + 7.0).abs() < 2e-3);
     }

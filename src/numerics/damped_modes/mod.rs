@@ -18,11 +18,12 @@ pub use ringing::uniform_ringing;
 pub use seeds::Seeds;
 pub use series::{Fit, Oscillation, Series, SeriesFit};
 
-/// A mode damped more than this is none: bolted and welded structures have 0.5 to 8 %, and an oscillation that dies within a
-/// period can stand for anything.
+/// A mode damped more than this is none: bolted and welded structures have 0.5 to 8 %, and an oscillation
+/// that dies within a period can stand for anything.
 const MOST_DAMPING: f64 = 0.15;
 
-/// Fits with `start.len() + 1` modes, the new one the best of `seeds`, or with `start` alone where there are none.
+/// Fits with `start.len() + 1` modes, the new one the best of `seeds`, or with `start` alone where there are
+/// none.
 ///
 /// `None` where a series has fewer points than unknowns or the fit is singular.
 #[must_use]
@@ -34,7 +35,8 @@ pub fn fit(series: &[Series], start: &[Oscillation], seeds: Option<&Seeds>, form
     if !modes.is_empty() {
         let refined = refine(series, &modes, form);
         let is_mode = |m: &Oscillation| m.damping < MOST_DAMPING && seeds.is_none_or(|s| s.is_near(m));
-        // A refinement that runs out of bounds misses another mode: the seeds stand until that one is found too.
+        // A refinement that runs out of bounds misses another mode: the seeds stand until that one is found
+        // too.
         if let Some(refined) = refined.filter(|r| r.iter().all(is_mode)) {
             modes = refined;
         }

@@ -1,4 +1,5 @@
-//! Frequencies and dampings to the best linear coefficients, and to better frequencies and dampings (Golub & Pereyra 1973).
+//! Frequencies and dampings to the best linear coefficients, and to better frequencies and dampings (Golub &
+//! Pereyra 1973).
 
 use super::drive::Form;
 use super::ringing::Ringing;
@@ -10,7 +11,8 @@ use std::cell::OnceCell;
 /// Damping ratios stay below this: above, a "mode" is a bend of the plateau.
 const MAX_DAMPING: f64 = 0.3;
 
-/// Columns of one series' linear problem: 1, t, the jumps, then e^(−ζωt) cos ωt and sin ωt of each mode, or their driven sum.
+/// Columns of one series' linear problem: 1, t, the jumps, then e^(−ζωt) cos ωt and sin ωt of each mode, or
+/// their driven sum.
 pub(super) fn columns(series: &Series, modes: &[Oscillation], form: Form) -> DMatrix<f64> {
     let (fixed, width) = (fixed_columns(series, form.drift), form.width());
     let mut matrix = DMatrix::zeros(series.time_s.len(), fixed + width * modes.len());
@@ -154,7 +156,8 @@ pub(super) fn rms(residual: &DVector<f64>) -> f64 {
     (residual.norm_squared() / residual.len() as f64).sqrt()
 }
 
-/// The variable projection problem in ln f and the logit of ζ / 0.3, residuals weighted by each series' own size.
+/// The variable projection problem in ln f and the logit of ζ / 0.3, residuals weighted by each series' own
+/// size.
 pub(super) struct Projection<'a> {
     series: &'a [Series],
     weights: Vec<f64>,
@@ -233,7 +236,8 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Projection<'_> {
         all.iter().all(|r| r.is_finite()).then(|| DVector::from_vec(all))
     }
 
-    /// ∂r/∂θ = −P⊥ ∂Φ/∂θ c, P⊥ taking off what the columns Φ explain (Kaufman 1975): exact where nothing is left.
+    /// ∂r/∂θ = −P⊥ ∂Φ/∂θ c, P⊥ taking off what the columns Φ explain (Kaufman 1975): exact where nothing is
+    /// left.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
         let Projected { modes, normals, solved } = self.here()?;
         let rows: usize = self.series.iter().map(|s| s.value.len()).sum();
@@ -265,7 +269,8 @@ pub(super) fn refine(series: &[Series], modes: &[Oscillation], form: Form) -> Op
         .with_gtol(1e-9)
         .minimize(problem);
     let refined = to_modes(&solved.parameters);
-    // A fit that stopped for lack of patience still stands at its best point; only numbers that are none are useless.
+    // A fit that stopped for lack of patience still stands at its best point; only numbers that are none are
+    // useless.
     let usable = report.objective_function.is_finite()
         && refined.iter().all(|m| m.frequency_hz.is_finite() && m.damping.is_finite());
     usable.then_some(refined)
@@ -311,7 +316,8 @@ mod tests {
                 problem.residuals().expect("residuals")
             };
             let differences = (at(1e-5) - at(-1e-5)) / 2e-5;
-            // Kaufman's form is exact where nothing is left; the difference is off by h² of the third derivative, (ω t)³ ~ 1e4.
+            // Kaufman's form is exact where nothing is left; the difference is off by h² of the third
+            // derivative, (ω t)³ ~ 1e4.
             let off = (slopes.column(i) - &differences).amax() / differences.amax();
             assert!(off < 1e-5, "{i}: {off}");
         }

@@ -13,7 +13,8 @@ pub(super) fn rate(mode: Oscillation) -> Complex<f64> {
     Complex::new(-mode.damping * omega, omega)
 }
 
-/// e^((−ζ + i) ω t) at `start_s`, `start_s + step_s` and so on without end: the real part is the cosine, the imaginary the sine.
+/// e^((−ζ + i) ω t) at `start_s`, `start_s + step_s` and so on without end: the real part is the cosine, the
+/// imaginary the sine.
 pub fn uniform_ringing(mode: Oscillation, start_s: f64, step_s: f64) -> impl Iterator<Item = Complex<f64>> {
     let rate = rate(mode);
     let turn = (rate * step_s).exp();
@@ -29,7 +30,8 @@ pub fn uniform_ringing(mode: Oscillation, start_s: f64, step_s: f64) -> impl Ite
 /// Series that are turned on beside one another: each step waits for the one before it.
 const LANES: usize = 4;
 
-/// The same at given times, where they are evenly spaced and no more than [`LONGEST_RUN`] a lane; else `None`.
+/// The same at given times, where they are evenly spaced and no more than [`LONGEST_RUN`] a lane; else
+/// `None`.
 pub(super) fn even_ringing(mode: Oscillation, time_s: &[f64]) -> Option<Vec<Complex<f64>>> {
     let (&start_s, &second_s) = (time_s.first()?, time_s.get(1)?);
     let step_s = second_s - start_s;
@@ -99,7 +101,8 @@ mod tests {
 
     #[test]
     fn turning_on_is_the_function_itself() {
-        // The largest value is e^(0.03·ω·10 ms) = 1.12; a run of 256 products loses 256 ε, the phase of 39 rad 39 ε.
+        // The largest value is e^(0.03·ω·10 ms) = 1.12; a run of 256 products loses 256 ε, the phase of 39
+        // rad 39 ε.
         for (i, value) in (0_u32..50_000).zip(uniform_ringing(MODE, -0.01, 2e-6)) {
             assert!((value - direct(-0.01 + f64::from(i) * 2e-6)).norm() < 1e-13, "{i}");
         }

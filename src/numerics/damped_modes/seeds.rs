@@ -10,13 +10,15 @@ use nalgebra::{DMatrix, DVector, Dyn, MatrixView, U1};
 /// From so many rows on a product of matrices is the fast one; others are filled up with zeros.
 const FAST_COLUMNS: usize = 8;
 
-/// Series of so many points and more are sought in with means of two: a period that spans five points spans more than two of them.
+/// Series of so many points and more are sought in with means of two: a period that spans five points spans
+/// more than two of them.
 const LONG: usize = 100;
 
 /// What each column of a mode has along those known so far.
 type Known<'a> = MatrixView<'a, f64, Dyn, Dyn, U1, Dyn>;
 
-/// The modes that are tried in a band: steps of 7 % and three dampings. Made once for all fits of the same series and drive.
+/// The modes that are tried in a band: steps of 7 % and three dampings. Made once for all fits of the same
+/// series and drive.
 pub struct Seeds {
     band_hz: (f64, f64),
     modes: Vec<Oscillation>,
@@ -126,8 +128,8 @@ pub(super) fn best_seed(start: &[Oscillation], seeds: &Seeds, form: Form) -> Opt
     scored.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(mode, _)| *mode)
 }
 
-/// The Cholesky factor of the products of a mode's columns, less what the `known` ones explain of them; `None` where that is all. Of a single
-/// column there is no second row: what is divided by infinity.
+/// The Cholesky factor of the products of a mode's columns, less what the `known` ones explain of them;
+/// `None` where that is all. Of a single column there is no second row: what is divided by infinity.
 fn factor([own, both, other]: [f64; 3], known: &Known) -> Option<[f64; 3]> {
     let first = known.column(0);
     let size = Some(own - first.norm_squared()).filter(|size| *size > 0.0)?.sqrt();
@@ -147,7 +149,8 @@ fn explained([size, shared, left]: [f64; 3], along: [f64; 2]) -> f64 {
     first * first + second * second
 }
 
-/// An orthonormal basis of what the modes known so far explain; `None` where one mode more would leave fewer than two points over.
+/// An orthonormal basis of what the modes known so far explain; `None` where one mode more would leave fewer
+/// than two points over.
 pub(super) fn basis(series: &Series, start: &[Oscillation], form: Form) -> Option<DMatrix<f64>> {
     let matrix = columns(series, start, form);
     (matrix.nrows() >= matrix.ncols() + form.width() + 2).then(|| matrix.qr().q())

@@ -59,7 +59,8 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// BIC = Σ_j (n_j/κ) ln(RMS_j² + floor_j²) + parameters · ln(Σ n_j/κ)   (21), κ the correlation of the richest candidate.
+    /// BIC = Σ_j (n_j/κ) ln(RMS_j² + floor_j²) + parameters · ln(Σ n_j/κ)   (21), κ the correlation of the
+    /// richest candidate.
     #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "a few thousand points")]
     pub fn bic(&self, series: &[Series], correlation: f64) -> f64 {

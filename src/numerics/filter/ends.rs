@@ -1,6 +1,7 @@
 //! A record to the same with both ends continued, so that a filter need not begin and end on nothing.
 
-/// The samples mirrored at both ends for `pad` samples, at most for all but the end sample, and how many stand in front of them.
+/// The samples mirrored at both ends for `pad` samples, at most for all but the end sample, and how many
+/// stand in front of them.
 pub(super) fn mirrored(samples: &[f64], pad: usize) -> (Vec<f64>, usize) {
     let n = samples.len();
     let pad = pad.min(n.saturating_sub(1));

@@ -20,7 +20,8 @@ impl StateVariable {
         Self { decay: g * (g + damping) * first, second: g * first, third: g * g * first }
     }
 
-    /// Rows of samples, one a series, in the given order through it, from and to the states of its integrators.
+    /// Rows of samples, one a series, in the given order through it, from and to the states of its
+    /// integrators.
     pub(super) fn run<'a, const N: usize>(
         &self,
         rows: impl Iterator<Item = &'a mut [f64; N]>,
@@ -29,7 +30,8 @@ impl StateVariable {
         let Self { decay, second, third } = *self;
         for row in rows {
             for ((x, band), low) in row.iter_mut().zip(band.iter_mut()).zip(low.iter_mut()) {
-                // Only what is added is rounded at its own size: 2 v1 − band and 2 v2 − low would round the states twice.
+                // Only what is added is rounded at its own size: 2 v1 − band and 2 v2 − low would round the
+                // states twice.
                 let v3 = *x - *low;
                 let added = second * *band + third * v3;
                 *band += 2.0 * (second * v3 - decay * *band);
@@ -58,8 +60,8 @@ const LANES: usize = 4;
 const WORTH: usize = 6;
 const STRETCHES: usize = 2;
 
-/// The same of each series; those of one length take little longer together than one of them, and long ones less for being cut in stretches that
-/// begin and end `memory` samples farther out than what they are for.
+/// The same of each series; those of one length take little longer together than one of them, and long ones
+/// less for being cut in stretches that begin and end `memory` samples farther out than what they are for.
 pub(super) fn each_forward_and_back(stage: &StateVariable, memory: usize, all: &mut [Vec<f64>]) {
     let count = all.first().map_or(0, Vec::len);
     if all.iter().any(|series| series.len() != count) {

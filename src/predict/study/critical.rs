@@ -82,7 +82,8 @@ mod tests {
                 assert!(found.largest >= largest * (1.0 - 1e-12), "{found:?} {largest}");
                 // A smooth maximum lies within a step of the scan's, and so does a jump.
                 assert!((found.angle_deg - angle_deg).abs() <= 5e-3, "{found:?} {angle_deg}");
-                // What a step can add: slopes stay below 100 m/s per radian, and those of the energy ratio below that number.
+                // What a step can add: slopes stay below 100 m/s per radian, and those of the energy ratio
+                // below that number.
                 assert!(found.largest <= largest + 100.0 * 5e-3_f64.to_radians(), "{found:?} {largest}");
             }
         }
@@ -90,7 +91,8 @@ mod tests {
 
     #[test]
     fn values_of_further_impacts_are_named_where_they_are_larger() {
-        // A rough rod with k = 1 gets beyond its 26.6 m/s somewhere above 47°, by luck of its bounces; with k = 0.5 it never does.
+        // A rough rod with k = 1 gets beyond its 26.6 m/s somewhere above 47°, by luck of its bounces; with k
+        // = 0.5 it never does.
         let asked = request(vec![Contact::Rough], vec![1.0], steps(1800, 90.0));
         let fall = rough_rod(1.0);
         let predictions = fall.over(&asked.angles_deg);
@@ -112,7 +114,8 @@ mod tests {
         let slope =
             (speed(found.angle_deg + step_deg) - speed(found.angle_deg - step_deg)) / (2.0 * step_deg);
         let elsewhere = (speed(found.angle_deg + 1.0) - speed(found.angle_deg + 0.8)) / 0.2;
-        // Third derivatives of v0 cos φ and the like: v0 (π/180)³ a degree cubed, times step²; a slope of 0.9° off is far above.
+        // Third derivatives of v0 cos φ and the like: v0 (π/180)³ a degree cubed, times step²; a slope of
+        // 0.9° off is far above.
         assert!(slope.abs() < 10.0 * V0_M_S * 1_f64.to_radians().powi(3) * step_deg * step_deg, "{slope}");
         assert!(elsewhere < -20.0 * slope.abs(), "{elsewhere} {slope}");
     }
@@ -130,7 +133,8 @@ mod tests {
 
     #[test]
     fn a_maximum_that_no_rig_hits_is_not_critical() {
-        // The elastic smooth rod at 88.9° flies for seconds before it comes down flat: a tenth of a degree wide.
+        // The elastic smooth rod at 88.9° flies for seconds before it comes down flat: a tenth of a degree
+        // wide.
         let fall = Fall { contact: Contact::Smooth, ..rough_rod(1.0) };
         let mut asked = request(vec![Contact::Smooth], vec![1.0], steps(180, 90.0));
         let mut energy = |tolerance_deg: f64| {

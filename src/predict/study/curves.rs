@@ -26,7 +26,8 @@ pub(super) fn curve(fall: &Fall, angles_deg: &[f64], predictions: &[Prediction])
     }
 }
 
-/// Smooth and k = 1: uniform bodies of the cask's length as a rod and with the sections of \[P\] Fig. 9, then the cask's own body.
+/// Smooth and k = 1: uniform bodies of the cask's length as a rod and with the sections of \[P\] Fig. 9, then
+/// the cask's own body.
 pub(super) fn sections(cask_file: &CaskFile, angles_deg: &[f64]) -> Vec<AngleCurve> {
     let rod = super::super::body(&cask_file.cask, BodyModel::Rod);
     let uniform =
@@ -71,7 +72,8 @@ mod tests {
         let heights_m: Vec<f64> = sections.iter().map(|s| s.height_m).collect();
         assert_eq!(heights_m, [0.0, 0.01, 0.5, 0.6, 0.792]);
         for j in 0..10 {
-            // ω2 and b change by (h / l) of their size to first order: 0.2 % of v0 at the most for 10 mm of 5.5 m.
+            // ω2 and b change by (h / l) of their size to first order: 0.2 % of v0 at the most for 10 mm of
+            // 5.5 m.
             assert!((sections[1].speed_m_s[j] - sections[0].speed_m_s[j]).abs() < 0.002 * 2.0 * V0_M_S);
         }
         // [P]: a large section matters at steep angles.

@@ -22,7 +22,8 @@ const DRAW_ANGLES: usize = 91;
 
 /// All that a study of the drop angle holds, on all cores; the same for any number of them.
 ///
-/// The seed fixes the draws bit by bit; the predictions made of them differ between machines in the last bits of the sine only.
+/// The seed fixes the draws bit by bit; the predictions made of them differ between machines in the last bits
+/// of the sine only.
 #[must_use]
 pub fn study(cask_file: &CaskFile, request: &StudyRequest) -> Study {
     let falls = falls(&bodies(&cask_file.cask), cask_file.drop, &request.contacts, &request.ks);
@@ -104,7 +105,8 @@ fn ladders(cask_file: &CaskFile, request: &StudyRequest) -> Vec<Ladder> {
     request.contacts.iter().flat_map(of).collect()
 }
 
-/// The body with another length and section: the centre of gravity keeps its share of the length, Θ ∝ l² + h².
+/// The body with another length and section: the centre of gravity keeps its share of the length, Θ ∝ l² +
+/// h².
 fn resized(body: &Body, length_m: f64, height_m: f64) -> Body {
     let size_m2 = |l: f64, h: f64| l * l + h * h;
     Body {

@@ -1,4 +1,5 @@
-//! Draws of the uncertain inputs to quantiles over the angle, of the critical angle, and the bands that hold for nearly all.
+//! Draws of the uncertain inputs to quantiles over the angle, of the critical angle, and the bands that hold
+//! for nearly all.
 
 use super::peak::{Sample, bands};
 use super::uncertain::{Draw, draw};
@@ -21,7 +22,8 @@ struct Traced {
     largest: [(f64, f64); 3],
 }
 
-/// What the uncertain inputs make of slap-down and critical angle of the richest body, at nominal `angles_deg`.
+/// What the uncertain inputs make of slap-down and critical angle of the richest body, at nominal
+/// `angles_deg`.
 pub(super) fn monte_carlo(cask_file: &CaskFile, request: &StudyRequest, angles_deg: &[f64]) -> MonteCarlo {
     let uncertain = request.uncertain;
     let contact = request.contacts.first().copied().unwrap_or(cask_file.contact);
@@ -44,10 +46,11 @@ pub(super) fn monte_carlo(cask_file: &CaskFile, request: &StudyRequest, angles_d
     }
 }
 
-/// One draw at every nominal angle plus its error, kept between 0 and 90°, and where it is largest between the outermost nominal angles.
+/// One draw at every nominal angle plus its error, kept between 0 and 90°, and where it is largest between
+/// the outermost nominal angles.
 ///
-/// The samples at true angles serve both: the vertex of the parabola through the highest and its neighbours is off by less than
-/// their spacing squared, far below the scatter of the draws.
+/// The samples at true angles serve both: the vertex of the parabola through the highest and its neighbours
+/// is off by less than their spacing squared, far below the scatter of the draws.
 fn trace(draw: &Draw, angles_deg: &[f64]) -> Traced {
     let at = |angle_deg: f64| Sample::new(angle_deg, &draw.fall.at(angle_deg));
     let moved: Vec<Sample> =
@@ -63,7 +66,8 @@ fn trace(draw: &Draw, angles_deg: &[f64]) -> Traced {
     Traced { samples: moved, largest }
 }
 
-/// True angle and size of the largest of the samples with one impact of L, the angle by a parabola; NaN if there is none.
+/// True angle and size of the largest of the samples with one impact of L, the angle by a parabola; NaN if
+/// there is none.
 fn largest(samples: &[Sample], criterion: usize) -> (f64, f64) {
     let value = |i: usize| samples[i].critical(criterion);
     let mut top = 0;
@@ -85,7 +89,8 @@ fn largest(samples: &[Sample], criterion: usize) -> (f64, f64) {
     (angle_deg, value(top))
 }
 
-/// Where the parabola through three points is highest, if the middle one is the highest of them; else the middle one.
+/// Where the parabola through three points is highest, if the middle one is the highest of them; else the
+/// middle one.
 fn vertex([a, b, c]: [(f64, f64); 3]) -> f64 {
     let (left, right) = (b.0 - a.0, c.0 - b.0);
     let (rise, fall) = (right * (b.1 - a.1), left * (b.1 - c.1));
@@ -213,8 +218,9 @@ mod tests {
     fn with_the_angle_alone_uncertain_quantiles_are_those_of_the_angle() {
         let found = of(Uncertain { angle_deg: 1.96, ..uncertain((0.5, 0.5), DRAWS) }, vec![0.0, 30.0]);
         let speeds = &found.quantiles[0];
-        // At 30° the speed of a rough rod with k = 0.5 falls with the angle: its 2.5 % quantile is at the angle's 97.5 %,
-        // 1.96° above; 5 standard errors of that probability reach from 1.40 to 3.1 standard deviations of 1°.
+        // At 30° the speed of a rough rod with k = 0.5 falls with the angle: its 2.5 % quantile is at the
+        // angle's 97.5 %, 1.96° above; 5 standard errors of that probability reach from 1.40 to 3.1 standard
+        // deviations of 1°.
         assert!(speeds.q025[1] > speed(0.5, 33.1) && speeds.q025[1] < speed(0.5, 31.4), "{}", speeds.q025[1]);
         assert!(speeds.q975[1] < speed(0.5, 26.9) && speeds.q975[1] > speed(0.5, 28.6), "{}", speeds.q975[1]);
         // The critical angle is that of the true angle: no draw moves it.
@@ -259,7 +265,8 @@ mod tests {
         assert_eq!(format!("{first:?}"), format!("{again:?}"));
         let median = |found: &MonteCarlo| found.quantiles[0].q50[6];
         assert!(median(&first).to_bits() != median(&other).to_bits());
-        // The median's standard error is half of √(1/n) in probability: 1.6 %; two of them differ by less than 7 of 5 σ.
+        // The median's standard error is half of √(1/n) in probability: 1.6 %; two of them differ by less
+        // than 7 of 5 σ.
         let width = first.quantiles[0].q975[6] - first.quantiles[0].q025[6];
         assert!((median(&first) - median(&other)).abs() < 2.0 * error(0.5) * width);
     }

@@ -5,7 +5,8 @@ use crate::data::{FlightRegime, Prediction, StudyRequest};
 /// Width to which a jump is bracketed, degrees: the value moves by less than 1e-6 m/s over it.
 const JUMP_DEG: f64 = 1e-7;
 
-/// Width to which a maximum is bracketed, degrees: far below any drop rig's; flat as it is, the value is exact to rounding.
+/// Width to which a maximum is bracketed, degrees: far below any drop rig's; flat as it is, the value is
+/// exact to rounding.
 const PEAK_DEG: f64 = 1e-5;
 
 /// Width to which the end of a band is bracketed, degrees.
@@ -23,9 +24,11 @@ pub(super) struct Sample {
     pub angle_deg: f64,
     /// In the order of [`crate::data::Criterion::ALL`]; minus infinity without a slap-down.
     pub values: [f64; 3],
-    /// What L does on the way if it strikes once before R: while that stays the same the values are continuous in the angle.
+    /// What L does on the way if it strikes once before R: while that stays the same the values are
+    /// continuous in the angle.
     ///
-    /// `None` without a slap-down, where the cask turns over before R strikes, which is no slap-down of a drop test, and where L strikes again: there the values jump from angle to angle, hundreds of times
+    /// `None` without a slap-down, where the cask turns over before R strikes, which is no slap-down of a
+    /// drop test, and where L strikes again: there the values jump from angle to angle, hundreds of times
     /// between 47° and 90° for a rough rod with k = 1, and none of them is critical.
     pub course: Option<FlightRegime>,
 }
@@ -101,7 +104,8 @@ pub(super) fn with_jumps(samples: &[Sample], at: &impl Fn(f64) -> Sample) -> Vec
 
 /// The largest value of one criterion over samples that hold both sides of each jump, and the bands near it.
 ///
-/// A maximum whose band is narrower than `bands.least_deg` is none that a drop can be rigged for: the next one is taken.
+/// A maximum whose band is narrower than `bands.least_deg` is none that a drop can be rigged for: the next
+/// one is taken.
 pub(super) fn peak(
     samples: &[Sample],
     criterion: usize,
@@ -129,10 +133,10 @@ pub(super) fn peak(
 
 /// The highest of all maxima.
 ///
-/// Every hump of the samples that may reach the highest is followed between its neighbours by golden section. At a jump the
-/// value on the higher side counts: it is the supremum. At the border it is the border's; of a plateau its lowest sampled angle.
-/// A hump that lies between two samples without lifting either above its neighbours is not seen. `None` where L strikes
-/// once at no angle.
+/// Every hump of the samples that may reach the highest is followed between its neighbours by golden section.
+/// At a jump the value on the higher side counts: it is the supremum. At the border it is the border's; of a
+/// plateau its lowest sampled angle. A hump that lies between two samples without lifting either above its
+/// neighbours is not seen. `None` where L strikes once at no angle.
 fn highest(samples: &[Sample], criterion: usize, at: &impl Fn(f64) -> Sample, percent: f64) -> Option<Peak> {
     let value = |i: usize| samples[i].critical(criterion);
     let highest = (0..samples.len()).map(value).fold(f64::NEG_INFINITY, f64::max);
@@ -172,7 +176,8 @@ fn take_if_larger(top: &mut (f64, f64), other: (f64, f64)) {
     }
 }
 
-/// The highest point met by golden section (Kiefer 1953) between two angles: the maximum where there is one hump.
+/// The highest point met by golden section (Kiefer 1953) between two angles: the maximum where there is one
+/// hump.
 fn golden(mut low_deg: f64, mut high_deg: f64, value: impl Fn(f64) -> f64) -> (f64, f64) {
     let share = (5.0_f64.sqrt() - 1.0) / 2.0;
     let inner = |from: f64, to: f64| {
@@ -194,7 +199,8 @@ fn golden(mut low_deg: f64, mut high_deg: f64, value: impl Fn(f64) -> f64) -> (f
     if a.1 >= b.1 { a } else { b }
 }
 
-/// Stretches in which `holds`, from marks at ascending angles; ends between two marks by bisection, on the side that holds.
+/// Stretches in which `holds`, from marks at ascending angles; ends between two marks by bisection, on the
+/// side that holds.
 pub(super) fn bands(marks: &[(f64, bool)], holds: impl Fn(f64) -> bool) -> Vec<(f64, f64)> {
     let edge = |inside: f64, outside: f64| {
         let (mut inside, mut outside) = (inside, outside);
@@ -257,7 +263,8 @@ mod tests {
             };
             Sample::new(angle_deg, &crate::predict::predict(&body, &drop, crate::data::Contact::Smooth, 1.0))
         };
-        // About 66° it flies for two seconds and turns over twice, faster than at the 18° where it strikes on its first way down.
+        // About 66° it flies for two seconds and turns over twice, faster than at the 18° where it strikes on
+        // its first way down.
         let steep = (600..720).map(|tenths| at(f64::from(tenths) / 10.0));
         let over = steep.max_by(|a, b| a.values[0].total_cmp(&b.values[0])).expect("angles");
         let first = at(18.0);

@@ -9,8 +9,8 @@ use crate::data::{BodyPath, Contact, Drop, FlightRegime, GRAZE_SHARE, Pose};
 /// Places shown between first contact and slap-down, both among them.
 const POSES: u32 = 7;
 
-/// The path of a fall at an angle, the first impact taken for an impulse; `None` where L does not go from its one impact to the slap-down in
-/// one flight, or held on the target all the way.
+/// The path of a fall at an angle, the first impact taken for an impulse; `None` where L does not go from its
+/// one impact to the slap-down in one flight, or held on the target all the way.
 pub(super) fn path(fall: &Fall, angle_deg: f64) -> Option<BodyPath> {
     let (body, drop) = (&fall.body, Drop { contact_duration_s: 0.0, ..fall.drop_at(angle_deg) });
     let start = State::falling(body, drop.angle_rad, &drop);

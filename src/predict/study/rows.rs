@@ -5,7 +5,8 @@ use super::{Fall, falls, raised, resized};
 use crate::data::{Body, CaskFile, Contact, PredictionRow, StudyRequest, SweepVariable};
 use rayon::prelude::*;
 
-/// Rows of the product of all sweeps, the first outermost; within it of every body, contact law and k that is not swept.
+/// Rows of the product of all sweeps, the first outermost; within it of every body, contact law and k that is
+/// not swept.
 pub(super) fn rows(cask_file: &CaskFile, request: &StudyRequest) -> Vec<PredictionRow> {
     let mut points: Vec<Vec<(SweepVariable, f64)>> = vec![Vec::new()];
     for sweep in &request.sweeps {
@@ -97,14 +98,16 @@ mod tests {
         assert_eq!(rows.len(), 2 * 2);
         let speed = |r: &PredictionRow| r.prediction.slap_down_speed_m_s.expect("R strikes");
         let borderline = swept(0.0, vec![]);
-        // k = 1 without friction is smooth, with more than sticking needs rough; the same sums in another order.
+        // k = 1 without friction is smooth, with more than sticking needs rough; the same sums in another
+        // order.
         assert!((speed(&rows[1]) - speed(&borderline[3])).abs() < 1e-11);
         assert!((speed(&rows[3]) - speed(&borderline[1])).abs() < 1e-11);
     }
 
     #[test]
     fn four_times_the_size_doubles_every_speed() {
-        // g l / v0² is the only number in the equations of a rod: with l and h four times as large v0 and all speeds double.
+        // g l / v0² is the only number in the equations of a rod: with l and h four times as large v0 and all
+        // speeds double.
         let small = swept(0.0, vec![]);
         let large = swept(
             0.0,
@@ -114,7 +117,8 @@ mod tests {
             assert!((large.length_m - 22.048).abs() < 1e-12 && large.drop_height_m == 36.0);
             let ratio = large.prediction.slap_down_speed_m_s.expect("R strikes")
                 / small.prediction.slap_down_speed_m_s.expect("R strikes");
-            // The slap-down is found to 1e-9 m of height: 1e-9 of the speed at 13 m/s and 10 m/s² is far above it.
+            // The slap-down is found to 1e-9 m of height: 1e-9 of the speed at 13 m/s and 10 m/s² is far
+            // above it.
             assert!((ratio / 2.0 - 1.0).abs() < 1e-9, "{ratio}");
         }
     }

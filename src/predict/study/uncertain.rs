@@ -9,7 +9,8 @@ use rand_distr::{Distribution, StandardNormal};
 /// Standard deviations in the half-width that holds 95 % of a normal distribution.
 const SIGMAS_OF_95: f64 = 1.959_963_984_540_054;
 
-/// Least share of a length or inertia that a draw leaves: far out of reach of any half-width that a cask file would state.
+/// Least share of a length or inertia that a draw leaves: far out of reach of any half-width that a cask file
+/// would state.
 const LEAST_SHARE: f64 = 0.1;
 
 /// Ranges and half-widths for a cask whose user states none.
@@ -22,7 +23,8 @@ pub fn default_uncertain(cask_file: &CaskFile) -> Uncertain {
         k: (0.0, 1.0),
         // The contact law asked for.
         friction: None,
-        // Inclinometer ±0.5°, and as much again for the release. It can be worse: a test of Sandia's matched at 13° for 10°.
+        // Inclinometer ±0.5°, and as much again for the release. It can be worse: a test of Sandia's matched
+        // at 13° for 10°.
         angle_deg: 1.0,
         // 2.5 cm of 9 m, as for the measured impact velocity.
         drop_height: 0.003,
@@ -30,7 +32,8 @@ pub fn default_uncertain(cask_file: &CaskFile) -> Uncertain {
         size: 0.005,
         // 5 cm of 5 m: weighed at two points, the contents within their clearance.
         cog: 0.01,
-        // Twice the standard uncertainties of the comparison with a test: 1 % stated, 5 % for the uniform block.
+        // Twice the standard uncertainties of the comparison with a test: 1 % stated, 5 % for the uniform
+        // block.
         inertia: if is_uniform { 0.1 } else { 0.02 },
         // The 2.5 % quantile then has a standard error of 0.5 % in probability.
         draws: 1000,
@@ -46,11 +49,13 @@ pub(super) struct Draw {
     pub angle_error_deg: f64,
 }
 
-/// The draw of this index: k and friction uniform, all else normal. It depends on the seed and its index alone, on any machine.
+/// The draw of this index: k and friction uniform, all else normal. It depends on the seed and its index
+/// alone, on any machine.
 pub(super) fn draw(base: &Fall, uncertain: &Uncertain, index: u32) -> Draw {
     let mut rng = ChaCha8Rng::seed_from_u64(uncertain.seed);
     rng.set_stream(u64::from(index));
-    // Every number is drawn whether it is used or not, so that one more uncertain input leaves the others as they were.
+    // Every number is drawn whether it is used or not, so that one more uncertain input leaves the others as
+    // they were.
     let (k_share, friction_share) = (rng.random::<f64>(), rng.random::<f64>());
     let mut normal = |half_width: f64| {
         let z: f64 = StandardNormal.sample(&mut rng);

@@ -1,4 +1,5 @@
-//! A campaign and its lines once more to `campaign.csv` and `campaign.json`, a line at a time, and to its page with the pictures.
+//! A campaign and its lines once more to `campaign.csv` and `campaign.json`, a line at a time, and to its
+//! page with the pictures.
 
 use super::columns;
 use super::series::DropSeries;
@@ -16,7 +17,8 @@ pub struct CampaignFiles<'a> {
 }
 
 impl<'a> CampaignFiles<'a> {
-    /// Of a campaign; `predicted` gives the curves of the series that a row belongs to, over these k and angles.
+    /// Of a campaign; `predicted` gives the curves of the series that a row belongs to, over these k and
+    /// angles.
     pub fn new(
         batch: &'a Batch,
         predicted: impl Fn(&BatchRow, [f64; 2], [f64; 2]) -> Vec<PredictedCurve>,

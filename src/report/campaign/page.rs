@@ -1,4 +1,5 @@
-//! A campaign to the document of its page: what falls out first, then a chapter a cask, then every recording with a link to its report.
+//! A campaign to the document of its page: what falls out first, then a chapter a cask, then every recording
+//! with a link to its report.
 
 use super::series::{DropSeries, Pool, PooledQuantity, RowPlace, scatter_words};
 use super::{Batch, BatchRow, MOST_ROWS, MOST_SERIES, compared};

@@ -1,4 +1,5 @@
-//! A series to its pictures: slap-down speed on the predicted curves, measured over predicted, and k over angle, date and number.
+//! A series to its pictures: slap-down speed on the predicted curves, measured over predicted, and k over
+//! angle, date and number.
 
 use super::BatchRow;
 use super::series::{DropSeries, PooledQuantity, PredictedCurve, is_usable};

@@ -1,4 +1,5 @@
-//! Rows of a campaign to series, the drops of one cask from one height, and these to pools: repeats at one angle, and all angles.
+//! Rows of a campaign to series, the drops of one cask from one height, and these to pools: repeats at one
+//! angle, and all angles.
 
 use super::{BatchRow, MOST_SERIES};
 use crate::data::{BodyModel, Contact, Estimate, Verdict};
@@ -97,7 +98,8 @@ pub(super) struct DropSeries<'a> {
 }
 
 impl<'a> DropSeries<'a> {
-    /// All series, in the order in which their casks come; `predicted` gives the curves of a row's cask over these k and angles.
+    /// All series, in the order in which their casks come; `predicted` gives the curves of a row's cask over
+    /// these k and angles.
     pub(super) fn all(
         rows: &'a [BatchRow],
         predicted: impl Fn(&BatchRow, [f64; 2], [f64; 2]) -> Vec<PredictedCurve>,

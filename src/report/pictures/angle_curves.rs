@@ -1,4 +1,5 @@
-//! Curves over the drop angle to pictures: components (Figs. 4 and 5), magnitudes (Fig. 7), energy (Fig. 8), sections (Fig. 9).
+//! Curves over the drop angle to pictures: components (Figs. 4 and 5), magnitudes (Fig. 7), energy (Fig. 8),
+//! sections (Fig. 9).
 
 use super::super::rounding::plain;
 use super::super::words::{case_words, contact_words};

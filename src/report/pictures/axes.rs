@@ -6,8 +6,8 @@ use super::panel::{AxisScale, Curve, Dash, GREY, INK, Mark, Panel, PanelAxis, WI
 use super::svg::{Anchor, Svg};
 use std::ops::Range;
 
-/// A line keeps the lowest and the highest point of each column so many units wide: a pixel and a half of the page, 0.3 mm
-/// of paper.
+/// A line keeps the lowest and the highest point of each column so many units wide: a pixel and a half of the
+/// page, 0.3 mm of paper.
 const COLUMN: f64 = 3.0;
 /// Height of a row of the marks' words.
 const MARK_ROW: f64 = 34.0;
@@ -194,7 +194,8 @@ struct Ticks {
     fine: Vec<f64>,
 }
 
-/// At round numbers, `most` of them or one more; of powers of ten each one or every second, third …, and the steps between in fine lines.
+/// At round numbers, `most` of them or one more; of powers of ten each one or every second, third …, and the
+/// steps between in fine lines.
 #[allow(clippy::cast_possible_truncation, reason = "whole steps, cut to a few hundred")]
 fn ticks(axis: &PanelAxis, range: &Range<f64>, most: i32) -> Ticks {
     let (from, to) = (axis.place(range.start), axis.place(range.end));

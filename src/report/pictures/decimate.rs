@@ -1,4 +1,5 @@
-//! A long curve to the lowest and highest point of each column of the picture, broken where samples are missing.
+//! A long curve to the lowest and highest point of each column of the picture, broken where samples are
+//! missing.
 
 /// Unbroken runs of points, at most two in each unit of x, in order.
 pub(super) fn runs(points: impl IntoIterator<Item = (f64, f64)>) -> Vec<Vec<(f64, f64)>> {

@@ -1,4 +1,5 @@
-//! The flight fit that decides to its picture: what was measured, plateaus with their modes, and what they leave.
+//! The flight fit that decides to its picture: what was measured, plateaus with their modes, and what they
+//! leave.
 
 use super::curves::{panel, points};
 use super::draw::{Picture, Plate};

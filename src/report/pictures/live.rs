@@ -26,7 +26,8 @@ fn of(panel: &Panel) -> Value {
     json!({"title": panel.title, "x": panel.x.label, "y": panel.y.label, "lines": lines, "marks": marks})
 }
 
-/// Values, and their places as steps from `x0` on in units of `dx`; null between runs, where samples are missing.
+/// Values, and their places as steps from `x0` on in units of `dx`; null between runs, where samples are
+/// missing.
 fn of_line(line: &Curve, from: f64, column: f64) -> Value {
     let (mut steps, mut y, mut at) = (Vec::new(), Vec::new(), 0.0);
     let mut put = |x: f64, value: Value| {

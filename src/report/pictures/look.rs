@@ -1,4 +1,5 @@
-//! Contact laws and k to colours and strokes, so that a case looks the same in every picture; and the axis of the angle.
+//! Contact laws and k to colours and strokes, so that a case looks the same in every picture; and the axis of
+//! the angle.
 
 use super::super::rounding::plain;
 use super::super::words::contact_words;
@@ -8,7 +9,8 @@ use crate::data::{BodyModel, Cask, Contact, StudyRequest};
 /// Contact laws that a picture shows: more lines than these cannot be told apart.
 pub(super) const MOST_CONTACTS: usize = 3;
 
-/// The k that a picture shows beside several contact laws, each with a stroke of its own, and beside one, each with a colour.
+/// The k that a picture shows beside several contact laws, each with a stroke of its own, and beside one,
+/// each with a colour.
 const MOST_KS: usize = 3;
 const MOST_KS_ALONE: usize = 5;
 

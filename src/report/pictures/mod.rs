@@ -27,7 +27,8 @@ use crate::data::Analysis;
 use draw::Picture;
 use rayon::prelude::*;
 
-/// Set-up, curves of both impacts, velocities, motion, spectra and comparison; one that has nothing to show says so.
+/// Set-up, curves of both impacts, velocities, motion, spectra and comparison; one that has nothing to show
+/// says so.
 pub(super) fn draw(analysis: &Analysis) -> Vec<Picture> {
     let all: [fn(&Analysis) -> Picture; 9] = [
         |analysis| setup::picture(&analysis.cask_file),

@@ -1,4 +1,5 @@
-//! Monte Carlo to one picture: quantiles of the speed, share of the draws in their band, histogram of the critical angle.
+//! Monte Carlo to one picture: quantiles of the speed, share of the draws in their band, histogram of the
+//! critical angle.
 
 use super::super::rounding::plain;
 use super::super::words::{bands_words, criterion_words, degrees};

@@ -1,5 +1,5 @@
-//! What a picture shows to a panel: axes, areas, lines, points and marked events, as data. Drawn at twice the size, so that
-//! its whole-pixel coordinates stay fine.
+//! What a picture shows to a panel: axes, areas, lines, points and marked events, as data. Drawn at twice the
+//! size, so that its whole-pixel coordinates stay fine.
 
 use std::ops::Range;
 
@@ -236,7 +236,8 @@ impl PanelAxis {
 
     /// The value as a place along the axis.
     pub(super) fn place(&self, value: f64) -> f64 {
-        /// A function of its own, else the compiler takes the logarithm of each value of a linear axis too, and throws it away.
+        /// A function of its own, else the compiler takes the logarithm of each value of a linear axis too,
+        /// and throws it away.
         #[inline(never)]
         fn power(value: f64) -> f64 {
             value.log10()

@@ -1,4 +1,5 @@
-//! The ways of a body to drawings of where it is from first contact to the slap-down, as Figs. 2 and 3 of the paper.
+//! The ways of a body to drawings of where it is from first contact to the slap-down, as Figs. 2 and 3 of the
+//! paper.
 
 use super::super::rounding::fixed;
 use super::super::words::case_words;

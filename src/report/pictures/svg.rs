@@ -1,4 +1,5 @@
-//! Lines, areas, circles and words to the text of an SVG drawing, in units of which two are a pixel of the page.
+//! Lines, areas, circles and words to the text of an SVG drawing, in units of which two are a pixel of the
+//! page.
 
 use super::super::text::printable;
 use super::panel::{Colour, Curve, INK};

@@ -18,7 +18,8 @@ const MOST_LINES: usize = 7;
 /// Panels of one picture: a page.
 const MOST_PANELS: usize = 4;
 
-/// The picture: the variable with the most values along the axis, the next a line each, further ones at their middle value.
+/// The picture: the variable with the most values along the axis, the next a line each, further ones at their
+/// middle value.
 pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let mut sweeps: Vec<&Sweep> = study.request.sweeps.iter().collect();
     // Stable: of equally many the one named first.

@@ -19,8 +19,8 @@ pub(super) const MOST_ON_PAGE: usize = 200;
 /// What marks a prediction whose first end strikes again.
 const AGAIN_MARK: &str = "‡";
 
-/// Adds the columns of a prediction; `None` is a row that stands for those left out. On a terminal the heads of a study take two
-/// lines, so that further columns have room.
+/// Adds the columns of a prediction; `None` is a row that stands for those left out. On a terminal the heads
+/// of a study take two lines, so that further columns have room.
 pub(in super::super) fn prediction_columns<'a, R>(
     rows: TableRows<'a, R>,
     of: impl Fn(&'a R) -> Option<&'a Prediction> + Copy,

@@ -1,4 +1,5 @@
-//! From positions, velocities and impulses of a rigid body in the plane to those of its corners: vectors only, no closed form.
+//! From positions, velocities and impulses of a rigid body in the plane to those of its corners: vectors
+//! only, no closed form.
 
 use dropcheck::data::Body;
 

@@ -1,4 +1,5 @@
-//! From a contact law and a pace to what a simulated drop comes to: the words that the simulation and its readers share.
+//! From a contact law and a pace to what a simulated drop comes to: the words that the simulation and its
+//! readers share.
 
 use super::rigid::Vector;
 use dropcheck::data::Contact;
@@ -12,7 +13,8 @@ pub struct Law {
     pub friction: f64,
     /// With k = 0 L is held on the target whatever the sign of the force.
     pub holds: bool,
-    /// L is let go for good where it does not slide and would have to be pulled to go on so, even if it could slide on.
+    /// L is let go for good where it does not slide and would have to be pulled to go on so, even if it could
+    /// slide on.
     pub lets_go: bool,
     /// L is touched again; else the target is gone once L has left it.
     pub again: bool,
@@ -65,7 +67,8 @@ pub struct Outcome {
     pub time_s: f64,
     /// Pulses at L, the first included.
     pub touches: u32,
-    /// How long the first pulse lasts, s, and the share of its speed that L's corner leaves with; `None` where it does not spring back.
+    /// How long the first pulse lasts, s, and the share of its speed that L's corner leaves with; `None`
+    /// where it does not spring back.
     pub first_pulse: Option<(f64, f64)>,
     /// Whether L rested on the target at any time.
     pub rested: bool,

@@ -1,8 +1,10 @@
-//! From a body, a drop and a contact law to its motion by time steps: a rigid body on a stiff contact that crushes and springs back.
+//! From a body, a drop and a contact law to its motion by time steps: a rigid body on a stiff contact that
+//! crushes and springs back.
 //!
-//! A touch is a pulse: the normal force grows with stiffness K and falls with K/k², so that k² of the work put in comes back; the
-//! tangential impulse of each step is the one that stops the slip, at most μ times the normal one. Where L rests, or k = 0 holds it,
-//! the steps are Moreau's: velocities that obey the constraint and the friction cone at the end of each step. Nothing here knows an impact law.
+//! A touch is a pulse: the normal force grows with stiffness K and falls with K/k², so that k² of the work
+//! put in comes back; the tangential impulse of each step is the one that stops the slip, at most μ times the
+//! normal one. Where L rests, or k = 0 holds it, the steps are Moreau's: velocities that obey the constraint
+//! and the friction cone at the end of each step. Nothing here knows an impact law.
 
 use super::rigid::{Answer, Motion, Point, Vector};
 use super::setting::{End, Law, Outcome, Pace};
@@ -24,7 +26,8 @@ const LONGEST_S: f64 = 10.0;
 /// More touches than that are chatter.
 const MOST_TOUCHES: u32 = 3000;
 
-/// How L's corner is pressed: the force along the loading line, and along the line back once it has been pressed deepest.
+/// How L's corner is pressed: the force along the loading line, and along the line back once it has been
+/// pressed deepest.
 #[derive(Clone, Copy)]
 struct Crush {
     loading_n_m: f64,
@@ -176,7 +179,8 @@ impl<'a> Simulation<'a> {
         if -corner.z < self.pace.rest_m_s && !slips { Phase::Rest } else { Phase::Pulse }
     }
 
-    /// The time that no corner needs less of to reach the target, s: its distance over the largest speed it can have.
+    /// The time that no corner needs less of to reach the target, s: its distance over the largest speed it
+    /// can have.
     fn safe_step_s(&self) -> f64 {
         let motion = &self.motion;
         let speed_m_s = motion.velocity_m_s.x.hypot(motion.velocity_m_s.z)
@@ -243,8 +247,8 @@ impl<'a> Simulation<'a> {
         Phase::Over(End::Open)
     }
 
-    /// Drift, kick, drift. The step ends where the slip does, so that what follows, sticking or the slip the other way, begins
-    /// with a step of its own.
+    /// Drift, kick, drift. The step ends where the slip does, so that what follows, sticking or the slip the
+    /// other way, begins with a step of its own.
     fn pulse_step(&self, step_s: f64, crush: Crush) -> (Motion, f64) {
         let slip_m_s = self.motion.velocity_at_m_s(self.first_end).x;
         let (next, braked_m_s) = self.kicked(step_s, crush, slip_m_s);
@@ -255,8 +259,8 @@ impl<'a> Simulation<'a> {
         (next, step_s)
     }
 
-    /// The motion after a step whose tangential impulse stops the slip or is as large as friction allows, and the slip that is left
-    /// where friction brakes the slip at first to the end, past zero too.
+    /// The motion after a step whose tangential impulse stops the slip or is as large as friction allows, and
+    /// the slip that is left where friction brakes the slip at first to the end, past zero too.
     fn kicked(&self, step_s: f64, crush: Crush, slip_m_s: f64) -> (Motion, f64) {
         let middle = self.motion.drifted(step_s / 2.0).pulled(self.gravity_m_s2, step_s);
         let normal_n_s = crush.force_n(middle.height_m(self.first_end)) * step_s;
@@ -327,7 +331,8 @@ impl<'a> Simulation<'a> {
         if friction.is_infinite() || (sticks && pushes(stuck.z)) {
             return pushes(stuck.z).then_some(stuck);
         }
-        // Sliding: friction against the slip that is left, which is why both ways are tried; a held end may also be pulled.
+        // Sliding: friction against the slip that is left, which is why both ways are tried; a held end may
+        // also be pulled.
         for (slip, normal) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
             let (impulse, left_m_s) = answer.sliding_n_s(-slip * normal * friction);
             if left_m_s * slip >= 0.0 && impulse.z * normal >= 0.0 && pushes(impulse.z) {

@@ -1,4 +1,5 @@
-//! The library on a thread, without a wall, in place of the process that unit tests cannot start; or stored answers in place of both.
+//! The library on a thread, without a wall, in place of the process that unit tests cannot start; or stored
+//! answers in place of both.
 
 use super::super::library;
 use super::Link;

@@ -44,7 +44,8 @@ impl Column {
         self.blocks.iter().map(block).collect()
     }
 
-    /// The samples on a uniform base, times counted from `zero_ns`; `cask_hz` overrides what the messages say.
+    /// The samples on a uniform base, times counted from `zero_ns`; `cask_hz` overrides what the messages
+    /// say.
     ///
     /// # Errors
     /// Rate or times that give no base.

@@ -1,4 +1,5 @@
-//! Numbers that messages carry as their times to ns, and log times to how their pace differs from that of the stamps.
+//! Numbers that messages carry as their times to ns, and log times to how their pace differs from that of the
+//! stamps.
 
 use super::{Column, SentTimes, StampCounts, seconds_from};
 use crate::data::{Finding, McapFinding};
@@ -7,7 +8,8 @@ use crate::ingest::time_base;
 use crate::ingest::times::{self, Carrier, SentTicks};
 
 impl Column {
-    /// Takes the numbers that messages carry for their times, in ns, where they rise as times do; `source` names what they are the times of.
+    /// Takes the numbers that messages carry for their times, in ns, where they rise as times do; `source`
+    /// names what they are the times of.
     ///
     /// # Errors
     /// Nothing says their unit.

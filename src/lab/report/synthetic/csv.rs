@@ -1,4 +1,5 @@
-//! A synthetic recording to CSV: comma, point, one header with units; a lost sample is an empty cell, a lost row is left out.
+//! A synthetic recording to CSV: comma, point, one header with units; a lost sample is an empty cell, a lost
+//! row is left out.
 
 use super::place::SyntheticPlace;
 use crate::lab::data::SyntheticRecording;

@@ -1,4 +1,5 @@
-//! A synthetic recording to HDF5: one dataset a channel in `/daq`; where samples were lost, the times of the rest in `/time_s`.
+//! A synthetic recording to HDF5: one dataset a channel in `/daq`; where samples were lost, the times of the
+//! rest in `/time_s`.
 
 use super::place::SyntheticPlace;
 use crate::lab::data::SyntheticRecording;

@@ -1,4 +1,5 @@
-//! A synthetic recording to MCAP: blocks `dropcheck.AccelerationBlock` in JSON or protobuf, stamped, with their schema.
+//! A synthetic recording to MCAP: blocks `dropcheck.AccelerationBlock` in JSON or protobuf, stamped, with
+//! their schema.
 
 use super::place::SyntheticPlace;
 use crate::lab::data::{SyntheticChannel, SyntheticRecording};
@@ -12,7 +13,8 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
-/// The first sample of every synthetic recording: 9 October 2025, 08:53:20 UTC, so that the same scene gives the same bytes.
+/// The first sample of every synthetic recording: 9 October 2025, 08:53:20 UTC, so that the same scene gives
+/// the same bytes.
 const START_NS: i64 = 1_760_000_000_000_000_000;
 
 /// Length of a block, s: what a recorder hands on at a time.

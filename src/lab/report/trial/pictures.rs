@@ -142,7 +142,8 @@ const FATES: [(TrialFate, Colour, &str); 4] = [
     (TrialFate::Silent, ALARM, "outside, and silent"),
 ];
 
-/// A row a damage, from the harmless size to the gross one; in each size a stripe a drop. What is silent comes first.
+/// A row a damage, from the harmless size to the gross one; in each size a stripe a drop. What is silent
+/// comes first.
 pub(super) fn failures(trial: &Trial) -> Picture {
     let drops = trial.maps.first().and_then(|map| map.sizes.first()).map_or(0, |size| size.drops.len());
     let caption = format!(

@@ -1,4 +1,5 @@
-//! The specific force at a sensor to its sampled signal: mounting, resonance, AC coupling, anti-alias filter, sampling.
+//! The specific force at a sensor to its sampled signal: mounting, resonance, AC coupling, anti-alias filter,
+//! sampling.
 
 use super::SensedDrop;
 use crate::data::Axis;
@@ -6,10 +7,12 @@ use crate::lab::data::{Scene, SceneChannel};
 use crate::numerics::as_f64;
 use std::f64::consts::{FRAC_PI_8, PI};
 
-/// The analog part runs on a grid this much finer than the samples, so that what lies above half their rate folds.
+/// The analog part runs on a grid this much finer than the samples, so that what lies above half their rate
+/// folds.
 const OVERSAMPLING: f64 = 8.0;
 
-/// Points of that grid in a period of the resonance and of the cut-off: prewarped trapezoids are then within 1 %.
+/// Points of that grid in a period of the resonance and of the cut-off: prewarped trapezoids are then within
+/// 1 %.
 const POINTS_A_PERIOD: f64 = 20.0;
 
 /// Points worked on at a time.
@@ -40,7 +43,8 @@ pub(super) fn sampled(
         let times_s: Vec<f64> =
             (from..points.min(from + BLOCK)).map(|i| as_f64(i) / fine_hz - scene.before_s).collect();
         for (i, force) in (from..).zip(mounted.force_m_s2(&times_s)) {
-            // What hangs or falls gives the same number again and again: a step that moves no filter moves none the next time.
+            // What hangs or falls gives the same number again and again: a step that moves no filter moves
+            // none the next time.
             if still_at != Some(force) {
                 let before = filters.states();
                 signal = filters.next(force);
@@ -202,7 +206,8 @@ mod tests {
             let mut pair = [FRAC_PI_8, 3.0 * FRAC_PI_8]
                 .map(|angle_rad: f64| SecondOrder::new((1_000.0, angle_rad.cos()), 1e6, 0.0));
             let amplitude = gain(|x| pair.iter_mut().fold(x, |x, f| f.next(x)), frequency_hz, 1e6);
-            // |H|² = 1/(1 + (f/fc)⁸); warping at 4e-3 of the rate is (π 4e-3)²/3 = 5e-5, to the fourth power 2e-4.
+            // |H|² = 1/(1 + (f/fc)⁸); warping at 4e-3 of the rate is (π 4e-3)²/3 = 5e-5, to the fourth power
+            // 2e-4.
             let wanted = 1.0 / (1.0_f64 + wanted).sqrt();
             assert!((amplitude / wanted - 1.0).abs() < 1e-3, "{frequency_hz}: {amplitude}, not {wanted}");
         }

@@ -1,4 +1,5 @@
-//! A channel's seed and chain to what is added to its samples: offset, zero shift, noise, hum, a cable that is shaken or whips.
+//! A channel's seed and chain to what is added to its samples: offset, zero shift, noise, hum, a cable that
+//! is shaken or whips.
 
 use crate::lab::data::Chain;
 use crate::numerics::as_f64;
@@ -10,7 +11,8 @@ use std::f64::consts::{PI, TAU};
 /// Sources of chance in a channel: each draws from a stream of its own, so that none moves another.
 const STREAMS_A_CHANNEL: u64 = 8;
 
-/// The 1/f noise reaches down to here, Hz; its corners lie an octave apart, which ripples by less than 0.1 dB.
+/// The 1/f noise reaches down to here, Hz; its corners lie an octave apart, which ripples by less than 0.1
+/// dB.
 const LOWEST_HZ: f64 = 1.0;
 
 /// A shaken cable swings between these frequencies, Hz: those of the cask's bending.
@@ -78,7 +80,8 @@ pub(super) fn add(
     }
 }
 
-/// Noise of spectral density 1/f: equal parts of noise that first-order low-passes an octave apart have shaped.
+/// Noise of spectral density 1/f: equal parts of noise that first-order low-passes an octave apart have
+/// shaped.
 fn pink(samples_m_s2: &mut [f64], sigma_m_s2: f64, rate_hz: f64, generator: &mut ChaCha8Rng) {
     if sigma_m_s2 <= 0.0 {
         return;

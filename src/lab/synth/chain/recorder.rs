@@ -15,7 +15,8 @@ pub(super) fn ceiling(number: f64) -> usize {
     (number - 1e-6).ceil() as usize
 }
 
-/// Clipped at ± full scale; with bits, in steps of full scale over 2^(bits − 1), the uppermost code a step below it.
+/// Clipped at ± full scale; with bits, in steps of full scale over 2^(bits − 1), the uppermost code a step
+/// below it.
 pub(super) fn converted(signal_m_s2: f64, chain: &Chain) -> f64 {
     let Some(full_scale_m_s2) = chain.full_scale_m_s2 else { return signal_m_s2 };
     let Some(bits) = chain.bits else { return signal_m_s2.clamp(-full_scale_m_s2, full_scale_m_s2) };

@@ -68,7 +68,8 @@ fn scale_and_polarity_multiply_and_clipping_is_exact() {
 fn a_cable_whips_from_first_contact_on_and_fades() {
     let out = recorded(with(|c| c.whip = Some((100.0, 20.0))), &|_, _| 0.0).samples;
     assert!(out[..1000].iter().all(|x| x.abs() < f32::EPSILON));
-    // Half a wave of 20 Hz later, 250 samples, it has turned and is e^(−0.1 π) of what it was; a quarter after the start, e^(−0.05 π).
+    // Half a wave of 20 Hz later, 250 samples, it has turned and is e^(−0.1 π) of what it was; a quarter
+    // after the start, e^(−0.05 π).
     for i in 1000..1750 {
         near(out[i + 250], -f64::from(out[i]) * (-0.1 * std::f64::consts::PI).exp(), 1e-3);
     }
@@ -117,7 +118,8 @@ fn a_fast_clock_takes_more_samples_of_the_same_drop() {
 
 #[test]
 fn ac_coupling_remembers_the_hanging_cask() {
-    // Released 1.3546 s before contact, recorded from 0.1 s before: −g e^(−1.2546/0.318) = −0.19 m/s² is left.
+    // Released 1.3546 s before contact, recorded from 0.1 s before: −g e^(−1.2546/0.318) = −0.19 m/s² is
+    // left.
     let fall_s = (18.0_f64 / 9.81).sqrt();
     let seat = with(|c| c.ac_time_constant_s = Some(FRAC_1_PI));
     let out = recorded(seat, &|_, t| if t < -fall_s { 9.81 } else { 0.0 });

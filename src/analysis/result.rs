@@ -3,7 +3,7 @@
 use super::flight::Flown;
 use super::impact::Impact;
 use super::impacts;
-use super::reached::Reached;
+use super::progress::Reached;
 use super::setup::sticking;
 use crate::data::{
     Analysis, At, Axis, CaskFile, Channel, ChannelSummary, Curves, Drop, DropResult, End, Estimate, Events,
@@ -13,8 +13,8 @@ use crate::data::{
 use crate::numerics::reduce::peak;
 use crate::{compare, fit, judge, motion, predict};
 
-/// What a recorder's anti-alias filter delays by, in samples: 1.0 to 1.7 for one of fourth order at 0.4 to 0.25 of the rate, 2.0 for one of
-/// eighth order at 0.4 (Butterworth, at low frequency).
+/// What a recorder's anti-alias filter delays by, in samples: 1.0 to 1.7 for one of fourth order at 0.4 to
+/// 0.25 of the rate, 2.0 for one of eighth order at 0.4 (Butterworth, at low frequency).
 const CHAIN_DELAY_SAMPLES: f64 = 2.0;
 
 /// What was found from the first impact on.
@@ -142,7 +142,8 @@ fn result(
     }
 }
 
-/// Rod and body: the four borderline cases, and the contact law and k of the test, with the length of its contact where that is the model taken.
+/// Rod and body: the four borderline cases, and the contact law and k of the test, with the length of its
+/// contact where that is the model taken.
 fn predictions(file: &CaskFile, measured: Option<(&Quantities, Option<&ModelChoice>)>) -> Vec<Prediction> {
     let mut all = Vec::new();
     for body in predict::bodies(&file.cask) {

@@ -11,8 +11,8 @@ const EARLIEST: f64 = 0.9;
 /// The k between which the earliest lies.
 const RESTITUTIONS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// Share of the turning during the contact that the force has seen in its mean: of a half sine under which the rotation grows with the
-/// impulse. As L leaves, what sticks has seen all of it.
+/// Share of the turning during the contact that the force has seen in its mean: of a half sine under which
+/// the rotation grows with the impulse. As L leaves, what sticks has seen all of it.
 const MEAN_TURN: f64 = 0.25;
 
 /// An end without a transverse channel of its own.
@@ -36,7 +36,8 @@ impl StandIn {
         }
     }
 
-    /// Takes into account that the cask turned by `turned_rad` in the contact: by no more than until it lies flat.
+    /// Takes into account that the cask turned by `turned_rad` in the contact: by no more than until it lies
+    /// flat.
     pub fn turn(&mut self, file: &CaskFile, signals: &mut [Signal], turned_rad: f64) {
         let turned_rad = turned_rad.max(0.0).min(file.drop.angle_rad);
         let Some((share, u_share)) = share_and_u(file, self.at_m, turned_rad) else { return };
@@ -62,8 +63,8 @@ impl StandIn {
     }
 }
 
-/// What the first impact changes the velocity of the end that shows it by at the least (k = 0), m/s: v0 cos φ of L, its share of that of R
-/// where only R has a transverse channel.
+/// What the first impact changes the velocity of the end that shows it by at the least (k = 0), m/s: v0 cos φ
+/// of L, its share of that of R where only R has a transverse channel.
 pub fn least_step_m_s(file: &CaskFile, recording: &Recording) -> f64 {
     let of_first_m_s = file.drop.transverse_velocity_m_s().max(file.drop.least_impact_m_s());
     let transverse = || recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
@@ -73,8 +74,8 @@ pub fn least_step_m_s(file: &CaskFile, recording: &Recording) -> f64 {
     share.map_or(of_first_m_s, |share| share.abs() * of_first_m_s)
 }
 
-/// Adds the signal of the end without a transverse channel where only the other one has some: a rigid body struck at L's corner has its
-/// transverse forces in one ratio all along, whatever k is   (38)
+/// Adds the signal of the end without a transverse channel where only the other one has some: a rigid body
+/// struck at L's corner has its transverse forces in one ratio all along, whatever k is   (38)
 ///
 /// Without R its slap-down is not in the record: what comes later than it could come is cut off.
 pub fn stand_in(file: &CaskFile, signals: &mut Vec<Signal>, contact_s: f64) -> Option<StandIn> {
@@ -110,8 +111,8 @@ fn soonest_slap_down_s(file: &CaskFile) -> f64 {
     RESTITUTIONS.iter().filter_map(flight_s).fold(f64::INFINITY, f64::min)
 }
 
-/// The ratio of the velocity steps at two places and its standard uncertainty from inertia, centre of gravity, angle and contact
-/// law, as a share of it.
+/// The ratio of the velocity steps at two places and its standard uncertainty from inertia, centre of
+/// gravity, angle and contact law, as a share of it.
 fn share_and_u(file: &CaskFile, at_m: (f64, f64), turned_rad: f64) -> Option<(f64, f64)> {
     let known = &file.tolerances;
     let with = |inertia: f64, cog: f64, angle: f64, law: f64| {
@@ -132,8 +133,9 @@ fn share_and_u(file: &CaskFile, at_m: (f64, f64), turned_rad: f64) -> Option<(f6
     Some((share, u / share.abs()))
 }
 
-/// Transverse velocity step at one place over that at another, of a rigid body struck at L's corner that turns by so much meanwhile; the
-/// contact law with the share that it is off, of the way to the other law. `None` near the centre of percussion.
+/// Transverse velocity step at one place over that at another, of a rigid body struck at L's corner that
+/// turns by so much meanwhile; the contact law with the share that it is off, of the way to the other law.
+/// `None` near the centre of percussion.
 fn step_ratio(
     cask: &Cask,
     drop: &Drop,

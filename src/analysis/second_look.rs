@@ -1,4 +1,5 @@
-//! An analysis that something speaks against to the same without one channel, where all then closes.
+//! An analysis whose result contradicts itself to the repetition, without one of its channels, that is
+//! consistent.
 
 use super::analyzed;
 use crate::data::{
@@ -6,11 +7,13 @@ use crate::data::{
 };
 use crate::judge;
 
-/// Recordings with more samples are not gone through again: that takes as much memory once more, and some twenty times as long.
+/// Recordings with more samples are not gone through again: that takes as much memory once more, and some
+/// twenty times as long.
 const MOST_SAMPLES: usize = 5_000_000;
 /// Nor are those of more channels: each is left out once, and exchanged with each of the other end.
 const MOST_CHANNELS_TRIED: usize = 8;
-/// χ² of the closures by which another channel must close worse: chance gives three standard deviations to one in 400.
+/// χ² of the closures by which another channel must close worse: chance gives three standard deviations to
+/// one in 400.
 pub(super) const CLEARLY: f64 = 9.0;
 
 /// How much speaks against an analysis.
@@ -34,7 +37,8 @@ impl Doubt {
     }
 }
 
-/// Whether nothing is left that the motion contradicts; an end without a channel shows no slap-down to compare.
+/// Whether nothing is left that the motion contradicts; an end without a channel shows no slap-down to
+/// compare.
 pub(super) fn closes(analysis: &Analysis) -> bool {
     let result = &analysis.result;
     let lacks_end = |f: &Finding| f.code == IssueCode::MissingChannel;
@@ -45,8 +49,9 @@ pub(super) fn closes(analysis: &Analysis) -> bool {
     is_sound && agrees && result.reconstruction.as_ref().is_some_and(|choice| meets(&choice.closures))
 }
 
-/// `found`, or what is found without the one transverse channel that the others and the closures speak against, whatever the order of all.
-pub(super) fn without_one(recording: &Recording, file: &CaskFile, found: Analysis) -> Analysis {
+/// `found`, or what is found without the one transverse channel that the others and the closures speak
+/// against, whatever the order of all.
+pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analysis) -> Analysis {
     let is_doubted = found.result.quality.iter().any(|f| f.severity > Severity::Note);
     let across = recording.channels.iter().filter(|c| c.axis == Axis::Transverse);
     let spare: Vec<&str> = across.map(|c| c.name.as_str()).collect();

@@ -1,37 +1,44 @@
-//! Signals and first contact to separation, slap-down and the flight between them, each found with the others' help.
+//! Signals and first contact to separation, slap-down and the flight between them: an iteration, since each
+//! needs the others.
 
 use crate::data::{At, CaskFile, End, Events, FlightFit, Motion, Signal};
 use crate::motion::{self, Integrated};
 use crate::{events, judge};
 
-/// Separation and slap-down are found again on signals free of ringing this often; the second round moves them by less than a sample.
+/// Separation and slap-down are found again on signals free of ringing this often; the second round moves
+/// them by less than a sample.
 const ROUNDS: usize = 3;
-/// So little does a round move both where it needs no other, s: a fiftieth of the shortest contact.
+/// The iteration stops when separation and slap-down both move by less than this, s: a fiftieth of the
+/// shortest contact.
 const STILL_S: f64 = 2e-5;
 
-/// Further rounds where the last one moved the slap-down by more than [`SETTLED_S`]: its flight was fitted over the wrong stretch.
+/// Further rounds where the last one moved the slap-down by more than [`SETTLED_S`]: its flight was fitted
+/// over the wrong stretch.
 const FURTHER_ROUNDS: usize = 3;
 const SETTLED_S: f64 = 1e-3;
 
-/// R cannot strike before this share of its height over v0: rod ends come down with less than 2 v0, angles are known to 40 %.
+/// R cannot strike before this share of its height over v0: rod ends come down with less than 2 v0, angles
+/// are known to 40 %.
 const EARLIEST_SLAP_DOWN: f64 = 0.3;
 
 /// R strikes with more than this share of v0 where it slaps down at all.
 const LEAST_SLAP_DOWN: f64 = 0.08;
 
-/// Share of the time from contact to slap-down that the first flight fit leaves to the contact, and the longest, s.
+/// The first flight fit starts after this share of the time from contact to slap-down, and at the latest
+/// after so many s.
 const FIRST_CLEARANCE: f64 = 0.4;
 const LONGEST_CLEARANCE_S: f64 = 0.022;
 
-/// Shares of the time to the slap-down first seen at which the first fit ends: strong ringing may make that one late, and a fit that
-/// reaches into it explains nothing.
+/// Shares of the time to the slap-down first seen at which the first fit ends: strong ringing may make that
+/// one late, and a fit that reaches into it explains nothing.
 const FIRST_ENDS: [f64; 4] = [1.0, 0.8, 0.65, 0.5];
 
 /// A flight fit that leaves less than this RMS has explained its channel, m/s: 1.5 % of a 9 m fall.
 const EXPLAINED_M_S: f64 = 0.2;
 
-/// The same of a flight too short to tell fits apart, as a share of v0. Three modes bend around a part of the contact too: of 400 simulated
-/// drops those with the right separation left 0.6 % at most, the others 1.4 % and more.
+/// The same of a flight too short to tell fits apart, as a share of v0. Three modes bend around a part of the
+/// contact too: of 400 simulated drops those with the right separation left 0.6 % at most, the others 1.4 %
+/// and more.
 const EXPLAINED_SHORT: f64 = 0.0075;
 
 /// R at slap-down this share of the length off the target is where it should be, an angle 1° off included.
@@ -43,17 +50,18 @@ const TURNED: f64 = 0.1;
 /// The contact's force after separation is sought this long beyond a window, s.
 const BEYOND_S: f64 = 0.02;
 
-/// What the search looks at begins so long before first contact, s: the means that a slap-down is sought with are half as wide.
+/// The search starts this long before first contact, s: half the width of the moving mean by which a
+/// slap-down is found.
 const BEFORE_S: f64 = 0.05;
 
 /// Where the search ended.
-pub struct Settled {
+pub struct FoundFlight {
     /// Separation.
-    pub left: At,
+    pub separation: At,
     /// How late the sensor that shows it may answer, s.
     pub seat_s: f64,
     /// Slap-down, where there is one.
-    pub struck: Option<At>,
+    pub slap_down: Option<At>,
     /// The flight between them, where it could be fitted.
     pub flight: Option<FlightFit>,
     /// What that was fitted over.
@@ -72,12 +80,12 @@ struct Search<'a> {
 }
 
 /// The signals of both ends, free of ringing as far as it is known.
-type Ends = (motion::Calmed, motion::Calmed);
+type Ends = (motion::RingingRemoved, motion::RingingRemoved);
 
 /// What one round of the search hands to the next.
 struct Attempt {
-    left: At,
-    struck: Option<At>,
+    separation: At,
+    slap_down: Option<At>,
     /// Where the next fit begins, clear of the contact, s.
     free_s: f64,
     /// Where the flight ends, s.
@@ -88,23 +96,23 @@ struct Attempt {
     others: Vec<FlightFit>,
 }
 
-/// Settles separation, slap-down and flight; of several beginnings the first that explains the flight and brings R to the target, else the
-/// best. `None` without transverse channels on both ends.
-pub fn settle(file: &CaskFile, integrated: &Integrated) -> Option<Settled> {
-    let mut settled = settled(file, integrated, true)?;
-    if let (Some(flight), Some(window)) = (&mut settled.flight, &settled.window) {
+/// Finds separation, slap-down and flight; of several beginnings the first that explains the flight and
+/// brings R to the target, else the best. `None` without transverse channels on both ends.
+pub fn find(file: &CaskFile, integrated: &Integrated) -> Option<FoundFlight> {
+    let mut found = searched(file, integrated, true)?;
+    if let (Some(flight), Some(window)) = (&mut found.flight, &found.window) {
         motion::compare_late(flight, integrated, window, file.cask.cog_m);
         flight.strike = motion::strike(flight, integrated, window, file.cask.cog_m);
     }
-    Some(settled)
+    Some(found)
 }
 
 /// The same where nothing is asked of what comes after the flight.
-pub fn settle_open(file: &CaskFile, integrated: &Integrated) -> Option<Settled> {
-    settled(file, integrated, false)
+pub fn find_open(file: &CaskFile, integrated: &Integrated) -> Option<FoundFlight> {
+    searched(file, integrated, false)
 }
 
-fn settled(file: &CaskFile, integrated: &Integrated, to_target: bool) -> Option<Settled> {
+fn searched(file: &CaskFile, integrated: &Integrated, to_target: bool) -> Option<FoundFlight> {
     let &Integrated { ref signals, contact_s, .. } = integrated;
     let drop = &file.drop;
     let descent_m = file.cask.length_m * drop.angle_rad.sin().max(0.0);
@@ -117,13 +125,14 @@ fn settled(file: &CaskFile, integrated: &Integrated, to_target: bool) -> Option<
         to_target,
     };
     let from_s = contact_s - BEFORE_S;
-    let on =
-        |end| events::without_first_mode(signals, end, from_s, file.cask.length_m).map(motion::Calmed::new);
+    let on = |end| {
+        events::without_first_mode(signals, end, from_s, file.cask.length_m).map(motion::RingingRemoved::new)
+    };
     let (first, second) = rayon::join(|| on(End::First), || on(End::Second));
     let mut ends = (first?, second?);
     let struck =
         events::slap_down(ends.1.signal(), search.earliest_s..search.record_end_s, search.least_m_s, false);
-    let mut best: Option<(f64, Settled)> = None;
+    let mut best: Option<(f64, FoundFlight)> = None;
     // Where the velocities are cut off no beginning leads to a flight that explains them.
     let before_s = struck.map_or(search.record_end_s, |s| s.time_s);
     let is_hopeless = signals.iter().any(|s| judge::is_cut_off(s, contact_s, before_s));
@@ -142,7 +151,7 @@ fn settled(file: &CaskFile, integrated: &Integrated, to_target: bool) -> Option<
             break;
         }
     }
-    best.map(|(_, settled)| settled)
+    best.map(|(_, found)| found)
 }
 
 /// Where the first fit begins that ends at `end_s`, if nothing tells a longer contact, s.
@@ -153,7 +162,7 @@ fn cleared_s(contact_s: f64, end_s: f64) -> f64 {
 /// What the cask turns by from first contact to separation, rad.
 pub fn turned_rad(file: &CaskFile, signals: &[Signal], contact_s: f64) -> Option<f64> {
     let integrated = Integrated::over(signals, contact_s);
-    let moved = settle(file, &integrated)?.moved(file, &integrated)?;
+    let moved = find(file, &integrated)?.moved(file, &integrated)?;
     Some(file.drop.angle_rad - moved.separation.angle_rad)
 }
 
@@ -162,13 +171,13 @@ pub fn record_end_s(signals: &[Signal]) -> f64 {
     signals.iter().map(Signal::end_s).fold(f64::INFINITY, f64::min)
 }
 
-impl Settled {
+impl FoundFlight {
     /// The motion that the signals, the times and the flight give where L sticks.
     fn moved(&self, file: &CaskFile, integrated: &Integrated) -> Option<Motion> {
         let times = Events {
             first_contact: Some(At { time_s: integrated.contact_s, u_s: 0.0 }),
-            separation: Some(self.left),
-            slap_down: self.struck,
+            separation: Some(self.separation),
+            slap_down: self.slap_down,
             ..Events::default()
         };
         motion::outcome(integrated, self.flight.as_ref()?, &times, &super::setup::sticking(file))
@@ -176,9 +185,10 @@ impl Settled {
 }
 
 impl Search<'_> {
-    /// Rounds from a first guess of the slap-down, the first fit ending at a share of the time to it, and beginning where the impulse has been
-    /// given; the signals of both ends are without the first bending mode.
-    fn attempt(&self, ends: &mut Ends, struck: Option<At>, beginning: (f64, Option<f64>)) -> Settled {
+    /// Rounds from a first guess of the slap-down, the first fit ending at a share of the time to it, and
+    /// beginning where the impulse has been given; the signals of both ends are without the first bending
+    /// mode.
+    fn attempt(&self, ends: &mut Ends, struck: Option<At>, beginning: (f64, Option<f64>)) -> FoundFlight {
         ends.0.restore();
         let mut attempt = self.begin(ends, struck, beginning);
         for round in 0..ROUNDS + FURTHER_ROUNDS {
@@ -186,10 +196,11 @@ impl Search<'_> {
             let mut fits = fits.into_iter();
             let Some(flight) = fits.next() else { break };
             self.take_ringing_off(ends, &attempt, &flight);
-            let (left_s, end_s) = (attempt.left.time_s, attempt.end_s);
+            let (left_s, end_s) = (attempt.separation.time_s, attempt.end_s);
             self.seek_anew(ends, &mut attempt, is_explained(&flight));
             attempt = Attempt { fitted: Some((flight, window)), others: fits.collect(), ..attempt };
-            let (left_by_s, end_by_s) = ((attempt.left.time_s - left_s).abs(), (attempt.end_s - end_s).abs());
+            let (left_by_s, end_by_s) =
+                ((attempt.separation.time_s - left_s).abs(), (attempt.end_s - end_s).abs());
             let is_still = round > 0 && end_by_s.max(left_by_s) < STILL_S;
             if is_still || (round + 1 >= ROUNDS && end_by_s < SETTLED_S) {
                 break;
@@ -207,12 +218,13 @@ impl Search<'_> {
     fn begin(&self, (first, _): &Ends, struck: Option<At>, (share, given_s): (f64, Option<f64>)) -> Attempt {
         let contact_s = self.integrated.contact_s;
         let end_s = contact_s + share * (self.flight_end_s(struck) - contact_s);
-        // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit goes by.
+        // Ringing may keep the force up beyond the contact: then the clearance alone is what the first fit
+        // goes by.
         let cleared_s = cleared_s(contact_s, end_s);
         let rough_s = events::first_separation(first.signal(), contact_s, end_s).unwrap_or(cleared_s);
         Attempt {
-            left: At { time_s: rough_s, u_s: 0.1 * (rough_s - contact_s) },
-            struck,
+            separation: At { time_s: rough_s, u_s: 0.1 * (rough_s - contact_s) },
+            slap_down: struck,
             // The first fit keeps well clear of the contact, which ringing may have seemed to end too soon.
             free_s: rough_s.max(cleared_s).max(given_s.unwrap_or(cleared_s)),
             end_s,
@@ -235,13 +247,13 @@ impl Search<'_> {
         // After R the modes ring on from both impacts: what drove them is not one force.
         let drive = self
             .to_target
-            .then(|| motion::drive(self.integrated, before, attempt.left.time_s, window.from_s, cog_m));
+            .then(|| motion::drive(self.integrated, before, attempt.separation.time_s, window.from_s, cog_m));
         (window, motion::fit_flights(self.integrated, &window, drive.flatten().as_ref(), cog_m))
     }
 
     /// Takes off the signals of both ends what rings in the flight.
     fn take_ringing_off(&self, (first, second): &mut Ends, attempt: &Attempt, flight: &FlightFit) {
-        let beyond_s = self.flight_end_s(attempt.struck).max(attempt.end_s) + BEYOND_S;
+        let beyond_s = self.flight_end_s(attempt.slap_down).max(attempt.end_s) + BEYOND_S;
         let over_s = self.integrated.contact_s..beyond_s;
         rayon::join(|| first.take_off(flight, over_s.clone()), || second.take_off(flight, over_s.clone()));
     }
@@ -249,41 +261,46 @@ impl Search<'_> {
     /// Seeks slap-down and separation on signals free of ringing.
     fn seek_anew(&self, (first, second): &Ends, attempt: &mut Attempt, is_explained: bool) {
         let contact_s = self.integrated.contact_s;
-        // A flight that is explained well has no slap-down hidden in its ringing; one that is not may show what is none.
+        // A well-explained flight hides no slap-down in its ringing, and a poorly fitted one can imitate a
+        // slap-down.
         if is_explained {
             let between_s = self.earliest_s.max(attempt.free_s)..self.record_end_s;
-            attempt.struck = events::slap_down(second.signal(), between_s, self.least_m_s, true);
+            attempt.slap_down = events::slap_down(second.signal(), between_s, self.least_m_s, true);
         }
-        attempt.left = events::separation(first.signal(), contact_s, attempt.free_s).unwrap_or(attempt.left);
-        attempt.free_s = motion::clear_of_contact_s(contact_s, attempt.left.time_s);
-        attempt.end_s = self.flight_end_s(attempt.struck);
+        attempt.separation =
+            events::separation(first.signal(), contact_s, attempt.free_s).unwrap_or(attempt.separation);
+        attempt.free_s = motion::clear_of_contact_s(contact_s, attempt.separation.time_s);
+        attempt.end_s = self.flight_end_s(attempt.slap_down);
     }
 
     /// What the last round ended with, the separation by the impulse.
-    fn conclude(&self, (first, _): &Ends, attempt: Attempt) -> Settled {
-        let Attempt { mut left, struck, fitted, others, .. } = attempt;
+    fn conclude(&self, (first, _): &Ends, attempt: Attempt) -> FoundFlight {
+        let Attempt { mut separation, slap_down, fitted, others, .. } = attempt;
         let contact_s = self.integrated.contact_s;
         let (flight, window) = fitted.unzip();
         if let Some(window) = &window {
-            left = events::by_impulse(first.signal(), contact_s, left, &(window.from_s..window.to_s));
+            separation =
+                events::by_impulse(first.signal(), contact_s, separation, &(window.from_s..window.to_s));
         }
-        let seat_s = events::seat_s(first.signal(), contact_s, left.time_s);
-        self.best_of(Settled { left, seat_s, struck, flight, window }, others)
+        let seat_s = events::seat_s(first.signal(), contact_s, separation.time_s);
+        self.best_of(FoundFlight { separation, seat_s, slap_down, flight, window }, others)
     }
 
-    /// Where a flight shows too little of its slowest mode to tell the fits apart, the first of them that the closures do not speak against.
-    fn best_of(&self, settled: Settled, others: Vec<FlightFit>) -> Settled {
-        if self.cost(&settled) < 1.0 || settled.flight.as_ref().is_none_or(FlightFit::is_told_apart) {
-            return settled;
+    /// Where a flight shows too little of its slowest mode to tell the fits apart, the first of them that the
+    /// closures do not speak against.
+    fn best_of(&self, found: FoundFlight, others: Vec<FlightFit>) -> FoundFlight {
+        if self.cost(&found) < 1.0 || found.flight.as_ref().is_none_or(FlightFit::is_told_apart) {
+            return found;
         }
-        let Settled { left, seat_s, struck, window, .. } = settled;
-        let with = |flight| Settled { left, seat_s, struck, flight: Some(flight), window };
-        others.into_iter().map(with).find(|other| self.cost(other) < 1.0).unwrap_or(settled)
+        let FoundFlight { separation, seat_s, slap_down, window, .. } = found;
+        let with = |flight| FoundFlight { separation, seat_s, slap_down, flight: Some(flight), window };
+        others.into_iter().map(with).find(|other| self.cost(other) < 1.0).unwrap_or(found)
     }
 
-    /// What is left unexplained, R's distance from the target and the rotation beside the impulse, each over what is allowed; below 1 nothing speaks against it.
-    fn cost(&self, settled: &Settled) -> f64 {
-        let Some(flight) = &settled.flight else { return f64::INFINITY };
+    /// What is left unexplained, R's distance from the target and the rotation beside the impulse, each over
+    /// what is allowed; below 1 nothing speaks against it.
+    fn cost(&self, found: &FoundFlight) -> f64 {
+        let Some(flight) = &found.flight else { return f64::INFINITY };
         let left_m_s = flight.plateaus.iter().map(|p| p.residual_m_s).fold(0.0, f64::max);
         let most_left_m_s = if flight.is_told_apart() {
             EXPLAINED_M_S
@@ -294,7 +311,7 @@ impl Search<'_> {
         if !self.to_target {
             return is_resolved(left_m_s / most_left_m_s);
         }
-        let moved = settled.moved(self.file, self.integrated);
+        let moved = found.moved(self.file, self.integrated);
         let cask = &self.file.cask;
         let turning = moved.as_ref().filter(|_| cask.is_body).map_or(0.0, |m| {
             let by_impulse_rad_s = m.angular_impulse_m2_s * cask.mass_kg / cask.inertia_kg_m2;

@@ -1,7 +1,7 @@
 //! How far an analysis came, with what it found on the way.
 
+use super::comparison::Measured;
 use super::flight::Flown;
-use super::measured::Measured;
 
 /// How far an analysis came from the first impact on.
 pub(super) enum Reached {

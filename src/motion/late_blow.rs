@@ -8,16 +8,19 @@ use crate::numerics::damped_modes::{CommonStep, Form, Oscillation, fit};
 /// Places tried over the flight, and about the best of them.
 const PLACES: u32 = 24;
 const REFINED: u32 = 8;
-/// Parts of the flight at its beginning and end in which a step is a contact that was not over, or the slap-down.
+/// Parts of the flight at its beginning and end in which a step is a contact that was not over, or the
+/// slap-down.
 const FIRST_PART: f64 = 0.1;
 const LAST_PART: f64 = 0.06;
 /// Fewest points of a flight in which a step is told from a mode.
 const FEWEST: usize = 30;
 
-/// Looks for one step of all velocities within the flight, beside fewer of its modes: what the contents of the cask do when they strike it,
-/// or a cable. Three modes may bend around such a step and move the plateaus by a part of it.
+/// Looks for one step of all velocities within the flight, beside fewer of its modes: what the contents of
+/// the cask do when they strike it, or a cable. Three modes may bend around such a step and move the plateaus
+/// by a part of it.
 ///
-/// By the Bayesian information criterion (21) of the flight with the step, its modes as they are, less that of the flight as it was fitted.
+/// By the Bayesian information criterion (21) of the flight with the step, its modes as they are, less that
+/// of the flight as it was fitted.
 #[must_use]
 pub fn strike(flight: &FlightFit, integrated: &Integrated, window: &Window, cog_m: f64) -> Option<Strike> {
     let window = Window { from_s: flight.from_s, to_s: flight.to_s, ..*window };

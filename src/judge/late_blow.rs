@@ -3,8 +3,8 @@
 use crate::data::{ChannelFinding, DropFinding, Events, Finding, FlightFit, Signal};
 use crate::numerics::reduce::{block_means, block_of, peak};
 
-/// A step explains a flight better by so much of the Bayesian information criterion: of 2600 simulated sound drops none has more, but for
-/// steps below [`LEAST_STEP`].
+/// A step explains a flight better by so much of the Bayesian information criterion: of 2600 simulated sound
+/// drops none has more, but for steps below [`LEAST_STEP`].
 const LEAST_GAIN: f64 = 20.0;
 /// A smaller step changes the slap-down speed by less than its interval, as a share of v0.
 const LEAST_STEP: f64 = 0.01;
@@ -22,14 +22,14 @@ const AGAIN: f64 = 0.05;
 
 /// A blow within the flight, which modes and drift bent around.
 #[must_use]
-pub fn judge_strike(flight: &FlightFit, v0_m_s: f64) -> Option<Finding> {
+pub fn judge_late_blow(flight: &FlightFit, v0_m_s: f64) -> Option<Finding> {
     let strike = flight.strike.filter(|s| s.gain > LEAST_GAIN && s.step_m_s.abs() > LEAST_STEP * v0_m_s)?;
     let found = DropFinding::Blow { step_m_s: strike.step_m_s, after_s: strike.time_s - flight.from_s };
     Some(Finding::from(found).between(strike.time_s, strike.time_s))
 }
 
-/// A first end that no force reaches for a part of what was taken for one contact: it left the target before, and what came then is another
-/// blow.
+/// A first end that no force reaches for a part of what was taken for one contact: it left the target before,
+/// and what came then is another blow.
 #[must_use]
 pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Finding> {
     let (contact_s, left_s) = events.first_contact_s().zip(events.separation_s())?;
@@ -61,7 +61,7 @@ pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{At, Axis, End, Strike, What};
+    use crate::data::{At, Axis, End, FindingKind, Strike};
     use std::f64::consts::PI;
 
     fn flight(step_m_s: f64, gain: f64) -> FlightFit {
@@ -78,11 +78,13 @@ mod tests {
 
     #[test]
     fn a_step_counts_that_is_large_and_beyond_doubt() {
-        let said = judge_strike(&flight(-0.5, 40.0), 13.3).expect("a blow");
+        let said = judge_late_blow(&flight(-0.5, 40.0), 13.3).expect("a blow");
         let is_as_given = |after_s: f64| (after_s - 0.03).abs() < 1e-9;
-        assert!(matches!(said.what, What::Drop(DropFinding::Blow { after_s, .. }) if is_as_given(after_s)));
-        assert!(judge_strike(&flight(-0.5, 8.0), 13.3).is_none());
-        assert!(judge_strike(&flight(0.1, 40.0), 13.3).is_none());
+        assert!(
+            matches!(said.what, FindingKind::Drop(DropFinding::Blow { after_s, .. }) if is_as_given(after_s))
+        );
+        assert!(judge_late_blow(&flight(-0.5, 8.0), 13.3).is_none());
+        assert!(judge_late_blow(&flight(0.1, 40.0), 13.3).is_none());
     }
 
     /// Half sines of 4 ms at these times, s, with these peaks.
@@ -121,7 +123,7 @@ mod tests {
         let twice = signal(&[(0.01, 3000.0), (0.022, 400.0)]);
         let found = judge_rest(std::slice::from_ref(&twice), &events(0.026)).expect("two contacts");
         let are = |from_s: f64, to_s: f64| (from_s - 4e-3).abs() < 1e-4 && (to_s - 12.1e-3).abs() < 1e-4;
-        let What::Channel(ChannelFinding::ForceRests { from_s, to_s }) = found.what else {
+        let FindingKind::Channel(ChannelFinding::ForceRests { from_s, to_s }) = found.what else {
             panic!("{found:?}")
         };
         assert!(are(from_s, to_s), "{}", found.message);

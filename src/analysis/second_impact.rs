@@ -1,6 +1,7 @@
-//! A flight that ends in a slap-down to the impact of R: the same drop in a mirror, which begins as R strikes.
+//! A flight that ends in a slap-down to the impact of R: the same drop in a mirror, which begins as R
+//! strikes.
 
-use super::settle;
+use super::flight_search;
 use super::setup::{MIDDLE, U_UNKNOWN};
 use crate::data::{
     AssumedFriction, At, AxialClosure, Axis, Cask, CaskFile, Drop, Events, FlightFit, Motion, MotionState,
@@ -13,8 +14,8 @@ use crate::motion::{self, ContactCourse, ForceCourse, Integrated};
 const LEAST_FLIGHT: f64 = 1.0;
 /// A fit of it that leaves more than this share of the speed at which R strikes has not explained it.
 const MOST_LEFT: f64 = 0.015;
-/// Standard uncertainty of a velocity step of R's contact over what its flight says of it: with it the intervals of what R gains hold 19 of 20
-/// simulated drops.
+/// Standard uncertainty of a velocity step of R's contact over what its flight says of it: with it the
+/// intervals of what R gains hold 19 of 20 simulated drops.
 const STEPS: f64 = 2.0;
 
 /// The impact of R, seen in a mirror: what strikes is its first end.
@@ -64,10 +65,11 @@ fn in_mirror(file: &CaskFile, setup: &Setup) -> CaskFile {
     }
 }
 
-/// When R leaves, and the flight after it; `None` where that does not tell the velocity which the contact gave   (43)
+/// When R leaves, and the flight after it; `None` where that does not tell the velocity which the contact
+/// gave   (43)
 fn told(file: &CaskFile, integrated: &Integrated) -> Option<(At, FlightFit)> {
-    let settled = settle::settle_open(file, integrated)?;
-    let (left, flight) = (settled.left, settled.flight?);
+    let found = flight_search::find_open(file, integrated)?;
+    let (left, flight) = (found.separation, found.flight?);
     let pulse_s = left.time_s - integrated.contact_s;
     let most_left_m_s = MOST_LEFT * file.drop.impact_velocity_m_s;
     let is_told = pulse_s > 0.0
@@ -78,7 +80,8 @@ fn told(file: &CaskFile, integrated: &Integrated) -> Option<(At, FlightFit)> {
     is_told.then_some((left, flight))
 }
 
-/// How R slides as far as the channels tell: nobody states it, and it may be anything from none to what sticking needs, `needed`.
+/// How R slides as far as the channels tell: nobody states it, and it may be anything from none to what
+/// sticking needs, `needed`.
 fn sliding(signals: &[Signal], needed: f64) -> (AxialClosure, Option<AssumedFriction>) {
     if signals.iter().any(|s| s.axis == Axis::Axial) {
         return (AxialClosure::Measured, None);
@@ -88,12 +91,13 @@ fn sliding(signals: &[Signal], needed: f64) -> (AxialClosure, Option<AssumedFric
 }
 
 impl SecondImpact {
-    /// The impact of R after a flight with this motion, where the recording tells when R leaves the target and what velocity that gives.
+    /// The impact of R after a flight with this motion, where the recording tells when R leaves the target
+    /// and what velocity that gives.
     pub fn find(
         file: &CaskFile,
         recorded: &[Signal],
         motion: &Motion,
-        measured: &fit::Basis,
+        measured: &fit::FitData,
     ) -> Option<Self> {
         let (before, first) = (measured.flight, measured.setup);
         let slap_down = measured.events.slap_down?;
@@ -107,7 +111,7 @@ impl SecondImpact {
         let (axial, friction) = sliding(&signals, needed);
         setup.axial = axial;
         let basis =
-            fit::Basis { signals: &signals, flight: &flight, events: &times, setup: &setup, ..*measured };
+            fit::FitData { signals: &signals, flight: &flight, events: &times, setup: &setup, ..*measured };
         // What either flight leaves unexplained may ring on in the other.
         let left_m_s = |of: &FlightFit, i: usize| of.plateaus.get(i).map_or(0.0, |p| p.residual_m_s);
         let u_step_m_s = |i: usize| {
@@ -139,7 +143,8 @@ impl SecondImpact {
         self.u_steps_m_s.len() + 2
     }
 
-    /// The contact of R after a first impact with these inputs and this motion; its further inputs moved by so many standard uncertainties.
+    /// The contact of R after a first impact with these inputs and this motion; its further inputs moved by
+    /// so many standard uncertainties.
     pub fn course(
         &self,
         (inputs, first): (&fit::Inputs, &Motion),
@@ -158,7 +163,8 @@ impl SecondImpact {
         let mut flight = self.flight.clone();
         let moved = |i: usize, plateau: &mut crate::data::Plateau| {
             let of = |all: &[f64]| all.get(i).copied().unwrap_or(0.0);
-            // What a sensor in the mirror reads more for being farther from R, −ω δ, it reads less for being farther from L.
+            // What a sensor in the mirror reads more for being farther from R, −ω δ, it reads less for being
+            // farther from L.
             let across = self.integrated.signals.get(i).is_some_and(|s| s.axis == Axis::Transverse);
             let by_seat_m_s = if across {
                 self.along_m_s * of(&inputs.crosses) - self.gained_rad_s * of(&inputs.places_m)

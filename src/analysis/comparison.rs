@@ -1,4 +1,5 @@
-//! A flight to what may be stated of the impacts: the quantities, unless something speaks against them, and their prediction.
+//! A flight to what may be stated of the impacts: the quantities, unless something speaks against them, and
+//! their prediction.
 
 use super::flight::Flown;
 use super::impact::Impact;
@@ -54,7 +55,7 @@ impl Measured {
 fn of_motion(flown: &Flown, impact: &Impact, events: &Events, file: &CaskFile) -> Vec<Finding> {
     let Flown { flight, motion, quantities, reconstruction, .. } = flown;
     let mut found = judge::judge_motion(file, &impact.signals, flight, motion, quantities);
-    found.extend(judge::judge_strike(flight, file.drop.impact_velocity_m_s));
+    found.extend(judge::judge_late_blow(flight, file.drop.impact_velocity_m_s));
     // A limiter that yields in stages lets L fall on between them: what leaves the target goes up.
     let falls_on = |rest: &Finding| {
         let at = motion.curve.time_s.partition_point(|&t| Some(t) < rest.from_s);
