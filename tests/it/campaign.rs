@@ -259,6 +259,13 @@ fn a_campaign_that_was_stopped_goes_on() {
     let answer = validate(folder, &["--jsonl", "@on.jsonl", "--resume", "--exact"]);
     assert_eq!((answer.status, answer.stderr.contains("another campaign")), (2, true), "{}", answer.stderr);
     assert_eq!(fs::read_to_string(folder.join("on.jsonl")).expect("lines"), text);
+    // Lines of another shard of it are not gone on with either.
+    let other = |shard: &str, resume: &[&str]| {
+        validate(folder, &[&["--shard", shard, "--jsonl", "@shard.jsonl"], resume].concat())
+    };
+    assert_eq!(other("1/3", &[]).status, 0);
+    let answer = other("0/3", &["--resume"]);
+    assert_eq!((answer.status, answer.stderr.contains("another shard")), (2, true), "{}", answer.stderr);
     let to_standard_output = validate(folder, &["--jsonl", "-"]);
     assert_eq!((to_standard_output.status, to_standard_output.stdout), (0, text));
 }

@@ -10,6 +10,7 @@ use crate::lab::campaign::{self, ScenePlace, Tally};
 use crate::lab::data::{CampaignRequest, CampaignRow, CampaignShard};
 use clap::Args;
 use miette::IntoDiagnostic;
+use serde::Deserialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -93,10 +94,8 @@ pub fn run(
 
 /// The campaign's files of all its shards.
 pub fn merge(paths: &[PathBuf], out: &Path) -> miette::Result<Ending> {
-    let is_none = |line: &Value| {
-        let row = serde_json::from_value::<CampaignRow>(line.clone());
-        row.is_err().then(|| "is no line of a campaign".to_owned())
-    };
+    let is_none =
+        |line: &Value| CampaignRow::deserialize(line).is_err().then(|| "is no line of a campaign".to_owned());
     let (lines, first) = lines::merged(paths, is_none)?;
     let request: CampaignRequest = serde_json::from_value(first["of"].clone()).into_diagnostic()?;
     tabled(&request, Some(out), |take| {
@@ -109,12 +108,15 @@ pub fn merge(paths: &[PathBuf], out: &Path) -> miette::Result<Ending> {
 /// The number of a line that an earlier run of the same words has left in the file at `path`.
 fn own_number(place: &ScenePlace, path: &Path, line: &Value) -> miette::Result<usize> {
     let number = line["campaign"]["number"].as_u64().and_then(|number| usize::try_from(number).ok());
-    let is_own =
-        |number: &usize| serde_json::to_value(place.at(*number)).is_ok_and(|own| line["campaign"] == own);
+    let is_own = |number: &usize| {
+        let own = place.at(*number);
+        let is_here = *number < place.count && own.shard == place.shard;
+        is_here && serde_json::to_value(own).is_ok_and(|own| line["campaign"] == own)
+    };
     number.filter(is_own).ok_or_else(|| {
         miette::miette!(
             help = "name another file, or leave out --resume to begin anew",
-            "{} holds lines of another campaign, or of another build of dropcheck",
+            "{} holds lines of another campaign, of another shard of it, or of another build of dropcheck",
             path.display()
         )
     })
