@@ -7,8 +7,10 @@ use super::pdf;
 use super::progress::with_progress;
 use super::rerun::{self, EarlierResult};
 use super::tuning::{keep_freed_memory, keep_threads_awake};
+use crate::data::keys::CORRECTIONS;
 use crate::data::{Analysis, CaskFile, DropResult, HeldSamples, RecordingFormat, Setting};
 use crate::{ingest, report};
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -61,56 +63,33 @@ enum CsvLocale {
 #[derive(Args)]
 pub struct SwitchedOff {
     /// Leave a correction of the samples out; several with commas, or once more
-    #[arg(long, value_name = "CORRECTION", value_delimiter = ',')]
-    without: Vec<Correction>,
+    #[arg(long, value_name = "CORRECTION", value_delimiter = ',', value_parser = corrections())]
+    pub without: Vec<String>,
 }
 
-/// A key of `[corrections]` in the cask file.
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-#[value(rename_all = "snake_case")]
-enum Correction {
-    /// The mean of the free fall
-    Offset,
-    /// A change of the offset at the first impact
-    ZeroShift,
-    /// A channel stamped late or early
-    Skew,
-    /// Mains hum
-    Hum,
+/// The keys of `[corrections]` in the cask file.
+fn corrections() -> PossibleValuesParser {
+    CORRECTIONS.map(|key| PossibleValue::new(key.name).help(key.remark)).into()
 }
 
 impl SwitchedOff {
     /// Those that an earlier command line named.
     fn of_record(record: &EarlierResult) -> Self {
-        let without = record.switched_off().filter_map(|key| Correction::from_str(key, false).ok());
-        Self { without: without.collect() }
-    }
-
-    /// Their keys.
-    pub fn words(&self) -> Vec<String> {
-        let values = self.without.iter().filter_map(Correction::to_possible_value);
-        values.map(|value| value.get_name().to_owned()).collect()
+        Self { without: record.switched_off().map(str::to_owned).collect() }
     }
 
     /// Switches them off before the analysis.
     pub fn in_cask_file(&self, cask_file: &mut CaskFile) {
-        let made = &mut cask_file.corrections;
-        for correction in &self.without {
-            *match correction {
-                Correction::Offset => &mut made.offset,
-                Correction::ZeroShift => &mut made.zero_shift,
-                Correction::Skew => &mut made.skew,
-                Correction::Hum => &mut made.hum,
-            } = false;
+        for (key, made) in cask_file.corrections.by_key() {
+            *made &= !self.without.iter().any(|without| without == key);
         }
     }
 
     /// Says so in the result, for the cask file and its SHA-256 do not.
     pub fn in_settings(&self, result: &mut DropResult) {
-        let names = Correction::value_variants().iter().filter(|c| self.without.contains(c));
-        for value in names.filter_map(Correction::to_possible_value) {
+        for key in CORRECTIONS.iter().filter(|key| self.without.iter().any(|without| without == key.name)) {
             result.settings.push(Setting {
-                name: format!("correction {}", value.get_name()),
+                name: format!("correction {}", key.name),
                 value: "switched off".into(),
                 origin: "command line, --without".into(),
             });

@@ -80,7 +80,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
     let (manifest, cask) = (arguments.manifest.as_deref(), arguments.cask.as_deref());
-    let mut plan = CampaignPlan::of(&arguments.paths, manifest, cask, &arguments.switched_off.words())?;
+    let mut plan = CampaignPlan::of(&arguments.paths, manifest, cask, &arguments.switched_off.without)?;
     plan.shard = arguments.shard;
     holds_some(arguments.shard, plan.tests.len())?;
     let inputs: Vec<&Path> = arguments.manifest.iter().chain(&arguments.cask).map(PathBuf::as_path).collect();
@@ -283,7 +283,7 @@ fn words(plan: &CampaignPlan, test: &PlannedTest, arguments: &Arguments) -> Vec<
         words.push(test.shown.clone());
         words.extend(test.cask_shown.iter().flat_map(|cask| ["--cask".to_owned(), cask.clone()]));
     }
-    let without = arguments.switched_off.words();
+    let without = &arguments.switched_off.without;
     if !without.is_empty() {
         words.extend(["--without".to_owned(), without.join(",")]);
     }

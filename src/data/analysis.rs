@@ -1,7 +1,7 @@
 //! The result of `analyze`, as the contract's JSON has it, and what the report needs beside it.
 
 use super::at::At;
-use super::cask::CaskFile;
+use super::cask_file::CaskFile;
 use super::channel::Span;
 use super::curves::LazyCurves;
 use super::estimate::Estimate;

@@ -1,9 +1,7 @@
 //! The cask file, checked: the cask, the drop, the contact, the filter and the channels.
 
-use super::test_record::{Observed, SensorRecord, TestRecord};
-use super::tolerances::{Corrections, Tolerances};
+use super::test_record::SensorRecord;
 use serde::Serialize;
-use std::path::PathBuf;
 
 /// L may sink this share of the length below where it left before that counts as another impact   (9)
 ///
@@ -327,68 +325,6 @@ impl ChannelSpec {
             reference: None,
             lateral_m: 0.0,
             sensor: SensorRecord::default(),
-        }
-    }
-}
-
-/// A cask file, checked.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CaskFile {
-    /// The file.
-    pub path: PathBuf,
-    /// Its SHA-256, lower-case hexadecimal.
-    pub sha256: String,
-    /// Its text, byte-order mark and all; empty where it was never a file.
-    pub text: String,
-    /// `[cask]`.
-    pub cask: Cask,
-    /// `[drop]`.
-    pub drop: Drop,
-    /// `[contact] friction`.
-    pub contact: Contact,
-    /// `[filter]`.
-    pub filter: FilterChoice,
-    /// `[tolerance]`.
-    pub tolerances: Tolerances,
-    /// `[corrections]`.
-    pub corrections: Corrections,
-    /// `[recording] time`.
-    pub time: Option<String>,
-    /// `[[channel]]`, in the file's order.
-    pub channels: Vec<ChannelSpec>,
-    /// `[test]`.
-    pub test: TestRecord,
-    /// `[observed]`.
-    pub observed: Vec<Observed>,
-    /// Keys whose value is a default, as "table.key", so that the report can say so.
-    pub defaults: Vec<String>,
-}
-
-impl CaskFile {
-    /// The times that the file names for a channel: its own, else those of the recording.
-    #[must_use]
-    pub fn time_of<'a>(&'a self, spec: &'a ChannelSpec) -> Option<&'a str> {
-        spec.time.as_deref().or(self.time.as_deref())
-    }
-
-    /// A file that states cask, drop and contact alone, with the usual tolerances.
-    #[must_use]
-    pub fn plain(cask: Cask, drop: Drop, contact: Contact) -> Self {
-        Self {
-            path: "cask.toml".into(),
-            sha256: String::new(),
-            text: String::new(),
-            cask,
-            drop,
-            contact,
-            filter: FilterChoice::Auto,
-            tolerances: Tolerances::default(),
-            corrections: Corrections::default(),
-            time: None,
-            channels: Vec::new(),
-            test: TestRecord::default(),
-            observed: Vec::new(),
-            defaults: Vec::new(),
         }
     }
 }

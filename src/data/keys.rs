@@ -1,91 +1,12 @@
-//! The keys of a cask file: what each takes, its default, and its line in the form that `init` writes.
+//! The keys of a cask file, one row each; those of `[tolerance]` and `[corrections]` stand in
+//! [`super::tolerances`] with their values.
 //!
-//! The parser and the form read these rows, and a test holds the table in docs/formats.md against them.
+//! The parser, the form that `init` writes, and the table in docs/formats.md are made from these rows.
 
 use super::SAMPLE_RATES_HZ;
-
-/// What stands behind a key.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Takes {
-    /// Text in quotes; where only some words will do, the parser lists them.
-    Text,
-    /// A word or a number.
-    TextOrNumber,
-    /// A text or a table of two texts.
-    TextOrTable,
-    /// true or false.
-    Flag,
-    /// A date or a date and a time of TOML, without quotes.
-    Date,
-    /// A list of texts.
-    Texts,
-    /// A table of the user's own names.
-    Table,
-    /// A value with its interval: { value = …, u95 = …, by = "…" }.
-    Observation,
-    /// A number.
-    Number(Allowed),
-}
-
-/// Which numbers a key allows by itself; what depends on another key is the parser's.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Allowed {
-    /// Every finite one.
-    Any,
-    /// 0 and more.
-    FromZero,
-    /// More than 0.
-    AboveZero,
-    /// From the first to the second; the text says what lies beyond, or what the key means.
-    Within(f64, f64, &'static str),
-}
-
-impl Allowed {
-    /// Whether a number is among them.
-    pub(crate) fn holds(self, number: f64) -> bool {
-        match self {
-            Self::Any => true,
-            Self::FromZero => number >= 0.0,
-            Self::AboveZero => number > 0.0,
-            Self::Within(least, most, _) => (least..=most).contains(&number),
-        }
-    }
-}
-
-/// A key of a table.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Key {
-    /// As it is written; a quantity's ends in its unit.
-    pub name: &'static str,
-    /// What stands behind it.
-    pub takes: Takes,
-    /// What holds where it is left out, as docs/formats.md says it; [`REQUIRED`] where nothing does.
-    pub default: &'static str,
-    /// A value as it could stand in a file; "" where the form has no line of its own for the key.
-    pub example: &'static str,
-    /// What the form says of it.
-    pub remark: &'static str,
-    /// Whether the form asks for it, since only the user knows it.
-    pub is_asked: bool,
-}
-
-/// A table of the file.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct KeyTable {
-    /// The word in its brackets.
-    pub name: &'static str,
-    /// What the form says of it.
-    pub remark: &'static str,
-    /// Its keys, in the order of the form.
-    pub keys: &'static [Key],
-}
-
-/// What the form that `init` writes has in place of a text that only the user knows; no key takes it for a
-/// value.
-pub const FILL_IN: &str = "FILL IN";
-
-/// The default of a key that must be there.
-pub const REQUIRED: &str = "required";
+pub use super::key::{Allowed, FILL_IN, Key, KeyTable, REQUIRED, Takes};
+pub(crate) use super::key::{flag, number, text};
+pub use super::tolerances::{CORRECTIONS, TOLERANCE};
 
 /// Tables that stand as the value of a key: no line of a file begins them.
 pub const INNER_TABLES: [&str; 3] = ["source", "where", "observation"];
@@ -232,39 +153,6 @@ pub const FILTER: [Key; 2] = [
     number("cutoff_hz", "").above_zero().shown("400.0", "a −3 dB cut-off"),
 ];
 
-/// Keys of `[tolerance]`, each a 95 % half-width in the unit of its ending.
-pub const TOLERANCE: [Key; 13] = [
-    number("angle_deg", "0.4").zero_or_more().shown("0.4", "drop angle"),
-    number("impact_velocity_percent", "0.3").zero_or_more().shown("0.3", ""),
-    number("calibration_percent", "1").zero_or_more().shown("1.0", "scale of a channel"),
-    number("cross_axis_percent", "2")
-        .zero_or_more()
-        .shown("2.0", "what a sensor reads of the other body axis, tilt included"),
-    number("position_m", "0.01").zero_or_more().shown("0.01", "place of a sensor along the axis"),
-    number("length_m", "1 % of `length_m`")
-        .zero_or_more()
-        .shown("0.05", "between the ends that strike; left out: 1 % of it"),
-    number("height_m", "1 % of `height_m`").zero_or_more().shown("0.008", "section; left out: 1 % of it"),
-    number("angular_velocity_deg_s", "1").zero_or_more().shown("1.0", "rotation as the first end strikes"),
-    number("horizontal_velocity_m_s", "0.1")
-        .zero_or_more()
-        .shown("0.1", "sideways velocity as the first end strikes"),
-    number("cog_m", "0.01").zero_or_more().shown("0.01", "centre of gravity"),
-    number("inertia_percent", "2; 10 where `inertia_kg_m2` is left out").zero_or_more().shown("2.0", ""),
-    number("friction_percent", "20")
-        .zero_or_more()
-        .shown("20.0", "of the coefficient, or of what sticking needs"),
-    number("clock_percent", "0.05").zero_or_more().shown("0.05", "rate of the recorder's clock"),
-];
-
-/// Keys of `[corrections]`.
-pub const CORRECTIONS: [Key; 4] = [
-    flag("offset").shown("true", "mean of the free fall"),
-    flag("zero_shift").shown("true", "change of the offset at the first impact"),
-    flag("skew").shown("true", "a channel stamped late or early"),
-    flag("hum").shown("true", "mains hum"),
-];
-
 /// Keys of `[recording]`.
 pub const RECORDING: [Key; 1] = [text("time", "found").shown(
     r#""time_s""#,
@@ -321,46 +209,6 @@ pub const WHERE: [Key; 2] = [
     Key { takes: Takes::TextOrNumber, ..text("is", REQUIRED) }.shown(r#""left""#, ""),
 ];
 
-pub(crate) const fn text(name: &'static str, default: &'static str) -> Key {
-    Key { name, takes: Takes::Text, default, example: "", remark: "", is_asked: false }
-}
-
 const fn observation(name: &'static str, example: &'static str) -> Key {
     Key { takes: Takes::Observation, ..text(name, "–") }.shown(example, "")
-}
-
-pub(crate) const fn number(name: &'static str, default: &'static str) -> Key {
-    Key { takes: Takes::Number(Allowed::Any), ..text(name, default) }
-}
-
-pub(crate) const fn flag(name: &'static str) -> Key {
-    Key { takes: Takes::Flag, ..text(name, "true") }
-}
-
-impl Key {
-    pub(crate) const fn zero_or_more(self) -> Self {
-        Self { takes: Takes::Number(Allowed::FromZero), ..self }
-    }
-
-    pub(crate) const fn above_zero(self) -> Self {
-        Self { takes: Takes::Number(Allowed::AboveZero), ..self }
-    }
-
-    pub(crate) const fn within(self, least: f64, most: f64, why: &'static str) -> Self {
-        Self { takes: Takes::Number(Allowed::Within(least, most, why)), ..self }
-    }
-
-    /// Whether a value that the file leaves out enters the result all the same.
-    pub fn is_assumed(&self) -> bool {
-        let is_number = matches!(self.takes, Takes::Number(_) | Takes::TextOrNumber);
-        is_number && !self.default.starts_with(REQUIRED) && !["", "–"].contains(&self.default)
-    }
-
-    pub(crate) const fn shown(self, example: &'static str, remark: &'static str) -> Self {
-        Self { example, remark, ..self }
-    }
-
-    const fn asked(self, example: &'static str, remark: &'static str) -> Self {
-        Self { is_asked: true, ..self.shown(example, remark) }
-    }
 }

@@ -3,6 +3,7 @@
 mod analysis;
 mod at;
 mod cask;
+mod cask_file;
 mod channel;
 mod curves;
 mod estimate;
@@ -10,6 +11,7 @@ mod finding;
 mod flight;
 mod held;
 mod impacts;
+mod key;
 pub(crate) mod keys;
 mod ladder;
 mod listing;
@@ -33,9 +35,10 @@ pub use analysis::{
 };
 pub use at::At;
 pub use cask::{
-    Axis, BENDING_WAVE_M_S, Cask, CaskFile, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice,
-    GRAZE_SHARE, MOST_CHANNELS, RowsOf, SAMPLE_RATES_HZ, Source, Unit, block_inertia_kg_m2,
+    Axis, BENDING_WAVE_M_S, Cask, ChannelSpec, Contact, Coupling, Drop, End, FilterChoice, GRAZE_SHARE,
+    MOST_CHANNELS, RowsOf, SAMPLE_RATES_HZ, Source, Unit, block_inertia_kg_m2,
 };
+pub use cask_file::CaskFile;
 pub(crate) use channel::is_number;
 pub use channel::{Channel, Samples, Span};
 pub use curves::{ChannelCurve, Curves, LazyCurves, MotionCurve};
@@ -69,5 +72,5 @@ pub use study::{
     StudyRequest, Sweep, SweepVariable, Uncertain,
 };
 pub use test_record::{Observed, ObservedBeside, Photo, SensorRecord, TestRecord};
-pub use tolerances::{Corrections, Tolerances};
+pub use tolerances::{Corrections, TOLERANCES, Tolerance, Tolerances};
 pub use unit::{STANDARD_GRAVITY_M_S2, acceleration_unit_m_s2, is_rate_of_turn};

@@ -1,6 +1,7 @@
 //! A study of the drop angle: sweeps, curves, critical angles and Monte Carlo.
 
-use super::cask::{CaskFile, Contact};
+use super::cask::Contact;
+use super::cask_file::CaskFile;
 use super::ladder::Ladder;
 use super::prediction::{Body, BodyModel, Prediction};
 use serde::Serialize;

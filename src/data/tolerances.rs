@@ -1,59 +1,155 @@
-//! How well the stated things are known, and which corrections may be made.
+//! How well the stated things are known, and which corrections may be made: `[tolerance]` and `[corrections]`
+//! of a cask file, one row a key.
 
-/// 95 % half-widths of what the cask file states and the sensors' certificates promise.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tolerances {
+use super::cask::Cask;
+use super::key::{Key, flag, number};
+use ToleranceUnit::{Degrees, Metres, MetresOf, MetresPerSecond, Percent};
+
+/// The unit of a tolerance in the cask file; it is held in SI units or as a share.
+#[derive(Debug, Clone, Copy)]
+enum ToleranceUnit {
+    /// Percent of the thing itself, held as a share of it.
+    Percent,
+    /// Degrees, or degrees a second; the text is the unit in the report.
+    Degrees(&'static str),
+    /// Metres, shown in millimetres.
+    Metres,
+    /// Metres a second.
+    MetresPerSecond,
+    /// Metres, held as a share of this size and shown in percent of it; the default is in percent.
+    MetresOf(fn(&Cask) -> f64),
+}
+
+impl ToleranceUnit {
+    /// The default of a row to what is held.
+    fn default_held(self, default: f64) -> f64 {
+        match self {
+            Self::Percent | Self::MetresOf(_) => default / 100.0,
+            Self::Degrees(_) => default.to_radians(),
+            Self::Metres | Self::MetresPerSecond => default,
+        }
+    }
+}
+
+/// A key of `[tolerance]`.
+#[derive(Debug, Clone, Copy)]
+pub struct Tolerance {
+    /// Its key.
+    pub key: &'static str,
+    /// What the report and the budget of uncertainty call it.
+    pub name: &'static str,
+    unit: ToleranceUnit,
+    held: fn(&mut Tolerances) -> &mut f64,
+}
+
+impl Tolerance {
+    /// Takes a value in the unit of the file into `all`; a size of 0 has nothing to be off by.
+    pub(crate) fn set(&self, all: &mut Tolerances, value: f64, cask: &Cask) {
+        *(self.held)(all) = match self.unit {
+            MetresOf(size_m) if size_m(cask) > 0.0 => value / size_m(cask),
+            MetresOf(_) => 0.0,
+            unit => unit.default_held(value),
+        };
+    }
+
+    /// Its value in the unit of the file.
+    pub(crate) fn in_file(&self, mut all: Tolerances, cask: &Cask) -> f64 {
+        let held = *(self.held)(&mut all);
+        match self.unit {
+            Percent => 100.0 * held,
+            Degrees(_) => held.to_degrees(),
+            Metres | MetresPerSecond => held,
+            MetresOf(size_m) => held * size_m(cask),
+        }
+    }
+
+    /// Its value as the report shows it, and the unit behind it.
+    pub(crate) fn shown(&self, mut all: Tolerances) -> (f64, &'static str) {
+        let held = *(self.held)(&mut all);
+        match self.unit {
+            Percent | MetresOf(_) => (100.0 * held, " %"),
+            Degrees(unit) => (held.to_degrees(), unit),
+            Metres => (1e3 * held, " mm"),
+            MetresPerSecond => (held, " m/s"),
+        }
+    }
+}
+
+/// Declares the tolerances. A row has the field and what it holds, the key with its unit and its default, the
+/// name in the report, and the remark in the form that `init` writes; where the default depends on the cask,
+/// the words for it and an example.
+macro_rules! tolerances {
+    ($(
+        $(#[$holds:meta])*
+        $field:ident: $key:literal in $unit:expr, $default:literal
+        $(($default_words:literal, $example:literal))?, $name:literal, $remark:literal;
+    )*) => {
+        /// 95 % half-widths of what the cask file states and the sensors' certificates promise.
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct Tolerances {
+            $($(#[$holds])* pub $field: f64,)*
+        }
+
+        impl Default for Tolerances {
+            /// Sources and sizes: docs/uncertainty.md.
+            fn default() -> Self {
+                Self { $($field: $unit.default_held($default),)* }
+            }
+        }
+
+        /// Keys of `[tolerance]`, each a 95 % half-width in the unit of its ending.
+        pub const TOLERANCE: [Key; TOLERANCES.len()] = [$(
+            number($key, [$($default_words,)? stringify!($default)][0])
+                .zero_or_more()
+                .shown([$($example,)? stringify!($default)][0], $remark),
+        )*];
+
+        /// What the keys of `[tolerance]` hold, in their order.
+        pub static TOLERANCES: [Tolerance; [$($key),*].len()] = [$(
+            Tolerance { key: $key, name: $name, unit: $unit, held: |all| &mut all.$field },
+        )*];
+    };
+}
+
+tolerances! {
     /// Drop angle, rad.
-    pub angle_rad: f64,
+    angle_rad: "angle_deg" in Degrees("°"), 0.4, "drop angle", "drop angle";
     /// Impact velocity, as a share of it.
-    pub impact_velocity: f64,
+    impact_velocity: "impact_velocity_percent" in Percent, 0.3, "impact velocity", "";
     /// Scale of a channel, as a share of it.
-    pub calibration: f64,
+    calibration: "calibration_percent" in Percent, 1.0, "calibration of a channel", "scale of a channel";
     /// What a sensor reads of the other body axis, as a share: cross-axis sensitivity and tilt.
-    pub cross_axis: f64,
+    cross_axis: "cross_axis_percent" in Percent, 2.0,
+        "cross axis of a channel", "what a sensor reads of the other body axis, tilt included";
     /// Place of a sensor along the axis, m.
-    pub position_m: f64,
+    position_m: "position_m" in Metres, 0.01,
+        "position of a sensor", "place of a sensor along the axis";
     /// Length between the ends that strike, as a share of it.
-    pub length: f64,
+    length: "length_m" in MetresOf(|cask| cask.length_m), 1.0 ("1 % of `length_m`", "0.05"),
+        "length", "between the ends that strike; left out: 1 % of it";
     /// Section, as a share of it.
-    pub height: f64,
+    height: "height_m" in MetresOf(|cask| cask.height_m), 1.0 ("1 % of `height_m`", "0.008"),
+        "section", "section; left out: 1 % of it";
     /// Rotation at first contact, rad/s.
-    pub angular_velocity_rad_s: f64,
+    angular_velocity_rad_s: "angular_velocity_deg_s" in Degrees("°/s"), 1.0,
+        "rotation at first contact", "rotation as the first end strikes";
     /// Sideways velocity at first contact, m/s.
-    pub horizontal_velocity_m_s: f64,
+    horizontal_velocity_m_s: "horizontal_velocity_m_s" in MetresPerSecond, 0.1,
+        "sideways velocity at first contact", "sideways velocity as the first end strikes";
     /// Centre of gravity, m.
-    pub cog_m: f64,
+    cog_m: "cog_m" in Metres, 0.01, "centre of gravity", "centre of gravity";
     /// Inertia, as a share of it.
-    pub inertia: f64,
+    inertia: "inertia_percent" in Percent, 2.0 ("2; 10 where `inertia_kg_m2` is left out", "2.0"),
+        "inertia", "";
     /// Friction of the first contact, as a share of it: of the stated coefficient, or of what sticking needs.
-    pub friction: f64,
+    friction: "friction_percent" in Percent, 20.0,
+        "friction of the first contact", "of the coefficient, or of what sticking needs";
     /// Rate of the recorder's clock, as a share of it; all channels share it.
-    pub clock: f64,
+    clock: "clock_percent" in Percent, 0.05, "recorder's clock", "rate of the recorder's clock";
 }
 
 /// Inertia that is only a homogeneous block's, as a share: casks carry their mass off the even spread.
 const INERTIA_OF_BLOCK: f64 = 0.1;
-
-impl Default for Tolerances {
-    /// Sources and sizes: docs/uncertainty.md.
-    fn default() -> Self {
-        Self {
-            length: 0.01,
-            height: 0.01,
-            angular_velocity_rad_s: 1.0_f64.to_radians(),
-            horizontal_velocity_m_s: 0.1,
-            angle_rad: 0.4_f64.to_radians(),
-            impact_velocity: 0.003,
-            calibration: 0.01,
-            cross_axis: 0.02,
-            position_m: 0.01,
-            cog_m: 0.01,
-            inertia: 0.02,
-            friction: 0.2,
-            clock: 0.0005,
-        }
-    }
-}
 
 impl Tolerances {
     /// The defaults where a cask file leaves these keys out, as "table.key": an inertia may be the block's
@@ -66,22 +162,42 @@ impl Tolerances {
     }
 }
 
-/// Which corrections of the samples may be made; what is made is reported with its size.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(clippy::struct_excessive_bools, reason = "four switches that have nothing to do with one another")]
-pub struct Corrections {
-    /// The mean of the free fall is taken off.
-    pub offset: bool,
-    /// A change of the offset at the first impact is fitted and taken off.
-    pub zero_shift: bool,
-    /// A channel that is stamped late or early is shifted.
-    pub skew: bool,
-    /// Mains hum seen in the free fall is taken off.
-    pub hum: bool,
+/// Declares the corrections, each with its remark in the form that `init` writes and in the command's help.
+macro_rules! corrections {
+    ($($(#[$done:meta])* $key:ident: $remark:literal;)*) => {
+        /// Which corrections of the samples may be made; what is made is reported with its size.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[allow(clippy::struct_excessive_bools, reason = "switches that have nothing to do with one another")]
+        pub struct Corrections {
+            $($(#[$done])* pub $key: bool,)*
+        }
+
+        impl Default for Corrections {
+            fn default() -> Self {
+                Self { $($key: true,)* }
+            }
+        }
+
+        impl Corrections {
+            /// Each with its key.
+            pub fn by_key(&mut self) -> [(&'static str, &mut bool); CORRECTIONS.len()] {
+                [$((stringify!($key), &mut self.$key),)*]
+            }
+        }
+
+        /// Keys of `[corrections]`.
+        pub const CORRECTIONS: [Key; [$($remark),*].len()] =
+            [$(flag(stringify!($key)).shown("true", $remark),)*];
+    };
 }
 
-impl Default for Corrections {
-    fn default() -> Self {
-        Self { offset: true, zero_shift: true, skew: true, hum: true }
-    }
+corrections! {
+    /// The mean of the free fall is taken off.
+    offset: "mean of the free fall";
+    /// A change of the offset at the first impact is fitted and taken off.
+    zero_shift: "change of the offset at the first impact";
+    /// A channel that is stamped late or early is shifted.
+    skew: "a channel stamped late or early";
+    /// Mains hum seen in the free fall is taken off.
+    hum: "mains hum";
 }

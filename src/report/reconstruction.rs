@@ -3,7 +3,7 @@
 use super::document::{Chapter, ChapterPart, PartContent};
 use super::medium::Medium;
 use super::rounding::{MISSING, fixed, interval, optional_fixed, significant};
-use super::settings::{TOLERANCES, to_state};
+use super::settings::{to_state, tolerance_of};
 use super::table::{ReportTable, TableCell};
 use super::text::{rung_words, sentence, taken_mark, true_minus, yes};
 use crate::data::{CaskFile, Contribution, DropResult, FlightFit, ReconstructionChoice, ReconstructionRung};
@@ -222,7 +222,7 @@ fn largest(budget: &[Contribution]) -> String {
 fn known_from(input: &str, result: &DropResult, file: &CaskFile) -> TableCell {
     let is_closure =
         result.reconstruction.as_ref().is_some_and(|r| r.closures.iter().any(|c| c.name == input));
-    match TOLERANCES.iter().find(|t| t.is_of(input)) {
+    match tolerance_of(input) {
         _ if is_closure => "closure".into(),
         Some(_) if to_state(file, input).is_some() => TableCell::marked("", "default"),
         Some(_) => "cask file".into(),

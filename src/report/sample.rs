@@ -295,7 +295,7 @@ pub(super) fn cask_file() -> CaskFile {
             .map(String::from)
             .into_iter()
             // The sample states the tolerance of its angle, and no other.
-            .chain(super::settings::TOLERANCES[1..].iter().map(|t| format!("tolerance.{}", t.key)))
+            .chain(crate::data::TOLERANCES[1..].iter().map(|t| format!("tolerance.{}", t.key)))
             .collect(),
         ..CaskFile::plain(cask, drop, Contact::Rough)
     }

@@ -215,6 +215,7 @@ fn quoted(text: &str) -> String {
 mod tests {
     use super::super::listing::tests::{listed, listing};
     use super::*;
+    use crate::data::{Cask, TOLERANCES, Tolerances};
 
     fn parsed(text: &str) -> toml::Table {
         text.parse().unwrap_or_else(|e| panic!("{e}\n{text}"))
@@ -311,26 +312,16 @@ mod tests {
         let (table, _) = rest.split_once("\n\n").expect("its end");
         let lines: Vec<&str> = table.lines().skip(1).map(|line| line.trim_start_matches("# ")).collect();
         let stated: toml::Table = lines.join("\n").parse().expect("valid once the marks are off");
-        let d = crate::data::Tolerances::default();
-        let expected = [
-            ("angle_deg", d.angle_rad.to_degrees()),
-            ("impact_velocity_percent", 100.0 * d.impact_velocity),
-            ("calibration_percent", 100.0 * d.calibration),
-            ("cross_axis_percent", 100.0 * d.cross_axis),
-            ("position_m", d.position_m),
-            // Of the cask that the form shows.
-            ("length_m", d.length * 5.0),
-            ("height_m", d.height * 0.8),
-            ("angular_velocity_deg_s", d.angular_velocity_rad_s.to_degrees()),
-            ("horizontal_velocity_m_s", d.horizontal_velocity_m_s),
-            ("cog_m", d.cog_m),
-            ("inertia_percent", 100.0 * d.inertia),
-            ("friction_percent", 100.0 * d.friction),
-            ("clock_percent", 100.0 * d.clock),
-        ];
-        assert_eq!(stated.len(), expected.len());
-        for (key, value) in expected {
-            assert!((stated[key].as_float().expect(key) - value).abs() < 1e-9, "{key}");
+        // The sizes that the form's examples of their tolerances are of.
+        let cask = Cask { length_m: 5.0, height_m: 0.8, ..super::super::sample::cask_file().cask };
+        assert_eq!(stated.len(), TOLERANCES.len());
+        for tolerance in &TOLERANCES {
+            let shown = stated[tolerance.key].as_float().expect(tolerance.key);
+            assert!(
+                (shown - tolerance.in_file(Tolerances::default(), &cask)).abs() < 1e-9,
+                "{}",
+                tolerance.key
+            );
         }
     }
 

@@ -2,7 +2,7 @@
 //! that is from.
 
 use crate::data::keys::{self, Key, TABLES};
-use crate::data::{CaskFile, Contact, Recording};
+use crate::data::{CaskFile, Contact, Recording, TOLERANCES};
 use serde_json::{Map, Value, json};
 
 /// Every key of every table, each `{"value", "from"}`; `from` is "stated", "default", "recording", or
@@ -20,12 +20,10 @@ pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
             (table.name.to_owned(), entries(of(table.name), table.keys, &default))
         })
         .collect();
-    let made = file.corrections;
-    for (key, is_made) in
-        [("offset", made.offset), ("zero_shift", made.zero_shift), ("skew", made.skew), ("hum", made.hum)]
-    {
+    let mut made = file.corrections;
+    for (key, is_made) in made.by_key() {
         // The file says otherwise, or nothing, where the command line has switched it off.
-        if !is_made && all["corrections"][key]["value"] != json!(false) {
+        if !*is_made && all["corrections"][key]["value"] != json!(false) {
             all["corrections"][key] = json!({"value": false, "from": "command line"});
         }
     }
@@ -40,7 +38,7 @@ pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
             "offset_m" | "lateral_m" => (json!(0.0), "default"),
             "polarity" => (json!(1), "default"),
             "coupling" => (json!("dc"), "default"),
-            "calibration_percent" => (percent(file.tolerances.calibration), "default"),
+            "calibration_percent" => (default(file, "tolerance", key.name), "default"),
             "time" => (json!(file.time), "default"),
             _ => (Value::Null, "default"),
         };
@@ -70,18 +68,13 @@ fn entries(
     Value::Object(keys.iter().map(entry).collect())
 }
 
-/// A share in percent, free of the last digits of the conversion.
-fn percent(share: f64) -> Value {
-    rounded(100.0 * share)
-}
-
-fn rounded(value: f64) -> Value {
-    json!((1e9 * value).round() / 1e9)
-}
-
 /// What holds of a key that the file leaves out, in the file's unit.
 fn default(file: &CaskFile, table: &str, key: &str) -> Value {
-    let CaskFile { cask, drop, tolerances: known, .. } = file;
+    let CaskFile { cask, drop, .. } = file;
+    if let Some(tolerance) = TOLERANCES.iter().find(|of| table == "tolerance" && of.key == key) {
+        // Free of the last digits of the conversion.
+        return json!((1e9 * tolerance.in_file(file.tolerances, cask)).round() / 1e9);
+    }
     match (table, key) {
         ("cask", "name") => json!(cask.name),
         ("cask", "height_m") => json!(cask.height_m),
@@ -92,19 +85,6 @@ fn default(file: &CaskFile, table: &str, key: &str) -> Value {
         ("drop", "gravity_m_s2") => json!(drop.gravity_m_s2),
         ("drop", "angular_velocity_deg_s" | "horizontal_velocity_m_s") => json!(0.0),
         ("contact", "friction") => json!(Contact::Unknown.to_string()),
-        ("tolerance", "angle_deg") => rounded(known.angle_rad.to_degrees()),
-        ("tolerance", "impact_velocity_percent") => percent(known.impact_velocity),
-        ("tolerance", "calibration_percent") => percent(known.calibration),
-        ("tolerance", "cross_axis_percent") => percent(known.cross_axis),
-        ("tolerance", "position_m") => json!(known.position_m),
-        ("tolerance", "length_m") => rounded(known.length * cask.length_m),
-        ("tolerance", "height_m") => rounded(known.height * cask.height_m),
-        ("tolerance", "angular_velocity_deg_s") => rounded(known.angular_velocity_rad_s.to_degrees()),
-        ("tolerance", "horizontal_velocity_m_s") => json!(known.horizontal_velocity_m_s),
-        ("tolerance", "cog_m") => json!(known.cog_m),
-        ("tolerance", "inertia_percent") => percent(known.inertia),
-        ("tolerance", "friction_percent") => percent(known.friction),
-        ("tolerance", "clock_percent") => percent(known.clock),
         ("corrections", _) => json!(true),
         _ => Value::Null,
     }

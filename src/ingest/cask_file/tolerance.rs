@@ -2,7 +2,7 @@
 
 use super::CaskFileError;
 use super::section::Section;
-use crate::data::{Cask, Corrections, Tolerances};
+use crate::data::{Cask, Corrections, TOLERANCES, Tolerances};
 
 /// A tolerance above this share says that nothing is known, percent.
 const LARGEST_PERCENT: f64 = 100.0;
@@ -14,25 +14,8 @@ pub(super) fn tolerances(
     left_out: &[String],
 ) -> Result<Tolerances, CaskFileError> {
     let mut stated = Tolerances::of(left_out);
-    let as_it_stands: &dyn Fn(f64) -> f64 = &|value| value;
-    let percent: &dyn Fn(f64) -> f64 = &|percent| percent / 100.0;
-    // A section of 0 has no size to be off by.
-    let share_of = |size_m: f64| move |by_m: f64| if size_m > 0.0 { by_m / size_m } else { 0.0 };
-    for (key, tolerance, in_si) in [
-        ("angle_deg", &mut stated.angle_rad, &f64::to_radians as &dyn Fn(f64) -> f64),
-        ("length_m", &mut stated.length, &share_of(cask.length_m)),
-        ("height_m", &mut stated.height, &share_of(cask.height_m)),
-        ("angular_velocity_deg_s", &mut stated.angular_velocity_rad_s, &f64::to_radians),
-        ("horizontal_velocity_m_s", &mut stated.horizontal_velocity_m_s, as_it_stands),
-        ("impact_velocity_percent", &mut stated.impact_velocity, percent),
-        ("calibration_percent", &mut stated.calibration, percent),
-        ("cross_axis_percent", &mut stated.cross_axis, percent),
-        ("position_m", &mut stated.position_m, as_it_stands),
-        ("cog_m", &mut stated.cog_m, as_it_stands),
-        ("inertia_percent", &mut stated.inertia, percent),
-        ("friction_percent", &mut stated.friction, percent),
-        ("clock_percent", &mut stated.clock, percent),
-    ] {
+    for tolerance in &TOLERANCES {
+        let key = tolerance.key;
         let Some(given) = table.number(key)? else { continue };
         if key.ends_with("_percent") && given.value > LARGEST_PERCENT {
             return Err(table.wrong(
@@ -42,7 +25,7 @@ pub(super) fn tolerances(
                 "the half-width of the 95 % interval, in percent: 1.5 means ± 1.5 %",
             ));
         }
-        *tolerance = in_si(given.value);
+        tolerance.set(&mut stated, given.value, cask);
     }
     Ok(stated)
 }
@@ -50,12 +33,7 @@ pub(super) fn tolerances(
 /// `[corrections]`; what it leaves out is made.
 pub(super) fn corrections(table: &Section) -> Result<Corrections, CaskFileError> {
     let mut made = Corrections::default();
-    for (key, made) in [
-        ("offset", &mut made.offset),
-        ("zero_shift", &mut made.zero_shift),
-        ("skew", &mut made.skew),
-        ("hum", &mut made.hum),
-    ] {
+    for (key, made) in made.by_key() {
         let Some(value) = table.value(key) else { continue };
         *made = value.get_ref().as_bool().ok_or_else(|| {
             table.wrong(
