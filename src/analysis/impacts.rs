@@ -268,11 +268,17 @@ fn decelerations(file: &CaskFile, course: &Course, taken: [(f64, f64); 2]) -> Ri
     let contact = &course.contact;
     let through = |(filter, cutoff_hz): (String, f64)| {
         let low_passed = contact.low_passed([&contact.at_cog_m_s2, &contact.at_end_m_s2], cutoff_hz);
-        let of = |i: usize| {
+        let deceleration = |i: usize| {
             let (value, (taken, u)) = (largest(&low_passed[i]), taken[i]);
             Some(Estimate::new(value, COVERAGE * u * value / taken, "m/s^2"))
         };
-        RigidBodyDeceleration { filter, cutoff_hz, at_cog: of(0), at_struck_end: of(1), others: Vec::new() }
+        RigidBodyDeceleration {
+            filter,
+            cutoff_hz,
+            at_cog: deceleration(0),
+            at_struck_end: deceleration(1),
+            others: Vec::new(),
+        }
     };
     let others = motion::usual_filters(file.cask.mass_kg).into_iter().map(through).collect();
     RigidBodyDeceleration { others, ..through(low_pass(file)) }
@@ -313,7 +319,7 @@ fn channel_peaks(
     } else {
         by_force.unwrap_or(transverse_m_s2 * (sin + cos) / cos.max(GRAZING_COS))
     };
-    let of = |(signal, pulse): (&Signal, &Option<motion::ChannelPulse>)| {
+    let channel_peak = |(signal, pulse): (&Signal, &Option<motion::ChannelPulse>)| {
         let own = file.channels.iter().find(|spec| spec.name == signal.name).and_then(|s| s.calibration);
         let calibration = own.unwrap_or(file.tolerances.calibration);
         let aside_m_s2 = match signal.axis {
@@ -343,7 +349,7 @@ fn channel_peaks(
             pulse_length: pulse.and_then(length),
         }
     };
-    recorded.iter().zip(&pulses).map(of).collect()
+    recorded.iter().zip(&pulses).map(channel_peak).collect()
 }
 
 /// The stretch of each impact in which its pulses are sought, s: a bending wave takes its time to the other

@@ -162,18 +162,19 @@ impl SecondImpact {
             Events { first_contact: inputs.events.slap_down, separation: Some(left), ..Events::default() };
         let mut flight = self.flight.clone();
         let moved = |i: usize, plateau: &mut crate::data::Plateau| {
-            let of = |all: &[f64]| all.get(i).copied().unwrap_or(0.0);
+            let of_channel = |all: &[f64]| all.get(i).copied().unwrap_or(0.0);
             // What a sensor in the mirror reads more for being farther from R, −ω δ, it reads less for being
             // farther from L.
             let across = self.integrated.signals.get(i).is_some_and(|s| s.axis == Axis::Transverse);
             let by_seat_m_s = if across {
-                self.along_m_s * of(&inputs.crosses) - self.gained_rad_s * of(&inputs.places_m)
+                self.along_m_s * of_channel(&inputs.crosses)
+                    - self.gained_rad_s * of_channel(&inputs.places_m)
             } else {
-                self.across_m_s * of(&inputs.crosses)
+                self.across_m_s * of_channel(&inputs.crosses)
             };
-            plateau.velocity_step_m_s = plateau.velocity_step_m_s * (1.0 + of(&inputs.scales))
+            plateau.velocity_step_m_s = plateau.velocity_step_m_s * (1.0 + of_channel(&inputs.scales))
                 + by_seat_m_s
-                + of(steps) * of(&self.u_steps_m_s);
+                + of_channel(steps) * of_channel(&self.u_steps_m_s);
         };
         flight.plateaus.iter_mut().enumerate().for_each(|(i, plateau)| moved(i, plateau));
         let (motion, states) = motion::with_states(&self.integrated, &flight, &times, &setup)?;

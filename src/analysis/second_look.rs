@@ -84,8 +84,9 @@ pub(super) fn leave_one_out(recording: &Recording, file: &CaskFile, found: Analy
         return found;
     }
     let (_, name, mut better) = tried.swap_remove(0);
-    let of = |analysis: &Analysis| (analysis.result.slap_down.speed, analysis.result.k);
-    let finding = ChannelFinding::LeftOut { with: of(&found), without: of(&better) }.on(&name);
+    let speed_and_k = |analysis: &Analysis| (analysis.result.slap_down.speed, analysis.result.k);
+    let finding =
+        ChannelFinding::LeftOut { with: speed_and_k(&found), without: speed_and_k(&better) }.on(&name);
     add(&mut better, finding);
     better
 }

@@ -68,8 +68,9 @@ impl EarlierResult {
 
     /// The cask file.
     pub fn cask_file(&self) -> miette::Result<CaskFile> {
-        let of = |pointer: &str| self.result.pointer(pointer).and_then(Value::as_str).unwrap_or_default();
-        Ok(ingest::cask_file::of_text(Path::new(of("/input/cask")), of("/cask_text"))?)
+        let text_at =
+            |pointer: &str| self.result.pointer(pointer).and_then(Value::as_str).unwrap_or_default();
+        Ok(ingest::cask_file::of_text(Path::new(text_at("/input/cask")), text_at("/cask_text"))?)
     }
 
     /// The corrections that were switched off on its command line, by their keys.

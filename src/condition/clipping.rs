@@ -265,9 +265,10 @@ mod tests {
             force.windows(4).zip(0..).map(cubic).collect()
         };
         for length in [110, 900] {
-            let of = |range: f64| clipped(&moved, &between(&converted(12, range, length, 4)), 0.0, 200);
-            assert!(of(10.0).is_empty() && of(25.0).is_empty(), "{length}");
-            assert!(!of(0.5).is_empty() && !of(0.8).is_empty(), "{length}");
+            let clipped_within =
+                |range: f64| clipped(&moved, &between(&converted(12, range, length, 4)), 0.0, 200);
+            assert!(clipped_within(10.0).is_empty() && clipped_within(25.0).is_empty(), "{length}");
+            assert!(!clipped_within(0.5).is_empty() && !clipped_within(0.8).is_empty(), "{length}");
         }
     }
 

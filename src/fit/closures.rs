@@ -102,8 +102,8 @@ impl Observable {
                 format!("{:+.1} % of ω", 100.0 * miss / motion.separation.angular_velocity_rad_s.abs())
             }
             Self::Rest { is_axial, rest_m_s2, .. } => {
-                let of = if *is_axial { "sin" } else { "cos" };
-                format!("{:+.1} % of g {of} φ", 100.0 * miss / (rest_m_s2 - miss))
+                let function = if *is_axial { "sin" } else { "cos" };
+                format!("{:+.1} % of g {function} φ", 100.0 * miss / (rest_m_s2 - miss))
             }
             Self::Fall { fall_s } => {
                 format!("{:+.1} % of v0", 100.0 * miss / (measured.setup.gravity_m_s2 * fall_s - miss))

@@ -227,8 +227,8 @@ fn by_joint(
     degrees: usize,
     (widened, why): (f64, &'static str),
 ) -> RungStep {
-    let of = if degrees == 1 { "observable" } else { "observables" };
-    let mut residual = format!("χ² = {chi_square:.1} for {degrees} {of}");
+    let noun = if degrees == 1 { "observable" } else { "observables" };
+    let mut residual = format!("χ² = {chi_square:.1} for {degrees} {noun}");
     if widened > 1.0 {
         residual = format!("{residual}, intervals widened {widened:.1} times: {why}");
     }

@@ -66,7 +66,7 @@ pub(super) fn named(head: &[u8]) -> Option<(&'static str, &'static str)> {
 fn is_matlab_4(head: &[u8]) -> bool {
     let (words, _) = head.as_chunks::<4>();
     let [kind, rows, columns, imaginary, length, ..] = words else { return false };
-    let of = |read: fn([u8; 4]) -> u32, least_type: u32| {
+    let is_level_4 = |read: fn([u8; 4]) -> u32, least_type: u32| {
         let [kind, rows, columns, imaginary, length] =
             [kind, rows, columns, imaginary, length].map(|word| read(*word));
         let is_type = kind.checked_sub(least_type).is_some_and(|kind| kind <= 52 && kind % 10 <= 2);
@@ -78,7 +78,7 @@ fn is_matlab_4(head: &[u8]) -> bool {
         });
         is_type && rows > 0 && columns > 0 && imaginary <= 1 && is_name
     };
-    of(u32::from_le_bytes, 0) || of(u32::from_be_bytes, 1000)
+    is_level_4(u32::from_le_bytes, 0) || is_level_4(u32::from_be_bytes, 1000)
 }
 
 /// Texts with numbers in them that are no table of samples.

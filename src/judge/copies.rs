@@ -8,8 +8,9 @@ use crate::data::{Channel, ChannelFinding, Finding, Samples};
 pub fn judge_copies(channels: &[Channel]) -> Vec<Finding> {
     let copy = |at: usize| {
         let channel = &channels[at];
-        let of = channels[..at].iter().find(|other| is_same(&channel.samples, &other.samples))?;
-        let found = ChannelFinding::Copied { of: of.name.clone(), is_other_end: of.end != channel.end };
+        let original = channels[..at].iter().find(|other| is_same(&channel.samples, &other.samples))?;
+        let found =
+            ChannelFinding::Copied { of: original.name.clone(), is_other_end: original.end != channel.end };
         Some(found.on(&channel.name))
     };
     (1..channels.len()).filter_map(copy).collect()

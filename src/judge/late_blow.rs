@@ -89,11 +89,11 @@ mod tests {
 
     /// Half sines of 4 ms at these times, s, with these peaks.
     fn signal(pulses: &[(f64, f64)]) -> Signal {
-        let of = |t: f64, &(from_s, peak): &(f64, f64)| {
+        let half_sine = |t: f64, &(from_s, peak): &(f64, f64)| {
             let x = (t - from_s) / 4e-3;
             if (0.0..1.0).contains(&x) { peak * (PI * x).sin() } else { 0.0 }
         };
-        let force = |i: u32| pulses.iter().map(|pulse| of(f64::from(i) * 1e-5, pulse)).sum();
+        let force = |i: u32| pulses.iter().map(|pulse| half_sine(f64::from(i) * 1e-5, pulse)).sum();
         Signal {
             name: "A1".into(),
             end: End::First,

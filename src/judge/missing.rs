@@ -57,10 +57,10 @@ mod tests {
     #[test]
     fn a_rate_too_low_to_show_an_impact_denies_none() {
         let drop = Drop { impact_velocity_m_s: 6.26, ..Drop::of_height(2.0, 0.0) };
-        let of = |rate_hz| judge_no_impact(&[], &drop, Some(rate_hz), None);
-        assert_eq!((of(10.0).code, of(10.0).severity), (IssueCode::LowRate, Severity::Error));
-        assert_eq!(of(198.0).code, IssueCode::LowRate);
-        assert_eq!(of(2000.0).code, IssueCode::NoImpact);
+        let finding_at = |rate_hz| judge_no_impact(&[], &drop, Some(rate_hz), None);
+        assert_eq!((finding_at(10.0).code, finding_at(10.0).severity), (IssueCode::LowRate, Severity::Error));
+        assert_eq!(finding_at(198.0).code, IssueCode::LowRate);
+        assert_eq!(finding_at(2000.0).code, IssueCode::NoImpact);
         let event = CoarseEvent { near_s: 1.5, spread_s: 0.025, velocity_step_m_s: -3.0 };
         let without_rise = judge_no_impact(&[], &drop, Some(2000.0), Some(&event)).message;
         assert!(without_rise.contains("changes by 3.0 m/s within 25 ms at 1.500 s"), "{without_rise}");

@@ -56,10 +56,10 @@ impl ContactCourse {
             [up, across, across + turning * setup.cog_m]
         };
         let forces: Vec<[f64; 3]> = steps.map(force).collect();
-        let of = |i: usize| forces.iter().map(|f| f[i]).collect::<Vec<f64>>();
+        let component = |i: usize| forces.iter().map(|f| f[i]).collect::<Vec<f64>>();
         let heights_m: Vec<f64> = states.iter().map(|s| corner_height_m(setup, s, setup.cog_m)).collect();
         let crush_m = heights_m.windows(2).map(|h| heights_m[0] - f64::midpoint(h[0], h[1])).collect();
-        let gained = |of: fn(&MotionState) -> f64| of(&ends[1]) - of(&ends[0]);
+        let gained = |number: fn(&MotionState) -> f64| number(&ends[1]) - number(&ends[0]);
         let fallen_m_s = setup.gravity_m_s2 * (ends[1].time_s - ends[0].time_s);
         Some(Self {
             struck_m_s: corner(setup, &ends[0], setup.cog_m).1,
@@ -67,9 +67,9 @@ impl ContactCourse {
                 gained(|s| s.horizontal_velocity_m_s),
                 gained(|s| s.vertical_velocity_m_s) + fallen_m_s,
             ],
-            up_m_s2: of(0),
-            at_cog_m_s2: of(1),
-            at_end_m_s2: of(2),
+            up_m_s2: component(0),
+            at_cog_m_s2: component(1),
+            at_end_m_s2: component(2),
             crush_m,
             turned_beyond_m2_s: inertia_m2 * gained(|s| s.angular_velocity_rad_s)
                 - motion.angular_impulse_m2_s,

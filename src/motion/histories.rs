@@ -193,7 +193,7 @@ fn rate(mode: &Mode) -> Complex<f64> {
 /// Z(t) = ∫ f(τ) e^((−ζ + i) ω (t − τ)) dτ from rest: modes driven by the shape of the contact force,
 /// −dΩ/dt   (36)
 fn driven(modes: &[Mode], turning_rad_s: &[f64], step_s: f64) -> Vec<Vec<Complex<f64>>> {
-    let of = |mode: &Mode| {
+    let response = |mode: &Mode| {
         let (turn, half_turn) = ((rate(mode) * step_s).exp(), (rate(mode) * (step_s / 2.0)).exp());
         let mut value = Complex::new(0.0, 0.0);
         let steps = turning_rad_s.windows(2).map(|pair| {
@@ -202,7 +202,7 @@ fn driven(modes: &[Mode], turning_rad_s: &[f64], step_s: f64) -> Vec<Vec<Complex
         });
         std::iter::once(Complex::new(0.0, 0.0)).chain(steps).collect()
     };
-    modes.iter().map(of).collect()
+    modes.iter().map(response).collect()
 }
 
 /// The shape of the contact force between first contact and separation at `left_s`, for modes that ring from

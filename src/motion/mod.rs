@@ -52,12 +52,12 @@ impl<'a> Integrated<'a> {
     #[must_use]
     pub fn over(signals: &'a [Signal], contact_s: f64) -> Self {
         let signals = decimate::decimated(signals, 0.0);
-        let of = |s: &Signal| {
+        let velocity_and_peak = |s: &Signal| {
             let mut velocity = Velocity::of(s, contact_s - BEFORE_S, f64::INFINITY);
             velocity.count_from(contact_s - MARGIN_S);
             (velocity, reduce::peak(&s.force_m_s2))
         };
-        let (velocities, peaks_m_s2) = signals.par_iter().map(of).unzip();
+        let (velocities, peaks_m_s2) = signals.par_iter().map(velocity_and_peak).unzip();
         Self { signals, contact_s, velocities, peaks_m_s2 }
     }
 

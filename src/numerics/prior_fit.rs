@@ -90,11 +90,11 @@ pub fn derivatives(
         moved[i] += step;
         model(&moved).map(DVector::from_vec)
     };
-    let of = |i: usize| {
+    let column = |i: usize| {
         let after = beside(i, STEP)?;
         Some(if jumps(i) { (after - beside(i, -STEP)?) / (2.0 * STEP) } else { (after - &before) / STEP })
     };
-    let columns: Vec<DVector<f64>> = (0..at.len()).into_par_iter().map(of).collect::<Option<_>>()?;
+    let columns: Vec<DVector<f64>> = (0..at.len()).into_par_iter().map(column).collect::<Option<_>>()?;
     let rows = columns.first().map_or(0, DVector::len);
     Some(if rows == 0 { DMatrix::zeros(0, at.len()) } else { DMatrix::from_columns(&columns) })
 }

@@ -114,13 +114,13 @@ mod tests {
 
     #[test]
     fn the_ending_tells_the_format_and_mcap_alone_has_encodings() {
-        let of = |name: &str, encoding| format(Path::new(name), encoding);
-        assert!(matches!(of("a.MCAP", None), Ok(SyntheticFormat::McapJson)));
-        assert!(matches!(of("a.mcap", Some(PROTOBUF)), Ok(SyntheticFormat::McapProtobuf)));
-        assert!(matches!(of("a.hdf5", None), Ok(SyntheticFormat::Hdf5)));
-        assert!(matches!(of("a.csv", Some("json")), Err(Unwritable::Encoding { .. })));
-        assert!(matches!(of("a.toml", None), Err(Unwritable::Ending { .. })));
-        assert!(matches!(of("", None), Err(Unwritable::Ending { .. })));
+        let format_of = |name: &str, encoding| format(Path::new(name), encoding);
+        assert!(matches!(format_of("a.MCAP", None), Ok(SyntheticFormat::McapJson)));
+        assert!(matches!(format_of("a.mcap", Some(PROTOBUF)), Ok(SyntheticFormat::McapProtobuf)));
+        assert!(matches!(format_of("a.hdf5", None), Ok(SyntheticFormat::Hdf5)));
+        assert!(matches!(format_of("a.csv", Some("json")), Err(Unwritable::Encoding { .. })));
+        assert!(matches!(format_of("a.toml", None), Err(Unwritable::Ending { .. })));
+        assert!(matches!(format_of("", None), Err(Unwritable::Ending { .. })));
     }
 
     #[test]

@@ -162,9 +162,9 @@ fn what_was_seen(least_m_s: f64, without_rise: Option<CoarseEvent>) -> String {
 
 fn doubt_of_rate(doubt: Option<&Finding>) -> String {
     let Some(finding) = doubt else { return String::new() };
-    let of = finding.channel.as_ref().map(|channel| format!(" of {channel}")).unwrap_or_default();
+    let of_channel = finding.channel.as_ref().map(|channel| format!(" of {channel}")).unwrap_or_default();
     format!(
-        "; the rate{of} is in doubt (clock), and a rate too high makes every velocity too small by as much: clear that up first"
+        "; the rate{of_channel} is in doubt (clock), and a rate too high makes every velocity too small by as much: clear that up first"
     )
 }
 

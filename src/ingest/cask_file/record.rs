@@ -87,15 +87,15 @@ fn photo(
 
 /// `[observed]`, in the order of its keys.
 pub(super) fn observed(table: &Section) -> Result<Vec<Observed>, CaskFileError> {
-    let of = |key: &'static str| {
+    let observed = |key: &'static str| {
         table.value(key)?;
-        let of = || {
+        let observation = || {
             let seen = table.table_as(key, "observation")?;
             let number = |part| seen.required_number(part).map(|number| number.value);
             let by = seen.text("by")?.map(|by| by.value);
             Ok(Observed { name: key, value: number("value")?, u95: number("u95")?, by })
         };
-        Some(of())
+        Some(observation())
     };
-    OBSERVED.iter().filter_map(|key| of(key.name)).collect()
+    OBSERVED.iter().filter_map(|key| observed(key.name)).collect()
 }

@@ -11,13 +11,13 @@ use serde_json::{Map, Value, json};
 #[must_use]
 pub fn settings(file: &CaskFile, recording: &Recording) -> Value {
     let stated: toml::Table = file.text.trim_start_matches('\u{feff}').parse().unwrap_or_default();
-    let of = |table: &str| stated.get(table).and_then(toml::Value::as_table);
+    let stated_table = |table: &str| stated.get(table).and_then(toml::Value::as_table);
     let single =
         TABLES.iter().filter(|table| table.name != "channel" && !keys::INNER_TABLES.contains(&table.name));
     let mut all: Map<String, Value> = single
         .map(|table| {
             let default = |key: &Key| (default(file, table.name, key.name), "default");
-            (table.name.to_owned(), entries(of(table.name), table.keys, &default))
+            (table.name.to_owned(), entries(stated_table(table.name), table.keys, &default))
         })
         .collect();
     let mut made = file.corrections;

@@ -75,13 +75,13 @@ impl Section<'_> {
     /// A list of texts; empty where there is none.
     pub(super) fn texts(&self, key: &str) -> Result<Vec<Placed<String>>, CaskFileError> {
         let Some(value) = self.value(key) else { return Ok(Vec::new()) };
-        let of = |item: &Spanned<DeValue>| match item.get_ref() {
+        let text = |item: &Spanned<DeValue>| match item.get_ref() {
             DeValue::String(text) if !text.trim().is_empty() => {
                 Some(Placed { value: text.to_string(), span: item.span() })
             }
             _ => None,
         };
-        let texts = value.get_ref().as_array().and_then(|items| items.iter().map(of).collect());
+        let texts = value.get_ref().as_array().and_then(|items| items.iter().map(text).collect());
         texts.ok_or_else(|| {
             let mend = format!("write a list of texts in quotes: {}", self.example(key));
             self.wrong(value.span(), format!("{key} is no list of texts"), "a list of texts".into(), &mend)
@@ -90,7 +90,7 @@ impl Section<'_> {
 
     /// Its names, each with what stands behind it; a text or a number alone.
     pub(super) fn own_names(&self) -> Result<Vec<(String, String)>, CaskFileError> {
-        let of = |(name, value): (&Spanned<toml::de::DeString>, &Spanned<DeValue>)| {
+        let named = |(name, value): (&Spanned<toml::de::DeString>, &Spanned<DeValue>)| {
             let words = match value.get_ref() {
                 DeValue::String(text) => text.to_string(),
                 DeValue::Integer(number) => number.as_str().to_owned(),
@@ -103,7 +103,7 @@ impl Section<'_> {
             };
             Ok((name.get_ref().to_string(), words))
         };
-        self.table.iter().map(of).collect()
+        self.table.iter().map(named).collect()
     }
 
     /// One of a few words.

@@ -89,12 +89,12 @@ fn a_place_that_cannot_be_is_named() {
         (signals[0].position_m, signals[1].position_m) = (first_m, second_m);
         found(&signals)
     };
-    let of = |name: &str| (IssueCode::SensorPosition, Some(name.to_owned()));
+    let position_of = |name: &str| (IssueCode::SensorPosition, Some(name.to_owned()));
     assert!(place(-0.03, 5.04).is_empty());
-    assert_eq!(place(-0.2, 4.8), [of("A1")]);
-    assert_eq!(place(0.2, 480.0), [of("A2")]);
-    assert_eq!(place(4.8, 0.2), [of("A1")]);
-    assert_eq!(place(2.7, 4.8), [of("A1")]);
+    assert_eq!(place(-0.2, 4.8), [position_of("A1")]);
+    assert_eq!(place(0.2, 480.0), [position_of("A2")]);
+    assert_eq!(place(4.8, 0.2), [position_of("A1")]);
+    assert_eq!(place(2.7, 4.8), [position_of("A1")]);
 }
 
 #[test]

@@ -50,12 +50,12 @@ impl<'a> CommonStep<'a> {
     #[must_use]
     pub fn at(&self, after_s: f64) -> Option<Vec<(f64, f64)>> {
         let each = self.series.iter().zip(self.behind.each()).zip(&self.left_behind);
-        let of = |((series, behind), left): ((&Series, &DMatrix<f64>), &DVector<f64>)| {
+        let step_and_weight = |((series, behind), left): ((&Series, &DMatrix<f64>), &DVector<f64>)| {
             let first = series.time_s.partition_point(|t| *t <= after_s);
             let own = as_f64(series.time_s.len() - first) - behind.row(first).norm_squared();
             (own > 0.0).then(|| (left[first] / own, left[first] * left[first] / own))
         };
-        each.map(of).collect()
+        each.map(step_and_weight).collect()
     }
 
     /// The Bayesian information criterion with such a step   (21)

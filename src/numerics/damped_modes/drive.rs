@@ -84,11 +84,11 @@ impl Form<'_> {
     pub(super) fn amplitudes(&self, modes: &[Oscillation], coefficients: &[f64]) -> Vec<(f64, f64)> {
         match self.drive {
             Some(drive) => {
-                let of = |(mode, size): (&Oscillation, &f64)| {
+                let parts = |(mode, size): (&Oscillation, &f64)| {
                     let phase = drive.phase(*mode);
                     (size * phase.re, -size * phase.im)
                 };
-                modes.iter().zip(coefficients).map(of).collect()
+                modes.iter().zip(coefficients).map(parts).collect()
             }
             None => coefficients.chunks_exact(2).map(|c| (c[0], c[1])).collect(),
         }

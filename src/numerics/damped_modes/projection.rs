@@ -91,8 +91,11 @@ impl<T> SharedByTimes<T> {
         &'a self,
         series: &'a [Series],
     ) -> impl Iterator<Item = (&'a T, Vec<&'a Series>)> {
-        let of = |place: usize| series.iter().zip(&self.places).filter(move |(_, own)| **own == place);
-        self.made.iter().enumerate().map(move |(place, made)| (made, of(place).map(|(s, _)| s).collect()))
+        let sharing = |place: usize| series.iter().zip(&self.places).filter(move |(_, own)| **own == place);
+        self.made
+            .iter()
+            .enumerate()
+            .map(move |(place, made)| (made, sharing(place).map(|(s, _)| s).collect()))
     }
 }
 

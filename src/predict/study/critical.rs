@@ -17,7 +17,7 @@ pub(super) fn critical_angles(
     let traced: Vec<Sample> =
         angles_deg.iter().zip(predictions).map(|(&angle_deg, p)| Sample::new(angle_deg, p)).collect();
     let samples = with_jumps(&traced, &at);
-    let of = |(index, criterion): (usize, Criterion)| {
+    let critical = |(index, criterion): (usize, Criterion)| {
         let none = || Peak { angle_deg: f64::NAN, largest: f64::NAN, bands_deg: Vec::new() };
         let peak = peak(&samples, index, &at, bands).unwrap_or_else(none);
         let bounced = traced.iter().filter(|s| s.course.is_none() && s.values[index].is_finite());
@@ -32,7 +32,7 @@ pub(super) fn critical_angles(
             further_impacts: highest(bounced.map(|s| (s.angle_deg, s.values[index])), peak.largest),
         }
     };
-    Criterion::ALL.into_iter().enumerate().map(of).collect()
+    Criterion::ALL.into_iter().enumerate().map(critical).collect()
 }
 
 /// The highest of some angles' values, where no single impact reaches it: above `largest`, or that is none.

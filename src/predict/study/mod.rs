@@ -101,8 +101,8 @@ fn richest(cask_file: &CaskFile) -> Body {
 fn ladders(cask_file: &CaskFile, request: &StudyRequest) -> Vec<Ladder> {
     let body = richest(cask_file);
     let drop = Drop { angle_rad: request.angle_deg.to_radians(), ..cask_file.drop };
-    let of = |&contact: &Contact| request.ks.iter().map(move |&k| ladder(&body, &drop, contact, k));
-    request.contacts.iter().flat_map(of).collect()
+    let ladders = |&contact: &Contact| request.ks.iter().map(move |&k| ladder(&body, &drop, contact, k));
+    request.contacts.iter().flat_map(ladders).collect()
 }
 
 /// The body with another length and section: the centre of gravity keeps its share of the length, Θ ∝ l² +

@@ -112,16 +112,16 @@ fn quantiles(draws: &[Traced], criterion: usize, angles_deg: &[f64], band_percen
         let largest = traced.largest[criterion].1;
         traced.samples[j].critical(criterion) >= largest - band_percent / 100.0 * largest.abs()
     });
-    let of = |i: usize| columns.iter().map(|q| q[i]).collect();
+    let quantile = |i: usize| columns.iter().map(|q| q[i]).collect();
     let critical = sorted(draws.iter().map(|d| d.largest[criterion].0).filter(|a| a.is_finite()));
     let sizes = sorted(draws.iter().map(|d| d.largest[criterion].1).filter(|v| v.is_finite()));
     QuantileCurves {
         criterion: Criterion::ALL[criterion],
-        q025: of(0),
-        q25: of(1),
-        q50: of(2),
-        q75: of(3),
-        q975: of(4),
+        q025: quantile(0),
+        q25: quantile(1),
+        q50: quantile(2),
+        q75: quantile(3),
+        q975: quantile(4),
         robust_bands_deg: robust_bands(angles_deg, &in_band),
         in_band,
         critical_angle_deg: quantiles_of(&critical),

@@ -66,7 +66,7 @@ mod tests {
         let cases: Vec<_> =
             rows.iter().map(|r| (r.prediction.model, r.prediction.contact, r.prediction.k)).collect();
         let (rod, body) = (BodyModel::Rod, BodyModel::Body);
-        let of = |model| {
+        let cases_of = |model| {
             [
                 (model, Contact::Rough, 0.0),
                 (model, Contact::Rough, 1.0),
@@ -74,7 +74,7 @@ mod tests {
                 (model, Contact::Smooth, 1.0),
             ]
         };
-        assert_eq!(cases, [of(rod), of(body)].concat());
+        assert_eq!(cases, [cases_of(rod), cases_of(body)].concat());
         assert!(rows.iter().all(|r| r.angle_deg == 15.0 && r.length_m == 5.512 && r.drop_height_m == 9.0));
     }
 
@@ -84,12 +84,12 @@ mod tests {
             0.0,
             vec![(SweepVariable::Angle, vec![5.0, 10.0]), (SweepVariable::K, vec![0.2, 0.4, 0.6])],
         );
-        let of = |r: &PredictionRow| (r.angle_deg, r.prediction.k, r.prediction.contact);
+        let asked = |r: &PredictionRow| (r.angle_deg, r.prediction.k, r.prediction.contact);
         assert_eq!(rows.len(), 2 * 3 * 2);
-        assert_eq!(of(&rows[0]), (5.0, 0.2, Contact::Rough));
-        assert_eq!(of(&rows[1]), (5.0, 0.2, Contact::Smooth));
-        assert_eq!(of(&rows[2]), (5.0, 0.4, Contact::Rough));
-        assert_eq!(of(&rows[6]), (10.0, 0.2, Contact::Rough));
+        assert_eq!(asked(&rows[0]), (5.0, 0.2, Contact::Rough));
+        assert_eq!(asked(&rows[1]), (5.0, 0.2, Contact::Smooth));
+        assert_eq!(asked(&rows[2]), (5.0, 0.4, Contact::Rough));
+        assert_eq!(asked(&rows[6]), (10.0, 0.2, Contact::Rough));
     }
 
     #[test]

@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn half_widths_hold_95_percent_and_ranges_are_filled_evenly() {
-        let of = Uncertain {
+        let uncertain = Uncertain {
             k: (0.2, 0.8),
             friction: Some((0.1, 0.3)),
             angle_deg: 1.96,
@@ -126,7 +126,7 @@ mod tests {
             ..uncertain((0.0, 1.0), DRAWS)
         };
         let base = rough_rod(0.0);
-        let draws = all(&base, &of);
+        let draws = all(&base, &uncertain);
         // Five standard errors of a mean, σ/√n, and of a standard deviation, σ/√(2n).
         let error = 5.0 / f64::from(DRAWS).sqrt();
         let check = |(mean, deviation): (f64, f64), expected: f64, sigma: f64| {
@@ -164,9 +164,9 @@ mod tests {
 
     #[test]
     fn nonsensical_half_widths_leave_a_body() {
-        let of =
+        let drawn =
             Uncertain { size: 3.0, cog: 3.0, inertia: 3.0, drop_height: 3.0, ..uncertain((0.0, 1.0), 1) };
-        for Draw { fall, .. } in all(&rough_rod(0.0), &of) {
+        for Draw { fall, .. } in all(&rough_rod(0.0), &drawn) {
             assert!(fall.body.length_m > 0.0 && fall.body.inertia_kg_m2 > 0.0 && fall.drop.height_m > 0.0);
             assert!((0.0..=fall.body.length_m).contains(&fall.body.cog_m));
         }
