@@ -254,6 +254,25 @@ fn links_lead_somewhere() {
 }
 
 #[test]
+fn source_files_that_the_pages_name_are_there() {
+    let (mut gone, mut looked_at) = (Vec::new(), 0);
+    for page in written_pages().into_iter().chain(pages_beside()) {
+        let text = text(&page);
+        let prose: Vec<&str> = lines_without_code(&text).into_iter().map(|(_, line)| line).collect();
+        let prose = prose.join(" ");
+        let is_file = |word: &&str| word.ends_with(".rs") && word.contains('/') && !word.contains(' ');
+        for name in prose.split('`').skip(1).step_by(2).filter(is_file) {
+            looked_at += 1;
+            if !["", "src"].iter().any(|folder| root().join(folder).join(name).exists()) {
+                gone.push(format!("{}: {name}", page.display()));
+            }
+        }
+    }
+    assert!(looked_at > 50, "the names were not found: {looked_at}");
+    assert!(gone.is_empty(), "files that are not there:\n{}", gone.join("\n"));
+}
+
+#[test]
 fn what_the_pages_show_is_what_the_program_says() {
     let page = text(&root().join("README.md"));
     let shown = answer(&page, "dropcheck analyze fixtures/examples/anf18-json.mcap");
