@@ -260,7 +260,8 @@ fn source_files_that_the_pages_name_are_there() {
         let text = text(&page);
         let prose: Vec<&str> = lines_without_code(&text).into_iter().map(|(_, line)| line).collect();
         let prose = prose.join(" ");
-        let is_file = |word: &&str| word.ends_with(".rs") && word.contains('/') && !word.contains(' ');
+        let is_rust = |path: &Path| path.extension().is_some_and(|extension| extension == "rs");
+        let is_file = |word: &&str| word.contains('/') && !word.contains(' ') && is_rust(Path::new(word));
         for name in prose.split('`').skip(1).step_by(2).filter(is_file) {
             looked_at += 1;
             if !["", "src"].iter().any(|folder| root().join(folder).join(name).exists()) {
