@@ -13,9 +13,10 @@ WIDTH = 110
 
 HEAD = """# dropcheck for Python
 
-One wheel, one extension: the module `dropcheck` and the command of the same name. It needs numpy; pandas and xarray
-only for the tables named after them. A wheel is a file of a release (`pip install dropcheck-*.whl`), or made of the
-sources: `pip install ./python` in the repository, with a Rust toolchain. Linux with glibc 2.28 or newer.
+One wheel installs the module `dropcheck` and the command of the same name. The module needs numpy; pandas and xarray
+are needed only for the tables named after them. A wheel is a file of a release (`pip install dropcheck-*.whl`)
+or comes from the sources: `pip install ./python` in the repository, with a Rust toolchain. Linux with glibc 2.28 or
+newer.
 
 *This page is written by `python/page.py` from the docstrings; an executed example is
 [examples/campaign.ipynb](../examples/campaign.ipynb).*
@@ -23,10 +24,10 @@ sources: `pip install ./python` in the repository, with a Rust toolchain. Linux 
 
 CLOSING = """## How it runs
 
-The work runs without the interpreter's lock, on threads of its own: calls from several threads run side by side, and a
-forked process starts threads anew. An HDF5 file is taken apart by a process of its own that can reach nothing but that
-file; here it is `sys.executable`, which loads the extension alone. `result.json` names the words of the command that
-gives the same result; of samples in memory there is none, and `input` says `"samples in memory"` with their SHA-256.
+The work runs without the interpreter's lock, on its own threads: calls from several threads run side by side, and a
+forked process starts new threads. A separate process that can reach only that file reads HDF5; here it is
+`sys.executable`, which loads only the extension. `command` in `result.json` gives the same result at the command line.
+For samples in memory there is none, and `input` says `"samples in memory"` with their SHA-256.
 """
 
 

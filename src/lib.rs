@@ -62,6 +62,7 @@ pub mod command {
 pub mod stages {
     pub use crate::analysis::{measure, sticking};
     pub use crate::condition::{Reach, condition};
+    pub use crate::data::keys::{Allowed, INNER_TABLES, TABLES, Takes};
     pub use crate::events::Changes;
     pub use crate::fit::{FitData, ladder, quantities, spread_by_draws};
     pub use crate::motion::{Integrated, Window, filtered, fit_flight, outcome, reconstruct};

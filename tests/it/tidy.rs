@@ -1,7 +1,6 @@
 //! From the source text to who uses whom: holds the layers of `docs/architecture.md`, the length and the
 //! first line of files.
 
-use dropcheck::data::CODES;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -264,29 +263,4 @@ fn the_reader_of_use_lines_sees_a_trespass() {
     assert_eq!(named("use crate::lab::synth;\nmod tests {\n}"), ["lab"]);
     assert_eq!(named("mod tests {\n use crate::lab::synth;\n}"), [""; 0]);
     assert_eq!(named("// crate::ingest\nlet s = \"crate::ingest\"; use crate::data::Cask;"), [""; 0]);
-}
-
-#[test]
-fn the_page_of_checks_holds_every_code_as_the_table_of_codes_has_it() {
-    let word = |code| serde_json::to_value(code).expect("a word").as_str().expect("a word").to_owned();
-    let page = fs::read_to_string(root().join("docs/quality.md")).expect("UTF-8");
-    let in_a_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let mut sections = page.split("\n## ");
-    let head = in_a_line(sections.next().expect("what stands before the sections"));
-    let groups = ["File", "Channel", "Channels together", "Drop"];
-    let of_group = |group| CODES.iter().filter(move |(own, _)| *own == group).map(|(_, check)| *check);
-    let index = groups.map(|group| {
-        let links: Vec<String> = of_group(group).map(|(c, _)| format!("[{0}](#{0})", word(c))).collect();
-        format!("- {group}: {}", links.join(" · "))
-    });
-    assert!(head.ends_with(&index.join(" ")), "the index of docs/quality.md is not\n{}", index.join("\n"));
-    let codes: Vec<_> = groups.into_iter().flat_map(of_group).collect();
-    assert_eq!(codes.len(), CODES.len(), "a check of no group");
-    let beginnings: Vec<String> =
-        codes.iter().map(|(code, meaning)| format!("{} - Means: {meaning}.", word(*code))).collect();
-    let found: Vec<String> = sections.map(in_a_line).collect();
-    assert_eq!(found.len(), beginnings.len(), "a section for each code and no other");
-    for (section, beginning) in found.iter().zip(&beginnings) {
-        assert!(section.starts_with(beginning), "docs/quality.md: {section}\nshould begin {beginning}");
-    }
 }

@@ -1,7 +1,6 @@
 //! What a cask file gives, and what each slip in one is told.
 
 use super::*;
-use crate::data::keys::{Allowed, INNER_TABLES, TABLES, Takes};
 use crate::data::{Axis, Coupling, End, Source, Unit};
 use miette::Diagnostic;
 
@@ -313,41 +312,4 @@ fn the_line_is_drawn() {
         .render_report(&mut drawn, &error)
         .unwrap();
     assert!(drawn.contains("mas_kg = 4466") && drawn.contains("unknown key"), "{drawn}");
-}
-
-#[test]
-fn the_table_of_the_documentation_is_that_of_the_keys() {
-    let documented = include_str!("../../../docs/formats.md");
-    let (_, behind) = documented.split_once("## Cask file").expect("the chapter");
-    let (chapter, _) = behind.split_once("## Scene file").expect("its end");
-    let rows = chapter.lines().filter_map(|line| {
-        let cells: Vec<&str> = line.strip_prefix("| `")?.split('|').map(str::trim).collect();
-        Some((cells[0].trim_matches('`').trim_matches(['[', ']']), cells[1], cells[2], cells[3]))
-    });
-    let mut rows = rows.peekable();
-    for table in TABLES.iter().filter(|table| !INNER_TABLES.contains(&table.name)) {
-        assert_eq!(rows.next().map(|row| row.0), Some(table.name));
-        for key in table.keys {
-            let (name, takes, default, meaning) = rows.next().expect(key.name);
-            let expected = match key.takes {
-                Takes::Text => "text",
-                Takes::TextOrNumber => "text or number",
-                Takes::TextOrTable => "text or table",
-                Takes::Flag => "true, false",
-                Takes::Date => "date",
-                Takes::Texts => "list of texts",
-                Takes::Table => "table",
-                Takes::Observation => "observation",
-                Takes::Number(_) => "number",
-            };
-            assert_eq!((name, takes, default), (key.name, expected, key.default), "[{}]", table.name);
-            let range = match key.takes {
-                Takes::Number(Allowed::Within(least, most, _)) => format!("{least} to {most}"),
-                _ => continue,
-            };
-            let plain = meaning.replace("10⁶", "1000000").replace('−', "-").replace("10⁸", "100000000");
-            assert!(plain.contains(&range), "[{}] {name}: {meaning} without {range}", table.name);
-        }
-    }
-    assert_eq!(rows.next(), None);
 }
