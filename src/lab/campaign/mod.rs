@@ -4,7 +4,6 @@
 mod draw;
 mod lines;
 mod recorder;
-mod rungs;
 mod score;
 mod statistics;
 mod tables;
