@@ -61,20 +61,6 @@ pub struct CampaignRequest {
     pub exact: bool,
 }
 
-/// A part of a campaign: of `count` parts the one that holds scene `index`, and every `count`-th after it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct CampaignShard {
-    /// Which, from 0.
-    pub index: usize,
-    /// Of how many.
-    pub count: usize,
-}
-
-impl CampaignShard {
-    /// All of it.
-    pub const WHOLE: Self = Self { index: 0, count: 1 };
-}
-
 /// What is wrong with a scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Damage {
