@@ -14,15 +14,14 @@ use super::Ending;
 use super::analyze::SwitchedOff;
 use super::complaint::sentence;
 use super::limits::Bounds;
-use super::lines::{self, LineRecord, holds_some, part};
-use super::output::{Folder, columns, print, print_plain};
-use super::progress::CountedProgress;
+use super::lines::{self, LineOutput, LineRecord, holds_some, part};
+use super::output::{Folder, columns, print};
 use super::rerun::stamp;
 use super::tuning::keep_freed_memory;
 use crate::data::DropResult;
 use crate::ingest::bytes_of;
 use crate::report::Batch;
-use crate::{ingest, ordered_parallel, report};
+use crate::{ingest, report};
 use clap::Args;
 use plan::CampaignPlan;
 use planned::PlannedTest;
@@ -88,45 +87,26 @@ pub fn run(arguments: &Arguments) -> miette::Result<Ending> {
         Folder::checked(out, &plan::SUMMARY[..3], &inputs)?;
         plan.spares_recordings(out)?;
     }
-    let mut record = open_record(arguments, &plan, &inputs)?;
-    let to_standard_output = arguments.jsonl.as_deref() == Some(Path::new("-"));
-    let own = plan.own();
+    let record = open_record(arguments, &plan, &inputs)?;
+    let mut output = LineOutput::new(record, arguments.jsonl.as_deref());
     let jobs = arguments
         .jobs
         .map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
     let mut batch = Batch::new(plan.source.clone());
-    let mut progress = CountedProgress::of(own.len(), record.is_some());
     keep_freed_memory();
-    // What is done already is read by one thread beside the others, since the record grows meanwhile.
-    let earlier = record.as_ref().map(|record| record.lines().clone()).unwrap_or_default();
-    ordered_parallel::each(
-        own.into_iter(),
-        jobs,
-        |number| {
-            let test = &plan.tests[number];
-            let kept = earlier.text(number).filter(|line| is_done(line, test, arguments));
-            let is_new = kept.is_none();
-            MadeLine { text: kept.unwrap_or_else(|| line(&plan, number, arguments)), is_new }
-        },
-        |number, MadeLine { text, is_new }| {
-            if let Some(record) = record.as_mut().filter(|_| is_new) {
-                record.put(number, text.as_bytes())?;
-            }
-            if to_standard_output {
-                print_plain(text.as_bytes())?;
-            }
-            batch.add(&serde_json::from_str(&text).unwrap_or_default());
-            progress.step();
-            Ok::<(), miette::Report>(())
-        },
-    )?;
-    if let Some(record) = &mut record {
-        record.finish()?;
-        if let Some(out) = arguments.out.as_deref().filter(|_| plan.is_whole()) {
-            campaign::write(out, &batch, record.lines(), &inputs)?;
-        }
+    let make = |number: usize, earlier: Option<&str>| {
+        let is_done = earlier.is_some_and(|line| is_done(line, &plan.tests[number], arguments));
+        Ok((!is_done).then(|| line(&plan, number, arguments)))
+    };
+    output.each(plan.own(), jobs, make, |line| {
+        batch.add(&serde_json::from_str(line).unwrap_or_default());
+        Ok(())
+    })?;
+    let out = arguments.out.as_deref().filter(|_| plan.is_whole());
+    if let Some((record, out)) = output.record.as_ref().zip(out) {
+        campaign::write(out, &batch, record.lines(), &inputs)?;
     }
-    if !to_standard_output {
+    if !output.is_standard_output {
         print(&batch.table(columns()))?;
         tell(arguments, &plan)?;
     }
@@ -149,12 +129,6 @@ fn tell(arguments: &Arguments, plan: &CampaignPlan) -> miette::Result<()> {
         ))?),
         _ => Ok(()),
     }
-}
-
-/// A line that was made, or that an earlier run has made.
-struct MadeLine {
-    text: String,
-    is_new: bool,
 }
 
 /// The file that holds the lines: that of `--jsonl`, else one in `--out`.

@@ -2,26 +2,22 @@
 //! campaign to the same.
 
 use super::super::Ending;
-use super::super::lines::{self, LineRecord};
-use super::super::output::{Folder, print, print_plain, replace, replace_by};
-use super::super::progress::CountedProgress;
-use super::document::Marks;
+use super::super::lines::{self, LineOutput, LineRecord};
+use super::super::output::{Folder, print, replace, replace_by};
+use super::document::MarkedDocument;
 use crate::lab::campaign::{self, ScenePlace, Tally};
-use crate::lab::data::{CampaignRequest, CampaignRow, CampaignShard};
+use crate::lab::data::{CampaignRequest, CampaignRow};
 use clap::Args;
 use miette::IntoDiagnostic;
 use serde::Deserialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// What the tables stand between in a document.
-const MARKS: Marks = Marks { begin: "<!-- campaign: begin -->", end: "<!-- campaign: end -->" };
-
 /// Files of a campaign's folder.
 const NAMES: [&str; 2] = ["campaign.csv", "campaign.md"];
 
-/// Where rows go, one after the other.
-type Take<'a> = &'a mut dyn FnMut(&CampaignRow) -> miette::Result<()>;
+/// Where lines go, one after the other.
+type Take<'a> = &'a mut dyn FnMut(&[u8]) -> miette::Result<()>;
 
 /// In which parts a campaign is done.
 #[derive(Args)]
@@ -47,46 +43,32 @@ pub fn run(
     into: Option<&Path>,
 ) -> miette::Result<Ending> {
     let (index, count) = parts.shard;
-    let place = ScenePlace::first(request, CampaignShard { index, count });
-    lines::holds_some(parts.shard, place.count)?;
-    let document = into.map(|path| MARKS.parts(path).map(|around| (path, around))).transpose()?;
-    let to_standard_output = parts.jsonl.as_deref() == Some(Path::new("-"));
-    let file = parts.jsonl.as_deref().filter(|_| !to_standard_output);
-    let open =
-        |path| LineRecord::open(path, parts.resume, &[], |line| own_number(&place, path, line).map(Some));
-    let mut file = file.map(open).transpose()?;
-    let tables = tabled(request, out, |take| {
-        let own = place.count.saturating_sub(index).div_ceil(count);
-        let mut progress = CountedProgress::of(own, file.is_some());
-        let mut done = 0;
-        let earlier = file.as_ref().map(|file| file.lines().clone()).unwrap_or_default();
-        while let Some(row) =
-            earlier.text(index + done * count).and_then(|line| campaign::read(line.as_bytes()))
-        {
-            progress.step();
-            take(&row)?;
-            done += 1;
+    let numbers = campaign::numbers(request);
+    lines::holds_some(parts.shard, numbers.len())?;
+    let place = ScenePlace::first(request, numbers.len(), count);
+    let own: Vec<usize> = (index..numbers.len()).step_by(count).collect();
+    let document = into.map(|path| MarkedDocument::of(path, "campaign")).transpose()?;
+    let open = |path: &PathBuf| {
+        LineRecord::open(path, parts.resume, &[], |line| own_number(place, &own, path, line).map(Some))
+    };
+    let file = parts.jsonl.as_ref().filter(|path| *path != Path::new("-")).map(open).transpose()?;
+    let mut output = LineOutput::new(file, parts.jsonl.as_deref());
+    let make = |number: usize, earlier: Option<&str>| {
+        if earlier.is_some_and(|line| campaign::read(line.as_bytes()).is_some()) {
+            return Ok(None);
         }
-        campaign::each(request, CampaignShard { index, count }, done, |number, row| {
-            let line = campaign::line(&place.at(number), &row).into_diagnostic()?;
-            if let Some(file) = &mut file {
-                file.put(number, line.as_bytes())?;
-            }
-            if to_standard_output {
-                print_plain(line.as_bytes())?;
-            }
-            progress.step();
-            // As it is written, so that a merge of shards counts the same numbers.
-            campaign::read(line.as_bytes()).map_or(Ok(()), |row| take(&row))
-        })?;
-        file.as_mut().map_or(Ok(()), LineRecord::finish)
+        let row = campaign::row(request, numbers[number]);
+        campaign::line(&place.at(number), &row).map(Some).into_diagnostic()
+    };
+    let tables = tabled(request, out, |take| {
+        output.each(own.clone(), rayon::current_num_threads(), make, |line| take(line.as_bytes()))
     })?;
-    if let Some((path, (before, after))) = &document {
-        replace(path, format!("{before}\n{tables}{after}").as_bytes())?;
+    if let Some(document) = &document {
+        document.write(&tables)?;
     }
-    if count > 1 && !to_standard_output {
+    if count > 1 && !output.is_standard_output {
         print(&format!("Shard {index}/{count}; `dropcheck merge` makes the tables of all shards.\n"))?;
-    } else if out.is_none() && document.is_none() && !to_standard_output {
+    } else if out.is_none() && document.is_none() && !output.is_standard_output {
         print(&tables)?;
     }
     Ok(Ending::Clear)
@@ -98,20 +80,17 @@ pub fn merge(paths: &[PathBuf], out: &Path) -> miette::Result<Ending> {
         |line: &Value| CampaignRow::deserialize(line).is_err().then(|| "is no line of a campaign".to_owned());
     let (lines, first) = lines::merged(paths, is_none)?;
     let request: CampaignRequest = serde_json::from_value(first["of"].clone()).into_diagnostic()?;
-    tabled(&request, Some(out), |take| {
-        lines.each(|line| campaign::read(line).map_or(Ok(()), |row| take(&row)))
-    })?;
+    tabled(&request, Some(out), |take| lines.each(take))?;
     print(&format!("Written: {}\n", crate::report::printable(&out.join(NAMES[1]).display().to_string())))?;
     Ok(Ending::Clear)
 }
 
-/// The number of a line that an earlier run of the same words has left in the file at `path`.
-fn own_number(place: &ScenePlace, path: &Path, line: &Value) -> miette::Result<usize> {
+/// The number of a line that an earlier run of the same words has left in the file at `path`, one of `own`.
+fn own_number(place: ScenePlace, own: &[usize], path: &Path, line: &Value) -> miette::Result<usize> {
     let number = line["campaign"]["number"].as_u64().and_then(|number| usize::try_from(number).ok());
     let is_own = |number: &usize| {
-        let own = place.at(*number);
-        let is_here = *number < place.count && own.shard == place.shard;
-        is_here && serde_json::to_value(own).is_ok_and(|own| line["campaign"] == own)
+        let is_said = serde_json::to_value(place.at(*number)).is_ok_and(|place| line["campaign"] == place);
+        own.binary_search(number).is_ok() && is_said
     };
     number.filter(is_own).ok_or_else(|| {
         miette::miette!(
@@ -122,16 +101,22 @@ fn own_number(place: &ScenePlace, path: &Path, line: &Value) -> miette::Result<u
     })
 }
 
-/// The tables of all rows that `work` hands over, in a folder beside the rows as CSV where one is named.
+/// The tables of all lines that `work` hands over, in a folder beside their rows as CSV where one is named.
 fn tabled(
     request: &CampaignRequest,
     out: Option<&Path>,
     work: impl FnOnce(Take) -> miette::Result<()>,
 ) -> miette::Result<String> {
     let mut tally = Tally::new(request.clone());
+    // As they are written, so that a merge of shards counts the same numbers.
+    let mut counted = |line: &[u8]| {
+        let row = campaign::read(line)?;
+        tally.add(&row);
+        Some(row)
+    };
     let Some(out) = out else {
-        work(&mut |row| {
-            tally.add(row);
+        work(&mut |line| {
+            counted(line);
             Ok(())
         })?;
         return Ok(campaign::markdown(&tally));
@@ -139,9 +124,9 @@ fn tabled(
     Folder::checked(out, &NAMES, &[])?.make()?;
     let mut is_first = true;
     replace_by(&out.join(NAMES[0]), |write| {
-        work(&mut |row| {
-            tally.add(row);
-            write(&campaign::csv(row, std::mem::take(&mut is_first))?)
+        work(&mut |line| match counted(line) {
+            Some(row) => write(&campaign::csv(&row, std::mem::take(&mut is_first))?),
+            None => Ok(()),
         })
     })?;
     let tables = campaign::markdown(&tally);

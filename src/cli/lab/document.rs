@@ -1,30 +1,50 @@
-//! A document and two lines in it to what stands before the one and behind the other.
+//! A document between two lines of which a command writes to the same with other words there.
 
+use super::super::output::replace;
 use crate::ingest::bytes_of;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// The lines between which a command writes.
-pub struct Marks {
-    pub begin: &'static str,
-    pub end: &'static str,
+/// What stands before and behind the words that a command writes, the lines that mark the place included.
+pub struct MarkedDocument {
+    path: PathBuf,
+    before: String,
+    behind: String,
 }
 
-impl Marks {
-    /// What stands before and after the place in a document, the lines that mark it included.
-    pub fn parts(&self, path: &Path) -> miette::Result<(String, String)> {
+impl MarkedDocument {
+    /// The document with the lines `<!-- name: begin -->` and `<!-- name: end -->`.
+    pub fn of(path: &Path, name: &str) -> miette::Result<Self> {
         let text = bytes_of(path, 16)
             .and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other))
             .map_err(|source| miette::miette!("{} cannot be read: {source}", path.display()))?;
-        let found = text.find(self.begin).map(|at| at + self.begin.len()).zip(text.find(self.end));
+        let [begin, end] = ["begin", "end"].map(|word| format!("<!-- {name}: {word} -->"));
+        let found = text.find(&begin).map(|at| at + begin.len()).zip(text.find(&end));
         match found.filter(|(begin, end)| begin <= end) {
-            Some((begin, end)) => Ok((text[..begin].to_owned(), text[end..].to_owned())),
+            Some((begin, end)) => Ok(Self {
+                path: path.to_owned(),
+                before: text[..begin].to_owned(),
+                behind: text[end..].to_owned(),
+            }),
             None => Err(miette::miette!(
-                help =
-                    format!("write the lines {} and {} where the tables are to stand", self.begin, self.end),
+                help = format!("write the lines {begin} and {end} where the tables are to stand"),
                 "{} does not say where the tables go",
                 path.display()
             )),
         }
+    }
+
+    /// Writes the words to their place.
+    pub fn write(&self, words: &str) -> miette::Result<()> {
+        Ok(replace(&self.path, format!("{}\n{words}{}", self.before, self.behind).as_bytes())?)
+    }
+
+    /// What leads from the document to a folder, for references: relative where the folder lies below the
+    /// document's own.
+    pub fn way_to(&self, folder: &Path) -> String {
+        let below = self.path.parent().and_then(|own| folder.strip_prefix(own).ok()).unwrap_or(folder);
+        let words: Vec<String> =
+            below.components().map(|part| part.as_os_str().to_string_lossy().replace(' ', "%20")).collect();
+        if words.is_empty() { String::new() } else { format!("{}/", words.join("/").replace("//", "/")) }
     }
 }
 
@@ -34,13 +54,24 @@ mod tests {
 
     #[test]
     fn the_place_is_between_the_marks() {
-        let marks = Marks { begin: "<!-- a: begin -->", end: "<!-- a: end -->" };
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.md");
         std::fs::write(&path, "a\n<!-- a: begin -->\nold\n<!-- a: end -->\nb\n").expect("a file");
-        let (before, after) = marks.parts(&path).expect("marks");
-        assert_eq!((before.as_str(), after.as_str()), ("a\n<!-- a: begin -->", "<!-- a: end -->\nb\n"));
+        MarkedDocument::of(&path, "a").expect("marks").write("new\n").expect("written");
+        let text = std::fs::read_to_string(&path).expect("a document");
+        assert_eq!(text, "a\n<!-- a: begin -->\nnew\n<!-- a: end -->\nb\n");
         std::fs::write(&path, "<!-- a: end --><!-- a: begin -->").expect("a file");
-        assert!(marks.parts(&path).is_err());
+        assert!(MarkedDocument::of(&path, "a").is_err());
+    }
+
+    #[test]
+    fn pictures_below_the_document_are_named_from_it() {
+        let way = |document: &str, folder: &str| {
+            let [before, behind] = [String::new(), String::new()];
+            MarkedDocument { path: document.into(), before, behind }.way_to(Path::new(folder))
+        };
+        assert_eq!(way("docs/a.md", "docs/the charts"), "the%20charts/");
+        assert_eq!(way("docs/a.md", "docs"), "");
+        assert_eq!(way("a.md", "/b"), "/b/");
     }
 }

@@ -1,58 +1,46 @@
 //! A row to a line of JSON that says of which campaign it is, and such a line back to its row.
 
 use crate::data::Program;
-use crate::lab::data::{CampaignRequest, CampaignRow, CampaignShard};
+use crate::lab::data::{CampaignRequest, CampaignRow};
 use serde::Serialize;
 
 /// What the first key of every line names.
 pub const SCHEMA: &str = "dropcheck.scenes/1";
 
 /// Of which campaign a line is, and where in it.
-#[derive(Debug, Clone, Serialize)]
-pub struct ScenePlace {
-    /// [`SCHEMA`].
-    pub schema: String,
-    /// Version of the program.
-    pub version: String,
-    /// The commit that it was built of, where the build was told.
-    pub commit: Option<String>,
-    /// What was asked for.
-    pub of: CampaignRequest,
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct ScenePlace<'a> {
+    schema: &'static str,
+    version: &'static str,
+    commit: Option<&'static str>,
+    of: &'a CampaignRequest,
     /// Scenes of the whole.
-    pub count: usize,
+    count: usize,
     /// Which of them, from 0.
-    pub number: usize,
+    number: usize,
     /// Which part holds it, of how many.
-    pub shard: [usize; 2],
+    shard: [usize; 2],
 }
 
-impl ScenePlace {
-    /// The first scene of a shard, by this program.
+impl<'a> ScenePlace<'a> {
+    /// The first of the `count` scenes of a campaign, done in so many parts, by this program.
     #[must_use]
-    pub fn first(of: &CampaignRequest, shard: CampaignShard) -> Self {
-        let program = Program::this();
-        Self {
-            schema: SCHEMA.to_owned(),
-            version: program.version.to_owned(),
-            commit: program.commit.map(str::to_owned),
-            of: of.clone(),
-            count: super::count(of),
-            number: shard.index,
-            shard: [shard.index, shard.count],
-        }
+    pub fn first(of: &'a CampaignRequest, count: usize, parts: usize) -> Self {
+        let Program { version, commit, .. } = Program::this();
+        Self { schema: SCHEMA, version, commit, of, count, number: 0, shard: [0, parts] }
     }
 
-    /// Scene `number` of the same campaign, in the part that holds it.
+    /// Scene `number` of the same campaign.
     #[must_use]
-    pub fn at(&self, number: usize) -> Self {
+    pub fn at(self, number: usize) -> Self {
         let parts = self.shard[1];
-        Self { number, shard: [number % parts.max(1), parts], ..self.clone() }
+        Self { number, shard: [number % parts.max(1), parts], ..self }
     }
 }
 
 #[derive(Serialize)]
 struct PlacedRow<'a> {
-    campaign: &'a ScenePlace,
+    campaign: &'a ScenePlace<'a>,
     #[serde(flatten)]
     row: &'a CampaignRow,
 }

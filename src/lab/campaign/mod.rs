@@ -4,7 +4,6 @@
 mod draw;
 mod lines;
 mod recorder;
-mod rungs;
 mod score;
 mod statistics;
 mod tables;
@@ -24,7 +23,7 @@ use crate::lab::chance::Chance;
 use crate::lab::damage::Wish;
 pub use crate::lab::damage::{DamageKind, drawn as kinds};
 use crate::lab::data::{
-    Campaign, CampaignRequest, CampaignRow, CampaignShard, Damage, SceneFile, SceneNumber, SyntheticRecording,
+    Campaign, CampaignRequest, CampaignRow, Damage, SceneFile, SceneNumber, SyntheticRecording,
 };
 use crate::numerics::as_f64;
 use crate::ordered_parallel;
@@ -37,30 +36,15 @@ pub const WORDS: [&str; 3] = ["all", "undamaged", "sound"];
 /// Runs the campaign; `progress` is told the share that is done. The same request gives the same rows.
 #[must_use]
 pub fn run(request: &CampaignRequest, progress: Progress) -> Campaign {
-    let (count, mut rows) = (count(request), Vec::new());
+    let (numbers, mut rows) = (numbers(request), Vec::new());
     let take = |_, row| {
         rows.push(row);
-        progress(as_f64(rows.len()) / as_f64(count));
+        progress(as_f64(rows.len()) / as_f64(numbers.len()));
         Ok::<(), Infallible>(())
     };
-    let Ok(()) = each(request, CampaignShard::WHOLE, 0, take);
-    Campaign { request: request.clone(), rows }
-}
-
-/// Runs the scenes of a shard but for the first `done`, and hands over each with its number in the campaign,
-/// in their order.
-///
-/// # Errors
-/// The first that `take` returns.
-pub fn each<E>(
-    request: &CampaignRequest,
-    shard: CampaignShard,
-    done: usize,
-    mut take: impl FnMut(usize, CampaignRow) -> Result<(), E>,
-) -> Result<(), E> {
-    let own = numbers(request).enumerate().skip(shard.index).step_by(shard.count).skip(done);
     let jobs = rayon::current_num_threads();
-    ordered_parallel::each(own, jobs, |(_, number)| row(request, number), |(i, _), row| take(i, row))
+    let Ok(()) = ordered_parallel::each(numbers.iter(), jobs, |number| row(request, *number), take);
+    Campaign { request: request.clone(), rows }
 }
 
 /// One scene as `synth` writes it: the scene with what is stated of it, and its recording.
@@ -70,29 +54,18 @@ pub fn scene(seed: u64, number: SceneNumber, exact: bool) -> (SceneFile, Synthet
     (SceneFile { scene: drop.scene, stated: drop.stated }, recording)
 }
 
-/// How many scenes there are.
+/// The scenes of a campaign in their order, undamaged ones first: those of a kind are counted through all
+/// kinds, those not asked for left out.
 #[must_use]
-pub fn count(request: &CampaignRequest) -> usize {
-    let has = |is: bool| if is { usize::try_from(request.scenes).unwrap_or(usize::MAX) } else { 0 };
-    has(is_wanted(request, None)) + has(kinds().any(|kind| is_wanted(request, Some(kind))))
-}
-
-/// Whether drops of a kind are asked for, or undamaged ones.
-fn is_wanted(request: &CampaignRequest, kind: Option<&DamageKind>) -> bool {
+pub fn numbers(request: &CampaignRequest) -> Vec<SceneNumber> {
     let has = |word: &str| request.kinds.iter().any(|own| own == word);
-    let [all, undamaged, sound] = WORDS;
-    has(all) || kind.map_or_else(|| has(undamaged), |kind| has(kind.name) || has(sound) && kind.is_sound())
-}
-
-/// The numbers of the scenes: those of a kind are counted through all kinds, those not asked for left out.
-fn numbers(request: &CampaignRequest) -> impl Iterator<Item = SceneNumber> {
-    let wanted: Vec<bool> = kinds().map(|kind| is_wanted(request, Some(kind))).collect();
-    let undamaged = if is_wanted(request, None) { request.scenes } else { 0 };
-    let damaged = if wanted.contains(&true) { request.scenes } else { 0 };
-    let damaged = (0..u32::MAX)
-        .filter(move |number| wanted[*number as usize % wanted.len()])
-        .take(usize::try_from(damaged).unwrap_or(0));
-    (0..undamaged).map(SceneNumber::Undamaged).chain(damaged.map(SceneNumber::Damaged))
+    let [all, undamaged, sound] = WORDS.map(has);
+    let wanted: Vec<bool> = kinds().map(|kind| all || has(kind.name) || sound && kind.is_sound()).collect();
+    let is_wanted = |number: &u32| wanted[*number as usize % wanted.len()];
+    let count = |is_any: bool| if is_any { request.scenes as usize } else { 0 };
+    let damaged = (0..u32::MAX).filter(is_wanted).take(count(wanted.contains(&true)));
+    let undamaged = (0..u32::MAX).take(count(all || undamaged));
+    undamaged.map(SceneNumber::Undamaged).chain(damaged.map(SceneNumber::Damaged)).collect()
 }
 
 /// What there is to scene D`number`: kinds take turns, then sizes.
@@ -103,7 +76,9 @@ fn kind_and_size(number: u32) -> (&'static DamageKind, f64) {
     (kind, kind.sizes[(number / kinds.len()) % kind.sizes.len()])
 }
 
-fn row(request: &CampaignRequest, number: SceneNumber) -> CampaignRow {
+/// What is found of a scene, beside its truth.
+#[must_use]
+pub fn row(request: &CampaignRequest, number: SceneNumber) -> CampaignRow {
     let scene = recorded(request.seed, number, request.exact);
     let read = scene.drop.read(&scene.recording);
     let analysis = read.map(|read| measure(&read, &scene.drop.stated));
@@ -141,11 +116,13 @@ mod tests {
     }
 
     #[test]
-    fn shards_hold_every_scene_once() {
-        for words in [&["all"][..], &["undamaged"], &["skew", "hum"], &["sound"]] {
+    fn words_name_as_many_scenes_as_are_asked_for() {
+        for (words, count) in
+            [(&["all"][..], 14), (&["undamaged"], 7), (&["skew", "hum"], 7), (&["sound"], 7)]
+        {
             let kinds = words.iter().map(|word| (*word).to_owned()).collect();
             let request = CampaignRequest { scenes: 7, seed: 1, kinds, exact: false };
-            assert_eq!(numbers(&request).count(), count(&request), "{words:?}");
+            assert_eq!(numbers(&request).len(), count, "{words:?}");
         }
     }
 }

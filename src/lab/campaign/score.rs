@@ -131,7 +131,7 @@ fn cells(row: &CampaignRow) -> Vec<Cell> {
         maybe("size", damage.map(|damage| damage.size)),
         cell("size_unit", damage.map_or("", |damage| &damage.unit)),
         cell("verdict", row.verdict.map_or_else(|| "refused".to_owned(), written)),
-        cell("outcome", format!("{:?}", statistics::outcome(row)).to_lowercase()),
+        cell("outcome", statistics::outcome(row).word()),
         cell("errors", row.errors.join(" ")),
         cell("warnings", row.warnings.join(" ")),
     ];

@@ -1,7 +1,7 @@
 //! Rows to shares, quantiles and classes of right and wrong, which add up exactly in whatever order and parts
 //! they are counted.
 
-use crate::data::Verdict;
+use crate::data::{ReconstructionRung, Verdict};
 use crate::lab::data::{CampaignRow, Scored, Stated};
 pub(in crate::lab) use crate::numerics::robust::quantile;
 use std::collections::BTreeMap;
@@ -35,6 +35,16 @@ pub(super) enum SceneOutcome {
     Caught,
     /// Passed, and wrong.
     Missed,
+}
+
+impl SceneOutcome {
+    /// From the best to the worst.
+    pub(super) const ALL: [Self; 4] = [Self::Right, Self::Covered, Self::Caught, Self::Missed];
+
+    /// "right", "covered" and so on.
+    pub(super) fn word(self) -> String {
+        format!("{self:?}").to_lowercase()
+    }
 }
 
 /// What became of the scene of this row, by speed and k.
@@ -149,11 +159,20 @@ impl Spread {
     }
 }
 
+/// What is said of a scene in a word each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct SceneWords {
+    /// None where the recording was refused.
+    pub verdict: Option<Verdict>,
+    pub outcome: SceneOutcome,
+    /// The rung of the reconstruction taken.
+    pub rung: Option<ReconstructionRung>,
+}
+
 /// Some scenes of a campaign, counted.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct SceneGroup {
-    /// By verdict, none where the recording was refused, and outcome.
-    counts: BTreeMap<(Option<Verdict>, SceneOutcome), usize>,
+    counts: BTreeMap<SceneWords, usize>,
     /// In the order of [`QUANTITIES`].
     spreads: Vec<Spread>,
 }
@@ -161,28 +180,27 @@ pub(super) struct SceneGroup {
 impl SceneGroup {
     /// Counts a scene, and of its quantities so many.
     pub(super) fn add(&mut self, row: &CampaignRow, quantities: usize) {
-        *self.counts.entry((row.verdict, outcome(row))).or_default() += 1;
+        let words = SceneWords { verdict: row.verdict, outcome: outcome(row), rung: row.rung };
+        *self.counts.entry(words).or_default() += 1;
         self.spreads.resize(quantities, Spread::default());
         for (spread, (name, _, relative, _)) in self.spreads.iter_mut().zip(QUANTITIES) {
-            let scored = row.quantities.get(name);
-            spread.add(scored.and_then(|scored| scored.stated.zip(scored.truth)), relative);
+            spread.add(row.stated(name).zip(row.truth(name)), relative);
         }
+    }
+
+    /// How many scenes there are of which this is said.
+    pub(super) fn count(&self, is_said: impl Fn(&SceneWords) -> bool) -> usize {
+        self.counts.iter().filter(|(words, _)| is_said(words)).map(|(_, count)| count).sum()
     }
 
     /// How many scenes there are.
     pub(super) fn len(&self) -> usize {
-        self.counts.values().sum()
-    }
-
-    /// How many have this verdict; and of these the outcomes.
-    pub(super) fn of(&self, verdict: Verdict) -> Self {
-        let own = self.counts.iter().filter(|((own, _), _)| *own == Some(verdict));
-        Self { counts: own.map(|(key, count)| (*key, *count)).collect(), spreads: Vec::new() }
+        self.count(|_| true)
     }
 
     /// How many have this outcome.
-    pub(super) fn count(&self, wanted: SceneOutcome) -> usize {
-        self.counts.iter().filter(|((_, outcome), _)| *outcome == wanted).map(|(_, count)| count).sum()
+    pub(super) fn with(&self, outcome: SceneOutcome) -> usize {
+        self.count(|words| words.outcome == outcome)
     }
 
     /// What is counted of a quantity.

@@ -1,11 +1,11 @@
 //! A campaign to the document that says how far off the analysis is, how often its intervals hold, and how
 //! often it says so.
 
+use super::score::written;
 use super::statistics::{QUANTITIES, SceneGroup, SceneOutcome, Spread};
-use super::tally::{GroupKey, NUMBERS, Tally};
-use crate::data::Verdict;
-use crate::lab::data::{Campaign, CampaignRow};
-use crate::lab::drawn::BUILDS;
+use super::tally::{ClassTable, Tally};
+use crate::data::{ReconstructionRung, Verdict};
+use crate::lab::data::{Campaign, CampaignRow, Stated};
 use crate::numerics::as_f64;
 use crate::report::as_markdown;
 use crate::report::document::{Chapter, ChapterPart, ReportDocument};
@@ -25,35 +25,38 @@ pub(in crate::lab) fn rungs(campaign: &Campaign) -> [ChapterPart; 2] {
     for row in &campaign.rows {
         tally.add(row);
     }
-    tally.rungs.tables()
+    [taken_rungs(&tally), other_rungs(&tally)]
 }
+
+/// The scenes of a class behind its words.
+type NamedGroup<'a> = (&'a str, &'a SceneGroup);
 
 fn document(tally: &Tally) -> ReportDocument {
     let [undamaged, sound, damaged] =
-        [GroupKey::Undamaged, GroupKey::Sound, GroupKey::Damaged].map(|key| tally.group(&key));
+        [ClassTable::Undamaged, ClassTable::SoundKinds, ClassTable::DamagedKinds].map(|t| tally.groups(t));
+    let all = |groups: &[NamedGroup]| groups.last().map_or(0, |(_, all)| all.len());
     let summary = format!(
         "{} undamaged scenes, {} of sound kinds and {} damaged ones, seed {}{}.",
-        undamaged.len(),
-        sound.len() - undamaged.len(),
-        damaged.len(),
+        all(&undamaged),
+        all(&sound) - all(&undamaged),
+        all(&damaged),
         tally.request.seed,
         if tally.request.exact { ", what is stated exactly true" } else { "" },
     );
     let mut chapters = vec![Chapter::new("").with(ChapterPart::text(summary))];
     let mut chapter = |heading: &str, table| chapters.push(Chapter::new(heading).with(table));
-    if undamaged.len() > 0 {
-        chapter("Undamaged scenes", verdicts(&undamaged));
-        chapter("Errors and intervals", intervals(&tally.group(&GroupKey::Passed), &undamaged));
-        let [taken, beside] = tally.rungs.tables();
-        chapter("Rungs of the reconstruction", taken);
-        chapter("What other rungs would change", beside);
+    if let Some((_, all)) = undamaged.last() {
+        chapter("Undamaged scenes", verdicts(all));
+        chapter("Errors and intervals", intervals(&undamaged));
+        chapter("Rungs of the reconstruction", taken_rungs(tally));
+        chapter("What other rungs would change", other_rungs(tally));
     }
-    if sound.len() > 0 {
-        chapter("Sound drops, by kind", coverage(&sound_kinds(tally)));
-        chapter("Sound drops, by class", coverage(&classes(tally)));
+    if !sound.is_empty() {
+        chapter("Sound drops, by kind", coverage(&sound));
+        chapter("Sound drops, by class", coverage(&tally.groups(ClassTable::SoundClasses)));
     }
-    if damaged.len() > 0 {
-        chapter("Damaged scenes, by kind", damages(tally));
+    if !damaged.is_empty() {
+        chapter("Damaged scenes, by kind", damages(&damaged));
     }
     chapters.push(Chapter::new("Passed and wrong").with_all(missed(tally)));
     ReportDocument { chapters, ..ReportDocument::default() }
@@ -75,6 +78,11 @@ impl Spread {
         number(self.errors.quantile(share), decimals)
     }
 
+    /// The half-width that half of the scenes stay below.
+    pub(super) fn half_width(&self, decimals: usize) -> String {
+        number(self.half_widths.quantile(0.5), decimals)
+    }
+
     /// How many of the intervals hold the truth.
     pub(super) fn held(&self) -> String {
         share(self.held, self.count())
@@ -82,23 +90,25 @@ impl Spread {
 }
 
 fn verdicts(scenes: &SceneGroup) -> ChapterPart {
-    let of = [("pass", Verdict::Pass), ("review", Verdict::Review), ("fail", Verdict::Fail)]
-        .map(|(name, verdict)| (name, scenes.of(verdict)));
-    let right = |of: &SceneGroup| of.count(SceneOutcome::Right) + of.count(SceneOutcome::Covered);
-    ReportTable::of(&of)
-        .text("verdict", |(name, _)| *name)
-        .number("scenes", |(_, of)| of.len().to_string())
-        .number("share", |(_, of)| share(of.len(), scenes.len()))
-        .number("speed and k right or held", |(_, of)| right(of).to_string())
-        .number("missed", |(_, of)| of.count(SceneOutcome::Missed).to_string())
+    let number = |verdict: &Verdict, outcomes: &[SceneOutcome]| {
+        scenes.count(|s| s.verdict == Some(*verdict) && outcomes.contains(&s.outcome))
+    };
+    ReportTable::of(&[Verdict::Pass, Verdict::Review, Verdict::Fail])
+        .text("verdict", written)
+        .number("scenes", |verdict| number(verdict, &SceneOutcome::ALL).to_string())
+        .number("share", |verdict| share(number(verdict, &SceneOutcome::ALL), scenes.len()))
+        .number("speed and k right or held", |verdict| {
+            number(verdict, &[SceneOutcome::Right, SceneOutcome::Covered]).to_string()
+        })
+        .number("missed", |verdict| number(verdict, &[SceneOutcome::Missed]).to_string())
         .into()
 }
 
-fn intervals(passed: &SceneGroup, all: &SceneGroup) -> ChapterPart {
-    let of_scenes = |(name, of): (&'static str, &SceneGroup)| {
+fn intervals<'a>(groups: &[NamedGroup<'a>]) -> ChapterPart {
+    let of_group = |&(name, of): &NamedGroup<'a>| {
         QUANTITIES.map(|(quantity, shown, _, decimals)| (name, shown, decimals, of.spread(quantity)))
     };
-    let spreads: Vec<_> = [("passed", passed), ("all", all)].into_iter().flat_map(of_scenes).collect();
+    let spreads: Vec<_> = groups.iter().flat_map(of_group).collect();
     ReportTable::of(&spreads)
         .text("scenes", |(name, ..)| *name)
         .text("quantity", |(_, shown, ..)| *shown)
@@ -106,41 +116,48 @@ fn intervals(passed: &SceneGroup, all: &SceneGroup) -> ChapterPart {
         .number("error: median", |(_, _, decimals, spread)| spread.error(0.5, *decimals))
         .number("95th", |(_, _, decimals, spread)| spread.error(0.95, *decimals))
         .number("largest", |(_, _, decimals, spread)| spread.error(1.0, *decimals))
-        .number("half-width: median", |(_, _, decimals, spread)| {
-            number(spread.half_widths.quantile(0.5), *decimals)
-        })
+        .number("half-width: median", |(_, _, decimals, spread)| spread.half_width(*decimals))
         .number("holds the truth", |(.., spread)| spread.held())
         .into()
 }
 
-/// The sound drops of each cask, and those with a small, middle and large number.
-fn classes(tally: &Tally) -> Vec<(String, SceneGroup)> {
-    let casks = BUILDS.map(|build| (build.name.to_owned(), tally.group(&GroupKey::Cask(build.name))));
-    let numbers = NUMBERS.iter().flat_map(|&(name, unit, [low, high], _)| {
-        let between = [format!("below {low}"), format!("{low} to {high}"), format!("above {high}")];
-        let named = between.map(|between| format!("{name} {between}{unit}"));
-        named.into_iter().enumerate().map(move |(class, named)| (named, GroupKey::Class(name, class)))
-    });
-    casks.into_iter().chain(numbers.map(|(words, key)| (words, tally.group(&key)))).collect()
+/// Scenes by the rung of the reconstruction taken.
+fn taken_rungs(tally: &Tally) -> ChapterPart {
+    let groups = tally.groups(ClassTable::Rungs);
+    let mut table = ReportTable::of(&groups).text("scene", |(words, _)| *words);
+    for rung in ReconstructionRung::ALL {
+        table = table.number(written(rung), |(_, of)| of.count(|s| s.rung == Some(rung)).to_string());
+    }
+    table.into()
 }
 
-/// The undamaged drops, those of each sound kind, and all of them.
-fn sound_kinds(tally: &Tally) -> Vec<(String, SceneGroup)> {
-    let named = super::kinds().filter(|kind| kind.is_sound()).map(|kind| kind.name);
-    let of = |name: &str| (name.to_owned(), tally.group(&GroupKey::SoundKind(name.to_owned())));
-    let all = ("all".to_owned(), tally.group(&GroupKey::Sound));
-    std::iter::once("undamaged").chain(named).map(of).chain([all]).collect()
+/// What every rung says of the drops that take one.
+fn other_rungs(tally: &Tally) -> ChapterPart {
+    let pairs: Vec<_> = tally.rungs.iter().filter(|(_, said)| said.k.count() > 0).collect();
+    ReportTable::of(&pairs)
+        .chosen(|((taken, rung), _)| taken == rung)
+        .text("taken", |((taken, _), _)| written(taken))
+        .text("rung", |((_, rung), _)| written(rung))
+        .number("drops", |(_, said)| said.k.count().to_string())
+        .number("speed: 95th, %", |(_, said)| said.speed.error(0.95, 2))
+        .number("half-width, %", |(_, said)| said.speed.half_width(2))
+        .number("held", |(_, said)| said.speed.held())
+        .number("k: 95th", |(_, said)| said.k.error(0.95, 4))
+        .number("held", |(_, said)| said.k.held())
+        .number("changes the speed by, half-widths: 95th", |((taken, rung), said)| {
+            if taken == rung { "–".to_owned() } else { said.changes.error(0.95, 2) }
+        })
+        .into()
 }
 
 /// How many of each group pass, how far off they are, and how often each interval holds.
-fn coverage(groups: &[(String, SceneGroup)]) -> ChapterPart {
+fn coverage(groups: &[NamedGroup]) -> ChapterPart {
     let held = |of: &SceneGroup, name| of.spread(name).held();
-    let groups: Vec<_> = groups.iter().filter(|(_, of)| of.len() > 0).collect();
-    ReportTable::of(&groups)
-        .text("drops", |(name, _)| &name[..])
+    ReportTable::of(groups)
+        .text("drops", |(words, _)| *words)
         .number("scenes", |(_, of)| of.len().to_string())
-        .number("pass", |(_, of)| share(of.of(Verdict::Pass).len(), of.len()))
-        .number("covered", |(_, of)| share(of.count(SceneOutcome::Covered), of.len()))
+        .number("pass", |(_, of)| share(of.count(|s| s.verdict == Some(Verdict::Pass)), of.len()))
+        .number("covered", |(_, of)| share(of.with(SceneOutcome::Covered), of.len()))
         .number("speed: 95th, %", |(_, of)| of.spread("speed").error(0.95, 2))
         .number("k: 95th", |(_, of)| of.spread("k").error(0.95, 4))
         .number("held: speed", |(_, of)| held(of, "speed"))
@@ -148,27 +165,20 @@ fn coverage(groups: &[(String, SceneGroup)]) -> ChapterPart {
         .number("ω", |(_, of)| held(of, "omega"))
         .number("v_z", |(_, of)| held(of, "vertical"))
         .number("v_x", |(_, of)| held(of, "horizontal"))
-        .number("missed", |(_, of)| of.count(SceneOutcome::Missed).to_string())
+        .number("missed", |(_, of)| of.with(SceneOutcome::Missed).to_string())
         .into()
 }
 
-/// The outcomes of every kind of damage, in the order of the kinds.
-fn damages(tally: &Tally) -> ChapterPart {
-    let of = |name: &'static str| (name, tally.group(&GroupKey::DamagedKind(name.to_owned())));
-    let mut groups: Vec<(&str, SceneGroup)> = super::kinds().map(|kind| of(kind.name)).collect();
-    groups.retain(|(_, of)| of.len() > 0);
-    groups.push(("all", tally.group(&GroupKey::Damaged)));
-    ReportTable::of(&groups)
+/// The outcomes of every kind of damage.
+fn damages(groups: &[NamedGroup]) -> ChapterPart {
+    let mut table = ReportTable::of(groups)
         .text("damage", |(kind, _)| *kind)
-        .number("scenes", |(.., of)| of.len().to_string())
-        .number("right", |(.., of)| of.count(SceneOutcome::Right).to_string())
-        .number("covered", |(.., of)| of.count(SceneOutcome::Covered).to_string())
-        .number("caught", |(.., of)| of.count(SceneOutcome::Caught).to_string())
-        .number("missed", |(.., of)| of.count(SceneOutcome::Missed).to_string())
-        .number("missed per 200", |(.., of)| {
-            number(200.0 * as_f64(of.count(SceneOutcome::Missed)) / as_f64(of.len()), 1)
-        })
-        .into()
+        .number("scenes", |(_, of)| of.len().to_string());
+    for outcome in SceneOutcome::ALL {
+        table = table.number(outcome.word(), |(_, of)| of.with(outcome).to_string());
+    }
+    let missed_per_200 = |of: &SceneGroup| 200.0 * as_f64(of.with(SceneOutcome::Missed)) / as_f64(of.len());
+    table.number("missed per 200", |(_, of)| number(missed_per_200(of), 1)).into()
 }
 
 /// The scenes that passed and are wrong, as many as are listed.
@@ -181,15 +191,11 @@ fn missed(tally: &Tally) -> Vec<ChapterPart> {
         Some(d) if d.unit.is_empty() => d.kind.clone(),
         Some(d) => format!("{} {} {}", d.kind, d.size, d.unit),
     };
-    let scored = |row: &CampaignRow, name| row.quantities.get(name).copied();
     let stated = |row: &CampaignRow, name, decimals| {
-        scored(row, name).and_then(|s| s.stated).map_or_else(
-            || "–".to_owned(),
-            |e| format!("{} ± {}", number(e.value, decimals), number(e.u95, decimals)),
-        )
+        let words = |e: Stated| format!("{} ± {}", number(e.value, decimals), number(e.u95, decimals));
+        row.stated(name).map_or_else(|| "–".to_owned(), words)
     };
-    let truth =
-        |row: &CampaignRow, name, decimals| optional_fixed(scored(row, name).and_then(|s| s.truth), decimals);
+    let truth = |row: &CampaignRow, name, decimals| optional_fixed(row.truth(name), decimals);
     let table = ReportTable::of(&tally.missed)
         .text("scene", |row| row.scene.to_string())
         .text("damage", damage)

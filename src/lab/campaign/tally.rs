@@ -1,90 +1,129 @@
-//! Rows, one after the other, to what the tables say of them.
+//! Rows, one after the other, to the counts that stand in the tables: of the scenes of each class, and of
+//! what every rung of the reconstruction says.
 
-use super::rungs::RungTally;
-use super::statistics::{SceneGroup, SceneOutcome, outcome};
-use crate::data::Verdict;
-use crate::lab::data::{CampaignRequest, CampaignRow};
+use super::DamageKind;
+use super::statistics::{QUANTITIES, SceneGroup, SceneOutcome, Spread, outcome};
+use crate::data::{ReconstructionRung, Verdict};
+use crate::lab::data::{CampaignRequest, CampaignRow, Stated};
 use crate::lab::drawn::BUILDS;
 use std::collections::BTreeMap;
 
 /// Scenes that passed and are wrong are listed up to this many.
 const MOST_LISTED: usize = 1000;
 
-/// Quantities that are counted of all groups; of [`GroupKey::Undamaged`] and [`GroupKey::Passed`] all ten
-/// are.
+/// Quantities that are counted of all classes; of undamaged drops all ten are.
 const USUAL_QUANTITIES: usize = 5;
 
-/// What a scene belongs to.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum GroupKey {
-    /// Undamaged drops.
+/// A table that has a row for each of several classes of scenes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum ClassTable {
+    /// Undamaged drops: those that passed, then all.
     Undamaged,
-    /// Undamaged drops that passed.
-    Passed,
-    /// Drops with which nothing is wrong, those of a sound kind among them.
-    Sound,
-    /// Of them those of a kind; "undamaged" those of none.
-    SoundKind(String),
-    /// Of them those of a cask, stretched ones among them.
-    Cask(&'static str),
-    /// Of them those whose number of this name is small (0), middle (1) or large (2).
-    Class(&'static str, usize),
-    /// Drops with something wrong.
-    Damaged,
-    /// Of them those of a kind.
-    DamagedKind(String),
+    /// Drops with which nothing is wrong, by kind, then all.
+    SoundKinds,
+    /// The same by cask, and by whether a number of theirs is small, middle or large.
+    SoundClasses,
+    /// Drops with something wrong, by kind, then all.
+    DamagedKinds,
+    /// Undamaged drops that have a motion, by what asks for a higher rung of the reconstruction, then all.
+    Rungs,
 }
 
-/// A number of a scene.
-type Number = fn(&CampaignRow) -> f64;
-
-/// The truth of a quantity.
-fn truth(row: &CampaignRow, name: &str) -> f64 {
-    row.quantities.get(name).and_then(|scored| scored.truth).unwrap_or(f64::NAN)
+/// Scenes that are counted together: a row of a table.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct SceneClass {
+    table: ClassTable,
+    /// Which row of it.
+    place: usize,
+    words: String,
 }
 
-/// What scenes are classed by, its unit, where the middle class begins and ends, and the number of a scene.
-pub(super) const NUMBERS: [(&str, &str, [f64; 2], Number); 4] = [
-    ("angle", "°", [5.0, 30.0], |row| row.facts.angle_deg),
-    ("contact", " ms", [3.0, 10.0], |row| 1e3 * truth(row, "duration")),
-    ("k", "", [0.1, 0.8], |row| truth(row, "k")),
-    ("rate", " kHz", [10.0, 50.0], |row| row.facts.rate_hz / 1e3),
-];
-
-/// Whether nothing is wrong with the drop of this row.
-fn is_sound_drop(row: &CampaignRow) -> bool {
-    let is_sound = |name: &str| super::kinds().any(|kind| kind.name == name && kind.is_sound());
-    row.damage.as_ref().is_none_or(|damage| is_sound(&damage.kind))
-}
-
-/// All groups of a scene.
-fn groups(row: &CampaignRow) -> Vec<GroupKey> {
-    let kind = row.damage.as_ref().map_or("undamaged", |damage| &damage.kind).to_owned();
-    if !is_sound_drop(row) {
-        return vec![GroupKey::Damaged, GroupKey::DamagedKind(kind)];
+impl SceneClass {
+    fn new(table: ClassTable, place: usize, words: &str) -> Self {
+        Self { table, place, words: words.to_owned() }
     }
-    let classes = NUMBERS.iter().filter_map(|&(name, _, [low, high], number)| {
-        let number = number(row);
-        let class = if number < low { 0 } else { 1 + usize::from(number > high) };
-        (!number.is_nan()).then_some(GroupKey::Class(name, class))
-    });
-    let mut groups: Vec<GroupKey> = classes.collect();
-    groups.extend([GroupKey::Sound, GroupKey::SoundKind(kind)]);
-    let cask = BUILDS.iter().map(|build| build.name).find(|name| row.facts.cask.starts_with(name));
-    groups.extend(cask.map(GroupKey::Cask));
+}
+
+/// The place of all scenes of a table.
+const LAST: usize = usize::MAX;
+
+/// The classes that a scene belongs to.
+fn classes(row: &CampaignRow) -> Vec<SceneClass> {
+    let is_own = |kind: &DamageKind| row.damage.as_ref().is_some_and(|damage| damage.kind == kind.name);
+    let kind = super::kinds().enumerate().find(|(_, kind)| is_own(kind));
+    let is_sound = kind.map_or(row.damage.is_none(), |(_, kind)| kind.is_sound());
+    // Undamaged drops stand before the kinds.
+    let (place, name) = kind.map_or((0, "undamaged"), |(i, kind)| (i + 1, kind.name));
+    let table = if is_sound { ClassTable::SoundKinds } else { ClassTable::DamagedKinds };
+    let mut classes = vec![SceneClass::new(table, place, name), SceneClass::new(table, LAST, "all")];
+    if is_sound {
+        classes.extend(sound_classes(row));
+    }
     if row.damage.is_none() {
-        groups.push(GroupKey::Undamaged);
-        groups.extend((row.verdict == Some(Verdict::Pass)).then_some(GroupKey::Passed));
+        classes.push(SceneClass::new(ClassTable::Undamaged, LAST, "all"));
+        let passed = SceneClass::new(ClassTable::Undamaged, 0, "passed");
+        classes.extend((row.verdict == Some(Verdict::Pass)).then_some(passed));
+        classes.extend(row.rung.iter().flat_map(|_| rung_classes(row)));
     }
-    groups
+    classes
+}
+
+/// Cask, and small, middle or large numbers.
+fn sound_classes(row: &CampaignRow) -> Vec<SceneClass> {
+    let class = |place, words: &str| SceneClass::new(ClassTable::SoundClasses, place, words);
+    // Stretched casks are among those of their name.
+    let cask = BUILDS.iter().position(|build| row.facts.cask.starts_with(build.name));
+    let mut classes: Vec<SceneClass> = cask.map(|i| class(i, BUILDS[i].name)).into_iter().collect();
+    // Where the middle class begins and ends.
+    for (i, (name, unit, [low, high], number)) in (BUILDS.len()..).zip([
+        ("angle", "°", [5.0, 30.0], Some(row.facts.angle_deg)),
+        ("contact", " ms", [3.0, 10.0], row.truth("duration").map(|contact_s| 1e3 * contact_s)),
+        ("k", "", [0.1, 0.8], row.truth("k")),
+        ("rate", " kHz", [10.0, 50.0], Some(row.facts.rate_hz / 1e3)),
+    ]) {
+        let (size, between) = match number {
+            None => continue,
+            Some(small) if small < low => (0, format!("below {low}")),
+            Some(large) if large > high => (2, format!("above {high}")),
+            Some(_) => (1, format!("{low} to {high}")),
+        };
+        classes.push(class(3 * i + size, &format!("{name} {between}{unit}")));
+    }
+    classes
+}
+
+/// What in a scene asks for a higher rung, or is none of the rungs' business.
+fn rung_classes(row: &CampaignRow) -> impl Iterator<Item = SceneClass> {
+    let asks = [
+        ("no mode", row.facts.modes == 0),
+        ("one mode", row.facts.modes == 1),
+        ("two modes", row.facts.modes == 2),
+        ("three modes", row.facts.modes == 3),
+        ("force plateau", row.facts.yields),
+        ("rest recorded", row.facts.rest),
+        ("contact above 10 ms", row.truth("duration").is_some_and(|contact_s| contact_s > 0.01)),
+        ("all", true),
+    ];
+    let held = asks.into_iter().enumerate().filter(|(_, (_, is_so))| *is_so);
+    held.map(|(place, (words, _))| SceneClass::new(ClassTable::Rungs, place, words))
+}
+
+/// What a rung says of the drops for which one is taken.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct RungSpreads {
+    pub speed: Spread,
+    pub k: Spread,
+    /// By how many of the taken one's half-widths it would change the speed.
+    pub changes: Spread,
 }
 
 /// A campaign, counted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tally {
     pub(super) request: CampaignRequest,
-    groups: BTreeMap<GroupKey, SceneGroup>,
-    pub(super) rungs: RungTally,
+    groups: BTreeMap<SceneClass, SceneGroup>,
+    /// Of undamaged drops, by the rung taken and the one that says it.
+    pub(super) rungs: BTreeMap<(ReconstructionRung, ReconstructionRung), RungSpreads>,
     /// The first of those that passed and are wrong.
     pub(super) missed: Vec<CampaignRow>,
     pub(super) missed_count: usize,
@@ -94,23 +133,19 @@ impl Tally {
     /// Of no scene yet.
     #[must_use]
     pub fn new(request: CampaignRequest) -> Self {
-        Self {
-            request,
-            groups: BTreeMap::new(),
-            rungs: RungTally::default(),
-            missed: Vec::new(),
-            missed_count: 0,
-        }
+        Self { request, groups: BTreeMap::new(), rungs: BTreeMap::new(), missed: Vec::new(), missed_count: 0 }
     }
 
     /// Counts a scene.
     pub fn add(&mut self, row: &CampaignRow) {
-        for key in groups(row) {
-            let is_whole = matches!(key, GroupKey::Undamaged | GroupKey::Passed);
-            let quantities = if is_whole { super::statistics::QUANTITIES.len() } else { USUAL_QUANTITIES };
-            self.groups.entry(key).or_default().add(row, quantities);
+        for class in classes(row) {
+            let is_whole = class.table == ClassTable::Undamaged;
+            let quantities = if is_whole { QUANTITIES.len() } else { USUAL_QUANTITIES };
+            self.groups.entry(class).or_default().add(row, quantities);
         }
-        self.rungs.add(row);
+        if let Some(taken) = row.rung.filter(|_| row.damage.is_none()) {
+            self.add_rungs(row, taken);
+        }
         if outcome(row) == SceneOutcome::Missed {
             self.missed_count += 1;
             if self.missed.len() < MOST_LISTED {
@@ -119,8 +154,20 @@ impl Tally {
         }
     }
 
-    /// The scenes of a group; none: an empty one.
-    pub(super) fn group(&self, key: &GroupKey) -> SceneGroup {
-        self.groups.get(key).cloned().unwrap_or_default()
+    fn add_rungs(&mut self, row: &CampaignRow, taken: ReconstructionRung) {
+        for said in &row.rungs {
+            let spreads = self.rungs.entry((taken, said.rung)).or_default();
+            spreads.speed.add(said.speed.zip(row.truth("speed")), true);
+            spreads.k.add(said.k.zip(row.truth("k")), false);
+            let change =
+                row.stated("speed").zip(said.speed).map(|(own, said)| (said.value - own.value) / own.u95);
+            spreads.changes.add(change.map(|value| (Stated { value, u95: 0.0 }, 0.0)), false);
+        }
+    }
+
+    /// The scenes of each row of a table, by its words.
+    pub(super) fn groups(&self, table: ClassTable) -> Vec<(&str, &SceneGroup)> {
+        let own = self.groups.iter().filter(|(class, _)| class.table == table);
+        own.map(|(class, group)| (&class.words[..], group)).collect()
     }
 }

@@ -61,20 +61,6 @@ pub struct CampaignRequest {
     pub exact: bool,
 }
 
-/// A part of a campaign: of `count` parts the one that holds scene `index`, and every `count`-th after it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct CampaignShard {
-    /// Which, from 0.
-    pub index: usize,
-    /// Of how many.
-    pub count: usize,
-}
-
-impl CampaignShard {
-    /// All of it.
-    pub const WHOLE: Self = Self { index: 0, count: 1 };
-}
-
 /// What is wrong with a scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Damage {
@@ -174,6 +160,20 @@ pub struct CampaignRow {
     pub largest_miss_u: Option<f64>,
     /// What it is classed by.
     pub facts: SceneFacts,
+}
+
+impl CampaignRow {
+    /// What is stated of a quantity.
+    #[must_use]
+    pub fn stated(&self, quantity: &str) -> Option<Stated> {
+        self.quantities.get(quantity)?.stated
+    }
+
+    /// The truth of a quantity.
+    #[must_use]
+    pub fn truth(&self, quantity: &str) -> Option<f64> {
+        self.quantities.get(quantity)?.truth
+    }
 }
 
 /// A campaign, done.

@@ -6,8 +6,7 @@ mod synthetic;
 mod trial;
 
 pub use campaign::{
-    Campaign, CampaignRequest, CampaignRow, CampaignShard, Damage, RungSaid, SceneFacts, SceneNumber, Scored,
-    Stated,
+    Campaign, CampaignRequest, CampaignRow, Damage, RungSaid, SceneFacts, SceneNumber, Scored, Stated,
 };
 pub use scene::{
     BendingMode, Chain, CrushableEnd, LooseMass, MotionStep, Scene, SceneChannel, SceneExtras,

@@ -1,11 +1,9 @@
 //! A channel's seed and chain to what is added to its samples: offset, zero shift, noise, hum, a cable that
 //! is shaken or whips.
 
+use crate::lab::chance::Chance;
 use crate::lab::data::Chain;
 use crate::numerics::as_f64;
-use rand::rngs::ChaCha8Rng;
-use rand::{RngExt, SeedableRng};
-use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::{PI, TAU};
 
 /// Sources of chance in a channel: each draws from a stream of its own, so that none moves another.
@@ -51,22 +49,17 @@ pub(super) fn add(
     times: &SampleTimes,
     contacts_s: &[(f64, f64)],
 ) {
-    let stream = |source: u64| {
-        let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        generator.set_stream(index as u64 * STREAMS_A_CHANNEL + source);
-        generator
-    };
+    let stream = |source: u64| Chance::new(seed, index as u64 * STREAMS_A_CHANNEL + source);
     let grown_s = contacts_s.first().map_or(NO_CONTACT_S, |c| (c.1 - c.0).max(f64::MIN_POSITIVE));
     times
         .add(samples_m_s2, |t_s| chain.offset_m_s2 + chain.zero_shift_m_s2 * (t_s / grown_s).clamp(0.0, 1.0));
     if chain.white_noise_m_s2 > 0.0 {
         let mut white = stream(0);
-        let mut normal = move || -> f64 { StandardNormal.sample(&mut white) };
-        times.add(samples_m_s2, |_| chain.white_noise_m_s2 * normal());
+        times.add(samples_m_s2, |_| chain.white_noise_m_s2 * white.normal());
     }
     pink(samples_m_s2, chain.pink_noise_m_s2, times.rate_hz, &mut stream(1));
     if let Some((amplitude_m_s2, frequency_hz)) = chain.hum {
-        let phase = TAU * stream(2).random::<f64>();
+        let phase = stream(2).even(0.0, TAU);
         times.add(samples_m_s2, |t_s| amplitude_m_s2 * (TAU * frequency_hz * t_s + phase).sin());
     }
     if let Some((amplitude_m_s2, frequency_hz)) = chain.whip {
@@ -82,7 +75,7 @@ pub(super) fn add(
 
 /// Noise of spectral density 1/f: equal parts of noise that first-order low-passes an octave apart have
 /// shaped.
-fn pink(samples_m_s2: &mut [f64], sigma_m_s2: f64, rate_hz: f64, generator: &mut ChaCha8Rng) {
+fn pink(samples_m_s2: &mut [f64], sigma_m_s2: f64, rate_hz: f64, chance: &mut Chance) {
     if sigma_m_s2 <= 0.0 {
         return;
     }
@@ -94,11 +87,10 @@ fn pink(samples_m_s2: &mut [f64], sigma_m_s2: f64, rate_hz: f64, generator: &mut
         // x' = a x + √(1 − a²) w keeps the variance of w; a = e^(−2π f_c/f_s).
         let kept = (-TAU * corner_hz / rate_hz).exp();
         let fresh = (1.0 - kept * kept).sqrt();
-        let mut state: f64 = StandardNormal.sample(generator);
+        let mut state = chance.normal();
         for sample in samples_m_s2.iter_mut() {
             *sample += part * state;
-            let drawn: f64 = StandardNormal.sample(generator);
-            state = kept * state + fresh * drawn;
+            state = kept * state + fresh * chance.normal();
         }
     }
 }
@@ -109,11 +101,11 @@ fn cable(
     amplitude_m_s2: f64,
     times: &SampleTimes,
     contacts_s: &[(f64, f64)],
-    generator: &mut ChaCha8Rng,
+    chance: &mut Chance,
 ) {
     for &(from_s, to_s) in contacts_s.iter().filter(|(from_s, to_s)| to_s > from_s) {
-        let frequency_hz = CABLE_HZ.0 * (CABLE_HZ.1 / CABLE_HZ.0).powf(generator.random::<f64>());
-        let phase = TAU * generator.random::<f64>();
+        let frequency_hz = CABLE_HZ.0 * (CABLE_HZ.1 / CABLE_HZ.0).powf(chance.even(0.0, 1.0));
+        let phase = chance.even(0.0, TAU);
         let [first, last] =
             [from_s, to_s].map(|t| super::recorder::ceiling((t - times.from_s) * times.rate_hz));
         let last = last.min(samples_m_s2.len());
