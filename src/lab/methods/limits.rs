@@ -16,7 +16,8 @@ const TABLE: &str = include_str!("../limits.tsv");
 type Found = (Option<f64>, String);
 
 /// Every limit beside what was found: those of the table, then a site's own recordings.
-pub(super) fn limits(
+#[must_use]
+pub fn limits(
     points: &[TrialPoint],
     maps: &[TrialMap],
     campaign: &Campaign,
@@ -41,13 +42,6 @@ pub(super) fn limits(
     of_table.chain(site.into_iter().flat_map(References::limits)).collect()
 }
 
-/// The limits that a point alone decides.
-#[must_use]
-pub fn limits_of(point: &TrialPoint) -> Vec<TrialLimit> {
-    let of_point = table().filter(|limit| is_named(point, &limit.name));
-    of_point.map(|limit| TrialLimit { value: Some(point.p95_error), ..limit }).collect()
-}
-
 /// The limits of the table, nothing found yet.
 fn table() -> impl Iterator<Item = TrialLimit> {
     let of_line = |line: &str| {
@@ -59,8 +53,7 @@ fn table() -> impl Iterator<Item = TrialLimit> {
             most: next().parse().ok(),
             unit: next(),
             reason: next(),
-            value: None,
-            which: String::new(),
+            ..TrialLimit::default()
         }
     };
     TABLE.lines().filter(|line| !line.is_empty() && !line.starts_with('#')).map(of_line)
