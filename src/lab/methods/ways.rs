@@ -70,7 +70,7 @@ const WORKINGS: [(&str, Working); 7] = [
 /// second's highest pulse, the rebound as the first's mean between its own and that foot.
 fn filter_first(class: f64, recording: &Recording, file: &CaskFile) -> Option<Answer> {
     let v0_m_s = file.drop.impact_velocity_m_s;
-    let of = |end: End| {
+    let filtered = |end: End| {
         let channel = recording.channels.iter().find(|c| c.end == end && c.axis == Axis::Transverse)?;
         let mut force = channel.force_m_s2(0, channel.samples.len());
         let still = force.len().min(2000);
@@ -82,7 +82,7 @@ fn filter_first(class: f64, recording: &Recording, file: &CaskFile) -> Option<An
         let velocity = running_integral(&smooth, 1.0 / channel.sample_rate_hz);
         Some((smooth, velocity))
     };
-    let ((first, rising), (second, falling)) = (of(End::First)?, of(End::Second)?);
+    let ((first, rising), (second, falling)) = (filtered(End::First)?, filtered(End::Second)?);
     let top = |of: &[f64], from: usize| (from..of.len()).max_by(|&a, &b| of[a].total_cmp(&of[b]));
     let struck = top(&first, 0)?;
     let left = (struck..first.len()).find(|&i| first[i] < 0.05 * first[struck])?;

@@ -86,6 +86,11 @@ pub(super) fn pooled<'a>(trial: &'a Trial, family: &'a str) -> impl Iterator<Ite
     trial.points.iter().filter(move |p| p.family == family && p.class == ALL_CLASSES && p.cases > 0)
 }
 
+/// What reading the files of a family takes.
+pub(super) fn reading<'a>(trial: &'a Trial, family: &str) -> Option<&'a TrialPoint> {
+    trial.points.iter().find(|p| p.family == family && p.class == ALL_CLASSES && p.method == READING)
+}
+
 /// What a verdict needs and what the program promises, as lines.
 fn levels(ways: &[&TrialPoint], ends: (f64, f64), needed: &str, promised: &str) -> Vec<Curve> {
     let level = |error: f64, dash, words: &str| {
@@ -101,7 +106,7 @@ fn levels(ways: &[&TrialPoint], ends: (f64, f64), needed: &str, promised: &str) 
 fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
     let first = *ways.first()?;
     let of_family = || trial.points.iter().filter(|p| p.family == first.family);
-    let reading = of_family().find(|p| p.class == ALL_CLASSES && p.method == READING);
+    let reading = reading(trial, &first.family);
     let seconds = |p: &TrialPoint| 1e-9 * p.time_ns;
     let at = |p: &TrialPoint| (seconds(p), drawn(p, p.p95_error));
     let ends = decades(ways.iter().copied().chain(reading).map(seconds));
