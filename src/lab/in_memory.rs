@@ -17,13 +17,11 @@ const NAME: &str = "synthetic";
 pub fn synthetic(recording: &SyntheticRecording, cask_file: &CaskFile) -> Result<Recording, IngestError> {
     let path = Path::new(NAME);
     let mut channels = Vec::with_capacity(recording.channels.len());
-    for (spec, channel) in recording.channels.iter().enumerate() {
-        let Some(stated) = cask_file.channels.get(spec) else { break };
+    let recording = recording.mounted(cask_file);
+    for (spec, channel) in recording.channels.iter().enumerate().take(cask_file.channels.len()) {
         let block = |(from, run): (usize, &[f32])| Block { start_s: channel.time_s(from), count: run.len() };
         let blocks: Vec<Block> = channel.runs().map(block).collect();
-        // As a sensor writes them that is mounted with this polarity.
-        let mounted = |&x: &f32| if stated.polarity < 0.0 { -x } else { x };
-        let samples = channel.samples.iter().filter(|x| !x.is_nan()).map(mounted).collect();
+        let samples = channel.samples.iter().copied().filter(|x| !x.is_nan()).collect();
         let uniform = time_base::from_blocks(&blocks, channel.sample_rate_hz, Samples::F32(samples));
         let uniform = uniform.map_err(|problem| {
             let mend = "record the channel over the whole drop";

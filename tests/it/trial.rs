@@ -1,12 +1,13 @@
 //! The quick trial's accuracy figures, seeded, to the bounds that keep a change from losing accuracy. Times
 //! are not looked at.
 
-use dropcheck::lab::data::{TrialPoint, TrialRequest};
+use dropcheck::lab::data::{Campaign, CampaignRequest, TrialLimit, TrialPoint, TrialRequest};
+use dropcheck::lab::methods;
 
 const REQUEST: TrialRequest = TrialRequest { quick: true, seed: 1 };
 
 fn run(name: &str) -> Vec<TrialPoint> {
-    let mut families = dropcheck::lab::methods::FAMILIES.into_iter();
+    let mut families = methods::FAMILIES.into_iter();
     families.find(|family| family.0 == name).expect("a family of that name").1(&REQUEST)
 }
 
@@ -53,13 +54,14 @@ fn the_program_is_near_from_file_to_answer_and_what_it_leaves_out_is_not() {
 #[test]
 fn the_limits_of_ways_are_those_that_the_quick_trial_keeps() {
     let mut points = Vec::new();
-    for (_, tried) in dropcheck::lab::methods::FAMILIES {
+    for (_, tried) in methods::FAMILIES {
         points.extend(tried(&REQUEST));
     }
-    let kept = |point: &TrialPoint| dropcheck::lab::methods::limits_of(point);
-    let limits: Vec<_> = defaults(&points).flat_map(kept).collect();
-    assert!(limits.len() == 11, "{limits:?}");
-    assert!(limits.iter().all(dropcheck::lab::data::TrialLimit::is_kept), "{limits:?}");
+    let request = CampaignRequest { scenes: 0, seed: 1, kinds: vec![], exact: false };
+    let limits = methods::limits(&points, &[], &Campaign { request, rows: vec![] }, None);
+    let is_of_ways = |limit: &&TrialLimit| methods::WAYS.iter().any(|family| limit.name.starts_with(family));
+    let of_ways: Vec<&TrialLimit> = limits.iter().filter(is_of_ways).collect();
+    assert!(of_ways.len() == 13 && of_ways.iter().all(|limit| limit.is_kept()), "{of_ways:?}");
 }
 
 #[test]

@@ -126,7 +126,7 @@ fn taken_rungs(tally: &Tally) -> ChapterPart {
     let groups = tally.groups(ClassTable::Rungs);
     let mut table = ReportTable::of(&groups).text("scene", |(words, _)| *words);
     for rung in ReconstructionRung::ALL {
-        table = table.number(written(rung), |(_, of)| of.count(|s| s.rung == Some(rung)).to_string());
+        table = table.number(written(rung), |(_, scenes)| scenes.count(|s| s.rung == Some(rung)).to_string());
     }
     table.into()
 }
@@ -152,20 +152,20 @@ fn other_rungs(tally: &Tally) -> ChapterPart {
 
 /// How many of each group pass, how far off they are, and how often each interval holds.
 fn coverage(groups: &[NamedGroup]) -> ChapterPart {
-    let held = |of: &SceneGroup, name| of.spread(name).held();
+    let held = |scenes: &SceneGroup, name| scenes.spread(name).held();
     ReportTable::of(groups)
         .text("drops", |(words, _)| *words)
-        .number("scenes", |(_, of)| of.len().to_string())
-        .number("pass", |(_, of)| share(of.count(|s| s.verdict == Some(Verdict::Pass)), of.len()))
-        .number("covered", |(_, of)| share(of.with(SceneOutcome::Covered), of.len()))
-        .number("speed: 95th, %", |(_, of)| of.spread("speed").error(0.95, 2))
-        .number("k: 95th", |(_, of)| of.spread("k").error(0.95, 4))
-        .number("held: speed", |(_, of)| held(of, "speed"))
-        .number("k", |(_, of)| held(of, "k"))
-        .number("ω", |(_, of)| held(of, "omega"))
-        .number("v_z", |(_, of)| held(of, "vertical"))
-        .number("v_x", |(_, of)| held(of, "horizontal"))
-        .number("missed", |(_, of)| of.with(SceneOutcome::Missed).to_string())
+        .number("scenes", |(_, scenes)| scenes.len().to_string())
+        .number("pass", |(_, scenes)| share(scenes.count(|s| s.verdict == Some(Verdict::Pass)), scenes.len()))
+        .number("covered", |(_, scenes)| share(scenes.with(SceneOutcome::Covered), scenes.len()))
+        .number("speed: 95th, %", |(_, scenes)| scenes.spread("speed").error(0.95, 2))
+        .number("k: 95th", |(_, scenes)| scenes.spread("k").error(0.95, 4))
+        .number("held: speed", |(_, scenes)| held(scenes, "speed"))
+        .number("k", |(_, scenes)| held(scenes, "k"))
+        .number("ω", |(_, scenes)| held(scenes, "omega"))
+        .number("v_z", |(_, scenes)| held(scenes, "vertical"))
+        .number("v_x", |(_, scenes)| held(scenes, "horizontal"))
+        .number("missed", |(_, scenes)| scenes.with(SceneOutcome::Missed).to_string())
         .into()
 }
 
@@ -173,12 +173,13 @@ fn coverage(groups: &[NamedGroup]) -> ChapterPart {
 fn damages(groups: &[NamedGroup]) -> ChapterPart {
     let mut table = ReportTable::of(groups)
         .text("damage", |(kind, _)| *kind)
-        .number("scenes", |(_, of)| of.len().to_string());
+        .number("scenes", |(_, scenes)| scenes.len().to_string());
     for outcome in SceneOutcome::ALL {
-        table = table.number(outcome.word(), |(_, of)| of.with(outcome).to_string());
+        table = table.number(outcome.word(), |(_, scenes)| scenes.with(outcome).to_string());
     }
-    let missed_per_200 = |of: &SceneGroup| 200.0 * as_f64(of.with(SceneOutcome::Missed)) / as_f64(of.len());
-    table.number("missed per 200", |(_, of)| number(missed_per_200(of), 1)).into()
+    let missed_per_200 =
+        |scenes: &SceneGroup| 200.0 * as_f64(scenes.with(SceneOutcome::Missed)) / as_f64(scenes.len());
+    table.number("missed per 200", |(_, scenes)| number(missed_per_200(scenes), 1)).into()
 }
 
 /// The scenes that passed and are wrong, as many as are listed.

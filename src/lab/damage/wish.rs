@@ -39,16 +39,19 @@ impl Wish {
         let has = |word: &str| words.split(' ').any(|one| one == word);
         let either = |yes: &str, no: &str| has(yes).then_some(true).or(has(no).then_some(false));
         Self {
-            flight: match () {
-                () if has("lands_again") => BetweenImpacts::LandsAgain,
-                () if has("short_flight") => BetweenImpacts::Short,
-                () => BetweenImpacts::Free,
+            flight: if has("lands_again") {
+                BetweenImpacts::LandsAgain
+            } else if has("short_flight") {
+                BetweenImpacts::Short
+            } else {
+                BetweenImpacts::Free
             },
-            contact: match () {
-                () if has("friction") => Some(Contact::Coulomb(size)),
-                () if has("stated_rough") => Some(Contact::Rough),
-                () if has("unstated") => Some(Contact::Unknown),
-                () => None,
+            contact: if has("friction") {
+                Some(Contact::Coulomb(size))
+            } else if has("stated_rough") {
+                Some(Contact::Rough)
+            } else {
+                has("unstated").then_some(Contact::Unknown)
             },
             axial: either("axial", "no_axial"),
             rest: either("rest", "no_rest"),

@@ -71,3 +71,17 @@ pub struct SyntheticRecording {
     /// The seed that it was made with.
     pub seed: u64,
 }
+
+impl SyntheticRecording {
+    /// The recording as sensors write it that are mounted as the cask file states.
+    #[must_use]
+    pub fn mounted(&self, stated: &CaskFile) -> Self {
+        let mut mounted = self.clone();
+        for (channel, stated) in mounted.channels.iter_mut().zip(&stated.channels) {
+            if stated.polarity < 0.0 {
+                channel.samples.iter_mut().for_each(|x| *x = -*x);
+            }
+        }
+        mounted
+    }
+}

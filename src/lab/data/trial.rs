@@ -47,9 +47,6 @@ pub struct TrialPoint {
     pub time_per: String,
     /// Cases the error is taken over.
     pub cases: u32,
-    /// The error of each.
-    #[serde(skip)]
-    pub errors: Vec<f64>,
     /// Cases besides in which the method gives no number.
     pub missing: u32,
     /// From where on a difference matters, in `error_unit`.
@@ -126,7 +123,7 @@ impl TrialMap {
 }
 
 /// One limit of the acceptance, and what this program on this machine makes of it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct TrialLimit {
     /// What is measured.
     pub name: String,

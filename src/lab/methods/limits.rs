@@ -16,7 +16,8 @@ const TABLE: &str = include_str!("../limits.tsv");
 type Found = (Option<f64>, String);
 
 /// Every limit beside what was found: those of the table, then a site's own recordings.
-pub(super) fn limits(
+#[must_use]
+pub fn limits(
     points: &[TrialPoint],
     maps: &[TrialMap],
     campaign: &Campaign,
@@ -25,27 +26,16 @@ pub(super) fn limits(
     let found = |name: &str| match name.split_once(": ") {
         Some(("campaign", measured)) => of_campaign(measured, campaign),
         Some(("map", measured)) => of_maps(measured, maps),
-        Some(("filter", "CFC 180 at 300 Hz")) => (passed_at_300_hz(), String::new()),
+        Some(("filter", _)) => (passed_at_300_hz(), String::new()),
         Some(("recordings", _)) => of_own_recordings(),
-        _ => {
-            let held =
-                |p: &TrialPoint| p.class == ALL_CLASSES && name.strip_prefix(&p.family) == Some(": held");
-            let of = |p: &TrialPoint| if held(p) { p.held } else { is_named(p, name).then_some(p.p95_error) };
-            (points.iter().filter(|p| p.is_default).find_map(of), String::new())
-        }
+        Some((family, class)) => (of_points(family, class, points), String::new()),
+        None => (None, String::new()),
     };
     let of_table = table().map(|limit| {
         let (value, which) = found(&limit.name);
         TrialLimit { value, which, ..limit }
     });
     of_table.chain(site.into_iter().flat_map(References::limits)).collect()
-}
-
-/// The limits that a point alone decides.
-#[must_use]
-pub fn limits_of(point: &TrialPoint) -> Vec<TrialLimit> {
-    let of_point = table().filter(|limit| is_named(point, &limit.name));
-    of_point.map(|limit| TrialLimit { value: Some(point.p95_error), ..limit }).collect()
 }
 
 /// The limits of the table, nothing found yet.
@@ -59,16 +49,17 @@ fn table() -> impl Iterator<Item = TrialLimit> {
             most: next().parse().ok(),
             unit: next(),
             reason: next(),
-            value: None,
-            which: String::new(),
+            ..TrialLimit::default()
         }
     };
     TABLE.lines().filter(|line| !line.is_empty() && !line.starts_with('#')).map(of_line)
 }
 
-/// Whether a point is of the family and the class of a name such as "prediction, given k: body, rough".
-fn is_named(point: &TrialPoint, name: &str) -> bool {
-    name.strip_prefix(&point.family).and_then(|rest| rest.strip_prefix(": ")) == Some(&point.class)
+/// Of what the program takes: the 95th percentile of the error on a class, or the share of intervals that are
+/// held.
+fn of_points(family: &str, class: &str, points: &[TrialPoint]) -> Option<f64> {
+    let taken = |class| points.iter().find(|p| p.is_default && p.family == family && p.class == class);
+    if class == "held" { taken(ALL_CLASSES)?.held } else { Some(taken(class)?.p95_error) }
 }
 
 /// Of random sound drops: the share that passes, those that are wrong, or how far off a quantity is, in

@@ -9,7 +9,7 @@ mod prediction;
 mod references;
 mod ways;
 
-pub use limits::limits_of;
+pub use limits::limits;
 pub use points::{ALL_CLASSES, READING};
 pub use references::References;
 pub use ways::WAYS;
@@ -48,7 +48,7 @@ pub fn trial(
         exact: false,
     };
     let campaign = campaign::run(&drops, &|share| progress((2.0 + share) / 3.0));
-    let limits = limits::limits(&points, &maps, &campaign, site);
+    let limits = limits(&points, &maps, &campaign, site);
     Trial {
         schema: "dropcheck.validation/3",
         version: env!("CARGO_PKG_VERSION"),

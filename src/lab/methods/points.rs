@@ -104,73 +104,49 @@ pub(super) const K: WayQuantity = WayQuantity {
 /// A point a way and class, and one of all classes; a way that never says anything of the quantity is none
 /// for it. The drops of a class stand together.
 pub(super) fn scored(of: &WayQuantity, worked: &[Worked], drops: &[KnownDrop]) -> Vec<TrialPoint> {
-    let off = |stated: Option<Estimate>, truth: &Truth| {
-        let (stated, truth) = stated.zip((of.truth)(truth))?;
+    let mut classes: Vec<&'static str> = drops.iter().map(|drop| drop.class).collect();
+    classes.dedup();
+    classes.extend(drops.first().map(|_| ALL_CLASSES));
+    let on_class = |class| worked.iter().map(move |way| point(of, way, drops, class));
+    let points = classes.into_iter().flat_map(on_class);
+    points.filter(|point| point.cases > 0 || point.method == READING).collect()
+}
+
+/// What a way says of the drops of a class, and how long it takes.
+fn point(of: &WayQuantity, way: &Worked, drops: &[KnownDrop], class: &str) -> TrialPoint {
+    let is_own = |i: &usize| class == ALL_CLASSES || drops[*i].class == class;
+    let own: Vec<usize> = (0..drops.len()).filter(is_own).collect();
+    let off = |i: &usize| {
+        let (stated, truth) = (of.stated)(&way.answers[*i]).zip((of.truth)(&drops[*i].truth))?;
         let scale = (of.scale)(truth);
         Some((scale * (stated.value - truth).abs(), scale * stated.u95))
     };
-    let of_class = |class: &'static str| {
-        worked.iter().filter_map(move |way| {
-            let of_class = || (0..drops.len()).filter(|&i| drops[i].class == class);
-            let said: Vec<_> =
-                of_class().map(|i| off((of.stated)(&way.answers[i]), &drops[i].truth)).collect();
-            let (errors, mut half_widths): (Vec<f64>, Vec<f64>) = said.iter().flatten().copied().unzip();
-            let held =
-                errors.iter().zip(&half_widths).filter(|(error, half_width)| error <= half_width).count();
-            let is_any = !errors.is_empty();
-            let promised = is_any.then(|| robust::median(&mut half_widths)).filter(|u| u.is_finite());
-            let words = TrialPoint {
-                family: of.family.to_owned(),
-                method: way.name.clone(),
-                class: class.to_owned(),
-                is_default: way.is_default,
-                error_unit: of.unit.to_owned(),
-                time_per: of.time_per.to_owned(),
-                matters: of.matters,
-                missing: u32::try_from(said.len() - errors.len()).unwrap_or(0),
-                promised,
-                held: promised.map(|_| as_f64(held) / as_f64(errors.len())),
-                ..TrialPoint::default()
-            };
-            let times_ns = quartiles(of_class().map(|i| way.times_ns[i]).collect());
-            (is_any || way.name == READING).then(|| measured(words, errors, times_ns))
-        })
-    };
-    let mut classes: Vec<&'static str> = drops.iter().map(|drop| drop.class).collect();
-    classes.dedup();
-    with_pooled(classes.into_iter().flat_map(of_class).collect())
-}
-
-/// A point with these words, of the errors of drops and the quartiles of a time.
-fn measured(words: TrialPoint, errors: Vec<f64>, [lower_ns, time_ns, upper_ns]: [f64; 3]) -> TrialPoint {
-    let cases = u32::try_from(errors.len()).unwrap_or(u32::MAX);
-    let [median_error, p95_error] = median_and_p95(errors.clone());
-    let time_quartiles_ns = [lower_ns, upper_ns];
-    TrialPoint { median_error, p95_error, time_ns, time_quartiles_ns, cases, errors, ..words }
-}
-
-/// Points of a family with one more for each way: of all its drops, in the median of its times.
-fn with_pooled(mut points: Vec<TrialPoint>) -> Vec<TrialPoint> {
-    let Some(class) = points.first().map(|p| p.class.clone()) else { return points };
-    let methods: Vec<TrialPoint> = points.iter().filter(|p| p.class == class).cloned().collect();
-    for words in methods {
-        let of: Vec<&TrialPoint> = points.iter().filter(|p| p.method == words.method).collect();
-        let middle = |number: fn(&TrialPoint) -> f64| {
-            robust::median(&mut of.iter().map(|p| number(p)).collect::<Vec<_>>())
-        };
-        let held: Vec<f64> = of.iter().filter_map(|p| p.held).collect();
-        let all = TrialPoint {
-            class: ALL_CLASSES.to_owned(),
-            missing: of.iter().map(|p| p.missing).sum(),
-            promised: words.promised.map(|_| middle(|p| p.promised.unwrap_or(f64::NAN))),
-            held: words.held.map(|_| held.iter().sum::<f64>() / as_f64(held.len())),
-            ..words
-        };
-        let times_ns =
-            [middle(|p| p.time_quartiles_ns[0]), middle(|p| p.time_ns), middle(|p| p.time_quartiles_ns[1])];
-        points.push(measured(all, of.iter().flat_map(|p| p.errors.iter().copied()).collect(), times_ns));
+    let said: Vec<(f64, f64)> = own.iter().filter_map(off).collect();
+    let held = said.iter().filter(|(error, half_width)| error <= half_width).count();
+    let (errors, mut half_widths): (Vec<f64>, Vec<f64>) = said.into_iter().unzip();
+    let cases = errors.len();
+    let promised = (cases > 0).then(|| robust::median(&mut half_widths)).filter(|u| u.is_finite());
+    let [median_error, p95_error] = median_and_p95(errors);
+    let [lower_ns, time_ns, upper_ns] = quartiles(own.iter().map(|i| way.times_ns[*i]).collect());
+    let counted = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
+    TrialPoint {
+        family: of.family.to_owned(),
+        method: way.name.clone(),
+        class: class.to_owned(),
+        is_default: way.is_default,
+        is_on_front: false,
+        median_error,
+        p95_error,
+        error_unit: of.unit.to_owned(),
+        time_ns,
+        time_quartiles_ns: [lower_ns, upper_ns],
+        time_per: of.time_per.to_owned(),
+        cases: counted(cases),
+        missing: counted(own.len() - cases),
+        matters: of.matters,
+        promised,
+        held: promised.map(|_| as_f64(held) / as_f64(cases)),
     }
-    points
 }
 
 /// Median and 95th percentile, each that of a drop; what is no number counts as diverged.

@@ -88,34 +88,31 @@ const QUANTITY: WayQuantity = WayQuantity { family: FAMILY, time_per: "call", ..
 /// Calls of a rung that are timed together: the shortest takes no longer than the clock.
 const CALLS: u32 = 20;
 
-type Predicting = Box<dyn Fn(&StiffDrop) -> Option<f64>>;
-
-/// The rungs, the highest first, which is what the program takes; last the limit of stiff ends, where the
+/// The highest rung first, which is what the program takes; last, as none, the limit of stiff ends, where the
 /// program leaves grazes out.
-fn rungs() -> Vec<(&'static str, Predicting)> {
-    let by_rung = |rung: Rung| -> (&'static str, Predicting) {
-        let predicting = move |at: &StiffDrop| {
-            predict::predict_by(rung, &at.body, &at.drop, at.contact, at.k).slap_down_speed_m_s
-        };
-        (rung.words(), Box::new(predicting))
+fn rungs() -> impl Iterator<Item = Option<Rung>> {
+    Rung::ALL.into_iter().rev().map(Some).chain([None])
+}
+
+/// The slap-down speed by a rung, m/s.
+fn speed_m_s(rung: Option<Rung>, at: &StiffDrop) -> Option<f64> {
+    let prediction = match rung {
+        Some(rung) => predict::predict_by(rung, &at.body, &at.drop, at.contact, at.k),
+        None => predict::predict_grazing(&at.body, &at.drop, at.contact, at.k, 0.0),
     };
-    let every_touch = |at: &StiffDrop| {
-        predict::predict_grazing(&at.body, &at.drop, at.contact, at.k, 0.0).slap_down_speed_m_s
-    };
-    let mut rungs: Vec<_> = Rung::ALL.into_iter().rev().map(by_rung).collect();
-    rungs.push(("body, every touch an impact", Box::new(every_touch)));
-    rungs
+    prediction.slap_down_speed_m_s
 }
 
 /// The points of all rungs by class; a drop of which a rung gives no speed is missing there.
 pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {
-    let (drops, rungs): (Vec<StiffDrop>, _) =
-        (CLASSES.iter().flat_map(|class| drops(class, request)).collect(), rungs());
-    let mut worked: Vec<Worked> =
-        rungs.iter().enumerate().map(|(i, (name, _))| Worked::named(name, i == 0)).collect();
+    let drops: Vec<StiffDrop> = CLASSES.iter().flat_map(|class| drops(class, request)).collect();
+    let named = |(i, rung): (usize, Option<Rung>)| {
+        Worked::named(rung.map_or("body, every touch an impact", Rung::words), i == 0)
+    };
+    let mut worked: Vec<Worked> = rungs().enumerate().map(named).collect();
     for drop in &drops {
-        for (worked, (_, predicting)) in worked.iter_mut().zip(&rungs) {
-            worked.timed(CALLS, || Some(Answer::bare(predicting(black_box(drop)), None)));
+        for (worked, rung) in worked.iter_mut().zip(rungs()) {
+            worked.timed(CALLS, || Some(Answer::bare(speed_m_s(rung, black_box(drop)), None)));
         }
     }
     let known: Vec<KnownDrop> = drops.iter().map(|drop| drop.known).collect();

@@ -108,21 +108,17 @@ impl References {
             Ok(analyze(&recording.map_err(|error| error.to_string())?, &file).result)
         });
         let mut limits = vec![words(name, expected, analyzed.as_ref())];
-        let speed_m_s = |value, u95| Estimate::new(value, u95, "m/s");
         let result = analyzed.as_ref().ok();
-        let of = |stated: fn(&DropResult) -> Option<Estimate>| result.and_then(stated);
-        let predicted =
-            result.and_then(|r| r.comparison.as_ref()).map(|c| speed_m_s(c.predicted, c.predicted_u95));
+        let (first, second) = (result.map(|r| &r.first_impact), result.map(|r| &r.slap_down));
+        let predicted = result.and_then(|r| r.comparison.as_ref());
+        let predicted = predicted.map(|c| Estimate::new(c.predicted, c.predicted_u95, "m/s"));
+        let turning = first.and_then(|f| f.angular_velocity);
         for (quantity, expected, found) in [
-            ("impact_velocity_m_s", expected.impact_velocity_m_s, of(|r| r.first_impact.impact_velocity)),
-            ("k", expected.k, of(|r| r.k)),
-            (
-                "angular_velocity_rad_s",
-                expected.angular_velocity_rad_s,
-                of(|r| r.first_impact.angular_velocity),
-            ),
-            ("flight_time_s", expected.flight_time_s, of(|r| r.slap_down.flight_time)),
-            ("slap_down_speed_m_s", expected.slap_down_speed_m_s, of(|r| r.slap_down.speed)),
+            ("impact_velocity_m_s", expected.impact_velocity_m_s, first.and_then(|f| f.impact_velocity)),
+            ("k", expected.k, result.and_then(|r| r.k)),
+            ("angular_velocity_rad_s", expected.angular_velocity_rad_s, turning),
+            ("flight_time_s", expected.flight_time_s, second.and_then(|s| s.flight_time)),
+            ("slap_down_speed_m_s", expected.slap_down_speed_m_s, second.and_then(|s| s.speed)),
             ("predicted_speed_m_s", expected.predicted_speed_m_s, predicted),
         ] {
             let Some(expected) = expected else { continue };
@@ -137,7 +133,7 @@ impl References {
                 least: Some(value - within),
                 most: Some(value + within),
                 reason: format!("expected: {value}"),
-                which: String::new(),
+                ..TrialLimit::default()
             });
         }
         limits
@@ -171,7 +167,6 @@ fn words(name: &Path, expected: &Expected, analyzed: Result<&DropResult, &String
         name: format!("{}: words", name.display()),
         unit: "that differ".to_owned(),
         value: u32::try_from(differs.len()).ok().map(f64::from),
-        least: None,
         most: Some(0.0),
         reason: if wanted.is_empty() {
             "to be analysed".to_owned()
@@ -179,6 +174,7 @@ fn words(name: &Path, expected: &Expected, analyzed: Result<&DropResult, &String
             format!("expected: {}", wanted.join(", "))
         },
         which: differs.join("; "),
+        ..TrialLimit::default()
     }
 }
 

@@ -49,32 +49,28 @@ struct FiledDrop {
     cask: PathBuf,
 }
 
-type Working = Box<dyn Fn(&Recording, &CaskFile) -> Option<Answer>>;
+/// From a recording to what a way says of it.
+type Working = fn(&Recording, &CaskFile) -> Option<Answer>;
 
 /// What the program says and takes.
 const TAKEN: &str = "dropcheck, as taken";
 
 /// Ways of working with a recording that is read.
-fn ways() -> Vec<(&'static str, Working)> {
-    let mut ways: Vec<(&'static str, Working)> = vec![
-        (TAKEN, Box::new(|recording, file| Some(Answer::of(&analyze(recording, file).result)))),
-        ("filter first, CFC 60", Box::new(|recording, file| filter_first(60.0, recording, file))),
-        ("filter first, CFC 180", Box::new(|recording, file| filter_first(180.0, recording, file))),
-    ];
-    for (name, rung) in ["single channels (paper)", "planar alone", "flight alone", "joint alone"]
-        .into_iter()
-        .zip(ReconstructionRung::ALL)
-    {
-        ways.push((name, Box::new(move |recording, file| alone(rung, recording, file))));
-    }
-    ways
-}
+const WORKINGS: [(&str, Working); 7] = [
+    (TAKEN, |recording, file| Some(Answer::of(&analyze(recording, file).result))),
+    ("filter first, CFC 60", |recording, file| filter_first(60.0, recording, file)),
+    ("filter first, CFC 180", |recording, file| filter_first(180.0, recording, file)),
+    ("single channels (paper)", |recording, file| alone(ReconstructionRung::Channels, recording, file)),
+    ("planar alone", |recording, file| alone(ReconstructionRung::Planar, recording, file)),
+    ("flight alone", |recording, file| alone(ReconstructionRung::Flight, recording, file)),
+    ("joint alone", |recording, file| alone(ReconstructionRung::Joint, recording, file)),
+];
 
 /// As one reads it off filtered curves: both channels filtered, integrated, the speed at the foot of the
 /// second's highest pulse, the rebound as the first's mean between its own and that foot.
 fn filter_first(class: f64, recording: &Recording, file: &CaskFile) -> Option<Answer> {
     let v0_m_s = file.drop.impact_velocity_m_s;
-    let of = |end: End| {
+    let filtered = |end: End| {
         let channel = recording.channels.iter().find(|c| c.end == end && c.axis == Axis::Transverse)?;
         let mut force = channel.force_m_s2(0, channel.samples.len());
         let still = force.len().min(2000);
@@ -86,7 +82,7 @@ fn filter_first(class: f64, recording: &Recording, file: &CaskFile) -> Option<An
         let velocity = running_integral(&smooth, 1.0 / channel.sample_rate_hz);
         Some((smooth, velocity))
     };
-    let ((first, rising), (second, falling)) = (of(End::First)?, of(End::Second)?);
+    let ((first, rising), (second, falling)) = (filtered(End::First)?, filtered(End::Second)?);
     let top = |of: &[f64], from: usize| (from..of.len()).max_by(|&a, &b| of[a].total_cmp(&of[b]));
     let struck = top(&first, 0)?;
     let left = (struck..first.len()).find(|&i| first[i] < 0.05 * first[struck])?;
@@ -160,13 +156,12 @@ pub(super) fn points(request: &TrialRequest) -> Vec<TrialPoint> {
     let drops: Vec<FiledDrop> =
         CLASSES.iter().flat_map(|class| filed(class, request, folder.path())).collect();
     let mut worked = vec![Worked::named(READING, false)];
-    let ways = ways();
-    worked.extend(ways.iter().map(|(name, _)| Worked::named(name, *name == TAKEN)));
+    worked.extend(WORKINGS.iter().map(|(name, _)| Worked::named(name, *name == TAKEN)));
     for drop in &drops {
         // Each way has its turn on a file, after one that nobody times.
         black_box(read(drop));
         worked[0].timed(1, || read(drop).map(|_| Answer::default()));
-        for (worked, (_, way)) in worked[1..].iter_mut().zip(&ways) {
+        for (worked, (_, way)) in worked[1..].iter_mut().zip(&WORKINGS) {
             worked.timed(1, || read(drop).and_then(|(recording, file)| way(&recording, &file)));
         }
     }

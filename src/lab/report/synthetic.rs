@@ -51,7 +51,7 @@ pub fn synthetic_files(
     recording_name: &str,
     format: SyntheticFormat,
 ) -> Result<Vec<(String, Vec<u8>)>, SyntheticError> {
-    let recording = &mounted(scene_file, recording);
+    let recording = &recording.mounted(&scene_file.stated);
     let places = place::places(recording, format);
     let bytes = match format {
         SyntheticFormat::McapJson => mcap::bytes(recording, &places, true)?,
@@ -92,17 +92,6 @@ fn one_rate_hz(recording: &SyntheticRecording) -> Result<f64, SyntheticError> {
         Some(other_hz) => Err(SyntheticError::OneRate { first_hz, other_hz }),
         None => Ok(first_hz),
     }
-}
-
-/// The recording as sensors write it that are mounted as the cask file states.
-fn mounted(scene_file: &SceneFile, recording: &SyntheticRecording) -> SyntheticRecording {
-    let mut mounted = recording.clone();
-    for (channel, stated) in mounted.channels.iter_mut().zip(&scene_file.stated.channels) {
-        if stated.polarity < 0.0 {
-            channel.samples.iter_mut().for_each(|x| *x = -*x);
-        }
-    }
-    mounted
 }
 
 /// The names of the files of a recording: its own, the cask file's, the truth's.

@@ -58,11 +58,11 @@ fn seated(scene: &Scene) -> Vec<SceneChannel> {
         return seats;
     }
     for axis in [Axis::Transverse, Axis::Axial] {
-        let of = |end| {
+        let on_end = |end| {
             let all = scene.channels.iter().enumerate();
             all.filter(move |(_, c)| c.end == end && c.axis == axis).map(|(i, _)| i)
         };
-        for (first, second) in of(End::First).zip(of(End::Second)) {
+        for (first, second) in on_end(End::First).zip(on_end(End::Second)) {
             for (to, from) in [(first, second), (second, first)] {
                 let from = &scene.channels[from];
                 (seats[to].position_m, seats[to].offset_m) = (from.position_m, from.offset_m);

@@ -1,9 +1,9 @@
 //! A trial to the pages that a site signs.
 
-use super::pictures::{fate_words, largest_words, pooled};
+use super::pictures::{fate_words, largest_words, pooled, reading};
 use crate::lab::campaign;
 use crate::lab::data::{Trial, TrialFate, TrialLimit, TrialMap, TrialPoint};
-use crate::lab::methods::{ALL_CLASSES, READING, WAYS};
+use crate::lab::methods::{ALL_CLASSES, WAYS};
 use crate::report::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument, Tone};
 use crate::report::medium::Medium;
 use crate::report::record;
@@ -129,22 +129,18 @@ fn silent(trial: &Trial) -> [ChapterPart; 2] {
 
 /// What follows for the user from the picture.
 fn choice(trial: &Trial) -> String {
-    let of = |family: usize, method: &str| {
-        pooled(trial, WAYS[family])
-            .find(|p| if method.is_empty() { p.is_default } else { p.method == method })
-    };
-    let Some((speed, k)) = of(0, "").zip(of(1, "")) else { return "No way of working was tried.".to_owned() };
+    let [taken, taken_k] = [0, 1].map(|family| pooled(trial, WAYS[family]).find(|p| p.is_default));
+    let Some((speed, k)) = taken.zip(taken_k) else { return "No way of working was tried.".to_owned() };
     let ms = |p: &TrialPoint| significant(1e-6 * p.time_ns, 2);
-    let is_as_near = |p: &&TrialPoint| {
-        !p.is_default
-            && p.p95_error <= 1.1 * speed.p95_error
-            && of(1, &p.method).is_some_and(|k_of| k_of.p95_error <= 1.1 * k.p95_error)
+    let is_near_in_k = |way: &TrialPoint| {
+        pooled(trial, WAYS[1]).any(|p| p.method == way.method && p.p95_error <= 1.1 * k.p95_error)
     };
+    let is_as_near =
+        |p: &&TrialPoint| !p.is_default && p.p95_error <= 1.1 * speed.p95_error && is_near_in_k(p);
     let near: Vec<&str> = pooled(trial, WAYS[0]).filter(is_as_near).map(|p| &p.method[..]).collect();
     let others =
         if near.is_empty() { "No other way is".to_owned() } else { format!("Only {} is", near.join(", ")) };
-    let is_reading = |p: &&TrialPoint| p.class == ALL_CLASSES && p.family == WAYS[0] && p.method == READING;
-    let reading = trial.points.iter().find(is_reading).map_or_else(String::new, ms);
+    let reading = reading(trial, WAYS[0]).map_or_else(String::new, ms);
     let fastest = pooled(trial, WAYS[0]).min_by(|a, b| a.time_ns.total_cmp(&b.time_ns)).unwrap_or(speed);
     let is_beyond = |p: &&TrialPoint| {
         p.is_default && p.family == WAYS[0] && p.class != ALL_CLASSES && p.p95_error > p.matters

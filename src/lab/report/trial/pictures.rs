@@ -1,5 +1,6 @@
 //! A trial to its pictures: ways of working by speed and accuracy, the map of what becomes of damages.
 
+use crate::lab::campaign::written;
 use crate::lab::data::{Trial, TrialFate, TrialMap, TrialPoint};
 use crate::lab::methods::{ALL_CLASSES, READING, WAYS};
 use crate::numerics::as_f64;
@@ -33,13 +34,9 @@ fn unit(point: &TrialPoint) -> &str {
     if point.error_unit.starts_with('%') { "%" } else { "as it is" }
 }
 
-/// The colour of a way by its place; rungs of the prediction are not to look like ways.
-fn way_place(index: usize, way: &TrialPoint) -> usize {
-    if way.family == WAYS[2] { index + 10 } else { index }
-}
-
-/// The look of a way by its place among the others.
-fn look(index: usize, at: Vec<(f64, f64)>) -> Points {
+/// The look of a way by its place among the others; rungs of the prediction are not to look like ways.
+fn look(index: usize, way: &TrialPoint, at: Vec<(f64, f64)>) -> Points {
+    let index = if way.family == WAYS[2] { index + 10 } else { index };
     Points::new(COLOURS[index % COLOURS.len()], PointShape::of(index), at)
 }
 
@@ -63,9 +60,7 @@ pub(super) fn ways(trial: &Trial) -> Picture {
     let families: Vec<Vec<&TrialPoint>> = WAYS.iter().map(|family| pooled(trial, family).collect()).collect();
     // The ways of the second family are those of the first.
     let legends = [("Ways", &families[0]), ("Prediction", &families[2])].map(|(title, ways)| {
-        let named = |(index, way): (usize, &&TrialPoint)| {
-            look(way_place(index, way), Vec::new()).named(&way.method[..])
-        };
+        let named = |(index, way): (usize, &&TrialPoint)| look(index, way, Vec::new()).named(&way.method[..]);
         let levels = if title == "Ways" {
             levels(ways, (0.0, 0.0), "what a verdict needs", "median of what is promised")
         } else {
@@ -91,6 +86,11 @@ pub(super) fn pooled<'a>(trial: &'a Trial, family: &'a str) -> impl Iterator<Ite
     trial.points.iter().filter(move |p| p.family == family && p.class == ALL_CLASSES && p.cases > 0)
 }
 
+/// What reading the files of a family takes.
+pub(super) fn reading<'a>(trial: &'a Trial, family: &str) -> Option<&'a TrialPoint> {
+    trial.points.iter().find(|p| p.family == family && p.class == ALL_CLASSES && p.method == READING)
+}
+
 /// What a verdict needs and what the program promises, as lines.
 fn levels(ways: &[&TrialPoint], ends: (f64, f64), needed: &str, promised: &str) -> Vec<Curve> {
     let level = |error: f64, dash, words: &str| {
@@ -106,20 +106,20 @@ fn levels(ways: &[&TrialPoint], ends: (f64, f64), needed: &str, promised: &str) 
 fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
     let first = *ways.first()?;
     let of_family = || trial.points.iter().filter(|p| p.family == first.family);
-    let reading = of_family().find(|p| p.class == ALL_CLASSES && p.method == READING);
+    let reading = reading(trial, &first.family);
     let seconds = |p: &TrialPoint| 1e-9 * p.time_ns;
     let at = |p: &TrialPoint| (seconds(p), drawn(p, p.p95_error));
     let ends = decades(ways.iter().copied().chain(reading).map(seconds));
     let bar = |(index, way): (usize, &&TrialPoint)| {
         let classes = of_family().filter(|p| p.method == way.method && p.class != ALL_CLASSES && p.cases > 0);
         let points = classes.map(|p| (seconds(way), drawn(way, p.p95_error))).collect();
-        Curve { opacity: 0.6, ..Curve::new(look(way_place(index, way), Vec::new()).colour, points) }
+        Curve { opacity: 0.6, ..Curve::new(look(index, way, Vec::new()).colour, points) }
     };
     let lines = ways.iter().enumerate().map(bar);
     let levels = levels(ways, ends, "", "").into_iter().map(|level| Curve { label: None, ..level });
     let mark = |(index, way): (usize, &&TrialPoint)| Points {
         is_hollow: !way.is_on_front,
-        ..look(way_place(index, way), vec![at(way)])
+        ..look(index, way, vec![at(way)])
     };
     let taken = ways.iter().filter(|p| p.is_default).map(|p| at(p)).collect();
     Some(Panel {
@@ -200,13 +200,12 @@ fn stripes(map: &TrialMap, fate: TrialFate, top: f64) -> Vec<Vec<(f64, f64)>> {
 
 /// From which size on what becomes of some drop, the gravest first.
 pub(super) fn fate_words(map: &TrialMap) -> String {
-    let from = |(fate, word): (TrialFate, &str)| {
-        let size = rounding::plain(map.first(fate)?.size, 2);
-        Some(if map.unit.is_empty() { word.to_owned() } else { format!("{word} from {size}") })
+    let from = |fate| {
+        let (size, word) = (rounding::plain(map.first(fate)?.size, 2), written(fate));
+        Some(if map.unit.is_empty() { word } else { format!("{word} from {size}") })
     };
-    let named =
-        [(TrialFate::Silent, "silent"), (TrialFate::Warned, "warned"), (TrialFate::Refused, "refused")];
-    let words: Vec<String> = named.into_iter().filter_map(from).collect();
+    let gravest_first = [TrialFate::Silent, TrialFate::Warned, TrialFate::Refused];
+    let words: Vec<String> = gravest_first.into_iter().filter_map(from).collect();
     if words.is_empty() { "inside".to_owned() } else { format!("{} {}", words.join(", "), map.unit) }
 }
 

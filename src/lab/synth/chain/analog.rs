@@ -116,10 +116,11 @@ impl Filters {
 
     /// What they remember, to the bit.
     fn states(&self) -> [u64; 7] {
-        let of = |filter: Option<&SecondOrder>| filter.map_or([0.0; 2], |filter| [filter.band, filter.low]);
+        let memory =
+            |filter: Option<&SecondOrder>| filter.map_or([0.0; 2], |filter| [filter.band, filter.low]);
         let pair = self.anti_alias.as_ref();
         let [[a, b], [c, d], [e, f]] =
-            [self.resonance.as_ref(), pair.map(|p| &p[0]), pair.map(|p| &p[1])].map(of);
+            [self.resonance.as_ref(), pair.map(|p| &p[0]), pair.map(|p| &p[1])].map(memory);
         [a, b, c, d, e, f, self.high_pass.as_ref().map_or(0.0, |filter| filter.low)].map(f64::to_bits)
     }
 
