@@ -311,9 +311,9 @@ fn channels(result: &DropResult) -> Chapter {
 
 /// "dropcheck 0.1.0 (0123abc), 2026-11-24T02:00:00Z".
 fn program(result: &DropResult) -> String {
-    let of = result.program.as_ref().and_then(|p| p.commit).map(|commit| format!(" ({commit})"));
+    let commit = result.program.as_ref().and_then(|p| p.commit).map(|commit| format!(" ({commit})"));
     let when = result.analysed.as_ref().map(|when| format!(", {when}"));
-    format!("dropcheck {}{}{}", result.version, of.unwrap_or_default(), when.unwrap_or_default())
+    format!("dropcheck {}{}{}", result.version, commit.unwrap_or_default(), when.unwrap_or_default())
 }
 
 /// Which files, which version, which settings.

@@ -26,16 +26,18 @@ pub(super) fn critical(study: &Study) -> Chapter {
         let none = ChapterPart::text("No case has a slap-down at any angle.").only(Medium::Page);
         return chapter.with(none).with(picture);
     }
-    let found = |of: &CriticalAngle, criterion| {
-        let same = |c: &&CriticalAngle| (c.model, c.contact, c.k) == (of.model, of.contact, of.k);
+    let found = |case: &CriticalAngle, criterion| {
+        let same = |c: &&CriticalAngle| (c.model, c.contact, c.k) == (case.model, case.contact, case.k);
         study.critical.iter().filter(same).find(|c| c.criterion == criterion && c.angle_deg.is_finite())
     };
     let largest = |criterion| {
-        move |of: &&CriticalAngle| found(of, criterion).map_or(MISSING.into(), |c| bare(criterion, c.largest))
+        move |case: &&CriticalAngle| {
+            found(case, criterion).map_or(MISSING.into(), |c| bare(criterion, c.largest))
+        }
     };
     let place = |criterion| {
-        move |of: &&CriticalAngle| {
-            let Some(c) = found(of, criterion) else { return MISSING.into() };
+        move |case: &&CriticalAngle| {
+            let Some(c) = found(case, criterion) else { return MISSING.into() };
             let at = degrees(c.angle_deg);
             let around = band_around_words(&c.bands_deg, c.angle_deg);
             Words::or(format!("{at} ({})", bands_words(&c.bands_deg)), format!("{at} ({around})"))

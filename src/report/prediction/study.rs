@@ -105,13 +105,13 @@ fn figures(study: &Study) -> Vec<[String; 3]> {
         figure(
             "Largest slap-down speed".to_owned(),
             worst.map(|c| {
-                let of = format!(
+                let case = format!(
                     "{}, {}, at {}°",
                     c.model.as_str(),
                     case_words(c.contact, c.k),
                     degrees(c.angle_deg)
                 );
-                [criterion_value(c.criterion, c.largest), of]
+                [criterion_value(c.criterion, c.largest), case]
             }),
         ),
         figure(
