@@ -228,7 +228,7 @@ fn comparison(result: &DropResult) -> Chapter {
             .head("Model", |c| format!("{}{}", c.rung.words(), taken_mark(c.rung == model.rung)))
             .number("Predicted, m/s", |c| optional_fixed(c.predicted, 2))
             .number("± 95 %, m/s", |c| optional(c.u95, 2))
-            .number("Measured against predicted", |c| c.difference_percent.map_or(MISSING.into(), percent))
+            .number("Measured against predicted", |c| percent(c.difference_percent))
             .text("Within both intervals", |c| yes(c.consistent));
         let words = format!("Model: {}. {}", model.rung.words(), sentence(&model.reason));
         [ChapterPart::text(words), ChapterPart::from(candidates).only(Medium::Page)]

@@ -13,7 +13,7 @@ pub use series::PredictedCurve;
 
 use super::document::{Chapter, ChapterPart, ReportDocument};
 use super::records::{CsvColumn, number, text_cell};
-use super::rounding::{MISSING, interval, percent};
+use super::rounding::{interval, percent};
 use super::table::{ReportTable, TableCell, TableShape};
 use super::text::{Style, distinct, tail, verdict_word};
 use crate::data::keys::{CHANNEL, TABLES, Takes};
@@ -252,9 +252,7 @@ impl Batch {
             .text("verdict", word)
             .text("speed m/s", |row| interval(row.slap_down_speed.as_ref()).replace(" m/s", ""))
             .text("k", |row| interval(row.k.as_ref()))
-            .number("meas/pred", |row| {
-                row.comparison.map_or(MISSING.into(), |c| percent(c.difference_percent))
-            })
+            .number("meas/pred", |row| percent(row.comparison.map(|c| c.difference_percent)))
             .most(MOST_LINES, MOST_LINES, "campaign.csv has all of them");
         let grave: Vec<&BatchRow> =
             self.rows.iter().filter(|row| row.error.is_some() || !row.codes.is_empty()).collect();

@@ -102,7 +102,7 @@ fn apart(series: &[DropSeries]) -> Chapter {
     let disagree =
         series.iter().flat_map(|series| &series.rows).filter(|row| row.comparison.is_some_and(|c| !c.agrees));
     for row in disagree {
-        let by = row.comparison.map_or_else(String::new, |c| percent(c.difference_percent));
+        let by = percent(row.comparison.map(|c| c.difference_percent));
         let why = format!("measured over predicted {by}: outside both intervals");
         found.push(Oddity { row, size: 0.0, why });
     }
@@ -197,13 +197,13 @@ fn recordings(batch: &Batch, series: &[DropSeries]) -> Chapter {
         .head("test", linked)
         .text("verdict", tag)
         .soft("cask", |row| row.at.cask.clone())
-        .number("angle °", |row| row.at.angle_deg.map_or(MISSING.to_owned(), |angle| plain(angle, 4)))
+        .number("angle °", |row| {
+            row.at.angle_deg.map_or_else(|| MISSING.to_owned(), |angle| plain(angle, 4))
+        })
         .soft("date", |row| row.at.date.as_deref().map_or("", |date| date.get(..10).unwrap_or(date)))
         .number("speed m/s", |row| interval(row.slap_down_speed.as_ref()).replace(" m/s", ""))
         .number("k", |row| interval(row.k.as_ref()))
-        .number("measured / predicted", |row| {
-            row.comparison.map_or(MISSING.into(), |c| percent(c.difference_percent))
-        })
+        .number("measured / predicted", |row| percent(row.comparison.map(|c| c.difference_percent)))
         .number("E_n of k", |row| e_n(row, PooledQuantity::K))
         .number("E_n of speed", |row| e_n(row, PooledQuantity::Speed))
         .number("peaks g", |row| both(row.at.peaks_m_s2, STANDARD_GRAVITY_M_S2))

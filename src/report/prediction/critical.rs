@@ -143,16 +143,18 @@ fn quantiles(found: &[QuantileCurves]) -> ChapterPart {
     table.into()
 }
 
-/// What the draws say of the slap-down speed at the angle asked for.
-fn at_the_angle(study: &Study) -> Option<String> {
+/// Median of the slap-down speed at the angle asked for, and the ends of 95 % of the draws, m/s.
+pub(super) fn speeds_at_the_angle(study: &Study) -> Option<[String; 3]> {
     let found = &study.monte_carlo;
     let q = found.quantiles.iter().find(|q| q.criterion == Criterion::Speed)?;
-    let at = |values: &[f64]| nearest(&found.angle_deg, values, study.request.angle_deg);
-    Some(format!(
-        "At {}°: {} m/s, 95 % of the draws between {} and {} m/s.",
-        degrees(at(&found.angle_deg)?),
-        fixed(at(&q.q50)?, 2),
-        fixed(at(&q.q025)?, 2),
-        fixed(at(&q.q975)?, 2)
-    ))
+    let at = |values: &[f64]| Some(fixed(nearest(&found.angle_deg, values, study.request.angle_deg)?, 2));
+    Some([at(&q.q50)?, at(&q.q025)?, at(&q.q975)?])
+}
+
+/// What the draws say of the slap-down speed at the angle asked for.
+fn at_the_angle(study: &Study) -> Option<String> {
+    let angles_deg = &study.monte_carlo.angle_deg;
+    let angle_deg = degrees(nearest(angles_deg, angles_deg, study.request.angle_deg)?);
+    let [median, low, high] = speeds_at_the_angle(study)?;
+    Some(format!("At {angle_deg}°: {median} m/s, 95 % of the draws between {low} and {high} m/s."))
 }

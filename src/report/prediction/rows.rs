@@ -2,7 +2,7 @@
 
 use super::super::document::ChapterPart;
 use super::super::medium::{Medium, Words};
-use super::super::rounding::{optional, optional_fixed, plain};
+use super::super::rounding::{fixed, optional_fixed, plain, significant};
 use super::super::table::{ReportTable, TableRows, TableShape};
 use super::super::words::{KEPT_SENTENCE, OVER_MARK, OVER_SENTENCE, contact_words, kept_mark};
 use crate::data::{BodyModel, CaskFile, Contact, Prediction, PredictionRow};
@@ -45,7 +45,7 @@ pub(in super::super) fn prediction_columns<'a, R>(
         .number(head("Speed, m/s", "v\nm/s"), cell(|p| optional_fixed(p.slap_down_speed_m_s, 2)))
         .number(head("Vertical, m/s", "vz\nm/s"), cell(|p| optional_fixed(p.vertical_velocity_m_s, 2)))
         .number(head("Horizontal, m/s", "vx\nm/s"), cell(|p| optional_fixed(p.horizontal_velocity_m_s, 2)))
-        .number(head("ω, rad/s", "ω\nrad/s"), cell(|p| optional_fixed(Some(p.angular_velocity_rad_s), 2)))
+        .number(head("ω, rad/s", "ω\nrad/s"), cell(|p| fixed(p.angular_velocity_rad_s, 2)))
         .number(
             head("Flight, ms", "flight\nms"),
             cell(|p| optional_fixed(p.flight_time_s.map(|t| t * 1e3), 1)),
@@ -105,15 +105,14 @@ pub(super) fn predictions(all: &[PredictionRow], medium: Medium) -> Vec<ChapterP
         .number(Words::or("Drop, m", "drop\nm"), cell(|row| metres(row.drop_height_m)))
         .if_any(varying.heights);
     let table = prediction_columns(table, |row| row.map(|row| &row.prediction), true)
-        .number("Friction to stick", cell(|row| optional(Some(row.prediction.friction_to_stick), 3).into()))
+        .number("Friction to stick", cell(|row| significant(row.prediction.friction_to_stick, 3).into()))
         .only(Medium::Page)
         .number("Impacts of first end", cell(|row| row.prediction.first_end_impacts.to_string().into()))
         .only(Medium::Page)
         .number(
             Words::or("Closed form, m/s", "held\nm/s"),
-            cell(|row| match row.prediction.closed_form_speed_m_s {
-                Some(speed) => optional_fixed(Some(speed), 2).into(),
-                None => "".into(),
+            cell(|row| {
+                row.prediction.closed_form_speed_m_s.map_or("".into(), |speed| fixed(speed, 2).into())
             }),
         )
         .if_any(varying.is_held_on(medium));
