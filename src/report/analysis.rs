@@ -47,10 +47,8 @@ const SLAP_DOWN_CODES: [IssueCode; 8] = [
 pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     let (result, file) = (&analysis.result, &analysis.cask_file);
     let name = &file.cask.name;
-    let mut curves = Chapter::new("Curves").only(Medium::Page);
-    for name in ["accelerations", "impacts", "crush", "velocities", "fit", "motion", "spectra"] {
-        curves = curves.with(ChapterPart::picture(name, name, ""));
-    }
+    let curves = ["accelerations", "impacts", "crush", "velocities", "fit", "motion", "spectra"]
+        .map(|name| ChapterPart::picture(name, ""));
     ReportDocument {
         page: Frame {
             title: format!("Drop test of {name} – {}", verdict_word(result.verdict)),
@@ -66,14 +64,14 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             summary(result, file),
             record::head(&result.test),
             tested(file, "What was tested")
-                .with(ChapterPart::picture("setup", "", ""))
+                .with(ChapterPart::picture("setup", ""))
                 .with(record::sensors(file)),
             quantities(result),
             impacts(result),
             comparison(result),
             record::observed(&result.observed),
             quality(&result.quality).only(Medium::Page),
-            curves,
+            Chapter::new("Curves").only(Medium::Page).with_all(curves),
             reconstruction(result),
             flight(result),
             budget(result, file),
@@ -235,7 +233,7 @@ fn comparison(result: &DropResult) -> Chapter {
     });
     Chapter::new("Measured beside predicted")
         .with(compared)
-        .with(ChapterPart::picture("comparison", "", ""))
+        .with(ChapterPart::picture("comparison", ""))
         .with_all(model.into_iter().flatten())
 }
 

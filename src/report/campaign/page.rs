@@ -142,12 +142,7 @@ fn of_series(series: &DropSeries, number: usize) -> Chapter {
         })
         .text("scatter is", word);
     Chapter::new(series.name.clone())
-        .with(ChapterPart::picture(
-            &DropSeries::name_of(number, "speed"),
-            "slap-down speed over the drop angle",
-            "",
-        ))
-        .with(ChapterPart::picture(&DropSeries::name_of(number, "k"), "restitution", ""))
+        .with_all(["speed", "k"].map(|what| ChapterPart::picture(&DropSeries::name_of(number, what), "")))
         .with(repeats)
         .with(ChapterPart::note(REPEATS))
 }

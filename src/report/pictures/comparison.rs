@@ -65,8 +65,8 @@ fn panel(rows: &[ComparedRow], measured: Option<Estimate>) -> Option<Panel> {
     }
     for (i, row) in rows.iter().enumerate() {
         let y = panel.row_middle(i);
-        let (colour, shape) =
-            if row.own_k { (COLOURS[1], PointShape::Square) } else { (COLOURS[0], PointShape::Dot) };
+        let look = usize::from(row.own_k);
+        let (colour, shape) = (COLOURS[look], PointShape::of(look));
         if let Some(u95) = row.u95_m_s {
             let (low, high) = (row.speed_m_s - u95, row.speed_m_s + u95);
             let ends = [low, high].map(|x| vec![(x, y - 0.21), (x, y + 0.21)]);

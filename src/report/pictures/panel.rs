@@ -147,7 +147,7 @@ pub(crate) enum PointShape {
 }
 
 impl PointShape {
-    /// Of the method at this place: colour and shape together tell 35 apart.
+    /// Of the points at this place among others: colour and shape together tell 35 apart.
     pub(crate) fn of(index: usize) -> Self {
         [Self::Dot, Self::Square, Self::Triangle, Self::Diamond, Self::Tip][index % 5]
     }

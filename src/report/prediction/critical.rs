@@ -21,7 +21,7 @@ pub(super) fn critical(study: &Study) -> Chapter {
     let speeds: Vec<&CriticalAngle> =
         study.critical.iter().filter(|c| c.criterion == Criterion::Speed).collect();
     let chapter = Chapter::new("Critical angles");
-    let picture = ChapterPart::picture("critical-angles", "", "tall");
+    let picture = ChapterPart::picture("critical-angles", "tall");
     if speeds.is_empty() {
         let none = ChapterPart::text("No case has a slap-down at any angle.").only(Medium::Page);
         return chapter.with(none).with(picture);
@@ -97,7 +97,7 @@ pub(super) fn monte_carlo(study: &Study) -> Chapter {
     let u = &found.uncertain;
     if u.draws == 0 {
         let none = ChapterPart::text("No draws were asked for.");
-        let picture = ChapterPart::picture("monte-carlo", "", "tall");
+        let picture = ChapterPart::picture("monte-carlo", "tall");
         return Chapter::new("Monte Carlo").only(Medium::Page).with(none).with(picture);
     }
     let chapter = Chapter::new(format!("Monte Carlo, {} draws of the {}", u.draws, found.model.as_str()));
@@ -115,7 +115,7 @@ pub(super) fn monte_carlo(study: &Study) -> Chapter {
         let none = ChapterPart::text("Too few draws have a slap-down.");
         chapter.with_all([drawn, none].map(|passage| passage.only(Medium::Page)))
     };
-    chapter.with(ChapterPart::picture("monte-carlo", "", "tall"))
+    chapter.with(ChapterPart::picture("monte-carlo", "tall"))
 }
 
 /// Median and the range of 95 % of the draws.

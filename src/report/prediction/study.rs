@@ -62,7 +62,7 @@ pub(super) fn document(study: &Study) -> ReportDocument {
                 .with(ChapterPart::title(title(&study.rows, file)).only(Medium::Terminal))
                 .with_all(predictions(&study.rows, Medium::Terminal))
                 .with_all(ahead)
-                .with(ChapterPart::picture("sweep", "", "")),
+                .with(ChapterPart::picture("sweep", "")),
             critical(study),
             over_the_angle(&study.request),
             monte_carlo(study),
@@ -82,7 +82,7 @@ fn over_the_angle(request: &StudyRequest) -> Chapter {
             || name.starts_with("components-")
     };
     let names = study_names(request).into_iter().filter(is_wanted);
-    Chapter::new("Over the drop angle").with_all(names.map(|name| ChapterPart::picture(&name, "", "short")))
+    Chapter::new("Over the drop angle").with_all(names.map(|name| ChapterPart::picture(&name, "short")))
 }
 
 /// The four figures that a reader looks for first.
