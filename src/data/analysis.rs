@@ -14,7 +14,7 @@ use super::quantities::{Contribution, FirstImpact, SlapDown};
 use super::reconstruction::ReconstructionChoice;
 use super::recording::RecordingFormat;
 use super::test_record::{ObservedBeside, SensorRecord, TestRecord};
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// The overall word on a result, in the order of their gravity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -74,20 +74,27 @@ pub struct ModelChoice {
 }
 
 /// Measured beside predicted slap-down speed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// Predicted by the chosen model with the measured k, m/s.
     pub predicted: f64,
     /// 95 % half-width of it, m/s.
+    #[serde(deserialize_with = "number_or_null")]
     pub predicted_u95: f64,
     /// Measured, m/s.
     pub measured: f64,
     /// 95 % half-width of it, m/s.
+    #[serde(deserialize_with = "number_or_null")]
     pub measured_u95: f64,
     /// (measured − predicted) / predicted, percent.
     pub difference_percent: f64,
     /// Whether the difference lies within both intervals.
     pub agrees: bool,
+}
+
+/// A number that JSON has as null where it is none.
+fn number_or_null<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
 }
 
 /// The times that the report marks, s from the recording's first sample.

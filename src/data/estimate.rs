@@ -1,10 +1,11 @@
 //! A measured quantity with its 95 % interval.
 
+use serde::de::{Deserialize, Deserializer, Error};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 /// A measured value with the half-width of its 95 % interval and its unit, as the result states it.
 ///
-/// `unit` is "s", "m/s", "rad/s", "deg" or "1"; `value` and `u95` are in that unit.
+/// `value` and `u95` are in `unit`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// The value, in `unit`.
@@ -34,5 +35,22 @@ impl Serialize for Estimate {
         parts.serialize_field("u95", &self.u95)?;
         parts.serialize_field("unit", &self.unit)?;
         parts.end()
+    }
+}
+
+/// Units of the quantities of a result.
+const UNITS: [&str; 10] = ["s", "m/s", "rad/s", "deg", "1", "m", "m/s^2", "N", "N s", "J"];
+
+impl<'de> Deserialize<'de> for Estimate {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        #[derive(serde::Deserialize)]
+        struct EstimateParts {
+            value: f64,
+            u95: f64,
+            unit: String,
+        }
+        let EstimateParts { value, u95, unit } = EstimateParts::deserialize(from)?;
+        let known = UNITS.into_iter().find(|known| *known == unit);
+        Ok(Self::new(value, u95, known.ok_or_else(|| D::Error::custom("no unit of a result"))?))
     }
 }

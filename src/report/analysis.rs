@@ -47,10 +47,8 @@ const SLAP_DOWN_CODES: [IssueCode; 8] = [
 pub(super) fn document(analysis: &Analysis) -> ReportDocument {
     let (result, file) = (&analysis.result, &analysis.cask_file);
     let name = &file.cask.name;
-    let mut curves = Chapter::new("Curves").only(Medium::Page);
-    for name in ["accelerations", "impacts", "crush", "velocities", "fit", "motion", "spectra"] {
-        curves = curves.with(ChapterPart::picture(name, name, ""));
-    }
+    let curves = ["accelerations", "impacts", "crush", "velocities", "fit", "motion", "spectra"]
+        .map(|name| ChapterPart::picture(name, ""));
     ReportDocument {
         page: Frame {
             title: format!("Drop test of {name} – {}", verdict_word(result.verdict)),
@@ -66,14 +64,14 @@ pub(super) fn document(analysis: &Analysis) -> ReportDocument {
             summary(result, file),
             record::head(&result.test),
             tested(file, "What was tested")
-                .with(ChapterPart::picture("setup", "", ""))
+                .with(ChapterPart::picture("setup", ""))
                 .with(record::sensors(file)),
             quantities(result),
             impacts(result),
             comparison(result),
             record::observed(&result.observed),
             quality(&result.quality).only(Medium::Page),
-            curves,
+            Chapter::new("Curves").only(Medium::Page).with_all(curves),
             reconstruction(result),
             flight(result),
             budget(result, file),
@@ -228,14 +226,14 @@ fn comparison(result: &DropResult) -> Chapter {
             .head("Model", |c| format!("{}{}", c.rung.words(), taken_mark(c.rung == model.rung)))
             .number("Predicted, m/s", |c| optional_fixed(c.predicted, 2))
             .number("± 95 %, m/s", |c| optional(c.u95, 2))
-            .number("Measured against predicted", |c| c.difference_percent.map_or(MISSING.into(), percent))
+            .number("Measured against predicted", |c| percent(c.difference_percent))
             .text("Within both intervals", |c| yes(c.consistent));
         let words = format!("Model: {}. {}", model.rung.words(), sentence(&model.reason));
         [ChapterPart::text(words), ChapterPart::from(candidates).only(Medium::Page)]
     });
     Chapter::new("Measured beside predicted")
         .with(compared)
-        .with(ChapterPart::picture("comparison", "", ""))
+        .with(ChapterPart::picture("comparison", ""))
         .with_all(model.into_iter().flatten())
 }
 
@@ -311,9 +309,9 @@ fn channels(result: &DropResult) -> Chapter {
 
 /// "dropcheck 0.1.0 (0123abc), 2026-11-24T02:00:00Z".
 fn program(result: &DropResult) -> String {
-    let of = result.program.as_ref().and_then(|p| p.commit).map(|commit| format!(" ({commit})"));
+    let commit = result.program.as_ref().and_then(|p| p.commit).map(|commit| format!(" ({commit})"));
     let when = result.analysed.as_ref().map(|when| format!(", {when}"));
-    format!("dropcheck {}{}{}", result.version, of.unwrap_or_default(), when.unwrap_or_default())
+    format!("dropcheck {}{}{}", result.version, commit.unwrap_or_default(), when.unwrap_or_default())
 }
 
 /// Which files, which version, which settings.

@@ -65,7 +65,7 @@ fn passage(passage: &ChapterPart, pictures: &[Picture]) -> Markup {
         },
         PartContent::Facts(caption, facts) => self::facts(caption, facts),
         PartContent::ReportTable(table) => self::table(table),
-        PartContent::Picture(name, _, room) => html! {
+        PartContent::Picture(name, room) => html! {
             @for picture in pictures.iter().filter(|picture| picture.name == *name) {
                 @let live = (!picture.live.is_empty()).then(|| format!("live-{name}"));
                 figure aria-label=(printable(&picture.alt)) class=[class(room)] data-live=[&live] {

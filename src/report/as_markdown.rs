@@ -10,21 +10,20 @@ use super::text::printable;
 pub(crate) fn markdown(document: &ReportDocument, folder: Option<&str>) -> String {
     let mut blocks = Vec::new();
     for chapter in &document.chapters {
-        let heading = chapter.heading(Medium::Markdown);
-        blocks.extend(heading.map(|words| format!("### {}\n", cell_text(words))));
-        blocks.extend(chapter.shown(Medium::Markdown).into_iter().filter_map(|shown| passage(shown, folder)));
+        let heading = chapter.heading(Medium::Markdown).map(cell_text).unwrap_or_default();
+        blocks.extend((!heading.is_empty()).then(|| format!("### {heading}\n")));
+        let shown = chapter.shown(Medium::Markdown).into_iter();
+        blocks.extend(shown.filter_map(|part| passage(part, &heading, folder)));
     }
     blocks.join("\n")
 }
 
-fn passage(passage: &ChapterPart, folder: Option<&str>) -> Option<String> {
+fn passage(passage: &ChapterPart, heading: &str, folder: Option<&str>) -> Option<String> {
     match &passage.content {
         PartContent::Sentence(_, words) => {
             Some(format!("{}\n", printable(words.on(Medium::Markdown)).replace('<', "&lt;")))
         }
-        PartContent::Picture(name, title, _) => {
-            folder.map(|folder| format!("![{}]({folder}{name}.svg)\n", cell_text(title)))
-        }
+        PartContent::Picture(name, _) => folder.map(|folder| format!("![{heading}]({folder}{name}.svg)\n")),
         PartContent::ReportTable(table) => Some(self::table(table)),
         PartContent::Banner(..)
         | PartContent::Figures(_)

@@ -43,7 +43,7 @@ fn passage(passage: &ChapterPart, width: usize) -> String {
         }
         PartContent::Facts(caption, facts) => {
             let head = if caption.is_empty() { String::new() } else { heading(caption) };
-            head + &lines(facts.iter().map(|of| fact(of, width)))
+            head + &lines(facts.iter().map(|one| fact(one, width)))
         }
         PartContent::ReportTable(table) => self::table(table, width),
         PartContent::Beside(columns) => columns

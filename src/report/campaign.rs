@@ -13,7 +13,7 @@ pub use series::PredictedCurve;
 
 use super::document::{Chapter, ChapterPart, ReportDocument};
 use super::records::{CsvColumn, number, text_cell};
-use super::rounding::{MISSING, interval, percent};
+use super::rounding::{interval, percent};
 use super::table::{ReportTable, TableCell, TableShape};
 use super::text::{Style, distinct, tail, verdict_word};
 use crate::data::keys::{CHANNEL, TABLES, Takes};
@@ -21,6 +21,7 @@ use crate::data::shown::short;
 use crate::data::{Comparison, Estimate, Verdict};
 use columns::NamedQuantity;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -114,79 +115,61 @@ pub(crate) struct DropPoint {
     pub(crate) energies_j: [Option<f64>; 2],
 }
 
+/// A part of a line; none where it has none, or not in this form.
+fn part<T: DeserializeOwned>(line: &Value, place: &str) -> Option<T> {
+    T::deserialize(line.pointer(place)?).ok()
+}
+
 impl BatchRow {
     /// The row of a line.
     #[must_use]
     pub fn of(line: &Value) -> Self {
-        let text = |place: &str| line.pointer(place).and_then(Value::as_str).map(str::to_owned);
-        let number = |place: &str| line.pointer(place).and_then(Value::as_f64);
-        let quantity = |place: &str, unit| {
-            let value = |key| number(&format!("{place}/{key}"));
-            Some(Estimate::new(value("value")?, value("u95")?, unit))
-        };
-        let verdict = match text("/verdict").as_deref() {
-            Some("pass") => Some(Verdict::Pass),
-            Some("review") => Some(Verdict::Review),
-            Some(_) => Some(Verdict::Fail),
-            None => None,
-        };
+        let verdict: Option<Verdict> = part(line, "/verdict");
         // What is no folder of a campaign would be a link to elsewhere in its page.
-        let folder = text("/campaign/report").filter(|folder| folder_name(folder) == *folder);
+        let folder = part(line, "/campaign/report").filter(|folder: &String| folder_name(folder) == *folder);
         let codes = |severity| {
             let all = line["quality"].as_array().into_iter().flatten();
             all.filter(move |found| found["severity"] == severity).filter_map(|found| found["code"].as_str())
         };
         let grave: Vec<&str> = codes("error").chain(codes("warning")).collect();
         Self {
-            id: text("/id").unwrap_or_default(),
-            recording: text("/campaign/recording").unwrap_or_default(),
-            cask: text("/campaign/cask"),
+            id: part(line, "/id").unwrap_or_default(),
+            recording: part(line, "/campaign/recording").unwrap_or_default(),
+            cask: part(line, "/campaign/cask"),
             report: verdict.and(folder).map(|folder| format!("{folder}/report.html")),
             exit: verdict.map_or(2, |verdict| u8::from(verdict != Verdict::Pass)),
             verdict,
-            slap_down_speed: quantity("/slap_down/speed", "m/s"),
-            k: quantity("/k", "1"),
-            model: text("/model/name"),
-            comparison: comparison(&line["comparison"]),
+            slap_down_speed: part(line, "/slap_down/speed"),
+            k: part(line, "/k"),
+            model: part(line, "/model/name"),
+            comparison: part(line, "/comparison"),
             findings: grave.len(),
             codes: distinct(grave).into_iter().map(str::to_owned).collect(),
-            error: text("/error"),
-            at: point(line),
+            error: part(line, "/error"),
+            at: DropPoint::of(line),
             quantities: columns::quantities(line),
         }
     }
 }
 
-fn comparison(value: &Value) -> Option<Comparison> {
-    let number = |key: &str| value[key].as_f64();
-    Some(Comparison {
-        predicted: number("predicted")?,
-        predicted_u95: number("predicted_u95").unwrap_or(f64::NAN),
-        measured: number("measured")?,
-        measured_u95: number("measured_u95").unwrap_or(f64::NAN),
-        difference_percent: number("difference_percent")?,
-        agrees: value["agrees"].as_bool()?,
-    })
-}
-
-fn point(line: &Value) -> DropPoint {
-    let settings = &line["settings"];
-    let value = |table: &str, key: &str| &settings[table][key]["value"];
-    let number = |place: String| line.pointer(&place).and_then(Value::as_f64);
-    let of_cask = settings["cask"].as_object().into_iter().flatten().map(|(_, entry)| &entry["value"]);
-    let of_drop = settings["drop"].as_object().into_iter().flatten().filter(|(key, _)| *key != "angle_deg");
-    let series: Vec<&Value> = of_cask.chain(of_drop.map(|(_, entry)| &entry["value"])).collect();
-    let peak = |i| number(format!("/impacts/{i}/rigid_body_deceleration/at_struck_end/value"));
-    let energy = |i| number(format!("/impacts/{i}/energy_absorbed/value"));
-    let index = line["campaign"]["number"].as_u64().unwrap_or(0);
-    DropPoint {
-        number: u32::try_from(index + 1).unwrap_or(u32::MAX),
-        cask: value("cask", "name").as_str().unwrap_or_default().to_owned(),
-        series: series.into_iter().cloned().collect::<Value>().to_string(),
-        angle_deg: value("drop", "angle_deg").as_f64(),
-        date: value("test", "date").as_str().map(str::to_owned),
-        peaks_m_s2: [0, 1].map(peak),
-        energies_j: [0, 1].map(energy),
+impl DropPoint {
+    fn of(line: &Value) -> Self {
+        let stated = |table: &str| line["settings"][table].as_object().into_iter().flatten();
+        let of_drop = stated("drop").filter(|(key, _)| *key != "angle_deg");
+        let series = stated("cask").chain(of_drop).map(|(_, entry)| entry["value"].clone());
+        let of_impacts = |quantity: &str| {
+            let of_impact = |i| part(line, &format!("/impacts/{i}/{quantity}")).map(|e: Estimate| e.value);
+            [0, 1].map(of_impact)
+        };
+        Self {
+            number: part(line, "/campaign/number").map_or(1, |index: u32| index.saturating_add(1)),
+            cask: part(line, "/settings/cask/name/value").unwrap_or_default(),
+            series: series.collect::<Value>().to_string(),
+            angle_deg: part(line, "/settings/drop/angle_deg/value"),
+            date: part(line, "/settings/test/date/value"),
+            peaks_m_s2: of_impacts("rigid_body_deceleration/at_struck_end"),
+            energies_j: of_impacts("energy_absorbed"),
+        }
     }
 }
 
@@ -269,9 +252,7 @@ impl Batch {
             .text("verdict", word)
             .text("speed m/s", |row| interval(row.slap_down_speed.as_ref()).replace(" m/s", ""))
             .text("k", |row| interval(row.k.as_ref()))
-            .number("meas/pred", |row| {
-                row.comparison.map_or(MISSING.into(), |c| percent(c.difference_percent))
-            })
+            .number("meas/pred", |row| percent(row.comparison.map(|c| c.difference_percent)))
             .most(MOST_LINES, MOST_LINES, "campaign.csv has all of them");
         let grave: Vec<&BatchRow> =
             self.rows.iter().filter(|row| row.error.is_some() || !row.codes.is_empty()).collect();

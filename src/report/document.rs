@@ -100,8 +100,8 @@ pub(crate) enum PartContent {
     /// A caption, and names with what they stand for.
     Facts(String, Vec<Fact>),
     ReportTable(ReportTable),
-    /// The picture of this name, and what it shows in a few words; its room on paper as a class of the style.
-    Picture(String, String, &'static str),
+    /// The picture of this name; its room on paper as a class of the style.
+    Picture(String, &'static str),
     /// Photographs of the test.
     Photographs(Vec<Photo>),
     /// Sentences one below the other.
@@ -163,8 +163,8 @@ impl ChapterPart {
     }
 
     /// The picture of this name.
-    pub(crate) fn picture(name: &str, title: &str, room: &'static str) -> Self {
-        PartContent::Picture(name.to_owned(), title.to_owned(), room).into()
+    pub(crate) fn picture(name: &str, room: &'static str) -> Self {
+        PartContent::Picture(name.to_owned(), room).into()
     }
 
     /// On this medium alone.

@@ -14,7 +14,7 @@ struct ImpactRow {
     unit: &'static str,
     factor: f64,
     is_short: bool,
-    of: fn(&ImpactTable) -> Option<Estimate>,
+    number: fn(&ImpactTable) -> Option<Estimate>,
 }
 
 impl ImpactRow {
@@ -23,13 +23,13 @@ impl ImpactRow {
         unit: &'static str,
         factor: f64,
         is_short: bool,
-        of: fn(&ImpactTable) -> Option<Estimate>,
+        number: fn(&ImpactTable) -> Option<Estimate>,
     ) -> Self {
-        Self { name, unit, factor, is_short, of }
+        Self { name, unit, factor, is_short, number }
     }
 
     fn words(&self, impact: &ImpactTable) -> String {
-        scaled((self.of)(impact), self.factor, self.unit)
+        scaled((self.number)(impact), self.factor, self.unit)
     }
 }
 

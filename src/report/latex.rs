@@ -48,10 +48,10 @@ mod tests {
 
     #[test]
     fn a_value_is_mathematics_and_its_unit_is_not() {
-        let of = |value, u95, unit| cell(Some(&Estimate::new(value, u95, unit)));
-        assert_eq!(of(-20.553, 0.51, "m/s"), "$-20.55 \\pm 0.51$ m/s");
-        assert_eq!(of(-4.98, 0.37, "deg"), "$-4.98 \\pm 0.37$ $^\\circ$");
-        assert_eq!(of(0.5507, 0.04, "1"), "$0.551 \\pm 0.040$");
+        let latex = |value, u95, unit| cell(Some(&Estimate::new(value, u95, unit)));
+        assert_eq!(latex(-20.553, 0.51, "m/s"), "$-20.55 \\pm 0.51$ m/s");
+        assert_eq!(latex(-4.98, 0.37, "deg"), "$-4.98 \\pm 0.37$ $^\\circ$");
+        assert_eq!(latex(0.5507, 0.04, "1"), "$0.551 \\pm 0.040$");
         assert_eq!(cell(None), "--");
     }
 }

@@ -8,6 +8,7 @@ pub(crate) enum Medium {
     /// HTML, for the desk and for A4 paper.
     Page,
     /// A part of another document.
+    #[cfg(feature = "lab")]
     Markdown,
 }
 

@@ -12,14 +12,12 @@ mod campaign;
 mod curves_csv;
 pub(crate) mod curves_h5;
 mod curves_mcap;
-#[cfg_attr(not(feature = "lab"), allow(dead_code, reason = "the pages of the laboratory use all of it"))]
 pub(crate) mod document;
 mod grid;
 mod impacts;
 pub(crate) mod json;
 mod latex;
 mod listing;
-#[cfg_attr(not(feature = "lab"), allow(dead_code, reason = "the pages of the laboratory use all of it"))]
 pub(crate) mod medium;
 pub(crate) mod pictures;
 mod prediction;

@@ -36,12 +36,12 @@ pub(super) fn reconstruction(result: &DropResult) -> Chapter {
 /// The closure that is missed most.
 fn worst_closure(choice: &ReconstructionChoice) -> Option<String> {
     let worst = choice.closures.iter().max_by(|a, b| a.miss_in_u.abs().total_cmp(&b.miss_in_u.abs()))?;
-    let of = match choice.closures.len() {
+    let which = match choice.closures.len() {
         1 => "The one closure".to_owned(),
         n => format!("Of {n} closures the worst"),
     };
     Some(format!(
-        "{of}, {}, is missed by {}, {} standard uncertainties.",
+        "{which}, {}, is missed by {}, {} standard uncertainties.",
         worst.name,
         true_minus(&worst.miss),
         fixed(worst.miss_in_u.abs(), 1)
@@ -129,22 +129,22 @@ pub(super) fn flight(result: &DropResult) -> Chapter {
 
 fn flight_sentence(fit: &FlightFit) -> String {
     let drift = if fit.drift { ", with a drift (zero shift)" } else { ", without drift" };
-    let of = if fit.candidates.first().is_none_or(|c| c.taken) {
+    let among = if fit.candidates.first().is_none_or(|c| c.taken) {
         "."
     } else {
         " of those with which the second end is on the target as it strikes and the cask turns as the first impact has it."
     };
     format!(
         "From {} to {} ms after the first sample: one plateau a channel{drift}; the number of bending modes is the one with the lowest \
-         information criterion{of}",
+         information criterion{among}",
         fixed(fit.from_s * 1e3, 2),
         fixed(fit.to_s * 1e3, 2)
     )
 }
 
 /// Twice the root of the sum of squares of what the inputs contribute; `None` where one of them is not known.
-fn total(budget: &[Contribution], of: impl Fn(&Contribution) -> Option<f64>) -> Option<f64> {
-    let squares: Option<f64> = budget.iter().map(|c| of(c).map(|x| x * x)).sum();
+fn total(budget: &[Contribution], change: impl Fn(&Contribution) -> Option<f64>) -> Option<f64> {
+    let squares: Option<f64> = budget.iter().map(|c| change(c).map(|x| x * x)).sum();
     squares.map(|s| 2.0 * s.sqrt())
 }
 
@@ -155,8 +155,8 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
     if budget.is_empty() {
         return chapter;
     }
-    let sum = |of: fn(&Contribution) -> Option<f64>, decimals| {
-        format!("± {}", optional_fixed(total(budget, of), decimals))
+    let sum = |change: fn(&Contribution) -> Option<f64>, decimals| {
+        format!("± {}", optional_fixed(total(budget, change), decimals))
     };
     // The last row is that of their sum.
     let rows: Vec<Option<&Contribution>> = budget.iter().map(Some).chain([None]).collect();
@@ -186,31 +186,40 @@ pub(super) fn budget(result: &DropResult, file: &CaskFile) -> Chapter {
 /// Which defaults carry more than a tenth of the variance of the speed, or of k where there is no speed, and
 /// what to state in their place.
 pub(super) fn defaults_that_weigh(result: &DropResult, file: &CaskFile) -> Option<String> {
-    const WEIGHS: f64 = 0.1;
-    let square =
-        |c: &Contribution| result.slap_down.speed.map_or(c.k, |_| c.speed_m_s).map_or(0.0, |x| x * x);
-    let sum: f64 = result.budget.iter().map(square).sum();
-    let weighty = result.budget.iter().filter(|c| square(c) > WEIGHS * sum);
+    const WEIGHS_PERCENT: f64 = 10.0;
+    let change = |c: &Contribution| result.slap_down.speed.map_or(c.k, |_| c.speed_m_s);
+    let weighty = shares(&result.budget, change).into_iter().filter(|share| share.percent > WEIGHS_PERCENT);
     let named: Vec<String> = weighty
-        .filter_map(|c| {
-            let key = to_state(file, &c.input)?;
-            Some(format!("{} ({:.0} % of the variance; state `{key}`)", c.input, 100.0 * square(c) / sum))
+        .filter_map(|VarianceShare { input, percent }| {
+            let key = to_state(file, input)?;
+            Some(format!("{input} ({percent:.0} % of the variance; state `{key}`)"))
         })
         .collect();
     (!named.is_empty())
         .then(|| format!("The interval rests on defaults that nobody stated: {}.", named.join(", ")))
 }
 
+/// An input, and how much of the variance of a quantity it carries.
+struct VarianceShare<'a> {
+    input: &'a str,
+    percent: f64,
+}
+
+/// The inputs whose changes of a quantity are known; none where nothing changes it.
+fn shares(budget: &[Contribution], change: impl Fn(&Contribution) -> Option<f64>) -> Vec<VarianceShare<'_>> {
+    let square = |c: &Contribution| change(c).map(|x| x * x);
+    let sum: f64 = budget.iter().filter_map(square).sum();
+    let known = budget.iter().filter(|_| sum > 0.0);
+    known.filter_map(|c| Some(VarianceShare { input: &c.input, percent: 100.0 * square(c)? / sum })).collect()
+}
+
 /// Which input weighs most, in the speed and in k.
 fn largest(budget: &[Contribution]) -> String {
-    let share = |of: &dyn Fn(&Contribution) -> Option<f64>| -> Option<String> {
-        let squares: f64 = budget.iter().filter_map(of).map(|x| x * x).sum();
-        let known = budget.iter().filter_map(|c| of(c).map(|x| (c, x)));
-        let (largest, x) = known.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-        let percent = 100.0 * x * x / squares;
-        (squares > 0.0).then(|| format!("{} ({percent:.0} % of the variance)", largest.input))
+    let words = |change: fn(&Contribution) -> Option<f64>| {
+        let largest = shares(budget, change).into_iter().max_by(|a, b| a.percent.total_cmp(&b.percent))?;
+        Some(format!("{} ({:.0} % of the variance)", largest.input, largest.percent))
     };
-    match (share(&|c| c.speed_m_s), share(&|c| c.k)) {
+    match (words(|c| c.speed_m_s), words(|c| c.k)) {
         (Some(speed), Some(k)) => format!("The largest for the speed is {speed}, for k {k}."),
         (Some(speed), None) => format!("The largest for the speed is {speed}."),
         (None, Some(k)) => format!("The largest for k is {k}."),

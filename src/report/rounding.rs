@@ -63,20 +63,23 @@ pub(super) fn optional(value: Option<f64>, digits: usize) -> String {
 
 /// An optional number with fixed decimals, or the dash.
 pub(crate) fn optional_fixed(value: Option<f64>, decimals: usize) -> String {
-    value.filter(|v| v.is_finite()).map_or_else(|| MISSING.to_owned(), |value| fixed(value, decimals))
+    value.map_or_else(|| MISSING.to_owned(), |value| fixed(value, decimals))
 }
 
-/// "+1.7 %", with the sign always.
-pub(super) fn percent(value: f64) -> String {
+/// "+1.7 %", with the sign always, or the dash.
+pub(super) fn percent(value: impl Into<Option<f64>>) -> String {
+    match optional_fixed(value.into(), 1) {
+        text if text == MISSING => text,
+        text if text.starts_with('−') || text == "0.0" => format!("{text} %"),
+        text => format!("+{text} %"),
+    }
+}
+
+/// `value` with `decimals`, a true minus sign, and no minus before a zero; or the dash.
+pub(super) fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return MISSING.to_owned();
     }
-    let text = fixed(value, 1);
-    if text.starts_with('−') || text == "0.0" { format!("{text} %") } else { format!("+{text} %") }
-}
-
-/// `value` with `decimals`, a true minus sign, and no minus before a zero.
-pub(super) fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
         Some(digits) if digits.bytes().all(|b| b == b'0' || b == b'.') => digits.to_owned(),

@@ -200,7 +200,7 @@ fn ladder(request: &StudyRequest, case: (BodyModel, Contact, f64)) -> Ladder {
 
 fn curve(request: &StudyRequest, case: (BodyModel, Contact, f64)) -> AngleCurve {
     let angle_deg = request.angles_deg.clone();
-    let of = |value: fn(&Prediction) -> Option<f64>| -> Vec<f64> {
+    let series = |value: fn(&Prediction) -> Option<f64>| -> Vec<f64> {
         angle_deg.iter().map(|angle| value(&prediction(case, *angle, 5.512)).unwrap_or(f64::NAN)).collect()
     };
     AngleCurve {
@@ -208,11 +208,11 @@ fn curve(request: &StudyRequest, case: (BodyModel, Contact, f64)) -> AngleCurve 
         height_m: if case.0 == BodyModel::Rod { 0.0 } else { 0.792 },
         contact: case.1,
         k: case.2,
-        speed_m_s: of(|p| p.slap_down_speed_m_s),
-        vertical_velocity_m_s: of(|p| p.vertical_velocity_m_s),
-        horizontal_velocity_m_s: of(|p| p.horizontal_velocity_m_s),
-        energy_ratio: of(|p| p.energy_ratio),
-        closed_form_speed_m_s: of(|p| p.closed_form_speed_m_s),
+        speed_m_s: series(|p| p.slap_down_speed_m_s),
+        vertical_velocity_m_s: series(|p| p.vertical_velocity_m_s),
+        horizontal_velocity_m_s: series(|p| p.horizontal_velocity_m_s),
+        energy_ratio: series(|p| p.energy_ratio),
+        closed_form_speed_m_s: series(|p| p.closed_form_speed_m_s),
         turns_over: vec![false; angle_deg.len()],
         angle_deg,
     }

@@ -1,7 +1,7 @@
 //! What a recording holds to a commented cask file to fill in.
 
 use super::acceleration_sources::{self, NoChannels, VOLTAGES, has_word, is_time};
-use super::text::{is_hidden, line, printable};
+use super::text::{is_hidden, lines, printable};
 use crate::data::keys::{CHANNEL, FILL_IN, Key, TABLES, Takes};
 use crate::data::{ListedChannel, Listing, MOST_CHANNELS, Severity, acceleration_unit_m_s2};
 use std::fmt::Write;
@@ -20,147 +20,135 @@ pub fn cask_file(listing: &Listing) -> Result<String, NoChannels> {
     }
     let mut out = head(listing);
     for issue in listing.issues.iter().filter(|issue| issue.severity != Severity::Note) {
-        line(&mut out, format_args!("# Of the recording: {}", printable(&issue.message)));
+        out.push(format!("# Of the recording: {}", printable(&issue.message)));
     }
     for (i, listed) in taken.iter().enumerate() {
         channel(&mut out, i, listed);
     }
     if beyond > 0 {
-        line(
-            &mut out,
-            format_args!(
-                "\n# {beyond} more look like these; a cask file holds at most {MOST_CHANNELS} channels."
-            ),
-        );
+        let more =
+            format!("{beyond} more look like these; a cask file holds at most {MOST_CHANNELS} channels.");
+        out.extend([String::new(), format!("# {more}")]);
     }
     let left = listing.channels.iter().filter(|c| !taken.iter().any(|t| t.source == c.source));
     let (unreadable, other): (Vec<&ListedChannel>, Vec<_>) = left.partition(|c| c.unreadable.is_some());
-    if !unreadable.is_empty() {
-        out.push_str("\n# Also in the recording, but it cannot be read:\n");
-        for listed in unreadable {
-            line(&mut out, format_args!("#   {}", printable(&acceleration_sources::reason(listed))));
+    let mut also = |why: &str, sources: Vec<String>| {
+        if !sources.is_empty() {
+            out.extend([String::new(), format!("# Also in the recording, but it {why}:")]);
+            out.extend(sources.into_iter().map(|source| format!("#   {}", printable(&source))));
         }
-    }
-    if !other.is_empty() {
-        out.push_str("\n# Also in the recording, but it does not move or does not look like an acceleration in the plane of the drop:\n");
-        for listed in other {
-            line(&mut out, format_args!("#   {}", printable(&listed.source)));
-        }
-    }
-    Ok(out)
+    };
+    also("cannot be read", unreadable.into_iter().map(acceleration_sources::reason).collect());
+    also(
+        "does not move or does not look like an acceleration in the plane of the drop",
+        other.into_iter().map(|listed| listed.source.clone()).collect(),
+    );
+    Ok(lines(out))
 }
 
-fn head(listing: &Listing) -> String {
-    let mut out = String::new();
-    line(&mut out, format_args!("# Cask file for {}", printable(&listing.recording)));
-    line(
-        &mut out,
-        format_args!(
-            "# \"{FILL_IN}\" and nan stand for what only you know; a line with one of them is refused until you replace it."
+fn head(listing: &Listing) -> Vec<String> {
+    let mut out = vec![
+        format!("# Cask file for {}", printable(&listing.recording)),
+        format!(
+            "# \"{FILL_IN}\" and nan stand for what only you know; a line with one of them is refused until \
+             you replace it."
         ),
-    );
-    line(
-        &mut out,
-        format_args!("# Lengths in m, mass in kg, angles in degrees. A line behind # is optional.\n"),
-    );
+        "# Lengths in m, mass in kg, angles in degrees. A line behind # is optional.\n".to_owned(),
+    ];
     let is_clock = |c: &&ListedChannel| is_time(&c.source) && c.samples != Some(1);
     let time = listing.channels.iter().filter(is_clock).find(|c| c.kind != "number" && c.kind != "array");
     for table in TABLES.iter().take_while(|table| table.name != "channel") {
         let mark = if table.keys.iter().any(|key| key.is_asked) { "" } else { "# " };
-        entry(&mut out, &format!("{mark}[{}]", table.name), table.remark);
-        for key in table.keys {
-            match time.filter(|_| table.name == "recording") {
-                Some(time) => entry(&mut out, &format!("# time = {}", quoted(&time.source)), key.remark),
-                None => key_line(&mut out, key),
-            }
-        }
-        out.push('\n');
+        out.push(entry(&format!("{mark}[{}]", table.name), table.remark));
+        out.extend(table.keys.iter().map(|key| match time.filter(|_| table.name == "recording") {
+            Some(time) => entry(&format!("# time = {}", quoted(&time.source)), key.remark),
+            None => key_line(key),
+        }));
+        out.push(String::new());
     }
-    out.push_str(
+    out.push(
         "# At least one transverse channel on each end. The first end is low and touches first.\n\
-         # Check each end, axis and sign (polarity) against the test plan.\n",
+         # Check each end, axis and sign (polarity) against the test plan."
+            .to_owned(),
     );
     out
 }
 
 /// A line of the form, its remark in the column of remarks.
-fn entry(out: &mut String, text: &str, remark: &str) {
+fn entry(text: &str, remark: &str) -> String {
     let remark = if remark.is_empty() { String::new() } else { format!(" # {remark}") };
-    line(out, format_args!("{}", format!("{text:<27}{remark}").trim_end()));
+    format!("{text:<27}{remark}").trim_end().to_owned()
 }
 
 /// The line of a key: asked for where only the user knows it, else behind a mark that makes it a remark.
-fn key_line(out: &mut String, key: &Key) {
+fn key_line(key: &Key) -> String {
     if !key.is_asked {
-        return entry(out, &format!("# {} = {}", key.name, key.example), key.remark);
+        return entry(&format!("# {} = {}", key.name, key.example), key.remark);
     }
     if !matches!(key.takes, Takes::Number(_)) {
-        return entry(out, &format!("{} = \"{FILL_IN}\"", key.name), key.remark);
+        return entry(&format!("{} = \"{FILL_IN}\"", key.name), key.remark);
     }
     let colon = if key.remark.is_empty() { "" } else { ": " };
-    entry(out, &format!("{} = nan", key.name), &format!("{FILL_IN}{colon}{}", key.remark));
+    entry(&format!("{} = nan", key.name), &format!("{FILL_IN}{colon}{}", key.remark))
 }
 
 /// The line of a key that takes one of two words: the one that the source's name holds, else to be filled in.
-fn word_line(out: &mut String, key: &Key, source: &str, words: [&str; 2]) {
+fn word_line(key: &Key, source: &str, words: [&str; 2]) -> String {
     let held = words.map(|word| has_word(source, word));
     match words.iter().zip(held).find(|(_, is_held)| *is_held).filter(|_| held != [true; 2]) {
         Some((word, _)) => {
             let remark = format!("read off the name, to be checked: {}", key.remark);
-            entry(out, &format!("{} = \"{word}\"", key.name), &remark);
+            entry(&format!("{} = \"{word}\"", key.name), &remark)
         }
-        None => key_line(out, key),
+        None => key_line(key),
     }
 }
 
-fn channel(out: &mut String, index: usize, listed: &ListedChannel) {
+fn channel(out: &mut Vec<String>, index: usize, listed: &ListedChannel) {
     let source = listed.source.as_str();
-    out.push_str("\n[[channel]]\n");
-    line(out, format_args!("# {}", facts(listed)));
+    out.extend([String::new(), "[[channel]]".to_owned(), format!("# {}", facts(listed))]);
     for key in &CHANNEL {
-        match key.name {
-            "name" => line(out, format_args!("name = \"A{}\"", index + 1)),
-            "end" => word_line(out, key, source, ["first", "second"]),
-            "axis" => word_line(out, key, source, ["transverse", "axial"]),
-            "source" => line(out, format_args!("source = {}", source_value(source))),
-            "unit" => unit(out, listed.unit.as_deref(), key),
+        let line = match key.name {
+            "name" => format!("name = \"A{}\"", index + 1),
+            "end" => word_line(key, source, ["first", "second"]),
+            "axis" => word_line(key, source, ["transverse", "axial"]),
+            "source" => format!("source = {}", source_value(source)),
+            "unit" => {
+                out.extend(unit(listed.unit.as_deref(), key));
+                continue;
+            }
             "sample_rate_hz" if listed.sample_rate_hz.is_none() => {
                 const NONE: &str =
                     "no rate or times were found; or name the times below and take this line out";
-                entry(out, "sample_rate_hz = nan", &format!("{FILL_IN}: {NONE}"));
+                entry("sample_rate_hz = nan", &format!("{FILL_IN}: {NONE}"))
             }
             // They stand beside the unit and the coupling that need them.
-            "sensitivity" | "time_constant_s" => {}
+            "sensitivity" | "time_constant_s" => continue,
             "where" if let Some(rows) = &listed.rows => {
-                line(
-                    out,
-                    format_args!(
-                        "where = {{ column = {}, is = {} }}",
-                        quoted(&rows.column),
-                        quoted(&rows.is)
-                    ),
-                );
+                format!("where = {{ column = {}, is = {} }}", quoted(&rows.column), quoted(&rows.is))
             }
-            _ => key_line(out, key),
-        }
+            _ => key_line(key),
+        };
+        out.push(line);
     }
 }
 
-fn unit(out: &mut String, told: Option<&str>, key: &Key) {
+/// The line of the unit, and that of the sensitivity which it needs.
+fn unit(told: Option<&str>, key: &Key) -> Vec<String> {
     match told {
         Some(unit) if acceleration_unit_m_s2(unit).is_some() => {
-            entry(out, &format!("# unit = {}", quoted(unit)), key.remark);
+            vec![entry(&format!("# unit = {}", quoted(unit)), key.remark)]
         }
-        Some(unit) if VOLTAGES.contains(&unit) => {
-            entry(out, &format!("unit = {}", quoted(unit)), "as the recording says");
-            entry(out, "sensitivity = nan", &format!("{FILL_IN}: mV per g"));
-        }
+        Some(unit) if VOLTAGES.contains(&unit) => vec![
+            entry(&format!("unit = {}", quoted(unit)), "as the recording says"),
+            entry("sensitivity = nan", &format!("{FILL_IN}: mV per g")),
+        ],
         told => {
             let quoted = |unit| format!("the recording says {:?}", printable(unit));
             let says = told.map_or_else(|| "the recording does not say".to_owned(), quoted);
             let remark = format!("\"g\", \"m/s^2\", \"V\" or \"mV\"; {says}");
-            entry(out, &format!("unit = \"{FILL_IN}\""), &remark);
-            entry(out, "# sensitivity = 10.0", "mV per g, with \"V\" and \"mV\"");
+            let sensitivity = entry("# sensitivity = 10.0", "mV per g, with \"V\" and \"mV\"");
+            vec![entry(&format!("unit = \"{FILL_IN}\""), &remark), sensitivity]
         }
     }
 }

@@ -2,7 +2,6 @@
 //! codes.
 
 use crate::data::{DropResult, Finding, IssueCode, ReconstructionRung, Severity, Verdict};
-use std::fmt::Write;
 
 /// Each of `items` once, in the order of first appearance.
 pub(super) fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
@@ -13,12 +12,6 @@ pub(super) fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<
         }
     }
     found
-}
-
-/// Adds one line; writing to a string does not fail.
-pub(super) fn line(out: &mut String, text: std::fmt::Arguments) {
-    let _ = out.write_fmt(text);
-    out.push('\n');
 }
 
 /// The lines, each with its end.

@@ -1,6 +1,7 @@
 //! Contact laws, criteria, bands and inputs of a study to the words that table, page and pictures share.
 
 use super::rounding::{MISSING, fixed, plain};
+use super::text::json_word;
 use crate::data::{Contact, Criterion, FlightRegime, Rung, SweepVariable, Uncertain};
 
 /// Rows of a table of cases on a terminal and on a page, and where all are.
@@ -72,11 +73,7 @@ pub(super) fn criterion_value(criterion: Criterion, value: f64) -> String {
 
 /// An angle to a tenth of a degree, without the sign for degrees.
 pub(super) fn degrees(angle_deg: f64) -> String {
-    if !angle_deg.is_finite() {
-        return MISSING.to_owned();
-    }
-    let text = fixed(angle_deg, 1);
-    text.strip_suffix(".0").map_or_else(|| text.clone(), str::to_owned)
+    fixed(angle_deg, 1).trim_end_matches(".0").to_owned()
 }
 
 /// "3.5–28, 61–70", or the dash where there is none.
@@ -154,15 +151,8 @@ pub(super) fn uncertain_words(u: &Uncertain, contact: Contact) -> String {
 }
 
 /// A rung of the ladder in a narrow column.
-pub(super) fn rung_short(rung: Rung) -> &'static str {
-    match rung {
-        Rung::Rod => "rod",
-        Rung::Body => "body",
-        Rung::Friction => "friction",
-        Rung::Unilateral => "unilateral",
-        Rung::FurtherImpacts => "further impacts",
-        Rung::FinitePulse => "finite pulse",
-    }
+pub(super) fn rung_short(rung: Rung) -> String {
+    json_word(rung).replace('_', " ")
 }
 
 /// The value at the angle nearest to `at_deg`.

@@ -25,10 +25,8 @@ pub fn write(out: &Path, batch: &Batch, lines: &LineFiles, inputs: &[&Path]) -> 
         ));
     }
     let folder = Folder::checked(out, &SUMMARY[..3], inputs)?;
-    let numbers: Vec<usize> = lines.numbers().collect();
     let cask_file = |row: &BatchRow| {
-        let place = batch.rows.iter().position(|other| std::ptr::eq(other, row))?;
-        let line = lines.line(*numbers.get(place)?)?;
+        let line = lines.line(usize::try_from(row.at.number).ok()?.checked_sub(1)?)?;
         ingest::cask_file::of_text(Path::new(""), line["cask_text"].as_str()?).ok()
     };
     let files = CampaignFiles::new(batch, |row, ks, angles_deg| {
@@ -47,7 +45,7 @@ pub fn write(out: &Path, batch: &Batch, lines: &LineFiles, inputs: &[&Path]) -> 
         put(CampaignFiles::JSON_END.as_bytes())
     })?;
     replace_by(&out.join(SUMMARY[1]), |put| {
-        put(&files.csv_head()?)?;
+        put(&batch.csv_head()?)?;
         lines.each(|line| put(&files.csv_row(&value(line))?))
     })?;
     Ok(folder.write(&files.page())?)

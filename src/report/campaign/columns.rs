@@ -1,18 +1,18 @@
 //! A line of a campaign, a result or why there is none, to columns: every input and result by one name each.
 
+use crate::data::Estimate;
+use serde::Deserialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Columns by group and name, in the order of the tables.
 pub(super) type Columns = BTreeMap<(u8, String), Value>;
 
-/// A measured quantity: value, half-width and unit.
+/// A measured quantity by its name.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NamedQuantity {
     pub(super) name: String,
-    pub(super) value: f64,
-    pub(super) u95: f64,
-    pub(super) unit: String,
+    pub(super) estimate: Estimate,
 }
 
 /// Groups in the order of the tables: what the manifest carries, results, what was stated, hashes.
@@ -37,10 +37,10 @@ pub(super) fn of(line: &Value) -> Columns {
     for (name, value) in objects(&line["campaign"]["carried"]) {
         columns.insert((CARRIED, name.clone()), value.clone());
     }
-    for quantity in quantities(line) {
-        let unit = suffix(&quantity.unit);
-        columns.insert((RESULT, format!("{}{unit}", quantity.name)), quantity.value.into());
-        columns.insert((RESULT, format!("{}_u95{unit}", quantity.name)), quantity.u95.into());
+    for NamedQuantity { name, estimate: Estimate { value, u95, unit } } in quantities(line) {
+        let unit = suffix(unit);
+        columns.insert((RESULT, format!("{name}{unit}")), value.into());
+        columns.insert((RESULT, format!("{name}_u95{unit}")), u95.into());
     }
     let notes = line["quality"].as_array().into_iter().flatten().filter(|found| found["severity"] == "note");
     let notes: BTreeSet<&str> = notes.filter_map(|found| found["code"].as_str()).collect();
@@ -96,10 +96,8 @@ pub(super) fn quantities(line: &Value) -> Vec<NamedQuantity> {
 }
 
 fn collect(part: &Value, name: &str, found: &mut Vec<NamedQuantity>) {
-    if let (Some(value), Some(u95), Some(unit)) =
-        (part["value"].as_f64(), part["u95"].as_f64(), part["unit"].as_str())
-    {
-        found.push(NamedQuantity { name: name.to_owned(), value, u95, unit: unit.to_owned() });
+    if let Ok(estimate) = Estimate::deserialize(part) {
+        found.push(NamedQuantity { name: name.to_owned(), estimate });
         return;
     }
     for (key, deeper) in objects(part).filter(|(_, deeper)| deeper.is_object()) {

@@ -11,8 +11,9 @@ use crate::report::text::Style;
 
 /// One quantity of both.
 struct QuantityPair<'a> {
-    a: &'a NamedQuantity,
-    b: &'a NamedQuantity,
+    name: &'a str,
+    a: Estimate,
+    b: Estimate,
 }
 
 impl QuantityPair<'_> {
@@ -23,13 +24,14 @@ impl QuantityPair<'_> {
 
 /// The table of two rows.
 pub(super) fn table<'a>(a: &'a BatchRow, b: &'a BatchRow) -> ChapterPart {
-    let pair =
-        |a: &'a NamedQuantity| b.quantities.iter().find(|b| b.name == a.name).map(|b| QuantityPair { a, b });
+    let pair = |of_a: &'a NamedQuantity| {
+        let of_b = b.quantities.iter().find(|of_b| of_b.name == of_a.name)?;
+        Some(QuantityPair { name: &of_a.name, a: of_a.estimate, b: of_b.estimate })
+    };
     let pairs: Vec<QuantityPair> =
         a.quantities.iter().filter_map(pair).filter(|pair| pair.e_n().is_finite()).collect();
-    let difference = |pair: &QuantityPair| {
-        let (value, u95) = (pair.b.value - pair.a.value, pair.a.u95.hypot(pair.b.u95));
-        shown(&NamedQuantity { value, u95, ..pair.a.clone() })
+    let difference = |QuantityPair { a, b, .. }: &QuantityPair| {
+        interval(Some(&Estimate::new(b.value - a.value, a.u95.hypot(b.u95), a.unit)))
     };
     let word = |pair: &QuantityPair| {
         let words = fixed(pair.e_n(), 2);
@@ -41,17 +43,15 @@ pub(super) fn table<'a>(a: &'a BatchRow, b: &'a BatchRow) -> ChapterPart {
     };
     ReportTable::of(&pairs)
         .class("many")
-        .caption(format!("{} and {}: E_n = difference over the root of the squares of both half-widths; within ±1 they agree.", a.id, b.id))
-        .head("quantity", |pair| pair.a.name.replace('_', " "))
-        .number(&a.id[..], |pair| shown(pair.a))
-        .number(&b.id[..], |pair| shown(pair.b))
+        .caption(format!(
+            "{} and {}: E_n = difference over the root of the squares of both half-widths; within ±1 they \
+             agree.",
+            a.id, b.id
+        ))
+        .head("quantity", |pair| pair.name.replace('_', " "))
+        .number(&a.id[..], |pair| interval(Some(&pair.a)))
+        .number(&b.id[..], |pair| interval(Some(&pair.b)))
         .number("difference", difference)
         .number("E_n", word)
         .into()
-}
-
-fn shown(quantity: &NamedQuantity) -> String {
-    let known = ["s", "m/s", "rad/s", "deg", "1", "m", "m/s^2", "N", "N s", "J"];
-    let unit = known.into_iter().find(|unit| *unit == quantity.unit).unwrap_or_default();
-    interval(Some(&Estimate::new(quantity.value, quantity.u95, unit)))
 }

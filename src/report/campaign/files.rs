@@ -26,14 +26,6 @@ impl<'a> CampaignFiles<'a> {
         Self { batch, series: DropSeries::all(&batch.rows, predicted) }
     }
 
-    /// The first line of `campaign.csv`.
-    ///
-    /// # Errors
-    /// [`ReportError::Csv`] where the writer fails.
-    pub fn csv_head(&self) -> Result<Vec<u8>, ReportError> {
-        self.batch.csv_head()
-    }
-
     /// A row of `campaign.csv`.
     ///
     /// # Errors
@@ -132,9 +124,12 @@ mod tests {
     fn the_csv_has_a_row_a_recording_and_no_formula() {
         let (lines, campaign) = (lines(), campaign(&lines()));
         let files = CampaignFiles::new(&campaign, |_, _, _| Vec::new());
-        let text =
-            [files.csv_head().unwrap(), files.csv_row(&lines[0]).unwrap(), files.csv_row(&lines[1]).unwrap()]
-                .concat();
+        let text = [
+            campaign.csv_head().unwrap(),
+            files.csv_row(&lines[0]).unwrap(),
+            files.csv_row(&lines[1]).unwrap(),
+        ]
+        .concat();
         let mut reader = csv::Reader::from_reader(&text[..]);
         let heads = reader.headers().unwrap().clone();
         let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();

@@ -3,16 +3,15 @@
 
 use super::series::{DropSeries, Pool, PooledQuantity, RowPlace, scatter_words};
 use super::{Batch, BatchRow, MOST_ROWS, MOST_SERIES, compared};
-use crate::data::{Program, Verdict};
+use crate::data::{Program, STANDARD_GRAVITY_M_S2, Verdict};
 use crate::report::document::{Chapter, ChapterPart, Frame, PartContent, ReportDocument, Tone};
 use crate::report::json::in_a_line;
-use crate::report::rounding::{MISSING, fixed, interval, optional_fixed, pair, percent, plain, significant};
+use crate::report::rounding::{
+    MISSING, fixed, interval, optional, optional_fixed, pair, percent, plain, significant,
+};
 use crate::report::table::{ReportTable, TableCell};
 use crate::report::text::{Style, verdict_word};
 use std::collections::{BTreeSet, HashMap};
-
-/// g, m/s².
-const G_M_S2: f64 = 9.806_65;
 
 const REPEATS: &str = "Mean of the repeats that do not fall out, weighted with 1/u². Its interval is that of one drop: repeats share what is \
                        stated of cask, angle and sensors, and no mean makes that smaller. Scatter: the standard deviation. χ² of the \
@@ -60,10 +59,11 @@ pub(super) fn document(batch: &Batch, series: &[DropSeries]) -> ReportDocument {
 
 /// The quantities of all rows for the script that compares two of them.
 fn data(batch: &Batch) -> String {
-    let of = |row: &BatchRow| -> Vec<serde_json::Value> {
-        row.quantities.iter().map(|q| serde_json::json!([q.name, q.value, q.u95, q.unit])).collect()
+    let quantities = |row: &BatchRow| -> Vec<serde_json::Value> {
+        let numbers = row.quantities.iter().map(|quantity| (&quantity.name, quantity.estimate));
+        numbers.map(|(name, e)| serde_json::json!([name, e.value, e.u95, e.unit])).collect()
     };
-    let rows: Vec<_> = batch.rows.iter().take(MOST_ROWS).map(of).collect();
+    let rows: Vec<_> = batch.rows.iter().take(MOST_ROWS).map(quantities).collect();
     in_a_line(&rows).unwrap_or_default().replace('<', "\\u003c")
 }
 
@@ -102,7 +102,7 @@ fn apart(series: &[DropSeries]) -> Chapter {
     let disagree =
         series.iter().flat_map(|series| &series.rows).filter(|row| row.comparison.is_some_and(|c| !c.agrees));
     for row in disagree {
-        let by = row.comparison.map_or_else(String::new, |c| percent(c.difference_percent));
+        let by = percent(row.comparison.map(|c| c.difference_percent));
         let why = format!("measured over predicted {by}: outside both intervals");
         found.push(Oddity { row, size: 0.0, why });
     }
@@ -142,12 +142,7 @@ fn of_series(series: &DropSeries, number: usize) -> Chapter {
         })
         .text("scatter is", word);
     Chapter::new(series.name.clone())
-        .with(ChapterPart::picture(
-            &DropSeries::name_of(number, "speed"),
-            "slap-down speed over the drop angle",
-            "",
-        ))
-        .with(ChapterPart::picture(&DropSeries::name_of(number, "k"), "restitution", ""))
+        .with_all(["speed", "k"].map(|what| ChapterPart::picture(&DropSeries::name_of(number, what), "")))
         .with(repeats)
         .with(ChapterPart::note(REPEATS))
 }
@@ -180,10 +175,7 @@ fn recordings(batch: &Batch, series: &[DropSeries]) -> Chapter {
         optional_fixed(e_n, 2)
     };
     let both = |values: [Option<f64>; 2], factor: f64| {
-        let word = |value: Option<f64>| {
-            value.map_or_else(|| MISSING.to_owned(), |value| significant(value / factor, 3))
-        };
-        values.map(word).join(" · ")
+        values.map(|value| optional(value.map(|value| value / factor), 3)).join(" · ")
     };
     let tag = |row: &BatchRow| {
         let (style, word) = match row.verdict {
@@ -200,16 +192,16 @@ fn recordings(batch: &Batch, series: &[DropSeries]) -> Chapter {
         .head("test", linked)
         .text("verdict", tag)
         .soft("cask", |row| row.at.cask.clone())
-        .number("angle °", |row| row.at.angle_deg.map_or(MISSING.to_owned(), |angle| plain(angle, 4)))
+        .number("angle °", |row| {
+            row.at.angle_deg.map_or_else(|| MISSING.to_owned(), |angle| plain(angle, 4))
+        })
         .soft("date", |row| row.at.date.as_deref().map_or("", |date| date.get(..10).unwrap_or(date)))
         .number("speed m/s", |row| interval(row.slap_down_speed.as_ref()).replace(" m/s", ""))
         .number("k", |row| interval(row.k.as_ref()))
-        .number("measured / predicted", |row| {
-            row.comparison.map_or(MISSING.into(), |c| percent(c.difference_percent))
-        })
+        .number("measured / predicted", |row| percent(row.comparison.map(|c| c.difference_percent)))
         .number("E_n of k", |row| e_n(row, PooledQuantity::K))
         .number("E_n of speed", |row| e_n(row, PooledQuantity::Speed))
-        .number("peaks g", |row| both(row.at.peaks_m_s2, G_M_S2))
+        .number("peaks g", |row| both(row.at.peaks_m_s2, STANDARD_GRAVITY_M_S2))
         .number("energies kJ", |row| both(row.at.energies_j, 1e3))
         .text("findings", |row| row.error.clone().unwrap_or_else(|| row.codes.join(", ")));
     let more = (shown.len() < batch.rows.len())

@@ -25,67 +25,55 @@ impl DropSeries<'_> {
     }
 
     fn speeds(&self, name: &str) -> Picture {
-        let mut panel = self.panel("Slap-down speed", "slap-down speed, m/s");
-        panel.height = 620;
-        (panel.fills, panel.lines) = predicted(&self.curves);
-        self.draw(&mut panel, |row| PooledQuantity::Speed.of(row), |row| self.angle(row));
-        panel.marks = self.marks();
+        let mut speed = self.panel("Slap-down speed", "slap-down speed, m/s");
+        speed.height = 620;
+        (speed.fills, speed.lines) = predicted(&self.curves);
+        speed.marks = self.marks();
         let mut ratio = self.panel("Measured over predicted", "ratio");
         if let Some((from, to)) = ratio.x.range {
             ratio.lines.push(Curve::new(GREY, vec![(from, 1.0), (to, 1.0)]));
         }
-        self.draw(&mut ratio, relative, |row| self.angle(row));
+        let panels = [
+            self.drawn(speed, |row| PooledQuantity::Speed.of(row), |row| self.angle(row)),
+            self.drawn(ratio, relative, |row| self.angle(row)),
+        ];
         let k = self.k.map_or_else(String::new, |[low, high]| {
             format!(", from {} to {}", plain(low, 3), plain(high, 3))
         });
         let caption = format!(
-            "Above: measured with 95 % intervals over the stated drop angle; repeats stand beside one another. Bands: the analytical model \
-             over the measured range of k{k}. Below: measured over predicted with each drop's own k. Hollow: not to be used. Ringed: falls \
-             out of its repeats."
+            "Above: measured with 95 % intervals over the stated drop angle; repeats stand beside one \
+             another. Bands: the analytical model over the measured range of k{k}. Below: measured over \
+             predicted with each drop's own k. Hollow: not to be used. Ringed: falls out of its repeats."
         );
         Plate::new(name, format!("{}: slap-down speed over the drop angle", self.name), caption)
             .or(NOTHING)
-            .picture(&[panel, ratio])
+            .picture(&panels)
     }
 
     fn ks(&self, name: &str) -> Picture {
         let k = |row: &BatchRow| PooledQuantity::K.of(row);
-        let mut over_angle = self.panel("Over the drop angle", "k");
-        self.draw(&mut over_angle, k, |row| self.angle(row));
-        let mut over_number = Panel {
-            x: PanelAxis::new("test number in the campaign"),
-            ..self.panel("Over the test number", "k")
-        };
-        self.draw(&mut over_number, k, |row| Some(row.at.number.into()));
-        with_air(&mut over_number);
+        let over = |what: &str, label: &str| Panel::new(format!("Over the {what}"), label, "k", 330);
         let first = self.rows.iter().filter_map(|row| date(row)).min();
-        let label = first.map_or_else(String::new, |first| format!("days since {first}"));
-        let mut over_date = Panel { x: PanelAxis::new(label), ..self.panel("Over the test date", "k") };
+        let since_first = first.map_or_else(String::new, |first| format!("days since {first}"));
         let days = |row: &BatchRow| {
             let since = date(row)?.since(first?).ok()?;
             Some(f64::from(since.get_days()))
         };
-        self.draw(&mut over_date, k, days);
-        with_air(&mut over_date);
-        let caption = "The coefficient of restitution with its 95 % interval. Hollow: not to be used. Ringed: falls out of its repeats."
-            .to_owned();
-        Plate::new(name, format!("{}: restitution", self.name), caption).or(NOTHING).picture(&[
-            over_angle,
-            over_date,
-            over_number,
-        ])
+        let over_number = over("test number", "test number in the campaign");
+        let panels = [
+            self.drawn(self.panel("Over the drop angle", "k"), k, |row| self.angle(row)),
+            self.drawn(over("test date", &since_first), k, days).with_air(0.03),
+            self.drawn(over_number, k, |row| Some(row.at.number.into())).with_air(0.03),
+        ];
+        let caption = "The coefficient of restitution with its 95 % interval. Hollow: not to be used. \
+                       Ringed: falls out of its repeats.";
+        Plate::new(name, format!("{}: restitution", self.name), caption).or(NOTHING).picture(&panels)
     }
 
     fn panel(&self, title: &str, y: &str) -> Panel {
         let ends =
             self.curves.first().and_then(|curve| Some((curve.points.first()?.0, curve.points.last()?.0)));
-        Panel {
-            title: title.to_owned(),
-            x: PanelAxis::new("drop angle, °").over(ends),
-            y: PanelAxis::new(y),
-            height: 330,
-            ..Panel::default()
-        }
+        Panel::new(title, PanelAxis::new("drop angle, °").over(ends), y, 330)
     }
 
     /// The angle at which a row is drawn: its own, and a little beside its repeats.
@@ -93,13 +81,13 @@ impl DropSeries<'_> {
         Some(row.at.angle_deg? + self.place(row).beside_deg)
     }
 
-    /// Adds the rows with their intervals.
-    fn draw(
+    /// The panel with the rows and their intervals.
+    fn drawn(
         &self,
-        panel: &mut Panel,
+        mut panel: Panel,
         y: impl Fn(&BatchRow) -> Option<Estimate>,
         x: impl Fn(&BatchRow) -> Option<f64>,
-    ) {
+    ) -> Panel {
         let mut looks = [
             Points { radius: 7, ..Points::new(INK, PointShape::Dot, Vec::new()) }.named("measured"),
             Points { radius: 7, is_hollow: true, ..Points::new(GREY, PointShape::Dot, Vec::new()) },
@@ -121,6 +109,7 @@ impl DropSeries<'_> {
             }
         }
         panel.points.extend(looks.into_iter().filter(|points| !points.at.is_empty()));
+        panel
     }
 
     /// The names of those that fall out.
@@ -128,13 +117,6 @@ impl DropSeries<'_> {
         let out = self.rows.iter().filter(|row| self.falls_out(row));
         out.filter_map(|row| Some(Mark { at: self.angle(row)?, label: row.id.clone() })).collect()
     }
-}
-
-/// Room beside the first and the last point.
-fn with_air(panel: &mut Panel) {
-    let std::ops::Range { start, end } = panel.x_range();
-    let air = 0.03 * (end - start).max(1.0);
-    panel.x.range = Some((start - air, end + air)).filter(|(from, to)| from.is_finite() && to.is_finite());
 }
 
 fn relative(row: &BatchRow) -> Option<Estimate> {

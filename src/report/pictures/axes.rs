@@ -1,7 +1,7 @@
 //! One panel to its axes, areas, lines, points and marks.
 
 use super::decimate::runs;
-use super::legend::{self, point, width_of};
+use super::legend::{self, LEFT, RIGHT, point, width_of};
 use super::panel::{AxisScale, Curve, Dash, GREY, INK, Mark, Panel, PanelAxis, WIDTH};
 use super::svg::{Anchor, Svg};
 use std::ops::Range;
@@ -11,10 +11,8 @@ use std::ops::Range;
 const COLUMN: f64 = 3.0;
 /// Height of a row of the marks' words.
 const MARK_ROW: f64 = 34.0;
-/// Room for the ticks and the label of the axes.
-const LEFT: f64 = 130.0;
+/// Room for the ticks and the label below the axes.
 const BOTTOM: f64 = 88.0;
-const RIGHT: f64 = 28.0;
 /// Air below a panel.
 const GAP: f64 = 26.0;
 
@@ -265,6 +263,6 @@ mod tests {
         assert_eq!(found.bold, [10.0, 100.0, 1000.0]);
         assert_eq!((found.fine.first(), found.fine.last()), (Some(&5.0), Some(&2000.0)));
         assert!(ticks(&logarithmic, &(1e-17..1e3), 8).bold.len() <= 8);
-        assert!(ticks(&PanelAxis::rows(Vec::new()), &(0.0..1.0), 8).bold.is_empty());
+        assert!(ticks(&Panel::of_rows(Vec::new(), 1, (0, 0)).y, &(0.0..1.0), 8).bold.is_empty());
     }
 }

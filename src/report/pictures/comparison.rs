@@ -20,9 +20,9 @@ struct ComparedRow {
 /// The picture.
 pub(super) fn picture(analysis: &Analysis) -> Picture {
     let panel = panel(&rows(analysis), analysis.result.slap_down.speed.filter(|e| e.value.is_finite()));
-    let caption = "Speed of the second end just before it strikes. Dots: the analytical models with the borderline k; squares: with the \
-                   measured k, with their 95 % intervals where known. Dashed line and band: the measurement and its 95 % interval."
-        .to_owned();
+    let caption = "Speed of the second end just before it strikes. Dots: the analytical models with the \
+                   borderline k; squares: with the measured k, with their 95 % intervals where known. Dashed \
+                   line and band: the measurement and its 95 % interval.";
     Plate::new("comparison", "Measured beside predicted", caption).picture(panel.as_slice())
 }
 
@@ -55,46 +55,25 @@ fn panel(rows: &[ComparedRow], measured: Option<Estimate>) -> Option<Panel> {
         let right = row.u95_m_s.map_or_else(|| format!("{:.2}", row.speed_m_s), value);
         RowWords { left: row.label.clone(), right, is_heading: false }
     };
-    let y = PanelAxis::rows(rows.iter().map(words).collect());
-    let foot_to_top = y.range.unwrap_or_default();
-    let count = foot_to_top.1;
-    let mut panel = Panel {
-        x: PanelAxis::new("slap-down speed, m/s").over(Some(speed_range(rows, measured))),
-        y,
-        height: ROW * u32::try_from(rows.len().max(1)).unwrap_or(1),
-        sides: Some((560, 230)),
-        ..Panel::default()
-    };
+    let mut panel = Panel::of_rows(rows.iter().map(words).collect(), ROW, (560, 230));
+    panel.x = PanelAxis::new("slap-down speed, m/s");
     if let Some(speed) = measured {
         let u95 = if speed.u95.is_finite() { speed.u95 } else { 0.0 };
-        let area = Fill::rectangle((speed.value - u95, speed.value + u95), foot_to_top);
+        let area = Fill::rectangle((speed.value - u95, speed.value + u95), panel.y.range.unwrap_or_default());
         panel.fills.push(Fill::new(COLOURS[2], 0.22, vec![area]));
         panel.marks.push(Mark { at: speed.value, label: format!("measured {}", interval(Some(&speed))) });
     }
-    let mut y = count - 0.5;
-    for row in rows {
-        let (colour, shape) =
-            if row.own_k { (COLOURS[1], PointShape::Square) } else { (COLOURS[0], PointShape::Dot) };
+    for (i, row) in rows.iter().enumerate() {
+        let y = panel.row_middle(i);
+        let look = usize::from(row.own_k);
+        let (colour, shape) = (COLOURS[look], PointShape::of(look));
         if let Some(u95) = row.u95_m_s {
             let (low, high) = (row.speed_m_s - u95, row.speed_m_s + u95);
             let ends = [low, high].map(|x| vec![(x, y - 0.21), (x, y + 0.21)]);
-            panel
-                .lines
-                .extend(ends.into_iter().chain([vec![(low, y), (high, y)]]).map(|p| Curve::new(colour, p)));
+            let interval = ends.into_iter().chain([vec![(low, y), (high, y)]]);
+            panel.lines.extend(interval.map(|points| Curve::new(colour, points)));
         }
         panel.points.push(Points::new(colour, shape, vec![(row.speed_m_s, y)]));
-        y -= 1.0;
     }
-    Some(panel)
-}
-
-fn speed_range(rows: &[ComparedRow], measured: Option<Estimate>) -> (f64, f64) {
-    let ends = rows.iter().map(|row| (row.speed_m_s, row.u95_m_s.unwrap_or(0.0)));
-    let own = measured.map(|e| (e.value, if e.u95.is_finite() { e.u95 } else { 0.0 }));
-    let (low, high) =
-        ends.chain(own).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (value, u95)| {
-            (low.min(value - u95), high.max(value + u95))
-        });
-    let air = 0.08 * (high - low).max(1.0);
-    (low - air, high + air)
+    Some(panel.with_air(0.08))
 }

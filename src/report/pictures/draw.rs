@@ -35,10 +35,17 @@ pub(crate) struct Plate {
 
 impl Plate {
     /// Of the panels one below the other.
-    pub(crate) fn new(name: &str, title: impl Into<String>, caption: String) -> Self {
+    pub(crate) fn new(name: &str, title: impl Into<String>, caption: impl Into<String>) -> Self {
         let nothing =
             ("There is nothing to show: see the findings.", "The recording did not yield this picture.");
-        Self { name: name.to_owned(), title: title.into(), caption, nothing, columns: 1, is_live: false }
+        Self {
+            name: name.to_owned(),
+            title: title.into(),
+            caption: caption.into(),
+            nothing,
+            columns: 1,
+            is_live: false,
+        }
     }
 
     /// With another sentence and caption of the empty picture.
@@ -52,18 +59,27 @@ impl Plate {
     }
 
     /// The picture of those panels that have something to show.
-    pub(crate) fn picture(self, panels: &[Panel]) -> Picture {
-        let Self { name, title, caption, nothing, columns, is_live } = self;
+    pub(crate) fn picture(mut self, panels: &[Panel]) -> Picture {
         let panels: Vec<&Panel> = panels.iter().filter(|panel| panel.has_points()).collect();
         if panels.is_empty() {
-            let (svg, alt) = (empty(nothing.0, &title), format!("{title}: nothing to show."));
-            return Picture { name, title, alt, caption: nothing.1.to_owned(), svg, live: String::new() };
+            let mut svg = Svg::default();
+            svg.words(self.nothing.0, (WIDTH / 2.0, 80.0), Anchor::Middle, "font-size=\"27\"");
+            self.nothing.1.clone_into(&mut self.caption);
+            return self.drawn(svg, 160.0, "nothing to show.");
         }
-        let svg = drawing(&panels, columns, &title);
+        let (svg, height) = drawing(&panels, self.columns);
         let rows: Vec<String> = panels.iter().flat_map(|panel| spoken(panel)).collect();
-        let alt = format!("{title}. {}", if rows.is_empty() { caption.clone() } else { rows.join("; ") });
-        let live = if is_live { live::numbers(&panels) } else { String::new() };
-        Picture { name, title, alt, caption, svg, live }
+        let shown = if rows.is_empty() { self.caption.clone() } else { rows.join("; ") };
+        let live = if self.is_live { live::numbers(&panels) } else { String::new() };
+        let alt = format!("{}. {shown}", self.title);
+        Picture { alt, live, ..self.drawn(svg, height, "") }
+    }
+
+    /// The picture of a drawing of its own this high; `shown` is for a reader who cannot see it.
+    pub(super) fn drawn(self, svg: Svg, height: f64, shown: &str) -> Picture {
+        let Self { name, title, caption, .. } = self;
+        let (svg, alt) = (svg.finished((WIDTH, height), &title), format!("{title}: {shown}"));
+        Picture { name, title, alt, caption, svg, live: String::new() }
     }
 }
 
@@ -75,8 +91,8 @@ fn spoken(panel: &Panel) -> Vec<String> {
     marked.chain(rows.map(|row| format!("{}: {}", row.left, row.right))).collect()
 }
 
-/// Panels in rows of `columns`, those without axes in rows of their own; `title` names the drawing.
-fn drawing(panels: &[&Panel], columns: usize, title: &str) -> String {
+/// Panels in rows of `columns`, those without axes in rows of their own; and how high the drawing is.
+fn drawing(panels: &[&Panel], columns: usize) -> (Svg, f64) {
     let mut rows: Vec<Vec<&Panel>> = Vec::new();
     for panel in panels {
         match rows.last_mut().filter(|row| row.len() < columns && row[0].height > 0 && panel.height > 0) {
@@ -96,14 +112,7 @@ fn drawing(panels: &[&Panel], columns: usize, title: &str) -> String {
         }
         top += row.iter().map(|panel| axes::height(panel, width)).fold(0.0, f64::max);
     }
-    svg.finished((WIDTH, top), title)
-}
-
-/// A picture that only says a sentence.
-fn empty(sentence: &str, title: &str) -> String {
-    let mut svg = Svg::default();
-    svg.words(sentence, (WIDTH / 2.0, 80.0), Anchor::Middle, "font-size=\"27\"");
-    svg.finished((WIDTH, 160.0), title)
+    (svg, top)
 }
 
 #[cfg(test)]
@@ -114,14 +123,9 @@ mod tests {
     #[test]
     fn a_logarithmic_axis_drops_what_it_cannot_show() {
         let points = vec![(0.0, 1.0), (10.0, 0.0), (10.0, 1.0), (1000.0, 0.1)];
-        let panel = Panel {
-            x: PanelAxis::new("frequency, Hz").logarithmic(),
-            y: PanelAxis::new("magnitude").logarithmic(),
-            height: 350,
-            lines: vec![Curve::new(COLOURS[0], points)],
-            ..Panel::default()
-        };
-        let svg = drawing(&[&panel], 1, "");
+        let [x, y] = ["frequency, Hz", "magnitude"].map(|label| PanelAxis::new(label).logarithmic());
+        let panel = Panel { lines: vec![Curve::new(COLOURS[0], points)], ..Panel::new("", x, y, 350) };
+        let svg = Plate::new("", "", "").picture(&[panel]).svg;
         assert!(svg.contains("polyline") && !svg.contains("NaN") && !svg.contains("inf"));
     }
 }

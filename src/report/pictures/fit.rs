@@ -1,45 +1,45 @@
 //! The flight fit that decides to its picture: what was measured, plateaus with their modes, and what they
 //! leave.
 
-use super::curves::{panel, points};
+use super::super::grid::Grid;
+use super::curves::{channel_lines, panel, points};
 use super::draw::{Picture, Plate};
 use super::panel::{Curve, Dash};
-use crate::data::{Analysis, Axis, ChannelCurve, FlightFit};
+use crate::data::{Analysis, Axis, ChannelCurve, FlightFit, Mode};
 
 /// Values of the fit over its window: four a period of 1 kHz in 100 ms.
 const STEPS: u32 = 400;
 
 /// Velocities around the window of the fit, the fit on them, and the difference.
 pub(super) fn picture(analysis: &Analysis) -> Picture {
-    let mut lines = Vec::new();
-    let mut left = Vec::new();
-    for (i, curve) in analysis.curves.channels.iter().enumerate() {
+    let (mut lines, mut left) = (Vec::new(), Vec::new());
+    for channel in channel_lines(analysis) {
+        let curve = channel.curve;
         let Some(fit) = analysis.result.flight.as_ref().and_then(|fit| fitted(analysis, fit, curve)) else {
             continue;
         };
-        let colour = super::panel::COLOURS[i % super::panel::COLOURS.len()];
-        let measured: Vec<f64> = fit.time_s.iter().map(|t| at(curve, *t)).collect();
-        let named = |what: &str| format!("{} {what}", curve.channel);
-        let of = |values: &[f64]| Curve::new(colour, points(&fit.time_s, values, 1.0));
-        lines.push(Curve { opacity: 0.45, stroke: 6, ..of(&measured) }.named(named("measured")));
-        lines.push(Curve { stroke: 2, ..of(&fit.ringing) }.named(named("fit")));
-        lines.push(Curve { stroke: 2, ..of(&fit.plateau) }.named(named("plateau")).broken(Dash::Dashed));
-        let off: Vec<f64> = measured.iter().zip(&fit.ringing).map(|(m, f)| m - f).collect();
-        left.push(of(&off).named(&curve.channel[..]));
+        let line = |values: &[f64]| Curve::new(channel.colour, points(&fit.time_s, values, 1.0));
+        let named = |values: &[f64], what: &str| line(values).named(format!("{} {what}", curve.channel));
+        lines.push(Curve { opacity: 0.45, stroke: 6, ..named(&fit.measured, "measured") });
+        lines.push(Curve { stroke: 2, ..named(&fit.ringing, "fit") });
+        lines.push(Curve { stroke: 2, ..named(&fit.plateau, "plateau").broken(Dash::Dashed) });
+        let off: Vec<f64> = fit.measured.iter().zip(&fit.ringing).map(|(m, f)| m - f).collect();
+        left.push(line(&off).named(&curve.channel[..]));
     }
     let panels = [
         panel(analysis, "Fit of the flight", "velocity, m/s", lines),
         panel(analysis, "What the fit leaves", "residual, m/s", left),
     ];
     let caption = "The window of the flight that k and speed rest on. Above: each velocity as measured, the plateau with its modes \
-                   fitted to it, and the plateau alone (with its drift). Below: measured minus fitted."
-        .to_owned();
+                   fitted to it, and the plateau alone (with its drift). Below: measured minus fitted.";
     Plate::new("fit", "Fit of the flight", caption).live().picture(&panels)
 }
 
-/// The fit of a channel on times of its window: the plateau with its drift, and with the modes.
+/// The fit of a channel on times of its window: what was measured, the plateau with its drift, and with the
+/// modes.
 struct FittedCurve {
     time_s: Vec<f64>,
+    measured: Vec<f64>,
     plateau: Vec<f64>,
     ringing: Vec<f64>,
 }
@@ -56,31 +56,24 @@ fn fitted(analysis: &Analysis, fit: &FlightFit, curve: &ChannelCurve) -> Option<
     // f_η holds −Ω² η   (14), which the fit takes off.
     let turning = analysis.result.first_impact.angular_velocity.map_or(0.0, |w| w.value);
     let slope_m_s2 = plateau.zero_shift_m_s2 - turning * turning.abs() * arm_m;
-    let begin_m_s = at(curve, contact_s - BEFORE_S) + plateau.velocity_step_m_s;
+    let grid = Grid::new(&curve.time_s)?;
+    let velocity_m_s = |time_s: f64| grid.place(time_s)?.of(&curve.velocity_m_s);
+    let begin_m_s = velocity_m_s(contact_s - BEFORE_S)? + plateau.velocity_step_m_s;
     let time_s: Vec<f64> =
         (0..=STEPS).map(|i| fit.from_s + f64::from(i) / f64::from(STEPS) * (fit.to_s - fit.from_s)).collect();
     let straight = |t: &f64| begin_m_s + slope_m_s2 * (t - fit.from_s);
     let modes = |t: &f64| -> f64 {
-        let of = |(mode, (a, b)): (&crate::data::Mode, &(f64, f64))| {
+        let mode = |(mode, (a, b)): (&Mode, &(f64, f64))| {
             let phase = std::f64::consts::TAU * mode.frequency_hz * (t - fit.from_s);
             (-mode.damping * phase).exp() * (a * phase.cos() + b * phase.sin())
         };
-        fit.modes.iter().zip(&plateau.ringing_m_s).map(of).sum()
+        fit.modes.iter().zip(&plateau.ringing_m_s).map(mode).sum()
     };
     let plateau = time_s.iter().map(straight).collect();
     let ringing = time_s.iter().map(|t| straight(t) + modes(t)).collect();
-    Some(FittedCurve { time_s, plateau, ringing })
+    let measured = time_s.iter().map(|t| velocity_m_s(*t).unwrap_or(f64::NAN)).collect();
+    Some(FittedCurve { time_s, measured, plateau, ringing })
 }
 
 /// So long before first contact the velocity is that of the fall, s.
 const BEFORE_S: f64 = 5e-4;
-
-/// The velocity of a curve at a time, by a line between its samples.
-fn at(curve: &ChannelCurve, time_s: f64) -> f64 {
-    let next = curve.time_s.partition_point(|t| *t < time_s).clamp(1, curve.time_s.len().max(2) - 1);
-    let [a, b] = [next - 1, next].map(|i| (curve.time_s.get(i), curve.velocity_m_s.get(i)));
-    match (a, b) {
-        ((Some(t0), Some(v0)), (Some(t1), Some(v1))) => v0 + (v1 - v0) * (time_s - t0) / (t1 - t0),
-        _ => f64::NAN,
-    }
-}

@@ -6,9 +6,9 @@ use super::svg::{Anchor, Svg};
 
 /// Height of the title's row.
 const HEAD: f64 = 62.0;
-/// Where title and legend begin and end.
-const LEFT: f64 = 130.0;
-const RIGHT: f64 = 28.0;
+/// Where title and legend begin and end, and the axes of a panel without rows.
+pub(super) const LEFT: f64 = 130.0;
+pub(super) const RIGHT: f64 = 28.0;
 /// Height of each further row of the legend.
 const LEGEND_ROW: f64 = 40.0;
 /// Width of the sample of a line before its words.

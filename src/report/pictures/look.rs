@@ -14,6 +14,13 @@ pub(super) const MOST_CONTACTS: usize = 3;
 const MOST_KS: usize = 3;
 const MOST_KS_ALONE: usize = 5;
 
+/// The strokes of k from the highest on.
+pub(super) const DASHES: [Dash; 3] = [Dash::Solid, Dash::Dashed, Dash::Dotted];
+
+/// The sentence and the caption of an empty picture.
+pub(super) const NO_SLAP_DOWN: (&str, &str) =
+    ("There is nothing to show: the second end never strikes.", "No case of this study has a slap-down.");
+
 /// The cases that pictures show, and how.
 pub(super) struct Look {
     /// Contact laws; each has a colour where there are several.
@@ -35,36 +42,33 @@ impl Look {
         Self { contacts: shown.to_vec(), ks, left_out }
     }
 
-    /// Whether this case is drawn.
-    pub(super) fn shows(&self, contact: Contact, k: f64) -> bool {
-        self.contacts.contains(&contact) && self.k_index(k).is_some()
+    /// With the highest and the lowest k alone.
+    pub(super) fn with_ends(self) -> Self {
+        Self { ks: spread(&self.ks, 2), ..self }
     }
 
-    /// Place of k from the highest.
-    fn k_index(&self, k: f64) -> Option<usize> {
-        self.ks.iter().rev().position(|shown| shown.to_bits() == k.to_bits())
+    /// Where a case stands among those drawn: the place of its contact law, and that of k from the highest.
+    pub(super) fn place(&self, contact: Contact, k: f64) -> Option<[usize; 2]> {
+        let of_contact = self.contacts.iter().position(|shown| *shown == contact)?;
+        let of_k = self.ks.iter().rev().position(|shown| shown.to_bits() == k.to_bits())?;
+        Some([of_contact, of_k])
+    }
+
+    /// Whether this case is drawn.
+    pub(super) fn shows(&self, contact: Contact, k: f64) -> bool {
+        self.place(contact, k).is_some()
     }
 
     /// Of the contact law, or of k where there is only one law.
     pub(super) fn colour(&self, contact: Contact, k: f64) -> Colour {
-        let index = if self.contacts.len() > 1 {
-            self.contacts.iter().position(|c| *c == contact)
-        } else {
-            self.k_index(k)
-        };
-        COLOURS[index.unwrap_or(0) % COLOURS.len()]
+        let place = self.place(contact, k).unwrap_or_default();
+        COLOURS[place[usize::from(self.contacts.len() < 2)] % COLOURS.len()]
     }
 
-    /// Of k where several contact laws take the colours: the highest is solid.
-    pub(super) fn dash(&self, k: f64) -> Dash {
-        if self.contacts.len() < 2 {
-            return Dash::Solid;
-        }
-        match self.k_index(k) {
-            Some(1) => Dash::Dashed,
-            Some(2) => Dash::Dotted,
-            _ => Dash::Solid,
-        }
+    /// The line of a case: where the contact laws take the colours each k has a stroke.
+    pub(super) fn line(&self, contact: Contact, k: f64, points: Vec<(f64, f64)>) -> Curve {
+        let of_k = self.place(contact, k).filter(|_| self.contacts.len() > 1).map_or(0, |place| place[1]);
+        Curve::new(self.colour(contact, k), points).broken(DASHES[of_k % DASHES.len()])
     }
 
     /// A sentence on the cases that are not drawn, or nothing.
@@ -103,16 +107,10 @@ pub(super) fn angle_axis(request: &StudyRequest) -> PanelAxis {
 }
 
 /// An empty panel over the angles of the study, the angle asked for marked.
-pub(super) fn angle_panel(request: &StudyRequest, title: String, y_label: &str) -> Panel {
+pub(super) fn angle_panel(request: &StudyRequest, title: impl Into<String>, y_label: &str) -> Panel {
     let at = request.angle_deg;
-    Panel {
-        title,
-        x: angle_axis(request),
-        y: PanelAxis::new(y_label),
-        height: 400,
-        marks: vec![Mark { at, label: format!("{}°", plain(at, 4)) }],
-        ..Panel::default()
-    }
+    let marks = vec![Mark { at, label: format!("{}°", plain(at, 4)) }];
+    Panel { marks, ..Panel::new(title, angle_axis(request), y_label, 400) }
 }
 
 /// The borders of cells around `centres`: half way between them, the outer ones on the outer centres.
@@ -121,31 +119,31 @@ pub(super) fn edges(centres: &[f64]) -> Vec<f64> {
     centres.first().copied().into_iter().chain(inner).chain(centres.last().copied()).collect()
 }
 
-/// What the pale parts of lines are.
-pub(super) const PALE: &str = " Pale: the cask turns over (a somersault) before the second end strikes.";
-
 /// A line without the points at which the cask turns over, and these as a pale one without a name.
 pub(super) fn apart(line: Curve, turns_over: &[bool]) -> Vec<Curve> {
-    let only = |wanted: bool| {
-        let of =
-            |(point, over): (&(f64, f64), &bool)| (point.0, if *over == wanted { point.1 } else { f64::NAN });
-        line.points.iter().zip(turns_over).map(of).collect()
+    let part = |wanted: bool| {
+        let points = line.points.iter().zip(turns_over);
+        points.map(|((x, y), over)| (*x, if *over == wanted { *y } else { f64::NAN })).collect()
     };
-    let pale = turns_over.contains(&true).then(|| Curve {
-        label: None,
-        opacity: 0.3,
-        points: only(true),
-        ..line.clone()
-    });
-    let points = only(false);
-    std::iter::once(Curve { points, ..line }).chain(pale).collect()
+    let pale = Curve { label: None, opacity: 0.3, points: part(true), ..line.clone() };
+    let whole = Curve { points: part(false), ..line };
+    [whole].into_iter().chain(turns_over.contains(&true).then_some(pale)).collect()
 }
 
-/// The sentence on pale lines, where there are any.
-pub(super) fn pale_sentence(panels: &[Panel]) -> &'static str {
-    let any =
-        panels.iter().flat_map(|panel| &panel.lines).any(|line| line.label.is_none() && line.opacity < 1.0);
-    if any { PALE } else { "" }
+/// Stroke of the closed forms: they alone are that fine.
+pub(super) const HELD_STROKE: u32 = 3;
+
+/// What the ends of lines are, and those lines that are pale or dotted.
+pub(super) fn line_sentences(panels: &[Panel]) -> String {
+    const OPEN: &str = "Where a line is broken off the second end never strikes; where the first end strikes \
+                        again before it, the line may jump.";
+    const HELD: &str = " Dotted: the closed form for k = 0 ([P] Table 2), the first end held on the target \
+                        whatever the force.";
+    const PALE: &str = " Pale: the cask turns over (a somersault) before the second end strikes.";
+    let any = |is_so: fn(&Curve) -> bool| panels.iter().flat_map(|panel| &panel.lines).any(is_so);
+    let held = if any(|line| line.stroke == HELD_STROKE) { HELD } else { "" };
+    let pale = if any(|line| line.label.is_none() && line.opacity < 1.0) { PALE } else { "" };
+    format!("{OPEN}{held}{pale}")
 }
 
 /// From 0 to a little above the largest value that is drawn.
@@ -187,7 +185,8 @@ mod tests {
         let mut seen = Vec::new();
         for contact in look.contacts.clone() {
             for k in look.ks.clone() {
-                let way = (look.colour(contact, k), look.dash(k));
+                let Curve { colour, dash, .. } = look.line(contact, k, Vec::new());
+                let way = (colour, dash);
                 assert!(!seen.contains(&way), "{contact} {k}");
                 seen.push(way);
             }

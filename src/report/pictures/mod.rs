@@ -13,7 +13,6 @@ mod legend;
 mod live;
 mod look;
 mod monte_carlo;
-#[cfg_attr(not(feature = "lab"), allow(dead_code, reason = "the pages of the laboratory use all of it"))]
 pub(crate) mod panel;
 mod positions;
 mod setup;

@@ -5,7 +5,7 @@ use super::super::rounding::plain;
 use super::super::words::{bands_words, criterion_words, degrees};
 use super::draw::{Picture, Plate};
 use super::look::{angle_panel, edges};
-use super::panel::{COLOURS, Curve, Dash, Fill, Panel};
+use super::panel::{COLOURS, Curve, Dash, Fill, Panel, points};
 use crate::data::{Criterion, QuantileCurves, Study};
 
 const NOTHING: (&str, &str) = (
@@ -20,12 +20,10 @@ const NO_DRAWS: (&str, &str) =
 pub(super) fn picture(study: &Study, name: &str) -> Picture {
     let found = &study.monte_carlo;
     let title = format!("Slap-down speed under uncertain inputs, {}", found.model.as_str());
-    let mut panels = Vec::new();
     let has_draws =
         |q: &&QuantileCurves| q.criterion == Criterion::Speed && q.critical_angle_deg[2].is_finite();
-    if let Some(speed) = found.quantiles.iter().find(has_draws) {
-        panels = vec![quantiles(study, speed), shares(study), histogram(study, speed)];
-    }
+    let speed = found.quantiles.iter().find(has_draws);
+    let panels = speed.map(|speed| [quantiles(study, speed), shares(study), histogram(study, speed)]);
     let caption = format!(
         "{} draws, seed {}. Above: median and quantiles of the slap-down speed over the nominal drop angle. Middle: share of the draws \
          whose value at that angle is within {} % of their own largest; shaded where it is at least 95 % for the speed. \
@@ -35,12 +33,12 @@ pub(super) fn picture(study: &Study, name: &str) -> Picture {
         plain(found.band_percent, 3)
     );
     let nothing = if found.uncertain.draws == 0 { NO_DRAWS } else { NOTHING };
-    Plate::new(name, title, caption).or(nothing).picture(&panels)
+    Plate::new(name, title, caption).or(nothing).picture(panels.as_ref().map_or(&[], |panels| panels))
 }
 
 fn quantiles(study: &Study, speed: &QuantileCurves) -> Panel {
     let x = &study.monte_carlo.angle_deg;
-    let mut panel = angle_panel(&study.request, "Slap-down speed".into(), "slap-down speed, m/s");
+    let mut panel = angle_panel(&study.request, "Slap-down speed", "slap-down speed, m/s");
     let fill = |label: &str, opacity, low, high| {
         Fill::new(COLOURS[0], opacity, Fill::between(x, low, high)).named(label)
     };
@@ -48,7 +46,7 @@ fn quantiles(study: &Study, speed: &QuantileCurves) -> Panel {
         fill("95 % of the draws", 0.22, &speed.q025, &speed.q975),
         fill("50 %", 0.40, &speed.q25, &speed.q75),
     ];
-    panel.lines = vec![line("median", 0, Dash::Solid, pairs(x, &speed.q50, 1.0))];
+    panel.lines = vec![Curve::new(COLOURS[0], points(x, &speed.q50, [1.0, 1.0])).named("median")];
     panel
 }
 
@@ -58,22 +56,25 @@ fn shares(study: &Study) -> Panel {
     let mut panel = angle_panel(&study.request, title, "share of the draws, %");
     panel.y.range = Some((0.0, 104.0));
     panel.height = 300;
+    let line = |label: &str, colour: usize, dash, shares: &[f64]| {
+        let points = points(&found.angle_deg, shares, [1.0, 100.0]);
+        Curve::new(COLOURS[colour], points).named(label).broken(dash)
+    };
     for q in &found.quantiles {
         let (colour, dash) = match q.criterion {
             Criterion::Speed => (0, Dash::Solid),
             Criterion::VerticalSpeed => (1, Dash::Dashed),
             Criterion::EnergyRatio => (2, Dash::Dotted),
         };
-        let points = pairs(&found.angle_deg, &q.in_band, 100.0);
-        panel.lines.push(line(criterion_words(q.criterion), colour, dash, points));
+        panel.lines.push(line(criterion_words(q.criterion), colour, dash, &q.in_band));
         if q.criterion == Criterion::Speed {
             let areas = q.robust_bands_deg.iter().map(|band| Fill::rectangle(*band, (0.0, 104.0)));
             panel.fills.push(Fill::new(COLOURS[0], 0.14, areas.collect()));
         }
     }
     if found.no_slap_down.iter().any(|share| *share > 0.0) {
-        let points = pairs(&found.angle_deg, &found.no_slap_down, 100.0);
-        panel.lines.push(Curve { opacity: 0.9, ..line("no slap-down", 6, Dash::Dashed, points) });
+        let without = line("no slap-down", 6, Dash::Dashed, &found.no_slap_down);
+        panel.lines.push(Curve { opacity: 0.9, ..without });
     }
     panel
 }
@@ -119,14 +120,6 @@ fn bars(angle_deg: &[f64], counts: &[u32]) -> Vec<HistogramBar> {
         HistogramBar { from: borders[from], to: borders[from + held.len()], share: 100.0 * sum(held) / all }
     };
     counts[..counts.len().min(angle_deg.len())].chunks(together).enumerate().map(bar).collect()
-}
-
-fn line(label: &str, colour: usize, dash: Dash, points: Vec<(f64, f64)>) -> Curve {
-    Curve::new(COLOURS[colour], points).named(label).broken(dash)
-}
-
-fn pairs(x: &[f64], y: &[f64], factor: f64) -> Vec<(f64, f64)> {
-    x.iter().copied().zip(y.iter().map(|y| y * factor)).collect()
 }
 
 #[cfg(test)]

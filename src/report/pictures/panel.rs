@@ -58,6 +58,11 @@ impl Dash {
     }
 }
 
+/// Points of these places and values, each times its factor.
+pub(crate) fn points(x: &[f64], y: &[f64], factors: [f64; 2]) -> Vec<(f64, f64)> {
+    x.iter().zip(y).map(|(x, y)| (x * factors[0], y * factors[1])).collect()
+}
+
 /// One line.
 #[derive(Clone)]
 pub(crate) struct Curve {
@@ -142,7 +147,7 @@ pub(crate) enum PointShape {
 }
 
 impl PointShape {
-    /// Of the method at this place: colour and shape together tell 35 apart.
+    /// Of the points at this place among others: colour and shape together tell 35 apart.
     pub(crate) fn of(index: usize) -> Self {
         [Self::Dot, Self::Square, Self::Triangle, Self::Diamond, Self::Tip][index % 5]
     }
@@ -222,13 +227,6 @@ impl PanelAxis {
         Self { range, ..self }
     }
 
-    /// An axis of rows.
-    pub(crate) fn rows(rows: Vec<RowWords>) -> Self {
-        #[allow(clippy::cast_precision_loss, reason = "rows are few")]
-        let count = rows.len().max(1) as f64;
-        Self { label: String::new(), scale: AxisScale::Rows(rows), range: Some((0.0, count)) }
-    }
-
     /// Whether it has powers of ten.
     pub(super) fn is_logarithmic(&self) -> bool {
         matches!(self.scale, AxisScale::Logarithmic)
@@ -281,7 +279,45 @@ pub(crate) struct Panel {
     pub(crate) marks: Vec<Mark>,
 }
 
+impl<L: Into<String>> From<L> for PanelAxis {
+    fn from(label: L) -> Self {
+        Self::new(label)
+    }
+}
+
 impl Panel {
+    /// An empty panel with these axes.
+    pub(crate) fn new(
+        title: impl Into<String>,
+        x: impl Into<PanelAxis>,
+        y: impl Into<PanelAxis>,
+        height: u32,
+    ) -> Self {
+        Self { title: title.into(), x: x.into(), y: y.into(), height, ..Self::default() }
+    }
+
+    /// An empty panel of rows of this height, with room for their words at the left and the right.
+    pub(crate) fn of_rows(rows: Vec<RowWords>, row_height: u32, sides: (u32, u32)) -> Self {
+        let count = u32::try_from(rows.len()).unwrap_or(1).max(1);
+        let range = Some((0.0, count.into()));
+        let y = PanelAxis { scale: AxisScale::Rows(rows), range, ..PanelAxis::default() };
+        Self { y, height: row_height * count, sides: Some(sides), ..Self::default() }
+    }
+
+    /// The middle of a row, counted from the top one.
+    #[allow(clippy::cast_precision_loss, reason = "rows are few")]
+    pub(crate) fn row_middle(&self, row: usize) -> f64 {
+        self.y_range().end - 0.5 - row as f64
+    }
+
+    /// With room beside the first and the last of what is drawn: this share of the way between them.
+    pub(crate) fn with_air(mut self, share: f64) -> Self {
+        let Range { start, end } = self.x_range();
+        let air = share * (end - start).max(1.0);
+        self.x.range = Some((start - air, end + air)).filter(|(from, to)| from.is_finite() && to.is_finite());
+        self
+    }
+
     /// Whether there is anything to draw.
     pub(super) fn has_points(&self) -> bool {
         self.height == 0 || self.drawn().next().is_some()

@@ -1,9 +1,9 @@
 //! The ways of a body to drawings of where it is from first contact to the slap-down, as Figs. 2 and 3 of the
 //! paper.
 
-use super::super::rounding::fixed;
+use super::super::rounding::{fixed, plain};
 use super::super::words::case_words;
-use super::draw::Picture;
+use super::draw::{Picture, Plate};
 use super::panel::{COLOURS, Curve, Dash, INK, WIDTH};
 use super::svg::{Anchor, Svg};
 use crate::data::{Body, BodyPath, Pose, Study};
@@ -15,11 +15,11 @@ const WORDS: f64 = 50.0;
 
 /// Body outlines at even times, one drawing a contact law and k.
 pub(super) fn picture(study: &Study, name: &str) -> Picture {
-    let title = "Positions of the cask".to_owned();
+    let plate = |caption| Plate::new(name, "Positions of the cask", caption);
     let Some(first) = study.paths.first() else {
         let nothing =
             ("There is nothing to show.", "No case goes from one impact to the slap-down in one way.");
-        return super::draw::Plate::new(name, title, String::new()).or(nothing).picture(&[]);
+        return plate(String::new()).or(nothing).picture(&[]);
     };
     let all = || study.paths.iter().flat_map(|p| &p.poses).flat_map(|pose| corners(&first.body, pose));
     let [left_m, right_m, top_m] = all().fold([0.0, 0.0, 0.0], |[left, right, top]: [f64; 3], (x, z)| {
@@ -44,19 +44,14 @@ pub(super) fn picture(study: &Study, name: &str) -> Picture {
         format!("{}: R strikes after {} ms", case_words(path.contact, path.k), fixed(time_s * 1e3, 1))
     };
     let cases: Vec<String> = study.paths.iter().map(case).collect();
-    Picture {
-        name: name.to_owned(),
-        alt: format!("{title}: {}", cases.join("; ")),
-        caption: format!(
-            "The {} at {}° from first contact (blue) to the slap-down (orange), as Figs. 2 and 3 of the paper; dotted the way of S. {}.",
-            first.body.model.as_str(),
-            super::super::rounding::plain(study.request.angle_deg, 4),
-            cases.join("; ")
-        ),
-        svg: svg.finished((WIDTH, bottom), &title),
-        title,
-        live: String::new(),
-    }
+    let cases = cases.join("; ");
+    let caption = format!(
+        "The {} at {}° from first contact (blue) to the slap-down (orange), as Figs. 2 and 3 of the paper; \
+         dotted the way of S. {cases}.",
+        first.body.model.as_str(),
+        plain(study.request.angle_deg, 4)
+    );
+    plate(caption).drawn(svg, bottom, &cases)
 }
 
 /// One way: the outline at each pose, the target, the way of S.

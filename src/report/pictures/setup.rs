@@ -1,6 +1,6 @@
 //! A cask file to the drawing of its set-up: cask, angle, ends and sensors, to scale.
 
-use super::draw::Picture;
+use super::draw::{Picture, Plate};
 use super::panel::{COLOURS, Colour, Curve, INK, WIDTH};
 use super::svg::{Anchor, Svg};
 use crate::data::{Axis, CaskFile, ChannelSpec};
@@ -71,17 +71,10 @@ pub(super) fn picture(file: &CaskFile) -> Picture {
     }
     let named = |spec: &ChannelSpec| format!("{} at {} m", spec.name, plain(spec.position_m, 5));
     let names: Vec<String> = file.channels.iter().map(named).collect();
-    let title = "Set-up".to_owned();
-    Picture {
-        name: "setup".to_owned(),
-        alt: format!("{title}: {} at {angle}°; {}", cask.name, names.join(", ")),
-        title: title.clone(),
-        caption: "To scale, as the cask file states it. Each sensor stands at its place; its arrow points to where its reading is positive, \
-                  polarity included. S: centre of gravity."
-            .to_owned(),
-        svg: svg.finished((WIDTH, ground + 70.0), &title),
-        live: String::new(),
-    }
+    let caption = "To scale, as the cask file states it. Each sensor stands at its place; its arrow points \
+                   to where its reading is positive, polarity included. S: centre of gravity.";
+    let shown = format!("{} at {angle}°; {}", cask.name, names.join(", "));
+    Plate::new("setup", "Set-up", caption).drawn(svg, ground + 70.0, &shown)
 }
 
 /// One sensor: its place, its positive direction, its name; `before` others stand beside it.

@@ -4,15 +4,11 @@ use super::super::rounding::plain;
 use super::super::text::distinct;
 use super::super::words::{contact_words, variable_words};
 use super::draw::{Picture, Plate};
-use super::look::{Look, apart, body_words, pale_sentence, spread};
+use super::look::{Look, NO_SLAP_DOWN, apart, body_words, line_sentences, spread};
 use super::panel::{COLOURS, Curve, Panel, PanelAxis};
 use crate::data::{BodyModel, Contact, PredictionRow, Study, Sweep, SweepVariable};
 
 const TITLE: &str = "Slap-down speed over the sweep";
-const NOTHING: (&str, &str) = (
-    "There is nothing to show: the second end never strikes.",
-    "No prediction of this sweep has a slap-down.",
-);
 /// Values of a second variable that are drawn, each a line.
 const MOST_LINES: usize = 7;
 /// Panels of one picture: a page.
@@ -25,106 +21,91 @@ pub(super) fn picture(study: &Study, name: &str) -> Picture {
     // Stable: of equally many the one named first.
     sweeps.sort_by_key(|sweep| std::cmp::Reverse(sweep.values.len()));
     let Some((along, others)) = sweeps.split_first() else {
-        return Plate::new(name, TITLE, String::new()).or(NOTHING).picture(&[]);
+        return Plate::new(name, TITLE, "").or(NO_SLAP_DOWN).picture(&[]);
     };
     let held: Vec<(SweepVariable, f64)> = others
         .iter()
         .skip(1)
         .filter_map(|sweep| Some((sweep.variable, *sweep.values.get(sweep.values.len() / 2)?)))
         .collect();
-    let rows: Vec<&PredictionRow> =
-        study.rows.iter().filter(|row| held.iter().all(|(v, at)| is_at(row, *v, *at))).collect();
-    let swept = |variable| sweeps.iter().any(|sweep| sweep.variable == variable);
-    let [friction_swept, k_swept] = [SweepVariable::Friction, SweepVariable::K].map(swept);
-    let cases = distinct(rows.iter().map(|row| SweepCase::of(row, friction_swept, k_swept)));
+    let cases = cases(study, &held);
     let (panels, left_out) = match others.first() {
-        None => curves(study, &rows, along, &cases),
-        Some(second) => families(study, &rows, (along, second), cases),
+        None => curves(study, along, cases),
+        Some(second) => families(study, (along, second), cases),
     };
     let mut fixed: Vec<String> = held.iter().map(|(v, at)| value_words(*v, *at)).collect();
-    if !swept(SweepVariable::Angle) {
+    if !is_swept(study, SweepVariable::Angle) {
         fixed.push(value_words(SweepVariable::Angle, study.request.angle_deg));
     }
     let fixed = if fixed.is_empty() { String::new() } else { format!(" Drawn at {}.", fixed.join(", ")) };
     let caption = format!(
-        "Magnitude of the velocity of the second end just before it strikes. Where a line is broken off the second end never strikes; \
-         where the first end strikes again before it, the line may jump.{}{fixed}{left_out}",
-        pale_sentence(&panels)
+        "Magnitude of the velocity of the second end just before it strikes. {}{fixed}{left_out}",
+        line_sentences(&panels)
     );
-    Plate::new(name, TITLE, caption).or(NOTHING).picture(&panels)
+    Plate::new(name, TITLE, caption).or(NO_SLAP_DOWN).picture(&panels)
 }
 
-/// What a line or a panel is for; what is swept is `None`.
-#[derive(Clone, Copy, PartialEq)]
-struct SweepCase {
+fn is_swept(study: &Study, variable: SweepVariable) -> bool {
+    study.request.sweeps.iter().any(|sweep| sweep.variable == variable)
+}
+
+/// What a line or a panel is for: a body, a contact law and k, any one where friction or k is swept.
+struct SweepCase<'a> {
     model: BodyModel,
-    contact: Option<Contact>,
-    k: Option<f64>,
+    contact: Contact,
+    k: f64,
+    /// "rough, k = 1", without what is swept.
+    words: String,
+    rows: Vec<&'a PredictionRow>,
 }
 
-impl SweepCase {
-    fn of(row: &PredictionRow, friction_swept: bool, k_swept: bool) -> Self {
+/// The cases of the rows at the values that are held, each with its rows.
+fn cases<'a>(study: &'a Study, held: &[(SweepVariable, f64)]) -> Vec<SweepCase<'a>> {
+    let friction_swept = is_swept(study, SweepVariable::Friction);
+    let k_swept = is_swept(study, SweepVariable::K);
+    let mut cases: Vec<SweepCase> = Vec::new();
+    for row in study.rows.iter().filter(|row| held.iter().all(|(v, at)| is_at(row, *v, *at))) {
         let p = &row.prediction;
-        Self { model: p.model, contact: (!friction_swept).then_some(p.contact), k: (!k_swept).then_some(p.k) }
+        let (contact, k) =
+            (if friction_swept { Contact::Rough } else { p.contact }, if k_swept { 0.0 } else { p.k });
+        let is_its = |case: &&mut SweepCase| {
+            case.model == p.model && case.contact == contact && case.k.to_bits() == k.to_bits()
+        };
+        if let Some(case) = cases.iter_mut().find(is_its) {
+            case.rows.push(row);
+            continue;
+        }
+        let words = [
+            (!friction_swept).then(|| contact_words(contact)),
+            (!k_swept).then(|| format!("k = {}", plain(k, 3))),
+        ];
+        let words = words.into_iter().flatten().collect::<Vec<_>>().join(", ");
+        cases.push(SweepCase { model: p.model, contact, k, words, rows: vec![row] });
     }
-
-    /// "rough, k = 1", without what is swept.
-    fn words(self) -> String {
-        let contact = self.contact.map(contact_words);
-        let k = self.k.map(|k| format!("k = {}", plain(k, 3)));
-        contact.into_iter().chain(k).collect::<Vec<_>>().join(", ")
-    }
-
-    fn holds(self, row: &PredictionRow) -> bool {
-        self == Self::of(row, self.contact.is_none(), self.k.is_none())
-    }
+    cases
 }
 
 /// One variable: a panel a body, a line a contact law and k.
-fn curves(
-    study: &Study,
-    rows: &[&PredictionRow],
-    along: &Sweep,
-    cases: &[SweepCase],
-) -> (Vec<Panel>, String) {
-    let contacts = distinct(cases.iter().map(law));
-    let ks: Vec<f64> = cases.iter().map(restitution).collect();
-    let look = Look::of(&contacts, &ks);
+fn curves(study: &Study, along: &Sweep, mut cases: Vec<SweepCase>) -> (Vec<Panel>, String) {
+    let contacts = distinct(cases.iter().map(|case| case.contact));
+    let look = Look::of(&contacts, &cases.iter().map(|case| case.k).collect::<Vec<f64>>());
+    cases.retain(|case| look.shows(case.contact, case.k));
+    cases.sort_by_key(|case| look.place(case.contact, case.k));
     let panels = [BodyModel::Rod, BodyModel::Body].map(|model| {
-        let mut panel = panel(along, body_words(model, &study.cask_file.cask, !length_swept(study)));
-        let mut shown: Vec<&SweepCase> =
-            cases.iter().filter(|c| c.model == model && look.shows(law(c), restitution(c))).collect();
-        let place = |case: &SweepCase| contacts.iter().position(|c| *c == law(case));
-        shown.sort_by(|a, b| place(a).cmp(&place(b)).then(restitution(b).total_cmp(&restitution(a))));
-        for case in shown {
-            let of_case = rows.iter().copied().filter(|row| case.holds(row));
-            let (points, turns_over) = points(of_case, along.variable);
-            let line = Curve {
-                label: Some(case.words()).filter(|words| !words.is_empty()),
-                dash: look.dash(restitution(case)),
-                ..Curve::new(look.colour(law(case), restitution(case)), points)
-            };
-            panel.lines.extend(apart(line, &turns_over));
-        }
-        panel
+        let lines = cases.iter().filter(|case| case.model == model).flat_map(|case| {
+            let (points, turns_over) = points(case.rows.iter().copied(), along.variable);
+            let line = look.line(case.contact, case.k, points);
+            let label = Some(case.words.clone()).filter(|words| !words.is_empty());
+            apart(Curve { label, ..line }, &turns_over)
+        });
+        panel(study, along, model, "", lines.collect())
     });
     (panels.into(), look.left_out())
-}
-
-/// The contact law of a case, or any one where friction is swept.
-fn law(case: &SweepCase) -> Contact {
-    case.contact.unwrap_or(Contact::Rough)
-}
-
-/// k of a case, or any one where k is swept.
-fn restitution(case: &SweepCase) -> f64 {
-    case.k.unwrap_or(0.0)
 }
 
 /// Two variables: a panel a case, a line a value of the second variable.
 fn families(
     study: &Study,
-    rows: &[&PredictionRow],
     (along, second): (&Sweep, &Sweep),
     mut cases: Vec<SweepCase>,
 ) -> (Vec<Panel>, String) {
@@ -135,40 +116,29 @@ fn families(
     cases.truncate(MOST_PANELS);
     let values = spread(&second.values, MOST_LINES);
     let panels = cases.iter().map(|case| {
-        let words = [body_words(case.model, &study.cask_file.cask, !length_swept(study)), case.words()];
-        let title = words.into_iter().filter(|w| !w.is_empty()).collect::<Vec<_>>().join(", ");
-        let mut panel = panel(along, title);
-        for (i, value) in values.iter().enumerate() {
-            let of_line =
-                rows.iter().copied().filter(|row| case.holds(row) && is_at(row, second.variable, *value));
+        let lines = values.iter().enumerate().flat_map(|(i, value)| {
+            let of_line = case.rows.iter().copied().filter(|row| is_at(row, second.variable, *value));
             let (points, turns_over) = points(of_line, along.variable);
-            let line =
-                Curve::new(COLOURS[i % COLOURS.len()], points).named(value_words(second.variable, *value));
-            panel.lines.extend(apart(line, &turns_over));
-        }
-        panel
+            let line = Curve::new(COLOURS[i % COLOURS.len()], points);
+            apart(line.named(value_words(second.variable, *value)), &turns_over)
+        });
+        panel(study, along, case.model, &case.words, lines.collect())
     });
-    let panels: Vec<Panel> = panels.collect();
-    let mut left_out = Vec::new();
-    if values.len() < second.values.len() {
-        let (all, what) = (second.values.len(), variable_words(second.variable));
-        left_out.push(format!(" Of {all} values of \"{what}\" {} are drawn.", values.len()));
-    }
-    if cases.len() < all {
-        left_out.push(format!(" Of {all} cases {} are drawn.", cases.len()));
-    }
-    (panels, left_out.concat())
+    let panels = panels.collect();
+    let left_out = |all: usize, shown: usize, what: &str| {
+        if shown < all { format!(" Of {all} {what} {shown} are drawn.") } else { String::new() }
+    };
+    let of_second = format!("values of \"{}\"", variable_words(second.variable));
+    let of_values = left_out(second.values.len(), values.len(), &of_second);
+    (panels, of_values + &left_out(all, cases.len(), "cases"))
 }
 
-fn panel(along: &Sweep, title: String) -> Panel {
+fn panel(study: &Study, along: &Sweep, model: BodyModel, case: &str, lines: Vec<Curve>) -> Panel {
+    let body = body_words(model, &study.cask_file.cask, !is_swept(study, SweepVariable::Length));
     let ends = along.values.first().copied().zip(along.values.last().copied());
-    Panel {
-        title,
-        x: PanelAxis::new(variable_words(along.variable)).over(ends.filter(|(from, to)| from < to)),
-        y: PanelAxis::new("slap-down speed, m/s"),
-        height: 380,
-        ..Panel::default()
-    }
+    let x = PanelAxis::new(variable_words(along.variable)).over(ends.filter(|(from, to)| from < to));
+    let title = if case.is_empty() { body } else { format!("{body}, {case}") };
+    Panel { lines, ..Panel::new(title, x, "slap-down speed, m/s", 380) }
 }
 
 /// A value with the symbol and the unit of its variable.
@@ -181,10 +151,6 @@ fn value_words(variable: SweepVariable, value: f64) -> String {
         SweepVariable::Length => format!("l = {value} m"),
         SweepVariable::DropHeight => format!("drop {value} m"),
     }
-}
-
-fn length_swept(study: &Study) -> bool {
-    study.request.sweeps.iter().any(|sweep| sweep.variable == SweepVariable::Length)
 }
 
 /// The value of what is swept; `None` where a row has none.

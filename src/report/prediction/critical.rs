@@ -21,21 +21,23 @@ pub(super) fn critical(study: &Study) -> Chapter {
     let speeds: Vec<&CriticalAngle> =
         study.critical.iter().filter(|c| c.criterion == Criterion::Speed).collect();
     let chapter = Chapter::new("Critical angles");
-    let picture = ChapterPart::picture("critical-angles", "", "tall");
+    let picture = ChapterPart::picture("critical-angles", "tall");
     if speeds.is_empty() {
         let none = ChapterPart::text("No case has a slap-down at any angle.").only(Medium::Page);
         return chapter.with(none).with(picture);
     }
-    let found = |of: &CriticalAngle, criterion| {
-        let same = |c: &&CriticalAngle| (c.model, c.contact, c.k) == (of.model, of.contact, of.k);
+    let found = |case: &CriticalAngle, criterion| {
+        let same = |c: &&CriticalAngle| (c.model, c.contact, c.k) == (case.model, case.contact, case.k);
         study.critical.iter().filter(same).find(|c| c.criterion == criterion && c.angle_deg.is_finite())
     };
     let largest = |criterion| {
-        move |of: &&CriticalAngle| found(of, criterion).map_or(MISSING.into(), |c| bare(criterion, c.largest))
+        move |case: &&CriticalAngle| {
+            found(case, criterion).map_or(MISSING.into(), |c| bare(criterion, c.largest))
+        }
     };
     let place = |criterion| {
-        move |of: &&CriticalAngle| {
-            let Some(c) = found(of, criterion) else { return MISSING.into() };
+        move |case: &&CriticalAngle| {
+            let Some(c) = found(case, criterion) else { return MISSING.into() };
             let at = degrees(c.angle_deg);
             let around = band_around_words(&c.bands_deg, c.angle_deg);
             Words::or(format!("{at} ({})", bands_words(&c.bands_deg)), format!("{at} ({around})"))
@@ -95,7 +97,7 @@ pub(super) fn monte_carlo(study: &Study) -> Chapter {
     let u = &found.uncertain;
     if u.draws == 0 {
         let none = ChapterPart::text("No draws were asked for.");
-        let picture = ChapterPart::picture("monte-carlo", "", "tall");
+        let picture = ChapterPart::picture("monte-carlo", "tall");
         return Chapter::new("Monte Carlo").only(Medium::Page).with(none).with(picture);
     }
     let chapter = Chapter::new(format!("Monte Carlo, {} draws of the {}", u.draws, found.model.as_str()));
@@ -113,7 +115,7 @@ pub(super) fn monte_carlo(study: &Study) -> Chapter {
         let none = ChapterPart::text("Too few draws have a slap-down.");
         chapter.with_all([drawn, none].map(|passage| passage.only(Medium::Page)))
     };
-    chapter.with(ChapterPart::picture("monte-carlo", "", "tall"))
+    chapter.with(ChapterPart::picture("monte-carlo", "tall"))
 }
 
 /// Median and the range of 95 % of the draws.
@@ -141,16 +143,18 @@ fn quantiles(found: &[QuantileCurves]) -> ChapterPart {
     table.into()
 }
 
-/// What the draws say of the slap-down speed at the angle asked for.
-fn at_the_angle(study: &Study) -> Option<String> {
+/// Median of the slap-down speed at the angle asked for, and the ends of 95 % of the draws, m/s.
+pub(super) fn speeds_at_the_angle(study: &Study) -> Option<[String; 3]> {
     let found = &study.monte_carlo;
     let q = found.quantiles.iter().find(|q| q.criterion == Criterion::Speed)?;
-    let at = |values: &[f64]| nearest(&found.angle_deg, values, study.request.angle_deg);
-    Some(format!(
-        "At {}°: {} m/s, 95 % of the draws between {} and {} m/s.",
-        degrees(at(&found.angle_deg)?),
-        fixed(at(&q.q50)?, 2),
-        fixed(at(&q.q025)?, 2),
-        fixed(at(&q.q975)?, 2)
-    ))
+    let at = |values: &[f64]| Some(fixed(nearest(&found.angle_deg, values, study.request.angle_deg)?, 2));
+    Some([at(&q.q50)?, at(&q.q025)?, at(&q.q975)?])
+}
+
+/// What the draws say of the slap-down speed at the angle asked for.
+fn at_the_angle(study: &Study) -> Option<String> {
+    let angles_deg = &study.monte_carlo.angle_deg;
+    let angle_deg = degrees(nearest(angles_deg, angles_deg, study.request.angle_deg)?);
+    let [median, low, high] = speeds_at_the_angle(study)?;
+    Some(format!("At {angle_deg}°: {median} m/s, 95 % of the draws between {low} and {high} m/s."))
 }

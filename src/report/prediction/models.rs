@@ -2,7 +2,7 @@
 
 use super::super::document::{Chapter, ChapterPart};
 use super::super::medium::{Medium, Words};
-use super::super::rounding::{MISSING, optional_fixed, percent, plain};
+use super::super::rounding::{optional_fixed, percent, plain};
 use super::super::table::{ReportTable, TableShape};
 use super::super::text::capital;
 use super::super::words::{MOST_ON_PAGE, MOST_ROWS, OTHERS, case_words, contact_words, degrees, rung_short};
@@ -46,7 +46,7 @@ fn many_ladders(ladders: &[Ladder]) -> ChapterPart {
         .soft(Words::or("Contact", "contact"), |ladder| contact_words(ladder.contact))
         .number("k", |ladder| plain(ladder.k, 3));
     for (i, rung) in Rung::ALL.into_iter().enumerate() {
-        let head = Words::or(capital(rung_short(rung)), rung_short(rung).replace(' ', "\n"));
+        let head = Words::or(capital(&rung_short(rung)), rung_short(rung).replace(' ', "\n"));
         table = table.number(head, move |ladder| {
             ladder
                 .steps
@@ -71,7 +71,7 @@ fn one_ladder(ladder: &Ladder) -> ChapterPart {
         .number(Words::or("Speed, m/s", "v m/s"), |step| {
             optional_fixed(step.prediction.slap_down_speed_m_s, 2)
         })
-        .number(Words::or("Change", "change"), |step| step.change_percent.map_or(MISSING.into(), percent))
+        .number(Words::or("Change", "change"), |step| percent(step.change_percent))
         .number("Impacts of the first end", |step| step.prediction.first_end_impacts.to_string())
         .only(Medium::Page)
         .into()

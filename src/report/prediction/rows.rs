@@ -2,7 +2,7 @@
 
 use super::super::document::ChapterPart;
 use super::super::medium::{Medium, Words};
-use super::super::rounding::{optional, optional_fixed, plain};
+use super::super::rounding::{fixed, optional_fixed, plain, significant};
 use super::super::table::{ReportTable, TableRows, TableShape};
 use super::super::words::{KEPT_SENTENCE, OVER_MARK, OVER_SENTENCE, contact_words, kept_mark};
 use crate::data::{BodyModel, CaskFile, Contact, Prediction, PredictionRow};
@@ -23,13 +23,14 @@ const AGAIN_MARK: &str = "‡";
 /// of a study take two lines, so that further columns have room.
 pub(in super::super) fn prediction_columns<'a, R>(
     rows: TableRows<'a, R>,
-    of: impl Fn(&'a R) -> Option<&'a Prediction> + Copy,
+    prediction: impl Fn(&'a R) -> Option<&'a Prediction> + Copy,
     in_study: bool,
 ) -> TableRows<'a, R> {
-    let cell =
-        |words: fn(&Prediction) -> String| move |row: &'a R| of(row).map_or_else(|| "…".to_owned(), words);
+    let cell = |words: fn(&Prediction) -> String| {
+        move |row: &'a R| prediction(row).map_or_else(|| "…".to_owned(), words)
+    };
     let contact = move |row: &'a R| {
-        let Some(p) = of(row) else { return "…".into() };
+        let Some(p) = prediction(row) else { return "…".into() };
         let over = if p.turns_over() { OVER_MARK } else { "" };
         let words = format!("{}{}{over}", contact_words(p.contact), kept_mark(p.regime));
         let again = if in_study && p.first_end_impacts > 1 { AGAIN_MARK } else { "" };
@@ -44,12 +45,16 @@ pub(in super::super) fn prediction_columns<'a, R>(
         .number(head("Speed, m/s", "v\nm/s"), cell(|p| optional_fixed(p.slap_down_speed_m_s, 2)))
         .number(head("Vertical, m/s", "vz\nm/s"), cell(|p| optional_fixed(p.vertical_velocity_m_s, 2)))
         .number(head("Horizontal, m/s", "vx\nm/s"), cell(|p| optional_fixed(p.horizontal_velocity_m_s, 2)))
-        .number(head("ω, rad/s", "ω\nrad/s"), cell(|p| optional_fixed(Some(p.angular_velocity_rad_s), 2)))
+        .number(head("ω, rad/s", "ω\nrad/s"), cell(|p| fixed(p.angular_velocity_rad_s, 2)))
         .number(
             head("Flight, ms", "flight\nms"),
             cell(|p| optional_fixed(p.flight_time_s.map(|t| t * 1e3), 1)),
         )
         .number(head("Energy", "energy"), cell(|p| optional_fixed(p.energy_ratio, 3)))
+}
+
+fn metres(value_m: f64) -> Words {
+    Words::or(plain(value_m, 5), plain(value_m, 4))
 }
 
 /// Which columns the rows of a study need beside those of every prediction.
@@ -74,46 +79,40 @@ impl Varying {
     }
 }
 
-/// A row of the table; `None` stands for those left out.
-struct ShownRow<'a>(Option<&'a PredictionRow>);
-
 /// The predictions of a study as this medium shows them, and what their marks mean.
 pub(super) fn predictions(all: &[PredictionRow], medium: Medium) -> Vec<ChapterPart> {
     let varying = Varying::of(all);
+    // The row in between stands for those left out.
     let rows: Vec<Option<&PredictionRow>> = match medium {
         Medium::Terminal if all.len() > MOST_ROWS => {
-            let ends = [&all[..ENDS], &all[all.len() - ENDS..]].map(|end| end.iter().map(Some));
-            let [first, last] = ends;
+            let [first, last] = [&all[..ENDS], &all[all.len() - ENDS..]].map(|end| end.iter().map(Some));
             first.chain([None]).chain(last).collect()
         }
         Medium::Terminal => all.iter().map(Some).collect(),
         _ => all.iter().take(MOST_ON_PAGE).map(Some).collect(),
     };
-    let rows: Vec<ShownRow> = rows.into_iter().map(ShownRow).collect();
     let cell =
-        |words: fn(&PredictionRow) -> Words| move |row: &ShownRow| row.0.map_or_else(|| "…".into(), words);
+        |words: fn(&PredictionRow) -> Words| move |row: &Option<_>| row.map_or_else(|| "…".into(), words);
+    let caption = "Velocity of the second end just before it strikes. Energy: kinetic, before the slap-down \
+                   over before the first impact.";
     let table = ReportTable::of(&rows)
         .class("many")
         .shape(TableShape::Fitting)
-        .caption("Velocity of the second end just before it strikes. Energy: kinetic, before the slap-down over before the first impact.")
+        .caption(caption)
         .number(Words::or("φ0, °", "φ0\n°"), cell(|row| plain(row.angle_deg, 6).into()))
-        .number(Words::or("Length, m", "l\nm"), cell(|row| Words::or(plain(row.length_m, 5), plain(row.length_m, 4))))
+        .number(Words::or("Length, m", "l\nm"), cell(|row| metres(row.length_m)))
         .if_any(varying.lengths)
-        .number(
-            Words::or("Drop, m", "drop\nm"),
-            cell(|row| Words::or(plain(row.drop_height_m, 5), plain(row.drop_height_m, 4))),
-        )
+        .number(Words::or("Drop, m", "drop\nm"), cell(|row| metres(row.drop_height_m)))
         .if_any(varying.heights);
-    let table = prediction_columns(table, |row| row.0.map(|row| &row.prediction), true)
-        .number("Friction to stick", cell(|row| optional(Some(row.prediction.friction_to_stick), 3).into()))
+    let table = prediction_columns(table, |row| row.map(|row| &row.prediction), true)
+        .number("Friction to stick", cell(|row| significant(row.prediction.friction_to_stick, 3).into()))
         .only(Medium::Page)
         .number("Impacts of first end", cell(|row| row.prediction.first_end_impacts.to_string().into()))
         .only(Medium::Page)
         .number(
             Words::or("Closed form, m/s", "held\nm/s"),
-            cell(|row| match row.prediction.closed_form_speed_m_s {
-                Some(speed) => optional_fixed(Some(speed), 2).into(),
-                None => "".into(),
+            cell(|row| {
+                row.prediction.closed_form_speed_m_s.map_or("".into(), |speed| fixed(speed, 2).into())
             }),
         )
         .if_any(varying.is_held_on(medium));

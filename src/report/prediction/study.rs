@@ -3,13 +3,13 @@
 use super::super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument};
 use super::super::medium::{Medium, Words};
 use super::super::pictures::study_names;
-use super::super::rounding::{MISSING, fixed, plain};
+use super::super::rounding::{MISSING, plain};
 use super::super::table::ReportTable;
 use super::super::tested::tested;
 use super::super::words::{
-    bands_words, case_words, contact_words, criterion_value, degrees, nearest, range_words, variable_words,
+    bands_words, case_words, contact_words, criterion_value, degrees, range_words, variable_words,
 };
-use super::critical::{critical, has_quantiles, monte_carlo};
+use super::critical::{critical, has_quantiles, monte_carlo, speeds_at_the_angle};
 use super::models::ladders;
 use super::rows::{predictions, title};
 use crate::data::{Criterion, Study, StudyRequest, Sweep};
@@ -62,7 +62,7 @@ pub(super) fn document(study: &Study) -> ReportDocument {
                 .with(ChapterPart::title(title(&study.rows, file)).only(Medium::Terminal))
                 .with_all(predictions(&study.rows, Medium::Terminal))
                 .with_all(ahead)
-                .with(ChapterPart::picture("sweep", "", "")),
+                .with(ChapterPart::picture("sweep", "")),
             critical(study),
             over_the_angle(&study.request),
             monte_carlo(study),
@@ -82,7 +82,7 @@ fn over_the_angle(request: &StudyRequest) -> Chapter {
             || name.starts_with("components-")
     };
     let names = study_names(request).into_iter().filter(is_wanted);
-    Chapter::new("Over the drop angle").with_all(names.map(|name| ChapterPart::picture(&name, "", "short")))
+    Chapter::new("Over the drop angle").with_all(names.map(|name| ChapterPart::picture(&name, "short")))
 }
 
 /// The four figures that a reader looks for first.
@@ -94,9 +94,7 @@ fn figures(study: &Study) -> Vec<[String; 3]> {
         .filter(|c| c.model == drawn.model && c.criterion == Criterion::Speed && c.largest.is_finite())
         .max_by(|a, b| a.largest.total_cmp(&b.largest));
     let speed = drawn.quantiles.iter().find(|q| q.criterion == Criterion::Speed && has_quantiles(drawn));
-    let at = study.request.angle_deg;
-    let here = |values: &[f64]| nearest(&drawn.angle_deg, values, at);
-    let at_angle = speed.and_then(|q| Some([here(&q.q50)?, here(&q.q025)?, here(&q.q975)?]));
+    let at_angle = speed.and_then(|_| speeds_at_the_angle(study));
     let figure = |name: String, found: Option<[String; 2]>| {
         let [value, detail] = found.unwrap_or_else(|| [MISSING.to_owned(), String::new()]);
         [name, value, detail]
@@ -105,19 +103,18 @@ fn figures(study: &Study) -> Vec<[String; 3]> {
         figure(
             "Largest slap-down speed".to_owned(),
             worst.map(|c| {
-                let of = format!(
+                let case = format!(
                     "{}, {}, at {}°",
                     c.model.as_str(),
                     case_words(c.contact, c.k),
                     degrees(c.angle_deg)
                 );
-                [criterion_value(c.criterion, c.largest), of]
+                [criterion_value(c.criterion, c.largest), case]
             }),
         ),
         figure(
-            format!("At {}°, inputs uncertain", plain(at, 4)),
-            at_angle.map(|speeds| {
-                let [median, low, high] = speeds.map(|speed| fixed(speed, 2));
+            format!("At {}°, inputs uncertain", plain(study.request.angle_deg, 4)),
+            at_angle.map(|[median, low, high]| {
                 [format!("{median} m/s"), format!("95 % of the draws {low} to {high} m/s")]
             }),
         ),

@@ -78,7 +78,7 @@ fn every_block_has_its_figures() {
 fn one_case_shows_every_rung() {
     let text = bare(&single());
     for rung in Rung::ALL {
-        assert!(text.contains(rung_short(rung)) && text.contains(rung.adds()), "{text}");
+        assert!(text.contains(&rung_short(rung)) && text.contains(rung.adds()), "{text}");
     }
     assert!(text.contains("−8.0 %") && text.contains("The model \"body\" suffices"), "{text}");
 }

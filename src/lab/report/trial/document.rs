@@ -24,13 +24,9 @@ pub(super) fn document(trial: &Trial) -> ReportDocument {
             .with_all(campaign::rungs(&trial.campaign)),
         Chapter::new("Speed against accuracy")
             .with(ChapterPart::lead(choice(trial)))
-            .with(ChapterPart::picture("speed", "Speed against accuracy", ""))
+            .with(ChapterPart::picture("speed", ""))
             .with(by_class(trial)),
-        Chapter::new("What becomes of damages").with(ChapterPart::picture(
-            "failures",
-            "What becomes of damages",
-            "",
-        )),
+        Chapter::new("What becomes of damages").with(ChapterPart::picture("failures", "")),
         Chapter::new("What is accepted")
             .with(ChapterPart::lead(LIMITS))
             .with(limits(&trial.limits))

@@ -53,10 +53,11 @@ fn decades(times: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
 
 /// Every way of working over all classes, with a bar from its best class to its worst.
 pub(super) fn ways(trial: &Trial) -> Picture {
-    let caption = "Time from file to answer, each way timed whole on the same files; below and left is better. Mark: 95th percentile of the error \
-                   over all classes of drops, hollow where another way is as fast and as accurate; ring: what the program takes. Bar: from the \
-                   best class to the worst. The rungs of the prediction are given the true k, and timed by themselves."
-        .to_owned();
+    let caption = "Time from file to answer, each way timed whole on the same files; below and left is \
+                   better. Mark: 95th percentile of the error over all classes of drops, hollow where \
+                   another way is as fast and as accurate; ring: what the program takes. Bar: from the best \
+                   class to the worst. The rungs of the prediction are given the true k, and timed by \
+                   themselves.";
     let families: Vec<Vec<&TrialPoint>> = WAYS.iter().map(|family| pooled(trial, family).collect()).collect();
     // The ways of the second family are those of the first.
     let legends = [("Ways", &families[0]), ("Prediction", &families[2])].map(|(title, ways)| {
@@ -123,14 +124,15 @@ fn ways_panel(trial: &Trial, ways: &[&TrialPoint]) -> Option<Panel> {
     };
     let taken = ways.iter().filter(|p| p.is_default).map(|p| at(p)).collect();
     Some(Panel {
-        title: first.family.clone(),
-        x: PanelAxis::new("seconds").logarithmic().over(Some(ends)),
-        y: errors_of(first),
-        height: PANEL,
         lines: lines.chain(levels).collect(),
         points: ways.iter().enumerate().map(mark).chain([rings(taken)]).collect(),
         marks: reading.map(|p| Mark { at: seconds(p), label: READING.to_owned() }).into_iter().collect(),
-        ..Panel::default()
+        ..Panel::new(
+            &first.family,
+            PanelAxis::new("seconds").logarithmic().over(Some(ends)),
+            errors_of(first),
+            PANEL,
+        )
     })
 }
 
@@ -158,22 +160,16 @@ pub(super) fn failures(trial: &Trial) -> Picture {
         right: format!("{}; {}", fate_words(map).trim_end_matches(&map.unit).trim_end(), largest_words(map)),
         is_heading: false,
     };
-    let count = maps.len();
+    let mut panel = Panel::of_rows(maps.iter().map(words).collect(), ROW, SIDES);
+    panel.x = PanelAxis::default().over(Some((0.0, 1.0)));
     let fill = |(fate, colour, label): (TrialFate, Colour, &str)| {
-        let areas =
-            maps.iter().enumerate().flat_map(|(row, map)| stripes(map, fate, as_f64(count - row))).collect();
-        Fill { label: Some(label.to_owned()), colour, opacity: 1.0, areas }
+        let middles = maps.iter().enumerate().map(|(row, map)| (panel.row_middle(row), map));
+        let areas = middles.flat_map(|(middle, map)| stripes(map, fate, middle)).collect();
+        Fill::new(colour, 1.0, areas).named(label)
     };
-    let panel = Panel {
-        x: PanelAxis::default().over(Some((0.0, 1.0))),
-        y: PanelAxis::rows(maps.iter().map(words).collect()),
-        height: ROW * u32::try_from(count).unwrap_or(0),
-        sides: Some(SIDES),
-        fills: FATES.map(fill).into(),
-        ..Panel::default()
-    };
+    panel.fills = FATES.map(fill).into();
     let nothing = ("There is nothing to show: no damage was tried.", "No damage was tried.");
-    let panels: &[Panel] = if count == 0 { &[] } else { &[panel] };
+    let panels: &[Panel] = if maps.is_empty() { &[] } else { &[panel] };
     Plate::new("failures", "What becomes of damages", caption).or(nothing).picture(panels)
 }
 
@@ -182,8 +178,8 @@ fn gravest(map: &TrialMap) -> Option<TrialFate> {
     map.sizes.iter().flat_map(|size| &size.drops).map(|drop| drop.fate).max()
 }
 
-/// The stripes of one fate in the row that ends at `top`.
-fn stripes(map: &TrialMap, fate: TrialFate, top: f64) -> Vec<Vec<(f64, f64)>> {
+/// The stripes of one fate in the row with this middle.
+fn stripes(map: &TrialMap, fate: TrialFate, middle: f64) -> Vec<Vec<(f64, f64)>> {
     let width = 1.0 / as_f64(map.sizes.len());
     let of_size = |(i, size): (usize, &crate::lab::data::TrialSize)| {
         let stripe = 0.94 * width / as_f64(size.drops.len());
@@ -191,7 +187,7 @@ fn stripes(map: &TrialMap, fate: TrialFate, top: f64) -> Vec<Vec<(f64, f64)>> {
         let drops = size.drops.iter().enumerate().filter(|(_, drop)| drop.fate == fate);
         let area = |(n, _)| {
             let left = from + stripe * as_f64(n);
-            Fill::rectangle((left, left + stripe), (top - 0.92, top - 0.08))
+            Fill::rectangle((left, left + stripe), (middle - 0.42, middle + 0.42))
         };
         drops.map(area).collect::<Vec<_>>()
     };
