@@ -1,6 +1,6 @@
 //! What a column's messages gave, and what they say of its rate, to samples on a uniform base.
 
-use super::{Column, RawBlock, StatedRate, Timing, seconds_from};
+use super::{Column, StatedRate, Timing, seconds_from};
 use crate::ingest::clock::{Claims, Refusal};
 use crate::ingest::shown;
 use crate::ingest::time_base::{self, Block, BlockContent, TimeBaseError, Uniform};
@@ -9,7 +9,7 @@ impl Column {
     /// The rate at which its samples came by the times of its messages, Hz.
     #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^53")]
     fn told_hz(&self) -> f64 {
-        let before_last = self.blocks.iter().rev().skip(1).map(|block| block.count).sum::<usize>();
+        let before_last = self.counts.iter().rev().skip(1).sum::<usize>();
         self.span_ns().map_or(f64::NAN, |(from_ns, to_ns)| before_last as f64 / seconds_from(to_ns, from_ns))
     }
 
@@ -39,9 +39,8 @@ impl Column {
 
     /// Its blocks, times counted from `zero_ns`.
     fn blocks_from(&self, zero_ns: i64) -> Vec<Block> {
-        let block =
-            |block: &RawBlock| Block { start_s: seconds_from(block.time_ns, zero_ns), count: block.count };
-        self.blocks.iter().map(block).collect()
+        let each = self.times_ns.iter().zip(&self.counts);
+        each.map(|(&time_ns, &count)| Block { start_s: seconds_from(time_ns, zero_ns), count }).collect()
     }
 
     /// The samples on a uniform base, times counted from `zero_ns`; `cask_hz` overrides what the messages
@@ -55,7 +54,7 @@ impl Column {
         cask_hz: Option<f64>,
     ) -> Result<Uniform, TimeBaseError> {
         self.heeded()?;
-        if self.blocks.is_empty() {
+        if self.counts.is_empty() {
             // A rate in messages of single numbers is that of something else, such as blocks beside them.
             let times_s: Vec<f64> =
                 self.times_ns.iter().map(|&time_ns| seconds_from(time_ns, zero_ns)).collect();
@@ -70,7 +69,7 @@ impl Column {
     /// # Errors
     /// As that.
     pub(in super::super) fn timing(self, zero_ns: i64) -> Result<Timing, TimeBaseError> {
-        let Some(extent) = self.extent.as_ref().filter(|_| !self.blocks.is_empty()) else {
+        let Some(extent) = self.extent.as_ref().filter(|_| !self.counts.is_empty()) else {
             let uniform = self.uniform(zero_ns, None)?;
             let (count, gaps) = (uniform.samples.len(), uniform.gaps.len());
             return Ok(Timing {
