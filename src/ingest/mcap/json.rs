@@ -10,9 +10,7 @@ use super::plan::{
 };
 use crate::data::Samples;
 use crate::ingest::number;
-use jiff::Timestamp;
-use jiff::civil::DateTime;
-use jiff::tz::TimeZone;
+use crate::ingest::times::dated;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::Value as Tree;
@@ -128,7 +126,7 @@ impl JsonWalk<'_> {
             return Ok(at + 1);
         }
         loop {
-            let (Key(key), used) = first(&text[at..])?;
+            let (FieldName(key), used) = first(&text[at..])?;
             at = past_spaces(text, at + used);
             if text.get(at) != Some(&b':') {
                 return Err(WalkFault::Grammar);
@@ -192,12 +190,7 @@ impl JsonWalk<'_> {
 fn stamp(value: &Tree) -> Option<Value> {
     let part = |names: &[&str]| names.iter().find_map(|name| value.get(name)).and_then(whole);
     let ns = match value {
-        Tree::String(text) => {
-            // Without an offset from UTC differences are as good.
-            let utc = || TimeZone::UTC.to_timestamp(text.parse::<DateTime>().ok()?).ok();
-            let stamp = text.parse::<Timestamp>().ok().or_else(utc);
-            stamp.and_then(|stamp| i64::try_from(stamp.as_nanosecond()).ok())
-        }
+        Tree::String(text) => dated(text).and_then(|(at, _)| i64::try_from(at.as_nanosecond()).ok()),
         Tree::Object(_) => {
             part(&SECONDS_NAMES).map(|seconds| unix_ns(seconds, part(&NANOSECONDS_NAMES).unwrap_or(0)))
         }
@@ -215,8 +208,7 @@ fn whole(value: &Tree) -> Option<i64> {
     }
 }
 
-/// A sample; what writers put in its place is null for a missing one, and words as protobuf's JSON mapping has
-/// them.
+/// A sample; in its place writers put null where it is missing, and the words of protobuf's JSON mapping.
 fn number(value: &Tree) -> Option<f64> {
     match value {
         Tree::Null => Some(f64::NAN),
@@ -232,7 +224,7 @@ fn number(value: &Tree) -> Option<f64> {
 
 /// The name of a field.
 #[derive(Deserialize)]
-struct Key<'a>(#[serde(borrow)] Cow<'a, str>);
+struct FieldName<'a>(#[serde(borrow)] Cow<'a, str>);
 
 /// The first value of `text` and how many bytes it takes.
 fn first<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<(T, usize), WalkFault> {
@@ -277,54 +269,58 @@ fn past_spaces(text: &[u8], mut at: usize) -> usize {
 
 /// The numeric fields of one message; none where it does not parse.
 pub(super) fn leaves(message: &[u8]) -> Vec<Leaf> {
-    let value = serde_json::from_slice::<Tree>(message)
-        .ok()
-        .or_else(|| without_bare_nan(message).and_then(|text| serde_json::from_slice::<Tree>(&text).ok()));
-    let mut found = Vec::new();
-    if let Some(value) = value {
-        // Beyond the limit the rest stays unlisted.
-        descend(&value, "", DEEPEST, &mut found);
-    }
-    found
+    Fields::of(message).leaves
 }
 
-/// Whether a message holds a list of records, each with numbers: none of its fields is a signal.
-pub(super) fn holds_records(message: &[u8]) -> bool {
-    fn has_records(value: &Tree, depth: usize) -> bool {
-        match value {
-            Tree::Array(elements) => elements.iter().take(8).any(Tree::is_object),
-            Tree::Object(fields) => depth > 0 && fields.values().any(|value| has_records(value, depth - 1)),
-            _ => false,
-        }
-    }
-    serde_json::from_slice(message).is_ok_and(|value| has_records(&value, DEEPEST))
+/// What a message holds.
+#[derive(Default)]
+pub(super) struct Fields {
+    /// Its numeric fields; beyond the limit the rest stays unlisted.
+    pub(super) leaves: Vec<Leaf>,
+    /// Whether it holds a list of records, whose numbers are no such fields.
+    pub(super) has_records: bool,
 }
 
-fn descend(value: &Tree, path: &str, depth: usize, found: &mut Vec<Leaf>) {
-    // One more than are listed tells that there are more.
-    if found.len() > MOST_LEAVES || path.len() > LONGEST_PATH_BYTES {
-        return;
+impl Fields {
+    /// Of a message; none where it does not parse.
+    pub(super) fn of(message: &[u8]) -> Self {
+        let repaired = || serde_json::from_slice::<Tree>(&without_bare_nan(message)?).ok();
+        let mut fields = Self::default();
+        if let Some(value) = serde_json::from_slice::<Tree>(message).ok().or_else(repaired) {
+            fields.descend(&value, "", DEEPEST);
+        }
+        fields
     }
-    match value {
-        Tree::Number(_) if !path.is_empty() => {
-            found.push(Leaf { path: path.to_owned(), is_array: false, is_signal: true });
+
+    fn descend(&mut self, value: &Tree, path: &str, depth: usize) {
+        // One more than are listed tells that there are more.
+        if self.leaves.len() > MOST_LEAVES || path.len() > LONGEST_PATH_BYTES {
+            return;
         }
-        Tree::String(_) if !path.is_empty() => {
-            found.push(Leaf { path: path.to_owned(), is_array: false, is_signal: false });
-        }
-        Tree::Array(elements) if !path.is_empty() => {
-            let mut numbers = elements.iter().filter(|element| !element.is_null()).take(8).peekable();
-            if numbers.peek().is_some() && numbers.all(Tree::is_number) {
-                found.push(Leaf { path: path.to_owned(), is_array: true, is_signal: true });
+        let is_array = value.is_array();
+        let is_signal = match value {
+            Tree::Number(_) => true,
+            Tree::String(_) => false,
+            Tree::Array(elements) => {
+                let mut numbers = elements.iter().filter(|element| !element.is_null()).take(8).peekable();
+                self.has_records |= elements.iter().take(8).any(Tree::is_object);
+                if numbers.peek().is_none() || !numbers.all(Tree::is_number) {
+                    return;
+                }
+                true
             }
-        }
-        Tree::Object(fields) if depth > 0 && !is_stamp(fields) => {
-            for (name, value) in fields {
-                let below = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
-                descend(value, &below, depth - 1, found);
+            Tree::Object(fields) if depth > 0 && !is_stamp(fields) => {
+                for (name, value) in fields {
+                    let below = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+                    self.descend(value, &below, depth - 1);
+                }
+                return;
             }
+            _ => return,
+        };
+        if !path.is_empty() {
+            self.leaves.push(Leaf { path: path.to_owned(), is_array, is_signal });
         }
-        _ => {}
     }
 }
 

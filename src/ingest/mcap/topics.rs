@@ -265,9 +265,10 @@ impl<'a> Topics<'a> {
                 message.data.len() >> 20
             ));
         } else {
-            let leaves = if is_large { Vec::new() } else { json::leaves(message.data) };
+            let json::Fields { leaves, has_records } =
+                if is_large { json::Fields::default() } else { json::Fields::of(message.data) };
             let has_signals = leaves.iter().any(|leaf| leaf.is_signal);
-            if !has_signals && json::holds_records(message.data) {
+            if !has_signals && has_records {
                 topic.unreadable = Some(LISTS_OF_RECORDS.into());
             }
             if has_signals || is_asked {
