@@ -55,17 +55,6 @@ pub(super) struct StampCounts {
     pub(super) bad: u64,
 }
 
-/// When the samples of a column were taken.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Timing {
-    pub(super) start_s: f64,
-    pub(super) sample_rate_hz: f64,
-    /// Number of samples, missing ones too.
-    pub(super) count: usize,
-    /// Number of gaps.
-    pub(super) gaps: usize,
-}
-
 /// The samples of one field, message by message, in the order of the file.
 #[derive(Debug, Clone)]
 pub(super) struct Column {

@@ -177,21 +177,10 @@ fn timed(channel: &mut ListedChannel, column: Column, zero_ns: Option<i64>) -> R
     column.heeded()?;
     let (Some((first_ns, _)), Some(zero_ns)) = (column.span_ns(), zero_ns) else { return Ok(()) };
     channel.start_s = Some(seconds_from(first_ns, zero_ns));
-    let timing = match column.timing(zero_ns) {
-        Ok(timing) => timing,
-        Err(TimeBaseError::TooFew { .. }) => return Ok(()),
-        Err(problem) => return Err(problem),
-    };
-    channel.sample_rate_hz = Some(timing.sample_rate_hz);
-    channel.start_s = Some(timing.start_s);
-    channel.duration_s = Some(as_f64(timing.count - 1) / timing.sample_rate_hz);
-    channel.gaps = Some(timing.gaps as u64);
-    Ok(())
-}
-
-#[allow(clippy::cast_precision_loss, reason = "counts of samples stay below 2^53")]
-fn as_f64(count: usize) -> f64 {
-    count as f64
+    match column.list_times(zero_ns, channel) {
+        Err(TimeBaseError::TooFew { .. }) => Ok(()),
+        listed => listed,
+    }
 }
 
 #[cfg(test)]

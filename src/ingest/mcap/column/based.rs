@@ -1,9 +1,11 @@
 //! What a column's messages gave, and what they say of its rate, to samples on a uniform base.
 
-use super::{Column, StatedRate, Timing, seconds_from};
+use super::{Column, StatedRate, seconds_from};
+use crate::data::ListedChannel;
 use crate::ingest::clock::{Claims, Refusal};
 use crate::ingest::shown;
 use crate::ingest::time_base::{self, Block, BlockContent, TimeBaseError, Uniform};
+use crate::numerics::as_f64;
 
 impl Column {
     /// The rate at which its samples came by the times of its messages, Hz.
@@ -64,28 +66,31 @@ impl Column {
         time_base::place_blocks(&self.blocks_from(zero_ns), &claims, self.samples)
     }
 
-    /// As [`Column::uniform`] as far as a listing shows it, which holds no samples of blocks.
+    /// Adds to a listing when its samples were taken, as [`Column::uniform`] would have them; of blocks it
+    /// needs no samples.
     ///
     /// # Errors
     /// As that.
-    pub(in super::super) fn timing(self, zero_ns: i64) -> Result<Timing, TimeBaseError> {
-        let Some(extent) = self.extent.as_ref().filter(|_| !self.counts.is_empty()) else {
-            let uniform = self.uniform(zero_ns, None)?;
-            let (count, gaps) = (uniform.samples.len(), uniform.gaps.len());
-            return Ok(Timing {
-                start_s: uniform.start_s,
-                sample_rate_hz: uniform.sample_rate_hz,
-                count,
-                gaps,
-            });
+    pub(in super::super) fn list_times(
+        self,
+        zero_ns: i64,
+        listed: &mut ListedChannel,
+    ) -> Result<(), TimeBaseError> {
+        let (start_s, sample_rate_hz, count, gaps) = match &self.extent {
+            Some(extent) if !self.counts.is_empty() => {
+                let content = BlockContent { samples: &self.samples, digests: Some(&extent.digests) };
+                let laid = time_base::lay_blocks(&self.blocks_from(zero_ns), &self.claims(None)?, &content)?;
+                (laid.start_s, laid.sample_rate_hz, laid.count(), laid.gap_count() + extent.holes)
+            }
+            _ => {
+                let uniform = self.uniform(zero_ns, None)?;
+                (uniform.start_s, uniform.sample_rate_hz, uniform.samples.len(), uniform.gaps.len())
+            }
         };
-        let content = BlockContent { samples: &self.samples, digests: Some(&extent.digests) };
-        let laid = time_base::lay_blocks(&self.blocks_from(zero_ns), &self.claims(None)?, &content)?;
-        Ok(Timing {
-            start_s: laid.start_s,
-            sample_rate_hz: laid.sample_rate_hz,
-            count: laid.count(),
-            gaps: laid.gap_count() + extent.holes,
-        })
+        listed.sample_rate_hz = Some(sample_rate_hz);
+        listed.start_s = Some(start_s);
+        listed.duration_s = Some(as_f64(count - 1) / sample_rate_hz);
+        listed.gaps = Some(gaps as u64);
+        Ok(())
     }
 }
