@@ -5,6 +5,7 @@ use super::clock::Refusal;
 use super::shown;
 use super::vocabulary::{split, time_unit_s};
 use crate::numerics::robust;
+use jiff::{Timestamp, civil::DateTime, tz::TimeZone};
 
 /// Units of time that a recorder may have left out, with seconds a unit.
 const UNITS: [(&str, f64); 4] = [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
@@ -36,6 +37,13 @@ const ALIKE: f64 = 0.1;
 /// Times of a second column without a unit are in the one in which they run as long as the first to this
 /// factor: other units are farther.
 const NEAR: f64 = 3.0;
+
+/// The date and time that `text` is by ISO 8601, and whether it states its offset from UTC: without one UTC
+/// is taken, which differences do not see.
+pub(super) fn dated(text: &str) -> Option<(Timestamp, bool)> {
+    let utc = || TimeZone::UTC.to_timestamp(text.parse::<DateTime>().ok()?).ok();
+    text.parse().map_or_else(|_| Some((utc()?, false)), |at| Some((at, true)))
+}
 
 /// Seconds since 1970 that a number is by its size alone, in s, ms, µs or ns.
 pub(super) fn since_1970_s(number: f64) -> Option<f64> {
@@ -116,25 +124,13 @@ impl Carrier<'_> {
     }
 }
 
-/// Seconds a unit of `times` that count `scale`, in channels whose rate is stated or not.
+/// Seconds a unit of times that count `scale`, in channels whose rate is stated or not; `counted` is asked
+/// where that alone does not tell it.
 ///
 /// # Errors
 /// [`Refusal`] where the unit is none of time, where name and unit contradict each other, and where none is
 /// stated and the times are a usual recording in ms, µs or ns but not in s.
 pub(super) fn seconds_a_unit(
-    scale: Scale,
-    carrier: Carrier,
-    times: &[f64],
-    stated_hz: Option<f64>,
-) -> Result<f64, Refusal> {
-    seconds_by(scale, carrier, || Counted::of(times), stated_hz)
-}
-
-/// The same of times of which what they count is known where it is asked for.
-///
-/// # Errors
-/// As [`seconds_a_unit`].
-pub(super) fn seconds_by(
     scale: Scale,
     carrier: Carrier,
     counted: impl Fn() -> Option<Counted>,
@@ -200,7 +196,7 @@ impl SentTicks<'_> {
         let is_open = scale == Scale::Open && counted().is_some_and(|counted| counted.since_1970().is_none());
         let logged = Some(self.logged_s).filter(|s| is_open && *s > 0.0);
         let as_logged = logged.and_then(|logged_s| scale.beside(logged_s, self.each));
-        as_logged.map_or_else(|| seconds_by(scale, carrier, counted, stated_hz), Ok)
+        as_logged.map_or_else(|| seconds_a_unit(scale, carrier, counted, stated_hz), Ok)
     }
 }
 

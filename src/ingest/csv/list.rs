@@ -10,7 +10,7 @@ use super::layout::Layout;
 use super::lines::Text;
 use super::plan::ColumnPlan;
 use super::rows::{self, RowsPart, Sink};
-use super::sensors;
+use super::sensors::{self, Filled};
 use super::table::Table;
 use super::wanted::Wanted;
 use super::{Limits, Progress};
@@ -29,22 +29,15 @@ struct Range {
     word: Option<String>,
     /// The smallest and the largest number.
     numbers: Option<(f64, f64)>,
-    /// How many numbers, in how many stretches of rows.
-    count: usize,
-    stretches: usize,
-    /// Rows of the first and the last.
-    first: usize,
-    last: usize,
+    /// The rows of the numbers.
+    rows: Filled,
 }
 
 impl Range {
     fn take(&mut self, row: usize, number: f64) {
         let (smallest, largest) = self.numbers.unwrap_or((number, number));
-        self.first = if self.numbers.is_none() { row } else { self.first };
-        self.stretches += usize::from(self.numbers.is_none() || row > self.last + 1);
         self.numbers = Some((smallest.min(number), largest.max(number)));
-        self.count += 1;
-        self.last = row;
+        self.rows.take(row);
     }
 }
 
@@ -277,12 +270,11 @@ fn listed(
 ) -> ListedChannel {
     let (range, own) = (&ranges[0], &ranges[sensor]);
     let is_empty = own.numbers.is_none();
-    let lie_between = sensors::lie_between(own.count, own.last + 1 - own.first, own.stretches);
-    let is_apart = !is_empty && (column.is_numeric && ranges.len() > 1 || lie_between);
+    let is_apart = !is_empty && (column.is_numeric && ranges.len() > 1 || own.rows.lie_between());
     let time_s = |row: usize| clock.times_s.get(row).filter(|_| is_apart).copied();
-    let (first_s, last_s) = (time_s(own.first), time_s(own.last));
+    let (first_s, last_s) = (time_s(own.rows.first), time_s(own.rows.last));
     let duration_s = first_s.zip(last_s).map(|(first_s, last_s)| last_s - first_s);
-    let own_hz = duration_s.filter(|span_s| *span_s > 0.0).map(|span_s| (own.count - 1) as f64 / span_s);
+    let own_hz = duration_s.filter(|span_s| *span_s > 0.0).map(|span_s| (own.rows.count - 1) as f64 / span_s);
     let unreadable = if column.is_stamped {
         Some("date-time stamps or clock times".to_owned())
     } else if let Some(word) = &range.word {
@@ -299,11 +291,7 @@ fn listed(
         None
     };
     ListedChannel {
-        source: column.header.clone(),
-        rows: None,
-        kind: "column".into(),
-        samples: Some(if is_apart { own.count } else { rows } as u64),
-        messages: None,
+        samples: Some(if is_apart { own.rows.count } else { rows } as u64),
         sample_rate_hz: own_hz.or(clock.sample_rate_hz),
         unit: column.unit.clone(),
         start_s: first_s.map(|first_s| first_s - clock.first_s).or(clock.start_s),
@@ -312,6 +300,7 @@ fn listed(
         range: own.numbers.filter(|_| !column.is_stamped),
         encoding: "text".into(),
         unreadable,
+        ..ListedChannel::named(&column.header, "column")
     }
 }
 

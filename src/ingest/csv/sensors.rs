@@ -29,11 +29,33 @@ pub(super) fn value(cell: &[u8], decimal: u8) -> f64 {
     })
 }
 
-/// Whether rows in which a channel has no value are those of other topics: of `all` from its first value to
-/// its last many are, and the `count` of its own lie among them in many stretches.
-pub(super) fn lie_between(count: usize, all: usize, stretches: usize) -> bool {
-    let others = all - count;
-    others >= LEAST_OTHERS && 16 * others > all && 8 * stretches > count.min(others)
+/// The rows in which a channel has a value.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Filled {
+    pub count: usize,
+    pub first: usize,
+    pub last: usize,
+    /// In how many stretches they lie.
+    stretches: usize,
+}
+
+impl Filled {
+    /// Takes the next.
+    pub(super) fn take(&mut self, row: usize) {
+        let is_first = self.count == 0;
+        self.first = if is_first { row } else { self.first };
+        self.stretches += usize::from(is_first || row > self.last + 1);
+        self.count += 1;
+        self.last = row;
+    }
+
+    /// Whether the rows without a value are those of other topics: from the first value to the last there are
+    /// many, and the channel's own lie among them in many stretches.
+    pub(super) fn lie_between(&self) -> bool {
+        let all = self.last + 1 - self.first;
+        let others = all - self.count;
+        others >= LEAST_OTHERS && 16 * others > all && 8 * self.stretches > self.count.min(others)
+    }
 }
 
 /// The columns that name sensors; of the others `is_time` hold times.

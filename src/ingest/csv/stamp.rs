@@ -6,9 +6,8 @@
 //! | date and time | `20.11.2026 12:34:56,789`, `11/20/2026 12:34:56.789`, `2026/11/20 12:34:56 PM`, `20-Nov-2026 12:34:56.789` |
 //! | time of day | `12:34:56.789`, `12:34:56:789`, `7:04:05 p.m.`, `0 days 12:34:56.789` |
 
-use jiff::Timestamp;
-use jiff::civil::{Date, DateTime};
-use jiff::tz::TimeZone;
+use crate::ingest::times::dated;
+use jiff::civil::Date;
 use std::borrow::Cow;
 
 const SECOND_NS: i64 = 1_000_000_000;
@@ -125,7 +124,7 @@ struct Stamp {
     date: [i16; 3],
     /// Since 1970 or midnight.
     at_ns: i64,
-    /// Whether it states its offset from UTC; without one UTC is taken, which differences do not see.
+    /// Whether it states its offset from UTC.
     is_absolute: bool,
 }
 
@@ -139,11 +138,7 @@ impl Stamp {
 
     fn iso(text: &str) -> Option<Self> {
         // A decimal comma is ISO 8601 as well.
-        let text = text.replace(',', ".");
-        let (at, is_absolute) = match text.parse::<Timestamp>() {
-            Ok(stamp) => (stamp, true),
-            Err(_) => (TimeZone::UTC.to_timestamp(text.parse::<DateTime>().ok()?).ok()?, false),
-        };
+        let (at, is_absolute) = dated(&text.replace(',', "."))?;
         let at_ns = i64::try_from(at.as_nanosecond()).ok()?;
         Some(Self { kind: Spelling::Iso, date: [0; 3], at_ns, is_absolute })
     }

@@ -75,7 +75,8 @@ impl Table<'_> {
             let mut users = self.plans.iter().filter(|plan| is_user(plan));
             let stated_hz = users.find_map(|plan| plan.claims.cask_hz);
             let scale = self.layout.time_scale(time);
-            let unit_s = times::seconds_by(scale, Carrier::Column(header), || column.counted(), stated_hz);
+            let unit_s =
+                times::seconds_a_unit(scale, Carrier::Column(header), || column.counted(), stated_hz);
             column.scale(unit_s.map_err(refused)?);
         }
         // Each of several sensors may have a clock of its own.
@@ -248,15 +249,11 @@ fn picked(values: &[f64], is_own: &[bool]) -> Vec<f64> {
 
 /// Whether rows without a value are those of other topics, and no samples that are missing.
 fn is_sparse(values: &[f64], is_own: &[bool]) -> bool {
+    let mut filled = sensors::Filled::default();
     let values = picked(values, is_own);
-    let is_value = |value: &f64| !value.is_nan();
-    let ends = values.iter().position(is_value).zip(values.iter().rposition(is_value));
     // A channel that begins late or ends early has no row of another's.
-    ends.is_some_and(|(first, last)| {
-        let inside = &values[first..=last];
-        let stretches = 1 + inside.windows(2).filter(|pair| pair[0].is_nan() && !pair[1].is_nan()).count();
-        sensors::lie_between(inside.iter().copied().filter(is_value).count(), inside.len(), stretches)
-    })
+    values.iter().enumerate().filter(|(_, value)| !value.is_nan()).for_each(|(row, _)| filled.take(row));
+    filled.lie_between()
 }
 
 /// Where times, within the first four rows, fall back to the first of them.

@@ -7,7 +7,7 @@ use super::fault::Fault;
 use super::{find, names};
 use crate::data::{Finding, Samples};
 use crate::ingest::clock::{Clock, Refusal};
-use crate::ingest::times::{Carrier, Scale, seconds_a_unit};
+use crate::ingest::times::{Carrier, Counted, Scale, seconds_a_unit};
 
 /// Names that go before others.
 const FIRST_NAMES: [&str; 6] = ["time_s", "time", "t", "times", "timestamps", "Time"];
@@ -115,19 +115,13 @@ pub(super) fn why_unfit(times: &DatasetColumn, (numbers, scale): &(Vec<f64>, Sca
 /// Nothing tells their unit.
 pub(super) fn seconds(
     times: &DatasetColumn,
-    (mut numbers, scale): (Vec<f64>, Scale),
+    (numbers, scale): (Vec<f64>, Scale),
     stated_hz: Option<f64>,
 ) -> Result<Vec<f64>, Fault> {
     let source = &times.source;
     let carrier = if times.is_field() { Carrier::Field(source) } else { Carrier::Dataset(source) };
-    let unit_s = seconds_a_unit(scale, carrier, &numbers, stated_hz)?;
-    #[allow(clippy::float_cmp, reason = "1.0 is the literal for seconds")]
-    if unit_s != 1.0 {
-        for t in &mut numbers {
-            *t *= unit_s;
-        }
-    }
-    Ok(numbers)
+    let unit_s = seconds_a_unit(scale, carrier, || Counted::of(&numbers), stated_hz)?;
+    Ok(numbers.into_iter().map(|time| time * unit_s).collect())
 }
 
 /// Whether other times beside a channel bear out those that were taken, in seconds; what is no time by its
@@ -140,12 +134,10 @@ pub(super) fn witness(
     other: &DatasetColumn,
     is_decided: bool,
 ) -> Result<Option<Finding>, Refusal> {
-    let Ok((mut others, scale)) = counted(other) else { return Ok(None) };
+    let Ok((others, scale)) = counted(other) else { return Ok(None) };
     let (first_s, last_s) = span_s(taken.1);
     let Some(unit_s) = scale.beside(last_s - first_s, &others) else { return Ok(None) };
-    for t in &mut others {
-        *t *= unit_s;
-    }
+    let others: Vec<f64> = others.into_iter().map(|time| time * unit_s).collect();
     let [one, two] = [taken.0, other].map(|column| format!("{:?}", column.source));
     let clock = Clock { name: &one, times_s: taken.1 };
     clock.borne_out_by(&Clock { name: &two, times_s: &others }, false, is_decided)

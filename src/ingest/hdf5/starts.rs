@@ -3,9 +3,8 @@
 
 use super::fault::Fault;
 use crate::ingest::statement::number_and_unit;
-use crate::ingest::times::since_1970_s;
+use crate::ingest::times::{dated, since_1970_s};
 use crate::ingest::vocabulary::{split, time_unit_s};
-use jiff::{Timestamp, civil::DateTime, tz::TimeZone};
 
 /// A start that is later counts from 1970, s: no recorder runs for three years.
 pub(super) const LATEST_S: f64 = 1e8;
@@ -42,8 +41,7 @@ impl Start {
 pub(super) fn start_s(name: &str, text: &str, is_in_s: bool) -> Option<f64> {
     let number = number_and_unit(text).filter(|(_, unit)| unit.is_empty() || time_unit_s(unit).is_some());
     let Some((number, unit)) = number else {
-        let utc = || TimeZone::UTC.to_timestamp(text.parse::<DateTime>().ok()?).ok();
-        return Some(text.parse::<Timestamp>().ok().or_else(utc)?.as_duration().as_secs_f64());
+        return Some(dated(text)?.0.as_duration().as_secs_f64());
     };
     let number: f64 = number.parse().ok()?;
     let unit_s = time_unit_s(unit).or_else(|| time_unit_s(split(name).1?));

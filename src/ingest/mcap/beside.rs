@@ -1,6 +1,6 @@
 //! What a message says of the samples in it to the samples as it means them.
 
-use super::plan::{Beside, Says, Slots, Target, Value};
+use super::plan::{Beside, Field, Says, Slots, StatedRate, Value};
 use crate::data::Samples;
 use crate::ingest::clock::Refusal;
 use crate::ingest::shown::short;
@@ -9,9 +9,14 @@ use std::borrow::Cow;
 /// What a message says of the samples of one field.
 #[derive(Debug, Default)]
 pub(super) struct SaidBeside<'a> {
+    /// Their time, understood or not.
+    pub(super) stamp: Option<&'a Value>,
     /// A number that is their time, and its field.
     pub(super) tick: Option<(f64, &'a Beside)>,
     pub(super) sensor: Option<(Cow<'a, str>, &'a Beside)>,
+    pub(super) unit: Option<&'a str>,
+    /// The nearest first, whatever their values.
+    pub(super) rates: Vec<StatedRate>,
     scale: Option<f64>,
     offset: Option<(f64, &'a Beside)>,
     conversion: Option<(f64, &'a Beside)>,
@@ -20,34 +25,51 @@ pub(super) struct SaidBeside<'a> {
 }
 
 impl Slots {
-    /// What the message says of the samples of `target`, the nearest of each.
-    pub(super) fn beside<'a>(&'a self, target: &'a Target) -> SaidBeside<'a> {
+    /// What the message says of the samples of `field`, the nearest of each.
+    pub(super) fn beside<'a>(&'a self, field: &'a Field) -> SaidBeside<'a> {
         let mut said = SaidBeside::default();
-        for beside in &target.beside {
-            let number = match self.values.get(beside.slot) {
-                Some(Value::Number { value, .. }) => *value,
-                Some(Value::Text(words)) if beside.says == Says::Sensor => {
-                    said.sensor.get_or_insert((Cow::Borrowed(words), beside));
-                    continue;
+        for beside in &field.beside {
+            match (beside.says, self.values.get(beside.slot)) {
+                (Says::Stamp, Some(stamp @ (Value::Stamp(_) | Value::BadStamp))) => {
+                    said.stamp.get_or_insert(stamp);
                 }
-                _ => continue,
-            };
-            match beside.says {
-                Says::Time(_) => _ = said.tick.get_or_insert((number, beside)),
-                Says::Scale => _ = said.scale.get_or_insert(number),
-                Says::Offset => _ = said.offset.get_or_insert((number, beside)),
-                Says::Conversion => _ = said.conversion.get_or_insert((number, beside)),
-                Says::Count => _ = said.count.get_or_insert(number),
-                Says::Turns => _ = said.turns.get_or_insert(number),
-                Says::Sensor => _ = said.sensor.get_or_insert((number.to_string().into(), beside)),
-                Says::Rate(_) | Says::Unit => {}
+                (Says::Unit, Some(Value::Text(words))) if !words.trim().is_empty() => {
+                    said.unit.get_or_insert(words);
+                }
+                (Says::Sensor, Some(Value::Text(words))) => {
+                    said.sensor.get_or_insert((Cow::Borrowed(words), beside));
+                }
+                (_, Some(Value::Number { value, .. })) => said.number(*value, beside, self),
+                _ => {}
             }
         }
         said
     }
 }
 
-impl SaidBeside<'_> {
+impl<'a> SaidBeside<'a> {
+    /// Takes a number.
+    fn number(&mut self, number: f64, beside: &'a Beside, slots: &Slots) {
+        match beside.says {
+            Says::Time(_) => _ = self.tick.get_or_insert((number, beside)),
+            Says::Scale => _ = self.scale.get_or_insert(number),
+            Says::Offset => _ = self.offset.get_or_insert((number, beside)),
+            Says::Conversion => _ = self.conversion.get_or_insert((number, beside)),
+            Says::Count => _ = self.count.get_or_insert(number),
+            Says::Turns => _ = self.turns.get_or_insert(number),
+            Says::Sensor => _ = self.sensor.get_or_insert((number.to_string().into(), beside)),
+            Says::Rate { meaning, level, unit } => {
+                let name = beside.field.rsplit('.').next().unwrap_or_default().into();
+                let unit = match unit.and_then(|slot| slots.values.get(slot)) {
+                    Some(Value::Text(unit)) => Some(unit.clone()),
+                    _ => None,
+                };
+                self.rates.push(StatedRate { name, meaning, level, value: number, unit });
+            }
+            Says::Stamp | Says::Unit => {}
+        }
+    }
+
     /// The samples as the message means them: the valid ones, value = raw · scale + offset.
     ///
     /// # Errors

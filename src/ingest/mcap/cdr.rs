@@ -4,9 +4,10 @@ use super::plan::{
     Decode, LONGEST_PATH_BYTES, Leaf, NANOSECONDS_NAMES, Node, Plan, SECONDS_NAMES, Slots, Value, Want,
     unix_ns,
 };
-use super::ros_type::{Length, RosField, Type};
+use super::ros_type::{RosField, Type};
 use crate::data::Samples;
 use re_cdr::{BigEndian, CdrReader, LittleEndian, numeric::CdrEndian};
+use re_ros_msg::message_spec::BuiltInType;
 use std::sync::Arc;
 
 /// A serialised message begins with two bytes of representation and two of options.
@@ -132,24 +133,24 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
 
     fn value(&mut self, kind: &Type, node: Option<&Node>) -> Result<(), Undecoded> {
         match kind {
-            Type::Text => {
+            Type::Plain(BuiltInType::String(_)) => {
                 let text = self.text()?;
                 if let Some(slot) = node.and_then(|node| node.slot(self.wants, Want::Text)) {
                     self.slots.set_text(slot, text);
                 }
                 Ok(())
             }
-            Type::WideText => {
+            Type::Plain(BuiltInType::WString(_)) => {
                 let units = self.reader.read_u32()? as usize;
                 self.reader.read_bytes(units.saturating_mul(self.wide_bytes))?;
                 Ok(())
             }
             Type::Message(fields) => self.message(fields, node),
             Type::Array(element, length) => self.array(element, *length, node),
-            number => {
-                let value = self.number(number)?;
+            Type::Plain(_) => {
+                let value = self.number(kind)?;
                 if let Some(slot) = node.and_then(|node| node.slot(self.wants, Want::Numbers)) {
-                    self.slots.set(slot, Value::Number { value, is_narrow: number.is_narrow() });
+                    self.slots.set(slot, Value::Number { value, is_narrow: kind.is_narrow() });
                 }
                 Ok(())
             }
@@ -157,11 +158,8 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
     }
 
     fn message(&mut self, fields: &[RosField], node: Option<&Node>) -> Result<(), Undecoded> {
-        if let (Some(slot), [seconds, nanoseconds]) =
-            (node.and_then(|node| node.slot(self.wants, Want::Stamp)), fields)
-            && SECONDS_NAMES.contains(&seconds.name.as_str())
-            && NANOSECONDS_NAMES.contains(&nanoseconds.name.as_str())
-        {
+        let slot = node.and_then(|node| node.slot(self.wants, Want::Stamp));
+        if let (Some(slot), [seconds, nanoseconds], true) = (slot, fields, is_time(fields)) {
             let (whole, part) = (self.number(&seconds.kind)?, self.number(&nanoseconds.kind)?);
             #[allow(clippy::cast_possible_truncation, reason = "both were 32-bit integers")]
             self.slots.set(slot, Value::Stamp(unix_ns(whole as i64, part as i64)));
@@ -170,10 +168,10 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
         self.fields(fields, node)
     }
 
-    fn array(&mut self, element: &Type, length: Length, node: Option<&Node>) -> Result<(), Undecoded> {
+    fn array(&mut self, element: &Type, length: Option<usize>, node: Option<&Node>) -> Result<(), Undecoded> {
         let count = match length {
-            Length::Fixed(count) => count,
-            Length::Counted => self.reader.read_u32()? as usize,
+            Some(count) => count,
+            None => self.reader.read_u32()? as usize,
         };
         let Some(bytes) = element.bytes() else {
             for index in 0..count {
@@ -211,27 +209,15 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
 
     fn numbers(&mut self, element: &Type, count: usize) -> Result<Samples, Undecoded> {
         Ok(match element {
-            Type::F32 => Samples::F32(self.reader.read_numeric_vec(count)?),
-            Type::F64 => Samples::F64(self.reader.read_numeric_vec(count)?),
-            Type::I16 => Samples::F32(self.converted::<i16, f32>(count)?),
-            other if other.is_narrow() => {
-                let mut samples = Vec::with_capacity(count);
-                for _ in 0..count {
-                    #[allow(
-                        clippy::cast_possible_truncation,
-                        reason = "f32 holds every value of a narrow type"
-                    )]
-                    samples.push(self.number(other)? as f32);
-                }
-                Samples::F32(samples)
-            }
-            Type::I32 => Samples::F64(self.converted::<i32, f64>(count)?),
+            Type::Plain(BuiltInType::Float32) => Samples::F32(self.reader.read_numeric_vec(count)?),
+            Type::Plain(BuiltInType::Float64) => Samples::F64(self.reader.read_numeric_vec(count)?),
+            Type::Plain(BuiltInType::Int16) => Samples::F32(self.converted::<i16, f32>(count)?),
+            Type::Plain(BuiltInType::Int32) => Samples::F64(self.converted::<i32, f64>(count)?),
             other => {
-                let mut samples = Vec::with_capacity(count);
-                for _ in 0..count {
-                    samples.push(self.number(other)?);
-                }
-                Samples::F64(samples)
+                let wide = (0..count).map(|_| self.number(other)).collect::<Result<Vec<f64>, _>>()?;
+                #[allow(clippy::cast_possible_truncation, reason = "f32 holds every value of a narrow type")]
+                let narrow = || wide.iter().map(|value| *value as f32).collect();
+                if other.is_narrow() { Samples::F32(narrow()) } else { Samples::F64(wide) }
             }
         })
     }
@@ -244,18 +230,23 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
     #[allow(clippy::cast_precision_loss, reason = "samples beyond 2^53 do not occur")]
     fn number(&mut self, kind: &Type) -> Result<f64, Undecoded> {
         let reader = &mut self.reader;
-        let number = match kind {
-            Type::U8 => reader.read_u8().map(f64::from),
-            Type::I8 => reader.read_i8().map(f64::from),
-            Type::U16 => reader.read_u16().map(f64::from),
-            Type::I16 => reader.read_i16().map(f64::from),
-            Type::U32 => reader.read_u32().map(f64::from),
-            Type::I32 => reader.read_i32().map(f64::from),
-            Type::U64 => reader.read_u64().map(|value| value as f64),
-            Type::I64 => reader.read_i64().map(|value| value as f64),
-            Type::F32 => reader.read_f32().map(f64::from),
-            Type::F64 => reader.read_f64(),
-            _ => return Err(Undecoded::new("a number is expected")),
+        let Type::Plain(plain) = kind else { return Err(Undecoded::new("a number is expected")) };
+        let number = match plain {
+            BuiltInType::Bool | BuiltInType::Byte | BuiltInType::Char | BuiltInType::UInt8 => {
+                reader.read_u8().map(f64::from)
+            }
+            BuiltInType::Int8 => reader.read_i8().map(f64::from),
+            BuiltInType::UInt16 => reader.read_u16().map(f64::from),
+            BuiltInType::Int16 => reader.read_i16().map(f64::from),
+            BuiltInType::UInt32 => reader.read_u32().map(f64::from),
+            BuiltInType::Int32 => reader.read_i32().map(f64::from),
+            BuiltInType::UInt64 => reader.read_u64().map(|value| value as f64),
+            BuiltInType::Int64 => reader.read_i64().map(|value| value as f64),
+            BuiltInType::Float32 => reader.read_f32().map(f64::from),
+            BuiltInType::Float64 => reader.read_f64(),
+            BuiltInType::String(_) | BuiltInType::WString(_) => {
+                return Err(Undecoded::new("a number is expected"));
+            }
         };
         Ok(number?)
     }
@@ -286,9 +277,10 @@ fn descend(fields: &[RosField], path: &str, found: &mut Vec<Leaf>) {
             Type::Array(element, _) if element.bytes().is_some_and(|bytes| bytes > 1) => {
                 found.push(Leaf { path: below, is_array: true, is_signal: true });
             }
-            Type::Message(_) | Type::Array(..) | Type::WideText => {}
-            kind => {
-                let is_signal = !matches!(kind, Type::Text | Type::U8);
+            Type::Message(_) | Type::Array(..) | Type::Plain(BuiltInType::WString(_)) => {}
+            Type::Plain(plain) => {
+                use BuiltInType::{Bool, Byte, Char, String, UInt8};
+                let is_signal = !matches!(plain, Bool | Byte | Char | UInt8 | String(_));
                 found.push(Leaf { path: below, is_array: false, is_signal });
             }
         }

@@ -13,8 +13,8 @@ fn decoded(text: &str, field: &str, data: &[u8]) -> Result<(Value, Value), Strin
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     Cdr::new(&plan, &fields.into()).decode(data, &mut slots)?;
-    let stamp = slots.stamp(&plan.targets[0]);
-    Ok((slots.samples(&plan.targets[0]), stamp))
+    let stamp = slots.beside(&plan.fields[0]).stamp.cloned().unwrap_or_default();
+    Ok((slots.samples(&plan.fields[0]), stamp))
 }
 
 #[test]

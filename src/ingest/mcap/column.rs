@@ -33,10 +33,10 @@ pub(super) struct MessageTime {
 
 impl MessageTime {
     /// From a message's stamp or else from its log time.
-    pub(super) fn of(stamp: &Value, log_ns: i64) -> Self {
+    pub(super) fn of(stamp: Option<&Value>, log_ns: i64) -> Self {
         let (ns, origin) = match stamp {
-            Value::Stamp(0) | Value::BadStamp => (log_ns, TimeOrigin::LogTimeForBadStamp),
-            Value::Stamp(ns) => (*ns, TimeOrigin::Stamp),
+            Some(Value::Stamp(0) | Value::BadStamp) => (log_ns, TimeOrigin::LogTimeForBadStamp),
+            Some(Value::Stamp(ns)) => (*ns, TimeOrigin::Stamp),
             _ => (log_ns, TimeOrigin::LogTime),
         };
         Self { ns, origin, log_ns }
@@ -45,14 +45,6 @@ impl MessageTime {
 
 /// 6 January 1980, ns since 1970: the origin of GPS time. A clock that shows less counts from its own start.
 pub(super) const CLOCK_IS_SET_NS: i64 = 315_964_800_000_000_000;
-
-/// One message with an array.
-#[derive(Debug, Clone, Copy)]
-struct RawBlock {
-    time_ns: i64,
-    /// Number of its samples.
-    count: usize,
-}
 
 /// How many messages of a column carry what stamp.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -63,25 +55,15 @@ pub(super) struct StampCounts {
     pub(super) bad: u64,
 }
 
-/// When the samples of a column were taken.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Timing {
-    pub(super) start_s: f64,
-    pub(super) sample_rate_hz: f64,
-    /// Number of samples, missing ones too.
-    pub(super) count: usize,
-    /// Number of gaps.
-    pub(super) gaps: usize,
-}
-
 /// The samples of one field, message by message, in the order of the file.
 #[derive(Debug, Clone)]
 pub(super) struct Column {
-    /// Of single numbers, one a sample.
+    /// Of each message that gave samples, since 1970.
     times_ns: Vec<i64>,
     /// Of all messages, one after another; of the first blocks alone where there is an extent.
     samples: Samples,
-    blocks: Vec<RawBlock>,
+    /// How many samples each message gave, where one gave an array.
+    counts: Vec<usize>,
     /// For a listing.
     pub(super) extent: Option<Extent>,
     pub(super) stamps: StampCounts,
@@ -131,7 +113,7 @@ impl Column {
         Self {
             times_ns: Vec::new(),
             samples: Samples::F32(Vec::new()),
-            blocks: Vec::new(),
+            counts: Vec::new(),
             extent: is_listed.then(Extent::default),
             stamps: StampCounts::default(),
             units: Vec::new(),
@@ -155,19 +137,16 @@ impl Column {
             return;
         }
         let is_array = matches!(value, Value::Array(_));
-        if is_array && self.blocks.is_empty() {
+        if is_array {
             self.turn_to_blocks();
         }
-        let is_block = is_array || !self.blocks.is_empty();
+        let is_block = is_array || !self.counts.is_empty();
         let is_kept = !is_block || self.is_prefix();
         if let Some(extent) = &mut self.extent {
             extent.see(&value, is_block);
         }
-        if is_block {
-            self.blocks.push(RawBlock { time_ns: time.ns, count });
-        } else {
-            self.times_ns.push(time.ns);
-        }
+        self.times_ns.push(time.ns);
+        self.counts.extend(is_block.then_some(count));
         match value {
             Value::Number { value, is_narrow } if is_kept => push(&mut self.samples, value, is_narrow),
             Value::Array(mut samples) if is_kept => append(&mut self.samples, &mut samples),
@@ -177,11 +156,11 @@ impl Column {
             TimeOrigin::Stamp => self.stamps.good += 1,
             TimeOrigin::LogTimeForBadStamp => {
                 self.stamps.bad += 1;
-                self.zero_stamp = Some(self.len() - 1);
+                self.zero_stamp = Some(self.times_ns.len() - 1);
             }
             TimeOrigin::LogTime => {}
         }
-        let place = self.len() - 1;
+        let place = self.times_ns.len() - 1;
         if let Some((tick, beside)) = tick {
             let (field, scale) = (&beside.field, beside.scale());
             let ticks =
@@ -228,8 +207,8 @@ impl Column {
     }
 
     /// Takes a rate that a message states.
-    pub(super) fn state_rate(&mut self, rate: StatedRate) {
-        state(&mut self.rates, rate);
+    pub(super) fn state_rate(&mut self, rate: &StatedRate) {
+        state(&mut self.rates, rate.clone());
     }
 
     /// Whether all samples so far are held, and those of one more block are: for a listing the first of them
@@ -241,10 +220,10 @@ impl Column {
 
     /// Takes single numbers for blocks of one sample: some writers leave out the brackets of such a block.
     fn turn_to_blocks(&mut self) {
-        if self.times_ns.is_empty() {
+        if self.counts.len() == self.times_ns.len() {
             return;
         }
-        self.blocks.extend(self.times_ns.drain(..).map(|time_ns| RawBlock { time_ns, count: 1 }));
+        self.counts.resize(self.times_ns.len(), 1);
         if let Some(extent) = &mut self.extent {
             let mut of_numbers = Extent::default();
             for i in 0..self.samples.len() {
@@ -257,18 +236,18 @@ impl Column {
     /// Moves over what another column took of the messages that follow; that one is as new, but for the
     /// memory it has.
     pub(super) fn append(&mut self, other: &mut Self) {
-        let before = self.len();
+        let before = self.times_ns.len();
         self.zero_stamp = other.zero_stamp.take().map(|position| before + position).or(self.zero_stamp);
-        if !self.blocks.is_empty() {
+        if !self.counts.is_empty() {
             other.turn_to_blocks();
-        } else if !other.blocks.is_empty() {
+        } else if !other.counts.is_empty() {
             self.turn_to_blocks();
         }
-        if self.blocks.is_empty() || self.is_prefix() {
+        if self.counts.is_empty() || self.is_prefix() {
             append(&mut self.samples, &mut other.samples);
         }
         self.times_ns.append(&mut other.times_ns);
-        self.blocks.append(&mut other.blocks);
+        self.counts.append(&mut other.counts);
         match &mut other.samples {
             Samples::F32(samples) => samples.clear(),
             Samples::F64(_) => other.samples = Samples::F32(Vec::new()),
@@ -307,30 +286,17 @@ impl Column {
     /// start.
     pub(super) fn settle_clock(&mut self) {
         let (1, Some(position)) = (self.stamps.bad, self.zero_stamp) else { return };
-        let is_own_clock = |(at, time_ns): (usize, i64)| at == position || time_ns.abs() < CLOCK_IS_SET_NS;
-        if self.stamps.good == 0 || !self.starts_ns().enumerate().all(is_own_clock) {
+        let is_own_clock = |(at, time_ns): (usize, &i64)| at == position || time_ns.abs() < CLOCK_IS_SET_NS;
+        if self.stamps.good == 0 || !self.times_ns.iter().enumerate().all(is_own_clock) {
             return;
         }
-        match self.blocks.get_mut(position) {
-            Some(block) => block.time_ns = 0,
-            None => self.times_ns[position] = 0,
-        }
+        self.times_ns[position] = 0;
         self.stamps = StampCounts { good: self.stamps.good + 1, bad: 0 };
-    }
-
-    /// The times of the messages, since 1970.
-    fn starts_ns(&self) -> impl Iterator<Item = i64> {
-        self.times_ns.iter().copied().chain(self.blocks.iter().map(|block| block.time_ns))
-    }
-
-    /// Number of messages that gave samples.
-    fn len(&self) -> usize {
-        self.times_ns.len() + self.blocks.len()
     }
 
     /// Whether there are no samples.
     pub(super) fn is_empty(&self) -> bool {
-        self.len() == 0
+        self.times_ns.is_empty()
     }
 
     /// Whether its messages hold samples, be they refused.
@@ -345,13 +311,12 @@ impl Column {
             Samples::F64(samples) => (0, samples.len()),
         };
         let digests = self.extent.as_ref().map_or(0, |extent| extent.digests.len());
-        let eights = wide + self.times_ns.len() + digests;
-        (4 * narrow + 8 * eights + size_of::<RawBlock>() * self.blocks.len()) as u64
+        (4 * narrow + 8 * (wide + self.times_ns.len() + self.counts.len() + digests)) as u64
     }
 
     /// The earliest and the latest time of a message, ns since 1970.
     pub(super) fn span_ns(&self) -> Option<(i64, i64)> {
-        Some((self.starts_ns().min()?, self.starts_ns().max()?))
+        Some((*self.times_ns.iter().min()?, *self.times_ns.iter().max()?))
     }
 
     /// The unit that its messages state first.

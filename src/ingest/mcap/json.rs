@@ -10,9 +10,7 @@ use super::plan::{
 };
 use crate::data::Samples;
 use crate::ingest::number;
-use jiff::Timestamp;
-use jiff::civil::DateTime;
-use jiff::tz::TimeZone;
+use crate::ingest::times::dated;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::Value as Tree;
@@ -59,7 +57,7 @@ impl Decode for Json {
 }
 
 /// The text with bare NaN and Infinity as null, `None` where it holds none.
-fn without_bare_nan(text: &[u8]) -> Option<Cow<'_, [u8]>> {
+fn without_bare_nan(text: &[u8]) -> Option<Vec<u8>> {
     let (mut out, mut at, mut is_quoted, mut found) = (Vec::with_capacity(text.len()), 0, false, false);
     while let Some(&byte) = text.get(at) {
         if is_quoted {
@@ -82,7 +80,7 @@ fn without_bare_nan(text: &[u8]) -> Option<Cow<'_, [u8]>> {
             at += 1;
         }
     }
-    found.then_some(Cow::Owned(out))
+    found.then_some(out)
 }
 
 /// Why a walk ends before its text does.
@@ -94,8 +92,8 @@ enum WalkFault {
 }
 
 impl From<serde_json::Error> for WalkFault {
-    fn from(error: serde_json::Error) -> Self {
-        if error.is_data() { Self::Value(format!("in an array: {error}")) } else { Self::Grammar }
+    fn from(_: serde_json::Error) -> Self {
+        Self::Grammar
     }
 }
 
@@ -108,22 +106,17 @@ struct JsonWalk<'a> {
 impl JsonWalk<'_> {
     /// The value at the start of `text`; how many bytes it takes.
     fn value(&mut self, node: &Node, text: &[u8]) -> Result<usize, WalkFault> {
-        match (text.first(), node.slot(self.wants, Want::Numbers)) {
-            (Some(b'{'), _) if node.slot(self.wants, Want::Stamp).is_none() => self.object(node, text),
-            (Some(b'['), Some(slot)) => {
-                let (samples, used) = match plain_numbers(text) {
-                    Some(plain) => plain,
-                    None => first::<Vec<JsonSample>>(text).map(|(samples, used)| (numbers(samples), used))?,
-                };
-                self.array(node, slot, samples);
-                Ok(used)
-            }
-            _ => {
-                let (value, used) = first(text)?;
-                self.take(node, &value)?;
-                Ok(used)
-            }
+        let numbers = node.slot(self.wants, Want::Numbers);
+        if text.first() == Some(&b'{') && node.slot(self.wants, Want::Stamp).is_none() {
+            return self.object(node, text);
         }
+        if let (Some(slot), Some((samples, used))) = (numbers, plain_numbers(text)) {
+            self.array(node, slot, samples);
+            return Ok(used);
+        }
+        let (value, used) = first(text)?;
+        self.take(node, &value)?;
+        Ok(used)
     }
 
     /// The fields of the object at the start of `text`; how many bytes it takes.
@@ -133,7 +126,7 @@ impl JsonWalk<'_> {
             return Ok(at + 1);
         }
         loop {
-            let (key, used) = key(&text[at..])?;
+            let (FieldName(key), used) = first(&text[at..])?;
             at = past_spaces(text, at + used);
             if text.get(at) != Some(&b':') {
                 return Err(WalkFault::Grammar);
@@ -157,22 +150,23 @@ impl JsonWalk<'_> {
         self.slots.pick(slot, &node.elements(self.wants));
     }
 
-    /// A value other than a run of samples by itself: a number, words, a time, or what holds such at places
-    /// of their own.
+    /// A value other than a run of plain numbers: one, words, a time, or what holds such at places of their
+    /// own.
     fn take(&mut self, node: &Node, value: &Tree) -> Result<(), WalkFault> {
-        if let Some(slot) = node.slot(self.wants, Want::Numbers) {
-            let number = match value {
-                Tree::Array(_) => {
-                    self.array(node, slot, numbers(Vec::deserialize(value)?));
-                    return Ok(());
-                }
-                Tree::Null => Some(f64::NAN),
-                Tree::String(text) => spelled_number(text),
-                other => other.as_f64(),
-            };
-            if let Some(value) = number {
-                self.slots.set(slot, Value::Number { value, is_narrow: false });
+        match (node.slot(self.wants, Want::Numbers), value) {
+            (Some(slot), Tree::Array(elements)) => {
+                let no_number = |element| format!("{element} stands in an array where a number should");
+                let sample = |element| number(element).ok_or_else(|| WalkFault::Value(no_number(element)));
+                let samples = elements.iter().map(sample).collect::<Result<_, _>>()?;
+                self.array(node, slot, samples);
+                return Ok(());
             }
+            (Some(slot), _) => {
+                if let Some(value) = number(value) {
+                    self.slots.set(slot, Value::Number { value, is_narrow: false });
+                }
+            }
+            (None, _) => {}
         }
         if let (Some(slot), Tree::String(text)) = (node.slot(self.wants, Want::Text), value) {
             self.slots.set_text(slot, text.as_bytes());
@@ -196,12 +190,7 @@ impl JsonWalk<'_> {
 fn stamp(value: &Tree) -> Option<Value> {
     let part = |names: &[&str]| names.iter().find_map(|name| value.get(name)).and_then(whole);
     let ns = match value {
-        Tree::String(text) => {
-            // Without an offset from UTC differences are as good.
-            let utc = || TimeZone::UTC.to_timestamp(text.parse::<DateTime>().ok()?).ok();
-            let stamp = text.parse::<Timestamp>().ok().or_else(utc);
-            stamp.and_then(|stamp| i64::try_from(stamp.as_nanosecond()).ok())
-        }
+        Tree::String(text) => dated(text).and_then(|(at, _)| i64::try_from(at.as_nanosecond()).ok()),
         Tree::Object(_) => {
             part(&SECONDS_NAMES).map(|seconds| unix_ns(seconds, part(&NANOSECONDS_NAMES).unwrap_or(0)))
         }
@@ -219,48 +208,23 @@ fn whole(value: &Tree) -> Option<i64> {
     }
 }
 
-/// What protobuf's JSON mapping writes as words.
-fn spelled_number(text: &str) -> Option<f64> {
-    match text {
-        "NaN" | "nan" => Some(f64::NAN),
-        "Infinity" => Some(f64::INFINITY),
-        "-Infinity" => Some(f64::NEG_INFINITY),
-        _ => text.parse().ok(),
+/// A sample; in its place writers put null where it is missing, and the words of protobuf's JSON mapping.
+fn number(value: &Tree) -> Option<f64> {
+    match value {
+        Tree::Null => Some(f64::NAN),
+        Tree::String(text) => match text.as_str() {
+            "NaN" | "nan" => Some(f64::NAN),
+            "Infinity" => Some(f64::INFINITY),
+            "-Infinity" => Some(f64::NEG_INFINITY),
+            _ => text.parse().ok(),
+        },
+        other => other.as_f64(),
     }
 }
 
-/// A number in an array, or what writers put in its place: null, a word, one in quotes.
+/// The name of a field.
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "a number is expected")]
-enum Scalar<'a> {
-    Number(f64),
-    #[serde(borrow)]
-    Text(Cow<'a, str>),
-    Missing(()),
-}
-
-/// A sample; null is NaN.
-#[derive(Deserialize)]
-#[serde(try_from = "Scalar")]
-struct JsonSample(f64);
-
-impl TryFrom<Scalar<'_>> for JsonSample {
-    type Error = String;
-
-    fn try_from(scalar: Scalar) -> Result<Self, String> {
-        match scalar {
-            Scalar::Number(value) => Ok(Self(value)),
-            Scalar::Missing(()) => Ok(Self(f64::NAN)),
-            Scalar::Text(text) => spelled_number(&text)
-                .map(Self)
-                .ok_or_else(|| format!("{text:?} stands where a number should")),
-        }
-    }
-}
-
-fn numbers(samples: Vec<JsonSample>) -> Vec<f64> {
-    samples.into_iter().map(|JsonSample(value)| value).collect()
-}
+struct FieldName<'a>(#[serde(borrow)] Cow<'a, str>);
 
 /// The first value of `text` and how many bytes it takes.
 fn first<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<(T, usize), WalkFault> {
@@ -269,25 +233,12 @@ fn first<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<(T, usize), WalkFault
     Ok((value, values.byte_offset()))
 }
 
-/// The text in quotes that `text` begins with, and how many bytes it takes.
-fn key(text: &[u8]) -> Result<(Cow<'_, str>, usize), WalkFault> {
-    let rest = text.strip_prefix(b"\"").ok_or(WalkFault::Grammar)?;
-    match rest.iter().position(|&byte| byte == b'"' || byte == b'\\' || byte < b' ') {
-        Some(length) if rest[length] == b'"' => match std::str::from_utf8(&rest[..length]) {
-            Ok(key) => Ok((Cow::Borrowed(key), length + 2)),
-            Err(_) => Err(WalkFault::Grammar),
-        },
-        // Something in it stands for something else.
-        _ => first::<String>(text).map(|(key, used)| (Cow::Owned(key), used)),
-    }
-}
-
 /// The numbers of the array that `text` begins with and how many bytes it takes; `None` where it holds
 /// anything else.
 fn plain_numbers(text: &[u8]) -> Option<(Vec<f64>, usize)> {
     /// Characters of a number and its comma, as loggers write them; more room is taken as it is needed.
     const USUAL: usize = 8;
-    let mut at = past_spaces(text, 1);
+    let mut at = past_spaces(text, text.starts_with(b"[").then_some(1)?);
     if text.get(at) == Some(&b']') {
         return Some((Vec::new(), at + 1));
     }
@@ -318,54 +269,58 @@ fn past_spaces(text: &[u8], mut at: usize) -> usize {
 
 /// The numeric fields of one message; none where it does not parse.
 pub(super) fn leaves(message: &[u8]) -> Vec<Leaf> {
-    let value = serde_json::from_slice::<Tree>(message)
-        .ok()
-        .or_else(|| without_bare_nan(message).and_then(|text| serde_json::from_slice::<Tree>(&text).ok()));
-    let mut found = Vec::new();
-    if let Some(value) = value {
-        // Beyond the limit the rest stays unlisted.
-        descend(&value, "", DEEPEST, &mut found);
-    }
-    found
+    Fields::of(message).leaves
 }
 
-/// Whether a message holds a list of records, each with numbers: none of its fields is a signal.
-pub(super) fn holds_records(message: &[u8]) -> bool {
-    fn has_records(value: &Tree, depth: usize) -> bool {
-        match value {
-            Tree::Array(elements) => elements.iter().take(8).any(Tree::is_object),
-            Tree::Object(fields) => depth > 0 && fields.values().any(|value| has_records(value, depth - 1)),
-            _ => false,
-        }
-    }
-    serde_json::from_slice(message).is_ok_and(|value| has_records(&value, DEEPEST))
+/// What a message holds.
+#[derive(Default)]
+pub(super) struct Fields {
+    /// Its numeric fields; beyond the limit the rest stays unlisted.
+    pub(super) leaves: Vec<Leaf>,
+    /// Whether it holds a list of records, whose numbers are no such fields.
+    pub(super) has_records: bool,
 }
 
-fn descend(value: &Tree, path: &str, depth: usize, found: &mut Vec<Leaf>) {
-    // One more than are listed tells that there are more.
-    if found.len() > MOST_LEAVES || path.len() > LONGEST_PATH_BYTES {
-        return;
+impl Fields {
+    /// Of a message; none where it does not parse.
+    pub(super) fn of(message: &[u8]) -> Self {
+        let repaired = || serde_json::from_slice::<Tree>(&without_bare_nan(message)?).ok();
+        let mut fields = Self::default();
+        if let Some(value) = serde_json::from_slice::<Tree>(message).ok().or_else(repaired) {
+            fields.descend(&value, "", DEEPEST);
+        }
+        fields
     }
-    match value {
-        Tree::Number(_) if !path.is_empty() => {
-            found.push(Leaf { path: path.to_owned(), is_array: false, is_signal: true });
+
+    fn descend(&mut self, value: &Tree, path: &str, depth: usize) {
+        // One more than are listed tells that there are more.
+        if self.leaves.len() > MOST_LEAVES || path.len() > LONGEST_PATH_BYTES {
+            return;
         }
-        Tree::String(_) if !path.is_empty() => {
-            found.push(Leaf { path: path.to_owned(), is_array: false, is_signal: false });
-        }
-        Tree::Array(elements) if !path.is_empty() => {
-            let mut numbers = elements.iter().filter(|element| !element.is_null()).take(8).peekable();
-            if numbers.peek().is_some() && numbers.all(Tree::is_number) {
-                found.push(Leaf { path: path.to_owned(), is_array: true, is_signal: true });
+        let is_array = value.is_array();
+        let is_signal = match value {
+            Tree::Number(_) => true,
+            Tree::String(_) => false,
+            Tree::Array(elements) => {
+                let mut numbers = elements.iter().filter(|element| !element.is_null()).take(8).peekable();
+                self.has_records |= elements.iter().take(8).any(Tree::is_object);
+                if numbers.peek().is_none() || !numbers.all(Tree::is_number) {
+                    return;
+                }
+                true
             }
-        }
-        Tree::Object(fields) if depth > 0 && !is_stamp(fields) => {
-            for (name, value) in fields {
-                let below = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
-                descend(value, &below, depth - 1, found);
+            Tree::Object(fields) if depth > 0 && !is_stamp(fields) => {
+                for (name, value) in fields {
+                    let below = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+                    self.descend(value, &below, depth - 1);
+                }
+                return;
             }
+            _ => return,
+        };
+        if !path.is_empty() {
+            self.leaves.push(Leaf { path: path.to_owned(), is_array, is_signal });
         }
-        _ => {}
     }
 }
 

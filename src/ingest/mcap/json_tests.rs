@@ -10,13 +10,11 @@ fn decoded(field: &str, text: &str) -> Result<(Value, Value, Option<f64>, Option
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     Json::new(&plan).decode(text.as_bytes(), &mut slots)?;
-    let target = &plan.targets[0];
-    let (stamp, rate, unit) = (
-        slots.stamp(target),
-        slots.rates(target).next().map(|rate| rate.value),
-        slots.unit(target).map(String::from),
-    );
-    Ok((slots.samples(target), stamp, rate, unit))
+    let field = &plan.fields[0];
+    let said = slots.beside(field);
+    let stamp = said.stamp.cloned().unwrap_or_default();
+    let (rate, unit) = (said.rates.first().map(|rate| rate.value), said.unit.map(String::from));
+    Ok((slots.samples(field), stamp, rate, unit))
 }
 
 #[test]
@@ -57,8 +55,8 @@ fn one_element_and_the_whole_array_can_both_be_wanted() {
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     Json::new(&plan).decode(br#"{"s":[7,8]}"#, &mut slots).unwrap();
-    assert_eq!(slots.samples(&plan.targets[0]), Value::Number { value: 8.0, is_narrow: false });
-    assert_eq!(slots.samples(&plan.targets[1]), Value::Array(Samples::F64(vec![7.0, 8.0])));
+    assert_eq!(slots.samples(&plan.fields[0]), Value::Number { value: 8.0, is_narrow: false });
+    assert_eq!(slots.samples(&plan.fields[1]), Value::Array(Samples::F64(vec![7.0, 8.0])));
 }
 
 #[test]
@@ -82,7 +80,7 @@ fn both(text: &str) -> (Option<String>, Option<String>) {
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     let walked = Json::new(&plan).walk(text.as_bytes(), &mut slots).ok();
-    let values: Vec<Value> = plan.targets.iter().map(|target| slots.samples(target)).collect();
+    let values: Vec<Value> = plan.fields.iter().map(|target| slots.samples(target)).collect();
     let of_tree = serde_json::from_str::<Tree>(text).ok().map(|tree| {
         let number = |value: &Tree| value.as_f64().or_else(|| value.is_null().then_some(f64::NAN));
         ["/s", "/a/b", "/s2/1"].map(|place| match tree.pointer(place) {

@@ -3,15 +3,16 @@
 use super::column::{CLOCK_IS_SET_NS, Column, seconds_from};
 use super::extent::Extent;
 use super::path::source_text;
+use super::plan::AskedField;
 use super::scanned::Scanned;
-use super::topic::{Channels, Field, Gathered, Sensor, Topic};
+use super::topic::{Channels, Gathered, Sensor, Topic};
 use super::topics::Asked;
 use super::walk::walk;
 use crate::data::{Finding, ListedChannel, Listing, McapFinding, RecordingFormat};
 use crate::ingest::error::{self, IngestError};
 use crate::ingest::time_base::TimeBaseError;
 use crate::ingest::{Limits, Progress};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 /// Lists what the file at `path` holds.
@@ -32,8 +33,8 @@ pub(in crate::ingest) fn list(
     for (topic, gathered) in each(&mut topics) {
         issues.extend(gathered.undecoded(Some(&topic.name)).map(Finding::from));
         for sensor in &mut gathered.sensors {
-            for (field, column) in topic.fields.iter().zip(&mut sensor.columns) {
-                let source = source_text(&topic.name, &field.path.to_string());
+            for (field, column) in topic.plan.fields.iter().zip(&mut sensor.columns) {
+                let source = source_text(&topic.name, &field.asked.path.to_string());
                 if let Err(refusal) = column.settle_ticks(&source, None) {
                     column.refuse(refusal);
                 }
@@ -44,11 +45,15 @@ pub(in crate::ingest) fn list(
     let zero_ns = columns.filter_map(Column::span_ns).map(|(from, _)| from).min();
     issues.extend(unlisted);
     let mut channels = Vec::new();
-    for (topic, gathered) in &mut topics {
-        let is_one = gathered.len() == 1;
+    let mut writers: HashMap<String, usize> = HashMap::new();
+    for (topic, gathered) in &topics {
+        *writers.entry(topic.name.clone()).or_default() += gathered.len();
+    }
+    for (topic, gathered) in topics {
+        let is_one = writers[&topic.name] == 1;
         for (number, gathered) in gathered {
-            let number = Some(*number).filter(|_| !is_one);
-            listed((topic, number), std::mem::take(gathered), zero_ns, &mut channels, &mut issues);
+            let number = Some(number).filter(|_| !is_one);
+            listed((&topic, number), gathered, zero_ns, &mut channels, &mut issues);
         }
     }
     Ok(Listing {
@@ -101,7 +106,7 @@ fn listed(
     issues: &mut Vec<Finding>,
 ) {
     let Gathered { messages, mut sensors, .. } = gathered;
-    if topic.fields.is_empty() {
+    if topic.plan.fields.is_empty() {
         let none = || (messages > 0).then(|| "its messages hold no numbers".to_owned());
         channels.push(ListedChannel {
             messages: Some(messages),
@@ -117,11 +122,12 @@ fn listed(
     let has_several = sensors.len() > 1;
     let (mut said_units, mut said) = (false, Vec::new());
     let columns = sensors.into_iter().flat_map(|Sensor { rows, mut columns }| {
-        columns.resize_with(topic.fields.len(), || Column::new(true));
-        let fields = topic.fields.iter().zip(columns);
+        columns.resize_with(topic.plan.fields.len(), || Column::new(true));
+        let fields = topic.plan.fields.iter().zip(columns);
         fields.map(move |(field, column)| (rows.clone().filter(|_| has_several), field, column))
     });
-    for (rows, Field { path, is_array, unit }, column) in columns {
+    for (rows, field, column) in columns {
+        let AskedField { path, is_array, .. } = &field.asked;
         let Extent { samples, range, is_without_times, .. } = column.extent.clone().unwrap_or_default();
         let source = match number {
             Some(number) => {
@@ -144,7 +150,7 @@ fn listed(
             rows,
             samples: Some(samples),
             messages: Some(messages),
-            unit: column.unit().or(*unit).map(str::to_owned),
+            unit: topic.unit(field, &column),
             range,
             encoding: topic.encoding.clone(),
             ..ListedChannel::named(&source, if *is_array { "array" } else { "number" })
@@ -171,21 +177,10 @@ fn timed(channel: &mut ListedChannel, column: Column, zero_ns: Option<i64>) -> R
     column.heeded()?;
     let (Some((first_ns, _)), Some(zero_ns)) = (column.span_ns(), zero_ns) else { return Ok(()) };
     channel.start_s = Some(seconds_from(first_ns, zero_ns));
-    let timing = match column.timing(zero_ns) {
-        Ok(timing) => timing,
-        Err(TimeBaseError::TooFew { .. }) => return Ok(()),
-        Err(problem) => return Err(problem),
-    };
-    channel.sample_rate_hz = Some(timing.sample_rate_hz);
-    channel.start_s = Some(timing.start_s);
-    channel.duration_s = Some(as_f64(timing.count - 1) / timing.sample_rate_hz);
-    channel.gaps = Some(timing.gaps as u64);
-    Ok(())
-}
-
-#[allow(clippy::cast_precision_loss, reason = "counts of samples stay below 2^53")]
-fn as_f64(count: usize) -> f64 {
-    count as f64
+    match column.list_times(zero_ns, channel) {
+        Err(TimeBaseError::TooFew { .. }) => Ok(()),
+        listed => listed,
+    }
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use super::plan::{Decode, Leaf, Plan};
 use super::protobuf::{self, Protobuf};
 use super::ros_type;
 use crate::ingest::Limits;
+use mcap::records::Channel;
 use prost_reflect::MessageDescriptor;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -24,15 +25,6 @@ pub(super) struct SchemaInfo {
     pub(super) name: String,
     pub(super) encoding: String,
     pub(super) data: Vec<u8>,
-}
-
-/// A channel record with its schema.
-pub(super) struct ChannelInfo<'a> {
-    pub(super) topic: &'a str,
-    pub(super) message_encoding: &'a str,
-    /// 0 where it has none.
-    pub(super) schema_id: u16,
-    pub(super) schema: Option<&'a SchemaInfo>,
 }
 
 /// What is known of a channel's messages.
@@ -69,23 +61,27 @@ impl MessageTypes {
     ///
     /// # Errors
     /// Why its messages cannot be read.
-    pub(super) fn of(&mut self, info: &ChannelInfo) -> Result<MessageType, String> {
+    pub(super) fn of(
+        &mut self,
+        channel: &Channel,
+        schema: Option<&SchemaInfo>,
+    ) -> Result<MessageType, String> {
         /// What is kept of a type besides its text takes a few hundred bytes.
         const LEAST_BYTES: u64 = 256;
         /// A field of `ros2msg` is paid for by itself: two lines of text double the number of fields.
         const FIELD_BYTES: u64 = size_of::<ros_type::RosField>() as u64;
-        let key = (info.schema_id, info.message_encoding.to_owned());
+        let key = (channel.schema_id, channel.message_encoding.clone());
         if let Some(known) = self.known.get(&key) {
             return known.clone();
         }
-        let text_bytes = info.schema.map_or(0, |schema| schema.data.len() as u64);
+        let text_bytes = schema.map_or(0, |schema| schema.data.len() as u64);
         if LEAST_BYTES + text_bytes > self.left_bytes.min(self.largest_bytes) {
             return Err(format!(
                 "its schema of {text_bytes} bytes is more than is read of the schemas of such a file; allow more with --max-memory"
             ));
         }
         let mut left = ros_type::MOST_FIELDS;
-        let found = MessageType::new(info, &mut left);
+        let found = MessageType::new(&channel.message_encoding, schema, &mut left);
         let fields_bytes = (ros_type::MOST_FIELDS - left) as u64 * FIELD_BYTES;
         self.left_bytes = self.left_bytes.saturating_sub(LEAST_BYTES + text_bytes + fields_bytes);
         self.known.insert(key, found.clone());
@@ -96,8 +92,8 @@ impl MessageTypes {
 impl MessageType {
     /// The type of a channel's messages.
     /// As [`MessageTypes::of`] says; the fields of a `ros2msg` are taken from what is `left`.
-    fn new(info: &ChannelInfo, left: &mut usize) -> Result<Self, String> {
-        match (info.message_encoding, info.schema) {
+    fn new(encoding: &str, schema: Option<&SchemaInfo>, left: &mut usize) -> Result<Self, String> {
+        match (encoding, schema) {
             ("json", _) => Ok(Self::Json),
             ("protobuf", Some(schema)) if schema.encoding == "protobuf" => {
                 descriptors::message_type(&schema.name, &schema.data).map(Self::Protobuf)

@@ -100,6 +100,8 @@ impl Node {
 /// What a field says of the samples beside it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Says {
+    /// Their time, as a structure or in words.
+    Stamp,
     /// Their time, as a number that counts so.
     Time(Scale),
     /// By what they are to be multiplied.
@@ -114,9 +116,9 @@ pub(super) enum Says {
     Turns,
     /// Which sensor they are of.
     Sensor,
-    /// Their rate or interval.
-    Rate(Meaning),
-    /// The unit of a rate.
+    /// Their rate or interval, so many messages above them, in the unit that may stand in a slot.
+    Rate { meaning: Meaning, level: usize, unit: Option<usize> },
+    /// Their unit, or that of a rate.
     Unit,
 }
 
@@ -136,23 +138,12 @@ impl Beside {
     }
 }
 
-/// The slots that belong to one wanted field, each list by preference.
-#[derive(Debug, Clone)]
-pub(super) struct Target {
-    /// Its samples.
-    pub(super) value: usize,
-    pub(super) stamps: Vec<usize>,
-    /// Slots with what they state, those of a message one after another.
-    pub(super) rates: Vec<SlotOfRate>,
-    pub(super) units: Vec<usize>,
-    /// What else stands beside its samples, the nearest first.
-    pub(super) beside: Vec<Beside>,
-}
-
 /// A field that is asked for, with what the cask file says of it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct AskedField {
     pub(super) path: FieldPath,
+    /// Whether it is an array, as its schema or first message says; of no meaning where a cask file names it.
+    pub(super) is_array: bool,
     /// The fields that may be its time, where the cask file names it; none for the log time.
     pub(super) times: Option<Vec<FieldPath>>,
     /// The field that says which sensor a message is of, where the cask file names it.
@@ -168,16 +159,18 @@ impl AskedField {
 
     /// Of which nothing more is said.
     pub(super) fn plain(path: FieldPath) -> Self {
-        Self { path, times: None, sensor: None }
+        Self { path, is_array: false, times: None, sensor: None }
     }
 }
 
-/// A slot that may hold a rate or an interval, and that of the unit beside it.
+/// A field that is fetched, and the slots of what belongs to it.
 #[derive(Debug, Clone)]
-pub(super) struct SlotOfRate {
-    pub(super) number: usize,
-    pub(super) unit: Option<usize>,
-    pub(super) stated: StatedRate,
+pub(super) struct Field {
+    pub(super) asked: AskedField,
+    /// The slot of its samples.
+    pub(super) value: usize,
+    /// What stands beside its samples, the nearest first.
+    pub(super) beside: Vec<Beside>,
 }
 
 /// A rate or an interval that a message states.
@@ -215,8 +208,8 @@ pub(super) struct Plan {
     pub(super) root: Node,
     /// What each slot takes.
     pub(super) wants: Vec<Want>,
-    /// One for each wanted field, in the order given.
-    pub(super) targets: Vec<Target>,
+    /// What is asked for, in the order given.
+    pub(super) fields: Vec<Field>,
 }
 
 impl Plan {
@@ -304,47 +297,13 @@ impl Slots {
         }
     }
 
-    /// The samples of `target`, an array out of its slot; a number may say something of others.
-    pub(super) fn samples(&mut self, target: &Target) -> Value {
-        match self.values.get_mut(target.value) {
+    /// The samples of `field`, an array out of its slot; a number may say something of others.
+    pub(super) fn samples(&mut self, field: &Field) -> Value {
+        match self.values.get_mut(field.value) {
             Some(number @ Value::Number { .. }) => number.clone(),
             Some(value) => std::mem::take(value),
             None => Value::Missing,
         }
-    }
-
-    /// The stamp that stands nearest to the field of `target`; `Missing` where none does.
-    pub(super) fn stamp(&self, target: &Target) -> Value {
-        self.first(&target.stamps, |value| matches!(value, Value::Stamp(_) | Value::BadStamp))
-    }
-
-    /// The rates that the message states for the field of `target`, the nearest first, whatever their values.
-    pub(super) fn rates<'a>(&'a self, target: &'a Target) -> impl Iterator<Item = StatedRate> + 'a {
-        target.rates.iter().filter_map(|rate| {
-            let Some(Value::Number { value, .. }) = self.values.get(rate.number) else { return None };
-            let unit = match rate.unit.and_then(|slot| self.values.get(slot)) {
-                Some(Value::Text(unit)) => Some(unit.clone()),
-                _ => None,
-            };
-            Some(StatedRate { value: *value, unit, ..rate.stated.clone() })
-        })
-    }
-
-    /// The unit stated nearest to the field of `target`.
-    pub(super) fn unit(&self, target: &Target) -> Option<&str> {
-        target.units.iter().find_map(|&slot| match self.values.get(slot) {
-            Some(Value::Text(text)) if !text.trim().is_empty() => Some(&**text),
-            _ => None,
-        })
-    }
-
-    fn first(&self, slots: &[usize], fits: impl Fn(&Value) -> bool) -> Value {
-        slots
-            .iter()
-            .filter_map(|&slot| self.values.get(slot))
-            .find(|value| fits(value))
-            .cloned()
-            .unwrap_or_default()
     }
 }
 

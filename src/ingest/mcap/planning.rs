@@ -1,16 +1,11 @@
 //! Fields that are asked for, and what a message type holds beside them, to the plan of everything to fetch.
 
 use super::path::{FieldPath, Step};
-use super::plan::{
-    AskedField, Beside, Leaf, Plan, RATE_NAMES, STAMP_NAMES, Says, SlotOfRate, StatedRate, Target,
-    UNIT_NAMES, Want,
-};
+use super::plan::{AskedField, Beside, Field, Leaf, Plan, RATE_NAMES, STAMP_NAMES, Says, UNIT_NAMES, Want};
 use crate::ingest::hdf5::names::{AttributeRole, role};
 use crate::ingest::times::Scale;
 use crate::ingest::vocabulary::{self, Meaning};
 
-/// So many fields are heeded for one signal: no message says more of its samples.
-const MOST_BESIDE: usize = 32;
 /// So many fields of a message type are heeded: no sensor's message says more of its samples.
 const MOST_TELLING: usize = 64;
 
@@ -20,48 +15,46 @@ impl Plan {
     pub(super) fn new(asked: &[AskedField], leaves: &[Leaf], has: impl Fn(&FieldPath) -> bool) -> Self {
         let (mut plan, telling) = (Self::default(), Telling::among(leaves));
         for asked in asked {
-            let field = &asked.path;
-            let value = plan.slot(field, Want::Numbers);
-            if let Some((Step::Index(_), array)) = field.0.split_last() {
+            let value = plan.slot(&asked.path, Want::Numbers);
+            // A field may be named twice, and a key with dots reads like a field within another.
+            if plan.fields.iter().any(|known| known.value == value) {
+                continue;
+            }
+            if let Some((Step::Index(_), array)) = asked.path.0.split_last() {
                 // An element is taken from its array once that is read.
                 plan.slot(&FieldPath(array.to_vec()), Want::Numbers);
             }
-            let mut target = Target {
-                value,
-                stamps: Vec::new(),
-                rates: Vec::new(),
-                units: Vec::new(),
-                beside: Vec::new(),
-            };
-            target.sensor(&mut plan, asked.sensor.as_ref());
+            let mut field = Field { asked: asked.clone(), value, beside: Vec::new() };
+            field.sensor(&mut plan, asked.sensor.as_ref());
             for path in asked.times.iter().flatten() {
-                target.time(&mut plan, path);
+                field.time(&mut plan, path);
             }
-            for (level, message) in field.enclosing().enumerate() {
+            for (level, message) in asked.path.enclosing().enumerate() {
                 let named = |name: &str| Some(message.then(name)).filter(&has);
                 let stamp =
                     |names: &&[&str]| names.iter().fold(message.clone(), |path, name| path.then(name));
                 for path in STAMP_NAMES.iter().filter(|_| asked.times.is_none()).map(stamp).filter(&has) {
-                    target.time(&mut plan, &path);
+                    field.time(&mut plan, &path);
                 }
-                target.others(&mut plan, (&message, level), asked, &telling);
+                field.others(&mut plan, (&message, level), &telling);
                 for path in RATE_NAMES.into_iter().filter_map(named) {
-                    target.rate(&mut plan, &path, (Meaning::Rate(1.0), level), &telling);
+                    field.rate(&mut plan, &path, (Meaning::Rate(1.0), level), &telling);
                 }
-                let units = UNIT_NAMES.into_iter().filter_map(named);
-                target.units.extend(units.map(|path| plan.slot(&path, Want::Text)));
+                for path in UNIT_NAMES.into_iter().filter_map(named) {
+                    field.say(&mut plan, &path, (Want::Text, Says::Unit));
+                }
             }
-            plan.targets.push(target);
+            plan.fields.push(field);
         }
         plan
     }
 }
 
-impl Target {
+impl Field {
     fn say(&mut self, plan: &mut Plan, path: &FieldPath, (want, says): (Want, Says)) {
         let slot = plan.slot(path, want);
         let is_new = self.beside.iter().all(|known| (known.slot, known.says) != (slot, says));
-        if is_new && self.beside.len() < MOST_BESIDE {
+        if is_new {
             self.beside.push(Beside { slot, says, field: path.to_string() });
         }
     }
@@ -69,7 +62,7 @@ impl Target {
     /// Takes the field at `path` for their time, be it a structure, words or a number.
     pub(super) fn time(&mut self, plan: &mut Plan, path: &FieldPath) {
         let scale = path.last_name().map_or(Scale::Open, |name| Scale::of(name, None));
-        self.stamps.push(plan.slot(path, Want::Stamp));
+        self.say(plan, path, (Want::Stamp, Says::Stamp));
         self.say(plan, path, (Want::Numbers, Says::Time(scale)));
     }
 
@@ -99,8 +92,7 @@ impl Target {
                 && matches!(unit, Some("_unit" | "_units"))
         };
         let unit = telling.iter().find(is_unit).map(|unit| plan.slot(&unit.path, Want::Text));
-        let stated = StatedRate { name: name.into(), meaning, level, value: f64::NAN, unit: None };
-        self.rates.push(SlotOfRate { number: plan.slot(path, Want::Numbers), unit, stated });
+        self.say(plan, path, (Want::Numbers, Says::Rate { meaning, level, unit }));
     }
 
     /// Takes the fields of a message that encloses the samples, so many `level`s above them, that say
@@ -109,16 +101,14 @@ impl Target {
         &mut self,
         plan: &mut Plan,
         (message, level): (&FieldPath, usize),
-        asked: &AskedField,
         telling: &[Telling],
     ) {
-        for Telling { path, says, .. } in
-            telling.iter().filter(|t| t.message == *message && t.path != asked.path)
-        {
+        let is_beside = |t: &&Telling| t.message == *message && t.path != self.asked.path;
+        for Telling { path, says, .. } in telling.iter().filter(is_beside).collect::<Vec<_>>() {
             match says {
-                Says::Sensor if asked.may_be_sensor(path) => self.sensor(plan, Some(path)),
-                Says::Time(_) if asked.times.is_none() => self.time(plan, path),
-                Says::Rate(meaning) => self.rate(plan, path, (*meaning, level), telling),
+                Says::Sensor if self.asked.may_be_sensor(path) => self.sensor(plan, Some(path)),
+                Says::Time(_) if self.asked.times.is_none() => self.time(plan, path),
+                Says::Rate { meaning, .. } => self.rate(plan, path, (*meaning, level), telling),
                 Says::Sensor | Says::Time(_) | Says::Unit => {}
                 says => self.say(plan, path, (Want::Numbers, *says)),
             }
@@ -174,7 +164,7 @@ impl Says {
             (Some(AttributeRole::Offset), _) => Self::Offset,
             (Some(AttributeRole::Conversion), _) => Self::Conversion,
             (_, Some(Meaning::Count)) => Self::Count,
-            (_, Some(meaning)) if !RATE_NAMES.contains(&name) => Self::Rate(meaning),
+            (_, Some(meaning)) if !RATE_NAMES.contains(&name) => Self::Rate { meaning, level: 0, unit: None },
             _ => return None,
         })
     }

@@ -21,13 +21,11 @@ fn decoded(
     let mut slots = Slots::default();
     slots.clear(plan.wants.len());
     Protobuf::new(&plan, &message).decode(data, &mut slots)?;
-    let target = &plan.targets[0];
-    let (stamp, rate, unit) = (
-        slots.stamp(target),
-        slots.rates(target).next().map(|rate| rate.value),
-        slots.unit(target).map(String::from),
-    );
-    Ok((slots.samples(target), stamp, rate, unit))
+    let field = &plan.fields[0];
+    let said = slots.beside(field);
+    let stamp = said.stamp.cloned().unwrap_or_default();
+    let (rate, unit) = (said.rates.first().map(|rate| rate.value), said.unit.map(String::from));
+    Ok((slots.samples(field), stamp, rate, unit))
 }
 
 #[test]

@@ -47,7 +47,7 @@ pub(in crate::ingest) fn read(
         if let Some(change) = column.unit_change() {
             issues.push(complaint::unit_change(path, spec, change)?);
         }
-        let unit = column.unit().or(topic.fields[place.field].unit).map(str::to_owned);
+        let unit = topic.unit(&topic.plan.fields[place.field], column);
         // A second channel on the same field gets its own copy.
         let column = if chosen[position + 1..].contains(place) {
             column.clone()
@@ -91,11 +91,12 @@ fn chosen(
     let meant = |spec: &ChannelSpec| {
         let field = |(at, (topic, _)): (usize, &Channels)| {
             let path = path::field_in(&spec.source, &topic.name)?;
-            Some((at, topic.fields.iter().position(|field| field.path == path)?))
+            Some((at, topic.plan.fields.iter().position(|field| field.asked.path == path)?))
         };
         let fields: Vec<(usize, usize)> = topics.iter().enumerate().filter_map(field).collect();
         let Some(&(longest, _)) = fields.iter().max_by_key(|(topic, _)| topics[*topic].0.name.len()) else {
-            let names: Vec<String> = topics.iter().map(|(topic, _)| topic.name.clone()).collect();
+            let mut names: Vec<String> = topics.iter().map(|(topic, _)| topic.name.clone()).collect();
+            names.dedup();
             return Err(complaint::no_topic(path, spec, &names, scanned));
         };
         let places = fields.iter().flat_map(|&(topic, field)| with_samples(topics, topic, field));

@@ -22,29 +22,19 @@ pub(super) struct RosField {
 }
 
 impl RosField {
-    fn plain(name: &str, kind: Type) -> Self {
-        Self { name: name.to_owned(), type_name: None, kind }
+    fn plain(name: &str, kind: BuiltInType) -> Self {
+        Self { name: name.to_owned(), type_name: None, kind: Type::Plain(kind) }
     }
 }
 
 /// What stands in a field.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Type {
-    /// Also bool, byte and char.
-    U8,
-    I8,
-    U16,
-    I16,
-    U32,
-    I32,
-    U64,
-    I64,
-    F32,
-    F64,
-    Text,
-    WideText,
+    /// A number or text.
+    Plain(BuiltInType),
     Message(Vec<RosField>),
-    Array(Box<Type>, Length),
+    /// Of so many elements, or as many as the message says.
+    Array(Box<Type>, Option<usize>),
 }
 
 /// Whether one of `fields` or what lies below it is at `path`.
@@ -52,15 +42,6 @@ pub(super) fn has(fields: &[RosField], path: &[Step]) -> bool {
     let [Step::Name(name), below @ ..] = path else { return false };
     let mut kinds = fields.iter().filter(|field| field.name == *name).map(|field| &field.kind);
     kinds.any(|kind| kind.has(below))
-}
-
-/// How many elements an array has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Length {
-    /// Always so many.
-    Fixed(usize),
-    /// As many as the message says.
-    Counted,
 }
 
 impl Type {
@@ -76,11 +57,14 @@ impl Type {
 
     /// Bytes of a number, which are its alignment too; `None` for what is no number.
     pub(super) fn bytes(&self) -> Option<usize> {
+        use BuiltInType::{
+            Bool, Byte, Char, Float32, Float64, Int8, Int16, Int32, Int64, UInt8, UInt16, UInt32, UInt64,
+        };
         match self {
-            Self::U8 | Self::I8 => Some(1),
-            Self::U16 | Self::I16 => Some(2),
-            Self::U32 | Self::I32 | Self::F32 => Some(4),
-            Self::U64 | Self::I64 | Self::F64 => Some(8),
+            Self::Plain(Bool | Byte | Char | UInt8 | Int8) => Some(1),
+            Self::Plain(UInt16 | Int16) => Some(2),
+            Self::Plain(UInt32 | Int32 | Float32) => Some(4),
+            Self::Plain(UInt64 | Int64 | Float64) => Some(8),
             _ => None,
         }
     }
@@ -88,16 +72,15 @@ impl Type {
     /// Whether text of wide letters stands in it.
     pub(super) fn has_wide_text(&self) -> bool {
         match self {
-            Self::WideText => true,
+            Self::Plain(plain) => matches!(plain, BuiltInType::WString(_)),
             Self::Message(fields) => fields.iter().any(|field| field.kind.has_wide_text()),
             Self::Array(element, _) => element.has_wide_text(),
-            _ => false,
         }
     }
 
     /// Whether f32 holds every value of it.
     pub(super) fn is_narrow(&self) -> bool {
-        matches!(self, Self::U8 | Self::I8 | Self::U16 | Self::I16 | Self::F32)
+        self.bytes().is_some_and(|bytes| bytes < 4) || *self == Self::Plain(BuiltInType::Float32)
     }
 }
 
@@ -148,7 +131,7 @@ impl Resolver<'_> {
         }
         if fields.is_empty() {
             // A message of constants alone takes one byte on the wire.
-            fields.push(RosField::plain("structure_needs_at_least_one_member", Type::U8));
+            fields.push(RosField::plain("structure_needs_at_least_one_member", BuiltInType::UInt8));
         }
         Ok(fields)
     }
@@ -161,12 +144,9 @@ impl Resolver<'_> {
         left: &mut usize,
     ) -> Result<Type, String> {
         match ty {
-            Parsed::BuiltIn(built_in) => Ok(primitive(built_in)),
+            Parsed::BuiltIn(plain) => Ok(Type::Plain(plain.clone())),
             Parsed::Array { ty, size } => {
-                let length = match size {
-                    ArraySize::Fixed(count) => Length::Fixed(*count),
-                    ArraySize::Bounded(_) | ArraySize::Unbounded => Length::Counted,
-                };
+                let length = if let ArraySize::Fixed(count) = size { Some(*count) } else { None };
                 Ok(Type::Array(Box::new(self.kind(ty, package, depth, left)?), length))
             }
             Parsed::Complex(complex) => self.named(complex, package, depth, left),
@@ -190,28 +170,11 @@ impl Resolver<'_> {
             Some(spec) => Ok(Type::Message(self.message(spec, depth - 1, left)?)),
             // Some writers leave out what every ROS 2 installation has.
             None if name == "Time" || name == "Duration" => Ok(Type::Message(vec![
-                RosField::plain("sec", Type::I32),
-                RosField::plain("nanosec", Type::U32),
+                RosField::plain("sec", BuiltInType::Int32),
+                RosField::plain("nanosec", BuiltInType::UInt32),
             ])),
             None => Err(format!("its schema uses the type {name} and does not define it")),
         }
-    }
-}
-
-fn primitive(built_in: &BuiltInType) -> Type {
-    match built_in {
-        BuiltInType::Bool | BuiltInType::Byte | BuiltInType::Char | BuiltInType::UInt8 => Type::U8,
-        BuiltInType::Int8 => Type::I8,
-        BuiltInType::UInt16 => Type::U16,
-        BuiltInType::Int16 => Type::I16,
-        BuiltInType::UInt32 => Type::U32,
-        BuiltInType::Int32 => Type::I32,
-        BuiltInType::UInt64 => Type::U64,
-        BuiltInType::Int64 => Type::I64,
-        BuiltInType::Float32 => Type::F32,
-        BuiltInType::Float64 => Type::F64,
-        BuiltInType::String(_) => Type::Text,
-        BuiltInType::WString(_) => Type::WideText,
     }
 }
 
@@ -225,9 +188,9 @@ mod tests {
         let fields = parse("my/msg/Top", text, &mut 20_000).unwrap();
         let Type::Message(header) = &fields[0].kind else { panic!() };
         assert!(matches!(&header[0].kind, Type::Message(time) if time.len() == 2));
-        assert_eq!(fields[1].kind, Type::Message(vec![RosField::plain("x", Type::F32)]));
-        assert_eq!(fields[2].kind, Type::Array(Box::new(Type::F64), Length::Fixed(9)));
-        assert_eq!(fields[3].kind, Type::Array(Box::new(Type::I16), Length::Counted));
+        assert_eq!(fields[1].kind, Type::Message(vec![RosField::plain("x", BuiltInType::Float32)]));
+        assert_eq!(fields[2].kind, Type::Array(Box::new(Type::Plain(BuiltInType::Float64)), Some(9)));
+        assert_eq!(fields[3].kind, Type::Array(Box::new(Type::Plain(BuiltInType::Int16)), None));
     }
 
     #[test]

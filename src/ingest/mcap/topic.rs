@@ -1,46 +1,50 @@
-//! A topic of an MCAP file with the fields that are asked for, and what its messages gave for each.
+//! The messages of a topic with the fields that are asked for, and what they gave for each.
 
 use super::column::{Column, MessageTime};
 use super::json;
 use super::message_type::MessageType;
-use super::path::FieldPath;
-use super::plan::{Beside, Decode, Leaf, Plan, Slots, Value};
+use super::plan::{Beside, Decode, Field, Leaf, Plan, Slots, Value};
 use crate::data::{McapFinding, RowsOf};
 use crate::ingest::clock::Refusal;
 use crate::ingest::limits::MOST_SENSORS;
 use rayon::prelude::*;
 use std::borrow::Cow;
 
-/// A topic, whatever the number of channels that write on it.
+/// The messages of one type on a topic, whatever the number of channels that write them.
+#[derive(Default)]
 pub(super) struct Topic {
     pub(super) name: String,
-    /// Encoding and schema of the first of its channels, for people.
+    /// Encoding and schema, for people.
     pub(super) encoding: String,
-    /// Those that are asked for, of all its channels.
-    pub(super) fields: Vec<Field>,
-    /// The numeric fields that its schemas tell.
+    /// Schema and field fix a unit together.
+    pub(super) schema_name: String,
+    /// `None` where they cannot be read.
+    pub(super) message_type: Option<MessageType>,
+    /// The fields that are asked for.
+    pub(super) plan: Plan,
+    /// `None` where they cannot be read, or the first of them must tell which fields they have.
+    pub(super) decoder: Option<Box<dyn Decode>>,
+    /// The numeric fields that the schema or a first message tells.
     pub(super) leaves: Vec<Leaf>,
-    /// Why the messages of one of its channels cannot be read.
+    /// Why they cannot be read.
     pub(super) unreadable: Option<String>,
 }
 
-/// A field of a topic that is asked for.
-pub(super) struct Field {
-    pub(super) path: FieldPath,
-    /// Whether it is an array, as its schema or first message says; of no meaning where a cask file names it.
-    pub(super) is_array: bool,
-    /// The unit that its message type fixes.
-    pub(super) unit: Option<&'static str>,
-}
-
 impl Topic {
-    /// The place of the field `path`, which is added where it is not there yet.
-    pub(super) fn field(&mut self, path: &FieldPath, is_array: bool, unit: Option<&'static str>) -> usize {
-        if let Some(at) = self.fields.iter().position(|field| field.path == *path) {
-            return at;
-        }
-        self.fields.push(Field { path: path.clone(), is_array, unit });
-        self.fields.len() - 1
+    /// Whether the first message that holds numbers must tell which fields there are.
+    pub(super) fn is_undecided(&self) -> bool {
+        self.decoder.is_none() && self.is_json()
+    }
+
+    fn is_json(&self) -> bool {
+        matches!(self.message_type, Some(MessageType::Json))
+    }
+
+    /// The unit that the messages state for a field, or that their type fixes.
+    pub(super) fn unit(&self, field: &Field, column: &Column) -> Option<String> {
+        let of_type =
+            || self.message_type.as_ref()?.implied_unit(&self.schema_name, &field.asked.path.to_string());
+        column.unit().or_else(of_type).map(str::to_owned)
     }
 }
 
@@ -58,29 +62,6 @@ impl<'a> Message<'a> {
         let (&log_time, rest) = rest.get(4..)?.split_first_chunk()?;
         let log_time_ns = i64::try_from(u64::from_le_bytes(log_time)).unwrap_or(i64::MAX);
         Some(Self { channel: u16::from_le_bytes(channel), log_time_ns, data: rest.get(8..)? })
-    }
-}
-
-/// How to take the messages of a channel.
-#[derive(Default)]
-pub(super) struct Stream {
-    /// Which topic they are on.
-    pub(super) topic: usize,
-    /// Schema and field fix a unit together.
-    pub(super) schema_name: String,
-    /// `None` where they cannot be read.
-    pub(super) message_type: Option<MessageType>,
-    pub(super) plan: Plan,
-    /// `None` where they cannot be read, or the first of them must tell which fields they have.
-    pub(super) decoder: Option<Box<dyn Decode>>,
-    /// Which fields of the topic, one for each target of the plan.
-    pub(super) fields: Vec<usize>,
-}
-
-impl Stream {
-    /// Whether its first message that holds numbers must tell which fields there are.
-    pub(super) fn is_undecided(&self) -> bool {
-        self.decoder.is_none() && matches!(self.message_type, Some(MessageType::Json))
     }
 }
 
@@ -113,10 +94,10 @@ pub(super) struct Gathered {
 
 impl Gathered {
     /// Takes a message.
-    fn take(&mut self, stream: &Stream, message: &Message, slots: &mut Slots, is_listed: bool) {
+    fn take(&mut self, topic: &Topic, message: &Message, slots: &mut Slots, is_listed: bool) {
         self.messages += 1;
-        let Some(decoder) = &stream.decoder else { return };
-        slots.clear(stream.plan.wants.len());
+        let Some(decoder) = &topic.decoder else { return };
+        slots.clear(topic.plan.wants.len());
         if let Err(problem) = decoder.decode(message.data, slots) {
             self.malformed += 1;
             let is_packed = message.data.starts_with(&[0x28, 0xb5, 0x2f, 0xfd]);
@@ -124,19 +105,16 @@ impl Gathered {
             self.first_problem.get_or_insert(problem);
             return;
         }
-        for (target, &field) in stream.plan.targets.iter().zip(&stream.fields) {
-            let value = slots.samples(target);
-            let said = slots.beside(target);
-            if value == Value::Missing
-                && self.leaves.is_empty()
-                && matches!(stream.message_type, Some(MessageType::Json))
-            {
+        for (at, field) in topic.plan.fields.iter().enumerate() {
+            let value = slots.samples(field);
+            let said = slots.beside(field);
+            if value == Value::Missing && self.leaves.is_empty() && topic.is_json() {
                 self.leaves = json::leaves(message.data);
             }
-            let column = self.column_of(said.sensor.as_ref(), field, is_listed);
-            slots.unit(target).into_iter().for_each(|unit| column.state_unit(unit));
-            slots.rates(target).for_each(|rate| column.state_rate(rate));
-            let time = MessageTime::of(&slots.stamp(target), message.log_time_ns);
+            let column = self.column_of(said.sensor.as_ref(), at, is_listed);
+            said.unit.into_iter().for_each(|unit| column.state_unit(unit));
+            said.rates.iter().for_each(|rate| column.state_rate(rate));
+            let time = MessageTime::of(said.stamp, message.log_time_ns);
             match said.applied(value) {
                 Ok(value) => column.take(value, time, said.tick),
                 Err(refusal) => column.refuse(refusal),
@@ -255,7 +233,7 @@ impl Part {
     }
 
     /// Takes a message of the channel at `place`.
-    pub(super) fn take(&mut self, place: usize, stream: &Stream, message: &Message) {
+    pub(super) fn take(&mut self, place: usize, topic: &Topic, message: &Message) {
         self.make_room(place + 1);
         let gathered = &mut self.gathered[place];
         if gathered.messages == 0 {
@@ -263,7 +241,7 @@ impl Part {
         }
         let held = |gathered: &Gathered| gathered.columns().map(Column::held_bytes).sum::<u64>();
         let before = held(gathered);
-        gathered.take(stream, message, &mut self.slots, self.most_listed_bytes.is_some());
+        gathered.take(topic, message, &mut self.slots, self.most_listed_bytes.is_some());
         self.held_bytes = (self.held_bytes + held(gathered)).saturating_sub(before);
         self.keep_within();
     }

@@ -3,16 +3,16 @@
 
 use super::chunk::Chunk;
 use super::json;
-use super::message_type::{ChannelInfo, MessageTypes, SchemaInfo};
+use super::message_type::{MessageTypes, SchemaInfo};
 use super::path::{self, FieldPath};
 use super::plan::{AskedField, Leaf, MOST_LEAVES, Plan};
 use super::scanned::Losses;
-use super::topic::{Channels, Gathered, Message, Part, Stream, Topic};
+use super::topic::{Channels, Gathered, Message, Part, Topic};
 use crate::data::{CaskFile, ChannelSpec, Finding, McapFinding, Source};
 use crate::ingest::Limits;
-use mcap::records::{Record, op};
-use std::collections::HashMap;
+use mcap::records::{Channel, Record, op};
 use std::collections::hash_map::Entry;
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// So many topics and fields are listed in all, each counted once more for every kilobyte of its names: a
 /// recording of hundreds of sensors has thousands, and each takes 3 kB. An HDF5 file lists as many objects.
@@ -59,15 +59,16 @@ pub(super) struct Topics<'a> {
     schemas: HashMap<u16, SchemaInfo>,
     /// In the order of the file.
     all: Vec<Topic>,
-    by_name: HashMap<String, usize>,
-    streams: Vec<Stream>,
-    /// The stream of each channel, the first of an id, and its place in the file; `None` where its messages
+    /// The place of each topic with its schema and encoding, `None` where it is not asked for: a file may
+    /// announce one of them under every number.
+    by_type: HashMap<(String, u16, String), Option<usize>>,
+    /// The places of those whose first message with numbers must tell which fields there are.
+    undecided: BTreeSet<usize>,
+    /// The topic of each channel, the first of an id, and its place in the file; `None` where its messages
     /// are not asked for.
     by_channel: HashMap<u16, Option<(usize, usize)>>,
     /// The topic and the number of each channel that is asked for, in the order of the file.
     channels: Vec<(usize, u16)>,
-    /// By topic, schema and encoding: a file may announce one of them under every number.
-    same: HashMap<(usize, u16, String), usize>,
     room: Room,
     /// Memory of the names and schemas.
     pub(super) held_bytes: u64,
@@ -82,11 +83,10 @@ impl<'a> Topics<'a> {
             types: MessageTypes::new(limits, file_bytes),
             schemas: HashMap::new(),
             all: Vec::new(),
-            by_name: HashMap::new(),
-            streams: Vec::new(),
+            by_type: HashMap::new(),
+            undecided: BTreeSet::new(),
             by_channel: HashMap::new(),
             channels: Vec::new(),
-            same: HashMap::new(),
             room: Room { left: MOST_LISTED, topics_out: 0, fields_out: 0 },
             held_bytes: 0,
         }
@@ -113,10 +113,9 @@ impl<'a> Topics<'a> {
                 let is_complete = channel.schema_id == 0 || self.schemas.contains_key(&channel.schema_id);
                 if is_complete || !is_ahead {
                     self.held_bytes += (channel.topic.len() + channel.message_encoding.len()) as u64;
-                    let stream = self.channel(&channel);
-                    let placed = stream.map(|stream| (stream, self.channels.len()));
-                    self.channels.extend(stream.map(|stream| (self.streams[stream].topic, channel.id)));
-                    self.by_channel.insert(channel.id, placed);
+                    let topic = self.topic(&channel);
+                    self.by_channel.insert(channel.id, topic.map(|topic| (topic, self.channels.len())));
+                    self.channels.extend(topic.map(|topic| (topic, channel.id)));
                 }
             }
             _ => {}
@@ -124,116 +123,80 @@ impl<'a> Topics<'a> {
         Ok(())
     }
 
-    /// The stream of a channel, before its first message; `None` where it is not asked for.
-    fn channel(&mut self, channel: &mcap::records::Channel) -> Option<usize> {
-        let schemas = std::mem::take(&mut self.schemas);
-        let info = ChannelInfo {
-            topic: &channel.topic,
-            message_encoding: &channel.message_encoding,
-            schema_id: channel.schema_id,
-            schema: schemas.get(&channel.schema_id),
-        };
-        let stream = self.stream_of(&info);
-        self.schemas = schemas;
-        stream
+    /// The place of the topic that a channel writes on; `None` where it is not asked for, or there is no room
+    /// to list it.
+    fn topic(&mut self, channel: &Channel) -> Option<usize> {
+        let of_type = (channel.topic.clone(), channel.schema_id, channel.message_encoding.clone());
+        if let Some(known) = self.by_type.get(&of_type) {
+            return *known;
+        }
+        let at = self.new_topic(channel);
+        self.by_type.insert(of_type, at);
+        at
     }
 
-    fn stream_of(&mut self, info: &ChannelInfo) -> Option<usize> {
-        let topic = self.topic(info)?;
-        if let Asked::Sources(file) = self.asked
-            && file.channels.iter().all(|spec| path::field_in(&spec.source, info.topic).is_none())
-        {
-            return None;
-        }
-        let same = (topic, info.schema_id, info.message_encoding.to_owned());
-        let known = self.same.get(&same).copied();
-        Some(known.unwrap_or_else(|| {
-            let stream = self.stream(topic, info);
-            self.streams.push(stream);
-            self.same.insert(same, self.streams.len() - 1);
-            self.streams.len() - 1
-        }))
-    }
-
-    /// The place of the topic that a channel writes on; `None` where there is no room to list it.
-    fn topic(&mut self, info: &ChannelInfo) -> Option<usize> {
-        if let Some(&known) = self.by_name.get(info.topic) {
-            return Some(known);
-        }
-        let encoding = match info.schema {
-            Some(schema) if !schema.name.is_empty() => format!("{} ({})", info.message_encoding, schema.name),
-            _ => info.message_encoding.to_owned(),
+    fn new_topic(&mut self, channel: &Channel) -> Option<usize> {
+        let schema = self.schemas.get(&channel.schema_id);
+        let schema_name = schema.map_or_else(String::new, |schema| schema.name.clone());
+        let encoding = match schema_name.as_str() {
+            "" => channel.message_encoding.clone(),
+            name => format!("{} ({name})", channel.message_encoding),
         };
-        let is_listed = matches!(self.asked, Asked::Everything);
-        if is_listed && !self.room.takes(info.topic.len() + encoding.len()) {
+        let is_asked = match self.asked {
+            Asked::Sources(file) => {
+                file.channels.iter().any(|spec| path::field_in(&spec.source, &channel.topic).is_some())
+            }
+            Asked::Everything => self.room.takes(channel.topic.len() + encoding.len()),
+        };
+        if matches!(self.asked, Asked::Everything) && !is_asked {
             self.room.topics_out += 1;
             return None;
         }
-        self.all.push(Topic {
-            name: info.topic.to_owned(),
-            encoding,
-            fields: Vec::new(),
-            leaves: Vec::new(),
-            unreadable: None,
-        });
-        self.by_name.insert(info.topic.to_owned(), self.all.len() - 1);
-        Some(self.all.len() - 1)
-    }
-
-    fn stream(&mut self, topic: usize, info: &ChannelInfo) -> Stream {
-        let schema_name = info.schema.map_or_else(String::new, |schema| schema.name.clone());
-        let mut stream = Stream { topic, schema_name, ..Stream::default() };
-        match self.types.of(info) {
-            Err(reason) => {
-                self.all[topic].unreadable = Some(reason);
-                for (asked, _) in self.asked_of(topic) {
-                    self.all[topic].field(&asked.path, false, None);
-                }
+        let message_type = is_asked.then(|| self.types.of(channel, schema));
+        let mut topic = Topic { name: channel.topic.clone(), encoding, schema_name, ..Topic::default() };
+        match message_type {
+            None => {}
+            Some(Err(reason)) => {
+                topic.unreadable = Some(reason);
+                topic.plan = Plan::new(&self.asked_of(&topic.name), &[], |_| false);
             }
-            Ok(message_type) => {
+            Some(Ok(message_type)) => {
                 let leaves = message_type.leaves();
-                stream.message_type = Some(message_type);
+                topic.message_type = Some(message_type);
                 // A message in JSON tells its fields itself.
                 if let Some(leaves) = leaves {
-                    self.prepare(&mut stream, leaves);
+                    self.prepare(&mut topic, leaves);
                 }
             }
         }
-        stream
+        if topic.is_undecided() {
+            self.undecided.insert(self.all.len());
+        }
+        self.all.push(topic);
+        is_asked.then_some(self.all.len() - 1)
     }
 
     /// Settles which fields of messages with such `leaves` are taken.
-    fn prepare(&mut self, stream: &mut Stream, leaves: Vec<Leaf>) {
-        let Some(message_type) = &stream.message_type else { return };
-        let fields: Vec<(AskedField, bool)> = match self.asked {
-            Asked::Sources(_) => self.asked_of(stream.topic),
-            Asked::Everything => self.listed(stream.topic, &leaves),
+    fn prepare(&mut self, topic: &mut Topic, leaves: Vec<Leaf>) {
+        let asked = match self.asked {
+            Asked::Sources(_) => self.asked_of(&topic.name),
+            Asked::Everything => self.listed(topic, &leaves),
         };
-        let topic = &mut self.all[stream.topic];
-        let mut taken = Vec::with_capacity(fields.len());
-        for (asked, is_array) in fields {
-            let unit = message_type.implied_unit(&stream.schema_name, &asked.path.to_string());
-            let at = topic.field(&asked.path, is_array, unit);
-            if !stream.fields.contains(&at) {
-                stream.fields.push(at);
-                taken.push(asked);
-            }
-        }
-        stream.plan = Plan::new(&taken, &leaves, |path| message_type.has(path));
-        topic.leaves.extend(leaves);
-        stream.decoder = Some(message_type.decoder(&stream.plan));
+        let Some(message_type) = &topic.message_type else { return };
+        topic.plan = Plan::new(&asked, &leaves, |path| message_type.has(path));
+        topic.decoder = Some(message_type.decoder(&topic.plan));
+        topic.leaves = leaves;
     }
 
     /// The fields of a topic that sources name, none of them known to be an array.
-    fn asked_of(&self, topic: usize) -> Vec<(AskedField, bool)> {
+    fn asked_of(&self, topic: &str) -> Vec<AskedField> {
         let Asked::Sources(file) = self.asked else { return Vec::new() };
-        let name = &self.all[topic].name;
         let within = |field: &str| {
-            let whole = path::field_in(&Source::Path(field.to_owned()), name);
+            let whole = path::field_in(&Source::Path(field.to_owned()), topic);
             whole.or_else(|| FieldPath::parse(field.trim_start_matches('/')))
         };
         let asked = |spec: &ChannelSpec| {
-            let path = path::field_in(&spec.source, name)?;
+            let path = path::field_in(&spec.source, topic)?;
             let beside = |field: &str| {
                 let own = within(field)?;
                 let nearer = path.enclosing().map(|message| FieldPath([message.0, own.0.clone()].concat()));
@@ -244,23 +207,20 @@ impl<'a> Topics<'a> {
                 time => beside(time).unwrap_or_default(),
             });
             let sensor = spec.rows.as_ref().and_then(|rows| within(&rows.column));
-            Some((AskedField { path, times, sensor }, false))
+            Some(AskedField { path, is_array: false, times, sensor })
         };
         file.channels.iter().filter_map(asked).collect()
     }
 
-    /// The leaves of a topic that there is room to list, and whether they are arrays.
-    fn listed(&mut self, topic: usize, leaves: &[Leaf]) -> Vec<(AskedField, bool)> {
-        let Topic { name, encoding, fields, .. } = &self.all[topic];
+    /// The leaves of a topic that there is room to list.
+    fn listed(&mut self, topic: &Topic, leaves: &[Leaf]) -> Vec<AskedField> {
         let mut listed = Vec::new();
         for leaf in leaves.iter().filter(|leaf| !leaf.is_about_others()) {
             let Some(path) = FieldPath::parse(&leaf.path) else { continue };
-            let is_known = fields.iter().any(|field| field.path == path);
+            let name_bytes = topic.name.len() + topic.encoding.len() + leaf.path.len();
             // The topic stands for its first field.
-            let is_first = listed.is_empty() && fields.is_empty();
-            let name_bytes = name.len() + encoding.len() + leaf.path.len();
-            if is_known || is_first || (listed.len() < MOST_LEAVES && self.room.takes(name_bytes)) {
-                listed.push((AskedField::plain(path), leaf.is_array));
+            if listed.is_empty() || (listed.len() < MOST_LEAVES && self.room.takes(name_bytes)) {
+                listed.push(AskedField { is_array: leaf.is_array, ..AskedField::plain(path) });
             } else {
                 self.room.fields_out += 1;
             }
@@ -280,7 +240,7 @@ impl<'a> Topics<'a> {
                 }
             }
         }
-        if !chunk.is_bad() && self.streams.iter().any(Stream::is_undecided) {
+        if !chunk.is_bad() && !self.undecided.is_empty() {
             let messages = chunk.records().filter(|(opcode, _)| *opcode == op::MESSAGE);
             messages.for_each(|(_, body)| self.look_at(body));
         }
@@ -292,29 +252,33 @@ impl<'a> Topics<'a> {
         const TREE_BYTES: u64 = 32;
         let Some(message) = Message::parse(body) else { return };
         let Some(&Some((at, _))) = self.by_channel.get(&message.channel) else { return };
-        if !self.streams[at].is_undecided() {
+        if !self.undecided.contains(&at) {
             return;
         }
-        let mut stream = std::mem::take(&mut self.streams[at]);
+        let mut topic = std::mem::take(&mut self.all[at]);
         let is_asked = matches!(self.asked, Asked::Sources(_));
         let is_large = message.data.len() as u64 > self.limits.part_bytes() / TREE_BYTES;
         if is_large && !is_asked {
-            stream.message_type = None;
-            self.all[stream.topic].unreadable = Some(format!(
+            topic.message_type = None;
+            topic.unreadable = Some(format!(
                 "its fields were not looked for: a message takes {} MiB; allow more with --max-memory",
                 message.data.len() >> 20
             ));
         } else {
-            let leaves = if is_large { Vec::new() } else { json::leaves(message.data) };
+            let json::Fields { leaves, has_records } =
+                if is_large { json::Fields::default() } else { json::Fields::of(message.data) };
             let has_signals = leaves.iter().any(|leaf| leaf.is_signal);
-            if !has_signals && json::holds_records(message.data) {
-                self.all[stream.topic].unreadable = Some(LISTS_OF_RECORDS.into());
+            if !has_signals && has_records {
+                topic.unreadable = Some(LISTS_OF_RECORDS.into());
             }
             if has_signals || is_asked {
-                self.prepare(&mut stream, leaves);
+                self.prepare(&mut topic, leaves);
             }
         }
-        self.streams[at] = stream;
+        if !topic.is_undecided() {
+            self.undecided.remove(&at);
+        }
+        self.all[at] = topic;
     }
 
     /// Takes a message into a part.
@@ -324,7 +288,7 @@ impl<'a> Topics<'a> {
     pub(super) fn take(&self, part: &mut Part, body: &[u8]) -> Result<(), &'static str> {
         let message = Message::parse(body).ok_or("that does not parse")?;
         if let Some((at, place)) = *self.by_channel.get(&message.channel).ok_or("whose channel is missing")? {
-            part.take(place, &self.streams[at], &message);
+            part.take(place, &self.all[at], &message);
         }
         Ok(())
     }
@@ -351,15 +315,19 @@ impl<'a> Topics<'a> {
     }
 
     /// The topics of the file, in its order, each with its channels and what their messages gave, one at
-    /// least.
+    /// least; of types without a message one that no other has on its topic.
     pub(super) fn finish(self, taken: Part) -> Vec<Channels> {
-        let mut topics: Vec<_> = self.all.into_iter().map(|topic| (topic, Vec::new())).collect();
+        let mut topics: Vec<Channels> = self.all.into_iter().map(|topic| (topic, Vec::new())).collect();
         for ((topic, number), mut gathered) in self.channels.into_iter().zip(taken.gathered) {
             gathered.settle();
             if gathered.messages > 0 {
                 topics[topic].1.push((number, gathered));
             }
         }
+        // First those with messages; what follows of the same name has none.
+        let mut names: HashSet<String> =
+            topics.iter().filter(|it| !it.1.is_empty()).map(|it| it.0.name.clone()).collect();
+        topics.retain(|(topic, channels)| !channels.is_empty() || names.insert(topic.name.clone()));
         for (_, channels) in topics.iter_mut().filter(|(_, channels)| channels.is_empty()) {
             channels.push((0, Gathered::default()));
         }

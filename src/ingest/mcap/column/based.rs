@@ -1,15 +1,17 @@
 //! What a column's messages gave, and what they say of its rate, to samples on a uniform base.
 
-use super::{Column, RawBlock, StatedRate, Timing, seconds_from};
+use super::{Column, StatedRate, seconds_from};
+use crate::data::ListedChannel;
 use crate::ingest::clock::{Claims, Refusal};
 use crate::ingest::shown;
 use crate::ingest::time_base::{self, Block, BlockContent, TimeBaseError, Uniform};
+use crate::numerics::as_f64;
 
 impl Column {
     /// The rate at which its samples came by the times of its messages, Hz.
     #[allow(clippy::cast_precision_loss, reason = "counts stay below 2^53")]
     fn told_hz(&self) -> f64 {
-        let before_last = self.blocks.iter().rev().skip(1).map(|block| block.count).sum::<usize>();
+        let before_last = self.counts.iter().rev().skip(1).sum::<usize>();
         self.span_ns().map_or(f64::NAN, |(from_ns, to_ns)| before_last as f64 / seconds_from(to_ns, from_ns))
     }
 
@@ -39,9 +41,8 @@ impl Column {
 
     /// Its blocks, times counted from `zero_ns`.
     fn blocks_from(&self, zero_ns: i64) -> Vec<Block> {
-        let block =
-            |block: &RawBlock| Block { start_s: seconds_from(block.time_ns, zero_ns), count: block.count };
-        self.blocks.iter().map(block).collect()
+        let each = self.times_ns.iter().zip(&self.counts);
+        each.map(|(&time_ns, &count)| Block { start_s: seconds_from(time_ns, zero_ns), count }).collect()
     }
 
     /// The samples on a uniform base, times counted from `zero_ns`; `cask_hz` overrides what the messages
@@ -55,7 +56,7 @@ impl Column {
         cask_hz: Option<f64>,
     ) -> Result<Uniform, TimeBaseError> {
         self.heeded()?;
-        if self.blocks.is_empty() {
+        if self.counts.is_empty() {
             // A rate in messages of single numbers is that of something else, such as blocks beside them.
             let times_s: Vec<f64> =
                 self.times_ns.iter().map(|&time_ns| seconds_from(time_ns, zero_ns)).collect();
@@ -65,28 +66,31 @@ impl Column {
         time_base::place_blocks(&self.blocks_from(zero_ns), &claims, self.samples)
     }
 
-    /// As [`Column::uniform`] as far as a listing shows it, which holds no samples of blocks.
+    /// Adds to a listing when its samples were taken, as [`Column::uniform`] would have them; of blocks it
+    /// needs no samples.
     ///
     /// # Errors
     /// As that.
-    pub(in super::super) fn timing(self, zero_ns: i64) -> Result<Timing, TimeBaseError> {
-        let Some(extent) = self.extent.as_ref().filter(|_| !self.blocks.is_empty()) else {
-            let uniform = self.uniform(zero_ns, None)?;
-            let (count, gaps) = (uniform.samples.len(), uniform.gaps.len());
-            return Ok(Timing {
-                start_s: uniform.start_s,
-                sample_rate_hz: uniform.sample_rate_hz,
-                count,
-                gaps,
-            });
+    pub(in super::super) fn list_times(
+        self,
+        zero_ns: i64,
+        listed: &mut ListedChannel,
+    ) -> Result<(), TimeBaseError> {
+        let (start_s, sample_rate_hz, count, gaps) = match &self.extent {
+            Some(extent) if !self.counts.is_empty() => {
+                let content = BlockContent { samples: &self.samples, digests: Some(&extent.digests) };
+                let laid = time_base::lay_blocks(&self.blocks_from(zero_ns), &self.claims(None)?, &content)?;
+                (laid.start_s, laid.sample_rate_hz, laid.count(), laid.gap_count() + extent.holes)
+            }
+            _ => {
+                let uniform = self.uniform(zero_ns, None)?;
+                (uniform.start_s, uniform.sample_rate_hz, uniform.samples.len(), uniform.gaps.len())
+            }
         };
-        let content = BlockContent { samples: &self.samples, digests: Some(&extent.digests) };
-        let laid = time_base::lay_blocks(&self.blocks_from(zero_ns), &self.claims(None)?, &content)?;
-        Ok(Timing {
-            start_s: laid.start_s,
-            sample_rate_hz: laid.sample_rate_hz,
-            count: laid.count(),
-            gaps: laid.gap_count() + extent.holes,
-        })
+        listed.sample_rate_hz = Some(sample_rate_hz);
+        listed.start_s = Some(start_s);
+        listed.duration_s = Some(as_f64(count - 1) / sample_rate_hz);
+        listed.gaps = Some(gaps as u64);
+        Ok(())
     }
 }

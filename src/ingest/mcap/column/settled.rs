@@ -19,7 +19,7 @@ impl Column {
         cask_hz: Option<f64>,
     ) -> Result<(), Refusal> {
         let Some(SentTimes { field, scale, mut each }) = self.ticks.take() else { return Ok(()) };
-        let (Some((from_ns, to_ns)), count) = (self.span_ns(), self.len()) else { return Ok(()) };
+        let (Some((from_ns, to_ns)), count) = (self.span_ns(), self.times_ns.len()) else { return Ok(()) };
         each.resize(count, f64::NAN);
         if !times::rise(&each) {
             self.stamps.bad = count as u64;
@@ -43,7 +43,6 @@ impl Column {
             (tick as i64).saturating_mul(unit_ns as i64).saturating_add(rest)
         };
         self.times_ns.iter_mut().zip(&each).for_each(|(time_ns, tick)| *time_ns = ns(*tick));
-        self.blocks.iter_mut().zip(&each).for_each(|(block, tick)| block.time_ns = ns(*tick));
         self.stamps = StampCounts { good: count as u64, bad: 0 };
         Ok(())
     }
@@ -53,12 +52,11 @@ impl Column {
     pub(in super::super) fn log_drift(&self) -> Option<Finding> {
         /// Fewer messages tell no pace.
         const FEWEST: usize = 16;
-        let &(_, log_from_ns) = self.logged.first().filter(|_| self.stamps.good == self.len() as u64)?;
-        let at_ns =
-            |place: usize| self.blocks.get(place).map_or_else(|| self.times_ns[place], |block| block.time_ns);
-        let from_ns = at_ns(self.logged[0].0);
+        let &(_, log_from_ns) =
+            self.logged.first().filter(|_| self.stamps.good == self.times_ns.len() as u64)?;
+        let from_ns = self.times_ns[self.logged[0].0];
         let late = |&(place, log_ns): &(usize, i64)| {
-            let stamp_s = seconds_from(at_ns(place), from_ns);
+            let stamp_s = seconds_from(self.times_ns[place], from_ns);
             (stamp_s, seconds_from(log_ns, log_from_ns) - stamp_s)
         };
         let points: Vec<(f64, f64)> = self.logged.iter().map(late).collect();
