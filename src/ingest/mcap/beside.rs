@@ -59,7 +59,7 @@ impl<'a> SaidBeside<'a> {
             Says::Turns => _ = self.turns.get_or_insert(number),
             Says::Sensor => _ = self.sensor.get_or_insert((number.to_string().into(), beside)),
             Says::Rate { meaning, level, unit } => {
-                let name = beside.field.rsplit('.').next().unwrap_or_default().into();
+                let name = beside.field.as_str().into();
                 let unit = match unit.and_then(|slot| slots.values.get(slot)) {
                     Some(Value::Text(unit)) => Some(unit.clone()),
                     _ => None,

@@ -18,7 +18,7 @@ const WIDE_BYTES: [usize; 2] = [2, 4];
 /// Decodes CDR messages by a plan.
 #[derive(Debug)]
 pub(super) struct Cdr {
-    plan: Plan,
+    root: Node,
     fields: Arc<[RosField]>,
     /// Whether a string of wide letters stands among them.
     has_wide_text: bool,
@@ -33,7 +33,7 @@ impl Cdr {
         let needed =
             fields.iter().rposition(|field| plan.root.field(&field.name).is_some()).map_or(0, |at| at + 1);
         let has_wide_text = fields[..needed].iter().any(|field| field.kind.has_wide_text());
-        Self { plan: plan.clone(), fields: fields.clone(), has_wide_text, needed }
+        Self { root: plan.root.clone(), fields: fields.clone(), has_wide_text, needed }
     }
 }
 
@@ -54,13 +54,12 @@ impl Decode for Cdr {
 
 impl Cdr {
     fn walk<Order: CdrEndian>(&self, body: &[u8], slots: &mut Slots) -> Result<(), String> {
-        let Plan { root, wants, .. } = &self.plan;
         let mut wide_bytes = WIDE_BYTES[0];
         if self.has_wide_text {
             // Writers differ in what a wide letter takes; the right width leaves nothing of the message but
             // what aligns its end.
             let end = |bytes: usize| {
-                let mut walk = CdrWalk::<Order>::new(body, wants, slots, bytes);
+                let mut walk = CdrWalk::<Order>::new(body, slots, bytes);
                 let is_whole = walk.fields(&self.fields, None).is_ok();
                 let end = walk.reader.position();
                 (is_whole && body.len() - end < ENCAPSULATION_BYTES).then_some((bytes, end))
@@ -72,7 +71,7 @@ impl Cdr {
             )?;
         }
         let needed = self.fields.get(..self.needed).unwrap_or_default();
-        let walked = CdrWalk::<Order>::new(body, wants, slots, wide_bytes).fields(needed, Some(root));
+        let walked = CdrWalk::<Order>::new(body, slots, wide_bytes).fields(needed, Some(&self.root));
         walked.map_err(|problem| problem.to_string())
     }
 }
@@ -112,15 +111,14 @@ impl From<re_cdr::Error> for Undecoded {
 /// A walk through one message, in the order of its fields.
 struct CdrWalk<'a, Order: CdrEndian> {
     reader: CdrReader<'a, Order>,
-    wants: &'a [Want],
     slots: &'a mut Slots,
     /// Of a letter of wide text.
     wide_bytes: usize,
 }
 
 impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
-    fn new(body: &'a [u8], wants: &'a [Want], slots: &'a mut Slots, wide_bytes: usize) -> Self {
-        Self { reader: CdrReader::new(body), wants, slots, wide_bytes }
+    fn new(body: &'a [u8], slots: &'a mut Slots, wide_bytes: usize) -> Self {
+        Self { reader: CdrReader::new(body), slots, wide_bytes }
     }
 
     fn fields(&mut self, fields: &[RosField], node: Option<&Node>) -> Result<(), Undecoded> {
@@ -135,7 +133,7 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
         match kind {
             Type::Plain(BuiltInType::String(_)) => {
                 let text = self.text()?;
-                if let Some(slot) = node.and_then(|node| node.slot(self.wants, Want::Text)) {
+                if let Some(slot) = node.and_then(|node| node.slot(Want::Text)) {
                     self.slots.set_text(slot, text);
                 }
                 Ok(())
@@ -149,7 +147,7 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
             Type::Array(element, length) => self.array(element, *length, node),
             Type::Plain(_) => {
                 let value = self.number(kind)?;
-                if let Some(slot) = node.and_then(|node| node.slot(self.wants, Want::Numbers)) {
+                if let Some(slot) = node.and_then(|node| node.slot(Want::Numbers)) {
                     self.slots.set(slot, Value::Number { value, is_narrow: kind.is_narrow() });
                 }
                 Ok(())
@@ -158,7 +156,7 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
     }
 
     fn message(&mut self, fields: &[RosField], node: Option<&Node>) -> Result<(), Undecoded> {
-        let slot = node.and_then(|node| node.slot(self.wants, Want::Stamp));
+        let slot = node.and_then(|node| node.slot(Want::Stamp));
         if let (Some(slot), [seconds, nanoseconds], true) = (slot, fields, is_time(fields)) {
             let (whole, part) = (self.number(&seconds.kind)?, self.number(&nanoseconds.kind)?);
             #[allow(clippy::cast_possible_truncation, reason = "both were 32-bit integers")]
@@ -185,7 +183,7 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
             return Ok(());
         };
         if count == 0 {
-            if let Some(slot) = node.and_then(|node| node.slot(self.wants, Want::Numbers)) {
+            if let Some(slot) = node.and_then(|node| node.slot(Want::Numbers)) {
                 self.slots.set(slot, Value::Array(Samples::F64(Vec::new())));
             }
             return Ok(());
@@ -196,14 +194,14 @@ impl<'a, Order: CdrEndian> CdrWalk<'a, Order> {
                 "{count} numbers are announced, and the message ends before them"
             )));
         }
-        let slot = node.and_then(|node| node.slot(self.wants, Want::Numbers));
+        let slot = node.and_then(|node| node.slot(Want::Numbers));
         let (Some(slot), Some(node)) = (slot, node) else {
             self.reader.read_bytes(count * bytes)?;
             return Ok(());
         };
         let samples = self.numbers(element, count)?;
         self.slots.set(slot, Value::Array(samples));
-        self.slots.pick(slot, &node.elements(self.wants));
+        self.slots.pick(slot, &node.elements());
         Ok(())
     }
 

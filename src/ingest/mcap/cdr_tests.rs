@@ -11,7 +11,7 @@ fn decoded(text: &str, field: &str, data: &[u8]) -> Result<(Value, Value), Strin
     let fields = ros_type::parse("my/msg/Top", text, &mut 20_000)?;
     let plan = Plan::new(&[AskedField::plain(FieldPath::parse(field).unwrap())], &[], |_| true);
     let mut slots = Slots::default();
-    slots.clear(plan.wants.len());
+    slots.clear(plan.count);
     Cdr::new(&plan, &fields.into()).decode(data, &mut slots)?;
     let stamp = slots.beside(&plan.fields[0]).stamp.cloned().unwrap_or_default();
     Ok((slots.samples(&plan.fields[0]), stamp))

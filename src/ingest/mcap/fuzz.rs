@@ -13,7 +13,7 @@ fn decode<D: Decode>(leaves: &[Leaf], decoder: impl FnOnce(&Plan) -> D, message:
     let asked = leaves.iter().filter_map(|leaf| FieldPath::parse(&leaf.path)).map(AskedField::plain);
     let plan = Plan::new(&asked.collect::<Vec<_>>(), leaves, |_| true);
     let mut slots = Slots::default();
-    slots.clear(plan.wants.len());
+    slots.clear(plan.count);
     let _ = decoder(&plan).decode(message, &mut slots);
 }
 

@@ -22,19 +22,19 @@ const DEEPEST: usize = 8;
 /// Decodes JSON messages by a plan.
 #[derive(Debug)]
 pub(super) struct Json {
-    plan: Plan,
+    root: Node,
 }
 
 impl Json {
     /// For the fields of `plan`; JSON needs no schema.
     pub(super) fn new(plan: &Plan) -> Self {
-        Self { plan: plan.clone() }
+        Self { root: plan.root.clone() }
     }
 
     fn walk(&self, text: &[u8], slots: &mut Slots) -> Result<(), String> {
-        let mut walk = JsonWalk { wants: &self.plan.wants, slots };
+        let mut walk = JsonWalk { slots };
         let from = past_spaces(text, 0);
-        match walk.value(&self.plan.root, &text[from..]) {
+        match walk.value(&self.root, &text[from..]) {
             Ok(used) if past_spaces(text, from + used) == text.len() => Ok(()),
             Err(WalkFault::Value(problem)) => Err(problem),
             // The grammar says where a text ceases to be JSON.
@@ -51,7 +51,7 @@ impl Decode for Json {
         let Err(problem) = self.walk(data, slots) else { return Ok(()) };
         // Python writes NaN and Infinity, which JSON does not know.
         let Some(repaired) = without_bare_nan(data) else { return Err(problem) };
-        slots.clear(self.plan.wants.len());
+        slots.clear(slots.values.len());
         self.walk(&repaired, slots)
     }
 }
@@ -99,15 +99,14 @@ impl From<serde_json::Error> for WalkFault {
 
 /// A walk along a message: what stands at a place goes into the slots of its node.
 struct JsonWalk<'a> {
-    wants: &'a [Want],
     slots: &'a mut Slots,
 }
 
 impl JsonWalk<'_> {
     /// The value at the start of `text`; how many bytes it takes.
     fn value(&mut self, node: &Node, text: &[u8]) -> Result<usize, WalkFault> {
-        let numbers = node.slot(self.wants, Want::Numbers);
-        if text.first() == Some(&b'{') && node.slot(self.wants, Want::Stamp).is_none() {
+        let numbers = node.slot(Want::Numbers);
+        if text.first() == Some(&b'{') && node.slot(Want::Stamp).is_none() {
             return self.object(node, text);
         }
         if let (Some(slot), Some((samples, used))) = (numbers, plain_numbers(text)) {
@@ -147,13 +146,13 @@ impl JsonWalk<'_> {
 
     fn array(&mut self, node: &Node, slot: usize, samples: Vec<f64>) {
         self.slots.set(slot, Value::Array(Samples::F64(samples)));
-        self.slots.pick(slot, &node.elements(self.wants));
+        self.slots.pick(slot, &node.elements());
     }
 
     /// A value other than a run of plain numbers: one, words, a time, or what holds such at places of their
     /// own.
     fn take(&mut self, node: &Node, value: &Tree) -> Result<(), WalkFault> {
-        match (node.slot(self.wants, Want::Numbers), value) {
+        match (node.slot(Want::Numbers), value) {
             (Some(slot), Tree::Array(elements)) => {
                 let no_number = |element| format!("{element} stands in an array where a number should");
                 let sample = |element| number(element).ok_or_else(|| WalkFault::Value(no_number(element)));
@@ -168,10 +167,10 @@ impl JsonWalk<'_> {
             }
             (None, _) => {}
         }
-        if let (Some(slot), Tree::String(text)) = (node.slot(self.wants, Want::Text), value) {
+        if let (Some(slot), Tree::String(text)) = (node.slot(Want::Text), value) {
             self.slots.set_text(slot, text.as_bytes());
         }
-        if let (Some(slot), Some(stamp)) = (node.slot(self.wants, Want::Stamp), stamp(value)) {
+        if let (Some(slot), Some(stamp)) = (node.slot(Want::Stamp), stamp(value)) {
             self.slots.set(slot, stamp);
             return Ok(());
         }

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 fn decoded(field: &str, text: &str) -> Result<(Value, Value, Option<f64>, Option<String>), String> {
     let plan = Plan::new(&[AskedField::plain(FieldPath::parse(field).unwrap())], &[], |_| true);
     let mut slots = Slots::default();
-    slots.clear(plan.wants.len());
+    slots.clear(plan.count);
     Json::new(&plan).decode(text.as_bytes(), &mut slots)?;
     let field = &plan.fields[0];
     let said = slots.beside(field);
@@ -53,7 +53,7 @@ fn one_element_and_the_whole_array_can_both_be_wanted() {
         |_| true,
     );
     let mut slots = Slots::default();
-    slots.clear(plan.wants.len());
+    slots.clear(plan.count);
     Json::new(&plan).decode(br#"{"s":[7,8]}"#, &mut slots).unwrap();
     assert_eq!(slots.samples(&plan.fields[0]), Value::Number { value: 8.0, is_narrow: false });
     assert_eq!(slots.samples(&plan.fields[1]), Value::Array(Samples::F64(vec![7.0, 8.0])));
@@ -78,7 +78,7 @@ fn both(text: &str) -> (Option<String>, Option<String>) {
         |_| true,
     );
     let mut slots = Slots::default();
-    slots.clear(plan.wants.len());
+    slots.clear(plan.count);
     let walked = Json::new(&plan).walk(text.as_bytes(), &mut slots).ok();
     let values: Vec<Value> = plan.fields.iter().map(|target| slots.samples(target)).collect();
     let of_tree = serde_json::from_str::<Tree>(text).ok().map(|tree| {

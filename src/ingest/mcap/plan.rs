@@ -43,8 +43,8 @@ pub(super) enum Want {
 /// A place in the tree of wanted fields.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Node {
-    /// Slots that are filled here.
-    pub(super) slots: Vec<usize>,
+    /// The slots that are filled here, one for each [`Want`].
+    slots: [Option<usize>; 3],
     /// What lies below.
     pub(super) children: Vec<(Step, Node)>,
 }
@@ -69,16 +69,16 @@ impl Node {
     }
 
     /// The slot of this place that takes `want`.
-    pub(super) fn slot(&self, wants: &[Want], want: Want) -> Option<usize> {
-        self.slots.iter().copied().find(|&slot| wants.get(slot) == Some(&want))
+    pub(super) fn slot(&self, want: Want) -> Option<usize> {
+        self.slots[want as usize]
     }
 
     /// The numbers wanted of an array here: index and slot.
-    pub(super) fn elements(&self, wants: &[Want]) -> Vec<(usize, usize)> {
+    pub(super) fn elements(&self) -> Vec<(usize, usize)> {
         self.children
             .iter()
             .filter_map(|(step, node)| match step {
-                Step::Index(index) => node.slot(wants, Want::Numbers).map(|slot| (*index, slot)),
+                Step::Index(index) => node.slot(Want::Numbers).map(|slot| (*index, slot)),
                 Step::Name(_) => None,
             })
             .collect()
@@ -127,7 +127,7 @@ pub(super) enum Says {
 pub(super) struct Beside {
     pub(super) slot: usize,
     pub(super) says: Says,
-    /// Its path in the message.
+    /// Its path in the message; of a stamp, a unit or a rate its name alone.
     pub(super) field: String,
 }
 
@@ -206,8 +206,8 @@ impl StatedRate {
 #[derive(Debug, Default, Clone)]
 pub(super) struct Plan {
     pub(super) root: Node,
-    /// What each slot takes.
-    pub(super) wants: Vec<Want>,
+    /// How many slots there are.
+    pub(super) count: usize,
     /// What is asked for, in the order given.
     pub(super) fields: Vec<Field>,
 }
@@ -215,15 +215,11 @@ pub(super) struct Plan {
 impl Plan {
     /// The slot of a field.
     pub(super) fn slot(&mut self, path: &FieldPath, want: Want) -> usize {
-        let node = self.root.at(path);
-        let wants = &self.wants;
-        if let Some(slot) = node.slots.iter().copied().find(|&slot| wants.get(slot) == Some(&want)) {
-            return slot;
-        }
-        let slot = self.wants.len();
-        node.slots.push(slot);
-        self.wants.push(want);
-        slot
+        let slot = &mut self.root.at(path).slots[want as usize];
+        *slot.get_or_insert_with(|| {
+            self.count += 1;
+            self.count - 1
+        })
     }
 }
 

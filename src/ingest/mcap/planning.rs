@@ -6,6 +6,9 @@ use crate::ingest::hdf5::names::{AttributeRole, role};
 use crate::ingest::times::Scale;
 use crate::ingest::vocabulary::{self, Meaning};
 
+/// So many fields are heeded for one signal besides stamps, units and rates: no message says more of its
+/// samples.
+const MOST_BESIDE: usize = 32;
 /// So many fields of a message type are heeded: no sensor's message says more of its samples.
 const MOST_TELLING: usize = 64;
 
@@ -54,8 +57,13 @@ impl Field {
     fn say(&mut self, plan: &mut Plan, path: &FieldPath, (want, says): (Want, Says)) {
         let slot = plan.slot(path, want);
         let is_new = self.beside.iter().all(|known| (known.slot, known.says) != (slot, says));
-        if is_new {
-            self.beside.push(Beside { slot, says, field: path.to_string() });
+        // The paths of others are said in refusals.
+        let has_path = |says: Says| !matches!(says, Says::Stamp | Says::Unit | Says::Rate { .. });
+        let with_path = self.beside.iter().filter(|known| has_path(known.says)).count();
+        if is_new && (!has_path(says) || with_path < MOST_BESIDE) {
+            let name = || path.last_name().unwrap_or_default().to_owned();
+            let field = if has_path(says) { path.to_string() } else { name() };
+            self.beside.push(Beside { slot, says, field });
         }
     }
 

@@ -109,17 +109,17 @@ enum Action {
 impl Protobuf {
     /// For the fields of `plan` in messages of type `message`; fields that it lacks stay missing.
     pub(super) fn new(plan: &Plan, message: &MessageDescriptor) -> Self {
-        Self { root: compile(&plan.root, &plan.wants, message) }
+        Self { root: compile(&plan.root, message) }
     }
 }
 
-fn compile(node: &Node, wants: &[Want], message: &MessageDescriptor) -> ProtobufMessage {
+fn compile(node: &Node, message: &MessageDescriptor) -> ProtobufMessage {
     let mut compiled = ProtobufMessage::default();
     for field in message.fields().filter(|field| !field.is_map()) {
         let Some(child) = node.field(field.name()).or_else(|| node.field(field.json_name())) else {
             continue;
         };
-        if let Some(action) = action(child, wants, &field) {
+        if let Some(action) = action(child, &field) {
             match &action {
                 Action::Numbers { slot, .. } if !field.is_list() && !field.supports_presence() => {
                     compiled.defaults.push((*slot, number(0.0, &field.kind())));
@@ -134,23 +134,23 @@ fn compile(node: &Node, wants: &[Want], message: &MessageDescriptor) -> Protobuf
     compiled
 }
 
-fn action(child: &Node, wants: &[Want], field: &FieldDescriptor) -> Option<Action> {
+fn action(child: &Node, field: &FieldDescriptor) -> Option<Action> {
     match field.kind() {
         Kind::Message(inner) if field.is_list() => {
             let elements = child.children.iter().filter_map(|(step, node)| match step {
-                super::path::Step::Index(index) => Some((*index, compile(node, wants, &inner))),
+                super::path::Step::Index(index) => Some((*index, compile(node, &inner))),
                 super::path::Step::Name(_) => None,
             });
             Some(Action::Elements(elements.collect()))
         }
-        Kind::Message(inner) => match (child.slot(wants, Want::Stamp), seconds_and_nanoseconds(&inner)) {
+        Kind::Message(inner) => match (child.slot(Want::Stamp), seconds_and_nanoseconds(&inner)) {
             (Some(slot), Some((seconds, nanoseconds))) => Some(Action::Stamp { slot, seconds, nanoseconds }),
-            _ => Some(Action::Descend(compile(child, wants, &inner))),
+            _ => Some(Action::Descend(compile(child, &inner))),
         },
-        Kind::String => child.slot(wants, Want::Text).map(|slot| Action::Text { slot }),
-        kind if is_number(&kind) => child
-            .slot(wants, Want::Numbers)
-            .map(|slot| Action::Numbers { slot, elements: child.elements(wants) }),
+        Kind::String => child.slot(Want::Text).map(|slot| Action::Text { slot }),
+        kind if is_number(&kind) => {
+            child.slot(Want::Numbers).map(|slot| Action::Numbers { slot, elements: child.elements() })
+        }
         _ => None,
     }
 }

@@ -19,7 +19,7 @@ fn decoded(
     let message = message_type("dropcheck.AccelerationBlock", &block_descriptors(is_packed))?;
     let plan = Plan::new(&[AskedField::plain(FieldPath::parse(field).unwrap())], &[], |_| true);
     let mut slots = Slots::default();
-    slots.clear(plan.wants.len());
+    slots.clear(plan.count);
     Protobuf::new(&plan, &message).decode(data, &mut slots)?;
     let field = &plan.fields[0];
     let said = slots.beside(field);

@@ -97,7 +97,7 @@ impl Gathered {
     fn take(&mut self, topic: &Topic, message: &Message, slots: &mut Slots, is_listed: bool) {
         self.messages += 1;
         let Some(decoder) = &topic.decoder else { return };
-        slots.clear(topic.plan.wants.len());
+        slots.clear(topic.plan.count);
         if let Err(problem) = decoder.decode(message.data, slots) {
             self.malformed += 1;
             let is_packed = message.data.starts_with(&[0x28, 0xb5, 0x2f, 0xfd]);
