@@ -1,7 +1,6 @@
 //! An analysis to the document that the terminal and `report.html` show.
 
 use super::document::{Chapter, ChapterPart, Fact, Frame, PartContent, ReportDocument, Tone};
-use super::grid::STANDARD_GRAVITY_M_S2;
 use super::impacts::impacts;
 use super::medium::{Medium, Words};
 use super::prediction::prediction_columns;
@@ -17,8 +16,8 @@ use super::text::{
 };
 use super::words::{KEPT_SENTENCE, OVER_SENTENCE, contact_words};
 use crate::data::{
-    Analysis, CaskFile, DropResult, Estimate, Finding, FlightRegime, IssueCode, Prediction, Severity,
-    TestRecord, Verdict,
+    Analysis, CaskFile, DropResult, Estimate, Finding, FlightRegime, IssueCode, Prediction,
+    STANDARD_GRAVITY_M_S2, Severity, TestRecord, Verdict,
 };
 
 /// Findings that take away what the first impact would give.

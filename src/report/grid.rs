@@ -1,7 +1,6 @@
 //! Curves on grids of their own to values at any time.
 
-pub(super) use crate::data::STANDARD_GRAVITY_M_S2;
-use crate::data::{ChannelCurve, Curves, Events, MotionCurve};
+use crate::data::{ChannelCurve, Curves, Events, MotionCurve, STANDARD_GRAVITY_M_S2};
 
 /// One quantity of a curve: its name with its unit, its values, and what makes that unit of them.
 pub(super) struct CurveSeries<'a> {

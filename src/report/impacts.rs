@@ -1,12 +1,14 @@
 //! Both impacts to the chapter that tabulates them: in short on a terminal, one table per impact on a page.
 
 use super::document::{Chapter, ChapterPart, PartContent};
-use super::grid::STANDARD_GRAVITY_M_S2;
 use super::medium::Medium;
 use super::rounding::{MISSING, fixed, interval, pair, plain};
 use super::table::ReportTable;
 use super::text::distinct;
-use crate::data::{ChannelPeak, DropResult, End, Estimate, ImpactTable, IssueCode, RigidBodyDeceleration};
+use crate::data::{
+    ChannelPeak, DropResult, End, Estimate, ImpactTable, IssueCode, RigidBodyDeceleration,
+    STANDARD_GRAVITY_M_S2,
+};
 
 /// A number of an impact: its name, unit and factor to it, and whether a terminal shows it.
 struct ImpactRow {

@@ -1,11 +1,11 @@
 //! Accelerations (Fig. 12), velocities (Fig. 13), motion and spectra to panels.
 
-use super::super::grid::{STANDARD_GRAVITY_M_S2, named_events};
+use super::super::grid::named_events;
 use super::super::spectrum;
 use super::super::text::json_word;
 use super::draw::{Picture, Plate};
 use super::panel::{self, COLOURS, Colour, Curve, Dash, Mark, Panel, PanelAxis};
-use crate::data::{Analysis, Axis, ChannelCurve, End, Mode};
+use crate::data::{Analysis, Axis, ChannelCurve, End, Mode, STANDARD_GRAVITY_M_S2};
 use std::ops::Range;
 
 const TIME_LABEL: &str = "time from the recording's first sample, ms";

@@ -48,14 +48,14 @@ fn rows(panel: &Panel, width: f64) -> Vec<Vec<Entry<'_>>> {
     for (key, label) in lines.chain(fills).chain(points) {
         let Some(label) = label.map(printable) else { continue };
         let takes = SAMPLE + width_of(&label, 13.0) + 26.0;
-        if takes > left_over && !(rows.len() > 1 && rows.last().is_some_and(Vec::is_empty)) {
+        if takes > left_over {
             rows.push(Vec::new());
             left_over = limit - LEFT;
         }
         left_over -= takes;
-        rows.last_mut()
-            .into_iter()
-            .for_each(|row| row.push(Entry { key, label: label.clone(), takes, left: 0.0 }));
+        if let Some(row) = rows.last_mut() {
+            row.push(Entry { key, label, takes, left: 0.0 });
+        }
     }
     for row in &mut rows {
         let mut left = limit + 26.0 - row.iter().map(|entry| entry.takes).sum::<f64>();

@@ -14,11 +14,11 @@ const PARTS: f64 = 64.0;
 /// The panels with lines on linear axes, as JSON; empty where there is none.
 pub(super) fn numbers(panels: &[&Panel]) -> String {
     let all: Vec<Value> =
-        panels.iter().filter(|panel| !panel.lines.is_empty()).map(|panel| of(panel)).collect();
+        panels.iter().filter(|panel| !panel.lines.is_empty()).map(|panel| of_panel(panel)).collect();
     if all.is_empty() { String::new() } else { Value::from(all).to_string().replace('<', "\\u003c") }
 }
 
-fn of(panel: &Panel) -> Value {
+fn of_panel(panel: &Panel) -> Value {
     let range = panel.x_range();
     let column = (range.end - range.start) / COLUMNS;
     let lines: Vec<Value> = panel.lines.iter().map(|line| of_line(line, range.start, column)).collect();

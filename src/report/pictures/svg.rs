@@ -104,8 +104,8 @@ fn escaped(text: &str) -> String {
     printable(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-fn opacity(of: &str, share: f64) -> String {
-    if share < 1.0 { format!(" {of}-opacity=\"{share}\"") } else { String::new() }
+fn opacity(kind: &str, share: f64) -> String {
+    if share < 1.0 { format!(" {kind}-opacity=\"{share}\"") } else { String::new() }
 }
 
 /// Points as whole units; what lies far outside of every picture need not be far.
