@@ -17,6 +17,7 @@ mod hdf5_room;
 mod house;
 mod impacts;
 mod layouts;
+mod moved;
 mod odd;
 mod predict_command;
 mod properties;
