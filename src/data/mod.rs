@@ -6,6 +6,8 @@ mod cask;
 mod channel;
 mod curves;
 mod estimate;
+#[cfg(test)]
+pub(crate) mod example;
 mod finding;
 mod flight;
 mod held;

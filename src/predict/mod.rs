@@ -91,6 +91,7 @@ mod tests {
     use super::impact::strike_first_end;
     use super::*;
     use crate::data::FlightRegime;
+    use crate::data::example::anf18;
     use crate::numerics::root::first_root;
 
     const V0_M_S: f64 = 13.288_340_754_210_061; // √(2 · 9.81 · 9)
@@ -100,26 +101,7 @@ mod tests {
     }
 
     fn rod(length_m: f64) -> Body {
-        Body {
-            model: BodyModel::Rod,
-            mass_kg: 1000.0,
-            length_m,
-            height_m: 0.0,
-            cog_m: length_m / 2.0,
-            inertia_kg_m2: 1000.0 * length_m.powi(2) / 12.0,
-        }
-    }
-
-    fn anf18() -> Body {
-        let (m, l, h) = (4466.0, 5.512, 0.792);
-        Body {
-            model: BodyModel::Body,
-            mass_kg: m,
-            length_m: l,
-            height_m: h,
-            cog_m: l / 2.0,
-            inertia_kg_m2: m * (l * l + h * h) / 12.0,
-        }
+        thin_rod(1000.0, length_m)
     }
 
     fn speed(body: &Body, angle_deg: f64, contact: Contact, k: f64) -> f64 {
