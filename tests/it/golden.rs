@@ -3,12 +3,8 @@
 //! `BLESS=1 cargo test --test it golden` writes the files anew; read the difference before committing it.
 
 use crate::moved;
-use std::path::Path;
+use crate::run::root;
 use std::process::Command;
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 /// Runs `analyze` in the repository's folder, so that paths read as a user would type them.
 fn analyze(stem: &str, extension: &str, more: &[&str]) -> String {

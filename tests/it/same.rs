@@ -7,7 +7,7 @@
 //! the tables anew and shows the same.
 
 use crate::moved::{self, is_renewed};
-use crate::run::{analyze, dropcheck, fixture, fixtures};
+use crate::run::{analyze, dropcheck, fixture, fixtures, words};
 use crate::stored::stored;
 use dropcheck::ingest::{self, IngestError};
 use dropcheck::lab::data::SceneNumber;
@@ -244,8 +244,7 @@ fn the_fixtures_by_the_program() {
         .filter(is_recording)
         .map(|recording| {
             let cask = recording.with_extension("toml");
-            let listed =
-                dropcheck(["inspect".as_ref(), recording.as_os_str(), "--json".as_ref(), "-".as_ref()]);
+            let listed = dropcheck(words!["inspect", recording, "--json", "-"]);
             let found = analyze(recording, &cask);
             let [result, listing] =
                 [found, listed].map(|answer| placeless(&(answer.stdout + &answer.stderr), recording, &cask));
@@ -348,7 +347,7 @@ fn a_tenth_of_the_scenes_in_every_format() {
 }
 
 #[test]
-#[ignore = "takes minutes; with --release one"]
+#[ignore = "2,400 analyses: .ci/long"]
 fn every_scene_in_every_format() {
     hold("scenes", &scenes(1));
 }
