@@ -58,12 +58,14 @@ pub fn cask_file(kind: Kind) -> CaskFile {
     };
     let channel = |name: &str, end: &str, position_m: f64| {
         format!(
-            "[[channel]]\nname = \"{name}\"\nend = \"{end}\"\naxis = \"transverse\"\nsource = \"{}\"\nunit = \"g\"\nposition_m = {position_m}\n",
+            "[[channel]]\nname = \"{name}\"\nend = \"{end}\"\naxis = \"transverse\"\n\
+             source = \"{}\"\nunit = \"g\"\nposition_m = {position_m}\n",
             source(name)
         )
     };
     let text = format!(
-        "[cask]\nname = \"bench\"\nmass_kg = 4466.0\nlength_m = 5.5\n[drop]\nheight_m = 9.0\nangle_deg = 15.0\n{}{}",
+        "[cask]\nname = \"bench\"\nmass_kg = 4466.0\nlength_m = 5.5\n\
+         [drop]\nheight_m = 9.0\nangle_deg = 15.0\n{}{}",
         channel("a1", "first", 0.15),
         channel("a2", "second", 5.35)
     );

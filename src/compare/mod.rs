@@ -239,7 +239,7 @@ fn reason(taken: &ModelCandidate, candidates: &[ModelCandidate]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Cask, Estimate, FlightRegime};
+    use crate::data::{Estimate, FlightRegime, example};
 
     fn quantities(speed_m_s: f64) -> Quantities {
         let exactly = |value, unit| Estimate::new(value, 0.0, unit);
@@ -254,16 +254,7 @@ mod tests {
     }
 
     fn file() -> CaskFile {
-        let cask = Cask {
-            name: "C".into(),
-            mass_kg: 1000.0,
-            length_m: 5.0,
-            height_m: 0.6,
-            width_m: None,
-            cog_m: 2.5,
-            inertia_kg_m2: 2100.0,
-            is_body: true,
-        };
+        let cask = example::cask(1000.0, 5.0, 0.6);
         CaskFile::plain(
             cask,
             Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, 0.26) },
@@ -294,14 +285,7 @@ mod tests {
             regime: FlightRegime::Free,
             closed_form_speed_m_s: None,
         };
-        let body = Body {
-            model: BodyModel::Body,
-            mass_kg: 1.0,
-            length_m: 5.0,
-            height_m: 0.5,
-            cog_m: 2.5,
-            inertia_kg_m2: 1.0,
-        };
+        let body = example::body(1.0, 5.0, 0.5);
         let (choice, comparison) =
             compare(&[body, body], &file(), &quantities(measured_m_s), &predict).expect("two models");
         (choice.name, comparison.expect("both speeds").agrees)

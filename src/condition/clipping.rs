@@ -153,28 +153,10 @@ fn is_flat_top(force: &[f64], span: Span, band: f64, step: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, Coupling, End, Samples};
+    use crate::data::example::{self, noise};
 
     fn channel(full_scale: Option<f64>) -> Channel {
-        Channel {
-            name: "A1".into(),
-            end: End::First,
-            axis: Axis::Transverse,
-            source: "a".into(),
-            position_m: 0.0,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: 1e4,
-            samples: Samples::F64(vec![]),
-            scale_m_s2: 9.806_65,
-            unit: "g".into(),
-            unit_origin: "cask file",
-            is_unit_recorded: false,
-            full_scale,
-            gaps: vec![],
-            time_jitter_s: 0.0,
-            coupling: Coupling::Dc,
-        }
+        Channel { scale_m_s2: 9.806_65, unit: "g".into(), full_scale, ..example::channel(vec![]) }
     }
 
     fn pulse(limit: f64) -> Vec<f64> {
@@ -201,7 +183,6 @@ mod tests {
     /// Quiet, a half sine with ringing of a fifth of it and the ringing that stays, with noise of less than a
     /// step, as a converter of so many bits over so many peaks writes it; the pulse has `length` samples.
     fn converted(bits: i32, range: f64, length: u32, seed: u64) -> Vec<f64> {
-        use super::super::tests::noise;
         use std::f64::consts::PI;
         let codes = 2_f64.powi(bits - 1);
         let step = 4000.0 * range / codes;
@@ -292,7 +273,6 @@ mod tests {
 
     /// 100 samples of free fall and a pulse cut at 3000 m/s², with noise before the limit and after it.
     fn limited(before: f64, after: f64) -> Vec<f64> {
-        use super::super::tests::noise;
         let shape = |i: u32| {
             if i < 100 { 0.0 } else { 4000.0 * (f64::from(i - 100) / 200.0 * std::f64::consts::PI).sin() }
         };
@@ -301,7 +281,6 @@ mod tests {
 
     #[test]
     fn a_force_that_stays_level_keeps_its_noise_and_a_limit_does_not() {
-        use super::super::tests::noise;
         let crushing: Vec<f64> =
             limited(0.0, 0.0).iter().zip(0..).map(|(f, i)| f + 5.0 * noise(i, 3)).collect();
         assert!(clipped(&channel(None), &crushing, 5.0, 100).is_empty());

@@ -150,9 +150,10 @@ fn bridged_m_s(signal: &Signal, span: Span) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{noise, signal};
+    use super::super::tests::signal;
     use super::*;
     use crate::data::FindingKind;
+    use crate::data::example::noise;
 
     /// 50 ms of free fall and a half sine of 40 ms at 10 kHz, noise of 1 m/s².
     fn pulse() -> Signal {

@@ -153,9 +153,10 @@ fn left_m_s(lines: &[Sinusoid], length_s: f64, swing: &impl Fn(&Sinusoid, f64) -
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{noise, signal};
+    use super::super::tests::signal;
     use super::*;
     use crate::data::FindingKind;
+    use crate::data::example::noise;
 
     /// 0.2 s of free fall and 0.1 s after it at 10 kHz, noise of 2 m/s², with this beside it.
     fn channel(beside: impl Fn(f64) -> f64, seed: u64) -> Signal {

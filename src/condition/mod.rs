@@ -147,40 +147,11 @@ fn missing(force: &[f64]) -> Vec<Span> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, End};
-
-    /// Nearly normal noise of standard deviation 1: a sum of hashes.
-    pub(super) fn noise(i: u32, seed: u64) -> f64 {
-        let hash = |n: u64| {
-            let mut x = (u64::from(i) + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15)
-                ^ (4 * seed + n + 1).wrapping_mul(0xD1B5_4A32_D192_ED03);
-            x ^= x >> 32;
-            x = x.wrapping_mul(0xD6E8_FEB8_6659_FD93);
-            x ^= x >> 32;
-            f64::from(u32::try_from(x >> 32).unwrap_or(0)) / f64::from(u32::MAX) - 0.5
-        };
-        (0..4).map(hash).sum::<f64>() * 3.0_f64.sqrt()
-    }
+    use crate::data::example;
 
     /// A transverse channel of the first end at 10 kHz.
     pub(super) fn signal(force_m_s2: Vec<f64>) -> Signal {
-        Signal {
-            name: "A1".into(),
-            end: End::First,
-            axis: Axis::Transverse,
-            position_m: 0.0,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: 1e4,
-            force_m_s2,
-            removed_offset_m_s2: 0.0,
-            u_offset_m_s2: 0.0,
-            noise_m_s2: 1.0,
-            noise_spectrum: vec![],
-            free_fall_s: 0.0,
-            clipped: vec![],
-            gaps: vec![],
-        }
+        Signal { noise_m_s2: 1.0, ..example::signal(1e4, force_m_s2) }
     }
 
     #[test]

@@ -159,9 +159,10 @@ fn drift(name: &str, quiet: &[f64], (from_s, to_s): (f64, f64)) -> Option<Findin
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{noise, signal};
+    use super::super::tests::signal;
     use super::*;
     use crate::data::FindingKind;
+    use crate::data::example::noise;
 
     /// 0.2 s of free fall and 0.1 s after it at 10 kHz: an offset of 3 m/s², noise of 2 m/s², and a slope.
     fn channel(slope: f64, seed: u64) -> Signal {

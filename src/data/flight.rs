@@ -164,18 +164,14 @@ impl FlightFit {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::example;
 
     /// A flight of so many seconds with undamped modes.
     fn flight(length_s: f64, frequencies_hz: &[f64]) -> FlightFit {
         let mode = |&frequency_hz: &f64| Mode { frequency_hz, damping: 0.0, amplitude_m_s: 1.0 };
         FlightFit {
-            from_s: 1.0,
-            to_s: 1.0 + length_s,
-            plateaus: vec![],
             modes: frequencies_hz.iter().map(mode).collect(),
-            drift: false,
-            candidates: vec![],
-            strike: None,
+            ..example::flight(1.0, 1.0 + length_s, vec![])
         }
     }
 
@@ -189,35 +185,11 @@ mod tests {
 
     #[test]
     fn a_slow_swing_of_one_end_is_no_mode() {
-        let signal = |end| Signal {
-            name: "A".into(),
-            end,
-            axis: Axis::Transverse,
-            position_m: 0.0,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: 1e4,
-            force_m_s2: vec![],
-            removed_offset_m_s2: 0.0,
-            u_offset_m_s2: 0.0,
-            noise_m_s2: 0.0,
-            noise_spectrum: vec![],
-            free_fall_s: 0.0,
-            clipped: vec![],
-            gaps: vec![],
-        };
+        let signal = |end| Signal { end, ..example::signal(1e4, vec![]) };
         let signals = [signal(End::First), signal(End::Second)];
         let is_bend = |length_s: f64, frequency_hz: f64, second_m_s: f64| {
-            let plateau = |size_m_s: f64| Plateau {
-                channel: "A".into(),
-                velocity_step_m_s: 0.0,
-                u_m_s: 0.0,
-                zero_shift_m_s2: 0.0,
-                u_zero_shift_m_s2: 0.0,
-                residual_m_s: 0.0,
-                ringing_m_s: vec![(0.0, size_m_s)],
-                late_mismatch_m_s: None,
-            };
+            let plateau =
+                |size_m_s: f64| Plateau { ringing_m_s: vec![(0.0, size_m_s)], ..example::plateau("A", 0.0) };
             let plateaus = vec![plateau(1.0), plateau(second_m_s)];
             FlightFit { plateaus, ..flight(length_s, &[frequency_hz]) }.is_bend(0, &signals)
         };

@@ -7,6 +7,8 @@ mod cask_file;
 mod channel;
 mod curves;
 mod estimate;
+#[cfg(test)]
+pub(crate) mod example;
 mod finding;
 mod flight;
 mod held;

@@ -183,7 +183,7 @@ fn block_means(channel: &Channel) -> Option<(f64, Vec<f64>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Coupling, RecordingFormat, Samples};
+    use crate::data::{RecordingFormat, Samples, example};
 
     /// A channel of 6 s at 10 kHz that is struck at the given times, s, by pulses of 5 ms that change its
     /// velocity by so much, m/s.
@@ -192,25 +192,7 @@ mod tests {
             let at = |&&(from_s, _): &&(f64, f64)| (from_s..from_s + 5e-3).contains(&(f64::from(i) * 1e-4));
             struck.iter().find(at).map_or(0.0, |(_, change_m_s)| change_m_s / 5e-3)
         };
-        Channel {
-            name: "A".into(),
-            end,
-            axis: Axis::Transverse,
-            source: "a".into(),
-            position_m: 0.1,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: 1e4,
-            samples: Samples::F64((0..60_000).map(force).collect()),
-            scale_m_s2: 1.0,
-            unit: "m/s^2".into(),
-            unit_origin: "cask file",
-            is_unit_recorded: false,
-            full_scale: None,
-            gaps: vec![],
-            time_jitter_s: 0.0,
-            coupling: Coupling::Dc,
-        }
+        Channel { end, ..example::channel((0..60_000).map(force).collect()) }
     }
 
     /// 2 s of rest, a fall of 0.64 s and rest again at so many samples a second, between them an impact of 20

@@ -206,7 +206,7 @@ fn zero_of_line(points: &[(f64, f64)]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::Axis;
+    use crate::data::example;
     use std::f64::consts::PI;
 
     /// A half sine of 6 ms from 20.03 ms on, at L positive, at R later.
@@ -219,23 +219,7 @@ mod tests {
                 if (0.0..1.0).contains(&x) { peak * (PI * x).sin() } else { 0.0 }
             })
             .collect();
-        Signal {
-            name: "A".into(),
-            end,
-            axis: Axis::Transverse,
-            position_m: 0.1,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: rate,
-            force_m_s2,
-            removed_offset_m_s2: 0.0,
-            u_offset_m_s2: 0.0,
-            noise_m_s2: 0.1,
-            noise_spectrum: vec![],
-            free_fall_s: 0.25,
-            clipped: vec![],
-            gaps: vec![],
-        }
+        Signal { end, noise_m_s2: 0.1, free_fall_s: 0.25, ..example::signal(rate, force_m_s2) }
     }
 
     #[test]

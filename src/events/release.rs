@@ -260,7 +260,7 @@ impl<'a> Record<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Coupling, End, Samples};
+    use crate::data::example;
 
     const RATE_HZ: f64 = 10_000.0;
 
@@ -278,25 +278,7 @@ mod tests {
                 force(f64::from(i) / RATE_HZ) + f64::from(state) / f64::from(u32::MAX) - 0.5
             })
             .collect();
-        Channel {
-            name: "A".into(),
-            end: End::First,
-            axis: Axis::Transverse,
-            source: "a".into(),
-            position_m: 0.0,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: RATE_HZ,
-            samples: Samples::F64(samples),
-            scale_m_s2: 1.0,
-            unit: "m/s^2".into(),
-            unit_origin: "recording",
-            is_unit_recorded: false,
-            full_scale: None,
-            gaps: vec![],
-            time_jitter_s: 0.0,
-            coupling: Coupling::Dc,
-        }
+        Channel { sample_rate_hz: RATE_HZ, ..example::channel(samples) }
     }
 
     /// Rest to 1.5 s, fall to 1.9 s, then 2 g that decay until a hard stop at 2.1 s; all on an offset of 6

@@ -183,7 +183,7 @@ fn smoothed(force: &[f64], sample_rate_hz: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, End};
+    use crate::data::example;
     use std::f64::consts::{PI, TAU};
 
     /// A half sine of 6 ms from 20.03 ms on at 100 kHz, and behind it a seat that rings with a share of its
@@ -200,21 +200,9 @@ mod tests {
             }
         };
         Signal {
-            name: "A".into(),
-            end: End::First,
-            axis: Axis::Transverse,
-            position_m: 0.1,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: 1e5,
-            force_m_s2: (0..20_000).map(force).collect(),
-            removed_offset_m_s2: 0.0,
-            u_offset_m_s2: 0.0,
             noise_m_s2: 0.1,
-            noise_spectrum: vec![],
             free_fall_s: 0.25,
-            clipped: vec![],
-            gaps: vec![],
+            ..example::signal(1e5, (0..20_000).map(force).collect())
         }
     }
 

@@ -109,7 +109,7 @@ fn rounding_of_means(samples: &[f64], block: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{At, Axis, End, FindingKind, Span};
+    use crate::data::{FindingKind, Span, example};
     use std::f64::consts::{PI, TAU};
 
     /// Two modes that ring from 20 ms on, noise of ± 0.5, and half sines of 2 ms at these times, s, with this
@@ -129,40 +129,12 @@ mod tests {
             };
             mode(80.0, 300.0) + mode(230.0, 100.0) + noise(i) + at_s.iter().map(blow).sum::<f64>()
         };
-        Signal {
-            name: "A1".into(),
-            end: End::First,
-            axis: Axis::Transverse,
-            position_m: 0.1,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: 5e4,
-            force_m_s2: (0..15_000).map(force).collect(),
-            removed_offset_m_s2: 0.0,
-            u_offset_m_s2: 0.0,
-            noise_m_s2: 0.5,
-            noise_spectrum: vec![],
-            free_fall_s: 0.0,
-            clipped: vec![],
-            gaps: vec![],
-        }
+        Signal { noise_m_s2: 0.5, ..example::signal(5e4, (0..15_000).map(force).collect()) }
     }
 
     fn found(signal: &Signal, to_s: f64) -> Option<Finding> {
-        let flight = FlightFit {
-            from_s: 0.025,
-            to_s: 0.1,
-            plateaus: vec![],
-            modes: vec![],
-            drift: false,
-            candidates: vec![],
-            strike: None,
-        };
-        let events = Events {
-            first_contact: Some(At::exactly(0.02)),
-            slap_down: Some(At::exactly(to_s)),
-            ..Events::default()
-        };
+        let flight = example::flight(0.025, 0.1, vec![]);
+        let events = example::events(0.02, to_s);
         judge_blows(std::slice::from_ref(signal), &flight, &events, &[])
     }
 

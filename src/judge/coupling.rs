@@ -120,48 +120,23 @@ fn common_rate(trends: &[Trend]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, End, FindingKind};
+    use crate::data::{FindingKind, example};
 
     fn signal(name: &str) -> Signal {
-        Signal {
-            name: name.into(),
-            end: End::First,
-            axis: Axis::Transverse,
-            position_m: 0.0,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: 1e4,
-            force_m_s2: vec![],
-            removed_offset_m_s2: 0.0,
-            u_offset_m_s2: 0.0,
-            noise_m_s2: 0.0,
-            noise_spectrum: vec![],
-            free_fall_s: 0.25,
-            clipped: vec![],
-            gaps: vec![],
-        }
+        Signal { name: name.into(), free_fall_s: 0.25, ..example::signal(1e4, vec![]) }
     }
 
     /// A flight with these steps (m/s) and drifts (m/s²) of two channels, each drift known to 0.5 m/s².
     fn flight(first: (f64, f64), second: (f64, f64)) -> FlightFit {
         let plateau = |channel: &str, (velocity_step_m_s, zero_shift_m_s2): (f64, f64)| Plateau {
-            channel: channel.into(),
-            velocity_step_m_s,
             u_m_s: 0.01,
             zero_shift_m_s2,
             u_zero_shift_m_s2: 0.5,
-            residual_m_s: 0.0,
-            ringing_m_s: vec![],
-            late_mismatch_m_s: None,
+            ..example::plateau(channel, velocity_step_m_s)
         };
         FlightFit {
-            from_s: 0.0,
-            to_s: 0.06,
-            plateaus: vec![plateau("A1", first), plateau("A2", second)],
-            modes: vec![],
             drift: true,
-            candidates: vec![],
-            strike: None,
+            ..example::flight(0.0, 0.06, vec![plateau("A1", first), plateau("A2", second)])
         }
     }
 

@@ -61,18 +61,13 @@ pub fn judge_rest(signals: &[Signal], events: &Events) -> Option<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{At, Axis, End, FindingKind, Strike};
+    use crate::data::{At, FindingKind, Strike, example};
     use std::f64::consts::PI;
 
     fn flight(step_m_s: f64, gain: f64) -> FlightFit {
         FlightFit {
-            from_s: 0.02,
-            to_s: 0.08,
-            plateaus: vec![],
-            modes: vec![],
-            drift: false,
-            candidates: vec![],
             strike: Some(Strike { time_s: 0.05, step_m_s, gain }),
+            ..example::flight(0.02, 0.08, vec![])
         }
     }
 
@@ -94,23 +89,7 @@ mod tests {
             if (0.0..1.0).contains(&x) { peak * (PI * x).sin() } else { 0.0 }
         };
         let force = |i: u32| pulses.iter().map(|pulse| half_sine(f64::from(i) * 1e-5, pulse)).sum();
-        Signal {
-            name: "A1".into(),
-            end: End::First,
-            axis: Axis::Transverse,
-            position_m: 0.1,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: 1e5,
-            force_m_s2: (0..10_000).map(force).collect(),
-            removed_offset_m_s2: 0.0,
-            u_offset_m_s2: 0.0,
-            noise_m_s2: 0.5,
-            noise_spectrum: vec![],
-            free_fall_s: 0.0,
-            clipped: vec![],
-            gaps: vec![],
-        }
+        Signal { noise_m_s2: 0.5, ..example::signal(1e5, (0..10_000).map(force).collect()) }
     }
 
     #[test]

@@ -92,7 +92,7 @@ fn line(steps: &[&Reading], position_m: f64) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{End, Plateau};
+    use crate::data::{Plateau, example};
 
     /// Steps of 20 − 6 x m/s at four places, each known to 0.02 m/s, the second one off.
     fn named(off_m_s: f64, places_m: &[f64]) -> Option<String> {
@@ -107,41 +107,19 @@ mod tests {
             .zip(places_m)
             .map(|(name, position_m)| Signal {
                 name: (*name).into(),
-                end: End::First,
-                axis: Axis::Transverse,
                 position_m: *position_m,
-                offset_m: 0.0,
-                start_s: 0.0,
-                sample_rate_hz: 1e4,
-                force_m_s2: vec![],
-                removed_offset_m_s2: 0.0,
-                u_offset_m_s2: 0.0,
-                noise_m_s2: 0.0,
-                noise_spectrum: vec![],
                 free_fall_s: 0.2,
-                clipped: vec![],
-                gaps: vec![],
+                ..example::signal(1e4, vec![])
             })
             .collect();
         let plateau = |s: &Signal| Plateau {
-            channel: s.name.clone(),
-            velocity_step_m_s: 20.0 - 6.0 * s.position_m + if s.name == "A2" { off_m_s } else { 0.0 },
             u_m_s: 0.02,
-            zero_shift_m_s2: 0.0,
-            u_zero_shift_m_s2: 0.0,
-            residual_m_s: 0.0,
-            ringing_m_s: vec![],
-            late_mismatch_m_s: None,
+            ..example::plateau(
+                &s.name,
+                20.0 - 6.0 * s.position_m + if s.name == "A2" { off_m_s } else { 0.0 },
+            )
         };
-        let flight = FlightFit {
-            from_s: 0.0,
-            to_s: 0.06,
-            plateaus: signals.iter().map(plateau).collect(),
-            modes: vec![],
-            drift: false,
-            candidates: vec![],
-            strike: None,
-        };
+        let flight = example::flight(0.0, 0.06, signals.iter().map(plateau).collect());
         let drop = Drop { impact_velocity_m_s: 13.3, ..Drop::of_height(9.0, angle_rad) };
         judge_rigid(&signals, &flight, &Tolerances::default(), &drop).and_then(|i| i.channel)
     }

@@ -131,28 +131,16 @@ fn aliasing(signal: &Signal, pulse_s: (f64, f64), found: &BandContent, largest: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{At, Axis, End, IssueCode};
+    use crate::data::{At, IssueCode, example};
 
     /// What `force` says from 20 ms on, sampled at a rate, with the two events.
     fn codes(rate_hz: f64, found_end_s: f64, force: impl Fn(f64) -> f64) -> Vec<IssueCode> {
         let count = 100_000;
         let force_m_s2 = (0..count).map(|i| f64::from(i) / rate_hz - 0.020_04).take_while(|t| *t < 0.2);
         let signal = Signal {
-            name: "A1".into(),
-            end: End::First,
-            axis: Axis::Transverse,
-            position_m: 0.1,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: rate_hz,
-            force_m_s2: force_m_s2.map(|t| if t > 0.0 { force(t) } else { 0.0 }).collect(),
-            removed_offset_m_s2: 0.0,
-            u_offset_m_s2: 0.0,
             noise_m_s2: 0.1,
-            noise_spectrum: vec![],
             free_fall_s: 0.02,
-            clipped: vec![],
-            gaps: vec![],
+            ..example::signal(rate_hz, force_m_s2.map(|t| if t > 0.0 { force(t) } else { 0.0 }).collect())
         };
         let events = Events {
             first_contact: Some(At::exactly(0.02)),

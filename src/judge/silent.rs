@@ -68,27 +68,15 @@ fn reach_of<T: Copy + Into<f64>>(samples: &[T], scale: f64) -> Excursion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, Coupling, End};
+    use crate::data::{Axis, example};
 
     fn channel(name: &str, sample: impl Fn(u32) -> f64) -> Channel {
         Channel {
             name: name.into(),
-            end: End::First,
             axis: Axis::Axial,
-            source: "a".into(),
-            position_m: 0.0,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: 1e4,
-            samples: Samples::F64((0..20_000).map(sample).collect()),
             scale_m_s2: 9.806_65,
             unit: "g".into(),
-            unit_origin: "cask file",
-            is_unit_recorded: false,
-            full_scale: None,
-            gaps: vec![],
-            time_jitter_s: 0.0,
-            coupling: Coupling::Dc,
+            ..example::channel((0..20_000).map(sample).collect())
         }
     }
 

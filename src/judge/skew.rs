@@ -31,19 +31,10 @@ pub fn judge_skew(onset: &Onset, signals: &[Signal], cask: &Cask, is_shifted: bo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::Severity;
+    use crate::data::{Severity, example};
 
     fn severity(delay_s: f64, u_s: f64) -> Option<Severity> {
-        let cask = Cask {
-            name: "A".into(),
-            mass_kg: 1.0,
-            length_m: 5.0,
-            height_m: 0.0,
-            width_m: None,
-            cog_m: 2.5,
-            inertia_kg_m2: 1.0,
-            is_body: false,
-        };
+        let cask = example::cask(1.0, 5.0, 0.0);
         let onset = Onset { channel: "A2".into(), delay_s, u_s };
         judge_skew(&onset, &[], &cask, false).map(|f| f.severity)
     }

@@ -59,7 +59,7 @@ fn of_means(signal: &Signal, block: usize) -> Signal {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Axis, End, Span};
+    use crate::data::{Span, example};
     use crate::motion::Integrated;
     use std::f64::consts::PI;
 
@@ -68,21 +68,9 @@ mod tests {
     /// The first end's channel from 0 s on, 0.1 s of it.
     fn signal(force_m_s2: impl Fn(f64) -> f64) -> Signal {
         Signal {
-            name: "A1".into(),
-            end: End::First,
-            axis: Axis::Transverse,
-            position_m: 0.1,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: RATE_HZ,
-            force_m_s2: (0..50_000).map(|i| force_m_s2(f64::from(i) / RATE_HZ)).collect(),
-            removed_offset_m_s2: 0.0,
-            u_offset_m_s2: 0.0,
             noise_m_s2: 1.0,
-            noise_spectrum: vec![],
             free_fall_s: 0.05,
-            clipped: vec![],
-            gaps: vec![],
+            ..example::signal(RATE_HZ, (0..50_000).map(|i| force_m_s2(f64::from(i) / RATE_HZ)).collect())
         }
     }
 

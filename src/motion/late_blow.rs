@@ -64,7 +64,7 @@ pub fn strike(flight: &FlightFit, integrated: &Integrated, window: &Window, cog_
 mod tests {
     use super::super::flight::fit_flight;
     use super::*;
-    use crate::data::{End, Signal};
+    use crate::data::{End, Signal, example};
     use std::f64::consts::{PI, TAU};
 
     const RATE_HZ: f64 = 2e4;
@@ -88,19 +88,10 @@ mod tests {
         Signal {
             name: name.into(),
             end,
-            axis: Axis::Transverse,
             position_m: if end == End::First { 0.1 } else { 4.9 },
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: RATE_HZ,
-            force_m_s2: (0..1800).map(force).collect(),
-            removed_offset_m_s2: 0.0,
-            u_offset_m_s2: 0.0,
             noise_m_s2: 0.3,
-            noise_spectrum: vec![],
             free_fall_s: 0.02,
-            clipped: vec![],
-            gaps: vec![],
+            ..example::signal(RATE_HZ, (0..1800).map(force).collect())
         }
     }
 

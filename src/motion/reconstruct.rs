@@ -264,7 +264,7 @@ fn push(curve: &mut MotionCurve, setup: &Setup, state: &MotionState) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{At, Axis, CONTACT_STEPS, End, Mode, Plateau, Signal};
+    use crate::data::{At, CONTACT_STEPS, End, Signal, example};
 
     /// A half sine of 6 ms from 10 ms on whose area is `step_m_s`, at 100 kHz over 80 ms.
     fn signal(name: &str, end: End, position_m: f64, step_m_s: f64) -> Signal {
@@ -275,49 +275,21 @@ mod tests {
         Signal {
             name: name.into(),
             end,
-            axis: Axis::Transverse,
             position_m,
-            offset_m: 0.0,
-            start_s: 0.0,
-            sample_rate_hz: 1e5,
-            force_m_s2: (0..8000).map(|i| force(f64::from(i) * 1e-5 - 0.01)).collect(),
-            removed_offset_m_s2: 0.0,
-            u_offset_m_s2: 0.0,
             noise_m_s2: 0.1,
-            noise_spectrum: vec![],
             free_fall_s: 0.25,
-            clipped: vec![],
-            gaps: vec![],
+            ..example::signal(1e5, (0..8000).map(|i| force(f64::from(i) * 1e-5 - 0.01)).collect())
         }
     }
 
     fn motion(first_m_s: f64, second_m_s: f64, axial: AxialClosure) -> Motion {
         let signals = [signal("A1", End::First, 0.5, first_m_s), signal("A2", End::Second, 4.5, second_m_s)];
-        let plateau = |channel: &str, velocity_step_m_s| Plateau {
-            channel: channel.into(),
-            velocity_step_m_s,
-            u_m_s: 0.0,
-            zero_shift_m_s2: 0.0,
-            u_zero_shift_m_s2: 0.0,
-            residual_m_s: 0.0,
-            ringing_m_s: vec![],
-            late_mismatch_m_s: None,
-        };
-        let fit = FlightFit {
-            from_s: 0.017,
-            to_s: 0.07,
-            plateaus: vec![plateau("A1", first_m_s), plateau("A2", second_m_s)],
-            modes: Vec::<Mode>::new(),
-            drift: false,
-            candidates: vec![],
-            strike: None,
-        };
-        let events = Events {
-            first_contact: Some(At::exactly(0.01)),
-            separation: Some(At::exactly(0.016)),
-            slap_down: Some(At::exactly(0.07)),
-            ..Events::default()
-        };
+        let fit = example::flight(
+            0.017,
+            0.07,
+            vec![example::plateau("A1", first_m_s), example::plateau("A2", second_m_s)],
+        );
+        let events = Events { separation: Some(At::exactly(0.016)), ..example::events(0.01, 0.07) };
         let setup = Setup {
             length_m: 5.0,
             height_m: 0.6,

@@ -160,18 +160,11 @@ fn normal_impulses(point: &ContactPoint, first: Option<&Stretch>, last: &Stretch
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::BodyModel;
+    use crate::data::{BodyModel, example};
     use proptest::prelude::*;
 
     fn body(h: f64, c: f64) -> Body {
-        Body {
-            model: BodyModel::Body,
-            mass_kg: 1500.0,
-            length_m: 4.7,
-            height_m: h,
-            cog_m: c,
-            inertia_kg_m2: 1500.0 * (4.7 * 4.7 + h * h) / 12.0,
-        }
+        Body { model: BodyModel::Body, cog_m: c, ..example::body(1500.0, 4.7, h) }
     }
 
     fn moving(angle_rad: f64, (x, z, w): (f64, f64, f64)) -> State {

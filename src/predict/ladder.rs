@@ -166,17 +166,7 @@ impl Case<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::BodyModel;
-
-    fn anf18() -> Body {
-        let (m, l, h) = (4466.0, 5.512, 0.792);
-        Body {
-            model: BodyModel::Body,
-            height_m: h,
-            inertia_kg_m2: m * (l * l + h * h) / 12.0,
-            ..thin_rod(m, l)
-        }
-    }
+    use crate::data::example::anf18;
 
     fn drop(angle_deg: f64) -> Drop {
         Drop::of_height(9.0, angle_deg.to_radians())

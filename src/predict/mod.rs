@@ -88,10 +88,9 @@ pub fn borderline_cases(body: &Body, drop: &Drop) -> Vec<Prediction> {
 
 #[cfg(test)]
 mod tests {
-    use super::impact::strike_first_end;
     use super::*;
     use crate::data::FlightRegime;
-    use crate::numerics::root::first_root;
+    use crate::data::example::anf18;
 
     const V0_M_S: f64 = 13.288_340_754_210_061; // √(2 · 9.81 · 9)
 
@@ -100,26 +99,7 @@ mod tests {
     }
 
     fn rod(length_m: f64) -> Body {
-        Body {
-            model: BodyModel::Rod,
-            mass_kg: 1000.0,
-            length_m,
-            height_m: 0.0,
-            cog_m: length_m / 2.0,
-            inertia_kg_m2: 1000.0 * length_m.powi(2) / 12.0,
-        }
-    }
-
-    fn anf18() -> Body {
-        let (m, l, h) = (4466.0, 5.512, 0.792);
-        Body {
-            model: BodyModel::Body,
-            mass_kg: m,
-            length_m: l,
-            height_m: h,
-            cog_m: l / 2.0,
-            inertia_kg_m2: m * (l * l + h * h) / 12.0,
-        }
+        thin_rod(1000.0, length_m)
     }
 
     fn speed(body: &Body, angle_deg: f64, contact: Contact, k: f64) -> f64 {
@@ -141,41 +121,6 @@ mod tests {
     }
 
     #[test]
-    fn table_3_is_met_with_the_sine_of_equation_6() {
-        // Root and speed by an independent program (scipy brentq) to four digits; the paper prints 25 for
-        // each.
-        for (length_m, expected) in [(4.538, 24.9351), (4.725, 24.9548), (5.512, 25.0376)] {
-            let found = speed(&rod(length_m), 15.0, Contact::Rough, 1.0);
-            assert!((found - expected).abs() < 5e-5, "{found} {expected}");
-            assert!((found - 25.0).abs() < 0.5);
-        }
-        let castor =
-            predict(&rod(4.486), &drop(15.0), Contact::Rough, 0.0).closed_form_speed_m_s.expect("rough");
-        assert!((castor - 20.12).abs() < 0.005);
-    }
-
-    #[test]
-    fn table_3_is_missed_with_the_cosine_as_printed() {
-        // Equation (6) as printed starts S at (l/2) cos φ0; the speed at its root is 22.5 m/s, not 25.
-        let (l, g) = (5.512, 9.81);
-        let d = drop(15.0);
-        let start = State::falling(&rod(l), d.angle_rad, &d);
-        let after = strike_first_end(&rod(l), &start, Contact::Rough, 1.0).after;
-        let (vz, w) = (after.vertical_velocity_m_s, after.angular_velocity_rad_s);
-        let printed = |t: f64| {
-            let (sin, cos) = (d.angle_rad - w * t).sin_cos();
-            let height_m = l / 2.0 * (d.angle_rad.cos() + sin) + vz * t - g * t * t / 2.0;
-            (height_m, vz - g * t - w * l / 2.0 * cos)
-        };
-        let t = first_root(printed, g + w * w * l / 2.0, 0.3, 1e-12).expect("a root");
-        let phi = d.angle_rad - w * t;
-        let x = after.horizontal_velocity_m_s + w * l / 2.0 * phi.sin();
-        let z = vz - g * t - w * l / 2.0 * phi.cos();
-        assert!((x.hypot(z) - 22.5).abs() < 0.05, "{}", x.hypot(z));
-        assert!((x.hypot(z) - speed(&rod(l), 15.0, Contact::Rough, 1.0)).abs() > 2.0);
-    }
-
-    #[test]
     fn the_section_matters() {
         // physics: rod 22.49, body 20.18 / 22.31 / 23.67 m/s at k = 0.5, 15°.
         assert!((speed(&rod(5.512), 15.0, Contact::Rough, 0.5) - 22.49).abs() < 0.005);
@@ -189,20 +134,6 @@ mod tests {
         for k in [0.1, 0.5, 0.9] {
             let ratio = predict(&rod(4.75), &drop(15.0), Contact::Rough, k).impulse_ratio;
             assert!((ratio - 0.624).abs() < 5e-4);
-        }
-    }
-
-    #[test]
-    fn figure_8_energy_ratios() {
-        let d = Drop { impact_velocity_m_s: 13.3, ..drop(15.0) };
-        for (contact, k, expected) in [
-            (Contact::Rough, 1.0, 1.031),
-            (Contact::Smooth, 1.0, 1.033),
-            (Contact::Rough, 1e-9, 0.768),
-            (Contact::Smooth, 1e-9, 0.805),
-        ] {
-            let ratio = predict(&rod(4.75), &d, contact, k).energy_ratio.expect("R strikes");
-            assert!((ratio - expected).abs() < 5e-4, "{contact} k={k}: {ratio}");
         }
     }
 
@@ -235,21 +166,5 @@ mod tests {
     fn l_comes_down_again_before_r_on_a_steep_elastic_drop() {
         assert!(predict(&rod(4.75), &drop(60.0), Contact::Rough, 0.8).first_end_impacts > 1);
         assert_eq!(predict(&rod(4.75), &drop(15.0), Contact::Rough, 0.8).first_end_impacts, 1);
-    }
-
-    #[test]
-    fn nothing_is_not_a_number_anywhere() {
-        for angle_deg in 0..=90 {
-            for tenth in 0..=10 {
-                for contact in [Contact::Rough, Contact::Smooth, Contact::Coulomb(0.3)] {
-                    for body in [rod(4.75), anf18()] {
-                        let p = predict(&body, &drop(f64::from(angle_deg)), contact, f64::from(tenth) / 10.0);
-                        assert!(p.angular_velocity_rad_s.is_finite() && p.impulse_ratio.is_finite());
-                        assert!(p.slap_down_speed_m_s.is_none_or(f64::is_finite));
-                        assert!(p.flight_time_s.is_none_or(|t| t.is_finite() && t >= 0.0));
-                    }
-                }
-            }
-        }
     }
 }

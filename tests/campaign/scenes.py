@@ -116,36 +116,27 @@ def draw_motion(rng):
 
 
 def is_slap_down(truth):
-    """Whether the drop is one that dropcheck claims to measure: a rebound, a flight, a slap-down."""
-    if "speed" not in truth or "k" not in truth or truth["flight_s"] is None:
+    """Whether the drop is one that dropcheck claims to measure: a rebound, one flight, a slap-down."""
+    if "speed" not in truth or "k" not in truth or truth["flight_s"] is None or truth["relands"]:
         return False
     in_time = truth["slap_t"] <= LONGEST_TO_SLAP_DOWN_S and truth["flight_s"] >= SHORTEST_FLIGHT_S
     return in_time and 0.005 < truth["k"] < 0.97
 
 
-def is_plain(drawn):
-    """Whether nothing but a damage could disturb the drop: rough, ordinary k, angle and pulse, one long flight."""
-    truth, scene = drawn["motion"].truth, drawn["motion"].scene
-    ordinary = 0.05 < truth["k"] < 0.9 and 5 <= scene.angle_deg <= 30 and 0.002 <= drawn["pulse_s"] <= 0.012
-    return ordinary and not truth["relands"] and truth["flight_s"] >= 0.03 and scene.friction == inf
-
-
-def draw_sample_rate_hz(rng, motion, plain):
+def draw_sample_rate_hz(rng, motion):
     """A rate with 25 samples in the contact and 15 in a period of the highest mode."""
     highest_hz = max((mode.frequency_hz for mode in motion.scene.modes), default=0.0)
     needed_hz = max(2000, 25 / motion.truth["contact_s"], 15 * highest_hz)
     rates_hz = [rate for rate in RATES_HZ if rate >= needed_hz] or [50000]
-    if plain:
-        rates_hz = [rate for rate in rates_hz if rate >= 10000][:4]
     return float(rng.choice(rates_hz))
 
 
-def draw_drop(rng, plain=False):
-    """A whole random drop; `plain` ones leave out what is hard by itself, so that a damage stands alone."""
+def draw_drop(rng):
+    """A whole random drop."""
     drawn = draw_motion(rng)
-    while not is_slap_down(drawn["motion"].truth) or (plain and not is_plain(drawn)):
+    while not is_slap_down(drawn["motion"].truth):
         drawn = draw_motion(rng)
-    rate_hz = draw_sample_rate_hz(rng, drawn["motion"], plain)
+    rate_hz = draw_sample_rate_hz(rng, drawn["motion"])
     fall_s = sqrt(2 * drawn["height_m"] / GRAVITY_M_S2)
     rest = rng.random() < 0.2
     if rest:
@@ -165,9 +156,9 @@ def draw_drop(rng, plain=False):
     )
 
 
-def record(drop, rng, end_s=None):
-    """Times (0 at first contact) and channels A1, A2 and perhaps A3 (axial, beside A1) in g, offset and noise on them."""
-    end_s = drop.truth["slap_t"] + drop.motion.scene.after_s if end_s is None else end_s
+def record(drop, rng):
+    """Channels A1, A2 and perhaps A3 (axial, beside A1) in g, offset and noise on them."""
+    end_s = drop.truth["slap_t"] + drop.motion.scene.after_s
     count = int(round((drop.before_s + end_s) * drop.sample_rate_hz))
     times_s = np.arange(count) / drop.sample_rate_hz - drop.before_s
     mounts = [("A1", 0, "transverse"), ("A2", 1, "transverse")] + ([("A3", 0, "axial")] if drop.axial else [])
@@ -175,4 +166,4 @@ def record(drop, rng, end_s=None):
     for (name, end, axis), zero_g in zip(mounts, drop.zeros_g):
         force = sensor(drop.motion, times_s, drop.positions_m[end], drop.offsets_m[end], axis, drop.release_s)
         channels[name] = force / G0 + zero_g + drop.noise_g * rng.standard_normal(count)
-    return times_s, channels
+    return channels

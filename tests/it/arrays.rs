@@ -8,7 +8,7 @@ use dropcheck::ingest::{self, read_arrays};
 fn held() -> (Vec<HeldSamples>, CaskFile) {
     let mut cask_file = ingest::cask_file(&fixture("anf10-plain.toml")).unwrap();
     let recording = ingest::read(&fixture("anf10-plain.csv"), &cask_file, &|_| ()).unwrap();
-    let of = |channel: &dropcheck::data::Channel| {
+    let as_held = |channel: &dropcheck::data::Channel| {
         let Samples::F64(values) = channel.samples.clone() else { panic!("a table holds f64") };
         HeldSamples {
             name: channel.source.clone(),
@@ -21,7 +21,7 @@ fn held() -> (Vec<HeldSamples>, CaskFile) {
     };
     // A column that the cask file names is no matter of arrays with a rate.
     cask_file.time = Some("time".into());
-    (recording.channels.iter().map(of).collect(), cask_file)
+    (recording.channels.iter().map(as_held).collect(), cask_file)
 }
 
 /// A result without what tells a file from an array.

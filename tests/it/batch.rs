@@ -1,10 +1,9 @@
 //! From a manifest of fixtures to the campaign: tables, shards and what is wrong with them, runs that are
 //! stopped and go on.
 
-use crate::run::{Answer, dropcheck, fixture, read_json};
+use crate::run::{Answer, dropcheck, fixture, read_json, words};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -106,9 +105,9 @@ fn a_manifest_makes_one_campaign_of_mixed_formats() {
     assert!(answer.stderr.contains("7 of 7"), "{}", answer.stderr);
     let campaign = read_json(&series.path("full/campaign.json"));
     let rows = campaign["recordings"].as_array().expect("rows");
-    let of = |key: &str| rows.iter().map(|row| row[key].clone()).collect::<Vec<_>>();
-    assert_eq!(of("id"), ["T1", "T2", "T3", "T4", "T5", "T6", "T7"]);
-    assert_eq!(of("exit"), [0, 0, 2, 0, 1, 0, 2]);
+    let column = |key: &str| rows.iter().map(|row| row[key].clone()).collect::<Vec<_>>();
+    assert_eq!(column("id"), ["T1", "T2", "T3", "T4", "T5", "T6", "T7"]);
+    assert_eq!(column("exit"), [0, 0, 2, 0, 1, 0, 2]);
     assert!(rows[2]["error"].as_str().is_some_and(|words| words.contains("broken.csv")), "{}", rows[2]);
     // The column overrides, an empty cell does not, and the cask file's text is that of the analysis.
     let columns = |row: usize, key: &str| rows[row]["columns"][key].clone();
@@ -116,12 +115,7 @@ fn a_manifest_makes_one_campaign_of_mixed_formats() {
     assert_eq!((columns(3, "hall"), columns(5, "hall")), ("007".into(), "=1+1".into()));
     let result = series.path("full/T2/result.json");
     assert!(read_json(&result)["cask_text"].as_str().expect("text").contains("angle_deg = 15.2"));
-    let again = dropcheck([
-        "analyze".as_ref(),
-        series.path("anf18-json.mcap").as_os_str(),
-        "--from".as_ref(),
-        result.as_os_str(),
-    ]);
+    let again = dropcheck(words!["analyze", series.path("anf18-json.mcap"), "--from", result]);
     assert!(again.stdout.contains("The same as"), "{}", again.stdout);
     // Of the two repeats at 15° and 15.2° there is a pool each, and one over both.
     let pools = campaign["pools"].as_array().expect("pools");
@@ -158,21 +152,14 @@ fn a_cask_file_beside_a_recording_goes_before_that_of_the_words() {
     for name in ["broken.csv", "runs.csv"] {
         fs::remove_file(series.path(name)).expect("a file");
     }
-    let form = dropcheck([OsStr::new("init"), series.0.path().as_os_str()]).stdout;
+    let form = dropcheck(words!["init", series.0.path()]).stdout;
     assert!(form.starts_with("id,recording,cask,") && form.lines().count() == 5, "{form}");
     assert!(form.lines().nth(1).is_some_and(|row| row.contains("anf10-plain.toml")), "{form}");
     fs::remove_file(series.path("anf18-json.toml")).expect("a file");
     let pattern = series.path("*.mcap");
     let cask = fixture("anf18-json.toml");
     let out = series.path("out");
-    let words = [
-        "batch".as_ref(),
-        pattern.as_os_str(),
-        "--cask".as_ref(),
-        cask.as_os_str(),
-        "--out".as_ref(),
-        out.as_os_str(),
-    ];
+    let words = words!["batch", pattern, "--cask", cask, "--out", out];
     assert_eq!(dropcheck(words).status, 1);
     let rows = read_json(&out.join("campaign.json"));
     let casks: Vec<&str> =
@@ -319,6 +306,7 @@ fn script(name: &str) -> PathBuf {
 }
 
 #[test]
+#[ignore = "sixty drops: .ci/long"]
 fn sixty_recordings_of_three_casks_give_back_what_they_were_made_with() {
     if !has_modules("csv") {
         return;
@@ -331,8 +319,7 @@ fn sixty_recordings_of_three_casks_give_back_what_they_were_made_with() {
         .output();
     assert!(made.expect("python3 starts").status.success());
     let manifest = series.join("runs.csv");
-    let words =
-        ["batch".as_ref(), "--manifest".as_ref(), manifest.as_os_str(), "--out".as_ref(), out.as_os_str()];
+    let words = words!["batch", "--manifest", manifest, "--out", out];
     assert_eq!(dropcheck(words).status, 2);
     let (campaign, truth) = (read_json(&out.join("campaign.json")), read_json(&series.join("truth.json")));
     let rows = campaign["recordings"].as_array().expect("rows");
@@ -375,6 +362,7 @@ fn pandas_and_duckdb_read_the_tables_without_effort() {
 }
 
 #[test]
+#[ignore = "engines for many machines: .ci/long"]
 fn the_recipes_write_what_a_local_run_writes() {
     if !has_modules("csv") {
         return;

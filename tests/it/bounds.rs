@@ -2,9 +2,8 @@
 //! if they did not.
 
 use crate::command_line::{Bench, at_fault};
-use crate::run::{Answer, dropcheck, fixture, read_json};
+use crate::run::{Answer, dropcheck, fixture, read_json, words};
 use serde_json::{Value, json};
-use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -155,7 +154,7 @@ fn a_message_of_a_campaign_quotes_no_file_from_elsewhere() {
     // What lies beside the manifest is told as ever.
     told(errors.len() - 1, "it is a cask file");
     let files = outside.0.path().join("token");
-    let words = [OsStr::new("batch"), files.as_os_str(), OsStr::new("--cask"), OsStr::new("none.toml")];
+    let words = words!["batch", files, "--cask", "none.toml"];
     assert!(dropcheck(words).stdout.contains("none.toml"));
 }
 

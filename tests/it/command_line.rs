@@ -1,7 +1,7 @@
 //! From what a person types, and from files that are at fault, to exit status, messages and a clean standard
 //! output.
 
-use crate::run::{Answer, analyze, dropcheck, fixture};
+use crate::run::{Answer, analyze, dropcheck, fixture, words};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -193,14 +193,7 @@ fn a_folder_that_cannot_be_written() {
     let bench = Bench::new();
     let blocked = bench.put("occupied", "a file where a folder is wanted").join("out");
     let (recording, cask) = plain();
-    let answer = dropcheck([
-        "analyze".as_ref(),
-        recording.as_os_str(),
-        "--cask".as_ref(),
-        cask.as_os_str(),
-        "--out".as_ref(),
-        blocked.as_os_str(),
-    ]);
+    let answer = dropcheck(words!["analyze", recording, "--cask", cask, "--out", blocked]);
     at_fault(&answer, &["occupied"]);
 }
 
@@ -221,10 +214,9 @@ fn standard_output_holds_json_alone() {
     let (recording, cask) = plain();
     let answer = analyze(&recording, &cask);
     assert_eq!(answer.json()["schema"], "dropcheck.result/1", "{}", answer.stderr);
-    let inspected = dropcheck(["inspect".as_ref(), recording.as_os_str(), "--json".as_ref(), "-".as_ref()]);
+    let inspected = dropcheck(words!["inspect", recording, "--json", "-"]);
     assert!(inspected.json()["channels"].is_array());
-    let predicted =
-        dropcheck(["predict".as_ref(), "--cask".as_ref(), cask.as_os_str(), "--json".as_ref(), "-".as_ref()]);
+    let predicted = dropcheck(words!["predict", "--cask", cask, "--json", "-"]);
     let predicted = predicted.json();
     assert_eq!(predicted["schema"], "dropcheck.prediction/1");
     // Rough and smooth, k = 0 and 1, of the rod and of the body that the file describes.
@@ -292,16 +284,9 @@ fn the_recording_is_never_altered() {
         let stem = name.split('.').next().expect("a stem");
         let cask = fixture(&format!("{stem}.toml"));
         let out = bench.0.path().join("out");
-        dropcheck([
-            "analyze".as_ref(),
-            copy.as_os_str(),
-            "--cask".as_ref(),
-            cask.as_os_str(),
-            "--out".as_ref(),
-            out.as_os_str(),
-        ]);
-        dropcheck(["inspect".as_ref(), copy.as_os_str()]);
-        dropcheck(["init".as_ref(), copy.as_os_str()]);
+        dropcheck(words!["analyze", copy, "--cask", cask, "--out", out]);
+        dropcheck(words!["inspect", copy]);
+        dropcheck(words!["init", copy]);
         assert!(fs::read(&copy).expect("the copy") == before, "{name} was altered");
         assert_eq!(
             fs::metadata(&copy).and_then(|m| m.modified()).expect("a time"),
@@ -314,7 +299,7 @@ fn the_recording_is_never_altered() {
 #[test]
 fn init_writes_a_cask_file_that_can_be_read_as_toml() {
     for name in ["anf18-json.mcap", "vhlw-rest.h5", "anf18-german.csv", "esbb-imu.mcap"] {
-        let answer = dropcheck(["init".as_ref(), fixture(name).as_os_str()]);
+        let answer = dropcheck(words!["init", fixture(name)]);
         assert_eq!(answer.status, 0, "{name}: {}", answer.stderr);
         let text = answer.stdout;
         let parsed: Result<toml::Table, _> = toml::from_str(&text);
@@ -328,14 +313,7 @@ fn every_output_of_a_run_is_there() {
     let bench = Bench::new();
     let (recording, cask) = plain();
     let out = bench.0.path().join("report");
-    let answer = dropcheck([
-        "analyze".as_ref(),
-        recording.as_os_str(),
-        "--cask".as_ref(),
-        cask.as_os_str(),
-        "--out".as_ref(),
-        out.as_os_str(),
-    ]);
+    let answer = dropcheck(words!["analyze", recording, "--cask", cask, "--out", out]);
     assert!(answer.status <= 1, "{}", answer.stderr);
     for name in ["report.html", "result.json", "curves.csv", "curves.h5", "curves.mcap"] {
         let bytes = fs::read(out.join(name)).unwrap_or_default();
@@ -351,14 +329,8 @@ fn every_output_of_a_run_is_there() {
 fn a_correction_switched_off_is_said_in_the_result() {
     let (recording, cask) = (fixture("anf18-json.mcap"), fixture("anf18-json.toml"));
     let with = |more: &[&str]| {
-        let words = [
-            "analyze".as_ref(),
-            recording.as_os_str(),
-            "--cask".as_ref(),
-            cask.as_os_str(),
-            "--json".as_ref(),
-        ];
-        dropcheck(words.into_iter().chain(["-".as_ref()]).chain(more.iter().map(AsRef::as_ref)))
+        let words = words!["analyze", recording, "--cask", cask, "--json"];
+        dropcheck(words.into_iter().chain(words!["-"]).chain(more.iter().map(AsRef::as_ref)))
     };
     let off = |answer: &Answer| -> Vec<String> {
         let result = answer.json();

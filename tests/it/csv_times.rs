@@ -1,7 +1,7 @@
 //! From times as loggers write them (clocks, coarse steps, milliseconds) to the numbers that plain seconds
 //! give, or to a question.
 
-use crate::run::{Answer, analyze, dropcheck, fixture, number};
+use crate::run::{Answer, analyze, dropcheck, fixture, number, words};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;
@@ -29,7 +29,7 @@ impl Drop {
         let path = folder.path().join("scene.toml");
         fs::write(&path, scene).expect("a temporary file");
         let out = folder.path().join("seconds.csv");
-        let words = ["synth".as_ref(), path.as_os_str(), "--out".as_ref(), out.as_os_str()];
+        let words = words!["synth", path, "--out", out];
         let answer = dropcheck(words);
         assert_eq!(answer.status, 0, "{}", answer.stderr);
         let table = fs::read_to_string(&out).expect("the recording");
@@ -132,7 +132,7 @@ fn clock_times_give_the_numbers_of_seconds() {
         // A clock of microseconds: 1e-6 s over the shortest time, the contact of 6 ms, halved by its many
         // samples.
         agrees(what, &drop.analyzed(&path), &plain, 1e-4);
-        let form = dropcheck(["init".as_ref(), path.as_os_str()]);
+        let form = dropcheck(words!["init", path]);
         assert_eq!(form.status, 0, "{what}: {}", form.stderr);
         assert!(
             form.stdout.contains("25000 Hz") && form.stdout.contains("A2 [g]"),

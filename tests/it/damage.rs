@@ -1,7 +1,7 @@
 //! From every fixture, damaged in every way that files get damaged, to a result that is right, doubtful or
 //! refused.
 
-use crate::run::{dropcheck, fixture, number, read_json, truth};
+use crate::run::{dropcheck, fixture, number, read_json, truth, words};
 use dropcheck::{ingest, report};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -267,15 +267,7 @@ fn an_hdf5_file_that_is_read_for_ever_is_given_up_alone() {
     let next = folder.path().join("b.h5");
     std::fs::copy(fixture("damaged-clipped.h5"), &next).expect("a temporary file");
     let (cask, out) = (fixture("damaged-clipped.toml"), folder.path().join("out"));
-    let answer = dropcheck([
-        "batch".as_ref(),
-        endless.as_os_str(),
-        next.as_os_str(),
-        "--cask".as_ref(),
-        cask.as_os_str(),
-        "--out".as_ref(),
-        out.as_os_str(),
-    ]);
+    let answer = dropcheck(words!["batch", endless, next, "--cask", cask, "--out", out]);
     assert_eq!(answer.status, 2, "{}", answer.stderr);
     let table = read_json(&out.join("campaign.json"));
     let error = table["recordings"][0]["error"].as_str().unwrap_or_default();
@@ -285,7 +277,7 @@ fn an_hdf5_file_that_is_read_for_ever_is_given_up_alone() {
 }
 
 #[test]
-#[ignore = "cuts at every boundary: minutes"]
+#[ignore = "cuts at every boundary: .ci/long"]
 fn a_recording_cut_at_any_boundary_is_right_doubtful_or_refused() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut counts: BTreeMap<Outcome, usize> = BTreeMap::new();
@@ -311,9 +303,9 @@ fn damage_says_so_through_the_program_too() {
     let bytes = std::fs::read(fixture("anf18-json.mcap")).expect("a fixture");
     std::fs::write(&path, &bytes[..bytes.len() / 3]).expect("a temporary file");
     let out = folder.path().join("report");
-    let words = ["analyze".as_ref(), path.as_os_str(), "--cask".as_ref()];
+    let words = words!["analyze", path, "--cask"];
     let cask = fixture("anf18-json.toml");
-    let answer = dropcheck(words.into_iter().chain([cask.as_os_str(), "--out".as_ref(), out.as_os_str()]));
+    let answer = dropcheck(words.into_iter().chain(words![cask, "--out", out]));
     // Whatever it came to, nothing half-written is left.
     assert_eq!(out.join("result.json").exists(), answer.status < 2, "{}", answer.stderr);
     let left = std::fs::read_dir(folder.path()).expect("a folder").count();

@@ -1,7 +1,7 @@
 //! From the pages that a person wrote to their budget: words, length of lines, links that lead somewhere,
 //! answers that are the program's.
 
-use crate::run::{analyze, dropcheck, fixture};
+use crate::run::{analyze, dropcheck, files_below, fixture, root};
 use dropcheck::data::CODES;
 use dropcheck::stages::{Allowed, INNER_TABLES, TABLES, Takes};
 use serde_json::Value;
@@ -17,44 +17,19 @@ const ALL_WORDS: usize = 24_000;
 /// Characters of a line of prose; tables and code may be wider.
 const WIDTH: usize = 120;
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// Every page below `directory`, sorted.
-fn pages_below(directory: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in fs::read_dir(directory).expect("a folder").flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            found.extend(pages_below(&path));
-        } else if path.extension().is_some_and(|extension| extension == "md") {
-            found.push(path);
-        }
-    }
-    found.sort();
-    found
-}
-
 /// README, guide of contributors, changelog and `docs`, without what programs write.
 fn written_pages() -> Vec<PathBuf> {
-    let mut pages = pages_below(&root().join("docs"));
+    let mut pages = files_below(&root().join("docs"), "md");
     pages.retain(|page| !page.starts_with(root().join("docs/measured")));
     pages.extend(["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|name| root().join(name)));
     assert!(pages.len() > 15, "the pages were not found: {pages:?}");
     pages
 }
 
-/// The pages beside fixtures, campaign, fuzzing, module and packages.
-fn pages_beside() -> [PathBuf; 5] {
-    [
-        "fixtures/README.md",
-        "tests/campaign/README.md",
-        "tests/fuzz/README.md",
-        "python/README.md",
-        "packaging/RELEASING.md",
-    ]
-    .map(|name| root().join(name))
+/// The pages beside fixtures, fuzzing, module and packages.
+fn pages_beside() -> [PathBuf; 4] {
+    ["fixtures/README.md", "tests/fuzz/README.md", "python/README.md", "packaging/RELEASING.md"]
+        .map(|name| root().join(name))
 }
 
 fn text(page: &Path) -> String {
@@ -231,10 +206,21 @@ fn lines_of_prose_fit_a_window() {
 }
 
 #[test]
+fn no_page_holds_a_half_merged_passage() {
+    let is_mark =
+        |line: &&str| line.starts_with("<<<<<<< ") || line.starts_with(">>>>>>> ") || *line == "=======";
+    for page in written_pages() {
+        assert_eq!(text(&page).lines().find(is_mark), None, "{}", page.display());
+    }
+}
+
+#[test]
 fn links_lead_somewhere() {
     let mut dead = Vec::new();
     let mut looked_at = 0;
-    for page in pages_below(&root().join("docs")).into_iter().chain(written_pages()).chain(pages_beside()) {
+    for page in
+        files_below(&root().join("docs"), "md").into_iter().chain(written_pages()).chain(pages_beside())
+    {
         for link in links(&text(&page)) {
             if link.starts_with("http") {
                 continue;
@@ -280,7 +266,8 @@ fn what_the_pages_show_is_what_the_program_says() {
     let golden = text(&root().join("tests/golden/anf18-json.txt"));
     assert!(golden.starts_with(shown), "README.md shows another table than tests/golden/anf18-json.txt");
 
-    let words = "predict --cask fixtures/examples/anf18-json.toml --k 0.5 --contact 0.4 --k-range 0.3:0.7 --friction-range 0.2:0.6";
+    let words = "predict --cask fixtures/examples/anf18-json.toml --k 0.5 --contact 0.4 \
+                 --k-range 0.3:0.7 --friction-range 0.2:0.6";
     let page = text(&root().join("docs/predicting.md"));
     let shown = answer(&page, &format!("dropcheck {words}"));
     let cask = root().join("fixtures/examples/anf18-json.toml");

@@ -1,6 +1,6 @@
 //! From what a user does first, and forgets, to what the program says.
 
-use crate::run::{dropcheck, fixture};
+use crate::run::{dropcheck, fixture, words};
 use std::fs;
 use std::time::Duration;
 
@@ -11,9 +11,8 @@ const PATIENCE: Duration = Duration::from_mins(1);
 fn a_form_that_is_not_filled_in_is_refused_by_its_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let (recording, cask) = (fixture("anf18-json.mcap"), folder.path().join("cask.toml"));
-    let analyze =
-        || dropcheck(["analyze".as_ref(), recording.as_os_str(), "--cask".as_ref(), cask.as_os_str()]);
-    let mut form = dropcheck(["init".as_ref(), recording.as_os_str()]).stdout;
+    let analyze = || dropcheck(words!["analyze", recording, "--cask", cask]);
+    let mut form = dropcheck(words!["init", recording]).stdout;
     let words = ["is still to be filled in", "write what it is, such as"];
     let (number, word) = (("nan", ["is nan", "dropcheck init"]), ("\"FILL IN\"", words));
     let answers = [
@@ -51,10 +50,10 @@ fn a_unit_that_nobody_says_is_asked_for() {
     let rows: Vec<String> = (0..400).map(|i| format!("0.{i:04},{},7", i % 9)).collect();
     let table = format!("time_s,first_transverse,n\n{}\n", rows.join("\n"));
     fs::write(&recording, table).expect("a recording");
-    let form = dropcheck(["init".as_ref(), recording.as_os_str()]).stdout;
+    let form = dropcheck(words!["init", recording]).stdout;
     assert!(form.contains("unit = \"FILL IN\"") && form.contains("end = \"first\""), "{form}");
     fs::write(&cask, form.replace("= nan ", "= 1 ")).expect("a cask file");
-    let answer = dropcheck(["analyze".as_ref(), recording.as_os_str(), "--cask".as_ref(), cask.as_os_str()]);
+    let answer = dropcheck(words!["analyze", recording, "--cask", cask]);
     let told = answer.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
     for part in ["unit is \"FILL IN\"", "is still to be filled in", "unit = \"g\", \"m/s^2\""] {
         assert!(told.contains(part), "{part}: {told}");
@@ -85,14 +84,7 @@ fn a_campaign_into_the_folder_it_reads_can_be_repeated() {
     fs::copy(fixture("anf18-json.mcap"), folder.path().join("drop.mcap")).expect("a recording");
     let cask = fixture("anf18-json.toml");
     for _ in 0..2 {
-        let answer = dropcheck([
-            "batch".as_ref(),
-            folder.path().as_os_str(),
-            "--cask".as_ref(),
-            cask.as_os_str(),
-            "--out".as_ref(),
-            folder.path().as_os_str(),
-        ]);
+        let answer = dropcheck(words!["batch", folder.path(), "--cask", cask, "--out", folder.path()]);
         assert!(answer.status <= 1, "{}{}", answer.stdout, answer.stderr);
     }
     let table = fs::read_to_string(folder.path().join("campaign.csv")).expect("a table");

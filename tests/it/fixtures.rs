@@ -47,18 +47,18 @@ fn near(result: &Value, pointer: &str, expected: f64, tolerance: f64) {
 #[track_caller]
 fn sound(stem: &str) {
     let (answer, result, truth) = run(stem);
-    let of = |key: &str| number(&truth, &format!("/{key}")).expect(key);
-    let (speed, v0) = (of("speed"), of("v0"));
+    let known = |key: &str| number(&truth, &format!("/{key}")).expect(key);
+    let (speed, v0) = (known("speed"), known("v0"));
     near(&result, "/slap_down/speed", speed, SPEED * speed);
-    near(&result, "/slap_down/vertical_velocity", of("vz"), SPEED * speed);
-    near(&result, "/k", of("k"), RESTITUTION);
-    near(&result, "/first_impact/rebound_velocity", of("rebound_velocity"), RESTITUTION * v0);
+    near(&result, "/slap_down/vertical_velocity", known("vz"), SPEED * speed);
+    near(&result, "/k", known("k"), RESTITUTION);
+    near(&result, "/first_impact/rebound_velocity", known("rebound_velocity"), RESTITUTION * v0);
     near(&result, "/first_impact/impact_velocity", v0, SPEED * v0);
     // Speed of R relative to S is ω times at most the length.
-    near(&result, "/first_impact/angular_velocity", of("omega_rebound"), SPEED * of("omega_rebound"));
+    near(&result, "/first_impact/angular_velocity", known("omega_rebound"), SPEED * known("omega_rebound"));
     // A tenth of the contact: the separation is where the force fades out.
-    near(&result, "/first_impact/time", of("t_impact"), 0.1 * of("contact_s"));
-    near(&result, "/slap_down/time", of("t_impact") + of("slap_t"), 0.2 * of("contact_s"));
+    near(&result, "/first_impact/time", known("t_impact"), 0.1 * known("contact_s"));
+    near(&result, "/slap_down/time", known("t_impact") + known("slap_t"), 0.2 * known("contact_s"));
     assert_eq!(result["verdict"], "pass", "{stem}: {:?}", codes(&result));
     assert_eq!(answer.status, 0);
 }
@@ -188,11 +188,11 @@ fn one_end_alone_gives_the_first_impact_and_its_restitution() {
     let folder = tempfile::tempdir().expect("a folder");
     let answer = analyze(&fixture("anf18-json.mcap"), &with_channel("anf18-json", 0, folder.path()));
     let result = answer.json();
-    let of = |key: &str| number(&truth, &format!("/{key}")).expect(key);
-    near(&result, "/k", of("k"), RESTITUTION);
-    near(&result, "/first_impact/angular_velocity", of("omega_rebound"), 0.05 * of("omega_rebound"));
+    let known = |key: &str| number(&truth, &format!("/{key}")).expect(key);
+    near(&result, "/k", known("k"), RESTITUTION);
+    near(&result, "/first_impact/angular_velocity", known("omega_rebound"), 0.05 * known("omega_rebound"));
     // A tenth of the contact: the separation is where the force fades out.
-    near(&result, "/first_impact/duration", of("contact_s"), 0.1 * of("contact_s"));
+    near(&result, "/first_impact/duration", known("contact_s"), 0.1 * known("contact_s"));
     assert!(result["slap_down"]["speed"].is_null() && result["slap_down"]["time"].is_null());
     assert_eq!(codes(&result), ["missing_channel"]);
     assert_eq!((result["verdict"].as_str(), answer.status), (Some("fail"), 1));

@@ -2,12 +2,9 @@
 //!
 //! `BLESS=1 cargo test --test it golden` writes the files anew; read the difference before committing it.
 
-use std::path::{Path, PathBuf};
+use crate::moved;
+use crate::run::root;
 use std::process::Command;
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 /// Runs `analyze` in the repository's folder, so that paths read as a user would type them.
 fn analyze(stem: &str, extension: &str, more: &[&str]) -> String {
@@ -29,17 +26,7 @@ fn analyze(stem: &str, extension: &str, more: &[&str]) -> String {
 }
 
 fn hold(name: &str, found: &str) {
-    let path: PathBuf = root().join("tests/golden").join(name);
-    if std::env::var_os("BLESS").is_some() {
-        std::fs::write(&path, found).expect("tests/golden can be written");
-    }
-    let expected = std::fs::read_to_string(&path).expect("a golden file");
-    let differs = expected.lines().zip(found.lines()).position(|(a, b)| a != b);
-    assert!(
-        expected == found,
-        "{name} differs from line {} on:\n{found}",
-        differs.map_or(expected.lines().count().min(found.lines().count()), |i| i) + 1
-    );
+    moved::hold(&root().join("tests/golden").join(name), found, moved::lines);
 }
 
 #[test]

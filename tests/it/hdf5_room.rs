@@ -1,7 +1,7 @@
 //! From HDF5 files that do harm, or say what is no UTF-8, to one message or what they mean, and nothing of
 //! any other file.
 
-use crate::run::{Answer, dropcheck, fixture, fixtures};
+use crate::run::{Answer, dropcheck, fixture, fixtures, words};
 use hdf5_metno::types::{FixedAscii, FixedUnicode, VarLenAscii, VarLenUnicode};
 use hdf5_metno::{File, H5Type};
 use rand::rngs::ChaCha8Rng;
@@ -49,7 +49,7 @@ impl Made {
     }
 
     fn inspect(&self) -> Answer {
-        dropcheck(["inspect".as_ref(), self.path.as_os_str(), "--json".as_ref(), "-".as_ref()])
+        dropcheck(words!["inspect", self.path, "--json", "-"])
     }
 
     fn analyze(&self, source: &str) -> Answer {
@@ -157,12 +157,8 @@ fn nothing_but_the_recording_is_read() {
 
 #[test]
 fn what_only_hdf5_2_stores_is_read() {
-    let listing = dropcheck([
-        "inspect".as_ref(),
-        fixtures().join("reference/stored-by-hdf5-2.h5").as_os_str(),
-        "--json".as_ref(),
-        "-".as_ref(),
-    ]);
+    let made = fixtures().join("reference/stored-by-hdf5-2.h5");
+    let listing = dropcheck(words!["inspect", made, "--json", "-"]);
     let channel = &listing.json()["channels"][0];
     assert!(channel["samples"] == 100 && channel["range"].is_array(), "{channel}");
 }
@@ -187,7 +183,10 @@ fn no_plugin_runs() {
     std::fs::write(
         &source,
         format!(
-            "#include <stdio.h>\n__attribute__((constructor)) static void run(void) {{ fclose(fopen({:?}, \"w\")); }}\nint H5PLget_plugin_type(void) {{ return 0; }}\nconst void *H5PLget_plugin_info(void) {{ return 0; }}\n",
+            "#include <stdio.h>\n\
+             __attribute__((constructor)) static void run(void) {{ fclose(fopen({:?}, \"w\")); }}\n\
+             int H5PLget_plugin_type(void) {{ return 0; }}\n\
+             const void *H5PLget_plugin_info(void) {{ return 0; }}\n",
             ran.to_str().unwrap()
         ),
     )
@@ -207,7 +206,7 @@ fn no_plugin_runs() {
             .output();
         program.expect("the program starts")
     };
-    let inspected = run(&["inspect".as_ref(), made.path.as_os_str()]);
+    let inspected = run(&words!["inspect", made.path]);
     let shown = String::from_utf8(inspected.stdout).unwrap();
     let shown = shown.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
@@ -216,14 +215,7 @@ fn no_plugin_runs() {
         inspected.stderr
     );
     let (sound, cask) = (fixture("vhlw-rest.h5"), fixture("vhlw-rest.toml"));
-    let analyzed = run(&[
-        "analyze".as_ref(),
-        sound.as_os_str(),
-        "--cask".as_ref(),
-        cask.as_os_str(),
-        "--out".as_ref(),
-        report.as_os_str(),
-    ]);
+    let analyzed = run(&words!["analyze", sound, "--cask", cask, "--out", report]);
     assert!(analyzed.status.success() && analyzed.stderr.is_empty(), "{analyzed:?}");
     assert!(report.join("curves.h5").exists() && !ran.exists());
 }
@@ -245,13 +237,7 @@ fn no_file_is_opened_but_the_recording() {
         .args(["-ff", "-e", "trace=open,openat,execve,seccomp,landlock_restrict_self", "-o"])
         .arg(&trace)
         .arg(env!("CARGO_BIN_EXE_dropcheck"))
-        .args([
-            "analyze".as_ref(),
-            recording.as_os_str(),
-            "--cask".as_ref(),
-            cask.as_os_str(),
-            "--json".as_ref(),
-        ])
+        .args(words!["analyze", recording, "--cask", cask, "--json"])
         .arg("/dev/null")
         .output()
         .expect("strace runs");
@@ -290,7 +276,7 @@ fn a_missing_wall_is_told_and_no_soft_link_followed_without_it() {
     let mut strace = Command::new("strace");
     strace.args(["-f", "-e", "trace=open,openat,landlock_create_ruleset"]);
     strace.args(["-e", "inject=landlock_create_ruleset:error=ENOSYS", "-o"]).arg(&trace);
-    let inspect = ["inspect".as_ref(), made.path.as_os_str(), "--json".as_ref(), "-".as_ref()];
+    let inspect = words!["inspect", made.path, "--json", "-"];
     let answer = strace.arg(env!("CARGO_BIN_EXE_dropcheck")).args(inspect).output().expect("strace runs");
     let told = String::from_utf8(answer.stdout).unwrap();
     assert!(

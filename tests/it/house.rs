@@ -1,18 +1,19 @@
 //! From the source text to circles between files, tuples in signatures and type names that stand twice: holds
 //! what `docs/architecture.md` says.
 
-use crate::tidy::{code_of, module_path, root, rust_files};
+use crate::run::{files_below, root};
+use crate::tidy::{code_of, module_path};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
 /// The files of the program by their module, without comments, strings and unit tests.
-fn modules() -> BTreeMap<Vec<String>, String> {
+pub(crate) fn modules() -> BTreeMap<Vec<String>, String> {
     let is_test = |path: &Vec<String>| {
         path.last()
             .is_some_and(|last| last.ends_with("tests") || ["fuzz", "written"].contains(&last.as_str()))
             || path.iter().any(|part| part.starts_with("sample"))
     };
-    let files = rust_files(&root().join("src")).into_iter();
+    let files = files_below(&root().join("src"), "rs").into_iter();
     let read = files.map(|file| {
         let code = code_of(&fs::read_to_string(&file).expect("UTF-8"));
         let code = code.split("mod tests {").next().unwrap_or_default().to_owned();
@@ -76,13 +77,19 @@ fn led_to(path: &[String], own: &[String], modules: &BTreeMap<Vec<String>, Strin
     (base != own).then_some(base)
 }
 
-/// Which modules a module names by `use` or by a path; what it only passes on (`pub use`) it does not use.
-fn imports(own: &[String], code: &str, modules: &BTreeMap<Vec<String>, String>) -> BTreeSet<Vec<String>> {
+/// Which modules a module names by `use` or by a path, with or without those that it only passes on
+/// (`pub use`).
+pub(crate) fn imports(
+    own: &[String],
+    code: &str,
+    modules: &BTreeMap<Vec<String>, String>,
+    passed_on: bool,
+) -> BTreeSet<Vec<String>> {
     let (mut found, mut body) = (BTreeSet::new(), String::new());
     let mut rest = code;
     while let Some((before, (visible, tree, behind))) = next_use(rest) {
         body.push_str(before);
-        if visible.is_empty() {
+        if visible.is_empty() || passed_on {
             found.extend(paths(tree, &[]).iter().filter_map(|path| led_to(path, own, modules)));
         }
         rest = behind;
@@ -116,8 +123,8 @@ fn next_use(code: &str) -> Option<(&str, (&str, &str, &str))> {
 
 /// Files that lead back to themselves, each with the way.
 fn circles(modules: &BTreeMap<Vec<String>, String>) -> Vec<String> {
-    let of = |(own, code): (&Vec<String>, &String)| (own.clone(), imports(own, code, modules));
-    let imports: BTreeMap<Vec<String>, BTreeSet<Vec<String>>> = modules.iter().map(of).collect();
+    let used = |(own, code): (&Vec<String>, &String)| (own.clone(), imports(own, code, modules, false));
+    let imports: BTreeMap<Vec<String>, BTreeSet<Vec<String>>> = modules.iter().map(used).collect();
     let reached = |from: &Vec<String>| {
         let (mut all, mut open) = (BTreeSet::new(), vec![from.clone()]);
         while let Some(next) = open.pop() {
@@ -194,10 +201,10 @@ fn no_file_leads_back_to_itself() {
 
 #[test]
 fn no_signature_holds_a_tuple_of_three() {
-    let of = |(path, code): (&Vec<String>, &String)| {
+    let named = |(path, code): (&Vec<String>, &String)| {
         wide_tuples(code).into_iter().map(|name| format!("{}::{name}", path.join("::"))).collect::<Vec<_>>()
     };
-    let found: Vec<String> = modules().iter().flat_map(of).collect();
+    let found: Vec<String> = modules().iter().flat_map(named).collect();
     assert!(found.is_empty(), "what goes together is a struct:\n{}", found.join("\n"));
 }
 

@@ -153,7 +153,7 @@ fn channel_pulses(
     let until_s = left_s.min(next.unwrap_or(f64::INFINITY)).min(ends_s);
     // Two peaks of opposite signs may be equally large.
     let size = |estimate: Option<Estimate>| estimate.map(|e| Estimate { value: e.value.abs(), ..e });
-    let of = |peak: &ChannelPeak| {
+    let pulse = |peak: &ChannelPeak| {
         let channel = scene.channels.iter().find(|c| c.name == peak.name).expect("a channel of that name");
         let beyond_s = 7.0 / peak.cutoff_hz;
         let from_s = touch_s - beyond_s;
@@ -178,14 +178,14 @@ fn channel_pulses(
             ("pulse_length", peak.pulse_length, length_s),
         ]
     };
-    tables[end].channels.iter().flat_map(of).collect()
+    tables[end].channels.iter().flat_map(pulse).collect()
 }
 
 /// Distances from the truth in half-widths, and half-widths as shares of the truth, by end, limiter and name.
 type Distances = BTreeMap<(usize, bool, &'static str), Vec<[f64; 2]>>;
 
 fn distances(seed: u64, drops: u32) -> Distances {
-    let of = |number: u32| {
+    let of_drop = |number: u32| {
         let (file, recording) = campaign::scene(seed, SceneNumber::Undamaged(number), false);
         let motion = synth::simulate(&file.scene);
         let mut found = Vec::new();
@@ -214,7 +214,7 @@ fn distances(seed: u64, drops: u32) -> Distances {
         found
     };
     let mut all = Distances::new();
-    for (key, value) in (0..drops).into_par_iter().flat_map_iter(of).collect::<Vec<_>>() {
+    for (key, value) in (0..drops).into_par_iter().flat_map_iter(of_drop).collect::<Vec<_>>() {
         all.entry(key).or_default().push(value);
     }
     all
@@ -227,6 +227,7 @@ fn least_held(count: usize) -> f64 {
 }
 
 #[test]
+#[ignore = "a campaign of drops: .ci/long"]
 fn the_intervals_of_both_impacts_hold_the_truth() {
     let mut wrong = Vec::new();
     for ((end, is_limited, name), all) in distances(2011, DROPS) {
@@ -237,7 +238,8 @@ fn the_intervals_of_both_impacts_hold_the_truth() {
         let held = off.iter().filter(|o| **o <= 1.0).count();
         let middle = off.len() / 2;
         println!(
-            "end {end}, limiter {is_limited}, {name}: {held} of {} held, median {:.2} half-widths off, the median half-width {:.1} %",
+            "end {end}, limiter {is_limited}, {name}: {held} of {} held, median {:.2} half-widths off, \
+             the median half-width {:.1} %",
             off.len(),
             off[middle],
             100.0 * wide[middle]

@@ -1,13 +1,13 @@
 //! From recordings laid out in other ways than the examples to their numbers, or to what is wrong with them.
 
-use crate::run::{Answer, analyze, dropcheck, fixture, number};
+use crate::run::{Answer, analyze, dropcheck, fixture, number, words};
 use hdf5_metno::H5Type;
 use hdf5_metno::types::VarLenUnicode;
 use std::path::Path;
 use std::{fs, iter};
 
 fn init(path: &Path) -> Answer {
-    dropcheck(["init".as_ref(), path.as_os_str()])
+    dropcheck(words!["init", path])
 }
 
 /// The table of `rows` under a header, in a file of its own.

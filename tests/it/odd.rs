@@ -4,6 +4,7 @@
 //! `BLESS=1 cargo test --test it -- odd::` writes the outcomes anew; read the difference before committing
 //! it.
 
+use crate::moved;
 use crate::run::fixtures;
 use crate::same::{cask, hash, hash_of, placeless, told};
 use crate::stored::stored;
@@ -146,23 +147,21 @@ fn odd_files_are_read_or_refused_as_written_down() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut earlier = String::new();
     let found: String = cases.iter().map(|case| outcome(case, &files, folder.path(), &mut earlier)).collect();
-    let path = fixtures().join("odd/outcomes.txt");
-    if std::env::var_os("BLESS").is_some() {
-        fs::write(&path, &found).expect("fixtures/odd can be written");
-    }
-    let expected = fs::read_to_string(&path).expect("outcomes");
+    moved::hold(&fixtures().join("odd/outcomes.txt"), &found, apart);
+}
+
+/// The outcomes that differ, each with its lines of then and now.
+fn apart(old: &str, new: &str) -> Vec<String> {
     // A line that is not indented begins an outcome.
-    let blocks = |text: &str| -> Vec<String> {
-        text.replace("\n    ", "\r    ").lines().map(|block| block.replace('\r', "\n")).collect()
+    let blocks = |text: &str| -> BTreeMap<String, String> {
+        let text = text.replace("\n    ", "\r    ");
+        let blocks = text.lines().map(|block| block.split_once('\r').unwrap_or((block, "")));
+        blocks.map(|(asked, lines)| (asked.to_owned(), lines.replace('\r', "\n"))).collect()
     };
-    let (expected, found) = (blocks(&expected), blocks(&found));
-    let apart: Vec<String> = expected
-        .iter()
-        .zip(&found)
-        .filter(|(old, new)| old != new)
-        .map(|(old, new)| format!("was\n{old}\nis\n{new}"))
-        .collect();
-    let shown = apart.iter().take(5).map(String::as_str).collect::<Vec<_>>().join("\n");
-    assert!(apart.is_empty(), "{} outcomes differ:\n{shown}", apart.len());
-    assert_eq!(expected.len(), found.len(), "cases and outcomes");
+    let (old, new) = (blocks(old), blocks(new));
+    let asked: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
+    let none = String::new();
+    let pair = |asked| [&old, &new].map(|blocks| blocks.get(asked).unwrap_or(&none).as_str());
+    let differ = asked.into_iter().map(|asked| (asked, pair(asked))).filter(|(_, [old, new])| old != new);
+    differ.map(|(asked, [old, new])| format!("{asked}\n{}", moved::lines(old, new).join("\n"))).collect()
 }

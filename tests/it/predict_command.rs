@@ -1,7 +1,7 @@
 //! From what a person asks of `predict` to rows, files, limits and messages.
 
 use crate::command_line::{Bench, at_fault};
-use crate::run::{Answer, dropcheck, number};
+use crate::run::{Answer, dropcheck, number, words};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
@@ -19,7 +19,7 @@ fn predict(cask: &str, words: &str) -> Answer {
     let bench = Bench::new();
     let path = bench.put("cask.toml", cask);
     let words = words.split_whitespace().map(std::ffi::OsStr::new);
-    dropcheck(["predict".as_ref(), "--cask".as_ref(), path.as_os_str()].into_iter().chain(words))
+    dropcheck(words!["predict", "--cask", path].into_iter().chain(words))
 }
 
 /// The rows of `--json -`.

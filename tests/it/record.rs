@@ -1,7 +1,7 @@
 //! From a result alone to the same result again, and to what differs.
 
 use crate::command_line::at_fault;
-use crate::run::{analyze, dropcheck, fixture};
+use crate::run::{analyze, dropcheck, fixture, words};
 use std::fs;
 use std::path::Path;
 
@@ -11,11 +11,11 @@ fn a_result_alone_gives_the_same_result_again() {
     let (recording, cask) = (fixture("vhlw-rest.h5"), fixture("vhlw-rest.toml"));
     let (first, second) = (folder.path().join("first.json"), folder.path().join("second.json"));
     let with = |more: [&std::ffi::OsStr; 4], json: &Path| {
-        let words = ["analyze".as_ref(), recording.as_os_str(), "--json".as_ref(), json.as_os_str()];
+        let words = words!["analyze", recording, "--json", json];
         dropcheck(words.into_iter().chain(more.into_iter().filter(|word| !word.is_empty())))
     };
-    with(["--cask".as_ref(), cask.as_os_str(), "--without".as_ref(), "hum".as_ref()], &first);
-    let answer = with(["--from".as_ref(), first.as_os_str(), "".as_ref(), "".as_ref()], &second);
+    with(words!["--cask", cask, "--without", "hum"], &first);
+    let answer = with(words!["--from", first, "", ""], &second);
     assert!(answer.stdout.contains("The same as"), "{}", answer.stdout);
     let [before, after] = [&first, &second].map(|path| fs::read(path).expect("a result"));
     assert!(before == after, "not to the byte");
@@ -37,13 +37,13 @@ fn a_result_alone_gives_the_same_result_again() {
     // What is changed is said.
     let changed = String::from_utf8(before).expect("UTF-8").replace("angle_deg = 15", "angle_deg = 16");
     fs::write(&first, changed).expect("a file");
-    let answer = with(["--from".as_ref(), first.as_os_str(), "".as_ref(), "".as_ref()], &second);
+    let answer = with(words!["--from", first, "", ""], &second);
     assert!(
         answer.stdout.contains("settings.drop.angle_deg.value: 15.0 before, 16.0 now"),
         "{}",
         answer.stdout
     );
-    at_fault(&with(["--from".as_ref(), cask.as_os_str(), "".as_ref(), "".as_ref()], &second), &["not JSON"]);
+    at_fault(&with(words!["--from", cask, "", ""], &second), &["not JSON"]);
 }
 
 #[test]
@@ -58,13 +58,16 @@ fn what_is_said_of_the_test_stands_in_the_record_and_what_was_seen_is_held_again
         analyze(&fixture("anf18-json.mcap"), &cask)
     };
     // A PNG of one pixel, by another writer.
-    let pixel = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x01\0\0\0\x01\x08\x02\0\0\0\x90wS\xde\0\0\0\x0cIDATx\x9cc\xf8\xcf\xc0\0\0\x03\x01\x01\0\xc9\xfe\x92\xef\0\0\0\0IEND\xaeB`\x82";
+    let pixel = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x01\0\0\0\x01\x08\x02\0\0\0\x90wS\xde\0\0\0\x0c\
+        IDATx\x9cc\xf8\xcf\xc0\0\0\x03\x01\x01\0\xc9\xfe\x92\xef\0\0\0\0IEND\xaeB`\x82";
     std::fs::write(folder.path().join("before.png"), pixel).expect("room");
     std::fs::write(folder.path().join("words.png"), "no picture").expect("room");
-    let test = "[test]\nid = \"SD-14\"\ndate = 2026-11-22T09:40:00+01:00\nphotos = [\"before.png\"]\n[test.more]\nHook = 4\n";
+    let test = "[test]\nid = \"SD-14\"\ndate = 2026-11-22T09:40:00+01:00\n\
+                photos = [\"before.png\"]\n[test.more]\nHook = 4\n";
     // 20.62 ± 0.40 m/s: (20.62 − 20.4)/√(0.40² + 0.30²) = 0.45; k 0.551 ± 0.040: (0.551 − 0.7)/√(0.040² +
     // 0.030²) = −3.0.
-    let seen = "[observed]\nslap_down_speed_m_s = { value = 20.4, u95 = 0.3, by = \"video\" }\nk = { value = 0.7, u95 = 0.03 }\n";
+    let seen = "[observed]\nslap_down_speed_m_s = { value = 20.4, u95 = 0.3, by = \"video\" }\n\
+                k = { value = 0.7, u95 = 0.03 }\n";
     let result = with(&format!("{test}{seen}")).json();
     assert_eq!(result["test"]["id"], "SD-14");
     assert_eq!(result["test"]["date"], "2026-11-22T09:40:00+01:00");
@@ -148,7 +151,7 @@ fn a_shell_completes_and_man_has_pages() {
         );
     }
     let folder = tempfile::tempdir().expect("a folder");
-    assert_eq!(dropcheck(["man".as_ref(), folder.path().as_os_str()]).status, 0);
+    assert_eq!(dropcheck(words!["man", folder.path()]).status, 0);
     let page = fs::read_to_string(folder.path().join("dropcheck-analyze.1")).expect("a page");
     assert!(page.contains(".TH") && page.contains("csv\\-locale"));
 }
@@ -158,7 +161,8 @@ fn the_page_works_in_a_browser() {
     let has_tools = std::process::Command::new("python3")
         .args([
             "-c",
-            "import axe_core_python, selenium, shutil, sys; sys.exit(not all(map(shutil.which, ('chromedriver', 'pdftotext'))))",
+            "import axe_core_python, selenium, shutil, sys\n\
+             sys.exit(not all(map(shutil.which, ('chromedriver', 'pdftotext'))))",
         ])
         .output();
     if !has_tools.is_ok_and(|answer| answer.status.success()) {
@@ -170,14 +174,7 @@ fn the_page_works_in_a_browser() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("report");
     let cask = fixture("anf18-json.toml");
-    dropcheck([
-        "analyze".as_ref(),
-        fixture("anf18-json.mcap").as_os_str(),
-        "-c".as_ref(),
-        cask.as_os_str(),
-        "-o".as_ref(),
-        out.as_os_str(),
-    ]);
+    dropcheck(words!["analyze", fixture("anf18-json.mcap"), "-c", cask, "-o", out]);
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/browser/page.py");
     let checked = std::process::Command::new("python3").arg(script).arg(out.join("report.html")).output();
     let checked = checked.expect("python");

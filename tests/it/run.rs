@@ -15,6 +15,12 @@ pub struct Answer {
     pub stderr: String,
 }
 
+/// Words for the command line: texts and paths.
+macro_rules! words {
+    ($($word:expr),*) => { [$(std::ffi::OsStr::new(&$word)),*] };
+}
+pub(crate) use words;
+
 /// Runs the built program.
 pub fn dropcheck<S: AsRef<OsStr>>(words: impl IntoIterator<Item = S>) -> Answer {
     let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_dropcheck"))
@@ -32,14 +38,7 @@ pub fn dropcheck<S: AsRef<OsStr>>(words: impl IntoIterator<Item = S>) -> Answer 
 
 /// Runs `analyze RECORDING --cask CASK --json -`.
 pub fn analyze(recording: &Path, cask: &Path) -> Answer {
-    dropcheck([
-        OsStr::new("analyze"),
-        recording.as_os_str(),
-        OsStr::new("--cask"),
-        cask.as_os_str(),
-        OsStr::new("--json"),
-        OsStr::new("-"),
-    ])
+    dropcheck(words!["analyze", recording, "--cask", cask, "--json", "-"])
 }
 
 impl Answer {
@@ -51,9 +50,29 @@ impl Answer {
     }
 }
 
+/// The project's root.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Every file below a folder whose name ends so, sorted.
+pub fn files_below(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            found.extend(files_below(&path, extension));
+        } else if path.extension().is_some_and(|own| own == extension) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
 /// The folder of all fixtures.
 pub fn fixtures() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures")
+    root().join("fixtures")
 }
 
 /// An example of the fixtures: a recording, its cask file or a scene.

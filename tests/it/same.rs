@@ -1,12 +1,13 @@
 //! From fixtures, corpus and six hundred scenes to what the program says of each: the same as when
 //! `tests/same` was written.
 //!
-//! A change that moves code and no result passes; one that changes results shows which. `BLESS=1 cargo test
-//! --test it same` writes the tables anew and keeps the whole answers in the target folder: a later run shows
-//! against them what differs in each. To see what a change did, bless at the commit before it. Every scene is
-//! held with `cargo test --release --test it same -- --ignored`.
+//! A change that moves code and no result passes; one that changes results shows which, by the parts of the
+//! answer. A run that finds an answer in the table keeps the whole of it in the target folder: against that a
+//! later run shows each value that moved. `BLESS=1 cargo test --test it -- same:: --include-ignored` writes
+//! the tables anew and shows the same.
 
-use crate::run::{analyze, dropcheck, fixture, fixtures};
+use crate::moved::{self, is_renewed};
+use crate::run::{analyze, dropcheck, fixture, fixtures, words};
 use crate::stored::stored;
 use dropcheck::ingest::{self, IngestError};
 use dropcheck::lab::data::SceneNumber;
@@ -15,6 +16,7 @@ use dropcheck::{lab, report};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -27,8 +29,6 @@ const SCENES: u32 = 300;
 const STRIDE: usize = 10;
 /// How far a number may move on a machine whose sines and powers differ in their last digit, relative.
 const OTHER_MACHINE: f64 = 1e-6;
-/// Lines of a table that a failure shows.
-const SHOWN: usize = 12;
 
 /// What the program says of one recording, without the search for a usual slip: that takes fifteen more
 /// analyses of each damaged scene, and the fixtures hold it.
@@ -98,8 +98,13 @@ pub fn hash_of(numbers: impl Iterator<Item = f64>) -> String {
     hash(&numbers.map(|number| number.to_bits().to_string()).collect::<Vec<_>>().join(" "))
 }
 
-/// Name, verdict, weighty codes, speed, k, hash of the result, hash of the listing.
-fn row(said: &Said) -> [String; 7] {
+/// What the cells of a row say.
+const COLUMNS: [&str; 8] = ["name", "verdict", "codes", "speed", "k", "result", "listing", "parts"];
+/// Cells that another machine gives too: its last digits differ, and with them the hashes.
+const CLEAR: usize = 5;
+
+/// A recording's row of the table.
+fn row(said: &Said, parts: &[String]) -> [String; COLUMNS.len()] {
     let result: Value = serde_json::from_str(&said.result).unwrap_or(Value::Null);
     let verdict = result["verdict"].as_str().unwrap_or("refused").to_owned();
     let weighty = result["quality"].as_array().into_iter().flatten().filter(|i| i["severity"] != "note");
@@ -111,7 +116,73 @@ fn row(said: &Said) -> [String; 7] {
         number("value").zip(number("u95")).map_or_else(|| "–".to_owned(), |(v, u95)| format!("{v} ± {u95}"))
     };
     let [speed, k] = [estimate("/slap_down/speed"), estimate("/k")];
-    [said.name.clone(), verdict, codes.join(" "), speed, k, hash(&said.result), hash(&said.listing)]
+    let [whole, listing] = [&said.result, &said.listing].map(|text| hash(text));
+    // The hash of the whole holds the answer: two digits of each part only tell where it moved.
+    let part = |name: &String| {
+        result.get(name).map_or_else(|| "--".to_owned(), |part| hash(&part.to_string())[..2].to_owned())
+    };
+    let parts = parts.iter().filter(|_| result.is_object()).map(part).collect();
+    [said.name.clone(), verdict, codes.join(" "), speed, k, whole, listing, parts]
+}
+
+/// A table as it was written.
+struct Table {
+    is_same_machine: bool,
+    /// Top-level keys of the results, in the order of their digits.
+    parts: Vec<String>,
+    rows: BTreeMap<String, Vec<String>>,
+}
+
+impl Table {
+    fn read(text: &str) -> Self {
+        let cells = |line: &str| {
+            let cells = line.split('\t').map(str::to_owned).chain(std::iter::repeat(String::new()));
+            cells.take(COLUMNS.len()).collect::<Vec<_>>()
+        };
+        let head = |word: &str| text.lines().find_map(|line| line.strip_prefix(word)).unwrap_or_default();
+        let rows = text.lines().filter(|line| !line.starts_with("# ")).map(cells);
+        Self {
+            is_same_machine: head("# mathematics ") == mathematics(),
+            parts: head("# parts ").split(' ').map(str::to_owned).collect(),
+            rows: rows.map(|row| (row[0].clone(), row)).collect(),
+        }
+    }
+
+    fn written(said: &[Said]) -> String {
+        let keys = |said: &Said| serde_json::from_str::<serde_json::Map<_, Value>>(&said.result).ok();
+        let parts: BTreeSet<String> =
+            said.iter().filter_map(keys).flat_map(|keys| keys.into_iter().map(|(key, _)| key)).collect();
+        let parts: Vec<String> = parts.into_iter().collect();
+        let head = format!("# mathematics {}\n# parts {}\n", mathematics(), parts.join(" "));
+        head + &said.iter().map(|said| row(said, &parts).join("\t") + "\n").collect::<String>()
+    }
+
+    /// What differs in a recording's row from the one written; `None` where nothing does.
+    fn difference(&self, said: &Said) -> Option<String> {
+        let Some(old) = self.rows.get(&said.name) else {
+            return Some(format!("{}: not in the table", said.name));
+        };
+        let new = row(said, &self.parts);
+        let (cells, tolerance) =
+            if self.is_same_machine { (COLUMNS.len(), 0.0) } else { (CLEAR, OTHER_MACHINE) };
+        let differ: Vec<usize> = (0..cells).filter(|&i| !is_alike(&old[i], &new[i], tolerance)).collect();
+        if differ.is_empty() {
+            return None;
+        }
+        let clear = differ.iter().filter(|&&i| i < CLEAR).map(|&i| {
+            let value = |cell: &str| cell.split(" ± ").next().unwrap_or_default().to_owned();
+            let apart = moved::apart(&value(&old[i]), &value(&new[i]));
+            format!("{} {} → {}{apart}", COLUMNS[i], old[i], new[i])
+        });
+        let digits = |row: &[String], i: usize| row[7].get(2 * i..2 * i + 2).map(str::to_owned);
+        let parts = (0..self.parts.len()).filter(|&i| digits(old, i) != digits(&new, i));
+        let parts = parts.map(|i| format!("/{}", self.parts[i]));
+        let whole = [(5, "result", &said.result), (6, "listing", &said.listing)];
+        let whole = whole.into_iter().filter(|(i, ..)| differ.contains(i));
+        let whole = whole.flat_map(|(i, what, new)| against_kept(&said.name, what, &old[i], new));
+        let moved: Vec<String> = clear.chain(parts).chain(whole).collect();
+        Some(format!("{}: {}", said.name, moved::first(&moved).replace('\n', "\n    ")))
+    }
 }
 
 /// Whether both cells say the same, numbers to `tolerance`.
@@ -123,67 +194,41 @@ fn is_alike(old: &str, new: &str, tolerance: f64) -> bool {
         })
 }
 
-/// What differs in a row from the one of the same name in the table; `None` where nothing does.
-fn difference(table: &str, said: &Said, is_same_machine: bool) -> Option<String> {
-    let new = row(said);
-    let Some(old) =
-        table.lines().map(|line| line.split('\t').collect::<Vec<_>>()).find(|old| old[0] == new[0])
-    else {
-        return Some(format!("{}: not in the table", said.name));
-    };
-    // On another machine the last digits differ, and with them the hashes.
-    let (cells, tolerance) = if is_same_machine { (new.len(), 0.0) } else { (5, OTHER_MACHINE) };
-    let differ = (0..cells).filter(|&i| !is_alike(old.get(i).unwrap_or(&""), &new[i], tolerance));
-    let differ: Vec<String> =
-        differ.map(|i| format!("{} → {}", old.get(i).unwrap_or(&"nothing"), new[i])).collect();
-    (!differ.is_empty()).then(|| format!("{}: {}{}", said.name, differ.join(", "), lines_apart(said)))
-}
-
-/// The folder of the whole answers as they were when the tables were written.
-fn kept_folder() -> PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).join("same")
-}
-
-/// The whole answer of that name.
+/// The whole answer of that name as it was when a run last found it in the table.
 fn kept(name: &str, what: &str) -> PathBuf {
-    kept_folder().join(format!("{}.{what}", name.replace('/', "_")))
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("same");
+    folder.join(format!("{}.{what}", name.replace('/', "_")))
 }
 
-/// The first lines in which an answer differs from the kept one.
-fn lines_apart(said: &Said) -> String {
-    let mut shown = Vec::new();
-    for (what, new) in [("result", &said.result), ("listing", &said.listing)] {
-        let Ok(old) = fs::read_to_string(kept(&said.name, what)) else {
-            return "\n    no whole answer is kept: bless at the commit before".to_owned();
-        };
-        let apart = old.lines().zip(new.lines()).filter(|(old, new)| old != new).take(4);
-        shown.extend(apart.map(|(old, new)| format!("\n    {what}: {} → {}", old.trim(), new.trim())));
-        let (before, now) = (old.lines().count(), new.lines().count());
-        shown.extend((before != now).then(|| format!("\n    {what}: {before} → {now} lines")));
+/// Where an answer differs from the kept one, if that is the one of the table.
+fn against_kept(name: &str, what: &str, of_table: &str, new: &str) -> Vec<String> {
+    match fs::read_to_string(kept(name, what)) {
+        Ok(old) if hash(&old) == of_table => moved::pointers(&old, new),
+        _ => vec![format!("{what}: the whole is kept by a run before the change")],
     }
-    shown.concat()
 }
 
 /// Holds what is said against the table of that name, or writes it.
 fn hold(table: &str, said: &[Said]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/same").join(format!("{table}.tsv"));
-    let machine = format!("# mathematics {}", mathematics());
-    if std::env::var_os("BLESS").is_some() {
-        let rows = said.iter().map(|said| row(said).join("\t")).collect::<Vec<_>>().join("\n");
-        fs::write(&path, format!("{machine}\n{rows}\n")).expect("tests/same can be written");
-        fs::create_dir_all(kept_folder()).expect("the target folder");
-        for said in said {
+    let stored = Table::read(&fs::read_to_string(&path).unwrap_or_default());
+    let differences: Vec<Option<String>> = said.iter().map(|said| stored.difference(said)).collect();
+    fs::create_dir_all(kept("", "").parent().expect("a folder")).expect("the target folder");
+    for (said, difference) in said.iter().zip(&differences) {
+        if difference.is_none() || is_renewed() {
             fs::write(kept(&said.name, "result"), &said.result).expect("the target folder");
             fs::write(kept(&said.name, "listing"), &said.listing).expect("the target folder");
         }
-        return;
     }
-    let old = fs::read_to_string(&path).expect("a table");
-    let is_same_machine = old.starts_with(&machine);
-    let differ: Vec<String> =
-        said.iter().filter_map(|said| difference(&old, said, is_same_machine)).collect();
-    let shown = differ.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join("\n");
-    assert!(differ.is_empty(), "{} of {} differ from {table}.tsv:\n{shown}", differ.len(), said.len());
+    let differ: Vec<String> = differences.into_iter().flatten().collect();
+    let told =
+        format!("{} of {} differ from {table}.tsv:\n{}", differ.len(), said.len(), moved::first(&differ));
+    if is_renewed() {
+        fs::write(&path, Table::written(said)).expect("tests/same can be written");
+        moved::tell(&told);
+    } else {
+        assert!(differ.is_empty(), "{told}");
+    }
 }
 
 #[test]
@@ -199,8 +244,7 @@ fn the_fixtures_by_the_program() {
         .filter(is_recording)
         .map(|recording| {
             let cask = recording.with_extension("toml");
-            let listed =
-                dropcheck(["inspect".as_ref(), recording.as_os_str(), "--json".as_ref(), "-".as_ref()]);
+            let listed = dropcheck(words!["inspect", recording, "--json", "-"]);
             let found = analyze(recording, &cask);
             let [result, listing] =
                 [found, listed].map(|answer| placeless(&(answer.stdout + &answer.stderr), recording, &cask));
@@ -297,13 +341,13 @@ fn scenes(stride: usize) -> Vec<Said> {
 #[test]
 fn a_tenth_of_the_scenes_in_every_format() {
     // The table is written by the run of all.
-    if std::env::var_os("BLESS").is_none() {
+    if !is_renewed() {
         hold("scenes", &scenes(STRIDE));
     }
 }
 
 #[test]
-#[ignore = "takes minutes; with --release one"]
+#[ignore = "2,400 analyses: .ci/long"]
 fn every_scene_in_every_format() {
     hold("scenes", &scenes(1));
 }

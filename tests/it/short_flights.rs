@@ -22,7 +22,8 @@ const DROPS: [Drop; 6] = [
 fn scene_text((angle_deg, pulse_ms, k, modes, damping): Drop) -> String {
     use std::fmt::Write;
     let mut text = format!(
-        "name = \"short\"\nseed = 1\n[cask]\nname = \"ANF-18\"\nmass_kg = 4466.0\nlength_m = 5.512\nheight_m = 0.792\n\
+        "name = \"short\"\nseed = 1\n[cask]\nname = \"ANF-18\"\nmass_kg = 4466.0\nlength_m = 5.512\n\
+         height_m = 0.792\n\
          [drop]\nheight_m = 9.0\nangle_deg = {angle_deg}\n[contact]\nfriction = \"rough\"\n\
          [first_end]\npulse_ms = {pulse_ms}\nk = {k}\n[second_end]\npulse_ms = 4.0\nk = 0.3\n\
          [recording]\nbefore_s = 0.1\nafter_s = 0.05\n"
@@ -34,8 +35,10 @@ fn scene_text((angle_deg, pulse_ms, k, modes, damping): Drop) -> String {
     for (name, end, position_m) in [("A1", "first", 0.15), ("A2", "second", 5.362)] {
         let _ = write!(
             text,
-            "[[channel]]\nname = \"{name}\"\nend = \"{end}\"\naxis = \"transverse\"\nposition_m = {position_m}\n\
-             sample_rate_hz = 25000\nfull_scale = 20000.0\nbits = 16\nanti_alias_hz = 8000.0\nwhite_noise_g = 0.1\n"
+            "[[channel]]\nname = \"{name}\"\nend = \"{end}\"\naxis = \"transverse\"\n\
+             position_m = {position_m}\n\
+             sample_rate_hz = 25000\nfull_scale = 20000.0\nbits = 16\n\
+             anti_alias_hz = 8000.0\nwhite_noise_g = 0.1\n"
         );
     }
     text

@@ -1,20 +1,8 @@
 //! Made-up answers of known delay to the delay that is found.
 
 use super::*;
+use crate::data::example::{self, noise};
 use std::f64::consts::{PI, TAU};
-
-fn noise(i: usize, seed: u64) -> f64 {
-    // Sum of hashes: nearly normal, standard deviation 1.
-    let hash = |n: u64| {
-        let mut x =
-            (i as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (seed + n).wrapping_mul(0xD1B5_4A32_D192_ED03);
-        x ^= x >> 32;
-        x = x.wrapping_mul(0xD6E8_FEB8_6659_FD93);
-        x ^= x >> 32;
-        f64::from(u32::try_from(x >> 32).unwrap_or(0)) / f64::from(u32::MAX) - 0.5
-    };
-    (0..4).map(hash).sum::<f64>() * 3.0_f64.sqrt()
-}
 
 /// What the rest of a body answers to a half sine of 5 ms from 20 ms on: its rigid share and one mode driven
 /// by the force.
@@ -42,7 +30,7 @@ fn driven(
         if t > 0.06 {
             break;
         }
-        out.push(rigid * force(t) + bending * pull(t, q, v) + 0.5 * noise(i as usize, seed));
+        out.push(rigid * force(t) + bending * pull(t, q, v) + 0.5 * noise(i, seed));
         for n in 0..fine {
             let a = pull(t + f64::from(n) * step_s, q, v);
             v += a * step_s;
@@ -56,19 +44,10 @@ fn signal(name: &str, end: End, force_m_s2: Vec<f64>) -> Signal {
     Signal {
         name: name.into(),
         end,
-        axis: Axis::Transverse,
         position_m: if end == End::First { 0.2 } else { 5.3 },
-        offset_m: 0.0,
-        start_s: 0.0,
-        sample_rate_hz: 1e4,
-        force_m_s2,
-        removed_offset_m_s2: 0.0,
-        u_offset_m_s2: 0.0,
         noise_m_s2: 0.5,
-        noise_spectrum: vec![],
         free_fall_s: 0.02,
-        clipped: vec![],
-        gaps: vec![],
+        ..example::signal(1e4, force_m_s2)
     }
 }
 

@@ -1,19 +1,10 @@
 //! Made-up channels to what `worth` says of them.
 
 use super::*;
-use crate::data::{At, Cask, Contact, Drop, IssueCode};
+use crate::data::{At, Contact, Drop, IssueCode, example};
 
 fn cask_file() -> CaskFile {
-    let cask = Cask {
-        name: "A".into(),
-        mass_kg: 4000.0,
-        length_m: 5.0,
-        height_m: 0.0,
-        width_m: None,
-        cog_m: 2.5,
-        inertia_kg_m2: 8000.0,
-        is_body: false,
-    };
+    let cask = example::cask(4000.0, 5.0, 0.0);
     CaskFile::plain(cask, Drop { impact_velocity_m_s: 13.29, ..Drop::of_height(9.0, 0.25) }, Contact::Rough)
 }
 
@@ -26,19 +17,11 @@ fn signal(name: &str, end: End, position_m: f64, peak: f64) -> Signal {
     Signal {
         name: name.into(),
         end,
-        axis: Axis::Transverse,
         position_m,
-        offset_m: 0.0,
-        start_s: 0.0,
-        sample_rate_hz: 1e4,
-        force_m_s2: (0..1000).map(force).collect(),
-        removed_offset_m_s2: 0.0,
-        u_offset_m_s2: 0.0,
         noise_m_s2: 1.0,
         noise_spectrum: vec![(10.0, 2e-4), (5000.0, 2e-4)],
         free_fall_s: 0.2,
-        clipped: vec![],
-        gaps: vec![],
+        ..example::signal(1e4, (0..1000).map(force).collect())
     }
 }
 
@@ -47,12 +30,7 @@ fn pair() -> [Signal; 2] {
 }
 
 fn found(signals: &[Signal]) -> Vec<(IssueCode, Option<String>)> {
-    let events = Events {
-        first_contact: Some(At::exactly(0.02)),
-        separation: Some(At::exactly(0.025)),
-        slap_down: Some(At::exactly(0.09)),
-        ..Events::default()
-    };
+    let events = Events { separation: Some(At::exactly(0.025)), ..example::events(0.02, 0.09) };
     judge_by_themselves(signals, &events, &cask_file()).into_iter().map(|i| (i.code, i.channel)).collect()
 }
 
@@ -67,11 +45,7 @@ fn noise_that_moves_the_velocity_is_named() {
     // White: u² = S/2 (T + T²/T0) = S · 0.0472 s: 0.043 m/s for 0.04, below 0.5 % of 13.29; 0.22 for 1, a
     // note; 0.69 for 10, above 3 %.
     let severity = |noisy: &[Signal]| {
-        let events = Events {
-            first_contact: Some(At::exactly(0.02)),
-            slap_down: Some(At::exactly(0.09)),
-            ..Events::default()
-        };
+        let events = example::events(0.02, 0.09);
         judge_by_themselves(noisy, &events, &cask_file()).first().map(|i| (i.code, i.severity))
     };
     noisy[0].noise_spectrum = vec![(10.0, 0.04), (5000.0, 0.04)];

@@ -141,23 +141,13 @@ fn thinned(angles_deg: &[f64], most: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Cask, Uncertain};
+    use crate::data::{Uncertain, example};
 
     pub(super) const V0_M_S: f64 = 13.288_340_754_210_061; // √(2 · 9.81 · 9)
 
     /// A uniform cask as long and heavy as ANF-18; a section of 0 makes it the thin rod.
     pub(super) fn cask_file(height_m: f64) -> CaskFile {
-        let (mass_kg, length_m) = (4466.0, 5.512);
-        let cask = Cask {
-            name: "C".into(),
-            mass_kg,
-            length_m,
-            height_m,
-            width_m: None,
-            cog_m: length_m / 2.0,
-            inertia_kg_m2: mass_kg * (length_m * length_m + height_m * height_m) / 12.0,
-            is_body: height_m > 0.0,
-        };
+        let cask = example::cask(4466.0, 5.512, height_m);
         CaskFile::plain(
             cask,
             Drop { impact_velocity_m_s: V0_M_S, ..Drop::of_height(9.0, 15_f64.to_radians()) },

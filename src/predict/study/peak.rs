@@ -229,6 +229,7 @@ pub(super) fn bands(marks: &[(f64, bool)], holds: impl Fn(f64) -> bool) -> Vec<(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::example;
 
     const FREE: Option<FlightRegime> = Some(FlightRegime::Free);
     const KEPT: Option<FlightRegime> = Some(FlightRegime::Contact);
@@ -245,17 +246,7 @@ mod tests {
 
     #[test]
     fn a_cask_that_turns_over_has_no_critical_angle_there() {
-        let cask = crate::data::Cask {
-            name: "ANF-10".into(),
-            mass_kg: 1429.0,
-            length_m: 4.725,
-            height_m: 0.565,
-            width_m: None,
-            cog_m: 2.3625,
-            inertia_kg_m2: 1429.0 * (4.725_f64.powi(2) + 0.565_f64.powi(2)) / 12.0,
-            is_body: true,
-        };
-        let body = crate::predict::body(&cask, crate::data::BodyModel::Body);
+        let body = example::body(1429.0, 4.725, 0.565);
         let at = |angle_deg: f64| {
             let drop = crate::data::Drop {
                 impact_velocity_m_s: 13.288,

@@ -27,11 +27,6 @@ impl Point {
     pub fn second_end(body: &Body) -> Self {
         Self { axial_m: body.length_m - body.cog_m, transverse_m: -body.height_m / 2.0 }
     }
-
-    /// Distance from the centre of gravity, m.
-    pub fn distance_m(self) -> f64 {
-        self.axial_m.hypot(self.transverse_m)
-    }
 }
 
 /// Where a rigid body is and how it moves; `turn_rad_s` is dφ/dt, counterclockwise.
@@ -60,10 +55,7 @@ impl Motion {
 
     /// The point's velocity, m/s.
     pub fn velocity_at_m_s(&self, point: Point) -> Vector {
-        self.velocity_of_arm_m_s(self.arm_m(point))
-    }
-
-    fn velocity_of_arm_m_s(&self, arm_m: Vector) -> Vector {
+        let arm_m = self.arm_m(point);
         Vector {
             x: self.velocity_m_s.x - self.turn_rad_s * arm_m.z,
             z: self.velocity_m_s.z + self.turn_rad_s * arm_m.x,
@@ -112,56 +104,5 @@ impl Motion {
         0.5 * body.mass_kg * speed_m_s.powi(2)
             + 0.5 * body.inertia_kg_m2 * self.turn_rad_s.powi(2)
             + body.mass_kg * gravity_m_s2 * self.position_m.z
-    }
-}
-
-/// How a point answers to impulses: its velocity at first, and the change of it by 1 N s along x and along z.
-#[derive(Clone, Copy, Debug)]
-pub struct Answer {
-    pub arm_m: Vector,
-    pub velocity_m_s: Vector,
-    pub by_x: Vector,
-    pub by_z: Vector,
-}
-
-impl Answer {
-    /// Found by pushing the body and looking.
-    pub fn of(body: &Body, motion: &Motion, point: Point) -> Self {
-        let arm_m = motion.arm_m(point);
-        let rest = Motion { velocity_m_s: Vector { x: 0.0, z: 0.0 }, turn_rad_s: 0.0, ..*motion };
-        let answer = |x, z| rest.pushed(body, arm_m, Vector { x, z }).velocity_of_arm_m_s(arm_m);
-        Self {
-            arm_m,
-            velocity_m_s: motion.velocity_of_arm_m_s(arm_m),
-            by_x: answer(1.0, 0.0),
-            by_z: answer(0.0, 1.0),
-        }
-    }
-
-    /// The tangential impulse that leaves no slip beside the normal impulse given, N s.
-    pub fn stopping_n_s(&self, normal_n_s: f64) -> f64 {
-        -(self.velocity_m_s.x + self.by_z.x * normal_n_s) / self.by_x.x
-    }
-
-    /// The impulse that leaves neither slip nor normal velocity, N s.
-    pub fn holding_n_s(&self) -> Vector {
-        // Cramer's rule for the two velocities to vanish.
-        let determinant = self.by_x.x * self.by_z.z - self.by_z.x * self.by_x.z;
-        Vector {
-            x: (self.by_z.x * self.velocity_m_s.z - self.by_z.z * self.velocity_m_s.x) / determinant,
-            z: (self.by_x.z * self.velocity_m_s.x - self.by_x.x * self.velocity_m_s.z) / determinant,
-        }
-    }
-
-    /// The point's slip after an impulse, m/s.
-    pub fn slip_after_m_s(&self, impulse_n_s: Vector) -> f64 {
-        self.velocity_m_s.x + self.by_x.x * impulse_n_s.x + self.by_z.x * impulse_n_s.z
-    }
-
-    /// The impulse along (`slope`, 1) that leaves no normal velocity, N s, and the slip after it, m/s.
-    pub fn sliding_n_s(&self, slope: f64) -> (Vector, f64) {
-        let z = -self.velocity_m_s.z / (self.by_z.z + slope * self.by_x.z);
-        let impulse = Vector { x: slope * z, z };
-        (impulse, self.slip_after_m_s(impulse))
     }
 }
